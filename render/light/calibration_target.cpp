@@ -10,12 +10,12 @@
 namespace gladstone {
 namespace {
 
-constexpr double most_dots = 1e6;  // on a plane: a sensor of 100 million pixels shows each of them 10 px apart
+constexpr double most_dots = 1e6;  // per plane; on a sensor of 100 megapixels such dots are 10 px apart
 constexpr std::size_t most_planes = 999;
 
-/// Dots to each side of the middle.
+/// Returns the number of dots on each side of the central one along an axis.
 double half_count(double extent, double spacing) {
-  constexpr double rounding = 1e-9;  // of a spacing, by which an edge that is meant to hold dots may miss them
+  constexpr double rounding = 1e-9;  // tolerance in spacings, so that dots exactly on the edge are included
   return std::floor(extent / 2 / spacing + rounding);
 }
 

@@ -7,34 +7,34 @@
 
 namespace gladstone {
 
-/// Table [calibration] of a setup, in SI: a square lattice of dots that is shown to the camera on one plane after the
-/// other, square to Z, its middle dot on the Z axis.
+/// Table [calibration] of a setup, in SI: a square lattice of dots, recorded on several planes perpendicular to Z. The
+/// central dot is on the Z axis.
 struct CalibrationTarget {
-  std::vector<double> planes;  ///< Z of each [m]
-  TargetSetup target;          ///< of TargetKind::lattice
+  std::vector<double> planes;  ///< Z of the planes, ascending [m]
+  TargetSetup target;          ///< target of kind TargetKind::lattice
 };
 
 CalibrationTarget read_calibration_target(SetupTable table);
 
-/// The dots of a lattice: (i, j) times the spacing, i along X from -half_columns to half_columns and j along Y
-/// likewise.
+/// Dots of a square lattice: dot (i, j) is at spacing (i, j), i = -half_columns ... half_columns along X, j =
+/// -half_rows ... half_rows along Y.
 struct Lattice {
   int half_columns = 0, half_rows = 0;
-  double spacing = 0;  ///< [m]
+  double spacing = 0;  ///< distance between neighbouring dots [m]
 
-  /// As many dots as have their centres on the target's extent, one of them on its middle.
+  /// Creates the largest lattice whose dot centres are within the target's extent.
   explicit Lattice(TargetSetup const& target);
   std::size_t size() const {
     return static_cast<std::size_t>(2 * half_columns + 1) * static_cast<std::size_t>(2 * half_rows + 1);
   }
-  /// Column of dot k; its row. Dots are counted along X first.
+  /// Column i and row j of dot k; dots are numbered along X first.
   int column(std::size_t k) const {
     return static_cast<int>(k % static_cast<std::size_t>(2 * half_columns + 1)) - half_columns;
   }
   int row(std::size_t k) const {
     return static_cast<int>(k / static_cast<std::size_t>(2 * half_columns + 1)) - half_rows;
   }
-  /// Their centres [m].
+  /// Returns the dot centres [m].
   std::vector<Vec2d> dots() const;
 };
 

@@ -16,8 +16,9 @@
 namespace gladstone {
 namespace {
 
-/// Centres sorted into cells no smaller than a diameter, so that whatever overlaps is at most one cell away, and no
-/// more of them than about one per dot, so that memory follows the number of dots.
+/// Grid of cells for finding overlapping discs. Cells are at least one diameter wide, so that a disc overlaps discs of
+/// the same or adjacent cells only. There are about as many cells as discs, so that the memory is proportional to the
+/// number of discs.
 class OccupiedCells {
  public:
   OccupiedCells(Vec2d extent, double diameter, std::size_t count)
@@ -30,7 +31,7 @@ class OccupiedCells {
     earlier_.reserve(count);
   }
 
-  /// Adds p, which becomes centres[centres.size()], unless it overlaps one of the centres.
+  /// Adds a disc at p, to be stored as centres[centres.size()], and returns true, unless it overlaps an existing disc.
   bool add(Vec2d p, std::vector<Vec2d> const& centres) {
     std::ptrdiff_t const column = cell(p.x + extent_.x / 2, columns_), row = cell(p.y + extent_.y / 2, rows_);
     for (std::ptrdiff_t j = std::max<std::ptrdiff_t>(0, row - 1); j <= std::min(rows_ - 1, row + 1); ++j) {
@@ -58,8 +59,8 @@ class OccupiedCells {
   double side_;
   std::ptrdiff_t columns_;
   std::ptrdiff_t rows_;
-  std::vector<std::uint32_t> latest_;   // newest dot of a cell
-  std::vector<std::uint32_t> earlier_;  // the one before it in the same cell
+  std::vector<std::uint32_t> latest_;   // most recent disc of each cell
+  std::vector<std::uint32_t> earlier_;  // previous disc in the same cell, for each disc
 };
 
 }  // namespace
@@ -121,8 +122,8 @@ std::vector<Vec2d> regular_dots(Vec2d extent, double per_area, double diameter) 
 
 namespace {
 
-/// Refuses dots at one place, to the nanometre: what a camera would see is one dot, what is traced is two.
-/// @param lines of the file that the centres stand in
+/// Rejects dots that coincide to the nanometre: the camera would see one dot where two are traced.
+/// @param lines  line number in the file of every centre
 void refuse_coincident(std::string const& path, std::vector<Vec2d> const& centres,
                        std::vector<std::size_t> const& lines) {
   auto const nanometres = [](double metres) { return std::round(metres * 1e9); };

@@ -7,7 +7,7 @@
 
 namespace gladstone {
 
-/// The key `file` of a table: the name of a file that is there.
+/// Reads the key `file` of a table and checks that the file exists.
 inline std::string existing_file(SetupTable& table) {
   std::string const file = table.required_path("file");
   if (std::error_code error; !file.empty() && !std::filesystem::exists(file, error)) {

@@ -12,7 +12,7 @@ std::vector<std::string> kind_words(FlowKinds<Kinds...>) {
   return {Kinds::kind...};
 }
 
-/// Reads the kind of that name. @pre it is one of them
+/// Reads the kind with the given name. @pre `word` is the name of one of the kinds
 template <class... Kinds>
 void read_kind(FlowKinds<Kinds...>, std::string const& word, SetupTable& table, FlowSetup& setup) {
   auto const read = [&]<class Kind>(Kind const*) {

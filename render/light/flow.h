@@ -24,9 +24,9 @@ namespace gladstone {
 template <class... Kinds>
 struct FlowKinds {};
 
-/// Every velocity field: a struct with `kind`, `read(SetupTable&)`, or `read(SetupTable&, FlowSetup&)` where it needs
-/// more, and velocity by place, in a file of its own. Where particles' paths are known in closed form it has `moved`
-/// and what goes with it (NormalShockFlow).
+/// List of all velocity fields. Each is a struct with `kind` (its name in a setup), read(SetupTable&) or
+/// read(SetupTable&, FlowSetup&), and operator()(p) -> velocity [m/s], in a separate file. A field with closed-form
+/// particle paths also has moved(p, time, tau) and the seeding functions of NormalShockFlow.
 using AllFlows = FlowKinds<UniformFlow, ShearFlow, RotationFlow, LambOseenFlow, RankineFlow, TaylorGreenFlow,
                            StagnationFlow, JetFlow, FileFlow, NormalShockFlow>;
 
@@ -37,15 +37,15 @@ struct AnyFlowOf<FlowKinds<Kinds...>> {
   using Type = OneOf<Kinds...>;
 };
 
-/// A steady velocity field: one of the kinds plus a uniform velocity. Trivially copyable.
+/// Steady velocity field: one of the kinds plus a uniform velocity. Trivially copyable.
 struct Flow {
   AnyFlowOf<AllFlows>::Type kind = UniformFlow{};
-  Vec3d uniform{};  ///< [m/s]
+  Vec3d uniform{};  ///< uniform velocity added to the field [m/s]
 
   std::string_view kind_word() const {
     return kind.visit([]<class Held>(Held const&) { return std::string_view(Held::kind); });
   }
-  /// u at p [m/s, m].
+  /// Returns the fluid velocity [m/s] at a point p [m].
   template <class T>
   GLADSTONE_HD Vec3<T> operator()(Vec3<T> const& p) const {
     Vec3<T> const own = kind.visit([&p](auto const& held) { return held(p); });
@@ -53,23 +53,25 @@ struct Flow {
   }
 };
 
-/// Table [flow] of a setup: what moves particles, and how long.
+/// Table [flow] of a setup, in SI: velocity field and time between the laser pulses.
 struct FlowSetup {
   Flow flow;
-  double dt = 10e-6;                                ///< between the pulses [s]
-  std::optional<ShockPlane> shock;                  ///< of the medium, if it has one
-  std::optional<VelocityFile> file;                 ///< of kind "file"
-  std::shared_ptr<std::vector<float> const> owner;  ///< keeps the memory that the flow sees; null before load_flow()
+  double dt = 10e-6;                 ///< time between the laser pulses [s]
+  std::optional<ShockPlane> shock;   ///< shock front of the medium, if the medium has one
+  std::optional<VelocityFile> file;  ///< keys of a field of kind "file"
+  std::shared_ptr<std::vector<float> const>
+      owner;  ///< owns the coefficients that `flow` points to; null before load_flow()
 };
 
-/// @param shock the front of a medium of kind normal_shock
+/// Reads table [flow]. @param shock  shock front of a medium of kind normal_shock
 FlowSetup read_flow_setup(SetupTable table, std::optional<ShockPlane> const& shock = std::nullopt);
 
-/// Reads the file of a flow of kind "file", which is at rest before; of others nothing happens.
-/// @return what had to be assumed of the file; empty: nothing @throws DataError
+/// Loads the velocity file of a field of kind "file", which has zero velocity until then. Does nothing for other kinds.
+/// @return warning about assumptions made in reading the file; empty: none
+/// @throws DataError, MemoryError
 std::string load_flow(FlowSetup& setup);
 
-/// Whether the velocity is known at a place [m]: everywhere but beyond a file's field.
+/// Returns false if a point [m] is outside the velocity field of a file, where the velocity is extrapolated.
 bool velocity_known(FlowSetup const& setup, Vec3d place);
 
 }  // namespace gladstone

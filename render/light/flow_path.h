@@ -4,31 +4,32 @@
 
 namespace gladstone {
 
-/// Velocity of small heavy particles in a steady flow, to first order of their response time tau: v = u - tau Du/Dt
+/// Velocity of small heavy particles in a steady flow, to first order in their response time tau: v = u - tau Du/Dt
 /// (Maxey, J. Fluid Mech. 174 (1987) 441; Ferry & Balachandar, Int. J. Multiphase Flow 27 (2001) 1199).
 struct ParticleVelocity {
   Flow flow;
-  double tau = 0;       ///< rho_p d^2 / (18 mu) [s]; 0: they follow the flow
-  double interval = 0;  ///< that derivatives along the flow are taken over [s]; @pre > 0 where tau is
+  double tau = 0;       ///< response time rho_p d^2 / (18 mu) [s]; 0: tracers without lag
+  double interval = 0;  ///< time step of the central differences along the flow [s]; @pre > 0 if tau > 0
 
-  /// Whether the particles' paths are known in closed form, lag and all.
+  /// Returns true if the flow provides the particle paths in closed form, including the lag.
   bool exact() const {
     return flow.kind.visit([](auto const& held) {
       return requires { held.moved(Vec3d{}, 0.0, 0.0); };
     });
   }
 
-  /// [m/s] at a place [m]
+  /// Returns the particle velocity [m/s] at a point [m].
   Vec3d operator()(Vec3d p) const {
     Vec3d const u = flow(p);
     return tau > 0 ? u - tau * acceleration(p) : u;
   }
-  /// Du/Dt = (u . grad) u [m/s^2].
+  /// Returns the material acceleration Du/Dt = (u . grad) u [m/s^2], by central differences along the flow.
   Vec3d acceleration(Vec3d p) const {
     Vec3d const way = interval * flow(p);
     return (flow(p + way) - flow(p - way)) / (2 * interval);
   }
-  /// The next term of the expansion, tau^2 (D^2 u/Dt^2 + (Du/Dt . grad) u) [m/s]: what first order leaves out.
+  /// Returns the second-order term of the expansion, tau^2 (D^2 u/Dt^2 + (Du/Dt . grad) u) [m/s], which operator()
+  /// neglects.
   Vec3d neglected(Vec3d p) const {
     Vec3d const way = interval * flow(p), a = acceleration(p), aside = interval * interval * a;
     Vec3d const along = (acceleration(p + way) - acceleration(p - way)) / (2 * interval);
@@ -37,8 +38,12 @@ struct ParticleVelocity {
   }
 };
 
-/// Where a particle is after a time [s], back in time where that is negative: Runge-Kutta of fourth order.
-/// @param velocity [m/s] by place [m] @param steps of equal length
+/// Integrates the path of a particle over a time [s], backwards if negative, by the classical fourth-order Runge-Kutta
+/// scheme.
+/// @param velocity  callable, velocity [m/s] at a point [m]
+/// @param p         initial position [m]
+/// @param steps     number of steps of equal length
+/// @return final position [m]
 template <class Velocity>
 Vec3d moved(Velocity const& velocity, Vec3d p, double time, int steps) {
   double const h = time / steps;
@@ -49,7 +54,7 @@ Vec3d moved(Velocity const& velocity, Vec3d p, double time, int steps) {
   return p;
 }
 
-/// The same by closed forms where the flow has them; the uniform velocity comes on top.
+/// Like moved() above, but uses the closed form of the flow if it has one; the uniform velocity is added to it.
 inline Vec3d moved(ParticleVelocity const& velocity, Vec3d p, double time, int steps) {
   return velocity.flow.kind.visit([&](auto const& held) {
     if constexpr (requires { held.moved(p, time, velocity.tau); }) {
@@ -60,11 +65,11 @@ inline Vec3d moved(ParticleVelocity const& velocity, Vec3d p, double time, int s
   });
 }
 
-/// How well the motion over a time is known.
+/// Number of integration steps of the particle paths, and their estimated errors.
 struct PathPlan {
   int steps = 1;
-  double error = 0;      ///< largest change of a place when the steps were halved to these [m]
-  double lag_error = 0;  ///< largest way by the first term that the lag leaves out [m]
+  double error = 0;      ///< largest change of a final position when the step was last halved [m]
+  double lag_error = 0;  ///< largest displacement by the second-order term of the lag, which is neglected [m]
 };
 
 }  // namespace gladstone

@@ -9,16 +9,17 @@
 
 namespace gladstone {
 
-/// White spheres with a matt surface (Lambert's law, albedo 1), large beside the wavelength: all light that falls on
-/// one leaves it again, most of it backwards. A view that owns nothing.
+/// Scattering cross-sections of white diffuse spheres (Lambert's law, albedo 1) that are large compared with the
+/// wavelength. A view, owns no memory.
 ///
 /// Differential cross-section d^2 / (6 pi) (sin t - t cos t), t the scattering angle (Russell, Astrophys. J. 43 (1916)
-/// 173; van de Hulst, Light Scattering by Small Particles, 1957, section 8.4.2). Over all directions it is pi d^2 / 4.
+/// 173; van de Hulst, Light Scattering by Small Particles, 1957, section 8.4.2). Most light is scattered backwards; the
+/// total cross-section is pi d^2 / 4.
 template <class T>
 struct LambertSpheres {
-  T const* diameter = nullptr;  ///< [m]
+  T const* diameter = nullptr;  ///< particle diameters [m]
 
-  /// Of particle i into a direction (unit length), in the light of a wave. [m^2/sr]
+  /// Returns the differential cross-section of particle i in a direction (unit vector) for an incident wave [m^2/sr].
   GLADSTONE_HD T cross_section(std::uint64_t i, Vec3<T> direction, LightWave<T> const& wave) const {
     using std::acos;
     using std::sqrt;

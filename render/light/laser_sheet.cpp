@@ -5,7 +5,7 @@
 namespace gladstone {
 namespace {
 
-/// How far from square a sheet's normal may stand on its laser's direction: what rounded components leave. [1]
+/// Largest accepted |cosine| of the angle between sheet normal and laser direction; allows for rounded components [1].
 constexpr double square_enough = 0.01;
 
 Vec3d read_unit_vector(SetupTable& table, std::string const& key, Vec3d fallback) {
@@ -35,7 +35,7 @@ LaserSetup read_laser_setup(SetupTable table, double wavelength) {
         fmt::format("leaves {:.4g} deg between the sheet's normal and the laser's direction (a sheet holds its "
                     "laser's direction, so that they are square); turn one of them",
                     std::acos(std::min(std::abs(lean), 1.0)) / unit::degree));
-    // any normal that is square, to go on reading with
+    // replace the normal by one that is not parallel to the direction, so that reading can continue
     Vec3d const other = std::abs(laser.direction.z) < 0.7 ? Vec3d{0, 0, 1} : Vec3d{1, 0, 0};
     laser.normal = other;
   }

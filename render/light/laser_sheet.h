@@ -12,53 +12,54 @@
 
 namespace gladstone {
 
-/// How a sheet's light falls off along its normal.
+/// Intensity profile of a laser sheet along its normal.
 enum class SheetProfile : int {
-  gaussian,  ///< the thickness is the e^-2 full width
-  top_hat,   ///< the thickness is the full width
+  gaussian,  ///< Gaussian; thickness is the e^-2 full width
+  top_hat,   ///< uniform; thickness is the full width
 };
 
 /// Table [laser] of a setup, in SI.
 struct LaserSetup {
-  double wavelength = 532e-9;   ///< in vacuum [m]
-  double pulse_energy = 50e-3;  ///< [J]
-  Vec3d direction{1, 0, 0};     ///< of propagation at the centre, unit length
-  Vec3d normal{0, 0, 1};        ///< of the sheet, unit length, across the direction
-  Vec3d centre{};               ///< a point of the sheet's axis, where its height is `height` [m]
+  double wavelength = 532e-9;   ///< vacuum wavelength [m]
+  double pulse_energy = 50e-3;  ///< energy of one pulse [J]
+  Vec3d direction{1, 0, 0};     ///< propagation direction on the sheet's axis, unit vector
+  Vec3d normal{0, 0, 1};        ///< normal of the sheet, unit vector perpendicular to `direction`
+  Vec3d centre{};               ///< point on the sheet's axis at which the height is `height` [m]
   SheetProfile profile = SheetProfile::gaussian;
   double thickness = 1e-3;         ///< [m]
-  double height = 40e-3;           ///< at the centre, uniform across it [m]
-  double divergence = 0;           ///< full angle that the sheet fans out by in its plane [rad]
-  double polarization = 0;         ///< of the electric field out of the sheet's plane, towards the normal [rad]
-  std::array<double, 2> offset{};  ///< of the sheet along its normal, at either pulse [m]
-  std::array<double, 2> tilt{};    ///< of the sheet about its direction through the centre, right-handed [rad]
+  double height = 40e-3;           ///< height at the centre; the light is uniform over it [m]
+  double divergence = 0;           ///< full divergence angle in the plane of the sheet [rad]
+  double polarization = 0;         ///< angle of the electric field to the plane of the sheet, towards the normal [rad]
+  std::array<double, 2> offset{};  ///< displacement of the sheet along its normal at each pulse [m]
+  std::array<double, 2>
+      tilt{};  ///< rotation of the sheet about its direction through the centre at each pulse, right-handed [rad]
 };
 
-/// Reads [laser]. @param wavelength where the table names none [m]
+/// Reads table [laser]. @param wavelength  default wavelength [m]
 LaserSetup read_laser_setup(SetupTable table, double wavelength);
 
-/// A pulsed laser sheet: light that propagates along x of its pose, is uniform over a height along y and falls off
-/// along z. With a divergence it fans out of a line, so that a plane square to the axis is lit uniformly everywhere.
+/// Pulsed laser sheet. Light propagates along x of the sheet's pose, is uniform along y and has a profile along z. A
+/// diverging sheet fans out from a line; a plane perpendicular to the axis is illuminated uniformly.
 template <class T>
 struct LaserSheet {
-  Pose<T> pose[2];  ///< at either pulse: x direction, y height, z normal
+  Pose<T> pose[2];  ///< pose at each pulse: x propagation, y height, z normal
   SheetProfile profile = SheetProfile::gaussian;
-  T pulse_energy{};  ///< [J]
-  T thickness{};     ///< [m]
-  T height{};        ///< at the centre [m]
-  T growth{};        ///< of the height along the axis, 2 tan(divergence / 2) [1]
+  T pulse_energy{};  ///< energy of one pulse [J]
+  T thickness{};     ///< thickness, see SheetProfile [m]
+  T height{};        ///< height at the centre [m]
+  T growth{};        ///< increase of the height per length along the axis, 2 tan(divergence / 2) [1]
   T cos_polarization = T(1), sin_polarization{};
   T photons_per_joule{};  ///< lambda / (h c) [1/J]
 
-  /// Energy per area across the light's way that a pulse (0 or 1) brings to a point: for a Gaussian profile
-  /// E / (h w sqrt(pi/8)) exp(-8 z^2 / w^2), over the cosine of the fan's angle there. [J/m^2]
+  /// Returns the energy per area, perpendicular to the local propagation direction, of a pulse (0 or 1) at a point
+  /// [J/m^2]. For a Gaussian profile: E / (h w sqrt(pi/8)) exp(-8 z^2 / w^2) / cos(angle of the light to the axis).
   GLADSTONE_HD T fluence(Vec3<T> point, int pulse) const {
     using std::exp;
     using std::sqrt;
     Vec3<T> const p = pose[pulse].point_inwards(point);
     T const h = height + p.x * growth;
     if (!(h > T(0)) || p.y + p.y > h || p.y + p.y < -h) return T(0);
-    T across;  // [1/m], its integral over z is 1
+    T across;  // profile, normalised to an integral over z of one [1/m]
     if (profile == SheetProfile::gaussian) {
       constexpr double sqrt_pi_over_8 = 0.62665706865775012560;
       T const z = p.z / thickness;
@@ -66,14 +67,14 @@ struct LaserSheet {
     } else {
       across = p.z + p.z > thickness || p.z + p.z < -thickness ? T(0) : T(1) / thickness;
     }
-    T const slope = p.y * growth / h;  // tangent of the light's angle to the axis
+    T const slope = p.y * growth / h;  // tangent of the angle of the light to the axis
     return pulse_energy / h * across * sqrt(T(1) + slope * slope);
   }
 
-  /// Photons per area. [1/m^2]
+  /// Returns the photons per area at a point [1/m^2].
   GLADSTONE_HD T photons(Vec3<T> point, int pulse) const { return fluence(point, pulse) * photons_per_joule; }
 
-  /// The wave at a point of the sheet.
+  /// Returns propagation and polarisation of the light at a point of the sheet.
   GLADSTONE_HD LightWave<T> wave(Vec3<T> point, int pulse) const {
     using std::sqrt;
     Vec3<T> const p = pose[pulse].point_inwards(point);

@@ -12,9 +12,9 @@ namespace {
 
 using Complex = std::complex<double>;
 
-/// Logarithmic derivatives D_n = psi_n'/psi_n at z, n = 0 to `terms`: downward, D_(n-1) = n/z - 1/(D_n + n/z) (Bohren &
-/// Huffman eq. 4.89). What D is said to be at the start is forgotten once psi has fallen to 1e-8 of its size below |z|,
-/// 7 |z|^(1/3) orders above it.
+/// Computes the logarithmic derivatives D_n = psi_n'/psi_n at z for n = 0 to `terms`, by the downward recurrence
+/// D_(n-1) = n/z - 1/(D_n + n/z) (Bohren & Huffman eq. 4.89). The arbitrary start value has no effect once psi_n has
+/// dropped to 1e-8 of its magnitude at n = |z|, which happens 7 |z|^(1/3) orders above |z|.
 template <class T>
 std::vector<T> logarithmic_derivatives(T z, int terms) {
   double const size = std::abs(z);
@@ -30,7 +30,7 @@ std::vector<T> logarithmic_derivatives(T z, int terms) {
   return derivatives;
 }
 
-/// Several angles at a time, one beside the other.
+/// Number of angles that are evaluated together, for SIMD.
 constexpr int angles_at_once = 8;
 
 }  // namespace
@@ -52,14 +52,14 @@ MieCoefficients::MieCoefficients(double x, std::complex<double> m) : x_(x), m_(m
   auto const inside = logarithmic_derivatives(m * x, static_cast<int>(terms));
   auto const outside = logarithmic_derivatives(x, static_cast<int>(terms));
 
-  // psi_n and chi_n, upward from psi_0 = sin x and chi_0 = cos x
+  // upward recurrence of psi_n and chi_n from psi_0 = sin x and chi_0 = cos x
   double psi_before = std::sin(x), chi_before = std::cos(x);
   double chi_before_that = -psi_before;
   double psi_before_that = chi_before;
   for (std::size_t i = 0; i < terms; ++i) {
     double const n = static_cast<double>(i) + 1;
     double const chi = (2 * n - 1) / x * chi_before - chi_before_that;
-    // where psi_n falls with n its upward recurrence loses digits, but D_n does not
+    // for n > x, upward recurrence of psi_n loses digits; D_n is accurate, so psi_n follows from psi_(n-1) and D_n
     bool const falls = n > x;
     double const psi = falls ? psi_before / (outside[i + 1] + n / x) : (2 * n - 1) / x * psi_before - psi_before_that;
     Complex const d = inside[i + 1];
@@ -84,7 +84,7 @@ MieCoefficients::MieCoefficients(double x, std::complex<double> m) : x_(x), m_(m
 MieEfficiencies MieCoefficients::efficiencies() const {
   double extinction = 0, scattering = 0, asymmetry = 0;
   Complex back = 0;
-  for (std::size_t i = a_.size(); i-- > 0;) {  // the smallest first
+  for (std::size_t i = a_.size(); i-- > 0;) {  // smallest terms first, to reduce rounding
     double const n = static_cast<double>(i) + 1;
     extinction += (2 * n + 1) * (a_[i] + b_[i]).real();
     scattering += (2 * n + 1) * (std::norm(a_[i]) + std::norm(b_[i]));
@@ -106,7 +106,7 @@ MieAmplitudes MieCoefficients::amplitudes(double angle) const {
 }
 
 void MieCoefficients::amplitudes(double const* angle, std::size_t count, MieAmplitudes* result) const {
-  // S1 + S2 and S1 - S2 are sums over (a_n + b_n) (pi_n + tau_n) and (a_n - b_n) (pi_n - tau_n) (Wiscombe 1980)
+  // S1 + S2 is the sum of (a_n + b_n) (pi_n + tau_n), S1 - S2 that of (a_n - b_n) (pi_n - tau_n) (Wiscombe 1980)
   using Several = std::array<double, angles_at_once>;
   for (std::size_t first = 0; first < count; first += angles_at_once) {
     std::size_t const some = std::min<std::size_t>(angles_at_once, count - first);

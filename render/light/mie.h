@@ -6,10 +6,10 @@
 
 namespace gladstone {
 
-/// Sizes that the series is summed for: size parameter x = pi d n / lambda.
+/// Range of size parameters x = pi d n / lambda for which the series is valid.
 inline constexpr double least_size_parameter = 1e-6, largest_size_parameter = 1e5;
 
-/// What a sphere takes out of a plane wave, over its cross-section pi d^2/4, and how it sends it on [1].
+/// Efficiency factors of a sphere: cross-sections in a plane wave over the geometric cross-section pi d^2 / 4 [1].
 struct MieEfficiencies {
   double q_ext = 0;   ///< extinction
   double q_sca = 0;   ///< scattering
@@ -17,39 +17,40 @@ struct MieEfficiencies {
   double g = 0;       ///< mean cosine of the scattering angle
 };
 
-/// Amplitudes of the light that a sphere scatters into an angle (Bohren & Huffman 1983, eq. 4.74): a field across the
-/// plane of scattering is sent on by S1, a field in it by S2 [1].
+/// Scattering amplitudes of a sphere at one angle (Bohren & Huffman 1983, eq. 4.74) [1]: S1 for the electric field
+/// perpendicular to the scattering plane, S2 for the field parallel to it.
 struct MieAmplitudes {
   std::complex<double> s1, s2;
-  /// (|S1|^2 + |S2|^2) / 2, for light without polarisation.
+  /// Returns (|S1|^2 + |S2|^2) / 2, for unpolarised light.
   double s11() const { return (std::norm(s1) + std::norm(s2)) / 2; }
 };
 
-/// Coefficients a_n, b_n of the field that a homogeneous sphere scatters out of a plane wave.
-/// Bohren & Huffman, Absorption and Scattering of Light by Small Particles (1983), eq. 4.88 and appendix A: the
-/// logarithmic derivative of psi_n is recurred downward, and Wiscombe's number of terms (Appl. Opt. 19 (1980) 1505) is
-/// summed. Time goes as exp(-i omega t), so that an absorbing sphere has m = n + i k with k >= 0.
-/// Unlike there, psi_n beyond n = x is found from the ratio of its neighbours, and downward recurrence starts
-/// 8 |m x|^(1/3) orders above |m x|: both keep the last digits of the smallest and of the largest spheres.
+/// Expansion coefficients a_n, b_n of the field scattered by a homogeneous sphere in a plane wave.
+/// Bohren & Huffman, Absorption and Scattering of Light by Small Particles (1983), eq. 4.88 and appendix A: downward
+/// recurrence of the logarithmic derivative of psi_n, with Wiscombe's number of terms (Appl. Opt. 19 (1980) 1505). The
+/// time factor is exp(-i omega t), so that an absorbing sphere has m = n + i k with k >= 0.
+/// Unlike there, psi_n for n > x is computed from the ratio psi_n / psi_(n-1), and the downward recurrence starts 8 |m
+/// x|^(1/3) orders above |m x|; both preserve the last digits for the smallest and the largest spheres.
 class MieCoefficients {
  public:
-  /// @param x size parameter pi d n / lambda, n and lambda those of the surroundings and of vacuum [1]
-  /// @param m index of the sphere over that of the surroundings, n + i k [1]; 1 gives no scattering at all
+  /// @param x  size parameter pi d n / lambda, n the index of the surrounding medium, lambda the vacuum wavelength [1]
+  /// @param m  refractive index of the sphere relative to the surrounding medium, n + i k [1]; m = 1 scatters no light
   /// @pre least_size_parameter <= x <= largest_size_parameter; real part of m > 0, imaginary part >= 0
   MieCoefficients(double x, std::complex<double> m);
 
   double size_parameter() const { return x_; }
   std::complex<double> relative_index() const { return m_; }
-  /// a_n and b_n, n = 1, 2, ... at places 0, 1, ...
+  /// Coefficients a_n and b_n, n = 1, 2, ..., stored at index n - 1.
   std::vector<std::complex<double>> const& a() const { return a_; }
   std::vector<std::complex<double>> const& b() const { return b_; }
 
-  /// Bohren & Huffman eq. 4.61, 4.62, sec. 4.4.3 and p. 120. Where nothing is scattered g is 0.
+  /// Returns the efficiency factors (Bohren & Huffman eq. 4.61, 4.62, sec. 4.4.3 and p. 120). g is 0 if no light is
+  /// scattered.
   MieEfficiencies efficiencies() const;
 
-  /// S1 and S2 at a scattering angle; 0 is forward [rad].
+  /// Returns S1 and S2 at a scattering angle [rad]; 0 is forward.
   MieAmplitudes amplitudes(double angle) const;
-  /// The same at `count` angles, several at a time.
+  /// Computes S1 and S2 at `count` scattering angles [rad], several at a time.
   void amplitudes(double const* angle, std::size_t count, MieAmplitudes* result) const;
 
  private:
@@ -59,8 +60,8 @@ class MieCoefficients {
   std::vector<std::complex<double>> sum_, difference_;  ///< (2n+1)/(n(n+1)) (a_n +- b_n) / 2
 };
 
-/// Number of terms of the series for a size parameter x: Wiscombe's (Appl. Opt. 19 (1980) 1505) and three more, which
-/// take the relative error from 1e-10 to that of rounding.
+/// Returns the number of terms of the series for a size parameter x: Wiscombe's (Appl. Opt. 19 (1980) 1505) plus three,
+/// which reduces the relative error from 1e-10 to rounding.
 int mie_terms(double x);
 
 }  // namespace gladstone

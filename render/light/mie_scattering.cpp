@@ -15,14 +15,14 @@
 namespace gladstone {
 namespace {
 
-/// Nodes of a table stand this far apart, in radians of the fastest ripple of |S|^2 that has any strength, cos(2 x
-/// theta): a cubic spline then misses it by 0.5^4 / 384 = 1.6e-4 of its height.
+/// Node spacing of a table, as phase [rad] of the fastest significant ripple of |S|^2, cos(2 x theta). The error of a
+/// cubic spline is then 0.5^4 / 384 = 1.6e-4 of the ripple's amplitude.
 constexpr double node_phase = 0.5;
 
-/// Terms of the series that turns samples into coefficients, and samples that it takes beyond either end.
+/// Number of iterations of spline_coefficients(), and of additional samples at each end.
 constexpr int series_terms = 6;
 
-/// Diameters that a thread takes at a time.
+/// Number of diameters per task.
 constexpr std::size_t diameters_at_once = 16;
 
 std::vector<double> distinct(std::vector<double> diameters) {
@@ -37,14 +37,14 @@ double size_parameter_of(double diameter, MieSetting const& setting) { return di
 
 bool scatters(double size_parameter) { return size_parameter >= least_size_parameter; }
 
-/// Cells of a sphere's table. Below x = 1 the light goes as cos^2 theta, however small the sphere is.
+/// Returns the number of table cells for a sphere. For x < 1 the intensity varies as cos^2 theta for any size.
 double cells_for(double size_parameter, AngleInterval angles) {
   if (!scatters(size_parameter)) return 1;
   return std::ceil((angles.most - angles.least) * 2 * (size_parameter + 1) / node_phase);
 }
 
-/// Coefficients of a table of so many cells: a cubic spline has one more than it has cells, and one beyond either end;
-/// for S1 and for S2.
+/// Returns the number of coefficients of a table with the given number of cells, for S1 and S2 together. A cubic spline
+/// on c cells has c + 3 coefficients.
 std::uint64_t coefficients_for(double cells) { return 2 * (static_cast<std::uint64_t>(cells) + 3); }
 
 double bytes_of(std::vector<double> const& diameters, std::size_t particles, MieSetting const& setting,
@@ -56,7 +56,7 @@ double bytes_of(std::vector<double> const& diameters, std::size_t particles, Mie
   return bytes;
 }
 
-/// |S1|^2 and |S2|^2 at `count` angles from `first` in steps of `step` [rad].
+/// Samples of |S1|^2 and |S2|^2 at `count` angles from `first` in steps of `step` [rad].
 struct Intensities {
   std::vector<double> s1, s2;
 
@@ -72,9 +72,9 @@ struct Intensities {
   }
 };
 
-/// Coefficients c of the cubic B-spline through samples f on equal steps: f = (1 + d^2/6) c, d^2 the second
-/// difference, so that c = f - d^2 c / 6 again and again (Unser, Aldroubi & Eden 1993). Each turn loses a sample at
-/// either end, where no samples are known beyond.
+/// Computes the coefficients c of the cubic B-spline through equidistant samples f. With the second difference d^2, f =
+/// (1 + d^2/6) c, which is solved by iterating c = f - d^2 c / 6 (Unser, Aldroubi & Eden 1993). Each iteration
+/// invalidates one more coefficient at each end.
 std::vector<double> spline_coefficients(std::vector<double> const& f) {
   std::vector<double> c = f, last;
   for (std::size_t turn = 1; turn <= series_terms; ++turn) {
@@ -86,8 +86,8 @@ std::vector<double> spline_coefficients(std::vector<double> const& f) {
   return c;
 }
 
-/// Fills the table of one sphere.
-/// @return its largest error half-way between nodes, over the mean of |S1|^2 and |S2|^2
+/// Computes the table of one sphere.
+/// @return largest error midway between nodes, relative to the mean of |S1|^2 and |S2|^2
 double fill_table(MieCoefficients const& sphere, AngleInterval angles, MieTable const& table, float* coefficient) {
   double const step = 1 / static_cast<double>(table.cells_per_radian);
   std::size_t const cells = table.cells, kept = cells + 3;
@@ -149,7 +149,7 @@ MieScattering::MieScattering(std::vector<double> const& diameters, MieSetting co
   tables_.reserve(sizes.size());
   for (double const size : sizes) {
     double const cells = cells_for(size_parameter_of(size, setting), angles);
-    // a little below, so that the last cell does not end before the interval does
+    // round down, so that the last cell does not end before the interval
     float const density = std::nextafter(static_cast<float>(cells / (angles.most - angles.least)), 0.0f);
     tables_.push_back({next, static_cast<std::uint32_t>(cells), density});
     next += coefficients_for(cells);

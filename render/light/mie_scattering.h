@@ -13,53 +13,53 @@
 
 namespace gladstone {
 
-/// A plane wave that lights a particle.
+/// Plane wave incident on a particle.
 template <class T>
 struct LightWave {
-  Vec3<T> propagation{T(1), T(0), T(0)};  ///< unit vector
-  Vec3<T> field{T(0), T(1), T(0)};        ///< unit vector of the electric field, across the propagation
+  Vec3<T> propagation{T(1), T(0), T(0)};  ///< direction of propagation, unit vector
+  Vec3<T> field{T(0), T(1), T(0)};  ///< direction of the electric field, unit vector perpendicular to the propagation
 };
 
-/// Spheres of one substance in the light of a laser.
+/// Optical properties of a set of spheres and of the incident light.
 struct MieSetting {
-  std::complex<double> index{1.45, 0};  ///< of the spheres, n + i k [1]
-  double wavelength = 532e-9;           ///< in vacuum [m]
-  double surroundings = 1;              ///< refractive index around them [1]
+  std::complex<double> index{1.45, 0};  ///< refractive index of the spheres, n + i k [1]
+  double wavelength = 532e-9;           ///< vacuum wavelength [m]
+  double surroundings = 1;              ///< refractive index of the surrounding medium [1]
   LightWave<double> wave;
 };
 
-/// Angles between a laser's propagation and the directions of scattered light [rad].
+/// Interval of scattering angles [rad].
 struct AngleInterval {
   double least = 0, most = pi;
 };
 
-/// What the spheres of one diameter have in the table.
+/// Location of one diameter's data in the table.
 struct MieTable {
-  std::uint64_t first = 0;  ///< its first coefficient; that of S2 stands behind each of S1
-  std::uint32_t cells = 0;  ///< between the interval's ends
+  std::uint64_t first = 0;  ///< index of the first coefficient; S1 and S2 alternate
+  std::uint32_t cells = 0;  ///< number of cells between the ends of the interval
   float cells_per_radian = 0;
 };
 
-/// Differential cross-sections of particles, as rays see them: a view that owns nothing.
+/// View of the tabulated differential cross-sections of particles, as used by the ray tracer.
 template <class T>
 struct MieScatteringView {
-  std::uint32_t const* table_of = nullptr;  ///< of every particle
-  MieTable const* table = nullptr;          ///< of every distinct diameter
-  float const* coefficient = nullptr;       ///< of cubic B-splines through |S1|^2 and |S2|^2 [1]
+  std::uint32_t const* table_of = nullptr;  ///< index into `table` of every particle
+  MieTable const* table = nullptr;          ///< one entry per distinct diameter
+  float const* coefficient = nullptr;       ///< cubic B-spline coefficients of |S1|^2 and |S2|^2 [1]
   LightWave<T> wave;
-  T least_angle{};           ///< scattering angles of the table [rad]
-  T most_angle{};            ///< [rad]
-  T inverse_wave_number2{};  ///< 1/k^2 in the surroundings [m^2]
+  T least_angle{};           ///< smallest scattering angle of the table [rad]
+  T most_angle{};            ///< largest scattering angle of the table [rad]
+  T inverse_wave_number2{};  ///< 1/k^2, k the wave number in the surrounding medium [m^2]
 
-  /// Differential scattering cross-section of a particle into a direction: power per solid angle over the wave's power
-  /// per area, (|S2|^2 cos^2 phi + |S1|^2 sin^2 phi) / k^2, phi between the electric field and the plane of
-  /// propagation and direction (Bohren & Huffman 1983, sec. 3.3 and 4.4).
-  /// @param direction unit vector away from the particle. An angle beyond the table's counts as the nearest in it.
+  /// Returns the differential scattering cross-section of a particle in a direction: power per solid angle over
+  /// incident power per area, (|S2|^2 cos^2 phi + |S1|^2 sin^2 phi) / k^2, phi the angle between the electric field and
+  /// the scattering plane (Bohren & Huffman 1983, sec. 3.3 and 4.4). Scattering angles outside the table are clamped.
+  /// @param direction  unit vector away from the particle
   /// @return [m^2/sr]
   GLADSTONE_HD T cross_section(std::uint64_t particle, Vec3<T> direction) const {
     return cross_section(particle, direction, wave);
   }
-  /// The same in a wave of the particle's own, where the light of the sheet spreads.
+  /// Like above, for a wave that varies from particle to particle, as in a diverging sheet.
   GLADSTONE_HD T cross_section(std::uint64_t particle, Vec3<T> direction, LightWave<T> const& own) const {
     using std::atan2;
     using std::sqrt;
@@ -69,12 +69,12 @@ struct MieScatteringView {
     T const sine2 = along2 + across2;
     T s1, s2;
     intensities(particle, atan2(sqrt(sine2), dot(direction, own.propagation)), s1, s2);
-    // forward and backward |S1| = |S2|, and phi means nothing
+    // phi is undefined for forward and backward scattering, where |S1| = |S2|
     T const share = sine2 > T(0) ? along2 / sine2 : T(0);
     return (s1 + (s2 - s1) * share) * inverse_wave_number2;
   }
 
-  /// |S1|^2 and |S2|^2 of a particle at a scattering angle [rad].
+  /// Computes |S1|^2 and |S2|^2 of a particle at a scattering angle [rad].
   GLADSTONE_HD void intensities(std::uint64_t particle, T angle, T& s1, T& s2) const {
     MieTable const own = table[table_of[particle]];
     T place = (angle - least_angle) * T(own.cells_per_radian);
@@ -90,26 +90,27 @@ struct MieScatteringView {
     float const* const c = coefficient + own.first + 2 * std::uint64_t{cell};
     s1 = w0 * T(c[0]) + w1 * T(c[2]) + w2 * T(c[4]) + w3 * T(c[6]);
     s2 = w0 * T(c[1]) + w1 * T(c[3]) + w2 * T(c[5]) + w3 * T(c[7]);
-    // between nodes a zero may come out a little below
+    // the spline can undershoot at a zero of |S|^2
     s1 = s1 > T(0) ? s1 : T(0);
     s2 = s2 > T(0) ? s2 : T(0);
   }
 };
 
-/// Light that many spheres of one substance scatter out of a laser's: |S1|^2 and |S2|^2 of every distinct diameter over
-/// the scattering angles that cameras see. Coefficients a_n, b_n are exact for every diameter: resonances defeat any
-/// grid over size. Only the angle is tabulated, by cubic B-splines on nodes as dense as the ripples ask for.
+/// Table of the light scattered by many spheres of one material: |S1|^2 and |S2|^2 of every distinct diameter, over the
+/// interval of scattering angles seen by the cameras. The coefficients a_n, b_n are computed exactly for every
+/// diameter, since resonances rule out interpolation in diameter. Only the angle is tabulated, by cubic B-splines on
+/// nodes spaced according to the angular ripples.
 class MieScattering {
  public:
-  /// Fills the table on all threads, with a progress bar.
-  /// @param diameters of all particles [m]; equal ones are computed once. A diameter of 0 scatters nothing.
-  /// @param angles that will be asked for
-  /// @throws MemoryError where the table is larger than the memory that is left
-  /// @pre diameters >= 0, size parameters up to largest_size_parameter; the wave's vectors are unit and square;
-  ///      0 <= angles.least < angles.most <= pi
+  /// Computes the table on all threads, with a progress bar.
+  /// @param diameters  diameters of all particles [m]; equal ones are computed once. A diameter of 0 scatters no light.
+  /// @param angles     range of scattering angles
+  /// @throws MemoryError if the table exceeds the available memory
+  /// @pre diameters >= 0, size parameters <= largest_size_parameter; the vectors of the wave are perpendicular unit
+  /// vectors; 0 <= angles.least < angles.most <= pi
   MieScattering(std::vector<double> const& diameters, MieSetting const& setting, AngleInterval angles);
 
-  /// What the table would take, before it is made [bytes].
+  /// Returns the memory required for the table [bytes].
   static double bytes_needed(std::vector<double> const& diameters, MieSetting const& setting, AngleInterval angles);
 
   template <class T>
@@ -124,14 +125,14 @@ class MieScattering {
             T(1 / (wave_number_ * wave_number_))};
   }
 
-  /// Largest error of the table, over the mean of |S1|^2 and |S2|^2 of that diameter over the interval, as measured
-  /// half-way between all nodes of all diameters [1].
+  /// Largest error of the tabulated |S1|^2 and |S2|^2, relative to their mean over the interval for the same diameter
+  /// [1]. Measured midway between all nodes for all diameters.
   double error() const { return error_; }
   std::size_t distinct_diameters() const { return tables_.size(); }
   MieSetting const& setting() const { return setting_; }
   AngleInterval angles() const { return angles_; }
 
-  /// What the view points at, for devices.
+  /// Data of the view, for copying to a device.
   std::vector<std::uint32_t> const& table_of() const { return table_of_; }
   std::vector<MieTable> const& tables() const { return tables_; }
   std::vector<float> const& coefficients() const { return coefficients_; }

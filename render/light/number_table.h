@@ -8,17 +8,19 @@
 
 namespace gladstone {
 
-/// A CSV file of numbers under one header line, row by row.
+/// Reader of a CSV file of numbers with one header line.
 class NumberTable {
  public:
-  /// @param wanted what the file should be, for messages @param columns of the header
-  /// @throws DataError for another header
+  /// Opens the file and checks its header.
+  /// @param wanted   expected content, for messages ("a table of particles")
+  /// @param columns  expected column names
+  /// @throws DataError if the header differs
   NumberTable(std::string const& path, std::string const& wanted, std::vector<std::string> const& columns);
 
-  /// The next row; nothing at the end. Empty lines are passed over.
-  /// @throws DataError at file:line for a line that is not so many finite numbers
+  /// Returns the next row, skipping empty lines, or nullopt at the end of the file.
+  /// @throws DataError with file:line if a line does not consist of one finite number per column
   std::optional<std::vector<double>> next();
-  /// "file:line" of the row that next() gave last.
+  /// Location "file:line" of the row last returned by next().
   std::string place() const { return lines_.place(); }
 
  private:

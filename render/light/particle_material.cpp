@@ -11,9 +11,10 @@
 namespace gladstone {
 namespace {
 
-constexpr double least_index = 0.01;  // real part; metals have 0.05 and more
+constexpr double least_index = 0.01;  // lower limit of the real part; metals have 0.05 or more
 
-/// sqrt(1 + sum of B L^2 / (L^2 - C)), L the wavelength and C in um^2.
+/// Sellmeier equation: returns sqrt(1 + sum of B L^2 / (L^2 - C)), wavelength L in um and C in um^2.
+/// @param wavelength  [m]
 template <std::size_t N>
 double sellmeier(double wavelength, double const (&b)[N], double const (&c)[N]) {
   double const l2 = wavelength * wavelength * 1e12;
@@ -22,7 +23,7 @@ double sellmeier(double wavelength, double const (&b)[N], double const (&c)[N]) 
   return std::sqrt(n2);
 }
 
-/// Mean of a uniaxial crystal's indices over all orientations.
+/// Returns the mean refractive index of a uniaxial crystal over all orientations.
 double over_orientations(double ordinary, double extraordinary) { return (2 * ordinary + extraordinary) / 3; }
 
 std::complex<double> index_of_dehs(double) { return 1.450; }

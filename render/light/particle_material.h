@@ -8,27 +8,28 @@
 
 namespace gladstone {
 
-/// A substance that flows are seeded with.
+/// Material of seeding particles.
 struct ParticleMaterial {
-  std::string name;    ///< as the setup has it
-  std::string source;  ///< of its index: author, year
-  double shortest;     ///< wavelengths that the source covers [m]
-  double longest;
-  /// Of the substance at a wavelength in vacuum [m], n + i k; crystals: the mean over all orientations.
+  std::string name;    ///< name in a setup
+  std::string source;  ///< source of the refractive index: author, year
+  double shortest;     ///< shortest vacuum wavelength covered by the source [m]
+  double longest;      ///< longest vacuum wavelength covered by the source [m]
+  /// Complex refractive index n + i k at a vacuum wavelength [m]. Crystals: mean over all orientations.
   std::complex<double> (*index)(double wavelength);
 };
 
-/// All of them: dehs (also named oil), water, tio2 (rutile), al2o3 (corundum), glass (soda-lime).
+/// Returns all materials: dehs (also named oil), water, tio2 (rutile), al2o3 (corundum), glass (soda-lime).
 std::vector<ParticleMaterial> const& particle_materials();
 
-/// Names that a setup may use.
+/// Returns the material names accepted in a setup.
 std::vector<std::string> particle_material_names();
 
-/// The material of that name. @pre the name is one of particle_material_names()
+/// Returns the material of a given name. @pre name is one of particle_material_names()
 ParticleMaterial const& particle_material(std::string const& name);
 
-/// Key `material` of [particles], or else `index = [n, k]`, for n + i k; neither: an oil's, 1.45.
-/// @param wavelength of the laser in vacuum [m]
+/// Reads the refractive index n + i k of the particles from the key `material` or `index = [n, k]`; without either,
+/// 1.45 (oil).
+/// @param wavelength  vacuum wavelength of the laser [m]
 std::complex<double> read_particle_index(SetupTable table, double wavelength);
 
 }  // namespace gladstone

@@ -14,7 +14,7 @@ namespace gladstone {
 namespace {
 
 constexpr double most_particles = 4e9;
-constexpr double widest_um = 1e4;  // of a diameter
+constexpr double widest_um = 1e4;  // maximum diameter [um]
 
 void read_count(SetupTable& table, ParticleSetup& setup) {
   std::array<char const*, 4> const keys{"number", "per_mm3", "per_pixel", "file"};

@@ -10,46 +10,49 @@
 
 namespace gladstone {
 
-/// What says how many particles there are.
+/// Specification of the number of particles.
 enum class ParticleCount { number, per_mm3, per_pixel, file };
-/// How diameters are spread over particles.
+/// Distribution of the particle diameters.
 enum class DiameterSpread { one, lognormal, normal, table };
-/// What particles make of the laser's light.
+/// Model of the light scattered by particles.
 enum class ParticleScattering {
   mie,
-  lambert,   ///< matt white spheres
-  gaussian,  ///< what falls on the particle's disc, alike into all directions: for ideal images, without rays
+  lambert,   ///< white diffuse spheres
+  gaussian,  ///< isotropic scattering of the light incident on the particle's cross-section, for ideal images without
+             ///< rays
 };
 
-/// Diameters of particles, in SI.
+/// Distribution of particle diameters, in SI.
 struct DiameterSetup {
   DiameterSpread spread = DiameterSpread::one;
-  double middle = 1e-6;  ///< the one, the median or the mean [m]
-  double width = 0;      ///< standard deviation: of the logarithm [1], or of the diameter [m]
-  std::string file;      ///< of a table
+  double middle = 1e-6;  ///< single diameter, median (lognormal) or mean (normal) [m]
+  double width = 0;      ///< standard deviation of ln(diameter) [1] (lognormal) or of the diameter [m] (normal)
+  std::string file;      ///< CSV diameter_um,weight of a table
 };
 
 /// Table [particles] of a setup, in SI.
 struct ParticleSetup {
   ParticleCount count = ParticleCount::number;
-  double amount = 20000;        ///< in the volume; [1/mm^3]; or [1/px] in view of the first camera
-  std::string file;             ///< CSV x_mm,y_mm,z_mm,diameter_um
-  std::optional<Vec3d> volume;  ///< that the particles are in, about the centre [m]; empty: no limits (of a file)
-  Vec3d center{};               ///< [m]
+  double amount =
+      20000;         ///< number in the volume, number density [1/mm^3], or number per pixel of the first camera [1/px]
+  std::string file;  ///< CSV x_mm,y_mm,z_mm,diameter_um of ParticleCount::file
+  std::optional<Vec3d>
+      volume;      ///< size of the seeded box about `center` [m]; empty: unlimited (ParticleCount::file only)
+  Vec3d center{};  ///< centre of the seeded box [m]
   DiameterSetup diameter;
   ParticleScattering scattering = ParticleScattering::mie;
   std::complex<double> index{1.45, 0};
-  std::optional<double> density;  ///< of the particles [kg/m^3]; empty: they follow the flow
-  double viscosity = 1.8e-5;      ///< dynamic, of the gas [Pa s]
+  std::optional<double> density;  ///< density of the particles [kg/m^3]; empty: tracers without lag
+  double viscosity = 1.8e-5;      ///< dynamic viscosity of the gas [Pa s]
   std::uint64_t seed = 1;
 
-  /// Response time of a particle, rho_p d^2 / (18 mu) (Stokes) [s]; 0: follows the flow.
+  /// Returns the Stokes response time of a particle, rho_p d^2 / (18 mu) [s]; 0: no lag.
   double response_time(double diameter_m) const {
     return density ? *density * diameter_m * diameter_m / (18 * viscosity) : 0;
   }
 };
 
-/// Reads [particles]. @param wavelength of the laser in vacuum, for the index of named materials [m]
+/// Reads table [particles]. @param wavelength  vacuum wavelength of the laser, for the index of named materials [m]
 ParticleSetup read_particle_setup(SetupTable table, double wavelength);
 
 }  // namespace gladstone

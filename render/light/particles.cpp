@@ -16,15 +16,16 @@
 namespace gladstone {
 namespace {
 
+// number of particles from which the number of steps is chosen
 constexpr std::size_t planned_paths = 1024;
 constexpr int most_steps_of_path = 1 << 12;
-constexpr double share_for_derivatives = 0.01;  // of dt
+constexpr double share_for_derivatives = 0.01;  // time step of derivatives, relative to dt
 
 ParticleVelocity velocity_of(ParticleSetup const& setup, FlowSetup const& flow, double diameter) {
   return {flow.flow, setup.response_time(diameter), share_for_derivatives * flow.dt};
 }
 
-/// Chooses the steps of all paths by those of some, spread evenly over the list.
+/// Chooses the number of integration steps for all particles from a sample of them, spread evenly over the list.
 PathPlan plan_paths(ParticleSetup const& setup, FlowSetup const& flow, std::vector<Vec3d> const& start,
                     std::vector<double> const& diameter, double time, double tolerance) {
   std::size_t const count = std::min(start.size(), planned_paths);
@@ -55,7 +56,7 @@ PathPlan plan_paths(ParticleSetup const& setup, FlowSetup const& flow, std::vect
   return plan;
 }
 
-/// Light at both pulses.
+/// Computes the photons per area incident on every particle at both pulses.
 void light_particles(ParticleSetup const& setup, LaserSheet<double> const& sheet, Particles& particles) {
   auto const inside = [&setup](Vec3d p) {
     if (!setup.volume) return true;
@@ -73,7 +74,7 @@ void light_particles(ParticleSetup const& setup, LaserSheet<double> const& sheet
   }
 }
 
-/// Diameters of a table with their shares of all particles, summed up.
+/// Diameters of a table, with their cumulative weights.
 struct DiameterTable {
   std::vector<double> diameter, up_to;
 
@@ -93,13 +94,12 @@ struct DiameterTable {
   }
 };
 
-/// The random numbers of a particle's size; those of its place are another stream's.
+/// Returns the random engine for a particle's diameter, independent of the engine for its position.
 KeyedEngine size_engine(std::uint64_t seed, std::size_t particle) {
   return {mix64(seed + 1), RandomStream::particles, particle};
 }
 
-/// How many more places are to be drawn than particles seeded, where these crowd: those that are left are as the
-/// flow's crowding says.
+/// Returns the number of candidate positions per particle for rejection sampling of a non-uniform number density.
 double draws_per_particle(ParticleSetup const& setup, FlowSetup const& flow) {
   return flow.flow.kind.visit([&](auto const& held) {
     if constexpr (requires { held.most_crowding(); }) {
@@ -110,7 +110,7 @@ double draws_per_particle(ParticleSetup const& setup, FlowSetup const& flow) {
   });
 }
 
-/// Whether a particle that was drawn is seeded. @param u uniform in [0, 1)
+/// Returns true if a candidate particle is accepted by rejection sampling.
 bool crowds_here(Flow const& flow, Vec3d place, double tau, KeyedEngine& engine) {
   return flow.kind.visit([&](auto const& held) {
     if constexpr (requires { held.most_crowding(); }) {
@@ -120,7 +120,7 @@ bool crowds_here(Flow const& flow, Vec3d place, double tau, KeyedEngine& engine)
   });
 }
 
-/// Particles whose paths go where the flow's velocity is not known.
+/// Counts the particles that are outside the velocity field of a file at either pulse.
 std::size_t count_outside(FlowSetup const& flow, Particles const& particles) {
   std::size_t count = 0;
   for (std::size_t i = 0; flow.file && i < particles.size(); ++i) {

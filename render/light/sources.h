@@ -11,25 +11,26 @@
 
 namespace gladstone {
 
-/// Outline of the sources of a target.
+/// Shape of the light sources of a target.
 enum class SourceShape : int {
-  disc,    ///< a uniform disc; of zero size: a point
-  square,  ///< a uniform square: one pixel of a picture
+  disc,    ///< uniform disc; a point if its size is zero
+  square,  ///< uniform square: one pixel of an image target
 };
 
-/// The sources on the target's plane, as rays see them: a view that owns nothing.
+/// View of the light sources on the target plane, as used by the ray tracer.
 template <class T>
 struct SourcesView {
-  Vec2<T> const* centre = nullptr;  ///< [m], world X and Y
-  T const* radiance = nullptr;      ///< relative to a white target [1]; null: all one
+  Vec2<T> const* centre = nullptr;  ///< centres, world X and Y [m]
+  T const* radiance = nullptr;      ///< radiance relative to a white target [1]; null: all one
   std::uint64_t count = 0;
-  T plane_z{};    ///< [m]
+  T plane_z{};    ///< Z of the target plane [m]
   T half_size{};  ///< radius of a disc, half the side of a square [m]
   SourceShape shape = SourceShape::disc;
 };
 
-/// What a source's random numbers are keyed by: its place, to a nanometre, whatever else is in the scene. Beyond 9e9 m,
-/// where whole numbers of nanometres end, all places of a side have one key.
+/// Returns the key of a source's random numbers. It depends on the source's position rounded to a nanometre only, not
+/// on the other sources. Coordinates are clamped to +-9e9 m, the range of 64-bit nanometres.
+/// @param centre  centre of the source [m]
 GLADSTONE_HD inline std::uint64_t key_of(Vec2d centre) {
   using std::floor;
   auto const nanometres = [](double at) {
@@ -43,35 +44,36 @@ GLADSTONE_HD inline std::uint64_t key_of(Vec2d centre) {
 
 enum class PupilSampling : int { sobol, random };
 
-/// The most independent scramblings that a source's rays are dealt to, and the binary logarithm of their number for so
-/// many rays. Their scatter tells how good the rays' mean is: the better, the more there are. But a scrambling's points
-/// are the better, the more of them there are: eight cost little up to some hundred rays (5 % of truth's scatter at
-/// 64), beyond it is four. A handful of rays has fewer.
+/// Maximum number of independent Owen scramblings per source. The rays of a source are divided among the scramblings,
+/// and the scatter between their means estimates the error of the overall mean.
 inline constexpr int most_scramblings = 8;
+/// Returns the binary logarithm of the number of scramblings for a number of rays per source. More scramblings give a
+/// better error estimate, but each has fewer points, which increases the error of the mean: with 8 scramblings by 5 %
+/// at 64 rays per source. There are 4 scramblings from 512 rays on, and 4 to 1 below 8 rays.
 GLADSTONE_HD constexpr int scrambling_bits(std::uint64_t rays) {
   if (rays >= 8) return rays < 512 ? 3 : 2;
   return rays >= 4 ? 2 : (rays >= 2 ? 1 : 0);
 }
 
-/// Which points of a source and of the pupil a ray joins. Both frames use the same points.
+/// Sampling of the rays of a source. Both frames use the same sample points.
 template <class T>
 struct BundleView {
-  T lens_z{};        ///< plane of the pupil [m]
-  T pupil_radius{};  ///< of the disc that rays are sent to: the stop's and a margin; 0: chief rays [m]
+  T lens_z{};        ///< Z of the pupil plane [m]
+  T pupil_radius{};  ///< radius of the sampled disc, the entrance pupil plus a margin [m]; 0: chief rays only
   std::uint64_t seed = 0;
   PupilSampling sampling = PupilSampling::sobol;
-  int scrambling_bits = 0;  ///< ray j is point j >> bits of a source's scrambling j mod 2^bits
+  int scrambling_bits = 0;  ///< ray j is point j >> bits of scrambling j mod 2^bits
 };
 
-/// A ray as it leaves its source.
+/// Ray at its source.
 template <class T>
 struct EmittedRay {
   Ray<T> ray;
-  Vec2<T> pupil;  ///< where the straight ray meets the lens plane [m]
-  T weight{};     ///< radiance cos^4 [1]: what a Lambertian source sends through equal areas of the pupil
+  Vec2<T> pupil;  ///< intersection of the undeflected ray with the pupil plane [m]
+  T weight{};     ///< radiance cos^4(angle to the axis) [1]: light of a Lambertian source per pupil area
 };
 
-/// Four coordinates in [0, 1) of ray j of source i: pupil radius^2 and angle, source radius^2 and angle.
+/// Computes the sample coordinates of a ray, each in [0, 1): pupil radius^2 and angle, source radius^2 and angle.
 template <class T>
 GLADSTONE_HD void sample_coordinates(BundleView<T> const& bundle, std::uint64_t source, std::uint64_t ray,
                                      T (&u)[sobol_dimensions]) {
@@ -102,7 +104,7 @@ GLADSTONE_HD void sample_coordinates(BundleView<T> const& bundle, std::uint64_t 
   }
 }
 
-/// The point of a circle at some share of a turn.
+/// Returns the point of a circle about the origin at a polar angle given as a fraction of a full turn.
 template <class T>
 GLADSTONE_HD Vec2<T> point_of_circle(T radius, T turn) {
   using std::cos;
@@ -119,7 +121,7 @@ GLADSTONE_HD Vec2<T> point_of_circle(T radius, T turn) {
   return {radius * cos(angle), radius * sin(angle)};
 }
 
-/// Sends ray j of source i towards the pupil.
+/// Generates one ray of a source: draws its start point on the source and its target point on the pupil.
 template <class T>
 GLADSTONE_HD EmittedRay<T> emit(SourcesView<T> const& sources, BundleView<T> const& bundle, std::uint64_t source,
                                 std::uint64_t ray) {

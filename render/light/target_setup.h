@@ -22,15 +22,18 @@ enum class Polarity { bright, dark };
 struct TargetSetup {
   TargetKind kind = TargetKind::dots;
   double dots_per_32px_window = 20.0;
-  std::optional<double> dot_diameter_px = 3.0;  ///< of the geometric image; else dot_diameter_m
-  std::optional<double> dot_diameter_m;         ///< on the target [m]
+  std::optional<double> dot_diameter_px =
+      3.0;                               ///< diameter of a dot's geometric image [px]; empty: dot_diameter_m is given
+  std::optional<double> dot_diameter_m;  ///< diameter of a dot on the target [m]
   DotArrangement arrangement = DotArrangement::random;
   Polarity polarity = Polarity::bright;
-  std::optional<Vec2d> extent_m;  ///< width and height [m]; else view plus one window all round
-  std::optional<Vec2d> centre_m;  ///< of the target on its plane [m]; else where the camera's axis meets it
-  std::string file;               ///< points: CSV x_mm,y_mm; image: a picture
+  std::optional<Vec2d>
+      extent_m;  ///< width and height of the target [m]; empty: field of view plus one window on each side
+  std::optional<Vec2d>
+      centre_m;      ///< centre of the target on its plane [m]; empty: intersection with the camera's optical axis
+  std::string file;  ///< points: CSV x_mm,y_mm; image: image file
   std::uint64_t seed = 7;
-  double spacing = 0;  ///< of a lattice [m]
+  double spacing = 0;  ///< dot spacing of a lattice [m]
 };
 
 TargetSetup read_target_setup(SetupTable table);

@@ -19,8 +19,8 @@ namespace {
 
 constexpr int components = 3;
 
-/// The coefficients of a grid: a layer of ghosts on either side of every axis, two behind a periodic one's end; none
-/// across a single plane.
+/// Layout of the padded coefficients of a grid. Every axis has one ghost layer before the first node and one (open
+/// axis) or two (periodic axis) after the last; a single plane has no ghost layers in z.
 struct Padded {
   explicit Padded(RegularGrid const& grid) : nodes(grid.nodes), periodic(grid.periodic) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -31,7 +31,7 @@ struct Padded {
     stride = {components, components * count[0], components * static_cast<std::ptrdiff_t>(count[0]) * count[1]};
   }
   std::size_t size() const { return static_cast<std::size_t>(stride[2]) * static_cast<std::size_t>(count[2]); }
-  /// Of a node, or of a ghost before or behind them.
+  /// Returns the index of the first component at a node or ghost node.
   std::size_t at(int i, int j, int k) const {
     return static_cast<std::size_t>((i + before[0]) * stride[0] + (j + before[1]) * stride[1] +
                                     (k + before[2]) * stride[2]);
@@ -42,9 +42,10 @@ struct Padded {
   std::array<std::ptrdiff_t, 3> stride{};
 };
 
-/// Turns every line along an axis into coefficients, ghosts and all; ghosts of axes done before are lines as well.
+/// Converts all lines along an axis to B-spline coefficients and fills its ghost layers. Ghost layers of previously
+/// filtered axes are filtered like nodes.
 void filter_axis(Padded const& grid, std::size_t axis, std::vector<float>& values) {
-  std::size_t const a = axis == 0 ? 1 : 0, b = axis == 2 ? 1 : 2;  // across the lines
+  std::size_t const a = axis == 0 ? 1 : 0, b = axis == 2 ? 1 : 2;  // axes perpendicular to the lines
   auto const lines_on = [&](std::size_t other) { return other < axis ? grid.count[other] : grid.nodes[other]; };
   auto const first_on = [&](std::size_t other) { return other < axis ? -grid.before[other] : 0; };
   auto const n = static_cast<std::size_t>(grid.nodes[axis]);

@@ -11,34 +11,35 @@
 
 namespace gladstone {
 
-/// What [flow] with kind = "file" says, in SI.
+/// Keys of table [flow] with kind = "file", in SI.
 struct VelocityFile {
   std::string file, dataset;
-  std::string axes;              ///< world axes in the file's order, the slowest first; empty: as the file has them
-  std::string where;             ///< of the key `file`, for messages
-  double scale = 1;              ///< file value times scale = m/s
-  std::optional<Vec3d> spacing;  ///< of nodes, in place of the file's own [m]
-  Vec3d center{};                ///< of the grid in the world [m]
-  bool extrude = false;          ///< a single plane: the same along Z
+  std::string axes;   ///< world axes in the file's order, slowest first ("zyx"); empty: order defined by the file
+  std::string where;  ///< location of the key `file` in the setup, for messages
+  double scale = 1;   ///< factor from file values to velocities in m/s
+  std::optional<Vec3d> spacing;  ///< node spacing [m]; empty: as in the file
+  Vec3d center{};                ///< world position of the grid's centre [m]
+  bool extrude = false;          ///< true: the file contains a single plane, and the velocity does not depend on Z
   std::array<bool, 3> periodic{};
 };
 
-/// Where the nodes of a file's velocity stand in the world; opens the file to see its grid.
-/// @throws DataError for files that are missing, broken or of the wrong shape
+/// Returns the grid of a velocity file in world coordinates; opens the file and reads its header.
+/// @throws DataError if the file is missing or broken, or has an unsuitable shape
 RegularGrid velocity_grid(VelocityFile const& setup);
 
-/// Memory that the velocity of a file takes [bytes].
+/// Returns the memory required for the coefficients of a velocity file [bytes].
 double velocity_bytes(VelocityFile const& setup);
 
-/// A velocity in memory.
+/// Velocity field in memory.
 struct LoadedVelocity {
   std::shared_ptr<std::vector<float> const> coefficients;
-  FileFlow flow;        ///< sees them
-  std::string warning;  ///< what had to be assumed or ignored of the file; empty: nothing
+  FileFlow flow;        ///< view of `coefficients`
+  std::string warning;  ///< assumptions made in reading the file and data that were ignored; empty: none
 };
 
-/// Reads a velocity and turns it into the coefficients of cubic B-splines, not-a-knot at open ends (as media have it):
-/// they reproduce cubics up to the ends. Coefficients are floats: 1e-7 of the largest velocity.
+/// Reads a velocity file and computes the coefficients of a cubic B-spline through its nodes. Open axes have not-a-knot
+/// end conditions, as in the medium, so that cubics are reproduced up to the boundary. Coefficients are stored as
+/// float, which limits the relative accuracy to 1e-7 of the largest velocity.
 /// @throws DataError, MemoryError
 LoadedVelocity load_velocity(VelocityFile const& setup);
 

@@ -13,22 +13,23 @@ namespace gladstone {
 class SetupTable;
 struct FlowSetup;
 
-/// Velocity on a regular grid (velocity_file.h), between whose nodes it is a cubic B-spline: a view that owns nothing.
-/// Beyond an open axis' ends the velocity is that of the end.
+/// Velocity on a regular grid, interpolated by cubic B-splines (see velocity_file.h). A view, owns no memory. Beyond
+/// the ends of a non-periodic axis the velocity is constant, equal to its value at the boundary.
 struct FileFlow {
   static constexpr char const* kind = "file";
 
-  float const* coefficients = nullptr;  ///< u, v, w side by side, x fastest, one layer about the nodes; null: at rest
-  std::ptrdiff_t row = 0, plane = 0;    ///< coefficients from one row (y), one plane (z) to the next
-  std::array<int, 3> nodes{1, 1, 1};    ///< along z 1: the same everywhere
+  float const* coefficients =
+      nullptr;  ///< coefficients [z][y][x][component], with one ghost layer on each side; null: zero velocity
+  std::ptrdiff_t row = 0, plane = 0;  ///< number of elements between successive rows (y) and planes (z)
+  std::array<int, 3> nodes{1, 1, 1};  ///< number of nodes along x, y, z; 1 along z: independent of z
   std::array<bool, 3> periodic{};
-  Vec3d origin{};           ///< place of node (0, 0, 0) [m]
-  Vec3d inverse_spacing{};  ///< [1/m]
+  Vec3d origin{};           ///< position of node (0, 0, 0) [m]
+  Vec3d inverse_spacing{};  ///< reciprocal of the node spacing [1/m]
 
-  /// Reads the keys into setup.file; load_velocity() does the rest.
+  /// Reads the keys into setup.file; the data are read later by load_velocity().
   static FileFlow read(SetupTable& table, FlowSetup& setup);
 
-  /// [m/s]
+  /// Returns the velocity [m/s] at a point p [m].
   template <class T>
   GLADSTONE_HD Vec3<T> operator()(Vec3<T> const& p) const {
     if (!coefficients) return {};
@@ -54,20 +55,21 @@ struct FileFlow {
     return {sum[0], sum[1], sum[2]};
   }
 
-  /// Whether a place lies between the nodes.
+  /// Returns true if a point [m] is within the grid.
   bool covers(Vec3d p) const {
     for (int axis = 0; axis < 3; ++axis) {
       auto const a = static_cast<std::size_t>(axis);
       if (periodic[a] || (axis == 2 && nodes[a] == 1)) continue;
       double const u = (p[axis] - origin[axis]) * inverse_spacing[axis];
-      constexpr double rounding = 1e-9;  // of a cell: a volume may end where the field does
+      constexpr double rounding = 1e-9;  // tolerance in cells, for a volume that ends at the boundary of the grid
       if (!(u >= -rounding && u <= nodes[a] - 1 + rounding)) return false;
     }
     return true;
   }
 
  private:
-  /// Weights on an axis, and the number of the first coefficient that they belong to.
+  /// Computes the interpolation weights along an axis at grid coordinate u [1], and returns the index of their first
+  /// coefficient.
   template <class T>
   GLADSTONE_HD std::ptrdiff_t locate(int axis, T u, T (&w)[4], T (&slope)[4]) const {
     using std::floor;
@@ -83,7 +85,7 @@ struct FileFlow {
     int cell = static_cast<int>(u);
     cell = cell < last ? cell : last;
     CubicBspline::weigh(u - T(cell), w, slope);
-    return cell;  // the layer before the first node is number 0, and support begins a node before the cell
+    return cell;  // index 0 is the ghost layer, and the support begins one node before the cell
   }
 };
 

@@ -7,15 +7,15 @@
 
 namespace gladstone {
 
-/// Plane jet along a direction in the XY plane: u = peak / cosh^2(s / half width), s the distance from its middle
-/// plane. The profile of Bickley, Phil. Mag. 23 (1937) 727, at one station: it does not widen.
+/// Plane jet along a direction in the XY plane: u = peak / cosh^2(s / half width), s the distance from the symmetry
+/// plane. Profile of Bickley, Phil. Mag. 23 (1937) 727, at one station; the jet does not spread.
 struct JetFlow {
   static constexpr char const* kind = "jet";
 
-  double peak = 0;        ///< [m/s]
+  double peak = 0;        ///< velocity on the symmetry plane [m/s]
   double half_width = 1;  ///< [m]
-  Vec2d along{1, 0};      ///< unit length
-  Vec3d center{};         ///< [m]
+  Vec2d along{1, 0};      ///< direction of the jet, unit length
+  Vec3d center{};         ///< point on the symmetry plane [m]
 
   static JetFlow read(SetupTable& table) {
     JetFlow flow;

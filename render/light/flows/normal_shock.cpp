@@ -37,7 +37,8 @@ double NormalShockFlow::way_after(double time, double tau) const {
 double NormalShockFlow::time_for(double way, double tau) const {
   if (way <= 0) return way / upstream;
   if (!(tau > 0)) return way / downstream;
-  // the way grows ever slower: from below, Newton's steps stay below and only stop where they are rounded
+  // the distance is a concave function of time: starting below the root, Newton's iteration increases monotonically and
+  // ends when rounding stops the increase
   double time = way / upstream;
   while (true) {
     double const speed = downstream + (upstream - downstream) * std::exp(-time / tau);
@@ -59,7 +60,8 @@ double NormalShockFlow::crowding(Vec3d p, double tau) const {
   return upstream / (downstream + (upstream - downstream) * left);
 }
 
-// Along X the integral of u_1 / v is u_1 times the time that it takes, over the normal's slope.
+// Integrates u_1 / v along X, which gives u_1 times the transit time over the normal's x component, and averages over
+// Z.
 double NormalShockFlow::mean_crowding(Vec3d volume, Vec3d center, double tau) const {
   constexpr int layers = 256;
   double sum = 0;

@@ -5,11 +5,11 @@
 
 namespace gladstone {
 
-/// What vortices about an axis along Z share: their keys, and a velocity across the radius.
+/// Parameters and velocity of a vortex about an axis parallel to Z, common to all vortex models.
 struct PlaneVortex {
-  double circulation = 0.1;   ///< Gamma, counterclockwise as the camera sees it [m^2/s]
+  double circulation = 0.1;   ///< Gamma, counterclockwise as seen by the camera [m^2/s]
   double core_radius = 5e-3;  ///< r_c [m]
-  Vec3d center{};             ///< [m]
+  Vec3d center{};             ///< point on the axis [m]
 
   static PlaneVortex read(SetupTable& table) {
     PlaneVortex keys;
@@ -19,7 +19,8 @@ struct PlaneVortex {
     return keys;
   }
 
-  /// @param rate of turning, u_theta / r [1/s], as a function of Gamma / (2 pi) [m^2/s], r^2 and r_c^2 [m^2]
+  /// Returns the velocity [m/s] at a point p [m].
+  /// @param rate  angular velocity u_theta / r [1/s] as a function of Gamma / (2 pi) [m^2/s], r^2 and r_c^2 [m^2]
   template <class T, class Rate>
   GLADSTONE_HD Vec3<T> velocity(Vec3<T> const& p, Rate const& rate) const {
     T const x = p.x - T(center.x), y = p.y - T(center.y);

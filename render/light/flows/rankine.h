@@ -4,7 +4,7 @@
 
 namespace gladstone {
 
-/// Rankine vortex about an axis along Z: u_theta = Gamma r / (2 pi r_c^2) inside r_c, Gamma / (2 pi r) beyond.
+/// Rankine vortex about an axis parallel to Z: u_theta = Gamma r / (2 pi r_c^2) for r < r_c, Gamma / (2 pi r) beyond.
 struct RankineFlow {
   static constexpr char const* kind = "rankine";
 

@@ -5,12 +5,13 @@
 
 namespace gladstone {
 
-/// Solid rotation about an axis along Z, counterclockwise as the camera sees it: u = -rate (y - y0), v = rate (x - x0).
+/// Solid-body rotation about an axis parallel to Z, counterclockwise as seen by the camera: u = -rate (y - y0), v =
+/// rate (x - x0).
 struct RotationFlow {
   static constexpr char const* kind = "rotation";
 
-  double rate = 0;  ///< [rad/s]
-  Vec3d center{};   ///< [m]
+  double rate = 0;  ///< angular velocity [rad/s]
+  Vec3d center{};   ///< point (x0, y0) on the axis [m]
 
   static RotationFlow read(SetupTable& table) {
     RotationFlow flow;

@@ -9,8 +9,8 @@ namespace gladstone {
 struct ShearFlow {
   static constexpr char const* kind = "shear";
 
-  double rate = 0;  ///< [1/s]
-  Vec3d center{};   ///< [m]
+  double rate = 0;  ///< velocity gradient du/dy [1/s]
+  Vec3d center{};   ///< point with zero velocity [m]
 
   static ShearFlow read(SetupTable& table) {
     ShearFlow flow;

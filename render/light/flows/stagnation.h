@@ -9,8 +9,8 @@ namespace gladstone {
 struct StagnationFlow {
   static constexpr char const* kind = "stagnation";
 
-  double rate = 0;  ///< [1/s]
-  Vec3d center{};   ///< [m]
+  double rate = 0;  ///< strain rate [1/s]
+  Vec3d center{};   ///< stagnation point (x0, y0) [m]
 
   static StagnationFlow read(SetupTable& table) {
     StagnationFlow flow;

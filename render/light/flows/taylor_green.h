@@ -7,14 +7,14 @@
 
 namespace gladstone {
 
-/// Taylor-Green vortices in the XY plane: u = A sin(k x) cos(k y), v = -A cos(k x) sin(k y), k = 2 pi / wavelength.
-/// Taylor & Green, Proc. R. Soc. A 158 (1937) 499, in two dimensions.
+/// Two-dimensional Taylor-Green vortices in the XY plane: u = A sin(k x) cos(k y), v = -A cos(k x) sin(k y), k = 2 pi /
+/// wavelength (Taylor & Green, Proc. R. Soc. A 158 (1937) 499).
 struct TaylorGreenFlow {
   static constexpr char const* kind = "taylor_green";
 
   double amplitude = 0;  ///< A [m/s]
   double wave = 1;       ///< k [rad/m]
-  Vec3d center{};        ///< where x and y are 0 [m]
+  Vec3d center{};        ///< origin of x and y [m]
 
   static TaylorGreenFlow read(SetupTable& table) {
     TaylorGreenFlow flow;

@@ -4,13 +4,13 @@
 
 namespace gladstone {
 
-/// Everything moves alike: by the flow's velocity_m_s alone.
+/// Uniform flow with the velocity `velocity_m_s` of table [flow].
 struct UniformFlow {
   static constexpr char const* kind = "uniform";
 
   static UniformFlow read(SetupTable&) { return {}; }
 
-  /// Velocity at p [m], beside the flow's own velocity_m_s [m/s].
+  /// Returns zero: the uniform velocity is added by Flow [m/s].
   template <class T>
   GLADSTONE_HD Vec3<T> operator()(Vec3<T> const&) const {
     return {};
