@@ -56,11 +56,10 @@ struct Flow {
 /// Table [flow] of a setup, in SI: velocity field and time between the laser pulses.
 struct FlowSetup {
   Flow flow;
-  double dt = 10e-6;                 ///< time between the laser pulses [s]
-  std::optional<ShockPlane> shock;   ///< shock front of the medium, if the medium has one
-  std::optional<VelocityFile> file;  ///< keys of a field of kind "file"
-  std::shared_ptr<std::vector<float> const>
-      owner;  ///< owns the coefficients that `flow` points to; null before load_flow()
+  double dt = 10e-6;                                ///< time between the laser pulses [s]
+  std::optional<ShockPlane> shock;                  ///< shock front of the medium, if the medium has one
+  std::optional<VelocityFile> file;                 ///< keys of a field of kind "file"
+  std::shared_ptr<std::vector<float> const> owner;  ///< memory of the coefficients; null before load_flow()
 };
 
 /// Reads table [flow]. @param shock  shock front of a medium of kind normal_shock

@@ -31,8 +31,7 @@ struct LaserSetup {
   double divergence = 0;           ///< full divergence angle in the plane of the sheet [rad]
   double polarization = 0;         ///< angle of the electric field to the plane of the sheet, towards the normal [rad]
   std::array<double, 2> offset{};  ///< displacement of the sheet along its normal at each pulse [m]
-  std::array<double, 2>
-      tilt{};  ///< rotation of the sheet about its direction through the centre at each pulse, right-handed [rad]
+  std::array<double, 2> tilt{};    ///< right-handed rotation about `direction` through the centre at each pulse [rad]
 };
 
 /// Reads table [laser]. @param wavelength  default wavelength [m]

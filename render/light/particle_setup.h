@@ -33,12 +33,10 @@ struct DiameterSetup {
 /// Table [particles] of a setup, in SI.
 struct ParticleSetup {
   ParticleCount count = ParticleCount::number;
-  double amount =
-      20000;         ///< number in the volume, number density [1/mm^3], or number per pixel of the first camera [1/px]
-  std::string file;  ///< CSV x_mm,y_mm,z_mm,diameter_um of ParticleCount::file
-  std::optional<Vec3d>
-      volume;      ///< size of the seeded box about `center` [m]; empty: unlimited (ParticleCount::file only)
-  Vec3d center{};  ///< centre of the seeded box [m]
+  double amount = 20000;        ///< number; number density [1/mm^3]; number per pixel of the first camera [1/px]
+  std::string file;             ///< CSV x_mm,y_mm,z_mm,diameter_um of ParticleCount::file
+  std::optional<Vec3d> volume;  ///< size of the seeded box about `center` [m]; empty: unlimited (file only)
+  Vec3d center{};               ///< centre of the seeded box [m]
   DiameterSetup diameter;
   ParticleScattering scattering = ParticleScattering::mie;
   std::complex<double> index{1.45, 0};

@@ -10,34 +10,36 @@
 
 namespace gladstone {
 
-/// A gridded refractivity as one polynomial a cell: sum of c x^a y^b z^c over powers below Basis::support, with x, y
-/// and z counted from the cell's lower corner [m]. What GriddedIndex says in fewer operations and more memory: no
-/// weights, and by Horner's scheme 123 products for a cubic's value and gradient instead of 249, but 64 coefficients
-/// for every cell. A view, passed by value, that owns nothing.
-/// @tparam T        scalar of the ray and in memory
-/// @tparam Periodic whether any axis repeats
+/// Gridded refractivity as one polynomial per cell: sum of c x^a y^b z^c over powers below Basis::support, with x, y, z
+/// relative to the cell's lower corner [m]. Represents the same field as GriddedIndex with fewer operations but more
+/// memory. Horner's scheme needs 123 multiplications for a cubic's value and gradient, against 249 with B-spline
+/// weights; every cell stores 64 coefficients. A view, passed by value, owns no memory.
+/// @tparam T         scalar type of the ray and of the coefficients
+/// @tparam Periodic  true if any axis is periodic
 template <class T, class Basis, bool Periodic>
 struct CellPolynomials {
-  T const* coefficients = nullptr;  ///< of cell after cell, x fastest; within a cell powers of x fastest
+  T const* coefficients = nullptr;  ///< coefficients [cell][power of z][power of y][power of x]; cells with x fastest
   std::array<int, 3> cells{1, 1, 1};
   std::array<bool, 3> periodic{false, false, false};
   Vec3<T> origin{};           ///< lower corner of cell (0, 0, 0) [m]
-  Vec3<T> spacing{};          ///< [m]
-  Vec3<T> inverse_spacing{};  ///< [1/m]
-  Vec3<T> period{};           ///< of axes that are periodic [m]
-  Vec3<T> inverse_period{};   ///< [1/m]
-  Vec3<T> last{};             ///< the last cell along each axis, plus `shift` [1]
+  Vec3<T> spacing{};          ///< cell size [m]
+  Vec3<T> inverse_spacing{};  ///< reciprocal of the cell size [1/m]
+  Vec3<T> period{};           ///< length of the period, for periodic axes [m]
+  Vec3<T> inverse_period{};   ///< reciprocal of the period [1/m]
+  Vec3<T> last{};             ///< index of the last cell along each axis, plus `shift` [1]
   Bounds<T> box{};
 
   static constexpr int support = Basis::support;
-  static constexpr int size = support * support * support;  ///< coefficients of a cell
-  /// 1.5 2^52 or 1.5 2^23: added, it pushes a fraction out of the mantissa and leaves a whole number in its low bits.
+  static constexpr int size = support * support * support;  ///< number of coefficients per cell
+  /// 1.5 2^52 (double) or 1.5 2^23 (float). Adding it rounds a number to an integer, which is then in the low mantissa
+  /// bits.
   static constexpr T shift = sizeof(T) == sizeof(double) ? T(6755399441055744.0) : T(12582912.0);
 
-  static constexpr std::size_t most_cells = std::size_t{1} << 32;  ///< so that a cell's number is quick to find
+  static constexpr std::size_t most_cells = std::size_t{1} << 32;  ///< limit of the fast 32-bit cell indices
 
   CellPolynomials() = default;
-  /// The same medium as a grid. @param values room for cell_count() * size coefficients, which fill_cell gives
+  /// Creates a view that represents the same field as a grid.
+  /// @param values  memory for cell_count() * size coefficients, to be filled by fill_cell()
   /// @pre cell_count() <= most_cells
   template <class Stored>
   CellPolynomials(GriddedIndex<double, Stored, Basis, 3> const& grid, T const* values)
@@ -61,7 +63,7 @@ struct CellPolynomials {
     return static_cast<std::size_t>(cells[0]) * static_cast<std::size_t>(cells[1]) * static_cast<std::size_t>(cells[2]);
   }
 
-  /// Refractivity and its analytic gradient at p [m]. @pre p lies in bounds() (up to rounding)
+  /// Returns the refractivity and its analytic gradient at p [m]. @pre p is within bounds() (up to rounding)
   [[gnu::always_inline]] GLADSTONE_HD IndexSample<T> sample(Vec3<T> p) const {
     Vec3<T> local[1];
     T const* const cell = locate(p, local[0]);
@@ -70,8 +72,8 @@ struct CellPolynomials {
     return at[0];
   }
 
-  /// The same at p and at q, both by the polynomial of p's cell. @pre they lie so near each other that it does not
-  /// matter on which side of a cell's face q is
+  /// Samples p and q, both from the polynomial of p's cell.
+  /// @pre q is so close to p that the error of extrapolation into the neighbouring cell is negligible
   [[gnu::always_inline]] GLADSTONE_HD void sample_beside(Vec3<T> p, Vec3<T> q, IndexSample<T> (&at)[2]) const {
     Vec3<T> local[2];
     T const* const cell = locate(p, local[0]);
@@ -80,7 +82,7 @@ struct CellPolynomials {
   }
 
  private:
-  /// The coefficients of p's cell, and p in it [m].
+  /// Returns the coefficients of the cell that contains p, and p relative to the cell's lower corner [m].
   GLADSTONE_HD T const* locate(Vec3<T> p, Vec3<T>& local) const {
     using std::floor;
     std::uint32_t cell = 0;
@@ -88,7 +90,7 @@ struct CellPolynomials {
       auto const a = static_cast<std::size_t>(axis);
       local[axis] = p[axis] - origin[axis];
       if constexpr (Periodic) {
-        // no division: it would cost a device registers
+        // multiply by the reciprocal: a division needs more device registers
         if (periodic[a]) local[axis] -= period[axis] * floor(local[axis] * inverse_period[axis]);
       }
       T whole;
@@ -99,11 +101,12 @@ struct CellPolynomials {
     return coefficients + static_cast<std::size_t>(cell) * size;
   }
 
-  /// The cell, from 0 to the last, that x [m] lies in along an axis; `whole` is its number.
+  /// Returns the index of the cell along an axis at a distance x [m] from the origin, clamped to the grid; `whole` is
+  /// the index as T.
   GLADSTONE_HD int cell_below(T x, int axis, T& whole) const {
     T const per_metre = inverse_spacing[axis];
 #if defined(__CUDA_ARCH__)
-    // rounded down by an addition: a device converts slowly
+    // round down by adding `shift`, since conversions to integers are slow on a device
     int here;
     if constexpr (sizeof(T) == sizeof(double)) {
       int const end = cells[static_cast<std::size_t>(axis)] - 1;
@@ -125,11 +128,11 @@ struct CellPolynomials {
 #endif
   }
 
-  /// A polynomial's value and slope by Horner's scheme, at several points.
+  /// Value and derivative of a polynomial by Horner's scheme, at N points.
   template <int N>
   struct Horner {
     T value[N], slope[N];
-    /// Takes the next lower coefficient. @param power its power
+    /// Adds the next lower coefficient at point n. @param power  power of x that the coefficient multiplies
     GLADSTONE_HD void take(int power, int n, T coefficient, T x) {
       if (power == support - 1) {
         value[n] = coefficient;
@@ -139,7 +142,7 @@ struct CellPolynomials {
         value[n] = value[n] * x + coefficient;
       }
     }
-    /// The same where the slope is not asked for.
+    /// Adds the next lower coefficient at point n, without updating the derivative.
     GLADSTONE_HD void take_value(int power, int n, T coefficient, T x) {
       value[n] = power == support - 1 ? coefficient : value[n] * x + coefficient;
     }
@@ -148,8 +151,8 @@ struct CellPolynomials {
   template <int N>
   [[gnu::always_inline]] GLADSTONE_HD static void evaluate(T const* cell, Vec3<T> const (&p)[N],
                                                            IndexSample<T> (&at)[N]) {
-    // row by row along x, then along y and z, for the value and the slopes along the axes before; four numbers at a
-    // time
+    // Contract the powers of x for each row, then those of y and z, for the value and the derivatives along x and y.
+    // Coefficients are loaded four at a time.
     constexpr int rows = 4 / support;
     Lanes<T, 4> fetched;
     Horner<N> along_z, x_along_z, y_along_z;
@@ -181,7 +184,7 @@ struct CellPolynomials {
   }
 };
 
-/// The coefficients of cell (i, j, k) of a grid.
+/// Computes the polynomial coefficients of cell (i, j, k) of a grid.
 template <class T, class Stored, class Basis>
 GLADSTONE_HD void fill_cell(GriddedIndex<double, Stored, Basis, 3> const& grid, int i, int j, int k, T* out) {
   constexpr int S = Basis::support;
@@ -193,7 +196,7 @@ GLADSTONE_HD void fill_cell(GriddedIndex<double, Stored, Basis, 3> const& grid, 
       for (int x = 0; x < S; ++x) c[z][y][x] = static_cast<double>(corner[x + grid.row * y + grid.plane * z]);
     }
   }
-  // axis by axis from weights of the nodes to powers of the way from the corner
+  // Convert from node weights to powers of the distance from the corner, one axis at a time.
   auto const transform = [](double* line, int stride, double inverse_spacing) {
     double powers[Basis::support], unit = 1;
     for (int power = 0; power < S; ++power) {

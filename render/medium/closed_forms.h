@@ -10,20 +10,20 @@
 
 namespace gladstone {
 
-/// The density fields in closed form, each in a file of its own. Adding one: its struct there, and its name here.
-/// Such a struct is a medium, with bounds() [m] and sample(p) -> IndexSample, as any Slab<T>; it has besides
-///   kind, read(SetupTable&)     its word in a setup, and its keys, in SI (the slab's members are the medium's)
-///   in_scalar<U>()              the same in another scalar
-///   finest()                    the smallest length on which it changes, with which steps go [m]
-///   steepest()                  upper bound of |grad n| [1/m]
-///   densities(half_extent)      what it takes within half a width and height [m]
-///   density_key, length_key     the keys that densities and finest() follow from, for messages
-/// and, where it has them,
-///   steepest_mean_density(half_extent)  largest gradient across the axis, within half a width and height, of the
-///   density
-///                               averaged over the slab [kg/m^4]
-///   radius_along_z()            of a Gaussian along Z, which a slab can be too thin for [m]
-///   endless_range               its density is negative somewhere, however small: a warning, not a mistake
+/// Density fields in closed form, each in a separate file. To add one, write its struct and add its name to the list.
+/// The struct is a medium, with bounds() [m] and sample(p) -> IndexSample, derives from Slab<T> and has
+/// - kind, read(SetupTable&): name in a setup, and reader of its keys (the members of Slab are set from [medium])
+/// - in_scalar<U>(): conversion to another scalar type
+/// - finest(): length scale that limits the step size [m]
+/// - steepest(): upper bound of |grad n| [1/m]
+/// - densities(half_extent): range of densities within a half width and half height [m]
+/// - density_key, length_key: keys that determine densities() and finest(), for messages
+///
+/// Optional members:
+/// - steepest_mean_density(half_extent): largest gradient in x and y, within a half width and half height, of the
+///   density averaged over the thickness of the slab [kg/m^4]
+/// - radius_along_z(): radius of a Gaussian profile along Z, to compare with the thickness of the slab [m]
+/// - endless_range: the density is negative somewhere in the endless slab for any parameters, so report a warning only
 template <class T>
 using ClosedForm = std::variant<UniformGradient<T>, Sinusoid<T>, GaussianPlume<T>, GaussianBlob<T>, NormalShock<T>>;
 

@@ -17,7 +17,7 @@ std::unique_ptr<FieldSource> open_file(FieldSetup const& field) {
   return open_field(field.file, field.dataset, 1, field.axes);
 }
 
-/// The world grid of a file's field; checks that it fits the setup.
+/// Returns the grid of a file's field in world coordinates. @throws DataError if it does not suit the setup
 RegularGrid world_grid(FieldSetup const& field, FieldSource const& source) {
   RegularGrid grid = source.grid();
   if (field.extrude && grid.nodes[2] != 1) {
@@ -47,7 +47,7 @@ RegularGrid world_grid(FieldSetup const& field, FieldSource const& source) {
   return grid;
 }
 
-/// What had to be assumed of the file's lengths; empty where they are known, or replaced by the setup's.
+/// Returns a warning about units of length that were assumed; empty if they are known or the setup gives the spacing.
 std::string assumed_lengths(FieldSetup const& field, FieldSource const& source, RegularGrid const& grid) {
   std::string const assumed = field.spacing ? "" : source.units().assumed();
   if (assumed.empty()) return {};
@@ -59,7 +59,7 @@ std::string assumed_lengths(FieldSetup const& field, FieldSource const& source, 
       grid.spacing.y * (grid.nodes[1] - 1) / mm);
 }
 
-/// What is lost where a file holds n itself with so few bits that n - 1 keeps few of them; empty where nothing is.
+/// Returns a warning if a file contains n itself with so few bits that n - 1 is inaccurate; empty otherwise.
 /// @param low, high  smallest and largest refractivity
 std::string lost_digits(FieldSetup const& field, FieldSource const& source, double low, double high) {
   int const bits = source.significant_bits();
@@ -73,8 +73,9 @@ std::string lost_digits(FieldSetup const& field, FieldSource const& source, doub
       source.name(), field.file, bits, step, 100 * step / std::max(high - low, step));
 }
 
-/// A question where the values are plausible in another quantity or unit: they differ from the ambient by more than a
-/// factor of a hundred throughout, which no gas flow at one pressure does, or are densities where indices would be.
+/// Returns a warning if the values suggest another quantity or unit; empty otherwise. They do if all of them differ
+/// from the ambient value by more than a factor of 100, which is implausible for gas flows at one pressure, or if
+/// densities look like refractive indices.
 /// @param low, high  smallest and largest refractivity
 std::string unlikely_range(MediumSetup const& setup, std::string const& name, double low, double high) {
   FieldSetup const& field = setup.field;
@@ -82,14 +83,14 @@ std::string unlikely_range(MediumSetup const& setup, std::string const& name, do
   if (!(ambient > 0) || low < 0) return {};
   constexpr double factor = 100;
   bool const density = field.quantity == FieldQuantity::density;
-  double const unit = density ? setup.gladstone_dale : 1.0;  // of the values, as refractivity
+  double const unit = density ? setup.gladstone_dale : 1.0;  // refractivity per unit of the values
   std::string likely;
-  // a gas has 1e-5 < n - 1 < 2e-3, and its density as read is then 1 within 0.2 %
+  // a gas has 1e-5 < n - 1 < 2e-3, so that indices read as densities are 1 to within 0.2 %
   bool const index = density && field.scale == 1.0 && low > (1 + 1e-5) * unit && high < (1 + 2e-3) * unit;
   if (index) {
     likely = "these would be refractive indices of a gas; if they are, set quantity = \"refractive_index\"";
   } else if (high < ambient / factor) {
-    // the nearer of two readings that come within a factor of ten of the ambient
+    // of the readings within a factor of ten of the ambient, suggest the closest
     auto const decades_off = [&](double ratio) {
       bool const fits = high * ratio > ambient / 10 && low * ratio < ambient * 10;
       return fits ? std::abs(std::log10(0.5 * (low + high) * ratio / ambient)) : HUGE_VAL;
@@ -120,7 +121,7 @@ double finest_cell(FieldSetup const& field, RegularGrid const& grid) {
   return field.extrude ? across : std::min(across, grid.spacing.z);
 }
 
-/// Cells that the coarsest sensible step crosses: within them a spline is smooth and a trilinear field is not.
+/// Returns the upper limit of the step size in cells: within a cell a spline is smooth, a trilinear field is not.
 double cells_a_step(MediumSetup const& setup) {
   return setup.interpolation == FieldInterpolation::cubic_bspline ? 2 : 0.25;
 }
@@ -167,7 +168,7 @@ BuiltMedium build_grid(MediumSetup const& setup, RegularGrid const& grid, FieldS
   return built;
 }
 
-/// A medium without a grid: none, or a field in closed form.
+/// Builds a medium without a grid: none, or a field in closed form.
 BuiltMedium build_without_grid(MediumSetup const& setup) {
   BuiltMedium built;
   built.finest = setup.thickness;

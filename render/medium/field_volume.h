@@ -9,37 +9,39 @@
 
 namespace gladstone {
 
-/// Whether there can be a medium of this n - 1: what no file and no closed form may exceed.
+/// Returns true if n - 1 is within the accepted range, which applies to files and closed forms alike.
 constexpr bool possible_refractivity(double refractivity) { return refractivity > -0.5 && refractivity < 3.0; }
 
-/// The medium of a setup: owner of the grid behind the view, if there is one.
+/// Refractive medium of a setup. Owns the grid of the view, if there is one.
 struct BuiltMedium {
   Medium<double> view = NoMedium<double>{};
-  std::shared_ptr<void const> owner;  ///< keeps the grid's memory alive; media with one owner are one medium
-  double finest = 0;                  ///< smallest length on which the field changes: cell, wavelength, radius ... [m]
-  double coarsest_step = 0;           ///< largest step that is ever sensible: see plan_step [m]
-  double steepest = 0;                ///< upper bound of |grad n|, where known [1/m]
-  RegularGrid grid;                   ///< of a file's field
-  double lowest = 0, highest = 0;     ///< n - 1 at the nodes of a file's field [1]
-  std::vector<std::string> warnings;  ///< of what the file's numbers cannot give
+  std::shared_ptr<void const> owner;  ///< owns the grid's memory; media with the same owner are identical
+  double finest = 0;                  ///< length scale that limits the step size, see steps_across() [m]
+  double coarsest_step = 0;           ///< upper limit of the step size, see choose_step() [m]
+  double steepest = 0;                ///< upper bound of |grad n|, if known [1/m]
+  RegularGrid grid;                   ///< grid of a file's field
+  double lowest = 0, highest = 0;     ///< range of n - 1 at the nodes of a file's field [1]
+  std::vector<std::string> warnings;  ///< limitations of the file's data
 };
 
-/// Memory that the field of a setup will take [bytes]; opens a file to see its size.
+/// Returns the memory required for the field of a setup [bytes]; opens a file and reads its header.
 std::size_t medium_bytes_needed(MediumSetup const& setup);
 
-/// Steps across the medium that follow what the field changes on: a quarter of a wavelength or of a shock's thickness,
-/// half a radius, two cells (trilinear: a quarter); at least four. Opens a file to see its grid.
-/// @throws DataError for a file that cannot be read
+/// Returns the number of steps across the medium at the upper limit of the step size: a quarter of a wavelength or of a
+/// shock's thickness, half a radius, or for files two cells (trilinear: a quarter of a cell). At least four, except for
+/// files. Opens a file and reads its header.
+/// @throws DataError if the file cannot be read
 double steps_across(MediumSetup const& setup);
 
-/// Where the field of a file stands [m]; opens it to see its grid. @throws DataError for a file that cannot be read
+/// Returns the region of a file's field [m]; reads the file's header. @throws DataError if the file cannot be read
 Bounds<double> file_bounds(MediumSetup const& setup);
 
-/// What BuiltMedium::finest will be [m]; opens a file to see its grid. @throws DataError for a file that cannot be read
+/// Returns BuiltMedium::finest [m] without building the medium; opens a file and reads its header.
+/// @throws DataError if the file cannot be read
 double finest_length(MediumSetup const& setup);
 
-/// Builds the medium; a file is read, scaled to n - 1 and prefiltered, with progress.
-/// @throws DataError for files that are missing, broken or of the wrong shape
+/// Builds the medium. A file is read, converted to n - 1 and prefiltered, with a progress bar.
+/// @throws DataError if the file is missing or broken, or has an unsuitable shape
 BuiltMedium build_medium(MediumSetup const& setup);
 
 }  // namespace gladstone

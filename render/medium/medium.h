@@ -27,8 +27,8 @@ struct MediumOf<T, std::variant<Forms...>> {
 
 }  // namespace detail
 
-/// Every medium that a ray can cross, as views: none, the fields in closed form, those on a grid; the closed set from
-/// which launchers choose once per launch. A medium has bounds() [m] and sample(p) -> IndexSample.
+/// Closed set of all media, as views: none, closed forms, and gridded fields. Launchers select the type once per
+/// launch. A medium has bounds() [m] and sample(p) -> IndexSample.
 template <class T>
 using Medium = typename detail::MediumOf<T, ClosedForm<T>>::Type;
 

@@ -20,7 +20,7 @@ std::vector<std::string> kind_words(std::variant<Forms...> const*) {
   return words;
 }
 
-/// Reads the closed form of that name, if there is one.
+/// Reads the closed form with the given name, if there is one.
 template <class... Forms>
 void read_form(std::string const& word, SetupTable& table, FieldSetup& field, std::variant<Forms...> const*) {
   auto const read = [&]<class Form>(Form const*) {
@@ -138,7 +138,7 @@ double automatic_thickness_mm(MediumSetup const& setup) {
 
 double automatic_thickness_mm(FieldSetup const& field) {
   constexpr double radii = 7.0;
-  // to a nanometre: radii were told in mm
+  // round to a nanometre, to remove conversion errors: the radius was given in mm
   return std::max(10.0, std::round(radii * radius_along_z(field) / unit::nanometre) * 1e-6);
 }
 

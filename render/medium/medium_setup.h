@@ -12,13 +12,13 @@
 
 namespace gladstone {
 
-/// Where a density comes from: nowhere, a file, or one of the closed forms.
+/// Source of a density field.
 enum class FieldKind { none, file, closed_form };
 
 enum class FieldQuantity { density, refractive_index, refractivity };
 enum class FieldInterpolation { cubic_bspline, trilinear };
 
-/// Table [medium.field] of a setup, in SI; only the members of its kind are read.
+/// Table [medium.field] of a setup, in SI. Only the members that belong to its kind are used.
 struct FieldSetup {
   FieldSetup() = default;
   template <class Form>
@@ -29,18 +29,18 @@ struct FieldSetup {
   // file
   std::string file;
   std::string dataset;
-  std::string axes;   ///< world axes in the file's order, the slowest first ("zxy"); empty: as the file has them
-  std::string where;  ///< of the key `file`, for messages
+  std::string axes;   ///< world axes in the file's order, slowest first ("zxy"); empty: order defined by the file
+  std::string where;  ///< location of the key `file` in the setup, for messages
   FieldQuantity quantity = FieldQuantity::density;
-  double scale = 1.0;            ///< file value times scale = kg/m^3, or a pure number
-  std::optional<Vec3d> spacing;  ///< [m]
-  Vec3d center{};                ///< [m]
+  double scale = 1.0;            ///< factor from file values to kg/m^3, or to a dimensionless index or refractivity
+  std::optional<Vec3d> spacing;  ///< node spacing [m]; empty: as in the file
+  Vec3d center{};                ///< world position of the grid's centre [m]
   bool extrude = false;
   std::array<bool, 3> periodic{false, false, false};
   // closed form
-  ClosedForm<double> form;  ///< without its slab, which the medium gives: see closed_form_of
+  ClosedForm<double> form;  ///< parameters without those of Slab, which come from [medium], see closed_form_of()
 
-  /// Its closed form of that type; null where it is another's, or none.
+  /// Returns the closed form if it has the given type, else null.
   template <class Form>
   Form const* closed_form() const {
     return kind == FieldKind::closed_form ? std::get_if<Form>(&form) : nullptr;
@@ -49,43 +49,45 @@ struct FieldSetup {
 
 /// Table [medium] of a setup, in SI.
 struct MediumSetup {
-  double wavelength = 532e-9;       ///< [m]
+  double wavelength = 532e-9;       ///< vacuum wavelength [m]
   double gladstone_dale = 2.26e-4;  ///< K [m^3/kg]
   double ambient_density = 1.225;   ///< [kg/m^3]
-  double thickness = 0.01;          ///< depth along Z: of slabs as given or automatic, of a volume its own [m]
-  bool automatic_thickness = true;  ///< nobody has given it
+  double thickness = 0.01;          ///< depth along Z [m]; of a volume from a file, set when the setup is resolved
+  bool automatic_thickness = true;  ///< thickness is determined by automatic_thickness_mm()
   FieldInterpolation interpolation = FieldInterpolation::cubic_bspline;
   Integrator integrator = Integrator::rk4;
   Faces faces = Faces::matched;
-  std::optional<double> step_mm;  ///< [mm], kept as written; empty: auto
+  std::optional<double> step_mm;  ///< step size [mm], unit as in the setup; empty: automatic
   FieldSetup field;
-  std::optional<FieldSetup> second_field;  ///< that PIV's second pulse sees instead
+  std::optional<FieldSetup> second_field;  ///< field at PIV's second pulse, if it differs from the first
 
   double ambient_refractivity() const { return gladstone_dale * ambient_density; }
 };
 
 MediumSetup read_medium_setup(SetupTable table);
 
-/// The field in the slab of its medium. @pre setup.field.kind is closed_form
+/// Returns the closed form with the slab parameters of its medium. @pre setup.field.kind is closed_form
 ClosedForm<double> closed_form_of(MediumSetup const& setup);
 
-/// The medium that the second pulse sees. @pre setup.second_field
+/// Returns the setup with the field of the second pulse. @pre setup.second_field has a value
 MediumSetup at_second_pulse(MediumSetup const& setup);
 
-/// Whether a field is a volume from a file, whose depth does not depend on thickness_mm.
+/// Returns true if a field is a volume from a file, whose depth does not depend on thickness_mm.
 bool has_own_depth(FieldSetup const& field);
 
-/// The radius of a field that fades on its own along Z, so that a slab can be too thin for it [m]; 0 for others.
+/// Returns the radius of a field that decays along Z, to compare with the thickness of the slab [m]; 0 for other
+/// fields.
 double radius_along_z(FieldSetup const& field);
 
-/// What medium.thickness_mm = "auto" stands for: 10 mm, and for a plume or a blob, whose displacement a slab about its
-/// middle cuts off by erfc(half thickness / radius), at least seven radii, which cut off 7e-7 of it [mm].
+/// Returns the value of medium.thickness_mm = "auto" [mm]: 10 mm, or seven radii for a plume or blob if that is more.
+/// The slab's faces truncate the displacement of these Gaussian fields by a fraction erfc(half thickness / radius),
+/// which is 7e-7 at seven radii.
 double automatic_thickness_mm(FieldSetup const& field);
-/// Of a setup's field, or of the second pulse's where that is more.
+/// Like above, for the thicker one of the fields of the two pulses.
 double automatic_thickness_mm(MediumSetup const& setup);
 
-/// Share of a field's displacement that the faces of its slab cut off [1]: erfc(half thickness / radius) for a plume
-/// and a blob, whose density is a Gaussian along Z; 0 for fields that have no size along Z.
+/// Returns the fraction of a field's displacement that is lost by truncation at the slab's faces [1]: erfc(half
+/// thickness / radius) for a plume or blob, whose density is Gaussian along Z; 0 for other fields.
 double cut_off_share(MediumSetup const& setup);
 
 }  // namespace gladstone

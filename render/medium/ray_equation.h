@@ -3,9 +3,9 @@
 #include "render/base/host_device.h"
 #include "render/medium/index_sample.h"
 
-/// Before a loop over a few rays: keep every ray's numbers in registers. Before the loop over a step's stages: a device
-/// is better off with one copy of the sampling code, whose registers and instructions are scarce. (nvcc's host pass
-/// knows no such pragmas.)
+/// GLADSTONE_UNROLL unrolls a loop over a few rays, to keep their data in registers. GLADSTONE_STAGES unrolls the loop
+/// over the stages of a step on the host only: on a device a single copy of the sampling code saves registers and
+/// instructions. nvcc's host pass does not support these pragmas.
 #if defined(__CUDA_ARCH__)
 #define GLADSTONE_UNROLL _Pragma("unroll")
 #define GLADSTONE_STAGES _Pragma("unroll 1")
@@ -22,11 +22,11 @@
 
 namespace gladstone {
 
-/// How a ray is carried through a medium.
+/// Integration scheme for rays in a medium.
 enum class Integrator : int {
-  rk4,       ///< Sharma's Runge-Kutta scheme, order 4
-  euler,     ///< order 1
-  straight,  ///< gradients taken along the undeflected ray (Eq. 9, slice by slice)
+  rk4,       ///< Sharma's Runge-Kutta scheme, fourth order
+  euler,     ///< explicit Euler scheme, first order
+  straight,  ///< gradients integrated along the undeflected ray (Eq. 9 slice by slice)
 };
 
 /// Position and optical direction T = n dR/ds = dR/dt of a ray, t being Sharma's parameter with dt = ds/n.
@@ -36,7 +36,7 @@ struct RayState {
   Vec3<T> optical_direction;  ///< T [1], |T| = n
 };
 
-/// What one step adds to the free flight R + T dt.
+/// Increments of one step, in addition to the free flight R + T dt.
 template <class T>
 struct StepIncrement {
   Vec3<T> position;           ///< [m]
@@ -45,7 +45,7 @@ struct StepIncrement {
   Vec3<T> last_force;         ///< D = n grad n at the end of the step [1/m]
 };
 
-/// D = n grad n = grad(n^2)/2 at p, with n^2 (Rajendran et al. eq. 6).
+/// Force D = n grad n = grad(n^2)/2 at a point (Rajendran et al. 2019, eq. 6), and n^2.
 template <class T>
 struct Force {
   Vec3<T> d;  ///< [1/m]
@@ -61,13 +61,15 @@ template <class T, class Medium>
   return force_of<T>(medium.sample(p));
 }
 
-/// Sharma's three samples of a step for N rays, stage by stage, so that no ray's samples wait for another's.
-/// @param bent 1: rk4; 0: the gradients are taken along the undeflected ray
+/// Evaluates the three stages of Sharma's step for N rays together, so that the samples of different rays are
+/// independent.
+/// @param bent  1: rk4; 0: gradients along the undeflected ray
 template <class T, class Medium, int N>
 [[gnu::always_inline]] GLADSTONE_HD inline void step_increments(Medium const& medium, T bent, Vec3<T> const (&R)[N],
                                                                 Vec3<T> const (&direction)[N], T const (&dt)[N],
                                                                 StepIncrement<T> (&add)[N]) {
-  // where a stage samples, and what its K = dt n grad n counts for: positions (A + 2 B)/6, directions (A + 4 B + C)/6
+  // With the stages' K = dt n grad n = A, B, C: the position increment is dt (A + 2 B)/6, the direction's (A + 4 B +
+  // C)/6.
   Vec3<T> K[N]{};
   for (int i = 0; i < N; ++i) add[i] = {};
   GLADSTONE_STAGES
@@ -87,12 +89,13 @@ template <class T, class Medium, int N>
   }
 }
 
-/// The increments of one step of the ray equation d2R/dt2 = n grad n, dt = ds/n.
-/// rk4: Sharma, Kumar & Ghatak, Appl. Opt. 21 (1982) 984; Rajendran et al. eqs. 3-6, where the printed step is Sharma's
-/// dt, not arc length, and T_n is T_i.
-/// @param medium gives refractivity and gradient [1/m] at p [m]
-/// @param R      position [m]; T optical direction [1]
-/// @param dt     step [m]; not arc length: ds = n dt. Local error O(dt^5) for rk4, O(dt^2) for euler
+/// Returns the increments of one step of the ray equation d2R/dt2 = n grad n, dt = ds/n.
+/// rk4: Sharma, Kumar & Ghatak, Appl. Opt. 21 (1982) 984; Rajendran et al. (2019), eqs. 3-6, where the printed step is
+/// Sharma's dt, not arc length, and T_n is T_i.
+/// @param medium     provides refractivity and gradient [1/m] at a point [m]
+/// @param R          position [m]
+/// @param direction  optical direction T [1]
+/// @param dt         step [m]; the arc length is ds = n dt. Local error O(dt^5) for rk4, O(dt^2) for euler
 template <class T, class Medium>
 GLADSTONE_HD StepIncrement<T> step_increment(Medium const& medium, Integrator integrator, Vec3<T> R, Vec3<T> direction,
                                              T dt) {
@@ -107,7 +110,7 @@ GLADSTONE_HD StepIncrement<T> step_increment(Medium const& medium, Integrator in
   return add[0];
 }
 
-/// One whole step: the state after Sharma's dt.
+/// Advances a ray by one step dt [m] and returns its new state.
 template <class T, class Medium>
 GLADSTONE_HD RayState<T> advance(Medium const& medium, RayState<T> ray, T dt, Integrator integrator = Integrator::rk4) {
   StepIncrement<T> const add = step_increment(medium, integrator, ray.position, ray.optical_direction, dt);

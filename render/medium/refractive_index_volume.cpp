@@ -12,7 +12,8 @@
 namespace gladstone {
 namespace {
 
-/// Elements along an axis with its ghosts: one before; one (open) or two (periodic) after; none across a plane.
+/// Returns the number of elements along an axis: nodes, one ghost before them, and one (open) or two (periodic) after.
+/// A plane has no ghosts along z.
 int padded_count(RegularGrid const& grid, int axis) {
   auto const a = static_cast<std::size_t>(axis);
   if (axis == 2 && grid.nodes[2] == 1) return 1;
@@ -44,7 +45,7 @@ RefractiveIndexVolume<Stored>::RefractiveIndexVolume(RegularGrid const& grid, In
   plane_ = static_cast<std::ptrdiff_t>(padded_[0]) * padded_[1];
   coefficients_.resize(static_cast<std::size_t>(plane_) * static_cast<std::size_t>(padded_[2]));
 
-  // read slab by slab (about 16 MB at a time) and put into place: in double until the offset is taken off
+  // Read slabs of about 16 MB and store them. Values are in double precision until the offset is subtracted.
   int const nx = grid.nodes[0], ny = grid.nodes[1], nz = grid.nodes[2];
   std::size_t const plane_values = static_cast<std::size_t>(nx) * static_cast<std::size_t>(ny);
   int const slab = std::clamp(static_cast<int>((std::size_t{2} << 20) / plane_values), 1, nz);
@@ -86,15 +87,15 @@ RefractiveIndexVolume<Stored>::RefractiveIndexVolume(RegularGrid const& grid, In
   measure_steepest();
 }
 
-/// Filters every line along one axis; ghosts of the axes done before are lines like any other. Lines that are
-/// neighbours in memory are gathered together, so that every cache line is read once.
+/// Applies the B-spline prefilter to all lines along an axis. Ghost layers of previously filtered axes are filtered
+/// like nodes. Lines adjacent in memory are gathered in blocks, so that every cache line is read once.
 template <class Stored>
 void RefractiveIndexVolume<Stored>::prefilter_axis(int axis) {
   auto const a = static_cast<std::size_t>(axis);
   std::array<std::ptrdiff_t, 3> const stride{1, row_, plane_};
   int const n = grid_.nodes[a];
-  int const across = axis == 0 ? 1 : 0;  // neighbouring lines lie along this axis
-  int const outer = 3 - axis - across;   // and blocks of them along this one
+  int const across = axis == 0 ? 1 : 0;  // axis along which the lines of a block are adjacent
+  int const outer = 3 - axis - across;   // axis along which blocks are stacked
   auto const lines_on = [&](int other) {
     return other < axis ? padded_[static_cast<std::size_t>(other)] : grid_.nodes[static_cast<std::size_t>(other)];
   };
@@ -140,7 +141,7 @@ void RefractiveIndexVolume<Stored>::prefilter_axis(int axis) {
   });
 }
 
-/// Repeats the far ends of a periodic axis beyond its ends, so that rays need no wrapping inside a cell.
+/// Fills the ghost nodes of a periodic axis from its opposite end, so that sampling within a cell needs no wrapping.
 template <class Stored>
 void RefractiveIndexVolume<Stored>::copy_ghosts(int axis) {
   auto const a = static_cast<std::size_t>(axis);
@@ -175,7 +176,7 @@ void RefractiveIndexVolume<Stored>::measure_steepest() {
   auto const high = [&](int axis) {
     auto const a = static_cast<std::size_t>(axis);
     if (padded_[a] == 1) return 1;
-    return grid_.nodes[a] + (grid_.periodic[a] ? 1 : 0) + (spline ? 1 : 0);  // one past the last that may matter
+    return grid_.nodes[a] + (grid_.periodic[a] ? 1 : 0) + (spline ? 1 : 0);  // one past the last element in use
   };
   parallel_for(static_cast<std::size_t>(high(2) - low(2)), [&](std::size_t task) {
     int const k = low(2) + static_cast<int>(task);

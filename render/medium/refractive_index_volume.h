@@ -15,20 +15,20 @@
 
 namespace gladstone {
 
-/// A gridded refractivity seen by rays: a view, passed by value, that owns nothing.
-/// `Dimensions` 3: a volume; 2: a plane that is the same along z (an extruded slice).
-/// @tparam T       scalar of the ray
-/// @tparam Stored  scalar in memory: float for volumes, double for planes
+/// View of a gridded refractivity, passed by value; owns no memory. `Dimensions` is 3 for a volume, 2 for a plane that
+/// is extruded along z.
+/// @tparam T       scalar type of the ray
+/// @tparam Stored  scalar type in memory: float for volumes, double for planes
 template <class T, class Stored, class Basis, int Dimensions>
 struct GriddedIndex {
   Stored const* coefficients = nullptr;  ///< refractivity minus `offset`, padded, x fastest; node 0 at [padding]
-  std::ptrdiff_t row = 0;                ///< elements from one row (y) to the next
-  std::ptrdiff_t plane = 0;              ///< elements from one plane (z) to the next
+  std::ptrdiff_t row = 0;                ///< number of elements between successive rows (y)
+  std::ptrdiff_t plane = 0;              ///< number of elements between successive planes (z)
   std::array<int, 3> nodes{1, 1, 1};
   std::array<bool, 3> periodic{false, false, false};
   Vec3<T> origin{};           ///< world position of node (0, 0, 0) [m]
-  Vec3<T> inverse_spacing{};  ///< [1/m]
-  T offset{};                 ///< refractivity that a coefficient of zero stands for [1]
+  Vec3<T> inverse_spacing{};  ///< reciprocal of the node spacing [1/m]
+  T offset{};                 ///< refractivity represented by a coefficient of zero [1]
   Bounds<T> box{};
 
   static constexpr int padding = 1;
@@ -37,7 +37,7 @@ struct GriddedIndex {
 
   GLADSTONE_HD Bounds<T> bounds() const { return box; }
 
-  /// Refractivity and its analytic gradient at p [m]. @pre p lies in bounds() (up to rounding)
+  /// Returns the refractivity and its analytic gradient at p [m]. @pre p is within bounds() (up to rounding)
   [[gnu::always_inline]] GLADSTONE_HD IndexSample<T> sample(Vec3<T> p) const {
     constexpr int S = Basis::support;
     Row wx, dx, wy, dy;
@@ -48,7 +48,7 @@ struct GriddedIndex {
       Sums const sums = contract_rows(corner, wy, dy);
       scalar_products({sums.value, sums.value, sums.dy, Row::all(T(0))}, {wx, dx, wx, wx}, sum);
     } else {
-      // contract y first for every plane, then z, then x: 12 S + S^2 (2 S) products instead of 4 S^3
+      // contract y of every plane, then z, then x: 12 S + S^2 (2 S) products instead of 4 S^3
       Row wz, dz;
       corner += plane * locate(2, (p.z - origin.z) * inverse_spacing.z, wz, dz);
       Sums sums = contract_rows(corner, wy, dy);
@@ -71,7 +71,8 @@ struct GriddedIndex {
     Row dy;
   };
 
-  /// Weights on one axis, and the offset of the first coefficient that they belong to.
+  /// Computes the interpolation weights and their derivatives along an axis at grid coordinate u, and returns the
+  /// offset of the first coefficient.
   GLADSTONE_HD std::ptrdiff_t locate(int axis, T u, Row& w, Row& d) const {
     using std::floor;
     int const count = nodes[static_cast<std::size_t>(axis)];
@@ -103,8 +104,8 @@ struct GriddedIndex {
   }
 };
 
-/// The region that a grid fills [m]: from its first node to its last; where it is periodic, tiled without end across
-/// the view, but for one period along the line of sight.
+/// Returns the box of a grid, from first to last node [m]. Periodic axes are infinite across the line of sight, and
+/// along the line of sight (z) one period long.
 inline Bounds<double> grid_bounds(RegularGrid const& grid) {
   Bounds<double> box{};
   for (int axis = 0; axis < 3; ++axis) {
@@ -118,36 +119,39 @@ inline Bounds<double> grid_bounds(RegularGrid const& grid) {
   return box;
 }
 
-/// Owns a refractivity grid, prefiltered in place for B-splines: natural memory is nodes plus one ghost layer a side.
-/// Stored is float (volumes) or double (planes and small volumes). Splines are not-a-knot on open axes, so that they
-/// reproduce cubics up to the edge, and periodic on periodic ones.
+/// Refractivity on a grid, prefiltered in place for B-splines. Owns the coefficients, which have one ghost layer on
+/// each side (two after the last node of a periodic axis). Splines have not-a-knot end conditions on open axes, so that
+/// they reproduce cubics up to the boundary, and are periodic on periodic axes.
+/// @tparam Stored  float (volumes) or double (planes and small volumes)
 template <class Stored>
 class RefractiveIndexVolume {
  public:
   enum class Interpolation { cubic_bspline, trilinear };
 
-  /// Gives planes of constant z, x fastest: `fill(first_plane, count, out)` with file values, in double: only what is
-  /// left of them after scale, shift and offset is rounded to Stored.
+  /// Callback that provides planes of constant z, x fastest, as file values: `fill(first_plane, count, out)`. Values
+  /// are in double precision; only the refractivity minus offset() is rounded to Stored.
   using PlaneFiller = std::function<void(int first_plane, int count, std::span<double> out)>;
 
-  /// @param grid   nodes, spacing [m], origin [m]; a plane (nodes[2] = 1) has no z dependence
-  /// @param scale  stored refractivity = scale times file value plus shift, minus offset()
-  /// @throws whatever `fill` throws, Interrupted
+  /// @param grid   nodes, spacing [m], origin [m]; a plane (nodes[2] = 1) does not depend on z
+  /// @param scale  factor from file values to refractivity
+  /// @param shift  added to scale times file value to obtain the refractivity
+  /// @param fill   provides the file values
+  /// @throws Interrupted and all exceptions of `fill`
   RefractiveIndexVolume(RegularGrid const& grid, Interpolation interpolation, double scale, double shift,
                         PlaneFiller const& fill);
 
   RegularGrid const& grid() const { return grid_; }
   Interpolation interpolation() const { return interpolation_; }
   double offset() const { return offset_; }
-  double lowest() const { return lowest_; }    ///< smallest nodal refractivity
-  double highest() const { return highest_; }  ///< largest nodal refractivity
-  /// Upper bound of |grad n| [1/m]: a B-spline's derivative is a weighted mean of its coefficients' differences.
+  double lowest() const { return lowest_; }    ///< smallest refractivity at a node
+  double highest() const { return highest_; }  ///< largest refractivity at a node
+  /// Upper bound of |grad n| [1/m]: a B-spline's derivative is a weighted mean of differences of its coefficients.
   double steepest() const { return steepest_; }
   std::size_t bytes() const { return coefficients_.size() * sizeof(Stored); }
-  /// Memory that a grid of this kind needs, before it is allocated [bytes].
+  /// Returns the memory required for a grid [bytes].
   static std::size_t bytes_needed(RegularGrid const& grid);
 
-  /// What a ray sees. `z_low`, `z_high` bound an extruded plane [m] and are ignored for volumes.
+  /// Returns a view for rays. z_low and z_high are the bounds of an extruded plane [m] and are ignored for volumes.
   template <class T, class Basis, int Dimensions>
   GriddedIndex<T, Stored, Basis, Dimensions> view(double z_low, double z_high) const {
     GriddedIndex<T, Stored, Basis, Dimensions> seen;

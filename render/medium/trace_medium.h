@@ -9,61 +9,61 @@
 
 namespace gladstone {
 
-/// What a ray does at the faces of the medium.
+/// Boundary condition for rays at the faces of the medium.
 enum class Faces : int {
-  matched,  ///< the surroundings are index-matched: the direction goes on unchanged
-  refract,  ///< Snell's law against the ambient index n_0
+  matched,  ///< index-matched surroundings: the direction does not change
+  refract,  ///< refraction by Snell's law against the ambient index n_0
 };
 
-/// How rays are carried through a medium; the same for all rays of a launch.
+/// Parameters of the ray integration, equal for all rays of a launch.
 template <class T>
 struct TracingOptions {
-  T step{};                  ///< largest step, as arc length [m]
+  T step{};                  ///< maximum step, as arc length [m]
   T ambient_refractivity{};  ///< n_0 - 1 [1]
   Integrator integrator = Integrator::rk4;
   Faces faces = Faces::matched;
 };
 
-/// A ray's way through a medium, kept as its departure from the straight ray it would have been: with t the sum of
-/// Sharma's steps, R = entry + T_0 t + shift and T = T_0 + turn, T_0 along the incoming ray. A uniform medium gives
-/// exact zeros.
+/// Path of a ray through a medium, stored as its deviation from the undeflected ray: with t the sum of Sharma's steps,
+/// R = entry point + T_0 t + shift and T = T_0 + turn, T_0 in the direction of the incoming ray. In a uniform medium
+/// the deviations are exactly zero.
 template <class T>
 struct MediumPassage {
   RayStatus status = RayStatus::alive;
-  bool crossed = false;  ///< false: the ray missed the medium and comes back as it went in
-  Vec3<T> straight{};    ///< T_0 [1]
-  T entry{};             ///< way from the ray's start to the medium, divided by |T_0| [m]
-  T t{};                 ///< [m]
-  Vec3<T> shift{};       ///< [m]
-  Vec3<T> turn{};        ///< [1]
-  T optical_path{};      ///< from the ray's start to where it leaves the medium [m]
+  bool crossed = false;  ///< false: the ray misses the medium and is unchanged
+  Vec3<T> straight{};    ///< optical direction T_0 of the undeflected ray [1]
+  T entry{};             ///< distance from the ray's start to the medium, divided by |T_0| [m]
+  T t{};                 ///< sum of the steps dt = ds/n in the medium [m]
+  Vec3<T> shift{};       ///< deviation of the position [m]
+  Vec3<T> turn{};        ///< deviation of the optical direction [1]
+  T optical_path{};      ///< optical path length from the ray's start to the exit from the medium [m]
 };
 
-/// Where the ray leaves the medium [m].
+/// Returns the position at which the ray exits the medium [m].
 template <class T>
 GLADSTONE_HD Vec3<T> exit_position(Ray<T> const& start, MediumPassage<T> const& way) {
   return start.position + way.straight * (way.entry + way.t) + way.shift;
 }
 
-/// Unit direction in which the ray leaves; exactly the incoming one where nothing turned it.
+/// Returns the unit direction of the outgoing ray; exactly the incoming direction if the ray was not deflected.
 template <class T>
 GLADSTONE_HD Vec3<T> exit_direction(Ray<T> const& start, MediumPassage<T> const& way) {
-  // unit(T) - d = (turn - d (|T| - |T_0|)) / |T|, without the cancellation
+  // unit(T) - d = (turn - d (|T| - |T_0|)) / |T|, without cancellation
   T const before = length(way.straight);
   T const after = length(way.straight + way.turn);
   T const growth = (T(2) * dot(way.straight, way.turn) + dot(way.turn, way.turn)) / (after + before);
   return start.direction + (way.turn - start.direction * growth) / after;
 }
 
-/// The straight ray that a camera takes the bent one for: the outgoing line, followed back to the plane z = z of the
-/// start (a dot's apparent place). @pre the ray leaves with a z component
+/// Returns the apparent ray: the outgoing ray, traced back in a straight line to the plane z = const of the start. Its
+/// position is the apparent position of a dot. @pre the outgoing ray has a z component
 template <class T>
 GLADSTONE_HD Ray<T> apparent_ray(Ray<T> const& start, MediumPassage<T> const& way) {
   if (!way.crossed) return start;
   T const S = way.entry + way.t;
   Vec3<T> const outgoing = way.straight + way.turn;
   T const rise = way.straight.z * S + way.shift.z;
-  // exit - outgoing rise / outgoing.z - start, with the terms that cancel taken out
+  // exit - outgoing rise / outgoing.z - start, with the cancelling terms removed
   Vec3<T> const numerator = way.straight * (S * way.turn.z - way.shift.z) - way.turn * rise;
   Vec3<T> const moved = way.shift + numerator / outgoing.z;
   return {{start.position.x + moved.x, start.position.y + moved.y, start.position.z}, exit_direction(start, way)};
@@ -71,12 +71,12 @@ GLADSTONE_HD Ray<T> apparent_ray(Ray<T> const& start, MediumPassage<T> const& wa
 
 namespace detail {
 
-/// Where a straight line is inside a box: [enter, leave] in multiples of the direction; enter >= leave: it misses.
+/// Intersection of a straight line with a box. The line misses the box if enter >= leave.
 template <class T>
 struct Chord {
-  T enter;
-  T leave;
-  int entry_axis;  ///< axis of the face it enters through; -1: it starts inside
+  T enter;         ///< distance to the entry, in multiples of the direction vector
+  T leave;         ///< distance to the exit, in multiples of the direction vector
+  int entry_axis;  ///< axis normal to the entry face; -1: the start is inside
 };
 
 template <class T>
@@ -100,7 +100,7 @@ GLADSTONE_HD Chord<T> chord_in(Bounds<T> const& box, Vec3<T> p, Vec3<T> d) {
   return chord;
 }
 
-/// Way to the next face along T from R, in units of t, and the face's axis.
+/// Distance along T from R to the next face, as Sharma's t [m], and the axis normal to that face.
 template <class T>
 struct WayOut {
   T t;
@@ -119,8 +119,8 @@ GLADSTONE_HD WayOut<T> way_out(Bounds<T> const& box, Vec3<T> R, Vec3<T> directio
   return out;
 }
 
-/// Axis of the face by which a ray at R that runs along `direction` has left a box; -1: it has not. A ray that has just
-/// entered, and by rounding stands in front of its face, runs towards it.
+/// Returns the axis normal to the face through which a ray at R with the given direction has left a box, or -1 if it
+/// has not. A point just outside a face by rounding counts as inside if the ray is directed inwards.
 template <class T>
 GLADSTONE_HD int face_left_by(Bounds<T> const& box, Vec3<T> R, Vec3<T> direction) {
   for (int axis = 2; axis >= 0; --axis) {
@@ -130,8 +130,8 @@ GLADSTONE_HD int face_left_by(Bounds<T> const& box, Vec3<T> R, Vec3<T> direction
   return -1;
 }
 
-/// Change of the optical direction's component along a face's normal when the index goes from |T| = n_from to n_to and
-/// the tangential components stay (Snell's law). @return false: total internal reflection
+/// Computes the change of the optical direction's component normal to a face where n^2 changes from from_n2 = |T|^2 to
+/// to_n2; the tangential components are conserved (Snell's law). @return false for total internal reflection
 template <class T>
 GLADSTONE_HD bool refract_component(Vec3<T> direction, T from_n2, T to_n2, int axis, T& change) {
   using std::sqrt;
@@ -143,17 +143,17 @@ GLADSTONE_HD bool refract_component(Vec3<T> direction, T from_n2, T to_n2, int a
   return true;
 }
 
-/// The part of a step that stays inside a box.
+/// Part of an integration step that is inside a box.
 template <class T>
 struct PartialStep {
-  bool leaves;  ///< false: it is the whole step
+  bool leaves;  ///< false: the whole step is inside
   T step;       ///< [m]
   StepIncrement<T> add;
-  int axis;  ///< of the face where it ends
+  int axis;  ///< axis normal to the exit face
 };
 
-/// Finds where a curved step leaves the box, by bisection: for the rare rays that graze a face. Kept out of line, so
-/// that the loop over steps stays small.
+/// Determines by bisection where a curved step leaves the box, for the rare grazing rays. Not inlined, to keep the loop
+/// over steps small.
 template <class T, class Medium>
 [[gnu::noinline]] GLADSTONE_HD PartialStep<T> bisect_exit(Medium const& medium, Integrator integrator,
                                                           Bounds<T> const& box, RayState<T> from, T dt) {
@@ -178,34 +178,34 @@ template <class T, class Medium>
   return part;
 }
 
-/// A ray under way: its passage so far, and the steps that are left to take.
+/// State of a ray in the medium: path so far and remaining steps.
 template <class T>
 struct Crossing {
   MediumPassage<T> way;
   Bounds<T> box{};
-  T whole_step{};      ///< [m]
-  T dt{};              ///< the next step [m]
-  int steps_left = 0;  ///< 0: nothing is left to trace
+  T whole_step{};      ///< full step dt [m]
+  T dt{};              ///< next step dt [m]
+  int steps_left = 0;  ///< maximum number of remaining steps; 0: the ray is finished
 };
 
-/// A step is the last one if it ends within this share of itself from the face.
+/// A step ends at the face if the face is within this multiple of the step.
 template <class T>
 inline constexpr T landing_margin = T(1) + T(16) * std::numeric_limits<T>::epsilon();
 
-/// Whether a point is within a box, and on none of its faces.
+/// Returns true if a point is strictly inside a box.
 template <class T>
 GLADSTONE_HD bool lies_inside(Bounds<T> const& box, Vec3<T> p) {
   return p.x > box.low.x && p.x < box.high.x && p.y > box.low.y && p.y < box.high.y && p.z > box.low.z &&
          p.z < box.high.z;
 }
 
-/// False where a step dt along a straight line surely ends short of every face: cheaper than way_out, which divides.
+/// Returns false if a straight step dt certainly ends inside the box. Cheaper than way_out(), which divides.
 template <class T>
 GLADSTONE_HD bool may_reach_face(Bounds<T> const& box, Vec3<T> R, Vec3<T> direction, T dt) {
   return !lies_inside(box, R + direction * (dt * T(1 + 1e-9)));
 }
 
-/// Brings a ray to the face where it enters, and plans its steps.
+/// Advances a ray to the entry face, and determines its step sizes.
 template <class T, class Medium>
 GLADSTONE_HD Crossing<T> enter_medium(Medium const& medium, TracingOptions<T> const& options, Ray<T> const& start) {
   Crossing<T> crossing;
@@ -233,25 +233,25 @@ GLADSTONE_HD Crossing<T> enter_medium(Medium const& medium, TracingOptions<T> co
     way.turn[chord.entry_axis] = change;
   }
 
-  // whole steps, with what remains of the chord halved between the first and the last one
+  // use full steps, and divide the remainder of the chord equally between the first and the last step
   using std::floor;
   T const chord_t = (chord.leave - chord.enter) / n_entry;
   T const whole_step = crossing.whole_step = options.step / n_entry;
   T const whole_steps = floor(chord_t / whole_step + T(1e-6));
   T const rest = chord_t - whole_steps * whole_step;
-  // along an endless axis there is no last step to share with, and the rest of the division means nothing
+  // on an infinite axis no last step exists, and the remainder is meaningless
   T const countable = T(1e6);
   crossing.dt = whole_steps < countable && rest > T(1e-6) * whole_step ? T(0.5) * rest : whole_step;
   crossing.steps_left = 64 + 16 * static_cast<int>(whole_steps < countable ? whole_steps : countable);
-  if (!(n_entry > T(0))) {  // far out in an endless gradient, where no step leads anywhere
+  if (!(n_entry > T(0))) {  // far out in an infinite linear gradient, where n <= 0
     way.status = RayStatus::lost_in_medium;
     crossing.steps_left = 0;
   }
   return crossing;
 }
 
-/// Takes a ray that has entered to where it leaves. Out of line, so that a device's loop over whole steps keeps its
-/// registers.
+/// Integrates a ray from its current state to its exit from the medium. Not inlined, to limit the register use of a
+/// device's loop over full steps.
 template <class T, class Medium>
 [[gnu::noinline]] GLADSTONE_HD void leave_medium(Medium const& medium, TracingOptions<T> const& options,
                                                  Ray<T> const& start, Crossing<T>& crossing) {
@@ -277,13 +277,13 @@ template <class T, class Medium>
       Vec3<T> const reached = where + along * step + add.position;
       int const left_by = face_left_by(box, reached, along + add.optical_direction);
       if (options.integrator != Integrator::straight && left_by >= 0) {
-        // a curved ray left in mid-step: land on the face that it crossed
+        // a curved ray left the box within the step: end the step on the crossed face
         landing = true;
         out.axis = left_by;
       }
     }
     if (landing && options.integrator != Integrator::straight) {
-      // Newton on the step length; what remains is closed by the Taylor series of the last step's end
+      // Newton iteration for the step length; the remainder is corrected by a Taylor series about the end of the step
       bool landed = false;
       for (int trial = 0; trial < 12; ++trial) {
         T const speed = direction[out.axis] + add.optical_direction[out.axis];
@@ -305,8 +305,7 @@ template <class T, class Medium>
         add = step_increment(medium, options.integrator, where, along, step);
       }
       if (!landed) {
-        // a grazing ray, bent away from the face that it was heading for: a whole step, or the part of it that stays
-        // inside
+        // a grazing ray, deflected away from the face ahead: take the full step, or the part of it that is inside
         PartialStep<T> const part = bisect_exit(medium, options.integrator, box, {where, along}, dt);
         landing = part.leaves;
         step = part.step;
@@ -336,11 +335,11 @@ template <class T, class Medium>
   way.status = RayStatus::lost_in_medium;
 }
 
-/// Takes rays that have entered through the middle of a medium in step, as long as all of them are sure to stay inside
-/// for one more step: what is special about a last step is left to the single ray.
+/// Integrates several rays together through the interior of a medium, until one of them may reach a face in the next
+/// step. leave_medium() integrates the remaining steps.
 template <class T, class Medium, int N>
 GLADSTONE_HD void cross_together(Medium const& medium, Ray<T> const (&start)[N], Crossing<T> (&crossing)[N]) {
-  // copies, so that a device keeps them in registers
+  // local copies, for a device's registers
   Crossing<T> ray[N];
   for (int i = 0; i < N; ++i) ray[i] = crossing[i];
   Vec3<T> R[N], direction[N];
@@ -376,14 +375,14 @@ GLADSTONE_HD void cross_together(Medium const& medium, Ray<T> const (&start)[N],
   for (int i = 0; i < N; ++i) crossing[i] = ray[i];
 }
 
-/// Media that sample two points which lie near each other for little more than one.
+/// Media that sample two neighbouring points at little more than the cost of one.
 template <class T, class Medium>
 concept SamplesPairs = requires(Medium const& medium, Vec3<T> p, IndexSample<T> (&at)[2]) {
   medium.sample_beside(p, p, at);
 };
 
-/// The same steps for one ray, with a step's last sample taken together with the next one's first: they lie
-/// (A - B) dt^2/6 apart, and neither waits for the other. Leaves the last steps as cross_together does.
+/// Like cross_together() for a single ray, but samples the end of a step together with the start of the next one. The
+/// two points are (A - B) dt^2/6 apart, and neither sample depends on the other.
 template <class T, class Medium>
 GLADSTONE_HD void cross_in_pairs(Medium const& medium, Ray<T> const& start, Crossing<T>& crossing) {
   Crossing<T> ray = crossing;
@@ -417,11 +416,13 @@ GLADSTONE_HD void cross_in_pairs(Medium const& medium, Ray<T> const& start, Cros
 
 }  // namespace detail
 
-/// Carries a ray through a medium: straight to its face, along the ray equation with steps of at most options.step
-/// (first and last step partial and equally long on a straight ray, so that a reversed ray meets the same points),
-/// exactly to the face where it leaves.
-/// @param start any ray in the ambient [m, unit direction]; one that starts inside starts at full index there
-/// @return the passage; status total_internal_reflection or lost_in_medium (trapped) where it does not come out
+/// Traces a ray through a medium: straight to the entry face, along the ray equation with steps of at most
+/// options.step, and exactly to the exit face. On a straight ray, the first and last steps are partial and of equal
+/// length, so that the reversed ray samples the same points.
+/// @param start  ray in the ambient, with a unit direction [m]; a ray that starts inside the medium is not refracted
+/// at its start
+/// @return path of the ray; its status is total_internal_reflection, or lost_in_medium if it does not reach an exit
+/// face
 template <class T, class Medium>
 GLADSTONE_HD MediumPassage<T> trace_medium(Medium const& medium, TracingOptions<T> const& options,
                                            Ray<T> const& start) {
@@ -430,8 +431,8 @@ GLADSTONE_HD MediumPassage<T> trace_medium(Medium const& medium, TracingOptions<
   return crossing.way;
 }
 
-/// The same for N rays side by side. A step waits for its own samples of the medium, one after the other; with several
-/// rays in step a processor works on one while another waits.
+/// Like trace_medium() above, for N rays together. Each step of a ray depends on its previous samples; interleaving
+/// several rays hides the latency of the samples.
 template <class T, class Medium, int N>
 GLADSTONE_HD void trace_medium(Medium const& medium, TracingOptions<T> const& options, Ray<T> const (&start)[N],
                                MediumPassage<T> (&way)[N]) {

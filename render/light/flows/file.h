@@ -18,10 +18,9 @@ struct FlowSetup;
 struct FileFlow {
   static constexpr char const* kind = "file";
 
-  float const* coefficients =
-      nullptr;  ///< coefficients [z][y][x][component], with one ghost layer on each side; null: zero velocity
-  std::ptrdiff_t row = 0, plane = 0;  ///< number of elements between successive rows (y) and planes (z)
-  std::array<int, 3> nodes{1, 1, 1};  ///< number of nodes along x, y, z; 1 along z: independent of z
+  float const* coefficients = nullptr;  ///< [z][y][x][component], one ghost layer on each side; null: zero velocity
+  std::ptrdiff_t row = 0, plane = 0;    ///< number of elements between successive rows (y) and planes (z)
+  std::array<int, 3> nodes{1, 1, 1};    ///< number of nodes along x, y, z; 1 along z: independent of z
   std::array<bool, 3> periodic{};
   Vec3d origin{};           ///< position of node (0, 0, 0) [m]
   Vec3d inverse_spacing{};  ///< reciprocal of the node spacing [1/m]

@@ -6,7 +6,7 @@
 
 namespace gladstone {
 
-/// rho = rho_0 + A exp(-r^2 / a^2) about the origin
+/// Spherical Gaussian density rho = rho_0 + A exp(-r^2 / a^2) about the origin.
 template <class T>
 struct GaussianBlob : GaussianField<T> {
   static constexpr char const* kind = "gaussian_blob";

@@ -6,7 +6,7 @@
 
 namespace gladstone {
 
-/// rho = rho_0 + A exp(-(x^2 + z^2) / a^2): a column about the Y axis
+/// Cylindrical Gaussian density about the Y axis: rho = rho_0 + A exp(-(x^2 + z^2) / a^2).
 template <class T>
 struct GaussianPlume : GaussianField<T> {
   static constexpr char const* kind = "gaussian_plume";

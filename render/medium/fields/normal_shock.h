@@ -8,16 +8,17 @@
 
 namespace gladstone {
 
-/// Density ratio over a normal shock in a perfect gas (Rankine-Hugoniot; NACA Report 1135, 1953, eq. 94).
+/// Returns the density ratio across a normal shock in a perfect gas (Rankine-Hugoniot; NACA Report 1135, 1953, eq. 94).
 /// @param mach upstream Mach number >= 1
 inline double shock_density_ratio(double mach, double gamma) {
   double const m2 = mach * mach;
   return (gamma + 1) * m2 / ((gamma - 1) * m2 + 2);
 }
 
-/// A normal shock of finite thickness in air: rho rises from rho_1 to rho_2 as a hyperbolic tangent of the distance
-/// from a plane. The flow runs towards +x; the plane's normal lies in the x-z plane, turned by the tilt about the Y
-/// axis. The thickness is the one of the largest slope, (rho_2 - rho_1) / max(d rho / d x) (Prandtl's definition).
+/// Normal shock of finite thickness in air. The density rises from rho_1 to rho_2 as a hyperbolic tangent of the
+/// distance from a plane. The flow is in +x direction; the plane's normal is in the x-z plane, rotated by the tilt
+/// about the Y axis. The thickness is based on the largest slope, (rho_2 - rho_1) / max(d rho / d x) (Prandtl's
+/// definition).
 template <class T>
 struct NormalShock : Slab<T> {
   static constexpr char const* kind = "normal_shock";
@@ -27,12 +28,12 @@ struct NormalShock : Slab<T> {
   T upstream{};   ///< rho_1 [kg/m^3]
   T jump{};       ///< rho_2 - rho_1 [kg/m^3]
   T thickness{};  ///< [m]
-  T position{};   ///< where the plane cuts the X axis [m]
+  T position{};   ///< intersection of the plane with the X axis [m]
   T normal_x{1}, normal_z{0};
-  T mach{1};  ///< upstream
-  T tilt{};   ///< [rad]
+  T mach{1};  ///< upstream Mach number
+  T tilt{};   ///< rotation of the normal about the Y axis [rad]
 
-  /// Of a Mach number, rho_1 [kg/m^3], a thickness [m] and where the plane stands [rad, m].
+  /// Returns a shock with the given Mach number, rho_1 [kg/m^3], thickness [m], tilt [rad] and position [m].
   static NormalShock front(T mach, T upstream, T thickness, T tilt = 0, T position = 0) {
     T const ratio = shock_density_ratio(mach, constant::gamma_air);
     return {{}, upstream, upstream * (ratio - 1), thickness, position, std::cos(tilt), std::sin(tilt), mach, tilt};

@@ -9,7 +9,7 @@
 
 namespace gladstone {
 
-/// rho = rho_0 + A sin(k . x + phase), k in the x-y plane
+/// Plane density wave rho = rho_0 + A sin(k . x + phase) with the wavevector k in the x-y plane.
 template <class T>
 struct Sinusoid : Slab<T> {
   static constexpr char const* kind = "sinusoid";
@@ -21,7 +21,7 @@ struct Sinusoid : Slab<T> {
   T phase{};             ///< [rad]
   T wavelength{};        ///< [m]
 
-  /// @param direction of unit length
+  /// Returns a wave. @param direction  direction of the wavevector, unit length
   static Sinusoid wave(T amplitude, T wavelength, Vec2<T> direction = {1, 0}, T phase = 0) {
     return {{}, amplitude, direction * (2 * pi / wavelength), phase, wavelength};
   }
@@ -56,7 +56,8 @@ struct Sinusoid : Slab<T> {
 
   T finest() const { return wavelength / 4; }
   T steepest() const { return this->gladstone_dale * std::abs(amplitude) * 2 * pi / wavelength; }
-  /// Where the phase passes no multiple of pi within the extent, the slope is largest at one of its corners.
+  /// Returns the largest gradient within the extent: its peak value if the phase passes a multiple of pi there, else
+  /// the value at one of the corners.
   T steepest_mean_density(Vec2d half_extent) const {
     T const reach = std::abs(wavevector.x) * half_extent.x + std::abs(wavevector.y) * half_extent.y;
     bool const crest = std::floor((phase + reach) / pi) > std::floor((phase - reach) / pi);

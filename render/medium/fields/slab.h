@@ -6,13 +6,13 @@
 
 namespace gladstone {
 
-/// Densities that a field takes where rays cross it [kg/m^3].
+/// Range of densities in the region that rays cross [kg/m^3].
 struct DensityRange {
   double lowest, highest;
 };
 
-/// What every field in closed form shares: a slab of given thickness about the mid-plane, endless in x and y. The
-/// setup's medium gives these three; the field's own table gives the rest.
+/// Parameters common to all fields in closed form: a slab about the mid-plane, infinite in x and y. They are set from
+/// table [medium], all other members from table [medium.field].
 template <class T>
 struct Slab {
   T half_thickness{};   ///< [m]
@@ -23,7 +23,7 @@ struct Slab {
     T const u = T(unbounded);
     return {{-u, -u, -half_thickness}, {u, u, half_thickness}};
   }
-  /// n - 1 = K rho (Gladstone & Dale 1863; Rajendran et al. eq. 1) and its gradient.
+  /// Returns n - 1 = K rho (Gladstone & Dale 1863; Rajendran et al. 2019, eq. 1) and its gradient.
   GLADSTONE_HD IndexSample<T> from_density(T rho, Vec3<T> gradient) const {
     return {gladstone_dale * rho, gladstone_dale * gradient};
   }
@@ -33,7 +33,7 @@ struct Slab {
   }
 };
 
-/// No field: rays go straight.
+/// Empty medium: rays are straight.
 template <class T>
 struct NoMedium {
   GLADSTONE_HD Bounds<T> bounds() const { return {{}, {}}; }

@@ -7,13 +7,13 @@
 
 namespace gladstone {
 
-/// rho = rho_0 + g . x
+/// Linear density field rho = rho_0 + g . x.
 template <class T>
 struct UniformGradient : Slab<T> {
   static constexpr char const* kind = "uniform_gradient";
   static constexpr char const* density_key = "gradient_kg_m4";
   static constexpr char const* length_key = "kind";
-  /// It is negative somewhere, whatever the gradient.
+  /// The density is negative somewhere, for any gradient.
   static constexpr bool endless_range = true;
 
   Vec3<T> gradient{};  ///< g [kg/m^4]
