@@ -5,17 +5,17 @@
 
 namespace gladstone {
 
-/// A circular stop on the optical axis.
+/// Circular aperture stop on the optical axis.
 template <class T>
 struct ApertureStop {
-  T z{};       ///< plane [m]
+  T z{};       ///< position of its plane on the axis [m]
   T radius{};  ///< [m]
-  T edge{};    ///< width of the zone about the edge that quadrature smooths, as a share of the stop's area; 0: sharp
+  T edge{};    ///< area of the smoothed zone about the edge, relative to the stop's area [1]; 0: sharp edge
 
-  /// Share of a ray's light that counts at (x, y): one inside the stop, nothing outside, and across the edge zone the
-  /// integral of the kernel (15/32)(3 - 10 t^2 + 7 t^4), whose moments 1 to 3 vanish (Gasser & Mueller 1979): integrals
-  /// over the stop keep their value to O(edge^4), while rays no longer enter or leave them by jumps. Overshoots one and
-  /// zero by 6 %.
+  /// Returns the transmission at (x, y): one inside the stop, zero outside. Across the edge zone it is the integral of
+  /// the kernel (15/32)(3 - 10 t^2 + 7 t^4), whose moments 1 to 3 vanish (Gasser & Mueller 1979). Integrals over the
+  /// stop are then smooth functions of the ray positions, with an error of O(edge^4). The transmission overshoots one
+  /// and zero by 6 %.
   GLADSTONE_HD T transmission(T x, T y) const {
     T const inside = T(1) - (x * x + y * y) / (radius * radius);
     if (edge <= T(0)) return inside >= T(0) ? T(1) : T(0);
@@ -26,8 +26,8 @@ struct ApertureStop {
     return T(0.5) + T(15.0 / 32.0) * t * (T(3) + tt * (T(-10.0 / 3.0) + T(1.4) * tt));
   }
 
-  /// Moves a ray to the stop's plane and weighs it. @return vignetted outside the radius, whatever the edge zone leaves
-  /// of it
+  /// Moves a ray to the plane of the stop and multiplies its weight by the transmission.
+  /// @return vignetted outside the radius, even if the edge zone transmits part of the light
   GLADSTONE_HD RayStatus interact(Ray<T>& ray, T& weight) const {
     T const way = (z - ray.position.z) / ray.direction.z;
     ray.position = ray.position + ray.direction * way;

@@ -7,14 +7,15 @@
 
 namespace gladstone {
 
-/// Tells of an axial beam that would run backwards through glass: the faces of a piece cross within the beam, which no
-/// lens can have. Rays that an edge takes on their way do not count.
-/// @param object_distance from the first vertex [m] @return a warning that names the second face; empty: all is well
+/// Traces the axial beam and returns a warning if its light would run backwards through glass, because two faces of an
+/// element cross within the beam. The warning names the second face; nullopt if there is no such face. Vignetted rays
+/// are ignored.
+/// @param object_distance  distance from the object to the first vertex [m]
 std::optional<std::string> crossed_faces(Lens const& lens, double object_distance);
 
-/// How wide the edges of a lens let its axial beam be: the radius, on the tangent plane of the first vertex, of the
-/// widest cone of rays that pass all surfaces [m]; empty: no edge takes any ray that the stop lets through.
-/// @param object_distance from the first vertex [m]
+/// Returns the radius of the widest axial beam that is not vignetted by the edges of the surfaces, on the tangent plane
+/// of the first vertex [m]; nullopt if the stop is the only limit.
+/// @param object_distance  distance from the object to the first vertex [m]
 std::optional<double> widest_beam(Lens const& lens, double object_distance);
 
 }  // namespace gladstone

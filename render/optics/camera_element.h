@@ -11,18 +11,19 @@
 
 namespace gladstone {
 
-/// A circular stop anywhere, facing any way: lets light of its own z through, forwards or back.
+/// Circular stop with any pose. Transmits rays along its z axis in both directions.
 template <class T>
 struct PosedStop {
   Pose<T> pose;
   T radius{};  ///< [m]
-  T edge{};    ///< width of the zone about the rim that quadrature smooths, see ApertureStop; 0: sharp
+  T edge{};    ///< area of the smoothed zone about the rim, see ApertureStop; 0: sharp
 
-  /// Where a ray meets the stop's plane, in its own frame [m]. @return false where it runs along it
+  /// Computes the intersection of a ray with the stop's plane, in its frame [m]. @return false if they are parallel
   GLADSTONE_HD bool meet(Ray<T> const& ray, Vec2<T>& place) const { return pose.meet(ray, place); }
 
-  /// Weighs a ray, which stays where it is: what limits light needs not stand in the order of the elements.
-  /// @return vignetted outside the radius, whatever the rim leaves of it
+  /// Multiplies the ray's weight by the stop's transmission. The ray itself is not moved, so that a stop need not be at
+  /// its position in the sequence of elements.
+  /// @return vignetted outside the radius, even if the smoothed rim transmits part of the light
   GLADSTONE_HD RayStatus interact(Ray<T>& ray, RayAccount<T>& account) const {
     Vec2<T> p;
     if (!meet(ray, p)) return RayStatus::missed_lens;
@@ -36,7 +37,7 @@ struct PosedStop {
   }
 };
 
-/// An ideal thin lens anywhere, facing any way: ThinLens in its own frame. Light runs along its z.
+/// Ideal thin lens with any pose: ThinLens in its own frame. Light propagates along its +z axis.
 template <class T>
 struct PosedThinLens {
   Pose<T> pose;
@@ -44,7 +45,7 @@ struct PosedThinLens {
 
   GLADSTONE_HD bool meet(Ray<T> const& ray, Vec2<T>& place) const { return pose.meet(ray, place); }
 
-  /// @return missed_lens for rays that do not run towards it; optical paths are undefined behind it
+  /// @return missed_lens if the ray does not travel in +z direction. Optical paths are undefined behind the lens.
   GLADSTONE_HD RayStatus interact(Ray<T>& ray, RayAccount<T>&) const {
     Ray<T> const local = pose.inwards(ray);
     if (!(local.direction.z > T(0))) return RayStatus::missed_lens;
@@ -61,22 +62,23 @@ struct PosedThinLens {
   }
 };
 
-/// Every element that a ray can meet between its source and the sensor. An element owns its pose in the world, takes
-/// rays of any direction, and has `RayStatus interact(Ray<T>&, RayAccount<T>&) const`. Adding one: its struct, and its
-/// name here.
+/// Closed set of all elements between a source and the sensor. An element contains its pose in the world, accepts rays
+/// of any direction, and has `RayStatus interact(Ray<T>&, RayAccount<T>&) const`. To add one, write its struct and add
+/// its name here.
 template <class T>
 using CameraElement =
     OneOf<PosedStop<T>, PosedThinLens<T>, ShapedSurface<T, Quadric<T>>, ShapedSurface<T, EvenAsphere<T>>,
           LensletArray<T>, ShapedSurface<T, RadialAsphere<T>>, ShapedSurface<T, TiltedPlane<T>>>;
 
-/// The same element in another scalar: in ceres::Jets, rays through it carry their derivatives by its place and form.
+/// Converts an element to another scalar type. With ceres::Jet, rays carry derivatives with respect to its pose and
+/// shape.
 template <class U, class T>
 CameraElement<U> in_scalar(CameraElement<T> const& element) {
   return element.visit([](auto const& held) -> CameraElement<U> { return held.template in_scalar<U>(); });
 }
 
-/// Takes a ray to an element of a known kind and through it; its weight is 0 where it ends there. The smoothed rim of a
-/// stop lets a share of vignetted rays pass: theirs is not 0.
+/// Traces a ray through an element of a known type. The weight becomes 0 if the ray ends there, except at a stop, whose
+/// smoothed rim transmits part of the light of vignetted rays.
 template <class T, class Held>
 GLADSTONE_HD RayStatus pass(Held const& held, Ray<T>& ray, RayAccount<T>& account) {
   RayStatus const status = held.interact(ray, account);

@@ -5,12 +5,13 @@
 
 namespace gladstone {
 
-/// A conic of revolution and a polynomial in r^2: z = conic + a[0] r^2 + a[1] r^4 + ... + a[7] r^16 (ISO 10110-12).
+/// Even asphere: conic of revolution plus a polynomial in r^2, z = conic + a[0] r^2 + a[1] r^4 + ... + a[7] r^16 (ISO
+/// 10110-12).
 template <class T>
 struct EvenAsphere {
   static constexpr int terms = 8;
   Quadric<T> conic;
-  T a[terms]{};  ///< of r^2, r^4, ... [m^-1, m^-3, ...]
+  T a[terms]{};  ///< coefficients of r^2, r^4, ... [m^-1, m^-3, ...]
 
   GLADSTONE_HD T sag(T const& x, T const& y) const {
     T const r2 = x * x + y * y;
@@ -21,7 +22,7 @@ struct EvenAsphere {
 
   GLADSTONE_HD Vec3<T> normal(Vec3<T> const& p) const { return normalized(gradient(p)); }
 
-  /// Gradient of z - sag(x, y).
+  /// Returns the gradient of z - sag(x, y) at a point of the surface.
   GLADSTONE_HD Vec3<T> gradient(Vec3<T> const& p) const {
     using std::sqrt;
     T const r2 = p.x * p.x + p.y * p.y;

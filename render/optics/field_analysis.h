@@ -9,46 +9,45 @@
 
 namespace gladstone {
 
-/// Rays that passed the stop, or would have, and ended at one surface for one cause.
+/// Rays lost at one surface for one reason. Rays that pass the plane of the stop outside its radius are not counted.
 struct LostRays {
   int surface;
   RayStatus cause;
-  double share;  ///< of all that were sent towards the stop [1]
+  double share;  ///< fraction of all rays traced for the field point [1]
 };
 
-/// How a lens images one point of its object field.
+/// Image quality of a lens at one field point.
 struct FieldPoint {
-  double angle = 0;             ///< of the object against the axis, in the y-z plane [rad]
-  bool imaged = false;          ///< false: no ray gets through
-  std::vector<Vec2d> spot;      ///< where rays that fill the stop evenly meet the image plane [m]
-  Vec2d centroid{};             ///< of the spot [m]
-  Vec2d chief{};                ///< where the chief ray meets the image plane [m]
-  double spot_rms = 0;          ///< radius of the spot about its centroid [m]
-  double best_spot_rms = 0;     ///< of its narrowest cross section [m]
-  double best_focus = 0;        ///< where that stands, from the image plane [m]
-  double distortion = 0;        ///< chief ray's height over the paraxial chief ray's, less one [1]
-  double tangential_focus = 0;  ///< of a narrow bundle about the chief ray, from the image plane [m]
-  double sagittal_focus = 0;
-  double vignetting = 0;       ///< share of the stop's rays that another edge takes [1]
-  std::vector<LostRays> lost;  ///< by surface, then by cause
+  double angle = 0;          ///< field angle in the y-z plane [rad]
+  bool imaged = false;       ///< false: no ray reaches the image
+  std::vector<Vec2d> spot;   ///< spot diagram: image-plane intersections of rays that fill the stop uniformly [m]
+  Vec2d centroid{};          ///< centroid of the spot diagram [m]
+  Vec2d chief{};             ///< intersection of the chief ray with the image plane [m]
+  double spot_rms = 0;       ///< rms radius of the spot diagram about its centroid [m]
+  double best_spot_rms = 0;  ///< rms radius at best focus [m]
+  double best_focus = 0;     ///< distance of the best focus from the image plane [m]
+  double distortion = 0;     ///< relative difference of the chief ray's height from that of the paraxial chief ray [1]
+  double tangential_focus = 0;  ///< tangential focus of a narrow bundle about the chief ray, from the image plane [m]
+  double sagittal_focus = 0;    ///< sagittal focus, from the image plane [m]
+  double vignetting = 0;        ///< fraction of the rays through the stop that do not reach the image [1]
+  std::vector<LostRays> lost;   ///< sorted by surface, then by reason
 };
 
-/// What becomes of a lens' light over its field.
+/// Analysis of a lens over its field.
 struct FieldAnalysis {
-  double image_plane = 0;  ///< behind the last vertex: the prescription's, else the paraxial image [m]
+  double image_plane = 0;  ///< behind the last vertex: prescribed image distance, else paraxial image [m]
   std::vector<FieldPoint> points;
 };
 
-/// Where the light of a field angle comes from: its direction, or the point of the object plane that the entrance pupil
-/// sees under it.
+/// Returns the origin of the rays of a field angle: a direction for objects at infinity, else the point of the object
+/// plane that is seen under this angle from the entrance pupil.
 RayOrigin field_origin(Lens const& lens, ParaxialLens const& paraxial, double angle);
 
-/// Traces `rays` rays for every field angle of the prescription, spread evenly over the stop as the field point sees it
-/// (Vogel 1979). The object stands where the prescription says.
+/// Analyses the lens at every field angle of its prescription, for an object at the prescribed distance.
+/// @param rays  number of rays per field point, distributed uniformly over the entrance pupil (Vogel 1979)
 FieldAnalysis analyse_field(Lens const& lens, ParaxialLens const& paraxial, int rays);
 
-/// A ray followed from in front of the lens to the image plane, point by point, for drawings [m].
-/// Ends where the ray is lost.
+/// Returns the polyline of a ray from its start to the image plane, for drawings [m]. It ends where the ray is lost.
 std::vector<Vec3d> follow_ray(Lens const& lens, Ray<double> ray, double image_plane);
 
 }  // namespace gladstone

@@ -5,14 +5,14 @@
 
 namespace gladstone {
 
-/// Fraunhofer's lines that nd and Vd are defined by, in air [m].
+/// Wavelengths, in air, of the Fraunhofer lines that define nd and Vd [m].
 namespace spectral_line {
-inline constexpr double d = 587.5618e-9;  ///< helium
-inline constexpr double F = 486.1327e-9;  ///< hydrogen
-inline constexpr double C = 656.2725e-9;  ///< hydrogen
+inline constexpr double d = 587.5618e-9;  ///< helium line
+inline constexpr double F = 486.1327e-9;  ///< hydrogen line
+inline constexpr double C = 656.2725e-9;  ///< hydrogen line
 }  // namespace spectral_line
 
-/// How a glass's index depends on wavelength; the numbers are those of the AGF format, which describes them all.
+/// Dispersion formulas of the AGF format, by its numbers.
 enum class DispersionFormula : int {
   schott = 1,
   sellmeier1 = 2,
@@ -30,43 +30,44 @@ enum class DispersionFormula : int {
 };
 inline constexpr int dispersion_formulas = 13;
 
-/// A glass of a catalogue, or one that a prescription describes itself. Indices are catalogue values: against air of
-/// the conditions of measurement, which counts as 1.
+/// Optical glass from a catalogue or a prescription. Refractive indices are catalogue values, relative to air under the
+/// conditions of the measurement.
 struct Glass {
   std::string name;
-  std::string catalogue;  ///< name of its file without folder and ending
+  std::string catalogue;  ///< file name without folder and extension
   DispersionFormula formula = DispersionFormula::schott;
-  std::vector<double> coefficients;  ///< as the formula takes them, wavelengths in micrometres
-  double shortest = 0;               ///< wavelengths that the formula was fitted to [m]
-  double longest = 0;
+  std::vector<double> coefficients;  ///< in the order of the formula, for wavelengths in micrometres
+  double shortest = 0;               ///< shortest wavelength of the formula's range of validity [m]
+  double longest = 0;                ///< longest wavelength of the formula's range of validity [m]
   struct Transmission {
     double wavelength;    ///< [m]
-    double transmission;  ///< internal [1]
-    double thickness;     ///< that it was measured through [m]
+    double transmission;  ///< internal transmittance [1]
+    double thickness;     ///< thickness to which it refers [m]
   };
-  std::vector<Transmission> transmission;  ///< rising wavelengths; may be empty
+  std::vector<Transmission> transmission;  ///< in order of wavelength; may be empty
   struct Sample {
     double wavelength;  ///< [m]
     double index;       ///< [1]
   };
-  std::vector<Sample> samples;  ///< of a glass that has no formula; rising wavelengths
-  double printed_nd = 0;        ///< that the catalogue prints beside the formula; 0: none [1]
+  std::vector<Sample> samples;  ///< indices of a glass without a formula, in order of wavelength
+  double printed_nd = 0;        ///< nd printed in the catalogue in addition to the formula; 0: none [1]
 
-  /// Index at a wavelength [m]: by the formula, or a polynomial in 1/lambda^2 (Cauchy) through the four nearest
-  /// samples.
-  /// @pre the wavelength is within [shortest, longest]
+  /// Returns the index at a wavelength [m], by the formula or by a polynomial in 1/lambda^2 (Cauchy) through the four
+  /// nearest samples. @pre the wavelength is within [shortest, longest]
   double index(double wavelength) const;
-  /// Loss of light per length inside the glass, linear between the catalogue's wavelengths; 0 where it has none [1/m].
+  /// Returns the absorption coefficient of the glass, interpolated linearly between the catalogue's wavelengths [1/m];
+  /// 0 if the catalogue has no data.
   double absorption(double wavelength) const;
   double nd() const { return index(spectral_line::d); }
-  /// Abbe number (nd - 1) / (nF - nC).
+  /// Returns the Abbe number (nd - 1) / (nF - nC).
   double vd() const;
 
-  /// The glass n = A + B / lambda^2 of given nd and Vd (Cauchy's formula): good to 1e-3 in the visible, no better.
+  /// Returns a glass with n = A + B / lambda^2 for given nd and Vd (Cauchy's formula). Accurate to 1e-3 in the visible
+  /// range.
   static Glass from_nd_vd(double nd, double vd);
-  /// One index at every wavelength.
+  /// Returns a glass without dispersion.
   static Glass constant(double index);
-  /// A glass of indices at wavelengths in any order. @pre there is one or more, of different wavelengths
+  /// Returns a glass with tabulated indices, in any order. @pre at least one sample; all wavelengths differ
   static Glass from_samples(std::string name, std::vector<Sample> samples);
 };
 

@@ -8,58 +8,60 @@
 
 namespace gladstone {
 
-/// A glass that was found by its name.
+/// Result of a search for a glass name.
 struct GlassMatch {
   Glass const* glass;
-  std::vector<std::string> notes;  ///< what had to be assumed, for warnings
+  std::vector<std::string> notes;  ///< warnings about assumptions that were made
 };
 
-/// Glasses of one or several catalogues, to be found by name.
+/// Collection of glasses from one or more catalogues, searchable by name.
 class GlassCatalogue {
  public:
-  /// The catalogues that come with the program: the files of data/glasses, built into it.
+  /// Returns the catalogues shipped with the program: the files of data/glasses, which are compiled in.
   static GlassCatalogue const& shipped();
 
-  /// Adds a catalogue in the AGF format, of which NM (name, number of the formula, nd), CD (coefficients), LD (range of
-  /// wavelengths, um) and IT (internal transmission: um, share, mm) are read. Lines of numbers alone continue the line
-  /// before them. A glass that cannot be used (no number, an unknown formula, an index that no glass has) is left out,
-  /// and a warning names it.
-  /// @param text UTF-8 @param catalogue its name @param file for messages
-  /// @throws DataError with file and line, if no glass is usable
+  /// Adds a catalogue in AGF format. Reads the lines NM (name, number of the formula, nd), CD (coefficients), LD (range
+  /// of wavelengths, um) and IT (internal transmittance: um, transmittance, mm). Lines that contain only numbers
+  /// continue the previous line. Unusable glasses (invalid number, unknown formula, implausible index) are skipped with
+  /// a warning.
+  /// @param text       content in UTF-8
+  /// @param catalogue  name of the catalogue
+  /// @param file       file name for messages
+  /// @throws DataError with file and line if no glass is usable
   void add(std::string_view text, std::string const& catalogue, std::string const& file);
-  /// The same from a file in any encoding of decoded_text(); the file's name is the catalogue's.
+  /// Adds a catalogue from a file in any encoding supported by decoded_text(), under the file's name.
   void add_file(std::string const& path);
 
   std::vector<Glass> const& glasses() const { return glasses_; }
-  /// Of the catalogues that were added: glasses left out, lines passed over.
+  /// Warnings about skipped glasses and lines of all added catalogues.
   std::vector<std::string> const& warnings() const { return warnings_; }
 
-  /// The glass of that name in upper or lower case, with or without hyphens. "CATALOGUE:NAME" names its catalogue too,
-  /// as does CODE V's "NAME_CATALOGUE" where no glass bears the whole name. Of several catalogues that have the name,
-  /// the first of `preferred` counts, then SCHOTT, OHARA, HOYA, HIKARI, NIKON, CDGM, SUMITA, CORNING, then the order in
-  /// which they were added; a note says so where their indices differ and no preferred one decided, and where a
-  /// formula does not give the nd that is printed beside it. A glass that no catalogue has is its successor without
-  /// lead, N-NAME, if there is one, with a note.
-  /// @param wavelength [m] @param where the name was used, for messages
-  /// @param preferred catalogues in the order of preference
-  /// @throws DataError with candidates, if no glass has the name; or if the wavelength is outside the glass's range
+  /// Returns the glass with the given name, ignoring case and hyphens. "CATALOGUE:NAME" selects a catalogue, as does
+  /// CODE V's "NAME_CATALOGUE" if no glass has the complete name. If several catalogues contain the name, they are
+  /// ranked: `preferred` in its order, then SCHOTT, OHARA, HOYA, HIKARI, NIKON, CDGM, SUMITA, CORNING, then all others
+  /// in the order of addition. A name that is not found is replaced by its lead-free successor N-NAME.
+  /// Notes report such replacements, candidates of different index if no preferred catalogue decides, and formulas that
+  /// disagree with the printed nd.
+  /// @param wavelength  [m]
+  /// @param where       location where the name is used, for messages
+  /// @throws DataError with similar names if no glass has the name, or if the wavelength is out of range
   GlassMatch match(std::string_view name, double wavelength, std::string const& where,
                    std::vector<std::string> const& preferred = {}) const;
-  /// The glass of match().
+  /// Like match(), without notes.
   Glass const& find(std::string_view name, double wavelength, std::string const& where) const {
     return *match(name, wavelength, where).glass;
   }
-  /// Whether a usable glass has the name.
+  /// Returns true if a usable glass has the name.
   bool has(std::string_view name) const { return !candidates(name).empty(); }
 
  private:
-  /// "; did you mean ...?" with the nearest names; empty where none is near.
+  /// Returns "; did you mean ...?" with the most similar names; empty if there are none.
   std::string glasses_like(std::string_view name) const;
-  /// Those of that name, in that catalogue unless it is empty.
+  /// Returns the glasses with the given name, in the given catalogue or, if that is empty, in all.
   std::vector<Glass const*> named(std::string_view name, std::string_view catalogue) const;
-  /// @throws DataError that names what the glass may have been meant to be
+  /// Throws DataError for an unknown name, with suggestions.
   [[noreturn]] void refuse_unknown(std::string_view name, std::string const& where) const;
-  /// Those that a name as match() takes it may mean.
+  /// Returns the glasses that a name in the syntax of match() can refer to.
   std::vector<Glass const*> candidates(std::string_view name) const;
 
   std::vector<Glass> glasses_;

@@ -10,14 +10,14 @@
 
 namespace gladstone {
 
-/// The surfaces of a lens in the order light meets them: a view that owns nothing.
+/// View of the surfaces of a lens, in the order of the light path; owns no memory.
 template <class T>
 struct LensView {
   LensSurface<T> const* surfaces = nullptr;
   int count = 0;
 
-  /// Carries a ray through surfaces [first, last), and on while it meets them, vignetted or not.
-  /// @param failed_at surface that vignetted or ended it; `last` if none did
+  /// Traces a ray through surfaces [first, last). Vignetted rays are traced further.
+  /// @param failed_at  surface that ended the ray, else the first one that vignetted it; `last` if there is none
   GLADSTONE_HD RayStatus carry(Ray<T>& ray, RayAccount<T>& account, int first, int last, int& failed_at) const {
     RayStatus status = RayStatus::alive;
     failed_at = last;
@@ -39,51 +39,52 @@ struct LensView {
   }
 };
 
-/// What bends paraxial rays at one surface.
+/// Paraxial properties of one surface.
 struct ParaxialSurface {
-  double curvature;  ///< of the vertex [1/m]
-  double n_before;   ///< signed: negative for light that runs towards -z [1]
-  double n_after;
-  double to_next;    ///< [m]
-  double power = 0;  ///< of an ideal thin lens, in air [1/m]
+  double curvature;  ///< vertex curvature [1/m]
+  double n_before;   ///< index ahead of the surface, negative for light in -z direction [1]
+  double n_after;    ///< index behind the surface, with sign [1]
+  double to_next;    ///< distance to the next vertex, with sign [m]
+  double power = 0;  ///< power of an ideal thin lens in air [1/m]
 
-  /// n u is reduced by this times the height [1/m].
+  /// Total refractive power: n u decreases by this times the ray height [1/m].
   double total_power() const { return curvature * (n_after - n_before) + power; }
 };
 
-/// A prescription made ready to trace at one wavelength.
+/// Lens at one wavelength, ready for ray tracing.
 struct Lens {
   Prescription prescription;
   double wavelength = 0;  ///< [m]
   std::vector<LensSurface<double>> surfaces;
-  std::vector<Pose<double>> poses;        ///< of the surfaces' vertices
-  std::vector<ParaxialSurface> paraxial;  ///< decentres and tilts left out
-  double object_index = 1;                ///< of what lies ahead of the first surface [1]
+  std::vector<Pose<double>> poses;        ///< poses of the surface vertices
+  std::vector<ParaxialSurface> paraxial;  ///< surfaces for paraxial tracing, without decentres and tilts
+  double object_index = 1;                ///< index of the medium ahead of the first surface [1]
   int stop = 0;
-  double stop_radius = 0;                ///< that rays meet [m]
-  double paraxial_stop_radius = 0;       ///< that its pupils are images of [m]
-  std::optional<double> image_distance;  ///< behind the last surface; empty: the prescription does not say [m]
+  double stop_radius = 0;                ///< radius of the stop for real rays [m]
+  double paraxial_stop_radius = 0;       ///< radius of the stop for paraxial pupils [m]
+  std::optional<double> image_distance;  ///< behind the last surface [m]; empty: not prescribed
   std::vector<std::string> warnings;
 
   LensView<double> view() const { return {surfaces.data(), static_cast<int>(surfaces.size())}; }
 };
 
 struct LensOptions {
-  /// Sets the stop in place of the prescription's aperture: effective focal length over the entrance pupil's diameter;
-  /// of a telecentric lens, whose pupil has no width, the working f-number of the cone towards the image [1].
+  /// F-number that replaces the prescription's aperture: effective focal length over diameter of the entrance pupil or,
+  /// for a telecentric lens, whose pupil diameter is infinite, the image-side working f-number [1].
   std::optional<double> f_number = std::nullopt;
-  /// From the first vertex to what a telecentric lens is focused on [m]; empty: as the prescription says.
+  /// Distance from the first vertex to the plane in focus, for telecentric lenses [m]; empty: as in the prescription.
   std::optional<double> object_distance = std::nullopt;
-  bool fresnel = false;     ///< take reflections of bare surfaces off the light
-  bool absorption = false;  ///< and what glass absorbs
+  bool fresnel = false;     ///< reduce the weight by Fresnel reflection at uncoated surfaces
+  bool absorption = false;  ///< reduce the weight by absorption in glass
 };
 
-/// Finds the glasses and places the surfaces. The stop opens as far as the aperture says: to the height of the real
-/// axial ray that enters at the rim of the entrance pupil, or where that ray is lost to the paraxial one's.
-/// @param wavelength [m]
-/// Warns of faces that cross within the axial beam, and of an f-number that opens the stop wider than the prescription.
-/// @throws DataError with the surface's place for a glass that is not known, and where nothing passes the stop;
-///         SetupError with the places of all glasses where several are not
+/// Builds a lens from a prescription: finds the glasses, places the surfaces and sets the radius of the stop. The
+/// radius is the height, in the stop, of the real axial ray through the rim of the entrance pupil, or of the paraxial
+/// ray if the real ray is lost. Warns of faces that cross within the axial beam, and of an f-number that opens the stop
+/// wider than the prescription.
+/// @param wavelength  [m]
+/// @throws DataError with the location of an unknown glass, if no light passes the stop, or if the axial ray is lost;
+/// SetupError with all locations if several glasses are unknown
 Lens build_lens(Prescription prescription, GlassCatalogue const& catalogue, double wavelength,
                 LensOptions const& options = {});
 

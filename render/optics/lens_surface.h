@@ -14,37 +14,37 @@
 
 namespace gladstone {
 
-/// What a surface does to a ray that meets it.
+/// Effect of a surface on a ray.
 enum class SurfaceAction : int {
-  pass,     ///< lets it through: a stop, a plane of reference
-  refract,  ///< Snell's law
-  reflect,  ///< a mirror
-  focus,    ///< an ideal thin lens, exact in slopes: n' s' = n s - place / focal length
+  pass,     ///< none: stop or reference plane
+  refract,  ///< refraction by Snell's law
+  reflect,  ///< reflection by a mirror
+  focus,    ///< ideal thin lens, exact in slopes s: n' s' = n s - position / focal length
 };
 
-/// What a ray carries through a train of surfaces besides its place and direction.
+/// Quantities that accumulate along a ray.
 template <class T>
 struct RayAccount {
-  T weight = T(1);   ///< share of its light that is left [1]
-  T optical_path{};  ///< [m]
+  T weight = T(1);   ///< fraction of the ray's light that remains [1]
+  T optical_path{};  ///< optical path length [m]
 };
 
-/// One surface of a lens: a shape in its own pose, and what lies on either side. Takes rays of any direction.
+/// Surface of a lens: shape, pose, and media on both sides. Accepts rays of any direction.
 template <class T, class Shape>
 struct ShapedSurface {
-  Pose<T> pose;  ///< of the vertex, in the lens' frame
+  Pose<T> pose;  ///< pose of the vertex, in the lens' frame
   Shape shape;
-  T semi_diameter{};  ///< rays that meet it further from its axis are vignetted [m]
-  T n_before = T(1);  ///< index on the side that light comes from [1]
-  T n_after = T(1);
-  T absorption{};  ///< of the medium before it, in light per length [1/m]
+  T semi_diameter{};  ///< rays outside this radius are vignetted [m]
+  T n_before = T(1);  ///< index on the side of incidence [1]
+  T n_after = T(1);   ///< index on the other side [1]
+  T absorption{};     ///< absorption coefficient of the medium ahead of the surface [1/m]
   SurfaceAction action = SurfaceAction::refract;
-  bool fresnel = false;  ///< whether a bare surface's reflection is taken off the light
-  T obscured{};          ///< rays that meet it nearer to its axis are vignetted; 0: none [m]
-  T power{};             ///< of SurfaceAction::focus: one over the focal length in air [1/m]
+  bool fresnel = false;  ///< reduce the weight by Fresnel reflection
+  T obscured{};          ///< rays inside this radius are vignetted; 0: none [m]
+  T power{};             ///< reciprocal of the focal length in air, for SurfaceAction::focus [1/m]
   SurfaceOutline<T> outline = {};
 
-  /// Where a ray meets the surface, across the axis of its vertex [m]. @return false where it misses it
+  /// Computes the intersection of a ray with the surface, as (x, y) in the vertex frame [m]. @return false if it misses
   GLADSTONE_HD bool meet(Ray<T> const& ray, Vec2<T>& place) const {
     Ray<T> const local = pose.inwards(ray);
     T way;
@@ -53,9 +53,9 @@ struct ShapedSurface {
     return true;
   }
 
-  /// Moves a ray to the surface and turns it. @return alive, vignetted (the ray goes on all the same),
-  /// total_internal_reflection, or missed_lens where it does not meet the surface. Behind an ideal thin lens optical
-  /// paths are undefined
+  /// Moves a ray to the surface and refracts or reflects it. Optical paths are undefined behind an ideal thin lens.
+  /// @return alive; vignetted (the ray is refracted all the same); total_internal_reflection; or missed_lens if the ray
+  /// does not intersect the surface
   GLADSTONE_HD RayStatus interact(Ray<T>& ray, RayAccount<T>& account) const {
     using std::exp;
     Ray<T> local = pose.inwards(ray);
@@ -106,13 +106,13 @@ struct ShapedSurface {
                                                                  outline.template in_scalar<U>()};
   }
 
-  /// Whether it does nothing but limit light by a disc about its axis.
+  /// Returns true if the surface is a circular stop about its axis without any other effect.
   GLADSTONE_HD bool is_plain_stop() const {
     return action == SurfaceAction::pass && obscured == T(0) && outline.kind == SurfaceOutline<T>::Kind::none;
   }
 
  private:
-  /// Turns a ray as an ideal thin lens does, whichever way it runs along the axis.
+  /// Deflects a ray like an ideal thin lens, for both directions along the axis.
   GLADSTONE_HD void focus(Ray<T>& local) const {
     Vec3<T> const& d = local.direction;
     T const sense = d.z < T(0) ? T(-1) : T(1);
@@ -123,8 +123,8 @@ struct ShapedSurface {
   }
 };
 
-/// Every shape that a surface of a lens can have. Adding one: its struct, and its name here and among the camera's
-/// elements (camera_element.h).
+/// Closed set of all surface shapes of a lens. To add one, write its struct and add its name here and to CameraElement
+/// (camera_element.h).
 template <class T>
 using LensSurface = OneOf<ShapedSurface<T, Quadric<T>>, ShapedSurface<T, EvenAsphere<T>>,
                           ShapedSurface<T, RadialAsphere<T>>, ShapedSurface<T, TiltedPlane<T>>>;

@@ -12,22 +12,22 @@ namespace gladstone {
 
 enum class LensletLayout : int { square, hexagonal };
 
-/// A plane of equal thin lenses side by side without gaps, each ideal: exact in slopes about its own axis, as
-/// PosedThinLens. One stands on the axis; rows run along x. Of a hexagonal layout every other row is shifted by half a
-/// pitch, rows sqrt(3)/2 of a pitch apart: a place belongs to the lens whose axis is nearest.
+/// Plane array of equal, ideal thin lenses without gaps, each exact in slopes about its own axis like PosedThinLens.
+/// One lenslet is centred on the axis; rows are along x. In a hexagonal layout, rows are sqrt(3)/2 pitches apart and
+/// every other row is shifted by half a pitch. A point belongs to the lenslet with the nearest axis.
 template <class T>
 struct LensletArray {
   Pose<T> pose;
-  T pitch{};         ///< from axis to axis [m]
+  T pitch{};         ///< distance between neighbouring axes [m]
   T focal_length{};  ///< [m]
   LensletLayout layout = LensletLayout::square;
 
   GLADSTONE_HD bool meet(Ray<T> const& ray, Vec2<T>& place) const { return pose.meet(ray, place); }
 
-  /// Where the axis of the lens that a place belongs to meets the plane [m].
+  /// Returns the axis position, in the plane, of the lenslet that a point belongs to [m].
   GLADSTONE_HD Vec2<T> axis_at(Vec2<T> place) const {
     if (layout == LensletLayout::square) return {nearest(place.x, pitch), nearest(place.y, pitch)};
-    // a hexagonal lattice is two rectangular ones, the second in the middles of the first
+    // a hexagonal lattice consists of two rectangular ones, shifted by half a cell
     T const height = T(1.7320508075688772) * pitch;
     Vec2<T> const first{nearest(place.x, pitch), nearest(place.y, height)};
     Vec2<T> const middle{T(0.5) * pitch, T(0.5) * height};
@@ -36,7 +36,7 @@ struct LensletArray {
     return dot(to_second, to_second) < dot(to_first, to_first) ? second : first;
   }
 
-  /// @return missed_lens for rays that do not run towards it; optical paths are undefined behind it
+  /// @return missed_lens if the ray does not travel in +z direction. Optical paths are undefined behind the array.
   GLADSTONE_HD RayStatus interact(Ray<T>& ray, RayAccount<T>&) const {
     Ray<T> const local = pose.inwards(ray);
     if (!(local.direction.z > T(0))) return RayStatus::missed_lens;
@@ -60,16 +60,16 @@ struct LensletArray {
   }
 };
 
-/// Table [camera.lenslets]: an array before the sensor, in SI.
+/// Table [camera.lenslets]: lenslet array ahead of the sensor, in SI.
 struct LensletSetup {
   double pitch = 0;         ///< [m]
   double focal_length = 0;  ///< [m]
-  double to_sensor = 0;     ///< from the array to the sensor behind it [m]
+  double to_sensor = 0;     ///< distance from the array to the sensor [m]
   LensletLayout layout = LensletLayout::square;
 };
 
-/// Reads the table; nothing where there is none. Lenslets have their focal length, or the radius of their one curved
-/// face and their index at the setup's wavelength, f = R / (n - 1).
+/// Reads the table; nullopt if it is absent. The focal length is given directly, or by the radius of the one curved
+/// face and the index at the setup's wavelength, f = R / (n - 1).
 std::optional<LensletSetup> read_lenslets(SetupTable table);
 
 }  // namespace gladstone

@@ -6,9 +6,9 @@
 
 namespace gladstone {
 
-/// Every element that a ray can meet between the scene and the sensor. An element has
-/// `RayStatus interact(Ray<T>& ray, T& weight) const`: it moves a ray that runs towards +z to itself, turns it, and
-/// takes its share of the light. Adding one: its struct, and its name here.
+/// Closed set of all elements of an OpticalTrain. An element has `RayStatus interact(Ray<T>& ray, T& weight) const`,
+/// which moves a ray that travels in +z direction to the element, deflects it and multiplies its weight by the
+/// transmission. To add one, write its struct and add its name here.
 template <class T>
 using OpticalElement = OneOf<ApertureStop<T>, ThinLens<T>>;
 

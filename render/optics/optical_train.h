@@ -4,7 +4,7 @@
 
 namespace gladstone {
 
-/// The elements of a camera in the order light meets them, by value.
+/// Elements of a camera by value, in the order of the light path.
 template <class T>
 struct OpticalTrain {
   static constexpr int most_elements = 4;
@@ -13,9 +13,9 @@ struct OpticalTrain {
 
   GLADSTONE_HD void append(OpticalElement<T> const& element) { elements[count++] = element; }
 
-  /// Carries a ray through all elements. It goes on while any of its light is left, also where a stop's smoothed edge
-  /// lets part of a vignetted ray pass.
-  /// @return alive, vignetted, or why it ended; missed_lens for rays that do not run towards the camera
+  /// Traces a ray through all elements, as long as its weight is not zero. This includes vignetted rays that are partly
+  /// transmitted by the smoothed edge of a stop.
+  /// @return alive, vignetted, or the reason for the ray's end; missed_lens if it does not travel in +z direction
   GLADSTONE_HD RayStatus carry(Ray<T>& ray, T& weight) const {
     RayStatus status = RayStatus::alive;
     for (int i = 0; i < count; ++i) {

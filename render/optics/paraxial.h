@@ -4,42 +4,41 @@
 
 namespace gladstone {
 
-/// A pupil: where it stands and how wide it is.
+/// Position and size of a pupil.
 struct Pupil {
-  double position = 0;  ///< along the axis, from the vertex it is measured from; infinite for telecentric lenses [m]
+  double position = 0;  ///< position on the axis, from the reference vertex [m]; infinite for telecentric lenses
   double diameter = 0;  ///< [m]
 };
 
-/// Cardinal points and pupils of a lens by ray transfer (Welford 1986, chapter 3): y' = y + t u,
-/// n' u' = n u - y c (n' - n). Positive distances run along +z, those on the image's side along the light that leaves.
-/// Where object or image space is not air, focal and principal distances there are n times as long; the effective focal
-/// length is that in air, one over the power.
+/// Cardinal points and pupils of a lens from paraxial ray transfer (Welford 1986, chapter 3): y' = y + t u, n' u' = n u
+/// - y c (n' - n). Distances are positive along +z, on the image side along the direction of the outgoing light. If
+/// object or image space is not air, focal and principal distances there are multiplied by n; the effective focal
+/// length is that in air, the reciprocal of the power.
 struct ParaxialLens {
-  double effective_focal_length = 0;  ///< infinite for afocal lenses [m]
-  double back_focal_length = 0;       ///< last vertex to the rear focus [m]
-  double front_focal_length = 0;      ///< first vertex to the front focus, negative in front of it [m]
+  double effective_focal_length = 0;  ///< [m]; infinite for afocal lenses
+  double back_focal_length = 0;       ///< from the last vertex to the rear focus [m]
+  double front_focal_length = 0;      ///< from the first vertex to the front focus, negative ahead of the vertex [m]
   double front_principal_plane = 0;   ///< from the first vertex [m]
   double rear_principal_plane = 0;    ///< from the last vertex [m]
-  Pupil entrance;                     ///< from the first vertex
-  Pupil exit;                         ///< from the last vertex
-  bool telecentric = false;           ///< towards the object: see is_telecentric()
-  double f_number = 0;                ///< effective focal length over the entrance pupil's diameter [1]; infinite for
-                                      ///< afocal and telecentric lenses
+  Pupil entrance;                     ///< entrance pupil, position from the first vertex
+  Pupil exit;                         ///< exit pupil, position from the last vertex
+  bool telecentric = false;           ///< object-side telecentric, see is_telecentric()
+  double f_number = 0;  ///< effective focal length over entrance pupil diameter [1]; infinite if afocal or telecentric
 };
 
-/// @pre the lens has a stop
+/// Computes the paraxial properties of a lens. @pre the lens has a stop
 ParaxialLens paraxial_lens(Lens const& lens);
 
-/// Ray transfer from just before surface `first` to just before surface `last`, or behind the last one: what it makes
-/// of height y [m] and reduced slope n u [1].
+/// Paraxial ray transfer matrix from just ahead of surface `first` to just ahead of surface `last` (or just behind the
+/// last surface), for the ray height y [m] and the reduced slope n u [1].
 struct RayTransfer {
   double a = 1, b = 0, c = 0, d = 1;  ///< y' = a y + b (n u), (n u)' = c y + d (n u)
 };
 RayTransfer ray_transfer(Lens const& lens, int first, int last);
 
-/// Whether the entrance pupil is the stop magnified more than twenty times, and so about as far away: chief rays of a
-/// field as wide as the lens then run parallel to its axis within a twentieth of the lens' own field. At one wavelength
-/// a lens of glass has its pupil at infinity, at others but far away.
+/// Returns true if the entrance pupil is magnified more than 20 times relative to the stop, and hence about as far
+/// away. Chief rays from a field as wide as the lens are then parallel to the axis to within a twentieth of the lens'
+/// own field. Glass dispersion limits an infinite pupil distance to a single wavelength, hence the tolerance.
 bool is_telecentric(RayTransfer const& to_stop);
 
 }  // namespace gladstone

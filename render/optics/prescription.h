@@ -12,22 +12,22 @@
 
 namespace gladstone {
 
-/// What stands behind a surface, as a prescription says it.
+/// Medium behind a surface, as specified by a prescription.
 struct PrescribedMedium {
   struct Air {};
-  struct Mirror {};  ///< the surface reflects
+  struct Mirror {};  ///< reflecting surface
   struct Index {
-    double n;  ///< at every wavelength [1]
+    double n;  ///< index at all wavelengths [1]
   };
   struct Described {
     double nd, vd;
   };
   struct Named {
-    std::string glass;                                  ///< in a catalogue
-    std::optional<Described> otherwise = std::nullopt;  ///< of a glass that no catalogue has
+    std::string glass;                                  ///< name in a glass catalogue
+    std::optional<Described> otherwise = std::nullopt;  ///< nd and Vd to use if no catalogue has the glass
   };
   struct Private {
-    Glass glass;  ///< that the prescription defines itself
+    Glass glass;  ///< glass defined in the prescription itself
   };
   std::variant<Air, Mirror, Named, Index, Described, Private> is = Air{};
 
@@ -35,23 +35,24 @@ struct PrescribedMedium {
   bool is_air() const { return std::holds_alternative<Air>(is); }
 };
 
-/// How the frame moves ahead of a surface: by a decentre along x and y and turns about x, y, z, and then along its z.
+/// Transformation of the coordinate frame ahead of a surface: decentre along x and y, rotation about x, y, z, then
+/// translation along z.
 struct CoordinateBreak {
   Vec2d decentre{};         ///< [m]
-  Vec3d tilt{};             ///< right-handed, about x, then the turned y, then the turned z [rad]
-  bool tilt_first = false;  ///< turns about z, y, x, and decentres after them: what undoes a break of opposite signs
-  double advance = 0;       ///< along the turned axis [m]
+  Vec3d tilt{};             ///< right-handed rotations about x, the rotated y, then the rotated z [rad]
+  bool tilt_first = false;  ///< rotations about z, y, x, then decentre; the inverse of a break with opposite signs
+  double advance = 0;       ///< translation along the rotated z axis [m]
 };
 
-/// One surface of a prescription.
+/// Surface of a prescription.
 struct PrescribedSurface {
   enum class Shape {
-    conic,         ///< of revolution, and the polynomial that is added to it
-    cylinder,      ///< curved along x alone
-    tilted_plane,  ///< by `slope`, while the next surface stands in an untilted frame
-    ideal_lens,    ///< a thin lens of `focal_length`, without aberration
+    conic,         ///< conic of revolution, plus a polynomial
+    cylinder,      ///< cylinder curved along x only
+    tilted_plane,  ///< plane tilted by `slope`; the frame of the next surface is not tilted
+    ideal_lens,    ///< ideal thin lens of `focal_length`
   };
-  /// Polynomial in r / scale that is added to the conic: see RadialAsphere.
+  /// Polynomial in r / scale added to the conic, see RadialAsphere.
   struct RadialTerms {
     double scale = 1;  ///< [m]
     bool even_powers = true;
@@ -61,72 +62,74 @@ struct PrescribedSurface {
   Shape shape = Shape::conic;
   double curvature = 0;         ///< [1/m]
   double conic = 0;             ///< [1]
-  std::vector<double> asphere;  ///< of r^2, r^4, ... [m^-1, m^-3, ...]
-  RadialTerms radial;           ///< instead of `asphere`, if there are any
-  Vec2d slope{};                ///< of a tilted plane [1]
-  double focal_length = 0;      ///< of an ideal lens, in air [m]
-  double thickness = 0;         ///< along the axis to the next surface; negative behind a mirror [m]
+  std::vector<double> asphere;  ///< coefficients of r^2, r^4, ... [m^-1, m^-3, ...]
+  RadialTerms radial;           ///< replaces `asphere` if it has terms
+  Vec2d slope{};                ///< slope of a tilted plane [1]
+  double focal_length = 0;      ///< focal length of an ideal lens in air [m]
+  double thickness = 0;         ///< distance along the axis to the next surface; negative behind a mirror [m]
   PrescribedMedium after;
   double semi_diameter = std::numeric_limits<double>::infinity();  ///< [m]
-  bool semi_diameter_is_an_edge = true;  ///< false: for drawings, as design programs fill it in; light passes beyond
-  bool has_aperture = false;             ///< an aperture of that semi-diameter stands on it, which bounds a stop too
-  double obscured = 0;                   ///< radius within which no light passes [m]
-  bool obscured_without_end = false;     ///< by an aperture that begins at that radius and has no outer one
-  SurfaceOutline<double> outline;        ///< an aperture or obscuration that is no circle about the axis
+  bool semi_diameter_is_an_edge = true;  ///< false: for drawings, from a design program; does not vignette
+  bool has_aperture = false;             ///< has an aperture of that semi-diameter, which limits a stop too
+  double obscured = 0;                   ///< radius of a central obscuration [m]
+  bool obscured_without_end = false;     ///< obscuration of an aperture that has an inner radius only
+  SurfaceOutline<double> outline;        ///< aperture or obscuration that is not a circle about the axis
   bool stop = false;
-  std::vector<CoordinateBreak> before;  ///< breaks in the frame ahead of it
+  std::vector<CoordinateBreak> before;  ///< coordinate breaks ahead of the surface
 };
 
-/// How far the breaks ahead of a surface move it along the axis [m].
+/// Returns the sum of the translations along z of the breaks ahead of a surface [m].
 double advance(PrescribedSurface const& surface);
 
-/// What sets the width of the stop.
+/// Specification of the aperture, which determines the radius of the stop.
 struct PrescribedAperture {
   enum class Kind {
-    stop,              ///< the stop surface's own semi-diameter
+    stop,              ///< semi-diameter of the stop surface
     entrance_pupil,    ///< diameter of the entrance pupil [m]
-    f_number,          ///< effective focal length over that diameter [1]
-    object_na,         ///< numerical aperture on the object's side [1]
-    working_f_number,  ///< one over twice the slope of the axial cone's rim towards the image [1]
+    f_number,          ///< effective focal length over diameter of the entrance pupil [1]
+    object_na,         ///< object-side numerical aperture [1]
+    working_f_number,  ///< 1 / (2 slope of the axial cone's marginal ray on the image side) [1]
   };
   Kind kind = Kind::stop;
   double value = 0;
 };
 
-/// A lens as its file describes it, in SI. The frame's origin is the vertex of the first surface, light comes from -z.
-/// Breaks ahead of that surface move it across the axis and turn it; what they advance adds to the object's distance.
+/// Lens as described by its file, in SI. The origin of the frame is the vertex of the first surface, and light comes
+/// from -z. Coordinate breaks ahead of that surface move it across the axis and rotate it; their translation along z is
+/// added to the object distance.
 struct Prescription {
   std::string file;
   std::string title;
-  std::string source;  ///< where it was published
+  std::string source;  ///< publication of the design
   std::vector<PrescribedSurface> surfaces;
-  double object_distance = std::numeric_limits<double>::infinity();  ///< to the first surface [m]
-  PrescribedMedium object_medium;                                    ///< ahead of the first surface
-  std::vector<std::string> catalogues;                               ///< of glass that the file names, in their order
+  double object_distance = std::numeric_limits<double>::infinity();  ///< from the object to the first surface [m]
+  PrescribedMedium object_medium;                                    ///< medium ahead of the first surface
+  std::vector<std::string> catalogues;  ///< glass catalogues named by the file, in its order
   PrescribedAperture aperture;
-  double primary_wavelength = 0;      ///< [m]; 0: the file says none
-  bool ends_at_image = false;         ///< the last thickness leads to the image, one of 0 too
-  std::vector<double> field_angles;   ///< of the object at infinity, against the axis, in the y-z plane [rad]
-  std::vector<std::string> warnings;  ///< of what a file says that is not traced
+  double primary_wavelength = 0;      ///< [m]; 0: not given
+  bool ends_at_image = false;         ///< the last thickness is the distance to the image, even if it is 0
+  std::vector<double> field_angles;   ///< field angles in the y-z plane, for an object at infinity [rad]
+  std::vector<std::string> warnings;  ///< features of the file that are not traced
 };
 
-/// Ends a lens at an image whose frame is broken: a plane of reference takes the breaks, so that the last surface's
-/// frame is the image's; what the last break advances becomes that plane's thickness. Nothing where there are no
-/// breaks.
-/// @param where the image stands in the file
+/// Adds the coordinate breaks ahead of the image to a lens. A reference plane is appended with these breaks, so that
+/// the frame of the last surface is that of the image; the translation of the last break becomes the plane's thickness.
+/// Does nothing if there are no breaks.
+/// @param where  location of the image in the file
 void break_before_image(Prescription& lens, std::vector<CoordinateBreak> breaks, std::string const& where);
 
-/// Marks the first surface as the stop of a lens whose file names none, as design programs do, and warns of it.
+/// Makes the first surface the stop if the file does not define one, as design programs do, and adds a warning.
 void assume_stop(Prescription& lens);
 
-/// Reads a prescription: one row per format in prescription.cpp (.toml, Zemax .zmx, CODE V .seq), and checks that it
-/// describes a lens: a surface or more, one stop, finite numbers. Warns of surfaces whose edges overlap, or which do
-/// not reach their semi-diameter.
+/// Reads a prescription from a .toml, Zemax .zmx or CODE V .seq file, and checks it with check_prescription(). To add a
+/// format, add a row in prescription.cpp.
 /// @throws SetupError or DataError with file and line
 Prescription read_prescription(std::string const& path);
 
-/// The checks of read_prescription, for a reader's result.
-/// @return warnings @throws DataError
+/// Checks that a prescription describes a lens: at least one surface, exactly one stop, finite numbers. Warns of
+/// surfaces that overlap near their edges or do not extend to their semi-diameter.
+/// @return warnings
+/// @throws DataError
 std::vector<std::string> check_prescription(Prescription const& prescription);
 
 }  // namespace gladstone

@@ -7,27 +7,28 @@
 
 namespace gladstone {
 
-/// Plane, sphere, conic of revolution or cylinder about its vertex at the origin, by one equation:
-/// z = (c/2) (x^2 + e y^2 + (1 + k) z^2), whose sheet through the vertex is z = c r^2 / (1 + sqrt(1 - (1 + k) c^2 r^2))
-/// (Welford, Aberrations of Optical Systems, 1986, section 4.4).
+/// Plane, sphere, conic of revolution or cylinder with its vertex at the origin, as one equation: z = (c/2) (x^2 + e
+/// y^2 + (1 + k) z^2). Its sheet through the vertex is z = c r^2 / (1 + sqrt(1 - (1 + k) c^2 r^2)) (Welford,
+/// Aberrations of Optical Systems, 1986, section 4.4).
 template <class T>
 struct Quadric {
-  T curvature{};     ///< c, one over the radius; positive where the centre lies towards +z [1/m]
+  T curvature{};     ///< c, reciprocal of the radius; positive if the centre is on the +z side [1/m]
   T conic{};         ///< k; 0: sphere, -1: paraboloid [1]
-  T along_y = T(1);  ///< e; 1: of revolution, 0: a cylinder curved along x alone
+  T along_y = T(1);  ///< e; 1: surface of revolution, 0: cylinder curved along x only
 
-  /// Height above the vertex plane [m]; NaN where the sheet does not reach.
+  /// Returns the height above the vertex plane [m]; NaN beyond the extent of the sheet.
   GLADSTONE_HD T sag(T const& x, T const& y) const {
     using std::sqrt;
     T const r2 = x * x + along_y * y * y;
     return curvature * r2 / (T(1) + sqrt(T(1) - (T(1) + conic) * curvature * curvature * r2));
   }
 
-  /// Way along a ray (unit direction, in this frame) to the sheet through the vertex, forwards or back [m].
-  /// @return false where the ray misses that sheet
+  /// Intersects a ray (unit direction, in this frame) with the sheet through the vertex.
+  /// @param way  distance along the ray, negative backwards [m]
+  /// @return false if the ray misses the sheet
   GLADSTONE_HD bool intersect(Ray<T> const& ray, T& way) const {
     using std::sqrt;
-    // from where the ray passes nearest to the vertex: from afar the squares below would lose digits
+    // start at the point of the ray closest to the vertex: for distant origins the squares below lose digits
     Vec3<T> const& d = ray.direction;
     T const approach = -dot(ray.position, d);
     Vec3<T> const p = ray.position + approach * d;
@@ -38,7 +39,8 @@ struct Quadric {
     T const square = b * b - a * c;
     if (!(square > T(0))) return false;
     T const root = sqrt(square);
-    // the root that goes over into the plane's as the curvature vanishes; steep rays may meet the sheet by the other
+    // prefer the root that tends to the plane's intersection for zero curvature; steep rays may hit the sheet at the
+    // other
     T const near = d.z < T(0) ? b - root : b + root;
     if (near != T(0)) {
       T const there = c / near;
@@ -50,10 +52,10 @@ struct Quadric {
     return on_sheet(p.z + near / a * d.z);
   }
 
-  /// Unit normal at a point of the surface, towards +z at the vertex.
+  /// Returns the unit normal at a point of the surface, in +z direction at the vertex.
   GLADSTONE_HD Vec3<T> normal(Vec3<T> const& p) const {
     Vec3<T> const along{-curvature * p.x, -curvature * along_y * p.y, T(1) - (T(1) + conic) * curvature * p.z};
-    // of a plane and a sphere it is the radius over itself, of unit length as it stands
+    // for planes and spheres it has unit length without normalisation
     return conic == T(0) && along_y == T(1) ? along : normalized(along);
   }
 
@@ -63,7 +65,7 @@ struct Quadric {
   }
 
  private:
-  /// The sheet through the vertex is where dF/dz stays positive.
+  /// The sheet through the vertex is the part of the surface with dF/dz >= 0.
   GLADSTONE_HD bool on_sheet(T const& z) const { return T(1) - (T(1) + conic) * curvature * z >= T(0); }
 };
 

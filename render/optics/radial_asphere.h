@@ -5,15 +5,15 @@
 
 namespace gladstone {
 
-/// A conic of revolution and a polynomial in the distance r from the axis: z = conic + sum of a[i] (r / scale)^(i + 1),
-/// or of (r / scale)^(2 i + 2). Design programs call it an extended (odd) asphere. Where the term of r itself is not
-/// zero, the surface has a cone's tip on the axis; its normal there is taken along the axis.
+/// Conic of revolution plus a polynomial in the distance r from the axis: z = conic + sum of a[i] (r / scale)^(i + 1),
+/// or of a[i] (r / scale)^(2 i + 2). Design programs call it an extended (odd) asphere. If the term linear in r is not
+/// zero, the surface has a conical tip on the axis, where its normal is defined as parallel to the axis.
 template <class T>
 struct RadialAsphere {
   static constexpr int terms = 20;
   Quadric<T> conic;
-  T scale = T(1);           ///< radius that normalises r [m]
-  bool even_powers = true;  ///< r^2, r^4, ...; false: r, r^2, r^3, ...
+  T scale = T(1);           ///< normalisation radius of r [m]
+  bool even_powers = true;  ///< true: powers r^2, r^4, ...; false: r, r^2, r^3, ...
   T a[terms]{};             ///< sag of each term at r = scale [m]
 
   GLADSTONE_HD T sag(T const& x, T const& y) const {
@@ -28,7 +28,7 @@ struct RadialAsphere {
 
   GLADSTONE_HD Vec3<T> normal(Vec3<T> const& p) const { return normalized(gradient(p)); }
 
-  /// Gradient of z - sag(x, y).
+  /// Returns the gradient of z - sag(x, y) at a point of the surface.
   GLADSTONE_HD Vec3<T> gradient(Vec3<T> const& p) const {
     using std::sqrt;
     T const r2 = p.x * p.x + p.y * p.y;
@@ -37,7 +37,7 @@ struct RadialAsphere {
     return {-slope * p.x, -slope * p.y, T(1)};
   }
 
-  /// Curvature that the polynomial adds to the conic's at the vertex [1/m].
+  /// Returns the curvature that the polynomial adds at the vertex [1/m].
   GLADSTONE_HD T vertex_curvature() const { return T(2) * a[even_powers ? 0 : 1] / (scale * scale); }
 
   template <class U>
@@ -48,19 +48,19 @@ struct RadialAsphere {
   }
 
  private:
-  /// What the polynomial is one of: (r / scale)^2 or r / scale. On the axis it has no derivative by r^2, where a root's
-  /// would be infinite.
+  /// Returns the variable of the polynomial: (r / scale)^2 or r / scale. Returns a constant on the axis, where the
+  /// derivative of the square root with respect to r^2 would be infinite.
   GLADSTONE_HD T variable(T const& r2) const {
     using std::sqrt;
     if (even_powers) return r2 / (scale * scale);
     return r2 > T(0) ? sqrt(r2) / scale : T(0);
   }
 
-  /// d(polynomial part)/dr / r [1/m].
+  /// Returns (1/r) d(polynomial)/dr [1/m].
   GLADSTONE_HD T slope_over_radius(T const& r2) const {
     if (!even_powers && !(r2 > T(0))) return vertex_curvature();
     T const u = variable(r2);
-    T slope = T(terms) * a[terms - 1];  // by the variable
+    T slope = T(terms) * a[terms - 1];  // derivative with respect to u
     for (int i = terms - 2; i >= 0; --i) slope = T(i + 1) * a[i] + u * slope;
     return even_powers ? T(2) * slope / (scale * scale) : slope / (u * scale * scale);
   }

@@ -6,22 +6,24 @@
 
 namespace gladstone {
 
-/// Point k of `count` that fill the unit disc evenly, no two at one radius or angle: turned by the golden angle from
-/// each to the next (Vogel 1979).
+/// Returns point k of `count` points that fill the unit disc uniformly (sunflower pattern, Vogel 1979). Successive
+/// points are rotated by the golden angle, and no two have the same radius or angle.
 Vec2d sunflower(int k, int count);
 
-/// What a bundle of rays leaves on a plane across them, and how narrow it gets along the plane's normal.
+/// Size of a ray bundle's spot on a plane, and at its best focus along the plane's normal.
 template <class T>
 struct BundleSpot {
-  Vec2<T> centroid{};    ///< [m]
-  T mean_square{};       ///< of the distance from it [m^2]
-  T best_focus{};        ///< where the bundle is narrowest, from the plane [m]
-  T best_mean_square{};  ///< there [m^2]
+  Vec2<T> centroid{};    ///< centroid of the spot on the plane [m]
+  T mean_square{};       ///< mean square distance from the centroid [m^2]
+  T best_focus{};        ///< distance of the narrowest cross-section from the plane [m]
+  T best_mean_square{};  ///< mean square distance from the centroid at best focus [m^2]
 };
 
-/// The rms radius is a parabola along the normal: <p p> + 2 z <p s> + z^2 <s s> about the means of places p and slopes
-/// s.
-/// @param places,slopes of the rays in the plane's frame @pre as many of both, one or more
+/// Computes the spot of a ray bundle. The mean square radius is a parabola along the normal, <p p> + 2 z <p s> + z^2 <s
+/// s>, with positions p and slopes s relative to their means.
+/// @param places  intersections of the rays with the plane, in its frame [m]
+/// @param slopes  slopes of the rays relative to the plane's normal [1]
+/// @pre both have the same size, at least one
 template <class T>
 BundleSpot<T> spot_of(std::vector<Vec2<T>> const& places, std::vector<Vec2<T>> const& slopes) {
   T const count(static_cast<double>(places.size()));

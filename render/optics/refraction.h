@@ -7,11 +7,12 @@
 
 namespace gladstone {
 
-/// Snell's law in vector form: n' d' - n d is parallel to the normal (Born & Wolf, Principles of Optics,
-/// section 3.2.2).
-/// @param direction unit length; turned where the ray goes on, untouched at total internal reflection
-/// @param normal    unit length, of either sense
-/// @param n_before,n_after index on the side that the ray comes from, and on the other [1]
+/// Refracts a ray by Snell's law in vector form: n' d' - n d is parallel to the normal (Born & Wolf, Principles of
+/// Optics, section 3.2.2).
+/// @param direction  unit vector; replaced by the refracted direction, unchanged at total internal reflection
+/// @param normal     unit vector of either sign
+/// @param n_before   index on the side of incidence [1]
+/// @param n_after    index on the other side [1]
 /// @return false at total internal reflection
 template <class T>
 GLADSTONE_HD bool refract(Vec3<T>& direction, Vec3<T> const& normal, T const& n_before, T const& n_after) {
@@ -25,16 +26,15 @@ GLADSTONE_HD bool refract(Vec3<T>& direction, Vec3<T> const& normal, T const& n_
   return true;
 }
 
-/// The law of reflection.
-/// @param normal unit length, of either sense
+/// Reflects a ray direction. @param normal  unit vector of either sign
 template <class T>
 GLADSTONE_HD void reflect(Vec3<T>& direction, Vec3<T> const& normal) {
   direction = direction - T(2) * dot(direction, normal) * normal;
 }
 
-/// Share of unpolarised light that a bare surface lets pass: one less the mean of the reflectances of both
+/// Returns the transmittance of an uncoated surface for unpolarised light: one minus the mean reflectance of the two
 /// polarisations (Fresnel; Born & Wolf, section 1.5.2).
-/// @param cosine_before,cosine_after of the angles to the normal on either side, positive [1]
+/// @param cosine_before,cosine_after  cosines of the angles to the normal on both sides, positive [1]
 template <class T>
 GLADSTONE_HD T fresnel_transmittance(T const& n_before, T const& n_after, T const& cosine_before,
                                      T const& cosine_after) {

@@ -6,8 +6,8 @@
 
 namespace gladstone {
 
-/// Name and text of every catalogue in data/glasses. The texts are built in, so that the program finds them wherever it
-/// runs.
+/// Returns name and text of every catalogue in data/glasses. The texts are compiled in, so that the program does not
+/// depend on its location.
 std::vector<std::pair<std::string, std::string>> const& shipped_glasses();
 
 }  // namespace gladstone

@@ -5,17 +5,17 @@
 
 namespace gladstone {
 
-/// A rectangle or an ellipse across a surface's axis, centred anywhere: an aperture, or an obscuration. Circles about
-/// the axis are not outlines, but a surface's semi-diameter and its obscured radius.
+/// Rectangular or elliptical aperture or obscuration of a surface, at any position. Circles about the axis are
+/// represented by the surface's semi-diameter and obscured radius instead.
 template <class T>
 struct SurfaceOutline {
   enum class Kind : int { none, rectangle, ellipse };
   Kind kind = Kind::none;
-  bool blocks = false;  ///< light passes outside; false: inside
-  Vec2<T> half;         ///< half widths along x and y; infinite: no limit [m]
+  bool blocks = false;  ///< true: obscuration, light passes outside; false: aperture, light passes inside
+  Vec2<T> half;         ///< half widths along x and y; infinite: unlimited [m]
   Vec2<T> centre;       ///< [m]
 
-  /// Whether light passes at a place of the surface.
+  /// Returns true if light passes at a point of the surface.
   GLADSTONE_HD bool passes(T const& x, T const& y) const {
     if (kind == Kind::none) return true;
     T const u = (x - centre.x) / half.x, v = (y - centre.y) / half.y;

@@ -5,14 +5,14 @@
 
 namespace gladstone {
 
-/// An ideal thin lens on the optical axis: exact in slopes, so stigmatic for every object plane and without aberration
-/// (a collinear map). Rays run towards +z.
+/// Ideal thin lens on the optical axis for rays in +z direction. Exact in slopes (a collinear map), and hence free of
+/// aberrations for every object plane.
 template <class T>
 struct ThinLens {
-  T z{};             ///< principal plane [m]
+  T z{};             ///< position of the principal plane on the axis [m]
   T focal_length{};  ///< [m]
 
-  /// Moves a ray to the lens and refracts it; the direction is unit length again.
+  /// Moves a ray to the lens and deflects it.
   GLADSTONE_HD RayStatus interact(Ray<T>& ray, T&) const {
     T const sx = ray.direction.x / ray.direction.z;
     T const sy = ray.direction.y / ray.direction.z;

@@ -5,14 +5,15 @@
 
 namespace gladstone {
 
-/// A plane through the vertex, tilted against the frame that the next surface stands in: z = slope.x x + slope.y y.
+/// Plane through the vertex, tilted relative to the coordinate frame: z = slope.x x + slope.y y.
 template <class T>
 struct TiltedPlane {
   Vec2<T> slope;  ///< tangents of the tilt [1]
 
   GLADSTONE_HD T sag(T const& x, T const& y) const { return slope.x * x + slope.y * y; }
 
-  /// @param way along the ray to the plane, forwards or back [m] @return false where the ray runs along the plane
+  /// @param way  distance along the ray to the plane, negative backwards [m]
+  /// @return false if the ray is parallel to the plane
   GLADSTONE_HD bool intersect(Ray<T> const& ray, T& way) const {
     Vec3<T> const& d = ray.direction;
     T const closing = d.z - sag(d.x, d.y);

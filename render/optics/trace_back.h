@@ -8,9 +8,9 @@
 
 namespace gladstone {
 
-/// Carries a ray backwards through an element, from the side that light leaves on: the indices on either side change
-/// places. Edges stop no such ray.
-/// @return false where it misses the element or is totally reflected, and for elements without a way back
+/// Traces a ray backwards through an element, with the indices on both sides exchanged. Vignetting is ignored.
+/// @return false if the ray misses the element or is totally reflected, and for elements that cannot be traced
+/// backwards
 template <class Element>
 bool trace_back(Element const& element, Ray<double>& ray) {
   if constexpr (requires { element.n_before + element.n_after; }) {
@@ -24,20 +24,22 @@ bool trace_back(Element const& element, Ray<double>& ray) {
   }
 }
 
-/// Whether an element is a mirror, which turns light along -z.
+/// Returns true if an element is a mirror, which reverses the direction of light along z.
 template <class Element>
 bool is_mirror(Element const& element) {
   if constexpr (requires { element.action; }) return element.action == SurfaceAction::reflect;
   return false;
 }
 
-/// The ray that runs backwards from the stop's centre through elements [0, stop), as it leaves them towards the source.
-/// @param elements each with a visit() @param slope dx/dz, dy/dz at the stop, in its frame
-/// @return nothing where no light comes from there
+/// Traces a ray backwards from the centre of the stop through elements [0, stop) and returns it where it leaves the
+/// first element towards the source.
+/// @param elements  elements with a visit() method
+/// @param slope     dx/dz, dy/dz at the stop, in its frame
+/// @return nullopt if the ray is lost
 template <class Elements>
 std::optional<Ray<double>> trace_back_from_stop(Elements const& elements, int stop, Vec2d slope) {
   auto const element = [&](int i) -> auto const& { return elements[static_cast<std::size_t>(i)]; };
-  double sense = -1;  // against the light, which every mirror turns
+  double sense = -1;  // against the light, whose direction every mirror reverses
   for (int i = 0; i < stop; ++i) {
     if (element(i).visit([](auto const& held) { return is_mirror(held); })) sense = -sense;
   }

@@ -8,26 +8,26 @@
 
 namespace gladstone {
 
-/// On which side of the medium a window stands.
+/// Side of the medium on which a window is placed.
 enum class WindowSide { target, camera };
 
-/// One table [[window]]: a plane-parallel plate of glass, in SI.
+/// Table [[window]]: plane-parallel plate of glass, in SI.
 struct WindowSetup {
   WindowSide side = WindowSide::camera;
   std::string glass;
-  double index = 1;       ///< of the glass at the setup's wavelength, against its surroundings [1]
-  double absorption = 0;  ///< of the glass, in light per length; 0 unless asked for [1/m]
+  double index = 1;       ///< index of the glass at the setup's wavelength, relative to its surroundings [1]
+  double absorption = 0;  ///< absorption coefficient of the glass; 0 unless lens.transmittance includes it [1/m]
   double thickness = 0;   ///< [m]
-  Vec3d position{};       ///< of its centre [m]
-  Vec2d tilt{};           ///< right-handed about x, then about the turned y [rad]
+  Vec3d position{};       ///< position of the plate's centre [m]
+  Vec2d tilt{};           ///< right-handed rotations about x, then about the rotated y [rad]
 
-  /// Of its middle, in the world; light goes along its z.
+  /// Pose of the plate's mid-plane in the world; light propagates along its z axis.
   Pose<double> pose() const { return Pose<double>{position}.turned({tilt.x, tilt.y, 0}); }
-  /// By how much it brings nearer what is seen through it squarely, t (1 - 1/n) [m].
+  /// Apparent displacement of objects towards the observer at normal incidence, t (1 - 1/n) [m].
   double shift() const { return thickness * (1 - 1 / index); }
 };
 
-/// Reads the tables in the order light meets them. Indices are found later, with the wavelength.
+/// Reads the tables, in the order of the light path. Indices are set later, when the wavelength is known.
 std::vector<WindowSetup> read_windows(SetupTable root);
 
 }  // namespace gladstone

@@ -9,33 +9,33 @@
 
 namespace gladstone {
 
-/// A line of a prescription, cut into words.
+/// Line of a prescription file, split into words.
 struct PrescriptionLine {
   std::string where;  ///< file:line
   std::vector<std::string> words;
 
   std::size_t size() const { return words.size(); }
   std::string const& operator[](std::size_t i) const { return words[i]; }
-  /// Word i as a finite number. @throws DataError where there is none
+  /// Returns word i as a finite number. @throws DataError if it is missing or invalid
   double number(std::size_t i) const;
-  /// The same, with INF or INFINITY, in any case and of either sign, for an infinite one.
+  /// Like number(), but also accepts INF or INFINITY in any case and with either sign.
   double number_or_infinity(std::size_t i) const;
-  /// Word i as a whole number. @throws DataError
+  /// Returns word i as an integer. @throws DataError if it is missing or invalid
   int integer(std::size_t i) const;
-  /// Whether any word behind the first is a number other than 0; words that are no numbers do not count.
+  /// Returns true if any word after the first is a number other than 0; words that are not numbers are ignored.
   bool has_nonzero_number() const;
 };
 
-/// A text in capitals (ASCII).
+/// Converts a text to upper case (ASCII).
 std::string in_capitals(std::string text);
 
-/// The glass that a code describes: MIL-G-174's six digits (517642: nd 1.517, Vd 64.2), as many for either value
-/// (516800641667), digits about a point (517.642, 516800.641667), or both values about a colon (1.5168:64.17).
-/// Vd of 0 is an index without dispersion.
-/// @return nothing for other words
+/// Parses a numeric glass code: MIL-G-174's six digits (517642: nd 1.517, Vd 64.2), the same with more digits
+/// (516800641667), digits separated by a point (517.642, 516800.641667), or both values separated by a colon
+/// (1.5168:64.17). A Vd of 0 denotes an index without dispersion.
+/// @return nullopt for other words
 std::optional<PrescribedMedium> read_glass_code(std::string_view word);
 
-/// Words between blanks; text in quotes, of either kind, is one word and loses them.
+/// Splits a line at blanks. Text in single or double quotes is one word, without the quotes.
 std::vector<std::string> quoted_words(std::string_view line);
 
 }  // namespace gladstone

@@ -6,13 +6,13 @@
 
 namespace gladstone {
 
-/// Our own format; docs/file-formats.md describes its keys.
+/// Reads a prescription in TOML format; docs/file-formats.md describes its keys.
 Prescription read_toml_prescription(std::string const& path);
-/// Zemax, sequential mode. Zemax's manuals give the keywords; docs/file-formats.md lists what is read; text in any
-/// encoding of decoded_text().
+/// Reads a Zemax prescription in sequential mode, in any encoding supported by decoded_text(). The keywords are defined
+/// in Zemax's manuals; docs/file-formats.md lists those that are read.
 Prescription read_zmx_prescription(std::string const& path);
-/// CODE V; docs/file-formats.md lists what is read. Commands that make a surface one that is not traced are refused by
-/// name, others that are not known are noted.
+/// Reads a CODE V prescription; docs/file-formats.md lists the commands that are read. Commands that define unsupported
+/// surfaces cause a DataError, unknown ones a warning.
 Prescription read_seq_prescription(std::string const& path);
 
 }  // namespace gladstone

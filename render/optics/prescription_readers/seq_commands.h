@@ -10,25 +10,25 @@
 
 namespace gladstone {
 
-/// Cuts a CODE V file into commands: line ends and ";" separate them, "&" joins lines, "!" begins a comment, none of
-/// them within quotes.
+/// Splits a CODE V file into commands. Line ends and ";" separate commands, "&" joins lines, "!" starts a comment;
+/// within quotes ";", "!" and quotes of the other kind are literal.
 void for_each_command(std::string_view text, std::function<void(std::string const& command, int line)> const& take);
 
-/// Whether a command, in capitals, says nothing about where rays go: weights, variables, solves whose values are
-/// written out, names.
+/// Returns true if a command (in upper case) does not affect rays: weights, variables, names, and solves whose values
+/// are in the file.
 bool is_harmless_command(std::string const& command);
 
-/// Whether a command, in capitals, makes a surface one that is not traced: gratings, holograms, toroids, splines,
-/// non-sequential parts, frames that return to another surface.
+/// Returns true if a command (in upper case) defines an unsupported surface: gratings, holograms, toroids, splines,
+/// non-sequential parts, and coordinate frames that return to another surface.
 bool is_refused_command(std::string const& command);
 
-/// Glasses that a file defines itself, between PRV and END: indices at the wavelengths of PWL [nm], or the coefficients
-/// of Laurent's series (LAU), which is Schott's formula.
+/// Glasses defined in the file itself, between PRV and END: indices at the wavelengths of PWL [nm], or the coefficients
+/// of Laurent's series (LAU), which is identical to Schott's formula.
 class PrivateGlasses {
  public:
-  /// Reads a command of the block. @throws DataError
+  /// Reads a command between PRV and END. @throws DataError
   void read(PrescriptionLine const& line);
-  /// @return null: there is none of that name, in capitals
+  /// Returns the glass with a name in upper case, or null.
   Glass const* find(std::string const& name) const;
 
  private:

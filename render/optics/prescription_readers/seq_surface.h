@@ -8,36 +8,39 @@
 
 namespace gladstone {
 
-/// A surface of a CODE V file.
+/// Surface of a CODE V file.
 struct SeqSurface {
-  /// What a decentre moves.
+  /// Scope of a decentre.
   enum class Decentre {
-    basic,    ///< this surface and all that follow
-    ret,      ///< this one alone (DAR)
-    bend,     ///< this one; what follows is tilted once more (BEN), as a mirror turns the light
-    reverse,  ///< what follows, back (REV)
+    basic,    ///< this surface and all following ones
+    ret,      ///< this surface only (DAR)
+    bend,     ///< this surface; the frame of the following ones is tilted once more (BEN), as by a fold mirror
+    reverse,  ///< the following surfaces, with the inverse transformation (REV)
   };
   PrescribedSurface surface;
   Decentre kind = Decentre::basic;
-  Vec3d shift{};                 ///< [m]
+  Vec3d shift{};                 ///< decentre and translation along z [m]
   Vec3d tilt{};                  ///< right-handed [rad]
-  std::vector<double> asphere;   ///< of r^2, r^4, ..., in the file's unit
-  SurfaceOutline<double> shape;  ///< REX, REY, ELX, ELY
-  Vec2d centre{};                ///< of all apertures (ADX, ADY) [m]
+  std::vector<double> asphere;   ///< coefficients of r^2, r^4, ..., in the file's unit
+  SurfaceOutline<double> shape;  ///< aperture by REX, REY, ELX, ELY
+  Vec2d centre{};                ///< centre of all apertures (ADX, ADY) [m]
 
-  /// Breaks in the frame ahead of the surface.
+  /// Returns the coordinate breaks ahead of the surface.
   std::vector<CoordinateBreak> breaks_before() const;
-  /// Breaks behind it, ahead of its thickness.
+  /// Returns the coordinate breaks behind the surface, which precede its thickness.
   std::vector<CoordinateBreak> breaks_behind() const;
 };
 
-/// Reads a command that belongs to a surface: stop, conic and aspheric terms, apertures, decentres.
-/// @param command in capitals @param unit of length [m] @param is_image the image SI, of which the frame counts
-/// @return whether it is such a command. @throws DataError
+/// Reads a command that refers to a surface: stop, conic constant and aspheric terms, apertures, decentres.
+/// @param command   in upper case
+/// @param unit      unit of length [m]
+/// @param is_image  true for the image SI, of which only the coordinate frame is used
+/// @return false if it is not such a command
+/// @throws DataError
 bool read_seq_surface(std::string const& command, PrescriptionLine const& line, double unit, bool is_image,
                       SeqSurface& seq, std::vector<std::string>& warnings);
 
-/// Puts aspheric terms and apertures on the surface. @param unit of length [m]
+/// Stores aspheric terms and apertures in the surface. @param unit  unit of length [m]
 void finish_seq_surface(SeqSurface& seq, double unit, std::vector<std::string>& warnings);
 
 }  // namespace gladstone

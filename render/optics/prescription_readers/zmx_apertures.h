@@ -10,37 +10,38 @@
 
 namespace gladstone {
 
-/// Apertures and obscurations that a block SURF puts on its surface [m].
+/// Apertures and obscurations of a SURF block [m].
 struct ZmxApertures {
   struct Ring {
     double least = 0, largest = 0;
   };
-  std::string where;  ///< the last of their lines
+  std::string where;  ///< location of the last of these lines
   std::optional<Ring> aperture;
-  double disc = 0;  ///< radius of an obscuration
+  double disc = 0;  ///< radius of a circular obscuration
   std::optional<Ring> obscured_ring;
   SurfaceOutline<double> outline;
-  Vec2d centre{};  ///< of all of them
+  Vec2d centre{};  ///< centre of all apertures and obscurations
 };
 
-/// Reads an operand that limits light on a surface: circular apertures and obscurations (CLAP, FLAP, OBSC),
-/// rectangular and elliptical ones (SQAP, SQOB, ELAP, ELOB), and where they are centred (OBDC). Spiders and the user's
-/// own shapes are passed over with a warning.
-/// @param unit of length [m]
-/// @return whether the line is such an operand. @throws DataError
+/// Reads an operand that limits the light on a surface: circular apertures and obscurations (CLAP, FLAP, OBSC),
+/// rectangular and elliptical ones (SQAP, SQOB, ELAP, ELOB), and their centre (OBDC). Spiders and user-defined shapes
+/// are ignored with a warning.
+/// @param unit  unit of length [m]
+/// @return false if the line is not such an operand
+/// @throws DataError
 bool read_zmx_aperture(PrescriptionLine const& line, double unit, ZmxApertures& apertures,
                        std::vector<std::string>& warnings);
 
-/// Puts them on the surface, whose semi-diameter has been read. An obscuration as large as the semi-diameter, which
-/// then is the disc's own, leaves it no edge: light passes outside.
+/// Stores the apertures in the surface, whose semi-diameter has been read before. If an obscuration is as large as the
+/// semi-diameter, the latter is taken as the size of the obscuration only, and light passes outside.
 void put_apertures(ZmxApertures const& apertures, PrescribedSurface& surface, std::vector<std::string>& warnings);
 
-/// What a file says besides lens and apertures.
+/// Collects warnings about operands of a file that are not used.
 class ZmxNotes {
  public:
-  /// Notes an operand that changes how much light passes, and not where, or that is not known. @throws DataError
+  /// Reads an operand, and adds a note if it is unknown or changes the amount of light only. @throws DataError
   void read(PrescriptionLine const& line);
-  /// One warning for every kind.
+  /// Returns the warnings, one for each kind.
   std::vector<std::string> warnings() const;
 
  private:

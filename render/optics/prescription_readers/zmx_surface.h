@@ -10,27 +10,28 @@
 
 namespace gladstone {
 
-/// Block SURF of a .zmx file.
+/// SURF block of a .zmx file.
 struct ZmxSurface {
   PrescribedSurface surface;
   ZmxApertures apertures;
   std::string type = "STANDARD", type_where;
   bool has_glass = false, has_distance = false;
-  std::map<int, double> parameters, extra_data;  ///< PARM and XDAT, in the file's unit
-  std::string extra_where;                       ///< the first XDAT that is not 0
+  std::map<int, double> parameters, extra_data;  ///< values of PARM and XDAT, in the file's unit
+  std::string extra_where;                       ///< location of the first XDAT that is not 0
 
   double parameter(int i) const;
 };
 
-/// Reads a line of the block. @param unit of length [m] @throws DataError
+/// Reads a line of the block. @param unit  unit of length [m] @throws DataError
 void read_zmx_surface(PrescriptionLine const& line, double unit, ZmxSurface& zmx, std::vector<std::string>& warnings);
 
-/// The surface in the form of its type: STANDARD, EVENASPH, ODDASPHE, XASPHERE, XOSPHERE, PARAXIAL, TILTSURF.
-/// @param number of the surface in the file, for messages
-/// @throws DataError for another type, by name
+/// Converts a block to a surface according to its type: STANDARD, EVENASPH, ODDASPHE, XASPHERE, XOSPHERE, PARAXIAL,
+/// TILTSURF.
+/// @param number  number of the surface in the file, for messages
+/// @throws DataError for any other type
 PrescribedSurface shaped_surface(ZmxSurface const& zmx, int number, double unit, std::vector<std::string>& warnings);
 
-/// A block COORDBRK. @throws DataError
+/// Converts a block of type COORDBRK to a coordinate break. @throws DataError if its thickness is infinite
 CoordinateBreak break_of(ZmxSurface const& zmx, double unit);
 
 }  // namespace gladstone
