@@ -82,7 +82,7 @@ GLADSTONE_HD void sample_coordinates(BundleView<T> const& bundle, std::uint64_t 
       std::uint64_t const bits = random_bits(bundle.seed, RandomStream::pupil, source,
                                              ray * sobol_dimensions + static_cast<std::uint64_t>(dimension));
       u[dimension] = T(to_unit(bits));
-      if (u[dimension] >= T(1)) u[dimension] = T(0);  // only single precision rounds up to one
+      if (u[dimension] >= T(1)) u[dimension] = T(0);  // rounding up to one occurs in single precision only
     }
     return;
   }

@@ -11,10 +11,10 @@
 namespace gladstone {
 namespace {
 
-constexpr double near_enough = 1e-3;  // that rim points are found to, of the stop's radius; the margin is wider
-constexpr double ahead = 1;           // where parallel rays begin, in front of the first vertex [m]
+constexpr double near_enough = 1e-3;  // accuracy of the rim points, relative to the stop's radius; the margin is wider
+constexpr double ahead = 1;           // start of parallel rays, ahead of the first vertex [m]
 
-/// A full step of Newton's method; nothing where a neighbour is lost or the stop is not resolved.
+/// Returns a full Newton step; nullopt if a neighbouring ray is lost or the Jacobian is singular.
 std::optional<Vec2d> newton_step(StopSight const& sight, Vec2d p, Vec2d miss) {
   auto const right = sight.place(p + Vec2d{sight.step, 0}), left = sight.place(p - Vec2d{sight.step, 0});
   auto const up = sight.place(p + Vec2d{0, sight.step}), down = sight.place(p - Vec2d{0, sight.step});
@@ -25,10 +25,10 @@ std::optional<Vec2d> newton_step(StopSight const& sight, Vec2d p, Vec2d miss) {
   return Vec2d{(miss.x * dy.y - miss.y * dy.x) / determinant, (dx.x * miss.y - dx.y * miss.x) / determinant};
 }
 
-/// Where the paraxial chief ray passes the tangent plane of the first vertex.
+/// Returns the intersection of the paraxial chief ray with the aim plane [m].
 Vec2d paraxial_guess(Lens const& lens, RayOrigin const& origin) {
   RayTransfer const m = ray_transfer(lens, 0, lens.stop);
-  // a y + b u = 0 with u = (y - y0) / distance from a point, or u given
+  // solve a y + b u = 0, with u = (y - y0) / distance for a point source, or u given for parallel rays
   if (origin.at_infinity) {
     if (m.a == 0) return {};
     Vec2d const slope{origin.place.x / origin.place.z, origin.place.y / origin.place.z};
@@ -39,14 +39,14 @@ Vec2d paraxial_guess(Lens const& lens, RayOrigin const& origin) {
   return (m.b / under) * Vec2d{origin.place.x, origin.place.y};
 }
 
-/// A direction by its angle against the axis: (x, y) in radians, of the sense that runs towards +z.
+/// Returns the angles (x, y) between a direction, reversed if necessary to point in +z direction, and the axis [rad].
 Vec2d angles_of(Vec3d direction) {
   Vec2d const across = direction.z < 0 ? Vec2d{-direction.x, -direction.y} : Vec2d{direction.x, direction.y};
   double const sine = length(across);
   return sine > 0 ? std::atan2(sine, std::abs(direction.z)) / sine * across : Vec2d{};
 }
 
-/// Where a line passes the aim plane; nothing where it runs along the plane.
+/// Returns the intersection of a line with the aim plane [m]; nullopt if they are almost parallel.
 std::optional<Vec2d> aim_of_line(Ray<double> const& line) {
   constexpr double grazing = 1e-6;
   if (std::abs(line.direction.z) < grazing) return std::nullopt;
@@ -54,13 +54,14 @@ std::optional<Vec2d> aim_of_line(Ray<double> const& line) {
   return Vec2d{line.position.x + way * line.direction.x, line.position.y + way * line.direction.y};
 }
 
-/// Aim of the chief ray by tracing back: Newton's method for the slope in the stop whose line in front of the lens
-/// comes from the source. What is made zero is an angle, which stays nearly linear in the slope where fields are wide.
+/// Determines the chief ray's point on the aim plane by backward tracing: Newton's method for the slope in the stop
+/// whose line ahead of the lens passes through the source. The residual is an angle, which remains nearly linear in the
+/// slope for wide fields.
 std::optional<Vec2d> aim_from_stop(StopSight const& sight) {
   if (!sight.trace_back) return std::nullopt;
   StopSight back;
-  back.radius = 1;   // [rad]
-  back.step = 1e-6;  // of the slope
+  back.radius = 1;   // scale of the tolerance [rad]
+  back.step = 1e-6;  // step of the slope [1]
   back.place = [&](Vec2d slope) -> std::optional<Vec2d> {
     auto const line = sight.trace_back(slope);
     auto const aim = line ? aim_of_line(*line) : std::nullopt;
@@ -104,7 +105,7 @@ bool aim_at(StopSight const& sight, Vec2d target, Vec2d& aim, double tolerance) 
     if (length(miss) < tolerance * sight.radius) return true;
     auto const change = newton_step(sight, aim, miss);
     if (!change) return false;
-    // half a step, and half of that, where the whole one loses the ray or gains nothing
+    // halve the step repeatedly if it loses the ray or does not reduce the residual
     bool better = false;
     for (double share = 1; share > 1e-3 && !better; share /= 2) {
       Vec2d const tried = aim + share * *change;
@@ -129,8 +130,8 @@ std::optional<Vec2d> find_chief_aim(StopSight const& sight, Vec2d guess) {
 }
 
 double aim_margin(int rim_points) {
-  // between its points the rim may reach out by 1 - cos(pi / points) of what it departs from the ellipse, a tenth at
-  // most; to that comes how near the points are
+  // Between rim points, the footprint may exceed the ellipse by 1 - cos(pi / points) of its deviation from the ellipse,
+  // which is assumed to be at most 10 %. The first term covers the accuracy of the points.
   return 1 + 2 * near_enough + 0.1 * (1 - std::cos(pi / rim_points));
 }
 
@@ -139,7 +140,7 @@ std::optional<AimDisc> find_aim_disc(StopSight const& sight, Vec2d guess, int ri
   auto const chief = find_chief_aim(sight, guess);
   if (!chief) return std::nullopt;
   disc.centre = *chief;
-  // where rim points would be if the stop were imaged without aberration
+  // initial guess of the rim points for a stop imaged without aberration
   std::optional<Vec2d> const along_x = newton_step(sight, disc.centre, {sight.radius, 0});
   std::optional<Vec2d> const along_y = newton_step(sight, disc.centre, {0, sight.radius});
   std::vector<Vec2d> rim;
@@ -148,7 +149,7 @@ std::optional<AimDisc> find_aim_disc(StopSight const& sight, Vec2d guess, int ri
     Vec2d const towards{std::cos(angle), std::sin(angle)};
     Vec2d const linear = along_x && along_y ? towards.x * *along_x + towards.y * *along_y : Vec2d{};
     Vec2d p = disc.centre;
-    // towards the rim as far as rays can be followed: what lies beyond is lost in the lens and passes no stop
+    // aim at the rim, or closer to the centre if those rays are lost in the lens and hence do not reach the stop
     for (double const share : {1.0, 0.9, 0.75, 0.5}) {
       p = disc.centre + share * linear;
       if (aim_at(sight, share * sight.radius * towards, p, near_enough)) break;
@@ -158,7 +159,7 @@ std::optional<AimDisc> find_aim_disc(StopSight const& sight, Vec2d guess, int ri
     }
     rim.push_back(p);
   }
-  // the ellipse's axes by Fourier's sums over the rim, then as much wider as its furthest point asks for
+  // fit the ellipse's axes by a discrete Fourier transform over the rim, then enlarge it to contain the furthest point
   for (int k = 0; k < rim_points; ++k) {
     double const angle = 2 * pi * k / rim_points;
     disc.a += (2.0 / rim_points) * std::cos(angle) * (rim[static_cast<std::size_t>(k)] - disc.centre);

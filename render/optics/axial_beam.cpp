@@ -12,12 +12,12 @@
 namespace gladstone {
 namespace {
 
-constexpr double within_disc = 0.99;  // of the disc, which is a little wider than the stop: within it
-constexpr int beam_heights = 16;      // of the beam that rays are followed at
+constexpr double within_disc = 0.99;  // relative pupil radius within which rays pass the stop
+constexpr int beam_heights = 16;      // number of ray heights
 constexpr std::array<Vec2d, 4> beam_sides{Vec2d{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
-constexpr double least_backwards = 1e-9;  // [m]; less is rounding of a sharp rim
+constexpr double least_backwards = 1e-9;  // [m]; smaller distances are rounding errors at a sharp rim
 
-/// The beam from the axis point of the object through the stop.
+/// Beam from the axial object point through the stop.
 struct AxialBeam {
   RayOrigin origin;
   AimDisc disc;
@@ -33,10 +33,10 @@ struct AxialBeam {
   Ray<double> at(double height, Vec2d side) const { return origin.ray_through(disc.at(height * side)); }
 };
 
-/// What is wrong where a ray runs backwards through glass.
+/// Returns a warning if a ray travels backwards through glass.
 std::optional<std::string> told_backwards(Lens const& lens, Ray<double> ray) {
   RayAccount<double> account;
-  double begun = 0;  // optical path at the last surface that turned the ray
+  double begun = 0;  // optical path at the last surface that deflected the ray
   for (int i = 0; i < lens.view().count; ++i) {
     auto const at = static_cast<std::size_t>(i);
     double const height = std::hypot(ray.position.x, ray.position.y);
@@ -86,7 +86,7 @@ std::optional<double> widest_beam(Lens const& lens, double object_distance) {
     (passes(tried) ? free : taken) = tried;
   }
   auto const place = place_in_stop(lens, beam->at(free, beam_sides[0]));
-  constexpr double whole = 0.97;  // as far as the rim reaches in the stop, where no ray is lost before it
+  constexpr double whole = 0.97;  // relative height in the stop that the rim ray reaches if it is not vignetted
   if (free == within_disc && place && length(*place) > whole * lens.stop_radius) return std::nullopt;
   return length(free * beam->disc.a);
 }

@@ -8,7 +8,7 @@
 namespace gladstone {
 
 /// Traces the axial beam and returns a warning if its light would run backwards through glass, because two faces of an
-/// element cross within the beam. The warning names the second face; nullopt if there is no such face. Vignetted rays
+/// element cross within the beam. The warning names the second face; nullopt if no faces cross. Vignetted rays
 /// are ignored.
 /// @param object_distance  distance from the object to the first vertex [m]
 std::optional<std::string> crossed_faces(Lens const& lens, double object_distance);

@@ -10,7 +10,7 @@
 namespace gladstone {
 namespace {
 
-/// A plane across the light behind the last surface.
+/// Image plane behind the last surface, perpendicular to its axis.
 class ImagePlane {
  public:
   ImagePlane(Lens const& lens, double distance) : pose_(lens.poses.back().moved({0, 0, distance})) {}
@@ -52,7 +52,7 @@ class FieldTracer {
     for (int k = 0; k < rays_; ++k) {
       Ray<double> ray = origin.ray_through(disc.at(sunflower(k, rays_)));
       auto const in_stop = place_in_stop(lens_, ray);
-      if (in_stop && length(*in_stop) > lens_.stop_radius) continue;  // never meant to pass
+      if (in_stop && length(*in_stop) > lens_.stop_radius) continue;  // misses the stop
       through_stop += in_stop ? 1 : 0;
       RayAccount<double> account;
       int failed_at;
@@ -91,7 +91,7 @@ class FieldTracer {
     Ray<double> const chief = through({});
     point.chief = ImagePlane::meets(chief, 0);
     RayTransfer const m = ray_transfer(lens_, 0, static_cast<int>(lens_.paraxial.size()));
-    // the paraxial chief ray: through the middle of the entrance pupil
+    // paraxial chief ray, through the centre of the entrance pupil
     double const u = std::tan(point.angle);
     double const y0 = std::isfinite(paraxial_.entrance.position) ? -paraxial_.entrance.position * u : 0;
     double const n_image = lens_.paraxial.back().n_after;
@@ -99,7 +99,7 @@ class FieldTracer {
     double const y = m.a * y0 + m.b * nu, slope_out = (m.c * y0 + m.d * nu) / n_image;
     double const ideal = y + slope_out * image_plane_;
     if (ideal != 0) point.distortion = point.chief.y / ideal - 1;
-    // two neighbours on either side, near enough for the difference to be the derivative
+    // two rays on either side of the chief ray, close enough for a difference quotient
     constexpr double near = 1e-3;
     auto const focus = [&](Vec2d towards, double Vec2d::*component) {
       Ray<double> const one = through(near * towards), other = through(-near * towards);
@@ -111,7 +111,7 @@ class FieldTracer {
     point.sagittal_focus = focus(along(disc, {1, 0}), &Vec2d::x);
   }
 
-  /// The point of the unit disc whose place lies in a direction from the centre.
+  /// Returns the point of the unit disc that maps to a given direction from the ellipse's centre.
   static Vec2d along(AimDisc const& disc, Vec2d direction) {
     double const determinant = disc.a.x * disc.b.y - disc.a.y * disc.b.x;
     Vec2d const p{(direction.x * disc.b.y - direction.y * disc.b.x) / determinant,
@@ -126,12 +126,13 @@ class FieldTracer {
   int rays_;
 };
 
-/// Where the lens images its object, behind the last vertex.
+/// Returns the distance of the paraxial image from the last vertex [m].
 double paraxial_image(Lens const& lens, ParaxialLens const& paraxial) {
   double const distance = lens.prescription.object_distance;
   if (!std::isfinite(distance)) return paraxial.back_focal_length;
   RayTransfer const m = ray_transfer(lens, 0, static_cast<int>(lens.paraxial.size()));
-  // from the axis point of the object: y = distance, n u = n; times n', which mirrors turn, since the way is reduced
+  // from the axial object point: y = distance, n u = n. The reduced distance is multiplied by n', negative after a
+  // mirror.
   double const n = lens.object_index;
   return -lens.paraxial.back().n_after * (m.a * distance + m.b * n) / (m.c * distance + m.d * n);
 }
@@ -141,7 +142,7 @@ double paraxial_image(Lens const& lens, ParaxialLens const& paraxial) {
 RayOrigin field_origin(Lens const& lens, ParaxialLens const& paraxial, double angle) {
   double const distance = lens.prescription.object_distance;
   if (!std::isfinite(distance)) return RayOrigin::direction({0, std::sin(angle), std::cos(angle)});
-  // of a pupil that is infinitely far the angle is seen from the first vertex
+  // if the pupil is at infinity, the angle is measured at the first vertex
   double const from_pupil = distance + (std::isfinite(paraxial.entrance.position) ? paraxial.entrance.position : 0.0);
   return RayOrigin::point({0, -from_pupil * std::tan(angle), -distance});
 }

@@ -13,20 +13,20 @@
 namespace gladstone {
 namespace {
 
-/// Coefficient k, 0 where the catalogue stops before it.
+/// Coefficients of a formula; those missing in the catalogue are 0.
 struct Coefficients {
   std::span<double const> values;
   double operator[](std::size_t k) const { return k < values.size() ? values[k] : 0.0; }
 };
 
-/// Sum of B L^2 / (L^2 - C) over pairs B, C.
+/// Returns the sum of B L^2 / (L^2 - C) over pairs (B, C).
 double sellmeier_sum(Coefficients c, int pairs, double l2) {
   double sum = 0;
   for (std::size_t k = 0; k < static_cast<std::size_t>(pairs); ++k) sum += c[2 * k] * l2 / (l2 - c[2 * k + 1]);
   return sum;
 }
 
-/// Sum of c[k] L^power[k].
+/// Returns the sum of c[k] L^power[k].
 double power_sum(Coefficients c, std::span<int const> powers, double l) {
   double sum = 0;
   for (std::size_t k = 0; k < powers.size(); ++k) sum += c[k] * std::pow(l, powers[k]);
@@ -38,7 +38,7 @@ constexpr std::array extended1_powers{0, 2, -2, -4, -6, -8, -10, -12};
 constexpr std::array extended2_powers{0, 2, -2, -4, -6, -8, 4, 6};
 constexpr std::array extended3_powers{0, 2, 4, -2, -4, -6, -8, -10, -12};
 
-/// @param l wavelength [um]
+/// Returns the index by a dispersion formula. @param l  wavelength [um]
 double index_by(DispersionFormula formula, Coefficients c, double l) {
   using std::sqrt;
   double const l2 = l * l;
@@ -75,7 +75,7 @@ double index_by(DispersionFormula formula, Coefficients c, double l) {
   return 1;
 }
 
-/// Lagrange's polynomial in 1/lambda^2 through the samples nearest to a wavelength [m].
+/// Returns the index by Lagrange interpolation in 1/lambda^2 through the samples nearest to a wavelength [m].
 double interpolated_index(std::span<Glass::Sample const> samples, double wavelength) {
   constexpr std::size_t most_samples = 4;
   auto const x = [](double at) { return 1e-12 / (at * at); };
@@ -119,7 +119,7 @@ double Glass::absorption(double wavelength) const {
 double Glass::vd() const { return (nd() - 1) / (index(spectral_line::F) - index(spectral_line::C)); }
 
 Glass Glass::from_nd_vd(double nd, double vd) {
-  // Schott's formula gives n^2 = (A + B/l^2)^2 = A^2 + 2 A B l^-2 + B^2 l^-4
+  // Schott's formula represents it exactly: n^2 = (A + B/l^2)^2 = A^2 + 2 A B l^-2 + B^2 l^-4
   auto const inverse_square = [](double wavelength) { return 1e-12 / (wavelength * wavelength); };
   double const b = (nd - 1) / (vd * (inverse_square(spectral_line::F) - inverse_square(spectral_line::C)));
   double const a = nd - b * inverse_square(spectral_line::d);
@@ -146,7 +146,7 @@ Glass Glass::from_samples(std::string name, std::vector<Sample> samples) {
             [](Sample const& a, Sample const& b) { return a.wavelength < b.wavelength; });
   Glass glass;
   glass.name = std::move(name);
-  glass.shortest = samples.size() > 1 ? samples.front().wavelength : 0;  // one index is that of every wavelength
+  glass.shortest = samples.size() > 1 ? samples.front().wavelength : 0;  // a single index applies to all wavelengths
   glass.longest = samples.size() > 1 ? samples.back().wavelength : 1;
   glass.samples = std::move(samples);
   return glass;

@@ -23,14 +23,14 @@ namespace gladstone {
 namespace {
 
 constexpr std::size_t most_coefficients = 10;
-constexpr double same_index = 1e-4;  // [1]; glasses of one name that differ by less are the same for a ray
+constexpr double same_index = 1e-4;  // [1]; glasses of one name with a smaller difference are considered identical
 
-/// Makers whose catalogues come first where several have a name and the lens' file prefers none.
+/// Manufacturers in order of precedence, if several have a glass of the name and the lens file does not prefer any.
 constexpr std::array makers{"SCHOTT", "OHARA", "HOYA", "HIKARI", "NIKON", "CDGM", "SUMITA", "CORNING"};
 
-bool is_index(double n) { return n > 0.99 && n < 7; }  // of air against air to that of infrared crystals
+bool is_index(double n) { return n > 0.99 && n < 7; }  // plausible range, from air relative to air to infrared crystals
 
-/// Names are compared in capitals and without hyphens: NBK7 is N-BK7.
+/// Returns the form in which names are compared: upper case, without hyphens. NBK7 equals N-BK7.
 std::string compared(std::string_view name) {
   std::string key;
   for (char const c : name) {
@@ -39,7 +39,7 @@ std::string compared(std::string_view name) {
   return key;
 }
 
-/// Whether a catalogue is the one that is asked for, or an edition of it: SCHOTT_2017, SCHOTT-NEW.
+/// Returns true if a catalogue has the given name or is an edition of it, such as SCHOTT_2017 or SCHOTT-NEW.
 bool is_catalogue(std::string_view catalogue, std::string_view asked) {
   if (!catalogue.starts_with(asked)) return false;
   return catalogue.size() == asked.size() || std::isalpha(static_cast<unsigned char>(catalogue[asked.size()])) == 0;
@@ -56,7 +56,7 @@ std::vector<std::string_view> words_of(std::string_view line) {
   }
 }
 
-/// A line of a catalogue with those that continue it.
+/// Record of a catalogue: a line and its continuation lines.
 struct AgfRecord {
   int line = 0;
   std::vector<std::string_view> words;
@@ -70,13 +70,13 @@ std::optional<double> number_in(std::string_view word) {
   return whole && std::isfinite(value) ? std::optional(value) : std::nullopt;
 }
 
-/// What is wrong with a line or a glass.
+/// Error in a line or a glass.
 struct AgfFault {
   int line;
   std::string text;
 };
 
-/// Reads the records of one catalogue. A fault ends the glass that it stands in, not the catalogue.
+/// Reader of one AGF catalogue. An error invalidates the glass that contains it, not the catalogue.
 class AgfReader {
  public:
   struct LeftOut {
@@ -104,10 +104,10 @@ class AgfReader {
 
   std::vector<Glass> glasses;
   std::vector<LeftOut> left_out;
-  std::vector<AgfFault> passed_over;  ///< lines of glasses that are used without them
+  std::vector<AgfFault> passed_over;  ///< skipped lines of glasses that are used without them
 
  private:
-  /// Whether the record is one of numbers, which may be wrapped.
+  /// Returns true if the current record consists of numbers, so that it may be continued on the next line.
   bool continues_record() const {
     if (record_.words.empty()) return false;
     static constexpr std::array numeric{"CD", "TD", "OD", "LD", "ED", "IT"};
@@ -159,12 +159,12 @@ class AgfReader {
       need(3, "the shortest and longest wavelength");
       glass_->shortest = number(1) * unit::micrometre;
       glass_->longest = number(2) * unit::micrometre;
-    } else if (words[0] == "IT" && words.size() >= 4) {  // some catalogues leave the share out where they have none
+    } else if (words[0] == "IT" && words.size() >= 4) {  // some catalogues omit the transmittance if it is unknown
       read_transmission(record);
     }
   }
 
-  /// A line that cannot be used changes no ray: it is passed over.
+  /// Reads a line IT. An invalid line is skipped, since it does not affect the path of rays.
   void read_transmission(AgfRecord const& record) {
     auto const at = number_in(record.words[1]), share = number_in(record.words[2]), thick = number_in(record.words[3]);
     if (at && share && thick && *at > 0 && *share >= 0 && *share <= 1 && *thick > 0) {
@@ -188,7 +188,8 @@ class AgfReader {
     glasses.push_back(std::move(glass));
   }
 
-  /// Why a glass cannot be used; empty: it can. An index may fail at an end of the range, where a formula has a pole.
+  /// Returns the reason why a glass is unusable, or an empty string. The index must be plausible at one end or in the
+  /// middle of the range only, as some formulas have a pole at an end.
   static std::string fault_of(Glass const& glass) {
     if (glass.coefficients.empty()) return "it has no coefficients (a line CD)";
     if (!(glass.shortest > 0 && glass.longest > glass.shortest)) return "it has no range of wavelengths (a line LD)";
@@ -207,7 +208,7 @@ class AgfReader {
   AgfFault begun_{};
 };
 
-/// "A (line 3: reason), B (...) and 7 more"
+/// Returns "A (line 3: reason), B (...) and 7 more".
 std::string list_left_out(std::vector<AgfReader::LeftOut> const& left_out) {
   constexpr std::size_t most = 5;
   std::string text;
@@ -269,10 +270,10 @@ GlassCatalogue const& GlassCatalogue::shipped() {
 }
 
 std::string GlassCatalogue::glasses_like(std::string_view name) const {
-  constexpr std::size_t most = 5, half = 2;  // names are short: half of one may differ
+  constexpr std::size_t most = 5, half = 2;  // names are short, so that half of the letters may differ
   std::string const key = compared(name);
   std::vector<std::string> keys;
-  // an older glass of lead, "SF6", often lives on without it, "N-SF6"
+  // a discontinued glass with lead, "SF6", often has a lead-free successor, "N-SF6"
   for (Glass const& glass : glasses_) {
     std::string const other = compared(glass.name);
     if (other == std::string("N").append(key) || std::string("N").append(other) == key) keys.push_back(other);
@@ -301,7 +302,7 @@ std::vector<Glass const*> GlassCatalogue::named(std::string_view name, std::stri
 }
 
 std::vector<Glass const*> GlassCatalogue::candidates(std::string_view name) const {
-  std::vector<Glass const*> found = named(name, "");  // the whole name first: F_SILICA names no catalogue
+  std::vector<Glass const*> found = named(name, "");  // complete name first: in F_SILICA, "SILICA" is not a catalogue
   if (!found.empty()) return found;
   if (auto const colon = name.find(':'); colon != std::string_view::npos) {
     return named(name.substr(colon + 1), name.substr(0, colon));
@@ -349,7 +350,7 @@ GlassMatch GlassCatalogue::match(std::string_view name, double wavelength, std::
                                 wavelength / unit::nanometre));
   }
   std::erase_if(found, [&](Glass const* glass) { return !covers(glass); });
-  // the preferred catalogues, then the makers in their order
+  // preferred catalogues first, then manufacturers in order
   std::vector<std::string> order;
   for (std::string const& catalogue : preferred) order.push_back(compared(catalogue));
   order.insert(order.end(), makers.begin(), makers.end());
@@ -375,7 +376,7 @@ GlassMatch GlassCatalogue::match(std::string_view name, double wavelength, std::
                                        fmt::join(names, ", "), names.front()));
   }
   constexpr double d = spectral_line::d;
-  bool const printed = glass.printed_nd > 1 && d >= glass.shortest && d <= glass.longest;  // 1 and 0: none
+  bool const printed = glass.printed_nd > 1 && d >= glass.shortest && d <= glass.longest;  // 0, 1: none
   if (printed && std::abs(glass.nd() - glass.printed_nd) > same_index) {
     result.notes.push_back(
         fmt::format("{}: glass {}:{}: its formula gives nd = {:.6f}, its catalogue prints {:.6f}; the formula is taken",

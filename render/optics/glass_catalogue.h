@@ -55,7 +55,7 @@ class GlassCatalogue {
   bool has(std::string_view name) const { return !candidates(name).empty(); }
 
  private:
-  /// Returns "; did you mean ...?" with the most similar names; empty if there are none.
+  /// Returns "; did you mean ...?" with the most similar names; empty if no name is similar.
   std::string glasses_like(std::string_view name) const;
   /// Returns the glasses with the given name, in the given catalogue or, if that is empty, in all.
   std::vector<Glass const*> named(std::string_view name, std::string_view catalogue) const;

@@ -18,7 +18,7 @@
 namespace gladstone {
 namespace {
 
-/// Index and absorption of what lies behind a surface.
+/// Index and absorption coefficient of a medium at the lens' wavelength.
 struct Substance {
   double n = 1;
   double absorption = 0;  ///< [1/m]
@@ -33,13 +33,13 @@ class LensBuilder {
     Pose<double> frame;
     Substance before{substance(lens_.prescription.object_medium, lens_.prescription.file).n, 0};
     lens_.object_index = before.n;
-    double forwards = 1;  // sign of the paraxial index: mirrors turn it
+    double forwards = 1;  // sign of the paraxial index, which changes at every mirror
     for (std::size_t i = 0; i < lens_.prescription.surfaces.size(); ++i) {
       PrescribedSurface const& prescribed = lens_.prescription.surfaces[i];
       for (CoordinateBreak const& here : prescribed.before) frame = broken(frame, here);
       if (i > 0) {
         lens_.paraxial.back().to_next += advance(prescribed);
-      } else {  // the frame's origin is the first vertex' own plane
+      } else {  // the frame's origin is in the plane of the first vertex
         lens_.prescription.object_distance += frame.origin.z;
         frame.origin.z = 0;
       }
@@ -62,7 +62,7 @@ class LensBuilder {
     note_described_glasses();
   }
 
-  /// Finds the stop's radius and gives it to the stop.
+  /// Determines the radius of the stop and applies it to the stop surface.
   void open_stop() {
     PrescribedAperture const& aperture = lens_.prescription.aperture;
     using Kind = PrescribedAperture::Kind;
@@ -85,7 +85,7 @@ class LensBuilder {
     } else {
       lens_.stop_radius = lens_.paraxial_stop_radius = stop.semi_diameter;
     }
-    if (stop.has_aperture) {  // closes what the system's aperture opens too far
+    if (stop.has_aperture) {  // limits the opening required by the system aperture
       if (options_.f_number && lens_.paraxial_stop_radius > stop.semi_diameter) {
         lens_.warnings.push_back(
             fmt::format("{}: the aperture on the stop opens to f/{:.4g} at the widest, not to f/{:.4g}", stop.where,
@@ -106,13 +106,13 @@ class LensBuilder {
     });
   }
 
-  /// Opens apertures that begin outside the axial beam and have no end, so that they would block all of its light.
+  /// Removes central obscurations without outer radius that are larger than the axial beam, and would block all of it.
   void open_rings() {
     RayTransfer const to_stop = ray_transfer(lens_, 0, lens_.stop);
     for (std::size_t i = 0; i < lens_.surfaces.size(); ++i) {
       PrescribedSurface const& prescribed = lens_.prescription.surfaces[i];
       if (!prescribed.obscured_without_end) continue;
-      // the height of a ray parallel to the axis, the stop's rim being at its height
+      // height of a ray parallel to the axis at this surface, relative to that at the stop
       double const here = std::abs(ray_transfer(lens_, 0, static_cast<int>(i)).a / to_stop.a);
       if (prescribed.obscured < here * lens_.paraxial_stop_radius) continue;
       lens_.surfaces[i] = lens_.surfaces[i].visit([](auto opened) -> LensSurface<double> {
@@ -126,7 +126,7 @@ class LensBuilder {
     }
   }
 
-  /// Refuses a lens whose axial ray ends within it: nothing could be said of its picture.
+  /// Traces the ray along the axis. @throws DataError if it is lost, in which case the lens cannot form an image
   void follow_axis() const {
     Ray<double> ray{{0, 0, -start_}, {0, 0, 1}};
     RayAccount<double> account;
@@ -144,7 +144,7 @@ class LensBuilder {
   }
 
  private:
-  /// Opens the stop to the rim of an entrance pupil of this diameter [m].
+  /// Sets the stop radius for an entrance pupil of the given diameter [m].
   void open_by_pupil(double diameter) {
     double const radius = std::abs(diameter) / 2;
     if (!std::isfinite(radius)) {
@@ -156,7 +156,7 @@ class LensBuilder {
     lens_.stop_radius = height_at_stop({{radius, 0, -start_}, {0, 0, 1}}).value_or(lens_.paraxial_stop_radius);
   }
 
-  /// Opens it to the rim of a cone from the axis point at a distance, of this slope against the axis.
+  /// Sets the stop radius for a cone from the axial point at a distance [m], whose marginal ray has the given slope.
   void open_by_slope(double slope, double distance) {
     RayTransfer const to_stop = ray_transfer(lens_, 0, lens_.stop);
     lens_.paraxial_stop_radius = std::abs(to_stop.a * distance + to_stop.b * lens_.object_index) * slope;
@@ -164,7 +164,7 @@ class LensBuilder {
         height_at_stop({{0, 0, -distance}, normalized(Vec3d{slope, 0, 1})}).value_or(lens_.paraxial_stop_radius);
   }
 
-  /// Opens it to a cone towards the image of this working f-number.
+  /// Sets the stop radius for an image-side cone of the given working f-number.
   void open_by_cone(double f_number, double distance) {
     RayTransfer const all = ray_transfer(lens_, 0, static_cast<int>(lens_.paraxial.size()));
     double const slope = 1 / (2 * f_number * std::abs(all.c * distance + all.d * lens_.object_index));
@@ -228,19 +228,19 @@ class LensBuilder {
     return {};
   }
 
-  /// Warns of a glass the first time that it occurs.
+  /// Adds a warning about a glass, unless the glass already has one.
   void note_once(std::string const& key, std::string const& text) {
     if (noted_.insert(key).second) lens_.warnings.push_back(text);
   }
 
-  /// Refuses all glasses that are not known, or not at this wavelength, together: each at its own line.
+  /// Throws an error that lists all glasses that are unknown or not valid at this wavelength, with their locations.
   void refuse_glasses() const {
     if (not_found_.empty()) return;
     if (not_found_.size() == 1) throw DataError(not_found_.front().where, not_found_.front().message);
     throw SetupError(not_found_);
   }
 
-  /// Warns of the glasses that nd and Vd alone describe, all at once, at the first of them.
+  /// Adds one warning about all glasses specified by nd and Vd only, located at the first of them.
   void note_described_glasses() {
     if (described_.empty()) return;
     bool const one = described_.size() == 1;
@@ -253,7 +253,7 @@ class LensBuilder {
                     one ? "is" : "are", one ? "a glass" : "glasses"));
   }
 
-  /// Adds a surface in the shape that is prescribed.
+  /// Adds a surface with its prescribed shape.
   void add_surface(Pose<double> const& frame, PrescribedSurface const& prescribed, Substance before, Substance after) {
     using Shape = PrescribedSurface::Shape;
     Quadric<double> const conic{prescribed.curvature, prescribed.conic,
@@ -300,7 +300,7 @@ class LensBuilder {
     return shape;
   }
 
-  /// Curvature on the axis, that of a polynomial's r^2 included [1/m].
+  /// Returns the curvature on the axis, including that of a polynomial's r^2 term [1/m].
   static double vertex_curvature(PrescribedSurface const& prescribed) {
     using Shape = PrescribedSurface::Shape;
     if (prescribed.shape == Shape::ideal_lens || prescribed.shape == Shape::tilted_plane) return 0;
@@ -308,7 +308,7 @@ class LensBuilder {
     return prescribed.curvature + (prescribed.asphere.empty() ? 0 : 2 * prescribed.asphere[0]);
   }
 
-  /// How far from the stop's axis a ray meets it; nothing where it is lost on the way.
+  /// Returns the distance from the stop's axis at which a ray intersects the stop [m]; nullopt if the ray is lost.
   std::optional<double> height_at_stop(Ray<double> ray) const {
     RayAccount<double> account;
     int failed_at;
@@ -324,17 +324,17 @@ class LensBuilder {
     return std::hypot(local.position.x, local.position.y);
   }
 
-  static constexpr double start_ = 1;  // where parallel light is begun, in front of the first vertex [m]
+  static constexpr double start_ = 1;  // start of parallel rays, ahead of the first vertex [m]
   Lens& lens_;
   GlassCatalogue const& catalogue_;
   LensOptions const& options_;
-  std::vector<SetupProblem> not_found_;  // glasses
-  std::vector<std::string> described_;   // glasses by nd and Vd alone
-  std::string described_where_;          // the first of them stands
-  std::set<std::string> noted_;          // warnings of glasses
+  std::vector<SetupProblem> not_found_;  // unknown glasses
+  std::vector<std::string> described_;   // glasses specified by nd and Vd only
+  std::string described_where_;          // location of the first of them
+  std::set<std::string> noted_;          // glasses with a warning
 };
 
-/// Radius that the prescription itself opens the stop of placed surfaces to, paraxially [m]; empty: it cannot say.
+/// Returns the paraxial radius of the stop by the prescription's own aperture [m]; nullopt if it is not defined.
 std::optional<double> prescribed_stop_radius(Lens lens, GlassCatalogue const& catalogue, LensOptions options) {
   options.f_number.reset();
   try {
@@ -345,7 +345,8 @@ std::optional<double> prescribed_stop_radius(Lens lens, GlassCatalogue const& ca
   return lens.paraxial_stop_radius;
 }
 
-/// Warns of an f-number that opens the stop further than the prescription does, and says what its edges pass of it.
+/// Warns if an f-number opens the stop wider than the prescription does, and reports the widest beam that the edges
+/// pass.
 void note_wide_stop(Lens& lens, double f_number, double own_radius, double object_distance) {
   constexpr double rounding = 1e-6;
   if (lens.paraxial_stop_radius <= (1 + rounding) * own_radius) return;

@@ -16,7 +16,7 @@ LensSetup read_lens_setup(SetupTable table, std::string const& focus_on) {
   aperture.allow_inf = true;
   if (table.kind_word("model", "thin", {"thin", "prescription"}) == "prescription") {
     setup.file = table.required_path("file");
-    // its own stop, or what the aperture of the file opens it to, unless the setup says otherwise
+    // NaN: the stop is set by the prescription's own aperture, unless the setup gives an f-number
     setup.f_number = table.optional_number("f_number", aperture).value_or(std::nan(""));
     table.refuse("focal_length_mm", "stands beside a prescription (which has its own); remove it");
   } else {

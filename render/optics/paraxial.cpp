@@ -12,7 +12,7 @@ RayTransfer ray_transfer(Lens const& lens, int first, int last) {
     double const power = s.total_power();
     m.c -= power * m.a;
     m.d -= power * m.b;
-    if (i + 1 == static_cast<int>(lens.paraxial.size())) break;  // the image is not part of the lens
+    if (i + 1 == static_cast<int>(lens.paraxial.size())) break;  // the distance to the image is excluded
     double const way = s.to_next / s.n_after;
     m.a += way * m.c;
     m.b += way * m.d;
@@ -25,7 +25,7 @@ ParaxialLens paraxial_lens(Lens const& lens) {
   RayTransfer const all = ray_transfer(lens, 0, count);
   double const infinite = std::numeric_limits<double>::infinity();
   ParaxialLens result;
-  // rounding of a sum of powers, each of which is at most c (n' - n)
+  // scale of rounding errors: sum of the absolute powers
   double largest = 0;
   for (ParaxialSurface const& s : lens.paraxial) largest += std::abs(s.total_power());
   bool const afocal = std::abs(all.c) <= 1e-12 * largest;
@@ -42,7 +42,7 @@ ParaxialLens paraxial_lens(Lens const& lens) {
   auto const finite = [infinite](double over, double under, double scale) {
     return std::abs(under) <= 1e-12 * scale ? infinite : over / under;
   };
-  // through the stop's centre: a y + b n u = 0 before it; y = b, n u = d behind the last surface
+  // ray through the centre of the stop: a y + b n u = 0 ahead of it; y = b, n u = d behind the last surface
   result.entrance = {finite(n_object * before.b, before.a, 1), std::abs(finite(diameter, before.a, 1))};
   result.exit = {finite(-n_image * after.b, after.d, 1), std::abs(finite(diameter, after.d, 1))};
   result.telecentric = is_telecentric(before);

@@ -22,23 +22,24 @@ struct PrescriptionFormat {
   Prescription (*read)(std::string const& path);
 };
 
-/// One row per format: its reader and how its files are called.
+/// Supported file formats: file name extension and reader.
 constexpr std::array formats{
     PrescriptionFormat{".toml", read_toml_prescription},
     PrescriptionFormat{".zmx", read_zmx_prescription},
     PrescriptionFormat{".seq", read_seq_prescription},
 };
 
-constexpr double longest = 1e3;  // [m]; of any length of a lens
+constexpr double longest = 1e3;  // upper limit of any length in a lens [m]
 
-/// Whether light is changed here; a plane of reference or a bare stop is not there to overlap.
+/// Returns true for an ideal lens, and for a surface that is a mirror or borders on a medium other than air. Reference
+/// planes and stops in air do not count.
 bool is_real(Prescription const& lens, std::size_t i) {
   PrescribedMedium const& before = i > 0 ? lens.surfaces[i - 1].after : lens.object_medium;
   return lens.surfaces[i].shape == PrescribedSurface::Shape::ideal_lens || !lens.surfaces[i].after.is_air() ||
          !before.is_air();
 }
 
-/// Sag of a prescribed surface at a height [m].
+/// Returns the sag of a prescribed surface at a radius [m]; 0 for a tilted plane.
 double sag(PrescribedSurface const& surface, double height) {
   if (surface.shape == PrescribedSurface::Shape::tilted_plane) return 0;
   Quadric<double> const conic{surface.curvature, surface.conic};
@@ -58,10 +59,10 @@ bool is_turned(PrescribedSurface const& surface) {
                      [](CoordinateBreak const& here) { return length(here.decentre) != 0 || length(here.tilt) != 0; });
 }
 
-/// Finds whether a surface runs through the next real one within their edges, planes of reference between them or not.
-/// Widths for drawings are no edges: a lens ends where its surfaces meet. Surfaces that meet off the axis alone may do
-/// so outside the light.
-/// @param forwards sense of the light between them
+/// Checks whether a surface intersects the next real surface within their edges; reference planes between them are
+/// skipped. Semi-diameters for drawings are not considered as edges. An intersection off the axis causes a warning
+/// only, since it may be outside the light.
+/// @param forwards  sign of the light's direction between the surfaces
 /// @return a warning; empty: the surfaces do not overlap
 /// @throws DataError if they overlap on the axis
 std::string find_overlap(Prescription const& lens, std::size_t i, double forwards) {
@@ -93,7 +94,7 @@ std::string find_overlap(Prescription const& lens, std::size_t i, double forward
   return "";
 }
 
-/// Refuses what is no index of a glass.
+/// Checks that an index, or nd and Vd, are those of a glass. @throws DataError
 void check_medium(PrescribedMedium const& medium, std::string const& where) {
   auto const* const index = std::get_if<PrescribedMedium::Index>(&medium.is);
   if (index && !(index->n >= 1 && index->n < 5)) {
@@ -108,7 +109,7 @@ void check_medium(PrescribedMedium const& medium, std::string const& where) {
   }
 }
 
-/// A warning of a surface that ends within its semi-diameter; empty: it does not.
+/// Returns a warning if a surface ends inside its semi-diameter; empty otherwise.
 std::string find_short_surface(PrescribedSurface const& surface) {
   bool const edge = surface.semi_diameter_is_an_edge && std::isfinite(surface.semi_diameter);
   if (!edge || std::isfinite(sag(surface, surface.semi_diameter))) return "";
@@ -178,7 +179,7 @@ std::vector<std::string> check_prescription(Prescription const& lens) {
   check_medium(lens.object_medium, lens.file);
   std::string stop;
   bool any_real = false;
-  double forwards = 1;  // sense of the light, which mirrors turn
+  double forwards = 1;  // sign of the light's direction, which mirrors reverse
   for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {
     PrescribedSurface const& surface = lens.surfaces[i];
     bool const last = i + 1 == lens.surfaces.size();

@@ -13,7 +13,7 @@ struct TaylorGreenFlow {
   static constexpr char const* kind = "taylor_green";
 
   double amplitude = 0;  ///< A [m/s]
-  double wave = 1;       ///< k [rad/m]
+  double wave = 1;       ///< wavenumber k [rad/m]
   Vec3d center{};        ///< origin of x and y [m]
 
   static TaylorGreenFlow read(SetupTable& table) {

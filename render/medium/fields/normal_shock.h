@@ -9,7 +9,7 @@
 namespace gladstone {
 
 /// Returns the density ratio across a normal shock in a perfect gas (Rankine-Hugoniot; NACA Report 1135, 1953, eq. 94).
-/// @param mach upstream Mach number >= 1
+/// @param mach  upstream Mach number >= 1
 inline double shock_density_ratio(double mach, double gamma) {
   double const m2 = mach * mach;
   return (gamma + 1) * m2 / ((gamma - 1) * m2 + 2);

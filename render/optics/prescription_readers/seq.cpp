@@ -91,7 +91,7 @@ class SeqReader {
     if (line.has_nonzero_number()) warn(fmt::format("{}: {}: {}", line.where, in_capitals(line[0]), what));
   }
 
-  /// Commands of the whole lens. @return whether it is one
+  /// Reads a command that applies to the whole lens. @return false if it is not such a command
   bool read_system(std::string const& command, PrescriptionLine const& line) {
     using Kind = PrescribedAperture::Kind;
     if (command == "RDM") {
@@ -125,7 +125,7 @@ class SeqReader {
     return true;
   }
 
-  /// Field points: angles in the y-z plane are read, others noted. @return whether it is such a command
+  /// Reads field angles in the y-z plane; other fields cause a warning. @return false if it is not a field command
   bool read_fields(std::string const& command, PrescriptionLine const& line) {
     static std::set<std::string> const others{"XAN", "XOB", "YOB", "XIM", "YIM", "XRI", "YRI"};
     static std::set<std::string> const vignetting{"VUX", "VLX", "VUY", "VLY"};
@@ -141,7 +141,7 @@ class SeqReader {
     return true;
   }
 
-  /// "S radius thickness [glass]"
+  /// Reads "S radius thickness [glass]".
   void begin_surface(std::string const& command, PrescriptionLine const& line) {
     if (image_) throw DataError(line.where, "a surface comes after the image SI; the file is damaged");
     if ((command == "SO") != surfaces_.empty()) {
@@ -153,7 +153,7 @@ class SeqReader {
     if (command == "SI") {
       image_ = true;
       image_surface_.surface.where = line.where;
-      surfaces_.back().surface.thickness += thickness;  // the defocus of the image
+      surfaces_.back().surface.thickness += thickness;  // defocus of the image
       return;
     }
     SeqSurface seq;
@@ -178,14 +178,15 @@ class SeqReader {
     return {PrescribedMedium::Named{word, std::nullopt}};
   }
 
-  /// The medium, or the private glass that it names.
+  /// Returns the private glass that a medium names, if there is one, else the medium itself.
   PrescribedMedium resolved(PrescribedMedium const& medium) const {
     auto const* const named = std::get_if<PrescribedMedium::Named>(&medium.is);
     Glass const* const own = named ? private_glasses_.find(in_capitals(named->glass)) : nullptr;
     return own ? PrescribedMedium{PrescribedMedium::Private{*own}} : medium;
   }
 
-  /// The surface that a command names ("STO S6", counted from the object's S0), and the command without its name.
+  /// Returns the surface named by a command ("STO S6"; the object is S0), by default the latest one, and removes its
+  /// name from the line.
   SeqSurface& named_surface(PrescriptionLine& line) {
     if (line.size() > 1 && is_numbered_surface(in_capitals(line[1]))) {
       PrescriptionLine const digits{line.where, {line[0], line[1].substr(1)}};
@@ -210,7 +211,7 @@ class SeqReader {
     return image_ ? image_surface_ : surfaces_.back();
   }
 
-  /// Commands that belong to the surface before them, or to the one that they name. @return whether it is one
+  /// Reads a command for the surface it names, by default the latest one. @return false if it is not such a command
   bool read_of_surface(std::string const& command, PrescriptionLine line) {
     if (!is_surface_command(command)) return false;
     if (surfaces_.empty()) throw DataError(line.where, fmt::format("{} comes before any surface", command));
@@ -230,7 +231,8 @@ class SeqReader {
     return known.contains(command);
   }
 
-  /// "THI S3 2.5"; a word in place of the number is a solve, whose value the line of the surface holds.
+  /// Changes one value of a surface ("THI S3 2.5"). A word instead of a number is a solve, whose value is in the line
+  /// of the surface.
   void change_surface(std::string const& command, PrescriptionLine const& line, PrescribedSurface& surface) const {
     if (line.size() < 2) return;
     if (command == "GLA") {
@@ -244,9 +246,9 @@ class SeqReader {
     }
   }
 
-  /// Without RDM numbers are curvatures, CODE V's default. Where most of them would make surfaces that bend away within
-  /// the pupil, or within a quarter of the glass behind or ahead of them (a ball's radius is half its thickness), the
-  /// file means radii.
+  /// Decides whether a file without RDM contains radii instead of curvatures, CODE V's default. Radii are assumed if
+  /// more than half of the curvatures are implausible: the radius of curvature would be smaller than the pupil radius,
+  /// or than a quarter of the adjacent glass thickness (half of it for a ball lens).
   void judge_curvatures() {
     double const pupil = result_.aperture.kind == PrescribedAperture::Kind::entrance_pupil ? pupil_ * unit_ / 2 : 0;
     int curved = 0, impossible = 0;
@@ -273,7 +275,7 @@ class SeqReader {
                     surfaces_[1].surface.where));
   }
 
-  /// Brings surfaces, decentres and the image into the order of the lens.
+  /// Moves the surfaces, with their coordinate breaks and that of the image, to the result.
   void take_surfaces() {
     std::vector<CoordinateBreak> behind;
     auto const breaks_ahead = [&behind](SeqSurface const& seq) {
@@ -296,11 +298,11 @@ class SeqReader {
   }
 
   Prescription result_;
-  std::vector<SeqSurface> surfaces_;  // the object first
-  SeqSurface image_surface_;          // of which the frame counts
+  std::vector<SeqSurface> surfaces_;  // the object is the first
+  SeqSurface image_surface_;          // only its coordinate frame is used
   PrivateGlasses private_glasses_;
   std::vector<double> wavelengths_;
-  std::vector<std::string> unknown_;  // commands
+  std::vector<std::string> unknown_;  // unknown commands
   std::string unknown_where_;
   double unit_ = 1e-3, pupil_ = 0;
   int reference_ = 0;

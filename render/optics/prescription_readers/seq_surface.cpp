@@ -15,10 +15,10 @@ namespace {
 
 using Outline = SurfaceOutline<double>;
 
-/// The term of r^4, r^6, ... that a letter names: A to H and J, 1 for A.
+/// Returns the index of the aspheric coefficient of a letter, A to H and J; A is index 1, the term r^4.
 std::size_t aspheric_term(char letter) { return static_cast<std::size_t>(letter == 'J' ? 9 : letter - 'A' + 1); }
 
-/// Reads CIR, REX, REY, ELX, ELY: "CIR [OBS|HOL|EDG] [L'label'] value".
+/// Reads CIR, REX, REY, ELX or ELY: "CIR [OBS|HOL|EDG] [L'label'] value".
 void read_aperture(std::string const& command, PrescriptionLine const& line, double unit, SeqSurface& seq,
                    std::vector<std::string>& warnings) {
   std::string kind;
@@ -27,7 +27,7 @@ void read_aperture(std::string const& command, PrescriptionLine const& line, dou
     if (word == "OBS" || word == "HOL" || word == "EDG" || word == "CLR") kind = word;
   }
   if (line.size() < 2) throw DataError(line.where, fmt::format("{} has no value; the line is cut short", command));
-  if (kind == "EDG") return;  // for drawings
+  if (kind == "EDG") return;  // edges are for drawings only
   double const value = line.number_or_infinity(line.size() - 1) * unit;
   if (kind == "HOL") {
     warnings.push_back(fmt::format("{}: {} HOL: light that meets the hole counts as lost, as behind an obscuration",
@@ -48,7 +48,7 @@ void read_aperture(std::string const& command, PrescriptionLine const& line, dou
   (command.ends_with('X') ? seq.shape.half.x : seq.shape.half.y) = value;
 }
 
-/// Reads XDE, YDE, ZDE, ADE, BDE, CDE. CODE V turns left-handed about x and y, right-handed about z.
+/// Reads XDE, YDE, ZDE, ADE, BDE or CDE. CODE V's angles are left-handed about x and y, right-handed about z.
 void read_decentre(std::string const& command, PrescriptionLine const& line, double unit, SeqSurface& seq) {
   double const value = line.number(1);
   if (command == "XDE") seq.shift.x = value * unit;
@@ -132,7 +132,7 @@ void finish_seq_surface(SeqSurface& seq, double unit, std::vector<std::string>& 
   surface.outline = seq.shape;
   surface.outline.centre = seq.centre;
   if (length(seq.centre) == 0) return;
-  // circles off the axis are ellipses with a centre of their own
+  // represent circles off the axis as ellipses
   auto const as_outline = [&](double radius, bool blocks) {
     if (surface.outline.kind == Outline::Kind::none) {
       surface.outline = {Outline::Kind::ellipse, blocks, {radius, radius}, seq.centre};

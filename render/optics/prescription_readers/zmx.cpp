@@ -44,7 +44,7 @@ class ZmxReader {
     }
   }
 
-  /// Notes that the file ends within the line DISZ, which may have been cut short.
+  /// Warns that the file ends within a line DISZ, and may be truncated.
   void note_end(PrescriptionLine const& line) {
     result_.warnings.push_back(line.where +
                                ": the file ends within its line DISZ, which lacks its end; if it was cut short there, "
@@ -97,7 +97,7 @@ class ZmxReader {
     }
     using Kind = PrescribedAperture::Kind;
     if (key == "ENPD") result_.aperture = {Kind::entrance_pupil, line.number(1) * unit_};
-    // the second value says which of two meanings the first has
+    // the second value selects the meaning of the first
     bool const other_meaning = line.size() > 2 && line[2] == "1";
     if (key == "FNUM") result_.aperture = {other_meaning ? Kind::working_f_number : Kind::f_number, line.number(1)};
     if (key == "OBNA") {
@@ -127,7 +127,7 @@ class ZmxReader {
     if (key == "ENPD" || key == "FNUM" || key == "OBNA" || key == "FLOA") aperture_where_ = line.where;
   }
 
-  /// An aperture that is missing or 0 leaves the width of the stop to the stop's own semi-diameter.
+  /// Uses the semi-diameter of the stop if the aperture is missing or 0, with a warning.
   void check_aperture() {
     bool const by_stop = result_.aperture.kind == PrescribedAperture::Kind::stop;
     if (by_stop ? !aperture_where_.empty() : result_.aperture.value > 0) return;
@@ -138,7 +138,7 @@ class ZmxReader {
     result_.aperture = {};
   }
 
-  /// Brings the blocks between object and image into the order of the lens' surfaces.
+  /// Converts the blocks between object and image to the surfaces of the lens.
   void take_surfaces() {
     std::vector<CoordinateBreak> breaks;
     for (std::size_t i = 1; i + 1 < surfaces_.size(); ++i) {
@@ -147,7 +147,7 @@ class ZmxReader {
       if (zmx.type == "COORDBRK") {
         breaks.push_back(break_of(zmx, unit_));
         if (!zmx.surface.stop) continue;
-        surface.where = zmx.surface.where;  // a stop in the broken frame
+        surface.where = zmx.surface.where;  // stop in the transformed frame
         surface.stop = true;
         surface.semi_diameter = zmx.surface.semi_diameter;
         surface.thickness = std::exchange(breaks.back().advance, 0);
@@ -164,7 +164,7 @@ class ZmxReader {
     break_before_image(result_, std::move(breaks), image.where);
   }
 
-  /// Fields are angles in the y-z plane; others are told of, and left out.
+  /// Uses field angles in the y-z plane; other fields cause a warning.
   void take_fields() {
     bool const any_along = std::any_of(fields_.begin(), fields_.end(), [](double angle) { return angle != 0; });
     if (heights_at_.empty()) result_.field_angles = fields_;
@@ -178,7 +178,7 @@ class ZmxReader {
     }
   }
 
-  /// A file of the lens' surfaces alone has no block of the object, which is taken to be far away.
+  /// Assumes an object at infinity if the file contains the surfaces of the lens only.
   void assume_object(std::string const& where) {
     object_assumed_ = true;
     result_.warnings.push_back(where +
@@ -189,7 +189,7 @@ class ZmxReader {
     surfaces_.back().surface.thickness = HUGE_VAL;
   }
 
-  /// Why a block is no image surface; null: it may be one.
+  /// Returns the reason why a block cannot be the image surface, or null if it can.
   static char const* why_no_image(ZmxSurface const& last) {
     return !last.has_distance            ? "has no DISZ"
            : last.surface.thickness != 0 ? "has a thickness (DISZ)"
@@ -198,7 +198,7 @@ class ZmxReader {
                                          : nullptr;
   }
 
-  /// Refuses a last block that is no image surface: what the file goes on with is missing.
+  /// Throws a DataError if the last block cannot be the image surface, since the file is truncated then.
   static void check_image(ZmxSurface const& last) {
     char const* const why = why_no_image(last);
     if (why == nullptr) return;
@@ -216,7 +216,7 @@ class ZmxReader {
   double unit_ = 1e-3;
   int primary_ = 1;
   bool object_assumed_ = false;
-  std::string heights_at_, across_at_;  // lines that say that fields are heights, that some lie beside the y-z plane
+  std::string heights_at_, across_at_;  // locations of field heights, and of fields outside the y-z plane
   std::string aperture_where_;
 };
 

@@ -14,7 +14,7 @@ namespace {
 
 using Outline = SurfaceOutline<double>;
 
-/// Operands that say nothing about where rays go, or how many.
+/// Returns true if an operand has no effect on rays and their number.
 bool is_harmless(std::string const& key) {
   static std::set<std::string> const harmless{
       "VERS", "MODE", "NAME", "NOTE", "UNIT", "ENPD", "FNUM", "OBNA", "FLOA", "FTYP", "ROPD", "PICB", "XFLN", "YFLN",
@@ -80,7 +80,7 @@ void put_apertures(ZmxApertures const& apertures, PrescribedSurface& surface, st
     surface.obscured_without_end = disc > 0 && std::isinf(largest);
   }
   if (auto const& ring = apertures.obscured_ring) {
-    if (ring->largest >= surface.semi_diameter) {  // it leaves a circle
+    if (ring->largest >= surface.semi_diameter) {  // a circular aperture remains
       largest = largest > 0 ? std::min(largest, ring->least) : ring->least;
     } else {
       warn("OBSC: an obscuration that is a ring within the surface is not traced; light passes there");
@@ -89,7 +89,7 @@ void put_apertures(ZmxApertures const& apertures, PrescribedSurface& surface, st
   surface.outline = apertures.outline;
   surface.outline.centre = centre;
   bool const off_axis = length(centre) > 0;
-  // a circle off the axis is an ellipse with a centre of its own
+  // represent circles off the axis as ellipses
   auto const as_outline = [&](double radius, bool blocks) {
     if (surface.outline.kind != Outline::Kind::none) {
       warn("of several decentred apertures on a surface one alone is traced; light passes the other");
@@ -114,7 +114,7 @@ void put_apertures(ZmxApertures const& apertures, PrescribedSurface& surface, st
   }
   bool const edge = surface.semi_diameter_is_an_edge && !surface.has_aperture;
   if (edge && surface.outline.kind != Outline::Kind::none && !surface.outline.blocks) {
-    surface.semi_diameter_is_an_edge = false;  // the aperture takes its place
+    surface.semi_diameter_is_an_edge = false;  // the aperture replaces it
   }
   double const blocked = off_axis ? 0 : disc;
   if (edge && blocked > 0 && blocked >= surface.semi_diameter) {
@@ -145,7 +145,7 @@ void ZmxNotes::read(PrescriptionLine const& line) {
                             line[1].substr(0, 40)));
     }
   } else if (key == "ENVD") {
-    // temperature, pressure, whether indices follow them
+    // temperature, pressure, and flag: adjust indices to them
     if (line.size() > 3 && line[3] != "0" && (line.number(1) != 20 || line.number(2) != 1)) {
       note(key, line.where +
                     ": ENVD: indices are not adjusted to an environment; those of the catalogue are traced, at 20 "

@@ -49,7 +49,7 @@ class ZmxNotes {
 
   std::set<std::string> keys_;
   std::vector<std::string> notes_;
-  std::vector<std::string> unknown_;  // operands
+  std::vector<std::string> unknown_;  // unknown operands
   std::string unknown_where_;
 };
 

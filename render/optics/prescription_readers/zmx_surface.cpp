@@ -15,7 +15,8 @@ namespace {
 
 bool is_glass(double nd, double vd) { return nd >= 1 && nd < 5 && vd >= 0; }
 
-/// nd and Vd of a line GLAS, in the fifth and sixth word; Vd of 0 is a glass without dispersion.
+/// Reads a model glass from a line GLAS: nd and Vd in its fifth and sixth word; a Vd of 0 denotes a glass without
+/// dispersion.
 PrescribedMedium model_glass(PrescriptionLine const& line, std::vector<std::string>& warnings) {
   double const nd = line.number(4), vd = line.size() > 5 ? line.number(5) : 0;
   if (nd == -1 && vd == 0) {
@@ -34,8 +35,8 @@ PrescribedMedium model_glass(PrescriptionLine const& line, std::vector<std::stri
   return {PrescribedMedium::Described{nd, vd}};
 }
 
-/// A glass of a catalogue, with nd and Vd of its line in case that no catalogue has it. 1.5 and 40 stand there where
-/// Zemax has filled in nothing better.
+/// Reads a catalogue glass, with nd and Vd of the line as a fallback. 1.5 and 40 are ignored, since they are Zemax's
+/// default values.
 PrescribedMedium named_glass(PrescriptionLine const& line) {
   PrescribedMedium::Named named{line[1], std::nullopt};
   if (line.size() > 5) {
@@ -55,7 +56,8 @@ PrescribedMedium medium_of(PrescriptionLine const& line, std::vector<std::string
   return named_glass(line);
 }
 
-/// The polynomial of types that count its terms in XDAT 1, normalise r by XDAT 2, and have the first term in XDAT 3.
+/// Reads the polynomial of extended aspheres: number of terms in XDAT 1, normalisation radius in XDAT 2, terms from
+/// XDAT 3 on.
 PrescribedSurface::RadialTerms extended_terms(ZmxSurface const& zmx, double unit, bool even_powers) {
   auto const datum = [&](int i) {
     auto const found = zmx.extra_data.find(i);
@@ -137,7 +139,7 @@ PrescribedSurface shaped_surface(ZmxSurface const& zmx, int number, double unit,
       if (i < 1 || i > terms) throw DataError(surface.where, fmt::format("{} has no parameter {}", zmx.type, i));
       if (even) {
         surface.asphere[static_cast<std::size_t>(i - 1)] = value / std::pow(unit, 2 * i - 1);
-      } else {  // of r^i, r in the file's unit
+      } else {  // coefficient of r^i, r in the file's unit
         surface.radial.a.resize(static_cast<std::size_t>(i));
         surface.radial.a.back() = value * unit;
       }
