@@ -305,7 +305,7 @@ template <class T, class Medium>
         add = step_increment(medium, options.integrator, where, along, step);
       }
       if (!landed) {
-        // a grazing ray, deflected away from the face ahead: take the full step, or the part of it that is inside
+        // a grazing ray, deflected away from the face ahead: use the full step, or the part of it that is inside
         PartialStep<T> const part = bisect_exit(medium, options.integrator, box, {where, along}, dt);
         landing = part.leaves;
         step = part.step;
