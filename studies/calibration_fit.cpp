@@ -25,8 +25,9 @@ constexpr double principal_share = 0.05;  // allowed error of the principal poin
 constexpr double tilted_share = 0.2;      // additional allowed error, relative to its displacement by the sensor's tilt
 constexpr double deviations = 6;          // significance limit, in standard errors
 constexpr double least_known = 0.2;       // relative standard error of a focal length that is an error
-constexpr double other_focal_length = 0.1;  // relative difference from the setup's focal length that causes a warning
-constexpr double square_pixels = 0.01;      // relative difference of fx and fy that causes a warning
+// relative difference from the setup's focal length that causes a warning; nominal focal lengths of lenses hold to 2 %
+constexpr double other_focal_length = 0.02;
+constexpr double square_pixels = 0.01;  // relative difference of fx and fy that causes a warning
 
 double median_of(std::vector<double> values) {
   auto const middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -130,7 +131,7 @@ class CalibrationFit {
                                          "give them in the order of calibration.planes_mm, or correct that",
                                          pinhole().rms_px, fmt::join(names, ", ")));
     }
-    try_placement(find_moved_middle(dots_, expected_.principal_point_px.value_or(middle_px())));
+    try_placement(find_moved_middles(dots_, expected_.principal_point_px.value_or(middle_px())));
   }
 
   void explain_principal_point() {
@@ -247,17 +248,38 @@ class CalibrationFit {
       warn("the fit of the pinhole camera has not converged; show more planes, rows and columns of dots");
     if (expected_.is_pinhole &&
         std::abs(fit.camera.fx() - fit.camera.fy()) > std::max(square_pixels * f, deviations * f_error)) {
+      refuse_guessed_middles();
       warn(
           fmt::format("fx = {:.6g} and fy = {:.6g} px differ, though pixels are square (a plate that is tilted or "
                       "stretched); check calibration.spacing_mm along both axes",
                       fit.camera.fx(), fit.camera.fy()));
     }
-    if (expected_.focal_length_px && std::abs(f / *expected_.focal_length_px - 1) > other_focal_length) {
-      warn(
-          fmt::format("the focal length of {:.6g} px is not the {:.6g} px of the setup's lens and pixels; check "
-                      "calibration.planes_mm and spacing_mm, the order of the pictures, and the lens",
-                      f, *expected_.focal_length_px));
+    if (expected_.focal_length_px &&
+        std::abs(f - *expected_.focal_length_px) > std::max(other_focal_length * f, deviations * f_error)) {
+      warn(fmt::format(
+          "the focal length of {:.6g} px differs by {:.2g} % from the {:.6g} px of the setup's lens and "
+          "pixels, more than the {:.0f} % to which nominal focal lengths hold; check "
+          "calibration.planes_mm and spacing_mm, the order of the pictures, and the lens",
+          f, 100 * std::abs(f / *expected_.focal_length_px - 1), *expected_.focal_length_px, 100 * other_focal_length));
     }
+  }
+
+  /// Throws if the plate seems to have moved obliquely and the middle dot of a plane is a guess. For a camera with
+  /// unequal fx and fy, the guess is more likely wrong than the motion oblique.
+  void refuse_guessed_middles() const {
+    if (length(placement_.drift) == 0) return;
+    std::vector<std::string> guessed;
+    for (CalibratedPlane const& plane : calibration_.planes) {
+      if (plane.middle_by == MiddleBy::expected_view) guessed.push_back(plane.file);
+    }
+    if (guessed.empty()) return;
+    PinholeCamera const& camera = calibration_.pinhole.camera;
+    throw DataError(
+        name_, fmt::format("fits only a camera of unequal fx = {:.6g} and fy = {:.6g} px, with the plate moved at "
+                           "{:.3g} degrees to its normal (the middle dots of {} are guesses, for their pictures show "
+                           "a part of the grid only, and are probably wrong); show the whole grid in every picture, or "
+                           "give the camera's place and the direction of the plate's motion better",
+                           camera.fx(), camera.fy(), degrees(length(placement_.drift)), fmt::join(guessed, ", ")));
   }
 
   void fit_polynomial() {

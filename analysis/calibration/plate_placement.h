@@ -34,14 +34,18 @@ struct PlateDots {
 /// @return nullopt if there is none, or for fewer than three or more than six planes
 std::optional<std::vector<std::size_t>> find_picture_order(PlateDots const& dots);
 
-/// Finds a plane whose centre dot was misidentified by one or two columns or rows: the correction of one plane that
-/// improves the fit of a pinhole camera without distortion at least five-fold. Several corrections that fit equally
-/// well differ by a drift; the one whose principal point is nearest to the expected one is returned.
-std::optional<PlatePlacement> find_moved_middle(PlateDots const& dots, Vec2d principal_point_px);
+/// Finds the planes whose centre dots were misidentified by whole columns or rows: the offsets that improve the fit of
+/// a pinhole camera without distortion at least five-fold. The offsets of one plane, or of two planes at once, are
+/// changed until the residual no longer decreases. Offsets proportional to Z leave the residual as it is; they are
+/// determined from the principal point, as in find_drift(). An offset common to all planes does not affect the camera;
+/// the smallest offsets are returned.
+/// @return nullopt if no offsets improve the fit sufficiently
+std::optional<PlatePlacement> find_moved_middles(PlateDots const& dots, Vec2d principal_point_px);
 
 /// Determines the drift of a plate that was not translated along its normal, from the position of the principal point,
-/// which a drift d shifts by f d. If the drift is a whole number of spacings from plane to plane, the centre dots were
-/// misidentified and the result contains index offsets instead.
+/// which a drift d shifts by f d. If index offsets by a whole number of spacings from plane to plane bring the
+/// principal point to the expected one, the centre dots were misidentified and the result contains these offsets
+/// instead. Such offsets leave the distance between the planes as it is, whereas a drift reduces it.
 /// @return nullopt if no drift brings the principal point to within 1 px of the expected one
 std::optional<PlatePlacement> find_drift(PlateDots const& dots, Vec2d principal_point_px);
 

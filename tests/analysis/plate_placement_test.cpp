@@ -74,14 +74,14 @@ TEST(PlatePlacement, AMiddleDotThatIsOffByOneIsFound) {
     std::array<int, 3> moved{};
     moved[plane] = 1;
     PlateDots const dots = dots_of_plate(0, 0, moved);
-    auto const placement = find_moved_middle(dots, picture_middle);
+    auto const placement = find_moved_middles(dots, picture_middle);
     ASSERT_TRUE(placement) << plane;
     for (std::size_t other = 0; other < 3; ++other) {
       EXPECT_EQ(placement->moved[other], (std::array<int, 2>{-moved[other], 0})) << plane;
     }
     EXPECT_NEAR(fit_pinhole(dots.points(*placement), picture_middle).camera.fx(), long_focal_length, 1e-3);
   }
-  EXPECT_FALSE(find_moved_middle(dots_of_plate(0.01, 0), picture_middle));
+  EXPECT_FALSE(find_moved_middles(dots_of_plate(0.01, 0), picture_middle));
 }
 
 // One column more from plane to plane is a drift by whole spacings, which no residual shows.
@@ -94,6 +94,48 @@ TEST(PlatePlacement, MiddleDotsThatDriftByWholeSpacingsAreFound) {
   EXPECT_EQ(placement->moved[0], (std::array<int, 2>{1, 0}));
   EXPECT_EQ(placement->moved[1], (std::array<int, 2>{0, 0}));
   EXPECT_EQ(placement->moved[2], (std::array<int, 2>{-1, 0}));
+}
+
+// Index offsets displace the dots within the plates by whole spacings s, which for a plate turned by 30 degrees is not
+// a motion at an angle: an oblique motion by d reduces the distance between the planes by sqrt(1 - d^2), here by 2 %.
+TEST(PlatePlacement, MiddleDotsOfTwoPlanesOfATiltedPlateAreFound) {
+  double const tilt = 30 * pi / 180;
+  for (int const sign : {1, -1}) {
+    PlateDots dots = dots_of_plate(0, 0, {-sign, 0, sign});
+    // A plate that is turned about Y and moved along its own normal.
+    Eigen::Matrix3d const turn = Eigen::AngleAxisd(tilt, Eigen::Vector3d::UnitY()).toRotationMatrix();
+    for (std::size_t k = 0; k < dots.pixel.size(); ++k) {
+      std::size_t const plane = dots.plane_of[k];
+      int const column = dots.index[k][0] - (static_cast<int>(plane) - 1) * sign;
+      Eigen::Vector3d const at =
+          turn * Eigen::Vector3d(dots.spacing * column, dots.spacing * dots.index[k][1], dots.z[plane]);
+      dots.pixel[k] = long_camera().project({at.x(), at.y(), at.z()});
+    }
+    EXPECT_LT(fit_pinhole(dots.points(), picture_middle).rms_px, 1e-6) << "the residuals do not show the error";
+    auto const placement = find_drift(dots, picture_middle);
+    ASSERT_TRUE(placement);
+    EXPECT_THAT(placement->moved, testing::ElementsAre(std::array<int, 2>{sign, 0}, std::array<int, 2>{0, 0},
+                                                       std::array<int, 2>{-sign, 0}));
+    PinholeFit const fit = fit_pinhole(dots.points(*placement), picture_middle);
+    EXPECT_NEAR(fit.camera.fx(), long_focal_length, 0.01);
+    EXPECT_NEAR(fit.camera.fy(), long_focal_length, 0.01);
+  }
+}
+
+// Offsets of two planes that are not proportional to Z show in the residuals, up to a part that is proportional to Z.
+TEST(PlatePlacement, MiddleDotsOfTwoPlanesThatAreOffDifferentlyAreFound) {
+  for (std::array<int, 3> const moved : {std::array<int, 3>{-1, 0, 2}, {2, 0, 1}, {0, 1, -2}}) {
+    PlateDots const dots = dots_of_plate(0, 0, moved);
+    auto const placement = find_moved_middles(dots, picture_middle);
+    ASSERT_TRUE(placement);
+    std::vector<int> sums;  // equal in all planes if the offsets are corrected
+    for (std::size_t plane = 0; plane < 3; ++plane) {
+      sums.push_back(placement->moved[plane][0] + moved[plane]);
+      EXPECT_EQ(placement->moved[plane][1], 0);
+    }
+    EXPECT_THAT(sums, testing::Each(sums[0])) << moved[0] << " " << moved[1] << " " << moved[2];
+    EXPECT_NEAR(fit_pinhole(dots.points(*placement), picture_middle).camera.fx(), long_focal_length, 1e-3);
+  }
 }
 
 TEST(PlatePlacement, PicturesInAnotherOrderAreFound) {
