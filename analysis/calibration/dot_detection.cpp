@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
+#include <optional>
 #include <vector>
 
 #include "analysis/calibration/dot_regions.h"
@@ -16,7 +17,12 @@ namespace {
 constexpr double rounding = 0.5;
 constexpr int ring_px = 5;      // width of the ring in which the background is fitted
 constexpr int least_ring = 24;  // minimum number of background pixels for a plane fit
-constexpr int reach_px = 4;     // distance to which light of a region that is not a dot spreads beyond the region
+constexpr double wide = 3;      // radius of the surroundings for a quadratic fit, in outer radii of the ring
+// maximum error of a quadratic fit at a dot's centre, and of its slope across the window, in standard deviations of the
+// noise of a pixel
+constexpr double most_error = 0.25;
+constexpr double most_residual = 3;  // maximum rms residual of a quadratic fit, in standard deviations of the noise
+constexpr int reach_px = 4;          // distance to which light of a region that is not a dot spreads beyond the region
 
 enum class Dots { bright, dark };
 
@@ -75,56 +81,105 @@ cv::Mat background_pixels(DotRegions& regions) {
   return free;
 }
 
-/// Plane of grey levels: varies linearly around a point.
-struct LevelPlane {
+/// Grey levels of the background: a polynomial of first or second order around a point.
+struct LevelSurface {
   Vec2d about{};
   double level = 0;
   Vec2d slope{};
+  double xx = 0, xy = 0, yy = 0;  ///< coefficients of the second order
 
-  double at(double column, double row) const { return level + dot(slope, Vec2d{column - about.x, row - about.y}); }
+  double at(double column, double row) const {
+    double const x = column - about.x, y = row - about.y;
+    return level + slope.x * x + slope.y * y + xx * x * x + xy * x * y + yy * y * y;
+  }
 };
 
 /// Returns a plane tangent to the estimated background at a point, shifted by the mean error over the background
 /// pixels.
-LevelPlane estimated_plane(LitPicture const& lit, double mean_error, Vec2d about) {
+LevelSurface estimated_plane(LitPicture const& lit, double mean_error, Vec2d about) {
   Image<double> const& ground = lit.background;
   int const column = std::clamp(cvRound(about.x), 1, ground.columns() - 2);
   int const row = std::clamp(cvRound(about.y), 1, ground.rows() - 2);
   auto const level = [&](int x, int y) { return ground(x, y); };
-  LevelPlane plane{{static_cast<double>(column), static_cast<double>(row)}, level(column, row) + mean_error};
+  LevelSurface plane{{static_cast<double>(column), static_cast<double>(row)}, level(column, row) + mean_error};
   plane.slope = {0.5 * (level(column + 1, row) - level(column - 1, row)),
                  0.5 * (level(column, row + 1) - level(column, row - 1))};
   return plane;
 }
 
-/// Fits a plane to the background in the ring around a dot's window; falls back to the estimated background if the ring
-/// has too few background pixels.
-LevelPlane background_plane(LitPicture const& lit, cv::Mat const& free, double mean_error, DotRegion const& dot) {
-  double const outer = dot.window + 1 + ring_px;
-  int const left = std::max(0, cvFloor(dot.centre.x - outer)), top = std::max(0, cvFloor(dot.centre.y - outer));
-  int const right = std::min(free.cols, cvCeil(dot.centre.x + outer) + 1);
-  int const low = std::min(free.rows, cvCeil(dot.centre.y + outer) + 1);
-  Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+/// Sums of a least-squares fit to background pixels.
+template <int terms>
+struct FitSums {
+  Eigen::Matrix<double, terms, terms> normal = Eigen::Matrix<double, terms, terms>::Zero();
+  Eigen::Matrix<double, terms, 1> moment = Eigen::Matrix<double, terms, 1>::Zero();
+  double squares = 0;
+
+  double count() const { return normal(0, 0); }
+};
+
+/// Sums the background pixels in a square around a dot.
+/// @param term  computes the terms of the fit at an offset from the dot's centre; the first term is 1
+template <int terms, class Term>
+FitSums<terms> sum_background(LitPicture const& lit, cv::Mat const& free, Vec2d centre, double reach,
+                              Term const& term) {
+  int const left = std::max(0, cvFloor(centre.x - reach)), top = std::max(0, cvFloor(centre.y - reach));
+  int const right = std::min(free.cols, cvCeil(centre.x + reach) + 1);
+  int const low = std::min(free.rows, cvCeil(centre.y + reach) + 1);
+  FitSums<terms> sums;
   for (int row = top; row < low; ++row) {
     for (int column = left; column < right; ++column) {
       if (free.at<unsigned char>(row, column) == 0) continue;
-      Eigen::Vector3d const term(1, column - dot.centre.x, row - dot.centre.y);
-      normal += term * term.transpose();
-      sum += lit.raw(column, row) * term;
+      Eigen::Matrix<double, terms, 1> const values = term(column - centre.x, row - centre.y);
+      double const level = lit.raw(column, row);
+      sums.normal += values * values.transpose();
+      sums.moment += level * values;
+      sums.squares += level * level;
     }
   }
-  double const count = normal(0, 0);
+  return sums;
+}
+
+/// Fits a quadratic polynomial to the background in the wider surroundings of a dot.
+/// @return nullopt if the background pixels do not determine it at the dot, or if it does not follow them
+std::optional<LevelSurface> quadratic_background(LitPicture const& lit, cv::Mat const& free, DotRegion const& dot) {
+  constexpr int terms = 6;
+  double const reach = wide * (dot.window + 1 + ring_px);
+  auto const sums = sum_background<terms>(lit, free, dot.centre, reach, [reach](double x, double y) {
+    double const u = x / reach, v = y / reach;
+    return Eigen::Matrix<double, terms, 1>(1, u, v, u * u, u * v, v * v);
+  });
+  if (sums.count() < least_ring) return std::nullopt;
+  Eigen::LDLT<Eigen::Matrix<double, terms, terms>> const solver(sums.normal);
+  if (solver.info() != Eigen::Success || !(solver.rcond() > 1e-9)) return std::nullopt;
+  Eigen::Matrix<double, terms, terms> const covariance = solver.solve(Eigen::Matrix<double, terms, terms>::Identity());
+  double const steepest = std::sqrt(std::max(covariance(1, 1), covariance(2, 2))) * dot.window / reach;
+  if (!(std::sqrt(covariance(0, 0)) < most_error) || !(steepest < most_error)) return std::nullopt;
+  Eigen::Matrix<double, terms, 1> const fitted = solver.solve(sums.moment);
+  double const residual2 = (sums.squares - fitted.dot(sums.moment)) / sums.count();
+  if (!(residual2 <= std::pow(most_residual * lit.noise, 2))) return std::nullopt;
+  double const reach2 = reach * reach;
+  return LevelSurface{dot.centre,         fitted(0),          {fitted(1) / reach, fitted(2) / reach},
+                      fitted(3) / reach2, fitted(4) / reach2, fitted(5) / reach2};
+}
+
+/// Fits a plane to the background in the ring around a dot's window. If the ring has too few background pixels or has
+/// them on one side only, falls back to a quadratic polynomial in the wider surroundings, then to the estimated
+/// background.
+LevelSurface background_surface(LitPicture const& lit, cv::Mat const& free, double mean_error, DotRegion const& dot) {
+  auto const sums = sum_background<3>(lit, free, dot.centre, dot.window + 1 + ring_px,
+                                      [](double x, double y) { return Eigen::Vector3d(1, x, y); });
   // The background pixels must surround the dot rather than be on one side of it.
-  bool const about = std::hypot(normal(0, 1), normal(0, 2)) < 0.5 * dot.window * count;
-  if (count < least_ring || !about) return estimated_plane(lit, mean_error, dot.centre);
-  Eigen::Vector3d const plane = normal.ldlt().solve(sum);
+  bool const about = std::hypot(sums.normal(0, 1), sums.normal(0, 2)) < 0.5 * dot.window * sums.count();
+  if (sums.count() < least_ring || !about) {
+    return quadratic_background(lit, free, dot).value_or(estimated_plane(lit, mean_error, dot.centre));
+  }
+  Eigen::Vector3d const plane = sums.normal.ldlt().solve(sums.moment);
   return {dot.centre, plane(0), {plane(1), plane(2)}};
 }
 
 /// Computes the centroid of the levels above the background, re-centring the window until it converges.
 /// @return false if the window extends beyond the image
-bool measure(LitPicture const& lit, LevelPlane const& background, DotRegion const& region, DetectedDot& measured) {
+bool measure(LitPicture const& lit, LevelSurface const& background, DotRegion const& region, DetectedDot& measured) {
   Vec2d centre = region.centre;
   for (int round = 0; round < 10; ++round) {
     int const left = cvCeil(centre.x - region.window), right = cvFloor(centre.x + region.window);
@@ -167,7 +222,7 @@ DetectedDots detect_dots(Image<double> const& picture) {
   double const mean_error = lit.dots == Dots::bright ? mean_over : -mean_over;
   for (DotRegion const& region : regions.dots) {
     DetectedDot dot;
-    if (measure(lit, background_plane(lit, free, mean_error, region), region, dot)) found.dots.push_back(dot);
+    if (measure(lit, background_surface(lit, free, mean_error, region), region, dot)) found.dots.push_back(dot);
   }
   return found;
 }

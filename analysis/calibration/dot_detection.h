@@ -29,10 +29,11 @@ struct DetectedDots {
 /// unbiased for every shape and sub-pixel position. For a tilted dot it is the centroid of the image, not the image of
 /// the centre; see PinholeCamera::image_of_dot.
 ///
-/// The background is a plane fitted to a ring around the window that contains no dots. The levels of dark dots are
-/// taken relative to it, so that uneven illumination across a dot does not shift the centroid. For N electrons in a dot
-/// of diameter d, shot noise causes an error of d / (4 sqrt(N)) px: 0.001 px for a dot of 6 px and a full well of
-/// 30,000 electrons.
+/// The background is a plane fitted to a ring around the window that contains no dots. If the ring has few background
+/// pixels, or has them on one side only, a quadratic polynomial is fitted to the wider surroundings instead. The levels
+/// of dark dots are taken relative to the background, so that uneven illumination across a dot does not shift the
+/// centroid. For N electrons in a dot of diameter d, shot noise causes an error of d / (4 sqrt(N)) px: 0.001 px for a
+/// dot of 6 px and a full well of 30,000 electrons.
 /// @return no dots if no region exceeds the noise
 DetectedDots detect_dots(Image<double> const& picture);
 
