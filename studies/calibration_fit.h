@@ -15,8 +15,10 @@ struct ExpectedCamera {
 
 /// Fits a pinhole camera and a polynomial to the dots of a calibration and checks their consistency.
 /// - Dots whose residual exceeds eight robust standard deviations are removed and counted.
-/// - A middle dot assigned wrongly by one or two spacings, or a plate not moved along its normal, shows in the
-///   residuals or the principal point and is corrected with a warning (PlatePlacement).
+/// - Middle dots assigned wrongly by whole spacings, or a plate not moved along its normal, show in the residuals or
+/// the
+///   principal point and are corrected with a warning (PlatePlacement).
+/// - Unequal fx and fy together with a plate not moved along its normal are an error if any middle dot is a guess.
 /// - Images in the wrong order, two planes at the same position, fits without a solution, and residuals far above the
 ///   scatter of the dots within their planes are errors; the message names the likely cause.
 /// @param dots      detected dots with their grid indices

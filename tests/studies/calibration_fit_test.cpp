@@ -1,0 +1,111 @@
+#include "studies/calibration_fit.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+
+#include "render/base/error.h"
+#include "render/base/units.h"
+
+namespace gladstone {
+namespace {
+
+constexpr double focal_length_px = 1300, plate_distance = 0.3, plate_spacing = 5e-3;
+constexpr Vec2d expected_middle{159.5, 119.5};
+
+/// Plate turned by `tilt` about Y and moved along `motion`, a unit vector in the axes of the plate.
+struct Plate {
+  double tilt = 0;
+  Vec3d motion{0, 0, 1};
+  std::array<int, 3> moved{};  ///< columns by which the dots of each plane are counted wrong
+};
+
+/// Computes the images of 13 x 9 dots on three planes, as a camera sees them that looks at the middle plane.
+PlateDots dots_of_plate(Plate const& plate) {
+  PinholeCamera const camera{{focal_length_px, focal_length_px, expected_middle.x, expected_middle.y, 0, 0, 0, 0, pi, 0,
+                              0, 0, 0, plate_distance}};
+  Eigen::Matrix3d const turn = Eigen::AngleAxisd(plate.tilt, Eigen::Vector3d::UnitY()).toRotationMatrix();
+  PlateDots dots;
+  dots.z = {-0.02, 0, 0.02};
+  dots.spacing = plate_spacing;
+  for (std::size_t plane = 0; plane < 3; ++plane) {
+    for (int i = -6; i <= 6; ++i) {
+      for (int j = -4; j <= 4; ++j) {
+        Vec3d const in_plate = Vec3d{plate_spacing * i, plate_spacing * j, 0} + dots.z[plane] * plate.motion;
+        Eigen::Vector3d const at = turn * Eigen::Vector3d(in_plate.x, in_plate.y, in_plate.z);
+        dots.pixel.push_back(camera.project({at.x(), at.y(), at.z()}));
+        dots.index.push_back({i + plate.moved[plane], j});
+        dots.plane_of.push_back(plane);
+      }
+    }
+  }
+  return dots;
+}
+
+/// Fits a camera to the dots.
+/// @param outer  how the middle dots of the first and the last plane were identified
+Calibration fitted(PlateDots const& dots, MiddleBy outer = MiddleBy::expected_view) {
+  Calibration calibration;
+  calibration.columns = 320;
+  calibration.rows = 240;
+  for (std::size_t plane = 0; plane < dots.z.size(); ++plane) {
+    CalibratedPlane& added = calibration.planes.emplace_back();
+    added.file = "plane" + std::to_string(plane) + ".tif";
+    added.z = dots.z[plane];
+    added.found = added.used = dots.pixel.size() / dots.z.size();
+    added.middle_by = plane == 1 ? MiddleBy::whole_grid : outer;
+  }
+  ExpectedCamera expected;
+  expected.principal_point_px = expected_middle;
+  expected.focal_length_px = focal_length_px;
+  fit_calibration(calibration, dots, expected, "setup.toml");
+  return calibration;
+}
+
+// The motion along the normal of a plate turned by 30 degrees moves its middle aside by 20 mm tan(30 degrees) = 2.3
+// spacings, so that a middle dot one column off goes unnoticed; offsets proportional to Z do not change the residuals.
+TEST(CalibrationFit, CorrectsTheMiddleDotsOfTwoPlanesOfATiltedPlate) {
+  for (int const sign : {1, -1}) {
+    Calibration const calibration = fitted(dots_of_plate({30 * pi / 180, {0, 0, 1}, {sign, 0, -sign}}));
+    EXPECT_NEAR(calibration.pinhole.camera.fx(), focal_length_px, 0.01);
+    EXPECT_NEAR(calibration.pinhole.camera.fy(), focal_length_px, 0.01);
+    EXPECT_EQ(calibration.drift, Vec2d{});
+    EXPECT_THAT(calibration.warnings, testing::ElementsAre(testing::HasSubstr("plane0.tif: the middle dot was taken"),
+                                                           testing::HasSubstr("plane2.tif: the middle dot was taken")));
+  }
+}
+
+// Besides the wrong middle dots, the plate moves at 20 degrees to its normal along Y. Whole offsets alone do not
+// explain that. The oblique motion that does has a Z component different from the true one, which scales Z; for a plate
+// that is seen at an angle, such a scale makes fx and fy unequal.
+TEST(CalibrationFit, RefusesACameraOfUnequalFocalLengthsFromGuessedMiddleDots) {
+  double const oblique = 20 * pi / 180;
+  PlateDots const dots = dots_of_plate({40 * pi / 180, {0, std::sin(oblique), std::cos(oblique)}, {-2, 0, 2}});
+  try {
+    fitted(dots);
+    FAIL() << "must be refused";
+  } catch (DataError const& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("the middle dots of plane0.tif, plane2.tif are guesses"));
+  }
+  EXPECT_THAT(fitted(dots, MiddleBy::whole_grid).warnings, testing::Contains(testing::HasSubstr("differ, though")))
+      << "with the whole grid in every picture it is the plate that is wrong";
+}
+
+// Dots that are s times as far apart as assumed, at the same Z, are seen as by a lens of s times the focal length.
+TEST(CalibrationFit, WarnsOfAFocalLengthThatIsNotTheLenss) {
+  auto const warnings = [](double share) {
+    PlateDots dots = dots_of_plate({});
+    dots.spacing *= share;
+    return fitted(dots, MiddleBy::whole_grid).warnings;
+  };
+  auto const warns = testing::Contains(testing::HasSubstr("the focal length of"));
+  EXPECT_THAT(warnings(0.96), warns);
+  EXPECT_THAT(warnings(1.03), warns);
+  EXPECT_THAT(warnings(0.99), testing::Not(warns));
+  EXPECT_THAT(warnings(1), testing::IsEmpty());
+}
+
+}  // namespace
+}  // namespace gladstone
