@@ -30,8 +30,8 @@ std::string file_hash(std::string const& path) {
   std::uint64_t hash = 0;
   for (std::uint64_t offset = 0;;) {
     std::size_t const size = file.read(offset, piece.data(), piece.size());
+    if (size > 0 || offset == 0) hash = xxh64(piece.data(), size, hash);
     offset += size;
-    if (size > 0) hash = xxh64(piece.data(), size, hash);
     if (size < piece.size()) return hexadecimal(hash);
   }
 }

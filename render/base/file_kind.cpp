@@ -33,13 +33,19 @@ std::string kind_of_hdf5(std::string const& path) {
     std::string const filetype = Hdf5Reader(path).attribute("filetype");
     return filetype.empty() ? "HDF5" : filetype;
   } catch (DataError const&) {
-    return "";  // damaged: no data that could be lost
+    return "damaged HDF5";  // parts of it may be recoverable
   }
 }
 
 bool is_name(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-' ||
          c == '.' || c == '"';
+}
+
+/// Returns the kind of an XML file by its root element, which is looked for in its first bytes.
+std::string kind_of_xml(std::string_view text) {
+  if (text.find("<svg"sv) != std::string_view::npos) return "SVG";
+  return text.find("<VTKFile"sv) != std::string_view::npos ? "VTK" : "XML";
 }
 
 /// Returns true if the first line that is neither empty nor a comment is a table header or "key = ...".
@@ -72,11 +78,14 @@ std::string file_kind(std::string const& path, std::string const& name) {
                                   std::pair{"<!DOCTYPE html"sv, "HTML"},
                                   std::pair{"<!doctype html"sv, "HTML"},
                                   std::pair{"<svg"sv, "SVG"},
-                                  std::pair{"<?xml"sv, "SVG"},
+                                  std::pair{"<VTKFile"sv, "VTK"},
+                                  std::pair{"# vtk DataFile"sv, "VTK"},
+                                  std::pair{"NRRD000"sv, "NRRD"},
                                   std::pair{"{"sv, "JSON"},
                                   std::pair{"x_px,y_px,u_px,v_px"sv, "gladstone vectors"}};
   std::string const bytes = first_bytes(path);
   if (bytes.starts_with("\x89HDF\r\n\x1a\n")) return kind_of_hdf5(path);
+  if (bytes.starts_with("<?xml")) return kind_of_xml(bytes);
   for (auto const& [signature, kind] : signatures) {
     if (bytes.starts_with(signature)) return kind;
   }

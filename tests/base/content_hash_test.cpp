@@ -20,6 +20,8 @@ TEST(ContentHash, OfAFileIsThatOfItsBytesAndSeesEveryByteOfALongOne) {
   std::string const path = (std::filesystem::path(testing::TempDir()) / "gladstone_content_hash").string();
   std::ofstream(path, std::ios::binary) << "abc";
   EXPECT_EQ(file_hash(path), content_hash("abc"));
+  std::ofstream(path, std::ios::binary) << "";
+  EXPECT_EQ(file_hash(path), content_hash(""));
   std::string bytes((std::size_t{16} << 20) + 5, 'a');  // longer than the piece that is read at once
   std::ofstream(path, std::ios::binary) << bytes;
   std::string const before = file_hash(path);

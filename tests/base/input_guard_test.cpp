@@ -108,7 +108,17 @@ TEST_F(FileKinds, AreToldByContent) {
   Hdf5Writer(in_folder("a.h5"), {"gladstone truth", 2, "", 0, "cpu"}).close();
   EXPECT_EQ(kind("a.h5"), "gladstone truth");
   put("damaged.h5", "\x89HDF\r\n\x1a\n and no more");
-  EXPECT_EQ(kind("damaged.h5"), "");
+  EXPECT_EQ(kind("damaged.h5"), "damaged HDF5");
+  put("figure.svg", "<?xml version=\"1.0\"?>\n<!-- a figure -->\n<svg>");
+  EXPECT_EQ(kind("figure.svg"), "SVG");
+  put("field.vti", "<?xml version=\"1.0\"?>\n<VTKFile type=\"ImageData\">");
+  EXPECT_EQ(kind("field.vti"), "VTK");
+  put("field.vtk", "# vtk DataFile Version 3.0\n");
+  EXPECT_EQ(kind("field.vtk"), "VTK");
+  put("other.xml", "<?xml version=\"1.0\"?>\n<table>");
+  EXPECT_EQ(kind("other.xml"), "XML");
+  put("field.nrrd", "NRRD0005\n");
+  EXPECT_EQ(kind("field.nrrd"), "NRRD");
   put("a.tif", std::string("II*\0....", 8));
   EXPECT_EQ(kind("a.tif"), "TIFF");
   put("manifest.jsonl", "{\"manifest\":3}\n{}\n");
@@ -140,6 +150,9 @@ TEST_F(FileKinds, AnOutputOfAnotherKindDestroysNoResult) {
   EXPECT_THAT([&] { Hdf5Writer(in_folder("truth.h5"), {"gladstone vectors", 1, "", 0, "cpu"}); }, refused);
   EXPECT_EQ(content(in_folder("truth.h5")), before);
   Hdf5Writer(in_folder("truth.h5"), {"gladstone truth", 2, "other", 0, "cpu"}).close();
+  put("damaged.h5", "\x89HDF\r\n\x1a\n and no more");
+  EXPECT_THAT([&] { OutputFile::write_text(in_folder("damaged.h5"), "<html>"); },
+              ThrowsMessage<OutputError>(HasSubstr("damaged.h5: holds data of another kind (damaged HDF5)")));
   put("notes.txt", "mine");
   OutputFile::write_text(in_folder("notes.txt"), "<html>");  // named by the user, and of no kind that is known
 }
