@@ -119,6 +119,7 @@ class LegacyReader {
     std::vector<LegacyArray> fitting;
     std::vector<std::string> names;
     for (LegacyArray const& array : arrays_) {
+      if (marks_ghosts(array.name) && array.name != wish_.dataset) continue;
       names.push_back(array.name);
       bool const fits = array.components == static_cast<std::uint64_t>(wish_.values);
       if (array.name == wish_.dataset && !fits) {

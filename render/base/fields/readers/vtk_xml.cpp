@@ -219,6 +219,7 @@ class VtkXmlReader {
       for (VtkPlace const place : {VtkPlace::points, VtkPlace::cells}) {
         for (pugi::xml_node const array : data_of(piece, place).children("DataArray")) {
           std::string const name = array.attribute("Name").as_string();
+          if (marks_ghosts(name) && name != wish_.dataset) continue;
           names.push_back(name);
           int const count = array.attribute("NumberOfComponents").as_int(1);
           bool const named = wish_.dataset.empty() || name == wish_.dataset;
