@@ -33,12 +33,12 @@ FieldPlace field_place(FieldSource const& source, std::string const& path, std::
   FieldUnits const& units = source.units();
   RegularGrid const& grid = source.grid();
   double const mm = unit::millimetre, length = units.metres();
-  std::string const assumed = units.assumed();
+  std::string const assumed = units.assumed(), undefined = units.undefined();
   FieldPlace place;
   place.units = {{"length", named(units.length)},
-                 {"length_m", length},
+                 {"length_m", undefined.empty() ? nlohmann::json(length) : nlohmann::json(nullptr)},
                  {"assumed", named(assumed)},
-                 {"unknown", named(units.unknown)},
+                 {"unknown", named(undefined)},
                  {"values", named(units.values)}};
   Vec3d extent{};
   for (int axis = 0; axis < 3; ++axis) {
@@ -48,7 +48,10 @@ FieldPlace field_place(FieldSource const& source, std::string const& path, std::
   place.text = fmt::format("{}, so the field is {:.6g} x {:.6g} x {:.6g} mm wide unless spacing_mm is given; values {}",
                            assumed.empty() ? "lengths are in " + units.length : assumed, extent.x, extent.y, extent.z,
                            units.values.empty() ? "name no unit" : "are in " + units.values);
-  if (!units.unknown.empty()) place.text = units.unknown + "; give medium.field.spacing_mm; " + place.text;
+  if (!undefined.empty()) {
+    place.text = fmt::format("{}, so that spacing_mm must be given; values {}", undefined,
+                             units.values.empty() ? "name no unit" : "are in " + units.values);
+  }
   if (setup.empty()) return place;
 
   Setup const whole = with_field(setup, source, path, dataset, axes);

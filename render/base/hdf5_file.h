@@ -39,6 +39,8 @@ class Hdf5Reader {
   /// Returns the paths of all reachable numeric datasets, each once, "data/fields/rho": first those in the groups, then
   /// those reached by soft and external links.
   std::vector<std::string> linked_number_datasets() const;
+  /// Returns the datasets that hold no real numbers, with what they hold: "\"rho\" of complex numbers".
+  std::vector<std::string> other_datasets() const;
   std::vector<std::size_t> shape(std::string const& dataset) const;
   /// Returns the number of significant bits of the stored numbers: 24 for float, 53 for double, the width of an
   /// integer.
@@ -55,10 +57,16 @@ class Hdf5Reader {
   /// Returns, for each axis of a dataset, the path of its netCDF-4 coordinate dataset (dimension scale), or "" if there
   /// is none. HDF5 Dimension Scale Specification, attribute DIMENSION_LIST.
   std::vector<std::string> dimension_scales(std::string const& dataset) const;
+  /// Returns the label of each axis of a dataset, "" for axes without one. HDF5 Dimension Scale Specification,
+  /// attribute DIMENSION_LABELS.
+  std::vector<std::string> dimension_labels(std::string const& dataset) const;
   /// Returns a text or numeric root attribute as text; empty if it does not exist.
   std::string attribute(std::string const& name) const;
   /// Returns a text or numeric attribute of a numeric dataset as text; empty if it does not exist.
   std::string attribute_of(std::string const& dataset, std::string const& name) const;
+  /// Returns a numeric attribute of a numeric dataset, one number or several; empty if it does not exist or is no
+  /// number.
+  std::vector<double> numbers_of(std::string const& dataset, std::string const& name) const;
 
  private:
   std::string path_;

@@ -26,12 +26,20 @@ std::string sizes_text(std::vector<std::size_t> const& shape) {
   return text;
 }
 
-std::string class_name(H5T_class_t type) {
-  switch (type) {
+/// Returns true for a record of two floating-point numbers, as h5py stores complex numbers ("r" and "i").
+bool is_complex(hid_t type) {
+  if (H5Tget_class(type) != H5T_COMPOUND || H5Tget_nmembers(type) != 2) return false;
+  return H5Tget_member_class(type, 0) == H5T_FLOAT && H5Tget_member_class(type, 1) == H5T_FLOAT;
+}
+
+std::string type_name(hid_t type) {
+  switch (H5Tget_class(type)) {
+    case H5T_FLOAT:
+      return "floating-point numbers";
     case H5T_STRING:
       return "text";
     case H5T_COMPOUND:
-      return "compound records";
+      return is_complex(type) ? "complex numbers" : "compound records";
     case H5T_ENUM:
       return "enumerated values";
     case H5T_ARRAY:
@@ -203,9 +211,8 @@ Id Hdf5Reader::Handle::open(std::string const& path, std::string const& dataset,
   Id const type(H5Dget_type(opened), H5Tclose);
   H5T_class_t const kind = H5Tget_class(type);
   if (kind != H5T_INTEGER && (kind != H5T_FLOAT || integers_only)) {
-    std::string const held = kind == H5T_FLOAT ? "floating-point numbers" : class_name(kind);
-    throw DataError(path, "dataset \"" + dataset + "\" holds " + held + "; " + (integers_only ? "whole " : "") +
-                              "numbers are needed");
+    throw DataError(path, "dataset \"" + dataset + "\" holds " + type_name(type) + "; " +
+                              (integers_only ? "whole " : "") + "numbers are needed");
   }
   return opened;
 }
@@ -320,6 +327,19 @@ std::vector<std::string> Hdf5Reader::linked_number_datasets() const {
   return names;
 }
 
+std::vector<std::string> Hdf5Reader::other_datasets() const {
+  Lock const lock(library_lock());
+  std::vector<std::string> texts;
+  for (std::string const& name : all_datasets(handle_->file)) {
+    Id const opened(H5Dopen2(handle_->file, name.c_str(), H5P_DEFAULT), H5Dclose);
+    if (!opened.valid()) continue;
+    Id const type(H5Dget_type(opened), H5Tclose);
+    H5T_class_t const kind = H5Tget_class(type);
+    if (kind != H5T_INTEGER && kind != H5T_FLOAT) texts.push_back('"' + name + "\" of " + type_name(type));
+  }
+  return texts;
+}
+
 std::vector<std::string> Hdf5Reader::dimension_scales(std::string const& dataset) const {
   Lock const lock(library_lock());
   Id const opened = handle_->open(path_, dataset);
@@ -349,6 +369,27 @@ std::vector<std::string> Hdf5Reader::dimension_scales(std::string const& dataset
   }
   H5Dvlen_reclaim(type, space, H5P_DEFAULT, lists.data());
   return scales;
+}
+
+std::vector<std::string> Hdf5Reader::dimension_labels(std::string const& dataset) const {
+  Lock const lock(library_lock());
+  Id const opened = handle_->open(path_, dataset);
+  std::vector<std::string> labels(shape_of(opened).size());
+  constexpr char const* name = "DIMENSION_LABELS";
+  if (H5Aexists(opened, name) <= 0) return labels;
+  Id const attribute(H5Aopen(opened, name, H5P_DEFAULT), H5Aclose);
+  Id const stored(H5Aget_type(attribute), H5Tclose);
+  Id const space(H5Aget_space(attribute), H5Sclose);
+  bool const fits = H5Tget_class(stored) == H5T_STRING && H5Tis_variable_str(stored) > 0 &&
+                    H5Sget_simple_extent_npoints(space) == static_cast<hssize_t>(labels.size());
+  if (!fits) return labels;
+  std::vector<char*> texts(labels.size(), nullptr);
+  if (H5Aread(attribute, stored, static_cast<void*>(texts.data())) < 0) return labels;
+  for (std::size_t axis = 0; axis < labels.size(); ++axis) {
+    if (texts[axis]) labels[axis] = texts[axis];
+  }
+  H5Dvlen_reclaim(stored, space, H5P_DEFAULT, static_cast<void*>(texts.data()));
+  return labels;
 }
 
 std::vector<std::size_t> Hdf5Reader::shape(std::string const& dataset) const {
@@ -453,6 +494,22 @@ std::string Hdf5Reader::attribute(std::string const& name) const {
 std::string Hdf5Reader::attribute_of(std::string const& dataset, std::string const& name) const {
   Lock const lock(library_lock());
   return attribute_text(handle_->open(path_, dataset), name, handle_->bytes);
+}
+
+std::vector<double> Hdf5Reader::numbers_of(std::string const& dataset, std::string const& name) const {
+  Lock const lock(library_lock());
+  Id const opened = handle_->open(path_, dataset);
+  if (H5Aexists(opened, name.c_str()) <= 0) return {};
+  Id const attribute(H5Aopen(opened, name.c_str(), H5P_DEFAULT), H5Aclose);
+  Id const type(H5Aget_type(attribute), H5Tclose);
+  Id const space(H5Aget_space(attribute), H5Sclose);
+  H5T_class_t const kind = H5Tget_class(type);
+  hssize_t const count = H5Sget_simple_extent_npoints(space);
+  constexpr hssize_t most = 1000;  // a damaged header can declare any number
+  if ((kind != H5T_INTEGER && kind != H5T_FLOAT) || count < 1 || count > most) return {};
+  std::vector<double> values(static_cast<std::size_t>(count));
+  if (H5Aread(attribute, H5T_NATIVE_DOUBLE, values.data()) < 0) return {};
+  return values;
 }
 
 }  // namespace gladstone

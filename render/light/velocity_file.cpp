@@ -86,7 +86,7 @@ FileFlow FileFlow::read(SetupTable& table, FlowSetup& setup) {
     table.problem("axes",
                   "is no order of axes; name those of the file, the slowest first: \"zyx\", or \"yx\" of a plane");
   }
-  file.scale = table.number("scale", 1.0, {-1e12, 1e12});
+  if (table.has("scale")) file.scale = table.number("scale", 1.0, {-1e12, 1e12});
   if (table.has("spacing_mm")) file.spacing = table.quantities("spacing_mm", {mm, mm, mm}, mm, Range::positive(1e9));
   file.center = table.quantities("center_mm", file.center, mm, {-1e9, 1e9});
   file.extrude = table.boolean("extrude", false);
@@ -110,9 +110,8 @@ RegularGrid velocity_grid(VelocityFile const& setup) {
   if (grid.nodes[0] < 2 || grid.nodes[1] < 2) {
     refuse(fmt::format("has {} x {} nodes (at least 2 x 2 are needed)", grid.nodes[0], grid.nodes[1]));
   }
-  if (!setup.spacing && !source->units().unknown.empty()) {
-    throw DataError(setup.file, source->units().unknown + "; give flow.spacing_mm");
-  }
+  std::string const undefined = source->units().undefined();
+  if (!setup.spacing && !undefined.empty()) throw DataError(setup.file, undefined + "; give flow.spacing_mm");
   grid.spacing = setup.spacing ? *setup.spacing : grid.spacing * source->units().metres();
   grid.periodic = setup.periodic;
   if (setup.extrude) grid.periodic[2] = false;
@@ -130,6 +129,8 @@ double velocity_bytes(VelocityFile const& setup) {
 LoadedVelocity load_velocity(VelocityFile const& setup) {
   RegularGrid const grid = velocity_grid(setup);
   auto const source = open_field(setup.file, setup.dataset, components, setup.axes);
+  ValueFactor const unit =
+      setup.scale ? ValueFactor{*setup.scale, ""} : source->units().value_factor(dimension_of_velocity);
   Padded const padded(grid);
   require_memory(setup.file, source->name(), static_cast<double>(padded.size()) * sizeof(float));
   std::vector<float> values(padded.size());
@@ -141,7 +142,7 @@ LoadedVelocity load_velocity(VelocityFile const& setup) {
     for (int j = 0; j < grid.nodes[1]; ++j) {
       double const* const from = plane.data() + row * static_cast<std::size_t>(j);
       std::transform(from, from + row, values.begin() + static_cast<std::ptrdiff_t>(padded.at(0, j, k)),
-                     [&setup](double value) { return static_cast<float>(setup.scale * value); });
+                     [&unit](double value) { return static_cast<float>(unit.factor * value); });
     }
   }
   for (std::size_t axis = 0; axis < (grid.nodes[2] > 1 ? 3u : 2u); ++axis) filter_axis(padded, axis, values);
@@ -162,7 +163,9 @@ LoadedVelocity load_velocity(VelocityFile const& setup) {
         source->name(), setup.file, assumed, grid.spacing.x * (grid.nodes[0] - 1) / mm,
         grid.spacing.y * (grid.nodes[1] - 1) / mm);
   }
-  for (std::string const& note : source->notes()) {
+  std::vector<std::string> notes = source->notes();
+  if (!unit.warning.empty()) notes.push_back(unit.warning + "; if that is wrong, give flow.scale");
+  for (std::string const& note : notes) {
     loaded.warning += fmt::format("{}flow.file: {}: {}", loaded.warning.empty() ? "" : "; ", setup.file, note);
   }
   return loaded;

@@ -31,11 +31,17 @@ RegularGrid world_grid(FieldSetup const& field, FieldSource const& source) {
                                             source.name()));
   }
   if (grid.nodes[0] < 2 || grid.nodes[1] < 2) {
-    throw DataError(field.file, fmt::format("{} has {} x {} nodes (at least 2 x 2 are needed)", source.name(),
-                                            grid.nodes[0], grid.nodes[1]));
+    bool const plane = std::count(grid.nodes.begin(), grid.nodes.end(), 1) == 1;
+    throw DataError(field.file,
+                    fmt::format("{} has {} x {} nodes across x and y (at least 2 x 2 are needed){}", source.name(),
+                                grid.nodes[0], grid.nodes[1],
+                                plane && field.axes.empty() ? "; name the axes of the plane in the order of "
+                                                              "the file: medium.field.axes = \"yx\""
+                                                            : ""));
   }
-  if (!field.spacing && !source.units().unknown.empty()) {
-    throw DataError(field.file, source.units().unknown + "; give medium.field.spacing_mm");
+  std::string const undefined = source.units().undefined();
+  if (!field.spacing && !undefined.empty()) {
+    throw DataError(field.file, undefined + "; give medium.field.spacing_mm");
   }
   grid.spacing = field.spacing ? *field.spacing : grid.spacing * source.units().metres();
   grid.periodic = field.periodic;
@@ -59,13 +65,20 @@ std::string assumed_lengths(FieldSetup const& field, FieldSource const& source, 
       grid.spacing.y * (grid.nodes[1] - 1) / mm);
 }
 
-/// Returns a warning if a file contains n itself with so few bits that n - 1 is inaccurate; empty otherwise.
+/// Factor of the file's values, to kg/m^3 or pure numbers: the setup's, or else that of the unit in the file.
+ValueFactor value_factor(FieldSetup const& field, FieldUnits const& units) {
+  if (field.scale) return {*field.scale, ""};
+  return units.value_factor(field.quantity == FieldQuantity::density ? dimension_of_density : dimension_of_numbers);
+}
+
+/// What is lost where a file holds n itself with so few bits that n - 1 keeps few of them; empty where nothing is.
+/// @param scale      factor of the values in the file
 /// @param low, high  smallest and largest refractivity
-std::string lost_digits(FieldSetup const& field, FieldSource const& source, double low, double high) {
+std::string lost_digits(FieldSetup const& field, FieldSource const& source, double scale, double low, double high) {
   int const bits = source.significant_bits();
   if (field.quantity != FieldQuantity::refractive_index || bits > std::numeric_limits<float>::digits) return {};
-  double const largest = (1 + high) / std::abs(field.scale);
-  double const step = std::abs(field.scale) * std::ldexp(1.0, std::ilogb(largest) + 1 - bits);
+  double const largest = (1 + high) / std::abs(scale);
+  double const step = std::abs(scale) * std::ldexp(1.0, std::ilogb(largest) + 1 - bits);
   return fmt::format(
       "medium.field.quantity: {} of {} holds refractive indices in {} bits, so n - 1 is known in steps of {:.2g} only, "
       "{:.2g} % of its range in this field (digits are lost that nothing brings back, and gradients are noisy); write "
@@ -73,11 +86,11 @@ std::string lost_digits(FieldSetup const& field, FieldSource const& source, doub
       source.name(), field.file, bits, step, 100 * step / std::max(high - low, step));
 }
 
-/// Returns a warning if the values suggest another quantity or unit; empty otherwise. They do if all of them differ
-/// from the ambient value by more than a factor of 100, which is implausible for gas flows at one pressure, or if
-/// densities look like refractive indices.
+/// A question where the values are plausible in another quantity or unit: they differ from the ambient by more than a
+/// factor of a hundred throughout, which no gas flow at one pressure does, or are densities where indices would be.
+/// @param scale      factor of the values in the file
 /// @param low, high  smallest and largest refractivity
-std::string unlikely_range(MediumSetup const& setup, std::string const& name, double low, double high) {
+std::string unlikely_range(MediumSetup const& setup, std::string const& name, double scale, double low, double high) {
   FieldSetup const& field = setup.field;
   double const ambient = setup.ambient_refractivity();
   if (!(ambient > 0) || low < 0) return {};
@@ -85,8 +98,8 @@ std::string unlikely_range(MediumSetup const& setup, std::string const& name, do
   bool const density = field.quantity == FieldQuantity::density;
   double const unit = density ? setup.gladstone_dale : 1.0;  // refractivity per unit of the values
   std::string likely;
-  // a gas has 1e-5 < n - 1 < 2e-3, so that indices read as densities are 1 to within 0.2 %
-  bool const index = density && field.scale == 1.0 && low > (1 + 1e-5) * unit && high < (1 + 2e-3) * unit;
+  // a gas has 1e-5 < n - 1 < 2e-3, and its density as read is then 1 within 0.2 %
+  bool const index = density && scale == 1.0 && low > (1 + 1e-5) * unit && high < (1 + 2e-3) * unit;
   if (index) {
     likely = "these would be refractive indices of a gas; if they are, set quantity = \"refractive_index\"";
   } else if (high < ambient / factor) {
@@ -99,8 +112,9 @@ std::string unlikely_range(MediumSetup const& setup, std::string const& name, do
     if (as_refractivity < in_grams) {
       likely = "as refractivities n - 1 they would fit; if they are, set quantity = \"refractivity\"";
     } else if (in_grams < HUGE_VAL) {
-      likely = density ? "in g/cm^3 they would fit; if they are, set scale = 1000"
-                       : "a thousand times as large they would fit; if their unit is 1e-3, set scale = 1000";
+      likely = fmt::format("{} they would fit; if {}, set scale = {:g}",
+                           density && scale == 1.0 ? "in g/cm^3" : "a thousand times as large",
+                           density && scale == 1.0 ? "they are" : "their unit is so", 1000 * scale);
     }
   } else if (low > factor * ambient) {
     bool const as_density = !density && low * setup.gladstone_dale < 10 * ambient;
@@ -131,7 +145,8 @@ BuiltMedium build_grid(MediumSetup const& setup, RegularGrid const& grid, FieldS
   using Volume = RefractiveIndexVolume<Stored>;
   FieldSetup const& field = setup.field;
   bool const spline = setup.interpolation == FieldInterpolation::cubic_bspline;
-  double const scale = field.scale * (field.quantity == FieldQuantity::density ? setup.gladstone_dale : 1.0);
+  ValueFactor const factor = value_factor(field, source.units());
+  double const scale = factor.factor * (field.quantity == FieldQuantity::density ? setup.gladstone_dale : 1.0);
   double const shift = field.quantity == FieldQuantity::refractive_index ? -1.0 : 0.0;
   auto const volume = std::make_shared<Volume const>(
       grid, spline ? Volume::Interpolation::cubic_bspline : Volume::Interpolation::trilinear, scale, shift,
@@ -145,11 +160,17 @@ BuiltMedium build_grid(MediumSetup const& setup, RegularGrid const& grid, FieldS
   for (std::string const& note : source.notes()) {
     built.warnings.push_back(fmt::format("medium.field.file: {}: {}", field.file, note));
   }
-  std::string odd = unlikely_range(setup, source.name(), volume->lowest(), volume->highest());
+  if (!factor.warning.empty()) {
+    built.warnings.push_back(
+        fmt::format("medium.field.file: {}: {}; if that is wrong, give medium.field.scale or "
+                    "medium.field.quantity",
+                    field.file, factor.warning));
+  }
+  std::string odd = unlikely_range(setup, source.name(), factor.factor, volume->lowest(), volume->highest());
   if (!odd.empty()) built.warnings.push_back(std::move(odd));
   built.lowest = volume->lowest();
   built.highest = volume->highest();
-  std::string lost = lost_digits(field, source, volume->lowest(), volume->highest());
+  std::string lost = lost_digits(field, source, factor.factor, volume->lowest(), volume->highest());
   if (!lost.empty()) built.warnings.push_back(std::move(lost));
   std::string assumed = assumed_lengths(field, source, grid);
   if (!assumed.empty()) built.warnings.push_back(std::move(assumed));

@@ -45,7 +45,7 @@ void read_file_field(SetupTable& table, FieldSetup& field) {
                                 {{"density", FieldQuantity::density},
                                  {"refractive_index", FieldQuantity::refractive_index},
                                  {"refractivity", FieldQuantity::refractivity}});
-  field.scale = table.number("scale", field.scale);
+  if (table.has("scale")) field.scale = table.number("scale", 1.0);
   if (field.scale == 0) table.problem("scale", "is zero (the field would vanish); use kind = \"none\" for that");
   if (table.has("spacing_mm")) {
     field.spacing = table.quantities("spacing_mm", {1e-3, 1e-3, 1e-3}, unit::millimetre, Range::positive());

@@ -48,7 +48,7 @@ void refuse_negative_density(MediumSetup const& setup, BuiltMedium const& medium
     throw_if_interrupted();
     source->read_planes(k, 1, plane);
     for (std::size_t i = 0; i < plane.size(); ++i) {
-      if (field.scale * plane[i] >= 0) continue;
+      if (field.scale.value_or(1) * plane[i] >= 0) continue;
       if (count++ == 0) first = fmt::format("{}, {}, {}", i % width, i / width, k);
     }
   }

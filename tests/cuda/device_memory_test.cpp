@@ -147,7 +147,7 @@ TEST_F(SmallDevice, NamesTheSizeOfATableThatDoesNotFit) {
 // half the room half the blocks work.
 TEST_F(SmallDevice, LaysDownWideConesInFewerBlocks) {
   FieldSetup field = dns_plane("kepeak");
-  field.scale *= 4;
+  field.scale = 4 * field.scale.value_or(1);
   gladstone::Setup setup = table1_setup(96);
   setup.medium.field = field;
   Scene scene = scene_with_dots(setup, lattice(96, 20, 4.3), 64);

@@ -17,7 +17,7 @@ class CudaLightTest : public CudaRendererTest {
   static Scene dense_scene(std::string const& instant, double times, std::uint64_t rays) {
     BosSetup setup = table1_setup(96);
     setup.medium.field = dns_plane(instant);
-    setup.medium.field.scale *= times;
+    setup.medium.field.scale = times * setup.medium.field.scale.value_or(1);
     std::vector<Vec2d> places = lattice(96, 20, 4.3);
     for (Vec2d& place : places) place += {0.0173, 0.0091};
     return scene_with_dots(setup, places, rays);

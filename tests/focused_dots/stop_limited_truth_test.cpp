@@ -18,7 +18,7 @@ class PeriodicPlane {
     auto const shape = reader.shape("Density_0001");  // z, y, x, component
     rows_ = static_cast<int>(shape[1]), columns_ = static_cast<int>(shape[2]);
     coefficients_ = reader.read("Density_0001");
-    for (double& value : coefficients_) value *= field.scale;
+    for (double& value : coefficients_) value *= field.scale.value_or(1);
     spacing_ = field.spacing->x;
     for (int row = 0; row < rows_; ++row) filter(row * columns_, 1, columns_);
     for (int column = 0; column < columns_; ++column) filter(column, columns_, rows_);

@@ -16,7 +16,8 @@ namespace {
 constexpr double node_step = unit::millimetre;
 
 /// A cut-out of nodes a millimetre apart about the origin, with the velocity of their places [m/s, m].
-std::string cutout(std::string const& name, std::array<int, 3> nodes, std::function<Vec3d(Vec3d)> const& velocity) {
+std::string cutout(std::string const& name, std::array<int, 3> nodes, std::function<Vec3d(Vec3d)> const& velocity,
+                   std::string const& unit = "m/s") {
   std::string const path = testing::TempDir() + "/velocity_" + name + ".h5";
   std::vector<double> values;
   for (int k = 0; k < nodes[2]; ++k) {
@@ -31,7 +32,7 @@ std::string cutout(std::string const& name, std::array<int, 3> nodes, std::funct
   auto const size = [](int count) { return static_cast<std::size_t>(count); };
   Hdf5Writer file(path, {"test", 1, "", 0, "cpu"});
   file.write("Velocity_0001", std::span<double const>(values), {size(nodes[2]), size(nodes[1]), size(nodes[0]), 3},
-             "m/s", "test", "z, y, x, component");
+             unit, "test", "z, y, x, component");
   file.close();
   return path;
 }
@@ -89,6 +90,19 @@ TEST(VelocityFile, PassesOnWhatItsReaderHadToAssume) {
   LoadedVelocity const loaded = load_velocity(setup);
   EXPECT_THAT(loaded.warning, testing::HasSubstr("axes that are not uniform were resampled: y"));
   EXPECT_LT(length(loaded.flow(Vec3d{}) - Vec3d{1.5, 1.5, 1.5}), 1e-6);
+}
+
+// A velocity of 1500 mm/s; the scale of the setup replaces the unit of the file.
+TEST(VelocityFile, ConvertsTheUnitOfTheFile) {
+  auto const uniform = [](Vec3d) { return Vec3d{1500, 0, 0}; };
+  VelocityFile setup = a_millimetre_apart(cutout("millimetres", {4, 4, 3}, uniform, "mm/s"));
+  EXPECT_NEAR(load_velocity(setup).flow(Vec3d{}).x, 1.5, 1e-6);
+  EXPECT_EQ(load_velocity(setup).warning, "");
+  setup.scale = 1e-2;
+  EXPECT_NEAR(load_velocity(setup).flow(Vec3d{}).x, 15, 1e-5);
+  setup = a_millimetre_apart(cutout("kelvin", {4, 4, 3}, uniform, "K"));
+  EXPECT_THAT(load_velocity(setup).warning,
+              testing::HasSubstr("values are in \"K\", which is not a known unit of velocity"));
 }
 
 // A wave over the period of 16 nodes, sampled at 16: a cubic spline's error is (2 pi / 16)^4 / 384 of it at most, and

@@ -29,7 +29,8 @@ class FieldVolume : public testing::Test {
 
   /// A JHTDB-like cut-out of values f(i, j, k), with coordinates of the given step where it is positive.
   template <class Function>
-  MediumSetup file_setup(int nx, int ny, int nz, Function const& f, double coordinate_step = 0) {
+  MediumSetup file_setup(int nx, int ny, int nz, Function const& f, double coordinate_step = 0,
+                         std::string const& length_unit = "mm", std::string const& value_unit = "1") {
     std::vector<double> values;
     for (int k = 0; k < nz; ++k) {
       for (int j = 0; j < ny; ++j) {
@@ -39,12 +40,12 @@ class FieldVolume : public testing::Test {
     std::string const path = (folder_ / "field.h5").string();
     Hdf5Writer writer(path, {"test field", 1, "", 0, "cpu"});
     std::vector<std::size_t> const shape{std::size_t(nz), std::size_t(ny), std::size_t(nx)};
-    writer.write("/rho", values, shape, "1", "test", "z, y, x");
+    writer.write("/rho", values, shape, value_unit, "test", "z, y, x");
     for (auto [name, count] : {std::pair{"/xcoor", nx}, {"/ycoor", ny}, {"/zcoor", nz}}) {
       if (coordinate_step <= 0) break;
       std::vector<double> axis;
       for (int i = 0; i < count; ++i) axis.push_back(100 + i * coordinate_step);
-      writer.write(name, axis, {std::size_t(count)}, "mm", "test", "node");
+      writer.write(name, axis, {std::size_t(count)}, length_unit, "test", "node");
     }
     writer.close();
     MediumSetup setup;
@@ -96,6 +97,44 @@ TEST_F(FieldVolume, CoordinatesInTheFileAreMillimetres) {
   EXPECT_NEAR(bounds(built).low.x, -0.5e-3, 1e-15) << "the file's origin gives way to center_mm";
   setup.field.spacing = Vec3d{1e-3, 1e-3, 1e-3};
   EXPECT_NEAR(bounds(build_medium(setup)).low.x, -2e-3, 1e-15) << "spacing_mm replaces the coordinates";
+}
+
+TEST_F(FieldVolume, UnknownUnitsOfLengthAreRefusedAndKnownOnesConverted) {
+  EXPECT_NEAR(build_medium(file_setup(
+                               5, 4, 3, [](int, int, int) { return 1.2; }, 1, "ft"))
+                  .grid.spacing.x,
+              0.3048, 1e-12);
+  auto setup = file_setup(
+      5, 4, 3, [](int, int, int) { return 1.2; }, 1, "furlong");
+  EXPECT_THAT([&] { build_medium(setup); },
+              testing::ThrowsMessage<DataError>(testing::HasSubstr(
+                  "lengths are in \"furlong\", which is not a known unit of length; give medium.field.spacing_mm")));
+  setup.field.spacing = Vec3d{1e-3, 1e-3, 1e-3};
+  EXPECT_EQ(build_medium(setup).grid.spacing.x, 1e-3);
+}
+
+// 1.2e-3 g/cm^3 = 1.2 kg/m^3; the scale of the setup replaces the unit of the file.
+TEST_F(FieldVolume, ValuesAreConvertedFromTheUnitOfTheFile) {
+  auto const of_unit = [this](std::string const& unit, std::optional<double> scale = std::nullopt,
+                              FieldQuantity quantity = FieldQuantity::density) {
+    double const value = quantity == FieldQuantity::density ? 1.2e-3 : 2.7e-4;
+    auto setup = file_setup(
+        4, 4, 4, [value](int, int, int) { return value; }, 1, "mm", unit);
+    setup.field.scale = scale;
+    setup.field.quantity = quantity;
+    return build_medium(setup);
+  };
+  using testing::Contains, testing::HasSubstr, testing::IsEmpty;
+  double const K = MediumSetup{}.gladstone_dale;
+  BuiltMedium const grams = of_unit("g/cm^3");
+  EXPECT_NEAR(refractivity(grams, {}), 1.2 * K, 1e-10);  // float volume
+  EXPECT_THAT(grams.warnings, IsEmpty());
+  EXPECT_NEAR(refractivity(of_unit("g/cm^3", 500), {}), 0.6 * K, 1e-10);
+  EXPECT_NEAR(refractivity(of_unit("kg m-3"), {}), 1.2e-3 * K, 1e-13);
+  EXPECT_THAT(of_unit("K").warnings, Contains(HasSubstr("values are in \"K\", which is not a known unit of density")));
+  EXPECT_THAT(of_unit("kg/m^3", std::nullopt, FieldQuantity::refractivity).warnings,
+              Contains(HasSubstr("not a known unit of pure numbers")));
+  EXPECT_THAT(of_unit("kg/m^3", 1, FieldQuantity::refractivity).warnings, IsEmpty());
 }
 
 TEST_F(FieldVolume, QuantitiesBecomeRefractivities) {

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <optional>
 
 #include "render/base/error.h"
@@ -99,6 +100,7 @@ std::string only_field(Hdf5Reader const& file, std::string const& path, int valu
   auto const& fields = volumes.empty() ? planes : volumes;
   if (fields.size() == 1) return fields.front();
   if (fields.empty()) {
+    for (auto const& other : file.other_datasets()) others += (others.empty() ? "" : ", ") + other;
     throw DataError(path, fmt::format("has no {}; it has {}",
                                       values == 1 ? "scalar field, [nz, ny, nx], [nz, ny, nx, 1] or [ny, nx]"
                                                   : fmt::format("velocity, [nz, ny, nx, {}]", values),
@@ -112,7 +114,42 @@ struct Coordinates {
   std::string dataset;
   std::vector<double> places;
   std::string unit;
+  std::optional<std::size_t> axis = {};  ///< axis of the array, counted from the fastest, if the dataset determines it
 };
+
+/// Packing of a dataset: CF Conventions 1.11, sections 2.5.1 (missing data) and 8.1 (packed data).
+struct Packing {
+  double scale_factor = 1, add_offset = 0;
+  std::vector<double> missing;  ///< stored values that mark missing data
+
+  bool scaled() const { return scale_factor != 1 || add_offset != 0; }
+  /// Converts stored values; missing ones become NaN.
+  void unpack(std::span<double> values) const {
+    for (double& value : values) {
+      value = is_missing(value) ? std::numeric_limits<double>::quiet_NaN() : value * scale_factor + add_offset;
+    }
+  }
+
+ private:
+  /// Compares as float, since an attribute may have fewer digits than its data.
+  bool is_missing(double value) const {
+    return std::any_of(missing.begin(), missing.end(), [value](double mark) {
+      return value == mark || (static_cast<float>(value) == static_cast<float>(mark) && std::isfinite(mark));
+    });
+  }
+};
+
+Packing packing_of(Hdf5Reader const& file, std::string const& dataset) {
+  Packing packing;
+  auto const scale = file.numbers_of(dataset, "scale_factor"), offset = file.numbers_of(dataset, "add_offset");
+  if (scale.size() == 1) packing.scale_factor = scale.front();
+  if (offset.size() == 1) packing.add_offset = offset.front();
+  for (char const* const name : {"_FillValue", "missing_value"}) {
+    auto const marks = file.numbers_of(dataset, name);
+    packing.missing.insert(packing.missing.end(), marks.begin(), marks.end());
+  }
+  return packing;
+}
 
 class Hdf5Source final : public CheckedSource {
  public:
@@ -130,6 +167,7 @@ class Hdf5Source final : public CheckedSource {
       nodes[i] = static_cast<int>(size);
     }
     units_.values = trimmed(file_.attribute_of(name_, "units"));
+    packing_ = packing_of(file_, name_);
     if (values_ == 1 && rank() == 3 && may_be_components(length(0)) && length(1) > 3 && length(2) > 3) {
       notes_.push_back(
           fmt::format("the last axis of \"{}\" of shape {} may be the components of a vector; it is taken as "
@@ -138,6 +176,7 @@ class Hdf5Source final : public CheckedSource {
     }
     std::string const by = place_axes(wish.axes);
     describe(nodes, rank(), by);
+    if (cells_) reading_.by += "; data of cells, at their centres";
     std::vector<double> first(1);
     file_.read_box(name_, Shape(shape_.size(), 0), Shape(shape_.size(), 1), first);  // reports a missing filter
   }
@@ -160,7 +199,7 @@ class Hdf5Source final : public CheckedSource {
 
   /// Assigns world axes and coordinates to the stored axes. @return source of the assignment
   std::string place_axes(std::string const& wanted) {
-    std::array<std::optional<Coordinates>, 3> of_axis;  // by stored axis, fastest first
+    std::array<std::optional<Coordinates>, 3> own;  // by stored axis, fastest first
     std::array<std::optional<Coordinates>, 3> of_letter;
     std::string order;
     auto const scales = file_.dimension_scales(name_);
@@ -168,24 +207,34 @@ class Hdf5Source final : public CheckedSource {
       std::string const& scale = scales[number(i)];
       if (scale.empty()) continue;
       auto const named = coordinate_name(scale);
-      of_axis[i] = read_coordinates(scale, named ? named->unit : "");
+      own[i] = read_coordinates(scale, named ? named->unit : "");
       if (named) order.insert(order.begin(), named->axis);
     }
     std::string by = "by its dimension scales";
     if (order.size() != rank() || !is_axis_order(order)) {
       for (std::size_t letter = 0; letter < 3; ++letter) of_letter[letter] = find_coordinates("xyz"[letter]);
-      if (wanted.empty()) order = order_by_lengths(of_letter, by);
+      order = order_by_labels();
+      by = "by its dimension labels";
+      if (wanted.empty() && order.empty()) order = order_by_lengths(of_letter, by);
     }
     if (!wanted.empty()) {
       order = wanted;
       by = "axes = \"" + wanted + '"';
     }
     name_axes(axes_, order, rank(), path_);
-    for (std::size_t i = 0; i < 3; ++i) {
-      auto& own = of_axis[i];
-      if (!own) own = of_letter[static_cast<std::size_t>(axes_[i].world - 'x')];
-      if (own && i < rank()) place(i, *own);
+    for (std::size_t i = 0; i < rank(); ++i) {
+      if (!own[i]) own[i] = of_letter[static_cast<std::size_t>(axes_[i].world - 'x')];
     }
+    centre_edges(own);
+    std::array<std::optional<std::string>, 3> unit_of;
+    for (std::size_t i = 0; i < rank(); ++i) {
+      if (!own[i]) continue;
+      place(i, *own[i]);
+      if (length(i) > 1) unit_of[i] = own[i]->unit;  // a single node has no spacing, and its unit is irrelevant
+      units_.spaced = units_.spaced || length(i) > 1;
+    }
+    convert_lengths(axes_, unit_of, units_, notes_);
+    report_missing(own);
     // A missing or single-node axis gets the spacing of the next faster axis.
     for (std::size_t i = 1; i < 3; ++i) {
       if (i >= rank() || length(i) == 1) axes_[i].step = std::abs(axes_[i - 1].step);
@@ -193,9 +242,30 @@ class Hdf5Source final : public CheckedSource {
     return by;
   }
 
-  /// Sets the coordinates of a stored axis, converted to the unit of the first axis.
+  /// Replaces the coordinates of the edges of cells by those of their centres, if each axis has one more than nodes.
+  void centre_edges(std::array<std::optional<Coordinates>, 3>& own) {
+    for (std::size_t i = 0; i < rank(); ++i) {
+      if (length(i) == 1 && (!own[i] || own[i]->places.size() == 1)) continue;
+      if (!own[i] || own[i]->places.size() != length(i) + 1) return;
+    }
+    cells_ = std::any_of(own.begin(), own.end(), [](auto const& one) { return one && one->places.size() > 1; });
+    for (auto& coordinates : own) {
+      if (!coordinates || coordinates->places.size() < 2) continue;
+      auto& places = coordinates->places;
+      for (std::size_t k = 0; k + 1 < places.size(); ++k) places[k] = 0.5 * (places[k] + places[k + 1]);
+      places.pop_back();
+    }
+  }
+
+  /// Sets the coordinates of a stored axis, in their own unit.
   void place(std::size_t i, Coordinates const& own) {
     std::string const what = "dataset \"" + own.dataset + '"';
+    if (own.axis && *own.axis != i) {
+      throw DataError(path_,
+                      fmt::format("{} varies along axis {} of \"{}\" (from the slowest), where {} is axis {}; name "
+                                  "the axes in the order of the file: axes = \"zxy\"",
+                                  what, rank() - *own.axis, name_, axes_[i].world, rank() - i));
+    }
     if (own.places.size() != length(i)) {
       throw DataError(path_, fmt::format("{} has {} coordinates for the {} nodes of \"{}\"; if its axes are in another "
                                          "order, name it: axes = \"zxy\"",
@@ -204,40 +274,103 @@ class Hdf5Source final : public CheckedSource {
     char const world = axes_[i].world;
     axes_[i] = axis_from_coordinates(own.places, path_, what);
     axes_[i].world = world;
-    if (length(i) == 1) return;  // a single node has no spacing, and its unit is irrelevant
-    double ratio = 1;
-    if (units_.spaced) {
-      auto const known = unit_ratio(own.unit, units_.length);
-      if (!known) {
-        throw DataError(path_, fmt::format("{} is in \"{}\" where other coordinates are in \"{}\"; give all axes units "
-                                           "that are known here",
-                                           what, own.unit, units_.length));
-      }
-      ratio = *known;
-    } else {
-      units_.spaced = true;
-      units_.length = own.unit;
+  }
+
+  /// Reports axes without coordinates, and the datasets that may be theirs but are not used.
+  void report_missing(std::array<std::optional<Coordinates>, 3> const& own) {
+    std::string missing;
+    for (std::size_t i = rank(); i-- > 0;) {
+      if (own[i] || length(i) == 1) continue;
+      missing += (missing.empty() ? "" : ", ") + std::string(1, axes_[i].world);
     }
-    axes_[i].first *= ratio;
-    axes_[i].step *= ratio;
-    for (double& place : axes_[i].coordinates) place *= ratio;
+    if (missing.empty()) return;
+    std::vector<std::string> unused;
+    for (std::string const& dataset : file_.linked_number_datasets()) {
+      bool const used = std::any_of(own.begin(), own.end(),
+                                    [&dataset](auto const& one) { return one && one->dataset == last_step(dataset); });
+      if (used || dataset == name_ || last_step(dataset).starts_with('_')) continue;
+      Shape const shape = file_.shape(dataset);
+      std::size_t const size = std::accumulate(shape.begin(), shape.end(), std::size_t{1}, std::multiplies<>());
+      bool fits = coordinate_name(dataset) && size > 1;
+      for (std::size_t i = 0; i < rank(); ++i) {
+        bool const line = std::find(shape.begin(), shape.end(), size) != shape.end();
+        fits = fits || (line && size > 1 && (size == length(i) || size == length(i) + 1));
+      }
+      if (fits) unused.push_back(fmt::format("\"{}\" {}", dataset, shape_text(shape)));
+    }
+    std::string const ignored =
+        unused.empty() ? ""
+                       : fmt::format(
+                             "; {} may be coordinates, but {} not used (known are datasets such as x, xcoor and "
+                             "x_mm, of one axis or of the shape of the field)",
+                             fmt::join(unused, ", "), unused.size() == 1 ? "it is" : "they are");
+    bool const some = units_.spaced;
+    if (!some && unused.empty()) return;  // FieldUnits::assumed() reports this
+    notes_.push_back(fmt::format(
+        "no coordinates along {} are found{}{}", missing,
+        some ? fmt::format(", and nodes there are taken 1 {} apart", units_.length.empty() ? "mm" : units_.length) : "",
+        ignored));
   }
 
   std::optional<Coordinates> read_coordinates(std::string const& dataset, std::string const& unit) const {
+    Shape shape;
+    Coordinates found{last_step(dataset), {}, unit};
     try {
-      Shape const shape = file_.shape(dataset);
+      shape = file_.shape(dataset);
       auto const wide = std::count_if(shape.begin(), shape.end(), [](std::size_t size) { return size != 1; });
       // netCDF-4 marks dimensions without coordinates by this attribute
       bool const length_alone = file_.attribute_of(dataset, "NAME").starts_with("This is a netCDF dimension but not");
-      if (shape.empty() || wide > 1 || length_alone) return std::nullopt;
-      Coordinates found{last_step(dataset), file_.read(dataset), unit};
+      if (shape.empty() || length_alone || (wide > 1 && !is_mesh(shape))) return std::nullopt;
+      found.places = file_.read(dataset);
       if (found.places.empty()) return std::nullopt;
+      packing_of(file_, dataset).unpack(found.places);
       if (unit.empty()) found.unit = trimmed(file_.attribute_of(dataset, "units"));
-      return found;
+      if (wide <= 1) return found;
     } catch (MemoryError const&) {
       throw;
     } catch (DataError const&) {  // not numeric
       return std::nullopt;
+    }
+    reduce_mesh(found, shape);
+    return found;
+  }
+
+  /// Returns true if an array of coordinates has the shape of the field, apart from axes of length one.
+  bool is_mesh(Shape shape) const {
+    if (coordinate_name(name_)) return false;  // x, y and z are then fields themselves
+    Shape field;
+    for (std::size_t i = rank(); i-- > 0;) field.push_back(length(i));
+    std::erase(field, 1u);
+    std::erase(shape, 1u);
+    return shape == field;
+  }
+
+  /// Reduces coordinates of all nodes (a mesh grid) to those along the only axis on which they depend.
+  /// @throws DataError if they vary along several axes
+  void reduce_mesh(Coordinates& mesh, Shape const& shape) const {
+    std::vector<double> const all = std::move(mesh.places);
+    std::array<std::size_t, 3> strides{};
+    std::size_t stride = 1;
+    mesh.places = {all.front()};
+    for (std::size_t i = 0; i < rank(); stride *= length(i), ++i) {
+      strides[i] = stride;
+      std::vector<double> line;
+      for (std::size_t k = 0; k < length(i); ++k) line.push_back(all[k * stride]);
+      if (std::abs(line.back() - line.front()) <= std::abs(mesh.places.back() - mesh.places.front())) continue;
+      mesh.places = std::move(line);
+      mesh.axis = i;
+    }
+    // The tolerance is that of axis_from_coordinates().
+    auto const [low, high] = std::minmax_element(mesh.places.begin(), mesh.places.end());
+    double const step = (*high - *low) / static_cast<double>(std::max<std::size_t>(mesh.places.size(), 2) - 1);
+    double const largest = std::max(std::abs(*low), std::abs(*high));
+    double const tolerance = 1e-4 * step + 2.0 * std::numeric_limits<float>::epsilon() * largest;
+    for (std::size_t node = 0; node < all.size(); ++node) {
+      std::size_t const k = mesh.axis ? node / strides[*mesh.axis] % length(*mesh.axis) : 0;
+      if (std::abs(all[node] - mesh.places[k]) <= tolerance || !std::isfinite(mesh.places[k])) continue;
+      throw DataError(path_, fmt::format("dataset \"{}\" of shape {} varies along several axes of \"{}\" (the grid is "
+                                         "curved, oblique or rotated); resample the field to a grid along x, y and z",
+                                         mesh.dataset, shape_text(shape), name_));
     }
   }
 
@@ -256,27 +389,61 @@ class Hdf5Source final : public CheckedSource {
     }
   }
 
+  /// Returns the order of the axes, slowest first, by their labels x, y and z; empty if not all axes have one.
+  std::string order_by_labels() const {
+    auto const labels = file_.dimension_labels(name_);
+    std::string order;
+    for (std::size_t const axis : array_.spatial) {
+      if (auto const named = coordinate_name(trimmed(labels[axis]))) order += named->axis;
+    }
+    return order.size() == rank() && is_axis_order(order) ? order : "";
+  }
+
+  /// Returns the orders of some axes in which each coordinate dataset has as many places as its axis has nodes, or
+  /// `more` than that.
+  std::vector<std::string> fitting_orders(std::string letters,
+                                          std::array<std::optional<Coordinates>, 3> const& of_letter,
+                                          std::size_t more) const {
+    std::vector<std::string> fitting;
+    do {
+      bool fits = true;
+      for (std::size_t i = 0; i < rank(); ++i) {
+        auto const& own = of_letter[static_cast<std::size_t>(letters[rank() - 1 - i] - 'x')];
+        if (!own) {
+          fits = fits && (more == 0 || length(i) == 1);
+          continue;
+        }
+        bool const single = length(i) == 1 && own->places.size() == 1;
+        fits = fits && (own->places.size() == length(i) + more || single) && own->axis.value_or(i) == i;
+      }
+      if (fits) fitting.push_back(letters);
+    } while (std::next_permutation(letters.begin(), letters.end()));
+    return fitting;
+  }
+
   /// Determines the order of the axes, slowest first, by the lengths of the coordinates: z, y, x if they allow it, else
-  /// the only order that they allow.
+  /// the only order that they allow. A plane is across x and y unless one of them has no coordinates and z has.
   /// @param by  receives the source of the order
   /// @throws DataError if several other orders are possible
   std::string order_by_lengths(std::array<std::optional<Coordinates>, 3> const& of_letter, std::string& by) {
-    auto const fits = [&](std::string const& order) {
-      for (std::size_t i = 0; i < rank(); ++i) {
-        auto const& own = of_letter[static_cast<std::size_t>(order[rank() - 1 - i] - 'x')];
-        if (own && own->places.size() != length(i)) return false;
-      }
-      return true;
+    auto const wide = [&of_letter](char letter) {
+      auto const& own = of_letter[static_cast<std::size_t>(letter - 'x')];
+      return own && own->places.size() > 1;
     };
-    std::string const usual = rank() == 2 ? "yx" : "zyx";
-    std::vector<std::string> fitting;
-    std::string order = rank() == 2 ? "xy" : "xyz";
-    do {
-      if (fits(order)) fitting.push_back(order);
-    } while (std::next_permutation(order.begin(), order.end()));
-    bool const some = std::any_of(of_letter.begin(), of_letter.end(), [](auto const& own) { return own.has_value(); });
-    by = some && fitting.size() == 1 ? "by the lengths of its coordinates" : "the default order";
-    if (fitting.empty() || fits(usual)) {
+    std::string letters = "xyz";
+    if (rank() == 2) letters = !wide('z') || (wide('x') && wide('y')) ? "xy" : wide('y') ? "yz" : "xz";
+    std::string const usual(letters.rbegin(), letters.rend());
+    std::vector<std::string> fitting = fitting_orders(letters, of_letter, 0);
+    if (fitting.empty()) fitting = fitting_orders(letters, of_letter, 1);  // edges of cells
+    bool some = false, meshes = false;
+    for (auto const& own : of_letter) {
+      some = some || own;
+      meshes = meshes || (own && own->axis);
+    }
+    by = !some || fitting.size() != 1 ? "the default order"
+         : meshes                     ? "by its coordinates"
+                                      : "by the lengths of its coordinates";
+    if (fitting.empty() || std::find(fitting.begin(), fitting.end(), usual) != fitting.end()) {
       bool const matlab = !file_.attribute_of(name_, "MATLAB_class").empty();
       if (matlab && fitting.size() > 1 && rank() == 3) {
         notes_.push_back(
@@ -294,9 +461,16 @@ class Hdf5Source final : public CheckedSource {
     return fitting.front();
   }
 
-  int significant_bits() const override { return file_.significant_bits(name_); }
+  int significant_bits() const override {
+    return packing_.scaled() ? std::numeric_limits<double>::digits : file_.significant_bits(name_);
+  }
 
   void read_raw_rows(int plane, int first_row, int count, std::span<double> out) override {
+    read_stored_rows(plane, first_row, count, out);
+    if (packing_.scaled() || !packing_.missing.empty()) packing_.unpack(out);
+  }
+
+  void read_stored_rows(int plane, int first_row, int count, std::span<double> out) {
     Shape start(shape_.size(), 0), size(shape_.size(), 1);
     size[number(0)] = length(0);
     start[number(1)] = static_cast<std::size_t>(first_row);
@@ -318,6 +492,8 @@ class Hdf5Source final : public CheckedSource {
   Hdf5Reader file_;
   Shape shape_;
   ArrayAxes array_;
+  Packing packing_;
+  bool cells_ = false;  ///< the coordinates are those of the edges of cells
 };
 
 }  // namespace

@@ -130,11 +130,21 @@ class NrrdBytes {
     return header_.encoding == Encoding::ascii ? values() * sizeof(double) : header_.data_bytes();
   }
 
+  char const* encoding_name() const {
+    return header_.encoding == Encoding::bzip2 ? "bzip2" : header_.encoding == Encoding::hex ? "hex" : "text";
+  }
+
   void decode() {
     std::string const bytes = stored();
     // Plausibility of the header: at most 8 values per encoded byte as text or hex, 8e6 per byte of bzip2.
     double const most = header_.encoding == Encoding::bzip2 ? 1e6 : 1;
-    if (static_cast<double>(values()) > most * 8 * static_cast<double>(bytes.size())) cut_short(0);
+    if (static_cast<double>(values()) > most * 8 * static_cast<double>(bytes.size())) {
+      throw DataError(
+          header_.data_path,
+          fmt::format("is cut short: its {} bytes of {} cannot hold {} values (sizes {}); copy it again, or "
+                      "correct the sizes",
+                      bytes.size(), encoding_name(), values(), header_.sizes_text()));
+    }
     decoded_.resize(decoded_bytes());
     try {
       if (header_.encoding == Encoding::ascii) decode_text(bytes);
@@ -381,6 +391,7 @@ class NrrdSource final : public CheckedSource {
     describe(header_.sizes, header_.dimension,
              !wish.axes.empty() ? "axes = \"" + wish.axes + '"'
              : header_.directed ? "by its space directions"
+             : header_.labelled ? "by its labels"
                                 : "the default order");
   }
 

@@ -76,10 +76,27 @@ class Fields {
       if (colon == std::string::npos) {
         throw DataError(path_, "header line \"" + excerpt(line) + "\" is no NRRD field");
       }
-      values_[canonical(trimmed(lower(line.substr(0, colon))))] = trimmed(line.substr(colon + 1));
+      std::string const key = canonical(trimmed(lower(line.substr(0, colon))));
+      std::string const value = trimmed(line.substr(colon + 1));
+      auto const [given, first] = values_.try_emplace(key, value);
+      if (first) {
+        lines_[key] = file.number();
+      } else if (given->second != value) {
+        throw DataError(file.place(), fmt::format("gives the NRRD field \"{}\" again, as \"{}\" (line {} says \"{}\"); "
+                                                  "remove one of them",
+                                                  excerpt(key), excerpt(value), lines_[key], excerpt(given->second)));
+      }
+      if (key == "data file" && is_list(value)) {
+        read_list(file);
+        return false;
+      }
     }
     return false;
   }
+
+  /// Returns the names of the data files after "data file: LIST".
+  std::vector<std::string> const& listed_files() const { return listed_files_; }
+  static bool is_list(std::string const& value) { return value == "LIST" || value.starts_with("LIST "); }
 
   [[noreturn]] void refuse(std::string const& key, std::string const& why) const {
     auto const found = values_.find(key);
@@ -154,8 +171,19 @@ class Fields {
     return key;
   }
 
+  void read_list(LineReader& file) {
+    while (auto const text = file.next()) {
+      std::string const name = trimmed(*text);
+      if (name.empty()) return;
+      require_room(listed_files_, path_, "data files");
+      listed_files_.push_back(name);
+    }
+  }
+
   std::string path_;
   std::map<std::string, std::string> values_;
+  std::map<std::string, std::size_t> lines_;  ///< number of the line of each field
+  std::vector<std::string> listed_files_;
 };
 
 void read_type(Fields const& fields, NrrdHeader& header) {
@@ -216,11 +244,12 @@ class Axes {
                                ? trimmed(fields_.text("sample units"))
                                : quoted_words(fields_, "sample units").front();
     if (directions_.empty()) {
+      name_by_labels();
       place_along_axes();
     } else {
       place_by_directions();
     }
-    convert_units();
+    convert_lengths(header_.axes, unit_of_, header_.units, header_.notes);
     if (header_.dimension == 2) header_.axes[2].step = std::abs(header_.axes[0].step);
   }
 
@@ -262,6 +291,19 @@ class Axes {
                                             values == 1 ? "one number" : fmt::format("{} numbers", values)));
   }
 
+  /// Names the world axes by "labels", if they are x, y and z.
+  void name_by_labels() {
+    auto const labels = quoted_words(fields_, "labels");
+    std::string names;  // fastest first
+    for (std::size_t const axis : kept_) {
+      std::string const label = axis < labels.size() ? lower(labels[axis]) : "";
+      if (label.size() == 1) names += label;
+    }
+    if (names.size() != kept_.size() || !is_axis_order(names)) return;
+    name_axes(header_.axes, {names.rbegin(), names.rend()}, kept_.size(), "");
+    header_.labelled = true;
+  }
+
   /// Sets the axes from "spacings", or else from "axis mins" and "axis maxs".
   void place_along_axes() {
     auto const all = sizes_.size();
@@ -275,7 +317,7 @@ class Axes {
     for (std::size_t i = 0; i < kept_.size(); ++i) {
       std::size_t const axis = kept_[i];
       StoredAxis& placed = header_.axes[i];
-      unit_of_[i] = axis < units.size() ? units[axis] : "";
+      if (sizes_[axis] > 1 && header_.units.spaced) unit_of_[i] = axis < units.size() ? units[axis] : "";
       Centre const centre = centre_of(axis);
       double const cells = static_cast<double>(sizes_[axis]) - (centre == Centre::node ? 1 : 0);
       if (!spacings.empty() && std::isfinite(spacings[axis])) {
@@ -346,7 +388,7 @@ class Axes {
       taken += world;
       header_.axes[i].world = world;
       header_.axes[i].step = step;
-      unit_of_[i] = along < units.size() ? units[along] : "";
+      if (sizes_[kept_[i]] > 1) unit_of_[i] = along < units.size() ? units[along] : "";
       if (origins.empty()) continue;
       if (origins[0].size() != direction.size())
         fields_.refuse("space origin", "must have as many numbers as a direction");
@@ -360,28 +402,12 @@ class Axes {
     }
   }
 
-  /// Converts all lengths to the unit of the first axis that has one.
-  void convert_units() {
-    std::string& common = header_.units.length;
-    for (std::size_t i = 0; i < kept_.size(); ++i) {
-      if (sizes_[kept_[i]] > 1 && common.empty()) common = unit_of_[i];
-    }
-    for (std::size_t i = 0; i < kept_.size(); ++i) {
-      if (unit_of_[i].empty() || sizes_[kept_[i]] == 1) continue;
-      auto const ratio = unit_ratio(unit_of_[i], common);
-      std::string const key = header_.directed ? "space units" : "units";
-      if (!ratio) fields_.refuse(key, "must name units of length that are known here, or one for all axes");
-      header_.axes[i].step *= *ratio;
-      header_.axes[i].first *= *ratio;
-    }
-  }
-
   Fields const& fields_;
   NrrdHeader& header_;
-  std::vector<long long> sizes_;                 ///< number of nodes of all axes
-  std::vector<std::size_t> kept_;                ///< indices of the spatial axes, fastest first
-  std::vector<std::vector<double>> directions_;  ///< direction vectors of all axes; empty: none in the header
-  std::array<std::string, 3> unit_of_;           ///< units of the spatial axes
+  std::vector<long long> sizes_;                       ///< number of nodes of all axes
+  std::vector<std::size_t> kept_;                      ///< indices of the spatial axes, fastest first
+  std::vector<std::vector<double>> directions_;        ///< direction vectors of all axes; empty: none in the header
+  std::array<std::optional<std::string>, 3> unit_of_;  ///< units of the spatial axes; nullopt: a single node
 };
 
 }  // namespace
@@ -435,9 +461,15 @@ NrrdHeader read_nrrd_header(std::string const& path, int values) {
     header.data_offset = static_cast<std::size_t>(file.offset());
     return header;
   }
-  std::string const data = fields.text("data file");
-  bool const several = data == "LIST" || data.starts_with("LIST ") || data.find('%') != std::string::npos;
-  if (several) fields.refuse("data file", "names several files; join them into one");
+  std::string data = fields.text("data file");
+  auto const& listed = fields.listed_files();
+  if (Fields::is_list(data) && listed.size() == 1) data = listed.front();
+  if (Fields::is_list(data) || data.find('%') != std::string::npos) {
+    std::string const which = Fields::is_list(data) ? fmt::format(" ({})", listed.size()) : " by a pattern";
+    fields.refuse("data file", "names several files" + which +
+                                   "; data in several files are not read here: join them into one file, in the order "
+                                   "of the field, and name that");
+  }
   if (data.empty()) fields.refuse("data file", "must be a file name");
   header.data_path = (std::filesystem::path(path).parent_path() / data).string();
   return header;

@@ -24,6 +24,7 @@ struct NrrdHeader {
   std::array<int, 3> sizes{1, 1, 1};  ///< nodes along the spatial axes, fastest first
   StoredAxes axes = default_axes();
   bool directed = false;  ///< the header assigns world axes by "space directions"
+  bool labelled = false;  ///< the header assigns world axes by "labels"
   FieldUnits units;
   std::vector<std::string> notes;  ///< assumptions made, for warnings
   std::string content;             ///< name of the field (entry "content"); may be empty
