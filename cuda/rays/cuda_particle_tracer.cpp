@@ -213,7 +213,7 @@ class BatchPass {
       std::size_t const at = frame_count * i + pulse;
       aims[pulse] = {};
       RaysLaunch const& shared = host_.ladder[0];
-      found_[at] = aim_at_stop(shared, shared.camera.view(), medium_, pulses_[pulse].middle(launches_[0].first + i));
+      found_[at] = aim_at_stop(shared, shared.camera.view(), medium_, pulses_[pulse].middle(launches_[0].first + i), 0);
       if (!found_[at].disc) continue;
       aims[pulse].state = AimState::wide;
       step = std::max(step, on_device_.ladder().first_clipped);
@@ -229,7 +229,7 @@ class BatchPass {
   void place_aim(std::size_t at, std::size_t step) {
     PulseAim& aim = aims_[at];
     SourceAim const& found = found_[at];
-    AimedBundle<double> const bundle = host_.ladder[step].bundle(*found.disc, 0, found.margin);
+    AimedBundle<double> const bundle = host_.ladder[step].bundle(*found.disc, {}, found.margin);
     Pose<double> const& plane = launches_[0].camera.aim_plane;
     auto const along = [&plane](Vec3d v) {
       Vec3d const there = plane.direction_inwards(v);

@@ -78,8 +78,9 @@ class LaunchOnDevice {
   int scramblings() const { return launch_.scramblings(); }
 
   SourceOnDevice place(std::uint64_t source, SourceAim const& aim) const {
-    AimedBundle<double> const bundle = host_.bundle(*aim.disc, pattern_.reach(), aim.margin);
-    SourceOnDevice placed{source, bundle.centre, bundle.a, bundle.b, bundle.across, aim.origin};
+    AimedBundle<double> const bundle = host_.bundle(*aim.disc, aim.shift, aim.margin);
+    SourceOnDevice placed{source,        bundle.centre, bundle.a,    bundle.b,
+                          bundle.across, bundle.by_x,   bundle.by_y, aim.origin};
     // Four times the weight of the central ray: the weights of rays through a wide disc differ, but by less than this
     // factor.
     placed.most_weight = 4 * std::abs(ray_to(pattern_, bundle, source, {}, {}).weight);
@@ -248,7 +249,8 @@ class SceneTracer {
     parallel_chunks(aims.size(), 8, [&](std::size_t low, std::size_t high) {
       for (std::size_t i = low; i < high; ++i) {
         throw_if_interrupted();
-        aims[i] = aim_at_stop(launch, launch.camera.view(), medium_, pattern_.host.middle(begin + i));
+        aims[i] =
+            aim_at_stop(launch, launch.camera.view(), medium_, pattern_.host.middle(begin + i), pattern_.host.reach());
       }
     });
     AimedSources aimed;

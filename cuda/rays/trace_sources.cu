@@ -15,7 +15,7 @@ __device__ void trace_share(SourcesLaunch const& launch, CameraView<double> cons
                             HitWindow const (&window)[frame_count], unsigned int* counts, RaySums& sums,
                             double& moved2) {
   bool const lit = launch.images.light[0] != nullptr;
-  AimedBundle<double> const bundle{aim.centre, aim.a, aim.b, aim.across, launch.choice};
+  AimedBundle<double> const bundle{aim.centre, aim.a, aim.b, aim.across, launch.choice, aim.by_x, aim.by_y};
   auto const count = [counts](int frame, RayStatus status) {
     atomicAdd(counts + frame * ray_status_count + static_cast<int>(status), 1u);
   };

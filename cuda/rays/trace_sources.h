@@ -23,7 +23,7 @@ inline constexpr std::size_t most_block_bytes = 96 * 1024;
 /// Directions of the rays of a source, and the expected position of their light.
 struct SourceOnDevice {
   std::uint64_t source;                               ///< index in the pattern
-  Vec3d centre, a, b, across;                         ///< as in AimedBundle
+  Vec3d centre, a, b, across, by_x, by_y;             ///< as in AimedBundle
   Vec2d origin;                                       ///< origin of its sums [px]
   int window_px = 0;                                  ///< side of the windows that accumulate its light; 0: none
   int left[frame_count] = {}, top[frame_count] = {};  ///< pixel of the first node in each frame

@@ -43,9 +43,10 @@ struct LambertSources {
 /// Target area of one source's rays: its view of the entrance pupil, enlarged by a margin.
 template <class T>
 struct AimedBundle {
-  Vec3<T> centre, a, b;  ///< rays are sent to centre + r (a cos + b sin), 0 <= r <= 1 [m]
-  Vec3<T> across;        ///< area of that ellipse times its normal [m^2]; a unit vector for chief rays
-  BundleView<T> choice;  ///< choice of sampling points; its pupil is not used
+  Vec3<T> centre, a, b;    ///< rays are sent to centre + r (a cos + b sin), 0 <= r <= 1 [m]
+  Vec3<T> across;          ///< area of that ellipse times its normal [m^2]; a unit vector for chief rays
+  BundleView<T> choice;    ///< choice of sampling points; its pupil is not used
+  Vec3<T> by_x{}, by_y{};  ///< shift of `centre` per offset in x and y of the ray's start from the source's middle [1]
 };
 
 /// A ray at its source, and its weight: intensity times the solid angle of the whole target area as seen from the ray's
@@ -61,7 +62,9 @@ template <class T, class Sources>
 GLADSTONE_HD AimedRay<T> ray_to(Sources const& sources, AimedBundle<T> const& bundle, std::uint64_t i, Vec2<T> place,
                                 Vec2<T> at) {
   Vec3<T> const start = sources.point(i, place);
-  Vec3<T> const way = bundle.centre + at.x * bundle.a + at.y * bundle.b - start;
+  Vec3<T> const offset = start - sources.middle(i);
+  Vec3<T> const way =
+      bundle.centre + at.x * bundle.a + at.y * bundle.b + offset.x * bundle.by_x + offset.y * bundle.by_y - start;
   T const far = length(way);
   AimedRay<T> aimed;
   aimed.ray = {start, way / far};

@@ -134,7 +134,7 @@ class ParticleTracer {
         double const weight = ray_to(pulse, stop_.camera.aim_plane, aim.bent.map, particle, {}).weight;
         step = std::max(step, launches_.step_filled(weight * light_per_photon_, aim.bent.spread2));
       } else {
-        aim.wide = aim_at_stop(*launch_, view_, medium_, place);
+        aim.wide = aim_at_stop(*launch_, view_, medium_, place, 0);
         if (!aim.wide.disc) continue;
         aim.sent = Aim::Sent::wide;
         if (!placed) origin_ = aim.wide.origin;
@@ -194,7 +194,7 @@ class ParticleTracer {
   void trace_wide(int frame, std::uint64_t particle, LightImage* image, double sign) {
     SourceAim& aim = aims_[frame].wide;
     auto const trace = [&](double of_light) {
-      AimedBundle<double> const bundle = launch_->bundle(*aim.disc, 0, aim.margin);
+      AimedBundle<double> const bundle = launch_->bundle(*aim.disc, {}, aim.margin);
       auto const aimed = [&](Vec2d at) { return ray_to(pulses_[frame], bundle, particle, {}, at); };
       if (with_images_) light_[frame]->begin(image, of_light * light_per_weight(), launch_->rays);
       largest_shift2_ = 0;

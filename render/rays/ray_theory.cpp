@@ -23,7 +23,7 @@ RayTheory::RayTheory(Scene const& scene, RaysLaunch const& launch, SourceShape s
   int const directions = std::min(6 * most_rings, 4 * static_cast<int>(std::ceil(0.45 * lengths + 3)));
   pupil_ = SourceCubature::disc(rings, 6, directions);
   double const seen = launch.camera.sight_margin();
-  AimedBundle<double> const whole = launch.bundle({{}, {1, 0, 0}, {0, 1, 0}}, 0, 0);
+  AimedBundle<double> const whole = launch.bundle({{}, {1, 0, 0}, {0, 1, 0}}, {}, 0);
   stop_share_ = 1 / (length(whole.a) * seen);
 }
 

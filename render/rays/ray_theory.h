@@ -45,7 +45,10 @@ class RayTheory {
 
     auto const disc = launch.sight(middle);
     if (!disc) return;
-    AimedBundle<double> const bundle = launch.bundle(*disc, 0, 0);
+    // Without a residual, the target area is the same share of the stop for all sources, see stop_share_.
+    AimShift aim_shift = launch.aim_shift(*disc, middle, sources.reach());
+    aim_shift.residual = 0;
+    AimedBundle<double> const bundle = launch.bundle(*disc, aim_shift, 0);
     Vec2d sum{};
     double weight = 0;
     for (std::size_t i = 0; i < places_.points.size(); ++i) {

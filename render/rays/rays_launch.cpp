@@ -8,6 +8,45 @@
 #include "render/scene/shift_limit.h"
 
 namespace gladstone {
+namespace {
+
+/// Returns the smaller semi-axis of the ellipse [m].
+double smaller_semi_axis(WorldAimDisc const& disc) {
+  // Semi-axes are the singular values of (a b), computed from their sum of squares and their product.
+  double const squares = dot(disc.a, disc.a) + dot(disc.b, disc.b), area = length(cross(disc.a, disc.b));
+  return std::sqrt(0.5 * (squares - std::sqrt(std::max(0.0, squares * squares - 4 * area * area))));
+}
+
+/// Returns the shift of the entrance pupil from its differences between the corners of a hexagon of circumradius
+/// `radius` around the source's middle; nullopt if no chief ray passes from one of the corners.
+std::optional<AimShift> difference_shift(Camera const& camera, WorldAimDisc const& disc, Vec3d middle, double reach,
+                                         double radius) {
+  constexpr int corners = 6;
+  Vec2d towards[corners];
+  WorldAimDisc seen[corners];
+  AimShift shift;
+  for (int k = 0; k < corners; ++k) {
+    towards[k] = point_of_circle(1.0, static_cast<double>(k) / corners);
+    auto const there = camera.aim_disc(middle + radius * Vec3d{towards[k].x, towards[k].y, 0});
+    if (!there) return std::nullopt;
+    seen[k] = *there;
+    shift.by_x += (2 * towards[k].x / (corners * radius)) * there->centre;
+    shift.by_y += (2 * towards[k].y / (corners * radius)) * there->centre;
+  }
+  // The remaining shift grows with the square of the offset, the change of size and shape in proportion to it. A
+  // quadratic form on the circle is at most 5/3 of its largest value at the corners, a linear form 1.16 of it.
+  constexpr double between_corners = 5.0 / 3;
+  double const larger = reach / radius;
+  for (int k = 0; k < corners; ++k) {
+    Vec3d const linear = radius * (towards[k].x * shift.by_x + towards[k].y * shift.by_y);
+    double const curved = length(seen[k].centre - disc.centre - linear);
+    double const reshaped = std::hypot(length(seen[k].a - disc.a), length(seen[k].b - disc.b));
+    shift.residual = std::max(shift.residual, between_corners * larger * (larger * curved + reshaped));
+  }
+  return shift;
+}
+
+}  // namespace
 
 RaysLaunch::RaysLaunch(Scene const& scene, SpotView const& shown, StopRim rim)
     : camera(scene.camera),
@@ -51,14 +90,23 @@ bool RaysLaunch::soft() const {
   });
 }
 
-AimedBundle<double> RaysLaunch::bundle(WorldAimDisc const& disc, double reach, double margin) const {
+AimShift RaysLaunch::aim_shift(WorldAimDisc const& disc, Vec3d middle, double reach) const {
+  constexpr double small = 0.5;  // reach relative to the pupil's smaller semi-axis
+  AimShift const none{{}, {}, reach};
+  if (camera.chief_rays_only() || reach <= small * smaller_semi_axis(disc)) return none;
+  // At the edge of the field of view, chief rays may pass only from points closer to the middle.
+  for (double const share : {1.0, 0.5, 0.25, 0.125}) {
+    auto const shift = difference_shift(camera, disc, middle, reach, share * reach);
+    if (shift) return shift->residual < reach ? *shift : none;
+  }
+  return none;
+}
+
+AimedBundle<double> RaysLaunch::bundle(WorldAimDisc const& disc, AimShift const& shift, double margin) const {
   if (camera.chief_rays_only()) return {disc.centre, {}, {}, camera.aim_plane.z, choice};
-  // Semi-axes are the singular values of (a b), computed from their sum of squares and their product.
-  double const squares = dot(disc.a, disc.a) + dot(disc.b, disc.b), area = length(cross(disc.a, disc.b));
-  double const smaller = std::sqrt(0.5 * (squares - std::sqrt(std::max(0.0, squares * squares - 4 * area * area))));
   double const rim = soft() ? std::sqrt(1 + Scene::stop_edge(static_cast<double>(rays)) / 2) : 1;
-  double const wider = rim + (margin + reach) / smaller;
-  AimedBundle<double> bundle{disc.centre, wider * disc.a, wider * disc.b, {}, choice};
+  double const wider = rim + (margin + shift.residual) / smaller_semi_axis(disc);
+  AimedBundle<double> bundle{disc.centre, wider * disc.a, wider * disc.b, {}, choice, shift.by_x, shift.by_y};
   bundle.across = pi * cross(bundle.a, bundle.b);
   return bundle;
 }

@@ -16,6 +16,12 @@ enum class StopRim {
   sharp,   ///< sharp, for rays that fill the stop exactly
 };
 
+/// Shift of the entrance pupil on the aim plane, as seen from the points of one source instead of from its middle.
+struct AimShift {
+  Vec3d by_x{}, by_y{};  ///< shift per offset of the point in x and y [1]
+  double residual = 0;   ///< upper limit of the remaining change of the pupil over the source [m]
+};
+
 /// Ray-tracing parameters shared by all sources with the same number of rays.
 struct RaysLaunch {
   Camera camera;  ///< camera; the edge of its stop as requested
@@ -38,11 +44,18 @@ struct RaysLaunch {
   }
   /// Returns the entrance pupil as seen from a point; nullopt if no chief ray passes.
   std::optional<WorldAimDisc> sight(Vec3d middle) const { return camera.aim_disc(middle); }
+  /// Returns the shift of the entrance pupil over a source that is parallel to the XY plane.
+  ///
+  /// For a source up to half as large as the pupil, the shift is zero and the residual is `reach`: rays are sent to the
+  /// pupil as seen from the middle, enlarged by the source's size. This also applies if no chief ray passes close to
+  /// the middle. For larger sources, the shift is a finite difference between entrance pupils as seen from six points.
+  /// @param disc  entrance pupil as seen from the source's middle
+  /// @param reach  maximum distance of a point of the source from its middle [m]
+  AimShift aim_shift(WorldAimDisc const& disc, Vec3d middle, double reach) const;
   /// Returns the target area of a source's rays.
-  /// @param disc  entrance pupil as seen from the source's centre
-  /// @param reach  maximum distance of a point of the source from its centre [m]
+  /// @param disc  entrance pupil as seen from the source's middle
   /// @param margin  upper limit of the deflection by the medium on the aim plane [m]
-  AimedBundle<double> bundle(WorldAimDisc const& disc, double reach, double margin) const;
+  AimedBundle<double> bundle(WorldAimDisc const& disc, AimShift const& shift, double margin) const;
   /// Returns the margin for a source of which a ray was deflected by `shift` on the aim plane [m].
   /// @throws DataError if no real set-up has such a deflection
   double wider_margin(double shift) const;

@@ -157,7 +157,7 @@ Image<double> white_picture(Scene const& scene) {
     here.dots.centre = &place;
     auto const disc = launch.sight(here.middle(0));
     if (!disc) return;
-    AimedBundle<double> const bundle = launch.bundle(*disc, 0, 0);
+    AimedBundle<double> const bundle = launch.bundle(*disc, {}, 0);
     double light = 0;
     for (std::uint64_t i = 0; i < launch.rays; ++i) {
       AimedRay<double> aimed = aim_ray(here, bundle, 0, i);

@@ -40,17 +40,20 @@ class RayLight {
 struct SourceAim {
   std::optional<WorldAimDisc> disc;           ///< entrance pupil as seen from the source; empty: no ray passes
   Vec2d origin{};                             ///< whole-pixel position to which sums are relative [px]
+  AimShift shift;                             ///< shift of the entrance pupil over the source
   double margin = 0;                          ///< margin by which the target area exceeds the entrance pupil [m]
   Vec2d low[frame_count], high[frame_count];  ///< approximate bounding box of the hits in each image [px]
 };
 
 /// Aims at the entrance pupil as seen from a source, with a margin of 1.25 times the deflection of its chief and edge
 /// rays by the medium on the aim plane.
+/// @param reach  maximum distance of a point of the source from its middle [m]
 template <class View, class Medium>
-SourceAim aim_at_stop(RaysLaunch const& launch, View const& view, Medium const& medium, Vec3d middle) {
+SourceAim aim_at_stop(RaysLaunch const& launch, View const& view, Medium const& medium, Vec3d middle, double reach) {
   SourceAim aim;
   aim.disc = launch.sight(middle);
   if (!aim.disc) return aim;
+  aim.shift = launch.aim_shift(*aim.disc, middle, reach);
   if (auto const pixel = launch.camera.project(middle)) aim.origin = {std::round(pixel->x), std::round(pixel->y)};
   for (int frame = 0; frame < frame_count; ++frame) aim.low[frame] = aim.high[frame] = aim.origin;
   auto const landed = [&aim](int frame, RayHit<double> const& hit) {
@@ -91,7 +94,7 @@ class SourceTracer {
   /// @return its truth; NaN if no ray passes
   DotTruth trace(std::uint64_t source, LightImage* const (&images)[frame_count]) {
     use(0);
-    SourceAim aim = aim_at_stop(*launch_, view_, medium_, sources_.middle(source));
+    SourceAim aim = aim_at_stop(*launch_, view_, medium_, sources_.middle(source), sources_.reach());
     if (!aim.disc) return source_truth(nullptr, 0, {});
     while (true) {
       StatusCounts const before = statuses_;
@@ -127,7 +130,7 @@ class SourceTracer {
   /// @param sign  sign of the deposited light; -1 subtracts it
   /// @return largest deflection of a ray on the aim plane [m]
   double trace_all(std::uint64_t source, SourceAim const& aim, LightImage* const (&images)[frame_count], double sign) {
-    AimedBundle<double> const bundle = launch_->bundle(*aim.disc, sources_.reach(), aim.margin);
+    AimedBundle<double> const bundle = launch_->bundle(*aim.disc, aim.shift, aim.margin);
     double const light_per_weight = sign * launch_->light_per_weight(sources_.area());
     for (int frame = 0; with_images_ && frame < frame_count; ++frame) {
       light_[frame]->begin(images[frame], light_per_weight, launch_->rays);

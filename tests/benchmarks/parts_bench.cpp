@@ -18,7 +18,7 @@ void emit_rays(benchmark::State& state) {
   Scene const scene = table1_scene(8, 64);
   RaysLaunch const launch(scene, SpotView{});
   LambertSources<double> const lambert{scene.dots.view(-scene.setup.z_d)};
-  AimedBundle<double> const bundle = launch.bundle(*launch.sight(lambert.middle(0)), lambert.reach(), 0);
+  AimedBundle<double> const bundle = launch.bundle(*launch.sight(lambert.middle(0)), {{}, {}, lambert.reach()}, 0);
   std::uint64_t ray = 0;
   for (auto _ : state) {
     benchmark::DoNotOptimize(aim_ray(lambert, bundle, ray / 64 % lambert.dots.count, ray % 64));
