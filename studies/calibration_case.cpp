@@ -125,6 +125,8 @@ RenderedCalibration render_planes(CaseSetup& loaded, Renderer& renderer) {
     plane.light = std::move(traced.light.reference);
     plane.truth = std::move(traced.truth);
     plane.statuses = traced.statuses;
+    warn_of_unseen(rendered.warnings, plane.scene, plane.truth, 0,
+                   fmt::format(" of the plane Z = {:.6g} mm", z / unit::millimetre));
     plane.place_error = place_error(plane.scene, renderer);
     rendered.device = traced.device.empty() ? renderer.device() : traced.device;
     brightest = std::max(brightest, *std::max_element(plane.light.begin(), plane.light.end()));

@@ -106,26 +106,39 @@ void warn_of_table(std::vector<std::string>& warnings, RaysPlan const& error) {
 }
 
 std::size_t warn_of_unseen(std::vector<std::string>& warnings, Scene const& scene, GroundTruth const& truth,
-                           double pupil_margin) {
-  std::int64_t unseen = 0, rays = std::numeric_limits<std::int64_t>::max();  // smallest number of rays of an unseen dot
+                           double pupil_margin, std::string_view where) {
+  std::int64_t unseen = 0, in_reference = 0;                     // in one of the frames; in the reference
+  std::int64_t rays = std::numeric_limits<std::int64_t>::max();  // smallest number of rays of an unseen dot
   for (std::size_t i = 0; i < truth.size(); ++i) {
     if (!std::isnan(truth.displacement_px[i].x)) continue;
     ++unseen;
+    if (std::isnan(truth.reference_px[i].x)) ++in_reference;
     rays = std::min(rays, truth.rays_planned[i]);
   }
-  if (unseen > 0 && !scene.setup.piv) {  // for PIV, unseen particles are those outside the light sheet
-    double const disc = scene.pupil_radius(), stop = scene.imaging.entrance_pupil / 2;
-    double const passing = static_cast<double>(rays) * (stop * stop) / (disc * disc);
-    constexpr double few = 16;  // if 16 passing rays are expected, none passes with a probability of e^-16
-    std::string const why =
-        !scene.chief_rays_only() && passing < few
-            ? fmt::format(
-                  "some {:.2g} of a dot's {} rays pass the stop, since the flow bends them by up to {:.3g} mm; "
-                  "take more rays (render.rays_per_dot), or reduce the gradients or Z_D",
-                  passing, rays, pupil_margin / unit::millimetre)
-            : "the flow bends their rays past the lens; reduce the gradients or Z_D";
-    warn(warnings, fmt::format("{} of {} dots are not seen in one of the frames, and their truth is nan: {}", unseen,
-                               scene.dots.centre.size(), why));
+  // for PIV, unseen particles are those outside the light sheet
+  if (unseen == 0 || scene.setup.piv) return static_cast<std::size_t>(unseen);
+  double const disc = scene.pupil_radius(), stop = scene.imaging.entrance_pupil / 2;
+  double const passing = static_cast<double>(rays) * (stop * stop) / (disc * disc);
+  constexpr double few = 16;  // if 16 passing rays are expected, none passes with a probability of e^-16
+  if (!scene.chief_rays_only() && pupil_margin > 0 && passing < few) {
+    warn(warnings,
+         fmt::format("{} of {} dots{} are not seen in one of the frames, and their truth is nan: some {:.2g} of a "
+                     "dot's {} rays pass the stop, since the flow bends them by up to {:.3g} mm; take more rays "
+                     "(render.rays_per_dot), or reduce the gradients or Z_D",
+                     unseen, truth.size(), where, passing, rays, pupil_margin / unit::millimetre));
+    return static_cast<std::size_t>(unseen);
+  }
+  if (in_reference > 0) {
+    warn(warnings,
+         fmt::format("{} of {} dots{} are not seen, and their truth is nan: without any flow, none of the rays of "
+                     "such a dot ({} or more) passes the lens; these dots are outside the lens' field of view or "
+                     "vignetted, so reduce the dotted area, move the camera, or take more rays (render.rays_per_dot)",
+                     in_reference, truth.size(), where, rays));
+  }
+  if (unseen > in_reference) {
+    warn(warnings, fmt::format("{} of {} dots{} are not seen in one of the frames, and their truth is nan: the flow "
+                               "bends their rays past the lens; reduce the gradients or Z_D",
+                               unseen - in_reference, truth.size(), where));
   }
   return static_cast<std::size_t>(unseen);
 }

@@ -100,6 +100,39 @@ TEST_F(Calibrations, SayWhatRaysLeaveInTheDotsPlaces) {
   EXPECT_THAT(few["warnings"].dump(), testing::HasSubstr("raise render.rays_per_dot"));
 }
 
+// A double Gauss that looks at a grid of +-1.2 m from 1 m away: its mounts vignette dots far off the axis completely.
+TEST_F(Calibrations, WarnOfDotsThatTheLensVignettes) {
+  write("setup.toml", R"(experiment = "calibration"
+[camera]
+pixels = [128, 128]
+pixel_pitch_um = 100.0
+[lens]
+model = "prescription"
+file = ")" + std::string(GLADSTONE_DATA_DIR) +
+                          R"(/lenses/double_gauss.toml"
+f_number = 8.0
+[geometry]
+z_a_mm = 1000.0
+[calibration]
+planes_mm = [0.0, 10.0]
+spacing_mm = 200.0
+dot_diameter_mm = 10.0
+extent_mm = [2400.0, 2400.0]
+[render]
+rays_per_dot = 64
+)");
+  auto const json = json_of({"render", "setup.toml", "-o", "case", "--quiet"});
+  std::string const warnings = json["warnings"].dump();
+  for (auto const& plane : json["planes"]) {
+    int const unseen = plane["dots_unseen"];
+    EXPECT_GT(unseen, 0);
+    EXPECT_THAT(warnings,
+                testing::HasSubstr(std::to_string(unseen) + " of 169 dots of the plane Z = " +
+                                   std::to_string(static_cast<int>(plane["z_mm"].get<double>())) + " mm are not seen"));
+  }
+  EXPECT_THAT(warnings, testing::Not(testing::HasSubstr("flow bends")));
+}
+
 TEST_F(Calibrations, RecoverTheCamera) {
   write("setup.toml", wide);
   render("case");

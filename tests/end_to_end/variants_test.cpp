@@ -329,6 +329,38 @@ TEST_F(Variants, GradientsThatBendRaysPastAnyLensAreRefused) {
   }
 }
 
+// A dot 1.2 m off the axis, which the mounts of a double Gauss vignette completely, and one on the axis.
+TEST_F(Variants, DotsThatTheLensVignettesAreNotBlamedOnTheFlow) {
+  write("dots.csv", "x_mm,y_mm\n0,0\n1200,0\n");
+  write("points.toml", R"(schema = 1
+[camera]
+pixels = [64, 64]
+[lens]
+model = "prescription"
+file = ")" + std::string(GLADSTONE_DATA_DIR) +
+                           R"(/lenses/double_gauss.toml"
+f_number = 8.0
+[geometry]
+z_a_mm = 1000.0
+z_d_mm = 100.0
+[target]
+kind = "points"
+file = "dots.csv"
+[medium]
+thickness_mm = 10.0
+[medium.field]
+kind = "none"
+[render]
+rays_per_dot = 64
+)");
+  Outcome const outcome = gladstone({"render", "points.toml", "-o", "case"});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(nlohmann::json::parse(read("case/summary.json"))["dots_unseen"], 1);
+  EXPECT_THAT(outcome.err, testing::HasSubstr("1 of 2 dots are not seen"));
+  EXPECT_THAT(outcome.err, testing::HasSubstr("outside the lens' field of view or vignetted"));
+  EXPECT_THAT(outcome.err, testing::Not(testing::HasSubstr("the flow bends")));
+}
+
 TEST_F(Variants, ImpossibleGradientsAreSaidToHideTheDots) {
   Outcome const outcome =
       gladstone({"render", "setup.toml", "-o", "case", "--set", "medium.field.gradient_kg_m4=[5e4, 0, 0]"});
