@@ -91,9 +91,8 @@ bool RaysLaunch::soft() const {
 }
 
 AimShift RaysLaunch::aim_shift(WorldAimDisc const& disc, Vec3d middle, double reach) const {
-  constexpr double small = 0.5;  // reach relative to the pupil's smaller semi-axis
   AimShift const none{{}, {}, reach};
-  if (camera.chief_rays_only() || reach <= small * smaller_semi_axis(disc)) return none;
+  if (camera.chief_rays_only() || reach <= smaller_semi_axis(disc)) return none;
   // At the edge of the field of view, chief rays may pass only from points closer to the middle.
   for (double const share : {1.0, 0.5, 0.25, 0.125}) {
     auto const shift = difference_shift(camera, disc, middle, reach, share * reach);

@@ -46,7 +46,7 @@ struct RaysLaunch {
   std::optional<WorldAimDisc> sight(Vec3d middle) const { return camera.aim_disc(middle); }
   /// Returns the shift of the entrance pupil over a source that is parallel to the XY plane.
   ///
-  /// For a source up to half as large as the pupil, the shift is zero and the residual is `reach`: rays are sent to the
+  /// For a source up to as large as the pupil, the shift is zero and the residual is `reach`: rays are sent to the
   /// pupil as seen from the middle, enlarged by the source's size. This also applies if no chief ray passes close to
   /// the middle. For larger sources, the shift is a finite difference between entrance pupils as seen from six points.
   /// @param disc  entrance pupil as seen from the source's middle

@@ -222,7 +222,7 @@ TEST(WideAngleRendering, TargetAreasOfLargeDotsHoldTheWholeStop) {
   }
 }
 
-// Rays of sources up to half as large as the pupil are sent to the pupil as seen from the source's middle, enlarged by
+// Rays of sources up to as large as the pupil are sent to the pupil as seen from the source's middle, enlarged by
 // the source's size.
 TEST(WideAngleRendering, SmallSourcesAimAtThePupilSeenFromTheirMiddle) {
   auto setup = wide_setup(65, 8e-6);
@@ -234,14 +234,14 @@ TEST(WideAngleRendering, SmallSourcesAimAtThePupilSeenFromTheirMiddle) {
   ASSERT_TRUE(disc);
   double const larger = std::max(length(disc->a), length(disc->b));
   double const area = length(cross(disc->a, disc->b));
-  double const below = 0.49 * area / std::hypot(length(disc->a), length(disc->b));  // below half of either semi-axis
+  double const below = 0.99 * area / std::hypot(length(disc->a), length(disc->b));  // below either semi-axis
   AimShift const small = launch.aim_shift(*disc, middle, below);
   EXPECT_EQ(small.by_x, Vec3d{});
   EXPECT_EQ(small.by_y, Vec3d{});
   EXPECT_EQ(small.residual, below);
-  AimShift const large = launch.aim_shift(*disc, middle, larger);
+  AimShift const large = launch.aim_shift(*disc, middle, 2 * larger);
   EXPECT_GT(length(large.by_x), 0);
-  EXPECT_LT(large.residual, 0.01 * larger);
+  EXPECT_LT(large.residual, 0.05 * larger);
 }
 
 }  // namespace
