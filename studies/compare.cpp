@@ -44,6 +44,7 @@ Comparison comparison_of(MeasuredVectors& vectors, bool piv) {
   comparison.foreign = vectors.foreign;
   comparison.left_out = vectors.left_out;
   comparison.detected = vectors.detected;
+  comparison.complete = vectors.complete;
   if (piv) comparison.chain = BudgetChain::piv;
   return comparison;
 }

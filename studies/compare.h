@@ -44,6 +44,7 @@ struct Comparison {
   std::string report;               ///< conventions detected in a foreign file; empty for our own
   LeftOutVectors left_out;          ///< vectors of the file that were rejected; `measured` holds the others
   std::optional<DetectedConventions> detected;  ///< for a foreign file
+  bool complete = true;                         ///< false: the file's header declares another number of vectors
   bool foreign = false;
   std::vector<std::string> warnings;  ///< comparison_warnings() of the case
   SourceFiles sources;      ///< contents of the compared files; empty for vectors that were never stored in files
@@ -84,6 +85,7 @@ struct MeasuredVectors {
   std::string name;              ///< name of the file or the case, for messages
   LeftOutVectors left_out{};
   std::optional<DetectedConventions> detected{};  ///< for a foreign file
+  bool complete = true;                           ///< false: the file's header declares another number of vectors
   /// the vectors are every n-th of the lattice defined by the settings, see every_nth()
   int every = 1;
 };

@@ -119,10 +119,15 @@ DetectedConventions detect(VectorFile const& file, std::string const& path, Grou
 
 }  // namespace
 
+void log_remarks(VectorFile const& file) {
+  for (std::string const& warning : file.warnings) spdlog::warn("{}", warning);
+  for (std::string const& note : file.notes) spdlog::info("{}", note);
+}
+
 MeasuredVectors load_vectors(std::string const& path, CaseSetup const& loaded, GroundTruth const& truth,
                              CompareOptions const& options) {
   VectorFile file = read_vectors(path);
-  for (std::string const& warning : file.warnings) spdlog::warn("{}", warning);
+  log_remarks(file);
   if (options.conventions) override_conventions(file, *options.conventions);
   file = convert_to_pixels(std::move(file), path);
   CameraSetup const& camera = loaded.setup.camera;
@@ -143,6 +148,7 @@ MeasuredVectors load_vectors(std::string const& path, CaseSetup const& loaded, G
     vectors.report = vectors.detected->report;
     file.conventions = vectors.detected->conventions;
   }
+  vectors.complete = file.complete;
   vectors.field = apply_conventions(std::move(file.field), file.conventions, camera.rows);
   if (!file.foreign && hdf5) {
     Hdf5Reader const measured(path);

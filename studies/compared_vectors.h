@@ -6,6 +6,9 @@
 
 namespace gladstone {
 
+/// Logs the warnings and notes of a file of vectors.
+void log_remarks(VectorFile const& file);
+
 /// Reads a file of vectors, our own or another code's, by the conventions of its format or those given by the user.
 /// Rejects vectors that lie or point outside the image. Detects wrong axes, signs, units and positions by comparison
 /// with the case's truth; warns of them and stores them in `detected`.

@@ -4,6 +4,8 @@
 #include <cstring>
 #include <new>
 
+#include "render/base/text_encoding.h"
+
 namespace gladstone {
 namespace {
 
@@ -35,7 +37,16 @@ std::string read_text_file(std::string const& path, std::string const& wanted, s
   }
 }
 
-LineReader::LineReader(std::string const& path, std::string const& wanted) : file_(path, wanted) {}
+LineReader::LineReader(std::string const& path, std::string const& wanted) : file_(path, wanted) {
+  char first[2] = {'x', 'x'};
+  file_.read(0, first, sizeof first);
+  std::string_view const mark(first, sizeof first);
+  if (mark != "\xff\xfe" && mark != "\xfe\xff" && mark.find('\0') == std::string_view::npos) return;
+  std::string const text = decoded_text(read_text_file(path, wanted), path);
+  buffer_.assign(text.begin(), text.end());
+  end_ = text.size();
+  ended_ = true;
+}
 
 std::optional<std::string_view> LineReader::next() {
   std::size_t searched = begin_;

@@ -21,10 +21,11 @@ inline constexpr std::uint64_t most_setup_bytes = std::uint64_t{32} << 20;
 std::string read_text_file(std::string const& path, std::string const& wanted = "a file of text",
                            std::uint64_t most_bytes = std::uint64_t{4} << 30);
 
-/// Reads a text file line by line, without line ends ("\n" or "\r\n") and without the UTF-8 byte order mark.
+/// Reads a text file line by line, without line ends ("\n" or "\r\n") and without the UTF-8 byte order mark. A file
+/// that begins with the byte order mark of UTF-16 is read at once and converted to UTF-8, see decoded_text().
 class LineReader {
  public:
-  /// @throws DataError as InputFile
+  /// @throws DataError as InputFile, and for malformed UTF-16 or UTF-16 without byte order mark
   explicit LineReader(std::string const& path, std::string const& wanted = "a file of text");
 
   /// Returns the next line, valid until the next call; nullopt at the end of the file.
@@ -34,7 +35,7 @@ class LineReader {
   std::size_t number() const { return number_; }
   /// Location of that line, "file:number".
   std::string place() const;
-  /// Offset in the file of the first byte after that line.
+  /// Offset in the file of the first byte after that line; meaningless for UTF-16.
   std::uint64_t offset() const { return offset_; }
 
  private:

@@ -187,6 +187,7 @@ BenchmarkResult run_benchmark(BenchmarkOptions const& options, Device const& dev
   for (ForeignCode const& code : codes) {
     if (!code.reading().empty()) result.conventions.push_back(code.name() + ": " + code.reading());
     if (std::string mistake = code.mistake(); !mistake.empty()) result.mistakes.push_back(std::move(mistake));
+    result.mistakes.insert(result.mistakes.end(), code.incomplete().begin(), code.incomplete().end());
   }
   // Restore the order of the list.
   auto const place = [&](std::string const& name) {

@@ -9,6 +9,7 @@
 
 #include "analysis/vectors/vector_screening.h"
 #include "render/base/error.h"
+#include "studies/compared_vectors.h"
 
 namespace gladstone {
 namespace {
@@ -101,6 +102,9 @@ ForeignCode::ForeignCode(ForeignVectors const& given, std::vector<BenchmarkCase>
 DisplacementField ForeignCode::read(std::string const& of_case, DisplacementAt const& truth, int columns, int rows) {
   std::string const& path = files_.at(of_case);
   VectorFile file = read_vectors(path);
+  log_remarks(file);
+  if (!file.complete)
+    incomplete_.push_back(fmt::format("{}: the header of {} declares another number of vectors", name_, path));
   if (told_) override_conventions(file, *told_);
   file = convert_to_pixels(std::move(file), path);
   if (conventions_) {

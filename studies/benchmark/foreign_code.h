@@ -30,6 +30,8 @@ class ForeignCode {
   /// Returns the probable mistake in the files read so far, or an empty string. The evidence of all cases is combined,
   /// so that the cases that distinguish the conventions decide.
   std::string mistake() const;
+  /// Returns a line for each file read so far whose header declares another number of vectors.
+  std::vector<std::string> const& incomplete() const { return incomplete_; }
 
  private:
   std::string name_;
@@ -38,6 +40,7 @@ class ForeignCode {
   std::optional<VectorConventions> conventions_;
   std::vector<VectorConventions> own_;  ///< all conventions that the format allows
   std::string reading_;
+  std::vector<std::string> incomplete_;
   std::vector<std::pair<std::string, DetectedConventions>> detected_;  ///< results by case
 };
 

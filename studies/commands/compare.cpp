@@ -154,7 +154,8 @@ CommandBody attach_compare(CLI::App& app, GlobalOptions const& options) {
         apart ? write_folder(*output, place, comparison, draw) : write_beside(place, comparison, draw);
     for (auto const& name : written.figures) spdlog::info("drew {}", (place / name).string());
     print_result(options, written.json, error_report(comparison));
-    return comparison.detected && comparison.detected->mistake.found() ? check_missed : ok;
+    bool const mistaken = comparison.detected && comparison.detected->mistake.found();
+    return mistaken || !comparison.complete ? check_missed : ok;
   };
 }
 

@@ -14,6 +14,7 @@
 #include "render/base/hdf5_file.h"
 #include "render/base/image_file.h"
 #include "studies/case_files.h"
+#include "studies/compared_vectors.h"
 
 namespace gladstone {
 namespace {
@@ -51,7 +52,7 @@ void screen(VectorFile& file, std::string const& path, std::string const& setup,
 DisplacementField read_measured(std::string const& path, std::string const& setup, ReportOptions const& options,
                                 CameraSetup const& camera) {
   VectorFile file = read_vectors(path);
-  for (std::string const& warning : file.warnings) spdlog::warn("{}", warning);
+  log_remarks(file);
   if (!options.conventions.empty()) override_conventions(file, options.conventions);
   file = convert_to_pixels(std::move(file), path);
   screen(file, path, setup, camera);

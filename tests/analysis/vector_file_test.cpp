@@ -297,15 +297,114 @@ TEST_F(VectorFiles, CodesOfOtherProgramsAreTheirs) {
   EXPECT_THAT(problem("x [mm],y [px],u,v\n1,2,3,4\n"), AllOf(HasSubstr("bad.csv:1"), HasSubstr("different units")));
 }
 
+// The header states the size of the grid: with another number of rows, the file was cut short or mixed up.
+TEST_F(VectorFiles, RowsAreCountedAgainstTheHeader) {
+  struct Case {
+    char const* name;
+    std::string header, row;
+    char const* place;
+  };
+  for (Case const& one :
+       {Case{"a.dat",
+             "TITLE = \"ZONE I=9\"\nVARIABLES = \"x\", \"y\", \"Vx\", \"Vy\"\nZONE T=\"J=7\", I=2,\n J = 3, F=POINT\n",
+             "1 1 2 2\n", "a.dat:4: "},
+        Case{"b.vec",
+             "TITLE=\"a\" VARIABLES=\"X pixel\", \"Y pixel\", \"U pixel\", \"V pixel\", \"CHC\", ZONE I=2, J=3\n",
+             "1, 1, 2, 2, 1\n", "b.vec:1: "},
+        Case{"c.csv", ">>*HEADER*<<\nGridSize:{Width=2, Height=3}\n>>*DATA*<<\nx,y,U pix,V pix,Status\n", "1,1,2,2,0\n",
+             "c.csv:2: "},
+        Case{"d.txt", "#DaVis 8.0.6 2D-vector 16 2 3 \"position\" \"mm\" \"position\" \"mm\" \"velocity\" \"m/s\"\n",
+             "1,0\t1,0\t2,0\t2,0\n", "d.txt:1: "}}) {
+    std::string text = one.header;
+    for (int row = 1; row <= 7; ++row) {
+      text += one.row;
+      VectorFile const back = read_vectors(file(one.name, text));
+      EXPECT_EQ(back.field.size(), static_cast<std::size_t>(row)) << one.name;
+      EXPECT_EQ(back.complete, row == 6) << one.name << ' ' << row;
+      ASSERT_EQ(back.warnings.size(), row == 6 ? 0u : 1u) << one.name << ' ' << row;
+      if (row == 6) continue;
+      EXPECT_THAT(back.warnings[0], AllOf(HasSubstr(one.place), HasSubstr("declares 6 vectors"),
+                                          HasSubstr("contains " + std::to_string(row))));
+    }
+  }
+  EXPECT_TRUE(read_vectors(file("e.csv", "# i = 3\nx,y,u,v\n1,1,2,2\n")).complete) << "no zone";
+}
+
+// DaVis' text export: the units are in its header, and y points upwards as in its .dat.
+TEST_F(VectorFiles, TextExportOfDavisIsRead) {
+  VectorFile const back =
+      read_vectors(file("d.txt",
+                        "#DaVis 8.0.6 2D-vector 16 2 1 \"position\" \"mm\" \"position\" \"mm\" \"velocity\" \"m/s\"\n"
+                        "11,5000\t499,5000\t-0,9006\t-0,8446\n21,5\t499,5\t0\t0\n"));
+  EXPECT_EQ(back.format, "DaVis");
+  EXPECT_EQ(back.place_unit, "mm");
+  EXPECT_EQ(back.displacement_unit, "m/s");
+  EXPECT_TRUE(back.conventions.y_up && back.conventions.v_up);
+  EXPECT_EQ(back.field.position_px[0], (Vec2d{11.5, 499.5}));
+  EXPECT_EQ(back.field.displacement_px[0], (Vec2d{-0.9006, -0.8446}));
+  EXPECT_EQ(back.field.status, (std::vector{VectorStatus::valid, VectorStatus::masked}));
+  VectorFile const pixels = read_vectors(
+      file("p.txt",
+           "#DaVis 8.4.0 2D-vector 10 1 1 \"position\" \"pixel\" \"position\" \"pixel\" \"displacement\" \"pixel\"\n"
+           "1.5\t2.5\t-0.5\t0.25\n"));
+  EXPECT_EQ(pixels.place_unit + pixels.displacement_unit, "");
+  EXPECT_THAT(problem("#DaVis 8.4.0 3D-vector 10 1 1 \"position\" \"mm\" \"position\" \"mm\" \"velocity\" \"m/s\"\n"
+                      "1\t2\t3\t4\t5\n"),
+              AllOf(HasSubstr("bad.csv:1"), HasSubstr("DaVis' text export"), HasSubstr("export two components")));
+}
+
+// Validity is read under the names that other programs give it, in a table of any program.
+TEST_F(VectorFiles, ValidityIsReadByItsName) {
+  using enum VectorStatus;
+  VectorFile const chc = read_vectors(file("c.csv", "x,y,u,v,chc\n1,1,99,2,-1\n2,1,2,2,1\n3,1,2,2,2\n4,1,2,2,0\n"));
+  EXPECT_EQ(chc.field.status, (std::vector{invalid, valid, replaced, invalid}));
+  EXPECT_TRUE(chc.notes.empty());
+  EXPECT_EQ(read_vectors(file("v.csv", "x,y,u,v,isValid\n1,1,9,2,0\n2,1,2,2,1\n")).field.status,
+            (std::vector{masked, valid}));
+}
+
+TEST_F(VectorFiles, UnusedColumnsAreNamed) {
+  VectorFile const back = read_vectors(file("n.csv", "x,y,u,v,snr,x [mm],good\n1,1,2,2,5,3,1\n"));
+  ASSERT_EQ(back.notes.size(), 1u);
+  EXPECT_THAT(back.notes[0], AllOf(HasSubstr("n.csv:1: "), testing::EndsWith("not used: snr, good")));
+  EXPECT_TRUE(back.warnings.empty());
+}
+
 // A comma is a decimal one where something else separates, and a separator where it must be.
 TEST_F(VectorFiles, DecimalsMayHaveCommas) {
   for (char const* text :
        {"x;y;u;v\n1,5;2;3,25;-4,5\n", "x\ty\tu\tv\n1,5\t2\t3,25\t-4,5\n", "x y u v\n1,5 2 3,25 -4,5\n",
-        "x,y,u,v\n1.5, 2, 3.25, -4.5\n", "x;y;u;v\n1.5;2;3.25;-4.5\n"}) {
+        "x,y,u,v\n1.5, 2, 3.25, -4.5\n", "x,y,u,v\n\"1,5\",\"2\",\"3,25\",\"-4,5\"\n",
+        "\"x\";\"y\";\"u\";\"v\"\n\"1,5\";\"2\";3,25;\"-4,5\"\n", "x;y;u;v\n1.5;2;3.25;-4.5\n"}) {
     VectorFile const back = read_vectors(file("n.csv", text));
     EXPECT_EQ(back.field.position_px[0], (Vec2d{1.5, 2.0})) << text;
     EXPECT_EQ(back.field.displacement_px[0], (Vec2d{3.25, -4.5})) << text;
   }
+}
+
+TEST_F(VectorFiles, CommasThatSeparateAndMarkDecimalsAreNamed) {
+  EXPECT_THAT(
+      problem("x,y,u,v\n11,500,11,500,-0,901,0,845\n"),
+      AllOf(HasSubstr("bad.csv:2: 8 fields"), HasSubstr("commas may both separate the fields and mark decimals")));
+  EXPECT_THAT(problem("x,y,u,v\n11.5,11,-0.9,0.8,7\n"), testing::Not(HasSubstr("commas may")));
+}
+
+// The same text in UTF-8 and in UTF-16 of both byte orders; without its mark, UTF-16 is refused by its name.
+TEST_F(VectorFiles, Utf16IsRead) {
+  std::string const text = "x,y,u,v\r\n1.5,2,3.25,-4.5\r\n";
+  std::string little, big;
+  for (char const c : text) {
+    little += {c, '\0'};
+    big += {'\0', c};
+  }
+  for (std::string const& bytes : {"\xff\xfe" + little, "\xfe\xff" + big}) {
+    VectorFile const back = read_vectors(file("u.csv", bytes));
+    ASSERT_EQ(back.field.size(), 1u);
+    EXPECT_EQ(back.field.position_px[0], (Vec2d{1.5, 2.0}));
+    EXPECT_EQ(back.field.displacement_px[0], (Vec2d{3.25, -4.5}));
+  }
+  EXPECT_THAT(problem(little), HasSubstr("UTF-16 needs its byte order mark"));
+  EXPECT_THAT(problem(big), HasSubstr("UTF-16 needs its byte order mark"));
 }
 
 TEST_F(VectorFiles, NamedColumnsAreReadInAnyOrder) {

@@ -10,7 +10,7 @@ bool is_dantec(TextTable const& table) {
 }
 
 VectorFile read_dantec(TextTable const& table) {
-  VectorFile file = read_quantities(table, "Dantec");
+  VectorFile file = read_quantities(table, "Dantec", {"status"});
   file.conventions.y_up = file.conventions.v_up = true;
   file.conventions.mirror = VectorConventions::Mirror::image;
   add_offsets(file, {-0.5, -1.0, -1.5});

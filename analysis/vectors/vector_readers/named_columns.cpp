@@ -1,11 +1,14 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
 
+#include "analysis/vectors/vector_readers/text_rows.h"
 #include "analysis/vectors/vector_readers/vector_readers.h"
 #include "render/base/error.h"
+#include "render/base/text_file.h"
 
 namespace gladstone::detail {
 
@@ -32,7 +35,24 @@ void read_status(TextTable const& table, std::size_t column, DisplacementField& 
   }
 }
 
-VectorFile read_quantities(TextTable const& table, std::string const& format) {
+bool read_validity(TextTable const& table, DisplacementField& field) {
+  auto const choice = table.find({"chc"});
+  auto const valid = table.find({"isvalid", "valid", "is valid"});
+  for (std::size_t i = 0; i < field.size(); ++i) {
+    VectorStatus& status = field.status[i];
+    if (choice) {
+      double const code = table.values[*choice][i];
+      if (!(code >= 1.0)) status = VectorStatus::invalid;
+      if (code > 1.0 && status == VectorStatus::valid) status = VectorStatus::replaced;
+    } else if (valid && !(table.values[*valid][i] > 0.0)) {
+      status = VectorStatus::masked;
+    }
+  }
+  return choice || valid;
+}
+
+VectorFile read_quantities(TextTable const& table, std::string const& format,
+                           std::initializer_list<std::string_view> others) {
   std::array<std::size_t, 4> const columns{table.quantity({"x"}), table.quantity({"y"}),
                                            table.quantity({"u", "vx", "dx"}), table.quantity({"v", "vy", "dy"})};
   std::array<std::string, 4> units;
@@ -56,6 +76,20 @@ VectorFile read_quantities(TextTable const& table, std::string const& format) {
   file.place_unit = units[0];
   file.displacement_unit = units[2];
   file.warnings = table.warnings;
+  file.complete = table.complete;
+  std::vector<std::string> unused;
+  for (std::string const& name : table.names) {
+    std::string const quantity = parse_column_name(name).quantity;
+    auto const is_read = [&](std::size_t column) {
+      return parse_column_name(table.names[column]).quantity == quantity;
+    };
+    bool const used = std::find(others.begin(), others.end(), lower_case(name)) != others.end() ||
+                      std::any_of(columns.begin(), columns.end(), is_read);
+    if (!used) unused.push_back(name);
+  }
+  if (!unused.empty())
+    file.notes.push_back(fmt::format("{}:{}: columns not used: {}", table.path, table.header_line,
+                                     excerpt(fmt::format("{}", fmt::join(unused, ", ")), 200)));
   return file;
 }
 
@@ -74,7 +108,9 @@ void add_offsets(VectorFile& file, std::initializer_list<double> offsets_px) {
 bool has_named_columns(TextTable const&) { return true; }
 
 VectorFile read_named_columns(TextTable const& table) {
-  VectorFile file = read_quantities(table, "named columns");
+  VectorFile file = read_quantities(table, "named columns",
+                                    {"sigma_u_px", "sigma_u", "su", "sigma_v_px", "sigma_v", "sv", "peak_ratio",
+                                     "status", "chc", "isvalid", "valid", "is valid"});
   DisplacementField& field = file.field;
   auto const sigma_u = table.find({"sigma_u_px", "sigma_u", "su"});
   auto const sigma_v = table.find({"sigma_v_px", "sigma_v", "sv"});
@@ -84,7 +120,11 @@ VectorFile read_named_columns(TextTable const& table) {
     }
   }
   if (auto const ratio = table.find({"peak_ratio"})) field.peak_ratio = table.values[*ratio];
-  if (auto const status = table.find({"status"})) read_status(table, *status, field);
+  if (auto const status = table.find({"status"})) {
+    read_status(table, *status, field);
+  } else {
+    read_validity(table, field);
+  }
   return file;
 }
 

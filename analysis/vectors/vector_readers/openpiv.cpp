@@ -8,7 +8,7 @@ bool is_openpiv(TextTable const& table) {
 }
 
 VectorFile read_openpiv(TextTable const& table) {
-  VectorFile file = read_quantities(table, "OpenPIV");
+  VectorFile file = read_quantities(table, "OpenPIV", {"flags", "flag", "mask"});
   DisplacementField& field = file.field;
   auto const flags = table.find({"flags", "flag"});
   auto const mask = table.find({"mask"});

@@ -8,7 +8,7 @@ bool is_pivlab(TextTable const& table) {
 }
 
 VectorFile read_pivlab(TextTable const& table) {
-  VectorFile file = read_quantities(table, "PIVlab");
+  VectorFile file = read_quantities(table, "PIVlab", {"vector type [-]"});
   DisplacementField& field = file.field;
   if (auto const type = table.find({"vector type [-]"})) {
     for (std::size_t i = 0; i < field.size(); ++i) {

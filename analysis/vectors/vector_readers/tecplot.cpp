@@ -24,28 +24,17 @@ void mask_zeros(VectorFile& file, std::string const& path) {
 
 }  // namespace
 
-bool is_tecplot(TextTable const& table) { return table.tecplot; }
+bool is_tecplot(TextTable const& table) { return table.tecplot || table.davis; }
 
 VectorFile read_tecplot(TextTable const& table) {
-  auto const choice = table.find({"chc"});
-  auto const valid = table.find({"isvalid", "valid", "is valid"});
-  VectorFile file = read_quantities(table, choice ? "Insight" : table.find_quantity({"vx"}) ? "DaVis" : "Tecplot");
+  std::string const format = table.find({"chc"}) ? "Insight" : table.find_quantity({"vx"}) ? "DaVis" : "Tecplot";
+  VectorFile file = read_quantities(table, format, {"chc", "isvalid", "valid", "is valid"});
   VectorConventions upwards;
   upwards.y_up = upwards.v_up = true;
   upwards.mirror = VectorConventions::Mirror::image;
   file.conventions = upwards;
   add_offsets(file, {-0.5, -1.0, -1.5});
-  for (std::size_t i = 0; i < file.field.size(); ++i) {
-    VectorStatus& status = file.field.status[i];
-    if (choice) {
-      double const code = table.values[*choice][i];
-      if (!(code >= 1.0)) status = VectorStatus::invalid;
-      if (code > 1.0 && status == VectorStatus::valid) status = VectorStatus::replaced;
-    } else if (valid && !(table.values[*valid][i] > 0.0)) {
-      status = VectorStatus::masked;
-    }
-  }
-  if (!choice && !valid) mask_zeros(file, table.path);
+  if (!read_validity(table, file.field)) mask_zeros(file, table.path);
   return file;
 }
 

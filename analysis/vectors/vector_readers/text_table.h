@@ -7,14 +7,9 @@
 #include <string_view>
 #include <vector>
 
-namespace gladstone::detail {
+#include "analysis/vectors/vector_readers/table_header.h"
 
-/// Column name split into quantity and unit: "U pix[pix]" is the quantity "u" in "pix".
-struct ColumnName {
-  std::string quantity;  ///< lower case, without the unit
-  std::string unit;      ///< lower case; empty: not stated
-};
-ColumnName parse_column_name(std::string_view name);
+namespace gladstone::detail {
 
 /// Text file of numbers in columns, common to all readers of foreign vectors.
 struct TextTable {
@@ -25,8 +20,10 @@ struct TextTable {
   std::vector<std::vector<double>> values;  ///< one vector per column
   std::vector<std::size_t> line;            ///< line number of each row, from 1
   bool tecplot = false;                     ///< the names are from Tecplot's VARIABLES
+  bool davis = false;                       ///< the names are from the header of DaVis' text export
   bool has_header = true;                   ///< false: the names are defined by the format
   std::vector<std::string> warnings;        ///< "file:line: ..." about ignored parts of the file
+  bool complete = true;                     ///< false: the header declares another number of rows
 
   std::size_t rows() const { return line.size(); }
   /// Returns the index of the first column with one of these names, ignoring case.
@@ -43,17 +40,12 @@ struct TextTable {
   [[noreturn]] void refuse_missing(std::string_view wanted) const;
 };
 
-/// Returns true if a unit, as in ColumnName, is a pixel unit or not stated.
-bool is_pixel_unit(std::string_view unit);
-
 /// Reads a table. The last line before the numbers contains the column names (a leading "# " is ignored) unless
-/// Tecplot's VARIABLES does; JPIV's .jvc has no header. Separators are comma, semicolon, tab or blanks; the decimal
-/// separator is a point or, with another field separator, a comma.
+/// Tecplot's VARIABLES or DaVis' "#DaVis" does; JPIV's .jvc has no header. Separators are comma, semicolon, tab or
+/// blanks; the decimal separator is a point or, with another field separator or in quotation marks, a comma. A number
+/// of rows other than the header declares is a warning, and `complete` is then false.
 /// @throws DataError with file:line for an empty file, a missing header, a row with a wrong number of fields, a field
-///         that is not a number, or Tecplot's BLOCK packing
+///         that is not a number, Tecplot's BLOCK packing, or 3D vectors of DaVis
 TextTable read_text_table(std::string const& path);
-
-/// Converts text to lower case.
-std::string lower_case(std::string_view text);
 
 }  // namespace gladstone::detail

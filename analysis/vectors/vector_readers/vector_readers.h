@@ -2,6 +2,7 @@
 
 #include <initializer_list>
 #include <string>
+#include <string_view>
 
 #include "analysis/vectors/vector_file.h"
 #include "analysis/vectors/vector_readers/text_table.h"
@@ -26,9 +27,9 @@ VectorFile read_pivlab(TextTable const& table);
 bool is_openpiv(TextTable const& table);
 VectorFile read_openpiv(TextTable const& table);
 
-/// Tecplot ASCII with VARIABLES x, y, u or Vx, v or Vy, in POINT packing: DaVis .dat (isValid 0: masked; without that
-/// column, vectors of exactly zero count as masked) and TSI Insight .vec (CHC 1: measured; above 1: secondary peak or
-/// interpolated; below 1: invalid). y and v point upwards, y from the last row of the image.
+/// Tecplot ASCII with VARIABLES x, y, u or Vx, v or Vy, in POINT packing, and DaVis' text export: DaVis (isValid 0:
+/// masked; without that column, vectors of exactly zero count as masked) and TSI Insight .vec (CHC 1: measured; above
+/// 1: secondary peak or interpolated; below 1: invalid). y and v point upwards, y from the last row of the image.
 bool is_tecplot(TextTable const& table);
 VectorFile read_tecplot(TextTable const& table);
 
@@ -43,12 +44,14 @@ bool is_jpiv(TextTable const& table);
 VectorFile read_jpiv(TextTable const& table);
 
 /// Any table, as last resort: columns x, y, u, v (or x_px, ...), optionally sigma_u, sigma_v (su, sv), peak_ratio,
-/// status. Recognises every table; read_named_columns() throws DataError if x, y, u or v is missing.
+/// status, chc, isValid. Recognises every table; read_named_columns() throws DataError if x, y, u or v is missing.
 bool has_named_columns(TextTable const& table);
 VectorFile read_named_columns(TextTable const& table);
 
 /// Reads x, y, u, v of a table, in any of their names and units, together with the units.
-VectorFile read_quantities(TextTable const& table, std::string const& format);
+/// @param others  names of further columns that the caller uses; VectorFile::notes contains the remaining ones
+VectorFile read_quantities(TextTable const& table, std::string const& format,
+                           std::initializer_list<std::string_view> others);
 
 /// Adds alternative conventions: each of the format's conventions with each of these offsets [px].
 void add_offsets(VectorFile& file, std::initializer_list<double> offsets_px);
@@ -56,6 +59,11 @@ void add_offsets(VectorFile& file, std::initializer_list<double> offsets_px);
 /// Converts columns to a displacement field; vectors with a displacement that is not finite become invalid.
 DisplacementField plain_vectors(std::vector<double> const& x, std::vector<double> const& y,
                                 std::vector<double> const& u, std::vector<double> const& v);
+
+/// Reads the validity of TSI Insight (column CHC) and DaVis (column isValid), under which names other programs write it
+/// as well: CHC 1 measured, above 1 replaced, below 1 invalid; isValid above 0 measured, otherwise masked.
+/// @return false if the table has neither column
+bool read_validity(TextTable const& table, DisplacementField& field);
 
 /// Reads a status column with our codes. @throws DataError with file:line for any other number
 void read_status(TextTable const& table, std::size_t column, DisplacementField& field);
