@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
 #include <random>
 #include <string>
 #include <utility>
@@ -234,6 +235,41 @@ TEST(DetectConventions, NamesTheLikeliestOfReadingsThatFitAlmostAlike) {
   EXPECT_THAT(detect_conventions(shifted, vortex, 200).mistake.text,
               testing::StartsWith("places are shifted by (16, 0)"));
   EXPECT_FALSE(detect_conventions(file, vortex, 200).mistake.found());
+}
+
+// A shift of the places is reported with its resolution: three standard errors, for windows that overlap by half. Noise
+// that is independent from vector to vector is averaged better than that, so that every one of 20 results lies within.
+TEST(DetectConventions, ShiftIsKnownToItsResolution) {
+  auto const vortex = [](Vec2d p) {
+    Vec2d const r{p.x - 99.5, p.y - 99.5};
+    double const swirl = 4.0 * std::exp(-dot(r, r) / 3600.0) / 60.0;
+    return Vec2d{-swirl * r.y, swirl * r.x};
+  };
+  for (double const sigma_px : {0.0, 0.01, 0.03}) {
+    for (int seed = 0; seed < 20; ++seed) {
+      std::mt19937 random(static_cast<unsigned>(seed));
+      std::normal_distribution<double> noise(0.0, 1.0);
+      VectorFile file;
+      file.format = "test";
+      Vec2d const shift{5.3 + 0.31 * seed, -2.7 - 0.07 * seed};
+      for (int node = 0; node < 23 * 23; ++node) {
+        Vec2d const p{11.5 + 8.0 * (node % 23), 11.5 + 8.0 * (node / 23)};
+        Vec2d const error{noise(random), noise(random)};
+        file.field.position_px.push_back(p + shift);
+        file.field.displacement_px.push_back(vortex(p) + sigma_px * error);
+      }
+      std::string const text = detect_conventions(file, vortex, 200).mistake.text;
+      Vec2d found{};
+      double known_px = 0.0;
+      ASSERT_EQ(std::sscanf(text.c_str(), "places are shifted by (%lf, %lf) px, each known to %lf px", &found.x,
+                            &found.y, &known_px),
+                3)
+          << text;
+      EXPECT_LE(std::abs(found.x - shift.x), known_px) << text << ' ' << seed;
+      EXPECT_LE(std::abs(found.y - shift.y), known_px) << text << ' ' << seed;
+      EXPECT_LE(known_px, sigma_px == 0.0 ? 0.01 : 1.0) << text;
+    }
+  }
 }
 
 // No displacement at all, noise, and places in mm of the dots, all within 16 px, follow the truth in no reading.

@@ -364,7 +364,7 @@ TEST_F(VectorFiles, ValidityIsReadByItsName) {
 }
 
 TEST_F(VectorFiles, UnusedColumnsAreNamed) {
-  VectorFile const back = read_vectors(file("n.csv", "x,y,u,v,snr,x [mm],good\n1,1,2,2,5,3,1\n"));
+  VectorFile const back = read_vectors(file("n.csv", "x [px],y [px],u,v,snr,x [mm],good\n1,1,2,2,5,3,1\n"));
   ASSERT_EQ(back.notes.size(), 1u);
   EXPECT_THAT(back.notes[0], AllOf(HasSubstr("n.csv:1: "), testing::EndsWith("not used: snr, good")));
   EXPECT_TRUE(back.warnings.empty());

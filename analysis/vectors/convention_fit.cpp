@@ -1,0 +1,108 @@
+#include "analysis/vectors/convention_fit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace gladstone {
+namespace detail {
+
+bool finite(Vec2d v) { return std::isfinite(v.x) && std::isfinite(v.y); }
+
+bool same_axes(VectorConventions const& a, VectorConventions const& b) {
+  return a.y_up == b.y_up && a.v_up == b.v_up && a.swapped == b.swapped && a.exchange == b.exchange;
+}
+
+DisplacementField sample(DisplacementField const& field, std::size_t most) {
+  std::vector<std::size_t> usable;
+  for (std::size_t i = 0; i < field.size(); ++i) {
+    if (field.counts(i) && finite(field.displacement_px[i])) usable.push_back(i);
+  }
+  std::size_t const stride = std::max<std::size_t>(1, (usable.size() + most - 1) / most);
+  DisplacementField few;
+  auto const take = [&](std::size_t i, VectorStatus status) {
+    few.position_px.push_back(field.position_px[i]);
+    few.displacement_px.push_back(field.displacement_px[i]);
+    few.status.push_back(status);
+  };
+  for (std::size_t k = 0; k < usable.size(); k += stride) take(usable[k], VectorStatus::valid);
+  auto const by_y = [&](std::size_t a, std::size_t b) { return field.position_px[a].y < field.position_px[b].y; };
+  std::vector<std::size_t> all(field.size());
+  for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
+  if (!all.empty()) {
+    auto const [low, high] = std::minmax_element(all.begin(), all.end(), by_y);
+    take(*low, VectorStatus::masked);  // used only for the extent
+    take(*high, VectorStatus::masked);
+  }
+  return few;
+}
+
+ConventionFit fit_within(DisplacementField const& field, VectorConventions const& conventions, Truth const& truth,
+                         int image_rows, double most) {
+  DisplacementField const ours = apply_conventions(field, conventions, image_rows);
+  double differences = 0.0, signal = 0.0, product = 0.0;
+  std::size_t count = 0, known = 0;
+  for (std::size_t i = 0; i < ours.size(); ++i) {
+    if (!ours.counts(i)) continue;
+    Vec2d const t = truth(ours.position_px[i]);
+    count += 2;
+    if (!finite(t)) {
+      differences += 2 * most * most;
+      continue;
+    }
+    known += 2;
+    for (auto const component : {&Vec2d::x, &Vec2d::y}) {
+      double const e = std::clamp(ours.displacement_px[i].*component - t.*component, -most, most);
+      differences += e * e;
+      signal += t.*component * t.*component;
+      product += (t.*component + e) * t.*component;
+    }
+  }
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  ConventionFit fit{conventions, nan, nan, nan, nan};
+  fit.components = count;
+  if (count > 0) fit.rms_px = std::sqrt(differences / static_cast<double>(count));
+  if (known > 0) fit.signal_px = std::sqrt(signal / static_cast<double>(known));
+  if (signal > 0.0) {
+    fit.slope = product / signal;
+    // At an overlap of one half, every vector shares its image with three others.
+    fit.slope_error = 2.0 * fit.rms_px / std::sqrt(signal);
+  }
+  return fit;
+}
+
+double largest_difference(DisplacementField const& field, VectorConventions const& conventions, Truth const& truth,
+                          int image_rows) {
+  double const signal = fit_within(field, conventions, truth, image_rows, 1.0).signal_px;
+  return std::isfinite(signal) ? std::max(1.0, 3.0 * signal) : 1.0;
+}
+
+double unlikelihood(VectorConventions const& reading, std::vector<VectorConventions> const& own) {
+  double least = std::numeric_limits<double>::infinity();
+  for (VectorConventions const& one : own) least = std::min(least, unlikelihood(reading, one));
+  return least;
+}
+
+}  // namespace detail
+
+double unlikelihood(VectorConventions const& reading, VectorConventions const& own) {
+  bool const y = reading.y_up != own.y_up, v = reading.v_up != own.v_up;
+  return (y && v ? 1.1 : (y ? 1.0 : 0.0) + (v ? 1.0 : 0.0)) + (reading.swapped != own.swapped ? 1.0 : 0.0) +
+         (reading.exchange != own.exchange ? 1.2 : 0.0) + (reading.offset_px != own.offset_px ? 0.3 : 0.0) +
+         (reading.y_up && own.y_up && reading.mirror != own.mirror ? 0.2 : 0.0);
+}
+
+double evidence_for(ConventionFit const& a, ConventionFit const& b) {
+  constexpr double alike_px = 1e-4;
+  double const independent = 0.25 * static_cast<double>(std::min(a.components, b.components));
+  return independent * 2.0 * std::log(std::max(b.rms_px, alike_px) / std::max(a.rms_px, alike_px));
+}
+
+ConventionFit fit_conventions(DisplacementField const& field, VectorConventions const& conventions,
+                              std::function<Vec2d(Vec2d)> const& truth, int image_rows) {
+  DisplacementField const few = detail::sample(field, 4000);
+  double const most = detail::largest_difference(few, conventions, truth, image_rows);
+  return detail::fit_within(few, conventions, truth, image_rows, most);
+}
+
+}  // namespace gladstone

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <vector>
+
+#include "analysis/vectors/convention_detection.h"
+
+namespace gladstone::detail {
+
+/// Displacement at a position in our conventions [px]; NaN outside of the field of view.
+using Truth = std::function<Vec2d(Vec2d)>;
+
+bool finite(Vec2d v);
+
+/// Compares axes and signs. The mirror (grid or image) and the offset affect only the position.
+bool same_axes(VectorConventions const& a, VectorConventions const& b);
+
+/// Selects at most `most` counted vectors at equal index intervals. The rows with the extreme y are included as masked
+/// vectors, so that the centre of the grid is preserved.
+DisplacementField sample(DisplacementField const& field, std::size_t most);
+
+/// Computes the agreement with clamped differences.
+/// @param most  upper limit of a difference [px], and the difference assumed at positions without truth, so that
+///              conventions cannot win by moving vectors out of view
+ConventionFit fit_within(DisplacementField const& field, VectorConventions const& conventions, Truth const& truth,
+                         int image_rows, double most);
+
+/// Returns the limit of ConventionFit::rms_px, which bounds the influence of outliers but preserves misfits of large
+/// signals.
+double largest_difference(DisplacementField const& field, VectorConventions const& conventions, Truth const& truth,
+                          int image_rows);
+
+/// Returns the smallest unlikelihood relative to any of the format's own conventions.
+double unlikelihood(VectorConventions const& reading, std::vector<VectorConventions> const& own);
+
+}  // namespace gladstone::detail

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <string>
+
+#include "analysis/vectors/convention_detection.h"
+
+namespace gladstone::detail {
+
+/// Returns the tried interpretations and the probable cause if no convention fits.
+std::string misfit_report(VectorFile const& file, DetectedConventions const& detected);
+
+/// Returns one line about the conventions in use, their fit, and the best other interpretation.
+std::string found_report(VectorFile const& file, DetectedConventions const& detected);
+
+}  // namespace gladstone::detail

@@ -1,0 +1,233 @@
+#include "analysis/vectors/scale_and_shift.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
+
+namespace gladstone::detail {
+namespace {
+
+/// Divides displacements by a factor and shifts positions.
+DisplacementField changed(DisplacementField field, Vec2d factor, Vec2d shift) {
+  for (Vec2d& d : field.displacement_px) d = {d.x / factor.x, d.y / factor.y};
+  for (Vec2d& p : field.position_px) p += shift;
+  return field;
+}
+
+/// Returns the factor between a component and its truth by least absolute deviations: the median of their ratios,
+/// weighted by |truth|. It is robust to up to half of the vectors being wrong.
+double median_factor(DisplacementField const& ours, Truth const& truth, double Vec2d::*component) {
+  std::vector<std::pair<double, double>> ratios;
+  double sum = 0.0;
+  for (std::size_t i = 0; i < ours.size(); ++i) {
+    if (!ours.counts(i)) continue;
+    double const t = truth(ours.position_px[i]).*component;
+    if (!std::isfinite(t) || t == 0.0) continue;
+    ratios.emplace_back(ours.displacement_px[i].*component / t, std::abs(t));
+    sum += std::abs(t);
+  }
+  std::sort(ratios.begin(), ratios.end());
+  double below = 0.0;
+  for (auto const& [ratio, weight] : ratios) {
+    below += weight;
+    if (below >= 0.5 * sum) return ratio;
+  }
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
+/// Returns the rms of a component of the truth [px].
+double component_signal(DisplacementField const& ours, Truth const& truth, double Vec2d::*component) {
+  double square = 0.0;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < ours.size(); ++i) {
+    double const t = ours.counts(i) ? truth(ours.position_px[i]).*component : std::nan("");
+    if (!std::isfinite(t)) continue;
+    square += t * t;
+    ++count;
+  }
+  return count > 0 ? std::sqrt(square / static_cast<double>(count)) : 0.0;
+}
+
+/// Returns the regression slope, by component and at most 1, of the truth averaged over windows of 64 px on the truth
+/// at the point.
+Vec2d share_in_windows(DisplacementField const& ours, Truth const& truth) {
+  constexpr int half = 32, step = 8;
+  Vec2d product{}, square{};
+  for (std::size_t i = 0; i < ours.size(); ++i) {
+    if (!ours.counts(i)) continue;
+    Vec2d mean{};
+    int count = 0;
+    for (int dy = -half + step / 2; dy < half; dy += step) {
+      for (int dx = -half + step / 2; dx < half; dx += step) {
+        Vec2d const t = truth(ours.position_px[i] + Vec2d{static_cast<double>(dx), static_cast<double>(dy)});
+        if (!finite(t)) continue;
+        mean += t;
+        ++count;
+      }
+    }
+    Vec2d const t = truth(ours.position_px[i]);
+    if (count == 0 || !finite(t)) continue;
+    product += Vec2d{mean.x * t.x, mean.y * t.y} / static_cast<double>(count);
+    square += Vec2d{t.x * t.x, t.y * t.y};
+  }
+  auto const share = [](double p, double s) { return s > 0.0 ? std::clamp(p / s, 0.0, 1.0) : 0.0; };
+  return {share(product.x, square.x), share(product.y, square.y)};
+}
+
+/// Searches for displacements that are a multiple of the true ones.
+LikelyMistake find_factor(Search const& search) {
+  DisplacementField const ours = apply_conventions(search.few, search.own.conventions, search.image_rows);
+  Vec2d const share = share_in_windows(sample(ours, 500), search.truth);
+  constexpr double least_followed = 0.05;  // minimum slope of windows that still measure a displacement
+  Vec2d factor{1.0, 1.0};
+  for (auto const component : {&Vec2d::x, &Vec2d::y}) {
+    if (!(component_signal(ours, search.truth, component) > std::max(telling_signal_px, 0.2 * search.own.signal_px)))
+      continue;  // this component is too small to determine a factor
+    double const found = median_factor(ours, search.truth, component);
+    if (found > 0.0 && (found > 1.1 || found < std::max(least_followed, 0.9 * (share.*component))))
+      factor.*component = found;
+  }
+  if (factor == Vec2d{1.0, 1.0}) return {};
+  // Use one factor for both components if the two agree.
+  bool const both = std::abs(factor.x - factor.y) < 0.1 * std::max(factor.x, factor.y);
+  if (both) factor.x = factor.y = 0.5 * (factor.x + factor.y);
+  // Apply the factors to the columns of the file, which may be exchanged.
+  Vec2d const of_columns = search.own.conventions.exchanges_components() ? Vec2d{factor.y, factor.x} : factor;
+  ConventionFit const mended = search.fit(changed(search.few, of_columns, {}));
+  if (!search.is_mended(mended)) return {};
+  std::string const text =
+      both ? fmt::format("displacements are {:.3g} times the truth, as in another unit than px", factor.x)
+           : fmt::format("u is {:.3g} times and v {:.3g} times the truth", factor.x, factor.y);
+  VectorConventions scaled = search.own.conventions;
+  scaled.px_per_frame = std::stod(fmt::format("{:.3g}", scaled.px_per_frame.value_or(1.0) * factor.x));
+  return {text, both ? describe(scaled) : std::string(), mended.rms_px, search.own.rms_px};
+}
+
+/// Shift of the positions, and its uncertainty.
+struct FittedShift {
+  Vec2d shift_px{};
+  double uncertainty_px = 0.0;  ///< three standard errors of the less certain component
+};
+
+/// Refines a shift by least squares: Newton's method on the mean square difference from the truth, whose derivatives
+/// are finite differences. The standard errors assume that neighbouring windows overlap by half, as evidence_for().
+FittedShift refine_shift(Search const& search, FittedShift fitted) {
+  constexpr double h = 0.5, farthest = 1.0;  // step of the differences, and distance from the first estimate [px]
+  double components = 1.0;
+  auto const mean_square = [&](double dx, double dy) {
+    ConventionFit const fit = search.fit(changed(search.few, {1.0, 1.0}, fitted.shift_px + Vec2d{dx, dy}));
+    components = static_cast<double>(std::max<std::size_t>(1, fit.components));
+    return fit.rms_px * fit.rms_px;
+  };
+  Vec2d const first = fitted.shift_px;
+  for (int iteration = 0; iteration < 4; ++iteration) {
+    double const middle = mean_square(0, 0), right = mean_square(h, 0), left = mean_square(-h, 0),
+                 below = mean_square(0, h), above = mean_square(0, -h);
+    double const xx = (right - 2.0 * middle + left) / (h * h), yy = (below - 2.0 * middle + above) / (h * h);
+    double const xy =
+        (mean_square(h, h) - mean_square(h, -h) - mean_square(-h, h) + mean_square(-h, -h)) / (4.0 * h * h);
+    double const gx = (right - left) / (2.0 * h), gy = (below - above) / (2.0 * h), determinant = xx * yy - xy * xy;
+    if (!(xx > 0.0 && determinant > 0.0)) break;
+    Vec2d const next = fitted.shift_px - Vec2d{(yy * gx - xy * gy) / determinant, (xx * gy - xy * gx) / determinant};
+    if (!(length(next - first) < farthest)) break;
+    // covariance 2 s^2 / n times the inverse Hessian, with a quarter of the components as independent
+    double const largest = std::max(xx, yy) / determinant;
+    fitted = {next, 3.0 * std::sqrt(8.0 * middle / components * largest)};
+  }
+  return fitted;
+}
+
+/// Searches for positions with another origin: the shift that fits best, on a lattice of 4 px up to 64 px, refined by
+/// least squares.
+LikelyMistake find_shift(Search const& search) {
+  constexpr double farthest = 64.0;
+  DisplacementField const fewer = sample(search.few, 400);
+  auto const fit = [&](Vec2d shift) { return search.fit(changed(fewer, {1.0, 1.0}, shift)).rms_px; };
+  Vec2d best{};
+  double least = fit(best);
+  auto const look_around = [&](Vec2d middle, double reach, double step) {
+    for (double dy = -reach; dy <= reach; dy += step) {
+      for (double dx = -reach; dx <= reach; dx += step) {
+        double const rms = fit(middle + Vec2d{dx, dy});
+        if (!(rms < least)) continue;
+        least = rms;
+        best = middle + Vec2d{dx, dy};
+      }
+    }
+  };
+  look_around({}, farthest, 4.0);
+  constexpr double finest = 0.25;
+  for (double const step : {2.0, 1.0, 0.5, finest}) look_around(best, step, step);
+  constexpr double counting = 2.0;  // conventions of pixel counting differ by less
+  if (!(std::max(std::abs(best.x), std::abs(best.y)) > counting)) return {};
+  FittedShift const fitted = refine_shift(search, {best, finest});
+  ConventionFit const mended = search.fit(changed(search.few, {1.0, 1.0}, fitted.shift_px));
+  if (!search.is_mended(mended)) return {};
+  double const digit = fitted.uncertainty_px < 0.1 ? 0.01 : 0.1;  // last digit of the result [px]
+  auto const rounded = [&](double value) { return 0.0 - digit * std::round(value / digit); };
+  return {fmt::format("places are shifted by ({:.4g}, {:.4g}) px, each known to {:.2g} px", rounded(fitted.shift_px.x),
+                      rounded(fitted.shift_px.y), std::max(digit, fitted.uncertainty_px)),
+          {},
+          mended.rms_px,
+          search.own.rms_px};
+}
+
+/// Searches for positions that are a multiple of the true ones.
+LikelyMistake find_place_factor(Search const& search) {
+  auto const scaled = [](DisplacementField field, double factor) {
+    for (Vec2d& p : field.position_px) p = p / factor;
+    return field;
+  };
+  DisplacementField const fewer = sample(search.few, 400);
+  double best = 1.0, least = std::numeric_limits<double>::infinity();
+  auto const look_around = [&](double middle, double reach, double step) {
+    for (double e = -reach; e <= reach; e += step) {
+      double const factor = middle * std::exp(e), rms = search.fit(scaled(fewer, factor)).rms_px;
+      if (!(rms < least)) continue;
+      least = rms;
+      best = factor;
+    }
+  };
+  look_around(1.0, 1.4, 0.01);  // from a quarter to four times
+  look_around(best, 0.01, 0.001);
+  if (std::abs(best - 1.0) < 0.01) return {};
+  ConventionFit const mended = search.fit(scaled(search.few, best));
+  if (!search.is_mended(mended)) return {};
+  VectorConventions words = search.own.conventions;
+  words.px = std::stod(fmt::format("{:.3g}", words.px.value_or(1.0) * best));
+  return {fmt::format("places are {:.3g} times the true ones, as in another unit than px", best), describe(words),
+          mended.rms_px, search.own.rms_px};
+}
+
+}  // namespace
+
+LikelyMistake find_scale_or_shift(Search search, std::vector<ConventionFit> const& fits,
+                                  std::vector<VectorConventions> const& own, bool any_reading) {
+  if (LikelyMistake found = find_factor(search); found.found()) return found;
+  // A shift of a few pixels changes a smooth field by more than this fraction of the signal.
+  if (search.own.rms_px > 0.03 * search.own.signal_px) {
+    if (LikelyMistake found = find_shift(search); found.found()) return found;
+    if (LikelyMistake found = find_place_factor(search); found.found()) return found;
+  }
+  if (!any_reading) return {};
+  LikelyMistake best;
+  double const as_read = search.own.rms_px;
+  VectorConventions const first = search.own.conventions;
+  double least_unlikely = std::numeric_limits<double>::infinity();
+  for (ConventionFit const& fit : fits) {
+    if (fit.conventions.offset_px != first.offset_px) continue;
+    search.own = fit;
+    LikelyMistake found = find_factor(search);
+    double const unlikely = unlikelihood(fit.conventions, own);
+    if (!found.found() || !(unlikely < least_unlikely)) continue;
+    least_unlikely = unlikely;
+    best = {difference_of(fit.conventions, first) + " and " + found.text, found.conventions, found.rms_px, as_read};
+  }
+  return best;
+}
+
+}  // namespace gladstone::detail
