@@ -65,31 +65,37 @@ bool reads_as_toml(std::string_view text) {
   return false;
 }
 
+/// Returns the kind of a CSV file that gladstone writes, determined from its column names; empty for other text.
+std::string kind_of_table(std::string_view text) {
+  std::string const header = ',' + std::string(text.substr(0, text.find('\n'))) + ',';
+  auto const begins = [&](std::string_view names) { return header.starts_with(names); };
+  auto const has = [&](std::string_view names) { return header.find(names) != std::string::npos; };
+  if (begins(",x_px,y_px,u_px,v_px,")) return "gladstone vectors";
+  if (begins(",status,x_mm,y_mm,z_mm,dx,dy,dz,opl_mm,")) return "gladstone rays";
+  if (begins(",estimator,case,")) return "gladstone benchmark";
+  if (begins(",term,coefficient,")) return "gladstone uncertainty combination";
+  if (has(",case,seed,status,repeat,")) return "gladstone study table";
+  if (has(",case,") && has(".mean,")) return "gladstone study points";
+  return "";
+}
+
 }  // namespace
 
 std::string file_kind(std::string const& path, std::string const& name) {
-  constexpr std::array signatures{std::pair{"II*\0"sv, "TIFF"},
-                                  std::pair{"MM\0*"sv, "TIFF"},
-                                  std::pair{"II+\0"sv, "TIFF"},
-                                  std::pair{"MM\0+"sv, "TIFF"},
-                                  std::pair{"\x89PNG"sv, "PNG"},
-                                  std::pair{"%PDF"sv, "PDF"},
-                                  std::pair{"<html"sv, "HTML"},
-                                  std::pair{"<!DOCTYPE html"sv, "HTML"},
-                                  std::pair{"<!doctype html"sv, "HTML"},
-                                  std::pair{"<svg"sv, "SVG"},
-                                  std::pair{"<VTKFile"sv, "VTK"},
-                                  std::pair{"# vtk DataFile"sv, "VTK"},
-                                  std::pair{"NRRD000"sv, "NRRD"},
-                                  std::pair{"{"sv, "JSON"},
-                                  std::pair{"x_px,y_px,u_px,v_px"sv, "gladstone vectors"}};
+  constexpr std::array signatures{
+      std::pair{"II*\0"sv, "TIFF"}, std::pair{"MM\0*"sv, "TIFF"},          std::pair{"II+\0"sv, "TIFF"},
+      std::pair{"MM\0+"sv, "TIFF"}, std::pair{"\x89PNG"sv, "PNG"},         std::pair{"%PDF"sv, "PDF"},
+      std::pair{"<html"sv, "HTML"}, std::pair{"<!DOCTYPE html"sv, "HTML"}, std::pair{"<!doctype html"sv, "HTML"},
+      std::pair{"<svg"sv, "SVG"},   std::pair{"<?xml"sv, "SVG"},           std::pair{"{"sv, "JSON"}};
   std::string const bytes = first_bytes(path);
   if (bytes.starts_with("\x89HDF\r\n\x1a\n")) return kind_of_hdf5(path);
   if (bytes.starts_with("<?xml")) return kind_of_xml(bytes);
   for (auto const& [signature, kind] : signatures) {
     if (bytes.starts_with(signature)) return kind;
   }
-  return name.ends_with(".toml") && reads_as_toml(bytes) ? "TOML" : "";
+  if (name.ends_with(".toml")) return reads_as_toml(bytes) ? "TOML" : "";
+  if (name.ends_with(".md") && bytes.starts_with("# ")) return "Markdown";
+  return kind_of_table(bytes);
 }
 
 }  // namespace gladstone

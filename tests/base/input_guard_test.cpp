@@ -131,6 +131,22 @@ TEST_F(FileKinds, AreToldByContent) {
   EXPECT_EQ(kind("table.toml"), "TOML");
   put("prose.toml", "# a heading\nWords, and no keys = values.\n");
   EXPECT_EQ(kind("prose.toml"), "");
+  put("rays.csv", "status,x_mm,y_mm,z_mm,dx,dy,dz,opl_mm,col_px,row_px\nalive,0\n");
+  EXPECT_EQ(kind("rays.csv"), "gladstone rays");
+  put("study.csv", "lens.f_number,case,seed,status,repeat,rms_px\n8,0,1,ok,0,0.1\n");
+  EXPECT_EQ(kind("study.csv"), "gladstone study table");
+  put("study_points.csv", "lens.f_number,case,rms_px.mean,rms_px.std\n8,0,1,2\n");
+  EXPECT_EQ(kind("study_points.csv"), "gladstone study points");
+  put("benchmark.csv", "estimator,case,rms_px,seconds\n");
+  EXPECT_EQ(kind("benchmark.csv"), "gladstone benchmark");
+  put("combination.csv", "term,coefficient\nconstant,0.1\n");
+  EXPECT_EQ(kind("combination.csv"), "gladstone uncertainty combination");
+  put("mine.csv", "case,x,y,u,v\n1,2,3,4,5\n");
+  EXPECT_EQ(kind("mine.csv"), "") << "a table of the user";
+  put("report.md", "# What it shows\n\nText.\n");
+  EXPECT_EQ(kind("report.md"), "Markdown");
+  put("openpiv.txt", "# x y u v flags mask\n");
+  EXPECT_EQ(kind("openpiv.txt"), "");
   put("report.html", "<!DOCTYPE html>\n<html>");
   EXPECT_EQ(kind("report.html"), "HTML");
   put("empty", "");
@@ -150,9 +166,12 @@ TEST_F(FileKinds, AnOutputOfAnotherKindDestroysNoResult) {
   EXPECT_THAT([&] { Hdf5Writer(in_folder("truth.h5"), {"gladstone vectors", 1, "", 0, "cpu"}); }, refused);
   EXPECT_EQ(content(in_folder("truth.h5")), before);
   Hdf5Writer(in_folder("truth.h5"), {"gladstone truth", 2, "other", 0, "cpu"}).close();
-  put("damaged.h5", "\x89HDF\r\n\x1a\n and no more");
-  EXPECT_THAT([&] { OutputFile::write_text(in_folder("damaged.h5"), "<html>"); },
-              ThrowsMessage<OutputError>(HasSubstr("damaged.h5: holds data of another kind (damaged HDF5)")));
+  put("study.csv", "case,seed,status,repeat\n");
+  EXPECT_THAT([&] { OutputFile::write_text(in_folder("study.csv"), "x_px,y_px,u_px,v_px\n"); },
+              ThrowsMessage<OutputError>(HasSubstr("gladstone study table")));
+  EXPECT_THAT([&] { OutputFile::write_text(in_folder("study.csv"), "plain text"); },
+              ThrowsMessage<OutputError>(HasSubstr("gladstone study table")));
+  OutputFile::write_text(in_folder("study.csv"), "case,seed,status,repeat\n0,1,ok,0\n");
   put("notes.txt", "mine");
   OutputFile::write_text(in_folder("notes.txt"), "<html>");  // named by the user, and of no kind that is known
 }
