@@ -113,7 +113,10 @@ std::vector<double> numbers_of(Image<Vec2d> const& map) {
 PackedDataset pack_dataset(std::string const& run, std::string const& path, Renderer& renderer) {
   std::string const study = (fs::path(run) / run_file::study).string();
   std::string const manifest = (fs::path(run) / run_file::manifest).string();
-  refuse_inputs_as_outputs({path}, {study, manifest, (fs::path(run) / run_file::table).string()});
+  std::vector<std::string> inputs{study, manifest};
+  for (char const* table : {run_file::table, run_file::table_text, run_file::points_text})
+    inputs.push_back((fs::path(run) / table).string());
+  refuse_inputs_as_outputs({path}, inputs);
   StudyTable table = read_study_table(run);
   std::vector<CaseWithImages> kept;
   std::vector<StudyRow> rows;
