@@ -14,12 +14,12 @@ namespace gladstone {
 /// Keys of table [flow] with kind = "file", in SI.
 struct VelocityFile {
   std::string file, dataset;
-  std::string axes;              ///< world axes in the file's order, the slowest first; empty: as the file has them
-  std::string where;             ///< of the key `file`, for messages
-  std::optional<double> scale;   ///< file value times scale = m/s; nullopt: by the file's unit
-  std::optional<Vec3d> spacing;  ///< of nodes, in place of the file's own [m]
-  Vec3d center{};                ///< of the grid in the world [m]
-  bool extrude = false;          ///< a single plane: the same along Z
+  std::string axes;              ///< world axes in the file's order, slowest first ("zyx"); empty: defined by the file
+  std::string where;             ///< location of the key `file` in the setup, for messages
+  std::optional<double> scale;   ///< factor from file values to velocities in m/s; nullopt: by the file's unit
+  std::optional<Vec3d> spacing;  ///< node spacing [m]; empty: as in the file
+  Vec3d center{};                ///< world position of the grid's centre [m]
+  bool extrude = false;          ///< true: the file contains a single plane, and the velocity does not depend on Z
   std::array<bool, 3> periodic{};
 };
 

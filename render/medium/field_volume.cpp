@@ -65,14 +65,15 @@ std::string assumed_lengths(FieldSetup const& field, FieldSource const& source, 
       grid.spacing.y * (grid.nodes[1] - 1) / mm);
 }
 
-/// Factor of the file's values, to kg/m^3 or pure numbers: the setup's, or else that of the unit in the file.
+/// Returns the factor from file values to kg/m^3 or to dimensionless numbers: the setup's if given, else that of the
+/// unit in the file.
 ValueFactor value_factor(FieldSetup const& field, FieldUnits const& units) {
   if (field.scale) return {*field.scale, ""};
   return units.value_factor(field.quantity == FieldQuantity::density ? dimension_of_density : dimension_of_numbers);
 }
 
-/// What is lost where a file holds n itself with so few bits that n - 1 keeps few of them; empty where nothing is.
-/// @param scale      factor of the values in the file
+/// Returns a warning if a file contains n itself with so few bits that n - 1 is inaccurate; empty otherwise.
+/// @param scale      factor applied to the values in the file
 /// @param low, high  smallest and largest refractivity
 std::string lost_digits(FieldSetup const& field, FieldSource const& source, double scale, double low, double high) {
   int const bits = source.significant_bits();
@@ -86,9 +87,10 @@ std::string lost_digits(FieldSetup const& field, FieldSource const& source, doub
       source.name(), field.file, bits, step, 100 * step / std::max(high - low, step));
 }
 
-/// A question where the values are plausible in another quantity or unit: they differ from the ambient by more than a
-/// factor of a hundred throughout, which no gas flow at one pressure does, or are densities where indices would be.
-/// @param scale      factor of the values in the file
+/// Returns a warning if the values suggest another quantity or unit; empty otherwise. They do if all of them differ
+/// from the ambient value by more than a factor of 100, which is implausible for gas flows at one pressure, or if
+/// densities look like refractive indices.
+/// @param scale      factor applied to the values in the file
 /// @param low, high  smallest and largest refractivity
 std::string unlikely_range(MediumSetup const& setup, std::string const& name, double scale, double low, double high) {
   FieldSetup const& field = setup.field;
@@ -98,7 +100,7 @@ std::string unlikely_range(MediumSetup const& setup, std::string const& name, do
   bool const density = field.quantity == FieldQuantity::density;
   double const unit = density ? setup.gladstone_dale : 1.0;  // refractivity per unit of the values
   std::string likely;
-  // a gas has 1e-5 < n - 1 < 2e-3, and its density as read is then 1 within 0.2 %
+  // a gas has 1e-5 < n - 1 < 2e-3, so that indices read as densities are 1 to within 0.2 %
   bool const index = density && scale == 1.0 && low > (1 + 1e-5) * unit && high < (1 + 2e-3) * unit;
   if (index) {
     likely = "these would be refractive indices of a gas; if they are, set quantity = \"refractive_index\"";

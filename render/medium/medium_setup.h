@@ -32,9 +32,10 @@ struct FieldSetup {
   std::string axes;   ///< world axes in the file's order, slowest first ("zxy"); empty: order defined by the file
   std::string where;  ///< location of the key `file` in the setup, for messages
   FieldQuantity quantity = FieldQuantity::density;
-  std::optional<double> scale;   ///< file value times scale = kg/m^3, or a pure number; nullopt: by the file's unit
-  std::optional<Vec3d> spacing;  ///< [m]
-  Vec3d center{};                ///< [m]
+  std::optional<double>
+      scale;  ///< factor from file values to kg/m^3, or to an index or refractivity; nullopt: by the file's unit
+  std::optional<Vec3d> spacing;  ///< node spacing [m]; empty: as in the file
+  Vec3d center{};                ///< world position of the grid's centre [m]
   bool extrude = false;
   std::array<bool, 3> periodic{false, false, false};
   // closed form

@@ -166,6 +166,9 @@ TEST_F(FileKinds, AnOutputOfAnotherKindDestroysNoResult) {
   EXPECT_THAT([&] { Hdf5Writer(in_folder("truth.h5"), {"gladstone vectors", 1, "", 0, "cpu"}); }, refused);
   EXPECT_EQ(content(in_folder("truth.h5")), before);
   Hdf5Writer(in_folder("truth.h5"), {"gladstone truth", 2, "other", 0, "cpu"}).close();
+  put("damaged.h5", "\x89HDF\r\n\x1a\n and no more");
+  EXPECT_THAT([&] { OutputFile::write_text(in_folder("damaged.h5"), "<html>"); },
+              ThrowsMessage<OutputError>(HasSubstr("damaged.h5: holds data of another kind (damaged HDF5)")));
   put("study.csv", "case,seed,status,repeat\n");
   EXPECT_THAT([&] { OutputFile::write_text(in_folder("study.csv"), "x_px,y_px,u_px,v_px\n"); },
               ThrowsMessage<OutputError>(HasSubstr("gladstone study table")));
