@@ -35,6 +35,7 @@ inline constexpr int dispersion_formulas = 13;
 struct Glass {
   std::string name;
   std::string catalogue;  ///< file name without folder and extension
+  std::string where{};    ///< file:line of its entry in the catalogue; empty: defined by a prescription
   DispersionFormula formula = DispersionFormula::schott;
   std::vector<double> coefficients;  ///< in the order of the formula, for wavelengths in micrometres
   double shortest = 0;               ///< shortest wavelength of the formula's range of validity [m]

@@ -122,6 +122,7 @@ class AgfReader {
       begun_ = {record.line, ""};
       glass_.emplace();
       glass_->catalogue = catalogue_;
+      glass_->where = std::to_string(record.line);
     }
     if (!glass_) return;
     try {
@@ -249,6 +250,7 @@ void GlassCatalogue::add(std::string_view text, std::string const& catalogue, st
         "{}:{}: {} lines IT are no share of light and a positive thickness, and are passed over (the first: {})", file,
         reader.passed_over[0].line, reader.passed_over.size(), reader.passed_over[0].text));
   }
+  for (Glass& glass : reader.glasses) glass.where = fmt::format("{}:{}", file, glass.where);
   for (AgfReader::LeftOut const& one : out) {
     left_out_.push_back({one.name, fmt::format("{}:{}: {}", file, one.fault.line, one.fault.text)});
   }
@@ -369,8 +371,7 @@ GlassMatch GlassCatalogue::match(std::string_view name, double wavelength, std::
   if (differ && !decided) {
     std::vector<std::string> names;
     for (Glass const* other : found) {
-      std::string const full = other->catalogue + ':' + other->name;
-      if (std::find(names.begin(), names.end(), full) == names.end()) names.push_back(full);
+      names.push_back(fmt::format("{}:{} ({})", other->catalogue, other->name, other->where));
     }
     result.notes.push_back(fmt::format("{}: glass \"{}\" may be {}, of different index; {} is taken", where, name,
                                        fmt::join(names, ", "), names.front()));

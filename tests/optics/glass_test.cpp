@@ -158,6 +158,11 @@ TEST(GlassCatalogue, ANameOfDifferentGlassesIsNoted) {
   EXPECT_NEAR(preferred.glass->index(5e-7), 1.6, 1e-15);
   EXPECT_THAT(preferred.notes, testing::IsEmpty());
   EXPECT_THAT(catalogue.match("Y", 5e-7, "here").notes, testing::IsEmpty());  // the same within 1e-4
+  // two glasses of one catalogue and one name are told apart by their lines
+  catalogue.add("NM Z 1\nCD 2.25\nLD 0.4 0.7\nNM Z 1\nCD 2.56\nLD 0.4 0.7\n", "TWICE", "twice.agf");
+  EXPECT_THAT(catalogue.match("Z", 5e-7, "here").notes,
+              testing::ElementsAre(AllOf(HasSubstr("TWICE:Z (twice.agf:1), TWICE:Z (twice.agf:4)"),
+                                         HasSubstr("TWICE:Z (twice.agf:1) is taken"))));
   EXPECT_NEAR(catalogue.find("TWO:X", 5e-7, "here").index(5e-7), 1.6, 1e-15);
   EXPECT_NEAR(catalogue.find("X_ONE", 5e-7, "here").index(5e-7), 1.5, 1e-15);
 }
