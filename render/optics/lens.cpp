@@ -24,6 +24,12 @@ struct Substance {
   double absorption = 0;  ///< [1/m]
 };
 
+/// Glass specified by nd and Vd only.
+struct DescribedGlass {
+  std::string name;
+  std::string where;  ///< location of its first use
+};
+
 class LensBuilder {
  public:
   LensBuilder(Lens& lens, GlassCatalogue const& catalogue, LensOptions const& options)
@@ -186,7 +192,8 @@ class LensBuilder {
     return frame.moved({0, 0, here.advance});
   }
 
-  Substance substance(PrescribedMedium const& medium, std::string const& where) {
+  Substance substance(PrescribedMedium const& medium, std::string const& surface_where) {
+    std::string const& where = medium.where.empty() ? surface_where : medium.where;
     double const wavelength = lens_.wavelength;
     auto const of_glass = [&](Glass const& glass) {
       return Substance{glass.index(wavelength), options_.absorption ? glass.absorption(wavelength) : 0};
@@ -219,10 +226,9 @@ class LensBuilder {
     if (auto const* const index = std::get_if<PrescribedMedium::Index>(&medium.is)) return {index->n, 0};
     if (auto const* const described = std::get_if<PrescribedMedium::Described>(&medium.is)) {
       Glass const glass = Glass::from_nd_vd(described->nd, described->vd);
-      if (described_where_.empty()) described_where_ = where;
-      if (std::find(described_.begin(), described_.end(), glass.name) == described_.end()) {
-        described_.push_back(glass.name);
-      }
+      auto const known = std::find_if(described_.begin(), described_.end(),
+                                      [&](DescribedGlass const& other) { return other.name == glass.name; });
+      if (known == described_.end()) described_.push_back({glass.name, where});
       return {glass.index(wavelength), 0};
     }
     return {};
@@ -240,17 +246,27 @@ class LensBuilder {
     throw SetupError(not_found_);
   }
 
-  /// Adds one warning about all glasses specified by nd and Vd only, located at the first of them.
+  /// Returns the line number in a location "file:line" of the lens file.
+  std::string_view line_in_file(std::string_view where) const {
+    std::string const& file = lens_.prescription.file;
+    bool const has_line = where.starts_with(file) && where.size() > file.size() + 1;
+    return has_line ? where.substr(file.size() + 1) : where;
+  }
+
+  /// Adds one warning about all glasses specified by nd and Vd only, with the first line of each.
   void note_described_glasses() {
     if (described_.empty()) return;
     bool const one = described_.size() == 1;
-    lens_.warnings.push_back(
-        fmt::format("{}: {} {} taken as n = A + B/lambda^2, good to about 1e-3 away from 587.6 nm; name {} of a "
-                    "catalogue for more",
-                    described_where_,
-                    one ? "glass " + described_.front()
-                        : fmt::format("{} glasses ({})", described_.size(), fmt::join(described_, "; ")),
-                    one ? "is" : "are", one ? "a glass" : "glasses"));
+    std::vector<std::string> names;
+    for (DescribedGlass const& glass : described_) {
+      names.push_back(one ? glass.name : fmt::format("{} (line {})", glass.name, line_in_file(glass.where)));
+    }
+    lens_.warnings.push_back(fmt::format(
+        "{}: {} {} taken as n = A + B/lambda^2, good to about 1e-3 away from 587.6 nm; name {} of a "
+        "catalogue for more",
+        described_.front().where,
+        one ? "glass " + names.front() : fmt::format("{} glasses ({})", names.size(), fmt::join(names, "; ")),
+        one ? "is" : "are", one ? "a glass" : "glasses"));
   }
 
   /// Adds a surface with its prescribed shape.
@@ -328,10 +344,9 @@ class LensBuilder {
   Lens& lens_;
   GlassCatalogue const& catalogue_;
   LensOptions const& options_;
-  std::vector<SetupProblem> not_found_;  // unknown glasses
-  std::vector<std::string> described_;   // glasses specified by nd and Vd only
-  std::string described_where_;          // location of the first of them
-  std::set<std::string> noted_;          // glasses with a warning
+  std::vector<SetupProblem> not_found_;    // unknown glasses
+  std::vector<DescribedGlass> described_;  // glasses specified by nd and Vd only
+  std::set<std::string> noted_;            // glasses with a warning
 };
 
 /// Returns the paraxial radius of the stop by the prescription's own aperture [m]; nullopt if it is not defined.

@@ -70,10 +70,13 @@ void build_prescription(LensSetup& setup, SetupTable table, GlassCatalogue const
     auto const lens =
         std::make_shared<Lens const>(build_lens(read_prescription(setup.file), glasses, wavelength, options));
     if (lens->object_index != 1 || std::abs(lens->paraxial.back().n_after) != 1) {
+      std::string const& object_where = lens->prescription.object_medium.where;
+      bool const in_object_space = lens->object_index != 1 && !object_where.empty();
       table.problem("file",
                     fmt::format("{}: has index {:.6g} ahead of it and {:.6g} behind it (scenes are in gas, and a "
                                 "lens stands in air); end it with a surface towards air on either side",
-                                setup.file, lens->object_index, std::abs(lens->paraxial.back().n_after)));
+                                in_object_space ? object_where : setup.file, lens->object_index,
+                                std::abs(lens->paraxial.back().n_after)));
       return;
     }
     ParaxialLens const paraxial = paraxial_lens(*lens);

@@ -95,7 +95,8 @@ std::string find_overlap(Prescription const& lens, std::size_t i, double forward
 }
 
 /// Checks that an index, or nd and Vd, are those of a glass. @throws DataError
-void check_medium(PrescribedMedium const& medium, std::string const& where) {
+void check_medium(PrescribedMedium const& medium, std::string const& surface_where) {
+  std::string const& where = medium.where.empty() ? surface_where : medium.where;
   auto const* const index = std::get_if<PrescribedMedium::Index>(&medium.is);
   if (index && !(index->n >= 1 && index->n < 5)) {
     throw DataError(where,

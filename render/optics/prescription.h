@@ -30,6 +30,7 @@ struct PrescribedMedium {
     Glass glass;  ///< glass defined in the prescription itself
   };
   std::variant<Air, Mirror, Named, Index, Described, Private> is = Air{};
+  std::string where{};  ///< location of the medium in the file; empty: that of its surface
 
   bool is_mirror() const { return std::holds_alternative<Mirror>(is); }
   bool is_air() const { return std::holds_alternative<Air>(is); }

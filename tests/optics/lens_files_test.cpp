@@ -105,8 +105,18 @@ TEST(LensFiles, AnApertureMayHaveNoUpperLimit) {
 TEST(LensFiles, AnUnknownGlassHasNdAndVdInItsLine) {
   Lens const lens = lens_of_case("glass_by_nd_vd.zmx");
   EXPECT_NEAR(focal_length_mm(lens), doublet_focal_length(), 1e-10);
-  EXPECT_THAT(lens.warnings, ElementsAre(AllOf(HasSubstr("zmx:12"), HasSubstr("MYCROWN"), HasSubstr("1.62041")),
-                                         AllOf(HasSubstr("zmx:19"), HasSubstr("MYFLINT"), HasSubstr("29.5"))));
+  EXPECT_THAT(lens.warnings, ElementsAre(AllOf(HasSubstr("zmx:17"), HasSubstr("MYCROWN"), HasSubstr("1.62041")),
+                                         AllOf(HasSubstr("zmx:23"), HasSubstr("MYFLINT"), HasSubstr("29.5"))));
+}
+
+// Every glass that nd and Vd describe is named with the line that describes it: GLAS, S, SO or GLA.
+TEST(LensFiles, WarningsOfGlassesNameTheLineOfEachGlass) {
+  EXPECT_THAT(lens_of_case("object_in_water.zmx").warnings,
+              Contains(HasSubstr("object_in_water.zmx:16: glass nd 1.33300, Vd 55.80 is taken")));
+  std::string const water = changed(changed(seq, "SO 0.0 1e13", "SO 0.0 1e13 1.333:55.8"), "NBK7_SCHOTT", "517642");
+  EXPECT_THAT(lens_of_text("water.seq", changed(water, "STO;", "STO;\n GLA 1.62:60.3;")).warnings,
+              Contains(AllOf(HasSubstr(
+                  "water.seq:7: 2 glasses (nd 1.33300, Vd 55.80 (line 7); nd 1.62000, Vd 60.30 (line 10))"))));
 }
 
 // 1.5 and 40 are what Zemax writes where it knows nothing: no glass.
@@ -437,7 +447,7 @@ TEST(LensFiles, TheFilesCatalogueIsThatOfAGlassOfSeveral) {
   other.catalogues.clear();
   Lens const assumed = build_lens(other, glasses, spectral_line::d);
   EXPECT_NEAR(focal_length_mm(assumed), schott, 1e-10);
-  EXPECT_THAT(assumed.warnings, ElementsAre(AllOf(HasSubstr("zmx:13"), HasSubstr("OHARA:SF1"), HasSubstr("is taken"))));
+  EXPECT_THAT(assumed.warnings, ElementsAre(AllOf(HasSubstr("zmx:18"), HasSubstr("OHARA:SF1"), HasSubstr("is taken"))));
 }
 
 // One usable glass, one of an index below 1, one without a range of wavelengths.
@@ -488,7 +498,7 @@ TEST(LensFiles, ACatalogueThatContradictsItselfIsWarnedOf) {
 TEST(LensFiles, AnOlderGlassIsItsSuccessor) {
   Lens const lens = lens_of_text("bk7.zmx", changed(zmx, "GLAS N-BK7", "GLAS BK7"));
   EXPECT_EQ(focal_length_mm(lens), focal_length_mm(lens_of_text("nbk7.zmx", zmx)));
-  EXPECT_THAT(lens.warnings, ElementsAre(AllOf(HasSubstr("bk7.zmx:15"), HasSubstr("N-BK7"))));
+  EXPECT_THAT(lens.warnings, ElementsAre(AllOf(HasSubstr("bk7.zmx:20"), HasSubstr("N-BK7"))));
 }
 
 // A file of the lens' surfaces alone, without object and image: the singlet. An index of -1 is a mirror: R = 50 mm,

@@ -161,7 +161,7 @@ class SeqReader {
     seq.surface.curvature = curvature_of(first, radii_);
     bool const endless = std::abs(thickness) > 1e10 * unit_;
     seq.surface.thickness = endless ? std::copysign(HUGE_VAL, thickness) : thickness;
-    if (line.size() > 3) seq.surface.after = medium(line[3]);
+    if (line.size() > 3) seq.surface.after = medium(line, 3);
     surfaces_.push_back(std::move(seq));
   }
 
@@ -170,19 +170,20 @@ class SeqReader {
     return (is_radius ? 1 / value : value) / unit_;
   }
 
-  static PrescribedMedium medium(std::string const& word) {
-    std::string const name = in_capitals(word);
+  /// Parses word i of a line as a medium.
+  static PrescribedMedium medium(PrescriptionLine const& line, std::size_t i) {
+    std::string const name = in_capitals(line[i]);
     if (name.empty() || name == "AIR") return {};
-    if (name == "REFL") return {PrescribedMedium::Mirror{}};
-    if (auto const code = read_glass_code(name)) return *code;
-    return {PrescribedMedium::Named{word, std::nullopt}};
+    if (name == "REFL") return {PrescribedMedium::Mirror{}, line.where};
+    if (auto const code = read_glass_code(name)) return {code->is, line.where};
+    return {PrescribedMedium::Named{line[i], std::nullopt}, line.where};
   }
 
   /// Returns the private glass that a medium names, if there is one, else the medium itself.
   PrescribedMedium resolved(PrescribedMedium const& medium) const {
     auto const* const named = std::get_if<PrescribedMedium::Named>(&medium.is);
     Glass const* const own = named ? private_glasses_.find(in_capitals(named->glass)) : nullptr;
-    return own ? PrescribedMedium{PrescribedMedium::Private{*own}} : medium;
+    return own ? PrescribedMedium{PrescribedMedium::Private{*own}, medium.where} : medium;
   }
 
   /// Returns the surface named by a command ("STO S6"; the object is S0), by default the latest one, and removes its
@@ -236,7 +237,7 @@ class SeqReader {
   void change_surface(std::string const& command, PrescriptionLine const& line, PrescribedSurface& surface) const {
     if (line.size() < 2) return;
     if (command == "GLA") {
-      surface.after = medium(line[1]);
+      surface.after = medium(line, 1);
     } else if (std::isalpha(static_cast<unsigned char>(line[1][0])) != 0 && in_capitals(line[1]) != "INF") {
       return;
     } else if (command == "THI") {

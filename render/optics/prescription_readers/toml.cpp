@@ -57,6 +57,9 @@ PrescribedSurface read_surface(SetupTable& table) {
   }
   surface.thickness = table.number("thickness_mm", 0.0, {-1e6, 1e6, false, false}) * millimetre;
   surface.after = read_medium(table);
+  for (char const* const key : {"glass", "index", "nd"}) {
+    if (table.has(key)) surface.after.where = table.where(key);
+  }
   if (auto const edge = table.optional_number("semi_diameter_mm", Range::positive())) {
     surface.semi_diameter = *edge * millimetre;
   }

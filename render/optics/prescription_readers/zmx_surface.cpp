@@ -117,6 +117,7 @@ void read_zmx_surface(PrescriptionLine const& line, double unit, ZmxSurface& zmx
   if (key == "GLAS") {
     zmx.has_glass = true;
     surface.after = medium_of(line, warnings);
+    surface.after.where = line.where;
   }
 }
 
