@@ -422,6 +422,20 @@ TEST(LensFiles, CodeVCommandsThatChangeTheSurfaceAreRefusedAndOthersNoted) {
   EXPECT_THAT(hole.warnings, Contains(HasSubstr("HOL")));
 }
 
+// CIR on the stop closes what EPD or FNO open too far, as CLAP does in a .zmx file: a pupil of 3 mm, not of 6 mm. A
+// drawing (EDG) and a circle off the axis, which is an outline, leave the pupil as it is.
+TEST(LensFiles, AnApertureOnTheStopLimitsTheLens) {
+  auto const pupil_mm = [](std::string const& text, char const* name = "stop.seq") {
+    return paraxial_lens(lens_of_text(name, text)).entrance.diameter / unit::millimetre;
+  };
+  EXPECT_NEAR(pupil_mm(seq), 6, 1e-12);
+  EXPECT_NEAR(pupil_mm(changed(seq, "CIR 8.0", "CIR 1.5")), 3, 1e-12);
+  EXPECT_NEAR(pupil_mm(changed(changed(seq, "EPD 6.0", "FNO 8"), "CIR 8.0", "CIR 1.5")), 3, 1e-12);
+  EXPECT_NEAR(pupil_mm(changed(seq, "CIR 8.0", "CIR EDG 1.5")), 6, 1e-12);
+  EXPECT_NEAR(pupil_mm(changed(seq, "CIR 8.0", "CIR 1.5; ADX 0.5")), 6, 1e-12);
+  EXPECT_NEAR(pupil_mm(changed(zmx, "  STOP\n", "  STOP\n  CLAP 0 1.5 0\n"), "stop.zmx"), 3, 1e-12);
+}
+
 TEST(LensFiles, GratingsAndOtherSurfacesAreRefusedByName) {
   for (char const* const type : {"DGRATING", "GRINSUR1", "BIREFRIN", "NONSEQCO", "BINARY_2", "TOROIDAL", "FZERNSAG"}) {
     EXPECT_THAT(refusal("type.zmx",

@@ -38,6 +38,7 @@ void read_aperture(std::string const& command, PrescriptionLine const& line, dou
   if (!(value > 0)) throw DataError(line.where, command + ": the size of an aperture is positive; correct it");
   if (command == "CIR") {
     (blocks ? seq.surface.obscured : seq.surface.semi_diameter) = value;
+    if (!blocks) seq.surface.has_aperture = true;
     return;
   }
   if (seq.shape.kind == Outline::Kind::none) {
@@ -144,6 +145,7 @@ void finish_seq_surface(SeqSurface& seq, double unit, std::vector<std::string>& 
   if (std::isfinite(surface.semi_diameter)) {
     as_outline(surface.semi_diameter, false);
     surface.semi_diameter = std::numeric_limits<double>::infinity();
+    surface.has_aperture = false;
   }
   if (surface.obscured > 0) {
     as_outline(surface.obscured, true);
