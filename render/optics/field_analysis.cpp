@@ -149,7 +149,8 @@ RayOrigin field_origin(Lens const& lens, ParaxialLens const& paraxial, double an
 
 FieldAnalysis analyse_field(Lens const& lens, ParaxialLens const& paraxial, int rays) {
   FieldAnalysis analysis;
-  analysis.image_plane = lens.image_distance ? *lens.image_distance : paraxial_image(lens, paraxial);
+  analysis.image_plane =
+      lens.image_distance ? *lens.image_distance : paraxial_image(lens, paraxial) + lens.prescription.defocus;
   FieldTracer const tracer(lens, paraxial, analysis.image_plane, rays);
   std::vector<double> angles = lens.prescription.field_angles;
   if (angles.empty()) angles.push_back(0);

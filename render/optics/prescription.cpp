@@ -166,6 +166,24 @@ void assume_stop(Prescription& lens) {
                           ": the file names no stop (STOP, STO); the first surface is taken as the stop");
 }
 
+void assume_aperture(Prescription& lens, char const* commands) {
+  PrescribedAperture& aperture = lens.aperture;
+  bool const is_set = aperture.kind == PrescribedAperture::Kind::stop ? !aperture.where.empty() : aperture.value > 0;
+  auto const stop = std::find_if(lens.surfaces.begin(), lens.surfaces.end(), [](auto const& s) { return s.stop; });
+  if (is_set || stop == lens.surfaces.end()) return;
+  lens.warnings.push_back(fmt::format("{}: the file sets no aperture ({}); the semi-diameter of the stop is used",
+                                      aperture.where.empty() ? stop->where : aperture.where, commands));
+  aperture = {};
+}
+
+void note_missing_wavelength(Prescription& lens, std::string const& where, char const* commands) {
+  if (lens.primary_wavelength != 0) return;
+  lens.warnings.push_back(
+      fmt::format("{}: the file gives no primary wavelength ({}); {:.7g} nm (the d line) is used unless another "
+                  "wavelength is chosen",
+                  where, commands, spectral_line::d / unit::nanometre));
+}
+
 std::vector<std::string> check_prescription(Prescription const& lens) {
   std::vector<std::string> warnings;
   auto const warn = [&warnings](std::string const& text) {
@@ -230,11 +248,17 @@ std::vector<std::string> check_prescription(Prescription const& lens) {
     throw DataError(lens.file, "has no stop; mark the surface that limits the light (stop = true, STOP, STO)");
   auto const& aperture = lens.aperture;
   if (aperture.kind != PrescribedAperture::Kind::stop && !(aperture.value > 0)) {
-    throw DataError(lens.file, "its aperture is not positive");
+    throw DataError(aperture.where.empty() ? lens.file : aperture.where, "the aperture is not positive; correct it");
   }
   auto const at = std::find_if(lens.surfaces.begin(), lens.surfaces.end(), [](auto const& s) { return s.stop; });
   if (aperture.kind == PrescribedAperture::Kind::stop && !std::isfinite(at->semi_diameter)) {
     throw DataError(at->where, "the stop has no semi-diameter, and nothing else sets it (entrance pupil, f-number)");
+  }
+  if (aperture.kind == PrescribedAperture::Kind::object_na && !std::isfinite(lens.object_distance)) {
+    warn(
+        fmt::format("{}: a numerical aperture on the object's side does not define the aperture for an object at "
+                    "infinity; the semi-diameter of the stop is used",
+                    aperture.where.empty() ? at->where : aperture.where));
   }
   return warnings;
 }

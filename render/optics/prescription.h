@@ -93,6 +93,7 @@ struct PrescribedAperture {
   };
   Kind kind = Kind::stop;
   double value = 0;
+  std::string where{};  ///< location in the file; empty: the file does not set the aperture
 };
 
 /// Lens as described by its file, in SI. The origin of the frame is the vertex of the first surface, and light comes
@@ -108,6 +109,7 @@ struct Prescription {
   std::vector<std::string> catalogues;  ///< glass catalogues named by the file, in its order
   PrescribedAperture aperture;
   double primary_wavelength = 0;      ///< [m]; 0: not given
+  double defocus = 0;                 ///< from the paraxial image to the image, if the last thickness is 0 [m]
   bool ends_at_image = false;         ///< the last thickness is the distance to the image, even if it is 0
   std::vector<double> field_angles;   ///< field angles in the y-z plane, for an object at infinity [rad]
   std::vector<std::string> warnings;  ///< features of the file that are not traced
@@ -121,6 +123,16 @@ void break_before_image(Prescription& lens, std::vector<CoordinateBreak> breaks,
 
 /// Makes the first surface the stop if the file does not define one, as design programs do, and adds a warning.
 void assume_stop(Prescription& lens);
+
+/// Uses the semi-diameter of the stop if the file sets no aperture or an aperture of 0, and adds a warning.
+/// @param commands  commands of the file format that set the aperture
+/// @pre one surface is the stop
+void assume_aperture(Prescription& lens, char const* commands);
+
+/// Adds a warning if the file gives no primary wavelength.
+/// @param where     location of the warning
+/// @param commands  commands of the file format that set the wavelength
+void note_missing_wavelength(Prescription& lens, std::string const& where, char const* commands);
 
 /// Reads a prescription from a .toml, Zemax .zmx or CODE V .seq file, and checks it with check_prescription(). To add a
 /// format, add a row in prescription.cpp.

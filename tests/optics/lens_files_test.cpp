@@ -1,7 +1,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -434,6 +436,124 @@ TEST(LensFiles, AnApertureOnTheStopLimitsTheLens) {
   EXPECT_NEAR(pupil_mm(changed(seq, "CIR 8.0", "CIR EDG 1.5")), 6, 1e-12);
   EXPECT_NEAR(pupil_mm(changed(seq, "CIR 8.0", "CIR 1.5; ADX 0.5")), 6, 1e-12);
   EXPECT_NEAR(pupil_mm(changed(zmx, "  STOP\n", "  STOP\n  CLAP 0 1.5 0\n"), "stop.zmx"), 3, 1e-12);
+}
+
+// RMD REFL makes a mirror of any surface: R = 50 mm, f = R / 2, the same as REFL in place of a glass.
+TEST(LensFiles, CodeVsRefractionModeMakesAMirror) {
+  std::string const mirror = changed(seq, "S 50.0 6.0 NBK7_SCHOTT", "S -50.0 -6.0 REFL");
+  std::string const flat = changed(changed(mirror, "S -50.0 &", "S 0.0 &"), "  47.0", "  -19.0");
+  double const f = focal_length_mm(lens_of_text("refl.seq", flat));
+  EXPECT_NEAR(std::abs(f), 25, 1e-12);
+  std::string const by_mode = changed(flat, " REFL\n", "\n  RMD REFL\n");
+  Lens const lens = lens_of_text("rmd.seq", by_mode);
+  EXPECT_EQ(focal_length_mm(lens), f);
+  EXPECT_THAT(lens.warnings, IsEmpty());
+  EXPECT_EQ(focal_length_mm(lens_of_text(
+                "named.seq", changed(changed(by_mode, "  RMD REFL\n", ""), "SI 0.0", "RMD S1 REFL\nSI 0.0"))),
+            f);
+  EXPECT_EQ(focal_length_mm(lens_of_text("refr.seq", changed(seq, "STO;", "STO; RMD REFR;"))),
+            focal_length_mm(lens_of_text("plain.seq", seq)));
+  EXPECT_THAT(refusal("tir.seq", changed(seq, "STO;", "STO; RMD TIR;")),
+              AllOf(HasSubstr("tir.seq:9"), HasSubstr("RMD TIR")));
+}
+
+// PIM puts the image at its paraxial place, whatever the last thickness is; the thickness of SI is its defocus.
+TEST(LensFiles, CodeVsParaxialImageSolveIsObeyed) {
+  auto const image_mm = [](std::string const& text) {
+    Lens const lens = lens_of_text("pim.seq", text);
+    return analyse_field(lens, paraxial_lens(lens), 16).image_plane / unit::millimetre;
+  };
+  double const back = paraxial_lens(lens_of_text("pim.seq", seq)).back_focal_length / unit::millimetre;
+  EXPECT_GT(std::abs(back - 47), 0.1);
+  EXPECT_NEAR(image_mm(seq), 47, 1e-12);
+  std::string const solved = changed(seq, "GO\n", "PIM\nGO\n");
+  EXPECT_NEAR(image_mm(solved), back, 1e-12);
+  EXPECT_NEAR(image_mm(changed(solved, "SI 0.0 0.0", "SI 0.0 -0.5")), back - 0.5, 1e-12);
+  EXPECT_THAT(lens_of_text("tilt.seq", changed(solved, "SI 0.0 0.0", "SI 0.0 0.0\n  ADE 5")).warnings,
+              Contains(AllOf(HasSubstr("tilt.seq:14"), HasSubstr("PIM"))));
+}
+
+// Indices are those of the catalogue, at 20 degrees C and 760 mmHg.
+TEST(LensFiles, CodeVsTemperatureAndPressureAreNoted) {
+  EXPECT_THAT(lens_of_text("usual.seq", changed(seq, "REF 2", "REF 2\nTEM 20.0\nPRE 760.0")).warnings, IsEmpty());
+  EXPECT_THAT(lens_of_text("hot.seq", changed(seq, "REF 2", "REF 2\nTEM 40\nPRE 500")).warnings,
+              ElementsAre(HasSubstr("hot.seq:7: TEM"), HasSubstr("hot.seq:8: PRE")));
+}
+
+TEST(LensFiles, PrivateGlassesNeedAnIndexForEveryWavelengthAndAnEnd) {
+  auto const with = [](std::string const& glasses) {
+    return changed(changed(seq, "SO 0.0", glasses + "SO 0.0"), "NBK7_SCHOTT", "'own'");
+  };
+  EXPECT_THAT(refusal("few.seq", with("PRV\nPWL 656.3 587.6 486.1\n'own' 1.5 1.51\nEND\n")),
+              AllOf(HasSubstr("few.seq:9"), HasSubstr("2 indices for 3 wavelengths")));
+  EXPECT_THAT(refusal("many.seq", with("PRV\nPWL 587.6\n'own' 1.5 1.51\nEND\n")),
+              AllOf(HasSubstr("many.seq:9"), HasSubstr("2 indices for 1 wavelengths")));
+  EXPECT_THAT(refusal("endless.seq", with("PRV\nPWL 656.3 486.1\n'own' 1.5 1.51\n")),
+              AllOf(HasSubstr("endless.seq:7"), HasSubstr("END")));
+  EXPECT_THAT(refusal("cut.seq", "RDM\nPRV\nPWL 656.3 486.1\n"), AllOf(HasSubstr("cut.seq:2"), HasSubstr("END")));
+}
+
+// The unit of length in lower case is the same unit.
+TEST(LensFiles, UnitsMayBeInLowerCase) {
+  EXPECT_EQ(focal_length_mm(lens_of_text("lower.zmx", changed(zmx, "UNIT MM", "UNIT mm"))),
+            focal_length_mm(lens_of_text("upper.zmx", zmx)));
+  EXPECT_NEAR(focal_length_mm(lens_of_text("lower.zmx", changed(zmx, "UNIT MM", "UNIT cm"))),
+              10 * focal_length_mm(lens_of_text("upper.zmx", zmx)), 1e-10);
+}
+
+// Rows of the documented table that no other test covers: each has a number that only holds if the commands of the row
+// are obeyed.
+TEST(LensFiles, TheDocumentedCodeVCommandsAreObeyed) {
+  auto const with = [](std::string const& from, std::string const& to) { return changed(seq, from, to); };
+  auto const on_stop = [&](std::string const& commands) { return with("CIR 8.0", commands); };
+  auto const light_at = [](double x, double y) {
+    return [x, y](Lens const& lens) { return fate(lens, {x, y}) == RayStatus::alive ? 1.0 : 0.0; };
+  };
+  auto const pupil_mm = [](Lens const& lens) { return paraxial_lens(lens).entrance.diameter / unit::millimetre; };
+  auto const warnings_with = [](std::string const& word) {
+    return [word](Lens const& lens) {
+      return static_cast<double>(std::count_if(lens.warnings.begin(), lens.warnings.end(), [&](auto const& warning) {
+        return warning.find(word) != std::string::npos;
+      }));
+    };
+  };
+  auto const focal_length = [](Lens const& lens) { return focal_length_mm(lens); };
+  double const f = traced_focal_length({0.02, -0.02}, {1, bk7(), 1}, {6});
+  std::string const curvatures =
+      changed(changed(with("RDM;LEN", "RDM N;LEN"), "S 50.0", "S 0.02"), "S -50.0", "S -0.02");
+  struct Row {
+    char const* commands;
+    std::string text;
+    std::function<double(Lens const&)> measure;
+    double expected;
+  };
+  std::vector<Row> const rows{
+      {"RDM", seq, focal_length, f},
+      {"RDM N", curvatures, focal_length, f},
+      {"517.642", with("NBK7_SCHOTT", "517.642"), focal_length, traced_focal_length({0.02, -0.02}, {1, 1.517, 1}, {6})},
+      {"FNO", with("EPD 6.0", "FNO 9"), pupil_mm, f / 9},
+      // the cone of a numerical aperture s meets the stop, the first surface, at 100 mm s / sqrt(1 - s^2)
+      {"NAO", changed(with("EPD 6.0", "NAO 0.02"), "SO 0.0 1e13", "SO 0.0 100"), pupil_mm,
+       200 * 0.02 / std::sqrt(1 - 0.0004)},
+      {"CIR", with("  47.0", "  47.0\n  CIR 2"), light_at(0, 3), 0},
+      {"CIR EDG", with("  47.0", "  47.0\n  CIR EDG 2"), light_at(0, 3), 1},
+      {"CIR OBS", on_stop("CIR OBS 2"), light_at(0, 1.9), 0},
+      {"ELX, ELY: the long axis", on_stop("ELX 2; ELY 1"), light_at(1.9, 0), 1},
+      {"ELX, ELY: the short axis", on_stop("ELX 2; ELY 1"), light_at(0, 1.1), 0},
+      {"ELX, ELY: the corner", on_stop("ELX 2; ELY 1"), light_at(1.5, 0.8), 0},
+      {"REX, REY: the corner", on_stop("REX 2; REY 1"), light_at(1.5, 0.8), 1},
+      {"ELX OBS, ELY OBS", on_stop("ELX OBS 2; ELY OBS 1"), light_at(1.9, 0), 0},
+      {"ADX, ADY: the new centre", on_stop("REX 1; REY 1; ADX 3; ADY -2"), light_at(3.5, -2.5), 1},
+      {"ADX, ADY: the axis", on_stop("REX 1; REY 1; ADX 3; ADY -2"), light_at(0, 0), 0},
+      {"ARO", on_stop("REX 1; REY 2; ARO 45"), warnings_with("ARO"), 1},
+      {"ARO 0", on_stop("REX 1; REY 2; ARO 0"), warnings_with("ARO"), 0},
+      {"ZOO", with("REF 2", "REF 2\nZOO 3"), warnings_with("ZOO"), 1},
+      {"VUX", with("REF 2", "REF 2\nVUX 0.1 0"), warnings_with("VUX: vignetting factors"), 1},
+      {"VUX 0", with("REF 2", "REF 2\nVUX 0 0"), warnings_with("VUX"), 0},
+      {"DIM C", with("DIM M", "DIM C"), focal_length, 10 * f},
+  };
+  for (Row const& row : rows)
+    EXPECT_NEAR(row.measure(lens_of_text("row.seq", row.text)), row.expected, 1e-9) << row.commands;
 }
 
 TEST(LensFiles, GratingsAndOtherSurfacesAreRefusedByName) {

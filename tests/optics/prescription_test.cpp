@@ -148,6 +148,46 @@ TEST(Prescription, TellsOfFieldsThatAreLeftOut) {
   EXPECT_THAT(notes("along.seq", changed(seq, "REF 2", "REF 2\nXAN 0 0\nYAN 0 5")), IsEmpty());
 }
 
+// A wavelength in the wrong unit would be traced far outside the range of every glass. Wavelengths that are not the
+// primary one may have any value: design programs write unused ones.
+TEST(Prescription, WavelengthsInTheWrongUnitAreRefused) {
+  EXPECT_THAT(refusal("nm.zmx", changed(zmx, "WAVM 2 0.58756180", "WAVM 2 550")),
+              AllOf(HasSubstr("nm.zmx:9: a wavelength of 550 um"), HasSubstr("is 0.55 um meant?")));
+  EXPECT_EQ(refusal("unused.zmx", changed(zmx, "WAVM 1 0.48613270", "WAVM 1 550")), "");
+  EXPECT_THAT(refusal("um.seq", changed(seq, "WL 486.1 587.5618", "WL 0.4861 0.532")),
+              AllOf(HasSubstr("um.seq:5: a wavelength of 0.532 nm"), HasSubstr("is 532 nm meant?")));
+  EXPECT_THAT(refusal("metres.seq", changed(seq, "WL 486.1 587.5618", "WL 486.1e-9 532e-9")),
+              HasSubstr("is 532 nm meant?"));
+  EXPECT_THAT(refusal("minus.seq", changed(seq, "WL 486.1 587.5618", "WL 486.1 -532")), HasSubstr("correct it"));
+  EXPECT_THAT(refusal("um.toml", changed(toml, "f_number", "primary_wavelength_nm = 0.5876\nf_number")),
+              AllOf(HasSubstr("um.toml:3:1"), HasSubstr("is 587.6 nm meant?")));
+  EXPECT_THAT(refusal("private.seq", changed(seq, "SO 0.0", "PRV\nPWL 0.6563 0.4861\n'own' 1.5 1.51\nEND\nSO 0.0")),
+              AllOf(HasSubstr("private.seq:8: PWL"), HasSubstr("is 656.3 nm meant?")));
+  EXPECT_EQ(refusal("infrared.seq", changed(changed(seq, "WL 486.1 587.5618", "WL 10600"), "REF 2", "REF 1")), "");
+}
+
+// What a file does not say is assumed with one warning that names a line.
+TEST(Prescription, AMissingWavelengthOrApertureIsWarnedOfAtALine) {
+  auto const notes = [](char const* name, std::string const& text) {
+    return read_prescription(file_of(name, text)).warnings;
+  };
+  EXPECT_THAT(notes("none.seq", changed(changed(seq, "WL 486.1 587.5618\n", ""), "REF 2\n", "")),
+              ElementsAre(AllOf(HasSubstr("none.seq:5:"), HasSubstr("no primary wavelength (WL, REF); 587.5618 nm"))));
+  EXPECT_THAT(notes("zero.zmx", changed(zmx, "WAVM 2 0.58756180", "WAVM 2 0")),
+              ElementsAre(AllOf(HasSubstr("zero.zmx:9:"), HasSubstr("no primary wavelength (WAVM, PWAV)"))));
+  EXPECT_THAT(notes("other.zmx", changed(zmx, "PWAV 2", "PWAV 3")), ElementsAre(HasSubstr("other.zmx:11:")));
+  EXPECT_THAT(notes("open.zmx", changed(zmx, "ENPD 6.0\n", "")),
+              ElementsAre(AllOf(HasSubstr("open.zmx:14:"), HasSubstr("sets no aperture"))));
+  EXPECT_THAT(notes("open.seq", changed(seq, "EPD 6.0\n", "")),
+              ElementsAre(AllOf(HasSubstr("open.seq:7:"), HasSubstr("sets no aperture (EPD, FNO, NAO)"))));
+  EXPECT_NEAR(paraxial_of("open.seq", changed(seq, "EPD 6.0\n", "")).entrance.diameter, 16e-3, 1e-15);
+  // the cone of an object at infinity has no width
+  EXPECT_THAT(notes("cone.zmx", changed(zmx, "ENPD 6.0", "OBNA 0.1 0")),
+              ElementsAre(AllOf(HasSubstr("cone.zmx:5:"), HasSubstr("object at infinity"))));
+  EXPECT_THAT(notes("near.zmx", changed(changed(zmx, "ENPD 6.0", "OBNA 0.01 0"), "DISZ INFINITY", "DISZ 150")),
+              IsEmpty());
+}
+
 // What a user may hand over by mistake: each refusal names file, line and cause.
 TEST(Prescription, RefusesBadFilesByLineAndCause) {
   EXPECT_THAT(refusal("a.zmx", changed(zmx, "  TYPE STANDARD\n  CURV -0.02", "  TYPE BINARY_2\n  CURV -0.02")),

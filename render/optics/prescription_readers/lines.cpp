@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "render/base/error.h"
+#include "render/base/units.h"
 
 namespace gladstone {
 
@@ -46,6 +47,20 @@ double PrescriptionLine::number_or_infinity(std::size_t i) const {
 bool PrescriptionLine::has_nonzero_number() const {
   return std::any_of(words.begin() + 1, words.end(),
                      [](std::string const& word) { return finite_number(word).value_or(0) != 0; });
+}
+
+std::string describe_wavelength_fault(double value, double unit, std::string_view unit_name) {
+  double const shortest = 100 * unit::nanometre / unit, longest = 20 * unit::micrometre / unit;
+  auto const is_plausible = [&](double wavelength) { return wavelength >= shortest && wavelength <= longest; };
+  if (is_plausible(value)) return "";
+  std::string remedy = "correct it";
+  for (double const factor : {1e3, 1e-3, 1e6, 1e9}) {
+    if (!is_plausible(factor * value)) continue;
+    remedy = fmt::format("is {:.6g} {} meant?", factor * value, unit_name);
+    break;
+  }
+  return fmt::format("is outside the range of wavelengths, {:.6g} to {:.6g} {}; {}", shortest, longest, unit_name,
+                     remedy);
 }
 
 std::string in_capitals(std::string text) {

@@ -26,6 +26,13 @@ struct PrescriptionLine {
   bool has_nonzero_number() const;
 };
 
+/// Describes the fault of a wavelength outside 100 nm to 20 um, and suggests the value in the right unit if a power of
+/// 1000 brings the wavelength into this range.
+/// @param unit       unit of the value [m]
+/// @param unit_name  name of the unit in the text
+/// @return           empty if the wavelength is in the range
+std::string describe_wavelength_fault(double value, double unit, std::string_view unit_name);
+
 /// Converts a text to upper case (ASCII).
 std::string in_capitals(std::string text);
 

@@ -27,9 +27,13 @@ class SeqReader {
   void read_command(PrescriptionLine const& line) {
     if (line.words.empty()) return;
     std::string const command = in_capitals(line[0]);
-    if (in_private_glasses_) {
-      in_private_glasses_ = command != "END";
-      if (in_private_glasses_) private_glasses_.read(line);
+    if (!private_glasses_where_.empty()) {
+      if (command == "SO" || command == "S" || command == "SI") refuse_missing_end();
+      if (command == "END") {
+        private_glasses_where_.clear();
+      } else {
+        private_glasses_.read(line);
+      }
     } else if (command == "SO" || command == "S" || command == "SI" || is_numbered_surface(command)) {
       begin_surface(command, line);
     } else if (read_system(command, line) || read_fields(command, line)) {
@@ -46,6 +50,7 @@ class SeqReader {
   }
 
   Prescription finish() {
+    if (!private_glasses_where_.empty()) refuse_missing_end();
     if (surfaces_.size() < 2) {
       throw DataError(result_.file,
                       "describes no lens (a .seq file has lines SO, S ..., SI: the object, the lens' "
@@ -64,12 +69,10 @@ class SeqReader {
     result_.object_distance = object.thickness;
     result_.object_medium = resolved(object.after);
     take_surfaces();
-    if (reference_ >= 1 && reference_ <= static_cast<int>(wavelengths_.size())) {
-      result_.primary_wavelength = wavelengths_[static_cast<std::size_t>(reference_ - 1)];
-    } else if (!wavelengths_.empty()) {
-      result_.primary_wavelength = wavelengths_[wavelengths_.size() / 2];
-    }
+    solve_paraxial_image();
+    take_wavelength();
     assume_stop(result_);
+    assume_aperture(result_, "EPD, FNO, NAO");
     if (!unknown_.empty()) {
       bool const one = unknown_.size() == 1;
       warn(fmt::format("{}: {} {} {} not known here and {} passed over; check that {} not change the lens",
@@ -83,6 +86,41 @@ class SeqReader {
   static bool is_numbered_surface(std::string const& command) {
     return command.size() > 1 && command.size() < 5 && command[0] == 'S' &&
            std::all_of(command.begin() + 1, command.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
+  }
+
+  [[noreturn]] void refuse_missing_end() const {
+    throw DataError(private_glasses_where_,
+                    "PRV: the private glasses that begin here have no END; put END behind the last of them");
+  }
+
+  /// Sets the primary wavelength: that of REF, or the middle one without REF, as in CODE V.
+  void take_wavelength() {
+    std::string where = surfaces_.front().surface.where;
+    if (!wavelengths_.empty()) {
+      auto const count = static_cast<int>(wavelengths_.size());
+      int const at = reference_ >= 1 && reference_ <= count ? reference_ - 1 : count / 2;
+      ListedWavelength const& primary = wavelengths_[static_cast<std::size_t>(at)];
+      std::string const fault = describe_wavelength_fault(primary.nanometres, unit::nanometre, "nm");
+      if (primary.nanometres != 0 && !fault.empty()) {
+        throw DataError(primary.where, fmt::format("a wavelength of {:.6g} nm {}", primary.nanometres, fault));
+      }
+      result_.primary_wavelength = primary.nanometres * unit::nanometre;
+      where = primary.where;
+    }
+    note_missing_wavelength(result_, where, "WL, REF");
+  }
+
+  /// Applies PIM: the image is at the paraxial image plus the defocus of SI, whatever the last thickness is. Behind a
+  /// coordinate break, the thickness of the file is used.
+  void solve_paraxial_image() {
+    if (paraxial_image_where_.empty()) return;
+    if (result_.ends_at_image) {
+      warn(paraxial_image_where_ +
+           ": PIM: the image is behind a decentre or tilt; the last thickness of the file is used");
+      return;
+    }
+    result_.surfaces.back().thickness = 0;
+    if (std::isfinite(image_defocus_)) result_.defocus = image_defocus_;
   }
 
   void warn(std::string const& text) { result_.warnings.push_back(text); }
@@ -106,17 +144,27 @@ class SeqReader {
       unit_ = found->second;
     } else if (command == "EPD") {
       pupil_ = line.number(1);
-      result_.aperture.kind = Kind::entrance_pupil;
+      result_.aperture = {Kind::entrance_pupil, 0, line.where};
     } else if (command == "FNO") {
-      result_.aperture = {Kind::f_number, line.number(1)};
+      result_.aperture = {Kind::f_number, line.number(1), line.where};
     } else if (command == "NAO") {
-      result_.aperture = {Kind::object_na, line.number(1)};
+      result_.aperture = {Kind::object_na, line.number(1), line.where};
     } else if (command == "WL") {
-      for (std::size_t i = 1; i < line.size(); ++i) wavelengths_.push_back(line.number(i) * unit::nanometre);
+      for (std::size_t i = 1; i < line.size(); ++i) wavelengths_.push_back({line.number(i), line.where});
     } else if (command == "REF") {
       reference_ = line.integer(1);
     } else if (command == "PRV") {
-      in_private_glasses_ = true;
+      private_glasses_where_ = line.where;
+    } else if (command == "PIM") {
+      paraxial_image_where_ = line.where;
+    } else if (command == "TEM" || command == "PRE") {
+      double const standard = command == "TEM" ? 20 : 760;  // [degC], [mmHg]
+      if (line.size() > 1 && line.number(1) != standard) {
+        warn(
+            fmt::format("{}: {}: indices are not adjusted to the temperature or pressure; the catalogue's indices, at "
+                        "20 degrees C and 760 mmHg, are used",
+                        line.where, command));
+      }
     } else if (command == "ZOO") {
       warn(line.where + ": ZOO: of a zoom lens the position that its surfaces hold is read");
     } else {
@@ -154,6 +202,7 @@ class SeqReader {
       image_ = true;
       image_surface_.surface.where = line.where;
       surfaces_.back().surface.thickness += thickness;  // defocus of the image
+      image_defocus_ = thickness;
       return;
     }
     SeqSurface seq;
@@ -227,8 +276,8 @@ class SeqReader {
   static bool is_surface_command(std::string const& command) {
     static std::set<std::string> const known{"STO", "STOP", "K",   "CIR", "REX", "REY", "ELX", "ELY", "ADX",
                                              "ADY", "ARO",  "XDE", "YDE", "ZDE", "ADE", "BDE", "CDE", "DAR",
-                                             "BEN", "REV",  "CUF", "THI", "RDY", "CUY", "GLA", "A",   "B",
-                                             "C",   "D",    "E",   "F",   "G",   "H",   "J"};
+                                             "BEN", "REV",  "CUF", "RMD", "THI", "RDY", "CUY", "GLA", "A",
+                                             "B",   "C",    "D",   "E",   "F",   "G",   "H",   "J"};
     return known.contains(command);
   }
 
@@ -302,12 +351,18 @@ class SeqReader {
   std::vector<SeqSurface> surfaces_;  // the object is the first
   SeqSurface image_surface_;          // only its coordinate frame is used
   PrivateGlasses private_glasses_;
-  std::vector<double> wavelengths_;
+  struct ListedWavelength {
+    double nanometres;
+    std::string where;
+  };
+  std::vector<ListedWavelength> wavelengths_;
   std::vector<std::string> unknown_;  // unknown commands
   std::string unknown_where_;
-  double unit_ = 1e-3, pupil_ = 0;
+  std::string private_glasses_where_;  // line of PRV while its block is read
+  std::string paraxial_image_where_;   // line of PIM
+  double unit_ = 1e-3, pupil_ = 0, image_defocus_ = 0;
   int reference_ = 0;
-  bool radii_ = false, radii_said_ = false, image_ = false, in_private_glasses_ = false;
+  bool radii_ = false, radii_said_ = false, image_ = false;
 };
 
 }  // namespace

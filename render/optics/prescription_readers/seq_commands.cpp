@@ -49,11 +49,10 @@ void for_each_command(std::string_view text, std::function<void(std::string cons
 }
 
 bool is_harmless_command(std::string const& command) {
-  static std::set<std::string> const harmless{"LEN", "INI", "WTW", "WTF", "CCY", "CCX", "THC", "GLC", "PIM", "DER",
-                                              "GO",  "SLB", "KC",  "AC",  "BC",  "CC",  "DC",  "HC",  "POL", "WID",
-                                              "RES", "WAV", "REM", "TEM", "PRE", "CA",  "CLS", "PIK", "THM", "CUM",
-                                              "DDM", "FFO", "ADC", "BDC", "CDC", "XDC", "YDC", "ZDC", "CUC", "RDC",
-                                              "EC",  "FC",  "GC",  "JC",  "GCE", "SPH", "CON", "ASP", "COM", "COL"};
+  static std::set<std::string> const harmless{
+      "LEN", "INI", "WTW", "WTF", "CCY", "CCX", "THC", "GLC", "DER", "GO",  "SLB", "KC",  "AC",  "BC",  "CC",  "DC",
+      "HC",  "POL", "WID", "RES", "WAV", "REM", "CA",  "CLS", "PIK", "THM", "CUM", "DDM", "FFO", "ADC", "BDC", "CDC",
+      "XDC", "YDC", "ZDC", "CUC", "RDC", "EC",  "FC",  "GC",  "JC",  "GCE", "SPH", "CON", "ASP", "COM", "COL"};
   return harmless.contains(command);
 }
 
@@ -70,8 +69,10 @@ void PrivateGlasses::read(PrescriptionLine const& line) {
     wavelengths_.clear();
     for (std::size_t i = 1; i < line.size(); ++i) {
       double const wavelength = line.number(i) * unit::nanometre;
-      if (!(wavelength > 0) || std::find(wavelengths_.begin(), wavelengths_.end(), wavelength) != wavelengths_.end()) {
-        throw DataError(line.where, fmt::format("PWL: {} nm is no wavelength, or is given twice", line[i]));
+      std::string const fault = describe_wavelength_fault(line.number(i), unit::nanometre, "nm");
+      if (!fault.empty()) throw DataError(line.where, fmt::format("PWL: a wavelength of {} nm {}", line[i], fault));
+      if (std::find(wavelengths_.begin(), wavelengths_.end(), wavelength) != wavelengths_.end()) {
+        throw DataError(line.where, fmt::format("PWL: {} nm is given twice; remove one", line[i]));
       }
       wavelengths_.push_back(wavelength);
     }
@@ -96,7 +97,13 @@ void PrivateGlasses::read(PrescriptionLine const& line) {
     return;
   }
   std::vector<Glass::Sample> samples;
-  for (std::size_t i = 1; i < line.size() && i <= wavelengths_.size(); ++i) {
+  if (line.size() > 1 && line.size() != wavelengths_.size() + 1) {
+    throw DataError(line.where,
+                    fmt::format("glass {} has {} indices for {} wavelengths of PWL; give one for each wavelength, and "
+                                "end the glasses by END",
+                                line[0], line.size() - 1, wavelengths_.size()));
+  }
+  for (std::size_t i = 1; i < line.size(); ++i) {
     samples.push_back({wavelengths_[i - 1], line.number(i)});
   }
   if (samples.empty()) {

@@ -85,6 +85,13 @@ bool read_seq_surface(std::string const& command, PrescriptionLine const& line, 
   if (command == "STO" || command == "STOP") {
     if (is_image) throw DataError(line.where, "the image SI cannot be the stop; mark another one");
     surface.stop = true;
+  } else if (command == "RMD") {
+    std::string const mode = line.size() > 1 ? in_capitals(line[1]) : "";
+    if (mode == "REFL") {
+      surface.after = {PrescribedMedium::Mirror{}, line.where};
+    } else if (mode != "REFR") {
+      throw DataError(line.where, fmt::format("RMD {}: this refraction mode is not read (REFL and REFR are)", mode));
+    }
   } else if (command == "K") {
     surface.conic = line.number(1);
   } else if (apertures.contains(command)) {

@@ -3,6 +3,7 @@
 #include "render/base/setup_table.h"
 #include "render/base/units.h"
 #include "render/optics/even_asphere.h"
+#include "render/optics/prescription_readers/lines.h"
 #include "render/optics/prescription_readers/readers.h"
 
 namespace gladstone {
@@ -87,6 +88,8 @@ Prescription read_toml_prescription(std::string const& path) {
   result.title = root.text("title", "");
   result.source = root.text("source", "");
   if (auto const primary = root.optional_number("primary_wavelength_nm", Range::positive(1e5))) {
+    std::string const fault = describe_wavelength_fault(*primary, unit::nanometre, "nm");
+    if (!fault.empty()) root.problem("primary_wavelength_nm", fault);
     result.primary_wavelength = *primary * unit::nanometre;
   }
   Range distance = Range::positive();
@@ -99,7 +102,7 @@ Prescription read_toml_prescription(std::string const& path) {
     if (result.aperture.kind != Kind::stop) {
       root.problem(key, "stands beside another key that sets the stop (one is enough); remove one");
     }
-    result.aperture = {kind, *value * scale};
+    result.aperture = {kind, *value * scale, root.where(key)};
   };
   aperture("entrance_pupil_mm", Kind::entrance_pupil, millimetre, Range::positive());
   aperture("f_number", Kind::f_number, 1, Range::positive());

@@ -67,13 +67,11 @@ class ZmxReader {
       throw DataError(object.where, "the object is a mirror (GLAS); name what is ahead of the lens");
     result_.object_distance = object.thickness;
     result_.object_medium = object.after;
-    if (primary_ >= 1 && primary_ <= static_cast<int>(wavelengths_.size())) {
-      result_.primary_wavelength = wavelengths_[static_cast<std::size_t>(primary_ - 1)];
-    }
+    take_wavelength();
     take_fields();
-    check_aperture();
     take_surfaces();
     assume_stop(result_);
+    assume_aperture(result_, "ENPD, FNUM, OBNA");
     std::vector<std::string> const notes = notes_.warnings();
     result_.warnings.insert(result_.warnings.end(), notes.begin(), notes.end());
     return std::move(result_);
@@ -91,7 +89,7 @@ class ZmxReader {
     if (key == "UNIT") {
       static std::map<std::string, double> const lengths{
           {"MM", 1e-3}, {"CM", 1e-2}, {"IN", 25.4e-3}, {"METER", 1.0}, {"M", 1.0}};
-      auto const found = line.size() > 1 ? lengths.find(line[1]) : lengths.end();
+      auto const found = line.size() > 1 ? lengths.find(in_capitals(line[1])) : lengths.end();
       if (found == lengths.end()) throw DataError(line.where, "UNIT names no known unit (MM, CM, IN or METER)");
       unit_ = found->second;
     }
@@ -116,26 +114,31 @@ class ZmxReader {
       }
     }
     if (key == "WAVL") {
-      for (std::size_t i = 1; i < line.size(); ++i) wavelengths_.push_back(line.number(i) * unit::micrometre);
+      for (std::size_t i = 1; i < line.size(); ++i) wavelengths_.push_back({line.number(i), line.where});
     }
     if (key == "WAVM") {
       line.integer(1);
-      wavelengths_.push_back(line.number(2) * unit::micrometre);
+      wavelengths_.push_back({line.number(2), line.where});
     }
     if (key == "PWAV") primary_ = line.integer(1);
     if (key == "GCAT") result_.catalogues.assign(line.words.begin() + 1, line.words.end());
-    if (key == "ENPD" || key == "FNUM" || key == "OBNA" || key == "FLOA") aperture_where_ = line.where;
+    if (key == "ENPD" || key == "FNUM" || key == "OBNA" || key == "FLOA") result_.aperture.where = line.where;
   }
 
-  /// Uses the semi-diameter of the stop if the aperture is missing or 0, with a warning.
-  void check_aperture() {
-    bool const by_stop = result_.aperture.kind == PrescribedAperture::Kind::stop;
-    if (by_stop ? !aperture_where_.empty() : result_.aperture.value > 0) return;
-    result_.warnings.push_back(
-        fmt::format("{}: the file sets no aperture (ENPD, FNUM, OBNA); the stop's semi-diameter "
-                    "is taken",
-                    aperture_where_.empty() ? path_ : aperture_where_));
-    result_.aperture = {};
+  /// Sets the primary wavelength; a value of 0 means that it is not given. Other wavelengths are not checked, since
+  /// design programs also write unused ones.
+  void take_wavelength() {
+    std::string where = surfaces_.front().surface.where;
+    if (primary_ >= 1 && primary_ <= static_cast<int>(wavelengths_.size())) {
+      ListedWavelength const& primary = wavelengths_[static_cast<std::size_t>(primary_ - 1)];
+      std::string const fault = describe_wavelength_fault(primary.micrometres, unit::micrometre, "um");
+      if (primary.micrometres != 0 && !fault.empty()) {
+        throw DataError(primary.where, fmt::format("a wavelength of {:.6g} um {}", primary.micrometres, fault));
+      }
+      result_.primary_wavelength = primary.micrometres * unit::micrometre;
+      where = primary.where;
+    }
+    note_missing_wavelength(result_, where, "WAVM, PWAV");
   }
 
   /// Converts the blocks between object and image to the surfaces of the lens.
@@ -212,12 +215,16 @@ class ZmxReader {
   Prescription result_;
   std::vector<ZmxSurface> surfaces_;
   ZmxNotes notes_;
-  std::vector<double> wavelengths_, fields_;
+  struct ListedWavelength {
+    double micrometres;
+    std::string where;
+  };
+  std::vector<ListedWavelength> wavelengths_;
+  std::vector<double> fields_;
   double unit_ = 1e-3;
   int primary_ = 1;
   bool object_assumed_ = false;
   std::string heights_at_, across_at_;  // locations of field heights, and of fields outside the y-z plane
-  std::string aperture_where_;
 };
 
 }  // namespace
