@@ -1,4 +1,6 @@
 #include <numeric>
+#include <sstream>
+#include <string>
 
 #include "tests/end_to_end/support/workplace.h"
 
@@ -171,6 +173,31 @@ TEST_F(DataErrors, DamagedTruth) {
   expect_refused({"compare", "case"}, 2, {"case/truth.h5: is not an HDF5 file"});
   write("case/truth.h5", read("case/vectors.h5"));
   expect_refused({"compare", "case"}, 2, {"case/truth.h5: has no dataset \"/dots/"});
+}
+
+// The same vectors as a Tecplot zone: complete, and without the last ones that its header declares.
+TEST_F(DataErrors, VectorsCutShortAreScoredWithAWarning) {
+  render("case");
+  succeed({"correlate", "case", "-o", "ours.csv"});
+  std::istringstream ours(read("ours.csv"));
+  std::string line, rows;
+  std::getline(ours, line);
+  std::size_t count = 0;
+  for (; std::getline(ours, line); ++count) {
+    std::istringstream fields(line);
+    for (int column = 0; column < 4 && std::getline(fields, line, ','); ++column) rows += line + ' ';
+    rows += '\n';
+  }
+  ASSERT_GT(count, 0u);
+  for (std::size_t const missing : {0u, 5u}) {
+    write("v.dat",
+          "VARIABLES = \"x\", \"y\", \"Vx\", \"Vy\"\nZONE I=" + std::to_string(count + missing) + ", J=1\n" + rows);
+    Outcome const outcome =
+        gladstone({"compare", "case", "--vectors", "v.dat", "--conventions", "y-down,v-down,offset=0", "--no-figures"});
+    EXPECT_EQ(outcome.exit_code, missing == 0 ? 0 : 1) << outcome.err;
+    std::string const warning = "v.dat:2: the header declares " + std::to_string(count + missing) + " vectors";
+    EXPECT_EQ(outcome.err.find(warning) != std::string::npos, missing > 0) << outcome.err;
+  }
 }
 
 TEST_F(DataErrors, GarbageAmongTheVectorsHasItsLine) {

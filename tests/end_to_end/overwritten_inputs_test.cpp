@@ -54,11 +54,12 @@ TEST_F(OverwrittenInputs, OfAStudy) {
   succeed({"sweep", "run", "run", "--keep-images"});
   succeed({"sweep", "collect", "run", "--no-figures"});
   for (std::string const name :
-       {"manifest.jsonl", "cases/0.json", "cases/0/truth.h5", "base.toml", "study.toml", "study.h5"}) {
+       {"manifest.jsonl", "cases/0.json", "cases/0/truth.h5", "base.toml", "study.toml", "study.h5", "study.csv"}) {
     expect_kept("run/" + name, {"report", "run", "-o", "run/" + name});
   }
-  for (std::string const name : {"manifest.jsonl", "cases/0.json", "cases/0/truth.h5", "cases/0/reference.tif",
-                                 "cases/0/vectors.h5", "cases/0/setup.toml", "base.toml", "study.toml", "study.h5"}) {
+  for (std::string const name :
+       {"manifest.jsonl", "cases/0.json", "cases/0/truth.h5", "cases/0/reference.tif", "cases/0/vectors.h5",
+        "cases/0/setup.toml", "base.toml", "study.toml", "study.h5", "study.csv"}) {
     expect_kept("run/" + name, {"sweep", "collect", "run", "--no-figures", "--dataset", "run/" + name});
   }
   // what belongs there is still written again
