@@ -24,7 +24,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr char const* truth_name = "truth.csv";
 constexpr int truth_spacing_px = 8;
 
 /// Images and truth of a case.
@@ -73,14 +72,14 @@ std::string truth_text(MadeCase const& made) {
 }
 
 void write_case_folder(MadeCase const& made, std::string const& folder) {
-  OutputFolder output(folder, FolderContent{truth_name, {case_file::setup}});
+  OutputFolder output(folder, FolderContent{benchmark_truth, {case_file::setup}});
   output.fill([&](std::string const& place) {
     auto const in_place = [&](char const* name) { return (fs::path(place) / name).string(); };
     ImageMetadata const metadata{8, 0.0, "gladstone benchmark, " + made.record.of.name + ": " + made.record.of.what};
     write_tiff(in_place(case_file::reference), levels_of(made.frames.reference()), metadata);
     write_tiff(in_place(case_file::flow), levels_of(made.frames.flow()), metadata);
     if (!made.setup.empty()) OutputFile::write_text(in_place(case_file::setup), made.setup);
-    OutputFile::write_text(in_place(truth_name), truth_text(made));
+    OutputFile::write_text(in_place(benchmark_truth), truth_text(made));
   });
   output.commit();
 }
@@ -96,6 +95,13 @@ std::vector<BenchmarkCase> in_order_of_telling(std::vector<BenchmarkCase> cases)
 
 bool is_wanted(std::vector<std::string> const& wanted, std::string const& name) {
   return wanted.empty() || std::find(wanted.begin(), wanted.end(), name) != wanted.end();
+}
+
+std::vector<BenchmarkCase> wanted_cases(BenchmarkOptions const& options) {
+  std::vector<BenchmarkCase> cases;
+  for (BenchmarkCase const& one : benchmark_cases())
+    if (is_wanted(options.cases, one.name)) cases.push_back(one);
+  return cases;
 }
 
 bool runs_on(BenchmarkEstimator const& estimator, std::string const& of_case) {
@@ -143,10 +149,23 @@ std::vector<BenchmarkEstimator> const& benchmark_estimators() {
   return all;
 }
 
+std::vector<std::string> case_files_of(BenchmarkOptions const& options) {
+  std::vector<std::string> paths;
+  for (BenchmarkCase const& one : wanted_cases(options))
+    for (char const* name : {benchmark_truth, case_file::reference, case_file::flow, case_file::setup})
+      paths.push_back((fs::path(options.folder) / one.name / name).string());
+  return paths;
+}
+
+std::vector<std::string> vector_files_of(BenchmarkOptions const& options) {
+  std::vector<std::string> paths;
+  for (ForeignVectors const& given : options.vectors)
+    for (auto const& [of_case, path] : find_vectors(given, wanted_cases(options))) paths.push_back(path);
+  return paths;
+}
+
 BenchmarkResult run_benchmark(BenchmarkOptions const& options, Device const& device) {
-  std::vector<BenchmarkCase> cases;
-  for (BenchmarkCase const& one : benchmark_cases())
-    if (is_wanted(options.cases, one.name)) cases.push_back(one);
+  std::vector<BenchmarkCase> const cases = wanted_cases(options);
   std::vector<ForeignCode> codes;
   for (ForeignVectors const& given : options.vectors) codes.emplace_back(given, cases);
   BenchmarkResult result;

@@ -84,6 +84,15 @@ struct BenchmarkResult {
   std::string device;
 };
 
+/// Name of the truth in a case's folder.
+inline constexpr char const* benchmark_truth = "truth.csv";
+
+/// Returns the paths of the files that run_benchmark() writes or removes in the folders of its cases.
+std::vector<std::string> case_files_of(BenchmarkOptions const& options);
+/// Returns the paths of the external vector files that run_benchmark() reads.
+/// @throws DataError if an external code has none
+std::vector<std::string> vector_files_of(BenchmarkOptions const& options);
+
 /// Creates the cases in FOLDER/CASE/, each with reference.tif, flow.tif and truth.csv, and scores vectors of gladstone
 /// and of external software on them.
 /// @throws DataError if an external file is unreadable, fits no conventions, or has repeated or missing vectors;

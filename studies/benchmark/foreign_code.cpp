@@ -84,20 +84,24 @@ std::vector<Evidence> weigh_readings(std::vector<std::pair<std::string, Detected
 
 }  // namespace
 
-ForeignCode::ForeignCode(ForeignVectors const& given, std::vector<BenchmarkCase> const& cases)
-    : name_(given.name), told_(given.conventions) {
+std::map<std::string, std::string> find_vectors(ForeignVectors const& given, std::vector<BenchmarkCase> const& cases) {
+  std::map<std::string, std::string> files;
   std::error_code error;
   bool const is_folder = fs::is_directory(given.path, error);
   for (BenchmarkCase const& one : cases)
     for (char const* ending : {".csv", ".txt", ".h5", ".dat", ".vec", ".jvc"}) {
       fs::path const path = is_folder ? fs::path(given.path) / (one.name + ending) : fs::path(given.path);
-      if (path.filename() == one.name + ending && fs::exists(path, error)) files_.emplace(one.name, path.string());
+      if (path.filename() == one.name + ending && fs::exists(path, error)) files.emplace(one.name, path.string());
     }
-  if (files_.empty())
+  if (files.empty())
     throw DataError(given.path, fmt::format("holds no vectors of a case that is run (files named after cases, such as "
                                             "{0}.csv, {0}.txt or {0}.h5); name them so",
                                             cases.front().name));
+  return files;
 }
+
+ForeignCode::ForeignCode(ForeignVectors const& given, std::vector<BenchmarkCase> const& cases)
+    : name_(given.name), files_(find_vectors(given, cases)), told_(given.conventions) {}
 
 DisplacementField ForeignCode::read(std::string const& of_case, DisplacementAt const& truth, int columns, int rows) {
   std::string const& path = files_.at(of_case);

@@ -10,11 +10,15 @@
 
 namespace gladstone {
 
+/// Finds the vector files of an external code: paths by the name of their case.
+/// @throws DataError if there are none
+std::map<std::string, std::string> find_vectors(ForeignVectors const& given, std::vector<BenchmarkCase> const& cases);
+
 /// Vectors of external software for several cases, all interpreted by the same conventions: those of the user or, if
 /// none are given, those of the format.
 class ForeignCode {
  public:
-  /// Finds the files of the cases. @throws DataError if there are none
+  /// @throws the exceptions of find_vectors()
   ForeignCode(ForeignVectors const& given, std::vector<BenchmarkCase> const& cases);
 
   std::string const& name() const { return name_; }
