@@ -21,6 +21,7 @@
 #include "studies/commands/arguments.h"
 #include "studies/commands/command.h"
 #include "studies/commands/run_warnings.h"
+#include "studies/protected_files.h"
 #include "studies/version_text.h"
 
 namespace gladstone {
@@ -188,7 +189,7 @@ int main(int argc, char** argv) {
   spdlog::set_pattern("%^%l:%$ %v");
   gladstone::record_warnings(*spdlog::default_logger());
   gladstone::catch_interrupts();
-  gladstone::InputGuard const guard;
+  gladstone::InputGuard const guard(gladstone::protected_files());
   int const code = gladstone::guarded(argc, argv);
   if (!gladstone::is_printed()) {
     gladstone::print_error(

@@ -46,6 +46,7 @@ OutputFile::OutputFile(std::string const& path, std::string const& kind) : place
         "cannot be replaced (a file of its own is mounted there); mount its folder, or name another file");
   }
   refuse_recorded_input(place_.path(), place_.asked());
+  refuse_protected_file(place_.path(), place_.asked());
   if (!kind.empty()) refuse_replacing(kind);
   place_.make_parents();
   std::string const stem = stem_beside(place_.name());

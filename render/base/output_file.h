@@ -18,7 +18,8 @@ class OutputFile {
   /// reported before any computation. Symbolic links are followed.
   /// @param kind  kind of the new content, as file_kind() returns it; if empty, only commit() compares the kinds
   /// @throws OutputError if the directory is not writable; if `path` is a directory, a device, a mount point or an
-  ///         input of the command (InputGuard); if `path` contains data of another known kind
+  ///         input of the command or a file of other results (InputGuard); if `path` contains data of another known
+  ///         kind
   explicit OutputFile(std::string const& path, std::string const& kind = "");
   ~OutputFile();
   OutputFile(OutputFile const&) = delete;

@@ -10,6 +10,7 @@
 #include <system_error>
 
 #include "render/base/error.h"
+#include "render/base/input_guard.h"
 #include "render/base/output_file.h"
 
 namespace gladstone {
@@ -84,6 +85,7 @@ void OutputFolder::refuse_foreign_folder() const {
 }
 
 void OutputFolder::fill(std::function<void(std::string const& folder)> const& write) const {
+  ProtectedWriting const own;
   name_final_place(staged_, place_.asked(), [&] { write(staged_); });
 }
 

@@ -54,6 +54,7 @@ inline constexpr char const* cases = "cases";       ///< folder of the results I
 inline constexpr char const* table = "study.h5";
 inline constexpr char const* table_text = "study.csv";
 inline constexpr char const* points_text = "study_points.csv";
+inline constexpr char const* job_files = "slurm/*";  ///< script and number of the job array, logs of its tasks
 }  // namespace run_file
 
 inline constexpr int manifest_version = 2;

@@ -132,6 +132,7 @@ void try_plan_place(std::string const& run, StudyFile const& study) {
   refuse_inputs_as_outputs({manifest.string(), (folder / run_file::study).string(), (folder / run_file::base).string(),
                             (folder / run_file::claims).string()},
                            {study.path, study.base_path});
+  ProtectedWriting const own;
   OutputFile const tried(manifest.string());
 }
 
@@ -170,6 +171,7 @@ Planned write_plan(std::string const& run, StudyPlan const& plan) {
   } else {
     refuse_foreign_run(folder);
   }
+  ProtectedWriting const own;
   OutputFile output(manifest.string());
   fs::create_directories(folder / run_file::cases, error);
   if (error) throw OutputError((folder / run_file::cases).string(), "cannot be made (" + error.message() + ')');

@@ -21,6 +21,7 @@
 #include <thread>
 
 #include "render/base/error.h"
+#include "render/base/input_guard.h"
 #include "render/base/interrupt.h"
 #include "render/base/output_file.h"
 #include "render/base/progress.h"
@@ -203,6 +204,7 @@ std::optional<std::string> job_going_on(std::string const& run) {
 }
 
 JobEnd run_job_array(JobArray const& array, CountRemaining const& remaining) {
+  ProtectedWriting const own;
   OutputFile::write_text(array.script_path, array.script);
   Started sbatch(array.command);
   std::string const job = submitted_job(sbatch);

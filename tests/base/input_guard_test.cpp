@@ -95,6 +95,29 @@ TEST_F(InputGuards, WithoutAGuardNothingIsRecorded) {
   OutputFile::write_text(in_folder("input.txt"), "new");
 }
 
+// Files of other results are refused by name, whether they exist or not, except to the command that makes them.
+TEST_F(InputGuards, FilesOfOtherResultsAreNotWritten) {
+  fs::create_directories(in_folder("run/jobs"));
+  std::ofstream(in_folder("run/marker")) << "marker";
+  fs::create_symlink("run/list", in_folder("link"));
+  InputGuard const guard({{"study", {"marker", "jobs"}, {"list", "jobs/*"}}});
+  for (std::string const name : {"run/list", "link", "run/jobs/../list", "run/jobs/1"}) {
+    EXPECT_THAT([&] { OutputFile(in_folder(name)); },
+                ThrowsMessage<OutputError>(AllOf(HasSubstr(name + ": belongs to the study in "),
+                                                 HasSubstr("is not written by this command"))));
+    EXPECT_FALSE(fs::exists(in_folder(name))) << name;
+  }
+  OutputFile::write_text(in_folder("run/other"), "new");
+  OutputFile::write_text(in_folder("list"), "new");
+  {
+    ProtectedWriting const own;
+    OutputFile::write_text(in_folder("run/list"), "own");
+  }
+  EXPECT_EQ(content(in_folder("run/list")), "own");
+  fs::remove(in_folder("run/marker"));
+  OutputFile::write_text(in_folder("run/list"), "new");
+}
+
 /// What files of a case and a run hold, by content.
 class FileKinds : public Output {
  protected:

@@ -18,8 +18,18 @@ class OverwrittenInputs : public Workplace {
     Outcome const outcome = gladstone(arguments);
     EXPECT_EQ(outcome.exit_code, 2) << testing::PrintToString(arguments) << outcome.err;
     EXPECT_THAT(outcome.err, HasSubstr(file));
-    EXPECT_THAT(outcome.err,
-                AnyOf(HasSubstr("would be overwritten"), HasSubstr("is no folder"), HasSubstr("is a file")));
+    EXPECT_THAT(outcome.err, AnyOf(HasSubstr("would be overwritten"), HasSubstr("is no folder"), HasSubstr("is a file"),
+                                   HasSubstr("is not written by this command")));
+    EXPECT_TRUE(read(file) == before) << file << " is destroyed by " << testing::PrintToString(arguments);
+  }
+  /// The command is refused because `output` is its input `file`, which remains as it was.
+  void expect_input_kept(std::string const& file, std::vector<std::string> const& arguments,
+                         std::string const& output) const {
+    std::string const before = read(file);
+    ASSERT_NE(before, "") << file;
+    Outcome const outcome = gladstone(arguments);
+    EXPECT_EQ(outcome.exit_code, 2) << testing::PrintToString(arguments) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr(output + ": would be overwritten, and is read by this command"));
     EXPECT_TRUE(read(file) == before) << file << " is destroyed by " << testing::PrintToString(arguments);
   }
 };
@@ -62,6 +72,29 @@ TEST_F(OverwrittenInputs, OfAStudy) {
         "cases/0/setup.toml", "base.toml", "study.toml", "study.h5", "study.csv"}) {
     expect_kept("run/" + name, {"sweep", "collect", "run", "--no-figures", "--dataset", "run/" + name});
   }
+  write("rays.csv", "x_mm,y_mm,z_mm,dx,dy,dz\n0,0,-250,0,0,1\n");
+  render("case");
+  // also files without a signature, and under other names
+  std::string const around = "../" + folder_.filename().string() + "/run/";
+  fs::create_directory_symlink("run", in("link"));
+  for (std::string const name : {"claims", "study.csv"}) {
+    write("run/" + name, "x,y\n1,2\n");
+    for (std::string const& folder :
+         {std::string("run/"), std::string("link/"), around, std::string("run/cases/../")}) {
+      expect_kept(folder + name, {"report", "run", "-o", folder + name});
+      expect_kept(folder + name, {"report", "run", "--format", "md", "-o", folder + name});
+      expect_kept(folder + name, {"trace", "setup.toml", "--rays", "rays.csv", "-o", folder + name});
+      expect_kept(folder + name, {"sweep", "collect", "run", "--no-figures", "--dataset", folder + name});
+    }
+  }
+  expect_kept("run/study.csv", {"correlate", "case", "-o", "run/study.csv"});
+  // also a file that is not there yet
+  Outcome const absent = gladstone({"trace", "setup.toml", "--rays", "rays.csv", "-o", "run/study_points.csv"});
+  EXPECT_EQ(absent.exit_code, 2);
+  EXPECT_THAT(absent.err, HasSubstr("run/study_points.csv: belongs to the study in "));
+  EXPECT_FALSE(fs::exists(in("run/study_points.csv")));
+  // files of the user in the same folder are written
+  succeed({"trace", "setup.toml", "--rays", "rays.csv", "-o", "run/traced.csv"});
   // what belongs there is still written again
   succeed({"sweep", "plan", "study.toml", "-o", "run", "--device", "cpu"});
   write("study.toml", "base = \"setup.toml\"\n[axes]\n\"lens.f_number\" = [8, 16, 32]\n");
@@ -101,6 +134,48 @@ keys = ["geometry.z_a_mm", "geometry.z_d_mm"]
   succeed({"correlate", "measured/reference.tif", "measured/flow.tif", "-o", "measured/vectors.h5"});
   expect_kept("measured/vectors.h5", {"report", "measured", "-o", "measured/vectors.h5"});
   expect_kept("measured/setup.toml", {"report", "measured", "-o", "measured/setup.toml"});
+}
+
+TEST_F(OverwrittenInputs, UnderOtherNames) {
+  render("case");
+  succeed({"correlate", "case"});
+  // compare -o
+  std::string const around = "../" + folder_.filename().string() + "/case/vectors.h5";
+  for (std::string const name : {"soft", "hard", "around"}) fs::create_directory(in(name));
+  fs::create_symlink("../case/vectors.h5", in("soft/errors.json"));
+  fs::create_hard_link(in("case/vectors.h5"), in("hard/errors.json"));
+  fs::create_symlink("../" + around, in("around/errors.json"));
+  for (std::string const folder : {"soft", "hard", "around"}) {
+    expect_input_kept("case/vectors.h5", {"compare", "case", "--no-figures", "-o", folder}, folder + "/errors.json");
+  }
+  // calibrate -o
+  fs::copy(in("case/reference.tif"), in("plane.tif"));
+  fs::create_symlink("../plane.tif", in("soft/calibration.h5"));
+  fs::create_hard_link(in("plane.tif"), in("hard/calibration.h5"));
+  for (std::string const folder : {"soft", "hard"}) {
+    expect_input_kept("plane.tif", {"calibrate", "setup.toml", "--images", "plane.tif", "-o", folder},
+                      folder + "/calibration.h5");
+  }
+}
+
+// The case's own truth, read as another code's vectors, would be written before it is read.
+TEST_F(OverwrittenInputs, OfABenchmark) {
+  fs::create_directories(in("bench/vortex"));
+  for (std::string const name : {"soft", "hard"}) fs::create_directory(in(name));
+  write("bench/vortex/truth.csv", "x_px,y_px,u_px,v_px\n0,0,1,1\n8,0,1,1\n");
+  fs::create_symlink("../bench/vortex/truth.csv", in("soft/vortex.csv"));
+  fs::create_hard_link(in("bench/vortex/truth.csv"), in("hard/vortex.csv"));
+  std::string const around = "../" + folder_.filename().string() + "/soft";
+  for (std::string const& folder : {std::string("soft"), std::string("hard"), around}) {
+    expect_input_kept("bench/vortex/truth.csv",
+                      {"benchmark", "-o", "bench", "--cases", "vortex", "--estimators", "none", "--no-figures",
+                       "--vectors", "mine=" + folder},
+                      "bench/vortex/truth.csv");
+  }
+  write("bench/vortex/reference.tif", "II*");
+  write("bench/vortex/flow.tif", "II*");
+  render("case");
+  expect_kept("bench/vortex/truth.csv", {"correlate", "case", "-o", "bench/vortex/truth.csv"});
 }
 
 }  // namespace

@@ -394,6 +394,10 @@ TEST_F(Piv, ExtractsViewsOfAPlenopticPicture) {
   // 128 px of 5 um show 9 lenslets of 65 um
   EXPECT_EQ(read_image(in("case/views/flow/view_02_02.tif").string()).columns(), 9);
   EXPECT_THAT(succeed({"views", "case", "--views", "3", "-o", "three"}), testing::HasSubstr("9 views of 9 x 9 px"));
+  // a link to an input of the command is not replaced
+  std::filesystem::create_hard_link(in("case/flow.tif"), in("three/flow_refocused.tif"));
+  expect_refused({"views", "case", "--views", "3", "-o", "three", "--quiet"}, 2,
+                 {"would be overwritten, and is read by this command"});
   // 12.04 px of the stop are seen: 13 views across show all that there is, 30 are 707 files of either frame and a word
   Outcome const enough = gladstone({"views", "case", "--views", "13", "-o", "enough"});
   EXPECT_THAT(enough.err, testing::Not(testing::HasSubstr("--views 13")));

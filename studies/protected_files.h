@@ -1,0 +1,12 @@
+#pragma once
+
+#include <vector>
+
+#include "render/base/input_guard.h"
+
+namespace gladstone {
+
+/// Returns the files of studies, cases and benchmark cases that only the commands making them may write.
+std::vector<ProtectedFiles> protected_files();
+
+}  // namespace gladstone
