@@ -14,6 +14,7 @@
 #include "studies/cameras.h"
 #include "studies/case_warnings.h"
 #include "studies/light_exposure.h"
+#include "studies/peak_locking.h"
 #include "studies/scene_renderer.h"
 #include "studies/uncertain_inputs.h"
 #include "studies/usual_values.h"
@@ -164,6 +165,10 @@ CaseSetup load_case_setup(SetupDocument document, FieldMemory field) {
   if (!loaded.document.has_problems()) {
     loaded.warnings = cross_check(loaded.setup, root);
     if (!loaded.setup.calibration()) cross_check_windows(loaded);
+    if (!loaded.setup.calibration() && !loaded.setup.piv) {
+      if (std::string advice = locking_advice(loaded.setup); !advice.empty())
+        loaded.warnings.push_back(std::move(advice));
+    }
     cross_check_method(loaded);
   }
   if (light && !loaded.document.has_problems()) {

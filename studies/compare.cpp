@@ -151,6 +151,7 @@ Comparison compare_case(std::string const& folder, Device const& device, Compare
   GroundTruth const dots = read_truth(files.truth);
   MeasuredVectors vectors = load_vectors(files.vectors, loaded, dots, options);
   stop_point("comparing");
+  std::vector<std::string> given;  // warnings already logged
   std::string fingerprint = comparison_fingerprint(files.sources, options);
   Comparison comparison = comparison_of(vectors, loaded.setup.piv.has_value());
   if (options.reuse && read_chain(folder, fingerprint, comparison)) {
@@ -160,6 +161,7 @@ Comparison compare_case(std::string const& folder, Device const& device, Compare
   } else {
     vectors.field = std::move(comparison.measured);
     PreparedCase const prepared = prepare_case(loaded);
+    given = prepared.warnings;
     std::optional<RenderedCase> rendered;
     if (!vectors.foreign) rendered = render_case(prepared, *device.renderer, RenderTheory::no);
     PointTruth point = truth_of_vectors(prepared, *device.renderer, vectors.field.position_px, options.truth_at);
@@ -169,7 +171,9 @@ Comparison compare_case(std::string const& folder, Device const& device, Compare
   name_sources(comparison, std::move(files));
   comparison.fingerprint = std::move(fingerprint);
   comparison.warnings = comparison_warnings(comparison, loaded.setup);
-  for (std::string const& warning : comparison.warnings) spdlog::warn("{}", warning);
+  for (std::string const& warning : comparison.warnings) {
+    if (std::find(given.begin(), given.end(), warning) == given.end()) spdlog::warn("{}", warning);
+  }
   return comparison;
 }
 

@@ -16,16 +16,23 @@ namespace {
 constexpr double usual_dots = 20;      // dots per window assumed for the expected error
 constexpr double smallest_seen = 0.5;  // [px] a narrower autocorrelation peak is noise, not dots
 
-constexpr int most_judged_px = 512;  // size of the evaluated central part of a frame
+constexpr double warned_image_px = 0.995 * least_image_px;  // the remedies are rounded
+constexpr int most_judged_px = 512;                         // size of the evaluated central part of a frame
 
 double square(double x) { return x * x; }
+
+/// Rounds up to three significant digits, so that a wider image is not below the required width.
+double round_up(double value) {
+  double const step = std::pow(10.0, std::floor(std::log10(value)) - 2);
+  return std::ceil(value / step * (1 - 1e-9)) * step;
+}
 
 /// Returns the remedies of a setup as keys with values.
 std::string cures(Setup const& setup, SmallImages const& images) {
   std::string text;
   auto const add = [&text](std::string const& cure) { text += (text.empty() ? "" : " or ") + cure; };
   if (double const factor = images.f_number_factor(least_image_px); std::isfinite(factor * setup.lens.f_number)) {
-    add(fmt::format("lens.f_number = {:.3g}", factor * setup.lens.f_number));
+    add(fmt::format("lens.f_number = {:.3g}", round_up(factor * setup.lens.f_number)));
   }
   // Ideal images assume particles in focus.
   bool const ideal = setup.piv && setup.piv->particles.scattering == ParticleScattering::gaussian;
@@ -80,16 +87,25 @@ double defocus_distance(Setup const& setup, double diameter_px) {
   if (!(blur > 0) || !(pupil > 0)) return std::nan("");
   double const distance = setup.piv ? particle_image(setup).distance : setup.z_b();
   double const sharp = 1 / (1 / setup.lens.focal_length - 1 / distance);
-  // On a sensor behind the image plane, a point is imaged to a disc of diameter D_a (z_i - z_sharp) / z_sharp.
-  double const sensor = sharp * (1 + blur * setup.camera.pixel_pitch / pupil);
-  return 1 / (1 / setup.lens.focal_length - 1 / sensor);
+  Setup focused = setup;
+  focused.lens.focus = Focus::distance;
+  double wanted = blur;
+  for (int step = 0; step < 3; ++step) {
+    // On a sensor behind the image plane, a point is imaged to a disc of diameter D_a (z_i - z_sharp) / z_sharp.
+    double const sensor = sharp * (1 + wanted * setup.camera.pixel_pitch / pupil);
+    focused.lens.focus_distance = 1 / (1 / setup.lens.focal_length - 1 / sensor);
+    // The magnification, and with it the rest of the image, changes with the focus.
+    SmallImages const there = expected_images(focused);
+    wanted *= std::sqrt(square(diameter_px) - square(there.geometric_px) - square(there.spot_px)) / there.blur_px;
+  }
+  return focused.lens.focus_distance;
 }
 
 std::string locking_advice(Setup const& setup) {
   if (!setup.piv && setup.target.kind == TargetKind::image) return {};  // dot sizes of an image target are unknown
   SmallImages const images = expected_images(setup);
   double const diameter = images.diameter_px();
-  if (!(diameter < least_image_px)) return {};
+  if (!(diameter < warned_image_px)) return {};
   std::string text = fmt::format(
       "{} images are {:.2f} px wide (e^-2 diameter): below {:g} px correlation locks to whole pixels, an error of "
       "about "
@@ -107,7 +123,7 @@ std::string locking_advice(Setup const& setup) {
 std::string locking_advice(Image<double> const& frame) {
   double const seen = image_statistics(middle_of(frame)).dot_diameter_px;
   double const diameter = std::sqrt(square(seen) - 16.0 / 12);
-  if (!(diameter > smallest_seen && diameter < least_image_px)) return {};
+  if (!(diameter > smallest_seen && diameter < warned_image_px)) return {};
   SmallImages const images{0, diameter, 0}, wide{0, least_image_px, 0};
   return fmt::format(
       "dot images are about {:.2f} px wide (e^-2 diameter, by their autocorrelation): below {:g} px correlation "

@@ -32,8 +32,8 @@ SmallImages expected_images(Setup const& setup);
 /// [m]. NaN unless the lens is an ideal thin lens, or if the images are already that wide.
 double defocus_distance(Setup const& setup, double diameter_px);
 
-/// Returns a warning of images below least_image_px, with their diameter, the expected error, and the f-number or focus
-/// distance that avoids it. Empty if the images are large enough.
+/// Returns a warning of images more than 0.5 % below least_image_px, with their diameter, the expected error, and the
+/// f-number or focus distance that avoids it. Empty if the images are large enough.
 /// @pre not a calibration
 std::string locking_advice(Setup const& setup);
 

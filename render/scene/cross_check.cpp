@@ -126,7 +126,7 @@ void cross_check_spot(Setup const& setup, double diffraction_px, SetupTable lens
 }
 
 /// Checks the target's size and the size and polarity of its dots.
-void cross_check_target(Setup const& setup, SetupTable root, std::vector<std::string>& warnings) {
+void cross_check_target(Setup const& setup, SetupTable root) {
   double const mm = unit::millimetre;
   SetupTable lens = root.table("lens"), target = root.table("target");
   double const px = setup.pixel_size();
@@ -143,15 +143,6 @@ void cross_check_target(Setup const& setup, SetupTable root, std::vector<std::st
   if (setup.target.kind != TargetKind::image) {
     double const diameter_px = setup.geometric_dot_px();
     cross_check_spot(setup, setup.spot_diameter_px(), lens, root);
-    double const image_px = setup.image_diameter_px(diameter_px);
-    if (image_px < least_image_px) {
-      warnings.push_back(fmt::format(
-          "dot images are {:.2f} px wide (e^-2 diameter; geometric image {:.2f} px, diffraction spot {:.2f} px, disc "
-          "of "
-          "confusion {:.2f} px): below {:g} px correlation locks to whole pixels; enlarge target.dot_diameter_px or "
-          "lens.f_number",
-          image_px, diameter_px, setup.spot_e2_diameter_px(), setup.defocus_diameter_px(), least_image_px));
-    }
     if (setup.target.polarity == Polarity::dark && diameter_px == 0) {
       target.problem("polarity", "dark dots of no size cannot be seen; give dot_diameter_px");
     }
@@ -224,7 +215,7 @@ std::vector<std::string> cross_check(Setup const& setup, SetupTable root) {
     cross_check_particles(setup, root, warnings);
     return warnings;
   }
-  cross_check_target(setup, root, warnings);
+  cross_check_target(setup, root);
   if (setup.target.kind == TargetKind::dots) cross_check_dot_count(setup, root.table("target"));
   return warnings;
 }

@@ -137,28 +137,6 @@ TEST(Setup, TheTargetMustFillTheView) {
   EXPECT_THAT(read_setup_text("[target]\nextent_mm = [44, 60]\n").warnings, IsEmpty());
 }
 
-// Table 1's spot is 4 x 0.2750 = 1.100 px wide (e^-2), so that dots of 1 px are 1.487 px wide and those of 1.7
-// px 2.025.
-TEST(Setup, DotsBelowTwoPixelsAreWarnedOf) {
-  EXPECT_THAT(read_setup_text("[target]\ndot_diameter_px = 1\n").warnings,
-              Contains(AllOf(HasSubstr("1.49"), HasSubstr("below 2 px"))));
-  EXPECT_THAT(read_setup_text("[target]\ndot_diameter_px = 1.7\n").warnings, IsEmpty());
-}
-
-// The spot that counts is the one drawn, by its e^-2 diameter. Table 1: 1.10 px (airy, gaussian), 1.595 px
-// (gaussian_first_zero), pi times that as the seed prints it, none without one.
-TEST(Setup, DotsBelowTwoPixelsAreThoseOfTheSpotDrawn) {
-  auto const warnings = [](std::string const& psf) {
-    return read_setup_text("[lens]\npsf = \"" + psf + "\"\n[target]\ndot_diameter_px = 1\n").warnings;
-  };
-  EXPECT_THAT(warnings("airy"), Contains(HasSubstr("1.49 px wide (e^-2 diameter; geometric image 1.00 px, "
-                                                   "diffraction spot 1.10 px")));
-  EXPECT_THAT(warnings("gaussian_first_zero"), Contains(HasSubstr("1.88 px wide (e^-2 diameter; geometric image 1.00 "
-                                                                  "px, diffraction spot 1.59 px")));
-  EXPECT_THAT(warnings("seed_eq8"), IsEmpty()) << "5.01 px";
-  EXPECT_THAT(warnings("none"), Contains(HasSubstr("1.00 px wide")));
-}
-
 TEST(Setup, DotsThatCannotFindRoomAreRefused) {
   // 100 dots of 3 px in 1024 px^2 cover 69 %
   EXPECT_THAT([] { read_setup_text("[target]\ndots_per_32px_window = 100\n"); }, refused("2:1", "69 %"));
