@@ -170,6 +170,22 @@ void warn_of_saturation(std::vector<std::string>& warnings, CameraSetup const& c
                              in_flow, saturation_cure(camera, light_e)));
 }
 
+namespace {
+
+/// Signal-to-noise ratio of the brightest pixel below which a warning is given: twice the ratio of 5 at which a
+/// particle is just visible (Rose, J. Opt. Soc. Am. 38 (1948) 196), since most particles are dimmer than the brightest.
+constexpr double least_peak_snr = 10;
+
+/// Returns the ratio of a pixel's charge from light to its shot, dark and read noise.
+/// @param peak_e  charge from light [e]
+double peak_snr(CameraSetup const& camera, double peak_e) {
+  NoiseSetup const& noise = camera.noise;
+  double const charge_e = peak_e + noise.dark_current_e + camera.background.level_e;
+  return peak_e / std::hypot(noise.shot_noise ? std::sqrt(charge_e) : 0.0, noise.read_noise_e);
+}
+
+}  // namespace
+
 void warn_of_exposure(std::vector<std::string>& warnings, Scene const& scene, double exposure_e, double brightest) {
   if (!scene.setup.piv) return;
   CameraSetup const& camera = scene.setup.camera;
@@ -184,7 +200,14 @@ void warn_of_exposure(std::vector<std::string>& warnings, Scene const& scene, do
                                                       "so; add [camera.noise])",
                                cure));
   } else if (camera.absolute_exposure) {
-    return;
+    double const peak_e = exposure_e * brightest, snr = peak_snr(camera, peak_e);
+    if (!camera.noise.enabled || snr >= least_peak_snr) return;
+    warn(
+        warnings,
+        fmt::format("camera.exposure = \"absolute\": the brightest particle sends {:.3g} photons through the lens, and "
+                    "the brightest pixel collects {:.3g} electrons, {:.2g} times its noise (below {:g}, most particles "
+                    "are lost in noise); {}",
+                    photons, peak_e, snr, least_peak_snr, cure));
   } else if (camera.exposure_e && exposure_e > limit_e * (1 + 1e-9)) {
     warn(warnings, fmt::format("camera.exposure: the brightest particle sends {:.3g} photons through the lens, which "
                                "set free {:.3g} electrons at a quantum efficiency of {:.3g}, not {:.6g}: images have "

@@ -50,7 +50,8 @@ std::size_t warn_of_unseen(std::vector<std::string>& warnings, Scene const& scen
 void warn_of_saturation(std::vector<std::string>& warnings, CameraSetup const& camera, std::size_t in_reference,
                         std::size_t in_flow, double light_e);
 
-/// Warns if the particles' photons do not suffice for a PIV exposure: "auto" limited by them, or a number beyond them.
+/// Warns if the particles' photons do not suffice for a PIV exposure: "auto" limited by them, a number beyond them, or
+/// an "absolute" exposure whose brightest pixel has less than ten times its noise.
 /// @param brightest  light of the brightest pixel of both frames, in units of the scene's photon_unit
 void warn_of_exposure(std::vector<std::string>& warnings, Scene const& scene, double exposure_e, double brightest);
 
