@@ -246,7 +246,7 @@ Measurement correlate_case(std::string const& folder, std::string const& output,
       "gladstone vectors", 1,      other ? other->resolved : loaded.document.resolved(), loaded.setup.render.seed,
       measurement.device,  sources};
   write_vectors(output.empty() ? in_case(folder, case_file::vectors) : output, measurement.field, origin);
-  if (std::string advice = locking_advice(loaded.setup); !advice.empty())
+  if (std::string advice = locking_advice(loaded.setup); frames_correlate(measurement.field) && !advice.empty())
     measurement.field.warnings.push_back(std::move(advice));
   return measurement;
 }

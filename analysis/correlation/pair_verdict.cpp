@@ -35,6 +35,7 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t fewest_windows = fewest_neighbours + 1;
 
 char const* const correlates = "correlates";
+char const* const uncorrelated_verdict = "does not correlate";
 
 bool has_signal(VectorReason reason) {
   return reason != VectorReason::masked && reason != VectorReason::outside && reason != VectorReason::no_signal;
@@ -228,7 +229,7 @@ struct Evidence {
 /// Returns the verdict from the remaining vectors. @pre the pair can be judged by its vectors
 std::string verdict_of(DisplacementField const& field, Tally const& left) {
   if (std::any_of(field.status.begin(), field.status.end(), is_sound)) return correlates;
-  return left.nothing_left() ? "does not correlate" : "not judged: no vector passed its tests";
+  return left.nothing_left() ? uncorrelated_verdict : "not judged: no vector passed its tests";
 }
 
 void judge(DisplacementField& field, Evidence const& evidence, CorrelationSettings const& settings) {
@@ -283,6 +284,8 @@ HostFrames known_in_any(PairSequence const& pairs) {
 }
 
 }  // namespace
+
+bool frames_correlate(DisplacementField const& field) { return field.verdict != uncorrelated_verdict; }
 
 bool same_picture(Image<double> const& a, Image<double> const& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](double x, double y) {

@@ -33,6 +33,9 @@ void leave_out_chance(DisplacementField& field, DisplacementField const& chance,
 void judge_pair(DisplacementField& field, FramePair const& frames, Correlator const& correlator,
                 CorrelationSettings const& settings);
 
+/// Returns false if judge_pair() found that the frames do not correlate.
+bool frames_correlate(DisplacementField const& field);
+
 /// Returns whether two frames are bitwise identical.
 bool same_picture(Image<double> const& a, Image<double> const& b);
 

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "analysis/correlation/pair_verdict.h"
 #include "analysis/vectors/vector_file.h"
 #include "render/base/error.h"
 #include "render/base/input_file.h"
@@ -102,7 +103,7 @@ CommandBody attach_correlate(CLI::App& app, GlobalOptions const& options) {
                    : std::array{read_frame(a, "reference", sources), read_frame(b, "flow", sources)};
       add_preparation(other.settings, sources);
       measurement = correlate_frames(a, reference, b, flow, other.settings, device);
-      if (std::string advice = locking_advice(reference); !advice.empty())
+      if (std::string advice = locking_advice(reference); frames_correlate(measurement.field) && !advice.empty())
         measurement.field.warnings.push_back(std::move(advice));
       warn_of_exchanged_frames(measurement.field, sources);
       write_vectors(written, measurement.field,
