@@ -48,13 +48,12 @@ FieldPlace field_place(FieldSource const& source, std::string const& path, std::
   place.text = fmt::format("{}, so the field is {:.6g} x {:.6g} x {:.6g} mm wide unless spacing_mm is given; values {}",
                            assumed.empty() ? "lengths are in " + units.length : assumed, extent.x, extent.y, extent.z,
                            units.values.empty() ? "name no unit" : "are in " + units.values);
-  if (!undefined.empty()) {
-    place.text = fmt::format("{}, so that spacing_mm must be given; values {}", undefined,
-                             units.values.empty() ? "name no unit" : "are in " + units.values);
-  }
+  if (!units.unknown.empty()) place.text = units.unknown + "; give medium.field.spacing_mm; " + place.text;
+  if (!assumed.empty()) place.warning = assumed + "; if that is wrong, give medium.field.spacing_mm";
   if (setup.empty()) return place;
 
   Setup const whole = with_field(setup, source, path, dataset, axes);
+  if (whole.medium.field.spacing) place.warning.clear();
   FieldCoverage const seen = field_coverage(file_bounds(whole.medium), whole);
   place.coverage = {{"share", seen.share}, {"view_mm", {seen.view.x / mm, seen.view.y / mm}}, {"setup", setup}};
   place.text += fmt::format("; it fills {:.3g} % of the {:.4g} x {:.4g} mm that {} sees there", 100 * seen.share,

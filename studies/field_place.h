@@ -13,6 +13,7 @@ struct FieldPlace {
   nlohmann::json extent_mm;  ///< distance from the first node to the last along x, y, z [mm]
   nlohmann::json coverage;   ///< {share, view_mm, setup}; null without a setup
   std::string text;          ///< the same as readable text
+  std::string warning;       ///< assumption made about the unit of length; empty: none
 };
 
 /// Determines the position and coverage of a field file.

@@ -219,6 +219,19 @@ std::size_t medium_bytes_needed(MediumSetup const& setup) {
                             : RefractiveIndexVolume<float>::bytes_needed(grid);
 }
 
+std::vector<std::string> header_warnings(MediumSetup const& setup) {
+  FieldSetup const& field = setup.field;
+  if (field.kind != FieldKind::file) return {};
+  auto const source = open_file(field);
+  std::vector<std::string> warnings;
+  for (std::string const& note : source->notes()) {
+    warnings.push_back(fmt::format("medium.field.file: {}: {}", field.file, note));
+  }
+  std::string assumed = assumed_lengths(field, *source, world_grid(field, *source));
+  if (!assumed.empty()) warnings.push_back(std::move(assumed));
+  return warnings;
+}
+
 Bounds<double> file_bounds(MediumSetup const& setup) {
   FieldSetup const& field = setup.field;
   RegularGrid const grid = world_grid(field, *open_file(field));

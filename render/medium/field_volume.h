@@ -33,6 +33,10 @@ std::size_t medium_bytes_needed(MediumSetup const& setup);
 /// @throws DataError if the file cannot be read
 double steps_across(MediumSetup const& setup);
 
+/// Returns the warnings that follow from the header of a field's file: assumed units of length, and notes on its
+/// reading. Empty for other fields. @throws DataError if the file cannot be read
+std::vector<std::string> header_warnings(MediumSetup const& setup);
+
 /// Returns the region of a file's field [m]; reads the file's header. @throws DataError if the file cannot be read
 Bounds<double> file_bounds(MediumSetup const& setup);
 

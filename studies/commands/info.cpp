@@ -31,6 +31,7 @@ int describe_field(std::string const& path, std::string const& dataset, std::str
   FieldReading const& reading = source->reading();
   std::vector<std::string> const notes = source->notes();
   for (std::string const& note : notes) spdlog::warn("{}: {}", path, note);
+  if (!place.warning.empty()) spdlog::warn("{}: {}", path, place.warning);
   nlohmann::json const json{
       {"dataset", source->name()},
       {"nodes", {grid.nodes[0], grid.nodes[1], grid.nodes[2]}},

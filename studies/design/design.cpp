@@ -8,6 +8,7 @@
 
 #include "render/base/error.h"
 #include "render/base/output_file.h"
+#include "render/medium/field_volume.h"
 #include "studies/case_files.h"
 #include "studies/design/answer_text.h"
 #include "studies/design/measurement_inputs.h"
@@ -79,6 +80,8 @@ void add_sheet(DesignRequest const& request, CaseSetup const& loaded, std::vecto
     throw DataError(request.setup, "has no stop (lens.f_number); a design needs the cone of light, so give a number");
   }
   report.warnings = beyond_closed_forms(loaded.setup);
+  std::vector<std::string> const of_field = header_warnings(loaded.setup.medium);
+  report.warnings.insert(report.warnings.end(), of_field.begin(), of_field.end());
   DesignSheet sheet;
   std::optional<MeasurementUncertainty> uncertainty;
   if (loaded.setup.piv) {

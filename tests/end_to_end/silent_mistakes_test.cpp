@@ -124,6 +124,14 @@ TEST_F(SilentMistakes, InfoTellsUnitsExtentAndWhatOfAViewIsFilled) {
   json = json_of({"info", "field", "unnamed.h5", "--dataset", "density"});
   EXPECT_TRUE(json["units"]["length"].is_null());
   EXPECT_THAT(json["units"]["assumed"].get<std::string>(), HasSubstr("taken as mm"));
+  EXPECT_THAT(json["warnings"].dump(), HasSubstr("unnamed.h5: lengths name no unit and are taken as mm"));
+  std::string const unnamed = "kind = \"file\"\nfile = \"unnamed.h5\"\ndataset = \"density\"\nextrude = true";
+  write("unnamed.toml", with_field(unnamed));
+  EXPECT_THAT(json_of({"design", "unnamed.toml"})["warnings"].dump(), HasSubstr("lengths name no unit"));
+  write("spaced.toml", with_field(unnamed + "\nspacing_mm = [0.1, 0.1, 0.1]"));
+  EXPECT_THAT(json_of({"design", "spaced.toml"})["warnings"].dump(), Not(HasSubstr("lengths name no unit")));
+  json = json_of({"info", "field", "unnamed.h5", "--dataset", "density", "--setup", "spaced.toml"});
+  EXPECT_THAT(json["warnings"].dump(), Not(HasSubstr("lengths name no unit")));
   EXPECT_THAT(succeed({"info", "field", "unnamed.h5", "--dataset", "density", "--setup", "setup.toml"}),
               AllOf(HasSubstr("lengths name no unit and are taken as mm, so the field is 0.002 x 0.002"),
                     HasSubstr("were its lengths in metres"), HasSubstr("values are in kg m-3")));
@@ -147,6 +155,39 @@ TEST_F(SilentMistakes, InfoReportsWhichAxisIsTakenForWhich) {
               HasSubstr("axes that are not uniform were resampled: y"));
   EXPECT_THAT(succeed({"info", "field", folder + "h_descx.h5"}),
               HasSubstr("[16, 20, 24] is read as z, y, x (by the lengths of its coordinates); x runs backwards"));
+}
+
+/// Number of occurrences of a text.
+std::size_t count_of(std::string const& piece, std::string const& text) {
+  std::size_t count = 0;
+  for (std::size_t at = 0; (at = text.find(piece, at)) != std::string::npos; at += piece.size()) ++count;
+  return count;
+}
+
+// Peak locking is a matter of frames that correlate, and is warned of once.
+TEST_F(SilentMistakes, SmallDotsAreWarnedOfOnceAndOnlyWhereFramesCorrelate) {
+  std::vector<std::string> const small{"--set", "target.dot_diameter_px=0.5", "--set", "lens.f_number=5.6",
+                                       "--set", "camera.pixels=[128,128]"};
+  render("case", small);
+  std::vector<std::string> other = small;
+  other.insert(other.end(), {"--set", "target.seed=8"});
+  render("other", other);
+  std::string const locking = "px correlation locks to whole pixels";
+  EXPECT_EQ(count_of(locking, json_of({"correlate", "case"})["warnings"].dump()), 1u);
+  EXPECT_EQ(count_of(locking, gladstone({"compare", "case", "--no-figures"}).err), 1u);
+  auto const correlated = [this](std::string const& flow) {
+    std::string const output =
+        gladstone({"correlate", "case/reference.tif", flow, "-o", "vectors.csv", "--json", "--quiet"}).out;
+    return nlohmann::json::parse(output)["warnings"].dump();
+  };
+  EXPECT_EQ(count_of(locking, correlated("case/flow.tif")), 1u);
+  std::string const unrelated = correlated("other/flow.tif");
+  EXPECT_THAT(unrelated, HasSubstr("the frames do not correlate"));
+  EXPECT_EQ(count_of(locking, unrelated), 0u) << unrelated;
+  std::filesystem::copy(in("other/flow.tif"), in("case/flow.tif"), std::filesystem::copy_options::overwrite_existing);
+  std::string const mixed = gladstone({"correlate", "case", "--json"}).out;
+  EXPECT_THAT(mixed, HasSubstr("the frames do not correlate"));
+  EXPECT_EQ(count_of(locking, nlohmann::json::parse(mixed)["warnings"].dump()), 0u) << mixed;
 }
 
 }  // namespace
