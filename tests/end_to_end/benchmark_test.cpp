@@ -77,8 +77,8 @@ TEST_F(Benchmark, TellsWhatSigmaIsWorth) {
 // weights may be off by as much as rounding in single precision moves them, of which a thousandth is ample.
 TEST_F(Benchmark, LearnsTheCombinationThatShips) {
   // 20 s of work, which a busy machine makes minutes
-  Outcome const outcome = Program({"benchmark", "-o", "learnt", "--learn", "--device", "cpu", "--json"}, folder_)
-                              .finish(std::chrono::minutes(10));
+  Outcome const outcome =
+      Program({"benchmark", "-o", "learnt", "--learn", "--device", "cpu", "--json"}, folder_).finish(hang_limit);
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   auto const learnt = nlohmann::json::parse(outcome.out);
   std::ifstream shipped(GLADSTONE_DATA_DIR "/uncertainty/combination.csv");

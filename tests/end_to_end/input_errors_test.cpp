@@ -25,7 +25,7 @@ class Inputs : public Workplace {
 
   /// Ends by itself as bad input, and says this; files are not compared: a pipe cannot be read.
   void expect_told(std::vector<std::string> const& arguments, std::string const& piece) const {
-    Outcome const outcome = Program(arguments, folder_).finish(std::chrono::seconds(20));
+    Outcome const outcome = Program(arguments, folder_).finish(hang_limit);
     EXPECT_EQ(outcome.exit_code, 2) << arguments[0] << outcome.err.substr(0, 400) << outcome.signal;
     EXPECT_TRUE(outcome.err.find(piece) != std::string::npos)
         << arguments[0] << ": " << outcome.err.substr(0, 400) << " instead of " << piece.substr(0, 100);

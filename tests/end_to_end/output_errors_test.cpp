@@ -20,7 +20,7 @@ class OutputErrors : public Workplace {
     EXPECT_TRUE(is_rendering());
     program.send(signal);
     program.send(SIGCONT);
-    return program.finish(60s);
+    return program.finish(hang_limit);
   }
   bool is_rendering() const {
     auto all = names();
@@ -186,7 +186,7 @@ TEST_F(OutputErrors, AReplacementThatIsKilledAtAnyStepLeavesOneWholeCase) {
     Program program({"render", "setup.toml", "-o", "case", "--set", "target.seed=8"}, folder_, stopping_at(point));
     ASSERT_TRUE(program.wait_until_stopped()) << point;
     program.send(SIGKILL);
-    EXPECT_EQ(program.finish(60s).signal, SIGKILL);
+    EXPECT_EQ(program.finish(hang_limit).signal, SIGKILL);
     succeed({"correlate", "case"});  // completes what was begun
     expect_same_case(point.starts_with("replacement") ? "new" : "old", "case");
     EXPECT_FALSE(std::filesystem::exists(in("case/.replacing"))) << point;

@@ -24,7 +24,7 @@ class Places : public Workplace {
     EXPECT_EQ(partials().size(), 1u);
     program.send(signal);
     program.send(SIGCONT);
-    return program.finish(60s);
+    return program.finish(hang_limit);
   }
   std::vector<std::string> partials() const {
     std::vector<std::string> all = names();
@@ -33,33 +33,53 @@ class Places : public Workplace {
   }
 };
 
-/// A process namespace and a host name of its own, as a container has.
-bool enter_container() {
+/// Runs the rest of the child in a process namespace and under a host name of its own, as in a container. The first
+/// process of the namespace cannot be stopped by itself; it waits for the program, the second.
+/// @param stopped  pipe to which a byte is written when the program has stopped itself
+bool enter_container(int stopped) {
   if (::unshare(CLONE_NEWPID | CLONE_NEWUTS) != 0 || ::sethostname("container", 9) != 0) return false;
-  pid_t const child = ::fork();  // the first process of the new namespace
-  if (child == 0) return ::prctl(PR_SET_PDEATHSIG, SIGKILL) == 0;
-  if (child < 0) return false;
-  int status = 0;
-  ::waitpid(child, &status, 0);
-  ::_exit(WIFEXITED(status) ? WEXITSTATUS(status) : 125);
+  for (bool const first : {true, false}) {
+    pid_t const child = ::fork();
+    if (child < 0) return false;
+    if (child == 0) {
+      if (::prctl(PR_SET_PDEATHSIG, SIGKILL) != 0) return false;
+      continue;
+    }
+    int status = 0;
+    while (::waitpid(child, &status, first ? 0 : WUNTRACED) == child && WIFSTOPPED(status)) {
+      char const byte = 1;
+      if (::write(stopped, &byte, 1) != 1) ::_exit(125);
+    }
+    ::_exit(WIFEXITED(status) ? WEXITSTATUS(status) : 125);
+  }
+  return true;
 }
 
 TEST_F(Places, ALiveRunOfAnotherContainerIsLeftAloneAndADeadOneClearedAway) {
   int alive[2];  // open for writing in every process of the container
   ASSERT_EQ(::pipe(alive), 0);
-  Program inside({"render", "setup.toml", "-o", "case", "--set", "render.rays_per_dot=1000000"}, folder_,
-                 enter_container);
+  Program inside({"render", "setup.toml", "-o", "case"}, folder_,
+                 stopping_at("rendering", [&alive] { return enter_container(alive[1]); }));
   ::close(alive[1]);
-  while (partials().empty() && !inside.has_ended()) std::this_thread::yield();
-  if (partials().empty() && inside.finish(60s).exit_code == 126) GTEST_SKIP() << "no namespaces here";
+  auto const read_byte = [&alive] {
+    char byte = 0;
+    ssize_t count = -1;
+    while ((count = ::read(alive[0], &byte, 1)) < 0 && errno == EINTR) {
+    }
+    return count == 1;
+  };
+  if (!read_byte()) {
+    Outcome const outcome = inside.finish(hang_limit);
+    ASSERT_EQ(outcome.exit_code, 126) << outcome.err;
+    GTEST_SKIP() << "no namespaces here";
+  }
   auto const theirs = partials();
   ASSERT_EQ(theirs.size(), 1u);
   EXPECT_THAT(theirs[0], HasSubstr("-container-"));
   render("case");
-  EXPECT_EQ(partials(), theirs) << "it goes on writing there";
-  inside.finish(0s);  // and with it the container
-  char none = 0;
-  while (::read(alive[0], &none, 1) < 0 && errno == EINTR) {  // ends when all of them have
+  EXPECT_EQ(partials(), theirs) << "it is still running";
+  inside.finish(0s);     // and with it the container
+  while (read_byte()) {  // ends when all its processes have ended
   }
   ::close(alive[0]);
   fs::remove_all(in("case"));

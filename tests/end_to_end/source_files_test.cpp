@@ -25,7 +25,7 @@ class Sources : public Workplace {
     EXPECT_TRUE(program.wait_until_stopped());
     render("case", {"--set", "target.seed=8"});
     program.send(SIGCONT);
-    return program.finish(60s);
+    return program.finish(hang_limit);
   }
 };
 
@@ -112,7 +112,7 @@ TEST_F(Sources, RaysThatAreReplacedWhileTheyAreTracedGiveNoTable) {
   ASSERT_TRUE(program.wait_until_stopped());
   write("rays.csv", rays + "0,0,-250,0,0,1\n");
   program.send(SIGCONT);
-  Outcome const outcome = program.finish(60s);
+  Outcome const outcome = program.finish(hang_limit);
   EXPECT_EQ(outcome.exit_code, 2) << outcome.out;
   EXPECT_THAT(outcome.err, HasSubstr("rays.csv: has changed since it was read"));
   EXPECT_TRUE(names("case").empty());
@@ -137,7 +137,7 @@ TEST_F(Sources, AnInputThatIsReplacedWhileItIsRenderedGivesNoCase) {
   ASSERT_TRUE(program.wait_until_stopped());  // the dots have been read by then
   write("dots.csv", "x_mm,y_mm\n0,0\n1,0.5\n-1,-0.25\n");
   program.send(SIGCONT);
-  Outcome const outcome = program.finish(60s);
+  Outcome const outcome = program.finish(hang_limit);
   EXPECT_EQ(outcome.exit_code, 2) << outcome.out;
   EXPECT_THAT(outcome.err,
               AllOf(HasSubstr("dots.csv: has changed since it was read"), HasSubstr("nothing was written")));
@@ -156,12 +156,12 @@ TEST_F(Sources, TwoRenderingsIntoOneCaseAtATimeLeaveOneOfThemWhole) {
     bool const one_by_one = point == "rendering";
     second.send(SIGCONT);
     if (one_by_one) {
-      EXPECT_EQ(second.finish(60s).exit_code, 0);
+      EXPECT_EQ(second.finish(hang_limit).exit_code, 0);
     }
     first.send(SIGCONT);
-    EXPECT_EQ(first.finish(60s).exit_code, 0);
+    EXPECT_EQ(first.finish(hang_limit).exit_code, 0);
     if (!one_by_one) {
-      EXPECT_EQ(second.finish(60s).exit_code, 0);
+      EXPECT_EQ(second.finish(hang_limit).exit_code, 0);
     }
     expect_same_case(one_by_one ? "a" : "b", "case");  // who replaces the files last
     EXPECT_EQ(names("case").size(), 5u) << testing::PrintToString(names("case"));

@@ -214,7 +214,7 @@ TEST_F(Sweeps, KilledAtAnyPointTheNextRunFinishesTheSameStudy) {
     ASSERT_TRUE(program.wait_until_stopped()) << point;
     EXPECT_TRUE(jobs != "1" || claims.any_held());
     program.send(SIGKILL);
-    EXPECT_EQ(program.finish(60s).signal, SIGKILL);
+    EXPECT_EQ(program.finish(hang_limit).signal, SIGKILL);
     while (claims.any_held()) std::this_thread::yield();  // no claim outlives its process
   };
   int done = 0;
@@ -255,7 +255,7 @@ TEST_F(Sweeps, TwoRunnersShareTheWorkAndBothEndWithAllOfIt) {
   plan("run", "slow.toml");
   Program one({"sweep", "run", "run", "--json", "--threads", "1"}, folder_);
   Program other({"sweep", "run", "run", "--json", "--threads", "1"}, folder_);
-  Outcome const a = one.finish(60s), b = other.finish(60s);
+  Outcome const a = one.finish(hang_limit), b = other.finish(hang_limit);
   ASSERT_EQ(a.exit_code, 0) << a.err;
   ASSERT_EQ(b.exit_code, 0) << b.err;
   int const first = nlohmann::json::parse(a.out)["computed"], second = nlohmann::json::parse(b.out)["computed"];
@@ -433,7 +433,7 @@ TEST_F(Sweeps, ControlCKeepsWhatIsFinished) {
     ASSERT_TRUE(program.wait_until_stopped());
     program.send(SIGINT);
     program.send(SIGCONT);
-    Outcome const outcome = program.finish(60s);
+    Outcome const outcome = program.finish(hang_limit);
     EXPECT_EQ(outcome.exit_code, 130) << outcome.err << outcome.signal;
     EXPECT_THAT(outcome.err, HasSubstr("finished cases are kept"));
     EXPECT_EQ(outcome.out, "");

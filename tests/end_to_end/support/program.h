@@ -120,10 +120,13 @@ inline std::function<bool()> stopping_at(std::string const& point, std::function
   return [=] { return ::setenv(stop_variable, point.c_str(), 1) == 0 && (!more || more()); };
 }
 
-/// Runs the program to its end, at most 60 s.
+/// Time after which a program that has not ended hangs. Only a safety net: no test depends on it.
+inline constexpr std::chrono::seconds hang_limit{600};
+
+/// Runs the program to its end.
 inline Outcome run(std::vector<std::string> arguments, std::filesystem::path const& folder,
                    std::function<bool()> const& prepare = {}) {
-  return Program(std::move(arguments), folder, prepare).finish(std::chrono::seconds(60));
+  return Program(std::move(arguments), folder, prepare).finish(hang_limit);
 }
 
 }  // namespace gladstone::end_to_end
