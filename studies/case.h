@@ -63,6 +63,11 @@ struct RenderedCase {
   double seconds = 0;       ///< wall time [s]
 };
 
+/// Returns the announcement of a long rendering: its sources, the expected time and how to shorten it. Empty if it
+/// takes at most 20 s.
+/// @param expected_s  estimate of the wall time [s]
+std::string rendering_announcement(Scene const& scene, double expected_s);
+
 RenderedCase render_case(PreparedCase const& prepared, Renderer& renderer, RenderTheory theory);
 
 /// Returns the exposure: the camera's own, or the one chosen from the brightest pixel, but at most the electrons

@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
@@ -60,24 +61,20 @@ double exposure_of(Scene const& scene, RenderedLight const& light) {
   return std::min(Detector::auto_exposure(camera, light.brightest()), photon_limited_exposure(scene));
 }
 
-namespace {
-
-/// Logs the expected time of a long rendering.
-void announce_rendering(PreparedCase const& prepared) {
-  constexpr double worth_a_word_s = 20;
-  Scene const& scene = prepared.scene;
-  double const expected_s = render_seconds(scene, prepared.rays) / thread_count();
-  if (!(expected_s > worth_a_word_s)) return;
-  spdlog::info(
+std::string rendering_announcement(Scene const& scene, double expected_s) {
+  constexpr double least_announced_s = 20;
+  if (!(expected_s > least_announced_s)) return {};
+  return fmt::format(
       "rendering {} {} will take some {:.0f} s on {} threads; a smaller render.rays_per_dot or a larger "
       "medium.step_mm takes less",
       scene.source_count(), scene.setup.piv ? "particles" : "dots", expected_s, thread_count());
 }
 
-}  // namespace
-
 RenderedCase render_case(PreparedCase const& prepared, Renderer& renderer, RenderTheory theory) {
-  announce_rendering(prepared);
+  double const expected_s = render_seconds(prepared.scene, prepared.rays) / thread_count();
+  if (std::string const text = rendering_announcement(prepared.scene, expected_s); !text.empty()) {
+    spdlog::info("{}", text);
+  }
   auto const start = std::chrono::steady_clock::now();
   RenderedCase rendered;
   Scene scene = prepared.scene;  // copy: tracing may widen its pupil

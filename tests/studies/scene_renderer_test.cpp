@@ -1,5 +1,6 @@
 #include "studies/scene_renderer.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,6 +11,7 @@
 #include "render/focused_dots/focused_dots_renderer.h"
 #include "render/rays/rays_renderer.h"
 #include "render/scene/side_faces.h"
+#include "studies/case.h"
 #include "tests/scene/piv_setups.h"
 #include "tests/scene/small_scenes.h"
 
@@ -255,6 +257,16 @@ TEST(ParticlesNearView, AreAllThatFramesShow) {
   }
   EXPECT_GT(skipped, near.truth.size() / 2);  // the volume is six times as wide as the view
   EXPECT_LT(near.rays, every.rays / 2);
+}
+
+TEST(RenderingAnnouncement, NamesSourcesAndSecondsOfLongRenderingsOnly) {
+  Scene const scene = scene_with_dots(table1_setup(96), lattice(96, 8, 11), 32);
+  std::string const dots = std::to_string(scene.dots.centre.size());
+  EXPECT_THAT(rendering_announcement(scene, 45.2),
+              testing::AllOf(testing::StartsWith("rendering " + dots + " dots will take some 45 s on "),
+                             testing::HasSubstr("render.rays_per_dot")));
+  EXPECT_EQ(rendering_announcement(scene, 20), "");
+  EXPECT_EQ(rendering_announcement(scene, std::nan("")), "");
 }
 
 }  // namespace
