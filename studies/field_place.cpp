@@ -48,7 +48,10 @@ FieldPlace field_place(FieldSource const& source, std::string const& path, std::
   place.text = fmt::format("{}, so the field is {:.6g} x {:.6g} x {:.6g} mm wide unless spacing_mm is given; values {}",
                            assumed.empty() ? "lengths are in " + units.length : assumed, extent.x, extent.y, extent.z,
                            units.values.empty() ? "name no unit" : "are in " + units.values);
-  if (!units.unknown.empty()) place.text = units.unknown + "; give medium.field.spacing_mm; " + place.text;
+  if (!undefined.empty()) {
+    place.text = fmt::format("{}, so that spacing_mm must be given; values {}", undefined,
+                             units.values.empty() ? "name no unit" : "are in " + units.values);
+  }
   if (!assumed.empty()) place.warning = assumed + "; if that is wrong, give medium.field.spacing_mm";
   if (setup.empty()) return place;
 
