@@ -199,7 +199,8 @@ GLADSTONE_HD bool fill_stop(StopView const& view, Medium const& medium, TracingO
   GLADSTONE_RAY_BY_RAY
   for (int k = 0; k < 2 * rim_rays; ++k) {
     bool const within = k % 2 == 0;
-    Vec2d const at = point_of_circle(within ? 1 - filled_to : 1 + filled_to, (k / 2 + 0.5) / rim_rays);
+    int const pair = k / 2;
+    Vec2d const at = point_of_circle(within ? 1 - filled_to : 1 + filled_to, (pair + 0.5) / rim_rays);
     RayHit<double> const hit =
         trace_ray(view.camera, medium, options, ray_to_aim(view.camera, point, filled.map.at(at)), 1.0);
     if (within ? !reaches_sensor_plane(hit.status) : hit.status != RayStatus::vignetted) return false;
