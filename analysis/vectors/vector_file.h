@@ -64,8 +64,8 @@ struct VectorFile {
 
 /// Reads vectors.h5 or vectors.csv of gladstone, text files of OpenPIV, PIVlab, DaVis, TSI Insight, Dantec and JPIV, or
 /// any text file with a header line that names columns x, y, u, v (or vx, vy), with or without units. Separators are
-/// comma, semicolon, tab or blanks; the decimal separator may be a comma. Text may be UTF-8 or UTF-16. Vectors on a complete lattice are sorted row
-/// by row from the smallest y, and `columns` and `rows` are set.
+/// comma, semicolon, tab or blanks; the decimal separator may be a comma. Text may be UTF-8 or UTF-16. Vectors on a
+/// complete lattice are sorted row by row from the smallest y, and `columns` and `rows` are set.
 /// @throws DataError with file:line for content that cannot be read
 VectorFile read_vectors(std::string const& path);
 
