@@ -343,6 +343,11 @@ TEST_F(VectorFiles, TextExportOfDavisIsRead) {
   EXPECT_EQ(back.field.position_px[0], (Vec2d{11.5, 499.5}));
   EXPECT_EQ(back.field.displacement_px[0], (Vec2d{-0.9006, -0.8446}));
   EXPECT_EQ(back.field.status, (std::vector{VectorStatus::valid, VectorStatus::masked}));
+  VectorFile const downwards =
+      read_vectors(file("m.txt",
+                        "#DaVis 8.0.6 2D-vector 16 1 2 \"position\" \"mm\" \"position\" \"mm\" \"velocity\" \"m/s\"\n"
+                        "11,5\t11,5\t-0,9\t0,8\n11,5\t21,5\t-0,9\t0,8\n"));
+  EXPECT_FALSE(downwards.conventions.y_up || downwards.conventions.v_up) << "the first row is the top one";
   VectorFile const pixels = read_vectors(
       file("p.txt",
            "#DaVis 8.4.0 2D-vector 10 1 1 \"position\" \"pixel\" \"position\" \"pixel\" \"displacement\" \"pixel\"\n"

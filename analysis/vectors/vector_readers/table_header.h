@@ -33,7 +33,7 @@ bool is_block_packed(std::string const& header);
 
 /// Header of DaVis' text export: #DaVis 8.4.0 2D-vector 16 49 49 "position" "mm" "position" "mm" "velocity" "m/s" are
 /// version, kind, window size, two sizes of the grid, and quantity and unit of x, of y and of both components.
-/// PIVMat (Moisy, function loadpivtxt) describes the same format.
+/// The units are in the places where PIVMat (Moisy, loadpivtxt.m, version 1.32) reads them from the same 12 words.
 struct DavisHeader {
   bool planar = false;             ///< 2D-vector: columns x, y, u, v
   std::vector<std::string> names;  ///< "x [mm]", "y [mm]", "Vx [m/s]", "Vy [m/s]"

@@ -22,6 +22,14 @@ void mask_zeros(VectorFile& file, std::string const& path) {
       path, masked, file.field.size()));
 }
 
+/// Returns true if y increases from the first row of vectors to the next. DaVis' text export begins with the top row,
+/// so that y then points downwards (Moisy, PIVMat, loadpivtxt.m).
+bool begins_with_smaller_y(DisplacementField const& field) {
+  auto const next = std::find_if(field.position_px.begin(), field.position_px.end(),
+                                 [&](Vec2d const& p) { return p.y != field.position_px.front().y; });
+  return next != field.position_px.end() && next->y > field.position_px.front().y;
+}
+
 }  // namespace
 
 bool is_tecplot(TextTable const& table) { return table.tecplot || table.davis; }
@@ -32,7 +40,7 @@ VectorFile read_tecplot(TextTable const& table) {
   VectorConventions upwards;
   upwards.y_up = upwards.v_up = true;
   upwards.mirror = VectorConventions::Mirror::image;
-  file.conventions = upwards;
+  if (!table.davis || !begins_with_smaller_y(file.field)) file.conventions = upwards;
   add_offsets(file, {-0.5, -1.0, -1.5});
   if (!read_validity(table, file.field)) mask_zeros(file, table.path);
   return file;

@@ -27,9 +27,10 @@ VectorFile read_pivlab(TextTable const& table);
 bool is_openpiv(TextTable const& table);
 VectorFile read_openpiv(TextTable const& table);
 
-/// Tecplot ASCII with VARIABLES x, y, u or Vx, v or Vy, in POINT packing, and DaVis' text export: DaVis (isValid 0:
-/// masked; without that column, vectors of exactly zero count as masked) and TSI Insight .vec (CHC 1: measured; above
-/// 1: secondary peak or interpolated; below 1: invalid). y and v point upwards, y from the last row of the image.
+/// Tecplot ASCII with VARIABLES x, y, u or Vx, v or Vy, in POINT packing, and DaVis' text export, whose y points
+/// downwards if it increases from row to row: DaVis (isValid 0: masked; without that column, vectors of exactly zero
+/// count as masked) and TSI Insight .vec (CHC 1: measured; above 1: secondary peak or interpolated; below 1: invalid).
+/// y and v point upwards, y from the last row of the image.
 bool is_tecplot(TextTable const& table);
 VectorFile read_tecplot(TextTable const& table);
 
