@@ -77,8 +77,8 @@ TEST_F(OverwrittenInputs, OfAStudy) {
   // also files without a signature, and under other names
   std::string const around = "../" + folder_.filename().string() + "/run/";
   fs::create_directory_symlink("run", in("link"));
+  write("run/claims", "not empty, so that its loss is seen");
   for (std::string const name : {"claims", "study.csv"}) {
-    write("run/" + name, "x,y\n1,2\n");
     for (std::string const& folder :
          {std::string("run/"), std::string("link/"), around, std::string("run/cases/../")}) {
       expect_kept(folder + name, {"report", "run", "-o", folder + name});
