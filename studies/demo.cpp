@@ -173,7 +173,7 @@ std::string run_demo(std::string const& folder, Device const& device) {
                  measured.seconds);
     GroundTruth const& dots = made.rendered.rendering->truth;
     Comparison comparison = compare_vectors(
-        made.prepared, dots, &made.rendered, {measured.field, loaded.correlate, false, "", place},
+        made.prepared, dots, &made.rendered, {.field = measured.field, .settings = loaded.correlate, .name = place},
         truth_of_vectors(made.prepared, *device.renderer, measured.field.position_px, TruthAt::mid_position), device);
     name_sources(comparison, compared_files(place, ""));
     OutputFile::write_text(in_case(place, case_file::errors), errors_json(comparison));

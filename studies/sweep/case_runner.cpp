@@ -250,9 +250,9 @@ void CaseRunner::compute(ManifestCase const& one, std::string const& keep, CaseO
     truth =
         &shared.truths.keep(truth_key, truth_of_vectors(prepared, *device_.renderer, places, TruthAt::mid_position));
   }
-  Comparison comparison =
-      compare_vectors(prepared, rendered.rendering->truth, &rendered,
-                      {measured.field, loaded.correlate, false, "", name, {}, {}, every}, *truth, device_);
+  Comparison comparison = compare_vectors(
+      prepared, rendered.rendering->truth, &rendered,
+      {.field = measured.field, .settings = loaded.correlate, .name = name, .every = every}, *truth, device_);
   result.measures = flat_measures(errors_of(comparison));
   std::vector<Vec2d> const still(places.size());
   result.measures.emplace_back("signal_px",
