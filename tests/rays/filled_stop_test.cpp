@@ -32,6 +32,7 @@ Filled filled(Camera const& camera, Vec3d point) {
 struct Point {
   Vec3d at;
   Vec3d point(std::uint64_t, Vec2d) const { return at; }
+  Vec3d middle(std::uint64_t) const { return at; }
   double intensity(std::uint64_t, Vec3d) const { return 1; }
 };
 
