@@ -81,8 +81,8 @@ struct MeasuredVectors {
   DisplacementField field;
   CorrelationSettings settings;  ///< settings of our correlation; for foreign vectors those of the case
   bool foreign = false;          ///< true if the vectors cannot be measured again on noise-free images
-  std::string report;            ///< conventions detected in a foreign file
-  std::string name;              ///< name of the file or the case, for messages
+  std::string report{};          ///< conventions detected in a foreign file
+  std::string name{};            ///< name of the file or the case, for messages
   LeftOutVectors left_out{};
   std::optional<DetectedConventions> detected{};  ///< for a foreign file
   bool complete = true;                           ///< false: the file's header declares another number of vectors
