@@ -81,43 +81,43 @@ std::string map_text(Bench<double> const& b) {
       b.sensitivity(), resolved_wavelength(b) / mm);
 }
 
-void write_layout(std::string const& path, BenchView const& view) {
+void write_layout(std::string const& path, LayoutView const& view) {
   if (view.piv) return write_piv_layout(path, *view.piv);
   write_layout_figure(path, view.bench);
 }
 
-void write_map(std::string const& path, BenchView const& view) {
+void write_map(std::string const& path, LayoutView const& view) {
   if (view.piv) return write_piv_map(path, *view.piv);
   write_design_map(path, view.bench, std::nullopt);
 }
 
 }  // namespace
 
-std::optional<BenchView> bench_view(CaseSetup loaded) {
+std::optional<LayoutView> bench_view(CaseSetup loaded) {
   if (!is_drawn(loaded.setup) || loaded.correlate.window_px.empty()) return std::nullopt;
-  if (loaded.setup.piv) return BenchView{nullptr, {}, std::move(loaded.setup)};
+  if (loaded.setup.piv) return LayoutView{nullptr, {}, std::move(loaded.setup)};
   loaded.setup.medium.field.kind = FieldKind::none;
   auto given = std::make_unique<BenchGiven>(bench_given(loaded));
   Bench<double> const bench = bench_of(loaded.setup, *given);
-  return BenchView{std::move(given), bench, std::nullopt};
+  return LayoutView{std::move(given), bench, std::nullopt};
 }
 
-std::string layout_text(BenchView const& view) {
+std::string layout_text(LayoutView const& view) {
   return view.piv ? text_of_layout(*view.piv) : text_of_layout(view.bench);
 }
 
-ReportBlock layout_block(BenchView const& view, std::string const& whose) {
+ReportBlock layout_block(LayoutView const& view, std::string const& whose) {
   return drawn_block("Layout of " + whose, layout_text(view),
                      [&view](std::string const& path) { write_layout(path, view); });
 }
 
-ReportSection bench_section(BenchView const& view, std::string const& whose) {
+ReportSection bench_section(LayoutView const& view, std::string const& whose) {
   ReportBlock map = drawn_block("Design map of " + whose, view.piv ? text_of_stop(*view.piv) : map_text(view.bench),
                                 [&view](std::string const& path) { write_map(path, view); });
   return {"Set-up", {layout_block(view, whose), std::move(map)}};
 }
 
-std::vector<std::string> draw_bench(std::string const& folder, std::string const& format, BenchView const& view) {
+std::vector<std::string> draw_bench(std::string const& folder, std::string const& format, LayoutView const& view) {
   std::vector<std::string> const drawn{folder + "/layout." + format, folder + "/design_map." + format};
   write_layout(drawn.front(), view);
   write_map(drawn.back(), view);

@@ -13,7 +13,7 @@
 namespace gladstone {
 
 /// Set-up of a setup as drawn in its report.
-struct BenchView {
+struct LayoutView {
   std::unique_ptr<BenchGiven> given;  ///< null for PIV
   Bench<double> bench;                ///< unused for PIV
   std::optional<Setup> piv;
@@ -22,24 +22,24 @@ struct BenchView {
 /// Returns nullopt for set-ups that the drawing does not cover: a calibration, a posed, tilted or plenoptic camera,
 /// windows, no aperture stop, a lens that is neither thin nor rotationally symmetric on the axis, or, for PIV, a laser
 /// sheet outside the plane Z = 0. The medium's field is not read.
-std::optional<BenchView> bench_view(CaseSetup loaded);
+std::optional<LayoutView> bench_view(CaseSetup loaded);
 
 /// Describes the contents of the layout in numbers.
-std::string layout_text(BenchView const& view);
+std::string layout_text(LayoutView const& view);
 
 /// Returns the section "Set-up": the layout to scale, and the design map with the set-up as a point (for PIV, particle
 /// images against f-number). Both are drawn now and embedded in the page; without gnuplot, they are replaced by their
 /// descriptions.
 /// @param whose  "the measurement", "the base"
-ReportSection bench_section(BenchView const& view, std::string const& whose);
+ReportSection bench_section(LayoutView const& view, std::string const& whose);
 
 /// Returns the layout only.
 /// @param whose  e.g. "case 3"
-ReportBlock layout_block(BenchView const& view, std::string const& whose);
+ReportBlock layout_block(LayoutView const& view, std::string const& whose);
 
 /// Draws layout and design map into files for a publication.
 /// @return paths of the files
 /// @throws GnuplotMissing, OutputError
-std::vector<std::string> draw_bench(std::string const& folder, std::string const& format, BenchView const& view);
+std::vector<std::string> draw_bench(std::string const& folder, std::string const& format, LayoutView const& view);
 
 }  // namespace gladstone

@@ -190,7 +190,7 @@ ReportPage case_report(ReportOptions const& options, Device const& device) {
   page.findings = findings_of(view);
   bool const gridded = all.measured.columns > 1 && all.measured.rows > 1;
   page.data = {{"errors", view.errors}, {"budget", budget_json(all.shown_budget())}};
-  std::optional<BenchView> const bench = bench_view(load_case_setup(in_case(options.source, case_file::setup), {}));
+  std::optional<LayoutView> const bench = bench_view(load_case_setup(in_case(options.source, case_file::setup), {}));
   if (bench) page.sections.push_back(bench_section(*bench, "the case"));
   page.sections.push_back({"Images", {frame_pictures(options.source, "The two frames")}});
   if (gridded) {

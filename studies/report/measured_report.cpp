@@ -146,7 +146,7 @@ ReportPage measured_report(ReportOptions const& options, Device const& device) {
   page.question = fmt::format("How certain are the density gradients of this measurement? {} vectors of {}.",
                               field.size(), fs::path(files.vectors).filename().string());
   page.findings = {said.measurand, said.expanded, said.bias};
-  std::optional<BenchView> const drawn_bench = bench_view(load_case_setup(files.setup, {}));
+  std::optional<LayoutView> const drawn_bench = bench_view(load_case_setup(files.setup, {}));
   if (drawn_bench) page.sections.push_back(bench_section(*drawn_bench, "the measurement"));
   if (files.frames) page.sections.push_back({"Images", {frame_pictures(options.source, "The two frames")}});
   if (gridded) page.sections.push_back(maps_section(page, field, all, camera, said.measurand));

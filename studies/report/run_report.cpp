@@ -38,7 +38,7 @@ ReportBlock frames_of(std::string const& run, StudyView const& study, StudyRow c
 
 /// Returns the set-up of a setup; nullopt if a file that it names no longer exists, or if it is invalid without the
 /// study's axes.
-std::optional<BenchView> bench_of_text(std::string const& setup, std::string const& name) {
+std::optional<LayoutView> bench_of_text(std::string const& setup, std::string const& name) {
   if (setup.empty()) return std::nullopt;
   try {
     return bench_view(load_case_setup(SetupDocument::from_text(setup, name)));
@@ -54,7 +54,7 @@ std::string text_in_run(std::string const& run, char const* name) {
 }
 
 /// Describes the base setup and the axes of the study.
-ReportSection setup_section(StudyView const& study, BenchView const* base) {
+ReportSection setup_section(StudyView const& study, LayoutView const* base) {
   ReportSection section{"Set-up", {}};
   if (base) section = bench_section(*base, "the base");
   TextList axes;
@@ -116,8 +116,8 @@ ReportPage run_report(ReportOptions const& options) {
   auto const manifest_entries = read_manifest(run);
   std::string const base_text = text_in_run(run, run_file::base), best_text = manifest_entries[best.index].setup;
   std::string const whose_best = fmt::format("case {}, the best", best.index);
-  std::optional<BenchView> const base = bench_of_text(base_text, run_file::base),
-                                 bench = bench_of_text(best_text, "the setup of " + whose_best);
+  std::optional<LayoutView> const base = bench_of_text(base_text, run_file::base),
+                                  bench = bench_of_text(best_text, "the setup of " + whose_best);
   page.sections.push_back(setup_section(study, base ? &*base : nullptr));
   ReportSection errors{"Error over the axes", {}};
   if (free > 0) errors.blocks.push_back(Chart{"curves", "A measure over an axis", page.findings.front()});

@@ -204,7 +204,7 @@ TEST_F(Calibrations, RecoverDistortion) {
   EXPECT_LT(std::sqrt(sum / static_cast<double>(residual.size())), 0.01);
 }
 
-std::string stereo() {
+std::string stereo_calibration() {
   std::string const camera = with(wide, "[geometry]\nz_a_mm = 300.0\n", "");
   std::string const one =
       camera.substr(camera.find("[camera]") + 9, camera.find("[lens]") - camera.find("[camera]") - 9);
@@ -217,7 +217,7 @@ std::string stereo() {
 }
 
 TEST_F(Calibrations, RecoverAStereoPairWithScheimpflug) {
-  write("setup.toml", stereo());
+  write("setup.toml", stereo_calibration());
   render("case");
   auto const json = calibrate("case");
   ASSERT_EQ(json["cameras"].size(), 2u);

@@ -119,9 +119,9 @@ TEST_F(DepthOfTheMedium, SensitivityIsThatOfTheVolume) {
   EXPECT_NEAR(sheet["sensitivity_px_per_kg_m4"], 3 * 0.006626657, 2e-9);
   EXPECT_NEAR(sheet["displacement_px"], slope * 3 * 0.006626657, 1e-3);
   // the design map of a report is of the same depth, although it reads no field
-  std::optional<BenchView> const view = bench_view(load("",
-                                                        "kind = \"file\"\nfile = \"volume.h5\"\nspacing_mm = [2.0, "
-                                                        "2.0, 5.0]"));
+  std::optional<LayoutView> const view = bench_view(load("",
+                                                         "kind = \"file\"\nfile = \"volume.h5\"\nspacing_mm = [2.0, "
+                                                         "2.0, 5.0]"));
   ASSERT_TRUE(view);
   EXPECT_NEAR(view->bench.sensitivity(), 3 * 0.006626657, 2e-9);
 }
