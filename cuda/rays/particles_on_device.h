@@ -98,8 +98,8 @@ class ParticleBatch {
   ParticleSteps steps() { return {steps_.data(), steps_.data() + count_, steps_.data() + 2 * count_, counts_.data()}; }
   /// Arrays step, next and chosen, one after the other.
   DeviceArray<int>& all_steps() { return steps_; }
-  /// Number of listed aims by ladder step; the last element counts the aims left to the host, or the particles that
-  /// need more rays.
+  /// Number of listed aims by ladder step; the last element counts the aims that the host computes, or the particles
+  /// that need more rays.
   DeviceArray<unsigned int>& counts() { return counts_; }
   /// Returns the memory for the lists of aims. @param steps  number of ladder steps
   std::uint32_t* listed(std::size_t steps) {

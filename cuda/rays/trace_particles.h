@@ -178,10 +178,11 @@ int widest_particle_window_px(ParticlesLaunch const& launch, DeviceMedium<double
 
 /// Progress of the particles of a batch, in device memory.
 struct ParticleSteps {
-  int* step;            ///< current ladder step of each particle
-  int* next;            ///< next ladder step; equal to `step`: the particle has enough rays
-  int* chosen;          ///< whether to list the particle: it has been aimed, or needs more rays
-  unsigned int* count;  ///< [step]: listed aims; last element: aims left to the host, or particles that need more rays
+  int* step;    ///< current ladder step of each particle
+  int* next;    ///< next ladder step; equal to `step`: the particle has enough rays
+  int* chosen;  ///< whether to list the particle: it has been aimed, or needs more rays
+  unsigned int*
+      count;  ///< [step]: listed aims; last element: aims that the host computes, or particles that need more rays
 };
 
 /// Aims at the stop for both pulses of `count` particles, and determines the first ladder step of each.
@@ -212,7 +213,7 @@ void trace_few_rays(ParticlesLaunch const& launch, DeviceMedium<double> const& m
                     ParticlesTraced const& traced);
 
 /// Computes the truth of the particles from the sums over their rays, and determines which of them need more rays.
-/// @param ambient  null: there is no medium
+/// @param ambient  null: no medium
 void see_particles(LadderView const& ladder, PulseAim const* aims, Vec2d const* origins, RaySums const* sums,
                    std::uint64_t count, ParticleSteps const& steps, DotTruth* truth, DotTruth* ambient);
 

@@ -40,7 +40,7 @@ class Hdf5Reader {
   /// those reached by soft and external links.
   std::vector<std::string> linked_number_datasets() const;
   /// Returns the datasets that hold no real numbers, with what they hold: "\"rho\" of complex numbers".
-  std::vector<std::string> other_datasets() const;
+  std::vector<std::string> describe_other_datasets() const;
   std::vector<std::size_t> shape(std::string const& dataset) const;
   /// Returns the number of significant bits of the stored numbers: 24 for float, 53 for double, the width of an
   /// integer.
@@ -66,7 +66,7 @@ class Hdf5Reader {
   std::string attribute_of(std::string const& dataset, std::string const& name) const;
   /// Returns a numeric attribute of a numeric dataset, one number or several; empty if it does not exist or is no
   /// number.
-  std::vector<double> numbers_of(std::string const& dataset, std::string const& name) const;
+  std::vector<double> number_attribute(std::string const& dataset, std::string const& name) const;
 
  private:
   std::string path_;

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "render/base/error.h"
+#include "render/base/text.h"
 #include "render/base/units.h"
 #include "render/optics/lens.h"
 #include "render/optics/prescription_readers/readers.h"
@@ -142,9 +143,7 @@ void break_before_image(Prescription& lens, std::vector<CoordinateBreak> breaks,
 }
 
 Prescription read_prescription(std::string const& path) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  std::string const extension = lower_case(std::filesystem::path(path).extension().string());
   std::string known;
   for (auto const& format : formats) {
     if (extension == format.extension) {
@@ -174,14 +173,6 @@ void assume_aperture(Prescription& lens, char const* commands) {
   lens.warnings.push_back(fmt::format("{}: the file sets no aperture ({}); the semi-diameter of the stop is used",
                                       aperture.where.empty() ? stop->where : aperture.where, commands));
   aperture = {};
-}
-
-void note_missing_wavelength(Prescription& lens, std::string const& where, char const* commands) {
-  if (lens.primary_wavelength != 0) return;
-  lens.warnings.push_back(
-      fmt::format("{}: the file gives no primary wavelength ({}); {:.7g} nm (the d line) is used unless another "
-                  "wavelength is chosen",
-                  where, commands, spectral_line::d / unit::nanometre));
 }
 
 std::vector<std::string> check_prescription(Prescription const& lens) {

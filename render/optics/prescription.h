@@ -129,11 +129,6 @@ void assume_stop(Prescription& lens);
 /// @pre one surface is the stop
 void assume_aperture(Prescription& lens, char const* commands);
 
-/// Adds a warning if the file gives no primary wavelength.
-/// @param where     location of the warning
-/// @param commands  commands of the file format that set the wavelength
-void note_missing_wavelength(Prescription& lens, std::string const& where, char const* commands);
-
 /// Reads a prescription from a .toml, Zemax .zmx or CODE V .seq file, and checks it with check_prescription(). To add a
 /// format, add a row in prescription.cpp.
 /// @throws SetupError or DataError with file and line

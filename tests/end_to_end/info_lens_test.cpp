@@ -82,7 +82,7 @@ TEST_F(InfoLens, NamesFileLineAndCauseOfABadPrescription) {
   write("lens.toml", with(singlet, "index = 1.5168", "glass = \"N-BK77\""));
   Outcome const outcome = gladstone({"info", "lens", "lens.toml"});
   EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_THAT(outcome.err, HasSubstr("lens.toml:5"));
+  EXPECT_THAT(outcome.err, HasSubstr("lens.toml:8:1: glass"));
   EXPECT_THAT(outcome.err, HasSubstr("did you mean \"SCHOTT:N-BK7\""));
 }
 

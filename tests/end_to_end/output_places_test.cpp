@@ -71,7 +71,7 @@ TEST_F(Places, ALiveRunOfAnotherContainerIsLeftAloneAndADeadOneClearedAway) {
   if (!read_byte()) {
     Outcome const outcome = inside.finish(hang_limit);
     ASSERT_EQ(outcome.exit_code, 126) << outcome.err;
-    GTEST_SKIP() << "no namespaces here";
+    GTEST_SKIP() << "a process namespace needs root's rights, which this user does not have";
   }
   auto const theirs = partials();
   ASSERT_EQ(theirs.size(), 1u);

@@ -551,9 +551,39 @@ TEST(LensFiles, TheDocumentedCodeVCommandsAreObeyed) {
       {"VUX", with("REF 2", "REF 2\nVUX 0.1 0"), warnings_with("VUX: vignetting factors"), 1},
       {"VUX 0", with("REF 2", "REF 2\nVUX 0 0"), warnings_with("VUX"), 0},
       {"DIM C", with("DIM M", "DIM C"), focal_length, 10 * f},
+      {"DIM I", with("DIM M", "DIM I"), focal_length, 25.4 * f},
   };
   for (Row const& row : rows)
     EXPECT_NEAR(row.measure(lens_of_text("row.seq", row.text)), row.expected, 1e-9) << row.commands;
+}
+
+// The same for Zemax' files.
+TEST(LensFiles, TheDocumentedZemaxCommandsAreObeyed) {
+  auto const with = [](std::string const& from, std::string const& to) { return changed(zmx, from, to); };
+  auto const focal_length = [](Lens const& lens) { return focal_length_mm(lens); };
+  double const f = traced_focal_length({0.02, -0.02}, {1, bk7(), 1}, {6});
+  std::string const aspheric = with("  STOP\n  TYPE STANDARD\n",
+                                    "  STOP\n  TYPE EVENASPH\n  CONI -0.5\n  PARM 1 0\n  PARM 2 1e-4\n  PARM 3 2e-6\n");
+  double const r = 4, conic_sag = 0.02 * r * r / (1 + std::sqrt(1 - 0.5 * 0.02 * 0.02 * r * r));
+  struct Row {
+    char const* commands;
+    std::string text;
+    std::function<double(Lens const&)> measure;
+    double expected;
+  };
+  std::vector<Row> const rows{
+      {"EVENASPH", aspheric, [r](Lens const& lens) { return sag_of_first_surface(lens, r); },
+       conic_sag + 1e-4 * std::pow(r, 4) + 2e-6 * std::pow(r, 6)},
+      {"UNIT IN", with("UNIT MM", "UNIT IN"), focal_length, 25.4 * f},
+      {"GLAS MIRROR", changed(with("DISZ 6.0", "DISZ -6.0"), "GLAS N-BK7 0 0 1.5 40", "GLAS MIRROR 0 0"),
+       [](Lens const& lens) { return std::abs(focal_length_mm(lens)); }, 25},
+      {"FLOA: the stop's semi-diameter", with("ENPD 6.0", "FLOA"),
+       [](Lens const& lens) { return paraxial_lens(lens).entrance.diameter / unit::millimetre; }, 16},
+      {"WAVL", changed(with("WAVM 1 0.48613270 1\n", ""), "WAVM 2 0.58756180 1", "WAVL 0.4861327 0.5875618"),
+       [](Lens const& lens) { return lens.prescription.primary_wavelength / unit::nanometre; }, 587.5618},
+  };
+  for (Row const& row : rows)
+    EXPECT_NEAR(row.measure(lens_of_text("row.zmx", row.text)), row.expected, 1e-9) << row.commands;
 }
 
 TEST(LensFiles, GratingsAndOtherSurfacesAreRefusedByName) {

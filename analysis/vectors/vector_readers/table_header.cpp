@@ -7,6 +7,7 @@
 #include <cctype>
 
 #include "analysis/vectors/vector_readers/text_rows.h"
+#include "render/base/text.h"
 
 namespace gladstone::detail {
 namespace {
@@ -69,35 +70,35 @@ ColumnName parse_column_name(std::string_view name) {
       bracket.clear();
       into = &bracket;
     } else if (c == ']' || c == ')') {
-      if (into == &bracket) parsed.unit = trimmed(bracket);
+      if (into == &bracket) parsed.unit = trim(bracket);
       into = &rest;
     } else {
       into->push_back(c);
     }
   }
-  std::string_view quantity = trimmed(rest);
+  std::string_view quantity = trim(rest);
   for (std::string_view const prefix : {"velocity ", "displacement "}) {
-    if (quantity.starts_with(prefix)) quantity = trimmed(quantity.substr(prefix.size()));
+    if (quantity.starts_with(prefix)) quantity = trim(quantity.substr(prefix.size()));
   }
   auto const end = quantity.find_last_of(" _");
   if (end != std::string_view::npos && is_unit(quantity.substr(end + 1))) {
     if (parsed.unit.empty()) parsed.unit = quantity.substr(end + 1);
-    quantity = trimmed(quantity.substr(0, end));
+    quantity = trim(quantity.substr(0, end));
   }
   parsed.quantity = quantity;
   return parsed;
 }
 
 std::vector<std::string> column_names(std::string_view line) {
-  line = trimmed(line);
-  while (!line.empty() && (line.front() == '#' || line.front() == '%')) line = trimmed(line.substr(1));
+  line = trim(line);
+  while (!line.empty() && (line.front() == '#' || line.front() == '%')) line = trim(line.substr(1));
   char const separator = separator_of(line);
   std::vector<std::string> names;
   if (separator == ' ' && line.find('[') != std::string_view::npos) {
     for (std::size_t at = 0; at < line.size();) {
       std::size_t const end = line.find(']', at);
       std::size_t const stop = end == std::string_view::npos ? line.size() : end + 1;
-      names.emplace_back(trimmed(line.substr(at, stop - at)));
+      names.emplace_back(trim(line.substr(at, stop - at)));
       at = std::min(line.find_first_not_of(blanks, stop), line.size());
     }
     return names;
@@ -137,7 +138,7 @@ bool is_block_packed(std::string const& header) {
 }
 
 std::optional<DavisHeader> parse_davis_header(std::string_view line) {
-  if (!lower_case(trimmed(line)).starts_with("#davis")) return std::nullopt;
+  if (!lower_case(trim(line)).starts_with("#davis")) return std::nullopt;
   std::vector<std::string_view> const words = quoted_words(line);
   auto const word = [&](std::size_t i) { return i < words.size() ? words[i] : std::string_view(); };
   DavisHeader header;

@@ -25,7 +25,7 @@ std::vector<std::string> column_names(std::string_view line);
 /// Parses the names of Tecplot's variables: the words after VARIABLES =, in quotation marks or separated by commas and
 /// blanks, up to the next record of the header.
 /// @param text  lines of the header, joined by blanks
-/// @return empty if there is no VARIABLES record
+/// @return empty if the text has no VARIABLES record
 std::vector<std::string> tecplot_variables(std::string const& text);
 
 /// Returns true if the values of a zone are stored variable by variable.

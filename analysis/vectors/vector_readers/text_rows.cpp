@@ -2,24 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <charconv>
 #include <limits>
 
+#include "render/base/text.h"
+
 namespace gladstone::detail {
-
-std::string_view trimmed(std::string_view text) {
-  auto const begin = text.find_first_not_of(blanks);
-  if (begin == std::string_view::npos) return {};
-  return text.substr(begin, text.find_last_not_of(blanks) - begin + 1);
-}
-
-std::string lower_case(std::string_view text) {
-  std::string lower(text);
-  std::transform(lower.begin(), lower.end(), lower.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return lower;
-}
 
 char separator_of(std::string_view line) {
   for (char const candidate : {';', '\t', ','}) {
@@ -43,7 +31,7 @@ std::vector<std::string_view> split(std::string_view line, char separator) {
     bool const quoted = text != std::string_view::npos && line[text] == '"';
     std::size_t const close = quoted ? line.find('"', text + 1) : std::string_view::npos;
     std::size_t const end = std::min(line.find(separator, close == std::string_view::npos ? at : close), line.size());
-    std::string_view field = trimmed(line.substr(at, end - at));
+    std::string_view field = trim(line.substr(at, end - at));
     if (field.size() >= 2 && field.front() == '"' && field.back() == '"') field = field.substr(1, field.size() - 2);
     fields.push_back(field);
     if (end == line.size()) return fields;

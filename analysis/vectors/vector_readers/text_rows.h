@@ -11,12 +11,6 @@ namespace gladstone::detail {
 /// Characters that separate words.
 inline constexpr std::string_view blanks = " \t\r";
 
-/// Returns the text without blanks at both ends.
-std::string_view trimmed(std::string_view text);
-
-/// Converts text to lower case.
-std::string lower_case(std::string_view text);
-
 /// Returns the separator of a line: the first of semicolon, tab and comma (possibly a decimal comma) that occurs in it,
 /// else a blank.
 char separator_of(std::string_view line);

@@ -6,6 +6,7 @@
 
 #include "analysis/vectors/vector_readers/text_rows.h"
 #include "render/base/error.h"
+#include "render/base/text.h"
 #include "render/base/text_file.h"
 
 namespace gladstone::detail {
@@ -99,7 +100,7 @@ TextTable read_text_table(std::string const& path) {
   while (auto const line = file.next()) {
     std::size_t const at = file.number();
     std::string_view text = *line;
-    text = trimmed(text);
+    text = trim(text);
     if (text.empty()) continue;
 
     // Skip the lines before the first row of numbers; the last of them is the header.

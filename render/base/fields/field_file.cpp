@@ -12,6 +12,7 @@
 #include "render/base/fields/readers/vtk.h"
 #include "render/base/fields/resampled_field.h"
 #include "render/base/input_file.h"
+#include "render/base/text.h"
 
 namespace gladstone {
 namespace {
@@ -34,9 +35,7 @@ constexpr std::array field_formats{
 std::unique_ptr<FieldSource> open_field(std::string const& path, std::string const& dataset, int values,
                                         std::string const& axes) {
   require_input_file(path, "a field file");
-  std::string extension = std::filesystem::path(path).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  std::string const extension = lower_case(std::filesystem::path(path).extension().string());
   std::string known;
   for (auto const& format : field_formats) {
     if (extension == format.extension) {

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <charconv>
 #include <cmath>
 
+#include "render/base/text.h"
 #include "render/base/units.h"
 
 namespace gladstone {
@@ -74,16 +74,10 @@ constexpr std::array unit_names{
     UnitName{"ppm", 1e-6, dimension_of_numbers},
 };
 
-std::string lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
-
 /// Finds a unit by its name in the singular or plural.
 std::optional<UnitName> find_unit(std::string const& written) {
   if (written == "Mg") return UnitName{"Mg", 1e3, mass};  // a milligram is "mg"
-  std::string word = lower(written);
+  std::string word = lower_case(written);
   for (bool const plural : {false, true}) {
     if (plural && word.size() > 3 && word.ends_with('s')) word.pop_back();
     auto const* const known =
@@ -178,17 +172,10 @@ std::string unknown_length(std::string const& of, std::string const& unit) {
 
 }  // namespace
 
-std::string trimmed(std::string_view text) {
-  constexpr std::string_view blanks(" \t\r\n\v\f\0", 7);
-  std::size_t const first = text.find_first_not_of(blanks);
-  if (first == std::string_view::npos) return {};
-  return std::string(text.substr(first, text.find_last_not_of(blanks) - first + 1));
-}
-
 bool states_unit(std::string_view text) {
   constexpr std::array<std::string_view, 8> absent{
       "", "1", "-", "none", "dimensionless", "unitless", "nondimensional", "n/a"};
-  std::string const word = lower(trimmed(text));
+  std::string const word = lower_case(trimmed(text));
   return std::find(absent.begin(), absent.end(), word) == absent.end();
 }
 

@@ -44,9 +44,6 @@ struct FieldUnits {
   ValueFactor value_factor(Dimension const& dimension) const;
 };
 
-/// Removes white space and NUL characters from both ends of a text (Fortran programs pad units with blanks).
-std::string trimmed(std::string_view text);
-
 /// Returns false for texts that name no unit: "", "1", "-", "none", "dimensionless" ...
 bool states_unit(std::string_view text);
 

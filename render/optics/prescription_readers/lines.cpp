@@ -9,6 +9,7 @@
 
 #include "render/base/error.h"
 #include "render/base/units.h"
+#include "render/optics/glass.h"
 
 namespace gladstone {
 
@@ -61,6 +62,22 @@ std::string describe_wavelength_fault(double value, double unit, std::string_vie
   }
   return fmt::format("is outside the range of wavelengths, {:.6g} to {:.6g} {}; {}", shortest, longest, unit_name,
                      remedy);
+}
+
+void set_primary_wavelength(Prescription& lens, ListedWavelength const* primary, double unit,
+                            std::string_view unit_name, std::string const& where, char const* commands) {
+  if (primary && primary->value != 0) {
+    std::string const fault = describe_wavelength_fault(primary->value, unit, unit_name);
+    if (!fault.empty()) {
+      throw DataError(primary->where, fmt::format("a wavelength of {:.6g} {} {}", primary->value, unit_name, fault));
+    }
+    lens.primary_wavelength = primary->value * unit;
+    return;
+  }
+  lens.warnings.push_back(
+      fmt::format("{}: the file gives no primary wavelength ({}); {:.7g} nm (the d line) is used unless another "
+                  "wavelength is chosen",
+                  primary ? primary->where : where, commands, spectral_line::d / unit::nanometre));
 }
 
 std::string in_capitals(std::string text) {

@@ -33,6 +33,23 @@ struct PrescriptionLine {
 /// @return           empty if the wavelength is in the range
 std::string describe_wavelength_fault(double value, double unit, std::string_view unit_name);
 
+/// Wavelength as a file lists it.
+struct ListedWavelength {
+  double value = 0;   ///< in the unit of the file
+  std::string where;  ///< file:line
+};
+
+/// Sets the primary wavelength of a prescription, or warns that the file gives none. Other wavelengths are not checked,
+/// since design programs also write unused ones.
+/// @param primary    null or a value of 0: the file gives none
+/// @param unit       unit of the value [m]
+/// @param unit_name  name of the unit in messages
+/// @param where      place for the warning if `primary` is null
+/// @param commands   commands that would give it, for the warning
+/// @throws DataError for a wavelength outside 100 nm to 20 um
+void set_primary_wavelength(Prescription& lens, ListedWavelength const* primary, double unit,
+                            std::string_view unit_name, std::string const& where, char const* commands);
+
 /// Converts a text to upper case (ASCII).
 std::string in_capitals(std::string text);
 

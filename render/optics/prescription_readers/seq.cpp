@@ -70,7 +70,8 @@ class SeqReader {
     result_.object_medium = resolved(object.after);
     take_surfaces();
     solve_paraxial_image();
-    take_wavelength();
+    set_primary_wavelength(result_, primary_wavelength(), unit::nanometre, "nm", surfaces_.front().surface.where,
+                           "WL, REF");
     assume_stop(result_);
     assume_aperture(result_, "EPD, FNO, NAO");
     if (!unknown_.empty()) {
@@ -93,21 +94,12 @@ class SeqReader {
                     "PRV: the private glasses that begin here have no END; put END behind the last of them");
   }
 
-  /// Sets the primary wavelength: that of REF, or the middle one without REF, as in CODE V.
-  void take_wavelength() {
-    std::string where = surfaces_.front().surface.where;
-    if (!wavelengths_.empty()) {
-      auto const count = static_cast<int>(wavelengths_.size());
-      int const at = reference_ >= 1 && reference_ <= count ? reference_ - 1 : count / 2;
-      ListedWavelength const& primary = wavelengths_[static_cast<std::size_t>(at)];
-      std::string const fault = describe_wavelength_fault(primary.nanometres, unit::nanometre, "nm");
-      if (primary.nanometres != 0 && !fault.empty()) {
-        throw DataError(primary.where, fmt::format("a wavelength of {:.6g} nm {}", primary.nanometres, fault));
-      }
-      result_.primary_wavelength = primary.nanometres * unit::nanometre;
-      where = primary.where;
-    }
-    note_missing_wavelength(result_, where, "WL, REF");
+  /// Returns the primary wavelength: that of REF, or the middle one without REF, as in CODE V; null if none is listed.
+  ListedWavelength const* primary_wavelength() const {
+    if (wavelengths_.empty()) return nullptr;
+    auto const count = static_cast<int>(wavelengths_.size());
+    int const at = reference_ >= 1 && reference_ <= count ? reference_ - 1 : count / 2;
+    return &wavelengths_[static_cast<std::size_t>(at)];
   }
 
   /// Applies PIM: the image is at the paraxial image plus the defocus of SI, whatever the last thickness is. Behind a
@@ -351,10 +343,6 @@ class SeqReader {
   std::vector<SeqSurface> surfaces_;  // the object is the first
   SeqSurface image_surface_;          // only its coordinate frame is used
   PrivateGlasses private_glasses_;
-  struct ListedWavelength {
-    double nanometres;
-    std::string where;
-  };
   std::vector<ListedWavelength> wavelengths_;
   std::vector<std::string> unknown_;  // unknown commands
   std::string unknown_where_;

@@ -67,7 +67,9 @@ class ZmxReader {
       throw DataError(object.where, "the object is a mirror (GLAS); name what is ahead of the lens");
     result_.object_distance = object.thickness;
     result_.object_medium = object.after;
-    take_wavelength();
+    bool const is_listed = primary_ >= 1 && primary_ <= static_cast<int>(wavelengths_.size());
+    set_primary_wavelength(result_, is_listed ? &wavelengths_[static_cast<std::size_t>(primary_ - 1)] : nullptr,
+                           unit::micrometre, "um", surfaces_.front().surface.where, "WAVM, PWAV");
     take_fields();
     take_surfaces();
     assume_stop(result_);
@@ -123,22 +125,6 @@ class ZmxReader {
     if (key == "PWAV") primary_ = line.integer(1);
     if (key == "GCAT") result_.catalogues.assign(line.words.begin() + 1, line.words.end());
     if (key == "ENPD" || key == "FNUM" || key == "OBNA" || key == "FLOA") result_.aperture.where = line.where;
-  }
-
-  /// Sets the primary wavelength; a value of 0 means that it is not given. Other wavelengths are not checked, since
-  /// design programs also write unused ones.
-  void take_wavelength() {
-    std::string where = surfaces_.front().surface.where;
-    if (primary_ >= 1 && primary_ <= static_cast<int>(wavelengths_.size())) {
-      ListedWavelength const& primary = wavelengths_[static_cast<std::size_t>(primary_ - 1)];
-      std::string const fault = describe_wavelength_fault(primary.micrometres, unit::micrometre, "um");
-      if (primary.micrometres != 0 && !fault.empty()) {
-        throw DataError(primary.where, fmt::format("a wavelength of {:.6g} um {}", primary.micrometres, fault));
-      }
-      result_.primary_wavelength = primary.micrometres * unit::micrometre;
-      where = primary.where;
-    }
-    note_missing_wavelength(result_, where, "WAVM, PWAV");
   }
 
   /// Converts the blocks between object and image to the surfaces of the lens.
@@ -215,10 +201,6 @@ class ZmxReader {
   Prescription result_;
   std::vector<ZmxSurface> surfaces_;
   ZmxNotes notes_;
-  struct ListedWavelength {
-    double micrometres;
-    std::string where;
-  };
   std::vector<ListedWavelength> wavelengths_;
   std::vector<double> fields_;
   double unit_ = 1e-3;

@@ -11,8 +11,10 @@
 #include <optional>
 
 #include "render/base/error.h"
+#include "render/base/fields/readers/packing.h"
 #include "render/base/hdf5_file.h"
 #include "render/base/nearest_name.h"
+#include "render/base/text.h"
 
 namespace gladstone {
 namespace {
@@ -100,7 +102,7 @@ std::string only_field(Hdf5Reader const& file, std::string const& path, int valu
   auto const& fields = volumes.empty() ? planes : volumes;
   if (fields.size() == 1) return fields.front();
   if (fields.empty()) {
-    for (auto const& other : file.other_datasets()) others += (others.empty() ? "" : ", ") + other;
+    for (auto const& other : file.describe_other_datasets()) others += (others.empty() ? "" : ", ") + other;
     throw DataError(path, fmt::format("has no {}; it has {}",
                                       values == 1 ? "scalar field, [nz, ny, nx], [nz, ny, nx, 1] or [ny, nx]"
                                                   : fmt::format("velocity, [nz, ny, nx, {}]", values),
@@ -116,40 +118,6 @@ struct Coordinates {
   std::string unit;
   std::optional<std::size_t> axis = {};  ///< axis of the array, counted from the fastest, if the dataset determines it
 };
-
-/// Packing of a dataset: CF Conventions 1.11, sections 2.5.1 (missing data) and 8.1 (packed data).
-struct Packing {
-  double scale_factor = 1, add_offset = 0;
-  std::vector<double> missing;  ///< stored values that mark missing data
-
-  bool scaled() const { return scale_factor != 1 || add_offset != 0; }
-  /// Converts stored values; missing ones become NaN.
-  void unpack(std::span<double> values) const {
-    for (double& value : values) {
-      value = is_missing(value) ? std::numeric_limits<double>::quiet_NaN() : value * scale_factor + add_offset;
-    }
-  }
-
- private:
-  /// Compares as float, since an attribute may have fewer digits than its data.
-  bool is_missing(double value) const {
-    return std::any_of(missing.begin(), missing.end(), [value](double mark) {
-      return value == mark || (static_cast<float>(value) == static_cast<float>(mark) && std::isfinite(mark));
-    });
-  }
-};
-
-Packing packing_of(Hdf5Reader const& file, std::string const& dataset) {
-  Packing packing;
-  auto const scale = file.numbers_of(dataset, "scale_factor"), offset = file.numbers_of(dataset, "add_offset");
-  if (scale.size() == 1) packing.scale_factor = scale.front();
-  if (offset.size() == 1) packing.add_offset = offset.front();
-  for (char const* const name : {"_FillValue", "missing_value"}) {
-    auto const marks = file.numbers_of(dataset, name);
-    packing.missing.insert(packing.missing.end(), marks.begin(), marks.end());
-  }
-  return packing;
-}
 
 class Hdf5Source final : public CheckedSource {
  public:
@@ -167,7 +135,7 @@ class Hdf5Source final : public CheckedSource {
       nodes[i] = static_cast<int>(size);
     }
     units_.values = trimmed(file_.attribute_of(name_, "units"));
-    packing_ = packing_of(file_, name_);
+    packing_ = read_packing(file_, name_);
     if (values_ == 1 && rank() == 3 && may_be_components(length(0)) && length(1) > 3 && length(2) > 3) {
       notes_.push_back(
           fmt::format("the last axis of \"{}\" of shape {} may be the components of a vector; it is taken as "
@@ -323,7 +291,7 @@ class Hdf5Source final : public CheckedSource {
       if (shape.empty() || length_alone || (wide > 1 && !is_mesh(shape))) return std::nullopt;
       found.places = file_.read(dataset);
       if (found.places.empty()) return std::nullopt;
-      packing_of(file_, dataset).unpack(found.places);
+      read_packing(file_, dataset).unpack(found.places);
       if (unit.empty()) found.unit = trimmed(file_.attribute_of(dataset, "units"));
       if (wide <= 1) return found;
     } catch (MemoryError const&) {

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "render/base/error.h"
+#include "render/base/text.h"
 #include "render/base/text_file.h"
 
 namespace gladstone {
@@ -44,12 +45,6 @@ std::vector<TypeName> const& type_names() {
   return names;
 }
 
-std::string lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
-
 template <class Number>
 std::optional<Number> parsed(std::string const& word) {
   Number value{};
@@ -76,7 +71,7 @@ class Fields {
       if (colon == std::string::npos) {
         throw DataError(path_, "header line \"" + excerpt(line) + "\" is no NRRD field");
       }
-      std::string const key = canonical(trimmed(lower(line.substr(0, colon))));
+      std::string const key = canonical(trimmed(lower_case(line.substr(0, colon))));
       std::string const value = trimmed(line.substr(colon + 1));
       auto const [given, first] = values_.try_emplace(key, value);
       if (first) {
@@ -143,7 +138,7 @@ class Fields {
         ++at;
         continue;
       }
-      if (lower(text.substr(at, 4)) == "none") {
+      if (lower_case(text.substr(at, 4)) == "none") {
         result.emplace_back();
         at += 4;
         continue;
@@ -187,7 +182,7 @@ class Fields {
 };
 
 void read_type(Fields const& fields, NrrdHeader& header) {
-  std::string const name = lower(fields.required("type"));
+  std::string const name = lower_case(fields.required("type"));
   auto const& all = type_names();
   auto const found = std::find_if(all.begin(), all.end(), [&](TypeName const& type) {
     return std::find(type.names.begin(), type.names.end(), name) != type.names.end();
@@ -198,7 +193,7 @@ void read_type(Fields const& fields, NrrdHeader& header) {
 
 void read_encoding(Fields const& fields, NrrdHeader& header) {
   using Encoding = NrrdHeader::Encoding;
-  std::string const name = lower(fields.required("encoding"));
+  std::string const name = lower_case(fields.required("encoding"));
   static std::map<std::string, Encoding> const known{
       {"raw", Encoding::raw},     {"gzip", Encoding::gzip}, {"gz", Encoding::gzip},
       {"bzip2", Encoding::bzip2}, {"bz2", Encoding::bzip2}, {"ascii", Encoding::ascii},
@@ -208,7 +203,7 @@ void read_encoding(Fields const& fields, NrrdHeader& header) {
     fields.refuse("encoding", "is not read here; write the field in encoding raw, gzip, bzip2, ascii or hex");
   }
   header.encoding = found->second;
-  std::string const endian = lower(fields.text("endian"));
+  std::string const endian = lower_case(fields.text("endian"));
   bool const matters = header.value_bytes() > 1 && header.encoding != Encoding::ascii;
   if (matters && endian != "little" && endian != "big") fields.refuse("endian", "must be little or big");
   header.big_endian = endian == "big";
@@ -296,7 +291,7 @@ class Axes {
     auto const labels = quoted_words(fields_, "labels");
     std::string names;  // fastest first
     for (std::size_t const axis : kept_) {
-      std::string const label = axis < labels.size() ? lower(labels[axis]) : "";
+      std::string const label = axis < labels.size() ? lower_case(labels[axis]) : "";
       if (label.size() == 1) names += label;
     }
     if (names.size() != kept_.size() || !is_axis_order(names)) return;
@@ -347,7 +342,7 @@ class Axes {
 
   enum class Centre { node, cell, unknown };
   Centre centre_of(std::size_t axis) const {
-    std::istringstream words(lower(fields_.text(fields_.has("centers") ? "centers" : "centerings")));
+    std::istringstream words(lower_case(fields_.text(fields_.has("centers") ? "centers" : "centerings")));
     std::string word;
     for (std::size_t i = 0; i <= axis; ++i) {
       if (!(words >> word)) return Centre::unknown;
@@ -359,7 +354,7 @@ class Axes {
   void place_by_directions() {
     std::string const key = "space directions";
     auto const units = quoted_words(fields_, "space units");
-    auto const origins = fields_.has("space origin") && lower(fields_.text("space origin")) != "none"
+    auto const origins = fields_.has("space origin") && lower_case(fields_.text("space origin")) != "none"
                              ? fields_.vectors("space origin")
                              : std::vector<std::vector<double>>{};
     if (origins.size() > 1) fields_.refuse("space origin", "must be one vector");

@@ -13,16 +13,11 @@
 #include "render/base/input_file.h"
 #include "render/base/interrupt.h"
 #include "render/base/nearest_name.h"
+#include "render/base/text.h"
 #include "render/base/text_file.h"
 
 namespace gladstone {
 namespace {
-
-std::string lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
 
 /// Sequential reader of words, lines and bytes of a file.
 class Cursor {
@@ -108,7 +103,7 @@ class LegacyReader {
       : file_(std::make_shared<InputFile>(path, "a field file")), cursor_(*file_), wish_(wish) {
     if (!cursor_.line().starts_with("# vtk DataFile")) refuse("is no legacy VTK file (it does not begin with # vtk)");
     cursor_.line();  // title
-    std::string const encoding = lower(cursor_.word());
+    std::string const encoding = lower_case(cursor_.word());
     if (encoding != "ascii" && encoding != "binary") refuse("is said to be neither ASCII nor BINARY; copy it again");
     text_ = encoding == "ascii";
     read_grid();
@@ -155,17 +150,16 @@ class LegacyReader {
   }
 
   VtkNumber number_type(std::string const& name) const {
-    std::string const type = lower(name);
-    auto const* const found = std::find_if(vtk_numbers.begin(), vtk_numbers.end(), [&type](VtkNumber const& one) {
-      return lower(std::string(one.legacy)) == type;
-    });
+    std::string const type = lower_case(name);
+    auto const* const found = std::find_if(vtk_numbers.begin(), vtk_numbers.end(),
+                                           [&type](VtkNumber const& one) { return lower_case(one.legacy) == type; });
     if (found == vtk_numbers.end()) refuse(fmt::format("has data of type \"{}\", which is no number", excerpt(name)));
     return *found;
   }
 
   void read_grid() {
-    if (lower(cursor_.word()) != "dataset") refuse("has no line DATASET; copy it again");
-    std::string const kind = lower(cursor_.word());
+    if (lower_case(cursor_.word()) != "dataset") refuse("has no line DATASET; copy it again");
+    std::string const kind = lower_case(cursor_.word());
     bool const image = kind == "structured_points";
     if (!image && kind != "rectilinear_grid") {
       refuse(
@@ -173,7 +167,7 @@ class LegacyReader {
                       "RECTILINEAR_GRID); resample it to an image",
                       excerpt(kind)));
     }
-    for (std::string key = lower(cursor_.word());; key = lower(cursor_.word())) {
+    for (std::string key = lower_case(cursor_.word());; key = lower_case(cursor_.word())) {
       if (key == "dimensions") {
         for (std::size_t i = 0; i < 3; ++i) {
           int const points = number<int>("DIMENSIONS");
@@ -224,7 +218,7 @@ class LegacyReader {
   /// Reads the attributes of points and cells in sequence.
   void read_arrays() {
     std::optional<VtkPlace> place;
-    for (std::string key = next_key_; !key.empty(); key = lower(cursor_.word())) {
+    for (std::string key = next_key_; !key.empty(); key = lower_case(cursor_.word())) {
       if (key == "point_data" || key == "cell_data") {
         place = key == "point_data" ? VtkPlace::points : VtkPlace::cells;
         std::uint64_t const there = number<std::uint64_t>(key);
@@ -270,7 +264,7 @@ class LegacyReader {
       }
       std::string next(12, ' ');
       next.resize(file_->read(cursor_.place(), next.data(), next.size()));
-      if (lower(next) == "lookup_table") {
+      if (lower_case(next) == "lookup_table") {
         cursor_.word();
         cursor_.word();
       } else {
@@ -304,7 +298,7 @@ class LegacyReader {
       LegacyArray array;
       array.place = place;
       std::string const name = cursor_.word();
-      if (lower(name) == "metadata") {
+      if (lower_case(name) == "metadata") {
         skip_metadata();
         --i;
         continue;

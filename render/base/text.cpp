@@ -1,0 +1,22 @@
+#include "render/base/text.h"
+
+#include <algorithm>
+#include <cctype>
+
+namespace gladstone {
+
+std::string_view trim(std::string_view text) {
+  constexpr std::string_view blanks(" \t\r\n\v\f\0", 7);
+  std::size_t const first = text.find_first_not_of(blanks);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(blanks) - first + 1);
+}
+
+std::string lower_case(std::string_view text) {
+  std::string lower(text);
+  std::transform(lower.begin(), lower.end(), lower.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return lower;
+}
+
+}  // namespace gladstone
