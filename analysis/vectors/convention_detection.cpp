@@ -133,7 +133,7 @@ DetectedConventions detect_conventions(VectorFile const& file, Truth const& trut
   bool const is_own = std::find(own.begin(), own.end(), result.best.conventions) != own.end();
   if (reads && !is_own && result.best.rms_px < clearly * chosen.rms_px && evidence_for(result.best, chosen) > 16.0) {
     result.mistake = {difference_of(result.best.conventions, chosen.conventions), describe(result.best.conventions),
-                      result.best.rms_px, chosen.rms_px};
+                      result.best.rms_px, chosen.rms_px, result.best.conventions};
     for (ConventionFit const& other : result.tried) {  // other mistakes that are indistinguishable in this displacement
       if (same_axes(other.conventions, result.best.conventions) || !fits_as_well(other, result.best)) continue;
       if (detail::unlikelihood(other.conventions, own) > detail::unlikelihood(result.best.conventions, own) + 0.5)

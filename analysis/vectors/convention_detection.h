@@ -23,12 +23,24 @@ struct ConventionFit {
   std::size_t components = 0;  ///< number of compared vector components
 };
 
+/// Correction of a file's vectors, applied before its conventions, along the axes of the file.
+struct VectorCorrection {
+  Vec2d factor{1.0, 1.0};     ///< displacements are divided by it
+  Vec2d offset_px{};          ///< is subtracted from the displacements
+  double place_factor = 1.0;  ///< positions are divided by it
+  Vec2d shift_px{};           ///< is added to the positions
+
+  friend bool operator==(VectorCorrection const&, VectorCorrection const&) = default;
+};
+
 /// Probable error in foreign vectors: an interpretation other than the format's own fits the truth clearly better.
 struct LikelyMistake {
-  std::string text;          ///< "v points up", "displacements are 10 times the truth"; empty: no mistake found
-  std::string conventions;   ///< words for --conventions that correct the mistake; empty: no words can
-  double rms_px = 0.0;       ///< rms difference from the truth after correction
-  double rms_as_read = 0.0;  ///< rms difference from the truth without correction
+  std::string text;               ///< "v points up", "displacements are 10 times the truth"; empty: no mistake found
+  std::string conventions;        ///< words for --conventions that correct the mistake; empty: no words can
+  double rms_px = 0.0;            ///< rms difference from the truth after correction
+  double rms_as_read = 0.0;       ///< rms difference from the truth without correction
+  VectorConventions reading{};    ///< interpretation without the mistake
+  VectorCorrection correction{};  ///< numbers without the mistake
 
   bool found() const { return !text.empty(); }
   /// Returns the text, both rms differences and the remedy, as a warning.
@@ -72,11 +84,12 @@ ConventionFit fit_conventions(DisplacementField const& field, VectorConventions 
 /// - Of the format's own interpretations (VectorFile::also), the first is used unless another fits significantly
 ///   better.
 /// - Alternatives are all combinations of y axis, v sign and frame order, with each offset (0, -0.5, -1, -1.5 px) or
-///   with exchanged columns, then a factor of the displacements, a shift and a factor of the positions.
-/// - An alternative is a probable mistake if it fits significantly better and reduces the rms by 10 % (an offset 5 %,
-///   factor and shift 30 %).
-/// - A factor of the displacements is considered above 1.1, or below 0.9 times the slope of the truth averaged over
-///   windows of 64 px.
+///   with exchanged columns, then a factor and an offset of the displacements, and a shift and a factor of the
+///   positions.
+/// - An alternative is a probable mistake if it fits significantly better and reduces the rms by 10 % (an offset of the
+///   positions by 5 %; factors, shift, and offset of the displacements by 50 %).
+/// - A factor of the displacements is considered above 1.05, or below 0.9 times the slope of the truth averaged over
+///   windows of 64 px; an offset of the displacements above 0.2 px.
 /// @pre the vectors are in px and screened (convert_to_pixels, screen_vectors)
 DetectedConventions detect_conventions(VectorFile const& file, std::function<Vec2d(Vec2d)> const& truth,
                                        int image_rows);

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <limits>
 
+#include "render/base/not_a_number.h"
+
 namespace gladstone {
 namespace detail {
-
-bool finite(Vec2d v) { return std::isfinite(v.x) && std::isfinite(v.y); }
 
 bool same_axes(VectorConventions const& a, VectorConventions const& b) {
   return a.y_up == b.y_up && a.v_up == b.v_up && a.swapped == b.swapped && a.exchange == b.exchange;
@@ -16,7 +16,7 @@ bool same_axes(VectorConventions const& a, VectorConventions const& b) {
 DisplacementField sample(DisplacementField const& field, std::size_t most) {
   std::vector<std::size_t> usable;
   for (std::size_t i = 0; i < field.size(); ++i) {
-    if (field.counts(i) && finite(field.displacement_px[i])) usable.push_back(i);
+    if (field.counts(i) && is_finite(field.displacement_px[i])) usable.push_back(i);
   }
   std::size_t const stride = std::max<std::size_t>(1, (usable.size() + most - 1) / most);
   DisplacementField few;
@@ -46,7 +46,7 @@ ConventionFit fit_within(DisplacementField const& field, VectorConventions const
     if (!ours.counts(i)) continue;
     Vec2d const t = truth(ours.position_px[i]);
     count += 2;
-    if (!finite(t)) {
+    if (!is_finite(t)) {
       differences += 2 * most * most;
       continue;
     }
@@ -58,8 +58,7 @@ ConventionFit fit_within(DisplacementField const& field, VectorConventions const
       product += (t.*component + e) * t.*component;
     }
   }
-  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-  ConventionFit fit{conventions, nan, nan, nan, nan};
+  ConventionFit fit{conventions, not_a_number, not_a_number, not_a_number, not_a_number};
   fit.components = count;
   if (count > 0) fit.rms_px = std::sqrt(differences / static_cast<double>(count));
   if (known > 0) fit.signal_px = std::sqrt(signal / static_cast<double>(known));

@@ -11,8 +11,6 @@ namespace gladstone::detail {
 /// Displacement at a position in our conventions [px]; NaN outside of the field of view.
 using Truth = std::function<Vec2d(Vec2d)>;
 
-bool finite(Vec2d v);
-
 /// Compares axes and signs. The mirror (grid or image) and the offset affect only the position.
 bool same_axes(VectorConventions const& a, VectorConventions const& b);
 

@@ -11,13 +11,6 @@
 namespace gladstone::detail {
 namespace {
 
-/// Divides displacements by a factor and shifts positions.
-DisplacementField changed(DisplacementField field, Vec2d factor, Vec2d shift) {
-  for (Vec2d& d : field.displacement_px) d = {d.x / factor.x, d.y / factor.y};
-  for (Vec2d& p : field.position_px) p += shift;
-  return field;
-}
-
 /// Returns the factor between a component and its truth by least absolute deviations: the median of their ratios,
 /// weighted by |truth|. It is robust to up to half of the vectors being wrong.
 double median_factor(DisplacementField const& ours, Truth const& truth, double Vec2d::*component) {
@@ -64,13 +57,13 @@ Vec2d share_in_windows(DisplacementField const& ours, Truth const& truth) {
     for (int dy = -half + step / 2; dy < half; dy += step) {
       for (int dx = -half + step / 2; dx < half; dx += step) {
         Vec2d const t = truth(ours.position_px[i] + Vec2d{static_cast<double>(dx), static_cast<double>(dy)});
-        if (!finite(t)) continue;
+        if (!is_finite(t)) continue;
         mean += t;
         ++count;
       }
     }
     Vec2d const t = truth(ours.position_px[i]);
-    if (count == 0 || !finite(t)) continue;
+    if (count == 0 || !is_finite(t)) continue;
     product += Vec2d{mean.x * t.x, mean.y * t.y} / static_cast<double>(count);
     square += Vec2d{t.x * t.x, t.y * t.y};
   }
@@ -88,7 +81,7 @@ LikelyMistake find_factor(Search const& search) {
     if (!(component_signal(ours, search.truth, component) > std::max(telling_signal_px, 0.2 * search.own.signal_px)))
       continue;  // this component is too small to determine a factor
     double const found = median_factor(ours, search.truth, component);
-    if (found > 0.0 && (found > 1.1 || found < std::max(least_followed, 0.9 * (share.*component))))
+    if (found > 0.0 && (found > 1.05 || found < std::max(least_followed, 0.9 * (share.*component))))
       factor.*component = found;
   }
   if (factor == Vec2d{1.0, 1.0}) return {};
@@ -96,15 +89,54 @@ LikelyMistake find_factor(Search const& search) {
   bool const both = std::abs(factor.x - factor.y) < 0.1 * std::max(factor.x, factor.y);
   if (both) factor.x = factor.y = 0.5 * (factor.x + factor.y);
   // Apply the factors to the columns of the file, which may be exchanged.
-  Vec2d const of_columns = search.own.conventions.exchanges_components() ? Vec2d{factor.y, factor.x} : factor;
-  ConventionFit const mended = search.fit(changed(search.few, of_columns, {}));
+  VectorCorrection correction;
+  correction.factor = search.own.conventions.exchanges_components() ? Vec2d{factor.y, factor.x} : factor;
+  ConventionFit const mended = search.fit(search.few, correction);
   if (!search.is_mended(mended)) return {};
   std::string const text =
       both ? fmt::format("displacements are {:.3g} times the truth, as in another unit than px", factor.x)
            : fmt::format("u is {:.3g} times and v {:.3g} times the truth", factor.x, factor.y);
   VectorConventions scaled = search.own.conventions;
   scaled.px_per_frame = std::stod(fmt::format("{:.3g}", scaled.px_per_frame.value_or(1.0) * factor.x));
-  return {text, both ? describe(scaled) : std::string(), mended.rms_px, search.own.rms_px};
+  return {text,      both ? describe(scaled) : std::string(), mended.rms_px, search.own.rms_px, search.own.conventions,
+          correction};
+}
+
+/// Searches for a constant that all displacements have in addition.
+LikelyMistake find_offset(Search const& search) {
+  DisplacementField const ours = apply_conventions(search.few, search.own.conventions, search.image_rows);
+  Vec2d offset{};
+  for (auto const component : {&Vec2d::x, &Vec2d::y}) {
+    std::vector<double> differences;
+    for (std::size_t i = 0; i < ours.size(); ++i) {
+      double const t = ours.counts(i) ? search.truth(ours.position_px[i]).*component : std::nan("");
+      if (std::isfinite(t)) differences.push_back(ours.displacement_px[i].*component - t);
+    }
+    if (differences.empty()) return {};
+    auto const middle = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 2);
+    std::nth_element(differences.begin(), middle, differences.end());
+    offset.*component = *middle;
+  }
+  constexpr double least = 0.2;  // greater than the bias by peak locking [px]
+  if (!(std::max(std::abs(offset.x), std::abs(offset.y)) > least)) return {};
+  auto const rounded = [](double value) { return 0.0 + std::round(1000.0 * value) / 1000.0; };
+  std::string const text =
+      fmt::format("displacements are ({:.4g}, {:.4g}) px greater than the truth", rounded(offset.x), rounded(offset.y));
+  // Apply the offset to the columns of the file, whose signs and order may differ.
+  VectorConventions const& c = search.own.conventions;
+  if (c.swapped) offset = -offset;
+  if (c.v_up) offset.y = -offset.y;
+  VectorCorrection correction;
+  correction.offset_px = c.exchanges_components() ? Vec2d{offset.y, offset.x} : offset;
+  ConventionFit const mended = search.fit(search.few, correction);
+  if (!search.is_mended(mended)) return {};
+  return {text, {}, mended.rms_px, search.own.rms_px, c, correction};
+}
+
+VectorCorrection shift_by(Vec2d shift_px) {
+  VectorCorrection correction;
+  correction.shift_px = shift_px;
+  return correction;
 }
 
 /// Shift of the positions, and its uncertainty.
@@ -119,7 +151,7 @@ FittedShift refine_shift(Search const& search, FittedShift fitted) {
   constexpr double h = 0.5, farthest = 1.0;  // step of the differences, and distance from the first estimate [px]
   double components = 1.0;
   auto const mean_square = [&](double dx, double dy) {
-    ConventionFit const fit = search.fit(changed(search.few, {1.0, 1.0}, fitted.shift_px + Vec2d{dx, dy}));
+    ConventionFit const fit = search.fit(search.few, shift_by(fitted.shift_px + Vec2d{dx, dy}));
     components = static_cast<double>(std::max<std::size_t>(1, fit.components));
     return fit.rms_px * fit.rms_px;
   };
@@ -146,7 +178,7 @@ FittedShift refine_shift(Search const& search, FittedShift fitted) {
 LikelyMistake find_shift(Search const& search) {
   constexpr double farthest = 64.0;
   DisplacementField const fewer = sample(search.few, 400);
-  auto const fit = [&](Vec2d shift) { return search.fit(changed(fewer, {1.0, 1.0}, shift)).rms_px; };
+  auto const fit = [&](Vec2d shift) { return search.fit(fewer, shift_by(shift)).rms_px; };
   Vec2d best{};
   double least = fit(best);
   auto const look_around = [&](Vec2d middle, double reach, double step) {
@@ -165,7 +197,7 @@ LikelyMistake find_shift(Search const& search) {
   constexpr double counting = 2.0;  // conventions of pixel counting differ by less
   if (!(std::max(std::abs(best.x), std::abs(best.y)) > counting)) return {};
   FittedShift const fitted = refine_shift(search, {best, finest});
-  ConventionFit const mended = search.fit(changed(search.few, {1.0, 1.0}, fitted.shift_px));
+  ConventionFit const mended = search.fit(search.few, shift_by(fitted.shift_px));
   if (!search.is_mended(mended)) return {};
   double const digit = fitted.uncertainty_px < 0.1 ? 0.01 : 0.1;  // last digit of the result [px]
   auto const rounded = [&](double value) { return 0.0 - digit * std::round(value / digit); };
@@ -173,20 +205,23 @@ LikelyMistake find_shift(Search const& search) {
                       rounded(fitted.shift_px.y), std::max(digit, fitted.uncertainty_px)),
           {},
           mended.rms_px,
-          search.own.rms_px};
+          search.own.rms_px,
+          search.own.conventions,
+          shift_by(fitted.shift_px)};
 }
 
 /// Searches for positions that are a multiple of the true ones.
 LikelyMistake find_place_factor(Search const& search) {
-  auto const scaled = [](DisplacementField field, double factor) {
-    for (Vec2d& p : field.position_px) p = p / factor;
-    return field;
+  auto const scaled = [](double factor) {
+    VectorCorrection correction;
+    correction.place_factor = factor;
+    return correction;
   };
   DisplacementField const fewer = sample(search.few, 400);
   double best = 1.0, least = std::numeric_limits<double>::infinity();
   auto const look_around = [&](double middle, double reach, double step) {
     for (double e = -reach; e <= reach; e += step) {
-      double const factor = middle * std::exp(e), rms = search.fit(scaled(fewer, factor)).rms_px;
+      double const factor = middle * std::exp(e), rms = search.fit(fewer, scaled(factor)).rms_px;
       if (!(rms < least)) continue;
       least = rms;
       best = factor;
@@ -195,26 +230,43 @@ LikelyMistake find_place_factor(Search const& search) {
   look_around(1.0, 1.4, 0.01);  // from a quarter to four times
   look_around(best, 0.01, 0.001);
   if (std::abs(best - 1.0) < 0.01) return {};
-  ConventionFit const mended = search.fit(scaled(search.few, best));
+  ConventionFit const mended = search.fit(search.few, scaled(best));
   if (!search.is_mended(mended)) return {};
   VectorConventions words = search.own.conventions;
   words.px = std::stod(fmt::format("{:.3g}", words.px.value_or(1.0) * best));
-  return {fmt::format("places are {:.3g} times the true ones, as in another unit than px", best), describe(words),
-          mended.rms_px, search.own.rms_px};
+  return {fmt::format("places are {:.3g} times the true ones, as in another unit than px", best),
+          describe(words),
+          mended.rms_px,
+          search.own.rms_px,
+          search.own.conventions,
+          scaled(best)};
 }
 
 }  // namespace
 
+DisplacementField corrected(DisplacementField field, VectorCorrection const& correction) {
+  for (Vec2d& d : field.displacement_px) {
+    d -= correction.offset_px;
+    d = {d.x / correction.factor.x, d.y / correction.factor.y};
+  }
+  for (Vec2d& p : field.position_px) p = p / correction.place_factor + correction.shift_px;
+  return field;
+}
+
 LikelyMistake find_scale_or_shift(Search search, std::vector<ConventionFit> const& fits,
                                   std::vector<VectorConventions> const& own, bool any_reading) {
-  if (LikelyMistake found = find_factor(search); found.found()) return found;
+  LikelyMistake best;
+  auto const consider = [&best](LikelyMistake found) {
+    if (found.found() && (!best.found() || found.rms_px < 0.9 * best.rms_px)) best = std::move(found);
+  };
+  consider(find_factor(search));
+  consider(find_offset(search));
   // A shift of a few pixels changes a smooth field by more than this fraction of the signal.
   if (search.own.rms_px > 0.03 * search.own.signal_px) {
-    if (LikelyMistake found = find_shift(search); found.found()) return found;
-    if (LikelyMistake found = find_place_factor(search); found.found()) return found;
+    consider(find_shift(search));
+    if (!best.found()) consider(find_place_factor(search));
   }
-  if (!any_reading) return {};
-  LikelyMistake best;
+  if (best.found() || !any_reading) return best;
   double const as_read = search.own.rms_px;
   VectorConventions const first = search.own.conventions;
   double least_unlikely = std::numeric_limits<double>::infinity();
@@ -225,7 +277,9 @@ LikelyMistake find_scale_or_shift(Search search, std::vector<ConventionFit> cons
     double const unlikely = unlikelihood(fit.conventions, own);
     if (!found.found() || !(unlikely < least_unlikely)) continue;
     least_unlikely = unlikely;
-    best = {difference_of(fit.conventions, first) + " and " + found.text, found.conventions, found.rms_px, as_read};
+    found.text = difference_of(fit.conventions, first) + " and " + found.text;
+    found.rms_as_read = as_read;
+    best = std::move(found);
   }
   return best;
 }

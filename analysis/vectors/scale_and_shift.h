@@ -6,7 +6,10 @@
 
 namespace gladstone::detail {
 
-/// Common input of the searches for a factor and a shift.
+/// Applies a correction to the vectors of a file.
+DisplacementField corrected(DisplacementField field, VectorCorrection const& correction);
+
+/// Common input of the searches for a correction.
 struct Search {
   DisplacementField const& few;  ///< sample of the file's vectors
   Truth const& truth;
@@ -14,18 +17,20 @@ struct Search {
   double most;  ///< upper limit of a difference, see fit_within()
   ConventionFit own;
 
-  ConventionFit fit(DisplacementField const& field) const {
-    return fit_within(field, own.conventions, truth, image_rows, most);
+  /// Returns the fit of `field`, a part of `few`, after a correction.
+  ConventionFit fit(DisplacementField const& field, VectorCorrection const& correction) const {
+    return fit_within(corrected(field, correction), own.conventions, truth, image_rows, most);
   }
-  /// Returns true if a correction reduces the rms by 30 % and the improvement is significant at five standard
-  /// deviations.
+  /// Returns true if a correction halves the rms and the improvement is significant at five standard deviations.
+  /// Vectors with random factors are on average too long, but no common factor halves their error.
   bool is_mended(ConventionFit const& other) const {
-    return other.rms_px < 0.7 * own.rms_px && other.rms_px < 0.7 * other.signal_px && evidence_for(other, own) > 25.0;
+    return other.rms_px < 0.5 * own.rms_px && other.rms_px < 0.7 * other.signal_px && evidence_for(other, own) > 25.0;
   }
 };
 
-/// Searches for a factor or shift with the conventions in use. If `any_reading`, also searches for a factor with all
-/// other conventions.
+/// Searches for a factor or offset of the displacements and a shift or factor of the positions with the conventions in
+/// use, and returns the one that fits best. If `any_reading` and none fits, also searches for a factor with all other
+/// conventions.
 LikelyMistake find_scale_or_shift(Search search, std::vector<ConventionFit> const& fits,
                                   std::vector<VectorConventions> const& own, bool any_reading);
 

@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "analysis/vectors/vector_readers/vector_readers.h"
+#include "render/base/not_a_number.h"
 #include "render/base/output_file.h"
 
 namespace gladstone {
@@ -112,13 +113,16 @@ VectorFile read_vectors(std::string const& path) {
 
 void write_vectors(std::string const& path, DisplacementField const& field, FileOrigin const& origin) {
   std::size_t const count = field.size();
-  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-  auto const sigma = [&](std::size_t i) { return field.sigma_px.empty() ? Vec2d{nan, nan} : field.sigma_px[i]; };
-  auto const ratio = [&](std::size_t i) { return field.peak_ratio.empty() ? nan : field.peak_ratio[i]; };
+  auto const sigma = [&](std::size_t i) {
+    return field.sigma_px.empty() ? Vec2d{not_a_number, not_a_number} : field.sigma_px[i];
+  };
+  auto const ratio = [&](std::size_t i) { return field.peak_ratio.empty() ? not_a_number : field.peak_ratio[i]; };
   auto const status = [&](std::size_t i) { return field.status.empty() ? 0 : static_cast<int>(field.status[i]); };
   // Vectors without raw displacements are their own raw displacements, with reason 0 (as measured).
   auto const raw = [&](std::size_t i) { return field.raw_px.empty() ? field.displacement_px[i] : field.raw_px[i]; };
-  auto const correlation = [&](std::size_t i) { return field.correlation.empty() ? nan : field.correlation[i]; };
+  auto const correlation = [&](std::size_t i) {
+    return field.correlation.empty() ? not_a_number : field.correlation[i];
+  };
   auto const reason = [&](std::size_t i) { return field.reason.empty() ? 0 : static_cast<int>(field.reason[i]); };
   auto const failed = [&](std::size_t i) { return field.failed.empty() ? 0 : static_cast<int>(field.failed[i]); };
   auto const ambiguous = [&](std::size_t i) {

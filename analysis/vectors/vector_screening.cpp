@@ -13,8 +13,6 @@
 namespace gladstone {
 namespace {
 
-bool finite(Vec2d v) { return std::isfinite(v.x) && std::isfinite(v.y); }
-
 bool inside(double coordinate, int size) {
   return coordinate >= -outside_margin_px && coordinate <= size - 1 + outside_margin_px;
 }
@@ -83,7 +81,7 @@ LeftOutVectors screen_vectors(DisplacementField& field, double offset_px, int im
   Extent extent;
   for (std::size_t i = 0; i < field.size(); ++i) {
     Vec2d const place = field.position_px[i] + Vec2d{offset_px, offset_px};
-    if (!finite(place)) {
+    if (!is_finite(place)) {
       ++left_out.place_not_finite;
       continue;
     }
@@ -99,7 +97,7 @@ LeftOutVectors screen_vectors(DisplacementField& field, double offset_px, int im
   if (kept.size() < field.size()) take_vectors(field, kept);
   for (std::size_t i = 0; i < field.size(); ++i) {
     Vec2d& d = field.displacement_px[i];
-    bool const known = finite(d);
+    bool const known = is_finite(d);
     if (known && std::abs(d.x) <= image_columns && std::abs(d.y) <= image_rows) continue;
     if (field.status[i] != VectorStatus::masked) {
       ++(known ? left_out.displacement_beyond_image : left_out.displacement_not_finite);

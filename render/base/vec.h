@@ -71,4 +71,6 @@ GLADSTONE_HD Vec3<T> normalized(Vec3<T> a) {
 using Vec2d = Vec2<double>;
 using Vec3d = Vec3<double>;
 
+inline bool is_finite(Vec2d a) { return std::isfinite(a.x) && std::isfinite(a.y); }
+
 }  // namespace gladstone

@@ -84,15 +84,6 @@ void write_case_folder(MadeCase const& made, std::string const& folder) {
   output.commit();
 }
 
-/// Sorts the cases so that those whose flow best determines axes, signs and offsets come first.
-std::vector<BenchmarkCase> in_order_of_telling(std::vector<BenchmarkCase> cases) {
-  std::stable_sort(cases.begin(), cases.end(), [](BenchmarkCase const& a, BenchmarkCase const& b) {
-    auto const rank = [](BenchmarkCase const& c) { return c.name == "vortex" ? 0 : c.name == "sine_128" ? 1 : 2; };
-    return rank(a) < rank(b);
-  });
-  return cases;
-}
-
 bool is_wanted(std::vector<std::string> const& wanted, std::string const& name) {
   return wanted.empty() || std::find(wanted.begin(), wanted.end(), name) != wanted.end();
 }
@@ -170,7 +161,7 @@ BenchmarkResult run_benchmark(BenchmarkOptions const& options, Device const& dev
   for (ForeignVectors const& given : options.vectors) codes.emplace_back(given, cases);
   BenchmarkResult result;
   result.device = device.name();
-  for (BenchmarkCase const& one : in_order_of_telling(cases)) {
+  for (BenchmarkCase const& one : cases) {
     spdlog::info("{}: {}", one.name, one.what);
     MadeCase const made = make_case(one, device);
     write_case_folder(made, (fs::path(options.folder) / one.name).string());
@@ -200,24 +191,20 @@ BenchmarkResult run_benchmark(BenchmarkOptions const& options, Device const& dev
                                         uncertainty_bins(displacement, point, sigma, mask)});
       }
     }
-    for (ForeignCode& code : codes)
-      if (code.has(one.name)) score(code.name(), code.read(one.name, made.truth, made.columns(), made.rows()), {});
+    for (ForeignCode& code : codes) code.read(one.name, made.truth, made.columns(), made.rows());
   }
-  for (ForeignCode const& code : codes) {
+  for (ForeignCode& code : codes) {
+    for (BenchmarkRow& row : code.score()) result.rows.push_back(std::move(row));
     if (!code.reading().empty()) result.conventions.push_back(code.name() + ": " + code.reading());
-    if (std::string mistake = code.mistake(); !mistake.empty()) result.mistakes.push_back(std::move(mistake));
-    result.mistakes.insert(result.mistakes.end(), code.incomplete().begin(), code.incomplete().end());
+    result.mistakes.insert(result.mistakes.end(), code.mistakes().begin(), code.mistakes().end());
   }
-  // Restore the order of the list.
-  auto const place = [&](std::string const& name) {
-    return std::find_if(cases.begin(), cases.end(), [&](BenchmarkCase const& c) { return c.name == name; }) -
+  // rows of a case together
+  auto const place = [&](BenchmarkRow const& row) {
+    return std::find_if(cases.begin(), cases.end(), [&](BenchmarkCase const& c) { return c.name == row.of_case; }) -
            cases.begin();
   };
-  auto const by_case = [&](auto const& a, auto const& b) { return place(a.of_case) < place(b.of_case); };
-  std::stable_sort(result.rows.begin(), result.rows.end(), by_case);
-  std::stable_sort(result.uncertainties.begin(), result.uncertainties.end(), by_case);
-  std::stable_sort(result.cases.begin(), result.cases.end(),
-                   [&](CaseRecord const& a, CaseRecord const& b) { return place(a.of.name) < place(b.of.name); });
+  std::stable_sort(result.rows.begin(), result.rows.end(),
+                   [&](BenchmarkRow const& a, BenchmarkRow const& b) { return place(a) < place(b); });
   result.seeds = options.seeds;
   if (options.seeds > 0) result.coverage = measure_coverage(options.seeds, device);
   return result;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "render/base/contracts.h"
 
@@ -49,6 +50,23 @@ BenchmarkScore score_vectors(DisplacementField const& field, std::vector<Vec2d> 
   }
   score.gain = product / signal;  // 0/0 is NaN if no vector counts
   return score;
+}
+
+double median_relative_error(DisplacementField const& field, std::vector<Vec2d> const& truth) {
+  std::vector<double> errors, displacements;
+  for (std::size_t i = 0; i < field.size(); ++i) {
+    double const error = field.counts(i) ? length(field.displacement_px[i] - truth[i]) : std::nan("");
+    if (!std::isfinite(error)) continue;
+    errors.push_back(error);
+    displacements.push_back(length(truth[i]));
+  }
+  if (errors.empty()) return std::numeric_limits<double>::quiet_NaN();
+  auto const median = [](std::vector<double>& values) {
+    auto const middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+  };
+  return median(errors) / std::max(0.5, median(displacements));
 }
 
 std::vector<std::pair<std::string_view, double>> score_measures(BenchmarkScore const& score) {

@@ -29,6 +29,10 @@ VectorMask benchmark_mask(DisplacementField const& field, int columns, int rows)
 /// @param truth  displacement at every vector [px]
 BenchmarkScore score_vectors(DisplacementField const& field, std::vector<Vec2d> const& truth, int columns, int rows);
 
+/// Returns the median difference of the counted vectors from the truth, relative to the median displacement or, if that
+/// is less, half a pixel. NaN without a counted vector.
+double median_relative_error(DisplacementField const& field, std::vector<Vec2d> const& truth);
+
 /// Returns the truth at the positions of the vectors.
 std::vector<Vec2d> truth_at_vectors(DisplacementField const& field, DisplacementAt const& truth);
 

@@ -18,6 +18,10 @@ namespace fs = std::filesystem;
 
 using Verdict = DetectedConventions::Verdict;
 
+/// Greatest median error of a code that measures, as a fraction of the displacement: one that finds whole pixels only
+/// errs by a quarter of a pixel, a quarter of the vortex's median displacement.
+constexpr double most_wrong = 0.3;
+
 /// Grid nodes along one axis.
 struct Nodes {
   std::size_t distinct = 0;  ///< number of distinct coordinates
@@ -47,41 +51,6 @@ Nodes find_nodes(DisplacementField const& field, double Vec2d::*component) {
   return {levels.size(), steps[steps.size() / 2], levels.front(), levels.back()};
 }
 
-/// Combined evidence of all cases for an alternative interpretation of the vectors.
-struct Evidence {
-  VectorConventions reading;
-  double sum = 0.0;
-  std::string strongest;  ///< the case with the strongest evidence
-  double most = 0.0, rms_px = 0.0, rms_as_read = 0.0;
-};
-
-bool same_axes(VectorConventions const& a, VectorConventions const& b) {
-  return a.y_up == b.y_up && a.v_up == b.v_up && a.swapped == b.swapped && a.exchange == b.exchange;
-}
-
-/// Computes the combined evidence for every choice of axes, signs and columns that the format does not allow. Combining
-/// the cases resolves ambiguities of individual ones.
-std::vector<Evidence> weigh_readings(std::vector<std::pair<std::string, DetectedConventions>> const& cases,
-                                     std::vector<VectorConventions> const& own) {
-  std::vector<Evidence> all;
-  for (auto const& [of_case, detected] : cases) {
-    for (ConventionFit const& fit : detected.tried) {
-      auto const same = [&fit](VectorConventions const& reading) { return same_axes(reading, fit.conventions); };
-      if (std::any_of(own.begin(), own.end(), same)) continue;
-      auto known = std::find_if(all.begin(), all.end(), [&](Evidence const& one) { return same(one.reading); });
-      if (known == all.end()) known = all.insert(all.end(), Evidence{fit.conventions, 0.0, {}, 0.0, 0.0, 0.0});
-      double const evidence = evidence_for(fit, detected.fit);
-      if (std::isfinite(evidence)) known->sum += evidence;
-      if (!(evidence > known->most)) continue;
-      known->most = evidence;
-      known->strongest = of_case;
-      known->rms_px = fit.rms_px;
-      known->rms_as_read = detected.fit.rms_px;
-    }
-  }
-  return all;
-}
-
 }  // namespace
 
 std::map<std::string, std::string> find_vectors(ForeignVectors const& given, std::vector<BenchmarkCase> const& cases) {
@@ -103,86 +72,104 @@ std::map<std::string, std::string> find_vectors(ForeignVectors const& given, std
 ForeignCode::ForeignCode(ForeignVectors const& given, std::vector<BenchmarkCase> const& cases)
     : name_(given.name), files_(find_vectors(given, cases)), told_(given.conventions) {}
 
-DisplacementField ForeignCode::read(std::string const& of_case, DisplacementAt const& truth, int columns, int rows) {
-  std::string const& path = files_.at(of_case);
+void ForeignCode::read(std::string const& of_case, DisplacementAt const& truth, int columns, int rows) {
+  auto const found = files_.find(of_case);
+  if (found == files_.end()) return;
+  std::string const& path = found->second;
   VectorFile file = read_vectors(path);
   log_remarks(file);
   if (!file.complete)
-    incomplete_.push_back(fmt::format("{}: the header of {} declares another number of vectors", name_, path));
+    mistakes_.push_back(fmt::format("{}: the header of {} declares another number of vectors", name_, path));
   if (told_) override_conventions(file, *told_);
   file = convert_to_pixels(std::move(file), path);
-  if (conventions_) {
-    file.also.push_back(file.conventions);
-    file.conventions = *conventions_;
-  }
   bool const turned = file.conventions.exchanges_places();
   LeftOutVectors const left_out =
       screen_vectors(file.field, file.conventions.offset_px, turned ? rows : columns, turned ? columns : rows);
   if (std::string const refusal = refusal_of_places(file.field, left_out, columns, rows); !refusal.empty())
     throw DataError(path, refusal);
-  auto const is_known = [](Vec2d const& d) { return std::isfinite(d.x) && std::isfinite(d.y); };
-  if (std::none_of(file.field.displacement_px.begin(), file.field.displacement_px.end(), is_known))
+  if (std::none_of(file.field.displacement_px.begin(), file.field.displacement_px.end(), is_finite))
     throw DataError(path, "holds no displacement that is a number; export the vectors with their values");
-  bool const told = told_ && specifies_reading(*told_);
-  if (told && reading_.empty())
-    reading_ = fmt::format("{} vectors, as told: {}", file.format, describe(file.conventions));
-  bool const ours = !file.foreign && path.ends_with(".h5");
-  if (!told && !ours) {
-    DetectedConventions detected = detect_conventions(file, truth, rows);
-    if (!conventions_) {
-      if (detected.verdict == Verdict::fits_none) throw DataError(path, detected.report);
-      own_ = file.also;
-      own_.push_back(file.conventions);
-      conventions_ = detected.conventions;
-      reading_ = fmt::format("{} (by {})", detected.report, of_case);
-    }
-    file.conventions = *conventions_;
-    detected_.emplace_back(of_case, std::move(detected));
-  }
-  DisplacementField field = apply_conventions(std::move(file.field), file.conventions, rows);
-  if (std::string const refusal = refusal_of_gaps(field, columns, rows); !refusal.empty())
-    throw DataError(path, refusal);
-  return field;
+  cases_.push_back({of_case, path, {std::move(file), truth, rows}, columns});
 }
 
-std::string ForeignCode::mistake() const {
-  std::size_t judged = 0, mistaken = 0;
-  for (auto const& [of_case, detected] : detected_) {
-    mistaken += detected.mistake.found() ? 1 : 0;
-    judged += detected.verdict != Verdict::cannot_be_told && detected.verdict != Verdict::fits_none ? 1 : 0;
+std::vector<BenchmarkRow> ForeignCode::score() {
+  VectorFile const& first = cases_.front().vectors.file;
+  bool const told = told_ && specifies_reading(*told_);
+  bool const ours = !first.foreign && cases_.front().path.ends_with(".h5");
+  VectorConventions conventions = first.conventions;
+  if (told) reading_ = fmt::format("{} vectors, as told: {}", first.format, describe(conventions));
+  if (!told && !ours) {
+    std::vector<VectorsWithTruth> vectors;
+    for (Case const& one : cases_) vectors.push_back(one.vectors);
+    CommonConventions const common = detect_common_conventions(vectors);
+    auto const fits_none = [](DetectedConventions const& one) { return one.verdict == Verdict::fits_none; };
+    auto const can_tell = [](DetectedConventions const& one) { return one.verdict != Verdict::cannot_be_told; };
+    bool const any_tells = std::any_of(common.detected.begin(), common.detected.end(), can_tell);
+    bool const none_fits = std::all_of(common.detected.begin(), common.detected.end(),
+                                       [&](auto const& one) { return fits_none(one) || !can_tell(one); });
+    if (any_tells && none_fits && !common.mistake.found()) {
+      auto const worst = std::find_if(common.detected.begin(), common.detected.end(), fits_none);
+      throw DataError(cases_[static_cast<std::size_t>(worst - common.detected.begin())].path, worst->report);
+    }
+    conventions = common.conventions;
+    reading_ =
+        fmt::format("{} vectors read as {} ({}: {:.3g} px rms from the truth, which is {:.3g} px rms)", first.format,
+                    describe(conventions), cases_[common.decisive].name, common.fit.rms_px, common.fit.signal_px);
+    DetectedConventions const& decisive = common.detected[common.decisive];
+    if (decisive.conventions == conventions && conventions.offset_px != 0.0) reading_ += "; " + offset_report(decisive);
+    if (common.ambiguous && !common.mistake.found())
+      reading_ += "; another reading fits as well, and the format's own was kept";
+    if (std::string mistake = describe_mistake(common); !mistake.empty()) mistakes_.push_back(std::move(mistake));
   }
-  if (mistaken == 0) return {};
-  VectorConventions const& own = *conventions_;
-  std::vector<Evidence> const all = weigh_readings(detected_, own_);
-  auto best =
-      std::max_element(all.begin(), all.end(), [](Evidence const& a, Evidence const& b) { return a.sum < b.sum; });
-  if (best != all.end() && best->sum > 16.0 && best->rms_px < 0.9 * best->rms_as_read) {
-    // Choose the likeliest of those that fit about as well: estimator errors in a flow of similar appearance can
-    // account for a tenth of the evidence.
-    double const most = best->sum, alike = std::max(9.0, 0.1 * most);
-    for (auto one = all.begin(); one != all.end(); ++one) {
-      if (most - one->sum <= alike && unlikelihood(one->reading, own) < unlikelihood(best->reading, own)) best = one;
+  std::vector<BenchmarkRow> rows;
+  std::size_t wrong = 0;
+  for (Case& one : cases_) {
+    DisplacementField const field =
+        apply_conventions(std::move(one.vectors.file.field), conventions, one.vectors.image_rows);
+    if (std::string const refusal = refusal_of_gaps(field, one.columns, one.vectors.image_rows); !refusal.empty())
+      throw DataError(one.path, refusal);
+    std::vector<Vec2d> const truth = truth_at_vectors(field, one.vectors.truth);
+    rows.push_back({name_, one.name, score_vectors(field, truth, one.columns, one.vectors.image_rows), {}});
+    wrong += median_relative_error(field, truth) < most_wrong ? 0 : 1;
+  }
+  if (mistakes_.empty() && 2 * wrong > cases_.size())
+    mistakes_.push_back(fmt::format(
+        "{}: in {} of {} cases half of the vectors differ from the truth by more than {:.0f} % of the displacement, "
+        "and neither axes, a factor nor a shift that all have in common explains it; check that each file holds the "
+        "vectors of its own case, all of them in px",
+        name_, wrong, cases_.size(), 100.0 * most_wrong));
+  return rows;
+}
+
+std::string ForeignCode::describe_mistake(CommonConventions const& common) const {
+  LikelyMistake const& mistake = common.mistake;
+  if (mistake.found()) {
+    std::string const& decisive = cases_[common.decisive].name;
+    std::string cure = "mend the files";
+    if (common.ambiguous) {
+      cure = fmt::format("{} cannot tell these apart; run a case that can, such as turbulence",
+                         cases_.size() == 1 ? decisive : "these cases");
+    } else if (!mistake.conventions.empty()) {
+      cure += fmt::format(", or accept it with --conventions {}={}", name_, mistake.conventions);
     }
-    std::string text = difference_of(best->reading, own);
-    bool alone = true;
-    for (Evidence const& other : all) {
-      bool const as_likely = unlikelihood(other.reading, own) < unlikelihood(best->reading, own) + 0.5;
-      if (&other == &*best || most - other.sum > alike || !as_likely) continue;
-      text += ", or " + difference_of(other.reading, own);
-      alone = false;
-    }
-    if (!alone) text += fmt::format(", which {} cannot tell apart", judged == 1 ? best->strongest : "these cases");
     return fmt::format(
         "{}: likely mistake: {} (by {}: so read its vectors differ from the truth by {:.3g} px rms, as they are scored "
-        "by {:.3g} px); mend the files, or accept it with --conventions {}={}",
-        name_, text, best->strongest, best->rms_px, best->rms_as_read, name_, describe(best->reading));
+        "by {:.3g} px); {}",
+        name_, mistake.text, decisive, mistake.rms_px, mistake.rms_as_read, cure);
   }
-  // With several cases, an indication from a minority may be due to estimator errors where the flow is finer than the
-  // windows.
+  // Each file may have a mistake of its own. An indication from a minority may be due to estimator errors where the
+  // flow is finer than the windows.
+  std::size_t judged = 0, mistaken = 0;
+  std::string found;
+  for (std::size_t i = 0; i < common.detected.size(); ++i) {
+    DetectedConventions const& one = common.detected[i];
+    judged += one.verdict != Verdict::cannot_be_told && one.verdict != Verdict::fits_none ? 1 : 0;
+    if (!one.mistake.found() || ++mistaken > 3) continue;
+    found += fmt::format("{}{}: {}", found.empty() ? "" : "; ", cases_[i].name, one.mistake.text);
+  }
   if (2 * mistaken <= judged) return {};
-  auto const first =
-      std::find_if(detected_.begin(), detected_.end(), [](auto const& one) { return one.second.mistake.found(); });
-  return fmt::format("{}: likely mistake: {}: {}", name_, first->first, first->second.mistake.warning());
+  return fmt::format("{}: likely mistakes, not the same in all files: {}{}; mend the files", name_, found,
+                     mistaken > 3 ? fmt::format("; and in {} more", mistaken - 3) : "");
 }
 
 std::string refusal_of_gaps(DisplacementField const& field, int columns, int rows) {

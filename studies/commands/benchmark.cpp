@@ -83,7 +83,6 @@ std::string summary_of(BenchmarkResult const& result, std::string const& folder)
   std::string text;
   for (std::string const& finding : benchmark_page(result, folder).findings) text += finding + '\n';
   for (std::string const& told : result.conventions) text += told + '\n';
-  for (std::string const& mistake : result.mistakes) text += mistake + '\n';
   return text + fmt::format("{} cases, {} scores: {}", result.cases.size(), result.rows.size(),
                             (fs::path(folder) / "benchmark.html").string());
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <fstream>
 #include <map>
+#include <random>
 
 #include "studies/benchmark/benchmark_cases.h"
 #include "tests/end_to_end/support/workplace.h"
@@ -101,9 +102,9 @@ TEST_F(Benchmark, LearnsTheCombinationThatShips) {
   EXPECT_FALSE(std::filesystem::exists(in("learnt/benchmark.html")));
 }
 
-/// A code's vectors for `uniform` and `stretch`, every 16 px, with the truth changed.
+/// A code's vectors for `uniform` and `vortex`, every 16 px, with the truth changed and taken from another place.
 template <class Change>
-std::map<std::string, std::string> changed_truth(Change const& change) {
+std::map<std::string, std::string> changed_truth(Change const& change, Vec2d shift_px = {}) {
   std::map<std::string, std::string> files;
   for (std::string const name : {"uniform", "vortex"}) {
     BenchmarkCase const& of = *std::find_if(benchmark_cases().begin(), benchmark_cases().end(),
@@ -111,7 +112,7 @@ std::map<std::string, std::string> changed_truth(Change const& change) {
     std::string text = "x,y,u,v\n";
     for (int y = 16; y < 1024; y += 16) {
       for (int x = 16; x < 1024; x += 16) {
-        Vec2d const d = change(of.flow({static_cast<double>(x), static_cast<double>(y)}));
+        Vec2d const d = change(of.flow(Vec2d{static_cast<double>(x), static_cast<double>(y)} - shift_px));
         text += fmt::format("{},{},{:.9g},{:.9g}\n", x, y, d.x, d.y);
       }
     }
@@ -147,7 +148,7 @@ TEST_F(Benchmark, ForgivesNoWrongSigns) {
 
   Outcome const alone = score({"--cases", "vortex", "--vectors", "m=negative"});
   EXPECT_EQ(alone.exit_code, 1) << alone.err;
-  EXPECT_THAT(alone.err, testing::HasSubstr("cannot tell apart"));
+  EXPECT_THAT(alone.err, testing::HasSubstr("vortex cannot tell these apart; run a case that can, such as turbulence"));
   EXPECT_THAT(read("b/benchmark.md"), testing::HasSubstr("% of the vectors are gross errors"));
 
   Outcome const turned = score({"--cases", "vortex", "uniform", "--vectors", "m=turned"});
@@ -161,6 +162,38 @@ TEST_F(Benchmark, ForgivesNoWrongSigns) {
   Outcome const right = score({"--cases", "vortex", "uniform", "--vectors", "m=right"});
   EXPECT_EQ(right.exit_code, 0) << right.err;
   EXPECT_EQ(nlohmann::json::parse(right.out)["likely_mistakes"].size(), 0u);
+}
+
+// Each is off by the same in both cases, of which the uniform displacement cannot see a shift, nor tell an offset from
+// a factor. Vectors with random factors follow the truth, and no correction explains them.
+TEST_F(Benchmark, FindsOneMistakeInAllCases) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> factor(0.5, 2.0);
+  struct Wrong {
+    std::string expected;
+    std::map<std::string, std::string> files;
+  };
+  for (Wrong const& wrong : {
+           Wrong{"likely mistake: places are shifted by (16, 0) px",
+                 changed_truth([](Vec2d d) { return d; }, {16.0, 0.0})},
+           Wrong{"likely mistake: displacements are (0.5, 0) px greater than the truth", changed_truth([](Vec2d d) {
+                   return d + Vec2d{0.5, 0.0};
+                 })},
+           Wrong{"likely mistake: displacements are 1.1 times the truth",
+                 changed_truth([](Vec2d d) { return 1.1 * d; })},
+           Wrong{"likely mistake: displacements are 10 times the truth",
+                 changed_truth([](Vec2d d) { return 10.0 * d; })},
+           Wrong{"in 2 of 2 cases half of the vectors differ from the truth by more than 30 % of the displacement",
+                 changed_truth([&](Vec2d d) { return factor(random) * d; })},
+       }) {
+    std::filesystem::create_directories(in("wrong"));
+    for (auto const& [name, text] : wrong.files) write("wrong/" + name, text);
+    Outcome const outcome = gladstone({"benchmark", "-o", "b", "--estimators", "none", "--no-figures", "--cases",
+                                       "vortex", "uniform", "--vectors", "m=wrong"});
+    EXPECT_EQ(outcome.exit_code, 1) << wrong.expected << outcome.err;
+    EXPECT_THAT(outcome.err, testing::HasSubstr("m: " + wrong.expected));
+    EXPECT_THAT(outcome.out, testing::Not(testing::HasSubstr("nan")));
+  }
 }
 
 // 63 x 63 vectors 16 px apart: 31 rows of them are 1953, and one row given twice is 63.

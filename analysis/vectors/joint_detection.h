@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <vector>
+
+#include "analysis/vectors/convention_detection.h"
+
+namespace gladstone {
+
+/// Vectors that a program wrote for one image pair, and the pair's true displacement.
+struct VectorsWithTruth {
+  VectorFile file;                    ///< in px and screened, see detect_conventions()
+  std::function<Vec2d(Vec2d)> truth;  ///< displacement at a position in our conventions [px]
+  int image_rows = 0;
+};
+
+/// Result of detect_common_conventions().
+struct CommonConventions {
+  VectorConventions conventions;  ///< conventions to use: of the format's own, those that fit all files best
+  std::vector<DetectedConventions> detected;  ///< results for the single files, in their order
+  /// Mistake that all files have in common; if several are indistinguishable, the text names all of them and
+  /// `conventions` is empty.
+  LikelyMistake mistake;
+  std::size_t decisive = 0;  ///< index of the file with the strongest evidence: for `mistake`, else for `conventions`
+  /// Other axes or signs fit all files about as well as `conventions`; with a mistake, another mistake does.
+  bool ambiguous = false;
+  ConventionFit fit;  ///< fit of `conventions` to the decisive file
+};
+
+/// Determines the conventions that several files of one program have in common, and detects a mistake that they have in
+/// common. The evidence of all files is added, so that the files whose displacement distinguishes the interpretations
+/// decide: a uniform displacement is evidence neither for nor against a shift of the positions.
+/// - The first of the format's own conventions is used unless another has at least 9 more evidence, see evidence_for().
+/// - A mistake is reported above an evidence of 16 (other axes or signs) or 25 (factor, shift, offset), and if it
+///   reduces the rms difference in the decisive file by 10 or 50 %. After the correction of a factor, shift or offset,
+///   most files must follow the truth: rms difference below half the truth's rms.
+/// - Of the interpretations within a tenth of the best evidence, the likeliest is reported first.
+/// @pre there is at least one file
+CommonConventions detect_common_conventions(std::vector<VectorsWithTruth> const& files);
+
+}  // namespace gladstone

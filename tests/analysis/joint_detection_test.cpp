@@ -1,0 +1,112 @@
+#include "analysis/vectors/joint_detection.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <vector>
+
+#include "render/base/units.h"
+
+namespace gladstone {
+namespace {
+
+using Flow = std::function<Vec2d(Vec2d)>;
+
+Vec2d uniform(Vec2d) { return {0.3, -0.3}; }
+
+/// Turns about the middle of the image: exchanged frames look like axes that point up.
+Vec2d vortex(Vec2d p) {
+  Vec2d const r{p.x - 127.5, p.y - 127.5};
+  double const swirl = 4.0 * std::exp(-dot(r, r) / 3600.0) / 60.0;
+  return {-swirl * r.y, swirl * r.x};
+}
+
+/// Turns about another place, and stretches along x.
+Vec2d off_centre(Vec2d p) {
+  Vec2d const turned = vortex(p + Vec2d{40.0, -25.0});
+  return {turned.x + 0.004 * p.x, turned.y};
+}
+
+/// Vectors that a code with `change` writes for the truth.
+VectorsWithTruth written(Flow const& truth, Flow const& change, Vec2d shift_px = {}) {
+  VectorsWithTruth written{{}, truth, 256};
+  written.file.format = "test";
+  for (int row = 0; row < 15; ++row) {
+    for (int column = 0; column < 15; ++column) {
+      Vec2d const p{15.5 + 16.0 * column, 15.5 + 16.0 * row};
+      written.file.field.position_px.push_back(p + shift_px);
+      written.file.field.displacement_px.push_back(change(truth(p)));
+    }
+  }
+  return written;
+}
+
+Vec2d same(Vec2d d) { return d; }
+
+TEST(DetectCommonConventions, LetsThoseCasesDecideThatCan) {
+  Flow const negative = [](Vec2d d) { return -d; };
+  // the vortex alone: negative vectors are explained by exchanged frames and by both axes upside down
+  CommonConventions const alone = detect_common_conventions({written(vortex, negative)});
+  EXPECT_TRUE(alone.ambiguous);
+  EXPECT_THAT(alone.mistake.text, testing::StartsWith("the frames were exchanged, or "));
+  EXPECT_EQ(alone.mistake.conventions, "") << "no cure is sure";
+  CommonConventions const both =
+      detect_common_conventions({written(uniform, negative), written(vortex, negative), written(off_centre, negative)});
+  EXPECT_FALSE(both.ambiguous);
+  EXPECT_EQ(both.mistake.text, "the frames were exchanged");
+  EXPECT_EQ(both.mistake.conventions, "y-down,v-down,frames-exchanged,offset=0");
+  EXPECT_NE(both.decisive, 0u) << "a uniform displacement cannot tell them from exchanged columns";
+}
+
+TEST(DetectCommonConventions, IsSureOfRightVectorsByOneCaseThatIsWithoutSymmetry) {
+  CommonConventions const symmetric = detect_common_conventions({written(vortex, same)});
+  EXPECT_FALSE(symmetric.mistake.found());
+  EXPECT_TRUE(symmetric.ambiguous);
+  CommonConventions const sure = detect_common_conventions({written(vortex, same), written(off_centre, same)});
+  EXPECT_FALSE(sure.mistake.found());
+  EXPECT_FALSE(sure.ambiguous);
+  EXPECT_EQ(sure.decisive, 1u);
+}
+
+TEST(DetectCommonConventions, FindsAShiftThatMostCasesCannotSee) {
+  std::vector<VectorsWithTruth> files(5, written(uniform, same, {12.0, 0.0}));
+  files.push_back(written(vortex, same, {12.0, 0.0}));
+  CommonConventions const found = detect_common_conventions(files);
+  EXPECT_THAT(found.mistake.text, testing::StartsWith("places are shifted by (12, 0) px"));
+  EXPECT_EQ(found.decisive, 5u);
+}
+
+// 0.5 px is 2.7 times the uniform displacement of 0.3 px in u, which the vortex rules out.
+TEST(DetectCommonConventions, TellsAnOffsetFromAFactor) {
+  Flow const more = [](Vec2d d) { return d + Vec2d{0.5, 0.0}; };
+  EXPECT_EQ(detect_common_conventions({written(uniform, more), written(vortex, more)}).mistake.text,
+            "displacements are (0.5, 0) px greater than the truth");
+  Flow const longer = [](Vec2d d) { return 1.1 * d; };
+  EXPECT_THAT(detect_common_conventions({written(uniform, longer), written(vortex, longer)}).mistake.text,
+              testing::StartsWith("displacements are 1.1 times the truth"));
+}
+
+TEST(DetectCommonConventions, FindsNothingInCommonWhereEachFileHasItsOwnUnit) {
+  std::vector<VectorsWithTruth> files;
+  for (double const factor : {0.3, 2.0, 5.0})
+    files.push_back(written(vortex, [factor](Vec2d d) { return factor * d; }));
+  CommonConventions const found = detect_common_conventions(files);
+  EXPECT_FALSE(found.mistake.found()) << found.mistake.text;
+  for (DetectedConventions const& one : found.detected) EXPECT_THAT(one.mistake.text, testing::HasSubstr("times"));
+}
+
+// The format allows two offsets: half a pixel shows in the vortex, not in uniform displacement.
+TEST(DetectCommonConventions, ChoosesAmongTheFormatsOwnByAllFiles) {
+  std::vector<VectorsWithTruth> files{written(uniform, same, {0.5, 0.5}), written(vortex, same, {0.5, 0.5})};
+  for (VectorsWithTruth& one : files) {
+    VectorConventions half;
+    half.offset_px = -0.5;
+    one.file.also = {half};
+  }
+  EXPECT_EQ(detect_common_conventions(files).conventions.offset_px, -0.5);
+}
+
+}  // namespace
+}  // namespace gladstone
