@@ -37,11 +37,11 @@ PACKAGES += $(if $(filter dev,$(PRESET)),$(DEV_PACKAGES))
 TEST_PACKAGES := munge slurmctld slurmd slurm-client chromium chromium-driver python3-selenium tidy
 
 ROOMS := render analysis cuda studies
-SOURCES = $(shell find $(ROOMS) tests -name '*.h' -o -name '*.cpp' -o -name '*.cu' -o -name '*.cuh')
-# of the rooms, what this build compiles
 space := $(subst ,, )
-TIDY_SOURCES = sed -n 's|^ *"file": "$(CURDIR)/\(.*\.cpp\)".*|\1|p' $(BUILD)/compile_commands.json | \
-	grep -E '^($(subst $(space),|,$(strip $(ROOMS))))/'
+SOURCES = $(shell find $(ROOMS) tests -name '*.h' -o -name '*.cpp' -o -name '*.cu' -o -name '*.cuh')
+# the files that a build compiles: those of a room, or of one of its folders together
+TIDY_SOURCES = sed -n 's|^ *"file": "\(.*\)".*|\1|p' $(BUILD)/compile_commands.json | \
+	grep -E '^$(CURDIR)/($(subst $(space),|,$(strip $(ROOMS))))/|/Unity/unity_($(subst $(space),|,$(strip $(ROOMS))))_'
 
 .PHONY: build test demo gallery studies bench fuzz soak check-long lint format install clean help packages configure
 .DEFAULT_GOAL := build
@@ -95,7 +95,7 @@ lint: PACKAGES += $(LINT_PACKAGES)
 lint: configure  ## check the format (clang-format) and the code (clang-tidy)
 	clang-format --dry-run -Werror $(SOURCES)
 	@[ -x $(BUILD)/lint/bin/clang-tidy ] || { python3 -m venv $(BUILD)/lint && $(BUILD)/lint/bin/pip install -q $(CLANG_TIDY); }
-	@$(TIDY_SOURCES) | xargs -P $(JOBS) -n 4 $(BUILD)/lint/bin/clang-tidy -p $(BUILD) --quiet
+	@$(TIDY_SOURCES) | xargs -P $(JOBS) -n 1 $(BUILD)/lint/bin/clang-tidy -p $(BUILD) --quiet
 
 format:  ## rewrite the sources in the project's format
 	@cmake/install_packages.sh clang-format

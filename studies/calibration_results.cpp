@@ -8,14 +8,10 @@
 #include "render/base/units.h"
 #include "studies/calibrate.h"
 #include "studies/figures/gnuplot.h"
+#include "studies/flat_values.h"
 
 namespace gladstone {
 namespace {
-
-std::span<double const> flat(std::vector<Vec2d> const& values) {
-  static_assert(sizeof(Vec2d) == 2 * sizeof(double));
-  return {reinterpret_cast<double const*>(values.data()), 2 * values.size()};
-}
 
 double largest(std::vector<Vec2d> const& residuals) {
   double most = 0;

@@ -65,8 +65,7 @@ nlohmann::ordered_json fit_json(DetectedConventions const& detected) {
 /// uncertainties.
 nlohmann::ordered_json uncertainty_json(Comparison const& comparison) {
   DisplacementField const& measured = comparison.measured;
-  auto const is_known = [](Vec2d sigma) { return std::isfinite(sigma.x) && std::isfinite(sigma.y); };
-  if (std::none_of(measured.sigma_px.begin(), measured.sigma_px.end(), is_known)) return {};
+  if (std::none_of(measured.sigma_px.begin(), measured.sigma_px.end(), is_finite)) return {};
   nlohmann::ordered_json json;
   std::vector<Vec2d> const &window = comparison.window.displacement_px,
                            &deformed_window = comparison.deformed_window.displacement_px;

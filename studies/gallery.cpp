@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Picture {
+struct GalleryPicture {
   char const* name;  ///< name of the setup
   char const* title;
   char const* look;  ///< what the image shows
@@ -29,15 +29,17 @@ struct Picture {
 
 /// The first image is the reference for the others.
 constexpr std::array pictures{
-    Picture{"normal", "normal", "particles in the sheet's middle, in focus"},
-    Picture{"out_of_focus", "out of focus", "discs of the stop's shape instead of spots, and less light in each pixel"},
-    Picture{"aberration", "lens aberration near the edges", "spots drawn out towards the corners, round in the middle"},
-    Picture{"perspective", "perspective", "the camera looks on askew: scales differ from left to right"},
-    Picture{"shock", "normal shock seen askew", "particles behind the front are shifted and drawn out along it"},
-    Picture{"oblique", "oblique view, sensor square to the axis", "sharp along one line alone"},
-    Picture{"scheimpflug", "oblique view, Scheimpflug", "the same view with the sensor tilted: sharp all over"},
-    Picture{"plenoptic", "plenoptic raw image",
-            "one disc of the stop for a particle in focus, parts of it in several lenslets for others"},
+    GalleryPicture{"normal", "normal", "particles in the sheet's middle, in focus"},
+    GalleryPicture{"out_of_focus", "out of focus",
+                   "discs of the stop's shape instead of spots, and less light in each pixel"},
+    GalleryPicture{"aberration", "lens aberration near the edges",
+                   "spots drawn out towards the corners, round in the middle"},
+    GalleryPicture{"perspective", "perspective", "the camera looks on askew: scales differ from left to right"},
+    GalleryPicture{"shock", "normal shock seen askew", "particles behind the front are shifted and drawn out along it"},
+    GalleryPicture{"oblique", "oblique view, sensor square to the axis", "sharp along one line alone"},
+    GalleryPicture{"scheimpflug", "oblique view, Scheimpflug", "the same view with the sensor tilted: sharp all over"},
+    GalleryPicture{"plenoptic", "plenoptic raw image",
+                   "one disc of the stop for a particle in focus, parts of it in several lenslets for others"},
 };
 
 /// Fraction of pixels of the normal image shown without clipping; the brightest particles are white.
@@ -45,7 +47,7 @@ constexpr double shown_share = 0.998;
 
 std::vector<double> levels_of(Image<double> const& image) { return {image.begin(), image.end()}; }
 
-MapFigure grey_figure(int columns, std::vector<Picture> const& of, std::vector<Image<double>> const& images,
+MapFigure grey_figure(int columns, std::vector<GalleryPicture> const& of, std::vector<Image<double>> const& images,
                       double white) {
   MapFigure figure;
   figure.columns = columns;
@@ -66,8 +68,8 @@ MapFigure grey_figure(int columns, std::vector<Picture> const& of, std::vector<I
 std::string run_gallery(std::string const& folder, Device const& device) {
   std::string const cases = (fs::path(shared_folder()) / "studies" / "cases" / "figure1").string();
   std::vector<Image<double>> images;
-  std::vector<Picture> const all(pictures.begin(), pictures.end());
-  for (Picture const& picture : all) {
+  std::vector<GalleryPicture> const all(pictures.begin(), pictures.end());
+  for (GalleryPicture const& picture : all) {
     spdlog::info("{}: {}", picture.name, picture.title);
     std::string const place = (fs::path(folder) / picture.name).string();
     SetupRendering setup((fs::path(cases) / (std::string(picture.name) + ".toml")).string(), {});
@@ -77,7 +79,8 @@ std::string run_gallery(std::string const& folder, Device const& device) {
   }
   double const white = std::max(1.0, quantile(levels_of(images.front()), shown_share));
   std::string text = fmt::format("Pictures of {}: level 0 is black, {:.0f} and above white.\n\n", folder, white);
-  for (Picture const& picture : all) text += fmt::format("{:<13} {}: {}\n", picture.name, picture.title, picture.look);
+  for (GalleryPicture const& picture : all)
+    text += fmt::format("{:<13} {}: {}\n", picture.name, picture.title, picture.look);
   try {
     for (std::size_t i = 1; i < all.size(); ++i) {
       write_map_figure((fs::path(folder) / all[i].name / "beside.png").string(),

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "render/base/not_a_number.h"
 #include "render/base/units.h"
 #include "render/ideal_images/ideal_images.h"
 #include "render/scene/particle_scene.h"
@@ -118,8 +119,8 @@ GroundTruth read_particle_truth(std::string const& path) {
   std::size_t const count = position.size() / 6;
   require_count(path, "/particles/position_m", position.size(), 6 * count);
   truth.resize(count);
-  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-  for (auto* const theory : {&truth.eq9_px, &truth.chief_px, &truth.eq9_cone_px}) theory->assign(count, {nan, nan});
+  for (auto* const theory : {&truth.eq9_px, &truth.chief_px, &truth.eq9_cone_px})
+    theory->assign(count, {not_a_number, not_a_number});
   truth.particles.second_m.resize(count);
   for (std::size_t i = 0; i < 2 * count; ++i) {
     Vec3d const p{position[3 * i], position[3 * i + 1], position[3 * i + 2]};

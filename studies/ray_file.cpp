@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <limits>
 
 #include "render/base/error.h"
 #include "render/base/interrupt.h"
+#include "render/base/not_a_number.h"
 #include "render/base/parallel.h"
 #include "render/base/text_file.h"
 #include "render/base/units.h"
@@ -17,15 +17,19 @@
 namespace gladstone {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
 /// Normalizes a direction, scaling by its largest component first to avoid overflow and underflow of its square.
 Vec3d unit_direction(Vec3d d) {
   double const largest = std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)});
   return normalized(Vec3d{d.x / largest, d.y / largest, d.z / largest});
 }
 
-TracedRay dead(RayStatus status) { return {status, {nan, nan, nan}, {nan, nan, nan}, nan, {nan, nan}}; }
+TracedRay dead(RayStatus status) {
+  return {status,
+          {not_a_number, not_a_number, not_a_number},
+          {not_a_number, not_a_number, not_a_number},
+          not_a_number,
+          {not_a_number, not_a_number}};
+}
 
 /// Returns true if the element is in front of the ray.
 bool runs_to(CameraElement<double> const& element, Ray<double> const& ray) {
@@ -36,7 +40,7 @@ template <class Medium>
 TracedRay trace_one(Scene const& scene, TracingOptions<double> const& options, Medium const& medium,
                     Ray<double> const& start, Through through) {
   CameraView<double> const camera = scene.camera.view();
-  TracedRay traced{RayStatus::alive, start.position, start.direction, 0.0, {nan, nan}};
+  TracedRay traced{RayStatus::alive, start.position, start.direction, 0.0, {not_a_number, not_a_number}};
   Ray<double> ray = start;
   RayAccount<double> account;
   for (int i = 0; i < camera.before_medium; ++i) {
@@ -53,7 +57,7 @@ TracedRay trace_one(Scene const& scene, TracingOptions<double> const& options, M
     ray = {left, exit_direction(ray, way)};
     account.optical_path += way.optical_path;
   }
-  traced = {RayStatus::alive, ray.position, ray.direction, account.optical_path, {nan, nan}};
+  traced = {RayStatus::alive, ray.position, ray.direction, account.optical_path, {not_a_number, not_a_number}};
   if (through == Through::medium) return traced;
   bool const behind = camera.aim_plane.point_inwards(ray.position).z > 0;
   if (behind || !(camera.aim_plane.direction_inwards(ray.direction).z > 0)) return dead(RayStatus::missed_lens);
@@ -62,7 +66,11 @@ TracedRay trace_one(Scene const& scene, TracingOptions<double> const& options, M
     if (status != RayStatus::alive) return dead(status);
   }
   bool const thin = !scene.setup.lens.prescription;  // a thin lens has no defined optical path
-  traced = {RayStatus::alive, ray.position, ray.direction, thin ? nan : account.optical_path, {nan, nan}};
+  traced = {RayStatus::alive,
+            ray.position,
+            ray.direction,
+            thin ? not_a_number : account.optical_path,
+            {not_a_number, not_a_number}};
   if (through == Through::optics) return traced;
   Vec2d place;
   if (!camera.sensor.meet(ray, place)) return dead(RayStatus::missed_lens);

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 
+#include "render/base/not_a_number.h"
+#include "studies/flat_values.h"
 #include "studies/particle_case.h"
 #include "studies/scene_renderer.h"
 
@@ -11,15 +12,6 @@ namespace gladstone {
 namespace {
 
 constexpr char const* dot_axes = "dot, component";
-
-std::span<double const> flat(std::vector<Vec2d> const& values) {
-  static_assert(sizeof(Vec2d) == 2 * sizeof(double));
-  return {reinterpret_cast<double const*>(values.data()), 2 * values.size()};
-}
-
-std::span<double const> flat(Image<Vec2d> const& image) {
-  return {reinterpret_cast<double const*>(image.data()), 2 * image.size()};
-}
 
 /// Dataset of /dots with two components per dot.
 struct PairDataset {
@@ -130,10 +122,9 @@ GroundTruth read_truth(std::string const& path) {
     truth.position_m[i] = {position[3 * i], position[3 * i + 1], position[3 * i + 2]};
   }
   bool const with_errors = file.attribute("version") != "1";  // version 1 did not contain them
-  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   for (PairDataset const& dataset : pair_datasets) {
     if (dataset.values == &GroundTruth::displacement_error_px && !with_errors) {
-      truth.displacement_error_px.assign(truth.size(), {nan, nan});
+      truth.displacement_error_px.assign(truth.size(), {not_a_number, not_a_number});
       continue;
     }
     std::vector<double> const values = file.read(dataset.name);

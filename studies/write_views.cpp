@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 constexpr char const* marker = "views.json";
 constexpr double highest_level = 65535;
 
-Image<std::uint16_t> picture_of(Image<double> const& levels) {
+Image<std::uint16_t> rounded_levels(Image<double> const& levels) {
   Image<std::uint16_t> picture(levels.columns(), levels.rows());
   std::transform(levels.begin(), levels.end(), picture.begin(), [](double level) {
     return static_cast<std::uint16_t>(std::clamp(std::floor(level + 0.5), 0.0, highest_level));
@@ -94,7 +94,7 @@ ViewsWritten write_views(std::string const& case_folder, std::string const& fold
       auto const write = [&](fs::path const& path, Image<double> const& levels) {
         written.columns = levels.columns();
         written.rows = levels.rows();
-        write_tiff(path.string(), picture_of(levels), {metadata.bit_depth, written.camera.lenslets.pitch, ""});
+        write_tiff(path.string(), rounded_levels(levels), {metadata.bit_depth, written.camera.lenslets.pitch, ""});
       };
       for (Vec2d const s : stops) write(frame / name_of(s), views.view(s));
       if (distance) write(frame.string() + "_refocused.tif", views.refocused(stops, *distance));

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
-#include <limits>
 #include <optional>
 #include <utility>
 
@@ -16,6 +15,7 @@
 #include "analysis/correlation/outside_windows.h"
 #include "analysis/correlation/pattern_period.h"
 #include "analysis/correlation/standard_correlator.h"
+#include "render/base/not_a_number.h"
 
 namespace gladstone {
 namespace {
@@ -29,7 +29,6 @@ constexpr double deviations = 2.0;
 constexpr double suspicious = 0.05;
 constexpr double worth_a_warning = 0.1;
 constexpr double too_many_failed = 0.2;
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// Smallest number of windows for a median test: one and the neighbours by which it is tested.
 constexpr std::size_t fewest_windows = fewest_neighbours + 1;
@@ -201,7 +200,7 @@ void leave_out_chance(DisplacementField& field, DisplacementField const& chance,
   bool const hardly_any = correlated < least_correlated * static_cast<double>(signal.size());
   for (std::size_t const i : hardly_any ? signal : uncorrelated) {
     if (field.reason[i] == VectorReason::beyond_limit) continue;
-    field.displacement_px[i] = {nan, nan};
+    field.displacement_px[i] = {not_a_number, not_a_number};
     field.status[i] = VectorStatus::invalid;
     field.reason[i] = VectorReason::uncorrelated;
     if (!field.failed.empty()) field.failed[i] = FailedTest::none;

@@ -8,12 +8,12 @@
 namespace gladstone {
 namespace {
 
-constexpr std::size_t vectors_per_chunk = 256;
+constexpr std::size_t validated_per_chunk = 256;
 
 void validate_by(Judgement by, std::span<GridVector> vectors, int columns, ValidationRule const& rule) {
   int const count = static_cast<int>(vectors.size()), rows = count / columns;
   std::vector<FailedTest> failed(vectors.size());
-  parallel_chunks(vectors.size(), vectors_per_chunk, [&](std::size_t begin, std::size_t end) {
+  parallel_chunks(vectors.size(), validated_per_chunk, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
       failed[i] = failed_test(vectors.data(), static_cast<int>(i), columns, rows, rule, by);
   });

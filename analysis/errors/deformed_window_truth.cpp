@@ -1,27 +1,24 @@
 #include "analysis/errors/deformed_window_truth.h"
 
 #include <cmath>
-#include <limits>
 #include <optional>
 
 #include "analysis/correlation/standard_correlator.h"
 #include "analysis/correlation/vector_validation.h"
 #include "analysis/correlation/window_deformation.h"
 #include "analysis/correlation/window_ops.h"
+#include "render/base/not_a_number.h"
 
 namespace gladstone {
 namespace {
-
-bool is_finite(Vec2d v) { return std::isfinite(v.x) && std::isfinite(v.y); }
 
 /// Predictor by which a pass deforms the frames; zero in the first pass.
 struct Predictor {
   std::optional<DensePredictor> field;
 
   Vec2d at(Vec2d position_px) const {
-    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
     if (!field) return {};
-    return is_finite(position_px) ? field->at(position_px) : Vec2d{nan, nan};
+    return is_finite(position_px) ? field->at(position_px) : Vec2d{not_a_number, not_a_number};
   }
 };
 

@@ -3,15 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <optional>
 
 #include "render/base/contracts.h"
+#include "render/base/not_a_number.h"
 
 namespace gladstone {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// One link of the chain: a stage and the term that leads to it; the first stage has no term.
 struct Link {
@@ -42,8 +40,6 @@ std::span<Link const> links_of(BudgetChain chain) {
 
 using Differences = std::vector<Vec2d>;  // values of one term at the counted vectors; empty: unknown
 
-bool finite(Vec2d a) { return std::isfinite(a.x) && std::isfinite(a.y); }
-
 Vec2d mean(Differences const& values) {
   Vec2d sum{};
   for (Vec2d const& value : values) sum += value;
@@ -51,7 +47,7 @@ Vec2d mean(Differences const& values) {
 }
 
 BudgetTerm term_of(std::string_view name, Differences const& values) {
-  BudgetTerm term{std::string(name), {}, nan, nan, nan, nan, nan};
+  BudgetTerm term{std::string(name), {}, not_a_number, not_a_number, not_a_number, not_a_number, not_a_number};
   if (values.empty()) return term;
   Vec2d const bias = mean(values);
   Vec2d variance{};
@@ -73,7 +69,7 @@ BudgetTerm term_of(std::string_view name, Differences const& values) {
 /// Computes C_u, C_v and their mean from the values of the terms.
 void fill_covariance(std::vector<Differences> const& terms, ErrorBudget& budget) {
   std::size_t const size = terms.size();
-  CovarianceMatrix const unknown{size, std::vector<double>(size * size, nan)};
+  CovarianceMatrix const unknown{size, std::vector<double>(size * size, not_a_number)};
   budget.covariance = budget.covariance_u = budget.covariance_v = unknown;
   for (std::size_t i = 0; i < size; ++i) {
     for (std::size_t j = 0; j < size; ++j) {
@@ -129,7 +125,7 @@ ErrorBudget error_budget(std::span<BudgetStage const> stages, VectorMask const& 
   std::vector<std::size_t> counted;
   for (std::size_t i = 0; i < mask.size(); ++i) {
     bool const whole =
-        mask[i] != 0 && std::all_of(at.begin(), at.end(), [i](auto const* d) { return !d || finite((*d)[i]); });
+        mask[i] != 0 && std::all_of(at.begin(), at.end(), [i](auto const* d) { return !d || is_finite((*d)[i]); });
     if (whole) counted.push_back(i);
   }
 
@@ -178,7 +174,7 @@ ErrorBudget error_budget(std::span<BudgetStage const> stages, VectorMask const& 
   // Peak locking: use the estimator error on noise-free images if available, otherwise that of the measurement.
   std::size_t const window = place_of("window"), noise_free = place_of("noise_free"), measured = place_of("measured");
   std::size_t const estimate = at[noise_free] ? noise_free : measured;
-  budget.peak_locking_px = nan;
+  budget.peak_locking_px = not_a_number;
   if (at[window] && at[estimate]) {
     Differences truth;
     for (std::size_t const i : counted) truth.push_back((*at[window])[i]);
@@ -201,7 +197,7 @@ double peak_locking(std::span<Vec2d const> truth_px, std::span<Vec2d const> erro
   };
   for (std::size_t i = 0; i < truth_px.size(); ++i) {
     if (!mask.empty() && mask[i] == 0) continue;
-    if (!finite(truth_px[i]) || !finite(error_px[i])) continue;
+    if (!is_finite(truth_px[i]) || !is_finite(error_px[i])) continue;
     add(truth_px[i].x, error_px[i].x);
     add(truth_px[i].y, error_px[i].y);
   }
@@ -213,7 +209,7 @@ double peak_locking(std::span<Vec2d const> truth_px, std::span<Vec2d const> erro
     square += bin_mean * bin_mean;
     ++filled;
   }
-  return filled == 0 ? nan : std::sqrt(square / filled);
+  return filled == 0 ? not_a_number : std::sqrt(square / filled);
 }
 
 BudgetStage mean_estimator_stage(std::span<Vec2d const> window_truth_px,
@@ -226,7 +222,7 @@ BudgetStage mean_estimator_stage(std::span<Vec2d const> window_truth_px,
     int count = 0;
     for (std::size_t k = 0; k < pattern_noise_free_px.size(); ++k) {
       Vec2d const error = pattern_noise_free_px[k][i] - pattern_window_truth_px[k][i];
-      if (!finite(error)) continue;
+      if (!is_finite(error)) continue;
       sum += error;
       ++count;
     }

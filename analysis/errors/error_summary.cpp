@@ -6,13 +6,10 @@
 #include <limits>
 
 #include "render/base/contracts.h"
+#include "render/base/not_a_number.h"
 
 namespace gladstone {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
-bool finite(Vec2d a) { return std::isfinite(a.x) && std::isfinite(a.y); }
 
 /// Errors of the counted vectors, and the number of all vectors.
 struct Errors {
@@ -21,7 +18,7 @@ struct Errors {
 };
 
 double mean(Errors const& errors, double Vec2d::*component) {
-  if (errors.error_px.empty()) return nan;
+  if (errors.error_px.empty()) return not_a_number;
   double sum = 0.0;
   for (Vec2d const& e : errors.error_px) sum += e.*component;
   return sum / static_cast<double>(errors.error_px.size());
@@ -42,7 +39,7 @@ double rms(Errors const& errors, double largest) {
     sum += dot(e, e);
     ++count;
   }
-  return count == 0 ? nan : std::sqrt(0.5 * sum / static_cast<double>(count));
+  return count == 0 ? not_a_number : std::sqrt(0.5 * sum / static_cast<double>(count));
 }
 
 double percentile_95(Errors const& errors) {
@@ -52,14 +49,15 @@ double percentile_95(Errors const& errors) {
 }
 
 double gross_fraction(Errors const& errors) {
-  if (errors.error_px.empty()) return nan;
+  if (errors.error_px.empty()) return not_a_number;
   auto const gross =
       std::count_if(errors.error_px.begin(), errors.error_px.end(), [](Vec2d e) { return length(e) > gross_error_px; });
   return static_cast<double>(gross) / static_cast<double>(errors.error_px.size());
 }
 
 double valid_fraction(Errors const& errors) {
-  return errors.total == 0 ? nan : static_cast<double>(errors.error_px.size()) / static_cast<double>(errors.total);
+  return errors.total == 0 ? not_a_number
+                           : static_cast<double>(errors.error_px.size()) / static_cast<double>(errors.total);
 }
 
 /// Error measure with its name in errors.json, study.csv and the reports. A new measure requires one more row below.
@@ -90,7 +88,7 @@ Errors collect(std::span<Vec2d const> measured, std::span<Vec2d const> truth, Ve
   for (std::size_t i = 0; i < measured.size(); ++i) {
     if (!mask.empty() && mask[i] == 0) continue;
     Vec2d const error = measured[i] - truth[i];
-    if (finite(error)) errors.error_px.push_back(error);
+    if (is_finite(error)) errors.error_px.push_back(error);
   }
   return errors;
 }
@@ -99,7 +97,7 @@ Errors collect(std::span<Vec2d const> measured, std::span<Vec2d const> truth, Ve
 
 double quantile(std::vector<double> values, double fraction) {
   GLADSTONE_EXPECTS(fraction >= 0.0 && fraction <= 1.0);
-  if (values.empty()) return nan;
+  if (values.empty()) return not_a_number;
   double const rank = fraction * static_cast<double>(values.size() - 1);
   auto const below = static_cast<std::ptrdiff_t>(rank);
   std::nth_element(values.begin(), values.begin() + below, values.end());
@@ -112,11 +110,11 @@ double quantile(std::vector<double> values, double fraction) {
 VectorMask common_mask(DisplacementField const& measured, std::span<std::span<Vec2d const> const> references) {
   VectorMask mask(measured.size());
   for (std::size_t i = 0; i < mask.size(); ++i) {
-    mask[i] = measured.counts(i) && finite(measured.displacement_px[i]);
+    mask[i] = measured.counts(i) && is_finite(measured.displacement_px[i]);
   }
   for (std::span<Vec2d const> const reference : references) {
     GLADSTONE_EXPECTS(reference.empty() || reference.size() == mask.size());
-    for (std::size_t i = 0; i < reference.size(); ++i) mask[i] = mask[i] && finite(reference[i]);
+    for (std::size_t i = 0; i < reference.size(); ++i) mask[i] = mask[i] && is_finite(reference[i]);
   }
   return mask;
 }

@@ -24,7 +24,7 @@ class PointCells {
     Vec2d high{};
     bool any = false;
     for (Vec2d const& p : points) {
-      if (!finite(p)) continue;
+      if (!is_finite(p)) continue;
       low_ = any ? Vec2d{std::min(low_.x, p.x), std::min(low_.y, p.y)} : p;
       high = any ? Vec2d{std::max(high.x, p.x), std::max(high.y, p.y)} : p;
       any = true;
@@ -42,13 +42,13 @@ class PointCells {
     // Counting sort by cell keeps the points of a cell in their order.
     first_.assign(static_cast<std::size_t>(columns_) * rows_ + 1, 0);
     for (Vec2d const& p : points) {
-      if (finite(p)) ++first_[index_of(p) + 1];
+      if (is_finite(p)) ++first_[index_of(p) + 1];
     }
     for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
     sorted_.resize(first_.back());
     std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
     for (std::size_t i = 0; i < points.size(); ++i) {
-      if (finite(points[i])) sorted_[next[index_of(points[i])]++] = static_cast<std::uint32_t>(i);
+      if (is_finite(points[i])) sorted_[next[index_of(points[i])]++] = static_cast<std::uint32_t>(i);
     }
   }
 
@@ -56,7 +56,7 @@ class PointCells {
   /// Does nothing if c is not finite.
   template <class Visit>
   void for_near(Vec2d c, double radius, Visit&& visit) const {
-    if (columns_ == 0 || !finite(c)) return;
+    if (columns_ == 0 || !is_finite(c)) return;
     int const left = clamped((c.x - radius - low_.x) / cell_, columns_);
     int const right = clamped((c.x + radius - low_.x) / cell_, columns_);
     int const top = clamped((c.y - radius - low_.y) / cell_, rows_);
@@ -68,7 +68,6 @@ class PointCells {
   }
 
  private:
-  static bool finite(Vec2d p) { return std::isfinite(p.x) && std::isfinite(p.y); }
   static int clamped(double cell, int count) {
     return static_cast<int>(std::clamp(std::floor(cell), 0.0, static_cast<double>(count - 1)));
   }

@@ -7,12 +7,11 @@
 
 #include "analysis/errors/point_cells.h"
 #include "render/base/contracts.h"
+#include "render/base/not_a_number.h"
 #include "render/base/parallel.h"
 
 namespace gladstone {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// Weighted sums for the fit of a plane to scattered values, with offsets from the node in units of h.
 struct PlaneFit {
@@ -50,7 +49,7 @@ struct PlaneFit {
 };
 
 double mean_spacing(std::span<Vec2d const> points) {
-  Vec2d low{nan, nan}, high{nan, nan};
+  Vec2d low{not_a_number, not_a_number}, high{not_a_number, not_a_number};
   std::size_t count = 0;
   for (Vec2d const& p : points) {
     if (!std::isfinite(p.x) || !std::isfinite(p.y)) continue;
@@ -70,7 +69,8 @@ DisplacementMaps map_scattered(std::span<Vec2d const> position_px, std::span<Vec
   GLADSTONE_EXPECTS(grid.columns >= 0 && grid.rows >= 0 && grid.step_px > 0.0);
   std::vector<Vec2d> usable(position_px.begin(), position_px.end());
   for (std::size_t i = 0; i < usable.size(); ++i) {
-    if (!std::isfinite(displacement_px[i].x) || !std::isfinite(displacement_px[i].y)) usable[i] = {nan, nan};
+    if (!std::isfinite(displacement_px[i].x) || !std::isfinite(displacement_px[i].y))
+      usable[i] = {not_a_number, not_a_number};
   }
   double const smoothing = smoothing_px > 0.0 ? smoothing_px : 0.6 * mean_spacing(usable);
   PointCells const cells(usable, 3.0 * smoothing);
@@ -86,7 +86,7 @@ DisplacementMaps map_scattered(std::span<Vec2d const> position_px, std::span<Vec
       });
       if (fit.amplification() <= 1.0) return fit.at_node();
     }
-    return fit.amplification() <= 4.0 ? fit.at_node() : Vec2d{nan, nan};
+    return fit.amplification() <= 4.0 ? fit.at_node() : Vec2d{not_a_number, not_a_number};
   };
 
   DisplacementMaps maps{Image<double>(grid.columns, grid.rows), Image<double>(grid.columns, grid.rows)};

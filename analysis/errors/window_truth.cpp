@@ -2,10 +2,10 @@
 
 #include <atomic>
 #include <cmath>
-#include <limits>
 
 #include "analysis/errors/point_cells.h"
 #include "render/base/contracts.h"
+#include "render/base/not_a_number.h"
 #include "render/base/parallel.h"
 
 namespace gladstone {
@@ -25,13 +25,11 @@ WindowTruth window_truth(std::span<Vec2d const> reference_px, std::span<Vec2d co
   GLADSTONE_EXPECTS(flux.empty() || flux.size() == reference_px.size());
   GLADSTONE_EXPECTS(weight.half_width_px > 0.0);
 
-  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   std::vector<Vec2d> position(reference_px.size());
   for (std::size_t i = 0; i < position.size(); ++i) {
     Vec2d const d = displacement_px[i];
-    bool const usable = std::isfinite(d.x) && std::isfinite(d.y);
     Vec2d const shift = at == TruthAt::mid_position ? 0.5 * d : Vec2d{};
-    position[i] = usable ? reference_px[i] + shift : Vec2d{nan, nan};
+    position[i] = is_finite(d) ? reference_px[i] + shift : Vec2d{not_a_number, not_a_number};
   }
   PointCells const cells(position, weight.half_width_px);
 
@@ -53,7 +51,7 @@ WindowTruth window_truth(std::span<Vec2d const> reference_px, std::span<Vec2d co
         ++dots;
       });
       bool const enough = dots >= 3;
-      truth.displacement_px[i] = enough ? sum / total : Vec2d{nan, nan};
+      truth.displacement_px[i] = enough ? sum / total : Vec2d{not_a_number, not_a_number};
       if (!enough) ++left_out;
     }
   });

@@ -10,7 +10,7 @@
 namespace gladstone {
 namespace {
 
-constexpr std::size_t windows_per_piece = 64;
+constexpr std::size_t matches_per_piece = 64;
 
 void take_window(ImagePair const& pair, int first_x, int first_y, std::vector<float> const& axis,
                  MatchedWindow& window) {
@@ -71,7 +71,7 @@ Vec2<int> first_pixel(InterrogationGrid const& grid, std::size_t vector, int sid
 void visit_matched_windows(UncertaintyInput const& input,
                            std::function<void(std::size_t, MatchedWindow const&)> const& visit) {
   WindowShape const shape = window_shape(input.settings, input.grid);
-  parallel_chunks(input.field.size(), windows_per_piece, [&](std::size_t begin, std::size_t end) {
+  parallel_chunks(input.field.size(), matches_per_piece, [&](std::size_t begin, std::size_t end) {
     std::size_t const pixels = static_cast<std::size_t>(shape.side) * shape.side;
     MatchedWindow window{shape.side, std::vector<float>(pixels), std::vector<float>(pixels),
                          std::vector<float>(pixels)};

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "analysis/correlation/correlation_methods.h"
 #include "analysis/correlation/correlator.h"
@@ -11,6 +10,7 @@
 #include "analysis/correlation/vector_validation.h"
 #include "analysis/uncertainty/combination.h"
 #include "render/base/contracts.h"
+#include "render/base/not_a_number.h"
 
 namespace gladstone {
 namespace {
@@ -94,7 +94,6 @@ bool uncertainty_on_gpu(std::string const& method) {
 }
 
 void estimate_uncertainty(DisplacementField& field, FramePair const& frames, CorrelationSettings const& settings) {
-  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   if (settings.uncertainty == "none") return;
   InterrogationGrid const grid = final_grid(settings, frames.reference().columns(), frames.reference().rows());
   GLADSTONE_EXPECTS(grid.size() == field.size());
@@ -103,7 +102,7 @@ void estimate_uncertainty(DisplacementField& field, FramePair const& frames, Cor
     if (settings.uncertainty == row.name) field.sigma_px = row.estimate({field, matched, grid, settings});
   GLADSTONE_EXPECTS(field.sigma_px.size() == field.size());
   for (std::size_t i = 0; i < field.size(); ++i)
-    if (field.status[i] != VectorStatus::valid) field.sigma_px[i] = {nan, nan};
+    if (field.status[i] != VectorStatus::valid) field.sigma_px[i] = {not_a_number, not_a_number};
 }
 
 void complete_uncertainty(DisplacementField& field, FramePair const& frames, CorrelationSettings const& settings) {

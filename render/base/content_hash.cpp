@@ -14,11 +14,8 @@ std::uint64_t xxh64(void const* bytes, std::size_t size, std::uint64_t seed) {
   return OIIO::xxhash::XXH64(bytes, size, seed);
 }
 
-std::string hexadecimal(std::uint64_t value) {
-  char text[17];
-  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(value));
-  return text;
-}
+/// Formats a hash as 16 hexadecimal digits.
+std::string hexadecimal(std::uint64_t value) { return fmt::format("{:016x}", value); }
 
 }  // namespace
 

@@ -139,7 +139,7 @@ std::vector<std::size_t> shape_of(hid_t dataset) {
 }
 
 /// Size up to which a dataset is read without checking the file's size [bytes], since unwritten parts are not stored.
-constexpr double always_believed = 64e6;
+constexpr double believed_dataset_bytes = 64e6;
 
 /// Returns the largest possible compression ratio of a dataset's filters: 1032 for deflate, which szip does not reach;
 /// infinite for filters that can reduce constant data to nothing.
@@ -171,7 +171,7 @@ void require_stored(hid_t dataset, double file_bytes, std::string const& path, s
     chunk_bytes = std::accumulate(chunk.begin(), chunk.end(), value, std::multiplies<>());
   }
   bool const elsewhere = H5Pget_external_count(created) > 0 || H5Pget_layout(created) == H5D_VIRTUAL;
-  double const most = std::max(always_believed, file_bytes * largest_packing(created));
+  double const most = std::max(believed_dataset_bytes, file_bytes * largest_packing(created));
   if (elsewhere || std::max(stored, chunk_bytes) <= most) return;
   throw DataError(path, "dataset \"" + name + "\" of " + sizes_text(shape) + " values cannot be read (the file of " +
                             std::to_string(static_cast<long long>(file_bytes)) +
@@ -327,7 +327,7 @@ std::vector<std::string> Hdf5Reader::linked_number_datasets() const {
   return names;
 }
 
-std::vector<std::string> Hdf5Reader::other_datasets() const {
+std::vector<std::string> Hdf5Reader::describe_other_datasets() const {
   Lock const lock(library_lock());
   std::vector<std::string> texts;
   for (std::string const& name : all_datasets(handle_->file)) {
@@ -496,7 +496,7 @@ std::string Hdf5Reader::attribute_of(std::string const& dataset, std::string con
   return attribute_text(handle_->open(path_, dataset), name, handle_->bytes);
 }
 
-std::vector<double> Hdf5Reader::numbers_of(std::string const& dataset, std::string const& name) const {
+std::vector<double> Hdf5Reader::number_attribute(std::string const& dataset, std::string const& name) const {
   Lock const lock(library_lock());
   Id const opened = handle_->open(path_, dataset);
   if (H5Aexists(opened, name.c_str()) <= 0) return {};

@@ -67,7 +67,8 @@ ImageMetadata metadata_of(PageHeader const& header) {
 /// Upper limit on the compression ratio of an image: above 1032 for deflate (2 bits for a run of 258 bytes) and 1365
 /// for LZW (12 bits for at most 4 kB). Higher ratios only occur in formats that are not used for images.
 constexpr double most_packed = 2048;
-constexpr double always_believed = 16e6;  // decoded size up to which a compressed image's header is trusted [bytes]
+constexpr double believed_image_bytes =
+    16e6;  // decoded size up to which a compressed image's header is trusted [bytes]
 constexpr int most_pages_counted = 1000;
 
 /// Throws unless the file is long enough for the pixels that its header declares, and memory is available for them.
@@ -80,7 +81,7 @@ void check_size(PageHeader const& spec, std::string const& path, std::uint64_t f
   // uncompressed palette images: one index byte is expanded to three colour values
   bool const packed = spec.compression != "none";
   double const most = static_cast<double>(file_bytes) * (packed ? most_packed : 4.0);
-  if (stored > std::max(most, packed ? always_believed : 0.0) || spec.width <= 0 || spec.height <= 0) {
+  if (stored > std::max(most, packed ? believed_image_bytes : 0.0) || spec.width <= 0 || spec.height <= 0) {
     throw DataError(path, fmt::format("is damaged or cut short: its header tells of {}, {:.3g} MB, and the file has "
                                       "{:.3g} MB; copy it again",
                                       sizes, stored / 1e6, static_cast<double>(file_bytes) / 1e6));

@@ -30,12 +30,6 @@ constexpr std::string_view label = "partial-";
 constexpr std::string_view lock_label = "lock-";
 constexpr char const* without_lock = "unlocked";  // boot id of writers without a lock: their end cannot be detected
 
-std::string hexadecimal(std::uint64_t number) {
-  char text[17];
-  std::snprintf(text, sizeof text, "%llx", static_cast<unsigned long long>(number));
-  return text;
-}
-
 std::string this_host() {
   char name[256] = {};
   ::gethostname(name, sizeof name - 1);
@@ -89,7 +83,7 @@ struct Writer {
   bool can_be_judged(dev_t disk, time_t touched) const {
     std::string const& now = this_boot();
     if (now.empty() || boot == without_lock) return false;
-    if (boot == now) return device == hexadecimal(disk);
+    if (boot == now) return device == fmt::format("{:x}", disk);
     return host == this_host() && touched < boot_time();
   }
 };
@@ -98,8 +92,8 @@ std::string new_writer(dev_t disk, bool locked) {
   std::uint32_t number = 0;
   if (::getrandom(&number, sizeof number, 0) != sizeof number) number = static_cast<std::uint32_t>(::clock());
   std::string const boot = locked ? this_boot() : "";
-  return this_host() + '-' + (boot.empty() ? without_lock : boot) + '-' + hexadecimal(disk) + '-' +
-         std::to_string(::getpid()) + '-' + hexadecimal(number);
+  return this_host() + '-' + (boot.empty() ? without_lock : boot) + '-' + fmt::format("{:x}", disk) + '-' +
+         std::to_string(::getpid()) + '-' + fmt::format("{:x}", number);
 }
 
 /// Returns true if a path still refers to this open file.

@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "render/base/freed_memory.h"
+#include "render/base/not_a_number.h"
 #include "render/base/parallel.h"
 #include "render/ideal_images/ideal_images.h"
 #include "render/scene/particle_scene.h"
@@ -13,7 +13,6 @@ namespace {
 
 constexpr int frames = 2;
 constexpr int band_rows = 64;  // rows of an image that one thread renders at a time
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// Position and light of a particle's image.
 struct Spot {
@@ -92,15 +91,15 @@ GroundTruth truth_of(Particles const& particles, std::array<std::vector<Spot>, f
   truth.particles.second_m = particles.place[1];
   truth.particles.diameter_m = particles.diameter;
   for (auto* const theory : {&truth.eq9_px, &truth.chief_px, &truth.eq9_cone_px})
-    theory->assign(truth.size(), {nan, nan});
+    theory->assign(truth.size(), {not_a_number, not_a_number});
   parallel_chunks(truth.size(), 4096, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       Spot const &first = spots[0][i], &second = spots[1][i];
       bool const both = first.light > 0 && second.light > 0;
-      truth.reference_px[i] = first.light > 0 ? first.at : Vec2d{nan, nan};
-      truth.displacement_px[i] = both ? second.at - first.at : Vec2d{nan, nan};
-      truth.displacement_error_px[i] = both ? Vec2d{} : Vec2d{nan, nan};
-      truth.displacement_std_px[i] = second.light > 0 ? Vec2d{} : Vec2d{nan, nan};
+      truth.reference_px[i] = first.light > 0 ? first.at : Vec2d{not_a_number, not_a_number};
+      truth.displacement_px[i] = both ? second.at - first.at : Vec2d{not_a_number, not_a_number};
+      truth.displacement_error_px[i] = both ? Vec2d{} : Vec2d{not_a_number, not_a_number};
+      truth.displacement_std_px[i] = second.light > 0 ? Vec2d{} : Vec2d{not_a_number, not_a_number};
       truth.flux[i] = {first.light, second.light};
     }
   });

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <mutex>
 
+#include "render/base/not_a_number.h"
 #include "render/base/parallel.h"
 #include "render/base/progress.h"
 #include "render/rays/ray_theory.h"
@@ -121,8 +121,7 @@ std::vector<Vec2d> ideal_displacements(Scene const& scene, DotPattern const& sou
   for (WindowSetup const& window : scene.setup.windows) {
     if (window.side == WindowSide::target) view.seen_z += window.shift();
   }
-  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-  std::vector<Vec2d> displacement(sources.centre.size(), Vec2d{nan, nan});
+  std::vector<Vec2d> displacement(sources.centre.size(), Vec2d{not_a_number, not_a_number});
   std::visit(
       [&](auto const& medium) {
         parallel_chunks(displacement.size(), 8, [&](std::size_t begin, std::size_t end) {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <limits>
 
+#include "render/base/not_a_number.h"
 #include "render/base/parallel.h"
 
 namespace gladstone {
@@ -38,8 +38,7 @@ void GroundTruth::copy(GroundTruth const& other, std::size_t from, std::size_t t
 }
 
 void GroundTruth::set_hits(std::size_t dot, DotTruth const& found, double light_per_weight) {
-  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-  Vec2d const none{nan, nan};
+  Vec2d const none{not_a_number, not_a_number};
   CentroidSum<double> const &reference = found.hits[0], &flow = found.hits[1];
   bool const seen[2] = {reference.weight > 0, flow.weight > 0};
   reference_px[dot] = seen[0] ? found.origin + reference.mean() : none;

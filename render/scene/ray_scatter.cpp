@@ -2,15 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "render/base/not_a_number.h"
 #include "render/base/parallel.h"
 #include "render/scene/ray_hit.h"
 
 namespace gladstone {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// Average properties of the dots in one image: sums over the pixels of a dot.
 struct MeanDot {
@@ -23,7 +21,7 @@ struct MeanDot {
 MeanDisplacement MeanDisplacement::of(Vec2d const (&found)[plan_scramblings]) {
   auto const shown = [](Vec2d one) { return std::isfinite(one.x); };
   MeanDisplacement result;
-  if (std::none_of(std::begin(found), std::end(found), shown)) return {{nan, nan}, nan};
+  if (std::none_of(std::begin(found), std::end(found), shown)) return {{not_a_number, not_a_number}, not_a_number};
   auto const moved = [&shown](Vec2d one) { return shown(one) ? one : Vec2d{}; };
   for (Vec2d const one : found) result.mean += moved(one) / static_cast<double>(plan_scramblings);
   for (Vec2d const one : found) {
@@ -56,7 +54,7 @@ GreyLevels::GreyLevels(CameraSetup const& camera, double dots_a_pixel)
 
 double GreyLevels::error(Scatter const& scatter) const {
   double const light_per_level = level > 0 ? level : scatter.brightest / at_peak;
-  return light_per_level > 0 ? std::sqrt(scatter.light_variance) / light_per_level : nan;
+  return light_per_level > 0 ? std::sqrt(scatter.light_variance) / light_per_level : not_a_number;
 }
 
 Scatter measure_scatter(std::vector<std::size_t> const& dots, GreyLevels const& levels,
@@ -108,7 +106,7 @@ Scatter measure_scatter(std::vector<std::size_t> const& dots, GreyLevels const& 
     double const overlapping = levels.density * sums.light + 3 * std::sqrt(levels.density * sums.square);
     scatter.brightest = std::max(scatter.brightest, overlapping);
   }
-  scatter.light_variance = nan;
+  scatter.light_variance = not_a_number;
   double const threshold = levels.level > 0 ? levels.level : scatter.brightest / levels.at_peak;
   for (int frame = 0; frame < frame_count; ++frame) {
     MeanDot& sums = frames[frame];

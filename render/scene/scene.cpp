@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "render/base/available_memory.h"
 #include "render/base/error.h"
 #include "render/base/fields/field_file.h"
 #include "render/base/interrupt.h"
+#include "render/base/not_a_number.h"
 #include "render/base/units.h"
 #include "render/light/calibration_target.h"
 #include "render/scene/build_camera.h"
@@ -142,8 +142,7 @@ Pose<double> Scene::sheet_plane() const {
 
 Vec2d Scene::to_pixel(Vec2d on_target) const {
   if (!setup.on_bench()) {
-    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-    return camera.project({on_target.x, on_target.y, -setup.z_d}).value_or(Vec2d{nan, nan});
+    return camera.project({on_target.x, on_target.y, -setup.z_d}).value_or(Vec2d{not_a_number, not_a_number});
   }
   double const scale = imaging.magnification / setup.camera.pixel_pitch;
   return {0.5 * (setup.camera.columns - 1) + scale * on_target.x, 0.5 * (setup.camera.rows - 1) - scale * on_target.y};
@@ -151,9 +150,8 @@ Vec2d Scene::to_pixel(Vec2d on_target) const {
 
 Vec2d Scene::to_target(Vec2d pixel) const {
   if (!setup.on_bench()) {
-    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
     auto const seen = camera.unproject(pixel, target_plane());
-    return seen ? seen->place : Vec2d{nan, nan};
+    return seen ? seen->place : Vec2d{not_a_number, not_a_number};
   }
   double const scale = setup.camera.pixel_pitch / imaging.magnification;
   return {(pixel.x - 0.5 * (setup.camera.columns - 1)) * scale, (0.5 * (setup.camera.rows - 1) - pixel.y) * scale};

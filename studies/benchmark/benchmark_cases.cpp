@@ -11,7 +11,7 @@
 namespace gladstone {
 namespace {
 
-constexpr int pixels = 1024;
+constexpr int case_pixels = 1024;
 constexpr double per_window = 1.0 / 1024.0;  ///< density of one particle per 32 x 32 px [1/px^2]
 
 /// Derives a seed from a name: sum of the letters weighted by their positions.
@@ -25,18 +25,18 @@ std::vector<BenchmarkCase> make_cases() {
   std::vector<BenchmarkCase> cases;
   auto const add = [&](std::string const& name, std::string const& what, DisplacementAt flow,
                        ParticleSettings particles = {}) {
-    int const size = flow ? pixels : RefractedTurbulence::pixels;
+    int const size = flow ? case_pixels : RefractedTurbulence::pixels;
     particles.columns = particles.rows = size;
     particles.seed = seed_of(name);
     cases.push_back({name, what, particles, std::move(flow)});
   };
-  DisplacementAt const uniform = uniform_flow({0.3, -0.3}), vortex = vortex_flow(100.0, pixels);
+  DisplacementAt const uniform = uniform_flow({0.3, -0.3}), vortex = vortex_flow(100.0, case_pixels);
   add("uniform", "uniform displacement (0.3, -0.3) px", uniform);
   add("stretch", "u = 0.002 x, v = -0.002 y about the middle: every part of a pixel, for bias and peak locking",
       [](Vec2d p) {
         return Vec2d{0.002 * (p.x - 511.5), -0.002 * (p.y - 511.5)};
       });
-  add("shear", "u = 0.02 y", shear_flow(0.02, pixels));
+  add("shear", "u = 0.02 y", shear_flow(0.02, case_pixels));
   add("vortex", "Lamb & Oseen's vortex, at most 5 px at 112 px from its middle", vortex);
   for (int const length : {256, 128, 64, 32})
     add(fmt::format("sine_{}", length), fmt::format("crossed sines of {} px and an amplitude of 1 px", length),

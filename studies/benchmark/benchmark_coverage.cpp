@@ -12,10 +12,10 @@
 namespace gladstone {
 namespace {
 
-constexpr int pixels = RefractedTurbulence::pixels;
+constexpr int coverage_pixels = RefractedTurbulence::pixels;
 constexpr double noises[] = {0.01, 0.05, 0.1};
 /// First of the seeds that are reserved for the coverage.
-constexpr std::uint64_t first_seed = 7001;
+constexpr std::uint64_t first_coverage_seed = 7001;
 
 struct TestedFlow {
   char const* name;
@@ -40,14 +40,14 @@ SeedMean mean_of(std::vector<Sample> const& samples, double Sample::*value) {
 
 std::vector<CoverageRow> measure_coverage(int seeds, Device const& device) {
   TestedFlow const flows[] = {{"uniform", uniform_flow({0.3, -0.3})},
-                              {"shear", shear_flow(0.02, pixels)},
-                              {"vortex", vortex_flow(100.0, pixels)},
+                              {"shear", shear_flow(0.02, coverage_pixels)},
+                              {"vortex", vortex_flow(100.0, coverage_pixels)},
                               {"turbulence", {}}};
   std::map<std::tuple<std::string, std::string, double>, std::vector<Sample>> samples;
   for (TestedFlow const& flow : flows) {
     DisplacementAt truth = flow.displacement;
     for (int k = 0; k < seeds; ++k) {
-      std::uint64_t const seed = first_seed + static_cast<std::uint64_t>(k);
+      std::uint64_t const seed = first_coverage_seed + static_cast<std::uint64_t>(k);
       spdlog::info("coverage: {}, seed {} of {}", flow.name, k + 1, seeds);
       std::optional<RefractedTurbulence> turbulence;
       if (!flow.displacement) {
@@ -56,14 +56,16 @@ std::vector<CoverageRow> measure_coverage(int seeds, Device const& device) {
       }
       for (double const noise : noises) {
         ParticlePair pair =
-            turbulence ? turbulence->frames(noise, seed)
-                       : render_particle_pair({.columns = pixels, .rows = pixels, .noise = noise, .seed = seed}, truth);
+            turbulence
+                ? turbulence->frames(noise, seed)
+                : render_particle_pair(
+                      {.columns = coverage_pixels, .rows = coverage_pixels, .noise = noise, .seed = seed}, truth);
         CorrelationSettings settings;
         HostFrames const frames(std::move(pair.reference), std::move(pair.flow));
         DisplacementField field = correlate_frames(frames, settings, device).field;
         std::vector<Vec2d> const point = truth_at_vectors(field, truth);
-        WindowTruths const on = window_truths_of(field, pair, settings, pixels, pixels);
-        VectorMask mask = benchmark_mask(field, pixels, pixels);
+        WindowTruths const on = window_truths_of(field, pair, settings, coverage_pixels, coverage_pixels);
+        VectorMask mask = benchmark_mask(field, coverage_pixels, coverage_pixels);
         for (std::size_t i = 0; i < mask.size(); ++i) mask[i] = mask[i] && field.status[i] == VectorStatus::valid;
         for (std::string const& method : uncertainty_methods()) {
           settings.uncertainty = method;

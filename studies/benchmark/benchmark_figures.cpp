@@ -10,17 +10,17 @@
 namespace gladstone {
 namespace {
 
+bool is_on_curve(std::string const& name) {
+  for (BenchmarkEstimator const& one : benchmark_estimators())
+    if (one.name == name) return one.of_curve || name == "default";
+  return false;
+}
+
 /// Noise and gain of one estimator.
 struct Point {
   std::string name;
   double gain = 0.0, rms = 0.0;
 };
-
-bool is_of_curve(std::string const& name) {
-  for (BenchmarkEstimator const& one : benchmark_estimators())
-    if (one.name == name) return one.of_curve || name == "default";
-  return false;
-}
 
 std::vector<Point> points_of(BenchmarkResult const& result) {
   std::map<std::string, BenchmarkRow const*> noise, gain;
@@ -46,7 +46,7 @@ void draw_noise_against_gain(std::vector<Point> const& points, std::string const
   plot.command("set key top left Left reverse samplen 2; set yrange [0:*]; set xrange [*:1.05]");
   plot.command("set title 'Noise against gain: further to the right and further down is better'");
   std::vector<Point> curve, others;
-  for (Point const& point : points) (is_of_curve(point.name) ? curve : others).push_back(point);
+  for (Point const& point : points) (is_on_curve(point.name) ? curve : others).push_back(point);
   std::sort(curve.begin(), curve.end(), [](Point const& a, Point const& b) { return a.gain < b.gain; });
   std::string commands = "plot ";
   auto const columns_of = [](std::vector<Point> const& of) {

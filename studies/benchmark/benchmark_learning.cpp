@@ -11,9 +11,9 @@
 namespace gladstone {
 namespace {
 
-constexpr int pixels = 512;
+constexpr int learning_pixels = 512;
 /// First of the seeds that are reserved for the training set.
-constexpr std::uint64_t first_seed = 9001;
+constexpr std::uint64_t first_learning_seed = 9001;
 
 struct Seeding {
   double diameter_px, per_window;
@@ -24,28 +24,28 @@ struct Seeding {
 UncertaintyCombination learn_combination(Device const& device) {
   std::vector<std::string> methods = uncertainty_methods();
   std::erase(methods, "combination");
-  DisplacementAt const flows[] = {uniform_flow({0.3, -0.6}), shear_flow(0.02, pixels), [](Vec2d p) {
+  DisplacementAt const flows[] = {uniform_flow({0.3, -0.6}), shear_flow(0.02, learning_pixels), [](Vec2d p) {
                                     return Vec2d{0.006 * (p.x - 255.5), -0.006 * (p.y - 255.5)};
                                   }};
   std::vector<UncertaintySample> samples;
-  std::uint64_t seed = first_seed;
+  std::uint64_t seed = first_learning_seed;
   for (DisplacementAt const& flow : flows)
     for (double const noise : {0.01, 0.02, 0.05, 0.1})
       for (auto const& [diameter, per_window] : {Seeding{3.0, 20.0}, {2.2, 12.0}, {4.5, 20.0}, {3.0, 40.0}}) {
-        ParticlePair pair = render_particle_pair({.columns = pixels,
-                                                  .rows = pixels,
+        ParticlePair pair = render_particle_pair({.columns = learning_pixels,
+                                                  .rows = learning_pixels,
                                                   .diameter_px = diameter,
                                                   .particles_per_px = per_window / 1024.0,
                                                   .noise = noise,
                                                   .seed = seed++},
                                                  flow);
-        spdlog::info("learning: {} pairs", seed - first_seed);
+        spdlog::info("learning: {} pairs", seed - first_learning_seed);
         CorrelationSettings settings;
         HostFrames const frames(std::move(pair.reference), std::move(pair.flow));
         DisplacementField field = correlate_frames(frames, settings, device).field;
         // These flows are linear across a window, so that deformed windows measure the displacement at their centres.
         std::vector<Vec2d> const truth = truth_at_vectors(field, flow);
-        VectorMask const mask = benchmark_mask(field, pixels, pixels);
+        VectorMask const mask = benchmark_mask(field, learning_pixels, learning_pixels);
         std::vector<std::vector<Vec2d>> sigmas;
         for (std::string const& method : methods) {
           settings.uncertainty = method;

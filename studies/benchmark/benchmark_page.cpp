@@ -164,15 +164,24 @@ std::vector<std::string> findings_of(BenchmarkResult const& result) {
     auto const tell = [&](char const* of_case, char const* in_words) {
       BenchmarkRow const* const row = find_row(result, code, of_case);
       if (!row) return;
-      text += fmt::format("{}{:.4f} px {}", text.empty() ? "" : ", ", row->score.errors.rms_without_gross_px, in_words);
+      if (!text.empty()) text += ", ";
+      BenchmarkScore const& score = row->score;
       // Report gross errors as well, since the rms excludes them.
-      double const gross = static_cast<double>(row->score.gross) / static_cast<double>(row->score.errors.count);
-      if (gross > 0.01) text += fmt::format(" ({:.0f} % of the vectors are gross errors)", 100.0 * gross);
+      double const gross = static_cast<double>(score.gross) / static_cast<double>(score.errors.count);
+      if (score.errors.count == 0) {
+        text += fmt::format("no valid vector {}", in_words);
+      } else if (score.gross == score.errors.count) {
+        text += fmt::format("every vector off by more than {:.0f} px {}", gross_error_px, in_words);
+      } else {
+        text += fmt::format("{:.4f} px {}", score.errors.rms_without_gross_px, in_words);
+        if (gross > 0.01) text += fmt::format(" ({:.0f} % of the vectors are gross errors)", 100.0 * gross);
+      }
     };
     tell("vortex", "in the vortex");
     tell(noise_case, "at 5 % noise");
     if (BenchmarkRow const* const row = find_row(result, code, gain_case))
-      text += fmt::format("{}a gain of {:.3f} at sines of 64 px", text.empty() ? "" : ", ", row->score.gain);
+      if (std::isfinite(row->score.gain))
+        text += fmt::format("{}a gain of {:.3f} at sines of 64 px", text.empty() ? "" : ", ", row->score.gain);
     if (!text.empty()) findings.push_back(fmt::format("{}: {}.", code, text));
   }
   return findings;
@@ -199,7 +208,7 @@ ReportPage benchmark_page(BenchmarkResult const& result, std::string const& fold
       "flow frame, d at their mid-position. Measure every pair with your code, write the vectors of each into a file "
       "named after its case (vortex.csv, .txt or .h5: ours, OpenPIV's, PIVlab's, or columns x, y, u, v in px), and "
       "give "
-      "the folder. Axes and offsets are found by the vortex, where it is among the files."});
+      "the folder. Axes, offsets and likely mistakes are found by all cases together."});
   made.blocks.emplace_back(
       Verbatim{"Command", fmt::format("gladstone benchmark -o {} --vectors NAME=FOLDER\n", folder)});
   if (!result.conventions.empty()) made.blocks.emplace_back(TextList{result.conventions});

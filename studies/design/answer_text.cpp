@@ -13,7 +13,7 @@ namespace gladstone {
 namespace {
 
 using Json = nlohmann::ordered_json;
-constexpr double mm = unit::millimetre;
+using unit::mm;
 constexpr std::size_t most_alternatives = 5;
 
 /// A predicted quantity with its key.

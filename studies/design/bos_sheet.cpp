@@ -10,7 +10,8 @@
 namespace gladstone {
 namespace {
 
-constexpr double mm = unit::millimetre, um = unit::micrometre;
+using unit::mm;
+using unit::um;
 constexpr double gradient_without_field = 10;  // [kg/m^4]
 constexpr double good_dot_px = 3;              // recommended maximum of the diffraction-limited dot diameter, F13
 constexpr double deforming_strain = 0.1;       // maximum strain that deforming interrogation windows follow, F19

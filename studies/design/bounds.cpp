@@ -3,7 +3,7 @@
 namespace gladstone {
 
 BoundKey bound_key(Bound bound) {
-  constexpr double mm = unit::millimetre;
+  using unit::mm;
   switch (bound) {
     case Bound::gradient_min:
       return {"requirements.gradient_min_kg_m4", 1};

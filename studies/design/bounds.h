@@ -30,6 +30,9 @@ enum class Bound {
   full_well,   ///< the peak is below full scale
 };
 
+/// Returns true if the bound is the least value allowed, false if it is the greatest.
+inline bool from_below(Bound bound) { return bound == Bound::view_width || bound == Bound::view_height; }
+
 constexpr bool required_by_user(Bound bound) { return bound < Bound::focus; }
 
 /// A constraint with its limit, in SI.

@@ -11,9 +11,8 @@
 namespace gladstone {
 namespace {
 
-constexpr double mm = unit::millimetre;
+using unit::mm;
 constexpr char const* keane = "Keane & Adrian 1992, Appl. Sci. Res. 49:191";
-constexpr char const* adrian = "Adrian & Yao 1985; Raffel et al. 2018";
 constexpr char const* olsen = "Olsen & Adrian 2000, Exp. Fluids 29:S166";
 
 /// Largest speeds of the flow in the visible part of the plane Z = 0, in-plane and out-of-plane [m/s].

@@ -11,7 +11,7 @@
 namespace gladstone {
 namespace {
 
-using Jet = ceres::Jet<double, static_cast<int>(gradient_inputs)>;
+using InputJet = ceres::Jet<double, static_cast<int>(gradient_inputs)>;
 
 /// Returns the probability of Student's t distribution between -t and t.
 double student_coverage(double t, double degrees) {
@@ -27,10 +27,10 @@ double student_coverage(double t, double degrees) {
   return 2 * norm * sum * h / 3;
 }
 
-GradientMeasurement<Jet> with_derivatives(GradientMeasurement<double> const& at) {
-  GradientMeasurement<Jet> jets;
+GradientMeasurement<InputJet> with_derivatives(GradientMeasurement<double> const& at) {
+  GradientMeasurement<InputJet> jets;
   jets.window_px = at.window_px;
-  for (std::size_t i = 0; i < gradient_inputs; ++i) jets.value[i] = Jet(at.value[i], static_cast<int>(i));
+  for (std::size_t i = 0; i < gradient_inputs; ++i) jets.value[i] = InputJet(at.value[i], static_cast<int>(i));
   return jets;
 }
 
@@ -42,8 +42,8 @@ double slope_of(MeasurementInput const& input, double value) {
 /// Returns d(result) / d(input): by Jets for inputs of the formula; for others from ray tracing, with the opposite
 /// sign, since the traced derivative is that of the displacement per gradient.
 /// @param from_gradient  the result divided by the gradient
-double derivative_of(MeasurementInput const& input, GradientMeasurement<double> const& at, Jet const& result,
-                     Jet const& from_gradient) {
+double derivative_of(MeasurementInput const& input, GradientMeasurement<double> const& at, InputJet const& result,
+                     InputJet const& from_gradient) {
   if (!input.enters) {
     double derivative = input.traced ? -*input.traced * result.a : 0;
     if (input.scales) {
@@ -119,7 +119,8 @@ void add_samples(PropagatedResult& result, std::vector<double> samples, double f
 }
 
 PropagatedResult first_order(std::string key, GradientMeasurement<double> const& at,
-                             std::vector<MeasurementInput> const& inputs, Jet const& result, Jet const& from_gradient) {
+                             std::vector<MeasurementInput> const& inputs, InputJet const& result,
+                             InputJet const& from_gradient) {
   PropagatedResult out;
   out.key = std::move(key);
   out.value = result.a;
@@ -165,9 +166,9 @@ double coverage_factor(double degrees_of_freedom) {
 
 std::vector<PropagatedResult> propagate(GradientMeasurement<double> const& at,
                                         std::vector<MeasurementInput> const& inputs) {
-  GradientMeasurement<Jet> const jets = with_derivatives(at);
+  GradientMeasurement<InputJet> const jets = with_derivatives(at);
   std::vector<PropagatedResult> results{
-      first_order("gradient_kg_m4", at, inputs, jets.gradient(), Jet(1.0)),
+      first_order("gradient_kg_m4", at, inputs, jets.gradient(), InputJet(1.0)),
       first_order("density_step_kg_m3", at, inputs, jets.density_step(), jets.density_over_gradient())};
   InputDraws const draws(inputs);
   std::array<std::vector<double>, 2> samples;
@@ -184,12 +185,12 @@ std::vector<PropagatedResult> propagate(GradientMeasurement<double> const& at,
 double common_relative_uncertainty(GradientMeasurement<double> at, std::vector<MeasurementInput> const& inputs) {
   // arbitrary: the relative contribution of the other inputs does not depend on it
   at[GradientInput::displacement] = 1;
-  Jet const gradient = with_derivatives(at).gradient();
+  InputJet const gradient = with_derivatives(at).gradient();
   Eigen::VectorXd parts(static_cast<Eigen::Index>(inputs.size()));
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     bool const common = inputs[i].enters != GradientInput::displacement;
     parts[static_cast<Eigen::Index>(i)] =
-        common ? derivative_of(inputs[i], at, gradient, Jet(1.0)) / gradient.a * inputs[i].sigma : 0;
+        common ? derivative_of(inputs[i], at, gradient, InputJet(1.0)) / gradient.a * inputs[i].sigma : 0;
   }
   return std::sqrt(std::max(0.0, parts.dot(coefficients_of(inputs) * parts)));
 }

@@ -14,7 +14,7 @@ namespace gladstone {
 namespace {
 
 constexpr std::size_t most_values = 1000;
-constexpr double mm = unit::millimetre;
+using unit::mm;
 
 /// Returns the texts of an array; adds a problem at the key if it contains anything else.
 std::vector<std::string> texts(SetupDocument& document, std::string const& table, std::string const& key) {

@@ -25,7 +25,6 @@ DesignProblem complete(DesignProblem problem, DesignBranch const& branch) {
 }
 
 /// Returns true for lower limits, for which a larger value is stricter.
-bool from_below(Bound bound) { return bound == Bound::view_width || bound == Bound::view_height; }
 
 double moved(Limit const& limit, double factor) {
   return from_below(limit.bound) ? limit.value * factor : limit.value / factor;

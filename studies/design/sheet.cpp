@@ -33,10 +33,10 @@ double largest_gradient(Setup const& setup) {
     if (known) return *known;
   }
   double largest = 0;
-  constexpr int spacing_px = 4;
+  constexpr int lattice_px = 4;
   Scene scene = build_scene(setup);
   plan_step_of(scene);
-  for (Vec2d const gradient : map_field(scene, spacing_px).density_gradient) {
+  for (Vec2d const gradient : map_field(scene, lattice_px).density_gradient) {
     largest = std::max(largest, length(gradient));
   }
   return largest;

@@ -3,13 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "render/base/not_a_number.h"
 #include "studies/design/predicted_blur.h"
 #include "studies/scene_renderer.h"
 
 namespace gladstone {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 bool inside(Vec2d place, Setup const& setup, double border) {
   return place.x >= border && place.y >= border && place.x <= setup.camera.columns - 1 - border &&
@@ -25,18 +24,16 @@ std::vector<Vec2d> mean_of(std::vector<std::vector<Vec2d>> const& repeats) {
   return mean;
 }
 
-bool finite(Vec2d a) { return std::isfinite(a.x) && std::isfinite(a.y); }
-
 /// Returns the rms over the components of the vectors for which `counts` is finite.
 double rms_of(std::vector<Vec2d> const& values, std::vector<Vec2d> const& counts) {
   double sum = 0;
   std::size_t count = 0;
   for (std::size_t i = 0; i < values.size(); ++i) {
-    if (!finite(counts[i]) || !finite(values[i])) continue;
+    if (!is_finite(counts[i]) || !is_finite(values[i])) continue;
     sum += dot(values[i], values[i]);
     count += 2;
   }
-  return count > 0 ? std::sqrt(sum / static_cast<double>(count)) : nan;
+  return count > 0 ? std::sqrt(sum / static_cast<double>(count)) : not_a_number;
 }
 
 /// Returns the number of lattice vectors per independent window, since windows overlap.
@@ -74,7 +71,7 @@ std::vector<Vec2d> sum_of(std::vector<Vec2d> a, std::vector<Vec2d> const& b, dou
 double share_of(std::vector<Vec2d> const& displacement, Repeats const& repeats, std::vector<Vec2d> const& counts) {
   double product = 0, square = 0;
   for (std::size_t i = 0; i < counts.size(); ++i) {
-    if (!finite(counts[i])) continue;
+    if (!is_finite(counts[i])) continue;
     product += dot(displacement[i], repeats.eq9[i]);
     square += dot(repeats.eq9[i], repeats.eq9[i]);
   }
@@ -97,7 +94,7 @@ void enter(Repeats& repeats, ObservedCase const& seen, double border) {
     bool const plain = method_of(seen.prepared.scene) == RenderMethod::focused_dots && plan.fineness == 1;
     if (plain && !plan.by_need) repeats.rays = plan.rays;
   }
-  std::vector<Vec2d>& error = repeats.error.emplace_back(all.mask.size(), Vec2d{nan, nan});
+  std::vector<Vec2d>& error = repeats.error.emplace_back(all.mask.size(), Vec2d{not_a_number, not_a_number});
   for (std::size_t i = 0; i < all.mask.size(); ++i) {
     if (!all.mask[i] || !inside(all.measured.position_px[i], seen.prepared.scene.setup, border)) continue;
     error[i] = all.measured.displacement_px[i] - all.point.eq9_px[i];
@@ -144,7 +141,8 @@ WaveShares shares_of(Repeats const& repeats, double wavelength, int window_px) {
   shares.measured.value = 1 + share_of(error, repeats, error);
   // Noise projected on the wave: scatter of a mean over repeats, for the number of independent windows.
   double square = 0;
-  for (std::size_t i = 0; i < error.size(); ++i) square += finite(error[i]) ? dot(repeats.eq9[i], repeats.eq9[i]) : 0;
+  for (std::size_t i = 0; i < error.size(); ++i)
+    square += is_finite(error[i]) ? dot(repeats.eq9[i], repeats.eq9[i]) : 0;
   double const scatter = split_repeats(repeats.error).scatter_px;
   shares.measured.standard_error = scatter * std::sqrt(vectors_per_window(repeats.place, window_px) / square /
                                                        static_cast<double>(repeats.error.size()));

@@ -10,7 +10,7 @@
 namespace gladstone {
 namespace {
 
-constexpr double mm = unit::millimetre;
+using unit::mm;
 constexpr double coverage = 2;  ///< admissible difference of two numbers, in standard errors
 /// Relative accuracy of the random-error formula with respect to its study, and of the closed forms because of
 /// neglected higher orders (docs/design.md).
@@ -116,8 +116,6 @@ std::optional<std::pair<double, Estimate>> simulated_of(Bound bound, SimulatedBe
       return std::nullopt;
   }
 }
-
-bool from_below(Bound bound) { return bound == Bound::view_width || bound == Bound::view_height; }
 
 VerifiedBench simulated_bench(DesignQuestion const& question, std::vector<DesignVariant> const& variants,
                               BranchOutcome const& outcome, VerificationPlan const& plan, CaseRunner& runner,

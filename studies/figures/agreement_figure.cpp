@@ -11,18 +11,19 @@ namespace gladstone {
 namespace {
 
 constexpr double smallest = 0.2, largest = 10;
-constexpr int width = 1080, height = 470;
+constexpr int agreement_width = 1080, agreement_height = 470;
 
-struct Panel {
+struct AgreementPanel {
   char const* title;
   double Agreement::*value;
   char const* key;
   int left, right;  ///< [px]
 };
-constexpr Panel panels[] = {{"correlation of light rays and Eq. 9", &Agreement::correlation, "bottom right", 62, 522},
-                            {"rms of light rays / rms of Eq. 9", &Agreement::rms_ratio, "top left", 604, 1064}};
+constexpr AgreementPanel panels[] = {
+    {"correlation of light rays and Eq. 9", &Agreement::correlation, "bottom right", 62, 522},
+    {"rms of light rays / rms of Eq. 9", &Agreement::rms_ratio, "top left", 604, 1064}};
 
-void draw_panel(GnuplotFigure& plot, Panel const& panel, std::vector<AgreementSeries> const& series,
+void draw_panel(GnuplotFigure& plot, AgreementPanel const& panel, std::vector<AgreementSeries> const& series,
                 std::vector<double> const& single_wave) {
   std::string commands = "plot ";
   if (!single_wave.empty()) {
@@ -70,15 +71,16 @@ std::vector<double> agreement_sizes() {
 void write_agreement_figure(std::string const& path, std::vector<AgreementSeries> const& series,
                             std::vector<double> const& single_wave) {
   GLADSTONE_EXPECTS(!series.empty() && single_wave.size() == agreement_sizes().size());
-  GnuplotFigure plot(width, height);
+  GnuplotFigure plot(agreement_width, agreement_height);
   plot.command("set multiplot");
   plot.command("set grid linecolor '#e4e4e4' linewidth 1 linetype 1");
   plot.command(fmt::format("set logscale x; set xrange [{}:{}]; set yrange [0:1.05]", smallest, largest));
   plot.command("set xtics (0.2, 0.5, 1, 2, 5, 10) font 'DejaVu Sans,11'; set ytics 0.2 font 'DejaVu Sans,11'");
   plot.command("set xlabel 'size of structures / width of the light cone at the medium' font 'DejaVu Sans,12'");
-  for (Panel const& panel : panels) {
+  for (AgreementPanel const& panel : panels) {
     plot.command(fmt::format("set lmargin at screen {:.6f}; set rmargin at screen {:.6f}",
-                             panel.left / static_cast<double>(width), panel.right / static_cast<double>(width)));
+                             panel.left / static_cast<double>(agreement_width),
+                             panel.right / static_cast<double>(agreement_width)));
     plot.command("set tmargin at screen 0.91; set bmargin at screen 0.14");
     plot.command(
         fmt::format("set title {} font 'DejaVu Sans Bold,12' textcolor '#101010'", GnuplotFigure::quoted(panel.title)));

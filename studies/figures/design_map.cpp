@@ -12,9 +12,9 @@
 namespace gladstone {
 namespace {
 
-constexpr double mm = unit::millimetre;
-constexpr int width = 960, height = 700;
-constexpr std::array<double, 8> stops{2.8, 4, 5.6, 8, 11, 16, 22, 32};
+using unit::mm;
+constexpr int map_width = 960, map_height = 700;
+constexpr std::array<double, 8> f_numbers{2.8, 4, 5.6, 8, 11, 16, 22, 32};
 constexpr std::array<double, 5> marked_z_d{0.1, 0.25, 0.5, 1, 2};  // relative to Z_A
 
 std::vector<double> in_mm(std::vector<double> lengths) {
@@ -61,7 +61,7 @@ std::string colour_of_stop(std::size_t index) {
 std::vector<DesignCurve> design_curves(Bench<double> const& bench) {
   constexpr int points = 81;
   std::vector<DesignCurve> curves;
-  for (double const stop : stops) {
+  for (double const stop : f_numbers) {
     DesignCurve curve{stop, {}, {}, {}, {}};
     for (int i = 0; i < points; ++i) {
       Bench<double> b = bench;
@@ -82,7 +82,7 @@ std::vector<DesignCurve> design_curves(Bench<double> const& bench) {
 void write_design_map(std::string const& path, Bench<double> const& bench,
                       std::optional<Requirements> const& requirements) {
   std::vector<DesignCurve> const curves = design_curves(bench);
-  GnuplotFigure plot(width, height);
+  GnuplotFigure plot(map_width, map_height);
   Range2 x, y;
   std::string command;
   for (std::size_t i = 0; i < curves.size(); ++i) {
@@ -100,7 +100,7 @@ void write_design_map(std::string const& path, Bench<double> const& bench,
   }
   for (double const share : marked_z_d) {
     std::vector<double> sensitivity, resolution;
-    for (double const stop : stops) {
+    for (double const stop : f_numbers) {
       Bench<double> b = bench;
       b.f_number = stop;
       b.z_d = share * bench.z_a;

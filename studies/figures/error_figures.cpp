@@ -8,19 +8,16 @@
 #include <numeric>
 
 #include "render/base/contracts.h"
+#include "render/base/not_a_number.h"
 #include "studies/figures/gnuplot.h"
 
 namespace gladstone {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
-bool finite(Vec2d a) { return std::isfinite(a.x) && std::isfinite(a.y); }
-
 std::vector<double> component(std::vector<Vec2d> const& values, double Vec2d::*part) {
   std::vector<double> result;
   for (Vec2d const& value : values) {
-    if (finite(value)) result.push_back(value.*part);
+    if (is_finite(value)) result.push_back(value.*part);
   }
   return result;
 }
@@ -48,13 +45,6 @@ std::vector<std::vector<double>> density_of(std::vector<double> const& errors, d
     }
   }
   return outline;
-}
-
-/// Sets the margins of a panel, in pixels from the upper left.
-void place(GnuplotFigure& plot, int left, int right, int top, int bottom) {
-  double const w = plot.width_px(), h = plot.height_px();
-  plot.command(fmt::format("set lmargin at screen {:.6f}; set rmargin at screen {:.6f}", left / w, right / w));
-  plot.command(fmt::format("set tmargin at screen {:.6f}; set bmargin at screen {:.6f}", 1 - top / h, 1 - bottom / h));
 }
 
 constexpr char const* light_grid = "set grid linecolor '#e4e4e4' linewidth 1 linetype 1";
@@ -86,7 +76,7 @@ void write_error_histograms(std::string const& path, std::string const& title, s
   plot.command("set style fill transparent solid 0.12 noborder");
   int column = 0;
   for (double Vec2d::*part : {&Vec2d::x, &Vec2d::y}) {
-    place(plot, column == 0 ? 80 : 680, column == 0 ? 570 : 1170, 50 + legend, plot.height_px() - 58);
+    plot.set_margins(column == 0 ? 80 : 680, column == 0 ? 570 : 1170, 50 + legend, plot.height_px() - 58);
     plot.command(fmt::format("set key at graph 0, screen {:.6f} left top Left reverse samplen 2 font 'DejaVu Sans,10'",
                              1.0 - 46.0 / plot.height_px()));
     plot.command(
@@ -126,7 +116,7 @@ void write_error_against_gradient(std::string const& path, std::string const& ti
   GnuplotFigure plot(820, 520 + legend);
   set_title(plot, title);
   plot.command(light_grid);
-  place(plot, 96, 790, 50 + legend, plot.height_px() - 60);
+  plot.set_margins(96, 790, 50 + legend, plot.height_px() - 60);
   plot.command(
       fmt::format("set key at graph 0, screen {:.6f} left top Left reverse samplen 2", 1.0 - 46.0 / plot.height_px()));
   plot.command("set xlabel 'local gradient of the true displacement, from vector to vector [px/px]'");
@@ -139,7 +129,7 @@ void write_error_against_gradient(std::string const& path, std::string const& ti
     GLADSTONE_EXPECTS(series[s].error_px.size() == gradient.size());
     std::vector<std::size_t> order;
     for (std::size_t i = 0; i < gradient.size(); ++i) {
-      if (std::isfinite(gradient[i]) && finite(series[s].error_px[i])) order.push_back(i);
+      if (std::isfinite(gradient[i]) && is_finite(series[s].error_px[i])) order.push_back(i);
     }
     std::stable_sort(order.begin(), order.end(),
                      [&](std::size_t a, std::size_t b) { return gradient[a] < gradient[b]; });
@@ -161,7 +151,7 @@ void write_error_against_gradient(std::string const& path, std::string const& ti
       curve[3].push_back(quantile(magnitude, 0.9));
     }
     if (curve[0].empty()) {
-      for (auto& values : curve) values.push_back(nan);
+      for (auto& values : curve) values.push_back(not_a_number);
     }
     std::string const source = plot.add_table(curve);
     if (s > 0) bands += ", ";
@@ -178,7 +168,7 @@ std::vector<double> local_gradient(DisplacementField const& field) {
   GLADSTONE_EXPECTS(field.columns > 0 && field.rows > 0);
   GLADSTONE_EXPECTS(static_cast<std::size_t>(field.columns) * static_cast<std::size_t>(field.rows) == field.size());
   auto const index = [&](int column, int row) { return static_cast<std::size_t>(row) * field.columns + column; };
-  std::vector<double> gradient(field.size(), nan);
+  std::vector<double> gradient(field.size(), not_a_number);
   for (int row = 0; row < field.rows; ++row) {
     for (int column = 0; column < field.columns; ++column) {
       std::size_t const left = index(std::max(column - 1, 0), row);
@@ -205,7 +195,7 @@ void write_budget_bars(std::string const& path, std::string const& title, ErrorB
   auto const count = static_cast<int>(terms.size());
   GnuplotFigure plot(160 + 108 * count, 520);
   set_title(plot, title);
-  place(plot, 100, plot.width_px() - 24, 84, plot.height_px() - 62);
+  plot.set_margins(100, plot.width_px() - 24, 84, plot.height_px() - 62);
   plot.command("set grid ytics linecolor '#e4e4e4' linewidth 1 linetype 1");
   plot.command(fmt::format("set key at graph 0, screen {:.6f} left top Left reverse horizontal samplen 1.5",
                            1.0 - 46.0 / plot.height_px()));

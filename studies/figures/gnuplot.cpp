@@ -114,6 +114,12 @@ void GnuplotFigure::command(std::string_view line) {
   script_ += '\n';
 }
 
+void GnuplotFigure::set_margins(double left, double right, double top, double bottom) {
+  double const w = width_px(), h = height_px();
+  command(fmt::format("set lmargin at screen {:.6f}; set rmargin at screen {:.6f}", left / w, right / w));
+  command(fmt::format("set tmargin at screen {:.6f}; set bmargin at screen {:.6f}", 1 - top / h, 1 - bottom / h));
+}
+
 std::string GnuplotFigure::store(std::span<double const> values) {
   std::string const name = fmt::format("data{}.bin", files_++);
   errno = 0;

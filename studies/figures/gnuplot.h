@@ -35,6 +35,8 @@ class GnuplotFigure {
 
   /// Appends a line to the gnuplot script.
   void command(std::string_view line);
+  /// Sets the margins of the next plot [px], from the figure's upper left corner.
+  void set_margins(double left, double right, double top, double bottom);
 
   /// Stores a map and returns its data source for `plot`: first node at (x_first, y_first), steps of either sign.
   std::string add_map(Image<double> const& map, double x_first, double x_step, double y_first, double y_step);

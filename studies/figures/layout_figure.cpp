@@ -4,36 +4,35 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "render/base/not_a_number.h"
 #include "render/base/units.h"
 #include "studies/figures/gnuplot.h"
 
 namespace gladstone {
 namespace {
 
-constexpr double gap = std::numeric_limits<double>::quiet_NaN();
-constexpr double mm = unit::millimetre;
-constexpr int width = 1200;
+using unit::mm;
+constexpr int layout_width = 1200;
 constexpr double left = 0.04, right = 0.98;  // horizontal limits of the panels, relative to the figure
 // heights from below [px]: bottom and top of the stretched panel, gap between the panels, space above
 constexpr int stretched_bottom = 64, stretched_top = 410, between = 50, above = 84;
 
 /// Polylines in mm, separated by NaN.
-struct Lines {
+struct Outlines {
   std::vector<double> z, y;
   void add(std::initializer_list<std::pair<double, double>> points) {
     for (auto const& [at_z, at_y] : points) {
       z.push_back(at_z / mm);
       y.push_back(at_y / mm);
     }
-    z.push_back(gap);
-    y.push_back(gap);
+    z.push_back(not_a_number);
+    y.push_back(not_a_number);
   }
 };
 
 struct Drawing {
-  Lines planes, medium, lens, view, cone, sheet;
+  Outlines planes, medium, lens, view, cone, sheet;
 };
 
 Drawing drawing_of(BenchLayout const& l) {
@@ -58,10 +57,8 @@ Drawing drawing_of(BenchLayout const& l) {
 }
 
 /// Sets the vertical limits of a panel [px].
-void place(GnuplotFigure& plot, double low, double high) {
-  double const height = plot.height_px();
-  plot.command(fmt::format("set lmargin at screen {}; set rmargin at screen {}", left, right));
-  plot.command(fmt::format("set bmargin at screen {:.6f}; set tmargin at screen {:.6f}", low / height, high / height));
+void set_heights(GnuplotFigure& plot, double low, double high) {
+  plot.set_margins(left * layout_width, right * layout_width, plot.height_px() - high, plot.height_px() - low);
 }
 
 void arrow(GnuplotFigure& plot, double from, double to, double at) {
@@ -85,7 +82,7 @@ void name_part(GnuplotFigure& plot, std::string const& name, double z, double at
 
 void draw(GnuplotFigure& plot, Drawing const& d) {
   bool const dots = d.sheet.z.empty();
-  auto const lines = [&plot](Lines const& l, std::string_view colour, int thickness, std::string const& title) {
+  auto const lines = [&plot](Outlines const& l, std::string_view colour, int thickness, std::string const& title) {
     return fmt::format("{} using 1:2 with lines linewidth {} linecolor '{}' {}", plot.add_table({l.z, l.y}), thickness,
                        colour, title.empty() ? "notitle" : "title " + GnuplotFigure::quoted(title));
   };
@@ -112,9 +109,9 @@ void write_layout(std::string const& path, BenchLayout const& l, LayoutWords con
   double const z_low = std::min(l.dots_z, -l.medium_half_thickness) - 0.06 * length;
   double const tallest =
       1.3 * std::max({l.dots_half, l.medium_half, l.pupil_radius, l.sensor_half, l.sheet_half_height});
-  double const mm_a_px = (z_high - z_low) / mm / ((right - left) * width);
+  double const mm_a_px = (z_high - z_low) / mm / ((right - left) * layout_width);
   double const to_scale_px = std::max(40.0, 2 * tallest / mm / mm_a_px);  // height of the panel to scale
-  GnuplotFigure plot(width, stretched_top + between + static_cast<int>(std::ceil(to_scale_px)) + above);
+  GnuplotFigure plot(layout_width, stretched_top + between + static_cast<int>(std::ceil(to_scale_px)) + above);
   plot.command("set style textbox opaque noborder margins 0.4,0.2");
   plot.command("set multiplot");
   plot.command(fmt::format("set label 1 {} at screen 0.5,0.965 center font 'DejaVu Sans,14' textcolor '#101010'",
@@ -122,13 +119,13 @@ void write_layout(std::string const& path, BenchLayout const& l, LayoutWords con
   plot.command("unset border; unset ytics; unset key; set format x ''; set xtics scale 0");
   plot.command(fmt::format("set xrange [{:.6g}:{:.6g}]", z_low / mm, z_high / mm));
   plot.command(fmt::format("set yrange [{:.6g}:{:.6g}]", -to_scale_px * mm_a_px / 2, to_scale_px * mm_a_px / 2));
-  place(plot, stretched_top + between, stretched_top + between + to_scale_px);
+  set_heights(plot, stretched_top + between, stretched_top + between + to_scale_px);
   plot.command("set label 2 'to scale' at graph 0,1.06 left textcolor '#606060'");
   draw(plot, drawing);
   plot.command("unset label 1; unset label 2");
   plot.command("set border 1; set format x '%g'; set xtics scale 0.5; set xlabel 'Z [mm]' offset 0,0.5");
   plot.command(fmt::format("set yrange [{:.6g}:{:.6g}]", -1.6 * tallest / mm, 1.35 * tallest / mm));
-  place(plot, stretched_bottom, stretched_top);
+  set_heights(plot, stretched_bottom, stretched_top);
   double const stretched = mm_a_px * (stretched_top - stretched_bottom) / (2.95 * tallest / mm);
   plot.command(fmt::format("set label 3 {} at graph 0,1.01 left textcolor '#606060'",
                            GnuplotFigure::quoted(fmt::format("heights {:.2g} times as large", stretched))));

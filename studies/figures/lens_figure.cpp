@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "render/base/not_a_number.h"
 #include "render/base/units.h"
 #include "render/optics/aim_disc.h"
 #include "studies/figures/gnuplot.h"
@@ -13,33 +13,24 @@
 namespace gladstone {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr int width = 1200, layout_height = 460, plots_height = 330, title_height = 40;
+constexpr int lens_figure_width = 1200, layout_height = 460, plots_height = 330, title_height = 40;
 
-struct Panel {
+struct PlotPlace {
   double left, right, top, bottom;  ///< [px] from the upper left
 };
 
 /// Polylines as two columns, separated by NaN.
-struct Lines {
+struct RayLines {
   std::vector<double> x, y;
   void add(Vec3d p) {
     x.push_back(p.z / unit::millimetre);
     y.push_back(p.y / unit::millimetre);
   }
   void end() {
-    x.push_back(nan);
-    y.push_back(nan);
+    x.push_back(not_a_number);
+    y.push_back(not_a_number);
   }
 };
-
-void place(GnuplotFigure& plot, Panel const& panel) {
-  double const w = plot.width_px(), h = plot.height_px();
-  plot.command(
-      fmt::format("set lmargin at screen {:.6f}; set rmargin at screen {:.6f}", panel.left / w, panel.right / w));
-  plot.command(fmt::format("set tmargin at screen {:.6f}; set bmargin at screen {:.6f}", 1 - panel.top / h,
-                           1 - panel.bottom / h));
-}
 
 /// Returns the half height with which each surface is drawn: the radius of the stop, the edge of a surface, or else the
 /// larger of its nominal semi-diameter and 1.05 times the height of the rays.
@@ -85,7 +76,7 @@ bool is_glass_behind(Lens const& lens, std::size_t i) {
 
 /// Outlines of a lens without its rays.
 struct LensDrawing {
-  Lines glass, mirrors, planes, stop;
+  RayLines glass, mirrors, planes, stop;
 };
 
 LensDrawing drawing_of(Lens const& lens, std::vector<double> const& heights) {
@@ -114,7 +105,7 @@ LensDrawing drawing_of(Lens const& lens, std::vector<double> const& heights) {
       }
       if (!refracts && !mirror) continue;
     }
-    Lines& lines = mirror ? drawing.mirrors : refracts ? drawing.glass : drawing.planes;
+    RayLines& lines = mirror ? drawing.mirrors : refracts ? drawing.glass : drawing.planes;
     for (double const side : {-1.0, 1.0}) {
       std::vector<Vec3d> const half = half_outline(lens, i, heights[i], widths[i], side);
       for (Vec3d const p : half) lines.add(p);
@@ -149,13 +140,13 @@ std::vector<std::vector<Vec3d>> drawn_rays(Lens const& lens, ParaxialLens const&
 }
 
 void draw_layout(GnuplotFigure& plot, Lens const& lens, ParaxialLens const& paraxial, FieldAnalysis const& field,
-                 Panel const& panel) {
+                 PlotPlace const& panel) {
   std::vector<std::vector<Vec3d>> rays;
-  std::vector<Lines> by_field;
+  std::vector<RayLines> by_field;
   double total = std::abs(lens.poses.back().origin.z + field.image_plane) + 1e-3;
   for (Pose<double> const& pose : lens.poses) total = std::max(total, std::abs(pose.origin.z));
   for (FieldPoint const& point : field.points) {
-    Lines lines;
+    RayLines lines;
     for (auto const& ray : drawn_rays(lens, paraxial, field, point.angle, total)) {
       rays.push_back(ray);
       for (Vec3d const p : ray) lines.add(p);
@@ -164,14 +155,14 @@ void draw_layout(GnuplotFigure& plot, Lens const& lens, ParaxialLens const& para
     by_field.push_back(lines);
   }
   LensDrawing const drawing = drawing_of(lens, drawn_heights(lens, rays));
-  Lines image;
+  RayLines image;
   double tallest = 1e-4;
   for (FieldPoint const& point : field.points) tallest = std::max(tallest, 1.1 * std::abs(point.chief.y));
   Pose<double> const plane = lens.poses.back().moved({0, 0, field.image_plane});
   image.add(plane.point_outwards({0, -tallest, 0}));
   image.add(plane.point_outwards({0, tallest, 0}));
 
-  place(plot, panel);
+  plot.set_margins(panel.left, panel.right, panel.top, panel.bottom);
   plot.command("set size ratio -1; set xrange [*:*]; set yrange [*:*]; set xlabel 'z [mm]'; set ylabel 'y [mm]'");
   std::string command = "plot ";
   for (std::size_t i = 0; i < by_field.size(); ++i) {
@@ -179,7 +170,7 @@ void draw_layout(GnuplotFigure& plot, Lens const& lens, ParaxialLens const& para
     command += fmt::format("{} using 1:2 with lines linewidth 1 linecolor '{}', ",
                            plot.add_table({by_field[i].x, by_field[i].y}), house_colour(i));
   }
-  auto const add = [&](Lines const& lines, char const* style) {
+  auto const add = [&](RayLines const& lines, char const* style) {
     if (lines.x.empty()) return;
     command += fmt::format("{} using 1:2 with lines {}, ", plot.add_table({lines.x, lines.y}), style);
   };
@@ -193,13 +184,13 @@ void draw_layout(GnuplotFigure& plot, Lens const& lens, ParaxialLens const& para
   plot.command("set size noratio");
 }
 
-void draw_spots(GnuplotFigure& plot, FieldAnalysis const& field, Panel const& panel) {
+void draw_spots(GnuplotFigure& plot, FieldAnalysis const& field, PlotPlace const& panel) {
   double reach = 1e-9;
   for (FieldPoint const& point : field.points) {
     for (Vec2d const p : point.spot)
       reach = std::max({reach, std::abs(p.x - point.centroid.x), std::abs(p.y - point.centroid.y)});
   }
-  place(plot, panel);
+  plot.set_margins(panel.left, panel.right, panel.top, panel.bottom);
   double const apart = 2.4 * reach * 1e6;
   plot.command("set xlabel 'spots about their centroids [um]'; set ylabel ''");
   plot.command(fmt::format("set size ratio -1; set xrange [{0:.6g}:{1:.6g}]; set yrange [-{2:.6g}:{2:.6g}]", -apart / 2,
@@ -212,7 +203,7 @@ void draw_spots(GnuplotFigure& plot, FieldAnalysis const& field, Panel const& pa
       x.push_back((p.x - point.centroid.x) * 1e6 + apart * static_cast<double>(i));
       y.push_back((p.y - point.centroid.y) * 1e6);
     }
-    if (x.empty()) x.push_back(nan), y.push_back(nan);
+    if (x.empty()) x.push_back(not_a_number), y.push_back(not_a_number);
     command +=
         fmt::format("{}{} using 1:2 with dots linecolor '{}' title {}", i > 0 ? ", " : "", plot.add_table({x, y}),
                     house_colour(i), GnuplotFigure::quoted(fmt::format("{:.3g} deg", point.angle / unit::degree)));
@@ -223,9 +214,9 @@ void draw_spots(GnuplotFigure& plot, FieldAnalysis const& field, Panel const& pa
 }
 
 /// Draws quantities against the field angle, from the axis to the prescription's largest angle.
-void draw_curves(GnuplotFigure& plot, Panel const& panel, std::string const& label, FieldAnalysis const& curves,
+void draw_curves(GnuplotFigure& plot, PlotPlace const& panel, std::string const& label, FieldAnalysis const& curves,
                  std::vector<std::pair<std::string, double (*)(FieldPoint const&)>> const& values) {
-  place(plot, panel);
+  plot.set_margins(panel.left, panel.right, panel.top, panel.bottom);
   plot.command("set xlabel 'field angle [deg]'; set autoscale y; set autoscale x");
   plot.command(fmt::format("set ylabel {} offset 1,0", GnuplotFigure::quoted(label)));
   std::string command = "plot ";
@@ -233,7 +224,7 @@ void draw_curves(GnuplotFigure& plot, Panel const& panel, std::string const& lab
     std::vector<double> x, y;
     for (FieldPoint const& point : curves.points) {
       x.push_back(point.angle / unit::degree);
-      y.push_back(point.imaged ? values[i].second(point) : nan);
+      y.push_back(point.imaged ? values[i].second(point) : not_a_number);
     }
     command += fmt::format("{}{} using 1:2 with lines linewidth 2 linecolor '{}' title {}", i > 0 ? ", " : "",
                            plot.add_table({x, y}), house_colour(i), GnuplotFigure::quoted(values[i].first));
@@ -262,7 +253,7 @@ void write_lens_figure(std::string const& path, Lens const& lens, ParaxialLens c
                        FieldAnalysis const& field) {
   bool const off_axis =
       std::any_of(field.points.begin(), field.points.end(), [](auto const& p) { return p.angle != 0; });
-  GnuplotFigure plot(width, title_height + layout_height + plots_height);
+  GnuplotFigure plot(lens_figure_width, title_height + layout_height + plots_height);
   plot.command("set multiplot");
   std::string const focal =
       std::isfinite(paraxial.effective_focal_length)
@@ -274,11 +265,12 @@ void write_lens_figure(std::string const& path, Lens const& lens, ParaxialLens c
       GnuplotFigure::quoted(fmt::format("{}{}{}, {:.5g} nm", lens.prescription.title,
                                         lens.prescription.title.empty() ? "" : ": ", focal, lens.wavelength * 1e9)),
       1.0 - 24.0 / plot.height_px()));
-  draw_layout(plot, lens, paraxial, field, {70, width - 20.0, title_height + 10, title_height + layout_height - 55.0});
+  draw_layout(plot, lens, paraxial, field,
+              {70, lens_figure_width - 20.0, title_height + 10, title_height + layout_height - 55.0});
   plot.command("unset label 1");
   double const top = title_height + layout_height + 10, bottom = title_height + layout_height + plots_height - 55;
   if (!off_axis) {
-    draw_spots(plot, field, {70, width - 20.0, top, bottom});
+    draw_spots(plot, field, {70, lens_figure_width - 20.0, top, bottom});
   } else {
     draw_spots(plot, field, {50, 400, top, bottom});
     FieldAnalysis const curves = between_fields(lens, paraxial);

@@ -4,15 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "render/base/not_a_number.h"
 #include "render/base/units.h"
 #include "studies/figures/gnuplot.h"
 
 namespace gladstone {
 namespace {
-
-constexpr double gap = std::numeric_limits<double>::quiet_NaN();
 
 /// Maximum number of decades; beyond it, ripples of the outer decades would be invisible.
 constexpr int most_decades = 7;
@@ -25,8 +23,8 @@ struct Polyline {
     y.push_back(radius * std::sin(degrees * unit::degree));
   }
   void end() {
-    x.push_back(gap);
-    y.push_back(gap);
+    x.push_back(not_a_number);
+    y.push_back(not_a_number);
   }
 };
 

@@ -11,7 +11,7 @@
 namespace gladstone {
 namespace {
 
-constexpr std::array<double, 10> stops{1.4, 2, 2.8, 4, 5.6, 8, 11, 16, 22, 32};
+constexpr std::array<double, 10> piv_f_numbers{1.4, 2, 2.8, 4, 5.6, 8, 11, 16, 22, 32};
 constexpr double most_image_px = 4;  // F14
 
 std::string own_stop(double f_number) {
@@ -25,7 +25,7 @@ std::string own_stop(double f_number) {
 
 std::vector<PivStop> piv_stops(Setup setup) {
   std::vector<PivStop> rows;
-  for (double const stop : stops) {
+  for (double const stop : piv_f_numbers) {
     setup.lens.f_number = stop;
     ExpectedParticles const expected = expected_particles(setup);
     SizeSpread const& peak = expected.peak_electrons;
@@ -47,10 +47,10 @@ void write_piv_map(std::string const& path, Setup const& setup) {
   }
   GnuplotFigure plot(900, 760);
   std::string tics;
-  for (double const stop : stops) tics += fmt::format("{}'f/{:g}' {:g}", tics.empty() ? "" : ", ", stop, stop);
+  for (double const stop : piv_f_numbers) tics += fmt::format("{}'f/{:g}' {:g}", tics.empty() ? "" : ", ", stop, stop);
   plot.command("set multiplot layout 2,1");
-  plot.command(fmt::format("set logscale xy; set xrange [{:g}:{:g}]; set xtics ({})", stops.front() / 1.05,
-                           stops.back() * 1.05, tics));
+  plot.command(fmt::format("set logscale xy; set xrange [{:g}:{:g}]; set xtics ({})", piv_f_numbers.front() / 1.05,
+                           piv_f_numbers.back() * 1.05, tics));
   plot.command("set grid linecolor '#e4e4e4'; set key right bottom Left reverse samplen 2; set lmargin 12");
   plot.command(own_stop(setup.lens.f_number));
   plot.command("set title 'What a stop makes of the particles' font 'DejaVu Sans,14'");

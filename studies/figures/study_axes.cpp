@@ -9,12 +9,11 @@
 
 #include "analysis/errors/error_summary.h"
 #include "render/base/contracts.h"
+#include "render/base/not_a_number.h"
 #include "studies/sweep/unit_ending.h"
 
 namespace gladstone {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// Returns the standard deviation of the steps between ascending numbers, relative to their mean.
 double unevenness(std::vector<double> const& numbers) {
@@ -108,7 +107,7 @@ FigureAxis figure_axis(StudyAxis const& axis, std::size_t most) {
 
 Scatter scatter_of(std::vector<double> values, bool repeats_alone) {
   std::erase_if(values, [](double value) { return !std::isfinite(value); });
-  if (values.empty()) return {nan, nan, nan};
+  if (values.empty()) return {not_a_number, not_a_number, not_a_number};
   if (!repeats_alone) return {quantile(values, 0.5), quantile(values, 0.1), quantile(values, 0.9)};
   double squares = 0;
   for (double const value : values) squares += value * value;

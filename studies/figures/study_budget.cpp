@@ -125,7 +125,7 @@ std::unique_ptr<GnuplotFigure> draw_budget(StudyCells const& cells, std::size_t 
   for (std::size_t i = 0; i < axis.size(); ++i) rows_of_bars.position[i] = static_cast<double>(i);
   for (std::size_t p = 0; p < panels.size(); ++p) {
     double const from = top + static_cast<double>(p) * (height + gap);
-    place(plot, 94, 94 + width, from, from + height);
+    plot.set_margins(94, 94 + width, from, from + height);
     set_x_axis(plot, rows_of_bars, width);
     if (p + 1 < panels.size()) plot.command("unset xlabel; unset xtics");
     set_y_axis(plot, "rms per component [px]", low, high);

@@ -116,7 +116,7 @@ std::unique_ptr<GnuplotFigure> lay_out(FigureAxis const& axis, std::vector<Panel
   plot.command("set grid linecolor '#e4e4e4' linewidth 1 linetype 1");
   for (int i = 0; i < count; ++i) {
     double const left = 92.0 + i * (width + 96.0);
-    place(plot, left, left + width, top, plot.height_px() - below);
+    plot.set_margins(left, left + width, top, plot.height_px() - below);
     set_x_axis(plot, axis, width);
     set_y_axis(plot, "rms per component [px]", low, high);
     if (count > 1) {

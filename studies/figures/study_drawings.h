@@ -22,8 +22,6 @@ namespace study_drawing {
 
 /// Sets the title and a caption of at most two lines.
 void set_texts(GnuplotFigure& plot, std::string const& title, std::string const& caption);
-/// Sets the margins of a panel, in pixels from the upper left of the figure.
-void place(GnuplotFigure& plot, double left, double right, double top, double bottom);
 /// Sets range, scale, tics and title of the x axis.
 /// @param width_px  width of the panel
 void set_x_axis(GnuplotFigure& plot, FigureAxis const& axis, double width_px);

@@ -49,12 +49,6 @@ void set_texts(GnuplotFigure& plot, std::string const& title, std::string const&
   }
 }
 
-void place(GnuplotFigure& plot, double left, double right, double top, double bottom) {
-  double const w = plot.width_px(), h = plot.height_px();
-  plot.command(fmt::format("set lmargin at screen {:.6f}; set rmargin at screen {:.6f}", left / w, right / w));
-  plot.command(fmt::format("set tmargin at screen {:.6f}; set bmargin at screen {:.6f}", 1 - top / h, 1 - bottom / h));
-}
-
 int room_below(FigureAxis const& axis, double width_px) {
   if (axis.numeric ? !axis.labelled || !dense(axis, width_px) : !crowded(axis, width_px)) return 56;
   std::size_t longest = 0;

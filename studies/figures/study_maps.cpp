@@ -97,7 +97,7 @@ std::unique_ptr<GnuplotFigure> draw_error_map(StudyCells const& cells, std::size
       "set object 1 rectangle from graph 0,0 to graph 1,1 fillcolor '#b8b8b8' fillstyle solid noborder behind");
   for (std::size_t m = 0; m < maps.size(); ++m) {
     double const from = left + static_cast<double>(m) * (width + 26.0);
-    place(plot, from, from + width, 74, plot.height_px() - below);
+    plot.set_margins(from, from + width, 74, plot.height_px() - below);
     plot.command(
         fmt::format("set title {} font 'DejaVu Sans Bold,11' offset 0,-0.4", GnuplotFigure::quoted(maps[m].heading)));
     if (m == 0) {

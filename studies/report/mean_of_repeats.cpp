@@ -21,7 +21,7 @@ MeanOfRepeats mean_of_repeats(std::vector<DisplacementField> const& all, double 
     bool counts = true;
     for (DisplacementField const& one : all) {
       Vec2d const d = one.displacement_px[i];
-      counts = counts && one.counts(i) && std::isfinite(d.x) && std::isfinite(d.y);
+      counts = counts && one.counts(i) && is_finite(d);
       sum += d;
       Vec2d own = one.sigma_px.empty() ? Vec2d{formula_px, formula_px} : one.sigma_px[i];
       if (!std::isfinite(own.x) || !std::isfinite(own.y)) own = {formula_px, formula_px};

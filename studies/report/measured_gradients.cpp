@@ -36,7 +36,7 @@ MeasuredGradients gradients_of(DisplacementField const& field, Bench<double> con
     }
     ++all.count;
     Vec2d sigma = field.sigma_px.empty() ? unknown : field.sigma_px[i];
-    if (std::isfinite(sigma.x) && std::isfinite(sigma.y)) {
+    if (is_finite(sigma)) {
       ++all.estimated;
     } else {
       sigma = {formula, formula};

@@ -12,7 +12,7 @@ namespace gladstone {
 
 namespace {
 
-constexpr std::size_t most_table_rows = 20;  ///< maximum without a search field
+constexpr std::size_t longest_plain_table = 20;  ///< maximum without a search field
 
 }  // namespace
 
@@ -88,7 +88,7 @@ TextTable cases_table(StudyView const& study) {
     cells.push_back({row.error.empty() ? to_string(row.status) : row.error});
     table.rows.push_back(std::move(cells));
   }
-  table.filtered = table.rows.size() > most_table_rows;
+  table.filtered = table.rows.size() > longest_plain_table;
   return table;
 }
 

@@ -6,13 +6,13 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
-#include <limits>
 #include <new>
 #include <nlohmann/json.hpp>
 #include <span>
 
 #include "analysis/vectors/vector_file.h"
 #include "render/base/content_hash.h"
+#include "render/base/not_a_number.h"
 #include "render/base/output_file.h"
 #include "render/base/output_folder.h"
 #include "render/base/setup_node.h"
@@ -30,17 +30,9 @@ namespace gladstone {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// Maximum total size of the cached media when a new one is added [bytes].
 constexpr std::size_t kept_media_bytes = std::size_t{1} << 30;
-
-/// State of a file when it was last hashed; it is not read again as long as time and size are unchanged.
-struct HashedFile {
-  fs::file_time_type time;
-  std::uintmax_t size = 0;
-  std::string hash;
-};
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -52,7 +44,7 @@ void flatten(nlohmann::ordered_json const& json, std::string const& path,
     std::string const start = path.empty() ? "" : path + '.';
     for (auto const& [key, value] : json.items()) flatten(value, start + key, measures);
   } else if (json.is_number() || json.is_null()) {
-    measures.emplace_back(path, json.is_null() ? nan : json.get<double>());
+    measures.emplace_back(path, json.is_null() ? not_a_number : json.get<double>());
   }
 }
 
@@ -102,6 +94,12 @@ void write_kept_results(std::string const& folder, DisplacementField const& vect
 }  // namespace
 
 struct CaseRunner::Shared {
+  /// State of a file when it was last hashed; it is not read again as long as time and size are unchanged.
+  struct HashedFile {
+    fs::file_time_type time;
+    std::uintmax_t size = 0;
+    std::string hash;
+  };
   struct Plan {
     StepPlan step;
     StrainMap strain;
@@ -133,7 +131,7 @@ void CaseRunner::check_inputs(ManifestCase const& one) {
                                   device_.name()));
   }
   for (auto const& [path, hash] : one.inputs) {
-    HashedFile& known = shared_->files[path];
+    Shared::HashedFile& known = shared_->files[path];
     std::error_code error;
     auto const time = fs::last_write_time(path, error);
     auto const size = error ? 0 : fs::file_size(path, error);
@@ -259,7 +257,8 @@ void CaseRunner::compute(ManifestCase const& one, std::string const& keep, CaseO
                                summarize_errors(comparison.point.displacement_px, still, comparison.mask).rms_px);
   result.measures.emplace_back("blur_px",
                                summarize_errors(comparison.point.displacement_std_px, still, comparison.mask).rms_px);
-  result.measures.emplace_back("strain_max", prepared.strain.strain.empty() ? nan : largest(prepared.strain.strain));
+  result.measures.emplace_back("strain_max",
+                               prepared.strain.strain.empty() ? not_a_number : largest(prepared.strain.strain));
   result.measures.emplace_back("magnification", prepared.scene.imaging.magnification);
   result.measures.emplace_back("step_mm", prepared.step.step_mm);
   result.measures.emplace_back("rays_per_dot", static_cast<double>(prepared.rays.rays));

@@ -23,7 +23,7 @@ namespace {
 using Kind = SetupNode::Kind;
 
 /// Rounds to twelve digits, so that values of a range are short decimals: 0.1 instead of 0.30000000000000004 - 0.2.
-double rounded(double value) {
+double rounded_setting(double value) {
   std::string const text = fmt::format("{:.12g}", value);
   double result = value;
   std::from_chars(text.data(), text.data() + text.size(), result);
@@ -42,8 +42,8 @@ AxisValue number_value(double number, bool whole, SetupPlace const& place) {
 }
 
 double along(AxisPlan::Range const& range, double t) {
-  if (!range.logarithmic) return rounded(range.first + t * (range.last - range.first));
-  return rounded(range.first * std::pow(range.last / range.first, t));
+  if (!range.logarithmic) return rounded_setting(range.first + t * (range.last - range.first));
+  return rounded_setting(range.first * std::pow(range.last / range.first, t));
 }
 
 /// Returns true if adjacent values of the range certainly differ after rounding to twelve digits, a relative error of

@@ -7,11 +7,10 @@
 #include <unordered_map>
 
 #include "render/base/error.h"
+#include "render/base/not_a_number.h"
 
 namespace gladstone {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// Collects the distinct values of an axis in order of first appearance.
 class AxisCollector {
@@ -22,7 +21,7 @@ class AxisCollector {
     auto const [known, fresh] = places_.try_emplace(value.label, axis_.labels.size());
     if (fresh) {
       axis_.labels.push_back(value.label);
-      axis_.numbers.push_back(value.number.value_or(nan));
+      axis_.numbers.push_back(value.number.value_or(not_a_number));
       axis_.numeric = axis_.numeric && value.number.has_value();
       any_label_ = any_label_ || value.has_own_label();
       axis_.labelled = axis_.numeric && any_label_;
@@ -127,7 +126,7 @@ void fill_row(CaseResult const& result, std::unordered_map<std::string, std::siz
   for (auto const& [name, value] : result.measures) {
     auto const [known, fresh] = columns.try_emplace(name, table.measures.size());
     if (fresh) table.measures.push_back(name);
-    row.measures.resize(std::max(row.measures.size(), known->second + 1), nan);
+    row.measures.resize(std::max(row.measures.size(), known->second + 1), not_a_number);
     row.measures[known->second] = value;
   }
 }
@@ -154,7 +153,7 @@ StudyTable read_study_table(std::string const& run) {
     }
     for (auto const& repeats : errors) point.splits.push_back(split_repeats(repeats));
   }
-  for (StudyRow& row : table.rows) row.measures.resize(table.measures.size(), nan);
+  for (StudyRow& row : table.rows) row.measures.resize(table.measures.size(), not_a_number);
   return table;
 }
 

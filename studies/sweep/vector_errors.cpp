@@ -2,14 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+
+#include "render/base/not_a_number.h"
 
 namespace gladstone {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
-bool finite(Vec2d a) { return std::isfinite(a.x) && std::isfinite(a.y); }
 double rounded(double error_px) { return std::round(error_px / vector_unit_px) * vector_unit_px; }
 
 /// Selects the vectors to store: every step-th row and column of a lattice, or every step-th of scattered vectors.
@@ -42,7 +40,7 @@ std::vector<VectorErrors> vector_errors(Comparison const& comparison) {
     VectorErrors one{vector_error_names()[errors.size()], {}};
     for (std::size_t const i : kept) {
       bool const known = comparison.mask[i] != 0 && !to.empty();
-      Vec2d const error = known ? to[i] - from[i] : Vec2d{nan, nan};
+      Vec2d const error = known ? to[i] - from[i] : Vec2d{not_a_number, not_a_number};
       one.errors_px.push_back({rounded(error.x), rounded(error.y)});
     }
     errors.push_back(std::move(one));
@@ -54,7 +52,7 @@ std::vector<VectorErrors> vector_errors(Comparison const& comparison) {
 }
 
 RepeatSplit split_repeats(std::span<std::vector<Vec2d> const> repeats) {
-  RepeatSplit split{0, nan, nan};
+  RepeatSplit split{0, not_a_number, not_a_number};
   if (repeats.size() < 2) return split;
   std::size_t const size = repeats.front().size();
   if (std::any_of(repeats.begin(), repeats.end(), [&](auto const& one) { return one.size() != size; })) return split;
@@ -63,7 +61,7 @@ RepeatSplit split_repeats(std::span<std::vector<Vec2d> const> repeats) {
   for (std::size_t i = 0; i < size; ++i) {
     Vec2d sum{};
     for (auto const& one : repeats) sum += one[i];
-    if (!finite(sum)) continue;
+    if (!is_finite(sum)) continue;
     Vec2d const mean = sum / count;
     double square = 0;
     for (auto const& one : repeats) square += dot(one[i] - mean, one[i] - mean);
@@ -87,10 +85,10 @@ MeanAndSpread mean_and_spread(std::span<double const> values) {
     sum += value;
     ++count;
   }
-  if (count == 0) return {nan, nan};
+  if (count == 0) return {not_a_number, not_a_number};
   double const mean = sum / static_cast<double>(count);
   for (double const value : values) squares += std::isfinite(value) ? (value - mean) * (value - mean) : 0;
-  return {mean, count < 2 ? nan : std::sqrt(squares / static_cast<double>(count - 1))};
+  return {mean, count < 2 ? not_a_number : std::sqrt(squares / static_cast<double>(count - 1))};
 }
 
 }  // namespace gladstone

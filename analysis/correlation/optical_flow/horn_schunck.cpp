@@ -15,7 +15,7 @@ constexpr int deformations = 4;  ///< image deformations per level; doubling the
 constexpr int sweeps = 40;       ///< relaxation sweeps per deformation
 /// Over-relaxation factor: reduces the error of smooth modes several times faster than plain Gauss-Seidel.
 constexpr float relaxation = 1.8f;
-constexpr std::size_t rows_at_once = 16;
+constexpr std::size_t rows_per_chunk = 16;
 
 /// Linearised residual after a deformation: gx du + gy dv + difference = 0.
 struct Remainder {
@@ -27,7 +27,7 @@ Remainder remainder_of(BsplineImage<float> const& a, BsplineImage<float> const& 
   std::size_t const pixels = d.u.size();
   GreyImage mean{d.columns, d.rows, std::vector<float>(pixels)};
   Remainder rest{std::vector<float>(pixels), std::vector<float>(pixels), std::vector<float>(pixels)};
-  parallel_chunks(static_cast<std::size_t>(d.rows), rows_at_once, [&](std::size_t begin, std::size_t end) {
+  parallel_chunks(static_cast<std::size_t>(d.rows), rows_per_chunk, [&](std::size_t begin, std::size_t end) {
     for (int j = static_cast<int>(begin); j < static_cast<int>(end); ++j)
       for (int i = 0; i < d.columns; ++i) {
         std::size_t const k = d.index(i, j);
@@ -37,7 +37,7 @@ Remainder remainder_of(BsplineImage<float> const& a, BsplineImage<float> const& 
         rest.difference[k] = second - first;
       }
   });
-  parallel_chunks(static_cast<std::size_t>(d.rows), rows_at_once, [&](std::size_t begin, std::size_t end) {
+  parallel_chunks(static_cast<std::size_t>(d.rows), rows_per_chunk, [&](std::size_t begin, std::size_t end) {
     for (int j = static_cast<int>(begin); j < static_cast<int>(end); ++j)
       for (int i = 0; i < d.columns; ++i) {
         std::size_t const k = d.index(i, j);
@@ -51,7 +51,7 @@ Remainder remainder_of(BsplineImage<float> const& a, BsplineImage<float> const& 
 /// Relaxes the pixels of one colour of the chessboard (0 or 1). All of their neighbours are of the other colour, so
 /// that the result does not depend on the order.
 void sweep(Remainder const& rest, DenseFlow const& from, int colour, DenseFlow& d) {
-  parallel_chunks(static_cast<std::size_t>(d.rows), rows_at_once, [&](std::size_t begin, std::size_t end) {
+  parallel_chunks(static_cast<std::size_t>(d.rows), rows_per_chunk, [&](std::size_t begin, std::size_t end) {
     for (int j = static_cast<int>(begin); j < static_cast<int>(end); ++j)
       for (int i = (j + colour) % 2; i < d.columns; i += 2) {
         std::size_t const k = d.index(i, j);
