@@ -12,12 +12,14 @@ namespace gladstone {
 struct GlassMatch {
   Glass const* glass;
   std::vector<std::string> notes;  ///< warnings about assumptions that were made
+  bool assumed = false;            ///< from a shipped catalogue that the lens file does not list
 };
 
 /// Collection of glasses from one or more catalogues, searchable by name.
 class GlassCatalogue {
  public:
-  /// Returns the catalogues shipped with the program: the files of data/glasses, which are compiled in.
+  /// Returns the catalogues shipped with the program: the files of data/glasses, which are compiled in. Each of their
+  /// glasses is read when it is first used.
   static GlassCatalogue const& shipped();
 
   /// Adds a catalogue in AGF format. Reads the lines NM (name, number of the formula, nd), CD (coefficients), LD (range
@@ -32,16 +34,20 @@ class GlassCatalogue {
   /// Adds a catalogue from a file in any encoding supported by decoded_text(), under the file's name.
   void add_file(std::string const& path);
 
-  std::vector<Glass> const& glasses() const { return glasses_; }
+  /// Returns all glasses, those of added catalogues first. Valid until the next catalogue is added.
+  std::vector<Glass const*> glasses() const;
   /// Warnings about skipped glasses and lines of all added catalogues.
   std::vector<std::string> const& warnings() const { return warnings_; }
 
   /// Returns the glass with the given name, ignoring case and hyphens. "CATALOGUE:NAME" selects a catalogue, as does
-  /// CODE V's "NAME_CATALOGUE" if no glass has the complete name. If several catalogues contain the name, they are
-  /// ranked: `preferred` in its order, then SCHOTT, OHARA, HOYA, HIKARI, NIKON, CDGM, SUMITA, CORNING, then all others
-  /// in the order of addition. A name that is not found is replaced by its lead-free successor N-NAME.
-  /// Notes report such replacements, candidates of different index if no preferred catalogue decides, and formulas that
-  /// disagree with the printed nd.
+  /// CODE V's "NAME_CATALOGUE" if no glass has the complete name. If several catalogues contain the name, the order is:
+  /// - those in `preferred`, in its order,
+  /// - added catalogues, by maker_rank(), those of one rank in the order of addition,
+  /// - shipped catalogues, by maker_rank().
+  /// The lead-free successor N-NAME is returned if no catalogue contains the name, or if no preferred catalogue
+  /// contains the name but one contains the successor. Notes report successors, candidates of different index if no
+  /// preferred catalogue decides, names that no preferred catalogue contains, and formulas that disagree with the
+  /// printed nd.
   /// @param wavelength  [m]
   /// @param where       location where the name is used, for messages
   /// @throws DataError with similar names if no glass has the name, or if the wavelength is out of range
@@ -57,14 +63,24 @@ class GlassCatalogue {
  private:
   /// Returns "; did you mean ...?" with the most similar names; empty if no name is similar.
   std::string glasses_like(std::string_view name) const;
-  /// Returns the glasses with the given name, in the given catalogue or, if that is empty, in all.
+  /// Returns the glasses with the given name, in the given catalogue or, if that is empty, in all; in the order of
+  /// match() without preferred catalogues.
   std::vector<Glass const*> named(std::string_view name, std::string_view catalogue) const;
   /// Throws DataError for an unknown name, with suggestions.
   [[noreturn]] void refuse_unknown(std::string_view name, std::string const& where) const;
   /// Returns the glasses that a name in the syntax of match() can refer to.
   std::vector<Glass const*> candidates(std::string_view name) const;
 
-  std::vector<Glass> glasses_;
+  /// Returns the glasses that followed a name: those of its name with N- ahead of it.
+  std::vector<Glass const*> successors(std::string_view name) const;
+  struct FullName {
+    std::string key, catalogue, name;
+  };
+  /// Returns the names of all glasses.
+  std::vector<FullName> names() const;
+
+  bool has_shipped_ = false;
+  std::vector<Glass> glasses_;  ///< of added catalogues
   struct LeftOut {
     std::string name, reason;
   };

@@ -30,6 +30,13 @@ struct DescribedGlass {
   std::string where;  ///< location of its first use
 };
 
+/// Returns true if the nd of a glass differs from the one that a lens file states by more than its rounding.
+bool has_other_nd(Glass const& glass, double nd) {
+  constexpr double rounding = 1e-3;  // [1]
+  constexpr double d = spectral_line::d;
+  return glass.shortest <= d && d <= glass.longest && std::abs(glass.nd() - nd) > rounding;
+}
+
 class LensBuilder {
  public:
   LensBuilder(Lens& lens, GlassCatalogue const& catalogue, LensOptions const& options)
@@ -207,8 +214,17 @@ class LensBuilder {
           return of_glass(Glass::from_nd_vd(named->otherwise->nd, named->otherwise->vd));
         }
         GlassMatch const found = catalogue_.match(named->glass, wavelength, where, lens_.prescription.catalogues);
+        Glass const& glass = *found.glass;
+        if (named->otherwise && found.assumed && has_other_nd(glass, named->otherwise->nd)) {
+          note_once(named->glass,
+                    fmt::format("{}: glass \"{}\" of {} has nd = {:.6g}; nd = {:.6g} and Vd = {:.4g} of its "
+                                "line are taken as n = A + B/lambda^2 (add its catalogue for more)",
+                                where, named->glass, glass.catalogue, glass.nd(), named->otherwise->nd,
+                                named->otherwise->vd));
+          return of_glass(Glass::from_nd_vd(named->otherwise->nd, named->otherwise->vd));
+        }
         for (std::string const& note : found.notes) note_once(named->glass + note.substr(where.size()), note);
-        return of_glass(*found.glass);
+        return of_glass(glass);
       }
       if (auto const* const own = std::get_if<PrescribedMedium::Private>(&medium.is)) {
         if (wavelength < own->glass.shortest || wavelength > own->glass.longest) {

@@ -1,13 +1,18 @@
 #pragma once
 
-#include <string>
-#include <utility>
+#include <string_view>
 #include <vector>
 
 namespace gladstone {
 
-/// Returns name and text of every catalogue in data/glasses. The texts are compiled in, so that the program does not
-/// depend on its location.
-std::vector<std::pair<std::string, std::string>> const& shipped_glasses();
+/// Catalogue of glasses that is compiled into the program.
+struct ShippedText {
+  std::string_view name;                ///< file name without folder and extension
+  std::vector<std::string_view> parts;  ///< the file in pieces, each of which but the first starts with a line NM
+};
+
+/// Returns every catalogue in data/glasses. The texts are compiled in, so that the program does not depend on its
+/// location.
+std::vector<ShippedText> const& shipped_glasses();
 
 }  // namespace gladstone

@@ -10,8 +10,8 @@ extern "C" int LLVMFuzzerTestOneInput(std::uint8_t const* data, std::size_t size
   fuzz::read(input, [&] {
     GlassCatalogue catalogue;
     catalogue.add_file(path);
-    for (Glass const& glass : catalogue.glasses()) {
-      fuzz::read(input, [&] { catalogue.find(glass.name, 550e-9, "lens:1"); });
+    for (Glass const* glass : catalogue.glasses()) {
+      fuzz::read(input, [&] { catalogue.find(glass->name, 550e-9, "lens:1"); });
     }
   });
   return 0;
