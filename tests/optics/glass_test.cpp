@@ -59,12 +59,12 @@ TEST(Glass, ABarMayBePartOfTheName) {
 
 // From calcium fluoride to the densest flints; a wrong copy of a coefficient would mostly lead elsewhere.
 TEST(Glass, EveryShippedGlassHasAPlausibleIndexAndAbbeNumber) {
-  EXPECT_GT(GlassCatalogue::shipped().glasses().size(), 150u);
+  EXPECT_GT(GlassCatalogue::shipped().glasses().size(), 1600u);
   for (Glass const* g : GlassCatalogue::shipped().glasses()) {
     if (g->shortest > 486.1e-9 || g->longest < 656.3e-9) continue;
     EXPECT_GT(g->nd(), 1.37) << g->name;
-    EXPECT_LT(g->nd(), 2.1) << g->name;
-    EXPECT_GT(g->vd(), 17) << g->name;
+    EXPECT_LT(g->nd(), 2.2) << g->name;
+    EXPECT_GT(g->vd(), 16) << g->name;
     EXPECT_LT(g->vd(), 110) << g->name;
   }
 }
