@@ -93,7 +93,7 @@ check-long: build  ## simulate ten recommended designs with eight fresh seeds ea
 
 lint: PACKAGES += $(LINT_PACKAGES)
 lint: configure  ## check the format (clang-format) and the code (clang-tidy)
-	clang-format --dry-run -Werror $(SOURCES)
+	@clang-format --dry-run -Werror $(SOURCES)
 	@[ -x $(BUILD)/lint/bin/clang-tidy ] || { python3 -m venv $(BUILD)/lint && $(BUILD)/lint/bin/pip install -q $(CLANG_TIDY); }
 	@$(TIDY_SOURCES) | xargs -P $(JOBS) -n 1 $(BUILD)/lint/bin/clang-tidy -p $(BUILD) --quiet
 

@@ -152,7 +152,7 @@ std::string demo_details(std::vector<DemoInstant> const& instants) {
           plane.predicted.rms_ratio);
     }
   }
-  text += "\n";
+  text += '\n';
   for (DemoInstant const& instant : instants) {
     text += fmt::format("## Error report of the 64 nodes: {}\n\n```\n{}```\n\n", instant.heading, instant.paper.report);
   }

@@ -75,7 +75,7 @@ double slab_displacement(double gradient, Faces faces) {
 }
 
 /// Skew ray through the rod [mm], and its tracing options.
-Ray<double> const skew{{0.7, -0.4, -2}, normalized(Vec3d{0.03, 0.05, 1})};
+Ray<double> skew_ray() { return {{0.7, -0.4, -2}, normalized(Vec3d{0.03, 0.05, 1})}; }
 constexpr TracingOptions<double> fine{0.01, 0, Integrator::rk4, Faces::refract};
 
 }  // namespace
@@ -113,6 +113,7 @@ double steep_slab_refracting_m(Renderer&) { return slab_displacement(1000, Faces
 
 double eikonal_drift(Renderer&) {
   ParabolicRod const rod;
+  Ray<double> const skew = skew_ray();
   MediumPassage<double> const way =
       trace_medium(rod, TracingOptions<double>{0.1, 0, Integrator::rk4, Faces::matched}, skew);
   return std::abs(length(way.straight + way.turn) - std::sqrt(rod.squared_index(exit_position(skew, way))));
@@ -120,6 +121,7 @@ double eikonal_drift(Renderer&) {
 
 double reversal_miss_mm(Renderer&) {
   ParabolicRod const rod;
+  Ray<double> const skew = skew_ray();
   MediumPassage<double> const out = trace_medium(rod, fine, skew);
   Vec3d const d = exit_direction(skew, out);
   Ray<double> const back{exit_position(skew, out) + d * 3.0, -d};

@@ -152,7 +152,8 @@ Vec3d motion_margin(FlowSetup const& flow, Vec3d volume, Vec3d center) {
   constexpr int nodes = 33;
   Vec3d most{};
   for (int k = 0; k < nodes * nodes * nodes; ++k) {
-    Vec3d const at{k % nodes - 16.0, k / nodes % nodes - 16.0, k / nodes / nodes - 16.0};
+    int const x = k % nodes, y = k / nodes % nodes, z = k / nodes / nodes;
+    Vec3d const at{x - 16.0, y - 16.0, z - 16.0};
     Vec3d const u = flow.flow(center + Vec3d{volume.x * at.x, volume.y * at.y, volume.z * at.z} / (nodes - 1.0));
     most = {std::max(most.x, std::abs(u.x)), std::max(most.y, std::abs(u.y)), std::max(most.z, std::abs(u.z))};
   }

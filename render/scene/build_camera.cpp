@@ -22,12 +22,12 @@ void append_window(Camera& camera, WindowSetup const& window, bool fresnel) {
   face.pose = middle.moved({0, 0, -window.thickness / 2});
   face.n_after = window.index;
   face.fresnel = fresnel;
-  camera.elements.push_back(face);
+  camera.elements.emplace_back(face);
   face.pose = middle.moved({0, 0, window.thickness / 2});
   face.n_before = window.index;
   face.n_after = 1;
   face.absorption = window.absorption;
-  camera.elements.push_back(face);
+  camera.elements.emplace_back(face);
 }
 
 void append_thin_lens(Camera& camera, Setup const& setup) {
@@ -35,8 +35,8 @@ void append_thin_lens(Camera& camera, Setup const& setup) {
   double const radius = chief ? std::numeric_limits<double>::infinity() : camera.paraxial.stop_radius;
   camera.stop = static_cast<int>(camera.elements.size());
   camera.stop_radius = camera.paraxial.stop_radius;
-  camera.elements.push_back(PosedStop<double>{camera.pose, radius, sharp});
-  camera.elements.push_back(PosedThinLens<double>{camera.pose, setup.lens.focal_length});
+  camera.elements.emplace_back(PosedStop<double>{camera.pose, radius, sharp});
+  camera.elements.emplace_back(PosedThinLens<double>{camera.pose, setup.lens.focal_length});
 }
 
 /// Appends the surfaces of a prescription. A plane stop without glass becomes a PosedStop, whose edge can be smoothed.
@@ -47,7 +47,7 @@ void append_prescription(Camera& camera, Setup const& setup) {
   camera.stop_radius = chief ? 0 : lens.stop_radius;
   for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {
     bool const stop = static_cast<int>(i) == lens.stop;
-    camera.elements.push_back(lens.surfaces[i].visit([&](auto surface) -> CameraElement<double> {
+    camera.elements.emplace_back(lens.surfaces[i].visit([&](auto surface) -> CameraElement<double> {
       surface.pose = surface.pose.within(camera.aim_plane);
       if (stop && chief) surface.semi_diameter = std::numeric_limits<double>::infinity();
       if constexpr (std::is_same_v<decltype(surface.shape), Quadric<double>>) {
@@ -61,7 +61,7 @@ void append_prescription(Camera& camera, Setup const& setup) {
 
 /// Places lenslets at the position of the sensor, and the sensor behind them.
 void append_lenslets(Camera& camera, LensletSetup const& lenslets) {
-  camera.elements.push_back(
+  camera.elements.emplace_back(
       LensletArray<double>{camera.sensor.pose, lenslets.pitch, lenslets.focal_length, lenslets.layout});
   camera.sensor.pose = camera.sensor.pose.moved({0, 0, lenslets.to_sensor});
 }

@@ -121,7 +121,8 @@ std::string warning_of_small_volume(Scene const& scene, ParticleCensus const& ce
   std::vector<char> outside(static_cast<std::size_t>(along) * along);
   std::atomic<int> seen = 0;
   parallel_for(outside.size(), [&](std::size_t i) {
-    Vec2d const share{(static_cast<int>(i) % along + 0.5) / along, (static_cast<int>(i) / along + 0.5) / along};
+    int const row = static_cast<int>(i) / along, column = static_cast<int>(i) % along;
+    Vec2d const share{(column + 0.5) / along, (row + 0.5) / along};
     auto const at = scene.camera.unproject({share.x * camera.columns - 0.5, share.y * camera.rows - 0.5}, plane);
     if (!at) return;
     ++seen;

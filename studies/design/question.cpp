@@ -80,7 +80,7 @@ Allowed read_limit(SetupTable limits, ChoiceKey const& key) {
   return allowed;
 }
 
-FreeChoice read_free_choice(Choice choice, SetupTable free, SetupTable limits, SetupTable inventory) {
+FreeChoice read_free_choice(Choice choice, SetupTable free, SetupTable const& limits, SetupTable inventory) {
   ChoiceKey const& key = key_of(choice);
   FreeChoice found{choice, {}, 0, 0};
   Allowed allowed = read_limit(limits, key);

@@ -128,7 +128,7 @@ std::vector<std::string> draw_study(std::string const& folder, StudyTable const&
   auto const add = [&](std::unique_ptr<GnuplotFigure> figure, std::string const& name) {
     if (!figure) return;
     figures.push_back(std::move(figure));
-    for (std::string const& format : formats) paths.push_back(folder + '/' + name + '.' + format);
+    for (std::string const& format : formats) paths.push_back(fmt::format("{}/{}.{}", folder, name, format));
   };
   std::vector<std::size_t> const& varied = cells.varied();
   for (std::size_t i = 0; i < varied.size(); ++i) {

@@ -212,7 +212,7 @@ ReportPage case_report(ReportOptions const& options, Device const& device) {
         Paragraph{budget_words(all)}}});
   ReportSection uncertainty{"Uncertainty", {TextList{uncertainty_statements(view)}}};
   if (nlohmann::json bins = reliability_of(all); !bins.empty()) {
-    uncertainty.blocks.push_back(Chart{
+    uncertainty.blocks.emplace_back(Chart{
         "reliability", "Does the estimated uncertainty tell the error?",
         fmt::format(
             "In {} bins of equal count the estimated uncertainty grows from {:.3g} to {:.3g} px, and the rms error "

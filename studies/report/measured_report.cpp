@@ -52,11 +52,11 @@ SimulatedTwin twin_of(CaseSetup const& loaded, DisplacementField const& field, M
 ReportSection causes_section(ReportPage& page, SimulatedTwin const* twin) {
   ReportSection causes{"Causes of error, by the simulated twin", {}};
   if (!twin || !twin->failed.empty()) {
-    causes.blocks.push_back(Paragraph{twin ? "There is no simulated twin: " + twin->failed
-                                           : "There is no simulated twin: the vectors are no complete lattice."});
+    causes.blocks.emplace_back(Paragraph{twin ? "There is no simulated twin: " + twin->failed
+                                              : "There is no simulated twin: the vectors are no complete lattice."});
     return causes;
   }
-  causes.blocks.push_back(Paragraph{fmt::format(
+  causes.blocks.emplace_back(Paragraph{fmt::format(
       "The density that the vectors integrate to was put before the setup's camera (its middle {} x {} px), rendered "
       "with its noise {} times, each time with other dots (seeds {}), and measured again. Between repeats the "
       "measurement scatters by {:.3g} px; what they share is off Eq. 9 by {:.3g} px rms, the uncorrected bias and the "
@@ -64,11 +64,12 @@ ReportSection causes_section(ReportPage& page, SimulatedTwin const* twin) {
       twin->columns, twin->rows, twin->seeds.size(), fmt::join(twin->seeds, ", "), twin->random_px,
       twin->systematic_px)});
   page.data["budget"] = budget_json(twin->comparison.shown_budget());
-  causes.blocks.push_back(
+  causes.blocks.emplace_back(
       Chart{"budget", "rms of every cause, of the simulated twin", largest_term(twin->comparison.shown_budget())});
-  causes.blocks.push_back(budget_table("Budget by cause, of the simulated twin and not of the measurement itself [px]",
-                                       twin->comparison.shown_budget()));
-  causes.blocks.push_back(Paragraph{budget_words(twin->comparison)});
+  causes.blocks.emplace_back(
+      budget_table("Budget by cause, of the simulated twin and not of the measurement itself [px]",
+                   twin->comparison.shown_budget()));
+  causes.blocks.emplace_back(Paragraph{budget_words(twin->comparison)});
   return causes;
 }
 
@@ -83,7 +84,7 @@ ReportSection maps_section(ReportPage& page, DisplacementField const& field, Mea
   // fraction of the image; the vectors of full frames only omit half a window at each edge
   constexpr double doubtful = 0.5;
   if (double const share = spanned_share(field, camera); share < doubtful) {
-    maps.blocks.push_back(Paragraph{fmt::format(
+    maps.blocks.emplace_back(Paragraph{fmt::format(
         "The vectors span {:.2g} % of the camera's {} x {} px: part of the frame was measured, or camera.pixels of the "
         "setup is not of these frames.",
         100 * share, camera.columns, camera.rows)});

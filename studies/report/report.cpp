@@ -32,7 +32,7 @@ ReportSection drawn_figures(
   try {
     fs::path const beside = fs::absolute(options.output).parent_path();
     for (std::string const& path : draw(options.figures, options.figure_format)) {
-      section.blocks.push_back(
+      section.blocks.emplace_back(
           FigureFile{fs::absolute(path).lexically_proximate(beside).string(), fs::path(path).stem().string()});
     }
   } catch (GnuplotMissing const& missing) {

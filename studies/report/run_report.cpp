@@ -120,9 +120,10 @@ ReportPage run_report(ReportOptions const& options) {
                                   bench = bench_of_text(best_text, "the setup of " + whose_best);
   page.sections.push_back(setup_section(study, base ? &*base : nullptr));
   ReportSection errors{"Error over the axes", {}};
-  if (free > 0) errors.blocks.push_back(Chart{"curves", "A measure over an axis", page.findings.front()});
-  if (free > 1) errors.blocks.push_back(Chart{"cells", "A measure over two axes", strongest_axis(study)});
-  errors.blocks.push_back(Chart{"scatter", "A measure against another, a point a case", extremes(study, best, *worst)});
+  if (free > 0) errors.blocks.emplace_back(Chart{"curves", "A measure over an axis", page.findings.front()});
+  if (free > 1) errors.blocks.emplace_back(Chart{"cells", "A measure over two axes", strongest_axis(study)});
+  errors.blocks.emplace_back(
+      Chart{"scatter", "A measure against another, a point a case", extremes(study, best, *worst)});
   page.sections.push_back(std::move(errors));
   if (!study.terms.empty()) {
     page.sections.push_back(
@@ -154,12 +155,12 @@ ReportPage run_report(ReportOptions const& options) {
   page.sections.push_back({"All cases", {cases_table(study)}});
   ReportSection settings{"Settings", {}};
   if (std::string text = text_in_run(run, run_file::study); !text.empty()) {
-    settings.blocks.push_back(Verbatim{"The study", std::move(text)});
+    settings.blocks.emplace_back(Verbatim{"The study", std::move(text)});
   }
   if (!base_text.empty()) {
-    settings.blocks.push_back(Verbatim{"The setup that every case starts from (base)", base_text});
+    settings.blocks.emplace_back(Verbatim{"The setup that every case starts from (base)", base_text});
   }
-  settings.blocks.push_back(Verbatim{"The setup of " + whose_best, best_text});
+  settings.blocks.emplace_back(Verbatim{"The setup of " + whose_best, best_text});
   std::string seeds, builds;
   std::vector<std::uint64_t> told;
   for (StudyRow const& row : study.table.rows) {
@@ -168,7 +169,7 @@ ReportPage run_report(ReportOptions const& options) {
     seeds += fmt::format("{}{}", seeds.empty() ? "" : ", ", row.seed);
   }
   for (std::string const& build : study.table.builds()) builds += (builds.empty() ? "" : ", ") + build;
-  settings.blocks.push_back(
+  settings.blocks.emplace_back(
       Paragraph{fmt::format("Seeds of the repeats: {}. Computed by gladstone {} on {}.", seeds, builds, best.device)});
   page.sections.push_back(std::move(settings));
   std::string const place = shell_word(run);

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
@@ -152,8 +152,14 @@ std::optional<int> version_of_manifest(InputFile const& file) {
   // Try the format of manifest_line() first; parse the line if another version or program wrote it.
   std::string text(64, '\0');
   text.resize(file.read(0, text.data(), text.size()));
-  int version = 0, index = -1;
-  if (std::sscanf(text.c_str(), "{\"manifest\":%d,\"index\":%d,", &version, &index) == 2) return version;
+  constexpr std::string_view start = "{\"manifest\":";
+  int version = 0;
+  if (text.starts_with(start)) {
+    char const* const number = text.data() + start.size();
+    auto const [end, error] = std::from_chars(number, text.data() + text.size(), version);
+    if (error == std::errc() && text.compare(static_cast<std::size_t>(end - text.data()), 9, ",\"index\":") == 0)
+      return version;
+  }
   constexpr std::size_t most = std::size_t{64} << 20;
   text.resize(static_cast<std::size_t>(std::min<std::uint64_t>(file.size(), most)));
   text.resize(file.read(0, text.data(), text.size()));
