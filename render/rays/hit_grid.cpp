@@ -54,7 +54,7 @@ void HitGrid::flush(Tile& tile, LightImage* image, double light_per_weight) {
   if (image) {
     int const left = first_.x + tile.at.x * tile_px - pad_px, top = first_.y + tile.at.y * tile_px - pad_px;
     blur_hits(
-        OneLane(), view_, tile.columns, tile.lines, tile.light.data(), side_, rows_seen_.data(),
+        SingleThread(), view_, tile.columns, tile.lines, tile.light.data(), side_, rows_seen_.data(),
         [&](int column, int row, double light) { image->add(left + column, top + row, light * light_per_weight); });
   }
   for (int line = tile.lines.low; line < tile.lines.high; ++line) {

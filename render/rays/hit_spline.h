@@ -66,7 +66,7 @@ struct HitSplineView {
 };
 
 /// Group of cooperating threads: a single one on the CPU.
-struct OneLane {
+struct SingleThread {
   int rank() const { return 0; }
   int size() const { return 1; }
   void sync() const {}
