@@ -131,7 +131,7 @@ CommonConventions detect_common_conventions(std::vector<VectorsWithTruth> const&
   std::vector<Sample> samples;
   for (VectorsWithTruth const& one : files) {
     result.detected.push_back(detect_conventions(one.file, one.truth, one.image_rows));
-    DisplacementField few = detail::sample(one.file.field, 1000);
+    DisplacementField few = detail::sample(one.file.field, 4000);  // the sample of detect_conventions()
     double const most = detail::largest_difference(few, own.front(), one.truth, one.image_rows);
     samples.push_back({&one, std::move(few), most, {}});
   }

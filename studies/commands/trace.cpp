@@ -40,6 +40,7 @@ CommandBody attach_trace(CLI::App& app, GlobalOptions const& options) {
     std::vector<Ray<double>> const rays = read_rays(arguments->rays, loaded.setup.farthest_off_axis());
     stop_point("tracing-rays");
     if (options.device == "cuda") throw DeviceError("trace: follows its few rays on the CPU; use --device cpu or auto");
+    for (std::string const& text : loaded.warnings) spdlog::warn("{}", text);
     Scene scene = build_scene(loaded.setup);
     for (auto const& text : scene.medium.warnings) spdlog::warn("{}", text);
     plan_step_of(scene);

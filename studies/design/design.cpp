@@ -79,7 +79,9 @@ void add_sheet(DesignRequest const& request, CaseSetup const& loaded, std::vecto
   if (!std::isfinite(loaded.setup.lens.f_number)) {
     throw DataError(request.setup, "has no stop (lens.f_number); a design needs the cone of light, so give a number");
   }
-  report.warnings = beyond_closed_forms(loaded.setup);
+  report.warnings = loaded.warnings;
+  std::vector<std::string> const neglected = beyond_closed_forms(loaded.setup);
+  report.warnings.insert(report.warnings.end(), neglected.begin(), neglected.end());
   std::vector<std::string> const of_field = header_warnings(loaded.setup.medium);
   report.warnings.insert(report.warnings.end(), of_field.begin(), of_field.end());
   DesignSheet sheet;

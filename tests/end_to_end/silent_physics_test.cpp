@@ -124,6 +124,14 @@ TEST_F(SilentPhysics, AsksForTheUnitOfImplausibleNumbers) {
   EXPECT_THAT(short_wave.err, HasSubstr("is it in um? 0.532 um are 532 nm"));
   EXPECT_THAT(gladstone({"render", "setup.toml", "-o", "case", "--set", "lens.focal_length_mm=0.105"}).err,
               HasSubstr("lens.focal_length_mm = 0.105 mm is outside the usual range"));
+  write("rays.csv", "x_mm,y_mm,z_mm,dx,dy,dz\n0,0,0,0,0,1\n");
+  for (std::vector<std::string> const& command : {std::vector<std::string>{"design", "setup.toml"},
+                                                  {"trace", "setup.toml", "--rays", "rays.csv", "-o", "out.csv"}}) {
+    std::vector<std::string> arguments = command;
+    arguments.insert(arguments.end(), {"--set", "lens.focal_length_mm=0.105"});
+    EXPECT_THAT(gladstone(arguments).err, HasSubstr("lens.focal_length_mm = 0.105 mm is outside the usual range"))
+        << command.front();
+  }
   EXPECT_THAT(
       json_of({"render", "setup.toml", "-o", "case", "--set", "medium.gladstone_dale=2.26e-4"})["warnings"].dump(),
       Not(HasSubstr("usual range")));
