@@ -115,6 +115,7 @@ CommandBody attach_collect(CLI::App& app, GlobalOptions const& options) {
                  "into one HDF5 file");
   return [arguments, &options] {
     std::string const& run = arguments->run;
+    if (!arguments->dataset.empty()) refuse_files_of_study(run, arguments->dataset);  // before anything is written
     StudyTable const table = collect_study(run);
     if (std::vector<std::string> const builds = table.builds(); builds.size() > 1) {
       spdlog::warn("{}: the cases were computed by {} builds of gladstone ({}), whose numbers may differ", run,

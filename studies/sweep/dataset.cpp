@@ -110,13 +110,18 @@ std::vector<double> numbers_of(Image<Vec2d> const& map) {
 
 }  // namespace
 
+void refuse_files_of_study(std::string const& run, std::string const& path) {
+  std::vector<std::string> inputs;
+  for (char const* file :
+       {run_file::study, run_file::manifest, run_file::table, run_file::table_text, run_file::points_text})
+    inputs.push_back((fs::path(run) / file).string());
+  refuse_inputs_as_outputs({path}, inputs);
+}
+
 PackedDataset pack_dataset(std::string const& run, std::string const& path, Renderer& renderer) {
+  refuse_files_of_study(run, path);
   std::string const study = (fs::path(run) / run_file::study).string();
   std::string const manifest = (fs::path(run) / run_file::manifest).string();
-  std::vector<std::string> inputs{study, manifest};
-  for (char const* table : {run_file::table, run_file::table_text, run_file::points_text})
-    inputs.push_back((fs::path(run) / table).string());
-  refuse_inputs_as_outputs({path}, inputs);
   StudyTable table = read_study_table(run);
   std::vector<CaseWithImages> kept;
   std::vector<StudyRow> rows;
