@@ -142,7 +142,7 @@ MeasuredVectors load_vectors(std::string const& path, CaseSetup const& loaded, G
   MeasuredVectors vectors{{}, loaded.correlate, file.foreign, {}, path, left_out, {}};
   bool const hdf5 = path.ends_with(".h5") || path.ends_with(".hdf5");
   if (options.conventions && specifies_reading(*options.conventions)) {
-    vectors.report = file.format + " vectors, as told: " + describe(file.conventions);
+    vectors.report = file.format + " vectors, as specified: " + describe(file.conventions);
   } else if (file.foreign || !hdf5) {  // our .h5 files name their frames, so their conventions are certain
     vectors.detected = detect(file, path, truth, camera);
     vectors.report = vectors.detected->report;

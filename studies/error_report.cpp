@@ -33,8 +33,7 @@ std::string undeformed_line(Comparison const& comparison) {
     return std::nan("");
   };
   return fmt::format(
-      "  window and estimator: of the frames as the passes deform them (of an undeformed window {:.5f} and {:.5f} "
-      "px)\n",
+      "  window and estimator: of the frames as the passes deform them; of an undeformed window {:.5f}, {:.5f} px\n",
       rms("window"), rms("estimator"));
 }
 

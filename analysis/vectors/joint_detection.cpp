@@ -20,9 +20,8 @@ struct Sample {
   double most;  ///< upper limit of a difference, see fit_within()
   ConventionFit as_read;
 
-  ConventionFit fit(LikelyMistake const& mistake) const {
-    return detail::fit_within(detail::corrected(few, mistake.correction), mistake.reading, of->truth, of->image_rows,
-                              most);
+  ConventionFit fit(VectorConventions const& conventions, VectorCorrection const& correction = {}) const {
+    return detail::fit_within(detail::corrected(few, correction), conventions, of->truth, of->image_rows, most);
   }
 };
 
@@ -45,10 +44,10 @@ struct Candidate {
     mistake.rms_px = undone.rms_px;
     mistake.rms_as_read = as_read.rms_px;
   }
+  bool corrects() const { return !(mistake.correction == VectorCorrection{}); }
   bool is_found() const {
-    bool const corrects = !(mistake.correction == VectorCorrection{});
-    if (corrects && 2 * followed <= files) return false;  // files with different units, for example
-    return sum > (corrects ? 25.0 : 16.0) && mistake.rms_px < (corrects ? 0.5 : 0.9) * mistake.rms_as_read;
+    if (corrects() && 2 * followed <= files) return false;  // files with different units, for example
+    return sum > (corrects() ? 25.0 : 16.0) && mistake.rms_px < (corrects() ? 0.5 : 0.9) * mistake.rms_as_read;
   }
 };
 
@@ -58,26 +57,24 @@ std::vector<VectorConventions> own_conventions(VectorFile const& file) {
   return own;
 }
 
-/// Returns those of the format's own conventions that fit all files best.
-VectorConventions choose_own(std::vector<Sample> const& samples, std::vector<VectorConventions> const& own) {
-  VectorConventions chosen = own.front();
+/// Returns those of the format's own conventions that fit all files best, and stores their fits in the samples.
+/// @pre the stored fits are those of the first conventions
+VectorConventions choose_own(std::vector<Sample>& samples, std::vector<VectorConventions> const& own) {
+  std::vector<ConventionFit> chosen;
   double most = 9.0;
-  for (VectorConventions const& one : own) {
+  for (std::size_t k = 1; k < own.size(); ++k) {
+    std::vector<ConventionFit> fits;
     double sum = 0.0;
     for (Sample const& sample : samples) {
-      auto const fit = [&](VectorConventions const& conventions) {
-        LikelyMistake reading;
-        reading.reading = conventions;
-        return sample.fit(reading);
-      };
-      double const evidence = evidence_for(fit(one), fit(own.front()));
+      double const evidence = evidence_for(fits.emplace_back(sample.fit(own[k])), sample.as_read);
       if (std::isfinite(evidence)) sum += evidence;
     }
     if (!(sum > most)) continue;
     most = sum;
-    chosen = one;
+    chosen = std::move(fits);
   }
-  return chosen;
+  for (std::size_t i = 0; i < chosen.size(); ++i) samples[i].as_read = chosen[i];
+  return samples.front().as_read.conventions;
 }
 
 /// Returns every choice of axes, signs and columns that is not the format's own, with its best offset in each file.
@@ -112,15 +109,38 @@ std::vector<Candidate> corrections(std::vector<DetectedConventions> const& detec
     if (!mistake.found() || only_axes) continue;
     Candidate candidate;
     candidate.mistake = mistake;
-    for (std::size_t i = 0; i < samples.size(); ++i) candidate.add(samples[i].fit(mistake), samples[i].as_read, i);
+    for (std::size_t i = 0; i < samples.size(); ++i)
+      candidate.add(samples[i].fit(mistake.reading, mistake.correction), samples[i].as_read, i);
     all.push_back(std::move(candidate));
   }
   return all;
 }
 
 double unlikelihood_of(Candidate const& candidate, std::vector<VectorConventions> const& own) {
-  double const correction = candidate.mistake.correction == VectorCorrection{} ? 0.0 : 1.5;
-  return correction + detail::unlikelihood(candidate.mistake.reading, own);
+  return (candidate.corrects() ? 1.5 : 0.0) + detail::unlikelihood(candidate.mistake.reading, own);
+}
+
+/// Returns true if two candidates state the same mistake: the same axes and signs without a correction, or both with
+/// one.
+bool alike(Candidate const& a, Candidate const& b) {
+  return a.mistake.correction == b.mistake.correction ? same_axes(a.mistake.reading, b.mistake.reading)
+                                                      : a.corrects() && b.corrects();
+}
+
+/// Returns the index of the file that best distinguishes the conventions in use from other axes and signs.
+std::size_t most_telling_file(std::vector<DetectedConventions> const& detected, std::vector<Sample> const& samples) {
+  std::size_t telling = 0;
+  double strongest = 0.0;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    ConventionFit const& as_read = samples[i].as_read;
+    auto const rival = std::find_if(detected[i].tried.begin(), detected[i].tried.end(), [&](ConventionFit const& fit) {
+      return !same_axes(fit.conventions, as_read.conventions);
+    });
+    if (rival == detected[i].tried.end() || !(evidence_for(as_read, *rival) > strongest)) continue;
+    strongest = evidence_for(as_read, *rival);
+    telling = i;
+  }
+  return telling;
 }
 
 }  // namespace
@@ -134,50 +154,32 @@ CommonConventions detect_common_conventions(std::vector<VectorsWithTruth> const&
     DisplacementField few = detail::sample(one.file.field, 4000);  // the sample of detect_conventions()
     double const most = detail::largest_difference(few, own.front(), one.truth, one.image_rows);
     samples.push_back({&one, std::move(few), most, {}});
+    samples.back().as_read = samples.back().fit(own.front());
   }
   result.conventions = choose_own(samples, own);
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    LikelyMistake as_read;
-    as_read.reading = result.conventions;
-    samples[i].as_read = samples[i].fit(as_read);
-  }
 
   std::vector<Candidate> all = other_axes(result.detected, samples, own, result.conventions);
   for (Candidate& one : corrections(result.detected, samples, result.conventions)) all.push_back(std::move(one));
   auto best =
       std::max_element(all.begin(), all.end(), [](Candidate const& a, Candidate const& b) { return a.sum < b.sum; });
   if (best == all.end() || !best->is_found()) {
-    double strongest = 0.0;
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-      auto const rival =
-          std::find_if(result.detected[i].tried.begin(), result.detected[i].tried.end(),
-                       [&](ConventionFit const& fit) { return !same_axes(fit.conventions, result.conventions); });
-      if (rival == result.detected[i].tried.end()) continue;
-      double const evidence = evidence_for(samples[i].as_read, *rival);
-      if (!(evidence > strongest)) continue;
-      strongest = evidence;
-      result.decisive = i;
-    }
+    result.decisive = most_telling_file(result.detected, samples);
     result.fit = samples[result.decisive].as_read;
-    result.ambiguous = std::any_of(all.begin(), all.end(), [](Candidate const& one) {
-      return one.mistake.correction == VectorCorrection{} && one.sum > -9.0;
-    });
+    result.ambiguous =
+        std::any_of(all.begin(), all.end(), [](Candidate const& one) { return !one.corrects() && one.sum > -9.0; });
     return result;
   }
   // Estimator errors in a flow of similar appearance can account for a tenth of the evidence.
-  double const most = best->sum, alike = std::max(9.0, 0.1 * most);
+  double const most = best->sum, close = std::max(9.0, 0.1 * most);
   for (auto one = all.begin(); one != all.end(); ++one) {
-    if (most - one->sum <= alike && unlikelihood_of(*one, own) < unlikelihood_of(*best, own)) best = one;
+    if (most - one->sum <= close && unlikelihood_of(*one, own) < unlikelihood_of(*best, own)) best = one;
   }
   result.mistake = best->mistake;
   result.decisive = best->decisive;
   result.fit = samples[result.decisive].as_read;
   for (Candidate const& other : all) {
     bool const as_likely = unlikelihood_of(other, own) < unlikelihood_of(*best, own) + 0.5;
-    bool const same = other.mistake.correction == best->mistake.correction
-                          ? same_axes(other.mistake.reading, best->mistake.reading)
-                          : !(other.mistake.correction == VectorCorrection{});
-    if (same || most - other.sum > alike || !as_likely) continue;
+    if (alike(other, *best) || most - other.sum > close || !as_likely) continue;
     result.mistake.text += ", or " + other.mistake.text;
     result.mistake.conventions.clear();
     result.ambiguous = true;

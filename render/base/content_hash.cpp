@@ -1,8 +1,8 @@
 #include "render/base/content_hash.h"
 
 #include <OpenImageIO/hash.h>
+#include <fmt/format.h>
 
-#include <cstdio>
 #include <vector>
 
 #include "render/base/input_file.h"

@@ -4,7 +4,7 @@
 
 namespace gladstone {
 
-/// The value of quantities that are not known.
+/// Value of unknown quantities.
 inline constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace gladstone

@@ -1,6 +1,7 @@
 #include "render/base/partial.h"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <stdio.h>
 #include <sys/random.h>
 #include <sys/stat.h>

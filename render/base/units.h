@@ -10,7 +10,7 @@ inline constexpr double metre = 1.0;
 inline constexpr double millimetre = 1e-3;
 inline constexpr double micrometre = 1e-6;
 inline constexpr double nanometre = 1e-9;
-inline constexpr double mm = millimetre, um = micrometre;
+inline constexpr double mm = millimetre, um = micrometre;  // short, for tables of values
 inline constexpr double microsecond = 1e-6;
 inline constexpr double millijoule = 1e-3;
 inline constexpr double degree = pi / 180.0;

@@ -105,7 +105,7 @@ class AgfReader {
       double const formula = number(2);
       if (!(formula >= 1 && formula <= dispersion_formulas && formula == std::floor(formula))) {
         throw AgfFault{record.line,
-                       fmt::format("dispersion formula {} is not known (1 to {} are)", words[2], dispersion_formulas)};
+                       fmt::format("unknown dispersion formula {} (known are 1 to {})", words[2], dispersion_formulas)};
       }
       glass_->formula = static_cast<DispersionFormula>(static_cast<int>(formula));
       if (words.size() > 4) glass_->printed_nd = number_in(words[4]).value_or(0);

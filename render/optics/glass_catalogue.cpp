@@ -226,8 +226,8 @@ GlassMatch GlassCatalogue::match(std::string_view name, double wavelength, std::
                                        fmt::join(names, ", "), names.front()));
   } else if (result.assumed && !preferred.empty()) {
     result.notes.push_back(
-        fmt::format("{}: glass \"{}\" is in none of the catalogues that the lens file lists ({}); {} is taken", where,
-                    name, fmt::join(preferred, ", "), place_of(glass)));
+        fmt::format("{}: glass \"{}\" is not in the catalogues that the lens file lists ({}); {} is taken", where, name,
+                    fmt::join(preferred, ", "), place_of(glass)));
   }
   constexpr double d = spectral_line::d;
   bool const printed = glass.printed_nd > 1 && d >= glass.shortest && d <= glass.longest;  // 0, 1: none

@@ -10,6 +10,7 @@
 namespace gladstone {
 namespace {
 
+/// Returns true for the default and the estimators that are only points of the curve of settings.
 bool is_on_curve(std::string const& name) {
   for (BenchmarkEstimator const& one : benchmark_estimators())
     if (one.name == name) return one.of_curve || name == "default";

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "render/base/contracts.h"
 
@@ -60,13 +59,7 @@ double median_relative_error(DisplacementField const& field, std::vector<Vec2d> 
     errors.push_back(error);
     displacements.push_back(length(truth[i]));
   }
-  if (errors.empty()) return std::numeric_limits<double>::quiet_NaN();
-  auto const median = [](std::vector<double>& values) {
-    auto const middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-  };
-  return median(errors) / std::max(0.5, median(displacements));
+  return quantile(errors, 0.5) / std::max(0.5, quantile(displacements, 0.5));
 }
 
 std::vector<std::pair<std::string_view, double>> score_measures(BenchmarkScore const& score) {

@@ -89,19 +89,18 @@ void ForeignCode::read(std::string const& of_case, DisplacementAt const& truth, 
     throw DataError(path, refusal);
   if (std::none_of(file.field.displacement_px.begin(), file.field.displacement_px.end(), is_finite))
     throw DataError(path, "holds no displacement that is a number; export the vectors with their values");
-  cases_.push_back({of_case, path, {std::move(file), truth, rows}, columns});
+  cases_.push_back({of_case, path, columns});
+  vectors_.push_back({std::move(file), truth, rows});
 }
 
 std::vector<BenchmarkRow> ForeignCode::score() {
-  VectorFile const& first = cases_.front().vectors.file;
+  VectorFile const& first = vectors_.front().file;
   bool const told = told_ && specifies_reading(*told_);
   bool const ours = !first.foreign && cases_.front().path.ends_with(".h5");
   VectorConventions conventions = first.conventions;
-  if (told) reading_ = fmt::format("{} vectors, as told: {}", first.format, describe(conventions));
+  if (told) reading_ = fmt::format("{} vectors, as specified: {}", first.format, describe(conventions));
   if (!told && !ours) {
-    std::vector<VectorsWithTruth> vectors;
-    for (Case const& one : cases_) vectors.push_back(one.vectors);
-    CommonConventions const common = detect_common_conventions(vectors);
+    CommonConventions const common = detect_common_conventions(vectors_);
     auto const fits_none = [](DetectedConventions const& one) { return one.verdict == Verdict::fits_none; };
     auto const can_tell = [](DetectedConventions const& one) { return one.verdict != Verdict::cannot_be_told; };
     bool const any_tells = std::any_of(common.detected.begin(), common.detected.end(), can_tell);
@@ -123,20 +122,21 @@ std::vector<BenchmarkRow> ForeignCode::score() {
   }
   std::vector<BenchmarkRow> rows;
   std::size_t wrong = 0;
-  for (Case& one : cases_) {
-    DisplacementField const field =
-        apply_conventions(std::move(one.vectors.file.field), conventions, one.vectors.image_rows);
-    if (std::string const refusal = refusal_of_gaps(field, one.columns, one.vectors.image_rows); !refusal.empty())
+  for (std::size_t i = 0; i < cases_.size(); ++i) {
+    Case const& one = cases_[i];
+    VectorsWithTruth& vectors = vectors_[i];
+    DisplacementField const field = apply_conventions(std::move(vectors.file.field), conventions, vectors.image_rows);
+    if (std::string const refusal = refusal_of_gaps(field, one.columns, vectors.image_rows); !refusal.empty())
       throw DataError(one.path, refusal);
-    std::vector<Vec2d> const truth = truth_at_vectors(field, one.vectors.truth);
-    rows.push_back({name_, one.name, score_vectors(field, truth, one.columns, one.vectors.image_rows), {}});
+    std::vector<Vec2d> const truth = truth_at_vectors(field, vectors.truth);
+    rows.push_back({name_, one.name, score_vectors(field, truth, one.columns, vectors.image_rows), {}});
     wrong += median_relative_error(field, truth) < most_wrong ? 0 : 1;
   }
   if (mistakes_.empty() && 2 * wrong > cases_.size())
     mistakes_.push_back(fmt::format(
         "{}: in {} of {} cases half of the vectors differ from the truth by more than {:.0f} % of the displacement, "
-        "and neither axes, a factor nor a shift that all have in common explains it; check that each file holds the "
-        "vectors of its own case, all of them in px",
+        "and neither axes, a factor nor a shift that all have in common explains it; check that each file contains the "
+        "vectors of the case that it is named after, in px",
         name_, wrong, cases_.size(), 100.0 * most_wrong));
   return rows;
 }
@@ -157,8 +157,8 @@ std::string ForeignCode::describe_mistake(CommonConventions const& common) const
         "by {:.3g} px); {}",
         name_, mistake.text, decisive, mistake.rms_px, mistake.rms_as_read, cure);
   }
-  // Each file may have a mistake of its own. An indication from a minority may be due to estimator errors where the
-  // flow is finer than the windows.
+  // The files may have different mistakes. An indication from a minority may be due to estimator errors where the flow
+  // is finer than the windows.
   std::size_t judged = 0, mistaken = 0;
   std::string found;
   for (std::size_t i = 0; i < common.detected.size(); ++i) {

@@ -39,7 +39,6 @@ class ForeignCode {
  private:
   struct Case {
     std::string name, path;
-    VectorsWithTruth vectors;
     int columns = 0;
   };
   std::string describe_mistake(CommonConventions const& common) const;
@@ -48,6 +47,7 @@ class ForeignCode {
   std::map<std::string, std::string> files_;  ///< file names by case
   std::optional<std::string> told_;
   std::vector<Case> cases_;
+  std::vector<VectorsWithTruth> vectors_;  ///< vectors of each case
   std::string reading_;
   std::vector<std::string> mistakes_;
 };

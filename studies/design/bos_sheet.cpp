@@ -21,7 +21,6 @@ constexpr double binding = 1e-3;  // tolerance by which a design may exceed an a
 constexpr double good_signal = 20;  // recommended signal-to-noise ratio, F21
 
 constexpr char const* raffel = "Raffel 2015, Exp. Fluids 56:60";
-constexpr char const* adrian = "Adrian & Yao 1985; Raffel et al. 2018";
 constexpr char const* seed = "Rajendran, Bane & Vlachos";
 constexpr char const* derived = "derived in docs/design.md";
 

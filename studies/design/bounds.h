@@ -30,7 +30,7 @@ enum class Bound {
   full_well,   ///< the peak is below full scale
 };
 
-/// Returns true if the bound is the least value allowed, false if it is the greatest.
+/// Returns true for lower limits, for which a larger value is stricter.
 inline bool from_below(Bound bound) { return bound == Bound::view_width || bound == Bound::view_height; }
 
 constexpr bool required_by_user(Bound bound) { return bound < Bound::focus; }

@@ -24,8 +24,7 @@ DesignProblem complete(DesignProblem problem, DesignBranch const& branch) {
   return problem;
 }
 
-/// Returns true for lower limits, for which a larger value is stricter.
-
+/// Makes a limit stricter by a factor above 1, and looser by a factor below 1.
 double moved(Limit const& limit, double factor) {
   return from_below(limit.bound) ? limit.value * factor : limit.value / factor;
 }

@@ -8,6 +8,9 @@
 
 namespace gladstone {
 
+/// Source of the formulas for the image diameters of dots and particles.
+inline constexpr char const* adrian = "Adrian & Yao 1985; Raffel et al. 2018";
+
 /// Rating of a value of the design sheet against the usual recommendation.
 enum class Margin {
   none,      ///< no recommendation

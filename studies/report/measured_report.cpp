@@ -52,8 +52,9 @@ SimulatedTwin twin_of(CaseSetup const& loaded, DisplacementField const& field, M
 ReportSection causes_section(ReportPage& page, SimulatedTwin const* twin) {
   ReportSection causes{"Causes of error, by the simulated twin", {}};
   if (!twin || !twin->failed.empty()) {
-    causes.blocks.emplace_back(Paragraph{twin ? "There is no simulated twin: " + twin->failed
-                                              : "There is no simulated twin: the vectors are no complete lattice."});
+    causes.blocks.emplace_back(
+        Paragraph{twin ? "The simulated twin could not be made: " + twin->failed
+                       : "The simulated twin needs a complete lattice of vectors, and these are not one."});
     return causes;
   }
   causes.blocks.emplace_back(Paragraph{fmt::format(

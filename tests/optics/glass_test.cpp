@@ -57,15 +57,17 @@ TEST(Glass, ABarMayBePartOfTheName) {
               AllOf(HasSubstr("in no catalogue"), HasSubstr("lens.glasses"), HasSubstr("--glass")));
 }
 
-// From calcium fluoride to the densest flints; a wrong copy of a coefficient would mostly lead elsewhere.
+// 1628 glasses: 156 of SCHOTT, 410 OHARA, 190 HOYA, 375 HIKARI, 314 CDGM, 176 SUMITA and 7 others. The extremes in
+// their makers' catalogues are magnesium fluoride (nd 1.3777, Vd 106.2), SUMITA's K-PSFn215 (nd 2.1540) and HOYA's
+// FDS16-W (Vd 16.48). A wrong copy of a coefficient would mostly lead outside.
 TEST(Glass, EveryShippedGlassHasAPlausibleIndexAndAbbeNumber) {
-  EXPECT_GT(GlassCatalogue::shipped().glasses().size(), 1600u);
+  EXPECT_GT(GlassCatalogue::shipped().glasses().size(), 1627u);
   for (Glass const* g : GlassCatalogue::shipped().glasses()) {
     if (g->shortest > 486.1e-9 || g->longest < 656.3e-9) continue;
-    EXPECT_GT(g->nd(), 1.37) << g->name;
-    EXPECT_LT(g->nd(), 2.2) << g->name;
-    EXPECT_GT(g->vd(), 16) << g->name;
-    EXPECT_LT(g->vd(), 110) << g->name;
+    EXPECT_GT(g->nd(), 1.377) << g->name;
+    EXPECT_LT(g->nd(), 2.155) << g->name;
+    EXPECT_GT(g->vd(), 16.4) << g->name;
+    EXPECT_LT(g->vd(), 106.3) << g->name;
   }
 }
 

@@ -501,6 +501,18 @@ TEST(LensFiles, UnitsMayBeInLowerCase) {
               10 * focal_length_mm(lens_of_text("upper.zmx", zmx)), 1e-10);
 }
 
+/// A lens file with the commands of a row of the documented table, and a number that only holds if they are obeyed.
+struct CommandRow {
+  char const* commands;
+  std::string text;
+  std::function<double(Lens const&)> measure;
+  double expected;
+};
+void expect_rows(std::string const& name, std::vector<CommandRow> const& rows) {
+  for (CommandRow const& row : rows)
+    EXPECT_NEAR(row.measure(lens_of_text(name, row.text)), row.expected, 1e-9) << row.commands;
+}
+
 // Rows of the documented table that no other test covers: each has a number that only holds if the commands of the row
 // are obeyed.
 TEST(LensFiles, TheDocumentedCodeVCommandsAreObeyed) {
@@ -521,13 +533,7 @@ TEST(LensFiles, TheDocumentedCodeVCommandsAreObeyed) {
   double const f = traced_focal_length({0.02, -0.02}, {1, bk7(), 1}, {6});
   std::string const curvatures =
       changed(changed(with("RDM;LEN", "RDM N;LEN"), "S 50.0", "S 0.02"), "S -50.0", "S -0.02");
-  struct Row {
-    char const* commands;
-    std::string text;
-    std::function<double(Lens const&)> measure;
-    double expected;
-  };
-  std::vector<Row> const rows{
+  std::vector<CommandRow> const rows{
       {"RDM", seq, focal_length, f},
       {"RDM N", curvatures, focal_length, f},
       {"517.642", with("NBK7_SCHOTT", "517.642"), focal_length, traced_focal_length({0.02, -0.02}, {1, 1.517, 1}, {6})},
@@ -553,8 +559,7 @@ TEST(LensFiles, TheDocumentedCodeVCommandsAreObeyed) {
       {"DIM C", with("DIM M", "DIM C"), focal_length, 10 * f},
       {"DIM I", with("DIM M", "DIM I"), focal_length, 25.4 * f},
   };
-  for (Row const& row : rows)
-    EXPECT_NEAR(row.measure(lens_of_text("row.seq", row.text)), row.expected, 1e-9) << row.commands;
+  expect_rows("row.seq", rows);
 }
 
 // The same for Zemax' files.
@@ -565,13 +570,7 @@ TEST(LensFiles, TheDocumentedZemaxCommandsAreObeyed) {
   std::string const aspheric = with("  STOP\n  TYPE STANDARD\n",
                                     "  STOP\n  TYPE EVENASPH\n  CONI -0.5\n  PARM 1 0\n  PARM 2 1e-4\n  PARM 3 2e-6\n");
   double const r = 4, conic_sag = 0.02 * r * r / (1 + std::sqrt(1 - 0.5 * 0.02 * 0.02 * r * r));
-  struct Row {
-    char const* commands;
-    std::string text;
-    std::function<double(Lens const&)> measure;
-    double expected;
-  };
-  std::vector<Row> const rows{
+  std::vector<CommandRow> const rows{
       {"EVENASPH", aspheric, [r](Lens const& lens) { return sag_of_first_surface(lens, r); },
        conic_sag + 1e-4 * std::pow(r, 4) + 2e-6 * std::pow(r, 6)},
       {"UNIT IN", with("UNIT MM", "UNIT IN"), focal_length, 25.4 * f},
@@ -582,8 +581,7 @@ TEST(LensFiles, TheDocumentedZemaxCommandsAreObeyed) {
       {"WAVL", changed(with("WAVM 1 0.48613270 1\n", ""), "WAVM 2 0.58756180 1", "WAVL 0.4861327 0.5875618"),
        [](Lens const& lens) { return lens.prescription.primary_wavelength / unit::nanometre; }, 587.5618},
   };
-  for (Row const& row : rows)
-    EXPECT_NEAR(row.measure(lens_of_text("row.zmx", row.text)), row.expected, 1e-9) << row.commands;
+  expect_rows("row.zmx", rows);
 }
 
 TEST(LensFiles, GratingsAndOtherSurfacesAreRefusedByName) {
