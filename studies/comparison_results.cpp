@@ -47,7 +47,7 @@ nlohmann::ordered_json fit_json(DetectedConventions const& detected) {
   LikelyMistake const& mistake = detected.mistake;
   json["likely_mistake"] = nullptr;
   if (mistake.found()) {
-    json["likely_mistake"] = {{"text", mistake.text}, {"rms_without_px", known_or_null(mistake.rms_px)}};
+    json["likely_mistake"] = {{"text", mistake.text}, {"rms_without_px", known_or_null(mistake.mended.rms_px)}};
     if (!mistake.conventions.empty()) json["likely_mistake"]["conventions"] = mistake.conventions;
   }
   json["ambiguous"] = detected.ambiguous;

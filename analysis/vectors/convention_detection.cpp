@@ -52,10 +52,10 @@ std::vector<VectorConventions> every_choice(std::vector<VectorConventions> const
 }
 
 bool surely_better(ConventionFit const& a, ConventionFit const& b) {
-  return a.rms_px < b.rms_px && evidence_for(a, b) > 9.0;
+  return a.spread_px < b.spread_px && evidence_for(a, b) > 9.0;
 }
 
-bool better(ConventionFit const& a, ConventionFit const& b) { return a.rms_px < b.rms_px; }
+bool better(ConventionFit const& a, ConventionFit const& b) { return a.spread_px < b.spread_px; }
 
 /// Returns the best fit of each choice of axes and signs, in ascending order of rms.
 std::vector<ConventionFit> best_of_axes(std::vector<ConventionFit> const& fits) {
@@ -76,7 +76,7 @@ std::vector<ConventionFit> best_of_axes(std::vector<ConventionFit> const& fits) 
 
 Verdict judge(ConventionFit const& best) {
   // Require three standard errors, since this is the best of some sixty candidates.
-  if (best.rms_px < best.signal_px && best.slope > 3.0 * best.slope_error) return Verdict::fits;
+  if (best.spread_px < best.signal_spread_px && best.slope > 3.0 * best.slope_error) return Verdict::fits;
   if (!(best.signal_px >= telling_signal_px)) return Verdict::cannot_be_told;
   bool const follows = best.slope - 2.0 * best.slope_error > 0.5 && best.slope < 2.0;
   return follows ? Verdict::noisy : Verdict::fits_none;
@@ -86,7 +86,7 @@ Verdict judge(ConventionFit const& best) {
 /// in a flow of similar appearance: 10 % of the rms for other axes, 5 % for another offset.
 bool fits_as_well(ConventionFit const& fit, ConventionFit const& best) {
   double const part = same_axes(fit.conventions, best.conventions) ? 0.95 : 0.9;
-  return !(part * fit.rms_px > best.rms_px) || evidence_for(best, fit) < 9.0;
+  return !(part * fit.spread_px > best.spread_px) || evidence_for(best, fit) < 9.0;
 }
 
 /// Returns the likeliest of the conventions that fit as well as the best.
@@ -118,7 +118,7 @@ DetectedConventions detect_conventions(VectorFile const& file, Truth const& trut
   DetectedConventions result;
   ConventionFit chosen = fits.front();
   for (std::size_t i = 1; i < own.size(); ++i) {
-    bool const clear = same_axes(fits[i].conventions, chosen.conventions) || fits[i].rms_px < 0.9 * chosen.rms_px;
+    bool const clear = same_axes(fits[i].conventions, chosen.conventions) || fits[i].spread_px < 0.9 * chosen.spread_px;
     if (clear && surely_better(fits[i], chosen)) chosen = fits[i];
   }
   result.verdict = judge(*std::min_element(fits.begin(), fits.end(), better));
@@ -131,9 +131,10 @@ DetectedConventions detect_conventions(VectorFile const& file, Truth const& trut
   bool const reads = result.verdict == Verdict::fits || result.verdict == Verdict::noisy;
   double const clearly = same_axes(result.best.conventions, chosen.conventions) ? 0.95 : 0.9;
   bool const is_own = std::find(own.begin(), own.end(), result.best.conventions) != own.end();
-  if (reads && !is_own && result.best.rms_px < clearly * chosen.rms_px && evidence_for(result.best, chosen) > 16.0) {
+  if (reads && !is_own && result.best.spread_px < clearly * chosen.spread_px &&
+      evidence_for(result.best, chosen) > 16.0) {
     result.mistake = {difference_of(result.best.conventions, chosen.conventions), describe(result.best.conventions),
-                      result.best.rms_px, chosen.rms_px, result.best.conventions};
+                      result.best, chosen};
     for (ConventionFit const& other : result.tried) {  // other mistakes that are indistinguishable in this displacement
       if (same_axes(other.conventions, result.best.conventions) || !fits_as_well(other, result.best)) continue;
       if (detail::unlikelihood(other.conventions, own) > detail::unlikelihood(result.best.conventions, own) + 0.5)
@@ -144,7 +145,7 @@ DetectedConventions detect_conventions(VectorFile const& file, Truth const& trut
   if (result.verdict != Verdict::cannot_be_told) {
     LikelyMistake other = detail::find_scale_or_shift({few, truth, image_rows, most, chosen}, fits, own,
                                                       result.verdict == Verdict::fits_none);
-    if (other.found() && (!result.mistake.found() || other.rms_px < 0.9 * result.mistake.rms_px))
+    if (other.found() && (!result.mistake.found() || other.mended.spread_px < 0.9 * result.mistake.mended.spread_px))
       result.mistake = std::move(other);
   }
   if (result.mistake.found()) result.verdict = Verdict::mistaken;
@@ -152,8 +153,8 @@ DetectedConventions detect_conventions(VectorFile const& file, Truth const& trut
   auto const rival = std::find_if(result.tried.begin(), result.tried.end(), [&](ConventionFit const& other) {
     return !same_axes(other.conventions, chosen.conventions);
   });
-  result.ambiguous =
-      rival != result.tried.end() && !(chosen.rms_px < 0.9 * rival->rms_px) && result.verdict != Verdict::mistaken;
+  result.ambiguous = rival != result.tried.end() && !(chosen.spread_px < 0.9 * rival->spread_px) &&
+                     result.verdict != Verdict::mistaken;
   result.conventions = chosen.conventions;
   result.fit = chosen;
   VectorConventions without = chosen.conventions;

@@ -16,6 +16,8 @@ struct ConventionFit {
   /// RMS difference from the truth; each difference is limited to 1 px or three times the signal, if larger.
   double rms_px = 0.0;
   double signal_px = 0.0;  ///< rms of the truth at the vectors, which is the error of zero vectors
+  /// The same two quantities for decisions: robust standard deviations, which some per cent of outliers hardly change.
+  double spread_px = 0.0, signal_spread_px = 0.0;
   /// Regression slope of the vectors on the truth, sum m t / sum t^2: 1 for unbiased vectors regardless of noise, 0 for
   /// unrelated ones.
   double slope = 0.0;
@@ -37,9 +39,8 @@ struct VectorCorrection {
 struct LikelyMistake {
   std::string text;               ///< "v points up", "displacements are 10 times the truth"; empty: no mistake found
   std::string conventions;        ///< words for --conventions that correct the mistake; empty: no words can
-  double rms_px = 0.0;            ///< rms difference from the truth after correction
-  double rms_as_read = 0.0;       ///< rms difference from the truth without correction
-  VectorConventions reading{};    ///< interpretation without the mistake
+  ConventionFit mended{};         ///< fit after correction, in the interpretation without the mistake
+  ConventionFit as_read{};        ///< fit without correction
   VectorCorrection correction{};  ///< numbers without the mistake
 
   bool found() const { return !text.empty(); }
@@ -106,9 +107,9 @@ double unlikelihood(VectorConventions const& reading, VectorConventions const& o
 /// Returns "x - 0.5 px fits better: rms 0.0021 instead of 0.0050 px", or that it does not; empty for offset 0.
 std::string offset_report(DetectedConventions const& detected);
 
-/// Returns twice the log-likelihood ratio of fit a to fit b, for normally distributed errors: 9 corresponds to three
+/// Returns twice the log-likelihood ratio of fit a to fit b, for errors with the given spreads: 9 corresponds to three
 /// standard deviations. At an overlap of one half, each vector shares its image with three others, so a quarter of the
-/// components is taken as independent. Rms differences below 1e-4 px count as equal.
+/// components is taken as independent. Spreads below 1e-4 px count as equal.
 double evidence_for(ConventionFit const& a, ConventionFit const& b);
 
 }  // namespace gladstone

@@ -37,29 +37,54 @@ DisplacementField sample(DisplacementField const& field, std::size_t most) {
   return few;
 }
 
+double robust_spread(std::vector<double> const& errors) {
+  constexpr double least = 1e-4;
+  constexpr double of_normal =
+      0.459937802416;  // mean of log(m) + log(1 + (z / m)^2), z standard normal, m = median |z|
+  if (errors.empty()) return not_a_number;
+  std::vector<double> sizes(errors.size());
+  std::transform(errors.begin(), errors.end(), sizes.begin(), [](double e) { return std::abs(e); });
+  auto const middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+  std::nth_element(sizes.begin(), middle, sizes.end());
+  double const median = std::max(*middle, least);
+  double sum = 0.0;
+  for (double const size : sizes) sum += std::log1p(size * size / (median * median));
+  return median * std::exp(sum / static_cast<double>(sizes.size()) - of_normal);
+}
+
 ConventionFit fit_within(DisplacementField const& field, VectorConventions const& conventions, Truth const& truth,
                          int image_rows, double most) {
   DisplacementField const ours = apply_conventions(field, conventions, image_rows);
   double differences = 0.0, signal = 0.0, product = 0.0;
   std::size_t count = 0, known = 0;
+  std::vector<double> errors, truths;
+  errors.reserve(2 * ours.size());
+  truths.reserve(2 * ours.size());
   for (std::size_t i = 0; i < ours.size(); ++i) {
     if (!ours.counts(i)) continue;
     Vec2d const t = truth(ours.position_px[i]);
     count += 2;
     if (!is_finite(t)) {
       differences += 2 * most * most;
+      errors.insert(errors.end(), 2, most);
       continue;
     }
     known += 2;
     for (auto const component : {&Vec2d::x, &Vec2d::y}) {
       double const e = std::clamp(ours.displacement_px[i].*component - t.*component, -most, most);
+      errors.push_back(e);
+      truths.push_back(t.*component);
       differences += e * e;
       signal += t.*component * t.*component;
       product += (t.*component + e) * t.*component;
     }
   }
-  ConventionFit fit{conventions, not_a_number, not_a_number, not_a_number, not_a_number};
+  ConventionFit fit;
+  fit.conventions = conventions;
+  fit.rms_px = fit.signal_px = fit.slope = fit.slope_error = not_a_number;
   fit.components = count;
+  fit.spread_px = robust_spread(errors);
+  fit.signal_spread_px = robust_spread(truths);
   if (count > 0) fit.rms_px = std::sqrt(differences / static_cast<double>(count));
   if (known > 0) fit.signal_px = std::sqrt(signal / static_cast<double>(known));
   if (signal > 0.0) {
@@ -94,7 +119,7 @@ double unlikelihood(VectorConventions const& reading, VectorConventions const& o
 double evidence_for(ConventionFit const& a, ConventionFit const& b) {
   constexpr double alike_px = 1e-4;
   double const independent = 0.25 * static_cast<double>(std::min(a.components, b.components));
-  return independent * 2.0 * std::log(std::max(b.rms_px, alike_px) / std::max(a.rms_px, alike_px));
+  return independent * 2.0 * std::log(std::max(b.spread_px, alike_px) / std::max(a.spread_px, alike_px));
 }
 
 ConventionFit fit_conventions(DisplacementField const& field, VectorConventions const& conventions,

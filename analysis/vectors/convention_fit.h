@@ -18,6 +18,11 @@ bool same_axes(VectorConventions const& a, VectorConventions const& b);
 /// vectors, so that the centre of the grid is preserved.
 DisplacementField sample(DisplacementField const& field, std::size_t most);
 
+/// Returns a standard deviation about zero that outliers change little: the scale at which normally distributed errors
+/// have the same likelihood as `errors` under Cauchy's distribution with their median magnitude. For normally
+/// distributed errors it is their standard deviation. Magnitudes below 1e-4 px count as that.
+double robust_spread(std::vector<double> const& errors);
+
 /// Computes the agreement with clamped differences.
 /// @param most  upper limit of a difference [px], and the difference assumed at positions without truth, so that
 ///              conventions cannot win by moving vectors out of view

@@ -118,7 +118,7 @@ std::string LikelyMistake::warning() const {
   return fmt::format(
       "{} (without that they would differ from the truth by {:.3g} px rms, as they are read by {:.3g} "
       "px); {}",
-      text, rms_px, rms_as_read, remedy);
+      text, mended.rms_px, as_read.rms_px, remedy);
 }
 
 std::string offset_report(DetectedConventions const& detected) {

@@ -35,19 +35,20 @@ struct Candidate {
 
   void add(ConventionFit const& undone, ConventionFit const& as_read, std::size_t file) {
     ++files;
-    followed += undone.rms_px < 0.5 * undone.signal_px ? 1 : 0;
+    followed += undone.spread_px < 0.5 * undone.signal_spread_px ? 1 : 0;
     double const evidence = evidence_for(undone, as_read);
     if (std::isfinite(evidence)) sum += evidence;
     if (!(evidence > strongest)) return;
     strongest = evidence;
     decisive = file;
-    mistake.rms_px = undone.rms_px;
-    mistake.rms_as_read = as_read.rms_px;
+    mistake.mended = undone;
+    mistake.as_read = as_read;
   }
   bool corrects() const { return !(mistake.correction == VectorCorrection{}); }
   bool is_found() const {
-    if (corrects() && 2 * followed <= files) return false;  // files with different units, for example
-    return sum > (corrects() ? 25.0 : 16.0) && mistake.rms_px < (corrects() ? 0.5 : 0.9) * mistake.rms_as_read;
+    if (2 * followed <= files) return false;  // files with different mistakes, for example
+    return sum > (corrects() ? 25.0 : 16.0) &&
+           mistake.mended.spread_px < (corrects() ? 0.5 : 0.9) * mistake.as_read.spread_px;
   }
 };
 
@@ -85,17 +86,17 @@ std::vector<Candidate> other_axes(std::vector<DetectedConventions> const& detect
     for (ConventionFit const& fit : detected[i].tried) {
       auto const same = [&fit](VectorConventions const& reading) { return same_axes(reading, fit.conventions); };
       if (std::any_of(own.begin(), own.end(), same)) continue;
-      auto known =
-          std::find_if(all.begin(), all.end(), [&](Candidate const& one) { return same(one.mistake.reading); });
+      auto known = std::find_if(all.begin(), all.end(),
+                                [&](Candidate const& one) { return same(one.mistake.mended.conventions); });
       if (known == all.end()) {
         known = all.insert(all.end(), Candidate{});
-        known->mistake.reading = fit.conventions;
+        known->mistake.mended.conventions = fit.conventions;
         known->mistake.text = difference_of(fit.conventions, chosen);
-        known->mistake.conventions = describe(fit.conventions);
       }
       known->add(fit, samples[i].as_read, i);
     }
   }
+  for (Candidate& one : all) one.mistake.conventions = describe(one.mistake.mended.conventions);
   return all;
 }
 
@@ -105,26 +106,27 @@ std::vector<Candidate> corrections(std::vector<DetectedConventions> const& detec
   std::vector<Candidate> all;
   for (DetectedConventions const& one : detected) {
     LikelyMistake const& mistake = one.mistake;
-    bool const only_axes = mistake.correction == VectorCorrection{} && !same_axes(mistake.reading, chosen);
+    bool const only_axes = mistake.correction == VectorCorrection{} && !same_axes(mistake.mended.conventions, chosen);
     if (!mistake.found() || only_axes) continue;
     Candidate candidate;
     candidate.mistake = mistake;
     for (std::size_t i = 0; i < samples.size(); ++i)
-      candidate.add(samples[i].fit(mistake.reading, mistake.correction), samples[i].as_read, i);
+      candidate.add(samples[i].fit(mistake.mended.conventions, mistake.correction), samples[i].as_read, i);
     all.push_back(std::move(candidate));
   }
   return all;
 }
 
 double unlikelihood_of(Candidate const& candidate, std::vector<VectorConventions> const& own) {
-  return (candidate.corrects() ? 1.5 : 0.0) + detail::unlikelihood(candidate.mistake.reading, own);
+  return (candidate.corrects() ? 1.5 : 0.0) + detail::unlikelihood(candidate.mistake.mended.conventions, own);
 }
 
 /// Returns true if two candidates state the same mistake: the same axes and signs without a correction, or both with
 /// one.
 bool alike(Candidate const& a, Candidate const& b) {
-  return a.mistake.correction == b.mistake.correction ? same_axes(a.mistake.reading, b.mistake.reading)
-                                                      : a.corrects() && b.corrects();
+  return a.mistake.correction == b.mistake.correction
+             ? same_axes(a.mistake.mended.conventions, b.mistake.mended.conventions)
+             : a.corrects() && b.corrects();
 }
 
 /// Returns the index of the file that best distinguishes the conventions in use from other axes and signs.
@@ -143,6 +145,17 @@ std::size_t most_telling_file(std::vector<DetectedConventions> const& detected, 
   return telling;
 }
 
+/// Returns true if a file has a mistake of its own, see CommonConventions::mistaken.
+bool is_mistaken(DetectedConventions const& detected, Sample const& sample) {
+  if (detected.mistake.found())
+    return detected.mistake.mended.spread_px < 0.5 * detected.mistake.mended.signal_spread_px;
+  if (detected.verdict != Verdict::fits_none) return false;
+  DisplacementField const ours =
+      apply_conventions(detail::sample(sample.few, 500), sample.as_read.conventions, sample.of->image_rows);
+  Vec2d const share = detail::share_in_windows(ours, sample.of->truth);
+  return std::max(share.x, share.y) > 0.5;
+}
+
 }  // namespace
 
 CommonConventions detect_common_conventions(std::vector<VectorsWithTruth> const& files) {
@@ -157,6 +170,9 @@ CommonConventions detect_common_conventions(std::vector<VectorsWithTruth> const&
     samples.back().as_read = samples.back().fit(own.front());
   }
   result.conventions = choose_own(samples, own);
+
+  for (std::size_t i = 0; i < samples.size(); ++i)
+    if (is_mistaken(result.detected[i], samples[i])) result.mistaken.push_back(i);
 
   std::vector<Candidate> all = other_axes(result.detected, samples, own, result.conventions);
   for (Candidate& one : corrections(result.detected, samples, result.conventions)) all.push_back(std::move(one));

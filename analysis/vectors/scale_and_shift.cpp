@@ -45,32 +45,6 @@ double component_signal(DisplacementField const& ours, Truth const& truth, doubl
   return count > 0 ? std::sqrt(square / static_cast<double>(count)) : 0.0;
 }
 
-/// Returns the regression slope, by component and at most 1, of the truth averaged over windows of 64 px on the truth
-/// at the point.
-Vec2d share_in_windows(DisplacementField const& ours, Truth const& truth) {
-  constexpr int half = 32, step = 8;
-  Vec2d product{}, square{};
-  for (std::size_t i = 0; i < ours.size(); ++i) {
-    if (!ours.counts(i)) continue;
-    Vec2d mean{};
-    int count = 0;
-    for (int dy = -half + step / 2; dy < half; dy += step) {
-      for (int dx = -half + step / 2; dx < half; dx += step) {
-        Vec2d const t = truth(ours.position_px[i] + Vec2d{static_cast<double>(dx), static_cast<double>(dy)});
-        if (!is_finite(t)) continue;
-        mean += t;
-        ++count;
-      }
-    }
-    Vec2d const t = truth(ours.position_px[i]);
-    if (count == 0 || !is_finite(t)) continue;
-    product += Vec2d{mean.x * t.x, mean.y * t.y} / static_cast<double>(count);
-    square += Vec2d{t.x * t.x, t.y * t.y};
-  }
-  auto const share = [](double p, double s) { return s > 0.0 ? std::clamp(p / s, 0.0, 1.0) : 0.0; };
-  return {share(product.x, square.x), share(product.y, square.y)};
-}
-
 /// Searches for displacements that are a multiple of the true ones.
 LikelyMistake find_factor(Search const& search) {
   DisplacementField const ours = apply_conventions(search.few, search.own.conventions, search.image_rows);
@@ -98,8 +72,7 @@ LikelyMistake find_factor(Search const& search) {
            : fmt::format("u is {:.3g} times and v {:.3g} times the truth", factor.x, factor.y);
   VectorConventions scaled = search.own.conventions;
   scaled.px_per_frame = std::stod(fmt::format("{:.3g}", scaled.px_per_frame.value_or(1.0) * factor.x));
-  return {text,      both ? describe(scaled) : std::string(), mended.rms_px, search.own.rms_px, search.own.conventions,
-          correction};
+  return {text, both ? describe(scaled) : std::string(), mended, search.own, correction};
 }
 
 /// Searches for a constant that all displacements have in addition.
@@ -130,7 +103,7 @@ LikelyMistake find_offset(Search const& search) {
   correction.offset_px = c.exchanges_components() ? Vec2d{offset.y, offset.x} : offset;
   ConventionFit const mended = search.fit(search.few, correction);
   if (!search.is_mended(mended)) return {};
-  return {text, {}, mended.rms_px, search.own.rms_px, c, correction};
+  return {text, {}, mended, search.own, correction};
 }
 
 VectorCorrection shift_by(Vec2d shift_px) {
@@ -153,7 +126,7 @@ FittedShift refine_shift(Search const& search, FittedShift fitted) {
   auto const mean_square = [&](double dx, double dy) {
     ConventionFit const fit = search.fit(search.few, shift_by(fitted.shift_px + Vec2d{dx, dy}));
     components = static_cast<double>(std::max<std::size_t>(1, fit.components));
-    return fit.rms_px * fit.rms_px;
+    return fit.spread_px * fit.spread_px;
   };
   Vec2d const first = fitted.shift_px;
   for (int iteration = 0; iteration < 4; ++iteration) {
@@ -178,7 +151,7 @@ FittedShift refine_shift(Search const& search, FittedShift fitted) {
 LikelyMistake find_shift(Search const& search) {
   constexpr double farthest = 64.0;
   DisplacementField const fewer = sample(search.few, 400);
-  auto const fit = [&](Vec2d shift) { return search.fit(fewer, shift_by(shift)).rms_px; };
+  auto const fit = [&](Vec2d shift) { return search.fit(fewer, shift_by(shift)).spread_px; };
   Vec2d best{};
   double least = fit(best);
   auto const look_around = [&](Vec2d middle, double reach, double step) {
@@ -204,9 +177,8 @@ LikelyMistake find_shift(Search const& search) {
   return {fmt::format("places are shifted by ({:.4g}, {:.4g}) px, each known to {:.2g} px", rounded(fitted.shift_px.x),
                       rounded(fitted.shift_px.y), std::max(digit, fitted.uncertainty_px)),
           {},
-          mended.rms_px,
-          search.own.rms_px,
-          search.own.conventions,
+          mended,
+          search.own,
           shift_by(fitted.shift_px)};
 }
 
@@ -221,9 +193,9 @@ LikelyMistake find_place_factor(Search const& search) {
   double best = 1.0, least = std::numeric_limits<double>::infinity();
   auto const look_around = [&](double middle, double reach, double step) {
     for (double e = -reach; e <= reach; e += step) {
-      double const factor = middle * std::exp(e), rms = search.fit(fewer, scaled(factor)).rms_px;
-      if (!(rms < least)) continue;
-      least = rms;
+      double const factor = middle * std::exp(e), spread = search.fit(fewer, scaled(factor)).spread_px;
+      if (!(spread < least)) continue;
+      least = spread;
       best = factor;
     }
   };
@@ -234,15 +206,35 @@ LikelyMistake find_place_factor(Search const& search) {
   if (!search.is_mended(mended)) return {};
   VectorConventions words = search.own.conventions;
   words.px = std::stod(fmt::format("{:.3g}", words.px.value_or(1.0) * best));
-  return {fmt::format("places are {:.3g} times the true ones, as in another unit than px", best),
-          describe(words),
-          mended.rms_px,
-          search.own.rms_px,
-          search.own.conventions,
-          scaled(best)};
+  return {fmt::format("places are {:.3g} times the true ones, as in another unit than px", best), describe(words),
+          mended, search.own, scaled(best)};
 }
 
 }  // namespace
+
+Vec2d share_in_windows(DisplacementField const& ours, Truth const& truth) {
+  constexpr int half = 32, step = 8;
+  Vec2d product{}, square{};
+  for (std::size_t i = 0; i < ours.size(); ++i) {
+    if (!ours.counts(i)) continue;
+    Vec2d mean{};
+    int count = 0;
+    for (int dy = -half + step / 2; dy < half; dy += step) {
+      for (int dx = -half + step / 2; dx < half; dx += step) {
+        Vec2d const t = truth(ours.position_px[i] + Vec2d{static_cast<double>(dx), static_cast<double>(dy)});
+        if (!is_finite(t)) continue;
+        mean += t;
+        ++count;
+      }
+    }
+    Vec2d const t = truth(ours.position_px[i]);
+    if (count == 0 || !is_finite(t)) continue;
+    product += Vec2d{mean.x * t.x, mean.y * t.y} / static_cast<double>(count);
+    square += Vec2d{t.x * t.x, t.y * t.y};
+  }
+  auto const share = [](double p, double s) { return s > 0.0 ? std::clamp(p / s, 0.0, 1.0) : 0.0; };
+  return {share(product.x, square.x), share(product.y, square.y)};
+}
 
 DisplacementField corrected(DisplacementField field, VectorCorrection const& correction) {
   for (Vec2d& d : field.displacement_px) {
@@ -257,17 +249,18 @@ LikelyMistake find_scale_or_shift(Search search, std::vector<ConventionFit> cons
                                   std::vector<VectorConventions> const& own, bool any_reading) {
   LikelyMistake best;
   auto const consider = [&best](LikelyMistake found) {
-    if (found.found() && (!best.found() || found.rms_px < 0.9 * best.rms_px)) best = std::move(found);
+    if (found.found() && (!best.found() || found.mended.spread_px < 0.9 * best.mended.spread_px))
+      best = std::move(found);
   };
   consider(find_factor(search));
   consider(find_offset(search));
   // A shift of a few pixels changes a smooth field by more than this fraction of the signal.
-  if (search.own.rms_px > 0.03 * search.own.signal_px) {
+  if (search.own.spread_px > 0.03 * search.own.signal_spread_px) {
     consider(find_shift(search));
     if (!best.found()) consider(find_place_factor(search));
   }
   if (best.found() || !any_reading) return best;
-  double const as_read = search.own.rms_px;
+  ConventionFit const as_read = search.own;
   VectorConventions const first = search.own.conventions;
   double least_unlikely = std::numeric_limits<double>::infinity();
   for (ConventionFit const& fit : fits) {
@@ -278,7 +271,7 @@ LikelyMistake find_scale_or_shift(Search search, std::vector<ConventionFit> cons
     if (!found.found() || !(unlikely < least_unlikely)) continue;
     least_unlikely = unlikely;
     found.text = difference_of(fit.conventions, first) + " and " + found.text;
-    found.rms_as_read = as_read;
+    found.as_read = as_read;
     best = std::move(found);
   }
   return best;

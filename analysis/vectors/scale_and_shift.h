@@ -9,6 +9,10 @@ namespace gladstone::detail {
 /// Applies a correction to the vectors of a file.
 DisplacementField corrected(DisplacementField field, VectorCorrection const& correction);
 
+/// Returns the regression slope, by component and at most 1, of the truth averaged over windows of 64 px on the truth
+/// at the point.
+Vec2d share_in_windows(DisplacementField const& ours, Truth const& truth);
+
 /// Common input of the searches for a correction.
 struct Search {
   DisplacementField const& few;  ///< sample of the file's vectors
@@ -21,10 +25,11 @@ struct Search {
   ConventionFit fit(DisplacementField const& field, VectorCorrection const& correction) const {
     return fit_within(corrected(field, correction), own.conventions, truth, image_rows, most);
   }
-  /// Returns true if a correction halves the rms and the improvement is significant at five standard deviations.
+  /// Returns true if a correction halves the spread and the improvement is significant at five standard deviations.
   /// Vectors with random factors are on average too long, but no common factor halves their error.
   bool is_mended(ConventionFit const& other) const {
-    return other.rms_px < 0.5 * own.rms_px && other.rms_px < 0.7 * other.signal_px && evidence_for(other, own) > 25.0;
+    return other.spread_px < 0.5 * own.spread_px && other.spread_px < 0.7 * other.signal_spread_px &&
+           evidence_for(other, own) > 25.0;
   }
 };
 

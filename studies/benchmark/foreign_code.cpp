@@ -155,21 +155,21 @@ std::string ForeignCode::describe_mistake(CommonConventions const& common) const
     return fmt::format(
         "{}: likely mistake: {} (by {}: so read its vectors differ from the truth by {:.3g} px rms, as they are scored "
         "by {:.3g} px); {}",
-        name_, mistake.text, decisive, mistake.rms_px, mistake.rms_as_read, cure);
+        name_, mistake.text, decisive, mistake.mended.rms_px, mistake.as_read.rms_px, cure);
   }
-  // The files may have different mistakes. An indication from a minority may be due to estimator errors where the flow
-  // is finer than the windows.
-  std::size_t judged = 0, mistaken = 0;
+  if (common.mistaken.empty()) return {};
+  constexpr std::size_t most_named = 3;
   std::string found;
-  for (std::size_t i = 0; i < common.detected.size(); ++i) {
-    DetectedConventions const& one = common.detected[i];
-    judged += one.verdict != Verdict::cannot_be_told && one.verdict != Verdict::fits_none ? 1 : 0;
-    if (!one.mistake.found() || ++mistaken > 3) continue;
-    found += fmt::format("{}{}: {}", found.empty() ? "" : "; ", cases_[i].name, one.mistake.text);
+  for (std::size_t k = 0; k < std::min(most_named, common.mistaken.size()); ++k) {
+    std::size_t const i = common.mistaken[k];
+    LikelyMistake const& own = common.detected[i].mistake;
+    found += fmt::format("{}{}: {}", found.empty() ? "" : "; ", cases_[i].name,
+                         own.found() ? own.text : "the vectors do not follow the truth in any reading");
   }
-  if (2 * mistaken <= judged) return {};
-  return fmt::format("{}: likely mistakes, not the same in all files: {}{}; mend the files", name_, found,
-                     mistaken > 3 ? fmt::format("; and in {} more", mistaken - 3) : "");
+  if (common.mistaken.size() > most_named)
+    found += fmt::format("; and in {} more", common.mistaken.size() - most_named);
+  return fmt::format("{}: likely mistake in {} of {} files: {}; mend {}", name_, common.mistaken.size(), cases_.size(),
+                     found, common.mistaken.size() == 1 ? "it" : "them");
 }
 
 std::string refusal_of_gaps(DisplacementField const& field, int columns, int rows) {

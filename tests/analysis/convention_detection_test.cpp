@@ -173,7 +173,7 @@ TEST(DetectConventions, NamesTheLikelyMistake) {
     EXPECT_THAT(found.mistake.text, testing::StartsWith(wrong.mistake));
     EXPECT_EQ(found.mistake.conventions, wrong.conventions) << wrong.mistake;
     EXPECT_EQ(found.conventions, file.conventions) << "it is read as its format says";
-    EXPECT_LT(found.mistake.rms_px, 0.02 * found.mistake.rms_as_read) << wrong.mistake;
+    EXPECT_LT(found.mistake.mended.rms_px, 0.02 * found.mistake.as_read.rms_px) << wrong.mistake;
     EXPECT_EQ(found.tried.size(), 32u) << "directions of y, of v, orders of the frames, four exchanges of columns";
     EXPECT_THAT(found.report, HasSubstr("likely mistake"));
   }

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <functional>
+#include <random>
 #include <vector>
 
 #include "render/base/units.h"
@@ -106,6 +107,82 @@ TEST(DetectCommonConventions, ChoosesAmongTheFormatsOwnByAllFiles) {
     one.file.also = {half};
   }
   EXPECT_EQ(detect_common_conventions(files).conventions.offset_px, -0.5);
+}
+
+/// A fraction of wild vectors, and noise on all.
+VectorsWithTruth with_outliers(VectorsWithTruth written, double share, double noise_px, unsigned seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> noise(0.0, noise_px);
+  std::uniform_real_distribution<double> wild(-5.0, 5.0), chance(0.0, 1.0);
+  for (Vec2d& d : written.file.field.displacement_px) {
+    Vec2d const error{noise(random), noise(random)}, anything{wild(random), wild(random)};
+    d = chance(random) < share ? anything : d + error;
+  }
+  return written;
+}
+
+// Right vectors with noise and outliers are no mistake in any case alone, nor in several.
+TEST(DetectCommonConventions, TakesOutliersForNoMistake) {
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    for (double const share : {0.005, 0.01, 0.05}) {
+      std::vector<VectorsWithTruth> files;
+      for (Flow const& flow : {Flow(uniform), Flow(vortex), Flow(off_centre)}) {
+        files.push_back(with_outliers(written(flow, same), share, 0.05, seed));
+        CommonConventions const alone = detect_common_conventions({files.back()});
+        EXPECT_FALSE(alone.mistake.found()) << alone.mistake.text << ' ' << seed << ' ' << share;
+      }
+      CommonConventions const all = detect_common_conventions(files);
+      EXPECT_FALSE(all.mistake.found()) << all.mistake.text << ' ' << seed << ' ' << share;
+    }
+  }
+}
+
+TEST(DetectCommonConventions, FindsMistakesAmongOutliers) {
+  struct Wrong {
+    char const* text;
+    Flow change;
+    Vec2d shift_px{};
+  };
+  for (Wrong const& wrong : {
+           Wrong{"the frames were exchanged", [](Vec2d d) { return -d; }},
+           Wrong{"u and v are exchanged",
+                 [](Vec2d d) {
+                   return Vec2d{d.y, d.x};
+                 }},
+           Wrong{"places are shifted by (16", same, {16.0, 0.0}},
+           Wrong{"displacements are ", [](Vec2d d) { return 10.0 * d; }},
+           Wrong{"displacements are ", [](Vec2d d) { return 1.2 * d; }},
+           Wrong{"displacements are (0.",
+                 [](Vec2d d) {
+                   return d + Vec2d{0.5, 0.0};
+                 }},
+       }) {
+    for (unsigned seed = 0; seed < 5; ++seed) {
+      std::vector<VectorsWithTruth> files;
+      for (Flow const& flow : {Flow(uniform), Flow(vortex), Flow(off_centre)})
+        files.push_back(with_outliers(written(flow, wrong.change, wrong.shift_px), 0.05, 0.03, seed));
+      EXPECT_THAT(detect_common_conventions(files).mistake.text, testing::StartsWith(wrong.text)) << seed;
+    }
+  }
+}
+
+// Of three files one is negated, one ten times too large, and one shifted: no reading holds for all.
+TEST(DetectCommonConventions, FindsNothingInCommonInThreeMistakes) {
+  CommonConventions const found = detect_common_conventions({written(vortex, [](Vec2d d) { return -d; }),
+                                                             written(uniform, [](Vec2d d) { return 10.0 * d; }),
+                                                             written(off_centre, same, {16.0, 0.0})});
+  EXPECT_FALSE(found.mistake.found()) << found.mistake.text;
+  for (DetectedConventions const& one : found.detected) EXPECT_TRUE(one.mistake.found());
+  EXPECT_EQ(found.mistaken, (std::vector<std::size_t>{0, 1, 2}));
+}
+
+// One wrong file among right ones is named, be it ten times too large or noise.
+TEST(DetectCommonConventions, NamesTheOneFileThatIsWrong) {
+  VectorsWithTruth const large = written(vortex, [](Vec2d d) { return 10.0 * d; }), right = written(off_centre, same);
+  EXPECT_EQ(detect_common_conventions({right, written(uniform, same), large}).mistaken, std::vector<std::size_t>{2});
+  VectorsWithTruth const noise = with_outliers(written(vortex, [](Vec2d) { return Vec2d{}; }), 0.0, 1.0, 1);
+  EXPECT_EQ(detect_common_conventions({right, noise}).mistaken, std::vector<std::size_t>{1});
+  EXPECT_TRUE(detect_common_conventions({right, written(uniform, same)}).mistaken.empty());
 }
 
 }  // namespace
