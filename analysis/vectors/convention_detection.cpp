@@ -1,6 +1,7 @@
 #include "analysis/vectors/convention_detection.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -103,6 +104,19 @@ ConventionFit likeliest(std::vector<ConventionFit> const& fits, std::vector<Vect
 
 }  // namespace
 
+bool is_too_fine_for_windows(DisplacementField const& ours, Truth const& truth) {
+  if (ours.size() == 0) return false;
+  auto const& places = ours.position_px;
+  auto const [left, right] =
+      std::minmax_element(places.begin(), places.end(), [](Vec2d a, Vec2d b) { return a.x < b.x; });
+  auto const [top, bottom] =
+      std::minmax_element(places.begin(), places.end(), [](Vec2d a, Vec2d b) { return a.y < b.y; });
+  double const spacing = std::sqrt((right->x - left->x) * (bottom->y - top->y) / static_cast<double>(ours.size()));
+  constexpr double least_followed = 0.2;
+  Vec2d const share = detail::share_in_windows(ours, truth, std::clamp(4.0 * spacing, 16.0, 64.0));
+  return std::max(share.x, share.y) < least_followed;
+}
+
 DetectedConventions detect_conventions(VectorFile const& file, Truth const& truth, int image_rows) {
   DisplacementField const few = detail::sample(file.field, 4000);
   std::vector<VectorConventions> own = file.also;
@@ -124,6 +138,9 @@ DetectedConventions detect_conventions(VectorFile const& file, Truth const& trut
   result.verdict = judge(*std::min_element(fits.begin(), fits.end(), better));
   result.tried = best_of_axes(fits);
   result.best = likeliest(fits, own);
+  if (result.verdict == Verdict::fits_none && !detail::is_zero(few) &&
+      is_too_fine_for_windows(apply_conventions(file.field, chosen.conventions, image_rows), truth))
+    result.verdict = Verdict::cannot_be_told;
   if (result.verdict == Verdict::cannot_be_told) chosen = fits.front();
 
   // A better fit that is not the format's own is a mistake if the improvement is clear and, given the number of

@@ -54,8 +54,8 @@ struct DetectedConventions {
     fits,            ///< significantly closer to the truth than zero vectors
     noisy,           ///< not closer than zero vectors, but correlated with the truth: right axes, large errors
     mistaken,        ///< an interpretation, scale or shift that is not the format's own fits clearly better
-    cannot_be_told,  ///< neither fits nor noisy, and the truth is too small to decide
-    fits_none,       ///< neither fits nor noisy, although the truth is large enough to decide
+    cannot_be_told,  ///< neither fits nor noisy, and the truth is too small or too fine to decide
+    fits_none,       ///< neither fits nor noisy, although the truth is large and smooth enough to decide
   };
   VectorConventions conventions;  ///< conventions to use: of the format's own, those that fit best
   Verdict verdict = Verdict::fits;
@@ -74,6 +74,10 @@ struct DetectedConventions {
 /// Minimum rms of the truth that allows conventions to be distinguished: about the error of correlation on good images
 /// [px].
 inline constexpr double telling_signal_px = 0.01;
+
+/// Returns true if the truth varies so much within windows of four grid spacings (16 to 64 px) that vectors of such
+/// windows follow less than a fifth of it.
+bool is_too_fine_for_windows(DisplacementField const& ours, std::function<Vec2d(Vec2d)> const& truth);
 
 /// Computes the rms difference of the counted vectors from the truth, per component, from a sample of at most 4000
 /// vectors.

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "analysis/vectors/convention_fit.h"
+#include "analysis/vectors/scale_and_shift.h"
 
 namespace gladstone {
 namespace {
@@ -16,7 +17,8 @@ using Mirror = VectorConventions::Mirror;
 using Verdict = DetectedConventions::Verdict;
 
 /// Returns a probable cause if no conventions fit.
-std::string likely_cause(ConventionFit const& best) {
+std::string likely_cause(DisplacementField const& field, ConventionFit const& best) {
+  if (detail::is_zero(field)) return "all displacements are 0, as of vectors that were not computed";
   if (std::abs(best.slope) < 0.1)
     return "places from another origin, or places or displacements that are not in px, look like this";
   return "places from another origin look like this";
@@ -38,7 +40,7 @@ std::string misfit_report(VectorFile const& file, DetectedConventions const& det
       "{:.3g} px rms (they follow {:.0f} +- {:.0f} % of it). Tried, each with its best offset: {}; no exchange of "
       "columns, factor or shift fits either. {}; mend the file",
       file.format, best.rms_px, best.signal_px, 100.0 * best.slope, 100.0 * best.slope_error, tried,
-      likely_cause(best));
+      likely_cause(file.field, best));
 }
 
 std::string found_report(VectorFile const& file, DetectedConventions const& detected) {
@@ -55,6 +57,10 @@ std::string found_report(VectorFile const& file, DetectedConventions const& dete
   if (std::string const offset = offset_report(detected); !offset.empty()) report += "; " + offset;
   if (detected.verdict == Verdict::mistaken) {
     report += "; likely mistake: " + detected.mistake.warning();
+  } else if (detected.verdict == Verdict::cannot_be_told && fit.signal_px >= telling_signal_px) {
+    report +=
+        "; this displacement is too fine for windows of four grid spacings, so that vectors need not follow it: "
+        "conventions cannot be told, and the format's own were kept";
   } else if (detected.verdict == Verdict::cannot_be_told) {
     report += fmt::format(
         "; by so small a displacement, below {} px, conventions cannot be told, and the format's own were kept",

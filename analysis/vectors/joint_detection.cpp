@@ -146,14 +146,10 @@ std::size_t most_telling_file(std::vector<DetectedConventions> const& detected, 
 }
 
 /// Returns true if a file has a mistake of its own, see CommonConventions::mistaken.
-bool is_mistaken(DetectedConventions const& detected, Sample const& sample) {
+bool is_mistaken(DetectedConventions const& detected) {
   if (detected.mistake.found())
     return detected.mistake.mended.spread_px < 0.5 * detected.mistake.mended.signal_spread_px;
-  if (detected.verdict != Verdict::fits_none) return false;
-  DisplacementField const ours =
-      apply_conventions(detail::sample(sample.few, 500), sample.as_read.conventions, sample.of->image_rows);
-  Vec2d const share = detail::share_in_windows(ours, sample.of->truth);
-  return std::max(share.x, share.y) > 0.5;
+  return detected.verdict == Verdict::fits_none;
 }
 
 }  // namespace
@@ -172,7 +168,7 @@ CommonConventions detect_common_conventions(std::vector<VectorsWithTruth> const&
   result.conventions = choose_own(samples, own);
 
   for (std::size_t i = 0; i < samples.size(); ++i)
-    if (is_mistaken(result.detected[i], samples[i])) result.mistaken.push_back(i);
+    if (is_mistaken(result.detected[i])) result.mistaken.push_back(i);
 
   std::vector<Candidate> all = other_axes(result.detected, samples, own, result.conventions);
   for (Candidate& one : corrections(result.detected, samples, result.conventions)) all.push_back(std::move(one));

@@ -48,12 +48,14 @@ double component_signal(DisplacementField const& ours, Truth const& truth, doubl
 /// Searches for displacements that are a multiple of the true ones.
 LikelyMistake find_factor(Search const& search) {
   DisplacementField const ours = apply_conventions(search.few, search.own.conventions, search.image_rows);
-  Vec2d const share = share_in_windows(sample(ours, 500), search.truth);
+  Vec2d const share = share_in_windows(ours, search.truth, 64.0);
   constexpr double least_followed = 0.05;  // minimum slope of windows that still measure a displacement
+  auto const determines = [&](double Vec2d::*component) {
+    return component_signal(ours, search.truth, component) > std::max(telling_signal_px, 0.2 * search.own.signal_px);
+  };
   Vec2d factor{1.0, 1.0};
   for (auto const component : {&Vec2d::x, &Vec2d::y}) {
-    if (!(component_signal(ours, search.truth, component) > std::max(telling_signal_px, 0.2 * search.own.signal_px)))
-      continue;  // this component is too small to determine a factor
+    if (!determines(component)) continue;
     double const found = median_factor(ours, search.truth, component);
     if (found > 0.0 && (found > 1.05 || found < std::max(least_followed, 0.9 * (share.*component))))
       factor.*component = found;
@@ -67,9 +69,15 @@ LikelyMistake find_factor(Search const& search) {
   correction.factor = search.own.conventions.exchanges_components() ? Vec2d{factor.y, factor.x} : factor;
   ConventionFit const mended = search.fit(search.few, correction);
   if (!search.is_mended(mended)) return {};
-  std::string const text =
-      both ? fmt::format("displacements are {:.3g} times the truth, as in another unit than px", factor.x)
-           : fmt::format("u is {:.3g} times and v {:.3g} times the truth", factor.x, factor.y);
+  std::string text;
+  if (both)
+    text = fmt::format("displacements are {:.3g} times the truth, as in another unit than px", factor.x);
+  else if (!determines(&Vec2d::y))
+    text = fmt::format("u is {:.3g} times the truth (v is too small to tell)", factor.x);
+  else if (!determines(&Vec2d::x))
+    text = fmt::format("v is {:.3g} times the truth (u is too small to tell)", factor.y);
+  else
+    text = fmt::format("u is {:.3g} times and v {:.3g} times the truth", factor.x, factor.y);
   VectorConventions scaled = search.own.conventions;
   scaled.px_per_frame = std::stod(fmt::format("{:.3g}", scaled.px_per_frame.value_or(1.0) * factor.x));
   return {text, both ? describe(scaled) : std::string(), mended, search.own, correction};
@@ -77,6 +85,7 @@ LikelyMistake find_factor(Search const& search) {
 
 /// Searches for a constant that all displacements have in addition.
 LikelyMistake find_offset(Search const& search) {
+  if (is_zero(search.few)) return {};  // in a uniform displacement an offset would explain it
   DisplacementField const ours = apply_conventions(search.few, search.own.conventions, search.image_rows);
   Vec2d offset{};
   for (auto const component : {&Vec2d::x, &Vec2d::y}) {
@@ -115,7 +124,7 @@ VectorCorrection shift_by(Vec2d shift_px) {
 /// Shift of the positions, and its uncertainty.
 struct FittedShift {
   Vec2d shift_px{};
-  double uncertainty_px = 0.0;  ///< three standard errors of the less certain component
+  Vec2d uncertainty_px{};  ///< three standard errors
 };
 
 /// Refines a shift by least squares: Newton's method on the mean square difference from the truth, whose derivatives
@@ -140,10 +149,30 @@ FittedShift refine_shift(Search const& search, FittedShift fitted) {
     Vec2d const next = fitted.shift_px - Vec2d{(yy * gx - xy * gy) / determinant, (xx * gy - xy * gx) / determinant};
     if (!(length(next - first) < farthest)) break;
     // covariance 2 s^2 / n times the inverse Hessian, with a quarter of the components as independent
-    double const largest = std::max(xx, yy) / determinant;
-    fitted = {next, 3.0 * std::sqrt(8.0 * middle / components * largest)};
+    double const variance = 8.0 * middle / (components * determinant);
+    fitted = {next, {3.0 * std::sqrt(variance * yy), 3.0 * std::sqrt(variance * xx)}};
   }
   return fitted;
+}
+
+/// Describes the shift of the positions that `fitted` undoes, as far as the displacement determines it.
+std::string describe_shift(FittedShift const& fitted) {
+  constexpr double vague = 2.0;  // three standard errors that exceed this leave a component open [px]
+  auto const digit = [](double uncertainty) { return uncertainty < 0.1 ? 0.01 : 0.1; };  // last digit [px]
+  auto const rounded = [&](double value, double uncertainty) {
+    return 0.0 - digit(uncertainty) * std::round(value / digit(uncertainty));
+  };
+  auto const along = [&](char axis, double value, double uncertainty, char other) {
+    return fmt::format(
+        "places are shifted by {:.4g} px in {}, known to {:.2g} px (in {} this displacement cannot tell)",
+        rounded(value, uncertainty), axis, std::max(digit(uncertainty), uncertainty), other);
+  };
+  auto const [shift, uncertainty] = fitted;
+  if (!(uncertainty.y < vague) && uncertainty.x < vague) return along('x', shift.x, uncertainty.x, 'y');
+  if (!(uncertainty.x < vague) && uncertainty.y < vague) return along('y', shift.y, uncertainty.y, 'x');
+  double const larger = std::max(uncertainty.x, uncertainty.y);
+  return fmt::format("places are shifted by ({:.4g}, {:.4g}) px, each known to {:.2g} px", rounded(shift.x, larger),
+                     rounded(shift.y, larger), std::max(digit(larger), larger));
 }
 
 /// Searches for positions with another origin: the shift that fits best, on a lattice of 4 px up to 64 px, refined by
@@ -169,17 +198,10 @@ LikelyMistake find_shift(Search const& search) {
   for (double const step : {2.0, 1.0, 0.5, finest}) look_around(best, step, step);
   constexpr double counting = 2.0;  // conventions of pixel counting differ by less
   if (!(std::max(std::abs(best.x), std::abs(best.y)) > counting)) return {};
-  FittedShift const fitted = refine_shift(search, {best, finest});
+  FittedShift const fitted = refine_shift(search, {best, {finest, finest}});
   ConventionFit const mended = search.fit(search.few, shift_by(fitted.shift_px));
   if (!search.is_mended(mended)) return {};
-  double const digit = fitted.uncertainty_px < 0.1 ? 0.01 : 0.1;  // last digit of the result [px]
-  auto const rounded = [&](double value) { return 0.0 - digit * std::round(value / digit); };
-  return {fmt::format("places are shifted by ({:.4g}, {:.4g}) px, each known to {:.2g} px", rounded(fitted.shift_px.x),
-                      rounded(fitted.shift_px.y), std::max(digit, fitted.uncertainty_px)),
-          {},
-          mended,
-          search.own,
-          shift_by(fitted.shift_px)};
+  return {describe_shift(fitted), {}, mended, search.own, shift_by(fitted.shift_px)};
 }
 
 /// Searches for positions that are a multiple of the true ones.
@@ -212,20 +234,20 @@ LikelyMistake find_place_factor(Search const& search) {
 
 }  // namespace
 
-Vec2d share_in_windows(DisplacementField const& ours, Truth const& truth) {
-  constexpr int half = 32, step = 8;
+Vec2d share_in_windows(DisplacementField const& all, Truth const& truth, double window_px) {
+  constexpr int nodes = 8;  // along one side of a window
+  DisplacementField const ours = sample(all, 500);
   Vec2d product{}, square{};
   for (std::size_t i = 0; i < ours.size(); ++i) {
     if (!ours.counts(i)) continue;
     Vec2d mean{};
     int count = 0;
-    for (int dy = -half + step / 2; dy < half; dy += step) {
-      for (int dx = -half + step / 2; dx < half; dx += step) {
-        Vec2d const t = truth(ours.position_px[i] + Vec2d{static_cast<double>(dx), static_cast<double>(dy)});
-        if (!is_finite(t)) continue;
-        mean += t;
-        ++count;
-      }
+    for (int node = 0; node < nodes * nodes; ++node) {
+      Vec2d const of_window{(node % nodes + 0.5) / nodes - 0.5, (node / nodes + 0.5) / nodes - 0.5};
+      Vec2d const t = truth(ours.position_px[i] + window_px * of_window);
+      if (!is_finite(t)) continue;
+      mean += t;
+      ++count;
     }
     Vec2d const t = truth(ours.position_px[i]);
     if (count == 0 || !is_finite(t)) continue;
@@ -234,6 +256,11 @@ Vec2d share_in_windows(DisplacementField const& ours, Truth const& truth) {
   }
   auto const share = [](double p, double s) { return s > 0.0 ? std::clamp(p / s, 0.0, 1.0) : 0.0; };
   return {share(product.x, square.x), share(product.y, square.y)};
+}
+
+bool is_zero(DisplacementField const& field) {
+  return std::all_of(field.displacement_px.begin(), field.displacement_px.end(),
+                     [](Vec2d d) { return d == Vec2d{} || !is_finite(d); });
 }
 
 DisplacementField corrected(DisplacementField field, VectorCorrection const& correction) {

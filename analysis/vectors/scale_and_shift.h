@@ -9,9 +9,12 @@ namespace gladstone::detail {
 /// Applies a correction to the vectors of a file.
 DisplacementField corrected(DisplacementField field, VectorCorrection const& correction);
 
-/// Returns the regression slope, by component and at most 1, of the truth averaged over windows of 64 px on the truth
-/// at the point.
-Vec2d share_in_windows(DisplacementField const& ours, Truth const& truth);
+/// Returns true if no displacement of a field differs from 0.
+bool is_zero(DisplacementField const& field);
+
+/// Returns the regression slope, by component and at most 1, of the truth averaged over windows on the truth at the
+/// point, from a sample of at most 500 vectors.
+Vec2d share_in_windows(DisplacementField const& ours, Truth const& truth, double window_px);
 
 /// Common input of the searches for a correction.
 struct Search {

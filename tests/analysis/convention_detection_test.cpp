@@ -286,6 +286,46 @@ TEST(DetectConventions, RefusesWhatFitsNone) {
   }
 }
 
+// A shear tells a shift across its layers alone, and a uniform stretch of u a factor of u alone.
+TEST(DetectConventions, TellsOnlyWhatTheDisplacementDetermines) {
+  auto const shear = [](Vec2d p) { return Vec2d{2.0 * std::sin(p.y / 20.0), 0.0}; };
+  VectorFile shifted = waves_on_a_grid(), stretched = shifted;
+  for (std::size_t i = 0; i < shifted.field.size(); ++i) {
+    Vec2d const p = shifted.field.position_px[i];
+    shifted.field.displacement_px[i] = shear(p - Vec2d{16.0, 16.0}) + 0.02 * noise(i);
+    stretched.field.displacement_px[i] = 3.0 * shear(p) + 0.02 * noise(i);
+  }
+  EXPECT_THAT(
+      detect_conventions(shifted, shear, 200).mistake.text,
+      AllOf(testing::StartsWith("places are shifted by 16 px in y"), HasSubstr("in x this displacement cannot")));
+  EXPECT_EQ(detect_conventions(stretched, shear, 200).mistake.text, "u is 3 times the truth (v is too small to tell)");
+}
+
+// Vectors that are all 0 are no offset from a uniform displacement.
+TEST(DetectConventions, NamesVectorsThatAreAllZero) {
+  VectorFile file = waves_on_a_grid();
+  for (Vec2d& d : file.field.displacement_px) d = {};
+  DetectedConventions const found = detect_conventions(
+      file,
+      [](Vec2d) {
+        return Vec2d{3.2, 0.0};
+      },
+      200);
+  EXPECT_EQ(found.verdict, Verdict::fits_none);
+  EXPECT_FALSE(found.mistake.found()) << found.mistake.text;
+  EXPECT_THAT(found.report, HasSubstr("all displacements are 0"));
+}
+
+// Windows of 64 px lose a sine of 32 px: their vectors are noise, and no mistake.
+TEST(DetectConventions, DoesNotJudgeWindowsByWavesThatAreTooFineForThem) {
+  auto const sine = [](Vec2d p) { return Vec2d{2.0 * std::sin(2.0 * 3.14159265358979 * p.y / 32.0), 0.0}; };
+  VectorFile file = waves_on_a_grid();
+  for (std::size_t i = 0; i < file.field.size(); ++i) file.field.displacement_px[i] = 0.1 * noise(i);
+  DetectedConventions const found = detect_conventions(file, sine, 200);
+  EXPECT_EQ(found.verdict, Verdict::cannot_be_told) << found.report;
+  EXPECT_THAT(found.report, HasSubstr("too fine for windows"));
+}
+
 // With few vectors the best of sixty choices comes closer to the truth than nothing does by chance: twenty of the
 // shifted field, or of noise, fit none; twenty right ones do.
 TEST(DetectConventions, DoesNotTakeChanceForAFit) {
