@@ -121,6 +121,9 @@ VectorCorrection shift_by(Vec2d shift_px) {
   return correction;
 }
 
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double vague_px = 2.0;  ///< a component with a greater uncertainty is left open [px]
+
 /// Shift of the positions, and its uncertainty.
 struct FittedShift {
   Vec2d shift_px{};
@@ -145,19 +148,28 @@ FittedShift refine_shift(Search const& search, FittedShift fitted) {
     double const xy =
         (mean_square(h, h) - mean_square(h, -h) - mean_square(-h, h) + mean_square(-h, -h)) / (4.0 * h * h);
     double const gx = (right - left) / (2.0 * h), gy = (below - above) / (2.0 * h), determinant = xx * yy - xy * xy;
-    if (!(xx > 0.0 && determinant > 0.0)) break;
-    Vec2d const next = fitted.shift_px - Vec2d{(yy * gx - xy * gy) / determinant, (xx * gy - xy * gx) / determinant};
-    if (!(length(next - first) < farthest)) break;
     // covariance 2 s^2 / n times the inverse Hessian, with a quarter of the components as independent
-    double const variance = 8.0 * middle / (components * determinant);
-    fitted = {next, {3.0 * std::sqrt(variance * yy), 3.0 * std::sqrt(variance * xx)}};
+    double const variance = 8.0 * middle / components;
+    auto const three_errors = [&](double curvature) { return 3.0 * std::sqrt(variance / std::max(curvature, 0.0)); };
+    FittedShift next;
+    if (xx > 0.0 && determinant > 0.0 && three_errors(determinant / std::max(xx, yy)) < vague_px) {
+      next.shift_px = fitted.shift_px - Vec2d{(yy * gx - xy * gy) / determinant, (xx * gy - xy * gx) / determinant};
+      next.uncertainty_px = {three_errors(determinant / yy), three_errors(determinant / xx)};
+    } else if (xx > yy) {  // as in a shear, whose displacement is the same all along its layers
+      next.shift_px = fitted.shift_px - Vec2d{gx / xx, 0.0};
+      next.uncertainty_px = {three_errors(xx), infinity};
+    } else {
+      next.shift_px = fitted.shift_px - Vec2d{0.0, gy / yy};
+      next.uncertainty_px = {infinity, three_errors(yy)};
+    }
+    if (!(length(next.shift_px - first) < farthest)) break;
+    fitted = next;
   }
   return fitted;
 }
 
 /// Describes the shift of the positions that `fitted` undoes, as far as the displacement determines it.
 std::string describe_shift(FittedShift const& fitted) {
-  constexpr double vague = 2.0;  // three standard errors that exceed this leave a component open [px]
   auto const digit = [](double uncertainty) { return uncertainty < 0.1 ? 0.01 : 0.1; };  // last digit [px]
   auto const rounded = [&](double value, double uncertainty) {
     return 0.0 - digit(uncertainty) * std::round(value / digit(uncertainty));
@@ -168,8 +180,8 @@ std::string describe_shift(FittedShift const& fitted) {
         rounded(value, uncertainty), axis, std::max(digit(uncertainty), uncertainty), other);
   };
   auto const [shift, uncertainty] = fitted;
-  if (!(uncertainty.y < vague) && uncertainty.x < vague) return along('x', shift.x, uncertainty.x, 'y');
-  if (!(uncertainty.x < vague) && uncertainty.y < vague) return along('y', shift.y, uncertainty.y, 'x');
+  if (!(uncertainty.y < vague_px) && uncertainty.x < vague_px) return along('x', shift.x, uncertainty.x, 'y');
+  if (!(uncertainty.x < vague_px) && uncertainty.y < vague_px) return along('y', shift.y, uncertainty.y, 'x');
   double const larger = std::max(uncertainty.x, uncertainty.y);
   return fmt::format("places are shifted by ({:.4g}, {:.4g}) px, each known to {:.2g} px", rounded(shift.x, larger),
                      rounded(shift.y, larger), std::max(digit(larger), larger));
@@ -196,6 +208,12 @@ LikelyMistake find_shift(Search const& search) {
   look_around({}, farthest, 4.0);
   constexpr double finest = 0.25;
   for (double const step : {2.0, 1.0, 0.5, finest}) look_around(best, step, step);
+  for (auto const component :
+       {&Vec2d::x, &Vec2d::y}) {  // the other component alone, where this displacement cannot tell
+    Vec2d other = best;
+    other.*component = 0.0;
+    if (evidence_for(search.fit(fewer, shift_by(best)), search.fit(fewer, shift_by(other))) < 9.0) best = other;
+  }
   constexpr double counting = 2.0;  // conventions of pixel counting differ by less
   if (!(std::max(std::abs(best.x), std::abs(best.y)) > counting)) return {};
   FittedShift const fitted = refine_shift(search, {best, {finest, finest}});
