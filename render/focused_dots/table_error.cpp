@@ -17,8 +17,11 @@ namespace gladstone {
 namespace {
 
 constexpr std::size_t place_count = 16;
-constexpr int traced_rays = 8192, tabled_rays = 65536;  ///< rays per scrambling
-constexpr double worth_more_rays = 0.7;                 ///< required ratio of errors on quadrupling the rays
+constexpr int largest_sample = 65536;    ///< maximum number of rays per scrambling whose landing the table predicts
+constexpr int predicted_per_traced = 8;  ///< of these rays, one in so many is also traced
+/// Rays are added until errors and detection limits are within this fraction of the tolerances.
+constexpr double sufficient_excess = 0.75;
+constexpr double worth_more_rays = 0.7;  ///< required ratio of errors on quadrupling the rays
 
 /// Returns the van der Corput sequence in base 2 (1935): the bits of i mirrored at the binary point.
 double mirrored(std::size_t i) {
@@ -27,11 +30,25 @@ double mirrored(std::size_t i) {
   return found;
 }
 
+/// Sums over one sample of a lone dot's rays, in the order of a quasi-random sequence.
+struct RaySample {
+  struct Sum {
+    Vec2d first{};
+    double count = 0;
+    Vec2d mean() const { return first / count; }
+  };
+  int rays = 0;                           ///< number of rays whose landing the table has predicted
+  Sum predicted, also_predicted, traced;  ///< all predicted rays; those that are also traced, both ways
+  LightImage light, difference;           ///< of the predicted rays; traced minus predicted rays
+
+  explicit RaySample(int side) : light(side, side), difference(side, side) {}
+};
+
 /// Rendering of a single white dot in pixel windows around its image in each frame, and the differences of independent
 /// samples of traced rays.
 class LoneDot {
  public:
-  LoneDot(Scene const& scene, Vec2d place, int side) : scene_(alone(scene, place)) {
+  LoneDot(Scene const& scene, Vec2d place, int side) : scene_(alone(scene, place)), side_(side) {
     FocusedDots const dots = focused_dots(scene_).value();
     Vec2d const centre = scene_.dots.centre[0];
     double room = DeflectionPlan::usual_aim * scene_.imaging.entrance_pupil / 2;
@@ -41,24 +58,33 @@ class LoneDot {
       aim_ = aim_dot(owned_->model, centre);
       room *= 2;
     } while (aim_.kind == DotKind::left && 2 * aim_.farthest > room && room < scene_.setup.z_b());
-    take_frame(0, side, {});
+    take_frame(0, {});
     if (left()) return;
     Vec2d const moved = seen_.truth.hits[1].mean() - seen_.truth.hits[0].mean();
-    take_frame(1, side, std::isfinite(moved.x) ? moved : Vec2d{});
-    for (int scrambling = 0; scrambling < plan_scramblings; ++scrambling) {
-      LightImage beside(side, side);
-      Sampled& off = off_[scrambling];
-      off.light.resize(as_seen_.light.size());  // no difference in the reference image
-      if (seen_.kind == DotKind::still) continue;
-      std::visit([&](auto const& medium) { off.displacement = trace(medium, scrambling, beside); }, scene_.medium.view);
-      Image<double> const light = beside.to_light();
-      for (std::size_t i = light.size(); i < off.light.size(); ++i) {
-        off.light[i] = light.data()[i - light.size()] - as_seen_.light[i];
-      }
-    }
+    take_frame(1, std::isfinite(moved.x) ? moved : Vec2d{});
+    for (Sampled& off : off_) off.light.resize(as_seen_.light.size());  // no difference in the reference image
+    if (seen_.kind == DotKind::still) return;
+    for (int scrambling = 0; scrambling < plan_scramblings; ++scrambling) samples_.emplace_back(side);
   }
 
   bool left() const { return seen_.kind == DotKind::left; }
+
+  /// Adds rays to the four samples until each has the given number, and updates their differences.
+  void compare_with_rays(int rays) {
+    for (std::size_t scrambling = 0; scrambling < samples_.size(); ++scrambling) {
+      RaySample& sample = samples_[scrambling];
+      std::visit([&](auto const& medium) { add_rays(medium, scrambling, rays, sample); }, scene_.medium.view);
+      Sampled& off = off_[scrambling];
+      Vec2d const told = seen_.truth.hits[1].mean() - seen_.truth.hits[0].mean();
+      off.displacement = sample.predicted.mean() + sample.traced.mean() - sample.also_predicted.mean() - told;
+      Image<double> const light = sample.light.to_light(), difference = sample.difference.to_light();
+      double const unit = static_cast<double>(largest_sample) / rays;
+      for (std::size_t i = 0; i < light.size(); ++i) {
+        double const found = unit * (light.data()[i] + predicted_per_traced * difference.data()[i]);
+        off.light[light.size() + i] = found - as_seen_.light[light.size() + i];
+      }
+    }
+  }
 
   /// Returns one of the four samples of Scatter: the rendered dot plus `share` times the difference of a ray sample.
   Sampled sample(int scrambling, double share) const {
@@ -79,25 +105,24 @@ class LoneDot {
 
   /// Renders the dot again in a window centred at the given distance from its undisplaced image, with pixels counted
   /// from the window's corner, and stores one frame.
-  void take_frame(std::size_t frame, int side, Vec2d moved) {
+  void take_frame(std::size_t frame, Vec2d moved) {
     Vec2d const centre = scene_.dots.centre[0], at = owned_->model.to_pixel(centre) + moved;
-    int const half = side / 2;
+    int const half = side_ / 2;
     owned_->model.axis_px = owned_->model.axis_px - Vec2d{std::floor(at.x) - half, std::floor(at.y) - half};
     integrator_ = std::make_unique<DotIntegrator>(owned_->model);
     std::visit([&](auto const& medium) { seen_ = integrator_->see(medium, centre, 1); }, scene_.medium.view);
     if (left()) return;
-    LightImage frames[frame_count] = {{side, side}, {side, side}};
+    LightImage frames[frame_count] = {{side_, side_}, {side_, side_}};
     LightImage* const images[frame_count] = {&frames[0], &frames[1]};
     integrator_->lay_down(images);
     Image<double> const light = frames[frame].to_light();
     as_seen_.light.insert(as_seen_.light.end(), light.begin(), light.end());
   }
 
-  /// Computes the differences of the true displacement [px] and of the light in the measurement image between a sample
-  /// of rays and the dot as rendered. Many rays land as the table predicts, and some of them are also traced to correct
-  /// the prediction (control variate).
+  /// Adds rays to a sample. Many rays land as the table predicts, and some of them are also traced to correct the
+  /// prediction (control variate).
   template <class Medium>
-  Vec2d trace(Medium const& medium, int scrambling, LightImage& image) {
+  void add_rays(Medium const& medium, std::size_t scrambling, int rays, RaySample& sample) {
     DotModel const& model = owned_->model;
     CorrectedCone const cone = integrator_->cone();
     SpotView spot;
@@ -107,38 +132,37 @@ class LoneDot {
     BundleView<double> choice;
     choice.seed = repeat_seed(scene_.setup.render.seed, 1000003u + static_cast<std::uint64_t>(scrambling));
     constexpr double wide = CorrectedCone::reach;
-    struct Sum {
-      Vec2d first{};
-      double count = 0;
-      Vec2d mean() const { return first / count; }
+    auto const enter = [&](Vec2d on_dot, Vec2d moved, Vec2d arrival, double sign, LightImage& image,
+                           RaySample::Sum& sum) {
+      if (!(length(arrival) <= model.stop_radius)) return;
+      sum.first += on_dot + moved;
+      sum.count += 1;
+      patch.deposit(seen_.truth.origin + on_dot + moved, sign * wide * wide / largest_sample * seen_.light, &image, 1);
     };
-    Sum tabled, also_tabled, traced;
-    for (int ray = 0; ray < tabled_rays; ++ray) {
+    /// Predicts ray number `ray`, and traces it if `traced`.
+    auto const add = [&](int ray, bool traced) {
       throw_if_interrupted();
       auto const [place, at] = DotRay::choose(choice, model.shape, seen_.centre, ray);
       Vec2d const from_aim = (wide * model.stop_radius) * at, offset = model.offset(place);
       Vec2d const on_dot = model.half_size_px() * place;
-      auto const enter = [&](Vec2d moved, Vec2d arrival, double sign, int rays, Sum& sum) {
-        if (!(length(arrival) <= model.stop_radius)) return;
-        sum.first += on_dot + moved;
-        sum.count += 1;
-        patch.deposit(seen_.truth.origin + on_dot + moved, sign * wide * wide / rays * seen_.light, &image, 1);
-      };
       Vec2d const moved = cone.origin() + cone.displacement(offset, from_aim), arrival = cone.arrival(offset, from_aim);
-      enter(moved, arrival, 1, tabled_rays, tabled);
-      if (ray >= traced_rays) continue;
+      if (!traced) return enter(on_dot, moved, arrival, 1, sample.light, sample.predicted);
       Vec2d const pupil = cone.pupil(from_aim);
       Deflection found[1];
       deflect(model.bench, medium, {seen_.centre + offset}, {pupil}, found);
-      enter(moved, arrival, -1, traced_rays, also_tabled);
-      enter(found[0].displacement, pupil + found[0].shift, 1, traced_rays, traced);
-    }
-    patch.flush(&image, 1);
-    Vec2d const told = seen_.truth.hits[1].mean() - seen_.truth.hits[0].mean();
-    return tabled.mean() + traced.mean() - also_tabled.mean() - told;
+      enter(on_dot, moved, arrival, -1, sample.difference, sample.also_predicted);
+      enter(on_dot, found[0].displacement, pupil + found[0].shift, 1, sample.difference, sample.traced);
+    };
+    for (int ray = sample.rays; ray < rays; ++ray) add(ray, false);
+    patch.flush(&sample.light, 1);
+    for (int ray = sample.rays / predicted_per_traced; ray < rays / predicted_per_traced; ++ray) add(ray, true);
+    patch.flush(&sample.difference, 1);
+    sample.rays = rays;
   }
 
   Scene scene_;
+  int side_;                        ///< of the pixel windows [px]
+  std::vector<RaySample> samples_;  ///< one for each scrambling; none for a dot that the medium does not move
   std::unique_ptr<DeflectionMap> table_;
   std::unique_ptr<OwnedDotModel> owned_;
   std::unique_ptr<DotIntegrator> integrator_;
@@ -146,6 +170,34 @@ class LoneDot {
   SeenDot seen_;
   Sampled as_seen_, off_[plan_scramblings];
 };
+
+/// Sets the errors and detection limits of a plan from lone dots that were compared with rays.
+void state_errors(RaysPlan& plan, std::vector<std::unique_ptr<LoneDot>> const& lone, GreyLevels const& levels) {
+  std::vector<std::size_t> places(lone.size());
+  std::iota(places.begin(), places.end(), std::size_t{0});
+  // Let the four samples deviate from the rendered dot by s (e + noise), with e the error, s^2 = 3/4 and alternating
+  // sign. Their variance is 4 s^2 e^2 / 3 + s^2 noise^2; with equal signs it is that of the noise alone, so the
+  // difference is e^2. For e = 0, the two estimates differ by the product of two sums of two samples over 3, with mean
+  // 0 and standard deviation 2 s^2 noise^2 / 3, divided by sqrt(n) for n independent values. The squared detection
+  // limit is twice this value. The pixels of a dot count as one value.
+  double const share = std::sqrt(0.75);
+  auto const scatter_of = [&](double odd) {
+    return measure_scatter(places, levels, [&](std::size_t dot, int scrambling) {
+      return lone[dot]->sample(scrambling, scrambling % 2 == 0 ? share : odd);
+    });
+  };
+  Scatter off = scatter_of(-share);
+  Scatter const noise = scatter_of(share);
+  auto const less = [](double all, double by_chance) { return std::max(all - by_chance, 0.0); };  // NaN is retained
+  auto const resolved = [](double by_chance, double n) { return std::sqrt(4.0 / 3 / std::sqrt(n) * by_chance); };
+  auto const dot_count = static_cast<double>(lone.size());
+  double const chance = mean_variance(noise.displacements);
+  plan.truth_resolution_px = resolved(chance, 2 * dot_count);
+  plan.image_resolution_levels = resolved(1, dot_count) * levels.error(noise);
+  off.light_variance = less(off.light_variance, noise.light_variance);
+  plan.truth_error_px = std::sqrt(less(mean_variance(off.displacements), chance));
+  plan.image_error_levels = levels.error(off);
+}
 
 }  // namespace
 
@@ -181,30 +233,11 @@ RaysPlan measure_table_error(FocusedDots const& dots) {
   });
   std::erase_if(lone, [](auto const& dot) { return dot->left(); });
   if (lone.empty()) return plan;
-  std::vector<std::size_t> places(lone.size());
-  std::iota(places.begin(), places.end(), std::size_t{0});
-  // Let the four samples deviate from the rendered dot by s (e + noise), with e the error, s^2 = 3/4 and alternating
-  // sign. Their variance is 4 s^2 e^2 / 3 + s^2 noise^2; with equal signs it is that of the noise alone, so the
-  // difference is e^2. For e = 0, the two estimates differ by the product of two sums of two samples over 3, with mean
-  // 0 and standard deviation 2 s^2 noise^2 / 3, divided by sqrt(n) for n independent values. The squared detection
-  // limit is twice this value. The pixels of a dot count as one value.
-  double const share = std::sqrt(0.75);
-  auto const scatter_of = [&](double odd) {
-    return measure_scatter(places, levels, [&](std::size_t dot, int scrambling) {
-      return lone[dot]->sample(scrambling, scrambling % 2 == 0 ? share : odd);
-    });
-  };
-  Scatter off = scatter_of(-share);
-  Scatter const noise = scatter_of(share);
-  auto const less = [](double all, double by_chance) { return std::max(all - by_chance, 0.0); };  // NaN is retained
-  auto const resolved = [](double by_chance, double n) { return std::sqrt(4.0 / 3 / std::sqrt(n) * by_chance); };
-  auto const dot_count = static_cast<double>(lone.size());
-  double const chance = mean_variance(noise.displacements);
-  plan.truth_resolution_px = resolved(chance, 2 * dot_count);
-  plan.image_resolution_levels = resolved(1, dot_count) * levels.error(noise);
-  off.light_variance = less(off.light_variance, noise.light_variance);
-  plan.truth_error_px = std::sqrt(less(mean_variance(off.displacements), chance));
-  plan.image_error_levels = levels.error(off);
+  for (int const rays : {largest_sample / 4, largest_sample / 2, largest_sample}) {
+    parallel_for(lone.size(), [&](std::size_t i) { lone[i]->compare_with_rays(rays); });
+    state_errors(plan, lone, levels);
+    if (plan.excess() <= sufficient_excess) break;
+  }
   return plan;
 }
 
@@ -213,7 +246,7 @@ double table_seconds(FocusedDots const& dots) {
   DeflectionPlan const plan(dots, scene.dots, DeflectionPlan::usual_aim * scene.imaging.entrance_pupil / 2);
   if (!plan.wanted()) return 0;
   double const of_table = 4.0 * static_cast<double>(plan.table.fours());
-  double const measured = static_cast<double>(place_count) * plan_scramblings * traced_rays;
+  double const measured = static_cast<double>(place_count) * plan_scramblings * largest_sample / predicted_per_traced;
   return (of_table + measured) * ray_seconds(scene);
 }
 

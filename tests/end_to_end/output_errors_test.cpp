@@ -14,8 +14,9 @@ class OutputErrors : public Workplace {
  protected:
   /// A rendering of minutes, interrupted when it begins to trace.
   Outcome interrupt_a_rendering(int signal) const {
-    Program program({"render", "setup.toml", "-o", "case", "--set", "render.rays_per_dot=1000000"}, folder_,
-                    stopping_at("rendering"));
+    Program program(
+        {"render", "setup.toml", "-o", "case", "--set", "render.rays_per_dot=1000000", "--set", "render.method=rays"},
+        folder_, stopping_at("rendering"));
     EXPECT_TRUE(program.wait_until_stopped());
     EXPECT_TRUE(is_rendering());
     program.send(signal);
