@@ -1,6 +1,7 @@
 #include "analysis/vectors/convention_fit.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -57,23 +58,22 @@ ConventionFit fit_within(DisplacementField const& field, VectorConventions const
   DisplacementField const ours = apply_conventions(field, conventions, image_rows);
   double differences = 0.0, signal = 0.0, product = 0.0;
   std::size_t count = 0, known = 0;
-  std::vector<double> errors, truths;
-  errors.reserve(2 * ours.size());
-  truths.reserve(2 * ours.size());
+  std::array<std::vector<double>, 2> errors, truths;  // by component: one of them may have a bias
   for (std::size_t i = 0; i < ours.size(); ++i) {
     if (!ours.counts(i)) continue;
     Vec2d const t = truth(ours.position_px[i]);
     count += 2;
     if (!is_finite(t)) {
       differences += 2 * most * most;
-      errors.insert(errors.end(), 2, most);
+      for (std::vector<double>& component : errors) component.push_back(most);
       continue;
     }
     known += 2;
-    for (auto const component : {&Vec2d::x, &Vec2d::y}) {
+    for (std::size_t k = 0; k < 2; ++k) {
+      double Vec2d::*const component = k == 0 ? &Vec2d::x : &Vec2d::y;
       double const e = std::clamp(ours.displacement_px[i].*component - t.*component, -most, most);
-      errors.push_back(e);
-      truths.push_back(t.*component);
+      errors[k].push_back(e);
+      truths[k].push_back(t.*component);
       differences += e * e;
       signal += t.*component * t.*component;
       product += (t.*component + e) * t.*component;
@@ -83,8 +83,11 @@ ConventionFit fit_within(DisplacementField const& field, VectorConventions const
   fit.conventions = conventions;
   fit.rms_px = fit.signal_px = fit.slope = fit.slope_error = not_a_number;
   fit.components = count;
-  fit.spread_px = robust_spread(errors);
-  fit.signal_spread_px = robust_spread(truths);
+  auto const of_both = [](auto const& components) {
+    return std::sqrt(0.5) * std::hypot(robust_spread(components[0]), robust_spread(components[1]));
+  };
+  fit.spread_px = of_both(errors);
+  fit.signal_spread_px = of_both(truths);
   if (count > 0) fit.rms_px = std::sqrt(differences / static_cast<double>(count));
   if (known > 0) fit.signal_px = std::sqrt(signal / static_cast<double>(known));
   if (signal > 0.0) {

@@ -233,7 +233,7 @@ TEST(DetectConventions, NamesTheLikeliestOfReadingsThatFitAlmostAlike) {
   VectorFile shifted = file;
   for (Vec2d& p : shifted.field.position_px) p.x += 16.0;
   EXPECT_THAT(detect_conventions(shifted, vortex, 200).mistake.text,
-              testing::StartsWith("places are shifted by (16, 0)"));
+              testing::StartsWith("places are shifted by (16"));
   EXPECT_FALSE(detect_conventions(file, vortex, 200).mistake.found());
 }
 
@@ -299,6 +299,14 @@ TEST(DetectConventions, TellsOnlyWhatTheDisplacementDetermines) {
       detect_conventions(shifted, shear, 200).mistake.text,
       AllOf(testing::StartsWith("places are shifted by 15.99 px in y"), HasSubstr("in x this displacement cannot")));
   EXPECT_EQ(detect_conventions(stretched, shear, 200).mistake.text, "u is 3 times the truth (v is too small to tell)");
+}
+
+// A bias of u alone is no shift of places by a pixel, which changes the many small errors of v and the bias hardly.
+TEST(DetectConventions, TakesABiasOfOneComponentForNoShift) {
+  VectorFile file = waves_on_a_grid();
+  for (std::size_t i = 0; i < file.field.size(); ++i)
+    file.field.displacement_px[i] += Vec2d{0.1, 0.0} + 0.01 * noise(i);
+  EXPECT_EQ(detect_conventions(file, waves, 200).mistake.text, "");
 }
 
 // Vectors that are all 0 are no offset from a uniform displacement.

@@ -123,7 +123,7 @@ VectorsWithTruth with_outliers(VectorsWithTruth written, double share, double no
 
 // Right vectors with noise and outliers are no mistake in any case alone, nor in several.
 TEST(DetectCommonConventions, TakesOutliersForNoMistake) {
-  for (unsigned seed = 0; seed < 20; ++seed) {
+  for (unsigned seed = 0; seed < 6; ++seed) {
     for (double const share : {0.005, 0.01, 0.05}) {
       std::vector<VectorsWithTruth> files;
       for (Flow const& flow : {Flow(uniform), Flow(vortex), Flow(off_centre)}) {
