@@ -13,6 +13,7 @@
 #include <iterator>
 #include <limits>
 #include <numeric>
+#include <tuple>
 
 #include "render/base/error.h"
 #include "render/base/fields/field_file.h"
@@ -56,6 +57,20 @@ std::vector<double> numbered(int nx, int ny, int nz) {
     }
   }
   return values;
+}
+
+/// The numbers in a stored type, in the byte order asked for.
+template <class Stored>
+std::string bytes(std::vector<double> const& values, bool big_endian = false) {
+  std::string text;
+  for (double const value : values) {
+    auto const stored = static_cast<Stored>(value);
+    char raw[sizeof(Stored)];
+    std::memcpy(raw, &stored, sizeof(Stored));
+    if (big_endian == (std::endian::native == std::endian::little)) std::reverse(raw, raw + sizeof(Stored));
+    text.append(raw, sizeof(Stored));
+  }
+  return text;
 }
 
 auto refused(std::string const& file, std::string const& why) {
@@ -269,6 +284,58 @@ TEST_F(JhtdbField, CoordinatesOfAllNodesAreUsed) {
       refused("cutout.h5", "dataset \"y\" of shape [2, 3, 4] varies along several axes of \"Density_0001\""));
 }
 
+// MATLAB's [X, Y, Z] = ndgrid(x, y, z) are arrays [nx, ny, nz], which HDF5 stores as [nz, ny, nx]; those of meshgrid
+// are [ny, nx, nz], stored as [nz, nx, ny]. On a cube only the coordinates distinguish them. A MAT-file begins with a
+// block of 512 bytes that is not HDF5.
+TEST_F(JhtdbField, CoordinatesTellMatlabsNdgridFromItsMeshgrid) {
+  auto const matlab_file = [&](bool ndgrid, bool with_coordinates) {
+    Dataset rho{"rho", {3, 3, 3}, {}}, x{"X", {3, 3, 3}, {}}, y{"Y", {3, 3, 3}, {}}, z{"Z", {3, 3, 3}, {}};
+    for (int k = 0; k < 3; ++k) {
+      for (int slow = 0; slow < 3; ++slow) {
+        for (int fast = 0; fast < 3; ++fast) {
+          int const i = ndgrid ? fast : slow, j = ndgrid ? slow : fast;
+          x.values.push_back(i * 0.5);
+          y.values.push_back(1 + j * 0.25);
+          z.values.push_back(k * 2.0);
+          rho.values.push_back(100.0 * k + 10.0 * j + i);
+        }
+      }
+    }
+    std::string const written = in_folder("written.h5");
+    std::string const path =
+        in_folder((ndgrid ? "ndgrid" : "meshgrid") + std::string(with_coordinates ? "_xyz" : "") + ".mat");
+    Hdf5Writer writer(written, {"test", 1, "", 0, "cpu"});
+    std::vector<Dataset> all{rho};
+    if (with_coordinates) all.insert(all.end(), {x, y, z});
+    for (auto const& dataset : all) {
+      writer.write(dataset.name, dataset.values, dataset.shape, "1", "test", "as MATLAB stores it");
+      writer.attribute(dataset.name, "MATLAB_class", std::string("double"));
+    }
+    writer.close();
+    std::ifstream content(written, std::ios::binary);
+    std::string header = "MATLAB 7.3 MAT-file";
+    header.resize(512, ' ');
+    std::ofstream(path, std::ios::binary) << header << content.rdbuf();
+    return path;
+  };
+  for (bool const ndgrid : {true, false}) {
+    auto const source = open_field(matlab_file(ndgrid, true), "");
+    EXPECT_EQ(source->name(), "rho");
+    EXPECT_EQ(source->reading().axes, ndgrid ? "zyx" : "zxy");
+    EXPECT_EQ(source->reading().by, "by its coordinates");
+    EXPECT_EQ(source->grid().spacing, (Vec3d{0.5, 0.25, 2}));
+    EXPECT_EQ(source->grid().origin, (Vec3d{0, 1, 0}));
+    EXPECT_EQ(read_all(*source), numbered(3, 3, 3)) << ndgrid;
+    EXPECT_TRUE(source->notes().empty());
+  }
+  // without coordinates nothing decides: an array of ndgrid is assumed, and a warning names the other order
+  auto const assumed = open_field(matlab_file(true, false), "");
+  EXPECT_EQ(read_all(*assumed), numbered(3, 3, 3));
+  EXPECT_THAT(assumed->notes(), ElementsAre(AllOf(HasSubstr("an array of MATLAB of shape [3, 3, 3]"),
+                                                  HasSubstr("as ndgrid makes it"), HasSubstr("axes = \"zxy\""))));
+  EXPECT_EQ(read_all(*open_field(matlab_file(false, false), "", 1, "zxy")), numbered(3, 3, 3));
+}
+
 TEST_F(JhtdbField, PlaneAcrossXAndZHasThoseAxes) {
   auto const source =
       open_field(write({{"rho", {3, 4}, numbered(4, 3, 1)}, axis("x", 4, 0.0, 0.5), axis("z", 3, 0.0, 1.5)}), "");
@@ -377,6 +444,45 @@ TEST_F(JhtdbField, ComplexNumbersAreNamed) {
   EXPECT_THAT([&] { open_field(path, "rho"); }, refused("cutout.h5", "dataset \"rho\" holds complex numbers"));
 }
 
+// Every type of number in either byte order, through each filter of the HDF5 library, under every extension.
+TEST_F(FieldFiles, EveryNumberOfHdf5IsRead) {
+  struct Stored {
+    hid_t type;
+    int significant_bits;
+  };
+  std::vector<double> const values = numbered(4, 3, 2);  // up to 123: fits every type
+  hsize_t const shape[]{2, 3, 4}, chunk[]{1, 2, 4};
+  auto const write = [&](std::string const& name, hid_t type, bool filtered) {
+    hid_t const file = H5Fcreate(in_folder(name).c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+    hid_t const space = H5Screate_simple(3, shape, nullptr), creation = H5Pcreate(H5P_DATASET_CREATE);
+    if (filtered) {
+      H5Pset_chunk(creation, 3, chunk);
+      H5Pset_shuffle(creation);
+      H5Pset_deflate(creation, 6);
+      H5Pset_fletcher32(creation);
+    }
+    hid_t const dataset = H5Dcreate2(file, "rho", type, space, H5P_DEFAULT, creation, H5P_DEFAULT);
+    H5Dwrite(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data());
+    H5Dclose(dataset);
+    H5Pclose(creation);
+    H5Sclose(space);
+    H5Fclose(file);
+    return open_field(in_folder(name), "");
+  };
+  for (Stored const& stored :
+       {Stored{H5T_IEEE_F32LE, 24}, Stored{H5T_IEEE_F32BE, 24}, Stored{H5T_IEEE_F64LE, 53}, Stored{H5T_IEEE_F64BE, 53},
+        Stored{H5T_STD_I8LE, 8}, Stored{H5T_STD_U8LE, 8}, Stored{H5T_STD_I16BE, 16}, Stored{H5T_STD_U16LE, 16},
+        Stored{H5T_STD_I32BE, 32}, Stored{H5T_STD_U32LE, 32}, Stored{H5T_STD_I64LE, 64}, Stored{H5T_STD_U64BE, 64}}) {
+    for (bool const filtered : {false, true}) {
+      auto const source = write("types.h5", stored.type, filtered);
+      EXPECT_EQ(read_all(*source), values) << stored.significant_bits << filtered;
+      EXPECT_EQ(source->significant_bits(), stored.significant_bits);
+    }
+  }
+  for (char const* const name : {"a.h5", "a.hdf5", "a.he5", "a.nc", "a.mat", "A.H5"})
+    EXPECT_EQ(read_all(*write(name, H5T_IEEE_F32LE, false)), values) << name;
+}
+
 TEST_F(JhtdbField, HolesAreCountedOverTheWholeField) {
   auto field = density(4, 3, 5);
   field.values[7] = field.values[30] = field.values[59] = -999.9;
@@ -474,20 +580,6 @@ TEST_F(FieldFiles, UnknownFormatsAndMissingFilesAreNamed) {
 class NrrdField : public FieldFiles {
  protected:
   static std::string header(std::string const& fields) { return "NRRD0005\n# a comment\nnote:=ignored\n" + fields; }
-
-  /// The numbers in a stored type, in the byte order asked for.
-  template <class Stored>
-  static std::string bytes(std::vector<double> const& values, bool big_endian = false) {
-    std::string text;
-    for (double const value : values) {
-      auto const stored = static_cast<Stored>(value);
-      char raw[sizeof(Stored)];
-      std::memcpy(raw, &stored, sizeof(Stored));
-      if (big_endian == (std::endian::native == std::endian::little)) std::reverse(raw, raw + sizeof(Stored));
-      text.append(raw, sizeof(Stored));
-    }
-    return text;
-  }
 
   std::string write(std::string const& name, std::string const& content) const {
     std::ofstream(in_folder(name), std::ios::binary) << content;
@@ -660,6 +752,46 @@ TEST_F(NrrdField, TwoDimensionsAreOnePlane) {
   EXPECT_EQ(read_all(*source)[4 * 2 + 1], 21.0f);
 }
 
+// The components of a velocity are the fastest axis; axes of length one are ignored wherever they are.
+TEST_F(NrrdField, VelocityHasItsComponentsFastest) {
+  std::vector<double> values;
+  for (double const value : numbered(4, 3, 2)) values.insert(values.end(), {value, -value, value + 0.5});
+  std::string const rest = "type: float\nendian: big\nencoding: raw\n\n" + bytes<float>(values, true);
+  for (char const* const sizes : {"dimension: 4\nsizes: 3 4 3 2\nspacings: nan 0.5 0.25 2\n",
+                                  "dimension: 5\nsizes: 3 4 3 2 1\nspacings: nan 0.5 0.25 2 nan\n"}) {
+    auto const source = open_field(write("v.nrrd", header(sizes + rest)), "", 3);
+    EXPECT_THAT(source->grid().nodes, ElementsAre(4, 3, 2)) << sizes;
+    EXPECT_EQ(source->grid().spacing, (Vec3d{0.5, 0.25, 2})) << sizes;
+    std::vector<double> read(values.size());
+    source->read_planes(0, 2, read);
+    EXPECT_EQ(read, values) << sizes;
+  }
+  std::string const scalar = write("s.nrrd", header(std::string(grid_432) + rest));
+  EXPECT_THAT([&] { open_field(scalar, "", 3); },
+              refused("s.nrrd", "has no first axis of 3 components, as a velocity has"));
+}
+
+TEST_F(NrrdField, AxesOfLengthOneAreIgnored) {
+  std::string const rest = "type: float\nendian: little\nencoding: raw\n\n" + bytes<float>(numbered(4, 3, 2));
+  for (char const* const sizes : {"4 3 2 1", "1 4 3 2", "4 1 3 2"})
+    expect_numbered(write("one.nrrd", header("dimension: 4\nsizes: " + std::string(sizes) + '\n' + rest)));
+}
+
+// Negative spacings lay the nodes towards -x and -y of the first one.
+TEST_F(NrrdField, NegativeSpacingsRunBackwards) {
+  auto const source =
+      open_field(write("back.nrrd", header(std::string(grid_432) + "spacings: -0.5 -0.25 2\naxis mins: 1 2 3\n" +
+                                           "centers: node node node\ntype: float\nendian: little\nencoding: raw\n\n" +
+                                           bytes<float>(numbered(4, 3, 2)))),
+                 "");
+  EXPECT_EQ(source->reading().turned_round, "xy");
+  EXPECT_EQ(source->grid().spacing, (Vec3d{0.5, 0.25, 2}));
+  EXPECT_EQ(source->grid().origin, (Vec3d{1 - 3 * 0.5, 2 - 2 * 0.25, 3}));
+  auto const values = read_all(*source);
+  EXPECT_EQ(values[0], 23) << "x = 3, y = 2 of the file";
+  EXPECT_EQ(values[23], 100) << "x = 0, y = 0, z = 1 of the file";
+}
+
 TEST_F(NrrdField, TruncatedDataSayHowMuchIsThere) {
   std::string const data = bytes<float>(numbered(4, 3, 2));  // 96 bytes
   std::string const type = std::string(grid_432) + "type: float\nendian: little\n";
@@ -753,6 +885,49 @@ TEST_F(JhtdbField, VelocityHasThreeValuesAPoint) {
   EXPECT_THAT([&] { open_field(write({density()}), "", 3); }, refused("cutout.h5", "has no velocity, [nz, ny, nx, 3]"));
 }
 
+// Other programs store a velocity as one array after the other, [3, nz, ny, nx] or, of a plane, [3, ny, nx].
+TEST_F(JhtdbField, VelocityMayHaveItsComponentsFirst) {
+  std::vector<double> stored, expected;
+  for (auto const component :
+       {+[](double v) { return v; }, +[](double v) { return -v; }, +[](double v) { return v + 0.5; }}) {
+    for (double const value : numbered(4, 3, 2)) stored.push_back(component(value));
+  }
+  for (double const value : numbered(4, 3, 2)) expected.insert(expected.end(), {value, -value, value + 0.5});
+  std::string const path = write({{"u", {3, 2, 3, 4}, stored}, axis("x", 4, 0.0, 0.5)});
+  auto const source = open_field(path, "", 3);
+  EXPECT_EQ(source->name(), "u");
+  EXPECT_THAT(source->grid().nodes, ElementsAre(4, 3, 2));
+  EXPECT_EQ(source->grid().spacing.x, 0.5);
+  EXPECT_EQ(source->reading().text(), "[2, 3, 4] is read as z, y, x (the default order)");
+  std::vector<double> all(72), row(12);
+  source->read_planes(0, 2, all);
+  EXPECT_EQ(all, expected);
+  source->read_rows(1, 2, 1, row);
+  EXPECT_TRUE(std::equal(row.begin(), row.end(), expected.begin() + 60)) << "the last row alone";
+
+  // axes in another order: the components remain u, v, w
+  auto const exchanged = open_field(write({{"u", {3, 2, 3, 4}, stored}}), "", 3, "xyz");
+  EXPECT_THAT(exchanged->grid().nodes, ElementsAre(2, 3, 4));
+  exchanged->read_planes(0, 4, all);
+  for (std::size_t z = 0; z < 4; ++z) {
+    for (std::size_t y = 0; y < 3; ++y) {
+      for (std::size_t x = 0; x < 2; ++x) {
+        for (std::size_t k = 0; k < 3; ++k)
+          ASSERT_EQ(all[((z * 3 + y) * 2 + x) * 3 + k], expected[((x * 3 + y) * 4 + z) * 3 + k]);
+      }
+    }
+  }
+
+  std::vector<double> const plane_stored(stored.begin(), stored.begin() + 36);
+  auto const plane = open_field(write({{"u", {3, 3, 4}, plane_stored}}), "", 3);
+  EXPECT_THAT(plane->grid().nodes, ElementsAre(4, 3, 1));
+  std::vector<double> values(36);
+  plane->read_planes(0, 1, values);
+  for (std::size_t node = 0; node < 12; ++node) {
+    for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(values[3 * node + k], plane_stored[12 * k + node]);
+  }
+}
+
 /// Files that VTK 9.7 has written, in each of its ways: a velocity (v, -v, v + 0.5) and a density v, v = 100 z + 10 y +
 /// x, on 4 x 3 x 2 nodes whose first is number 1 along x.
 std::string vtk_file(std::string const& name) {
@@ -814,6 +989,179 @@ TEST_F(VtiFiles, ArraysThatMarkGhostsAreNoFields) {
   EXPECT_THAT(read_all(*legacy), ElementsAre(1, 2, 3, 4));
 }
 
+/// Base64 (RFC 4648), with padding.
+std::string base64(std::string const& data) {
+  constexpr char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  for (std::size_t at = 0; at < data.size(); at += 3) {
+    unsigned group = 0;
+    for (std::size_t i = 0; i < 3; ++i)
+      group = group << 8 | (at + i < data.size() ? static_cast<unsigned char>(data[at + i]) : 0u);
+    for (std::size_t i = 0; i < 4; ++i) text += i <= data.size() - at ? digits[group >> (18 - 6 * i) & 63u] : '=';
+  }
+  return text;
+}
+
+/// A VTK image of 4 x 3 x 2 points whose first one is number 0. @param keys  more attributes of the file
+std::string vtk_image(std::string const& keys, std::string const& arrays, std::string const& appended = "") {
+  return "<?xml version=\"1.0\"?>\n<VTKFile type=\"ImageData\" version=\"1.0\" " + keys +
+         "><ImageData WholeExtent=\"0 3 0 2 0 1\" Origin=\"1 -1 3\" Spacing=\"0.5 0.25 2\">"
+         "<Piece Extent=\"0 3 0 2 0 1\"><PointData>" +
+         arrays + "</PointData></Piece></ImageData>" + appended + "</VTKFile>\n";
+}
+
+// Lengths of 8 bytes (header_type UInt64) ahead of data that zlib has compressed: the number of blocks, the size of a
+// block, that of the last one if it is smaller, and the compressed size of each. 24 floats are two blocks of 40 bytes
+// and one of 16. In base64 the lengths and the blocks are encoded apart.
+TEST_F(VtiFiles, CompressedDataHaveLengthsOfFourOrEightBytes) {
+  std::string const path = in_folder("packed.vti");
+  for (bool const wide : {true, false}) {
+    for (bool const big_endian : {false, true}) {
+      std::string const raw = bytes<float>(numbered(4, 3, 2), big_endian);
+      std::string blocks;
+      std::vector<double> lengths{3, 40, 16};
+      for (std::size_t at = 0; at < raw.size(); at += 40) {
+        std::string const block = raw.substr(at, 40);
+        uLongf size = compressBound(block.size());
+        std::string packed(size, '\0');
+        ASSERT_EQ(compress(reinterpret_cast<Bytef*>(packed.data()), &size, reinterpret_cast<Bytef const*>(block.data()),
+                           block.size()),
+                  Z_OK);
+        lengths.push_back(static_cast<double>(size));
+        blocks += packed.substr(0, size);
+      }
+      std::string const header =
+          wide ? bytes<std::uint64_t>(lengths, big_endian) : bytes<std::uint32_t>(lengths, big_endian);
+      std::string const keys = std::string("compressor=\"vtkZLibDataCompressor\" header_type=\"") +
+                               (wide ? "UInt64" : "UInt32") + "\" byte_order=\"" +
+                               (big_endian ? "BigEndian" : "LittleEndian") + '"';
+      std::string const encoded = base64(header) + base64(blocks);
+      auto const appended = [](std::string const& encoding, std::string const& data) {
+        return "<AppendedData encoding=\"" + encoding + "\">_AAAA" + data + "</AppendedData>";
+      };
+      std::string const at_four = array("Name=\"rho\" format=\"appended\" offset=\"4\"", "");
+      for (std::string const& text : {vtk_image(keys, array("Name=\"rho\" format=\"binary\"", encoded)),
+                                      vtk_image(keys, at_four, appended("base64", encoded)),
+                                      vtk_image(keys, at_four, appended("raw", header + blocks))}) {
+        std::ofstream(path, std::ios::binary) << text;
+        auto const source = open_field(path, "");
+        EXPECT_EQ(read_all(*source), numbered(4, 3, 2)) << wide << big_endian << text;
+        EXPECT_TRUE(source->notes().empty());
+      }
+      // lengths of the other width are damage, not other numbers
+      std::string const other = wide ? "UInt32" : "UInt64";
+      std::string wrong = vtk_image(keys, at_four, appended("raw", header + blocks));
+      wrong.replace(wrong.find("header_type") + 13, 6, other);
+      std::ofstream(path, std::ios::binary) << wrong;
+      EXPECT_THAT([&] { read_all(*open_field(path, "")); }, refused("packed.vti", "data array \"rho\""));
+    }
+  }
+}
+
+// Every type of number, as raw bytes in base64 ahead of which their length is.
+TEST_F(VtiFiles, EveryTypeOfNumberIsRead) {
+  std::string const path = in_folder("types.vti");
+  auto const values = numbered(4, 3, 2);  // up to 123: fits every type
+  auto const expect_read = [&](std::string const& type, std::string const& raw, int significant_bits) {
+    std::string const length = bytes<std::uint32_t>({static_cast<double>(raw.size())});
+    std::ofstream(path, std::ios::binary) << vtk_image(
+        "byte_order=\"LittleEndian\" header_type=\"UInt32\"",
+        "<DataArray type=\"" + type + "\" Name=\"rho\" format=\"binary\">" + base64(length + raw) + "</DataArray>");
+    auto const source = open_field(path, "");
+    EXPECT_EQ(read_all(*source), values) << type;
+    EXPECT_EQ(source->significant_bits(), significant_bits) << type;
+  };
+  expect_read("Float32", bytes<float>(values), 24);
+  expect_read("Float64", bytes<double>(values), 53);
+  expect_read("Int8", bytes<std::int8_t>(values), 7);
+  expect_read("UInt8", bytes<std::uint8_t>(values), 8);
+  expect_read("Int16", bytes<std::int16_t>(values), 15);
+  expect_read("UInt16", bytes<std::uint16_t>(values), 16);
+  expect_read("Int32", bytes<std::int32_t>(values), 31);
+  expect_read("UInt32", bytes<std::uint32_t>(values), 32);
+  expect_read("Int64", bytes<std::int64_t>(values), 63);
+  expect_read("UInt64", bytes<std::uint64_t>(values), 64);
+  std::ofstream(path) << vtk_image("", "<DataArray type=\"String\" Name=\"rho\" format=\"ascii\">1</DataArray>");
+  EXPECT_THAT([&] { open_field(path, ""); }, refused("types.vti", "of type \"String\", which is no number"));
+}
+
+/// A legacy file of 4 x 3 x 2 points. @param data  from POINT_DATA or CELL_DATA on
+std::string legacy_image(std::string const& encoding, std::string const& data) {
+  return "# vtk DataFile Version 3.0\ntitle\n" + encoding +
+         "\nDATASET STRUCTURED_POINTS\nDIMENSIONS 4 3 2\nORIGIN 1 -1 3\nSPACING 0.5 0.25 2\n" + data;
+}
+
+// Legacy files name types as C does; binary numbers have the most significant byte first.
+TEST_F(VtiFiles, LegacyFilesHaveEveryTypeOfNumber) {
+  std::string const path = in_folder("types.vtk");
+  auto const values = numbered(4, 3, 2);
+  auto const expect_read = [&](std::string const& type, std::string const& raw) {
+    std::ofstream(path, std::ios::binary)
+        << legacy_image("BINARY", "POINT_DATA 24\nSCALARS rho " + type + "\nLOOKUP_TABLE default\n" + raw + '\n');
+    EXPECT_EQ(read_all(*open_field(path, "")), values) << type;
+  };
+  expect_read("float", bytes<float>(values, true));
+  expect_read("double", bytes<double>(values, true));
+  for (char const* const type : {"char", "signed_char", "unsigned_char"})
+    expect_read(type, bytes<std::int8_t>(values, true));
+  for (char const* const type : {"short", "unsigned_short"}) expect_read(type, bytes<std::int16_t>(values, true));
+  for (char const* const type : {"int", "unsigned_int"}) expect_read(type, bytes<std::int32_t>(values, true));
+  for (char const* const type : {"long", "unsigned_long", "vtktypeint64", "vtktypeuint64"})
+    expect_read(type, bytes<std::int64_t>(values, true));
+}
+
+// A velocity as VECTORS and as an array of three components in a FIELD, and data of 3 x 2 x 1 cells at their centres.
+TEST_F(VtiFiles, LegacyFilesHaveVelocitiesAndCells) {
+  std::vector<double> velocity;
+  for (double const value : numbered(4, 3, 2)) velocity.insert(velocity.end(), {value, -value, value + 0.5});
+  std::string text;
+  for (double const value : velocity) text += std::to_string(value) + ' ';
+  std::string const path = in_folder("legacy.vtk");
+  for (std::string const& file :
+       {legacy_image("ASCII", "POINT_DATA 24\nVECTORS u float\n" + text + '\n'),
+        legacy_image("BINARY", "POINT_DATA 24\nVECTORS u float\n" + bytes<float>(velocity, true) + '\n'),
+        legacy_image("BINARY",
+                     "POINT_DATA 24\nFIELD FieldData 1\nu 3 24 double\n" + bytes<double>(velocity, true) + '\n')}) {
+    std::ofstream(path, std::ios::binary) << file;
+    auto const source = open_field(path, "", 3);
+    EXPECT_EQ(source->name(), "u");
+    std::vector<double> read(velocity.size());
+    source->read_planes(0, 2, read);
+    EXPECT_EQ(read, velocity) << file;
+  }
+  std::ofstream(path) << legacy_image("ASCII",
+                                      "CELL_DATA 6\nSCALARS rho float\nLOOKUP_TABLE default\n0 1 2 10 11 12\n");
+  auto const cells = open_field(path, "");
+  EXPECT_THAT(cells->grid().nodes, ElementsAre(3, 2, 1));
+  EXPECT_EQ(cells->grid().origin, (Vec3d{1.25, -0.875, 4}));
+  EXPECT_EQ(read_all(*cells), numbered(3, 2, 1));
+}
+
+// i along y and j along x: columns of the Direction matrix are the directions of i, j and k. The key "axes" overrides
+// it, and the order of any other file of VTK.
+TEST_F(VtiFiles, DirectionAndTheKeyOrderTheAxes) {
+  std::string values;
+  for (double const value : numbered(4, 3, 2)) values += std::to_string(value) + ' ';
+  std::string const turned =
+      "<VTKFile type=\"ImageData\"><ImageData WholeExtent=\"0 3 0 2 0 1\" Spacing=\"0.5 0.25 2\" Direction=\"0 1 0 1 0 "
+      "0 0 0 "
+      "1\"><Piece Extent=\"0 3 0 2 0 1\"><PointData>" +
+      array("Name=\"rho\" format=\"ascii\"", values) + "</PointData></Piece></ImageData></VTKFile>";
+  std::ofstream(in_folder("turned.vti")) << turned;
+  std::ofstream(in_folder("plain.vti")) << vtk_image("", array("Name=\"rho\" format=\"ascii\"", values));
+  std::ofstream(in_folder("plain.vtk")) << legacy_image(
+      "ASCII", "POINT_DATA 24\nSCALARS rho float\nLOOKUP_TABLE default\n" + values + '\n');
+  for (auto const& [file, axes, by] :
+       {std::tuple{"turned.vti", "", "by its Direction"}, std::tuple{"turned.vti", "zxy", "axes = \"zxy\""},
+        std::tuple{"plain.vti", "zxy", "axes = \"zxy\""}, std::tuple{"plain.vtk", "zxy", "axes = \"zxy\""}}) {
+    auto const source = open_field(in_folder(file), "", 1, axes);
+    EXPECT_EQ(source->reading().text(), std::string("[2, 3, 4] is read as z, x, y (") + by + ')') << file;
+    EXPECT_THAT(source->grid().nodes, ElementsAre(3, 4, 2)) << file;
+    EXPECT_EQ(source->grid().spacing, (Vec3d{0.25, 0.5, 2})) << file;
+    EXPECT_EQ(read_all(*source)[1 + 3 * (2 + 4 * 1)], 112) << file << ": x = 1 is j, y = 2 is i, z = 1 is k";
+  }
+}
+
 /// Coordinates 0, 0.5, 1, 1.5 along x, 1, 1.25, 1.5 along y and -1, 1 along z.
 void expect_rectilinear(std::string const& path) {
   auto const source = open_field(path, "");
@@ -841,6 +1189,41 @@ TEST_F(VtiFiles, RectilinearGridsAreReadAsXmlAndInTheLegacyFormat) {
          "LOOKUP_TABLE default\n" +
              values + '\n';
   expect_rectilinear(in_folder("field.vtk"));
+}
+
+// Coordinates along x descend, those along y are not uniform, and data may be of the 3 x 2 x 1 cells between them.
+TEST_F(VtiFiles, RectilinearGridsMayDescendStretchAndHaveCells) {
+  auto const grid = [&](std::string const& x, std::string const& y, std::string const& data) {
+    std::ofstream(in_folder("field.vtr"))
+        << "<VTKFile type=\"RectilinearGrid\"><RectilinearGrid WholeExtent=\"0 3 0 2 0 1\"><Piece Extent=\"0 3 0 2 0 "
+           "1\">" +
+               data + "<Coordinates>" + array("Name=\"x\" format=\"ascii\"", x) +
+               array("Name=\"y\" format=\"ascii\"", y) + array("Name=\"z\" format=\"ascii\"", "-1 1") +
+               "</Coordinates></Piece></RectilinearGrid></VTKFile>";
+    return open_field(in_folder("field.vtr"), "");
+  };
+  std::string values;
+  for (double const value : numbered(4, 3, 2)) values += std::to_string(value) + ' ';
+  std::string const points = "<PointData>" + array("Name=\"rho\" format=\"ascii\"", values) + "</PointData>";
+  auto const descending = grid("1.5 1 0.5 0", "1 1.25 1.5", points);
+  EXPECT_EQ(descending->reading().turned_round, "x");
+  EXPECT_EQ(descending->grid().spacing.x, 0.5);
+  EXPECT_EQ(descending->grid().origin.x, 0);
+  EXPECT_EQ(read_all(*descending).front(), 3);
+
+  // 0, 1, 3: to the finest spacing, four nodes; the values are 10 j, and not linear in y
+  auto const stretched = grid("0 0.5 1 1.5", "0 1 3", points);
+  EXPECT_THAT(stretched->grid().nodes, ElementsAre(4, 4, 2));
+  EXPECT_THAT(stretched->notes(), ElementsAre(HasSubstr("axes that are not uniform were resampled: y")));
+
+  auto const cells = grid("0 0.5 1 1.5", "1 1.25 1.5",
+                          "<CellData>" + array("Name=\"rho\" format=\"ascii\"", "0 1 2 10 11 12") + "</CellData>");
+  EXPECT_THAT(cells->grid().nodes, ElementsAre(3, 2, 1));
+  EXPECT_EQ(cells->grid().origin, (Vec3d{0.25, 1.125, 0}));
+  EXPECT_EQ(cells->grid().spacing.x, 0.5);
+  EXPECT_EQ(cells->grid().spacing.y, 0.25);
+  EXPECT_EQ(cells->reading().by, "as VTK has it; data of cells, at their centres");
+  EXPECT_EQ(read_all(*cells), numbered(3, 2, 1));
 }
 
 TEST_F(VtiFiles, RefusesWhatItCannotRead) {
