@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -288,6 +289,39 @@ TEST(ImageFile, EveryKindOfPictureReadsAsItsLevels) {
       for (int i = 0; i < 7; ++i)
         EXPECT_NEAR(image(i, j), kind.level(i, j), kind.tolerance) << kind.name << ' ' << i << ' ' << j;
     }
+  }
+}
+
+// Doubles keep all their digits; OpenEXR stores half floats (11 bits: 0.1 to 2^-15) and floats, and packs like TIFF
+// without loss.
+TEST(ImageFile, EveryFloatAndEveryPackingOfTiffKeepsItsValues) {
+  auto const read = [](std::string const& path) {
+    Image<double> const image = read_image(path);
+    return std::vector<double>(image.begin(), image.end());
+  };
+  EXPECT_EQ(read(write_picture<double>("double.tif", {-1.5, 0.1, 1e-3, 1e9 / 3}, 2, 1)),
+            (std::vector<double>{-1.5, 0.1, 1e-3, 1e9 / 3}));
+  EXPECT_EQ(read(write_picture<float>("float.exr", {-1.5f, 0.1f, 1e6f, 3.0f}, 2, 1)),
+            (std::vector<double>{-1.5, 0.1f, 1e6, 3}));
+  std::string const half = temporary("half.exr");
+  OIIO::ImageSpec const halves(2, 1, 1, OIIO::TypeDesc::HALF);
+  float const stored[]{0.1f, 1024};
+  auto const output = OIIO::ImageOutput::create(half);
+  ASSERT_TRUE(output && output->open(half, halves) && output->write_image(OIIO::TypeDesc::FLOAT, stored));
+  ASSERT_TRUE(output->close());
+  EXPECT_NEAR(read(half)[0], 0.1, std::ldexp(1.0, -15));
+  EXPECT_EQ(read(half)[1], 1024);
+
+  auto const image = all_values();
+  for (char const* packing : {"none", "lzw", "zip", "packbits"}) {
+    std::string const path = temporary("packed.tif");
+    OIIO::ImageSpec spec(256, 256, 1, OIIO::TypeDesc::UINT16);
+    spec["compression"] = packing;
+    auto const tiff = OIIO::ImageOutput::create(path);
+    ASSERT_TRUE(tiff && tiff->open(path, spec) && tiff->write_image(OIIO::TypeDesc::UINT16, image.data()));
+    ASSERT_TRUE(tiff->close());
+    auto const back = read_image(path);
+    EXPECT_TRUE(std::equal(back.begin(), back.end(), image.begin(), image.end())) << packing;
   }
 }
 

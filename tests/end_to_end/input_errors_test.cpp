@@ -1,6 +1,7 @@
 #include <OpenImageIO/imageio.h>
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "tests/end_to_end/support/workplace.h"
@@ -200,6 +201,31 @@ TEST_F(Inputs, AFileOfTwoPagesIsAPairAndNoPicture) {
   expect_refused({"correlate", "pair.tif", "b.tif", "-o", "v.csv"}, 2, {"pair.tif: has 2 pages"});
   expect_refused({"correlate", "a.tif", "-o", "v.csv"}, 2, {"a.tif: has 1 page, "});
   expect_refused({"info", "image", "pair.tif"}, 2, {"pair.tif: has 2 pages"});
+}
+
+// Orientation 3: the first stored pixel is the last one of the picture. Frames that are stored so, turned by half a
+// turn, are the same frames.
+TEST_F(Inputs, PicturesThatAreStoredTurnedAreTurnedUprightWithAWarning) {
+  auto const write_turned = [&](std::string const& name, Image<float> const& image) {
+    std::vector<float> levels(image.begin(), image.end());
+    std::reverse(levels.begin(), levels.end());
+    OIIO::ImageSpec spec(image.columns(), image.rows(), 1, OIIO::TypeDesc::FLOAT);
+    spec.attribute("Orientation", 3);
+    auto const output = OIIO::ImageOutput::create("tif");
+    ASSERT_TRUE(output->open(in(name).string(), spec) && output->write_image(OIIO::TypeDesc::FLOAT, levels.data()) &&
+                output->close());
+  };
+  write_turned("turned_a.tif", frame(0));
+  write_turned("turned_b.tif", frame(2));
+  write_pages("a.tif", {frame(0)});
+  write_pages("b.tif", {frame(2)});
+  succeed({"correlate", "a.tif", "b.tif", "-o", "upright.csv", "--set", "correlate.window_px=[32]"});
+  Outcome const outcome =
+      gladstone({"correlate", "turned_a.tif", "turned_b.tif", "-o", "turned.csv", "--set", "correlate.window_px=[32]"});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("turned_a.tif is stored turned or mirrored (Orientation 3)"));
+  EXPECT_EQ(read("turned.csv"), read("upright.csv"));
+  EXPECT_EQ(json_of({"info", "image", "turned_a.tif"})["orientation"], 3);
 }
 
 // What a window has left decides: a hole of one pixel moves a vector by far less than its noise, 0.02 px.
