@@ -5,7 +5,9 @@
 
 #include <cmath>
 #include <cstdio>
+#include <fstream>
 #include <random>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -451,6 +453,78 @@ TEST(DetectConventions, DoesNotHangOnAFewWildVectors) {
   DetectedConventions const found = detect_conventions(file, waves, 200);
   EXPECT_NE(found.verdict, Verdict::fits_none) << found.report;
   EXPECT_EQ(found.conventions, VectorConventions{});
+}
+
+/// The waves as a program writes them: "x y u v" of the grid's nodes, y and v upwards from the last of 200 rows or both
+/// downwards, places counted from another number than 0 at the first pixel's centre.
+std::string written_waves(bool upwards, double first_pixel, char separator, std::string const& rest_of_row) {
+  VectorFile const grid = waves_on_a_grid();
+  std::ostringstream text;
+  text.precision(12);
+  for (std::size_t i = 0; i < grid.field.size(); ++i) {
+    Vec2d const p = grid.field.position_px[i], d = grid.field.displacement_px[i];
+    text << p.x + first_pixel << separator << (upwards ? 199.0 - p.y : p.y) + first_pixel << separator << d.x
+         << separator << (upwards ? -d.y : d.y) << rest_of_row << '\n';
+  }
+  return text.str();
+}
+
+// Programs count pixels from 0 or 1, and from the first pixel's centre or its edge. Each file is read with the axes of
+// its format; the offset is the one that fits, and the places are then the grid's own.
+TEST(DetectConventions, FindsWhereEachFormatCountsFrom) {
+  using Mirror = VectorConventions::Mirror;
+  struct Format {
+    char const *program, *ending, *header;
+    char separator;
+    char const* rest_of_row;
+    bool upwards;
+    std::vector<double> first_pixels;  ///< coordinate of the first pixel's centre, in the order of preference
+  };
+  std::vector<double> const any{0, 0.5, 1, 1.5};
+  std::string const folder = testing::TempDir();
+  for (Format const& format :
+       {Format{"JPIV", ".jvc", "", ' ', " 1.0", false, any},
+        Format{"Dantec", ".csv", ">>*HEADER*<<\nGridSize:{Width=24, Height=20}\n>>*DATA*<<\nx,y,U pix,V pix,Status\n",
+               ',', ",0", true, any},
+        Format{"DaVis", ".dat", "TITLE = \"b\"\nVARIABLES = \"x\", \"y\", \"Vx\", \"Vy\"\nZONE I=24, J=20, F=POINT\n",
+               ' ', "", true, any},
+        Format{"Insight", ".vec",
+               "TITLE=\"b\" VARIABLES=\"X pixel\", \"Y pixel\", \"U pixel\", \"V pixel\", \"CHC\", ZONE I=24, J=20\n",
+               ',', ",1", true, any},
+        Format{"Tecplot", ".plt", "VARIABLES = x, y, u, v\nZONE I=24, J=20, F=POINT\n", ' ', "", true, any},
+        Format{"PIVlab",
+               ".txt",
+               "PIVlab, ASCII chart output\nFRAME: 1\nx [px],y [px],u [px/frame],v [px/frame],Vector type [-]\n",
+               ',',
+               ",1",
+               false,
+               {1.5, 1, 0.5, 0}},
+        Format{"OpenPIV", ".txt", "# x\ty\tu\tv\tflags\tmask\n", '\t', "\t0\t0", false, {0.5, 0}}}) {
+    for (double const first_pixel : format.first_pixels) {
+      std::string const path = folder + "/gladstone_counted_from_" + format.program + format.ending;
+      std::ofstream(path) << format.header
+                          << written_waves(format.upwards, first_pixel, format.separator, format.rest_of_row);
+      VectorFile const file = read_vectors(path);
+      std::remove(path.c_str());
+      ASSERT_EQ(file.format, format.program);
+      EXPECT_EQ(file.conventions.y_up, format.upwards) << format.program;
+      EXPECT_EQ(file.conventions.v_up, format.upwards) << format.program;
+      EXPECT_EQ(file.conventions.mirror, format.upwards ? Mirror::image : Mirror::grid) << format.program;
+      EXPECT_EQ(file.conventions.offset_px, -format.first_pixels.front()) << format.program;
+      DetectedConventions const found = detect_conventions(file, waves, 200);
+      EXPECT_EQ(found.verdict, Verdict::fits) << format.program << first_pixel << found.report;
+      VectorConventions expected = file.conventions;
+      expected.offset_px = -first_pixel;
+      EXPECT_EQ(found.conventions, expected) << format.program << first_pixel << found.report;
+      DisplacementField const ours = apply_conventions(file.field, found.conventions, 200);
+      VectorFile const grid = waves_on_a_grid();
+      ASSERT_EQ(ours.size(), grid.field.size());
+      for (std::size_t i = 0; i < ours.size(); ++i) {
+        EXPECT_LT(length(ours.position_px[i] - grid.field.position_px[i]), 1e-9) << format.program << first_pixel;
+        EXPECT_LT(length(ours.displacement_px[i] - grid.field.displacement_px[i]), 1e-9) << format.program;
+      }
+    }
+  }
 }
 
 // Files of OpenPIV 0.26.1 (extended_search_area_piv of 32 px; windef with 64, 32, 16 px) for render_particle_pair() of

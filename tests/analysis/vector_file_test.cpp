@@ -10,6 +10,7 @@
 #include <limits>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 
 #include "render/base/error.h"
 
@@ -177,6 +178,13 @@ TEST_F(VectorFiles, OpenPivCxxTextIsRead) {
                                             " 16.0000\t 16.0000\t  1.2500\t -0.5000\t  0.0000\n"));
   EXPECT_EQ(back.format, "OpenPIV");
   EXPECT_EQ(back.field.displacement_px[0], (Vec2d{1.25, -0.5}));
+}
+
+// Older versions write a mask alone, and mark invalid vectors by it.
+TEST_F(VectorFiles, MaskOfOpenPivWithoutFlagsMarksInvalidVectors) {
+  VectorFile const back = read_vectors(file("o.txt", "# x\ty\tu\tv\tmask\n16\t16\t1\t2\t0\n32\t16\t1\t2\t1\n"));
+  EXPECT_EQ(back.format, "OpenPIV");
+  EXPECT_EQ(back.field.status, (std::vector{VectorStatus::valid, VectorStatus::invalid}));
 }
 
 // PIVlab writes column by column, with CR LF; with blanks as separator the header's names hold blanks themselves.
@@ -366,6 +374,34 @@ TEST_F(VectorFiles, ValidityIsReadByItsName) {
   EXPECT_TRUE(chc.notes.empty());
   EXPECT_EQ(read_vectors(file("v.csv", "x,y,u,v,isValid\n1,1,9,2,0\n2,1,2,2,1\n")).field.status,
             (std::vector{masked, valid}));
+}
+
+// Without a column that says so all vectors are valid; `status` has our codes in any table.
+TEST_F(VectorFiles, TablesOfAnyProgramMayHaveOurStatus) {
+  using enum VectorStatus;
+  for (auto const& [u, v] : {std::pair{"u", "v"}, std::pair{"vx", "vy"}, std::pair{"dx", "dy"}}) {
+    std::string const names = std::string("x,y,") + u + ',' + v;
+    VectorFile const plain = read_vectors(file("p.csv", names + "\n1,2,0,0\n2,2,3,4\n"));
+    EXPECT_EQ(plain.format, "named columns");
+    EXPECT_EQ(plain.conventions, VectorConventions{});
+    EXPECT_EQ(plain.field.displacement_px[1], (Vec2d{3, 4})) << names;
+    EXPECT_EQ(plain.field.status, (std::vector{valid, valid})) << names;
+  }
+  EXPECT_EQ(read_vectors(file("s.csv", "x,y,u,v,status\n1,1,1,1,0\n2,1,1,1,1\n3,1,1,1,2\n4,1,1,1,3\n")).field.status,
+            (std::vector{valid, replaced, masked, invalid}));
+}
+
+// A Tecplot file of no known program is read as one of DaVis: zeros are masked, with a warning.
+TEST_F(VectorFiles, OtherTecplotFilesAreReadAsThoseOfDavis) {
+  VectorFile const back = read_vectors(file(
+      "t.dat",
+      "TITLE = \"any\"\nVARIABLES = \"x\" \"y\" \"u\" \"v\"\nZONE I=2, J=1, DATAPACKING=POINT\n1 9 2 3\n2 9 0 0\n"));
+  EXPECT_EQ(back.format, "Tecplot");
+  EXPECT_TRUE(back.conventions.y_up && back.conventions.v_up);
+  EXPECT_EQ(back.conventions.mirror, VectorConventions::Mirror::image);
+  EXPECT_EQ(back.field.status, (std::vector{VectorStatus::valid, VectorStatus::masked}));
+  EXPECT_THAT(back.warnings, testing::ElementsAre(HasSubstr("1 of 2 vectors are exactly zero")));
+  EXPECT_THAT(problem("VARIABLES = x, y, u, v\nZONE I=2, DATAPACKING=BLOCK\n1 2\n1 1\n"), HasSubstr("BLOCK packing"));
 }
 
 TEST_F(VectorFiles, UnusedColumnsAreNamed) {
