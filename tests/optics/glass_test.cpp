@@ -169,5 +169,16 @@ TEST(GlassCatalogue, ANameOfDifferentGlassesIsNoted) {
   EXPECT_NEAR(catalogue.find("X_ONE", 5e-7, "here").index(5e-7), 1.5, 1e-15);
 }
 
+// ONE comes first, but its X is known in the visible alone.
+TEST(GlassCatalogue, PassesOverACatalogueWhoseRangeEndsBeforeTheWavelength) {
+  GlassCatalogue catalogue;
+  catalogue.add("NM X 1\nCD 2.25\nLD 0.4 0.7\n", "ONE", "one.agf");
+  catalogue.add("NM X 1\nCD 2.56\nLD 0.4 2\n", "TWO", "two.agf");
+  EXPECT_EQ(catalogue.match("X", 5e-7, "here").glass->catalogue, "ONE");
+  EXPECT_EQ(catalogue.match("X", 1.5e-6, "here").glass->catalogue, "TWO");
+  EXPECT_EQ(catalogue.match("X", 1.5e-6, "here", {"ONE"}).glass->catalogue, "TWO") << "though the lens lists ONE";
+  EXPECT_THAT(error_of([&] { catalogue.match("X", 3e-6, "here"); }), HasSubstr("not at 3000 nm"));
+}
+
 }  // namespace
 }  // namespace gladstone

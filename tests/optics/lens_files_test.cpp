@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -5,6 +6,7 @@
 #include <cmath>
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "render/base/error.h"
@@ -352,6 +354,12 @@ TEST(LensFiles, CodeVsAsphericTermsGoToJ) {
   Lens const lens = lens_of_case("aspheric_terms.seq");
   EXPECT_NEAR(focal_length_mm(lens), doublet_focal_length(), 1e-10);
   EXPECT_NEAR(sag_of_first_surface(lens, 5), sphere_sag(0.016, 5) + 1e-7 * 625, 1e-15);
+  std::string const letters = "ABCDEFGHJ";  // r^4, r^6, ... r^20
+  for (std::size_t i = 0; i < letters.size(); ++i) {
+    double const power = 4 + 2 * static_cast<double>(i), term = 1e-3 / std::pow(5, power);
+    Lens const one = lens_of_text("one.seq", changed(seq, "STO;", fmt::format("STO; {} {:.17g};", letters[i], term)));
+    EXPECT_NEAR(sag_of_first_surface(one, 5), sphere_sag(0.02, 5) + 1e-3, 1e-15) << letters[i];
+  }
   Lens const high = lens_of_text("high.seq", changed(seq, "STO;", "STO; J 1e-20; A 1e-7;"));
   EXPECT_NEAR(sag_of_first_surface(high, 5), sphere_sag(0.02, 5) + 1e-7 * 625 + 1e-20 * std::pow(5, 20), 1e-15);
   EXPECT_THAT(refusal("cuf.seq", changed(seq, "STO;", "STO; CUF 0.1;")),
@@ -377,6 +385,64 @@ TEST(LensFiles, CodeVsDecentresReturnBendAndReverse) {
   Ray<double> ray = parallel_ray(0);
   ASSERT_EQ(carry(lens, ray), RayStatus::alive);
   EXPECT_LT(length(ray.direction - Vec3d{0, -1, 0}), 1e-15);
+}
+
+// One tilt or decentre alone, ahead of the second face of the singlet: right-handed about x, y and z in a break of
+// Zemax and in TOML, left-handed about x and y in CODE V. Two tilts follow each other about the rotated axes.
+TEST(LensFiles, EachTiltAndDecentreAloneIsTheSameInEveryFormat) {
+  struct Break {
+    char const *of_toml, *of_zmx, *of_seq;
+    Vec3d origin_mm, x, z;
+  };
+  double const s = std::sin(20 * unit::degree), c = std::cos(20 * unit::degree), s10 = std::sin(10 * unit::degree),
+               c10 = std::cos(10 * unit::degree);
+  Vec3d const vertex{0, 0, 6}, x{1, 0, 0}, z{0, 0, 1};
+  for (Break const& one : {Break{"decentre_mm = [1.5, 0]", "PARM 1 1.5", "XDE 1.5", {1.5, 0, 6}, x, z},
+                           Break{"decentre_mm = [0, -1.5]", "PARM 2 -1.5", "YDE -1.5", {0, -1.5, 6}, x, z},
+                           Break{"tilt_deg = [20, 0, 0]", "PARM 3 20", "ADE -20", vertex, x, {0, -s, c}},
+                           Break{"tilt_deg = [0, 20, 0]", "PARM 4 20", "BDE -20", vertex, {c, 0, -s}, {s, 0, c}},
+                           Break{"tilt_deg = [0, 0, 20]", "PARM 5 20", "CDE 20", vertex, {c, s, 0}, z},
+                           Break{"tilt_deg = [10, 20, 0]",
+                                 "PARM 3 10\n  PARM 4 20",
+                                 "ADE -10; BDE -20",
+                                 vertex,
+                                 {c, s10 * s, -c10 * s},
+                                 {s, -s10 * c, c10 * c}}}) {
+    std::string const block = "SURF 2\n  TYPE COORDBRK\n  " + std::string(one.of_zmx) + "\n  DISZ 0\nSURF 3\n";
+    for (Lens const& lens :
+         {lens_of_text("alone.toml",
+                       changed(toml, "thickness_mm = 0.0", "thickness_mm = 0.0\n" + std::string(one.of_toml))),
+          lens_of_text("alone.zmx", changed(changed(zmx, "SURF 3\n", "SURF 4\n"), "SURF 2\n", block)),
+          lens_of_text("alone.seq", changed(seq, "SI 0.0", std::string(one.of_seq) + "\nSI 0.0"))}) {
+      Pose<double> const& pose = lens.poses[1];
+      EXPECT_LT(length(pose.origin - unit::millimetre * one.origin_mm), 1e-15) << lens.prescription.file << one.of_seq;
+      EXPECT_LT(length(pose.x - one.x), 1e-15) << lens.prescription.file << ' ' << one.of_seq;
+      EXPECT_LT(length(pose.z - one.z), 1e-15) << lens.prescription.file << ' ' << one.of_seq;
+    }
+  }
+}
+
+// A flat mirror behind the singlet that a single angle of CODE V turns. ADE 20 turns its normal towards +y and BDE 20
+// towards -x, so that the axial ray is reflected 40 degrees off the axis to the other side; CDE leaves it on the axis.
+TEST(LensFiles, ASingleAngleOfCodeVTurnsAMirror) {
+  double const s = std::sin(40 * unit::degree), c = std::cos(40 * unit::degree);
+  struct Turned {
+    char const* angle;
+    Vec3d reflected;
+  };
+  for (Turned const& one : {Turned{"ADE 20", {0, -s, -c}}, Turned{"ADE -20", {0, s, -c}}, Turned{"BDE 20", {s, 0, -c}},
+                            Turned{"BDE -20", {-s, 0, -c}}, Turned{"CDE 20", {0, 0, -1}}}) {
+    Lens const lens =
+        lens_of_text("turned.seq", changed(seq, "SI 0.0", "S 0 -10 REFL\n  " + std::string(one.angle) + "\nSI 0.0"));
+    Ray<double> ray = parallel_ray(0);
+    ASSERT_EQ(carry(lens, ray), RayStatus::alive) << one.angle;
+    EXPECT_LT(length(ray.direction - one.reflected), 1e-15) << one.angle;
+  }
+  // about the axis CDE turns a rectangle of 4 x 1 mm, right-handed: its long side from +x towards +y
+  Lens const lens = lens_of_text("slit.seq", changed(seq, "CIR 8.0", "REX 2; REY 0.5; CDE 30"));
+  double const along_x = 1.9 * std::cos(30 * unit::degree), along_y = 1.9 * std::sin(30 * unit::degree);
+  EXPECT_EQ(fate(lens, {along_x, along_y}), RayStatus::alive);
+  EXPECT_EQ(fate(lens, {along_x, -along_y}), RayStatus::vignetted);
 }
 
 // ZDE shifts along the axis, and DAR takes that back as well.
@@ -473,6 +539,49 @@ TEST(LensFiles, CodeVsParaxialImageSolveIsObeyed) {
               Contains(AllOf(HasSubstr("tilt.seq:14"), HasSubstr("PIM"))));
 }
 
+// Vignetting factors bend the light of no lens: each command is named where any factor differs from 0, several of them
+// in one warning.
+TEST(LensFiles, VignettingFactorsAreNotUsed) {
+  double const f = focal_length_mm(lens_of_text("plain.zmx", zmx));
+  auto const of_zemax = [](std::string const& lines) {
+    return lens_of_text("factors.zmx", changed(zmx, "PWAV 2", "PWAV 2\n" + lines));
+  };
+  for (std::string const key : {"VDXN", "VDYN", "VCXN", "VCYN", "VANN", "VDXD", "VDYD", "VCXD", "VCYD"}) {
+    Lens const lens = of_zemax(key + " 0 0.2 0 0");
+    EXPECT_EQ(focal_length_mm(lens), f) << key;
+    EXPECT_THAT(lens.warnings,
+                ElementsAre(AllOf(HasSubstr("factors.zmx:11: " + key), HasSubstr("vignetting factors are not used"))));
+    EXPECT_THAT(of_zemax(key + " 0 0 0 0").warnings, IsEmpty()) << key;
+  }
+  EXPECT_THAT(of_zemax("VDXN 0 0.1\nVDYN 0 0.1\nVCXN 0 0.2\nVCYN 0 0.2\nVANN 0 0").warnings,
+              ElementsAre(HasSubstr("factors.zmx:11: VDXN")));
+  for (std::string const key : {"VUX", "VLX", "VUY", "VLY"}) {
+    auto const of_codev = [&](std::string const& factors) {
+      return lens_of_text("factors.seq", changed(seq, "REF 2", "REF 2\n" + key + factors)).warnings;
+    };
+    EXPECT_THAT(of_codev(" 0 0.2"),
+                ElementsAre(AllOf(HasSubstr("factors.seq:7: " + key), HasSubstr("vignetting factors are not used"))));
+    EXPECT_THAT(of_codev(" 0 0"), IsEmpty()) << key;
+  }
+}
+
+// Fields of CODE V that are no angles in the y-z plane.
+TEST(LensFiles, CodeVsOtherFieldsAreNamed) {
+  for (std::string const key : {"XAN", "XOB", "YOB", "XIM", "YIM", "XRI", "YRI"}) {
+    auto const warnings = [&](std::string const& fields) {
+      return lens_of_text("fields.seq", changed(seq, "REF 2", "REF 2\n" + key + fields)).warnings;
+    };
+    EXPECT_THAT(warnings(" 0 3"), ElementsAre(AllOf(HasSubstr("fields.seq:7: " + key), HasSubstr("YAN"))));
+    EXPECT_THAT(warnings(" 0 0"), IsEmpty()) << key;
+  }
+}
+
+TEST(LensFiles, WithoutAnImageTheLastThicknessLeadsToIt) {
+  Lens const lens = lens_of_text("open.seq", changed(seq, "SI 0.0 0.0\n", ""));
+  EXPECT_THAT(lens.warnings, ElementsAre(AllOf(HasSubstr("open.seq:10"), HasSubstr("no image surface SI"))));
+  EXPECT_NEAR(analyse_field(lens, paraxial_lens(lens), 16).image_plane / unit::millimetre, 47, 1e-12);
+}
+
 // Indices are those of the catalogue, at 20 degrees C and 760 mmHg.
 TEST(LensFiles, CodeVsTemperatureAndPressureAreNoted) {
   EXPECT_THAT(lens_of_text("usual.seq", changed(seq, "REF 2", "REF 2\nTEM 20.0\nPRE 760.0")).warnings, IsEmpty());
@@ -530,6 +639,9 @@ TEST(LensFiles, TheDocumentedCodeVCommandsAreObeyed) {
     };
   };
   auto const focal_length = [](Lens const& lens) { return focal_length_mm(lens); };
+  auto const image_mm = [](Lens const& lens) {
+    return analyse_field(lens, paraxial_lens(lens), 16).image_plane / unit::millimetre;
+  };
   double const f = traced_focal_length({0.02, -0.02}, {1, bk7(), 1}, {6});
   std::string const curvatures =
       changed(changed(with("RDM;LEN", "RDM N;LEN"), "S 50.0", "S 0.02"), "S -50.0", "S -0.02");
@@ -556,6 +668,21 @@ TEST(LensFiles, TheDocumentedCodeVCommandsAreObeyed) {
       {"ZOO", with("REF 2", "REF 2\nZOO 3"), warnings_with("ZOO"), 1},
       {"VUX", with("REF 2", "REF 2\nVUX 0.1 0"), warnings_with("VUX: vignetting factors"), 1},
       {"VUX 0", with("REF 2", "REF 2\nVUX 0 0"), warnings_with("VUX"), 0},
+      {"K", with("STO;", "STO; K -0.5;"), [](Lens const& lens) { return sag_of_first_surface(lens, 4); },
+       0.02 * 16 / (1 + std::sqrt(1 - 0.5 * 0.02 * 0.02 * 16))},
+      {"REX HOL, REY HOL", on_stop("REX HOL 2; REY HOL 1"), light_at(1.9, 0.9), 0},
+      {"REX HOL, REY HOL: outside", on_stop("REX HOL 2; REY HOL 1"), light_at(1.9, 1.1), 1},
+      {"STOP 2", changed(with("  STO; CIR 8.0\n", ""), "GO\n", "STOP 2\nGO\n"),
+       [](Lens const& lens) { return static_cast<double>(lens.stop); }, 1},
+      {"1.5168:64.2", with("NBK7_SCHOTT", "1.5168:64.2"), focal_length,
+       traced_focal_length({0.02, -0.02}, {1, 1.5168, 1}, {6})},
+      {"1.5:0", with("NBK7_SCHOTT", "1.5:0"), focal_length, traced_focal_length({0.02, -0.02}, {1, 1.5, 1}, {6})},
+      {"SO in water", with("SO 0.0 1e13", "SO 0.0 1e13 1.333:0"), focal_length,
+       traced_focal_length({0.02, -0.02}, {1.333, bk7(), 1}, {6})},
+      {"WL without REF: the middle one", with("WL 486.1 587.5618\nREF 2\n", "WL 656.3 546.1 486.1\n"),
+       [](Lens const& lens) { return lens.prescription.primary_wavelength / unit::nanometre; }, 546.1},
+      {"NAO of an object at infinity: the stop's semi-diameter", with("EPD 6.0", "NAO 0.1"), pupil_mm, 16},
+      {"SI: the defocus", with("SI 0.0 0.0", "SI 0.0 -0.5"), image_mm, 46.5},
       {"DIM C", with("DIM M", "DIM C"), focal_length, 10 * f},
       {"DIM I", with("DIM M", "DIM I"), focal_length, 25.4 * f},
   };
@@ -570,10 +697,28 @@ TEST(LensFiles, TheDocumentedZemaxCommandsAreObeyed) {
   std::string const aspheric = with("  STOP\n  TYPE STANDARD\n",
                                     "  STOP\n  TYPE EVENASPH\n  CONI -0.5\n  PARM 1 0\n  PARM 2 1e-4\n  PARM 3 2e-6\n");
   double const r = 4, conic_sag = 0.02 * r * r / (1 + std::sqrt(1 - 0.5 * 0.02 * 0.02 * r * r));
+  std::string metres = with("UNIT MM", "UNIT METER");
+  for (auto const& [from, to] : {std::pair{"ENPD 6.0", "ENPD 0.006"},
+                                 {"CURV 0.02", "CURV 20"},
+                                 {"DISZ 6.0", "DISZ 0.006"},
+                                 {"DIAM 8.0", "DIAM 0.008"},
+                                 {"CURV -0.02", "CURV -20"},
+                                 {"DISZ 47.0", "DISZ 0.047"},
+                                 {"DIAM 8.0", "DIAM 0.008"}}) {
+    metres = changed(metres, from, to);
+  }
   std::vector<CommandRow> const rows{
       {"EVENASPH", aspheric, [r](Lens const& lens) { return sag_of_first_surface(lens, r); },
        conic_sag + 1e-4 * std::pow(r, 4) + 2e-6 * std::pow(r, 6)},
+      {"STANDARD with CONI", with("  CURV 0.02", "  CONI -0.5\n  CURV 0.02"),
+       [r](Lens const& lens) { return sag_of_first_surface(lens, r); }, conic_sag},
       {"UNIT IN", with("UNIT MM", "UNIT IN"), focal_length, 25.4 * f},
+      {"UNIT METER", metres, focal_length, f},
+      {"GLAS with flag 1: a model glass, whatever its name", with("GLAS N-BK7 0 0 1.5 40", "GLAS OTHER 1 0 1.6 0"),
+       focal_length, traced_focal_length({0.02, -0.02}, {1, 1.6, 1}, {6})},
+      {"DISZ of the last surface: the image", zmx,
+       [](Lens const& lens) { return analyse_field(lens, paraxial_lens(lens), 16).image_plane / unit::millimetre; },
+       47},
       {"GLAS MIRROR", changed(with("DISZ 6.0", "DISZ -6.0"), "GLAS N-BK7 0 0 1.5 40", "GLAS MIRROR 0 0"),
        [](Lens const& lens) { return std::abs(focal_length_mm(lens)); }, 25},
       {"FLOA: the stop's semi-diameter", with("ENPD 6.0", "FLOA"),
@@ -641,6 +786,35 @@ TEST(LensFiles, WrappedLinesOfACatalogueAreJoined) {
   Lens const lens = lens_of_case("glass_of_wrapped_lines.zmx", wrapped);
   EXPECT_EQ(focal_length_mm(lens), focal_length_mm(lens_of_case("glass_of_wrapped_lines.zmx", whole)));
   EXPECT_THAT(lens.warnings, IsEmpty());
+}
+
+// Each kind of line that may go on in a line of numbers alone.
+TEST(LensFiles, EveryLineOfNumbersOfACatalogueMayBeWrapped) {
+  GlassCatalogue glasses;
+  glasses.add(
+      "NM X 1 0 1.5 60\nED 7 0\n0 0\nCD 2\n0.25 0\nTD 0\n0 0\nOD 1\n2\nLD 0.3\n2\nIT 0.4 0.9\n10\nIT 0.5\n0.99 10\n",
+      "OWN", "own.agf");
+  Glass const& glass = glasses.find("X", 1e-6, "");
+  EXPECT_NEAR(glass.index(1e-6), 1.5, 1e-15) << "n^2 = 2 + 0.25 lambda^2 at 1 um";
+  EXPECT_NEAR(glass.shortest, 0.3e-6, 1e-20);
+  EXPECT_NEAR(glass.longest, 2e-6, 1e-20);
+  ASSERT_EQ(glass.transmission.size(), 2u);
+  EXPECT_NEAR(glass.transmission[0].thickness, 10e-3, 1e-15);
+  EXPECT_EQ(glass.transmission[1].transmission, 0.99);
+  EXPECT_THAT(glasses.warnings(), IsEmpty());
+}
+
+// A glass without coefficients, one without a range, one of an unknown formula and one of an index that no glass has.
+TEST(LensFiles, GlassesThatCannotBeUsedAreLeftOutTogether) {
+  GlassCatalogue glasses;
+  glasses.add(
+      "NM GOOD 1 0 1.5 60\nCD 2.25\nLD 0.3 2\nNM EMPTY 1 0 1.5 60\nLD 0.3 2\nNM NORANGE 1 0 1.5 60\nCD 2.25\n"
+      "NM NEWER 14 0 1.5 60\nCD 2.25\nLD 0.3 2\nNM DENSE 1 0 1.5 60\nCD 90\nLD 0.3 2\n",
+      "OWN", "own.agf");
+  EXPECT_EQ(glasses.glasses().size(), 1u);
+  EXPECT_THAT(glasses.warnings(), ElementsAre(AllOf(HasSubstr("own.agf:4: 4 of 5 glasses"), HasSubstr("EMPTY (line 4"),
+                                                    HasSubstr("NORANGE (line 6"), HasSubstr("NEWER (line 8"),
+                                                    HasSubstr("DENSE (line 11"))));
 }
 
 // Of n^2 = 2.25 the catalogue prints nd = 1.6: warned of where it is used; 1 and 0 are no values, and lines IT that are

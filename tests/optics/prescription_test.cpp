@@ -3,8 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
+#include <variant>
 
+#include "render/base/units.h"
 #include "render/optics/paraxial.h"
 #include "tests/optics/prescription_texts.h"
 
@@ -50,6 +53,91 @@ TEST(Prescription, OneLensInThreeFormatsIsOneLens) {
   EXPECT_NEAR(paraxial_of("one.seq", seq).entrance.diameter * 1e3, 6, 1e-13);
   EXPECT_EQ(read_prescription(file_of("one.seq", seq)).title, "a singlet; with a semicolon");
   EXPECT_NEAR(read_prescription(file_of("one.zmx", zmx)).primary_wavelength, 587.5618e-9, 1e-16);
+}
+
+// Every key of the documented table of our format, in SI: an aspheric term a r^4 of 1e-6 mm^-3 is 1e3 m^-3.
+TEST(Prescription, EveryKeyOfTomlIsRead) {
+  using Kind = PrescribedAperture::Kind;
+  Prescription const all = read_prescription(file_of("all_keys.toml", R"(schema = 1
+title = "all keys"
+source = "a test"
+primary_wavelength_nm = 532.0
+object_distance_mm = 400.0
+object_na = 0.01
+field_deg = [0.0, 3.0]
+[[surface]]
+curvature_per_mm = 0.02
+conic = -0.5
+asphere_mm = [0.0, 1e-6]
+thickness_mm = 6.0
+index = 1.5
+semi_diameter_mm = 8.0
+obscured_mm = 1.0
+stop = true
+[[surface]]
+shape = "cylinder"
+radius_mm = -50.0
+decentre_mm = [1.0, -2.0]
+tilt_deg = [3.0, 4.0, 5.0]
+nd = 1.62
+vd = 60.3
+thickness_mm = 2.0
+[[surface]]
+glass = "mirror"
+thickness_mm = -3.0
+[[surface]]
+)"));
+  EXPECT_EQ(all.title, "all keys");
+  EXPECT_EQ(all.source, "a test");
+  EXPECT_NEAR(all.primary_wavelength, 532e-9, 1e-20);
+  EXPECT_NEAR(all.object_distance, 0.4, 1e-15);
+  EXPECT_EQ(all.aperture.kind, Kind::object_na);
+  EXPECT_EQ(all.aperture.value, 0.01);
+  ASSERT_EQ(all.field_angles.size(), 2u);
+  EXPECT_NEAR(all.field_angles[1], 3 * unit::degree, 1e-15);
+  ASSERT_EQ(all.surfaces.size(), 4u);
+  PrescribedSurface const &first = all.surfaces[0], &second = all.surfaces[1], &third = all.surfaces[2];
+  EXPECT_NEAR(first.curvature, 20, 1e-12);
+  EXPECT_EQ(first.conic, -0.5);
+  ASSERT_EQ(first.asphere.size(), 2u);
+  EXPECT_EQ(first.asphere[0], 0);
+  EXPECT_NEAR(first.asphere[1], 1e3, 1e-10);
+  EXPECT_NEAR(first.thickness, 6e-3, 1e-17);
+  EXPECT_EQ(std::get<PrescribedMedium::Index>(first.after.is).n, 1.5);
+  EXPECT_NEAR(first.semi_diameter, 8e-3, 1e-17);
+  EXPECT_NEAR(first.obscured, 1e-3, 1e-17);
+  EXPECT_TRUE(first.stop && !second.stop);
+  EXPECT_EQ(second.shape, PrescribedSurface::Shape::cylinder);
+  EXPECT_NEAR(second.curvature, -20, 1e-12);
+  ASSERT_EQ(second.before.size(), 1u);
+  EXPECT_LT(length(second.before[0].decentre - Vec2d{1e-3, -2e-3}), 1e-17);
+  EXPECT_LT(length(second.before[0].tilt - unit::degree * Vec3d{3, 4, 5}), 1e-15);
+  EXPECT_EQ(std::get<PrescribedMedium::Described>(second.after.is).nd, 1.62);
+  EXPECT_EQ(std::get<PrescribedMedium::Described>(second.after.is).vd, 60.3);
+  EXPECT_EQ(third.curvature, 0) << "a plane, unless a radius is given";
+  EXPECT_TRUE(third.after.is_mirror());
+  EXPECT_NEAR(third.thickness, -3e-3, 1e-17);
+  EXPECT_TRUE(all.surfaces[3].after.is_air());
+  EXPECT_TRUE(std::isinf(all.surfaces[3].semi_diameter));
+
+  Prescription const few = read_prescription(file_of("few_keys.toml", toml));
+  EXPECT_TRUE(std::isinf(few.object_distance));
+  EXPECT_EQ(few.primary_wavelength, 0) << "the d line, unless a setup has another";
+  EXPECT_EQ(few.aperture.kind, Kind::f_number);
+  EXPECT_EQ(std::get<PrescribedMedium::Named>(few.surfaces[0].after.is).glass, "N-BK7");
+  Prescription const pupil =
+      read_prescription(file_of("pupil.toml", changed(toml, "f_number = 8.0", "entrance_pupil_mm = 6.0")));
+  EXPECT_EQ(pupil.aperture.kind, Kind::entrance_pupil);
+  EXPECT_NEAR(pupil.aperture.value, 6e-3, 1e-17);
+  std::string const own =
+      changed(changed(toml, "f_number = 8.0\n", ""), "stop = true", "stop = true\nsemi_diameter_mm = 3");
+  EXPECT_NEAR(paraxial_of("own.toml", own).entrance.diameter, 6e-3, 1e-15) << "the stop's own semi-diameter";
+  EXPECT_THAT(refusal("two.toml", changed(toml, "f_number", "entrance_pupil_mm = 6.0\nf_number")),
+              HasSubstr("another key that sets the stop"));
+  EXPECT_THAT(refusal("glasses.toml", changed(toml, "glass = \"N-BK7\"", "glass = \"N-BK7\"\nindex = 1.5")),
+              HasSubstr("stands beside index"));
+  EXPECT_THAT(refusal("radii.toml", changed(toml, "radius_mm = 50.0", "radius_mm = 50.0\ncurvature_per_mm = 0.02")),
+              HasSubstr("stands beside curvature_per_mm"));
 }
 
 // Design programs write UTF-16, UTF-8 with a mark or ISO-8859-1, with any line ends: the same lens.
