@@ -127,6 +127,7 @@ TEST_F(Ensembles, OfOnePairRepeatedAreThatPair) {
       gladstone({"correlate", "--ensemble", a, b, a, b, a, b, "--config", "config.toml", "-o", "three.h5"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   Hdf5Reader const one(in("one.h5").string()), three(in("three.h5").string());
+  EXPECT_EQ(three.attribute("reference_1_sha256"), one.attribute("reference_sha256"));
   EXPECT_EQ(three.attribute("flow_3_sha256"), one.attribute("flow_sha256"));
   auto const u = one.read("/u_raw_px"), mean = three.read("/u_raw_px");
   ASSERT_EQ(u.size(), mean.size());

@@ -391,6 +391,15 @@ TEST_F(Piv, ExtractsViewsOfAPlenopticPicture) {
   EXPECT_EQ(names("case/views"), (std::vector<std::string>{"flow", "flow_refocused.tif", "reference",
                                                            "reference_refocused.tif", "views.json"}));
   EXPECT_EQ(names("case/views/flow").size(), 21u);
+  auto const written = nlohmann::json::parse(read("case/views/views.json"));
+  EXPECT_EQ(written["lenslet_pictures_px"], json["lenslet_pictures_px"]);
+  EXPECT_NEAR(written["refocused_z_mm"].get<double>(), 3, 1e-12);
+  EXPECT_GT(std::abs(written["parallax_px_per_mm"].get<double>()), 0);
+  for (auto const& view : written["views"]) {
+    EXPECT_TRUE(fs::exists(in("case/views/flow/" + view["file"].get<std::string>()))) << view;
+    ASSERT_EQ(view["stop_mm"].size(), 2u);
+    EXPECT_LT(std::hypot(view["stop_mm"][0].get<double>(), view["stop_mm"][1].get<double>()), 105.0 / 4 / 2) << view;
+  }
   // 128 px of 5 um show 9 lenslets of 65 um
   EXPECT_EQ(read_image(in("case/views/flow/view_02_02.tif").string()).columns(), 9);
   EXPECT_THAT(succeed({"views", "case", "--views", "3", "-o", "three"}), testing::HasSubstr("9 views of 9 x 9 px"));

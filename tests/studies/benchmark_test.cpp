@@ -1,8 +1,13 @@
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
 #include <numeric>
 #include <set>
+#include <string>
+#include <vector>
 
 #include "studies/benchmark/benchmark_run.h"
 
@@ -58,6 +63,52 @@ TEST(BenchmarkCases, AreOneListOfSeedsOfTheirOwn) {
   for (char const* name : {"uniform", "shear", "vortex", "sine_32", noise_case, gain_case, "loss_40", "dots_1.5",
                            "density_5", "light", "regular", "turbulence"})
     EXPECT_TRUE(names.contains(name)) << name;
+}
+
+// The documented columns, keys and figures (docs/file-formats.md), of one estimator on both cases of the curve.
+TEST(BenchmarkResults, HaveTheDocumentedColumnsKeysAndFigures) {
+  BenchmarkResult result;
+  for (char const* const name : {noise_case, gain_case}) {
+    BenchmarkRow row;
+    row.estimator = "default";
+    row.of_case = name;
+    row.score.errors.rms_without_gross_px = 0.05;
+    row.score.gain = 0.9;
+    result.rows.push_back(row);
+  }
+  UncertaintyRow uncertainty;
+  uncertainty.method = "peak_ratio";
+  uncertainty.of_case = noise_case;
+  UncertaintyBin bin;
+  bin.rms_sigma_px = bin.rms_error_px = 0.05;
+  uncertainty.bins = {bin};
+  result.uncertainties = {uncertainty};
+  result.coverage = {CoverageRow{}};
+
+  std::string const csv = benchmark_csv(result);
+  EXPECT_EQ(csv.substr(0, csv.find('\n')),
+            "estimator,case,vectors,count,valid_fraction,gross,bias_u_px,bias_v_px,rms_px,rms_without_gross_px,p95_px,"
+            "gain,seconds");
+  auto const json = nlohmann::json::parse(benchmark_json(result));
+  for (char const* const key : {"cases", "scores", "uncertainty", "coverage", "conventions", "likely_mistakes"})
+    EXPECT_TRUE(json.contains(key)) << key;
+  for (char const* const key : {"method", "case", "window_truth", "deformed_window_truth", "point_truth", "bins"})
+    EXPECT_TRUE(json["uncertainty"][0].contains(key)) << key;
+  for (std::string const truth : {"window", "deformed_window", "total"}) {
+    for (std::string const measure : {"coverage_1_", "rms_ratio_"}) {
+      auto const& mean = json["coverage"][0][measure + truth];
+      EXPECT_TRUE(mean.contains("mean") && mean.contains("standard_error")) << measure << truth;
+    }
+  }
+
+  std::filesystem::path const folder =
+      std::filesystem::path(testing::TempDir()) / ("gladstone_benchmark_results_" + std::to_string(::getpid()));
+  std::filesystem::create_directories(folder);
+  EXPECT_EQ(draw_benchmark(result, folder.string()),
+            (std::vector<std::string>{"noise_against_gain.png", "error_against_uncertainty.png"}));
+  for (char const* const figure : {"noise_against_gain.png", "error_against_uncertainty.png"})
+    EXPECT_TRUE(std::filesystem::exists(folder / figure)) << figure;
+  std::filesystem::remove_all(folder);
 }
 
 // Lamb & Oseen: the swirl is greatest, 5 px, at 1.1209 radii (2 s = exp(s) - 1 at s = 1.2564), and falls off as 1/r.

@@ -1,0 +1,215 @@
+// What the tables of docs/file-formats.md name is in the files that are written, and what is in these files they name.
+#include <set>
+#include <sstream>
+
+#include "tests/end_to_end/support/workplace.h"
+#include "tests/support/documented_tables.h"
+
+namespace gladstone::end_to_end {
+namespace {
+
+using test::documented_table;
+using test::documented_tables;
+using test::names_of;
+using test::names_of_first_column;
+
+/// A JSON object has this path, "spot.model".
+bool has_path(nlohmann::json const& object, std::string const& path) {
+  std::istringstream steps(path);
+  nlohmann::json const* at = &object;
+  for (std::string step; std::getline(steps, step, '.');) {
+    if (!at->is_object() || !at->contains(step)) return false;
+    at = &(*at)[step];
+  }
+  return true;
+}
+
+class DocumentedFiles : public Workplace {
+ protected:
+  /// A file's numbers are the documented datasets and no others, with the attributes that every file carries.
+  void expect_datasets(std::string const& name, std::set<std::string> const& documented) const {
+    Hdf5Reader const file(in(name).string());
+    for (std::string const& dataset : documented) {
+      ASSERT_TRUE(file.has(dataset)) << name << " lacks " << dataset;
+      for (char const* attribute : {"units", "description", "axes"})
+        EXPECT_NE(file.attribute_of(dataset, attribute), "") << name << dataset << attribute;
+    }
+    for (std::string const& dataset : file.number_datasets())
+      EXPECT_TRUE(documented.contains(dataset)) << name << ": " << dataset << " is not in docs/file-formats.md";
+    for (char const* attribute :
+         {"filetype", "version", "software_version", "git_sha1", "date_and_time", "setup", "seed", "device"})
+      EXPECT_NE(file.attribute(attribute), "") << name << attribute;
+  }
+
+  /// A summary has the documented keys, but for some, and no others.
+  void expect_summary(std::string const& name, std::set<std::string> const& absent) const {
+    auto const summary = nlohmann::json::parse(read(name));
+    std::set<std::string> known;
+    for (std::string const& key : names_of_first_column(documented_table("summary.json", "key"))) {
+      EXPECT_EQ(has_path(summary, key), !absent.contains(key)) << name << ": " << key;
+      known.insert(key.substr(0, key.find('.')));
+    }
+    for (auto const& item : summary.items())
+      EXPECT_TRUE(known.contains(item.key())) << name << ": " << item.key() << " is not in docs/file-formats.md";
+  }
+};
+
+TEST_F(DocumentedFiles, TablesAreReadRowByRow) {
+  EXPECT_EQ(names_of("`/pinhole/camera_matrix`, `distortion`, or `/dots/plane`"),
+            (std::vector<std::string>{"/pinhole/camera_matrix", "/pinhole/distortion", "/dots/plane"}));
+  EXPECT_EQ(documented_tables("truth.h5", "dataset").size(), 2u) << "of dots, of particles";
+  EXPECT_GT(names_of_first_column(documented_table("summary.json", "key")).size(), 20u);
+}
+
+TEST_F(DocumentedFiles, OfACaseHoldWhatTheirTablesName) {
+  write("setup.toml", with(small_setup, "rays_per_dot = 32", "rays_per_dot = \"auto\""));
+  render("case");
+  expect_datasets("case/truth.h5", names_of_first_column(documented_table("truth.h5", "dataset")));
+  Hdf5Reader const truth(in("case/truth.h5").string());
+  EXPECT_EQ(truth.attribute("method"), "focused_dots");
+  expect_summary("case/summary.json", {"particles"});
+  auto const summary = nlohmann::json::parse(read("case/summary.json"));
+  for (char const* hash : {"reference_sha256", "flow_sha256"}) EXPECT_EQ(truth.attribute(hash), summary[hash]);
+  EXPECT_TRUE(nlohmann::json::parse(truth.attribute("inputs_sha256")).is_object());
+
+  succeed({"correlate", "case"});
+  succeed({"correlate", "case", "-o", "v.csv"});
+  std::string columns;
+  std::set<std::string> datasets{"/failed_test"};
+  for (auto const& cells : documented_table("vectors.h5, vectors.csv", "column")) {
+    for (std::string const& name : names_of(cells[0])) {
+      datasets.insert('/' + name);
+      columns += (columns.empty() ? "" : ",") + name;
+    }
+  }
+  expect_datasets("case/vectors.h5", datasets);
+  std::string const text = read("v.csv");
+  EXPECT_EQ(text.substr(0, text.find('\n')), columns);
+  Hdf5Reader const vectors(in("case/vectors.h5").string());
+  for (char const* hash : {"reference_sha256", "flow_sha256"}) EXPECT_EQ(vectors.attribute(hash), summary[hash]);
+  for (char const* attribute : {"grid_columns", "grid_rows", "verdict"}) EXPECT_NE(vectors.attribute(attribute), "");
+
+  succeed({"compare", "case", "--no-figures"});
+  Hdf5Reader const comparison(in("case/comparison.h5").string());
+  for (char const* dataset : {"eq9_px", "chief_px", "eq9_cone_px", "thin_lens_px", "ray_truth_px", "window_truth_px",
+                              "deformed_window_truth_px", "noise_free_px", "counts"})
+    EXPECT_TRUE(comparison.has(std::string("/vectors/") + dataset)) << dataset;
+  EXPECT_EQ(comparison.attribute("filetype"), "gladstone comparison");
+  for (char const* attribute : {"errors_sha256", "made_from"}) EXPECT_NE(comparison.attribute(attribute), "");
+}
+
+TEST_F(DocumentedFiles, OfACaseOfPivHoldWhatTheirTablesName) {
+  write("setup.toml", R"(experiment = "piv"
+[camera]
+pixels = [64, 64]
+pixel_pitch_um = 10.0
+[lens]
+f_number = 22.0
+[geometry]
+z_a_mm = 750.0
+[particles]
+number = 200
+volume_mm = [6.0, 6.0, 1.5]
+[laser]
+thickness_mm = 1.0
+[flow]
+velocity_m_s = [14.0, 0.0, 0.0]
+dt_us = 10.0
+)");
+  render("case");
+  auto const tables = documented_tables("truth.h5", "dataset");
+  std::set<std::string> documented = names_of_first_column(tables.at(1));
+  documented.insert("/rays/status");  // of the first table, where it belongs to no dot
+  expect_datasets("case/truth.h5", documented);
+  expect_summary("case/summary.json", {});
+  auto const particles = nlohmann::json::parse(read("case/summary.json"))["particles"];
+  for (char const* key : {"seeded", "not_traced", "lit", "in_view", "per_pixel", "paired_fraction", "photons.least",
+                          "photons.median", "photons.most", "electrons_per_photon", "path.steps", "path.error_px",
+                          "path.lag_error_px", "scattering_table_error"})
+    EXPECT_TRUE(has_path(particles, key)) << key;
+}
+
+TEST_F(DocumentedFiles, OfACalibrationHoldWhatTheirTablesName) {
+  write("setup.toml", R"(experiment = "calibration"
+[camera]
+pixels = [320, 240]
+pixel_pitch_um = 20.0
+[lens]
+focal_length_mm = 24.0
+f_number = 11.0
+[geometry]
+z_a_mm = 300.0
+[calibration]
+planes_mm = [-20.0, 0.0, 20.0]
+spacing_mm = 5.0
+dot_diameter_mm = 1.5
+extent_mm = [60.0, 45.0]
+[render]
+rays_per_dot = 256
+)");
+  render("case");
+  expect_datasets("case/truth.h5",
+                  names_of_first_column(documented_table("plane_000.tif and truth.h5 of a calibration", "dataset")));
+  succeed({"calibrate", "case", "--quiet", "--no-figures"});
+  expect_datasets("case/calibration.h5", names_of_first_column(documented_table("calibration.h5", "dataset")));
+  auto const planes = nlohmann::json::parse(read("case/summary.json"))["planes"];
+  ASSERT_EQ(planes.size(), 3u);
+  Hdf5Reader const calibration(in("case/calibration.h5").string());
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (char const* key : {"file", "z_mm", "dots", "dots_unseen", "saturated", "magnification", "sha256",
+                            "rays_planned", "place_error_px.rms", "place_error_px.largest", "place_error_px.dots"})
+      EXPECT_TRUE(has_path(planes[i], key)) << key;
+    EXPECT_EQ(calibration.attribute("plane_00" + std::to_string(i) + "_sha256"), planes[i]["sha256"]);
+  }
+}
+
+// Foreign vectors that are right: what errors.json says of their numbers and conventions.
+TEST_F(DocumentedFiles, OfForeignVectorsSayHowTheyWereRead) {
+  render("case");
+  succeed({"correlate", "case", "-o", "v.csv"});
+  std::istringstream ours(read("v.csv"));
+  std::string text = "x,y,u,v\n", line;
+  std::getline(ours, line);
+  while (std::getline(ours, line)) {
+    std::size_t end = 0;
+    for (int i = 0; i < 4; ++i) end = line.find(',', end + 1);
+    text += line.substr(0, end) + '\n';
+  }
+  write("other.csv", text);
+  auto const errors = json_of({"compare", "case", "--no-figures", "--vectors", "other.csv"});
+  for (char const* key :
+       {"total", "left_out_place_not_finite", "left_out_outside_image", "left_out_displacement_not_finite",
+        "left_out_displacement_beyond_image", "left_out_fewer_than_three_dots", "conventions", "fit.conventions",
+        "fit.rms_px", "fit.verdict", "fit.likely_mistake", "fit.ambiguous", "fit.signal_px", "fit.slope",
+        "fit.offset_px", "fit.rms_without_offset_px", "fit.tried"})
+    EXPECT_TRUE(has_path(errors["vectors"], key)) << key;
+  EXPECT_EQ(errors["made_from"]["frames"], "unverified");
+}
+
+// Each key of [correlate] has the default that its table says.
+TEST_F(DocumentedFiles, OfVectorsHaveTheDocumentedDefaults) {
+  render("case", {"--set", "camera.pixels=[128, 128]"});
+  write("plain.toml", "[correlate]\n");
+  succeed({"correlate", "case/reference.tif", "case/flow.tif", "--config", "plain.toml", "-o", "v.h5"});
+  std::string const settings = Hdf5Reader(in("v.h5").string()).attribute("setup");
+  auto const value_of = [&](std::string const& key) {
+    auto const at = settings.find('\n' + key + " = ");
+    EXPECT_NE(at, std::string::npos) << key << " in " << settings;
+    if (at == std::string::npos) return std::string();
+    auto const from = at + key.size() + 4;
+    return settings.substr(from, settings.find('\n', from) - from);
+  };
+  std::size_t keys = 0;
+  for (auto const& cells : documented_table("vectors.h5, vectors.csv", "key")) {
+    auto const names = names_of(cells[0]);
+    auto const defaults = nlohmann::json::parse(names.size() > 1 ? '[' + cells[1] + ']' : cells[1]);
+    for (std::size_t i = 0; i < names.size(); ++i, ++keys) {
+      auto const documented = names.size() > 1 ? defaults[i] : defaults;
+      EXPECT_EQ(nlohmann::json::parse(value_of(names[i]), nullptr, false), documented) << names[i];
+    }
+  }
+  EXPECT_GT(keys, 15u);
+}
+
+}  // namespace
+}  // namespace gladstone::end_to_end
