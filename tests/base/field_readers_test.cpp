@@ -1110,6 +1110,18 @@ TEST_F(VtiFiles, LegacyFilesHaveEveryTypeOfNumber) {
     expect_read(type, bytes<std::int64_t>(values, true));
 }
 
+// VTK writes indices, vtkIdType, with 4 bytes (vtkDataWriter) though they have 8 in memory. An array of them does not
+// shift the field behind it.
+TEST_F(VtiFiles, LegacyIndicesHaveFourBytes) {
+  auto const values = numbered(4, 3, 2);
+  std::string const path = in_folder("indices.vtk");
+  std::ofstream(path, std::ios::binary) << legacy_image(
+      "BINARY", "POINT_DATA 24\nFIELD FieldData 2\nvtkOriginalPointIds 1 24 vtkIdType\n" +
+                    bytes<std::int32_t>(values, true) + "\nrho 1 24 float\n" + bytes<float>(values, true) + '\n');
+  EXPECT_EQ(read_all(*open_field(path, "rho")), values);
+  EXPECT_EQ(read_all(*open_field(path, "vtkOriginalPointIds")), values);
+}
+
 // A velocity as VECTORS and as an array of three components in a FIELD, and data of 3 x 2 x 1 cells at their centres.
 TEST_F(VtiFiles, LegacyFilesHaveVelocitiesAndCells) {
   std::vector<double> velocity;
