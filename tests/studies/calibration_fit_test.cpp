@@ -107,5 +107,37 @@ TEST(CalibrationFit, WarnsOfAFocalLengthThatIsNotTheLenss) {
   EXPECT_THAT(warnings(1), testing::IsEmpty());
 }
 
+/// A plate whose first plane is turned in itself before its picture is taken.
+PlateDots dots_of_turned_plane(double angle) {
+  PlateDots dots = dots_of_plate({});
+  double const s = std::sin(angle), c = std::cos(angle);
+  for (std::size_t k = 0; k < dots.pixel.size(); ++k) {
+    if (dots.plane_of[k] != 0) continue;
+    Vec2d const from_middle = dots.pixel[k] - expected_middle;
+    dots.pixel[k] =
+        expected_middle + Vec2d{c * from_middle.x - s * from_middle.y, s * from_middle.x + c * from_middle.y};
+  }
+  return dots;
+}
+
+// A camera turns with all planes, by a third of the angle a: 2/3 a is left in the turned plane, 1/3 a in the others.
+// The dots of a plane of 13 x 9 are sqrt(14 + 6.67) spacings of 21.7 px from its middle, rms, so that the residual is
+// 98 px a sqrt(2/9) / sqrt(2) per component: 1.1 px for 2 degrees, 0.11 px for 0.2, 0.01 px for 0.02. Within a plane
+// dots scatter by 0.01 px at least: 0.05 px is warned of, and 0.5 px refused.
+TEST(CalibrationFit, RefusesResidualsThatTheScatterWithinPlanesDoesNotExplain) {
+  double const degree = pi / 180;
+  try {
+    fitted(dots_of_turned_plane(2 * degree), MiddleBy::whole_grid);
+    FAIL() << "must be refused";
+  } catch (DataError const& error) {
+    EXPECT_THAT(error.what(), testing::AllOf(testing::StartsWith("plane0.tif: the camera misses the dots by 1.1"),
+                                             testing::HasSubstr("most on Z = -20 mm")));
+  }
+  EXPECT_THAT(fitted(dots_of_turned_plane(0.2 * degree), MiddleBy::whole_grid).warnings,
+              testing::ElementsAre(testing::AllOf(testing::HasSubstr("the camera misses the dots by 0.11"),
+                                                  testing::HasSubstr("most on Z = -20 mm"))));
+  EXPECT_THAT(fitted(dots_of_turned_plane(0.02 * degree), MiddleBy::whole_grid).warnings, testing::IsEmpty());
+}
+
 }  // namespace
 }  // namespace gladstone
