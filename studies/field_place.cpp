@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+#include <limits>
+
 #include "render/base/units.h"
 #include "render/medium/field_volume.h"
 #include "render/scene/field_coverage.h"
@@ -11,6 +14,45 @@ namespace gladstone {
 namespace {
 
 nlohmann::json named(std::string const& unit) { return unit.empty() ? nlohmann::json(nullptr) : nlohmann::json(unit); }
+
+constexpr double undefined_length = std::numeric_limits<double>::quiet_NaN();
+
+/// Returns the spacings that the file states, in its unit of length; NaN for the others and for axes of a single node.
+Vec3d stated_spacing(FieldSource const& source) {
+  Vec3d spacing = source.grid().spacing;
+  for (int axis = 0; axis < 3; ++axis) {
+    bool const stated = source.units().unspaced.find("xyz"[axis]) == std::string::npos;
+    if (!stated || source.grid().nodes[static_cast<std::size_t>(axis)] == 1) spacing[axis] = undefined_length;
+  }
+  return spacing;
+}
+
+/// Describes spacings, "spacing 1 x 1.2 x (not stated in the file)".
+std::string spacing_text(FieldSource const& source, Vec3d const& stated) {
+  std::string text;
+  bool any = false;
+  for (int axis = 0; axis < 3; ++axis) {
+    bool const single = source.grid().nodes[static_cast<std::size_t>(axis)] == 1, known = std::isfinite(stated[axis]);
+    any = any || known;
+    text += axis > 0 ? " x " : "";
+    text += known ? fmt::format("{:.6g}", stated[axis]) : single ? "(one node)" : "(not stated in the file)";
+  }
+  return any ? "spacing " + text : "spacing not stated in the file";
+}
+
+/// Returns the distance from the first node to the last along each axis [mm]; NaN where the spacing is undefined.
+Vec3d extent_mm(FieldSource const& source) {
+  FieldUnits const& units = source.units();
+  Vec3d extent{};
+  for (int axis = 0; axis < 3; ++axis) {
+    auto const nodes = source.grid().nodes[static_cast<std::size_t>(axis)];
+    bool const undefined = !units.undefined().empty() && nodes > 1 &&
+                           (units.unspaced.empty() || units.unspaced.find("xyz"[axis]) != std::string::npos);
+    extent[axis] =
+        undefined ? undefined_length : source.grid().spacing[axis] * units.metres() / unit::millimetre * (nodes - 1);
+  }
+  return extent;
+}
 
 /// Returns a setup with its field replaced by this one.
 Setup with_field(std::string const& setup, FieldSource const& source, std::string const& path,
@@ -31,30 +73,30 @@ Setup with_field(std::string const& setup, FieldSource const& source, std::strin
 FieldPlace field_place(FieldSource const& source, std::string const& path, std::string const& dataset,
                        std::string const& axes, std::string const& setup) {
   FieldUnits const& units = source.units();
-  RegularGrid const& grid = source.grid();
-  double const mm = unit::millimetre, length = units.metres();
-  std::string const assumed = units.assumed(), undefined = units.undefined();
+  std::string const undefined = units.undefined(), assumed = undefined.empty() ? units.assumed() : "";
   FieldPlace place;
   place.units = {{"length", named(units.length)},
-                 {"length_m", undefined.empty() ? nlohmann::json(length) : nlohmann::json(nullptr)},
+                 {"length_m", undefined.empty() ? nlohmann::json(units.metres()) : nlohmann::json(nullptr)},
                  {"assumed", named(assumed)},
                  {"unknown", named(undefined)},
                  {"values", named(units.values)}};
-  Vec3d extent{};
-  for (int axis = 0; axis < 3; ++axis) {
-    extent[axis] = grid.spacing[axis] * length / mm * (grid.nodes[static_cast<std::size_t>(axis)] - 1);
-  }
-  place.extent_mm = {extent.x, extent.y, extent.z};
-  place.text = fmt::format("{}, so the field is {:.6g} x {:.6g} x {:.6g} mm wide unless spacing_mm is given; values {}",
-                           assumed.empty() ? "lengths are in " + units.length : assumed, extent.x, extent.y, extent.z,
-                           units.values.empty() ? "name no unit" : "are in " + units.values);
-  if (!undefined.empty()) {
-    place.text = fmt::format("{}, so that spacing_mm must be given; values {}", undefined,
-                             units.values.empty() ? "name no unit" : "are in " + units.values);
+  place.spacing = stated_spacing(source);
+  place.spacing_text = spacing_text(source, place.spacing);
+  place.extent_mm = extent_mm(source);
+  std::string const values = units.values.empty() ? "name no unit" : "are in " + units.values;
+  if (undefined.empty()) {
+    place.text =
+        fmt::format("{}, so the field is {:.6g} x {:.6g} x {:.6g} mm wide unless spacing_mm is given; values {}",
+                    assumed.empty() ? "lengths are in " + units.length : assumed, place.extent_mm.x, place.extent_mm.y,
+                    place.extent_mm.z, values);
+  } else {
+    place.text = fmt::format("{}, so that spacing_mm must be given; values {}", undefined, values);
+    place.warning = undefined + "; give medium.field.spacing_mm";
   }
   if (!assumed.empty()) place.warning = assumed + "; if that is wrong, give medium.field.spacing_mm";
   if (setup.empty()) return place;
 
+  double const mm = unit::millimetre;
   Setup const whole = with_field(setup, source, path, dataset, axes);
   if (whole.medium.field.spacing) place.warning.clear();
   FieldCoverage const seen = field_coverage(file_bounds(whole.medium), whole);

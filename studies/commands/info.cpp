@@ -9,6 +9,7 @@
 #include "render/base/error.h"
 #include "render/base/fields/field_file.h"
 #include "render/base/image_file.h"
+#include "render/base/vec.h"
 #include "studies/commands/arguments.h"
 #include "studies/commands/command.h"
 #include "studies/commands/info_lens.h"
@@ -22,12 +23,33 @@
 namespace gladstone {
 namespace {
 
+nlohmann::json json_of(Vec3d const& values) {
+  return {known_or_null(values.x), known_or_null(values.y), known_or_null(values.z)};
+}
+
+/// Describes the steepest differences, "steepest difference between neighbours 0.02, 0.05, unknown per unit length
+/// along x, y, z".
+std::string steepest_text(Vec3d const& steepest, FieldPlace const& place) {
+  std::string text;
+  bool any = false;
+  for (int axis = 0; axis < 3; ++axis) {
+    any = any || std::isfinite(place.spacing[axis]);
+    text += axis > 0 ? ", " : "";
+    text += std::isfinite(steepest[axis]) ? fmt::format("{:.4g}", steepest[axis]) : "unknown";
+  }
+  return "steepest difference between neighbours " + text + (any ? " per unit length" : "") + " along x, y, z";
+}
+
 int describe_field(std::string const& path, std::string const& dataset, std::string const& axes,
                    std::string const& setup, GlobalOptions const& options) {
   auto const source = open_field(path, dataset, 1, axes);
   RegularGrid const& grid = source->grid();
   FieldStatistics const seen = field_statistics(*source);
   FieldPlace const place = field_place(*source, path, dataset, axes, setup);
+  Vec3d steepest = seen.steepest;  // per unit length, which is unknown along an axis of undefined spacing
+  for (int axis = 0; axis < 3; ++axis) {
+    if (std::isnan(place.spacing[axis]) && std::isnan(place.extent_mm[axis])) steepest[axis] = place.spacing[axis];
+  }
   FieldReading const& reading = source->reading();
   std::vector<std::string> const notes = source->notes();
   for (std::string const& note : notes) spdlog::warn("{}: {}", path, note);
@@ -35,23 +57,20 @@ int describe_field(std::string const& path, std::string const& dataset, std::str
   nlohmann::json const json{
       {"dataset", source->name()},
       {"nodes", {grid.nodes[0], grid.nodes[1], grid.nodes[2]}},
-      {"spacing", {grid.spacing.x, grid.spacing.y, grid.spacing.z}},
+      {"spacing", json_of(place.spacing)},
       {"minimum", seen.minimum},
       {"maximum", seen.maximum},
-      {"steepest_gradient", {seen.steepest.x, seen.steepest.y, seen.steepest.z}},
+      {"steepest_gradient", json_of(steepest)},
       {"axes",
        {{"order", reading.axes}, {"by", reading.by}, {"shape", reading.shape}, {"turned_round", reading.turned_round}}},
       {"notes", notes},
       {"units", place.units},
-      {"extent_mm", place.extent_mm},
+      {"extent_mm", json_of(place.extent_mm)},
       {"coverage", place.coverage}};
-  print_result(
-      options, json_text(json),
-      fmt::format(
-          "{}: {} x {} x {} nodes, spacing {:.6g} x {:.6g} x {:.6g}, values {:.6g} to {:.6g}, steepest difference "
-          "between neighbours {:.4g}, {:.4g}, {:.4g} per unit length along x, y, z; {}; {}",
-          source->name(), grid.nodes[0], grid.nodes[1], grid.nodes[2], grid.spacing.x, grid.spacing.y, grid.spacing.z,
-          seen.minimum, seen.maximum, seen.steepest.x, seen.steepest.y, seen.steepest.z, reading.text(), place.text));
+  print_result(options, json_text(json),
+               fmt::format("{}: {} x {} x {} nodes, {}, values {:.6g} to {:.6g}, {}; {}; {}", source->name(),
+                           grid.nodes[0], grid.nodes[1], grid.nodes[2], place.spacing_text, seen.minimum, seen.maximum,
+                           steepest_text(steepest, place), reading.text(), place.text));
   return ok;
 }
 

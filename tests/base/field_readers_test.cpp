@@ -354,6 +354,8 @@ TEST_F(JhtdbField, CoordinatesThatAreNotUsedAreNamed) {
   auto const partial = open_field(write({density(), axis("xcoor", 4, 0.0, 0.5)}), "");
   EXPECT_THAT(partial->notes(),
               ElementsAre("no coordinates along z, y are found, and nodes there are taken 1 mm apart"));
+  EXPECT_EQ(geographic->units().unspaced, "xyz");
+  EXPECT_EQ(partial->units().unspaced, "yz");
 }
 
 TEST_F(JhtdbField, CoordinatesOfEdgesMakeCells) {
@@ -691,6 +693,10 @@ TEST_F(NrrdField, UnitsAreThoseOfTheHeader) {
     return open_field(write("a.nrrd", header(std::string(grid_432) + lines + rest)), "")->units();
   };
   EXPECT_FALSE(units("").spaced);
+  EXPECT_EQ(units("").unspaced, "xyz");
+  EXPECT_EQ(units("spacings: 1 nan 1\n").unspaced, "y");
+  EXPECT_EQ(units("spacings: 1 1 1\n").unspaced, "");
+  EXPECT_EQ(units("space dimension: 3\nspace directions: (1,0,0) (0,1,0) (0,0,1)\n").unspaced, "");
   EXPECT_EQ(units("spacings: 1 1 1\n").length, "");
   EXPECT_EQ(units("spacings: 1 1 1\nunits: \"m\" \"m\" \"m\"\nsample units: \"kg/m^3\"\n").length, "m");
   EXPECT_EQ(units("spacings: 1 1 1\nsample units: \"kg/m^3\"\n").values, "kg/m^3");

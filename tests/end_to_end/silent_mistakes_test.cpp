@@ -157,6 +157,28 @@ TEST_F(SilentMistakes, InfoReportsWhichAxisIsTakenForWhich) {
               HasSubstr("[16, 20, 24] is read as z, y, x (by the lengths of its coordinates); x runs backwards"));
 }
 
+// A header that gives no spacing along z, and a file without coordinates: 1 is not printed as if it were the file's.
+TEST_F(SilentMistakes, InfoReportsSpacingsThatTheFileDoesNotState) {
+  std::string const partial = std::string(GLADSTONE_DATA_DIR) + "/../tests/cases/fields/n_nan_spacing.nrrd";
+  nlohmann::json json = json_of({"info", "field", partial});
+  for (char const* key : {"spacing", "extent_mm", "steepest_gradient"}) {
+    EXPECT_TRUE(json[key][0].is_number() && json[key][1].is_number()) << key;
+    EXPECT_TRUE(json[key][2].is_null()) << key;
+  }
+  EXPECT_TRUE(json["units"]["assumed"].is_null());
+  EXPECT_THAT(json["warnings"].dump(), AllOf(HasSubstr("give medium.field.spacing_mm"), Not(HasSubstr("taken as mm"))));
+  EXPECT_THAT(succeed({"info", "field", partial}), HasSubstr("spacing 1 x 1.2 x (not stated in the file)"));
+
+  Hdf5Writer file(in("bare.h5").string(), {"test field", 1, "", 0, "cpu"});
+  file.write("density", std::vector<double>{1, 2, 3, 4, 5, 6, 7, 8}, {2, 2, 2}, "kg m-3", "a ramp", "z, y, x");
+  file.close();
+  json = json_of({"info", "field", "bare.h5"});
+  EXPECT_TRUE(json["spacing"][0].is_null());
+  EXPECT_EQ(json["extent_mm"][0], 1.0);
+  EXPECT_THAT(json["units"]["assumed"].get<std::string>(), HasSubstr("taken 1 mm apart"));
+  EXPECT_THAT(succeed({"info", "field", "bare.h5"}), HasSubstr("spacing not stated in the file"));
+}
+
 /// Number of occurrences of a text.
 std::size_t count_of(std::string const& piece, std::string const& text) {
   std::size_t count = 0;

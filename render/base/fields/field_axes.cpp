@@ -75,6 +75,7 @@ StoredAxis axis_from_coordinates(std::vector<double> x, std::string const& path,
                     x[i - 1], i - 1, x[i]));
   }
   axis.step = step;
+  axis.stated = true;
   // Coordinates are stored as float or rounded to decimals: two units in the last place of the largest one.
   double const tolerance = 1e-4 * std::abs(step) + 2.0 * std::numeric_limits<float>::epsilon() * largest;
   bool uniform = true;

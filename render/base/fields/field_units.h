@@ -26,10 +26,11 @@ struct ValueFactor {
 
 /// Units of a field as stated in its file.
 struct FieldUnits {
-  bool spaced = false;  ///< the file has coordinates or spacings; otherwise nodes are one unit apart
-  std::string length;   ///< unit of length as written; empty: not stated
-  std::string values;   ///< unit of the values as written; empty: not stated
-  std::string unknown;  ///< message about an axis whose spacing is undefined in the file; empty: none
+  bool spaced = false;        ///< the file has coordinates or spacings; otherwise nodes are one unit apart
+  std::string length;         ///< unit of length as written; empty: not stated
+  std::string values;         ///< unit of the values as written; empty: not stated
+  std::string unknown;        ///< message about an axis whose spacing is undefined in the file; empty: none
+  std::string unspaced = {};  ///< world axes of several nodes whose spacing the file does not state: "xz"
 
   /// Size of the unit of length [m]; 1 mm if it is not stated or not recognised.
   double metres() const;

@@ -38,7 +38,9 @@ void CheckedSource::describe(std::array<int, 3> const& nodes, std::size_t rank, 
     reading_.axes += axes_[axis].world;
     reading_.shape.push_back(static_cast<std::size_t>(nodes[axis]));
     if (nodes[axis] > 1 && axes_[axis].step < 0) reading_.turned_round += axes_[axis].world;
+    if (nodes[axis] > 1 && !axes_[axis].stated) units_.unspaced += axes_[axis].world;
   }
+  std::sort(units_.unspaced.begin(), units_.unspaced.end());
   std::sort(reading_.turned_round.begin(), reading_.turned_round.end());
   reading_.by = std::move(by);
 }

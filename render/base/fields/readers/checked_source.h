@@ -45,7 +45,7 @@ class CheckedSource {
  protected:
   /// Reads rows as read_rows(), without checking the values.
   virtual void read_raw_rows(int plane, int first_row, int count, std::span<double> out) = 0;
-  /// Sets the nodes, and the shape and axis names of reading(), from axes_.
+  /// Sets the nodes, the shape and axis names of reading() and units().unspaced, from axes_.
   /// @param rank  number of axes in the file, 2 or 3
   /// @param by    source of the assignment of axes
   void describe(std::array<int, 3> const& nodes, std::size_t rank, std::string by);

@@ -317,8 +317,10 @@ class Axes {
       double const cells = static_cast<double>(sizes_[axis]) - (centre == Centre::node ? 1 : 0);
       if (!spacings.empty() && std::isfinite(spacings[axis])) {
         placed.step = spacings[axis];
+        placed.stated = true;
       } else if (ends && std::isfinite(lows[axis]) && std::isfinite(highs[axis]) && cells > 0) {
         placed.step = (highs[axis] - lows[axis]) / cells;
+        placed.stated = true;
         assumed_cells = assumed_cells || centre == Centre::unknown;
       } else if (header_.units.spaced && sizes_[axis] > 1) {
         bool const infinite = !spacings.empty() && std::isinf(spacings[axis]);
@@ -383,6 +385,7 @@ class Axes {
       taken += world;
       header_.axes[i].world = world;
       header_.axes[i].step = step;
+      header_.axes[i].stated = true;
       if (sizes_[kept_[i]] > 1) unit_of_[i] = along < units.size() ? units[along] : "";
       if (origins.empty()) continue;
       if (origins[0].size() != direction.size())

@@ -34,6 +34,7 @@ StoredAxes image_axes(VtkGrid const& grid, VtkPlace place, std::string const& pa
     StoredAxis& axis = axes[column];
     axis.world = world;
     axis.step = grid.spacing[column] * (along(largest) < 0 ? -1 : 1);
+    axis.stated = true;
     bool const between = place == VtkPlace::cells && grid.extent[2 * column + 1] > grid.extent[2 * column];
     axis.first = grid.origin[largest] + axis.step * (grid.extent[2 * column] + (between ? 0.5 : 0.0));
     if (axis.step == 0) axis.step = 1;  // check_grid() permits this only for a single node
