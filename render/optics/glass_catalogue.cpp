@@ -35,10 +35,62 @@ std::string list_left_out(std::vector<AgfContent::LeftOut> const& left_out) {
   return text;
 }
 
-/// Returns "CATALOGUE:NAME (file:line)".
-std::string place_of(Glass const& glass) { return fmt::format("{}:{} ({})", glass.catalogue, glass.name, glass.where); }
+bool covers(Glass const& glass, double wavelength) {
+  return wavelength >= glass.shortest && wavelength <= glass.longest && is_index(glass.index(wavelength));
+}
+
+/// Throws DataError if none of the glasses covers the wavelength.
+void require_range(std::vector<Glass const*> const& found, double wavelength, std::string const& where) {
+  if (std::any_of(found.begin(), found.end(), [=](Glass const* glass) { return covers(*glass, wavelength); })) return;
+  Glass const& glass = *found.front();
+  throw DataError(where, fmt::format("glass {} is described from {:.4g} to {:.4g} nm, not at {:.4g} nm; choose another "
+                                     "wavelength or glass",
+                                     glass.name, glass.shortest / unit::nanometre, glass.longest / unit::nanometre,
+                                     wavelength / unit::nanometre));
+}
+
+/// Choice among the glasses that a name can refer to.
+struct Choice {
+  std::vector<Glass const*> found;  ///< glasses to choose from, in order
+  Glass const* glass = nullptr;     ///< glass that is taken
+  bool in_no_catalogue = false;     ///< no catalogue contains the name
+  bool followed = false;            ///< the glasses are successors
+  bool listed = false;              ///< its catalogue is in the lens file's list, or there is no list
+  bool added = false;               ///< its catalogue was added
+  bool ambiguous = false;           ///< another glass has a different index
+
+  /// Describes the assumptions made: "may be A, B, of different index; A is taken"; empty if none was made.
+  std::string text(std::vector<std::string> const& list, std::optional<double> stated_nd) const {
+    std::vector<std::string> reasons;
+    if (followed) {
+      reasons.emplace_back(in_no_catalogue ? "is in no catalogue" : "is in no catalogue that the lens file lists");
+    } else if (!listed && !added) {
+      reasons.push_back(fmt::format("is not in the catalogues that the lens file lists ({})", fmt::join(list, ", ")));
+    }
+    if (ambiguous) {
+      std::vector<std::string> names;
+      for (Glass const* other : found) names.push_back(place_of(*other));
+      reasons.push_back(fmt::format("may be {}, of different index", fmt::join(names, ", ")));
+    }
+    if (reasons.empty()) return {};
+    std::string taken = place_of(*glass);
+    if (followed) taken += ", which followed it,";
+    if (glass != found.front()) taken += fmt::format(", which has the nd = {:.6g} of its line,", stated_nd.value_or(0));
+    taken += " is taken";
+    if (followed && !listed) taken += fmt::format(", although the lens file lists only {}", fmt::join(list, ", "));
+    return fmt::format("{}; {}", fmt::join(reasons, " and "), taken);
+  }
+};
 
 }  // namespace
+
+bool agrees_with_nd(Glass const& glass, double stated_nd) {
+  constexpr double rounding = 1e-3;  // [1]
+  constexpr double d = spectral_line::d;
+  return d < glass.shortest || d > glass.longest || std::abs(glass.nd() - stated_nd) <= rounding;
+}
+
+std::string place_of(Glass const& glass) { return fmt::format("{}:{} ({})", glass.catalogue, glass.name, glass.where); }
 
 void GlassCatalogue::add(std::string_view text, std::string const& catalogue, std::string const& file) {
   AgfContent content = read_agf(text, catalogue);
@@ -177,8 +229,7 @@ std::vector<Glass const*> GlassCatalogue::successors(std::string_view name) cons
 }
 
 GlassMatch GlassCatalogue::match(std::string_view name, double wavelength, std::string const& where,
-                                 std::vector<std::string> const& preferred) const {
-  GlassMatch result{nullptr, {}, false};
+                                 std::vector<std::string> const& preferred, std::optional<double> stated_nd) const {
   auto const rank = [&preferred](Glass const* glass) {
     return std::find_if(preferred.begin(), preferred.end(),
                         [glass](std::string const& one) { return is_catalogue(glass->catalogue, glass_key(one)); }) -
@@ -187,47 +238,44 @@ GlassMatch GlassCatalogue::match(std::string_view name, double wavelength, std::
   auto const is_preferred = [&](Glass const* glass) {
     return rank(glass) < static_cast<std::ptrdiff_t>(preferred.size());
   };
+  auto const is_added = [this](Glass const* glass) {
+    return std::any_of(glasses_.begin(), glasses_.end(), [glass](Glass const& one) { return &one == glass; });
+  };
+  auto const disagrees = [&](Glass const* glass) { return stated_nd && !agrees_with_nd(*glass, *stated_nd); };
+
+  // Find the glasses of the name, or their successors.
   std::vector<Glass const*> found = candidates(name);
+  Choice choice;
+  choice.in_no_catalogue = found.empty();
   if (std::none_of(found.begin(), found.end(), is_preferred)) {
     std::vector<Glass const*> successor = successors(name);
     if (!found.empty()) std::erase_if(successor, [&](Glass const* glass) { return !is_preferred(glass); });
     if (found.empty() && successor.empty()) refuse_unknown(name, where);
-    if (!successor.empty()) {
-      result.notes.push_back(fmt::format("{}: glass \"{}\" is in no catalogue{}; {}, which followed it, is taken",
-                                         where, name, found.empty() ? "" : " that the lens file lists",
-                                         successor.front()->name));
-      found = successor;
-    }
+    bool const found_agrees = !std::all_of(found.begin(), found.end(), disagrees);
+    bool const successor_agrees = !std::all_of(successor.begin(), successor.end(), disagrees);
+    choice.followed = !successor.empty() && (successor_agrees || !found_agrees);
+    if (choice.followed) found = successor;
   }
-  auto const covers = [wavelength](Glass const* glass) {
-    return wavelength >= glass->shortest && wavelength <= glass->longest && is_index(glass->index(wavelength));
-  };
-  if (std::none_of(found.begin(), found.end(), covers)) {
-    Glass const& glass = *found.front();
-    throw DataError(where,
-                    fmt::format("glass {} is described from {:.4g} to {:.4g} nm, not at {:.4g} nm; choose another "
-                                "wavelength or glass",
-                                glass.name, glass.shortest / unit::nanometre, glass.longest / unit::nanometre,
-                                wavelength / unit::nanometre));
-  }
-  std::erase_if(found, [&](Glass const* glass) { return !covers(glass); });
+  require_range(found, wavelength, where);
+  std::erase_if(found, [&](Glass const* glass) { return !covers(*glass, wavelength); });
   std::stable_sort(found.begin(), found.end(), [&](auto const* a, auto const* b) { return rank(a) < rank(b); });
+
+  // The stated nd decides among glasses of catalogues that are neither listed nor added.
+  choice.found = found;
+  bool const chosen = is_preferred(found.front()) || is_added(found.front());
+  if (!chosen && !std::all_of(found.begin(), found.end(), disagrees)) std::erase_if(found, disagrees);
   Glass const& glass = *found.front();
-  result.glass = &glass;
-  bool const added = std::any_of(glasses_.begin(), glasses_.end(), [&](Glass const& one) { return &one == &glass; });
-  result.assumed = !added && !is_preferred(&glass);
+  choice.glass = &glass;
+  choice.listed = preferred.empty() || is_preferred(&glass);
+  choice.added = is_added(&glass);
   bool const differ = std::any_of(found.begin(), found.end(), [&](Glass const* other) {
     return std::abs(other->index(wavelength) - glass.index(wavelength)) > same_index;
   });
-  if (differ && !is_preferred(&glass)) {
-    std::vector<std::string> names;
-    for (Glass const* other : found) names.push_back(place_of(*other));
-    result.notes.push_back(fmt::format("{}: glass \"{}\" may be {}, of different index; {} is taken", where, name,
-                                       fmt::join(names, ", "), names.front()));
-  } else if (result.assumed && !preferred.empty()) {
-    result.notes.push_back(
-        fmt::format("{}: glass \"{}\" is not in the catalogues that the lens file lists ({}); {} is taken", where, name,
-                    fmt::join(preferred, ", "), place_of(glass)));
+  choice.ambiguous = &glass != choice.found.front() || (differ && !is_preferred(&glass));
+
+  GlassMatch result{&glass, {}, choice.followed || (!is_preferred(&glass) && !choice.added)};
+  if (std::string const text = choice.text(preferred, stated_nd); !text.empty()) {
+    result.notes.push_back(fmt::format("{}: glass \"{}\" {}", where, name, text));
   }
   constexpr double d = spectral_line::d;
   bool const printed = glass.printed_nd > 1 && d >= glass.shortest && d <= glass.longest;  // 0, 1: none

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,8 +13,15 @@ namespace gladstone {
 struct GlassMatch {
   Glass const* glass;
   std::vector<std::string> notes;  ///< warnings about assumptions that were made
-  bool assumed = false;            ///< from a shipped catalogue that the lens file does not list
+  bool assumed = false;            ///< a successor, or from a shipped catalogue that the lens file does not list
 };
+
+/// Returns true if the nd of a glass equals the one that a lens file states to within the file's rounding (1e-3), or if
+/// the glass is not described at the d line.
+bool agrees_with_nd(Glass const& glass, double stated_nd);
+
+/// Formats "CATALOGUE:NAME (file:line)".
+std::string place_of(Glass const& glass);
 
 /// Collection of glasses from one or more catalogues, searchable by name.
 class GlassCatalogue {
@@ -44,21 +52,25 @@ class GlassCatalogue {
   /// - those in `preferred`, in its order,
   /// - added catalogues, by maker_rank(), those of one rank in the order of addition,
   /// - shipped catalogues, by maker_rank().
-  /// The lead-free successor N-NAME is returned if no catalogue contains the name, or if no preferred catalogue
-  /// contains the name but one contains the successor. Notes report successors, candidates of different index if no
-  /// preferred catalogue decides, names that no preferred catalogue contains, and formulas that disagree with the
-  /// printed nd.
+  /// Among glasses of one name in other catalogues than the preferred and the added ones, those that agree with the
+  /// stated nd come first. The lead-free successor N-NAME is returned if no catalogue contains the name, or if no
+  /// preferred catalogue contains the name but one contains the successor, unless only the glass of that name agrees
+  /// with the stated nd. One note reports the successor, candidates of different index if neither a preferred catalogue
+  /// nor the stated nd decides, or that no preferred catalogue contains the name; another one a formula that disagrees
+  /// with the printed nd.
   /// @param wavelength  [m]
   /// @param where       location where the name is used, for messages
+  /// @param stated_nd   nd that the lens file states for the glass; nullopt: none
   /// @throws DataError with similar names if no glass has the name, or if the wavelength is out of range
   GlassMatch match(std::string_view name, double wavelength, std::string const& where,
-                   std::vector<std::string> const& preferred = {}) const;
+                   std::vector<std::string> const& preferred = {},
+                   std::optional<double> stated_nd = std::nullopt) const;
   /// Like match(), without notes.
   Glass const& find(std::string_view name, double wavelength, std::string const& where) const {
     return *match(name, wavelength, where).glass;
   }
-  /// Returns true if a usable glass has the name.
-  bool has(std::string_view name) const { return !candidates(name).empty(); }
+  /// Returns true if a usable glass has the name, or is its successor.
+  bool has(std::string_view name) const { return !candidates(name).empty() || !successors(name).empty(); }
 
  private:
   /// Returns "; did you mean ...?" with the most similar names; empty if no name is similar.

@@ -30,13 +30,6 @@ struct DescribedGlass {
   std::string where;  ///< location of its first use
 };
 
-/// Returns true if the nd of a glass differs from the one that a lens file states by more than its rounding.
-bool has_other_nd(Glass const& glass, double nd) {
-  constexpr double rounding = 1e-3;  // [1]
-  constexpr double d = spectral_line::d;
-  return glass.shortest <= d && d <= glass.longest && std::abs(glass.nd() - nd) > rounding;
-}
-
 class LensBuilder {
  public:
   LensBuilder(Lens& lens, GlassCatalogue const& catalogue, LensOptions const& options)
@@ -199,6 +192,36 @@ class LensBuilder {
     return frame.moved({0, 0, here.advance});
   }
 
+  /// Returns a glass of a catalogue, or the one with nd and Vd of its line if no catalogue contains it or if an assumed
+  /// one contradicts them. Adds one warning about the choice.
+  Glass named_glass(PrescribedMedium::Named const& named, std::string const& where) {
+    std::string const& name = named.glass;
+    std::vector<std::string> const& listed = lens_.prescription.catalogues;
+    if (!named.otherwise) return found_glass(catalogue_.match(name, lens_.wavelength, where, listed), name, where);
+    double const nd = named.otherwise->nd, vd = named.otherwise->vd;
+    std::string const line_taken = fmt::format(
+        "nd = {:.6g} and Vd = {:.4g} of its line are taken as n = A + B/lambda^2 (add its catalogue for more)", nd, vd);
+    std::string const key = fmt::format("{} {:.6g} {:.4g}", name, nd, vd);
+    if (!catalogue_.has(name)) {
+      note_once(key, fmt::format("{}: glass \"{}\" is in no catalogue; {}", where, name, line_taken));
+      return Glass::from_nd_vd(nd, vd);
+    }
+    GlassMatch const match = catalogue_.match(name, lens_.wavelength, where, listed, nd);
+    Glass const& glass = *match.glass;
+    if (agrees_with_nd(glass, nd)) return found_glass(match, name, where);
+    std::string const contradiction =
+        fmt::format("{}: glass \"{}\": {} has nd = {:.6g}", where, name, place_of(glass), glass.nd());
+    if (match.assumed) {
+      note_once(key, fmt::format("{}; {}", contradiction, line_taken));
+      return Glass::from_nd_vd(nd, vd);
+    }
+    note_once(key,
+              fmt::format("{}, but its line says nd = {:.6g}; the catalogue's glass is taken (if the line is right, "
+                          "list the catalogue of its glass first in GCAT)",
+                          contradiction, nd));
+    return glass;
+  }
+
   Substance substance(PrescribedMedium const& medium, std::string const& surface_where) {
     std::string const& where = medium.where.empty() ? surface_where : medium.where;
     double const wavelength = lens_.wavelength;
@@ -207,24 +230,7 @@ class LensBuilder {
     };
     try {
       if (auto const* const named = std::get_if<PrescribedMedium::Named>(&medium.is)) {
-        if (named->otherwise && !catalogue_.has(named->glass)) {
-          note_once(named->glass, fmt::format("{}: glass \"{}\" is in no catalogue; nd = {:.6g} and Vd = {:.4g} of its "
-                                              "line are taken as n = A + B/lambda^2 (add its catalogue for more)",
-                                              where, named->glass, named->otherwise->nd, named->otherwise->vd));
-          return of_glass(Glass::from_nd_vd(named->otherwise->nd, named->otherwise->vd));
-        }
-        GlassMatch const found = catalogue_.match(named->glass, wavelength, where, lens_.prescription.catalogues);
-        Glass const& glass = *found.glass;
-        if (named->otherwise && found.assumed && has_other_nd(glass, named->otherwise->nd)) {
-          note_once(named->glass,
-                    fmt::format("{}: glass \"{}\" of {} has nd = {:.6g}; nd = {:.6g} and Vd = {:.4g} of its "
-                                "line are taken as n = A + B/lambda^2 (add its catalogue for more)",
-                                where, named->glass, glass.catalogue, glass.nd(), named->otherwise->nd,
-                                named->otherwise->vd));
-          return of_glass(Glass::from_nd_vd(named->otherwise->nd, named->otherwise->vd));
-        }
-        for (std::string const& note : found.notes) note_once(named->glass + note.substr(where.size()), note);
-        return of_glass(glass);
+        return of_glass(named_glass(*named, where));
       }
       if (auto const* const own = std::get_if<PrescribedMedium::Private>(&medium.is)) {
         if (wavelength < own->glass.shortest || wavelength > own->glass.longest) {
@@ -248,6 +254,12 @@ class LensBuilder {
       return {glass.index(wavelength), 0};
     }
     return {};
+  }
+
+  /// Returns the glass of a search and adds its notes, each once for a name.
+  Glass found_glass(GlassMatch const& match, std::string const& name, std::string const& where) {
+    for (std::string const& note : match.notes) note_once(name + note.substr(where.size()), note);
+    return *match.glass;
   }
 
   /// Adds a warning about a glass, unless the glass already has one.

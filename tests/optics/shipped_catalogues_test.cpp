@@ -17,11 +17,9 @@ namespace gladstone {
 namespace {
 
 using testing::AllOf;
-using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
-using testing::Not;
 
 GlassMatch shipped_match(std::string const& name, std::vector<std::string> const& preferred = {}) {
   return GlassCatalogue::shipped().match(name, spectral_line::d, "lens:1", preferred);
@@ -125,7 +123,8 @@ TEST(ShippedCatalogues, AGlassOfACatalogueThatTheLensFileDoesNotListIsNoted) {
 TEST(ShippedCatalogues, TheSuccessorInTheListedCatalogueComesBeforeOtherMakersGlasses) {
   GlassMatch const schott = shipped_match("BAF4", {"SCHOTT"});
   EXPECT_EQ(schott.glass->name, "N-BAF4");
-  EXPECT_THAT(schott.notes, ElementsAre(AllOf(HasSubstr("\"BAF4\""), HasSubstr("N-BAF4, which followed it"))));
+  EXPECT_THAT(schott.notes,
+              ElementsAre(AllOf(HasSubstr("\"BAF4\""), HasSubstr("SCHOTT:N-BAF4"), HasSubstr("which followed it"))));
   EXPECT_EQ(shipped_match("BAF4", {"CDGM"}).glass->catalogue, "CDGM");
   EXPECT_EQ(shipped_match("SCHOTT:BAF4").glass->name, "N-BAF4");
   GlassMatch const open = shipped_match("BAF4");
@@ -147,18 +146,61 @@ TEST(ShippedCatalogues, CataloguesOfTheUserComeFirst) {
   EXPECT_FALSE(newer.assumed);
 }
 
+/// A singlet whose glass is given by a line GLAS, in a file that lists catalogues; at the d line.
+Lens lens_of_glass(std::string const& glass, std::string const& listed = "") {
+  std::string const text = changed(zmx, "GLAS N-BK7 0 0 1.5 40", "GLAS " + glass);
+  return build_lens(read_prescription(file_of(
+                        "flint.zmx", listed.empty() ? text : changed(text, "PWAV 2", "PWAV 2\nGCAT " + listed))),
+                    GlassCatalogue::shipped(), spectral_line::d);
+}
+
+/// Index behind the first surface.
+double index_of(Lens const& lens) { return lens.paraxial.front().n_after; }
+
 // The line of SCHOTT's former F4 says nd 1.61659, which the only F4 of the catalogues does not have; that of CDGM's
 // says 1.62005.
 TEST(ShippedCatalogues, AGlassThatContradictsTheLensFileIsNotTaken) {
-  auto const warnings = [](char const* glass) {
-    std::string const line = std::string("GLAS ") + glass;
-    return build_lens(read_prescription(file_of("flint.zmx", changed(zmx, "GLAS N-BK7 0 0 1.5 40", line))),
-                      GlassCatalogue::shipped(), spectral_line::d)
-        .warnings;
-  };
-  EXPECT_THAT(warnings("F4 0 0 1.61659 36.63"),
-              Contains(AllOf(HasSubstr("CDGM has nd = 1.62005"), HasSubstr("nd = 1.61659"))));
-  EXPECT_THAT(warnings("F4 0 0 1.62005 36.35"), Not(Contains(HasSubstr("F4"))));
+  EXPECT_THAT(lens_of_glass("F4 0 0 1.61659 36.63").warnings,
+              ElementsAre(AllOf(HasSubstr("CDGM:F4"), HasSubstr("has nd = 1.62005"), HasSubstr("nd = 1.61659"))));
+  EXPECT_THAT(lens_of_glass("F4 0 0 1.62005 36.35").warnings, IsEmpty());
+}
+
+// F2 is 1.62004 in SCHOTT's catalogue and 1.61293 in CDGM's.
+TEST(ShippedCatalogues, TheIndexOfTheLineDecidesWhereTheFileListsNoCatalogue) {
+  Lens const schott = lens_of_glass("F2 0 0 1.62 36.37");
+  EXPECT_NEAR(index_of(schott), 1.62004, 1e-5);
+  EXPECT_THAT(schott.warnings, IsEmpty());
+  Lens const cdgm = lens_of_glass("F2 0 0 1.61293 36.96");
+  EXPECT_EQ(index_of(cdgm), shipped_match("CDGM:F2").glass->nd());
+  EXPECT_THAT(cdgm.warnings, ElementsAre(AllOf(HasSubstr("flint.zmx:"), HasSubstr("SCHOTT:F2"), HasSubstr("CDGM:F2"),
+                                               HasSubstr("which has the nd = 1.61293 of its line"))));
+}
+
+TEST(ShippedCatalogues, AListedGlassThatContradictsItsLineIsTakenWithAWarning) {
+  Lens const lens = lens_of_glass("F2 0 0 1.61293 36.96", "SCHOTT CDGM");
+  EXPECT_NEAR(index_of(lens), 1.62004, 1e-5);
+  EXPECT_THAT(lens.warnings,
+              ElementsAre(AllOf(HasSubstr("flint.zmx:21"), HasSubstr("SCHOTT:F2"), HasSubstr("has nd = 1.62004"),
+                                HasSubstr("says nd = 1.61293"), HasSubstr("the catalogue's glass is taken"))));
+  EXPECT_THAT(lens_of_glass("F2 0 0 1.61293 36.96", "CDGM").warnings, IsEmpty());
+}
+
+// SCHOTT's LAK8 and N-LAK8 have nd = 1.713 both; a line that says otherwise means another glass.
+TEST(ShippedCatalogues, TheSuccessorIsTakenUnlessTheLineContradictsIt) {
+  Lens const lens = lens_of_glass("LAK8 0 0 1.713 53.83");
+  EXPECT_EQ(index_of(lens), shipped_match("N-LAK8").glass->nd());
+  EXPECT_THAT(lens.warnings, ElementsAre(AllOf(HasSubstr("\"LAK8\" is in no catalogue"), HasSubstr("SCHOTT:N-LAK8"),
+                                               HasSubstr("which followed it"))));
+  Lens const other = lens_of_glass("LAK8 0 0 1.65 50");
+  EXPECT_NEAR(index_of(other), 1.65, 1e-12);
+  EXPECT_THAT(other.warnings, ElementsAre(AllOf(HasSubstr("SCHOTT:N-LAK8"), HasSubstr("1.713"), HasSubstr("1.65"))));
+}
+
+// Neither the lens file's catalogue nor any other has BK7: one sentence says so.
+TEST(ShippedCatalogues, ASuccessorInACatalogueThatTheLensFileDoesNotListIsNotedOnce) {
+  EXPECT_THAT(shipped_match("BK7", {"HOYA"}).notes,
+              ElementsAre(AllOf(HasSubstr("\"BK7\" is in no catalogue;"), HasSubstr("SCHOTT:N-BK7"),
+                                HasSubstr("which followed it, is taken"), HasSubstr("lists only HOYA"))));
 }
 
 // Glasses are read when they are asked for, by any thread, and once: all threads see the same glass.
