@@ -288,12 +288,13 @@ RaysPlan plan_rays_of(Scene& scene) {
   return plan;
 }
 
-double render_seconds(Scene const& scene, RaysPlan const& plan) {
+double render_seconds(Scene const& scene, RaysPlan const& plan, RenderTheory theory) {
   RenderMethod const method = method_of(scene);
   if (method == RenderMethod::formula) return 0;
-  if (method == RenderMethod::focused_dots) return table_seconds(enter(scene));
+  if (method == RenderMethod::focused_dots) return dots_seconds(enter(scene), theory);
   double const media = scene.second_medium ? 2 : 1;
-  return media * (std::isfinite(plan.seconds) ? plan.seconds : static_cast<double>(plan.rays) * rays_seconds(scene));
+  double const rays = std::isfinite(plan.seconds) ? plan.seconds : static_cast<double>(plan.rays) * rays_seconds(scene);
+  return media * rays + (theory == RenderTheory::yes && !scene.setup.piv ? theory_seconds(scene) : 0);
 }
 
 FieldMap field_of(Scene const& scene, int spacing_px) {

@@ -43,8 +43,8 @@ StepPlan plan_step_of(Scene& scene);
 /// than the scatter of the general renderer's rays; but the general renderer if the table takes more than 5 s and 60
 /// times the processor time of the rays, and their number is given or sufficient.
 RaysPlan plan_rays_of(Scene& scene);
-/// Estimates the processor time for rendering a prepared scene, with ray_seconds() per ray [s].
-double render_seconds(Scene const& scene, RaysPlan const& plan);
+/// Estimates the processor time for rendering a prepared scene: rays, deflection table and small-angle theory [s].
+double render_seconds(Scene const& scene, RaysPlan const& plan, RenderTheory theory);
 /// Maps density, gradient and small-angle theory (Eq. 9) of the scene's field over the view.
 FieldMap field_of(Scene const& scene, int spacing_px);
 /// Maps the strain of the displacement field over the view.

@@ -65,13 +65,14 @@ std::string rendering_announcement(Scene const& scene, double expected_s) {
   constexpr double least_announced_s = 20;
   if (!(expected_s > least_announced_s)) return {};
   return fmt::format(
-      "rendering {} {} will take some {:.0f} s on {} threads; a smaller render.rays_per_dot or a larger "
+      "rendering {0} {1} will take some {2:.0f} s on {3} threads; fewer {1}, a smaller render.rays_per_dot or a larger "
       "medium.step_mm takes less",
       scene.source_count(), scene.setup.piv ? "particles" : "dots", expected_s, thread_count());
 }
 
 RenderedCase render_case(PreparedCase const& prepared, Renderer& renderer, RenderTheory theory) {
-  double const expected_s = render_seconds(prepared.scene, prepared.rays) / thread_count();
+  bool const on_cpu = renderer.device() == "cpu";  // the estimate is of no other device
+  double const expected_s = on_cpu ? render_seconds(prepared.scene, prepared.rays, theory) / thread_count() : 0;
   if (std::string const text = rendering_announcement(prepared.scene, expected_s); !text.empty()) {
     spdlog::info("{}", text);
   }

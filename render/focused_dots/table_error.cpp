@@ -250,6 +250,18 @@ double table_seconds(FocusedDots const& dots) {
   return (of_table + measured) * ray_seconds(scene);
 }
 
+double dots_seconds(FocusedDots const& dots, RenderTheory theory) {
+  constexpr double a_node = 0.1e-6;  // look-ups at a node of the cone [s]
+  Scene const& scene = dots.scene();
+  DeflectionPlan const plan(dots, scene.dots, DeflectionPlan::usual_aim * scene.imaging.entrance_pupil / 2);
+  if (plan.state == TableState::no_medium) return 0;
+  OwnedDotModel const owned(dots, scene.dots, plan.table, false);
+  double const nodes = static_cast<double>(owned.model.cone.count) * owned.model.places.count;
+  double const of_node = (plan.wanted() ? a_node : 0) + (theory == RenderTheory::yes ? theory_ray_seconds(scene) : 0);
+  double const of_dot = static_cast<double>(scene.rays_per_dot) * ray_seconds(scene) + nodes * of_node;
+  return table_seconds(dots) + static_cast<double>(scene.source_count()) * of_dot;
+}
+
 RaysPlan plan_rays(FocusedDots const& dots) {
   if (auto const given = given_rays(dots.scene().setup)) return *given;
   Scene searched = dots.scene();  // copy in which fineness and number of rays are varied

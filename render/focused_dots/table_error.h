@@ -2,6 +2,7 @@
 
 #include "render/focused_dots/focused_dots.h"
 #include "render/scene/ray_plan.h"
+#include "render/scene/renderer.h"
 
 /// Error of truth and images due to the deflection table, and the number of rays per dot that correct it. The scene is
 /// not changed.
@@ -30,5 +31,11 @@ RaysPlan plan_rays(FocusedDots const& dots);
 /// Estimates the processor time of a scene's deflection table and of the measurement of its error by ray_seconds() [s].
 /// The table has the same number of rays for a hundred dots as for thousands.
 double table_seconds(FocusedDots const& dots);
+
+/// Estimates the processor time for rendering a scene's dots [s]: table_seconds(), the rays of every dot, and for every
+/// node of its light cone the look-ups in the table and, if requested, the samples of small-angle theory (Eq. 9).
+/// No clock is read: nodes and samples are counted and multiplied by times measured on the processor of
+/// docs/benchmarks.md.
+double dots_seconds(FocusedDots const& dots, RenderTheory theory);
 
 }  // namespace gladstone

@@ -43,6 +43,14 @@ Vec2d RayTheory::shift(SeenPoint const& seen, Ray<double> const& ray, Vec3d leve
   return seen.moved({moved.x, moved.y});
 }
 
+double theory_seconds(Scene const& scene) {
+  constexpr double a_trace = 0.2e-6;  // aiming a ray and tracing it through the optics [s]
+  RaysLaunch const launch(scene, SpotView{});
+  RayTheory const theory(scene, launch, scene.dots.shape, scene.dots.half_size > 0);
+  double const rays = static_cast<double>(scene.dots.centre.size()) * static_cast<double>(theory.rays());
+  return rays * (a_trace + theory_ray_seconds(scene));
+}
+
 FieldMap map_field_by_rays(Scene const& scene, int spacing_px) {
   FieldMap map = FieldMap::ambient(scene.setup, spacing_px);
   RaysLaunch const launch(scene, SpotView{});

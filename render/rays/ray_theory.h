@@ -87,6 +87,9 @@ class RayTheory {
     return sum;
   }
 
+  /// Number of rays over which a source's aperture average is taken.
+  std::size_t rays() const { return places_.points.size() * pupil_.points.size(); }
+
   /// Distance from a ray's start to the medium's mid-plane along the camera's axis [m].
   double lever(Ray<double> const& start) const {
     return -start.position.z / start.direction.z * dot(start.direction, axis_);
@@ -102,6 +105,9 @@ class RayTheory {
   SourceCubature places_, pupil_;  ///< rules over a source and over the stop
   double near_shift_ = 0;          ///< apparent shift of the dots by windows in front of the medium [m]
 };
+
+/// Estimates the processor time of small-angle theory for a scene's dots [s], with theory_ray_seconds() per ray.
+double theory_seconds(Scene const& scene);
 
 /// map_field() and map_strain() (field_map.h) for any camera. The aperture average uses a few rays only.
 FieldMap map_field_by_rays(Scene const& scene, int spacing_px);

@@ -87,6 +87,14 @@ double ray_seconds(Scene const& scene) {
 
 double rays_seconds(Scene const& scene) { return static_cast<double>(scene.source_count()) * ray_seconds(scene); }
 
+double theory_ray_seconds(Scene const& scene) {
+  constexpr double a_sample = 20e-9;  // a sample of the gradient [s]
+  constexpr int samples_of_panel = 3;
+  double const longest = std::min(scene.step, scene.medium.coarsest_step);
+  double const panels = longest > 0 ? std::ceil(scene.steps_across() * scene.step / longest) : 0;
+  return samples_of_panel * panels * a_sample;
+}
+
 std::uint64_t most_rays_of_source(Scene const& scene) {
   double const seconds = ray_seconds(scene);
   std::uint64_t most = always_allowed;

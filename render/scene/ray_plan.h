@@ -81,6 +81,9 @@ double ray_seconds(Scene const& scene);
 /// Estimates the processor time for one ray of every source [s].
 double rays_seconds(Scene const& scene);
 
+/// Estimates the processor time of small-angle theory (Eq. 9) along one straight ray through the medium [s].
+double theory_ray_seconds(Scene const& scene);
+
 /// Returns the maximum number of rays per source for adaptive ray numbers: a power of two from 1024 to 65,536.
 std::uint64_t most_rays_of_source(Scene const& scene);
 

@@ -259,6 +259,36 @@ TEST(ParticlesNearView, AreAllThatFramesShow) {
   EXPECT_LT(near.rays, every.rays / 2);
 }
 
+// Small-angle theory is integrated along as many rays of every dot, in panels as long as a step: its time is
+// proportional to the dots and, for whole panels, to the inverse of the step. A third of a microsecond per panel and
+// ray is the most that three samples take, and 100 the fewest rays of a dot.
+TEST(RenderSeconds, CountTheoryOfEveryDot) {
+  GaussianBlob<double> plume;
+  plume.amplitude = -0.5;
+  plume.radius = 5e-3;
+  gladstone::Setup setup = table1_setup(96);
+  setup.medium.field = plume;
+  setup.medium.thickness = 32e-3;
+  setup.medium.step_mm = 1.0;
+  for (RenderMethod const method : {RenderMethod::focused_dots, RenderMethod::rays}) {
+    setup.render.method = method;
+    auto const of_theory = [&](int per_side, double step_share) {
+      Scene scene = scene_with_dots(setup, lattice(96, per_side, 80.0 / per_side), 16);
+      scene.step *= step_share;
+      RaysPlan plan;
+      plan.rays = 16;
+      double const without = render_seconds(scene, plan, RenderTheory::no);
+      EXPECT_GT(without, 0);
+      return render_seconds(scene, plan, RenderTheory::yes) - without;
+    };
+    double const few = of_theory(4, 1);
+    EXPECT_GT(few, 16 * 100 * 32 * 10e-9);
+    EXPECT_LT(few, 16 * 1e4 * 32 * 0.33e-6);
+    EXPECT_NEAR(of_theory(8, 1) / few, 4, 1e-9);
+    EXPECT_GT(of_theory(4, 0.5) / few, method == RenderMethod::rays ? 1.3 : 1.9);
+  }
+}
+
 TEST(RenderingAnnouncement, NamesSourcesAndSecondsOfLongRenderingsOnly) {
   Scene const scene = scene_with_dots(table1_setup(96), lattice(96, 8, 11), 32);
   std::string const dots = std::to_string(scene.dots.centre.size());
