@@ -10,7 +10,7 @@
 
 #include "render/base/nearest_name.h"
 #include "render/base/random.h"
-#include "render/base/setup_node.h"
+#include "render/setup/setup_node.h"
 #include "studies/case.h"
 #include "studies/shared_target.h"
 

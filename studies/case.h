@@ -7,12 +7,12 @@
 #include <vector>
 
 #include "analysis/correlation/correlation_settings.h"
-#include "render/base/setup_table.h"
 #include "render/scene/field_map.h"
 #include "render/scene/ray_plan.h"
 #include "render/scene/renderer.h"
 #include "render/scene/setup.h"
 #include "render/sensor/detector.h"
+#include "render/setup/setup_table.h"
 #include "studies/case_files.h"
 
 namespace gladstone {

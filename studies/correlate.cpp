@@ -15,8 +15,8 @@
 #include "render/base/contracts.h"
 #include "render/base/hdf5_file.h"
 #include "render/base/image_file.h"
-#include "render/base/setup_table.h"
 #include "render/base/stop_point.h"
+#include "render/setup/setup_table.h"
 #include "studies/case.h"
 #include "studies/peak_locking.h"
 

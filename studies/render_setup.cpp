@@ -9,8 +9,8 @@
 
 #include "render/base/output_file.h"
 #include "render/base/output_folder.h"
-#include "render/base/setup_node.h"
 #include "render/base/text_file.h"
+#include "render/setup/setup_node.h"
 #include "studies/calibration_case.h"
 #include "studies/json_text.h"
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "render/base/setup_node.h"
 #include "render/base/units.h"
 #include "render/scene/particle_scene.h"
+#include "render/setup/setup_node.h"
 
 namespace gladstone {
 namespace {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "render/base/setup_node.h"
-#include "render/base/setup_table.h"
+#include "render/setup/setup_node.h"
+#include "render/setup/setup_table.h"
 
 namespace gladstone {
 

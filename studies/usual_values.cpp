@@ -7,7 +7,7 @@
 #include <cmath>
 #include <span>
 
-#include "render/base/setup_node.h"
+#include "render/setup/setup_node.h"
 
 namespace gladstone {
 namespace {

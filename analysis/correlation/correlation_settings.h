@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "analysis/preparation/frame_preparation.h"
-#include "render/base/setup_table.h"
+#include "render/setup/setup_table.h"
 
 namespace gladstone {
 

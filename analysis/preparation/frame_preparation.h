@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "render/base/frame_pair.h"
-#include "render/base/setup_table.h"
+#include "render/setup/setup_table.h"
 
 /// Preparation of frames before correlation: masks, and preprocessing steps that change grey levels.
 namespace gladstone {

@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "render/base/setup_table.h"
 #include "render/light/target_setup.h"
+#include "render/setup/setup_table.h"
 
 namespace gladstone {
 

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string>
 
-#include "render/base/setup_table.h"
+#include "render/setup/setup_table.h"
 
 namespace gladstone {
 

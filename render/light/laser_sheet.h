@@ -5,10 +5,10 @@
 
 #include "render/base/host_device.h"
 #include "render/base/pose.h"
-#include "render/base/setup_table.h"
 #include "render/base/units.h"
 #include "render/base/vec.h"
 #include "render/light/mie_scattering.h"
+#include "render/setup/setup_table.h"
 
 namespace gladstone {
 

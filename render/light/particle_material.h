@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "render/base/setup_table.h"
+#include "render/setup/setup_table.h"
 
 namespace gladstone {
 

@@ -5,10 +5,10 @@
 #include <array>
 #include <limits>
 
-#include "render/base/setup_table.h"
 #include "render/base/units.h"
 #include "render/light/existing_file.h"
 #include "render/light/particle_material.h"
+#include "render/setup/setup_table.h"
 
 namespace gladstone {
 namespace {

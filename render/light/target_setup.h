@@ -4,8 +4,8 @@
 #include <optional>
 #include <string>
 
-#include "render/base/setup_table.h"
 #include "render/base/vec.h"
+#include "render/setup/setup_table.h"
 
 namespace gladstone {
 

@@ -9,10 +9,10 @@
 #include "render/base/fields/field_axes.h"
 #include "render/base/fields/spline_prefilter.h"
 #include "render/base/parallel.h"
-#include "render/base/setup_table.h"
 #include "render/base/units.h"
 #include "render/light/existing_file.h"
 #include "render/light/flow.h"
+#include "render/setup/setup_table.h"
 
 namespace gladstone {
 namespace {

@@ -6,9 +6,9 @@
 
 #include "render/base/contracts.h"
 #include "render/base/fields/field_axes.h"
-#include "render/base/setup_table.h"
 #include "render/base/units.h"
 #include "render/medium/gladstone_dale.h"
+#include "render/setup/setup_table.h"
 
 namespace gladstone {
 namespace {

@@ -5,10 +5,10 @@
 #include <string>
 #include <type_traits>
 
-#include "render/base/setup_table.h"
 #include "render/base/vec.h"
 #include "render/medium/closed_forms.h"
 #include "render/medium/trace_medium.h"
+#include "render/setup/setup_table.h"
 
 namespace gladstone {
 

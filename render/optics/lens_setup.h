@@ -3,8 +3,8 @@
 #include <memory>
 #include <optional>
 
-#include "render/base/setup_table.h"
 #include "render/optics/lens.h"
+#include "render/setup/setup_table.h"
 
 namespace gladstone {
 

@@ -5,8 +5,8 @@
 
 #include "render/base/in_scalar.h"
 #include "render/base/pose.h"
-#include "render/base/setup_table.h"
 #include "render/optics/lens_surface.h"
+#include "render/setup/setup_table.h"
 
 namespace gladstone {
 

@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "render/base/pose.h"
-#include "render/base/setup_table.h"
 #include "render/base/vec.h"
+#include "render/setup/setup_table.h"
 
 namespace gladstone {
 

@@ -3,7 +3,6 @@
 #include <cstdint>
 #include <optional>
 
-#include "render/base/setup_table.h"
 #include "render/light/flow.h"
 #include "render/light/laser_sheet.h"
 #include "render/light/particle_setup.h"
@@ -14,6 +13,7 @@
 #include "render/optics/lenslet_array.h"
 #include "render/optics/window.h"
 #include "render/sensor/camera_setup.h"
+#include "render/setup/setup_table.h"
 
 namespace gladstone {
 

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "render/base/setup_node.h"
-#include "render/base/setup_table.h"
 #include "render/base/vec.h"
+#include "render/setup/setup_node.h"
+#include "render/setup/setup_table.h"
 
 namespace gladstone {
 

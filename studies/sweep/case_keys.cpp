@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "render/base/setup_node.h"
+#include "render/setup/setup_node.h"
 
 namespace gladstone {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "render/base/setup_node.h"
+#include "render/setup/setup_node.h"
 #include "studies/sweep/manifest.h"
 
 namespace gladstone {

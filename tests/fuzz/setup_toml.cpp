@@ -2,8 +2,8 @@
 #include <cstdlib>
 
 #include "analysis/correlation/correlation_settings.h"
-#include "render/base/setup_table.h"
 #include "render/scene/setup.h"
+#include "render/setup/setup_table.h"
 #include "tests/fuzz/input.h"
 
 using namespace gladstone;

@@ -6,8 +6,8 @@
 
 #include "render/base/error.h"
 #include "render/base/image_file.h"
-#include "render/base/setup_table.h"
 #include "render/sensor/detector.h"
+#include "render/setup/setup_table.h"
 
 namespace gladstone {
 namespace {

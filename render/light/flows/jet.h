@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "render/base/setup_table.h"
 #include "render/base/units.h"
+#include "render/setup/setup_table.h"
 
 namespace gladstone {
 

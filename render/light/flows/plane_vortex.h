@@ -1,7 +1,7 @@
 #pragma once
 
-#include "render/base/setup_table.h"
 #include "render/base/units.h"
+#include "render/setup/setup_table.h"
 
 namespace gladstone {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "render/base/setup_table.h"
+#include "render/setup/setup_table.h"
 
 namespace gladstone {
 

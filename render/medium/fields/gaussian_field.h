@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "render/base/setup_table.h"
 #include "render/base/units.h"
 #include "render/medium/fields/slab.h"
+#include "render/setup/setup_table.h"
 
 namespace gladstone {
 

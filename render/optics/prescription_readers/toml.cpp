@@ -1,10 +1,10 @@
 #include <cmath>
 
-#include "render/base/setup_table.h"
 #include "render/base/units.h"
 #include "render/optics/even_asphere.h"
 #include "render/optics/prescription_readers/lines.h"
 #include "render/optics/prescription_readers/readers.h"
+#include "render/setup/setup_table.h"
 
 namespace gladstone {
 namespace {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "render/base/setup_state.h"
+#include "render/setup/setup_state.h"
 
 /// Helpers shared by the source files of SetupTable; not for other files.
 namespace gladstone::setup_reading {

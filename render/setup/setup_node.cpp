@@ -1,4 +1,4 @@
-#include "render/base/setup_node.h"
+#include "render/setup/setup_node.h"
 
 #include <toml++/toml.h>
 

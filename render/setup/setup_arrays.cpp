@@ -1,7 +1,7 @@
 #include <cstddef>
 #include <limits>
 
-#include "render/base/setup_reading.h"
+#include "render/setup/setup_reading.h"
 
 /// Array readers of SetupTable.
 namespace gladstone {

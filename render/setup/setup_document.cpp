@@ -7,8 +7,8 @@
 #include <tuple>
 
 #include "render/base/nearest_name.h"
-#include "render/base/setup_state.h"
 #include "render/base/text_file.h"
+#include "render/setup/setup_state.h"
 
 namespace gladstone {
 namespace {

@@ -1,6 +1,6 @@
-#include "render/base/setup_record.h"
+#include "render/setup/setup_record.h"
 
-#include "render/base/setup_node.h"
+#include "render/setup/setup_node.h"
 
 namespace gladstone {
 namespace {

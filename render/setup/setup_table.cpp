@@ -1,9 +1,9 @@
-#include "render/base/setup_table.h"
+#include "render/setup/setup_table.h"
 
 #include <algorithm>
 
 #include "render/base/nearest_name.h"
-#include "render/base/setup_reading.h"
+#include "render/setup/setup_reading.h"
 
 namespace gladstone {
 using namespace setup_reading;

@@ -2,7 +2,7 @@
 #include <charconv>
 #include <cmath>
 
-#include "render/base/setup_node.h"
+#include "render/setup/setup_node.h"
 
 /// Formatting of setup values as TOML.
 namespace gladstone {

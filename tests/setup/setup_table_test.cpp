@@ -1,4 +1,4 @@
-#include "render/base/setup_table.h"
+#include "render/setup/setup_table.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "render/base/setup_node.h"
+#include "render/setup/setup_node.h"
 
 namespace gladstone {
 namespace {

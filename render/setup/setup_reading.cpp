@@ -1,4 +1,4 @@
-#include "render/base/setup_reading.h"
+#include "render/setup/setup_reading.h"
 
 #include <algorithm>
 #include <cmath>
