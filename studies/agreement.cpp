@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "render/base/contracts.h"
-#include "render/base/fields/field_file.h"
+#include "render/files/fields/field_file.h"
 #include "studies/scene_renderer.h"
 
 namespace gladstone {

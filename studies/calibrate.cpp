@@ -6,9 +6,9 @@
 #include <filesystem>
 #include <stdexcept>
 
-#include "render/base/hdf5_file.h"
-#include "render/base/image_file.h"
 #include "render/base/units.h"
+#include "render/files/hdf5_file.h"
+#include "render/files/image_file.h"
 #include "render/light/calibration_target.h"
 #include "render/scene/build_camera.h"
 #include "render/scene/calibration_planes.h"

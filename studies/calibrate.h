@@ -9,7 +9,7 @@
 #include "analysis/calibration/grid_assignment.h"
 #include "analysis/calibration/pinhole_fit.h"
 #include "analysis/calibration/soloff_fit.h"
-#include "render/base/source_files.h"
+#include "render/files/source_files.h"
 
 namespace gladstone {
 

@@ -8,10 +8,10 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "render/base/image_file.h"
-#include "render/base/output_file.h"
 #include "render/base/random.h"
 #include "render/base/units.h"
+#include "render/files/image_file.h"
+#include "render/files/output_file.h"
 #include "render/scene/calibration_planes.h"
 #include "studies/case_warnings.h"
 #include "studies/json_text.h"

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "render/base/hdf5_file.h"
+#include "render/files/hdf5_file.h"
 #include "studies/case.h"
 
 namespace gladstone {

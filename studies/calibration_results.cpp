@@ -4,8 +4,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "render/base/hdf5_file.h"
 #include "render/base/units.h"
+#include "render/files/hdf5_file.h"
 #include "studies/calibrate.h"
 #include "studies/figures/gnuplot.h"
 #include "studies/flat_values.h"

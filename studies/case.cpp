@@ -5,8 +5,8 @@
 
 #include <algorithm>
 
-#include "render/base/text_encoding.h"
 #include "render/base/units.h"
+#include "render/files/text_encoding.h"
 #include "render/focused_dots/focused_dots.h"
 #include "render/ideal_images/ideal_images.h"
 #include "render/scene/field_coverage.h"

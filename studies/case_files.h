@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "render/base/folder_replacement.h"
+#include "render/files/folder_replacement.h"
 
 namespace gladstone {
 

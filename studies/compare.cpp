@@ -10,7 +10,7 @@
 #include "analysis/correlation/standard_correlator.h"
 #include "analysis/errors/deformed_window_truth.h"
 #include "render/base/error.h"
-#include "render/base/stop_point.h"
+#include "render/files/stop_point.h"
 #include "render/rays/rays_renderer.h"
 #include "render/scene/build_camera.h"
 #include "render/sensor/detector.h"

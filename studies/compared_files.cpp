@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "render/base/error.h"
-#include "render/base/hdf5_file.h"
-#include "render/base/input_file.h"
+#include "render/files/hdf5_file.h"
+#include "render/files/input_file.h"
 #include "studies/case.h"
 
 namespace gladstone {

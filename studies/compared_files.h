@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "render/base/source_files.h"
+#include "render/files/source_files.h"
 
 namespace gladstone {
 

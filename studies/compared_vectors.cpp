@@ -9,8 +9,8 @@
 
 #include "analysis/errors/scattered_grid.h"
 #include "render/base/error.h"
-#include "render/base/hdf5_file.h"
-#include "render/base/source_files.h"
+#include "render/files/hdf5_file.h"
+#include "render/files/source_files.h"
 
 namespace gladstone {
 namespace {

@@ -6,7 +6,7 @@
 #include "analysis/correlation/correlation_settings.h"
 #include "render/base/displacement_field.h"
 #include "render/base/image.h"
-#include "render/base/source_files.h"
+#include "render/files/source_files.h"
 #include "studies/device.h"
 
 namespace gladstone {

@@ -9,9 +9,9 @@
 
 #include "analysis/errors/scattered_grid.h"
 #include "render/base/error.h"
-#include "render/base/output_file.h"
-#include "render/base/output_folder.h"
 #include "render/base/units.h"
+#include "render/files/output_file.h"
+#include "render/files/output_folder.h"
 #include "studies/case.h"
 #include "studies/compare.h"
 #include "studies/correlate.h"

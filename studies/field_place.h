@@ -3,8 +3,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "render/base/fields/field_file.h"
 #include "render/base/vec.h"
+#include "render/files/fields/field_file.h"
 
 namespace gladstone {
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "render/base/fields/field_file.h"
 #include "render/base/vec.h"
+#include "render/files/fields/field_file.h"
 
 namespace gladstone {
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "analysis/errors/error_summary.h"
-#include "render/base/image_file.h"
+#include "render/files/image_file.h"
 #include "studies/case_files.h"
 #include "studies/demo.h"
 #include "studies/figures/gnuplot.h"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "render/base/image_file.h"
+#include "render/files/image_file.h"
 
 namespace gladstone {
 namespace {

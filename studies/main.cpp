@@ -13,11 +13,11 @@
 #include <string_view>
 
 #include "render/base/error.h"
-#include "render/base/input_guard.h"
 #include "render/base/interrupt.h"
 #include "render/base/nearest_name.h"
 #include "render/base/parallel.h"
 #include "render/base/progress.h"
+#include "render/files/input_guard.h"
 #include "studies/commands/arguments.h"
 #include "studies/commands/command.h"
 #include "studies/commands/run_warnings.h"

@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "render/base/hdf5_file.h"
+#include "render/files/hdf5_file.h"
 #include "render/scene/ground_truth.h"
 #include "render/scene/scene.h"
 

@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "render/base/partial.h"
+#include "render/files/partial.h"
 
 namespace gladstone {
 

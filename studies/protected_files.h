@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "render/base/input_guard.h"
+#include "render/files/input_guard.h"
 
 namespace gladstone {
 

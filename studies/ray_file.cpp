@@ -10,8 +10,8 @@
 #include "render/base/interrupt.h"
 #include "render/base/not_a_number.h"
 #include "render/base/parallel.h"
-#include "render/base/text_file.h"
 #include "render/base/units.h"
+#include "render/files/text_file.h"
 #include "render/scene/trace_ray.h"
 
 namespace gladstone {

@@ -7,9 +7,9 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "render/base/output_file.h"
-#include "render/base/output_folder.h"
-#include "render/base/text_file.h"
+#include "render/files/output_file.h"
+#include "render/files/output_folder.h"
+#include "render/files/text_file.h"
 #include "render/setup/setup_node.h"
 #include "studies/calibration_case.h"
 #include "studies/json_text.h"

@@ -5,8 +5,8 @@
 #include <filesystem>
 
 #include "render/base/error.h"
-#include "render/base/hdf5_file.h"
-#include "render/base/sha256.h"
+#include "render/files/hdf5_file.h"
+#include "render/files/sha256.h"
 #include "studies/version_text.h"
 
 namespace gladstone {

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "render/base/hdf5_file.h"
+#include "render/files/hdf5_file.h"
 #include "render/scene/field_map.h"
 #include "render/scene/ground_truth.h"
 #include "render/scene/ray_plan.h"

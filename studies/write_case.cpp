@@ -7,11 +7,11 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "render/base/image_file.h"
-#include "render/base/output_file.h"
-#include "render/base/output_folder.h"
 #include "render/base/parallel.h"
-#include "render/base/stop_point.h"
+#include "render/files/image_file.h"
+#include "render/files/output_file.h"
+#include "render/files/output_folder.h"
+#include "render/files/stop_point.h"
 #include "render/focused_dots/table_error.h"
 #include "render/scene/particle_scene.h"
 #include "render/sensor/detector.h"

@@ -6,10 +6,10 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "render/base/image_file.h"
-#include "render/base/output_file.h"
-#include "render/base/output_folder.h"
 #include "render/base/units.h"
+#include "render/files/image_file.h"
+#include "render/files/output_file.h"
+#include "render/files/output_folder.h"
 #include "studies/case.h"
 #include "studies/json_text.h"
 #include "studies/plenoptic_views.h"

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "render/base/error.h"
-#include "render/base/image_file.h"
+#include "render/files/image_file.h"
 
 namespace gladstone {
 

@@ -11,7 +11,7 @@
 
 #include "analysis/vectors/vector_readers/vector_readers.h"
 #include "render/base/not_a_number.h"
-#include "render/base/output_file.h"
+#include "render/files/output_file.h"
 
 namespace gladstone {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "render/base/displacement_field.h"
-#include "render/base/hdf5_file.h"
+#include "render/files/hdf5_file.h"
 
 namespace gladstone {
 

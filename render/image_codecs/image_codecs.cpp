@@ -1,4 +1,4 @@
-#include "render/base/image_codecs.h"
+#include "render/files/image_codecs.h"
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>

@@ -8,10 +8,10 @@
 #include <tuple>
 
 #include "render/base/error.h"
-#include "render/base/image_file.h"
 #include "render/base/interrupt.h"
-#include "render/base/text_file.h"
 #include "render/base/units.h"
+#include "render/files/image_file.h"
+#include "render/files/text_file.h"
 
 namespace gladstone {
 namespace {

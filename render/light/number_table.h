@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "render/base/text_file.h"
+#include "render/files/text_file.h"
 
 namespace gladstone {
 

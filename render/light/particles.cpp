@@ -9,8 +9,8 @@
 #include "render/base/parallel.h"
 #include "render/base/progress.h"
 #include "render/base/random_variates.h"
-#include "render/base/text_file.h"
 #include "render/base/units.h"
+#include "render/files/text_file.h"
 #include "render/light/number_table.h"
 
 namespace gladstone {

@@ -6,10 +6,10 @@
 
 #include "render/base/available_memory.h"
 #include "render/base/error.h"
-#include "render/base/fields/field_axes.h"
-#include "render/base/fields/spline_prefilter.h"
 #include "render/base/parallel.h"
 #include "render/base/units.h"
+#include "render/files/fields/field_axes.h"
+#include "render/files/fields/spline_prefilter.h"
 #include "render/light/existing_file.h"
 #include "render/light/flow.h"
 #include "render/setup/setup_table.h"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "render/base/fields/field_file.h"
+#include "render/files/fields/field_file.h"
 #include "render/light/flows/file.h"
 
 namespace gladstone {

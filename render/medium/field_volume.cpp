@@ -7,8 +7,8 @@
 #include <limits>
 
 #include "render/base/error.h"
-#include "render/base/fields/field_file.h"
 #include "render/base/units.h"
+#include "render/files/fields/field_file.h"
 
 namespace gladstone {
 namespace {

@@ -5,8 +5,8 @@
 #include <filesystem>
 
 #include "render/base/contracts.h"
-#include "render/base/fields/field_axes.h"
 #include "render/base/units.h"
+#include "render/files/fields/field_axes.h"
 #include "render/medium/gladstone_dale.h"
 #include "render/setup/setup_table.h"
 

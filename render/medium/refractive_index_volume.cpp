@@ -5,9 +5,9 @@
 #include <limits>
 #include <mutex>
 
-#include "render/base/fields/spline_prefilter.h"
 #include "render/base/parallel.h"
 #include "render/base/progress.h"
+#include "render/files/fields/spline_prefilter.h"
 
 namespace gladstone {
 namespace {

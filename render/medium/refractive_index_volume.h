@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include "render/base/fields/interpolation.h"
 #include "render/base/lanes.h"
 #include "render/base/regular_grid.h"
+#include "render/files/fields/interpolation.h"
 #include "render/medium/index_sample.h"
 
 namespace gladstone {

@@ -11,9 +11,9 @@
 
 #include "render/base/error.h"
 #include "render/base/nearest_name.h"
-#include "render/base/text_encoding.h"
-#include "render/base/text_file.h"
 #include "render/base/units.h"
+#include "render/files/text_encoding.h"
+#include "render/files/text_file.h"
 #include "render/optics/agf.h"
 #include "render/optics/glass_name.h"
 #include "render/optics/shipped_catalogue.h"

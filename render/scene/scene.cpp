@@ -7,10 +7,10 @@
 
 #include "render/base/available_memory.h"
 #include "render/base/error.h"
-#include "render/base/fields/field_file.h"
 #include "render/base/interrupt.h"
 #include "render/base/not_a_number.h"
 #include "render/base/units.h"
+#include "render/files/fields/field_file.h"
 #include "render/light/calibration_target.h"
 #include "render/scene/build_camera.h"
 #include "render/scene/particle_scene.h"

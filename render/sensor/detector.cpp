@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "render/base/error.h"
-#include "render/base/image_file.h"
 #include "render/base/parallel.h"
+#include "render/files/image_file.h"
 
 namespace gladstone {
 namespace {

@@ -7,7 +7,7 @@
 #include <tuple>
 
 #include "render/base/nearest_name.h"
-#include "render/base/text_file.h"
+#include "render/files/text_file.h"
 #include "render/setup/setup_state.h"
 
 namespace gladstone {

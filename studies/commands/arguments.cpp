@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "render/base/nearest_name.h"
-#include "render/base/text_file.h"
+#include "render/files/text_file.h"
 
 namespace gladstone {
 namespace {

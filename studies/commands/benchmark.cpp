@@ -8,9 +8,9 @@
 
 #include "analysis/vectors/vector_file.h"
 #include "render/base/error.h"
-#include "render/base/output_file.h"
-#include "render/base/output_place.h"
-#include "render/base/text_file.h"
+#include "render/files/output_file.h"
+#include "render/files/output_place.h"
+#include "render/files/text_file.h"
 #include "studies/benchmark/benchmark_run.h"
 #include "studies/commands/arguments.h"
 #include "studies/commands/command.h"

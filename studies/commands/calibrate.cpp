@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "render/base/output_folder.h"
+#include "render/files/output_folder.h"
 #include "studies/cameras.h"
 #include "studies/case_files.h"
 #include "studies/commands/command.h"

@@ -8,9 +8,9 @@
 #include <filesystem>
 #include <optional>
 
-#include "render/base/output_file.h"
-#include "render/base/output_folder.h"
-#include "render/base/partial.h"
+#include "render/files/output_file.h"
+#include "render/files/output_folder.h"
+#include "render/files/partial.h"
 #include "studies/commands/arguments.h"
 #include "studies/commands/command.h"
 #include "studies/error_report.h"

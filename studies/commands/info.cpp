@@ -7,9 +7,9 @@
 #include <nlohmann/json.hpp>
 
 #include "render/base/error.h"
-#include "render/base/fields/field_file.h"
-#include "render/base/image_file.h"
 #include "render/base/vec.h"
+#include "render/files/fields/field_file.h"
+#include "render/files/image_file.h"
 #include "studies/commands/arguments.h"
 #include "studies/commands/command.h"
 #include "studies/commands/info_lens.h"

@@ -15,7 +15,7 @@
 #include "render/base/error.h"
 #include "render/base/parallel.h"
 #include "render/base/progress.h"
-#include "render/base/stop_point.h"
+#include "render/files/stop_point.h"
 #include "studies/commands/arguments.h"
 #include "studies/commands/sweep_slurm.h"
 #include "studies/json_text.h"

@@ -4,9 +4,9 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include "render/base/output_file.h"
-#include "render/base/source_files.h"
-#include "render/base/stop_point.h"
+#include "render/files/output_file.h"
+#include "render/files/source_files.h"
+#include "render/files/stop_point.h"
 #include "studies/case.h"
 #include "studies/commands/arguments.h"
 #include "studies/commands/command.h"

@@ -3,8 +3,8 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 
-#include "render/base/output_file.h"
 #include "render/base/units.h"
+#include "render/files/output_file.h"
 #include "studies/case_files.h"
 #include "studies/commands/arguments.h"
 #include "studies/commands/command.h"

@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "render/base/error.h"
-#include "render/base/output_file.h"
+#include "render/files/output_file.h"
 #include "render/medium/field_volume.h"
 #include "studies/case_files.h"
 #include "studies/design/answer_text.h"

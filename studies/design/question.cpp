@@ -6,8 +6,8 @@
 #include <filesystem>
 
 #include "render/base/nearest_name.h"
-#include "render/base/text_file.h"
 #include "render/base/units.h"
+#include "render/files/text_file.h"
 #include "studies/design/solve.h"
 
 namespace gladstone {

@@ -19,7 +19,7 @@
 #include "render/base/contracts.h"
 #include "render/base/error.h"
 #include "render/base/interrupt.h"
-#include "render/base/output_file.h"
+#include "render/files/output_file.h"
 
 extern char** environ;
 

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "render/base/text_file.h"
+#include "render/files/text_file.h"
 #include "studies/design/sheet.h"
 #include "studies/expected_particles.h"
 #include "studies/figures/design_map.h"

@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "render/base/base64.h"
+#include "render/files/base64.h"
 #include "studies/report/embedded_text.h"
 #include "studies/report/report_page.h"
 

@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "render/base/contracts.h"
-#include "render/base/output_file.h"
+#include "render/files/output_file.h"
 
 namespace gladstone {
 namespace {

@@ -11,8 +11,8 @@
 #include "analysis/vectors/vector_file.h"
 #include "analysis/vectors/vector_screening.h"
 #include "render/base/error.h"
-#include "render/base/hdf5_file.h"
-#include "render/base/image_file.h"
+#include "render/files/hdf5_file.h"
+#include "render/files/image_file.h"
 #include "studies/case_files.h"
 #include "studies/compared_vectors.h"
 

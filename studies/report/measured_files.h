@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "render/base/displacement_field.h"
-#include "render/base/source_files.h"
+#include "render/files/source_files.h"
 #include "render/scene/setup.h"
 #include "studies/report/report.h"
 

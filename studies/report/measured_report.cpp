@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "analysis/errors/error_summary.h"
-#include "render/base/text_file.h"
+#include "render/files/text_file.h"
 #include "studies/design/measurement_inputs.h"
 #include "studies/design/sheet.h"
 #include "studies/report/bench_view.h"

@@ -6,7 +6,7 @@
 #include <filesystem>
 
 #include "render/base/error.h"
-#include "render/base/output_file.h"
+#include "render/files/output_file.h"
 #include "studies/case_files.h"
 #include "studies/figures/gnuplot.h"
 #include "studies/sweep/manifest.h"

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "render/base/source_files.h"
+#include "render/files/source_files.h"
 #include "studies/device.h"
 #include "studies/report/report_page.h"
 

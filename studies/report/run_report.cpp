@@ -6,8 +6,8 @@
 
 #include "analysis/errors/error_summary.h"
 #include "render/base/error.h"
-#include "render/base/source_files.h"
-#include "render/base/text_file.h"
+#include "render/files/source_files.h"
+#include "render/files/text_file.h"
 #include "studies/case_files.h"
 #include "studies/figures/study_axes.h"
 #include "studies/figures/study_figures.h"

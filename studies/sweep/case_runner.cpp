@@ -11,10 +11,10 @@
 #include <span>
 
 #include "analysis/vectors/vector_file.h"
-#include "render/base/content_hash.h"
 #include "render/base/not_a_number.h"
-#include "render/base/output_file.h"
-#include "render/base/output_folder.h"
+#include "render/files/content_hash.h"
+#include "render/files/output_file.h"
+#include "render/files/output_folder.h"
 #include "render/focused_dots/focused_dots.h"
 #include "render/setup/setup_node.h"
 #include "studies/case_warnings.h"

@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "render/base/error.h"
-#include "render/base/file_lock.h"
+#include "render/files/file_lock.h"
 #include "studies/sweep/manifest.h"
 
 namespace gladstone {

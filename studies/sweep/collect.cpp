@@ -6,10 +6,10 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "render/base/hdf5_file.h"
-#include "render/base/input_guard.h"
-#include "render/base/output_file.h"
-#include "render/base/text_file.h"
+#include "render/files/hdf5_file.h"
+#include "render/files/input_guard.h"
+#include "render/files/output_file.h"
+#include "render/files/text_file.h"
 #include "studies/sweep/study_columns.h"
 #include "studies/sweep/study_points.h"
 

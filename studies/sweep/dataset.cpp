@@ -10,11 +10,11 @@
 #include <vector>
 
 #include "render/base/error.h"
-#include "render/base/hdf5_file.h"
-#include "render/base/image_file.h"
-#include "render/base/output_place.h"
 #include "render/base/progress.h"
-#include "render/base/text_file.h"
+#include "render/files/hdf5_file.h"
+#include "render/files/image_file.h"
+#include "render/files/output_place.h"
+#include "render/files/text_file.h"
 #include "studies/case.h"
 #include "studies/case_files.h"
 #include "studies/compared_files.h"

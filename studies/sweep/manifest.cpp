@@ -10,8 +10,8 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "render/base/content_hash.h"
 #include "render/base/error.h"
+#include "render/files/content_hash.h"
 
 namespace gladstone {
 namespace {

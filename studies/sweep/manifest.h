@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "render/base/input_file.h"
+#include "render/files/input_file.h"
 
 namespace gladstone {
 

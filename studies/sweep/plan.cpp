@@ -12,14 +12,14 @@
 #include <optional>
 
 #include "render/base/error.h"
-#include "render/base/input_file.h"
-#include "render/base/input_guard.h"
 #include "render/base/interrupt.h"
-#include "render/base/output_file.h"
 #include "render/base/parallel.h"
-#include "render/base/partial.h"
 #include "render/base/progress.h"
-#include "render/base/text_file.h"
+#include "render/files/input_file.h"
+#include "render/files/input_guard.h"
+#include "render/files/output_file.h"
+#include "render/files/partial.h"
+#include "render/files/text_file.h"
 #include "studies/sweep/claims.h"
 #include "studies/sweep/results.h"
 

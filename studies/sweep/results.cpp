@@ -17,11 +17,11 @@
 #include <sstream>
 #include <system_error>
 
-#include "render/base/content_hash.h"
 #include "render/base/error.h"
-#include "render/base/partial.h"
-#include "render/base/stop_point.h"
-#include "render/base/text_file.h"
+#include "render/files/content_hash.h"
+#include "render/files/partial.h"
+#include "render/files/stop_point.h"
+#include "render/files/text_file.h"
 #include "studies/version_text.h"
 
 namespace gladstone {

@@ -10,7 +10,7 @@
 
 #include "render/base/error.h"
 #include "render/base/interrupt.h"
-#include "render/base/stop_point.h"
+#include "render/files/stop_point.h"
 #include "studies/sweep/case_list.h"
 #include "studies/sweep/claims.h"
 

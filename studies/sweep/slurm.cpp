@@ -21,10 +21,10 @@
 #include <thread>
 
 #include "render/base/error.h"
-#include "render/base/input_guard.h"
 #include "render/base/interrupt.h"
-#include "render/base/output_file.h"
 #include "render/base/progress.h"
+#include "render/files/input_guard.h"
+#include "render/files/output_file.h"
 
 extern char** environ;
 

@@ -14,7 +14,7 @@
 #include "render/base/error.h"
 #include "render/base/nearest_name.h"
 #include "render/base/sobol.h"
-#include "render/base/text_file.h"
+#include "render/files/text_file.h"
 #include "render/setup/setup_table.h"
 
 namespace gladstone {

@@ -11,12 +11,12 @@
 #include <utility>
 
 #include "analysis/correlation/correlation_settings.h"
-#include "render/base/content_hash.h"
 #include "render/base/error.h"
 #include "render/base/parallel.h"
 #include "render/base/progress.h"
 #include "render/base/random.h"
 #include "render/base/sobol.h"
+#include "render/files/content_hash.h"
 #include "studies/case.h"
 
 namespace gladstone {

@@ -15,7 +15,7 @@
 
 #include "render/base/error.h"
 #include "render/base/interrupt.h"
-#include "render/base/stop_point.h"
+#include "render/files/stop_point.h"
 
 namespace gladstone {
 namespace {

@@ -10,8 +10,8 @@
 
 #include "analysis/correlation/correlator.h"
 #include "render/base/error.h"
-#include "render/base/image_file.h"
 #include "render/base/units.h"
+#include "render/files/image_file.h"
 #include "studies/benchmark/particle_pair.h"
 
 namespace gladstone {

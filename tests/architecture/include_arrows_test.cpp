@@ -65,9 +65,12 @@ TEST(IncludeArrows, SeeAnIncludeAfterSlashesInAString) {
 
 TEST(IncludeArrows, AllowWhatTheTableHas) {
   EXPECT_THAT(
-      forbidden_arrows("render/base/a.h", "#include <cmath>\n#include <Eigen/Core>\n#include \"render/base/b.h\"\n"),
+      forbidden_arrows("render/base/a.h", "#include <cmath>\n#include <immintrin.h>\n#include \"render/base/b.h\"\n"),
       IsEmpty());
-  EXPECT_THAT(forbidden_arrows("render/base/a.cpp", "#include <hdf5.h>\n#include <tbb/parallel_for.h>\n"), IsEmpty());
+  EXPECT_THAT(forbidden_arrows("render/base/a.cpp", "#include <tbb/parallel_for.h>\n"), IsEmpty());
+  EXPECT_THAT(forbidden_arrows("render/files/a.cpp", "#include <hdf5.h>\n#include \"render/base/vec.h\"\n"), IsEmpty());
+  EXPECT_THAT(forbidden_arrows("render/light/a.cpp", "#include <Eigen/Core>\n#include \"render/files/b.h\"\n"),
+              IsEmpty());
   EXPECT_THAT(forbidden_arrows("render/setup/a.cpp", "#include <toml++/toml.h>\n#include \"render/base/vec.h\"\n"),
               IsEmpty());
   EXPECT_THAT(forbidden_arrows("render/scene/a.h", "#include \"render/optics/b.h\"\n#include \"render/medium/c.h\"\n"),
@@ -104,8 +107,11 @@ INSTANTIATE_TEST_SUITE_P(
     IncludeArrows, ForbiddenArrow,
     testing::Values(
         Planted{"render/base/a.h", "\"render/medium/b.h\""},  // upwards
-        Planted{"render/base/a.h", "<hdf5.h>"},               // libraries that headers do not show
-        Planted{"render/base/a.h", "<OpenImageIO/imageio.h>"}, Planted{"render/setup/a.h", "<toml++/toml.h>"},
+        Planted{"render/files/a.h", "<hdf5.h>"},              // libraries that headers do not show
+        Planted{"render/base/a.cpp", "<hdf5.h>"}, Planted{"render/base/a.h", "<Eigen/Core>"},
+        Planted{"render/base/a.cpp", "\"render/files/b.h\""}, Planted{"render/files/a.cpp", "\"render/setup/b.h\""},
+        Planted{"render/setup/a.cpp", "\"render/files/b.h\""}, Planted{"render/files/a.cpp", "\"render/medium/b.h\""},
+        Planted{"render/files/a.h", "<OpenImageIO/imageio.h>"}, Planted{"render/setup/a.h", "<toml++/toml.h>"},
         Planted{"render/base/a.cpp", "<toml++/toml.h>"}, Planted{"render/base/a.cpp", "\"render/setup/b.h\""},
         Planted{"render/setup/a.cpp", "\"render/light/b.h\""}, Planted{"analysis/vectors/a.h", "\"render/setup/b.h\""},
         Planted{"render/base/a.h", "<tbb/parallel_for.h>"}, Planted{"render/base/a.h", "<fmt/format.h>"},
@@ -113,7 +119,7 @@ INSTANTIATE_TEST_SUITE_P(
         Planted{"render/light/a.h", "\"render/medium/b.h\""},  // the four meet in scene
         Planted{"render/medium/a.h", "\"render/optics/b.h\""}, Planted{"render/optics/a.h", "\"render/sensor/b.h\""},
         Planted{"render/sensor/a.cpp", "\"render/light/b.h\""}, Planted{"render/optics/a.h", "\"render/scene/b.h\""},
-        Planted{"render/medium/a.cpp", "<hdf5.h>"},                  // through base alone
+        Planted{"render/medium/a.cpp", "<hdf5.h>"},                  // through render/files alone
         Planted{"render/scene/a.h", "\"render/focused_dots/b.h\""},  // the two renderers know the scene, not each other
         Planted{"render/rays/a.h", "\"render/focused_dots/b.h\""},
         Planted{"render/focused_dots/a.h", "\"render/rays/b.h\""},
@@ -155,7 +161,7 @@ TEST(Tree, HasOnlyTheArrowsOfTheTable) {
 
 // An exception that is no longer needed must be removed from the list, and the limit lowered with it.
 TEST(Tree, NeedsEveryExceptionToTheTable) {
-  EXPECT_LE(known_exceptions().size(), 2U);
+  EXPECT_LE(known_exceptions().size(), 3U);
   for (Exception const& exception : known_exceptions()) {
     std::ifstream in(std::filesystem::path(GLADSTONE_SOURCE_DIR) / exception.file);
     std::string const text((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());

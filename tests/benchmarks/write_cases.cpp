@@ -5,8 +5,8 @@
 #include <exception>
 #include <string>
 
-#include "render/base/output_file.h"
 #include "render/base/units.h"
+#include "render/files/output_file.h"
 #include "tests/benchmarks/bench_scenes.h"
 
 namespace gladstone::bench {

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <string>
 
-#include "render/base/image_file.h"
+#include "render/files/image_file.h"
 #include "render/focused_dots/deflection_map.h"
 #include "render/focused_dots/owned_dot_model.h"
 #include "tests/cuda/cuda_renderer_fixture.h"

@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "render/base/source_files.h"
+#include "render/files/source_files.h"
 #include "tests/end_to_end/support/workplace.h"
 
 namespace gladstone::end_to_end {

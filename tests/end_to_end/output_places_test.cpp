@@ -3,7 +3,7 @@
 #include <sys/prctl.h>
 #include <sys/stat.h>
 
-#include "render/base/partial.h"
+#include "render/files/partial.h"
 #include "tests/end_to_end/support/workplace.h"
 
 namespace gladstone::end_to_end {

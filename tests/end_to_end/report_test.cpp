@@ -3,7 +3,7 @@
 #include <map>
 #include <sstream>
 
-#include "render/base/source_files.h"
+#include "render/files/source_files.h"
 #include "tests/end_to_end/support/workplace.h"
 
 namespace gladstone::end_to_end {

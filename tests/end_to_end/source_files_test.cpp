@@ -1,4 +1,4 @@
-#include "render/base/source_files.h"
+#include "render/files/source_files.h"
 
 #include <fmt/format.h>
 

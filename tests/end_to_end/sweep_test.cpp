@@ -7,8 +7,8 @@
 #include <set>
 #include <thread>
 
-#include "render/base/content_hash.h"
-#include "render/base/image_file.h"
+#include "render/files/content_hash.h"
+#include "render/files/image_file.h"
 #include "studies/sweep/claims.h"
 #include "tests/end_to_end/support/workplace.h"
 

@@ -3,8 +3,8 @@
 #include <array>
 #include <cmath>
 
-#include "render/base/hdf5_file.h"
 #include "render/base/units.h"
+#include "render/files/hdf5_file.h"
 #include "tests/scene/small_scenes.h"
 
 namespace gladstone {

@@ -1,4 +1,4 @@
-#include "render/base/content_hash.h"
+#include "render/files/content_hash.h"
 #include "studies/sweep/results.h"
 #include "tests/fuzz/input.h"
 

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "render/base/fields/field_file.h"
-#include "render/base/fields/resampled_field.h"
+#include "render/files/fields/field_file.h"
+#include "render/files/fields/resampled_field.h"
 
 namespace gladstone::fuzz {
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "analysis/vectors/vector_file.h"
-#include "render/base/source_files.h"
+#include "render/files/source_files.h"
 #include "studies/truth_file.h"
 #include "tests/fuzz/fields.h"
 #include "tests/fuzz/input.h"

@@ -1,4 +1,4 @@
-#include "render/base/image_file.h"
+#include "render/files/image_file.h"
 #include "tests/fuzz/input.h"
 
 using namespace gladstone;

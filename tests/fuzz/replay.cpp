@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "render/base/text_file.h"
+#include "render/files/text_file.h"
 #include "tests/fuzz/input.h"
 
 int main(int argc, char** argv) {

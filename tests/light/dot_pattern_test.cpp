@@ -9,7 +9,7 @@
 #include <fstream>
 
 #include "render/base/error.h"
-#include "render/base/image_file.h"
+#include "render/files/image_file.h"
 
 namespace gladstone {
 namespace {

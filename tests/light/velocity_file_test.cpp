@@ -6,8 +6,8 @@
 #include <functional>
 
 #include "render/base/error.h"
-#include "render/base/hdf5_file.h"
 #include "render/base/units.h"
+#include "render/files/hdf5_file.h"
 #include "render/light/flow.h"
 
 namespace gladstone {

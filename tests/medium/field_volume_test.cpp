@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "render/base/error.h"
-#include "render/base/hdf5_file.h"
+#include "render/files/hdf5_file.h"
 
 namespace gladstone {
 namespace {

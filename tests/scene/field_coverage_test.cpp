@@ -6,7 +6,7 @@
 #include <cmath>
 #include <filesystem>
 
-#include "render/base/hdf5_file.h"
+#include "render/files/hdf5_file.h"
 #include "tests/scene/small_scenes.h"
 
 namespace gladstone {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "render/base/error.h"
-#include "render/base/image_file.h"
+#include "render/files/image_file.h"
 #include "render/sensor/detector.h"
 #include "render/setup/setup_table.h"
 

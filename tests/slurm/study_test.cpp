@@ -1,7 +1,7 @@
 #include <csignal>
 #include <functional>
 
-#include "render/base/hdf5_file.h"
+#include "render/files/hdf5_file.h"
 #include "studies/sweep/claims.h"
 #include "tests/end_to_end/support/workplace.h"
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <filesystem>
 
-#include "render/base/hdf5_file.h"
 #include "render/base/units.h"
+#include "render/files/hdf5_file.h"
 #include "render/scene/field_map.h"
 #include "render/scene/scene.h"
 #include "studies/design/sheet.h"

@@ -10,7 +10,7 @@
 #include <string>
 
 #include "render/base/error.h"
-#include "render/base/image_file.h"
+#include "render/files/image_file.h"
 #include "studies/figures/agreement_figure.h"
 #include "studies/figures/error_figures.h"
 #include "studies/figures/gnuplot.h"

@@ -8,9 +8,9 @@
 #include <functional>
 #include <limits>
 
-#include "render/base/content_hash.h"
-#include "render/base/hdf5_file.h"
-#include "render/base/partial.h"
+#include "render/files/content_hash.h"
+#include "render/files/hdf5_file.h"
+#include "render/files/partial.h"
 #include "studies/sweep/claims.h"
 #include "studies/sweep/collect.h"
 #include "studies/sweep/results.h"

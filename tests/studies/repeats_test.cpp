@@ -2,8 +2,8 @@
 #include <limits>
 #include <random>
 
-#include "render/base/hdf5_file.h"
-#include "render/base/text_file.h"
+#include "render/files/hdf5_file.h"
+#include "render/files/text_file.h"
 #include "studies/sweep/collect.h"
 #include "studies/sweep/study_points.h"
 #include "tests/studies/support/study_folder.h"

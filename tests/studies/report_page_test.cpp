@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "render/base/base64.h"
+#include "render/files/base64.h"
 
 namespace gladstone {
 namespace {

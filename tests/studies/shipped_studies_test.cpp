@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <map>
 
-#include "render/base/text_file.h"
+#include "render/files/text_file.h"
 #include "studies/demo.h"
 #include "studies/sweep/plan.h"
 

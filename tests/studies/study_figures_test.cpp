@@ -10,7 +10,7 @@
 #include <limits>
 #include <sstream>
 
-#include "render/base/image_file.h"
+#include "render/files/image_file.h"
 #include "studies/figures/gnuplot.h"
 #include "studies/figures/study_cells.h"
 

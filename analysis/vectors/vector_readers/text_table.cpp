@@ -7,7 +7,7 @@
 #include "analysis/vectors/vector_readers/text_rows.h"
 #include "render/base/error.h"
 #include "render/base/text.h"
-#include "render/base/text_file.h"
+#include "render/files/text_file.h"
 
 namespace gladstone::detail {
 namespace {

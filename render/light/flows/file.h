@@ -4,9 +4,9 @@
 #include <cmath>
 #include <cstddef>
 
-#include "render/base/fields/interpolation.h"
 #include "render/base/host_device.h"
 #include "render/base/vec.h"
+#include "render/files/fields/interpolation.h"
 
 namespace gladstone {
 

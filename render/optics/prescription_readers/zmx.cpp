@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "render/base/error.h"
-#include "render/base/text_encoding.h"
-#include "render/base/text_file.h"
 #include "render/base/units.h"
+#include "render/files/text_encoding.h"
+#include "render/files/text_file.h"
 #include "render/optics/prescription_readers/lines.h"
 #include "render/optics/prescription_readers/readers.h"
 #include "render/optics/prescription_readers/zmx_apertures.h"

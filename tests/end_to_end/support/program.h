@@ -17,7 +17,7 @@
 #include <thread>
 #include <vector>
 
-#include "render/base/stop_point.h"
+#include "render/files/stop_point.h"
 
 namespace gladstone::end_to_end {
 

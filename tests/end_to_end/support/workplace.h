@@ -8,8 +8,8 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "render/base/hdf5_file.h"
-#include "render/base/image_file.h"
+#include "render/files/hdf5_file.h"
+#include "render/files/image_file.h"
 #include "tests/end_to_end/support/program.h"
 
 namespace gladstone::end_to_end {

@@ -1,0 +1,51 @@
+#include "render/files/fields/field_file.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <filesystem>
+
+#include "render/base/error.h"
+#include "render/base/text.h"
+#include "render/files/fields/oriented_field.h"
+#include "render/files/fields/readers/hdf5.h"
+#include "render/files/fields/readers/nrrd.h"
+#include "render/files/fields/readers/vtk.h"
+#include "render/files/fields/resampled_field.h"
+#include "render/files/input_file.h"
+
+namespace gladstone {
+namespace {
+
+struct FieldFormat {
+  char const* extension;
+  std::unique_ptr<CheckedSource> (*open)(std::string const& path, FieldWish const& wish);
+};
+
+/// Table of formats: file name extension and reader.
+constexpr std::array field_formats{
+    FieldFormat{".h5", open_hdf5},     FieldFormat{".hdf5", open_hdf5},      FieldFormat{".he5", open_hdf5},
+    FieldFormat{".nc", open_hdf5},     FieldFormat{".mat", open_hdf5},       FieldFormat{".vti", open_vtk_xml},
+    FieldFormat{".vtr", open_vtk_xml}, FieldFormat{".vtk", open_vtk_legacy}, FieldFormat{".nrrd", open_nrrd},
+    FieldFormat{".nhdr", open_nrrd},
+};
+
+}  // namespace
+
+std::unique_ptr<FieldSource> open_field(std::string const& path, std::string const& dataset, int values,
+                                        std::string const& axes) {
+  require_input_file(path, "a field file");
+  std::string const extension = lower_case(std::filesystem::path(path).extension().string());
+  std::string known;
+  for (auto const& format : field_formats) {
+    if (extension == format.extension) {
+      auto oriented = std::make_unique<OrientedField>(format.open(path, {dataset, values, axes}));
+      if (oriented->uniform()) return oriented;
+      return std::make_unique<ResampledField>(std::move(oriented));
+    }
+    known += (known.empty() ? "" : ", ") + std::string(format.extension);
+  }
+  throw DataError(path, "is of no format that is read here; known are " + known);
+}
+
+}  // namespace gladstone

@@ -1,0 +1,397 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <memory>
+#include <optional>
+
+#include "render/base/error.h"
+#include "render/base/interrupt.h"
+#include "render/base/nearest_name.h"
+#include "render/base/text.h"
+#include "render/files/fields/readers/vtk.h"
+#include "render/files/fields/readers/vtk_numbers.h"
+#include "render/files/fields/readers/vtk_source.h"
+#include "render/files/input_file.h"
+#include "render/files/text_file.h"
+
+namespace gladstone {
+namespace {
+
+/// Sequential reader of words, lines and bytes of a file.
+class Cursor {
+ public:
+  explicit Cursor(InputFile const& file) : file_(file) {}
+
+  std::uint64_t place() const { return begin_ + at_; }
+  void go_to(std::uint64_t place) {
+    begin_ = place;
+    at_ = 0;
+    buffer_.clear();
+  }
+  int peek() {
+    if (at_ == buffer_.size()) {
+      throw_if_interrupted();
+      begin_ += buffer_.size();
+      at_ = 0;
+      buffer_.resize(std::size_t{1} << 16);
+      buffer_.resize(file_.read(begin_, buffer_.data(), buffer_.size()));
+      if (buffer_.empty()) return -1;
+    }
+    return static_cast<unsigned char>(buffer_[at_]);
+  }
+  int take() {
+    int const c = peek();
+    if (c >= 0) ++at_;
+    return c;
+  }
+  /// Returns the next word; empty at the end of the file. @throws DataError for a word longer than 4096 bytes
+  std::string word() {
+    while (peek() >= 0 && std::isspace(peek()) != 0) take();
+    std::string text;
+    constexpr std::size_t most = 4096;
+    while (peek() >= 0 && std::isspace(peek()) == 0) {
+      text += static_cast<char>(take());
+      if (text.size() > most) throw DataError(file_.path(), "has a word longer than any of a legacy VTK file");
+    }
+    return text;
+  }
+  /// Returns the rest of the line without its end. @throws DataError for a line longer than 64 KiB
+  std::string line() {
+    std::string text;
+    constexpr std::size_t most = 65536;
+    for (int c = take(); c >= 0 && c != '\n'; c = take()) {
+      text += static_cast<char>(c);
+      if (text.size() > most) throw DataError(file_.path(), "has a line longer than any of a legacy VTK file");
+    }
+    if (!text.empty() && text.back() == '\r') text.pop_back();
+    return text;
+  }
+
+ private:
+  InputFile const& file_;
+  std::uint64_t begin_ = 0;
+  std::string buffer_;
+  std::size_t at_ = 0;
+};
+
+/// Array of a legacy file, with the offset of its numbers in the file [bytes].
+struct LegacyArray {
+  std::string name;
+  VtkPlace place = VtkPlace::points;
+  VtkNumber number{};
+  std::uint64_t components = 1, tuples = 0, begin = 0;
+};
+
+/// Decodes a name, in which blanks and other characters are written as %20.
+std::string decoded_name(std::string const& name) {
+  std::string text;
+  for (std::size_t i = 0; i < name.size(); ++i) {
+    int code = 0;
+    bool const coded = name[i] == '%' && i + 2 < name.size() &&
+                       std::from_chars(&name[i + 1], &name[i + 1] + 2, code, 16).ptr == &name[i + 1] + 2;
+    text += coded ? static_cast<char>(code) : name[i];
+    if (coded) i += 2;
+  }
+  return text;
+}
+
+class LegacyReader {
+ public:
+  LegacyReader(std::string const& path, FieldWish const& wish)
+      : file_(std::make_shared<InputFile>(path, "a field file")), cursor_(*file_), wish_(wish) {
+    if (!cursor_.line().starts_with("# vtk DataFile")) refuse("is no legacy VTK file (it does not begin with # vtk)");
+    cursor_.line();  // title
+    std::string const encoding = lower_case(cursor_.word());
+    if (encoding != "ascii" && encoding != "binary") refuse("is said to be neither ASCII nor BINARY; copy it again");
+    text_ = encoding == "ascii";
+    read_grid();
+    read_arrays();
+  }
+
+  VtkField field() && {
+    std::vector<LegacyArray> fitting;
+    std::vector<std::string> names;
+    for (LegacyArray const& array : arrays_) {
+      if (marks_ghosts(array.name) && array.name != wish_.dataset) continue;
+      names.push_back(array.name);
+      bool const fits = array.components == static_cast<std::uint64_t>(wish_.values);
+      if (array.name == wish_.dataset && !fits) {
+        refuse(fmt::format("data array \"{}\" holds {} values a point where {} are needed", excerpt(array.name),
+                           array.components, wish_.values));
+      }
+      if (fits && (wish_.dataset.empty() || array.name == wish_.dataset)) fitting.push_back(array);
+    }
+    if (fitting.empty()) refuse(no_such_array(wish_, names));
+    if (fitting.size() > 1 && wish_.dataset.empty()) {
+      refuse("has several such fields; say which with dataset = " + quoted_list(names));
+    }
+    LegacyArray const& chosen = fitting.front();
+    VtkField field{chosen.name, chosen.place, chosen.number.significant_bits, grid_, {}, {}};
+    if (fitting.size() > 1)
+      field.notes.push_back(fmt::format("\"{}\" is there twice; the first is taken", chosen.name));
+    field.load = [file = file_, chosen, text = text_] { return load(*file, chosen, text); };
+    return field;
+  }
+
+ private:
+  [[noreturn]] void refuse(std::string const& why) const { throw DataError(file_->path(), why); }
+
+  template <class Number>
+  Number number(std::string const& what) {
+    std::string const word = cursor_.word();
+    Number value{};
+    auto const [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    if (error != std::errc() || end != word.data() + word.size()) {
+      refuse(fmt::format("{}: \"{}\" is no number; copy it again", what, excerpt(word)));
+    }
+    return value;
+  }
+
+  VtkNumber number_type(std::string const& name) const {
+    std::string const type = lower_case(name);
+    auto const* const found = std::find_if(vtk_numbers.begin(), vtk_numbers.end(),
+                                           [&type](VtkNumber const& one) { return lower_case(one.legacy) == type; });
+    if (found == vtk_numbers.end()) refuse(fmt::format("has data of type \"{}\", which is no number", excerpt(name)));
+    return *found;
+  }
+
+  void read_grid() {
+    if (lower_case(cursor_.word()) != "dataset") refuse("has no line DATASET; copy it again");
+    std::string const kind = lower_case(cursor_.word());
+    bool const image = kind == "structured_points";
+    if (!image && kind != "rectilinear_grid") {
+      refuse(
+          fmt::format("holds VTK's \"{}\" (fields on a regular grid are read, STRUCTURED_POINTS and "
+                      "RECTILINEAR_GRID); resample it to an image",
+                      excerpt(kind)));
+    }
+    for (std::string key = lower_case(cursor_.word());; key = lower_case(cursor_.word())) {
+      if (key == "dimensions") {
+        for (std::size_t i = 0; i < 3; ++i) {
+          int const points = number<int>("DIMENSIONS");
+          if (points < 1) refuse("DIMENSIONS must be positive");
+          grid_.extent[2 * i + 1] = points - 1;
+        }
+        check_grid(grid_, wish_.values, file_->path());
+      } else if (key == "origin") {
+        for (double& value : grid_.origin) value = number<double>("ORIGIN");
+      } else if (key == "spacing" || key == "aspect_ratio") {
+        for (double& value : grid_.spacing) value = number<double>("SPACING");
+      } else if (key.size() == 13 && key.ends_with("_coordinates") && key[0] >= 'x' && key[0] <= 'z') {
+        read_coordinates(static_cast<std::size_t>(key[0] - 'x'));
+      } else if (key == "field") {
+        read_field(VtkPlace::points, false);
+      } else if (key == "metadata") {
+        skip_metadata();
+      } else {
+        next_key_ = key;
+        break;
+      }
+    }
+    check_grid(grid_, wish_.values, file_->path());
+    if (!image &&
+        std::any_of(grid_.coordinates.begin(), grid_.coordinates.end(), [](auto const& x) { return x.empty(); })) {
+      refuse("has no coordinates of its RECTILINEAR_GRID; copy it again");
+    }
+  }
+
+  void read_coordinates(std::size_t axis) {
+    LegacyArray array;
+    array.name = fmt::format("{}_COORDINATES", "XYZ"[axis]);
+    array.tuples = number<std::uint64_t>(array.name);
+    array.number = number_type(cursor_.word());
+    begin_data(array);
+    ValueStore const values = load(*file_, array, text_);
+    grid_.coordinates[axis].clear();
+    for (std::size_t i = 0; i < values.size(); ++i) grid_.coordinates[axis].push_back(values[i]);
+    skip_data(array);
+  }
+
+  std::uint64_t nodes(VtkPlace place) const {
+    std::uint64_t all = 1;
+    for (std::size_t i = 0; i < 3; ++i) all *= static_cast<std::uint64_t>(VtkGrid::count(grid_.extent, i, place));
+    return all;
+  }
+
+  /// Reads the attributes of points and cells in sequence.
+  void read_arrays() {
+    std::optional<VtkPlace> place;
+    for (std::string key = next_key_; !key.empty(); key = lower_case(cursor_.word())) {
+      if (key == "point_data" || key == "cell_data") {
+        place = key == "point_data" ? VtkPlace::points : VtkPlace::cells;
+        std::uint64_t const there = number<std::uint64_t>(key);
+        if (there != nodes(*place)) {
+          refuse(fmt::format("has {} values in its {} for {} {} of its grid; copy it again", there, key, nodes(*place),
+                             *place == VtkPlace::points ? "points" : "cells"));
+        }
+      } else if (key == "metadata") {
+        skip_metadata();
+      } else if (!place) {
+        refuse(fmt::format("has \"{}\" where POINT_DATA or CELL_DATA is expected; copy it again", excerpt(key)));
+      } else if (!read_attribute(key, *place)) {
+        return;  // the length of an unknown attribute is not defined, so that reading must stop here
+      }
+    }
+  }
+
+  /// Reads one attribute. @return false if it is unknown, so that the next one cannot be found
+  bool read_attribute(std::string const& key, VtkPlace place) {
+    if (key == "field") {
+      read_field(place, true);
+      return true;
+    }
+    LegacyArray array;
+    array.place = place;
+    array.tuples = nodes(place);
+    if (key == "lookup_table") {  // RGBA colours: four bytes each, or numbers in text
+      cursor_.word();
+      array.tuples = number<std::uint64_t>(key);
+      array.components = 4;
+      array.number = number_type(text_ ? "float" : "unsigned_char");
+      begin_data(array);
+      skip_data(array);
+      return true;
+    }
+    array.name = decoded_name(cursor_.word());
+    if (key == "scalars") {
+      array.number = number_type(cursor_.word());
+      std::string const rest = trimmed(cursor_.line());
+      if (!rest.empty() &&
+          std::from_chars(rest.data(), rest.data() + rest.size(), array.components).ec != std::errc()) {
+        refuse(fmt::format("SCALARS {}: \"{}\" is no number of components", excerpt(array.name), excerpt(rest)));
+      }
+      std::string next(12, ' ');
+      next.resize(file_->read(cursor_.place(), next.data(), next.size()));
+      if (lower_case(next) == "lookup_table") {
+        cursor_.word();
+        cursor_.word();
+      } else {
+        cursor_.go_to(cursor_.place() - 1);  // to the preceding line end
+      }
+    } else if (key == "vectors" || key == "normals") {
+      array.number = number_type(cursor_.word());
+      array.components = 3;
+    } else if (key == "tensors") {
+      array.number = number_type(cursor_.word());
+      array.components = 9;
+    } else if (key == "texture_coordinates") {
+      array.components = number<std::uint64_t>(key);
+      array.number = number_type(cursor_.word());
+    } else if (key == "color_scalars") {
+      array.components = number<std::uint64_t>(key);
+      array.number = number_type(text_ ? "float" : "unsigned_char");
+    } else {
+      return false;
+    }
+    begin_data(array);
+    skip_data(array);
+    if (key != "color_scalars") arrays_.push_back(array);
+    return true;
+  }
+
+  void read_field(VtkPlace place, bool kept) {
+    cursor_.word();  // name of the FIELD
+    std::uint64_t const count = number<std::uint64_t>("FIELD");
+    for (std::uint64_t i = 0; i < count; ++i) {
+      LegacyArray array;
+      array.place = place;
+      std::string const name = cursor_.word();
+      if (lower_case(name) == "metadata") {
+        skip_metadata();
+        --i;
+        continue;
+      }
+      if (name.empty()) refuse("is cut short: a FIELD has fewer arrays than it says; copy it again");
+      array.name = decoded_name(name);
+      array.components = number<std::uint64_t>("FIELD");
+      array.tuples = number<std::uint64_t>("FIELD");
+      array.number = number_type(cursor_.word());
+      begin_data(array);
+      skip_data(array);
+      if (kept && array.tuples == nodes(place)) arrays_.push_back(array);
+    }
+  }
+
+  /// Skips METADATA, which ends with an empty line.
+  void skip_metadata() {
+    cursor_.line();
+    while (cursor_.peek() >= 0 && !trimmed(cursor_.line()).empty()) {
+    }
+  }
+
+  void begin_data(LegacyArray& array) {
+    if (!text_) cursor_.line();
+    array.begin = cursor_.place();
+    double const values = static_cast<double>(array.components) * static_cast<double>(array.tuples);
+    double const least = text_ ? 2 * values - 1 : values * static_cast<double>(array.number.bytes);
+    if (least > static_cast<double>(file_->size() - std::min(file_->size(), array.begin))) cut_short(*file_, array);
+  }
+
+  void skip_data(LegacyArray const& array) {
+    if (!text_) {
+      cursor_.go_to(array.begin + array.components * array.tuples * array.number.bytes);
+      return;
+    }
+    for (std::uint64_t i = 0; i < array.components * array.tuples; ++i) {
+      if (cursor_.word().empty()) cut_short(*file_, array);
+    }
+  }
+
+  [[noreturn]] static void cut_short(InputFile const& file, LegacyArray const& array) {
+    throw DataError(file.path(), fmt::format("is cut short: data array \"{}\" ends before its values do; copy it again",
+                                             excerpt(array.name)));
+  }
+
+  static ValueStore load(InputFile const& file, LegacyArray const& array, bool text) {
+    std::size_t const count = array.components * array.tuples;
+    ValueStore values;
+    values.allocate(count, array.number.significant_bits, file.path(), "data array \"" + excerpt(array.name) + '"');
+    if (text) {
+      Cursor cursor(file);
+      cursor.go_to(array.begin);
+      for (std::size_t i = 0; i < count; ++i) {
+        std::string const word = cursor.word();
+        double value = 0;
+        std::size_t const sign = word.starts_with('+') ? 1 : 0;
+        if (std::from_chars(word.data() + sign, word.data() + word.size(), value).ec == std::errc::invalid_argument) {
+          throw DataError(file.path(), fmt::format("data array \"{}\" is damaged ({} of {} numbers are there); copy it "
+                                                   "again",
+                                                   excerpt(array.name), i, count));
+        }
+        values.set(i, value);
+      }
+      return values;
+    }
+    bool const swap = std::endian::native == std::endian::little;  // legacy files are big-endian
+    std::vector<char> bytes(std::min<std::size_t>(count, 1 << 16) * array.number.bytes);
+    for (std::size_t done = 0; done < count;) {
+      throw_if_interrupted();
+      std::size_t const part = std::min(count - done, bytes.size() / array.number.bytes);
+      std::size_t const size = part * array.number.bytes;
+      if (file.read(array.begin + done * array.number.bytes, bytes.data(), size) < size) cut_short(file, array);
+      for (std::size_t i = 0; i < part; ++i) {
+        values.set(done + i, array.number.read(bytes.data() + i * array.number.bytes, swap));
+      }
+      done += part;
+    }
+    return values;
+  }
+
+  std::shared_ptr<InputFile> file_;
+  Cursor cursor_;
+  FieldWish const& wish_;
+  bool text_ = false;
+  VtkGrid grid_;
+  std::string next_key_;
+  std::vector<LegacyArray> arrays_;
+};
+
+}  // namespace
+
+std::unique_ptr<CheckedSource> open_vtk_legacy(std::string const& path, FieldWish const& wish) {
+  return make_vtk_source(path, LegacyReader(path, wish).field(), wish);
+}
+
+}  // namespace gladstone

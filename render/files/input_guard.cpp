@@ -1,0 +1,106 @@
+#include "render/files/input_guard.h"
+
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <mutex>
+#include <set>
+#include <utility>
+
+#include "render/base/error.h"
+#include "render/files/folder_replacement.h"
+
+namespace gladstone {
+namespace {
+
+using FileId = std::pair<dev_t, ino_t>;
+
+struct Record {
+  std::mutex mutex;
+  int guards = 0;
+  std::map<FileId, std::string> inputs;  ///< name by which each input was opened
+  std::set<FileId> outputs;
+  std::vector<ProtectedFiles> results;
+};
+
+Record& record() {
+  static Record all;
+  return all;
+}
+
+thread_local int unguarded = 0;
+thread_local int writing_protected = 0;
+
+FileId id_of(struct stat const& file) { return {file.st_dev, file.st_ino}; }
+
+}  // namespace
+
+InputGuard::InputGuard(std::vector<ProtectedFiles> results) {
+  std::lock_guard const lock(record().mutex);
+  ++record().guards;
+  record().results = std::move(results);
+}
+
+InputGuard::~InputGuard() {
+  std::lock_guard const lock(record().mutex);
+  if (--record().guards > 0) return;
+  record().inputs.clear();
+  record().outputs.clear();
+  record().results.clear();
+}
+
+UnguardedReading::UnguardedReading() { ++unguarded; }
+UnguardedReading::~UnguardedReading() { --unguarded; }
+
+ProtectedWriting::ProtectedWriting() { ++writing_protected; }
+ProtectedWriting::~ProtectedWriting() { --writing_protected; }
+
+void record_input(std::string const& path, struct stat const& file) {
+  if (unguarded > 0) return;
+  std::lock_guard const lock(record().mutex);
+  if (record().guards == 0 || record().outputs.contains(id_of(file))) return;
+  record().inputs.emplace(id_of(file), path);
+}
+
+void record_output(int descriptor) {
+  struct stat file {};
+  if (::fstat(descriptor, &file) != 0) return;
+  std::lock_guard const lock(record().mutex);
+  if (record().guards == 0) return;
+  record().inputs.erase(id_of(file));  // the inode number of a removed input may be reused
+  record().outputs.insert(id_of(file));
+}
+
+void refuse_recorded_input(std::string const& path, std::string const& asked) {
+  struct stat file {};
+  if (::stat(path.c_str(), &file) != 0) return;
+  std::lock_guard const lock(record().mutex);
+  auto const input = record().inputs.find(id_of(file));
+  if (input == record().inputs.end()) return;
+  throw OutputError(asked, "would be overwritten, and is read by this command" +
+                               (asked == input->second ? std::string() : " (as " + input->second + ')') +
+                               "; choose another output");
+}
+
+void refuse_protected_file(std::string const& path, std::string const& asked) {
+  namespace fs = std::filesystem;
+  if (writing_protected > 0) return;
+  std::lock_guard const lock(record().mutex);
+  fs::path folder = path;
+  for (int level = 0; level < 2; ++level) {
+    folder = folder.parent_path();
+    std::string const name = fs::path(path).lexically_relative(folder).string();
+    for (ProtectedFiles const& files : record().results) {
+      std::error_code error;
+      bool const is_there = std::all_of(files.markers.begin(), files.markers.end(),
+                                        [&](std::string const& marker) { return fs::exists(folder / marker, error); });
+      if (!is_there || !is_derived(name, FolderContent{{}, files.names})) continue;
+      throw OutputError(asked, "belongs to the " + files.what + " in " + folder.string() +
+                                   ", and is not written by this command; choose another output");
+    }
+  }
+}
+
+}  // namespace gladstone

@@ -1,0 +1,1276 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <hdf5.h>
+#include <zlib.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <numeric>
+#include <tuple>
+
+#include "render/base/error.h"
+#include "render/files/fields/field_file.h"
+#include "render/files/hdf5_file.h"
+
+namespace gladstone {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+/// A folder of its own for each test.
+class FieldFiles : public testing::Test {
+ protected:
+  void SetUp() override {
+    auto const* const info = testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = fs::path(testing::TempDir()) / (std::string("field_") + info->test_suite_name() + info->name());
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+  std::string in_folder(std::string const& name) const { return (folder_ / name).string(); }
+  fs::path folder_;
+};
+
+std::vector<double> read_all(FieldSource& source) {
+  std::vector<double> values(source.grid().size());
+  source.read_planes(0, source.grid().nodes[2], values);
+  return values;
+}
+
+/// Value 100 z + 10 y + x at node (x, y, z), so that every mix-up of axes shows.
+std::vector<double> numbered(int nx, int ny, int nz) {
+  std::vector<double> values;
+  for (int z = 0; z < nz; ++z) {
+    for (int y = 0; y < ny; ++y) {
+      for (int x = 0; x < nx; ++x) values.push_back(100.0 * z + 10.0 * y + x);
+    }
+  }
+  return values;
+}
+
+/// The numbers in a stored type, in the byte order asked for.
+template <class Stored>
+std::string bytes(std::vector<double> const& values, bool big_endian = false) {
+  std::string text;
+  for (double const value : values) {
+    auto const stored = static_cast<Stored>(value);
+    char raw[sizeof(Stored)];
+    std::memcpy(raw, &stored, sizeof(Stored));
+    if (big_endian == (std::endian::native == std::endian::little)) std::reverse(raw, raw + sizeof(Stored));
+    text.append(raw, sizeof(Stored));
+  }
+  return text;
+}
+
+auto refused(std::string const& file, std::string const& why) {
+  return ThrowsMessage<DataError>(AllOf(HasSubstr(file), HasSubstr(why)));
+}
+
+class JhtdbField : public FieldFiles {
+ protected:
+  using Shape = std::vector<std::size_t>;
+
+  /// One dataset after the other, closed at the end.
+  struct Dataset {
+    std::string name;
+    Shape shape;
+    std::vector<double> values;
+  };
+  std::string write(std::vector<Dataset> const& datasets) {
+    std::string const path = in_folder("cutout.h5");
+    Hdf5Writer writer(path, {"test", 1, "", 0, "cpu"});
+    for (auto const& dataset : datasets) {
+      writer.write(dataset.name, dataset.values, dataset.shape, "1", "test", "z, y, x");
+    }
+    writer.close();
+    return path;
+  }
+  static Dataset density(int nx = 4, int ny = 3, int nz = 2) {
+    return {"Density_0001", Shape{std::size_t(nz), std::size_t(ny), std::size_t(nx), 1}, numbered(nx, ny, nz)};
+  }
+  /// first + i step, rounded to float as in a cut-out.
+  static Dataset axis(std::string const& name, int nodes, double first, double step) {
+    Dataset dataset{name, {std::size_t(nodes)}, {}};
+    for (int i = 0; i < nodes; ++i) dataset.values.push_back(static_cast<float>(first + i * step));
+    return dataset;
+  }
+};
+
+TEST_F(JhtdbField, LayoutWithCoordinatesGivesGridAndValues) {
+  auto const source = open_field(
+      write({density(), axis("xcoor", 4, 1.0, 0.5), axis("ycoor", 3, -2.0, 0.25), axis("zcoor", 2, 0.0, 2.0)}), "");
+  EXPECT_EQ(source->name(), "Density_0001");
+  EXPECT_THAT(source->grid().nodes, ElementsAre(4, 3, 2));
+  // these steps and origins are exact in binary
+  EXPECT_EQ(source->grid().spacing.x, 0.5);
+  EXPECT_EQ(source->grid().spacing.y, 0.25);
+  EXPECT_EQ(source->grid().spacing.z, 2.0);
+  EXPECT_EQ(source->grid().origin.x, 1.0);
+  EXPECT_EQ(source->grid().origin.y, -2.0);
+  EXPECT_EQ(source->grid().origin.z, 0.0);
+  auto const expected = numbered(4, 3, 2);
+  auto const values = read_all(*source);
+  for (std::size_t i = 0; i < values.size(); ++i) EXPECT_EQ(values[i], expected[i]);
+  std::vector<double> plane(12);
+  source->read_planes(1, 1, plane);
+  EXPECT_EQ(plane[1 + 4 * 2], 121.0f);  // x = 1, y = 2 of z = 1
+}
+
+/// A cut-out whose x and y axes name these units.
+TEST_F(JhtdbField, UnitsAreThoseOfTheAttributes) {
+  auto const with_units = [&](std::string const& x_unit, std::string const& y_unit) {
+    std::string const path = in_folder("units.h5");
+    Hdf5Writer writer(path, {"test", 1, "", 0, "cpu"});
+    Dataset const values = density(4, 3, 1);
+    writer.write(values.name, values.values, values.shape, "kg m-3", "test", "z, y, x");
+    writer.write("xcoor", axis("xcoor", 4, 0, 0.5).values, {4}, x_unit, "test", "node");
+    writer.write("ycoor", axis("ycoor", 3, 0, 0.5).values, {3}, y_unit, "test", "node");
+    writer.write("zcoor", axis("zcoor", 1, 0, 0.5).values, {1}, "1", "test", "node");  // a plane has no spacing along z
+    writer.close();
+    return path;
+  };
+  auto const source = open_field(with_units("m", "m"), "Density_0001");
+  EXPECT_TRUE(source->units().spaced);
+  EXPECT_EQ(source->units().length, "m");
+  EXPECT_EQ(source->units().values, "kg m-3");
+  auto const mixed = open_field(with_units("m", "mm"), "Density_0001");  // lengths are in the first axis' unit
+  EXPECT_EQ(mixed->units().length, "m");
+  EXPECT_NEAR(mixed->grid().spacing.x, 0.5, 1e-12);
+  EXPECT_NEAR(mixed->grid().spacing.y, 0.5e-3, 1e-12);
+  EXPECT_EQ(open_field(with_units("m", "furlong"), "")->units().undefined(),
+            "lengths along y are in \"furlong\", which is not a known unit of length");
+  EXPECT_EQ(open_field(with_units("degrees_north", "degrees_north"), "")->units().undefined(),
+            "lengths are in \"degrees_north\", which is not a known unit of length");
+  EXPECT_EQ(open_field(with_units("km", "km"), "")->units().metres(), 1e3);
+  auto const partial = open_field(with_units("1", "m"), "Density_0001");
+  EXPECT_EQ(partial->units().length, "m");
+  EXPECT_EQ(partial->grid().spacing.x, 0.5);
+  EXPECT_THAT(partial->notes(), ElementsAre("lengths along x name no unit and are taken to be in m, as the others"));
+  EXPECT_FALSE(open_field(write({density()}), "")->units().spaced);
+}
+
+TEST_F(JhtdbField, LayoutWithoutCoordinatesHasUnitSpacing) {
+  // the older client's file: a field beside the numbers of the request
+  auto const source = open_field(
+      write({{"p00000", {2, 3, 4, 1}, numbered(4, 3, 2)}, {"_size", {4}, {1, 4, 3, 2}}, {"_start", {4}, {0, 0, 0, 0}}}),
+      "");
+  EXPECT_EQ(source->name(), "p00000");
+  EXPECT_EQ(source->grid().spacing.y, 1.0);
+  EXPECT_EQ(source->grid().origin.z, 0.0);
+  EXPECT_EQ(read_all(*source)[1 + 4 * (2 + 3 * 1)], 121.0f);
+}
+
+TEST_F(JhtdbField, PlainRankThreeIsRead) {
+  auto const source = open_field(write({{"rho", {2, 3, 4}, numbered(4, 3, 2)}}), "rho");
+  EXPECT_THAT(source->grid().nodes, ElementsAre(4, 3, 2));
+  EXPECT_EQ(read_all(*source)[23], 123.0f);
+}
+
+TEST_F(JhtdbField, RealCutOutIsRead) {
+  std::string const folder = GLADSTONE_DATA_DIR "/fields/";
+  for (auto const* name : {"hbdt512_kepeak_slice.h5", "hbdt512_late_slice.h5"}) {
+    auto const source = open_field(folder + name, "");
+    EXPECT_EQ(source->significant_bits(), 24) << "the database's cut-outs are floats";
+    EXPECT_EQ(source->name(), "Density_0001");
+    EXPECT_THAT(source->grid().nodes, ElementsAre(512, 512, 1));
+    // a periodic box of 2 pi in 512 nodes; coordinates rounded to float
+    EXPECT_NEAR(source->grid().spacing.x * 512, 2.0 * M_PI, 1e-5);
+    EXPECT_NEAR(source->grid().spacing.y, source->grid().spacing.x, 1e-8);
+    auto const values = read_all(*source);
+    // two fluids of densities 1 and 1.05/0.95 = 1.105 (Atwood number 0.05) mix: half and half in the box, about so in
+    // a plane of it, and beyond the two only by the overshoot of a spectral simulation
+    EXPECT_NEAR(std::accumulate(values.begin(), values.end(), 0.0) / 262144.0, 1.0526, 0.01);
+    EXPECT_GT(*std::min_element(values.begin(), values.end()), 0.99f);
+    EXPECT_LT(*std::max_element(values.begin(), values.end()), 1.115f);
+  }
+}
+
+TEST_F(JhtdbField, FloatCoordinatesOfAFineGridAreUniform) {
+  // 2 pi / 4096 is 0.0015; a float near 2 pi is good to 2.4e-7, 1.6e-4 of a step: more than the tolerance of 1e-4
+  int const nodes = 4096;
+  double const step = 2.0 * M_PI / nodes;
+  auto const source = open_field(write({density(nodes, 1, 1), axis("xcoor", nodes, 0.0, step)}), "");
+  EXPECT_NEAR(source->grid().spacing.x, step, 2.4e-7 / (nodes - 1));
+}
+
+TEST_F(JhtdbField, AxesThatAreNotUniformAreResampledAndBackwardOnesTurned) {
+  auto stretched = axis("ycoor", 3, 0.0, 1.0);
+  stretched.values[1] = 1.00005;  // half the tolerance of 1e-4 of a step
+  auto const x = axis("xcoor", 4, 0.0, 1.0), z = axis("zcoor", 2, 0.0, 1.0);
+  EXPECT_TRUE(open_field(write({density(), x, stretched, z}), "")->notes().empty());
+  stretched.values[1] = 1.001;
+  auto const resampled = open_field(write({density(), x, stretched, z}), "");
+  ASSERT_EQ(resampled->notes().size(), 1u);
+  EXPECT_THAT(resampled->notes()[0], HasSubstr("y (spacings from 0.999 to 1.001) to 4 nodes"));
+  auto const turned = open_field(write({density(), axis("xcoor", 4, 3.0, -1.0)}), "");
+  EXPECT_EQ(turned->reading().turned_round, "x");
+  EXPECT_EQ(turned->grid().origin.x, 0.0);
+  EXPECT_EQ(turned->grid().spacing.x, 1.0);
+  EXPECT_THAT(read_all(*turned)[0], 3.0) << "the last node of the file is the first in space";
+}
+
+TEST_F(JhtdbField, CoordinatesThatAreNoPlacesAreRefused) {
+  auto folded = axis("xcoor", 4, 0.0, 1.0);
+  folded.values[2] = 0.5;
+  EXPECT_THAT(
+      [&] {
+        open_field(write({density(), folded}), "");
+      },
+      refused("xcoor", "coordinates neither ascend nor descend throughout (1 at node 1 is followed by 0.5)"));
+  folded.values[2] = std::nan("");
+  EXPECT_THAT([&] { open_field(write({density(), folded}), ""); }, refused("xcoor", "coordinates are not finite"));
+}
+
+TEST_F(JhtdbField, CoordinatesThatDoNotFitAreRefused) {
+  EXPECT_THAT(
+      [&] {
+        open_field(write({density(), axis("zcoor", 5, 0.0, 1.0)}), "");
+      },
+      refused("cutout.h5", "dataset \"zcoor\" has 5 coordinates for the 2 nodes of \"Density_0001\""));
+  // 3 along z of [2, 3, 4]: x and y may be either of the others
+  EXPECT_THAT(
+      [&] {
+        open_field(write({density(), axis("zcoor", 3, 0.0, 1.0)}), "");
+      },
+      refused("cutout.h5", "allow several orders of its axes; name the right one: axes = \"xzy\" or \"yzx\""));
+  auto const named = open_field(write({density(), axis("zcoor", 3, 0.0, 1.0)}), "", 1, "xzy");
+  EXPECT_THAT(named->grid().nodes, ElementsAre(2, 4, 3));
+}
+
+// x, y and z of all nodes, as numpy's meshgrid makes them: each varies along one axis.
+TEST_F(JhtdbField, CoordinatesOfAllNodesAreUsed) {
+  Dataset x{"x", {2, 3, 4}, {}}, y{"y", {2, 3, 4}, {}}, z{"z", {2, 3, 4}, {}};
+  for (int k = 0; k < 2; ++k) {
+    for (int j = 0; j < 3; ++j) {
+      for (int i = 0; i < 4; ++i) {
+        x.values.push_back(i * 0.5);
+        y.values.push_back(1 + j * 0.25);
+        z.values.push_back(k * 2.0);
+      }
+    }
+  }
+  auto const source = open_field(write({density(), x, y, z}), "");
+  EXPECT_EQ(source->grid().spacing, (Vec3d{0.5, 0.25, 2}));
+  EXPECT_EQ(source->grid().origin, (Vec3d{0, 1, 0}));
+  EXPECT_TRUE(source->units().spaced);
+  EXPECT_EQ(source->reading().text(), "[2, 3, 4] is read as z, y, x (by its coordinates)");
+  EXPECT_TRUE(source->notes().empty());
+  // the dataset "x" varies along the slowest axis: the array is [nx, ny, nz]
+  std::swap(x.values, z.values);
+  auto const turned = open_field(write({density(), x, y, z}), "");
+  EXPECT_THAT(turned->grid().nodes, ElementsAre(2, 3, 4));
+  EXPECT_EQ(turned->grid().spacing, (Vec3d{2, 0.25, 0.5}));
+  EXPECT_THAT(
+      [&] {
+        open_field(write({density(), x, y, z}), "", 1, "zyx");
+      },
+      refused("cutout.h5", "dataset \"x\" varies along axis 1 of \"Density_0001\""));
+  y.values[5] += 0.1;
+  EXPECT_THAT(
+      [&] {
+        open_field(write({density(), x, y, z}), "");
+      },
+      refused("cutout.h5", "dataset \"y\" of shape [2, 3, 4] varies along several axes of \"Density_0001\""));
+}
+
+// MATLAB's [X, Y, Z] = ndgrid(x, y, z) are arrays [nx, ny, nz], which HDF5 stores as [nz, ny, nx]; those of meshgrid
+// are [ny, nx, nz], stored as [nz, nx, ny]. On a cube only the coordinates distinguish them. A MAT-file begins with a
+// block of 512 bytes that is not HDF5.
+TEST_F(JhtdbField, CoordinatesTellMatlabsNdgridFromItsMeshgrid) {
+  auto const matlab_file = [&](bool ndgrid, bool with_coordinates) {
+    Dataset rho{"rho", {3, 3, 3}, {}}, x{"X", {3, 3, 3}, {}}, y{"Y", {3, 3, 3}, {}}, z{"Z", {3, 3, 3}, {}};
+    for (int k = 0; k < 3; ++k) {
+      for (int slow = 0; slow < 3; ++slow) {
+        for (int fast = 0; fast < 3; ++fast) {
+          int const i = ndgrid ? fast : slow, j = ndgrid ? slow : fast;
+          x.values.push_back(i * 0.5);
+          y.values.push_back(1 + j * 0.25);
+          z.values.push_back(k * 2.0);
+          rho.values.push_back(100.0 * k + 10.0 * j + i);
+        }
+      }
+    }
+    std::string const written = in_folder("written.h5");
+    std::string const path =
+        in_folder((ndgrid ? "ndgrid" : "meshgrid") + std::string(with_coordinates ? "_xyz" : "") + ".mat");
+    Hdf5Writer writer(written, {"test", 1, "", 0, "cpu"});
+    std::vector<Dataset> all{rho};
+    if (with_coordinates) all.insert(all.end(), {x, y, z});
+    for (auto const& dataset : all) {
+      writer.write(dataset.name, dataset.values, dataset.shape, "1", "test", "as MATLAB stores it");
+      writer.attribute(dataset.name, "MATLAB_class", std::string("double"));
+    }
+    writer.close();
+    std::ifstream content(written, std::ios::binary);
+    std::string header = "MATLAB 7.3 MAT-file";
+    header.resize(512, ' ');
+    std::ofstream(path, std::ios::binary) << header << content.rdbuf();
+    return path;
+  };
+  for (bool const ndgrid : {true, false}) {
+    auto const source = open_field(matlab_file(ndgrid, true), "");
+    EXPECT_EQ(source->name(), "rho");
+    EXPECT_EQ(source->reading().axes, ndgrid ? "zyx" : "zxy");
+    EXPECT_EQ(source->reading().by, "by its coordinates");
+    EXPECT_EQ(source->grid().spacing, (Vec3d{0.5, 0.25, 2}));
+    EXPECT_EQ(source->grid().origin, (Vec3d{0, 1, 0}));
+    EXPECT_EQ(read_all(*source), numbered(3, 3, 3)) << ndgrid;
+    EXPECT_TRUE(source->notes().empty());
+  }
+  // without coordinates nothing decides: an array of ndgrid is assumed, and a warning names the other order
+  auto const assumed = open_field(matlab_file(true, false), "");
+  EXPECT_EQ(read_all(*assumed), numbered(3, 3, 3));
+  EXPECT_THAT(assumed->notes(), ElementsAre(AllOf(HasSubstr("an array of MATLAB of shape [3, 3, 3]"),
+                                                  HasSubstr("as ndgrid makes it"), HasSubstr("axes = \"zxy\""))));
+  EXPECT_EQ(read_all(*open_field(matlab_file(false, false), "", 1, "zxy")), numbered(3, 3, 3));
+}
+
+TEST_F(JhtdbField, PlaneAcrossXAndZHasThoseAxes) {
+  auto const source =
+      open_field(write({{"rho", {3, 4}, numbered(4, 3, 1)}, axis("x", 4, 0.0, 0.5), axis("z", 3, 0.0, 1.5)}), "");
+  EXPECT_EQ(source->reading().text(), "[3, 4] is read as z, x (by the lengths of its coordinates)");
+  EXPECT_THAT(source->grid().nodes, ElementsAre(4, 1, 3));
+  EXPECT_EQ(source->grid().spacing.x, 0.5);
+  EXPECT_EQ(source->grid().spacing.z, 1.5);
+}
+
+TEST_F(JhtdbField, CoordinatesThatAreNotUsedAreNamed) {
+  auto const geographic = open_field(
+      write({density(), axis("lon", 4, 0.0, 0.5), axis("lat", 3, 0.0, 0.5), axis("other", 7, 0.0, 1.0)}), "");
+  ASSERT_EQ(geographic->notes().size(), 1u);
+  EXPECT_THAT(geographic->notes()[0], HasSubstr("no coordinates along z, y, x are found; \"lat\" [3], \"lon\" [4] may "
+                                                "be coordinates, but they are not used"));
+  auto const partial = open_field(write({density(), axis("xcoor", 4, 0.0, 0.5)}), "");
+  EXPECT_THAT(partial->notes(),
+              ElementsAre("no coordinates along z, y are found, and nodes there are taken 1 mm apart"));
+  EXPECT_EQ(geographic->units().unspaced, "xyz");
+  EXPECT_EQ(partial->units().unspaced, "yz");
+}
+
+TEST_F(JhtdbField, CoordinatesOfEdgesMakeCells) {
+  auto const source =
+      open_field(write({density(), axis("x", 5, 0.0, 0.5), axis("y", 4, 1.0, 0.25), axis("z", 3, 0.0, 2.0)}), "");
+  EXPECT_EQ(source->reading().by, "by the lengths of its coordinates; data of cells, at their centres");
+  EXPECT_EQ(source->grid().spacing, (Vec3d{0.5, 0.25, 2}));
+  EXPECT_EQ(source->grid().origin, (Vec3d{0.25, 1.125, 1}));
+  EXPECT_THAT(
+      [&] {
+        open_field(write({density(), axis("x", 5, 0.0, 0.5), axis("y", 3, 0.0, 0.5), axis("z", 2, 0.0, 2.0)}), "");
+      },
+      refused("cutout.h5", "has 5 coordinates for the 4 nodes"));
+}
+
+// The names by which a table of docs/file-formats.md says that coordinates are found, each with its unit.
+TEST_F(JhtdbField, CoordinatesAreFoundByEachOfTheirNames) {
+  auto const length = [&](std::string const& suffix) {
+    return open_field(write({density(), axis("x" + suffix, 4, 0.0, 0.5), axis("y" + suffix, 3, 0.0, 0.5),
+                             axis("z" + suffix, 2, 0.0, 0.5)}),
+                      "")
+        ->units()
+        .length;
+  };
+  for (char const* const suffix : {"coor", "", "_coor"}) EXPECT_EQ(length(suffix), "") << suffix;
+  for (char const* const unit : {"mm", "m", "um", "cm"}) EXPECT_EQ(length(std::string("_") + unit), unit);
+}
+
+TEST_F(JhtdbField, PackedValuesAreUnpackedAndFillValuesRefused) {
+  std::string const path = in_folder("packed.nc");
+  auto const packed = [&](std::vector<double> const& values) {
+    Hdf5Writer writer(path, {"test", 1, "", 0, "cpu"});
+    writer.write("rho", values, {2, 3, 4}, "kg m-3", "test", "z, y, x");
+    writer.attribute("rho", "scale_factor", 0.5);
+    writer.attribute("rho", "add_offset", 10.0);
+    writer.attribute("rho", "_FillValue", std::int64_t{-32767});
+    writer.attribute("rho", "missing_value", 1e20);
+    writer.close();
+    return open_field(path, "");
+  };
+  auto values = numbered(4, 3, 2);
+  auto const read = read_all(*packed(values));
+  for (std::size_t i = 0; i < read.size(); ++i) EXPECT_EQ(read[i], 10 + 0.5 * values[i]);
+  values[5] = -32767;
+  values[6] = static_cast<float>(1e20);  // fewer digits than the attribute
+  EXPECT_THAT([&] { read_all(*packed(values)); }, refused("packed.nc", "2 of 24 points are nan or infinite"));
+}
+
+/// Writes the attribute of the HDF5 Dimension Scale Specification, as H5DSset_label() does.
+void label_axes(std::string const& path, char const* dataset, std::vector<char const*> const& labels) {
+  hid_t const file = H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), object = H5Dopen2(file, dataset, H5P_DEFAULT);
+  hid_t const type = H5Tcopy(H5T_C_S1);
+  H5Tset_size(type, H5T_VARIABLE);
+  hsize_t const count = labels.size();
+  hid_t const space = H5Screate_simple(1, &count, nullptr);
+  hid_t const attribute = H5Acreate2(object, "DIMENSION_LABELS", type, space, H5P_DEFAULT, H5P_DEFAULT);
+  H5Awrite(attribute, type, static_cast<void const*>(labels.data()));
+  H5Aclose(attribute);
+  H5Sclose(space);
+  H5Tclose(type);
+  H5Dclose(object);
+  H5Fclose(file);
+}
+
+TEST_F(JhtdbField, DimensionLabelsNameTheAxes) {
+  std::string const path = write({{"rho", {2, 3, 4}, numbered(4, 3, 2)}});
+  label_axes(path, "rho", {"x", "y", "z"});
+  EXPECT_EQ(open_field(path, "")->reading().text(), "[2, 3, 4] is read as x, y, z (by its dimension labels)");
+  EXPECT_EQ(open_field(path, "", 1, "zyx")->reading().by, "axes = \"zyx\"");
+  write({{"rho", {2, 3, 4}, numbered(4, 3, 2)}});
+  label_axes(path, "rho", {"time", "y", "x"});
+  EXPECT_EQ(open_field(path, "")->reading().by, "the default order");
+}
+
+TEST_F(JhtdbField, ComplexNumbersAreNamed) {
+  std::string const path = write({axis("x", 4, 0, 1)});
+  hid_t const file = H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+  hid_t const type = H5Tcreate(H5T_COMPOUND, 2 * sizeof(double));
+  H5Tinsert(type, "r", 0, H5T_NATIVE_DOUBLE);
+  H5Tinsert(type, "i", sizeof(double), H5T_NATIVE_DOUBLE);
+  hsize_t const shape[]{2, 3, 4};
+  hid_t const space = H5Screate_simple(3, shape, nullptr);
+  H5Dclose(H5Dcreate2(file, "rho", type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
+  H5Sclose(space);
+  H5Tclose(type);
+  H5Fclose(file);
+  EXPECT_THAT([&] { open_field(path, ""); }, refused("cutout.h5", "it has \"x\" [4], \"rho\" of complex numbers"));
+  EXPECT_THAT([&] { open_field(path, "rho"); }, refused("cutout.h5", "dataset \"rho\" holds complex numbers"));
+}
+
+// Every type of number in either byte order, through each filter of the HDF5 library, under every extension.
+TEST_F(FieldFiles, EveryNumberOfHdf5IsRead) {
+  struct Stored {
+    hid_t type;
+    int significant_bits;
+  };
+  std::vector<double> const values = numbered(4, 3, 2);  // up to 123: fits every type
+  hsize_t const shape[]{2, 3, 4}, chunk[]{1, 2, 4};
+  auto const write = [&](std::string const& name, hid_t type, bool filtered) {
+    hid_t const file = H5Fcreate(in_folder(name).c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+    hid_t const space = H5Screate_simple(3, shape, nullptr), creation = H5Pcreate(H5P_DATASET_CREATE);
+    if (filtered) {
+      H5Pset_chunk(creation, 3, chunk);
+      H5Pset_shuffle(creation);
+      H5Pset_deflate(creation, 6);
+      H5Pset_fletcher32(creation);
+    }
+    hid_t const dataset = H5Dcreate2(file, "rho", type, space, H5P_DEFAULT, creation, H5P_DEFAULT);
+    H5Dwrite(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data());
+    H5Dclose(dataset);
+    H5Pclose(creation);
+    H5Sclose(space);
+    H5Fclose(file);
+    return open_field(in_folder(name), "");
+  };
+  for (Stored const& stored :
+       {Stored{H5T_IEEE_F32LE, 24}, Stored{H5T_IEEE_F32BE, 24}, Stored{H5T_IEEE_F64LE, 53}, Stored{H5T_IEEE_F64BE, 53},
+        Stored{H5T_STD_I8LE, 8}, Stored{H5T_STD_U8LE, 8}, Stored{H5T_STD_I16BE, 16}, Stored{H5T_STD_U16LE, 16},
+        Stored{H5T_STD_I32BE, 32}, Stored{H5T_STD_U32LE, 32}, Stored{H5T_STD_I64LE, 64}, Stored{H5T_STD_U64BE, 64}}) {
+    for (bool const filtered : {false, true}) {
+      auto const source = write("types.h5", stored.type, filtered);
+      EXPECT_EQ(read_all(*source), values) << stored.significant_bits << filtered;
+      EXPECT_EQ(source->significant_bits(), stored.significant_bits);
+    }
+  }
+  for (char const* const name : {"a.h5", "a.hdf5", "a.he5", "a.nc", "a.mat", "A.H5"})
+    EXPECT_EQ(read_all(*write(name, H5T_IEEE_F32LE, false)), values) << name;
+}
+
+TEST_F(JhtdbField, HolesAreCountedOverTheWholeField) {
+  auto field = density(4, 3, 5);
+  field.values[7] = field.values[30] = field.values[59] = -999.9;
+  auto const source = open_field(write({field}), "");
+  std::vector<double> plane(12);
+  EXPECT_NO_THROW(source->read_planes(1, 1, plane));  // nodes 12 to 23 are sound
+  EXPECT_THAT([&] { source->read_planes(0, 1, plane); },
+              refused("cutout.h5", "dataset \"Density_0001\": 3 of 60 points are holes (-999.9"));
+}
+
+TEST_F(JhtdbField, NanAndInfinityAreRefused) {
+  auto field = density();
+  field.values[3] = std::nan("");
+  field.values[4] = std::numeric_limits<double>::infinity();
+  field.values[5] = 1e300;  // infinite as a float
+  auto const source = open_field(write({field}), "");
+  EXPECT_THAT([&] { read_all(*source); }, refused("Density_0001", "3 of 24 points are nan or infinite"));
+}
+
+// n of air differs from 1 by 2.7e-4: what a gradient is made of stands behind the seventh digit, where a float ends.
+TEST_F(FieldFiles, DoublesKeepAllTheirDigits) {
+  std::vector<double> const values{1 + 2.7e-4, 1 + 2.7e-4 + 1e-12, 0.1, -1.0 / 3};
+  std::string const h5 = in_folder("n.h5");
+  Hdf5Writer writer(h5, {"test", 1, "", 0, "cpu"});
+  writer.write("n", values, {1, 2, 2}, "1", "test", "z, y, x");
+  writer.close();
+  std::string const nrrd = in_folder("n.nrrd");
+  std::ofstream(nrrd, std::ios::binary)
+      << "NRRD0004\ntype: double\ndimension: 2\nsizes: 2 2\nendian: little\nencoding: raw\n\n"
+      << std::string(reinterpret_cast<char const*>(values.data()), sizeof(double) * values.size());
+  for (auto const& path : {h5, nrrd}) {
+    auto const source = open_field(path, "");
+    EXPECT_EQ(read_all(*source), values) << path;
+    EXPECT_EQ(source->significant_bits(), 53) << path;
+  }
+}
+
+TEST_F(JhtdbField, PlainPlaneIsRead) {
+  auto const source = open_field(write({{"plane", {3, 4}, numbered(4, 3, 1)}}), "");
+  EXPECT_THAT(source->grid().nodes, ElementsAre(4, 3, 1));
+  EXPECT_EQ(source->reading().axes, "yx");
+  EXPECT_EQ(read_all(*source), numbered(4, 3, 1));
+}
+
+TEST_F(JhtdbField, WrongRankNamesTheShape) {
+  auto const line = Dataset{"line", {4}, numbered(4, 1, 1)};
+  EXPECT_THAT([&] { open_field(write({line}), "line"); },
+              refused("cutout.h5", "dataset \"line\" of shape [4] has rank 1"));
+  auto const velocity = Dataset{"Velocity_0001", {1, 1, 2, 3}, {1, 2, 3, 4, 5, 6}};
+  EXPECT_THAT([&] { open_field(write({velocity}), "Velocity_0001"); },
+              refused("cutout.h5", "dataset \"Velocity_0001\" of shape [1, 1, 2, 3] holds 3 values a point"));
+  auto const first = Dataset{"v", {3, 1, 9, 8}, numbered(8, 9, 3)};
+  EXPECT_THAT([&] { open_field(write({first}), "v"); }, refused("cutout.h5", "holds 3 values a point"));
+  EXPECT_THAT(
+      [&] {
+        open_field(write({velocity, line}), "");
+      },
+      refused("cutout.h5",
+              "has no scalar field, [nz, ny, nx], [nz, ny, nx, 1] or [ny, nx]; it has \"Velocity_0001\" [1, 1, "
+              "2, 3], \"line\" [4]"));
+}
+
+// [64, 32, 3] may be a volume of three nodes along x, or a plane of velocities.
+TEST_F(JhtdbField, AxisThatMayHoldComponentsIsReported) {
+  auto const narrow = Dataset{"v", {16, 12, 3}, numbered(3, 12, 16)};
+  auto const source = open_field(write({narrow}), "v");
+  ASSERT_EQ(source->notes().size(), 1u);
+  EXPECT_THAT(source->notes()[0], HasSubstr("may be the components of a vector"));
+  EXPECT_TRUE(open_field(write({{"v", {16, 12, 9}, numbered(9, 12, 16)}}), "v")->notes().empty());
+}
+
+TEST_F(JhtdbField, SeveralFieldsAskForAName) {
+  auto second = density();
+  second.name = "Density_0002";
+  std::string const path = write({density(), second});
+  EXPECT_THAT(
+      [&] { open_field(path, ""); },
+      refused("cutout.h5", "has several fields; say which with dataset = \"Density_0001\" or \"Density_0002\""));
+  EXPECT_THAT([&] { open_field(path, "Density_001"); },
+              refused("cutout.h5", "has no dataset \"Density_001\"; did you mean \"Density_0001\"?"));
+}
+
+TEST_F(FieldFiles, UnknownFormatsAndMissingFilesAreNamed) {
+  EXPECT_THAT([&] { open_field(in_folder("absent.h5"), ""); }, refused("absent.h5", "does not exist"));
+  std::ofstream(in_folder("field.npy")) << "x";
+  EXPECT_THAT([&] { open_field(in_folder("field.npy"), ""); },
+              refused("field.npy", "known are .h5, .hdf5, .he5, .nc, .mat, .vti, .vtr, .vtk, .nrrd, .nhdr"));
+  std::ofstream(in_folder("field.vtk")) << "x";
+  EXPECT_THAT([&] { open_field(in_folder("field.vtk"), ""); }, refused("field.vtk", "is no legacy VTK file"));
+  std::ofstream(in_folder("text.H5")) << "x";
+  EXPECT_THAT([&] { open_field(in_folder("text.H5"), ""); }, refused("text.H5", "is not an HDF5 file"));
+  EXPECT_THAT([&] { open_field(folder_.string(), ""); }, refused("", "is a folder"));
+}
+
+class NrrdField : public FieldFiles {
+ protected:
+  static std::string header(std::string const& fields) { return "NRRD0005\n# a comment\nnote:=ignored\n" + fields; }
+
+  std::string write(std::string const& name, std::string const& content) const {
+    std::ofstream(in_folder(name), std::ios::binary) << content;
+    return in_folder(name);
+  }
+
+  std::string gzipped(std::string const& content) const {
+    std::string const path = in_folder("scratch.gz");
+    gzFile const file = gzopen(path.c_str(), "wb");
+    gzwrite(file, content.data(), static_cast<unsigned>(content.size()));
+    gzclose(file);
+    std::ifstream stored(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stored), {}};
+  }
+
+  void expect_numbered(std::string const& path) const {
+    SCOPED_TRACE(path);
+    auto const source = open_field(path, "");
+    ASSERT_THAT(source->grid().nodes, ElementsAre(4, 3, 2));
+    auto const expected = numbered(4, 3, 2);
+    auto const values = read_all(*source);
+    for (std::size_t i = 0; i < values.size(); ++i) ASSERT_EQ(values[i], expected[i]);
+  }
+};
+
+constexpr char grid_432[] = "dimension: 3\nsizes: 4 3 2\n";
+
+TEST_F(NrrdField, EveryTypeAndByteOrderIsRead) {
+  auto const values = numbered(4, 3, 2);  // up to 123: fits every type
+  auto const check = [&](std::string const& type, std::string const& little, std::string const& big) {
+    for (bool const is_big : {false, true}) {
+      std::string const fields = "type: " + type + "\nencoding: raw\nendian: " + (is_big ? "big" : "little") + "\n";
+      expect_numbered(write("field.nrrd", header(grid_432 + fields) + "\n" + (is_big ? big : little)));
+    }
+  };
+  check("float", bytes<float>(values), bytes<float>(values, true));
+  check("double", bytes<double>(values), bytes<double>(values, true));
+  check("int8", bytes<std::int8_t>(values), bytes<std::int8_t>(values, true));
+  check("uchar", bytes<std::uint8_t>(values), bytes<std::uint8_t>(values, true));
+  check("short", bytes<std::int16_t>(values), bytes<std::int16_t>(values, true));
+  check("unsigned short", bytes<std::uint16_t>(values), bytes<std::uint16_t>(values, true));
+  check("int", bytes<std::int32_t>(values), bytes<std::int32_t>(values, true));
+  check("uint32", bytes<std::uint32_t>(values), bytes<std::uint32_t>(values, true));
+  check("long long", bytes<std::int64_t>(values), bytes<std::int64_t>(values, true));
+  check("uint64_t", bytes<std::uint64_t>(values), bytes<std::uint64_t>(values, true));
+}
+
+TEST_F(NrrdField, AttachedAndDetachedRawAndGzipAreRead) {
+  std::string const data = bytes<float>(numbered(4, 3, 2));
+  std::string const type = std::string(grid_432) + "type: float\nendian: little\n";
+  expect_numbered(write("a.nrrd", header(type + "encoding: raw\n") + "\n" + data));
+  expect_numbered(write("b.nrrd", header(type + "encoding: gzip\n") + "\n" + gzipped(data)));
+  fs::create_directory(folder_ / "sub");
+  write("sub/data.raw", data);
+  expect_numbered(write("c.nhdr", header(type + "encoding: raw\ndata file: sub/data.raw\n")));
+  write("data.raw.gz", gzipped(data));
+  expect_numbered(write("d.nhdr", header(type + "encoding: gz\r\ndatafile: data.raw.gz\r\n")));
+}
+
+TEST_F(NrrdField, SkippedLinesAndBytesAreLeftOut) {
+  std::string const data = bytes<float>(numbered(4, 3, 2));
+  std::string const type = std::string(grid_432) + "type: float\nendian: little\n";
+  std::string const raw = type + "encoding: raw\ndata file: data\n";
+  write("data", "line one\nline two\nabc" + data + "trailing");
+  expect_numbered(write("a.nhdr", header(raw + "line skip: 2\nbyte skip: 3\n")));
+  write("data", "whatever stands before" + data);
+  expect_numbered(write("b.nhdr", header(raw + "byte skip: -1\n")));
+  write("data", "line\n" + gzipped("abc" + data));
+  expect_numbered(write("c.nhdr", header(type + "encoding: gzip\ndata file: data\nlineskip: 1\nbyteskip: 3\n")));
+}
+
+TEST_F(NrrdField, CompressedPlanesComeInAnyOrder) {
+  std::string const content = header(std::string(grid_432) + "type: float\nendian: little\nencoding: gzip\n") + "\n" +
+                              gzipped(bytes<float>(numbered(4, 3, 2)));
+  auto const source = open_field(write("a.nrrd", content), "");
+  std::vector<double> plane(12);
+  for (int const z : {1, 0, 1, 1, 0}) {
+    source->read_planes(z, 1, plane);
+    EXPECT_EQ(plane[5], 100.0f * static_cast<float>(z) + 11.0f);
+  }
+}
+
+TEST_F(NrrdField, SpacingAndOriginComeFromEitherSpelling) {
+  std::string const rest = "type: uint8\nencoding: raw\n\n" + std::string(24, '\1');
+  auto const directions = open_field(
+      write("a.nrrd", header(std::string(grid_432) +
+                             "content: rho\nspace dimension: 3\nspace directions: (0.5,0,0) (0,0.25,0) (0, 0, 2)"
+                             "\nspace origin: (1,-2,3)\n" +
+                             rest)),
+      "");
+  EXPECT_EQ(directions->name(), "rho");
+  EXPECT_EQ(directions->grid().spacing.x, 0.5);
+  EXPECT_EQ(directions->grid().spacing.y, 0.25);
+  EXPECT_EQ(directions->grid().spacing.z, 2.0);
+  EXPECT_EQ(directions->grid().origin.x, 1.0);
+  EXPECT_EQ(directions->grid().origin.y, -2.0);
+  EXPECT_EQ(directions->grid().origin.z, 3.0);
+  auto const spacings =
+      open_field(write("b.nrrd", header(std::string(grid_432) + "spacings: 0.1 0.2 nan\n" + rest)), "");
+  EXPECT_EQ(spacings->name(), "b.nrrd");
+  EXPECT_EQ(spacings->grid().spacing.y, 0.2);
+  EXPECT_EQ(spacings->grid().spacing.z, 1.0);
+  EXPECT_EQ(spacings->grid().origin.x, 0.0);
+}
+
+TEST_F(NrrdField, UnitsAreThoseOfTheHeader) {
+  std::string const rest = "type: uint8\nencoding: raw\n\n" + std::string(24, '\1');
+  auto const units = [&](std::string const& lines) {
+    return open_field(write("a.nrrd", header(std::string(grid_432) + lines + rest)), "")->units();
+  };
+  EXPECT_FALSE(units("").spaced);
+  EXPECT_EQ(units("").unspaced, "xyz");
+  EXPECT_EQ(units("spacings: 1 nan 1\n").unspaced, "y");
+  EXPECT_EQ(units("spacings: 1 1 1\n").unspaced, "");
+  EXPECT_EQ(units("space dimension: 3\nspace directions: (1,0,0) (0,1,0) (0,0,1)\n").unspaced, "");
+  EXPECT_EQ(units("spacings: 1 1 1\n").length, "");
+  EXPECT_EQ(units("spacings: 1 1 1\nunits: \"m\" \"m\" \"m\"\nsample units: \"kg/m^3\"\n").length, "m");
+  EXPECT_EQ(units("spacings: 1 1 1\nsample units: \"kg/m^3\"\n").values, "kg/m^3");
+  EXPECT_EQ(units("space dimension: 3\nspace units: \"um\" \"um\" \"um\"\nspace directions: (1,0,0) (0,1,0) (0,0,1)\n")
+                .length,
+            "um");
+  // lengths are in the first axis' unit
+  auto const mixed = open_field(
+      write("b.nrrd", header(std::string(grid_432) + "spacings: 1 1 1\nunits: \"m\" \"mm\" \"m\"\n" + rest)), "");
+  EXPECT_EQ(mixed->units().length, "m");
+  EXPECT_NEAR(mixed->grid().spacing.y, 1e-3, 1e-15);
+  EXPECT_EQ(units("spacings: 1 1 1\nunits: \"m\" \"furlong\" \"m\"\n").undefined(),
+            "lengths along y are in \"furlong\", which is not a known unit of length");
+  auto const partial = open_field(
+      write("c.nrrd", header(std::string(grid_432) + "spacings: 1 1 1\nunits: \"cm\" \"\" \"cm\"\n" + rest)), "");
+  EXPECT_EQ(partial->units().length, "cm");
+  EXPECT_THAT(partial->notes(), ElementsAre("lengths along y name no unit and are taken to be in cm, as the others"));
+}
+
+TEST_F(NrrdField, LabelsNameTheAxes) {
+  std::string const rest = "type: uint8\nencoding: raw\n\n" + std::string(24, '\1');
+  auto const reading = [&](std::string const& lines, std::string const& axes = "") {
+    return open_field(write("a.nrrd", header(std::string(grid_432) + lines + rest)), "", 1, axes)->reading().text();
+  };
+  EXPECT_EQ(reading("labels: \"z\" \"y\" \"x\"\n"), "[2, 3, 4] is read as x, y, z (by its labels)");
+  EXPECT_EQ(reading("labels: \"z\" \"y\" \"x\"\n", "zyx"), "[2, 3, 4] is read as z, y, x (axes = \"zyx\")");
+  EXPECT_EQ(reading("labels: \"u\" \"y\" \"x\"\n"), "[2, 3, 4] is read as z, y, x (the default order)");
+  EXPECT_EQ(reading("labels: \"x\" \"x\" \"x\"\n"), "[2, 3, 4] is read as z, y, x (the default order)");
+}
+
+TEST_F(NrrdField, FieldsGivenTwiceAreRefusedWithTheirLines) {
+  std::string const rest = "type: uint8\nencoding: raw\n\n" + std::string(24, '\1');
+  std::string const twice =
+      write("a.nrrd", header(std::string(grid_432) + "spacings: 1 1 1\nspacings: 2 2 2\n" + rest));
+  EXPECT_THAT([&] { open_field(twice, ""); },
+              refused("a.nrrd:7", "gives the NRRD field \"spacings\" again, as \"2 2 2\" (line 6 says \"1 1 1\")"));
+  std::string const same = write("b.nrrd", header(std::string(grid_432) + "spacings: 2 2 2\nspacings: 2 2 2\n" + rest));
+  EXPECT_EQ(open_field(same, "")->grid().spacing, (Vec3d{2, 2, 2}));
+}
+
+TEST_F(NrrdField, ListOfOneDataFileIsRead) {
+  write("a.raw", bytes<float>(numbered(4, 3, 2)));
+  std::string const fields =
+      std::string(grid_432) + "type: float\nendian: little\nencoding: raw\ndata file: LIST\na.raw\n";
+  expect_numbered(write("a.nhdr", header(fields)));
+  std::string const several = write("b.nhdr", header(fields + "b.raw\n"));
+  EXPECT_THAT([&] { open_field(several, ""); }, refused("b.nhdr",
+                                                        "names several files (2); data in several files are not "
+                                                        "read here: join them into one file"));
+}
+
+TEST_F(NrrdField, TwoDimensionsAreOnePlane) {
+  auto const source = open_field(
+      write("a.nrrd",
+            header("dimension: 2\nsizes: 4 3\nspacings: 0.5 0.5\ntype: float\nendian: little\nencoding: raw\n\n") +
+                bytes<float>(numbered(4, 3, 1))),
+      "");
+  EXPECT_THAT(source->grid().nodes, ElementsAre(4, 3, 1));
+  EXPECT_EQ(read_all(*source)[4 * 2 + 1], 21.0f);
+}
+
+// The components of a velocity are the fastest axis; axes of length one are ignored wherever they are.
+TEST_F(NrrdField, VelocityHasItsComponentsFastest) {
+  std::vector<double> values;
+  for (double const value : numbered(4, 3, 2)) values.insert(values.end(), {value, -value, value + 0.5});
+  std::string const rest = "type: float\nendian: big\nencoding: raw\n\n" + bytes<float>(values, true);
+  for (char const* const sizes : {"dimension: 4\nsizes: 3 4 3 2\nspacings: nan 0.5 0.25 2\n",
+                                  "dimension: 5\nsizes: 3 4 3 2 1\nspacings: nan 0.5 0.25 2 nan\n"}) {
+    auto const source = open_field(write("v.nrrd", header(sizes + rest)), "", 3);
+    EXPECT_THAT(source->grid().nodes, ElementsAre(4, 3, 2)) << sizes;
+    EXPECT_EQ(source->grid().spacing, (Vec3d{0.5, 0.25, 2})) << sizes;
+    std::vector<double> read(values.size());
+    source->read_planes(0, 2, read);
+    EXPECT_EQ(read, values) << sizes;
+  }
+  std::string const scalar = write("s.nrrd", header(std::string(grid_432) + rest));
+  EXPECT_THAT([&] { open_field(scalar, "", 3); },
+              refused("s.nrrd", "has no first axis of 3 components, as a velocity has"));
+}
+
+TEST_F(NrrdField, AxesOfLengthOneAreIgnored) {
+  std::string const rest = "type: float\nendian: little\nencoding: raw\n\n" + bytes<float>(numbered(4, 3, 2));
+  for (char const* const sizes : {"4 3 2 1", "1 4 3 2", "4 1 3 2"})
+    expect_numbered(write("one.nrrd", header("dimension: 4\nsizes: " + std::string(sizes) + '\n' + rest)));
+}
+
+// Negative spacings lay the nodes towards -x and -y of the first one.
+TEST_F(NrrdField, NegativeSpacingsRunBackwards) {
+  auto const source =
+      open_field(write("back.nrrd", header(std::string(grid_432) + "spacings: -0.5 -0.25 2\naxis mins: 1 2 3\n" +
+                                           "centers: node node node\ntype: float\nendian: little\nencoding: raw\n\n" +
+                                           bytes<float>(numbered(4, 3, 2)))),
+                 "");
+  EXPECT_EQ(source->reading().turned_round, "xy");
+  EXPECT_EQ(source->grid().spacing, (Vec3d{0.5, 0.25, 2}));
+  EXPECT_EQ(source->grid().origin, (Vec3d{1 - 3 * 0.5, 2 - 2 * 0.25, 3}));
+  auto const values = read_all(*source);
+  EXPECT_EQ(values[0], 23) << "x = 3, y = 2 of the file";
+  EXPECT_EQ(values[23], 100) << "x = 0, y = 0, z = 1 of the file";
+}
+
+TEST_F(NrrdField, TruncatedDataSayHowMuchIsThere) {
+  std::string const data = bytes<float>(numbered(4, 3, 2));  // 96 bytes
+  std::string const type = std::string(grid_432) + "type: float\nendian: little\n";
+  auto const message = "is cut short: 50 bytes of data are there and 96 are needed (sizes 4 x 3 x 2, 4 bytes a value)";
+  std::string const raw = write("raw.nrrd", header(type + "encoding: raw\n") + "\n" + data.substr(0, 50));
+  EXPECT_THAT([&] { open_field(raw, ""); }, refused("raw.nrrd", message));
+  // compressed: the stream is whole but too short ...
+  std::string const few = write("few.nrrd", header(type + "encoding: gzip\n") + "\n" + gzipped(data.substr(0, 50)));
+  EXPECT_THAT([&] { read_all(*open_field(few, "")); }, refused("few.nrrd", message));
+  // ... or itself cut
+  std::string const stream = gzipped(data);
+  std::string const cut =
+      write("cut.nrrd", header(type + "encoding: gzip\n") + "\n" + stream.substr(0, stream.size() - 20));
+  EXPECT_THAT([&] { read_all(*open_field(cut, "")); }, refused("cut.nrrd", "96 are needed"));
+  std::string const none = write("none.nrrd", header(type + "encoding: raw\n"));
+  EXPECT_THAT([&] { open_field(none, ""); }, refused("none.nrrd", "has no data"));
+}
+
+TEST_F(NrrdField, DamagedCompressedDataAreNoticed) {
+  std::string stream = gzipped(bytes<float>(numbered(4, 3, 2)));
+  stream[stream.size() - 6] ^= 0x55;  // in the checksum
+  std::string const path = write(
+      "bad.nrrd", header(std::string(grid_432) + "type: float\nendian: little\nencoding: gzip\n") + "\n" + stream);
+  EXPECT_THAT([&] { read_all(*open_field(path, "")); }, refused("bad.nrrd", "is damaged"));
+  std::string const plain = write(
+      "plain.nrrd", header(std::string(grid_432) + "type: uint8\nencoding: gzip\n") + "\n" + std::string(24, 'x'));
+  EXPECT_THAT([&] { read_all(*open_field(plain, "")); }, refused("plain.nrrd", "is said to be gzip, and is not"));
+}
+
+TEST_F(NrrdField, NanAndHolesAreRefused) {
+  auto values = numbered(4, 3, 2);
+  values[20] = std::nan("");
+  values[3] = -999.9;
+  std::string const path = write("a.nrrd", header(std::string(grid_432) + "type: float\nendian: big\nencoding: raw\n") +
+                                               "\n" + bytes<float>(values, true));
+  EXPECT_THAT([&] { read_all(*open_field(path, "")); },
+              refused("a.nrrd",
+                      "1 of 24 points are holes (-999.9, the database's mark for missing data), 1 of 24 points are "
+                      "nan or infinite"));
+}
+
+TEST_F(NrrdField, WhatIsNotReadIsRefusedByName) {
+  auto const refuses = [&](std::string const& fields, std::string const& why) {
+    std::string const path = write("a.nrrd", header(fields) + "\n" + std::string(24, '\1'));
+    EXPECT_THAT([&] { read_all(*open_field(path, "")); }, refused("a.nrrd", why)) << fields;
+  };
+  std::string const type = "type: uint8\n", raw = "encoding: raw\n", grid = grid_432;
+  refuses(grid + type + "encoding: zrl\n", "\"encoding: zrl\" is not read here");
+  refuses(grid + type + "encoding: ascii\n", "number 1 of its text is ");
+  refuses("dimension: 3\nsizes: 400 300 2\n" + type + "encoding: ascii\n",
+          "its 24 bytes of text cannot hold 240000 values");
+  refuses(grid + type + "encoding: hex\n", "digit 1 of its hex is no digit");
+  refuses(grid + type + "encoding: bzip2\n", "bzip2 cannot decompress it");
+  refuses(grid + type + raw + "data file: LIST\n", "names several files");
+  refuses(grid + type + raw + "data file: slice%03d.raw 1 9 1\n", "names several files");
+  refuses(grid + type + raw + "space directions: (1,0.1,0) (0,1,0) (0,0,1)\n", "is oblique");
+  refuses(grid + type + raw + "space directions: (1,0,0) (2,0,0) (0,0,1)\n", "gives two axes one direction");
+  refuses(grid + type + raw + "space directions: none (0,1,0) (0,0,1)\n", "must give each axis in space a vector");
+  refuses(grid + type + raw + "spacings: 1 1\n", "must be 3 numbers");
+  refuses(grid + type + raw + "spacings: 1 0 1\n", "gives an axis no length");
+  refuses(grid + "type: block\n" + raw, "is no type of numbers");
+  refuses(grid + "type: float\n" + raw, "\"endian\" must be little or big");
+  refuses("dimension: 4\nsizes: 3 4 3 2\n" + type + raw, "\"dimension: 4\" must be 2 or 3");
+  refuses("dimension: 3\nsizes: 4 -3 2\n" + type + raw, "must be positive");
+  refuses("dimension: 3\nsizes: 3000000000 3 2\n" + type + raw, "is larger than any field");
+  refuses("dimension: 3\nsizes: 99999999999999999999 3 2\n" + type + raw,
+          "must be whole numbers, of 18 digits at most");
+  refuses(type + raw + "dimension: 3\n", "\"sizes\" is missing");
+  refuses(grid + type, "\"encoding\" is missing");
+  refuses("no colon here\n", "is no NRRD field");
+  std::string const foreign = write("b.nrrd", "PNG\n");
+  EXPECT_THAT([&] { open_field(foreign, ""); }, refused("b.nrrd", "is not a NRRD file"));
+  std::string const absent = write("c.nhdr", header(grid + type + raw + "data file: absent.raw\n"));
+  EXPECT_THAT([&] { open_field(absent, ""); }, refused("absent.raw", "does not exist"));
+  EXPECT_THAT([&] { open_field(absent, "Density_0001"); }, refused("c.nhdr", "leave dataset = \"Density_0001\" out"));
+}
+
+// Cut-outs of the older client have the three components of a velocity side by side.
+TEST_F(JhtdbField, VelocityHasThreeValuesAPoint) {
+  std::vector<double> values;
+  for (double const value : numbered(4, 3, 2)) values.insert(values.end(), {value, -value, value + 0.5});
+  std::string const path = write({{"Velocity_0001", {2, 3, 4, 3}, values}, density()});
+  auto const source = open_field(path, "", 3);
+  EXPECT_EQ(source->name(), "Velocity_0001");
+  EXPECT_EQ(source->values(), 3);
+  std::vector<double> plane(36);
+  source->read_planes(1, 1, plane);
+  EXPECT_TRUE(std::equal(plane.begin(), plane.end(), values.begin() + 36));
+  EXPECT_THAT([&] { open_field(path, "Density_0001", 3); },
+              refused("cutout.h5", "holds 1 values a point; a velocity has shape [nz, ny, nx, 3]"));
+  EXPECT_THAT([&] { open_field(write({density()}), "", 3); }, refused("cutout.h5", "has no velocity, [nz, ny, nx, 3]"));
+}
+
+// Other programs store a velocity as one array after the other, [3, nz, ny, nx] or, of a plane, [3, ny, nx].
+TEST_F(JhtdbField, VelocityMayHaveItsComponentsFirst) {
+  std::vector<double> stored, expected;
+  for (auto const component :
+       {+[](double v) { return v; }, +[](double v) { return -v; }, +[](double v) { return v + 0.5; }}) {
+    for (double const value : numbered(4, 3, 2)) stored.push_back(component(value));
+  }
+  for (double const value : numbered(4, 3, 2)) expected.insert(expected.end(), {value, -value, value + 0.5});
+  std::string const path = write({{"u", {3, 2, 3, 4}, stored}, axis("x", 4, 0.0, 0.5)});
+  auto const source = open_field(path, "", 3);
+  EXPECT_EQ(source->name(), "u");
+  EXPECT_THAT(source->grid().nodes, ElementsAre(4, 3, 2));
+  EXPECT_EQ(source->grid().spacing.x, 0.5);
+  EXPECT_EQ(source->reading().text(), "[2, 3, 4] is read as z, y, x (the default order)");
+  std::vector<double> all(72), row(12);
+  source->read_planes(0, 2, all);
+  EXPECT_EQ(all, expected);
+  source->read_rows(1, 2, 1, row);
+  EXPECT_TRUE(std::equal(row.begin(), row.end(), expected.begin() + 60)) << "the last row alone";
+
+  // axes in another order: the components remain u, v, w
+  auto const exchanged = open_field(write({{"u", {3, 2, 3, 4}, stored}}), "", 3, "xyz");
+  EXPECT_THAT(exchanged->grid().nodes, ElementsAre(2, 3, 4));
+  exchanged->read_planes(0, 4, all);
+  for (std::size_t z = 0; z < 4; ++z) {
+    for (std::size_t y = 0; y < 3; ++y) {
+      for (std::size_t x = 0; x < 2; ++x) {
+        for (std::size_t k = 0; k < 3; ++k)
+          ASSERT_EQ(all[((z * 3 + y) * 2 + x) * 3 + k], expected[((x * 3 + y) * 4 + z) * 3 + k]);
+      }
+    }
+  }
+
+  std::vector<double> const plane_stored(stored.begin(), stored.begin() + 36);
+  auto const plane = open_field(write({{"u", {3, 3, 4}, plane_stored}}), "", 3);
+  EXPECT_THAT(plane->grid().nodes, ElementsAre(4, 3, 1));
+  std::vector<double> values(36);
+  plane->read_planes(0, 1, values);
+  for (std::size_t node = 0; node < 12; ++node) {
+    for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(values[3 * node + k], plane_stored[12 * k + node]);
+  }
+}
+
+/// Files that VTK 9.7 has written, in each of its ways: a velocity (v, -v, v + 0.5) and a density v, v = 100 z + 10 y +
+/// x, on 4 x 3 x 2 nodes whose first is number 1 along x.
+std::string vtk_file(std::string const& name) {
+  return std::string(GLADSTONE_DATA_DIR) + "/../tests/fuzz/corpus/vti_field/" + name;
+}
+
+TEST(VtiField, IsReadInEachOfVtksWays) {
+  auto const expected = numbered(4, 3, 2);
+  for (char const* const name : {"ascii.vti", "binary.vti", "binary_blocks.vti", "appended_base64.vti",
+                                 "appended_raw.vti", "appended_raw_big_endian.vti"}) {
+    auto const velocity = open_field(vtk_file(name), "", 3);
+    EXPECT_EQ(velocity->name(), "velocity");
+    EXPECT_THAT(velocity->grid().nodes, ElementsAre(4, 3, 2));
+    EXPECT_EQ(velocity->grid().spacing, (Vec3d{0.5, 0.25, 2}));
+    EXPECT_EQ(velocity->grid().origin, (Vec3d{1, -1, 3}));
+    EXPECT_EQ(velocity->significant_bits(), 24);
+    std::vector<double> values(3 * expected.size());
+    velocity->read_planes(0, 2, values);
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+      EXPECT_EQ(values[3 * i], expected[i]) << name;
+      EXPECT_EQ(values[3 * i + 1], -expected[i]) << name;
+      EXPECT_EQ(values[3 * i + 2], expected[i] + 0.5) << name;
+    }
+    auto const density = open_field(vtk_file(name), "density");
+    EXPECT_EQ(read_all(*density), expected) << name;
+  }
+}
+
+class VtiFiles : public FieldFiles {
+ protected:
+  /// A file of this text, opened and read.
+  void read(std::string const& text, std::string const& dataset = "", int values = 1) {
+    std::ofstream(in_folder("field.vti")) << text;
+    auto const source = open_field(in_folder("field.vti"), dataset, values);
+    std::vector<double> all(source->grid().size() * static_cast<std::size_t>(values));
+    source->read_planes(0, source->grid().nodes[2], all);
+  }
+  static std::string image(std::string const& arrays, std::string const& grid = "WholeExtent=\"0 1 0 1 0 0\"") {
+    return "<?xml version=\"1.0\"?><VTKFile type=\"ImageData\"><ImageData " + grid +
+           "><Piece Extent=\"0 1 0 1 0 0\"><PointData>" + arrays + "</PointData></Piece></ImageData></VTKFile>";
+  }
+  static std::string array(std::string const& keys, std::string const& data) {
+    return "<DataArray type=\"Float32\" " + keys + ">" + data + "</DataArray>";
+  }
+};
+
+// ParaView marks duplicate and hidden points by an array of this name beside the field.
+TEST_F(VtiFiles, ArraysThatMarkGhostsAreNoFields) {
+  std::string const good = array("Name=\"a\" format=\"ascii\"", "1 2 3 4");
+  std::string const ghosts = "<DataArray type=\"UInt8\" Name=\"vtkGhostType\" format=\"ascii\">0 0 0 0</DataArray>";
+  EXPECT_NO_THROW(read(image(good + ghosts)));
+  EXPECT_NO_THROW(read(image(ghosts + good)));
+  std::ofstream(in_folder("field.vtk")) << "# vtk DataFile Version 3.0\ntitle\nASCII\nDATASET STRUCTURED_POINTS\n"
+                                           "DIMENSIONS 2 2 1\nPOINT_DATA 4\nSCALARS vtkGhostType unsigned_char 1\n"
+                                           "LOOKUP_TABLE default\n0 0 0 0\nSCALARS a float 1\nLOOKUP_TABLE default\n"
+                                           "1 2 3 4\n";
+  auto const legacy = open_field(in_folder("field.vtk"), "");
+  EXPECT_EQ(legacy->name(), "a");
+  EXPECT_THAT(read_all(*legacy), ElementsAre(1, 2, 3, 4));
+}
+
+/// Base64 (RFC 4648), with padding.
+std::string base64(std::string const& data) {
+  constexpr char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  for (std::size_t at = 0; at < data.size(); at += 3) {
+    unsigned group = 0;
+    for (std::size_t i = 0; i < 3; ++i)
+      group = group << 8 | (at + i < data.size() ? static_cast<unsigned char>(data[at + i]) : 0u);
+    for (std::size_t i = 0; i < 4; ++i) text += i <= data.size() - at ? digits[group >> (18 - 6 * i) & 63u] : '=';
+  }
+  return text;
+}
+
+/// A VTK image of 4 x 3 x 2 points whose first one is number 0. @param keys  more attributes of the file
+std::string vtk_image(std::string const& keys, std::string const& arrays, std::string const& appended = "") {
+  return "<?xml version=\"1.0\"?>\n<VTKFile type=\"ImageData\" version=\"1.0\" " + keys +
+         "><ImageData WholeExtent=\"0 3 0 2 0 1\" Origin=\"1 -1 3\" Spacing=\"0.5 0.25 2\">"
+         "<Piece Extent=\"0 3 0 2 0 1\"><PointData>" +
+         arrays + "</PointData></Piece></ImageData>" + appended + "</VTKFile>\n";
+}
+
+// Lengths of 8 bytes (header_type UInt64) ahead of data that zlib has compressed: the number of blocks, the size of a
+// block, that of the last one if it is smaller, and the compressed size of each. 24 floats are two blocks of 40 bytes
+// and one of 16. In base64 the lengths and the blocks are encoded apart.
+TEST_F(VtiFiles, CompressedDataHaveLengthsOfFourOrEightBytes) {
+  std::string const path = in_folder("packed.vti");
+  for (bool const wide : {true, false}) {
+    for (bool const big_endian : {false, true}) {
+      std::string const raw = bytes<float>(numbered(4, 3, 2), big_endian);
+      std::string blocks;
+      std::vector<double> lengths{3, 40, 16};
+      for (std::size_t at = 0; at < raw.size(); at += 40) {
+        std::string const block = raw.substr(at, 40);
+        uLongf size = compressBound(block.size());
+        std::string packed(size, '\0');
+        ASSERT_EQ(compress(reinterpret_cast<Bytef*>(packed.data()), &size, reinterpret_cast<Bytef const*>(block.data()),
+                           block.size()),
+                  Z_OK);
+        lengths.push_back(static_cast<double>(size));
+        blocks += packed.substr(0, size);
+      }
+      std::string const header =
+          wide ? bytes<std::uint64_t>(lengths, big_endian) : bytes<std::uint32_t>(lengths, big_endian);
+      std::string const keys = std::string("compressor=\"vtkZLibDataCompressor\" header_type=\"") +
+                               (wide ? "UInt64" : "UInt32") + "\" byte_order=\"" +
+                               (big_endian ? "BigEndian" : "LittleEndian") + '"';
+      std::string const encoded = base64(header) + base64(blocks);
+      auto const appended = [](std::string const& encoding, std::string const& data) {
+        return "<AppendedData encoding=\"" + encoding + "\">_AAAA" + data + "</AppendedData>";
+      };
+      std::string const at_four = array("Name=\"rho\" format=\"appended\" offset=\"4\"", "");
+      for (std::string const& text : {vtk_image(keys, array("Name=\"rho\" format=\"binary\"", encoded)),
+                                      vtk_image(keys, at_four, appended("base64", encoded)),
+                                      vtk_image(keys, at_four, appended("raw", header + blocks))}) {
+        std::ofstream(path, std::ios::binary) << text;
+        auto const source = open_field(path, "");
+        EXPECT_EQ(read_all(*source), numbered(4, 3, 2)) << wide << big_endian << text;
+        EXPECT_TRUE(source->notes().empty());
+      }
+      // lengths of the other width are damage, not other numbers
+      std::string const other = wide ? "UInt32" : "UInt64";
+      std::string wrong = vtk_image(keys, at_four, appended("raw", header + blocks));
+      wrong.replace(wrong.find("header_type") + 13, 6, other);
+      std::ofstream(path, std::ios::binary) << wrong;
+      EXPECT_THAT([&] { read_all(*open_field(path, "")); }, refused("packed.vti", "data array \"rho\""));
+    }
+  }
+}
+
+// Every type of number, as raw bytes in base64 ahead of which their length is.
+TEST_F(VtiFiles, EveryTypeOfNumberIsRead) {
+  std::string const path = in_folder("types.vti");
+  auto const values = numbered(4, 3, 2);  // up to 123: fits every type
+  auto const expect_read = [&](std::string const& type, std::string const& raw, int significant_bits) {
+    std::string const length = bytes<std::uint32_t>({static_cast<double>(raw.size())});
+    std::ofstream(path, std::ios::binary) << vtk_image(
+        "byte_order=\"LittleEndian\" header_type=\"UInt32\"",
+        "<DataArray type=\"" + type + "\" Name=\"rho\" format=\"binary\">" + base64(length + raw) + "</DataArray>");
+    auto const source = open_field(path, "");
+    EXPECT_EQ(read_all(*source), values) << type;
+    EXPECT_EQ(source->significant_bits(), significant_bits) << type;
+  };
+  expect_read("Float32", bytes<float>(values), 24);
+  expect_read("Float64", bytes<double>(values), 53);
+  expect_read("Int8", bytes<std::int8_t>(values), 7);
+  expect_read("UInt8", bytes<std::uint8_t>(values), 8);
+  expect_read("Int16", bytes<std::int16_t>(values), 15);
+  expect_read("UInt16", bytes<std::uint16_t>(values), 16);
+  expect_read("Int32", bytes<std::int32_t>(values), 31);
+  expect_read("UInt32", bytes<std::uint32_t>(values), 32);
+  expect_read("Int64", bytes<std::int64_t>(values), 63);
+  expect_read("UInt64", bytes<std::uint64_t>(values), 64);
+  std::ofstream(path) << vtk_image("", "<DataArray type=\"String\" Name=\"rho\" format=\"ascii\">1</DataArray>");
+  EXPECT_THAT([&] { open_field(path, ""); }, refused("types.vti", "of type \"String\", which is no number"));
+}
+
+/// A legacy file of 4 x 3 x 2 points. @param data  from POINT_DATA or CELL_DATA on
+std::string legacy_image(std::string const& encoding, std::string const& data) {
+  return "# vtk DataFile Version 3.0\ntitle\n" + encoding +
+         "\nDATASET STRUCTURED_POINTS\nDIMENSIONS 4 3 2\nORIGIN 1 -1 3\nSPACING 0.5 0.25 2\n" + data;
+}
+
+// Legacy files name types as C does; binary numbers have the most significant byte first.
+TEST_F(VtiFiles, LegacyFilesHaveEveryTypeOfNumber) {
+  std::string const path = in_folder("types.vtk");
+  auto const values = numbered(4, 3, 2);
+  auto const expect_read = [&](std::string const& type, std::string const& raw) {
+    std::ofstream(path, std::ios::binary)
+        << legacy_image("BINARY", "POINT_DATA 24\nSCALARS rho " + type + "\nLOOKUP_TABLE default\n" + raw + '\n');
+    EXPECT_EQ(read_all(*open_field(path, "")), values) << type;
+  };
+  expect_read("float", bytes<float>(values, true));
+  expect_read("double", bytes<double>(values, true));
+  for (char const* const type : {"char", "signed_char", "unsigned_char"})
+    expect_read(type, bytes<std::int8_t>(values, true));
+  for (char const* const type : {"short", "unsigned_short"}) expect_read(type, bytes<std::int16_t>(values, true));
+  for (char const* const type : {"int", "unsigned_int"}) expect_read(type, bytes<std::int32_t>(values, true));
+  for (char const* const type : {"long", "unsigned_long", "vtktypeint64", "vtktypeuint64"})
+    expect_read(type, bytes<std::int64_t>(values, true));
+}
+
+// VTK writes indices, vtkIdType, with 4 bytes (vtkDataWriter) though they have 8 in memory. An array of them does not
+// shift the field behind it.
+TEST_F(VtiFiles, LegacyIndicesHaveFourBytes) {
+  auto const values = numbered(4, 3, 2);
+  std::string const path = in_folder("indices.vtk");
+  std::ofstream(path, std::ios::binary) << legacy_image(
+      "BINARY", "POINT_DATA 24\nFIELD FieldData 2\nvtkOriginalPointIds 1 24 vtkIdType\n" +
+                    bytes<std::int32_t>(values, true) + "\nrho 1 24 float\n" + bytes<float>(values, true) + '\n');
+  EXPECT_EQ(read_all(*open_field(path, "rho")), values);
+  EXPECT_EQ(read_all(*open_field(path, "vtkOriginalPointIds")), values);
+}
+
+// A velocity as VECTORS and as an array of three components in a FIELD, and data of 3 x 2 x 1 cells at their centres.
+TEST_F(VtiFiles, LegacyFilesHaveVelocitiesAndCells) {
+  std::vector<double> velocity;
+  for (double const value : numbered(4, 3, 2)) velocity.insert(velocity.end(), {value, -value, value + 0.5});
+  std::string text;
+  for (double const value : velocity) text += std::to_string(value) + ' ';
+  std::string const path = in_folder("legacy.vtk");
+  for (std::string const& file :
+       {legacy_image("ASCII", "POINT_DATA 24\nVECTORS u float\n" + text + '\n'),
+        legacy_image("BINARY", "POINT_DATA 24\nVECTORS u float\n" + bytes<float>(velocity, true) + '\n'),
+        legacy_image("BINARY",
+                     "POINT_DATA 24\nFIELD FieldData 1\nu 3 24 double\n" + bytes<double>(velocity, true) + '\n')}) {
+    std::ofstream(path, std::ios::binary) << file;
+    auto const source = open_field(path, "", 3);
+    EXPECT_EQ(source->name(), "u");
+    std::vector<double> read(velocity.size());
+    source->read_planes(0, 2, read);
+    EXPECT_EQ(read, velocity) << file;
+  }
+  std::ofstream(path) << legacy_image("ASCII",
+                                      "CELL_DATA 6\nSCALARS rho float\nLOOKUP_TABLE default\n0 1 2 10 11 12\n");
+  auto const cells = open_field(path, "");
+  EXPECT_THAT(cells->grid().nodes, ElementsAre(3, 2, 1));
+  EXPECT_EQ(cells->grid().origin, (Vec3d{1.25, -0.875, 4}));
+  EXPECT_EQ(read_all(*cells), numbered(3, 2, 1));
+}
+
+// i along y and j along x: columns of the Direction matrix are the directions of i, j and k. The key "axes" overrides
+// it, and the order of any other file of VTK.
+TEST_F(VtiFiles, DirectionAndTheKeyOrderTheAxes) {
+  std::string values;
+  for (double const value : numbered(4, 3, 2)) values += std::to_string(value) + ' ';
+  std::string const turned =
+      "<VTKFile type=\"ImageData\"><ImageData WholeExtent=\"0 3 0 2 0 1\" Spacing=\"0.5 0.25 2\" Direction=\"0 1 0 1 0 "
+      "0 0 0 "
+      "1\"><Piece Extent=\"0 3 0 2 0 1\"><PointData>" +
+      array("Name=\"rho\" format=\"ascii\"", values) + "</PointData></Piece></ImageData></VTKFile>";
+  std::ofstream(in_folder("turned.vti")) << turned;
+  std::ofstream(in_folder("plain.vti")) << vtk_image("", array("Name=\"rho\" format=\"ascii\"", values));
+  std::ofstream(in_folder("plain.vtk")) << legacy_image(
+      "ASCII", "POINT_DATA 24\nSCALARS rho float\nLOOKUP_TABLE default\n" + values + '\n');
+  for (auto const& [file, axes, by] :
+       {std::tuple{"turned.vti", "", "by its Direction"}, std::tuple{"turned.vti", "zxy", "axes = \"zxy\""},
+        std::tuple{"plain.vti", "zxy", "axes = \"zxy\""}, std::tuple{"plain.vtk", "zxy", "axes = \"zxy\""}}) {
+    auto const source = open_field(in_folder(file), "", 1, axes);
+    EXPECT_EQ(source->reading().text(), std::string("[2, 3, 4] is read as z, x, y (") + by + ')') << file;
+    EXPECT_THAT(source->grid().nodes, ElementsAre(3, 4, 2)) << file;
+    EXPECT_EQ(source->grid().spacing, (Vec3d{0.25, 0.5, 2})) << file;
+    EXPECT_EQ(read_all(*source)[1 + 3 * (2 + 4 * 1)], 112) << file << ": x = 1 is j, y = 2 is i, z = 1 is k";
+  }
+}
+
+/// Coordinates 0, 0.5, 1, 1.5 along x, 1, 1.25, 1.5 along y and -1, 1 along z.
+void expect_rectilinear(std::string const& path) {
+  auto const source = open_field(path, "");
+  EXPECT_THAT(source->grid().nodes, ElementsAre(4, 3, 2));
+  EXPECT_EQ(source->grid().spacing, (Vec3d{0.5, 0.25, 2}));
+  EXPECT_EQ(source->grid().origin, (Vec3d{0, 1, -1}));
+  EXPECT_EQ(source->reading().text(), "[2, 3, 4] is read as z, y, x (as VTK has it)");
+  EXPECT_EQ(read_all(*source), numbered(4, 3, 2));
+}
+
+TEST_F(VtiFiles, RectilinearGridsAreReadAsXmlAndInTheLegacyFormat) {
+  std::string values;
+  for (double const value : numbered(4, 3, 2)) values += std::to_string(value) + ' ';
+  std::ofstream(in_folder("field.vtr"))
+      << "<VTKFile type=\"RectilinearGrid\"><RectilinearGrid WholeExtent=\"0 3 0 2 0 1\"><Piece Extent=\"0 3 0 2 0 1\">"
+         "<PointData>" +
+             array("Name=\"rho\" format=\"ascii\"", values) + "</PointData><Coordinates>" +
+             array("Name=\"x\" format=\"ascii\"", "0 0.5 1 1.5") + array("Name=\"y\" format=\"ascii\"", "1 1.25 1.5") +
+             array("Name=\"z\" format=\"ascii\"", "-1 1") + "</Coordinates></Piece></RectilinearGrid></VTKFile>";
+  expect_rectilinear(in_folder("field.vtr"));
+  std::ofstream(in_folder("field.vtk"))
+      << "# vtk DataFile Version 3.0\ntitle\nASCII\nDATASET RECTILINEAR_GRID\n"
+         "DIMENSIONS 4 3 2\nX_COORDINATES 4 float\n0 0.5 1 1.5\nY_COORDINATES 3 float\n"
+         "1 1.25 1.5\nZ_COORDINATES 2 float\n-1 1\nPOINT_DATA 24\nSCALARS rho float\n"
+         "LOOKUP_TABLE default\n" +
+             values + '\n';
+  expect_rectilinear(in_folder("field.vtk"));
+}
+
+// Coordinates along x descend, those along y are not uniform, and data may be of the 3 x 2 x 1 cells between them.
+TEST_F(VtiFiles, RectilinearGridsMayDescendStretchAndHaveCells) {
+  auto const grid = [&](std::string const& x, std::string const& y, std::string const& data) {
+    std::ofstream(in_folder("field.vtr"))
+        << "<VTKFile type=\"RectilinearGrid\"><RectilinearGrid WholeExtent=\"0 3 0 2 0 1\"><Piece Extent=\"0 3 0 2 0 "
+           "1\">" +
+               data + "<Coordinates>" + array("Name=\"x\" format=\"ascii\"", x) +
+               array("Name=\"y\" format=\"ascii\"", y) + array("Name=\"z\" format=\"ascii\"", "-1 1") +
+               "</Coordinates></Piece></RectilinearGrid></VTKFile>";
+    return open_field(in_folder("field.vtr"), "");
+  };
+  std::string values;
+  for (double const value : numbered(4, 3, 2)) values += std::to_string(value) + ' ';
+  std::string const points = "<PointData>" + array("Name=\"rho\" format=\"ascii\"", values) + "</PointData>";
+  auto const descending = grid("1.5 1 0.5 0", "1 1.25 1.5", points);
+  EXPECT_EQ(descending->reading().turned_round, "x");
+  EXPECT_EQ(descending->grid().spacing.x, 0.5);
+  EXPECT_EQ(descending->grid().origin.x, 0);
+  EXPECT_EQ(read_all(*descending).front(), 3);
+
+  // 0, 1, 3: to the finest spacing, four nodes; the values are 10 j, and not linear in y
+  auto const stretched = grid("0 0.5 1 1.5", "0 1 3", points);
+  EXPECT_THAT(stretched->grid().nodes, ElementsAre(4, 4, 2));
+  EXPECT_THAT(stretched->notes(), ElementsAre(HasSubstr("axes that are not uniform were resampled: y")));
+
+  auto const cells = grid("0 0.5 1 1.5", "1 1.25 1.5",
+                          "<CellData>" + array("Name=\"rho\" format=\"ascii\"", "0 1 2 10 11 12") + "</CellData>");
+  EXPECT_THAT(cells->grid().nodes, ElementsAre(3, 2, 1));
+  EXPECT_EQ(cells->grid().origin, (Vec3d{0.25, 1.125, 0}));
+  EXPECT_EQ(cells->grid().spacing.x, 0.5);
+  EXPECT_EQ(cells->grid().spacing.y, 0.25);
+  EXPECT_EQ(cells->reading().by, "as VTK has it; data of cells, at their centres");
+  EXPECT_EQ(read_all(*cells), numbered(3, 2, 1));
+}
+
+TEST_F(VtiFiles, RefusesWhatItCannotRead) {
+  auto const refuses = [this](std::string const& text, std::string const& why, std::string const& dataset = "") {
+    EXPECT_THAT(([&] { read(text, dataset); }), refused("field.vti", why)) << text;
+  };
+  std::string const good = array("Name=\"a\" format=\"ascii\"", "1 2 3 4");
+  EXPECT_NO_THROW(read(image(good)));
+  refuses("", "is no VTK file");
+  refuses("<VTKFile type=\"ImageData\">", "is no whole XML");
+  refuses("<VTKFile type=\"UnstructuredGrid\"></VTKFile>", "holds VTK's \"UnstructuredGrid\"");
+  refuses(image(""), "has no scalar field among its data of points and cells");
+  refuses(image(good), "has no scalar field \"b\" among its data of points and cells, which are \"a\"", "b");
+  refuses(image(good + array("Name=\"b\"", "1 2 3 4")), "say which with dataset = \"a\" or \"b\"");
+  refuses(image(array("Name=\"a\" NumberOfComponents=\"2\"", "1 2")), "holds 2 values a point where 1 are", "a");
+  refuses(image(good, "WholeExtent=\"0 2 0 1 0 0\""), "its pieces do not fill its WholeExtent");
+  refuses(image(good, "WholeExtent=\"0 1 0 1\""), "is not 6 numbers");
+  refuses(image(good, "WholeExtent=\"0 1 0 1 0 0\" Spacing=\"1 0 1\""), "has no usable grid");
+  refuses(image(good, "WholeExtent=\"0 1 0 1 0 0\" Direction=\"0.6 0.8 0 -0.8 0.6 0 0 0 1\""), "has turned axes");
+  refuses(image(array("Name=\"a\" format=\"ascii\"", "1 2 3")), "3 of 4 numbers are there");
+  refuses(image(array("Name=\"a\" format=\"ascii\"", "1 2 nan 3")), "1 of 4 points are nan");
+  refuses(image(array("Name=\"a\" format=\"binary\"", "AAAA")), "is cut short");
+  refuses(image(array("Name=\"a\" format=\"binary\"", "EAAAAAAAAAAAAAAA?AAAAAAAAAA=")), "holds other characters");
+  refuses(image(array("Name=\"a\" format=\"binary\"", "DAAAAAAAAAAAAAAAAAAAAAAAAAA=")),
+          "its length is 12 where its grid needs 16");
+  refuses(image(array("Name=\"a\" format=\"appended\" offset=\"0\"", "")), "has no data");
+  refuses("<VTKFile type=\"ImageData\" compressor=\"vtkOtherCompressor\"></VTKFile>",
+          "compressed by \"vtkOtherCompressor\"");
+}
+
+}  // namespace
+}  // namespace gladstone

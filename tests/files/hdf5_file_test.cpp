@@ -1,0 +1,222 @@
+#include "render/files/hdf5_file.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/resource.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <limits>
+
+#include "render/base/error.h"
+
+namespace gladstone {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+class Hdf5 : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::path(testing::TempDir()) /
+              (std::string("hdf5_") + testing::UnitTest::GetInstance()->current_test_info()->name());
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+  std::string in_folder(std::string const& name) const { return (folder_ / name).string(); }
+  fs::path folder_;
+};
+
+FileOrigin origin() { return {"gladstone test", 3, "schema = 1\n", 18446744073709551615u, "cpu"}; }
+
+std::vector<double> ramp(std::size_t count) {
+  std::vector<double> values(count);
+  for (std::size_t i = 0; i < count; ++i) values[i] = std::sin(0.001 * static_cast<double>(i));
+  return values;
+}
+
+void write_ramp(std::string const& path, std::size_t rows) {
+  Hdf5Writer writer(path, origin());
+  writer.write("/group/deeper/ramp", ramp(rows * 3), {rows, 3}, "m", "a ramp", "row, component (x, y, z)");
+  writer.close();
+}
+
+TEST_F(Hdf5, WhatIsWrittenIsReadBack) {
+  std::string const path = in_folder("a.h5");
+  std::vector<double> const values{0.1, -0.0, std::nan(""), std::numeric_limits<double>::infinity(), 5e-324, 1e300};
+  std::vector<std::int64_t> const counts{-1, 9007199254740993};
+  {
+    Hdf5Writer writer(path, origin());
+    writer.write("/dots/position_m", values, {3, 2}, "m", "positions", "dot, component");
+    writer.write("/counts", counts, {2}, "1", "counts", "dot");
+    writer.write("/none", std::span<double const>{}, {0, 2}, "px", "nothing", "dot, component");
+    writer.attribute("/dots", "interpolation", "cubic_bspline");
+    writer.attribute("/", "sigma", 0.25);
+    EXPECT_FALSE(fs::exists(path));
+    writer.close();
+  }
+  Hdf5Reader const reader(path);
+  EXPECT_THAT(reader.shape("/dots/position_m"), ElementsAre(3, 2));
+  auto const back = reader.read("dots/position_m");
+  ASSERT_EQ(back.size(), values.size());
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    EXPECT_TRUE(back[i] == values[i] || (std::isnan(back[i]) && std::isnan(values[i]))) << i;
+  }
+  EXPECT_THAT(reader.read_integers("counts"), ElementsAre(-1, 9007199254740993));  // 2^53 + 1: no double
+  EXPECT_THAT(reader.read("counts"), ElementsAre(-1.0, 9007199254740992.0));
+  EXPECT_TRUE(reader.read("/none").empty());
+  EXPECT_THAT(reader.dataset_names(), ElementsAre("counts", "none"));
+  EXPECT_TRUE(reader.has("/dots/position_m"));
+  EXPECT_FALSE(reader.has("/dots"));
+  EXPECT_FALSE(reader.has("/rays/status"));
+  EXPECT_EQ(reader.attribute("filetype"), "gladstone test");
+  EXPECT_EQ(reader.attribute("version"), "3");
+  EXPECT_EQ(reader.attribute("setup"), "schema = 1\n");
+  EXPECT_EQ(reader.attribute("seed"), "18446744073709551615");
+  EXPECT_EQ(reader.attribute("device"), "cpu");
+  EXPECT_EQ(reader.attribute("sigma"), "0.25");
+  EXPECT_THAT(reader.attribute("date_and_time"), testing::MatchesRegex("....-..-..T..:..:..Z"));
+  for (auto const* name : {"software_version", "git_sha1"}) EXPECT_NE(reader.attribute(name), "");
+  EXPECT_EQ(reader.attribute("unheard_of"), "");
+}
+
+TEST_F(Hdf5, LongSetupsFitIntoTheAttribute) {
+  std::string const path = in_folder("long.h5");
+  FileOrigin long_origin = origin();
+  long_origin.setup = std::string(300000, 'x');  // a plain attribute ends at 64 KiB
+  Hdf5Writer(path, long_origin).close();
+  EXPECT_EQ(Hdf5Reader(path).attribute("setup"), long_origin.setup);
+}
+
+TEST_F(Hdf5, LargeDatasetsAreCompressedAndRowsReadAlone) {
+  std::string const path = in_folder("large.h5");
+  std::size_t const rows = 100000;
+  write_ramp(path, rows);
+  EXPECT_LT(fs::file_size(path), rows * 3 * sizeof(double));
+  Hdf5Reader const reader(path);
+  auto const whole = reader.read("/group/deeper/ramp");
+  EXPECT_EQ(whole, ramp(rows * 3));
+  std::vector<double> part(6);
+  reader.read_rows("/group/deeper/ramp", 70000, 2, part);
+  for (std::size_t i = 0; i < part.size(); ++i) EXPECT_EQ(part[i], whole[210000 + i]);
+}
+
+TEST_F(Hdf5, EqualInputGivesEqualFilesButForTheDate) {
+  write_ramp(in_folder("a.h5"), 10000);
+  write_ramp(in_folder("b.h5"), 10000);
+  auto const bytes = [&](std::string const& name) {
+    std::string const date = Hdf5Reader(in_folder(name)).attribute("date_and_time");
+    std::ifstream file(in_folder(name), std::ios::binary);
+    std::string text{std::istreambuf_iterator<char>(file), {}};
+    auto const at = text.find(date);
+    EXPECT_NE(at, std::string::npos);
+    return text.erase(at, date.size());
+  };
+  EXPECT_TRUE(bytes("a.h5") == bytes("b.h5"));
+}
+
+TEST_F(Hdf5, MissingDatasetIsNamedWithThoseThatExist) {
+  write_ramp(in_folder("a.h5"), 1);
+  Hdf5Reader const reader(in_folder("a.h5"));
+  EXPECT_THAT([&] { reader.read("group/deeper/rump"); },
+              ThrowsMessage<DataError>(AllOf(HasSubstr("a.h5"), HasSubstr("\"group/deeper/rump\""),
+                                             HasSubstr("did you mean \"group/deeper/ramp\"?"))));
+  EXPECT_THAT([&] { reader.read_integers("group/deeper/ramp"); },
+              ThrowsMessage<DataError>(HasSubstr("holds floating-point numbers; whole numbers are needed")));
+}
+
+TEST_F(Hdf5, WhatIsNoHdf5FileIsSaidToBeNone) {
+  std::ofstream(in_folder("text.h5")) << "not at all";
+  EXPECT_THAT([&] { Hdf5Reader reader(in_folder("text.h5")); },
+              ThrowsMessage<DataError>(AllOf(HasSubstr("text.h5"), HasSubstr("is not an HDF5 file"))));
+  EXPECT_THAT([&] { Hdf5Reader reader(in_folder("absent.h5")); },
+              ThrowsMessage<DataError>(HasSubstr("absent.h5: does not exist")));
+  EXPECT_THAT([&] { Hdf5Reader reader(folder_.string()); }, ThrowsMessage<DataError>(HasSubstr("is a folder")));
+}
+
+TEST_F(Hdf5, FileCutShortIsSaidToBeDamaged) {
+  std::string const path = in_folder("cut.h5");
+  write_ramp(path, 10000);
+  fs::resize_file(path, fs::file_size(path) / 2);
+  EXPECT_THAT([&] { Hdf5Reader reader(path); },
+              ThrowsMessage<DataError>(AllOf(HasSubstr("cut.h5"), HasSubstr("cut short"))));
+}
+
+// Of 10007 rows written in chunks, 240 kB, the header of a damaged file says 2^60 bytes, or 2.4 GB, which a machine may
+// well have: no compression makes a file so short. It is refused before memory is asked for.
+TEST_F(Hdf5, WhatAHeaderPromisesIsHeldAgainstTheFile) {
+  std::string const path = in_folder("promise.h5");
+  for (std::string const& promised : {std::string("\0\0\0\0\0\0\0\x02", 8), std::string("\0\xe1\xf5\x05\0\0\0\0", 8)}) {
+    write_ramp(path, 10007);
+    std::ifstream file(path, std::ios::binary);
+    std::string bytes{std::istreambuf_iterator<char>(file), {}};
+    std::string const rows("\x17\x27\0\0\0\0\0\0", 8);
+    int replaced = 0;
+    for (std::size_t at; (at = bytes.find(rows)) != std::string::npos; ++replaced) bytes.replace(at, 8, promised);
+    ASSERT_GE(replaced, 1);
+    std::ofstream(path, std::ios::binary) << bytes;
+    Hdf5Reader const reader(path);
+    auto const refused = ThrowsMessage<DataError>(AllOf(HasSubstr("promise.h5: dataset \"/group/deeper/ramp\" of "),
+                                                        HasSubstr(" x 3 values"), HasSubstr("too short")));
+    EXPECT_THAT([&] { reader.read("/group/deeper/ramp"); }, refused);
+    EXPECT_THAT([&] { reader.shape("/group/deeper/ramp"); }, refused);
+    std::vector<double> row(3);
+    EXPECT_THAT([&] { reader.read_rows("/group/deeper/ramp", 0, 1, row); }, refused);
+  }
+}
+
+// Zeros deflate to less than a thousandth; 160 MB of them are read all the same.
+TEST_F(Hdf5, WhatCompressesWellIsNoDamage) {
+  std::string const path = in_folder("zeros.h5");
+  std::size_t const count = 20'000'000;
+  Hdf5Writer writer(path, origin(), Hdf5Growth::on_disk);
+  writer.make_rows<double>("/zeros", {count}, {1'000'000}, "1", "zeros", "row");
+  writer.write_rows<double>("/zeros", 0, std::vector<double>(count));
+  writer.close();
+  EXPECT_LT(fs::file_size(path), count * sizeof(double) / 500);
+  EXPECT_EQ(Hdf5Reader(path).read("/zeros").size(), count);
+}
+
+TEST_F(Hdf5, PartsOfRowsAreReadAlone) {
+  write_ramp(in_folder("a.h5"), 4);
+  Hdf5Reader const reader(in_folder("a.h5"));
+  std::vector<double> const all = ramp(12);
+  std::vector<double> part(2);
+  reader.read_box("/group/deeper/ramp", {2, 1}, {1, 2}, part);
+  EXPECT_THAT(part, ElementsAre(all[7], all[8]));
+}
+
+TEST_F(Hdf5, FullDiskLeavesTheOldFileAndAMessage) {
+  std::string const path = in_folder("a.h5");
+  write_ramp(path, 1);
+  auto const size = fs::file_size(path);
+  auto* const handler = signal(SIGXFSZ, SIG_IGN);
+  rlimit before{};
+  getrlimit(RLIMIT_FSIZE, &before);
+  rlimit const limit{4096, before.rlim_max};
+  setrlimit(RLIMIT_FSIZE, &limit);
+  EXPECT_THAT([&] { write_ramp(path, 10000); }, ThrowsMessage<OutputError>(HasSubstr("a.h5: cannot be written")));
+  setrlimit(RLIMIT_FSIZE, &before);
+  signal(SIGXFSZ, handler);
+  EXPECT_EQ(fs::file_size(path), size);
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 1);
+}
+
+TEST_F(Hdf5, WithoutCloseNothingIsLeft) {
+  {
+    Hdf5Writer writer(in_folder("a.h5"), origin());
+    writer.write("/x", ramp(3), {3}, "1", "x", "x");
+  }
+  EXPECT_TRUE(fs::is_empty(folder_));
+}
+
+}  // namespace
+}  // namespace gladstone

@@ -1,0 +1,452 @@
+#include "render/files/image_file.h"
+
+#include <OpenImageIO/imageio.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <initializer_list>
+#include <utility>
+
+#include "render/base/error.h"
+#include "tests/files/support/output.h"
+
+namespace gladstone {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+std::string temporary(std::string const& name) { return (fs::path(testing::TempDir()) / ("image_" + name)).string(); }
+
+/// Every 16-bit value once.
+Image<std::uint16_t> all_values() {
+  Image<std::uint16_t> image(256, 256);
+  for (int i = 0; i < 65536; ++i) image.data()[i] = static_cast<std::uint16_t>(i);
+  return image;
+}
+
+/// A picture in any format that OpenImageIO writes.
+template <class Sample>
+std::string write_picture(std::string const& name, std::vector<Sample> const& samples, int columns, int channels) {
+  std::string const path = temporary(name);
+  int const rows = static_cast<int>(samples.size()) / columns / channels;
+  OIIO::ImageSpec const spec(columns, rows, channels, OIIO::BaseTypeFromC<Sample>::value);
+  auto const output = OIIO::ImageOutput::create(path);
+  EXPECT_TRUE(output && output->open(path, spec) &&
+              output->write_image(OIIO::BaseTypeFromC<Sample>::value, samples.data()));
+  EXPECT_TRUE(output->close());
+  return path;
+}
+
+TEST(ImageFile, EveryValueOfA16BitTiffComesBack) {
+  std::string const path = temporary("all.tif");
+  auto const image = all_values();
+  write_tiff(path, image, {12, 10e-6, "schema = 1\n# umlaut \xc3\xa4\n"});
+  ImageMetadata metadata;
+  auto const back = read_image(path, &metadata);
+  ASSERT_EQ(back.columns(), 256);
+  ASSERT_EQ(back.rows(), 256);
+  for (std::size_t i = 0; i < image.size(); ++i) ASSERT_EQ(back.data()[i], image.data()[i]);
+  EXPECT_EQ(metadata.bit_depth, 12);
+  EXPECT_EQ(metadata.pixel_pitch_m, 10e-6);
+  EXPECT_EQ(metadata.description, "schema = 1\n# umlaut \xc3\xa4\n");
+}
+
+TEST(ImageFile, OtherProgramsFindResolutionAndSoftware) {
+  std::string const path = temporary("resolution.tif");
+  write_tiff(path, Image<std::uint16_t>(3, 2, 7), {16, 10e-6, "text"});
+  auto const input = OIIO::ImageInput::open(path);
+  ASSERT_TRUE(input);
+  EXPECT_EQ(input->spec().format, OIIO::TypeDesc::UINT16);
+  EXPECT_EQ(input->spec().nchannels, 1);
+  EXPECT_FLOAT_EQ(input->spec().get_float_attribute("XResolution"), 1000.0f);  // 10 um: 1000 pixels a centimetre
+  EXPECT_FLOAT_EQ(input->spec().get_float_attribute("YResolution"), 1000.0f);
+  EXPECT_EQ(input->spec().get_string_attribute("ResolutionUnit"), "cm");
+  EXPECT_THAT(std::string(input->spec().get_string_attribute("Software")), HasSubstr("gladstone"));
+  EXPECT_THAT(std::string(input->spec().get_string_attribute("ImageDescription")), HasSubstr("\ntext"));
+  EXPECT_EQ(input->spec().find_attribute("DateTime"), nullptr);
+}
+
+TEST(ImageFile, SingleRowAndEmptyDescriptionWork) {
+  std::string const path = temporary("row.tif");
+  write_tiff(path, Image<std::uint16_t>(5, 1, 9), {});
+  ImageMetadata metadata;
+  EXPECT_EQ(read_image(path, &metadata)(4, 0), 9.0);
+  EXPECT_EQ(metadata.description, "");
+  EXPECT_EQ(metadata.bit_depth, 16);
+  EXPECT_EQ(metadata.pixel_pitch_m, 0.0);
+}
+
+TEST(ImageFile, ValuesOfOtherFormatsAreRaw) {
+  ImageMetadata metadata;
+  auto const bytes = read_image(write_picture<std::uint8_t>("8.png", {0, 1, 128, 255}, 2, 1), &metadata);
+  EXPECT_THAT(std::vector<double>(bytes.begin(), bytes.end()), testing::ElementsAre(0, 1, 128, 255));
+  EXPECT_EQ(bytes(1, 0), 1.0);
+  EXPECT_EQ(metadata.bit_depth, 8);
+  auto const words = read_image(write_picture<std::uint16_t>("16.png", {0, 1, 4095, 65535}, 4, 1), &metadata);
+  EXPECT_THAT(std::vector<double>(words.begin(), words.end()), testing::ElementsAre(0, 1, 4095, 65535));
+  EXPECT_EQ(metadata.bit_depth, 16);
+  auto const floats = read_image(write_picture<float>("float.tif", {-1.5f, 0.25f, 1e6f, 3.0f}, 2, 1));
+  EXPECT_THAT(std::vector<double>(floats.begin(), floats.end()), testing::ElementsAre(-1.5, 0.25, 1e6, 3.0));
+}
+
+TEST(ImageFile, TwelvePackedBitsKeepTheirValues) {
+  std::string const path = temporary("12.tif");
+  OIIO::ImageSpec spec(4096, 1, 1, OIIO::TypeDesc::UINT16);
+  spec["oiio:BitsPerSample"] = 12;
+  std::vector<std::uint16_t> samples(4096);
+  for (int i = 0; i < 4096; ++i) samples[i] = static_cast<std::uint16_t>((i * 65535 + 2047) / 4095);
+  auto const output = OIIO::ImageOutput::create(path);
+  ASSERT_TRUE(output && output->open(path, spec) && output->write_image(OIIO::TypeDesc::UINT16, samples.data()));
+  ASSERT_TRUE(output->close());
+  ImageMetadata metadata;
+  auto const image = read_image(path, &metadata);
+  EXPECT_EQ(metadata.bit_depth, 12);
+  for (int i = 0; i < 4096; ++i) ASSERT_EQ(image(i, 0), i);
+}
+
+TEST(ImageFile, ColourBecomesLuminanceAndAlphaIsIgnored) {
+  ImageMetadata metadata;
+  auto const colour =
+      read_image(write_picture<std::uint8_t>("rgb.png", {100, 0, 0, 0, 100, 0, 0, 0, 100, 9, 9, 9}, 4, 3), &metadata);
+  EXPECT_EQ(metadata.channels, 3);
+  // Rec. ITU-R BT.709, section 3.2; the weights sum to 1
+  EXPECT_NEAR(colour(0, 0), 21.26, 1e-12);
+  EXPECT_NEAR(colour(1, 0), 71.52, 1e-12);
+  EXPECT_NEAR(colour(2, 0), 7.22, 1e-12);
+  EXPECT_NEAR(colour(3, 0), 9.0, 1e-12);
+  auto const grey = read_image(write_picture<std::uint8_t>("greyalpha.png", {80, 255, 50, 128}, 2, 2));
+  EXPECT_EQ(grey(0, 0), 80.0);
+  // OpenImageIO's writer takes 50 as multiplied by the opacity 128/255 already and stores 50 / (128/255) = 99.6.
+  EXPECT_NEAR(grey(1, 0), 99.6, 1.0);
+}
+
+TEST(ImageFile, EqualImagesAreEqualFiles) {
+  write_tiff(temporary("a.tif"), all_values(), {12, 6.5e-6, "x"});
+  write_tiff(temporary("b.tif"), all_values(), {12, 6.5e-6, "x"});
+  EXPECT_EQ(content(temporary("a.tif")), content(temporary("b.tif")));
+}
+
+TEST(ImageFile, UnreadablePicturesAreNamed) {
+  EXPECT_THAT([] { read_image("/no/such/picture.tif"); },
+              ThrowsMessage<DataError>(HasSubstr("/no/such/picture.tif: does not exist")));
+  std::ofstream(temporary("text.tif")) << "not a picture";
+  EXPECT_THAT([] { read_image(temporary("text.tif")); },
+              ThrowsMessage<DataError>(AllOf(HasSubstr("text.tif"), HasSubstr("cannot be read as a picture"))));
+  write_tiff(temporary("cut.tif"), all_values(), {});
+  std::string const whole = content(temporary("cut.tif"));
+  std::ofstream(temporary("cut.tif"), std::ios::binary) << whole.substr(0, whole.size() / 2);
+  EXPECT_THAT([] { read_image(temporary("cut.tif")); }, ThrowsMessage<DataError>(HasSubstr("cut.tif")));
+}
+
+/// Pages of one TIFF, each with its number as the value of every pixel.
+std::string write_pages(std::string const& name, std::vector<std::pair<int, int>> const& sizes) {
+  std::string const path = temporary(name);
+  auto const output = OIIO::ImageOutput::create(path);
+  for (std::size_t page = 0; page < sizes.size(); ++page) {
+    auto const [columns, rows] = sizes[page];
+    OIIO::ImageSpec const spec(columns, rows, 1, OIIO::TypeDesc::UINT16);
+    std::vector<std::uint16_t> const values(spec.image_pixels(), static_cast<std::uint16_t>(page + 1));
+    auto const mode = page == 0 ? OIIO::ImageOutput::Create : OIIO::ImageOutput::AppendSubimage;
+    EXPECT_TRUE(output->open(path, spec, mode) && output->write_image(OIIO::TypeDesc::UINT16, values.data()));
+  }
+  EXPECT_TRUE(output->close());
+  return path;
+}
+
+TEST(ImageFile, SeveralPagesAreRefusedWithTheirNumberAndTwoAreAPair) {
+  std::string const pair = write_pages("pair.tif", {{8, 6}, {8, 6}});
+  EXPECT_THAT([&] { read_image(pair); },
+              ThrowsMessage<DataError>(AllOf(HasSubstr("pair.tif: has 2 pages"), HasSubstr("gladstone correlate"))));
+  auto const [reference, flow] = read_frame_pair(pair);
+  EXPECT_EQ(reference.columns(), 8);
+  EXPECT_EQ(reference(7, 5), 1);
+  EXPECT_EQ(flow(0, 0), 2);
+
+  std::string const film = write_pages("film.tif", {{8, 6}, {8, 6}, {8, 6}});
+  EXPECT_THAT([&] { read_frame_pair(film); }, ThrowsMessage<DataError>(HasSubstr("film.tif: has 3 pages")));
+  std::string const one = write_pages("one.tif", {{8, 6}});
+  EXPECT_THAT([&] { read_frame_pair(one); }, ThrowsMessage<DataError>(HasSubstr("one.tif: has 1 page, ")));
+}
+
+// Cameras and viewers put small copies behind a picture.
+TEST(ImageFile, PreviewsAreNoPages) {
+  EXPECT_EQ(read_image(write_pages("preview.tif", {{64, 48}, {16, 12}}))(0, 0), 1);
+  auto const [reference, flow] = read_frame_pair(write_pages("previews.tif", {{64, 48}, {16, 12}, {64, 48}, {16, 12}}));
+  EXPECT_EQ(reference(0, 0), 1);
+  EXPECT_EQ(flow(0, 0), 3);
+}
+
+/// Puts another value into a TIFF's header. @param tag 256 the width, 257 the height
+std::string with_tag(std::string bytes, std::uint16_t tag, std::uint32_t value) {
+  auto const number = [&](std::size_t place, std::size_t size) {
+    std::uint32_t found = 0;
+    for (std::size_t i = size; i-- > 0;) found = found << 8 | static_cast<unsigned char>(bytes[place + i]);
+    return found;
+  };
+  std::size_t const directory = number(4, 4);
+  for (std::size_t entry = 0; entry < number(directory, 2); ++entry) {
+    std::size_t const place = directory + 2 + 12 * entry;
+    if (number(place, 2) != tag) continue;
+    bytes[place + 2] = 4;  // of 32 bits
+    for (std::size_t i = 0; i < 4; ++i) bytes[place + 8 + i] = static_cast<char>(value >> (8 * i) & 0xffu);
+  }
+  return bytes;
+}
+
+std::string case_path(std::string const& name) {
+  return std::string(GLADSTONE_DATA_DIR "/../tests/cases/pictures/") + name;
+}
+
+/// The level of a pixel, by column and row, of a picture in tests/cases/pictures (make.py there).
+using Levels = double (*)(int, int);
+double byte_level(int i, int j) { return 10 + 30 * i + 5 * j; }
+double word_level(int i, int j) { return 1000 + 7000 * i + 1500 * j; }
+
+/// Every picture reads as the levels that were written, upright, whatever its file says of turns, byte order, samples,
+/// compression and colours. Tolerances: 0 but for
+/// - luminance of three equal colours, whose weights sum to 1 but for rounding,
+/// - float_16, whose 11 bits round 0.75 by 2^-12,
+/// - ink levels, which are as exact as their 8 bits,
+/// - JPEG, whose discrete cosine transform rounds each of 64 coefficients by half a level, seldom all to one side,
+/// - a TIFF's palette of 16 bits, of which the library keeps 8: one level.
+TEST(ImageFile, EveryKindOfPictureReadsAsItsLevels) {
+  constexpr double rounding = 1e-9, jpeg = 2, palette = 1 + rounding;
+  Levels const first_bits[] = {[](int i, int j) { return std::floor(byte_level(i, j) / 64); },
+                               [](int i, int j) { return std::floor(byte_level(i, j) / 16); },
+                               [](int i, int j) { return std::floor(word_level(i, j) / 64); },
+                               [](int i, int j) { return std::floor(word_level(i, j) / 16); },
+                               [](int i, int j) { return std::floor(word_level(i, j) / 4); }};
+  Levels const white = [](int i, int j) { return byte_level(i, j) > 128 ? 1.0 : 0.0; };
+  Levels const white_byte = [](int i, int j) { return byte_level(i, j) > 128 ? 255.0 : 0.0; };
+  Levels const share = [](int i, int j) { return word_level(i, j) / 65535; };
+  struct Kind {
+    char const* name;
+    Levels level;
+    double tolerance;
+  };
+  for (Kind const &kind : std::initializer_list<Kind>{
+           {"orientation_1.tif", byte_level, 0},
+           {"orientation_2.tif", byte_level, 0},
+           {"orientation_3.tif", byte_level, 0},
+           {"orientation_4.tif", byte_level, 0},
+           {"orientation_5.tif", byte_level, 0},
+           {"orientation_6.tif", byte_level, 0},
+           {"orientation_7.tif", byte_level, 0},
+           {"orientation_8.tif", byte_level, 0},
+           {"orientation_6.png", byte_level, 0},
+           {"orientation_6.jpg", byte_level, jpeg},
+           {"big_endian.tif", word_level, 0},
+           {"bigtiff.tif", word_level, 0},
+           {"tiled.tif", word_level, 0},
+           {"predictor.tif", word_level, 0},
+           {"compression_zstd.tif", byte_level, 0},
+           {"compression_lzma.tif", byte_level, 0},
+           {"compression_packbits.tif", byte_level, 0},
+           {"compression_webp.tif", byte_level, rounding},
+           {"bits_2.tif", first_bits[0], 0},
+           {"bits_4.tif", first_bits[1], 0},
+           {"bits_10.tif", first_bits[2], 0},
+           {"bits_12.tif", first_bits[3], 0},
+           {"bits_14.tif", first_bits[4], 0},
+           {"bits_1.tif", white, 0},
+           {"bits_1_group4.tif", white, 0},
+           {"bits_1_white_is_zero.tif", white, 0},
+           {"bits_1.png", white_byte, 0},
+           {"white_is_zero_8.tif", byte_level, 0},
+           {"white_is_zero_12.tif", first_bits[3], 0},
+           {"white_is_zero_16.tif", word_level, 0},
+           {"float_16.tif", share, 2.5e-4},
+           {"float_32.tif", share, 6e-8},
+           {"int_16.tif", [](int i, int j) { return word_level(i, j) - 30000; }, 0},
+           {"uint_32.tif", [](int i, int j) { return 60000 * word_level(i, j); }, 0},
+           {"palette.tif", byte_level, palette},
+           {"palette.png", byte_level, rounding},
+           {"palette.gif", byte_level, rounding},
+           {"rgb.tif", byte_level, rounding},
+           {"rgb_planar.tif", byte_level, rounding},
+           {"rgba.tif", byte_level, rounding},
+           {"grey_alpha.tif", byte_level, 0},
+           {"grey_alpha.png", byte_level, 0},
+           {"grey_16.png", word_level, 0},
+           {"grey.jpg", byte_level, jpeg},
+           {"ycbcr.tif", byte_level, jpeg},
+           {"inks.tif", byte_level, rounding},
+           {"inks_tiled.tif", byte_level, rounding},
+           {"inks_planar.tif", byte_level, rounding},
+           {"inks_16_tiled.tif", [](int i, int j) { return 257 * byte_level(i, j); }, 1e-6},
+       }) {
+    Image<double> const image = read_image(case_path(kind.name));
+    ASSERT_EQ(image.columns(), 7) << kind.name;
+    ASSERT_EQ(image.rows(), 5) << kind.name;
+    for (int j = 0; j < 5; ++j) {
+      for (int i = 0; i < 7; ++i)
+        EXPECT_NEAR(image(i, j), kind.level(i, j), kind.tolerance) << kind.name << ' ' << i << ' ' << j;
+    }
+  }
+}
+
+// Doubles keep all their digits; OpenEXR stores half floats (11 bits: 0.1 to 2^-15) and floats, and packs like TIFF
+// without loss.
+TEST(ImageFile, EveryFloatAndEveryPackingOfTiffKeepsItsValues) {
+  auto const read = [](std::string const& path) {
+    Image<double> const image = read_image(path);
+    return std::vector<double>(image.begin(), image.end());
+  };
+  EXPECT_EQ(read(write_picture<double>("double.tif", {-1.5, 0.1, 1e-3, 1e9 / 3}, 2, 1)),
+            (std::vector<double>{-1.5, 0.1, 1e-3, 1e9 / 3}));
+  EXPECT_EQ(read(write_picture<float>("float.exr", {-1.5f, 0.1f, 1e6f, 3.0f}, 2, 1)),
+            (std::vector<double>{-1.5, 0.1f, 1e6, 3}));
+  std::string const half = temporary("half.exr");
+  OIIO::ImageSpec const halves(2, 1, 1, OIIO::TypeDesc::HALF);
+  float const stored[]{0.1f, 1024};
+  auto const output = OIIO::ImageOutput::create(half);
+  ASSERT_TRUE(output && output->open(half, halves) && output->write_image(OIIO::TypeDesc::FLOAT, stored));
+  ASSERT_TRUE(output->close());
+  EXPECT_NEAR(read(half)[0], 0.1, std::ldexp(1.0, -15));
+  EXPECT_EQ(read(half)[1], 1024);
+
+  auto const image = all_values();
+  for (char const* packing : {"none", "lzw", "zip", "packbits"}) {
+    std::string const path = temporary("packed.tif");
+    OIIO::ImageSpec spec(256, 256, 1, OIIO::TypeDesc::UINT16);
+    spec["compression"] = packing;
+    auto const tiff = OIIO::ImageOutput::create(path);
+    ASSERT_TRUE(tiff && tiff->open(path, spec) && tiff->write_image(OIIO::TypeDesc::UINT16, image.data()));
+    ASSERT_TRUE(tiff->close());
+    auto const back = read_image(path);
+    EXPECT_TRUE(std::equal(back.begin(), back.end(), image.begin(), image.end())) << packing;
+  }
+}
+
+TEST(ImageFile, WhatWasDoneToAPictureIsReported) {
+  ImageMetadata metadata;
+  read_image(case_path("orientation_6.tif"), &metadata);
+  EXPECT_EQ(metadata.orientation, 6);
+  read_image(case_path("bits_1.tif"), &metadata);
+  EXPECT_EQ(metadata.orientation, 1);
+  EXPECT_EQ(metadata.bit_depth, 1);
+  EXPECT_EQ(metadata.sample_bits, 1);
+  read_image(case_path("inks_tiled.tif"), &metadata);
+  EXPECT_EQ(metadata.channels, 3);
+}
+
+TEST(ImageFile, PicturesThatHaveNoGreyLevelsAreRefusedWithTheReason) {
+  for (auto const& [name, reason] : std::initializer_list<std::pair<char const*, char const*>>{
+           {"int_8.tif", "has samples of type int8"},
+           {"uint_64.tif", "unsigned integers of 64 bits"},
+           {"complex.tif", "complex floating-point numbers of 64 bits"},
+           {"compression_jpeg2000.tif", "compressed by an unknown method"},
+           {"inks_five_tiled.tif", "is of 5 printing inks"},
+           {"channels_seven.tif", "has 7 values a pixel that are no colours"},
+           {"pages_3.tif", "has 3 pages"},
+       }) {
+    std::string const path = case_path(name);
+    EXPECT_THAT([&path] { read_image(path); }, ThrowsMessage<DataError>(AllOf(HasSubstr(name), HasSubstr(reason))))
+        << name;
+  }
+}
+
+/// A TIFF of black and white without the entry BitsPerSample, whose default is one bit. @param packing its compression
+std::string bilevel_tiff(std::uint32_t packing, std::size_t bytes_of_pixels) {
+  constexpr std::uint32_t columns = 256, rows = 200, entries = 8, pixels_at = 10 + 12 * entries + 4;
+  std::uint32_t const entry[entries][2] = {{256, columns},   {257, rows}, {259, packing}, {262, 1},
+                                           {273, pixels_at}, {277, 1},    {278, rows},    {279, columns / 8 * rows}};
+  std::string bytes;
+  auto const put = [&bytes](std::uint32_t value, int size) {
+    for (int i = 0; i < size; ++i) bytes += static_cast<char>(value >> (8 * i) & 0xffu);
+  };
+  bytes += "II";
+  put(42, 2);
+  put(8, 4);
+  put(entries, 2);
+  for (auto const& [tag, value] : entry) {
+    put(tag, 2);
+    put(4, 2);  // of 32 bits
+    put(1, 4);
+    put(value, 4);
+  }
+  put(0, 4);
+  bytes.append(bytes_of_pixels, '\x55');
+  return bytes;
+}
+
+// 0x55 is 01010101: every second pixel of a row is white, beginning with the second.
+TEST(ImageFile, OneBitAPixelIsReadWithoutTheEntryThatSaysSo) {
+  std::string const path = temporary("bits.tif");
+  std::ofstream(path, std::ios::binary) << bilevel_tiff(1, 256 / 8 * 200);
+  Image<double> const image = read_image(path);
+  ASSERT_EQ(image.columns(), 256);
+  ASSERT_EQ(image.rows(), 200);
+  for (int j = 0; j < 200; ++j) {
+    for (int i = 0; i < 256; ++i) ASSERT_EQ(image(i, j), i % 2) << i << ' ' << j;
+  }
+  std::ofstream(path, std::ios::binary) << bilevel_tiff(1, 256 / 8 * 100);
+  EXPECT_THAT([&] { read_image(path); }, ThrowsMessage<DataError>(HasSubstr("damaged or cut short")));
+  std::ofstream(path, std::ios::binary) << bilevel_tiff(32773, 256 / 8 * 200);
+  EXPECT_THAT([&] { read_image(path); }, ThrowsMessage<DataError>(HasSubstr("BitsPerSample is missing")));
+}
+
+// 50,000 x 50,000 px of 16 bits are 5 GB; the file has 128 kB, and packed as densely as can be 0.3 GB.
+TEST(ImageFile, AHeaderIsHeldAgainstTheSizeOfItsFile) {
+  for (char const* packing : {"none", "zip", "lzw"}) {
+    std::string const path = temporary("damaged.tif");
+    OIIO::ImageSpec spec(256, 256, 1, OIIO::TypeDesc::UINT16);
+    spec["compression"] = packing;
+    auto const output = OIIO::ImageOutput::create(path);
+    ASSERT_TRUE(output->open(path, spec) && output->write_image(OIIO::TypeDesc::UINT16, all_values().data()));
+    ASSERT_TRUE(output->close());
+    std::string const bytes = with_tag(with_tag(content(path), 256, 50000), 257, 50000);
+    std::ofstream(path, std::ios::binary) << bytes;
+    EXPECT_THAT([&] { read_image(path); },
+                ThrowsMessage<DataError>(AllOf(HasSubstr("damaged.tif: is damaged"), HasSubstr("50000 x 50000 px"))))
+        << packing;
+  }
+}
+
+// An even grey packs as densely as any picture, a thousand to one.
+TEST(ImageFile, DenselyPackedPicturesAreRead) {
+  for (char const* name : {"even.png", "even.exr", "even.tif"}) {
+    std::string const path = temporary(name);
+    OIIO::ImageSpec spec(3000, 3000, 1, OIIO::TypeDesc::UINT16);
+    spec["compression"] = "zip";
+    auto const output = OIIO::ImageOutput::create(path);
+    std::vector<std::uint16_t> const values(spec.image_pixels(), 0);
+    ASSERT_TRUE(output->open(path, spec) && output->write_image(OIIO::TypeDesc::UINT16, values.data())) << name;
+    ASSERT_TRUE(output->close());
+    EXPECT_EQ(read_image(path).columns(), 3000) << name;
+    fs::remove(path);
+  }
+}
+
+TEST(ImageFile, PixelsThatAreNoNumbersAreCounted) {
+  float const nan = std::nanf(""), infinite = HUGE_VALF;
+  std::string const path = write_picture<float>("holes.tif", {1, nan, 2, infinite, -infinite, 3}, 3, 1);
+  EXPECT_EQ(count_not_finite(read_image(path)), 3u);
+}
+
+TEST(ImageFile, WhatCannotBeWrittenIsSaid) {
+  EXPECT_THAT([] { write_tiff("/dev/full", all_values(), {}); },
+              ThrowsMessage<OutputError>(AllOf(HasSubstr("/dev/full"), HasSubstr("it is a device"))));
+  EXPECT_THAT([] { write_tiff("/proc/no/such/folder/a.tif", all_values(), {}); },
+              ThrowsMessage<OutputError>(HasSubstr("No such file or directory")));
+  std::string const path = temporary("no_room.tif");
+  write_tiff(path, all_values(), {});
+  std::string const before = content(path);
+  FileSizeLimit const limit(1000);
+  EXPECT_THAT(
+      [&] {
+        write_tiff(path, all_values(), {12, 0, "text"});
+      },
+      ThrowsMessage<OutputError>(AllOf(HasSubstr("no_room.tif: cannot be written"), HasSubstr("too large"))));
+  EXPECT_EQ(content(path), before);
+}
+
+}  // namespace
+}  // namespace gladstone

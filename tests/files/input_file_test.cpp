@@ -1,0 +1,147 @@
+#include "render/files/input_file.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+
+#include "render/base/error.h"
+#include "render/files/text_file.h"
+
+namespace gladstone {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+class InputFiles : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::path(testing::TempDir()) / "gladstone_input_files";
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+  std::string in(std::string const& name) const { return (folder_ / name).string(); }
+  std::string write(std::string const& name, std::string const& text) const {
+    std::ofstream(folder_ / name, std::ios::binary) << text;
+    return in(name);
+  }
+
+  fs::path folder_;
+};
+
+// Opening a pipe without a writer waits for ever, and a device has no end.
+TEST_F(InputFiles, WhatIsNoRegularFileIsRefusedByNameBeforeItIsOpened) {
+  ASSERT_EQ(::mkfifo(in("pipe").c_str(), 0600), 0);
+  EXPECT_THAT([&] { InputFile file(in("pipe"), "a setup file"); },
+              ThrowsMessage<DataError>(AllOf(HasSubstr(in("pipe") + ": is a pipe"), HasSubstr("name a setup file"))));
+  fs::create_symlink("pipe", in("link"));
+  EXPECT_THAT([&] { InputFile file(in("link")); }, ThrowsMessage<DataError>(HasSubstr("link: is a pipe")));
+  EXPECT_THAT([&] { InputFile file(folder_.string(), "a picture"); },
+              ThrowsMessage<DataError>(HasSubstr(": is a folder; name a picture")));
+  EXPECT_THAT([&] { InputFile file("/dev/zero"); }, ThrowsMessage<DataError>(HasSubstr("/dev/zero: is a device")));
+  EXPECT_THAT([&] { InputFile file(in("nothing")); }, ThrowsMessage<DataError>(HasSubstr("nothing: does not exist")));
+  EXPECT_THAT([&] { InputFile file(in(std::string(5000, 'a'))); },
+              ThrowsMessage<DataError>(HasSubstr("cannot be opened (File name too long)")));
+
+  int const listener = ::socket(AF_UNIX, SOCK_STREAM, 0);
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  std::string const place = in("socket");
+  ASSERT_LT(place.size(), sizeof address.sun_path);
+  std::memcpy(address.sun_path, place.c_str(), place.size() + 1);
+  ASSERT_EQ(::bind(listener, reinterpret_cast<sockaddr const*>(&address), sizeof address), 0);
+  EXPECT_THAT([&] { InputFile file(place); }, ThrowsMessage<DataError>(HasSubstr("socket: is a socket")));
+  ::close(listener);
+}
+
+TEST_F(InputFiles, AreReadFromAnyPlaceUpToTheirEnd) {
+  InputFile const file(write("text", "0123456789"));
+  EXPECT_EQ(file.size(), 10u);
+  char bytes[8] = {};
+  EXPECT_EQ(file.read(2, bytes, 3), 3u);
+  EXPECT_EQ(std::string(bytes, 3), "234");
+  EXPECT_EQ(file.read(7, bytes, 8), 3u);
+  EXPECT_EQ(std::string(bytes, 3), "789");
+  EXPECT_EQ(file.read(20, bytes, 8), 0u);
+}
+
+TEST_F(InputFiles, ATextThatIsLongerThanAllowedIsRefusedUnread) {
+  std::string const path = write("long", "");
+  fs::resize_file(path, std::uintmax_t{1} << 40);  // of holes: the disk has no such room
+  EXPECT_THAT([&] { read_text_file(path, "a setup file", std::uint64_t{32} << 20); },
+              ThrowsMessage<DataError>(AllOf(HasSubstr("long: is longer than 32 MiB"), HasSubstr("a setup file"))));
+  EXPECT_EQ(read_text_file(write("short", std::string(100, 'x')), "a setup file", 100), std::string(100, 'x'));
+}
+
+// The kernel's own files say that they have no bytes.
+TEST_F(InputFiles, AFileThatTellsNoSizeIsReadToItsEnd) {
+  EXPECT_THAT(read_text_file("/proc/self/status"), HasSubstr("VmRSS:"));
+}
+
+TEST_F(InputFiles, LinesComeWithoutTheirEnds) {
+  LineReader lines(write("lines", "one\r\ntwo\n\nlast"));
+  EXPECT_EQ(lines.next(), "one");
+  EXPECT_EQ(lines.offset(), 5u);
+  EXPECT_EQ(lines.next(), "two");
+  EXPECT_EQ(lines.next(), "");
+  EXPECT_EQ(lines.place(), in("lines") + ":3");
+  EXPECT_EQ(lines.next(), "last");
+  EXPECT_EQ(lines.number(), 4u);
+  EXPECT_EQ(lines.next(), std::nullopt);
+  EXPECT_EQ(lines.next(), std::nullopt);
+  EXPECT_EQ(lines.offset(), 14u);
+  EXPECT_EQ(LineReader(write("empty", "")).next(), std::nullopt);
+}
+
+// Lines of 0 to 999 characters lie in every way across the ends of what is read at once.
+// Spreadsheets put U+FEFF in front of a text in UTF-8. Offsets count it, and only the first line may have it.
+TEST_F(InputFiles, AByteOrderMarkBelongsToNoLine) {
+  LineReader lines(write("marked.csv",
+                         "\xEF\xBB\xBFx_mm,y_mm\n\xEF\xBB\xBF"
+                         "1,2\n"));
+  EXPECT_EQ(lines.next(), "x_mm,y_mm");
+  EXPECT_EQ(lines.offset(), 13u);
+  EXPECT_EQ(lines.next(),
+            "\xEF\xBB\xBF"
+            "1,2");
+}
+
+TEST_F(InputFiles, LinesOfALongFileAreWhole) {
+  std::string text;
+  for (std::size_t i = 0; i < 5000; ++i) text += std::string(i * 7 % 1000, static_cast<char>('a' + i % 26)) + '\n';
+  LineReader lines(write("many", text));
+  for (std::size_t i = 0; i < 5000; ++i) {
+    auto const line = lines.next();
+    ASSERT_TRUE(line.has_value());
+    ASSERT_EQ(*line, std::string(i * 7 % 1000, static_cast<char>('a' + i % 26))) << i;
+  }
+  EXPECT_EQ(lines.next(), std::nullopt);
+  EXPECT_EQ(lines.offset(), text.size());
+}
+
+TEST_F(InputFiles, ALineWithoutEndIsRefusedByItsNumber) {
+  LineReader lines(write("endless", "x,y\n" + std::string(3 << 20, '1')));
+  EXPECT_EQ(lines.next(), "x,y");
+  EXPECT_THAT([&] { lines.next(); }, ThrowsMessage<DataError>(HasSubstr("endless:2: is longer than 1 MiB")));
+}
+
+TEST(Excerpt, CutsBetweenCharacters) {
+  EXPECT_EQ(excerpt("short"), "short");
+  EXPECT_EQ(excerpt(std::string(60, 'a')), std::string(60, 'a'));
+  EXPECT_EQ(excerpt(std::string(61, 'a')), std::string(57, 'a') + "...");
+  std::string const umlauts = "\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4";  // three bytes are one and a half of them
+  EXPECT_EQ(excerpt(umlauts, 6), "\xc3\xa4...");
+}
+
+}  // namespace
+}  // namespace gladstone

@@ -1,0 +1,206 @@
+#include "render/files/input_guard.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <thread>
+
+#include "render/base/error.h"
+#include "render/files/file_kind.h"
+#include "render/files/hdf5_file.h"
+#include "render/files/input_file.h"
+#include "render/files/output_file.h"
+#include "render/files/output_folder.h"
+#include "render/files/text_file.h"
+#include "tests/files/support/output.h"
+
+namespace gladstone {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+/// What a command has read is not replaced by what it writes.
+class InputGuards : public Output {
+ protected:
+  void SetUp() override {
+    Output::SetUp();
+    std::ofstream(in_folder("input.txt")) << "precious";
+  }
+  auto refused() const {
+    return ThrowsMessage<OutputError>(HasSubstr("would be overwritten, and is read by this command"));
+  }
+};
+
+TEST_F(InputGuards, WhatWasReadIsRefusedAsOutputUnderEveryName) {
+  fs::create_symlink("input.txt", in_folder("link.txt"));
+  fs::create_hard_link(in_folder("input.txt"), in_folder("hard.txt"));
+  InputGuard const guard;
+  std::thread([&] { read_text_file(in_folder("input.txt")); }).join();  // by any thread
+  for (std::string const name : {"input.txt", "link.txt", "hard.txt"}) {
+    EXPECT_THAT([&] { OutputFile::write_text(in_folder(name), "new"); }, refused()) << name;
+  }
+  EXPECT_THAT([&] { OutputFile(in_folder("link.txt")); },
+              ThrowsMessage<OutputError>(AllOf(HasSubstr("link.txt: "), HasSubstr("(as " + in_folder("input.txt")))));
+  EXPECT_EQ(content(in_folder("input.txt")), "precious");
+  OutputFile::write_text(in_folder("other.txt"), "new");
+}
+
+TEST_F(InputGuards, WhatIsReadAfterThePlaceWasTriedIsRefusedAtTheEnd) {
+  InputGuard const guard;
+  OutputFile output(in_folder("input.txt"));
+  read_text_file(in_folder("input.txt"));
+  output.write("new", 3);
+  EXPECT_THAT([&] { output.commit(); }, refused());
+  EXPECT_EQ(content(in_folder("input.txt")), "precious");
+}
+
+TEST_F(InputGuards, AFolderThatReplacesAnInputStaysAsItWas) {
+  fs::create_directory(in_folder("case"));
+  std::ofstream(in_folder("case/marker")) << "old";
+  std::ofstream(in_folder("case/derived.csv")) << "precious";
+  InputGuard const guard;
+  read_text_file(in_folder("case/derived.csv"));
+  OutputFolder output(in_folder("case"), {"marker", {"derived.csv"}});
+  OutputFile::write_text(output.temporary_path() + "/marker", "new");
+  EXPECT_THAT([&] { output.commit(); }, refused());
+  EXPECT_EQ(content(in_folder("case/marker")), "old");
+  EXPECT_EQ(content(in_folder("case/derived.csv")), "precious");
+}
+
+TEST_F(InputGuards, WhatTheCommandItselfWroteIsNoInput) {
+  InputGuard const guard;
+  for (std::string const text : {"one", "two", "three"}) {
+    OutputFile::write_text(in_folder("own.txt"), text);
+    EXPECT_EQ(read_text_file(in_folder("own.txt")), text);
+  }
+  {
+    UnguardedReading const to_be_replaced;
+    read_text_file(in_folder("input.txt"));
+  }
+  OutputFile::write_text(in_folder("input.txt"), "new");
+}
+
+TEST_F(InputGuards, WithoutAGuardNothingIsRecorded) {
+  {
+    InputGuard const guard;
+    read_text_file(in_folder("input.txt"));
+  }
+  read_text_file(in_folder("input.txt"));
+  InputGuard const guard;
+  OutputFile::write_text(in_folder("input.txt"), "new");
+}
+
+// Files of other results are refused by name, whether they exist or not, except to the command that makes them.
+TEST_F(InputGuards, FilesOfOtherResultsAreNotWritten) {
+  fs::create_directories(in_folder("run/jobs"));
+  std::ofstream(in_folder("run/marker")) << "marker";
+  fs::create_symlink("run/list", in_folder("link"));
+  InputGuard const guard({{"study", {"marker", "jobs"}, {"list", "jobs/*"}}});
+  for (std::string const name : {"run/list", "link", "run/jobs/../list", "run/jobs/1"}) {
+    EXPECT_THAT([&] { OutputFile(in_folder(name)); },
+                ThrowsMessage<OutputError>(AllOf(HasSubstr(name + ": belongs to the study in "),
+                                                 HasSubstr("is not written by this command"))));
+    EXPECT_FALSE(fs::exists(in_folder(name))) << name;
+  }
+  OutputFile::write_text(in_folder("run/other"), "new");
+  OutputFile::write_text(in_folder("list"), "new");
+  {
+    ProtectedWriting const own;
+    OutputFile::write_text(in_folder("run/list"), "own");
+  }
+  EXPECT_EQ(content(in_folder("run/list")), "own");
+  fs::remove(in_folder("run/marker"));
+  OutputFile::write_text(in_folder("run/list"), "new");
+}
+
+/// What files of a case and a run hold, by content.
+class FileKinds : public Output {
+ protected:
+  void put(std::string const& name, std::string const& text) const {
+    std::ofstream(in_folder(name), std::ios::binary) << text;
+  }
+  std::string kind(std::string const& name) const { return file_kind(in_folder(name)); }
+};
+
+TEST_F(FileKinds, AreToldByContent) {
+  Hdf5Writer(in_folder("a.h5"), {"gladstone truth", 2, "", 0, "cpu"}).close();
+  EXPECT_EQ(kind("a.h5"), "gladstone truth");
+  put("damaged.h5", "\x89HDF\r\n\x1a\n and no more");
+  EXPECT_EQ(kind("damaged.h5"), "damaged HDF5");
+  put("figure.svg", "<?xml version=\"1.0\"?>\n<!-- a figure -->\n<svg>");
+  EXPECT_EQ(kind("figure.svg"), "SVG");
+  put("field.vti", "<?xml version=\"1.0\"?>\n<VTKFile type=\"ImageData\">");
+  EXPECT_EQ(kind("field.vti"), "VTK");
+  put("field.vtk", "# vtk DataFile Version 3.0\n");
+  EXPECT_EQ(kind("field.vtk"), "VTK");
+  put("other.xml", "<?xml version=\"1.0\"?>\n<table>");
+  EXPECT_EQ(kind("other.xml"), "XML");
+  put("field.nrrd", "NRRD0005\n");
+  EXPECT_EQ(kind("field.nrrd"), "NRRD");
+  put("a.tif", std::string("II*\0....", 8));
+  EXPECT_EQ(kind("a.tif"), "TIFF");
+  put("manifest.jsonl", "{\"manifest\":3}\n{}\n");
+  EXPECT_EQ(kind("manifest.jsonl"), "JSON");
+  put("vectors.csv", "x_px,y_px,u_px,v_px,sigma_u_px\n");
+  EXPECT_EQ(kind("vectors.csv"), "gladstone vectors");
+  put("setup.toml", "# of a case\n\nschema = 1\n");
+  EXPECT_EQ(kind("setup.toml"), "TOML");
+  put("table.toml", "  [lens]\nf_number = 8\n");
+  EXPECT_EQ(kind("table.toml"), "TOML");
+  put("prose.toml", "# a heading\nWords, and no keys = values.\n");
+  EXPECT_EQ(kind("prose.toml"), "");
+  put("rays.csv", "status,x_mm,y_mm,z_mm,dx,dy,dz,opl_mm,col_px,row_px\nalive,0\n");
+  EXPECT_EQ(kind("rays.csv"), "gladstone rays");
+  put("study.csv", "lens.f_number,case,seed,status,repeat,rms_px\n8,0,1,ok,0,0.1\n");
+  EXPECT_EQ(kind("study.csv"), "gladstone study table");
+  put("study_points.csv", "lens.f_number,case,rms_px.mean,rms_px.std\n8,0,1,2\n");
+  EXPECT_EQ(kind("study_points.csv"), "gladstone study points");
+  put("benchmark.csv", "estimator,case,rms_px,seconds\n");
+  EXPECT_EQ(kind("benchmark.csv"), "gladstone benchmark");
+  put("combination.csv", "term,coefficient\nconstant,0.1\n");
+  EXPECT_EQ(kind("combination.csv"), "gladstone uncertainty combination");
+  put("mine.csv", "case,x,y,u,v\n1,2,3,4,5\n");
+  EXPECT_EQ(kind("mine.csv"), "") << "a table of the user";
+  put("report.md", "# What it shows\n\nText.\n");
+  EXPECT_EQ(kind("report.md"), "Markdown");
+  put("openpiv.txt", "# x y u v flags mask\n");
+  EXPECT_EQ(kind("openpiv.txt"), "");
+  put("report.html", "<!DOCTYPE html>\n<html>");
+  EXPECT_EQ(kind("report.html"), "HTML");
+  put("empty", "");
+  EXPECT_EQ(kind("empty"), "");
+  EXPECT_EQ(kind("absent"), "");
+}
+
+// A report that is sent to a truth file, whoever has read it.
+TEST_F(FileKinds, AnOutputOfAnotherKindDestroysNoResult) {
+  Hdf5Writer(in_folder("truth.h5"), {"gladstone truth", 2, "", 0, "cpu"}).close();
+  std::string const before = content(in_folder("truth.h5"));
+  auto const refused = ThrowsMessage<OutputError>(
+      AllOf(HasSubstr("truth.h5: holds data of another kind (gladstone truth)"), HasSubstr("choose another output")));
+  EXPECT_THAT([&] { OutputFile(in_folder("truth.h5"), "HTML"); }, refused) << "before anything is computed";
+  EXPECT_THAT([&] { OutputFile::write_text(in_folder("truth.h5"), "<html>"); }, refused);
+  EXPECT_THAT([&] { OutputFile::write_text(in_folder("truth.h5"), "# Markdown"); }, refused);
+  EXPECT_THAT([&] { Hdf5Writer(in_folder("truth.h5"), {"gladstone vectors", 1, "", 0, "cpu"}); }, refused);
+  EXPECT_EQ(content(in_folder("truth.h5")), before);
+  Hdf5Writer(in_folder("truth.h5"), {"gladstone truth", 2, "other", 0, "cpu"}).close();
+  put("damaged.h5", "\x89HDF\r\n\x1a\n and no more");
+  EXPECT_THAT([&] { OutputFile::write_text(in_folder("damaged.h5"), "<html>"); },
+              ThrowsMessage<OutputError>(HasSubstr("damaged.h5: holds data of another kind (damaged HDF5)")));
+  put("study.csv", "case,seed,status,repeat\n");
+  EXPECT_THAT([&] { OutputFile::write_text(in_folder("study.csv"), "x_px,y_px,u_px,v_px\n"); },
+              ThrowsMessage<OutputError>(HasSubstr("gladstone study table")));
+  EXPECT_THAT([&] { OutputFile::write_text(in_folder("study.csv"), "plain text"); },
+              ThrowsMessage<OutputError>(HasSubstr("gladstone study table")));
+  OutputFile::write_text(in_folder("study.csv"), "case,seed,status,repeat\n0,1,ok,0\n");
+  put("notes.txt", "mine");
+  OutputFile::write_text(in_folder("notes.txt"), "<html>");  // named by the user, and of no kind that is known
+}
+
+}  // namespace
+}  // namespace gladstone

@@ -1,0 +1,32 @@
+#include "render/files/text_encoding.h"
+
+#include <gtest/gtest.h>
+
+namespace gladstone {
+namespace {
+
+// RFC 3629, section 3: one to four bytes, up to U+10FFFF.
+TEST(Utf8, IsWhatRfc3629Allows) {
+  for (std::string_view const text : {"", "plain", "\xc2\x80", "D\xc3\xbcse", "\xe2\x82\xac", "\xed\x9f\xbf",
+                                      "\xee\x80\x80", "\xf0\x90\x80\x80", "\xf4\x8f\xbf\xbf"})
+    EXPECT_TRUE(is_utf8(text)) << text;
+}
+
+TEST(Utf8, IsNothingElse) {
+  for (std::string_view const text : {"D\xfcse",               // ISO-8859-1
+                                      "\x80",                  // begins in the middle
+                                      "\xc3",                  // cut short
+                                      "\xe2\x82",              // cut short
+                                      "\xe2\x28\xac",          // no continuation
+                                      "\xc0\xaf",              // longer than needed
+                                      "\xe0\x80\xaf",          // longer than needed
+                                      "\xf0\x80\x80\xaf",      // longer than needed
+                                      "\xed\xa0\x80",          // a surrogate
+                                      "\xf4\x90\x80\x80",      // above U+10FFFF
+                                      "\xf8\x88\x80\x80\x80",  // five bytes
+                                      "\xff"})
+    EXPECT_FALSE(is_utf8(text)) << text;
+}
+
+}  // namespace
+}  // namespace gladstone
