@@ -4,7 +4,7 @@
 #include <string>
 
 #include "analysis/correlation/correlation_settings.h"
-#include "render/base/displacement_field.h"
+#include "analysis/vectors/displacement_field.h"
 #include "render/base/image.h"
 #include "render/files/source_files.h"
 #include "studies/device.h"

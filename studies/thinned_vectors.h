@@ -1,6 +1,6 @@
 #pragma once
 
-#include "render/base/displacement_field.h"
+#include "analysis/vectors/displacement_field.h"
 
 namespace gladstone {
 

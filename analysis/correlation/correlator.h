@@ -6,7 +6,7 @@
 
 #include "analysis/correlation/correlation_settings.h"
 #include "analysis/correlation/interrogation_grid.h"
-#include "render/base/displacement_field.h"
+#include "analysis/vectors/displacement_field.h"
 #include "render/base/frame_pair.h"
 #include "render/base/image.h"
 

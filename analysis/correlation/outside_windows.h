@@ -1,7 +1,7 @@
 #pragma once
 
 #include "analysis/correlation/correlation_settings.h"
-#include "render/base/displacement_field.h"
+#include "analysis/vectors/displacement_field.h"
 #include "render/base/frame_pair.h"
 
 namespace gladstone {

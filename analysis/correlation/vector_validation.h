@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "render/base/displacement_field.h"
+#include "analysis/vectors/displacement_field.h"
 #include "render/base/host_device.h"
 #include "render/base/vec.h"
 

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "render/base/displacement_field.h"
+#include "analysis/vectors/displacement_field.h"
 #include "render/base/vec.h"
 
 namespace gladstone {

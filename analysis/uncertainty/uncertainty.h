@@ -7,7 +7,7 @@
 #include "analysis/correlation/interrogation_grid.h"
 #include "analysis/correlation/window_deformation.h"
 #include "analysis/correlation/window_ops.h"
-#include "render/base/displacement_field.h"
+#include "analysis/vectors/displacement_field.h"
 #include "render/base/frame_pair.h"
 
 namespace gladstone {

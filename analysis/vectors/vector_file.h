@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "render/base/displacement_field.h"
+#include "analysis/vectors/displacement_field.h"
 #include "render/files/hdf5_file.h"
 
 namespace gladstone {

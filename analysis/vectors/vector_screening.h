@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <string>
 
-#include "render/base/displacement_field.h"
+#include "analysis/vectors/displacement_field.h"
 
 namespace gladstone {
 

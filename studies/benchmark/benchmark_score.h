@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "analysis/errors/error_summary.h"
-#include "render/base/displacement_field.h"
+#include "analysis/vectors/displacement_field.h"
 #include "studies/benchmark/benchmark_cases.h"
 
 namespace gladstone {

@@ -6,7 +6,7 @@
 
 #include "analysis/errors/error_budget.h"
 #include "analysis/errors/error_summary.h"
-#include "render/base/displacement_field.h"
+#include "analysis/vectors/displacement_field.h"
 #include "render/base/vec.h"
 
 namespace gladstone {

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "render/base/displacement_field.h"
+#include "analysis/vectors/displacement_field.h"
 #include "render/base/image.h"
 
 namespace gladstone {

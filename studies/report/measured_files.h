@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "render/base/displacement_field.h"
+#include "analysis/vectors/displacement_field.h"
 #include "render/files/source_files.h"
 #include "render/scene/setup.h"
 #include "studies/report/report.h"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "render/base/displacement_field.h"
+#include "analysis/vectors/displacement_field.h"
 #include "studies/design/bench.h"
 
 namespace gladstone {

@@ -126,6 +126,8 @@ INSTANTIATE_TEST_SUITE_P(
         Planted{"cuda/rays/a.h", "\"render/focused_dots/b.h\""},
         Planted{"render/scene/a.h", "\"analysis/correlation/b.h\""}, Planted{"render/scene/a.cpp", "\"cuda/b.h\""},
         Planted{"analysis/correlation/a.cpp", "\"render/scene/b.h\""},  // analysis never calls the renderer
+        Planted{"render/files/a.h", "\"analysis/vectors/b.h\""},
+        Planted{"analysis/preparation/a.h", "\"analysis/correlation/b.h\""},
         Planted{"analysis/correlation/a.h", "<opencv2/core.hpp>"},
         Planted{"analysis/correlation/a.cpp", "\"studies/b.h\""}, Planted{"cuda/a.cu", "\"studies/b.h\""},
         Planted{"analysis/vectors/a.cpp", "\"analysis/errors/b.h\""}, Planted{"cuda/device/a.cu", "\"cuda/rays/b.h\""},
