@@ -34,6 +34,16 @@ function(gladstone_room name)
   set_property(GLOBAL APPEND PROPERTY GLADSTONE_ROOMS gladstone_${name})
 endfunction()
 
+# gladstone_rooms(name rooms...): gladstone::name stands for all of these rooms.
+function(gladstone_rooms name)
+  list(TRANSFORM ARGN PREPEND gladstone:: OUTPUT_VARIABLE rooms)
+  add_library(gladstone_${name} INTERFACE)
+  target_link_libraries(gladstone_${name} INTERFACE ${rooms})
+  set_target_properties(gladstone_${name} PROPERTIES EXPORT_NAME ${name})
+  add_library(gladstone::${name} ALIAS gladstone_${name})
+  set_property(GLOBAL APPEND PROPERTY GLADSTONE_ROOMS gladstone_${name})
+endfunction()
+
 # gladstone_watched(target): where there is libFuzzer, it sees which way the target's code goes.
 function(gladstone_watched target)
   if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
