@@ -6,7 +6,7 @@
 
 #include "render/base/contracts.h"
 #include "render/files/fields/field_file.h"
-#include "studies/scene_renderer.h"
+#include "studies/case/scene_renderer.h"
 
 namespace gladstone {
 namespace {

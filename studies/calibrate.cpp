@@ -13,8 +13,8 @@
 #include "render/scene/build_camera.h"
 #include "render/scene/calibration_planes.h"
 #include "studies/calibration_fit.h"
-#include "studies/cameras.h"
-#include "studies/case.h"
+#include "studies/case/cameras.h"
+#include "studies/case/case.h"
 
 namespace gladstone {
 namespace {

@@ -7,8 +7,8 @@
 #include "render/base/units.h"
 #include "render/files/hdf5_file.h"
 #include "studies/calibrate.h"
+#include "studies/case/flat_values.h"
 #include "studies/figures/gnuplot.h"
-#include "studies/flat_values.h"
 
 namespace gladstone {
 namespace {

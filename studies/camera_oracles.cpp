@@ -7,8 +7,8 @@
 #include "render/scene/build_camera.h"
 #include "render/scene/scene.h"
 #include "render/sensor/diffraction_spot.h"
+#include "studies/case/scene_renderer.h"
 #include "studies/oracles.h"
-#include "studies/scene_renderer.h"
 
 namespace gladstone::oracle {
 namespace {

@@ -15,14 +15,14 @@
 #include "render/scene/build_camera.h"
 #include "render/sensor/detector.h"
 #include "studies/budget_stages.h"
+#include "studies/case/scene_renderer.h"
+#include "studies/case/truth_file.h"
 #include "studies/compared_vectors.h"
 #include "studies/comparison_warnings.h"
 #include "studies/correlate.h"
 #include "studies/particle_points.h"
-#include "studies/scene_renderer.h"
 #include "studies/stored_comparison.h"
 #include "studies/thinned_vectors.h"
-#include "studies/truth_file.h"
 
 namespace gladstone {
 namespace {

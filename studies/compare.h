@@ -11,9 +11,9 @@
 #include "analysis/vectors/convention_detection.h"
 #include "analysis/vectors/vector_screening.h"
 #include "render/scene/renderer.h"
-#include "studies/case.h"
+#include "studies/case/case.h"
+#include "studies/case/device.h"
 #include "studies/compared_files.h"
-#include "studies/device.h"
 
 namespace gladstone {
 

@@ -8,7 +8,7 @@
 #include "render/base/error.h"
 #include "render/files/hdf5_file.h"
 #include "render/files/input_file.h"
-#include "studies/case.h"
+#include "studies/case/case.h"
 
 namespace gladstone {
 namespace {

@@ -3,10 +3,10 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/errors/uncertainty_quality.h"
+#include "studies/case/json_text.h"
 #include "studies/compare.h"
 #include "studies/figures/error_figures.h"
 #include "studies/figures/map_figures.h"
-#include "studies/json_text.h"
 
 namespace gladstone {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "analysis/errors/error_summary.h"
-#include "studies/peak_locking.h"
+#include "studies/case/peak_locking.h"
 
 namespace gladstone {
 namespace {

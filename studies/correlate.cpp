@@ -17,8 +17,8 @@
 #include "render/files/image_file.h"
 #include "render/files/stop_point.h"
 #include "render/setup/setup_table.h"
-#include "studies/case.h"
-#include "studies/peak_locking.h"
+#include "studies/case/case.h"
+#include "studies/case/peak_locking.h"
 
 namespace gladstone {
 namespace {

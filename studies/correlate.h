@@ -7,7 +7,7 @@
 #include "analysis/vectors/displacement_field.h"
 #include "render/base/image.h"
 #include "render/files/source_files.h"
-#include "studies/device.h"
+#include "studies/case/device.h"
 
 namespace gladstone {
 

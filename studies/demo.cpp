@@ -12,7 +12,8 @@
 #include "render/base/units.h"
 #include "render/files/output_file.h"
 #include "render/files/output_folder.h"
-#include "studies/case.h"
+#include "studies/case/case.h"
+#include "studies/case/truth_file.h"
 #include "studies/compare.h"
 #include "studies/correlate.h"
 #include "studies/demo_story.h"
@@ -20,7 +21,6 @@
 #include "studies/figures/agreement_figure.h"
 #include "studies/figures/gnuplot.h"
 #include "studies/figures/map_figures.h"
-#include "studies/truth_file.h"
 
 namespace gladstone {
 namespace {

@@ -8,7 +8,7 @@
 #include "render/base/units.h"
 #include "render/medium/field_volume.h"
 #include "render/scene/field_coverage.h"
-#include "studies/case.h"
+#include "studies/case/case.h"
 
 namespace gladstone {
 namespace {

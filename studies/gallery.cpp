@@ -10,11 +10,11 @@
 
 #include "analysis/errors/error_summary.h"
 #include "render/files/image_file.h"
-#include "studies/case_files.h"
+#include "studies/case/case_files.h"
+#include "studies/case/render_setup.h"
 #include "studies/demo.h"
 #include "studies/figures/gnuplot.h"
 #include "studies/figures/map_panels.h"
-#include "studies/render_setup.h"
 
 namespace gladstone {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "studies/device.h"
+#include "studies/case/device.h"
 
 namespace gladstone {
 

@@ -18,11 +18,11 @@
 #include "render/base/parallel.h"
 #include "render/base/progress.h"
 #include "render/files/input_guard.h"
+#include "studies/case/version_text.h"
 #include "studies/commands/arguments.h"
 #include "studies/commands/command.h"
 #include "studies/commands/run_warnings.h"
 #include "studies/protected_files.h"
-#include "studies/version_text.h"
 
 namespace gladstone {
 namespace {

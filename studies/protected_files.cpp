@@ -1,7 +1,7 @@
 #include "studies/protected_files.h"
 
 #include "studies/benchmark/benchmark_run.h"
-#include "studies/case_files.h"
+#include "studies/case/case_files.h"
 #include "studies/sweep/manifest.h"
 
 namespace gladstone {

@@ -7,7 +7,7 @@
 #include "render/base/error.h"
 #include "render/files/hdf5_file.h"
 #include "render/files/sha256.h"
-#include "studies/version_text.h"
+#include "studies/case/version_text.h"
 
 namespace gladstone {
 namespace {

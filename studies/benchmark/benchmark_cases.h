@@ -8,7 +8,7 @@
 
 #include "render/base/image.h"
 #include "studies/benchmark/particle_pair.h"
-#include "studies/case.h"
+#include "studies/case/case.h"
 
 namespace gladstone {
 

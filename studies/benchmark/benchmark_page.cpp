@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "studies/benchmark/benchmark_run.h"
-#include "studies/version_text.h"
+#include "studies/case/version_text.h"
 
 namespace gladstone {
 namespace {

@@ -4,8 +4,8 @@
 #include <nlohmann/json.hpp>
 
 #include "studies/benchmark/benchmark_run.h"
-#include "studies/json_text.h"
-#include "studies/version_text.h"
+#include "studies/case/json_text.h"
+#include "studies/case/version_text.h"
 
 namespace gladstone {
 namespace {

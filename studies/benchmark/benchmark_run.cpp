@@ -16,7 +16,7 @@
 #include "render/files/output_folder.h"
 #include "render/files/source_files.h"
 #include "studies/benchmark/foreign_code.h"
-#include "studies/case_files.h"
+#include "studies/case/case_files.h"
 #include "studies/correlate.h"
 
 namespace gladstone {

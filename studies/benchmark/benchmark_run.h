@@ -8,7 +8,7 @@
 #include "analysis/errors/uncertainty_quality.h"
 #include "analysis/uncertainty/combination.h"
 #include "studies/benchmark/benchmark_score.h"
-#include "studies/device.h"
+#include "studies/case/device.h"
 #include "studies/report/report_page.h"
 
 namespace gladstone {

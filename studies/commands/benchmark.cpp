@@ -12,10 +12,10 @@
 #include "render/files/output_place.h"
 #include "render/files/text_file.h"
 #include "studies/benchmark/benchmark_run.h"
+#include "studies/case/json_text.h"
 #include "studies/commands/arguments.h"
 #include "studies/commands/command.h"
 #include "studies/figures/gnuplot.h"
-#include "studies/json_text.h"
 
 namespace gladstone {
 namespace {

@@ -8,11 +8,11 @@
 #include <nlohmann/json.hpp>
 
 #include "render/files/output_folder.h"
-#include "studies/cameras.h"
-#include "studies/case_files.h"
+#include "studies/case/cameras.h"
+#include "studies/case/case_files.h"
+#include "studies/case/json_text.h"
 #include "studies/commands/command.h"
 #include "studies/figures/gnuplot.h"
-#include "studies/json_text.h"
 
 namespace gladstone {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "studies/device.h"
+#include "studies/case/device.h"
 
 namespace CLI {
 class App;

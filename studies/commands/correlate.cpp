@@ -13,10 +13,10 @@
 #include "render/base/error.h"
 #include "render/files/input_file.h"
 #include "render/files/output_file.h"
-#include "studies/case.h"
+#include "studies/case/case.h"
+#include "studies/case/json_text.h"
+#include "studies/case/peak_locking.h"
 #include "studies/commands/command.h"
-#include "studies/json_text.h"
-#include "studies/peak_locking.h"
 
 namespace gladstone {
 

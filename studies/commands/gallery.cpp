@@ -3,8 +3,8 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "studies/case/json_text.h"
 #include "studies/commands/command.h"
-#include "studies/json_text.h"
 
 namespace gladstone {
 

@@ -10,6 +10,8 @@
 #include "render/base/vec.h"
 #include "render/files/fields/field_file.h"
 #include "render/files/image_file.h"
+#include "studies/case/image_statistics.h"
+#include "studies/case/json_text.h"
 #include "studies/commands/arguments.h"
 #include "studies/commands/command.h"
 #include "studies/commands/info_lens.h"
@@ -17,8 +19,6 @@
 #include "studies/commands/info_particles.h"
 #include "studies/field_place.h"
 #include "studies/field_statistics.h"
-#include "studies/image_statistics.h"
-#include "studies/json_text.h"
 
 namespace gladstone {
 namespace {

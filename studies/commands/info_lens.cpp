@@ -9,9 +9,9 @@
 #include "render/base/error.h"
 #include "render/base/units.h"
 #include "render/optics/field_analysis.h"
+#include "studies/case/json_text.h"
 #include "studies/figures/gnuplot.h"
 #include "studies/figures/lens_figure.h"
-#include "studies/json_text.h"
 
 namespace gladstone {
 namespace {

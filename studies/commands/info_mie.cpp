@@ -12,9 +12,9 @@
 #include "render/base/error.h"
 #include "render/base/units.h"
 #include "render/light/mie.h"
+#include "studies/case/json_text.h"
 #include "studies/figures/gnuplot.h"
 #include "studies/figures/mie_figure.h"
-#include "studies/json_text.h"
 
 namespace gladstone {
 namespace {

@@ -8,10 +8,10 @@
 
 #include "render/base/error.h"
 #include "render/base/units.h"
-#include "studies/cameras.h"
-#include "studies/case.h"
-#include "studies/expected_particles.h"
-#include "studies/json_text.h"
+#include "studies/case/cameras.h"
+#include "studies/case/case.h"
+#include "studies/case/expected_particles.h"
+#include "studies/case/json_text.h"
 
 namespace gladstone {
 namespace {

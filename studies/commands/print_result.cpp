@@ -2,9 +2,9 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "studies/case/json_text.h"
 #include "studies/commands/command.h"
 #include "studies/commands/run_warnings.h"
-#include "studies/json_text.h"
 
 namespace gladstone {
 namespace {

@@ -2,9 +2,9 @@
 
 #include <CLI/CLI.hpp>
 
+#include "studies/case/json_text.h"
+#include "studies/case/render_setup.h"
 #include "studies/commands/command.h"
-#include "studies/json_text.h"
-#include "studies/render_setup.h"
 
 namespace gladstone {
 namespace {

@@ -4,9 +4,9 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "studies/case/json_text.h"
 #include "studies/commands/arguments.h"
 #include "studies/commands/command.h"
-#include "studies/json_text.h"
 
 namespace gladstone {
 

@@ -7,10 +7,10 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
+#include "studies/case/json_text.h"
 #include "studies/commands/command.h"
 #include "studies/figures/gnuplot.h"
 #include "studies/figures/study_figures.h"
-#include "studies/json_text.h"
 #include "studies/sweep/collect.h"
 #include "studies/sweep/dataset.h"
 #include "studies/sweep/plan.h"

@@ -9,8 +9,8 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "studies/case/json_text.h"
 #include "studies/commands/arguments.h"
-#include "studies/json_text.h"
 #include "studies/sweep/case_list.h"
 
 namespace gladstone {

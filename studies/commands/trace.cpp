@@ -7,12 +7,12 @@
 #include "render/files/output_file.h"
 #include "render/files/source_files.h"
 #include "render/files/stop_point.h"
-#include "studies/case.h"
+#include "studies/case/case.h"
+#include "studies/case/json_text.h"
+#include "studies/case/ray_file.h"
+#include "studies/case/scene_renderer.h"
 #include "studies/commands/arguments.h"
 #include "studies/commands/command.h"
-#include "studies/json_text.h"
-#include "studies/ray_file.h"
-#include "studies/scene_renderer.h"
 
 namespace gladstone {
 

@@ -8,8 +8,8 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
+#include "studies/case/json_text.h"
 #include "studies/commands/command.h"
-#include "studies/json_text.h"
 
 namespace gladstone {
 namespace {

@@ -5,10 +5,10 @@
 
 #include "render/base/units.h"
 #include "render/files/output_file.h"
-#include "studies/case_files.h"
+#include "studies/case/case_files.h"
+#include "studies/case/plenoptic_views.h"
 #include "studies/commands/arguments.h"
 #include "studies/commands/command.h"
-#include "studies/plenoptic_views.h"
 
 namespace gladstone {
 

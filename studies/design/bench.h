@@ -8,7 +8,7 @@
 #include "render/sensor/camera_equation.h"
 #include "render/sensor/camera_setup.h"
 #include "render/sensor/diffraction_spot.h"
-#include "studies/design/random_error.h"
+#include "studies/case/random_error.h"
 #include "studies/design/window_transfer.h"
 #include "studies/disc_transfer.h"
 

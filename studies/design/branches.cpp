@@ -8,9 +8,9 @@
 #include <filesystem>
 
 #include "render/base/error.h"
+#include "studies/case/light_exposure.h"
+#include "studies/case/uncertain_inputs.h"
 #include "studies/design/sheet.h"
-#include "studies/light_exposure.h"
-#include "studies/uncertain_inputs.h"
 
 namespace gladstone {
 namespace {

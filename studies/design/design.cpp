@@ -9,7 +9,7 @@
 #include "render/base/error.h"
 #include "render/files/output_file.h"
 #include "render/medium/field_volume.h"
-#include "studies/case_files.h"
+#include "studies/case/case_files.h"
 #include "studies/design/answer_text.h"
 #include "studies/design/measurement_inputs.h"
 #include "studies/design/sheet.h"

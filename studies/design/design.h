@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "studies/case/device.h"
 #include "studies/design/verification.h"
-#include "studies/device.h"
 
 namespace gladstone {
 

@@ -7,7 +7,7 @@
 
 #include "render/base/contracts.h"
 #include "render/base/random_variates.h"
-#include "studies/correlation_matrix.h"
+#include "studies/case/correlation_matrix.h"
 
 namespace gladstone {
 namespace {

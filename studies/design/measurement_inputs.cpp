@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "render/medium/gladstone_dale.h"
-#include "studies/quiet_log.h"
+#include "studies/case/quiet_log.h"
 
 namespace gladstone {
 namespace {

@@ -5,8 +5,8 @@
 
 #include "render/base/units.h"
 #include "render/medium/gladstone_dale.h"
+#include "studies/case/expected_particles.h"
 #include "studies/design/sheet.h"
-#include "studies/expected_particles.h"
 
 namespace gladstone {
 namespace {

@@ -7,7 +7,7 @@
 #include "render/base/parallel.h"
 #include "render/scene/field_map.h"
 #include "render/scene/scene.h"
-#include "studies/scene_renderer.h"
+#include "studies/case/scene_renderer.h"
 
 namespace gladstone {
 namespace {

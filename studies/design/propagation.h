@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "render/base/units.h"
-#include "studies/uncertain_inputs.h"
+#include "studies/case/uncertain_inputs.h"
 
 namespace gladstone {
 

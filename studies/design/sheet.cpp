@@ -7,8 +7,8 @@
 #include "render/base/contracts.h"
 #include "render/scene/field_map.h"
 #include "render/scene/scene.h"
-#include "studies/light_exposure.h"
-#include "studies/scene_renderer.h"
+#include "studies/case/light_exposure.h"
+#include "studies/case/scene_renderer.h"
 
 namespace gladstone {
 namespace {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "studies/case.h"
+#include "studies/case/case.h"
 #include "studies/design/bench.h"
 
 namespace gladstone {

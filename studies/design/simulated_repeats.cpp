@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "render/base/not_a_number.h"
+#include "studies/case/scene_renderer.h"
 #include "studies/design/predicted_blur.h"
-#include "studies/scene_renderer.h"
 
 namespace gladstone {
 namespace {

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "studies/case/device.h"
 #include "studies/design/recommend.h"
 #include "studies/design/simulation.h"
-#include "studies/device.h"
 
 namespace gladstone {
 

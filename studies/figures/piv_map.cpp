@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 
-#include "studies/expected_particles.h"
+#include "studies/case/expected_particles.h"
 #include "studies/figures/gnuplot.h"
 
 namespace gladstone {

@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "render/files/text_file.h"
+#include "studies/case/expected_particles.h"
 #include "studies/design/sheet.h"
-#include "studies/expected_particles.h"
 #include "studies/figures/design_map.h"
 #include "studies/figures/gnuplot.h"
 #include "studies/figures/layout_figure.h"

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "render/scene/setup.h"
-#include "studies/case.h"
+#include "studies/case/case.h"
 #include "studies/design/bench.h"
 #include "studies/report/report_page.h"
 

@@ -10,7 +10,7 @@
 #include "render/files/image_file.h"
 #include "render/files/text_file.h"
 #include "studies/budget_stages.h"
-#include "studies/case_files.h"
+#include "studies/case/case_files.h"
 #include "studies/compare.h"
 #include "studies/report/bench_view.h"
 #include "studies/report/case_view.h"

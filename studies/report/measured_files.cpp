@@ -13,7 +13,7 @@
 #include "render/base/error.h"
 #include "render/files/hdf5_file.h"
 #include "render/files/image_file.h"
-#include "studies/case_files.h"
+#include "studies/case/case_files.h"
 #include "studies/compared_vectors.h"
 
 namespace gladstone {

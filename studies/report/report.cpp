@@ -7,10 +7,10 @@
 
 #include "render/base/error.h"
 #include "render/files/output_file.h"
-#include "studies/case_files.h"
+#include "studies/case/case_files.h"
+#include "studies/case/version_text.h"
 #include "studies/figures/gnuplot.h"
 #include "studies/sweep/manifest.h"
-#include "studies/version_text.h"
 
 namespace gladstone {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "render/files/source_files.h"
-#include "studies/device.h"
+#include "studies/case/device.h"
 #include "studies/report/report_page.h"
 
 namespace gladstone {

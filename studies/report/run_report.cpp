@@ -8,7 +8,7 @@
 #include "render/base/error.h"
 #include "render/files/source_files.h"
 #include "render/files/text_file.h"
-#include "studies/case_files.h"
+#include "studies/case/case_files.h"
 #include "studies/figures/study_axes.h"
 #include "studies/figures/study_figures.h"
 #include "studies/report/bench_view.h"

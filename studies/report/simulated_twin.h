@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "studies/case.h"
+#include "studies/case/case.h"
 #include "studies/compare.h"
 
 namespace gladstone {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "studies/case/json_text.h"
 #include "studies/figures/study_axes.h"
-#include "studies/json_text.h"
 #include "studies/report/study_view.h"
 #include "studies/sweep/study_columns.h"
 

@@ -3,7 +3,7 @@
 #include <map>
 #include <string>
 
-#include "studies/case.h"
+#include "studies/case/case.h"
 
 namespace gladstone {
 

@@ -17,14 +17,14 @@
 #include "render/files/output_folder.h"
 #include "render/focused_dots/focused_dots.h"
 #include "render/setup/setup_node.h"
-#include "studies/case_warnings.h"
+#include "studies/case/case_warnings.h"
+#include "studies/case/quiet_log.h"
+#include "studies/case/scene_renderer.h"
+#include "studies/case/version_text.h"
 #include "studies/correlate.h"
-#include "studies/quiet_log.h"
-#include "studies/scene_renderer.h"
 #include "studies/sweep/case_keys.h"
 #include "studies/sweep/recent.h"
 #include "studies/thinned_vectors.h"
-#include "studies/version_text.h"
 
 namespace gladstone {
 namespace {

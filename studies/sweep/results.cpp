@@ -22,7 +22,7 @@
 #include "render/files/partial.h"
 #include "render/files/stop_point.h"
 #include "render/files/text_file.h"
-#include "studies/version_text.h"
+#include "studies/case/version_text.h"
 
 namespace gladstone {
 namespace {

@@ -17,7 +17,7 @@
 #include "render/base/random.h"
 #include "render/base/sobol.h"
 #include "render/files/content_hash.h"
-#include "studies/case.h"
+#include "studies/case/case.h"
 
 namespace gladstone {
 namespace {

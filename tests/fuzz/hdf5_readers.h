@@ -2,7 +2,7 @@
 
 #include "analysis/vectors/vector_file.h"
 #include "render/files/source_files.h"
-#include "studies/truth_file.h"
+#include "studies/case/truth_file.h"
 #include "tests/fuzz/fields.h"
 #include "tests/fuzz/input.h"
 

@@ -1,5 +1,5 @@
 #include "render/rays/ray_planning.h"
-#include "studies/ray_file.h"
+#include "studies/case/ray_file.h"
 #include "tests/fuzz/input.h"
 
 using namespace gladstone;

@@ -7,7 +7,7 @@
 #include <filesystem>
 
 #include "render/base/units.h"
-#include "studies/case.h"
+#include "studies/case/case.h"
 #include "studies/demo.h"
 #include "tests/scene/small_scenes.h"
 

@@ -9,9 +9,9 @@
 #include "render/files/hdf5_file.h"
 #include "render/scene/field_map.h"
 #include "render/scene/scene.h"
+#include "studies/case/scene_renderer.h"
 #include "studies/design/sheet.h"
 #include "studies/report/bench_view.h"
-#include "studies/scene_renderer.h"
 
 namespace gladstone {
 namespace {

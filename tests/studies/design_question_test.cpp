@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "render/base/error.h"
-#include "studies/case.h"
+#include "studies/case/case.h"
 #include "studies/design/question.h"
 
 namespace gladstone {

@@ -1,4 +1,4 @@
-#include "studies/device.h"
+#include "studies/case/device.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

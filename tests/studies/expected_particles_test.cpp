@@ -1,4 +1,4 @@
-#include "studies/expected_particles.h"
+#include "studies/case/expected_particles.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <string>
 
 #include "render/base/units.h"
-#include "studies/case.h"
+#include "studies/case/case.h"
 
 namespace gladstone {
 namespace {

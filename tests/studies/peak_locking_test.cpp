@@ -1,4 +1,4 @@
-#include "studies/peak_locking.h"
+#include "studies/case/peak_locking.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 #include <regex>
 
 #include "render/base/units.h"
-#include "studies/case.h"
+#include "studies/case/case.h"
 #include "studies/design/bench.h"
 #include "studies/design/sheet.h"
 

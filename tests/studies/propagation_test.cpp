@@ -5,8 +5,8 @@
 #include <cmath>
 #include <tuple>
 
+#include "studies/case/device.h"
 #include "studies/design/measurement_inputs.h"
-#include "studies/device.h"
 
 namespace gladstone {
 namespace {

@@ -1,4 +1,4 @@
-#include "studies/scene_renderer.h"
+#include "studies/case/scene_renderer.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 #include "render/focused_dots/focused_dots_renderer.h"
 #include "render/rays/rays_renderer.h"
 #include "render/scene/side_faces.h"
-#include "studies/case.h"
+#include "studies/case/case.h"
 #include "tests/scene/piv_setups.h"
 #include "tests/scene/small_scenes.h"
 

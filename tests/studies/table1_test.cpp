@@ -3,9 +3,9 @@
 #include <cmath>
 
 #include "render/focused_dots/table_error.h"
-#include "studies/case.h"
+#include "studies/case/case.h"
+#include "studies/case/scene_renderer.h"
 #include "studies/demo.h"
-#include "studies/scene_renderer.h"
 
 namespace gladstone {
 namespace {

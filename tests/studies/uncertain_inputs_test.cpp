@@ -1,11 +1,11 @@
-#include "studies/uncertain_inputs.h"
+#include "studies/case/uncertain_inputs.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <regex>
 
-#include "studies/case.h"
+#include "studies/case/case.h"
 
 namespace gladstone {
 namespace {

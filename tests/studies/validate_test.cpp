@@ -6,7 +6,7 @@
 
 #include "render/focused_dots/focused_dots_renderer.h"
 #include "render/rays/rays_renderer.h"
-#include "studies/scene_renderer.h"
+#include "studies/case/scene_renderer.h"
 
 namespace gladstone {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "render/files/hdf5_file.h"
-#include "studies/case.h"
+#include "studies/case/case.h"
 
 namespace gladstone {
 

@@ -6,7 +6,7 @@
 
 #include "render/scene/ray_plan.h"
 #include "render/scene/renderer.h"
-#include "studies/case.h"
+#include "studies/case/case.h"
 
 /// Warnings about a rendered case, with remedies.
 namespace gladstone {

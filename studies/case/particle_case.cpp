@@ -1,4 +1,4 @@
-#include "studies/particle_case.h"
+#include "studies/case/particle_case.h"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 #include "render/base/units.h"
 #include "render/ideal_images/ideal_images.h"
 #include "render/scene/particle_scene.h"
-#include "studies/scene_renderer.h"
+#include "studies/case/scene_renderer.h"
 
 namespace gladstone {
 namespace {

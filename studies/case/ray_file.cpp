@@ -1,4 +1,4 @@
-#include "studies/ray_file.h"
+#include "studies/case/ray_file.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "studies/uncertain_inputs.h"
+#include "studies/case/uncertain_inputs.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include <sstream>
 
 #include "render/base/nearest_name.h"
-#include "studies/correlation_matrix.h"
+#include "studies/case/correlation_matrix.h"
 
 namespace gladstone {
 namespace {

@@ -1,4 +1,4 @@
-#include "studies/scene_renderer.h"
+#include "studies/case/scene_renderer.h"
 
 #include <algorithm>
 #include <cmath>

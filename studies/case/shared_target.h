@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "render/scene/setup.h"
-#include "studies/cameras.h"
+#include "studies/case/cameras.h"
 
 namespace gladstone {
 

@@ -1,4 +1,4 @@
-#include "studies/device.h"
+#include "studies/case/device.h"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -12,8 +12,8 @@
 #include "render/base/version.h"
 #include "render/focused_dots/focused_dots_renderer.h"
 #include "render/rays/rays_renderer.h"
-#include "studies/scene_renderer.h"
-#include "studies/version_text.h"
+#include "studies/case/scene_renderer.h"
+#include "studies/case/version_text.h"
 
 namespace gladstone {
 namespace {

@@ -1,4 +1,4 @@
-#include "studies/cameras.h"
+#include "studies/case/cameras.h"
 
 #include <algorithm>
 #include <cctype>
@@ -11,8 +11,8 @@
 #include "render/base/nearest_name.h"
 #include "render/base/random.h"
 #include "render/setup/setup_node.h"
-#include "studies/case.h"
-#include "studies/shared_target.h"
+#include "studies/case/case.h"
+#include "studies/case/shared_target.h"
 
 namespace gladstone {
 namespace {

@@ -1,4 +1,4 @@
-#include "studies/correlation_matrix.h"
+#include "studies/case/correlation_matrix.h"
 
 #include <cmath>
 

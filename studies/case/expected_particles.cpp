@@ -1,4 +1,4 @@
-#include "studies/expected_particles.h"
+#include "studies/case/expected_particles.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "studies/calibration_case.h"
+#include "studies/case/calibration_case.h"
 
 #include <fmt/format.h>
 
@@ -13,9 +13,9 @@
 #include "render/files/image_file.h"
 #include "render/files/output_file.h"
 #include "render/scene/calibration_planes.h"
-#include "studies/case_warnings.h"
-#include "studies/json_text.h"
-#include "studies/scene_renderer.h"
+#include "studies/case/case_warnings.h"
+#include "studies/case/json_text.h"
+#include "studies/case/scene_renderer.h"
 
 namespace gladstone {
 namespace {

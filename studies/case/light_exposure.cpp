@@ -1,4 +1,4 @@
-#include "studies/light_exposure.h"
+#include "studies/case/light_exposure.h"
 
 #include "render/base/units.h"
 

@@ -2,8 +2,8 @@
 
 #include "render/light/calibration_target.h"
 #include "render/scene/calibration_planes.h"
-#include "studies/calibration_case.h"
-#include "studies/scene_renderer.h"
+#include "studies/case/calibration_case.h"
+#include "studies/case/scene_renderer.h"
 
 namespace gladstone {
 namespace {

@@ -1,4 +1,4 @@
-#include "studies/case_files.h"
+#include "studies/case/case_files.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include "render/base/nearest_name.h"
 #include "render/files/output_file.h"
 #include "render/setup/setup_node.h"
-#include "studies/cameras.h"
+#include "studies/case/cameras.h"
 
 namespace gladstone {
 namespace {

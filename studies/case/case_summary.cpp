@@ -1,4 +1,4 @@
-#include "studies/case_summary.h"
+#include "studies/case/case_summary.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,9 +6,9 @@
 
 #include "render/base/units.h"
 #include "render/scene/ray_losses.h"
-#include "studies/json_text.h"
-#include "studies/particle_case.h"
-#include "studies/scene_renderer.h"
+#include "studies/case/json_text.h"
+#include "studies/case/particle_case.h"
+#include "studies/case/scene_renderer.h"
 
 namespace gladstone {
 namespace {

@@ -13,7 +13,7 @@
 #include "render/scene/setup.h"
 #include "render/sensor/detector.h"
 #include "render/setup/setup_table.h"
-#include "studies/case_files.h"
+#include "studies/case/case_files.h"
 
 namespace gladstone {
 

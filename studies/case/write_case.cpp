@@ -15,13 +15,13 @@
 #include "render/focused_dots/table_error.h"
 #include "render/scene/particle_scene.h"
 #include "render/sensor/detector.h"
-#include "studies/case.h"
-#include "studies/case_summary.h"
-#include "studies/case_warnings.h"
-#include "studies/json_text.h"
-#include "studies/particle_case.h"
-#include "studies/scene_renderer.h"
-#include "studies/truth_file.h"
+#include "studies/case/case.h"
+#include "studies/case/case_summary.h"
+#include "studies/case/case_warnings.h"
+#include "studies/case/json_text.h"
+#include "studies/case/particle_case.h"
+#include "studies/case/scene_renderer.h"
+#include "studies/case/truth_file.h"
 
 namespace gladstone {
 namespace {

@@ -1,4 +1,4 @@
-#include "studies/image_statistics.h"
+#include "studies/case/image_statistics.h"
 
 #include <algorithm>
 #include <cmath>

@@ -10,9 +10,9 @@
 #include "render/files/image_file.h"
 #include "render/files/output_file.h"
 #include "render/files/output_folder.h"
-#include "studies/case.h"
-#include "studies/json_text.h"
-#include "studies/plenoptic_views.h"
+#include "studies/case/case.h"
+#include "studies/case/json_text.h"
+#include "studies/case/plenoptic_views.h"
 
 namespace gladstone {
 namespace {

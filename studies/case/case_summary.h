@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "studies/case.h"
+#include "studies/case/case.h"
 
 namespace gladstone {
 

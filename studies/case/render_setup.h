@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "studies/cameras.h"
-#include "studies/case.h"
-#include "studies/uncertain_inputs.h"
+#include "studies/case/cameras.h"
+#include "studies/case/case.h"
+#include "studies/case/uncertain_inputs.h"
 
 namespace gladstone {
 

@@ -1,4 +1,4 @@
-#include "studies/case_warnings.h"
+#include "studies/case/case_warnings.h"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>

@@ -1,4 +1,4 @@
-#include "studies/render_setup.h"
+#include "studies/case/render_setup.h"
 
 #include <spdlog/spdlog.h>
 
@@ -11,8 +11,8 @@
 #include "render/files/output_folder.h"
 #include "render/files/text_file.h"
 #include "render/setup/setup_node.h"
-#include "studies/calibration_case.h"
-#include "studies/json_text.h"
+#include "studies/case/calibration_case.h"
+#include "studies/case/json_text.h"
 
 namespace gladstone {
 namespace {

@@ -1,4 +1,4 @@
-#include "studies/case.h"
+#include "studies/case/case.h"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -11,13 +11,13 @@
 #include "render/ideal_images/ideal_images.h"
 #include "render/scene/field_coverage.h"
 #include "render/scene/particle_scene.h"
-#include "studies/cameras.h"
-#include "studies/case_warnings.h"
-#include "studies/light_exposure.h"
-#include "studies/peak_locking.h"
-#include "studies/scene_renderer.h"
-#include "studies/uncertain_inputs.h"
-#include "studies/usual_values.h"
+#include "studies/case/cameras.h"
+#include "studies/case/case_warnings.h"
+#include "studies/case/light_exposure.h"
+#include "studies/case/peak_locking.h"
+#include "studies/case/scene_renderer.h"
+#include "studies/case/uncertain_inputs.h"
+#include "studies/case/usual_values.h"
 
 namespace gladstone {
 namespace {

@@ -1,4 +1,4 @@
-#include "studies/shared_target.h"
+#include "studies/case/shared_target.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "studies/peak_locking.h"
+#include "studies/case/peak_locking.h"
 
 #include <fmt/format.h>
 
@@ -6,9 +6,9 @@
 #include <cmath>
 
 #include "render/base/units.h"
-#include "studies/design/random_error.h"
-#include "studies/expected_particles.h"
-#include "studies/image_statistics.h"
+#include "studies/case/expected_particles.h"
+#include "studies/case/image_statistics.h"
+#include "studies/case/random_error.h"
 
 namespace gladstone {
 namespace {

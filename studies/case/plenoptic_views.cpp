@@ -1,4 +1,4 @@
-#include "studies/plenoptic_views.h"
+#include "studies/case/plenoptic_views.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "studies/usual_values.h"
+#include "studies/case/usual_values.h"
 
 #include <fmt/format.h>
 

@@ -1,12 +1,12 @@
-#include "studies/truth_file.h"
+#include "studies/case/truth_file.h"
 
 #include <algorithm>
 #include <array>
 
 #include "render/base/not_a_number.h"
-#include "studies/flat_values.h"
-#include "studies/particle_case.h"
-#include "studies/scene_renderer.h"
+#include "studies/case/flat_values.h"
+#include "studies/case/particle_case.h"
+#include "studies/case/scene_renderer.h"
 
 namespace gladstone {
 namespace {
