@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "studies/agreement.h"
+#include "studies/compare/agreement.h"
 
 namespace gladstone {
 

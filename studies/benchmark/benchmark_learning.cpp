@@ -6,7 +6,7 @@
 
 #include "analysis/uncertainty/uncertainty.h"
 #include "studies/benchmark/benchmark_run.h"
-#include "studies/correlate.h"
+#include "studies/compare/correlate.h"
 
 namespace gladstone {
 namespace {

@@ -17,7 +17,7 @@
 #include "render/files/source_files.h"
 #include "studies/benchmark/foreign_code.h"
 #include "studies/case/case_files.h"
-#include "studies/correlate.h"
+#include "studies/compare/correlate.h"
 
 namespace gladstone {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "analysis/vectors/vector_screening.h"
 #include "render/base/error.h"
-#include "studies/compared_vectors.h"
+#include "studies/compare/compared_vectors.h"
 
 namespace gladstone {
 namespace {

@@ -10,7 +10,7 @@
 #include "render/base/units.h"
 #include "render/sensor/detector.h"
 #include "studies/benchmark/benchmark_cases.h"
-#include "studies/compare.h"
+#include "studies/compare/compare.h"
 #include "studies/demo.h"
 
 namespace gladstone {

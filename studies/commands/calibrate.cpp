@@ -1,4 +1,4 @@
-#include "studies/calibrate.h"
+#include "studies/compare/calibrate.h"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>

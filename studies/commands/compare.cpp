@@ -1,4 +1,4 @@
-#include "studies/compare.h"
+#include "studies/compare/compare.h"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -13,9 +13,9 @@
 #include "render/files/partial.h"
 #include "studies/commands/arguments.h"
 #include "studies/commands/command.h"
-#include "studies/error_report.h"
+#include "studies/compare/error_report.h"
+#include "studies/compare/stored_comparison.h"
 #include "studies/figures/gnuplot.h"
-#include "studies/stored_comparison.h"
 
 namespace gladstone {
 

@@ -9,8 +9,8 @@
 #include "render/sensor/camera_setup.h"
 #include "render/sensor/diffraction_spot.h"
 #include "studies/case/random_error.h"
+#include "studies/compare/disc_transfer.h"
 #include "studies/design/window_transfer.h"
-#include "studies/disc_transfer.h"
 
 namespace gladstone {
 

@@ -16,7 +16,7 @@ struct MeasurementUncertainty {
   std::vector<PropagatedResult> results;
   double random_px = 0;  ///< random error of the displacement [px]
   /// amplitude transfer of a wave twice as long as the resolved one [1]; for the remaining loss see
-  /// studies/uncorrected_bias.h
+  /// studies/compare/uncorrected_bias.h
   double share_resolved = 0;
   bool traced = false;  ///< whether derivatives were computed by ray tracing
 };

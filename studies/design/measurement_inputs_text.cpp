@@ -3,8 +3,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "studies/compare/uncorrected_bias.h"
 #include "studies/design/measurement_inputs.h"
-#include "studies/uncorrected_bias.h"
 
 namespace gladstone {
 namespace {

@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "studies/budget_stages.h"
+#include "studies/compare/budget_stages.h"
 #include "studies/design/simulation.h"
 
 namespace gladstone {

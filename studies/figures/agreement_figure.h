@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "studies/cone_theory.h"
+#include "studies/compare/cone_theory.h"
 
 namespace gladstone {
 

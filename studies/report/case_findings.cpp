@@ -4,8 +4,8 @@
 
 #include "analysis/errors/error_summary.h"
 #include "analysis/errors/uncertainty_quality.h"
+#include "studies/compare/uncorrected_bias.h"
 #include "studies/report/case_view.h"
-#include "studies/uncorrected_bias.h"
 
 namespace gladstone {
 

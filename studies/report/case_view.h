@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "studies/compare.h"
+#include "studies/compare/compare.h"
 #include "studies/report/report_page.h"
 
 namespace gladstone {

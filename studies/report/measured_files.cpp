@@ -14,7 +14,7 @@
 #include "render/files/hdf5_file.h"
 #include "render/files/image_file.h"
 #include "studies/case/case_files.h"
-#include "studies/compared_vectors.h"
+#include "studies/compare/compared_vectors.h"
 
 namespace gladstone {
 namespace {

@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "analysis/errors/error_summary.h"
+#include "studies/compare/uncorrected_bias.h"
 #include "studies/design/measurement_inputs.h"
-#include "studies/uncorrected_bias.h"
 
 namespace gladstone {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "studies/case/case.h"
-#include "studies/compare.h"
+#include "studies/compare/compare.h"
 
 namespace gladstone {
 

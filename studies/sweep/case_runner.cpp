@@ -21,10 +21,10 @@
 #include "studies/case/quiet_log.h"
 #include "studies/case/scene_renderer.h"
 #include "studies/case/version_text.h"
-#include "studies/correlate.h"
+#include "studies/compare/correlate.h"
+#include "studies/compare/thinned_vectors.h"
 #include "studies/sweep/case_keys.h"
 #include "studies/sweep/recent.h"
-#include "studies/thinned_vectors.h"
 
 namespace gladstone {
 namespace {

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "studies/compare.h"
+#include "studies/compare/compare.h"
 #include "studies/sweep/results.h"
 
 namespace gladstone {

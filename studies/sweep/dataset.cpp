@@ -18,8 +18,8 @@
 #include "studies/case/case.h"
 #include "studies/case/case_files.h"
 #include "studies/case/quiet_log.h"
-#include "studies/compared_files.h"
-#include "studies/displacement_truth.h"
+#include "studies/compare/compared_files.h"
+#include "studies/compare/displacement_truth.h"
 #include "studies/sweep/run.h"
 #include "studies/sweep/study_columns.h"
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "studies/compare.h"
+#include "studies/compare/compare.h"
 
 namespace gladstone {
 

@@ -1,4 +1,4 @@
-#include "studies/agreement.h"
+#include "studies/compare/agreement.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

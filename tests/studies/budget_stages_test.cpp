@@ -1,4 +1,4 @@
-#include "studies/budget_stages.h"
+#include "studies/compare/budget_stages.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "studies/error_report.h"
+#include "studies/compare/error_report.h"
 #include "studies/report/case_view.h"
 
 namespace gladstone {

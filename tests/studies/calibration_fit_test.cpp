@@ -1,4 +1,4 @@
-#include "studies/calibration_fit.h"
+#include "studies/compare/calibration_fit.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

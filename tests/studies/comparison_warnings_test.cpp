@@ -1,4 +1,4 @@
-#include "studies/comparison_warnings.h"
+#include "studies/compare/comparison_warnings.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

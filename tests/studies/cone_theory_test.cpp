@@ -1,4 +1,4 @@
-#include "studies/cone_theory.h"
+#include "studies/compare/cone_theory.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -8,7 +8,7 @@
 #include "cuda/backend.h"
 #include "render/base/error.h"
 #include "studies/benchmark/particle_pair.h"
-#include "studies/correlate.h"
+#include "studies/compare/correlate.h"
 
 namespace gladstone {
 namespace {

@@ -1,4 +1,4 @@
-#include "studies/budget_stages.h"
+#include "studies/compare/budget_stages.h"
 
 #include <algorithm>
 #include <cmath>

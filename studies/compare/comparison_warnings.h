@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "studies/compare.h"
+#include "studies/compare/compare.h"
 
 namespace gladstone {
 

@@ -1,4 +1,4 @@
-#include "studies/particle_points.h"
+#include "studies/compare/particle_points.h"
 
 #include <algorithm>
 #include <cmath>

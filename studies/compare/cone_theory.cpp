@@ -1,4 +1,4 @@
-#include "studies/cone_theory.h"
+#include "studies/compare/cone_theory.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 #include "render/base/contracts.h"
 #include "render/base/parallel.h"
 #include "render/base/units.h"
-#include "studies/disc_transfer.h"
+#include "studies/compare/disc_transfer.h"
 
 namespace gladstone {
 namespace {

@@ -13,7 +13,7 @@
 #include "render/scene/renderer.h"
 #include "studies/case/case.h"
 #include "studies/case/device.h"
-#include "studies/compared_files.h"
+#include "studies/compare/compared_files.h"
 
 namespace gladstone {
 

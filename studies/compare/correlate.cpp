@@ -1,4 +1,4 @@
-#include "studies/correlate.h"
+#include "studies/compare/correlate.h"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>

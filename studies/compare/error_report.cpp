@@ -1,4 +1,4 @@
-#include "studies/error_report.h"
+#include "studies/compare/error_report.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "studies/compared_files.h"
+#include "studies/compare/compared_files.h"
 
 #include <fmt/format.h>
 

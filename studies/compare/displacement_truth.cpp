@@ -1,11 +1,11 @@
-#include "studies/displacement_truth.h"
+#include "studies/compare/displacement_truth.h"
 
 #include <algorithm>
 #include <vector>
 
 #include "render/base/contracts.h"
-#include "studies/compare.h"
-#include "studies/particle_points.h"
+#include "studies/compare/compare.h"
+#include "studies/compare/particle_points.h"
 
 namespace gladstone {
 

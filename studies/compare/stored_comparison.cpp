@@ -1,4 +1,4 @@
-#include "studies/stored_comparison.h"
+#include "studies/compare/stored_comparison.h"
 
 #include <algorithm>
 #include <array>

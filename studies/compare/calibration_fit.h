@@ -1,7 +1,7 @@
 #pragma once
 
 #include "analysis/calibration/plate_placement.h"
-#include "studies/calibrate.h"
+#include "studies/compare/calibrate.h"
 
 namespace gladstone {
 

@@ -1,4 +1,4 @@
-#include "studies/calibrate.h"
+#include "studies/compare/calibrate.h"
 
 #include <fmt/format.h>
 
@@ -12,9 +12,9 @@
 #include "render/light/calibration_target.h"
 #include "render/scene/build_camera.h"
 #include "render/scene/calibration_planes.h"
-#include "studies/calibration_fit.h"
 #include "studies/case/cameras.h"
 #include "studies/case/case.h"
+#include "studies/compare/calibration_fit.h"
 
 namespace gladstone {
 namespace {

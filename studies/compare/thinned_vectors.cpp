@@ -1,4 +1,4 @@
-#include "studies/thinned_vectors.h"
+#include "studies/compare/thinned_vectors.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,7 @@
 
 #include "render/base/image.h"
 #include "render/scene/renderer.h"
-#include "studies/cone_theory.h"
+#include "studies/compare/cone_theory.h"
 
 namespace gladstone {
 

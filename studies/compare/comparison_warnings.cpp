@@ -1,4 +1,4 @@
-#include "studies/comparison_warnings.h"
+#include "studies/compare/comparison_warnings.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "studies/compare.h"
+#include "studies/compare/compare.h"
 
 #include <spdlog/spdlog.h>
 
@@ -14,15 +14,15 @@
 #include "render/rays/rays_renderer.h"
 #include "render/scene/build_camera.h"
 #include "render/sensor/detector.h"
-#include "studies/budget_stages.h"
 #include "studies/case/scene_renderer.h"
 #include "studies/case/truth_file.h"
-#include "studies/compared_vectors.h"
-#include "studies/comparison_warnings.h"
-#include "studies/correlate.h"
-#include "studies/particle_points.h"
-#include "studies/stored_comparison.h"
-#include "studies/thinned_vectors.h"
+#include "studies/compare/budget_stages.h"
+#include "studies/compare/compared_vectors.h"
+#include "studies/compare/comparison_warnings.h"
+#include "studies/compare/correlate.h"
+#include "studies/compare/particle_points.h"
+#include "studies/compare/stored_comparison.h"
+#include "studies/compare/thinned_vectors.h"
 
 namespace gladstone {
 namespace {

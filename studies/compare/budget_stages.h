@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "studies/compare.h"
+#include "studies/compare/compare.h"
 
 namespace gladstone {
 

@@ -6,8 +6,8 @@
 
 #include "render/base/units.h"
 #include "render/files/hdf5_file.h"
-#include "studies/calibrate.h"
 #include "studies/case/flat_values.h"
+#include "studies/compare/calibrate.h"
 #include "studies/figures/gnuplot.h"
 
 namespace gladstone {

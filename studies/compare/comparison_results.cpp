@@ -4,7 +4,7 @@
 
 #include "analysis/errors/uncertainty_quality.h"
 #include "studies/case/json_text.h"
-#include "studies/compare.h"
+#include "studies/compare/compare.h"
 #include "studies/figures/error_figures.h"
 #include "studies/figures/map_figures.h"
 

@@ -1,4 +1,4 @@
-#include "studies/compared_vectors.h"
+#include "studies/compare/compared_vectors.h"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>

@@ -1,4 +1,4 @@
-#include "studies/uncorrected_bias.h"
+#include "studies/compare/uncorrected_bias.h"
 
 #include <cmath>
 
