@@ -21,8 +21,8 @@
 #include "studies/case/version_text.h"
 #include "studies/commands/arguments.h"
 #include "studies/commands/command.h"
+#include "studies/commands/protected_files.h"
 #include "studies/commands/run_warnings.h"
-#include "studies/protected_files.h"
 
 namespace gladstone {
 namespace {

@@ -11,7 +11,7 @@
 #include "render/sensor/detector.h"
 #include "studies/benchmark/benchmark_cases.h"
 #include "studies/compare/compare.h"
-#include "studies/demo.h"
+#include "studies/examples/demo.h"
 
 namespace gladstone {
 namespace {

@@ -1,4 +1,4 @@
-#include "studies/demo.h"
+#include "studies/examples/demo.h"
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>

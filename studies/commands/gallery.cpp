@@ -1,4 +1,4 @@
-#include "studies/gallery.h"
+#include "studies/examples/gallery.h"
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>

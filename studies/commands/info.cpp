@@ -14,11 +14,11 @@
 #include "studies/case/json_text.h"
 #include "studies/commands/arguments.h"
 #include "studies/commands/command.h"
+#include "studies/commands/field_place.h"
+#include "studies/commands/field_statistics.h"
 #include "studies/commands/info_lens.h"
 #include "studies/commands/info_mie.h"
 #include "studies/commands/info_particles.h"
-#include "studies/field_place.h"
-#include "studies/field_statistics.h"
 
 namespace gladstone {
 namespace {

@@ -1,4 +1,4 @@
-#include "studies/validate.h"
+#include "studies/oracles/validate.h"
 
 #include <fmt/format.h>
 

@@ -7,7 +7,7 @@
 
 #include "render/base/error.h"
 #include "render/base/image.h"
-#include "studies/passing_folder.h"
+#include "studies/figures/passing_folder.h"
 
 namespace gladstone {
 

@@ -11,8 +11,8 @@
 #include "studies/figures/design_map.h"
 #include "studies/figures/gnuplot.h"
 #include "studies/figures/layout_figure.h"
+#include "studies/figures/passing_folder.h"
 #include "studies/figures/piv_map.h"
-#include "studies/passing_folder.h"
 
 namespace gladstone {
 namespace {

@@ -8,7 +8,7 @@
 #include "render/base/error.h"
 #include "render/base/progress.h"
 #include "render/base/units.h"
-#include "studies/passing_folder.h"
+#include "studies/figures/passing_folder.h"
 #include "studies/report/measured_density.h"
 #include "studies/sweep/case_runner.h"
 #include "studies/sweep/plan.h"

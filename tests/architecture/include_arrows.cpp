@@ -25,10 +25,16 @@ Names const analysis = {"analysis/vectors",     "analysis/correlation", "analysi
                         "analysis/calibration", "analysis/uncertainty", "analysis/preparation"};
 Names const cuda = {"cuda/device", "cuda/rays", "cuda/focused_dots", "cuda/correlation"};
 
+Names const studies = {"studies/case",   "studies/compare",   "studies/sweep",   "studies/design",  "studies/figures",
+                       "studies/report", "studies/benchmark", "studies/oracles", "studies/examples"};
+Names const studies_use = {"Eigen", "fmt", "spdlog", "nlohmann_json"};
+
 Names operator+(Names a, Names const& b) {
   a.insert(a.end(), b.begin(), b.end());
   return a;
 }
+
+Names const libraries = render + renderers + analysis;
 
 /// The table of rooms and arrows; a room may always include itself, the standard library and, in .cpp
 /// files, POSIX.
@@ -75,10 +81,29 @@ std::vector<Room> const& table() {
        {"Eigen", "CUDA"},
        {"fmt"}},
       {"cuda", render + renderers + analysis + cuda, {"Eigen", "CUDA"}, {"fmt"}},
-      {"studies",
-       render + renderers + analysis + cuda + Names{"cuda"},
-       {"Eigen", "fmt", "spdlog", "nlohmann_json", "CLI11"},
+      {"studies/case", libraries + Names{"cuda"}, studies_use, {}},
+      {"studies/compare", libraries + Names{"studies/case"}, studies_use, {}},
+      {"studies/sweep", libraries + Names{"studies/case", "studies/compare"}, studies_use, {}},
+      {"studies/design",
+       libraries + Names{"studies/case", "studies/compare", "studies/sweep"},
+       studies_use,
        {"Ceres", "NLopt"}},
+      {"studies/figures",
+       libraries + Names{"studies/case", "studies/compare", "studies/sweep", "studies/design"},
+       studies_use,
+       {}},
+      {"studies/report",
+       libraries + Names{"studies/case", "studies/compare", "studies/sweep", "studies/design", "studies/figures"},
+       studies_use,
+       {}},
+      {"studies/benchmark",
+       libraries + Names{"studies/case", "studies/compare", "studies/figures", "studies/report"},
+       studies_use,
+       {}},
+      {"studies/oracles", libraries + Names{"studies/case"}, studies_use, {}},
+      {"studies/examples", libraries + Names{"studies/case", "studies/compare", "studies/figures"}, studies_use, {}},
+      {"studies/commands", libraries + studies, studies_use + Names{"CLI11"}, {}},
+      {"studies", libraries + studies + Names{"studies/commands"}, studies_use + Names{"CLI11"}, {}},  // main.cpp
   };
   return rooms;
 }
@@ -90,6 +115,14 @@ std::vector<Exception> const& known_exceptions() {
       {"analysis/correlation/correlation_settings.h", "render/setup/setup_table.h"},
       {"analysis/preparation/frame_preparation.h", "render/setup/setup_table.h"},
       {"render/setup/setup_document.cpp", "render/files/text_file.h"},
+      {"studies/compare/calibration_results.cpp", "studies/figures/gnuplot.h"},
+      {"studies/compare/comparison_results.cpp", "studies/figures/error_figures.h"},
+      {"studies/compare/comparison_results.cpp", "studies/figures/map_figures.h"},
+      {"studies/design/design.cpp", "studies/figures/design_map.h"},
+      {"studies/design/design.cpp", "studies/figures/gnuplot.h"},
+      {"studies/design/design.cpp", "studies/figures/layout_figure.h"},
+      {"studies/design/design.cpp", "studies/figures/piv_map.h"},
+      {"studies/benchmark/refracted_turbulence.cpp", "studies/examples/demo.h"},
   };
   return list;
 }
@@ -217,7 +250,9 @@ std::vector<Include> includes_of(std::string_view source) {
 std::string room_of(std::string_view path) {
   if (path.find("..") != std::string_view::npos) return "";
   for (Room const& room : table()) {
-    if (path.starts_with(room.name + "/")) return room.name;
+    if (!path.starts_with(room.name + "/")) continue;
+    bool const has_rooms = room.name.find('/') == std::string::npos;  // "studies": its folders are rooms of their own
+    if (!has_rooms || path.find('/', room.name.size() + 1) == std::string_view::npos) return room.name;
   }
   return path.starts_with("tests/") ? "tests" : "";
 }

@@ -85,6 +85,10 @@ TEST(IncludeArrows, AllowWhatTheTableHas) {
   EXPECT_THAT(
       forbidden_arrows("studies/commands/a.cpp", "#include <CLI/CLI.hpp>\n#include \"analysis/correlation/b.h\"\n"),
       IsEmpty());
+  EXPECT_THAT(forbidden_arrows("studies/design/a.cpp", "#include <nlopt.hpp>\n#include \"studies/sweep/b.h\"\n"),
+              IsEmpty());
+  EXPECT_THAT(forbidden_arrows("studies/main.cpp", "#include <CLI/CLI.hpp>\n#include \"studies/commands/b.h\"\n"),
+              IsEmpty());
   EXPECT_THAT(forbidden_arrows("tests/base/a_test.cpp", "#include <gtest/gtest.h>\n#include \"studies/b.h\"\n"),
               IsEmpty());
 }
@@ -132,6 +136,17 @@ INSTANTIATE_TEST_SUITE_P(
         Planted{"analysis/correlation/a.cpp", "\"studies/b.h\""}, Planted{"cuda/a.cu", "\"studies/b.h\""},
         Planted{"analysis/vectors/a.cpp", "\"analysis/errors/b.h\""}, Planted{"cuda/device/a.cu", "\"cuda/rays/b.h\""},
         Planted{"cuda/correlation/a.cu", "\"cuda/focused_dots/b.h\""}, Planted{"cuda/a.cpp", "<opencv2/core.hpp>"},
+        Planted{"studies/case/a.cpp", "\"studies/compare/b.h\""},  // studies' rooms, downwards
+        Planted{"studies/compare/a.h", "\"studies/sweep/b.h\""},
+        Planted{"studies/compare/a.h", "\"studies/figures/b.h\""},
+        Planted{"studies/sweep/a.cpp", "\"studies/figures/b.h\""},
+        Planted{"studies/design/a.cpp", "\"studies/figures/b.h\""},
+        Planted{"studies/figures/a.cpp", "\"studies/report/b.h\""},
+        Planted{"studies/oracles/a.cpp", "\"studies/compare/b.h\""},
+        Planted{"studies/report/a.cpp", "\"studies/examples/b.h\""},
+        Planted{"studies/sweep/a.cpp", "\"studies/commands/b.h\""}, Planted{"studies/compare/a.cpp", "\"cuda/b.h\""},
+        Planted{"studies/sweep/a.cpp", "<CLI/CLI.hpp>"}, Planted{"studies/compare/a.cpp", "<nlopt.hpp>"},
+        Planted{"studies/design/a.h", "<nlopt.hpp>"},
         Planted{"render/scene/a.cpp", "<cuda_runtime.h>"},  // CUDA headers in cuda/ alone
         Planted{"tests/cuda/a_test.cpp", "<cuda_runtime_api.h>"}, Planted{"studies/a.cpp", "<cufft.h>"},
         Planted{"render/base/a.h", "<cuda/std/complex>"}, Planted{"render/base/a.h", "<thrust/sort.h>"},
@@ -148,6 +163,8 @@ TEST(IncludeArrows, RefuseCudaCodeOutsideItsRoom) {
 
 TEST(IncludeArrows, RefuseASourceInNoRoom) {
   EXPECT_THAT(forbidden_arrows("render/stray.h", ""), ElementsAre(HasSubstr("lies in no room")));
+  EXPECT_THAT(forbidden_arrows("studies/stray/a.cpp", ""), ElementsAre(HasSubstr("lies in no room")));
+  EXPECT_THAT(forbidden_arrows("cuda/stray/a.cu", ""), ElementsAre(HasSubstr("lies in no room")));
 }
 
 TEST(Tree, HasOnlyTheArrowsOfTheTable) {
@@ -163,7 +180,7 @@ TEST(Tree, HasOnlyTheArrowsOfTheTable) {
 
 // An exception that is no longer needed must be removed from the list, and the limit lowered with it.
 TEST(Tree, NeedsEveryExceptionToTheTable) {
-  EXPECT_LE(known_exceptions().size(), 3U);
+  EXPECT_LE(known_exceptions().size(), 11U);
   for (Exception const& exception : known_exceptions()) {
     std::ifstream in(std::filesystem::path(GLADSTONE_SOURCE_DIR) / exception.file);
     std::string const text((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());

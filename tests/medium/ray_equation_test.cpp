@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "render/base/units.h"
-#include "studies/oracle_media.h"
+#include "studies/oracles/oracle_media.h"
 
 namespace gladstone {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "render/base/units.h"
-#include "studies/oracle_media.h"
+#include "studies/oracles/oracle_media.h"
 #include "tests/support/gridded.h"
 
 namespace gladstone {

@@ -8,7 +8,7 @@
 
 #include "render/base/units.h"
 #include "studies/case/case.h"
-#include "studies/demo.h"
+#include "studies/examples/demo.h"
 #include "tests/scene/small_scenes.h"
 
 namespace gladstone {

@@ -1,4 +1,4 @@
-#include "studies/passing_folder.h"
+#include "studies/figures/passing_folder.h"
 
 #include <gtest/gtest.h>
 #include <signal.h>

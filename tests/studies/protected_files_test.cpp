@@ -1,4 +1,4 @@
-#include "studies/protected_files.h"
+#include "studies/commands/protected_files.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -5,7 +5,7 @@
 #include <map>
 
 #include "render/files/text_file.h"
-#include "studies/demo.h"
+#include "studies/examples/demo.h"
 #include "studies/sweep/plan.h"
 
 namespace gladstone {

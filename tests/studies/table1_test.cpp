@@ -5,7 +5,7 @@
 #include "render/focused_dots/table_error.h"
 #include "studies/case/case.h"
 #include "studies/case/scene_renderer.h"
-#include "studies/demo.h"
+#include "studies/examples/demo.h"
 
 namespace gladstone {
 namespace {

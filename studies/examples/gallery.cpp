@@ -1,4 +1,4 @@
-#include "studies/gallery.h"
+#include "studies/examples/gallery.h"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -12,7 +12,7 @@
 #include "render/files/image_file.h"
 #include "studies/case/case_files.h"
 #include "studies/case/render_setup.h"
-#include "studies/demo.h"
+#include "studies/examples/demo.h"
 #include "studies/figures/gnuplot.h"
 #include "studies/figures/map_panels.h"
 

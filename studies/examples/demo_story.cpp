@@ -1,4 +1,4 @@
-#include "studies/demo_story.h"
+#include "studies/examples/demo_story.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "studies/protected_files.h"
+#include "studies/commands/protected_files.h"
 
 #include "studies/benchmark/benchmark_run.h"
 #include "studies/case/case_files.h"

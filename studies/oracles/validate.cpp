@@ -1,10 +1,10 @@
-#include "studies/validate.h"
+#include "studies/oracles/validate.h"
 
 #include <array>
 #include <cmath>
 
 #include "render/base/units.h"
-#include "studies/oracles.h"
+#include "studies/oracles/oracles.h"
 
 namespace gladstone {
 namespace {

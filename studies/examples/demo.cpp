@@ -1,4 +1,4 @@
-#include "studies/demo.h"
+#include "studies/examples/demo.h"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -17,7 +17,7 @@
 #include "studies/compare/compare.h"
 #include "studies/compare/correlate.h"
 #include "studies/compare/error_report.h"
-#include "studies/demo_story.h"
+#include "studies/examples/demo_story.h"
 #include "studies/figures/agreement_figure.h"
 #include "studies/figures/gnuplot.h"
 #include "studies/figures/map_figures.h"

@@ -1,4 +1,4 @@
-#include "studies/field_statistics.h"
+#include "studies/commands/field_statistics.h"
 
 #include <algorithm>
 #include <cmath>

@@ -8,7 +8,7 @@
 #include "render/scene/scene.h"
 #include "render/sensor/diffraction_spot.h"
 #include "studies/case/scene_renderer.h"
-#include "studies/oracles.h"
+#include "studies/oracles/oracles.h"
 
 namespace gladstone::oracle {
 namespace {

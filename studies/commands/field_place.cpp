@@ -1,4 +1,4 @@
-#include "studies/field_place.h"
+#include "studies/commands/field_place.h"
 
 #include <fmt/format.h>
 

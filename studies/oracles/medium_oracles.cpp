@@ -5,8 +5,8 @@
 #include "render/medium/field_volume.h"
 #include "render/medium/gladstone_dale.h"
 #include "render/medium/trace_medium.h"
-#include "studies/oracle_media.h"
-#include "studies/oracles.h"
+#include "studies/oracles/oracle_media.h"
+#include "studies/oracles/oracles.h"
 
 namespace gladstone::oracle {
 namespace {
