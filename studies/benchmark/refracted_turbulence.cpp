@@ -10,8 +10,8 @@
 #include "render/base/units.h"
 #include "render/sensor/detector.h"
 #include "studies/benchmark/benchmark_cases.h"
+#include "studies/case/shared_folder.h"
 #include "studies/compare/compare.h"
-#include "studies/examples/demo.h"
 
 namespace gladstone {
 namespace {

@@ -8,11 +8,11 @@
 #include <filesystem>
 
 #include "analysis/errors/scattered_grid.h"
-#include "render/base/error.h"
 #include "render/base/units.h"
 #include "render/files/output_file.h"
 #include "render/files/output_folder.h"
 #include "studies/case/case.h"
+#include "studies/case/shared_folder.h"
 #include "studies/case/truth_file.h"
 #include "studies/compare/compare.h"
 #include "studies/compare/correlate.h"
@@ -133,18 +133,6 @@ AgreementSeries agreement_series(Setup const& setup, GradientSpectrum const& spe
 }
 
 }  // namespace
-
-std::string shared_folder() {
-  namespace fs = std::filesystem;
-  std::error_code error;
-  fs::path const executable = fs::read_symlink("/proc/self/exe", error);
-  fs::path const installed = executable.parent_path().parent_path() / "share" / "gladstone";
-  for (fs::path const& folder : {installed, fs::path(GLADSTONE_SOURCE_DIR)}) {
-    if (fs::exists(folder / "studies" / "cases" / "table1.toml")) return folder.string();
-  }
-  throw DataError(installed.string(),
-                  "studies/cases/table1.toml is not there (incomplete installation); install gladstone again");
-}
 
 std::string run_demo(std::string const& folder, Device const& device) {
   namespace fs = std::filesystem;

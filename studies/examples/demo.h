@@ -13,8 +13,4 @@ namespace gladstone {
 /// @return text of summary.md
 std::string run_demo(std::string const& folder, Device const& device);
 
-/// Returns the folder of the files installed with gladstone (studies/cases, data): relative to the installed
-/// executable, or the source tree.
-std::string shared_folder();
-
 }  // namespace gladstone

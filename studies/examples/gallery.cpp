@@ -12,7 +12,7 @@
 #include "render/files/image_file.h"
 #include "studies/case/case_files.h"
 #include "studies/case/render_setup.h"
-#include "studies/examples/demo.h"
+#include "studies/case/shared_folder.h"
 #include "studies/figures/gnuplot.h"
 #include "studies/figures/map_panels.h"
 

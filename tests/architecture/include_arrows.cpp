@@ -122,7 +122,6 @@ std::vector<Exception> const& known_exceptions() {
       {"studies/design/design.cpp", "studies/figures/gnuplot.h"},
       {"studies/design/design.cpp", "studies/figures/layout_figure.h"},
       {"studies/design/design.cpp", "studies/figures/piv_map.h"},
-      {"studies/benchmark/refracted_turbulence.cpp", "studies/examples/demo.h"},
   };
   return list;
 }

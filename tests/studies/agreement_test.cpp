@@ -8,7 +8,7 @@
 
 #include "render/base/units.h"
 #include "studies/case/case.h"
-#include "studies/examples/demo.h"
+#include "studies/case/shared_folder.h"
 #include "tests/scene/small_scenes.h"
 
 namespace gladstone {

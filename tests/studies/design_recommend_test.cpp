@@ -5,9 +5,9 @@
 #include <random>
 
 #include "render/base/error.h"
+#include "studies/case/shared_folder.h"
 #include "studies/design/branches.h"
 #include "studies/design/recommend.h"
-#include "studies/examples/demo.h"
 #include "tests/studies/support/table1_bench.h"
 
 namespace gladstone {

@@ -5,7 +5,7 @@
 #include <map>
 
 #include "render/files/text_file.h"
-#include "studies/examples/demo.h"
+#include "studies/case/shared_folder.h"
 #include "studies/sweep/plan.h"
 
 namespace gladstone {

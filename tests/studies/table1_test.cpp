@@ -5,7 +5,7 @@
 #include "render/focused_dots/table_error.h"
 #include "studies/case/case.h"
 #include "studies/case/scene_renderer.h"
-#include "studies/examples/demo.h"
+#include "studies/case/shared_folder.h"
 
 namespace gladstone {
 namespace {
