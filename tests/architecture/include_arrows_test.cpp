@@ -196,6 +196,19 @@ TEST(IncludeArrows, PermitExceptionsInTheirFileOnly) {
               ElementsAre(HasSubstr("render/light/c.h:1: ")));
 }
 
+TEST(Tree, DescribesEveryRoomInAShortReadme) {
+  std::filesystem::path const root = GLADSTONE_SOURCE_DIR;
+  for (char const* folder : {"render", "analysis", "cuda", "studies"}) {
+    for (auto const& entry : std::filesystem::directory_iterator(root / folder)) {
+      if (!entry.is_directory()) continue;
+      std::ifstream in(entry.path() / "README.md");
+      auto const lines = std::count(std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>(), '\n');
+      EXPECT_GT(lines, 0) << entry.path();
+      EXPECT_LE(lines, 10) << entry.path();
+    }
+  }
+}
+
 using IncludesOfFiles = std::map<std::string, std::vector<Include>>;
 
 /// Whether a file draws in CUDA's headers, by itself or through others. @param seen files that were looked at
