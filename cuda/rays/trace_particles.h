@@ -92,7 +92,7 @@ struct ParticlesLaunch {
   ParticleSources<double, AnyScattering>
       pulses[frame_count];  ///< in device memory, indexed from the batch's first particle
   std::uint64_t first = 0;  ///< index of the batch's first particle in the scene
-  BundleView<double> choice;
+  BundleView choice;
   StopRuleView rule;  ///< in device memory; quadrature rule of rays that fill the stop, if any
   SpotView spot;
   HitSplineView spline;    ///< in device memory; null share: no windows of spline nodes

@@ -37,7 +37,7 @@ struct SourcesLaunch {
   CameraView<double> camera;  ///< elements in device memory
   TracingOptions<double> tracing;
   LambertSources<double> sources;  ///< in device memory
-  BundleView<double> choice;
+  BundleView choice;
   SpotView spot;
   HitSplineView spline;    ///< in device memory; null share: PSFs are added one by one
   int most_window_px = 0;  ///< maximum over the sources

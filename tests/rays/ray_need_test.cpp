@@ -92,7 +92,7 @@ double truth_error(GroundTruth const& found, GroundTruth const& exact) {
 
 // n nodes integrate x^p y^q over the unit disc for p + q up to 2 sqrt(n) - 1: sixteen to degree 7.
 TEST(StopRule, IntegratesPolynomialsExactly) {
-  BundleView<double> choice;
+  BundleView choice;
   choice.seed = 5;
   for (std::uint64_t const rays : {4u, 16u, 64u}) {
     StopRule const rule(rays);
