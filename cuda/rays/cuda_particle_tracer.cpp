@@ -31,7 +31,7 @@ class BatchPass {
  public:
   /// Starts aiming the particles on the device. @param launches  launches of the batch's particles, one per ladder step
   BatchPass(ParticleLaunches const& host, LaunchesOnDevice const& on_device, std::vector<ParticlesLaunch> launches,
-            HostPulses const& pulses, Medium const& medium, DeviceMedium<double> const& mirrored, ParticleBatch& batch,
+            HostPulses const& pulses, Medium const& medium, DeviceMedium const& mirrored, ParticleBatch& batch,
             double across_medium, unsigned long long* ends)
       : host_(host),
         on_device_(on_device),
@@ -250,7 +250,7 @@ class BatchPass {
   std::vector<ParticlesLaunch> launches_;
   HostPulses const& pulses_;
   Medium const& medium_;
-  DeviceMedium<double> const& mirrored_;
+  DeviceMedium const& mirrored_;
   ParticleBatch& batch_;
   double across_medium_;
   unsigned long long* ends_;
@@ -272,7 +272,7 @@ std::size_t batch_size(Scene const& scene, LaunchesOnDevice const& launches) {
 }  // namespace
 
 Rendering trace_particles_on_device(Scene& scene, Particles const& particles, ParticleLight light, RenderImages images,
-                                    DeviceMedium<double> const& medium, ScatteringCache& kept, PinnedBuffer& staging) {
+                                    DeviceMedium const& medium, ScatteringCache& kept, PinnedBuffer& staging) {
   std::optional<AiryTable> airy;
   bool const lit = images != RenderImages::no;
   ParticleLaunches const host(scene, lit ? make_spot(scene, airy) : SpotView{}, images);

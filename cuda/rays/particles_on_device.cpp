@@ -35,8 +35,8 @@ MieScatteringView<double> ScatteringCache::view(std::uint64_t first) const {
   return view;
 }
 
-LaunchesOnDevice::LaunchesOnDevice(ParticleLaunches const& host, DeviceMedium<double> const& medium,
-                                   ImagePairOnDevice* images, double light_per_photon)
+LaunchesOnDevice::LaunchesOnDevice(ParticleLaunches const& host, DeviceMedium const& medium, ImagePairOnDevice* images,
+                                   double light_per_photon)
     : host_(host),
       sharp_(host.sharp.camera.elements.data(), host.sharp.camera.elements.size(), "the camera"),
       smooth_(host.ladder.size()),
