@@ -281,12 +281,12 @@ Rendering trace_particles_on_device(Scene& scene, Particles const& particles, Pa
   if (lit) frames.emplace(camera.columns, camera.rows);
   LaunchesOnDevice const launches(host, medium, frames ? &*frames : nullptr,
                                   lit ? 1 / photon_unit(scene, particles, light) : 0);
-  LaserSheet<double> const sheet = laser_sheet<double>(scene.setup.piv->laser);
+  LaserSheet<double> const sheet = laser_sheet(scene.setup.piv->laser);
   AnyScattering scattering;
   scattering.lambert.diameter = particles.diameter.data();
   if (light == ParticleLight::scattered) {
     scattering.kind = scene.mie ? AnyScattering::Kind::mie : AnyScattering::Kind::lambert;
-    if (scene.mie) scattering.mie = scene.mie->view<double>();
+    if (scene.mie) scattering.mie = scene.mie->view();
     kept.upload(scene.mie);
   }
   HostPulses pulses;

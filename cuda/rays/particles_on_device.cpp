@@ -28,7 +28,7 @@ void ScatteringCache::upload(std::shared_ptr<MieScattering const> const& mie) {
 }
 
 MieScatteringView<double> ScatteringCache::view(std::uint64_t first) const {
-  MieScatteringView<double> view = owner_->view<double>();
+  MieScatteringView<double> view = owner_->view();
   view.table_of = table_of_.data() + first;
   view.table = tables_.data();
   view.coefficient = coefficients_.data();

@@ -100,7 +100,7 @@ double fill_table(MieCoefficients const& sphere, AngleInterval angles, MieTable 
 
   MieTable const alone{0, table.cells, table.cells_per_radian};
   std::uint32_t const only = 0;
-  MieScatteringView<double> const view{&only, &alone, coefficient, {}, angles.least, angles.most, 1};
+  MieScatteringView<double> const view{&only, &alone, coefficient, {}, angles.least, 1};
   Intensities const between(sphere, angles.least + step / 2, step, cells);
   double sum = 0, worst = 0;
   for (std::size_t i = 0; i < cells; ++i) {

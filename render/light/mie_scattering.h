@@ -48,7 +48,6 @@ struct MieScatteringView {
   float const* coefficient = nullptr;       ///< cubic B-spline coefficients of |S1|^2 and |S2|^2 [1]
   LightWave<T> wave;
   T least_angle{};           ///< smallest scattering angle of the table [rad]
-  T most_angle{};            ///< largest scattering angle of the table [rad]
   T inverse_wave_number2{};  ///< 1/k^2, k the wave number in the surrounding medium [m^2]
 
   /// Returns the differential scattering cross-section of a particle in a direction: power per solid angle over
@@ -113,24 +112,14 @@ class MieScattering {
   /// Returns the memory required for the table [bytes].
   static double bytes_needed(std::vector<double> const& diameters, MieSetting const& setting, AngleInterval angles);
 
-  template <class T>
-  MieScatteringView<T> view() const {
-    auto const narrow = [](Vec3d v) { return Vec3<T>{T(v.x), T(v.y), T(v.z)}; };
-    return {table_of_.data(),
-            tables_.data(),
-            coefficients_.data(),
-            {narrow(setting_.wave.propagation), narrow(setting_.wave.field)},
-            T(angles_.least),
-            T(angles_.most),
-            T(1 / (wave_number_ * wave_number_))};
+  MieScatteringView<double> view() const {
+    return {table_of_.data(), tables_.data(), coefficients_.data(),
+            setting_.wave,    angles_.least,  1 / (wave_number_ * wave_number_)};
   }
 
   /// Largest error of the tabulated |S1|^2 and |S2|^2, relative to their mean over the interval for the same diameter
   /// [1]. Measured midway between all nodes for all diameters.
   double error() const { return error_; }
-  std::size_t distinct_diameters() const { return tables_.size(); }
-  MieSetting const& setting() const { return setting_; }
-  AngleInterval angles() const { return angles_; }
 
   /// Data of the view, for copying to a device.
   std::vector<std::uint32_t> const& table_of() const { return table_of_; }

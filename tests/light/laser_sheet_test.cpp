@@ -52,7 +52,7 @@ TEST(LaserSheet, IntegratesToThePulseEnergy) {
           read_laser(std::string("profile = \"") + profile + "\"\ndivergence_deg = " + std::to_string(divergence) +
                      "\ndirection = [1, 2, 0.5]\nnormal = [0, -0.25, 1]\ncenter_mm = [3, 4, 5]\n"
                      "offset_mm = [0.2, -0.3]\ntilt_deg = [0, 3]\npulse_energy_mj = 80");
-      LaserSheet<double> const sheet = laser_sheet<double>(setup);
+      LaserSheet<double> const sheet = laser_sheet(setup);
       for (int const pulse : {0, 1}) {
         for (double const along : {-0.02, 0.0, 0.05}) {
           EXPECT_NEAR(energy_through(sheet, pulse, along), 80e-3, 1e-9 * 80e-3) << profile << " " << divergence;
@@ -65,7 +65,7 @@ TEST(LaserSheet, IntegratesToThePulseEnergy) {
 // In the middle of a Gaussian sheet E/(h w sqrt(pi/8)): 1994.71 J/m^2 for 50 mJ in 40 mm by 1 mm; e^-2 of it half a
 // width off; nothing beyond the height.
 TEST(LaserSheet, GaussianHasItsPeakAndWidth) {
-  LaserSheet<double> const sheet = laser_sheet<double>(read_laser(""));
+  LaserSheet<double> const sheet = laser_sheet(read_laser(""));
   EXPECT_NEAR(sheet.fluence({0, 0, 0}, 0), 1994.71, 0.005);
   EXPECT_NEAR(sheet.fluence({0, 0, 0}, 0), 50e-3 / (40e-3 * 1e-3 * std::sqrt(pi / 8)), 1e-9);
   EXPECT_NEAR(sheet.fluence({0.01, 0.003, 0.5e-3}, 0) / sheet.fluence({0, 0, 0}, 0), std::exp(-2.0), 1e-12);
@@ -77,7 +77,7 @@ TEST(LaserSheet, GaussianHasItsPeakAndWidth) {
 }
 
 TEST(LaserSheet, TopHatHasEdges) {
-  LaserSheet<double> const sheet = laser_sheet<double>(read_laser("profile = \"top_hat\"\nthickness_mm = 2"));
+  LaserSheet<double> const sheet = laser_sheet(read_laser("profile = \"top_hat\"\nthickness_mm = 2"));
   double const inside = 50e-3 / (40e-3 * 2e-3);
   EXPECT_DOUBLE_EQ(sheet.fluence({0, 0, 0.99e-3}, 0), inside);
   EXPECT_DOUBLE_EQ(sheet.fluence({0.3, 0.01, -0.99e-3}, 0), inside);
@@ -88,7 +88,7 @@ TEST(LaserSheet, TopHatHasEdges) {
 // Either pulse has its own offset along the normal and its own turn about the laser's direction, right-handed: a tilted
 // sheet is lit at (y cos t, y sin t).
 TEST(LaserSheet, PulsesHaveTheirOwnPlaceAndTilt) {
-  LaserSheet<double> const sheet = laser_sheet<double>(read_laser("offset_mm = [0.4, -0.1]\ntilt_deg = [0.0, 5.0]"));
+  LaserSheet<double> const sheet = laser_sheet(read_laser("offset_mm = [0.4, -0.1]\ntilt_deg = [0.0, 5.0]"));
   double const peak = 1994.711402007;
   EXPECT_NEAR(sheet.fluence({0, 0.01, 0.4e-3}, 0), peak, 1e-3);
   double const tilt = 5 * unit::degree;
@@ -99,7 +99,7 @@ TEST(LaserSheet, PulsesHaveTheirOwnPlaceAndTilt) {
 // A sheet that fans out by 20 degrees has grown by 2 tan(10 deg) of its way, and thinned as much on the axis; the light
 // goes along the lines from the fan's origin, and its field stays square to it.
 TEST(LaserSheet, FansOut) {
-  LaserSheet<double> const sheet = laser_sheet<double>(read_laser("divergence_deg = 20\npolarization_deg = 30"));
+  LaserSheet<double> const sheet = laser_sheet(read_laser("divergence_deg = 20\npolarization_deg = 30"));
   double const half = std::tan(10 * unit::degree), grown = 40e-3 + 2 * half * 0.1;
   EXPECT_NEAR(sheet.fluence({0.1, 0, 0}, 0) / sheet.fluence({0, 0, 0}, 0), 40e-3 / grown, 1e-12);
   EXPECT_GT(sheet.fluence({0.1, 0.499 * grown, 0}, 0), 0);
@@ -118,19 +118,18 @@ TEST(LaserSheet, FansOut) {
 
 // Light along X in a sheet across Z: its field is along Y at 0 degrees and along Z at 90.
 TEST(LaserSheet, PolarisationTurnsOutOfTheSheet) {
-  EXPECT_LT(length(laser_sheet<double>(read_laser("")).wave({0, 0, 0}, 0).field - Vec3d{0, 1, 0}), 1e-15);
-  EXPECT_LT(length(laser_sheet<double>(read_laser("polarization_deg = 90")).wave({0, 0, 0}, 1).field - Vec3d{0, 0, 1}),
-            1e-15);
+  EXPECT_LT(length(laser_sheet(read_laser("")).wave({0, 0, 0}, 0).field - Vec3d{0, 1, 0}), 1e-15);
+  EXPECT_LT(length(laser_sheet(read_laser("polarization_deg = 90")).wave({0, 0, 0}, 1).field - Vec3d{0, 0, 1}), 1e-15);
 }
 
 // 50 mJ in a sheet of 40 mm by 1 mm at 532 nm, a droplet of 1 um in its middle, seen square through a lens of 105 mm,
 // f/8, at 0.75 m: 45,443 photons, 27,267 electrons at a quantum efficiency of 0.6. Over the lens S1 varies: 1 %.
 TEST(LaserSheet, DropletSendsItsPhotonsThroughALens) {
-  LaserSheet<double> const sheet = laser_sheet<double>(read_laser(""));
+  LaserSheet<double> const sheet = laser_sheet(read_laser(""));
   MieSetting setting;
   setting.wave = sheet.wave({0, 0, 0}, 0);
   MieScattering const scattering({1e-6}, setting, {1.5, 1.64});
-  auto const view = scattering.view<double>();
+  auto const view = scattering.view();
   double const distance = 0.75, radius = 105e-3 / 8 / 2, half_angle = std::atan(radius / distance);
   GaussLegendre const rule(20);
   int const turns = 40;

@@ -57,7 +57,7 @@ TEST(MieScattering, SeesTheFieldAcrossByS1AndInThePlaneByS2) {
         (std::norm(s1) * std::pow(std::cos(polarization), 2) + std::norm(s2) * std::pow(std::sin(polarization), 2)) /
         (k * k);
     // error() is over the mean, which at 90 degrees is of the size of the value
-    EXPECT_NEAR(scattering.view<double>().cross_section(0, {0, 0, 1}) / expected, 1, 5 * scattering.error());
+    EXPECT_NEAR(scattering.view().cross_section(0, {0, 0, 1}) / expected, 1, 5 * scattering.error());
   }
 }
 
@@ -66,7 +66,7 @@ TEST(MieScattering, SeesTheFieldAcrossByS1AndInThePlaneByS2) {
 TEST(MieScattering, TurnsWithTheLight) {
   MieSetting const setting = droplets();
   MieScattering const scattering({1.7 * micrometre}, setting, {0, pi});
-  auto const view = scattering.view<double>();
+  auto const view = scattering.view();
   Pose<double> const turned = Pose<double>{}.turned({0.3, -1.1, 2.0});
   LightWave<double> const other{turned.direction_outwards(setting.wave.propagation),
                                 turned.direction_outwards(setting.wave.field)};
@@ -97,7 +97,7 @@ TEST(MieScattering, TableErrsNoMoreThanItSays) {
     AngleInterval const angles{1.3, 1.9};
     MieScattering const scattering({size * micrometre}, droplets(), angles);
     MieCoefficients const sphere(size * pi / 0.532, 1.45);
-    auto const view = scattering.view<double>();
+    auto const view = scattering.view();
     double worst = 0, mean = 0;
     int const tried = 1000;
     for (std::uint64_t i = 0; i < tried; ++i) {
@@ -121,8 +121,8 @@ TEST(MieScattering, EveryDistinctDiameterIsExact) {
   std::vector<double> diameters = many_diameters(500);
   diameters.push_back(diameters[7]);
   MieScattering const scattering(diameters, droplets(), {1.4, 1.7});
-  EXPECT_EQ(scattering.distinct_diameters(), 500u);
-  auto const view = scattering.view<double>();
+  EXPECT_EQ(scattering.tables().size(), 500u);
+  auto const view = scattering.view();
   double const k = wave_number(droplets());
   for (std::size_t i = 0; i < diameters.size(); i += 20) {
     MieCoefficients const sphere(diameters[i] * k / 2, 1.45);
@@ -138,7 +138,7 @@ TEST(MieScattering, EveryDistinctDiameterIsExact) {
 TEST(MieScattering, SmallParticlesShineAsTheSixthPower) {
   double const d = 0.8e-3 * micrometre;  // x = 0.005
   MieScattering const scattering({d, 2 * d, 0.5 * d}, droplets(), {1.4, 1.7});
-  auto const view = scattering.view<double>();
+  auto const view = scattering.view();
   double const one = view.cross_section(0, {0, 0, 1});
   EXPECT_NEAR(view.cross_section(1, {0, 0, 1}) / one, 64, 64 * 4e-4);
   EXPECT_NEAR(one / view.cross_section(2, {0, 0, 1}), 64, 64 * 4e-4);
@@ -153,7 +153,7 @@ TEST(MieScattering, LargeParticlesShineAsTheSquare) {
     std::vector<double> diameters;
     for (int i = 0; i < 30; ++i) diameters.push_back(diameter * (0.95 + 0.1 * i / 29));
     MieScattering const scattering(diameters, droplets(), {0.78, 1.02});
-    auto const view = scattering.view<double>();
+    auto const view = scattering.view();
     double sum = 0;
     for (std::size_t i = 0; i < diameters.size(); ++i) {
       for (int j = 0; j < 200; ++j) {
@@ -171,38 +171,21 @@ TEST(MieScattering, LargeParticlesShineAsTheSquare) {
 TEST(MieScattering, SurroundingsTakeTheirPart) {
   MieSetting setting = droplets();
   setting.surroundings = 1.45;
-  EXPECT_EQ(MieScattering({micrometre}, setting, {1.4, 1.7}).view<double>().cross_section(0, {0, 0, 1}), 0);
+  EXPECT_EQ(MieScattering({micrometre}, setting, {1.4, 1.7}).view().cross_section(0, {0, 0, 1}), 0);
   setting.surroundings = 1.33;
   MieSetting thin = droplets();
   thin.index = 1.45 / 1.33;
   thin.wavelength = setting.wavelength / 1.33;
-  EXPECT_NEAR(MieScattering({micrometre}, setting, {1.4, 1.7}).view<double>().cross_section(0, {0, 0, 1}) /
-                  MieScattering({micrometre}, thin, {1.4, 1.7}).view<double>().cross_section(0, {0, 0, 1}),
+  EXPECT_NEAR(MieScattering({micrometre}, setting, {1.4, 1.7}).view().cross_section(0, {0, 0, 1}) /
+                  MieScattering({micrometre}, thin, {1.4, 1.7}).view().cross_section(0, {0, 0, 1}),
               1, 1e-6);  // coefficients are float
 }
 
 TEST(MieScattering, NoParticleAndParticlesOfNoSizeSendNothing) {
-  EXPECT_EQ(MieScattering({}, droplets(), {1.4, 1.7}).distinct_diameters(), 0u);
+  EXPECT_EQ(MieScattering({}, droplets(), {1.4, 1.7}).tables().size(), 0u);
   MieScattering const scattering({0.0, micrometre}, droplets(), {1.4, 1.7});
-  EXPECT_EQ(scattering.view<double>().cross_section(0, {0, 0, 1}), 0);
-  EXPECT_GT(scattering.view<double>().cross_section(1, {0, 0, 1}), 0);
-}
-
-// In single precision the angle is good to 2^-23, of which a ripple of x = 60 makes 1e-5.
-TEST(MieScattering, SinglePrecisionSeesTheSame) {
-  MieScattering const scattering({micrometre, 10 * micrometre}, droplets(), {0.5, 2.5});
-  auto const exact = scattering.view<double>();
-  auto const single = scattering.view<float>();
-  for (std::uint64_t particle = 0; particle < 2; ++particle) {
-    double sum = 0, worst = 0;
-    for (int i = 0; i <= 100; ++i) {
-      Vec3d const d = towards(0.51 + 0.0197 * i, 0.07 * i);
-      double const value = exact.cross_section(particle, d);
-      sum += value / 101;
-      worst = std::max(worst, std::abs(single.cross_section(particle, {float(d.x), float(d.y), float(d.z)}) - value));
-    }
-    EXPECT_LT(worst, 1e-4 * sum);
-  }
+  EXPECT_EQ(scattering.view().cross_section(0, {0, 0, 1}), 0);
+  EXPECT_GT(scattering.view().cross_section(1, {0, 0, 1}), 0);
 }
 
 // The same bits on any number of threads.

@@ -25,7 +25,7 @@ Setup deep_sheet() { return piv_setup(30 * mm, 1 * mm); }
 Scene scene_with_particles(Setup const& setup, std::vector<Vec3d> const& first, std::vector<Vec3d> const& second,
                            std::uint64_t rays) {
   Scene scene = build_scene(setup);
-  LaserSheet<double> const sheet = laser_sheet<double>(setup.piv->laser);
+  LaserSheet<double> const sheet = laser_sheet(setup.piv->laser);
   scene.particles.resize(first.size());
   for (std::size_t i = 0; i < first.size(); ++i) {
     scene.particles.place[0][i] = first[i];

@@ -32,7 +32,7 @@ struct Place {
 /// A scene with these particles, which move by (0.05, 0.02, 0.1) mm, planned; the brightest of 1 um has light of 1.
 Scene scene_with(Setup const& setup, std::vector<Place> const& places) {
   Scene scene = build_scene(setup);
-  LaserSheet<double> const sheet = laser_sheet<double>(setup.piv->laser);
+  LaserSheet<double> const sheet = laser_sheet(setup.piv->laser);
   scene.particles.resize(places.size());
   for (std::size_t i = 0; i < places.size(); ++i) {
     scene.particles.place[0][i] = places[i].at;
