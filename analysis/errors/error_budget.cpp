@@ -212,23 +212,4 @@ double peak_locking(std::span<Vec2d const> truth_px, std::span<Vec2d const> erro
   return filled == 0 ? not_a_number : std::sqrt(square / filled);
 }
 
-BudgetStage mean_estimator_stage(std::span<Vec2d const> window_truth_px,
-                                 std::span<std::vector<Vec2d> const> pattern_window_truth_px,
-                                 std::span<std::vector<Vec2d> const> pattern_noise_free_px) {
-  GLADSTONE_EXPECTS(pattern_window_truth_px.size() == pattern_noise_free_px.size());
-  BudgetStage stage{"estimator", std::vector<Vec2d>(window_truth_px.begin(), window_truth_px.end())};
-  for (std::size_t i = 0; i < window_truth_px.size(); ++i) {
-    Vec2d sum{};
-    int count = 0;
-    for (std::size_t k = 0; k < pattern_noise_free_px.size(); ++k) {
-      Vec2d const error = pattern_noise_free_px[k][i] - pattern_window_truth_px[k][i];
-      if (!is_finite(error)) continue;
-      sum += error;
-      ++count;
-    }
-    stage.displacement_px[i] += sum / static_cast<double>(count);  // no pattern: 0/0 is NaN, which excludes the vector
-  }
-  return stage;
-}
-
 }  // namespace gladstone

@@ -149,10 +149,4 @@ std::vector<std::pair<std::string_view, double>> error_measures(std::span<Vec2d 
   return values;
 }
 
-std::vector<std::string_view> error_measure_names() {
-  std::vector<std::string_view> names;
-  for (Measure const& measure : measures) names.push_back(measure.name);
-  return names;
-}
-
 }  // namespace gladstone

@@ -54,9 +54,6 @@ std::vector<std::pair<std::string_view, double>> error_measures(std::span<Vec2d 
                                                                 std::span<Vec2d const> truth, VectorMask const& mask,
                                                                 std::size_t total = 0);
 
-/// Returns the names of the measures in the same order: the columns of a study.
-std::vector<std::string_view> error_measure_names();
-
 /// Returns a quantile, interpolated linearly between order statistics; fraction 0 is the smallest value, 1 the largest.
 /// NaN for no values.
 double quantile(std::vector<double> values, double fraction);

@@ -152,18 +152,5 @@ TEST(PeakLocking, OfAConstantErrorIsThatError) {
   EXPECT_NEAR(peak_locking(truth, error, {}), 0.02, 1e-15);
 }
 
-// Three patterns with errors 1, 2, 3: the mean estimator error is 2 on top of this pattern's window truth.
-TEST(MeanEstimatorStage, AddsTheMeanErrorOfThePatterns) {
-  std::vector<std::vector<Vec2d>> truth, measured;
-  for (int k = 1; k <= 3; ++k) {
-    truth.push_back({{10.0 * k, 0.0}});
-    measured.push_back({{10.0 * k + k, -1.0 * k}});
-  }
-  BudgetStage const stage = mean_estimator_stage(truth[0], truth, measured);
-  EXPECT_EQ(stage.name, "estimator");
-  EXPECT_DOUBLE_EQ(stage.displacement_px[0].x, 12.0);
-  EXPECT_DOUBLE_EQ(stage.displacement_px[0].y, -2.0);
-}
-
 }  // namespace
 }  // namespace gladstone

@@ -77,10 +77,10 @@ TEST(ErrorMeasures, HaveTheNamesOfErrorsJsonInTheirOrder) {
   std::vector<std::string_view> const names{"count",       "valid_fraction", "bias_u_px", "bias_v_px",
                                             "random_u_px", "random_v_px",    "rms_px",    "rms_without_gross_px",
                                             "p95_px",      "gross_fraction"};
-  EXPECT_EQ(error_measure_names(), names);
   std::vector<Vec2d> const truth(2), measured{{0.25, 0.0}, {0.0, 0.5}};
   auto const values = error_measures(measured, truth, {1, 1}, 4);
   ASSERT_EQ(values.size(), names.size());
+  for (std::size_t i = 0; i < names.size(); ++i) EXPECT_EQ(values[i].first, names[i]);
   EXPECT_EQ(values[0].second, 2.0);
   EXPECT_EQ(values[1].second, 0.5);
   EXPECT_EQ(values[6].second, summarize_errors(measured, truth, {}).rms_px);
