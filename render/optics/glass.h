@@ -60,8 +60,6 @@ struct Glass {
   /// 0 if the catalogue has no data.
   double absorption(double wavelength) const;
   double nd() const { return index(spectral_line::d); }
-  /// Returns the Abbe number (nd - 1) / (nF - nC).
-  double vd() const;
 
   /// Returns a glass with n = A + B / lambda^2 for given nd and Vd (Cauchy's formula). Accurate to 1e-3 in the visible
   /// range.
