@@ -13,11 +13,19 @@ namespace gladstone {
 namespace {
 
 using oracle::FishEye;
-using oracle::GlassBox;
 using oracle::ParabolicRod;
 
 constexpr double K = 2.26e-4, rho_0 = 1.225;  // Table 1
 constexpr double n_0 = 1 + K * rho_0;
+
+/// Uniform refractive index within a box.
+struct GlassBox {
+  double n = 1.5;
+  Bounds<double> box{{-1, -1, -1}, {1, 1, 1}};
+
+  Bounds<double> bounds() const { return box; }
+  IndexSample<double> sample(Vec3d) const { return {n - 1, {}}; }
+};
 
 TracingOptions<double> options(double step, Faces faces = Faces::matched, Integrator integrator = Integrator::rk4,
                                double ambient_refractivity = K * rho_0) {
