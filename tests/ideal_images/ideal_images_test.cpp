@@ -92,6 +92,8 @@ TEST(IdealImages, EqualThoseOfRaysInFocus) {
   scene.rays_per_dot = 64;
   Rendering const rays =
       RaysRenderer().render_particles(scene, scene.particles, ParticleLight::scattered, RenderImages::yes);
+  EXPECT_EQ(formula.table, TableState::by_formula);
+  EXPECT_EQ(rays.table, TableState::by_rays);
   auto const brightest = *std::max_element(rays.light.reference.begin(), rays.light.reference.end());
   Detector const detector(scene.setup.camera, Detector::auto_exposure(scene.setup.camera, brightest));
   double const levels = detector.pixel().electrons * detector.pixel().levels_per_electron;
