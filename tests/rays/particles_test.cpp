@@ -206,6 +206,9 @@ TEST(Particles, SeemToMoveWhereTheMediumChanges) {
     EXPECT_GT(seen.truth.displacement_error_px[i].x, 0);
     EXPECT_LT(seen.truth.displacement_error_px[i].x, 1e-3);
   }
+  Rendering const unlit =
+      render_in_two_media(renderer, scene, scene.particles, ParticleLight::scattered, RenderImages::no);
+  EXPECT_TRUE(std::isnan(unlit.truth.displacement_error_px[0].x)) << "not estimated without images";
   Scene second = at_second_pulse(scene);
   Rendering const alone = render(second, ParticleLight::scattered, RenderImages::yes);
   EXPECT_TRUE(std::equal(seen.light.flow.begin(), seen.light.flow.end(), alone.light.flow.begin()));
