@@ -178,14 +178,13 @@ ErrorBudget error_budget(std::span<BudgetStage const> stages, VectorMask const& 
   if (at[window] && at[estimate]) {
     Differences truth;
     for (std::size_t const i : counted) truth.push_back((*at[window])[i]);
-    budget.peak_locking_px = peak_locking(truth, difference(estimate, window), {});
+    budget.peak_locking_px = peak_locking(truth, difference(estimate, window));
   }
   return budget;
 }
 
-double peak_locking(std::span<Vec2d const> truth_px, std::span<Vec2d const> error_px, VectorMask const& mask) {
+double peak_locking(std::span<Vec2d const> truth_px, std::span<Vec2d const> error_px) {
   GLADSTONE_EXPECTS(truth_px.size() == error_px.size());
-  GLADSTONE_EXPECTS(mask.empty() || mask.size() == truth_px.size());
   constexpr int bins = 20;
   std::array<double, bins> sum{};
   std::array<std::size_t, bins> count{};
@@ -196,7 +195,6 @@ double peak_locking(std::span<Vec2d const> truth_px, std::span<Vec2d const> erro
     ++count[bin];
   };
   for (std::size_t i = 0; i < truth_px.size(); ++i) {
-    if (!mask.empty() && mask[i] == 0) continue;
     if (!is_finite(truth_px[i]) || !is_finite(error_px[i])) continue;
     add(truth_px[i].x, error_px[i].x);
     add(truth_px[i].y, error_px[i].y);

@@ -82,6 +82,6 @@ ErrorBudget error_budget(std::span<BudgetStage const> stages, VectorMask const& 
 
 /// Returns the magnitude of peak locking: the rms, over 20 bins of the fractional part of the true displacement (0.05
 /// px each, both components pooled, empty bins skipped), of the mean error in the bin [px]. NaN if no vector counts.
-double peak_locking(std::span<Vec2d const> truth_px, std::span<Vec2d const> error_px, VectorMask const& mask);
+double peak_locking(std::span<Vec2d const> truth_px, std::span<Vec2d const> error_px);
 
 }  // namespace gladstone

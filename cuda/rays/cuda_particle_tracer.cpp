@@ -53,7 +53,7 @@ class BatchPass {
     constexpr bool bends = !std::is_same_v<Medium, NoMedium<double>>;
     std::size_t const count = batch_.count();
     DotTruth* const ambient_there = bends ? batch_.ambient().data() : nullptr;
-    trace_listed(AimState::filled, 1);
+    trace_listed(1);
     if (counted(LadderView::most_steps) > 0) aim_wide();
     while (true) {
       batch_.counts().zero();
@@ -95,10 +95,11 @@ class BatchPass {
                    batch_.listed(launches_.size()));
   }
   /// Traces the listed aims. @param sign  -1 removes the light and the ray counts of an earlier call
-  void trace_listed(AimState state, double sign) {
+  void trace_listed(double sign) {
     batch_.counts().download(counts_, LadderView::most_steps + 1);
     for (std::size_t step = 0; step < launches_.size(); ++step) {
-      trace(state, step, batch_.listed(launches_.size()) + step * frame_count * batch_.count(), counted(step), sign);
+      trace(AimState::filled, step, batch_.listed(launches_.size()) + step * frame_count * batch_.count(),
+            counted(step), sign);
     }
   }
   /// Traces `count` aims of one ladder step. @param listed  indices of the aims, in device memory
@@ -121,10 +122,10 @@ class BatchPass {
     std::size_t const count = batch_.count();
     batch_.counts().zero();
     list(batch_.steps().step);
-    trace_listed(AimState::filled, -1);
+    trace_listed(-1);
     batch_.counts().zero();
     list(batch_.steps().next);
-    trace_listed(AimState::filled, 1);
+    trace_listed(1);
     if (wide_.empty()) return;
     std::vector<int> steps(3 * count);
     batch_.all_steps().download(steps.data(), steps.size());
@@ -163,7 +164,7 @@ class BatchPass {
     batch_.all_steps().upload(steps.data());
     batch_.counts().zero();
     list(batch_.steps().step);
-    trace_listed(AimState::filled, 1);
+    trace_listed(1);
     trace_wider(wide_, steps.data());
   }
 
