@@ -119,10 +119,6 @@ VectorMask common_mask(DisplacementField const& measured, std::span<std::span<Ve
   return mask;
 }
 
-VectorMask common_mask(DisplacementField const& measured, std::initializer_list<std::span<Vec2d const>> references) {
-  return common_mask(measured, std::span(references.begin(), references.size()));
-}
-
 ErrorSummary summarize_errors(std::span<Vec2d const> measured, std::span<Vec2d const> truth, VectorMask const& mask,
                               std::size_t total) {
   Errors const errors = collect(measured, truth, mask, total);

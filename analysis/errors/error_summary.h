@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <initializer_list>
 #include <span>
 #include <string_view>
 #include <utility>
@@ -18,8 +17,6 @@ using VectorMask = std::vector<std::uint8_t>;
 
 /// Selects the vectors with status valid or replaced for which the measurement and every reference are finite.
 /// @param references  displacements at the same vectors, [measured.size()] each; empty ones are ignored
-VectorMask common_mask(DisplacementField const& measured,
-                       std::initializer_list<std::span<Vec2d const>> references = {});
 VectorMask common_mask(DisplacementField const& measured, std::span<std::span<Vec2d const> const> references);
 
 /// Errors larger than this are gross errors: the correlation found a wrong peak [px].

@@ -72,7 +72,6 @@ class LaunchOnDevice {
     widest_window_px_ = widest_window_px(launch_, medium);
   }
 
-  RaysLaunch const& host() const { return host_; }
   double light_per_weight() const { return host_.light_per_weight(pattern_.area()); }
   std::size_t sums_a_source() const { return launch_.shares() * static_cast<std::size_t>(launch_.scramblings()); }
   int scramblings() const { return launch_.scramblings(); }

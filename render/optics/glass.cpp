@@ -129,15 +129,6 @@ Glass Glass::from_nd_vd(double nd, double vd) {
   return glass;
 }
 
-Glass Glass::constant(double index) {
-  Glass glass;
-  glass.name = fmt::format("index {:.6f}", index);
-  glass.coefficients = {index * index};
-  glass.shortest = 0;
-  glass.longest = 1;
-  return glass;
-}
-
 Glass Glass::from_samples(std::string name, std::vector<Sample> samples) {
   GLADSTONE_EXPECTS(!samples.empty());
   std::sort(samples.begin(), samples.end(),

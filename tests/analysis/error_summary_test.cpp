@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <span>
 #include <vector>
 
 namespace gladstone {
@@ -94,7 +95,8 @@ TEST(CommonMask, NeedsAValidStatusAndFiniteNumbersEverywhere) {
                   VectorStatus::invalid, VectorStatus::valid,    VectorStatus::valid};
   std::vector<Vec2d> reference(6);
   reference[5] = {0.0, nan};
-  EXPECT_EQ(common_mask(field, {reference, {}}), (VectorMask{1, 1, 0, 0, 0, 0}));
+  std::vector<std::span<Vec2d const>> const references{reference, {}};
+  EXPECT_EQ(common_mask(field, references), (VectorMask{1, 1, 0, 0, 0, 0}));
 }
 
 }  // namespace
