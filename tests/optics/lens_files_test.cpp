@@ -794,7 +794,7 @@ TEST(LensFiles, EveryLineOfNumbersOfACatalogueMayBeWrapped) {
   glasses.add(
       "NM X 1 0 1.5 60\nED 7 0\n0 0\nCD 2\n0.25 0\nTD 0\n0 0\nOD 1\n2\nLD 0.3\n2\nIT 0.4 0.9\n10\nIT 0.5\n0.99 10\n",
       "OWN", "own.agf");
-  Glass const& glass = glasses.find("X", 1e-6, "");
+  Glass const& glass = *glasses.match("X", 1e-6, "").glass;
   EXPECT_NEAR(glass.index(1e-6), 1.5, 1e-15) << "n^2 = 2 + 0.25 lambda^2 at 1 um";
   EXPECT_NEAR(glass.shortest, 0.3e-6, 1e-20);
   EXPECT_NEAR(glass.longest, 2e-6, 1e-20);
