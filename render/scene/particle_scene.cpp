@@ -222,8 +222,7 @@ void add_particles(Scene& scene) {
                     "particles.volume_mm and center_mm, or seed more particles");
   }
   if (piv.particles.scattering == ParticleScattering::mie) {
-    MieSetting const setting{piv.particles.index, piv.laser.wavelength, scene.setup.ambient_index(),
-                             sheet.wave(piv.laser.centre, 0)};
+    MieSetting const setting{piv.particles.index, piv.laser.wavelength, scene.setup.ambient_index()};
     scene.mie = std::make_shared<MieScattering const>(particles.diameter, setting, seen_angles(scene));
   }
   double const brightest = brightest_photons(scene, scene.particles, ParticleLight::scattered);

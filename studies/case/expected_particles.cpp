@@ -65,7 +65,7 @@ std::vector<double> photons_of(Scene& scene, Vec3d place, std::vector<double> co
     double const cosine = dot(normalized(scene.camera.aim_plane.origin - place), wave.propagation);
     double const angle = std::acos(std::clamp(cosine, -1.0, 1.0));
     scene.mie = std::make_shared<MieScattering const>(
-        diameters, MieSetting{piv.particles.index, piv.laser.wavelength, scene.setup.ambient_index(), wave},
+        diameters, MieSetting{piv.particles.index, piv.laser.wavelength, scene.setup.ambient_index()},
         AngleInterval{std::max(0.0, angle - angle_margin), std::min(pi, angle + angle_margin)});
   }
   std::vector<double> photons(diameters.size());

@@ -126,9 +126,8 @@ TEST(LaserSheet, PolarisationTurnsOutOfTheSheet) {
 // f/8, at 0.75 m: 45,443 photons, 27,267 electrons at a quantum efficiency of 0.6. Over the lens S1 varies: 1 %.
 TEST(LaserSheet, DropletSendsItsPhotonsThroughALens) {
   LaserSheet<double> const sheet = laser_sheet(read_laser(""));
-  MieSetting setting;
-  setting.wave = sheet.wave({0, 0, 0}, 0);
-  MieScattering const scattering({1e-6}, setting, {1.5, 1.64});
+  MieScattering const scattering({1e-6}, {}, {1.5, 1.64});
+  LightWave<double> const wave = sheet.wave({0, 0, 0}, 0);
   auto const view = scattering.view();
   double const distance = 0.75, radius = 105e-3 / 8 / 2, half_angle = std::atan(radius / distance);
   GaussLegendre const rule(20);
@@ -141,7 +140,7 @@ TEST(LaserSheet, DropletSendsItsPhotonsThroughALens) {
     for (int turn = 0; turn < turns; ++turn) {
       double const phi = 2 * pi * turn / turns;
       photons += share * sheet.photons({0, 0, 0}, 0) *
-                 view.cross_section(0, {sine * std::cos(phi), sine * std::sin(phi), cosine});
+                 view.cross_section(0, {sine * std::cos(phi), sine * std::sin(phi), cosine}, wave);
       solid_angle += share;
     }
   }

@@ -22,8 +22,11 @@ using testing::ThrowsMessage;
 
 constexpr double micrometre = unit::micrometre;
 
-/// Oil in air, green light along X, its field along Y.
+/// Oil in air, green light.
 MieSetting droplets() { return {}; }
+
+/// Light along X, its field along Y.
+constexpr LightWave<double> along_x;
 
 /// The unit vector at an angle from X, turned about X by phi from Y towards Z.
 Vec3d towards(double angle, double phi) {
@@ -46,18 +49,17 @@ std::vector<double> many_diameters(std::size_t count) {
 // Light along X seen along Z (Bohren & Huffman sec. 3.3): with the field along Y, across the plane of scattering,
 // the sphere sends |S1|^2/k^2; with the field along Z, in it, |S2|^2/k^2; in between as cos^2 and sin^2.
 TEST(MieScattering, SeesTheFieldAcrossByS1AndInThePlaneByS2) {
-  MieSetting setting = droplets();
+  MieScattering const scattering({micrometre}, droplets(), {1.2, 2.0});
   MieCoefficients const sphere(pi / 0.532, 1.45);
-  double const k = wave_number(setting);
+  double const k = wave_number(droplets());
   auto const [s1, s2] = sphere.amplitudes(pi / 2);
   for (double const polarization : {0.0, 0.3, pi / 4, pi / 2}) {
-    setting.wave.field = {0, std::cos(polarization), std::sin(polarization)};
-    MieScattering const scattering({micrometre}, setting, {1.2, 2.0});
+    LightWave<double> const wave{{1, 0, 0}, {0, std::cos(polarization), std::sin(polarization)}};
     double const expected =
         (std::norm(s1) * std::pow(std::cos(polarization), 2) + std::norm(s2) * std::pow(std::sin(polarization), 2)) /
         (k * k);
     // error() is over the mean, which at 90 degrees is of the size of the value
-    EXPECT_NEAR(scattering.view().cross_section(0, {0, 0, 1}) / expected, 1, 5 * scattering.error());
+    EXPECT_NEAR(scattering.view().cross_section(0, {0, 0, 1}, wave) / expected, 1, 5 * scattering.error());
   }
 }
 
@@ -68,9 +70,9 @@ TEST(MieScattering, TurnsWithTheLight) {
   MieScattering const scattering({1.7 * micrometre}, setting, {0, pi});
   auto const view = scattering.view();
   Pose<double> const turned = Pose<double>{}.turned({0.3, -1.1, 2.0});
-  LightWave<double> const other{turned.direction_outwards(setting.wave.propagation),
-                                turned.direction_outwards(setting.wave.field)};
-  LightWave<double> const crossed{setting.wave.propagation, {0, 0, 1}};
+  LightWave<double> const other{turned.direction_outwards(along_x.propagation),
+                                turned.direction_outwards(along_x.field)};
+  LightWave<double> const crossed{along_x.propagation, {0, 0, 1}};
   double const k = wave_number(setting);
   MieCoefficients const sphere(1.7 * pi / 0.532, 1.45);
   // the table's error, as a share of the mean cross-section
@@ -78,11 +80,11 @@ TEST(MieScattering, TurnsWithTheLight) {
   for (double const angle : {0.0, 0.2, 1.0, 1.9, 3.0, pi}) {
     for (double const phi : {0.0, 0.5, 2.0, 4.0}) {
       Vec3d const direction = towards(angle, phi);
-      double const seen = view.cross_section(0, direction);
+      double const seen = view.cross_section(0, direction, along_x);
       // forward and backward |S1| and |S2| are equal but for the rounding of their float coefficients
       double const rounding = 2e-7 * seen + 1e-9 * mean;
       EXPECT_NEAR(view.cross_section(0, turned.direction_outwards(direction), other), seen, rounding);
-      EXPECT_NEAR(view.cross_section(0, towards(angle, -phi)), seen, 1e-12 * mean);
+      EXPECT_NEAR(view.cross_section(0, towards(angle, -phi), along_x), seen, 1e-12 * mean);
       EXPECT_NEAR((seen + view.cross_section(0, direction, crossed)) / 2, sphere.amplitudes(angle).s11() / (k * k),
                   2 * scattering.error() * mean);
     }
@@ -129,9 +131,9 @@ TEST(MieScattering, EveryDistinctDiameterIsExact) {
     double mean = 0;
     for (double const angle : {1.4, 1.5, 1.6, 1.7}) mean += sphere.amplitudes(angle).s11() / 4;
     double const exact = std::norm(sphere.amplitudes(1.53).s1) / (k * k);
-    EXPECT_NEAR(view.cross_section(i, towards(1.53, pi / 2)), exact, 2 * scattering.error() * mean / (k * k));
+    EXPECT_NEAR(view.cross_section(i, towards(1.53, pi / 2), along_x), exact, 2 * scattering.error() * mean / (k * k));
   }
-  EXPECT_EQ(view.cross_section(7, towards(1.5, 1)), view.cross_section(500, towards(1.5, 1)));
+  EXPECT_EQ(view.cross_section(7, towards(1.5, 1), along_x), view.cross_section(500, towards(1.5, 1), along_x));
 }
 
 // Small spheres send light as d^6 (Rayleigh), up to x^2, 1e-4 here.
@@ -139,9 +141,9 @@ TEST(MieScattering, SmallParticlesShineAsTheSixthPower) {
   double const d = 0.8e-3 * micrometre;  // x = 0.005
   MieScattering const scattering({d, 2 * d, 0.5 * d}, droplets(), {1.4, 1.7});
   auto const view = scattering.view();
-  double const one = view.cross_section(0, {0, 0, 1});
-  EXPECT_NEAR(view.cross_section(1, {0, 0, 1}) / one, 64, 64 * 4e-4);
-  EXPECT_NEAR(one / view.cross_section(2, {0, 0, 1}), 64, 64 * 4e-4);
+  double const one = view.cross_section(0, {0, 0, 1}, along_x);
+  EXPECT_NEAR(view.cross_section(1, {0, 0, 1}, along_x) / one, 64, 64 * 4e-4);
+  EXPECT_NEAR(one / view.cross_section(2, {0, 0, 1}, along_x), 64, 64 * 4e-4);
 }
 
 // Large ones send it as d^2, averaged over the ripples: over sizes within 10 %, angles from 46 to 57 degrees and both
@@ -158,7 +160,8 @@ TEST(MieScattering, LargeParticlesShineAsTheSquare) {
     for (std::size_t i = 0; i < diameters.size(); ++i) {
       for (int j = 0; j < 200; ++j) {
         double const angle = 0.8 + 0.2 * j / 199;
-        sum += view.cross_section(i, towards(angle, 0)) + view.cross_section(i, towards(angle, pi / 2));
+        sum +=
+            view.cross_section(i, towards(angle, 0), along_x) + view.cross_section(i, towards(angle, pi / 2), along_x);
       }
     }
     return sum;
@@ -171,21 +174,21 @@ TEST(MieScattering, LargeParticlesShineAsTheSquare) {
 TEST(MieScattering, SurroundingsTakeTheirPart) {
   MieSetting setting = droplets();
   setting.surroundings = 1.45;
-  EXPECT_EQ(MieScattering({micrometre}, setting, {1.4, 1.7}).view().cross_section(0, {0, 0, 1}), 0);
+  EXPECT_EQ(MieScattering({micrometre}, setting, {1.4, 1.7}).view().cross_section(0, {0, 0, 1}, along_x), 0);
   setting.surroundings = 1.33;
   MieSetting thin = droplets();
   thin.index = 1.45 / 1.33;
   thin.wavelength = setting.wavelength / 1.33;
-  EXPECT_NEAR(MieScattering({micrometre}, setting, {1.4, 1.7}).view().cross_section(0, {0, 0, 1}) /
-                  MieScattering({micrometre}, thin, {1.4, 1.7}).view().cross_section(0, {0, 0, 1}),
+  EXPECT_NEAR(MieScattering({micrometre}, setting, {1.4, 1.7}).view().cross_section(0, {0, 0, 1}, along_x) /
+                  MieScattering({micrometre}, thin, {1.4, 1.7}).view().cross_section(0, {0, 0, 1}, along_x),
               1, 1e-6);  // coefficients are float
 }
 
 TEST(MieScattering, NoParticleAndParticlesOfNoSizeSendNothing) {
   EXPECT_EQ(MieScattering({}, droplets(), {1.4, 1.7}).tables().size(), 0u);
   MieScattering const scattering({0.0, micrometre}, droplets(), {1.4, 1.7});
-  EXPECT_EQ(scattering.view().cross_section(0, {0, 0, 1}), 0);
-  EXPECT_GT(scattering.view().cross_section(1, {0, 0, 1}), 0);
+  EXPECT_EQ(scattering.view().cross_section(0, {0, 0, 1}, along_x), 0);
+  EXPECT_GT(scattering.view().cross_section(1, {0, 0, 1}, along_x), 0);
 }
 
 // The same bits on any number of threads.
