@@ -312,7 +312,9 @@ TEST_F(FieldVolume, StepsAcrossAreThoseOfTheCoarsestStep) {
       BuiltMedium const built = build_medium(setup);
       Bounds<double> const box = bounds(built);
       EXPECT_NEAR(steps_across(setup) * built.coarsest_step / (box.high.z - box.low.z), 1, 1e-12);
-      if (extrude && interpolation == FieldInterpolation::cubic_bspline) EXPECT_DOUBLE_EQ(steps_across(setup), 4);
+      if (extrude && interpolation == FieldInterpolation::cubic_bspline) {
+        EXPECT_DOUBLE_EQ(steps_across(setup), 4);
+      }
     }
   }
 }
