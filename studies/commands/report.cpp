@@ -1,5 +1,7 @@
 #include "studies/report/report.h"
 
+#include <spdlog/spdlog.h>
+
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -26,7 +28,7 @@ CommandBody attach_report(CLI::App& app, GlobalOptions const& options) {
   app.add_option("--repeats", arguments->report.repeats,
                  "Of a measured CASE: vectors of the same field measured again, for an evaluation of type A");
   app.add_option("--conventions", arguments->report.conventions,
-                 "Of a measured CASE: the axes of foreign vectors, as for gladstone compare");
+                 "Of a CASE: how its vectors are to be read, as for gladstone compare");
   app.add_option("--figures", arguments->report.figures, "Folder for the figures as files of their own");
   app.add_option("--figure-format", arguments->report.figure_format, "png, svg or pdf")
       ->check(one_of({"png", "svg", "pdf"}))
@@ -40,10 +42,18 @@ CommandBody attach_report(CLI::App& app, GlobalOptions const& options) {
     if (report.markdown && report.figures.empty()) {
       report.figures = std::filesystem::path(report.output).replace_extension("").string() + "_figures";
     }
-    std::string const findings = write_report(report, options.open_device());
-    print_result(options, json_text(nlohmann::json{{"report", report.output}, {"findings", findings}}),
-                 findings + "wrote " + report.output + '\n');
-    return ok;
+    WrittenReport const written = write_report(report, options.open_device());
+    for (std::string const& file : written.doubtful) {
+      spdlog::warn(
+          "{}: the report rests on vectors that are cut short or likely read otherwise than they were written; "
+          "export them again, or give --conventions",
+          file);
+    }
+    print_result(options,
+                 json_text(nlohmann::json{
+                     {"report", report.output}, {"findings", written.findings}, {"doubtful", written.doubtful}}),
+                 written.findings + "wrote " + report.output + '\n');
+    return written.doubtful.empty() ? ok : check_missed;
   };
 }
 

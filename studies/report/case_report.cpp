@@ -177,6 +177,7 @@ FramePictures frame_pictures(std::string const& folder, std::string const& title
 ReportPage case_report(ReportOptions const& options, Device const& device) {
   CompareOptions compare;
   compare.vectors = options.vectors;
+  if (!options.conventions.empty()) compare.conventions = options.conventions;
   compare.reuse = true;
   CaseView view(compare_case(options.source, device, compare));
   Comparison const& all = view.comparison;
@@ -188,6 +189,10 @@ ReportPage case_report(ReportOptions const& options, Device const& device) {
   page.question = fmt::format("How wrong is this {} measurement, and why? {} vectors, compared with what the rays did.",
                               view.piv ? "PIV" : "BOS", all.vectors_in_file());
   page.findings = findings_of(view);
+  bool const mistaken = all.detected && all.detected->mistake.found();
+  if (mistaken || !all.complete) {
+    page.doubtful.push_back(options.vectors.empty() ? in_case(options.source, case_file::vectors) : options.vectors);
+  }
   bool const gridded = all.measured.columns > 1 && all.measured.rows > 1;
   page.data = {{"errors", view.errors}, {"budget", budget_json(all.shown_budget())}};
   std::optional<LayoutView> const bench = bench_view(load_case_setup(in_case(options.source, case_file::setup), {}));
@@ -237,9 +242,14 @@ ReportPage case_report(ReportOptions const& options, Device const& device) {
        {Verbatim{"The resolved setup", read_text_file(setup)},
         Verbatim{"Summary of the rendering", read_text_file(in_case(options.source, case_file::summary))}}});
   std::string const place = shell_word(options.source);
-  page.sections.push_back(how_it_was_made(case_sources(options.source, all),
-                                          {"gladstone render setup.toml -o " + place, "gladstone correlate " + place,
-                                           "gladstone compare " + place, "gladstone report " + place}));
+  std::string of_vectors = options.vectors.empty() ? "" : " --vectors " + shell_word(options.vectors);
+  if (!options.conventions.empty()) of_vectors += " --conventions " + shell_word(options.conventions);
+  std::vector<std::string> commands{"gladstone render setup.toml -o " + place};
+  if (options.vectors.empty()) commands.push_back("gladstone correlate " + place);
+  for (char const* command : {"compare", "report"}) {
+    commands.push_back(fmt::format("gladstone {} {}{}", command, place, of_vectors));
+  }
+  page.sections.push_back(how_it_was_made(case_sources(options.source, all), commands));
   return page;
 }
 

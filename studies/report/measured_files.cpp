@@ -49,8 +49,14 @@ void screen(VectorFile& file, std::string const& path, std::string const& setup,
   if (!doubt.empty()) spdlog::warn("{}: {}", path, doubt);
 }
 
-DisplacementField read_measured(std::string const& path, std::string const& setup, ReportOptions const& options,
-                                CameraSetup const& camera) {
+/// Vectors of one file in our conventions.
+struct MeasuredVectorFile {
+  DisplacementField field;
+  bool complete = true;  ///< false: the file's header declares another number of vectors
+};
+
+MeasuredVectorFile read_measured(std::string const& path, std::string const& setup, ReportOptions const& options,
+                                 CameraSetup const& camera) {
   VectorFile file = read_vectors(path);
   log_remarks(file);
   if (!options.conventions.empty()) override_conventions(file, options.conventions);
@@ -60,7 +66,7 @@ DisplacementField read_measured(std::string const& path, std::string const& setu
                                 ? apply_conventions(std::move(file.field), file.conventions, camera.rows)
                                 : std::move(file.field);
   if (field.columns == 0) arrange_as_grid(field);
-  return field;
+  return {std::move(field), file.complete};
 }
 
 /// Returns true if all components are bitwise equal, with NaN equal to NaN.
@@ -122,11 +128,17 @@ void require_frames_of(MeasuredFiles const& files, ReportOptions const& options,
   }
 }
 
-std::vector<DisplacementField> read_repeats(MeasuredFiles const& files, ReportOptions const& options,
-                                            CameraSetup const& camera) {
-  std::vector<DisplacementField> all{read_measured(files.vectors, files.setup, options, camera)};
+RepeatedVectors read_repeats(MeasuredFiles const& files, ReportOptions const& options, CameraSetup const& camera) {
+  RepeatedVectors read;
+  std::vector<DisplacementField>& all = read.fields;
+  auto const read_one = [&](std::string const& path) {
+    MeasuredVectorFile one = read_measured(path, files.setup, options, camera);
+    if (!one.complete) read.incomplete.push_back(path);
+    return std::move(one.field);
+  };
+  all.push_back(read_one(files.vectors));
   for (std::string const& file : files.repeats) {
-    DisplacementField one = read_measured(file, files.setup, options, camera);
+    DisplacementField one = read_one(file);
     bool same = one.size() == all.front().size();
     for (std::size_t i = 0; same && i < one.size(); ++i) {
       same = length(one.position_px[i] - all.front().position_px[i]) < 1e-3;
@@ -143,7 +155,7 @@ std::vector<DisplacementField> read_repeats(MeasuredFiles const& files, ReportOp
     }
     all.push_back(std::move(one));
   }
-  return all;
+  return read;
 }
 
 double spanned_share(DisplacementField const& field, CameraSetup const& camera) {

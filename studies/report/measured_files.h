@@ -26,10 +26,15 @@ MeasuredFiles measured_files(ReportOptions const& options);
 /// @throws DataError if their number of pixels differs from the setup's camera, or vectors.h5 names other frames
 void require_frames_of(MeasuredFiles const& files, ReportOptions const& options, CameraSetup const& camera);
 
+/// Vectors of a measurement and its repeats.
+struct RepeatedVectors {
+  std::vector<DisplacementField> fields;
+  std::vector<std::string> incomplete;  ///< files whose header declares another number of vectors
+};
+
 /// Reads the vectors and their repeats in our conventions.
 /// @throws DataError if vectors are outside the camera's image, or positions of a repeat differ
-std::vector<DisplacementField> read_repeats(MeasuredFiles const& files, ReportOptions const& options,
-                                            CameraSetup const& camera);
+RepeatedVectors read_repeats(MeasuredFiles const& files, ReportOptions const& options, CameraSetup const& camera);
 
 /// Returns the fraction of the image area spanned by the vectors, from 0 to 1.
 double spanned_share(DisplacementField const& field, CameraSetup const& camera);

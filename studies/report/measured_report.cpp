@@ -125,7 +125,8 @@ ReportPage measured_report(ReportOptions const& options, Device const& device) {
   require_frames_of(files, options, camera);
   BenchGiven const given = bench_given(loaded);
   Bench<double> const bench = bench_of(loaded.setup, given);
-  MeanOfRepeats const mean = mean_of_repeats(read_repeats(files, options, camera), bench.random_error());
+  RepeatedVectors const read = read_repeats(files, options, camera);
+  MeanOfRepeats const mean = mean_of_repeats(read.fields, bench.random_error());
   DisplacementField const& field = mean.field;
   if (finite_components(field.displacement_px).empty())
     throw DataError(files.vectors, "has no vector with a displacement; correlate the images anew");
@@ -148,6 +149,7 @@ ReportPage measured_report(ReportOptions const& options, Device const& device) {
   page.question = fmt::format("How certain are the density gradients of this measurement? {} vectors of {}.",
                               field.size(), fs::path(files.vectors).filename().string());
   page.findings = {said.measurand, said.expanded, said.bias};
+  page.doubtful = read.incomplete;
   std::optional<LayoutView> const drawn_bench = bench_view(load_case_setup(files.setup, {}));
   if (drawn_bench) page.sections.push_back(bench_section(*drawn_bench, "the measurement"));
   if (files.frames) page.sections.push_back({"Images", {frame_pictures(options.source, "The two frames")}});

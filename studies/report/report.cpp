@@ -56,13 +56,20 @@ ReportSection how_it_was_made(SourceFiles const& sources, std::vector<std::strin
                      "error analysis and experiment design, Measurement Science and Technology 30 (2019) 085302."}}};
 }
 
-std::string write_report(ReportOptions const& options, Device const& device) {
+WrittenReport write_report(ReportOptions const& options, Device const& device) {
   bool const run = fs::exists(fs::path(options.source) / run_file::manifest);
   if (!run && !fs::exists(fs::path(options.source) / case_file::setup)) {
     throw DataError(options.source, fmt::format("is neither a study (no {} in it) nor a case (no {}); give the folder "
                                                 "of a planned and computed study, of a rendered case, or of a "
                                                 "measurement with its setup and vectors",
                                                 run_file::manifest, case_file::setup));
+  }
+  if (run && (!options.vectors.empty() || !options.conventions.empty())) {
+    throw DataError(
+        options.source,
+        fmt::format("is a study, whose cases have vectors of their own; leave {} out, or give the folder of "
+                    "a case",
+                    options.vectors.empty() ? "--conventions" : "--vectors"));
   }
   // fails early if the output cannot be written
   OutputFile output(options.output, options.markdown ? "Markdown" : "HTML");
@@ -78,9 +85,9 @@ std::string write_report(ReportOptions const& options, Device const& device) {
   std::string const text = options.markdown ? markdown_page(page) : html_page(page);
   output.write(text.data(), text.size());
   output.commit();
-  std::string findings;
-  for (std::string const& finding : page.findings) findings += finding + '\n';
-  return findings;
+  WrittenReport written{"", page.doubtful};
+  for (std::string const& finding : page.findings) written.findings += finding + '\n';
+  return written;
 }
 
 }  // namespace gladstone

@@ -19,15 +19,20 @@ struct ReportOptions {
   std::string figure_format;         ///< "png", "svg" or "pdf"
   std::string vectors;               ///< for a CASE: path; empty: vectors of the CASE
   std::vector<std::string> repeats;  ///< for a measurement: vectors of repeated measurements
-  /// for foreign vectors of a measurement, as parse_conventions() reads them; empty: those of the format
+  /// for vectors of a CASE or a measurement, as parse_conventions() reads them; empty: those of the format
   std::string conventions;
 };
 
+/// Summary of a report that was written.
+struct WrittenReport {
+  std::string findings;               ///< one per line
+  std::vector<std::string> doubtful;  ///< files of vectors that the report should not be based on, see ReportPage
+};
+
 /// Writes the report of a study, a case or a measurement, and its figures.
-/// @return the findings, one per line
 /// @throws DataError if the folder contains no study, case or measurement, no finished case, or no vectors
 /// @throws OutputError if a file cannot be written
-std::string write_report(ReportOptions const& options, Device const& device);
+WrittenReport write_report(ReportOptions const& options, Device const& device);
 
 /// Creates the report of a RUN from the finished cases, without computations.
 ReportPage run_report(ReportOptions const& options);

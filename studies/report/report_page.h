@@ -72,6 +72,8 @@ struct ReportPage {
   std::vector<std::string> findings;
   std::vector<ReportSection> sections;
   nlohmann::json data;  ///< data of the charts drawn by report.js
+  /// files of vectors whose header declares another number of vectors, or that are likely not read as they were written
+  std::vector<std::string> doubtful;
 };
 
 /// Formats the report as a single HTML file that works offline: styles, scripts (d3, with its licence) and data are

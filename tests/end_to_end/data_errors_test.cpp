@@ -197,6 +197,18 @@ TEST_F(DataErrors, VectorsCutShortAreScoredWithAWarning) {
     EXPECT_EQ(outcome.exit_code, missing == 0 ? 0 : 1) << outcome.err;
     std::string const warning = "v.dat:2: the header declares " + std::to_string(count + missing) + " vectors";
     EXPECT_EQ(outcome.err.find(warning) != std::string::npos, missing > 0) << outcome.err;
+    // a report of the case, and of the same frames as a measurement
+    std::filesystem::create_directories(in("measured"));
+    std::filesystem::copy(in("case/setup.toml"), in("measured/setup.toml"),
+                          std::filesystem::copy_options::overwrite_existing);
+    for (char const* folder : {"case", "measured"}) {
+      Outcome const report = gladstone({"report", folder, "--vectors", "v.dat", "--conventions",
+                                        "y-down,v-down,offset=0", "-o", "report.html", "--json"});
+      EXPECT_EQ(report.exit_code, missing == 0 ? 0 : 1) << report.err;
+      EXPECT_EQ(report.err.find(warning) != std::string::npos, missing > 0) << report.err;
+      nlohmann::json const doubtful = nlohmann::json::parse(report.out)["doubtful"];
+      EXPECT_EQ(doubtful, missing == 0 ? nlohmann::json::array() : nlohmann::json::array({"v.dat"}));
+    }
   }
 }
 

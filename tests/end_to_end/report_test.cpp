@@ -403,6 +403,9 @@ TEST_F(Reports, SayWhatIsMissing) {
   succeed({"sweep", "plan", "study.toml", "-o", "run", "--quiet", "--device", "cpu"});
   expect_refused({"report", "run"}, 2, {"holds no finished case", "gladstone sweep run run"});
   expect_refused({"report", "case", "--format", "pdf"}, 2, {"--format"});
+  expect_refused({"report", "run", "--vectors", "vectors.csv"}, 2, {"is a study", "--vectors"});
+  write("cut.csv", "x_px,y_px,u_px,v_px\n10,10,0.1,0.2\n20,10,0.");
+  expect_refused({"report", "case", "--vectors", "cut.csv"}, 2, {"cut.csv:3: 3 fields"});
 }
 
 }  // namespace
