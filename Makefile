@@ -1,73 +1,71 @@
-# The front door: `make` builds, `make help` lists the rest. CMake and Ninja do the work.
+# Entry point: `make` builds the program, `make help` lists the other targets. CMake and Ninja do the work.
 
 PRESET ?= default
 PREFIX ?= /usr/local
 WARNINGS_AS_ERRORS ?= $(if $(filter dev,$(PRESET)),ON,OFF)
 BUILD := $(if $(filter default,$(PRESET)),build,build/$(PRESET))
 
-# the rooms whose tests `make test` builds and runs, empty: all tests; and which tests are left out, a regular expression
+# Rooms whose tests `make test` builds and runs (empty: all), and a regular expression for tests to exclude.
 TESTED ?=
 LEFT_OUT ?=
 
-# `make fuzz`: seconds in all; `make soak`: disturbed runs, and what they are drawn from
+# `make fuzz`: total time in seconds. `make soak`: number of runs, and the seed of their random choices.
 FUZZ_SECONDS ?= 600
 SOAK_RUNS ?= 300
 SOAK_SEED ?= 1
 
-# what `make studies` computes
+# Studies computed by `make studies`.
 STUDIES ?= $(patsubst studies/cases/study_%.toml,%,$(sort $(wildcard studies/cases/study_*.toml)))
 DEVICE ?= auto
 
-# As many jobs as cores, but no more than the free memory holds compilers (1.5 GB each).
+# One job per core, but no more than fit into the free memory (1.5 GB per compiler).
 JOBS ?= $(shell cores=$$(nproc 2>/dev/null || echo 2); \
 	fit=$$(awk '/^MemAvailable:/ {print int($$2 / 1500000)}' /proc/meminfo 2>/dev/null); \
 	[ "$${fit:-$$cores}" -ge 1 ] || fit=1; [ "$${fit:-$$cores}" -lt "$$cores" ] && echo $$fit || echo $$cores)
 
-# All from Debian bookworm. OpenCV's three small packages instead of libopencv-dev, which draws in two hundred others.
+# Packages of Debian bookworm. Three small OpenCV packages replace libopencv-dev, which depends on two hundred others.
 PACKAGES := g++ cmake ninja-build pkg-config libeigen3-dev libtbb-dev libfmt-dev libspdlog-dev nlohmann-json3-dev \
 	libcli11-dev libtomlplusplus-dev libhdf5-dev libopenimageio-dev libopencv-core-dev libopencv-imgproc-dev \
 	libopencv-video-dev libceres-dev libnlopt-cxx-dev zlib1g-dev libbz2-dev libpugixml-dev liblz4-dev liblzma-dev libssl-dev gnuplot-nox fonts-dejavu-core node-d3 libgtest-dev libgmock-dev libbenchmark-dev
 LINT_PACKAGES := clang-format python3-venv
-# from PyPI: unlike Debian's clang-tidy 14 it skips the system's headers, and so takes a third of the time
+# From PyPI: unlike Debian's clang-tidy 14 it skips system headers, which takes a third of the time.
 CLANG_TIDY := clang-tidy==23.1.4
-# the compiler of PRESET=dev, with libFuzzer, and what makes its reports readable
+# Compiler of PRESET=dev with libFuzzer, and the symbolizer for its reports.
 DEV_PACKAGES := clang libclang-rt-dev llvm
 PACKAGES += $(if $(filter dev,$(PRESET)),$(DEV_PACKAGES))
-# programs that only tests call; without them those are skipped
+# Programs that only tests call; those tests are skipped if the programs are missing.
 TEST_PACKAGES := munge slurmctld slurmd slurm-client chromium chromium-driver python3-selenium tidy
 
 ROOMS := render analysis cuda studies
 space := $(subst ,, )
 SOURCES = $(shell find $(ROOMS) tests -name '*.h' -o -name '*.cpp' -o -name '*.cu' -o -name '*.cuh')
-# the files that a build compiles: those of a room, or of one of its folders together
+# Files that a build compiles: those of a room, or the unity file of one of its folders.
 TIDY_SOURCES = sed -n 's|^ *"file": "\(.*\.c[px][px]\)".*|\1|p' $(BUILD)/compile_commands.json | \
 	grep -E '^$(CURDIR)/($(subst $(space),|,$(strip $(ROOMS))))/|/Unity/unity_($(subst $(space),|,$(strip $(ROOMS))))_'
 
 .PHONY: build test demo gallery studies bench fuzz soak check-long lint format install clean help packages configure
 .DEFAULT_GOAL := build
 
-build: configure  ## build/bin/gladstone, after installing the Debian packages that are missing
+build: configure  ## install missing Debian packages and build build/bin/gladstone
 	cmake --build $(BUILD) --parallel $(JOBS) --target gladstone
 
 test: OPTIONAL_PACKAGES = $(TEST_PACKAGES)
-test: configure  ## build and run every test; of some rooms: TESTED='base medium'; once more: ctest --test-dir build -R medium/
+test: configure  ## build and run all tests; of some rooms: TESTED='base medium'; to repeat: ctest --test-dir build -R medium/
 	cmake --build $(BUILD) --parallel $(JOBS) $(if $(TESTED),--target $(TESTED:%=%_tests))
 	ctest --test-dir $(BUILD) --output-on-failure --parallel $(JOBS) \
 		$(if $(TESTED),--label-regex '^($(subst $(space),|,$(strip $(TESTED))))$$') \
 		$(if $(LEFT_OUT),--exclude-regex '$(LEFT_OUT)')
 
-demo: build  ## the seed's experiment from setup to error report, into out/demo; README's passage and figures: DOCS=1
+demo: build  ## run the experiment of Rajendran et al. (2019) into out/demo; DOCS=1 also updates docs/demo.md and its figures
 	$(BUILD)/bin/gladstone demo -o out/demo
-	@[ -z "$(DOCS)" ] || { cp out/demo/figure4.png out/demo/agreement.png docs && awk ' \
-		FNR == NR { if (/^## /) told = 1; if (FNR > 1 && !told) { gsub(/\]\(/, "](docs/"); story = story $$0 "\n" } next } \
-		/^## / { inside = 0 } !inside; /^## What the demo shows/ { inside = 1; printf "%s", story }' \
-		out/demo/summary.md README.md > out/demo/README.md && cp out/demo/README.md README.md; }
+	@[ -z "$(DOCS)" ] || { cp out/demo/figure4.png out/demo/agreement.png docs && \
+		sed '/^## /,$$d' out/demo/summary.md > docs/demo.md; }
 
-gallery: build  ## particle images with what spoils them, the seed's Figure 1, into out/gallery; the document's figure: DOCS=1
+gallery: build  ## render degraded particle images (Figure 1 of the paper) into out/gallery; DOCS=1 also updates docs/gallery.png
 	$(BUILD)/bin/gladstone gallery -o out/gallery --device $(DEVICE)
 	@[ -z "$(DOCS)" ] || cp out/gallery/gallery.png docs/gallery.png
 
-studies: build  ## the shipped studies into out/studies; some: STUDIES='f_number z_d'; a GPU: DEVICE=cuda; docs' figures: DOCS=1
+studies: build  ## compute the shipped studies into out/studies; some: STUDIES='f_number z_d'; a GPU: DEVICE=cuda; DOCS=1 also updates docs
 	@for study in $(STUDIES); do run=out/studies/$$study; \
 		$(BUILD)/bin/gladstone sweep plan studies/cases/study_$$study.toml -o $$run --device $(DEVICE) && \
 		$(BUILD)/bin/gladstone sweep run $$run --quiet && $(BUILD)/bin/gladstone sweep collect $$run --quiet || exit; \
@@ -75,20 +73,20 @@ studies: build  ## the shipped studies into out/studies; some: STUDIES='f_number
 			mkdir -p docs/studies/$$study && cp $$run/figures/$${figure##*/} docs/studies/$$figure || exit; done; \
 	done
 
-bench: configure  ## measure rays/s, steps/s and vectors/s; options: BENCH='--benchmark_filter=...'
+bench: configure  ## run the benchmarks (rays/s, steps/s, vectors/s); options: BENCH='--benchmark_filter=...'
 	cmake --build $(BUILD) --parallel $(JOBS) --target gladstone_bench
 	$(BUILD)/bin/gladstone_bench $(BENCH)
 
-fuzz:  ## give every reader made-up files, under sanitizers, into out/fuzz; longer: FUZZ_SECONDS=3600
+fuzz:  ## run all file readers on generated files under sanitizers, into out/fuzz; total time: FUZZ_SECONDS=600
 	@$(MAKE) --no-print-directory PRESET=dev configure
 	cmake --build build/dev --parallel $(JOBS) --target fuzz_targets
 	ctest --test-dir build/dev --output-on-failure --label-regex '^fuzz$$'
 	tests/fuzz/fuzz.sh build/dev out/fuzz $(FUZZ_SECONDS)
 
-soak: build  ## kill, starve and confuse the program, and check what is left: SOAK_RUNS=300, SOAK_SEED=1
+soak: build  ## disturb the program (kill, full disk, replaced inputs) and check the results: SOAK_RUNS=300, SOAK_SEED=1
 	python3 -B tests/soak/soak.py --program $(BUILD)/bin/gladstone --seed $(SOAK_SEED) --runs $(SOAK_RUNS)
 
-check-long: build  ## simulate ten recommended designs with eight fresh seeds each: SETS=10 SEEDS=8; some minutes each
+check-long: build  ## simulate ten recommended designs with eight new seeds each, a minute each: SETS=10 SEEDS=8
 	python3 -B tests/long/designs.py --program $(BUILD)/bin/gladstone --sets $(or $(SETS),10) --seeds $(or $(SEEDS),8)
 
 lint: PACKAGES += $(LINT_PACKAGES)
@@ -98,15 +96,15 @@ lint: configure  ## check the format (clang-format) and the code (clang-tidy)
 		echo 'lint: $(CLANG_TIDY) cannot be installed from PyPI: only the format was checked' >&2
 	@[ ! -x $(BUILD)/lint/bin/clang-tidy ] || $(TIDY_SOURCES) | xargs -P $(JOBS) -n 1 $(BUILD)/lint/bin/clang-tidy -p $(BUILD) --quiet
 
-format:  ## rewrite the sources in the project's format
+format:  ## format the sources with clang-format
 	@cmake/install_packages.sh clang-format
 	clang-format -i $(SOURCES)
 
-install: configure  ## programs, libraries, headers, cases and CMake package; where: PREFIX=/usr/local
+install: configure  ## install programs, libraries, headers, cases and CMake package into PREFIX=/usr/local
 	cmake --build $(BUILD) --parallel $(JOBS)
 	cmake --install $(BUILD) --prefix $(PREFIX)
 
-clean:  ## remove what was built
+clean:  ## delete the build folder
 	rm -rf $(BUILD)
 
 packages:
@@ -116,7 +114,7 @@ packages:
 configure: packages
 	@cmake --preset $(PRESET) -DGLADSTONE_WARNINGS_AS_ERRORS=$(WARNINGS_AS_ERRORS) $(CMAKE_OPTIONS)
 
-help:  ## this list
+help:  ## print this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "make %-10s %s\n", $$1, $$2}' Makefile
-	@echo 'PRESET=default|cuda|dev picks the build (build, build/cuda, build/dev); JOBS=N its parallel jobs;'
-	@echo 'CMAKE_OPTIONS="-D..." goes to CMake.'
+	@echo 'PRESET=default|cuda|dev selects the build (build, build/cuda, build/dev), JOBS=N the number of parallel jobs;'
+	@echo 'CMAKE_OPTIONS="-D..." is passed to CMake.'

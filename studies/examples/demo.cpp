@@ -83,7 +83,7 @@ SeedFigure4Instant figure_instant(std::string const& heading, FieldMap const& fi
     DisplacementMaps maps = map_scattered(truth.reference_px, displacement_px, grid);
     return NamedMaps{name, std::move(maps.u_px), std::move(maps.v_px)};
   };
-  instant.cone = on_grid("cone-averaged", truth.eq9_cone_px);
+  instant.cone = on_grid("aperture average", truth.eq9_cone_px);
   instant.rays = on_grid("light rays", truth.displacement_px);
   return instant;
 }
@@ -192,11 +192,11 @@ std::string run_demo(std::string const& folder, Device const& device) {
     spdlog::warn("{}", missing.what());
   }
   double const seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  std::string const text =
-      "# What the demo shows\n\n" + demo_story(paper, found) + "\n" + demo_details(found) +
-      fmt::format(
-          "Made in {:.0f} s on {}. Each folder holds the images, truth.h5, vectors.h5, errors.json and figures.\n",
-          seconds, device.name());
+  std::string const text = "# The demo\n\n" + demo_story(paper, found) + "\n" + demo_details(found) +
+                           fmt::format(
+                               "Computed in {:.0f} s on {}. Each folder contains the images, truth.h5, vectors.h5, "
+                               "errors.json and the figures.\n",
+                               seconds, device.name());
   OutputFile::write_text((fs::path(folder) / "summary.md").string(), text);
   return text;
 }

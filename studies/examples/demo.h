@@ -8,8 +8,8 @@ namespace gladstone {
 
 /// Reproduces the experiment of Rajendran et al. (2019, section 4, Table 1) at both instants of the turbulence field:
 /// first on a field as coarse as the authors' sample, from setup to error report (one CASE folder each, figure4.png);
-/// then by rays and theory alone on increasingly fine fields (agreement.png). Writes summary.md, which starts with the
-/// README's passage.
+/// then by rays and theory alone on increasingly fine fields (agreement.png). Writes summary.md, whose first
+/// section is docs/demo.md.
 /// @return text of summary.md
 std::string run_demo(std::string const& folder, Device const& device);
 

@@ -30,7 +30,7 @@ struct DemoInstant {
   std::vector<Plane> planes;
 };
 
-/// Formats the demo's results for the README: five sentences with Eq. 9, both figures and a table of the paper's case.
+/// Formats the demo's results for docs/demo.md: Eq. 9, five findings, both figures and a table of the paper's case.
 /// @param setup  setup of the paper's case
 std::string demo_story(Setup const& setup, std::vector<DemoInstant> const& instants);
 
