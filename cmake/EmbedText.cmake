@@ -1,5 +1,5 @@
-# embed_text(target name file): puts a file of text into a target as gladstone::embedded::NAME, a std::string_view
-# (studies/report/embedded_text.h). The file is read when CMake runs, which it does again when the file changes.
+# embed_text(target name file): embeds a text file into a target as gladstone::embedded::NAME, a std::string_view
+# (studies/report/embedded_text.h). CMake reads the file when it runs, and runs again when the file changes.
 function(embed_text target name file)
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${file})
   file(READ ${file} hexadecimal HEX)

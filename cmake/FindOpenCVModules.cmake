@@ -1,5 +1,5 @@
-# OpenCV's core, imgproc and video from their small development packages; the package that carries OpenCVConfig.cmake
-# would draw in two hundred others.
+# Finds OpenCV's core, imgproc and video in their small development packages. The package with OpenCVConfig.cmake
+# depends on two hundred others.
 find_path(OpenCV_INCLUDE_DIR opencv2/core.hpp PATH_SUFFIXES opencv4)
 find_library(OpenCV_core_LIBRARY opencv_core)
 find_library(OpenCV_imgproc_LIBRARY opencv_imgproc)

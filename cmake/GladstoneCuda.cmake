@@ -1,5 +1,5 @@
-# Looks for the CUDA toolkit as GLADSTONE_CUDA says and enables the language; sets GLADSTONE_CUDA_VERSION, empty where
-# there is none. The architecture: CMAKE_CUDA_ARCHITECTURES, else that of the first GPU of this machine, else 90.
+# Searches for the CUDA toolkit according to GLADSTONE_CUDA and enables the language; sets GLADSTONE_CUDA_VERSION, empty
+# if there is none. Architecture: CMAKE_CUDA_ARCHITECTURES, otherwise that of the first GPU of this machine, otherwise 90.
 set(GLADSTONE_CUDA_VERSION "")
 if(GLADSTONE_CUDA)
   find_program(GLADSTONE_NVCC nvcc HINTS ENV CUDACXX ENV CUDA_PATH PATHS /usr/local/cuda /opt/cuda PATH_SUFFIXES bin
@@ -22,7 +22,7 @@ if(GLADSTONE_CUDA)
       enable_language(CUDA)
       find_package(CUDAToolkit REQUIRED)
       set(GLADSTONE_CUDA_VERSION ${CMAKE_CUDA_COMPILER_VERSION})
-      if(NOT CMAKE_CUDA20_STANDARD_COMPILE_OPTION)  # CMake 3.25 does not know that nvcc 12 does
+      if(NOT CMAKE_CUDA20_STANDARD_COMPILE_OPTION)  # CMake 3.25 does not know that nvcc 12 supports it
         set(CMAKE_CUDA20_STANDARD_COMPILE_OPTION "-std=c++20")
         set(CMAKE_CUDA20_EXTENSION_COMPILE_OPTION "-std=c++20")
       endif()
@@ -32,7 +32,7 @@ if(GLADSTONE_CUDA)
   if(GLADSTONE_CUDA_VERSION)
     message(STATUS "CUDA toolkit: ${GLADSTONE_CUDA_VERSION} (${GLADSTONE_NVCC}), for sm_${CMAKE_CUDA_ARCHITECTURES}")
   elseif(GLADSTONE_CUDA STREQUAL "AUTO")
-    message(STATUS "CUDA toolkit: not found, going on without")
+    message(STATUS "CUDA toolkit: not found; building without CUDA")
   else()
     message(FATAL_ERROR "GLADSTONE_CUDA=${GLADSTONE_CUDA}, but no working nvcc was found: "
                         "put it on PATH or set CUDACXX, or use GLADSTONE_CUDA=AUTO")

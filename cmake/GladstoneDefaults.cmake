@@ -1,4 +1,4 @@
-# Language level, build type, flags and output folders that hold for every target.
+# Language standard, build type, flags and output folders of all targets.
 set(CMAKE_CXX_STANDARD 20)
 set(CMAKE_CXX_STANDARD_REQUIRED ON)
 set(CMAKE_CXX_EXTENSIONS OFF)
@@ -7,27 +7,27 @@ set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
 if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
   set(CMAKE_BUILD_TYPE Release CACHE STRING "Build type" FORCE)
 endif()
-# The commit that the program names in its files is read when CMake runs: run it again after every commit.
+# CMake reads the commit that the program writes into its files when it runs, so that it must run after every commit.
 if(EXISTS ${CMAKE_SOURCE_DIR}/.git/logs/HEAD)
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/.git/logs/HEAD)
 endif()
 
-# Libraries that a program does not call need not be loaded. OpenImageIO, which brings 250, is called by the image codecs
-# alone; of it the rest uses the library of hashes.
+# Libraries that a program does not call are not loaded. Only the image codecs call OpenImageIO, which depends on 250
+# libraries; all other code uses only its hash functions.
 add_link_options($<$<PLATFORM_ID:Linux>:LINKER:--as-needed>)
 
-# What changes results or the layout of Eigen's types: the same for the libraries and for whoever uses their headers.
+# Flags that change results or the layout of Eigen's types: equal for the libraries and for all users of their headers.
 set(GLADSTONE_USAGE_FLAGS -fno-math-errno)
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64" AND GLADSTONE_ARCHITECTURE)
   list(APPEND GLADSTONE_USAGE_FLAGS -march=${GLADSTONE_ARCHITECTURE})
 endif()
 
-# For our own targets alone. Files that are compiled together may use the same names.
+# For our own targets only. Files that are compiled together may use the same names.
 add_library(gladstone_flags INTERFACE)
 target_compile_options(gladstone_flags INTERFACE
   $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wpedantic ${GLADSTONE_USAGE_FLAGS}
   $<$<NOT:$<BOOL:$<TARGET_PROPERTY:UNITY_BUILD>>>:-Wshadow>>)
-# Device code takes constexpr functions of the shared headers as they are.
+# Device code calls the constexpr functions of the shared headers.
 list(JOIN GLADSTONE_USAGE_FLAGS "," usage_flags)
 target_compile_options(gladstone_flags INTERFACE
   $<$<COMPILE_LANGUAGE:CUDA>:--expt-relaxed-constexpr -Xcompiler=-Wall,-Wextra,${usage_flags}>)

@@ -7,19 +7,19 @@ get_property(rooms GLOBAL PROPERTY GLADSTONE_ROOMS)
 target_compile_options(gladstone_base INTERFACE
   $<INSTALL_INTERFACE:$<$<COMPILE_LANGUAGE:CXX>:${GLADSTONE_USAGE_FLAGS}>>)
 install(TARGETS ${rooms} EXPORT gladstoneTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
-# loaded when a picture is first read or written
+# loaded when an image is first read or written
 install(TARGETS gladstone_image_codecs LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
 if(TARGET gladstone)
   set_target_properties(gladstone PROPERTIES INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL_LIBDIR}")
   install(TARGETS gladstone RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endif()
 
-# headers keep their paths: #include "render/base/vec.h"
+# headers are installed with their paths: #include "render/base/vec.h"
 install(DIRECTORY render analysis cuda studies DESTINATION include/gladstone
         FILES_MATCHING PATTERN "*.h" PATTERN "*.cuh" PATTERN "cases" EXCLUDE)
 install(DIRECTORY ${CMAKE_BINARY_DIR}/generated/ DESTINATION include/gladstone FILES_MATCHING PATTERN "*.h")
 
-# cases and data keep their paths too, since cases name their data relative to themselves
+# cases and data are installed with their paths, too, since cases refer to their data by relative paths
 install(DIRECTORY studies/cases DESTINATION share/gladstone/studies OPTIONAL)
 install(DIRECTORY data DESTINATION share/gladstone)
 install(FILES LICENSE DESTINATION share/gladstone)

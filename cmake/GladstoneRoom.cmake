@@ -1,6 +1,6 @@
 # gladstone_room(name DEPENDS rooms... PUBLIC libraries... PRIVATE libraries...)
-# A room is one library made of the .cpp files of its folder (but main.cpp); its alias is gladstone::name.
-# A room of headers alone is an INTERFACE library.
+# A room is one library of the .cpp files of its folder (except main.cpp); its alias is gladstone::name.
+# A room that consists of headers is an INTERFACE library.
 function(gladstone_room name)
   cmake_parse_arguments(ROOM "" "" "DEPENDS;PUBLIC;PRIVATE" ${ARGN})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
@@ -34,7 +34,7 @@ function(gladstone_room name)
   set_property(GLOBAL APPEND PROPERTY GLADSTONE_ROOMS gladstone_${name})
 endfunction()
 
-# gladstone_rooms(name rooms...): gladstone::name stands for all of these rooms.
+# gladstone_rooms(name rooms...): defines the target gladstone::name, which links all of these rooms.
 function(gladstone_rooms name)
   list(TRANSFORM ARGN PREPEND gladstone:: OUTPUT_VARIABLE rooms)
   add_library(gladstone_${name} INTERFACE)
@@ -44,7 +44,7 @@ function(gladstone_rooms name)
   set_property(GLOBAL APPEND PROPERTY GLADSTONE_ROOMS gladstone_${name})
 endfunction()
 
-# gladstone_watched(target): where there is libFuzzer, it sees which way the target's code goes.
+# gladstone_watched(target): if libFuzzer is available, instruments the target for its coverage feedback.
 function(gladstone_watched target)
   if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
     target_compile_options(${target} PRIVATE $<$<COMPILE_LANGUAGE:CXX>:-fsanitize=fuzzer-no-link>)

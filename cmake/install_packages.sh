@@ -1,16 +1,16 @@
 #!/bin/sh
 # install_packages.sh [--optional] PACKAGE...
-# Installs those of the Debian packages that are missing, after saying which. Where there is no apt, or no right to use
-# it, says what is needed and goes on: CMake then finds the libraries elsewhere or names the first one that it misses.
-# --optional: programs that only some tests call. Nobody is asked for a password, the services among them are not
-# started, and a failure is only told: those tests are then skipped.
+# Prints and installs the missing ones of these Debian packages. Without apt, or without the right to use it, the script
+# prints what is required and succeeds: CMake then finds the libraries elsewhere or reports the first missing one.
+# --optional: programs that only some tests call. The script then asks for no password, starts no services and reports
+# a failure without failing itself; those tests are skipped.
 set -eu
 
 optional=
 [ "${1:-}" != --optional ] || { optional=yes && shift; }
 
 if ! command -v dpkg-query >/dev/null 2>&1 || ! command -v apt-get >/dev/null 2>&1; then
-  echo "gladstone: no apt on this system; these must be there${optional:+ for some tests} (Debian's names): $*" >&2
+  echo "gladstone: no apt on this system; install these packages${optional:+ for some tests} (Debian's names): $*" >&2
   exit 0
 fi
 
@@ -24,30 +24,30 @@ as_root=
 if [ "$(id -u)" -ne 0 ]; then
   as_root="sudo${optional:+ -n}"
   if ! command -v sudo >/dev/null 2>&1 || { [ -n "$optional" ] && ! $as_root true 2>/dev/null; }; then
-    echo "gladstone: missing packages${optional:+ of some tests}, and neither root nor sudo to install them:$missing" >&2
+    echo "gladstone: packages${optional:+ of some tests} are missing and cannot be installed without root or sudo:$missing" >&2
     exit 0
   fi
 fi
 
 apt() { $as_root env DEBIAN_FRONTEND=noninteractive apt-get -q -o Acquire::Retries=3 "$@" </dev/null; }
-# shellcheck disable=SC2086  # the list is to be split
+# shellcheck disable=SC2086  # split the list into words
 install() { apt install -y --no-install-recommends $missing; }
 
 echo "gladstone: installing Debian packages:$missing" >&2
-# No package lists (a bare system), or lists so old that their files are gone: fetch them, then install.
+# Without package lists (a bare system), or with lists so old that their files no longer exist, update them first.
 # shellcheck disable=SC2086
 lists() { apt-get install -s -qq --no-install-recommends $missing >/dev/null 2>&1 || apt update; }
 
 if [ -z "$optional" ]; then
   lists
   install || { apt update && install; } || {
-    echo "gladstone: these packages could not be installed:$missing" >&2
+    echo "gladstone: cannot install these packages:$missing" >&2
     exit 1
   }
   exit 0
 fi
 
-# Debian asks this file, if it is there, whether a package may start its service.
+# Debian's packages start their services only if this file, if it exists, permits it.
 policy=/usr/sbin/policy-rc.d
 if [ ! -e $policy ]; then
   trap '$as_root rm -f $policy' EXIT
@@ -56,4 +56,4 @@ if [ ! -e $policy ]; then
   $as_root chmod 755 $policy
 fi
 { lists && install; } || { apt update && install; } ||
-  echo "gladstone: not installed, so the tests that need them are skipped:$missing" >&2
+  echo "gladstone: not installed; the tests that need these packages are skipped:$missing" >&2
