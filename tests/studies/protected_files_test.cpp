@@ -15,7 +15,7 @@ namespace {
 // A row of docs/file-formats.md is "study (`manifest.jsonl`, `cases/`)", the entries by which a folder is known, and
 // the files that are protected there: "these" and others.
 TEST(ProtectedFiles, AreThoseOfTheDocumentedTable) {
-  auto const rows = test::documented_table("What is never written over", "folder");
+  auto const rows = test::documented_table("Protected files", "folder");
   std::vector<ProtectedFiles> const all = protected_files();
   ASSERT_EQ(rows.size(), all.size());
   for (std::size_t i = 0; i < rows.size(); ++i) {
