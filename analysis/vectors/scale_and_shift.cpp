@@ -261,7 +261,8 @@ Vec2d share_in_windows(DisplacementField const& all, Truth const& truth, double 
     Vec2d mean{};
     int count = 0;
     for (int node = 0; node < nodes * nodes; ++node) {
-      Vec2d const of_window{(node % nodes + 0.5) / nodes - 0.5, (node / nodes + 0.5) / nodes - 0.5};
+      int const column = node % nodes, row = node / nodes;
+      Vec2d const of_window{(column + 0.5) / nodes - 0.5, (row + 0.5) / nodes - 0.5};
       Vec2d const t = truth(ours.position_px[i] + window_px * of_window);
       if (!is_finite(t)) continue;
       mean += t;

@@ -254,7 +254,7 @@ GlassMatch GlassCatalogue::match(std::string_view name, double wavelength, std::
     bool const found_agrees = !std::all_of(found.begin(), found.end(), disagrees);
     bool const successor_agrees = !std::all_of(successor.begin(), successor.end(), disagrees);
     choice.followed = !successor.empty() && (successor_agrees || !found_agrees);
-    if (choice.followed) found = successor;
+    if (choice.followed) found = std::move(successor);
   }
   require_range(found, wavelength, where);
   std::erase_if(found, [&](Glass const* glass) { return !covers(*glass, wavelength); });
