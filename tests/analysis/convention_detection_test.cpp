@@ -234,8 +234,7 @@ TEST(DetectConventions, NamesTheLikeliestOfReadingsThatFitAlmostAlike) {
               testing::StartsWith("the frames were exchanged, or y and v point up"));
   VectorFile shifted = file;
   for (Vec2d& p : shifted.field.position_px) p.x += 16.0;
-  EXPECT_THAT(detect_conventions(shifted, vortex, 200).mistake.text,
-              testing::StartsWith("places are shifted by (16"));
+  EXPECT_THAT(detect_conventions(shifted, vortex, 200).mistake.text, testing::StartsWith("places are shifted by (16"));
   EXPECT_FALSE(detect_conventions(file, vortex, 200).mistake.found());
 }
 
