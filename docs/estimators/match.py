@@ -1,5 +1,5 @@
 """match.py A B VECTORS..: rms difference of both frames, deformed symmetrically by each file of vectors, over the rms of
-their mean, both high-passed; and the share of vectors whose normalised median residual is above 3."""
+their mean, both high-passed; and the fractions of vectors whose normalised median residual is above 2 and above 3."""
 import sys
 import warnings
 

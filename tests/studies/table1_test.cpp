@@ -10,10 +10,10 @@
 namespace gladstone {
 namespace {
 
-// The bounds that the comment in table1.toml gives for what the table leaves of truth and images at its 1024 rays. An
-// error that is not told from none is less than what was resolved, and that is the bound: two standard errors of truth
-// over both components at 16 places, 6e-5 px by 8192 traced rays a scrambling, where 2048 told 2e-4 px and allowed
-// 2.5e-4. 1e-4 is what table1.toml promises.
+// Bounds from the comment in table1.toml: residual errors of the deflection table in truth and images with 1024 rays
+// per dot. An error below the detection limit is bounded by that limit: two standard errors of the truth over both
+// components at 16 positions, 6e-5 px with 8192 traced rays per scrambling. The bound 1e-4 px is the one in
+// table1.toml.
 TEST(Table1, IsAsGoodAsItSays) {
   CaseSetup const loaded = load_case_setup(shared_folder() + "/studies/cases/table1.toml", {});
   Scene scene = build_scene(loaded.setup);
