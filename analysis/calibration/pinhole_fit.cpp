@@ -223,7 +223,7 @@ Vec2d PinholeCamera::image_of_dot(Vec3d centre, double radius, Vec3d middle, Cal
 
 PinholeFit fit_pinhole(CalibrationPoints const& points, Vec2d middle_px) {
   if (points.size() < least_points) throw std::invalid_argument("too few points for a pinhole camera");
-  if (on_one_plane(points)) throw std::invalid_argument("points on one plane leave a pinhole camera open");
+  if (on_one_plane(points)) throw std::invalid_argument("points on one plane do not determine a pinhole camera");
   Parameters const linear = linear_pinhole(points).value;
   Parameters central = linear;
   central[2] = middle_px.x;

@@ -42,7 +42,7 @@ double mean_of_term(std::array<int, 3> const& term, Vec3d centre, double radius)
 SoloffFit fit_soloff(CalibrationPoints const& points) {
   std::set<double> planes;
   for (Vec3d const& point : points.world) planes.insert(point.z);
-  if (planes.size() < 2) throw std::invalid_argument("points on one plane leave the terms with Z open");
+  if (planes.size() < 2) throw std::invalid_argument("points on one plane do not determine the terms with Z");
   SoloffFit fit;
   fit.polynomial.exponents = terms(planes.size() == 2 ? 1 : 2);
   std::vector<std::array<int, 3>> const& exponents = fit.polynomial.exponents;
@@ -62,7 +62,7 @@ SoloffFit fit_soloff(CalibrationPoints const& points) {
   Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(scaled);
   qr.setThreshold(1e-10);
   if (!size.allFinite() || size.minCoeff() == 0 || qr.rank() < columns) {
-    throw std::invalid_argument("points leave a term of the polynomial open");
+    throw std::invalid_argument("the points do not determine a term of the polynomial");
   }
   Eigen::MatrixX2d const x = size.cwiseInverse().asDiagonal() * qr.solve(b);
   Eigen::MatrixX2d const left = b - A * x;

@@ -15,10 +15,12 @@ CorrelationSettings read_correlation_settings(SetupTable table) {
   settings.window_px.assign(windows.begin(), windows.end());
   if (std::any_of(windows.begin(), windows.end(), [](long long w) { return w % 2 != 0; }))
     table.problem("window_px",
-                  "an odd window (its support of twice the size must sit on whole pixels); use even sizes");
+                  "an odd window size (the weights extend over twice the window and must begin at a whole pixel); use "
+                  "even sizes");
   if (!std::is_sorted(windows.rbegin(), windows.rend()))
     table.problem("window_px",
-                  "a window larger than that of the pass before (passes refine); order them from large to small");
+                  "a window larger than that of the previous pass (each pass refines the previous one); order them "
+                  "from large to small");
   settings.overlap = table.number("overlap", settings.overlap, Range::at_least(0.0, 0.95));
   settings.method = table.word("method", settings.method, correlation_methods());
   settings.subpixel = table.word("subpixel", settings.subpixel, subpixel_fits());
@@ -52,8 +54,8 @@ CorrelationSettings read_correlation_settings(SetupTable table) {
 std::string window_problem(CorrelationSettings const& settings, int columns, int rows) {
   int const largest = *std::max_element(settings.window_px.begin(), settings.window_px.end());
   if (largest <= std::min(columns, rows)) return {};
-  return fmt::format("a window of {} px on an image of {} x {} px (it must fit inside); use windows up to {} px",
-                     largest, columns, rows, std::min(columns, rows) / 2 * 2);
+  return fmt::format("a window of {} px does not fit into an image of {} x {} px; use windows up to {} px", largest,
+                     columns, rows, std::min(columns, rows) / 2 * 2);
 }
 
 }  // namespace gladstone

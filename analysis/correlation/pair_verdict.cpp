@@ -117,7 +117,7 @@ struct Reach {
     bool const limited = settings.max_displacement_px && *settings.max_displacement_px <= range;
     what = limited ? fmt::format("correlate.max_displacement_px = {:g}", *settings.max_displacement_px)
                    : fmt::format("the search range of {} px", range);
-    remedy = limited ? "raise it" : "use a larger first window in correlate.window_px";
+    remedy = limited ? "increase it" : "use a larger first window in correlate.window_px";
   }
   std::string what;
   std::string remedy;  ///< suggestion for a larger range
@@ -125,25 +125,25 @@ struct Reach {
 
 std::string uncorrelated_text(Tally const& tally, Reach const& reach) {
   std::string const why = fmt::format(
-      "they agree no better than frames that have nothing in common: a shift beyond {}, two scenes, or noise alone",
+      "they correlate no better than unrelated frames: a displacement beyond {}, two different scenes, or only noise",
       reach.what);
   if (tally.nothing_left())
-    return fmt::format("the frames do not correlate ({}); {}, or give frames that belong together", why, reach.remedy);
+    return fmt::format("the frames do not correlate ({}); {}, or use frames of one scene", why, reach.remedy);
   return fmt::format(
-      "{:.0f} % of the windows do not correlate ({}), so that their vectors are invalid; use larger "
-      "windows, or leave these vectors out",
+      "{:.0f} % of the windows do not correlate ({}), so that their vectors are invalid; use larger windows, or "
+      "exclude these vectors",
       100.0 * tally.part(tally.uncorrelated), why);
 }
 
 std::string beyond_text(Tally const& tally, Reach const& reach, CorrelationSettings const& settings) {
   if (correlation_method(settings.method).optical_flow)
     return fmt::format(
-        "{:.0f} % of the vectors are longer than correlate.max_displacement_px = {:g}, and are invalid; raise it, or "
-        "leave these vectors out",
+        "{:.0f} % of the vectors are longer than correlate.max_displacement_px = {:g}, and are invalid; increase it, "
+        "or exclude these vectors",
         100.0 * tally.part(tally.beyond), settings.max_displacement_px.value_or(0.0));
   return fmt::format(
-      "{:.0f} % of the windows have no correlation peak within {} (displacements are larger, or these windows hold "
-      "noise), so that their vectors are invalid; {}, or leave these vectors out",
+      "{:.0f} % of the windows have no correlation peak within {} (the displacements are larger, or these windows "
+      "contain only noise), so that their vectors are invalid; {}, or exclude these vectors",
       100.0 * tally.part(tally.beyond), reach.what, reach.remedy);
 }
 
@@ -166,10 +166,9 @@ std::string failed_text(DisplacementField const& field, Tally const& tally) {
         fmt::format("{:.0f} % are replaced, by another peak or by their neighbours", 100.0 * tally.part(replaced)));
   if (tally.not_replaced > 0)
     became.push_back(fmt::format("{:.0f} % are invalid", 100.0 * tally.part(tally.not_replaced)));
-  return fmt::format(
-      "{:.0f} % of the vectors failed a test ({}): {}; look at the frames, use larger windows, or {}",
-      100.0 * tally.part(tally.failed), fmt::join(by_test, ", "), fmt::join(became, ", "),
-      replaced > 0 ? "set correlate.replace = false to leave these vectors out" : "ask less in the test");
+  return fmt::format("{:.0f} % of the vectors failed a test ({}): {}; inspect the frames, use larger windows, or {}",
+                     100.0 * tally.part(tally.failed), fmt::join(by_test, ", "), fmt::join(became, ", "),
+                     replaced > 0 ? "set correlate.replace = false to exclude these vectors" : "relax the test");
 }
 
 }  // namespace
@@ -211,11 +210,11 @@ namespace {
 
 /// Returns the reason why a pair cannot be assessed by its vectors; empty: it can.
 std::string reason_not_to_judge(Tally const& found, CorrelationSettings const& settings) {
-  if (found.signal == 0) return found.known == 0 ? "no window is known" : "no window holds a signal";
+  if (found.signal == 0) return found.known == 0 ? "all windows are masked" : "no window has a signal";
   if (correlation_method(settings.method).optical_flow) return "optical flow has no correlation";
   if (found.part(found.doubtful) >= suspicious) return "";
-  if (found.signal < fewest_windows) return fmt::format("fewer than {} windows cannot agree", fewest_windows);
-  return settings.median_threshold ? "" : "correlate.median_threshold = \"off\" leaves vectors that disagree";
+  if (found.signal < fewest_windows) return fmt::format("there are fewer than {} windows", fewest_windows);
+  return settings.median_threshold ? "" : "correlate.median_threshold = \"off\" does not reject spurious vectors";
 }
 
 /// Costly tests, evaluated only if the vectors alone are not conclusive.
@@ -234,8 +233,8 @@ std::string verdict_of(DisplacementField const& field, Tally const& left) {
 void judge(DisplacementField& field, Evidence const& evidence, CorrelationSettings const& settings) {
   if (stands_still(field) && evidence.same_pictures()) {
     field.warnings.emplace_back(
-        "both frames are the same picture, bit for bit (so that every displacement is 0); give two frames");
-    field.verdict = "not judged: both frames are the same picture";
+        "both frames are the same image, bit for bit (so that every displacement is 0); use two different frames");
+    field.verdict = "not judged: both frames are the same image";
     return;
   }
   Tally const found(field);
@@ -246,11 +245,11 @@ void judge(DisplacementField& field, Evidence const& evidence, CorrelationSettin
   std::optional<PatternPeriod> const period = evidence.period();
   if (period) {
     if (found.part(found.ambiguous) >= worth_a_warning)
-      field.warnings.push_back(fmt::format(
-          "the pattern repeats every {:.2f} px (its autocorrelation is {:.2f} there), within {}: only a displacement "
-          "below {:.2f} px can be trusted, a larger one comes back less by whole pitches; use random dots, or set "
-          "correlate.max_displacement_px below {:.2f} if no displacement is larger",
-          period->pitch_px, period->height, reach.what, 0.5 * period->pitch_px, 0.5 * period->pitch_px));
+      field.warnings.push_back(
+          fmt::format("the pattern repeats every {:.2f} px (with an autocorrelation of {:.2f}), within {}: only "
+                      "displacements below {:.2f} px are unambiguous, larger ones are reduced by whole periods; use "
+                      "random dots, or set correlate.max_displacement_px below {:.2f} if no displacement is larger",
+                      period->pitch_px, period->height, reach.what, 0.5 * period->pitch_px, 0.5 * period->pitch_px));
     field.verdict = fmt::format("not judged: the pattern repeats every {:.2f} px", period->pitch_px);
   } else if (found.compared > 0) {
     // Ambiguities of earlier passes are cleared: large windows across a gradient have several peaks, among which the

@@ -202,12 +202,12 @@ DisplacementField correlate_ensemble(PairSequence const& pairs, CorrelationSetti
   GLADSTONE_EXPECTS(pairs.size > 0);
   for (CorrelationMethod const& method : all_correlation_methods())
     if (settings.method == method.name && !method.in_ensembles)
-      throw DataError("ensemble", fmt::format("correlate.method = \"{}\" is of single pairs (it gives no planes to "
-                                              "average); use another, such as \"scc\"",
+      throw DataError("ensemble", fmt::format("correlate.method = \"{}\" does not support ensembles (it has no "
+                                              "correlation planes to average); use another one, such as \"scc\"",
                                               settings.method));
   if (settings.uncertainty != "none")
-    throw DataError("ensemble", fmt::format("correlate.uncertainty = \"{}\" is of single pairs (it compares matched "
-                                            "frames); use \"none\"",
+    throw DataError("ensemble", fmt::format("correlate.uncertainty = \"{}\" does not support ensembles (it compares "
+                                            "the matched frames of one pair); use \"none\"",
                                             settings.uncertainty));
   return StandardCorrelator(settings).correlate_all(pairs);
 }

@@ -10,13 +10,14 @@ namespace gladstone {
 Image<double> read_sized_picture(std::string const& file, Image<double> const& frame) {
   Image<double> picture = read_image(file);
   if (picture.columns() != frame.columns() || picture.rows() != frame.rows())
-    throw DataError(file, fmt::format("is {} x {} px, but the frames are {} x {} px (pixel by pixel they belong "
-                                      "together); give a picture of that size",
+    throw DataError(file, fmt::format("is {} x {} px, but the frames are {} x {} px (they are combined pixel by "
+                                      "pixel); give an image of that size",
                                       picture.columns(), picture.rows(), frame.columns(), frame.rows()));
   if (std::size_t const bad = count_not_finite(picture); bad > 0)
-    throw DataError(file, fmt::format("{} of {} pixels are nan or infinite (which neither masks a pixel nor is a grey "
-                                      "level); write numbers there, 0 in a mask where the frames are to be left out",
-                                      bad, picture.size()));
+    throw DataError(file,
+                    fmt::format("{} of {} pixels are nan or infinite (which is neither a mask value nor a grey level); "
+                                "replace them by numbers, in a mask by 0 where the frames are to be masked",
+                                bad, picture.size()));
   return picture;
 }
 

@@ -67,18 +67,20 @@ std::vector<Vec2d> combined_uncertainty(UncertaintyInput const& input) {
 
 std::string uncertainty_caveat(CorrelationSettings const& settings) {
   if (settings.uncertainty == "none") return "";
-  std::string const method = "uncertainty by " + settings.uncertainty + " says too little ";
+  std::string const method = "uncertainty by " + settings.uncertainty + " is too small ";
   if (settings.method == "rpc" || settings.method == "spc") {
-    return method + "of correlate.method = \"" + settings.method +
-           "\", whose weighting of phases amplifies noise (docs/estimators.md); take \"scc\" where it matters";
+    return method + "for correlate.method = \"" + settings.method +
+           "\", whose phase weighting amplifies noise (docs/estimators.md); use \"scc\" if the uncertainty matters";
   }
   if (correlation_method(settings.method).optical_flow) {
-    return method + "of correlate.method = \"" + settings.method +
-           "\", an optical flow, which errs by more than a window's noise (docs/estimators.md); take \"scc\" where it "
-           "matters";
+    return method + "for correlate.method = \"" + settings.method +
+           "\", an optical flow, whose errors exceed the noise of a window (docs/estimators.md); use \"scc\" if the "
+           "uncertainty matters";
   }
   bool const matched = settings.window_px.size() > 1 || settings.final_passes > 1;
-  return matched ? "" : method + "of a single pass, in which windows cut dots apart (docs/estimators.md); take several";
+  return matched
+             ? ""
+             : method + "for a single pass, in which windows cut dots apart (docs/estimators.md); use several passes";
 }
 
 std::vector<std::string> uncertainty_methods() {

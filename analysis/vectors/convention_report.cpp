@@ -18,10 +18,10 @@ using Verdict = DetectedConventions::Verdict;
 
 /// Returns a probable cause if no conventions fit.
 std::string likely_cause(DisplacementField const& field, ConventionFit const& best) {
-  if (detail::is_zero(field)) return "all displacements are 0, as of vectors that were not computed";
+  if (detail::is_zero(field)) return "all displacements are 0; the vectors were probably not computed";
   if (std::abs(best.slope) < 0.1)
-    return "places from another origin, or places or displacements that are not in px, look like this";
-  return "places from another origin look like this";
+    return "positions with another origin, or positions or displacements that are not in px, have this effect";
+  return "positions with another origin have this effect";
 }
 
 }  // namespace
@@ -36,22 +36,23 @@ std::string misfit_report(VectorFile const& file, DetectedConventions const& det
     tried += fmt::format("{}{} {:.3g} px", tried.empty() ? "" : "; ", describe(fit.conventions), fit.rms_px);
   }
   return fmt::format(
-      "{} vectors fit no convention: at best they differ from the truth by {:.3g} px rms, where the truth itself is "
+      "{} vectors fit no convention: at best they differ from the truth by {:.3g} px rms, and the truth itself is "
       "{:.3g} px rms (they follow {:.0f} +- {:.0f} % of it). Tried, each with its best offset: {}; no exchange of "
-      "columns, factor or shift fits either. {}; mend the file",
+      "columns, factor or shift fits either. {}; correct the file",
       file.format, best.rms_px, best.signal_px, 100.0 * best.slope, 100.0 * best.slope_error, tried,
       likely_cause(file.field, best));
 }
 
 std::string found_report(VectorFile const& file, DetectedConventions const& detected) {
   ConventionFit const& fit = detected.fit;
-  std::string report = fmt::format("{} vectors read as {} ({:.3g} px rms from the truth, which is {:.3g} px rms",
-                                   file.format, describe(fit.conventions), fit.rms_px, fit.signal_px);
+  std::string report =
+      fmt::format("{} vectors read as {} (rms difference from the truth {:.3g} px, rms of the truth {:.3g} px",
+                  file.format, describe(fit.conventions), fit.rms_px, fit.signal_px);
   auto const rival = std::find_if(detected.tried.begin(), detected.tried.end(), [&](ConventionFit const& other) {
     return !same_axes(other.conventions, fit.conventions);
   });
   if (rival != detected.tried.end()) {
-    report += fmt::format("; of other readings {} fits best: {:.3g} px", describe(rival->conventions), rival->rms_px);
+    report += fmt::format("; the best other reading is {}: {:.3g} px", describe(rival->conventions), rival->rms_px);
   }
   report += ')';
   if (std::string const offset = offset_report(detected); !offset.empty()) report += "; " + offset;
@@ -59,26 +60,25 @@ std::string found_report(VectorFile const& file, DetectedConventions const& dete
     report += "; likely mistake: " + detected.mistake.warning();
   } else if (detected.verdict == Verdict::cannot_be_told && fit.signal_px >= telling_signal_px) {
     report +=
-        "; this displacement is too fine for windows of four grid spacings, so that vectors need not follow it: "
-        "conventions cannot be told, and the format's own were kept";
+        "; this displacement is too fine for windows of four grid spacings, so that vectors need not follow it: the "
+        "conventions cannot be verified, and those of the format are used";
   } else if (detected.verdict == Verdict::cannot_be_told) {
     report += fmt::format(
-        "; by so small a displacement, below {} px, conventions cannot be told, and the format's own were kept",
+        "; the displacement is below {} px, too small to verify the conventions, and those of the format are used",
         telling_signal_px);
   } else if (detected.verdict == Verdict::noisy) {
     report += fmt::format(
-        "; they differ from the truth by more than it is itself, but follow {:.0f} +- {:.0f} % of it, as noisy vectors "
-        "do",
+        "; they differ from the truth by more than its rms, but follow {:.0f} +- {:.0f} % of it, like noisy vectors",
         100.0 * fit.slope, 100.0 * fit.slope_error);
   } else if (fit.slope < 0.5) {
     report += fmt::format(
-        "; they follow {:.2g} % of the true displacement only, as far too large windows do, or "
-        "displacements that are not in px",
+        "; they follow only {:.2g} % of the true displacement: windows are far too large, or displacements are not in "
+        "px",
         100.0 * fit.slope);
   }
   if (detected.ambiguous && detected.verdict != Verdict::cannot_be_told && detected.verdict != Verdict::mistaken)
     report +=
-        "; another reading fits as well (this displacement cannot tell them apart), and the format's own was kept";
+        "; another reading fits as well (this displacement does not distinguish them), and that of the format is used";
   return report;
 }
 
@@ -105,13 +105,14 @@ std::string difference_of(VectorConventions const& reading, VectorConventions co
     if (frames) parts.emplace_back("the frames were exchanged");
   }
   if (parts.empty() && reading.y_up && reading.mirror != own.mirror) {
-    parts.emplace_back(reading.mirror == Mirror::image ? "y counts from the image's last row"
-                                                       : "y is turned about the middle of the grid");
+    parts.emplace_back(reading.mirror == Mirror::image ? "y is counted from the last row of the image"
+                                                       : "y is mirrored about the middle of the grid");
   }
   if (parts.empty() && reading.offset_px != own.offset_px) {
     double const moved = own.offset_px - reading.offset_px;
-    parts.push_back(fmt::format("places lie {:.3g} px too far to the {}, as those of codes that count pixels otherwise",
-                                std::abs(moved), moved > 0.0 ? "right and down" : "left and up"));
+    parts.push_back(
+        fmt::format("positions are {:.3g} px too far to the {}, as if pixels were counted from another origin",
+                    std::abs(moved), moved > 0.0 ? "right and down" : "left and up"));
   }
   std::string text;
   for (std::string const& part : parts) text += (text.empty() ? "" : " and ") + part;
@@ -120,11 +121,10 @@ std::string difference_of(VectorConventions const& reading, VectorConventions co
 
 std::string LikelyMistake::warning() const {
   std::string const remedy =
-      conventions.empty() ? "mend the file" : "mend the file, or accept it with --conventions " + conventions;
+      conventions.empty() ? "mend the file" : "correct the file, or accept it with --conventions " + conventions;
   return fmt::format(
-      "{} (without that they would differ from the truth by {:.3g} px rms, as they are read by {:.3g} "
-      "px); {}",
-      text, mended.rms_px, as_read.rms_px, remedy);
+      "{} (without this the rms difference from the truth would be {:.3g} px, as read it is {:.3g} px); {}", text,
+      mended.rms_px, as_read.rms_px, remedy);
 }
 
 std::string offset_report(DetectedConventions const& detected) {
@@ -133,8 +133,8 @@ std::string offset_report(DetectedConventions const& detected) {
   if (offset == 0.0) return {};
   std::string const moved = fmt::format("x {} {:.3g} px", offset < 0.0 ? '-' : '+', std::abs(offset));
   if (with < without) return fmt::format("{} fits better: rms {:.3g} instead of {:.3g} px", moved, with, without);
-  return fmt::format("{} is the format's own and does not fit better: rms {:.3g}, without it {:.3g} px", moved, with,
-                     without);
+  return fmt::format("{} is the convention of the format and does not fit better: rms {:.3g}, without it {:.3g} px",
+                     moved, with, without);
 }
 
 }  // namespace gladstone

@@ -71,11 +71,11 @@ LikelyMistake find_factor(Search const& search) {
   if (!search.is_mended(mended)) return {};
   std::string text;
   if (both)
-    text = fmt::format("displacements are {:.3g} times the truth, as in another unit than px", factor.x);
+    text = fmt::format("displacements are {:.3g} times the truth, as if in another unit than px", factor.x);
   else if (!determines(&Vec2d::y))
-    text = fmt::format("u is {:.3g} times the truth (v is too small to tell)", factor.x);
+    text = fmt::format("u is {:.3g} times the truth (v is too small for an estimate)", factor.x);
   else if (!determines(&Vec2d::x))
-    text = fmt::format("v is {:.3g} times the truth (u is too small to tell)", factor.y);
+    text = fmt::format("v is {:.3g} times the truth (u is too small for an estimate)", factor.y);
   else
     text = fmt::format("u is {:.3g} times and v {:.3g} times the truth", factor.x, factor.y);
   VectorConventions scaled = search.own.conventions;
@@ -176,14 +176,15 @@ std::string describe_shift(FittedShift const& fitted) {
   };
   auto const along = [&](char axis, double value, double uncertainty, char other) {
     return fmt::format(
-        "places are shifted by {:.4g} px in {}, known to {:.2g} px (in {} this displacement cannot tell)",
+        "positions are shifted by {:.4g} px in {}, to within {:.2g} px (in {} this displacement does not determine a "
+        "shift)",
         rounded(value, uncertainty), axis, std::max(digit(uncertainty), uncertainty), other);
   };
   auto const [shift, uncertainty] = fitted;
   if (!(uncertainty.y < vague_px) && uncertainty.x < vague_px) return along('x', shift.x, uncertainty.x, 'y');
   if (!(uncertainty.x < vague_px) && uncertainty.y < vague_px) return along('y', shift.y, uncertainty.y, 'x');
   double const larger = std::max(uncertainty.x, uncertainty.y);
-  return fmt::format("places are shifted by ({:.4g}, {:.4g}) px, each known to {:.2g} px", rounded(shift.x, larger),
+  return fmt::format("positions are shifted by ({:.4g}, {:.4g}) px, each to within {:.2g} px", rounded(shift.x, larger),
                      rounded(shift.y, larger), std::max(digit(larger), larger));
 }
 
@@ -246,7 +247,7 @@ LikelyMistake find_place_factor(Search const& search) {
   if (!search.is_mended(mended)) return {};
   VectorConventions words = search.own.conventions;
   words.px = std::stod(fmt::format("{:.3g}", words.px.value_or(1.0) * best));
-  return {fmt::format("places are {:.3g} times the true ones, as in another unit than px", best), describe(words),
+  return {fmt::format("positions are {:.3g} times the true ones, as if in another unit than px", best), describe(words),
           mended, search.own, scaled(best)};
 }
 

@@ -40,7 +40,8 @@ double number_of(std::string_view word) {
 double scale_of(std::string_view word) {
   double const scale = number_of(word);
   if (scale > 0.0) return scale;
-  throw std::invalid_argument(fmt::format("conventions: {} is not above 0; say how much a pixel is in the file", word));
+  throw std::invalid_argument(
+      fmt::format("conventions: {} is not above 0; give the size of a pixel in the unit of the file", word));
 }
 
 }  // namespace
@@ -130,8 +131,8 @@ VectorFile convert_to_pixels(VectorFile file, std::string const& path) {
     std::string const what = (places ? "places in " + file.place_unit : std::string()) +
                              (places && displacements ? " and " : "") +
                              (displacements ? "displacements in " + file.displacement_unit : std::string());
-    throw DataError(path, fmt::format("has {} (vectors are compared in px); say how much a pixel is in them, with "
-                                      "--conventions {}{}{}, or export px",
+    throw DataError(path, fmt::format("has {} (vectors are compared in px); give the size of a pixel in these units "
+                                      "with --conventions {}{}{}, or export px",
                                       what, places ? "px=NUMBER" : "", places && displacements ? "," : "",
                                       displacements ? "px/frame=NUMBER" : ""));
   }

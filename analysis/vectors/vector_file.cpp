@@ -145,7 +145,7 @@ void write_vectors(std::string const& path, DisplacementField const& field, File
     return;
   }
   if (!path.ends_with(".h5")) {
-    throw std::invalid_argument(path + ": vectors are written as .h5 or .csv; end the name in one of them");
+    throw std::invalid_argument(path + ": vectors are written as .h5 or .csv; use one of these endings");
   }
 
   Hdf5Writer file(path, origin);
@@ -156,14 +156,14 @@ void write_vectors(std::string const& path, DisplacementField const& field, File
   };
   auto const& p = field.position_px;
   auto const& d = field.displacement_px;
-  write("/x_px", "px", "column of the window's centre, pixel centres at whole numbers from 0",
+  write("/x_px", "px", "column of the window centre, pixel centres at integers from 0",
         [&](std::size_t i) { return p[i].x; });
-  write("/y_px", "px", "row of the window's centre, downwards", [&](std::size_t i) { return p[i].y; });
+  write("/y_px", "px", "row of the window centre, downwards", [&](std::size_t i) { return p[i].y; });
   write("/u_px", "px", "displacement to the right, flow minus reference", [&](std::size_t i) { return d[i].x; });
   write("/v_px", "px", "displacement downwards, flow minus reference", [&](std::size_t i) { return d[i].y; });
   write("/sigma_u_px", "px", "estimated standard uncertainty of u", [&](std::size_t i) { return sigma(i).x; });
   write("/sigma_v_px", "px", "estimated standard uncertainty of v", [&](std::size_t i) { return sigma(i).y; });
-  write("/peak_ratio", "1", "highest over second highest correlation peak", ratio);
+  write("/peak_ratio", "1", "height of the highest correlation peak over that of the second highest", ratio);
   auto const write_codes = [&](char const* name, char const* description, auto const& value_of) {
     std::vector<std::int64_t> codes(count);
     for (std::size_t i = 0; i < count; ++i) codes[i] = value_of(i);
@@ -172,13 +172,13 @@ void write_vectors(std::string const& path, DisplacementField const& field, File
   write_codes("/status", "0 valid, 1 replaced, 2 masked, 3 invalid", status);
   write("/u_raw_px", "px", "displacement to the right before replacement", [&](std::size_t i) { return raw(i).x; });
   write("/v_raw_px", "px", "displacement downwards before replacement", [&](std::size_t i) { return raw(i).y; });
-  write("/correlation", "1", "correlation coefficient of the peak that u_raw_px, v_raw_px is", correlation);
+  write("/correlation", "1", "correlation coefficient of the peak at u_raw_px, v_raw_px", correlation);
   write_codes("/reason",
-              "0 as measured, 1 replaced by another peak, 2 replaced by the neighbours' median, 3 masked, 4 no signal, "
-              "5 spurious and not replaced, 6 no peak in range, 7 uncorrelated, 8 moved out of the frames",
+              "0 measured, 1 replaced by another peak, 2 replaced by the median of the neighbours, 3 masked, 4 no "
+              "signal, 5 spurious and not replaced, 6 no peak in range, 7 uncorrelated, 8 moved out of the frames",
               reason);
   write_codes("/failed_test", "0 none, 1 median, 2 whole displacement, 3 peak ratio, 4 correlation", failed);
-  write_codes("/ambiguous", "1 where another displacement fits (nearly) as well", ambiguous);
+  write_codes("/ambiguous", "1 if another displacement has (nearly) the same correlation", ambiguous);
   if (!field.verdict.empty()) file.attribute("/", "verdict", field.verdict);
   file.attribute("/", "warnings", fmt::format("{}", fmt::join(field.warnings, "\n")));
   if (field.columns > 0) {

@@ -67,7 +67,7 @@ std::string LeftOutVectors::text() const {
   auto const add = [&list](std::size_t count, std::string const& reason) {
     if (count > 0) list += fmt::format("{}{} {}", list.empty() ? "" : ", ", count, reason);
   };
-  add(place_not_finite, "with a place that is nan or infinite");
+  add(place_not_finite, "with a position that is nan or infinite");
   add(outside_image, fmt::format("outside the image (by more than {} px)", outside_margin_px));
   add(displacement_not_finite, "with a displacement that is nan or infinite");
   add(displacement_beyond_image, "with a displacement larger than the image");
@@ -115,27 +115,27 @@ std::string refusal_of_places(DisplacementField const& screened, LeftOutVectors 
     std::string const where =
         left_out.outside_image > 0 ? " (" + Extent{left_out.low_px, left_out.high_px}.text() + ")" : "";
     return fmt::format(
-        "none of {} vectors lies in {}{}: {}; places are taken in px from the first pixel's centre, "
-        "export them so, or say what is to be added to them with --conventions offset=NUMBER",
+        "none of the {} vectors lies in {}{}: {}; positions must be in px from the centre of the first pixel: export "
+        "them "
+        "so, or give the offset to be added with --conventions offset=NUMBER",
         left_out.all(), image, where, left_out.text());
   }
   if (left_out.outside_image > screened.size()) {
     return fmt::format(
-        "{} of {} vectors lie outside {} ({}), as places from another origin do; places are taken in px from the first "
-        "pixel's centre, export them so, or say what is to be added to them with --conventions offset=NUMBER",
+        "{} of {} vectors lie outside {} ({}), as if positions had another origin; positions must be in px from the "
+        "centre of the first pixel: export them so, or give the offset to be added with --conventions offset=NUMBER",
         left_out.outside_image, left_out.outside_image + screened.size(), image,
         Extent{left_out.low_px, left_out.high_px}.text());
   }
   Extent const extent = extent_of(screened);
   Vec2d const size = extent.high - extent.low;
   if (static_cast<double>(screened.size()) > 2.0 * (size.x + 1.0) * (size.y + 1.0)) {
-    return fmt::format("{} vectors lie closer than pixels ({}); export places in px, not in mm", screened.size(),
-                       extent.text());
+    return fmt::format("{} vectors are closer together than pixels ({}); export positions in px, not in mm",
+                       screened.size(), extent.text());
   }
   if (RepeatedPlaces const repeated = find_repeated_places(screened); repeated.count > 0) {
     return fmt::format(
-        "{} of {} vectors stand at a place that another has already, first at ({:.6g}, {:.6g}) px, and would count "
-        "twice; remove the repeated rows",
+        "{} of {} vectors have the position of another one, the first at ({:.6g}, {:.6g}) px; remove the repeated rows",
         repeated.count, screened.size(), repeated.first.x, repeated.first.y);
   }
   return {};
@@ -147,8 +147,9 @@ std::string doubt_about_places(DisplacementField const& screened, int image_colu
   Vec2d const size = extent.high - extent.low;
   double const share = size.x * size.y / (static_cast<double>(image_columns) * image_rows);
   if (screened.size() < fewest || share >= 0.05) return {};
-  return fmt::format("the vectors cover {:.2g} % of the image only ({}); if that is not meant, export places in px",
-                     100.0 * share, extent.text());
+  return fmt::format(
+      "the vectors cover only {:.2g} % of the image ({}); if this is not intended, export positions in px",
+      100.0 * share, extent.text());
 }
 
 }  // namespace gladstone

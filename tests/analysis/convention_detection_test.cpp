@@ -150,7 +150,7 @@ TEST(DetectConventions, NamesTheLikelyMistake) {
                    std::swap(d.x, d.y);
                  },
                  "y-down,v-down,axes-exchanged,offset=0"},
-           Wrong{"places are shifted by (12, -4) px",
+           Wrong{"positions are shifted by (12, -4) px",
                  [](Vec2d&p, Vec2d&) {
                    p += Vec2d{12.0, -4.0};
                  },
@@ -234,7 +234,8 @@ TEST(DetectConventions, NamesTheLikeliestOfReadingsThatFitAlmostAlike) {
               testing::StartsWith("the frames were exchanged, or y and v point up"));
   VectorFile shifted = file;
   for (Vec2d& p : shifted.field.position_px) p.x += 16.0;
-  EXPECT_THAT(detect_conventions(shifted, vortex, 200).mistake.text, testing::StartsWith("places are shifted by (16"));
+  EXPECT_THAT(detect_conventions(shifted, vortex, 200).mistake.text,
+              testing::StartsWith("positions are shifted by (16"));
   EXPECT_FALSE(detect_conventions(file, vortex, 200).mistake.found());
 }
 
@@ -262,7 +263,7 @@ TEST(DetectConventions, ShiftIsKnownToItsResolution) {
       std::string const text = detect_conventions(file, vortex, 200).mistake.text;
       Vec2d found{};
       double known_px = 0.0;
-      ASSERT_EQ(std::sscanf(text.c_str(), "places are shifted by (%lf, %lf) px, each known to %lf px", &found.x,
+      ASSERT_EQ(std::sscanf(text.c_str(), "positions are shifted by (%lf, %lf) px, each to within %lf px", &found.x,
                             &found.y, &known_px),
                 3)
           << text;
@@ -296,10 +297,11 @@ TEST(DetectConventions, TellsOnlyWhatTheDisplacementDetermines) {
     shifted.field.displacement_px[i] = shear(p - Vec2d{16.0, 16.0}) + 0.02 * noise(i);
     stretched.field.displacement_px[i] = 3.0 * shear(p) + 0.02 * noise(i);
   }
-  EXPECT_THAT(
-      detect_conventions(shifted, shear, 200).mistake.text,
-      AllOf(testing::StartsWith("places are shifted by 15.99 px in y"), HasSubstr("in x this displacement cannot")));
-  EXPECT_EQ(detect_conventions(stretched, shear, 200).mistake.text, "u is 3 times the truth (v is too small to tell)");
+  EXPECT_THAT(detect_conventions(shifted, shear, 200).mistake.text,
+              AllOf(testing::StartsWith("positions are shifted by 15.99 px in y"),
+                    HasSubstr("in x this displacement does not")));
+  EXPECT_EQ(detect_conventions(stretched, shear, 200).mistake.text,
+            "u is 3 times the truth (v is too small for an estimate)");
 }
 
 // A bias of u alone is no shift of places by a pixel, which changes the many small errors of v and the bias hardly.
@@ -360,7 +362,7 @@ TEST(DetectConventions, KeepsWhatFollowsTheTruthHoweverNoisy) {
   EXPECT_EQ(found.verdict, Verdict::noisy) << found.report;
   EXPECT_FALSE(found.conventions.y_up);
   EXPECT_FALSE(found.conventions.v_up);
-  EXPECT_THAT(found.report, HasSubstr("as noisy vectors do"));
+  EXPECT_THAT(found.report, HasSubstr("like noisy vectors"));
   for (std::size_t i = 0; i < file.field.size(); ++i) file.field.displacement_px[i] = three_times * noise(i);
   EXPECT_EQ(detect_conventions(file, waves, 200).verdict, Verdict::fits_none) << "noise alone";
 }
@@ -403,7 +405,7 @@ TEST(DetectConventions, ReportsTheOffsetWithAndWithout) {
   EXPECT_EQ(found.best.conventions.offset_px, -0.5);
   EXPECT_LT(found.best.rms_px, 1e-12);
   EXPECT_GT(found.fit.rms_px, 0.003);
-  EXPECT_THAT(found.mistake.text, testing::StartsWith("places lie 0.5 px too far to the right and down"));
+  EXPECT_THAT(found.mistake.text, testing::StartsWith("positions are 0.5 px too far to the right and down"));
 
   VectorFile half = file;
   half.conventions.offset_px = -0.5;

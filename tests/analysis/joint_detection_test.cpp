@@ -75,7 +75,7 @@ TEST(DetectCommonConventions, FindsAShiftThatMostCasesCannotSee) {
   std::vector<VectorsWithTruth> files(5, written(uniform, same, {12.0, 0.0}));
   files.push_back(written(vortex, same, {12.0, 0.0}));
   CommonConventions const found = detect_common_conventions(files);
-  EXPECT_THAT(found.mistake.text, testing::StartsWith("places are shifted by (12, 0) px"));
+  EXPECT_THAT(found.mistake.text, testing::StartsWith("positions are shifted by (12, 0) px"));
   EXPECT_EQ(found.decisive, 5u);
 }
 
@@ -149,7 +149,7 @@ TEST(DetectCommonConventions, FindsMistakesAmongOutliers) {
                  [](Vec2d d) {
                    return Vec2d{d.y, d.x};
                  }},
-           Wrong{"places are shifted by (16", same, {16.0, 0.0}},
+           Wrong{"positions are shifted by (16", same, {16.0, 0.0}},
            Wrong{"displacements are ", [](Vec2d d) { return 10.0 * d; }},
            Wrong{"displacements are ", [](Vec2d d) { return 1.2 * d; }},
            Wrong{"displacements are (0.",

@@ -106,7 +106,7 @@ TEST(EveryOpticalFlow, NamesSettingsThatItDoesNotHeed) {
     settings.least_peak_ratio = 1.2;
     auto const warnings = make_correlator(settings)->correlate(pair.reference, pair.flow).warnings;
     ASSERT_EQ(warnings.size(), 1u) << method;
-    EXPECT_NE(warnings[0].find("does not heed correlate.subpixel, correlate.least_peak_ratio ("), std::string::npos)
+    EXPECT_NE(warnings[0].find("ignores correlate.subpixel, correlate.least_peak_ratio ("), std::string::npos)
         << warnings[0];
   }
 }

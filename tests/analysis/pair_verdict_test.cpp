@@ -134,7 +134,7 @@ TEST(PairVerdict, TellsWhenAFifthFailsATest) {
     EXPECT_EQ(std::isnan(field.displacement_px[i].x), !field.counts(i)) << i;
     EXPECT_EQ(field.failed[i] != FailedTest::none, field.reason[i] == VectorReason::not_replaced) << i;
   }
-  EXPECT_THAT(field.warnings, ElementsAre(AllOf(HasSubstr("are invalid"), HasSubstr("ask less in the test"))));
+  EXPECT_THAT(field.warnings, ElementsAre(AllOf(HasSubstr("are invalid"), HasSubstr("relax the test"))));
 }
 
 PairSequence repeated(std::size_t pairs, ParticleSettings const& settings, double flow_px, std::uint64_t other_seed) {
@@ -248,7 +248,7 @@ TEST(PairVerdict, WarnsOfOnePictureGivenTwice) {
   for (std::string const& method : correlation_methods()) {
     CorrelationSettings settings;
     settings.method = method;
-    EXPECT_THAT(judged(pair, settings).warnings, ElementsAre(HasSubstr("same picture, bit for bit"))) << method;
+    EXPECT_THAT(judged(pair, settings).warnings, ElementsAre(HasSubstr("same image, bit for bit"))) << method;
   }
   pair.flow(60, 60) += 1.0;
   EXPECT_THAT(judged(pair).warnings, IsEmpty()) << "another picture: a small real displacement looks like this";
@@ -274,10 +274,10 @@ TEST(PairVerdict, StandsInOneWord) {
   EXPECT_THAT(judged(render_particle_pair({.noise = 0.05, .pitch_px = 8.3}, everywhere(2.5, 0.0))).verdict,
               HasSubstr("not judged: the pattern repeats every 8.3"));
   ParticlePair const flat{Image<double>(128, 128, 100.0), Image<double>(128, 128, 100.0)};
-  EXPECT_EQ(judged(flat).verdict, "not judged: no window holds a signal");
+  EXPECT_EQ(judged(flat).verdict, "not judged: no window has a signal");
   double const nan = std::numeric_limits<double>::quiet_NaN();
   ParticlePair const masked{Image<double>(128, 128, nan), Image<double>(128, 128, nan)};
-  EXPECT_EQ(judged(masked).verdict, "not judged: no window is known");
+  EXPECT_EQ(judged(masked).verdict, "not judged: all windows are masked");
   CorrelationSettings settings;
   settings.median_threshold.reset();
   EXPECT_THAT(judged(twice, settings).verdict, HasSubstr("not judged: correlate.median_threshold"));
@@ -290,7 +290,7 @@ TEST(PairVerdict, StandsInOneWord) {
   EXPECT_THAT(judged(render_particle_pair({.columns = 64, .rows = 64}, everywhere(0.3, 0.0)), windows_of(64)).verdict,
               HasSubstr("not judged: fewer than 4 windows"));
   twice.flow = twice.reference;
-  EXPECT_EQ(judged(twice).verdict, "not judged: both frames are the same picture");
+  EXPECT_EQ(judged(twice).verdict, "not judged: both frames are the same image");
 }
 
 // The first pass finds chance peaks up to 32 px far, by which windows at the rim are taken out of the frames. Nothing

@@ -56,7 +56,7 @@ TEST(ScreenVectors, RefusesVectorsGivenTwice) {
   }
   LeftOutVectors const left_out = screen_vectors(field, 0.0, columns, rows);
   EXPECT_THAT(refusal_of_places(field, left_out, columns, rows),
-              AllOf(HasSubstr("3 of 58 vectors stand at a place"), HasSubstr("first at (47.5, 15.5) px")));
+              AllOf(HasSubstr("3 of 58 vectors have the position"), HasSubstr("first at (47.5, 15.5) px")));
 }
 
 TEST(ScreenVectors, TakesImpossiblePlacesOutAndCountsThem) {
@@ -113,7 +113,7 @@ TEST(ScreenVectors, SaysWhereTheyAreWhenNoneIsLeft) {
   LeftOutVectors const left_out = screen_vectors(field, 0.0, columns, rows);
   EXPECT_EQ(field.size(), 0u);
   EXPECT_THAT(refusal_of_places(field, left_out, columns, rows),
-              AllOf(HasSubstr("none of 55 vectors lies in the image of 200 x 100 px"),
+              AllOf(HasSubstr("none of the 55 vectors lies in the image of 200 x 100 px"),
                     HasSubstr("x from 1550 to 17550, y from 1550 to 7950"), HasSubstr("54 outside the image"),
                     HasSubstr("1 with a place that is nan"), HasSubstr("px")));
 }
@@ -134,7 +134,7 @@ TEST(ScreenVectors, RefusesPlacesCloserThanPixels) {
   for (Vec2d& p : field.position_px) p = 0.01 * p;
   LeftOutVectors const left_out = screen_vectors(field, 0.0, columns, rows);
   EXPECT_THAT(refusal_of_places(field, left_out, columns, rows),
-              AllOf(HasSubstr("closer than pixels"), HasSubstr("not in mm")));
+              AllOf(HasSubstr("closer together than pixels"), HasSubstr("not in mm")));
 }
 
 TEST(ScreenVectors, DoubtsPlacesThatCrowdInACorner) {

@@ -174,7 +174,7 @@ TEST_F(Benchmark, FindsOneMistakeInAllCases) {
     std::map<std::string, std::string> files;
   };
   for (Wrong const& wrong : {
-           Wrong{"likely mistake: places are shifted by (16, 0) px",
+           Wrong{"likely mistake: positions are shifted by (16, 0) px",
                  changed_truth([](Vec2d d) { return d; }, {16.0, 0.0})},
            Wrong{"likely mistake: displacements are (0.5, 0) px greater than the truth", changed_truth([](Vec2d d) {
                    return d + Vec2d{0.5, 0.0};
@@ -213,7 +213,7 @@ TEST_F(Benchmark, RefusesHalfAGridAndRowsGivenTwice) {
   };
   // rows are expected as far as 96 px from the lower border: up to y = 912, the 57th
   refused(lines(1 + 31 * 63), "has 1953 of the 3591 vectors of its grid");
-  refused(whole + lines(64).substr(8), "63 of 4032 vectors stand at a place");
+  refused(whole + lines(64).substr(8), "63 of 4032 vectors have the position");
   std::string gap = whole;
   std::size_t const at = gap.find("\n512,512,") + 1;
   gap.erase(at, gap.find('\n', at) + 1 - at);

@@ -217,7 +217,7 @@ TEST_F(DataErrors, GarbageAmongTheVectorsHasItsLine) {
   write("v.csv", "x,y,u,v\n10,10,0.1,0.2\n20,10,a lot,0.2\n");
   expect_refused({"compare", "case", "--vectors", "v.csv"}, 2, {"v.csv:3: u = \"a lot\" is not a number"});
   write("v.csv", "x,y,u,v\n10,10,0.1\n");
-  expect_refused({"compare", "case", "--vectors", "v.csv"}, 2, {"v.csv:2: 3 fields where the header names 4 columns"});
+  expect_refused({"compare", "case", "--vectors", "v.csv"}, 2, {"v.csv:2: 3 fields, but the header names 4 columns"});
   write("v.csv", "");
   expect_refused({"compare", "case", "--vectors", "v.csv"}, 2, {"v.csv:1: the file is empty"});
   write("v.csv", "x,y,u,v\n10,10,nan,nan\n");

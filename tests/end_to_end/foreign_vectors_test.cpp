@@ -212,15 +212,16 @@ TEST_F(ForeignVectors, WhoseConventionsCannotBeToldAreWarnedOf) {
   Outcome const told = gladstone({"compare", "quiet", "--no-figures", "--vectors", "still.csv"});
   EXPECT_EQ(told.exit_code, 0) << told.err;
   EXPECT_THAT(told.err, testing::HasSubstr("warning: still.csv: "));
-  EXPECT_THAT(told.err, testing::HasSubstr("conventions cannot be told"));
+  EXPECT_THAT(told.err, testing::HasSubstr("too small to verify the conventions"));
 }
 
 TEST_F(ForeignVectors, AreRefusedWhereNoneLiesInTheImage) {
   write_changed("far.csv", [](std::size_t, Vec2d& place, Vec2d&) { place = 1000.0 * place; });
   expect_refused({"compare", "case", "--vectors", "far.csv"}, 2,
-                 {"far.csv: none of", "lies in the image of 128 x 128 px (x from 7500 to", "px"});
+                 {"far.csv: none of the", "lies in the image of 128 x 128 px (x from 7500 to", "px"});
   write_changed("mm.csv", [](std::size_t, Vec2d& place, Vec2d&) { place = 0.01 * place; });
-  expect_refused({"compare", "case", "--vectors", "mm.csv"}, 2, {"mm.csv: ", "lie closer than pixels", "not in mm"});
+  expect_refused({"compare", "case", "--vectors", "mm.csv"}, 2,
+                 {"mm.csv: ", "closer together than pixels", "not in mm"});
 }
 
 // Pseudo-random displacements as long as the truth follow it in no reading. Places 21 px to the right are named.
@@ -235,7 +236,7 @@ TEST_F(ForeignVectors, ThatFitNoConventionAreRefusedUnlessTold) {
   write_changed("shifted.csv", [](std::size_t, Vec2d& place, Vec2d&) { place += Vec2d{21.0, 0.0}; });
   Outcome const shifted = gladstone({"compare", "case", "--no-figures", "--vectors", "shifted.csv"});
   EXPECT_EQ(shifted.exit_code, 1) << shifted.err;
-  EXPECT_THAT(shifted.err, testing::HasSubstr("likely mistake: places are shifted by 2"));
+  EXPECT_THAT(shifted.err, testing::HasSubstr("likely mistake: positions are shifted by 2"));
   auto const told = compare({"--vectors", "shifted.csv", "--conventions", "y-down,v-down"});
   EXPECT_GT(told["ray_truth"]["rms_px"].get<double>(), 10 * ours_["ray_truth"]["rms_px"].get<double>());
 }
@@ -244,7 +245,7 @@ TEST_F(ForeignVectors, HalfAPixelIsNotForgiven) {
   write_changed("half.csv", [](std::size_t, Vec2d& place, Vec2d&) { place += Vec2d{0.5, 0.5}; });
   Outcome const outcome = gladstone({"compare", "case", "--no-figures", "--json", "--vectors", "half.csv"});
   EXPECT_EQ(outcome.exit_code, 1) << outcome.err;
-  EXPECT_THAT(outcome.err, testing::HasSubstr("places lie 0.5 px too far to the right and down"));
+  EXPECT_THAT(outcome.err, testing::HasSubstr("positions are 0.5 px too far to the right and down"));
   nlohmann::json const fit = nlohmann::json::parse(outcome.out)["vectors"]["fit"];
   EXPECT_EQ(fit["offset_px"], 0.0);
   EXPECT_EQ(fit["likely_mistake"]["conventions"], "y-down,v-down,offset=-0.5");

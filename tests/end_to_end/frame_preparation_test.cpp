@@ -109,7 +109,7 @@ TEST_F(MaskedFrames, NeedMasksThatSuitThem) {
               HasSubstr("missing.tif"));
   Outcome const far = correlate("[[correlate.mask]]\nkind = \"polygon\"\nx_px = [90, 99, 90]\ny_px = [1, 2, 9]\n");
   EXPECT_EQ(far.exit_code, 2);
-  EXPECT_THAT(far.err, HasSubstr("the polygon from (90, 1) holds no pixel's middle of the frames (64 x 64 px)"));
+  EXPECT_THAT(far.err, HasSubstr("the polygon from (90, 1) contains no pixel centre of the frames (64 x 64 px)"));
   Outcome const outcome = correlate("[[correlate.mask]]\nkind = \"polygon\"\nx_px = [1, 2]\ny_px = [1, 2]\n");
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_THAT(outcome.err, AllOf(HasSubstr("config.toml:5:"), HasSubstr("config.toml:6:")));

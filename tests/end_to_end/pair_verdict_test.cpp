@@ -114,9 +114,9 @@ TEST_F(PairOfFrames, GivenTwiceIsWarnedOf) {
   std::filesystem::copy_file(in("a.tif"), in("b.tif"), std::filesystem::copy_options::overwrite_existing);
   Outcome const outcome = correlate("v.h5");
   EXPECT_EQ(outcome.exit_code, 0);
-  EXPECT_THAT(outcome.err, HasSubstr("both frames are the same picture"));
+  EXPECT_THAT(outcome.err, HasSubstr("both frames are the same image"));
   Hdf5Reader const file(in("v.h5").string());
-  EXPECT_THAT(file.attribute("warnings"), HasSubstr("both frames are the same picture"));
+  EXPECT_THAT(file.attribute("warnings"), HasSubstr("both frames are the same image"));
   EXPECT_THAT(file.attribute("verdict"), StartsWith("not judged: "));
   EXPECT_EQ(nlohmann::json::parse(outcome.out)["verdict"], file.attribute("verdict"));
 }

@@ -32,8 +32,8 @@ std::string unheeded(CorrelationSettings const& settings) {
   note("replace", settings.replace == usual.replace);
   if (keys.empty()) return {};
   return fmt::format(
-      "correlate.method = \"{}\" does not heed correlate.{} (optical flow has no correlation peaks, and its "
-      "vectors are not tested); leave out what is not heeded",
+      "correlate.method = \"{}\" ignores correlate.{} (optical flow has no correlation peaks, and its vectors are not "
+      "validated); remove these settings",
       settings.method, fmt::join(keys, ", correlate."));
 }
 

@@ -27,9 +27,9 @@ FrameChange read_polygon_mask(SetupTable& table, FramePreparation&) {
   std::vector<double> const x = table.number_list("x_px", {}, fewest, most);
   std::vector<double> const y = table.number_list("y_px", {}, fewest, most);
   for (char const* key : {"x_px", "y_px"})
-    if (!table.has(key)) table.problem(key, "is missing (a polygon needs its corners); give three or more numbers");
+    if (!table.has(key)) table.problem(key, "is missing (a polygon requires corners); give three or more numbers");
   if (!x.empty() && !y.empty() && x.size() != y.size())
-    table.problem("y_px", "has another number of corners than x_px (each corner has both); give as many");
+    table.problem("y_px", "has another number of values than x_px (each corner has both coordinates); give as many");
   std::vector<Vec2d> corners;
   for (std::size_t k = 0; k < std::min(x.size(), y.size()); ++k) corners.push_back({x[k], y[k]});
   return [corners](PreparedFrames& frames) {
@@ -44,8 +44,8 @@ FrameChange read_polygon_mask(SetupTable& table, FramePreparation&) {
     if (!any)
       throw DataError(
           "correlate.mask",
-          fmt::format("the polygon from ({:g}, {:g}) holds no pixel's middle of the frames ({} x {} px); "
-                      "give its corners in px, from 0 in the middle of the first pixel, y downwards",
+          fmt::format("the polygon from ({:g}, {:g}) contains no pixel centre of the frames ({} x {} px); give its "
+                      "corners in px, from 0 at the centre of the first pixel, y downwards",
                       corners.empty() ? 0.0 : corners[0].x, corners.empty() ? 0.0 : corners[0].y, columns, rows));
   };
 }

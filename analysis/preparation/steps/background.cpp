@@ -38,7 +38,7 @@ FrameChange read_background(SetupTable& table, FramePreparation& preparation) {
   std::vector<SetupTable> frames = table.tables("frame");
   if (frames.empty())
     table.problem("frame",
-                  "is missing (a background needs a sequence); give frame = [{ reference = \"a.tif\", flow = "
+                  "is missing (a background requires a sequence); give frame = [{ reference = \"a.tif\", flow = "
                   "\"b.tif\" }, ...]");
   std::vector<std::string> reference, flow;
   for (SetupTable& pair : frames) {

@@ -48,7 +48,7 @@ VectorFile read_gladstone_hdf5(std::string const& path) {
   std::size_t count = 0;
   auto const read = [&](std::string const& dataset) {
     if (!file.has(dataset)) {
-      throw DataError(path, fmt::format("no dataset {} (the file holds {}); vectors.h5 of gladstone correlate has it",
+      throw DataError(path, fmt::format("no dataset {} (the file contains {}); use vectors.h5 of gladstone correlate",
                                         dataset, fmt::join(file.dataset_names(), ", ")));
     }
     std::vector<double> values = file.read(dataset);

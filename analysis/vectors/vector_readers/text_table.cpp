@@ -117,7 +117,7 @@ TextTable read_text_table(std::string const& path) {
     if (format.separator == 0) name_columns(at, text);
     if (text.front() == '#') continue;
     if (table.tecplot && lower_case(text.substr(0, 4)) == "zone") {
-      table.warnings.push_back(fmt::format("{}:{}: another zone begins here; the first alone is read", path, at));
+      table.warnings.push_back(fmt::format("{}:{}: another zone begins here; only the first one is read", path, at));
       break;
     }
 
@@ -128,7 +128,7 @@ TextTable read_text_table(std::string const& path) {
               ? "; commas may both separate the fields and mark decimals: export decimal points, "
                 "or semicolons between the fields"
               : "";
-      fail(at, fmt::format("{} fields where the header names {} columns ({}){}", fields.size(), table.names.size(),
+      fail(at, fmt::format("{} fields, but the header names {} columns ({}){}", fields.size(), table.names.size(),
                            excerpt(fmt::format("{}", fmt::join(table.names, ", ")), 200), commas));
     }
     for (std::size_t i = 0; i < fields.size(); ++i) {
@@ -143,10 +143,10 @@ TextTable read_text_table(std::string const& path) {
   if (table.line.empty()) fail(table.header_line, "no row of numbers follows the header");
   if (declared.count() && *declared.count() != static_cast<double>(table.rows())) {
     table.complete = false;
-    table.warnings.push_back(fmt::format(
-        "{}:{}: the header declares {} vectors, but the file contains {} (cut short, or written with another "
-        "header); export it again",
-        path, declared.line(), *declared.count(), table.rows()));
+    table.warnings.push_back(
+        fmt::format("{}:{}: the header declares {} vectors, but the file contains {} (truncated, or written with "
+                    "another header); export it again",
+                    path, declared.line(), *declared.count(), table.rows()));
   }
   return table;
 }
