@@ -29,33 +29,34 @@ namespace {
 
 /// One row per command.
 constexpr std::array commands{
-    Command{"render", "Trace the frames of a setup, a pair or the planes of a calibration, into a case folder",
+    Command{"render", "Render the image pair of a setup, or the planes of a calibration, into a case folder",
             "gladstone render table1.toml -o out/case", attach_render},
     Command{"correlate", "Measure the displacement between two frames", "gladstone correlate out/case",
             attach_correlate},
     Command{"compare", "Compare measured vectors with ray truth and theory", "gladstone compare out/case",
             attach_compare},
-    Command{"trace", "Trace given rays and say where they end and why",
+    Command{"trace", "Trace given rays and report where and why they end",
             "gladstone trace table1.toml --rays rays.csv -o out.csv", attach_trace},
     Command{"info", "Describe a field, an image, a lens, a sphere or a setup's particles",
             "gladstone info field slice.h5", attach_info},
-    Command{"design", "Tell what a setup can measure by closed forms, or choose one that meets requirements",
+    Command{"design", "Predict what a set-up measures, or recommend one that meets requirements",
             "gladstone design table1.toml --figures out/design", attach_design},
-    Command{"validate", "Run the built-in oracles: measured against exact", "gladstone validate", attach_validate},
-    Command{"calibrate", "Fit cameras to the dots of a calibration case, or of your own pictures",
+    Command{"validate", "Compare results with exact solutions", "gladstone validate", attach_validate},
+    Command{"calibrate", "Fit cameras to the dots of a calibration case, or of your own images",
             "gladstone calibrate out/calibration", attach_calibrate},
-    Command{"views", "Extract the views that a plenoptic picture holds, and focus it anew",
+    Command{"views", "Extract the views of a plenoptic image, and refocus it",
             "gladstone views out/plenoptic --refocus 4", attach_views},
     Command{"sweep", "Parameter studies: plan, run, status, collect",
             "gladstone sweep plan study.toml -o run && gladstone sweep run run --jobs 2 && gladstone sweep collect run",
             attach_sweep},
-    Command{"report", "Write one file that tells what a study or a case found, with charts and every setting",
+    Command{"report", "Write a report on a study, a case or a measurement as one file, with charts and all settings",
             "gladstone report out/run -o report.html", attach_report},
-    Command{"benchmark", "Score estimators of displacement, ours and your own, on published cases",
+    Command{"benchmark", "Score displacement estimators, ours and yours, on published cases",
             "gladstone benchmark -o out/benchmark --vectors mine=my_vectors", attach_benchmark},
-    Command{"demo", "Run the seed's experiment, from setup to error report", "gladstone demo -o out/demo", attach_demo},
-    Command{"gallery", "Render particle images as they should be, and with what spoils them",
-            "gladstone gallery -o out/gallery", attach_gallery},
+    Command{"demo", "Run the experiment of Rajendran et al. (2019), from setup to error report",
+            "gladstone demo -o out/demo", attach_demo},
+    Command{"gallery", "Render normal and degraded particle images", "gladstone gallery -o out/gallery",
+            attach_gallery},
 };
 
 /// Reports a command line that names no command or contains unknown arguments.
@@ -77,7 +78,7 @@ int refuse_arguments(std::vector<std::string> const& unknown, CLI::App const* co
     chooses = !known.empty();
   }
   bool const is_option = name.starts_with("-");
-  std::string message = "no command is named";
+  std::string message = "no command is given";
   if (!unknown.empty())
     message = fmt::format("unknown {} \"{}\"", is_option ? "option" : chooses ? "command" : "argument", name);
   if (is_option) {
@@ -102,19 +103,20 @@ int run(int argc, char** argv) {
   app.set_version_flag("--version", version_text(), "Print the version and the backends compiled in");
   app.fallthrough();
   app.require_subcommand(0, 1);
-  app.add_flag("--json", options.json, "Print one JSON object on stdout and nothing else there");
-  app.add_flag("--quiet", options.quiet, "No information and no progress bars on stderr; warnings and errors stay");
+  app.add_flag("--json", options.json, "Print one JSON object and nothing else on stdout");
+  app.add_flag("--quiet", options.quiet,
+               "Suppress information and progress bars on stderr, but not warnings and errors");
   app.add_option("--threads", options.threads, "Threads to use; 0: all cores")->check(whole_number(0, 4096));
   app.add_option("--device", options.device, "auto, cpu or cuda")->check(one_of({"auto", "cpu", "cuda"}));
   app.footer(
-      "Exit codes: 0 ok, 1 a check missed, 2 bad input or an output that cannot be written, 3 incomplete study, 4 no "
-      "feasible design, 5 device error, 130 interrupted.");
+      "Exit codes: 0 success, 1 a check failed, 2 invalid input or an output that cannot be written, 3 incomplete "
+      "study, 4 no feasible design, 5 device error, 130 interrupted.");
   std::array<CommandBody, commands.size()> bodies;
   std::array<CLI::App*, commands.size()> parsed{};
   for (std::size_t i = 0; i < commands.size(); ++i) {
     parsed[i] = app.add_subcommand(commands[i].name, commands[i].summary);
     parsed[i]->footer(
-        fmt::format("Example:\n  {}\n\nGlobal options (--json --quiet --threads N --device D) may stand anywhere.",
+        fmt::format("Example:\n  {}\n\nGlobal options (--json --quiet --threads N --device D) may be placed anywhere.",
                     commands[i].example));
     bodies[i] = commands[i].attach(*parsed[i], options);
   }
@@ -193,8 +195,8 @@ int main(int argc, char** argv) {
   int const code = gladstone::guarded(argc, argv);
   if (!gladstone::is_printed()) {
     gladstone::print_error(
-        "gladstone: standard output cannot be written, and the result that was to be printed is lost; free some space "
-        "there, or print to another place");
+        "gladstone: cannot write to standard output, so that the result is lost; free some space there, or redirect "
+        "the output");
     return gladstone::bad_input;
   }
   return code;

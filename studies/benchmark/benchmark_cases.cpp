@@ -32,7 +32,7 @@ std::vector<BenchmarkCase> make_cases() {
   };
   DisplacementAt const uniform = uniform_flow({0.3, -0.3}), vortex = vortex_flow(100.0, case_pixels);
   add("uniform", "uniform displacement (0.3, -0.3) px", uniform);
-  add("stretch", "u = 0.002 x, v = -0.002 y about the middle: every part of a pixel, for bias and peak locking",
+  add("stretch", "u = 0.002 x, v = -0.002 y about the middle: all fractions of a pixel, for bias and peak locking",
       [](Vec2d p) {
         return Vec2d{0.002 * (p.x - 511.5), -0.002 * (p.y - 511.5)};
       });
@@ -56,11 +56,11 @@ std::vector<BenchmarkCase> make_cases() {
     add(fmt::format("density_{}", density),
         fmt::format("the vortex, {} particles in 32 x 32 px, noise of 5 %", density), vortex,
         {.particles_per_px = density * per_window, .noise = 0.05});
-  add("light", "the vortex, the flow frame half as bright, 0.7 to 1.3 of that from left to right, noise of 1 %", vortex,
+  add("light", "the vortex; frame B is half as bright, times 0.7 to 1.3 across the image; noise of 1 %", vortex,
       {.noise = 0.01, .flow_light = 0.5, .light_slope = 0.6});
   add("regular", "a square lattice of equal dots 8 px apart, displacement (1.3, -0.7) px, noise of 1 %",
       uniform_flow({1.3, -0.7}), {.noise = 0.01, .pitch_px = 8.0});
-  add("turbulence", "a BOS target seen through turbulence, by traced rays, noise of 1 %", {}, {.noise = 0.01});
+  add("turbulence", "a BOS target seen through turbulence, ray-traced, noise of 1 %", {}, {.noise = 0.01});
   return cases;
 }
 

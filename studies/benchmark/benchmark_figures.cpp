@@ -45,7 +45,7 @@ void draw_noise_against_gain(std::vector<Point> const& points, std::string const
   plot.command("set grid linecolor '#e4e4e4' linewidth 1 linetype 1");
   plot.command("set xlabel 'gain at sines of 64 px'; set ylabel 'rms error at 5 % noise, uniform displacement [px]'");
   plot.command("set key top left Left reverse samplen 2; set yrange [0:*]; set xrange [*:1.05]");
-  plot.command("set title 'Noise against gain: further to the right and further down is better'");
+  plot.command("set title 'Noise against gain: better towards the lower right'");
   std::vector<Point> curve, others;
   for (Point const& point : points) (is_on_curve(point.name) ? curve : others).push_back(point);
   std::sort(curve.begin(), curve.end(), [](Point const& a, Point const& b) { return a.gain < b.gain; });
@@ -59,9 +59,10 @@ void draw_noise_against_gain(std::vector<Point> const& points, std::string const
     return columns;
   };
   if (!curve.empty())
-    commands += fmt::format(
-        "{} using 1:2 with linespoints linewidth 2 pointtype 7 pointsize 1.1 linecolor '{}' title {}, ",
-        plot.add_table(columns_of(curve)), house_colour(0), GnuplotFigure::quoted("our default's curve of settings"));
+    commands +=
+        fmt::format("{} using 1:2 with linespoints linewidth 2 pointtype 7 pointsize 1.1 linecolor '{}' title {}, ",
+                    plot.add_table(columns_of(curve)), house_colour(0),
+                    GnuplotFigure::quoted("our default with other last windows"));
   for (std::size_t i = 0; i < others.size(); ++i)
     commands += fmt::format("{} using 1:2 with points pointtype {} pointsize 1.6 linewidth 2 linecolor '{}' title {}, ",
                             plot.add_table(columns_of({others[i]})), 4 + i % 10, house_colour(1 + i % 5),
@@ -90,7 +91,7 @@ void draw_error_against_uncertainty(BenchmarkResult const& result, std::string c
   plot.command(
       "set xlabel 'estimated uncertainty, rms(sigma) of a bin [px]'; set ylabel 'rms(error) of that bin [px]'");
   plot.command("set key top left Left reverse samplen 2");
-  plot.command("set title 'Error against uncertainty, a tenth of a case a point: right on the line'");
+  plot.command("set title 'Error against uncertainty, one point per tenth of a case: equal on the line'");
   std::string commands = "plot x with lines linewidth 1 dashtype 2 linecolor '#808080' notitle";
   std::size_t index = 0;
   for (auto const& [method, columns] : methods) {

@@ -82,11 +82,11 @@ std::optional<TextTable> curve_table(BenchmarkResult const& result) {
 
 ReportSection error_section(BenchmarkResult const& result) {
   ReportSection section{"Errors", {}};
-  section.blocks.emplace_back(
-      Paragraph{"Errors per component against the displacement at the vector's place, vectors closer than 32 px to the "
-                "border left out. Gross: an error above 1 px. Gain: the share of the displacement that the vectors "
-                "follow. Read rms together with gain: large windows are quiet and blind."});
-  section.blocks.emplace_back(table_of(result, "rms error without gross ones [px]", [](BenchmarkScore const& s) {
+  section.blocks.emplace_back(Paragraph{
+      "Errors per component relative to the displacement at the position of the vector; vectors closer than 32 px to "
+      "the border are excluded. Gross error: above 1 px. Gain: the fraction of the displacement that the vectors "
+      "follow. Compare rms and gain together: large windows have little noise, but do not resolve fine structures."});
+  section.blocks.emplace_back(table_of(result, "rms error, gross errors excluded [px]", [](BenchmarkScore const& s) {
     return fixed(s.errors.rms_without_gross_px, 4);
   }));
   section.blocks.emplace_back(
@@ -98,7 +98,7 @@ ReportSection error_section(BenchmarkResult const& result) {
       result, "gain", [](BenchmarkScore const& s) { return fixed(s.gain, 4); },
       [](CaseRecord const& one) { return one.of.name.starts_with("sine") || one.of.refracted(); }));
   section.blocks.emplace_back(
-      table_of(result, "bias of u / of v, gross errors counted [px]", [](BenchmarkScore const& s) {
+      table_of(result, "bias of u / of v, gross errors included [px]", [](BenchmarkScore const& s) {
         double const largest = std::max(std::abs(s.errors.bias_u_px), std::abs(s.errors.bias_v_px));
         return TableCell{fmt::format("{:+.4f} / {:+.4f}", s.errors.bias_u_px, s.errors.bias_v_px), largest};
       }));
@@ -108,9 +108,9 @@ ReportSection error_section(BenchmarkResult const& result) {
 
 ReportSection uncertainty_section(BenchmarkResult const& result) {
   ReportSection section{"Uncertainty", {}};
-  TextTable table{"What sigma of our default passes tells of their errors",
+  TextTable table{"Estimated uncertainty of our default passes and their errors",
                   {"case", "method", "within sigma (0.68)", "within 2 sigma (0.95)", "rms(sigma)/rms(error)",
-                   "correlation with |error|", "rms(sigma) [px]", "of the dots' mean within sigma",
+                   "correlation with |error|", "rms(sigma) [px]", "window mean within sigma",
                    "total error within sigma", "gross", "without sigma"},
                   {},
                   true};
@@ -130,15 +130,14 @@ ReportSection uncertainty_section(BenchmarkResult const& result) {
                           number(row.deformed_window.gross),
                           number(row.deformed_window.without_sigma)});
   section.blocks.emplace_back(Paragraph{
-      "Both components pooled, gross errors left out, against the truth on the deformed windows, which is "
-      "what the passes make of the dots' true displacements without noise. "
-      "The two columns after rms(sigma) are against the mean of a window's dots, and against the truth at the "
-      "place, whose differences no method knows of. Vectors that are left out, grossly wrong or without sigma, "
-      "are counted."});
+      "Both components together, gross errors excluded, relative to the truth on the deformed windows: the "
+      "displacement that the passes would determine from the true displacements of the dots without noise. The two "
+      "columns after rms(sigma) are relative to the mean over the dots of a window, and to the truth at the position; "
+      "no method includes these differences. The last columns count vectors with gross errors and without sigma."});
   section.blocks.emplace_back(std::move(table));
   if (!result.coverage.empty()) {
     TextTable coverage{fmt::format("Coverage over {} seeds: mean and its standard error", result.seeds),
-                       {"method", "flow", "noise [%]", "within sigma", "of the dots' mean within sigma",
+                       {"method", "flow", "noise [%]", "within sigma", "window mean within sigma",
                         "total error within sigma", "rms(sigma)/rms(error)", "rms(sigma)/rms(total error)"},
                        {},
                        true};
@@ -191,24 +190,23 @@ std::vector<std::string> findings_of(BenchmarkResult const& result) {
 
 ReportPage benchmark_page(BenchmarkResult const& result, std::string const& folder) {
   ReportPage page;
-  page.title = "How well displacement is measured";
-  page.question = "What do estimators make of image pairs whose every displacement is known?";
+  page.title = "Accuracy of displacement estimators";
+  page.question = "How accurately do estimators measure image pairs with known displacements?";
   page.findings = findings_of(result);
   page.sections.push_back(error_section(result));
   if (!result.uncertainties.empty() || !result.coverage.empty()) page.sections.push_back(uncertainty_section(result));
-  TextTable cases{"Cases: reference.tif, flow.tif and truth.csv stand in a folder of each",
+  TextTable cases{"Cases: each has a folder with reference.tif, flow.tif and truth.csv",
                   {"case", "what it shows", "SHA-256 of reference", "of flow"},
                   {}};
   for (CaseRecord const& one : result.cases)
     cases.rows.push_back({{one.of.name}, {one.of.what}, {one.reference_sha256}, {one.flow_sha256}});
   ReportSection made{"Cases, and how to score your own code", {std::move(cases)}};
-  made.blocks.emplace_back(Paragraph{
-      "Frames are 8-bit grey levels, mostly of 1024 x 1024 px. Particles stand at -d/2 in the reference and +d/2 in "
-      "the "
-      "flow frame, d at their mid-position. Measure every pair with your code, write the vectors of each into a file "
-      "named after its case (vortex.csv, .txt or .h5: ours, OpenPIV's, PIVlab's, or columns x, y, u, v in px), and "
-      "give "
-      "the folder. Axes, offsets and likely mistakes are found by all cases together."});
+  made.blocks.emplace_back(
+      Paragraph{"The frames have 8 bits, most of them 1024 x 1024 px. Particles are at -d/2 in frame A (reference.tif) "
+                "and at +d/2 in frame B (flow.tif); d is the displacement at their mid-position. Measure every pair "
+                "with your code, write its vectors to a file named after the case (vortex.csv, .txt or .h5: ours, "
+                "OpenPIV's, PIVlab's, or columns x, y, u, v in px), and give the folder. Axes, offsets and likely "
+                "mistakes are determined from all cases together."});
   made.blocks.emplace_back(
       Verbatim{"Command", fmt::format("gladstone benchmark -o {} --vectors NAME=FOLDER\n", folder)});
   if (!result.conventions.empty()) made.blocks.emplace_back(TextList{result.conventions});

@@ -63,8 +63,8 @@ std::map<std::string, std::string> find_vectors(ForeignVectors const& given, std
       if (path.filename() == one.name + ending && fs::exists(path, error)) files.emplace(one.name, path.string());
     }
   if (files.empty())
-    throw DataError(given.path, fmt::format("holds no vectors of a case that is run (files named after cases, such as "
-                                            "{0}.csv, {0}.txt or {0}.h5); name them so",
+    throw DataError(given.path, fmt::format("contains no vectors of the selected cases (files must be named after the "
+                                            "cases, for example {0}.csv, {0}.txt or {0}.h5); rename them",
                                             cases.front().name));
   return files;
 }
@@ -88,7 +88,7 @@ void ForeignCode::read(std::string const& of_case, DisplacementAt const& truth, 
   if (std::string const refusal = refusal_of_places(file.field, left_out, columns, rows); !refusal.empty())
     throw DataError(path, refusal);
   if (std::none_of(file.field.displacement_px.begin(), file.field.displacement_px.end(), is_finite))
-    throw DataError(path, "holds no displacement that is a number; export the vectors with their values");
+    throw DataError(path, "contains no finite displacement; export the vectors with their values");
   cases_.push_back({of_case, path, columns});
   vectors_.push_back({std::move(file), truth, rows});
 }
@@ -111,13 +111,13 @@ std::vector<BenchmarkRow> ForeignCode::score() {
       throw DataError(cases_[static_cast<std::size_t>(worst - common.detected.begin())].path, worst->report);
     }
     conventions = common.conventions;
-    reading_ =
-        fmt::format("{} vectors read as {} ({}: {:.3g} px rms from the truth, which is {:.3g} px rms)", first.format,
-                    describe(conventions), cases_[common.decisive].name, common.fit.rms_px, common.fit.signal_px);
+    reading_ = fmt::format(
+        "{} vectors read as {} ({}: rms difference from the truth {:.3g} px, rms of the truth {:.3g} px)", first.format,
+        describe(conventions), cases_[common.decisive].name, common.fit.rms_px, common.fit.signal_px);
     DetectedConventions const& decisive = common.detected[common.decisive];
     if (decisive.conventions == conventions && conventions.offset_px != 0.0) reading_ += "; " + offset_report(decisive);
     if (common.ambiguous && !common.mistake.found())
-      reading_ += "; another reading fits as well, and the format's own was kept";
+      reading_ += "; another reading fits as well, and that of the format is used";
     if (std::string mistake = describe_mistake(common); !mistake.empty()) mistakes_.push_back(std::move(mistake));
   }
   std::vector<BenchmarkRow> rows;
@@ -134,11 +134,11 @@ std::vector<BenchmarkRow> ForeignCode::score() {
     wrong += follows || is_too_fine_for_windows(field, vectors.truth) ? 0 : 1;
   }
   if (mistakes_.empty() && 2 * wrong > cases_.size())
-    mistakes_.push_back(fmt::format(
-        "{}: in {} of {} cases half of the vectors differ from the truth by more than {:.0f} % of the displacement, "
-        "and neither axes, a factor nor a shift that all have in common explains it; check that each file contains the "
-        "vectors of the case that it is named after, in px",
-        name_, wrong, cases_.size(), 100.0 * most_wrong));
+    mistakes_.push_back(
+        fmt::format("{}: in {} of {} cases half of the vectors differ from the truth by more than {:.0f} % of the "
+                    "displacement, and no exchange of axes, factor or shift common to all of them explains this; check "
+                    "that each file contains the vectors of the case that it is named after, in px",
+                    name_, wrong, cases_.size(), 100.0 * most_wrong));
   return rows;
 }
 
@@ -146,16 +146,16 @@ std::string ForeignCode::describe_mistake(CommonConventions const& common) const
   LikelyMistake const& mistake = common.mistake;
   if (mistake.found()) {
     std::string const& decisive = cases_[common.decisive].name;
-    std::string cure = "mend the files";
+    std::string cure = "correct the files";
     if (common.ambiguous) {
-      cure = fmt::format("{} cannot tell these apart; run a case that can, such as turbulence",
+      cure = fmt::format("{} does not distinguish these; run a case that does, such as turbulence",
                          cases_.size() == 1 ? decisive : "these cases");
     } else if (!mistake.conventions.empty()) {
       cure += fmt::format(", or accept it with --conventions {}={}", name_, mistake.conventions);
     }
     return fmt::format(
-        "{}: likely mistake: {} (by {}: so read its vectors differ from the truth by {:.3g} px rms, as they are scored "
-        "by {:.3g} px); {}",
+        "{}: likely mistake: {} (by {}: without this the rms difference from the truth would be {:.3g} px, as scored "
+        "it is {:.3g} px); {}",
         name_, mistake.text, decisive, mistake.mended.rms_px, mistake.as_read.rms_px, cure);
   }
   if (common.mistaken.empty()) return {};
@@ -169,8 +169,8 @@ std::string ForeignCode::describe_mistake(CommonConventions const& common) const
   }
   if (common.mistaken.size() > most_named)
     found += fmt::format("; and in {} more", common.mistaken.size() - most_named);
-  return fmt::format("{}: likely mistake in {} of {} files: {}; mend {}", name_, common.mistaken.size(), cases_.size(),
-                     found, common.mistaken.size() == 1 ? "it" : "them");
+  return fmt::format("{}: likely mistake in {} of {} files: {}; correct {}", name_, common.mistaken.size(),
+                     cases_.size(), found, common.mistaken.size() == 1 ? "it" : "them");
 }
 
 std::string refusal_of_gaps(DisplacementField const& field, int columns, int rows) {

@@ -88,8 +88,8 @@ void warn_of_place_errors(RenderedCalibration& rendered) {
   }
   if (worst <= place_tolerance_px) return;
   warn(rendered.warnings,
-       fmt::format("{} rays a dot leave errors of {:.2g} px rms in the places of the dots on Z = {:.6g} mm (more than "
-                   "{:g} px); raise render.rays_per_dot, or stop the lens down",
+       fmt::format("{} rays per dot cause errors of {:.2g} px rms in the positions of the dots on Z = {:.6g} mm (more "
+                   "than {:g} px); increase render.rays_per_dot, or use a larger f-number",
                    rendered.rays, worst, at / unit::millimetre, place_tolerance_px));
 }
 
@@ -117,8 +117,8 @@ RenderedCalibration render_planes(CaseSetup& loaded, Renderer& renderer) {
                                        [&](Vec2d centre) { return plane.scene.in_view(centre); });
     if (in_view < dots_for_a_fit) {
       warn(rendered.warnings,
-           fmt::format("calibration: {} dots of the plane Z = {:.6g} mm lie in the view, too few to calibrate by ({} "
-                       "are needed); change the camera's place, or calibration.spacing_mm and extent_mm",
+           fmt::format("calibration: only {} dots of the plane Z = {:.6g} mm are in view ({} are required); change the "
+                       "position of the camera, or calibration.spacing_mm and extent_mm",
                        in_view, z / unit::millimetre, dots_for_a_fit));
     }
     Rendering traced = renderer.render(plane.scene, plane.scene.dots, RenderImages::yes, RenderTheory::no);
@@ -182,8 +182,9 @@ nlohmann::json write_calibration(CaseSetup& loaded, RenderedCalibration const& r
                       {"sha256", pixel_sha256(frame.image)}});
   }
   if (all_saturated > 0) {
-    warn(warnings, fmt::format("{} pixels are saturated, which moves the centres of their dots; lower camera.exposure",
-                               all_saturated));
+    warn(warnings,
+         fmt::format("{} pixels are saturated, which shifts the centroids of their dots; reduce camera.exposure",
+                     all_saturated));
   }
   for (auto const& [path, hash] : loaded.input_hashes) origin.sources.add("", path, SourceFiles::Holds::bytes, hash);
   origin.sources.add_known("inputs", nlohmann::json(loaded.input_hashes).dump());

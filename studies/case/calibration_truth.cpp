@@ -12,7 +12,7 @@ namespace {
 void write_pinhole(Hdf5Writer& file, Pinhole const& pinhole) {
   std::vector<double> const matrix{pinhole.fx, 0, pinhole.cx, 0, pinhole.fy, pinhole.cy, 0, 0, 1};
   file.write("/pinhole/camera_matrix", std::span<double const>(matrix), {3, 3}, "px",
-             "fx, 0, cx; 0, fy, cy; 0, 0, 1, as OpenCV writes it", "row, column");
+             "fx, 0, cx; 0, fy, cy; 0, 0, 1, as in OpenCV", "row, column");
   BrownDistortion<double> const& brown = pinhole.brown;
   std::vector<double> const distortion{brown.k1, brown.k2, brown.p1, brown.p2};
   file.write("/pinhole/distortion", std::span<double const>(distortion), {4}, "1", "k1, k2, p1, p2 as in OpenCV",
@@ -58,17 +58,18 @@ void write_calibration_truth(std::string const& path, RenderedCalibration const&
   file.write("/dots/position_m", std::span<double const>(position), {count, 3}, "m",
              "dot centres in the world frame: X right, Y up as the camera sees them, Z towards the camera",
              "dot, (x, y, z)");
-  file.write("/dots/image_px", std::span<double const>(image), {count, 2}, "px",
-             "radiance-weighted centroid of the dot's rays that pass the stop, on the sensor's plane; nan: none does",
-             "dot, (column, row)");
+  file.write(
+      "/dots/image_px", std::span<double const>(image), {count, 2}, "px",
+      "radiance-weighted centroid of the dot's rays that pass the stop, on the plane of the sensor; nan: no ray passes",
+      "dot, (column, row)");
   file.write("/dots/chief_px", std::span<double const>(chief), {count, 2}, "px",
-             "where the chief ray of the dot's centre meets the sensor's plane; nan: it does not",
+             "intersection of the chief ray of the dot's centre with the plane of the sensor; nan: none",
              "dot, (column, row)");
   file.write("/dots/flux", std::span<double const>(flux), {count}, "fully lit px", "light of the dot", "dot");
   file.write("/dots/rays", std::span<std::int64_t const>(rays), {count}, "1", "rays counted", "dot");
-  file.write("/dots/plane", std::span<std::int64_t const>(plane_of), {count}, "1", "its plane, from 0", "dot");
+  file.write("/dots/plane", std::span<std::int64_t const>(plane_of), {count}, "1", "plane of the dot, from 0", "dot");
   file.write("/dots/index", std::span<std::int64_t const>(index), {count, 2}, "1",
-             "place on the grid in spacings from its middle, along X and Y", "dot, (x, y)");
+             "grid position relative to the middle of the grid, in spacings along X and Y", "dot, (x, y)");
   file.write("/planes/z_m", std::span<double const>(z), {z.size()}, "m", "Z of the planes", "plane");
   Scene const& scene = rendered.planes.front().scene;
   if (auto const pinhole = pinhole_of(scene.setup, scene.camera)) write_pinhole(file, *pinhole);

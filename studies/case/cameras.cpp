@@ -60,12 +60,12 @@ void keep_own_windows(SetupDocument& document, std::string const& camera, std::v
                            "window[" + std::to_string(i) + "].cameras: " + message);
     };
     if (seen_by && seen_by->kind != Kind::array) {
-      problem("must be an array of names of cameras; write [\"left\", \"right\"]");
+      problem("must be an array of camera names; write [\"left\", \"right\"]");
     } else if (seen_by) {
       for (SetupNode const& name : seen_by->elements) {
         seen = seen || (name.kind == Kind::text && name.text == camera);
         if (name.kind == Kind::text && std::find(names.begin(), names.end(), name.text) != names.end()) continue;
-        problem(toml_text(name) + " is no camera's name; " +
+        problem(toml_text(name) + " is not the name of a camera; " +
                 (names.empty() ? "give camera.name" : "cameras are " + quoted_list(names)));
       }
     }
@@ -85,13 +85,14 @@ void keep_camera(SetupDocument& document, SetupNode camera, std::vector<std::str
 
 void check_name(SetupTable camera, std::string const& name, std::set<std::string>& others) {
   if (name.empty()) {
-    camera.problem("name", "is missing (it is that of the camera's folder); give each of several cameras a name");
+    camera.problem("name", "is missing (it names the folder of the camera); give each of several cameras a name");
     return;
   }
   bool const plain = std::all_of(name.begin(), name.end(),
                                  [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '-'; });
-  if (!plain) camera.problem("name", "is no name of a folder; use letters, digits, _ and -");
-  if (!others.insert(name).second) camera.problem("name", "is another camera's name too; give each its own");
+  if (!plain) camera.problem("name", "is not valid as the name of a folder; use letters, digits, _ and -");
+  if (!others.insert(name).second)
+    camera.problem("name", "is also the name of another camera; give each a different name");
 }
 
 /// Gives camera `index` a noise seed that makes its noise independent of the other cameras' noise.
@@ -141,7 +142,7 @@ SetupDocument with_own_lens(SetupDocument setup) {
                                                           [](SetupNode const& one) { return one.find("cameras"); }));
   if (camera.kind != Kind::table || (!camera.find("lens") && !chosen)) return setup;
   if (camera.find("lens") && setup.find({"lens"})) {
-    setup.root().problem("lens", "stands beside the camera's own lens (camera.lens); remove one");
+    setup.root().problem("lens", "conflicts with the camera's own lens (camera.lens); remove one of them");
   }
   SetupNode const* const name = camera.find("name");
   keep_camera(setup, camera, name && name->kind == Kind::text ? std::vector{name->text} : std::vector<std::string>{});
@@ -166,7 +167,7 @@ std::vector<CameraCase> camera_cases(SetupDocument const& setup) {
   for (std::size_t i = 0; i < all.size(); ++i) {
     SetupDocument document = setup.copy();
     if (lens_unused) {
-      document.root().problem("lens", "is no camera's (each has a lens of its own); remove it");
+      document.root().problem("lens", "is not used (each camera has its own lens); remove it");
     }
     keep_camera(document, all[i], names);
     check_name(document.root().table("camera"), names[i], others);

@@ -71,14 +71,14 @@ void cross_check_formula(CaseSetup& loaded) {
   bool const wanted = setup.render.method == RenderMethod::formula;
   std::string const reason = needed || wanted ? reason_against_ideal_images(setup) : "";
   if (wanted && !reason.empty()) {
-    root.table("render").problem("method", "does not hold here (" + reason + "); use \"auto\" or \"rays\"");
+    root.table("render").problem("method", "is not valid here (" + reason + "); use \"auto\" or \"rays\"");
   } else if (needed && !reason.empty()) {
     root.table("particles")
-        .problem("scattering", "is of ideal images, which do not hold here (" + reason +
-                                   "); use \"mie\" or \"lambert\", whose light goes ray by ray");
+        .problem("scattering", "requires ideal images, which are not valid here (" + reason +
+                                   "); use \"mie\" or \"lambert\", which are traced ray by ray");
   } else if (needed && setup.render.method == RenderMethod::rays) {
     root.table("render").problem("method",
-                                 "stands beside particles.scattering = \"gaussian\", which has no rays; use "
+                                 "conflicts with particles.scattering = \"gaussian\", which uses no rays; use "
                                  "\"formula\", or scattering = \"mie\" or \"lambert\"");
   }
 }
@@ -91,7 +91,7 @@ void cross_check_method(CaseSetup& loaded) {
                                                         : reason_against_focused_dots(loaded.setup);
   if (reason.empty()) return;
   loaded.document.root().table("render").problem("method",
-                                                 "does not hold here (" + reason + "); use \"auto\" or \"rays\"");
+                                                 "is not valid here (" + reason + "); use \"auto\" or \"rays\"");
 }
 
 /// Warns if no dot or particle is in the camera's view.
@@ -103,8 +103,8 @@ void warn_of_view(Scene const& scene, std::vector<std::string>& warnings) {
   auto const in_view = [&scene](Vec2d centre) { return scene.in_view(centre); };
   if (std::none_of(scene.dots.centre.begin(), scene.dots.centre.end(), in_view)) {
     warn(warnings,
-         fmt::format("none of {} dots lies in the view, {:.4g} x {:.4g} mm about the axis: the images will be empty; "
-                     "check the target's file (places are in mm) or increase target.dots_per_32px_window",
+         fmt::format("none of the {} dots lies in the view, {:.4g} x {:.4g} mm about the axis: the images will be "
+                     "empty; check the target's file (positions are in mm) or increase target.dots_per_32px_window",
                      scene.dots.centre.size(),
                      scene.setup.camera.columns * scene.setup.camera.pixel_pitch / scene.imaging.magnification * 1e3,
                      scene.setup.camera.rows * scene.setup.camera.pixel_pitch / scene.imaging.magnification * 1e3));
@@ -127,10 +127,10 @@ void warn_of_blur(Scene const& scene, std::vector<std::string>& warnings) {
   double const blur = ideal_images(scene)->largest_blur_px(scene.particles), spot = 4 * scene.spot_sigma_px();
   if (blur < 0.5 * spot) return;
   warn(warnings,
-       fmt::format("render.method: ideal images are all in focus, where particles of this sheet would be up to "
-                   "{:.3g} px wide besides the {:.3g} px of diffraction; take a thinner sheet, a smaller stop "
-                   "or rays",
-                   blur, spot));
+       fmt::format(
+           "render.method: ideal images neglect defocus, but particles of this sheet have a blur of up to {:.3g} px in "
+           "addition to the diffraction image of {:.3g} px; use a thinner sheet, a larger f-number or rays",
+           blur, spot));
 }
 
 }  // namespace
@@ -152,15 +152,14 @@ CaseSetup load_case_setup(SetupDocument document, FieldMemory field) {
     loaded.correlate = read_correlation_settings(root.table("correlate"));
   }
   std::optional<PaperLight> const light = read_light(root);
-  if (loaded.setup.piv) root.refuse("light", "is of BOS (PIV's light is that of [laser]); remove it");
+  if (loaded.setup.piv) root.refuse("light", "applies to BOS only (the light of PIV is that of [laser]); remove it");
   // A setup may contain the tables of a design question, which rendering ignores.
   for (char const* const table : {"requirements", "limits", "inventory", "free", "correlations"}) root.pass_over(table);
   if (!loaded.correlate.window_px.empty()) loaded.setup.view_margin_px = loaded.correlate.window_px.front();
   for (std::string const& name : loaded.document.file_names()) {
     if (is_utf8(name)) continue;
-    loaded.document.add_problem(name,
-                                "holds bytes that are no UTF-8, the only text that setups may hold; "
-                                "rename the file or the folder");
+    loaded.document.add_problem(
+        name, "contains bytes that are not valid UTF-8, which setups require; rename the file or the folder");
   }
   if (!loaded.document.has_problems()) {
     loaded.warnings = cross_check(loaded.setup, root);
@@ -203,10 +202,9 @@ PreparedCase prepare_case(CaseSetup& loaded, KnownParts const& known) {
     prepared.step = plan_step_of(scene);
   }
   if (prepared.step.change_px >= 1e-4) {
-    warn(
-        prepared.warnings,
-        fmt::format("step_mm = {:.4g}: halving it would still change dot {} by {:.2g} px; use a smaller medium.step_mm",
-                    prepared.step.step_mm, prepared.step.limiting_dot, prepared.step.change_px));
+    warn(prepared.warnings,
+         fmt::format("step_mm = {:.4g}: halving it would still shift dot {} by {:.2g} px; use a smaller medium.step_mm",
+                     prepared.step.step_mm, prepared.step.limiting_dot, prepared.step.change_px));
   }
   warn_of_view(scene, prepared.warnings);
   warn_of_blur(scene, prepared.warnings);
@@ -223,22 +221,22 @@ PreparedCase prepare_case(CaseSetup& loaded, KnownParts const& known) {
     prepared.strain = known.strain ? *known.strain : strain_of(scene);
     if (prepared.strain.largest_px < least_displacement_px) {
       warn(prepared.warnings,
-           fmt::format("nothing moves: by Eq. 9 the field displaces no place of the view by more than {:.2g} px; check "
-                       "quantity, scale, spacing and place of medium.field, or its amplitude",
+           fmt::format("no displacement: according to Eq. 9 the field displaces no point in the view by more than "
+                       "{:.2g} px; check quantity, scale, spacing and position of medium.field, or its amplitude",
                        prepared.strain.largest_px));
     } else if (prepared.strain.largest_px < measurable_displacement_px) {
       warn(prepared.warnings,
-           fmt::format("displacements are too small to measure: by Eq. 9 the field displaces no place of the view by "
-                       "more than {:.2g} px (correlation resolves {} px at best); increase geometry.z_d_mm or the "
-                       "focal length, or check quantity, scale and spacing of medium.field",
+           fmt::format("displacements are too small to measure: according to Eq. 9 the field displaces no point in the "
+                       "view by more than {:.2g} px (correlation resolves {} px at best); increase geometry.z_d_mm or "
+                       "the focal length, or check quantity, scale and spacing of medium.field",
                        prepared.strain.largest_px, measurable_displacement_px));
     }
     if (prepared.strain.caustic_fraction > 0) {
       warn(prepared.warnings,
-           fmt::format("caustic: over {:.2g} % of the view the strain is 1 or more and rays cross before they reach "
-                       "the lens (images "
-                       "of dots fold over there); reduce Z_D or the gradients, or leave these vectors out",
-                       100 * prepared.strain.caustic_fraction));
+           fmt::format(
+               "caustic: over {:.2g} % of the view the strain is 1 or more and rays cross before they reach the lens "
+               "(the images of dots are folded there); reduce Z_D or the gradients, or exclude these vectors",
+               100 * prepared.strain.caustic_fraction));
     }
   }
   SetupTable root = loaded.document.root();

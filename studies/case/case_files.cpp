@@ -28,7 +28,7 @@ void require_pair(std::string const& folder) {
   if (fs::exists(fs::path(folder) / case_file::reference, error)) return;
   SetupDocument const setup = SetupDocument::from_file((fs::path(folder) / case_file::setup).string());
   if (std::vector<std::string> const names = camera_names(setup); !names.empty()) {
-    throw DataError(folder, fmt::format("holds a case of each of its cameras, {}; name one of them: {}",
+    throw DataError(folder, fmt::format("contains one case for each of its cameras, {}; name one of them: {}",
                                         quoted_list(names), (fs::path(folder) / names.front()).string()));
   }
   SetupNode const* const experiment = setup.find({"experiment"});
@@ -72,8 +72,8 @@ void refuse_case_over_inputs(std::string const& folder, std::vector<std::string>
 void require_case(std::string const& folder) {
   finish_replacement_above(folder, case_content());
   if (!is_complete(folder, case_content())) {
-    throw DataError(folder,
-                    "is not a case (it holds no setup.toml); make one with: gladstone render SETUP.toml -o " + folder);
+    throw DataError(
+        folder, "is not a case (it contains no setup.toml); create one with: gladstone render SETUP.toml -o " + folder);
   }
 }
 

@@ -35,14 +35,14 @@ std::string truth_error_in_words(RaysPlan const& plan) {
 
 void warn_of_few_rays(std::vector<std::string>& warnings, Scene const& scene, RaysPlan const& plan) {
   if (plan.converged) return;
-  warn(warnings,
-       fmt::format(
-           "rays_per_dot = \"auto\" takes no more than {} rays of a source: the image is only good to {}, truth to {}, "
-           "where {} and {} are asked (the sources that are worst off would need some {:.0f} rays, {:.2g} s of one "
-           "processor for each source; \"auto\" takes {:.2g} s or 1024 rays); set render.rays_per_dot higher if that "
-           "matters",
-           plan.rays, image_error_in_words(plan), truth_error_in_words(plan), image_tolerance_levels,
-           truth_tolerance_px, plan.rays_wanted, ray_seconds(scene) * plan.rays_wanted, source_budget_s));
+  warn(
+      warnings,
+      fmt::format(
+          "rays_per_dot = \"auto\" is limited to {} rays per source: the error of the image is {}, that of the truth "
+          "{}, and the goals are {} and {} (the worst sources would require some {:.0f} rays, {:.2g} s of processor "
+          "time for each source; \"auto\" permits {:.2g} s or 1024 rays); increase render.rays_per_dot if this matters",
+          plan.rays, image_error_in_words(plan), truth_error_in_words(plan), image_tolerance_levels, truth_tolerance_px,
+          plan.rays_wanted, ray_seconds(scene) * plan.rays_wanted, source_budget_s));
 }
 
 void warn_of_side_faces(std::vector<std::string>& warnings, Scene const& scene, RaysPlan const& plan) {
@@ -51,13 +51,14 @@ void warn_of_side_faces(std::vector<std::string>& warnings, Scene const& scene, 
   bool const given = scene.setup.render.rays_per_dot.has_value(),
              by_brightest = !scene.setup.camera.exposure_e && !scene.setup.camera.absolute_exposure;
   std::string const cure =
-      given ? "set render.rays_per_dot = \"auto\", which gives these dots as many as they need"
-            : fmt::format("some {:.2g} would be enough; set render.rays_per_dot so if that matters", there.rays_wanted);
+      given ? "set render.rays_per_dot = \"auto\", which chooses a sufficient number for these dots"
+            : fmt::format("some {:.2g} would be sufficient; set render.rays_per_dot accordingly if this matters",
+                          there.rays_wanted);
   warn(warnings,
        fmt::format(
-           "render.rays_per_dot: {} dots lie at side faces of the medium, which cut their cones of rays, and go "
-           "ray by ray, by {} rays each. Their truth is known to {}, their images to {} (rms; {} and {} are "
-           "asked){}; {}",
+           "render.rays_per_dot: {} dots lie at side faces of the medium, which cut their light cones, and are traced "
+           "ray by ray, with {} rays each. The error of their truth is {}, that of their images {} (rms; the goals are "
+           "{} and {}){}; {}",
            there.dots, there.rays, error_in_words(there.truth_error_px, 0, "px"),
            error_in_words(there.image_error_levels, 0, fmt::format("grey levels of {} bits", plan.bits)),
            truth_tolerance_px, image_tolerance_levels,
@@ -68,8 +69,8 @@ void warn_of_side_faces(std::vector<std::string>& warnings, Scene const& scene, 
 void warn_of_truth(std::vector<std::string>& warnings, Rendering const& rendering, TruthAccuracy const& accuracy,
                    RaysPlan const& plan, std::string_view sources) {
   if (accuracy.unknown > 0) {
-    warn(warnings, fmt::format("truth: how well the displacements of {} of {} {} are known cannot be told (a single "
-                               "ray has no scatter); increase render.rays_per_dot to 8 or more",
+    warn(warnings, fmt::format("truth: the standard error of the displacements of {} of {} {} is unknown (a single ray "
+                               "has no scatter); increase render.rays_per_dot to 8 or more",
                                accuracy.unknown, rendering.truth.size(), sources));
   }
   if (!(accuracy.rms_px > truth_tolerance_px)) return;
@@ -79,30 +80,29 @@ void warn_of_truth(std::vector<std::string>& warnings, Rendering const& renderin
   if (rendering.table == TableState::by_rays) {
     // rays were requested or chosen for all dots; no reason to add
   } else if (rendering.table != TableState::made && sources == "dots") {
-    why = fmt::format("; truth is that of rays alone, since {}", to_string(rendering.table));
+    why = fmt::format("; the truth is that of rays only, since {}", to_string(rendering.table));
   } else if (accuracy.above_by_rays > 0 && sources == "dots") {
     why = fmt::format(
-        "; the truth of {} of these is that of rays alone, which meet the faces of the field or lose "
-        "their way in it",
+        "; the truth of {} of these is that of rays only, since rays meet the side faces of the field or are lost in "
+        "it",
         accuracy.above_by_rays);
   }
-  warn(
-      warnings,
-      fmt::format("truth: displacements are known to {:.2g} px only (rms of the standard errors): {} of {} {} are "
-                  "worse than {} px, the worst is number {} with {:.2g} px{}; increase render.rays_per_dot, {} now, if "
-                  "that matters",
-                  accuracy.rms_px, accuracy.above, rendering.truth.size(), sources, truth_tolerance_px, accuracy.worst,
-                  accuracy.largest_px, why, plan.rays));
+  warn(warnings,
+       fmt::format(
+           "truth: the standard error of the displacements is {:.2g} px rms; for {} of {} {} it exceeds {} px, the "
+           "largest is that of number {}, {:.2g} px{}; increase render.rays_per_dot, now {}, if this matters",
+           accuracy.rms_px, accuracy.above, rendering.truth.size(), sources, truth_tolerance_px, accuracy.worst,
+           accuracy.largest_px, why, plan.rays));
 }
 
 void warn_of_table(std::vector<std::string>& warnings, RaysPlan const& error) {
   if (!(error.excess() > 1)) return;
-  warn(
-      warnings,
-      fmt::format("what the table of deflections leaves: images are off by {}, truth by {}, where {} and {} are asked; "
-                  "{}render.method = \"rays\" leaves nothing, but takes many render.rays_per_dot to scatter less",
-                  image_error_in_words(error), truth_error_in_words(error), image_tolerance_levels, truth_tolerance_px,
-                  error.fineness == 1 ? "render.rays_per_dot = \"auto\" takes a finer table; " : ""));
+  warn(warnings,
+       fmt::format(
+           "residual error of the deflection table: {} in the images, {} in the truth, and the goals are {} and {}; "
+           "{}render.method = \"rays\" has no such error, but requires many render.rays_per_dot for less scatter",
+           image_error_in_words(error), truth_error_in_words(error), image_tolerance_levels, truth_tolerance_px,
+           error.fineness == 1 ? "render.rays_per_dot = \"auto\" selects a finer table; " : ""));
 }
 
 std::size_t warn_of_unseen(std::vector<std::string>& warnings, Scene const& scene, GroundTruth const& truth,
@@ -121,23 +121,22 @@ std::size_t warn_of_unseen(std::vector<std::string>& warnings, Scene const& scen
   double const passing = static_cast<double>(rays) * (stop * stop) / (disc * disc);
   constexpr double few = 16;  // if 16 passing rays are expected, none passes with a probability of e^-16
   if (!scene.chief_rays_only() && pupil_margin > 0 && passing < few) {
-    warn(warnings,
-         fmt::format("{} of {} dots{} are not seen in one of the frames, and their truth is nan: some {:.2g} of a "
-                     "dot's {} rays pass the stop, since the flow bends them by up to {:.3g} mm; take more rays "
-                     "(render.rays_per_dot), or reduce the gradients or Z_D",
-                     unseen, truth.size(), where, passing, rays, pupil_margin / unit::millimetre));
+    warn(warnings, fmt::format("{} of {} dots{} are not imaged in one of the frames, and their truth is nan: some "
+                               "{:.2g} of a dot's {} rays pass the stop, since the medium deflects them by up to "
+                               "{:.3g} mm; use more rays (render.rays_per_dot), or reduce the gradients or Z_D",
+                               unseen, truth.size(), where, passing, rays, pupil_margin / unit::millimetre));
     return static_cast<std::size_t>(unseen);
   }
   if (in_reference > 0) {
     warn(warnings,
-         fmt::format("{} of {} dots{} are not seen, and their truth is nan: without any flow, none of the rays of "
-                     "such a dot ({} or more) passes the lens; these dots are outside the lens' field of view or "
-                     "vignetted, so reduce the dotted area, move the camera, or take more rays (render.rays_per_dot)",
+         fmt::format("{} of {} dots{} are not imaged, and their truth is nan: even without the medium, no ray of such "
+                     "a dot ({} or more) passes the lens; these dots are outside the field of view of the lens or "
+                     "vignetted, so reduce the dotted area, move the camera, or use more rays (render.rays_per_dot)",
                      in_reference, truth.size(), where, rays));
   }
   if (unseen > in_reference) {
-    warn(warnings, fmt::format("{} of {} dots{} are not seen in one of the frames, and their truth is nan: the flow "
-                               "bends their rays past the lens; reduce the gradients or Z_D",
+    warn(warnings, fmt::format("{} of {} dots{} are not imaged in one of the frames, and their truth is nan: the "
+                               "medium deflects their rays past the lens; reduce the gradients or Z_D",
                                unseen - in_reference, truth.size(), where));
   }
   return static_cast<std::size_t>(unseen);
@@ -166,8 +165,8 @@ std::string saturation_cure(CameraSetup const& camera, double light_e) {
 void warn_of_saturation(std::vector<std::string>& warnings, CameraSetup const& camera, std::size_t in_reference,
                         std::size_t in_flow, double light_e) {
   if (in_reference + in_flow == 0) return;
-  warn(warnings, fmt::format("{} pixels are saturated in the reference, {} in the flow frame; {}", in_reference,
-                             in_flow, saturation_cure(camera, light_e)));
+  warn(warnings, fmt::format("{} pixels are saturated in reference.tif, {} in flow.tif; {}", in_reference, in_flow,
+                             saturation_cure(camera, light_e)));
 }
 
 namespace {
@@ -191,35 +190,35 @@ void warn_of_exposure(std::vector<std::string>& warnings, Scene const& scene, do
   CameraSetup const& camera = scene.setup.camera;
   double const photons = scene.photon_unit, limit_e = photon_limited_exposure(scene);
   std::string const cure =
-      "raise laser.pulse_energy_mj, open the lens (lens.f_number), or seed larger particles (particles.diameter_um)";
+      "increase laser.pulse_energy_mj, reduce lens.f_number, or use larger particles (particles.diameter_um)";
   if (!(brightest > 0) || photons < 1) {
-    warn(warnings, fmt::format("particles: the brightest sends {:.2g} photons through the lens at a pulse, {}; {}",
-                               brightest > 0 ? photons : 0.0,
-                               camera.noise.enabled ? "which no sensor shows"
-                                                    : "which no sensor shows (the images have no noise that would say "
-                                                      "so; add [camera.noise])",
-                               cure));
+    warn(warnings,
+         fmt::format(
+             "particles: the brightest one sends {:.2g} photons per pulse through the lens, {}; {}",
+             brightest > 0 ? photons : 0.0,
+             camera.noise.enabled
+                 ? "too few for any sensor"
+                 : "too few for any sensor (the images do not show it, since they have no noise; add [camera.noise])",
+             cure));
   } else if (camera.absolute_exposure) {
     double const peak_e = exposure_e * brightest, snr = peak_snr(camera, peak_e);
     if (!camera.noise.enabled || snr >= least_peak_snr) return;
-    warn(
-        warnings,
-        fmt::format("camera.exposure = \"absolute\": the brightest particle sends {:.3g} photons through the lens, and "
-                    "the brightest pixel collects {:.3g} electrons, {:.2g} times its noise (below {:g}, most particles "
-                    "are lost in noise); {}",
-                    photons, peak_e, snr, least_peak_snr, cure));
+    warn(warnings, fmt::format("camera.exposure = \"absolute\": the brightest particle sends {:.3g} photons through "
+                               "the lens, and the brightest pixel collects {:.3g} electrons, {:.2g} times its noise "
+                               "(below {:g} most particles are lost in noise); {}",
+                               photons, peak_e, snr, least_peak_snr, cure));
   } else if (camera.exposure_e && exposure_e > limit_e * (1 + 1e-9)) {
     warn(warnings, fmt::format("camera.exposure: the brightest particle sends {:.3g} photons through the lens, which "
-                               "set free {:.3g} electrons at a quantum efficiency of {:.3g}, not {:.6g}: images have "
-                               "less noise than that light; set camera.exposure = \"auto\" or \"absolute\", or {}",
+                               "release {:.3g} electrons at a quantum efficiency of {:.3g}, not {:.6g}: the images "
+                               "have less noise than such light; set camera.exposure = \"auto\" or \"absolute\", or {}",
                                photons, limit_e, camera.noise.quantum_efficiency, exposure_e, cure));
   } else if (double const wanted = Detector::auto_exposure(camera, brightest); !camera.exposure_e && wanted > limit_e) {
     double const full_scale = std::pow(2.0, camera.bit_depth) - 1;
     warn(warnings,
          fmt::format("camera.exposure = \"auto\" is limited by the light: the brightest particle sends {:.3g} photons "
-                     "through the lens, which set free {:.3g} electrons at a quantum efficiency of {:.3g}, and its "
-                     "pixel comes to {:.2g} % of full scale in place of 90 %. For 90 %, {:.3g} times the light is "
-                     "needed: {}, or lower camera.noise.full_well_e",
+                     "through the lens, which release {:.3g} electrons at a quantum efficiency of {:.3g}, and its "
+                     "pixel reaches {:.2g} % of full scale instead of 90 %. For 90 %, {:.3g} times as much light is "
+                     "required: {}, or reduce camera.noise.full_well_e",
                      photons, limit_e, camera.noise.quantum_efficiency,
                      100 * Detector(camera, limit_e).ideal_level(brightest) / full_scale, wanted / limit_e, cure));
   }

@@ -33,29 +33,29 @@ struct ParticlePairs {
 
 constexpr std::array<ParticlePairs, 7> particle_pairs{{
     {"/particles/reference_px", &GroundTruth::reference_px, nullptr, "px",
-     "centroid of the light that passes the stop, at the first pulse; nan: not lit, or no ray gets through",
+     "centroid of the light that passes the stop, at the first pulse; nan: not illuminated, or no ray passes",
      "particle, (column, row)"},
     {"/particles/displacement_px", &GroundTruth::displacement_px, nullptr, "px",
-     "centroid at the second pulse minus that at the first, as imaged (u right, v down); nan: not seen at both",
+     "centroid at the second pulse minus that at the first, in the image (u right, v down); nan: not imaged at both",
      "particle, (u, v)"},
     {"/particles/displacement_error_px", &GroundTruth::displacement_error_px, nullptr, "px",
-     "standard error of displacement_px: two thirds of particles lie within it, by component; nan: unknown",
+     "standard error of displacement_px by component (68 % of the errors lie within it); nan: unknown",
      "particle, (u, v)"},
     {"/particles/displacement_std_px", &GroundTruth::displacement_std_px, nullptr, "px",
-     "weighted standard deviation of the hits at the second pulse", "particle, (u, v)"},
+     "weighted standard deviation of the rays on the sensor at the second pulse", "particle, (u, v)"},
     {"/particles/reference_ambient_px", nullptr, &ParticleTruth::reference_ambient_px, "px",
      "as reference_px, without the medium", "particle, (column, row)"},
     {"/particles/displacement_ambient_px", nullptr, &ParticleTruth::displacement_ambient_px, "px",
      "as displacement_px, without the medium", "particle, (u, v)"},
-    {"/particles/flux", &GroundTruth::flux, nullptr, "1", "photons that reach the sensor's plane at either pulse",
+    {"/particles/flux", &GroundTruth::flux, nullptr, "1", "photons that reach the plane of the sensor at each pulse",
      "particle, pulse"},
 }};
 
 /// @throws DataError if a dataset's length does not match the others
 void require_count(std::string const& path, std::string const& dataset, std::size_t there, std::size_t needed) {
   if (there == needed) return;
-  throw DataError(path, dataset + " has " + std::to_string(there) + " values where " + std::to_string(needed) +
-                            " belong to the others; render the case again");
+  throw DataError(path, dataset + " has " + std::to_string(there) + " values, but " + std::to_string(needed) +
+                            " are required; render the case again");
 }
 
 /// Minimum, median and maximum of positive numbers.
@@ -76,10 +76,10 @@ void write_particle_truth(std::string const& path, Scene const& scene, GroundTru
   for (auto const* const places : {&truth.position_m, &truth.particles.second_m}) {
     for (Vec3d const& p : *places) position.insert(position.end(), {p.x, p.y, p.z});
   }
-  file.write(
-      "/particles/position_m", std::span<double const>(position), {2, count, 3}, "m",
-      "particles in the world frame at either pulse: X right, Y up as the camera sees them, Z towards the camera",
-      "pulse, particle, (x, y, z)");
+  file.write("/particles/position_m", std::span<double const>(position), {2, count, 3}, "m",
+             "particle positions in the world frame at each pulse: X right, Y up as the camera sees them, Z towards "
+             "the camera",
+             "pulse, particle, (x, y, z)");
   for (ParticlePairs const& pairs : particle_pairs) {
     file.write(pairs.name, pairs_as_numbers(pairs.of(truth)), {count, 2}, pairs.units, pairs.description, pairs.axes);
   }
@@ -87,11 +87,12 @@ void write_particle_truth(std::string const& path, Scene const& scene, GroundTru
              "diameter of the particle", "particle");
   std::vector<std::int64_t> rays;
   for (auto const& both : truth.rays) rays.insert(rays.end(), both.begin(), both.end());
-  file.write("/particles/rays", std::span<std::int64_t const>(rays), {count, 2}, "1", "rays counted at either pulse",
+  file.write("/particles/rays", std::span<std::int64_t const>(rays), {count, 2}, "1", "rays counted at each pulse",
              "particle, pulse");
-  file.write("/particles/rays_planned", std::span<std::int64_t const>(truth.rays_planned), {count}, "1",
-             "rays that the particle was to have at either pulse; 0: not traced, its light cannot reach the sensor",
-             "particle");
+  file.write(
+      "/particles/rays_planned", std::span<std::int64_t const>(truth.rays_planned), {count}, "1",
+      "planned number of rays of the particle at each pulse; 0: not traced, since its light cannot reach the sensor",
+      "particle");
   std::vector<std::int64_t> counts;
   for (auto const& frame : statuses) counts.insert(counts.end(), frame.begin(), frame.end());
   file.write("/rays/status", std::span<std::int64_t const>(counts), {2, ray_status_count}, "1",
@@ -102,7 +103,7 @@ void write_particle_truth(std::string const& path, Scene const& scene, GroundTru
                  setup.medium.interpolation == FieldInterpolation::cubic_bspline ? "cubic_bspline" : "trilinear");
   file.attribute("/particles", "conventions",
                  "displacement = second pulse minus first; column right and row down from 0 at the first pixel's "
-                 "centre; the medium stands before both pulses");
+                 "centre; the medium is present at both pulses");
   file.attribute("/", "method", to_string(method));
   file.attribute("/particles", "step_mm", scene.step * 1e3);
   file.attribute("/particles", "magnification", scene.imaging.magnification);

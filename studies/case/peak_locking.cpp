@@ -107,9 +107,7 @@ std::string locking_advice(Setup const& setup) {
   double const diameter = images.diameter_px();
   if (!(diameter < warned_image_px)) return {};
   std::string text = fmt::format(
-      "{} images are {:.2f} px wide (e^-2 diameter): below {:g} px correlation locks to whole pixels, an error of "
-      "about "
-      "{:.2g} px",
+      "{} images are {:.2f} px wide (e^-2 diameter): below {:g} px peak locking occurs, an error of about {:.2g} px",
       setup.piv ? "particle" : "dot", diameter, least_image_px, images.locking_error_px());
   std::string const cure = cures(setup, images);
   if (cure.empty()) return text + "; widen them";
@@ -126,9 +124,9 @@ std::string locking_advice(Image<double> const& frame) {
   if (!(diameter > smallest_seen && diameter < warned_image_px)) return {};
   SmallImages const images{0, diameter, 0}, wide{0, least_image_px, 0};
   return fmt::format(
-      "dot images are about {:.2f} px wide (e^-2 diameter, by their autocorrelation): below {:g} px correlation "
-      "locks to whole pixels, an error of about {:.2g} px; an f-number {:.2g} times as large, or a little defocus, "
-      "widens them to {:g} px (about {:.2g} px)",
+      "dot images are about {:.2f} px wide (e^-2 diameter, by their autocorrelation): below {:g} px peak locking "
+      "occurs, an error of about {:.2g} px; an f-number {:.2g} times as large, or a little defocus, widens them to "
+      "{:g} px (about {:.2g} px)",
       diameter, least_image_px, images.locking_error_px(), images.f_number_factor(least_image_px), least_image_px,
       wide.locking_error_px());
 }

@@ -12,10 +12,10 @@ namespace gladstone {
 
 PlenopticCamera PlenopticCamera::of(Setup const& setup, std::string const& where) {
   auto const refuse = [&where](std::string const& why) { throw DataError(where, why); };
-  if (!setup.lenslets) refuse("its camera has no [camera.lenslets], so that its pictures hold one view each");
-  if (setup.lens.prescription) refuse("its lens is a prescription; views are taken of ideal thin lenses");
+  if (!setup.lenslets) refuse("its camera has no [camera.lenslets], so that each image is a single view");
+  if (setup.lens.prescription) refuse("its lens is a prescription; views require an ideal thin lens");
   ImagingGeometry const imaging = setup.imaging();
-  if (!(imaging.entrance_pupil > 0)) refuse("its lens has no stop (lens.f_number = inf), and so one view");
+  if (!(imaging.entrance_pupil > 0)) refuse("its lens has no stop (lens.f_number = inf), and therefore a single view");
   return {setup.lens.focal_length, imaging.entrance_pupil, imaging.image_distance, *setup.lenslets,
           setup.camera.pixel_pitch};
 }

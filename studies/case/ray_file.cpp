@@ -109,11 +109,10 @@ std::vector<Ray<double>> read_rays(std::string const& path, double farthest) {
     }
     Vec3d const start = Vec3d{v[0], v[1], v[2]} * unit::millimetre;
     if (std::max({std::abs(start.x), std::abs(start.y), std::abs(start.z)}) > farthest) {
-      throw DataError(
-          file.place(),
-          fmt::format("the ray starts at {:.6g}, {:.6g}, {:.6g} mm, far outside the bench ({:.6g} mm at most, "
-                      "ten times the way from the dots to the lens); places are in mm",
-                      v[0], v[1], v[2], farthest / unit::millimetre));
+      throw DataError(file.place(),
+                      fmt::format("the ray starts at {:.6g}, {:.6g}, {:.6g} mm, far outside the set-up ({:.6g} mm at "
+                                  "most, ten times the distance from the dots to the lens); positions are in mm",
+                                  v[0], v[1], v[2], farthest / unit::millimetre));
     }
     require_room(rays, path, "rays");
     rays.push_back({start, unit_direction(direction)});

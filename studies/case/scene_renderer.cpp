@@ -24,7 +24,7 @@ namespace {
 FocusedDots enter(Scene const& scene) {
   std::optional<FocusedDots> const dots = focused_dots(scene);
   if (dots) return *dots;
-  throw DataError("render.method", "\"focused_dots\" does not hold here, since " +
+  throw DataError("render.method", "\"focused_dots\" is not valid here, since " +
                                        std::string(to_string(table_state(scene))) + "; use \"auto\" or \"rays\"");
 }
 

@@ -16,7 +16,7 @@ std::string shared_folder() {
     if (fs::exists(folder / "studies" / "cases" / "table1.toml")) return folder.string();
   }
   throw DataError(installed.string(),
-                  "studies/cases/table1.toml is not there (incomplete installation); install gladstone again");
+                  "studies/cases/table1.toml does not exist (incomplete installation); install gladstone again");
 }
 
 }  // namespace gladstone

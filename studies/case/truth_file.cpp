@@ -23,19 +23,20 @@ struct PairDataset {
 
 constexpr std::array<PairDataset, 8> pair_datasets{{
     {"/dots/reference_px", &GroundTruth::reference_px, "px",
-     "radiance-weighted centroid of the rays that pass the stop in the reference frame (column, row)"},
+     "radiance-weighted centroid of the rays that pass the stop in the reference image (column, row)"},
     {"/dots/displacement_px", &GroundTruth::displacement_px, "px",
-     "flow centroid minus reference centroid (u right, v down)"},
+     "centroid in the measurement image (flow.tif) minus that in the reference image (u right, v down)"},
     {"/dots/displacement_error_px", &GroundTruth::displacement_error_px, "px",
-     "standard error of displacement_px: two thirds of dots lie within it, by component; nan: unknown"},
+     "standard error of displacement_px by component (68 % of the errors lie within it); nan: unknown"},
     {"/dots/displacement_std_px", &GroundTruth::displacement_std_px, "px",
-     "weighted standard deviation of the hits in the flow frame"},
-    {"/dots/flux", &GroundTruth::flux, "fully lit px", "light of the dot in the reference and in the flow frame"},
+     "weighted standard deviation of the rays on the sensor in the measurement image"},
+    {"/dots/flux", &GroundTruth::flux, "fully lit px",
+     "light of the dot in the reference and in the measurement image"},
     {"/dots/eq9_px", &GroundTruth::eq9_px, "px",
-     "Rajendran et al. eq. 9 along the straight chief ray, lever Z_D (u right, v down)"},
-    {"/dots/chief_px", &GroundTruth::chief_px, "px", "the same with each slice's own distance from the dots as lever"},
-    {"/dots/eq9_cone_px", &GroundTruth::eq9_cone_px, "px",
-     "the same averaged over the dot's disc and the stop's pupil"},
+     "Rajendran et al. eq. 9 along the straight chief ray, with lever arm Z_D (u right, v down)"},
+    {"/dots/chief_px", &GroundTruth::chief_px, "px",
+     "eq. 9 with the distance of each slice from the dots as lever arm"},
+    {"/dots/eq9_cone_px", &GroundTruth::eq9_cone_px, "px", "eq. 9 averaged over the dot and the aperture"},
 }};
 
 }  // namespace
@@ -58,11 +59,12 @@ void write_truth(std::string const& path, Scene const& scene, GroundTruth const&
   file.write("/dots/rays", std::span<std::int64_t const>(rays), {count, 2}, "1", "rays counted in each frame",
              "dot, frame (reference, flow)");
   file.write("/dots/rays_planned", std::span<std::int64_t const>(truth.rays_planned), {count}, "1",
-             "rays that the dot was to have in each frame", "dot");
+             "planned number of rays of the dot in each frame", "dot");
   std::vector<std::int64_t> by_table;
   for (TruthPath const by : truth.path) by_table.push_back(by == TruthPath::table ? 1 : 0);
   file.write("/dots/by_table", std::span<std::int64_t const>(by_table), {count}, "1",
-             "1: truth is a deflection table's integral over the dot's cone, corrected by its rays; 0: their centroids",
+             "1: the truth is the integral of a deflection table over the light cone, corrected by the dot's rays; 0: "
+             "it is the centroid of the rays",
              "dot");
   std::vector<std::int64_t> counts;
   for (auto const& frame : statuses) counts.insert(counts.end(), frame.begin(), frame.end());
@@ -74,7 +76,7 @@ void write_truth(std::string const& path, Scene const& scene, GroundTruth const&
   auto const rows = static_cast<std::size_t>(field.density.rows());
   double const spacing[1] = {static_cast<double>(field.spacing_px)};
   file.write("/field/spacing_px", std::span<double const>(spacing), {1}, "px",
-             "lattice constant of the maps: node (i, j) lies at pixel (i, j) spacing + (spacing - 1) / 2", "value");
+             "spacing of the maps: node (i, j) is at pixel (i, j) spacing + (spacing - 1) / 2", "value");
   file.write("/field/density_kg_m3", std::span<double const>(field.density.data(), field.density.size()),
              {rows, columns}, "kg/m^3", "density averaged along the chief ray through the field", "row, column");
   file.write("/field/density_gradient_kg_m4", flat(field.density_gradient), {rows, columns, 2}, "kg/m^4",
@@ -105,8 +107,8 @@ namespace {
 /// @throws DataError if a dataset's length does not match the others
 void require_length(std::string const& path, std::string const& dataset, std::size_t there, std::size_t needed) {
   if (there == needed) return;
-  throw DataError(path, dataset + " has " + std::to_string(there) + " values where " + std::to_string(needed) +
-                            " belong to the others; render the case again");
+  throw DataError(path, dataset + " has " + std::to_string(there) + " values, but " + std::to_string(needed) +
+                            " are required; render the case again");
 }
 
 }  // namespace
@@ -151,8 +153,8 @@ FieldMap read_field_map(std::string const& path) {
   auto const shape = file.shape("/field/density_kg_m3");
   constexpr std::size_t largest = 1'000'000;  // pixels of a camera along an axis, sanity limit
   if (shape.size() != 2 || shape[0] > largest || shape[1] > largest || !(spacing[0] >= 1 && spacing[0] <= largest)) {
-    throw DataError(path,
-                    "/field holds no map (spacing_px, and density_kg_m3 in rows and columns); render the case again");
+    throw DataError(
+        path, "/field contains no map (spacing_px, and density_kg_m3 in rows and columns); render the case again");
   }
   map.spacing_px = static_cast<int>(spacing[0]);
   std::vector<double> const density = file.read("/field/density_kg_m3");

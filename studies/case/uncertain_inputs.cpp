@@ -65,7 +65,7 @@ class Reader {
       if (known) continue;
       std::vector<std::string> const names(known_keys.begin(), known_keys.end());
       auto const nearest = nearest_name(member.key, names);
-      problem("has the unknown key " + member.key + " beside its value" +
+      problem("has the unknown key " + member.key + " in addition to its value" +
               (nearest ? "; did you mean " + *nearest + "?" : "; it may have " + quoted_list(names)));
     }
     read_sigma(node, input);
@@ -80,9 +80,10 @@ class Reader {
   void read_sigma(SetupNode const& node, UncertainInput& input) {
     SetupNode const* const sigma = node.find("sigma");
     if (!sigma) {
-      problem("has a value without its uncertainty; write { value = ..., sigma = ... }, or the number alone");
+      problem("has a value without an uncertainty; write { value = ..., sigma = ... }, or the number alone");
     } else if (!sigma->is_number() || !(sigma->as_double() >= 0) || !std::isfinite(sigma->as_double())) {
-      problem("has a sigma that is no standard uncertainty (" + toml_text(*sigma) + "); write a number of 0 or more");
+      problem("has a sigma that is not a standard uncertainty (" + toml_text(*sigma) +
+              "); write a number of 0 or more");
     } else {
       input.sigma = sigma->as_double();
     }
@@ -100,7 +101,7 @@ class Reader {
     SetupNode const* const degrees = node.find("degrees_of_freedom");
     if (!degrees) return;
     if (!degrees->is_number() || !(degrees->as_double() >= 1)) {
-      problem("has degrees_of_freedom of " + toml_text(*degrees) + "; write a number of 1 or more, or leave it out");
+      problem("has degrees_of_freedom of " + toml_text(*degrees) + "; write a number of 1 or more, or omit it");
     } else {
       input.degrees_of_freedom = degrees->as_double();
     }
@@ -127,8 +128,8 @@ class CorrelationReader {
     }
     if (correlation_factor(coefficients_)) return;
     tables.back().problem("coefficient",
-                          "makes a matrix of coefficients with a negative eigenvalue: no inputs can be correlated so "
-                          "together; give smaller ones, or those of pairs that are left out");
+                          "makes the correlation matrix invalid (it has a negative eigenvalue); give smaller "
+                          "coefficients, or those of the missing pairs");
   }
 
  private:
@@ -136,7 +137,7 @@ class CorrelationReader {
     static std::vector<std::string> const names{"keys", "coefficient"};
     for (SetupMember const& member : node.members) {
       if (std::find(names.begin(), names.end(), member.key) != names.end()) continue;
-      table.problem(member.key, "is no key of correlations; it has " + quoted_list(names));
+      table.problem(member.key, "is not a key of correlations; the keys are " + quoted_list(names));
     }
     auto const pair = pair_of(node, table);
     SetupNode const* const number = node.find("coefficient");
@@ -170,14 +171,14 @@ class CorrelationReader {
       std::vector<std::string> names;
       for (UncertainInput const& input : inputs_) names.push_back(input.key);
       auto const nearest = nearest_name(key, names);
-      table.problem("keys", "names " + key + ", which is not written with its uncertainty" +
+      table.problem("keys", "names " + key + ", which has no uncertainty" +
                                 (nearest ? "; did you mean " + *nearest + "?"
                                          : "; write " + key + " = { value = ..., sigma = ... }"));
       return std::nullopt;
     }
     if (found->distribution != InputDistribution::normal) {
       table.problem("keys", "names " + key +
-                                ", which is rectangular (only normal distributions are drawn together, JCGM 101:2008, "
+                                ", which is rectangular (only normal distributions can be correlated, JCGM 101:2008, "
                                 "6.4.8); remove its distribution, or the correlation");
       return std::nullopt;
     }
@@ -196,7 +197,7 @@ class CorrelationReader {
   void enter(std::size_t a, std::size_t b, double coefficient, SetupTable& table) {
     for (InputCorrelation const& other : inputs_[a].correlations) {
       if (other.with != inputs_[b].key) continue;
-      table.problem("keys", "are correlated already further up; remove one of both");
+      table.problem("keys", "are already correlated above; remove one of the two");
       return;
     }
     auto const i = static_cast<Eigen::Index>(a), k = static_cast<Eigen::Index>(b);

@@ -66,7 +66,7 @@ std::string rendering_announcement(Scene const& scene, double expected_s) {
   if (!(expected_s > least_announced_s)) return {};
   return fmt::format(
       "rendering {0} {1} will take some {2:.0f} s on {3} threads; fewer {1}, a smaller render.rays_per_dot or a larger "
-      "medium.step_mm takes less",
+      "medium.step_mm takes less time",
       scene.source_count(), scene.setup.piv ? "particles" : "dots", expected_s, thread_count());
 }
 
@@ -119,7 +119,7 @@ nlohmann::json write_case(CaseSetup& loaded, PreparedCase const& prepared, Rende
   CaseOutcome outcome;
   std::vector<std::string>& warnings = outcome.warnings = prepared.warnings;
   if (loaded.setup.render.precision == Precision::single) {
-    warn(warnings, "render.precision = \"single\" gains nothing any more: rendered in double");
+    warn(warnings, "render.precision = \"single\" has no advantage any more: rendered in double precision");
   }
   Scene scene = prepared.scene;
   scene.pupil_margin = rendered.pupil_margin;

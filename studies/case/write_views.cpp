@@ -41,11 +41,9 @@ double distance_of(Setup const& setup, double z) {
   Pose<double> const pose = setup.camera_pose();
   double const distance = (pose.origin.z - z) / pose.z.z;
   if (distance > setup.lens.focal_length) return distance;
-  throw DataError(
-      "--refocus",
-      fmt::format("Z = {:.6g} mm lies within the focal length before the lens, or behind it (no image of it "
-                  "exists); take a plane further away",
-                  z / unit::millimetre));
+  throw DataError("--refocus", fmt::format("Z = {:.6g} mm is less than a focal length in front of the lens, or behind "
+                                           "it (it has no real image); use a plane farther away",
+                                           z / unit::millimetre));
 }
 
 }  // namespace
@@ -78,9 +76,9 @@ ViewsWritten write_views(std::string const& case_folder, std::string const& fold
   // The image of the stop behind a lenslet has a limited number of pixels; more views are interpolated.
   if (double const seen = written.camera.picture_px(); across > 2 * seen) {
     spdlog::warn(
-        "--views {}: {} views of either frame will be written, though a lenslet's picture of the stop is {:.3g} px "
-        "wide "
-        "(views in between are interpolated and show nothing new); --views {} has one for every pixel",
+        "--views {}: {} views of each frame will be written, although the image of the stop behind a lenslet is {:.3g} "
+        "px wide (views between pixels are interpolated and contain no new information); --views {} gives one view per "
+        "pixel",
         across, written.views, seen, std::max(1, static_cast<int>(std::ceil(seen))));
   }
   OutputFolder output(folder, {marker, {"view_*.tif", "*_refocused.tif"}});

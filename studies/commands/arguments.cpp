@@ -28,8 +28,8 @@ std::string in_our_words(std::string const& kind, std::string const& text) {
     std::string_view const start = "Could not convert: ", given = " = ";
     auto const equals = text.find(given);
     if (text.starts_with(start) && equals != std::string::npos) {
-      return fmt::format("{}: \"{}\" is no number of the kind that is needed",
-                         text.substr(start.size(), equals - start.size()), excerpt(text.substr(equals + given.size())));
+      return fmt::format("{}: \"{}\" is not a valid number", text.substr(start.size(), equals - start.size()),
+                         excerpt(text.substr(equals + given.size())));
     }
   }
   std::string const option = text.substr(0, text.find_first_of(": "));
@@ -58,7 +58,8 @@ CLI::Validator whole_number(long long low, long long high) {
     long long value = 0;
     auto const [end, error] = std::from_chars(given.data(), given.data() + given.size(), value);
     bool const good = error == std::errc() && end == given.data() + given.size() && value >= low && value <= high;
-    return good ? std::string() : fmt::format("\"{}\" is no whole number from {} to {}", excerpt(given), low, high);
+    return good ? std::string()
+                : fmt::format("expected an integer from {1} to {2}, got \"{0}\"", excerpt(given), low, high);
   };
   return CLI::Validator(check, fmt::format("[{} - {}]", low, high));
 }

@@ -31,14 +31,14 @@ ForeignVectors parse_vectors(std::string const& given) {
                     "is not of the form NAME=F (a name for the code, and its folder of vectors); "
                     "write --vectors mine=FOLDER");
   if (vectors.name.find_first_of(",\n\"") != std::string::npos)
-    throw DataError("--vectors " + given,
-                    "has a comma, a quotation mark or a line break in its name, which "
-                    "benchmark.csv separates by; take another name");
+    throw DataError(
+        "--vectors " + given,
+        "has a comma, a quotation mark or a line break in its name, which would break benchmark.csv; use another name");
   std::error_code error;
-  if (!fs::exists(vectors.path, error)) throw DataError(vectors.path, "is not there; give the folder of vectors");
+  if (!fs::exists(vectors.path, error)) throw DataError(vectors.path, "does not exist; give the folder of vectors");
   for (BenchmarkEstimator const& ours : benchmark_estimators())
     if (ours.name == vectors.name)
-      throw DataError("--vectors " + given, "has the name of one of our estimators; take another name");
+      throw DataError("--vectors " + given, "has the name of one of our estimators; use another name");
   return vectors;
 }
 
@@ -54,7 +54,7 @@ void assign_conventions(std::vector<ForeignVectors>& vectors, std::string const&
     used = true;
   }
   if (!used)
-    throw DataError("--conventions " + given, "has no vectors to be read so (they are another code's); add --vectors");
+    throw DataError("--conventions " + given, "applies to vectors of another code, but none are given; add --vectors");
 }
 
 std::vector<std::string> names_of_cases() {
@@ -102,18 +102,18 @@ CommandBody attach_benchmark(CLI::App& app, GlobalOptions const& options) {
   app.add_option("--vectors", arguments->vectors,
                  "NAME=F: another code's vectors, F a folder of files named after cases (vortex.csv, .txt, .h5)");
   app.add_option("--conventions", arguments->conventions,
-                 "How those vectors are to be read, in the words of gladstone compare, or NAME=WORDS for one code; "
-                 "default: as their format says");
+                 "Conventions of these vectors, as for gladstone compare, or NAME=WORDS for one code; default: those "
+                 "of their format");
   app.add_option("--cases", arguments->benchmark.cases, "Only these cases")->check(one_of(names_of_cases()));
   app.add_option("--estimators", arguments->benchmark.estimators, "Only these of ours; none: only --vectors")
       ->check(one_of(names_of_estimators()));
   app.add_option("--seeds", arguments->benchmark.seeds,
-                 "Also the coverage of every uncertainty method over so many seeds; 0: not")
+                 "Number of seeds for the coverage of every uncertainty method; 0: no coverage")
       ->check(whole_number(0, 1000));
   app.add_flag("--no-figures", arguments->no_figures, "Numbers only");
   app.add_flag("--learn", arguments->learn,
-               "Instead, learn how uncertainty methods are best combined, into combination.csv (as "
-               "data/uncertainty/combination.csv, which is built in)");
+               "Only learn the weights of the combined uncertainty and write them to combination.csv (the built-in "
+               "weights are data/uncertainty/combination.csv)");
   return [arguments, &options] {
     BenchmarkOptions benchmark = arguments->benchmark;
     for (std::string const& given : arguments->vectors) benchmark.vectors.push_back(parse_vectors(given));

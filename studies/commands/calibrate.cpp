@@ -57,12 +57,12 @@ CommandBody attach_calibrate(CLI::App& app, GlobalOptions const& options) {
   };
   auto arguments = std::make_shared<Arguments>();
   app.add_option("case", arguments->folder,
-                 "Case folder of a calibration, of one camera or several; with --images its setup (TOML): "
-                 "[calibration] says what they show, camera and lens about how")
+                 "Case folder of a calibration, of one camera or several; with --images a setup (TOML): [calibration] "
+                 "describes the target, camera and lens approximately the camera")
       ->required();
   auto* const images = app.add_option("--images", arguments->pictures,
-                                      "Your own pictures, one for each plane of calibration.planes_mm in that order");
-  auto* const output = app.add_option("-o,--output", arguments->output, "Folder to write into, with --images");
+                                      "Your own images, one for each plane of calibration.planes_mm in that order");
+  auto* const output = app.add_option("-o,--output", arguments->output, "Output folder, with --images");
   images->expected(-1)->needs(output);
   output->needs(images);
   app.add_flag("--no-figures", arguments->no_figures, "Numbers only");

@@ -117,17 +117,17 @@ CommandBody attach_compare(CLI::App& app, GlobalOptions const& options) {
   auto arguments = std::make_shared<Arguments>();
   app.add_option("case", arguments->folder, "Case folder")->required();
   app.add_option("--vectors", arguments->compare.vectors,
-                 "Vectors of ours, OpenPIV, PIVlab, DaVis, Insight, Dantec, JPIV or any x,y,u,v, default "
-                 "CASE/vectors.h5; those outside the image or longer than it are left out");
+                 "Vectors of gladstone, OpenPIV, PIVlab, DaVis, Insight, Dantec, JPIV or any x,y,u,v, default "
+                 "CASE/vectors.h5; vectors outside the image or longer than it are excluded");
   app.add_option("-o,--output", arguments->output, "Folder for errors.json and the figures, default CASE");
   app.add_option("--truth-at", arguments->truth_at,
-                 "Where a dot counts: mid (symmetric codes) or reference (one-sided codes)")
+                 "Position to which the displacement of a dot belongs: mid (midway between both frames, symmetric "
+                 "codes) or reference (one-sided codes)")
       ->check(one_of({"mid", "reference"}));
-  app.add_option(
-      "--conventions", arguments->conventions,
-      "How the file is to be read, whatever its format says and the truth shows: y-down or y-up or y-up-image, v-down "
-      "or v-up, frames-exchanged, axes-exchanged or places-exchanged or components-exchanged, offset=-0.5; of files "
-      "in other units px=0.0614,px/frame=6.14: what a pixel is in them");
+  app.add_option("--conventions", arguments->conventions,
+                 "Conventions of the file, instead of those of its format: y-down or y-up or y-up-image, v-down or "
+                 "v-up, frames-exchanged, axes-exchanged or places-exchanged or components-exchanged, offset=-0.5; for "
+                 "files in other units the size of a pixel in them, px=0.0614,px/frame=6.14");
   app.add_flag("--no-figures", arguments->no_figures, "Numbers only");
   return [arguments, &options] {
     Device const device = options.open_device();

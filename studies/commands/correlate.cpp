@@ -27,32 +27,32 @@ CommandBody attach_correlate(CLI::App& app, GlobalOptions const& options) {
     bool ensemble = false;
   };
   auto arguments = std::make_shared<Arguments>();
-  app.add_option(
-         "input", arguments->inputs,
-         "A case folder, two images (reference and flow), or one image file of these two pages; with --ensemble "
-         "any number of pairs")
+  app.add_option("input", arguments->inputs,
+                 "A case folder, two images (reference and flow), or one image file with both as pages; with "
+                 "--ensemble any number of pairs")
       ->required()
       ->expected(-1);
   app.add_flag("--ensemble", arguments->ensemble,
-               "The images are pairs of one displacement, reference and flow in turn: their correlation planes are "
-               "averaged (on the CPU)");
+               "The images are pairs of one displacement field, reference and flow alternating: their correlation "
+               "planes are averaged (on the CPU)");
   app.add_option("-o,--output", arguments->output, "Vectors to write: .h5 or .csv; default CASE/vectors.h5");
   app.add_option("--config", arguments->config,
-                 "TOML file with a table [correlate], which may be a whole setup; default: the case's own");
+                 "TOML file with a table [correlate], for example a setup; default: that of the case");
   app.add_option("--set", arguments->overrides, "Override a key: --set correlate.overlap=0.75")
       ->expected(1)
       ->take_all();
   return [arguments, &options] {
     if (arguments->ensemble && options.device == "cuda")
-      throw DeviceError("--device cuda: ensembles are correlated on the CPU alone; use --device auto");
+      throw DeviceError("--device cuda: ensembles are correlated on the CPU only; use --device auto");
     std::size_t const given = arguments->inputs.size();
     if (arguments->ensemble && given % 2 != 0)
-      throw DataError("correlate", fmt::format("--ensemble got {} images (reference and flow in turn make an even "
-                                               "number); give pairs",
-                                               given));
+      throw DataError(
+          "correlate",
+          fmt::format("--ensemble got {} images (pairs of reference and flow require an even number); give pairs",
+                      given));
     if (!arguments->ensemble && given > 2)
-      throw DataError("correlate", fmt::format("got {} images (a measurement takes a reference and a flow frame); give "
-                                               "two, or --ensemble for pairs of one displacement",
+      throw DataError("correlate", fmt::format("got {} images (a measurement requires a reference and a flow frame); "
+                                               "give two, or --ensemble for pairs of one displacement",
                                                given));
     Device const device = options.open_device();
     std::string const& output = arguments->output;
@@ -77,8 +77,8 @@ CommandBody attach_correlate(CLI::App& app, GlobalOptions const& options) {
       if (written.empty()) written = in_case(folder, case_file::vectors);
       inputs = rendered_files(folder);
     } else {
-      for (std::string const& name : inputs) require_input_file(name, "a picture, or a case folder");
-      if (output.empty()) throw OutputError("correlate", "images need -o FILE.h5 or FILE.csv");
+      for (std::string const& name : inputs) require_input_file(name, "an image, or a case folder");
+      if (output.empty()) throw OutputError("correlate", "images require -o FILE.h5 or FILE.csv");
     }
     if (!config.empty()) inputs.push_back(config);
     std::vector<std::string> const& prepared_by = other.settings.preparation.files;
@@ -117,8 +117,9 @@ CommandBody attach_correlate(CLI::App& app, GlobalOptions const& options) {
     for (std::string const& warning : field.warnings) spdlog::warn("{}: {}", written, warning);
     bool const any_valid = counts[0] + counts[1] > 0;
     if (!any_valid && field.warnings.empty()) {
-      spdlog::warn("{}: none of {} vectors is valid; are these two frames of one scene, with dots in every window?",
-                   written, field.size());
+      spdlog::warn(
+          "{}: none of the {} vectors is valid; check that both frames show one scene, with dots in every window",
+          written, field.size());
     }
     nlohmann::json const json{{"vectors", field.size()},
                               {"file", written},

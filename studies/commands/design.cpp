@@ -20,14 +20,16 @@ CommandBody attach_design(CLI::App& app, GlobalOptions const& options) {
       ->take_all()
       ->expected(1)
       ->trigger_on_parse(false);
-  app.add_option("--figures", request->figures, "Folder to draw the layout, the design map and the front in");
+  app.add_option("--figures", request->figures, "Folder for figures of the layout, the design map and the front");
   app.add_option("--figure-format", request->figure_format, "png, svg or pdf")->check(one_of({"png", "svg", "pdf"}));
-  app.add_option("--apply", request->apply, "File (TOML) to write the recommended setup to, ready to render");
-  app.add_option("--verify", request->verification.benches,
-                 "How many of the best combinations to render and correlate (some minutes); 0: believe the formulas")
+  app.add_option("--apply", request->apply, "File (TOML) for the recommended setup, ready to render");
+  app.add_option(
+         "--verify", request->verification.benches,
+         "Number of best combinations to verify by rendering and correlation (some minutes); 0: use the formulas only")
       ->check(CLI::Range(0, 100))
       ->capture_default_str();
-  app.add_option("--repeats", request->verification.repeats, "How often each is simulated, with other dots and noise")
+  app.add_option("--repeats", request->verification.repeats,
+                 "Number of simulations of each combination, with different dots and noise")
       ->check(CLI::Range(2, 1000))
       ->capture_default_str();
   app.add_option("--seed", request->verification.seed, "Seed of these dots and of the noise")

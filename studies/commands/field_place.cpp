@@ -83,7 +83,7 @@ FieldPlace field_place(FieldSource const& source, std::string const& path, std::
   place.spacing = stated_spacing(source);
   place.spacing_text = spacing_text(source, place.spacing);
   place.extent_mm = extent_mm(source);
-  std::string const values = units.values.empty() ? "name no unit" : "are in " + units.values;
+  std::string const values = units.values.empty() ? "have no stated unit" : "are in " + units.values;
   if (undefined.empty()) {
     place.text =
         fmt::format("{}, so the field is {:.6g} x {:.6g} x {:.6g} mm wide unless spacing_mm is given; values {}",
@@ -101,7 +101,7 @@ FieldPlace field_place(FieldSource const& source, std::string const& path, std::
   if (whole.medium.field.spacing) place.warning.clear();
   FieldCoverage const seen = field_coverage(file_bounds(whole.medium), whole);
   place.coverage = {{"share", seen.share}, {"view_mm", {seen.view.x / mm, seen.view.y / mm}}, {"setup", setup}};
-  place.text += fmt::format("; it fills {:.3g} % of the {:.4g} x {:.4g} mm that {} sees there", 100 * seen.share,
+  place.text += fmt::format("; it fills {:.3g} % of the {:.4g} x {:.4g} mm in the view of {}", 100 * seen.share,
                             seen.view.x / mm, seen.view.y / mm, setup);
   if (std::string const warning = seen.warning(); !warning.empty()) place.text += "; " + warning;
   return place;

@@ -79,10 +79,10 @@ int describe_image(std::string const& path, GlobalOptions const& options) {
   Image<double> const image = read_image(path, &metadata);
   std::size_t const not_finite = count_not_finite(image);
   if (not_finite == image.size()) {
-    throw DataError(path, fmt::format("all of its {} pixels are nan or infinite; export it anew", not_finite));
+    throw DataError(path, fmt::format("all of its {} pixels are nan or infinite; export it again", not_finite));
   }
   if (not_finite > 0) {
-    spdlog::warn("{}: {} of {} pixels are nan or infinite, and are left out", path, not_finite, image.size());
+    spdlog::warn("{}: {} of {} pixels are nan or infinite, and are excluded", path, not_finite, image.size());
   }
   double least = HUGE_VAL, most = -HUGE_VAL;
   for (double const value : image) {
@@ -111,14 +111,15 @@ int describe_image(std::string const& path, GlobalOptions const& options) {
                             {"snr", known(seen.snr())}};
   print_result(
       options, json_text(json),
-      fmt::format("{}: {} x {} px, {} bits{}{}, grey levels {:.6g} to {:.6g}, mean {:.6g}, dots {:.2f} px (e^-2), {}",
-                  path, image.columns(), image.rows(), metadata.bit_depth,
-                  metadata.channels >= 3 ? ", colour turned to luminance" : "",
-                  metadata.orientation == 1 ? "" : fmt::format(", Orientation {} turned upright", metadata.orientation),
-                  least, most, seen.mean, seen.dot_diameter_px,
-                  std::isfinite(seen.snr()) ? fmt::format("SNR {:.3g} (dots {:.4g} levels high, noise {:.3g})",
-                                                          seen.snr(), seen.dot_height, seen.noise)
-                                            : "SNR unknown (no noise or no dots to be seen)"));
+      fmt::format(
+          "{}: {} x {} px, {} bits{}{}, grey levels {:.6g} to {:.6g}, mean {:.6g}, dots {:.2f} px (e^-2), {}", path,
+          image.columns(), image.rows(), metadata.bit_depth,
+          metadata.channels >= 3 ? ", colour converted to luminance" : "",
+          metadata.orientation == 1 ? "" : fmt::format(", Orientation {} rotated upright", metadata.orientation), least,
+          most, seen.mean, seen.dot_diameter_px,
+          std::isfinite(seen.snr()) ? fmt::format("SNR {:.3g} (dots {:.4g} levels high, noise {:.3g})", seen.snr(),
+                                                  seen.dot_height, seen.noise)
+                                    : "SNR unknown (no noise or no dots detected)"));
   return ok;
 }
 
@@ -134,27 +135,28 @@ CommandBody attach_info(CLI::App& app, GlobalOptions const& options) {
   app.add_option("kind", arguments->kind, "field, image, lens, mie or particles")
       ->required()
       ->check(one_of({"field", "image", "lens", "mie", "particles"}));
-  app.add_option("file", arguments->file, "The file; a setup for particles, none for mie");
+  app.add_option("file", arguments->file, "Input file; for particles a setup, for mie none");
   app.add_option("--dataset", arguments->dataset, "Dataset inside the file");
   app.add_option("--axes", arguments->axes,
                  "World axes in the order of the field's file, the slowest first (\"zxy\"), as medium.field.axes");
-  app.add_option("--setup", arguments->setup, "Setup (TOML) of whose view a field's share is to be told");
-  app.add_option("--glass", arguments->lens.glasses, "Glass catalogue (AGF) of info lens beside the shipped ones");
-  app.add_option("--wavelength-nm", arguments->lens.wavelength_nm, "Wavelength of info lens")
+  app.add_option("--setup", arguments->setup, "Setup (TOML) for which the filled fraction of the view is reported");
+  app.add_option("--glass", arguments->lens.glasses, "Additional glass catalogue (AGF) for info lens");
+  app.add_option("--wavelength-nm", arguments->lens.wavelength_nm, "Wavelength for info lens")
       ->check(CLI::Range(100.0, 20000.0));
-  app.add_option("--figure", arguments->figure, "Picture that info lens or info mie draws (.png or .svg)");
-  app.add_option("--x", arguments->mie.x, "Size parameter pi d n / lambda of info mie's sphere");
-  app.add_option("--m", arguments->mie.m, "Its index over that of its surroundings: RE or RE,IM");
+  app.add_option("--figure", arguments->figure, "Figure of info lens or info mie (.png or .svg)");
+  app.add_option("--x", arguments->mie.x, "Size parameter pi d n / lambda of the sphere, for info mie");
+  app.add_option("--m", arguments->mie.m,
+                 "Refractive index of the sphere relative to its surroundings, for info mie: RE or RE,IM");
   return [arguments, &options] {
     if (arguments->kind == "mie") {
-      if (!arguments->file.empty()) throw DataError("info mie", "reads no file; give --x and --m alone");
+      if (!arguments->file.empty()) throw DataError("info mie", "reads no file; give only --x and --m");
       arguments->mie.figure = arguments->figure;
       return describe_mie(arguments->mie, options);
     }
     if (!arguments->mie.x.empty() || !arguments->mie.m.empty()) {
-      throw DataError("info " + arguments->kind, "has no --x and --m (they belong to info mie); leave them out");
+      throw DataError("info " + arguments->kind, "has no --x and --m (they belong to info mie); remove them");
     }
-    if (arguments->file.empty()) throw DataError("info " + arguments->kind, "needs a file; name one behind it");
+    if (arguments->file.empty()) throw DataError("info " + arguments->kind, "requires a file; add its name");
     if (arguments->kind == "lens") {
       arguments->lens.file = arguments->file;
       arguments->lens.figure = arguments->figure;

@@ -101,7 +101,7 @@ std::string lens_text(LensQuestion const& question, Lens const& lens, ParaxialLe
     text += point.imaged ? fmt::format("  {:>11.4g}  {:>13.4g}  {:>14.4g}  {:>14.4g}  {:>14.3f}  {:>14.1f}\n",
                                        point.angle / unit::degree, point.spot_rms * 1e6, point.best_spot_rms * 1e6,
                                        point.best_focus * 1e3, 100 * point.distortion, 100 * point.vignetting)
-                         : fmt::format("  {:>11.4g}  no ray gets through\n", point.angle / unit::degree);
+                         : fmt::format("  {:>11.4g}  no ray passes the lens\n", point.angle / unit::degree);
   }
   return text;
 }

@@ -49,13 +49,13 @@ std::string particles_text(ExpectedParticles const& expected, CaseSetup const& l
     text += fmt::format("  {:<22}{}\n", name, value);
   };
   auto const spread = [](SizeSpread const& s, double factor, char const* unit_name) {
-    return fmt::format("{:.4g}{} (from {:.4g} to {:.4g}: nine in ten)", s.median * factor, unit_name, s.p05 * factor,
+    return fmt::format("{:.4g}{} (90 % from {:.4g} to {:.4g})", s.median * factor, unit_name, s.p05 * factor,
                        s.p95 * factor);
   };
   line("magnification", fmt::format("{:.5g} at the sheet", expected.magnification));
   line("particle diameter", spread(expected.diameter, 1 / unit::micrometre, " um"));
   line("image diameter",
-       fmt::format("{:.3g} px (e^-2), {:.3g} px at the sheet's edge; diffraction alone {:.3g} px",
+       fmt::format("{:.3g} px (e^-2), {:.3g} px at the edge of the sheet; diffraction only {:.3g} px",
                    expected.image_diameter_px, expected.sheet_edge_diameter_px, expected.diffraction_px));
   line("depth of field", fmt::format("{:.4g} mm (the sheet is {:.4g} mm thick)", expected.depth_of_field * 1e3,
                                      loaded.setup.piv->laser.thickness * 1e3));
@@ -69,7 +69,7 @@ std::string particles_text(ExpectedParticles const& expected, CaseSetup const& l
     }
     line("particles per window", windows);
   } else {
-    line("particles per window", "not known before the file is read");
+    line("particles per window", "unknown before the file is read");
   }
   line("photons", spread(expected.photons, 1, "") + " through the lens");
   line("electrons at the peak",

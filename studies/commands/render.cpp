@@ -10,7 +10,7 @@ namespace gladstone {
 namespace {
 
 constexpr char const* example_setup =
-    R"(A setup to begin with. What is left out has a default; the setup.toml of the case has them all.
+    R"(A setup to begin with. All other keys have defaults; the setup.toml of the case lists them.
 
   [lens]
   focal_length_mm = 105.0
@@ -30,7 +30,7 @@ std::string in_words(RenderedCamera const& camera) {
   if (camera.planes > 0) text += fmt::format("{} planes, ", camera.planes);
   text += fmt::format("{} {}, {}", camera.sources, camera.particles ? "particles" : "dots", camera.rays);
   if (camera.most_rays > camera.rays) text += fmt::format(" to {}", camera.most_rays);
-  text += fmt::format(" rays each{}, ", camera.planes > 0 ? "" : " in either frame");
+  text += fmt::format(" rays each{}, ", camera.planes > 0 ? "" : " in each frame");
   if (camera.step_mm) text += fmt::format("step {:.4g} mm, ", *camera.step_mm);
   if (camera.magnification) text += fmt::format("magnification {:.6g}, ", *camera.magnification);
   return text + fmt::format("{:.2f} s on {}", camera.seconds, camera.device);
@@ -46,7 +46,7 @@ CommandBody attach_render(CLI::App& app, GlobalOptions const& options) {
   };
   auto arguments = std::make_shared<Arguments>();
   app.add_option("setup", arguments->setup, "Setup file (TOML)")->required();
-  app.add_option("-o,--output", arguments->folder, "Case folder to make")->required();
+  app.add_option("-o,--output", arguments->folder, "Case folder to create")->required();
   app.add_option("--set", arguments->overrides, "Override a key: --set lens.f_number=16")
       ->take_all()
       ->expected(1)

@@ -24,12 +24,12 @@ CommandBody attach_report(CLI::App& app, GlobalOptions const& options) {
   app.add_option("--format", arguments->format, "html (one file, works offline) or md")
       ->check(one_of({"html", "md"}))
       ->capture_default_str();
-  app.add_option("--vectors", arguments->report.vectors, "Of a CASE: vectors as gladstone compare takes them");
+  app.add_option("--vectors", arguments->report.vectors, "For a CASE: vectors, as for gladstone compare");
   app.add_option("--repeats", arguments->report.repeats,
-                 "Of a measured CASE: vectors of the same field measured again, for an evaluation of type A");
+                 "For a measured CASE: repeated measurements of the same field, for a type A evaluation");
   app.add_option("--conventions", arguments->report.conventions,
-                 "Of a CASE: how its vectors are to be read, as for gladstone compare");
-  app.add_option("--figures", arguments->report.figures, "Folder for the figures as files of their own");
+                 "For a CASE: conventions of its vectors, as for gladstone compare");
+  app.add_option("--figures", arguments->report.figures, "Folder for the figures as separate files");
   app.add_option("--figure-format", arguments->report.figure_format, "png, svg or pdf")
       ->check(one_of({"png", "svg", "pdf"}))
       ->capture_default_str();

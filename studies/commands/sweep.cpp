@@ -32,7 +32,7 @@ char const* to_string(Planned planned) {
 }
 
 constexpr char const* example_study =
-    R"(A study to begin with; docs/studies.md says more.
+    R"(A study to begin with; docs/studies.md describes all keys.
 
   base = "setup.toml"                # relative to this file
   [axes]
@@ -48,7 +48,7 @@ CommandBody attach_plan(CLI::App& app, GlobalOptions const& options) {
   };
   auto arguments = std::make_shared<Arguments>();
   app.add_option("study", arguments->study, "Study file (TOML): base setup and axes")->required();
-  app.add_option("-o,--output", arguments->run, "RUN folder to make")->required();
+  app.add_option("-o,--output", arguments->run, "RUN folder to create")->required();
   return [arguments, &options] {
     StudyFile read = read_study(arguments->study);
     try_plan_place(arguments->run, read);
@@ -111,8 +111,7 @@ CommandBody attach_collect(CLI::App& app, GlobalOptions const& options) {
   app.add_option("run", arguments->run, "RUN folder")->required();
   app.add_flag("--no-figures", arguments->no_figures, "Tables only");
   app.add_option("--dataset", arguments->dataset,
-                 "Pack images and true displacements at their pixels, of the cases that were run with --keep-images, "
-                 "into one HDF5 file");
+                 "Pack images and true displacements of the cases that were run with --keep-images into one HDF5 file");
   return [arguments, &options] {
     std::string const& run = arguments->run;
     if (!arguments->dataset.empty()) refuse_files_of_study(run, arguments->dataset);  // before anything is written
@@ -136,7 +135,7 @@ CommandBody attach_collect(CLI::App& app, GlobalOptions const& options) {
     json["warned"] = warned.size();
     if (!warned.empty()) {
       StudyRow const& first = table.rows[warned.front()];
-      spdlog::warn("{}: {} of {} cases gave warnings, which {}/cases/*.json hold; case {}: {}", run, warned.size(),
+      spdlog::warn("{}: {} of {} cases have warnings, see {}/cases/*.json; case {}: {}", run, warned.size(),
                    table.rows.size(), run, first.index, first.warning);
     }
     std::string packed;
@@ -144,7 +143,7 @@ CommandBody attach_collect(CLI::App& app, GlobalOptions const& options) {
       PackedDataset const set = pack_dataset(run, arguments->dataset, *options.open_device().renderer);
       json["dataset"] = {{"file", arguments->dataset}, {"cases", set.cases}, {"without", set.without}};
       packed = fmt::format("packed {} cases into {}{}\n", set.cases, arguments->dataset,
-                           set.without ? fmt::format("; {} have no images or are not done", set.without) : "");
+                           set.without ? fmt::format("; {} have no images or are not finished", set.without) : "");
     }
     std::string const drawn =
         figures.empty() ? "" : fmt::format("drew {} figures in {}/figures\n", figures.size(), run);
@@ -166,11 +165,11 @@ CommandBody attach_sweep(CLI::App& app, GlobalOptions const& options) {
   static constexpr std::array actions{
       Action{"plan", "Write every case of a study into RUN/manifest.jsonl",
              "gladstone sweep plan study.toml -o out/run", attach_plan},
-      Action{"run", "Compute the cases that are missing; can be stopped and run again at any time",
+      Action{"run", "Compute the missing cases; can be interrupted and repeated at any time",
              "gladstone sweep run out/run --jobs 2", attach_sweep_run},
-      Action{"status", "Say what is done, failed, missing and running; reads files only",
+      Action{"status", "Report done, failed, missing and running cases; only reads files",
              "gladstone sweep status out/run --json", attach_status},
-      Action{"collect", "Write RUN/study.csv and RUN/study.h5, a row a case, and draw RUN/figures/",
+      Action{"collect", "Write RUN/study.csv and RUN/study.h5, one row per case, and draw RUN/figures/",
              "gladstone sweep collect out/run", attach_collect},
   };
   app.require_subcommand(0, 1);
@@ -178,8 +177,7 @@ CommandBody attach_sweep(CLI::App& app, GlobalOptions const& options) {
   for (Action const& action : actions) {
     CLI::App* const sub = app.add_subcommand(action.name, action.summary);
     sub->footer(
-        fmt::format("Example:\n  {}\n\nGlobal options (--json --quiet --threads N --device D) may stand "
-                    "anywhere.",
+        fmt::format("Example:\n  {}\n\nGlobal options (--json --quiet --threads N --device D) may be placed anywhere.",
                     action.example));
     parsed->emplace_back(sub, action.attach(*sub, options));
   }
@@ -187,7 +185,7 @@ CommandBody attach_sweep(CLI::App& app, GlobalOptions const& options) {
     for (auto const& [sub, body] : *parsed) {
       if (sub->parsed()) return body();
     }
-    print_error("gladstone: sweep needs one of plan, run, status, collect. See gladstone sweep --help");
+    print_error("gladstone: sweep requires one of plan, run, status, collect. See gladstone sweep --help");
     return bad_input;
   };
 }

@@ -55,8 +55,8 @@ std::string device_of(Manifest const& cases, std::string const& wanted) {
   std::string const planned = cases[0].device;
   if (wanted != "auto" && wanted != planned) {
     throw DeviceError(
-        fmt::format("--device {}: the study was planned for {} (results are equal bit by bit on one kind "
-                    "of device only); leave --device out, or plan the study anew",
+        fmt::format("--device {}: the study was planned for {} (results are equal bit by bit on one kind of device "
+                    "only); omit --device, or plan the study again",
                     wanted, planned));
   }
   return planned;
@@ -104,8 +104,8 @@ int run_in_workers(Arguments const& arguments, Manifest const& cases, std::strin
       return false;
     }
     bool const twice = ++deaths[*end.at] >= 2;
-    spdlog::warn("a worker was {} at work on case {}; {}", signal, *end.at,
-                 twice ? "the case has failed" : "another one tries it once more");
+    spdlog::warn("a worker was {} while computing case {}; {}", signal, *end.at,
+                 twice ? "the case has failed" : "another worker tries it once more");
     // The system terminates processes that use too much memory by SIGKILL.
     if (twice &&
         record_failure(arguments.run, cases, *end.at, "its process was " + signal + ", twice", end.signal == SIGKILL)) {
@@ -155,7 +155,7 @@ int submit_study(Arguments const& arguments, GlobalOptions const& options, Manif
   });
   if (device == "cuda" && !asks_for_gpu)
     spdlog::warn(
-        "the study was planned for cuda, and no GPU is asked for: --gres gpu:1, unless every node has its own");
+        "the study was planned for cuda, but no GPU is requested; use --gres gpu:1, unless every node has one anyway");
   if (arguments.jobs > 0) given.run.insert(given.run.end(), {"--jobs", std::to_string(arguments.jobs)});
   if (arguments.selection.keep_images) given.run.emplace_back("--keep-images");
   if (arguments.selection.retry_failed) given.run.emplace_back("--retry-failed");
@@ -208,15 +208,16 @@ int run_study(Arguments const& arguments, GlobalOptions const& options) {
 CommandBody attach_sweep_run(CLI::App& app, GlobalOptions const& options) {
   auto arguments = std::make_shared<Arguments>();
   app.add_option("run", arguments->run, "RUN folder")->required();
-  app.add_option("--jobs", arguments->jobs, "Processes side by side, sharing the cores; default: one, or one a GPU")
+  app.add_option("--jobs", arguments->jobs,
+                 "Number of parallel processes, which share the cores; default: one, or one per GPU")
       ->check(whole_number(1, 4096));
   // Distinguish an empty list, which is an error, from a missing option, which selects all cases.
   app.add_option_function<std::string>(
       "--case", [arguments](std::string const& list) { arguments->selection.only = list; },
-      "These cases alone, by their indices: 17, or 0-3,7");
-  app.add_option("--shard", arguments->shard, "I/N: the I-th, from 0, of N equal pieces of the study, or of --case");
+      "Only these cases, by index: 17, or 0-3,7");
+  app.add_option("--shard", arguments->shard, "I/N: the I-th, from 0, of N equal parts of the study, or of --case");
   app.add_flag("--keep-images", arguments->selection.keep_images,
-               "Leave each case's images and files in RUN/cases/INDEX");
+               "Keep the images and files of each case in RUN/cases/INDEX");
   app.add_flag("--retry-failed", arguments->selection.retry_failed, "Compute failed cases again");
   add_slurm_options(app, arguments->slurm);
   app.add_option("--worker", arguments->worker)->group("");
@@ -228,7 +229,7 @@ CommandBody attach_sweep_run(CLI::App& app, GlobalOptions const& options) {
     } catch (Interrupted const&) {
       if (arguments->slurm.submit) throw;  // its message describes the state of the job
       if (arguments->worker < 0) {
-        print_error("gladstone: interrupted; finished cases are kept, and the same command goes on from there");
+        print_error("gladstone: interrupted; finished cases are kept, and the same command continues from there");
       }
       return interrupted_by_user;
     }

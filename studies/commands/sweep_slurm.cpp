@@ -60,8 +60,8 @@ std::string words_of_failed_tasks(JobArray const& array, std::string const& job,
       break;
     }
     std::string const words = last_words(array, job, task);
-    text += fmt::format("  task {}_{} (cases {}) left cases undone; {}\n", job, task, array.tasks[task],
-                        words.empty() ? "it said nothing" : "it said last: " + words);
+    text += fmt::format("  task {}_{} (cases {}) did not finish its cases; {}\n", job, task, array.tasks[task],
+                        words.empty() ? "no message" : "last message: " + words);
   }
   return text;
 }
@@ -76,11 +76,13 @@ void add_slurm_options(CLI::App& app, SlurmArguments& arguments) {
   only_with_slurm(app.add_option("--partition", options.partition, "Partition of the cluster"));
   only_with_slurm(app.add_option("--time", options.time, "Time limit of a task: 30 (minutes), 2:00:00, 1-12"));
   only_with_slurm(app.add_option("--gres", options.gres, "Resources of a task: gpu:1"));
-  only_with_slurm(app.add_option("--cases-per-task", options.cases_per_task, "Default: as few as the cluster allows")
+  only_with_slurm(app.add_option("--cases-per-task", options.cases_per_task,
+                                 "Cases per task; default: the smallest number that the cluster accepts")
                       ->check(whole_number(1, 1000000)));
-  only_with_slurm(app.add_option("--throttle", options.throttle, "Tasks that may run at a time; default: no limit")
-                      ->check(whole_number(1, 1000000)));
-  only_with_slurm(app.add_option("--sbatch", options.sbatch, "Another option for sbatch: --sbatch=--account=flow")
+  only_with_slurm(
+      app.add_option("--throttle", options.throttle, "Maximum number of simultaneous tasks; default: no limit")
+          ->check(whole_number(1, 1000000)));
+  only_with_slurm(app.add_option("--sbatch", options.sbatch, "Additional option for sbatch: --sbatch=--account=flow")
                       ->take_all()
                       ->expected(1)
                       ->trigger_on_parse(false));

@@ -24,8 +24,8 @@ CommandBody attach_trace(CLI::App& app, GlobalOptions const& options) {
   auto arguments = std::make_shared<Arguments>();
   app.add_option("setup", arguments->setup, "Setup file (TOML)")->required();
   app.add_option("--rays", arguments->rays, "CSV x_mm,y_mm,z_mm,dx,dy,dz in the world frame")->required();
-  app.add_option("-o,--output", arguments->output, "CSV to write")->required();
-  app.add_option("--through", arguments->through, "How far: medium, optics or all")
+  app.add_option("-o,--output", arguments->output, "CSV file to write")->required();
+  app.add_option("--through", arguments->through, "End of the trace: medium, optics, or all (the sensor)")
       ->check(one_of({"medium", "optics", "all"}));
   app.add_option("--set", arguments->overrides, "Override a key: --set lens.f_number=16")->expected(1)->take_all();
   return [arguments, &options] {
@@ -39,7 +39,7 @@ CommandBody attach_trace(CLI::App& app, GlobalOptions const& options) {
     OutputFile output(arguments->output);
     std::vector<Ray<double>> const rays = read_rays(arguments->rays, loaded.setup.farthest_off_axis());
     stop_point("tracing-rays");
-    if (options.device == "cuda") throw DeviceError("trace: follows its few rays on the CPU; use --device cpu or auto");
+    if (options.device == "cuda") throw DeviceError("trace: traces its few rays on the CPU; use --device cpu or auto");
     for (std::string const& text : loaded.warnings) spdlog::warn("{}", text);
     Scene scene = build_scene(loaded.setup);
     for (auto const& text : scene.medium.warnings) spdlog::warn("{}", text);

@@ -148,7 +148,8 @@ TEST_F(Benchmark, ForgivesNoWrongSigns) {
 
   Outcome const alone = score({"--cases", "vortex", "--vectors", "m=negative"});
   EXPECT_EQ(alone.exit_code, 1) << alone.err;
-  EXPECT_THAT(alone.err, testing::HasSubstr("vortex cannot tell these apart; run a case that can, such as turbulence"));
+  EXPECT_THAT(alone.err,
+              testing::HasSubstr("vortex does not distinguish these; run a case that does, such as turbulence"));
   EXPECT_THAT(read("b/benchmark.md"), testing::HasSubstr("% of the vectors are gross errors"));
 
   Outcome const turned = score({"--cases", "vortex", "uniform", "--vectors", "m=turned"});
@@ -232,7 +233,7 @@ TEST_F(Benchmark, RefusesWhatItCannotScore) {
   Outcome const outcome =
       gladstone({"benchmark", "-o", "b", "--cases", "shear", "--vectors", "mine=unknown", "--estimators", "none"});
   EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_THAT(outcome.err, testing::HasSubstr("unknown/shear.csv: holds no displacement that is a number"));
+  EXPECT_THAT(outcome.err, testing::HasSubstr("unknown/shear.csv: contains no finite displacement"));
 }
 
 }  // namespace

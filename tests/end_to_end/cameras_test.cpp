@@ -190,12 +190,12 @@ TEST_F(Cameras, MistakesStandAtTheirPlace) {
     pieces.insert(pieces.begin(), "setup.toml:" + place_of(text, at) + ": ");
     expect_setup_refused(text, pieces);
   };
-  refused("name = \"right\"", "name = \"left\"  # twice", "name = \"left\"  # twice", {"another camera's name"});
-  refused("name = \"right\"", "name = \"a/b\"", "name = \"a/b\"", {"no name of a folder"});
+  refused("name = \"right\"", "name = \"left\"  # twice", "name = \"left\"  # twice", {"the name of another camera"});
+  refused("name = \"right\"", "name = \"a/b\"", "name = \"a/b\"", {"not valid as the name of a folder"});
   refused("focal_length_mm = 120.0", "focal_lenth_mm = 120.0", "focal_lenth_mm", {"did you mean \"focal_length_mm\"?"});
   refused("[96, 64]", "[0, 64]", "pixels = [0", {"must be at least 1"});
   refused("[correlate]", "[[window]]\nposition_mm = [0, 0, 100]\ncameras = [\"rigth\"]\n[correlate]", "cameras",
-          {"\"rigth\" is no camera's name", "\"left\" or \"right\""});
+          {"\"rigth\" is not the name of a camera", "\"left\" or \"right\""});
   std::string const nameless = with(stereo, "name = \"right\"\n", "");
   expect_setup_refused(nameless, {"camera.name", "is missing"});
 }
@@ -218,8 +218,8 @@ TEST_F(Cameras, ProblemsOfAllComeTogetherAndOnce) {
 
 TEST_F(Cameras, CommandsOnOneCameraAskWhichOne) {
   render("case");
-  expect_refused({"correlate", "case"}, 2, {"case: holds a case of each of its cameras", "case/left"});
-  expect_refused({"compare", "case"}, 2, {"case: holds a case of each of its cameras", "case/left"});
+  expect_refused({"correlate", "case"}, 2, {"case: contains one case for each of its cameras", "case/left"});
+  expect_refused({"compare", "case"}, 2, {"case: contains one case for each of its cameras", "case/left"});
   write("rays.csv", "x_mm,y_mm,z_mm,dx,dy,dz\n0,0,-250,0,0,1\n");
   expect_refused({"trace", "setup.toml", "--rays", "rays.csv", "-o", "out.csv"}, 2, {"several cameras"});
 }

@@ -11,7 +11,7 @@ using testing::HasSubstr;
 TEST_F(CommandLine, UnknownCommandsAndOptionsNameTheNearest) {
   expect_refused({"corelate", "case"}, 2, {"unknown command \"corelate\"", "did you mean \"correlate\"?"});
   expect_refused({"frobnicate"}, 2, {"unknown command \"frobnicate\"", "\"render\""});
-  expect_refused({}, 2, {"no command is named"});
+  expect_refused({}, 2, {"no command is given"});
   expect_refused({"render", "setup.toml", "-o", "case", "--sett", "a=1"}, 2,
                  {"unknown option \"--sett\"", "\"--set\""});
   expect_refused({"render", "setup.toml", "more.toml", "-o", "case"}, 2, {"unknown argument \"more.toml\""});
@@ -59,7 +59,7 @@ TEST_F(CommandLine, VersionTellsTheSameAsJson) {
 
 TEST_F(CommandLine, InfoSaysWhatItsKindsTake) {
   expect_refused({"info", "image", "a.tif", "--x", "1"}, 2, {"info image: has no --x and --m"});
-  expect_refused({"info", "image"}, 2, {"info image: needs a file"});
+  expect_refused({"info", "image"}, 2, {"info image: requires a file"});
 }
 
 TEST_F(CommandLine, EveryHelpHasAnExample) {
@@ -128,12 +128,12 @@ TEST_F(CommandLine, QuietSilencesInformationAndNoWarning) {
                 json = gladstone(with({"--quiet", "--json"}));
   for (Outcome const& outcome : {quiet, loud, json}) {
     EXPECT_EQ(outcome.exit_code, 0);
-    EXPECT_THAT(outcome.err, HasSubstr("warning: nothing moves"));
+    EXPECT_THAT(outcome.err, HasSubstr("warning: no displacement: "));
   }
   EXPECT_THAT(quiet.err, testing::Not(HasSubstr("info: ")));
   EXPECT_THAT(loud.err, HasSubstr("info: "));
   auto const warnings = nlohmann::json::parse(json.out)["warnings"];
-  EXPECT_EQ(count_containing(warnings, "nothing moves"), 1) << warnings;
+  EXPECT_EQ(count_containing(warnings, "no displacement: "), 1) << warnings;
 }
 
 TEST_F(CommandLine, TheJsonOfEveryCommandHasTheWarningsOfTheRun) {

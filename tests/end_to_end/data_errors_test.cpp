@@ -142,14 +142,14 @@ TEST_F(DataErrors, WhatIsNoImage) {
 
 TEST_F(DataErrors, VectorsNeedAPlaceAndAKnownEnding) {
   write_tiff(in("a.tif").string(), Image<std::uint16_t>(64, 64), {});
-  expect_refused({"correlate", "a.tif", "a.tif"}, 2, {"images need -o"});
+  expect_refused({"correlate", "a.tif", "a.tif"}, 2, {"images require -o"});
   expect_refused({"correlate", "a.tif", "a.tif", "-o", "v.txt"}, 2, {"v.txt: ", ".h5 nor .csv"});
 }
 
 TEST_F(DataErrors, AFolderThatIsNoCase) {
   std::filesystem::create_directory(in("folder"));
   for (std::string const command : {"correlate", "compare"}) {
-    expect_refused({command, "folder"}, 2, {"folder: is not a case (it holds no setup.toml)", "gladstone render"});
+    expect_refused({command, "folder"}, 2, {"folder: is not a case (it contains no setup.toml)", "gladstone render"});
     expect_refused({command, "nowhere"}, 2, {"nowhere: "});
   }
 }

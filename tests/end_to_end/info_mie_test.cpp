@@ -46,10 +46,11 @@ TEST_F(InfoMie, NamesWhatIsNoSphere) {
   expect_refused({"info", "mie"}, 2, {"info mie: needs --x"});
   expect_refused({"info", "mie", "--x", "1"}, 2, {"info mie: needs --m"});
   for (char const* x : {"0", "-1", "nan", "inf", "1e9", "5.9um"}) {
-    expect_refused({"info", "mie", "--x", x, "--m", "1.45"}, 2, {"is no size parameter", "from 1e-06 to 100000"});
+    expect_refused({"info", "mie", "--x", x, "--m", "1.45"}, 2,
+                   {"is not a valid size parameter", "from 1e-06 to 100000"});
   }
   for (char const* m : {"0", "1e-160", "1.5,-0.1", "1.5,", "glass", "1,2,3"}) {
-    expect_refused({"info", "mie", "--x", "1", "--m", m}, 2, {"is no refractive index", "RE or RE,IM"});
+    expect_refused({"info", "mie", "--x", "1", "--m", m}, 2, {"is not a valid refractive index", "RE or RE,IM"});
   }
   expect_refused({"info", "mie", "sphere.toml", "--x", "1", "--m", "1.5"}, 2, {"reads no file"});
 }

@@ -48,7 +48,7 @@ TEST_F(InfoParticles, TellsWhatToExpect) {
 
 TEST_F(InfoParticles, IsOfPivAlone) {
   expect_refused({"info", "particles", "setup.toml"}, 2, {"setup.toml: has no particles"});
-  expect_refused({"info", "particles"}, 2, {"info particles: needs a file"});
+  expect_refused({"info", "particles"}, 2, {"info particles: requires a file"});
 }
 
 }  // namespace

@@ -132,11 +132,12 @@ TEST_F(Inputs, CommandLinesAreRefusedInOurWords) {
   expect_told({"render"}, "is required. See gladstone render --help");
   expect_told({"render", "setup.toml", "-o"}, "--output needs a value. See gladstone render --help");
   expect_told({"render", "setup.toml", "-o", "case", "--threads", "many"},
-              "--threads: \"many\" is no whole number from 0 to 4096");
-  expect_told({"render", "setup.toml", "-o", "case", "--threads", "-1"}, "--threads: \"-1\" is no whole number");
+              "--threads: expected an integer from 0 to 4096, got \"many\"");
+  expect_told({"render", "setup.toml", "-o", "case", "--threads", "-1"},
+              "--threads: expected an integer from 0 to 4096, got \"-1\"");
   expect_told({"render", "setup.toml", "-o", "case", "--device", "cud"}, "did you mean \"cuda\"?");
   expect_told({"sweep", "run", "run", "--jobs", "0"},
-              "is no whole number from 1 to 4096. See gladstone sweep run --help");
+              "expected an integer from 1 to 4096, got \"0\". See gladstone sweep run --help");
 }
 
 TEST_F(Inputs, DamagedFilesAreToldInOurWords) {
@@ -358,7 +359,7 @@ TEST_F(Inputs, PicturesWithoutDotsAreNoMeasurement) {
     write_pages("b.tif", {even});
     Outcome const outcome = gladstone({"correlate", "a.tif", "b.tif", "-o", "v.csv", "--json"});
     EXPECT_EQ(outcome.exit_code, 1) << level << outcome.err;
-    EXPECT_THAT(outcome.err, HasSubstr("is valid; are these two frames of one scene")) << level;
+    EXPECT_THAT(outcome.err, HasSubstr("is valid; check that both frames show one scene")) << level;
     auto const json = nlohmann::json::parse(outcome.out);
     EXPECT_EQ(json["invalid"], json["vectors"]) << level;
   }

@@ -337,10 +337,10 @@ TEST_F(Piv, DrawsIdealImages) {
   write("lambert.toml", lambert);
   render("lambert", {}, "lambert.toml");
   std::string const by_rays = ideal + "[render]\nmethod = \"rays\"\n";
-  expect_setup_refused(by_rays, {"setup.toml:" + place_of(by_rays, "method = \"rays\""), "which has no rays"});
+  expect_setup_refused(by_rays, {"setup.toml:" + place_of(by_rays, "method = \"rays\""), "which uses no rays"});
   std::string const tilted =
       with(ideal, "pixel_pitch_um = 10.0\n", "pixel_pitch_um = 10.0\nsensor.tilt_deg = [5, 0]\n");
-  expect_setup_refused(tilted, {"setup.toml:" + place_of(tilted, "scattering = \"gaussian\""), "do not hold here"});
+  expect_setup_refused(tilted, {"setup.toml:" + place_of(tilted, "scattering = \"gaussian\""), "are not valid here"});
   expect_setup_refused(with(lambert, "f_number = 22.0", "f_number = 22.0\npsf = \"airy\""), {"method", "not Gaussian"});
 }
 
@@ -413,7 +413,7 @@ TEST_F(Piv, ExtractsViewsOfAPlenopticPicture) {
   Outcome const many = gladstone({"views", "case", "--views", "30", "-o", "many", "--quiet"});
   EXPECT_EQ(many.exit_code, 0) << many.err;
   EXPECT_THAT(many.err, testing::AllOf(testing::HasSubstr("warning: --views 30: "), testing::HasSubstr("12 px wide"),
-                                       testing::HasSubstr("--views 13 has one for every pixel")));
+                                       testing::HasSubstr("--views 13 gives one view per pixel")));
   write("plain.toml", piv_setup);
   render("plain", {}, "plain.toml");
   expect_refused({"views", "plain"}, 2, {"plain/setup.toml", "no [camera.lenslets]"});

@@ -89,9 +89,9 @@ TEST_F(SilentPhysics, WarnsOfAbsoluteExposuresThatAreLostInNoise) {
 }
 
 TEST_F(SilentPhysics, WarnsOfParticlesThatSendNoPhoton) {
-  EXPECT_THAT(warnings_of({"laser.pulse_energy_mj=1e-6"}), HasSubstr("photons through the lens at a pulse"));
+  EXPECT_THAT(warnings_of({"laser.pulse_energy_mj=1e-6"}), HasSubstr("photons per pulse through the lens"));
   std::string const tiny = warnings_of({"particles.diameter_um=1e-7"});
-  EXPECT_THAT(tiny, HasSubstr("photons through the lens at a pulse"));
+  EXPECT_THAT(tiny, HasSubstr("photons per pulse through the lens"));
   EXPECT_THAT(tiny, HasSubstr("is it in m? 1e-07 m are 0.1 um"));
 }
 

@@ -91,7 +91,7 @@ TEST_F(Sweeps, CollectTellsThatCasesGaveWarnings) {
   write("bright.toml", "base = \"setup.toml\"\n[axes]\n\"camera.exposure\" = [2000.0, 60000.0]\n");
   finish("run", "bright.toml");
   Outcome const outcome = gladstone({"sweep", "collect", "run", "--no-figures"});
-  EXPECT_THAT(outcome.err, testing::ContainsRegex("run: 1 of 2 cases gave warnings.*case 1: .*saturated"));
+  EXPECT_THAT(outcome.err, testing::ContainsRegex("run: 1 of 2 cases have warnings.*case 1: .*saturated"));
   EXPECT_EQ(json_of({"sweep", "collect", "run", "--no-figures"})["warned"], 1);
 }
 
@@ -325,8 +325,8 @@ TEST_F(Sweeps, ACaseThatKillsItsProcessIsRecordedAndDoesNotStopTheOthers) {
   };
   Outcome const outcome = run({"sweep", "run", "run", "--json", "--threads", "2", "--jobs", "2"}, folder_, limited);
   EXPECT_EQ(outcome.exit_code, 3) << outcome.err;
-  EXPECT_THAT(outcome.err, testing::AllOf(HasSubstr("at work on case 1; another one tries it once more"),
-                                          HasSubstr("at work on case 1; the case has failed")));
+  EXPECT_THAT(outcome.err, testing::AllOf(HasSubstr("while computing case 1; another worker tries it once more"),
+                                          HasSubstr("while computing case 1; the case has failed")));
   auto const ran = nlohmann::json::parse(outcome.out, nullptr, false);
   ASSERT_TRUE(ran.is_object()) << outcome.out;
   EXPECT_EQ(ran["computed"], 4);
@@ -406,7 +406,7 @@ TEST_F(Sweeps, FoldersWhoseNamesAreNoUtf8Work) {
   write(folder + "/setup.toml",
         with(small_setup, "dots_per_32px_window = 10.0", "kind = \"points\"\nfile = \"dots.csv\""));
   expect_refused({"sweep", "plan", folder + "/study.toml", "-o", "other", "--device", "cpu"}, 2,
-                 {folder + "/dots.csv: holds bytes that are no UTF-8", "rename the file or the folder"});
+                 {folder + "/dots.csv: contains bytes that are not valid UTF-8", "rename the file or the folder"});
 }
 
 TEST_F(Sweeps, AnInputThatHasChangedStopsTheRun) {
@@ -545,7 +545,7 @@ TEST_F(Sweeps, ADatasetHoldsImagesAndTruthOfTheKeptCases) {
 
 TEST_F(Sweeps, BadCommandLinesAreRefused) {
   plan("run");
-  expect_refused({"sweep"}, 2, {"sweep needs one of plan, run, status, collect"});
+  expect_refused({"sweep"}, 2, {"sweep requires one of plan, run, status, collect"});
   expect_refused({"sweep", "runn", "other"}, 2, {"unknown command \"runn\"; did you mean \"run\"?"});
   expect_refused({"sweep", "run", "run", "--shard", "3/3"}, 2, {"--shard: 3/3 is not I/N"});
   expect_refused({"sweep", "run", "run", "--case", "12"}, 2,

@@ -111,7 +111,7 @@ TEST_F(StudyOnACluster, KilledTasksAreMadeUpForByTheNextSubmission) {
     Outcome const outcome = program.finish(90s);
     EXPECT_EQ(outcome.exit_code, 3) << outcome.err;
     EXPECT_THAT(outcome.out, HasSubstr("2 missing"));
-    EXPECT_THAT(outcome.out, HasSubstr("task " + id + "_0 (cases 0-1) left cases undone"));
+    EXPECT_THAT(outcome.out, HasSubstr("task " + id + "_0 (cases 0-1) did not finish its cases"));
     EXPECT_THAT(outcome.out, HasSubstr("CANCELLED"));
   }
   std::string const whole = read("cluster/cases/0.json");

@@ -84,7 +84,7 @@ TEST_F(CaseRunners, WarnOfTruthAndFramesAsRenderDoes) {
   ASSERT_EQ(first.error + second.error, "");
   std::vector<std::string> const &dim = first.warnings, &bright = second.warnings;
   for (auto const& warnings : {dim, bright})
-    EXPECT_THAT(warnings, testing::Contains(testing::HasSubstr("truth: displacements are known to")));
+    EXPECT_THAT(warnings, testing::Contains(testing::HasSubstr("truth: the standard error of the displacements is")));
   EXPECT_THAT(dim, testing::Not(testing::Contains(testing::HasSubstr("saturated"))));
   EXPECT_THAT(bright, testing::Contains(testing::HasSubstr("saturated")));
 }

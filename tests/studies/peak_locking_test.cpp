@@ -113,9 +113,9 @@ TEST(PeakLocking, OfDotsIsAWarningOfTheSetup) {
   auto const warnings = [](std::string const& text) {
     return load_case_setup(SetupDocument::from_text(text, "setup.toml")).warnings;
   };
-  EXPECT_THAT(warnings("schema = 1\n[target]\ndot_diameter_px = 1.0\n"),
-              testing::ElementsAre(AllOf(HasSubstr("correlation locks to whole pixels, an error of about"),
-                                         HasSubstr("lens.f_number = "))));
+  EXPECT_THAT(
+      warnings("schema = 1\n[target]\ndot_diameter_px = 1.0\n"),
+      testing::ElementsAre(AllOf(HasSubstr("peak locking occurs, an error of about"), HasSubstr("lens.f_number = "))));
   EXPECT_THAT(warnings("schema = 1\n"), testing::IsEmpty());
 }
 

@@ -72,7 +72,7 @@ TEST(UncertainInputs, StayInTheResolvedSetup) {
 
 TEST(UncertainInputs, AreRefusedAtTheirPlaceWithTheCure) {
   EXPECT_THAT(complaint("{ value = 250.0 }"), testing::AllOf(HasSubstr("setup.toml:3:1: geometry.z_d_mm = "),
-                                                             HasSubstr("has a value without its uncertainty; write")));
+                                                             HasSubstr("has a value without an uncertainty; write")));
   EXPECT_THAT(complaint("{ value = 250.0, sigma = -1 }"), HasSubstr("write a number of 0 or more"));
   EXPECT_THAT(complaint("{ value = 250.0, sigma = 1, distribution = \"flat\" }"),
               HasSubstr("use \"normal\" or \"rectangular\""));
@@ -146,7 +146,8 @@ TEST(UncertainInputs, AreCorrelatedAsNumbersCanBe) {
               testing::AllOf(HasSubstr("setup.toml:14:1: correlations"), HasSubstr("did you mean geometry.z_")));
   EXPECT_THAT(correlation_complaint(pair_of(R"(["geometry.z_a_mm", "medium.thickness_mm"])", "0.5")),
               HasSubstr("remove its distribution, or the correlation"));
-  EXPECT_THAT(correlation_complaint(pair_of(both_distances, "0.5\nsigma = 1")), HasSubstr("is no key of correlations"));
+  EXPECT_THAT(correlation_complaint(pair_of(both_distances, "0.5\nsigma = 1")),
+              HasSubstr("is not a key of correlations"));
   EXPECT_THAT(correlation_complaint(pair_of(both_distances, "0.5") + pair_of(both_distances, "0.5")),
               HasSubstr("setup.toml:17:1: correlations"));
   // a value that is no number is told once, where it stands
