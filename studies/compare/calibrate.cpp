@@ -28,7 +28,7 @@ ExpectedView expected_view(Setup const& setup, double z, std::string const& name
   auto const seen = camera.see({}, Pose<double>{{0, 0, z}});
   if (!middle || !seen) {
     throw DataError(name, fmt::format("the camera of its setup does not see the middle of the grid at Z = {:.6g} mm, "
-                                      "which tells the dots apart; check camera.pose and lens",
+                                      "which is required to identify the dots; check camera.pose and lens",
                                       z / unit::millimetre));
   }
   return {*middle, setup.target.spacing * seen->by_x, setup.target.spacing * seen->by_y};
@@ -78,27 +78,27 @@ Image<double> read_plane(Calibration& calibration, Setup const& setup, std::stri
   for (std::size_t before = 0; before < calibration.planes.size(); ++before) {
     CalibratedPlane const& other = calibration.planes[before];
     if (hash != other.sha256) continue;
-    throw DataError(file, fmt::format("is the same picture as {}, pixel by pixel, though it is of Z = {:.6g} mm and "
-                                      "that of {:.6g} mm; give the picture of that plane",
+    throw DataError(file, fmt::format("is the same image as {}, pixel by pixel, although it should show Z = {:.6g} mm "
+                                      "and that one {:.6g} mm; give the image of its plane",
                                       other.file, setup.planes[plane] / unit::millimetre, other.z / unit::millimetre));
   }
   calibration.sources.add(name, file, SourceFiles::Holds::pixels, hash);
   bool const first = calibration.planes.empty();
   if (!first && (picture.columns() != calibration.columns || picture.rows() != calibration.rows)) {
-    throw DataError(file, fmt::format("is {} x {} px where the planes before it are {} x {}; take all pictures by "
-                                      "one camera",
-                                      picture.columns(), picture.rows(), calibration.columns, calibration.rows));
+    throw DataError(
+        file, fmt::format("is {} x {} px, but the images of the previous planes are {} x {}; use images of one camera",
+                          picture.columns(), picture.rows(), calibration.columns, calibration.rows));
   }
   if (picture.columns() != setup.camera.columns || picture.rows() != setup.camera.rows) {
-    throw DataError(file, fmt::format("is {} x {} px where camera.pixels of the setup is [{}, {}]; give the "
-                                      "camera's own pixels there",
-                                      picture.columns(), picture.rows(), setup.camera.columns, setup.camera.rows));
+    throw DataError(file,
+                    fmt::format("is {} x {} px, but camera.pixels of the setup is [{}, {}]; correct camera.pixels",
+                                picture.columns(), picture.rows(), setup.camera.columns, setup.camera.rows));
   }
-  if (count_not_finite(picture) > 0) throw DataError(file, "has pixels that are nan or infinite; export it anew");
+  if (count_not_finite(picture) > 0) throw DataError(file, "has pixels that are nan or infinite; export it again");
   if (metadata.orientation != 1) {
     calibration.warnings.push_back(
-        fmt::format("{} is stored turned or mirrored (Orientation {}), and was turned upright; where that entry is "
-                    "wrong, write the picture without it",
+        fmt::format("{} is stored rotated or mirrored (Orientation {}), and was rotated upright; if that entry is "
+                    "wrong, write the image without it",
                     file, metadata.orientation));
   }
   calibration.columns = picture.columns();
@@ -117,14 +117,14 @@ void warn_of_assignment(Calibration& calibration, AssignedDots const& assigned, 
   int const columns = 2 * grid.half_columns + 1, rows = 2 * grid.half_rows + 1;
   if (assigned.columns > columns || assigned.rows > rows) {
     calibration.warnings.push_back(
-        fmt::format("{}: {} x {} dots are seen where calibration.extent_mm and spacing_mm make {} x {}; correct these, "
-                    "for the grid's middle is told by its edges",
+        fmt::format("{}: {} x {} dots are seen, but calibration.extent_mm and spacing_mm define {} x {}; correct "
+                    "these, since the edges determine the middle of the grid",
                     file, assigned.columns, assigned.rows, columns, rows));
   }
   if (assigned.middle_by == MiddleBy::expected_view && assigned.middle_offset > doubtful) {
     calibration.warnings.push_back(
-        fmt::format("{}: the middle dot is a guess: the setup's camera sees the middle {:.2f} spacings from it; give "
-                    "the camera's place better, or show the whole grid",
+        fmt::format("{}: the middle dot is a guess: the camera of the setup sees the middle {:.2f} spacings from it; "
+                    "give the position of the camera more accurately, or show the whole grid",
                     file, assigned.middle_offset));
   }
 }
@@ -143,10 +143,10 @@ void add_plane(Calibration& calibration, PlateDots& all, Setup const& setup, std
   added.middle_by = assigned.middle_by;
   added.smoothness_px = assigned.smoothness_px;
   if (added.used < least_dots) {
-    throw DataError(file, fmt::format("shows {} dots of the grid, where {} are needed ({} spots look like dots, {} do "
-                                      "not by size or shape); look at focus, light and contrast, and at [calibration] "
-                                      "in setup.toml",
-                                      added.used, least_dots, added.found, added.not_dots));
+    throw DataError(
+        file, fmt::format("shows {} dots of the grid, but {} are required ({} detected spots look like dots, {} differ "
+                          "in size or shape); check focus, light and contrast, and [calibration] in setup.toml",
+                          added.used, least_dots, added.found, added.not_dots));
   }
   warn_of_assignment(calibration, assigned, grid, file);
   for (GridDot const& dot : assigned.dots) {
@@ -196,8 +196,8 @@ Calibration calibrate(CaseSetup const& loaded, std::string const& setup_path, st
   calibration.sources.add("", setup_path, SourceFiles::Holds::bytes);
   if (setup.planes.size() < 2) {
     throw DataError(setup_path,
-                    "calibration.planes_mm names one plane (a camera's distance and its focal length cannot be told "
-                    "apart by one); give two planes or more, three for the polynomial's terms with Z^2");
+                    "calibration.planes_mm has one plane (which does not determine both the distance and the focal "
+                    "length of a camera); give two planes or more, three for the polynomial's terms with Z^2");
   }
   calibration.setup = loaded.document.resolved();
   calibration.seed = setup.render.seed;
@@ -221,8 +221,8 @@ Calibration calibrate_case(std::string const& folder) {
   CaseSetup const loaded = load_case_setup(in_folder(case_file::setup), {});
   if (!loaded.setup.calibration()) {
     throw DataError(folder,
-                    "is a case of BOS, by which no camera is calibrated; render a setup with experiment = "
-                    "\"calibration\" and a table [calibration]");
+                    "is a BOS case, which cannot calibrate a camera; render a setup with experiment = \"calibration\" "
+                    "and a table [calibration]");
   }
   std::vector<std::string> pictures;
   for (std::size_t plane = 0; plane < loaded.setup.planes.size(); ++plane) {
@@ -236,21 +236,20 @@ Calibration calibrate_case(std::string const& folder) {
 Calibration calibrate_pictures(std::string const& setup, std::vector<std::string> const& pictures) {
   SetupDocument document = SetupDocument::from_file(setup);
   if (std::vector<std::string> const cameras = camera_names(document); !cameras.empty()) {
-    throw DataError(setup, fmt::format("is of {} cameras ({}), and pictures are of one; leave the [[camera]] that took "
-                                       "them alone in it, and calibrate the others likewise",
+    throw DataError(setup, fmt::format("has {} cameras ({}), but the images belong to one; keep only its [[camera]], "
+                                       "and calibrate the others in the same way",
                                        cameras.size(), fmt::join(cameras, ", ")));
   }
   CaseSetup const loaded = load_case_setup(std::move(document));
   if (!loaded.setup.calibration()) {
     throw DataError(setup,
-                    "is no setup of a calibration; set experiment = \"calibration\" and say in [calibration] "
-                    "what the pictures show");
+                    "is not the setup of a calibration; set experiment = \"calibration\" and describe in [calibration] "
+                    "what the images show");
   }
   if (pictures.size() != loaded.setup.planes.size()) {
-    throw DataError(setup,
-                    fmt::format("calibration.planes_mm names {} planes where {} pictures are given; give one for "
-                                "each, in that order",
-                                loaded.setup.planes.size(), pictures.size()));
+    throw DataError(setup, fmt::format("calibration.planes_mm has {} planes, but {} images are given; give one image "
+                                       "for each plane, in that order",
+                                       loaded.setup.planes.size(), pictures.size()));
   }
   return calibrate(loaded, setup, pictures, setup);
 }

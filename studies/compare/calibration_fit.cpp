@@ -80,12 +80,12 @@ class CalibrationFit {
           count += 2;
         }
         if (count == 0 || squares > std::pow(same_place * scatter_, 2) * count) continue;
-        throw DataError(file(b),
-                        fmt::format("shows the dots where {} shows them, to {:.2g} px rms, though it is of Z = "
-                                    "{:.6g} mm and that of {:.6g} mm (one picture twice, a plate that was not "
-                                    "moved, or a telecentric lens, which is no pinhole); give the picture of "
-                                    "that plane",
-                                    file(a), std::sqrt(squares / count), z_mm(b), z_mm(a)));
+        throw DataError(
+            file(b),
+            fmt::format("shows the dots at the same pixels as {}, to within {:.2g} px rms, although it should show Z = "
+                        "{:.6g} mm and that one {:.6g} mm (the same image twice, a plate that was not moved, or a "
+                        "telecentric lens, which is not a pinhole camera); give the image of its plane",
+                        file(a), std::sqrt(squares / count), z_mm(b), z_mm(a)));
       }
     }
   }
@@ -99,8 +99,8 @@ class CalibrationFit {
     // Planes in reverse order fit a camera on the other side of the plate equally well.
     if (pinhole().camera.value.back() <= 0) {
       throw DataError(name_,
-                      "fits a camera with the dots behind it only; give the pictures in the order of "
-                      "calibration.planes_mm, which Z, towards the camera, counts");
+                      "only fits a camera with the dots behind it; give the images in the order of "
+                      "calibration.planes_mm, with Z towards the camera");
     }
   }
 
@@ -127,8 +127,8 @@ class CalibrationFit {
     if (auto const order = find_picture_order(dots_)) {
       std::vector<std::string> names(order->size());
       for (std::size_t k = 0; k < order->size(); ++k) names[(*order)[k]] = file(k);
-      throw DataError(name_, fmt::format("is missed by {:.3g} px rms, and fits in another order of the pictures: {}; "
-                                         "give them in the order of calibration.planes_mm, or correct that",
+      throw DataError(name_, fmt::format("has a residual of {:.3g} px rms, but fits in another order of the images: "
+                                         "{}; give them in the order of calibration.planes_mm, or correct that",
                                          pinhole().rms_px, fmt::join(names, ", ")));
     }
     try_placement(find_moved_middles(dots_, expected_.principal_point_px.value_or(middle_px())));
@@ -138,9 +138,9 @@ class CalibrationFit {
     if (placement_.moved.empty()) try_placement(find_drift(dots_, *expected_.principal_point_px));
     if (!has_other_principal_point()) return;
     warn(
-        fmt::format("the principal point ({:.1f}, {:.1f}) px lies far from where the setup's camera has it ({:.1f}, "
-                    "{:.1f}) px (the plate was tilted against the direction in which it was moved, or the sensor is "
-                    "tilted or shifted); check the plate, or give camera.sensor its tilt",
+        fmt::format("the principal point ({:.1f}, {:.1f}) px is far from that of the setup's camera, ({:.1f}, {:.1f}) "
+                    "px (the plate was tilted relative to its direction of motion, or the sensor is tilted or "
+                    "shifted); check the plate, or set the tilt in camera.sensor",
                     pinhole().camera.cx(), pinhole().camera.cy(), expected_.principal_point_px->x,
                     expected_.principal_point_px->y));
   }
@@ -160,16 +160,15 @@ class CalibrationFit {
       std::array<int, 2> const by = placement_.moved[plane];
       if (by == std::array<int, 2>{}) continue;
       warn(fmt::format(
-          "{}: the middle dot was taken {} columns and {} rows off; with that corrected the camera misses "
-          "the dots by {:.2g} px rms, without it by {:.2g} px with the principal point at ({:.0f}, {:.0f}) "
-          "px",
+          "{}: the middle dot was wrong by {} columns and {} rows and was corrected; the residual is {:.2g} px rms, "
+          "without the correction {:.2g} px with the principal point at ({:.0f}, {:.0f}) px",
           file(plane), by[0], by[1], pinhole().rms_px, before.rms_px, before.camera.cx(), before.camera.cy()));
     }
     if (Vec2d const drift = placement_.drift; length(drift) > 0) {
       warn(fmt::format(
-          "the plate was moved at {:.3g} degrees to its normal ({:.3g} towards X, {:.3g} towards Y); world "
-          "coordinates are the plate's: X and Y in it, Z along its normal (without this the principal "
-          "point were ({:.0f}, {:.0f}) px)",
+          "the plate was moved at {:.3g} degrees to its normal ({:.3g} towards X, {:.3g} towards Y); world coordinates "
+          "are those of the plate: X and Y in it, Z along its normal (otherwise the principal point would be ({:.0f}, "
+          "{:.0f}) px)",
           degrees(length(drift)), degrees(drift.x), degrees(drift.y), before.camera.cx(), before.camera.cy()));
     }
   }
@@ -217,19 +216,19 @@ class CalibrationFit {
     if (!has_suspicious_residuals()) return;
     double const rms = pinhole().rms_px;
     std::string const text = fmt::format(
-        "the camera misses the dots by {:.3g} px rms, which within their planes scatter by {:.2g} px only, "
-        "most on Z = {:.6g} mm",
+        "the residual of the camera is {:.3g} px rms, but within their planes the dots scatter by only {:.2g} px; it "
+        "is largest at Z = {:.6g} mm",
         rms, scatter_, z_mm(worst_plane()));
     if (rms > least_refused_px && rms > refused * scatter_) {
-      throw DataError(file(worst_plane()),
-                      text +
-                          " (planes that do not belong together: another Z than calibration.planes_mm says, a plate "
-                          "that was turned or tilted between pictures, a camera or lens that was touched); check "
-                          "these, and take the pictures again");
+      throw DataError(
+          file(worst_plane()),
+          text +
+              " (inconsistent planes: another Z than in calibration.planes_mm, a plate that was rotated or tilted "
+              "between images, a camera or lens that was moved); check these, and record the images again");
     }
-    warn(text + (expected_.is_pinhole ? " (a lens or windows that no pinhole camera with distortion follows, or planes "
-                                        "that are not where calibration.planes_mm has them); prefer the polynomial"
-                                      : " (windows are no pinhole camera); prefer the polynomial"));
+    warn(text + (expected_.is_pinhole ? " (a lens or windows that no pinhole camera with distortion describes, or "
+                                        "planes at other positions than calibration.planes_mm); prefer the polynomial"
+                                      : " (a pinhole camera does not describe windows); prefer the polynomial"));
   }
 
   void check_camera() {
@@ -239,9 +238,9 @@ class CalibrationFit {
     bool const finite = std::all_of(fit.standard_error.begin(), fit.standard_error.end(),
                                     [](double error) { return std::isfinite(error); });
     if (!finite || !(f_error < least_known * f)) {
-      throw DataError(name_, fmt::format("leaves the camera open: fx = {:.6g} px with a standard error of {:.2g} px, "
-                                         "which is {} (planes that hardly differ, few dots, or a picture given twice); "
-                                         "show planes farther apart, and more rows and columns of dots",
+      throw DataError(name_, fmt::format("does not determine the camera: fx = {:.6g} px with a standard error of "
+                                         "{:.2g} px, which is {} (planes that hardly differ, few dots, or an image "
+                                         "given twice); show planes farther apart, and more rows and columns of dots",
                                          fit.camera.fx(), f_error, finite ? "too large" : "not finite"));
     }
     if (!fit.converged)
@@ -250,16 +249,16 @@ class CalibrationFit {
         std::abs(fit.camera.fx() - fit.camera.fy()) > std::max(square_pixels * f, deviations * f_error)) {
       refuse_guessed_middles();
       warn(
-          fmt::format("fx = {:.6g} and fy = {:.6g} px differ, though pixels are square (a plate that is tilted or "
+          fmt::format("fx = {:.6g} and fy = {:.6g} px differ, although pixels are square (a plate that is tilted or "
                       "stretched); check calibration.spacing_mm along both axes",
                       fit.camera.fx(), fit.camera.fy()));
     }
     if (expected_.focal_length_px &&
         std::abs(f - *expected_.focal_length_px) > std::max(other_focal_length * f, deviations * f_error)) {
       warn(fmt::format(
-          "the focal length of {:.6g} px differs by {:.2g} % from the {:.6g} px of the setup's lens and "
-          "pixels, more than the {:.0f} % to which nominal focal lengths hold; check "
-          "calibration.planes_mm and spacing_mm, the order of the pictures, and the lens",
+          "the focal length of {:.6g} px differs by {:.2g} % from the {:.6g} px of the setup's lens and pixels, more "
+          "than the tolerance of {:.0f} % of nominal focal lengths; check calibration.planes_mm and spacing_mm, the "
+          "order of the images, and the lens",
           f, 100 * std::abs(f / *expected_.focal_length_px - 1), *expected_.focal_length_px, 100 * other_focal_length));
     }
   }
@@ -275,10 +274,10 @@ class CalibrationFit {
     if (guessed.empty()) return;
     PinholeCamera const& camera = calibration_.pinhole.camera;
     throw DataError(
-        name_, fmt::format("fits only a camera of unequal fx = {:.6g} and fy = {:.6g} px, with the plate moved at "
-                           "{:.3g} degrees to its normal (the middle dots of {} are guesses, for their pictures show "
-                           "a part of the grid only, and are probably wrong); show the whole grid in every picture, or "
-                           "give the camera's place and the direction of the plate's motion better",
+        name_, fmt::format("only fits a camera with unequal fx = {:.6g} and fy = {:.6g} px, with the plate moved at "
+                           "{:.3g} degrees to its normal (the middle dots of {} are guesses, since their images show "
+                           "only a part of the grid, and are probably wrong); show the whole grid in every image, or "
+                           "give the position of the camera and the direction of the plate's motion more accurately",
                            camera.fx(), camera.fy(), degrees(length(placement_.drift)), fmt::join(guessed, ", ")));
   }
 
@@ -303,8 +302,8 @@ class CalibrationFit {
     for (CalibratedPlane const& plane : calibration_.planes) {
       if (plane.strangers.empty()) continue;
       warn(
-          fmt::format("{}: {} spots on the grid are no dots of it by place or size (dirt, letters), the first at "
-                      "({:.1f}, {:.1f}) px, and were left out",
+          fmt::format("{}: {} spots on the grid differ from its dots in position or size (dirt, letters), the first at "
+                      "({:.1f}, {:.1f}) px, and were excluded",
                       plane.file, plane.strangers.size(), plane.strangers[0].x, plane.strangers[0].y));
     }
   }

@@ -24,7 +24,7 @@ void write_pinhole(Hdf5Writer& file, PinholeFit const& fit) {
   std::size_t const count = PinholeCamera::count;
   std::vector<double> const matrix{p[0], 0, p[2], 0, p[1], p[3], 0, 0, 1};
   file.write("/pinhole/camera_matrix", std::span<double const>(matrix), {3, 3}, "px",
-             "fx, 0, cx; 0, fy, cy; 0, 0, 1, as OpenCV writes it", "row, column");
+             "fx, 0, cx; 0, fy, cy; 0, 0, 1, as in OpenCV", "row, column");
   file.write("/pinhole/distortion", std::span(p).subspan(4, 4), {4}, "1", "k1, k2, p1, p2 as in OpenCV", "coefficient");
   file.write("/pinhole/rvec", std::span(p).subspan(8, 3), {3}, "rad",
              "rotation R from the world to the camera (x right, y down, z into the scene), as axis times angle",
@@ -85,7 +85,7 @@ nlohmann::ordered_json strangers_json(CalibratedPlane const& plane) {
 /// Returns e.g. "; left out as no dots: 3 by size or shape, 1 by their place on the grid"; empty without such spots.
 std::string spots_in_words(CalibratedPlane const& plane) {
   if (plane.not_dots == 0 && plane.strangers.empty()) return "";
-  return fmt::format("; left out as no dots: {} by size or shape, {} by their place on the grid", plane.not_dots,
+  return fmt::format("; excluded spots: {} by size or shape, {} by their position on the grid", plane.not_dots,
                      plane.strangers.size());
 }
 
@@ -107,11 +107,11 @@ void write_calibration_file(std::string const& path, Calibration const& calibrat
   }
   file.write("/dots/position_m", std::span<double const>(position), {count, 3}, "m", "dot centres in the world frame",
              "dot, (x, y, z)");
-  file.write("/dots/image_px", flat(calibration.points.pixel), {count, 2}, "px", "centroids that were detected",
+  file.write("/dots/image_px", flat(calibration.points.pixel), {count, 2}, "px", "detected centroids",
              "dot, (column, row)");
-  file.write("/dots/plane", std::span<std::int64_t const>(plane_of), {count}, "1", "its plane, from 0", "dot");
+  file.write("/dots/plane", std::span<std::int64_t const>(plane_of), {count}, "1", "plane of the dot, from 0", "dot");
   file.write("/dots/index", std::span<std::int64_t const>(index), {count, 2}, "1",
-             "place on the grid in spacings from its middle, along X and Y", "dot, (x, y)");
+             "grid position relative to the middle of the grid, in spacings along X and Y", "dot, (x, y)");
   file.write("/dots/pinhole_residual_px", flat(calibration.pinhole.residual_px), {count, 2}, "px",
              "detected minus fitted, pinhole", "dot, (column, row)");
   file.write("/dots/soloff_residual_px", flat(calibration.soloff.residual_px), {count, 2}, "px",
@@ -129,7 +129,7 @@ void draw_calibration(std::string const& path, Calibration const& calibration) {
     double const most = largest(residuals);
     double const enlarged = most > 0 ? std::pow(10, std::floor(std::log10(longest * calibration.columns / most))) : 1;
     draw_panel(plot, calibration, residuals,
-               fmt::format("{}: {:.3g} px rms, {:.0f} times enlarged", model, rms, enlarged), enlarged);
+               fmt::format("{}: {:.3g} px rms, enlarged {:.0f} times", model, rms, enlarged), enlarged);
   };
   plot.command("set multiplot layout 1,2");
   plot.command("set size ratio -1; set grid linecolor '#e4e4e4' linewidth 1 linetype 1");
@@ -189,15 +189,16 @@ std::string calibration_table(Calibration const& calibration) {
     }
     text += '\n';
   }
-  text += calibration.rendered
-              ? "(off by: in standard errors)\n"
-              : "(no columns of a rendered camera to compare with: pictures of your own have no truth, and that of a "
-                "case knows a pinhole camera for an ideal thin lens alone, without windows and without distortion of a "
-                "tilted sensor)\n";
+  text +=
+      calibration.rendered
+          ? "(off by: difference in standard errors)\n"
+          : "(no comparison with a rendered camera: your own images have no truth, and that of a case contains a "
+            "pinhole camera only for an ideal thin lens without windows and without distortion on a tilted sensor)\n";
   for (CalibratedPlane const& plane : calibration.planes) {
     text += fmt::format(
-        "Z = {:.6g} mm: {} of {} dots found are on the grid{}{}\n", plane.z / unit::millimetre, plane.used, plane.found,
-        plane.middle_by == MiddleBy::whole_grid ? "" : ", whose middle is where the setup's camera sees it",
+        "Z = {:.6g} mm: {} of {} detected dots are on the grid{}{}\n", plane.z / unit::millimetre, plane.used,
+        plane.found,
+        plane.middle_by == MiddleBy::whole_grid ? "" : ", whose middle was determined from the setup's camera",
         spots_in_words(plane));
   }
   return text + fmt::format(

@@ -63,10 +63,9 @@ void judge_chain(Comparison& comparison, std::string const& name) {
   if (!comparison.noise_free.empty()) references.emplace_back(comparison.noise_free);
   comparison.mask = common_mask(measured, references);
   if (std::none_of(comparison.mask.begin(), comparison.mask.end(), [](auto counts) { return counts != 0; })) {
-    throw DataError(
-        name,
-        "has no vector that can be compared: none is valid, in view and with truth on its window (three dots); check "
-        "the vectors and --conventions");
+    throw DataError(name,
+                    "has no vector that can be compared: none is valid, in view and has a truth in its window (three "
+                    "dots); check the vectors and --conventions");
   }
   comparison.budget = error_budget(budget_stages(comparison, comparison.window), comparison.mask, comparison.chain);
   if (comparison.frames_deformed) {
@@ -144,7 +143,7 @@ Comparison compare_case(std::string const& folder, Device const& device, Compare
   ComparedFiles files = compared_files(folder, options.vectors);
   if (!files.unverified.empty()) {
     spdlog::warn(
-        "unverified: {} carries no SHA-256 of its frames, so nothing tells whether {} was measured on this case",
+        "unverified: {} contains no SHA-256 of its frames, so that it is unknown whether {} was measured on this case",
         files.unverified, files.vectors);
   }
   CaseSetup loaded = load_case_setup(files.setup, {});
@@ -155,8 +154,7 @@ Comparison compare_case(std::string const& folder, Device const& device, Compare
   std::string fingerprint = comparison_fingerprint(files.sources, options);
   Comparison comparison = comparison_of(vectors, loaded.setup.piv.has_value());
   if (options.reuse && read_chain(folder, fingerprint, comparison)) {
-    spdlog::info("took the comparison that {} tells of, which was made from the same files",
-                 in_case(folder, case_file::errors));
+    spdlog::info("reused the comparison of {}, which was made from the same files", in_case(folder, case_file::errors));
     judge_chain(comparison, vectors.name);
   } else {
     vectors.field = std::move(comparison.measured);

@@ -19,7 +19,7 @@ namespace {
 std::string made_file(std::string const& folder, char const* name, std::string const& command) {
   std::string path = in_case(folder, name);
   std::error_code error;
-  if (!std::filesystem::exists(path, error)) throw DataError(path, "is not there; make it with: " + command);
+  if (!std::filesystem::exists(path, error)) throw DataError(path, "does not exist; create it with: " + command);
   return path;
 }
 
@@ -42,8 +42,8 @@ void add_inputs(SourceFiles& sources, std::string const& truth, std::string cons
     if (!std::filesystem::exists(path)) continue;  // reported by its reader
     sources.add("", path, SourceFiles::Holds::bytes);
     if (hash == sources.all().back().sha256) continue;
-    throw DataError(path, fmt::format("has changed since {} was rendered from it (another SHA-256 of its bytes); bring "
-                                      "the old file back, or render the case again",
+    throw DataError(path, fmt::format("has changed since {} was rendered from it (another SHA-256 of its bytes); "
+                                      "restore the old file, or render the case again",
                                       folder));
   }
 }
@@ -62,7 +62,7 @@ ComparedFiles compared_files(std::string const& folder, std::string const& vecto
   files.vectors = vectors_path(folder, vectors);
   bool const hdf5 = files.vectors.ends_with(".h5") || files.vectors.ends_with(".hdf5");
   SourceFiles& sources = files.sources;
-  sources.on_change("compare again, after gladstone correlate " + folder + " where the case was rendered anew");
+  sources.on_change("compare again, after gladstone correlate " + folder + " if the case was rendered again");
   sources.add("", files.setup, SourceFiles::Holds::bytes);
   sources.add("truth", files.truth, SourceFiles::Holds::datasets);
   sources.add("vectors", files.vectors, hdf5 ? SourceFiles::Holds::datasets : SourceFiles::Holds::bytes);
@@ -74,10 +74,10 @@ ComparedFiles compared_files(std::string const& folder, std::string const& vecto
   bool const exchanged = !first.empty() && first != second && measured.attribute("reference_sha256") == second &&
                          measured.attribute("flow_sha256") == first;
   if (exchanged) {
-    throw DataError(files.vectors, fmt::format("was measured from {0}'s flow frame to its reference (the frames were "
-                                               "exchanged, and every displacement has the opposite sign); run "
-                                               "gladstone correlate {0} again",
-                                               folder));
+    throw DataError(files.vectors,
+                    fmt::format("was measured from flow.tif to reference.tif of {0} (the frames were exchanged, and "
+                                "every displacement has the opposite sign); run gladstone correlate {0} again",
+                                folder));
   }
   for (std::string const frame : {"reference", "flow"}) {
     std::string const mine = truth.attribute(frame + "_sha256"), theirs = measured.attribute(frame + "_sha256");
@@ -85,9 +85,9 @@ ComparedFiles compared_files(std::string const& folder, std::string const& vecto
       files.unverified = theirs.empty() ? files.vectors : files.truth;
     } else if (mine != theirs) {
       throw DataError(files.vectors,
-                      fmt::format("was measured on other frames than {} belongs to (the SHA-256 of its {} frame's "
-                                  "pixels is {:.12}..., not {:.12}...); run gladstone correlate {} again, or give "
-                                  "vectors of frames that were changed on purpose as .csv",
+                      fmt::format("was measured on other frames than those of {} (the SHA-256 of the pixels of its {} "
+                                  "frame is {:.12}..., not {:.12}...); run gladstone correlate {} again, or give "
+                                  "vectors of deliberately changed frames as .csv",
                                   files.truth, frame, theirs, mine, folder));
     }
     if (!theirs.empty()) sources.add_known(frame, theirs);

@@ -65,7 +65,7 @@ LeftOutVectors screen(VectorFile& file, std::string const& path, CameraSetup con
   std::string const refusal = refusal_of_places(file.field, left_out, columns, rows);
   if (!refusal.empty()) throw DataError(path, refusal);
   if (left_out.all() > 0) {
-    spdlog::warn("{}: {} of {} vectors are left out: {}", path, left_out.all(),
+    spdlog::warn("{}: {} of {} vectors are excluded: {}", path, left_out.all(),
                  file.field.size() + left_out.without_place(), left_out.text());
   }
   std::string const doubt = doubt_about_places(file.field, columns, rows);
@@ -79,10 +79,9 @@ void check_preparation(Hdf5Reader const& measured, std::string const& path, Corr
   for (std::string const& file : settings.preparation.files) {
     std::string const hash = measured.attribute(fmt::format("preparation_{}_sha256", ++number));
     if (hash.empty() || hash == pixel_sha256(file)) continue;
-    throw DataError(file,
-                    fmt::format("has changed since {} was measured with it (another SHA-256 of its pixels); bring "
-                                "the old file back, or run gladstone correlate again",
-                                path));
+    throw DataError(file, fmt::format("has changed since {} was measured with it (another SHA-256 of its pixels); "
+                                      "restore the old file, or run gladstone correlate again",
+                                      path));
   }
 }
 
@@ -107,12 +106,12 @@ DetectedConventions detect(VectorFile const& file, std::string const& path, Grou
       file, [&map](Vec2d c) { return map.at(c); }, camera.rows);
   if (detected.verdict == Verdict::fits_none) {
     throw DataError(path,
-                    detected.report + ", or say with --conventions how it is to be read if it is as wrong as that");
+                    detected.report + ", or specify its reading with --conventions if the file cannot be corrected");
   }
   if (detected.mistake.found()) {
     spdlog::warn("{}: likely mistake: {}", path, detected.mistake.warning());
   } else if (detected.verdict == Verdict::cannot_be_told || has_rival_of_its_own(file, detected)) {
-    spdlog::warn("{}: {}; say which with --conventions", path, detected.report);
+    spdlog::warn("{}: {}; specify it with --conventions", path, detected.report);
   }
   return detected;
 }

@@ -191,7 +191,7 @@ std::vector<std::string> draw_comparison(std::string const& folder, Comparison c
       drawings.push_back(maps("without medium", comparison.ambient_px));
     } else {
       drawings.push_back(maps("Eq. 9", comparison.point.eq9_px));
-      drawings.push_back(maps("cone-filtered Eq. 9", comparison.point.eq9_cone_px));
+      drawings.push_back(maps("aperture-averaged Eq. 9", comparison.point.eq9_cone_px));
     }
     drawings.push_back(maps("measurement", measured.displacement_px));
     write_displacement_maps(next("displacement_maps"), "Displacement, and differences from ray truth", axes, drawings);
@@ -202,7 +202,7 @@ std::vector<std::string> draw_comparison(std::string const& folder, Comparison c
     series.push_back({"against truth without medium", difference(comparison.ambient_px)});
   } else {
     series.push_back({"against Eq. 9", difference(comparison.point.eq9_px)});
-    series.push_back({"against cone-filtered Eq. 9", difference(comparison.point.eq9_cone_px)});
+    series.push_back({"against aperture-averaged Eq. 9", difference(comparison.point.eq9_cone_px)});
   }
   write_error_histograms(next("error_histograms"), "Measurement error", series);
   if (measured.columns > 1 && measured.rows > 1) {

@@ -18,8 +18,8 @@ std::string signal_warning(Comparison const& all, bool piv) {
   bool const small = signal < least_signal_px;
   if (signal == 0 || !(small || signal < error)) return {};
   return fmt::format(
-      "the true displacements are {:.2g} px rms per component, {}, and the vectors' error against {} is {:.2g} px: the "
-      "vectors show little of the {}; increase {}",
+      "the true displacements are {:.2g} px rms per component, {}, and the error of the vectors against {} is {:.2g} "
+      "px: the vectors contain little information on the {}; increase {}",
       signal, small ? fmt::format("below {:g} px", least_signal_px) : "less than the error", all.recorded_name(), error,
       piv ? "flow" : "field", piv ? "flow.dt_us or the magnification" : "geometry.z_d_mm or the magnification");
 }

@@ -35,7 +35,7 @@ CorrelationFile read_document(SetupDocument document, std::vector<std::string> c
     if (assignment.starts_with("correlate.") || assignment.starts_with("correlate=")) {
       document.override_key(assignment);
     } else {
-      document.add_problem("--set " + assignment, "is no key of [correlate] (nothing else is used here); remove it");
+      document.add_problem("--set " + assignment, "is not a key of [correlate], the only table used here; remove it");
     }
   }
   CorrelationFile file;
@@ -60,13 +60,13 @@ class FramesView final : public FramePair {
 /// Warns of conversions applied to an image on reading.
 void warn_of_reading(std::string const& path, ImageMetadata const& metadata) {
   if (metadata.channels >= 3) {
-    spdlog::warn("{} is a colour picture: its luminance (Rec. 709) is correlated; cameras' raw grey images are better",
-                 path);
+    spdlog::warn(
+        "{} is a colour image: its luminance (Rec. 709) is correlated; raw grey images of the camera are better", path);
   }
   if (metadata.orientation != 1) {
     spdlog::warn(
-        "{} is stored turned or mirrored (Orientation {}), and was turned upright; where that entry is wrong, "
-        "write the picture without it",
+        "{} is stored rotated or mirrored (Orientation {}), and was rotated upright; if that entry is wrong, write the "
+        "image without it",
         path, metadata.orientation);
   }
 }
@@ -79,7 +79,7 @@ Measurement correlate_prepared(FramePair const& frames, CorrelationSettings sett
   Measurement measurement = correlate_frames(prepared, settings, device);
   if (known_part(prepared) == 0.0)
     measurement.field.warnings.emplace_back(
-        "the masks leave no pixel of the frames (so that every vector is masked); make correlate.mask smaller");
+        "the masks cover every pixel of the frames (so that every vector is masked); reduce correlate.mask");
   measurement.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return measurement;
 }
@@ -91,10 +91,10 @@ void check_finite(std::string const& reference_name, Image<double> const& refere
   for (auto const& [name, image] : {std::pair(reference_name, &reference), std::pair(flow_name, &flow)}) {
     std::size_t const bad = count_not_finite(*image);
     if (bad == image->size()) {
-      throw DataError(name, fmt::format("all of its {} pixels are nan or infinite; export it anew", bad));
+      throw DataError(name, fmt::format("all of its {} pixels are nan or infinite; export it again", bad));
     }
     if (bad > 0) {
-      spdlog::warn("{}: {} of {} pixels are nan or infinite, and are left out of the windows they lie in", name, bad,
+      spdlog::warn("{}: {} of {} pixels are nan or infinite, and are excluded from their windows", name, bad,
                    image->size());
     }
   }
@@ -107,7 +107,7 @@ Measurement correlate_frames(std::string const& reference_name, Image<double> co
                              CorrelationSettings const& settings, Device const& device) {
   if (reference.columns() != flow.columns() || reference.rows() != flow.rows()) {
     throw DataError(flow_name,
-                    fmt::format("is {} x {} px but {} is {} x {} (both frames need one size)", flow.columns(),
+                    fmt::format("is {} x {} px but {} is {} x {} (both frames must have one size)", flow.columns(),
                                 flow.rows(), reference_name, reference.columns(), reference.rows()));
   }
   int const largest = *std::max_element(settings.window_px.begin(), settings.window_px.end());
@@ -185,7 +185,7 @@ Measurement correlate_ensemble_files(std::vector<std::string> const& files, Corr
       rows = frame.rows();
     }
     if (frame.columns() != columns || frame.rows() != rows)
-      throw DataError(files[k], fmt::format("is {} x {} px but {} is {} x {} (all frames need one size)",
+      throw DataError(files[k], fmt::format("is {} x {} px but {} is {} x {} (all frames must have one size)",
                                             frame.columns(), frame.rows(), files[0], columns, rows));
     if (!is_flow) reference = std::move(frame);
   }
@@ -199,8 +199,8 @@ Measurement correlate_ensemble_files(std::vector<std::string> const& files, Corr
   judge_ensemble(measurement.field, pairs, settings);
   if (!twice.empty() && twice.size() < pairs.size)
     measurement.field.warnings.push_back(
-        fmt::format("{} of {} pairs are one picture twice, bit for bit (which draws the displacement towards 0), first "
-                    "that with {}; leave them out",
+        fmt::format("{} of {} pairs consist of two identical images (which biases the displacement towards 0), the "
+                    "first with {}; remove them",
                     twice.size(), pairs.size, twice.front()));
   measurement.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return measurement;

@@ -18,8 +18,8 @@ std::string uncertainty_line(Comparison const& comparison) {
       measured.displacement_px, comparison.recorded().displacement_px, measured.sigma_px, comparison.mask);
   if (quality.count == 0) return "";
   return fmt::format(
-      "  standard uncertainties: {:.1f} % of the errors against {} lie within one, {:.1f} % within two (of a normal "
-      "distribution 68.3 and 95.4 %); rms(sigma)/rms(error) {:.2f}\n",
+      "  standard uncertainties: {:.1f} % of the errors against {} lie within one, {:.1f} % within two (normal "
+      "distribution: 68.3 and 95.4 %); rms(sigma)/rms(error) {:.2f}\n",
       100 * quality.coverage_1, comparison.recorded_name(), 100 * quality.coverage_2, quality.rms_ratio);
 }
 
@@ -33,7 +33,8 @@ std::string undeformed_line(Comparison const& comparison) {
     return std::nan("");
   };
   return fmt::format(
-      "  window and estimator: of the frames as the passes deform them; of an undeformed window {:.5f}, {:.5f} px\n",
+      "  window and estimator refer to frames deformed by the passes; for an undeformed window they are {:.5f}, {:.5f} "
+      "px\n",
       rms("window"), rms("estimator"));
 }
 
@@ -50,7 +51,7 @@ std::string error_report(Comparison const& comparison) {
     rows.push_back({"ray truth without medium", comparison.ambient_px});
   } else {
     rows.push_back({"Eq. 9", comparison.point.eq9_px});
-    rows.push_back({"cone-filtered Eq. 9", comparison.point.eq9_cone_px});
+    rows.push_back({"aperture-averaged Eq. 9", comparison.point.eq9_cone_px});
   }
   rows.push_back({"ray truth on the window", comparison.window.displacement_px});
   std::string text = fmt::format("Measurement against   [px]  {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9}\n", "bias u",
@@ -62,10 +63,10 @@ std::string error_report(Comparison const& comparison) {
                         last.bias_u_px, last.bias_v_px, last.random_u_px, last.random_v_px, last.rms_px, last.p95_px,
                         100 * last.gross_fraction);
   }
-  text += fmt::format("  over {} of {} vectors; {} left out for fewer than three {}\n", last.count,
+  text += fmt::format("  over {} of {} vectors; {} excluded for fewer than three {}\n", last.count,
                       comparison.vectors_in_file(), comparison.window.left_out,
                       comparison.chain == BudgetChain::piv ? "particles" : "dots");
-  if (comparison.left_out.all() > 0) text += "  left out as well: " + comparison.left_out.text() + '\n';
+  if (comparison.left_out.all() > 0) text += "  also excluded: " + comparison.left_out.text() + '\n';
   if (!comparison.report.empty()) text += "  " + comparison.report + '\n';
   text += uncertainty_line(comparison);
   text += '\n';
@@ -79,10 +80,12 @@ std::string error_report(Comparison const& comparison) {
   for (BudgetTerm const& term : comparison.shown_budget().terms) text += line(term);
   text += line(comparison.budget.total);
   text +=
-      "  scatter: standard deviation over the vectors of the field; another repeat changes only estimator and noise\n";
+      "  scatter: standard deviation over the vectors of the field; a repeat changes only that of estimator and "
+      "noise\n";
   text += undeformed_line(comparison);
-  text += fmt::format("  peak locking {:.5f} px (beside, not added); the terms close to {:.1e} px\n",
-                      comparison.budget.peak_locking_px, comparison.budget.closure_px);
+  text += fmt::format(
+      "  peak locking {:.5f} px (not part of the sum); the sum of the terms equals the total to {:.1e} px\n",
+      comparison.budget.peak_locking_px, comparison.budget.closure_px);
   return text;
 }
 

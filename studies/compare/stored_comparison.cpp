@@ -22,9 +22,9 @@ struct Link {
 constexpr std::array<Link, 10> links{{
     {"/vectors/eq9_px", [](Comparison& c) -> std::vector<Vec2d>& { return c.point.eq9_px; }, "Eq. 9 at the vector"},
     {"/vectors/chief_px", [](Comparison& c) -> std::vector<Vec2d>& { return c.point.chief_px; },
-     "the same with each slice's own distance from the dots as lever"},
+     "Eq. 9 with the distance of each slice from the dots as lever arm"},
     {"/vectors/eq9_cone_px", [](Comparison& c) -> std::vector<Vec2d>& { return c.point.eq9_cone_px; },
-     "the same averaged over the dot's disc and the stop's pupil"},
+     "Eq. 9 averaged over the dot and the aperture"},
     {"/vectors/thin_lens_px", [](Comparison& c) -> std::vector<Vec2d>& { return c.thin_lens; },
      "ray truth through an ideal lens in focus"},
     {"/vectors/flow_px", [](Comparison& c) -> std::vector<Vec2d>& { return c.flow_px; }, "displacement of the flow"},
@@ -36,7 +36,7 @@ constexpr std::array<Link, 10> links{{
      "truth on the window"},
     {"/vectors/deformed_window_truth_px",
      [](Comparison& c) -> std::vector<Vec2d>& { return c.deformed_window.displacement_px; },
-     "truth on the window of the frames as the passes deform them"},
+     "truth on the window of the deformed frames"},
     {"/vectors/noise_free_px", [](Comparison& c) -> std::vector<Vec2d>& { return c.noise_free; },
      "measurement on noise-free, unquantised frames"},
 }};
@@ -66,11 +66,10 @@ void write_chain(std::string const& path, Comparison const& comparison, std::str
   std::array<std::int64_t, 3> const counts{static_cast<std::int64_t>(comparison.window.left_out),
                                            static_cast<std::int64_t>(comparison.deformed_window.left_out),
                                            comparison.frames_deformed ? 1 : 0};
-  file.write(
-      "/vectors/counts", std::span<std::int64_t const>(counts), {counts.size()}, "1",
-      "vectors with fewer than three dots on their window, the same of deformed frames, 1: several passes deform "
-      "the frames",
-      "number");
+  file.write("/vectors/counts", std::span<std::int64_t const>(counts), {counts.size()}, "1",
+             "vectors with fewer than three dots in their window; the same for deformed frames; 1 if several passes "
+             "deform the frames",
+             "number");
   file.attribute("/", "made_from", comparison.fingerprint);
   Sha256 hash;
   hash.add(errors);

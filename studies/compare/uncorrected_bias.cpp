@@ -6,10 +6,10 @@ namespace gladstone {
 
 std::string uncorrected_bias_words(BudgetChain chain) {
   bool const piv = chain == BudgetChain::piv;
-  return std::string("the true displacement, averaged over the window, less that of ") + (piv ? "the flow" : "Eq. 9") +
+  return std::string("the true displacement averaged over the window minus that of ") + (piv ? "the flow" : "Eq. 9") +
          ", rms over the vectors. " +
          (piv ? "Medium, imaging and window" : "Cone, dot, refraction, aberration and window") +
-         " make it in every repeat alike; it is not corrected, and in no uncertainty.";
+         " cause it, equally in every repeat; it is not corrected and not part of any uncertainty.";
 }
 
 double uncorrected_bias_px(Comparison const& comparison) {

@@ -70,12 +70,12 @@ std::string outcome_text(AnsweredQuestion const& answered, BranchOutcome const& 
   if (outcome.skipped)
     return fmt::format("    {}: skipped, {} excludes it\n", name, bound_name(outcome.solution.worst));
   if (outcome.solution.worst == Bound::resolution && !outcome.solution.feasible()) {
-    return fmt::format("    {}: misses {}: the chain passes {:.3f} of that wavelength, not {:.3f}\n", name,
+    return fmt::format("    {}: violates {}: the chain transmits {:.3f} of that wavelength instead of {:.3f}\n", name,
                        bound_name(Bound::resolution), transfer_at_resolution - outcome.solution.violation,
                        transfer_at_resolution);
   }
   if (!outcome.solution.feasible()) {
-    return fmt::format("    {}: misses {} by {:.3g} %\n", name, bound_name(outcome.solution.worst),
+    return fmt::format("    {}: violates {} by {:.3g} %\n", name, bound_name(outcome.solution.worst),
                        100 * std::expm1(outcome.solution.violation));
   }
   return fmt::format("    {}: {} {:.5g} {}\n", name, objective_word(answered),
@@ -95,22 +95,23 @@ std::string feasible_text(AnsweredQuestion const& answered) {
   text += "predicted by formula\n";
   for (Predicted const& one : predicted(best)) text += fmt::format("  {:<28}{:.6g}\n", one.key, one.value);
   if (std::string const beyond = beyond_study(best); !beyond.empty()) {
-    text += "  random_px and gradient_min_kg_m4 lie beyond what the estimator's study measured: " + beyond + '\n';
+    text +=
+        "  random_px and gradient_min_kg_m4 are outside the range of the study of the random error: " + beyond + '\n';
   }
-  text += "what binds\n";
+  text += "binding constraints\n";
   for (std::string const& name : answered.answer.binding) text += "  " + name + '\n';
   if (answered.answer.binding.empty()) text += "  nothing\n";
-  text += fmt::format("what a requirement costs: {} where it is 1 % stricter\n", objective_word(answered));
+  text += fmt::format("cost of each requirement: change of {} if it is 1 % stricter\n", objective_word(answered));
   for (RequirementCost const& cost : answered.answer.costs) {
-    text += fmt::format("  {:<40}{}\n", bound_name(cost.bound),
-                        std::isfinite(cost.change) ? fmt::format("{:+.2f} %", 100 * cost.change)
-                                                   : std::string("nothing feasible is left"));
+    text += fmt::format(
+        "  {:<40}{}\n", bound_name(cost.bound),
+        std::isfinite(cost.change) ? fmt::format("{:+.2f} %", 100 * cost.change) : std::string("infeasible"));
   }
   return text;
 }
 
 std::string infeasible_text(AnsweredQuestion const& answered) {
-  std::string text = "no feasible design: these cannot be kept together\n";
+  std::string text = "no feasible design: these requirements conflict\n";
   for (Bound const bound : answered.answer.conflicts) {
     text += fmt::format("  {} = {:.6g}\n", bound_name(bound), required_value(answered, bound));
   }
@@ -122,16 +123,19 @@ std::string infeasible_text(AnsweredQuestion const& answered) {
     }
   };
   if (auto const& nearest = answered.answer.without_requirements) {
-    text += "  the limits of the free keys and those of every bench, whatever is required; the nearest bench\n" +
-            outcome_text(answered, *nearest);
+    text +=
+        "  the limits of the free keys and the constraints of every set-up, without any requirement; the closest "
+        "set-up\n" +
+        outcome_text(answered, *nearest);
     if (nearest->solution.worst == Bound::full_well) {
-      text += fmt::format("    {:.3g} times the light (radiance or exposure) would do for it\n",
+      text += fmt::format("    {:.3g} times the light (radiance or exposure) would be sufficient\n",
                           std::exp(-nearest->solution.violation));
     }
   }
-  if (!answered.answer.relaxations.empty()) text += "one of these would do, everything else kept\n";
+  if (!answered.answer.relaxations.empty())
+    text += "relaxing one of these is sufficient, with everything else unchanged\n";
   add(answered.answer.relaxations);
-  if (!answered.answer.together.empty()) text += "none of them alone would do; these together would\n";
+  if (!answered.answer.together.empty()) text += "relaxing one of them is not sufficient; relaxing these together is\n";
   add(answered.answer.together);
   return text;
 }
@@ -166,7 +170,7 @@ Json feasible_json(AnsweredQuestion const& answered) {
 std::string answer_text(AnsweredQuestion const& answered) {
   std::string text = answered.answer.feasible() ? feasible_text(answered) : infeasible_text(answered);
   if (answered.verification) text += verification_text(*answered.verification, answered.question);
-  text += fmt::format("choices tried: {}, the best first\n", answered.answer.outcomes.size());
+  text += fmt::format("combinations evaluated: {}, the best first\n", answered.answer.outcomes.size());
   for (std::size_t i = 0; i < std::min(most_alternatives, answered.answer.outcomes.size()); ++i) {
     text += outcome_text(answered, answered.answer.outcomes[i]);
   }
@@ -175,7 +179,7 @@ std::string answer_text(AnsweredQuestion const& answered) {
     if (outcome.skipped) ++skipped_by[bound_name(outcome.solution.worst)];
   for (auto const& [bound, count] : skipped_by) text += fmt::format("  {} skipped: {} excludes them\n", count, bound);
   for (SkippedVariant const& variant : answered.skipped) {
-    text += fmt::format("  {}: skipped, it does not go with the setup: {}\n", variant.name(), variant.reason);
+    text += fmt::format("  {}: skipped, incompatible with the setup: {}\n", variant.name(), variant.reason);
   }
   return text;
 }

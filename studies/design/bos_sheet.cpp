@@ -33,30 +33,30 @@ void add_imaging(DesignSheet& sheet, Setup const& setup, Bench<double> const& b)
                   Margin::none, ""});
   rows.push_back({"F1", "magnification_at_medium", "magnification M_A of the medium", b.magnification_at_medium(), "",
                   "M Z_B / Z_A", raffel, Margin::none, ""});
-  rows.push_back({"F2", "refractivity", "index of the ambient gas, less 1", setup.medium.ambient_refractivity(), "",
-                  "K rho", seed, Margin::none, ""});
+  rows.push_back({"F2", "refractivity", "refractive index of the ambient gas minus 1",
+                  setup.medium.ambient_refractivity(), "", "K rho", seed, Margin::none, ""});
   double const ciddor = gladstone_dale_ciddor(b.given->wavelength), own = b.given->gladstone_dale;
   rows.push_back({"F3", "gladstone_dale_m3_kg", "Gladstone-Dale constant K", own, "m^3/kg", "(n_s - 1) / rho_s",
                   "Ciddor 1996, Appl. Opt. 35:1566", at_most(std::abs(own / ciddor - 1), 0.01, 0.05),
                   fmt::format("of the setup; air at this wavelength has {:.5g} (Ciddor), {:.5g} (Merzkirch 1987)",
                               ciddor, gladstone_dale_merzkirch(b.given->wavelength))});
-  rows.push_back({"F4", "optical_direction", "length of a ray's direction n dr/ds", b.given->ambient_index, "",
-                  "d/ds (n dr/ds) = grad n, |T| = n", "Sharma, Kumar & Ghatak 1982, Appl. Opt. 21:984", Margin::none,
-                  "outside the medium; kept along the ray"});
+  rows.push_back({"F4", "optical_direction", "norm of the direction vector n dr/ds of a ray", b.given->ambient_index,
+                  "", "d/ds (n dr/ds) = grad n, |T| = n", "Sharma, Kumar & Ghatak 1982, Appl. Opt. 21:984",
+                  Margin::none, "outside the medium; conserved along the ray"});
   rows.push_back({"F16", "field_of_view_mm", "field of view in the medium, width",
                   camera.columns * b.pixel_at_medium() / mm, "mm", "w Z_A / z_i", raffel, Margin::none, ""});
   rows.push_back({"F16", "field_of_view_height_mm", "field of view in the medium, height",
                   camera.rows * b.pixel_at_medium() / mm, "mm", "h Z_A / z_i", raffel, Margin::none, ""});
   rows.push_back({"F16", "field_of_view_at_dots_mm", "field of view on the dots, width",
                   camera.columns * b.pixel_at_dots() / mm, "mm", "w / M", raffel, Margin::none,
-                  "the target is to be as large"});
+                  "minimum size of the target"});
 }
 
 void add_sensitivity(DesignSheet& sheet, Bench<double> const& b) {
   auto& rows = sheet.rows;
   double const gradient = shown_gradient(*b.given), quarter = b.given->first_window_px / 4.0;
-  std::string const of =
-      fmt::format("of {:.4g} kg/m^4{}", gradient, b.given->largest_gradient > 0 ? ", the setup's largest in view" : "");
+  std::string const of = fmt::format("of {:.4g} kg/m^4{}", gradient,
+                                     b.given->largest_gradient > 0 ? ", the largest in the setup's view" : "");
   rows.push_back({"F5", "deflection_urad", "deflection", gradient * b.deflection() * 1e6, "urad",
                   "(1/n0) integral of grad n dz", "Goldhahn & Seume 2007, Exp. Fluids 43:241", Margin::none, of});
   rows.push_back(
@@ -66,10 +66,10 @@ void add_sensitivity(DesignSheet& sheet, Bench<double> const& b) {
                   "mm/rad", "M Z_D", "Gojani et al. 2013, J. Vis. 16:201", Margin::none, ""});
   rows.push_back({"F7", "sensitivity_px_per_kg_m4", "sensitivity to density gradients", b.sensitivity(),
                   "px per kg/m^4", "M Z_D K L_z / (n0 p)", "Gojani et al. 2013, J. Vis. 16:201", Margin::none, ""});
-  rows.push_back({"F8", "share_of_sensitivity", "share of the sensitivity that any distance gives", b.z_d / b.z_b(), "",
-                  "Z_D / (Z_A + Z_D)", derived, Margin::none, "at this view; half is reached at Z_D = Z_A"});
+  rows.push_back({"F8", "share_of_sensitivity", "sensitivity relative to its upper limit", b.z_d / b.z_b(), "",
+                  "Z_D / (Z_A + Z_D)", derived, Margin::none, "for this field of view; half at Z_D = Z_A"});
   rows.push_back(
-      {"F18", "gradient_min_kg_m4", "smallest gradient seen", b.smallest_gradient(), "kg/m^4",
+      {"F18", "gradient_min_kg_m4", "smallest detectable gradient", b.smallest_gradient(), "kg/m^4",
        "2 sigma p n0 / (M Z_D K L_z)", "Westerweel 1997, Meas. Sci. Technol. 8:1379",
        b.given->largest_gradient > 0 ? at_most(b.smallest_gradient(), 0.1 * gradient, gradient) : Margin::none,
        "two standard deviations of F26"});
@@ -81,7 +81,7 @@ void add_sensitivity(DesignSheet& sheet, Bench<double> const& b) {
   double const lever = b.z_a * b.z_d / b.z_b();
   rows.push_back({"F19", "curvature_max_kg_m5", "largest second derivative of density",
                   deforming_strain / (lever * b.deflection()), "kg/m^5", "0.1 n0 / (K L_z Z_A Z_D / Z_B)", derived,
-                  Margin::none, "strain of 0.1 in the image; rays cross at ten times as much"});
+                  Margin::none, "strain of 0.1 in the image; rays cross at ten times that value"});
   rows.push_back({"F20", "dynamic_range", "dynamic range of displacement", quarter / b.random_error(), "",
                   "(N_w / 4) / sigma", "Adrian 1997, Meas. Sci. Technol. 8:1393",
                   at_least(quarter / b.random_error(), 100, 20), ""});
@@ -95,26 +95,27 @@ void add_blur(DesignSheet& sheet, Bench<double> const& b) {
   auto& rows = sheet.rows;
   double const cone = b.cone_diameter(), window = b.window_width(), pixels = 2 * b.pixel_at_medium();
   double const smallest = std::max({window, cone, pixels}), resolved = resolved_wavelength(b);
-  rows.push_back({"F9", "cone_diameter_mm", "cone of light in the mid-plane", cone / mm, "mm", "(f / N) Z_D / Z_B",
-                  raffel, at_most(cone / window, 1, 2),
-                  fmt::format("{:.4f} px at the dots' scale, {:.4f} px at the medium's; against the window",
-                              cone / b.pixel_at_dots(), cone / b.pixel_at_medium())});
-  rows.push_back({"F10", "cone_wavelength_mm", "wavelength that the cone passes with 1/sqrt(2)", cone / 0.51450 / mm,
+  rows.push_back(
+      {"F9", "cone_diameter_mm", "diameter of the light cone in the mid-plane", cone / mm, "mm", "(f / N) Z_D / Z_B",
+       raffel, at_most(cone / window, 1, 2),
+       fmt::format("{:.4f} px at the scale of the dots, {:.4f} px at that of the medium; compared with the window",
+                   cone / b.pixel_at_dots(), cone / b.pixel_at_medium())});
+  rows.push_back({"F10", "cone_wavelength_mm", "wavelength that the cone transmits at 1/sqrt(2)", cone / 0.51450 / mm,
                   "mm", "D_c / 0.51450", derived, Margin::none,
-                  fmt::format("half at {:.4g} mm, nothing at {:.4g} mm", cone / 0.70508 / mm, cone / 1.21967 / mm)});
+                  fmt::format("half at {:.4g} mm, zero at {:.4g} mm", cone / 0.70508 / mm, cone / 1.21967 / mm)});
   rows.push_back({"F11", "window_width_mm", "window in the medium", window / mm, "mm", "N_w p / M_A",
                   "Scarano & Riethmuller 1999, Exp. Fluids 26:513", Margin::none,
-                  fmt::format("the last pass's, {} px", b.given->window.window_px())});
+                  fmt::format("of the last pass, {} px", b.given->window.window_px())});
   rows.push_back({"F12", "smallest_structure_mm", "smallest structure", smallest / mm, "mm", "max(window, cone, 2 px)",
                   raffel, Margin::none, "limited by " + resolution_limit(window, cone, pixels)});
-  rows.push_back({"F12", "resolution_mm", "wavelength that all pass with 1/sqrt(2)", resolved / mm, "mm",
+  rows.push_back({"F12", "resolution_mm", "wavelength that the chain transmits at 1/sqrt(2)", resolved / mm, "mm",
                   "H_cone H_dot H_window = 1/sqrt(2)", derived, Margin::none,
                   fmt::format("cone {:.3f}, dot {:.3f}, window {:.3f} there",
                               cone_transfer(b.pupil(), b.z_b(), b.z_d, b.given->thickness, resolved),
                               disc_transfer(b.dot_diameter * b.z_a / b.z_b(), resolved),
                               b.given->window.share(b.pixel_at_medium() / resolved))});
-  rows.push_back({"F13", "diffraction_diameter_px", "diffraction spot, first zero", b.diffraction_px(), "px",
-                  "2.44 N (1 + M) lambda / p", adrian, at_most(b.diffraction_px(), good_dot_px, 5),
+  rows.push_back({"F13", "diffraction_diameter_px", "diffraction image, diameter of the first zero", b.diffraction_px(),
+                  "px", "2.44 N (1 + M) lambda / p", adrian, at_most(b.diffraction_px(), good_dot_px, 5),
                   fmt::format("{:.6g} um; FWHM {:.4g} um, e^-2 {:.4g} um", 2.44 * b.spot_scale() / um,
                               1.0289939699621886 * b.spot_scale() / um, 1.644922989562259 * b.spot_scale() / um)});
   double const dot = b.dot_image_px();
@@ -132,9 +133,9 @@ void add_blur(DesignSheet& sheet, Bench<double> const& b) {
   double const depth = 4.88 * ratio * ratio * b.given->wavelength;
   rows.push_back({"F17", "depth_of_field_mm", "depth of field about the dots", depth / mm, "mm",
                   "4.88 ((M + 1) / M)^2 N^2 lambda", "Adrian 1991; Raffel et al. 2018", Margin::none,
-                  depth / 2 > b.z_d ? "holds the medium"
-                                    : "the medium lies outside: dots are sharp, the field is seen "
-                                      "through the cone"});
+                  depth / 2 > b.z_d
+                      ? "includes the medium"
+                      : "excludes the medium: the dots are sharp, the field is averaged over the light cone"});
 }
 
 /// Returns the peak charge that equals q times its noise: n / sqrt(n + sigma_r^2) = q, with sigma_r^2 the variance
@@ -166,34 +167,36 @@ void add_light(DesignSheet& sheet, Bench<double> const& b) {
   double const peak = b.peak_electrons(), full = camera.noise.full_well_e;
   std::string const from = b.given->light      ? "by [light]"
                            : camera.exposure_e ? "by camera.exposure"
-                                               : "by exposure = \"auto\", whatever light that takes";
+                                               : "by exposure = \"auto\", with as much light as that requires";
   rows.push_back({"F21", "peak_electrons", "electrons at a dot's peak", peak, "",
-                  "pi L t p^2 QE lambda / (4 h c N^2 (1 + M)^2), times the peak's share", "camera equation",
+                  "pi L t p^2 QE lambda / (4 h c N^2 (1 + M)^2), times the fraction at the peak", "camera equation",
                   peak > full ? Margin::violated : at_least(peak / full, 0.2, 0.02),
                   fmt::format("{:.3g} % of the full well, {}; {:.5g} in a fully lit pixel", 100 * peak / full, from,
                               b.lit_electrons())});
-  rows.push_back({"F21", "signal_to_noise", "peak over its noise", 1 / b.noise(), "", "n_e / sqrt(n_e + sigma_r^2)",
-                  "Rose 1948, J. Opt. Soc. Am. 38:196", at_least(1 / b.noise(), good_signal, 5), ""});
+  rows.push_back({"F21", "signal_to_noise", "signal-to-noise ratio at the peak", 1 / b.noise(), "",
+                  "n_e / sqrt(n_e + sigma_r^2)", "Rose 1948, J. Opt. Soc. Am. 38:196",
+                  at_least(1 / b.noise(), good_signal, 5), ""});
   double const floor = b.focal_length * b.z_d / (b.z_b() * b.window_width());
   double const sharp = widest_images_stop(b);
   double const bright = brightest_stop(b), most = std::fmin(sharp, bright);
   double const cone = b.focal_length * b.z_d / (b.z_b() * most);
   std::string closed =
-      fmt::format("no f-number keeps all: the largest, f/{:.3g}, has a cone of {:.4g} mm", most, cone / mm);
+      fmt::format("no f-number satisfies all limits: the largest, f/{:.3g}, has a cone of {:.4g} mm", most, cone / mm);
   closed += "; a cone wider than the window counts in the resolution, F12";
-  if (bright < floor) closed += fmt::format("; the least takes {:.3g} times the light", std::pow(floor / bright, 2));
-  rows.push_back({"F22", "f_number_floor", "least f-number: the cone within the window", floor, "", "f Z_D / (Z_B W_o)",
-                  derived, at_least(b.f_number / floor, 1, 0.5), floor <= most ? "" : closed});
+  if (bright < floor)
+    closed += fmt::format("; the smallest requires {:.3g} times the light", std::pow(floor / bright, 2));
+  rows.push_back({"F22", "f_number_floor", "smallest f-number: cone no wider than the window", floor, "",
+                  "f Z_D / (Z_B W_o)", derived, at_least(b.f_number / floor, 1, 0.5), floor <= most ? "" : closed});
   double const widest = random_error_range.most_image;
   rows.push_back({"F22", "f_number_ceiling", fmt::format("largest f-number: dot images within {:g} px", widest), sharp,
                   "", fmt::format("sqrt({:g}^2 - (M d / p)^2) p / (1.682 (1 + M) lambda)", widest), derived,
                   at_most(b.f_number / sharp, 1 + binding, 7 / widest),
-                  sharp > 0 ? "as the recommendation has it" : "the dots' geometric images alone are wider"});
+                  sharp > 0 ? "limit of the recommendation" : "the geometric images of the dots alone are wider"});
   if (!b.given->light) return;
   rows.push_back({"F22", "f_number_light", "largest f-number: peaks of 20 times their noise", bright, "",
                   "N sqrt(n_e / n_min), n_min = (q^2 + sqrt(q^4 + 4 q^2 sigma_r^2)) / 2, q = 20", derived,
                   at_most(b.f_number / bright, 1, std::sqrt(peak_of_signal(b, good_signal) / peak_of_signal(b, 5))),
-                  fmt::format("{:.4g} electrons at the peak, whose share of a lit pixel is {:.3g}",
+                  fmt::format("{:.4g} electrons at the peak, {:.3g} of those in a fully lit pixel",
                               peak_of_signal(b, good_signal), b.peak_share())});
 }
 
@@ -223,26 +226,25 @@ void add_errors(DesignSheet& sheet, Setup const& setup, Bench<double> const& b) 
   auto& rows = sheet.rows;
   double const sigma = b.random_error(), pitch = b.given->camera.pixel_pitch, q = b.noise();
   std::string const beyond = beyond_study(b);
-  rows.push_back({"F23", "uncertainty_product_nm", "deflection's error times the cone",
+  rows.push_back({"F23", "uncertainty_product_nm", "error of the deflection times the cone diameter",
                   sigma * pitch / (b.f_number * (1 + b.magnification())) / unit::nanometre, "nm rad",
                   "sigma p / (N (1 + M)) = sigma_eps D_c", derived, Margin::none,
-                  "the same at every distance: finer needs a smaller sigma or a larger f-number"});
-  rows.push_back({"F24", "dot_position_bound_px", "bound on a dot's position", std::sqrt(2 / pi) * q, "px",
-                  "sqrt(2/pi) sigma_n / A", "Rajendran, Bane & Vlachos 2020, Exp. Fluids 61:139", Margin::none,
-                  "Cramer & Rao, of one isolated dot"});
+                  "equal at every distance; a smaller product requires a smaller sigma or a larger f-number"});
+  rows.push_back({"F24", "dot_position_bound_px", "lower bound of the position error of a dot", std::sqrt(2 / pi) * q,
+                  "px", "sqrt(2/pi) sigma_n / A", "Rajendran, Bane & Vlachos 2020, Exp. Fluids 61:139", Margin::none,
+                  "Cramer-Rao bound of an isolated dot"});
   rows.push_back({"F25", "blur_px_per_kg_m5", "blur of a dot per second derivative of density",
                   b.angular_sensitivity() * b.deflection() * b.cone_diameter() / (4 * pitch), "px per kg/m^5",
                   "M Z_D K L_z D_c / (4 n0 p)", "Rajendran, Bane & Vlachos 2020 (1/12 there, 1/16 for a round stop)",
                   Margin::none, "standard deviation"});
-  rows.push_back(
-      {"F26", "random_error_px", "random error of a vector", sigma, "px",
-       "sqrt(pattern^2 (20 / N_I)^0.48 + (0.287 q (1 + 1.6 s^2) d^-0.737)^2 20 / N_I)",
-       "data/estimators/random_error.csv",
-       std::max(at_most(sigma, 0.05, 0.1), beyond.empty() ? Margin::none : Margin::marginal),
-       fmt::format("along the displacement, across it 0.3 to 1.1 of that; dots of {:.3g} px under spots of {:.3g} px, "
-                   "noise {:.3g} % of the peak, {:.3g} dots in a window{}",
-                   b.geometric_dot_px(), b.spot_sigma_px(), 100 * q, b.dots_in_window(),
-                   beyond.empty() ? "" : "; beyond what was measured: " + beyond)});
+  rows.push_back({"F26", "random_error_px", "random error of a vector", sigma, "px",
+                  "sqrt(pattern^2 (20 / N_I)^0.48 + (0.287 q (1 + 1.6 s^2) d^-0.737)^2 20 / N_I)",
+                  "data/estimators/random_error.csv",
+                  std::max(at_most(sigma, 0.05, 0.1), beyond.empty() ? Margin::none : Margin::marginal),
+                  fmt::format("along the displacement, 0.3 to 1.1 times that across it; dots of {:.3g} px, PSF of "
+                              "{:.3g} px, noise {:.3g} % of the peak, {:.3g} dots in a window{}",
+                              b.geometric_dot_px(), b.spot_sigma_px(), 100 * q, b.dots_in_window(),
+                              beyond.empty() ? "" : "; outside the range of the study: " + beyond)});
   double const epsilon = shown_gradient(*b.given) * b.deflection(), slab = b.given->thickness / b.z_d;
   double const theta = b.given->camera.columns * pitch / 2 / b.image_distance();
   bool const matched = setup.medium.faces == Faces::matched;
@@ -250,14 +252,14 @@ void add_errors(DesignSheet& sheet, Setup const& setup, Bench<double> const& b) 
   double const off_axis = theta * theta * (matched ? 1 : 2 - b.z_a / b.z_d);
   rows.push_back({"F27", "small_angle_on_axis", "error of Eq. 9 on the axis", on_axis, "",
                   matched ? "eps^2 (1/6 + L_z / (24 Z_D))" : "eps^2 (2/3 + 7 L_z / (24 Z_D))", derived,
-                  at_most(on_axis, 1e-3, 1e-2), "of a slab of uniform gradient"});
-  rows.push_back({"F27", "small_angle_at_edge", "error of Eq. 9 at the view's edge", off_axis, "",
+                  at_most(on_axis, 1e-3, 1e-2), "for a slab of uniform gradient"});
+  rows.push_back({"F27", "small_angle_at_edge", "error of Eq. 9 at the edge of the view", off_axis, "",
                   matched ? "theta^2" : "(2 - Z_A / Z_D) theta^2", derived, at_most(std::abs(off_axis), 1e-2, 5e-2),
                   fmt::format("theta = {:.4g} rad", theta)});
   double const fresnel = std::sqrt(b.given->wavelength * b.z_a * b.z_d / b.z_b());
   rows.push_back({"", "fresnel_scale_mm", "Fresnel scale", fresnel / mm, "mm", "sqrt(lambda Z_A Z_D / Z_B)",
                   "Born & Wolf", at_most(fresnel / resolved_wavelength(b), 0.5, 1),
-                  "finer features are not what geometric optics shows"});
+                  "geometric optics does not describe finer features"});
 }
 
 }  // namespace

@@ -29,17 +29,17 @@ std::string bound_name(Bound bound) {
     case Bound::focus:
       return "focus on the dots";
     case Bound::dots_clear:
-      return "the dots clear of the medium";
+      return "dots outside the medium";
     case Bound::lens_clear:
-      return "the lens clear of the medium";
+      return "lens outside the medium";
     case Bound::dot_least:
-      return "dot images large enough for the estimator's study";
+      return "dot images large enough for the study of the random error";
     case Bound::dot_most:
-      return "dot images small enough for the estimator's study";
+      return "dot images small enough for the study of the random error";
     case Bound::coverage:
-      return "room between the dots";
+      return "space between the dots";
     case Bound::noise_most:
-      return "light enough for the estimator's study";
+      return "enough light for the study of the random error";
     case Bound::full_well:
       return "peaks below the full well";
     default:

@@ -26,17 +26,17 @@ SetupNode prescription_node(std::string const& file) {
 
 /// Returns why the closed forms do not apply to a setup, with the key concerned; empty if they do.
 std::pair<std::string, std::string> beyond_design(Setup const& setup) {
-  if (setup.piv || setup.calibration()) return {"experiment", "is not \"bos\" (requirements are of BOS benches)"};
+  if (setup.piv || setup.calibration()) return {"experiment", "is not \"bos\" (requirements apply to BOS set-ups)"};
   if (setup.lens.focus != Focus::target) {
-    return {"lens.focus", "is not on the target (the formulas are of dots in focus); use focus = \"target\""};
+    return {"lens.focus", "is not on the target (the formulas describe dots in focus); use focus = \"target\""};
   }
   if (setup.pose || setup.lenslets || setup.camera.tilted() || !setup.windows.empty()) {
     return {"camera",
-            "is posed, tilted, plenoptic or behind windows (requirements are of a camera on the axis, square to the "
-            "dots); remove that from the setup"};
+            "is posed, tilted, plenoptic or behind windows (requirements assume a camera on the axis, perpendicular to "
+            "the target); remove these from the setup"};
   }
   if (!std::isfinite(setup.lens.f_number)) {
-    return {"lens.f_number", "is no stop (a design needs the cone of light); give a number"};
+    return {"lens.f_number", "does not define an aperture (a design requires the light cone); give a number"};
   }
   return {};
 }

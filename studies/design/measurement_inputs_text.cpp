@@ -41,7 +41,7 @@ std::vector<std::string> correlation_texts(std::vector<MeasurementInput> const& 
 
 std::string uncertainty_text(MeasurementUncertainty const& uncertainty) {
   std::string text =
-      "uncertainty of a density gradient, and of the density that it makes across one window (JCGM 100:2008; all "
+      "uncertainty of a density gradient, and of the density step that it makes across one window (JCGM 100:2008; all "
       "inputs of type B)\n";
   text += fmt::format("  {:<30}{:>12}{:>11} {:<28}{:>9}{:>9}{:>13}{:>13}\n", "input", "value", "sigma", "drawn from",
                       "u(g)", "share", "dg/d(input)", "by rays");
@@ -59,7 +59,7 @@ std::string uncertainty_text(MeasurementUncertainty const& uncertainty) {
   std::vector<std::string> const correlated = correlation_texts(uncertainty.inputs);
   for (std::string const& pair : correlated) text += "  correlated: " + pair + '\n';
   if (correlated.empty() && uncertainty.inputs.size() > 2)
-    text += "  taken for independent ([[correlations]] has none)\n";
+    text += "  assumed to be independent ([[correlations]] has no entry)\n";
   for (PropagatedResult const& result : uncertainty.results) {
     text += fmt::format(
         "  {}: {:.6g}, combined standard uncertainty {:.3g}, effective degrees of freedom {}\n"
@@ -68,11 +68,11 @@ std::string uncertainty_text(MeasurementUncertainty const& uncertainty) {
         result.key, result.value, result.standard, degrees_text(result.degrees_of_freedom), result.expanded(),
         result.coverage_factor, propagation_samples, sampled_text(result.sampled_mean, 6),
         sampled_text(result.sampled_standard, 3), result.sampled_low, result.sampled_high,
-        result.linear ? "the first order holds" : "not linear, or not normal: take the samples' interval");
+        result.linear ? "the first order is valid" : "not linear, or not normal: use the interval of the samples");
   }
-  text +=
-      fmt::format("  not in it: the uncorrected bias, {:.2g} % of a wave twice as long as the resolved one:\n    {}\n",
-                  100 * (1 - uncertainty.share_resolved), uncorrected_bias_words(BudgetChain::bos));
+  text += fmt::format(
+      "  not included: the uncorrected bias, {:.2g} % for a wave of twice the resolved wavelength:\n    {}\n",
+      100 * (1 - uncertainty.share_resolved), uncorrected_bias_words(BudgetChain::bos));
   return text;
 }
 

@@ -51,19 +51,19 @@ void add_imaging(DesignSheet& sheet, Setup const& setup, ExpectedParticles const
 
 void add_images(DesignSheet& sheet, Setup const& setup, ExpectedParticles const& expected) {
   auto& rows = sheet.rows;
-  rows.push_back({"F13", "diffraction_diameter_px", "diffraction spot, e^-2", expected.diffraction_px, "px",
+  rows.push_back({"F13", "diffraction_diameter_px", "diffraction image, e^-2 diameter", expected.diffraction_px, "px",
                   "1.682 N (1 + M) lambda / p", adrian, Margin::none, ""});
   double const diameter = expected.image_diameter_px, edge = expected.sheet_edge_diameter_px;
-  rows.push_back({"F14", "image_diameter_px", "particle image, e^-2", diameter, "px",
+  rows.push_back({"F14", "image_diameter_px", "particle image, e^-2 diameter", diameter, "px",
                   "sqrt((M d_p)^2 + d_diff^2 + d_blur^2)", olsen,
                   std::max(at_least(diameter, 2, 1.5), at_most(diameter, 4, 6)),
-                  "2 to 3 px for correlation; smaller ones lock to pixels"});
-  rows.push_back({"F14", "image_diameter_sheet_edge_px", "particle image at the sheet's edge", edge, "px",
-                  "the same, half the sheet's thickness off", olsen, at_most(edge / diameter, 1.2, 2), ""});
+                  "2 to 3 px for correlation; smaller ones cause peak locking"});
+  rows.push_back({"F14", "image_diameter_sheet_edge_px", "particle image at the edge of the sheet", edge, "px",
+                  "the same, half the sheet's thickness out of focus", olsen, at_most(edge / diameter, 1.2, 2), ""});
   double const depth = expected.depth_of_field, sheet_thickness = setup.piv->laser.thickness;
   rows.push_back({"F17", "depth_of_field_mm", "depth of field", depth / mm, "mm", "4.88 ((M + 1) / M)^2 N^2 lambda",
                   "Adrian 1991; Raffel et al. 2018", at_least(depth / sheet_thickness, 1, 0.5),
-                  fmt::format("against the sheet of {:.4g} mm", sheet_thickness / mm)});
+                  fmt::format("compared with the sheet of {:.4g} mm", sheet_thickness / mm)});
 }
 
 void add_density(DesignSheet& sheet, CaseSetup const& loaded, ExpectedParticles const& expected) {
@@ -71,10 +71,10 @@ void add_density(DesignSheet& sheet, CaseSetup const& loaded, ExpectedParticles 
   int const window = loaded.correlate.window_px.back();
   double const number = expected.per_pixel * window * window;
   sheet.rows.push_back({"F15", "particles_per_window", "particles in a window", number, "", "C N_w^2", keane,
-                        at_least(number, 7, 4), fmt::format("the last pass's, {} px", window)});
-  sheet.rows.push_back({"F15", "source_density", "share of the image that particles take", expected.source_density, "",
-                        "C dz pi d^2 / (4 M^2)", "Adrian 1991, Annu. Rev. Fluid Mech. 23:261",
-                        at_most(expected.source_density, 0.3, 0.6), "beyond, images overlap to speckle"});
+                        at_least(number, 7, 4), fmt::format("of the last pass, {} px", window)});
+  sheet.rows.push_back({"F15", "source_density", "fraction of the image covered by particles", expected.source_density,
+                        "", "C dz pi d^2 / (4 M^2)", "Adrian 1991, Annu. Rev. Fluid Mech. 23:261",
+                        at_most(expected.source_density, 0.3, 0.6), "above 1, images overlap to speckle"});
 }
 
 void add_motion(DesignSheet& sheet, CaseSetup const& loaded, double pixel) {
@@ -96,15 +96,15 @@ void add_light(DesignSheet& sheet, Setup const& setup, ExpectedParticles const& 
   NoiseSetup const& noise = setup.camera.noise;
   double const peak = expected.peak_electrons.median;
   sheet.rows.push_back({"F21", "peak_electrons", "electrons at the peak", peak, "",
-                        "fluence dC/dOmega Omega lambda / (h c) QE, times the peak's share", "Bohren & Huffman 1983",
-                        expected.saturated > 0.05 ? Margin::violated : at_least(peak, 500, 30),
+                        "fluence dC/dOmega Omega lambda / (h c) QE, times the fraction at the peak",
+                        "Bohren & Huffman 1983", expected.saturated > 0.05 ? Margin::violated : at_least(peak, 500, 30),
                         fmt::format("of a full well of {:.5g}; {:.3g} % of the particles saturate", noise.full_well_e,
                                     100 * expected.saturated)});
   double const read = noise.enabled ? noise.read_noise_e : 0, snr = peak / std::sqrt(peak + read * read);
-  sheet.rows.push_back({"F21", "signal_to_noise", "peak over its noise", snr, "", "n_e / sqrt(n_e + sigma_r^2)",
-                        "Rose 1948, J. Opt. Soc. Am. 38:196", at_least(snr, 20, 5), ""});
-  sheet.rows.push_back({"F21", "smallest_visible_um", "smallest particle seen", expected.smallest_visible / 1e-6, "um",
-                        "peak = 5 times its noise", "Rose 1948, J. Opt. Soc. Am. 38:196", Margin::none, ""});
+  sheet.rows.push_back({"F21", "signal_to_noise", "signal-to-noise ratio at the peak", snr, "",
+                        "n_e / sqrt(n_e + sigma_r^2)", "Rose 1948, J. Opt. Soc. Am. 38:196", at_least(snr, 20, 5), ""});
+  sheet.rows.push_back({"F21", "smallest_visible_um", "smallest detectable particle", expected.smallest_visible / 1e-6,
+                        "um", "peak = 5 times its noise", "Rose 1948, J. Opt. Soc. Am. 38:196", Margin::none, ""});
 }
 
 }  // namespace

@@ -29,7 +29,7 @@ std::vector<std::string> texts(SetupDocument& document, std::string const& table
     found.push_back(one.text);
   }
   if (!good) {
-    owner.problem(key, "must be an array of texts; write [\"...\", \"...\"]");
+    owner.problem(key, "must be an array of strings; write [\"...\", \"...\"]");
     found.clear();
   }
   return found;
@@ -70,9 +70,10 @@ Allowed read_limit(SetupTable limits, ChoiceKey const& key) {
   } else if (limits.has(key.limit)) {
     auto const ends = limits.numbers(key.limit, {1, 2}, 2, Range::positive());
     if (ends.size() == 2 && ends[0] > ends[1]) {
-      limits.problem(key.limit, fmt::format("ends before it begins ({:.6g} is above {:.6g}); write the smaller number "
-                                            "first",
-                                            ends[0], ends[1]));
+      limits.problem(
+          key.limit,
+          fmt::format("is empty (lower limit {:.6g} exceeds upper limit {:.6g}); write the smaller number first",
+                      ends[0], ends[1]));
     } else if (ends.size() == 2) {
       allowed.interval = {ends[0], ends[1]};
     }
@@ -96,7 +97,7 @@ FreeChoice read_free_choice(Choice choice, SetupTable free, SetupTable const& li
       });
       if (allowed.values.empty()) {
         inventory.problem(key.inventory, std::string("has no value within limits.") + key.limit +
-                                             " (nothing is left to choose from); widen the limit or add what fits it");
+                                             " (no choice remains); widen the limit or add a suitable value");
       }
     }
   } else if (!limits.has(key.limit)) {
@@ -119,7 +120,7 @@ bool refuse_prescriptions(SetupDocument& document, SetupTable limits, SetupTable
   limits.pass_over(key.limit);
   inventory.pass_over(key.inventory);
   inventory.problem(key.inventory,
-                    "must be numbers (of ideal lenses, in mm); write files of prescriptions as "
+                    "must be numbers (focal lengths of ideal lenses, in mm); list prescription files as "
                     "inventory.lenses = [\"...\"]");
   return true;
 }
@@ -131,19 +132,18 @@ std::vector<FreeChoice> read_free(SetupDocument& document, SetupTable limits, Se
   for (ChoiceKey const& key : choice_keys) known.emplace_back(key.path);
   for (auto key = keys.begin(); key != keys.end(); ++key) {
     if (std::find(keys.begin(), key, *key) != key) {
-      free.problem("keys", fmt::format("\"{}\" stands twice; write it once", *key));
+      free.problem("keys", fmt::format("\"{}\" is listed twice; list it once", *key));
     }
   }
   for (std::string const& key : keys) {
     if (std::find(known.begin(), known.end(), key) != known.end()) continue;
     auto const nearest = nearest_name(key, known);
-    free.problem("keys",
-                 fmt::format("\"{}\" cannot be free{}", key,
-                             nearest ? "; did you mean \"" + *nearest + "\"?" : "; free may be " + quoted_list(known)));
+    free.problem("keys", fmt::format("\"{}\" cannot be free{}", key,
+                                     nearest ? "; did you mean \"" + *nearest + "\"?"
+                                             : "; free may contain " + quoted_list(known)));
   }
   if (keys.empty()) {
-    free.problem("keys",
-                 "names no key that may be chosen (nothing is left to design); free may be " + quoted_list(known));
+    free.problem("keys", "contains no valid key (nothing can be varied); free may contain " + quoted_list(known));
   }
   std::vector<FreeChoice> found;
   for (std::size_t i = 0; i < choice_count; ++i) {
@@ -155,9 +155,9 @@ std::vector<FreeChoice> read_free(SetupDocument& document, SetupTable limits, Se
       continue;
     }
     limits.refuse(key.limit,
-                  std::string("limits what is not free; add \"") + key.path + "\" to free.keys, or remove it");
+                  std::string("limits a key that is not free; add \"") + key.path + "\" to free.keys, or remove it");
     if (key.inventory) {
-      inventory.refuse(key.inventory, std::string("is a choice that is not free; add \"") + key.path +
+      inventory.refuse(key.inventory, std::string("lists values of a key that is not free; add \"") + key.path +
                                           "\" to free.keys, or remove it");
     }
   }
@@ -185,7 +185,7 @@ std::vector<OwnedCamera> read_cameras(SetupDocument& document) {
     SetupNode const file = parse_toml(read_text_file(path), path);
     SetupNode const* const table = file.find("camera");
     if (!table || table->kind != SetupNode::Kind::table) {
-      document.root().table("inventory").problem("cameras", path + " has no table [camera]; give it one");
+      document.root().table("inventory").problem("cameras", path + " has no table [camera]; add it");
       continue;
     }
     SetupNode camera = *table;
@@ -205,10 +205,9 @@ void check_total(DesignQuestion const& question, SetupTable limits) {
     least += free.values.empty() ? free.low : *std::min_element(free.values.begin(), free.values.end());
   }
   if (least <= *question.requirements.z_total_max * (1 + allowed_excess)) return;
-  limits.problem("z_total_max_mm",
-                 fmt::format("contradicts the other limits (z_a_mm and z_d_mm are {:.6g} mm together at least); "
-                             "raise it or lower those",
-                             least / mm));
+  limits.problem("z_total_max_mm", fmt::format("conflicts with the other limits (the sum of z_a_mm and z_d_mm is at "
+                                               "least {:.6g} mm); increase it or reduce those",
+                                               least / mm));
 }
 
 }  // namespace
@@ -219,7 +218,7 @@ std::optional<DesignQuestion> read_design_question(SetupDocument& document) {
   SetupTable inventory = root.table("inventory"), free = root.table("free");
   if (!requirements.present()) {
     for (char const* const table : {"limits", "inventory", "free"}) {
-      root.refuse(table, "stands without [requirements] (nothing is asked of the design); add them or remove it");
+      root.refuse(table, "requires [requirements] (there is no design problem without them); add them or remove it");
       root.table(table).excuse();
     }
     return std::nullopt;

@@ -88,11 +88,11 @@ Bench<double> bench_of(Setup const& setup, BenchGiven const& given) {
 std::vector<std::string> beyond_closed_forms(Setup const& setup) {
   std::vector<std::string> warnings;
   if (setup.lens.focus != Focus::target && !setup.piv) {
-    warnings.emplace_back("lens.focus: the sheet is of dots in focus, which these are not");
+    warnings.emplace_back("lens.focus: the sheet assumes dots in focus, but these are out of focus");
   }
   if (!setup.on_bench()) {
     warnings.emplace_back(
-        "the sheet takes the lens for a thin one on the axis, square to the dots: it leaves out poses, tilts, windows, "
+        "the sheet assumes a thin lens on the axis, perpendicular to the target: it neglects poses, tilts, windows, "
         "distortion and aberrations");
   }
   return warnings;

@@ -27,18 +27,18 @@ std::string why_biased(SimulatedBench const& simulated) {
   for (SystematicCause const& cause : simulated.causes) {
     if (std::isfinite(off(cause)) && (!farthest || off(cause) > off(*farthest))) farthest = &cause;
   }
-  if (!farthest) return "no cause is known";
+  if (!farthest) return "cause unknown";
   double const difference = std::abs(simulated.bias_px.value - simulated.predicted_bias_px);
   if (off(*farthest) < least_explained * difference) {
-    return fmt::format("{} is off by {:.2g} px, no cause by more: the rest is the estimator's", farthest->name,
-                       off(*farthest));
+    return fmt::format("the largest deviation of a cause is that of {}, {:.2g} px; the rest is due to the estimator",
+                       farthest->name, off(*farthest));
   }
   std::string text = fmt::format("{}: {:.3g} px", farthest->name, farthest->simulated);
-  if (farthest->predicted == 0) return text + ", which no formula has";
+  if (farthest->predicted == 0) return text + ", which no formula includes";
   text += fmt::format(" instead of {:.3g} px", farthest->predicted);
   bool const less = farthest->simulated < farthest->predicted;
   if (farthest->name == "window") {
-    text += less ? " (passes that deform the images win some of it back)" : " (correlation is not an average)";
+    text += less ? " (passes that deform the images recover part of it)" : " (correlation is not an average)";
   }
   return text;
 }
@@ -55,14 +55,14 @@ std::string why_resolved(SimulatedBench const& simulated, Bench<double> const& b
     char const* because;
   };
   std::vector<Share> const shares{
-      {"cone", wave.cone, cone, "of a field that is not alike over its thickness"},
-      {"refraction", wave.refraction / wave.cone, 1, "the stop admits other rays in the flow"},
-      {"aberration", wave.lens / wave.refraction, 1, "the lens is none of the ideal ones"},
+      {"cone", wave.cone, cone, "the field varies over its thickness"},
+      {"refraction", wave.refraction / wave.cone, 1, "the stop transmits other rays in the measurement image"},
+      {"aberration", wave.lens / wave.refraction, 1, "the lens is not ideal"},
       {"window", wave.measured.value / wave.lens, window, "passes that deform the images win some of it back"}};
   auto const farthest = std::max_element(shares.begin(), shares.end(), [](Share const& a, Share const& b) {
     return std::abs(a.simulated - a.predicted) < std::abs(b.simulated - b.predicted);
   });
-  return fmt::format("{}: passes {:.3f} instead of {:.3f} at {:.4g} mm ({})", farthest->name, farthest->simulated,
+  return fmt::format("{}: transmits {:.3f} instead of {:.3f} at {:.4g} mm ({})", farthest->name, farthest->simulated,
                      farthest->predicted, wave.wavelength / mm, farthest->because);
 }
 
@@ -71,16 +71,16 @@ constexpr double studied_displacement_px = 0.5;
 
 std::string why_random(SimulatedBench const& simulated) {
   if (simulated.displacement_px < studied_displacement_px) {
-    return fmt::format("displacements reach {:.2g} px here; the formula is of all fractions of a pixel",
+    return fmt::format("displacements reach only {:.2g} px; the formula covers all fractions of a pixel",
                        simulated.displacement_px);
   }
-  return "noise, dots or strain other than in the formula's study";
+  return "noise, dots or strain differ from those in the study of the formula";
 }
 
 std::string why_lit(Bench<double> const& bench) {
   bool const automatic = !bench.given->light && !bench.given->camera.exposure_e;
-  return automatic ? "exposure = \"auto\" follows the brightest pixel, where dots are close to one another"
-                   : "light of neighbouring dots, or what the lens cuts off";
+  return automatic ? "exposure = \"auto\" depends on the brightest pixel, where dots are close together"
+                   : "light of neighbouring dots, or vignetting";
 }
 
 /// Returns the smallest detectable gradient, at two standard deviations, from the simulated random error and
@@ -198,7 +198,7 @@ void compare_with_formulas(VerifiedBench& verified, std::vector<Limit> const& re
   add("bias_px", simulated.predicted_bias_px, closed_form_accuracy, simulated.bias_px, 1, why_biased(simulated), true);
   add("resolution_mm", resolved_wavelength(bench), closed_form_accuracy, simulated.resolution, mm,
       std::isfinite(simulated.resolution.value) ? why_resolved(simulated, bench)
-                                                : "the waves were not told from one another");
+                                                : "the two waves cannot be distinguished");
   add("peak_electrons", bench.peak_electrons(), closed_form_accuracy, simulated.peak_electrons, 1, why_lit(bench));
   for (Limit const& limit : required) {
     if (auto const told = simulated_of(limit.bound, simulated, bench)) {
@@ -235,7 +235,7 @@ Verification verify(DesignQuestion const& question, std::vector<DesignVariant> c
     limits = tightened(std::move(limits), *missed);
     BranchOutcome const next = solve_branches({question.requirements.objective, limits}, branches).front();
     if (!next.solution.feasible()) break;
-    Progress again("verifying stricter ones", simulated_cases(plan.repeats));
+    Progress again("verifying stricter limits", simulated_cases(plan.repeats));
     VerifiedBench& verified =
         verification.benches.emplace_back(simulated_bench(question, variants, next, plan, runner, device_name, again));
     verified.tightened = true;

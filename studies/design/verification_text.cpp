@@ -33,10 +33,10 @@ std::string bench_text(VerifiedBench const& one, DesignQuestion const& question)
   for (VerifiedRequirement const& requirement : one.requirements) {
     if (requirement.kept()) continue;
     double const unit = bound_key(requirement.bound).unit;
-    text += fmt::format("    misses {} = {:.6g}: {:.5g} in simulation\n", bound_name(requirement.bound),
+    text += fmt::format("    violates {} = {:.6g}: {:.5g} in simulation\n", bound_name(requirement.bound),
                         requirement.required / unit, requirement.simulated.value / unit);
   }
-  if (one.kept()) text += "    keeps what is required\n";
+  if (one.kept()) text += "    meets the requirements\n";
   return text;
 }
 
@@ -75,13 +75,14 @@ std::string verification_text(Verification const& verification, DesignQuestion c
   std::string text = fmt::format(
       "verified by rendering and correlating the middle {} x {} px, {} patterns of dots and noise\n"
       "    {:<18}{:>12} +- {:<9}{:>12} +- {:<9}{}\n",
-      first.columns, first.rows, first.repeats, "", "predicted", "error", "simulated", "error", "where they disagree");
+      first.columns, first.rows, first.repeats, "", "predicted", "error", "simulated", "error",
+      "cause of the difference");
   for (VerifiedBench const& one : verification.benches) text += bench_text(one, question);
-  if (!verification.any()) return text + "  none could be simulated: the formulas alone recommend\n";
+  if (!verification.any()) return text + "  none could be simulated: the recommendation is by the formulas only\n";
   if (!verification.chosen) {
-    text += "  infeasible in simulation: none of them keeps what is required (--verify 0 believes the formulas)\n";
+    text += "  infeasible in simulation: no combination meets the requirements (--verify 0 uses the formulas only)\n";
   } else if (*verification.chosen > 0) {
-    text += fmt::format("  recommended: {}, the best that keeps what is required\n",
+    text += fmt::format("  recommended: {}, the best one that meets the requirements\n",
                         verification.benches[*verification.chosen].name);
   }
   return text;

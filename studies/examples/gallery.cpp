@@ -29,18 +29,18 @@ struct GalleryPicture {
 
 /// The first image is the reference for the others.
 constexpr std::array pictures{
-    GalleryPicture{"normal", "normal", "particles in the sheet's middle, in focus"},
+    GalleryPicture{"normal", "normal", "particles in the middle of the sheet, in focus"},
     GalleryPicture{"out_of_focus", "out of focus",
-                   "discs of the stop's shape instead of spots, and less light in each pixel"},
+                   "discs in the shape of the stop instead of points, and less light in each pixel"},
     GalleryPicture{"aberration", "lens aberration near the edges",
-                   "spots drawn out towards the corners, round in the middle"},
-    GalleryPicture{"perspective", "perspective", "oblique view: the scale differs from left to right"},
+                   "images elongated towards the corners, round in the middle"},
+    GalleryPicture{"perspective", "perspective", "oblique view: the image scale varies across the image"},
     GalleryPicture{"shock", "normal shock in an oblique view",
-                   "particles behind the front are shifted and drawn out along it"},
-    GalleryPicture{"oblique", "oblique view, sensor square to the axis", "sharp along one line alone"},
-    GalleryPicture{"scheimpflug", "oblique view, Scheimpflug", "the same view with the sensor tilted: sharp all over"},
+                   "particles behind the front are displaced and elongated"},
+    GalleryPicture{"oblique", "oblique view, sensor square to the axis", "sharp along one line only"},
+    GalleryPicture{"scheimpflug", "oblique view, Scheimpflug", "the same view with a tilted sensor: sharp everywhere"},
     GalleryPicture{"plenoptic", "plenoptic raw image",
-                   "one disc of the stop for a particle in focus, parts of it in several lenslets for others"},
+                   "one image of the stop for a particle in focus, parts of it behind several lenslets for others"},
 };
 
 /// Fraction of pixels of the normal image shown without clipping; the brightest particles are white.
@@ -79,7 +79,7 @@ std::string run_gallery(std::string const& folder, Device const& device) {
     images.push_back(read_image(in_case(place, case_file::reference)));
   }
   double const white = std::max(1.0, quantile(levels_of(images.front()), shown_share));
-  std::string text = fmt::format("Pictures of {}: level 0 is black, {:.0f} and above white.\n\n", folder, white);
+  std::string text = fmt::format("Images in {}: level 0 is black, levels from {:.0f} on are white.\n\n", folder, white);
   for (GalleryPicture const& picture : all)
     text += fmt::format("{:<13} {}: {}\n", picture.name, picture.title, picture.look);
   try {

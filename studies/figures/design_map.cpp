@@ -96,7 +96,7 @@ void write_design_map(std::string const& path, Bench<double> const& bench,
     std::vector<double> cone = in_mm(curve.cone);
     for (double& value : cone) value /= 0.51450;
     add_line(plot, command, curve.sensitivity, cone, fmt::format("lines linewidth 1 dashtype 3 linecolor '{}'", colour),
-             i == curves.size() - 1 ? "the cone alone: S/(N (1 + M)), F23" : "");
+             i == curves.size() - 1 ? "light cone only: S/(N (1 + M)), F23" : "");
   }
   for (double const share : marked_z_d) {
     std::vector<double> sensitivity, resolution;
@@ -140,14 +140,14 @@ void write_design_map(std::string const& path, Bench<double> const& bench,
   plot.command("set xtics (" + tics(x_low, x_high) + "); set ytics (" + tics(y_low, y_high) + ")");
   plot.command("set clip two");  // clip lines of requirements at the border
   plot.command("set logscale xy; set grid linecolor '#e4e4e4'; set key left top Left reverse samplen 2 opaque");
-  plot.command("set xlabel 'sensitivity [px per kg/m⁴]'; set ylabel 'wavelength passed with 1/√2 [mm]'");
+  plot.command("set xlabel 'sensitivity [px per kg/m⁴]'; set ylabel 'wavelength transmitted with 1/√2 [mm]'");
   plot.command(fmt::format("set xrange [{:.6g}:{:.6g}]; set yrange [{:.6g}:{:.6g}]", x_low, x_high, y_low, y_high));
   plot.command(command);
   plot.write(path);
 }
 
 void write_design_front(std::string const& path, Recommendation const& answer, Objective objective) {
-  constexpr std::array<char const*, 4> names{"smallest gradient [kg/m⁴]", "wavelength passed with 1/√2 [mm]",
+  constexpr std::array<char const*, 4> names{"smallest gradient [kg/m⁴]", "wavelength transmitted with 1/√2 [mm]",
                                              "random error [px]", "Z_A + Z_D [mm]"};
   constexpr std::array<double, 4> units{1, mm, 1, mm};
   auto const index = static_cast<std::size_t>(objective);
@@ -158,13 +158,14 @@ void write_design_front(std::string const& path, Recommendation const& answer, O
     y.push_back(point.objective / units[index]);
   }
   GnuplotFigure plot(720, 520);
-  plot.command(fmt::format("set title {} font 'DejaVu Sans,14'", GnuplotFigure::quoted("What the requirements trade")));
+  plot.command(
+      fmt::format("set title {} font 'DejaVu Sans,14'", GnuplotFigure::quoted("Trade-off between the requirements")));
   plot.command("set grid linecolor '#e4e4e4'");
   plot.command(fmt::format("set xlabel {}; set ylabel {}", GnuplotFigure::quoted(key.path),
                            GnuplotFigure::quoted(names[index])));
   std::string command;
   add_line(plot, command, x, y, fmt::format("linespoints pointtype 7 linewidth 2 linecolor '{}'", house_colour(0)),
-           "the best of all choices");
+           "best of all combinations");
   plot.command(command);
   plot.write(path);
 }

@@ -16,8 +16,8 @@ class GnuplotMissing : public Error {
  public:
   GnuplotMissing()
       : Error(
-            "figures are not drawn: program gnuplot not found (Debian package gnuplot-nox); the numbers "
-            "are written all the same") {}
+            "figures are not drawn: program gnuplot not found (Debian package gnuplot-nox); the numbers are written "
+            "nevertheless") {}
 };
 
 /// Builder of a figure: commands and data for one run of gnuplot, in a common style (DejaVu Sans, UTF-8 text taken

@@ -128,7 +128,7 @@ void write_layout(std::string const& path, BenchLayout const& l, LayoutWords con
   set_heights(plot, stretched_bottom, stretched_top);
   double const stretched = mm_a_px * (stretched_top - stretched_bottom) / (2.95 * tallest / mm);
   plot.command(fmt::format("set label 3 {} at graph 0,1.01 left textcolor '#606060'",
-                           GnuplotFigure::quoted(fmt::format("heights {:.2g} times as large", stretched))));
+                           GnuplotFigure::quoted(fmt::format("heights enlarged {:.2g} times", stretched))));
   plot.command("set key at graph 0.995,1.06 right top horizontal samplen 2");
   distance(plot, 0, l.lens_z, 0.14, "Z_A");
   if (dots) {
@@ -169,7 +169,7 @@ void write_layout_figure(std::string const& path, Bench<double> const& bench) {
                {fmt::format("Layout: f = {:.5g} mm, f/{:.4g}, M = {:.4g}", bench.focal_length / mm, bench.f_number,
                             bench.magnification()),
                 fmt::format("sees {:.4g} mm", 2 * l.dots_half / mm),
-                fmt::format("medium: sees {:.4g} mm, cone {:.3g} mm", 2 * l.medium_half / mm, 2 * l.cone_radius / mm)});
+                fmt::format("medium: view {:.4g} mm, cone {:.3g} mm", 2 * l.medium_half / mm, 2 * l.cone_radius / mm)});
 }
 
 BenchLayout piv_layout(Setup const& setup) {

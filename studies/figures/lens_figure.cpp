@@ -192,7 +192,7 @@ void draw_spots(GnuplotFigure& plot, FieldAnalysis const& field, PlotPlace const
   }
   plot.set_margins(panel.left, panel.right, panel.top, panel.bottom);
   double const apart = 2.4 * reach * 1e6;
-  plot.command("set xlabel 'spots about their centroids [um]'; set ylabel ''");
+  plot.command("set xlabel 'spot diagrams about their centroids [um]'; set ylabel ''");
   plot.command(fmt::format("set size ratio -1; set xrange [{0:.6g}:{1:.6g}]; set yrange [-{2:.6g}:{2:.6g}]", -apart / 2,
                            apart * (static_cast<double>(field.points.size()) - 0.5), apart / 2));
   std::string command = "plot ";
@@ -279,7 +279,7 @@ void write_lens_figure(std::string const& path, Lens const& lens, ParaxialLens c
     draw_curves(plot, {740, 910, top, bottom}, "focus from the image plane [mm]", curves,
                 {{"tangential", [](FieldPoint const& p) { return p.tangential_focus * 1e3; }},
                  {"sagittal", [](FieldPoint const& p) { return p.sagittal_focus * 1e3; }}});
-    draw_curves(plot, {1000, 1180, top, bottom}, "light that no edge takes [%]", curves,
+    draw_curves(plot, {1000, 1180, top, bottom}, "light that is not vignetted [%]", curves,
                 {{"light", [](FieldPoint const& p) { return 100 * (1 - p.vignetting); }}});
   }
   plot.command("unset multiplot");

@@ -76,7 +76,7 @@ void write_seed_figure4(std::string const& path, MapAxes const& axes, std::vecto
     figure.panels.push_back({"|∇ρ| [kg/m⁴]", std::move(magnitude), ColourScale::magnitude});
     figure.panels.push_back({"∂ρ/∂y [kg/m⁴]", instant.gradient_y, ColourScale::diverging, gradient});
     add_displacements("y", &NamedMaps::v_px);
-    figure.row_headings.push_back(instant.heading + "  (its six displacements have one range of colours)");
+    figure.row_headings.push_back(instant.heading + "  (one colour range for its six displacements)");
     figure.row_headings.emplace_back();
   }
   write_map_figure(path, figure);

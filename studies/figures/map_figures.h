@@ -10,7 +10,7 @@ namespace gladstone {
 
 /// Displacement maps of one source, both components [px].
 struct NamedMaps {
-  std::string name;  ///< "ray truth", "Eq. 9", "cone-filtered Eq. 9", "measurement"
+  std::string name;  ///< "ray truth", "Eq. 9", "aperture-averaged Eq. 9", "measurement"
   Image<double> u_px;
   Image<double> v_px;
 };

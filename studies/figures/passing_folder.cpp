@@ -35,8 +35,8 @@ PassingFolder::PassingFolder() {
     problem = error.code().value();
   }
   if (problem == 0) return;
-  throw OutputError(above, std::string("no temporary folder can be made there (") + std::strerror(problem) +
-                               "); set TMPDIR to a folder that you may write to");
+  throw OutputError(above, std::string("cannot create a temporary folder there (") + std::strerror(problem) +
+                               "); set TMPDIR to a writable folder");
 }
 
 }  // namespace gladstone

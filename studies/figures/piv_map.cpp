@@ -53,7 +53,7 @@ void write_piv_map(std::string const& path, Setup const& setup) {
                            piv_f_numbers.back() * 1.05, tics));
   plot.command("set grid linecolor '#e4e4e4'; set key right bottom Left reverse samplen 2; set lmargin 12");
   plot.command(own_stop(setup.lens.f_number));
-  plot.command("set title 'What a stop makes of the particles' font 'DejaVu Sans,14'");
+  plot.command("set title 'Particle images against the f-number' font 'DejaVu Sans,14'");
   plot.command("set ylabel 'e⁻² diameter of an image [px]'; set ytics (0.5, 1, 2, 3, 4, 5, 7, 10, 15, 20, 30, 50)");
   double const most = *std::max_element(edge.begin(), edge.end());
   plot.command(fmt::format("set yrange [{:.6g}:{:.6g}]",
@@ -68,8 +68,8 @@ void write_piv_map(std::string const& path, Setup const& setup) {
                        GnuplotFigure::quoted(title));
   };
   std::string const first = fmt::format("linewidth 2 linecolor '{}'", house_colour(0));
-  plot.command("plot " + line(image, first, "in the middle of the sheet (2 to 4 px suit correlation)") + ", " +
-               line(edge, fmt::format("linewidth 2 dashtype 3 linecolor '{}'", house_colour(2)), "at its edge"));
+  plot.command("plot " + line(image, first, "in the middle of the sheet (2 to 4 px are suitable for correlation)") +
+               ", " + line(edge, fmt::format("linewidth 2 dashtype 3 linecolor '{}'", house_colour(2)), "at its edge"));
   plot.command("unset title; unset object 1; set autoscale y; set ytics autofreq; set format y '%.0f'");
   plot.command("set key left bottom Left reverse samplen 2");
   plot.command(fmt::format("set xlabel 'f-number; the setup has f/{:g}'; set ylabel 'electrons at the peak'",
@@ -79,7 +79,7 @@ void write_piv_map(std::string const& path, Setup const& setup) {
       fmt::format("plot {} using 1:2:3 with filledcurves fillcolor '{}' fillstyle transparent solid 0.2 title {}, {}, "
                   "{:.6g} with lines linewidth 2 linecolor '{}' title {}",
                   plot.add_table({f_number, low, high}), house_colour(0),
-                  GnuplotFigure::quoted("nine of ten particles"), line(median, first, "the median particle"), well,
+                  GnuplotFigure::quoted("90 % of the particles"), line(median, first, "the median particle"), well,
                   house_colour(3), GnuplotFigure::quoted(fmt::format("full well, {:.6g}", well))));
   plot.command("unset multiplot");
   plot.write(path);

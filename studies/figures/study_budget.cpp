@@ -107,14 +107,13 @@ std::unique_ptr<GnuplotFigure> draw_budget(StudyCells const& cells, std::size_t 
   auto figure = std::make_unique<GnuplotFigure>(static_cast<int>(width) + 124,
                                                 static_cast<int>(top + count * height + (count - 1) * gap) + below);
   GnuplotFigure& plot = *figure;
-  set_texts(
-      plot, "Error budget over " + axis.title,
-      fmt::format("{}; {}{}\nterms add up as vectors, with correlations: heights do not add, nor do their squares",
-                  study_name(cells),
-                  !repeats_alone ? "medians of all cases there"
-                  : repeats > 1  ? fmt::format("root mean square over {} repeats", repeats)
-                                 : std::string("single cases"),
-                  nothing.empty() ? "" : "; below the axis: " + nothing));
+  set_texts(plot, "Error budget over " + axis.title,
+            fmt::format("{}; {}{}\nthe terms are correlated: neither their heights nor their squares add up",
+                        study_name(cells),
+                        !repeats_alone ? "medians of the cases"
+                        : repeats > 1  ? fmt::format("root mean square over {} repeats", repeats)
+                                       : std::string("single cases"),
+                        nothing.empty() ? "" : "; below the axis: " + nothing));
   plot.command("set multiplot");
   plot.command("set grid ytics linecolor '#e4e4e4' linewidth 1 linetype 1");
   plot.command("set style fill solid 1.0 noborder");

@@ -30,7 +30,7 @@ struct Reference {
 };
 constexpr Reference references[] = {{"ray_truth.rms_px", "measured − ray truth"},
                                     {"eq9.rms_px", "measured − Eq. 9"},
-                                    {"eq9_cone.rms_px", "measured − cone-filtered Eq. 9"},
+                                    {"eq9_cone.rms_px", "measured − aperture-averaged Eq. 9"},
                                     {"window_truth.rms_px", "measured − ray truth on the window"}};
 constexpr char const* signal = "signal_px";
 
@@ -190,7 +190,7 @@ std::unique_ptr<GnuplotFigure> draw_repeats(StudyCells const& points, std::size_
       axis, panels, make.low, make.high, "Error over the repeats, against " + axis.title,
       fmt::format("study {}, {} points{}\nsolid: the same in every repeat; dashed: standard deviation between "
                   "repeats (dots, rays, noise)",
-                  points.table().name, points.finished(), make.repeats_alone ? "" : ", of which medians"));
+                  points.table().name, points.finished(), make.repeats_alone ? "" : ", medians of them"));
 }
 
 }  // namespace gladstone

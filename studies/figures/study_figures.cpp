@@ -99,7 +99,7 @@ std::string study_name(StudyCells const& cells) {
 }
 
 std::string meaning(bool repeats_alone, std::size_t repeats) {
-  if (!repeats_alone) return "points: median of all cases there, bars: 10 to 90 % of them";
+  if (!repeats_alone) return "points: medians of the cases, bars: 10 to 90 % of them";
   if (repeats < 2) return "points: single cases";
   return fmt::format("points: root mean square over {} repeats, bars: smallest to largest", repeats);
 }

@@ -21,11 +21,9 @@ constexpr double mm = unit::millimetre;
 
 std::string text_of_layout(Bench<double> const& b) {
   return fmt::format(
-      "Seen from the side, to scale: the dots stand Z_D = {:.5g} mm behind the medium's mid-plane, the lens (f = "
-      "{:.5g} "
-      "mm, f/{:.4g}) Z_A = {:.5g} mm before it. The camera sees {:.4g} x {:.4g} mm in the medium and {:.4g} x {:.4g} "
-      "mm "
-      "of the dots; the cone of light of a dot is {:.3g} mm wide in the medium.",
+      "Side view, to scale: the dots are Z_D = {:.5g} mm behind the mid-plane of the medium, the lens (f = {:.5g} mm, "
+      "f/{:.4g}) is Z_A = {:.5g} mm in front of it. The field of view is {:.4g} x {:.4g} mm in the medium and {:.4g} x "
+      "{:.4g} mm on the dots; the light cone of a dot is {:.3g} mm wide in the medium.",
       b.z_d / mm, b.focal_length / mm, b.f_number, b.z_a / mm, b.given->camera.columns * b.pixel_at_medium() / mm,
       b.given->camera.rows * b.pixel_at_medium() / mm, b.given->camera.columns * b.pixel_at_dots() / mm,
       b.given->camera.rows * b.pixel_at_dots() / mm, b.cone_diameter() / mm);
@@ -35,8 +33,8 @@ std::string text_of_layout(Setup const& setup) {
   ImagingGeometry const imaging = setup.imaging();
   double const seen = setup.camera.pixel_pitch / imaging.magnification;
   return fmt::format(
-      "Seen from the side, to scale: the laser sheet is {:.4g} mm thick and stands Z_A = {:.5g} mm before the lens at "
-      "f/{:.4g}, the sensor {:.5g} mm behind it. The camera sees {:.4g} x {:.4g} mm of the sheet (M = {:.4g}).",
+      "Side view, to scale: the laser sheet is {:.4g} mm thick and is Z_A = {:.5g} mm in front of the lens at "
+      "f/{:.4g}, the sensor {:.5g} mm behind it. The field of view in the sheet is {:.4g} x {:.4g} mm (M = {:.4g}).",
       setup.piv->laser.thickness / mm, setup.z_a / mm, setup.lens.f_number, imaging.image_distance / mm,
       setup.camera.columns * seen / mm, setup.camera.rows * seen / mm, imaging.magnification);
 }
@@ -44,8 +42,9 @@ std::string text_of_layout(Setup const& setup) {
 std::string text_of_stop(Setup const& setup) {
   ExpectedParticles const expected = expected_particles(setup);
   return fmt::format(
-      "What each stop makes of the particles. At f/{:.4g}, the set-up's, an image is {:.3g} px wide (e^-2; 2 to 4 px "
-      "suit correlation), {:.3g} px at the sheet's edge, and the median particle has {:.3g} electrons at its peak.",
+      "Particle images against the f-number. At f/{:.4g} of the set-up, an image is {:.3g} px wide (e^-2; 2 to 4 px "
+      "are suitable for correlation), {:.3g} px at the edge of the sheet, and the median particle has {:.3g} electrons "
+      "at its peak.",
       setup.lens.f_number, expected.image_diameter_px, expected.sheet_edge_diameter_px, expected.peak_electrons.median);
 }
 
@@ -76,7 +75,7 @@ ReportBlock drawn_block(std::string title, std::string words, Write const& write
 
 std::string map_text(Bench<double> const& b) {
   return fmt::format(
-      "Resolution against sensitivity over Z_D, a curve for every f-number. The set-up is the point at {:.4g} px per "
+      "Resolution against sensitivity over Z_D, one curve per f-number. The set-up is the point at {:.4g} px per "
       "kg/m^4 and {:.4g} mm.",
       b.sensitivity(), resolved_wavelength(b) / mm);
 }

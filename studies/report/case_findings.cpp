@@ -29,9 +29,9 @@ std::string budget_words(Comparison const& all) {
       "noise; that of the other causes is the same in every repeat.";
   if (all.frames_deformed) {
     text +=
-        " Window is what is lost after the passes that deform the frames, and estimator what is added to that. "
-        "errors.json has them so under budget.after_passes; under budget.terms they are of an undeformed window, whose "
-        "loss the later passes win back.";
+        " Window is the loss that remains after the passes that deform the frames, and estimator is the error added to "
+        "it. errors.json contains both under budget.after_passes; under budget.terms they refer to an undeformed "
+        "window, whose loss later passes recover in part.";
   }
   return text;
 }
@@ -55,23 +55,23 @@ std::vector<std::string> uncertainty_statements(CaseView const& view) {
     }
     statements.push_back(fmt::format(
         "The estimator's standard uncertainty is {:.3g} px in the median ({:.3g} to {:.3g} px for 10 to 90 % of the "
-        "components). It covers {:.1f} % of the errors against {} (68.3 % would be right), twice of "
-        "it {:.1f} % (95.4 %); {} components; left out: {} vectors with gross errors, {} without an uncertainty.",
+        "components). It covers {:.1f} % of the errors against {} (ideal: 68.3 %), twice the uncertainty {:.1f} % "
+        "(ideal: 95.4 %); {} components; excluded: {} vectors with gross errors, {} without an uncertainty.",
         quantile(sigmas, 0.5), quantile(sigmas, 0.1), quantile(sigmas, 0.9), 100 * quality.coverage_1, truth,
         100 * quality.coverage_2, quality.count, quality.gross, quality.without_sigma));
     statements.push_back(fmt::format("Its rms is {:.2f} times the rms error. {}", quality.rms_ratio,
-                                     quality.rms_ratio < 0.85 ? "It is too small: enlarge it by the inverse before use."
-                                     : quality.rms_ratio > 1.15 ? "It is too large, which is safe but wasteful."
-                                                                : "That is within 15 %."));
+                                     quality.rms_ratio < 0.85 ? "It is too small: divide it by this factor before use."
+                                     : quality.rms_ratio > 1.15 ? "It is too large, that is, conservative."
+                                                                : "The deviation is less than 15 %."));
   }
   ErrorSummary const error =
       summarize_errors(all.measured.displacement_px, all.recorded().displacement_px, all.mask, all.vectors_in_file());
   double const u = std::hypot(error.bias_u_px, error.random_u_px), v = std::hypot(error.bias_v_px, error.random_v_px);
-  statements.push_back(fmt::format(
-      "The combined standard uncertainty is {:.3g} px of the component u and {:.3g} px of v, of type B: the rms error "
-      "against {}, by estimator and noise, over the {} vectors of this simulated measurement. The expanded uncertainty "
-      "is {:.3g} and {:.3g} px with a coverage factor of 2.",
-      u, v, truth, all.budget.count, 2 * u, 2 * v));
+  statements.push_back(
+      fmt::format("The combined standard uncertainty is {:.3g} px of the component u and {:.3g} px of v, of type B: "
+                  "the rms error against {}, due to estimator and noise, over the {} vectors of this simulated "
+                  "measurement. The expanded uncertainty is {:.3g} and {:.3g} px with a coverage factor of 2.",
+                  u, v, truth, all.budget.count, 2 * u, 2 * v));
   statements.push_back(fmt::format("The uncorrected bias is {:.3g} px: {}", uncorrected_bias_px(all),
                                    uncorrected_bias_words(all.chain)));
   return statements;
@@ -86,9 +86,8 @@ std::vector<std::string> findings_of(CaseView const& view) {
   ErrorSummary const truth = rms(all.point.displacement_px);
   ErrorSummary const theory = rms(view.piv ? all.flow_px : all.point.eq9_px);
   findings.push_back(
-      fmt::format("The measurement is wrong by {:.3g} px rms against ray truth and by {:.3g} px against {}; {} of {} "
-                  "vectors count, "
-                  "{:.2g} % of them with gross errors.",
+      fmt::format("The rms error of the measurement is {:.3g} px against ray truth and {:.3g} px against {}; {} of {} "
+                  "vectors count, {:.2g} % of them with gross errors.",
                   truth.rms_px, theory.rms_px, view.piv ? "the displacement of the flow" : "Eq. 9", truth.count,
                   all.vectors_in_file(), 100 * truth.gross_fraction));
   if (std::string const cause = largest_term(all.shown_budget()); !cause.empty()) findings.push_back(cause);

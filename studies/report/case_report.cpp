@@ -36,7 +36,7 @@ void add_maps(CaseView& view) {
     view.add_field("ambient", "without medium", all.ambient_px);
   } else {
     view.add_field("eq9", "Eq. 9", all.point.eq9_px);
-    view.add_field("eq9_cone", "cone-averaged Eq. 9", all.point.eq9_cone_px);
+    view.add_field("eq9_cone", "aperture-averaged Eq. 9", all.point.eq9_cone_px);
   }
   bool const estimated =
       std::any_of(all.measured.sigma_px.begin(), all.measured.sigma_px.end(),
@@ -66,13 +66,13 @@ nlohmann::json reliability_of(Comparison const& all) {
 
 TextTable errors_table(CaseView const& view) {
   Comparison const& all = view.comparison;
-  TextTable table{"Measured less reference", {"measure"}, {}};
+  TextTable table{"Measured minus reference", {"measure"}, {}};
   std::vector<std::pair<std::string, std::vector<Vec2d> const*>> references{{"ray truth", &all.point.displacement_px}};
   if (view.piv) {
     references.insert(references.end(), {{"flow", &all.flow_px}, {"without medium", &all.ambient_px}});
   } else {
     references.insert(references.end(),
-                      {{"Eq. 9", &all.point.eq9_px}, {"cone-averaged Eq. 9", &all.point.eq9_cone_px}});
+                      {{"Eq. 9", &all.point.eq9_px}, {"aperture-averaged Eq. 9", &all.point.eq9_cone_px}});
   }
   references.emplace_back("truth on the window", &all.window.displacement_px);
   if (all.frames_deformed) references.emplace_back(all.recorded_name(), &all.recorded().displacement_px);
@@ -114,8 +114,7 @@ SourceFiles case_sources(std::string const& folder, Comparison const& compared) 
     if (told.empty() || told == sources.sha256(name)) continue;
     throw DataError(path,
                     fmt::format("is another frame than the vectors were measured on (the SHA-256 of its pixels is "
-                                "{:.12}..., not {:.12}...); bring the old one back, or render and correlate {} "
-                                "again",
+                                "{:.12}..., not {:.12}...); restore the old one, or render and correlate {} again",
                                 sources.sha256(name), told, folder));
   }
   for (SourceFiles::Source const& source : compared.sources.all()) {
@@ -186,8 +185,9 @@ ReportPage case_report(ReportOptions const& options, Device const& device) {
   page.title = "Case " + fs::path(options.source).lexically_normal().filename().string();
   if (page.title == "Case ")
     page.title = "Case " + fs::absolute(options.source).lexically_normal().parent_path().filename().string();
-  page.question = fmt::format("How wrong is this {} measurement, and why? {} vectors, compared with what the rays did.",
-                              view.piv ? "PIV" : "BOS", all.vectors_in_file());
+  page.question = fmt::format(
+      "How large is the error of this {} measurement, and what causes it? {} vectors, compared with the light rays.",
+      view.piv ? "PIV" : "BOS", all.vectors_in_file());
   page.findings = findings_of(view);
   bool const mistaken = all.detected && all.detected->mistake.found();
   if (mistaken || !all.complete) {
@@ -205,7 +205,7 @@ ReportPage case_report(ReportOptions const& options, Device const& device) {
                          {"x", component_json(all.measured.position_px, &Vec2d::x)},
                          {"y", component_json(all.measured.position_px, &Vec2d::y)}};
     page.sections.push_back(
-        {"Maps", {Chart{"field", "Displacement, errors, and what each cause adds", page.findings.front()}}});
+        {"Maps", {Chart{"field", "Displacement, errors, and the contribution of each cause", page.findings.front()}}});
   }
   page.sections.push_back(
       {"Errors", {Chart{"histogram", "Distribution of the error", page.findings.front()}, errors_table(view)}});
@@ -218,7 +218,7 @@ ReportPage case_report(ReportOptions const& options, Device const& device) {
   ReportSection uncertainty{"Uncertainty", {TextList{uncertainty_statements(view)}}};
   if (nlohmann::json bins = reliability_of(all); !bins.empty()) {
     uncertainty.blocks.emplace_back(Chart{
-        "reliability", "Does the estimated uncertainty tell the error?",
+        "reliability", "Does the estimated uncertainty describe the error?",
         fmt::format(
             "In {} bins of equal count the estimated uncertainty grows from {:.3g} to {:.3g} px, and the rms error "
             "against {} is {:.3g} px in the first and {:.3g} px in the last. On the dashed line they are equal.",

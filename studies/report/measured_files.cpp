@@ -35,15 +35,15 @@ void screen(VectorFile& file, std::string const& path, std::string const& setup,
   if (left_out.outside_image > 0) {
     throw DataError(
         path, fmt::format("has {} of {} vectors outside the {} of the camera of {} (their x from {:.6g} to {:.6g}, y "
-                          "from {:.6g} to {:.6g}); write camera.pixels = [columns, rows] of the frames that were "
-                          "correlated there, or, where places count from another origin, --conventions offset=NUMBER",
+                          "from {:.6g} to {:.6g}); set camera.pixels = [columns, rows] there to the size of the "
+                          "correlated frames, or, if positions have another origin, use --conventions offset=NUMBER",
                           left_out.outside_image, left_out.all() + file.field.size(), pixels_of(camera), setup,
                           left_out.low_px.x, left_out.high_px.x, left_out.low_px.y, left_out.high_px.y));
   }
   std::string const refusal = refusal_of_places(file.field, left_out, camera.columns, camera.rows);
   if (!refusal.empty()) throw DataError(path, refusal);
   if (left_out.without_place() + left_out.displacement_beyond_image > 0) {
-    spdlog::warn("{}: vectors are left out: {}", path, left_out.text());
+    spdlog::warn("{}: vectors are excluded: {}", path, left_out.text());
   }
   std::string const doubt = doubt_about_places(file.field, camera.columns, camera.rows);
   if (!doubt.empty()) spdlog::warn("{}: {}", path, doubt);
@@ -85,11 +85,11 @@ MeasuredFiles measured_files(ReportOptions const& options) {
   files.vectors = options.vectors.empty() ? in_case(options.source, case_file::vectors) : options.vectors;
   files.repeats = options.repeats;
   if (!fs::exists(files.vectors)) {
-    throw DataError(files.vectors, options.vectors.empty()
-                                       ? "is not there; measure the displacement with gladstone correlate REFERENCE "
-                                         "FLOW -o " +
-                                             files.vectors + ", or name a file with --vectors"
-                                       : "does not exist; check --vectors");
+    throw DataError(files.vectors,
+                    options.vectors.empty()
+                        ? "does not exist; measure the displacement with gladstone correlate REFERENCE FLOW -o " +
+                              files.vectors + ", or name a file with --vectors"
+                        : "does not exist; check --vectors");
   }
   files.sources.on_change("write the report again");
   files.sources.add("setup", files.setup, SourceFiles::Holds::bytes);
@@ -112,18 +112,17 @@ void require_frames_of(MeasuredFiles const& files, ReportOptions const& options,
     std::string const path = (fs::path(options.source) / file).string();
     Image<double> const frame = read_image(path);
     if (frame.columns() != camera.columns || frame.rows() != camera.rows) {
-      throw DataError(
-          path,
-          fmt::format("has {} x {} px, the camera of {} has {}; write camera.pixels = [{}, {}] there, "
-                      "or bring the frames that this camera took",
-                      frame.columns(), frame.rows(), files.setup, pixels_of(camera), frame.columns(), frame.rows()));
+      throw DataError(path, fmt::format("has {} x {} px, the camera of {} has {}; set camera.pixels = [{}, {}] there, "
+                                        "or use frames of this camera",
+                                        frame.columns(), frame.rows(), files.setup, pixels_of(camera), frame.columns(),
+                                        frame.rows()));
     }
     std::string const told =
         is_hdf5(files.vectors) ? Hdf5Reader(files.vectors).attribute(std::string(name) + "_sha256") : std::string();
     if (told.empty() || told == files.sources.sha256(name)) continue;
     throw DataError(files.vectors,
                     fmt::format("was measured on another {} frame than {} (the SHA-256 of its pixels is {:.12}..., not "
-                                "{:.12}...); correlate the frames of the folder again, or bring those of the vectors",
+                                "{:.12}...); correlate the frames of the folder again, or restore those of the vectors",
                                 name, path, told, files.sources.sha256(name)));
   }
 }
@@ -144,14 +143,15 @@ RepeatedVectors read_repeats(MeasuredFiles const& files, ReportOptions const& op
       same = length(one.position_px[i] - all.front().position_px[i]) < 1e-3;
     }
     if (!same) {
-      throw DataError(file, "has its vectors at other places than " + files.vectors +
-                                " (the scatter of repeats is told at every vector); correlate all of them with one "
-                                "configuration");
+      throw DataError(
+          file,
+          "has its vectors at other positions than " + files.vectors +
+              " (the scatter of repeats is determined at every vector); correlate all of them with one configuration");
     }
     for (std::size_t k = 0; k < all.size(); ++k) {
       if (!same_vectors(all[k], one)) continue;
       throw DataError(file, "has the same vectors as " + (k == 0 ? files.vectors : files.repeats[k - 1]) +
-                                " (a repeat is another measurement, or it tells no scatter); leave it out");
+                                " (a repeat must be another measurement); remove it");
     }
     all.push_back(std::move(one));
   }

@@ -36,33 +36,32 @@ std::string about_displacement(MeasurementKnown const& known) {
   }
   return fmt::format(
       "The uncertainty of the displacement is of type A: the standard deviation of the mean of {} repeats, {:.3g} px "
-      "rms over vectors and components, with {} degree{} of freedom at each of them. What the measurements say of "
-      "themselves, of type B, would make it {:.3g} px in the median; it is not added. What all repeats have alike does "
-      "not "
-      "scatter and is not in it: of dots that stayed where they are, the error that goes with their pattern.",
+      "rms over vectors and components, with {} degree{} of freedom at each of them. The type B estimate of the "
+      "measurements themselves would be {:.3g} px in the median; it is not added. Errors common to all repeats do not "
+      "scatter and are not included: for dots that were not moved, the error due to their pattern.",
       known.mean.count, known.inputs.front().sigma, known.mean.count - 1, known.mean.count == 2 ? "" : "s",
       known.mean.estimated_px);
 }
 
 std::string about_linearity(PropagatedResult const& typical) {
-  if (typical.linear) return "The first order holds (JCGM 101:2008).";
+  if (typical.linear) return "The first order is valid (JCGM 101:2008).";
   return fmt::format(
-      "The propagation is not linear, or not normal: for a vector of typical displacement, of {:.4g} kg/m^4, take the "
-      "interval that holds 95.45 % of samples (JCGM 101:2008), from {:.4g} to {:.4g} kg/m^4.",
+      "The propagation is not linear, or not normal: for a vector of typical displacement, of {:.4g} kg/m^4, use the "
+      "interval that contains 95.45 % of the samples (JCGM 101:2008), from {:.4g} to {:.4g} kg/m^4.",
       typical.value, typical.sampled_low, typical.sampled_high);
 }
 
 std::string about_setup(MeasurementKnown const& known) {
   if (known.inputs.size() == 1) {
-    return "No number of the setup is written with its uncertainty, { value = ..., sigma = ... }: distances, focal "
-           "length, pixel pitch, K and thickness count as known exactly. " +
+    return "No number of the setup has an uncertainty, { value = ..., sigma = ... }: distances, focal length, pixel "
+           "pitch, K and thickness are assumed to be exact. " +
            about_linearity(known.typical);
   }
   std::vector<std::string> const pairs = correlation_texts(known.inputs);
   return fmt::format(
-      "The numbers of the setup that are written with their uncertainty are of type B, {}, and the same at all "
-      "vectors: together {:.3g} % of the gradient. {}",
-      pairs.empty() ? "taken for independent" : fmt::format("correlated ({})", fmt::join(pairs, "; ")),
+      "The uncertainties of the numbers of the setup are of type B, {}, and the same at all vectors: together {:.3g} % "
+      "of the gradient. {}",
+      pairs.empty() ? "assumed to be independent" : fmt::format("correlated ({})", fmt::join(pairs, "; ")),
       100 * known.gradients.common, about_linearity(known.typical));
 }
 
@@ -71,8 +70,9 @@ std::string about_bias(MeasurementKnown const& known) {
   if (!known.simulated()) return "The uncorrected bias is unknown without a simulated twin: " + words;
   double const bias_px = uncorrected_bias_px(known.twin->comparison);
   return fmt::format(
-      "The uncorrected bias is {:.3g} px, {:.3g} kg/m^4, in the simulated twin, whose medium is the density that was "
-      "measured: {} What is finer than the measurement resolved is not in the twin, so that it may be larger.",
+      "The uncorrected bias is {:.3g} px, {:.3g} kg/m^4, in the simulated twin, whose medium is the measured density: "
+      "{} Structures finer than the measurement resolved are missing in the twin, so that the actual bias may be "
+      "larger.",
       bias_px, bias_px / known.sensitivity, words);
 }
 
@@ -102,9 +102,9 @@ MeasurementStatements measurement_statements(MeasurementKnown const& known) {
 }
 
 TextTable inputs_table(MeasurementKnown const& known) {
-  TextTable table{"What the gradient of a vector of typical displacement is uncertain by",
+  TextTable table{"Uncertainty budget of the gradient at a vector of typical displacement",
                   {"input", "type", "value", "standard uncertainty", "samples drawn from", "degrees of freedom",
-                   "sensitivity coefficient [kg/m^4 per unit of the input]", "part of u(gradient) [kg/m^4]",
+                   "sensitivity coefficient [kg/m^4 per unit of the input]", "contribution to u(gradient) [kg/m^4]",
                    "share of the variance [%]"},
                   {}};
   for (std::size_t i = 0; i < known.inputs.size(); ++i) {

@@ -71,7 +71,7 @@ nlohmann::json measured_maps(DisplacementField const& field, MeasuredGradients c
   add_map(fields, "measured", "measurement", "px", field.displacement_px);
   add_map(fields, "gradient", "density gradient, along X and Y", "kg/m^4", all.gradient);
   add_map(fields, "combined", "combined standard uncertainty of the gradient", "kg/m^4", all.combined);
-  add_map(fields, "random", "part of the displacement in it", "kg/m^4", all.random);
+  add_map(fields, "random", "contribution of the displacement to it", "kg/m^4", all.random);
   return fields;
 }
 

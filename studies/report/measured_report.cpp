@@ -53,15 +53,15 @@ ReportSection causes_section(ReportPage& page, SimulatedTwin const* twin) {
   ReportSection causes{"Causes of error, by the simulated twin", {}};
   if (!twin || !twin->failed.empty()) {
     causes.blocks.emplace_back(
-        Paragraph{twin ? "The simulated twin could not be made: " + twin->failed
-                       : "The simulated twin needs a complete lattice of vectors, and these are not one."});
+        Paragraph{twin ? "The simulated twin could not be computed: " + twin->failed
+                       : "The simulated twin requires a complete lattice of vectors, which these are not."});
     return causes;
   }
   causes.blocks.emplace_back(Paragraph{fmt::format(
-      "The density that the vectors integrate to was put before the setup's camera (its middle {} x {} px), rendered "
-      "with its noise {} times, each time with other dots (seeds {}), and measured again. Between repeats the "
-      "measurement scatters by {:.3g} px; what they share is off Eq. 9 by {:.3g} px rms, the uncorrected bias and the "
-      "estimator's own together.",
+      "The vectors were integrated to a density, which was placed in front of the setup's camera (its middle {} x {} "
+      "px), rendered with its noise {} times, each time with other dots (seeds {}), and measured again. The "
+      "measurement scatters by {:.3g} px between repeats; the error common to all repeats is {:.3g} px rms relative to "
+      "Eq. 9, which contains the uncorrected bias and the bias of the estimator.",
       twin->columns, twin->rows, twin->seeds.size(), fmt::join(twin->seeds, ", "), twin->random_px,
       twin->systematic_px)});
   page.data["budget"] = budget_json(twin->comparison.shown_budget());
@@ -85,10 +85,10 @@ ReportSection maps_section(ReportPage& page, DisplacementField const& field, Mea
   // fraction of the image; the vectors of full frames only omit half a window at each edge
   constexpr double doubtful = 0.5;
   if (double const share = spanned_share(field, camera); share < doubtful) {
-    maps.blocks.emplace_back(Paragraph{fmt::format(
-        "The vectors span {:.2g} % of the camera's {} x {} px: part of the frame was measured, or camera.pixels of the "
-        "setup is not of these frames.",
-        100 * share, camera.columns, camera.rows)});
+    maps.blocks.emplace_back(
+        Paragraph{fmt::format("The vectors span {:.2g} % of the camera's {} x {} px: only part of the frame was "
+                              "measured, or camera.pixels of the setup does not belong to these frames.",
+                              100 * share, camera.columns, camera.rows)});
   }
   return maps;
 }
@@ -107,10 +107,9 @@ CaseSetup measured_bench(std::string const& setup_file, std::vector<UncertainInp
   uncertain = take_uncertain_inputs(document);
   CaseSetup loaded = load_case_setup(std::move(document));
   if (loaded.setup.piv || loaded.setup.calibration() || !loaded.setup.on_bench()) {
-    throw DataError(
-        setup_file,
-        "is of no BOS bench (the uncertainty of a measurement is told of a thin lens on the axis, square to "
-        "the dots); describe the measurement by one");
+    throw DataError(setup_file,
+                    "does not describe a BOS set-up with a thin lens on the axis, perpendicular to the target (the "
+                    "uncertainty of a measurement requires one); describe the measurement by such a set-up");
   }
   return loaded;
 }
@@ -129,7 +128,7 @@ ReportPage measured_report(ReportOptions const& options, Device const& device) {
   MeanOfRepeats const mean = mean_of_repeats(read.fields, bench.random_error());
   DisplacementField const& field = mean.field;
   if (finite_components(field.displacement_px).empty())
-    throw DataError(files.vectors, "has no vector with a displacement; correlate the images anew");
+    throw DataError(files.vectors, "has no vector with a displacement; correlate the images again");
 
   std::vector<MeasurementInput> inputs{typical_displacement(mean, bench.random_error())};
   for (MeasurementInput& input : measurement_inputs(loaded, uncertain, *device.renderer))
@@ -146,7 +145,7 @@ ReportPage measured_report(ReportOptions const& options, Device const& device) {
 
   ReportPage page;
   page.title = "Measurement " + fs::absolute(options.source).lexically_normal().filename().string();
-  page.question = fmt::format("How certain are the density gradients of this measurement? {} vectors of {}.",
+  page.question = fmt::format("What is the uncertainty of the density gradients of this measurement? {} vectors of {}.",
                               field.size(), fs::path(files.vectors).filename().string());
   page.findings = {said.measurand, said.expanded, said.bias};
   page.doubtful = read.incomplete;

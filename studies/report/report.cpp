@@ -42,15 +42,15 @@ ReportSection drawn_figures(
 }
 
 ReportSection how_it_was_made(SourceFiles const& sources, std::vector<std::string> const& commands) {
-  TextTable files{"What this report was made from (SHA-256)", {"what", "of its", "SHA-256"}, {}};
+  TextTable files{"Sources of this report (SHA-256)", {"what", "of its", "SHA-256"}, {}};
   for (SourceFiles::Source const& source : sources.all()) {
     if (!source.name.empty()) files.rows.push_back({{source.name}, {words_of(source.holds)}, {source.sha256}});
   }
   std::string text;
   for (std::string const& command : commands) text += command + '\n';
-  return {"How it was made, and how to cite it",
+  return {"Reproduction and citation",
           {Paragraph{"gladstone " + build_text() + " wrote this report."}, std::move(files),
-           Verbatim{"Commands that make it again", text},
+           Verbatim{"Commands that reproduce it", text},
            Paragraph{"Cite gladstone with its version and commit as above; for the method: L. K. Rajendran, S. P. M. "
                      "Bane, P. P. Vlachos, PIV/BOS synthetic image generation in variable density environments for "
                      "error analysis and experiment design, Measurement Science and Technology 30 (2019) 085302."}}};
@@ -76,8 +76,8 @@ WrittenReport write_report(ReportOptions const& options, Device const& device) {
   bool const measured = !run && !fs::exists(fs::path(options.source) / case_file::truth);
   if (!measured && !options.repeats.empty()) {
     throw DataError(options.source,
-                    "is no measurement (repeats tell what its mean is uncertain by, where there is no "
-                    "truth); leave --repeats out, or give the folder of a measurement");
+                    "is not a measurement (repeats determine the uncertainty of a measured mean, whose truth is "
+                    "unknown); omit --repeats, or give the folder of a measurement");
   }
   ReportPage const page = run        ? run_report(options)
                           : measured ? measured_report(options, device)

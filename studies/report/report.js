@@ -6,7 +6,7 @@
   const spoken = document.getElementById("spoken");
   const width = 920, height = 420, margin = { left: 84, right: 18, top: 14, bottom: 64 };
   const known = (x) => x !== null && x !== undefined && isFinite(x);
-  // a scale's own format of ticks takes as many digits as their step asks for, and one too few where that is a rounded sum
+  // the default tick format has as many digits as the step requires, but one too few if the step is a rounded sum
   const plain = d3.format("~g");
   const ticked = (scale, count, format) => (format || scale.base ? scale.tickFormat(count, format || plain) : plain);
   const shown = (x) => (known(x) ? d3.format(".4~g")(x) : "unknown");
@@ -110,14 +110,14 @@
       const series = (by ? by.labels.map((label, i) => ({ label: label, rows: rows.filter((row) => place(row, by) === i) })) : [{ label: "all cases", rows: rows }])
         .map((one, i) => ({ label: one.label, colour: colours[i % colours.length], points: gathered(one.rows, axis, chosen.y) })).filter((one) => one.points.length);
       const all = [].concat(...series.map((one) => one.points));
-      const svg = stage(plot, chosen.y + unit(chosen.y) + " over " + axis.title + "; arrow keys tell the points");
+      const svg = stage(plot, chosen.y + unit(chosen.y) + " over " + axis.title + "; arrow keys select the points");
       const x = scaleOf(axis);
       const y = (chosen.log ? d3.scaleLog() : d3.scaleLinear()).range([height - margin.bottom, margin.top]);
       const right = guide && chosen.y === first ? [guide.value] : [];
       const span = range([].concat(right, ...all.map((p) => [p.low, p.high])), chosen.log);
       y.domain(chosen.log || span[0] < 0 ? span : [0, span[1]]).nice();
       if (zoomed && x.invert) { x.domain(zoomed.x); y.domain(zoomed.y); }
-      const few = !zoomed && axis.numeric && axis.labels.length <= 12;  // then the study's own values are the tics
+      const few = !zoomed && axis.numeric && axis.labels.length <= 12;  // then the ticks are the values of the study
       axes(svg, x, y, axis.title, chosen.y + unit(chosen.y), few ? (v) => axis.labels[axis.numbers.indexOf(v)] : null, null, few ? axis.numbers.filter(known) : null);
       const clip = "clip" + Math.random().toString(36).slice(2);
       svg.append("clipPath").attr("id", clip).append("rect").attr("x", margin.left).attr("y", margin.top - 6).attr("width", width - margin.left - margin.right).attr("height", height - margin.top - margin.bottom + 12);
@@ -134,7 +134,7 @@
       right.forEach((value) => {
         room.append("line").attr("class", "guide").attr("x1", margin.left).attr("x2", width - margin.right).attr("y1", y(value)).attr("y2", y(value)).attr("stroke", colours[6]).attr("stroke-dasharray", "5 4").attr("pointer-events", "none");
       });
-      // what is no number has no way from one to the next: series stand side by side, each with its band as a bar
+      // categories have no order: series are drawn side by side, each with its range as a bar
       const aside = axis.numeric ? 0 : Math.min(14, (x.step() * 0.6) / series.length);
       series.forEach((one, k) => one.points.forEach((p) => { p.at = x(p.x) + (k - (series.length - 1) / 2) * aside; }));
       for (const one of series) {
@@ -158,7 +158,7 @@
         d3.event.preventDefault(); draw(); plot.select("svg").node().focus();
       });
       legend(plot, series.map((one) => ({ colour: one.colour, text: by ? by.title + " " + one.label : one.label })));
-      plot.append("p").attr("class", "hint").text((axis.numeric ? "Lines" : "Points") + " are medians, " + (axis.numeric ? "bands" : "bars") + " reach from 10 to 90 % of the cases" + (right.length ? "; dashed: " + guide.text : "") + ". Draw a box to zoom, double click or press 0 for all; + and - zoom, arrow keys tell the points.");
+      plot.append("p").attr("class", "hint").text((axis.numeric ? "Lines" : "Points") + " are medians, " + (axis.numeric ? "bands" : "bars") + " reach from 10 to 90 % of the cases" + (right.length ? "; dashed: " + guide.text : "") + ". Draw a box to zoom, double-click or press 0 to reset; + and - zoom, arrow keys select the points.");
     };
     choice(controls, "over", keys(free), chosen.x, (v) => { chosen.x = v; zoomed = null; draw(); });
     choice(controls, "measure", measures(), chosen.y, (v) => { chosen.y = v; zoomed = null; draw(); });
@@ -181,7 +181,7 @@
           const values = rows.filter((row) => place(row, xAxis) === i && place(row, yAxis) === j).map((row) => measure(row, chosen.m)).filter(known);
           if (values.length) cells.push({ x: xLabel, y: yLabel, value: quantile(values, 0.5), n: values.length });
         }));
-        const svg = stage(plot, chosen.m + unit(chosen.m) + " over " + xAxis.title + " and " + yAxis.title + "; arrow keys tell the cells");
+        const svg = stage(plot, chosen.m + unit(chosen.m) + " over " + xAxis.title + " and " + yAxis.title + "; arrow keys select the cells");
         const x = d3.scaleBand().domain(xAxis.labels).range([margin.left + 60, width - margin.right]).padding(0.03);
         const y = d3.scaleBand().domain(yAxis.labels.slice().reverse()).range([margin.top, height - margin.bottom]).padding(0.03);
         const [low, high] = range(cells.map((c) => c.value), false);
@@ -213,7 +213,7 @@
             return { label: label, term: term, colour: colours[k % colours.length], value: quantile(values, 0.5), n: values.length };
           }).filter((bar) => bar.n > 0)
         }));
-        const svg = stage(plot, "rms of every cause of error over " + axis.title + "; arrow keys tell the bars");
+        const svg = stage(plot, "rms of every cause of error over " + axis.title + "; arrow keys select the bars");
         const x = d3.scaleBand().domain(axis.labels).range([margin.left, width - margin.right]).paddingInner(0.2).paddingOuter(0.1);
         const inner = d3.scaleBand().domain(data.terms).range([0, x.bandwidth()]);
         const bars = [].concat(...groups.map((g) => g.bars));
@@ -232,7 +232,7 @@
       const chosen = { x: data.second || data.main, y: data.main, log: false };
       const draw = () => {
         const points = rows.map((row) => ({ row: row, x: measure(row, chosen.x), y: measure(row, chosen.y) })).filter((p) => known(p.x) && known(p.y) && (!chosen.log || (p.x > 0 && p.y > 0)));
-        const svg = stage(plot, chosen.y + " against " + chosen.x + ", a point a case; arrow keys tell the points");
+        const svg = stage(plot, chosen.y + " against " + chosen.x + ", one point per case; arrow keys select the points");
         const scale = chosen.log ? d3.scaleLog : d3.scaleLinear;
         const x = scale().domain(range(points.map((p) => p.x), chosen.log)).nice().range([margin.left, width - margin.right]);
         const y = scale().domain(range(points.map((p) => p.y), chosen.log)).nice().range([height - margin.bottom, margin.top]);
@@ -273,7 +273,7 @@
         const high = d3.quantile(finite, 0.995) || 1, low = signed ? -Math.max(Math.abs(d3.quantile(finite, 0.005) || 0), Math.abs(high)) : 0, top = signed ? -low : high;
         const colour = signed ? d3.scaleSequential(d3.interpolateRdBu).domain([top, low]) : d3.scaleSequential(d3.interpolateViridis).domain([low, top]);
         const canvas = plot.append("canvas").attr("width", grid.columns).attr("height", grid.rows).attr("tabindex", 0).attr("role", "img")
-          .attr("aria-label", f.title + ", " + chosen.part + ", a colour a vector; arrow keys tell the vectors").style("width", "min(100%, " + 36 * grid.columns + "px, 44rem)");
+          .attr("aria-label", f.title + ", " + chosen.part + ", one colour per vector; arrow keys select the vectors").style("width", "min(100%, " + 36 * grid.columns + "px, 44rem)");
         paint(canvas.node(), values, colour, low, top);
         let at = 0;
         const words = (i) => "x " + shown(grid.x[i]) + ", y " + shown(grid.y[i]) + " px\n" + of.map((one) => (one.name === f.name ? "> " : "") + one.title + ": " + shown(one.u[i]) + ", " + shown(one.v[i]) + " " + (one.unit || "px")).join("\n");
@@ -289,7 +289,7 @@
         const bar = plot.append("svg").attr("viewBox", "0 0 460 44").style("max-width", "32rem").attr("aria-hidden", "true");
         d3.range(100).forEach((i) => bar.append("rect").attr("x", 20 + 4.2 * i).attr("y", 2).attr("width", 4.4).attr("height", 14).attr("shape-rendering", "crispEdges").attr("fill", colour(low + ((top - low) * i) / 99)));
         bar.append("g").attr("transform", "translate(0,16)").call(d3.axisBottom(d3.scaleLinear().domain([low, top]).range([20, 440])).ticks(6).tickFormat(plain));
-        plot.append("p").attr("class", "hint").text(f.title + " [" + (f.unit || "px") + "], " + chosen.part + ", at x from " + shown(d3.min(grid.x)) + " to " + shown(d3.max(grid.x)) + " px, y from " + shown(d3.min(grid.y)) + " px (above) to " + shown(d3.max(grid.y)) + " px. Grey: unknown. The pointer, or the arrow keys, tell all values of a vector; up to half a per cent of the values lie beyond the colours.");
+        plot.append("p").attr("class", "hint").text(f.title + " [" + (f.unit || "px") + "], " + chosen.part + ", at x from " + shown(d3.min(grid.x)) + " to " + shown(d3.max(grid.x)) + " px, y from " + shown(d3.min(grid.y)) + " px (above) to " + shown(d3.max(grid.y)) + " px. Grey: unknown. The pointer or the arrow keys show all values of a vector; up to 0.5 % of the values are outside the colour range.");
       };
       overview();
       choice(controls, "show", of.map((f) => ({ value: f.name, text: f.title })), chosen.name, (v) => { chosen.name = v; draw(); });
@@ -302,11 +302,11 @@
       const draw = () => {
         const one = data.errors.find((e) => e.name === chosen.name), sets = [["u", one.u], ["v", one.v]].map(([name, values]) => ({ name: name, values: values.filter(known) }));
         const sorted = [].concat(...sets.map((s) => s.values)).map(Math.abs).sort(d3.ascending), reach = d3.quantile(sorted, 0.99) || 1;
-        const svg = stage(plot, "Histogram of the error " + one.title + "; arrow keys tell the bins");
+        const svg = stage(plot, "Histogram of the error " + one.title + "; arrow keys select the bins");
         const x = d3.scaleLinear().domain([-reach, reach]).nice().range([margin.left, width - margin.right]);
         const bins = [].concat(...sets.map((s, k) => d3.histogram().domain(x.domain()).thresholds(x.ticks(40))(s.values).filter((b) => b.x1 > b.x0).map((b) => ({ x0: b.x0, x1: b.x1, n: b.length, share: b.length / (s.values.length || 1), name: s.name, colour: colours[k] }))));
         const y = d3.scaleLinear().domain([0, d3.max(bins, (b) => b.share) || 1]).nice().range([height - margin.bottom, margin.top]);
-        axes(svg, x, y, "error " + one.title + " [px]", "share of the vectors", null, "%");
+        axes(svg, x, y, "error " + one.title + " [px]", "fraction of the vectors", null, "%");
         const marks = svg.selectAll("rect.bar").data(bins).enter().append("rect").attr("class", "bar").attr("x", (b) => x(b.x0) + (b.name === "v" ? (x(b.x1) - x(b.x0)) / 2 : 0)).attr("width", Math.max(1, (x(b1(bins)) - x(b0(bins))) / 2 - 0.5)).attr("y", (b) => y(b.share)).attr("height", (b) => y(0) - y(b.share)).attr("fill", (b) => b.colour);
         walkable(svg, marks, (b) => b.name + " from " + shown(b.x0) + " to " + shown(b.x1) + " px\n" + b.n + " vectors, " + d3.format(".1%")(b.share));
         legend(plot, sets.map((s, k) => ({ colour: colours[k], text: s.name })));
@@ -318,7 +318,7 @@
 
     budget(plot) {
       const terms = data.budget;
-      const svg = stage(plot, "rms of every cause of error; arrow keys tell the bars");
+      const svg = stage(plot, "rms of every cause of error; arrow keys select the bars");
       const x = d3.scaleBand().domain(terms.map((t) => t.name)).range([margin.left, width - margin.right]).padding(0.25);
       const y = d3.scaleLinear().domain([0, d3.max(terms, (t) => t.rms) || 1]).nice().range([height - margin.bottom, margin.top]);
       axes(svg, x, y, "cause", "rms [px]");
@@ -328,7 +328,7 @@
 
     reliability(plot) {
       const bins = data.reliability;
-      const svg = stage(plot, "rms error against estimated uncertainty; arrow keys tell the bins");
+      const svg = stage(plot, "rms error against estimated uncertainty; arrow keys select the bins");
       const span = range([].concat(...bins.map((b) => [b.sigma, b.error])), false), top = span[1] * 1.05;
       const x = d3.scaleLinear().domain([0, top]).range([margin.left, width - margin.right]), y = d3.scaleLinear().domain([0, top]).range([height - margin.bottom, margin.top]);
       axes(svg, x, y, "estimated uncertainty, rms of the bin [px]", "error, rms of the bin [px]");
@@ -379,7 +379,7 @@
         head.setAttribute("aria-sort", down ? "descending" : "ascending");
         const sorted = Array.from(body.rows).sort((a, b) => {
           const x = value(a, i), y = value(b, i);
-          if (typeof x !== typeof y) return typeof x === "number" ? -1 : 1;  // what is unknown comes last
+          if (typeof x !== typeof y) return typeof x === "number" ? -1 : 1;  // unknown values are last
           return (down ? -1 : 1) * (typeof x === "number" ? x - y : x.localeCompare(y));
         });
         body.append(...sorted);

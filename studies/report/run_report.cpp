@@ -67,7 +67,7 @@ ReportSection setup_section(StudyView const& study, LayoutView const* base) {
     axes.items.push_back(axis_title(axis.key) + ": " + values + (more > 0 ? fmt::format("; and {} more", more) : ""));
   }
   section.blocks.insert(section.blocks.begin(),
-                        {Paragraph{"Every case starts from one setup, the base. What the study changes of it:"}, axes});
+                        {Paragraph{"Every case is based on one setup. The study changes these keys:"}, axes});
   return section;
 }
 
@@ -123,19 +123,18 @@ ReportPage run_report(ReportOptions const& options) {
   if (free > 0) errors.blocks.emplace_back(Chart{"curves", "A measure over an axis", page.findings.front()});
   if (free > 1) errors.blocks.emplace_back(Chart{"cells", "A measure over two axes", strongest_axis(study)});
   errors.blocks.emplace_back(
-      Chart{"scatter", "A measure against another, a point a case", extremes(study, best, *worst)});
+      Chart{"scatter", "A measure against another, one point per case", extremes(study, best, *worst)});
   page.sections.push_back(std::move(errors));
   if (!study.terms.empty()) {
-    page.sections.push_back(
-        {"Causes of error",
-         {Paragraph{"The budget's terms lead from theory to the measurement. They correlate, so that their heights do "
-                    "not add up in quadrature."},
-          Chart{"causes", "rms of every cause", largest_cause(study)}}});
+    page.sections.push_back({"Causes of error",
+                             {Paragraph{"The terms of the budget lead from theory to the measurement. They are "
+                                        "correlated, so that their heights do not add up in quadrature."},
+                              Chart{"causes", "rms of every cause", largest_cause(study)}}});
   }
   if (std::string const finding = uncertainty_finding(study); !finding.empty() && free > 0) {
     page.data["coverage"] = coverage_measure;
     page.sections.push_back(
-        {"Uncertainty", {Chart{"coverage", "Share of the errors that the estimated uncertainty covers", finding}}});
+        {"Uncertainty", {Chart{"coverage", "Fraction of the errors that the estimated uncertainty covers", finding}}});
   }
   ReportSection extreme{"Best and worst case",
                         {frames_of(run, study, best, "Best"), frames_of(run, study, *worst, "Worst")}};
@@ -158,7 +157,7 @@ ReportPage run_report(ReportOptions const& options) {
     settings.blocks.emplace_back(Verbatim{"The study", std::move(text)});
   }
   if (!base_text.empty()) {
-    settings.blocks.emplace_back(Verbatim{"The setup that every case starts from (base)", base_text});
+    settings.blocks.emplace_back(Verbatim{"The base setup of all cases", base_text});
   }
   settings.blocks.emplace_back(Verbatim{"The setup of " + whose_best, best_text});
   std::string seeds, builds;

@@ -55,7 +55,7 @@ nlohmann::json study_data(StudyView const& study) {
 
 TextTable cases_table(StudyView const& study) {
   TextTable table{
-      fmt::format("Every case; all {} measures stand in study.csv", study.table.measures.size()), {"case"}, {}};
+      fmt::format("All cases; study.csv contains all {} measures", study.table.measures.size()), {"case"}, {}};
   std::vector<std::string> measures;
   for (char const* name :
        {"ray_truth.rms_px", "eq9.rms_px", "flow.rms_px", "ray_truth.bias_u_px", "ray_truth.bias_v_px",

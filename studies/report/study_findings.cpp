@@ -15,10 +15,10 @@ StudyView::StudyView(std::string const& run) : table(read_study_table(run)) {
     if (row.status == CaseStatus::ok) finished.push_back(&row);
   }
   if (finished.empty()) {
-    throw DataError(run, "holds no finished case; run gladstone sweep run " + shell_word(run) + " first");
+    throw DataError(run, "contains no finished case; run gladstone sweep run " + shell_word(run) + " first");
   }
   for (auto const& [measure, name] :
-       {std::pair{"eq9.rms_px", "Eq. 9 (the displacement that the density gradient gives)"},
+       {std::pair{"eq9.rms_px", "Eq. 9 (the displacement by the density gradient)"},
         std::pair{"flow.rms_px", "the displacement of the flow"}, std::pair{"ray_truth.rms_px", "ray truth"}}) {
     main = measure;
     against = name;
@@ -56,8 +56,9 @@ std::string question_of(StudyView const& study) {
     if (axis.labels.size() < 2) continue;
     axes += fmt::format("{}{} ({} values)", axes.empty() ? "" : ", ", axis_title(axis.key), axis.labels.size());
   }
-  return fmt::format("How wrong is the measured displacement against {}{}? {} of {} cases are finished.", study.against,
-                     axes.empty() ? "" : " over " + axes, study.finished.size(), study.table.rows.size());
+  return fmt::format("How large is the error of the measured displacement against {}{}? {} of {} cases are finished.",
+                     study.against, axes.empty() ? "" : " over " + axes, study.finished.size(),
+                     study.table.rows.size());
 }
 
 std::string extremes(StudyView const& study, StudyRow const& best, StudyRow const& worst) {
@@ -115,7 +116,7 @@ std::string strongest_axis(StudyView const& study) {
     }
     if (!(most > least) || !(most / least > strongest)) continue;
     strongest = most / least;
-    text = fmt::format("Of the axes {} matters most: the median error is {:.3g} px at {} and {:.3g} px at {}.",
+    text = fmt::format("The most influential axis is {}: the median error is {:.3g} px at {} and {:.3g} px at {}.",
                        places.title, least, least_at, most, most_at);
   }
   return text;
@@ -125,8 +126,7 @@ std::string uncertainty_finding(StudyView const& study) {
   std::vector<double> const coverage = study.values(coverage_measure);
   if (coverage.empty()) return "";
   return fmt::format(
-      "The estimated uncertainty covers {:.0f} % of the errors in the median case ({:.0f} to {:.0f} %; "
-      "68 % would be right).",
+      "The estimated uncertainty covers {:.0f} % of the errors in the median case ({:.0f} to {:.0f} %; ideal: 68 %).",
       100 * quantile(coverage, 0.5), 100 * quantile(coverage, 0), 100 * quantile(coverage, 1));
 }
 

@@ -59,8 +59,8 @@ std::string hash_of_input(std::string const& path, ManifestCase const& one) {
   try {
     return file_hash(path);
   } catch (DataError const&) {
-    throw DataError(path, fmt::format("cannot be read any more, as it was when the study was planned ({}); bring it "
-                                      "back, or plan the study again into another folder",
+    throw DataError(path, fmt::format("can no longer be read, as it was when the study was planned ({}); restore it, "
+                                      "or plan the study again into another folder",
                                       one.title()));
   }
 }
@@ -139,8 +139,8 @@ void CaseRunner::check_inputs(ManifestCase const& one) {
       known = {time, size, hash_of_input(path, one)};
     }
     if (known.hash == hash) continue;
-    throw DataError(path, fmt::format("has changed since the study was planned ({}); bring the old file back, or plan "
-                                      "the study again into another folder",
+    throw DataError(path, fmt::format("has changed since the study was planned ({}); restore the old file, or plan the "
+                                      "study again into another folder",
                                       one.title()));
   }
 }

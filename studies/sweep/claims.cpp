@@ -30,8 +30,8 @@ int open_claims(std::string const& path, Claims::Use use) {
 
 [[noreturn]] void not_opened(std::string const& path, Claims::Use use, int error) {
   if (use == Claims::Use::take && (error == EACCES || error == EPERM || error == EROFS)) {
-    throw OutputError(path, fmt::format("is read-only ({}), and who computes a case must lock it there; give the right "
-                                        "to write in {}, or run the study in a copy of it",
+    throw OutputError(path, fmt::format("is read-only ({}), but the process that computes a case must lock it there; "
+                                        "grant write permission in {}, or run a copy of the study",
                                         std::strerror(error), std::filesystem::path(path).parent_path().string()));
   }
   throw OutputError(path, fmt::format("cannot be opened ({})", std::strerror(error)));

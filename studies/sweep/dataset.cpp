@@ -49,7 +49,8 @@ std::optional<CaseWithImages> case_with_images(std::string const& folder) {
     std::string const name = std::string(sources) + "/displacement_px";
     if (truth.has(name)) return CaseWithImages{folder, sources, truth.shape(name)[0]};
   }
-  throw DataError((fs::path(folder) / case_file::truth).string(), "has the truth of neither dots nor particles");
+  throw DataError((fs::path(folder) / case_file::truth).string(),
+                  "contains neither the truth of dots nor that of particles");
 }
 
 std::vector<std::uint16_t> levels_of(Image<double> const& image) {
@@ -67,7 +68,7 @@ std::vector<std::uint16_t> read_frames(CaseWithImages const& one, std::vector<st
     Image<double> const image = read_image(path);
     if (static_cast<std::size_t>(image.rows()) != size[0] || static_cast<std::size_t>(image.columns()) != size[1]) {
       throw DataError(path,
-                      fmt::format("has {} x {} px, but the first case's images {} x {}; a data set holds images of "
+                      fmt::format("has {} x {} px, but the first case's images {} x {}; a data set contains images of "
                                   "one size: pack a study whose camera.pixels are the same in all cases",
                                   image.columns(), image.rows(), size[1], size[0]));
     }
@@ -85,9 +86,10 @@ struct DisplacementMapName {
 };
 constexpr std::array maps{
     DisplacementMapName{"/displacement_px", TruthAt::reference,
-                        "frame A: the displacement of what the first frame shows at this pixel"},
-    DisplacementMapName{"/displacement_mid_px", TruthAt::mid_position,
-                        "mid-time: the displacement of what is at this pixel midway between its images in both frames"},
+                        "frame A: displacement of the point that the first frame shows at this pixel"},
+    DisplacementMapName{
+        "/displacement_mid_px", TruthAt::mid_position,
+        "mid-time: displacement of the point whose images in both frames have this pixel as their midpoint"},
 };
 
 /// Prepares a stored case for ray tracing. @throws DataError if one of its input files has changed
@@ -134,7 +136,7 @@ PackedDataset pack_dataset(std::string const& run, std::string const& path, Rend
   }
   PackedDataset const packed{kept.size(), table.rows.size() - kept.size()};
   if (kept.empty()) {
-    throw DataError(run, "holds the images of no case; compute them with gladstone sweep run --keep-images");
+    throw DataError(run, "contains no images of cases; compute them with gladstone sweep run --keep-images");
   }
   table.rows = std::move(rows);
 
@@ -174,7 +176,7 @@ PackedDataset pack_dataset(std::string const& run, std::string const& path, Rend
     file.make_rows<double>(name, {all, 2}, {chunk, 2}, "px", "of every dot or particle, case by case",
                            "source, component (x right, y down)");
   }
-  file.make_rows<double>("/truth/flux", {all, 2}, {chunk, 2}, "fully lit px, of particles photons",
+  file.make_rows<double>("/truth/flux", {all, 2}, {chunk, 2}, "fully lit px; for particles photons",
                          "light of every dot or particle, case by case", "source, frame");
   file.write("/truth/begin", begin, {begin.size()}, "1", "sources of case i are rows begin[i] to begin[i + 1] - 1",
              "case");

@@ -58,7 +58,7 @@ JobArray make_job_array(std::string const& program, std::string const& run, std:
   std::size_t const size = options.cases_per_task == 0 ? least : options.cases_per_task;
   if (size < least) {
     throw std::invalid_argument(
-        fmt::format("{} cases with {} a task make more tasks than an array of this cluster may have ({}, its "
+        fmt::format("{} cases with {} per task require more tasks than an array of this cluster may have ({}, its "
                     "MaxArraySize); use --cases-per-task {} or more",
                     cases.size(), size, most, least));
   }

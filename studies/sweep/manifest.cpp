@@ -71,7 +71,7 @@ std::string line_start(std::size_t index) {
 std::string place_of(std::string const& path, std::size_t index) { return fmt::format("{}:{}", path, index + 1); }
 
 [[noreturn]] void damaged(std::string const& place) {
-  throw DataError(place, "is damaged or cut short (every line is one JSON object); plan the study again");
+  throw DataError(place, "is damaged or truncated (every line is one JSON object); plan the study again");
 }
 
 /// @param place  file and line, for messages
@@ -81,7 +81,7 @@ ManifestCase parse_line(std::string_view line, std::size_t index, std::string co
   std::optional<int> const version = version_of(json);
   if (!version) {
     throw DataError(place,
-                    "is no line of a gladstone manifest (it says no \"manifest\" version and \"index\"); give the "
+                    "is not a line of a gladstone manifest (it has no \"manifest\" version and \"index\"); give the "
                     "folder of a planned study");
   }
   if (version != manifest_version) {
@@ -99,18 +99,19 @@ ManifestCase parse_line(std::string_view line, std::size_t index, std::string co
   }
   if (!has_hash(line)) {
     throw DataError(place,
-                    "holds no hash of itself (an older gladstone has planned it); plan the study again: results "
+                    "contains no hash of itself (it was planned by an older gladstone); plan the study again: results "
                     "that still belong to it are kept");
   }
   if (std::string_view const hash = line.substr(line.size() - 18, 16); hash != one.line_hash) {
-    throw DataError(place, fmt::format("is not as it was planned (its hash is {}, not {}); plan the study again, and "
-                                       "change values in the study itself",
+    throw DataError(place, fmt::format("was changed after planning (its hash is {}, not {}); plan the study again, and "
+                                       "change values in the study file",
                                        one.line_hash, hash));
   }
   if (one.index != index) {
-    throw DataError(place, fmt::format("holds case {} (case {} belongs there: lines are missing or out of order); "
-                                       "plan the study again",
-                                       one.index, index));
+    throw DataError(
+        place,
+        fmt::format("contains case {} in place of case {} (lines are missing or out of order); plan the study again",
+                    one.index, index));
   }
   return one;
 }
@@ -209,9 +210,10 @@ std::string Manifest::line_hash(std::size_t index) const { return hash_of_line(l
 Manifest read_manifest(std::string const& run) {
   std::string const path = (std::filesystem::path(run) / run_file::manifest).string();
   if (std::error_code error; !std::filesystem::exists(path, error)) {
-    throw DataError(run, fmt::format("is no planned study (it holds no {}); make one with: gladstone sweep plan "
-                                     "STUDY.toml -o {}",
-                                     run_file::manifest, run));
+    throw DataError(
+        run, fmt::format(
+                 "is not a planned study (it contains no {}); create one with: gladstone sweep plan STUDY.toml -o {}",
+                 run_file::manifest, run));
   }
   return Manifest(path);
 }

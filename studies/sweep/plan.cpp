@@ -68,12 +68,13 @@ void refuse_foreign_run(fs::path const& folder) {
   if (fs::exists(manifest, error)) {
     UnguardedReading const to_be_replaced;
     if (version_of_manifest(InputFile(manifest.string(), "another folder"))) return;
-    throw OutputError(manifest.string(),
-                      "is no gladstone manifest, and would be overwritten; choose another folder, or remove this file");
+    throw OutputError(
+        manifest.string(),
+        "is not a gladstone manifest, and would be overwritten; choose another folder, or remove this file");
   }
   if (fs::exists(folder, error) && (!fs::is_directory(folder, error) || !left_by_a_cut_plan(folder))) {
     throw OutputError(folder.string(),
-                      fmt::format("is there and holds no planned study (no {}); choose another folder or empty it",
+                      fmt::format("exists and contains no planned study (no {}); choose another folder or empty it",
                                   run_file::manifest));
   }
 }
@@ -174,7 +175,7 @@ Planned write_plan(std::string const& run, StudyPlan const& plan) {
   ProtectedWriting const own;
   OutputFile output(manifest.string());
   fs::create_directories(folder / run_file::cases, error);
-  if (error) throw OutputError((folder / run_file::cases).string(), "cannot be made (" + error.message() + ')');
+  if (error) throw OutputError((folder / run_file::cases).string(), "cannot be created (" + error.message() + ')');
   OutputFile::write_text((folder / run_file::study).string(), plan.study().text);
   OutputFile::write_text((folder / run_file::base).string(), plan.base());
   Claims const made(run, Claims::Use::take);

@@ -112,7 +112,7 @@ CaseResult result_of(Json const& json, ResultPart part) {
 
 [[noreturn]] void cannot_be_written(std::string const& path, int error) {
   throw OutputError(path, fmt::format("cannot be written ({}); finished cases are kept, run the study again when there "
-                                      "is room and the right to write",
+                                      "are space and write permission",
                                       std::strerror(error)));
 }
 
@@ -179,11 +179,10 @@ std::optional<CaseResult> parse_result(std::string const& text, std::string cons
       Json::parse(head_size == std::string::npos ? text : text.substr(0, head_size) + '}', nullptr, false);
   try {
     if (auto const version = json.at("result").get_ref<std::uint64_t const&>(); version != result_version) {
-      throw DataError(path,
-                      fmt::format("is a result of version {} (this gladstone reads version {}); use the gladstone "
-                                  "that made it, plan the study into another folder, or remove {}/*.json to "
-                                  "compute every case again",
-                                  version, result_version, std::filesystem::path(path).parent_path().string()));
+      throw DataError(
+          path, fmt::format("is a result of version {} (this gladstone reads version {}); use the gladstone that made "
+                            "it, plan the study into another folder, or delete {}/*.json to compute every case again",
+                            version, result_version, std::filesystem::path(path).parent_path().string()));
     }
     return result_of(json, part);
   } catch (nlohmann::json::exception const&) {
@@ -197,9 +196,8 @@ std::optional<CaseResult> read_result(std::string const& run, std::size_t index,
   struct stat status {};
   if (::stat(path.c_str(), &status) != 0) return std::nullopt;
   if (!S_ISREG(status.st_mode)) {
-    throw DataError(path, fmt::format("is {}, and stands where the result of a case belongs; remove it or move it "
-                                      "elsewhere",
-                                      S_ISDIR(status.st_mode) ? "a folder" : "no regular file"));
+    throw DataError(path, fmt::format("is {}, in the place of a case's result; delete it or move it elsewhere",
+                                      S_ISDIR(status.st_mode) ? "a folder" : "not a regular file"));
   }
   std::string text;
   try {
@@ -221,9 +219,9 @@ bool has_result(std::string const& run, std::size_t index) {
 void remove_result(std::string const& run, std::size_t index) {
   std::string const path = result_path(run, index);
   if (::unlink(path.c_str()) != 0 && errno != ENOENT) {
-    throw OutputError(path, fmt::format("cannot be removed ({}), and its case is to be computed again; give the right "
-                                        "to write in {}",
-                                        std::strerror(errno), std::filesystem::path(path).parent_path().string()));
+    throw OutputError(
+        path, fmt::format("cannot be deleted ({}), but its case must be computed again; grant write permission in {}",
+                          std::strerror(errno), std::filesystem::path(path).parent_path().string()));
   }
 }
 

@@ -123,7 +123,7 @@ void run_cases(std::string const& run, Manifest const& cases, std::vector<std::s
   fs::path const results = fs::path(run) / run_file::cases;
   std::error_code error;
   fs::create_directories(results, error);
-  if (error) throw OutputError(results.string(), "cannot be made (" + error.message() + ')');
+  if (error) throw OutputError(results.string(), "cannot be created (" + error.message() + ')');
   remove_left_partials(run);
   Claims claims(run, Claims::Use::take);
   auto const is_done = [&](std::size_t index) {

@@ -40,7 +40,8 @@ class Started {
   /// @throws SlurmError if the program does not exist
   explicit Started(std::vector<std::string> command)
       : out_(std::tmpfile(), std::fclose), err_(std::tmpfile(), std::fclose) {
-    if (!out_ || !err_) throw OutputError("/tmp", fmt::format("no temporary file ({})", std::strerror(errno)));
+    if (!out_ || !err_)
+      throw OutputError("/tmp", fmt::format("cannot create a temporary file ({})", std::strerror(errno)));
     std::vector<char*> argv;
     for (std::string& word : command) argv.push_back(word.data());
     argv.push_back(nullptr);
@@ -161,10 +162,8 @@ JobEnd watch(std::string const& job, CountRemaining const& remaining,
   }
   return *end;
 } catch (Interrupted const&) {
-  throw Interrupted(
-      fmt::format("interrupted; job {0} goes on. To wait for it, give the same command again; to cancel "
-                  "it: scancel {0}",
-                  job));
+  throw Interrupted(fmt::format(
+      "interrupted; job {0} continues. To wait for it, repeat the command; to cancel it: scancel {0}", job));
 }
 
 std::string job_file(std::string const& script_path) {
@@ -218,7 +217,7 @@ JobEnd run_job_array(JobArray const& array, CountRemaining const& remaining) {
 }
 
 JobEnd wait_for_job(std::string const& job, CountRemaining const& remaining) {
-  spdlog::info("job {} of this study goes on: waiting for it", job);
+  spdlog::info("job {} of this study is still active: waiting for it", job);
   Clock::time_point due = Clock::now();
   return watch(job, remaining, [&]() -> std::optional<JobEnd> {
     if (Clock::now() < due) return std::nullopt;

@@ -43,7 +43,7 @@ std::string state_text(std::string const& run, Manifest const& cases, RunState c
   for (std::size_t i = 0; i < std::min(most_named, state.failed.size()); ++i) {
     CaseResult const& failed = state.failed[i];
     text += fmt::format("failed: {}: {}{}\n", cases[failed.index].title(), failed.error,
-                        failed.again ? " (the next run tries it again; fewer --jobs leave more memory to each)" : "");
+                        failed.again ? " (the next run tries it again; with fewer --jobs each has more memory)" : "");
   }
   text += and_more(state.failed.size());
   for (std::size_t i = 0; i < std::min(most_named, state.missing.size()); ++i) {

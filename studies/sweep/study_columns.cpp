@@ -12,22 +12,23 @@ std::string description_of(std::string const& measure) {
   static std::map<std::string, std::string> const known{
       {"signal_px", "rms of the ray truth at the vectors that count, per component"},
       {"blur_px",
-       "rms over those vectors of the standard deviation of a virtual dot's hits in the flow, per component"},
-      {"strain_max", "largest strain of the cone-averaged Eq. 9 in the view"},
+       "rms over these vectors of the standard deviation of a virtual dot's rays on the sensor in the measurement "
+       "image, per component"},
+      {"strain_max", "largest strain of the aperture-averaged Eq. 9 in the view"},
       {"magnification", "M = z_i / Z_B"},
-      {"step_mm", "step that rays were traced with"},
-      {"rays_per_dot", "rays of a dot"},
+      {"step_mm", "integration step of the rays"},
+      {"rays_per_dot", "rays per dot"},
       {"exposure", "electrons in a fully lit pixel on the axis"},
       {"dots", "dots on the target"},
-      {"caustic_fraction", "share of the view where the cone-averaged strain is 1 or more"},
+      {"caustic_fraction", "fraction of the view where the aperture-averaged strain is 1 or more"},
       {"saturated", "saturated pixels of both frames"},
-      {"warnings", "warnings that the case gave; they stand in its result"},
+      {"warnings", "number of warnings of the case; its result contains them"},
       {"repeats", "finished repeats of the point"},
       {"vectors", "vectors that count in all of them"},
-      {"ray_truth.systematic_px", "measured less ray truth: rms of what is the same in every repeat, per component"},
-      {"ray_truth.scatter_px", "measured less ray truth: standard deviation between repeats, per component"},
-      {"eq9.systematic_px", "measured less Eq. 9: rms of what is the same in every repeat, per component"},
-      {"eq9.scatter_px", "measured less Eq. 9: standard deviation between repeats, per component"},
+      {"ray_truth.systematic_px", "measured minus ray truth: rms of the error common to all repeats, per component"},
+      {"ray_truth.scatter_px", "measured minus ray truth: standard deviation between repeats, per component"},
+      {"eq9.systematic_px", "measured minus Eq. 9: rms of the error common to all repeats, per component"},
+      {"eq9.scatter_px", "measured minus Eq. 9: standard deviation between repeats, per component"},
       {"budget.estimator_px", "rms of the estimator's mean error over the patterns of the repeats, per component"},
       {"budget.pattern_px", "standard deviation of the estimator's error between patterns, per component"}};
   if (auto const found = known.find(measure); found != known.end()) return found->second;
@@ -67,12 +68,12 @@ std::vector<StudyColumn> axis_columns(StudyTable const& table) {
                        !axis.numeric});
     if (!axis.labelled) continue;
     columns.push_back({axis.key + ".label", [k](StudyRow const& row) { return static_cast<double>(row.value[k]); },
-                       axis.labels, "what the study calls the value of that key", true});
+                       axis.labels, "label of the value of that key", true});
   }
   columns.push_back({"case",
                      [](StudyRow const& row) { return static_cast<double>(row.index); },
                      {},
-                     "line of the manifest, from 0; of a point, the first",
+                     "line of the manifest, from 0; for a point the first one",
                      true});
   return columns;
 }
@@ -82,12 +83,12 @@ std::vector<StudyColumn> table_columns(StudyTable const& table) {
   columns.push_back({"seed",
                      [](StudyRow const& row) { return static_cast<double>(row.seed); },
                      {},
-                     "of target, rays and noise",
+                     "seed of target, rays and noise",
                      true});
   columns.push_back({"status",
                      [](StudyRow const& row) { return static_cast<double>(row.status); },
                      {"ok", "failed", "missing"},
-                     "what became of the case",
+                     "status of the case",
                      true});
   columns.push_back(
       {"repeat", [](StudyRow const& row) { return static_cast<double>(row.repeat); }, {}, "from 0", true});
@@ -99,13 +100,13 @@ std::vector<StudyColumn> table_columns(StudyTable const& table) {
   columns.push_back({"seconds_render",
                      [](StudyRow const& row) { return row.seconds_render; },
                      {},
-                     "time of building, planning and rendering; little where another case had done it"});
+                     "time of building, planning and rendering; little if another case had done it"});
   columns.push_back(
       {"seconds_correlate", [](StudyRow const& row) { return row.seconds_correlate; }, {}, "time of the correlation"});
   columns.push_back({"device",
                      [](StudyRow const& row) { return row.device == "cuda" ? 1.0 : 0.0; },
                      {"cpu", "cuda"},
-                     "what computes the case",
+                     "device that computed the case",
                      true});
   return columns;
 }

@@ -63,7 +63,7 @@ class StudyReader {
     study_.path = path;
     study_.text = std::move(text);
     if (document_.empty()) {
-      throw SetupError({{path, "is empty (no key is set); gladstone sweep plan --help shows a study to begin with"}});
+      throw SetupError({{path, "is empty (no key is set); gladstone sweep plan --help shows an example"}});
     }
   }
 
@@ -138,11 +138,11 @@ class StudyReader {
       }
     }
     if (std::find(axis.path.begin(), axis.path.end(), "") != axis.path.end()) {
-      problem(node.place, fmt::format("\"{}\" is no key path; write it as \"table.key\"", excerpt(key)));
+      problem(node.place, fmt::format("\"{}\" is not a key path; write it as \"table.key\"", excerpt(key)));
     }
     if (axis.path.size() > most_setup_depth) {
-      problem(node.place, fmt::format("\"{}\" has {} parts (no setup is so deep); write the key that is meant",
-                                      excerpt(key), axis.path.size()));
+      problem(node.place, fmt::format("\"{}\" has {} parts (no key of a setup has so many); correct it", excerpt(key),
+                                      axis.path.size()));
     }
     if (node.kind == Kind::array) {
       read_list(node, axis);
@@ -157,7 +157,8 @@ class StudyReader {
 
   void read_list(SetupNode const& array, AxisPlan& axis) {
     if (array.elements.empty()) {
-      problem(array.place, fmt::format("\"{}\" is empty (a study of no case); give at least one value", axis.key));
+      problem(array.place,
+              fmt::format("\"{}\" is empty (the study would have no case); give at least one value", axis.key));
     }
     std::map<std::string, std::string> label_of;  // label of each distinct value
     std::set<std::string> labels;
@@ -225,7 +226,7 @@ class StudyReader {
         if (nearest) {
           hint = fmt::format("; did you mean \"{}\"?", *nearest);
         } else if (axis.path.size() == 1) {  // lens.f_number = ...: "lens" was read as the axis
-          hint = fmt::format("; a key path stands in quotes: \"{}.{}\" = ...", axis.key, key);
+          hint = fmt::format("; write a key path in quotes: \"{}.{}\" = ...", axis.key, key);
         }
       }
       problem(table.place, fmt::format("\"{}\" {} (it is a table with {}){}", axis.key, forms, found, hint));
@@ -260,7 +261,8 @@ class StudyReader {
     if (study_.mode == StudyMode::sobol) {
       study_.samples = static_cast<std::size_t>(table.required_integer("samples", 1, most));
     } else {
-      table.refuse("samples", "belongs to mode = \"sobol\" (a grid and a zip have as many cases as their axes give)");
+      table.refuse("samples",
+                   "applies to mode = \"sobol\" only (the axes determine the number of cases of a grid or a zip)");
     }
     study_.repeats = static_cast<std::size_t>(table.integer("repeats", 1, 1, most));
     study_.seed = static_cast<std::uint64_t>(table.integer("seed", 1, 0, most));
@@ -278,10 +280,9 @@ class StudyReader {
       AxisPlan const& first = study_.axes.front();
       for (AxisPlan const& axis : study_.axes) {
         if (axis.size() == first.size()) continue;
-        problem(axis.place,
-                fmt::format("\"{}\" has {} values but \"{}\" has {} (a zip takes the values of all axes side by side); "
-                            "give as many, or use mode = \"grid\"",
-                            axis.key, axis.size(), first.key, first.size()));
+        problem(axis.place, fmt::format("\"{}\" has {} values but \"{}\" has {} (a zip combines the values of all axes "
+                                        "one by one); give equally many, or use mode = \"grid\"",
+                                        axis.key, axis.size(), first.key, first.size()));
       }
     }
     double cases = static_cast<double>(study_.repeats);
@@ -326,10 +327,10 @@ class StudyReader {
       for (AxisPlan const& axis : study_.axes) {
         if (axis.path.size() <= above.path.size()) continue;
         if (!std::equal(above.path.begin(), above.path.end(), axis.path.begin())) continue;
-        problem(axis.place, fmt::format("\"{0}\" lies in \"{1}\", which is an axis too (line {2}), and one would "
-                                        "overwrite the other; write its values into the tables of \"{1}\", or take one "
-                                        "of the two out",
-                                        axis.key, above.key, above.place.line));
+        problem(axis.place,
+                fmt::format("\"{0}\" is part of \"{1}\", which is also an axis (line {2}), so that one would overwrite "
+                            "the other; write its values into the tables of \"{1}\", or remove one of the two",
+                            axis.key, above.key, above.place.line));
       }
     }
   }

@@ -137,7 +137,7 @@ void blame_the_axis(StudyFile const& study, std::vector<AxisValue> const& values
     if (unknown) problem.where = where(study, study.axes[k].place);
     if (study.mode == StudyMode::sobol && study.axes[k].range &&
         problem.message.find("whole number") != std::string::npos) {
-      problem.message += "; \"sobol\" takes any numbers between a range's ends, so write the whole ones as a list";
+      problem.message += "; \"sobol\" draws any numbers between the ends of a range, so write integers as a list";
     }
   }
 }

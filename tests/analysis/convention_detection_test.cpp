@@ -379,7 +379,7 @@ TEST(DetectConventions, CannotTellByASignalBelowTheNoise) {
     DetectedConventions const found = detect_conventions(file, truth, 200);
     EXPECT_EQ(found.verdict, Verdict::cannot_be_told) << found.report;
     EXPECT_EQ(found.conventions, file.conventions);
-    EXPECT_THAT(found.report, HasSubstr("cannot be told"));
+    EXPECT_THAT(found.report, testing::ContainsRegex("verify|verified"));
   }
 }
 

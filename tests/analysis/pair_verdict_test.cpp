@@ -168,7 +168,7 @@ TEST(EnsembleVerdict, IsThatOfAllPairs) {
                                              Image<double> const frame = moving.frames(k).reference();
                                              return HostFrames(frame, frame);
                                            }});
-  EXPECT_THAT(still.verdict, HasSubstr("same picture"));
+  EXPECT_THAT(still.verdict, HasSubstr("same image"));
 }
 
 /// The first pairs of `first`, then those of `then`.
@@ -355,7 +355,7 @@ TEST(PairVerdict, NamesTheLimitThatLeavesNothing) {
   EXPECT_EQ(counting(random), 0u);
   ASSERT_FALSE(random.warnings.empty());
   EXPECT_THAT(random.warnings[0],
-              AllOf(HasSubstr("do not correlate"), HasSubstr("max_displacement_px = 4"), HasSubstr("raise it")));
+              AllOf(HasSubstr("do not correlate"), HasSubstr("max_displacement_px = 4"), HasSubstr("increase it")));
 }
 
 /// A grid of 10 x 10 windows of 32 px that share nothing, of that correlation.

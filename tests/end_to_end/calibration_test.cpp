@@ -253,19 +253,19 @@ TEST_F(Calibrations, FiguresShowTheResiduals) {
 TEST_F(Calibrations, WhatCannotBeCalibratedIsRefused) {
   write("setup.toml", with(wide, "[-20.0, 0.0, 20.0]", "[0.0]"));
   render("one");
-  expect_refused({"calibrate", "one"}, 2, {"one/setup.toml", "names one plane", "two planes or more"});
+  expect_refused({"calibrate", "one"}, 2, {"one/setup.toml", "has one plane", "two planes or more"});
   write("setup.toml", with(wide, "extent_mm = [60.0, 45.0]", "extent_mm = [10.0, 10.0]"));
   render("few");
-  expect_refused({"calibrate", "few"}, 2, {"few/plane_000.tif", "shows 9 dots of the grid, where 12 are needed"});
+  expect_refused({"calibrate", "few"}, 2, {"few/plane_000.tif", "shows 9 dots of the grid, but 12 are required"});
   write("setup.toml", small_setup);
   render("bos");
-  expect_refused({"calibrate", "bos"}, 2, {"bos: is a case of BOS", "experiment = \"calibration\""});
+  expect_refused({"calibrate", "bos"}, 2, {"bos: is a BOS case", "experiment = \"calibration\""});
   expect_refused({"calibrate", "nowhere"}, 2, {"nowhere: is not a case"});
   write("setup.toml", wide);
   render("case");
   fs::copy_file(in("bos/reference.tif"), in("case/plane_001.tif"), fs::copy_options::overwrite_existing);
   expect_refused({"calibrate", "case"}, 2,
-                 {"case/plane_001.tif", "is 64 x 64 px where the planes before it are 640 x 480"});
+                 {"case/plane_001.tif", "is 64 x 64 px, but the images of the previous planes are 640 x 480"});
   fs::remove(in("case/plane_001.tif"));
   expect_refused({"calibrate", "case"}, 2, {"case/plane_001.tif"});
 }
@@ -304,9 +304,8 @@ TEST_F(Calibrations, TakePicturesFromElsewhere) {
   auto const own = json_of(with({"calibrate", "roughly.toml", "-o", "camera", "--quiet", "--no-figures"}, 3));
   auto const cases = calibrate("case");
   EXPECT_EQ(names("camera"), std::vector<std::string>{"calibration.h5"});
-  EXPECT_THAT(
-      succeed(with({"calibrate", "roughly.toml", "-o", "camera", "--quiet", "--no-figures"}, 3)),
-      testing::HasSubstr("no columns of a rendered camera to compare with: pictures of your own have no truth"));
+  EXPECT_THAT(succeed(with({"calibrate", "roughly.toml", "-o", "camera", "--quiet", "--no-figures"}, 3)),
+              testing::HasSubstr("no comparison with a rendered camera: your own images have no truth"));
   EXPECT_EQ(own["dots"], cases["dots"]);
   EXPECT_EQ(own["planes"][2]["z_mm"], 20.0);
   for (auto const& [name, parameter] : cases["pinhole"]["parameters"].items()) {
@@ -318,7 +317,7 @@ TEST_F(Calibrations, TakePicturesFromElsewhere) {
     EXPECT_FALSE(here.contains("rendered"));
   }
   expect_refused(with({"calibrate", "roughly.toml", "-o", "other", "--quiet"}, 2), 2,
-                 {"names 3 planes where 2 pictures are given"});
+                 {"has 3 planes, but 2 images are given"});
   std::string two = roughly;
   std::string const one_camera = "[camera]";
   two.replace(two.find(one_camera), one_camera.size(), "[[camera]]\nname = \"left\"");
@@ -326,11 +325,11 @@ TEST_F(Calibrations, TakePicturesFromElsewhere) {
   Outcome const several = gladstone(with({"calibrate", "two.toml", "-o", "other", "--quiet"}, 3));
   EXPECT_EQ(several.exit_code, 2);
   EXPECT_EQ(several.err,
-            "gladstone: two.toml: is of 2 cameras (left, right), and pictures are of one; leave the [[camera]] "
-            "that took them alone in it, and calibrate the others likewise\n");
+            "gladstone: two.toml: has 2 cameras (left, right), but the images belong to one; keep only its [[camera]], "
+            "and calibrate the others in the same way\n");
   std::reverse(pictures.begin(), pictures.end());
   expect_refused(with({"calibrate", "roughly.toml", "-o", "other", "--quiet"}, 3), 2,
-                 {"roughly.toml: fits a camera with the dots behind it only", "in the order of calibration.planes_mm"});
+                 {"roughly.toml: only fits a camera with the dots behind it", "in the order of calibration.planes_mm"});
 }
 
 /// Pictures of a rendered case, calibrated as somebody's own.
@@ -357,10 +356,10 @@ class CalibrationPictures : public Calibrations {
 };
 
 TEST_F(CalibrationPictures, ThatAreGivenTwiceOrInAnotherOrderAreRefusedByName) {
-  expect_refused(arguments({p1, p1, p1}), 2, {"case/plane_001.tif", "is the same picture as case/plane_001.tif"});
-  expect_refused(arguments({p0, p0, p2}), 2, {"is the same picture as case/plane_000.tif", "Z = 0 mm", "-20 mm"});
+  expect_refused(arguments({p1, p1, p1}), 2, {"case/plane_001.tif", "is the same image as case/plane_001.tif"});
+  expect_refused(arguments({p0, p0, p2}), 2, {"is the same image as case/plane_000.tif", "Z = 0 mm", "-20 mm"});
   expect_refused(arguments({p0, p2, p1}), 2,
-                 {"fits in another order of the pictures: case/plane_000.tif, case/plane_001.tif, case/plane_002.tif"});
+                 {"fits in another order of the images: case/plane_000.tif, case/plane_001.tif, case/plane_002.tif"});
   EXPECT_FALSE(fs::exists(in("camera/calibration.h5")));
 }
 
@@ -373,7 +372,7 @@ TEST_F(CalibrationPictures, OfOnePlaneTakenTwiceAreRefused) {
   }
   write_tiff(in("again.tif").string(), other, {12, 10e-6, ""});
   expect_refused(arguments({p0, "again.tif", p2}), 2,
-                 {"again.tif: shows the dots where case/plane_000.tif shows them"});
+                 {"again.tif: shows the dots at the same pixels as case/plane_000.tif"});
 }
 
 // Dirt that touches a dot draws its centroid by pixels: such dots are counted and left out, and the camera stays.
@@ -430,7 +429,7 @@ TEST_F(CalibrationPictures, WithAMiddleDotThatIsOffByOneAreCorrected) {
                          "[camera.pose]\nposition_mm = [-5.0, 0.0, 300.0]\nrotation_deg = [0, 0, 0]\n"));
   succeed({"render", "one.toml", "-o", "aside", "--quiet"});
   auto const json = calibrated({"aside/plane_000.tif", p1, p2});
-  EXPECT_THAT(json["warnings"].dump(), testing::HasSubstr("the middle dot was taken 1 columns and 0 rows off"));
+  EXPECT_THAT(json["warnings"].dump(), testing::HasSubstr("the middle dot was wrong by 1 columns and 0 rows"));
   auto const& parameter = json["pinhole"]["parameters"]["fx"];
   EXPECT_NEAR(parameter["value"].get<double>(), fx, 4 * parameter["standard_error"].get<double>());
   EXPECT_LT(json["pinhole"]["rms_px"].get<double>(), 0.01);

@@ -166,7 +166,7 @@ TEST_F(Case, ColourPicturesAreSaidToBeTurnedToGrey) {
   Outcome const outcome =
       gladstone({"correlate", "colour.ppm", "colour.ppm", "-o", "v.csv", "--set", "correlate.window_px=[16]"});
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_THAT(outcome.err, HasSubstr("colour.ppm is a colour picture: its luminance (Rec. 709) is correlated"));
+  EXPECT_THAT(outcome.err, HasSubstr("colour.ppm is a colour image: its luminance (Rec. 709) is correlated"));
   EXPECT_EQ(json_of({"info", "image", "colour.ppm"})["channels"], 3);
 }
 
@@ -175,7 +175,7 @@ TEST_F(Case, SetOfACorrelationChangesTheCasesOwnSettings) {
   EXPECT_EQ(json_of({"correlate", "case"})["vectors"], 49);  // 16 px windows every 8 px: 7 x 7
   EXPECT_EQ(json_of({"correlate", "case", "--set", "correlate.overlap=0"})["vectors"], 16);  // every 16 px
   expect_refused({"correlate", "case", "--set", "lens.f_number=8"}, 2,
-                 {"--set lens.f_number=8", "no key of [correlate]"});
+                 {"--set lens.f_number=8", "not a key of [correlate]"});
 }
 
 // Each valid vector has its sigma, and the comparison says what it is worth; both components of the vectors count.

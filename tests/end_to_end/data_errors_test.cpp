@@ -156,11 +156,11 @@ TEST_F(DataErrors, AFolderThatIsNoCase) {
 
 TEST_F(DataErrors, CompareWithoutVectors) {
   render("case");
-  expect_refused({"compare", "case"}, 2, {"case/vectors.h5: is not there", "gladstone correlate case"});
+  expect_refused({"compare", "case"}, 2, {"case/vectors.h5: does not exist", "gladstone correlate case"});
   expect_refused({"compare", "case", "--vectors", "v.csv"}, 2, {"v.csv: does not exist; check --vectors"});
   expect_refused({"compare", "case", "--vectors", "case"}, 2, {"case: is a folder"});
   std::filesystem::remove(in("case/truth.h5"));
-  expect_refused({"compare", "case"}, 2, {"case/truth.h5: is not there", "gladstone render SETUP.toml -o case"});
+  expect_refused({"compare", "case"}, 2, {"case/truth.h5: does not exist", "gladstone render SETUP.toml -o case"});
 }
 
 TEST_F(DataErrors, DamagedTruth) {

@@ -189,9 +189,9 @@ TEST_F(ForeignVectors, ImpossibleOnesAreLeftOutAndCounted) {
   EXPECT_NEAR(errors["ray_truth"]["rms_px"].get<double>() / ours_["ray_truth"]["rms_px"].get<double>(), 1.0, 0.1);
   Outcome const told = gladstone({"compare", "case", "--no-figures", "--vectors", "some.csv"});
   EXPECT_THAT(told.err,
-              testing::HasSubstr("6 of " + std::to_string(x_.size()) + " vectors are left out: 2 with a place"));
+              testing::HasSubstr("6 of " + std::to_string(x_.size()) + " vectors are excluded: 2 with a position"));
   EXPECT_THAT(told.out,
-              testing::HasSubstr("left out as well: 2 with a place that is nan or infinite, 2 outside the image"));
+              testing::HasSubstr("also excluded: 2 with a position that is nan or infinite, 2 outside the image"));
 }
 
 TEST_F(ForeignVectors, ImpossibleOnesOfOurOwnFilesAreLeftOutToo) {

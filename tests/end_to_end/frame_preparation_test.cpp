@@ -99,7 +99,7 @@ TEST_F(MaskedFrames, MayHaveAnotherMaskThanWhenTheyWereRendered) {
 TEST_F(MaskedFrames, WithNothingLeftAreNoMeasurement) {
   Outcome const outcome = correlate("[[correlate.mask]]\nkind = \"intensity\"\nbelow_dn = 1e9\n");
   EXPECT_EQ(outcome.exit_code, 1) << outcome.err;
-  EXPECT_THAT(outcome.err, HasSubstr("the masks leave no pixel"));
+  EXPECT_THAT(outcome.err, HasSubstr("the masks cover every pixel"));
   auto const json = nlohmann::json::parse(outcome.out);
   EXPECT_EQ(json["masked"], json["vectors"]);
 }
@@ -140,8 +140,8 @@ TEST_F(Ensembles, NamePairsOfOnePicture) {
   std::string const a = "case/reference.tif", b = "case/flow.tif";
   Outcome const outcome =
       gladstone({"correlate", "--ensemble", a, b, a, a, "-o", "v.h5", "--set", "correlate.window_px=[16]"});
-  EXPECT_THAT(outcome.err, HasSubstr("1 of 2 pairs are one picture twice"));
-  EXPECT_THAT(outcome.err, HasSubstr("first that with case/reference.tif"));
+  EXPECT_THAT(outcome.err, HasSubstr("1 of 2 pairs consist of two identical images"));
+  EXPECT_THAT(outcome.err, HasSubstr("the first with case/reference.tif"));
 }
 
 TEST_F(Ensembles, AreOfPairs) {

@@ -224,7 +224,7 @@ TEST_F(Inputs, PicturesThatAreStoredTurnedAreTurnedUprightWithAWarning) {
   Outcome const outcome =
       gladstone({"correlate", "turned_a.tif", "turned_b.tif", "-o", "turned.csv", "--set", "correlate.window_px=[32]"});
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_THAT(outcome.err, HasSubstr("turned_a.tif is stored turned or mirrored (Orientation 3)"));
+  EXPECT_THAT(outcome.err, HasSubstr("turned_a.tif is stored rotated or mirrored (Orientation 3)"));
   EXPECT_EQ(read("turned.csv"), read("upright.csv"));
   EXPECT_EQ(json_of({"info", "image", "turned_a.tif"})["orientation"], 3);
 }

@@ -225,7 +225,7 @@ TEST_F(Places, AStudyIsRefusedItsPlaceBeforeItIsPlanned) {
   write("thesis/chapter1.tex", "precious");
   write("study.toml", "base = \"setup.toml\"\n[axes]\n\"lens.f_number\" = [8]\n");
   expect_refused({"sweep", "plan", "study.toml", "-o", "thesis", "--device", "cpu"}, 2,
-                 {"thesis: is there and holds no"});
+                 {"thesis: exists and contains no"});
 }
 
 }  // namespace

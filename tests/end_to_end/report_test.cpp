@@ -34,15 +34,15 @@ TEST_F(Reports, OfAStudyHoldsItsNumbersAndPictures) {
   EXPECT_EQ(result["report"], "run/report.html");
   EXPECT_THAT(result["findings"].get<std::string>(), HasSubstr("The largest cause of error is "));
   std::string const html = read("run/report.html");
-  EXPECT_THAT(html, HasSubstr("How wrong is the measured displacement against Eq. 9"));
+  EXPECT_THAT(html, HasSubstr("How large is the error of the measured displacement against Eq. 9"));
   EXPECT_THAT(html, HasSubstr("6 of 6 cases are finished"));
   // the set-up is the base's, at its own stop; the best case's stands with that case
-  EXPECT_THAT(html, HasSubstr("Layout of the base</figcaption>\n<img alt=\"Seen from the side, to scale: the dots "
-                              "stand Z_D = 250 mm behind the medium's mid-plane, the lens (f = 105 mm, f/11)"));
+  EXPECT_THAT(html, HasSubstr("Layout of the base</figcaption>\n<img alt=\"Side view, to scale: the dots are Z_D = "
+                              "250 mm behind the mid-plane of the medium, the lens (f = 105 mm, f/11)"));
   std::string const best = html.substr(html.find("Best and worst case"));
-  EXPECT_THAT(best, HasSubstr(", the best</figcaption>\n<img alt=\"Seen from the side, to scale: the dots stand Z_D"));
+  EXPECT_THAT(best, HasSubstr(", the best</figcaption>\n<img alt=\"Side view, to scale: the dots are Z_D"));
   EXPECT_LT(html.find("Layout of the base"), html.find("Best and worst case"));
-  EXPECT_THAT(html, HasSubstr("The setup that every case starts from (base)</summary>"));
+  EXPECT_THAT(html, HasSubstr("The base setup of all cases</summary>"));
   EXPECT_THAT(html, HasSubstr("<li>f-number: 8; 16; 32</li>"));
   for (char const* const file : {"study.toml", "base.toml", "manifest.jsonl"}) {
     EXPECT_THAT(html, HasSubstr(byte_sha256(in(std::string("run/") + file).string()))) << file;
@@ -69,7 +69,7 @@ TEST_F(Reports, TakeAComparisonThatFits) {
   auto const reused = [this] {
     Outcome const outcome = gladstone({"report", "case"});
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-    return outcome.err.find("took the comparison") != std::string::npos;
+    return outcome.err.find("reused the comparison") != std::string::npos;
   };
   EXPECT_FALSE(reused()) << "there is none yet";
   nlohmann::json const fresh = data_of("case/report.html");
@@ -134,7 +134,7 @@ TEST_F(Reports, OfACaseAddUpTheirCauses) {
     EXPECT_NEAR(rms, std::sqrt(2 * errors[component] / components), 0.005 * rms + 1e-6) << component;
   }
   EXPECT_THAT(said, HasSubstr("the rms error against truth on the window of deformed frames, "));
-  EXPECT_THAT(said, HasSubstr("px: the true displacement, averaged over the window, less that "
+  EXPECT_THAT(said, HasSubstr("px: the true displacement averaged over the window minus that "
                               "of Eq. 9, rms over the vectors"));
   for (char const* const frame : {"reference", "flow"}) {
     EXPECT_THAT(said, HasSubstr(std::string("<td>") + frame + "</td><td>pixels</td><td>" +
@@ -143,7 +143,7 @@ TEST_F(Reports, OfACaseAddUpTheirCauses) {
   std::string const html = read("case/report.html");
   EXPECT_THAT(html, HasSubstr("expanded uncertainty"));
   EXPECT_THAT(html, HasSubstr("Layout of the case"));
-  EXPECT_THAT(html, HasSubstr("<img alt=\"Seen from the side, to scale: the dots stand Z_D = "));
+  EXPECT_THAT(html, HasSubstr("<img alt=\"Side view, to scale: the dots are Z_D = "));
   EXPECT_THAT(html, HasSubstr("Design map of the case"));
 }
 
@@ -171,9 +171,9 @@ TEST_F(Reports, OfPivShowTheSheetAndWhatAStopMakesOfIt) {
   succeed({"correlate", "piv", "--set", "correlate.window_px=[24]", "--quiet"});
   succeed({"report", "piv", "--figures", "drawn", "--quiet"});
   std::string const html = read("piv/report.html");
-  EXPECT_THAT(html, HasSubstr("<img alt=\"Seen from the side, to scale: the laser sheet is 1 mm thick and stands Z_A = "
-                              "750 mm before the lens at f/16"));
-  EXPECT_THAT(html, HasSubstr("What each stop makes of the particles. At f/16"));
+  EXPECT_THAT(html, HasSubstr("<img alt=\"Side view, to scale: the laser sheet is 1 mm thick and is Z_A = "
+                              "750 mm in front of the lens at f/16"));
+  EXPECT_THAT(html, HasSubstr("Particle images against the f-number. At f/16"));
   EXPECT_THAT(html, HasSubstr("the rms error against truth on the window, "));  // one pass deforms nothing
   EXPECT_THAT(html, testing::Not(HasSubstr("estimated uncertainty\"")));        // none was asked for
   for (char const* const figure : {"drawn/layout.png", "drawn/design_map.png"}) {
@@ -214,7 +214,7 @@ window_px = [32, 16]
   EXPECT_THAT(findings, HasSubstr("combined standard uncertainty"));
   EXPECT_THAT(findings, HasSubstr("coverage factor k = 2.00"));
   EXPECT_THAT(findings, HasSubstr("kg/m^4, in the simulated twin"));
-  EXPECT_THAT(findings, HasSubstr("was measured: the true displacement, averaged over the window, less that of Eq. 9"));
+  EXPECT_THAT(findings, HasSubstr("was measured: the true displacement averaged over the window minus that of Eq. 9"));
   std::string const html = read("measured/report.html");
   EXPECT_THAT(html, HasSubstr("of the simulated twin and not of the measurement itself"));
   EXPECT_THAT(html, HasSubstr("data-chart=\"budget\""));
@@ -227,7 +227,7 @@ window_px = [32, 16]
   }
   EXPECT_THAT(html, HasSubstr(byte_sha256(in("measured/setup.toml").string())));
   EXPECT_THAT(html, HasSubstr(dataset_sha256(in("measured/vectors.h5").string())));
-  EXPECT_THAT(html, HasSubstr("the dots stand Z_D = 250 mm behind the medium"));
+  EXPECT_THAT(html, HasSubstr("the dots are Z_D = 250 mm behind the mid-plane of the medium"));
   EXPECT_THAT(html, HasSubstr("of type B: by the formula of the random error (F26), since the vectors have none"));
   succeed({"report", "measured", "--format", "md", "-o", "text/m.md", "--figures", "paper", "--figure-format", "svg",
            "--quiet"});
@@ -279,19 +279,19 @@ TEST_F(Reports, OfAMeasurementKnowWhoseFramesAndVectorsTheyAre) {
   write("measured/setup.toml", with(setup, "pixels = [64, 64]", "pixels = [48, 32]"));
   expect_refused({"report", "measured"}, 2,
                  {"measured/reference.tif: has 64 x 64 px", "the camera of measured/setup.toml has 48 x 32 px",
-                  "write camera.pixels = [64, 64]"});
+                  "set camera.pixels = [64, 64]"});
   for (char const* const name : {"reference.tif", "flow.tif"})
     std::filesystem::remove(in(std::string("measured/") + name));
   expect_refused({"report", "measured"}, 2,
                  {"measured/vectors.h5: has ", "vectors outside the 48 x 32 px of the camera of measured/setup.toml",
-                  "write camera.pixels = [columns, rows]"});
+                  "set camera.pixels = [columns, rows]"});
   write("measured/setup.toml", setup);
   std::filesystem::copy_file(in("case/reference.tif"), in("measured/reference.tif"));
   std::filesystem::copy_file(in("case/reference.tif"), in("measured/flow.tif"));
   expect_refused({"report", "measured"}, 2,
                  {"measured/vectors.h5: was measured on another flow frame than measured/flow.tif"});
   std::filesystem::remove(in("measured/vectors.h5"));
-  expect_refused({"report", "measured"}, 2, {"measured/vectors.h5: is not there", "gladstone correlate"});
+  expect_refused({"report", "measured"}, 2, {"measured/vectors.h5: does not exist", "gladstone correlate"});
   // a frame of a case that is another by now
   std::filesystem::copy_file(in("case/reference.tif"), in("case/flow.tif"),
                              std::filesystem::copy_options::overwrite_existing);
@@ -357,7 +357,7 @@ window_px = [32, 16]
   EXPECT_THAT(findings, HasSubstr("coverage factor k = 13.97"));
   EXPECT_THAT(read("measured/report.html"), HasSubstr("<td>t, 1 degree of freedom</td>"));
   EXPECT_THAT(read("measured/report.html"), HasSubstr("is of type A: the standard deviation of the mean of 2 repeats"));
-  EXPECT_THAT(read("measured/report.html"), HasSubstr("the error that goes with their pattern"));
+  EXPECT_THAT(read("measured/report.html"), HasSubstr("the error due to their pattern"));
   nlohmann::json const data = data_of("measured/report.html");
   for (nlohmann::json const& one : data["fields"]) {
     if (one["name"] != "random") continue;
@@ -369,8 +369,8 @@ window_px = [32, 16]
   expect_refused({"report", "measured", "--vectors", "measured/1.csv", "--repeats", "measured/1.csv"}, 2,
                  {"measured/1.csv", "has the same vectors as measured/1.csv", "leave it out"});
   expect_refused({"report", "measured", "--vectors", "measured/1.csv", "--repeats", "measured/other.csv"}, 2,
-                 {"other.csv", "at other places"});
-  expect_refused({"report", "case1", "--repeats", "measured/2.csv"}, 2, {"is no measurement"});
+                 {"other.csv", "at other positions"});
+  expect_refused({"report", "case1", "--repeats", "measured/2.csv"}, 2, {"is not a measurement"});
 }
 
 TEST_F(Reports, AreWrittenAsMarkdownWithFiguresBesideIt) {
@@ -401,7 +401,7 @@ TEST_F(Reports, SayWhatIsMissing) {
   expect_refused({"report", "case", "--quiet"}, 2, {"vectors.h5", "gladstone correlate"});
   write("study.toml", "base = \"setup.toml\"\n[axes]\n\"lens.f_number\" = [8, 16]\n");
   succeed({"sweep", "plan", "study.toml", "-o", "run", "--quiet", "--device", "cpu"});
-  expect_refused({"report", "run"}, 2, {"holds no finished case", "gladstone sweep run run"});
+  expect_refused({"report", "run"}, 2, {"contains no finished case", "gladstone sweep run run"});
   expect_refused({"report", "case", "--format", "pdf"}, 2, {"--format"});
   expect_refused({"report", "run", "--vectors", "vectors.csv"}, 2, {"is a study", "--vectors"});
   write("cut.csv", "x_px,y_px,u_px,v_px\n10,10,0.1,0.2\n20,10,0.");

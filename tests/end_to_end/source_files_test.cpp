@@ -96,7 +96,7 @@ TEST_F(Sources, VectorsThatTellNoFramesReadUnverified) {
   succeed({"correlate", "case", "-o", "v.csv"});
   Outcome const outcome = gladstone({"compare", "case", "--vectors", "v.csv", "--no-figures"});
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_THAT(outcome.err, AllOf(HasSubstr("unverified: v.csv carries no SHA-256 of its frames")));
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("unverified: v.csv contains no SHA-256 of its frames")));
   EXPECT_EQ(outcome.err.find("warning"), outcome.err.rfind("warning")) << outcome.err;
   EXPECT_EQ(errors()["made_from"]["frames"], "unverified");
   EXPECT_EQ(errors()["made_from"]["vectors_sha256"], byte_sha256(in("v.csv").string()));

@@ -550,9 +550,9 @@ TEST_F(Sweeps, BadCommandLinesAreRefused) {
   expect_refused({"sweep", "run", "run", "--shard", "3/3"}, 2, {"--shard: 3/3 is not I/N"});
   expect_refused({"sweep", "run", "run", "--case", "12"}, 2,
                  {"--case: 12 is not in the study, which has cases 0 to 11"});
-  expect_refused({"sweep", "run", "run", "--case", ""}, 2, {"--case: \"\" is no list of cases; write 17, or 0-3,7"});
+  expect_refused({"sweep", "run", "run", "--case", ""}, 2, {"--case: \"\" is not a list of cases; write 17, or 0-3,7"});
   expect_refused({"sweep", "run", "run", "--retry-faild"}, 2, {"--retry-failed"});
-  expect_refused({"sweep", "status", "."}, 2, {"is no planned study", "gladstone sweep plan"});
+  expect_refused({"sweep", "status", "."}, 2, {"is not a planned study", "gladstone sweep plan"});
   expect_refused({"sweep", "plan", "nothing.toml", "-o", "other"}, 2, {"nothing.toml: does not exist"});
   write("other.toml", with(small_study, "[8, 16, 32]", "[8, 16, 64]"));
   succeed({"sweep", "run", "run", "--quiet"});

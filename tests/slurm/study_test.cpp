@@ -153,7 +153,7 @@ TEST_F(StudyOnACluster, OutlivesTheOneWhoWaits) {
   }
   EXPECT_NE(output_of("squeue --noheader --jobs=" + id), "");
   Program program(submit(), folder_);
-  std::string const waits = "job " + id + " of this study goes on";
+  std::string const waits = "job " + id + " of this study is still active";
   EXPECT_TRUE(comes_true([&] { return program.err().find(waits) != std::string::npos; })) << program.err();
   claims.release(0);
   Outcome const outcome = program.finish(90s);

@@ -115,7 +115,7 @@ TEST(ShownBudget, CountsAWindowAfterItsPasses) {
   EXPECT_NEAR(budget["terms"]["window"]["bias_u_px"].get<double>(), -0.46, 1e-12) << "as ever";
   EXPECT_NEAR(budget["after_passes"]["terms"]["window"]["bias_u_px"].get<double>(), -0.02, 1e-12);
   EXPECT_NEAR(budget["after_passes"]["terms"]["estimator"]["rms_px"].get<double>(), 0, 1e-12);
-  EXPECT_THAT(error_report(comparison), testing::HasSubstr("of an undeformed window"));
+  EXPECT_THAT(error_report(comparison), testing::HasSubstr("for an undeformed window"));
 }
 
 }  // namespace

@@ -72,8 +72,8 @@ TEST(CalibrationFit, CorrectsTheMiddleDotsOfTwoPlanesOfATiltedPlate) {
     EXPECT_NEAR(calibration.pinhole.camera.fx(), focal_length_px, 0.01);
     EXPECT_NEAR(calibration.pinhole.camera.fy(), focal_length_px, 0.01);
     EXPECT_EQ(calibration.drift, Vec2d{});
-    EXPECT_THAT(calibration.warnings, testing::ElementsAre(testing::HasSubstr("plane0.tif: the middle dot was taken"),
-                                                           testing::HasSubstr("plane2.tif: the middle dot was taken")));
+    EXPECT_THAT(calibration.warnings, testing::ElementsAre(testing::HasSubstr("plane0.tif: the middle dot was wrong"),
+                                                           testing::HasSubstr("plane2.tif: the middle dot was wrong")));
   }
 }
 
@@ -89,8 +89,8 @@ TEST(CalibrationFit, RefusesACameraOfUnequalFocalLengthsFromGuessedMiddleDots) {
   } catch (DataError const& error) {
     EXPECT_THAT(error.what(), testing::HasSubstr("the middle dots of plane0.tif, plane2.tif are guesses"));
   }
-  EXPECT_THAT(fitted(dots, MiddleBy::whole_grid).warnings, testing::Contains(testing::HasSubstr("differ, though")))
-      << "with the whole grid in every picture it is the plate that is wrong";
+  EXPECT_THAT(fitted(dots, MiddleBy::whole_grid).warnings, testing::Contains(testing::HasSubstr("differ, although")))
+      << "with the whole grid in every image it is the plate that is wrong";
 }
 
 // Dots that are s times as far apart as assumed, at the same Z, are seen as by a lens of s times the focal length.
@@ -130,12 +130,12 @@ TEST(CalibrationFit, RefusesResidualsThatTheScatterWithinPlanesDoesNotExplain) {
     fitted(dots_of_turned_plane(2 * degree), MiddleBy::whole_grid);
     FAIL() << "must be refused";
   } catch (DataError const& error) {
-    EXPECT_THAT(error.what(), testing::AllOf(testing::StartsWith("plane0.tif: the camera misses the dots by 1.1"),
-                                             testing::HasSubstr("most on Z = -20 mm")));
+    EXPECT_THAT(error.what(), testing::AllOf(testing::StartsWith("plane0.tif: the residual of the camera is 1.1"),
+                                             testing::HasSubstr("largest at Z = -20 mm")));
   }
   EXPECT_THAT(fitted(dots_of_turned_plane(0.2 * degree), MiddleBy::whole_grid).warnings,
-              testing::ElementsAre(testing::AllOf(testing::HasSubstr("the camera misses the dots by 0.11"),
-                                                  testing::HasSubstr("most on Z = -20 mm"))));
+              testing::ElementsAre(testing::AllOf(testing::HasSubstr("the residual of the camera is 0.11"),
+                                                  testing::HasSubstr("largest at Z = -20 mm"))));
   EXPECT_THAT(fitted(dots_of_turned_plane(0.02 * degree), MiddleBy::whole_grid).warnings, testing::IsEmpty());
 }
 

@@ -53,7 +53,7 @@ TEST(DesignQuestion, IsReadInSi) {
 
 TEST(DesignQuestion, WithoutRequirementsIsNone) {
   EXPECT_FALSE(question_of("[lens]\nf_number = 8\n"));
-  expect_refused_question("[limits]\nz_a_mm = [1, 2]\n", "2:2", "without [requirements]");
+  expect_refused_question("[limits]\nz_a_mm = [1, 2]\n", "2:2", "requires [requirements]");
 }
 
 TEST(DesignQuestion, MistakesAreToldAtTheirPlaces) {
@@ -68,23 +68,24 @@ TEST(DesignQuestion, MistakesAreToldAtTheirPlaces) {
   expect_refused_question(with("\"resolution\"", "\"resolutoin\""), "setup.toml:3:1", "did you mean \"resolution\"?");
   expect_refused_question(with("z_a_mm = [300.0, 2000.0]\n", ""), "setup.toml:12:1",
                           "\"geometry.z_a_mm\" has no bounds; add limits.z_a_mm");
-  expect_refused_question(with("[300.0, 2000.0]", "[2000.0, 300.0]"), "setup.toml:8:1", "ends before it begins");
+  expect_refused_question(with("[300.0, 2000.0]", "[2000.0, 300.0]"), "setup.toml:8:1",
+                          "lower limit 2000 exceeds upper limit 300");
   expect_refused_question(with("z_total_max_mm = 2400.0", "z_total_max_mm = 240.0"), "setup.toml:7:1",
-                          "contradicts the other limits", "400 mm together");
+                          "conflicts with the other limits", "is at least 400 mm");
   expect_refused_question(with("f_numbers = [8, 11]", "f_numbers = []"), "setup.toml:11:1", "inventory.f_numbers");
   expect_refused_question(with("\"lens.f_number\"", "\"lens.f_nubmer\""), "setup.toml:13:1",
                           "did you mean \"lens.f_number\"?");
   expect_refused_question(with("\"lens.f_number\"", "\"lens.f_number\", \"lens.f_number\""), "setup.toml:13:1",
-                          "\"lens.f_number\" stands twice");
-  expect_refused_question(with(", \"lens.f_number\"", ""), "setup.toml:11:1", "is a choice that is not free");
+                          "\"lens.f_number\" is listed twice");
+  expect_refused_question(with(", \"lens.f_number\"", ""), "setup.toml:11:1", "lists values of a key that is not free");
   expect_refused_question(with("keys = [\"geometry.z_a_mm\", \"geometry.z_d_mm\", \"lens.f_number\"]", "keys = []"),
-                          "setup.toml:13:1", "names no key");
+                          "setup.toml:13:1", "contains no valid key");
   expect_refused_question(with("[inventory]", "[inventory]\ncameras = [\"nowhere.toml\"]"), "setup.toml:11:1",
                           "there is no file");
   std::string const named = with("f_numbers = [8, 11]", "f_numbers = [8, 11]\nfocal_lengths_mm = [50, \"tele.zmx\"]");
   expect_refused_question(
       std::string(named).replace(named.find("\"lens.f_number\""), 15, "\"lens.f_number\", \"lens.focal_length_mm\""),
-      "setup.toml:12:1", "write files of prescriptions as inventory.lenses");
+      "setup.toml:12:1", "list prescription files as inventory.lenses");
 }
 
 }  // namespace

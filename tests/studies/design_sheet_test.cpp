@@ -110,7 +110,7 @@ TEST(DesignSheet, LightLimitsTheStop) {
   double const floor = dim["f_number_floor"], missing = std::pow(floor / 11, 2);
   EXPECT_GT(missing, 1.1);
   EXPECT_THAT(dim.row("f_number_floor").note,
-              testing::HasSubstr("no f-number keeps all: the largest, f/11, has a cone of 2.386 mm"));
+              testing::HasSubstr("no f-number satisfies all limits: the largest, f/11, has a cone of 2.386 mm"));
   EXPECT_THAT(dim.row("f_number_floor").note, testing::HasSubstr(fmt::format("{:.3g} times the light", missing)));
   DesignSheet const automatic = sheet_of(table1_setup)->sheet;
   EXPECT_TRUE(std::none_of(automatic.rows.begin(), automatic.rows.end(), [](SheetRow const& row) {
@@ -133,7 +133,7 @@ TEST(DesignSheet, SaysWhereTheRandomErrorWasNotMeasured) {
         {noise + "[target]\ndots_per_32px_window = 8\n", "a number of dots below 5 in a window"}}) {
     EXPECT_EQ(row(more).margin, Margin::marginal) << what;
     EXPECT_THAT(row(more).note,
-                testing::AllOf(testing::HasSubstr("beyond what was measured: "), testing::HasSubstr(what)));
+                testing::AllOf(testing::HasSubstr("outside the range of the study: "), testing::HasSubstr(what)));
   }
 }
 

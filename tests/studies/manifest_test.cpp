@@ -113,14 +113,14 @@ TEST_F(Runs, LabelsOfNumbersStandInTheManifestAndInTheTables) {
 }
 
 TEST_F(Runs, ManifestsThatAreNotWholeAreRefusedByLine) {
-  EXPECT_THAT(reading_fails(), testing::HasSubstr("is no planned study"));
+  EXPECT_THAT(reading_fails(), testing::HasSubstr("is not a planned study"));
   planned();
   std::string const whole = content("run/manifest.jsonl");
   write("run/manifest.jsonl", whole.substr(0, whole.size() - 40));
   EXPECT_THAT(reading_fails(), testing::HasSubstr("manifest.jsonl:4: is damaged or cut short"));
   std::size_t const second = whole.find('\n') + 1;
   write("run/manifest.jsonl", whole.substr(second));
-  EXPECT_THAT(reading_fails(), testing::HasSubstr("manifest.jsonl:1: holds case 1 (case 0 belongs there"));
+  EXPECT_THAT(reading_fails(), testing::HasSubstr("manifest.jsonl:1: contains case 1 in place of case 0"));
   write("run/manifest.jsonl", "{\"manifest\":1,\"index\":0}\n");
   EXPECT_THAT(reading_fails(), testing::HasSubstr("is of manifest version 1 (this gladstone reads version 2)"));
   write("run/manifest.jsonl", "{\"manifest\":2,\"index\":\"one\"}\n");
@@ -128,7 +128,7 @@ TEST_F(Runs, ManifestsThatAreNotWholeAreRefusedByLine) {
   for (char const* foreign :
        {"{\"name\":\"a package\"}\n", "{\"manifest\":\"yes\",\"index\":0}\n", "{\"manifest\":1}\n"}) {
     write("run/manifest.jsonl", foreign);
-    EXPECT_THAT(reading_fails(), testing::HasSubstr("manifest.jsonl:1: is no line of a gladstone manifest"));
+    EXPECT_THAT(reading_fails(), testing::HasSubstr("manifest.jsonl:1: is not a line of a gladstone manifest"));
   }
   write("run/manifest.jsonl", "");
   EXPECT_THAT(reading_fails(), testing::HasSubstr("is empty"));
@@ -166,13 +166,14 @@ TEST_F(Runs, AChangedLineIsRefusedWhereItsCaseIsAskedFor) {
     std::string changed = whole;
     changed[changed.find(piece, second) + piece.size() - 1] = '9';
     EXPECT_EQ(complaint_about(changed, 0), "nothing");
-    EXPECT_THAT(complaint_about(changed, 1), testing::HasSubstr("manifest.jsonl:2: is not as it was planned")) << piece;
+    EXPECT_THAT(complaint_about(changed, 1), testing::HasSubstr("manifest.jsonl:2: was changed after planning"))
+        << piece;
     EXPECT_NE(read_manifest(in("run")).line_hash(1), cases[1].line_hash);
   }
   // as lines were before they held their hash: planned again, what was computed is kept
   std::string older = whole;
   for (std::size_t at; (at = older.find(",\"hash\":")) != std::string::npos;) older.erase(at, 26);
-  EXPECT_THAT(complaint_about(older, 0), testing::HasSubstr("manifest.jsonl:1: holds no hash of itself"));
+  EXPECT_THAT(complaint_about(older, 0), testing::HasSubstr("manifest.jsonl:1: contains no hash of itself"));
   write_result(in("run"), result_of(cases[1], 0.5));
   StudyPlan const again = plan_study(study(two_axes), "cpu");
   EXPECT_EQ(write_plan(in("run"), again), Planned::replaced);
@@ -254,7 +255,7 @@ TEST_F(Runs, AManifestOfSomethingElseIsLeftAlone) {
       write_plan(in("package"), plan);
       ADD_FAILURE() << "overwritten: " << foreign;
     } catch (OutputError const& error) {
-      EXPECT_THAT(error.what(), testing::HasSubstr("package/manifest.jsonl: is no gladstone manifest"));
+      EXPECT_THAT(error.what(), testing::HasSubstr("package/manifest.jsonl: is not a gladstone manifest"));
     }
     EXPECT_EQ(content("package/manifest.jsonl"), foreign);
   }
@@ -504,7 +505,7 @@ TEST_F(Runs, AReadOnlyRunSaysThatItIsReadOnly) {
     ASSERT_EQ(::seteuid(0), 0);
   }
   EXPECT_THAT(what, testing::HasSubstr("run/claims: is read-only (Permission denied)"));
-  EXPECT_THAT(what, testing::HasSubstr("run the study in a copy of it"));
+  EXPECT_THAT(what, testing::HasSubstr("run a copy of the study"));
 }
 
 }  // namespace

@@ -270,7 +270,7 @@ TEST_F(StudyFigures, ManyValuesAreBinned) {
   std::vector<double> many;
   for (int i = 0; i < 60; ++i) many.push_back(4.0 + i);
   EXPECT_EQ(draw(grid({numbers("lens.f_number", many)}, 1)).size(), 4u);
-  EXPECT_THAT(text("error_against_lens_f_number.svg"), HasSubstr("median of all cases there"));
+  EXPECT_THAT(text("error_against_lens_f_number.svg"), HasSubstr("medians of the cases"));
 }
 
 }  // namespace

@@ -280,7 +280,7 @@ TEST_F(BadStudies, AnAxisOfTheWrongType) {
   expect_refused("base = \"base.toml\"\n[axes]\n\"lens.f_number\" = { logarithmic = [1, 2, 3] }\n", "3:1",
                  {"did you mean \"log\"?"});
   expect_refused("base = \"base.toml\"\n[axes]\nlens.f_number = [1, 2]\n", "3:1",
-                 {"a key path stands in quotes: \"lens.f_number\""});
+                 {"write a key path in quotes: \"lens.f_number\""});
   expect_refused("base = \"base.toml\"\n[axes]\n\"lens.f_number\" = { log = [0, 8, 3] }\n", "3:21",
                  {"log needs ends greater than zero"});
   expect_refused("base = \"base.toml\"\n[axes]\n\"lens.f_number\" = { linear = [4, 8] }\n", "3:21",
@@ -310,7 +310,7 @@ TEST_F(BadStudies, AThousandMillionCasesAreRefusedByTheirCountAtOnce) {
 TEST_F(BadStudies, SettingsThatDoNotFit) {
   std::string const axes = "base = \"base.toml\"\n[axes]\n\"lens.f_number\" = [8, 11]\n";
   expect_refused(axes + "[study]\nmode = \"sobl\"\n", "5:1", {"did you mean \"sobol\"?"});
-  expect_refused(axes + "[study]\nsamples = 4\n", "5:1", {"belongs to mode = \"sobol\""});
+  expect_refused(axes + "[study]\nsamples = 4\n", "5:1", {"applies to mode = \"sobol\""});
   expect_refused(axes + "[study]\nmode = \"sobol\"\n", "4:2", {"samples", "is missing"});
   expect_refused(axes + "[study]\nrepeats = 0\n", "5:1", {"must be at least 1"});
   expect_refused(axes + "[study]\nrepeat = 2\n", "5:1", {"did you mean \"repeats\"?"});
@@ -349,7 +349,7 @@ TEST_F(BadStudies, SobolSamplesOfAWholeNumber) {
   std::string const study = "base = \"base.toml\"\n[axes]\n\"camera.bit_depth\" = ";
   std::string const sobol = "\n[study]\nmode = \"sobol\"\nsamples = 4\n";
   expect_refused(study + "{ linear = [8, 16, 3] }" + sobol, "3:1",
-                 {"camera.bit_depth", "must be a whole number", "so write the whole ones as a list"});
+                 {"camera.bit_depth", "must be a whole number", "so write integers as a list"});
   EXPECT_EQ(complaint(study + "[8, 12, 16]" + sobol), "nothing");
   EXPECT_EQ(complaint(study + "{ linear = [8, 16, 3] }\n"), "nothing");
 }
@@ -378,7 +378,7 @@ TEST_F(BadStudies, AnAxisWithinAnother) {
         "label "
         "= \"a\", kind = \"none\" }]\n[study]\nmode = \"" +
             mode + "\"\n",
-        "3:1", {"\"medium.field.gradient_kg_m4\" lies in \"medium.field\", which is an axis too (line 4)"});
+        "3:1", {"\"medium.field.gradient_kg_m4\" is part of \"medium.field\", which is also an axis (line 4)"});
   }
   // the same letters are not the same steps
   EXPECT_EQ(complaint("base = \"base.toml\"\n[axes]\n\"target.dot_diameter_px\" = "

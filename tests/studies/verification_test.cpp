@@ -101,8 +101,8 @@ TEST(Verification, NamesTheCauseThatTheFormulasHaveWrong) {
   verified.simulated.resolution.value *= 0.8;
   verified.simulated.waves[0].measured.value = 0.85;  // the window's share is the farthest then
   compare_with_formulas(verified, {});
-  EXPECT_THAT(quantity(verified, "bias_px").why, HasSubstr("refraction: 0.004 px, which no formula has"));
-  EXPECT_THAT(quantity(verified, "resolution_mm").why, testing::StartsWith("window: passes "));
+  EXPECT_THAT(quantity(verified, "bias_px").why, HasSubstr("refraction: 0.004 px, which no formula includes"));
+  EXPECT_THAT(quantity(verified, "resolution_mm").why, testing::StartsWith("window: transmits "));
   EXPECT_EQ(quantity(verified, "random_px").why, "");
   verified = as_predicted(given);
   verified.simulated.bias_px.value = 0.014;
@@ -130,7 +130,7 @@ TEST(Verification, NamesNoCauseThatDoesNotExplain) {
   verified.simulated.causes[1].simulated = 0.0025;
   compare_with_formulas(verified, {});
   EXPECT_EQ(quantity(verified, "bias_px").why,
-            "window is off by 0.0005 px, no cause by more: the rest is the estimator's");
+            "the largest deviation of a cause is that of window, 0.0005 px; the rest is due to the estimator");
 }
 
 TEST(Verification, KeepsARequirementWithinTwoStandardErrors) {
