@@ -14,7 +14,8 @@ namespace {
 
 constexpr Vec2d middle{511.5, 383.5};
 
-/// A camera half a metre away, 20 degrees off the planes' normal, with a short lens and its distortion.
+/// A camera at a distance of half a metre, 20 degrees off the normal of the planes, with a short lens and its
+/// distortion.
 PinholeCamera wide_camera() {
   // R = diag(1, -1, -1) turned by 20 degrees about Y: half a turn about (cos 10, 0, -sin 10)
   double const half = 10 * std::numbers::pi / 180;
@@ -22,7 +23,7 @@ PinholeCamera wide_camera() {
            -std::numbers::pi * std::sin(half), 0.004, -0.003, 0.5}};
 }
 
-/// Dots on planes 20 mm apart as a camera sees them, with normal noise.
+/// Dots on planes 20 mm apart as seen by a camera, with normal noise.
 CalibrationPoints points_of(PinholeCamera const& camera, double noise_px, unsigned seed = 1, int planes = 3) {
   CalibrationPoints points;
   points.dot_radius = 1e-3;
@@ -41,7 +42,7 @@ CalibrationPoints points_of(PinholeCamera const& camera, double noise_px, unsign
   return points;
 }
 
-// x' of OpenCV's model by hand: a point on the axis' plane y = 0.
+// x' of OpenCV's model calculated by hand: a point in the plane y = 0.
 TEST(Pinhole, IsOpenCVsModel) {
   PinholeCamera const camera{{1000, 1100, 500, 400, 0.1, 0.01, 0.002, 0.003, 0, 0, 0, 0, 0, 1}};
   double const x = 0.3, r2 = x * x, k = 1 + 0.1 * r2 + 0.01 * r2 * r2;
@@ -50,10 +51,10 @@ TEST(Pinhole, IsOpenCVsModel) {
   EXPECT_NEAR(pixel.y, 400 + 1100 * 0.002 * r2, 1e-9);
 }
 
-// A disc's image lies off the image of its centre by (r^2 / 8) times the map's Laplacian and, where light changes over
-// the disc, by (r^2 / 4) times the slope of its logarithm times the map's. Seen from 1 m with a slant of a,
-// d = (x cos a, y, 1 - x sin a): the map is 1000 x cos a / (1 - x sin a) with the Laplacian 2000 cos a sin a, the light
-// (1 - x sin a) / |d|^4 with the slope 3 sin a.
+// The centroid of a disc's image differs from the image of its centre by (r^2 / 8) times the Laplacian of the map and,
+// if the light varies over the disc, by (r^2 / 4) times the slope of the logarithm of the light times the slope of the
+// map. From a distance of 1 m and at a slant angle a, d = (x cos a, y, 1 - x sin a). The map is 1000 x cos a / (1 - x
+// sin a), with the Laplacian 2000 cos a sin a; the light is (1 - x sin a) / |d|^4, with the logarithmic slope 3 sin a.
 TEST(Pinhole, ADotsImageIsNotThatOfItsCentre) {
   double const slant = 0.5, c = std::cos(slant), s = std::sin(slant), radius = 0.01;
   PinholeCamera const camera{{1000, 1000, 0, 0, 0, 0, 0, 0, 0, slant, 0, 0, 0, 1}};
@@ -63,9 +64,10 @@ TEST(Pinhole, ADotsImageIsNotThatOfItsCentre) {
   EXPECT_NEAR(shift.y, 0, 1e-12);
 }
 
-// Light that a point of a slanted plane sends through the place (x, y) of a pupil 1 m away is 1 - x tan a, the mean of
-// x over the pupil so weighted - (R^2 / 4) tan a. A ray through x arrives where the plane in focus, D away and square
-// to the axis, has x (1 - D): 1000 x (1 - D) / D px. Left out are fourth powers of R, (R / 1 m)^2 = 4e-4 of this.
+// The light from a point of a slanted plane through the place (x, y) of a pupil at a distance of 1 m is 1 - x tan a, so
+// that the weighted mean of x over the pupil is -(R^2 / 4) tan a. A ray through x arrives at x (1 - D) in the plane in
+// focus, which is perpendicular to the axis at a distance D: 1000 x (1 - D) / D px. Fourth powers of R, (R / 1 m)^2 =
+// 4e-4 of this, are neglected.
 TEST(Pinhole, AcrossTheApertureLightFallsOff) {
   double const slant = 0.5, c = std::cos(slant), s = std::sin(slant), R = 0.02, D = 0.8;
   PinholeCamera const camera{{1000, 1000, 0, 0, 0, 0, 0, 0, 0, slant, 0, 0, 0, 1}};
@@ -88,7 +90,7 @@ TEST(PinholeFit, FindsTheCameraOfExactPoints) {
   }
 }
 
-// A sensor that is tilted by 8 degrees: its normal through the lens meets it far off the picture's middle.
+// A sensor tilted by 8 degrees: the normal through the lens meets the sensor plane far from the middle of the image.
 TEST(PinholeFit, FindsATiltedSensor) {
   PinholeCamera tilted = wide_camera();
   for (std::size_t i = 4; i < 8; ++i) tilted.value[i] = 0;
@@ -99,9 +101,9 @@ TEST(PinholeFit, FindsATiltedSensor) {
   EXPECT_NEAR(fit.camera.cx(), tilted.cx(), 1e-4);
 }
 
-// Errors of 30 fits over their standard errors are normal: the mean of 30 x 14 squares, of which fits are independent
-// and parameters correlated, is 1 +- sqrt(2 / 30) = 0.26 at worst; residuals are the noise, less 14 of 858 degrees of
-// freedom.
+// The errors of 30 fits divided by their standard errors are normal. The mean of 30 x 14 squares, with independent fits
+// and correlated parameters, is 1 with a standard deviation of at most sqrt(2 / 30) = 0.26. The residuals are the
+// noise, less 14 of 858 degrees of freedom.
 TEST(PinholeFit, StandardErrorsAreThoseThatFitsHave) {
   constexpr int fits = 30;
   constexpr double noise = 0.02;
@@ -116,11 +118,11 @@ TEST(PinholeFit, StandardErrorsAreThoseThatFitsHave) {
     }
   }
   EXPECT_NEAR(squares / (fits * PinholeCamera::count), 1, 3 * std::sqrt(2.0 / fits));
-  EXPECT_LT(largest, 5);  // 420 normal numbers exceed it once in 4000 tests
+  EXPECT_LT(largest, 5);  // exceeded by one of 420 normal numbers in one of 4000 tests
 }
 
-// Distortion is known to 0.01 px where there were dots, from noise of 0.005 px in 429 of them, which is what 5e5
-// electrons a dot leave (DotDetection.ErrorsAreThoseOfTheNoise).
+// The distortion is determined to 0.01 px where there were dots, for noise of 0.005 px in 429 of them, which is the
+// error with 5e5 electrons per dot (DotDetection.ErrorsAreThoseOfTheNoise).
 TEST(PinholeFit, DistortionIsKnownToAHundredthOfAPixel) {
   PinholeCamera const truth = wide_camera();
   PinholeFit const fit = fit_pinhole(points_of(truth, 0.005), middle);
@@ -162,7 +164,7 @@ Vec2d image_of_dot(SoloffPolynomial const& polynomial, Vec3d centre, double radi
   return pixel;
 }
 
-// What is such a polynomial is found again, to rounding.
+// A map that is such a polynomial is recovered, to rounding.
 TEST(SoloffFit, FindsAPolynomial) {
   CalibrationPoints points = points_of(wide_camera(), 0);
   auto const map = [](Vec3d p) {
@@ -178,7 +180,7 @@ TEST(SoloffFit, FindsAPolynomial) {
   EXPECT_LT(length(image_of_dot(fit.polynomial, at, 0) - map(at)), 1e-9);
 }
 
-// The image of a pinhole camera is none, but it is followed as well as the residuals say.
+// The map of a pinhole camera is not a polynomial, but the fit approximates it as well as the residuals state.
 TEST(SoloffFit, FollowsAPinholeCamera) {
   PinholeCamera const camera = wide_camera();
   SoloffFit const fit = fit_soloff(points_of(camera, 0));

@@ -11,10 +11,10 @@
 namespace gladstone {
 namespace {
 
-// Two methods that say a and b, of independent normal logarithms of deviation 0.5, and errors that are normal with
-// sigma = 0.6 a^0.8 b^0.3. Fisher's information of the logarithm of a normal deviation is 2 a sample, so that of 40,000
-// a weight is known to 1/sqrt(2 40000 0.25) = 0.007 and the constant, far from the mean of ln a = ln b = -3, to some
-// 0.03: four of each.
+// Two methods estimate a and b, whose logarithms are independent and normal with a standard deviation of 0.5; the
+// errors are normal with sigma = 0.6 a^0.8 b^0.3. Fisher's information on the logarithm of a standard deviation is 2
+// per sample. From 40,000 samples a weight is therefore determined to 1/sqrt(2 40000 0.25) = 0.007 and the constant,
+// far from the mean of ln a = ln b = -3, to about 0.03. Four standard deviations are allowed.
 TEST(UncertaintyCombination, FindsTheWeightsThatMadeTheErrors) {
   std::mt19937_64 bits(3);
   std::normal_distribution<double> normal;
@@ -42,8 +42,9 @@ TEST(UncertaintyCombination, IsReadAsItIsWritten) {
   EXPECT_EQ(back.terms[1].weight, 0.125);
 }
 
-// What has no weight is not looked at, known or not. What has one and is not known is left out, and the others take its
-// weight over: 1 + (2 3 + 1 9) (4/3) without the second term, whose weight is a quarter of all.
+// A method without weight is ignored, whether it has a value or not. A method with a weight but without a value is
+// omitted, and the other weights are scaled up: 1 + (2 3 + 1 9) (4/3) without the second term, whose weight is a
+// quarter of the sum.
 TEST(UncertaintyCombination, KnowsWhatItsPartsKnow) {
   UncertaintyCombination const combination{1.0, {{"one", 2.0}, {"other", 0.0}}};
   double const nan = std::nan(""), with[] = {3.0, nan}, without[] = {nan, 3.0};

@@ -20,10 +20,11 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 
-/// A field without symmetry, so that every axis, sign and half pixel shows: gradients of 0.05 px/px.
+/// A field without symmetry, in which every axis, sign and half pixel has an effect: gradients of 0.05 px/px.
 Vec2d asymmetric(Vec2d p) { return {1.0 + 0.05 * p.x - 0.03 * p.y, -0.5 + 0.05 * p.y + 0.01 * p.x}; }
 
-/// What a code with these conventions writes for the field, on a grid of 16 px that is not in the image's middle.
+/// Vectors of the field as a code with these conventions writes them, on a grid of 16 px that is not centred in the
+/// image.
 VectorFile written_by(VectorConventions const& c, int image_rows, double own_offset) {
   VectorFile file;
   file.format = "test";
@@ -36,7 +37,7 @@ VectorFile written_by(VectorConventions const& c, int image_rows, double own_off
       if (c.swapped) d = -d;
       if (c.v_up) d.y = -d.y;
       double const mirror = c.mirror == VectorConventions::Mirror::grid ? low + high : image_rows - 1.0;
-      // apply_conventions adds the offset first and mirrors then; here the other way round.
+      // apply_conventions first adds the offset and then mirrors; here in reverse order
       double const y = c.y_up ? mirror - p.y : p.y;
       file.field.position_px.push_back({p.x - c.offset_px, y - c.offset_px});
       file.field.displacement_px.push_back(d);
@@ -81,7 +82,8 @@ TEST(DetectConventions, GivesVectorsInOurOrder) {
   }
 }
 
-// A uniform shift to the right looks the same upside down: the format's own conventions stay and it is said.
+// A uniform shift to the right is symmetric under a reflection in y: the conventions of the format are used and the
+// ambiguity is reported.
 TEST(DetectConventions, SaysWhatCannotBeTold) {
   VectorFile file = written_by({}, 200, -0.5);
   for (Vec2d& d : file.field.displacement_px) d = {2.0, 0.0};
@@ -96,8 +98,8 @@ TEST(DetectConventions, SaysWhatCannotBeTold) {
   EXPECT_THAT(found.report, HasSubstr("another reading fits as well"));
 }
 
-/// Waves without symmetry, 0.1 px in amplitude, 37 to 61 px long. A shift by (12, -4) px is a quarter of a period of
-/// either component, so that no sign fits, nor does an exchange of axes.
+/// Waves without symmetry, with an amplitude of 0.1 px and wavelengths of 37 to 61 px. A shift by (12, -4) px is a
+/// quarter of a period of both components, so that neither another sign nor an exchange of axes fits.
 Vec2d waves(Vec2d p) {
   double const k = 2.0 * 3.14159265358979 / 37.0, q = 2.0 * 3.14159265358979 / 61.0;
   return {0.1 * std::sin(k * p.x + q * p.y), 0.1 * std::cos(q * p.x - 0.5 * k * p.y + 1.0)};
@@ -126,14 +128,14 @@ Vec2d noise(std::size_t i) {
 
 using Verdict = DetectedConventions::Verdict;
 
-// What is wrong with a file is named, and the file read as it says. A shift by a quarter of a period, an exchange of
-// columns and a factor leave differences of sqrt(2), sqrt(2) and 9 times the truth's rms, and none when they are
-// undone.
+// The mistake in a file is reported, but the file is read as its format specifies. A shift by a quarter of a period, an
+// exchange of columns and a factor cause differences of sqrt(2), sqrt(2) and 9 times the rms of the truth, and none
+// after correction.
 TEST(DetectConventions, NamesTheLikelyMistake) {
   struct Wrong {
     char const* mistake;
     void (*make)(Vec2d& place, Vec2d& displacement);
-    char const* conventions;  ///< that read it rightly; empty: none do
+    char const* conventions;  ///< conventions that read it correctly; empty: none
   };
   for (Wrong const &wrong : {
            Wrong{"v points up", [](Vec2d&, Vec2d&d) { d.y = -d.y; }, "y-down,v-up,offset=0"},
@@ -181,8 +183,8 @@ TEST(DetectConventions, NamesTheLikelyMistake) {
   }
 }
 
-// A quarter of the truth is what windows leave of a wave as short as they are, and of a uniform displacement nothing
-// but another unit does.
+// Windows as long as a wave reduce it to a quarter of the truth; for a uniform displacement only another unit has this
+// effect.
 TEST(DetectConventions, TellsAFactorFromWideWindows) {
   VectorFile file = waves_on_a_grid();
   for (Vec2d& d : file.field.displacement_px) d = 0.25 * d;
@@ -193,7 +195,8 @@ TEST(DetectConventions, TellsAFactorFromWideWindows) {
   EXPECT_THAT(detect_conventions(file, slow, 200).mistake.text, HasSubstr("displacements are 0.25 times the truth"));
 }
 
-// A field that turns about the middle looks the same with its frames exchanged and upside down: both are named.
+// A rotation about the middle is symmetric under an exchange of the frames with a reflection of both axes: both
+// readings are reported.
 TEST(DetectConventions, NamesEveryMistakeThatLooksTheSame) {
   VectorFile file;
   file.format = "test";
@@ -211,8 +214,9 @@ TEST(DetectConventions, NamesEveryMistakeThatLooksTheSame) {
   EXPECT_GT(found.fit.rms_px, 1.9 * found.fit.signal_px) << "twice, but for what counts as three times";
 }
 
-// The same with errors that differ by 2 % between readings, as an estimator's do that pulls its vectors to the right:
-// the likeliest is still named first, and a shift is no exchange of axes though one takes a part of it away.
+// The same with errors that differ by 2 % between readings, as for an estimator with a bias to the right: the most
+// likely mistake is still reported first, and a shift is not reported as an exchange of axes, although an exchange
+// reduces its effect.
 TEST(DetectConventions, NamesTheLikeliestOfReadingsThatFitAlmostAlike) {
   VectorFile file;
   file.format = "test";
@@ -239,8 +243,9 @@ TEST(DetectConventions, NamesTheLikeliestOfReadingsThatFitAlmostAlike) {
   EXPECT_FALSE(detect_conventions(file, vortex, 200).mistake.found());
 }
 
-// A shift of the places is reported with its resolution: three standard errors, for windows that overlap by half. Noise
-// that is independent from vector to vector is averaged better than that, so that every one of 20 results lies within.
+// A shift of the positions is reported with its resolution: three standard errors, for windows that overlap by half.
+// Noise that is independent from vector to vector is averaged better than that, so that all 20 results are within the
+// resolution.
 TEST(DetectConventions, ShiftIsKnownToItsResolution) {
   auto const vortex = [](Vec2d p) {
     Vec2d const r{p.x - 99.5, p.y - 99.5};
@@ -274,7 +279,7 @@ TEST(DetectConventions, ShiftIsKnownToItsResolution) {
   }
 }
 
-// No displacement at all, noise, and places in mm of the dots, all within 16 px, follow the truth in no reading.
+// Zero displacement, noise, and positions in mm (all within 16 px) follow the truth in no reading.
 TEST(DetectConventions, RefusesWhatFitsNone) {
   for (auto const make : {+[](Vec2d&, Vec2d&d, Vec2d) { d = {}; }, +[](Vec2d&, Vec2d&d, Vec2d n) { d = 0.1 * n; },
                           +[](Vec2d&p, Vec2d&, Vec2d) { p = 0.085 * p; }}) {
@@ -288,7 +293,7 @@ TEST(DetectConventions, RefusesWhatFitsNone) {
   }
 }
 
-// A shear tells a shift across its layers alone, and a uniform stretch of u a factor of u alone.
+// A shear determines only a shift across its layers, and a uniform stretch of u only a factor of u.
 TEST(DetectConventions, TellsOnlyWhatTheDisplacementDetermines) {
   auto const shear = [](Vec2d p) { return Vec2d{2.0 * std::sin(p.y / 20.0), 0.0}; };
   VectorFile shifted = waves_on_a_grid(), stretched = shifted;
@@ -304,7 +309,8 @@ TEST(DetectConventions, TellsOnlyWhatTheDisplacementDetermines) {
             "u is 3 times the truth (v is too small for an estimate)");
 }
 
-// A bias of u alone is no shift of places by a pixel, which changes the many small errors of v and the bias hardly.
+// A bias of u is not reported as a shift of positions by a pixel, which would change the many small errors of v but
+// hardly the bias.
 TEST(DetectConventions, TakesABiasOfOneComponentForNoShift) {
   VectorFile file = waves_on_a_grid();
   for (std::size_t i = 0; i < file.field.size(); ++i)
@@ -312,7 +318,7 @@ TEST(DetectConventions, TakesABiasOfOneComponentForNoShift) {
   EXPECT_EQ(detect_conventions(file, waves, 200).mistake.text, "");
 }
 
-// Vectors that are all 0 are no offset from a uniform displacement.
+// Vectors that are all 0 are not reported as an offset of a uniform displacement.
 TEST(DetectConventions, NamesVectorsThatAreAllZero) {
   VectorFile file = waves_on_a_grid();
   for (Vec2d& d : file.field.displacement_px) d = {};
@@ -327,7 +333,7 @@ TEST(DetectConventions, NamesVectorsThatAreAllZero) {
   EXPECT_THAT(found.report, HasSubstr("all displacements are 0"));
 }
 
-// Windows of 64 px lose a sine of 32 px: their vectors are noise, and no mistake.
+// Windows of 64 px do not resolve a sine of 32 px: such vectors are noise, not a mistake in the file.
 TEST(DetectConventions, DoesNotJudgeWindowsByWavesThatAreTooFineForThem) {
   auto const sine = [](Vec2d p) { return Vec2d{2.0 * std::sin(2.0 * 3.14159265358979 * p.y / 32.0), 0.0}; };
   VectorFile file = waves_on_a_grid();
@@ -337,8 +343,8 @@ TEST(DetectConventions, DoesNotJudgeWindowsByWavesThatAreTooFineForThem) {
   EXPECT_THAT(found.report, HasSubstr("too fine for windows"));
 }
 
-// With few vectors the best of sixty choices comes closer to the truth than nothing does by chance: twenty of the
-// shifted field, or of noise, fit none; twenty right ones do.
+// With few vectors the best of sixty choices is closer to the truth by chance than zero displacement. Twenty vectors of
+// the shifted field, or of noise, must fit no reading; twenty correct ones must fit.
 TEST(DetectConventions, DoesNotTakeChanceForAFit) {
   VectorFile file = waves_on_a_grid();
   std::vector<std::size_t> few;
@@ -353,10 +359,10 @@ TEST(DetectConventions, DoesNotTakeChanceForAFit) {
   }
 }
 
-// 480 vectors with noise of three times the signal: the slope is 1 +- 2 * 3 / sqrt(960) = 0.2.
+// 480 vectors with noise of three times the signal: the slope is 1 with two standard errors of 2 * 3 / sqrt(960) = 0.2.
 TEST(DetectConventions, KeepsWhatFollowsTheTruthHoweverNoisy) {
   VectorFile file = waves_on_a_grid();
-  double const three_times = 3.0 * std::sqrt(3.0) * 0.1 / std::sqrt(2.0);  // of numbers even in (-1, 1)
+  double const three_times = 3.0 * std::sqrt(3.0) * 0.1 / std::sqrt(2.0);  // of numbers uniform in (-1, 1)
   for (std::size_t i = 0; i < file.field.size(); ++i) file.field.displacement_px[i] += three_times * noise(i);
   DetectedConventions const found = detect_conventions(file, waves, 200);
   EXPECT_EQ(found.verdict, Verdict::noisy) << found.report;
@@ -367,7 +373,8 @@ TEST(DetectConventions, KeepsWhatFollowsTheTruthHoweverNoisy) {
   EXPECT_EQ(detect_conventions(file, waves, 200).verdict, Verdict::fits_none) << "noise alone";
 }
 
-// Without displacement, or with less than a correlation can see, every choice fits as well: the format's own stays.
+// Without displacement, or with a displacement below the resolution of a correlation, every choice fits equally well:
+// the conventions of the format are used.
 TEST(DetectConventions, CannotTellByASignalBelowTheNoise) {
   for (double const signal : {0.0, 0.05}) {
     VectorFile file = waves_on_a_grid();
@@ -383,7 +390,7 @@ TEST(DetectConventions, CannotTellByASignalBelowTheNoise) {
   }
 }
 
-// A small signal measured well does tell.
+// A small signal with small errors is sufficient.
 TEST(DetectConventions, TellsBySmallSignalsThatAreMeasuredBetter) {
   VectorFile file = waves_on_a_grid();
   auto const truth = [](Vec2d p) { return 0.05 * waves(p); };
@@ -397,7 +404,8 @@ TEST(DetectConventions, TellsBySmallSignalsThatAreMeasuredBetter) {
   EXPECT_TRUE(found.best.conventions.v_up);
 }
 
-// Half a pixel in waves of slope 2 pi 0.1 px / 37 px is a difference of up to 0.0085 px, and none with the offset.
+// Half a pixel in waves of slope 2 pi 0.1 px / 37 px causes a difference of up to 0.0085 px, and none with the correct
+// offset.
 TEST(DetectConventions, ReportsTheOffsetWithAndWithout) {
   VectorFile file = waves_on_a_grid();
   for (Vec2d& p : file.field.position_px) p += Vec2d{0.5, 0.5};
@@ -417,14 +425,15 @@ TEST(DetectConventions, ReportsTheOffsetWithAndWithout) {
   EXPECT_THAT(right.report, HasSubstr("instead of 0.00"));
 
   VectorFile own = waves_on_a_grid();
-  own.conventions.offset_px = -0.5;  // as its format says; the numbers say nothing of it
+  own.conventions.offset_px = -0.5;  // as its format specifies; the numbers do not determine it
   own.field.displacement_px.assign(own.field.size(), Vec2d{1.0, 0.5});
   auto const uniform = [](Vec2d) { return Vec2d{1.0, 0.5}; };
   EXPECT_THAT(offset_report(detect_conventions(own, uniform, 200)), HasSubstr("does not fit better"));
   EXPECT_THAT(offset_report(detect_conventions(waves_on_a_grid(), waves, 200)), testing::IsEmpty());
 }
 
-/// Waves with errors of 0.02 px on a grid whose places are right though the format's own conventions say x - 0.5 px.
+/// Waves with errors of 0.02 px on a grid with correct positions, although the conventions of the format include x -
+/// 0.5 px.
 VectorFile noisy_waves(double moved, double offset) {
   VectorFile file = waves_on_a_grid();
   std::mt19937_64 bits(3);
@@ -434,12 +443,13 @@ VectorFile noisy_waves(double moved, double offset) {
     file.field.displacement_px[i] += Vec2d{error(bits), error(bits)};
   }
   file.conventions.offset_px = offset;
-  file.also = {VectorConventions{}};  // as several passes of the same code have it
+  file.also = {VectorConventions{}};  // as for several passes of the same code
   return file;
 }
 
-// Half a pixel in waves of slope 0.017 is 0.006 px rms, a part of 0.3 of the errors: their rms grows by 4 %, which a
-// thousand vectors tell from chance, for codes that put several passes where their grid says and for those that do not.
+// Half a pixel in waves of slope 0.017 is 0.006 px rms, 0.3 times the errors: their rms grows by 4 %, which a thousand
+// vectors distinguish from chance, both for codes whose multi-pass vectors are at the grid positions and for those
+// whose vectors are not.
 TEST(DetectConventions, TellsHalfAPixelInNoise) {
   DetectedConventions const deformed = detect_conventions(noisy_waves(0.0, -0.5), waves, 200);
   EXPECT_EQ(deformed.conventions.offset_px, 0.0) << deformed.report;
@@ -447,7 +457,7 @@ TEST(DetectConventions, TellsHalfAPixelInNoise) {
   EXPECT_EQ(plain.conventions.offset_px, -0.5) << plain.report;
 }
 
-// One vector in a hundred is 50 px off: it counts as 1 px, and the axes are found as before.
+// One vector in a hundred is wrong by 50 px: it counts as 1 px, and the axes are detected as before.
 TEST(DetectConventions, DoesNotHangOnAFewWildVectors) {
   VectorFile file = waves_on_a_grid();
   for (std::size_t i = 0; i < file.field.size(); i += 100) file.field.displacement_px[i] = {50.0, -50.0};
@@ -456,8 +466,8 @@ TEST(DetectConventions, DoesNotHangOnAFewWildVectors) {
   EXPECT_EQ(found.conventions, VectorConventions{});
 }
 
-/// The waves as a program writes them: "x y u v" of the grid's nodes, y and v upwards from the last of 200 rows or both
-/// downwards, places counted from another number than 0 at the first pixel's centre.
+/// The waves as a program writes them: "x y u v" at the nodes of the grid, y and v upwards from the last of 200 rows or
+/// both downwards, with another position of the first pixel's centre than 0.
 std::string written_waves(bool upwards, double first_pixel, char separator, std::string const& rest_of_row) {
   VectorFile const grid = waves_on_a_grid();
   std::ostringstream text;
@@ -470,8 +480,8 @@ std::string written_waves(bool upwards, double first_pixel, char separator, std:
   return text.str();
 }
 
-// Programs count pixels from 0 or 1, and from the first pixel's centre or its edge. Each file is read with the axes of
-// its format; the offset is the one that fits, and the places are then the grid's own.
+// Programs count pixels from 0 or 1, and from the centre or the edge of the first pixel. Each file is read with the
+// axes of its format; the offset that fits is selected, and the positions are then those of the grid.
 TEST(DetectConventions, FindsWhereEachFormatCountsFrom) {
   using Mirror = VectorConventions::Mirror;
   struct Format {
@@ -529,9 +539,9 @@ TEST(DetectConventions, FindsWhereEachFormatCountsFrom) {
 }
 
 // Files of OpenPIV 0.26.1 (extended_search_area_piv of 32 px; windef with 64, 32, 16 px) for render_particle_pair() of
-// 160 x 160 px, 1 % noise, seed 77 and this displacement. Both write x = ws/2. One pass measures half a pixel from
-// there; windef deforms the images at those very places, where its vectors then belong: the file's name is all that
-// tells them apart, and the displacement.
+// 160 x 160 px, 1 % noise, seed 77 and this displacement. Both write x = ws/2. The single pass measures half a pixel
+// away from that position; windef deforms the images at exactly these positions, to which its vectors therefore belong.
+// Only the file name and the displacement distinguish the two.
 TEST(DetectConventions, TellsOnePassOfOpenPivFromItsDeformingOne) {
   auto const flow = [](Vec2d p) { return Vec2d{1.5 + std::sin(2.0 * pi * p.y / 160.0), 0.02 * (p.x - 79.5)}; };
   std::string const folder = std::string(GLADSTONE_DATA_DIR) + "/../tests/fuzz/corpus/vector_text/openpiv_0.26_";

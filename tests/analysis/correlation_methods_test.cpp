@@ -43,8 +43,8 @@ MethodError error_of(CorrelationSettings const& settings, double shift, double n
   return {std::sqrt(error.rms / count), error.bias / count};
 }
 
-// The same plane by other transforms: 24 bits over a plane of 48^2 or 64^2 values leave 1e-6 of the peak, whose width
-// is about a pixel; an order of magnitude for peaks that stand on others' shoulders.
+// The same plane computed by other transforms: 24 bits over a plane of 48^2 or 64^2 values cause errors of 1e-6 of the
+// peak, whose width is about a pixel; ten times that for peaks on the flank of other peaks.
 TEST(Scc, IsOpenCVsPlaneToTenMicropixels) {
   ParticlePair const pair = render_particle_pair({.noise = 0.05}, [](Vec2d p) {
     return Vec2d{1.7 + std::sin(0.05 * p.y), -0.02 * p.x};
@@ -64,13 +64,13 @@ TEST(Scc, IsOpenCVsPlaneToTenMicropixels) {
         for (std::size_t i = 0; i < a.size(); ++i) {
           EXPECT_EQ(std::isnan(a.raw_px[i].x), std::isnan(b.raw_px[i].x));
           different += length(a.raw_px[i] - b.raw_px[i]) > 1e-4;
-          // every maximum's height between the samples there, here of those alone that can be among the highest
+          // there the interpolated height of every maximum, here only of those that can be among the highest
           other_rivals += std::abs(a.peak_ratio[i] - b.peak_ratio[i]) > 1e-3 * b.peak_ratio[i];
         }
-        // two peaks of equal height may change places, where windows hold a few dots
+        // two peaks of equal height may be in either order if windows contain few dots
         EXPECT_LE(different, a.size() / 500) << weighting << ' ' << window;
-        // over uniform windows of 32 px and more the line beyond the search range wraps (plane_transform_size()): where
-        // a rival is a maximum at the rim, one place in eight, its height may differ
+        // for uniform windows of 32 px and more the line beyond the search range wraps around (plane_transform_size()):
+        // if the secondary peak is a maximum at the edge of the range, one position in eight, its height may differ
         bool const rim_wraps = weighting == std::string("uniform") && window >= 32;
         EXPECT_LE(other_rivals, a.size() / (rim_wraps ? 8 : 500)) << weighting << ' ' << window;
         EXPECT_EQ(std::count(a.status.begin(), a.status.end(), VectorStatus::masked),
@@ -78,7 +78,7 @@ TEST(Scc, IsOpenCVsPlaneToTenMicropixels) {
       }
 }
 
-// What each reaches in one pass at 32 px, with a third to spare for 256 px instead of 1024 (see docs/estimators.md).
+// Errors in one pass at 32 px (docs/estimators.md), plus a third for 256 px instead of 1024.
 TEST(EveryMethod, MeasuresAShift) {
   for (auto const& [method, clean, noisy] : {std::tuple{"scc", 0.025, 0.037},
                                              {"rpc", 0.0055, 0.037},
@@ -91,7 +91,7 @@ TEST(EveryMethod, MeasuresAShift) {
   }
 }
 
-// Eckstein & Vlachos' promise: a few thousandths of a pixel in one pass, without peak locking.
+// Result of Eckstein & Vlachos: a few thousandths of a pixel in one pass, without peak locking.
 TEST(Rpc, ErrsByThousandthsOfAPixelInOnePass) {
   for (double const shift : {0.0, 0.25, 0.5, 0.8}) {
     MethodError const error = error_of(one_pass("rpc"), shift, 0.0);
@@ -100,8 +100,8 @@ TEST(Rpc, ErrsByThousandthsOfAPixelInOnePass) {
   }
 }
 
-// The quadratic difference of a frame with itself is 0, and the coefficient of every method then 1. The mean has no
-// phase: rpc lacks that wave number, exp(0) of a filter whose sum over 64 x 64 waves is 370.
+// The quadratic difference of a frame with itself is 0, so that the coefficient of every method is 1. The mean has no
+// phase: rpc omits that wavenumber, exp(0) of a filter whose sum over 64 x 64 waves is 370.
 TEST(NormalisedMethods, GiveOneForTheSameFrame) {
   ParticlePair const pair = render_particle_pair({}, [](Vec2d) { return Vec2d{}; });
   for (char const* method : {"zncc", "mqd", "scc", "rpc", "spc"})
@@ -115,11 +115,11 @@ TEST(NormalisedMethods, GiveOneForTheSameFrame) {
     }
 }
 
-// Three times the light in one frame changes nothing: every method takes means off and divides by energies, but for
-// mqd. What is left is float's rounding in the transforms, 6e-8 some tens of times over, of a peak whose curvature
-// is a tenth of its height: 1e-4 px, as scc had; zncc divides by two more planes, of energies over the whole bright
-// level, each as far off again: 5e-4 px. The wave number 0 is free of the means and holds rounding alone: its phase
-// is not to count in rpc, where it moved vectors by 2e-3 px.
+// Three times the light in one frame changes nothing: every method subtracts the means and divides by the energies,
+// except mqd. The remaining error is the rounding of float in the transforms, some tens of times 6e-8 of a peak whose
+// curvature is a tenth of its height: 1e-4 px for scc. zncc divides by two more planes, of energies over the whole
+// bright level, each with the same error: 5e-4 px. Wavenumber 0 does not depend on the means and contains only rounding
+// errors: its phase must not count in rpc, where it changed vectors by 2e-3 px.
 TEST(EveryMethod, TakesItsGreyLevelsRelatively) {
   ParticlePair const pair = render_particle_pair({}, [](Vec2d) { return Vec2d{0.4, 1.3}; });
   ParticlePair bright = pair;
@@ -134,9 +134,10 @@ TEST(EveryMethod, TakesItsGreyLevelsRelatively) {
   }
 }
 
-// Frames in other units of light, 1e-9 or 1e12 of a grey level, are the same frames: a power of two changes no digit,
-// and no bit of what is measured. 8 bits as 16 (257 times) round anew: 6e-8 of a peak, some hundred times over; zncc
-// and mqd transform energies beside weights, whose rounding is that of the larger: 5e-4 px, as above.
+// Frames in other units of light, 1e-9 or 1e12 of a grey level, are equivalent: a factor that is a power of two changes
+// no digit and no bit of the result. 8 bits as 16 bits (257 times) are rounded differently: 6e-8 of a peak, some
+// hundred times; zncc and mqd transform energies together with weights and have the rounding error of the larger: 5e-4
+// px, as above.
 TEST(EveryMethod, MeasuresInAnyUnitOfLight) {
   ParticlePair const pair = render_particle_pair({.columns = 128, .rows = 128}, [](Vec2d) { return Vec2d{0.4, 1.3}; });
   for (std::string const method : {"scc", "rpc", "spc", "zncc", "mqd"})
@@ -153,7 +154,7 @@ TEST(EveryMethod, MeasuresInAnyUnitOfLight) {
     }
 }
 
-// --device cuda refuses by this name what --device auto gives to the CPU.
+// --device cuda rejects by this name what --device auto passes to the CPU.
 TEST(MissingOnGpu, IsEverythingButSccAndRpcByGaussians) {
   CorrelationSettings settings;
   for (char const* subpixel : {"gauss3", "gauss2d"}) {
@@ -170,7 +171,7 @@ TEST(MissingOnGpu, IsEverythingButSccAndRpcByGaussians) {
               method == "scc" || method == "rpc" ? "" : "method = \"" + method + "\"");
 }
 
-// A level of correlation that a hundred windows do not reach takes these out, and "off" none.
+// A threshold of the correlation that a hundred windows do not reach rejects these, and "off" rejects none.
 TEST(LeastCorrelation, TakesOutWhatIsBelow) {
   ParticlePair const pair = render_particle_pair({.noise = 0.1}, [](Vec2d) { return Vec2d{0.4, 1.3}; });
   CorrelationSettings settings = one_pass("scc");
@@ -196,8 +197,8 @@ TEST(MedianThreshold, Off) {
   EXPECT_EQ(std::count(field.status.begin(), field.status.end(), VectorStatus::replaced), 0);
 }
 
-// Without the median test no other peak agrees better: what a level takes out its neighbours replace, never a lower
-// peak of the same window.
+// Without the median test no other peak is preferred: vectors below a threshold are replaced by their neighbours, never
+// by a lower peak of the same window.
 TEST(MedianThreshold, OffLeavesReplacementToTheNeighbours) {
   ParticlePair const pair = render_particle_pair({.noise = 0.03}, [](Vec2d) { return Vec2d{0.3, -0.3}; });
   for (auto const level : {&CorrelationSettings::least_peak_ratio, &CorrelationSettings::least_correlation}) {

@@ -66,7 +66,7 @@ TEST(InterrogationGrid, CentresOfEvenWindowsAreHalfIntegers) {
   EXPECT_EQ(final_grid(with_windows({32}), 31, 64).size(), 0u);
 }
 
-// Required: 0.02 px without noise in one pass; the components carry opposite signs.
+// Required: 0.02 px without noise in one pass; the components have opposite signs.
 TEST(SinglePass, MeasuresUniformShiftsOfBothSigns) {
   auto const correlator = make_correlator(with_windows({32}));
   double sum = 0.0;
@@ -82,7 +82,7 @@ TEST(SinglePass, MeasuresUniformShiftsOfBothSigns) {
   EXPECT_LT(std::sqrt(sum / cases), 0.02);
 }
 
-// Exchanging the images turns the error round, so bias(-d) = -bias(d).
+// Exchanging the images reverses the error, so bias(-d) = -bias(d).
 TEST(SinglePass, PeakLockingCurveIsOdd) {
   auto const correlator = make_correlator(with_windows({32}));
   auto const bias = [&](double shift) {
@@ -94,8 +94,8 @@ TEST(SinglePass, PeakLockingCurveIsOdd) {
   for (double const shift : {0.15, 0.3, 0.45}) EXPECT_NEAR(bias(shift), -bias(-shift), 0.005);
 }
 
-// Exchanging the images exchanges the sign, up to single precision (1e-7 of the peak over its curvature) on a plane
-// whose windows share a transform.
+// Exchanging the images reverses the sign, up to single precision (1e-7 of the peak over its curvature), since windows
+// share a transform.
 TEST(SinglePass, ExchangedImagesGiveTheOppositeVector) {
   ParticlePair const pair = render_particle_pair({}, constant(0.35, -1.2));
   auto const correlator = make_correlator(with_windows({32}));
@@ -105,16 +105,16 @@ TEST(SinglePass, ExchangedImagesGiveTheOppositeVector) {
     EXPECT_LT(length(forward.displacement_px[i] + backward.displacement_px[i]), 1e-4);
 }
 
-/// A vortex' part of a wave along either axis, 1 px high.
+/// Shear waves with an amplitude of 1 px: u varies along y, v along x.
 auto wave(double length_px) {
   return [length_px](Vec2d p) {
     return Vec2d{std::sin(2.0 * pi * p.y / length_px), std::sin(2.0 * pi * p.x / length_px)};
   };
 }
 
-// Two windows a wave, four vectors: the median of a crest's neighbours is 0, which must not take its place. The window
-// itself averages: the Gaussian of 32 px leaves exp(-pi/2 (32/64)^2) = 0.68 of a wave of 64 px, so that no error is
-// above 0.32 sqrt(2) = 0.46 px but for noise and the peak's shape.
+// Two windows and four vectors per wave: the median of the neighbours of a crest is 0 and must not replace it. The
+// window itself averages: a Gaussian window of 32 px transmits exp(-pi/2 (32/64)^2) = 0.68 of a wave of 64 px, so that
+// no error exceeds 0.32 sqrt(2) = 0.46 px, apart from noise and the shape of the peak.
 TEST(SinglePass, KeepsTheCrestsOfAWaveOfTwoWindows) {
   for (double const noise : {0.0, 0.05}) {
     ParticlePair const pair = render_particle_pair({.noise = noise}, wave(64.0));
@@ -135,8 +135,8 @@ TEST(SinglePass, KeepsTheCrestsOfAWaveOfTwoWindows) {
   }
 }
 
-// A chance peak within the 4 px that the later passes look far has hardly room for a rival: with 5 % noise
-// trusting such windows would keep vectors 0.5 px off and more among those of 0.05 px.
+// Within the search range of 4 px of the later passes a random peak hardly leaves room for a secondary peak: at 5 %
+// noise, accepting such windows would keep vectors with errors of 0.5 px and more among those with errors of 0.05 px.
 TEST(MultiPass, TrustsTheFirstPassAlone) {
   CorrelationSettings const settings;
   CorrelationSchedule const schedule(settings);
@@ -148,8 +148,9 @@ TEST(MultiPass, TrustsTheFirstPassAlone) {
   EXPECT_EQ(schedule.rule(last - 1).epsilon_px, 0.5);
 }
 
-// Noise of 10 % and five dots a window: one vector in thirty is grossly wrong, most of them since an earlier pass was.
-// Judged as a whole a third fewer of the vectors that count as measured are (docs/estimators.md: 1024 x 1024 px).
+// Noise of 10 % and five dots per window: one vector in thirty is a gross error, mostly because an earlier pass was
+// wrong. With the test of whole displacements a third fewer of the measured vectors are gross errors
+// (docs/estimators.md: 1024 x 1024 px).
 TEST(MultiPass, JudgesWholeDisplacements) {
   auto const truth = constant(0.4, -0.4);
   ParticlePair const pair = render_particle_pair(
@@ -168,8 +169,8 @@ TEST(MultiPass, JudgesWholeDisplacements) {
   EXPECT_LT(static_cast<double>(gross(2.0)), 0.8 * static_cast<double>(without));
 }
 
-// Nodes 26, 13, 10 and 8 px apart: part times spacing is the same of all predictors, and the frames that the result
-// deforms are smoothed no more than those of the last pass.
+// Nodes 26, 13, 10 and 8 px apart: the product of smoothing fraction and spacing is the same for all predictors, and
+// the frames are deformed by predictors that are smoothed no more than the last one.
 TEST(MultiPass, SmoothsWiderGridsLess) {
   CorrelationSettings settings;
   settings.window_px = {64, 32, 24, 20};
@@ -183,7 +184,7 @@ TEST(MultiPass, SmoothsWiderGridsLess) {
   EXPECT_EQ(CorrelationSchedule(settings).smoothing(0), 0.25);
 }
 
-// What is measured is kept beside what replaces it.
+// The measured displacement is retained when a vector is replaced.
 TEST(Correlator, KeepsTheRawVectorOfEveryWindow) {
   auto const truth = constant(2.3, -0.2);
   ParticlePair const pair = render_particle_pair({.particles_per_px = 6.0 / 1024.0, .noise = 0.1}, truth);
@@ -200,8 +201,8 @@ TEST(Correlator, KeepsTheRawVectorOfEveryWindow) {
   EXPECT_GT(replaced, 0u);
 }
 
-// The square lattice matches itself at every whole pitch. Of all shifts that fit, the one nearest to none is taken: up
-// to 0.45 pitch along both axes it is the right one in every window, and each says that there are others.
+// The square lattice matches itself at every whole pitch. Of all shifts that fit, the smallest is selected: up to 0.45
+// pitch along both axes it is correct in every window, and each vector is marked as ambiguous.
 TEST(RegularDots, AreRightUpToNearlyHalfAPitch) {
   for (double const pitch : {5.7, 7.155, 10.0, 13.3})
     for (double const part : {0.07, 0.25, 0.45}) {
@@ -218,7 +219,7 @@ TEST(RegularDots, AreRightUpToNearlyHalfAPitch) {
     }
 }
 
-// Beyond half a pitch an alias lies nearer. The vectors cannot know, but say so.
+// Beyond half a pitch an alias is a smaller shift. The vectors are then wrong, but marked as ambiguous.
 TEST(RegularDots, AreAmbiguousBeyondHalfAPitch) {
   ParticlePair const pair = render_particle_pair({.columns = 128, .rows = 128, .pitch_px = 7.155}, constant(4.3, 0.0));
   DisplacementField const field = make_correlator({})->correlate(pair.reference, pair.flow);
@@ -238,7 +239,7 @@ TEST(MaxDisplacement, ChoosesAmongAliases) {
   }
 }
 
-// Along either axis, the predictor of earlier passes included, in every pass.
+// Along either axis, including the predictor of earlier passes, in every pass.
 TEST(MaxDisplacement, IsHonouredByEveryVector) {
   auto const truth = [](Vec2d p) { return Vec2d{0.04 * (p.x - 128.0), 3.0}; };  // -5.1 .. 5.1 px
   ParticlePair const pair = render_particle_pair({}, truth);
@@ -265,7 +266,8 @@ TEST(MaxDisplacement, IsHonouredByEveryVector) {
   EXPECT_LT(score(make_correlator(settings)->correlate(pair.reference, pair.flow), truth).worst, 0.2);
 }
 
-// OpenPIV's default reaches 0.0083 px on such images; ours must do better, vectors at the image's border included.
+// The default of OpenPIV has an error of 0.0083 px on such images; ours must be smaller, including the vectors at the
+// border of the image.
 TEST(MultiPass, BeatsEightMillipixelsOnUniformShifts) {
   auto const correlator = make_correlator({});
   double sum = 0.0;
@@ -281,7 +283,7 @@ TEST(MultiPass, BeatsEightMillipixelsOnUniformShifts) {
   EXPECT_LT(std::sqrt(sum / 5.0), 0.0083);
 }
 
-// With cubic splines the deformation itself errs more (0.0079 against 0.0026 px on 1024 x 1024 px).
+// With cubic splines the deformation has a larger error (0.0079 instead of 0.0026 px on 1024 x 1024 px).
 TEST(MultiPass, CubicDeformationStaysBelowOneAndAHalfHundredths) {
   CorrelationSettings settings;
   settings.deformation = "cubic";
@@ -290,8 +292,8 @@ TEST(MultiPass, CubicDeformationStaysBelowOneAndAHalfHundredths) {
   EXPECT_LT(score(make_correlator(settings)->correlate(pair.reference, pair.flow), truth).rms, 0.015);
 }
 
-// Eight pixels' sinc errs less than the quintic (0.0023 against 0.0030 px on 1024 x 1024 px), half as much again for
-// 256.
+// The sinc over eight pixels has a smaller error than the quintic spline (0.0023 instead of 0.0030 px on 1024 x 1024
+// px), half as much again for 256 px.
 TEST(MultiPass, SincDeformationErrsByThousandths) {
   CorrelationSettings settings;
   settings.deformation = "sinc";
@@ -300,7 +302,7 @@ TEST(MultiPass, SincDeformationErrsByThousandths) {
   EXPECT_LT(score(make_correlator(settings)->correlate(pair.reference, pair.flow), truth).rms, 0.0035);
 }
 
-// Cramer & Rao's bound for 16 px windows at 5 % noise is 0.039 px.
+// The Cramer-Rao bound for 16 px windows at 5 % noise is 0.039 px.
 TEST(MultiPass, HasNoGrossErrorsAtFivePercentNoise) {
   auto const truth = constant(0.4, -0.4);
   ParticlePair const pair = render_particle_pair({.noise = 0.05}, truth);
@@ -309,7 +311,7 @@ TEST(MultiPass, HasNoGrossErrorsAtFivePercentNoise) {
   EXPECT_LT(result.worst, 1.0);
 }
 
-// u = g (y - y0): a position that is off by half a pixel shows as a mean error of g/2 = 0.01 px in u.
+// u = g (y - y0): a position error of half a pixel appears as a mean error of g/2 = 0.01 px in u.
 TEST(MultiPass, PutsShearAtTheWindowCentreAfterOneToFivePasses) {
   auto const truth = [](Vec2d p) { return Vec2d{0.02 * (p.y - 100.0), 0.0}; };
   ParticlePair const pair = render_particle_pair({}, truth);
@@ -319,7 +321,7 @@ TEST(MultiPass, PutsShearAtTheWindowCentreAfterOneToFivePasses) {
     EXPECT_EQ(result.unknown, 0u);
     // one pass: random error 0.026 px over about 60 independent windows is 0.0034 px; later passes 0.0025 px over 256
     EXPECT_LT(std::abs(result.bias.x), windows.size() == 1 ? 0.009 : 0.002) << windows.size() << " passes";
-    // the second of two passes still has to make up for rigid windows, and a quarter of its vectors stand at the border
+    // the second of two passes still compensates for rigid windows, and a quarter of its vectors are at the border
     EXPECT_LT(result.rms, windows.size() == 1 ? 0.04 : (windows.size() == 2 ? 0.015 : 0.008)) << windows.size();
   }
 }
@@ -338,9 +340,9 @@ TEST(MultiPass, KeepsTheAmplitudeOfASineOfFourWindows) {
   EXPECT_LT(product / square, 1.02);
 }
 
-// A wave of four windows, 1.5 px high: at the rim the predictor is continued from further inside, so that right vectors
-// stand out by what they add to it. Replacing loses no more than chance gives: 3 % of the rms error (29 % where sums
-// are not looked at), and no vector is grossly wrong that was not.
+// A wave of four windows with an amplitude of 1.5 px: at the edge the predictor is extrapolated from the interior, so
+// that the increments of correct vectors differ from those of their neighbours. Replacement must not increase the error
+// by more than chance does: 3 % of the rms error (29 % without the test of the sums), and no new gross errors.
 TEST(MultiPass, LosesNothingByReplacingAtTheRimOfASine) {
   auto const truth = [](Vec2d p) {
     return Vec2d{1.5 * std::sin(2.0 * pi * p.y / 64.0), 1.5 * std::sin(2.0 * pi * p.x / 64.0)};
@@ -391,8 +393,9 @@ TEST(Correlator, CallsFlatImagesInvalid) {
   }
 }
 
-// Where the nominal window is black in both images there is nothing to measure; where it is wholly lit, the vectors
-// are as good as ever (5 % noise-free rms 0.0083), except within the Gaussian's reach of the edge.
+// If the nominal window is black in both images, there is nothing to measure; if it is completely illuminated, the
+// vectors are as accurate as elsewhere (noise-free rms 0.0083 px), except within the range of the Gaussian weights from
+// the edge.
 TEST(Correlator, MeasuresTheLitHalfOfAnImage) {
   auto const truth = constant(0.3, 0.6);
   ParticlePair pair = render_particle_pair({}, truth);
@@ -434,8 +437,8 @@ TEST(Correlator, MasksWindowsOfUnknownPixels) {
   }
 }
 
-// Grey levels enter by their differences only: 12-bit images on a high ground give what 8-bit ones give, up to the
-// rounding of float at the B-spline (1e-7 of the range, some 1e-5 px).
+// Only differences of grey levels matter: 12-bit images on a high background give the same as 8-bit images, up to the
+// float rounding of the B-spline (1e-7 of the range, some 1e-5 px).
 TEST(Correlator, IgnoresGainAndOffsetOfTheGreyLevels) {
   ParticlePair pair = render_particle_pair({}, constant(1.3, 0.2));
   auto const correlator = make_correlator({});

@@ -12,16 +12,16 @@
 namespace gladstone {
 namespace {
 
-/// The light that a normal spot about `at` puts into pixel `i` along one axis.
+/// Light of a Gaussian spot centred at `at` in pixel `i` along one axis.
 double share(double at, double sigma, int i) {
   double const scale = 1 / (std::sqrt(2.0) * sigma);
   return 0.5 * (std::erf((i + 0.5 - at) * scale) - std::erf((i - 0.5 - at) * scale));
 }
 
-/// Adds a disc that is blurred by a normal spot, exactly integrated over pixels: a sum over points that lie in pairs
-/// opposite to each other, so that its centroid is the centre to rounding.
+/// Adds a disc blurred by a Gaussian, integrated exactly over the pixels: a sum over points in opposite pairs, so that
+/// its centroid is its centre, to rounding.
 void add_dot(Image<double>& picture, Vec2d centre, double radius, double sigma, double level) {
-  constexpr int points = 1000;  // spread evenly (Vogel 1979)
+  constexpr int points = 1000;  // distributed uniformly (Vogel 1979)
   for (int k = 0; k < points; ++k) {
     double const r = radius * std::sqrt((k + 0.5) / points), angle = pi * (3 - std::sqrt(5.0)) * k;
     for (double const side : {1.0, -1.0}) {
@@ -38,7 +38,7 @@ void add_dot(Image<double>& picture, Vec2d centre, double radius, double sigma, 
   }
 }
 
-/// Dots at known places, each at another place among the pixels.
+/// Dots at known positions, each with a different sub-pixel position.
 struct Scenery {
   Image<double> picture{200, 160};
   std::vector<Vec2d> centres;
@@ -51,7 +51,7 @@ struct Scenery {
       }
     }
   }
-  /// Distances of what is found from where the dots are.
+  /// Distances of the detected dots from the true ones.
   std::vector<Vec2d> errors() const {
     std::vector<Vec2d> found;
     for (DetectedDot const& dot : detect_dots(picture).dots) {
@@ -63,8 +63,8 @@ struct Scenery {
   }
 };
 
-// Wherever it lies among the pixels, a dot's centroid is its centre; the sum over pixels of a band-limited image is its
-// integral, and what a spot of sigma = 0.7 px leaves of frequencies beyond that is exp(-2 pi^2 0.7^2) = 6e-5 at 1/px.
+// For any sub-pixel position the centroid of a dot is its centre. The sum over pixels of a band-limited image is its
+// integral; a Gaussian of sigma = 0.7 px transmits exp(-2 pi^2 0.7^2) = 6e-5 at the first aliased frequency, 1/px.
 TEST(DotDetection, IsUnbiasedWhereverADotLies) {
   for (double const radius : {2.0, 3.0, 6.5}) {
     Scenery const scenery(radius, 0.7);
@@ -82,9 +82,9 @@ TEST(DotDetection, DarkDotsOnBrightPaperAreFoundAsWell) {
   for (Vec2d const error : errors) EXPECT_LT(length(error), 1e-4);
 }
 
-// Background and noise: the error is that of the electrons' places, sigma_x / sqrt(N) with sigma_x^2 = r^2 / 4 + 0.7^2
-// and N = pi r^2 20000 electrons, and of 30 electrons of noise in each of the window's n pixels, whose squared
-// distances from the centre sum to n R^2 / 4.
+// Background and noise: the error is that of the positions of the electrons, sigma_x / sqrt(N) with sigma_x^2 = r^2 / 4
+// + 0.7^2 and N = pi r^2 20000 electrons, and that of 30 electrons of noise in each of the window's n pixels, whose
+// squared distances from the centre sum to n R^2 / 4.
 TEST(DotDetection, ErrorsAreThoseOfTheNoise) {
   constexpr double radius = 3, level = 20000, background = 500, read = 30;
   std::mt19937 random(5);
@@ -109,27 +109,27 @@ TEST(DotDetection, ErrorsAreThoseOfTheNoise) {
   double const shot2 = (radius * radius / 4 + 0.49) / electrons;
   double const ground2 = (background + read * read) * pi * std::pow(window, 4) / 4 / (electrons * electrons);
   double const rms = std::sqrt(squares / (2 * count)), expected = std::sqrt(shot2 + ground2);
-  // 240 numbers: their rms scatters by 1/sqrt(480) = 4.6 %; the window is wider than the formula's by up to a tenth
-  // where the threshold finds the dot larger than it is, which the ground feels by its square
+  // the rms of 240 numbers scatters by 1/sqrt(480) = 4.6 %; the window is up to a tenth wider than in the formula if
+  // the threshold makes the dot appear larger, which affects the background term by its square
   EXPECT_NEAR(rms / expected, 1.0, 0.35);
   EXPECT_LT(length(sum / static_cast<double>(count)), 4 * expected / std::sqrt(static_cast<double>(count)));
 }
 
 TEST(DotDetection, WhatIsNoDotIsLeftOut) {
   Scenery scenery(3, 0.7);
-  add_dot(scenery.picture, {0.5, 80}, 3, 0.7, 40000);      // cut by the edge
+  add_dot(scenery.picture, {0.5, 80}, 3, 0.7, 40000);      // dot cut by the edge
   add_dot(scenery.picture, {100.2, 44.8}, 0.4, 0.5, 1e6);  // dust: a 25th of a dot's area, bright
   for (int column = 60; column < 140; ++column) scenery.picture(column, 150) = 30000;  // a scratch
   EXPECT_EQ(scenery.errors().size(), scenery.centres.size());
   EXPECT_EQ(detect_dots(scenery.picture).dots.size(), scenery.centres.size());
 }
 
-// Light B that falls off by a quarter, B (1 - c) in dots of contrast c. Over the plane through its ring and as a share
-// of that a dot is c B / P + (P - B) / P: of the curvature of B, 1.5e-5 / px^2, there remain terms that are even about
-// the dot, and an offset of 1.5e-5 (12^2 - 6^2) = 2e-3 over the window's 227 px, 0.4 where the dot is 23. Each of the
-// 53 pixels on the window's rim moves its middle by 8.5/227 = 0.04 px, and is inside or out by chance: 0.04 sqrt(53)/2
-// = 0.14 px rms in length, three times which and 0.4/23 of the dot's light are 7e-3 px. Light taken as level would move
-// dots by 0.1 px.
+// The light B decreases by a quarter across the image, and is B (1 - c) in dots of contrast c. Relative to the plane P
+// through the surrounding ring, a dot is c B / P + (P - B) / P. The curvature of B, 1.5e-5 / px^2, leaves terms that
+// are even about the dot, and an offset of 1.5e-5 (12^2 - 6^2) = 2e-3 over the 227 px of the window, 0.4 compared with
+// 23 for the dot. Each of the 53 pixels on the edge of the window shifts its centroid by 8.5/227 = 0.04 px and is
+// inside or outside by chance: 0.04 sqrt(53)/2 = 0.14 px rms in length. Three times this, times 0.4/23 of the dot's
+// light, is 7e-3 px. Assuming uniform light would shift the dots by 0.1 px.
 TEST(DotDetection, DarkDotsUnderLightThatFallsOffAreFoundWhereTheyAre) {
   Scenery scenery(3, 0.7, -0.8);
   Image<double>& picture = scenery.picture;
@@ -186,7 +186,8 @@ TEST(DotDetection, DenseDarkDotsUnderUnevenLightAreFoundWhereTheyAre) {
             7e-3);
 }
 
-// Letters about as large as dots, between them: bars, rings and angles are no filled ellipses of the dots' shape.
+// Letters about as large as the dots, between them: bars, rings and angles are not filled ellipses in the shape of the
+// dots.
 TEST(DotDetection, LettersAreLeftOutAndCounted) {
   Scenery scenery(3, 0.7);
   auto const fill = [&](int left, int top, int columns, int rows) {

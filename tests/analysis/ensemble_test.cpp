@@ -24,8 +24,8 @@ PairSequence sequence_of(std::size_t pairs, ParticleSettings const& settings) {
 }
 
 struct EnsembleErrors {
-  double gross = 0.0;  ///< part of the vectors that are off by more than 1 px
-  double rms = 0.0;    ///< of the others, per component [px]
+  double gross = 0.0;  ///< fraction of the vectors with errors above 1 px
+  double rms = 0.0;    ///< rms error of the others, per component [px]
 };
 
 EnsembleErrors errors_of(DisplacementField const& field) {
@@ -51,7 +51,7 @@ CorrelationSettings settings_of(std::vector<int> const& windows) {
   return settings;
 }
 
-// The mean of one plane is that plane.
+// The mean of a single plane is that plane.
 TEST(Ensemble, OfOnePairIsThePair) {
   CorrelationSettings const settings = settings_of({32, 16});
   PairSequence const one = sequence_of(1, {.noise = 0.02});
@@ -65,10 +65,10 @@ TEST(Ensemble, OfOnePairIsThePair) {
   }
 }
 
-// Two particles in a window of 16 px and noise of a tenth of their light: windows of single pairs are gross errors by
-// the dozen. The mean of n planes has the peak of one and chance peaks lower by the root of n. Errors of the others
-// come from independent particles and noise: lower by that root, too, a quarter of 16 pairs, if not by as much as 1.5
-// more for what they share, the three-point fit's own error.
+// Two particles in a window of 16 px and noise of a tenth of their light: single pairs give dozens of gross errors. The
+// mean of n planes has the same peak, and its random peaks are lower by sqrt(n). The errors of the other vectors come
+// from independent particles and noise and also decrease by sqrt(n), to a quarter for 16 pairs, except for a common
+// part: the error of the three-point fit itself, for which a factor of 1.5 is allowed.
 TEST(Ensemble, FindsWhatNoSinglePairShows) {
   ParticleSettings const seeding{.particles_per_px = 2.0 / 256.0, .noise = 0.1, .seed = 11};
   CorrelationSettings const settings = settings_of({16});
@@ -90,7 +90,7 @@ TEST(Ensemble, OfSeveralPassesFollowsTheFrames) {
   }
 }
 
-// A window that is unknown in one pair counts in the others.
+// A window that is masked in one pair is measured from the others.
 TEST(Ensemble, TakesWhatEachPairHas) {
   PairSequence const whole = sequence_of(4, {});
   PairSequence const holed{4, [&](std::size_t k) {

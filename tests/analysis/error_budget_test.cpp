@@ -12,7 +12,7 @@
 namespace gladstone {
 namespace {
 
-/// A whole chain with correlated steps at n vectors.
+/// A complete chain with correlated steps at n vectors.
 std::vector<BudgetStage> chain(std::size_t n) {
   std::vector<BudgetStage> stages;
   double scale = 1.0;
@@ -33,7 +33,7 @@ BudgetTerm const& term(ErrorBudget const& budget, std::string_view name) {
   return *std::find_if(budget.terms.begin(), budget.terms.end(), [&](BudgetTerm const& t) { return t.name == name; });
 }
 
-// A chain telescopes: biases add up, and so do all entries of the covariance matrix (var of a sum).
+// The sum over the chain telescopes: biases add up, and so do all entries of the covariance matrix (variance of a sum).
 TEST(ErrorBudget, TermsAddUpToTheTotal) {
   std::vector<BudgetStage> const stages = chain(500);
   ErrorBudget const budget = error_budget(stages, VectorMask(500, 1));
@@ -52,7 +52,7 @@ TEST(ErrorBudget, TermsAddUpToTheTotal) {
   double const u = budget.total.random_u_px, v = budget.total.random_v_px;
   EXPECT_NEAR(covariance, 0.5 * (u * u + v * v), 1e-12);
 
-  // The total is what the error summary of the last stage against the first says.
+  // The total equals the error summary of the last stage against the first one.
   ErrorSummary const summary =
       summarize_errors(stages.back().displacement_px, stages.front().displacement_px, VectorMask(500, 1));
   EXPECT_DOUBLE_EQ(budget.total.rms_px, summary.rms_px);
@@ -75,8 +75,8 @@ TEST(ErrorBudget, NamesTheTermsOfTheContract) {
   EXPECT_EQ(budget_term_names(), names);
 }
 
-// The chain of PIV: flow 1, without the medium 3, with it 2, window 2.5, noise-free 2.4, measured 2.6 px. Steps of it
-// are the biases of its terms; eq9 is no stage of it.
+// The chain of PIV: flow 1, without the medium 3, with it 2, window 2.5, noise-free 2.4, measured 2.6 px. The steps
+// between them are the biases of the terms; eq9 is not a stage of this chain.
 TEST(ErrorBudget, BeginsWithTheFlowOfPiv) {
   auto const all = [](double value) { return std::vector<Vec2d>(4, Vec2d{value, -value}); };
   std::vector<BudgetStage> const stages{{"measured", all(2.6)}, {"flow", all(1)}, {"ambient", all(3)},
@@ -94,7 +94,8 @@ TEST(ErrorBudget, BeginsWithTheFlowOfPiv) {
   EXPECT_LT(budget.closure_px, 1e-15);
 }
 
-// Vectors of another code: no noise-free images, no repeats. What is left goes to the estimator; noise is unknown.
+// Vectors of another code: no noise-free images, no repeats. The remainder is attributed to the estimator; noise is
+// unknown.
 TEST(ErrorBudget, BooksAGapUnderItsFirstTerm) {
   std::vector<BudgetStage> stages = chain(50);
   std::erase_if(stages, [](BudgetStage const& s) { return s.name == "estimator"; });
@@ -128,9 +129,9 @@ TEST(ErrorBudget, OfNoVectorsIsUnknown) {
   EXPECT_TRUE(std::isnan(budget.peak_locking_px));
 }
 
-// error = A sin(2 pi f): the mean over a bin of width 1/20 is A sinc(1/20) times its middle's, so the rms over the
-// bins is A/sqrt(2) sin(pi/20)/(pi/20). The displacement steps by 1/4000, so sums over bins are midpoint sums with
-// 200 points: relative error below 1e-5.
+// error = A sin(2 pi f): the mean over a bin of width 1/20 is A sinc(1/20) times the value at its middle, so the rms
+// over the bins is A/sqrt(2) sin(pi/20)/(pi/20). The displacement has steps of 1/4000, so sums over bins are midpoint
+// sums with 200 points: relative error below 1e-5.
 TEST(PeakLocking, IsTheRmsOfTheBinnedSine) {
   std::vector<Vec2d> truth, error;
   for (int i = 0; i < 4000 * 3; ++i) {
@@ -142,7 +143,7 @@ TEST(PeakLocking, IsTheRmsOfTheBinnedSine) {
   EXPECT_NEAR(peak_locking(truth, error), 0.05 / std::sqrt(2.0) * sinc, 1e-6);
 }
 
-// A constant bias is no locking to a fraction but shows as the mean of every bin.
+// A constant bias is not peak locking to fractions of a pixel, but appears as the mean of every bin.
 TEST(PeakLocking, OfAConstantErrorIsThatError) {
   std::vector<Vec2d> truth, error;
   for (int i = 0; i < 100; ++i) {

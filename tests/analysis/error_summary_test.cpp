@@ -53,7 +53,7 @@ TEST(ErrorSummary, KeepsGrossErrorsApart) {
   EXPECT_EQ(summary.p95_px, 0.0);
 }
 
-// Magnitudes 0..100: the 95th percentile of the order statistics is 95.
+// Magnitudes 0..100: the 95th percentile is 95.
 TEST(ErrorSummary, PercentileIsLinearBetweenOrderStatistics) {
   std::vector<Vec2d> measured, truth(101);
   for (int i = 0; i <= 100; ++i) measured.push_back({0.0, static_cast<double>((37 * i) % 101)});

@@ -50,8 +50,8 @@ std::vector<std::string> problems_of(std::string const& tables) {
   return {};
 }
 
-// A rectangle between pixel centres holds a number of them that can be counted; a triangle of corners (0, 0), (40, 0),
-// (0, 40), moved by less than a pixel, those with i + j < 40.
+// A rectangle between pixel centres contains a countable number of them; a triangle with corners (0, 0), (40, 0), (0,
+// 40), shifted by less than a pixel, contains those with i + j < 40.
 TEST(PolygonMask, LeavesOutThePixelsInside) {
   Image<double> const frame(64, 64, 5.0);
   HostFrames const box = prepared(frame, frame,
@@ -83,7 +83,7 @@ TEST(ImageMask, LeavesOutWhereThePictureIsBlack) {
   std::filesystem::remove(file);
 }
 
-// A mask's pixel that is no number says neither "masked" nor "not masked", a background's is no level.
+// A mask pixel of NaN means neither "masked" nor "not masked"; a background pixel of NaN is not a grey level.
 TEST(ImageMask, ThatHasPixelsWhichAreNoNumbersIsRefused) {
   std::string const file = GLADSTONE_DATA_DIR "/../tests/cases/pictures/mask_nan.tif";
   Image<double> const frame(7, 5, 5.0);
@@ -96,7 +96,7 @@ TEST(ImageMask, ThatHasPixelsWhichAreNoNumbersIsRefused) {
   }
 }
 
-// What is bright in one frame is left out of both; what was unknown stays so.
+// Pixels that are bright in one frame are masked in both; masked pixels remain masked.
 TEST(IntensityMask, LeavesOutWhatIsBrightInEitherFrame) {
   Image<double> reference(32, 32, 10.0), flow = reference;
   reference(3, 4) = 200.0;
@@ -110,8 +110,8 @@ TEST(IntensityMask, LeavesOutWhatIsBrightInEitherFrame) {
                    0.0);
 }
 
-// A wave of length L passes a Gaussian average of sigma by exp(-2 pi^2 sigma^2/L^2), and the rest is left. OpenCV's
-// kernel is cut at four sigma, exp(-8) = 3e-4, and sampled.
+// A Gaussian average of standard deviation sigma transmits exp(-2 pi^2 sigma^2/L^2) of a wave of length L; the
+// high-pass filter leaves the remainder. OpenCV's kernel is truncated at four sigma, exp(-8) = 3e-4, and sampled.
 TEST(HighPass, LeavesOfAWaveWhatTheGaussianTakes) {
   for (double const length : {16.0, 64.0}) {
     Image<double> const wave =
@@ -123,7 +123,7 @@ TEST(HighPass, LeavesOfAWaveWhatTheGaussianTakes) {
   }
 }
 
-// Light beneath a mask reaches nothing: a level field is level up to the mask's edge.
+// Light under a mask has no effect: a uniform image remains uniform up to the edge of the mask.
 TEST(HighPass, LooksAtKnownPixelsAlone) {
   Image<double> const frame = picture_of(64, [](int i, int) { return i < 20 ? 4000.0 : 100.0; });
   HostFrames const frames = prepared(frame, frame,
@@ -143,7 +143,7 @@ TEST(IntensityCap, IsTheMedianAndSomeDeviations) {
   EXPECT_EQ(frames.flow()(0, 0), 0.0);
 }
 
-// Illumination as a gain and an offset drops out of both, up to the 16 bits that CLAHE works in.
+// A gain and an offset of the illumination cancel in both, up to the 16 bits of CLAHE.
 TEST(LocalContrast, DoesNotDependOnTheLight) {
   ParticlePair const pair = render_particle_pair({.columns = 128, .rows = 128}, [](Vec2d) { return Vec2d{}; });
   Image<double> bright = pair.flow;
@@ -168,7 +168,8 @@ double contrast_of(Image<double> const& frame, int first, int end) {
   return std::sqrt(squares / count - sum * sum / (count * count));
 }
 
-// A half with an eighth of the other's light: afterwards its contrast is at least twice that part of the other's.
+// One half has an eighth of the light of the other: afterwards its contrast is at least twice that fraction of the
+// contrast of the other.
 TEST(LocalContrast, BringsUpWhatIsFaint) {
   ParticlePair pair = render_particle_pair({.columns = 128, .rows = 128}, [](Vec2d) { return Vec2d{}; });
   for (int j = 0; j < 128; ++j)
@@ -181,8 +182,8 @@ TEST(LocalContrast, BringsUpWhatIsFaint) {
   }
 }
 
-// Dots that move over a pattern that stands still and is brighter: without a background windows find the pattern, with
-// it the dots. The smallest level of a sequence is the pattern alone where no dot is always.
+// Dots move over a brighter pattern at rest: without background subtraction the windows find the pattern, with it the
+// dots. The minimum of a sequence is the pattern alone if no pixel is always covered by a dot.
 TEST(Background, TakesOffWhatStandsStill) {
   auto const moved = [](std::uint64_t seed, Vec2d by) {
     return render_particle_pair({.particles_per_px = 10.0 / 1024.0, .seed = seed}, [by](Vec2d) { return by; });
@@ -225,7 +226,7 @@ TEST(Background, TakesOffWhatStandsStill) {
       std::filesystem::remove(folder + "gladstone_" + frame + std::to_string(seed) + ".tif");
 }
 
-// Windows that are masked by half or more have no vector, and the others the vectors of the frames as they are.
+// Windows of which at least half is masked have no vector; the others have the vectors of the unmasked frames.
 TEST(Mask, LeavesTheOtherVectorsAsTheyAre) {
   ParticlePair const pair = render_particle_pair({}, [](Vec2d) { return Vec2d{1.3, -0.4}; });
   CorrelationSettings settings;
@@ -238,7 +239,7 @@ TEST(Mask, LeavesTheOtherVectorsAsTheyAre) {
   for (std::size_t i = 0; i < all.size(); ++i) {
     double const left = all.position_px[i].x - 15.5, share = std::clamp((100.0 - left) / 32.0, 0.0, 1.0);
     EXPECT_EQ(some.status[i] == VectorStatus::masked, share > 0.5) << left;
-    // float sums about another level
+    // float sums relative to another level
     if (share == 0.0) {
       EXPECT_LT(length(some.raw_px[i] - all.raw_px[i]), 1e-4);
     }
@@ -258,7 +259,7 @@ TEST(FramePreparation, SaysWhereItsSettingsAreWrong) {
               ElementsAre(HasSubstr("case.toml:3:1: ")));
 }
 
-// What vectors.h5 keeps of its settings is the text with all defaults: it is to mean the same again.
+// The settings stored in vectors.h5 are a text with all defaults, which must be read back to the same settings.
 TEST(FramePreparation, ReadsBackWhatItUnderstood) {
   auto const resolved = [](std::string const& text) {
     SetupDocument document = SetupDocument::from_text(text, "case.toml", "/frames");

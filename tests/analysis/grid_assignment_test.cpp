@@ -12,7 +12,7 @@ namespace {
 
 constexpr CalibrationGrid grid{6, 4, 2.5e-3, 0.8e-3};
 
-/// A plane that is seen slantingly, turned by 12 degrees: perspective changes the steps by a third across the picture.
+/// A plane in an oblique view, rotated by 12 degrees: the perspective changes the spacing by a third across the image.
 Vec2d seen(double i, double j) {
   double const c = std::cos(0.21), s = std::sin(0.21), x = 40 * (c * i + s * j), y = 40 * (s * i - c * j);
   double const depth = 1 + 0.0007 * x;
@@ -21,7 +21,7 @@ Vec2d seen(double i, double j) {
 
 ExpectedView expected() { return {seen(0, 0), seen(1, 0) - seen(0, 0), seen(0, 1) - seen(0, 0)}; }
 
-/// The dots of some columns and rows, in no order.
+/// The dots of some columns and rows, in random order.
 std::vector<DetectedDot> dots_of(int left, int right, int low, int high) {
   std::vector<DetectedDot> dots;
   for (int i = left; i <= right; ++i) {
@@ -44,7 +44,7 @@ TEST(GridAssignment, FollowsThePerspective) {
   expect_right(assigned);
 }
 
-// Where the whole grid is seen the setup's camera may be wrong by spacings, and by 40 degrees.
+// If the whole grid is visible, the camera of the setup may be wrong by several spacings, and by 40 degrees.
 TEST(GridAssignment, OfAWholeGridNeedsNoGoodGuess) {
   ExpectedView wrong = expected();
   wrong.middle_px += Vec2d{130, -90};
@@ -57,7 +57,8 @@ TEST(GridAssignment, OfAWholeGridNeedsNoGoodGuess) {
   expect_right(assigned);
 }
 
-// A part of the grid, its own middle far from the grid's: only the expected view can tell, within half a spacing.
+// A part of the grid whose middle is far from that of the whole grid: only the expected view determines the indices,
+// within half a spacing.
 TEST(GridAssignment, OfAPartTakesTheExpectedMiddle) {
   ExpectedView rough = expected();
   rough.middle_px += Vec2d{15, 10};
@@ -67,7 +68,7 @@ TEST(GridAssignment, OfAPartTakesTheExpectedMiddle) {
   expect_right(assigned);
 }
 
-// All columns, and a part of the rows: the columns tell the middle along X, however wrong the expected view.
+// All columns and a part of the rows: the columns determine the middle along X, however wrong the expected view is.
 TEST(GridAssignment, NeedsTheExpectedMiddleOnlyAlongTheAxisThatIsCut) {
   ExpectedView rough = expected();
   rough.middle_px = seen(1.6, 0.2);
@@ -78,7 +79,8 @@ TEST(GridAssignment, NeedsTheExpectedMiddleOnlyAlongTheAxisThatIsCut) {
   expect_right(assigned);
 }
 
-// A spot in a dot's place a fifth of a spacing off, and one of half as large again: neither is a dot of the grid.
+// A spot displaced from a dot's position by a fifth of a spacing, and one half as large again: neither is a dot of the
+// grid.
 TEST(GridAssignment, SpotsThatFitNeitherPlacesNorSizesAreRemoved) {
   std::vector<DetectedDot> dots = dots_of(-6, 6, -4, 4);
   for (DetectedDot& dot : dots) {
@@ -92,14 +94,15 @@ TEST(GridAssignment, SpotsThatFitNeitherPlacesNorSizesAreRemoved) {
   expect_right(assigned);
 }
 
-// A grid with noise scatters by it about a smooth one, but for what a cubic polynomial leaves of the perspective: the
-// fourth term of x / (1 + u), 240 u^3 with u = 0.17 at the edge, over 8 for the best cubic, 0.15 px at most.
+// The scatter about a smooth grid is the noise, except for the part of the perspective that a cubic polynomial does not
+// describe: the fourth term of x / (1 + u), 240 u^3 with u = 0.17 at the edge, over 8 for the best cubic, at most 0.15
+// px.
 TEST(GridAssignment, TellsTheScatterOfItsDots) {
   std::mt19937 random(7);
   std::normal_distribution<double> noise(0, 0.5);
   std::vector<DetectedDot> dots = dots_of(-6, 6, -4, 4);
   for (DetectedDot& dot : dots) dot.centre_px += Vec2d{noise(random), noise(random)};
-  // 234 numbers less 20 terms tell a scatter to 1 / sqrt(2 * 214) = 5 %
+  // 234 numbers less 20 terms determine the scatter to 1 / sqrt(2 * 214) = 5 %
   EXPECT_NEAR(assign_to_grid(dots, grid, expected()).smoothness_px, 0.5, 0.5 * 0.15 + 0.02);
 }
 

@@ -17,20 +17,20 @@ using Flow = std::function<Vec2d(Vec2d)>;
 
 Vec2d uniform(Vec2d) { return {0.3, -0.3}; }
 
-/// Turns about the middle of the image: exchanged frames look like axes that point up.
+/// Rotation about the middle of the image: exchanged frames look like axes that point upwards.
 Vec2d vortex(Vec2d p) {
   Vec2d const r{p.x - 127.5, p.y - 127.5};
   double const swirl = 4.0 * std::exp(-dot(r, r) / 3600.0) / 60.0;
   return {-swirl * r.y, swirl * r.x};
 }
 
-/// Turns about another place, and stretches along x.
+/// Rotation about another point, with a stretch along x.
 Vec2d off_centre(Vec2d p) {
   Vec2d const turned = vortex(p + Vec2d{40.0, -25.0});
   return {turned.x + 0.004 * p.x, turned.y};
 }
 
-/// Vectors that a code with `change` writes for the truth.
+/// Vectors that a code with the mistake `change` writes for the truth.
 VectorsWithTruth written(Flow const& truth, Flow const& change, Vec2d shift_px = {}) {
   VectorsWithTruth written{{}, truth, 256};
   written.file.format = "test";
@@ -48,7 +48,7 @@ Vec2d same(Vec2d d) { return d; }
 
 TEST(DetectCommonConventions, LetsThoseCasesDecideThatCan) {
   Flow const negative = [](Vec2d d) { return -d; };
-  // the vortex alone: negative vectors are explained by exchanged frames and by both axes upside down
+  // the vortex alone: negative vectors are explained by exchanged frames and by both axes reversed
   CommonConventions const alone = detect_common_conventions({written(vortex, negative)});
   EXPECT_TRUE(alone.ambiguous);
   EXPECT_THAT(alone.mistake.text, testing::StartsWith("the frames were exchanged, or "));
@@ -79,7 +79,7 @@ TEST(DetectCommonConventions, FindsAShiftThatMostCasesCannotSee) {
   EXPECT_EQ(found.decisive, 5u);
 }
 
-// 0.5 px is 2.7 times the uniform displacement of 0.3 px in u, which the vortex rules out.
+// An offset of 0.5 px is 2.7 times the uniform displacement of 0.3 px in u; the vortex excludes that factor.
 TEST(DetectCommonConventions, TellsAnOffsetFromAFactor) {
   Flow const more = [](Vec2d d) { return d + Vec2d{0.5, 0.0}; };
   EXPECT_EQ(detect_common_conventions({written(uniform, more), written(vortex, more)}).mistake.text,
@@ -98,7 +98,7 @@ TEST(DetectCommonConventions, FindsNothingInCommonWhereEachFileHasItsOwnUnit) {
   for (DetectedConventions const& one : found.detected) EXPECT_THAT(one.mistake.text, testing::HasSubstr("times"));
 }
 
-// The format allows two offsets: half a pixel shows in the vortex, not in uniform displacement.
+// The format permits two offsets: half a pixel has an effect in the vortex, not in a uniform displacement.
 TEST(DetectCommonConventions, ChoosesAmongTheFormatsOwnByAllFiles) {
   std::vector<VectorsWithTruth> files{written(uniform, same, {0.5, 0.5}), written(vortex, same, {0.5, 0.5})};
   for (VectorsWithTruth& one : files) {
@@ -109,7 +109,7 @@ TEST(DetectCommonConventions, ChoosesAmongTheFormatsOwnByAllFiles) {
   EXPECT_EQ(detect_common_conventions(files).conventions.offset_px, -0.5);
 }
 
-/// A fraction of wild vectors, and noise on all.
+/// A fraction of outliers, and noise on all vectors.
 VectorsWithTruth with_outliers(VectorsWithTruth written, double share, double noise_px, unsigned seed) {
   std::mt19937 random(seed);
   std::normal_distribution<double> noise(0.0, noise_px);
@@ -121,7 +121,7 @@ VectorsWithTruth with_outliers(VectorsWithTruth written, double share, double no
   return written;
 }
 
-// Right vectors with noise and outliers are no mistake in any case alone, nor in several.
+// Correct vectors with noise and outliers are not reported as a mistake, neither in a single case nor in several.
 TEST(DetectCommonConventions, TakesOutliersForNoMistake) {
   for (unsigned seed = 0; seed < 6; ++seed) {
     for (double const share : {0.005, 0.01, 0.05}) {
@@ -166,7 +166,7 @@ TEST(DetectCommonConventions, FindsMistakesAmongOutliers) {
   }
 }
 
-// Of three files one is negated, one ten times too large, and one shifted: no reading holds for all.
+// Three files, one of them negated, one ten times too large, and one shifted: no common reading exists.
 TEST(DetectCommonConventions, FindsNothingInCommonInThreeMistakes) {
   CommonConventions const found = detect_common_conventions({written(vortex, [](Vec2d d) { return -d; }),
                                                              written(uniform, [](Vec2d d) { return 10.0 * d; }),
@@ -176,7 +176,7 @@ TEST(DetectCommonConventions, FindsNothingInCommonInThreeMistakes) {
   EXPECT_EQ(found.mistaken, (std::vector<std::size_t>{0, 1, 2}));
 }
 
-// One wrong file among right ones is named, be it ten times too large or noise.
+// One wrong file among correct ones is reported, whether it is ten times too large or noise.
 TEST(DetectCommonConventions, NamesTheOneFileThatIsWrong) {
   VectorsWithTruth const large = written(vortex, [](Vec2d d) { return 10.0 * d; }), right = written(off_centre, same);
   EXPECT_EQ(detect_common_conventions({right, written(uniform, same), large}).mistaken, std::vector<std::size_t>{2});

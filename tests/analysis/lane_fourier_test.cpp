@@ -11,7 +11,7 @@
 namespace gladstone {
 namespace {
 
-/// Eight different lines of numbers between -1 and 1.
+/// Eight different sequences of numbers between -1 and 1.
 std::vector<ComplexLanes> random_lines(int count) {
   std::mt19937 bits(7);
   auto const number = [&] { return static_cast<float>(bits()) * 0x1p-31f - 1.0f; };
@@ -26,8 +26,8 @@ std::vector<ComplexLanes> random_lines(int count) {
 
 std::complex<double> lane_of(ComplexLanes const& value, int lane) { return {value.re[lane], value.im[lane]}; }
 
-// The definition, summed in double. Float keeps 6e-8 of each of the about log2(n) partial results, whose rms is
-// sqrt(2 n/3): 8 times that for the worst of n values in eight lanes.
+// The definition, summed in double precision. Float has a relative error of 6e-8 in each of about log2(n) partial
+// results, whose rms is sqrt(2 n/3): 8 times that for the worst of n values in eight lanes.
 TEST(LaneFourier, IsTheSumOfItsDefinition) {
   for (int const size : {4, 8, 12, 16, 20, 24, 32, 40, 48, 60, 64, 96, 100, 128, 144, 160, 256}) {
     LaneFourier const fourier(size);

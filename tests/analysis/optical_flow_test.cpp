@@ -21,7 +21,7 @@ CorrelationSettings by_flow(std::string const& method) {
   return settings;
 }
 
-// (1 4 6 4 1)/16 keeps straight lines, and every other pixel is taken from 0 on: x becomes 2 x.
+// (1 4 6 4 1)/16 preserves linear functions, and every other pixel is retained, beginning with 0: x becomes 2 x.
 TEST(Pyramid, PutsPixelIWherePixelTwoIWas) {
   GreyImage ramp{97, 60, {}};
   for (int j = 0; j < ramp.rows; ++j)
@@ -34,7 +34,7 @@ TEST(Pyramid, PutsPixelIWherePixelTwoIWas) {
     for (int i = 1; i + 1 < 48; ++i) EXPECT_NEAR(levels[1](i, j), 2 * i + 6 * j, 1e-4);
 }
 
-// What each reaches on 1024 px stands in docs/estimators.md, with half as much again for 256 px.
+// Errors on 1024 px (docs/estimators.md), plus half as much again for 256 px.
 TEST(EveryOpticalFlow, MeasuresAShift) {
   for (char const* method : flows)
     for (Vec2d const shift : {Vec2d{0.3, -0.3}, Vec2d{6.4, 2.2}}) {
@@ -53,9 +53,9 @@ TEST(EveryOpticalFlow, MeasuresAShift) {
     }
 }
 
-// u = 0.06 (x - 127.5): at a place c of the reference stands u(c + u/2) = 0.0619 (c - 127.5), 3 % more than at c. A
-// slope of 256 px is known to sqrt(12) 0.06/(256 sqrt(700)) = 3e-5 by some 700 vectors; patches of 16 px that
-// stretch by 1 px fit a little worse on one side. Half of the difference, 0.0009, tells the one from the other.
+// u = 0.06 (x - 127.5): at position c of the reference the displacement is u(c + u/2) = 0.0619 (c - 127.5), 3 % more
+// than u(c). Some 700 vectors determine a slope over 256 px to sqrt(12) 0.06/(256 sqrt(700)) = 3e-5; patches of 16 px
+// that are stretched by 1 px fit slightly worse on one side. Half of the difference, 0.0009, distinguishes the two.
 TEST(EveryOpticalFlow, BelongsToMidPosition) {
   for (char const* method : flows) {
     ParticlePair const pair = render_particle_pair({}, [](Vec2d p) { return Vec2d{0.06 * (p.x - 127.5), 0.0}; });
@@ -80,7 +80,7 @@ TEST(EveryOpticalFlow, SaysWhatItDoesNotKnow) {
   for (char const* method : flows) {
     DisplacementField const half = make_correlator(by_flow(method))->correlate(pair.reference, pair.flow);
     for (std::size_t i = 0; i < half.size(); ++i) {
-      // windows are 20 px wide: half of one is unknown where its centre is less than pixel 99.5
+      // windows are 20 px wide: half of a window is masked if its centre is less than pixel 99.5
       bool const unknown = half.position_px[i].x <= 99.5;
       EXPECT_EQ(half.status[i], unknown ? VectorStatus::masked : VectorStatus::valid) << half.position_px[i].x;
       EXPECT_EQ(std::isnan(half.displacement_px[i].x), unknown);
@@ -111,8 +111,8 @@ TEST(EveryOpticalFlow, NamesSettingsThatItDoesNotHeed) {
   }
 }
 
-// Both frames by the same grey levels, of which few bright pixels (four in 131,072, one in 10,000 being 13) decide
-// nothing.
+// Both frames are converted with the same grey levels, which a few bright pixels (four of 131,072; one in 10,000 would
+// be 13) do not affect.
 TEST(InverseSearch, ScalesBothFramesTogether) {
   GreyImage dark{256, 256, std::vector<float>(65536, 100.0f)}, bright{256, 256, std::vector<float>(65536, 900.0f)};
   bright.level[5] = bright.level[77] = dark.level[9] = dark.level[4000] = 60000.0f;
@@ -128,9 +128,9 @@ TEST(InverseSearch, ScalesBothFramesTogether) {
   EXPECT_EQ(joint_range(one_dot, one_dot).high, 7.0f);
 }
 
-// Grey levels of 16 bits with three that are hot come out as those of 8 bits do: to rounding, half a grey level of dots
-// 153 high with slopes of 50 a pixel, over the some hundred pixels of a patch, below 0.01 px rms. Patches
-// of 8 px at half, a quarter of the resolution hold a hot pixel up to 32 px away.
+// 16-bit images with three hot pixels give the same as 8-bit images, to rounding: half a grey level of dots 153 levels
+// high with slopes of 50 levels per pixel, over some hundred pixels of a patch, is below 0.01 px rms. Patches of 8 px
+// at half and a quarter of the resolution include a hot pixel up to 32 px away.
 TEST(InverseSearch, TakesGreyLevelsOfAnyDepth) {
   ParticlePair const pair = render_particle_pair({}, [](Vec2d) { return Vec2d{1.3, -0.4}; });
   ParticlePair deep = pair;

@@ -24,7 +24,7 @@ auto everywhere(double u, double v) {
   return [u, v](Vec2d) { return Vec2d{u, v}; };
 }
 
-/// What the user gets.
+/// Vectors and verdict as reported to the user.
 DisplacementField judged(ParticlePair const& pair, CorrelationSettings const& settings = {}) {
   auto const correlator = make_correlator(settings);
   HostFrames const frames(pair.reference, pair.flow);
@@ -70,7 +70,7 @@ ParticlePair noise_alone(int pixels) {
   return pair;
 }
 
-// The first pass looks 32 px far.
+// The search radius of the first pass is 32 px.
 TEST(PairVerdict, TellsFramesThatDoNotCorrelate) {
   std::vector<ParticlePair> const pairs{
       render_particle_pair({.columns = 200, .rows = 200}, everywhere(40.0, 0.0)),
@@ -107,7 +107,8 @@ TEST(PairVerdict, SaysNothingOfFramesThatCorrelate) {
   }
 }
 
-// Few dots in much noise: one vector in eleven is replaced, which is looked into; but what is left is more than chance.
+// Few dots in strong noise: one vector in eleven is replaced, which triggers the test, but the remaining vectors agree
+// better than chance.
 TEST(PairVerdict, KeepsPoorVectorsThatAreMoreThanChance) {
   DisplacementField const field = judged(render_particle_pair(
       {.columns = 200, .rows = 200, .particles_per_px = 6.0 / 1024.0, .noise = 0.1}, everywhere(2.3, -0.2)));
@@ -116,7 +117,8 @@ TEST(PairVerdict, KeepsPoorVectorsThatAreMoreThanChance) {
   EXPECT_THAT(field.warnings, IsEmpty());
 }
 
-// The same judged more strictly: a fifth is no measurement any more, whether it is replaced or left out.
+// The same with a stricter test: if a fifth of the vectors is rejected, the pair counts as no measurement, whether they
+// are replaced or invalid.
 TEST(PairVerdict, TellsWhenAFifthFailsATest) {
   ParticlePair const pair = render_particle_pair(
       {.columns = 200, .rows = 200, .particles_per_px = 6.0 / 1024.0, .noise = 0.1}, everywhere(2.3, -0.2));
@@ -147,7 +149,7 @@ PairSequence repeated(std::size_t pairs, ParticleSettings const& settings, doubl
           }};
 }
 
-// Six pairs of few dots in noise together; six whose frames have nothing in common; six that are one picture each.
+// Six pairs with few dots in noise, as an ensemble; six whose frames are unrelated; six whose frames are identical.
 TEST(EnsembleVerdict, IsThatOfAllPairs) {
   ParticleSettings const few{.columns = 200, .rows = 200, .particles_per_px = 4.0 / 1024.0, .noise = 0.1};
   CorrelationSettings const settings = windows_of(32);
@@ -171,13 +173,13 @@ TEST(EnsembleVerdict, IsThatOfAllPairs) {
   EXPECT_THAT(still.verdict, HasSubstr("same image"));
 }
 
-/// The first pairs of `first`, then those of `then`.
+/// The first pairs of `first`, followed by those of `then`.
 PairSequence one_after_another(PairSequence const& first, PairSequence const& then) {
   return {first.size + then.size,
           [=](std::size_t k) { return k < first.size ? first.frames(k) : then.frames(k - first.size); }};
 }
 
-// A pair that is masked, or has no signal, tells neither less nor more for coming first.
+// A pair that is masked or has no signal has the same effect in every position of the ensemble.
 TEST(EnsembleVerdict, DoesNotDependOnTheOrderOfPairs) {
   CorrelationSettings const settings = windows_of(32);
   PairSequence const regular{2, [](std::size_t) {
@@ -202,7 +204,7 @@ TEST(EnsembleVerdict, DoesNotDependOnTheOrderOfPairs) {
   }
 }
 
-// Frames that correlate, and a test that nothing passes.
+// Frames that correlate, with a test that no vector passes.
 TEST(PairVerdict, DoesNotCallWhatFailsItsTestsUncorrelated) {
   CorrelationSettings settings;
   settings.least_peak_ratio = 1e9;
@@ -215,7 +217,8 @@ TEST(PairVerdict, DoesNotCallWhatFailsItsTestsUncorrelated) {
                                 Not(HasSubstr("replace")))));
 }
 
-// Left half 0.4 px, right half 45 px: windows farther than their reach from the middle are either right or left out.
+// Left half 0.4 px, right half 45 px: windows farther from the middle than their search radius are either correct or
+// invalid.
 TEST(PairVerdict, LeavesOutTheHalfThatDoesNotCorrelate) {
   std::size_t right_half = 0, left_out = 0;
   for (unsigned seed = 1; seed <= 8; ++seed) {
@@ -237,8 +240,9 @@ TEST(PairVerdict, LeavesOutTheHalfThatDoesNotCorrelate) {
       left_out += !field.counts(i);
     }
   }
-  // A mean of windows exceeds chance by two deviations once in 44, but neighbours share most of theirs, so that whole
-  // patches exceed it together: a fifth of the half in one pair, none in most. Hence eight pairs.
+  // A mean over windows exceeds chance by two standard deviations once in 44 cases, but neighbours share most of their
+  // windows, so that whole patches exceed it together: a fifth of the half in one pair, none in most. Hence eight
+  // pairs.
   EXPECT_GT(left_out, right_half * 9 / 10);
 }
 
@@ -259,7 +263,7 @@ TEST(PairVerdict, SaysNoDisplacementOfPicturesWithoutASignal) {
   EXPECT_THAT(judged(flat).warnings, IsEmpty());
 }
 
-// Every pair has one.
+// Every pair has a verdict.
 TEST(PairVerdict, StandsInOneWord) {
   ParticleSettings const small{.columns = 128, .rows = 128, .noise = 0.05};
   ParticlePair twice = render_particle_pair(small, everywhere(0.3, 0.0));
@@ -293,8 +297,8 @@ TEST(PairVerdict, StandsInOneWord) {
   EXPECT_EQ(judged(twice).verdict, "not judged: both frames are the same image");
 }
 
-// The first pass finds chance peaks up to 32 px far, by which windows at the rim are taken out of the frames. Nothing
-// is masked there.
+// The first pass finds random peaks at up to 32 px, which move windows at the edge out of the frames. Nothing is masked
+// there.
 TEST(OutsideWindows, AreNotCalledMasked) {
   ParticlePair pair = render_particle_pair({.columns = 256, .rows = 256, .noise = 0.02}, everywhere(0.0, 0.0));
   Image<double> const still = pair.reference;
@@ -309,8 +313,8 @@ TEST(OutsideWindows, AreNotCalledMasked) {
   }
 }
 
-// 28 px to the right, and a mask 60 px wide in the middle of the reference, which the flow frame does not have: windows
-// on the mask are masked, those on the rim have left the frames.
+// A displacement of 28 px to the right, and a mask 60 px wide in the middle of frame A only: windows on the mask are
+// masked, those at the edge have left the frames.
 TEST(OutsideWindows, AreToldFromMaskedOnes) {
   ParticlePair pair = render_particle_pair({.columns = 256, .rows = 256}, everywhere(28.0, 0.0));
   double const nan = std::numeric_limits<double>::quiet_NaN();
@@ -330,7 +334,7 @@ TEST(OutsideWindows, AreToldFromMaskedOnes) {
   EXPECT_GT(count(field, VectorReason::outside), 10u);
 }
 
-// 0.3 pitch; every alias within 32 px matches as well.
+// A displacement of 0.3 pitch; every alias within 32 px correlates equally well.
 TEST(PairVerdict, WarnsOfAPatternThatRepeats) {
   ParticlePair const pair = render_particle_pair({.noise = 0.05, .pitch_px = 8.3}, everywhere(2.5, 0.0));
   DisplacementField const unbounded = judged(pair);
@@ -344,7 +348,7 @@ TEST(PairVerdict, WarnsOfAPatternThatRepeats) {
             static_cast<std::ptrdiff_t>(bounded.size()));
 }
 
-// 6 px where 4 are allowed.
+// A displacement of 6 px with a limit of 4 px.
 TEST(PairVerdict, NamesTheLimitThatLeavesNothing) {
   DisplacementField const regular = judged(render_particle_pair({.pitch_px = 12.5}, everywhere(6.0, 0.0)), within(4.0));
   EXPECT_EQ(counting(regular), 0u);
@@ -358,7 +362,7 @@ TEST(PairVerdict, NamesTheLimitThatLeavesNothing) {
               AllOf(HasSubstr("do not correlate"), HasSubstr("max_displacement_px = 4"), HasSubstr("increase it")));
 }
 
-/// A grid of 10 x 10 windows of 32 px that share nothing, of that correlation.
+/// A grid of 10 x 10 disjoint windows of 32 px with the given correlation.
 DisplacementField with_correlation(double mean, double scatter) {
   DisplacementField field;
   field.columns = field.rows = 10;
@@ -379,8 +383,8 @@ CorrelationSettings windows_of_32() {
   return settings;
 }
 
-// Chance: 0.3 +- 0.1. Of 25 windows about a place the mean scatters by 0.02, at a corner, of 9, by 0.033; with that of
-// all 100, 0.01, two deviations are 0.045 and 0.07.
+// Random correlation: 0.3 +- 0.1. The mean over 25 windows scatters by 0.02, at a corner over 9 windows by 0.033.
+// Combined with the scatter of the mean over all 100, 0.01, two standard deviations are 0.045 and 0.07.
 TEST(Chance, IsWhatMeansOfFramesWithNothingInCommonReach) {
   DisplacementField const chance = with_correlation(0.3, 0.1);
   for (auto const& [mean, left_out] : {std::pair{0.30, 100u}, {0.34, 100u}, {0.39, 0u}, {0.90, 0u}}) {
@@ -391,7 +395,7 @@ TEST(Chance, IsWhatMeansOfFramesWithNothingInCommonReach) {
   }
 }
 
-// A corner of 4 x 4 good windows is less than a quarter of them: chance finds such a place, too.
+// A corner of 4 x 4 good windows is less than a quarter of all: random correlation produces such a patch, too.
 TEST(Chance, TakesAllWhereHardlyAnyIsBetter) {
   for (auto const& [good, kept] : {std::pair{4, 0u}, {7, 49u}}) {
     DisplacementField field = with_correlation(0.1, 0.0);

@@ -13,7 +13,7 @@ Image<double> picture_of_dots(ParticleSettings const& settings) {
   return render_particle_pair(settings, [](Vec2d) { return Vec2d{}; }).reference;
 }
 
-/// Grey levels that have nothing in common.
+/// Independent random grey levels.
 Image<double> picture_of_noise(int columns, int rows) {
   Image<double> image(columns, rows, 0.0);
   std::mt19937 bits(5);
@@ -21,7 +21,7 @@ Image<double> picture_of_noise(int columns, int rows) {
   return image;
 }
 
-// The fall-off of the plane pulls its peaks by some hundredths of a pixel towards no shift.
+// The decrease of the plane towards its edge biases its peaks by some hundredths of a pixel towards zero.
 TEST(PatternPeriod, IsThePitchOfRegularDots) {
   for (double const pitch : {6.0, 7.155, 10.3, 25.0})
     for (double const noise : {0.0, 0.05}) {
@@ -32,7 +32,7 @@ TEST(PatternPeriod, IsThePitchOfRegularDots) {
     }
 }
 
-// Points of one pixel correlate with themselves at whole pitches only, and with nothing a pixel beside.
+// Points of one pixel correlate with themselves at whole pitches only, and not one pixel away from them.
 TEST(PatternPeriod, IsThePitchOfPointsOfOnePixel) {
   Image<double> points(256, 256, 10.0);
   for (int j = 3; j < 256; j += 8)
@@ -54,8 +54,9 @@ TEST(PatternPeriod, IsNoneInDotsAtRandomInNoiseAndInNothing) {
   EXPECT_FALSE(pattern_period(Image<double>(128, 128, 100.0), {}));
 }
 
-// A shift of two search ranges leads from one end of the range to the other: no longer period can be mistaken. The
-// first pass looks half a window far, or as far as it is told to, rounded up to 4 px.
+// A shift by twice the search radius leads from one end of the range to the other: longer periods cannot cause an
+// ambiguity. The search radius of the first pass is half a window, or max_displacement_px rounded up to a multiple of 4
+// px.
 TEST(PatternPeriod, IsNoneBeyondTwoSearchRanges) {
   Image<double> const image = picture_of_dots({.pitch_px = 12.0});
   CorrelationSettings settings;

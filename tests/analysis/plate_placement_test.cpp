@@ -15,13 +15,13 @@ namespace {
 constexpr double long_focal_length = 7059, plate_distance = 0.6;
 constexpr Vec2d picture_middle{319.5, 239.5};
 
-/// A long lens that looks along the direction of motion.
+/// A camera with a long lens, viewing along the direction of motion.
 PinholeCamera long_camera() {
   return {{long_focal_length, long_focal_length, picture_middle.x, picture_middle.y, 0, 0, 0, 0, pi, 0, 0, 0, 0,
            plate_distance}};
 }
 
-/// 13 x 9 dots 4 mm apart on three planes, of a plate that is turned about Y and X against the direction of motion.
+/// 13 x 9 dots 4 mm apart on three planes, on a plate rotated about Y and X relative to the direction of motion.
 /// @param moved columns by which the dots of each plane are counted wrong
 PlateDots dots_of_plate(double about_y, double about_x, std::array<int, 3> moved = {}) {
   PlateDots dots;
@@ -43,8 +43,8 @@ PlateDots dots_of_plate(double about_y, double about_x, std::array<int, 3> moved
   return dots;
 }
 
-// In the plate's axes the direction of motion is the last row of its rotation: (-sin a cos b, sin b, cos a cos b) for
-// turns by a about Y and b about X. The principal point is found to 1 px, the drift to 1 / f.
+// In the axes of the plate the direction of motion is the last row of its rotation matrix: (-sin a cos b, sin b, cos a
+// cos b) for rotations by a about Y and b about X. The principal point is determined to 1 px, the drift to 1 / f.
 TEST(PlatePlacement, TheDriftOfATiltedPlateIsFound) {
   double const a = 5 * pi / 180, b = -3 * pi / 180;
   PlateDots const dots = dots_of_plate(a, b);
@@ -56,7 +56,7 @@ TEST(PlatePlacement, TheDriftOfATiltedPlateIsFound) {
   EXPECT_NEAR(placement->drift.x, -std::sin(a) * std::cos(b), 1.5 / long_focal_length);
   EXPECT_NEAR(placement->drift.y, std::sin(b), 1.5 / long_focal_length);
   PinholeFit const fit = fit_pinhole(dots.points(*placement), picture_middle);
-  // a drift that is wrong by e = 1 / f changes fx by its product with the turn, e sin a f < 0.1 px
+  // a drift error of e = 1 / f changes fx by its product with the rotation, e sin a f < 0.1 px
   EXPECT_NEAR(fit.camera.fx(), long_focal_length, 0.2);
   EXPECT_NEAR(fit.camera.fy(), long_focal_length, 0.2);
   EXPECT_NEAR(fit.camera.cx(), picture_middle.x, 2);
@@ -84,7 +84,7 @@ TEST(PlatePlacement, AMiddleDotThatIsOffByOneIsFound) {
   EXPECT_FALSE(find_moved_middles(dots_of_plate(0.01, 0), picture_middle));
 }
 
-// One column more from plane to plane is a drift by whole spacings, which no residual shows.
+// An index error that grows by one column per plane is a drift by whole spacings, which causes no residual.
 TEST(PlatePlacement, MiddleDotsThatDriftByWholeSpacingsAreFound) {
   PlateDots const dots = dots_of_plate(0, 0, {-1, 0, 1});
   EXPECT_LT(fit_pinhole(dots.points(), picture_middle).rms_px, 1e-6);
@@ -102,7 +102,7 @@ TEST(PlatePlacement, MiddleDotsOfTwoPlanesOfATiltedPlateAreFound) {
   double const tilt = 30 * pi / 180;
   for (int const sign : {1, -1}) {
     PlateDots dots = dots_of_plate(0, 0, {-sign, 0, sign});
-    // A plate that is turned about Y and moved along its own normal.
+    // A plate that is rotated about Y and moved along its own normal.
     Eigen::Matrix3d const turn = Eigen::AngleAxisd(tilt, Eigen::Vector3d::UnitY()).toRotationMatrix();
     for (std::size_t k = 0; k < dots.pixel.size(); ++k) {
       std::size_t const plane = dots.plane_of[k];
@@ -122,7 +122,8 @@ TEST(PlatePlacement, MiddleDotsOfTwoPlanesOfATiltedPlateAreFound) {
   }
 }
 
-// Offsets of two planes that are not proportional to Z show in the residuals, up to a part that is proportional to Z.
+// Index errors of two planes that are not proportional to Z appear in the residuals, except for a part proportional to
+// Z.
 TEST(PlatePlacement, MiddleDotsOfTwoPlanesThatAreOffDifferentlyAreFound) {
   for (std::array<int, 3> const moved : {std::array<int, 3>{-1, 0, 2}, {2, 0, 1}, {0, 1, -2}}) {
     PlateDots const dots = dots_of_plate(0, 0, moved);

@@ -16,7 +16,8 @@ std::vector<std::size_t> near(PointCells const& cells, Vec2d c, double radius) {
   return found;
 }
 
-// However far points lie apart, cells number no more than a few times the points, and all that are near are found.
+// However far apart the points are, the number of cells is at most a few times that of the points, and all near points
+// are found.
 TEST(PointCells, FindPointsBesideOnesThatLieBeyondAnyMeasure) {
   double const nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
   std::vector<Vec2d> const points{{1, 1}, {2, 2}, {1e308, 0}, {-1e308, -1e308}, {nan, 0}, {0, infinity}, {1e15, 3}};

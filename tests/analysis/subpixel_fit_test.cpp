@@ -7,7 +7,7 @@
 namespace gladstone {
 namespace {
 
-/// exp(-(a u^2 + 2 b u v + c v^2)) around (x, y), times its height there.
+/// exp(-(a u^2 + 2 b u v + c v^2)) about (x, y), times its height.
 PeakPatch gaussian_patch(double x, double y, double a, double b, double c) {
   PeakPatch patch;
   for (int j = -1; j <= 1; ++j)
@@ -26,14 +26,14 @@ TEST(Gauss3, IsExactForGaussiansAlongTheAxes) {
   EXPECT_NEAR(patch.value[1][1] * std::exp(fit.log_rise), 3.0, 1e-12);
 }
 
-// Six terms of the logarithm through nine points that lie on them; three points along either axis miss the tilt.
+// Six terms of the logarithm fitted to nine points are exact; three points along each axis do not include the tilt.
 TEST(Gauss2d, IsExactForTiltedGaussians) {
   PeakPatch const patch = gaussian_patch(0.31, -0.27, 0.7, 0.3, 0.4);
   PeakFit const fit = fit_gauss2d(patch);
   EXPECT_NEAR(fit.x, 0.31, 1e-12);
   EXPECT_NEAR(fit.y, -0.27, 1e-12);
   EXPECT_NEAR(patch.value[1][1] * std::exp(fit.log_rise), 3.0, 1e-12);
-  // log v(x, 0) has its vertex where a (i - x) = b y: off by b y/a
+  // log v(x, 0) has its vertex where a (i - x) = b y: an error of b y/a
   EXPECT_NEAR(fit_gauss3(patch).x, 0.31 + 0.3 * -0.27 / 0.7, 1e-12);
 }
 
@@ -53,7 +53,7 @@ TEST(Parabola, IsExactForParabolas) {
   EXPECT_NEAR(patch.value[1][1] * std::exp(fit.log_rise), 5.0, 1e-12);
 }
 
-// Of 1, 4, 2 it is (2 - 1)/(1 + 4 + 2); of -1, 4, 2 it is 2/6.
+// The centroid of 1, 4, 2 is (2 - 1)/(1 + 4 + 2); that of -1, 4, 2 is 2/6.
 TEST(Centroid, IsTheCentreOfMass) {
   PeakPatch patch{{{0.5, 1.0, 0.5}, {1.0, 4.0, 2.0}, {0.5, 1.0, 0.5}}};
   EXPECT_DOUBLE_EQ(fit_centroid(patch).x, 1.0 / 7);
@@ -62,8 +62,8 @@ TEST(Centroid, IsTheCentreOfMass) {
   EXPECT_DOUBLE_EQ(fit_centroid(patch).x, 1.0 / 3);
 }
 
-// Passes add what a fit finds of what is left: they come to an end where the fit's slope is between 0 and 2, whatever
-// the width of the peak.
+// Each pass adds the fit to the residual displacement: the iteration converges if the slope of the fit is between 0 and
+// 2, whatever the width of the peak.
 TEST(EverySubpixelFit, LetsPassesConverge) {
   for (std::string const& name : subpixel_fits()) {
     for (double const width : {0.7, 1.06, 1.5, 2.5}) {
@@ -75,7 +75,7 @@ TEST(EverySubpixelFit, LetsPassesConverge) {
   }
 }
 
-// By symmetry nothing moves a symmetric peak.
+// By symmetry the fit to a symmetric peak is 0.
 TEST(EverySubpixelFit, LeavesSymmetricPeaksWhereTheyAre) {
   for (std::string const& name : subpixel_fits()) {
     PeakFit const fit = subpixel_fit(name)(gaussian_patch(0.0, 0.0, 0.5, 0.0, 0.8));

@@ -11,8 +11,8 @@
 namespace gladstone {
 namespace {
 
-// The logarithm of a Gaussian is a parabola, whose vertex three points give exactly: its place, and its height over the
-// middle sample, exp(shift^2 / (2 sigma^2)).
+// The logarithm of a Gaussian is a parabola, whose vertex follows exactly from three points: its position, and its
+// height relative to the middle sample, exp(shift^2 / (2 sigma^2)).
 TEST(GaussianPeak, IsExactForAGaussian) {
   for (double const sigma : {0.5, 1.0, 2.5})
     for (double shift = -0.5; shift <= 0.5; shift += 0.0625) {
@@ -23,7 +23,7 @@ TEST(GaussianPeak, IsExactForAGaussian) {
     }
 }
 
-// Through (-1, -0.5), (0, 1), (1, 0.5): 1 + s/2 - s^2, vertex 1/4, there 17/16.
+// The parabola through (-1, -0.5), (0, 1), (1, 0.5) is 1 + s/2 - s^2: vertex at 1/4, value 17/16.
 TEST(GaussianPeak, FallsBackToTheParabolaWhereALogarithmIsMissing) {
   EXPECT_DOUBLE_EQ(gaussian_peak(-0.5, 1.0, 0.5).offset, 0.25);
   EXPECT_DOUBLE_EQ(gaussian_peak(-0.5, 1.0, 0.5).log_rise, std::log(17.0 / 16.0));
@@ -94,8 +94,9 @@ TEST(PeakSearch, LeavesOutMaximaBeyondTheRadiusAndSlopesTowardsThem) {
   EXPECT_EQ(find_peaks(plane.view(), 5).count, 1);
 }
 
-// The sample of a peak in the middle of four pixels is exp(-1/4) = 0.78 of its height, so that by samples the peak that
-// is 15 % lower, but on a pixel, would win. On a ground of -1e-3, which a Gaussian does not have: 1 % in the height.
+// A peak in the middle of four pixels has samples of exp(-1/4) = 0.78 of its height, so that by samples a peak that is
+// 15 % lower, but centred on a pixel, would be higher. A background of -1e-3, which a Gaussian does not have, causes an
+// error of 1 % in the height.
 TEST(PeakSearch, RanksPeaksByTheirHeightBetweenThePixels) {
   Plane plane(-1e-3f);
   plane.add({4.5, -3.5}, 1.0);
@@ -107,7 +108,7 @@ TEST(PeakSearch, RanksPeaksByTheirHeightBetweenThePixels) {
   EXPECT_NEAR(found.peak[1].height, 0.85, 0.01);
 }
 
-// A regular pattern of pitch 7.16 px: every alias is as high as every other. The nearest to no shift is taken, for
+// A regular pattern of pitch 7.16 px: all aliases have the same height. The smallest shift is selected, for
 // displacements up to half a pitch along both axes.
 TEST(PeakSearch, PrefersTheNearestOfEquallyHighAliases) {
   constexpr double pitch = 7.16;
@@ -125,7 +126,7 @@ TEST(PeakSearch, PrefersTheNearestOfEquallyHighAliases) {
   }
 }
 
-// 0.85 is less than nearly_as_high: the higher peak stays first, however far.
+// 0.85 is less than nearly_as_high: the higher peak remains first, however large its shift.
 TEST(PeakSearch, PrefersAFarPeakThatIsClearlyHigher) {
   Plane plane(-1e-3f);
   plane.add({7.0, 7.0}, 1.0);

@@ -11,7 +11,7 @@
 namespace gladstone {
 namespace {
 
-/// A symmetry of the frames: what it makes of an image and of a vector, and where it puts a place.
+/// A symmetry operation: its effect on an image, on a vector, and on a position.
 struct Symmetry {
   char const* name;
   bool mirrors_x, mirrors_y, transposes;
@@ -30,7 +30,7 @@ struct Symmetry {
     Vec2d const turned{mirrors_x ? -d.x : d.x, mirrors_y ? -d.y : d.y};
     return transposes ? Vec2d{turned.y, turned.x} : turned;
   }
-  /// Index of vector i of a grid in the grid of the image that this makes.
+  /// Index that vector i of a grid has in the transformed grid.
   std::size_t of(std::size_t i, DisplacementField const& field) const {
     std::size_t const columns = static_cast<std::size_t>(field.columns), rows = static_cast<std::size_t>(field.rows);
     std::size_t const x = i % columns, y = i / columns;
@@ -50,7 +50,7 @@ struct Difference {
   std::size_t statuses = 0;
 };
 
-/// How the vectors of changed frames differ from the changed vectors.
+/// Differences between the vectors of transformed frames and the transformed vectors.
 Difference difference(CorrelationSettings const& settings, ParticlePair const& pair, Symmetry const& symmetry) {
   auto const correlator = make_correlator(settings);
   DisplacementField const plain = correlator->correlate(pair.reference, pair.flow);
@@ -67,23 +67,23 @@ Difference difference(CorrelationSettings const& settings, ParticlePair const& p
   return result;
 }
 
-/// A vortex with a shear, up to 6 px, without a symmetry of its own.
+/// A vortex with a shear, up to 6 px, without any symmetry.
 Vec2d flow_at(Vec2d p) {
   Vec2d const r{p.x - 100.0, p.y - 150.0};
   double const turn = 4.0 * std::exp(-dot(r, r) / 5000.0) / 70.0;
   return {2.3 - turn * r.y + 0.004 * p.y, -1.1 + turn * r.x};
 }
 
-// Windows of mirrored or transposed frames hold the mirrored or transposed pixels where the last grid fits the frames
-// on either side, and every pass before it is centred. What differs is the order of sums in single precision:
-// transforms of 48^2 values round to 6e-8 log2(48^2) = 7e-7 of the plane's largest value. A peak of height c and
-// variance s^2, 1.1 px^2 for dots of 3 px, moves by that times s^2 / c: 1e-6 px, and 2e-5 px where noise leaves c =
-// 0.05. Later passes measure again what their predictor has wrong and do not add to it; twice that is allowed.
+// Windows of mirrored or transposed frames contain the mirrored or transposed pixels if the last grid fits the frames
+// on both sides and the earlier passes are centred on it. Only the order of sums in single precision differs:
+// transforms of 48^2 values round to 6e-8 log2(48^2) = 7e-7 of the largest value of the plane. A peak of height c and
+// variance s^2 (1.1 px^2 for dots of 3 px) moves by that times s^2 / c: 1e-6 px, and 2e-5 px at c = 0.05 in noise.
+// Later passes correct errors of their predictor and do not add to them; twice that is allowed.
 constexpr double rounding_px = 5e-5;
 
 TEST(Symmetry, DefaultPassesMeasureMirroredAndTurnedFramesAlike) {
   for (double const noise : {0.0, 0.05}) {
-    // 20 + 8 k px: the last windows, 8 px apart, end at the right as they begin at the left
+    // 20 + 8 k px: the last windows, 8 px apart, end at the right edge as they begin at the left edge
     ParticlePair const pair = render_particle_pair({.columns = 260, .rows = 292, .noise = noise}, flow_at);
     for (Symmetry const& symmetry : symmetries) {
       Difference const found = difference({}, pair, symmetry);
@@ -93,7 +93,7 @@ TEST(Symmetry, DefaultPassesMeasureMirroredAndTurnedFramesAlike) {
   }
 }
 
-// Frames of odd sides, whose middle is a pixel, and coarse spacings of either parity (29, 14, 11 px; the last 9 px).
+// Frames of odd size, whose middle is a pixel, with coarse spacings of either parity (29, 14, 11 px; the last 9 px).
 TEST(Symmetry, HoldsForFramesOfOddSides) {
   CorrelationSettings settings;
   settings.overlap = 0.55;
@@ -115,8 +115,8 @@ TEST(Symmetry, HoldsForPassesOfAPivPairAndMorePassesOfTheLastWindow) {
     EXPECT_LT(difference(settings, pair, symmetry).largest, rounding_px) << symmetry.name;
 }
 
-// A grid is its own mirror image: as many pixels before its first window as behind its last, all windows inside, and
-// no room for another window on both sides. One window alone cannot always be centred on whole pixels.
+// A grid is symmetric: as many pixels before its first window as behind its last one, all windows inside, and no space
+// for another window. A single window cannot always be centred on whole pixels.
 TEST(CentredGrid, LeavesAsMuchOnEitherSide) {
   for (int const window : {8, 16, 20, 24, 32, 64})
     for (double const overlap : {0.0, 0.3, 0.5, 0.6, 0.75, 0.9})
@@ -149,9 +149,9 @@ TEST(CentredGrid, NamesBothWindowsThatAreEquallyNear) {
   EXPECT_EQ(nearest(99.0).first, 6);
 }
 
-// Exchanged frames give the negative vectors: in one pass and over the default's, up to single precision as above (zncc
-// and mqd divide by planes of energies, which are as far off again), and half the difference of two flows to the last
-// bit.
+// Exchanged frames give the negative vectors: in one pass and over the default passes to single precision as above
+// (zncc and mqd divide by planes of energies with the same relative error), and with half the difference of two flows
+// exactly.
 TEST(EveryMethod, GivesTheNegativeVectorsOfExchangedFrames) {
   ParticlePair const pair = render_particle_pair({.columns = 260, .rows = 260, .noise = 0.02}, flow_at);
   for (std::string const method : {"scc", "rpc", "spc", "zncc", "mqd", "opencv", "dis", "horn_schunck"})

@@ -38,10 +38,11 @@ UncertaintyQuality quality_of(std::string const& method, std::function<Vec2d(Vec
   return uncertainty_quality(field.displacement_px, right, field.sigma_px, {});
 }
 
-// Errors e = s r of known s and normal r: 0.6827 lie within s, 0.9545 within 2 s; of 80,000 the standard errors are
-// 0.0016 and 0.0007, and of the ratio of rms 0.0035: four of each. |e| = s |r| with s = 0.05 or 0.1 alike:
-// cov(s, |e|) = sqrt(2/pi) var(s), var(|e|) = E s^2 - (2/pi) (E s)^2, so that their correlation is
-// sqrt(2/pi) 0.025/sqrt(0.00625 - 0.6366 0.005625) = 0.386.
+// Errors e = s r with known s and normal r: a fraction of 0.6827 lies within s, 0.9545 within 2 s. For 80,000 errors
+// the standard errors of these fractions are 0.0016 and 0.0007, and that of the ratio of rms values is 0.0035; four
+// standard errors are allowed. |e| = s |r| with s = 0.05 or 0.1 equally often: cov(s, |e|) = sqrt(2/pi) var(s),
+// var(|e|) = E s^2 - (2/pi) (E s)^2, so that their correlation is sqrt(2/pi) 0.025/sqrt(0.00625 - 0.6366 0.005625) =
+// 0.386.
 TEST(UncertaintyQuality, IsThatOfNormalErrors) {
   std::mt19937_64 bits(5);
   std::normal_distribution<double> normal;
@@ -64,7 +65,7 @@ TEST(UncertaintyQuality, IsThatOfNormalErrors) {
   EXPECT_NEAR(quality.correlation, 0.386, 0.014);
 }
 
-// Four vectors without sigma, one of them grossly wrong: it counts with the gross ones, and the others are counted too.
+// Four vectors without sigma, one of them a gross error: it counts as gross, and the others are counted, too.
 TEST(UncertaintyQuality, CountsWhatItLeavesOut) {
   double const nan = std::numeric_limits<double>::quiet_NaN();
   std::vector<Vec2d> const truth(6, Vec2d{1.0, 2.0});
@@ -77,8 +78,8 @@ TEST(UncertaintyQuality, CountsWhatItLeavesOut) {
   EXPECT_EQ(quality.count, 2u);
 }
 
-// Sigma 0.01 to 0.1 and errors twice as large: each bin says so, and the bins follow one another. Half the components
-// are gross or masked and nowhere to be seen.
+// Sigma from 0.01 to 0.1 and errors twice as large: each bin shows this, and the bins are in ascending order. Half of
+// the components are gross or masked and do not appear.
 TEST(UncertaintyBins, FollowTheErrors) {
   std::vector<Vec2d> measured, truth, sigma;
   VectorMask mask;
@@ -100,16 +101,16 @@ TEST(UncertaintyBins, FollowTheErrors) {
     }
   }
   double const mean_square = uncertainty_quality(measured, truth, sigma, mask).sharpness_px;
-  // s is uniform on 0.01 .. 0.1: sqrt((0.1^3 - 0.01^3)/(3 0.09)) = 0.0608, to the lattice's 1/1000
+  // s is uniform on 0.01 .. 0.1: sqrt((0.1^3 - 0.01^3)/(3 0.09)) = 0.0608, to 1/1000 due to the finite number of values
   EXPECT_NEAR(mean_square, 0.0608, 2e-4);
   EXPECT_TRUE(uncertainty_bins({}, {}, {}, {}).empty());
 }
 
-// Half of all normal errors lie within 0.67 sigma; what each method gives on 1024 px stands in docs/estimators.md.
-// About 290 windows that share no pixel: 0.68 scatters by 0.02 a component and seed.
+// Half of all normal errors lie within 0.67 sigma; docs/estimators.md has the results of each method on 1024 px. For
+// about 290 disjoint windows 0.68 scatters by 0.02 per component and seed.
 TEST(Uncertainty, SaysWhereItIsTooSmall) {
   CorrelationSettings settings;
-  EXPECT_EQ(uncertainty_caveat(settings), "");  // none is estimated
+  EXPECT_EQ(uncertainty_caveat(settings), "");  // no uncertainty is estimated
   settings.uncertainty = "correlation_statistics";
   EXPECT_EQ(uncertainty_caveat(settings), "");
   for (std::string const method : {"rpc", "spc", "dis", "horn_schunck"}) {
@@ -134,9 +135,8 @@ TEST(CorrelationStatistics, CoversTwoThirdsOfTheErrors) {
   }
 }
 
-// A lamp that flickers, and lights the frames unevenly: half as much, from 0.7 to 1.3 of that along a row, as dots and
-// background are in both frames. The slope over a window, 0.6 of 384 px times 20 px, is a difference of 3 %, beside
-// noise of 5 %.
+// A flickering lamp with uneven light: dots and background of frame B are half as bright, times 0.7 to 1.3 along a row.
+// Over a window the slope, 0.6 over 384 px times 20 px, is a difference of 3 %, compared with noise of 5 %.
 TEST(Uncertainty, IsTheSameInFramesOfOtherBrightness) {
   auto const uniform = [](Vec2d) { return Vec2d{0.3, -0.7}; };
   ParticleSettings particles{.columns = 384, .rows = 384, .noise = 0.05, .seed = 103};
@@ -167,10 +167,10 @@ TEST(ImageMatching, CoversTwoThirdsOfTheErrorsInNoise) {
   }
 }
 
-// Two dots whose light overlaps, of different brightness: in equal frames they stand where they stand, whatever their
-// neighbours' light does to their maxima. In frames that are 0.05 px apart both are so, to what slopes over two pixels
-// of so small dots leave: of a whole dot alone, Simpson's (2 + cos k)/3 in place of sin(k)/k, over the slopes' spectrum
-// k^2 exp(-(0.75 k)^2), is 4 % too much; three times as much is allowed.
+// Two overlapping dots of different brightness: in equal frames their displacement is 0, although the light of the
+// neighbour shifts their maxima. In frames that are displaced by 0.05 px both have this displacement, to the accuracy
+// of slopes over two pixels of such small dots: for a single dot Simpson's (2 + cos k)/3 instead of sin(k)/k, over the
+// spectrum k^2 exp(-(0.75 k)^2) of the slopes, is 4 % too large; three times as much is allowed.
 TEST(ParticlePairs, AreNotMisledByNeighboursLight) {
   for (double const shift : {0.0, 0.05}) {
     MatchedWindow window{24, std::vector<float>(576), std::vector<float>(576), std::vector<float>(576, 1.0f)};
@@ -195,9 +195,9 @@ TEST(ParticlePairs, AreNotMisledByNeighboursLight) {
   }
 }
 
-// A dot of a target, flat on top: nothing tells three points there from one another but noise, while the dot's edge
-// tells its place. The best estimate scatters by sqrt(2) s/sqrt(sum (dI/dx)^2) in noise s (Cramer & Rao, both frames
-// noisy); 1000 dots tell scatter to 2 %, and half as much again is allowed.
+// A dot of a target with a flat top: three points near the maximum contain only noise, while the edge of the dot
+// determines its position. The best estimate scatters by sqrt(2) s/sqrt(sum (dI/dx)^2) for noise s (Cramer-Rao bound,
+// both frames noisy). 1000 dots determine the scatter to 2 %; half as much again is allowed.
 TEST(ParticlePairs, OfFlatDotsScatterAsTheirEdgesLet) {
   double const noise = 0.02, profile[] = {0.0, 0.1, 0.9, 1.0, 0.9, 0.1, 0.0};
   std::mt19937_64 bits(8);
@@ -219,7 +219,7 @@ TEST(ParticlePairs, OfFlatDotsScatterAsTheirEdgesLet) {
     std::vector<ParticleImagePair> pairs;
     find_particle_pairs(window, pairs);
     for (ParticleImagePair const& pair : pairs) {
-      if (pair.weight < 0.5) continue;  // noise beside the dot
+      if (pair.weight < 0.5) continue;  // noise around the dot
       sum += pair.disparity.x * pair.disparity.x;
       count += 1.0;
     }
@@ -228,7 +228,7 @@ TEST(ParticlePairs, OfFlatDotsScatterAsTheirEdgesLet) {
   EXPECT_LT(std::sqrt(sum / count), 1.5 * std::sqrt(2.0) * noise / std::sqrt(gradients));
 }
 
-/// Of three pairs of 384 px, uniform displacement.
+/// Results of three pairs of 384 px, uniform displacement.
 UncertaintyQuality quality_of_dots(std::string const& method, double diameter_px, double per_window, double noise) {
   std::vector<Vec2d> measured, truth, sigma;
   for (std::uint64_t seed = 201; seed < 204; ++seed) {
@@ -259,8 +259,8 @@ struct Dots {
   double diameter_px, per_window, noise;
 };
 
-// docs/estimators.md has the whole table. About 190 windows that share no pixel in each of three pairs, two components:
-// 0.68 scatters by 0.014, the ratio by 0.02; what is asked is 0.62 to 0.74 and 0.85 to 1.15.
+// docs/estimators.md has the whole table. For about 190 disjoint windows in each of three pairs and two components,
+// 0.68 scatters by 0.014 and the ratio by 0.02; the required ranges are 0.62 to 0.74 and 0.85 to 1.15.
 TEST(CorrelationStatistics, HoldsForDotsOfEverySizeAndDensity) {
   for (Dots const& dots : {Dots{1.5, 20, 0.05},
                            {4.5, 20, 0.05},
@@ -276,7 +276,7 @@ TEST(CorrelationStatistics, HoldsForDotsOfEverySizeAndDensity) {
   }
 }
 
-// The same; every vector has a sigma.
+// The same rates; every vector has a sigma.
 TEST(ImageMatching, HoldsForDotsUpToItsPatch) {
   for (Dots const& dots : {Dots{1.5, 20, 0.05}, {3.0, 20, 0.05}, {4.5, 20, 0.05}, {4.5, 20, 0.01}, {3.0, 40, 0.05}}) {
     UncertaintyQuality const quality = quality_of_dots("image_matching", dots.diameter_px, dots.per_window, dots.noise);
@@ -288,9 +288,9 @@ TEST(ImageMatching, HoldsForDotsUpToItsPatch) {
   EXPECT_EQ(large.without_sigma, 0u) << "a quarter of them, when each window's dots were asked alone";
 }
 
-// Two passes of one Gaussian window H = exp(-a r^2) whose predictor leaves nothing out: A = 2 H - H^2, and over the
-// plane the squares of A and H come to pi/a (4/2 - 4/3 + 1/4) and pi/a 1/2, as 11 to 6. Nodes 2 px apart leave out next
-// to nothing of windows of 32 px.
+// Two passes of one Gaussian window H = exp(-a r^2) with an exact predictor: A = 2 H - H^2, and the integrals of A^2
+// and H^2 over the plane are pi/a (4/2 - 4/3 + 1/4) and pi/a 1/2, a ratio of 11 to 6. Nodes 2 px apart cause almost no
+// loss for windows of 32 px.
 TEST(PassAmplification, IsThatOfTheRecursion) {
   CorrelationSettings settings;
   settings.window_px = {32};
@@ -302,7 +302,8 @@ TEST(PassAmplification, IsThatOfTheRecursion) {
   EXPECT_EQ(amplification_of_passes(settings), 1.0);
 }
 
-// Ten times the noise gives about ten times the error, and every method that looks at the images says more.
+// Ten times the noise causes about ten times the error, and the estimate of every method that uses the images
+// increases.
 TEST(EveryUncertainty, GrowsWithNoise) {
   auto const shear = [](Vec2d p) { return Vec2d{0.01 * (p.y - 192.0), 0.0}; };
   for (std::string const& method : uncertainty_methods()) {

@@ -95,7 +95,7 @@ void expect_equal(DisplacementField const& a, DisplacementField const& b) {
   }
 }
 
-// 17 significant digits bring every double back bit by bit.
+// 17 significant digits reproduce every double exactly.
 TEST_F(VectorFiles, CsvComesBackExactly) {
   write_vectors(path("v.csv"), small_grid(), origin());
   VectorFile const back = read_vectors(path("v.csv"));
@@ -118,7 +118,7 @@ TEST_F(VectorFiles, Hdf5ComesBackExactly) {
   expect_equal(small_grid(), back.field);
 }
 
-// Vectors that do not say how they came about are written as they are: measured, for all that is known.
+// Vectors without a reason are written as measured.
 TEST_F(VectorFiles, VectorsWithoutAnOriginAreTheirOwnRawOnes) {
   DisplacementField field = small_grid();
   field.raw_px.clear();
@@ -137,7 +137,7 @@ TEST_F(VectorFiles, VectorsWithoutAnOriginAreTheirOwnRawOnes) {
   }
 }
 
-// Files know that a vector is ambiguous, not since when.
+// Files store that a vector is ambiguous, but not since which pass.
 TEST_F(VectorFiles, EveryAmbiguityIsWrittenAsOne) {
   DisplacementField field = small_grid();
   field.ambiguous[0] = Ambiguity::earlier;
@@ -180,14 +180,14 @@ TEST_F(VectorFiles, OpenPivCxxTextIsRead) {
   EXPECT_EQ(back.field.displacement_px[0], (Vec2d{1.25, -0.5}));
 }
 
-// Older versions write a mask alone, and mark invalid vectors by it.
+// Older versions write only a mask, which marks invalid vectors, too.
 TEST_F(VectorFiles, MaskOfOpenPivWithoutFlagsMarksInvalidVectors) {
   VectorFile const back = read_vectors(file("o.txt", "# x\ty\tu\tv\tmask\n16\t16\t1\t2\t0\n32\t16\t1\t2\t1\n"));
   EXPECT_EQ(back.format, "OpenPIV");
   EXPECT_EQ(back.field.status, (std::vector{VectorStatus::valid, VectorStatus::invalid}));
 }
 
-// PIVlab writes column by column, with CR LF; with blanks as separator the header's names hold blanks themselves.
+// PIVlab writes with CR LF; with blanks as separator the column names contain blanks themselves.
 TEST_F(VectorFiles, PivlabExportIsReadAndPutInRows) {
   for (char const separator : {',', '\t', ' '}) {
     std::string text =
@@ -210,7 +210,8 @@ TEST_F(VectorFiles, PivlabExportIsReadAndPutInRows) {
   }
 }
 
-// 0.5 mm and 2 m/s a pixel. Without these factors the file cannot be compared, and the message says what to give.
+// 0.5 mm and 2 m/s per pixel. Without these factors the file cannot be compared, and the message states what to
+// specify.
 TEST_F(VectorFiles, CalibratedExportsTakeTheirFactors) {
   VectorFile calibrated = read_vectors(file("p.txt",
                                             "PIVlab, ASCII chart output - today\r\nFRAME: 1\r\n"
@@ -232,10 +233,10 @@ TEST_F(VectorFiles, CalibratedExportsTakeTheirFactors) {
   EXPECT_EQ(pixels.field.displacement_px[0], (Vec2d{0.5, -1.5}));
 }
 
-// One measurement of 49 x 49 vectors as other programs write it (tests/cases/vectors, 512 px high). Read as each
-// format says, all are the same to their last digit: 1e-6 px; of davis.dat, six digits of up to 5 px, half of 1e-5 px
-// in either component; of mm.csv half of 1e-4 / 0.0614 px in either coordinate and, six digits of up to 31 m/s, half of
-// 1e-4 / 6.14 px in either component.
+// One measurement of 49 x 49 vectors as other programs write it (tests/cases/vectors, 512 px high). Read as each format
+// specifies, all are equal to their last digit: 1e-6 px; for davis.dat with six digits of up to 5 px, half of 1e-5 px
+// in each component; for mm.csv half of 1e-4 / 0.0614 px in each coordinate and, with six digits of up to 31 m/s, half
+// of 1e-4 / 6.14 px in each component.
 TEST_F(VectorFiles, OtherProgramsFilesAreTheSameVectors) {
   struct Case {
     char const* name;
@@ -305,7 +306,7 @@ TEST_F(VectorFiles, CodesOfOtherProgramsAreTheirs) {
   EXPECT_THAT(problem("x [mm],y [px],u,v\n1,2,3,4\n"), AllOf(HasSubstr("bad.csv:1"), HasSubstr("different units")));
 }
 
-// The header states the size of the grid: with another number of rows, the file was cut short or mixed up.
+// The header states the size of the grid: with another number of rows, the file was truncated or mixed up.
 TEST_F(VectorFiles, RowsAreCountedAgainstTheHeader) {
   struct Case {
     char const* name;
@@ -338,7 +339,7 @@ TEST_F(VectorFiles, RowsAreCountedAgainstTheHeader) {
   EXPECT_TRUE(read_vectors(file("e.csv", "# i = 3\nx,y,u,v\n1,1,2,2\n")).complete) << "no zone";
 }
 
-// DaVis' text export: the units are in its header, and y points upwards as in its .dat.
+// Text export of DaVis: the units are in its header, and y points upwards as in its .dat files.
 TEST_F(VectorFiles, TextExportOfDavisIsRead) {
   VectorFile const back =
       read_vectors(file("d.txt",
@@ -366,7 +367,7 @@ TEST_F(VectorFiles, TextExportOfDavisIsRead) {
               AllOf(HasSubstr("bad.csv:1"), HasSubstr("DaVis' text export"), HasSubstr("export two components")));
 }
 
-// Validity is read under the names that other programs give it, in a table of any program.
+// Validity is read by the column names of other programs, in a table of any program.
 TEST_F(VectorFiles, ValidityIsReadByItsName) {
   using enum VectorStatus;
   VectorFile const chc = read_vectors(file("c.csv", "x,y,u,v,chc\n1,1,99,2,-1\n2,1,2,2,1\n3,1,2,2,2\n4,1,2,2,0\n"));
@@ -376,7 +377,7 @@ TEST_F(VectorFiles, ValidityIsReadByItsName) {
             (std::vector{masked, valid}));
 }
 
-// Without a column that says so all vectors are valid; `status` has our codes in any table.
+// Without a validity column all vectors are valid; `status` has our codes in any table.
 TEST_F(VectorFiles, TablesOfAnyProgramMayHaveOurStatus) {
   using enum VectorStatus;
   for (auto const& [u, v] : {std::pair{"u", "v"}, std::pair{"vx", "vy"}, std::pair{"dx", "dy"}}) {
@@ -391,7 +392,7 @@ TEST_F(VectorFiles, TablesOfAnyProgramMayHaveOurStatus) {
             (std::vector{valid, replaced, masked, invalid}));
 }
 
-// A Tecplot file of no known program is read as one of DaVis: zeros are masked, with a warning.
+// A Tecplot file of an unknown program is read as one of DaVis: zeros are masked, with a warning.
 TEST_F(VectorFiles, OtherTecplotFilesAreReadAsThoseOfDavis) {
   VectorFile const back = read_vectors(file(
       "t.dat",
@@ -411,7 +412,7 @@ TEST_F(VectorFiles, UnusedColumnsAreNamed) {
   EXPECT_TRUE(back.warnings.empty());
 }
 
-// A comma is a decimal one where something else separates, and a separator where it must be.
+// A comma is a decimal comma if another character separates the fields, and otherwise the separator.
 TEST_F(VectorFiles, DecimalsMayHaveCommas) {
   for (char const* text :
        {"x;y;u;v\n1,5;2;3,25;-4,5\n", "x\ty\tu\tv\n1,5\t2\t3,25\t-4,5\n", "x y u v\n1,5 2 3,25 -4,5\n",
@@ -430,7 +431,7 @@ TEST_F(VectorFiles, CommasThatSeparateAndMarkDecimalsAreNamed) {
   EXPECT_THAT(problem("x,y,u,v\n11.5,11,-0.9,0.8,7\n"), testing::Not(HasSubstr("commas may")));
 }
 
-// The same text in UTF-8 and in UTF-16 of both byte orders; without its mark, UTF-16 is refused by its name.
+// The same text in UTF-8 and in UTF-16 of both byte orders; UTF-16 without a byte order mark is rejected by its name.
 TEST_F(VectorFiles, Utf16IsRead) {
   std::string const text = "x,y,u,v\r\n1.5,2,3.25,-4.5\r\n";
   std::string little, big;
@@ -456,7 +457,7 @@ TEST_F(VectorFiles, NamedColumnsAreReadInAnyOrder) {
   EXPECT_EQ(back.field.sigma_px[0], (Vec2d{0.1, 0.2}));
 }
 
-// What no double holds is a number all the same: one vector is left out for it, not the file refused.
+// A number beyond the range of double is still a number: its vector is excluded, and the file is not rejected.
 TEST_F(VectorFiles, NumbersBeyondDoublesAreInfinite) {
   VectorFile const back = read_vectors(file("n.csv", "x,y,u,v\n1e400,-1e400,1e-400,inf\n"));
   double const infinity = std::numeric_limits<double>::infinity();

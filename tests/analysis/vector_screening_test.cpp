@@ -19,7 +19,7 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr int columns = 200, rows = 100;
 
-/// A lattice of 11 x 5 vectors of (1, 2) px that fills the image; each has its index as its peak ratio.
+/// A lattice of 11 x 5 vectors of (1, 2) px that fills the image; the peak ratio of each is its index.
 DisplacementField lattice() {
   DisplacementField field;
   for (int row = 0; row < 5; ++row) {
@@ -45,7 +45,7 @@ TEST(ScreenVectors, LeavesGoodOnesAsTheyAre) {
   EXPECT_THAT(doubt_about_places(field, columns, rows), IsEmpty());
 }
 
-// Three rows of a file given twice would count twice in every mean.
+// Three duplicate rows of a file would count twice in every mean.
 TEST(ScreenVectors, RefusesVectorsGivenTwice) {
   DisplacementField field = lattice();
   for (std::size_t const i : {2u, 17u, 40u}) {
@@ -66,7 +66,7 @@ TEST(ScreenVectors, TakesImpossiblePlacesOutAndCountsThem) {
   field.position_px[5].x = 1e15;
   field.position_px[6].y = -1e308;
   field.position_px[7].x = columns + 1.5;  // 2.5 px beyond the last pixel's centre
-  field.position_px[8].x = columns + 0.5;  // 1.5 px: another way of counting pixels
+  field.position_px[8].x = columns + 0.5;  // 1.5 px: another origin of pixel coordinates
   LeftOutVectors const left_out = screen_vectors(field, 0.0, columns, rows);
   EXPECT_EQ(left_out.place_not_finite, 2u);
   EXPECT_EQ(left_out.outside_image, 3u);
@@ -78,7 +78,7 @@ TEST(ScreenVectors, TakesImpossiblePlacesOutAndCountsThem) {
                                      HasSubstr("3 outside the image (by more than 2 px)")));
 }
 
-// The image is 200 x 100 px: 200 px is a displacement across it, 201 px none that it can show.
+// The image is 200 x 100 px: a displacement of 200 px crosses it, one of 201 px cannot be observed.
 TEST(ScreenVectors, MarksImpossibleDisplacementsInvalidAndKeepsTheirPlaces) {
   DisplacementField field = lattice();
   field.displacement_px[0].x = 1e308;
@@ -118,7 +118,7 @@ TEST(ScreenVectors, SaysWhereTheyAreWhenNoneIsLeft) {
                     HasSubstr("1 with a place that is nan"), HasSubstr("px")));
 }
 
-// Counted from another corner: the grid of 5 x 11 vectors stands half outside.
+// Counted from another corner: half of the grid of 5 x 11 vectors is outside.
 TEST(ScreenVectors, RefusesAFileWhoseVectorsLieMostlyOutside) {
   DisplacementField field = lattice();
   for (Vec2d& p : field.position_px) p.x += 120.0;

@@ -10,7 +10,7 @@
 namespace gladstone {
 namespace {
 
-/// A smooth vortex-like field with a little unevenness, all valid.
+/// A smooth vortex-like field with small irregularities, all valid.
 std::vector<GridVector> smooth_grid(int columns, int rows) {
   std::vector<GridVector> grid;
   for (int j = 0; j < rows; ++j)
@@ -23,7 +23,7 @@ std::vector<GridVector> smooth_grid(int columns, int rows) {
   return grid;
 }
 
-// All neighbours at 0, epsilon 0.1: a vector (0.3, 0.4) is 0.5/0.1 = 5 away.
+// All neighbours are 0, epsilon 0.1: the normalised residual of the vector (0.3, 0.4) is 0.5/0.1 = 5.
 TEST(NormalisedMedian, IsTheDistanceOverTheNoiseLevel) {
   Neighbours<double> neighbours;
   neighbours.count = 8;
@@ -38,8 +38,8 @@ TEST(NormalisedMedian, FlagsAPlantedOutlierAndOnlyThat) {
     validate_vectors(grid, 10, {});
     for (std::size_t i = 0; i < grid.size(); ++i)
       EXPECT_EQ(grid[i].status, i == planted ? VectorStatus::replaced : VectorStatus::valid) << i << " of " << planted;
-    // the median of neighbours at one grid step: off by at most the change over one step on both axes and the
-    // unevenness
+    // the median of neighbours one grid step away: the error is at most the change over one step on both axes and the
+    // irregularity
     EXPECT_NEAR(grid[planted].displacement.x, truth.x, 0.14);
     EXPECT_NEAR(grid[planted].displacement.y, truth.y, 0.14);
   }
@@ -56,7 +56,7 @@ TEST(NormalisedMedian, PrefersTheNextPeakThatAgrees) {
   EXPECT_EQ(grid[33].displacement, truth);
 }
 
-// A steep plane has a one-sided median at its rim, which is not an error.
+// At the edge of a steep plane the median of the neighbours is one-sided, which is not an error.
 TEST(NormalisedMedian, AcceptsTheRimOfASteepPlane) {
   std::vector<GridVector> grid = smooth_grid(10, 6);
   for (std::size_t i = 0; i < grid.size(); ++i)
@@ -65,7 +65,7 @@ TEST(NormalisedMedian, AcceptsTheRimOfASteepPlane) {
   for (GridVector const& vector : grid) EXPECT_EQ(vector.status, VectorStatus::valid);
 }
 
-// The predictor of the first column is off by 2 px, as one that is continued straight past a crest is.
+// The predictor of the first column is wrong by 2 px, like one that is extrapolated beyond a crest.
 TEST(NormalisedMedian, AcceptsARightVectorWhosePredictorIsWrongAtTheRim) {
   std::vector<GridVector> grid = smooth_grid(10, 6);
   for (std::size_t i = 0; i < grid.size(); ++i) {
@@ -76,7 +76,7 @@ TEST(NormalisedMedian, AcceptsARightVectorWhosePredictorIsWrongAtTheRim) {
   for (GridVector const& vector : grid) EXPECT_EQ(vector.status, VectorStatus::valid);
 }
 
-// ... and what replaces a wrong one there owes nothing to that predictor.
+// ... and the replacement of a wrong vector there does not depend on that predictor.
 TEST(NormalisedMedian, ReplacesAtTheRimByThePlaneOfTheNeighbours) {
   for (std::size_t const planted : {std::size_t{0}, std::size_t{20}, std::size_t{29}, std::size_t{33}}) {
     std::vector<GridVector> grid = smooth_grid(10, 6);
@@ -87,7 +87,7 @@ TEST(NormalisedMedian, ReplacesAtTheRimByThePlaneOfTheNeighbours) {
     grid[planted].displacement += Vec2d{3.0, -2.0};
     validate_vectors(grid, 10, {});
     EXPECT_EQ(grid[planted].status, VectorStatus::replaced);
-    // the unevenness, 0.02 px, continued by one step beyond its neighbours: at most 1 + 1 + 1 of it at a corner
+    // the irregularity, 0.02 px, extrapolated by one step: at most 1 + 1 + 1 times that at a corner
     EXPECT_NEAR(grid[planted].displacement.x, truth.x, at_rim ? 0.08 : 1e-12) << planted;
     EXPECT_NEAR(grid[planted].displacement.y, truth.y, at_rim ? 0.08 : 1e-12) << planted;
   }
@@ -103,7 +103,7 @@ TEST(NormalisedMedian, LetsTheLimitBindReplacements) {
   EXPECT_EQ(grid[33].reason, VectorReason::beyond_limit);
 }
 
-// The crest of a wave of four grid steps: the median of its neighbours is 0.
+// Crest of a wave of four grid steps: the median of its neighbours is 0.
 TEST(NormalisedMedian, KeepsACrestThatItsWindowSpeaksFor) {
   auto const status_of = [](double height, double peak_ratio, Ambiguity ambiguous, double trusted_ratio) {
     std::vector<GridVector> grid = smooth_grid(5, 5);
@@ -143,7 +143,7 @@ TEST(NormalisedMedian, SaysWhereAReplacementIsFrom) {
   for (std::size_t const i : {33, 36}) EXPECT_EQ(grid[i].raw, (Vec2d{9.0, 9.0})) << "as measured";
 }
 
-// Each vector fails the test that it is made for.
+// Each vector fails the test for which it was constructed.
 TEST(ValidateVectors, SayWhichTestAVectorFailed) {
   for (bool const replace : {true, false}) {
     std::vector<GridVector> grid = smooth_grid(10, 8);
@@ -185,11 +185,11 @@ TEST(ValidateVectors, SayWhichTestAVectorFailed) {
   }
 }
 
-// An error of an earlier pass is in the predictor, and nothing was added to it: neighbours that correlate better give
-// it away, as they do not where the test is off, where the window correlates like those beside it, or where the field
-// is steep. In the corner the plane of three neighbours stands in, as far as their unevenness of 0.02 px tells it:
-// its value there, the two beside it less the third across, is off by three of them along either axis and the vector
-// by one, 4 * 0.02 * sqrt(2) = 0.11 px; below 0.15 is asked.
+// An error of an earlier pass is in the predictor, and the last pass adds nothing to it: it is detected because the
+// neighbours correlate better, but not if the test is off, if the window correlates as well as its neighbours, or if
+// the field is steep. In the corner the vector is replaced by the plane through three neighbours, which have
+// irregularities of 0.02 px: the plane's value there, the sum of two neighbours minus the third, is wrong by three
+// irregularities along each axis and the vector by one, 4 * 0.02 * sqrt(2) = 0.11 px; 0.15 is required.
 TEST(WholeDisplacements, GiveAWrongPredictorAway) {
   for (std::size_t const planted : {std::size_t{34}, std::size_t{0}})
     for (auto const& [correlation, threshold, replaced] :
@@ -249,7 +249,7 @@ TEST(SmoothedDisplacement, KeepsAPlaneAndDampsAZigzag) {
     }
   std::vector<Vec2d> const smooth = smoothed_displacement(plane, 8, 0.25);
   for (std::size_t i = 0; i < plane.size(); ++i) EXPECT_EQ(smooth[i], plane[i]);
-  // the weights (1 6 1)/8 halve the fastest oscillation along each axis
+  // the weights (1 6 1)/8 halve the shortest wave along each axis
   EXPECT_DOUBLE_EQ(smoothed_displacement(zigzag, 8, 0.25)[3 * 8 + 3].x, 0.25 * zigzag[3 * 8 + 3].x);
 }
 

@@ -9,9 +9,9 @@
 namespace gladstone {
 namespace {
 
-// A spline of degree n reproduces polynomials up to degree n; reflection at the border disturbs this by
-// |pole|^distance, 0.43^45 = 3e-17 for the quintic at the centre of 96 pixels, times the reflected slope. The rest is
-// rounding.
+// A spline of degree n reproduces polynomials up to degree n. The reflection at the border disturbs this by
+// |pole|^distance, 0.43^45 = 3e-17 for the quintic spline at the centre of 96 pixels, times the reflected slope. The
+// remaining error is rounding.
 class BsplinePolynomial : public ::testing::TestWithParam<int> {};
 
 TEST_P(BsplinePolynomial, IsReproducedBetweenThePixels) {
@@ -46,8 +46,8 @@ TEST(BsplineImage, HoldsImagesOfOnePixelAndStaysInsideItsMargin) {
   for (double const far : {-1e6, -3.0, 0.3, 2.5, 1e6}) EXPECT_NEAR(image.view().sample<5>(0, 0, far, far), 7.0, 1e-12);
 }
 
-// The error of the quintic spline on a wave of 8 px is of the order (2 pi/8)^6 / 30240 of its height per axis (the
-// sixth Bernoulli term), 8e-6; one of 1/32 px steps would be pi/4/64 = 1e-2.
+// The relative error of the quintic spline for a wave of 8 px is of the order (2 pi/8)^6 / 30240 = 8e-6 per axis (the
+// sixth Bernoulli term); that of a lookup with steps of 1/32 px would be pi/4/64 = 1e-2.
 TEST(BsplineImage, ShiftsAWaveWithoutSteps) {
   auto const wave = [](double x) { return std::sin(2.0 * pi * x / 8.0); };
   BsplineImage<double> const image(128, 16, 5, [&](int i, int) { return wave(i); });
@@ -55,8 +55,8 @@ TEST(BsplineImage, ShiftsAWaveWithoutSteps) {
     EXPECT_NEAR(image.view().sample<5>(64, 8, shift, 0.0), wave(64.0 + shift), 2e-5);
 }
 
-// Eight pixels by Lanczos' window pass constants and the pixels themselves. Of a wave of 8 px the sum of its eight
-// terms is off by 0.00593 of its height at most, over all phases and shifts.
+// Interpolation over eight pixels with Lanczos' window is exact for constants and at the pixels. For a wave of 8 px the
+// error of the sum of its eight terms is at most 0.00593 of its amplitude, over all phases and shifts.
 TEST(WindowedSinc, PassesThroughPixelsAndShiftsAWave) {
   auto const pixel = [](int i, int j) { return static_cast<double>((i * 37 + j * 101) % 256); };
   BsplineImage<double> const image(13, 9, windowed_sinc, pixel),
@@ -93,9 +93,9 @@ TEST(DensePredictor, ReproducesALinearFieldUpToTheCorners) {
   EXPECT_NEAR(predictor.at({50.25, 40.75}).x, field({50.25, 40.75}).x, 1e-12);
 }
 
-// Patterns f(x + d/2) and f(x - d/2) coincide with f after deformation by d: of a wave of 20 grey levels the quintic
-// spline leaves 20 * 0.5^6 / 30240 = 1e-5 an axis, float some 1e-5 of its sums, the reflection at the rim, 30 px away,
-// 0.43^30. 1e-3 of a grey level is asked, in the pair's units.
+// Patterns f(x + d/2) and f(x - d/2) coincide with f after deformation by d. For a wave of 20 grey levels the error of
+// the quintic spline is 20 * 0.5^6 / 30240 = 1e-5 per axis, float has some 1e-5 of its sums, and the reflection at the
+// edge, 30 px away, 0.43^30. 1e-3 of a grey level is required, in the unit of the pair.
 TEST(PairDeformer, BringsBothImagesToTheMiddle) {
   Vec2d const shift{1.7, -0.6};
   auto const pattern = [](double x, double y) { return 100.0 + 20.0 * std::sin(0.4 * x + 0.3) * std::cos(0.5 * y); };
@@ -108,7 +108,7 @@ TEST(PairDeformer, BringsBothImagesToTheMiddle) {
   InterrogationGrid const grid = make_interrogation_grid(96, 80, 16, 0.5);
   std::vector<Vec2d> const nodes(grid.size(), shift);
   ImagePair const pair = PairDeformer(reference, flow, 5).deform(DensePredictor(grid, nodes, 96, 80));
-  // levels less one of them, times a power of two that brings their range of almost 40 to 1 .. 2
+  // levels minus one of them, times a power of two that scales their range of almost 40 to 1 .. 2
   constexpr double scale = 1.0 / 32.0;
   double const level = pair.reference[40 * 96 + 48] - scale * pattern(48.0, 40.0);
   EXPECT_GT(pair.contrast, 1.0f);
@@ -119,7 +119,7 @@ TEST(PairDeformer, BringsBothImagesToTheMiddle) {
       EXPECT_NEAR(pair.reference[static_cast<std::size_t>(j) * 96 + i], truth, 1e-3 * scale);
       EXPECT_NEAR(pair.flow[static_cast<std::size_t>(j) * 96 + i], truth, 1e-3 * scale);
     }
-  // a pixel counts as known where both of its sources lie in the images: |u|/2 = 0.85 px beyond the edge they do not
+  // a pixel is known if both of its sources are inside the images: not within |u|/2 = 0.85 px of the edge
   ASSERT_FALSE(pair.available.empty());
   EXPECT_EQ(pair.available[40 * 96 + 0], 0.0f);
   EXPECT_EQ(pair.available[40 * 96 + 1], 1.0f);

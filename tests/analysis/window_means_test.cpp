@@ -7,8 +7,8 @@
 namespace gladstone {
 namespace {
 
-// The definition, summed in double. Levels up to 100 are summed in float, a column of up to 48 pixels in turn and then
-// along x: 6e-8 of 100 for each of some tens of partial sums, at random, is 4e-5.
+// The definition, summed in double precision. Levels up to 100 are summed in float, first down a column of up to 48
+// pixels, then along x: random errors of 6e-8 of 100 for each of some tens of partial sums add up to 4e-5.
 TEST(WindowMeans, AreTheWeightedMeansOfWindowsInsideTheFrames) {
   constexpr int columns = 101, rows = 83;
   ImagePair pair;

@@ -22,7 +22,7 @@ namespace {
 
 constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
 
-/// A window's pixels, rows padded by pixels without weight to whole vectors.
+/// Pixels of a window; rows are padded to whole vectors with pixels of zero weight.
 struct PlainWindow {
   explicit PlainWindow(int of) : side(of), pitch((of + lane_count - 1) / lane_count * lane_count) {
     for (std::vector<float>* image : {&weight, &reference, &flow})
@@ -43,8 +43,8 @@ struct PlainPixels {
   }
 };
 
-/// The threads of a block, one after the other, in rising or falling order: where threads exchanged values without a
-/// barrier between, the two orders would not give the same.
+/// The threads of a block, one after the other, in ascending or descending order: if threads exchanged values without a
+/// barrier, the two orders would give different results.
 template <class Columns>
 StatisticsSums sums_by_threads(PlainWindow const& window, int threads, bool falling) {
   using Window = WindowStatistics<Columns>;
@@ -83,7 +83,7 @@ StatisticsSums sums_by_threads(PlainWindow const& window, int threads, bool fall
   return sums;
 }
 
-/// The sums by their definition, in double, and what their terms would come to without signs.
+/// The sums by their definition, in double precision, and the sums of the absolute values of their terms.
 struct DefinedSums {
   StatisticsSums sums, sizes;
 
@@ -158,8 +158,7 @@ struct DefinedSums {
   }
 };
 
-/// Dots of one displacement in noise, half as bright in the flow frame; a corner of the window, and single pixels, not
-/// known.
+/// Dots of one displacement in noise, half as bright in frame B; a corner of the window and single pixels are unknown.
 PlainWindow noisy_window(int side, unsigned seed) {
   PlainWindow window(side);
   std::mt19937 random(seed);
@@ -186,14 +185,14 @@ std::vector<double> values_of(StatisticsSums sums) {
   return values;
 }
 
-/// Each product takes some 20 roundings of 6e-8 on its way, and a row of up to 48 of them as many more: 4e-6 of what
-/// the products come to without signs, were all of one sign.
+/// Each product has some 20 roundings of 6e-8, and a row of up to 48 products as many more: 4e-6 of the sum of absolute
+/// values, if all had one sign.
 void expect_sums(StatisticsSums const& sums, DefinedSums const& defined, char const* by) {
   std::vector<double> const found = values_of(sums), right = values_of(defined.sums), sizes = values_of(defined.sizes);
   for (std::size_t k = 0; k < found.size(); ++k) EXPECT_NEAR(found[k], right[k], 4e-6 * sizes[k]) << k << ' ' << by;
 }
 
-// Windows of even and odd sides, fewer and more threads than columns, one thread alone, eight columns at a time.
+// Windows of even and odd size, with fewer and more threads than columns, a single thread, eight columns at a time.
 TEST(WindowStatistics, AreTheSumsThatDefineThem) {
   for (int const side : {4, 13, 40, 48}) {
     PlainWindow const window = noisy_window(side, static_cast<unsigned>(side));
@@ -212,9 +211,9 @@ TEST(WindowStatistics, AreTheSumsThatDefineThem) {
   }
 }
 
-// Dots of a thousandth of the contrast, off the level that was taken off the frames by half of it: a window beside
-// which nothing is. Means are rounded to 3e-8, 6e-4 of the noise of 5e-5, of which the variance has twice as much, and
-// ten times that where products cancel.
+// Dots with a thousandth of the contrast, on a background that differs by half of it from the level subtracted from the
+// frames: a window without neighbours. Means are rounded to 3e-8, 6e-4 of the noise of 5e-5, the variance has twice
+// that relative error, and ten times that where products cancel.
 TEST(WindowStatistics, HoldForFaintDots) {
   PlainWindow window = noisy_window(40, 3);
   for (std::vector<float>* frame : {&window.reference, &window.flow})
@@ -230,8 +229,8 @@ TEST(WindowStatistics, HoldForFaintDots) {
   }
 }
 
-// Frames that differ by c in one pixel, whose sum varies by g along x there and not along y: one term, t = c g/2. What
-// lies on pixels that are not known makes no difference.
+// Frames that differ by c in one pixel; their sum varies by g along x there and not along y: a single term, t = c g/2.
+// Unknown pixels have no effect.
 TEST(WindowStatistics, HaveTheNoiseOfAPixelInOneTerm) {
   PlainWindow window(16);
   for (int j = 0; j < 16; ++j)
@@ -244,14 +243,14 @@ TEST(WindowStatistics, HaveTheNoiseOfAPixelInOneTerm) {
   auto const with_noise = [&](float c) {
     PlainWindow noisy = window;
     noisy.flow[noisy.at(8, 8)] += c;
-    noisy.reference[noisy.at(8, 8)] -= c;  // the frames' sum stays what it is
-    noisy.flow[noisy.at(8, 12)] -= c;      // and so do their means and squares
+    noisy.reference[noisy.at(8, 8)] -= c;  // the sum of the frames is unchanged
+    noisy.flow[noisy.at(8, 12)] -= c;      // and so are their means and squares
     noisy.reference[noisy.at(8, 12)] += c;
     return sums_by_threads<OneColumn>(noisy, 32, false);
   };
   StatisticsSums const none = with_noise(0.0f), some = with_noise(0.25f);
   EXPECT_NEAR(none.terms[0], 0.0, 1e-9);
-  // the frames' sum is 2 x: twice 4/2 apart, times a difference of 0.5, squared, in two pixels; to a few roundings
+  // the sum of the frames is 2 x: differences of 4/2 times 0.5, squared, in two pixels; to a few roundings
   EXPECT_NEAR(some.terms[0], 2.0 * 1.0 * 1.0, 1e-5);
   EXPECT_NEAR(some.terms[1], 0.0, 1e-9);
   EXPECT_NEAR(some.shares[0], none.shares[0], 1e-5 * none.shares[0]);
@@ -285,8 +284,9 @@ DisplacementField field_with_sigma(HostFrames const& frames, CorrelationSettings
   return field;
 }
 
-// All of a pair, border, masked windows and weightings included, by the definition in double: the products of a window
-// cancel to a twentieth of their size at most, so that 4e-6 of these are 8e-5 of the variance and 4e-5 of sigma.
+// A complete pair, including the border, masked windows and both weightings, compared with the definition in double
+// precision: the products of a window cancel to a twentieth of their size at most, so that 4e-6 of these are 8e-5 of
+// the variance and 4e-5 of sigma.
 TEST(CorrelationStatistics, AreThoseOfTheMatchedWindows) {
   ParticlePair const pair = masked_pair(1.0);
   HostFrames const frames(pair.reference, pair.flow);
@@ -337,8 +337,8 @@ TEST(CorrelationStatistics, AreThoseOfTheMatchedWindows) {
   }
 }
 
-// The unit of grey is the user's, up to what vectors themselves depend on it: below 1e-6 px. A sigma moves by no more
-// than the vector that its frames are matched by.
+// The unit of the grey levels is arbitrary, to the accuracy of the vectors themselves: below 1e-6 px. A sigma changes
+// by no more than the vector by which its frames are matched.
 TEST(CorrelationStatistics, DoNotDependOnTheUnitOfGrey) {
   CorrelationSettings settings;
   settings.window_px = {32, 20};

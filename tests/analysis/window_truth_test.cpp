@@ -51,8 +51,8 @@ TEST(WindowTruth, WeighsWithSquaredWeightAndSquaredFlux) {
   EXPECT_NEAR(truth.displacement_px[0].y, (w2 + 2.0 * w3) / (w1 + w2 + w3), 1e-15);
 }
 
-// Dots at x = 0..63 move by d = 0.1 x; at mid-position they stand at 1.05 x, so the field there is d = x_mid/10.5 and
-// a symmetric window over a lattice sees the value at its centre, the dot x = 20 standing at 21.
+// Dots at x = 0..63 move by d = 0.1 x. Their mid-positions are 1.05 x, so the field there is d = x_mid/10.5, and a
+// symmetric window over a lattice gives the value at its centre, where the dot x = 20 is at 21.
 TEST(WindowTruth, CountsDotsAtMidPosition) {
   std::vector<Vec2d> position, d;
   for (int x = 0; x < 64; ++x) {
@@ -85,7 +85,7 @@ TEST(WindowTruth, OfNoDotsLeavesAllOut) {
   EXPECT_EQ(window_truth({}, {}, {}, centres, correlation_window(WindowWeighting::uniform, 8.0)).left_out, 3u);
 }
 
-// The cell grid finds exactly the dots of the support: the same sums as over all dots, to rounding.
+// The cell grid finds exactly the dots of the window: the same sums as over all dots, to rounding.
 TEST(WindowTruth, AgreesWithTheSumOverAllDotsForAnyNumberOfThreads) {
   std::vector<Vec2d> const position = random_points(2000, 200.0);
   std::vector<Vec2d> const d = displaced(position);
@@ -119,7 +119,7 @@ TEST(WindowTruth, AgreesWithTheSumOverAllDotsForAnyNumberOfThreads) {
   }
 }
 
-// One pass deforms nothing: the mean of the window's dots, to the last bit.
+// With one pass nothing is deformed: the result is the mean of the window's dots, bit by bit.
 TEST(DeformedWindowTruth, OfOnePassIsTheMeanOfTheWindow) {
   CorrelationSettings settings;
   settings.window_px = {32};
@@ -140,8 +140,8 @@ TEST(DeformedWindowTruth, OfOnePassIsTheMeanOfTheWindow) {
   }
 }
 
-// A lattice of dots is symmetric about every window inside, so that of a linear field nothing is left to later passes;
-// a dot without a displacement, a window that does not fit the frame and a centre that is not a number harm nothing.
+// A lattice of dots is symmetric about every window in the interior, so that a linear field has no residual for later
+// passes. A dot without a displacement, a window that does not fit the frame and a centre that is NaN have no effect.
 TEST(DeformedWindowTruth, OfALinearFieldIsItsValueAtTheCentre) {
   auto const field = [](Vec2d p) { return Vec2d{0.5 + 0.02 * p.x - 0.03 * p.y, -1.0 + 0.04 * p.y}; };
   std::vector<Vec2d> position, d;
@@ -164,11 +164,11 @@ TEST(DeformedWindowTruth, OfALinearFieldIsItsValueAtTheCentre) {
   }
 }
 
-// The gain of a wave, over dots as dense as pixels. A window gives it h = exp(-pi (w/L)^2/2), the transform of W^2
-// (cut at exp(-2 pi), 2 parts in 1000); of what it leaves, 1 - h, the next pass gains its own h:
-// g_k = h_k + (1 - h_k) p g_(k-1). With nodes on every second pixel of a wave of 96 the predictor passes p = 1 - s (1 -
-// cos(2 pi spacing/L)), cubic convolution all of it; s = 1/4 before the last pass, and before that less in inverse
-// proportion to the spacing.
+// The gain of a wave, for dots as dense as pixels. A window transmits h = exp(-pi (w/L)^2/2), the transform of W^2
+// (truncated at exp(-2 pi), 2 parts in 1000). The next pass transmits its own h of the residual 1 - h: g_k = h_k + (1 -
+// h_k) p g_(k-1). With nodes on every second pixel of a wave of 96 px the predictor transmits p = 1 - s (1 - cos(2 pi
+// spacing/L)), and cubic convolution transmits all of it; s = 1/4 before the last pass, and smaller before that, in
+// inverse proportion to the spacing.
 TEST(DeformedWindowTruth, GivesAWaveTheGainOfItsPasses) {
   constexpr double wave_px = 96.0;
   std::vector<Vec2d> position, d;
@@ -196,9 +196,9 @@ TEST(DeformedWindowTruth, GivesAWaveTheGainOfItsPasses) {
   }
 }
 
-// What decides which truth holds: frames without noise. Of a shear, so coarse with dots that a window's dots lie off
-// its centre, one pass measures their mean, several the value at the centre; of a wave of 64 px several measure what
-// their windows leave of it.
+// Noise-free frames show which truth is valid. In a shear with so few dots that their centroid differs from the window
+// centre, one pass measures the mean of the dots, several passes the value at the centre; for a wave of 64 px several
+// passes measure the part that their windows transmit.
 TEST(DeformedWindowTruth, IsWhatThePassesMeasure) {
   auto const shear = [](Vec2d p) { return Vec2d{0.02 * (p.y - 127.5), 0.0}; };
   auto const wave = [](Vec2d p) { return Vec2d{0.0, 0.5 * std::sin(2.0 * pi * p.x / 64.0)}; };
@@ -237,8 +237,8 @@ TEST(DeformedWindowTruth, IsWhatThePassesMeasure) {
   }
 }
 
-// The sum of the weights over pixels is that of the nominal window, but for what is cut off beyond twice its width:
-// erf(sqrt(pi)) = 0.9878 per axis.
+// The sum of the weights over pixels is that of the nominal window, except for the part truncated beyond twice its
+// width: erf(sqrt(pi)) = 0.9878 per axis.
 TEST(CorrelationWindow, HasTheAreaOfTheNominalWindow) {
   for (WindowWeighting const weighting : {WindowWeighting::gaussian, WindowWeighting::uniform}) {
     WindowWeight const window = correlation_window(weighting, 32);
@@ -254,7 +254,7 @@ TEST(CorrelationWindow, HasTheAreaOfTheNominalWindow) {
   }
 }
 
-// Local linear regression reproduces a plane wherever it has dots, at the edges as well: rounding only.
+// Local linear regression reproduces a plane wherever there are dots, also at the edges: only rounding errors.
 TEST(MapScattered, ReproducesAPlane) {
   std::vector<Vec2d> const position = random_points(1500, 128.0);
   std::vector<Vec2d> d;
