@@ -14,7 +14,7 @@
 namespace gladstone {
 namespace {
 
-/// Table 1 on one of the turbulence planes.
+/// Set-up of Table 1 with one of the turbulence planes.
 Setup table1(std::string const& plane, int rays) {
   return load_case_setup(shared_folder() + "/studies/cases/table1.toml",
                          {fmt::format("medium.field.file=\"{}/fields/{}\"", GLADSTONE_DATA_DIR, plane),
@@ -22,11 +22,12 @@ Setup table1(std::string const& plane, int rays) {
       .setup;
 }
 
-// A plane of 64 nodes that holds four periods of 8 mm along x, seen by four views of 32 nodes each: the rays are Eq. 9
-// times the cone's transfer and the dot's (3 px are 0.19 mm at the medium: 1 - (pi 0.19 / 8)^2 / 8 = 0.9993) in every
-// view, so that they correlate by 1 and no piece of the plane, one period wide, differs from another. 64 rays of a dot
-// leave 1e-3 of the amplitude, the obliquity of the rays 5e-4, the spline between 16 nodes of a wave 3e-5. Eq. 9 is
-// S a k cos(k x), S = 0.006626657 px per kg/m^4 at Table 1, in one of two components, 24 dots a period.
+// A plane of 64 nodes with four periods of 8 mm along x, seen in four views of 32 nodes each. In every view the rays
+// are Eq. 9 times the transfer of the cone and that of the dot (3 px are 0.19 mm at the medium: 1 - (pi 0.19 / 8)^2 / 8
+// = 0.9993), so that their correlation is 1, and all parts of the plane, each one period wide, are equal. 64 rays per
+// dot have an error of 1e-3 of the amplitude, the obliquity of the rays 5e-4, the spline between 16 nodes per wave
+// 3e-5. Eq. 9 is S a k cos(k x), S = 0.006626657 px per kg/m^4 for Table 1, in one of two components, with 24 dots per
+// period.
 TEST(AgreementOverPlane, OfOneWaveIsTheConesTransfer) {
   std::string const path = testing::TempDir() + "gladstone_wave_plane.nrrd";
   write_plane(path, 64, 64, [](int i, int) { return 1.225 + 1e-3 * std::sin(2 * pi * i / 16); });
@@ -47,16 +48,16 @@ TEST(AgreementOverPlane, OfOneWaveIsTheConesTransfer) {
   EXPECT_NEAR(traced.sums.eq9_px(), amplitude / 2, 1e-3 * amplitude);
 }
 
-/// Plane and nodes in 32.7 mm.
+/// Plane, and number of nodes in 32.7 mm.
 struct PlaneCase {
   char const* file;
   int nodes;
 };
 class AgreementOfTurbulence : public testing::TestWithParam<PlaneCase> {};
 
-// The theory has no free parameter and knows the very plane. What parts them: the dots are a sample (three standard
-// errors of what another plane would differ by), and on the sharpest fronts the stop admits other rays in the flow than
-// in the reference, a few hundredths of the rays' rms (cone against rays, below).
+// The theory has no free parameter and uses the same plane. The remaining differences: the dots are a sample (three
+// standard errors of another plane of the same kind), and at the sharpest fronts the stop transmits other rays in the
+// measurement image than in the reference image, a few hundredths of the rms of the rays (cone against rays, below).
 TEST_P(AgreementOfTurbulence, IsWhatTheSpectrumPredicts) {
   auto const [file, nodes] = GetParam();
   gladstone::Setup const setup = table1(file, 64);
@@ -69,7 +70,7 @@ TEST_P(AgreementOfTurbulence, IsWhatTheSpectrumPredicts) {
   EXPECT_LT(refraction, 0.03);
   EXPECT_NEAR(value.correlation, predicted.correlation, 3 * traced.error.correlation);
   EXPECT_NEAR(value.rms_ratio, predicted.rms_ratio, 3 * traced.error.rms_ratio + refraction * value.rms_ratio);
-  // and the bars are no excuse for anything
+  // and the error bars are small
   EXPECT_LT(traced.error.correlation, 0.03);
   EXPECT_LT(traced.error.rms_ratio, 0.02);
 }

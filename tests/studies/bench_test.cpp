@@ -18,7 +18,7 @@ namespace {
 
 constexpr double bench_mm = 1e-3;
 
-// physics.md, "Seed Table 1 evaluated": every digit that is printed there.
+// physics.md, "Seed Table 1 evaluated": every printed digit.
 TEST(Bench, IsTableOneToThePrintedDigits) {
   BenchGiven const given = table1_given();
   Bench<double> const b = table1_bench(given);
@@ -35,7 +35,8 @@ TEST(Bench, IsTableOneToThePrintedDigits) {
   EXPECT_NEAR(0.1 * given.camera.pixel_pitch / b.angular_sensitivity(), 34.10e-6, 5e-9);
 }
 
-// Fact 5 and 3.1: the share of Eq. 9 that waves of 4 and 8 mm keep; and the row of stops at 8 mm, with the spots.
+// Fact 5 and 3.1: the fraction of Eq. 9 that is transmitted for waves of 4 and 8 mm; and the row of f-numbers at 8 mm,
+// with the PSF diameters.
 TEST(Bench, ConeTransferAndSpotsAreThoseOfTheStops) {
   BenchGiven const given = table1_given();
   Bench<double> b = table1_bench(given);
@@ -51,18 +52,18 @@ TEST(Bench, ConeTransferAndSpotsAreThoseOfTheStops) {
   }
 }
 
-// F10: 1/sqrt(2) at D_c/Lambda = 0.51450, half at 0.70508, nothing at 1.21967, 10 % less at 0.28966.
+// F10: 1/sqrt(2) at D_c/Lambda = 0.51450, half at 0.70508, zero at 1.21967, 10 % less at 0.28966.
 TEST(Bench, DiscTransferHasThePrintedCrossings) {
   EXPECT_NEAR(disc_transfer(0.51450, 1.0), std::sqrt(0.5), 1e-5);
   EXPECT_NEAR(disc_transfer(0.70508, 1.0), 0.5, 1e-5);
   EXPECT_NEAR(disc_transfer(1.21967, 1.0), 0, 1e-5);
   EXPECT_NEAR(disc_transfer(0.28966, 1.0), 0.9, 1e-5);
   EXPECT_NEAR(disc_transfer(0.09018, 1.0), 0.99, 1e-5);
-  // the series meets the function where they change over
+  // the series equals the function at the point where one replaces the other
   EXPECT_NEAR(disc_transfer(0.99999e-4 / pi, 1.0), disc_transfer(1.00001e-4 / pi, 1.0), 1e-12);
 }
 
-// F11: equal weights over N pixels average a wave to sin(N a) / (N sin a), a = pi / (wavelength in px).
+// F11: equal weights over N pixels reduce a wave to sin(N a) / (N sin a), a = pi / (wavelength in px).
 TEST(Bench, UniformWindowIsTheSumOfItsPixels) {
   WindowTransfer const window(WindowWeighting::uniform, 32);
   for (double const wavelength : {40.0, 64.0, 300.0}) {
@@ -71,8 +72,8 @@ TEST(Bench, UniformWindowIsTheSumOfItsPixels) {
   }
 }
 
-// Of two images weighted exp(-pi x^2 / N^2) each a pixel counts exp(-2 pi x^2 / N^2), whose transform is
-// exp(-pi N^2 / (2 Lambda^2)); cut at x = N, where it has fallen to exp(-2 pi) = 0.0019.
+// In two images with weights exp(-pi x^2 / N^2) each, a pixel has the weight exp(-2 pi x^2 / N^2), whose transform is
+// exp(-pi N^2 / (2 Lambda^2)); truncated at x = N, where it is exp(-2 pi) = 0.0019.
 TEST(Bench, GaussianWindowIsTheTransformOfItsSquaredWeights) {
   WindowTransfer const window(WindowWeighting::gaussian, 20);
   for (double const wavelength : {30.0, 64.0, 128.0}) {
@@ -80,7 +81,8 @@ TEST(Bench, GaussianWindowIsTheTransformOfItsSquaredWeights) {
   }
 }
 
-// With a thin field, a point of a dot and a window of two small pixels, the cone alone resolves: D_c / 0.51450.
+// With a thin field, point-like dots and a window of two small pixels, the cone alone limits the resolution: D_c /
+// 0.51450.
 TEST(Bench, ConeAloneResolvesItsOwnWavelength) {
   BenchGiven given = table1_given();
   given.thickness = 1e-9;
@@ -91,7 +93,7 @@ TEST(Bench, ConeAloneResolvesItsOwnWavelength) {
   EXPECT_NEAR(resolved_wavelength(bench), bench.cone_diameter() / 0.51450, 2e-5 * bench.cone_diameter());
 }
 
-// F23: D_c = S_eps / (N (1 + M)), whatever the bench.
+// F23: D_c = S_eps / (N (1 + M)) for any set-up.
 TEST(Bench, ConeIsSensitivityOverStop) {
   BenchGiven const given = table1_given();
   for (double const z_d : {0.1, 0.4, 2.0}) {
@@ -101,8 +103,8 @@ TEST(Bench, ConeIsSensitivityOverStop) {
   }
 }
 
-// F21 in figures: 8000 W/(m^2 sr) for 20 us at f/11, M = 0.117: pi L t / (4 N^2 (1+M)^2) = 8.3191e-4 J/m^2, a photon of
-// 532 nm has 3.7339e-19 J, so (10 um)^2 get 222,795 photons, of which 0.6 set an electron free.
+// F21 in numbers: 8000 W/(m^2 sr) for 20 us at f/11, M = 0.117: pi L t / (4 N^2 (1+M)^2) = 8.3191e-4 J/m^2. A photon of
+// 532 nm has 3.7339e-19 J, so that (10 um)^2 collect 222,795 photons, of which a fraction of 0.6 release an electron.
 TEST(Bench, LightIsTheCameraEquation) {
   BenchGiven given = table1_given();
   given.light = PaperLight{8000, 20e-6};
@@ -110,8 +112,8 @@ TEST(Bench, LightIsTheCameraEquation) {
   EXPECT_NEAR(b.lit_electrons(), 0.6 * 222795, 0.6 * 2);
 }
 
-// Gaussian spots: a disc of radius r keeps 1 - exp(-r^2 / (2 s^2)) of its light's height at the middle; an f/11 spot
-// has s = 0.4206 x 6.53855 um, the pixel adds 1/12 px^2.
+// Gaussian PSF: the image of a disc of radius r has the height 1 - exp(-r^2 / (2 s^2)) at its middle; at f/11 the PSF
+// has s = 0.4206 x 6.53855 um, and the pixel adds 1/12 px^2.
 TEST(Bench, PeakOfADotIsTheShareOfADiscUnderAGaussian) {
   BenchGiven given = table1_given();
   given.camera.exposure_e = 10000;
@@ -138,8 +140,8 @@ std::vector<std::array<double, 9>> measured_errors() {
   return rows;
 }
 
-// The study's bench is Table 1's with 12 bits, 3 electrons of read noise and the brightest pixel at 90 % of full scale.
-// What the docstring says of the fit: 18 % rms (17.96), at most a factor of 1.7 (1.655).
+// The set-up of the study is that of Table 1 with 12 bits, a read noise of 3 electrons and the brightest pixel at 90 %
+// of full scale. The docstring states the deviation of the fit: 18 % rms (17.96), at most a factor of 1.7 (1.655).
 TEST(Bench, RandomErrorIsTheStudys) {
   auto const rows = measured_errors();
   ASSERT_EQ(rows.size(), 144u);
@@ -163,13 +165,13 @@ TEST(Bench, RandomErrorIsTheStudys) {
 
 using Jet5 = ceres::Jet<double, choice_count>;
 
-/// A bench whose five choices carry derivatives by their logarithms.
+/// A set-up whose five design variables carry derivatives with respect to their logarithms.
 Bench<Jet5> with_derivatives(Bench<double> const& b) {
   auto const jet = [](double value, int i) { return exp(Jet5(std::log(value), i)); };
   return {b.given, jet(b.focal_length, 0), jet(b.f_number, 1), jet(b.z_a, 2), jet(b.z_d, 3), jet(b.dot_diameter, 4)};
 }
 
-/// Central difference by the logarithm of a choice.
+/// Central difference with respect to the logarithm of a design variable.
 template <class Function>
 double difference(Bench<double> const& bench, std::size_t choice, Function&& value_of) {
   constexpr double step = 1e-5;
@@ -183,7 +185,8 @@ double difference(Bench<double> const& bench, std::size_t choice, Function&& val
   return (sides[1] - sides[0]) / (2 * step);
 }
 
-// Central differences of step h err by h^2 f''' / 6 and by rounding, 1e-16 / h: 1e-9 with factors of some hundred.
+// Central differences of step h have errors of h^2 f''' / 6 and of rounding, 1e-16 / h: 1e-9 with factors of some
+// hundred.
 TEST(Bench, JetsCarryTheDerivativesOfEveryBoundAndObjective) {
   BenchGiven given = table1_given();
   given.light = PaperLight{8000, 20e-6};

@@ -26,7 +26,7 @@ DisplacementField lattice() {
   return field;
 }
 
-// Places 4, 12, ... 252: 36 to 220 lie within 32 .. 223, 24 along either axis.
+// Positions 4, 12, ... 252: those from 36 to 220 are within 32 .. 223, 24 along each axis.
 TEST(BenchmarkScore, IsThatOfKnownErrors) {
   DisplacementField field = lattice();
   std::vector<Vec2d> const truth = truth_at_vectors(field, sine_flow(64.0));
@@ -36,12 +36,12 @@ TEST(BenchmarkScore, IsThatOfKnownErrors) {
   EXPECT_EQ(followed.errors.count, 576u);
   EXPECT_EQ(followed.gross, 0u);
   EXPECT_NEAR(followed.gain, 0.8, 1e-12);
-  // 24 places 8 px apart are three whole waves of 64 px: the mean square of a sine is 1/2
+  // 24 positions 8 px apart are three whole waves of 64 px: the mean square of a sine is 1/2
   EXPECT_NEAR(followed.errors.rms_px, 0.2 * std::sqrt(0.5), 1e-12);
 
   field.status[5 * 32 + 5] = VectorStatus::invalid;
   field.displacement_px[6 * 32 + 6] += Vec2d{1.5, 0.0};
-  field.displacement_px[0] += Vec2d{9.0, 0.0};  // at the border: of no account
+  field.displacement_px[0] += Vec2d{9.0, 0.0};  // at the border: not counted
   BenchmarkScore const spoilt = score_vectors(field, truth, 256, 256);
   EXPECT_EQ(spoilt.vectors, 576u);
   EXPECT_EQ(spoilt.errors.count, 575u);
@@ -65,7 +65,7 @@ TEST(BenchmarkCases, AreOneListOfSeedsOfTheirOwn) {
     EXPECT_TRUE(names.contains(name)) << name;
 }
 
-// The documented columns, keys and figures (docs/file-formats.md), of one estimator on both cases of the curve.
+// The documented columns, keys and figures (docs/file-formats.md), for one estimator and both cases of the curve.
 TEST(BenchmarkResults, HaveTheDocumentedColumnsKeysAndFigures) {
   BenchmarkResult result;
   for (char const* const name : {noise_case, gain_case}) {
@@ -111,7 +111,8 @@ TEST(BenchmarkResults, HaveTheDocumentedColumnsKeysAndFigures) {
   std::filesystem::remove_all(folder);
 }
 
-// Lamb & Oseen: the swirl is greatest, 5 px, at 1.1209 radii (2 s = exp(s) - 1 at s = 1.2564), and falls off as 1/r.
+// Lamb & Oseen: the tangential velocity has its maximum, 5 px, at 1.1209 radii (2 s = exp(s) - 1 at s = 1.2564), and
+// decreases as 1/r.
 TEST(BenchmarkFlows, AreWhatTheirNamesSay) {
   DisplacementAt const vortex = vortex_flow(100.0, 1024);
   EXPECT_NEAR(vortex({511.5 + 112.09, 511.5}).y, 5.0, 1e-3);
@@ -121,14 +122,14 @@ TEST(BenchmarkFlows, AreWhatTheirNamesSay) {
   EXPECT_NEAR(sine_flow(64.0)({0.0, 16.0}).x, 1.0, 1e-12);
 }
 
-// 40 % of some 1500 particles are lost: a binomial share, whose standard deviation is 0.013; four of them.
+// 40 % of some 1500 particles are lost: a binomial fraction with a standard deviation of 0.013; four of these.
 TEST(ParticlePair, LosesThePartOfItsPairsThatItIsAskedTo) {
   auto const still = [](Vec2d) { return Vec2d{}; };
   ParticlePair const all = render_particle_pair({.columns = 192, .rows = 192}, still);
   ParticlePair const some = render_particle_pair({.columns = 192, .rows = 192, .lost = 0.4}, still);
   double const kept = static_cast<double>(some.dot_light.size()) / static_cast<double>(all.dot_light.size());
   EXPECT_NEAR(kept, 0.6, 0.052);
-  // others stand in their place: as much light in either frame, to what 1500 particles scatter by
+  // other particles replace them: equal light in both frames, to the scatter of 1500 particles
   auto const light = [](Image<double> const& image) {
     return std::accumulate(image.begin(), image.end(), 0.0, [](double sum, double v) { return sum + v - 25.5; });
   };
@@ -136,7 +137,7 @@ TEST(ParticlePair, LosesThePartOfItsPairsThatItIsAskedTo) {
   EXPECT_NE(light(some.flow), light(some.reference));
 }
 
-// A still scene: the flow frame is the reference's times the light, rounded to whole levels.
+// No displacement: frame B is frame A times the light, rounded to whole levels.
 TEST(ParticlePair, ChangesTheLightFromLeftToRight) {
   ParticlePair const pair = render_particle_pair({.columns = 200, .rows = 64, .flow_light = 0.5, .light_slope = 0.6},
                                                  [](Vec2d) { return Vec2d{}; });

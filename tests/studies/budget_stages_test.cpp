@@ -12,7 +12,7 @@
 namespace gladstone {
 namespace {
 
-/// Stages of four vectors, each beyond the one before it by other amounts; the third vector does not count.
+/// Stages of four vectors, with a different increment for each stage; the third vector is excluded.
 Comparison comparison_of(BudgetChain chain, bool noise_free) {
   double level = 0;
   auto const next = [&level] {
@@ -41,8 +41,8 @@ Comparison comparison_of(BudgetChain chain, bool noise_free) {
   return comparison;
 }
 
-// What a map shows of a cause is what the budget says of it: the same names in the same order, the same rms, and all of
-// them together the way from the first stage to the measurement.
+// The map of a cause agrees with the budget: the same names in the same order, the same rms, and their sum is the
+// difference between the first stage and the measurement.
 TEST(BudgetDifferences, AreTheBudgetsTerms) {
   for (BudgetChain const chain : {BudgetChain::bos, BudgetChain::piv}) {
     for (bool const noise_free : {true, false}) {
@@ -75,7 +75,7 @@ TEST(BudgetDifferences, AreTheBudgetsTerms) {
   }
 }
 
-/// A term of a budget.
+/// Returns the term of a budget by name.
 BudgetTerm const& term_of(ErrorBudget const& budget, std::string const& name) {
   for (BudgetTerm const& term : budget.terms) {
     if (term.name == name) return term;
@@ -84,9 +84,9 @@ BudgetTerm const& term_of(ErrorBudget const& budget, std::string const& name) {
   return budget.total;
 }
 
-// An undeformed window would lose 0.46 px of u, of which the passes win 0.44 back, so that `window` and `estimator`
-// cancel to 0.02 px: the cause that is named is the cone, 0.04 px. What the passes leave is 0.02 px; maps and
-// errors.json have the same.
+// An undeformed window would lose 0.46 px of u, of which the passes recover 0.44 px, so that `window` and `estimator`
+// cancel to 0.02 px: the largest cause is the cone, 0.04 px. The loss after the passes is 0.02 px; maps and errors.json
+// have the same value.
 TEST(ShownBudget, CountsAWindowAfterItsPasses) {
   Comparison comparison;
   comparison.mask.assign(3, 1);

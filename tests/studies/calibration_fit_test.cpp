@@ -15,14 +15,14 @@ namespace {
 constexpr double focal_length_px = 1300, plate_distance = 0.3, plate_spacing = 5e-3;
 constexpr Vec2d expected_middle{159.5, 119.5};
 
-/// Plate turned by `tilt` about Y and moved along `motion`, a unit vector in the axes of the plate.
+/// Plate rotated by `tilt` about Y and moved along `motion`, a unit vector in the axes of the plate.
 struct Plate {
   double tilt = 0;
   Vec3d motion{0, 0, 1};
-  std::array<int, 3> moved{};  ///< columns by which the dots of each plane are counted wrong
+  std::array<int, 3> moved{};  ///< error of the column index of the dots, for each plane
 };
 
-/// Computes the images of 13 x 9 dots on three planes, as a camera sees them that looks at the middle plane.
+/// Computes the images of 13 x 9 dots on three planes, for a camera directed at the middle plane.
 PlateDots dots_of_plate(Plate const& plate) {
   PinholeCamera const camera{{focal_length_px, focal_length_px, expected_middle.x, expected_middle.y, 0, 0, 0, 0, pi, 0,
                               0, 0, 0, plate_distance}};
@@ -64,8 +64,9 @@ Calibration fitted(PlateDots const& dots, MiddleBy outer = MiddleBy::expected_vi
   return calibration;
 }
 
-// The motion along the normal of a plate turned by 30 degrees moves its middle aside by 20 mm tan(30 degrees) = 2.3
-// spacings, so that a middle dot one column off goes unnoticed; offsets proportional to Z do not change the residuals.
+// The motion along the normal of a plate rotated by 30 degrees displaces its middle by 20 mm tan(30 degrees) = 2.3
+// spacings, so that a middle dot wrong by one column is not noticed; offsets proportional to Z do not change the
+// residuals.
 TEST(CalibrationFit, CorrectsTheMiddleDotsOfTwoPlanesOfATiltedPlate) {
   for (int const sign : {1, -1}) {
     Calibration const calibration = fitted(dots_of_plate({30 * pi / 180, {0, 0, 1}, {sign, 0, -sign}}));
@@ -107,7 +108,7 @@ TEST(CalibrationFit, WarnsOfAFocalLengthThatIsNotTheLenss) {
   EXPECT_THAT(warnings(1), testing::IsEmpty());
 }
 
-/// A plate whose first plane is turned in itself before its picture is taken.
+/// A plate that is rotated in its plane before the first image.
 PlateDots dots_of_turned_plane(double angle) {
   PlateDots dots = dots_of_plate({});
   double const s = std::sin(angle), c = std::cos(angle);
@@ -120,10 +121,10 @@ PlateDots dots_of_turned_plane(double angle) {
   return dots;
 }
 
-// A camera turns with all planes, by a third of the angle a: 2/3 a is left in the turned plane, 1/3 a in the others.
-// The dots of a plane of 13 x 9 are sqrt(14 + 6.67) spacings of 21.7 px from its middle, rms, so that the residual is
-// 98 px a sqrt(2/9) / sqrt(2) per component: 1.1 px for 2 degrees, 0.11 px for 0.2, 0.01 px for 0.02. Within a plane
-// dots scatter by 0.01 px at least: 0.05 px is warned of, and 0.5 px refused.
+// The fitted camera rotates by a third of the angle a: 2/3 a remains in the rotated plane, 1/3 a in the others. The
+// dots of a plane of 13 x 9 are sqrt(14 + 6.67) spacings of 21.7 px from its middle, rms, so that the residual is 98 px
+// a sqrt(2/9) / sqrt(2) per component: 1.1 px for 2 degrees, 0.11 px for 0.2, 0.01 px for 0.02. Within a plane the dots
+// scatter by at least 0.01 px: residuals from 0.05 px cause a warning, from 0.5 px a rejection.
 TEST(CalibrationFit, RefusesResidualsThatTheScatterWithinPlanesDoesNotExplain) {
   double const degree = pi / 180;
   try {

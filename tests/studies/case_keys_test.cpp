@@ -8,16 +8,16 @@
 namespace gladstone {
 namespace {
 
-/// A key of the setup, two values of it, and what the cases of these two may share.
+/// A key of the setup, two of its values, and what cases with these values may share.
 struct Change {
   char const* key;
   char const* values;
   bool medium, scene, rays;
 };
 
-/// The light of a reference frame depends on the medium about it (n0), on the flow (its rays are those of the flow
-/// frame, whose pupil is as wide as the medium bends), on the lens, the places and the dots; on the sensor's
-/// electronics only by "auto" rays, and these stand in small_base as a number.
+/// The light of a reference image depends on the ambient medium (n0), on the field (its rays are those of the
+/// measurement image, whose pupil is enlarged by the deflection), on the lens, the positions and the dots. It depends
+/// on the sensor's electronics only through "auto" rays, whose number is fixed in small_base.
 constexpr Change changes[] = {
     {"medium.ambient_density_kg_m3", "[1.225, 0.6]", false, false, false},
     {"medium.gladstone_dale", "[2.26e-4, 3e-4]", false, false, false},
@@ -27,7 +27,7 @@ constexpr Change changes[] = {
     {"medium.step_mm", "[1, 0.5]", true, false, false},
     {"medium.integrator", "[\"rk4\", \"euler\"]", true, false, false},
     {"medium.faces", "[\"matched\", \"refract\"]", true, false, false},
-    {"lens.f_number", "[11, 11.000000000000002]", true, false, false},  // neighbours of 64 bits
+    {"lens.f_number", "[11, 11.000000000000002]", true, false, false},  // adjacent doubles
     {"lens.focal_length_mm", "[105, 100]", true, false, false},
     {"lens.focus", "[\"target\", \"medium\"]", true, false, false},
     {"lens.psf", "[\"gaussian\", \"airy\"]", true, false, false},
@@ -40,7 +40,8 @@ constexpr Change changes[] = {
     {"render.sampling", "[\"sobol\", \"random\"]", true, false, false},
     {"camera.pixel_pitch_um", "[10, 8]", true, false, false},
     {"camera.pixels", "[[64, 64], [64, 66]]", true, false, false},
-    {"correlate.window_px", "[[32, 16], [16]]", true, false, false},  // the target reaches a first window further
+    {"correlate.window_px", "[[32, 16], [16]]", true, false,
+     false},  // the target extends beyond the view by one first window
     {"render.rays_per_dot", "[32, 48]", true, true, false},
     {"correlate.window_px", "[[32, 16], [32]]", true, true, true},
     {"correlate.overlap", "[0.5, 0.75]", true, true, true},
@@ -86,7 +87,7 @@ TEST_F(CaseKeysOf, LeaveOutTheSeedsOfRepeats) {
   EXPECT_NE(seedless(cases[0]).scene, seedless(cases[1]).scene);
 }
 
-// Whatever two cases differ in, the second takes nothing from the first that is not its own: the same bits as alone.
+// Whatever the difference between two cases, the second one has the same bits as if it were computed alone.
 TEST_F(CaseKeysOf, GiveNoCaseWhatBelongsToAnother) {
   auto const same = [](CaseResult const& a, CaseResult const& b) {
     bool equal = a.status == b.status && a.error == b.error && a.measures.size() == b.measures.size();
@@ -123,7 +124,7 @@ TEST_F(CaseKeysOf, FilesCountByTheirContent) {
   EXPECT_NE(keys_of(cases[0]).scene, before.scene);
 }
 
-// A large volume is not built anew for other dots in front of it.
+// A large volume is not built again for other dots in front of it.
 TEST_F(CaseKeysOf, AMediumCountsByItsOwnFile) {
   std::string volume =
       "NRRD0004\ntype: float\ndimension: 3\nsizes: 4 4 4\nendian: little\nencoding: raw\nspacings: 8 8 2\n\n";

@@ -22,7 +22,7 @@ class CaseRunners : public StudyFolder {
   static CaseRunner runner(Sharing sharing = Sharing::identical) { return CaseRunner(open_device("cpu"), sharing); }
 };
 
-// Every axis touches another part of what is shared: field, geometry, rays, camera electronics and correlation alone.
+// Every axis affects another part of the shared results: field, geometry, rays, camera electronics and correlation.
 TEST_F(CaseRunners, SharedPartsGiveTheSameBitsAsNoneInAnyOrder) {
   write("base.toml", std::string(small_base) + "[camera.noise]\nread_noise_e = 5.0\n");
   auto const cases = plan(R"(base = "base.toml"
@@ -47,11 +47,11 @@ TEST_F(CaseRunners, SharedPartsGiveTheSameBitsAsNoneInAnyOrder) {
     expect_same(shared[i], reversed[i]);
     EXPECT_EQ(shared[i].status, CaseStatus::ok) << shared[i].error;
   }
-  // the axes do something: neighbours along each differ
+  // every axis has an effect: neighbouring cases differ
   for (std::size_t step : {1, 2, 4, 8, 16, 32}) EXPECT_NE(shared[0].measures, shared[step].measures) << step;
 }
 
-// What is told of a case in memory is what its numbers were made of.
+// The stored numbers of a case in memory are those from which its measures were computed.
 TEST_F(CaseRunners, TellOfACaseBeforeItIsLetGo) {
   auto const cases = plan("base = \"base.toml\"\n[axes]\n\"camera.bit_depth\" = [12]\n");
   std::size_t told = 0;
@@ -70,7 +70,7 @@ TEST_F(CaseRunners, TellOfACaseBeforeItIsLetGo) {
   }
 }
 
-// Truth of few rays, and a frame that light fills: what `render` would say of the case.
+// A truth from few rays and a saturated image: the warnings are those of `render` for the same case.
 TEST_F(CaseRunners, WarnOfTruthAndFramesAsRenderDoes) {
   auto const cases = plan(R"(base = "base.toml"
 [axes]
@@ -89,7 +89,7 @@ TEST_F(CaseRunners, WarnOfTruthAndFramesAsRenderDoes) {
   EXPECT_THAT(bright, testing::Contains(testing::HasSubstr("saturated")));
 }
 
-// What "auto" comes to depends on the camera's grey levels, and the frames on what it comes to.
+// The values of "auto" depend on the grey levels of the camera, and the images on these values.
 TEST_F(CaseRunners, PlannedRaysAreSharedWhereTheyAreTheSame) {
   auto const cases = plan(R"(base = "base.toml"
 [axes]
@@ -101,8 +101,8 @@ TEST_F(CaseRunners, PlannedRaysAreSharedWhereTheyAreTheSame) {
   for (ManifestCase const& one : cases) expect_same(sharing.run(one), runner().run(one));
 }
 
-// Windows of 16 px that overlap by half are 8 px apart: of those every second row and column is compared, and of each
-// all that is known stays what it was.
+// Windows of 16 px that overlap by half are 8 px apart: every second row and column of them is compared, and all values
+// of each remain unchanged.
 TEST_F(CaseRunners, CompareNoVectorsThatAreCloserThanIsAsked) {
   auto const cases = plan("base = \"base.toml\"\n[axes]\n\"camera.bit_depth\" = [12]\n");
   CaseRunner all(open_device("cpu")), some(open_device("cpu"), Sharing::identical, 16);
@@ -126,8 +126,8 @@ TEST_F(CaseRunners, CompareNoVectorsThatAreCloserThanIsAsked) {
   }
 }
 
-// Another pattern of dots has other images and the same field: what is measured is its own, to the last bit, and truth
-// and theory at the vectors those of the first, within what the plan of the rays leaves of truth.
+// Another dot pattern has other images in the same field: its measurement is its own, bit by bit, and the truth and
+// theory at the vectors are shared, to within the accuracy of the ray budget.
 TEST_F(CaseRunners, MayTakeTruthOverFromRepeats) {
   write("base.toml", std::string(small_base).replace(std::string(small_base).find("rays_per_dot = 32"), 17, ""));
   auto const cases = plan("base = \"base.toml\"\n[study]\nrepeats = 2\n[axes]\n\"camera.bit_depth\" = [12]\n");
@@ -141,7 +141,7 @@ TEST_F(CaseRunners, MayTakeTruthOverFromRepeats) {
   EXPECT_NE(first->measured.displacement_px, second->measured.displacement_px);
   EXPECT_EQ(second->measured.displacement_px, own->measured.displacement_px);
   EXPECT_EQ(second->point.displacement_px, first->point.displacement_px);
-  EXPECT_NE(second->point.displacement_px, own->point.displacement_px);  // by other rays
+  EXPECT_NE(second->point.displacement_px, own->point.displacement_px);  // with other rays
   for (std::size_t i = 0; i < own->measured.size(); ++i) {
     EXPECT_LT(length(second->point.displacement_px[i] - own->point.displacement_px[i]), 2 * truth_tolerance_px);
   }
@@ -154,7 +154,7 @@ TEST_F(CaseRunners, ACaseThatCannotBeIsAResultAndAChangedInputIsNot) {
                          .replace(std::string(small_base).find("dots_per_32px_window = 10.0"), 27,
                                   "kind = \"points\"\nfile = \"dots.csv\""));
   auto const with_file = plan("base = \"base.toml\"\n[axes]\n\"lens.f_number\" = [8]\n");
-  CaseResult const blank = one.run(with_file[0]);  // two dots in all: no window has three
+  CaseResult const blank = one.run(with_file[0]);  // two dots in total: no window has three
   EXPECT_EQ(blank.status, CaseStatus::failed);
   EXPECT_THAT(blank.error, testing::HasSubstr("no vector that can be compared"));
   write("dots.csv", "x_mm,y_mm\n0,0\n0.2,0.2\n1,1\n");
@@ -170,13 +170,13 @@ TEST_F(CaseRunners, ACaseThatCannotBeIsAResultAndAChangedInputIsNot) {
   EXPECT_THAT(what, testing::HasSubstr("case 0 (lens.f_number = 8)"));
 }
 
-// What went for want of places does not count any more: 50 + 10 bytes are kept of 100, and 40 more fit.
+// An evicted entry no longer counts: 50 + 10 of 100 bytes are in use, so that another 40 fit.
 TEST(RecentValues, AreCountedWhileTheyAreKept) {
   Recent<int> recent(2);
   recent.keep("a", 1, 50);
   recent.keep("b", 2, 30);
   ASSERT_NE(recent.find("a"), nullptr);
-  recent.keep("c", 3, 10);  // "b" is the one used longest ago
+  recent.keep("c", 3, 10);  // "b" is the least recently used one
   EXPECT_EQ(recent.find("b"), nullptr);
   recent.make_room(40, 100);
   EXPECT_NE(recent.find("c"), nullptr);
@@ -188,7 +188,7 @@ TEST(RecentValues, AreCountedWhileTheyAreKept) {
   EXPECT_EQ(recent.find("a"), nullptr);
 }
 
-// Whatever a library throws is the case's; what the next case would meet as well stops the run.
+// An exception of a library makes the case fail; an error that would affect the next case, too, stops the run.
 TEST_F(CaseRunners, AnyErrorOfACaseIsItsResultButNotThatOfADevice) {
   auto const cases = plan("base = \"base.toml\"\n[axes]\n\"lens.f_number\" = [8]\n");
   std::function<void()> fail;
@@ -235,10 +235,11 @@ TEST_F(CaseRunners, ShardsArePiecesOfTheWhole) {
   EXPECT_EQ(together, selected_cases(cases.size(), {}));
 }
 
-// Claim, look again, write, read: what the engine does for a case beside its physics, 5 ms at most. Measured 1.3 ms.
+// Claim, check again, write, read: the overhead of the engine per case, besides the physics, is at most 5 ms. Measured:
+// 1.3 ms.
 TEST_F(CaseRunners, BookkeepingTakesFarLessThanFiveMillisecondsACase) {
   StudyFile const file = study("base = \"base.toml\"\n[axes]\n\"lens.f_number\" = { linear = [8, 16, 200] }\n");
-  std::clock_t const start = std::clock();  // processor time: other programs' takes none
+  std::clock_t const start = std::clock();  // processor time, which other programs do not affect
   write_plan(in("run"), plan_study(file, "cpu"));
   Claims claims(in("run"), Claims::Use::take);
   CaseResult result;

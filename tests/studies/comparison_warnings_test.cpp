@@ -10,7 +10,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-/// Four vectors of a true displacement, measured with an error either way along u: rms error / sqrt(2) per component.
+/// Four vectors with a true displacement and errors of both signs in u: the rms is error / sqrt(2) per component.
 std::vector<std::string> warnings_of(double displacement_px, double error_px, Setup const& setup = {}) {
   Comparison comparison;
   comparison.mask.assign(4, 1);

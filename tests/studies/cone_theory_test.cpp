@@ -13,11 +13,12 @@
 namespace gladstone {
 namespace {
 
-/// Strain of Eq. 9 at the steepest place of the wave, g = (Z_A Z_D / Z_B) d(epsilon)/dx: what lets other rays through
-/// the stop in the flow than in the reference is of this order, and leaves the fundamental in the second.
+/// Largest strain of Eq. 9 in the wave, g = (Z_A Z_D / Z_B) d(epsilon)/dx: the difference between the rays transmitted
+/// in the measurement image and in the reference image is of this order, and its effect on the fundamental is of second
+/// order.
 constexpr double strain = 5e-4;
-constexpr double wavelength = 8e-3;        // of the density [m]
-constexpr double corner = 1.0 * pi / 180;  // angle to the axis, of the outermost dots [rad]
+constexpr double wavelength = 8e-3;        // wavelength of the density [m]
+constexpr double corner = 1.0 * pi / 180;  // angle between the axis and the outermost dots [rad]
 
 struct ThinLensCase {
   double focal_length_mm, f_number, z_d_mm;
@@ -25,7 +26,7 @@ struct ThinLensCase {
   std::string text() const { return fmt::format("f = {} mm, f/{}, Z_D = {} mm", focal_length_mm, f_number, z_d_mm); }
 };
 
-/// Table 1 with this lens and distance, points for dots, and a wave of that strain.
+/// Table 1 with this lens and distance, point-like dots, and a wave of that strain.
 Scene scene_of(ThinLensCase const& bench) {
   gladstone::Setup setup;
   setup.lens.focal_length = bench.focal_length_mm * 1e-3;
@@ -39,7 +40,7 @@ Scene scene_of(ThinLensCase const& bench) {
       wavelength);
   Scene scene = build_scene(setup);
   scene.dots.centre.clear();
-  // A square of points whose corners are seen at that angle; the spacing has nothing in common with the wave.
+  // A square of points whose corners are seen at that angle; the spacing and the wavelength are incommensurate.
   double const half = setup.z_b() * std::tan(corner) / std::sqrt(2.0);
   constexpr int side = 10;
   for (int j = 0; j <= side; ++j) {
@@ -51,7 +52,7 @@ Scene scene_of(ThinLensCase const& bench) {
   return scene;
 }
 
-/// Amplitudes of cos(k x) and sin(k x) that fit values best.
+/// Amplitudes of the best fit of cos(k x) and sin(k x) to the values.
 Vec2d fundamental(std::vector<double> const& phase, std::vector<double> const& value) {
   double cc = 0, cs = 0, ss = 0, cv = 0, sv = 0;
   for (std::size_t i = 0; i < phase.size(); ++i) {
@@ -62,7 +63,8 @@ Vec2d fundamental(std::vector<double> const& phase, std::vector<double> const& v
   return {(ss * cv - cs * sv) / det, (cc * sv - cs * cv) / det};
 }
 
-// Table 1's bench, 10 mm thick: 0.620565 of a wave of 4 mm and 0.894131 of one of 8 mm, the formula in thirty digits.
+// Table 1 with a medium 10 mm thick: 0.620565 of a wave of 4 mm and 0.894131 of one of 8 mm, from the formula with
+// thirty digits.
 TEST(ConeTransfer, HasTheFormulasValuesAtTable1) {
   gladstone::Setup const setup;
   EXPECT_NEAR(cone_transfer(setup, 4e-3), 0.620565, 1e-6);
@@ -70,9 +72,9 @@ TEST(ConeTransfer, HasTheFormulasValuesAtTable1) {
   EXPECT_NEAR(cone_width(setup), 2.386364e-3, 1e-9);
 }
 
-// A cosine of amplitude a and wavenumber k has a gradient of mean square (a k)^2 / 2, whatever its direction: energies
-// and wavenumbers of the shells are known, and with them the root mean square of the wavenumber. 48 nodes along x and
-// 32 along y, so that neither axis nor shell is special. Sums of 1536 terms leave rounding only.
+// A cosine of amplitude a and wavenumber k has a mean square gradient of (a k)^2 / 2 in any direction: energies and
+// wavenumbers of the shells are known, and with them the rms of the wavenumber. 48 nodes along x and 32 along y, so
+// that neither axis nor shell is special. Sums of 1536 terms: only rounding errors.
 TEST(GradientSpectrum, OfWavesIsTheirEnergy) {
   struct Wave {
     double amplitude;
@@ -112,14 +114,14 @@ TEST(GradientSpectrum, OfWavesIsTheirEnergy) {
   EXPECT_NEAR(spectrum.structure_size(), 2 * pi * std::sqrt(energy / second), 1e-11);
 }
 
-/// A spectrum of shells of that energy at those wavelengths [nodes].
+/// A spectrum with shells of the given energies at the given wavenumbers [nodes].
 GradientSpectrum shells(std::vector<double> const& energy, std::vector<double> const& wavelength_nodes) {
   GradientSpectrum spectrum{{}, energy};
   for (double const nodes : wavelength_nodes) spectrum.wavenumber.push_back(2 * pi / nodes);
   return spectrum;
 }
 
-/// Points on the axis of Table 1's bench.
+/// Points on the axis of the set-up of Table 1.
 Setup points_on_axis() {
   Setup setup;
   setup.target.dot_diameter_px = 0;
@@ -127,8 +129,8 @@ Setup points_on_axis() {
   return setup;
 }
 
-// One wave keeps its shape: correlation is 1, or -1 beyond the cone's first zero, and the ratio the transfer itself.
-// The single pixel is 0.04 mrad wide, whose obliquity changes nothing of a ratio of the same wave.
+// A single wave keeps its shape: the correlation is 1, or -1 beyond the first zero of the cone, and the ratio is the
+// transfer itself. The single pixel is 0.04 mrad wide; its obliquity does not change the ratio for the same wave.
 TEST(PredictedAgreement, OfOneWaveIsItsTransfer) {
   gladstone::Setup const setup = points_on_axis();
   for (double const wavelength_mm : {1.5, 4.0, 40.0}) {
@@ -139,10 +141,10 @@ TEST(PredictedAgreement, OfOneWaveIsItsTransfer) {
   }
 }
 
-// A wave of which the cone passes nearly all (400 mm) and one that it kills (its first zero is at a wavelength of 2.386
-// mm / 1.21967), of energies 1 and 3: rays are the first wave alone, so ratio and correlation are sqrt(1/4). The cone
-// of a slice 5 mm from the middle is 2 % wider or narrower, which leaves the second wave |H'| 0.02 x = 0.4 * 0.02 * 3.8
-// at that slice, 0 to first order on average: 1e-3 of its amplitude.
+// Two waves of energies 1 and 3: the cone transmits nearly all of the first (400 mm), and none of the second (its first
+// zero is at a wavelength of 2.386 mm / 1.21967). The rays are the first wave alone, so that ratio and correlation are
+// sqrt(1/4). The cone of a slice 5 mm from the middle is 2 % wider or narrower, which transmits |H'| 0.02 x = 0.4 *
+// 0.02 * 3.8 of the second wave at that slice, 0 to first order on average: 1e-3 of its amplitude.
 TEST(PredictedAgreement, OfAWaveThatPassesAndOneThatDoesNot) {
   gladstone::Setup const setup = points_on_axis();
   double const killed = cone_width(setup) / 1.2196698912665;
@@ -151,8 +153,9 @@ TEST(PredictedAgreement, OfAWaveThatPassesAndOneThatDoesNot) {
   EXPECT_NEAR(predicted.rms_ratio, 0.5, 1e-3);
 }
 
-// Where structures are wide the size alone says what the cone takes: 1 - H = x^2 / 8 with x = pi D_c / wavelength, and
-// its mean over the spectrum contains the mean square wavenumber. Next come fourth powers of x, here below 0.13.
+// For wide structures only their size determines the loss by the cone: 1 - H = x^2 / 8 with x = pi D_c / wavelength,
+// and its mean over the spectrum contains the mean square wavenumber. The next terms are fourth powers of x, here below
+// 0.13.
 TEST(PredictedAgreement, OfWideStructuresFollowsTheirSize) {
   gladstone::Setup setup = points_on_axis();
   setup.medium.thickness = 1e-4;
@@ -165,12 +168,12 @@ TEST(PredictedAgreement, OfWideStructuresFollowsTheirSize) {
 /// Focal length [mm].
 class ConeTheory : public testing::TestWithParam<double> {};
 
-// Over every stop and distance of this grid the rays' fundamental is that of F10, Eq. 9 times the cone's transfer, in
-// amplitude and phase, to 2e-3 of itself: where the transfer is 0.999 as well as beyond its zeros, down to -0.129;
-// nearest to zero it is -0.019. What F10 leaves out is the obliquity of the rays, the square of the angle: 3e-4 in the
-// corners, up to 1e-3 at the rim of the widest pupil; the wave's phase over the thickness, at most (k L tan(1 degree) /
-// 2)^2 / 6 = 8e-4; and the second order of the strain. Means over the view, they reach 1e-4 of Eq. 9 where the cone is
-// widest.
+// For every f-number and distance of this grid the fundamental of the rays is that of F10, Eq. 9 times the transfer of
+// the cone, in amplitude and phase, to 2e-3 of itself: where the transfer is 0.999 as well as beyond its zeros, down to
+// -0.129; closest to zero it is -0.019. F10 neglects the obliquity of the rays, the square of the angle: 3e-4 in the
+// corners, up to 1e-3 at the edge of the widest pupil; the phase of the wave over the thickness, at most (k L tan(1
+// degree) / 2)^2 / 6 = 8e-4; and the second order of the strain. Averaged over the view, these are 1e-4 of Eq. 9 for
+// the widest cone.
 TEST_P(ConeTheory, IsWhatRaysDoOverTheWholeGrid) {
   FocusedDotsRenderer renderer;
   double worst = 0;
@@ -187,7 +190,7 @@ TEST_P(ConeTheory, IsWhatRaysDoOverTheWholeGrid) {
                          (setup.ambient_index() * setup.camera.pixel_pitch);
       std::vector<double> phase, displacement;
       for (std::size_t i = 0; i < truth.size(); ++i) {
-        // where the chief ray crosses the mid-plane; dots appear displaced against the gradient
+        // intersection of the chief ray with the mid-plane; dots appear displaced against the gradient
         phase.push_back(k * scene.dots.centre[i].x * setup.z_a / setup.z_b());
         displacement.push_back(-truth.displacement_px[i].x);
       }

@@ -9,7 +9,7 @@
 namespace gladstone {
 namespace {
 
-/// Sweeps on the GPU; skipped where there is none.
+/// Sweeps on the GPU; skipped without one.
 class CudaSweep : public StudyFolder {
  protected:
   void SetUp() override {
@@ -64,12 +64,13 @@ TEST_F(CudaSweep, SharedPartsGiveTheSameBitsAsNoneInAnyOrder) {
     expect_same(shared[i], CaseRunner(open_device("cuda")).run(cases[i]));
     expect_same(shared[i], reversed[i]);
   }
-  // the axes do something: neighbours along each differ
+  // every axis has an effect: neighbouring cases differ
   for (std::size_t const step : {1, 2, 4}) EXPECT_NE(shared[0].measures, shared[step].measures) << step;
 }
 
-// Truth agrees to 1e-9 px, light to a hundredth of a grey level of 16 bits: a pixel here and there is rounded, or its
-// noise drawn, to the next of at least 4000 levels of contrast, and moves the peak of its window of 256 px by 1e-5 px.
+// Truth agrees to 1e-9 px, light to a hundredth of a grey level of 16 bits: an occasional pixel is rounded, or its
+// noise drawn, to the next of at least 4000 levels of contrast, which moves the peak of its window of 256 px by 1e-5
+// px.
 TEST_F(CudaSweep, MeasuresAreThoseOfTheCpu) {
   auto const on_gpu = turbulence("cuda"), on_cpu = turbulence("cpu");
   CaseRunner gpu(open_device("cuda")), cpu(open_device("cpu"));

@@ -16,10 +16,10 @@
 namespace gladstone {
 namespace {
 
-constexpr double slope = 100;  // of the files' density along X [kg/m^4]
+constexpr double slope = 100;  // density gradient of the files along X [kg/m^4]
 
-/// A folder with volume.h5, 16 x 16 x 30 mm (periodic along Z it would be 35 mm deep), and plane.h5, 16 x 16 mm, of the
-/// density 1.225 + 100 x.
+/// A folder with volume.h5, 16 x 16 x 30 mm (35 mm deep if periodic along Z), and plane.h5, 16 x 16 mm, of the density
+/// 1.225 + 100 x.
 class DepthOfTheMedium : public testing::Test {
  protected:
   void SetUp() override {
@@ -53,7 +53,7 @@ class DepthOfTheMedium : public testing::Test {
   std::filesystem::path folder_;
 };
 
-/// Largest displacement by Eq. 9 that a rendering's truth holds, at every pixel [px].
+/// Largest displacement by Eq. 9 in the truth of a rendering, over all pixels [px].
 double rendered_displacement(CaseSetup const& loaded) {
   Scene scene = build_scene(loaded.setup);
   plan_step_of(scene);
@@ -62,11 +62,11 @@ double rendered_displacement(CaseSetup const& loaded) {
   return largest;
 }
 
-// For every kind of field, whose depth is given, wrongly given or not: the sheet's displacement (F6) is that of the
-// rendering, by the gradient and the depth of one and the same medium, and the setup as resolved has the same sheet.
-// Within 1 %: where the slope grows up to the view's edge, the last pixel's centre is 0.5 of 64 px short of it, 0.8 %;
-// the shock is sampled every 4 px = 0.26 mm by the sheet, (2 0.13 / 3)^2 = 0.7 % off its crest at most; rays that are
-// oblique by 4 mm in 1 m change 1e-5.
+// For every kind of field, with a correct, a wrong or no given depth: the displacement of the sheet (F6) is that of the
+// rendering, with the gradient and the depth of the same medium, and the resolved setup has the same sheet. Within 1 %:
+// if the slope increases up to the edge of the view, the centre of the last pixel is 0.5 of 64 px from it, 0.8 %; the
+// sheet samples the shock every 4 px = 0.26 mm, at most (2 0.13 / 3)^2 = 0.7 % from its maximum; an obliquity of 4 mm
+// in 1 m changes 1e-5.
 TEST_F(DepthOfTheMedium, DesignEqualsRenderForEveryKindOfField) {
   std::string const volume = "kind = \"file\"\nfile = \"volume.h5\"\nspacing_mm = [2.0, 2.0, 5.0]",
                     plane = "kind = \"file\"\nfile = \"plane.h5\"\nspacing_mm = [2.0, 2.0, 5.0]\nextrude = true",
@@ -76,8 +76,8 @@ TEST_F(DepthOfTheMedium, DesignEqualsRenderForEveryKindOfField) {
                     shock = "kind = \"normal_shock\"\nmach = 1.2\nupstream_density_kg_m3 = 1.0\nshock_thickness_mm = 3";
   struct Field {
     std::string text;
-    double depth_mm;  ///< where none is given
-    bool own_depth;   ///< whatever is given
+    double depth_mm;  ///< if none is given
+    bool own_depth;   ///< whatever depth is given
   };
   for (Field const& field :
        {Field{volume, 30, true},
@@ -85,7 +85,7 @@ TEST_F(DepthOfTheMedium, DesignEqualsRenderForEveryKindOfField) {
         {volume + "\ncenter_mm = [0.0, 0.0, 8.0]", 30, true},
         {plane, 10, false},
         {plume + "3.0", 21, false},
-        {plume + "40.0", 280, false},  // its steepest place is out of view
+        {plume + "40.0", 280, false},  // its steepest part is out of view
         {blob + "3.0", 21, false},
         {wave + "4.0", 10, false},
         {wave + "200.0\nphase_rad = 1.5707963", 10, false},  // crest in the middle, no steepest place
@@ -100,7 +100,7 @@ TEST_F(DepthOfTheMedium, DesignEqualsRenderForEveryKindOfField) {
       double const rendered = rendered_displacement(loaded);
       EXPECT_GT(rendered, 1e-3);
       EXPECT_NEAR(sheet["displacement_px"], rendered, 0.01 * rendered);
-      // rendering writes the depth down; read again, nothing changes
+      // rendering writes the depth into the setup; reading it again changes nothing
       CaseSetup const again =
           load_case_setup(SetupDocument::from_text(loaded.document.resolved(), "resolved", folder_.string()));
       for (char const* const key : {"displacement_px", "sensitivity_px_per_kg_m4", "gradient_min_kg_m4"}) {
@@ -112,13 +112,14 @@ TEST_F(DepthOfTheMedium, DesignEqualsRenderForEveryKindOfField) {
   }
 }
 
-// Three times as deep, three times as sensitive: M Z_D K L_z / (n0 p) is 0.006626657 px per kg/m^4 of 10 mm (Table 1).
+// Three times the depth has three times the sensitivity: M Z_D K L_z / (n0 p) is 0.006626657 px per kg/m^4 for 10 mm
+// (Table 1).
 TEST_F(DepthOfTheMedium, SensitivityIsThatOfTheVolume) {
   CaseSetup const loaded = load("", "kind = \"file\"\nfile = \"volume.h5\"\nspacing_mm = [2.0, 2.0, 5.0]");
   DesignSheet const sheet = sheet_of(loaded);
   EXPECT_NEAR(sheet["sensitivity_px_per_kg_m4"], 3 * 0.006626657, 2e-9);
   EXPECT_NEAR(sheet["displacement_px"], slope * 3 * 0.006626657, 1e-3);
-  // the design map of a report is of the same depth, although it reads no field
+  // the design map of a report uses the same depth, although it reads no field
   std::optional<LayoutView> const view = bench_view(load("",
                                                          "kind = \"file\"\nfile = \"volume.h5\"\nspacing_mm = [2.0, "
                                                          "2.0, 5.0]"));

@@ -11,7 +11,7 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 
-/// Reads a question as the command does; line 1 is "schema = 1".
+/// Reads a design question like the command; line 1 is "schema = 1".
 std::optional<DesignQuestion> question_of(std::string const& text) {
   SetupDocument document = SetupDocument::from_text("schema = 1\n" + text, "setup.toml");
   auto question = read_design_question(document);

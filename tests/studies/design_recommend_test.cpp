@@ -18,7 +18,7 @@ using testing::UnorderedElementsAre;
 
 FreeChoice interval(Choice choice, double low, double high) { return {choice, {}, low, high}; }
 
-/// Table 1's lens with both distances free.
+/// The lens of Table 1 with both distances free.
 DesignBranch free_distances(BenchGiven const& given) {
   DesignBranch branch;
   branch.given = &given;
@@ -28,9 +28,9 @@ DesignBranch free_distances(BenchGiven const& given) {
   return branch;
 }
 
-// Sensitivity f Z_D / (Z_B - f) grows with Z_B where the view W = w Z_A (Z_B - f) / (f Z_B) is required, and with less
-// Z_A at the same Z_B: the best bench has Z_B = Z, the longest allowed, and Z_A = W f Z / (w (Z - f)). The dots' images
-// have 3 px, so that the random error changes only with the spot, by M.
+// If the view W = w Z_A (Z_B - f) / (f Z_B) is required, the sensitivity f Z_D / (Z_B - f) increases with Z_B, and with
+// decreasing Z_A at the same Z_B: the best set-up has Z_B = Z, the longest allowed, and Z_A = W f Z / (w (Z - f)). The
+// dot images have 3 px, so that the random error changes only with the PSF, through M.
 TEST(Design, FindsTheOptimumOnPaper) {
   BenchGiven const given = table1_given();
   constexpr double f = 0.105, z = 2.4, view = 0.08, sensor = 5.12e-3;
@@ -44,7 +44,7 @@ TEST(Design, FindsTheOptimumOnPaper) {
   EXPECT_NEAR(bench.z_d, z - z_a, 1e-4 * z);
   EXPECT_THAT(answer.binding, Contains("limits.z_total_max_mm"));
   EXPECT_THAT(answer.binding, Contains("requirements.field_of_view_mm[0]"));
-  // S = f (Z - Z_A) / (Z - f), and a view 1 % wider takes 1 % more Z_A
+  // S = f (Z - Z_A) / (Z - f), and a view 1 % wider requires 1 % more Z_A
   for (RequirementCost const& cost : answer.costs) {
     if (cost.bound == Bound::view_width) {
       EXPECT_NEAR(cost.change, (z - z_a) / (z - 1.01 * z_a) - 1, 1e-6);
@@ -52,7 +52,7 @@ TEST(Design, FindsTheOptimumOnPaper) {
   }
 }
 
-// An interval of one value binds as one, not at both of its ends.
+// An interval with a single value is one binding constraint, not two.
 TEST(Design, NamesAValueThatBindsOnce) {
   BenchGiven const given = table1_given();
   DesignBranch branch = free_distances(given);
@@ -62,7 +62,8 @@ TEST(Design, NamesAValueThatBindsOnce) {
   EXPECT_THAT(answer.binding, UnorderedElementsAre("limits.z_a_mm", "limits.z_d_mm[1]"));
 }
 
-// The random error over the dots' size alone: where its derivative vanishes. A golden section tells the place.
+// The random error as a function of the dot size: its derivative vanishes at the minimum, found by a golden-section
+// search.
 TEST(Design, FindsTheBestDotSize) {
   BenchGiven given = table1_given();
   given.camera.noise.enabled = true;
@@ -81,17 +82,18 @@ TEST(Design, FindsTheBestDotSize) {
   EXPECT_NEAR(answer.outcomes.front().solution.objective, best, 1e-4 * best);
 }
 
-// A view of 300 mm at f = 105 mm and w = 5.12 mm takes Z_A of 6 m, more than 2.4 m of way: neither bends the other.
+// A view of 300 mm at f = 105 mm and w = 5.12 mm requires a Z_A of 6 m, which exceeds the length of 2.4 m: the two
+// requirements conflict.
 TEST(Design, NamesTheFewestRequirementsThatConflict) {
   BenchGiven const given = table1_given();
   std::vector<Limit> const required{
       {Bound::uncertainty_max, 1.0}, {Bound::view_width, 0.3}, {Bound::z_total, 2.4}, {Bound::displacement_max, 100}};
   Recommendation const answer = recommend(Objective::resolution, required, {free_distances(given)});
   EXPECT_FALSE(answer.feasible());
-  // the interval of Z_A ends at 5 m: the view alone cannot be had
+  // the interval of Z_A ends at 5 m: the view alone is infeasible
   EXPECT_THAT(answer.conflicts, UnorderedElementsAre(Bound::view_width));
   ASSERT_EQ(answer.relaxations.size(), 1u);
-  // within 2.4 m the widest view has Z_D at its least, 50 mm
+  // within 2.4 m the widest view has the smallest Z_D, 50 mm
   double const widest = 5.12e-3 * 2.35 * (2.4 - 0.105) / (0.105 * 2.4);
   EXPECT_NEAR(answer.relaxations.front().value, widest, 2e-3 * widest);
 }
@@ -105,7 +107,7 @@ TEST(Design, NamesBothWhereTwoConflict) {
   EXPECT_EQ(answer.relaxations.size(), 2u);
 }
 
-// Pixels that are full wherever the target stands keep every bench out, whatever is required.
+// Pixels that are saturated at every distance exclude every set-up, whatever is required.
 TEST(Design, NamesWhatKeepsEveryBenchOut) {
   BenchGiven given = table1_given();
   given.camera.exposure_e = 1000 * given.camera.noise.full_well_e;
@@ -118,8 +120,8 @@ TEST(Design, NamesWhatKeepsEveryBenchOut) {
   EXPECT_GT(answer.without_requirements->solution.violation, std::log(10.0));
 }
 
-// Two that cannot be had, each for itself: neither gives way enough for the other. By the same share of both, the
-// greater need of the two.
+// Two requirements that are each infeasible: relaxing one does not help the other. Both are relaxed by the same factor,
+// the larger one that either requires.
 TEST(Design, RelaxesTogetherWhereNoSingleOneWouldDo) {
   BenchGiven const given = table1_given();
   std::vector<Limit> const required{{Bound::uncertainty_max, 1e-4}, {Bound::view_width, 0.3}, {Bound::z_total, 100}};
@@ -139,7 +141,7 @@ TEST(Design, RelaxesTogetherWhereNoSingleOneWouldDo) {
   EXPECT_FALSE(any_feasible({Objective::resolution, short_of_it}, {free_distances(given)}));
 }
 
-/// A question drawn by its seed: requirements about what a bench of the middle has.
+/// A question drawn from its seed: requirements about the performance of a medium set-up.
 struct DrawnQuestion {
   Objective objective;
   std::vector<Limit> required;
@@ -178,7 +180,7 @@ DrawnQuestion drawn_question(BenchGiven const& given, unsigned seed) {
   return question;
 }
 
-/// The best objective of a grid over every branch, about 10^5 set-ups in all; infinite: none keeps the limits.
+/// The best objective of a grid over every branch, about 10^5 set-ups in total; infinite: none is feasible.
 double best_of_grid(DrawnQuestion const& question) {
   constexpr int distances = 24, sizes = 15;  // 12 branches of 24 x 24 x 15: 103,680
   double best = HUGE_VAL;
@@ -189,7 +191,7 @@ double best_of_grid(DrawnQuestion const& question) {
     };
     std::vector<Limit> limits = bench_limits(*branch.given);
     limits.insert(limits.end(), question.required.begin(), question.required.end());
-    // the dearest last
+    // the most expensive last
     std::stable_partition(limits.begin(), limits.end(), [](Limit const& l) { return l.bound != Bound::resolution; });
     for (int point = 0; point < distances * distances * sizes; ++point) {
       Bench<double> const bench = bench_at(
@@ -203,8 +205,8 @@ double best_of_grid(DrawnQuestion const& question) {
   return best;
 }
 
-// A grid's best is no better than the best of all, so a solver that finds that is never worse than the grid; 2 % are
-// allowed. Where the solver finds nothing, neither may the grid.
+// The best point of a grid is no better than the global optimum, so a solver that finds the optimum is never worse than
+// the grid; 2 % are allowed. If the solver finds no feasible point, neither may the grid.
 TEST(Design, IsNeverWorseThanAGridOfAHundredThousandSetups) {
   BenchGiven given = table1_given();
   given.camera.noise.enabled = true;
@@ -246,8 +248,8 @@ struct ShippedQuestion {
   }
 };
 
-// One lens and one stop, about 85 mm and f/22: f = 85 mm, Z_A = 1100 mm, Z_D = 640 mm, dots of 0.2 mm keep 0.08 kg/m^4
-// already, so that they keep what is more lenient.
+// One lens and one stop, about 85 mm and f/22: f = 85 mm, Z_A = 1100 mm, Z_D = 640 mm and dots of 0.2 mm already
+// satisfy 0.08 kg/m^4, and therefore every weaker requirement.
 TEST(Design, FindsWhatKeepsAStricterRequirement) {
   for (char const* const gradient : {"0.08", "0.09", "0.10", "0.11", "0.12", "0.13"}) {
     ShippedQuestion const asked({"requirements.objective=\"z_total\"",
@@ -261,8 +263,9 @@ TEST(Design, FindsWhatKeepsAStricterRequirement) {
   }
 }
 
-// What keeps the stricter requirement keeps the one as it is, so that no cost is negative, and a front falls or rises
-// with its limit. At 0.1 kg/m^4 f = 50 mm, f/22, Z_A = 556.0 mm, Z_D = 649.1 mm, dots of 0.2432 mm are 1205.1 mm long.
+// A set-up that satisfies the stricter requirement satisfies the weaker one, so that no cost is negative, and a front
+// is monotone in its limit. At 0.1 kg/m^4 f = 50 mm, f/22, Z_A = 556.0 mm, Z_D = 649.1 mm, dots of 0.2432 mm are 1205.1
+// mm long.
 TEST(Design, NoStricterRequirementGains) {
   double longer = HUGE_VAL;
   for (char const* const gradient : {"0.08", "0.09", "0.1", "0.1001"}) {
@@ -283,7 +286,7 @@ TEST(Design, NoStricterRequirementGains) {
   EXPECT_LE(longer, 1.2051);
 }
 
-// A set drawn at random, for which a long random search found 0.10094 kg/m^4.
+// A randomly drawn question for which a long random search found 0.10094 kg/m^4.
 TEST(Design, FindsTheBestBehindALongSearch) {
   ShippedQuestion const asked({"requirements.resolution_mm=4.27776475182963", "requirements.displacement_max_px=1e6",
                                "requirements.field_of_view_mm=[87.64111349495506, 87.64111349495506]",
@@ -294,15 +297,15 @@ TEST(Design, FindsTheBestBehindALongSearch) {
   EXPECT_LE(answer.outcomes.front().solution.objective, 1.02 * 0.10094);
 }
 
-// Dots of 3 mm would cover the target more than once; they are chosen, so that this
-// refuses nothing.
+// Dots of 3 mm would cover the target more than once; the dot size is free, so this is not a reason for rejection.
 TEST(DesignBranches, DotsThatAreChosenDoNotRefuseACamera) {
   ShippedQuestion const asked({"target.dot_diameter_mm=3"});
   EXPECT_EQ(asked.variants.size(), 1u);
   EXPECT_TRUE(asked.skipped.empty());
 }
 
-// Dots of 0.3 mm at M = 0.07 are 3.8 px of 5.5 um and 10.5 px of 2 um, 20 of which in 32 px cover 1.7 of the target.
+// Dots of 0.3 mm at M = 0.07 are 3.8 px of 5.5 um and 10.5 px of 2 um; 20 of the latter in 32 px would cover 1.7 times
+// the target.
 TEST(DesignBranches, SkipsACameraThatDoesNotGoWithTheSetup) {
   SetupDocument document = SetupDocument::from_file(shared_folder() + "/studies/cases/design.toml");
   document.override_key("target.dot_diameter_mm=0.3");

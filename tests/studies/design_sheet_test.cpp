@@ -24,7 +24,7 @@ gradient_kg_m4 = [10.0, 0.0, 0.0]
 window_px = [64, 32, 16]
 )";
 
-/// A sheet with what it was made of.
+/// A sheet and its inputs.
 struct MadeSheet {
   explicit MadeSheet(CaseSetup setup)
       : loaded(std::move(setup)),
@@ -42,7 +42,7 @@ std::unique_ptr<MadeSheet> sheet_of(std::string const& text) {
   return std::make_unique<MadeSheet>(load_case_setup(SetupDocument::from_text(text, "setup.toml")));
 }
 
-// Every default of a setup is Table 1's; K = 2.26e-4, 10 kg/m^4 over 10 mm.
+// The defaults of a setup are those of Table 1; K = 2.26e-4, 10 kg/m^4 over 10 mm.
 TEST(DesignSheet, HasEveryFormulaOfBosFromF1ToF27) {
   auto const made = sheet_of(table1_setup);
   std::set<std::string> ids;
@@ -68,7 +68,7 @@ TEST(DesignSheet, IsTableOneToThePrintedDigits) {
   EXPECT_NEAR(sheet["share_of_sensitivity"], 0.25, 1e-12);           // F8, half at Z_D = Z_A
   EXPECT_NEAR(sheet["small_angle_at_edge"], 4.8e-4, 5e-6);           // F27
   EXPECT_NEAR(sheet["field_of_view_mm"], 5.12 / 0.156424581, 1e-6);  // M_A = M Z_B / Z_A
-  // F27 with faces matched: eps^2 (1/6 + L_z / (24 Z_D)), 8.6e-11 less in sinh than in tan, for 10 kg/m^4
+  // F27 with matched faces: eps^2 (1/6 + L_z / (24 Z_D)), 8.6e-11 less with sinh than with tan, for 10 kg/m^4
   EXPECT_NEAR(sheet["small_angle_on_axis"], 2.25937e-5 * 2.25937e-5 * (1.0 / 6 + 0.04 / 24), 1e-15);
 }
 
@@ -79,7 +79,8 @@ TEST(DesignSheet, SmallAnglesThroughRefractingFacesAreTheSlabs) {
   EXPECT_NEAR(sheet_of(text)->sheet["small_angle_on_axis"], 3.463e-10, 5e-14);
 }
 
-// A stop of f/4 makes the cone 2.75 times as wide, 6.56 mm against windows of 1.02 mm; one of f/32 the spots 4.6 px.
+// A stop of f/4 makes the cone 2.75 times as wide, 6.56 mm, compared with windows of 1.02 mm; at f/32 the PSF is 4.6 px
+// wide.
 TEST(DesignSheet, MarginsSayWhatIsViolated) {
   auto const at = [](std::string const& stop) {
     return sheet_of(std::string(table1_setup) + "[lens]\nf_number = " + stop + "\n")->sheet;
@@ -93,8 +94,8 @@ TEST(DesignSheet, MarginsSayWhatIsViolated) {
   EXPECT_EQ(at_most(7, 5, 8), Margin::marginal);
 }
 
-// F22: a lamp that is dimmer by the square of f-number over ceiling lights the dots with 20 times their noise. Light
-// that is short by 9 closes the window, and the floor tells by how much.
+// F22: a lamp dimmer by the square of f-number over limit gives dots with 20 times their noise. With a ninth of the
+// light required no f-number remains, and the smallest f-number states the missing factor.
 TEST(DesignSheet, LightLimitsTheStop) {
   auto const under = [](double radiance, char const* stop) {
     return sheet_of(std::string(table1_setup) + "[camera.noise]\n[light]\nradiance_w_m2_sr = " +
@@ -118,7 +119,8 @@ TEST(DesignSheet, LightLimitsTheStop) {
   })) << "exposure = \"auto\" takes what light it needs";
 }
 
-// The study went from f/4 to f/32, with noise of 0.6 to 11 % of the peak: what is beyond is told and never green.
+// The study covers f/4 to f/32 and noise of 0.6 to 11 % of the peak: values outside this range are reported and never
+// green.
 TEST(DesignSheet, SaysWhereTheRandomErrorWasNotMeasured) {
   auto const row = [](std::string const& more) {
     return sheet_of(std::string(table1_setup) + more)->sheet.row("random_error_px");
@@ -137,7 +139,7 @@ TEST(DesignSheet, SaysWhereTheRandomErrorWasNotMeasured) {
   }
 }
 
-// F29: a plume's largest deflection is sqrt(2 pi / e) dn / n0, which is a mean gradient of 1.520347 A / L_z.
+// F29: the largest deflection by a plume is sqrt(2 pi / e) dn / n0, which is a mean gradient of 1.520347 A / L_z.
 TEST(DesignSheet, PlumesHaveTheGradientOfTheirAbelTransform) {
   auto const made = sheet_of(
       "schema = 1\n[medium]\nthickness_mm = 50.0\n[medium.field]\nkind = \"gaussian_plume\"\namplitude_kg_m3 = -0.4\n"
@@ -145,8 +147,8 @@ TEST(DesignSheet, PlumesHaveTheGradientOfTheirAbelTransform) {
   EXPECT_NEAR(made->given.largest_gradient, 1.520347 * 0.4 / 0.05, 1e-5);
 }
 
-// The cone of a dot on the axis is as wide at the medium as its lines are, and the sensor's edge sees the dots' edge
-// through the middle of the lens.
+// The light cone of a dot on the axis is as wide at the medium as its lines in the figure, and the edge of the sensor
+// sees the edge of the dots through the middle of the lens.
 TEST(DesignSheet, LayoutIsToScale) {
   BenchGiven const given = table1_given();
   BenchLayout const l = bench_layout(table1_bench(given));
@@ -157,13 +159,14 @@ TEST(DesignSheet, LayoutIsToScale) {
   EXPECT_NEAR(l.sensor_half, 2.56e-3, 1e-12);
 }
 
-// On the map resolution is never finer than the cone allows, which F23 tells from sensitivity and stop alone.
+// On the map the resolution is never finer than that of the cone, which by F23 depends on sensitivity and f-number
+// only.
 TEST(DesignSheet, MapLiesAboveTheInvariant) {
   BenchGiven const given = table1_given();
   for (DesignCurve const& curve : design_curves(table1_bench(given))) {
     ASSERT_FALSE(curve.z_d.empty());
     for (std::size_t i = 0; i < curve.z_d.size(); ++i) {
-      // a thick field's near slices have narrower cones, and less lever: 1 % at the smallest Z_D
+      // slices of a thick field near the dots have narrower cones and shorter lever arms: 1 % at the smallest Z_D
       EXPECT_GT(curve.resolution[i], 0.98 * curve.cone[i] / 0.51450) << curve.f_number << ' ' << curve.z_d[i];
     }
   }
@@ -191,21 +194,21 @@ window_px = [64, 32]
 
 CaseSetup droplet_setup() { return load_case_setup(SetupDocument::from_text(droplets, "piv.toml")); }
 
-// Droplets of docs/piv.md's example: the sheet says what info particles says, and how far they may move.
+// The droplets of the example in docs/piv.md: the sheet agrees with info particles, and states how far they may move.
 TEST(DesignSheet, OfPivLimitsWhatMovesBetweenThePulses) {
   CaseSetup const loaded = droplet_setup();
   DesignSheet const sheet = piv_sheet(loaded);
   double const pixel = 5e-6 / (105.0 / 645);
   EXPECT_NEAR(sheet["displacement_px"], 5 * 20e-6 / pixel, 1e-9);
   EXPECT_NEAR(sheet["in_plane_max_m_s"], 16 * pixel / 20e-6, 1e-9);
-  EXPECT_NEAR(sheet["out_of_plane_max_m_s"], 1e-3 / 4 / 20e-6, 1e-9);  // 12.5 m/s, and the flow has 20
+  EXPECT_NEAR(sheet["out_of_plane_max_m_s"], 1e-3 / 4 / 20e-6, 1e-9);  // limit 12.5 m/s; the flow has 20 m/s
   EXPECT_EQ(sheet.row("out_of_plane_max_m_s").margin, Margin::violated);
   EXPECT_EQ(sheet.row("in_plane_max_m_s").margin, Margin::green);
-  // 20000 in 40 x 40 x 3 mm, 1 mm of it lit, in windows of 32 px
+  // 20000 in 40 x 40 x 3 mm, 1 mm of it illuminated, in windows of 32 px
   EXPECT_NEAR(sheet["particles_per_window"], 20000.0 / 4800 * std::pow(32 * pixel * 1e3, 2), 1e-6);
 }
 
-// The sensor's edge sees the sheet's edge of the view through the middle of the lens.
+// The edge of the sensor sees the edge of the view in the sheet through the middle of the lens.
 TEST(DesignSheet, LayoutOfPivIsToScale) {
   CaseSetup const loaded = droplet_setup();
   BenchLayout const l = piv_layout(loaded.setup);
@@ -217,8 +220,8 @@ TEST(DesignSheet, LayoutOfPivIsToScale) {
   EXPECT_DOUBLE_EQ(l.dots_z, 0);
 }
 
-// At the setup's own stop the map says what the sheet says. Up to f/2.8 images are far smaller than a pixel: the peak
-// has all the light, which falls with the square of the stop; from f/16 on the spot spreads it, once more by the
+// At the f-number of the setup the map agrees with the sheet. Up to f/2.8 images are far smaller than a pixel: the peak
+// contains all the light, which decreases with the square of the f-number; from f/16 on the PSF spreads it, by another
 // square.
 TEST(DesignSheet, MapOfPivFollowsTheStop) {
   CaseSetup const loaded = droplet_setup();

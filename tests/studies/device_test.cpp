@@ -13,14 +13,15 @@
 namespace gladstone {
 namespace {
 
-/// A renderer that calls itself a GPU's.
+/// A renderer that pretends to be that of a GPU.
 class NominalGpu final : public Renderer {
  public:
   std::string device() const override { return "cuda"; }
   Rendering render(Scene&, DotPattern const&, RenderImages, RenderTheory) override { return {}; }
 };
 
-// What the GPU's correlator does not have, --device auto gives to the CPU: the result is to name what measured it.
+// What the GPU correlator does not support, --device auto passes to the CPU: the result must name the device that
+// measured it.
 TEST(Measurement, NamesTheDeviceThatCorrelated) {
   Device const device{std::make_unique<NominalGpu>(), make_correlator};
   ParticlePair const pair = render_particle_pair({.columns = 64, .rows = 64}, [](Vec2d) { return Vec2d{0.5, 0.0}; });
@@ -37,7 +38,8 @@ TEST(Measurement, NamesTheDeviceThatCorrelated) {
   EXPECT_EQ(device_of(), "cpu");
 }
 
-// A GPU has scc, rpc, both Gaussian fits and correlation statistics; of anything else the first that it lacks is named.
+// A GPU supports scc, rpc, both Gaussian fits and correlation statistics; otherwise the first unsupported setting is
+// named.
 TEST(LeftToCpu, NamesWhatAGpuDoesNotHave) {
   CorrelationSettings settings;
   EXPECT_EQ(left_to_cpu(settings), "");
@@ -51,7 +53,7 @@ TEST(LeftToCpu, NamesWhatAGpuDoesNotHave) {
   EXPECT_EQ(left_to_cpu(settings), "method = \"zncc\"");
 }
 
-// Skipped where there is no GPU.
+// Skipped without a GPU.
 TEST(CudaDevice, RefusesWhatIsLeftToTheCpu) {
   if (cuda::DeviceState const state = cuda::device_state(); !state.usable) GTEST_SKIP() << state.text;
   Device const only = open_device("cuda"), any = open_device("auto");
@@ -68,7 +70,7 @@ TEST(CudaDevice, RefusesWhatIsLeftToTheCpu) {
   }
 }
 
-/// A correlator that brings the uncertainty of its vectors along, as a GPU's does.
+/// A correlator that returns the uncertainty together with the vectors, like that of a GPU.
 class WithSigma final : public Correlator {
  public:
   explicit WithSigma(CorrelationSettings const& settings) : correlator_(make_correlator(settings)) {}
@@ -82,8 +84,8 @@ class WithSigma final : public Correlator {
   std::unique_ptr<Correlator> correlator_;
 };
 
-// What came with the vectors stays: nothing estimates it twice. Where half of the frames have nothing in common, and
-// the verdict leaves their vectors out, the others' is estimated again without them.
+// An uncertainty returned with the vectors is used and not estimated again. If half of the frames are unrelated and the
+// decorrelation test rejects their vectors, the uncertainty of the others is estimated again without them.
 TEST(Measurement, KeepsTheUncertaintyThatCameWithTheVectors) {
   Device const device{std::make_unique<NominalGpu>(),
                       [](CorrelationSettings const& settings) { return std::make_unique<WithSigma>(settings); }};

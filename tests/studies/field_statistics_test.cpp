@@ -7,7 +7,7 @@
 namespace gladstone {
 namespace {
 
-/// A field that no file holds: v = 1 everywhere, and 4 in one node.
+/// A field without a file: v = 1 everywhere, and 4 at one node.
 class OneNode final : public FieldSource {
  public:
   OneNode(std::array<int, 3> nodes, std::array<int, 3> node) : FieldSource(1), node_(node) {
@@ -28,7 +28,7 @@ class OneNode final : public FieldSource {
     out[static_cast<std::size_t>(node_[1] - first_row) * static_cast<std::size_t>(grid_.nodes[0]) +
         static_cast<std::size_t>(node_[0])] = 4.0;
   }
-  /// Most values that were asked for at once.
+  /// Largest number of values requested at once.
   std::size_t most() const { return most_; }
 
  private:
@@ -40,8 +40,8 @@ class OneNode final : public FieldSource {
   std::size_t most_ = 0;
 };
 
-// Planes of 9 Mi values are read in three blocks of four rows or fewer; the node lies in the first row of a block, in
-// the last, and in between: its neighbours in the next block are seen all the same.
+// Planes of 9 Mi values are read in three blocks of at most four rows. The node is in the first row of a block, in the
+// last one, or in between: its neighbours in the next block are found in all cases.
 TEST(FieldStatistics, OfPlanesTooLargeToBeHeldAreThoseOfTheWhole) {
   for (int const row : {3, 4, 8}) {
     OneNode field({1 << 20, 9, 2}, {1000, row, 1});
@@ -55,7 +55,8 @@ TEST(FieldStatistics, OfPlanesTooLargeToBeHeldAreThoseOfTheWhole) {
   }
 }
 
-// Neighbours in y alone, across two blocks: the node is in the last row of one, and a plane has nothing beside it.
+// Neighbours in y only, across two blocks: the node is in the last row of a block, and a plane has no neighbour along
+// z.
 TEST(FieldStatistics, OfASinglePlane) {
   OneNode field({1 << 20, 9, 1}, {0, 3, 0});
   FieldStatistics const seen = field_statistics(field);

@@ -39,7 +39,7 @@ class Figures : public ::testing::Test {
   std::filesystem::path folder_;
 };
 
-/// Pixels darker than 30 % grey in the upper and in the lower half of a picture.
+/// Number of pixels darker than 30 % grey in the upper and in the lower half of an image.
 struct DarkPixels {
   int upper = 0;
   int lower = 0;
@@ -67,7 +67,8 @@ MapPanel half_dark() {
   return panel;
 }
 
-// The map is 330 px wide, half of it dark: more than 330 x 165 x 0.9 dark pixels above, and below only frame and text.
+// The map is 330 px wide and half of it is dark: more than 330 x 165 x 0.9 dark pixels above, and only frame and text
+// below.
 TEST_F(Figures, MapsHaveRowZeroAtTheTop) {
   MapAxes const pixels{0.0, 1.0, 0.0, 1.0, true, "x [px]", "y [px]"};
   MapAxes const world{-20.0, 1.0, 20.0, -1.0, false, "x [mm]", "y [mm]"};

@@ -7,8 +7,8 @@
 namespace gladstone {
 namespace {
 
-/// Gaussian dots of e^-2 diameter 3 px and height 1000 on a level of 200, about 11 px apart at random phases, with
-/// white noise.
+/// Gaussian dots with an e^-2 diameter of 3 px and a height of 1000 on a level of 200, about 11 px apart with random
+/// phases, and white noise.
 Image<double> dots(double height, double noise) {
   constexpr int size = 192;
   std::mt19937_64 engine(5);
@@ -30,9 +30,9 @@ Image<double> dots(double height, double noise) {
   return image;
 }
 
-// Peaks are sampled up to half a pixel off: exp(-8 r^2 / 9) at the median r^2 of 0.16 is 0.87 of the height. The noise
-// is estimated from 7200 places, correlated over 9: 2.5 %; its share in the peaks, the largest of a few, is up to 2
-// sigma.
+// Peaks are sampled up to half a pixel from their maximum: at the median r^2 of 0.16, exp(-8 r^2 / 9) is 0.87 of the
+// height. The noise is estimated from 7200 pixels, correlated over 9: 2.5 %; its contribution to the peaks, the largest
+// of a few values, is up to 2 sigma.
 TEST(ImageStatistics, FindsHeightNoiseAndDiameterOfDots) {
   for (double const height : {1000.0, -180.0}) {
     for (double const noise : {5.0, 20.0}) {
@@ -46,7 +46,8 @@ TEST(ImageStatistics, FindsHeightNoiseAndDiameterOfDots) {
   }
 }
 
-// One pixel in fifty is lost: what is seen of the others changes by less than their own scatter, 2.5 % of the noise.
+// One pixel in fifty is missing: the estimates from the others change by less than their own scatter, 2.5 % of the
+// noise.
 TEST(ImageStatistics, LeavesOutPixelsThatAreNoNumbers) {
   Image<double> image = dots(1000.0, 10.0);
   ImageStatistics const whole = image_statistics(image);

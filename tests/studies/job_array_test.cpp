@@ -16,7 +16,7 @@ using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-/// sbatch's array with an index for each task holds 1001 of them by default.
+/// By default an array of sbatch has at most 1001 tasks with an index each.
 constexpr std::size_t most = 1001;
 
 std::vector<std::size_t> first_cases(std::size_t count) {
@@ -37,7 +37,7 @@ TEST(JobArray, TasksTakeConsecutiveMissingCases) {
 
 TEST(JobArray, TakesOneCaseATaskUnlessTheClusterAllowsFewerTasks) {
   EXPECT_EQ(make_job_array("g", "/run", first_cases(1001), {}, most).tasks.size(), 1001u);
-  JobArray const larger = make_job_array("g", "/run", first_cases(1002), {}, most);  // 2 a task: 501 tasks
+  JobArray const larger = make_job_array("g", "/run", first_cases(1002), {}, most);  // 2 per task: 501 tasks
   EXPECT_EQ(larger.tasks.size(), 501u);
   EXPECT_EQ(larger.tasks.back(), "1000-1001");
 }
@@ -68,8 +68,8 @@ TEST(JobArray, GivenOptionsGoToSbatchAsTheyAre) {
   }
 }
 
-// The script itself, run as a task: the program gets the path of the study in one piece, whatever stands in it, and the
-// cases of its own line.
+// The script itself, run as a task: the program receives the path of the study as one argument, whatever characters it
+// contains, and the cases of its own line.
 TEST(JobArray, ScriptGivesEachTaskItsCasesWhateverThePath) {
   namespace fs = std::filesystem;
   fs::path const folder = fs::path(testing::TempDir()) / "gladstone_job_array";

@@ -27,7 +27,7 @@ constexpr char const* two_axes = R"(base = "base.toml"
 "lens.psf" = ["airy", "none"]
 )";
 
-/// What a writer that is killed leaves. @return its path
+/// Creates the partial file of a killed writer. @return its path
 std::string leave_partial(std::string const& folder, std::string const& stem) {
   int ends[2];
   EXPECT_EQ(pipe(ends), 0);
@@ -133,7 +133,7 @@ TEST_F(Runs, ManifestsThatAreNotWholeAreRefusedByLine) {
   write("run/manifest.jsonl", "");
   EXPECT_THAT(reading_fails(), testing::HasSubstr("is empty"));
 
-  // damage within a line is met where its case is asked for, and not before
+  // damage within a line is detected when its case is requested, and not before
   std::string damaged = whole;
   damaged[damaged.find("\"seed\"", second)] = ' ';
   write("run/manifest.jsonl", damaged);
@@ -147,7 +147,7 @@ TEST_F(Runs, ManifestsThatAreNotWholeAreRefusedByLine) {
   }
 }
 
-// Any changed digit is seen, in a parameter as in the setup's text, though the line is JSON as before.
+// Any changed digit is detected, in a parameter as in the text of the setup, although the line is still JSON.
 TEST_F(Runs, AChangedLineIsRefusedWhereItsCaseIsAskedFor) {
   auto const cases = planned();
   std::string const whole = content("run/manifest.jsonl");
@@ -170,7 +170,7 @@ TEST_F(Runs, AChangedLineIsRefusedWhereItsCaseIsAskedFor) {
         << piece;
     EXPECT_NE(read_manifest(in("run")).line_hash(1), cases[1].line_hash);
   }
-  // as lines were before they held their hash: planned again, what was computed is kept
+  // a line of an older version without a hash: after planning again, computed results are kept
   std::string older = whole;
   for (std::size_t at; (at = older.find(",\"hash\":")) != std::string::npos;) older.erase(at, 26);
   EXPECT_THAT(complaint_about(older, 0), testing::HasSubstr("manifest.jsonl:1: contains no hash of itself"));
@@ -186,13 +186,13 @@ TEST_F(Runs, PlanningAgainKeepsWhatIsThere) {
   write_result(in("run"), result_of(cases[1], 0.5));
   EXPECT_EQ(write_plan(in("run"), plan_study(study(two_axes), "cpu")), Planned::unchanged);
 
-  // more repeats come behind what is there
+  // more repeats are appended to the existing cases
   StudyPlan const more = plan_study(study(std::string(two_axes) + "[study]\nrepeats = 2\n"), "cpu");
   EXPECT_EQ(write_plan(in("run"), more), Planned::replaced);
   EXPECT_EQ(read_manifest(in("run")).size(), 8u);
   EXPECT_TRUE(read_result(in("run"), 1, more[1].line_hash).has_value());
 
-  // another study would lose the result
+  // planning another study would lose the result
   StudyPlan const other = plan_study(study("base = \"base.toml\"\n[axes]\n\"lens.f_number\" = [8, 16]\n"), "cpu");
   EXPECT_THROW(write_plan(in("run"), other), OutputError);
   EXPECT_EQ(read_manifest(in("run")).size(), 8u);
@@ -236,7 +236,7 @@ TEST_F(Runs, WhatACutPlanLeavesIsPlannedAnewAndNothingElse) {
   EXPECT_FALSE(std::filesystem::exists(partial));
 }
 
-// The base stands beside the manifest as the study has it, with none of the axes' values, and loads from anywhere.
+// The base is stored next to the manifest as in the study, without the values of the axes, and loads from any folder.
 TEST_F(Runs, TheBaseIsKeptBesideTheManifest) {
   StudyPlan const plan = plan_study(study(two_axes), "cpu");
   EXPECT_EQ(write_plan(in("run"), plan), Planned::fresh);
@@ -259,12 +259,12 @@ TEST_F(Runs, AManifestOfSomethingElseIsLeftAlone) {
     }
     EXPECT_EQ(content("package/manifest.jsonl"), foreign);
   }
-  // of another gladstone, and nothing computed: planned anew
+  // planned by another gladstone, and nothing computed: planned again
   write("package/manifest.jsonl", "{\"manifest\":1,\"index\":0}\n");
   EXPECT_EQ(write_plan(in("package"), plan), Planned::replaced);
 }
 
-// Brackets within brackets take no stack, whatever their number.
+// Nested brackets use no stack, whatever their number.
 TEST_F(Runs, DeeplyNestedTextIsRefused) {
   auto const cases = planned();
   std::size_t const many = 200000;
@@ -336,7 +336,7 @@ TEST_F(Runs, AResultOfAnotherVersionIsNeitherDamagedNorThrownAway) {
   EXPECT_EQ(content("run/cases/2.json"), older);
 }
 
-// Linux opens a folder like a file and fails at reading it; so it does with the memory of a process at address 0.
+// Linux opens a folder like a file and fails when reading it, as for the memory of a process at address 0.
 TEST_F(Runs, AResultThatCannotBeReadIsMissingAndAFolderInItsPlaceIsNamed) {
   auto const cases = planned();
   std::filesystem::create_symlink("/proc/self/mem", in("run/cases/2.json"));
@@ -393,7 +393,7 @@ TEST_F(Runs, OnlyFailuresThatAreDueAreForgottenAndNotThoseThatOthersCompute) {
   for (std::size_t index = 0; index < 4; ++index) {
     CaseResult result = result_of(cases[index], 0.5);
     if (index > 0) result.status = CaseStatus::failed;
-    result.again = index >= 2;  // lacked memory
+    result.again = index >= 2;  // failed for lack of memory
     write_result(in("run"), result);
   }
   auto const there = [&](std::size_t index) {
@@ -418,7 +418,7 @@ TEST_F(Runs, AClaimKeepsOthersOffUntilItsProcessIsGone) {
   planned();
   Claims mine(in("run"), Claims::Use::take);
   ASSERT_TRUE(mine.take(7));
-  EXPECT_FALSE(mine.held(7));  // by another
+  EXPECT_FALSE(mine.held(7));  // removed by another process
   {
     Claims other(in("run"), Claims::Use::take);
     EXPECT_TRUE(other.held(7));

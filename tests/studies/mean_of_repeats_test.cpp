@@ -14,8 +14,8 @@ DisplacementField measured(Vec2d first, Vec2d second) {
   return field;
 }
 
-// Of 0.1, 0.2 and 0.6 px the mean is 0.3 and the variance (0.04 + 0.01 + 0.09) / 2 = 0.07; the mean's is a third of it
-// (JCGM 100:2008, 4.2.3). What does not count once, or is no number, does not count in the mean.
+// The mean of 0.1, 0.2 and 0.6 px is 0.3, the variance (0.04 + 0.01 + 0.09) / 2 = 0.07, and that of the mean a third of
+// it (JCGM 100:2008, 4.2.3). A vector that is invalid or NaN in one repeat is excluded from the mean.
 TEST(MeanOfRepeats, HasTheStandardDeviationOfTheMean) {
   std::vector<DisplacementField> all{measured({0.1, 0}, {1, 1}), measured({0.2, 0}, {1, 1}),
                                      measured({0.6, 0}, {1, 1})};
@@ -28,7 +28,7 @@ TEST(MeanOfRepeats, HasTheStandardDeviationOfTheMean) {
   EXPECT_TRUE(mean.field.counts(0));
   EXPECT_FALSE(mean.field.counts(1));
   EXPECT_TRUE(std::isnan(mean.field.sigma_px[1].x));
-  // each says 0.03 px of itself by the formula: their mean has a third of the variance
+  // each has 0.03 px by the formula: their mean has a third of the variance
   EXPECT_NEAR(mean.estimated_px, 0.03 / std::sqrt(3), 1e-15);
 }
 

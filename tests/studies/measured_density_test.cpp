@@ -10,7 +10,7 @@ namespace {
 constexpr int columns = 9, rows = 7;
 constexpr double spacing = 0.5e-3;
 
-/// Of rho = 3 x + 200 x^2 + 100 x y - 50 y^2, X right and Y up, about the middle of the lattice.
+/// Gradients of rho = 3 x + 200 x^2 + 100 x y - 50 y^2, X right and Y up, relative to the middle of the lattice.
 double density_at(double x, double y) { return 3 * x + 200 * x * x + 100 * x * y - 50 * y * y; }
 std::vector<Vec2d> gradients() {
   std::vector<Vec2d> gradient;
@@ -27,7 +27,7 @@ double quadratic(int column, int row) {
   return density_at(spacing * (column - (columns - 1) / 2.0), -spacing * (row - (rows - 1) / 2.0));
 }
 
-// Between two nodes the mean of the gradients at both is exact for a quadratic field; its level is the border's mean.
+// Between two nodes the mean of both gradients is exact for a quadratic field; the level is the mean over the border.
 TEST(MeasuredDensity, IntegratesAQuadraticFieldExactly) {
   Image<double> const density = integrated_density(gradients(), columns, rows, spacing);
   double const level = density(4, 3) - quadratic(4, 3);
@@ -42,7 +42,7 @@ TEST(MeasuredDensity, IntegratesAQuadraticFieldExactly) {
   EXPECT_NEAR(border, 0, 1e-10);
 }
 
-// A vector that is not known leaves its four differences out: the ways round it tell the same.
+// An unknown vector excludes its four differences: the paths around it give the same result.
 TEST(MeasuredDensity, GoesRoundVectorsThatAreNotKnown) {
   std::vector<Vec2d> gradient = gradients();
   gradient[3 * columns + 4] = {std::nan(""), std::nan("")};

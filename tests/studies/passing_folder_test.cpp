@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Temporary folders in a place of the test's own.
+/// Temporary folders in a separate place for this test.
 class PassingFolders : public testing::Test {
  protected:
   void SetUp() override {
@@ -43,7 +43,7 @@ TEST_F(PassingFolders, AreEmptyPrivateAndGoneWithTheirOwner) {
   EXPECT_EQ(count(), 0);
 }
 
-// The killed process has no time to remove anything; the folder of a living one stays.
+// The killed process cannot remove anything; the folder of a running one remains.
 TEST_F(PassingFolders, OfKilledProcessesAreRemovedByTheNext) {
   int ready[2];
   ASSERT_EQ(::pipe(ready), 0);

@@ -33,24 +33,25 @@ std::string one_lens_setup(std::string const& lens, double pitch_um, std::string
 
 Setup setup_of(std::string const& text) { return load_case_setup(SetupDocument::from_text(text, "setup.toml")).setup; }
 
-/// The number behind a key in a text.
+/// Returns the number after a key in a text.
 double number_behind(std::string const& text, std::string const& key) {
   std::smatch found;
   EXPECT_TRUE(std::regex_search(text, found, std::regex(key + " = ([0-9.]+)"))) << text;
   return found.empty() ? NAN : std::stod(found[1]);
 }
 
-// Particle images of 1.45 px at f/8 lock by 0.06 px, those of 2.6 px by 0.002 px (simulations of PIV with this
-// program's correlator). The formula is within a factor of 1.7 of its study of dots, whose smallest are 0.8 px; to
-// particles without size it is extrapolated, which may cost as much again: within a factor of two.
+// Particle images of 1.45 px at f/8 have peak locking of 0.06 px, those of 2.6 px 0.002 px (simulations of PIV with
+// this correlator). The formula is within a factor of 1.7 of its study of dots, the smallest of which are 0.8 px; its
+// extrapolation to particles without size may add as much: within a factor of two.
 TEST(PeakLocking, ErrorFallsWithTheDiameterOfTheImage) {
   SmallImages const small{0, 1.45, 0}, wide{0, 2.6, 0};
   EXPECT_LT(std::abs(std::log(small.locking_error_px() / 0.06)), std::log(1.7));
   EXPECT_LT(std::abs(std::log(wide.locking_error_px() / 0.002)), std::log(2.0));
 }
 
-// 1.682 x 8 x (1 + 105/645) x 0.532 um = 8.326 um over 5.74 um are 1.450 px. The f-number that is named widens exactly
-// to 2 px, since the spot grows in proportion; the focus that is named does so within 1 %, by which it changes M.
+// 1.682 x 8 x (1 + 105/645) x 0.532 um = 8.326 um over 5.74 um are 1.450 px. The recommended f-number widens the images
+// to exactly 2 px, since the PSF is proportional to it; the recommended focus does so within 1 %, by which it changes
+// M.
 TEST(PeakLocking, NamesTheStopAndTheFocusThatCureIt) {
   gladstone::Setup const setup = setup_of(one_lens_setup("f_number = 8.0", 5.742));
   EXPECT_NEAR(expected_images(setup).diameter_px(), 1.45, 1e-3);
@@ -68,12 +69,13 @@ TEST(PeakLocking, NamesTheStopAndTheFocusThatCureIt) {
   gladstone::Setup const cured = setup_of(one_lens_setup("f_number = 8.0\nfocus_distance_mm = " + focus, 5.742));
   EXPECT_NEAR(expected_images(cured).diameter_px(), 2, 0.02);
   EXPECT_EQ(locking_advice(setup_of(one_lens_setup("f_number = 16.0", 5.742))), "");
-  // ideal images are those of particles in focus: there the stop alone cures
+  // ideal images are always in focus: only the f-number is a remedy
   std::string const ideal = locking_advice(setup_of(one_lens_setup("f_number = 8.0", 5.742, "gaussian")));
   EXPECT_THAT(ideal, AllOf(HasSubstr("lens.f_number"), Not(HasSubstr("focus_distance_mm"))));
 }
 
-// A setup changed as advised is not warned of: f-numbers are rounded up, and 0.5 % are allowed for the other remedies.
+// A setup changed as recommended causes no warning: f-numbers are rounded up, and 0.5 % are allowed for the other
+// remedies.
 TEST(PeakLocking, IsSilentOnceTheAdviceIsFollowed) {
   for (double const pitch_um : {5.742, 6.45, 9.0, 10.0, 13.7}) {
     std::string const advice = locking_advice(setup_of(one_lens_setup("f_number = 8.0", pitch_um)));
@@ -96,8 +98,8 @@ TEST(PeakLocking, IsSilentOnceTheAdviceIsFollowed) {
   EXPECT_EQ(locking_advice(setup_of("schema = 1\n[target]\ndot_diameter_mm = " + dot + '\n')), "") << advice;
 }
 
-// The spot that counts is the one drawn, by its e^-2 diameter. Table 1: 1.10 px (airy, gaussian), 1.595 px
-// (gaussian_first_zero), pi times that as printed in Rajendran et al. 2019, none without one.
+// The e^-2 diameter of the PSF that is drawn counts. Table 1: 1.10 px (airy, gaussian), 1.595 px (gaussian_first_zero),
+// pi times that as printed in Rajendran et al. 2019; zero without a PSF.
 TEST(PeakLocking, OfDotsCountsTheSpotThatIsDrawn) {
   auto const advice = [](std::string const& psf) {
     return locking_advice(setup_of("schema = 1\n[lens]\npsf = \"" + psf + "\"\n[target]\ndot_diameter_px = 1\n"));
@@ -108,7 +110,7 @@ TEST(PeakLocking, OfDotsCountsTheSpotThatIsDrawn) {
   EXPECT_THAT(advice("none"), HasSubstr("1.00 px wide"));
 }
 
-// The warning of a setup stands among those of rendering it, once and with its remedies.
+// The warning of a setup is one of the warnings of its rendering, once and with its remedies.
 TEST(PeakLocking, OfDotsIsAWarningOfTheSetup) {
   auto const warnings = [](std::string const& text) {
     return load_case_setup(SetupDocument::from_text(text, "setup.toml")).warnings;
@@ -119,8 +121,8 @@ TEST(PeakLocking, OfDotsIsAWarningOfTheSetup) {
   EXPECT_THAT(warnings("schema = 1\n"), testing::IsEmpty());
 }
 
-// BOS: g = 1 px under a spot of 1.100 px (Table 1) is 1.487 px wide; a dot of sqrt(4 - 1.1^2) = 1.670 px cures it. On a
-// sensor that is focused elsewhere the disc of confusion counts too: larger stops cure less and less of it.
+// BOS: g = 1 px with a PSF of 1.100 px (Table 1) is 1.487 px wide; a dot of sqrt(4 - 1.1^2) = 1.670 px is a remedy. On
+// a sensor that is not in focus the circle of confusion counts, too: a larger f-number is a decreasing remedy.
 TEST(PeakLocking, OfDotsCountsDefocusAndNamesTheirSize) {
   std::string const small = "schema = 1\n[target]\ndot_diameter_px = 1.0\n";
   gladstone::Setup const setup = setup_of(small);
@@ -132,8 +134,8 @@ TEST(PeakLocking, OfDotsCountsDefocusAndNamesTheirSize) {
   EXPECT_EQ(locking_advice(setup_of("schema = 1\n")), "");
 }
 
-// One definition: the sheet's dot image (F14) is that of the setup, and the largest f-number (F22) is where it reaches
-// what the recommendation allows.
+// One definition: the dot image of the sheet (F14) is that of the setup, and at the largest f-number (F22) it reaches
+// the limit of the recommendation.
 TEST(DotImage, IsOneDiameterInSheetSetupAndRecommendation) {
   CaseSetup const loaded = load_case_setup(SetupDocument::from_text("schema = 1\n", "setup.toml"));
   BenchGiven const given = bench_given(loaded);
@@ -165,7 +167,8 @@ Image<double> picture(double diameter) {
   return image;
 }
 
-// Without a setup the frame tells: within 10 % of 1.4 px, the autocorrelation being a Gaussian's but for the pixels.
+// Without a setup the width is estimated from the frame: within 10 % of 1.4 px, since the autocorrelation is that of a
+// Gaussian, except for the pixels.
 TEST(PeakLocking, IsToldByTheFrameAlone) {
   std::string const advice = locking_advice(picture(1.4));
   std::smatch found;

@@ -16,8 +16,8 @@ namespace {
 constexpr double mm = 1e-3, um = 1e-6;
 constexpr double pitch = 60 * um;
 
-/// White spheres seen from 750 mm by 105 mm at f/4 through lenslets of 60 um, that show the stop 60 um wide (d D / z_i
-/// = 280 * 26.25 / 122.1), 12 pixels of 5 um.
+/// White spheres at a distance of 750 mm, imaged by 105 mm at f/4 through lenslets of 60 um. Each lenslet shows the
+/// stop 60 um wide (d D / z_i = 280 * 26.25 / 122.1), 12 pixels of 5 um.
 Setup plenoptic_setup(LensletLayout layout) {
   Setup setup;
   setup.camera.columns = setup.camera.rows = 600;
@@ -35,7 +35,7 @@ Setup plenoptic_setup(LensletLayout layout) {
   return setup;
 }
 
-/// The plenoptic picture of particles of equal light at these places.
+/// Plenoptic image of particles of equal light at the given positions.
 Image<double> picture(Setup const& setup, std::vector<Vec3d> const& places) {
   Scene scene = build_scene(setup);
   scene.particles.resize(places.size());
@@ -64,13 +64,14 @@ Vec2d centroid(Image<double> const& image) {
   return first / sum;
 }
 
-/// `across` places in either direction about the axis at this depth, whose images are so many lenslets and a share of
-/// one apart: they fall on lenslets alike.
+/// `across` positions along each direction about the axis at the given depth, whose images are an integer number and a
+/// fraction of lenslets apart: they sample the lenslets uniformly.
 std::vector<Vec3d> spread_at(double z, int across, int apart, LensletLayout layout) {
   std::vector<Vec3d> places;
-  double const lenslet = pitch / (105.0 / 645) * (750 * mm - z) / (750 * mm);  // seen there
+  double const lenslet = pitch / (105.0 / 645) * (750 * mm - z) / (750 * mm);  // images at that depth
   double const step = (apart + 1.0 / across) * lenslet;
-  double const row = layout == LensletLayout::hexagonal ? std::sqrt(0.75) : 1;  // of lenslets, over their pitch
+  double const row =
+      layout == LensletLayout::hexagonal ? std::sqrt(0.75) : 1;  // distance between lenslets, relative to their pitch
   for (int i = 0; i < across; ++i) {
     for (int j = 0; j < across; ++j) places.push_back({(i - across / 2) * step, (j - across / 2) * row * step, z});
   }
@@ -79,11 +80,11 @@ std::vector<Vec3d> spread_at(double z, int across, int apart, LensletLayout layo
 
 class Views : public testing::TestWithParam<LensletLayout> {};
 
-// The image of a point moves by (1 - z_i / v) s / pitch pixels from view to view, v where the lens images it: a pixel's
-// worth of the stop (a twelfth of it) beside s is what a view is known to. The mean over 11 x 11 points, whose images
-// fall on lenslets alike, knows it to half of an eleventh of a pixel. They lie within one lenslet's
-// width. A row of a hexagonal array stands sqrt(3/4) pitch from the next, the pixels that show its light a whole one:
-// beside the middle row that is up to 0.13 pixels off.
+// The image of a point moves by (1 - z_i / v) s / pitch pixels from view to view, with v the image distance of the
+// point. The position of a view in the stop is known to one pixel's part of the stop (a twelfth), compared with s. The
+// mean over 11 x 11 points, whose images sample the lenslets uniformly, is accurate to half of an eleventh of a pixel.
+// They lie within the width of one lenslet. A row of a hexagonal array is sqrt(3/4) pitch from the next one, but the
+// pixels that show its light a whole pitch: away from the middle row that is an error of up to 0.13 pixels.
 TEST_P(Views, ShowTheParallaxThatGeometrySays) {
   gladstone::Setup const setup = plenoptic_setup(GetParam());
   PlenopticCamera const camera = PlenopticCamera::of(setup, "test");
@@ -96,16 +97,17 @@ TEST_P(Views, ShowTheParallaxThatGeometrySays) {
     Vec2d const middle = centroid(views.view({}));
     for (Vec2d const s : {Vec2d{8 * mm, 0}, Vec2d{-5 * mm, 6 * mm}, Vec2d{0, -9 * mm}}) {
       double const v = 1 / (1 / 0.105 - 1 / (750 * mm - z));
-      Vec2d const moved = (1 - z_i / v) / pitch * Vec2d{-s.x, s.y};  // of the picture, turned round by the lens
+      Vec2d const moved = (1 - z_i / v) / pitch * Vec2d{-s.x, s.y};  // position in the image, inverted by the lens
       Vec2d const seen = centroid(views.view(s)) - middle;
       EXPECT_LT(length(seen - moved), 0.05 + beside + 0.03 * length(moved)) << z << ' ' << s.x << ' ' << s.y;
     }
   }
 }
 
-// Points 60 mm in front of the plane in focus are spread over parallax * D = 6.2 lenslets, some 30 pixels of a picture
-// focused there; focused on them each is gathered into a few, and 20 mm before or behind them, where they are spread
-// over two lenslets, into more. The sum of squares over the squared sum is one over the pixels that a point has.
+// Points 60 mm in front of the plane in focus are spread over parallax * D = 6.2 lenslets, some 30 pixels of an image
+// focused there. Refocused on them, each covers a few pixels, and 20 mm in front of or behind them, where they are
+// spread over two lenslets, more. The sum of squares over the squared sum is the inverse of the number of pixels that a
+// point covers.
 TEST_P(Views, AreFocusedOnAnotherPlane) {
   gladstone::Setup const setup = plenoptic_setup(GetParam());
   PlenopticCamera const camera = PlenopticCamera::of(setup, "test");
@@ -130,10 +132,10 @@ INSTANTIATE_TEST_SUITE_P(Of, Views, testing::Values(LensletLayout::square, Lensl
 
 TEST(PlenopticCamera, PlacesViewsEvenlyOverTheStop) {
   std::vector<Vec2d> const places = places_of_stop(30 * mm, 3);
-  ASSERT_EQ(places.size(), 9u);  // the corners lie at sqrt(2) / 3 of the diameter, within half of it
+  ASSERT_EQ(places.size(), 9u);  // the corners are at sqrt(2) / 3 of the diameter, within half of it
   EXPECT_NEAR(length(places.front() - Vec2d{-10 * mm, 10 * mm}), 0, 1e-12);
   EXPECT_NEAR(length(places[4]), 0, 1e-12);
-  EXPECT_EQ(places_of_stop(30 * mm, 5).size(), 21u);  // of 25 the corners lie beyond
+  EXPECT_EQ(places_of_stop(30 * mm, 5).size(), 21u);  // the corners of 25 views are beyond it
 }
 
 TEST(PlenopticCamera, HasLensletsAndAStop) {

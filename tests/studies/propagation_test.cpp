@@ -20,7 +20,7 @@ GradientMeasurement<double> measured_at_table1() {
   return at;
 }
 
-/// In px, um, mm, m^3/kg and kg/m^3, as setups write them.
+/// In px, um, mm, m^3/kg and kg/m^3, as written in setups.
 MeasurementInput input(GradientInput enters, double value, double sigma,
                        InputDistribution distribution = InputDistribution::normal) {
   using I = GradientInput;
@@ -41,8 +41,8 @@ double log_derivative(PropagatedResult const& result, std::size_t i, Measurement
   return result.contributions[i].derivative * input.value / result.value;
 }
 
-// The gradient solves F6, so that Table 1's sensitivity gives back 10 kg/m^4. With M = f / (Z_B - f) it is
-// Delta p n0 (Z_B - f) / (f Z_D K L_z): its derivatives are those of a product of powers, by hand.
+// The gradient solves F6, so that the sensitivity of Table 1 gives 10 kg/m^4. With M = f / (Z_B - f) it is Delta p n0
+// (Z_B - f) / (f Z_D K L_z): its derivatives are those of a product of powers, calculated by hand.
 TEST(Propagation, HasTheDerivativesOfTheFormula) {
   GradientMeasurement<double> const at = measured_at_table1();
   EXPECT_NEAR(at.gradient(), 10, 1e-5);
@@ -68,8 +68,8 @@ TEST(Propagation, HasTheDerivativesOfTheFormula) {
   EXPECT_NEAR(gradient.standard, std::sqrt(variance), 1e-12);
 }
 
-// The density across a window has p once more and 1 / M_A = Z_A (Z_B - f) / (f Z_B) beside the gradient: the pitch
-// counts twice, the focal length -f / (Z_B - f) - 1 twice.
+// The density difference across a window has one more factor p and 1 / M_A = Z_A (Z_B - f) / (f Z_B): the pitch counts
+// twice, and so does the focal length, -f / (Z_B - f) - 1.
 TEST(Propagation, OfTheDensityCountsTheImagingTwice) {
   GradientMeasurement<double> const at = measured_at_table1();
   std::vector<MeasurementInput> const inputs{input(GradientInput::pixel_pitch, 10, 0.01),
@@ -80,8 +80,8 @@ TEST(Propagation, OfTheDensityCountsTheImagingTwice) {
   EXPECT_NEAR(log_derivative(results[1], 1, inputs[1]), 2 * (-0.105 / 0.895 - 1), 1e-12);
 }
 
-// Inputs of 0.5 % and less: the second order is (0.005)^2 of the uncertainty. The standard deviation of 10^5 samples
-// has a standard error of 1 / sqrt(2 10^5) = 0.22 %; three of them.
+// Inputs with uncertainties of at most 0.5 %: the second order is (0.005)^2 of the uncertainty. The standard deviation
+// of 10^5 samples has a standard error of 1 / sqrt(2 10^5) = 0.22 %; three of these are allowed.
 TEST(Propagation, EqualsMonteCarloWhereItIsLinear) {
   GradientMeasurement<double> const at = measured_at_table1();
   auto const results =
@@ -96,8 +96,8 @@ TEST(Propagation, EqualsMonteCarloWhereItIsLinear) {
   }
 }
 
-// 1 / L_z of a thickness that is known to 25 %: the mean of the gradient is 1 + 0.25^2 times as large in second order,
-// and its distribution has a long tail.
+// 1 / L_z of a thickness with an uncertainty of 25 %: the mean of the gradient is 1 + 0.25^2 times as large in second
+// order, and its distribution has a long tail.
 TEST(Propagation, SaysWhereItIsNotLinear) {
   GradientMeasurement<double> const at = measured_at_table1();
   PropagatedResult const result = propagate(at, {input(GradientInput::thickness, 10, 2.5)})[0];
@@ -106,8 +106,8 @@ TEST(Propagation, SaysWhereItIsNotLinear) {
   EXPECT_GT(result.sampled_high - result.value, 1.5 * (result.value - result.sampled_low));
 }
 
-// A rectangle of half width sqrt(3) sigma holds 95.45 % within 1.6532 sigma, not 2: its own interval is shorter. With
-// u = 0.9 the ends are 0.31 apart, and half of the first digit is 0.05.
+// A rectangular distribution of half width sqrt(3) sigma has 95.45 % within 1.6532 sigma, not 2: its interval is
+// shorter. With u = 0.9 the ends differ by 0.31, and half of the first digit is 0.05.
 TEST(Propagation, SaysWhereARectangleIsNoNormalDistribution) {
   GradientMeasurement<double> const at = measured_at_table1();
   PropagatedResult const result = propagate(
@@ -132,7 +132,7 @@ TEST(Propagation, TakesTheCoverageFactorFromStudentsDistribution) {
   }
 }
 
-// Welch and Satterthwaite: of two equal contributions with four degrees of freedom each, (2 u^2)^2 / (2 u^4 / 4) = 8.
+// Welch and Satterthwaite: for two equal contributions with four degrees of freedom each, (2 u^2)^2 / (2 u^4 / 4) = 8.
 TEST(Propagation, CombinesDegreesOfFreedom) {
   GradientMeasurement<double> const at = measured_at_table1();
   std::vector<MeasurementInput> inputs{input(GradientInput::displacement, at.value[0], 0.01 * at.value[0]),
@@ -144,7 +144,7 @@ TEST(Propagation, CombinesDegreesOfFreedom) {
   EXPECT_NEAR(common_relative_uncertainty(at, inputs), 0.01, 1e-12);
 }
 
-/// Two distances that are correlated so.
+/// Two distances with the given correlation.
 std::vector<MeasurementInput> correlated_distances(double coefficient) {
   std::vector<MeasurementInput> inputs{input(GradientInput::displacement, measured_at_table1().value[0], 1e-9),
                                        input(GradientInput::z_a, 750, 2), input(GradientInput::z_d, 250, 1)};
@@ -155,9 +155,9 @@ std::vector<MeasurementInput> correlated_distances(double coefficient) {
   return inputs;
 }
 
-// JCGM 100:2008, eq. 16: the variance is the sum of c_i c_j u_i u_j r_ij, and the samples have it, too, within three of
-// their standard errors (0.22 % each). With a coefficient of 1 contributions add up with their signs, with -1 they
-// subtract: Z_A / (Z_B - f) of 2 / 750 and (Z_D / (Z_B - f) - 1) of 1 / 250.
+// JCGM 100:2008, eq. 16: the variance is the sum of c_i c_j u_i u_j r_ij, and that of the samples, too, within three
+// standard errors (0.22 % each). With a coefficient of 1 the contributions add with their signs, with -1 they are
+// subtracted: Z_A / (Z_B - f) of 2 / 750 and (Z_D / (Z_B - f) - 1) of 1 / 250.
 TEST(Propagation, AddsWhatInputsHaveInCommon) {
   GradientMeasurement<double> const at = measured_at_table1();
   double const rest = 1 - 0.105, a = 0.75 / rest * 2 / 750 * 10, d = (0.25 / rest - 1) / 250 * 10;
@@ -172,8 +172,8 @@ TEST(Propagation, AddsWhatInputsHaveInCommon) {
   }
 }
 
-// Of two inputs that are one and the same, neither knows more than the other: their contributions add up to one with
-// the fewest degrees of freedom, where Welch and Satterthwaite would take them for two.
+// Two identical inputs contain no more information than one: their contributions count as one with the smaller number
+// of degrees of freedom, where Welch and Satterthwaite would count two.
 TEST(Propagation, CountsCorrelatedInputsAsOneByDegreesOfFreedom) {
   std::vector<MeasurementInput> inputs = correlated_distances(1);
   inputs[1].degrees_of_freedom = 4;
@@ -181,8 +181,9 @@ TEST(Propagation, CountsCorrelatedInputsAsOneByDegreesOfFreedom) {
   EXPECT_NEAR(propagate(measured_at_table1(), inputs)[0].degrees_of_freedom, 4, 1e-5);
 }
 
-// Of air that is let out to 0 +- 0.02 kg/m^3 the index n0 = 1 + K rho has the derivative K, at 0 as elsewhere: g K, and
-// the density across a window the same share of it. Three standard errors of the samples' standard deviation: 0.67 %.
+// For an evacuated ambient of 0 +- 0.02 kg/m^3 the index n0 = 1 + K rho has the derivative K, as for any density: g K,
+// and the same fraction of the density across a window. Three standard errors of the standard deviation of the samples:
+// 0.67 %.
 TEST(Propagation, TakesNumbersOfNothing) {
   GradientMeasurement<double> at = measured_at_table1();
   at[GradientInput::ambient_density] = 0;
@@ -195,8 +196,9 @@ TEST(Propagation, TakesNumbersOfNothing) {
   EXPECT_NEAR(common_relative_uncertainty(at, {input(GradientInput::ambient_density, 0, 0.02)}), 0.02 * 2.26e-4, 1e-15);
 }
 
-// Where nothing moved, 1 / S = 150.9 kg/m^4 a pixel is left of the displacement, and nothing of all else, which is in
-// proportion to it: of samples, by as much as 0.5 % of a gradient that is 0 in the mean.
+// For zero displacement the uncertainty of the displacement contributes 1 / S = 150.9 kg/m^4 per pixel, and all other
+// inputs nothing, since their effect is proportional to the displacement: in the samples by 0.5 % of a gradient whose
+// mean is 0.
 TEST(Propagation, TellsAMeasurementInWhichNothingMoved) {
   GradientMeasurement<double> at = measured_at_table1();
   double const per_px = at.gradient() / at.value[0];
@@ -215,11 +217,11 @@ TEST(Propagation, TellsAMeasurementInWhichNothingMoved) {
   EXPECT_NEAR(common_relative_uncertainty(at, inputs), std::hypot((1 - 250.0 / 895) / 250, 0.01), 1e-12);
 }
 
-// JCGM 101:2008, 6.4.9: what is known from nu + 1 readings is drawn from a t distribution, so that the interval that
-// holds 95.45 % of the samples is that of Student's factor, and the first order holds at k u where it would miss by
-// (k - 2) u at 2 u. Its standard deviation is sqrt(nu / (nu - 2)) u. Of a quantile where 2.3 % are beyond it, the
-// standard error is sqrt(0.0228 0.9772 / 10^5) = 4.7e-4 over the density there: 0.017 u with ten degrees of freedom
-// (density 0.027 / u), 0.023 u with four (0.0205), 0.29 u with one (0.0016). Four of them.
+// JCGM 101:2008, 6.4.9: an input determined from nu + 1 readings is drawn from a t distribution, so that the interval
+// with 95.45 % of the samples is that of Student's factor; the first order is valid for k u, and would be wrong by (k -
+// 2) u for 2 u. The standard deviation is sqrt(nu / (nu - 2)) u. The standard error of a quantile with 2.3 % beyond it
+// is sqrt(0.0228 0.9772 / 10^5) = 4.7e-4 over the density there: 0.017 u with ten degrees of freedom (density 0.027 /
+// u), 0.023 u with four (0.0205), 0.29 u with one (0.0016). Four standard errors are allowed.
 TEST(Propagation, DrawsFromStudentsDistributionWhatHasDegreesOfFreedom) {
   GradientMeasurement<double> const at = measured_at_table1();
   for (auto const& [degrees, factor, within] : {std::tuple{10.0, 2.284, 0.07}, {4.0, 2.869, 0.09}, {1.0, 13.97, 1.2}}) {
@@ -235,13 +237,15 @@ TEST(Propagation, DrawsFromStudentsDistributionWhatHasDegreesOfFreedom) {
                                             : degrees == 4 ? "t, 4 degrees of freedom"
                                                            : "t, 10 degrees of freedom");
     if (degrees < 10) continue;
-    // the fourth moment of ten degrees is 4 sigma^4: a relative sqrt((4 - 1) / 4 / 10^5) = 0.27 %, three of them
+    // the fourth moment for ten degrees of freedom is 4 sigma^4: a relative sqrt((4 - 1) / 4 / 10^5) = 0.27 %, three of
+    // these
     EXPECT_NEAR(*result.sampled_standard / result.standard, std::sqrt(10.0 / 8), 0.0082 * std::sqrt(10.0 / 8));
   }
 }
 
-// Two normal inputs of four degrees of freedom that are correlated have one chi squared in common: every sum of both is
-// t with four, as Welch and Satterthwaite's count of them says. Two with a chi squared each would end at 2.5 u.
+// Two correlated normal inputs with four degrees of freedom share one chi-squared variate: every sum of both has a t
+// distribution with four degrees of freedom, as counted by Welch and Satterthwaite. With separate chi-squared variates
+// the interval would end at 2.5 u.
 TEST(Propagation, DrawsCorrelatedInputsWithOneChiSquared) {
   std::vector<MeasurementInput> inputs = correlated_distances(-0.8);
   for (std::size_t const i : {1u, 2u}) inputs[i].degrees_of_freedom = 4;
@@ -253,8 +257,9 @@ TEST(Propagation, DrawsCorrelatedInputsWithOneChiSquared) {
   EXPECT_EQ(drawn_distribution(inputs, 1), "t, 4 degrees of freedom");
 }
 
-// A rectangle whose half width is known to 1 / sqrt(2 nu) has a variance 1 + 1 / (2 nu) times as large (JCGM 101:2008,
-// 6.4.3): 1.125 with four degrees of freedom. Its fourth moment is below the normal one, so 0.67 % are three errors.
+// A rectangular distribution whose half width has a relative uncertainty of 1 / sqrt(2 nu) has a variance 1 + 1 / (2
+// nu) times as large (JCGM 101:2008, 6.4.3): 1.125 with four degrees of freedom. Its fourth moment is below the normal
+// one, so that 0.67 % are three standard errors.
 TEST(Propagation, DrawsRectanglesWithInexactLimits) {
   GradientMeasurement<double> const at = measured_at_table1();
   MeasurementInput one = input(GradientInput::displacement, at.value[0], 0.01, InputDistribution::rectangular);
@@ -265,8 +270,8 @@ TEST(Propagation, DrawsRectanglesWithInexactLimits) {
   EXPECT_NEAR(*result.sampled_standard / result.standard, std::sqrt(1.125), 0.0067 * std::sqrt(1.125));
 }
 
-// Chief rays through a uniform gradient, which no stop clips: the displacement per gradient is S, the gradient's
-// derivative its inverse. Off the axis it differs by theta^2 = (48 px p / z_i)^2 = 2e-5.
+// Chief rays through a uniform gradient, which no stop clips: the displacement per gradient is S, and the derivative of
+// the gradient is its inverse. Off the axis it differs by theta^2 = (48 px p / z_i)^2 = 2e-5.
 TEST(Propagation, HasTheSameDerivativesByTracingRays) {
   SetupDocument document = SetupDocument::from_text(R"(schema = 1
 [camera]
@@ -296,8 +301,8 @@ window_px = [32]
   }
 }
 
-// A density of 0 has no negative side: the difference is taken from the positive one. A dot's displacement goes with
-// 1 / n0, so that its logarithm has the derivative -K at the vacuum.
+// A density of 0 permits no negative step: the difference is one-sided. The displacement of a dot is proportional to 1
+// / n0, so that its logarithm has the derivative -K at the vacuum.
 TEST(Propagation, TracesFromOneSideWhatCannotBeNegative) {
   SetupDocument document = SetupDocument::from_text(R"(schema = 1
 [camera]
@@ -316,9 +321,9 @@ window_px = [32]
   EXPECT_NEAR(*slope, -2.26e-4, 1e-6);
 }
 
-// A double Gauss of 100 mm is no formula's: what counts are differences of rays through it. On the axis it is the thin
-// lens of its principal planes, so that both have the same derivatives, but for what its aberrations and the dots'
-// places off the axis change: theta^2 = 2e-5 and less than 0.01 of a derivative.
+// The formulas do not describe a double Gauss lens of 100 mm: differences of rays through it are used. On the axis it
+// is the thin lens at its principal planes, so that both have the same derivatives, except for its aberrations and for
+// dots off the axis: theta^2 = 2e-5 and less than 0.01 of a derivative.
 TEST(Propagation, TracesWhatARealLensIsUncertainBy) {
   SetupDocument document = SetupDocument::from_text(R"(schema = 1
 [camera]
@@ -351,7 +356,8 @@ window_px = [32]
                                                                      : GradientInput::thickness;
     MeasurementInput const thin_input = input(known, inputs[i].value, 1);
     auto const thin = propagate(at, {thin_input});
-    for (std::size_t k = 0; k < traced.size(); ++k) {  // of the gradient, and of the density across a window
+    for (std::size_t k = 0; k < traced.size();
+         ++k) {  // uncertainties of the gradient, and of the density across a window
       EXPECT_NEAR(log_derivative(traced[k], i, inputs[i]), log_derivative(thin[k], 0, thin_input), 0.01)
           << inputs[i].key << ", " << traced[k].key;
     }

@@ -12,8 +12,8 @@
 namespace gladstone {
 namespace {
 
-// A row of docs/file-formats.md is "study (`manifest.jsonl`, `cases/`)", the entries by which a folder is known, and
-// the files that are protected there: "these" and others.
+// A row of docs/file-formats.md is "study (`manifest.jsonl`, `cases/`)", the entries by which a folder is recognised,
+// followed by the protected files: "these" and others.
 TEST(ProtectedFiles, AreThoseOfTheDocumentedTable) {
   auto const rows = test::documented_table("Protected files", "folder");
   std::vector<ProtectedFiles> const all = protected_files();

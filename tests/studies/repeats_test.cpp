@@ -13,7 +13,7 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-/// Errors at vectors: one part that every repeat has, and normal scatter of its own for each repeat [px].
+/// Errors of vectors: a part common to all repeats, and an independent normal part for each repeat [px].
 std::vector<std::vector<Vec2d>> made_up(std::size_t vectors, std::size_t repeats, double shared, double scatter) {
   std::mt19937_64 random(5);
   std::normal_distribution<double> normal;
@@ -46,9 +46,10 @@ TEST(RepeatSplit, IsMeanAndStandardDeviationOverRepeats) {
   EXPECT_DOUBLE_EQ(split.systematic_px, std::sqrt(3.0));
 }
 
-// Of n = 2 x 20000 components in K repeats the variance is known to a relative sqrt(2 / (n (K - 1))), at most 0.7 %, so
-// the scatter to 0.35 %; systematic^2 = 4e-4 to its own 0.7 % and scatter^2 / K sqrt(2 / (n (K - 1))) below it. Five of
-// each: 2 %. However few repeats, neither part takes from the other, and squares add up to the mean square.
+// For n = 2 x 20000 components in K repeats the variance is determined to a relative sqrt(2 / (n (K - 1))), at most 0.7
+// %, and the scatter to 0.35 %; systematic^2 = 4e-4 to its own 0.7 % and scatter^2 / K sqrt(2 / (n (K - 1))) below it.
+// Five standard errors of each: 2 %. However few the repeats are, the two parts are separated, and their squares add up
+// to the mean square.
 TEST(RepeatSplit, FindsWhatWasPutInWithAnyNumberOfRepeats) {
   for (std::size_t const repeats : {2, 3, 8}) {
     for (double const scatter : {0.005, 0.02, 0.05}) {
@@ -69,20 +70,20 @@ TEST(RepeatSplit, NeedsTwoRepeatsOfTheSameVectors) {
   EXPECT_TRUE(std::isnan(split_repeats(uneven).systematic_px));
 }
 
-// Without any scatter nothing changes; without a common part the estimate of its square is zero on average, cut off
-// below.
+// Without scatter the systematic part is exact; without a common part the estimate of its square is zero on average,
+// and negative values are set to 0.
 TEST(RepeatSplit, OfOnePartAloneIsThatPart) {
   RepeatSplit const still = split_repeats(made_up(500, 4, 0.02, 0));
   EXPECT_NEAR(still.scatter_px, 0, 1e-15);
   RepeatSplit const noise = split_repeats(made_up(20000, 4, 0, 0.02));
-  // scatter^2 / K known to sqrt(2 / (n (K - 1))) + sqrt(2 / n) = 1.2 %: 1.2e-6 px^2; five of these
+  // scatter^2 / K is determined to sqrt(2 / (n (K - 1))) + sqrt(2 / n) = 1.2 %: 1.2e-6 px^2; five of these
   EXPECT_LT(noise.systematic_px, std::sqrt(5 * 1.2e-6));
 }
 
 class Repeats : public StudyFolder {
  protected:
-  /// A study of two f-numbers and three repeats whose results are made up: errors 0.01 (1 + point + 2 repeat) px, every
-  /// vector 0.03 px off in all repeats and -0.01, 0, 0.01 px beside that.
+  /// A study of two f-numbers and three repeats with artificial results: errors 0.01 (1 + point + 2 repeat) px, and
+  /// every vector wrong by 0.03 px in all repeats plus -0.01, 0, 0.01 px.
   std::vector<ManifestCase> made_up_study() const {
     StudyPlan const plan = plan_study(study(R"(base = "base.toml"
 [axes]

@@ -66,7 +66,7 @@ TEST(ReportPage, SaysThatANumberIsUnknown) {
   EXPECT_THAT(html_page(page), HasSubstr("<td>y</td><td class=\"number\">unknown</td>"));
 }
 
-// Displacements are told to 1e-5 px, and a bias that is none has no sign; what is sorted by is the number itself.
+// Displacements are printed to 1e-5 px, and a bias of zero has no sign; sorting uses the unrounded number.
 TEST(ReportPage, ShowsPixelsInHundredThousandths) {
   EXPECT_EQ(TableCell::px(-4.738e-05).text, "-0.00005");
   EXPECT_EQ(TableCell::px(-3.5e-07).text, "0.00000");

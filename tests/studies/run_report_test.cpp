@@ -11,8 +11,8 @@ namespace {
 
 class RunReports : public StudyFolder {
  protected:
-  /// A finished study of so many cases: one is computed, the others have its measures, each a little off, so that no
-  /// two numbers are alike.
+  /// A finished study with the given number of cases: one is computed, the others have its measures with small changes,
+  /// so that no two numbers are equal.
   void finish(std::size_t cases) const {
     StudyFile const file = study("base = \"base.toml\"\n[axes]\n\"lens.f_number\" = { linear = [8, 16, " +
                                  std::to_string(cases) + "] }\n");
@@ -31,7 +31,7 @@ class RunReports : public StudyFolder {
   }
 };
 
-// What a report of a study may weigh and take: 10 MB and 5 s of processor time for 1000 cases.
+// Limits for the report of a study: 10 MB and 5 s of processor time for 1000 cases.
 TEST_F(RunReports, OfAThousandCasesAreSmallAndQuick) {
   finish(1000);
   std::clock_t const start = std::clock();
@@ -44,7 +44,7 @@ TEST_F(RunReports, OfAThousandCasesAreSmallAndQuick) {
   RecordProperty("bytes", std::to_string(html.size()));
   EXPECT_THAT(html, testing::HasSubstr("1000 of 1000 cases are finished"));
   EXPECT_LT(html.size(), 10e6);
-  EXPECT_GT(html.size(), 1e6);  // 1000 cases of a hundred measures are in it
+  EXPECT_GT(html.size(), 1e6);  // it contains 1000 cases with a hundred measures
   EXPECT_LT(seconds, 5);
 }
 

@@ -18,7 +18,7 @@
 namespace gladstone {
 namespace {
 
-/// Table 1's bench with a volume of 8.8 x 10.4 x 7.2 mm, of which one side face lies in view.
+/// The set-up of Table 1 with a volume of 8.8 x 10.4 x 7.2 mm, one side face of which is in view.
 Scene volume_in_view(std::uint64_t rays) {
   FieldSetup field;
   field.kind = FieldKind::file;
@@ -43,7 +43,8 @@ SceneRenderer on_cpu() { return {std::make_unique<FocusedDotsRenderer>(), std::m
 
 Rendering render(Scene scene) { return on_cpu().render(scene, scene.dots, RenderImages::yes, RenderTheory::yes); }
 
-// Of a source that is not listed all straight rays to the pupil cross the volume from face to face, or none does.
+// For a source that is not listed, either all straight rays to the pupil cross the volume from face to face, or none
+// does.
 TEST(SideFaces, CutTheConesOfThoseListedAlone) {
   Scene const scene = volume_in_view(32);
   std::vector<std::size_t> const listed = sources_at_side_faces(scene, scene.dots);
@@ -78,8 +79,9 @@ TEST(SideFaces, CutTheConesOfThoseListedAlone) {
   EXPECT_TRUE(sources_at_side_faces(wave, wave.dots).empty());
 }
 
-// Dots whose cones a face cuts go ray by ray, with rays of their own: truth is right within what it states, and no
-// light lies where no ray goes. (A smooth fit to 32 rays put single pixels off by three quarters of full scale.)
+// Dots whose cones are cut by a face are traced ray by ray, with separate rays: the truth is correct within its stated
+// error, and there is no light where there are no rays. (A smooth fit to 32 rays had errors of three quarters of full
+// scale in single pixels.)
 TEST(SideFaces, DotsThereAreRightWithRaysOfTheirOwn) {
   Scene scene = volume_in_view(32);
   scene.rays_at_side_faces = 8192;
@@ -95,7 +97,7 @@ TEST(SideFaces, DotsThereAreRightWithRaysOfTheirOwn) {
   Rendering const plain = RaysRenderer().render(exact, exact.dots, RenderImages::yes, RenderTheory::yes);
   for (std::size_t dot = 0; dot < scene.dots.centre.size(); ++dot) {
     bool const at_face = std::binary_search(left.begin(), left.end(), dot);
-    // a dot beside the volume needs no ray
+    // a dot outside the volume requires no ray
     std::int64_t const planned = found.truth.rays_planned[dot];
     EXPECT_TRUE(at_face ? planned == 8192 : planned == 32 || planned == 0) << dot << ": " << planned;
     Vec2d const off = found.truth.displacement_px[dot] - plain.truth.displacement_px[dot];
@@ -107,8 +109,8 @@ TEST(SideFaces, DotsThereAreRightWithRaysOfTheirOwn) {
     }
     EXPECT_NEAR(length(found.truth.eq9_px[dot] - plain.truth.eq9_px[dot]), 0, 1e-8) << dot;
   }
-  // plain rays scatter by half a level at 65,536 (RaysRenderer's test), by no more than 8 times that at an eighth of
-  // them; no dot of the right half is at the face, where 32 rays correct a smooth field
+  // rays without a table scatter by half a level with 65,536 rays (test of RaysRenderer), and by at most 8 times that
+  // with an eighth of them; no dot of the right half is at the face, where 32 rays correct a smooth field
   auto const rms_levels = [&](Image<double> const& one, Image<double> const& other, int begin, int end) {
     double const level = *std::max_element(other.begin(), other.end()) / (0.9 * 4095);
     double square = 0, lit = 0, largest = 0;
@@ -129,8 +131,8 @@ TEST(SideFaces, DotsThereAreRightWithRaysOfTheirOwn) {
   EXPECT_LT(rms_levels(found.light.reference, plain.light.reference, 0, 96), 4.5);
 }
 
-// Each ray counts once: those that reach the sensor's plane are as many as the dots count, and all together are what
-// was traced, though the fast renderer began with rays of dots that it then left.
+// Each ray counts once: the number that reaches the sensor plane is that of the dots, and the total is the number
+// traced, although the fast renderer also traced rays of the dots that it rejected.
 TEST(SideFaces, RaysThereAreCountedOnce) {
   Scene const scene = volume_in_view(32);
   Rendering const found = render(scene);
@@ -146,7 +148,7 @@ TEST(SideFaces, RaysThereAreCountedOnce) {
   EXPECT_EQ(traced, found.rays);
 }
 
-// Dark dots are taken from white paper once.
+// The light of dark dots is subtracted from that of white paper once.
 TEST(SideFaces, DarkDotsAreWhiteLessBright) {
   Scene scene = volume_in_view(32);
   Rendering const bright = render(scene);
@@ -158,7 +160,7 @@ TEST(SideFaces, DarkDotsAreWhiteLessBright) {
   }
 }
 
-// "auto" gives them more rays than the others need.
+// "auto" selects more rays for them than for the others.
 TEST(SideFaces, AreWhereAutoTakesMoreRays) {
   Scene scene = volume_in_view(1);
   scene.setup.render.rays_per_dot.reset();
@@ -170,9 +172,9 @@ TEST(SideFaces, AreWhereAutoTakesMoreRays) {
   EXPECT_TRUE(scene.by_need);
 }
 
-// With a given number of rays the plan measures what it leaves of these dots, truth and images: 32 plain rays of a cone
-// that a face cuts in two scatter by more than is asked, and 32,768 by the square root of a thousand less, 32, or more:
-// that many are not traced, but told from 256. What scatters is told from so many dots to a tenth or so.
+// With a given number of rays the plan measures the residual errors of these dots in truth and images: 32 rays of a
+// cone cut in two by a face scatter by more than the goal, and 32,768 rays by a factor of sqrt(1024) = 32 less, or
+// more; so many are not traced but extrapolated from 256. Scatter from so many dots is accurate to about a tenth.
 TEST(SideFaces, AreMeasuredWithAGivenNumber) {
   auto const measured = [](std::uint64_t rays) {
     Scene scene = volume_in_view(rays);
@@ -192,8 +194,8 @@ TEST(SideFaces, AreMeasuredWithAGivenNumber) {
   EXPECT_LT(many.image_error_levels, few.image_error_levels / 16);
 }
 
-// What the plan says of images holds for the pictures: those of the dots there, by their 32 rays, beside their own of
-// another choice, which scatter as much. A factor of two is allowed for the pixels that count as lit.
+// The stated errors of the images apply: images of these dots with 32 rays are compared with those of other random
+// rays, which scatter equally. A factor of two is allowed for the choice of illuminated pixels.
 TEST(SideFaces, ImagesAreOffByWhatThePlanSays) {
   Scene scene = volume_in_view(32);
   RaysPlan const plan = plan_rays_of(scene);
@@ -219,8 +221,8 @@ TEST(SideFaces, ImagesAreOffByWhatThePlanSays) {
   EXPECT_LT(plan.side_faces->image_error_levels, found * 2);
 }
 
-// Particles far beside the view are not traced: frames and the truth of all others are the same to the last bit. A
-// plume of light gas bends rays by some pixels.
+// Particles far outside the view are not traced: images and the truth of all others are identical, bit by bit. A plume
+// of light gas deflects rays by some pixels.
 TEST(ParticlesNearView, AreAllThatFramesShow) {
   gladstone::Setup setup = piv_setup(2e-3, 1e-3);
   setup.camera.columns = setup.camera.rows = 64;
@@ -259,9 +261,9 @@ TEST(ParticlesNearView, AreAllThatFramesShow) {
   EXPECT_LT(near.rays, every.rays / 2);
 }
 
-// Small-angle theory is integrated along as many rays of every dot, in panels as long as a step: its time is
-// proportional to the dots and, for whole panels, to the inverse of the step. A third of a microsecond per panel and
-// ray is the most that three samples take, and 100 the fewest rays of a dot.
+// The small-angle theory is integrated along the same number of rays for every dot, in panels as long as a step: its
+// time is proportional to the number of dots and, for whole panels, to the inverse of the step. A third of a
+// microsecond per panel and ray is the maximum for three samples, and 100 the minimum number of rays per dot.
 TEST(RenderSeconds, CountTheoryOfEveryDot) {
   GaussianBlob<double> plume;
   plume.amplitude = -0.5;

@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Study files by the name that `make studies` has for them.
+/// Study files by their names in `make studies`.
 std::map<std::string, std::string> shipped_studies() {
   std::map<std::string, std::string> found;
   std::string const start = "study_";
@@ -59,7 +59,7 @@ TEST(ShippedStudies, AreInTheIndexAndTheirPagesShowFiguresThatThereAre) {
   EXPECT_GE(figures, 15);
 }
 
-// docs/benchmarks.md quotes a time for just so many cases.
+// docs/benchmarks.md gives times for these numbers of cases.
 TEST(BenchmarkStudies, HaveTheNumberOfCasesOfTheirName) {
   std::string const folder = shared_folder() + "/data/benchmarks/";
   EXPECT_EQ(plan_study(read_study(folder + "study_hundred.toml"), "cpu").size(), 100u);

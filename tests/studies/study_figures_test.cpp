@@ -36,8 +36,8 @@ StudyAxis words(std::string key, std::vector<std::string> labels) {
   return {std::move(key), false, std::move(labels), none};
 }
 
-/// Every combination of the axes, the last fastest, with repeats outermost; error 0.01 (1 + case) px, of which repeats
-/// share 0.03 px and change 0.01 px.
+/// All combinations of the axes, the last axis fastest, repeats outermost; the error is 0.01 (1 + case) px, of which
+/// 0.03 px is common to all repeats and 0.01 px varies.
 StudyTable grid(std::vector<StudyAxis> axes, std::size_t repeats) {
   StudyTable table;
   table.name = "some_study";
@@ -66,7 +66,7 @@ StudyTable grid(std::vector<StudyAxis> axes, std::size_t repeats) {
   return table;
 }
 
-/// A study of so many points, the i-th of them with f-number 4 + i and a Z_D by step i mod count.
+/// A study with the given number of points: f-number 4 + i and a Z_D by step i mod count for the i-th one.
 StudyTable one_value_a_point(std::size_t count, std::size_t step) {
   std::vector<double> stops, distances;
   for (std::size_t i = 0; i < count; ++i) {
@@ -88,7 +88,7 @@ class StudyFigures : public ::testing::Test {
     std::filesystem::remove_all(folder_);
   }
   ~StudyFigures() override { std::filesystem::remove_all(folder_); }
-  /// Names of the figures drawn.
+  /// Names of the drawn figures.
   std::vector<std::string> draw(StudyTable const& table) const {
     std::vector<std::string> names;
     for (std::string const& path : draw_study(folder_.string(), table)) {
@@ -195,7 +195,7 @@ TEST_F(StudyFigures, AreCurvesBudgetsAndMapsInTwoFormats) {
   EXPECT_THAT(text("error_map_lens_f_number_geometry_z_d_mm.svg"), HasSubstr("0.058"));
 }
 
-// A case alone does not know its pattern term; with repeats the budget has it, and a figure shows both parts.
+// A single case has no pattern term; with repeats the budget has one, and a figure shows both parts.
 TEST_F(StudyFigures, TellEstimatorAndPatternApartWithRepeats) {
   for (std::size_t const repeats : {1, 2}) {
     StudyTable table = grid({numbers("lens.f_number", {4, 8, 16})}, repeats);
@@ -213,25 +213,25 @@ TEST_F(StudyFigures, TellEstimatorAndPatternApartWithRepeats) {
 
 TEST_F(StudyFigures, LeaveOutWhatIsNotThere) {
   StudyTable table = grid({numbers("lens.f_number", {4, 8}), words("medium.field", {"plume"})}, 1);
-  EXPECT_EQ(draw(table).size(), 4u);  // an axis of one value is none
+  EXPECT_EQ(draw(table).size(), 4u);  // an axis with one value is omitted
   for (StudyRow& row : table.rows) row.status = CaseStatus::failed;
   EXPECT_TRUE(draw(table).empty());
 }
 
-// In "zip" mode two axes go together: of a map three of nine cells would be filled.
+// In "zip" mode two axes vary together: three of nine cells of a map would be filled.
 TEST_F(StudyFigures, AxesThatGoTogetherHaveNoMap) {
   StudyTable table = grid({numbers("lens.f_number", {4, 8, 16}), numbers("geometry.z_d_mm", {100, 200, 400})}, 1);
   std::erase_if(table.rows, [](StudyRow const& row) { return row.value[0] != row.value[1]; });
   for (std::string const& name : draw(table)) EXPECT_THAT(name, Not(HasSubstr("map")));
-  // of 8 points in 2 x 2 bins two cells of four, of 24 in 3 x 3 bins three of nine
+  // 8 points in 2 x 2 bins: two cells of four; 24 in 3 x 3 bins: three of nine
   for (std::size_t const count : {8, 24}) {
     for (std::string const& name : draw(one_value_a_point(count, 1))) EXPECT_THAT(name, Not(HasSubstr("map")));
   }
 }
 
-// 24 points in sqrt(24 / 2) = 3.5 bins an axis, so 3, of 8 points each. Of the first eight, whose places along the
-// other axis are 0, 7, 14, 21, 4, 11, 18, 1, the lowest cell has points 0, 1, 4, 7 with errors 0.01, 0.02, 0.05, 0.08:
-// median 0.035.
+// 24 points in sqrt(24 / 2) = 3.5 bins per axis, that is 3, with 8 points each. Of the first eight, whose positions
+// along the other axis are 0, 7, 14, 21, 4, 11, 18, 1, the lowest cell has points 0, 1, 4, 7 with errors 0.01, 0.02,
+// 0.05, 0.08: median 0.035.
 TEST_F(StudyFigures, SampledAxesHaveAMap) {
   draw(one_value_a_point(24, 7));
   EXPECT_THAT(text("error_map_lens_f_number_geometry_z_d_mm.svg"), HasSubstr(">0.035<"));
@@ -255,7 +255,7 @@ TEST_F(StudyFigures, ShowTheLabelsOfNumbers) {
   }
 }
 
-// gnuplot reads tics, and no other texts, as formats of numbers.
+// gnuplot interprets tic labels, and no other texts, as number formats.
 TEST_F(StudyFigures, ShowPercentSignsInLabels) {
   draw(grid({words("lens.psf", {"50 % stop", "100 %", "5 %% of it"}), words("medium.field", {"9 % up", "9 % down"})},
             1));

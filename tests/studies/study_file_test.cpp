@@ -79,8 +79,8 @@ mode = "zip"
   EXPECT_THAT(labels(cases, 1), ElementsAre("8", "8", "12"));
 }
 
-// Of 16 points of a scrambled Sobol sequence each sixteenth of each axis holds exactly one (a (0, 4, s)-net), and each
-// of two list values half of them.
+// 16 points of a scrambled Sobol sequence: each sixteenth of each axis contains exactly one (a (0, 4, s)-net), and each
+// of two list values occurs in half of them.
 TEST_F(Studies, SobolSamplesFillRangesEvenly) {
   auto const cases = plan(R"(base = "base.toml"
 [axes]
@@ -170,7 +170,7 @@ seed = 5
     EXPECT_EQ(cases[2 * repeat].seed, cases[2 * repeat + 1].seed);
     std::string const line = "seed = " + std::to_string(cases[2 * repeat].seed);
     std::string const& setup = cases[2 * repeat].setup;
-    std::size_t count = 0;  // of dots, rays and noise
+    std::size_t count = 0;  // seeds of dots, rays and noise
     for (std::size_t at = setup.find(line); at != std::string::npos; at = setup.find(line, at + 1)) ++count;
     EXPECT_EQ(count, 3u) << setup;
   }
@@ -187,8 +187,8 @@ TEST_F(Studies, AnAxisMayBeASeed) {
   EXPECT_THAT(cases[1].setup, testing::HasSubstr("seed = 4"));
 }
 
-// The first value of each table has no seed and takes the repeat's, as the two tables beside it do; the second one's
-// own seed stands, in its place.
+// The first value of each table has no seed and receives that of the repeat, like the base's tables; the seed of the
+// second one is retained.
 TEST_F(Studies, TablesAsValuesTakeTheSeedOfTheRepeatUnlessTheyHaveOne) {
   write("base.toml", std::string(small_base) + "[camera.noise]\nread_noise_e = 3.0\n");
   auto const count = [](std::string const& text, std::string const& wanted) {
@@ -215,16 +215,15 @@ TEST_F(Studies, TablesAsValuesTakeTheSeedOfTheRepeatUnlessTheyHaveOne) {
   }
 }
 
-// A million cases in 30 s on two cores are 60 us a case on one. Ten times that is allowed here, for slower machines and
-// sanitizers; when each case was made from its text, read and held, it took 360 us and 17 kB, and most of a minute
-// here.
+// A million cases in 30 s on two cores are 60 us per case on one core. Ten times that is allowed, for slower machines
+// and sanitizers; creating each case from its text, parsing and storing it took 360 us and 17 kB.
 TEST_F(Studies, ManyCasesArePlannedInATimeThatGrowsWithTheirNumber) {
   StudyFile const file = study(R"(base = "base.toml"
 [axes]
 "lens.f_number" = { linear = [8, 16, 200] }
 "geometry.z_d_mm" = { linear = [200, 300, 100] }
 )");
-  std::clock_t const start = std::clock();  // of processor time, whatever else the machine does
+  std::clock_t const start = std::clock();  // processor time, which other programs do not affect
   StudyPlan const plan = plan_study(file, "cpu");
   EXPECT_EQ(write_plan(in("run"), plan), Planned::fresh);
   EXPECT_LT(static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC, 20000 * 600e-6);
@@ -237,7 +236,7 @@ TEST_F(Studies, ManyCasesArePlannedInATimeThatGrowsWithTheirNumber) {
   EXPECT_EQ(write_plan(in("run"), plan), Planned::unchanged);
 }
 
-// Of 6000 values 5000 are tried: the ends, and every other place that is not left out.
+// 5000 of 6000 values are tried: the ends, and evenly spaced ones between them.
 TEST_F(Studies, OfVeryManyValuesTheEndsAreTried) {
   EXPECT_THAT(complaint("base = \"base.toml\"\n[axes]\n\"camera.bit_depth\" = { linear = [1, 17, 6000] }\n"),
               testing::HasSubstr("must be a whole number"));
@@ -344,7 +343,7 @@ TEST_F(BadStudies, AZipWithAPointTwice) {
                  {"\"lens.f_number\" has two values with the label a"});
 }
 
-// 8 and 16 are whole; what lies between them is not.
+// 8 and 16 are integers; the values between them are not.
 TEST_F(BadStudies, SobolSamplesOfAWholeNumber) {
   std::string const study = "base = \"base.toml\"\n[axes]\n\"camera.bit_depth\" = ";
   std::string const sobol = "\n[study]\nmode = \"sobol\"\nsamples = 4\n";

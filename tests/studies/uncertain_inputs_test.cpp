@@ -48,7 +48,7 @@ TEST(UncertainInputs, AreNumbersToAllThatReadThem) {
   EXPECT_EQ(inputs[1].degrees_of_freedom, 9);
 }
 
-// What a case writes down of its setup says what its numbers are worth, and reads back to the same.
+// The setup that a case writes contains its uncertainties and is read back unchanged.
 TEST(UncertainInputs, StayInTheResolvedSetup) {
   SetupDocument document = SetupDocument::from_text(uncertain, "setup.toml");
   std::vector<UncertainInput> const inputs = take_uncertain_inputs(document);
@@ -111,7 +111,7 @@ std::string pair_of(std::string const& keys, std::string const& coefficient) {
 
 constexpr char const* both_distances = R"(["geometry.z_a_mm", "geometry.z_d_mm"])";
 
-// A ruler that is laid at the wrong place makes one distance longer and the other shorter.
+// A misplaced ruler makes one distance longer and the other one shorter.
 TEST(UncertainInputs, AreCorrelatedInPairsAndStaySo) {
   std::string const text = correlated + pair_of(both_distances, "-0.8");
   SetupDocument document = SetupDocument::from_text(text, "setup.toml");
@@ -150,7 +150,7 @@ TEST(UncertainInputs, AreCorrelatedAsNumbersCanBe) {
               HasSubstr("is not a key of correlations"));
   EXPECT_THAT(correlation_complaint(pair_of(both_distances, "0.5") + pair_of(both_distances, "0.5")),
               HasSubstr("setup.toml:17:1: correlations"));
-  // a value that is no number is told once, where it stands
+  // a value that is not a number is reported once, at its place
   std::string const bad = std::regex_replace(std::string(correlated), std::regex("z_d_mm = \\{ value = [0-9.]+"),
                                              "z_d_mm = { value = \"far\"");
   ASSERT_NE(bad, correlated);
@@ -160,13 +160,13 @@ TEST(UncertainInputs, AreCorrelatedAsNumbersCanBe) {
   } catch (SetupError const& error) {
     EXPECT_THAT(error.what(), testing::AllOf(HasSubstr("geometry.z_d_mm"), testing::Not(HasSubstr("correlations"))));
   }
-  // two that go with a third cannot go against one another: the determinant is 1 - 3 (0.9)^2 - 2 (0.9)^3 < 0
+  // two inputs correlated with a third one cannot be anticorrelated: the determinant is 1 - 3 (0.9)^2 - 2 (0.9)^3 < 0
   std::string const with_lens = pair_of(R"(["lens.focal_length_mm", "geometry.z_a_mm"])", "0.9") +
                                 pair_of(R"(["lens.focal_length_mm", "geometry.z_d_mm"])", "0.9");
   EXPECT_THAT(correlation_complaint(with_lens + pair_of(both_distances, "-0.9")),
               testing::AllOf(HasSubstr("setup.toml:21:1: correlations"), HasSubstr("negative eigenvalue")));
   EXPECT_EQ(correlation_complaint(with_lens + pair_of(both_distances, "0.9")), "nothing");
-  // as long as pairs are missing, what stands there may look impossible: 1, 1 and nothing
+  // coefficients may be impossible as long as some pairs are missing: 1, 1 and none
   std::string const all_one = pair_of(R"(["lens.focal_length_mm", "geometry.z_a_mm"])", "1") +
                               pair_of(R"(["lens.focal_length_mm", "geometry.z_d_mm"])", "1");
   EXPECT_THAT(correlation_complaint(all_one), HasSubstr("negative eigenvalue"));

@@ -15,7 +15,7 @@ std::vector<std::string> unusual(std::string const& text) {
   return unusual_values(document);
 }
 
-// Each value is a usual one in another unit: the key, its place and the unit are named.
+// Each value would be usual in another unit: the message gives the key, its place and the unit.
 TEST(UsualValues, NameTheUnitThatWasMistaken) {
   EXPECT_THAT(
       unusual("[lens]\nfocal_length_mm = 0.105\n"),
@@ -32,7 +32,7 @@ TEST(UsualValues, NameTheUnitThatWasMistaken) {
               ElementsAre(HasSubstr("is it in mm? 0.0045 mm are 4.5 um"), HasSubstr("check its unit")));
 }
 
-// Zero and infinity mean something of their own, and words are none of its business.
+// Zero and infinity have special meanings, and texts are ignored.
 TEST(UsualValues, LeaveUsualValuesAlone) {
   EXPECT_THAT(unusual("[lens]\nfocal_length_mm = 105\nfocus_distance_mm = inf\n[medium]\ngladstone_dale = "
                       "\"ciddor\"\nambient_density_kg_m3 = 0\n[flow]\nvelocity_m_s = [0, 0, 0]\n"),

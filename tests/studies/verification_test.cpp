@@ -15,9 +15,9 @@ namespace {
 
 using testing::HasSubstr;
 
-// A wave of density 8 mm long through Table 1: cone, dot and window pass the product of their transfers (F10 to F12),
-// which is a closed form. The lattice interpolates linearly between nodes h = 2 px apart, which takes (pi h / l)^2 / 2
-// of a wave of l = 107 px, 0.0017, and the recurrence's 512 points leave 0.002.
+// A density wave of 8 mm in the set-up of Table 1: cone, dot and window transmit the product of their transfer
+// functions (F10 to F12), a closed form. The lattice interpolates linearly between nodes h = 2 px apart, which loses
+// (pi h / l)^2 / 2 of a wave of l = 107 px, 0.0017, and the recurrence's 512 points have an error of 0.002.
 TEST(PredictedBlur, PassesOfAWaveWhatTheFormulasPass) {
   CaseSetup const loaded = load_case_setup(SetupDocument::from_text(R"(schema = 1
 [camera]
@@ -50,7 +50,7 @@ window_px = [64, 32]
   }
 }
 
-/// Table 1's bench, simulated as the formulas have it.
+/// The set-up of Table 1 with simulated values equal to the formulas.
 VerifiedBench as_predicted(BenchGiven const& given) {
   Bench<double> const bench = table1_bench(given);
   VerifiedBench verified;
@@ -99,7 +99,7 @@ TEST(Verification, NamesTheCauseThatTheFormulasHaveWrong) {
   verified.simulated.bias_px.value = 0.014;
   verified.simulated.causes[2].simulated = 0.004;  // refraction
   verified.simulated.resolution.value *= 0.8;
-  verified.simulated.waves[0].measured.value = 0.85;  // the window's share is the farthest then
+  verified.simulated.waves[0].measured.value = 0.85;  // the transfer of the window then deviates most
   compare_with_formulas(verified, {});
   EXPECT_THAT(quantity(verified, "bias_px").why, HasSubstr("refraction: 0.004 px, which no formula includes"));
   EXPECT_THAT(quantity(verified, "resolution_mm").why, testing::StartsWith("window: transmits "));
@@ -111,13 +111,15 @@ TEST(Verification, NamesTheCauseThatTheFormulasHaveWrong) {
   EXPECT_THAT(quantity(verified, "bias_px").why, HasSubstr("cone: 0.012 px instead of 0.007 px"));
 }
 
-// A mean of squares that is nothing but noise lies within its error of nothing, however far its root seems off.
+// A mean of squares that consists of noise only is within its standard error of zero, however far its root appears to
+// be.
 TEST(Verification, JudgesABiasByItsSquare) {
   BenchGiven const given = table1_given();
   for (auto const& [error2, agrees] : {std::pair{3e-5, true}, {2e-5, false}}) {
     VerifiedBench verified = as_predicted(given);
     verified.simulated.predicted_bias_px = 4e-4;
-    verified.simulated.bias_px = {0.007, std::sqrt(4.9e-5 + error2) - 0.007};  // 4.9e-5 is 1.6 or 2.4 of its errors
+    verified.simulated.bias_px = {0.007,
+                                  std::sqrt(4.9e-5 + error2) - 0.007};  // 4.9e-5 is 1.6 or 2.4 times its standard error
     compare_with_formulas(verified, {});
     EXPECT_EQ(quantity(verified, "bias_px").agrees(), agrees) << error2;
   }
@@ -141,7 +143,7 @@ TEST(Verification, KeepsARequirementWithinTwoStandardErrors) {
     compare_with_formulas(verified, {{Bound::resolution, required}});
     EXPECT_EQ(verified.kept(), kept);
   }
-  // a view is to be no smaller
+  // the view must not be smaller
   double const view = 512 * table1_bench(given).pixel_at_medium();
   for (auto const& [required, kept] : {std::pair{0.99 * view, true}, {1.01 * view, false}}) {
     VerifiedBench verified = as_predicted(given);

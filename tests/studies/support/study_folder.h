@@ -36,7 +36,7 @@ inline std::vector<ManifestCase> all_cases(StudyPlan const& plan) {
   return cases;
 }
 
-/// A fresh folder for each test, with a base setup in it.
+/// A new folder for each test, with a base setup in it.
 class StudyFolder : public testing::Test {
  protected:
   void SetUp() override {
@@ -59,7 +59,7 @@ class StudyFolder : public testing::Test {
   }
   std::vector<ManifestCase> plan(std::string const& text) const { return all_cases(plan_study(study(text), "cpu")); }
 
-  /// What planning the study complains of.
+  /// Returns the error message of planning the study.
   std::string complaint(std::string const& text) const {
     try {
       plan(text);
@@ -68,7 +68,7 @@ class StudyFolder : public testing::Test {
     }
     return "nothing";
   }
-  /// Planning complains of exactly this place, "line:column" of the study, and says all of these.
+  /// Expects planning to report an error at exactly this place, "line:column" of the study, with all these texts.
   void expect_refused(std::string const& text, std::string const& place, std::vector<std::string> const& pieces) const {
     std::string const what = complaint(text);
     EXPECT_TRUE(what.starts_with(in("study.toml") + ':' + place + ": ")) << what;

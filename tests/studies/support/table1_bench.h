@@ -4,7 +4,8 @@
 
 namespace gladstone {
 
-/// The seed's Table 1, as physics.md evaluates it: K = 2.26e-4, n0 = 1.00027685, L_z = 10 mm, 10 um pixels, 532 nm.
+/// Medium of Table 1 (Rajendran et al. 2019), as evaluated in physics.md: K = 2.26e-4, n0 = 1.00027685, L_z = 10 mm, 10
+/// um pixels, 532 nm.
 inline BenchGiven table1_given() {
   BenchGiven given;
   given.camera.columns = given.camera.rows = 512;
@@ -13,7 +14,7 @@ inline BenchGiven table1_given() {
   return given;
 }
 
-/// Its bench: f = 105 mm, f/11, Z_A = 750 mm, Z_D = 250 mm, dots of 3 px.
+/// Its set-up: f = 105 mm, f/11, Z_A = 750 mm, Z_D = 250 mm, dots of 3 px.
 inline Bench<double> table1_bench(BenchGiven const& given) {
   Bench<double> bench{&given, 0.105, 11, 0.75, 0.25, 0};
   bench.dot_diameter = 3 * bench.pixel_at_dots();
