@@ -1,4 +1,4 @@
-# Every file in DATA stands in DATA/README.md, in a table row with its SHA-256, and every row has its file.
+# Every file in DATA has a table row with its SHA-256 in DATA/README.md, and every row has its file.
 cmake_minimum_required(VERSION 3.25)
 
 file(STRINGS ${DATA}/README.md rows REGEX "^\\| `")

@@ -1,4 +1,4 @@
-# The checksum test sees a changed, a missing and an unlisted file: each planted in a copy of DATA under WORK.
+# The checksum test detects a changed, a missing and an unlisted file: each is created in a copy of DATA under WORK.
 cmake_minimum_required(VERSION 3.25)
 
 function(expect_refusal reason)

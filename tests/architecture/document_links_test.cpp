@@ -1,4 +1,4 @@
-// Every link of the documents that leads into the tree leads to a file, and every heading that it names is there.
+// Every link of the documents to a file of the tree has an existing target, including the heading that it names.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -21,7 +21,7 @@ std::string content(fs::path const& path) {
   return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
 }
 
-/// Where "](...)" leads to, in order; addresses of other places ("https:") left out.
+/// Returns the targets of "](...)" in order, without external addresses ("https:").
 std::vector<std::string> links_of(std::string const& text) {
   std::vector<std::string> links;
   for (std::size_t at = text.find("]("); at != std::string::npos; at = text.find("](", at + 2)) {
@@ -31,7 +31,7 @@ std::vector<std::string> links_of(std::string const& text) {
   return links;
 }
 
-/// A heading as links name it: small letters, hyphens for spaces, punctuation dropped.
+/// Returns the anchor of a heading: lower case, hyphens for spaces, punctuation removed.
 std::string anchor_of(std::string const& heading) {
   std::string anchor;
   for (char const c : heading) {
@@ -55,7 +55,7 @@ bool has_anchor(std::string const& text, std::string const& anchor) {
   return false;
 }
 
-/// Links of a document that lead nowhere.
+/// Returns the links of a document without an existing target.
 std::vector<std::string> broken_links(fs::path const& document) {
   std::vector<std::string> broken;
   for (std::string const& link : links_of(content(document))) {

@@ -1,4 +1,4 @@
-# A build inside the source tree is refused, and the refusal names the cure. Tried on a copy of the top CMakeLists.txt.
+# A build inside the source tree is rejected with a remedy. Tested with a copy of the top-level CMakeLists.txt.
 cmake_minimum_required(VERSION 3.25)
 
 file(REMOVE_RECURSE ${WORK})

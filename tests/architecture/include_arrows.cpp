@@ -10,7 +10,7 @@ namespace {
 
 using Names = std::vector<std::string>;
 
-/// What a room may include: other rooms, libraries anywhere, and libraries in .cpp files only.
+/// Permitted includes of a room: other rooms, libraries anywhere, and libraries in .cpp files only.
 struct Room {
   std::string name;
   Names rooms;
@@ -36,7 +36,7 @@ Names operator+(Names a, Names const& b) {
 
 Names const libraries = render + renderers + analysis;
 
-/// The table of rooms and arrows; a room may always include itself, the standard library and, in .cpp
+/// The table of rooms and permitted includes. Every room may also include itself, the standard library and, in .cpp
 /// files, POSIX.
 std::vector<Room> const& table() {
   static std::vector<Room> const rooms = {
@@ -172,7 +172,7 @@ bool ends_with_one_of(std::string_view path, std::initializer_list<std::string_v
   return std::any_of(endings.begin(), endings.end(), [&](std::string_view ending) { return path.ends_with(ending); });
 }
 
-/// The source with its comments blanked out; line numbers stay.
+/// Returns the source with its comments replaced by blanks; line numbers are unchanged.
 std::string without_comments(std::string_view source) {
   enum class In { code, text, character, line_comment, block_comment } in = In::code;
   std::string out(source);
@@ -206,7 +206,7 @@ std::string without_comments(std::string_view source) {
   return out;
 }
 
-/// What is wrong with this include in this room; empty: nothing.
+/// Returns the problem of this include in this room; empty if it is permitted.
 std::string fault(Room const& room, std::string const& path, Include const& include) {
   std::string const shown = include.quoted ? '"' + include.target + '"' : '<' + include.target + '>';
   if (!include.quoted) {
@@ -250,7 +250,7 @@ std::string room_of(std::string_view path) {
   if (path.find("..") != std::string_view::npos) return "";
   for (Room const& room : table()) {
     if (!path.starts_with(room.name + "/")) continue;
-    bool const has_rooms = room.name.find('/') == std::string::npos;  // "studies": its folders are rooms of their own
+    bool const has_rooms = room.name.find('/') == std::string::npos;  // "studies": its folders are separate rooms
     if (!has_rooms || path.find('/', room.name.size() + 1) == std::string_view::npos) return room.name;
   }
   return path.starts_with("tests/") ? "tests" : "";
@@ -270,7 +270,7 @@ std::vector<std::string> forbidden_arrows(std::string const& path, std::string_v
   auto const room = std::find_if(table().begin(), table().end(), [&](Room const& r) { return r.name == name; });
   if (!path.starts_with("cuda/") && ends_with_one_of(path, {".cu", ".cuh"}))
     faults.push_back(path + ": CUDA code outside cuda/");
-  if (name == "tests") {  // include what they like, but no CUDA
+  if (name == "tests") {  // tests may include everything except CUDA
     for (Include const& include : includes_of(source)) {
       if (include.quoted || library_of(include.target) != "CUDA") continue;
       faults.push_back(path + ":" + std::to_string(include.line) + ": tests may not include CUDA: <" + include.target +

@@ -1,5 +1,5 @@
-// The rooms and their arrows (CONTRIBUTING.md): every #include of every source file is one that the table has. Most
-// tests here plant an include and check that it is seen; the last ones read the tree.
+// The rooms and their permitted includes (docs/architecture.md): every #include of every source file must be in the
+// table. Most tests here check a synthetic include; the last ones read the tree.
 #include "tests/architecture/include_arrows.h"
 
 #include <gmock/gmock.h>
@@ -22,7 +22,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 
 struct SourceFile {
-  std::string path;  ///< from the root of the tree
+  std::string path;  ///< path from the root of the tree
   std::string text;
 };
 
@@ -93,7 +93,7 @@ TEST(IncludeArrows, AllowWhatTheTableHas) {
               IsEmpty());
 }
 
-/// A file and one include line that its room may not have.
+/// A file and an include line that its room does not permit.
 struct Planted {
   std::string path;
   std::string include;
@@ -111,7 +111,7 @@ INSTANTIATE_TEST_SUITE_P(
     IncludeArrows, ForbiddenArrow,
     testing::Values(
         Planted{"render/base/a.h", "\"render/medium/b.h\""},  // upwards
-        Planted{"render/files/a.h", "<hdf5.h>"},              // libraries that headers do not show
+        Planted{"render/files/a.h", "<hdf5.h>"},              // libraries not permitted in headers
         Planted{"render/base/a.cpp", "<hdf5.h>"}, Planted{"render/base/a.h", "<Eigen/Core>"},
         Planted{"render/base/a.cpp", "\"render/files/b.h\""}, Planted{"render/files/a.cpp", "\"render/setup/b.h\""},
         Planted{"render/setup/a.cpp", "\"render/files/b.h\""}, Planted{"render/files/a.cpp", "\"render/medium/b.h\""},
@@ -120,11 +120,11 @@ INSTANTIATE_TEST_SUITE_P(
         Planted{"render/setup/a.cpp", "\"render/light/b.h\""}, Planted{"analysis/vectors/a.h", "\"render/setup/b.h\""},
         Planted{"render/base/a.h", "<tbb/parallel_for.h>"}, Planted{"render/base/a.h", "<fmt/format.h>"},
         Planted{"render/medium/a.h", "<unistd.h>"}, Planted{"render/base/a.cpp", "<opencv2/core.hpp>"},
-        Planted{"render/light/a.h", "\"render/medium/b.h\""},  // the four meet in scene
+        Planted{"render/light/a.h", "\"render/medium/b.h\""},  // only scene includes all four
         Planted{"render/medium/a.h", "\"render/optics/b.h\""}, Planted{"render/optics/a.h", "\"render/sensor/b.h\""},
         Planted{"render/sensor/a.cpp", "\"render/light/b.h\""}, Planted{"render/optics/a.h", "\"render/scene/b.h\""},
-        Planted{"render/medium/a.cpp", "<hdf5.h>"},                  // through render/files alone
-        Planted{"render/scene/a.h", "\"render/focused_dots/b.h\""},  // the two renderers know the scene, not each other
+        Planted{"render/medium/a.cpp", "<hdf5.h>"},  // only through render/files
+        Planted{"render/scene/a.h", "\"render/focused_dots/b.h\""},  // renderers include the scene, not vice versa
         Planted{"render/rays/a.h", "\"render/focused_dots/b.h\""},
         Planted{"render/focused_dots/a.h", "\"render/rays/b.h\""},
         Planted{"cuda/rays/a.h", "\"render/focused_dots/b.h\""},
@@ -136,7 +136,7 @@ INSTANTIATE_TEST_SUITE_P(
         Planted{"analysis/correlation/a.cpp", "\"studies/b.h\""}, Planted{"cuda/a.cu", "\"studies/b.h\""},
         Planted{"analysis/vectors/a.cpp", "\"analysis/errors/b.h\""}, Planted{"cuda/device/a.cu", "\"cuda/rays/b.h\""},
         Planted{"cuda/correlation/a.cu", "\"cuda/focused_dots/b.h\""}, Planted{"cuda/a.cpp", "<opencv2/core.hpp>"},
-        Planted{"studies/case/a.cpp", "\"studies/compare/b.h\""},  // studies' rooms, downwards
+        Planted{"studies/case/a.cpp", "\"studies/compare/b.h\""},  // rooms of studies, downwards
         Planted{"studies/compare/a.h", "\"studies/sweep/b.h\""},
         Planted{"studies/compare/a.h", "\"studies/figures/b.h\""},
         Planted{"studies/sweep/a.cpp", "\"studies/figures/b.h\""},
@@ -147,12 +147,12 @@ INSTANTIATE_TEST_SUITE_P(
         Planted{"studies/sweep/a.cpp", "\"studies/commands/b.h\""}, Planted{"studies/compare/a.cpp", "\"cuda/b.h\""},
         Planted{"studies/sweep/a.cpp", "<CLI/CLI.hpp>"}, Planted{"studies/compare/a.cpp", "<nlopt.hpp>"},
         Planted{"studies/design/a.h", "<nlopt.hpp>"},
-        Planted{"render/scene/a.cpp", "<cuda_runtime.h>"},  // CUDA headers in cuda/ alone
+        Planted{"render/scene/a.cpp", "<cuda_runtime.h>"},  // CUDA headers only in cuda/
         Planted{"tests/cuda/a_test.cpp", "<cuda_runtime_api.h>"}, Planted{"studies/a.cpp", "<cufft.h>"},
         Planted{"render/base/a.h", "<cuda/std/complex>"}, Planted{"render/base/a.h", "<thrust/sort.h>"},
         Planted{"studies/a.cpp", "\"tests/support/b.h\""},  // nothing includes tests
         Planted{"render/base/a.cpp", "<gtest/gtest.h>"},
-        Planted{"render/base/a.cpp", "<boost/any.hpp>"},  // a library that nobody listed
+        Planted{"render/base/a.cpp", "<boost/any.hpp>"},  // an unlisted library
         Planted{"render/base/a.h", "\"vec.h\""},          // not a path from the root
         Planted{"render/light/a.h", "\"../medium/b.h\""}, Planted{"render/base/a.h", "\"render/base/../medium/b.h\""},
         Planted{"render/base/a.h", "HEADER_OF_THE_DAY"}));  // cannot be checked
@@ -211,7 +211,7 @@ TEST(Tree, DescribesEveryRoomInAShortReadme) {
 
 using IncludesOfFiles = std::map<std::string, std::vector<Include>>;
 
-/// Whether a file draws in CUDA's headers, by itself or through others. @param seen files that were looked at
+/// Returns true if a file includes CUDA headers, directly or indirectly. @param seen files already visited
 bool draws_cuda(std::string const& path, IncludesOfFiles const& files, std::set<std::string>& seen) {
   auto const file = files.find(path);
   if (file == files.end() || !seen.insert(path).second) return false;
@@ -229,8 +229,8 @@ TEST(Tree, KeepsCudaHeadersInTheirRoom) {
     }
   }
   std::set<std::string> none_yet;
-  EXPECT_TRUE(draws_cuda("cuda/device/launch.h", files, none_yet));  // what is looked for is there to be found
-  std::set<std::string> seen;                                        // by any of them, and found to draw none
+  EXPECT_TRUE(draws_cuda("cuda/device/launch.h", files, none_yet));  // the search finds an existing include
+  std::set<std::string> seen;  // visited from one of them, and includes no CUDA header
   for (auto const& [path, includes] : files) {
     if (!path.starts_with("cuda/")) {
       EXPECT_FALSE(draws_cuda(path, files, seen)) << path;

@@ -7,11 +7,11 @@
 namespace gladstone::end_to_end {
 namespace {
 
-/// The setups of data/benchmarks are the scenes that the benchmarks measure.
+/// The setups in data/benchmarks are the scenes of the benchmarks.
 class BenchmarkSetups : public Workplace {
  protected:
   static std::string path(std::string const& name) { return std::string(GLADSTONE_DATA_DIR) + "/benchmarks/" + name; }
-  /// Renders one of them with few rays and the given changes; what its summary says.
+  /// Renders one of them with few rays and the given changes, and returns its summary.
   nlohmann::json summary_of(std::string const& name, std::vector<std::string> const& changes) const {
     std::vector<std::string> more{"--device", "cpu", "--set", "render.rays_per_dot=8"};
     for (std::string const& change : changes) more.insert(more.end(), {"--set", change});
@@ -26,8 +26,8 @@ class BenchmarkSetups : public Workplace {
   }
 };
 
-// f = 105 mm at 1000 mm: 105/895. The displacement scale of the field, over the depth of 32.7 mm with the lever of
-// 250 mm: amplitudes of 10 % of n - 1 = 2.8e-4 on wave numbers of 1.5e3/m give tenths of a pixel; no field gives none.
+// f = 105 mm at 1000 mm: 105/895. Scale of the displacement for a depth of 32.7 mm and a lever arm of 250 mm:
+// amplitudes of 10 % of n - 1 = 2.8e-4 at wavenumbers of 1.5e3/m give tenths of a pixel; without a field it is zero.
 TEST_F(BenchmarkSetups, CasePRendersWithAFewDots) {
   write("dots.csv", "x_mm,y_mm\n0,0\n4,-2\n-5,5\n");
   auto const summary =
@@ -47,7 +47,7 @@ TEST_F(BenchmarkSetups, CaseTRendersAPartOfItsView) {
   EXPECT_GT(largest_displacement(), 0.01);
 }
 
-// Written by gladstone_bench_cases; another mathematical library may round the last place of a float differently.
+// Written by gladstone_bench_cases; another mathematical library may round the last digit of a float differently.
 TEST_F(BenchmarkSetups, CasePHasTheVolumeOfTheFormula) {
   std::string const file = content(path("case_p_volume.nrrd"));
   constexpr int nodes = 64;

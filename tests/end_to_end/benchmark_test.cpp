@@ -19,8 +19,9 @@ nlohmann::json score_of(nlohmann::json const& benchmark, std::string const& esti
   return nullptr;
 }
 
-// The published pair measured by the program itself and handed in as another code's files: ours, and as OpenPIV writes
-// them, y upwards about the grid and half a pixel off. Both must score as the same estimator does inside.
+// The published pair measured by the program itself and submitted as files of another code: once in our format, and
+// once as OpenPIV writes them, y upwards about the grid and with an offset of half a pixel. Both must have the scores
+// of the built-in estimator.
 TEST_F(Benchmark, ScoresTheVectorsOfAnyCode) {
   auto const ours = json_of({"benchmark", "-o", "b", "--cases", "vortex", "noise_5", "--estimators", "one_pass"});
   for (char const* name : {"b/vortex/reference.tif", "b/vortex/flow.tif", "b/vortex/truth.csv", "b/noise_5/truth.csv",
@@ -74,10 +75,10 @@ TEST_F(Benchmark, TellsWhatSigmaIsWorth) {
   EXPECT_THAT(read("b/benchmark.md"), testing::HasSubstr("error_against_uncertainty.png"));
 }
 
-// What ships is what the program learns, on any machine of the same arithmetic: four digits are written, and the
-// weights may be off by as much as rounding in single precision moves them, of which a thousandth is ample.
+// The shipped weights are those that the program learns on any machine with the same arithmetic: four digits are
+// written, and rounding in single precision changes the weights by much less than a thousandth.
 TEST_F(Benchmark, LearnsTheCombinationThatShips) {
-  // 20 s of work, which a busy machine makes minutes
+  // 20 s of work, minutes on a busy machine
   Outcome const outcome =
       Program({"benchmark", "-o", "learnt", "--learn", "--device", "cpu", "--json"}, folder_).finish(hang_limit);
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
@@ -102,7 +103,7 @@ TEST_F(Benchmark, LearnsTheCombinationThatShips) {
   EXPECT_FALSE(std::filesystem::exists(in("learnt/benchmark.html")));
 }
 
-/// A code's vectors for `uniform` and `vortex`, every 16 px, with the truth changed and taken from another place.
+/// Vectors of a code for `uniform` and `vortex`, every 16 px, with a changed truth taken at another position.
 template <class Change>
 std::map<std::string, std::string> changed_truth(Change const& change, Vec2d shift_px = {}) {
   std::map<std::string, std::string> files;
@@ -121,9 +122,9 @@ std::map<std::string, std::string> changed_truth(Change const& change, Vec2d shi
   return files;
 }
 
-// The negative of the truth is off by twice its rms in any case: the vortex alone cannot tell exchanged frames from
-// axes that point up, the uniform displacement not from exchanged columns, but both together can. Exchanged columns of
-// displacements are named as well.
+// The negative of the truth has an error of twice its rms in any case. The vortex alone does not distinguish exchanged
+// frames from axes that point up, and the uniform displacement not from exchanged columns, but both together do.
+// Exchanged columns of displacements are reported, too.
 TEST_F(Benchmark, ForgivesNoWrongSigns) {
   auto const write_all = [&](std::string const& folder, auto const& files) {
     std::filesystem::create_directories(in(folder));
@@ -165,8 +166,8 @@ TEST_F(Benchmark, ForgivesNoWrongSigns) {
   EXPECT_EQ(nlohmann::json::parse(right.out)["likely_mistakes"].size(), 0u);
 }
 
-// Each is off by the same in both cases, of which the uniform displacement cannot see a shift, nor tell an offset from
-// a factor. Vectors with random factors follow the truth, and no correction explains them.
+// Each mistake is the same in both cases; the uniform displacement does not show a shift, and does not distinguish an
+// offset from a factor. Vectors with random factors follow the truth, and no correction explains them.
 TEST_F(Benchmark, FindsOneMistakeInAllCases) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> factor(0.5, 2.0);
@@ -197,7 +198,7 @@ TEST_F(Benchmark, FindsOneMistakeInAllCases) {
   }
 }
 
-// 63 x 63 vectors 16 px apart: 31 rows of them are 1953, and one row given twice is 63.
+// 63 x 63 vectors 16 px apart: 31 rows of them are 1953, and one duplicate row has 63.
 TEST_F(Benchmark, RefusesHalfAGridAndRowsGivenTwice) {
   std::string const whole = changed_truth([](Vec2d d) { return d; }).at("uniform.csv");
   auto const lines = [&](std::size_t count) {
@@ -212,7 +213,7 @@ TEST_F(Benchmark, RefusesHalfAGridAndRowsGivenTwice) {
     EXPECT_EQ(outcome.exit_code, 2) << outcome.err;
     EXPECT_THAT(outcome.err, testing::HasSubstr(piece));
   };
-  // rows are expected as far as 96 px from the lower border: up to y = 912, the 57th
+  // rows are expected down to 96 px from the lower border: up to y = 912, the 57th row
   refused(lines(1 + 31 * 63), "has 1953 of the 3591 vectors of its grid");
   refused(whole + lines(64).substr(8), "63 of 4032 vectors have the position");
   std::string gap = whole;

@@ -9,7 +9,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A 24 mm lens 300 mm before dots 1 mm wide, on three planes 40 mm apart.
+/// A 24 mm lens 300 mm in front of dots 1 mm wide, on three planes 40 mm apart.
 constexpr char const* wide = R"(experiment = "calibration"
 
 [camera]
@@ -45,7 +45,7 @@ class Calibrations : public Workplace {
   nlohmann::json calibrate(std::string const& folder) const {
     return json_of({"calibrate", folder, "--quiet", "--no-figures"});
   }
-  /// Every parameter lies within three of its standard errors of the camera that rendered it.
+  /// Every parameter is within three standard errors of that of the camera that rendered the images.
   static void expect_recovered(nlohmann::json const& calibration) {
     for (auto const& [name, parameter] : calibration["pinhole"]["parameters"].items()) {
       double const off = parameter["value"].get<double>() - parameter["rendered"].get<double>();
@@ -71,14 +71,16 @@ TEST_F(Calibrations, RenderPlanesOfDotsAndTheirTruth) {
     double const column = 319.5 + scale * position[3 * k] / depth, row = 239.5 - scale * position[3 * k + 1] / depth;
     EXPECT_NEAR(chief[2 * k], column, 1e-7);
     EXPECT_NEAR(chief[2 * k + 1], row, 1e-7);
-    // centroids: 1024 random rays over 13 px would scatter by 13 / 4 / sqrt(1024) = 0.1 px, Sobol's by a tenth of that
+    // centroids: 1024 random rays over 13 px would scatter by 13 / 4 / sqrt(1024) = 0.1 px, those of a Sobol sequence
+    // by a tenth of that
     EXPECT_NEAR(image[2 * k], column, 0.05);
     EXPECT_NEAR(image[2 * k + 1], row, 0.05);
   }
 }
 
-// What rays leave in the dots' places: measured between two tracings, it is what the true places, which are known here
-// in closed form for a thin lens in focus, are missed by. Fewer rays leave more, and a warning.
+// Error of the positions due to the finite number of rays: the difference between two tracings equals the actual error,
+// since the true positions have a closed form for a thin lens in focus. Fewer rays have a larger error and cause a
+// warning.
 TEST_F(Calibrations, SayWhatRaysLeaveInTheDotsPlaces) {
   write("setup.toml", wide);
   auto const json = json_of({"render", "setup.toml", "-o", "case", "--quiet"});
@@ -88,8 +90,8 @@ TEST_F(Calibrations, SayWhatRaysLeaveInTheDotsPlaces) {
     double squares = 0;
     for (std::size_t k = 2 * 117 * plane; k < 2 * 117 * (plane + 1); ++k) squares += std::pow(image[k] - chief[k], 2);
     double const missed = std::sqrt(squares / (2 * 117)), said = json["planes"][plane]["place_error_px"]["rms"];
-    // 128 numbers tell a scatter to 1 / sqrt(2 * 128) = 6 %. In focus a point's rays meet whatever their number, and
-    // what is missed is cos^4 across a dot, which is part of its place
+    // 128 numbers determine a scatter to 1 / sqrt(2 * 128) = 6 %. In focus all rays of a point meet whatever their
+    // number, and the remaining error is cos^4 across a dot, which is part of its position
     EXPECT_LT(said, 1.25 * missed) << plane;
     if (plane != 1) {
       EXPECT_GT(said, 0.75 * missed) << plane;
@@ -100,7 +102,8 @@ TEST_F(Calibrations, SayWhatRaysLeaveInTheDotsPlaces) {
   EXPECT_THAT(few["warnings"].dump(), testing::HasSubstr("increase render.rays_per_dot"));
 }
 
-// A double Gauss that looks at a grid of +-1.2 m from 1 m away: its mounts vignette dots far off the axis completely.
+// A double Gauss lens with a grid of +-1.2 m at a distance of 1 m: its mounts vignette dots far from the axis
+// completely.
 TEST_F(Calibrations, WarnOfDotsThatTheLensVignettes) {
   write("setup.toml", R"(experiment = "calibration"
 [camera]
@@ -145,7 +148,7 @@ TEST_F(Calibrations, RecoverTheCamera) {
   EXPECT_EQ(dataset("case/calibration.h5", "/soloff/exponents").size(), 19u * 3);
 }
 
-// Where dots are found is where their light is.
+// The detected positions are the centroids of the light.
 TEST_F(Calibrations, DetectionAgreesWithTheTruth) {
   write("setup.toml", wide);
   render("case");
@@ -167,10 +170,9 @@ TEST_F(Calibrations, DetectionAgreesWithTheTruth) {
   EXPECT_LT(std::sqrt(squares / (2.0 * static_cast<double>(count))), 5e-3);
 }
 
-// Brown's coefficients, and with them the whole picture to 0.01 px: the camera that was fitted and the one that
-// rendered image the points of all planes, and of planes between them, to the same places. With noise of some 0.005 px
-// in each of 351 dots, fourteen parameters leave sqrt(14 / 702) of it on the average, and a few times that in the
-// corners.
+// Brown's coefficients, and thereby the whole image to 0.01 px: the fitted camera and the one that rendered the images
+// project the points of all planes, and of planes between them, to the same pixels. With noise of some 0.005 px in each
+// of 351 dots, fourteen parameters retain sqrt(14 / 702) of it on average, and a few times that in the corners.
 TEST_F(Calibrations, RecoverDistortion) {
   write("setup.toml", with(wide, "[lens]", "[camera.sensor]\ndistortion = [-0.2, 0.1, 0.002, -0.001]\n[lens]"));
   render("case");
@@ -225,11 +227,12 @@ TEST_F(Calibrations, RecoverAStereoPairWithScheimpflug) {
     expect_recovered(json["cameras"][name]);
     EXPECT_TRUE(fs::exists(in("case/" + name + "/calibration.h5")));
   }
-  // the principal point lies where the sensor's normal through the lens meets it, z_i tan(tilt) off the middle
+  // the principal point is the intersection of the sensor with its normal through the lens, z_i tan(tilt) from the
+  // middle
   EXPECT_GT(std::abs(json["cameras"]["left"]["pinhole"]["parameters"]["cx"]["value"].get<double>() - 319.5), 50);
 }
 
-// A thick slanted window is no pinhole: the polynomial follows it.
+// A thick inclined optical window is not described by a pinhole camera, but by the polynomial.
 TEST_F(Calibrations, ThroughAWindowThePolynomialHolds) {
   write("setup.toml",
         std::string(wide) + "[[window]]\nposition_mm = [0, 0, 80]\nthickness_mm = 30\ntilt_deg = [15, 0]\n");
@@ -245,7 +248,7 @@ TEST_F(Calibrations, FiguresShowTheResiduals) {
   render("case");
   succeed({"calibrate", "case", "--quiet"});
   EXPECT_TRUE(fs::exists(in("case/calibration_residuals.png")));
-  render("case");  // what was derived from the old planes goes
+  render("case");  // results derived from the old planes are deleted
   EXPECT_FALSE(fs::exists(in("case/calibration_residuals.png")));
   EXPECT_FALSE(fs::exists(in("case/calibration.h5")));
 }
@@ -283,8 +286,8 @@ TEST_F(Calibrations, OtherCommandsSayWhatTheCaseIs) {
   expect_refused({"compare", "case"}, 2, {"case: is a calibration"});
 }
 
-// Pictures from anywhere are calibrated as those of the case that they were copied from, by a setup that knows the
-// camera's place to a centimetre only: the middle of the grid is told by the grid itself.
+// Images in any folder are calibrated like those of the case from which they were copied, with a setup that contains
+// the position of the camera to a centimetre only: the grid itself determines its middle.
 TEST_F(Calibrations, TakePicturesFromElsewhere) {
   write("setup.toml", wide);
   succeed({"render", "setup.toml", "-o", "case", "--quiet"});
@@ -309,7 +312,8 @@ TEST_F(Calibrations, TakePicturesFromElsewhere) {
   EXPECT_EQ(own["dots"], cases["dots"]);
   EXPECT_EQ(own["planes"][2]["z_mm"], 20.0);
   for (auto const& [name, parameter] : cases["pinhole"]["parameters"].items()) {
-    // both fits start and end alike; the light across the pupil is told from 10 mm farther: (R/z)^2 of 3 %
+    // both fits have the same start and end; the light across the pupil is computed for a position 10 mm farther:
+    // (R/z)^2 of 3 %
     auto const& here = own["pinhole"]["parameters"][name];
     EXPECT_NEAR(here["value"].get<double>(), parameter["value"].get<double>(),
                 3 * parameter["standard_error"].get<double>())
@@ -332,7 +336,7 @@ TEST_F(Calibrations, TakePicturesFromElsewhere) {
                  {"roughly.toml: only fits a camera with the dots behind it", "in the order of calibration.planes_mm"});
 }
 
-/// Pictures of a rendered case, calibrated as somebody's own.
+/// Images of a rendered case, calibrated as if they were the user's own.
 class CalibrationPictures : public Calibrations {
  protected:
   void SetUp() override {
@@ -350,7 +354,7 @@ class CalibrationPictures : public Calibrations {
     std::vector<std::string> all = arguments(pictures, false);
     return json_of(all);
   }
-  /// fx of the thin lens in focus on Z = 0: its image distance over the pixel pitch.
+  /// fx of the thin lens in focus on Z = 0: its image distance divided by the pixel pitch.
   static constexpr double fx = 24e-3 * 0.3 / (0.3 - 24e-3) / 10e-6;
   std::string const p0 = "case/plane_000.tif", p1 = "case/plane_001.tif", p2 = "case/plane_002.tif";
 };
@@ -363,7 +367,7 @@ TEST_F(CalibrationPictures, ThatAreGivenTwiceOrInAnotherOrderAreRefusedByName) {
   EXPECT_FALSE(fs::exists(in("camera/calibration.h5")));
 }
 
-// A second exposure of the same plane, with noise of its own, is no other plane.
+// A second exposure of the same plane, with independent noise, does not count as another plane.
 TEST_F(CalibrationPictures, OfOnePlaneTakenTwiceAreRefused) {
   Image<double> const picture = read_image(in(p0).string());
   Image<std::uint16_t> other(picture.columns(), picture.rows());
@@ -375,7 +379,8 @@ TEST_F(CalibrationPictures, OfOnePlaneTakenTwiceAreRefused) {
                  {"again.tif: shows the dots at the same pixels as case/plane_000.tif"});
 }
 
-// Dirt that touches a dot draws its centroid by pixels: such dots are counted and left out, and the camera stays.
+// Dirt that touches a dot shifts its centroid by pixels: such dots are counted and excluded, and the camera is
+// unchanged.
 TEST_F(CalibrationPictures, WithDirtLeaveItOut) {
   auto const places = dataset("case/truth.h5", "/dots/image_px");
   Image<double> const picture = read_image(in(p1).string());
@@ -399,7 +404,8 @@ TEST_F(CalibrationPictures, WithDirtLeaveItOut) {
   EXPECT_LT(json["pinhole"]["rms_px"].get<double>(), 0.01);
 }
 
-// A plate that moves by `share` of Z along X is seen as by a camera that moves the other way, plane by plane.
+// A plate that moves by `share` times Z along X looks like a camera that moves in the opposite direction from plane to
+// plane.
 TEST_F(CalibrationPictures, OfAPlateThatDoesNotMoveAlongItsNormalGiveTheCameraAndTheDrift) {
   double const drift = 0.04;  // 2.3 degrees
   std::vector<std::string> pictures;
@@ -415,7 +421,7 @@ TEST_F(CalibrationPictures, OfAPlateThatDoesNotMoveAlongItsNormalGiveTheCameraAn
     pictures.push_back(folder + "/plane_000.tif");
   }
   auto const json = calibrated(pictures);
-  // what the principal point, which is known to 1 px here, leaves of the drift is 1 / fx
+  // the principal point is determined to 1 px here, so that the drift is determined to 1 / fx
   EXPECT_NEAR(json["drift"][0].get<double>(), drift, 5 / fx);
   EXPECT_NEAR(json["drift"][1].get<double>(), 0, 5 / fx);
   EXPECT_THAT(json["warnings"].dump(), testing::HasSubstr("degrees to its normal"));
@@ -423,7 +429,7 @@ TEST_F(CalibrationPictures, OfAPlateThatDoesNotMoveAlongItsNormalGiveTheCameraAn
   EXPECT_NEAR(parameter["value"].get<double>(), fx, 1e-3 * fx);
 }
 
-// The plate of the first plane hung one dot aside: its whole grid is seen, but not where it was said to be.
+// The plate of the first plane was shifted by one dot: its whole grid is visible, but at another position than stated.
 TEST_F(CalibrationPictures, WithAMiddleDotThatIsOffByOneAreCorrected) {
   write("one.toml", with(with(wide, "[-20.0, 0.0, 20.0]", "[-20.0]"), "[geometry]\nz_a_mm = 300.0\n",
                          "[camera.pose]\nposition_mm = [-5.0, 0.0, 300.0]\nrotation_deg = [0, 0, 0]\n"));

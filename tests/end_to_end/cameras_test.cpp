@@ -70,7 +70,7 @@ TEST_F(Cameras, EachGivesACaseOfItsOwn) {
   EXPECT_EQ(names("case/right"), files);
   auto summary = json;
   EXPECT_TRUE(summary["warnings"].is_array());
-  summary.erase("warnings");  // of the run
+  summary.erase("warnings");  // warnings of the run
   EXPECT_EQ(summary, nlohmann::json::parse(read("case/summary.json")));
   EXPECT_EQ(json["cameras"]["left"], nlohmann::json::parse(read("case/left/summary.json")));
   // the longer lens sees the dots larger: M = f / (Z_B - f) with Z_B = 1015.4 mm
@@ -79,7 +79,7 @@ TEST_F(Cameras, EachGivesACaseOfItsOwn) {
   EXPECT_NEAR(json["cameras"]["right"]["magnification"].get<double>(), 120 / (z_b - 120), 2e-3);
 }
 
-// Both see the very same dots, each from its side.
+// Both see the same dots, from their sides.
 TEST_F(Cameras, SeeOneTarget) {
   render("case");
   auto const left = dataset("case/left/truth.h5", "/dots/position_m"),
@@ -89,8 +89,8 @@ TEST_F(Cameras, SeeOneTarget) {
   EXPECT_NE(dataset("case/left/truth.h5", "/dots/reference_px"), dataset("case/right/truth.h5", "/dots/reference_px"));
 }
 
-// Dots of a file, too, are of one size on the target, whatever lens looks at them: 3 px of the first camera. They stand
-// where the axes meet the target, 132.3 mm / 750 mm of 250 mm off its middle.
+// Dots of a file have one size on the target, too, whatever the lens: 3 px of the first camera. They are at the
+// intersections of the axes with the target, 132.3 mm / 750 mm of 250 mm from its middle.
 TEST_F(Cameras, SeeDotsOfAFileInOneSize) {
   write("dots.csv", "x_mm,y_mm\n44.1,0\n44.6,0.5\n-44.1,0\n-44.6,0.5\n");
   std::string text = stereo;
@@ -103,7 +103,8 @@ TEST_F(Cameras, SeeDotsOfAFileInOneSize) {
     auto const at = setup.find(key);
     return at == std::string::npos ? 0.0 : std::stod(setup.substr(at + key.size()));
   };
-  // M = f / (Z_B - f), Z_B = 1015.4 mm, pixels of 10 um, which a target that leans away by 10 degrees stretches one way
+  // M = f / (Z_B - f), Z_B = 1015.4 mm, pixels of 10 um; the target, inclined by 10 degrees, is stretched in one
+  // direction
   double const cosine = std::cos(std::atan(132.3 / 750)), z_b = 1000 / cosine;
   double const expected = 0.03 * (z_b - 105) / 105 / std::sqrt(cosine);
   EXPECT_NEAR(diameter_mm("left"), expected, 1e-9);
@@ -131,7 +132,7 @@ TEST_F(Cameras, TheSetupOfAllRendersTheSameAgain) {
             nlohmann::json::parse(read("again/summary.json"))["cameras"]["right"]["flow_sha256"]);
 }
 
-// Two cameras at one place with one seed see one light with different noise.
+// Two cameras at one position with one seed record the same light with different noise.
 TEST_F(Cameras, HaveIndependentNoise) {
   std::string text = with(with(stereo, "[132.3", "[-132.3"), "[96, 64]", "[64, 64]");
   text = with(text, "[camera.lens]\nfocal_length_mm = 120.0\nf_number = 11.0\n", "");
@@ -146,8 +147,8 @@ TEST_F(Cameras, HaveIndependentNoise) {
     product += (l - r) * (l - r);
     square += l;
   }
-  // the difference of two shots has twice the variance of one: in levels, twice the level times 65535 / 30000; a few
-  // hundred lit pixels know it to a tenth
+  // the difference of two exposures has twice the variance of one: in levels, twice the level times 65535 / 30000; a
+  // few hundred illuminated pixels determine it to a tenth
   EXPECT_NEAR(product / (2 * square * 65535.0 / 30000), 1.0, 0.3);
 }
 
@@ -161,8 +162,8 @@ TEST_F(Cameras, LookThroughTheWindowsThatNameThem) {
   render("plain");
   auto const seen = [&](std::string const& file) { return dataset(file, "/dots/reference_px"); };
   EXPECT_EQ(seen("case/left/truth.h5"), seen("plain/left/truth.h5"));
-  // 20 mm of glass at 10 degrees: where the axis meets the target, what lies behind moves by
-  // t (tan 10 - tan 6.57) cos 10 = 1.20 mm across the axis, times 0.134 = 16.1 px
+  // 20 mm of glass at 10 degrees: at the intersection of the axis with the target, objects behind it are displaced by t
+  // (tan 10 - tan 6.57) cos 10 = 1.20 mm perpendicular to the axis, times 0.134 = 16.1 px
   auto const through = seen("case/right/truth.h5"), without = seen("plain/right/truth.h5");
   ASSERT_EQ(through.size(), without.size());
   std::size_t nearest = 0;
@@ -224,7 +225,7 @@ TEST_F(Cameras, CommandsOnOneCameraAskWhichOne) {
   expect_refused({"trace", "setup.toml", "--rays", "rays.csv", "-o", "out.csv"}, 2, {"several cameras"});
 }
 
-// One camera's results go with the frames that they were made from; what a user put there stays.
+// The results of a camera are deleted together with the frames from which they were computed; files of the user remain.
 TEST_F(Cameras, RenderingAgainReplacesTheWholeCase) {
   render("case");
   succeed({"correlate", "case/left", "--quiet"});

@@ -9,7 +9,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::UnorderedElementsAre;
 
-/// What a case holds, and that it repeats bit for bit (interface.md, Files and Repeatability).
+/// Contents of a case, and their reproducibility bit by bit (interface.md, Files and Repeatability).
 using Case = Workplace;
 
 std::vector<std::string> keys(nlohmann::json const& object) {
@@ -81,8 +81,9 @@ TEST_F(Case, ErrorsHaveTheirKeysAndTheBudgetAddsUp) {
   EXPECT_LT(errors["ray_truth"]["rms_px"].get<double>(), 0.05);
 }
 
-// Out of focus, what the lens does to a dot is aberration; what the medium does stays the refraction that an ideal lens
-// in focus sees, times the magnification: 0.6 % larger with the focus at 950 mm instead of 1000 mm, 4 % at 750 mm.
+// Out of focus, the effect of the lens on a dot is attributed to aberration; the effect of the medium remains the
+// refraction seen by an ideal lens in focus, times the magnification: 0.6 % larger with the focus at 950 mm instead of
+// 1000 mm, 4 % at 750 mm.
 TEST_F(Case, DefocusIsAberrationAndNotRefraction) {
   write("wave.toml", with(with(small_setup, "kind = \"uniform_gradient\"\ngradient_kg_m4 = [20.0, 10.0, 0.0]",
                                "kind = \"sinusoid\"\namplitude_kg_m3 = 0.05\nwavelength_mm = 4.0"),
@@ -124,7 +125,7 @@ TEST_F(Case, VectorsAsTextHaveTheColumnsOfTheContract) {
   write("c.toml", "[correlate]\nwindow_px = [32, 16]\noverlap = 0.5\n");
   succeed({"correlate", "case/reference.tif", "case/flow.tif", "-o", "x.csv", "--config", "c.toml"});
   EXPECT_EQ(read("x.csv"), text);
-  // a whole setup will do, resolved or not; what else it says is not looked at
+  // a complete setup is accepted, resolved or not; its other tables are ignored
   succeed({"correlate", "case/reference.tif", "case/flow.tif", "-o", "y.csv", "--config", "case/setup.toml"});
   EXPECT_EQ(read("y.csv"), text);
   write("s.toml", with(small_setup, "f_number = 11.0", "f_number = 0.0"));
@@ -178,7 +179,7 @@ TEST_F(Case, SetOfACorrelationChangesTheCasesOwnSettings) {
                  {"--set lens.f_number=8", "not a key of [correlate]"});
 }
 
-// Each valid vector has its sigma, and the comparison says what it is worth; both components of the vectors count.
+// Each valid vector has a sigma, which the comparison verifies; both components of the vectors count.
 TEST_F(Case, UncertaintiesAreWrittenAndJudged) {
   render("case");
   EXPECT_THAT(succeed({"correlate", "case", "--set", "correlate.uncertainty=correlation_statistics"}),
@@ -210,7 +211,7 @@ TEST_F(Case, TheResolvedSetupRendersTheSameBitsAgain) {
                           "[camera]\nexposure = \"auto\"\nnoise = { read_noise_e = 5.0 }"));
   render("first", {}, "auto.toml");
   std::string const resolved = read("first/setup.toml");
-  // what is chosen a dot stays "auto", and the exposure that it is chosen for
+  // values chosen for each dot remain "auto", and so does the exposure for which they are chosen
   EXPECT_THAT(resolved, AllOf(HasSubstr("\nrays_per_dot = \"auto\"\n"), HasSubstr("\nexposure = \"auto\"\n"),
                               Not(HasSubstr("step_mm = \"auto\"")), Not(HasSubstr("method = \"auto\""))));
   render("second", {}, "first/setup.toml");
@@ -218,7 +219,8 @@ TEST_F(Case, TheResolvedSetupRendersTheSameBitsAgain) {
   EXPECT_EQ(read("second/setup.toml"), resolved);
 }
 
-// A target's extent goes by the first pass's window where the setup leaves it out; what was rendered is written down.
+// If the setup does not give the extent of the target, it depends on the window of the first pass; the rendered extent
+// is stored.
 TEST_F(Case, TheResolvedSetupKeepsItsDotsWithAnotherWindow) {
   render("first");
   EXPECT_THAT(read("first/setup.toml"), AllOf(HasSubstr("\nextent_mm = ["), HasSubstr("\nrays_per_dot = 32\n")));
@@ -227,7 +229,8 @@ TEST_F(Case, TheResolvedSetupKeepsItsDotsWithAnotherWindow) {
 }
 
 TEST_F(Case, SummaryTellsTheSpotThatWasDrawn) {
-  // Table 1's lens: 2.44 N (1 + M) lambda = 1.595 px, the seed's print pi times as much; drawn with a quarter of it
+  // The lens of Table 1: 2.44 N (1 + M) lambda = 1.595 px, pi times as much as printed in the paper; the PSF is drawn
+  // with a quarter of it
   render("first", {"--set", "lens.psf=seed_eq8"});
   auto const spot = nlohmann::json::parse(read("first/summary.json"))["spot"];
   EXPECT_NEAR(spot["first_zero_diameter_px"].get<double>(), 5.01, 5e-3);
@@ -275,7 +278,7 @@ TEST_F(Case, FileNamesStartAtTheSetupWhereverTheProgramRuns) {
   EXPECT_EQ(Hdf5Reader(in(made + "/truth.h5").string()).shape("/dots/position_m"), (std::vector<std::size_t>{3, 3}));
   succeed({"correlate", made});
   succeed({"compare", made});
-  // the case's own setup finds the file again from its new place
+  // the setup of the case finds the file from its new folder
   render("again", {}, made + "/setup.toml");
   expect_same_case(made, "again");
 }

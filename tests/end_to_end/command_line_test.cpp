@@ -26,7 +26,7 @@ TEST_F(CommandLine, WhatIsRequiredIsNamed) {
 }
 
 TEST_F(CommandLine, AGpuThatCannotBeHadIsADeviceError) {
-  // hides every GPU from the program, whatever this machine has
+  // hides all GPUs of this machine from the program
   setenv("CUDA_VISIBLE_DEVICES", "", 1);
   for (std::vector<std::string> const& command :
        {std::vector<std::string>{"render", "setup.toml", "-o", "case"}, {"validate"}}) {
@@ -84,8 +84,8 @@ TEST_F(CommandLine, JsonIsOneObjectAndNothingElseForEveryCommand) {
             nlohmann::json::array({512, 512, 1}));
 }
 
-// A camera's picture tells the noise that was put in: read noise of 30 e is 30 / 30000 of full scale, and the black
-// level keeps it from being cut off; shot noise of the dark is none.
+// The noise of the camera is recovered from its image: read noise of 30 e is 30 / 30000 of full scale, and the black
+// level prevents truncation at 0; there is no shot noise in the dark.
 TEST_F(CommandLine, InfoImageTellsTheSignalToNoiseRatio) {
   write("noise.toml", with(small_setup, "pixel_pitch_um = 10.0",
                            "pixel_pitch_um = 10.0\noffset_dn = 2000\nnoise = { read_noise_e = 30.0 }"));
@@ -108,14 +108,14 @@ TEST_F(CommandLine, ValidateMeetsEveryOracle) {
   for (auto const& oracle : json["oracles"]) EXPECT_TRUE(oracle["passed"]) << oracle;
 }
 
-/// Number of warnings that contain a text; each warning is listed once, beside any others of the run.
+/// Number of warnings that contain a text; each warning is listed once, in addition to any others of the run.
 int count_containing(nlohmann::json const& warnings, std::string const& text) {
   return static_cast<int>(std::count_if(warnings.begin(), warnings.end(), [&text](nlohmann::json const& warning) {
     return warning.get<std::string>().find(text) != std::string::npos;
   }));
 }
 
-// A field that moves no dot makes the case meaningless, also for callers that asked for silence.
+// A field without displacement makes the case meaningless; the warning is printed with --quiet, too.
 TEST_F(CommandLine, QuietSilencesInformationAndNoWarning) {
   std::vector<std::string> const still{"render", "setup.toml", "-o",
                                        "case",   "--set",      "medium.field.gradient_kg_m4=[1e-6, 0.0, 0.0]"};
@@ -158,7 +158,7 @@ TEST_F(CommandLine, TheJsonOfEveryCommandHasTheWarningsOfTheRun) {
                                              {"sweep", "collect", "run", "--no-figures"}}) {
     EXPECT_TRUE(json_of(command)["warnings"].is_array()) << testing::PrintToString(command);
   }
-  // what is only on the log, as it is only found while the file is read
+  // a warning that is only in the log, since it is found while the file is read
   succeed({"correlate", "case", "-o", "v.csv"});
   auto const warnings = json_of({"compare", "case", "--vectors", "v.csv", "--no-figures", "--quiet"})["warnings"];
   EXPECT_EQ(count_containing(warnings, "unverified: v.csv"), 1) << warnings;

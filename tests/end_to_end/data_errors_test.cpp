@@ -13,7 +13,7 @@ std::string file_setup(std::string const& file, std::string const& more = "") {
               "kind = \"file\"\nfile = \"" + file + "\"\nspacing_mm = [1.0, 1.0, 1.0]\n" + more);
 }
 
-/// Broken fields, images, vectors and cases: exit code 2, file and dataset named, nothing written.
+/// Invalid fields, images, vectors and cases: exit code 2, the message names file and dataset, nothing is written.
 class DataErrors : public Workplace {
  protected:
   void write_field(std::string const& name, std::vector<std::size_t> const& shape,
@@ -80,7 +80,7 @@ TEST_F(DataErrors, NegativeDensitiesAreCountedAndPlaced) {
                        {"plane.h5: ", "64 of 64 points are negative densities", "-0.64 kg/m^3", "scale"});
 }
 
-// Below one is an index that a plasma has.
+// An index below one is that of a plasma.
 TEST_F(DataErrors, NegativeRefractivitiesAreNone) {
   write_field("plane.h5", {1, 8, 8}, ramp(64));
   write("setup.toml", file_setup("plane.h5", "extrude = true\nquantity = \"refractivity\"\nscale = -1e-7"));
@@ -175,7 +175,7 @@ TEST_F(DataErrors, DamagedTruth) {
   expect_refused({"compare", "case"}, 2, {"case/truth.h5: has no dataset \"/dots/"});
 }
 
-// The same vectors as a Tecplot zone: complete, and without the last ones that its header declares.
+// The same vectors as a Tecplot zone: complete, and without the last vectors declared by its header.
 TEST_F(DataErrors, VectorsCutShortAreScoredWithAWarning) {
   render("case");
   succeed({"correlate", "case", "-o", "ours.csv"});

@@ -52,7 +52,7 @@ TEST_F(Design, PrintsTheSheetOfASetup) {
   EXPECT_THAT(text, HasSubstr("green"));
 }
 
-// A lens of 2 m sees 40 mm from nowhere within 1.5 m.
+// A lens of 2 m has no field of view of 40 mm within 1.5 m.
 TEST_F(Design, NamesTheBoundThatSkipsCombinations) {
   std::string text = tunnel;
   text.replace(text.find("[50, 105]"), 9, "[50, 2000]");
@@ -67,7 +67,8 @@ TEST_F(Design, DrawsLayoutAndMap) {
   EXPECT_THAT(names("figures"), testing::ElementsAre("design_map.svg", "layout.svg"));
 }
 
-// What is recommended keeps what was asked, and the setup that is written is that bench: its own sheet says so.
+// The recommended set-up meets the requirements, and the setup that is written describes it: its own sheet has the same
+// values.
 TEST_F(Design, RecommendsAndWritesASetupThatRenders) {
   write("tunnel.toml", tunnel);
   auto const json = json_of({"design", "tunnel.toml", "--apply", "out.toml", "--verify", "0"});
@@ -91,8 +92,8 @@ TEST_F(Design, RecommendsAndWritesASetupThatRenders) {
   EXPECT_THAT(names("case"), testing::Contains("flow.tif"));
 }
 
-// One lens and one stop: dots of a size that exposure = "auto" lights to 90 % of the full well, which is what the
-// pixels in the middle of their images hold. The pattern has its own seeds, so that the answer is the same each time.
+// One lens and one stop: with exposure = "auto" the dots are at 90 % of the full well, the level of the pixels in the
+// middle of their images. The pattern has fixed seeds, so that the result is the same every time.
 TEST_F(Design, RendersAndCorrelatesWhatItRecommends) {
   std::string text = tunnel;
   text.replace(text.find("focal_lengths_mm = [50, 105]"), 28, "focal_lengths_mm = [50]");
@@ -111,15 +112,15 @@ TEST_F(Design, RendersAndCorrelatesWhatItRecommends) {
   }
   double const peak = json["simulated"]["peak_electrons"];
   EXPECT_NEAR(peak, json["predicted"]["peak_electrons"], 0.02 * peak);
-  // passes that deform the images resolve what one window does, or more
+  // passes that deform the images resolve at least as much as one window
   EXPECT_LT(json["simulated"]["resolution_mm"], 1.02 * json["predicted"]["resolution_mm"].get<double>());
   EXPECT_GT(json["simulated"]["resolution_mm"], 0.5 * json["predicted"]["resolution_mm"].get<double>());
   EXPECT_GT(json["simulated"]["random_px"], 0);
   EXPECT_TRUE(std::filesystem::exists(in("out.toml")));
 }
 
-// A size in pixels is what the setup has now; a chosen one, in mm, takes its place. What was recommended, asked again
-// as the only choice, is the answer again, though its view is what is required but for the last digits.
+// The setup has a dot size in pixels; the chosen size in mm replaces it. The recommended values as the only choices
+// give the same answer, although the view equals the requirement except for the last digits.
 TEST_F(Design, RecommendsWhatAnswersItsOwnQuestion) {
   std::string text = tunnel;
   text.insert(text.find("[correlate]"), "[target]\ndot_diameter_px = 2.5\n");
@@ -134,7 +135,7 @@ TEST_F(Design, RecommendsWhatAnswersItsOwnQuestion) {
   }
   write("again.toml", again + limits + "[free]\nkeys = [" + keys + "]\n");
   auto const same = json_of({"design", "again.toml", "--verify", "0"});
-  EXPECT_THAT(succeed({"design", "again.toml", "--verify", "0"}), HasSubstr(" kg/m^4\n"));  // of the objective
+  EXPECT_THAT(succeed({"design", "again.toml", "--verify", "0"}), HasSubstr(" kg/m^4\n"));  // value of the objective
   EXPECT_TRUE(same["feasible"]);
   EXPECT_EQ(same["recommended"], json["recommended"]);
 }
@@ -156,7 +157,7 @@ TEST_F(Design, EndsWithFourWhereNothingIsFeasible) {
   EXPECT_FALSE(std::filesystem::exists(in("out.toml")));
 }
 
-// pi L t p^2 QE lambda / (4 h c N^2 (1 + M)^2), see the camera equation's own test: it is what a case is exposed by.
+// pi L t p^2 QE lambda / (4 h c N^2 (1 + M)^2), see the test of the camera equation: the exposure of a case.
 TEST_F(Design, LightExposesWhatIsRendered) {
   std::string const light = "\n[light]\nradiance_w_m2_sr = 8000.0\nexposure_us = 20.0\n";
   write("lit.toml", read("setup.toml") + light);
@@ -172,7 +173,8 @@ TEST_F(Design, LightExposesWhatIsRendered) {
   EXPECT_NEAR(twice / once, 2, 1e-12);
 }
 
-// An uncertain Z_D of 1 in 250 mm: of g ~ (Z_B - f) / Z_D the logarithm changes by (Z_D / (Z_B - f) - 1) / 250.
+// A Z_D of 250 mm with an uncertainty of 1 mm: the logarithm of g ~ (Z_B - f) / Z_D changes by (Z_D / (Z_B - f) - 1) /
+// 250.
 TEST_F(Design, PropagatesWhatASetupIsUncertainBy) {
   write("bench.toml", R"(schema = 1
 [camera]
@@ -200,7 +202,7 @@ window_px = [32, 16]
   EXPECT_TRUE(part["agrees_with_rays"]);
   EXPECT_TRUE(gradient["linear"]);
   EXPECT_THAT(succeed({"design", "bench.toml", "--device", "cpu"}), HasSubstr("combined standard uncertainty"));
-  // an ambient density that is let out to 0 tells what it is uncertain by, too
+  // an ambient density of 0 may have an uncertainty, too
   write("vacuum.toml", read("bench.toml") + "[medium]\nambient_density_kg_m3 = { value = 0.0, sigma = 0.02 }\n");
   auto const vacuum = json_of({"design", "vacuum.toml", "--device", "cpu"})["uncertainty"]["results"][0];
   auto const& air = vacuum["contributions"][vacuum["contributions"].size() - 1];
@@ -221,7 +223,7 @@ window_px = [32, 16]
   EXPECT_THAT(table, HasSubstr("t, 2 degrees of freedom"));
   EXPECT_THAT(table, HasSubstr("standard uncertainty undefined"));
   EXPECT_THAT(table, HasSubstr("resolved wavelength:\n    the true displacement averaged over the window"));
-  // all else reads the value, and a case keeps what it is worth
+  // all other commands read the value, and a case retains the uncertainty
   render("case", {}, "bench.toml");
   succeed({"correlate", "case", "--quiet"});
   succeed({"compare", "case", "--quiet"});

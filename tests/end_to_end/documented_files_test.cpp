@@ -1,4 +1,4 @@
-// What the tables of docs/file-formats.md name is in the files that are written, and what is in these files they name.
+// The tables of docs/file-formats.md and the files that are written name the same datasets and keys.
 #include <set>
 #include <sstream>
 
@@ -13,7 +13,7 @@ using test::documented_tables;
 using test::names_of;
 using test::names_of_first_column;
 
-/// A JSON object has this path, "spot.model".
+/// Returns true if a JSON object has this path, such as "spot.model".
 bool has_path(nlohmann::json const& object, std::string const& path) {
   std::istringstream steps(path);
   nlohmann::json const* at = &object;
@@ -26,7 +26,7 @@ bool has_path(nlohmann::json const& object, std::string const& path) {
 
 class DocumentedFiles : public Workplace {
  protected:
-  /// A file's numbers are the documented datasets and no others, with the attributes that every file carries.
+  /// Expects the numeric datasets of a file to be the documented ones, with the attributes that every file has.
   void expect_datasets(std::string const& name, std::set<std::string> const& documented) const {
     Hdf5Reader const file(in(name).string());
     for (std::string const& dataset : documented) {
@@ -41,7 +41,7 @@ class DocumentedFiles : public Workplace {
       EXPECT_NE(file.attribute(attribute), "") << name << attribute;
   }
 
-  /// A summary has the documented keys, but for some, and no others.
+  /// Expects a summary to have exactly the documented keys, except for the absent ones.
   void expect_summary(std::string const& name, std::set<std::string> const& absent) const {
     auto const summary = nlohmann::json::parse(read(name));
     std::set<std::string> known;
@@ -119,7 +119,7 @@ dt_us = 10.0
   render("case");
   auto const tables = documented_tables("truth.h5", "dataset");
   std::set<std::string> documented = names_of_first_column(tables.at(1));
-  documented.insert("/rays/status");  // of the first table, where it belongs to no dot
+  documented.insert("/rays/status");  // from the first table, since it does not belong to dots
   expect_datasets("case/truth.h5", documented);
   expect_summary("case/summary.json", {});
   auto const particles = nlohmann::json::parse(read("case/summary.json"))["particles"];
@@ -163,7 +163,7 @@ rays_per_dot = 256
   }
 }
 
-// Foreign vectors that are right: what errors.json says of their numbers and conventions.
+// Correct foreign vectors: errors.json describes their numbers and conventions.
 TEST_F(DocumentedFiles, OfForeignVectorsSayHowTheyWereRead) {
   render("case");
   succeed({"correlate", "case", "-o", "v.csv"});
@@ -186,7 +186,7 @@ TEST_F(DocumentedFiles, OfForeignVectorsSayHowTheyWereRead) {
   EXPECT_EQ(errors["made_from"]["frames"], "unverified");
 }
 
-// Each key of [correlate] has the default that its table says.
+// Each key of [correlate] has the documented default.
 TEST_F(DocumentedFiles, OfVectorsHaveTheDocumentedDefaults) {
   render("case", {"--set", "camera.pixels=[128, 128]"});
   write("plain.toml", "[correlate]\n");

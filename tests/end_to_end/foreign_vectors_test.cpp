@@ -12,13 +12,14 @@
 namespace gladstone::end_to_end {
 namespace {
 
-/// The case's own vectors written as other codes write them: compare must find the conventions and the same errors.
+/// The case's own vectors in the formats of other codes: compare must detect the conventions and find the same errors.
 class ForeignVectors : public Workplace {
  protected:
   void SetUp() override {
     Workplace::SetUp();
-    // A wave, so that a place taken for another shows: its amplitude gives half a pixel, and half a pixel of place some
-    // hundredths of it. It runs so near to x that it does not look like itself with x and y exchanged.
+    // A wave, in which a wrong position has an effect: its amplitude is half a pixel, and a position error of half a
+    // pixel changes it by some hundredths. Its direction is so close to x that it is not symmetric under an exchange of
+    // x and y.
     std::string const wave = with(
         with(small_setup, "[64, 64]", "[128, 128]"), "kind = \"uniform_gradient\"\ngradient_kg_m4 = [20.0, 10.0, 0.0]",
         "kind = \"sinusoid\"\namplitude_kg_m3 = 0.15\nwavelength_mm = 8.0\ndirection = [1, 0.3]");
@@ -79,7 +80,7 @@ TEST_F(ForeignVectors, ErrorsAreThoseOfTheLastComparison) {
 }
 
 TEST_F(ForeignVectors, OpenPivTurnsTheYAxisAndCountsFromTheEdge) {
-  // OpenPIV's transform_coordinates: y turned round about the grid, v with it; x = ws/2 where we say (ws - 1)/2
+  // OpenPIV's transform_coordinates: y mirrored about the grid, and v with it; x = ws/2 where ours is (ws - 1)/2
   double const low = *std::min_element(y_.begin(), y_.end()), high = *std::max_element(y_.begin(), y_.end());
   std::string text = "# x\ty\tu\tv\tflags\tmask\n";
   for (std::size_t i = 0; i < x_.size(); ++i) {
@@ -107,8 +108,8 @@ TEST_F(ForeignVectors, PivlabCountsFromOne) {
   EXPECT_THAT(report, testing::HasSubstr("PIVlab vectors read as y-down,v-down,offset=-1.5"));
 }
 
-// Vectors are scored as their format says. What is wrong with them is named, whether or not the log is read, and the
-// command fails; with --conventions they are read as the user tells, and have the errors of right ones.
+// Vectors are scored as their format specifies. Mistakes are reported in the log and by the exit code; with
+// --conventions they are read as the user specifies, and have the errors of correct vectors.
 TEST_F(ForeignVectors, MistakesAreNamedAndNotForgiven) {
   struct Wrong {
     std::string name, mistake, conventions;
@@ -121,7 +122,7 @@ TEST_F(ForeignVectors, MistakesAreNamedAndNotForgiven) {
        [](std::size_t, Vec2d&, Vec2d& d) { std::swap(d.x, d.y); }},
       {"x_and_y.csv", "x and y are exchanged", "places-exchanged",
        [](std::size_t, Vec2d& p, Vec2d&) { std::swap(p.x, p.y); }},
-      {"ten.csv", "displacements are 10", "px/frame=10",  // times what was measured, which follows 1.02 of the truth
+      {"ten.csv", "displacements are 10", "px/frame=10",  // times the measurement, which follows 1.02 of the truth
        [](std::size_t, Vec2d&, Vec2d& d) { d = 10.0 * d; }},
   };
   for (Wrong const& wrong : all) {
@@ -142,8 +143,8 @@ TEST_F(ForeignVectors, MistakesAreNamedAndNotForgiven) {
   }
 }
 
-// Our own text does not name its frames: exchanged ones are found by their displacements, those of vectors.h5 by their
-// hashes.
+// Our text format contains no hashes of its frames: exchanged frames are detected by their displacements, for
+// vectors.h5 by their hashes.
 TEST_F(ForeignVectors, ExchangedFramesOfOurOwnAreNamed) {
   Outcome const correlated = gladstone({"correlate", "case/flow.tif", "case/reference.tif", "-o", "v.csv"});
   EXPECT_EQ(correlated.exit_code, 0) << correlated.err;
@@ -166,7 +167,7 @@ TEST_F(ForeignVectors, GivenTwiceAreRefused) {
   expect_refused({"compare", "case", "--vectors", "twice.csv"}, 2, {"twice.csv: 1 of ", "remove the repeated rows"});
 }
 
-// Numbers that no camera gives: each vector is left out with its reason, and the others are compared as ever.
+// Impossible numbers: each of these vectors is excluded with its reason, and the others are compared as before.
 TEST_F(ForeignVectors, ImpossibleOnesAreLeftOutAndCounted) {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   write_changed("some.csv", [&](std::size_t i, Vec2d& place, Vec2d& displacement) {
@@ -185,7 +186,7 @@ TEST_F(ForeignVectors, ImpossibleOnesAreLeftOutAndCounted) {
   EXPECT_EQ(vectors["left_out_displacement_beyond_image"], 1);
   EXPECT_EQ(vectors["left_out_displacement_not_finite"], 1);
   EXPECT_EQ(errors["ray_truth"]["count"].get<int>(), ours_["ray_truth"]["count"].get<int>() - 6);
-  // six vectors of over two hundred less: the rms stays within a few per cent
+  // six of more than two hundred vectors fewer: the rms changes by a few per cent at most
   EXPECT_NEAR(errors["ray_truth"]["rms_px"].get<double>() / ours_["ray_truth"]["rms_px"].get<double>(), 1.0, 0.1);
   Outcome const told = gladstone({"compare", "case", "--no-figures", "--vectors", "some.csv"});
   EXPECT_THAT(told.err,
@@ -205,7 +206,7 @@ TEST_F(ForeignVectors, ImpossibleOnesOfOurOwnFilesAreLeftOutToo) {
   EXPECT_EQ(errors["vectors"]["total"], x_.size());
 }
 
-// A thousandth of the wave moves dots by less than tells one choice of axes from another.
+// A thousandth of the wave is too small a displacement to distinguish one choice of axes from another.
 TEST_F(ForeignVectors, WhoseConventionsCannotBeToldAreWarnedOf) {
   render("quiet", {"--set", "medium.field.amplitude_kg_m3=1e-4"});
   write_changed("still.csv", [](std::size_t, Vec2d&, Vec2d& displacement) { displacement = {}; });
@@ -224,7 +225,8 @@ TEST_F(ForeignVectors, AreRefusedWhereNoneLiesInTheImage) {
                  {"mm.csv: ", "closer together than pixels", "not in mm"});
 }
 
-// Pseudo-random displacements as long as the truth follow it in no reading. Places 21 px to the right are named.
+// Pseudo-random displacements as large as the truth follow it in no reading. A shift of positions by 21 px to the right
+// is reported.
 TEST_F(ForeignVectors, ThatFitNoConventionAreRefusedUnlessTold) {
   write_changed("random.csv", [](std::size_t i, Vec2d&, Vec2d& d) {
     d = {0.5 * std::sin(1e4 * std::sin(static_cast<double>(i + 1))),
@@ -261,9 +263,9 @@ TEST_F(ForeignVectors, ToldConventionsMustBeWords) {
 /// tests/cases/vectors: one measurement of piv_case.toml as other programs write it.
 class OtherPrograms : public Workplace {};
 
-// Against the rays all of them have the errors of the vectors that they come from, 0.040 px rms. What is printed here
-// has three digits, and the 267 vectors that Insight's file marks as invalid are a ninth of all: their part of a rms
-// has a standard deviation of it / sqrt(2 * 2 * 2134), 0.0004 px.
+// Against the rays all of them have the errors of the original vectors, 0.040 px rms. The printed values have three
+// digits, and the 267 vectors that Insight's file marks as invalid are a ninth of all: their contribution to an rms has
+// a standard deviation of the rms / sqrt(2 * 2 * 2134), 0.0004 px.
 TEST_F(OtherPrograms, HaveTheErrorsOfTheVectorsTheyComeFrom) {
   std::string const folder = std::string(GLADSTONE_DATA_DIR) + "/../tests/cases/vectors/";
   render("case", {}, folder + "piv_case.toml");

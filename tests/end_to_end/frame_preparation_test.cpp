@@ -21,7 +21,7 @@ class MaskedFrames : public Workplace {
   }
 };
 
-// Every table that a setup of ours can have stands in the file of --config, and in the case's own that --set changes.
+// A file for --config may contain every table of a setup, and so may the case's own setup, which --set changes.
 TEST_F(MaskedFrames, AreCorrelatedAsAnyWholeSetupSays) {
   std::string const setup = with(with(small_setup, "z_d_mm = 250.0", "z_d_mm = { value = 250.0, sigma = 1.0 }"),
                                  "z_a_mm = 750.0", "z_a_mm = { value = 750.0, sigma = 2.0 }") +
@@ -58,7 +58,7 @@ keys = ["geometry.z_a_mm"]
                  {"corelate", "did you mean"});
 }
 
-// 64 px, of which the left half is masked: windows of 16 px that lie in it by more than half have status 2.
+// 64 px with the left half masked: windows of 16 px of which at least half is in it have status 2.
 TEST_F(MaskedFrames, AreRecordedWithTheVectors) {
   Image<std::uint16_t> mask(64, 64, 1);
   for (int j = 0; j < 64; ++j) std::fill_n(mask.data() + std::ptrdiff_t{64} * j, 32, std::uint16_t{0});
@@ -75,8 +75,8 @@ TEST_F(MaskedFrames, AreRecordedWithTheVectors) {
   for (std::size_t i = 0; i < x.size(); ++i) EXPECT_EQ(status[i] == 2.0, x[i] + 0.5 < 32.0) << x[i];
 }
 
-// A case does not depend on the masks of its setup, its vectors do: a mask may change between render and correlate, but
-// not between correlate and compare, which measures again.
+// A case does not depend on the masks of its setup, but its vectors do: a mask may change between render and correlate,
+// but not between correlate and compare, which repeats the measurement.
 TEST_F(MaskedFrames, MayHaveAnotherMaskThanWhenTheyWereRendered) {
   auto const write_mask = [&](int columns) {
     Image<std::uint16_t> mask(64, 64, 1);
@@ -115,10 +115,10 @@ TEST_F(MaskedFrames, NeedMasksThatSuitThem) {
   EXPECT_THAT(outcome.err, AllOf(HasSubstr("config.toml:5:"), HasSubstr("config.toml:6:")));
 }
 
-/// Pairs of one displacement.
+/// Pairs with one common displacement.
 class Ensembles : public MaskedFrames {};
 
-// The same pair three times says what it says once; each of its frames is named by what it holds.
+// Three identical pairs give the result of one; the hash of each frame is stored.
 TEST_F(Ensembles, OfOnePairRepeatedAreThatPair) {
   write("config.toml", "[correlate]\nwindow_px = [16]\n");
   std::string const a = "case/reference.tif", b = "case/flow.tif";
@@ -131,11 +131,11 @@ TEST_F(Ensembles, OfOnePairRepeatedAreThatPair) {
   EXPECT_EQ(three.attribute("flow_3_sha256"), one.attribute("flow_sha256"));
   auto const u = one.read("/u_raw_px"), mean = three.read("/u_raw_px");
   ASSERT_EQ(u.size(), mean.size());
-  for (std::size_t i = 0; i < u.size(); ++i) EXPECT_NEAR(u[i], mean[i], 1e-4);  // sums and thirds in float
+  for (std::size_t i = 0; i < u.size(); ++i) EXPECT_NEAR(u[i], mean[i], 1e-4);  // rounding of sums and thirds in float
   EXPECT_EQ(three.attribute("verdict"), one.attribute("verdict"));
 }
 
-// A pair of one picture draws the mean towards 0, and no verdict shows it.
+// A pair of identical images biases the mean towards 0, which no verdict detects.
 TEST_F(Ensembles, NamePairsOfOnePicture) {
   std::string const a = "case/reference.tif", b = "case/flow.tif";
   Outcome const outcome =

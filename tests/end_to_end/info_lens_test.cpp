@@ -5,7 +5,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// gladstone info lens: a prescription's cardinal points and what it makes of its field.
+/// gladstone info lens: cardinal points and field properties of a prescription.
 class InfoLens : public Workplace {
  protected:
   static constexpr char const* singlet = R"(schema = 1
@@ -35,8 +35,8 @@ TEST_F(InfoLens, PrintsTheCardinalPointsOfASinglet) {
   EXPECT_GT(json["spot_rms_um"]["5_deg"], json["spot_rms_um"]["on_axis"]);
 }
 
-// Spherical aberration of third order: the longitudinal aberration of a plano-convex lens, curved side first, makes the
-// rms spot in the narrowest cross section fall as the cube of the aperture.
+// Third-order spherical aberration: for a plano-convex lens, curved side first, the rms spot in the narrowest cross
+// section decreases as the cube of the aperture.
 TEST_F(InfoLens, SpotFallsAsTheCubeOfTheAperture) {
   double last = 0;
   for (char const* number : {"10.0", "20.0", "40.0"}) {
@@ -49,14 +49,14 @@ TEST_F(InfoLens, SpotFallsAsTheCubeOfTheAperture) {
   }
 }
 
-// Rays that are lost are counted by surface and cause: an edge of 3 mm behind a stop of f/20 leaves of the light, which
-// it meets within r (1 - t / (n f')) of the axis, f' the first face's own n R / (n - 1), the square of 3 mm over that.
+// Lost rays are counted by surface and cause. Behind a stop of f/20 the light meets an edge of 3 mm within r (1 - t /
+// (n f')) of the axis, f' = n R / (n - 1) of the first face; the edge transmits the square of 3 mm over that radius.
 TEST_F(InfoLens, CountsLostRaysBySurfaceAndCause) {
   write("lens.toml", with(singlet, "semi_diameter_mm = 12.7", "semi_diameter_mm = 3.0"));
   auto const field = json_of({"info", "lens", "lens.toml"})["field"][0];
   double const f = 51.5 / 0.5168, rim = f / 20 * (1 - 3.6 * 0.5168 / (1.5168 * 51.5));
-  // 2000 even points tell areas to about one in their number's root over the rim; spherical aberration moves the rim by
-  // a thousandth
+  // 2000 uniform points determine areas to about one part in the square root of their number on the edge; spherical
+  // aberration moves the edge by a thousandth
   EXPECT_NEAR(field["vignetting"], 1 - 9 / (rim * rim), 0.01);
   ASSERT_EQ(field["lost"].size(), 1u);
   EXPECT_EQ(field["lost"][0]["surface"], 2);
@@ -64,7 +64,7 @@ TEST_F(InfoLens, CountsLostRaysBySurfaceAndCause) {
   EXPECT_NEAR(field["lost"][0]["share"], field["vignetting"].get<double>(), 0.02);
 }
 
-// Of a telecentric lens the exit pupil stands at the stop, to rounding: that is told as 0, without sign or digits.
+// The exit pupil of a telecentric lens is at the stop, to rounding: this is printed as 0, without sign or digits.
 TEST_F(InfoLens, TellsNoRoundingOfALengthThatIsNone) {
   std::string const text = succeed({"info", "lens", GLADSTONE_DATA_DIR "/lenses/telecentric.toml"});
   EXPECT_THAT(text, HasSubstr("exit pupil            3.2 mm wide at 0 mm from the last vertex"));

@@ -5,7 +5,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// gladstone info mie: what a sphere makes of light.
+/// gladstone info mie: light scattering by a sphere.
 class InfoMie : public Workplace {};
 
 // Bohren & Huffman's example, appendix A: x = 2 pi 0.525/0.6328, m = 1.55.
@@ -37,7 +37,7 @@ TEST_F(InfoMie, DrawsTheScatteredLight) {
   auto const json = json_of({"info", "mie", "--x", "5.9", "--m", "1.45", "--figure", "mie.png"});
   EXPECT_EQ(json["figure"], "mie.png");
   EXPECT_THAT(read("mie.png"), HasSubstr("PNG"));
-  // nothing is scattered: nothing to draw but the paper
+  // nothing is scattered: the figure has only axes
   succeed({"info", "mie", "--x", "5.9", "--m", "1", "--figure", "nothing.png"});
   EXPECT_THAT(read("nothing.png"), HasSubstr("PNG"));
 }

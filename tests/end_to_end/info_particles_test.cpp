@@ -5,7 +5,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// gladstone info particles: what to expect of a PIV setup.
+/// gladstone info particles: predictions for a PIV setup.
 class InfoParticles : public Workplace {
  protected:
   static constexpr char const* piv_setup = R"(schema = 1
@@ -32,7 +32,7 @@ window_px = [64, 32]
 )";
 };
 
-// 2000 in 10 x 10 x 1 mm, all within the sheet of 1 mm: 20 in a mm^2, and 32 px are 32 x 5 um / M, M = 105/645.
+// 2000 in 10 x 10 x 1 mm, all within the sheet of 1 mm: 20 per mm^2, and 32 px are 32 x 5 um / M, M = 105/645.
 TEST_F(InfoParticles, TellsWhatToExpect) {
   write("piv.toml", piv_setup);
   auto const json = json_of({"info", "particles", "piv.toml"});

@@ -24,13 +24,14 @@ class Inputs : public Workplace {
  protected:
   void make_pipe(std::string const& name) const { ASSERT_EQ(::mkfifo(in(name).c_str(), 0600), 0) << name; }
 
-  /// Ends by itself as bad input, and says this; files are not compared: a pipe cannot be read.
+  /// Expects the program to end by itself with the exit code of invalid input and this message; files are not compared,
+  /// since a pipe cannot be read.
   void expect_told(std::vector<std::string> const& arguments, std::string const& piece) const {
     Outcome const outcome = Program(arguments, folder_).finish(hang_limit);
     EXPECT_EQ(outcome.exit_code, 2) << arguments[0] << outcome.err.substr(0, 400) << outcome.signal;
     EXPECT_TRUE(outcome.err.find(piece) != std::string::npos)
         << arguments[0] << ": " << outcome.err.substr(0, 400) << " instead of " << piece.substr(0, 100);
-    // what libraries say of themselves
+    // messages of libraries
     for (char const* library : {"std::", "what()", "json.exception", "filesystem error", "basic_", "OpenImageIO",
                                 "TIFF"
                                 "Open",
@@ -39,7 +40,7 @@ class Inputs : public Workplace {
     }
   }
 
-  /// Frames of dots that move by 2 px to the right, as floating-point numbers.
+  /// Images of dots displaced by 2 px to the right, as floating-point numbers.
   static Image<float> frame(double shift) {
     Image<float> image(96, 96);
     for (int dot = 0; dot < 120; ++dot) {
@@ -66,7 +67,7 @@ class Inputs : public Workplace {
   }
 };
 
-// A pipe that nobody writes to would be waited for without end, whatever its name promises.
+// Reading a pipe without a writer would wait forever, whatever its name.
 TEST_F(Inputs, APipeInPlaceOfAnyFileIsRefusedByItsName) {
   write_tiff(in("a.tif").string(), Image<std::uint16_t>(64, 64), {});
   render("case");
@@ -204,8 +205,8 @@ TEST_F(Inputs, AFileOfTwoPagesIsAPairAndNoPicture) {
   expect_refused({"info", "image", "pair.tif"}, 2, {"pair.tif: has 2 pages"});
 }
 
-// Orientation 3: the first stored pixel is the last one of the picture. Frames that are stored so, turned by half a
-// turn, are the same frames.
+// Orientation 3: the first stored pixel is the last one of the image. Frames stored like this, rotated by 180 degrees,
+// are the same frames.
 TEST_F(Inputs, PicturesThatAreStoredTurnedAreTurnedUprightWithAWarning) {
   auto const write_turned = [&](std::string const& name, Image<float> const& image) {
     std::vector<float> levels(image.begin(), image.end());
@@ -229,7 +230,8 @@ TEST_F(Inputs, PicturesThatAreStoredTurnedAreTurnedUprightWithAWarning) {
   EXPECT_EQ(json_of({"info", "image", "turned_a.tif"})["orientation"], 3);
 }
 
-// What a window has left decides: a hole of one pixel moves a vector by far less than its noise, 0.02 px.
+// The known pixels of a window determine its vector: a hole of one pixel changes a vector by far less than its noise,
+// 0.02 px.
 TEST_F(Inputs, PixelsThatAreNoNumbersAreCountedAndLeftOut) {
   Image<float> holed = frame(0), empty(96, 96, std::nanf(""));
   for (std::size_t i = 40; i < holed.size(); i += 400) holed.data()[i] = i % 800 < 400 ? std::nanf("") : HUGE_VALF;
@@ -255,7 +257,7 @@ void append(std::string& bytes, std::uint32_t value, int count) {
   for (int k = 0; k < count; ++k) bytes += static_cast<char>(value >> (8 * k) & 0xff);
 }
 
-// Cameras of 12 bit write two pixels into three bytes. The same levels in 16 bits are the same picture.
+// 12-bit cameras write two pixels into three bytes. The same levels in 16 bits are the same image.
 TEST_F(Inputs, PackedTwelveBitPicturesAreReadAsTheirLevels) {
   for (double const shift : {0.0, 2.0}) {
     Image<float> const grey = frame(shift);
@@ -276,7 +278,7 @@ TEST_F(Inputs, PackedTwelveBitPicturesAreReadAsTheirLevels) {
     struct Entry {
       std::uint32_t tag, value;
     };
-    // columns, rows, bits, no compression, black is zero, where the strip is, samples, its rows, its bytes
+    // columns, rows, bits, no compression, black is zero, offset of the strip, samples, rows per strip, bytes
     Entry const entries[] = {{256, 96}, {257, 96}, {258, 12}, {259, 1},   {262, 1},
                              {273, 8},  {277, 1},  {278, 96}, {279, size}};
     append(file, std::size(entries), 2);
@@ -311,8 +313,8 @@ TEST_F(Inputs, PackedTwelveBitPicturesAreReadAsTheirLevels) {
   EXPECT_GT(vectors, 9u);
 }
 
-// Levels are what the palette says, not its numbers: with a palette in reverse the same numbers are the negative, which
-// moves alike.
+// Levels are those of the palette, not its indices: with a reversed palette the same indices are the negative image,
+// which has the same displacement.
 TEST_F(Inputs, PicturesWithAPaletteAreReadByIt) {
   auto const write_bitmap = [&](std::string const& name, double shift, bool reversed) {
     Image<float> const grey = frame(shift);
@@ -351,7 +353,7 @@ TEST_F(Inputs, PicturesWithAPaletteAreReadByIt) {
   }
 }
 
-// Pictures that hold nothing to correlate are an answer with flags and exit code 1; one dot is a vector where it is.
+// For images without signal the result is flagged, with exit code 1; one dot gives a vector at its position.
 TEST_F(Inputs, PicturesWithoutDotsAreNoMeasurement) {
   for (float const level : {0.0f, 90.0f, 65535.0f}) {
     Image<float> const even(96, 96, level);

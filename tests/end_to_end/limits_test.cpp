@@ -16,10 +16,10 @@ namespace {
 using namespace std::chrono_literals;
 using testing::HasSubstr;
 
-/// A machine with little memory, streams that are closed or full, and a user's odd environment.
+/// A machine with little memory, closed or full streams, and an unusual environment.
 class Limits : public Workplace {};
 
-// The codecs of pictures are some 250 libraries, which abort or wait for ever where they find no room while they start.
+// The image codecs are some 250 libraries, which abort or wait forever if memory is insufficient while they start.
 // Whatever the limit, the program ends by itself, with vectors or with a message.
 TEST_F(Limits, LittleAddressSpaceIsAMessageAndNoCrash) {
 #ifdef GLADSTONE_TEST_SANITIZED
@@ -35,7 +35,7 @@ TEST_F(Limits, LittleAddressSpaceIsAMessageAndNoCrash) {
     };
     Outcome const outcome =
         run({"correlate", "case/reference.tif", "case/flow.tif", "-o", "v.h5", "--threads", "1"}, folder_, limited);
-    if (outcome.exit_code == 127) continue;  // not even the program was loaded
+    if (outcome.exit_code == 127) continue;  // the program itself could not be loaded
     EXPECT_TRUE(outcome.exit_code == 0 || outcome.exit_code == 2)
         << megabytes << " MiB: signal " << outcome.signal << ' ' << outcome.err;
     EXPECT_EQ(outcome.exit_code == 0, std::filesystem::exists(in("v.h5"))) << megabytes;
@@ -61,7 +61,7 @@ TEST_F(Limits, ClosedStreamsAreNoCrash) {
   Outcome const no_stderr = run(mie, folder_, closed({2}));
   EXPECT_EQ(no_stderr.exit_code, 0);
   EXPECT_THAT(no_stderr.out, HasSubstr("extinction"));
-  // and no file gets the number of a closed stream, and its messages
+  // and no file receives the descriptor of a closed stream, and thereby its messages
   Outcome const render = run({"render", "setup.toml", "-o", "case"}, folder_, closed({0, 1, 2}));
   EXPECT_EQ(render.exit_code, 2);
   succeed({"correlate", "case"});

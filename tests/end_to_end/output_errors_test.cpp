@@ -9,10 +9,10 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Places that cannot be written and runs that are broken off: the old output stays, and nothing else.
+/// Unwritable outputs and interrupted runs: the old output remains, and nothing else.
 class OutputErrors : public Workplace {
  protected:
-  /// A rendering of minutes, interrupted when it begins to trace.
+  /// A rendering that would take minutes, interrupted when it begins to trace.
   Outcome interrupt_a_rendering(int signal) const {
     Program program(
         {"render", "setup.toml", "-o", "case", "--set", "render.rays_per_dot=1000000", "--set", "render.method=rays"},
@@ -65,7 +65,7 @@ TEST_F(OutputErrors, ReadOnlyFolder) {
 }
 
 TEST_F(OutputErrors, FullDiskLeavesTheOldCase) {
-  // a disk of 64 kB in a mount namespace of its own: truth.h5 and two images are more
+  // a disk of 64 kB in a separate mount namespace: truth.h5 and two images are larger
   pid_t const child = ::fork();
   if (child == 0) {
     std::filesystem::create_directory(in("disk"));
@@ -93,8 +93,8 @@ TEST_F(OutputErrors, FullDiskLeavesTheOldCase) {
 }
 
 TEST_F(OutputErrors, FullDiskWhileDrawingLeavesTheOldResults) {
-  // room for errors.json, a few kB, but not for the figures, some tens each: with those on the case's disk, and with
-  // gnuplot's temporary ones
+  // space for errors.json, a few kB, but not for the figures, tens of kB each: both on the case's disk and on that of
+  // gnuplot's temporary files
   for (bool const temporary : {false, true}) {
     std::filesystem::remove_all(in("case"));
     render("case");
@@ -188,7 +188,7 @@ TEST_F(OutputErrors, AReplacementThatIsKilledAtAnyStepLeavesOneWholeCase) {
     ASSERT_TRUE(program.wait_until_stopped()) << point;
     program.send(SIGKILL);
     EXPECT_EQ(program.finish(hang_limit).signal, SIGKILL);
-    succeed({"correlate", "case"});  // completes what was begun
+    succeed({"correlate", "case"});  // completes the replacement
     expect_same_case(point.starts_with("replacement") ? "new" : "old", "case");
     EXPECT_FALSE(std::filesystem::exists(in("case/.replacing"))) << point;
     succeed({"compare", "case", "--no-figures"});

@@ -14,10 +14,10 @@ using testing::AllOf;
 using testing::HasSubstr;
 namespace fs = std::filesystem;
 
-/// Where results may go, and that other writers and inputs are left alone.
+/// Permitted places of results; other writers and inputs are not affected.
 class Places : public Workplace {
  protected:
-  /// A rendering, and what happens to it when it begins to trace.
+  /// A rendering, and the disturbance when it begins to trace.
   Outcome signalled_rendering(int signal, std::function<bool()> const& prepare = {}) const {
     Program program({"render", "setup.toml", "-o", "case"}, folder_, stopping_at("rendering", prepare));
     EXPECT_TRUE(program.wait_until_stopped());
@@ -33,8 +33,8 @@ class Places : public Workplace {
   }
 };
 
-/// Runs the rest of the child in a process namespace and under a host name of its own, as in a container. The first
-/// process of the namespace cannot be stopped by itself; it waits for the program, the second.
+/// Runs the rest of the child in a separate process namespace with another host name, as in a container. The first
+/// process of the namespace cannot be stopped by itself; it waits for the program, the second one.
 /// @param stopped  pipe to which a byte is written when the program has stopped itself
 bool enter_container(int stopped) {
   if (::unshare(CLONE_NEWPID | CLONE_NEWUTS) != 0 || ::sethostname("container", 9) != 0) return false;
@@ -87,7 +87,7 @@ TEST_F(Places, ALiveRunOfAnotherContainerIsLeftAloneAndADeadOneClearedAway) {
   EXPECT_TRUE(partials().empty());
 }
 
-// What stands there is neither moved nor replaced: the folder itself stays.
+// An existing folder is neither moved nor replaced.
 TEST_F(Places, TheFolderThatAShellStandsIn) {
   fs::create_directory(in("here"));
   struct stat before {};
@@ -136,7 +136,7 @@ TEST_F(Places, AMountPoint) {
   EXPECT_EQ(WEXITSTATUS(status), 0) << read("stderr");
 }
 
-// As a rendering leaves it that is killed after the first of its moves.
+// State after a rendering that was killed after the first of its moves.
 TEST_F(Places, ACommandThatReadsACaseCompletesWhatWasBrokenOffThere) {
   render("case");
   render("fresh", {"--set", "target.seed=8"});
@@ -201,7 +201,7 @@ TEST_F(Places, AnOutputIsNeverAnInput) {
                  {"run/study.toml: would be overwritten"});
 }
 
-// A field that lies where the case's own file is to go: it would be read, and then be gone.
+// A field in the place of one of the case's own files: it would be read, and then overwritten.
 TEST_F(Places, AFileThatTheSetupNamesIsNoOutput) {
   write("dots.csv", "x_mm,y_mm\n0,0\n1,0.5\n-1,0.25\n");
   write("points.toml", with(small_setup, "dots_per_32px_window = 10.0", "kind = \"points\"\nfile = \"dots.csv\""));

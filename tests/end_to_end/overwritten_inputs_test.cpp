@@ -7,10 +7,10 @@ namespace fs = std::filesystem;
 using testing::AnyOf;
 using testing::HasSubstr;
 
-/// No output takes the place of what the command reads, nor of another part of a case or a study.
+/// No output replaces an input of the command, nor another part of a case or a study.
 class OverwrittenInputs : public Workplace {
  protected:
-  /// The command ends with exit code 2, names the file, and leaves it as it was.
+  /// Expects the command to end with exit code 2 and the name of the file, which is unchanged.
   void expect_kept(std::string const& file, std::vector<std::string> arguments) const {
     std::string const before = read(file);
     ASSERT_NE(before, "") << file;
@@ -22,7 +22,7 @@ class OverwrittenInputs : public Workplace {
                                    HasSubstr("is not written by this command")));
     EXPECT_TRUE(read(file) == before) << file << " is destroyed by " << testing::PrintToString(arguments);
   }
-  /// The command is refused because `output` is its input `file`, which remains as it was.
+  /// Expects the command to be rejected because `output` is its input `file`, which is unchanged.
   void expect_input_kept(std::string const& file, std::vector<std::string> const& arguments,
                          std::string const& output) const {
     std::string const before = read(file);
@@ -51,7 +51,7 @@ TEST_F(OverwrittenInputs, OfACase) {
   }
   expect_kept("case/truth.h5", {"correlate", "case", "-o", "case/truth.h5"});
   expect_kept("case/truth.h5", {"correlate", "case/reference.tif", "case/flow.tif", "-o", "case/truth.h5"});
-  // what belongs there is still written again
+  // files of the same kind are still replaced
   succeed({"report", "case", "-o", "case/report.html"});
   succeed({"report", "case", "-o", "case/report.html"});
   succeed({"correlate", "case"});
@@ -88,14 +88,14 @@ TEST_F(OverwrittenInputs, OfAStudy) {
     }
   }
   expect_kept("run/study.csv", {"correlate", "case", "-o", "run/study.csv"});
-  // also a file that is not there yet
+  // also a file that does not exist yet
   Outcome const absent = gladstone({"trace", "setup.toml", "--rays", "rays.csv", "-o", "run/study_points.csv"});
   EXPECT_EQ(absent.exit_code, 2);
   EXPECT_THAT(absent.err, HasSubstr("run/study_points.csv: belongs to the study in "));
   EXPECT_FALSE(fs::exists(in("run/study_points.csv")));
-  // files of the user in the same folder are written
+  // files with other names in the same folder are written
   succeed({"trace", "setup.toml", "--rays", "rays.csv", "-o", "run/traced.csv"});
-  // what belongs there is still written again
+  // files of the same kind are still replaced
   succeed({"sweep", "plan", "study.toml", "-o", "run", "--device", "cpu"});
   write("study.toml", "base = \"setup.toml\"\n[axes]\n\"lens.f_number\" = [8, 16, 32]\n");
   succeed({"sweep", "plan", "study.toml", "-o", "run", "--device", "cpu"});
@@ -158,7 +158,7 @@ TEST_F(OverwrittenInputs, UnderOtherNames) {
   }
 }
 
-// The case's own truth, read as another code's vectors, would be written before it is read.
+// The case's own truth, given as vectors of another code, would be overwritten after it is read.
 TEST_F(OverwrittenInputs, OfABenchmark) {
   fs::create_directories(in("bench/vortex"));
   for (std::string const name : {"soft", "hard"}) fs::create_directory(in(name));

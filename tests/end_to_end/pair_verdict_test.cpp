@@ -12,14 +12,14 @@ using testing::HasSubstr;
 using testing::Not;
 using testing::StartsWith;
 
-/// What a camera sees: Gaussian dots of 3 px (e^-2) at random places, 150 grey levels high.
+/// Image of a camera: Gaussian dots of 3 px (e^-2) at random positions, 150 grey levels high.
 struct Scene {
   int pixels;
   double dots_per_32px_window = 20.0;
   double noise = 0.0;  ///< standard deviation [grey levels]
 };
 
-/// Frames of a camera: whether they can be believed is told to who runs the program.
+/// The result of the decorrelation test is reported to the user.
 class PairOfFrames : public Workplace {
  protected:
   void write_frames(Scene const& scene, Vec2d displacement) const {
@@ -38,7 +38,7 @@ class PairOfFrames : public Workplace {
     return gladstone(arguments);
   }
 
-  /// Columns of a .csv by their names.
+  /// Columns of a .csv file by name.
   std::map<std::string, std::vector<double>> columns_of(std::string const& name) const {
     std::istringstream text(read(name));
     std::string line, field;
@@ -80,7 +80,7 @@ class PairOfFrames : public Workplace {
   }
 };
 
-// 40 px, where the first pass looks 32 px far.
+// A displacement of 40 px with a search radius of 32 px in the first pass.
 TEST_F(PairOfFrames, ShiftedBeyondTheSearchRangeIsNoMeasurement) {
   write_frames({.pixels = 200}, {40.0, 0.0});
   Outcome const outcome = correlate("v.csv");
@@ -121,7 +121,7 @@ TEST_F(PairOfFrames, GivenTwiceIsWarnedOf) {
   EXPECT_EQ(nlohmann::json::parse(outcome.out)["verdict"], file.attribute("verdict"));
 }
 
-// Few dots in noise: of every kind of vector there are some. Text and HDF5 say the same of each.
+// Few dots in noise: every kind of vector occurs. Text and HDF5 files agree on each.
 TEST_F(PairOfFrames, SaysOfEveryVectorHowItCameAbout) {
   write_frames({.pixels = 200, .dots_per_32px_window = 6.0, .noise = 15.0}, {2.3, -0.2});
   ASSERT_EQ(correlate("v.csv").exit_code, 0);

@@ -8,7 +8,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// White spheres in a sheet that move by 2.3 px: at M = 105 / 645 and 10 um that is 141.2857 um in 10 us.
+/// White spheres in a sheet with a displacement of 2.3 px: at M = 105 / 645 and 10 um that is 141.2857 um in 10 us.
 constexpr char const* piv_setup = R"(schema = 1
 experiment = "piv"
 
@@ -48,7 +48,7 @@ class Piv : public Workplace {
   std::vector<double> dataset(std::string const& file, std::string const& name) const {
     return Hdf5Reader(in(file).string()).read(name);
   }
-  /// Renders, correlates, compares; errors.json.
+  /// Renders, correlates and compares; returns errors.json.
   nlohmann::json errors_of(std::string const& setup) const {
     write("setup.toml", setup);
     render("case");
@@ -65,11 +65,11 @@ double sum_of_levels(Image<double> const& image) {
 
 TEST_F(Piv, RecoversAShiftOf2Point3Pixels) {
   auto const errors = errors_of(piv_setup);
-  // noise-free, and only 13 particles a window: the correlator is good to 0.02 px
+  // noise-free, with only 13 particles per window: the error of the correlator is below 0.02 px
   EXPECT_NEAR(errors["ray_truth"]["bias_u_px"].get<double>(), 0, 0.02);
   EXPECT_LT(errors["ray_truth"]["rms_px"].get<double>(), 0.02);
   EXPECT_GT(errors["ray_truth"]["valid_fraction"].get<double>(), 0.9);
-  // the flow is what it is in the sheet's middle, and nothing refracts
+  // the flow is that in the middle of the sheet, and there is no refraction
   EXPECT_NEAR(errors["budget"]["terms"]["projection"]["rms_px"].get<double>(), 0, 1e-5);
   EXPECT_EQ(errors["budget"]["terms"]["refraction"]["rms_px"].get<double>(), 0);
   EXPECT_LT(errors["budget"]["closure_px"].get<double>(), 1e-9);
@@ -78,15 +78,16 @@ TEST_F(Piv, RecoversAShiftOf2Point3Pixels) {
   auto const place = dataset("case/truth.h5", "/particles/position_m");
   for (std::size_t i = 0; i < truth.size() / 2; ++i) {
     if (std::isnan(truth[2 * i])) continue;
-    double const expected = 2.3 * 750e-3 / (750e-3 - place[3 * i + 2]);  // nearer to the lens it is larger
+    double const expected = 2.3 * 750e-3 / (750e-3 - place[3 * i + 2]);  // closer to the lens it is larger
     EXPECT_NEAR(truth[2 * i], expected, 1e-3);
     EXPECT_NEAR(truth[2 * i + 1], 0, 1e-3);
   }
 }
 
-// A vortex of up to 3 px, its axis in the view's middle. Central displacement: particles that are at a vector at
-// mid-time have moved by the flow there times dt, to the curvature of their paths, (angle of the turn)^2 / 24; the
-// angle is 0.13 at most. Those that start there would be off by half of that angle, 7 %.
+// A vortex of up to 3 px, with its axis in the middle of the view. Central displacement: particles that are at a vector
+// at mid-time have moved by the flow there times dt, except for the curvature of their paths, (angle of rotation)^2 /
+// 24; the angle is at most 0.13. The displacement of particles that start there would differ by half of that angle, 7
+// %.
 TEST_F(Piv, ComparesAVortexWithItsFlow) {
   std::string const vortex = with(piv_setup, "velocity_m_s = [14.12857, 0.0, 0.0]",
                                   "kind = \"lamb_oseen\"\ncirculation_m2_s = 0.32\ncore_radius_mm = 2.0");
@@ -100,8 +101,8 @@ TEST_F(Piv, ComparesAVortexWithItsFlow) {
   EXPECT_GT(reference["budget"]["terms"]["projection"]["rms_px"].get<double>(), 10 * at_mid);
 }
 
-// Electrons of the whole picture are photons times quantum efficiency; a level is full_well_e over full scale. Levels
-// are whole numbers: what is rounded away below half of one is little beside 2000 electrons.
+// The electrons of the whole image are photons times quantum efficiency; a level is full_well_e over full scale. Levels
+// are integers: the loss by rounding below half a level is small compared with 2000 electrons.
 TEST_F(Piv, CountsElectrons) {
   std::string const absolute =
       with(with(piv_setup, "pixel_pitch_um = 10.0\n",
@@ -130,7 +131,7 @@ TEST_F(Piv, IsTheSameAgainFromItsResolvedSetup) {
   EXPECT_LE(summary["rays_per_dot"].get<int>(), 256);  // "auto", in focus
 }
 
-// Two cameras 20 degrees to either side see the very same particles.
+// Two cameras 20 degrees to either side see the same particles.
 TEST_F(Piv, ShowsTheSameParticlesToTwoCameras) {
   std::string stereo = with(piv_setup, "[camera]\npixels = [128, 128]\npixel_pitch_um = 10.0\n", R"([[camera]]
 name = "left"
@@ -152,7 +153,7 @@ scheimpflug = "auto"
   auto const left = dataset("case/left/truth.h5", "/particles/position_m");
   EXPECT_EQ(left, dataset("case/right/truth.h5", "/particles/position_m"));
   EXPECT_GT(left.size(), 6u * 500);
-  // motion along X is seen at the cosine of the angle by both; motion along Z, opposite
+  // motion along X is seen with the cosine of the angle by both; motion along Z with opposite signs
   write("setup.toml",
         with(with(stereo, "[geometry]\nz_a_mm = 750.0\n", ""), "[14.12857, 0.0, 0.0]", "[0.0, 0.0, 10.0]"));
   render("deep");
@@ -166,12 +167,12 @@ scheimpflug = "auto"
     }
     return sum / count;
   };
-  // 0.1 mm towards the cameras; the left one's right is (cos 20, 0, sin 20 degrees): 0.1 * 0.342 * 16.28 px/mm
+  // 0.1 mm towards the cameras; to the right for the left one is (cos 20, 0, sin 20 degrees): 0.1 * 0.342 * 16.28 px/mm
   EXPECT_NEAR(mean("deep/left/truth.h5"), 0.557, 0.02);
   EXPECT_NEAR(mean("deep/right/truth.h5"), -0.557, 0.02);
 }
 
-// A study over the time between the pulses: truth grows with it.
+// A study over the time between the pulses: the truth is proportional to it.
 TEST_F(Piv, AStudyVariesTheTimeBetweenPulses) {
   write("study.toml", "base = \"setup.toml\"\n[axes]\n\"flow.dt_us\" = [5.0, 10.0]\n");
   succeed({"sweep", "plan", "study.toml", "-o", "run", "--quiet", "--device", "cpu"});
@@ -183,7 +184,8 @@ TEST_F(Piv, AStudyVariesTheTimeBetweenPulses) {
   EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 3);
 }
 
-// A velocity of a file, u = 14.12857 m/s (1 + y / 60 mm), which splines reproduce: 2.3 px (1 + y / 60 mm) of motion.
+// A velocity from a file, u = 14.12857 m/s (1 + y / 60 mm), which splines reproduce: a displacement of 2.3 px (1 + y /
+// 60 mm).
 TEST_F(Piv, MovesParticlesByTheVelocityOfAFile) {
   constexpr std::size_t across = 15, deep = 3;
   std::vector<double> values;
@@ -209,16 +211,16 @@ TEST_F(Piv, MovesParticlesByTheVelocityOfAFile) {
   }
   auto const summary = nlohmann::json::parse(read("case/summary.json"));
   EXPECT_THAT(summary["warnings"].dump(), testing::Not(testing::HasSubstr("beyond the velocity field")));
-  // the file that a case was made from is known by what it holds
+  // the source file of a case is identified by its content
   EXPECT_THAT(Hdf5Reader(in("case/truth.h5").string()).attribute("inputs_sha256"), testing::HasSubstr("velocity.h5"));
   std::string const short_of_it = with(by_file, "spacing_mm = [1, 1, 1]", "spacing_mm = [0.8, 1, 1]");
   expect_setup_refused(short_of_it, {"setup.toml:" + place_of(short_of_it, "file = \"velocity.h5\""),
                                      "ends inside the particles' volume"});
 }
 
-// Gas and particles through the front of a normal shock of Mach 1.5 in the middle of the view: behind it they move by
-// u_2 / u_1 = 1 / 1.862 of what they do before (NACA 1135: 2.4 M^2 / (0.4 M^2 + 2)). u_1 = 1.5 * 343.2 m/s. Particles
-// that take part in both are left out: those within 0.3 mm of the front.
+// Gas and particles through the front of a normal shock of Mach 1.5 in the middle of the view: behind it their
+// displacement is u_2 / u_1 = 1 / 1.862 of that in front of it (NACA 1135: 2.4 M^2 / (0.4 M^2 + 2)). u_1 = 1.5 * 343.2
+// m/s. Particles that cross the front are excluded: those within 0.3 mm of it.
 TEST_F(Piv, MovesParticlesThroughAShock) {
   std::string const shock = with(
       with(piv_setup, "velocity_m_s = [14.12857, 0.0, 0.0]\ndt_us = 10.0", "kind = \"normal_shock\"\ndt_us = 0.25"),
@@ -241,15 +243,15 @@ TEST_F(Piv, MovesParticlesThroughAShock) {
     EXPECT_NEAR(moved[2 * i], expected, 2e-3) << x;
     (x < 0 ? upstream : downstream) += 1;
   }
-  // a hundred particles in each half and more, of which the one behind the front has 1.86 times as many
+  // at least a hundred particles in each half; the half behind the front has 1.86 times as many
   EXPECT_NEAR(downstream / upstream, 1.86, 4 * 1.86 * std::sqrt(1 / upstream + 1 / downstream));
 }
 
-// Through the front of a shock whose plane lies at an angle tau to the line of sight, the particle a way s behind it
+// Position error through a shock front at an angle tau to the line of sight, for a particle at a distance s behind it
 // along that line: |xi| = dn cot(tau) s, and since s changes with x, |d xi / d x| = dn cot(tau)^2 (Elsinga, van
-// Oudheusden & Scarano 2005). Here by the line of sight of every particle: a front of normal n turns a ray of direction
-// d by dn (n / (n . d) - d), so that a particle seems to lie s times that back. dn is 0.862 kg/m^3 of Mach 1.5 times K.
-// A front has a thickness and a lens a stop: 1 % for both.
+// Oudheusden & Scarano 2005). Here with the line of sight of every particle: a front with normal n deflects a ray of
+// direction d by dn (n / (n . d) - d), so that a particle appears displaced by s times that. dn is K times 0.862 kg/m^3
+// for Mach 1.5. The front has a thickness and the lens a stop: 1 % for both.
 TEST_F(Piv, SeesParticlesBehindAShockWhereElsingaSaysTheyAre) {
   for (double const tau_deg : {30.0, 50.0}) {
     std::string const front =
@@ -290,7 +292,7 @@ TEST_F(Piv, SeesParticlesBehindAShockWhereElsingaSaysTheyAre) {
       double const xi_px = xi(at) * px_per_m, xi_change_px = (xi(later) - xi(at)) * px_per_m;
       EXPECT_NEAR(error_px, xi_px, 0.01 * std::abs(xi_px) + 1e-4) << tau_deg << " degrees, " << way_behind(at);
       EXPECT_NEAR(change_px, xi_change_px, 0.01 * xi_change_px) << tau_deg << " degrees, " << way_behind(at);
-      // near the axis, where all lines of sight are one
+      // near the axis, where all lines of sight are parallel
       double const cot = normal.x / normal.z, of_elsinga = jump * cot * cot * 141.2857e-6 * px_per_m;
       EXPECT_NEAR(xi_change_px, of_elsinga, 0.1 * of_elsinga);
       ++behind;
@@ -300,8 +302,8 @@ TEST_F(Piv, SeesParticlesBehindAShockWhereElsingaSaysTheyAre) {
   }
 }
 
-// The second pulse sees another medium: what is at rest seems to move by what a gradient of 100 kg/m^4 in 40 mm does, g
-// l^2 / 2 for a particle a way l = 20 mm before the face.
+// The second pulse sees another medium: particles at rest appear displaced by the effect of a gradient of 100 kg/m^4
+// over 40 mm, g l^2 / 2 for a particle at a distance l = 20 mm from the face.
 TEST_F(Piv, SeesAMediumThatChanges) {
   std::string const changing =
       with(with(piv_setup, "velocity_m_s = [14.12857, 0.0, 0.0]", "velocity_m_s = [0, 0, 0]"), "[particles]",
@@ -320,7 +322,7 @@ TEST_F(Piv, SeesAMediumThatChanges) {
   EXPECT_EQ(errors["budget"]["terms"]["projection"]["rms_px"].get<double>(), 0);
 }
 
-// Ideal images, without rays: 2.3 px again, and what made them is written down.
+// Ideal images, without rays: 2.3 px again, and the method is recorded.
 TEST_F(Piv, DrawsIdealImages) {
   std::string const ideal = with(piv_setup, "scattering = \"lambert\"", "scattering = \"gaussian\"");
   auto const errors = errors_of(ideal);
@@ -332,7 +334,7 @@ TEST_F(Piv, DrawsIdealImages) {
   EXPECT_EQ(Hdf5Reader(in("case/truth.h5").string()).attribute("method"), "formula");
   render("again", {}, "case/setup.toml");
   EXPECT_EQ(nlohmann::json::parse(read("again/summary.json"))["flow_sha256"], summary["flow_sha256"]);
-  // other light may be drawn so, too; what has no rays has none
+  // other scattering models may use this method, too; "gaussian" has no rays
   std::string const lambert = std::string(piv_setup) + "[render]\nmethod = \"formula\"\n";
   write("lambert.toml", lambert);
   render("lambert", {}, "lambert.toml");
@@ -344,8 +346,8 @@ TEST_F(Piv, DrawsIdealImages) {
   expect_setup_refused(with(lambert, "f_number = 22.0", "f_number = 22.0\npsf = \"airy\""), {"method", "not Gaussian"});
 }
 
-// Background, glare, fixed pattern and hot pixels are in the pictures and not in truth; what they cost vectors is
-// noise.
+// Background, glare, fixed-pattern noise and hot pixels are in the images but not in the truth; their effect on the
+// vectors counts as noise.
 TEST_F(Piv, PicturesHaveABackground) {
   std::string const ideal = with(piv_setup, "scattering = \"lambert\"", "scattering = \"gaussian\"");
   auto const clean = errors_of(ideal);
@@ -358,7 +360,7 @@ TEST_F(Piv, PicturesHaveABackground) {
   render("spoilt", {}, "spoilt.toml");
   succeed({"correlate", "spoilt", "--quiet"});
   auto const errors = json_of({"compare", "spoilt", "--quiet", "--no-figures"});
-  // the estimator sees images without a background; their levels differ by the exposure, and correlation in float
+  // the estimator term uses images without a background; their levels differ by the exposure, and float correlation
   // rounds them to 6e-8 of a few px
   for (char const* part : {"bias_u_px", "bias_v_px", "random_u_px", "random_v_px"}) {
     EXPECT_NEAR(errors["budget"]["terms"]["estimator"][part].get<double>(),
@@ -376,7 +378,7 @@ TEST_F(Piv, PicturesHaveABackground) {
             nlohmann::json::parse(read("spoilt/summary.json"))["flow_sha256"]);
 }
 
-// A plenoptic picture's views, and one focused anew, lie beside its case; other cases hold none.
+// Views of a plenoptic image, and a refocused image, are written next to its case; other cases contain none.
 TEST_F(Piv, ExtractsViewsOfAPlenopticPicture) {
   std::string const plenoptic =
       with(with(with(piv_setup, "pixel_pitch_um = 10.0\n",
@@ -407,7 +409,7 @@ TEST_F(Piv, ExtractsViewsOfAPlenopticPicture) {
   std::filesystem::create_hard_link(in("case/flow.tif"), in("three/flow_refocused.tif"));
   expect_refused({"views", "case", "--views", "3", "-o", "three", "--quiet"}, 2,
                  {"would be overwritten, and is read by this command"});
-  // 12.04 px of the stop are seen: 13 views across show all that there is, 30 are 707 files of either frame and a word
+  // The stop is 12.04 px wide: 13 views across contain all information, 30 give 707 files per frame and a warning
   Outcome const enough = gladstone({"views", "case", "--views", "13", "-o", "enough"});
   EXPECT_THAT(enough.err, testing::Not(testing::HasSubstr("--views 13")));
   Outcome const many = gladstone({"views", "case", "--views", "30", "-o", "many", "--quiet"});

@@ -7,7 +7,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// Scenes beyond the thin lens on the bench: rendered ray by ray, through the whole chain.
+/// Scenes beyond the thin lens on the axis: rendered ray by ray, through the whole chain.
 class RealLens : public Workplace {
  protected:
   nlohmann::json summary_of(std::string const& folder) const {
@@ -32,26 +32,27 @@ std::string double_gauss_setup() {
                   "/lenses/double_gauss.toml\"\nf_number = 8.0");
 }
 
-// A double Gauss in the thin lens' place: ray by ray, and what it adds to an ideal lens is a line of the budget.
+// A double Gauss in place of the thin lens: rendered ray by ray, and its difference from an ideal lens is a term of the
+// budget.
 TEST_F(RealLens, RunsThroughTheWholeChain) {
   write("lens.toml", with(double_gauss_setup(), "rays_per_dot = 32", "rays_per_dot = 256"));
   auto const errors = compared("case", "lens.toml");
   auto const summary = summary_of("case");
   EXPECT_EQ(summary["method"], "rays");
   EXPECT_EQ(Hdf5Reader(in("case/truth.h5").string()).attribute("method"), "rays");
-  // f / (Z_B - f) of 99.8 mm at 532 nm, as far as best focus is paraxial focus
+  // f / (Z_B - f) for 99.8 mm at 532 nm, to the difference between best and paraxial focus
   EXPECT_NEAR(summary["magnification"].get<double>(), 0.111, 0.001);
   EXPECT_GT(rms(errors, "aberration"), 1e-7);
   EXPECT_LT(rms(errors, "aberration"), 0.01);
   EXPECT_LT(errors["budget"]["closure_px"].get<double>(), 1e-9);
   EXPECT_LT(errors["ray_truth"]["rms_px"].get<double>(), 0.05);
-  // the setup that it was understood as gives the same case
+  // the resolved setup gives the same case
   render("again", {}, "case/setup.toml");
   expect_same_case("case", "again");
 }
 
-// An object-space telecentric lens, placed by its first vertex: a gas of uniform gradient turns light by eps, which
-// moves the dots by M Z_D eps / p, M that of the lens at their distance, whatever lies between.
+// An object-space telecentric lens, positioned by its first vertex: a gas with a uniform gradient deflects light by
+// eps, which displaces the dots by M Z_D eps / p, with M that of the lens at their distance, whatever lies between.
 TEST_F(RealLens, TelecentricOneRunsThroughTheWholeChain) {
   std::string const lens = "model = \"prescription\"\nfile = \"" + std::string(GLADSTONE_DATA_DIR) +
                            "/lenses/telecentric.toml\"\nf_number = 11.0";
@@ -73,13 +74,13 @@ TEST_F(RealLens, TelecentricOneRunsThroughTheWholeChain) {
     u += displacement[2 * k] / count;
     v += displacement[2 * k + 1] / count;
   }
-  // dots scatter by 1 %, as 256 rays leave it, and some hundred of them by a tenth of that; distortion adds 0.1 %
+  // dots scatter by 1 % with 256 rays, the mean over some hundred dots by a tenth of that; distortion adds 0.1 %
   EXPECT_NEAR(u / (-20 * scale), 1, 4e-3);
   EXPECT_NEAR(v / (10 * scale), 1, 4e-3);
 }
 
-// A plenoptic camera: the picture is one of lenslets, each showing the stop; the light in it is what the lens alone
-// collects.
+// A plenoptic camera: the image consists of lenslet images, each showing the stop; its total light is that collected by
+// the lens alone.
 TEST_F(RealLens, LensletsSortTheLightOfTheWholePicture) {
   std::string const plain = with(small_setup, "[lens]", "[camera.sensor]\ntilt_deg = [0.0, 0.0]\n[lens]");
   std::string const exposed =
@@ -98,14 +99,15 @@ TEST_F(RealLens, LensletsSortTheLightOfTheWholePicture) {
     for (double const level : read_image(in(folder + "/reference.tif").string())) sum += level;
     return sum;
   };
-  // enough rays of dots amid the picture; a fully lit pixel, which the exposure is of, sees (1 + d / z_i)^2 less of the
-  // target, d = 0.9 mm behind the image at 117.3 mm. Rounding of 4096 levels beside some 1e6 in all
+  // enough rays of dots in the middle of the image; a fully lit pixel, for which the exposure is defined, sees (1 + d /
+  // z_i)^2 less of the target, d = 0.9 mm behind the image at 117.3 mm. Rounding of 4096 levels, compared with some 1e6
+  // in total
   EXPECT_NEAR(light("plenoptic") / light("plain"), std::pow(1 + 0.9 / 117.3184, 2), 1e-3);
   render("again", {}, "plenoptic/setup.toml");
   expect_same_case("plenoptic", "again");
 }
 
-// The lens is wide open and sees further off its axis: it aberrates more.
+// The lens has a wide aperture and a wider field: it has more aberrations.
 TEST_F(RealLens, AberratesMoreWideOpen) {
   write("lens.toml", double_gauss_setup());
   double const narrow = rms(compared("narrow", "lens.toml", {"--set", "lens.f_number=16"}), "aberration");
@@ -125,13 +127,13 @@ TEST_F(RealLens, TracesGivenRays) {
   EXPECT_THAT(optics, HasSubstr("missed_lens,nan"));
   EXPECT_THAT(all, HasSubstr("alive,0,0,"));
   EXPECT_THAT(all, HasSubstr(",31.5,31.5\n"));
-  // the second goes past the lens, the third away from it
+  // the second ray misses the lens, the third points away from it
   for (std::string const& rows : {optics, all}) {
     EXPECT_THAT(rows, HasSubstr("missed_lens,nan,nan,nan,nan,nan,nan,nan,nan,nan\nmissed_lens,nan"));
   }
 }
 
-// Both methods give the same case to within what their rays know; and the setup may say which.
+// Both methods give the same case to within the accuracy of their rays; the setup may select either.
 TEST_F(RealLens, MethodsAgreeOnTheBench) {
   auto const fast = compared("fast", "setup.toml"),
              rays =
@@ -153,8 +155,8 @@ TEST_F(RealLens, MethodThatDoesNotHoldIsRefused) {
   expect_refused({"render", "setup.toml", "-o", "case", "--set", "render.method=fast"}, 2, {"focused_dots"});
 }
 
-// A camera that looks at the dots from the side, its sensor tilted so that they are sharp, through a window: every
-// vector is right, and what the window and the turned lens add is aberration.
+// A camera with an oblique view of the dots, its sensor tilted so that they are in focus, through an optical window:
+// every vector is correct, and the effects of the window and the tilted lens count as aberration.
 TEST_F(RealLens, LooksFromTheSideThroughAWindow) {
   std::string const posed = with(with(small_setup, "z_a_mm = 750.0\n", ""), "[lens]",
                                  "[camera.pose]\nposition_mm = [250.0, 0.0, 700.0]\nlook_at_mm = [0.0, 0.0, 0.0]\n"
@@ -165,8 +167,7 @@ TEST_F(RealLens, LooksFromTheSideThroughAWindow) {
   EXPECT_EQ(summary_of("case")["method"], "rays");
   EXPECT_LT(errors["ray_truth"]["rms_px"].get<double>(), 0.05);
   EXPECT_LT(errors["budget"]["closure_px"].get<double>(), 1e-9);
-  // along the line of sight the medium is longer, and its gradient seen at a slant: within a tenth of Eq. 9 all the
-  // same
+  // along the line of sight the medium is thicker, and its gradient is seen at an angle: still within a tenth of Eq. 9
   EXPECT_LT(rms(errors, "small_angle"), 0.05);
   render("again", {}, "case/setup.toml");
   expect_same_case("case", "again");

@@ -5,11 +5,11 @@
 namespace gladstone::end_to_end {
 namespace {
 
-/// BOS' standard target, regular dots: by nature a displacement is known up to whole pitches only.
+/// Regular dots, the standard target of BOS: a displacement is ambiguous by whole pitches.
 class RegularDots : public Workplace {
  protected:
-  /// Renders dots 7.16 px apart through a uniform gradient that shifts them, correlates and compares.
-  /// @param gradient [kg/m^4]; Table 1's optics give -0.006627 px for each
+  /// Renders dots 7.16 px apart, displaced by a uniform gradient, correlates and compares.
+  /// @param gradient [kg/m^4]; -0.006627 px each with the set-up of Table 1
   nlohmann::json errors_for(double gradient_x, double gradient_y) const {
     write("regular.toml",
           with(with(with(small_setup, "pixels = [64, 64]", "pixels = [128, 128]"), "gradient_kg_m4 = [20.0, 10.0, 0.0]",
@@ -23,7 +23,7 @@ class RegularDots : public Workplace {
   }
 };
 
-// 0.45 pitch is 3.2 px: up to there the nearest of all shifts that match is the right one.
+// 0.45 pitch is 3.2 px: up to there the smallest of all matching shifts is the correct one.
 TEST_F(RegularDots, AreRightWithinNearlyHalfAPitch) {
   for (auto const& [x, y] : {std::pair{75.0, 0.0}, {-45.0, 30.0}, {0.0, -240.0}, {480.0, 0.0}}) {
     auto const errors = errors_for(x, y);
@@ -32,7 +32,8 @@ TEST_F(RegularDots, AreRightWithinNearlyHalfAPitch) {
   }
 }
 
-// Beyond half a pitch an alias lies nearer: which one is meant cannot be known, and the vectors say so.
+// Beyond half a pitch an alias is a smaller shift: the correct one cannot be identified, and the vectors are marked as
+// ambiguous.
 TEST_F(RegularDots, AreFlaggedAmbiguous) {
   errors_for(620.0, 0.0);  // 4.1 px, 0.57 pitch
   auto const ambiguous = Hdf5Reader(in("case/vectors.h5").string()).read_integers("/ambiguous");

@@ -36,7 +36,7 @@ TEST_F(Reports, OfAStudyHoldsItsNumbersAndPictures) {
   std::string const html = read("run/report.html");
   EXPECT_THAT(html, HasSubstr("How large is the error of the measured displacement against Eq. 9"));
   EXPECT_THAT(html, HasSubstr("6 of 6 cases are finished"));
-  // the set-up is the base's, at its own stop; the best case's stands with that case
+  // the set-up is that of the base, at its own f-number; that of the best case is shown with the case
   EXPECT_THAT(html, HasSubstr("Layout of the base</figcaption>\n<img alt=\"Side view, to scale: the dots are Z_D = "
                               "250 mm behind the mid-plane of the medium, the lens (f = 105 mm, f/11)"));
   std::string const best = html.substr(html.find("Best and worst case"));
@@ -61,8 +61,8 @@ TEST_F(Reports, OfAStudyHoldsItsNumbersAndPictures) {
   }
 }
 
-// What `compare` has stored is taken where errors.json is the one that it belongs to and the files are the same; the
-// report is the same then, to the last digit. Anything else is compared anew.
+// The stored comparison is reused if it belongs to errors.json and the files are unchanged; the report is then
+// identical to the last digit. Otherwise the comparison is repeated.
 TEST_F(Reports, TakeAComparisonThatFits) {
   render("case");
   succeed({"correlate", "case", "--quiet"});
@@ -108,8 +108,8 @@ TEST_F(Reports, OfACaseAddUpTheirCauses) {
     ++told;
   }
   EXPECT_GT(told, 0u);
-  // the uncorrected bias is what leads from Eq. 9 to truth on the window of deformed frames, rms; four digits of a
-  // number, three of it told
+  // the uncorrected bias is the rms difference between Eq. 9 and the truth on the window of deformed frames; four
+  // digits of a number, three of which are printed
   double squares = 0, components = 0;
   std::map<std::string, double> errors;
   for (char const* component : {"u", "v"}) {
@@ -147,7 +147,7 @@ TEST_F(Reports, OfACaseAddUpTheirCauses) {
   EXPECT_THAT(html, HasSubstr("Design map of the case"));
 }
 
-// A code's vectors mostly have no uncertainty.
+// Vectors of other codes usually have no uncertainty.
 TEST_F(Reports, OfACaseTakeVectorsOfAnotherCode) {
   render("case");
   succeed({"correlate", "case", "-o", "ours.csv", "--quiet"});
@@ -175,14 +175,15 @@ TEST_F(Reports, OfPivShowTheSheetAndWhatAStopMakesOfIt) {
                               "750 mm in front of the lens at f/16"));
   EXPECT_THAT(html, HasSubstr("Particle images against the f-number. At f/16"));
   EXPECT_THAT(html, HasSubstr("the rms error against truth on the window, "));  // one pass deforms nothing
-  EXPECT_THAT(html, testing::Not(HasSubstr("estimated uncertainty\"")));        // none was asked for
+  EXPECT_THAT(html, testing::Not(HasSubstr("estimated uncertainty\"")));        // no uncertainty was requested
   for (char const* const figure : {"drawn/layout.png", "drawn/design_map.png"}) {
     EXPECT_TRUE(std::filesystem::exists(in(figure))) << figure;
   }
 }
 
-// Frames and vectors that somebody measured, with a setup that describes the bench and no truth: what is told rests on
-// the vectors. A uniform gradient of 40 kg/m^4 integrates to a ramp, which the twin displaces by as much again.
+// Measured frames and vectors, with a setup that describes the set-up and without truth: the report is based on the
+// vectors. A uniform gradient of 40 kg/m^4 integrates to a ramp, which displaces the dots of the twin by the same
+// amount.
 TEST_F(Reports, OfAMeasurementTellItsUncertaintyFromATwin) {
   std::string const setup = R"(schema = 1
 [camera]
@@ -245,10 +246,10 @@ window_px = [32, 16]
     }
     return std::nan("");
   };
-  // in one px there are 150.9 kg/m^4; the bias of a vector, 0.002 px, is 0.3
+  // one px is 150.9 kg/m^4; the bias of a vector, 0.002 px, is 0.3 kg/m^4
   EXPECT_NEAR(mean_of("gradient", "u"), 40, 0.5);
   EXPECT_NEAR(mean_of("gradient", "v"), 0, 0.5);
-  // Z_D alone: (1 - Z_D / (Z_B - f)) 1 % of 40 kg/m^4, and the displacement's part on top
+  // Z_D only: (1 - Z_D / (Z_B - f)) 1 % of 40 kg/m^4, plus the contribution of the displacement
   double const common = (1 - 250.0 / 895) * 0.01 * 40;
   EXPECT_GT(mean_of("combined", "u"), common);
   EXPECT_NEAR(mean_of("combined", "u"), std::hypot(common, mean_of("random", "u")), 0.1 * common);
@@ -259,7 +260,7 @@ window_px = [32, 16]
               HasSubstr("by the formula of the random error (F26), since the vectors have none"));
   EXPECT_THAT(read("text/still.md"), HasSubstr("The vectors span 2.4 % of the camera's 128 x 128 px"));
   expect_refused({"report", "measured", "--vectors", "nothing.csv"}, 2, {"nothing.csv", "check --vectors"});
-  // an ambient density of 0 is an uncertain number as any other: g K of 0.02 kg/m^3
+  // an ambient density of 0 may be uncertain like any other number: g K times 0.02 kg/m^3
   write("measured/setup.toml", without_field + "[medium]\nambient_density_kg_m3 = { value = 0.0, sigma = 0.02 }\n");
   succeed({"report", "measured", "--format", "md", "-o", "text/vacuum.md", "--quiet"});
   EXPECT_THAT(read("text/vacuum.md"), testing::Not(HasSubstr("nan")));
@@ -267,7 +268,7 @@ window_px = [32, 16]
               HasSubstr("| medium.ambient\\_density\\_kg\\_m3 | B | 0 | 0.02 | normal | infinite | 0.00"));
 }
 
-// A setup of another camera than the one that took the frames, or another pair than was correlated.
+// The setup of another camera than that of the frames, or other frames than those that were correlated.
 TEST_F(Reports, OfAMeasurementKnowWhoseFramesAndVectorsTheyAre) {
   render("case");
   succeed({"correlate", "case", "--quiet"});
@@ -292,13 +293,13 @@ TEST_F(Reports, OfAMeasurementKnowWhoseFramesAndVectorsTheyAre) {
                  {"measured/vectors.h5: was measured on another flow frame than measured/flow.tif"});
   std::filesystem::remove(in("measured/vectors.h5"));
   expect_refused({"report", "measured"}, 2, {"measured/vectors.h5: does not exist", "gladstone correlate"});
-  // a frame of a case that is another by now
+  // a frame of a case that has been replaced
   std::filesystem::copy_file(in("case/reference.tif"), in("case/flow.tif"),
                              std::filesystem::copy_options::overwrite_existing);
   expect_refused({"report", "case"}, 2, {"case/flow.tif: is another frame than the vectors were measured on"});
 }
 
-/// The displacements along x of a file of vectors.
+/// Returns the displacements along x of a file of vectors.
 std::vector<double> displacements_of(std::string const& csv) {
   std::istringstream lines(csv);
   std::vector<double> u;
@@ -318,8 +319,8 @@ std::vector<double> displacements_of(std::string const& csv) {
   return u;
 }
 
-// The same steady field measured twice, with other noise: the standard deviation of a mean of two is half of what they
-// differ by, and has one degree of freedom (JCGM 100:2008, 4.2). In one px there are 150.9 kg/m^4.
+// The same steady field measured twice, with different noise: the standard deviation of a mean of two is half of their
+// difference, with one degree of freedom (JCGM 100:2008, 4.2). One px is 150.9 kg/m^4.
 TEST_F(Reports, OfARepeatedMeasurementTellItsScatter) {
   std::string const setup = R"(schema = 1
 [camera]

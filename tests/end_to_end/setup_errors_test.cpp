@@ -5,7 +5,7 @@
 namespace gladstone::end_to_end {
 namespace {
 
-/// Processor time of all children that have ended [s].
+/// Processor time of all finished child processes [s].
 double seconds_of_children() {
   rusage used{};
   ::getrusage(RUSAGE_CHILDREN, &used);
@@ -15,10 +15,10 @@ double seconds_of_children() {
   return seconds(used.ru_utime) + seconds(used.ru_stime);
 }
 
-/// Bad setups: exit code 2, the place, what is wrong, what to do, and no case folder.
+/// Invalid setups: exit code 2, place, problem and remedy, and no case folder.
 class SetupErrors : public Workplace {
  protected:
-  /// The small setup with `old` replaced is refused at the place of `at`, with these words.
+  /// Expects the small setup with `old` replaced to be rejected at the place of `at`, with these texts.
   void refused(std::string const& old, std::string const& replacement, std::string const& at,
                std::vector<std::string> pieces) {
     std::string const text = with(small_setup, old, replacement);
@@ -89,7 +89,7 @@ TEST_F(SetupErrors, NegativeDensitiesOfClosedForms) {
   }
 }
 
-// What a file's field is refused for: n - 1 = 2.26e-4 rho from -0.5 to 3.
+// Fields of files that are rejected: n - 1 = 2.26e-4 rho from -0.5 to 3.
 TEST_F(SetupErrors, ClosedFormsThatNoMediumIs) {
   std::string const gradient = "kind = \"uniform_gradient\"\ngradient_kg_m4 = [20.0, 10.0, 0.0]";
   for (std::string const steep : {"[1e18, 0, 0]", "[1e300, 0, 0]", "[0, 0, -1e6]", "[2e6, 2e6, 0]"}) {
@@ -108,7 +108,7 @@ TEST_F(SetupErrors, ClosedFormsThatNoMediumIs) {
           "ambient_density_kg_m3", {"gives a refractive index of 1001", "medium.gladstone_dale"});
 }
 
-// Ten times the 1000 mm from the dots to the lens, to each side.
+// Ten times the 1000 mm between dots and lens, to each side.
 TEST_F(SetupErrors, ViewsAndTargetsWiderThanAnyLensSees) {
   refused("dots_per_32px_window = 10.0", "dots_per_32px_window = 1e-9\nextent_mm = [1e9, 1e9]", "extent_mm",
           {"beyond what any lens sees", "2e+04 mm at most"});

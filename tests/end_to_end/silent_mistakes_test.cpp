@@ -11,7 +11,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
 
-/// Setups that are right to the letter and not what was meant: they run, and say what is odd.
+/// Setups that are formally valid but probably not intended: they run, with warnings.
 class SilentMistakes : public Workplace {
  protected:
   std::string with_field(std::string const& field) const {
@@ -29,7 +29,7 @@ class SilentMistakes : public Workplace {
     }
     return most;
   }
-  /// A plane of 33 x 33 nodes that covers `width` of any unit, with a ramp of 0.02 kg/m^3 from node to node along x.
+  /// A plane of 33 x 33 nodes that is `width` wide in any unit, with a ramp of 0.02 kg/m^3 from node to node along x.
   void write_plane(std::string const& name, double width, std::string const& unit) const {
     std::vector<double> values, axis;
     for (int i = 0; i < 33; ++i) axis.push_back(width * i / 32);
@@ -44,7 +44,8 @@ class SilentMistakes : public Workplace {
   }
 };
 
-// A plume's displacement in a slab of half thickness h is erf(h / a) of the whole: 0.363 of it in 10 mm for a = 15 mm.
+// The displacement by a plume in a slab of half thickness h is a fraction erf(h / a) of the total: 0.363 in 10 mm for a
+// = 15 mm.
 TEST_F(SilentMistakes, APlumeIsNotCutOffUnlessToldAndThenWithAWarning) {
   std::string const plume = with_field("kind = \"gaussian_plume\"\namplitude_kg_m3 = -0.2\nradius_mm = 15.0");
   EXPECT_THAT(warnings(plume), IsEmpty());
@@ -52,18 +53,19 @@ TEST_F(SilentMistakes, APlumeIsNotCutOffUnlessToldAndThenWithAWarning) {
   double const whole = largest_displacement();
   EXPECT_THAT(warnings(plume, {"--set", "medium.thickness_mm=10"}),
               Contains(HasSubstr("10 mm cut 64 % of the displacement off")));
-  // the levers of slices differ by 10 % over the plume; their mean stays Z_D, and what is left is of second order
+  // the lever arms of slices differ by 10 % over the plume; their mean is Z_D, and the remaining effect is of second
+  // order
   EXPECT_NEAR(largest_displacement() / whole, std::erf(1.0 / 3), 0.01);
 }
 
 TEST_F(SilentMistakes, CoordinatesInMetresAreReadAsTheySayThemselves) {
-  write_plane("metres.h5", 16e-3, "m");  // no ray meets its faces
+  write_plane("metres.h5", 16e-3, "m");  // no ray reaches its faces
   std::string const field = "kind = \"file\"\nfile = \"metres.h5\"\ndataset = \"density\"\nextrude = true";
   EXPECT_THAT(warnings(with_field(field)), IsEmpty());
   EXPECT_GT(largest_displacement(), 0.1);
 }
 
-// The same numbers without a unit are taken for millimetres: a field 0.008 mm wide in a view of 4 mm.
+// The same numbers without a unit are assumed to be millimetres: a field 0.008 mm wide in a view of 4 mm.
 TEST_F(SilentMistakes, CoordinatesWithoutAUnitAndAFieldThatNobodySeesAreWarnedOf) {
   write_plane("unnamed.h5", 8e-3, "");
   std::string const field =
@@ -138,7 +140,7 @@ TEST_F(SilentMistakes, InfoTellsUnitsExtentAndWhatOfAViewIsFilled) {
                     HasSubstr("were its lengths in metres"), HasSubstr("values are in kg m-3")));
 }
 
-// A MATLAB array of meshgrid, [nz, nx, ny], and a header that leaves a spacing open.
+// A MATLAB array of meshgrid, [nz, nx, ny], and a header without a spacing.
 TEST_F(SilentMistakes, InfoReportsWhichAxisIsTakenForWhich) {
   std::string const folder = std::string(GLADSTONE_DATA_DIR) + "/../tests/cases/fields/";
   auto json = json_of({"info", "field", folder + "h_matlab_mesh.h5"});
@@ -158,7 +160,8 @@ TEST_F(SilentMistakes, InfoReportsWhichAxisIsTakenForWhich) {
               HasSubstr("[16, 20, 24] is read as z, y, x (by the lengths of its coordinates); x runs backwards"));
 }
 
-// A header that gives no spacing along z, and a file without coordinates: 1 is not printed as if it were the file's.
+// A header without a spacing along z, and a file without coordinates: a spacing of 1 is not printed as if it were in
+// the file.
 TEST_F(SilentMistakes, InfoReportsSpacingsThatTheFileDoesNotState) {
   std::string const partial = std::string(GLADSTONE_DATA_DIR) + "/../tests/cases/fields/n_nan_spacing.nrrd";
   nlohmann::json json = json_of({"info", "field", partial});
@@ -187,7 +190,7 @@ std::size_t count_of(std::string const& piece, std::string const& text) {
   return count;
 }
 
-// Peak locking is a matter of frames that correlate, and is warned of once.
+// The warning of peak locking is given for frames that correlate, and only once.
 TEST_F(SilentMistakes, SmallDotsAreWarnedOfOnceAndOnlyWhereFramesCorrelate) {
   std::vector<std::string> const small{"--set", "target.dot_diameter_px=1", "--set", "camera.pixels=[256,256]"};
   render("case", small);

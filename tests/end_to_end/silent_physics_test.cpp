@@ -63,7 +63,8 @@ class SilentPhysics : public Workplace {
   }
 };
 
-// A photon sets free quantum_efficiency electrons, never more. With light to spare the exposure fills 90 % of the well.
+// A photon releases quantum_efficiency electrons, never more. With sufficient light the exposure fills 90 % of the
+// well.
 TEST_F(SilentPhysics, AutoExposureCountsNoMoreElectronsThanPhotonsSetFree) {
   auto const bright = summary_of(piv_setup, {"laser.pulse_energy_mj=5000"});
   EXPECT_LT(bright["particles"]["electrons_per_photon"].get<double>(), 0.5);
@@ -73,14 +74,15 @@ TEST_F(SilentPhysics, AutoExposureCountsNoMoreElectronsThanPhotonsSetFree) {
   EXPECT_THAT(dim["warnings"].dump(), HasSubstr("limited by the light"));
   EXPECT_NEAR(dim["exposure"].get<double>(), 0.5 * dim["particles"]["photons"]["most"].get<double>(),
               0.01 * dim["exposure"].get<double>());
-  // electrons are a scale of grey levels where there is no noise
+  // without noise electrons are only a scale of grey levels
   auto const ideal = summary_of(with(piv_setup, "[camera.noise]\nfull_well_e = 10000\nquantum_efficiency = 0.5\n", ""),
                                 {"laser.pulse_energy_mj=0.05"});
   EXPECT_GT(ideal["particles"]["electrons_per_photon"].get<double>(), 0.6);
 }
 
-// 43.5 photons set free 22 electrons in all pixels of the brightest particle. Its brightest pixel has at most those,
-// and less than 22 / sqrt(22 + 3^2) = 3.9 times its noise; a hundred thousand times the light has more than ten times.
+// 43.5 photons release 22 electrons in all pixels of the brightest particle. Its brightest pixel has at most those, and
+// less than 22 / sqrt(22 + 3^2) = 3.9 times its noise; a hundred thousand times the light has more than ten times its
+// noise.
 TEST_F(SilentPhysics, WarnsOfAbsoluteExposuresThatAreLostInNoise) {
   std::string const absolute = "camera.exposure=\"absolute\"";
   EXPECT_THAT(warnings_of({"laser.pulse_energy_mj=0.05", absolute}),
@@ -95,8 +97,8 @@ TEST_F(SilentPhysics, WarnsOfParticlesThatSendNoPhoton) {
   EXPECT_THAT(tiny, HasSubstr("is it in m? 1e-07 m are 0.1 um"));
 }
 
-// The view is 96 * 10 um / 0.1628 = 5.9 mm wide, and the sheet's light ends at 1.5 of its thickness. A rotation by
-// 3e-8 rad moves places 48 px off its axis by 1.4e-6 px.
+// The view is 96 * 10 um / 0.1628 = 5.9 mm wide, and the light of the sheet ends at 1.5 times its thickness. A rotation
+// by 3e-8 rad displaces points 48 px from its axis by 1.4e-6 px.
 TEST_F(SilentPhysics, WarnsOfVolumesSheetsAndTimesThatDoNotFit) {
   std::string const fine = warnings_of({"laser.pulse_energy_mj=5000"});
   for (char const* text : {"smaller than the view", "outside the laser sheet", "too small to measure"}) {
@@ -116,7 +118,7 @@ TEST_F(SilentPhysics, SaysThatAFormulaDrewThePicture) {
   EXPECT_TRUE(summary["rays_per_dot"].is_null());
 }
 
-// A setup that is refused for what a wrong unit made of it names the unit as well.
+// A setup rejected because of a wrong unit: the message names the unit, too.
 TEST_F(SilentPhysics, AsksForTheUnitOfImplausibleNumbers) {
   write("setup.toml", small_setup);
   Outcome const short_wave = gladstone({"render", "setup.toml", "-o", "case", "--set", "medium.wavelength_nm=0.532"});
@@ -137,7 +139,7 @@ TEST_F(SilentPhysics, AsksForTheUnitOfImplausibleNumbers) {
       Not(HasSubstr("usual range")));
 }
 
-// 192 dots of 32 rays are 6144 rays, a hundredth of those that a deflection table and its measurement take.
+// 192 dots with 32 rays are 6144 rays, a hundredth of those for a deflection table and the measurement of its error.
 TEST_F(SilentPhysics, AutoTakesRaysForFewDotsWhereATableIsLong) {
   std::string const shock = with(with(small_setup, "kind = \"uniform_gradient\"\ngradient_kg_m4 = [20.0, 10.0, 0.0]",
                                       "kind = \"normal_shock\"\nmach = 1.2\nupstream_density_kg_m3 = 1.225\n"
@@ -147,9 +149,9 @@ TEST_F(SilentPhysics, AutoTakesRaysForFewDotsWhereATableIsLong) {
   EXPECT_EQ(summary_of(small_setup)["method"], "focused_dots");
 }
 
-// A solid body turns by t = 0.03 rad between the pulses. Pixels count from the axis, Y down: a place P of frame A moves
-// by (cos t - 1) P + sin t (Y, -X); one midway between both images by 2 tan(t/2) (Y, -X). Paths are integrated to 1e-5
-// px.
+// A solid body rotates by t = 0.03 rad between the pulses. Pixels relative to the axis, Y down: a point P of frame A
+// moves by (cos t - 1) P + sin t (Y, -X); one whose images have P as their midpoint by 2 tan(t/2) (Y, -X). Paths are
+// integrated to 1e-5 px.
 TEST_F(SilentPhysics, ADatasetHoldsTheExactDisplacementOfEveryPixel) {
   write("setup.toml", piv_setup);
   write("study.toml", "base = \"setup.toml\"\n[axes]\n\"flow.rate_rad_s\" = [3000.0]\n");
@@ -170,14 +172,14 @@ TEST_F(SilentPhysics, ADatasetHoldsTheExactDisplacementOfEveryPixel) {
       Vec2d const turned{y, -x};
       Vec2d const exact = mid ? 2 * std::tan(t / 2) * turned : (std::cos(t) - 1) * Vec2d{x, y} + std::sin(t) * turned;
       double const off = length(Vec2d{map[2 * i], map[2 * i + 1]} - exact);
-      worst = off <= worst ? worst : off;  // NaN counts
+      worst = off <= worst ? worst : off;  // NaN counts as a difference
     }
     EXPECT_LT(worst, 1e-4) << name;
   }
 }
 
-/// Path of a particle in the Taylor-Green vortices u = A sin kx cos ky, v = -A cos kx sin ky, by Runge-Kutta steps of
-/// fourth order. The steps of 1 ns leave an error far below 1e-9 px.
+/// Path of a particle in the Taylor-Green vortices u = A sin kx cos ky, v = -A cos kx sin ky, by fourth-order
+/// Runge-Kutta steps. The error of steps of 1 ns is far below 1e-9 px.
 /// @param place  initial position [mm], Y up
 Vec2d taylor_green_path(Vec2d place, double amplitude_m_s, double wavelength_mm, double time_us) {
   double const k = 2 * 3.14159265358979323846 / wavelength_mm, per_us = 1e-3 * amplitude_m_s;
@@ -194,8 +196,9 @@ Vec2d taylor_green_path(Vec2d place, double amplitude_m_s, double wavelength_mm,
   return place;
 }
 
-// Vortices of 5 mm are not linear in the position: an interpolation between the 276 particles, 4 px apart, would be off
-// by some (k 4 px)^2 / 8 = 1 % of the displacement, 0.008 px. At the sheet, a pixel is 10 um (750 - 105) / 105 wide.
+// Vortices of 5 mm are not linear in the position: an interpolation between the 276 particles, 4 px apart, would have
+// an error of some (k 4 px)^2 / 8 = 1 % of the displacement, 0.008 px. In the sheet, a pixel is 10 um (750 - 105) / 105
+// wide.
 TEST_F(SilentPhysics, ADatasetHoldsTheExactDisplacementOfVortices) {
   write("setup.toml", with(piv_setup, "kind = \"rotation\"\nrate_rad_s = 3000.0",
                            "kind = \"taylor_green\"\namplitude_m_s = 5.0\nwavelength_mm = 5.0"));
@@ -220,7 +223,7 @@ TEST_F(SilentPhysics, ADatasetHoldsTheExactDisplacementOfVortices) {
       Vec2d const exact{moved.x / pixel_mm, -moved.y / pixel_mm};
       largest = std::max(largest, length(exact));
       double const off = length(Vec2d{map[2 * i], map[2 * i + 1]} - exact);
-      worst = off <= worst ? worst : off;  // NaN counts
+      worst = off <= worst ? worst : off;  // NaN counts as a difference
     }
     EXPECT_GT(largest, 0.7) << name;
     EXPECT_LT(worst, 1e-4) << name;

@@ -7,7 +7,8 @@ namespace {
 
 using testing::HasSubstr;
 
-/// A planned study of four cases, and stand-ins for Slurm's programs in a folder that PATH names first, or alone.
+/// A planned study of four cases, and substitutes for Slurm's programs in a folder that is first in PATH, or the only
+/// one.
 class SlurmCommand : public Workplace {
  protected:
   void SetUp() override {
@@ -78,7 +79,7 @@ TEST_F(SlurmCommand, AWholeStudyIsNotSubmitted) {
   EXPECT_FALSE(std::filesystem::exists(in("submitted")));
 }
 
-// A task that ends without a word leaves its case missing: the study is incomplete, and it is said which task it was.
+// A task that ends without a message has not finished its case: the study is incomplete, and the task is named.
 TEST_F(SlurmCommand, NamesTheTasksThatLeftCasesUndone) {
   stand_in("sbatch",
            "echo 17; for last; do :; done\n"

@@ -11,15 +11,14 @@ using namespace std::chrono_literals;
 using testing::AllOf;
 using testing::HasSubstr;
 
-/// Results say which files they are made from, and are refused where those are others.
+/// Results record their source files, and are rejected if these have changed.
 class Sources : public Workplace {
  protected:
   std::string attribute(std::string const& file, std::string const& name) const {
     return Hdf5Reader(in(file).string()).attribute(name);
   }
   nlohmann::json errors() const { return nlohmann::json::parse(read("case/errors.json")); }
-  /// Runs a command, and where it is at a point at which everything has been read, renders another case into the same
-  /// folder.
+  /// Runs a command, and at a point at which everything has been read, renders another case into the same folder.
   Outcome rendered_under(std::vector<std::string> arguments, std::string const& point) const {
     Program program(std::move(arguments), folder_, stopping_at(point));
     EXPECT_TRUE(program.wait_until_stopped());
@@ -86,7 +85,7 @@ TEST_F(Sources, VectorsOfOtherFramesAreRefusedByName) {
                         std::string("run gladstone correlate case again")};
   expect_refused({"compare", "case", "--vectors", "old.h5"}, 2, refusal);
   succeed({"correlate", "case"});
-  // the same frames of another case are the same frames
+  // identical frames of another case are accepted
   render("other", {"--set", "target.seed=8"});
   succeed({"compare", "other", "--vectors", "case/vectors.h5", "--no-figures"});
 }
@@ -118,7 +117,7 @@ TEST_F(Sources, RaysThatAreReplacedWhileTheyAreTracedGiveNoTable) {
   EXPECT_TRUE(names("case").empty());
 }
 
-// What the truth was traced through is traced through again for the vectors' own places.
+// The medium of the truth is traced again for the positions of the vectors.
 TEST_F(Sources, AnInputThatHasChangedSinceTheCaseWasRenderedIsRefusedByName) {
   write("dots.csv", "x_mm,y_mm\n0,0\n1,0.5\n-1,0.25\n-0.5,0.75\n0.5,-0.5\n-1,-1\n");
   write("points.toml", with(small_setup, "dots_per_32px_window = 10.0", "kind = \"points\"\nfile = \"dots.csv\""));
@@ -144,7 +143,7 @@ TEST_F(Sources, AnInputThatIsReplacedWhileItIsRenderedGivesNoCase) {
   EXPECT_FALSE(std::filesystem::exists(in("case")));
 }
 
-// The second writer comes while the first one renders (into no case, then over one), or while that replaces the files.
+// The second writer starts while the first one renders (into no case, then over one), or while it replaces the files.
 TEST_F(Sources, TwoRenderingsIntoOneCaseAtATimeLeaveOneOfThemWhole) {
   render("a", {"--set", "target.seed=8"});
   render("b", {"--set", "target.seed=9"});
@@ -163,7 +162,7 @@ TEST_F(Sources, TwoRenderingsIntoOneCaseAtATimeLeaveOneOfThemWhole) {
     if (!one_by_one) {
       EXPECT_EQ(second.finish(hang_limit).exit_code, 0);
     }
-    expect_same_case(one_by_one ? "a" : "b", "case");  // who replaces the files last
+    expect_same_case(one_by_one ? "a" : "b", "case");  // the writer that replaces the files last
     EXPECT_EQ(names("case").size(), 5u) << testing::PrintToString(names("case"));
     EXPECT_EQ(names(), (std::vector<std::string>{"a", "b", "case", "setup.toml"}));
     succeed({"correlate", "case"});

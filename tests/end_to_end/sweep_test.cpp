@@ -18,7 +18,7 @@ namespace {
 using namespace std::chrono_literals;
 using testing::HasSubstr;
 
-/// Twelve cases of a few milliseconds each.
+/// Twelve cases that take a few milliseconds each.
 constexpr char const* small_study = R"(base = "setup.toml"
 [axes]
 "lens.f_number" = [8, 16, 32]
@@ -50,7 +50,7 @@ class Sweeps : public Workplace {
     succeed({"sweep", "run", run, "--quiet"});
     succeed({"sweep", "collect", run, "--no-figures", "--quiet"});
   }
-  /// Every line's first `old` becomes `replacement`, with a hash that says so: as if it had been planned.
+  /// Replaces the first `old` of every line, and updates the hash: as if it had been planned.
   void plan_otherwise(std::string const& run, std::string const& old, std::string const& replacement) const {
     std::istringstream lines(read(run + "/manifest.jsonl"));
     std::string text;
@@ -63,7 +63,7 @@ class Sweeps : public Workplace {
   }
   nlohmann::json status(std::string const& run) const { return json_of({"sweep", "status", run}); }
 
-  /// study.h5 of both hold the same data to the last bit, times excepted.
+  /// Expects both study.h5 to contain identical data, except for times.
   void expect_same_study(std::string const& a, std::string const& b) const {
     Hdf5Reader const one(in(a + "/study.h5").string()), other(in(b + "/study.h5").string());
     auto const names = one.dataset_names();
@@ -76,7 +76,7 @@ class Sweeps : public Workplace {
       EXPECT_EQ(std::memcmp(x.data(), y.data(), x.size() * sizeof(double)), 0) << name;
     }
   }
-  /// Files that tell when each case was finished.
+  /// Files that show when each case was finished.
   std::map<std::string, std::filesystem::file_time_type> results(std::string const& run) const {
     std::map<std::string, std::filesystem::file_time_type> found;
     for (auto const& entry : std::filesystem::directory_iterator(in(run + "/cases"))) {
@@ -86,7 +86,7 @@ class Sweeps : public Workplace {
   }
 };
 
-// Half of the cases are lit until pixels saturate.
+// Half of the cases have saturated pixels.
 TEST_F(Sweeps, CollectTellsThatCasesGaveWarnings) {
   write("bright.toml", "base = \"setup.toml\"\n[axes]\n\"camera.exposure\" = [2000.0, 60000.0]\n");
   finish("run", "bright.toml");
@@ -135,7 +135,7 @@ TEST_F(Sweeps, FromStudyToTable) {
   EXPECT_EQ(file.attribute("computed_by"), nlohmann::json({build}).dump());
 }
 
-// A sweep's case is the case that render, correlate and compare make.
+// A case of a sweep is identical to that of render, correlate and compare.
 TEST_F(Sweeps, ACaseIsWhatTheSingleCommandsMake) {
   plan("run");
   succeed({"sweep", "run", "run", "--quiet", "--case", "7", "--keep-images"});
@@ -154,7 +154,7 @@ TEST_F(Sweeps, ACaseIsWhatTheSingleCommandsMake) {
             nlohmann::json::parse(read("by_hand/errors.json"))["ray_truth"]["rms_px"]);
 }
 
-// The result that comes with the images is the one that was there, times excepted.
+// The result computed with the images is identical to the previous one, except for times.
 TEST_F(Sweeps, ImagesOfAFinishedCaseAreMadeWhenTheyAreWanted) {
   plan("run");
   auto const numbers = [this] {
@@ -190,7 +190,7 @@ TEST_F(Sweeps, JobsAndShardsInAnyOrderGiveTheSameStudy) {
   succeed({"sweep", "collect", "shards", "--no-figures"});
   expect_same_study("whole", "shards");
 
-  // on machines that share nothing: their results are put together by copying
+  // on machines without a common file system: their results are combined by copying
   plan("apart");
   for (std::string const i : {"0", "1", "2"}) {
     plan("machine" + i);
@@ -203,8 +203,8 @@ TEST_F(Sweeps, JobsAndShardsInAnyOrderGiveTheSameStudy) {
   expect_same_study("whole", "apart");
 }
 
-// At each of these points a process is killed that has finished one case, and loses what it does on a second one; then
-// the first of three processes, whose workers end with it.
+// A process that has finished one case is killed at each of these points and loses its work on the second one; then the
+// first of three processes, whose workers end with it.
 TEST_F(Sweeps, KilledAtAnyPointTheNextRunFinishesTheSameStudy) {
   finish("whole");
   plan("run");
@@ -215,7 +215,7 @@ TEST_F(Sweeps, KilledAtAnyPointTheNextRunFinishesTheSameStudy) {
     EXPECT_TRUE(jobs != "1" || claims.any_held());
     program.send(SIGKILL);
     EXPECT_EQ(program.finish(hang_limit).signal, SIGKILL);
-    while (claims.any_held()) std::this_thread::yield();  // no claim outlives its process
+    while (claims.any_held()) std::this_thread::yield();  // no claim persists after its process
   };
   int done = 0;
   for (std::string const point : {"case-begun:2", "case-computed:2", "result-written:2", "case-finished"}) {
@@ -265,7 +265,7 @@ TEST_F(Sweeps, TwoRunnersShareTheWorkAndBothEndWithAllOfIt) {
   succeed({"sweep", "collect", "run", "--no-figures"});
 }
 
-// A window of 64 px fits one of two images.
+// A window of 64 px fits into one of two images.
 TEST_F(Sweeps, AFailingCaseIsRecordedAndDoesNotStopTheOthers) {
   write("study.toml", R"(base = "setup.toml"
 [axes]
@@ -314,8 +314,8 @@ TEST_F(Sweeps, FailedCasesAreRetriedOnceARunWhateverItsJobs) {
   EXPECT_EQ(again({"--retry-failed"}), 3);
 }
 
-// A limit of one second on a process's time ends it by SIGXCPU, as a crash would by SIGSEGV; the other cases take some
-// milliseconds, a million rays of each of 40 dots many seconds.
+// A limit of one second of processor time ends a process by SIGXCPU, as a crash would by SIGSEGV; the other cases take
+// some milliseconds, a million rays for each of 40 dots many seconds.
 TEST_F(Sweeps, ACaseThatKillsItsProcessIsRecordedAndDoesNotStopTheOthers) {
   write("study.toml", "base = \"setup.toml\"\n[axes]\n\"render.rays_per_dot\" = [16, 1000000, 32, 64]\n");
   plan("run");
@@ -337,8 +337,8 @@ TEST_F(Sweeps, ACaseThatKillsItsProcessIsRecordedAndDoesNotStopTheOthers) {
   EXPECT_EQ(json_of({"sweep", "status", "run"})["failed"], 1);
 }
 
-// A limit on a process's memory stands for a machine that has no more: the program takes some 130 MB of it, a picture
-// of 2048 x 2048 px by itself more than 36 bytes x 4 Mpx = 150 MB.
+// A memory limit of the process simulates a machine with insufficient memory: the program takes some 130 MB, an image
+// of 2048 x 2048 px alone more than 36 bytes x 4 Mpx = 150 MB.
 TEST_F(Sweeps, ACaseThatLackedMemoryIsTriedOnceByEveryRunUntilThereIsEnough) {
   write("setup.toml",
         with(with(small_setup, "dots_per_32px_window = 10.0", "dots_per_32px_window = 0.1"), "[32, 16]", "[256]"));
@@ -368,12 +368,12 @@ TEST_F(Sweeps, ACaseThatLackedMemoryIsTriedOnceByEveryRunUntilThereIsEnough) {
   EXPECT_EQ(json_of({"sweep", "run", "run"})["computed"], 0);
 }
 
-// What check_memory refuses before it is allocated lacks memory too: 10^11 px take 3.6 TB.
+// A rejection by check_memory before the allocation counts as a lack of memory, too: 10^11 px require 3.6 TB.
 TEST_F(Sweeps, APictureThatNoMachineHoldsLacksMemoryAndStopsNothing) {
   write("setup.toml", with(read("setup.toml"), "pixel_pitch_um = 10.0", "pixel_pitch_um = 1.0"));
   write("study.toml", "base = \"setup.toml\"\n[axes]\n\"camera.pixels\" = [[64, 64], [48, 48]]\n");
   plan("run");
-  // planning would have refused it on this machine
+  // planning would have rejected it on this machine
   plan_otherwise("run", "pixels = [64, 64]", "pixels = [400000, 250000]");
   for (int attempt = 0; attempt < 2; ++attempt) {
     Outcome const outcome = gladstone({"sweep", "run", "run", "--json"});
@@ -386,8 +386,8 @@ TEST_F(Sweeps, APictureThatNoMachineHoldsLacksMemoryAndStopsNothing) {
   }
 }
 
-// A name in Latin-1, as old disks have them. JSON and TOML hold UTF-8 alone, so that a manifest cannot name a file so;
-// the folders of a study, of its base and of a RUN may be called anything.
+// A name in Latin-1, as on old disks. JSON and TOML support UTF-8 only, so that a manifest cannot contain such a name;
+// the folders of a study, of its base and of a RUN may have any name.
 TEST_F(Sweeps, FoldersWhoseNamesAreNoUtf8Work) {
   std::string const folder = "caf\xe9";
   std::filesystem::create_directory(in(folder));
@@ -445,7 +445,7 @@ TEST_F(Sweeps, ControlCKeepsWhatIsFinished) {
 TEST_F(Sweeps, AFullDiskStopsTheRunAndTheNextOneGoesOn) {
   finish("whole");
   plan("run");
-  // a result takes some 5 kB, a limit on the size of files is met like a full disk
+  // a result takes some 5 kB; a limit on the size of files acts like a full disk
   auto const limited = [] {
     rlimit const limit{2048, 2048};
     return ::setrlimit(RLIMIT_FSIZE, &limit) == 0;
@@ -455,7 +455,7 @@ TEST_F(Sweeps, AFullDiskStopsTheRunAndTheNextOneGoesOn) {
   EXPECT_THAT(refused.err, HasSubstr("run/cases/0.json: cannot be written"));
   EXPECT_TRUE(names("run/cases").empty());
 
-  // a disk with room for some results, in a mount namespace of its own
+  // a disk with space for some results, in a separate mount namespace
   pid_t const child = ::fork();
   if (child == 0) {
     bool const mounted = ::unshare(CLONE_NEWNS) == 0 &&
@@ -498,7 +498,7 @@ TEST_F(Sweeps, AnotherKindOfDeviceIsRefused) {
   }
 }
 
-// The file holds what the kept cases hold, bit by bit, one case after the other.
+// The file contains the data of the kept cases, bit by bit, one case after the other.
 TEST_F(Sweeps, ADatasetHoldsImagesAndTruthOfTheKeptCases) {
   plan("run");
   succeed({"sweep", "run", "run", "--quiet", "--case", "0"});
@@ -532,7 +532,8 @@ TEST_F(Sweeps, ADatasetHoldsImagesAndTruthOfTheKeptCases) {
   EXPECT_EQ(next, images.size());
   EXPECT_EQ(set.shape("/displacement_px"),
             (std::vector<std::size_t>{2, set.shape("/images")[2] / 4, set.shape("/images")[3] / 4, 2}));
-  // both sample the same field, evenly and at some hundred random places, whose rms scatters by some percent
+  // both sample the same field, one uniformly, the other at some hundred random positions, whose rms scatters by some
+  // percent
   auto const rms = [](std::vector<double> const& values) {
     double sum = 0, count = 0;
     for (double const value : values) {

@@ -6,7 +6,7 @@
 namespace gladstone::end_to_end {
 namespace {
 
-/// gladstone trace: where given rays end and why.
+/// gladstone trace: where and why given rays end.
 class Trace : public Workplace {
  protected:
   struct Row {
@@ -43,13 +43,13 @@ TEST_F(Trace, ARayThroughAUniformGradientTurnsByTheGradientTimesThePath) {
   ASSERT_EQ(rows.size(), 1u);
   EXPECT_EQ(rows[0].status, "alive");
   EXPECT_NEAR(rows[0].z, 5, 1e-12);
-  // dx = K g L / n along the axis, its square beyond: 2.26e-4 20 0.01 = 4.52e-5, over n = 1.000277
+  // direction dx = K g L / n, with its square along the axis: 2.26e-4 20 0.01 = 4.52e-5, over n = 1.000277
   double const n = 1 + 2.26e-4 * 1.225;
   EXPECT_NEAR(rows[0].dx, 2.26e-4 * 20 * 0.01 / n, 1e-12);
   EXPECT_NEAR(rows[0].dy, 2.26e-4 * 10 * 0.01 / n, 1e-12);
-  // half of that angle times 10 mm aside
+  // lateral shift: half of that angle times 10 mm
   EXPECT_NEAR(rows[0].x, 0.5 * 2.26e-4 * 20 * 0.01 / n * 10, 1e-10);
-  // 245 mm in the ambient and 10 mm of medium, both at n0; bending adds 5e-10 of 10 mm
+  // 245 mm in the ambient and 10 mm of medium, both at n0; the deflection adds 5e-10 of 10 mm
   EXPECT_NEAR(rows[0].path, 245 * n + 10 * n, 1e-6);
   EXPECT_NEAR(std::hypot(rows[0].dx, rows[0].dy, rows[0].dz), 1, 1e-15);
   EXPECT_TRUE(std::isnan(rows[0].column));
@@ -68,7 +68,7 @@ TEST_F(Trace, ARayThatMissesComesBackAsItWentIn) {
   EXPECT_EQ(rows[1].path, 0);
 }
 
-// Directions whose squares overflow or vanish are directions all the same.
+// Directions whose squares overflow or underflow are valid.
 TEST_F(Trace, DirectionsMayHaveAnyLength) {
   auto const rows = trace("0,0,-250,3e-3,0,1\n0,0,-250,3e197,0,1e200\n0,0,-250,3e-203,0,1e-200\n", "all");
   ASSERT_EQ(rows.size(), 3u);
@@ -79,7 +79,7 @@ TEST_F(Trace, DirectionsMayHaveAnyLength) {
   }
 }
 
-// A closed form's slab has no end along X and Y: a ray along it has no face to leave by.
+// The slab of a closed form is infinite along X and Y: a ray along it reaches no exit face.
 TEST_F(Trace, ARayAlongAnEndlessSlabIsLostInIt) {
   write("setup.toml", with(small_setup, "[20.0, 10.0, 0.0]", "[0.0, 0.0, 0.0]"));
   auto const rows = trace("0,0,0,1,0,0\n0,0,0,0,-1,1e-200\n", "medium");
@@ -91,7 +91,8 @@ TEST_F(Trace, ARayAlongAnEndlessSlabIsLostInIt) {
 }
 
 TEST_F(Trace, RowsKeepTheirOrderAndSayWhy) {
-  // through the pupil's middle; past the stop of 105/11/2 = 4.8 mm; from a dot far outside the view; away from the lens
+  // through the middle of the pupil; outside the stop of 105/11/2 = 4.8 mm; from a dot far outside the view; away from
+  // the lens
   auto const rows = trace("0,0,-250,0,0,1\n0,0,-250,0.02,0,1\n100,0,-250,-0.1,0,1\n0,0,100,0,0,-1\n", "all");
   ASSERT_EQ(rows.size(), 4u);
   EXPECT_EQ(rows[0].status, "alive");
@@ -113,7 +114,7 @@ TEST_F(Trace, ThroughTheOpticsEndsAtTheLens) {
   ASSERT_EQ(rows.size(), 1u);
   EXPECT_NEAR(rows[0].z, 750, 1e-12);
   EXPECT_TRUE(std::isnan(rows[0].column));
-  // a thin lens takes x / f off the slope
+  // a thin lens subtracts x / f from the slope
   double const slope = 2.26e-4 * 20 * 0.01 / (1 + 2.26e-4 * 1.225);
   EXPECT_NEAR(rows[0].dx / rows[0].dz, slope - rows[0].x / 105.0, 1e-9);
 }
@@ -135,7 +136,7 @@ TEST_F(Trace, BadRaysAreRefusedWithTheirLine) {
   expect_refused({"trace", "setup.toml", "--rays", "folder", "-o", "out.csv"}, 2, {"folder: is a folder"});
 }
 
-// Far outside a bench of 1000 mm from the dots to the lens there is nothing to trace, at any cost.
+// Far outside a set-up of 1000 mm from the dots to the lens there is nothing to trace.
 TEST_F(Trace, RaysFromFarOutsideTheBenchAreRefused) {
   for (std::string const far : {"1e9,0,-250", "0,-1e12,-250", "0,0,10001"}) {
     write("rays.csv", "x_mm,y_mm,z_mm,dx,dy,dz\n0,0,-250,0,0,1\n" + far + ",0,0,1\n");

@@ -5,7 +5,7 @@
 namespace gladstone::end_to_end {
 namespace {
 
-/// Other targets, sensors, apertures and media than the small setup's.
+/// Other targets, sensors, apertures and media than in the small setup.
 class Variants : public Workplace {
  protected:
   std::vector<double> dataset(std::string const& name, std::string const& of = "case") const {
@@ -20,11 +20,11 @@ TEST_F(Variants, ChiefRaysOfAPinholeMoveByEq9InAUniformGradient) {
   auto const rays = dataset("/dots/displacement_px"), eq9 = dataset("/dots/eq9_px"),
              spread = dataset("/dots/displacement_std_px");
   ASSERT_EQ(rays.size(), eq9.size());
-  // Eq. 9 is the leading order; what it leaves out is of relative order theta^2 + gradient * thickness ~ 1e-5 of 0.1
-  // px, and the finite view angle (field 4 mm off axis in 1 m) less
+  // Eq. 9 is the leading order; neglected terms are of relative order theta^2 + gradient * thickness ~ 1e-5 of 0.1 px,
+  // and the finite view angle (field 4 mm off axis in 1 m) is smaller
   for (std::size_t i = 0; i < rays.size(); ++i) EXPECT_NEAR(rays[i], eq9[i], 1e-5);
-  // the hits spread over the disc's image only: a disc of radius 1.5 px has a standard deviation of 0.75 px per axis,
-  // which 256 points give to far better than 13 %
+  // the rays are distributed over the image of the disc only: a disc of radius 1.5 px has a standard deviation of 0.75
+  // px per axis, which 256 points determine to far better than 13 %
   for (double const value : spread) EXPECT_NEAR(value, 0.75, 0.1);
 }
 
@@ -36,7 +36,8 @@ TEST_F(Variants, PointsOfATableStandWhereItSays) {
   ASSERT_EQ(position.size(), 6u);
   EXPECT_NEAR(position[3], 1.5e-3, 1e-18);
   EXPECT_NEAR(position[4], -0.5e-3, 1e-18);
-  // pixel (64 - 1)/2 + M x / p, rows downwards; a disc sampled by 32 rays is centred to a few hundredths of a pixel
+  // pixel (64 - 1)/2 + M x / p, rows downwards; the centroid of 32 rays of a disc is accurate to a few hundredths of a
+  // pixel
   double const scale = 105.0 / 895.0 / 10e-6;
   EXPECT_NEAR(reference[2], 31.5 + 1.5e-3 * scale, 0.2);
   EXPECT_NEAR(reference[3], 31.5 + 0.5e-3 * scale, 0.2);
@@ -50,7 +51,7 @@ TEST_F(Variants, DotsOutsideTheViewAreWarnedOf) {
   EXPECT_THAT(outcome.err, testing::HasSubstr("none of the 2 dots lies in the view, 5.455 x 5.455 mm about the axis"));
   EXPECT_THAT(nlohmann::json::parse(read("case/summary.json"))["warnings"].dump(),
               testing::HasSubstr("none of the 2 dots lies in the view"));
-  // nothing to be correlated: no valid vector at all
+  // nothing to correlate: no valid vector
   Outcome const correlated = gladstone({"correlate", "case"});
   EXPECT_EQ(correlated.exit_code, 1) << correlated.err;
   EXPECT_THAT(correlated.err, testing::HasSubstr("none of the 49 vectors is valid"));
@@ -70,13 +71,13 @@ TEST_F(Variants, RegularDotsFormALattice) {
 
 TEST_F(Variants, APictureAsTarget) {
   Image<std::uint16_t> picture(16, 16, 0);
-  for (int i = 4; i < 12; ++i) picture(i, 8) = 65535;  // a bar, left to right
+  for (int i = 4; i < 12; ++i) picture(i, 8) = 65535;  // a horizontal bar
   write_tiff(in("bar.tif").string(), picture, {});
   write("picture.toml",
         with(small_setup, "dots_per_32px_window = 10.0", "kind = \"image\"\nfile = \"bar.tif\"\nextent_mm = [8, 8]"));
   render("case", {}, "picture.toml");
   Image<double> const seen = image("case/reference.tif");
-  // 8 mm are 93.9 px: the bar, 4 mm by 0.5 mm just below the middle, reaches from column 8 to 55 around row 34
+  // 8 mm are 93.9 px: the bar, 4 mm by 0.5 mm just below the middle, extends from column 8 to 55 around row 34
   EXPECT_GT(seen(31, 34), 0.5 * largest(seen));
   EXPECT_EQ(seen(31, 10), 0);
   EXPECT_EQ(seen(2, 34), 0);
@@ -86,15 +87,15 @@ TEST_F(Variants, DarkDotsAreBrightOnesTakenFromWhite) {
   render("bright", {"--set", "camera.exposure=20000"});
   render("dark", {"--set", "camera.exposure=20000", "--set", "target.polarity=dark"});
   Image<double> const bright = image("bright/reference.tif"), dark = image("dark/reference.tif");
-  // white paper on the axis is 20000 / 30000 of full scale; cos^4 takes 4 (3.8 mm / 1 m)^2 = 6e-5 of it, 3 levels, and
-  // either picture is rounded
+  // white paper on the axis is 20000 / 30000 of full scale; cos^4 reduces it by 4 (3.8 mm / 1 m)^2 = 6e-5, 3 levels,
+  // and both images are rounded
   double const white = 20000.0 / 30000.0 * 65535;
   for (std::size_t i = 0; i < bright.size(); ++i) EXPECT_NEAR(bright.data()[i] + dark.data()[i], white, 6);
 }
 
-// A given exposure counts the electrons in a fully lit pixel on the axis, at any stop: white paper is as bright at
-// f/5.6 as at f/22. What a smaller stop costs is light in a dot's pixels, over which its wider spot spreads it; "auto"
-// makes up for that.
+// A given exposure is the number of electrons in a fully lit pixel on the axis, at any f-number: white paper is as
+// bright at f/5.6 as at f/22. A smaller stop reduces the light in the pixels of a dot, since its wider PSF spreads the
+// light; "auto" compensates for that.
 TEST_F(Variants, AGivenExposureIsThatOfAFullyLitPixelAndAutoIsThatOfTheBrightest) {
   double const white = 20000.0 / 30000.0 * 65535;
   double peak[2] = {};
@@ -111,8 +112,8 @@ TEST_F(Variants, AGivenExposureIsThatOfAFullyLitPixelAndAutoIsThatOfTheBrightest
     rendered({});
     EXPECT_NEAR(std::max(largest(image("case/reference.tif")), largest(image("case/flow.tif"))), 0.9 * 65535, 0.51);
   }
-  // 3 px discs under Gaussians of sigma 0.14 and 0.55 px: 1 - exp(-r^2 / 2 sigma^2) of 1 at the centre is 1 and 0.976,
-  // less what the pixel averages
+  // 3 px discs with Gaussian PSFs of sigma 0.14 and 0.55 px: 1 - exp(-r^2 / 2 sigma^2) at the centre is 1 and 0.976,
+  // less the averaging by the pixel
   EXPECT_NEAR(peak[0], white, 0.01 * white);
   EXPECT_LT(peak[1], 0.99 * peak[0]);
 }
@@ -130,10 +131,11 @@ TEST_F(Variants, NoiseRepeatsWithItsSeedAndDiffersBetweenFrames) {
     for (std::size_t i = 0; i < one.size(); ++i) count += one.data()[i] != other.data()[i];
     return count;
   };
-  // read noise of 44 levels: equal values in two frames are rare, but half of the dark pixels clip at zero in each
+  // read noise of 44 levels: equal values in two frames are rare, but half of the dark pixels are truncated at zero in
+  // each
   EXPECT_GT(differing(image("a/reference.tif"), image("a/flow.tif")), 64u * 64u / 2);
   EXPECT_GT(differing(image("a/reference.tif"), image("c/reference.tif")), 64u * 64u / 2);
-  // without a medium and without noise the frames are equal
+  // without medium and noise the frames are equal
   write("still.toml", still);
   render("d", {}, "still.toml");
   EXPECT_EQ(differing(image("d/reference.tif"), image("d/flow.tif")), 0u);
@@ -153,7 +155,7 @@ TEST_F(Variants, EightAndTwelveBitsAreStoredUnshifted) {
   }
 }
 
-/// A density ramp of 20 kg/m^4 along x about the ambient density, as a volume and as a plane.
+/// A density ramp of 20 kg/m^4 along x, relative to the ambient density, as a volume and as a plane.
 class FieldFiles : public Variants {
  protected:
   static constexpr int side = 17, depth = 5;  // nodes, 0.5 and 2.5 mm apart: 8 mm by 10 mm
@@ -179,17 +181,16 @@ class FieldFiles : public Variants {
   void expect_the_ramp(std::string const& name, std::string const& text) const {
     write("ramp.toml", text);
     render(name, {}, "ramp.toml");
-    // the same gradient in closed form, ray by ray; floats of 1.2 kg/m^3 are good to 6e-8, 20 kg/m^4 0.5 mm to 1e-5 of
-    // it
+    // the same gradient in closed form, ray by ray; floats of 1.2 kg/m^3 have an error of 6e-8, and differences of 20
+    // kg/m^4 over 0.5 mm of 1e-5
     render("exact", {"--set", "medium.field.gradient_kg_m4=[20.0, 0.0, 0.0]"});
     auto const u = dataset("/dots/displacement_px", name), exact = dataset("/dots/displacement_px", "exact");
     auto const position = dataset("/dots/position_m", name);
     ASSERT_EQ(u.size(), exact.size());
     for (std::size_t dot = 0; dot < u.size() / 2; ++dot) {
-      // rays reach the medium within 3/4 of the dot's distance from the axis and 1.2 mm of cone, an eighth more of it
-      // and
-      // the dot itself; within two cells of the field's edge truth is an average over 32 rays, some of which pass the
-      // stop in one frame alone
+      // rays pass the medium within 3/4 of the dot's distance from the axis plus 1.2 mm of cone, an eighth of it and
+      // the size of the dot; within two cells of the edge of the field the truth is an average over 32 rays, some of
+      // which pass the stop in one frame only
       double const reach = 0.75 * std::max(std::abs(position[3 * dot]), std::abs(position[3 * dot + 1])) + 1.5e-3;
       if (reach < 4e-3) {
         double const tolerance = reach < 3e-3 ? 2e-5 : 0.1;
@@ -204,8 +205,9 @@ TEST_F(FieldFiles, NrrdVolumeBendsAsTheGradientItHolds) {
   expect_the_ramp("case", setup("ramp.nrrd", ""));
 }
 
-// 4 mm of a volume in a view of 4.09 mm at its depth: its faces cut the cones of dots all about. One warning says what
-// 32 rays of each leave of truth and of images, that "auto" exposure rests on these, and what to do.
+// A volume 4 mm wide in a view of 4.09 mm at its depth: its faces cut the cones of dots on all sides. One warning
+// states the errors of truth and images with 32 rays for each of these dots, that "auto" exposure depends on them, and
+// the remedy.
 TEST_F(FieldFiles, FacesInViewAreWarnedOfWithWhatRaysLeave) {
   write_volume();
   write("faces.toml", setup("ramp.nrrd", "spacing_mm = [0.25, 0.25, 2.5]"));
@@ -286,7 +288,8 @@ TEST_F(Variants, OddButPossibleSetupsRender) {
   }
 }
 
-// A dot beyond a volume's faces is known by its rays alone; one rendering says how well, and how to do better.
+// The truth of a dot at the faces of a volume comes from its rays only; one rendering reports its accuracy and the
+// remedy.
 TEST_F(Variants, TruthThatIsNotKnownWellIsWarnedOf) {
   Outcome const outcome = gladstone(
       {"render", "setup.toml", "-o", "case", "--set", "lens.focus=medium", "--set", "camera.noise.read_noise_e=3"});
@@ -307,7 +310,7 @@ TEST_F(Variants, TruthThatIsNotKnownWellIsWarnedOf) {
   for (double const error : errors) square += error * error / static_cast<double>(errors.size());
   EXPECT_NEAR(std::sqrt(square), rms, 1e-9 * rms);
 
-  // in focus a table knows this field to far better, and nothing is said
+  // in focus a table has a much smaller error for this field, and there is no warning
   Outcome const focused = gladstone({"render", "setup.toml", "-o", "focused"});
   EXPECT_THAT(focused.err, testing::Not(testing::HasSubstr("truth:")));
   auto const better = nlohmann::json::parse(read("focused/summary.json"));
@@ -317,7 +320,7 @@ TEST_F(Variants, TruthThatIsNotKnownWellIsWarnedOf) {
   for (double const by_table : dataset("/dots/by_table", "focused")) EXPECT_EQ(by_table, 1);
 }
 
-// The wider the pupil is made, the steeper are the rays, and the further the flow bends them.
+// The wider the pupil, the steeper the rays, and the larger their deflection by the medium.
 TEST_F(Variants, GradientsThatBendRaysPastAnyLensAreRefused) {
   for (std::string const steep : {"[0, -1e5, 0]", "[3e5, 0, 0]"}) {
     std::string const method = steep[1] == '0' ? "rays" : "focused_dots";
@@ -329,7 +332,7 @@ TEST_F(Variants, GradientsThatBendRaysPastAnyLensAreRefused) {
   }
 }
 
-// A dot 1.2 m off the axis, which the mounts of a double Gauss vignette completely, and one on the axis.
+// A dot 1.2 m off the axis, which the mounts of a double Gauss lens vignette completely, and one on the axis.
 TEST_F(Variants, DotsThatTheLensVignettesAreNotBlamedOnTheFlow) {
   write("dots.csv", "x_mm,y_mm\n0,0\n1200,0\n");
   write("points.toml", R"(schema = 1

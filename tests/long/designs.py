@@ -1,4 +1,4 @@
-"""Simulates what gladstone design recommends for requirement sets drawn by their seeds, with fresh seeds of dots, rays and
+"""Simulates the recommendations of gladstone design for randomly drawn requirements, with new seeds of dots, rays and
 noise. Every requirement must be met within two standard errors, or the design be reported as infeasible, with the reason.
 
     python3 -B tests/long/designs.py --program build/bin/gladstone [--sets 10] [--first 1] [--seeds 8] [--index N]
@@ -55,7 +55,7 @@ def run(program, arguments, codes=(0,)):
 
 
 def question(program, folder, index):
-    """A setup with requirements about what a bench of the middle has, and its objective."""
+    """Returns a setup with requirements close to the performance of a typical set-up."""
     draw = random.Random(index)
     bench = BENCH.format(z_a=draw.uniform(500, 1500), z_d=draw.uniform(200, 1000), dot=draw.uniform(1.5, 3.5))
     path = os.path.join(folder, "bench.toml")
@@ -74,7 +74,7 @@ def question(program, folder, index):
 
 
 def with_choices(text, choices):
-    """The question with free keys of these values: an interval, or a list."""
+    """Returns the question with free keys that have these values: an interval, or a list."""
     limits, inventory = ["[limits]", "z_total_max_mm = 3200.0"], ["[inventory]"]
     for key, values in choices.items():
         name = key.split(".")[1]
@@ -91,7 +91,7 @@ def with_choices(text, choices):
 
 
 def check(arguments, index):
-    """What became of a requirement set: a line to print, and whether it is as it must be."""
+    """Checks one set of requirements. Returns a line to print, and whether the result is acceptable."""
     with tempfile.TemporaryDirectory() as folder:
         asked = question(arguments.program, folder, index)
         path = os.path.join(folder, "question.toml")
@@ -110,7 +110,7 @@ def check(arguments, index):
         fresh = ["--verify", "1", "--repeats", str(arguments.seeds), "--seed", str(FRESH_SEED + index)]
         again = run(arguments.program, ["design", path, "--json", "--quiet", *fresh], (0, 4))[1]
         if not again.get("verification"):
-            return f"the recommended bench is no answer to its own question: {again['conflicts']}", False
+            return f"the recommended set-up does not meet its own requirements: {again['conflicts']}", False
         bench = again["verification"][0]
         if "failed" in bench:
             return f"could not be simulated: {bench['failed']}", False
@@ -125,7 +125,7 @@ def main():
     parser.add_argument("--sets", type=int, default=10)
     parser.add_argument("--first", type=int, default=1)
     parser.add_argument("--seeds", type=int, default=8)
-    parser.add_argument("--index", type=int, help="this set alone")
+    parser.add_argument("--index", type=int, help="only this set")
     arguments = parser.parse_args()
     indices = [arguments.index] if arguments.index else range(arguments.first, arguments.first + arguments.sets)
     wrong = 0

@@ -1,4 +1,4 @@
-"""The small experiments that the soak test disturbs, and what is known of them when nobody does."""
+"""The small experiments that the soak test disturbs, and their results without disturbance."""
 
 import csv
 import json
@@ -43,7 +43,7 @@ repeats = 2
 
 
 class Wrong(Exception):
-    """What the program must not do."""
+    """Forbidden behaviour of the program."""
 
 
 def field(slope):
@@ -54,7 +54,7 @@ def field(slope):
 
 
 def write(path, content):
-    """In one move, as editors and copying tools do."""
+    """Writes a file by one rename, like editors and copying tools."""
     with open(path + "~", "wb") as file:
         file.write(content if isinstance(content, bytes) else content.encode())
     os.rename(path + "~", path)
@@ -71,7 +71,7 @@ def names(folder):
 
 
 class Bench:
-    """Runs the program in one folder; kinds "a" and "b" of the experiment give other dots and other displacements."""
+    """Runs the program in one folder; the experiments "a" and "b" have different dots and displacements."""
 
     def __init__(self, program, folder):
         self.program, self.folder = os.path.abspath(program), folder
@@ -95,7 +95,7 @@ class Bench:
     def start(self, *arguments, limit_bytes=None, stop_at=None):
         """@param stop_at point at which the program stops itself (CONTRIBUTING.md), for wait_until_stopped()"""
         def prepare():
-            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)  # a full disk is an error of writing, not a signal
+            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)  # a full disk causes a write error, not a signal
             if limit_bytes is not None:
                 resource.setrlimit(resource.RLIMIT_FSIZE, (limit_bytes, limit_bytes))
         return subprocess.Popen([self.program, *arguments], cwd=self.folder, stdin=subprocess.DEVNULL, text=True,
@@ -104,11 +104,11 @@ class Bench:
 
     @staticmethod
     def wait_until_stopped(process):
-        """Until it has stopped itself, or has ended without reaching the point."""
+        """Waits until the process has stopped itself, or has ended without reaching the point."""
         os.waitid(os.P_PID, process.pid, os.WSTOPPED | os.WEXITED | os.WNOWAIT)
 
     def finish(self, process, seconds=120):
-        """The exit code and stderr; a signal that the test did not send, and a run without end, are wrong."""
+        """Returns exit code and stderr; raises Wrong for a run without end, or ended by a signal that the test did not send."""
         try:
             _, err = process.communicate(timeout=seconds)
         except subprocess.TimeoutExpired:
@@ -142,13 +142,13 @@ class Bench:
 
     @staticmethod
     def pixel_hashes(case):
-        """Of both frames; equal for equal pixels, whatever the names of their setup and its files."""
+        """Hashes of both frames; equal for equal pixels, whatever the names of the setup and its files."""
         summary = json.loads(read(os.path.join(case, "summary.json")))
         return [summary["reference_sha256"], summary["flow_sha256"]]
 
     @staticmethod
     def errors(case):
-        """The numbers of errors.json."""
+        """Errors against the ray truth in errors.json."""
         return json.loads(read(os.path.join(case, "errors.json")))["ray_truth"]
 
     def kind_of(self, what, value):
@@ -158,7 +158,7 @@ class Bench:
         return found[0]
 
     def state(self, case):
-        """"absent", "refused", "a" or "b"; Wrong where the case passes for whole and is a mixture of two."""
+        """Returns "absent", "refused", "a" or "b"; raises Wrong if the case is accepted but is a mixture of both."""
         if not os.path.exists(case):
             return "absent"
         copy = self.at("copy")
@@ -169,7 +169,7 @@ class Bench:
         if "vectors.h5" in has and self.run("compare", copy, "--no-figures", "--quiet")[0] == 0:
             vectors = self.kind_of("errors", self.errors(copy))
             if self.kind_of("frames", self.frames(copy)) != vectors:
-                raise Wrong("compare believes vectors of other frames")
+                raise Wrong("compare accepts vectors of other frames")
             if errors not in (None, vectors):
                 raise Wrong("errors.json belongs to other vectors")
         if self.run("correlate", copy, "--quiet")[0] != 0:
@@ -182,7 +182,7 @@ class Bench:
         return frames
 
     def expect_nothing_left(self, folder, wanted):
-        """No file but those wanted, which are names in the folder."""
+        """Raises Wrong if the folder contains other files than those wanted."""
         more = [name for name in names(folder) if name not in wanted]
         if more:
             raise Wrong(f"left behind: {', '.join(more)}")
@@ -196,7 +196,7 @@ class Bench:
                      "cpu", "--quiet")
 
     def collected(self, run):
-        """The tables of a study, without what differs from run to run."""
+        """Returns the tables of a study, without times."""
         self.succeed("sweep", "collect", run, "--quiet")
         tables = []
         for name in ("study.csv", "study_points.csv"):

@@ -1,7 +1,7 @@
-"""The faults of the soak test, one function each: disturbs one piece of work, checks what is left, and says how it ended.
+"""The faults of the soak test: each function disturbs one command, checks the resulting files, and returns the outcome.
 
-What exists must be whole, results must belong to what they were made from, nothing may stay behind that the next run
-does not clean, and what is resumed must end as if nothing had happened."""
+Existing files must be complete, results must belong to their sources, no temporary file may remain that the next run
+does not delete, and a resumed run must give the results of an undisturbed one."""
 
 import os
 import shutil
@@ -21,7 +21,7 @@ def fault(function):
 
 
 def wait_for_moment(rng, process, seconds, folder):
-    """Up to a random moment of a run that takes so long, or a little after the first change in the folder."""
+    """Waits until a random moment of a run of that duration, or shortly after the first change in the folder."""
     if rng.random() < 0.5:
         limit = time.monotonic() + rng.uniform(0.0, 1.1 * seconds)
         while process.poll() is None and time.monotonic() < limit:
@@ -38,7 +38,7 @@ def strike(process, number, whole_group=True):
         os.killpg(process.pid, number) if whole_group else os.kill(process.pid, number)
 
 
-# Named points of commands, the same in every run with one seed.
+# Stop points of commands: the same state in every run with one seed.
 POINTS = {
     "render": ["rendering", "file-written", "file-written:4", "replacement-begun", "replacement-retired",
                "replacement-installed"],
@@ -48,7 +48,7 @@ POINTS = {
 
 
 def kill(bench, rng, seconds, folder, *arguments):
-    """At a named point, or at a random moment; whether that comes before the end makes no difference to what must hold."""
+    """Kills a run at a stop point or at a random moment; the requirements are the same if it has already ended."""
     point = rng.choice(POINTS.get(arguments[0], [None])) if rng.random() < 0.5 else None
     process = bench.start(*arguments, "--quiet", stop_at=point)
     if point:
@@ -64,7 +64,7 @@ def case_files(bench, kind):
 
 
 def whole_case(bench, place, kind):
-    """Renders, correlates and compares to the end; then only a case is there, with the known numbers."""
+    """Renders, correlates and compares; afterwards there must be only the case, with the known numbers."""
     case = os.path.join(place, "case")
     for arguments in (("render", bench.at(f"{kind}.toml"), "-o", case), ("correlate", case),
                       ("compare", case, "--no-figures")):
@@ -80,7 +80,7 @@ def fresh_case(bench, place, kind):
 
 @fault
 def kill_render(bench, rng, place):
-    """kill -9 of render into a new place."""
+    """kill -9 of `render` to a new folder."""
     case = os.path.join(place, "case")
     kill(bench, rng, bench.seconds["render"], place, "render", bench.at("a.toml"), "-o", case)
     state = bench.state(case)
@@ -92,20 +92,20 @@ def kill_render(bench, rng, place):
 
 @fault
 def kill_render_over(bench, rng, place):
-    """kill -9 of render over a finished case of another setup."""
+    """kill -9 of `render` over a finished case of another setup."""
     fresh_case(bench, place, "b")
     case = os.path.join(place, "case")
     kill(bench, rng, bench.seconds["render"], rng.choice([place, case]), "render", bench.at("a.toml"), "-o", case)
     state = bench.state(case)
     if state == "absent":
-        raise Wrong("the old case is gone and no new one there")
+        raise Wrong("the old case is gone and there is no new one")
     whole_case(bench, place, "a")
     return {"a": "new", "b": "old"}.get(state, state)
 
 
 @fault
 def kill_correlate(bench, rng, place):
-    """kill -9 of correlate in a case that has results."""
+    """kill -9 of `correlate` in a case that has results."""
     fresh_case(bench, place, "a")
     case = os.path.join(place, "case")
     kill(bench, rng, bench.seconds["correlate"], case, "correlate", case)
@@ -118,7 +118,7 @@ def kill_correlate(bench, rng, place):
 
 @fault
 def kill_compare(bench, rng, place):
-    """kill -9 of compare in a case that has errors.json and figures."""
+    """kill -9 of `compare` in a case that has errors.json and figures."""
     fresh_case(bench, place, "a")
     case = os.path.join(place, "case")
     kill(bench, rng, bench.seconds["compare"], case, "compare", case)
@@ -140,7 +140,7 @@ def interrupt(bench, rng, place):
     running = process.poll() is None
     strike(process, number, whole_group=False)
     _, err = process.communicate()
-    early = process.returncode == -number  # before the program catches it
+    early = process.returncode == -number  # before the program handles signals
     if process.returncode not in (0, 130) and not (running and early):
         raise Wrong(f"{signal.Signals(number).name} ended it with {process.returncode}: {err.strip()}")
     state = bench.state(case)
@@ -154,7 +154,7 @@ def interrupt(bench, rng, place):
 def finish_study(bench, place, *options):
     run = os.path.join(place, "study/run")
     partials = [name for name in names(run) if "partial" in name]
-    for name in partials:  # as if the writer had died yesterday
+    for name in partials:  # as if the writer had ended yesterday
         os.utime(os.path.join(run, name), (time.time() - 86400,) * 2)
     bench.succeed("sweep", "run", run, "--quiet", *options)
     if bench.collected(run) != bench.known_study:
@@ -166,7 +166,7 @@ def finish_study(bench, place, *options):
 
 @fault
 def kill_sweep(bench, rng, place):
-    """kill -9 of sweep run, up to three times, of the first process or of all."""
+    """kill -9 of `sweep run`, up to three times, of the first process or of all."""
     bench.plan_study(os.path.join(place, "study"))
     run = os.path.join(place, "study/run")
     jobs = rng.choice(["1", "2"])
@@ -182,7 +182,7 @@ def kill_sweep(bench, rng, place):
 
 @fault
 def kill_plan(bench, rng, place):
-    """kill -9 of sweep plan."""
+    """kill -9 of `sweep plan`."""
     study = os.path.join(place, "study")
     bench.plan_study(study)
     shutil.rmtree(os.path.join(study, "run"))
@@ -198,7 +198,7 @@ def kill_plan(bench, rng, place):
 
 @fault
 def replaced_frames(bench, rng, place):
-    """correlate while render replaces the case, then compare."""
+    """`correlate` while `render` replaces the case, then `compare`."""
     fresh_case(bench, place, "b")
     case = os.path.join(place, "case")
     render = bench.start("render", bench.at("a.toml"), "-o", case, "--quiet")
@@ -229,13 +229,13 @@ def replaced_field(bench, rng, place):
     bench.succeed("correlate", case, "--quiet")
     compared, _ = bench.run("compare", case, "--no-figures", "--quiet")
     if compared == 0 and not new:
-        raise Wrong("compare takes the truth of one field for frames of another")
+        raise Wrong("compare accepts the truth of one field for frames of another")
     return "new" if new else "old, compare refuses"
 
 
 @fault
 def replaced_field_in_sweep(bench, rng, place):
-    """The field file of a study is replaced while it runs, and put back before it is resumed."""
+    """The field file of a study is replaced while it runs, and restored before it is resumed."""
     bench.plan_study(os.path.join(place, "study"))
     run, file = os.path.join(place, "study/run"), os.path.join(place, "study/a.nrrd")
     process = bench.start("sweep", "run", run, "--quiet")
@@ -286,18 +286,18 @@ def two_sweeps(bench, rng, place):
 
 
 def on_full_disk(bench, place, disk, arguments, before, limit=None):
-    """Runs a command whose output may not fit; it says so by exit code 2 and leaves what was there."""
+    """Runs a command whose output may not fit; it must then end with exit code 2 and leave the old files unchanged."""
     code, err = bench.run(*arguments, "--quiet", **({} if limit is None else {"limit_bytes": limit}))
     if code == 0:
         return "fits"
     if code != 2:
         raise Wrong(f"exit code {code}: {err.strip()}")
     if "partial" in err:
-        raise Wrong(f"a hidden file is named: {err.strip()}")
+        raise Wrong(f"the message names a temporary file: {err.strip()}")
     after = {name: None if os.path.isdir(os.path.join(disk, name)) else os.stat(os.path.join(disk, name)).st_size
              for name in names(disk)}
     if after != before:
-        raise Wrong(f"the full disk holds {sorted(set(after.items()) ^ set(before.items()))} more or less than before")
+        raise Wrong(f"the full disk has changed: {sorted(set(after.items()) ^ set(before.items()))}")
     return "refused"
 
 
@@ -308,7 +308,7 @@ def sizes(folder):
 
 @fault
 def full_disk(bench, rng, place):
-    """render, correlate or compare on a disk with too little room (a small tmpfs as root, else a limit of file size)."""
+    """`render`, `correlate` or `compare` on a disk with too little space (as root a small tmpfs, otherwise a limit on the file size)."""
     disk = os.path.join(place, "disk")
     os.makedirs(disk)
     command = rng.choice(["render", "correlate", "compare"])
@@ -323,7 +323,7 @@ def full_disk(bench, rng, place):
         if command == "correlate":
             os.remove(os.path.join(case, "errors.json"))
         arguments = (command, bench.at("a.toml"), "-o", case) if command == "render" else (command, case)
-        if mounted:  # leave just that much room
+        if mounted:  # leave this much space
             free = os.statvfs(disk).f_bavail * os.statvfs(disk).f_frsize
             with open(os.path.join(disk, "ballast"), "wb") as ballast:
                 ballast.write(bytes(max(0, free - room)))
@@ -338,7 +338,7 @@ def full_disk(bench, rng, place):
 
 @fault
 def full_disk_in_sweep(bench, rng, place):
-    """A study whose disk fills up; it goes on when there is room again."""
+    """A study whose disk fills up, resumed when there is space again."""
     bench.plan_study(os.path.join(place, "study"))
     run = os.path.join(place, "study/run")
     code, err = bench.run("sweep", "run", run, "--quiet", limit_bytes=rng.randrange(0, 12000))

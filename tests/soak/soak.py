@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Disturbs the program at random moments and checks what is left: make soak, docs/reliability.md."""
+"""Disturbs the program at random moments and checks the resulting files: make soak, docs/reliability.md."""
 
 import argparse
 import collections
@@ -19,8 +19,8 @@ def main():
     options.add_argument("--program", default="build/bin/gladstone")
     options.add_argument("--seed", type=int, default=1)
     options.add_argument("--runs", type=int, default=300)
-    options.add_argument("--only", choices=sorted(ALL), action="append", help="these faults alone")
-    options.add_argument("--index", type=int, help="this run alone, of a failure")
+    options.add_argument("--only", choices=sorted(ALL), action="append", help="only these faults")
+    options.add_argument("--index", type=int, help="only this run, to repeat a failure")
     options = options.parse_args()
     chosen = [ALL[name] for name in ALL if not options.only or name in options.only]
     work = tempfile.mkdtemp(prefix="gladstone_soak_")

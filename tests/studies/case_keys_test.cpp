@@ -40,8 +40,7 @@ constexpr Change changes[] = {
     {"render.sampling", "[\"sobol\", \"random\"]", true, false, false},
     {"camera.pixel_pitch_um", "[10, 8]", true, false, false},
     {"camera.pixels", "[[64, 64], [64, 66]]", true, false, false},
-    {"correlate.window_px", "[[32, 16], [16]]", true, false,
-     false},  // the target extends beyond the view by one first window
+    {"correlate.window_px", "[[32, 16], [16]]", true, false, false},  // the target extends by one first window
     {"render.rays_per_dot", "[32, 48]", true, true, false},
     {"correlate.window_px", "[[32, 16], [32]]", true, true, true},
     {"correlate.overlap", "[0.5, 0.75]", true, true, true},

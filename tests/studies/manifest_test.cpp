@@ -418,7 +418,7 @@ TEST_F(Runs, AClaimKeepsOthersOffUntilItsProcessIsGone) {
   planned();
   Claims mine(in("run"), Claims::Use::take);
   ASSERT_TRUE(mine.take(7));
-  EXPECT_FALSE(mine.held(7));  // removed by another process
+  EXPECT_FALSE(mine.held(7));  // not held by another process
   {
     Claims other(in("run"), Claims::Use::take);
     EXPECT_TRUE(other.held(7));

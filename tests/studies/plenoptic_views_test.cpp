@@ -70,8 +70,7 @@ std::vector<Vec3d> spread_at(double z, int across, int apart, LensletLayout layo
   std::vector<Vec3d> places;
   double const lenslet = pitch / (105.0 / 645) * (750 * mm - z) / (750 * mm);  // images at that depth
   double const step = (apart + 1.0 / across) * lenslet;
-  double const row =
-      layout == LensletLayout::hexagonal ? std::sqrt(0.75) : 1;  // distance between lenslets, relative to their pitch
+  double const row = layout == LensletLayout::hexagonal ? std::sqrt(0.75) : 1;  // row distance over pitch
   for (int i = 0; i < across; ++i) {
     for (int j = 0; j < across; ++j) places.push_back({(i - across / 2) * step, (j - across / 2) * row * step, z});
   }

@@ -356,8 +356,7 @@ window_px = [32]
                                                                      : GradientInput::thickness;
     MeasurementInput const thin_input = input(known, inputs[i].value, 1);
     auto const thin = propagate(at, {thin_input});
-    for (std::size_t k = 0; k < traced.size();
-         ++k) {  // uncertainties of the gradient, and of the density across a window
+    for (std::size_t k = 0; k < traced.size(); ++k) {  // gradient, and density across a window
       EXPECT_NEAR(log_derivative(traced[k], i, inputs[i]), log_derivative(thin[k], 0, thin_input), 0.01)
           << inputs[i].key << ", " << traced[k].key;
     }

@@ -118,8 +118,7 @@ TEST(Verification, JudgesABiasByItsSquare) {
   for (auto const& [error2, agrees] : {std::pair{3e-5, true}, {2e-5, false}}) {
     VerifiedBench verified = as_predicted(given);
     verified.simulated.predicted_bias_px = 4e-4;
-    verified.simulated.bias_px = {0.007,
-                                  std::sqrt(4.9e-5 + error2) - 0.007};  // 4.9e-5 is 1.6 or 2.4 times its standard error
+    verified.simulated.bias_px = {0.007, std::sqrt(4.9e-5 + error2) - 0.007};  // 4.9e-5: 1.6 or 2.4 standard errors
     compare_with_formulas(verified, {});
     EXPECT_EQ(quantity(verified, "bias_px").agrees(), agrees) << error2;
   }

@@ -26,15 +26,15 @@ inline std::string content(std::filesystem::path const& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// How a run of the program ended.
+/// Outcome of a run of the program.
 struct Outcome {
   int exit_code = -1;  ///< -1: it was killed
-  int signal = 0;      ///< that killed it
+  int signal = 0;      ///< signal that killed it
   std::string out;     ///< stdout
   std::string err;     ///< stderr
 };
 
-/// The executable, run as a shell runs it.
+/// A run of the program, started as by a shell.
 class Program {
  public:
   /// @param folder  working directory
@@ -68,7 +68,7 @@ class Program {
 
   void send(int signal) const { ::kill(child_, signal); }
 
-  /// Waits until it has stopped itself at the point of stopping_at(), however long that takes.
+  /// Waits until it has stopped itself at the point of stopping_at(), without a time limit.
   /// @return false: it has ended without reaching the point
   bool wait_until_stopped() {
     int status = 0;
@@ -79,17 +79,17 @@ class Program {
     return false;
   }
 
-  /// Whether it has ended.
+  /// Returns true if it has ended.
   bool has_ended() {
     int status = 0;
     if (!ended_ && ::waitpid(child_, &status, WNOHANG) == child_) ended_ = status;
     return ended_.has_value();
   }
 
-  /// What it has written to stderr so far.
+  /// Returns the output on stderr so far.
   std::string err() const { return content(streams_ / "err"); }
 
-  /// Waits for the end; what outlives the limit hangs, and is killed.
+  /// Waits for the end; a program that exceeds the time limit is killed.
   Outcome finish(std::chrono::milliseconds limit) {
     auto const end = std::chrono::steady_clock::now() + limit;
     while (!has_ended()) {
@@ -111,19 +111,19 @@ class Program {
  private:
   std::filesystem::path streams_;
   pid_t child_ = 0;
-  std::optional<int> ended_;  ///< its status, from when it has been waited for
+  std::optional<int> ended_;  ///< its status, after it has been waited for
 };
 
-/// For a Program to stop itself where it reaches a point for the first time, or "NAME:3": for the third time.
+/// Makes a Program stop itself when it reaches a point for the first time; "NAME:3": for the third time.
 /// @param more to prepare
 inline std::function<bool()> stopping_at(std::string const& point, std::function<bool()> const& more = {}) {
   return [=] { return ::setenv(stop_variable, point.c_str(), 1) == 0 && (!more || more()); };
 }
 
-/// Time after which a program that has not ended hangs. Only a safety net: no test depends on it.
+/// Time after which a program counts as hanging. Only a safety net: no test depends on it.
 inline constexpr std::chrono::seconds hang_limit{600};
 
-/// Runs the program to its end.
+/// Runs the program until it ends.
 inline Outcome run(std::vector<std::string> arguments, std::filesystem::path const& folder,
                    std::function<bool()> const& prepare = {}) {
   return Program(std::move(arguments), folder, prepare).finish(hang_limit);

@@ -14,7 +14,7 @@
 
 namespace gladstone::end_to_end {
 
-/// A small experiment that renders in a tenth of a second: 64 x 64 px in a uniform gradient.
+/// A small experiment that is rendered in a tenth of a second: 64 x 64 px with a uniform gradient.
 inline constexpr char const* small_setup = R"(schema = 1
 experiment = "bos"
 
@@ -45,14 +45,14 @@ window_px = [32, 16]
 overlap = 0.5
 )";
 
-/// A setup with one part of its text exchanged.
+/// Returns a setup with one part of its text replaced.
 inline std::string with(std::string text, std::string const& old, std::string const& replacement) {
   auto const at = text.find(old);
   EXPECT_NE(at, std::string::npos) << old;
   return at == std::string::npos ? text : text.replace(at, old.size(), replacement);
 }
 
-/// "line:column" of a piece of text, as the program counts them.
+/// Returns "line:column" of a piece of text, counted like in the program.
 inline std::string place_of(std::string const& text, std::string const& piece) {
   auto const at = text.find(piece);
   EXPECT_NE(at, std::string::npos) << piece;
@@ -61,7 +61,7 @@ inline std::string place_of(std::string const& text, std::string const& piece) {
   return std::to_string(line) + ':' + std::to_string(start == std::string::npos ? at + 1 : at - start);
 }
 
-/// A fresh folder for each test in which the program runs.
+/// A new folder for each test, in which the program runs.
 class Workplace : public testing::Test {
  protected:
   void SetUp() override {
@@ -82,13 +82,13 @@ class Workplace : public testing::Test {
 
   Outcome gladstone(std::vector<std::string> arguments) const { return run(std::move(arguments), folder_); }
 
-  /// Runs what has to succeed; its stdout.
+  /// Runs a command that must succeed, and returns its stdout.
   std::string succeed(std::vector<std::string> arguments) const {
     Outcome const outcome = gladstone(std::move(arguments));
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
     return outcome.out;
   }
-  /// The one JSON object on stdout.
+  /// Runs a command that must succeed, and returns the JSON object on its stdout.
   nlohmann::json json_of(std::vector<std::string> arguments) const {
     arguments.emplace_back("--json");
     std::string const out = succeed(std::move(arguments));
@@ -104,7 +104,7 @@ class Workplace : public testing::Test {
     succeed(arguments);
   }
 
-  /// Everything in the folder: path to content; folders end in '/'.
+  /// Contents of the folder: path to content; folders end in '/'.
   std::map<std::string, std::string> everything() const {
     std::map<std::string, std::string> found;
     for (auto const& entry : std::filesystem::recursive_directory_iterator(folder_)) {
@@ -114,7 +114,8 @@ class Workplace : public testing::Test {
     return found;
   }
 
-  /// The command fails with this code, its message contains each of these, stdout stays empty and no file changes.
+  /// Expects the command to fail with this exit code and a message that contains each of these texts, with an empty
+  /// stdout and without any change of a file.
   void expect_refused(std::vector<std::string> const& arguments, int code,
                       std::vector<std::string> const& pieces) const {
     auto const before = everything();
@@ -124,7 +125,7 @@ class Workplace : public testing::Test {
     EXPECT_EQ(outcome.out, "");
     EXPECT_TRUE(everything() == before) << "files changed: " << testing::PrintToString(names());
   }
-  /// Rendering this setup text is refused as bad input.
+  /// Expects the rendering of this setup text to be rejected as invalid input.
   void expect_setup_refused(std::string const& text, std::vector<std::string> const& pieces) const {
     write("setup.toml", text);
     expect_refused({"render", "setup.toml", "-o", "case"}, 2, pieces);
@@ -138,7 +139,7 @@ class Workplace : public testing::Test {
     return found;
   }
 
-  /// Two cases hold the same pixels and the same truth, bit for bit.
+  /// Expects two cases to have identical pixels and truth, bit by bit.
   void expect_same_case(std::string const& a, std::string const& b) const {
     for (std::string const image : {"/reference.tif", "/flow.tif"}) {
       Image<double> const one = read_image(in(a + image).string()), other = read_image(in(b + image).string());
