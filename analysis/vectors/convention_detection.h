@@ -16,7 +16,7 @@ struct ConventionFit {
   /// RMS difference from the truth; each difference is limited to 1 px or three times the signal, if larger.
   double rms_px = 0.0;
   double signal_px = 0.0;  ///< rms of the truth at the vectors, which is the error of zero vectors
-  /// The same two quantities for decisions: rms over both components of their robust standard deviations, which some
+  /// Both quantities as used for decisions: rms over both components of their robust standard deviations, which a few
   /// per cent of outliers hardly change.
   double spread_px = 0.0, signal_spread_px = 0.0;
   /// Regression slope of the vectors on the truth, sum m t / sum t^2: 1 for unbiased vectors regardless of noise, 0 for

@@ -22,8 +22,8 @@ struct CommonConventions {
   /// Mistake that all files have in common; if several are indistinguishable, the text names all of them and
   /// `conventions` is empty.
   LikelyMistake mistake;
-  /// Files with a mistake of their own: without it the vectors follow the truth, or they do not follow it at all
-  /// although windows of 64 px would.
+  /// Indices of files with an individual mistake: either its correction makes the vectors follow the truth, or they do
+  /// not follow the truth at all, although vectors from windows of 64 px would.
   std::vector<std::size_t> mistaken;
   std::size_t decisive = 0;  ///< index of the file with the strongest evidence: for `mistake`, else for `conventions`
   /// Other axes or signs fit all files about as well as `conventions`; with a mistake, another mistake does.

@@ -209,8 +209,8 @@ LikelyMistake find_shift(Search const& search) {
   look_around({}, farthest, 4.0);
   constexpr double finest = 0.25;
   for (double const step : {2.0, 1.0, 0.5, finest}) look_around(best, step, step);
-  for (auto const component :
-       {&Vec2d::x, &Vec2d::y}) {  // the other component alone, where this displacement cannot tell
+  // Set a component to 0 if this displacement does not determine it.
+  for (auto const component : {&Vec2d::x, &Vec2d::y}) {
     Vec2d other = best;
     other.*component = 0.0;
     if (evidence_for(search.fit(fewer, shift_by(best)), search.fit(fewer, shift_by(other))) < 9.0) best = other;

@@ -219,7 +219,7 @@ std::string fault(Room const& room, std::string const& path, Include const& incl
     return path.ends_with(".cpp") ? "" : library + " may be included in .cpp files only: " + shown;
   }
   std::string const target = room_of(include.target);
-  if (target.empty()) return shown + " is no path from the root of the tree into a room";
+  if (target.empty()) return shown + " is not a path from the root of the tree into a room";
   if (target == room.name || contains(room.rooms, target)) return "";
   return room.name + " may not include " + target + ": " + shown;
 }

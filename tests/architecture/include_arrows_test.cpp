@@ -123,7 +123,7 @@ INSTANTIATE_TEST_SUITE_P(
         Planted{"render/light/a.h", "\"render/medium/b.h\""},  // only scene includes all four
         Planted{"render/medium/a.h", "\"render/optics/b.h\""}, Planted{"render/optics/a.h", "\"render/sensor/b.h\""},
         Planted{"render/sensor/a.cpp", "\"render/light/b.h\""}, Planted{"render/optics/a.h", "\"render/scene/b.h\""},
-        Planted{"render/medium/a.cpp", "<hdf5.h>"},  // only through render/files
+        Planted{"render/medium/a.cpp", "<hdf5.h>"},                  // only through render/files
         Planted{"render/scene/a.h", "\"render/focused_dots/b.h\""},  // renderers include the scene, not vice versa
         Planted{"render/rays/a.h", "\"render/focused_dots/b.h\""},
         Planted{"render/focused_dots/a.h", "\"render/rays/b.h\""},

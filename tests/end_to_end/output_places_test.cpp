@@ -216,7 +216,7 @@ TEST_F(Places, AHangUpCleansUpUnlessItIsIgnored) {
   EXPECT_EQ(outcome.exit_code, 130) << outcome.err << outcome.signal;
   EXPECT_EQ(names(), std::vector<std::string>{"setup.toml"});
   Outcome const detached = signalled_rendering(SIGHUP, [] { return ::signal(SIGHUP, SIG_IGN) != SIG_ERR; });
-  EXPECT_EQ(detached.exit_code, 0) << "under nohup it goes on: " << detached.err;
+  EXPECT_EQ(detached.exit_code, 0) << "under nohup it continues: " << detached.err;
   EXPECT_EQ(names(), (std::vector<std::string>{"case", "setup.toml"}));
 }
 

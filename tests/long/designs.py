@@ -1,5 +1,5 @@
-"""Simulates the recommendations of gladstone design for randomly drawn requirements, with new seeds of dots, rays and
-noise. Every requirement must be met within two standard errors, or the design be reported as infeasible, with the reason.
+"""Simulates the recommendations of gladstone design for randomly drawn requirements, with new seeds of dots, rays
+and noise. Every requirement must be met within two standard errors, or the design be reported as infeasible, with the reason.
 
     python3 -B tests/long/designs.py --program build/bin/gladstone [--sets 10] [--first 1] [--seeds 8] [--index N]
 """

@@ -108,7 +108,7 @@ class Bench:
         os.waitid(os.P_PID, process.pid, os.WSTOPPED | os.WEXITED | os.WNOWAIT)
 
     def finish(self, process, seconds=120):
-        """Returns exit code and stderr; raises Wrong for a run without end, or ended by a signal that the test did not send."""
+        """Returns exit code and stderr; raises Wrong for a run without end, or ended by a signal not sent by the test."""
         try:
             _, err = process.communicate(timeout=seconds)
         except subprocess.TimeoutExpired:

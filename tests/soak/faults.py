@@ -308,7 +308,7 @@ def sizes(folder):
 
 @fault
 def full_disk(bench, rng, place):
-    """`render`, `correlate` or `compare` on a disk with too little space (as root a small tmpfs, otherwise a limit on the file size)."""
+    """`render`, `correlate` or `compare` on a disk with too little space (a small tmpfs or a file size limit)."""
     disk = os.path.join(place, "disk")
     os.makedirs(disk)
     command = rng.choice(["render", "correlate", "compare"])
