@@ -53,8 +53,8 @@ void turn(T const* p, Vec3d const& world, T* turned) {
 
 /// Accumulates one ray from a point through a position in the pupil. Adds its irradiance, cos(angle to the plate's
 /// normal) cos(angle to the lens axis) / distance^2, to `sum`, and the irradiance times the image position to `pixel`.
-/// The image position is that of the ray's intersection with the plane in focus (ideal lens). All vectors are in camera
-/// coordinates.
+/// The image position follows from the ray's intersection with the plane in focus (ideal lens). All vectors are in
+/// camera coordinates.
 /// @param across  normal of the plane of the dots
 /// @param axis    direction of the lens axis
 /// @param focus   normal of the plane in focus; null: `place` is the pinhole

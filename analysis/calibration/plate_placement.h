@@ -9,7 +9,7 @@
 namespace gladstone {
 
 /// Placement of the calibration plate, if it differs from the nominal one: a plate translated along its own normal,
-/// with its centre dot on the Z axis. The world's X and Y axes are those of the plate, Z is its normal.
+/// with its centre dot on the Z axis. The plate defines the world frame: X and Y lie in the plate, Z is its normal.
 struct PlatePlacement {
   Vec2d drift{};                          ///< X and Y components of the unit vector of the translation [1]
   std::vector<std::array<int, 2>> moved;  ///< offset of the dot indices of each plane (column, row); empty: none

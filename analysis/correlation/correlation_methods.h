@@ -21,10 +21,10 @@ std::vector<WindowCorrelation> correlate_spc(InterrogationJob const& job);
 /// weights.
 std::vector<WindowCorrelation> correlate_zncc(InterrogationJob const& job);
 /// Minimum quadratic difference: the window of each frame is compared with the whole of the other frame around it. The
-/// plane is 1 - sum w (A - B)^2 / sum w (A^2 + B^2), where both sums run over the two comparisons.
-/// The maximum of one comparison is that of the tracking function of Gui & Merzkirch, Exp. Fluids 21 (1996) 465,
-/// normalised by the energies; it belongs to the dot positions in the frame of the window. The two together belong to
-/// the mid-position, and exchanging the frames reverses the sign of the displacement.
+/// plane is 1 - sum w (A - B)^2 / sum w (A^2 + B^2), where both sums run over the two comparisons. One comparison alone
+/// has the maximum of the tracking function of Gui & Merzkirch, Exp. Fluids 21 (1996) 465, normalised by the energies;
+/// it belongs to the dot positions in the frame of the window. The two together belong to the mid-position, and
+/// exchanging the frames reverses the sign of the displacement.
 std::vector<WindowCorrelation> correlate_mqd(InterrogationJob const& job);
 /// Standard cross-correlation by OpenCV's Fourier transforms in double precision: reference for the faster methods.
 std::vector<WindowCorrelation> correlate_by_opencv(InterrogationJob const& job);

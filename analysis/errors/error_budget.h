@@ -67,7 +67,7 @@ struct ErrorBudget {
   /// C_ij = mean((t_i - mean t_i)(t_j - mean t_j)) per component [px^2]; NaN in rows and columns of unknown terms.
   CovarianceMatrix covariance_u, covariance_v;
   /// (C_u + C_v)/2. A diagonal entry is the mean square fluctuation of the term per component; the sum of all entries
-  /// is that of the total [px^2].
+  /// is the mean square fluctuation of the total [px^2].
   CovarianceMatrix covariance;
   double closure_px = 0.0;       ///< largest |sum of terms - total| over vectors and components
   double peak_locking_px = 0.0;  ///< see peak_locking(); NaN without window truth or without a measurement

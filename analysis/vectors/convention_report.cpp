@@ -61,10 +61,10 @@ std::string found_report(VectorFile const& file, DetectedConventions const& dete
   } else if (detected.verdict == Verdict::cannot_be_told && fit.signal_px >= telling_signal_px) {
     report +=
         "; this displacement is too fine for windows of four grid spacings, so that vectors need not follow it: the "
-        "conventions cannot be verified, and those of the format are used";
+        "conventions cannot be verified, and the format's own are used";
   } else if (detected.verdict == Verdict::cannot_be_told) {
     report += fmt::format(
-        "; the displacement is below {} px, too small to verify the conventions, and those of the format are used",
+        "; the displacement is below {} px, too small to verify the conventions, and the format's own are used",
         telling_signal_px);
   } else if (detected.verdict == Verdict::noisy) {
     report += fmt::format(
@@ -78,7 +78,7 @@ std::string found_report(VectorFile const& file, DetectedConventions const& dete
   }
   if (detected.ambiguous && detected.verdict != Verdict::cannot_be_told && detected.verdict != Verdict::mistaken)
     report +=
-        "; another reading fits as well (this displacement does not distinguish them), and that of the format is used";
+        "; another reading fits as well (this displacement does not distinguish them), and the format's own is used";
   return report;
 }
 

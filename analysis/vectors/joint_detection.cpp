@@ -145,7 +145,7 @@ std::size_t most_telling_file(std::vector<DetectedConventions> const& detected, 
   return telling;
 }
 
-/// Returns true if a file has a mistake of its own, see CommonConventions::mistaken.
+/// Returns true if a file has an individual mistake, see CommonConventions::mistaken.
 bool is_mistaken(DetectedConventions const& detected) {
   if (detected.mistake.found())
     return detected.mistake.mended.spread_px < 0.5 * detected.mistake.mended.signal_spread_px;

@@ -122,7 +122,7 @@ VectorCorrection shift_by(Vec2d shift_px) {
 }
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double vague_px = 2.0;  ///< a component with a greater uncertainty is left open [px]
+constexpr double vague_px = 2.0;  ///< a component with a greater uncertainty is not determined [px]
 
 /// Shift of the positions, and its uncertainty.
 struct FittedShift {

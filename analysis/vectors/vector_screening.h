@@ -21,8 +21,8 @@ struct LeftOutVectors {
 
   std::size_t without_place() const { return place_not_finite + outside_image; }
   std::size_t all() const { return without_place() + displacement_not_finite + displacement_beyond_image; }
-  /// Returns "3 with a place that is nan or infinite, 5 outside the image (by more than 2 px)"; empty if all counts are
-  /// 0.
+  /// Returns "3 with a position that is nan or infinite, 5 outside the image (by more than 2 px)"; empty if all counts
+  /// are 0.
   std::string text() const;
 };
 

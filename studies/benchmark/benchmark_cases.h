@@ -28,7 +28,7 @@ DisplacementAt sine_flow(double length_px);
 struct BenchmarkCase {
   std::string name;
   std::string what;            ///< description for the user
-  ParticleSettings particles;  ///< settings of synthetic images; of the refracted case, only size, seed and noise apply
+  ParticleSettings particles;  ///< of synthetic images; for the refracted case, only size, seed and noise apply
   DisplacementAt flow = {};    ///< empty: images ray-traced through turbulence
   bool refracted() const { return !flow; }
 };

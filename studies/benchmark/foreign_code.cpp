@@ -117,7 +117,7 @@ std::vector<BenchmarkRow> ForeignCode::score() {
     DetectedConventions const& decisive = common.detected[common.decisive];
     if (decisive.conventions == conventions && conventions.offset_px != 0.0) reading_ += "; " + offset_report(decisive);
     if (common.ambiguous && !common.mistake.found())
-      reading_ += "; another reading fits as well, and that of the format is used";
+      reading_ += "; another reading fits as well, and the format's own is used";
     if (std::string mistake = describe_mistake(common); !mistake.empty()) mistakes_.push_back(std::move(mistake));
   }
   std::vector<BenchmarkRow> rows;

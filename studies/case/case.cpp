@@ -152,7 +152,7 @@ CaseSetup load_case_setup(SetupDocument document, FieldMemory field) {
     loaded.correlate = read_correlation_settings(root.table("correlate"));
   }
   std::optional<PaperLight> const light = read_light(root);
-  if (loaded.setup.piv) root.refuse("light", "applies to BOS only (the light of PIV is that of [laser]); remove it");
+  if (loaded.setup.piv) root.refuse("light", "applies to BOS only (in PIV, [laser] defines the light); remove it");
   // A setup may contain the tables of a design question, which rendering ignores.
   for (char const* const table : {"requirements", "limits", "inventory", "free", "correlations"}) root.pass_over(table);
   if (!loaded.correlate.window_px.empty()) loaded.setup.view_margin_px = loaded.correlate.window_px.front();

@@ -35,14 +35,13 @@ std::string truth_error_in_words(RaysPlan const& plan) {
 
 void warn_of_few_rays(std::vector<std::string>& warnings, Scene const& scene, RaysPlan const& plan) {
   if (plan.converged) return;
-  warn(
-      warnings,
-      fmt::format(
-          "rays_per_dot = \"auto\" is limited to {} rays per source: the error of the image is {}, that of the truth "
-          "{}, and the goals are {} and {} (the worst sources would require some {:.0f} rays, {:.2g} s of processor "
-          "time for each source; \"auto\" permits {:.2g} s or 1024 rays); increase render.rays_per_dot if this matters",
-          plan.rays, image_error_in_words(plan), truth_error_in_words(plan), image_tolerance_levels, truth_tolerance_px,
-          plan.rays_wanted, ray_seconds(scene) * plan.rays_wanted, source_budget_s));
+  warn(warnings,
+       fmt::format(
+           "rays_per_dot = \"auto\" is limited to {} rays per source: the errors of image and truth are {} and {}, and "
+           "their goals are {} and {} (the worst sources would require some {:.0f} rays, {:.2g} s of processor time "
+           "for each source; \"auto\" permits {:.2g} s or 1024 rays); increase render.rays_per_dot if this matters",
+           plan.rays, image_error_in_words(plan), truth_error_in_words(plan), image_tolerance_levels,
+           truth_tolerance_px, plan.rays_wanted, ray_seconds(scene) * plan.rays_wanted, source_budget_s));
 }
 
 void warn_of_side_faces(std::vector<std::string>& warnings, Scene const& scene, RaysPlan const& plan) {
@@ -57,8 +56,8 @@ void warn_of_side_faces(std::vector<std::string>& warnings, Scene const& scene, 
   warn(warnings,
        fmt::format(
            "render.rays_per_dot: {} dots lie at side faces of the medium, which cut their light cones, and are traced "
-           "ray by ray, with {} rays each. The error of their truth is {}, that of their images {} (rms; the goals are "
-           "{} and {}){}; {}",
+           "ray by ray, with {} rays each. The rms errors of their truth and images are {} and {} (the goals are {} "
+           "and {}){}; {}",
            there.dots, there.rays, error_in_words(there.truth_error_px, 0, "px"),
            error_in_words(there.image_error_levels, 0, fmt::format("grey levels of {} bits", plan.bits)),
            truth_tolerance_px, image_tolerance_levels,
@@ -80,19 +79,18 @@ void warn_of_truth(std::vector<std::string>& warnings, Rendering const& renderin
   if (rendering.table == TableState::by_rays) {
     // rays were requested or chosen for all dots; no reason to add
   } else if (rendering.table != TableState::made && sources == "dots") {
-    why = fmt::format("; the truth is that of rays only, since {}", to_string(rendering.table));
+    why = fmt::format("; the truth is computed from rays only, since {}", to_string(rendering.table));
   } else if (accuracy.above_by_rays > 0 && sources == "dots") {
     why = fmt::format(
-        "; the truth of {} of these is that of rays only, since rays meet the side faces of the field or are lost in "
-        "it",
+        "; the truth of {} of these is computed from rays only, since rays meet the side faces of the field or are "
+        "lost in it",
         accuracy.above_by_rays);
   }
   warn(warnings,
-       fmt::format(
-           "truth: the standard error of the displacements is {:.2g} px rms; for {} of {} {} it exceeds {} px, the "
-           "largest is that of number {}, {:.2g} px{}; increase render.rays_per_dot, now {}, if this matters",
-           accuracy.rms_px, accuracy.above, rendering.truth.size(), sources, truth_tolerance_px, accuracy.worst,
-           accuracy.largest_px, why, plan.rays));
+       fmt::format("truth: the standard error of the displacements is {:.2g} px rms; for {} of {} {} it exceeds {} px, "
+                   "and number {} has the largest, {:.2g} px{}; increase render.rays_per_dot, now {}, if this matters",
+                   accuracy.rms_px, accuracy.above, rendering.truth.size(), sources, truth_tolerance_px, accuracy.worst,
+                   accuracy.largest_px, why, plan.rays));
 }
 
 void warn_of_table(std::vector<std::string>& warnings, RaysPlan const& error) {

@@ -60,7 +60,7 @@ void merge(Rendering& all, Rendering const& some, std::vector<std::size_t> const
       all.statuses[frame][status] += some.statuses[frame][status];
     }
   }
-  // the light of dark dots is subtracted from that of white paper
+  // the light of dark dots is subtracted from the light of white paper
   double const sign = polarity == Polarity::dark ? -1 : 1;
   auto const add = [sign](Image<double>& to, Image<double> const& from) {
     std::transform(to.begin(), to.end(), from.begin(), to.begin(),

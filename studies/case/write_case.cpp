@@ -71,7 +71,7 @@ std::string rendering_announcement(Scene const& scene, double expected_s) {
 }
 
 RenderedCase render_case(PreparedCase const& prepared, Renderer& renderer, RenderTheory theory) {
-  bool const on_cpu = renderer.device() == "cpu";  // the estimate is of no other device
+  bool const on_cpu = renderer.device() == "cpu";  // the estimate is valid for this device only
   double const expected_s = on_cpu ? render_seconds(prepared.scene, prepared.rays, theory) / thread_count() : 0;
   if (std::string const text = rendering_announcement(prepared.scene, expected_s); !text.empty()) {
     spdlog::info("{}", text);

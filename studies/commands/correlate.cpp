@@ -37,7 +37,7 @@ CommandBody attach_correlate(CLI::App& app, GlobalOptions const& options) {
                "planes are averaged (on the CPU)");
   app.add_option("-o,--output", arguments->output, "Vectors to write: .h5 or .csv; default CASE/vectors.h5");
   app.add_option("--config", arguments->config,
-                 "TOML file with a table [correlate], for example a setup; default: that of the case");
+                 "TOML file with a table [correlate], for example a setup; default: the table of the case");
   app.add_option("--set", arguments->overrides, "Override a key: --set correlate.overlap=0.75")
       ->expected(1)
       ->take_all();

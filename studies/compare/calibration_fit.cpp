@@ -138,9 +138,9 @@ class CalibrationFit {
     if (placement_.moved.empty()) try_placement(find_drift(dots_, *expected_.principal_point_px));
     if (!has_other_principal_point()) return;
     warn(
-        fmt::format("the principal point ({:.1f}, {:.1f}) px is far from that of the setup's camera, ({:.1f}, {:.1f}) "
-                    "px (the plate was tilted relative to its direction of motion, or the sensor is tilted or "
-                    "shifted); check the plate, or set the tilt in camera.sensor",
+        fmt::format("the principal point ({:.1f}, {:.1f}) px is far from the setup's, ({:.1f}, {:.1f}) px (the plate "
+                    "was tilted relative to its direction of motion, or the sensor is tilted or shifted); check the "
+                    "plate, or set the tilt in camera.sensor",
                     pinhole().camera.cx(), pinhole().camera.cy(), expected_.principal_point_px->x,
                     expected_.principal_point_px->y));
   }
@@ -167,7 +167,7 @@ class CalibrationFit {
     if (Vec2d const drift = placement_.drift; length(drift) > 0) {
       warn(fmt::format(
           "the plate was moved at {:.3g} degrees to its normal ({:.3g} towards X, {:.3g} towards Y); world coordinates "
-          "are those of the plate: X and Y in it, Z along its normal (otherwise the principal point would be ({:.0f}, "
+          "refer to the plate: X and Y in it, Z along its normal (otherwise the principal point would be ({:.0f}, "
           "{:.0f}) px)",
           degrees(length(drift)), degrees(drift.x), degrees(drift.y), before.camera.cx(), before.camera.cy()));
     }

@@ -82,7 +82,7 @@ nlohmann::ordered_json strangers_json(CalibratedPlane const& plane) {
   return places;
 }
 
-/// Returns e.g. "; left out as no dots: 3 by size or shape, 1 by their place on the grid"; empty without such spots.
+/// Returns e.g. "; excluded spots: 3 by size or shape, 1 by their position on the grid"; empty without such spots.
 std::string spots_in_words(CalibratedPlane const& plane) {
   if (plane.not_dots == 0 && plane.strangers.empty()) return "";
   return fmt::format("; excluded spots: {} by size or shape, {} by their position on the grid", plane.not_dots,

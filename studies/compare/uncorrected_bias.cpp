@@ -6,8 +6,8 @@ namespace gladstone {
 
 std::string uncorrected_bias_words(BudgetChain chain) {
   bool const piv = chain == BudgetChain::piv;
-  return std::string("the true displacement averaged over the window minus that of ") + (piv ? "the flow" : "Eq. 9") +
-         ", rms over the vectors. " +
+  return std::string("the true displacement averaged over the window minus the displacement ") +
+         (piv ? "of the flow" : "by Eq. 9") + ", rms over the vectors. " +
          (piv ? "Medium, imaging and window" : "Cone, dot, refraction, aberration and window") +
          " cause it, equally in every repeat; it is not corrected and not part of any uncertainty.";
 }

@@ -98,7 +98,7 @@ void add_blur(DesignSheet& sheet, Bench<double> const& b) {
   rows.push_back(
       {"F9", "cone_diameter_mm", "diameter of the light cone in the mid-plane", cone / mm, "mm", "(f / N) Z_D / Z_B",
        raffel, at_most(cone / window, 1, 2),
-       fmt::format("{:.4f} px at the scale of the dots, {:.4f} px at that of the medium; compared with the window",
+       fmt::format("{:.4f} px at the scale of the dots, {:.4f} px at the scale of the medium; compared with the window",
                    cone / b.pixel_at_dots(), cone / b.pixel_at_medium())});
   rows.push_back({"F10", "cone_wavelength_mm", "wavelength that the cone transmits at 1/sqrt(2)", cone / 0.51450 / mm,
                   "mm", "D_c / 0.51450", derived, Margin::none,

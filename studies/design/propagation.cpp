@@ -40,7 +40,7 @@ double slope_of(MeasurementInput const& input, double value) {
 }
 
 /// Returns d(result) / d(input): by Jets for inputs of the formula; for others from ray tracing, with the opposite
-/// sign, since the traced derivative is that of the displacement per gradient.
+/// sign, since the displacement per gradient is what was differentiated by tracing.
 /// @param from_gradient  the result divided by the gradient
 double derivative_of(MeasurementInput const& input, GradientMeasurement<double> const& at, InputJet const& result,
                      InputJet const& from_gradient) {

@@ -30,7 +30,7 @@ std::string why_biased(SimulatedBench const& simulated) {
   if (!farthest) return "cause unknown";
   double const difference = std::abs(simulated.bias_px.value - simulated.predicted_bias_px);
   if (off(*farthest) < least_explained * difference) {
-    return fmt::format("the largest deviation of a cause is that of {}, {:.2g} px; the rest is due to the estimator",
+    return fmt::format("the cause with the largest deviation is {}, {:.2g} px; the rest is due to the estimator",
                        farthest->name, off(*farthest));
   }
   std::string text = fmt::format("{}: {:.3g} px", farthest->name, farthest->simulated);

@@ -95,7 +95,7 @@ std::string demo_story(Setup const& setup, std::vector<DemoInstant> const& insta
          "```\n"
          "gladstone demo -o out/demo\n"
          "```\n\n"
-         "The set-up is that of their Table 1: a 105 mm lens at f/11, Z_A = 0.75 m, Z_D = 0.25 m, pixels of 10 um, and "
+         "The set-up follows their Table 1: a 105 mm lens at f/11, Z_A = 0.75 m, Z_D = 0.25 m, pixels of 10 um, and "
          "20 dots per\n"
          "32 x 32 px. The demo compares the displacement of light rays with BOS theory:\n\n" +
          equation(setup) +
@@ -109,7 +109,7 @@ std::string demo_story(Setup const& setup, std::vector<DemoInstant> const& insta
              "   rays by {} px rms.\n"
              "3. **Measurement.** The vectors measured on the rendered images differ from the rays by {} px rms.\n"
              "4. **Fine field.** With {} nodes in the same width the structures are finer than the cone. The rms of\n"
-             "   Eq. 9 is then {} times that of the rays, and their correlation is {}.\n"
+             "   Eq. 9 is then {} times the rms of the rays, and their correlation is {}.\n"
              "5. **Theory of the aperture.** The transfer function of the cone is 2 J1(x) / x with x = pi D_c / "
              "wavelength, where D_c\n"
              "   is the diameter of the cone. Applied to the gradient spectrum of each plane, it predicts the "

@@ -24,9 +24,8 @@ std::string largest_term(ErrorBudget const& budget) {
 
 std::string budget_words(Comparison const& all) {
   std::string text =
-      "Scatter is the standard deviation over the vectors of the field. That of estimator and noise changes with dots "
-      "and "
-      "noise; that of the other causes is the same in every repeat.";
+      "Scatter is the standard deviation over the vectors of the field. For estimator and noise it varies between "
+      "repeats, because dots and noise change; for the other causes it is the same in every repeat.";
   if (all.frames_deformed) {
     text +=
         " Window is the loss that remains after the passes that deform the frames, and estimator is the error added to "

@@ -120,10 +120,11 @@ void require_frames_of(MeasuredFiles const& files, ReportOptions const& options,
     std::string const told =
         is_hdf5(files.vectors) ? Hdf5Reader(files.vectors).attribute(std::string(name) + "_sha256") : std::string();
     if (told.empty() || told == files.sources.sha256(name)) continue;
-    throw DataError(files.vectors,
-                    fmt::format("was measured on another {} frame than {} (the SHA-256 of its pixels is {:.12}..., not "
-                                "{:.12}...); correlate the frames of the folder again, or restore those of the vectors",
-                                name, path, told, files.sources.sha256(name)));
+    throw DataError(
+        files.vectors,
+        fmt::format("was measured on another {} frame than {} (the SHA-256 of its pixels is {:.12}..., not {:.12}...); "
+                    "correlate the frames of the folder again, or restore the frames of the vectors",
+                    name, path, told, files.sources.sha256(name)));
   }
 }
 

@@ -166,7 +166,7 @@ TEST(DetectConventions, NamesTheLikelyMistake) {
                    d = {10.0 * d.x, -10.0 * d.y};
                  },
                  "y-down,v-up,offset=0,px/frame=10"},
-           Wrong{"places are 1.3 times the true ones", [](Vec2d&p, Vec2d&) { p = 1.3 * p; },
+           Wrong{"positions are 1.3 times the true ones", [](Vec2d&p, Vec2d&) { p = 1.3 * p; },
                  "y-down,v-down,offset=0,px=1.3"},
        }) {
     VectorFile file = waves_on_a_grid();

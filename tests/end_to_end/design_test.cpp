@@ -218,7 +218,7 @@ window_px = [32, 16]
   auto const of_few = json_of({"design", "few.toml", "--device", "cpu"})["uncertainty"];
   EXPECT_EQ(of_few["inputs"][1]["drawn_from"], "t, 2 degrees of freedom");
   EXPECT_TRUE(of_few["results"][0]["sampled_standard_uncertainty"].is_null());
-  EXPECT_THAT(of_few["uncorrected_bias"]["is"].get<std::string>(), HasSubstr("minus that of Eq. 9"));
+  EXPECT_THAT(of_few["uncorrected_bias"]["is"].get<std::string>(), HasSubstr("minus the displacement by Eq. 9"));
   std::string const table = succeed({"design", "few.toml", "--device", "cpu"});
   EXPECT_THAT(table, HasSubstr("t, 2 degrees of freedom"));
   EXPECT_THAT(table, HasSubstr("standard uncertainty undefined"));

@@ -134,8 +134,10 @@ TEST_F(Reports, OfACaseAddUpTheirCauses) {
     EXPECT_NEAR(rms, std::sqrt(2 * errors[component] / components), 0.005 * rms + 1e-6) << component;
   }
   EXPECT_THAT(said, HasSubstr("the rms error against truth on the window of deformed frames, "));
-  EXPECT_THAT(said, HasSubstr("px: the true displacement averaged over the window minus that "
-                              "of Eq. 9, rms over the vectors"));
+  EXPECT_THAT(
+      said,
+      HasSubstr(
+          "px: the true displacement averaged over the window minus the displacement by Eq. 9, rms over the vectors"));
   for (char const* const frame : {"reference", "flow"}) {
     EXPECT_THAT(said, HasSubstr(std::string("<td>") + frame + "</td><td>pixels</td><td>" +
                                 pixel_sha256(in(std::string("case/") + frame + ".tif").string())));
@@ -215,7 +217,9 @@ window_px = [32, 16]
   EXPECT_THAT(findings, HasSubstr("combined standard uncertainty"));
   EXPECT_THAT(findings, HasSubstr("coverage factor k = 2.00"));
   EXPECT_THAT(findings, HasSubstr("kg/m^4, in the simulated twin"));
-  EXPECT_THAT(findings, HasSubstr("was measured: the true displacement averaged over the window minus that of Eq. 9"));
+  EXPECT_THAT(
+      findings,
+      HasSubstr("was measured: the true displacement averaged over the window minus the displacement by Eq. 9"));
   std::string const html = read("measured/report.html");
   EXPECT_THAT(html, HasSubstr("of the simulated twin and not of the measurement itself"));
   EXPECT_THAT(html, HasSubstr("data-chart=\"budget\""));

@@ -81,7 +81,7 @@ TEST_F(Sources, VectorsOfOtherFramesAreRefusedByName) {
   succeed({"correlate", "case"});
   std::filesystem::copy(in("case/vectors.h5"), in("old.h5"));
   render("case", {"--set", "target.seed=8"});
-  auto const refusal = {std::string("old.h5: was measured on other frames than case/truth.h5 belongs to"),
+  auto const refusal = {std::string("old.h5: was measured on other frames than those of case/truth.h5"),
                         std::string("run gladstone correlate case again")};
   expect_refused({"compare", "case", "--vectors", "old.h5"}, 2, refusal);
   succeed({"correlate", "case"});

@@ -131,7 +131,7 @@ TEST(Verification, NamesNoCauseThatDoesNotExplain) {
   verified.simulated.causes[1].simulated = 0.0025;
   compare_with_formulas(verified, {});
   EXPECT_EQ(quantity(verified, "bias_px").why,
-            "the largest deviation of a cause is that of window, 0.0005 px; the rest is due to the estimator");
+            "the cause with the largest deviation is window, 0.0005 px; the rest is due to the estimator");
 }
 
 TEST(Verification, KeepsARequirementWithinTwoStandardErrors) {
