@@ -74,7 +74,7 @@ TEST(ScreenVectors, TakesImpossiblePlacesOutAndCountsThem) {
   ASSERT_EQ(field.size(), 50u);
   EXPECT_EQ(field.peak_ratio[2], 2.0);
   EXPECT_EQ(field.peak_ratio[3], 8.0) << "what belongs to a vector stays with it";
-  EXPECT_THAT(left_out.text(), AllOf(HasSubstr("2 with a place that is nan or infinite"),
+  EXPECT_THAT(left_out.text(), AllOf(HasSubstr("2 with a position that is nan or infinite"),
                                      HasSubstr("3 outside the image (by more than 2 px)")));
 }
 
@@ -115,7 +115,7 @@ TEST(ScreenVectors, SaysWhereTheyAreWhenNoneIsLeft) {
   EXPECT_THAT(refusal_of_places(field, left_out, columns, rows),
               AllOf(HasSubstr("none of the 55 vectors lies in the image of 200 x 100 px"),
                     HasSubstr("x from 1550 to 17550, y from 1550 to 7950"), HasSubstr("54 outside the image"),
-                    HasSubstr("1 with a place that is nan"), HasSubstr("px")));
+                    HasSubstr("1 with a position that is nan"), HasSubstr("px")));
 }
 
 // Counted from another corner: half of the grid of 5 x 11 vectors is outside.

@@ -227,8 +227,8 @@ TEST_F(FieldFiles, FacesInViewAreWarnedOfWithWhatRaysLeave) {
   };
   auto const summary = rendered({});
   EXPECT_THAT(of_faces(summary),
-              testing::AllOf(testing::HasSubstr("with 32 rays each. The error of their truth is 0."),
-                             testing::HasSubstr("grey levels of 12 bits (rms; the goals are 0.001 and 0.5)"),
+              testing::AllOf(testing::HasSubstr("with 32 rays each. The rms errors of their truth and images are 0."),
+                             testing::HasSubstr("grey levels of 12 bits (the goals are 0.001 and 0.5)"),
                              testing::HasSubstr("camera.exposure = \"auto\" is chosen from the brightest pixel"),
                              testing::HasSubstr("set render.rays_per_dot = \"auto\"")));
   auto const& faces = summary["estimator"]["side_faces"];
