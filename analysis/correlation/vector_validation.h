@@ -298,7 +298,8 @@ GLADSTONE_HD inline bool find_replacement(GridVector const* vectors, int i, int 
   found = {around.is_whole() ? vector.predictor + around.increment.median()
                              : without_slope(around.displacement, around.offset).median(),
            VectorReason::neighbours};
-  // Without a median test secondary peaks cannot be judged; and if the main peak is too low, they are as well.
+  // Secondary peaks are not used without a median test, which would have to select them, nor if the main peak is below
+  // the least correlation, since secondary peaks are lower still.
   if (!(rule.threshold < std::numeric_limits<double>::infinity()) || vector.correlation < rule.least_correlation)
     return true;
   for (int k = vector.alternative_count - 1; k >= 0; --k)

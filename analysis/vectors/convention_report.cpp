@@ -121,7 +121,7 @@ std::string difference_of(VectorConventions const& reading, VectorConventions co
 
 std::string LikelyMistake::warning() const {
   std::string const remedy =
-      conventions.empty() ? "mend the file" : "correct the file, or accept it with --conventions " + conventions;
+      conventions.empty() ? "correct the file" : "correct the file, or accept it with --conventions " + conventions;
   return fmt::format(
       "{} (without this the rms difference from the truth would be {:.3g} px, as read it is {:.3g} px); {}", text,
       mended.rms_px, as_read.rms_px, remedy);

@@ -119,7 +119,7 @@ nlohmann::json write_case(CaseSetup& loaded, PreparedCase const& prepared, Rende
   CaseOutcome outcome;
   std::vector<std::string>& warnings = outcome.warnings = prepared.warnings;
   if (loaded.setup.render.precision == Precision::single) {
-    warn(warnings, "render.precision = \"single\" has no advantage any more: rendered in double precision");
+    warn(warnings, "render.precision = \"single\" is obsolete, and double precision is used; remove it");
   }
   Scene scene = prepared.scene;
   scene.pupil_margin = rendered.pupil_margin;

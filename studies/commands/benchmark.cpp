@@ -101,16 +101,17 @@ CommandBody attach_benchmark(CLI::App& app, GlobalOptions const& options) {
       ->required();
   app.add_option("--vectors", arguments->vectors,
                  "NAME=F: another code's vectors, F a folder of files named after cases (vortex.csv, .txt, .h5)");
-  app.add_option("--conventions", arguments->conventions,
-                 "Conventions of these vectors, as for gladstone compare, or NAME=WORDS for one code; default: those "
-                 "of their format");
-  app.add_option("--cases", arguments->benchmark.cases, "Only these cases")->check(one_of(names_of_cases()));
-  app.add_option("--estimators", arguments->benchmark.estimators, "Only these of ours; none: only --vectors")
+  app.add_option(
+      "--conventions", arguments->conventions,
+      "Conventions of these vectors, as for gladstone compare, or NAME=WORDS for one code; default: the format's own");
+  app.add_option("--cases", arguments->benchmark.cases, "Evaluate only these cases")->check(one_of(names_of_cases()));
+  app.add_option("--estimators", arguments->benchmark.estimators,
+                 "Evaluate only these estimators of gladstone; none: evaluate only --vectors")
       ->check(one_of(names_of_estimators()));
   app.add_option("--seeds", arguments->benchmark.seeds,
                  "Number of seeds for the coverage of every uncertainty method; 0: no coverage")
       ->check(whole_number(0, 1000));
-  app.add_flag("--no-figures", arguments->no_figures, "Numbers only");
+  app.add_flag("--no-figures", arguments->no_figures, "Draw no figures");
   app.add_flag("--learn", arguments->learn,
                "Only learn the weights of the combined uncertainty and write them to combination.csv (the built-in "
                "weights are data/uncertainty/combination.csv)");

@@ -57,15 +57,15 @@ CommandBody attach_calibrate(CLI::App& app, GlobalOptions const& options) {
   };
   auto arguments = std::make_shared<Arguments>();
   app.add_option("case", arguments->folder,
-                 "Case folder of a calibration, of one camera or several; with --images a setup (TOML): [calibration] "
-                 "describes the target, camera and lens approximately the camera")
+                 "Case folder of a calibration, of one camera or several; with --images a setup (TOML) whose "
+                 "[calibration] describes the target, and whose camera and lens are approximate")
       ->required();
   auto* const images = app.add_option("--images", arguments->pictures,
                                       "Your own images, one for each plane of calibration.planes_mm in that order");
   auto* const output = app.add_option("-o,--output", arguments->output, "Output folder, with --images");
   images->expected(-1)->needs(output);
   output->needs(images);
-  app.add_flag("--no-figures", arguments->no_figures, "Numbers only");
+  app.add_flag("--no-figures", arguments->no_figures, "Draw no figures");
   return [arguments, &options] {
     if (!arguments->pictures.empty()) {
       std::string const& place = arguments->output;

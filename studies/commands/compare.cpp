@@ -128,7 +128,7 @@ CommandBody attach_compare(CLI::App& app, GlobalOptions const& options) {
                  "Conventions of the file, instead of those of its format: y-down or y-up or y-up-image, v-down or "
                  "v-up, frames-exchanged, axes-exchanged or places-exchanged or components-exchanged, offset=-0.5; for "
                  "files in other units the size of a pixel in them, px=0.0614,px/frame=6.14");
-  app.add_flag("--no-figures", arguments->no_figures, "Numbers only");
+  app.add_flag("--no-figures", arguments->no_figures, "Draw no figures");
   return [arguments, &options] {
     Device const device = options.open_device();
     CompareOptions compare = arguments->compare;

@@ -109,7 +109,7 @@ CommandBody attach_collect(CLI::App& app, GlobalOptions const& options) {
   };
   auto arguments = std::make_shared<Arguments>();
   app.add_option("run", arguments->run, "RUN folder")->required();
-  app.add_flag("--no-figures", arguments->no_figures, "Tables only");
+  app.add_flag("--no-figures", arguments->no_figures, "Draw no figures");
   app.add_option("--dataset", arguments->dataset,
                  "Pack images and true displacements of the cases that were run with --keep-images into one HDF5 file");
   return [arguments, &options] {

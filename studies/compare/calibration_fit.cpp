@@ -15,8 +15,8 @@ namespace {
 
 // lower bound of the dots' scatter within a plane, used as reference for residuals
 constexpr double least_scatter_px = 0.01;
-constexpr double suspicious = 5;           // residual, in multiples of that scatter, that is investigated
-constexpr double refused = 10;             // residual, in multiples of that scatter, that is an error
+constexpr double suspicious = 5;  // multiple of that scatter above which the cause of a residual is investigated
+constexpr double refused = 10;    // multiple of that scatter above which a residual is reported as an error
 constexpr double least_refused_px = 0.5;   // residual below which only a warning is given
 constexpr double outlier_deviations = 8;   // residual of an outlier, in robust standard deviations
 constexpr double least_outlier_px = 0.05;  // residual below which a dot is never an outlier
@@ -24,7 +24,7 @@ constexpr double same_place = 3;          // rms distance, in multiples of that 
 constexpr double principal_share = 0.05;  // allowed error of the principal point, relative to the image's longer side
 constexpr double tilted_share = 0.2;      // additional allowed error, relative to its displacement by the sensor's tilt
 constexpr double deviations = 6;          // significance limit, in standard errors
-constexpr double least_known = 0.2;       // relative standard error of a focal length that is an error
+constexpr double least_known = 0.2;       // relative standard error of a focal length above which an error is reported
 // relative difference from the setup's focal length that causes a warning; nominal focal lengths of lenses hold to 2 %
 constexpr double other_focal_length = 0.02;
 constexpr double square_pixels = 0.01;  // relative difference of fx and fy that causes a warning
@@ -127,9 +127,10 @@ class CalibrationFit {
     if (auto const order = find_picture_order(dots_)) {
       std::vector<std::string> names(order->size());
       for (std::size_t k = 0; k < order->size(); ++k) names[(*order)[k]] = file(k);
-      throw DataError(name_, fmt::format("has a residual of {:.3g} px rms, but fits in another order of the images: "
-                                         "{}; give them in the order of calibration.planes_mm, or correct that",
-                                         pinhole().rms_px, fmt::join(names, ", ")));
+      throw DataError(name_,
+                      fmt::format("has a residual of {:.3g} px rms, but fits in another order of the images: {}; give "
+                                  "the images in the order of calibration.planes_mm, or correct planes_mm",
+                                  pinhole().rms_px, fmt::join(names, ", ")));
     }
     try_placement(find_moved_middles(dots_, expected_.principal_point_px.value_or(middle_px())));
   }

@@ -192,7 +192,7 @@ std::string calibration_table(Calibration const& calibration) {
   text +=
       calibration.rendered
           ? "(off by: difference in standard errors)\n"
-          : "(no comparison with a rendered camera: your own images have no truth, and that of a case contains a "
+          : "(no comparison with a rendered camera: your own images have no truth, and the truth of a case contains a "
             "pinhole camera only for an ideal thin lens without windows and without distortion on a tilted sensor)\n";
   for (CalibratedPlane const& plane : calibration.planes) {
     text += fmt::format(

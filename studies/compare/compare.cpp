@@ -64,8 +64,8 @@ void judge_chain(Comparison& comparison, std::string const& name) {
   comparison.mask = common_mask(measured, references);
   if (std::none_of(comparison.mask.begin(), comparison.mask.end(), [](auto counts) { return counts != 0; })) {
     throw DataError(name,
-                    "has no vector that can be compared: none is valid, in view and has a truth in its window (three "
-                    "dots); check the vectors and --conventions");
+                    "has no vector that can be compared: no vector is valid, in view and has three dots with a truth "
+                    "in its window; check the vectors and --conventions");
   }
   comparison.budget = error_budget(budget_stages(comparison, comparison.window), comparison.mask, comparison.chain);
   if (comparison.frames_deformed) {

@@ -80,7 +80,7 @@ std::string error_report(Comparison const& comparison) {
   for (BudgetTerm const& term : comparison.shown_budget().terms) text += line(term);
   text += line(comparison.budget.total);
   text +=
-      "  scatter: standard deviation over the vectors of the field; a repeat changes only that of estimator and "
+      "  scatter: standard deviation over the vectors of the field; repeats change only the scatter of estimator and "
       "noise\n";
   text += undeformed_line(comparison);
   text += fmt::format(

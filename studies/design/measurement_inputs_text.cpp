@@ -68,7 +68,8 @@ std::string uncertainty_text(MeasurementUncertainty const& uncertainty) {
         result.key, result.value, result.standard, degrees_text(result.degrees_of_freedom), result.expanded(),
         result.coverage_factor, propagation_samples, sampled_text(result.sampled_mean, 6),
         sampled_text(result.sampled_standard, 3), result.sampled_low, result.sampled_high,
-        result.linear ? "the first order is valid" : "not linear, or not normal: use the interval of the samples");
+        result.linear ? "first-order propagation is valid"
+                      : "not linear, or not normal: use the interval of the samples");
   }
   text += fmt::format(
       "  not included: the uncorrected bias, {:.2g} % for a wave of twice the resolved wavelength:\n    {}\n",

@@ -74,7 +74,7 @@ void add_density(DesignSheet& sheet, CaseSetup const& loaded, ExpectedParticles 
                         at_least(number, 7, 4), fmt::format("of the last pass, {} px", window)});
   sheet.rows.push_back({"F15", "source_density", "fraction of the image covered by particles", expected.source_density,
                         "", "C dz pi d^2 / (4 M^2)", "Adrian 1991, Annu. Rev. Fluid Mech. 23:261",
-                        at_most(expected.source_density, 0.3, 0.6), "above 1, images overlap to speckle"});
+                        at_most(expected.source_density, 0.3, 0.6), "above 1, overlapping images form speckle"});
 }
 
 void add_motion(DesignSheet& sheet, CaseSetup const& loaded, double pixel) {

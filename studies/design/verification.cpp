@@ -56,9 +56,9 @@ std::string why_resolved(SimulatedBench const& simulated, Bench<double> const& b
   };
   std::vector<Share> const shares{
       {"cone", wave.cone, cone, "the field varies over its thickness"},
-      {"refraction", wave.refraction / wave.cone, 1, "the stop transmits other rays in the measurement image"},
+      {"refraction", wave.refraction / wave.cone, 1, "the stop transmits different rays in the measurement image"},
       {"aberration", wave.lens / wave.refraction, 1, "the lens is not ideal"},
-      {"window", wave.measured.value / wave.lens, window, "passes that deform the images win some of it back"}};
+      {"window", wave.measured.value / wave.lens, window, "passes that deform the images recover part of it"}};
   auto const farthest = std::max_element(shares.begin(), shares.end(), [](Share const& a, Share const& b) {
     return std::abs(a.simulated - a.predicted) < std::abs(b.simulated - b.predicted);
   });

@@ -44,7 +44,7 @@ std::string about_displacement(MeasurementKnown const& known) {
 }
 
 std::string about_linearity(PropagatedResult const& typical) {
-  if (typical.linear) return "The first order is valid (JCGM 101:2008).";
+  if (typical.linear) return "First-order propagation is valid (JCGM 101:2008).";
   return fmt::format(
       "The propagation is not linear, or not normal: for a vector of typical displacement, of {:.4g} kg/m^4, use the "
       "interval that contains 95.45 % of the samples (JCGM 101:2008), from {:.4g} to {:.4g} kg/m^4.",

@@ -246,11 +246,12 @@ class StudyReader {
     range.last = e[1].as_double();
     range.logarithmic = form == "log";
     range.whole = e[0].kind == Kind::integer && e[1].kind == Kind::integer;
-    if (!std::isfinite(range.first) || !std::isfinite(range.last)) return refuse("needs finite ends");
-    if (range.logarithmic && !(range.first > 0 && range.last > 0)) return refuse("needs ends greater than zero");
-    if (e[2].kind != Kind::integer || e[2].integer < 1) return refuse("needs a whole count of at least 1 as third");
+    if (!std::isfinite(range.first) || !std::isfinite(range.last)) return refuse("requires finite ends");
+    if (range.logarithmic && !(range.first > 0 && range.last > 0)) return refuse("requires ends above 0");
+    if (e[2].kind != Kind::integer || e[2].integer < 1)
+      return refuse("requires an integer count of at least 1 as the third number");
     range.count = static_cast<std::size_t>(e[2].integer);
-    if (range.count > 1 && range.first == range.last) return refuse("has equal ends; give them once, in a list");
+    if (range.count > 1 && range.first == range.last) return refuse("has equal ends; write this value once, in a list");
     axis.range = range;
   }
 

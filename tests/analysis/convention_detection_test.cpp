@@ -57,7 +57,8 @@ TEST(DetectConventions, FindsEveryChoiceOfAxesSignsAndOffset) {
             VectorConventions const c{y_up, v_up, swapped, offset, mirror};
             DetectedConventions const found =
                 detect_conventions(written_by(c, image_rows, 0.0), asymmetric, image_rows);
-            EXPECT_EQ(found.conventions, VectorConventions{}) << "they are read as the format says";
+            EXPECT_EQ(found.conventions, VectorConventions{})
+                << "the vectors are read by the conventions of the format";
             EXPECT_EQ(found.best.conventions, c) << describe(c) << " -> " << found.report;
             EXPECT_EQ(found.mistake.found(), c != VectorConventions{}) << describe(c) << " -> " << found.report;
             EXPECT_FALSE(found.ambiguous) << found.report;
@@ -176,9 +177,9 @@ TEST(DetectConventions, NamesTheLikelyMistake) {
     EXPECT_EQ(found.verdict, Verdict::mistaken) << wrong.mistake << ": " << found.report;
     EXPECT_THAT(found.mistake.text, testing::StartsWith(wrong.mistake));
     EXPECT_EQ(found.mistake.conventions, wrong.conventions) << wrong.mistake;
-    EXPECT_EQ(found.conventions, file.conventions) << "it is read as its format says";
+    EXPECT_EQ(found.conventions, file.conventions) << "the file is read by the conventions of its format";
     EXPECT_LT(found.mistake.mended.rms_px, 0.02 * found.mistake.as_read.rms_px) << wrong.mistake;
-    EXPECT_EQ(found.tried.size(), 32u) << "directions of y, of v, orders of the frames, four exchanges of columns";
+    EXPECT_EQ(found.tried.size(), 32u) << "2 directions of y, 2 of v, 2 orders of the frames, 4 exchanges of columns";
     EXPECT_THAT(found.report, HasSubstr("likely mistake"));
   }
 }
@@ -211,7 +212,7 @@ TEST(DetectConventions, NamesEveryMistakeThatLooksTheSame) {
   DetectedConventions const found = detect_conventions(file, vortex, 200);
   EXPECT_THAT(found.mistake.text, testing::StartsWith("the frames were exchanged, or "));
   EXPECT_THAT(found.mistake.text, HasSubstr("y and v point up"));
-  EXPECT_GT(found.fit.rms_px, 1.9 * found.fit.signal_px) << "twice, but for what counts as three times";
+  EXPECT_GT(found.fit.rms_px, 1.9 * found.fit.signal_px) << "vectors of the opposite sign differ by twice the truth";
 }
 
 // The same with errors that differ by 2 % between readings, as for an estimator with a bias to the right: the most
@@ -289,7 +290,7 @@ TEST(DetectConventions, RefusesWhatFitsNone) {
     DetectedConventions const found = detect_conventions(file, waves, 200);
     EXPECT_EQ(found.verdict, Verdict::fits_none) << found.report;
     EXPECT_THAT(found.report, AllOf(HasSubstr("fit no convention"), HasSubstr("v-up,frames-exchanged"),
-                                    HasSubstr("the truth itself is 0.0"), HasSubstr("mend the file")));
+                                    HasSubstr("the truth itself is 0.0"), HasSubstr("correct the file")));
   }
 }
 

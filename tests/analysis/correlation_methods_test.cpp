@@ -154,7 +154,7 @@ TEST(EveryMethod, MeasuresInAnyUnitOfLight) {
     }
 }
 
-// --device cuda rejects by this name what --device auto passes to the CPU.
+// The settings that a GPU does not support: --device cuda reports them as an error, --device auto uses the CPU.
 TEST(MissingOnGpu, IsEverythingButSccAndRpcByGaussians) {
   CorrelationSettings settings;
   for (char const* subpixel : {"gauss3", "gauss2d"}) {

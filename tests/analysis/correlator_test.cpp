@@ -130,7 +130,7 @@ TEST(SinglePass, KeepsTheCrestsOfAWaveOfTwoWindows) {
     DisplacementField const cut = make_correlator(strict)->correlate(pair.reference, pair.flow);
     EXPECT_GT(std::count(cut.status.begin(), cut.status.end(), VectorStatus::replaced),
               static_cast<std::ptrdiff_t>(cut.size() / 4))
-        << "the neighbours alone say otherwise";
+        << "the comparison with neighbours alone rejects these vectors";
     EXPECT_EQ(std::memcmp(cut.raw_px.data(), field.raw_px.data(), cut.size() * sizeof(Vec2d)), 0);
   }
 }
@@ -235,7 +235,7 @@ TEST(MaxDisplacement, ChoosesAmongAliases) {
   DisplacementField const field = make_correlator(settings)->correlate(pair.reference, pair.flow);
   for (std::size_t i = 0; i < field.size(); ++i) {
     EXPECT_NEAR(field.displacement_px[i].x, 4.3 - 7.155, 0.1);
-    EXPECT_EQ(field.ambiguous[i], Ambiguity::none) << "one alone is allowed";
+    EXPECT_EQ(field.ambiguous[i], Ambiguity::none) << "only one displacement is within the limit";
   }
 }
 

@@ -52,13 +52,13 @@ TEST(DetectCommonConventions, LetsThoseCasesDecideThatCan) {
   CommonConventions const alone = detect_common_conventions({written(vortex, negative)});
   EXPECT_TRUE(alone.ambiguous);
   EXPECT_THAT(alone.mistake.text, testing::StartsWith("the frames were exchanged, or "));
-  EXPECT_EQ(alone.mistake.conventions, "") << "no cure is sure";
+  EXPECT_EQ(alone.mistake.conventions, "") << "one file alone does not determine the correction";
   CommonConventions const both =
       detect_common_conventions({written(uniform, negative), written(vortex, negative), written(off_centre, negative)});
   EXPECT_FALSE(both.ambiguous);
   EXPECT_EQ(both.mistake.text, "the frames were exchanged");
   EXPECT_EQ(both.mistake.conventions, "y-down,v-down,frames-exchanged,offset=0");
-  EXPECT_NE(both.decisive, 0u) << "a uniform displacement cannot tell them from exchanged columns";
+  EXPECT_NE(both.decisive, 0u) << "a uniform displacement does not distinguish exchanged frames from exchanged columns";
 }
 
 TEST(DetectCommonConventions, IsSureOfRightVectorsByOneCaseThatIsWithoutSymmetry) {

@@ -255,7 +255,7 @@ TEST(PairVerdict, WarnsOfOnePictureGivenTwice) {
     EXPECT_THAT(judged(pair, settings).warnings, ElementsAre(HasSubstr("same image, bit for bit"))) << method;
   }
   pair.flow(60, 60) += 1.0;
-  EXPECT_THAT(judged(pair).warnings, IsEmpty()) << "another picture: a small real displacement looks like this";
+  EXPECT_THAT(judged(pair).warnings, IsEmpty()) << "the images differ, as for a small real displacement";
 }
 
 TEST(PairVerdict, SaysNoDisplacementOfPicturesWithoutASignal) {
@@ -341,7 +341,7 @@ TEST(PairVerdict, WarnsOfAPatternThatRepeats) {
   EXPECT_THAT(unbounded.warnings,
               ElementsAre(AllOf(HasSubstr("the pattern repeats every 8.3"), HasSubstr("range of 32 px"),
                                 HasSubstr("max_displacement_px below 4.1"))));
-  EXPECT_EQ(counting(unbounded), unbounded.size()) << "it is said, not taken away";
+  EXPECT_EQ(counting(unbounded), unbounded.size()) << "the ambiguity is reported, and the vectors are kept";
   DisplacementField const bounded = judged(pair, within(4.1));
   EXPECT_THAT(bounded.warnings, IsEmpty()) << "no other displacement is within the limit";
   EXPECT_EQ(std::count(bounded.ambiguous.begin(), bounded.ambiguous.end(), Ambiguity::none),
@@ -403,7 +403,7 @@ TEST(Chance, TakesAllWhereHardlyAnyIsBetter) {
       for (int i = 0; i < good; ++i) field.correlation[static_cast<std::size_t>(10 * j + i)] = 0.9;
     leave_out_chance(field, with_correlation(0.3, 0.1), windows_of_32());
     EXPECT_GE(counting(field), kept) << good;
-    EXPECT_LE(counting(field), kept * 2) << "windows beside the good ones have them within reach";
+    EXPECT_LE(counting(field), kept * 2) << "windows next to the good ones may be kept too";
   }
 }
 

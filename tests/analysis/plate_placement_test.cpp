@@ -49,7 +49,8 @@ TEST(PlatePlacement, TheDriftOfATiltedPlateIsFound) {
   double const a = 5 * pi / 180, b = -3 * pi / 180;
   PlateDots const dots = dots_of_plate(a, b);
   PinholeFit const without = fit_pinhole(dots.points(), picture_middle);
-  EXPECT_GT(std::abs(without.camera.cx() - picture_middle.x), 300) << "there is something to find";
+  EXPECT_GT(std::abs(without.camera.cx() - picture_middle.x), 300)
+      << "the drift has a large effect without the correction";
   auto const placement = find_drift(dots, picture_middle);
   ASSERT_TRUE(placement);
   EXPECT_TRUE(placement->moved.empty());

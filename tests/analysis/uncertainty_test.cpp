@@ -285,7 +285,7 @@ TEST(ImageMatching, HoldsForDotsUpToItsPatch) {
     EXPECT_EQ(quality.without_sigma, 0u) << dots.diameter_px;
   }
   UncertaintyQuality const large = quality_of_dots("image_matching", 6.0, 20, 0.05);
-  EXPECT_EQ(large.without_sigma, 0u) << "a quarter of them, when each window's dots were asked alone";
+  EXPECT_EQ(large.without_sigma, 0u) << "with the dots of single windows only, a quarter had none";
 }
 
 // Two passes of one Gaussian window H = exp(-a r^2) with an exact predictor: A = 2 H - H^2, and the integrals of A^2

@@ -117,8 +117,9 @@ TEST(NormalisedMedian, KeepsACrestThatItsWindowSpeaksFor) {
     return grid[12].status;
   };
   EXPECT_EQ(status_of(1.0, 2.1, Ambiguity::none, 2.0), VectorStatus::valid);
-  EXPECT_EQ(status_of(1.0, 1.9, Ambiguity::none, 2.0), VectorStatus::replaced) << "chance has such peaks";
-  EXPECT_EQ(status_of(2.1, 9.0, Ambiguity::none, 2.0), VectorStatus::replaced) << "a speck on the window";
+  EXPECT_EQ(status_of(1.0, 1.9, Ambiguity::none, 2.0), VectorStatus::replaced) << "uncorrelated images have such peaks";
+  EXPECT_EQ(status_of(2.1, 9.0, Ambiguity::none, 2.0), VectorStatus::replaced)
+      << "as caused by a speck of dust on the window";
   EXPECT_EQ(status_of(1.0, 9.0, Ambiguity::earlier, 2.0), VectorStatus::replaced) << "an alias";
   EXPECT_EQ(status_of(1.0, 2.1, Ambiguity::none, 3.0), VectorStatus::replaced);
   EXPECT_EQ(status_of(1.0, 1000.0, Ambiguity::none, std::numeric_limits<double>::infinity()), VectorStatus::replaced);

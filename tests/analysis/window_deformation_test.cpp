@@ -108,7 +108,8 @@ TEST(PairDeformer, BringsBothImagesToTheMiddle) {
   InterrogationGrid const grid = make_interrogation_grid(96, 80, 16, 0.5);
   std::vector<Vec2d> const nodes(grid.size(), shift);
   ImagePair const pair = PairDeformer(reference, flow, 5).deform(DensePredictor(grid, nodes, 96, 80));
-  // levels minus one of them, times a power of two that scales their range of almost 40 to 1 .. 2
+  // the deformer subtracts one level and multiplies by a power of two, so that the range of almost 40 levels becomes 1
+  // to 2
   constexpr double scale = 1.0 / 32.0;
   double const level = pair.reference[40 * 96 + 48] - scale * pattern(48.0, 40.0);
   EXPECT_GT(pair.contrast, 1.0f);

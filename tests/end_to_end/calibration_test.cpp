@@ -199,7 +199,7 @@ TEST_F(Calibrations, RecoverDistortion) {
     }
   }
   EXPECT_LT(most, 0.01);
-  EXPECT_GT(distorted, 1) << "there is something to recover";
+  EXPECT_GT(distorted, 1) << "the distortion is large enough to test the fit";
   auto const residual = dataset("case/calibration.h5", "/dots/pinhole_residual_px");
   double sum = 0;
   for (double const r : residual) sum += r * r;

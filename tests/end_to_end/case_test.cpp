@@ -67,7 +67,7 @@ TEST_F(Case, ErrorsHaveTheirKeysAndTheBudgetAddsUp) {
     EXPECT_THAT(keys(errors[truth]),
                 UnorderedElementsAre("count", "valid_fraction", "bias_u_px", "bias_v_px", "random_u_px", "random_v_px",
                                      "rms_px", "rms_without_gross_px", "p95_px", "gross_fraction"));
-    EXPECT_EQ(errors[truth]["count"], errors["ray_truth"]["count"]) << "one mask serves all comparisons";
+    EXPECT_EQ(errors[truth]["count"], errors["ray_truth"]["count"]) << "all comparisons use the same mask";
   }
   auto const& terms = errors["budget"]["terms"];
   EXPECT_THAT(keys(terms), UnorderedElementsAre("small_angle", "cone", "refraction", "aberration", "window",
@@ -101,7 +101,7 @@ TEST_F(Case, DefocusIsAberrationAndNotRefraction) {
              soft = terms("soft", {"--set", "lens.focus_distance_mm=950.0"}),
              medium = terms("medium", {"--set", "lens.focus=medium"});
   EXPECT_EQ(rms(sharp, "aberration"), 0);
-  EXPECT_LT(rms(named, "aberration"), 1e-9) << "the same lens, traced as the ideal one too";
+  EXPECT_LT(rms(named, "aberration"), 1e-9) << "a thin lens equals the ideal lens";
   EXPECT_GT(rms(sharp, "refraction"), 0.002);
   for (auto const& blurred : {soft, medium}) {
     EXPECT_NEAR(rms(blurred, "refraction") / rms(sharp, "refraction"), 1, 0.05);
@@ -147,9 +147,9 @@ TEST_F(Case, ComparisonsCanBeWrittenApart) {
     EXPECT_EQ(read("results/of one/errors.json"), beside);
     EXPECT_TRUE(fs::exists(in("results/of one/error_budget.png")));
   }
-  EXPECT_FALSE(fs::exists(in("case/errors.json"))) << "the case is left as it was";
+  EXPECT_FALSE(fs::exists(in("case/errors.json"))) << "the case is unchanged";
   succeed({"compare", "case", "--no-figures", "-o", "results/of one"});
-  EXPECT_FALSE(fs::exists(in("results/of one/error_budget.png"))) << "a figure of an earlier comparison";
+  EXPECT_FALSE(fs::exists(in("results/of one/error_budget.png"))) << "figures of the earlier comparison are removed";
   succeed({"compare", "case", "-o", "case/"});
   EXPECT_EQ(read("case/errors.json"), beside);
   EXPECT_TRUE(fs::exists(in("case/vectors.h5")));

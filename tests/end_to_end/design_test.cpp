@@ -149,7 +149,7 @@ TEST_F(Design, EndsWithFourWhereNothingIsFeasible) {
   auto const json = nlohmann::json::parse(outcome.out);
   EXPECT_EQ(json["figures"].empty(), outcome.err.find("gnuplot") != std::string::npos);
   if (!json["figures"].empty()) {
-    EXPECT_THAT(names("drawn"), testing::ElementsAre("design_map.png", "layout.png")) << "of the setup as it is";
+    EXPECT_THAT(names("drawn"), testing::ElementsAre("design_map.png", "layout.png")) << "figures of the given setup";
   }
   EXPECT_FALSE(json["feasible"]);
   EXPECT_THAT(json["conflicts"].dump(), HasSubstr("requirements.resolution_mm"));

@@ -57,7 +57,7 @@ class DocumentedFiles : public Workplace {
 TEST_F(DocumentedFiles, TablesAreReadRowByRow) {
   EXPECT_EQ(names_of("`/pinhole/camera_matrix`, `distortion`, or `/dots/plane`"),
             (std::vector<std::string>{"/pinhole/camera_matrix", "/pinhole/distortion", "/dots/plane"}));
-  EXPECT_EQ(documented_tables("truth.h5", "dataset").size(), 2u) << "of dots, of particles";
+  EXPECT_EQ(documented_tables("truth.h5", "dataset").size(), 2u) << "one table for BOS, one for PIV";
   EXPECT_GT(names_of_first_column(documented_table("summary.json", "key")).size(), 20u);
 }
 

@@ -54,7 +54,7 @@ TEST_F(Limits, ClosedStreamsAreNoCrash) {
     };
   };
   std::vector<std::string> const mie{"info", "mie", "--x", "5", "--m", "1.5"};
-  EXPECT_EQ(run(mie, folder_, closed({1, 2})).exit_code, 2) << "the result is lost";
+  EXPECT_EQ(run(mie, folder_, closed({1, 2})).exit_code, 2) << "the result cannot be printed";
   Outcome const no_stdout = run(mie, folder_, closed({1}));
   EXPECT_EQ(no_stdout.exit_code, 2);
   EXPECT_THAT(no_stdout.err, HasSubstr("cannot write to standard output"));

@@ -148,7 +148,7 @@ TEST_F(OutputErrors, FilesThatMayNotGrow) {
   EXPECT_THAT(outcome.err,
               testing::AllOf(testing::HasSubstr("gladstone: case/"), testing::HasSubstr("cannot be written"),
                              testing::Not(testing::HasSubstr("partial"))))
-      << "named as it was asked for";
+      << "the message contains the name as given";
   EXPECT_TRUE(everything() == before) << testing::PrintToString(names());
 }
 

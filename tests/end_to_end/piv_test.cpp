@@ -153,7 +153,7 @@ scheimpflug = "auto"
   auto const left = dataset("case/left/truth.h5", "/particles/position_m");
   EXPECT_EQ(left, dataset("case/right/truth.h5", "/particles/position_m"));
   EXPECT_GT(left.size(), 6u * 500);
-  // motion along X is seen with the cosine of the angle by both; motion along Z with opposite signs
+  // both cameras see motion along X times the cosine of the angle, and motion along Z with opposite signs
   write("setup.toml",
         with(with(stereo, "[geometry]\nz_a_mm = 750.0\n", ""), "[14.12857, 0.0, 0.0]", "[0.0, 0.0, 10.0]"));
   render("deep");

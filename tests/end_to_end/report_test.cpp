@@ -71,20 +71,20 @@ TEST_F(Reports, TakeAComparisonThatFits) {
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
     return outcome.err.find("reused the comparison") != std::string::npos;
   };
-  EXPECT_FALSE(reused()) << "there is none yet";
+  EXPECT_FALSE(reused()) << "no comparison is stored yet";
   nlohmann::json const fresh = data_of("case/report.html");
   succeed({"compare", "case", "--no-figures", "--quiet"});
   EXPECT_TRUE(reused());
   EXPECT_EQ(data_of("case/report.html"), fresh);
   std::string const errors = read("case/errors.json");
   write("case/errors.json", errors + '\n');
-  EXPECT_FALSE(reused()) << "another errors.json";
+  EXPECT_FALSE(reused()) << "errors.json was changed";
   write("case/errors.json", errors);
   EXPECT_TRUE(reused());
   succeed({"correlate", "case", "--quiet", "--set", "correlate.overlap=0.25"});
   EXPECT_FALSE(reused()) << "other vectors";
   render("case");
-  EXPECT_FALSE(std::filesystem::exists(in("case/comparison.h5"))) << "of the case as it was";
+  EXPECT_FALSE(std::filesystem::exists(in("case/comparison.h5"))) << "the comparison belonged to the previous case";
 }
 
 TEST_F(Reports, OfACaseAddUpTheirCauses) {

@@ -33,7 +33,7 @@ TEST_F(Sources, VectorsNameTheirFramesAndErrorsTheirVectorsAndTruth) {
   succeed({"correlate", "case"});
   Outcome const outcome = gladstone({"compare", "case", "--no-figures"});
   EXPECT_EQ(outcome.exit_code, 0);
-  EXPECT_THAT(outcome.err, testing::Not(HasSubstr("warning"))) << "all is as it should be";
+  EXPECT_THAT(outcome.err, testing::Not(HasSubstr("warning"))) << "the case is consistent";
   auto const summary = nlohmann::json::parse(read("case/summary.json"));
   for (std::string const frame : {"reference", "flow"}) {
     std::string const hash = pixel_sha256(in("case/" + frame + ".tif").string());

@@ -103,7 +103,7 @@ TEST_F(Trace, RowsKeepTheirOrderAndSayWhy) {
   double const eq9 = 105.0 / 895.0 * 0.25 * 2.26e-4 * 20 * 0.01 / ((1 + 2.26e-4 * 1.225) * 10e-6);
   EXPECT_NEAR(rows[0].column - 31.5, -eq9, 1e-5);
   EXPECT_NEAR((rows[0].row - 31.5) / (rows[0].column - 31.5), -0.5, 1e-3);
-  EXPECT_TRUE(std::isnan(rows[0].path)) << "a thin lens has no path of its own";
+  EXPECT_TRUE(std::isnan(rows[0].path)) << "the optical path through a thin lens is undefined";
   EXPECT_TRUE(std::isnan(rows[1].column));
   // z_i = 1 / (1/105 - 1/1000) mm behind the lens
   EXPECT_NEAR(rows[0].z, 750 + 1 / (1 / 105.0 - 1 / 1000.0), 1e-9);

@@ -296,7 +296,8 @@ TEST_F(Variants, TruthThatIsNotKnownWellIsWarnedOf) {
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(outcome.err, testing::HasSubstr("truth: the standard error of the displacements is 0."));
   EXPECT_THAT(outcome.err, testing::HasSubstr(" px; increase render.rays_per_dot, now 32, if this matters"));
-  EXPECT_THAT(outcome.err, testing::Not(testing::HasSubstr("truth is computed from rays only"))) << "as all of it is";
+  EXPECT_THAT(outcome.err, testing::Not(testing::HasSubstr("truth is computed from rays only")))
+      << "the remark is omitted if it applies to all dots";
   EXPECT_THAT(outcome.err, testing::HasSubstr("camera.offset_dn: the read noise of 6.55 grey levels is cut off"));
   auto const summary = nlohmann::json::parse(read("case/summary.json"));
   double const rms = summary["truth_error_px"]["rms"];

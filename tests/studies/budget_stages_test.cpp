@@ -68,7 +68,7 @@ TEST(BudgetDifferences, AreTheBudgetsTerms) {
         if (comparison.mask[i]) {
           EXPECT_NEAR(length(sum[i] - (comparison.measured.displacement_px[i] - first[i])), 0, 1e-12);
         } else {
-          EXPECT_TRUE(std::isnan(sum[i].x)) << "does not count";
+          EXPECT_TRUE(std::isnan(sum[i].x)) << "the vector is not compared";
         }
       }
     }

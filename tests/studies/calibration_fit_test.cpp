@@ -91,7 +91,7 @@ TEST(CalibrationFit, RefusesACameraOfUnequalFocalLengthsFromGuessedMiddleDots) {
     EXPECT_THAT(error.what(), testing::HasSubstr("the middle dots of plane0.tif, plane2.tif are guesses"));
   }
   EXPECT_THAT(fitted(dots, MiddleBy::whole_grid).warnings, testing::Contains(testing::HasSubstr("differ, although")))
-      << "with the whole grid in every image it is the plate that is wrong";
+      << "if every image shows the whole grid, the plate's motion must be wrong";
 }
 
 // Dots that are s times as far apart as assumed, at the same Z, are seen as by a lens of s times the focal length.

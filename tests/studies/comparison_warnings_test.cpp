@@ -30,7 +30,7 @@ TEST(ComparisonWarnings, TellOfASignalThatCannotBeMeasured) {
   EXPECT_THAT(warnings_of(0.05, 0.1), ElementsAre(testing::AllOf(HasSubstr("0.05 px rms per component, less than the "
                                                                            "error"),
                                                                  HasSubstr("is 0.071 px"), HasSubstr("z_d_mm"))));
-  EXPECT_THAT(warnings_of(0, 0.001), IsEmpty()) << "nothing is to move";
+  EXPECT_THAT(warnings_of(0, 0.001), IsEmpty()) << "the true displacement is zero";
 }
 
 TEST(ComparisonWarnings, TellOfImagesThatLockToPixels) {

@@ -235,7 +235,7 @@ TEST(DesignSheet, MapOfPivFollowsTheStop) {
   EXPECT_DOUBLE_EQ(at(8).peak_electrons[1], sheet["peak_electrons"]);
   EXPECT_NEAR(std::log(at(1.4).peak_electrons[1] / at(2.8).peak_electrons[1]) / std::log(2.0), 2, 0.05);
   EXPECT_NEAR(std::log(at(16).peak_electrons[1] / at(32).peak_electrons[1]) / std::log(2.0), 4, 0.3);
-  EXPECT_GT(at(1.4).edge_px, 2 * at(1.4).image_px) << "the blur of half the sheet";
+  EXPECT_GT(at(1.4).edge_px, 2 * at(1.4).image_px) << "defocus at half the thickness of the sheet";
 }
 
 }  // namespace

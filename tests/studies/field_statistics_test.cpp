@@ -20,7 +20,9 @@ class OneNode final : public FieldSource {
   FieldReading const& reading() const override { return reading_; }
   std::vector<std::string> notes() override { return {}; }
   int significant_bits() const override { return 53; }
-  void read_planes(int, int, std::span<double>) override { FAIL() << "whole planes were asked for"; }
+  void read_planes(int, int, std::span<double>) override {
+    FAIL() << "the statistics must read rows, not whole planes";
+  }
   void read_rows(int plane, int first_row, int count, std::span<double> out) override {
     most_ = std::max(most_, out.size());
     std::fill(out.begin(), out.end(), 1.0);

@@ -197,7 +197,7 @@ TEST_F(Runs, PlanningAgainKeepsWhatIsThere) {
   EXPECT_THROW(write_plan(in("run"), other), OutputError);
   EXPECT_EQ(read_manifest(in("run")).size(), 8u);
 
-  // so would planning with another gladstone
+  // a manifest of another version is not replaced either
   write("run/manifest.jsonl", "{\"manifest\":1,\"index\":0}\n");
   try {
     write_plan(in("run"), other);
@@ -325,7 +325,7 @@ TEST_F(Runs, AResultOfAnotherVersionIsNeitherDamagedNorThrownAway) {
   for (std::function<void()> const& use : uses) {
     try {
       use();
-      ADD_FAILURE() << "taken for damage";
+      ADD_FAILURE() << "a result of another version was accepted as damaged";
     } catch (DataError const& error) {
       EXPECT_THAT(error.what(),
                   testing::HasSubstr("run/cases/2.json: is a result of version 1 (this gladstone reads version 2)"));
@@ -347,7 +347,7 @@ TEST_F(Runs, AResultThatCannotBeReadIsMissingAndAFolderInItsPlaceIsNamed) {
   std::filesystem::create_directory(in("run/cases/3.json"));
   try {
     state_of(in("run"), read_manifest(in("run")), {3});
-    ADD_FAILURE() << "taken for a result";
+    ADD_FAILURE() << "a folder was accepted as a result";
   } catch (DataError const& error) {
     EXPECT_THAT(error.what(), testing::StartsWith(in("run/cases/3.json") + ": is a folder"));
   }

@@ -58,7 +58,7 @@ TEST_F(PassingFolders, OfKilledProcessesAreRemovedByTheNext) {
   ASSERT_EQ(::read(ready[0], &x, 1), 1);
   {
     PassingFolder const next;
-    EXPECT_EQ(count(), 2) << "its owner is alive";
+    EXPECT_EQ(count(), 2) << "its process is still running";
   }
   ::kill(child, SIGKILL);
   ::waitpid(child, nullptr, 0);

@@ -180,7 +180,7 @@ TEST(SideFaces, AreMeasuredWithAGivenNumber) {
     Scene scene = volume_in_view(rays);
     RaysPlan const plan = plan_rays_of(scene);
     EXPECT_EQ(plan.rays, rays);
-    EXPECT_EQ(plan.rays_at_side_faces, 0u) << "the number is the user's";
+    EXPECT_EQ(plan.rays_at_side_faces, 0u) << "the user has specified the number";
     EXPECT_TRUE(plan.side_faces);
     return plan.side_faces.value_or(SideFaceErrors{});
   };

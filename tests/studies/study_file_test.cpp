@@ -281,7 +281,7 @@ TEST_F(BadStudies, AnAxisOfTheWrongType) {
   expect_refused("base = \"base.toml\"\n[axes]\nlens.f_number = [1, 2]\n", "3:1",
                  {"write a key path in quotes: \"lens.f_number\""});
   expect_refused("base = \"base.toml\"\n[axes]\n\"lens.f_number\" = { log = [0, 8, 3] }\n", "3:21",
-                 {"log needs ends greater than zero"});
+                 {"log requires ends above 0"});
   expect_refused("base = \"base.toml\"\n[axes]\n\"lens.f_number\" = { linear = [4, 8] }\n", "3:21",
                  {"linear must be [first, last, count]"});
   expect_refused("base = \"base.toml\"\n[axes]\n\"medium.field\" = [{ kind = \"none\" }]\n", "3:19", {"needs a label"});
