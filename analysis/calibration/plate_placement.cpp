@@ -127,7 +127,8 @@ Fit move_two(PlateDots const& dots, Fit const& given) {
   return best;
 }
 
-/// Shifts all offsets alike, which leaves the camera as it is, so that the sum of their absolute values is smallest.
+/// Adds the constant to all offsets that minimises the sum of their absolute values; a common offset does not change
+/// the camera.
 void shift_to_smallest(Moves& moves) {
   for (std::size_t axis = 0; axis < 2; ++axis) {
     std::vector<int> sorted;

@@ -266,7 +266,8 @@ void judge(DisplacementField& field, Evidence const& evidence, CorrelationSettin
   if (left.part(left.failed) >= too_many_failed) field.warnings.push_back(failed_text(field, left));
 }
 
-/// Returns a pair whose pixels come from the first pair of the sequence in which they are known in both frames.
+/// Returns a composite of the sequence: every pixel is taken from the first pair in which both frames have a value
+/// there.
 HostFrames known_in_any(PairSequence const& pairs) {
   HostFrames const first = pairs.frames(0);
   Image<double> reference = first.reference(), flow = first.flow();

@@ -39,8 +39,8 @@ struct Comparison {
   /// vectors measured on noise-free, unquantised images [px]; empty for foreign vectors
   std::vector<Vec2d> noise_free;
   VectorMask mask;
-  ErrorBudget budget;               ///< its stage `window` is `window`, as measured by a single pass
-  ErrorBudget budget_after_passes;  ///< its stage `window` is `deformed_window`; empty unless frames_deformed
+  ErrorBudget budget;  ///< budget relative to the truth on undeformed windows, as measured by a single pass
+  ErrorBudget budget_after_passes;  ///< budget relative to the truth on deformed windows; empty unless frames_deformed
   std::string report;               ///< conventions detected in a foreign file; empty for our own
   LeftOutVectors left_out;          ///< vectors of the file that were rejected; `measured` holds the others
   std::optional<DetectedConventions> detected;  ///< for a foreign file

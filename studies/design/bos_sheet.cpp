@@ -241,8 +241,8 @@ void add_errors(DesignSheet& sheet, Setup const& setup, Bench<double> const& b) 
                   "sqrt(pattern^2 (20 / N_I)^0.48 + (0.287 q (1 + 1.6 s^2) d^-0.737)^2 20 / N_I)",
                   "data/estimators/random_error.csv",
                   std::max(at_most(sigma, 0.05, 0.1), beyond.empty() ? Margin::none : Margin::marginal),
-                  fmt::format("along the displacement, 0.3 to 1.1 times that across it; dots of {:.3g} px, PSF of "
-                              "{:.3g} px, noise {:.3g} % of the peak, {:.3g} dots in a window{}",
+                  fmt::format("along the displacement, and 0.3 to 1.1 times as much across it; dots of {:.3g} px, PSF "
+                              "of {:.3g} px, noise {:.3g} % of the peak, {:.3g} dots in a window{}",
                               b.geometric_dot_px(), b.spot_sigma_px(), 100 * q, b.dots_in_window(),
                               beyond.empty() ? "" : "; outside the range of the study: " + beyond)});
   double const epsilon = shown_gradient(*b.given) * b.deflection(), slab = b.given->thickness / b.z_d;

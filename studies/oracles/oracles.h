@@ -17,7 +17,7 @@ double slab_matched_m(Renderer&);
 double slab_refracting_m(Renderer&);
 double steep_slab_refracting_m(Renderer&);
 double eikonal_drift(Renderer&);            ///< | |T| - n | where a skew ray exits the rod
-double reversal_miss_mm(Renderer&);         ///< distance from the start of a ray reversed through the rod and its faces
+double reversal_miss_mm(Renderer&);         ///< distance from the start of a ray to the end of the reversed ray
 double spline_polynomial_error(Renderer&);  ///< largest relative error of value and slopes of a bicubic, up to the edge
 double plume_deflection(Renderer&);         ///< at x = a / sqrt 2, relative to dn / n0
 double tilted_shock_slope(Renderer&);       ///< relative to the exact slope by Snell's law, dn tan(phi)

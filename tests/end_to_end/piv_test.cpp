@@ -69,7 +69,7 @@ TEST_F(Piv, RecoversAShiftOf2Point3Pixels) {
   EXPECT_NEAR(errors["ray_truth"]["bias_u_px"].get<double>(), 0, 0.02);
   EXPECT_LT(errors["ray_truth"]["rms_px"].get<double>(), 0.02);
   EXPECT_GT(errors["ray_truth"]["valid_fraction"].get<double>(), 0.9);
-  // the flow is that in the middle of the sheet, and there is no refraction
+  // the flow is evaluated in the middle of the sheet, and there is no refraction
   EXPECT_NEAR(errors["budget"]["terms"]["projection"]["rms_px"].get<double>(), 0, 1e-5);
   EXPECT_EQ(errors["budget"]["terms"]["refraction"]["rms_px"].get<double>(), 0);
   EXPECT_LT(errors["budget"]["closure_px"].get<double>(), 1e-9);

@@ -142,7 +142,7 @@ def interrupt(bench, rng, place):
     _, err = process.communicate()
     early = process.returncode == -number  # before the program handles signals
     if process.returncode not in (0, 130) and not (running and early):
-        raise Wrong(f"{signal.Signals(number).name} ended it with {process.returncode}: {err.strip()}")
+        raise Wrong(f"after {signal.Signals(number).name} it exited with code {process.returncode}: {err.strip()}")
     state = bench.state(case)
     if state not in ("a", "b"):
         raise Wrong(f"after {signal.Signals(number).name} the case is {state}")

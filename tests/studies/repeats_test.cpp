@@ -46,10 +46,10 @@ TEST(RepeatSplit, IsMeanAndStandardDeviationOverRepeats) {
   EXPECT_DOUBLE_EQ(split.systematic_px, std::sqrt(3.0));
 }
 
-// For n = 2 x 20000 components in K repeats the variance is determined to a relative sqrt(2 / (n (K - 1))), at most 0.7
-// %, and the scatter to 0.35 %; systematic^2 = 4e-4 to its own 0.7 % and scatter^2 / K sqrt(2 / (n (K - 1))) below it.
-// Five standard errors of each: 2 %. However few the repeats are, the two parts are separated, and their squares add up
-// to the mean square.
+// Both parts are recovered from any number K of repeats, and their squares add up to the mean square. Tolerance: from n
+// = 2 x 20000 components, the variance has a relative standard error of sqrt(2 / (n (K - 1))), at most 0.7 %, and the
+// scatter therefore 0.35 %; the square of the systematic part has its own 0.7 % and the error of scatter^2 / K. The
+// tolerances are five standard errors.
 TEST(RepeatSplit, FindsWhatWasPutInWithAnyNumberOfRepeats) {
   for (std::size_t const repeats : {2, 3, 8}) {
     for (double const scatter : {0.005, 0.02, 0.05}) {
