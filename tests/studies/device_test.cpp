@@ -20,8 +20,8 @@ class NominalGpu final : public Renderer {
   Rendering render(Scene&, DotPattern const&, RenderImages, RenderTheory) override { return {}; }
 };
 
-// What the GPU correlator does not support, --device auto passes to the CPU: the result must name the device that
-// measured it.
+// With --device auto, the CPU correlates if the GPU does not support the settings; the result must name the device that
+// was used.
 TEST(Measurement, NamesTheDeviceThatCorrelated) {
   Device const device{std::make_unique<NominalGpu>(), make_correlator};
   ParticlePair const pair = render_particle_pair({.columns = 64, .rows = 64}, [](Vec2d) { return Vec2d{0.5, 0.0}; });
