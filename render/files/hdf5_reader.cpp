@@ -199,7 +199,7 @@ Id Hdf5Reader::Handle::open(std::string const& path, std::string const& dataset,
   if (!opened.valid()) {
     auto names = all_datasets(file);
     std::string message = "has no dataset \"" + dataset + '"';
-    if (names.empty()) throw DataError(path, message + "; it has none at all");
+    if (names.empty()) throw DataError(path, message + "; it has no datasets");
     if (auto const nearest = nearest_name(dataset, names)) message += "; did you mean \"" + *nearest + "\"?";
     constexpr std::size_t most = 20;
     bool const cut = names.size() > most;

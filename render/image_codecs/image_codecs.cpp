@@ -158,7 +158,7 @@ class OiioCodecs final : public ImageCodecs {
       spec["ResolutionUnit"] = "cm";
     }
     auto const output = OIIO::ImageOutput::create("tif");
-    if (!output) return "no writer of TIFF is installed";
+    if (!output) return "no TIFF writer is installed";
     OIIO::Filesystem::IOVecOutput memory(bytes);
     bool const written = output->set_ioproxy(&memory) && output->open(path, spec) &&
                          output->write_image(OIIO::TypeDesc::UINT16, page.values);
@@ -169,7 +169,7 @@ class OiioCodecs final : public ImageCodecs {
                          std::vector<unsigned char>& bytes) const override {
     OIIO::ImageSpec const spec(columns, rows, 1, OIIO::TypeDesc::UINT8);
     auto const output = OIIO::ImageOutput::create("png");
-    if (!output) return "no writer of PNG is installed";
+    if (!output) return "no PNG writer is installed";
     OIIO::Filesystem::IOVecOutput memory(bytes);
     bool const written = output->set_ioproxy(&memory) && output->open("picture.png", spec) &&
                          output->write_image(OIIO::TypeDesc::UINT8, values);

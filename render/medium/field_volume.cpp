@@ -21,9 +21,10 @@ std::unique_ptr<FieldSource> open_file(FieldSetup const& field) {
 RegularGrid world_grid(FieldSetup const& field, FieldSource const& source) {
   RegularGrid grid = source.grid();
   if (field.extrude && grid.nodes[2] != 1) {
-    throw DataError(field.file, fmt::format("{} has {} planes along z (extrude = true takes a single plane); set "
-                                            "medium.field.extrude = false",
-                                            source.name(), grid.nodes[2]));
+    throw DataError(
+        field.file,
+        fmt::format("{} has {} planes along z (extrude = true needs a single plane); set medium.field.extrude = false",
+                    source.name(), grid.nodes[2]));
   }
   if (!field.extrude && grid.nodes[2] < 2) {
     throw DataError(field.file, fmt::format("{} is a single plane (a volume needs at least two); set "
@@ -81,9 +82,9 @@ std::string lost_digits(FieldSetup const& field, FieldSource const& source, doub
   double const largest = (1 + high) / std::abs(scale);
   double const step = std::abs(scale) * std::ldexp(1.0, std::ilogb(largest) + 1 - bits);
   return fmt::format(
-      "medium.field.quantity: {} of {} holds refractive indices in {} bits, so n - 1 is known in steps of {:.2g} only, "
-      "{:.2g} % of its range in this field (digits are lost that nothing brings back, and gradients are noisy); write "
-      "the file as refractivity (n - 1) or density, or in double",
+      "medium.field.quantity: {} of {} stores refractive indices with {} bits, so that n - 1 is resolved in steps of "
+      "only {:.2g}, {:.2g} % of its range in this field (the lost digits cannot be recovered, and gradients are "
+      "noisy); write the file as refractivity (n - 1) or density, or in double precision",
       source.name(), field.file, bits, step, 100 * step / std::max(high - low, step));
 }
 
@@ -154,8 +155,8 @@ BuiltMedium build_grid(MediumSetup const& setup, RegularGrid const& grid, FieldS
       grid, spline ? Volume::Interpolation::cubic_bspline : Volume::Interpolation::trilinear, scale, shift,
       [&](int first, int count, std::span<double> out) { source.read_planes(first, count, out); });
   if (!possible_refractivity(volume->lowest()) || !possible_refractivity(volume->highest())) {
-    throw DataError(field.file, fmt::format("{} gives refractive indices from {:.6g} to {:.6g} (no such medium); check "
-                                            "medium.field.quantity and scale",
+    throw DataError(field.file, fmt::format("{} gives refractive indices from {:.6g} to {:.6g} (no medium has such "
+                                            "indices); check medium.field.quantity and scale",
                                             source.name(), 1 + volume->lowest(), 1 + volume->highest()));
   }
   BuiltMedium built;

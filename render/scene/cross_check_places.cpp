@@ -95,9 +95,10 @@ void cross_check_windows(Setup const& setup, SetupTable root) {
   OnTheWay const* last = &way.front();  // object that extends farthest so far
   for (OnTheWay const& next : way) {
     if (&next != last && next.enters < last->leaves - touching && (next.window || last->window)) {
-      root.problem("window", fmt::format("light is to meet {} and then {}, but along the camera's axis the one begins "
-                                         "{:.6g} mm before the other ends; move one of them, or say the other side",
-                                         last->name, next.name, (last->leaves - next.enters) / unit::millimetre));
+      root.problem("window",
+                   fmt::format("light must pass {} and then {}, but along the camera's axis the latter begins {:.6g} "
+                               "mm before the former ends; move one of them, or give the other side",
+                               last->name, next.name, (last->leaves - next.enters) / unit::millimetre));
     }
     if (next.leaves > last->leaves) last = &next;
   }

@@ -71,7 +71,7 @@ TEST_F(SilentMistakes, CoordinatesWithoutAUnitAndAFieldThatNobodySeesAreWarnedOf
       "center_mm = [1.0, 1.0, 0.0]";
   EXPECT_THAT(warnings(with_field(field)),
               AllOf(Contains(HasSubstr("name no unit and are taken as mm (the field is 0.008 x 0.008 mm wide)")),
-                    Contains(HasSubstr("were its lengths in metres, it would be 8 x 8 mm wide")),
+                    Contains(HasSubstr("with lengths in metres, it would be 8 x 8 mm wide")),
                     Contains(HasSubstr("nothing moves"))));
 }
 
@@ -80,7 +80,7 @@ TEST_F(SilentMistakes, ASpacingInMetresIsWarnedOf) {
   std::string const field =
       "kind = \"file\"\nfile = \"plane.h5\"\ndataset = \"density\"\nextrude = true\n"
       "spacing_mm = [0.375e-3, 0.375e-3, 0.375e-3]";
-  EXPECT_THAT(warnings(with_field(field)), Contains(HasSubstr("were its lengths in metres")));
+  EXPECT_THAT(warnings(with_field(field)), Contains(HasSubstr("with lengths in metres")));
   EXPECT_THAT(warnings(with_field(field), {"--set", "medium.field.spacing_mm=[0.375, 0.375, 0.375]"}), IsEmpty());
 }
 
@@ -134,7 +134,7 @@ TEST_F(SilentMistakes, InfoTellsUnitsExtentAndWhatOfAViewIsFilled) {
   EXPECT_THAT(json["warnings"].dump(), Not(HasSubstr("lengths name no unit")));
   EXPECT_THAT(succeed({"info", "field", "unnamed.h5", "--dataset", "density", "--setup", "setup.toml"}),
               AllOf(HasSubstr("lengths name no unit and are taken as mm, so the field is 0.002 x 0.002"),
-                    HasSubstr("were its lengths in metres"), HasSubstr("values are in kg m-3")));
+                    HasSubstr("with lengths in metres"), HasSubstr("values are in kg m-3")));
 }
 
 // A MATLAB array of meshgrid, [nz, nx, ny], and a header that leaves a spacing open.

@@ -81,21 +81,22 @@ TEST_P(FieldCases, GiveTheFieldWithoutAWarning) {
 
 constexpr char by_coordinates[] = "[16, 20, 24] is read as z, y, x (by the lengths of its coordinates)";
 constexpr char as_nrrd[] = "[16, 20, 24] is read as z, y, x (the default order)";
-constexpr char as_vtk[] = "[16, 20, 24] is read as z, y, x (as VTK has it)";
+constexpr char as_vtk[] = "[16, 20, 24] is read as z, y, x (as VTK defines it)";
 INSTANTIATE_TEST_SUITE_P(
     OfOtherPrograms, FieldCases,
     testing::Values(
         FieldCase{"h_group.h5", by_coordinates}, FieldCase{"h_lead1.h5", by_coordinates},
         FieldCase{"h_descx.h5",
-                  "[16, 20, 24] is read as z, y, x (by the lengths of its coordinates); x runs backwards "
-                  "in the file and is turned round"},
+                  "[16, 20, 24] is read as z, y, x (by the lengths of its coordinates); x descends "
+                  "in the file and is reversed"},
         FieldCase{"h_matlab_mesh.h5", "[16, 24, 20] is read as z, x, y (by the lengths of its coordinates)"},
         FieldCase{"n_ascii.nrrd", as_nrrd}, FieldCase{"n_hex.nrrd", as_nrrd}, FieldCase{"n_bz2.nrrd", as_nrrd},
         FieldCase{"n_minmax.nrrd", as_nrrd}, FieldCase{"n_minmax_cell.nrrd", as_nrrd},
         FieldCase{"n_tabs.nrrd", as_nrrd}, FieldCase{"v_b64_lines.vti", as_vtk}, FieldCase{"v_b64_sep.vti", as_vtk},
         FieldCase{"v_b64_lzma_32.vti", as_vtk}, FieldCase{"v_raw_lz4_32.vti", as_vtk},
         FieldCase{"v_pieces.vti", as_vtk}, FieldCase{"v_single_quotes.vti", as_vtk}, FieldCase{"v_legacy.vtk", as_vtk},
-        FieldCase{"v_cell.vti", "[16, 20, 24] is read as z, y, x (as VTK has it; data of cells, at their centres)"}));
+        FieldCase{"v_cell.vti",
+                  "[16, 20, 24] is read as z, y, x (as VTK defines it; data of cells, at their centres)"}));
 
 TEST(FieldCase, PlaneHasTwoAxes) {
   auto const source = open_field(case_file("h_2d.h5"), "");
@@ -109,7 +110,7 @@ TEST(FieldCase, PlaneHasTwoAxes) {
 TEST(FieldCase, AxesThatRunBackwardsAreTurnedRound) {
   for (char const* const name : {"n_dirs_neg.nrrd", "v_dir_neg.vti"}) {
     auto const source = open_field(case_file(name), "");
-    EXPECT_THAT(source->reading().text(), HasSubstr("x, y run backwards in the file and are turned round")) << name;
+    EXPECT_THAT(source->reading().text(), HasSubstr("x, y descend in the file and are reversed")) << name;
     EXPECT_LT(largest_error(*source, {-0.02, -0.05, 0.001}), rounding) << name;
     EXPECT_NEAR(source->grid().origin.x, -23, 1e-12);
     EXPECT_NEAR(source->grid().origin.y, -22.8, 1e-12);

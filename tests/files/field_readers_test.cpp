@@ -535,9 +535,9 @@ TEST_F(JhtdbField, WrongRankNamesTheShape) {
               refused("cutout.h5", "dataset \"line\" of shape [4] has rank 1"));
   auto const velocity = Dataset{"Velocity_0001", {1, 1, 2, 3}, {1, 2, 3, 4, 5, 6}};
   EXPECT_THAT([&] { open_field(write({velocity}), "Velocity_0001"); },
-              refused("cutout.h5", "dataset \"Velocity_0001\" of shape [1, 1, 2, 3] holds 3 values a point"));
+              refused("cutout.h5", "dataset \"Velocity_0001\" of shape [1, 1, 2, 3] has 3 values per point"));
   auto const first = Dataset{"v", {3, 1, 9, 8}, numbered(8, 9, 3)};
-  EXPECT_THAT([&] { open_field(write({first}), "v"); }, refused("cutout.h5", "holds 3 values a point"));
+  EXPECT_THAT([&] { open_field(write({first}), "v"); }, refused("cutout.h5", "has 3 values per point"));
   EXPECT_THAT(
       [&] {
         open_field(write({velocity, line}), "");
@@ -562,7 +562,7 @@ TEST_F(JhtdbField, SeveralFieldsAskForAName) {
   std::string const path = write({density(), second});
   EXPECT_THAT(
       [&] { open_field(path, ""); },
-      refused("cutout.h5", "has several fields; say which with dataset = \"Density_0001\" or \"Density_0002\""));
+      refused("cutout.h5", "has several fields; select one with dataset = \"Density_0001\" or \"Density_0002\""));
   EXPECT_THAT([&] { open_field(path, "Density_001"); },
               refused("cutout.h5", "has no dataset \"Density_001\"; did you mean \"Density_0001\"?"));
 }
@@ -571,9 +571,9 @@ TEST_F(FieldFiles, UnknownFormatsAndMissingFilesAreNamed) {
   EXPECT_THAT([&] { open_field(in_folder("absent.h5"), ""); }, refused("absent.h5", "does not exist"));
   std::ofstream(in_folder("field.npy")) << "x";
   EXPECT_THAT([&] { open_field(in_folder("field.npy"), ""); },
-              refused("field.npy", "known are .h5, .hdf5, .he5, .nc, .mat, .vti, .vtr, .vtk, .nrrd, .nhdr"));
+              refused("field.npy", "supported are .h5, .hdf5, .he5, .nc, .mat, .vti, .vtr, .vtk, .nrrd, .nhdr"));
   std::ofstream(in_folder("field.vtk")) << "x";
-  EXPECT_THAT([&] { open_field(in_folder("field.vtk"), ""); }, refused("field.vtk", "is no legacy VTK file"));
+  EXPECT_THAT([&] { open_field(in_folder("field.vtk"), ""); }, refused("field.vtk", "is not a legacy VTK file"));
   std::ofstream(in_folder("text.H5")) << "x";
   EXPECT_THAT([&] { open_field(in_folder("text.H5"), ""); }, refused("text.H5", "is not an HDF5 file"));
   EXPECT_THAT([&] { open_field(folder_.string(), ""); }, refused("", "is a folder"));
@@ -732,7 +732,7 @@ TEST_F(NrrdField, FieldsGivenTwiceAreRefusedWithTheirLines) {
   std::string const twice =
       write("a.nrrd", header(std::string(grid_432) + "spacings: 1 1 1\nspacings: 2 2 2\n" + rest));
   EXPECT_THAT([&] { open_field(twice, ""); },
-              refused("a.nrrd:7", "gives the NRRD field \"spacings\" again, as \"2 2 2\" (line 6 says \"1 1 1\")"));
+              refused("a.nrrd:7", "repeats the NRRD field \"spacings\" as \"2 2 2\" (line 6 says \"1 1 1\")"));
   std::string const same = write("b.nrrd", header(std::string(grid_432) + "spacings: 2 2 2\nspacings: 2 2 2\n" + rest));
   EXPECT_EQ(open_field(same, "")->grid().spacing, (Vec3d{2, 2, 2}));
 }
@@ -745,7 +745,7 @@ TEST_F(NrrdField, ListOfOneDataFileIsRead) {
   std::string const several = write("b.nhdr", header(fields + "b.raw\n"));
   EXPECT_THAT([&] { open_field(several, ""); }, refused("b.nhdr",
                                                         "names several files (2); data in several files are not "
-                                                        "read here: join them into one file"));
+                                                        "supported: join them into one file"));
 }
 
 TEST_F(NrrdField, TwoDimensionsAreOnePlane) {
@@ -774,7 +774,7 @@ TEST_F(NrrdField, VelocityHasItsComponentsFastest) {
   }
   std::string const scalar = write("s.nrrd", header(std::string(grid_432) + rest));
   EXPECT_THAT([&] { open_field(scalar, "", 3); },
-              refused("s.nrrd", "has no first axis of 3 components, as a velocity has"));
+              refused("s.nrrd", "has no first axis of 3 components, which a velocity needs"));
 }
 
 TEST_F(NrrdField, AxesOfLengthOneAreIgnored) {
@@ -801,7 +801,8 @@ TEST_F(NrrdField, NegativeSpacingsRunBackwards) {
 TEST_F(NrrdField, TruncatedDataSayHowMuchIsThere) {
   std::string const data = bytes<float>(numbered(4, 3, 2));  // 96 bytes
   std::string const type = std::string(grid_432) + "type: float\nendian: little\n";
-  auto const message = "is cut short: 50 bytes of data are there and 96 are needed (sizes 4 x 3 x 2, 4 bytes a value)";
+  auto const message =
+      "is cut short: 50 bytes of data are present and 96 are needed (sizes 4 x 3 x 2, 4 bytes per value)";
   std::string const raw = write("raw.nrrd", header(type + "encoding: raw\n") + "\n" + data.substr(0, 50));
   EXPECT_THAT([&] { open_field(raw, ""); }, refused("raw.nrrd", message));
   // compressed: the stream is whole but too short ...
@@ -824,7 +825,7 @@ TEST_F(NrrdField, DamagedCompressedDataAreNoticed) {
   EXPECT_THAT([&] { read_all(*open_field(path, "")); }, refused("bad.nrrd", "is damaged"));
   std::string const plain = write(
       "plain.nrrd", header(std::string(grid_432) + "type: uint8\nencoding: gzip\n") + "\n" + std::string(24, 'x'));
-  EXPECT_THAT([&] { read_all(*open_field(plain, "")); }, refused("plain.nrrd", "is said to be gzip, and is not"));
+  EXPECT_THAT([&] { read_all(*open_field(plain, "")); }, refused("plain.nrrd", "is declared as gzip, but is not"));
 }
 
 TEST_F(NrrdField, NanAndHolesAreRefused) {
@@ -845,20 +846,20 @@ TEST_F(NrrdField, WhatIsNotReadIsRefusedByName) {
     EXPECT_THAT([&] { read_all(*open_field(path, "")); }, refused("a.nrrd", why)) << fields;
   };
   std::string const type = "type: uint8\n", raw = "encoding: raw\n", grid = grid_432;
-  refuses(grid + type + "encoding: zrl\n", "\"encoding: zrl\" is not read here");
+  refuses(grid + type + "encoding: zrl\n", "\"encoding: zrl\" is not supported");
   refuses(grid + type + "encoding: ascii\n", "number 1 of its text is ");
   refuses("dimension: 3\nsizes: 400 300 2\n" + type + "encoding: ascii\n",
           "its 24 bytes of text cannot hold 240000 values");
-  refuses(grid + type + "encoding: hex\n", "digit 1 of its hex is no digit");
+  refuses(grid + type + "encoding: hex\n", "digit 1 of its hex data is not a hexadecimal digit");
   refuses(grid + type + "encoding: bzip2\n", "bzip2 cannot decompress it");
   refuses(grid + type + raw + "data file: LIST\n", "names several files");
   refuses(grid + type + raw + "data file: slice%03d.raw 1 9 1\n", "names several files");
   refuses(grid + type + raw + "space directions: (1,0.1,0) (0,1,0) (0,0,1)\n", "is oblique");
-  refuses(grid + type + raw + "space directions: (1,0,0) (2,0,0) (0,0,1)\n", "gives two axes one direction");
+  refuses(grid + type + raw + "space directions: (1,0,0) (2,0,0) (0,0,1)\n", "gives two axes the same direction");
   refuses(grid + type + raw + "space directions: none (0,1,0) (0,0,1)\n", "must give each axis in space a vector");
   refuses(grid + type + raw + "spacings: 1 1\n", "must be 3 numbers");
-  refuses(grid + type + raw + "spacings: 1 0 1\n", "gives an axis no length");
-  refuses(grid + "type: block\n" + raw, "is no type of numbers");
+  refuses(grid + type + raw + "spacings: 1 0 1\n", "gives an axis zero length");
+  refuses(grid + "type: block\n" + raw, "is not a numeric type");
   refuses(grid + "type: float\n" + raw, "\"endian\" must be little or big");
   refuses("dimension: 4\nsizes: 3 4 3 2\n" + type + raw, "\"dimension: 4\" must be 2 or 3");
   refuses("dimension: 3\nsizes: 4 -3 2\n" + type + raw, "must be positive");
@@ -867,7 +868,7 @@ TEST_F(NrrdField, WhatIsNotReadIsRefusedByName) {
           "must be whole numbers, of 18 digits at most");
   refuses(type + raw + "dimension: 3\n", "\"sizes\" is missing");
   refuses(grid + type, "\"encoding\" is missing");
-  refuses("no colon here\n", "is no NRRD field");
+  refuses("no colon here\n", "is not an NRRD field");
   std::string const foreign = write("b.nrrd", "PNG\n");
   EXPECT_THAT([&] { open_field(foreign, ""); }, refused("b.nrrd", "is not a NRRD file"));
   std::string const absent = write("c.nhdr", header(grid + type + raw + "data file: absent.raw\n"));
@@ -887,7 +888,7 @@ TEST_F(JhtdbField, VelocityHasThreeValuesAPoint) {
   source->read_planes(1, 1, plane);
   EXPECT_TRUE(std::equal(plane.begin(), plane.end(), values.begin() + 36));
   EXPECT_THAT([&] { open_field(path, "Density_0001", 3); },
-              refused("cutout.h5", "holds 1 values a point; a velocity has shape [nz, ny, nx, 3]"));
+              refused("cutout.h5", "has 1 values per point; a velocity has shape [nz, ny, nx, 3]"));
   EXPECT_THAT([&] { open_field(write({density()}), "", 3); }, refused("cutout.h5", "has no velocity, [nz, ny, nx, 3]"));
 }
 
@@ -1088,7 +1089,7 @@ TEST_F(VtiFiles, EveryTypeOfNumberIsRead) {
   expect_read("Int64", bytes<std::int64_t>(values), 63);
   expect_read("UInt64", bytes<std::uint64_t>(values), 64);
   std::ofstream(path) << vtk_image("", "<DataArray type=\"String\" Name=\"rho\" format=\"ascii\">1</DataArray>");
-  EXPECT_THAT([&] { open_field(path, ""); }, refused("types.vti", "of type \"String\", which is no number"));
+  EXPECT_THAT([&] { open_field(path, ""); }, refused("types.vti", "of type \"String\", which is not numeric"));
 }
 
 /// A legacy file of 4 x 3 x 2 points. @param data  from POINT_DATA or CELL_DATA on
@@ -1186,7 +1187,7 @@ void expect_rectilinear(std::string const& path) {
   EXPECT_THAT(source->grid().nodes, ElementsAre(4, 3, 2));
   EXPECT_EQ(source->grid().spacing, (Vec3d{0.5, 0.25, 2}));
   EXPECT_EQ(source->grid().origin, (Vec3d{0, 1, -1}));
-  EXPECT_EQ(source->reading().text(), "[2, 3, 4] is read as z, y, x (as VTK has it)");
+  EXPECT_EQ(source->reading().text(), "[2, 3, 4] is read as z, y, x (as VTK defines it)");
   EXPECT_EQ(read_all(*source), numbered(4, 3, 2));
 }
 
@@ -1240,7 +1241,7 @@ TEST_F(VtiFiles, RectilinearGridsMayDescendStretchAndHaveCells) {
   EXPECT_EQ(cells->grid().origin, (Vec3d{0.25, 1.125, 0}));
   EXPECT_EQ(cells->grid().spacing.x, 0.5);
   EXPECT_EQ(cells->grid().spacing.y, 0.25);
-  EXPECT_EQ(cells->reading().by, "as VTK has it; data of cells, at their centres");
+  EXPECT_EQ(cells->reading().by, "as VTK defines it; data of cells, at their centres");
   EXPECT_EQ(read_all(*cells), numbered(3, 2, 1));
 }
 
@@ -1250,23 +1251,23 @@ TEST_F(VtiFiles, RefusesWhatItCannotRead) {
   };
   std::string const good = array("Name=\"a\" format=\"ascii\"", "1 2 3 4");
   EXPECT_NO_THROW(read(image(good)));
-  refuses("", "is no VTK file");
-  refuses("<VTKFile type=\"ImageData\">", "is no whole XML");
+  refuses("", "is not a VTK file");
+  refuses("<VTKFile type=\"ImageData\">", "is not complete XML");
   refuses("<VTKFile type=\"UnstructuredGrid\"></VTKFile>", "holds VTK's \"UnstructuredGrid\"");
   refuses(image(""), "has no scalar field among its data of points and cells");
   refuses(image(good), "has no scalar field \"b\" among its data of points and cells, which are \"a\"", "b");
-  refuses(image(good + array("Name=\"b\"", "1 2 3 4")), "say which with dataset = \"a\" or \"b\"");
-  refuses(image(array("Name=\"a\" NumberOfComponents=\"2\"", "1 2")), "holds 2 values a point where 1 are", "a");
+  refuses(image(good + array("Name=\"b\"", "1 2 3 4")), "select one with dataset = \"a\" or \"b\"");
+  refuses(image(array("Name=\"a\" NumberOfComponents=\"2\"", "1 2")), "has 2 values per point, but 1 are", "a");
   refuses(image(good, "WholeExtent=\"0 2 0 1 0 0\""), "its pieces do not fill its WholeExtent");
   refuses(image(good, "WholeExtent=\"0 1 0 1\""), "is not 6 numbers");
   refuses(image(good, "WholeExtent=\"0 1 0 1 0 0\" Spacing=\"1 0 1\""), "has no usable grid");
-  refuses(image(good, "WholeExtent=\"0 1 0 1 0 0\" Direction=\"0.6 0.8 0 -0.8 0.6 0 0 0 1\""), "has turned axes");
-  refuses(image(array("Name=\"a\" format=\"ascii\"", "1 2 3")), "3 of 4 numbers are there");
+  refuses(image(good, "WholeExtent=\"0 1 0 1 0 0\" Direction=\"0.6 0.8 0 -0.8 0.6 0 0 0 1\""), "has rotated axes");
+  refuses(image(array("Name=\"a\" format=\"ascii\"", "1 2 3")), "3 of 4 numbers are present");
   refuses(image(array("Name=\"a\" format=\"ascii\"", "1 2 nan 3")), "1 of 4 points are nan");
   refuses(image(array("Name=\"a\" format=\"binary\"", "AAAA")), "is cut short");
-  refuses(image(array("Name=\"a\" format=\"binary\"", "EAAAAAAAAAAAAAAA?AAAAAAAAAA=")), "holds other characters");
+  refuses(image(array("Name=\"a\" format=\"binary\"", "EAAAAAAAAAAAAAAA?AAAAAAAAAA=")), "contains invalid characters");
   refuses(image(array("Name=\"a\" format=\"binary\"", "DAAAAAAAAAAAAAAAAAAAAAAAAAA=")),
-          "its length is 12 where its grid needs 16");
+          "its length is 12, but its grid needs 16");
   refuses(image(array("Name=\"a\" format=\"appended\" offset=\"0\"", "")), "has no data");
   refuses("<VTKFile type=\"ImageData\" compressor=\"vtkOtherCompressor\"></VTKFile>",
           "compressed by \"vtkOtherCompressor\"");

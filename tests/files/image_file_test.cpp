@@ -138,7 +138,7 @@ TEST(ImageFile, UnreadablePicturesAreNamed) {
               ThrowsMessage<DataError>(HasSubstr("/no/such/picture.tif: does not exist")));
   std::ofstream(temporary("text.tif")) << "not a picture";
   EXPECT_THAT([] { read_image(temporary("text.tif")); },
-              ThrowsMessage<DataError>(AllOf(HasSubstr("text.tif"), HasSubstr("cannot be read as a picture"))));
+              ThrowsMessage<DataError>(AllOf(HasSubstr("text.tif"), HasSubstr("cannot be read as an image"))));
   write_tiff(temporary("cut.tif"), all_values(), {});
   std::string const whole = content(temporary("cut.tif"));
   std::ofstream(temporary("cut.tif"), std::ios::binary) << whole.substr(0, whole.size() / 2);
@@ -343,8 +343,8 @@ TEST(ImageFile, PicturesThatHaveNoGreyLevelsAreRefusedWithTheReason) {
            {"uint_64.tif", "unsigned integers of 64 bits"},
            {"complex.tif", "complex floating-point numbers of 64 bits"},
            {"compression_jpeg2000.tif", "compressed by an unknown method"},
-           {"inks_five_tiled.tif", "is of 5 printing inks"},
-           {"channels_seven.tif", "has 7 values a pixel that are no colours"},
+           {"inks_five_tiled.tif", "has 5 printing inks"},
+           {"channels_seven.tif", "has 7 values per pixel that are not colours"},
            {"pages_3.tif", "has 3 pages"},
        }) {
     std::string const path = case_path(name);

@@ -32,7 +32,7 @@ class InputGuards : public Output {
     std::ofstream(in_folder("input.txt")) << "precious";
   }
   auto refused() const {
-    return ThrowsMessage<OutputError>(HasSubstr("would be overwritten, and is read by this command"));
+    return ThrowsMessage<OutputError>(HasSubstr("would be overwritten, but is an input of this command"));
   }
 };
 
@@ -181,8 +181,8 @@ TEST_F(FileKinds, AreToldByContent) {
 TEST_F(FileKinds, AnOutputOfAnotherKindDestroysNoResult) {
   Hdf5Writer(in_folder("truth.h5"), {"gladstone truth", 2, "", 0, "cpu"}).close();
   std::string const before = content(in_folder("truth.h5"));
-  auto const refused = ThrowsMessage<OutputError>(
-      AllOf(HasSubstr("truth.h5: holds data of another kind (gladstone truth)"), HasSubstr("choose another output")));
+  auto const refused = ThrowsMessage<OutputError>(AllOf(
+      HasSubstr("truth.h5: contains data of another kind (gladstone truth)"), HasSubstr("choose another output")));
   EXPECT_THAT([&] { OutputFile(in_folder("truth.h5"), "HTML"); }, refused) << "before anything is computed";
   EXPECT_THAT([&] { OutputFile::write_text(in_folder("truth.h5"), "<html>"); }, refused);
   EXPECT_THAT([&] { OutputFile::write_text(in_folder("truth.h5"), "# Markdown"); }, refused);
@@ -191,7 +191,7 @@ TEST_F(FileKinds, AnOutputOfAnotherKindDestroysNoResult) {
   Hdf5Writer(in_folder("truth.h5"), {"gladstone truth", 2, "other", 0, "cpu"}).close();
   put("damaged.h5", "\x89HDF\r\n\x1a\n and no more");
   EXPECT_THAT([&] { OutputFile::write_text(in_folder("damaged.h5"), "<html>"); },
-              ThrowsMessage<OutputError>(HasSubstr("damaged.h5: holds data of another kind (damaged HDF5)")));
+              ThrowsMessage<OutputError>(HasSubstr("damaged.h5: contains data of another kind (damaged HDF5)")));
   put("study.csv", "case,seed,status,repeat\n");
   EXPECT_THAT([&] { OutputFile::write_text(in_folder("study.csv"), "x_px,y_px,u_px,v_px\n"); },
               ThrowsMessage<OutputError>(HasSubstr("gladstone study table")));

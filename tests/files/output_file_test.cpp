@@ -71,7 +71,8 @@ TEST_F(OutputFileTest, ALinkToNothingIsFollowedToWhereItLeads) {
   EXPECT_TRUE(fs::is_symlink(in_folder("link.txt")));
   EXPECT_EQ(content(in_folder("there/real.txt")), "new");
   fs::create_symlink("circle.txt", in_folder("circle.txt"));
-  EXPECT_THAT([&] { OutputFile file(in_folder("circle.txt")); }, ThrowsMessage<OutputError>(HasSubstr("in a circle")));
+  EXPECT_THAT([&] { OutputFile file(in_folder("circle.txt")); },
+              ThrowsMessage<OutputError>(HasSubstr("form a circle")));
 }
 
 TEST_F(OutputFileTest, TheRightsOfTheOldFileStay) {
@@ -101,7 +102,7 @@ TEST_F(OutputFileTest, FolderDeviceAndFileInThePathAreRefused) {
   std::ofstream(in_folder("file")) << "x";
   EXPECT_THAT([&] { OutputFile file(in_folder("file/a.txt")); },
               ThrowsMessage<OutputError>(HasSubstr("a part of the path is a file")));
-  EXPECT_THAT([] { OutputFile file(""); }, ThrowsMessage<OutputError>(HasSubstr("has no name")));
+  EXPECT_THAT([] { OutputFile file(""); }, ThrowsMessage<OutputError>(HasSubstr("has an empty name")));
 }
 
 // /dev/stdout is a link to whatever is open there, here an ordinary file: who opened it would not see what is renamed

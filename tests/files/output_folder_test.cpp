@@ -216,7 +216,7 @@ TEST_F(OutputFolderTest, SomebodyElsesFolderIsRefusedAtTheStartAndAtCommit) {
   EXPECT_THAT([&] { OutputFolder folder(in_folder("case/chapter1.tex"), content_of_case); },
               ThrowsMessage<OutputError>(HasSubstr("is a file; name a folder")));
   EXPECT_THAT([&] { OutputFolder folder("/dev/null", content_of_case); },
-              ThrowsMessage<OutputError>(HasSubstr("/dev/null: is no folder (it is a device)")));
+              ThrowsMessage<OutputError>(HasSubstr("/dev/null: is not a folder (it is a device)")));
 }
 
 TEST_F(OutputFolderTest, AFolderOfTheUsersInAFilesPlaceIsRefusedWithNothingMoved) {
@@ -316,7 +316,7 @@ TEST_F(OutputFolderTest, WhereAFileCannotBeMovedAllGoBack) {
       EXPECT_TRUE(is_of("new")) << "nothing but the clearing away failed";
     } else {
       EXPECT_THAT(message, testing::AllOf(HasSubstr("case: "), HasSubstr("Device or resource busy"),
-                                          HasSubstr("the old files are in their places")));
+                                          HasSubstr("the old files are unchanged")));
       EXPECT_TRUE(is_of("old")) << step;
       EXPECT_TRUE(has("vectors.h5")) << step;
     }

@@ -145,7 +145,7 @@ TEST_F(SourceFilesTest, AnOutputIsNoInputUnderAnyName) {
   fs::create_directory_symlink(".", in_folder("again"));
   for (std::string const name : {"rays.csv", "link.csv", "hard.csv", "again/rays.csv", "./again/again/rays.csv"}) {
     EXPECT_THAT([&] { refuse_inputs_as_outputs({in_folder(name)}, {in_folder("rays.csv")}); },
-                ThrowsMessage<OutputError>(AllOf(HasSubstr(name), HasSubstr("is read by this command"))))
+                ThrowsMessage<OutputError>(AllOf(HasSubstr(name), HasSubstr("is an input of this command"))))
         << name;
   }
   refuse_inputs_as_outputs({in_folder("new.csv"), in_folder("again/new.csv")},

@@ -149,11 +149,11 @@ TEST(IdealImages, HaveOneDoor) {
   };
   EXPECT_THAT(reason([](gladstone::Setup& s) { s.piv.reset(); }), HasSubstr("only particles"));
   EXPECT_THAT(reason([](gladstone::Setup& s) { s.medium.field = Sinusoid<double>::wave(0.1, 4e-3); }),
-              HasSubstr("medium bends rays"));
+              HasSubstr("medium deflects rays"));
   EXPECT_THAT(reason([](gladstone::Setup& s) { s.medium.second_field = FieldSetup{}; }),
-              HasSubstr("medium bends rays"));
-  EXPECT_THAT(reason([](gladstone::Setup& s) { s.camera.tilt = {0.1, 0}; }), HasSubstr("no ideal thin lens"));
-  EXPECT_THAT(reason([](gladstone::Setup& s) { s.windows.emplace_back(); }), HasSubstr("no ideal thin lens"));
+              HasSubstr("medium deflects rays"));
+  EXPECT_THAT(reason([](gladstone::Setup& s) { s.camera.tilt = {0.1, 0}; }), HasSubstr("not an ideal thin lens"));
+  EXPECT_THAT(reason([](gladstone::Setup& s) { s.windows.emplace_back(); }), HasSubstr("not an ideal thin lens"));
   EXPECT_THAT(reason([](gladstone::Setup& s) { s.lens.focus = Focus::distance; }),
               HasSubstr("not focused on the sheet"));
   EXPECT_THAT(reason([](gladstone::Setup& s) { s.lens.f_number = std::numeric_limits<double>::infinity(); }),

@@ -126,8 +126,8 @@ TEST(DotsFromCsv, MistakesAreReportedWithFileAndLine) {
   refused("x_mm,y_mm\nnan,2\n", ":2", "finite");
   refused("x_mm,y_mm\n1,1e999\n", ":2", "finite");
   refused("x_mm,y_mm\n", "", "no dots");
-  refused("x_mm,y_mm\n1,2\n1e9,0\n", ":3", "no lens sees it (1000 mm at most");
-  refused("x_mm,y_mm\n1,2\n0,-1000.1\n", ":3", "no lens sees it");
+  refused("x_mm,y_mm\n1,2\n1e9,0\n", ":3", "too far from the axis to be imaged (1000 mm at most");
+  refused("x_mm,y_mm\n1,2\n0,-1000.1\n", ":3", "too far from the axis to be imaged");
   EXPECT_THAT([] { dots_from_csv(temporary("absent.csv"), 1.0); },
               ThrowsMessage<DataError>(HasSubstr("does not exist")));
 }
@@ -137,8 +137,8 @@ TEST(DotsFromCsv, MistakesAreReportedWithFileAndLine) {
 TEST(DotsFromCsv, CoincidentDotsAreRefused) {
   auto const read = [](std::string const& text) { return dots_from_csv(write_text("twice.csv", text), 1.0); };
   EXPECT_THAT([&] { read("x_mm,y_mm\n5,6\n1,2\n\n3,4\n1.0,2e0\n3.0000000001,4\n1,2\n"); },
-              ThrowsMessage<DataError>(AllOf(HasSubstr("twice.csv:6"), HasSubstr("1, 2 mm stands in line 3 already"),
-                                             HasSubstr("3 of 6 dots"))));
+              ThrowsMessage<DataError>(
+                  AllOf(HasSubstr("twice.csv:6"), HasSubstr("1, 2 mm repeats line 3"), HasSubstr("3 of 6 dots"))));
   EXPECT_EQ(read("x_mm,y_mm\n1,2\n1.000002,2\n2,1\n1,2.000002\n").size(), 4u);
 }
 
@@ -162,7 +162,7 @@ TEST(PictureTarget, PixelsAreSquaresOfTheirGrey) {
 
   EXPECT_THAT([&] { picture_target(path, {8e-3, 8e-3}); }, ThrowsMessage<DataError>(HasSubstr("square")));
   write_tiff(path, Image<std::uint16_t>(4, 2, 0), {16, 10e-6, ""});
-  EXPECT_THAT([&] { picture_target(path, {8e-3, 4e-3}); }, ThrowsMessage<DataError>(HasSubstr("black all over")));
+  EXPECT_THAT([&] { picture_target(path, {8e-3, 4e-3}); }, ThrowsMessage<DataError>(HasSubstr("entirely black")));
 }
 
 }  // namespace

@@ -236,7 +236,7 @@ TEST(MieScattering, SaysItsSizeBeforeItTakesIt) {
         MieScattering(marbles, droplets(), {0, pi});
       },
       ThrowsMessage<MemoryError>(AllOf(HasSubstr("100000 different diameters of up to 1.51e+04 um"),
-                                       HasSubstr("GB of memory"), HasSubstr("take fewer particles"))));
+                                       HasSubstr("GB of memory"), HasSubstr("use fewer particles"))));
 }
 
 }  // namespace

@@ -182,7 +182,7 @@ TEST(ParticleFile, IsRefusedWithThePlaceOfItsMistake) {
   EXPECT_THAT(reading(header + "1,2,3\n"), ThrowsMessage<DataError>(HasSubstr("bad.csv:2")));
   EXPECT_THAT(reading(header + "1,2,3,1\n0,0,0,0\n"), ThrowsMessage<DataError>(HasSubstr("bad.csv:3")));
   EXPECT_THAT(reading(header + "1,2,nan,1\n"), ThrowsMessage<DataError>(HasSubstr("4 finite numbers")));
-  EXPECT_THAT(reading(header), ThrowsMessage<DataError>(HasSubstr("holds no particles")));
+  EXPECT_THAT(reading(header), ThrowsMessage<DataError>(HasSubstr("contains no particles")));
 }
 
 // White spheres send all the light away that falls on them: the integral over all directions is pi d^2 / 4. The

@@ -210,8 +210,9 @@ TEST_F(FieldVolume, RefractiveIndexInFloatIsWarnedOf) {
   auto const warnings = build_medium(setup).warnings;
   ASSERT_EQ(warnings.size(), 1u);
   // an ulp of 1.00027 is 2^-23 = 1.2e-7, 4 % of the range of 3e-6
-  EXPECT_THAT(warnings[0], testing::HasSubstr("holds refractive indices in 24 bits, so n - 1 is known in steps of "
-                                              "1.2e-07 only, 4 % of its range"));
+  EXPECT_THAT(warnings[0],
+              testing::HasSubstr("stores refractive indices with 24 bits, so that n - 1 is resolved in steps of only "
+                                 "1.2e-07, 4 % of its range"));
   EXPECT_THAT(warnings[0], testing::HasSubstr("write the file as refractivity (n - 1) or density"));
   setup.field.quantity = FieldQuantity::density;
   setup.field.scale = 1.2;  // as it is, a density of 1.00027 would be asked about: see below

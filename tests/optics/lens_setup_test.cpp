@@ -52,7 +52,7 @@ TEST(LensSetup, ImpossibleLensesAreRefused) {
   EXPECT_THAT([] { read("f_number = 0\n"); }, ThrowsMessage<SetupError>(HasSubstr("f_number")));
   EXPECT_THAT([] { read("f_number = nan\n"); }, ThrowsMessage<SetupError>(HasSubstr("f_number")));
   EXPECT_THAT([] { read("focus = \"target\"\nfocus_distance_mm = 900\n"); },
-              ThrowsMessage<SetupError>(AllOf(HasSubstr("lens.toml:3"), HasSubstr("stands beside focus"))));
+              ThrowsMessage<SetupError>(AllOf(HasSubstr("lens.toml:3"), HasSubstr("conflicts with focus"))));
 }
 
 // Scenes are in gas: a lens with water ahead of it would be focused wrongly, and is refused.

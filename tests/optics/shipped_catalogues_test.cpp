@@ -181,7 +181,7 @@ TEST(ShippedCatalogues, AListedGlassThatContradictsItsLineIsTakenWithAWarning) {
   EXPECT_NEAR(index_of(lens), 1.62004, 1e-5);
   EXPECT_THAT(lens.warnings,
               ElementsAre(AllOf(HasSubstr("flint.zmx:21"), HasSubstr("SCHOTT:F2"), HasSubstr("has nd = 1.62004"),
-                                HasSubstr("says nd = 1.61293"), HasSubstr("the catalogue's glass is taken"))));
+                                HasSubstr("says nd = 1.61293"), HasSubstr("the catalogue's glass is used"))));
   EXPECT_THAT(lens_of_glass("F2 0 0 1.61293 36.96", "CDGM").warnings, IsEmpty());
 }
 

@@ -117,7 +117,7 @@ TEST(ZmxOperands, WhatIsPassedOverIsNoted) {
   EXPECT_THAT(notes_of("vignetting.zmx", changed(zmx, "PWAV 2", "PWAV 2\nVCYN 0 0.2 0")),
               ElementsAre(HasSubstr("vignetting factors")));
   EXPECT_THAT(notes_of("coat.zmx", with_operand("COAT AR")), ElementsAre(HasSubstr("coatings")));
-  EXPECT_THAT(notes_of("new.zmx", with_operand("QQQQ 1 2")), ElementsAre(HasSubstr("QQQQ is not known")));
+  EXPECT_THAT(notes_of("new.zmx", with_operand("QQQQ 1 2")), ElementsAre(HasSubstr("QQQQ is unknown")));
   EXPECT_THAT(zmx_lens("kept.zmx", with_operand("QQQQ 1 2")).warnings, Contains(HasSubstr("QQQQ")));
   EXPECT_THAT(notes_of("hot.zmx", changed(zmx, "PWAV 2", "PWAV 2\nENVD 40 1 1")), ElementsAre(HasSubstr("ENVD")));
   EXPECT_THAT(notes_of("cold.zmx", changed(zmx, "PWAV 2", "PWAV 2\nENVD 20 1 1")), IsEmpty());

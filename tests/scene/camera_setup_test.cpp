@@ -50,13 +50,13 @@ TEST(CameraPose, LooksAtAPoint) {
 
 TEST(CameraPose, ThatMakesNoSenseIsRefused) {
   EXPECT_THAT([] { setup_of("[camera.pose]\nposition_mm = [0, 0, 700]\n[geometry]\nz_a_mm = 750\n"); },
-              refused("4:1", "stands beside camera.pose"));
+              refused("4:1", "conflicts with camera.pose"));
   EXPECT_THAT([] { setup_of("[camera.pose]\nlook_at_mm = [0, 0, 0]\n"); }, refused("1:", "position_mm"));
   EXPECT_THAT([] { setup_of("[camera.pose]\nposition_mm = [0, 0, -700]\n"); }, refused("1:", "away from the dots"));
-  EXPECT_THAT([] { setup_of("[camera.pose]\nposition_mm = [0, 700, 0]\n"); }, refused("1:", "no upright"));
+  EXPECT_THAT([] { setup_of("[camera.pose]\nposition_mm = [0, 700, 0]\n"); }, refused("1:", "upright direction"));
   EXPECT_THAT(
       [] { setup_of("[camera.pose]\nposition_mm = [0, 0, 700]\nlook_at_mm = [0, 0, 0]\nrotation_deg = [0, 0, 0]\n"); },
-      refused("4:1", "stands beside look_at_mm"));
+      refused("4:1", "conflicts with look_at_mm"));
   EXPECT_THAT([] { setup_of("[camera.sensor]\nscheimpflug = \"auto\"\ntilt_deg = [1, 0]\n"); },
               refused("2:1", "conflicts with tilt_deg"));
 }
@@ -143,7 +143,7 @@ TEST(Glasses, OfOnesOwnCatalogueMakeLensesAndWindows) {
   EXPECT_NEAR(setup.windows.at(0).index, 1.460706345, 5e-10);
   EXPECT_THAT([&] { setup_of(model); }, refused("3:1", "to the setup's lens.glasses"));
   EXPECT_THAT([&] { setup_of("[lens]\nglasses = [\"none.agf\"]\n"); }, refused("2:1", "none.agf"));
-  EXPECT_THAT([&] { setup_of("[lens]\nglasses = [\"" + lens + "\"]\n"); }, refused("2:1", "holds no glass"));
+  EXPECT_THAT([&] { setup_of("[lens]\nglasses = [\"" + lens + "\"]\n"); }, refused("2:1", "contains no glass"));
 }
 
 TEST(PrescribedLens, MayBePlacedByItsFirstVertex) {
@@ -151,7 +151,7 @@ TEST(PrescribedLens, MayBePlacedByItsFirstVertex) {
   double const principal = paraxial_lens(*by_vertex.lens.prescription).front_principal_plane;
   EXPECT_NEAR(by_vertex.z_a, 0.68 + principal, 1e-15);
   EXPECT_THAT([] { setup_of(double_gauss("[geometry]\nz_front_mm = 680\nz_a_mm = 750\n")); },
-              refused("6:1", "stands beside z_front_mm"));
+              refused("6:1", "conflicts with z_front_mm"));
   EXPECT_THAT([] { setup_of("[geometry]\nz_front_mm = 680\n"); }, refused("2:1", "a thin lens has no first vertex"));
 }
 
@@ -160,9 +160,9 @@ TEST(PrescribedLens, ThatIsWrongIsNamed) {
   EXPECT_THAT([] { setup_of("[lens]\nmodel = \"prescription\"\nfile = \"none.zmx\"\n"); }, refused("3:1", "none.zmx"));
   EXPECT_THAT([] { setup_of("[lens]\nfile = \"a.zmx\"\n"); }, refused("2:1", "model = \"prescription\""));
   EXPECT_THAT([] { setup_of(double_gauss("focal_length_mm = 100\n")); },
-              refused("4:1", "stands beside a prescription"));
+              refused("4:1", "conflicts with a prescription"));
   EXPECT_THAT([] { setup_of(double_gauss("[camera.sensor]\ndistortion = [0.1, 0, 0, 0]\n")); },
-              refused("5:1", "is of thin lenses"));
+              refused("5:1", "applies to thin lenses only"));
   // the dots within the focal length
   EXPECT_THAT([] { setup_of(double_gauss("[geometry]\nz_a_mm = 60\nz_d_mm = 30\n")); },
               refused("3:1", "no real image"));

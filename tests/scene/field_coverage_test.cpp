@@ -43,9 +43,9 @@ TEST(FieldCoverage, WarnsOfAFieldThatFillsLittle) {
 // Metres or micrometres taken for millimetres.
 TEST(FieldCoverage, NamesTheUnitThatWouldFit) {
   EXPECT_THAT(field_coverage(box(32e-6, 32e-6), table1_setup(512)).warning(),
-              HasSubstr("were its lengths in metres, it would be 32 x 32 mm wide"));
+              HasSubstr("with lengths in metres, it would be 32 x 32 mm wide"));
   EXPECT_THAT(field_coverage(box(32, 32), table1_setup(512)).warning(),
-              HasSubstr("were its lengths in um, it would be 32 x 32 mm wide"));
+              HasSubstr("with lengths in um, it would be 32 x 32 mm wide"));
   EXPECT_THAT(field_coverage(box(1, 1), table1_setup(512)).warning(), IsEmpty()) << "large, and why not";
 }
 

@@ -43,7 +43,7 @@ TEST(PivSetup, SaysWhatIsOfOtherExperiments) {
   EXPECT_THAT(refused_piv(piv_text("", "", "", "[geometry]\nz_d_mm = 250\n")), told("laser.center_mm"));
   EXPECT_THAT(refused_piv("[particles]\nnumber = 3\n"), told("experiment = \"piv\""));
   EXPECT_THAT(refused_piv("[laser]\n"), told("experiment = \"piv\""));
-  EXPECT_THAT(refused_piv("[camera]\nexposure = \"absolute\"\n"), told("is of PIV"));
+  EXPECT_THAT(refused_piv("[camera]\nexposure = \"absolute\"\n"), told("applies to PIV only"));
 }
 
 TEST(PivSetup, RefusesWhatGivesNoPicture) {
@@ -52,11 +52,11 @@ TEST(PivSetup, RefusesWhatGivesNoPicture) {
   EXPECT_THAT(refused_piv(piv_text("diameter_um = { kind = \"normal\", mean_um = 1, std_um = 0.5 }\n")),
               told("a third"));
   EXPECT_THAT(refused_piv(piv_text("", "", "dt_us = 0\n")), told("dt_us = 0"));
-  EXPECT_THAT(refused_piv(piv_text("index = [1.000277, 0]\n")), told("scatter next to no light"));
-  EXPECT_THAT(refused_piv(piv_text("", "offset_mm = [0, 5]\n")), told("sheet of pulse 2 beside"));
-  EXPECT_THAT(refused_piv(piv_text("number = 10\nper_pixel = 0.1\n")), told("stands beside number"));
+  EXPECT_THAT(refused_piv(piv_text("index = [1.000277, 0]\n")), told("scatter hardly any light"));
+  EXPECT_THAT(refused_piv(piv_text("", "offset_mm = [0, 5]\n")), told("sheet of pulse 2 outside"));
+  EXPECT_THAT(refused_piv(piv_text("number = 10\nper_pixel = 0.1\n")), told("conflicts with number"));
   EXPECT_THAT(refused_piv(piv_text("viscosity_pa_s = 1e-5\n")), told("density_kg_m3"));
-  EXPECT_THAT(refused_piv(piv_text("file = \"nowhere.csv\"\n")), told("there is no file"));
+  EXPECT_THAT(refused_piv(piv_text("file = \"nowhere.csv\"\n")), told("file not found"));
   EXPECT_THAT(refused_piv(piv_text("", "wavelength_nm = 633\n")), told("medium.wavelength_nm"));
   EXPECT_THAT(refused_piv(piv_text("volume_mm = [10, 10, 2000]\n")), told("reaches to the lens"));
   EXPECT_THAT(refused_piv(piv_text("", "", "", "[[window]]\nglass = \"N-BK7\"\nposition_mm = [0, 0, 0.5]\n")),
@@ -71,11 +71,11 @@ TEST(PivSetup, RefusesVelocitiesThatEndInsideTheVolume) {
                     volume = "volume_mm = [12, 12, 2]\nscattering = \"lambert\"\n";
   EXPECT_NO_THROW(read_setup_text(piv_text(volume, "", flow(spacing))));
   EXPECT_THAT(refused_piv(piv_text(volume, "", flow("spacing_mm = [3.9, 6, 2]\n"))),
-              told("reaches from X = -5.85 to 5.85 mm, and ends inside the particles' volume, -6 to 6 mm"));
+              told("field from X = -5.85 to 5.85 mm, which ends inside the particles' volume, -6 to 6 mm"));
   EXPECT_NO_THROW(
       read_setup_text(piv_text(volume, "", flow("spacing_mm = [3.9, 6, 2]\nperiodic = [true, false, false]\n"))));
   EXPECT_THAT(refused_piv(piv_text(volume, "", flow(spacing + "center_mm = [0, 0, 1]\n"))), told("from Z = 0 to 2 mm"));
-  EXPECT_THAT(refused_piv(piv_text("", "", "kind = \"file\"\nfile = \"nowhere.h5\"\n")), told("there is no file"));
+  EXPECT_THAT(refused_piv(piv_text("", "", "kind = \"file\"\nfile = \"nowhere.h5\"\n")), told("file not found"));
   EXPECT_THAT(refused_piv(piv_text("", "", "kind = \"file\"\n")), told("file"));
 }
 
@@ -87,7 +87,7 @@ TEST(PivSetup, WarnsOfParticlesBeyondTheVelocityField) {
                                "kind = \"file\"\nfile = \"" + file + "\"\nspacing_mm = [4, 6, 2]\nscale = 0.5\n"))
           .setup;
   auto const warnings = warnings_of_particles(build_scene(setup));
-  EXPECT_THAT(warnings, testing::Contains(testing::HasSubstr("beyond the velocity field")));
+  EXPECT_THAT(warnings, testing::Contains(testing::HasSubstr("outside the velocity field")));
 }
 
 TEST(PivSetup, KnowsWhatTheSecondPulseSees) {
@@ -163,7 +163,8 @@ TEST(PivScene, RefusesALightThatMeetsNoParticle) {
   std::ofstream(path) << "x_mm,y_mm,z_mm,diameter_um\n0,0,20,1\n1,1,-15,1\n";
   std::string const text = piv_text("file = \"" + path + "\"\n", "profile = \"top_hat\"\n");
   gladstone::Setup const setup = read_setup_text(text).setup;
-  EXPECT_THAT([&] { build_scene(setup); }, testing::ThrowsMessage<DataError>(testing::HasSubstr("lights no particle")));
+  EXPECT_THAT([&] { build_scene(setup); },
+              testing::ThrowsMessage<DataError>(testing::HasSubstr("illuminates no particle")));
 }
 
 // A sheet of 1 mm in a flow of 60 m/s along its normal: in 10 us six tenths of the
@@ -199,7 +200,7 @@ TEST(PivScene, WarnsOfParticlesThatAreNoPoints) {
 
 // An index of 1 differs from air's by 2.7e-4: light less than that of a droplet by the square of a thousandth.
 TEST(PivSetup, RefusesParticlesThatScatterNextToNothing) {
-  EXPECT_THAT(refused_piv(piv_text("index = [1.0, 0.0]\n")), told("scatter next to no light"));
+  EXPECT_THAT(refused_piv(piv_text("index = [1.0, 0.0]\n")), told("scatter hardly any light"));
   EXPECT_NO_THROW(read_setup_text(piv_text("index = [1.01, 0.0]\n")));
   EXPECT_NO_THROW(read_setup_text(piv_text("index = [1.0, 0.5]\n")));
 }

@@ -28,7 +28,7 @@ TEST(Windows, AreRefusedWhereSomethingElseStands) {
   auto const says = [](std::string const& windows, std::string const& first, std::string const& then) {
     EXPECT_THAT([&] { read_setup_text(bench(windows)); },
                 testing::ThrowsMessage<SetupError>(testing::AllOf(
-                    HasSubstr("case.toml:"), HasSubstr("light is to meet " + first), HasSubstr("and then " + then))));
+                    HasSubstr("case.toml:"), HasSubstr("light must pass " + first), HasSubstr("and then " + then))));
   };
   says(window("target", -300, 10), "the dots", "window 1");
   says(window("target", 0, 20), "window 1", "the medium");

@@ -160,7 +160,7 @@ TEST(CameraSetup, RefusesABackgroundThatHidesAll) {
   EXPECT_THAT([&] { read("background.level_e = 29000"); }, ThrowsMessage<SetupError>(HasSubstr("the limit is 24000")));
   EXPECT_THAT([&] { read("background.glare_e = 5"); }, ThrowsMessage<SetupError>(HasSubstr("glare_file")));
   EXPECT_THAT([&] { read("background.glare_file = \"absent.png\""); },
-              ThrowsMessage<SetupError>(HasSubstr("there is no file")));
+              ThrowsMessage<SetupError>(HasSubstr("file not found")));
   EXPECT_THAT([&] { read("noise.hot_pixel_share = 2"); }, ThrowsMessage<SetupError>(HasSubstr("hot_pixel_share")));
   EXPECT_THAT([&] { read("bit_depth = 18"); }, ThrowsMessage<SetupError>(HasSubstr("bit_depth")));
 }

@@ -148,10 +148,10 @@ TEST(SetupTable, NanIsAlwaysRefusedAndInfinityUnlessAllowed) {
   EXPECT_EQ(setup.root().number("b", 1.0, Range::positive()), 1.0);
   EXPECT_TRUE(std::isinf(setup.root().number("c", 1.0, unbounded)));
   setup.root().numbers("d", {0.0, 0.0}, 2);
-  EXPECT_THAT(
-      problems(setup),
-      ElementsAre("case.toml:1:1: a = nan: must be a number (nan is none)", "case.toml:2:1: b = inf: must be finite",
-                  "case.toml:4:1: d = [1.0, nan]: value 2, nan, must be a number (nan is none)"));
+  EXPECT_THAT(problems(setup),
+              ElementsAre("case.toml:1:1: a = nan: must be a number (nan is not allowed)",
+                          "case.toml:2:1: b = inf: must be finite",
+                          "case.toml:4:1: d = [1.0, nan]: value 2, nan, must be a number (nan is not allowed)"));
 }
 
 TEST(SetupTable, EndsOfARangeAreIncludedUnlessOpen) {
@@ -385,7 +385,7 @@ TEST(SetupDocument, KeysAndBracketsAreBoundedInDepth) {
       ADD_FAILURE() << "accepted " << text.substr(0, 40);
     } catch (SetupError const& error) {
       EXPECT_THAT(error.problems()[0].where, testing::StartsWith("case.toml:" + place)) << text.substr(0, 40);
-      EXPECT_THAT(error.problems()[0].message, HasSubstr("more than 32 deep")) << text.substr(0, 40);
+      EXPECT_THAT(error.problems()[0].message, HasSubstr("more than 32 levels deep")) << text.substr(0, 40);
     }
   }
   EXPECT_NO_THROW(document(dotted(most_setup_depth) + " = 1.5\n"));

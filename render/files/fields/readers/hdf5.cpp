@@ -108,7 +108,7 @@ std::string only_field(Hdf5Reader const& file, std::string const& path, int valu
                                                   : fmt::format("velocity, [nz, ny, nx, {}]", values),
                                       others.empty() ? "no numbers at all" : others));
   }
-  throw DataError(path, "has several fields; say which with dataset = " + quoted_list(fields));
+  throw DataError(path, "has several fields; select one with dataset = " + quoted_list(fields));
 }
 
 /// Coordinates of the nodes along one axis of an array.
@@ -158,7 +158,7 @@ class Hdf5Source final : public CheckedSource {
   [[noreturn]] void refuse_shape() const {
     bool const in_front = shape_.size() == 4 && shape_[3] > 3 && may_be_components(shape_[0]);
     std::string const why = shape_.size() == 4
-                                ? fmt::format("holds {} values a point", in_front ? shape_[0] : shape_[3])
+                                ? fmt::format("has {} values per point", in_front ? shape_[0] : shape_[3])
                                 : fmt::format("has rank {}", shape_.size());
     std::string const wanted = values_ == 1 ? "a scalar field has shape [nz, ny, nx], [nz, ny, nx, 1] or [ny, nx]"
                                             : fmt::format("a velocity has shape [nz, ny, nx, {}]", values_);
