@@ -32,7 +32,7 @@ bool lacks_memory(std::exception const& error) {
 
 std::string message_of(std::exception const& error) {
   if (dynamic_cast<Error const*>(&error)) return error.what();
-  if (dynamic_cast<std::invalid_argument const*>(&error)) return error.what();  // only gladstone's own code throws it
+  if (dynamic_cast<std::invalid_argument const*>(&error)) return error.what();  // thrown by gladstone's own code only
   if (lacks_memory(error)) return "out of memory; reduce the image, the field or the number of dots";
   if (auto const* const file = dynamic_cast<std::filesystem::filesystem_error const*>(&error)) {
     return file->path1().string() + ": cannot be accessed (" + file->code().message() +
