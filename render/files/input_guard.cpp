@@ -20,7 +20,7 @@ using FileId = std::pair<dev_t, ino_t>;
 struct Record {
   std::mutex mutex;
   int guards = 0;
-  std::map<FileId, std::string> inputs;  ///< name by which each input was opened
+  std::map<FileId, std::string> inputs;  ///< name by which each input was opened, by file identity
   std::set<FileId> outputs;
   std::vector<ProtectedFiles> results;
 };

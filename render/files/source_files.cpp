@@ -143,7 +143,7 @@ void SourceFiles::check() const {
       if (hash_of(source.path, source.holds) == source.sha256) continue;
     } catch (MemoryError const&) {
       throw;
-    } catch (DataError const& error) {  // removed, or partly overwritten
+    } catch (DataError const& error) {  // the file was removed, or partly overwritten
       what = "it cannot be read any more: " + error.message();
     }
     throw DataError(source.path, "has changed since it was read (" + what + "), and nothing was written; " + advice_);

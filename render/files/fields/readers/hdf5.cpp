@@ -84,7 +84,7 @@ std::optional<NamedCoordinate> coordinate_name(std::string const& path) {
   return std::nullopt;
 }
 
-/// Returns the only dataset that can be the field, if the user names none.
+/// Returns the only dataset that can be the field, for use if the user names none.
 /// @throws DataError if there is none, or several
 std::string only_field(Hdf5Reader const& file, std::string const& path, int values) {
   std::vector<std::string> volumes, planes;
@@ -210,7 +210,8 @@ class Hdf5Source final : public CheckedSource {
     return by;
   }
 
-  /// Replaces the coordinates of the edges of cells by those of their centres, if each axis has one more than nodes.
+  /// If each axis has one more coordinate than nodes, takes the coordinates as those of cell edges and replaces them by
+  /// the cell centres.
   void centre_edges(std::array<std::optional<Coordinates>, 3>& own) {
     for (std::size_t i = 0; i < rank(); ++i) {
       if (length(i) == 1 && (!own[i] || own[i]->places.size() == 1)) continue;
@@ -305,7 +306,7 @@ class Hdf5Source final : public CheckedSource {
 
   /// Returns true if an array of coordinates has the shape of the field, apart from axes of length one.
   bool is_mesh(Shape shape) const {
-    if (coordinate_name(name_)) return false;  // x, y and z are then fields themselves
+    if (coordinate_name(name_)) return false;  // the datasets x, y and z are then fields themselves
     Shape field;
     for (std::size_t i = rank(); i-- > 0;) field.push_back(length(i));
     std::erase(field, 1u);
@@ -402,7 +403,7 @@ class Hdf5Source final : public CheckedSource {
     if (rank() == 2) letters = !wide('z') || (wide('x') && wide('y')) ? "xy" : wide('y') ? "yz" : "xz";
     std::string const usual(letters.rbegin(), letters.rend());
     std::vector<std::string> fitting = fitting_orders(letters, of_letter, 0);
-    if (fitting.empty()) fitting = fitting_orders(letters, of_letter, 1);  // edges of cells
+    if (fitting.empty()) fitting = fitting_orders(letters, of_letter, 1);  // n + 1 coordinates: edges of cells
     bool some = false, meshes = false;
     for (auto const& own : of_letter) {
       some = some || own;
