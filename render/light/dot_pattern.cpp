@@ -59,7 +59,7 @@ class OccupiedCells {
   double side_;
   std::ptrdiff_t columns_;
   std::ptrdiff_t rows_;
-  std::vector<std::uint32_t> latest_;   // most recent disc of each cell
+  std::vector<std::uint32_t> latest_;   // most recently added disc of each cell
   std::vector<std::uint32_t> earlier_;  // previous disc in the same cell, for each disc
 };
 
