@@ -101,12 +101,12 @@ std::string unlikely_range(MediumSetup const& setup, std::string const& name, do
   bool const density = field.quantity == FieldQuantity::density;
   double const unit = density ? setup.gladstone_dale : 1.0;  // refractivity per unit of the values
   std::string likely;
-  // a gas has 1e-5 < n - 1 < 2e-3, so that indices read as densities are 1 to within 0.2 %
+  // gases have 1e-5 < n - 1 < 2e-3, so that densities all within 0.2 % of 1 may be refractive indices
   bool const index = density && scale == 1.0 && low > (1 + 1e-5) * unit && high < (1 + 2e-3) * unit;
   if (index) {
     likely = "these would be refractive indices of a gas; if they are, set quantity = \"refractive_index\"";
   } else if (high < ambient / factor) {
-    // of the readings within a factor of ten of the ambient, suggest the closest
+    // among the readings within a factor of ten of the ambient value, suggest the closest
     auto const decades_off = [&](double ratio) {
       bool const fits = high * ratio > ambient / 10 && low * ratio < ambient * 10;
       return fits ? std::abs(std::log10(0.5 * (low + high) * ratio / ambient)) : HUGE_VAL;
