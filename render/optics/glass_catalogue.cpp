@@ -39,7 +39,7 @@ bool covers(Glass const& glass, double wavelength) {
   return wavelength >= glass.shortest && wavelength <= glass.longest && is_index(glass.index(wavelength));
 }
 
-/// Throws DataError if none of the glasses covers the wavelength.
+/// Throws DataError unless at least one of the glasses covers the wavelength.
 void require_range(std::vector<Glass const*> const& found, double wavelength, std::string const& where) {
   if (std::any_of(found.begin(), found.end(), [=](Glass const* glass) { return covers(*glass, wavelength); })) return;
   Glass const& glass = *found.front();
@@ -52,14 +52,14 @@ void require_range(std::vector<Glass const*> const& found, double wavelength, st
 /// Choice among the glasses that a name can refer to.
 struct Choice {
   std::vector<Glass const*> found;  ///< glasses to choose from, in order
-  Glass const* glass = nullptr;     ///< glass that is taken
+  Glass const* glass = nullptr;     ///< chosen glass
   bool in_no_catalogue = false;     ///< no catalogue contains the name
   bool followed = false;            ///< the glasses are successors
-  bool listed = false;              ///< its catalogue is in the lens file's list, or there is no list
+  bool listed = false;              ///< its catalogue is in the lens file's list, or the file has no list
   bool added = false;               ///< its catalogue was added
   bool ambiguous = false;           ///< another glass has a different index
 
-  /// Describes the assumptions made: "may be A, B, of different index; A is taken"; empty if none was made.
+  /// Describes the assumptions made: "may be A, B, with different indices; A is taken"; empty if none was made.
   std::string text(std::vector<std::string> const& list, std::optional<double> stated_nd) const {
     std::vector<std::string> reasons;
     if (followed) {
