@@ -45,7 +45,7 @@ class RayTheory {
 
     auto const disc = launch.sight(middle);
     if (!disc) return;
-    // Without a residual, the target area is the same share of the stop for all sources, see stop_share_.
+    // With the residual set to zero, the target area is the same fraction of the stop for all sources, see stop_share_.
     AimShift aim_shift = launch.aim_shift(*disc, middle, sources.reach());
     aim_shift.residual = 0;
     AimedBundle<double> const bundle = launch.bundle(*disc, aim_shift, 0);
