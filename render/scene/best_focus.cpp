@@ -76,7 +76,7 @@ struct FocusMiss {
   int windows;
   std::vector<Vec3d> const& aims;
   Vec3d point;
-  bool point_moves;  ///< the point has a fixed distance from the lens
+  bool point_moves;  ///< true: the point moves with the lens
   double z_sensor;   ///< position of the fixed sensor [m]
 
   template <class T>

@@ -10,8 +10,9 @@
 namespace gladstone {
 namespace {
 
-constexpr double negligible_loss = 0.01;  // tolerated truncation of the displacement, given thickness
-constexpr double noticeable_loss = 1e-4;  // the same for "auto": 1e-4 px at 1 px, as accurate as the truth
+constexpr double negligible_loss = 0.01;  // tolerated relative truncation of the displacement for a given thickness
+// limit for "auto": 1e-4 px for a displacement of 1 px, as accurate as the truth
+constexpr double noticeable_loss = 1e-4;
 
 /// Returns half the width and height of the region of the medium that the dots' rays cross [m].
 Vec2d half_extent_at_medium(Setup const& setup) {
@@ -30,7 +31,7 @@ Vec2d half_extent_at_medium(Setup const& setup) {
 struct FieldDensities {
   DensityRange range;
   char const* key;     ///< key that determines the range
-  bool endless_range;  ///< negative at some distance, whatever the field's strength
+  bool endless_range;  ///< the density is negative at some distance, whatever the field's strength
 };
 
 /// Returns the range of a closed-form field; for other fields, the ambient density.

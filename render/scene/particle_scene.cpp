@@ -111,7 +111,7 @@ std::string warning_of_wide_particles(Scene const& scene) {
 /// view.
 std::string warning_of_small_volume(Scene const& scene, ParticleCensus const& census) {
   constexpr int along = 16;            // points of the view along each side
-  constexpr double negligible = 0.01;  // fraction of these points
+  constexpr double negligible = 0.01;  // tolerated fraction of these points outside the volume
   ParticleSetup const& particles = scene.setup.piv->particles;
   if (!particles.volume || census.in_view == 0) return {};
   Pose<double> const plane = scene.sheet_plane();

@@ -52,7 +52,8 @@ RenderSetup read_render_setup(SetupTable table) {
   return setup;
 }
 
-constexpr double automatic_reach = 0.99;  // limit of an "auto" half thickness over the distance to dots or lens
+// upper limit of an "auto" half thickness, relative to the distance to dots or lens
+constexpr double automatic_reach = 0.99;
 
 /// Sets medium.thickness to the depth of the field's volume, regardless of thickness_mm.
 /// @return false if the thickness follows from thickness_mm (slab, extruded plane), or the file cannot be read, which
