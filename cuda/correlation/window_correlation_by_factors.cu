@@ -57,8 +57,8 @@ __device__ Complex take_pixels(Transform const& transform, WindowJob const& job,
   return {weight_x * sum.re, weight_x * sum.im};
 }
 
-/// Sums over this thread's pixels that are known in both images: weights and weighted grey levels of both. Rarely
-/// needed.
+/// Sums over this thread's pixels that are known in both images: weights and weighted grey levels of both. Called only
+/// for windows with unknown pixels.
 template <class Transform>
 __device__ void sum_known_pixels(Transform const& transform, int side, float const* weight_y, float weight_x,
                                  float (&sums)[3]) {

@@ -68,7 +68,7 @@ struct HitWindow {
 struct SharedParts {
   CameraElement<double>* elements;
   RaySums* sums;      ///< one per thread
-  double* rows_seen;  ///< shares the memory of `sums`, which are no longer needed then
+  double* rows_seen;  ///< overlaps the memory of `sums`, which are no longer needed at that time
   double* share;      ///< values of the spline
   int* nodes;         ///< of all windows; null: no windows
 
