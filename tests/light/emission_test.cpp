@@ -15,10 +15,10 @@ namespace {
 
 constexpr double two_pow_32 = 4294967296.0;
 
-/// One bundle towards a pupil of 5 mm radius, 1 m from the target.
+/// A bundle towards a pupil of 5 mm radius, 1 m from the target.
 BundleView<double> bundle(PupilSampling sampling) { return {0.75, 5e-3, 11, sampling}; }
 
-/// Which of rings x sectors cells of equal area a point of a disc falls into.
+/// Returns the index of the cell that contains a point of a disc, for rings x sectors cells of equal area.
 int equal_area_cell(Vec2d p, double radius, int rings, int sectors) {
   double const r2 = dot(p, p) / (radius * radius);
   double turn = std::atan2(p.y, p.x) / (2 * pi);
@@ -27,7 +27,7 @@ int equal_area_cell(Vec2d p, double radius, int rings, int sectors) {
          std::min(static_cast<int>(turn * sectors), sectors - 1);
 }
 
-// The first eight points of Joe and Kuo's sequence (new-joe-kuo-6), listed there in Gray-code order k ^ (k >> 1).
+// The first eight points of Joe and Kuo's sequence (new-joe-kuo-6), which is listed in Gray-code order k ^ (k >> 1).
 TEST(Sobol, FirstPointsAreJoeAndKuos) {
   double const points[8][4] = {{0, 0, 0, 0},
                                {0.5, 0.5, 0.5, 0.5},
@@ -44,7 +44,7 @@ TEST(Sobol, FirstPointsAreJoeAndKuos) {
   }
 }
 
-// A point is its coordinates, whatever bits its index has: bytes full and empty, and single bits.
+// Coordinates are correct for any bit pattern of the index: full and empty bytes, and single bits.
 TEST(Sobol, PointHasItsCoordinates) {
   std::vector<std::uint32_t> indices{0u, 255u, 256u, 65535u, 65536u, 0xff00ff00u, 0x12345678u, 0xffffffffu};
   for (std::uint32_t k = 0; k < 32; ++k) indices.push_back(1u << k);
@@ -55,7 +55,8 @@ TEST(Sobol, PointHasItsCoordinates) {
   }
 }
 
-/// Largest and smallest number of points in the elementary intervals of 2^-bits volume of a pair of dimensions.
+/// Returns the smallest and the largest number of points in the elementary intervals of volume 2^-bits of a pair of
+/// dimensions.
 std::pair<int, int> extremes_of_elementary_intervals(int first, int second, int points_log2, int bits,
                                                      std::uint32_t const (&seeds)[2]) {
   int fewest = 1 << points_log2, most = 0;
@@ -77,7 +78,8 @@ std::pair<int, int> extremes_of_elementary_intervals(int first, int second, int 
 }
 
 // A (0,m,2)-net has exactly one of its 2^m points in every elementary interval of volume 2^-m (Niederreiter 1987). The
-// first two Sobol dimensions are one; dimensions of polynomial degrees 2 and 3 are a (t,m,2)-net with t = 1 + 2.
+// first two Sobol dimensions are such a net; dimensions with polynomials of degrees 2 and 3 are a (t,m,2)-net with t =
+// 1 + 2.
 TEST(Sobol, PupilPairIsANetWithOnePointPerElementaryInterval) {
   EXPECT_EQ(extremes_of_elementary_intervals(0, 1, 8, 8, {0, 0}), (std::pair{1, 1}));
 }
@@ -94,9 +96,10 @@ TEST(OwenScrambling, KeepsTheNets) {
   }
 }
 
-// Rays are dealt in turn to scramblings of their own: ray 4 k + i is point k of the i-th of four. The first is the one
-// that would be alone; sixteen points of each fill the sixteen intervals of every coordinate; and what one says of a
-// point's place says nothing of another's: their correlation over 2000 sources stays within five standard errors.
+// Rays are assigned to the scramblings in turn: ray 4 k + i is point k of scrambling i of four. The first scrambling is
+// the one that is used alone if there is only one. Sixteen points of each scrambling fill the sixteen intervals of
+// every coordinate. Different scramblings are independent: over 2000 sources, the correlation of their points is zero
+// within five standard errors.
 TEST(Sobol, RaysAreDealtToIndependentScramblings) {
   BundleView<double> const alone = bundle(PupilSampling::sobol);
   BundleView<double> dealt = alone;
@@ -134,9 +137,9 @@ TEST(Sobol, AHandfulOfRaysHasFewerScramblings) {
   }
 }
 
-// Over the scramblings of many sources every point is uniform: mean 1/2 and variance 1/12 within five standard errors,
-// sqrt(1/(12 n)) and sqrt((1/80 - 1/144)/n); coordinates of different dimensions and of neighbouring sources, and bits
-// of different streams, are uncorrelated within 5/sqrt(n).
+// Over the scramblings of many sources, every point is uniformly distributed, with mean 1/2 and variance 1/12 within
+// five standard errors, sqrt(1/(12 n)) and sqrt((1/80 - 1/144)/n). Coordinates of different dimensions, of neighbouring
+// sources, and bits of different streams are uncorrelated within 5/sqrt(n).
 TEST(OwenScrambling, IsUnbiasedAndIndependentFromSourceToSource) {
   constexpr int n = 8192;
   for (std::uint64_t const ray : {0ull, 5ull, 1000ull}) {
@@ -178,7 +181,7 @@ TEST(RandomStreams, OfOneSeedAreIndependent) {
   }
 }
 
-// Cells of equal area of the disc are elementary intervals of (radius^2, angle): a net fills them all equally.
+// Cells of equal area of the disc are elementary intervals of (radius^2, angle), so a net fills all of them equally.
 TEST(Emission, SobolPupilPointsFillCellsOfEqualAreaEqually) {
   Vec2d const centre{1e-3, -2e-3};
   SourcesView<double> const sources{&centre, nullptr, 1, -0.25, 1e-4, SourceShape::disc};
@@ -197,9 +200,9 @@ TEST(Emission, SobolPupilPointsFillCellsOfEqualAreaEqually) {
   for (auto const& [cell, count] : disc) EXPECT_EQ(count, 64) << cell;
 }
 
-// Uniform disc of radius R: <x> = <y> = <x y> = 0, <x^2> = <y^2> = R^2/4, <x^4> = R^4/8; variances of these averages
-// per point are R^2/4, R^4/24, R^4/8 - R^4/16 and R^8 (7/128 - 1/64) (moments of cos^2p and r^2p), five standard errors
-// allowed.
+// For a uniform disc of radius R: <x> = <y> = <x y> = 0, <x^2> = <y^2> = R^2/4, <x^4> = R^4/8. The variances of these
+// averages per point are R^2/4, R^4/24, R^4/8 - R^4/16 and R^8 (7/128 - 1/64) (moments of cos^2p and r^2p). Tolerance:
+// five standard errors.
 TEST(Emission, RandomPupilPointsHaveTheMomentsOfADisc) {
   Vec2d const centre{};
   SourcesView<double> const sources{&centre, nullptr, 1, -0.25, 0.0, SourceShape::disc};
@@ -221,7 +224,8 @@ TEST(Emission, RandomPupilPointsHaveTheMomentsOfADisc) {
   EXPECT_NEAR(x4, 0.125, 5 * std::sqrt((7.0 / 128 - 1.0 / 64) / n));
 }
 
-// Vector from the source to the pupil point; cos^4 of its angle to the axis, times radiance. Rounding only.
+// The ray is along the vector from the source to the pupil point, and its weight is the radiance times cos^4 of the
+// angle to the axis. The only errors are those of rounding.
 TEST(Emission, RaysRunToTheirPupilPointWithWeightRadianceCosFour) {
   Vec2d const centres[] = {{0, 0}, {0.02, -0.03}};
   double const radiance[] = {1.0, 0.25};
@@ -249,7 +253,7 @@ TEST(Emission, ChiefRaysAllCrossThePupilsCentre) {
   for (std::uint64_t ray = 0; ray < 50; ++ray) EXPECT_EQ(emit(sources, chief, 0, ray).pupil, (Vec2d{0, 0}));
 }
 
-// Eight by eight squares in a square source are elementary intervals of its pair of dimensions.
+// Eight by eight squares of a square source are elementary intervals of its pair of dimensions.
 TEST(Emission, SquareSourcesAreFilledEvenly) {
   Vec2d const centre{};
   SourcesView<double> const sources{&centre, nullptr, 1, -0.25, 1.0, SourceShape::square};
@@ -265,8 +269,8 @@ TEST(Emission, SquareSourcesAreFilledEvenly) {
   }
 }
 
-// A place that no whole number of nanometres can tell has a key all the same, one for each side; all others have keys
-// of their own, to the nanometre.
+// A position beyond the range of integer nanometres also has a key, one for each side; all other positions have
+// different keys if they differ by a nanometre.
 TEST(Emission, EveryFinitePlaceHasAKey) {
   EXPECT_EQ(key_of({1e300, 0}), key_of({1e10, 0}));
   EXPECT_EQ(key_of({0, -1e300}), key_of({0, -1e10}));
