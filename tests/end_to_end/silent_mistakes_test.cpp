@@ -154,7 +154,7 @@ TEST_F(SilentMistakes, InfoReportsWhichAxisIsTakenForWhich) {
   EXPECT_THAT(json_of({"info", "field", folder + "h_stretch.h5"})["notes"][0].get<std::string>(),
               HasSubstr("axes that are not uniform were resampled: y"));
   EXPECT_THAT(succeed({"info", "field", folder + "h_descx.h5"}),
-              HasSubstr("[16, 20, 24] is read as z, y, x (by the lengths of its coordinates); x runs backwards"));
+              HasSubstr("[16, 20, 24] is read as z, y, x (by the lengths of its coordinates); x descends"));
 }
 
 // A header that gives no spacing along z, and a file without coordinates: 1 is not printed as if it were the file's.
