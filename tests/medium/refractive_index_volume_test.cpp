@@ -235,7 +235,7 @@ TEST(ExtrudedPlane, EqualsTheStackedVolume) {
   }
 }
 
-// --- memory, bounds and limits
+// --- scale, bounds and memory
 
 TEST(RefractiveIndexVolume, ScaleAndShiftMakeRefractivities) {
   RegularGrid const grid = open_grid(3, 3, 3);

@@ -61,7 +61,7 @@ TEST(Thickness, AutomaticallyHoldsAllOfAGaussianThatMatters) {
   EXPECT_EQ(automatic_thickness_mm(gaussian<Blob>(15e-3, 0).field), 105.0);
 }
 
-// A thin plume, or a field that has no length scale along Z, is in 10 mm of gas as before.
+// The automatic thickness is 10 mm for a thin plume and for fields without a length scale along Z.
 TEST(Thickness, IsTenMillimetresWhereTheFieldDoesNotAskForMore) {
   EXPECT_EQ(automatic_thickness_mm(gaussian<Plume>(1e-3, 0).field), 10.0);
   FieldSetup file;
