@@ -55,7 +55,7 @@ TEST(LensSetup, ImpossibleLensesAreRefused) {
               ThrowsMessage<SetupError>(AllOf(HasSubstr("lens.toml:3"), HasSubstr("conflicts with focus"))));
 }
 
-// Scenes are in gas: a lens with water ahead of it would be focused wrongly, and is refused.
+// A lens with water ahead of it would be focused incorrectly, since scenes are in gas, and is refused.
 TEST(LensSetup, ALensInWaterIsRefused) {
   std::string const file = std::string(GLADSTONE_DATA_DIR) + "/../tests/cases/lenses/object_in_water.zmx";
   auto const build = [&] {
