@@ -16,7 +16,8 @@ constexpr unsigned all_lanes = 0xffffffffu;
 constexpr int size = Transform::size;
 constexpr int warps = Transform::threads / 32;
 constexpr int most_width = 2 * Transform::largest_radius + 1;
-constexpr int most_maxima = (most_width + 1) * (most_width + 1) / 4;  ///< two maxima are never adjacent
+constexpr int most_maxima = (most_width + 1) * (most_width + 1) / 4;  ///< maximum number of maxima, since two of them
+                                                                      ///< are never adjacent
 static_assert(2 * SearchBlock::most_columns > most_width && 4 * SearchBlock::most_rows >= most_width);
 
 __device__ Transform::Roots const roots_of_64 = Transform::make_roots();
