@@ -158,7 +158,7 @@ bool is_complete(std::string const& folder, FolderContent const& content) {
   do {
     finish_replacement(folder, content);
     if (is_there(marker)) return true;
-  } while (is_there(work));  // another replacement began after finish_replacement()
+  } while (is_there(work));  // repeat if another replacement began after finish_replacement()
   return is_there(marker);
 }
 

@@ -461,7 +461,7 @@ std::string attribute_text(hid_t object, std::string const& name, std::uint64_t 
     return value;
   }
   if (kind == H5T_STRING) {
-    if (H5Tget_size(type) > most) return {};  // damaged file
+    if (H5Tget_size(type) > most) return {};  // the file is damaged
     std::string value(H5Tget_size(type), '\0');
     if (H5Aread(opened, type, value.data()) < 0) return {};
     value = value.substr(0, value.find('\0'));

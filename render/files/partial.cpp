@@ -236,7 +236,8 @@ std::string stem_beside(std::string const& name) {
   constexpr std::size_t longest = 120;  // 255 bytes minus up to 130 for the identification of the writer
   if (name.size() <= longest) return '.' + name + '.';
   std::size_t cut = longest - 17;
-  while (cut > 0 && (static_cast<unsigned char>(name[cut]) & 0xc0) == 0x80) --cut;  // not within a UTF-8 character
+  // do not cut within a UTF-8 character
+  while (cut > 0 && (static_cast<unsigned char>(name[cut]) & 0xc0) == 0x80) --cut;
   return '.' + name.substr(0, cut) + '-' + content_hash(name) + '.';
 }
 

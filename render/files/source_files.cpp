@@ -38,7 +38,7 @@ void add_dataset(Sha256& hash, Hdf5Reader const& file, std::string const& path, 
     hash.add(value.data(), value.size() * sizeof(double));
     return;
   }
-  constexpr std::size_t most = std::size_t{1} << 20;  // values per read
+  constexpr std::size_t most = std::size_t{1} << 20;  // number of values per read
   std::size_t const row = count / shape[0], rows = std::max<std::size_t>(1, most / row);
   // A damaged header can declare any size.
   require_memory(path, "a row of dataset \"" + name + '"', 1.0 * sizeof(double) * static_cast<double>(row));

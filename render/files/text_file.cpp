@@ -85,7 +85,8 @@ std::string LineReader::place() const { return file_.path() + ':' + std::to_stri
 std::string excerpt(std::string_view text, std::size_t longest) {
   if (text.size() <= longest) return std::string(text);
   std::size_t end = longest - 3;
-  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xc0u) == 0x80u) --end;  // not within a UTF-8 character
+  // do not cut within a UTF-8 character
+  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xc0u) == 0x80u) --end;
   return std::string(text.substr(0, end)) + "...";
 }
 

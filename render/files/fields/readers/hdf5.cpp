@@ -146,7 +146,8 @@ class Hdf5Source final : public CheckedSource {
     describe(nodes, rank(), by);
     if (cells_) reading_.by += "; data of cells, at their centres";
     std::vector<double> first(1);
-    file_.read_box(name_, Shape(shape_.size(), 0), Shape(shape_.size(), 1), first);  // reports a missing filter
+    // reading one value reports a missing filter
+    file_.read_box(name_, Shape(shape_.size(), 0), Shape(shape_.size(), 1), first);
   }
 
  private:
@@ -167,7 +168,7 @@ class Hdf5Source final : public CheckedSource {
 
   /// Assigns world axes and coordinates to the stored axes. @return source of the assignment
   std::string place_axes(std::string const& wanted) {
-    std::array<std::optional<Coordinates>, 3> own;  // by stored axis, fastest first
+    std::array<std::optional<Coordinates>, 3> own;  // coordinates of each stored axis, fastest first
     std::array<std::optional<Coordinates>, 3> of_letter;
     std::string order;
     auto const scales = file_.dimension_scales(name_);
@@ -297,7 +298,7 @@ class Hdf5Source final : public CheckedSource {
       if (wide <= 1) return found;
     } catch (MemoryError const&) {
       throw;
-    } catch (DataError const&) {  // not numeric
+    } catch (DataError const&) {  // the dataset is not numeric
       return std::nullopt;
     }
     reduce_mesh(found, shape);

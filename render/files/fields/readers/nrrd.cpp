@@ -136,7 +136,7 @@ class NrrdBytes {
 
   void decode() {
     std::string const bytes = stored();
-    // Plausibility of the header: at most 8 values per encoded byte as text or hex, 8e6 per byte of bzip2.
+    // Limits of a plausible header: at most 8 values per byte of text or hex data, 8e6 per byte of bzip2 data.
     double const most = header_.encoding == Encoding::bzip2 ? 1e6 : 1;
     if (static_cast<double>(values()) > most * 8 * static_cast<double>(bytes.size())) {
       throw DataError(

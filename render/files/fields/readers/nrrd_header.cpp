@@ -290,7 +290,7 @@ class Axes {
   /// Names the world axes by "labels", if they are x, y and z.
   void name_by_labels() {
     auto const labels = quoted_words(fields_, "labels");
-    std::string names;  // fastest first
+    std::string names;  // letters of the axes, fastest first
     for (std::size_t const axis : kept_) {
       std::string const label = axis < labels.size() ? lower_case(labels[axis]) : "";
       if (label.size() == 1) names += label;

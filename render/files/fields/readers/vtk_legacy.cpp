@@ -270,7 +270,7 @@ class LegacyReader {
         cursor_.word();
         cursor_.word();
       } else {
-        cursor_.go_to(cursor_.place() - 1);  // to the preceding line end
+        cursor_.go_to(cursor_.place() - 1);  // go back to the preceding line end
       }
     } else if (key == "vectors" || key == "normals") {
       array.number = number_type(cursor_.word());
@@ -294,7 +294,7 @@ class LegacyReader {
   }
 
   void read_field(VtkPlace place, bool kept) {
-    cursor_.word();  // name of the FIELD
+    cursor_.word();  // skip the name of the FIELD
     std::uint64_t const count = number<std::uint64_t>("FIELD");
     for (std::uint64_t i = 0; i < count; ++i) {
       LegacyArray array;

@@ -307,7 +307,8 @@ class VtkXmlReader {
       return;
     }
     payload.format = format == "ascii" ? VtkPayload::Format::ascii : VtkPayload::Format::base64;
-    for (pugi::xml_node const text : tag.children()) payload.text += text.value();  // comments split it
+    // comments divide the text into several nodes
+    for (pugi::xml_node const text : tag.children()) payload.text += text.value();
   }
 
   /// Copies the coordinates of a piece into those of the whole grid.
