@@ -62,7 +62,8 @@ struct DotSquares {
     using std::floor;
     auto const nearest = [per_side = lattice.per_side()](double p) {
       double const at = floor(p * per_side + 0.5);
-      return at < -1e7 ? -1e7 : (at > 1e7 ? 1e7 : at);  // farther displacements are not sorted
+      // clamped, since farther displacements are not sorted into squares
+      return at < -1e7 ? -1e7 : (at > 1e7 ? 1e7 : at);
     };
     origin = origin - Vec2d{MomentLattice::aside, MomentLattice::aside};
     Vec2d const at{nearest(origin.x), nearest(origin.y)};
