@@ -279,7 +279,8 @@ GlassMatch GlassCatalogue::match(std::string_view name, double wavelength, std::
     result.notes.push_back(fmt::format("{}: glass \"{}\" {}", where, name, text));
   }
   constexpr double d = spectral_line::d;
-  bool const printed = glass.printed_nd > 1 && d >= glass.shortest && d <= glass.longest;  // 0, 1: none
+  // values of 0 and 1 are placeholders
+  bool const printed = glass.printed_nd > 1 && d >= glass.shortest && d <= glass.longest;
   if (printed && std::abs(glass.nd() - glass.printed_nd) > same_index) {
     result.notes.push_back(
         fmt::format("{}: glass {}:{}: its formula gives nd = {:.6f}, its catalogue prints {:.6f}; the formula is used",

@@ -193,7 +193,7 @@ class SeqReader {
     if (command == "SI") {
       image_ = true;
       image_surface_.surface.where = line.where;
-      surfaces_.back().surface.thickness += thickness;  // defocus of the image
+      surfaces_.back().surface.thickness += thickness;  // add the defocus of the image
       image_defocus_ = thickness;
       return;
     }
@@ -243,7 +243,7 @@ class SeqReader {
     }
     if (in_capitals(line[0]).starts_with("STO") && line.size() > 1) {
       PrescriptionLine const number{line.where, {line[0], "S" + line[1]}};
-      if (is_numbered_surface(number[1])) {  // "stop 2"
+      if (is_numbered_surface(number[1])) {  // the surface is given by its number, "stop 2"
         line.words[1] = number[1];
         return named_surface(line);
       }
@@ -339,7 +339,7 @@ class SeqReader {
   }
 
   Prescription result_;
-  std::vector<SeqSurface> surfaces_;  // the object is the first
+  std::vector<SeqSurface> surfaces_;  // surfaces of the file; the first one is the object
   SeqSurface image_surface_;          // only its coordinate frame is used
   PrivateGlasses private_glasses_;
   std::vector<ListedWavelength> wavelengths_;

@@ -136,7 +136,7 @@ class ZmxReader {
       if (zmx.type == "COORDBRK") {
         breaks.push_back(break_of(zmx, unit_));
         if (!zmx.surface.stop) continue;
-        surface.where = zmx.surface.where;  // stop in the transformed frame
+        surface.where = zmx.surface.where;  // a stop surface may be in the transformed frame
         surface.stop = true;
         surface.semi_diameter = zmx.surface.semi_diameter;
         surface.thickness = std::exchange(breaks.back().advance, 0);
