@@ -12,7 +12,7 @@
 namespace gladstone {
 namespace {
 
-constexpr double sharp = 0;  // edge of a stop
+constexpr double sharp = 0;  // width of the smoothed edge of a stop; 0: sharp
 
 /// Appends a window's two faces, in the order of light along +Z.
 void append_window(Camera& camera, WindowSetup const& window, bool fresnel) {

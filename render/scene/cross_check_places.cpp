@@ -74,7 +74,7 @@ void cross_check_windows(Setup const& setup, SetupTable root) {
   if (setup.windows.empty()) return;
   CameraAxis const axis{front_of(setup), setup.camera_pose().z};
   double const infinite = std::numeric_limits<double>::infinity();
-  std::vector<OnTheWay> way;  // in the required order of the light path
+  std::vector<OnTheWay> way;  // objects in the required order of the light path
   if (!setup.piv) way.push_back({"the dots", axis.meets_plane(-setup.z_d), axis.meets_plane(-setup.z_d), false});
   for (WindowSide const side : {WindowSide::target, WindowSide::camera}) {
     for (std::size_t i = 0; i < setup.windows.size(); ++i) {

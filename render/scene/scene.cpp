@@ -29,7 +29,7 @@ double lowest_density(MediumSetup const& setup, BuiltMedium const& medium) {
     return std::static_pointer_cast<RefractiveIndexVolume<Stored> const>(medium.owner)->lowest();
   };
   return (setup.field.extrude ? lowest(double{}) : lowest(float{})) /
-         setup.gladstone_dale;  // stored by build_medium in this type
+         setup.gladstone_dale;  // type in which build_medium() stores the values
 }
 
 /// Reports negative densities in a field file, with their number and the first position.
