@@ -11,7 +11,7 @@
 namespace gladstone {
 namespace {
 
-constexpr double max_background = 0.8;  // fraction of the full well
+constexpr double max_background = 0.8;  // largest background as a fraction of the full well
 constexpr long long largest_seed = std::numeric_limits<long long>::max();
 
 void read_pattern(SetupTable& noise, NoiseSetup& setup) {
