@@ -137,7 +137,7 @@ TEST(ConeRule, IntegratesALensInClosedForm) {
     }
     cone.finish(moments, all);
     double const light_here = moments.of[0], x2 = moments.of[M::at(2, 0)], x4 = moments.of[M::at(4, 0)];
-    // cos^4 decreases by 2 (P/Z)^2 towards the edge: 2.3e-5 of all light, whose mean is compensated
+    // Towards the edge, cos^4 decreases by 2 (P/Z)^2, 2.3e-5; its mean over the cone is included in the light.
     EXPECT_NEAR(light_here, r * r / (stop * stop), 1e-6 + tolerance);
     EXPECT_NEAR(x2 / light_here / (d * d * r * r / 4), 1, 2e-5 + tolerance);
     EXPECT_NEAR(moments.of[M::at(0, 2)] / x2, 1, 1e-6 + tolerance);
