@@ -110,7 +110,7 @@ TEST(LaggingParticle, SpiralsOutOfARotation) {
   Vec3d const end = moved(v, {r, 0, 0}, time, 64);
   double const grown = r * std::exp(tau * w * w * time);
   EXPECT_LT(distance(end, {grown * std::cos(w * time), grown * std::sin(w * time), 0}), 1e-6 * r);
-  // the error of central differences is the square of the rotation by 5e-4 within the time step
+  // central differences with a rotation of 5e-4 per time step have a relative error of the square of that
   EXPECT_NEAR(length(v.neglected({r, 0, 0})), 2 * tau * tau * w * w * w * r, 1e-5 * 2 * tau * tau * w * w * w * r);
   // velocity to first order in tau, without the neglected term
   EXPECT_NEAR(length(v({r, 0, 0}) - Vec3d{tau * w * w * r, w * r, 0}), 0, 1e-6 * w * r);
