@@ -158,7 +158,7 @@ struct MomentImages {
   /// @param terms  6, or 1 for a point
   static MomentImages plan(double half_px, GaussianSpot<double> const& spot, double side, int terms);
 
-  static constexpr int pad = 16;  ///< `stride` is a multiple of this
+  static constexpr int pad = 16;  ///< alignment: `stride` is a multiple of this
   /// Number of PSF factors of one point.
   GLADSTONE_HD static constexpr int factors(int pitch) { return 2 * (DisplacementMoments::order + 1) * pitch; }
 
