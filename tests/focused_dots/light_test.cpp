@@ -22,8 +22,8 @@ Vec2d centroid_of(Image<double> const& image) {
 }
 
 // The image and the flux of an isolated dot inside the frame contain the light of its area, pi d^2/4 (cos^4 reduces it
-// by 2.3e-5), in both frames, since a uniform gradient neither magnifies nor focuses. Rays at the stop's edge vary by
-// one stratum, 1/512.
+// by 2.3e-5), in both frames, since a uniform gradient neither magnifies nor focuses. The number of rays that pass the
+// stop varies by one stratum of the samples, 1/512.
 TEST(Light, OfADotsImageIsItsFlux) {
   for (SpotModel const spot :
        {SpotModel::gaussian, SpotModel::airy, SpotModel::gaussian_first_zero, SpotModel::seed_eq8, SpotModel::none}) {
