@@ -238,7 +238,7 @@ TEST(LensFiles, OddAspheresAddPowersOfR) {
               1e-10);
 }
 
-// PARAXIAL: every ray of a parallel bundle crosses the axis in the focus, for rays on either side of the axis.
+// PARAXIAL: all rays of a parallel bundle, on either side of the axis, cross the axis in the focus.
 TEST(LensFiles, AnIdealLensHasNoAberration) {
   Lens const lens = lens_of_case("ideal_lens.zmx");
   EXPECT_NEAR(focal_length_mm(lens), 100, 1e-12);
