@@ -59,8 +59,8 @@ TEST(PlenopticCamera, ShowsTheStopBehindTheLensletOfAPoint) {
 }
 
 // The light of a point nearer than the plane in focus spreads over several lenslets, each of which images the part of
-// the stop from which it is illuminated. The rays of a thin lens are computed independently: the lenslet refracts each
-// ray about its own axis.
+// the stop from which it is illuminated. The expected position of each ray is computed by the thin-lens formula, first
+// for the main lens, then for the lenslet about its own axis.
 TEST(PlenopticCamera, SortsLightByWhereItPassedTheStop) {
   gladstone::Setup const setup = plenoptic_setup();
   Camera const camera = build_camera(setup);

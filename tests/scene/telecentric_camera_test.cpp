@@ -80,7 +80,7 @@ TEST(TelecentricCamera, FNumberSetsTheStopByTheConeOfLightInTheImage) {
       pass_element(element, rim, account);
     }
     double const slope = std::hypot(rim.direction.x, rim.direction.y) / rim.direction.z;
-    // the ellipse extends to the outermost rim point; the aberration of the slope is of third order
+    // the rim ray has an aberration of third order in its slope
     EXPECT_NEAR(2 * N * slope, 1, 0.01) << N;
     EXPECT_NEAR(setup.imaging().image_distance / setup.imaging().entrance_pupil, N, 0.005 * N);
     if (last > 0) {
