@@ -14,7 +14,7 @@
 namespace gladstone {
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "numbers are hashed as they lie in memory");
+static_assert(std::endian::native == std::endian::little, "numbers are hashed as stored in memory");
 
 Sha256 started_picture(int columns, int rows, int sample_bits, char const* numbers) {
   Sha256 hash;
