@@ -10,7 +10,7 @@ namespace gladstone {
 /// Integrals along a straight ray of the components of grad n perpendicular to the camera's axis.
 struct AcrossAxis {
   Vec3d plain{};                       ///< [1]
-  Vec3d levered{};                     ///< each slice times its distance along the axis from the ray's start [m]
+  Vec3d levered{};                     ///< grad n times the axial distance from the ray's start [m]
   double refractivity = 0, depth = 0;  ///< integrals of n - 1 and of 1 over the distance along the axis [m]
 };
 
