@@ -158,7 +158,7 @@ TEST(Lens, TracedPathIsStationary) {
   for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {
     for (Vec2d const by : {Vec2d{h, 0}, Vec2d{0, h}}) {
       double const slope = (moved(i, by) - moved(i, -by)) / (2 * h);
-      EXPECT_NEAR(slope, 0, 2e-9) << i;  // 0.05 (1e-4)^2 + 5e-17 / 3e-7
+      EXPECT_NEAR(slope, 0, 2e-9) << i;  // tolerance: 0.05 (1e-4)^2 + 5e-17 / 3e-7
     }
   }
 }
