@@ -35,7 +35,7 @@ TEST(BestFocus, TendsToTheParaxialFocusAsTheApertureShrinks) {
                  quarter = from_paraxial_image(real_lens_setup(lens, 64, 64));
     EXPECT_GT(std::abs(wide), 1e-7) << lens;
     EXPECT_NEAR(wide / half, 4, 0.1) << lens;
-    EXPECT_NEAR(half / quarter, 4, 0.025) << lens;  // a quarter of that
+    EXPECT_NEAR(half / quarter, 4, 0.025) << lens;  // next-order terms, and so the tolerance, divided by four
   }
 }
 

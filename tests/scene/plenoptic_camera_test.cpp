@@ -45,7 +45,7 @@ TEST(PlenopticCamera, ShowsTheStopBehindTheLensletOfAPoint) {
   Camera const camera = build_camera(setup);
   double const z_i = setup.imaging().image_distance, M = setup.imaging().magnification;
   EXPECT_NEAR(camera.sensor.pose.origin.z, 0.75 + z_i + lenslet_f, 1e-12);
-  Vec2d const lenslet{3 * pitch, -2 * pitch};  // with the sign of the stored image
+  Vec2d const lenslet{3 * pitch, -2 * pitch};  // position in the stored, upright image
   std::vector<Vec2d> const places = landings(camera, {lenslet.x / M, -lenslet.y / M, -0.25});
   ASSERT_GT(places.size(), 1500u);
   double const radius = 0.105 / 11 / 2 / z_i * lenslet_f;
