@@ -39,14 +39,6 @@ double mean_of_term(std::array<int, 3> const& term, Vec3d centre, double radius)
 
 }  // namespace
 
-Vec2d SoloffPolynomial::image_of_dot(Vec3d centre, double radius) const {
-  Vec2d pixel{};
-  for (std::size_t i = 0; i < exponents.size(); ++i) {
-    pixel += mean_of_term(exponents[i], centre, radius) * coefficients[i];
-  }
-  return pixel;
-}
-
 SoloffFit fit_soloff(CalibrationPoints const& points) {
   std::set<double> planes;
   for (Vec3d const& point : points.world) planes.insert(point.z);

@@ -14,8 +14,6 @@ namespace gladstone {
 struct SoloffPolynomial {
   std::vector<std::array<int, 3>> exponents;  ///< exponents of X, Y, Z
   std::vector<Vec2d> coefficients;            ///< [px / m^(sum of the exponents)]
-
-  Vec2d image_of_dot(Vec3d centre, double radius) const;
 };
 
 struct SoloffFit {

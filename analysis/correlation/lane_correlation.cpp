@@ -55,7 +55,7 @@ class FreeWorkplaces {
 LaneCorrelation::LaneCorrelation(InterrogationJob const& job, AxisWeightsView const& x, AxisWeightsView const& y,
                                  KnownTiles const& tiles, WindowMeans const& means, LaneFourier const& fourier,
                                  bool with_margin)
-    : job_(job), x_(x), y_(y), fourier_(fourier), windows_(job, x, y, tiles, means, with_margin) {
+    : x_(x), y_(y), fourier_(fourier), windows_(job, x, y, tiles, means, with_margin) {
   int const size = fourier.size(), side = windows_.side();
   pitch_ = LaneFourier::pitch(size);
   half_pitch_ = (size / 2 + 1) | 1;

@@ -53,7 +53,6 @@ class LaneCorrelation {
 
   LaneWindows& windows() { return windows_; }
   LaneWindows const& windows() const { return windows_; }
-  InterrogationJob const& job() const { return job_; }
   AxisWeightsView const& weights_x() const { return x_; }
   AxisWeightsView const& weights_y() const { return y_; }
   int size() const { return fourier_.size(); }
@@ -67,7 +66,6 @@ class LaneCorrelation {
   void filter_columns(FloatLanes scale, SpectrumFilter const& filter, int reach);
   void make_rows(LanePlane& plane);
 
-  InterrogationJob const& job_;
   AxisWeightsView x_, y_;
   LaneFourier const& fourier_;
   LaneWindows windows_;

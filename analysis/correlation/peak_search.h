@@ -79,10 +79,11 @@ GLADSTONE_HD bool can_enter(PeakList<T> const& found, T height) {
   return found.count < PeakList<T>::capacity || height > found.peak[PeakList<T>::capacity - 1].height;
 }
 
-/// Returns whether two peaks are less than `apart` pixels from each other on both axes, so that only the higher one
+/// Returns whether two peaks are less than three pixels from each other on both axes, so that only the higher one
 /// counts.
 template <class T>
-GLADSTONE_HD bool are_close(PlanePeak<T> const& a, PlanePeak<T> const& b, int apart = 3) {
+GLADSTONE_HD bool are_close(PlanePeak<T> const& a, PlanePeak<T> const& b) {
+  constexpr int apart = 3;
   int const dx = a.x - b.x, dy = a.y - b.y;
   return dx < apart && -dx < apart && dy < apart && -dy < apart;
 }

@@ -3,9 +3,7 @@
 #include <array>
 #include <cmath>
 
-#include "analysis/correlation/axis_weights.h"
 #include "analysis/correlation/peak_search.h"
-#include "analysis/correlation/subpixel_peak.h"
 #include "analysis/correlation/window_ops.h"
 #include "render/base/host_device.h"
 #include "render/base/vec.h"
@@ -50,30 +48,6 @@ struct MeasuredPeak {
   Vec2d shift;         ///< position [px]
   double coefficient;  ///< height, as in WindowCorrelation [1]
 };
-
-/// Measures a peak by a three-point Gaussian fit along each axis. The decrease of the plane with the shift, caused by
-/// the weights, is divided out first because it biases every peak towards zero.
-/// @param plane  value at a shift (dx, dy)
-/// @param scale  factor that converts the plane to correlation coefficients
-/// @param x, y  window weights along the axes
-/// @param column, row  position of the window in the grid
-template <class Plane>
-GLADSTONE_HD MeasuredPeak measured_peak(Plane const& plane, int peak_x, int peak_y, double scale,
-                                        AxisWeightsView const& x, int column, AxisWeightsView const& y, int row) {
-  using std::exp;
-  double across[3], down[3];
-  for (int d = -1; d <= 1; ++d) {
-    across[d + 1] = plane(peak_x + d, peak_y) / x.autocorrelation(column, peak_x + d);
-    down[d + 1] = plane(peak_x, peak_y + d) / y.autocorrelation(row, peak_y + d);
-  }
-  PeakBetweenSamples<double> const along_x = gaussian_peak(across[0], across[1], across[2]);
-  PeakBetweenSamples<double> const along_y = gaussian_peak(down[0], down[1], down[2]);
-  double const fall_off = x.autocorrelation(column, peak_x) * y.autocorrelation(row, peak_y) /
-                          (x.autocorrelation(column, 0) * y.autocorrelation(row, 0));
-  double const rise = exp(along_x.log_rise + along_y.log_rise);
-  return {{peak_x + along_x.offset, peak_y + along_y.offset},
-          scale * plane(peak_x, peak_y) * (rise < largest_rise ? rise : largest_rise) / fall_off};
-}
 
 /// Returns the height of the first peak over that of the higher of the other two, at most largest_peak_ratio.
 /// @param second, third  heights of the other peaks; 0: none

@@ -14,7 +14,8 @@ GLADSTONE_HD inline MeasuredPeak peak_of(PeakFit const& fit, int peak_x, int pea
   return {{peak_x + fit.x, peak_y + fit.y}, height * (rise < largest_rise ? rise : largest_rise)};
 }
 
-/// Measures a peak by any subpixel fit; measured_peak() is the special case of the three-point Gaussian.
+/// Measures a peak by a subpixel fit. The decrease of the plane with the shift, caused by the weights, is divided out
+/// first because it biases every peak towards zero.
 /// @param plane  correlation coefficient at a shift (dx, dy)
 /// @param x, y  window weights along the axes
 /// @param column, row  position of the window in the grid

@@ -178,14 +178,13 @@ ErrorBudget error_budget(std::span<BudgetStage const> stages, VectorMask const& 
   if (at[window] && at[estimate]) {
     Differences truth;
     for (std::size_t const i : counted) truth.push_back((*at[window])[i]);
-    budget.peak_locking_px = peak_locking(truth, difference(estimate, window), {});
+    budget.peak_locking_px = peak_locking(truth, difference(estimate, window));
   }
   return budget;
 }
 
-double peak_locking(std::span<Vec2d const> truth_px, std::span<Vec2d const> error_px, VectorMask const& mask) {
+double peak_locking(std::span<Vec2d const> truth_px, std::span<Vec2d const> error_px) {
   GLADSTONE_EXPECTS(truth_px.size() == error_px.size());
-  GLADSTONE_EXPECTS(mask.empty() || mask.size() == truth_px.size());
   constexpr int bins = 20;
   std::array<double, bins> sum{};
   std::array<std::size_t, bins> count{};
@@ -196,7 +195,6 @@ double peak_locking(std::span<Vec2d const> truth_px, std::span<Vec2d const> erro
     ++count[bin];
   };
   for (std::size_t i = 0; i < truth_px.size(); ++i) {
-    if (!mask.empty() && mask[i] == 0) continue;
     if (!is_finite(truth_px[i]) || !is_finite(error_px[i])) continue;
     add(truth_px[i].x, error_px[i].x);
     add(truth_px[i].y, error_px[i].y);
@@ -210,25 +208,6 @@ double peak_locking(std::span<Vec2d const> truth_px, std::span<Vec2d const> erro
     ++filled;
   }
   return filled == 0 ? not_a_number : std::sqrt(square / filled);
-}
-
-BudgetStage mean_estimator_stage(std::span<Vec2d const> window_truth_px,
-                                 std::span<std::vector<Vec2d> const> pattern_window_truth_px,
-                                 std::span<std::vector<Vec2d> const> pattern_noise_free_px) {
-  GLADSTONE_EXPECTS(pattern_window_truth_px.size() == pattern_noise_free_px.size());
-  BudgetStage stage{"estimator", std::vector<Vec2d>(window_truth_px.begin(), window_truth_px.end())};
-  for (std::size_t i = 0; i < window_truth_px.size(); ++i) {
-    Vec2d sum{};
-    int count = 0;
-    for (std::size_t k = 0; k < pattern_noise_free_px.size(); ++k) {
-      Vec2d const error = pattern_noise_free_px[k][i] - pattern_window_truth_px[k][i];
-      if (!is_finite(error)) continue;
-      sum += error;
-      ++count;
-    }
-    stage.displacement_px[i] += sum / static_cast<double>(count);  // no pattern: 0/0 is NaN, which excludes the vector
-  }
-  return stage;
 }
 
 }  // namespace gladstone

@@ -82,13 +82,6 @@ ErrorBudget error_budget(std::span<BudgetStage const> stages, VectorMask const& 
 
 /// Returns the magnitude of peak locking: the rms, over 20 bins of the fractional part of the true displacement (0.05
 /// px each, both components pooled, empty bins skipped), of the mean error in the bin [px]. NaN if no vector counts.
-double peak_locking(std::span<Vec2d const> truth_px, std::span<Vec2d const> error_px, VectorMask const& mask);
-
-/// Computes the `estimator` stage of a study with repeats: window truth of this pattern plus the mean over K patterns
-/// of (noise-free measurement - window truth of the same pattern). The difference to `noise_free` is the `pattern`
-/// term. Patterns that are NaN at a vector are excluded from the mean at this vector.
-BudgetStage mean_estimator_stage(std::span<Vec2d const> window_truth_px,
-                                 std::span<std::vector<Vec2d> const> pattern_window_truth_px,
-                                 std::span<std::vector<Vec2d> const> pattern_noise_free_px);
+double peak_locking(std::span<Vec2d const> truth_px, std::span<Vec2d const> error_px);
 
 }  // namespace gladstone

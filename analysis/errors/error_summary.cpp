@@ -119,10 +119,6 @@ VectorMask common_mask(DisplacementField const& measured, std::span<std::span<Ve
   return mask;
 }
 
-VectorMask common_mask(DisplacementField const& measured, std::initializer_list<std::span<Vec2d const>> references) {
-  return common_mask(measured, std::span(references.begin(), references.size()));
-}
-
 ErrorSummary summarize_errors(std::span<Vec2d const> measured, std::span<Vec2d const> truth, VectorMask const& mask,
                               std::size_t total) {
   Errors const errors = collect(measured, truth, mask, total);
@@ -147,12 +143,6 @@ std::vector<std::pair<std::string_view, double>> error_measures(std::span<Vec2d 
   std::vector<std::pair<std::string_view, double>> values;
   for (Measure const& measure : measures) values.emplace_back(measure.name, measure.of(errors));
   return values;
-}
-
-std::vector<std::string_view> error_measure_names() {
-  std::vector<std::string_view> names;
-  for (Measure const& measure : measures) names.push_back(measure.name);
-  return names;
 }
 
 }  // namespace gladstone

@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <initializer_list>
 #include <span>
 #include <string_view>
 #include <utility>
@@ -18,8 +17,6 @@ using VectorMask = std::vector<std::uint8_t>;
 
 /// Selects the vectors with status valid or replaced for which the measurement and every reference are finite.
 /// @param references  displacements at the same vectors, [measured.size()] each; empty ones are ignored
-VectorMask common_mask(DisplacementField const& measured,
-                       std::initializer_list<std::span<Vec2d const>> references = {});
 VectorMask common_mask(DisplacementField const& measured, std::span<std::span<Vec2d const> const> references);
 
 /// Errors larger than this are gross errors: the correlation found a wrong peak [px].
@@ -53,9 +50,6 @@ ErrorSummary summarize_errors(std::span<Vec2d const> measured, std::span<Vec2d c
 std::vector<std::pair<std::string_view, double>> error_measures(std::span<Vec2d const> measured,
                                                                 std::span<Vec2d const> truth, VectorMask const& mask,
                                                                 std::size_t total = 0);
-
-/// Returns the names of the measures in the same order: the columns of a study.
-std::vector<std::string_view> error_measure_names();
 
 /// Returns a quantile, interpolated linearly between order statistics; fraction 0 is the smallest value, 1 the largest.
 /// NaN for no values.

@@ -64,7 +64,7 @@ double mean_spacing(std::span<Vec2d const> points) {
 }  // namespace
 
 DisplacementMaps map_scattered(std::span<Vec2d const> position_px, std::span<Vec2d const> displacement_px,
-                               MapGrid const& grid, double smoothing_px) {
+                               MapGrid const& grid) {
   GLADSTONE_EXPECTS(position_px.size() == displacement_px.size());
   GLADSTONE_EXPECTS(grid.columns >= 0 && grid.rows >= 0 && grid.step_px > 0.0);
   std::vector<Vec2d> usable(position_px.begin(), position_px.end());
@@ -72,7 +72,7 @@ DisplacementMaps map_scattered(std::span<Vec2d const> position_px, std::span<Vec
     if (!std::isfinite(displacement_px[i].x) || !std::isfinite(displacement_px[i].y))
       usable[i] = {not_a_number, not_a_number};
   }
-  double const smoothing = smoothing_px > 0.0 ? smoothing_px : 0.6 * mean_spacing(usable);
+  double const smoothing = 0.6 * mean_spacing(usable);
   PointCells const cells(usable, 3.0 * smoothing);
 
   auto const value_at = [&](Vec2d node) {

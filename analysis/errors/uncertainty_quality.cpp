@@ -66,8 +66,8 @@ UncertaintyQuality uncertainty_quality(std::span<Vec2d const> measured, std::spa
 }
 
 std::vector<UncertaintyBin> uncertainty_bins(std::span<Vec2d const> measured, std::span<Vec2d const> truth,
-                                             std::span<Vec2d const> sigma, VectorMask const& mask, std::size_t bins) {
-  constexpr std::size_t fewest = 50;
+                                             std::span<Vec2d const> sigma, VectorMask const& mask) {
+  constexpr std::size_t bins = 10, fewest = 50;
   std::vector<std::pair<double, double>> pairs;  // sigma, error
   visit_components(measured, truth, sigma, mask,
                    [&](double error, double deviation) { pairs.emplace_back(deviation, error); });

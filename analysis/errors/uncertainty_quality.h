@@ -38,12 +38,11 @@ struct UncertaintyBin {
   double rms_sigma_px, rms_error_px;
 };
 
-/// Divides the components of uncertainty_quality() into bins of equal count in ascending order of sigma. If sigma
+/// Divides the components of uncertainty_quality() into ten bins of equal count in ascending order of sigma. If sigma
 /// predicts the errors, rms(error) follows rms(sigma) from bin to bin. The number of bins is reduced so that each holds
 /// at least 50 components (one bin below 100); no components give no bins.
 std::vector<UncertaintyBin> uncertainty_bins(std::span<Vec2d const> measured, std::span<Vec2d const> truth,
-                                             std::span<Vec2d const> sigma, VectorMask const& mask,
-                                             std::size_t bins = 10);
+                                             std::span<Vec2d const> sigma, VectorMask const& mask);
 
 /// Returns the numbers of a quality with their names in errors.json.
 std::vector<std::pair<std::string_view, double>> quality_measures(UncertaintyQuality const& quality);

@@ -74,9 +74,6 @@ void fill_unknown(PreparedFrames& frames) {
 
 }  // namespace
 
-std::vector<std::string> mask_kinds() { return names_of(masks); }
-std::vector<std::string> preprocessing_kinds() { return names_of(steps); }
-
 FramePreparation read_frame_preparation(SetupTable& correlate) {
   FramePreparation preparation;
   read_changes(correlate, "mask", masks, preparation.masks, preparation);

@@ -29,10 +29,6 @@ struct FramePreparation {
   bool empty() const { return masks.empty() && steps.empty(); }
 };
 
-/// Names of the masks and of the preprocessing steps: the allowed values of `kind`.
-std::vector<std::string> mask_kinds();
-std::vector<std::string> preprocessing_kinds();
-
 /// @param correlate  table [correlate]; problems are collected in its document
 FramePreparation read_frame_preparation(SetupTable& correlate);
 

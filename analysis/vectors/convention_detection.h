@@ -80,12 +80,6 @@ inline constexpr double telling_signal_px = 0.01;
 /// windows follow less than a fifth of it.
 bool is_too_fine_for_windows(DisplacementField const& ours, std::function<Vec2d(Vec2d)> const& truth);
 
-/// Computes the rms difference of the counted vectors from the truth, per component, from a sample of at most 4000
-/// vectors.
-/// @param truth  displacement at a position in our conventions [px]; NaN outside of the field of view
-ConventionFit fit_conventions(DisplacementField const& field, VectorConventions const& conventions,
-                              std::function<Vec2d(Vec2d)> const& truth, int image_rows);
-
 /// Determines the conventions of a file's vectors and detects probable mistakes by comparison with the truth.
 /// - Of the format's own interpretations (VectorFile::also), the first is used unless another fits significantly
 ///   better.

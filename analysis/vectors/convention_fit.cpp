@@ -125,11 +125,4 @@ double evidence_for(ConventionFit const& a, ConventionFit const& b) {
   return independent * 2.0 * std::log(std::max(b.spread_px, alike_px) / std::max(a.spread_px, alike_px));
 }
 
-ConventionFit fit_conventions(DisplacementField const& field, VectorConventions const& conventions,
-                              std::function<Vec2d(Vec2d)> const& truth, int image_rows) {
-  DisplacementField const few = detail::sample(field, 4000);
-  double const most = detail::largest_difference(few, conventions, truth, image_rows);
-  return detail::fit_within(few, conventions, truth, image_rows, most);
-}
-
 }  // namespace gladstone

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <atomic>
 #include <cstddef>
 #include <limits>
@@ -12,7 +11,8 @@
 /// outside of cuda/ can use it.
 namespace gladstone::cuda {
 
-/// Device memory held by the arrays of this process, its maximum, and its limit [bytes].
+/// Device memory held by the arrays of this process, its maximum, and its limit [bytes]. Tests set the limit and read
+/// the maximum.
 struct DeviceMemoryAccount {
   std::atomic<std::size_t> held{0};
   std::atomic<std::size_t> most_held{0};
@@ -20,39 +20,8 @@ struct DeviceMemoryAccount {
 };
 inline DeviceMemoryAccount device_memory_account;
 
-/// RAII guard that limits further allocations to `bytes`, as on a smaller card; for tests of memory shortage. At most
-/// one may exist.
-class DeviceMemoryLimit {
- public:
-  static constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
-
-  explicit DeviceMemoryLimit(std::size_t bytes) : held_before_(device_memory_account.held) {
-    device_memory_account.most_held = held_before_;
-    device_memory_account.limit = std::min(bytes, none - held_before_) + held_before_;
-  }
-  ~DeviceMemoryLimit() { device_memory_account.limit = none; }
-  DeviceMemoryLimit(DeviceMemoryLimit const&) = delete;
-  DeviceMemoryLimit& operator=(DeviceMemoryLimit const&) = delete;
-
-  /// Maximum memory held since construction, minus that held before [bytes].
-  std::size_t most_held() const { return device_memory_account.most_held - held_before_; }
-
- private:
-  std::size_t held_before_;
-};
-
-/// Upper limit of the shared memory per block, in addition to that of the device [bytes].
+/// Upper limit of the shared memory per block, in addition to that of the device [bytes]. Set by tests.
 inline std::atomic<std::size_t> shared_memory_limit{std::numeric_limits<std::size_t>::max()};
-
-/// RAII guard that limits the shared memory per block to `bytes`, as on a smaller card; for tests. At most one may
-/// exist.
-class SharedMemoryLimit {
- public:
-  explicit SharedMemoryLimit(std::size_t bytes) { shared_memory_limit = bytes; }
-  ~SharedMemoryLimit() { shared_memory_limit = std::numeric_limits<std::size_t>::max(); }
-  SharedMemoryLimit(SharedMemoryLimit const&) = delete;
-  SharedMemoryLimit& operator=(SharedMemoryLimit const&) = delete;
-};
 
 /// Free and total memory [bytes].
 struct DeviceRoom {

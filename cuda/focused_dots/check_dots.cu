@@ -65,8 +65,8 @@ __global__ void __launch_bounds__(threads, 3)
 
 }  // namespace
 
-void check_dots(DotModel const& model, DeviceMedium<double> const& medium, SourcesView<double> const& dots,
-                std::uint64_t count, DotCone* cones, DotFound* found, RayTally* tally) {
+void check_dots(DotModel const& model, DeviceMedium const& medium, SourcesView<double> const& dots, std::uint64_t count,
+                DotCone* cones, DotFound* found, RayTally* tally) {
   std::visit(
       [&](auto const& held) {
         auto* const kernel = check_dots_kernel<std::remove_cvref_t<decltype(held)>>;

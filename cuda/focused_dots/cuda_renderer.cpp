@@ -70,7 +70,7 @@ TracingPass trace_all(std::uint64_t dots_a_batch, FocusedDots const& bench, DotP
   OwnedDotModel const host(bench, sources, table, light_out, MomentImagesBy::device);
   MirroredModel on_device(host.model);
   DotModel const& model = on_device.model();
-  DeviceMedium<double> const medium = mirrored.view<double>();
+  DeviceMedium const& medium = mirrored.view();
   TheoryModel const theory_model = bench.theory_model();
   std::optional<ImagePairOnDevice> images;
   if (light_out) {
@@ -145,9 +145,9 @@ CudaRenderer::~CudaRenderer() = default;
 Rendering CudaRenderer::render(Scene& scene, DotPattern const& sources, RenderImages images, RenderTheory theory) {
   std::optional<FocusedDots> const bench = focused_dots(scene);
   GLADSTONE_EXPECTS(bench);
-  if (!uploads_->medium.serves(scene, true)) {
+  if (!uploads_->medium.serves(scene)) {
     uploads_->deflections.forget();
-    uploads_->medium.upload(scene, true);
+    uploads_->medium.upload(scene);
   }
   MirroredMedium const& medium = uploads_->medium.medium();
   std::shared_ptr<DeviceLight> light;
@@ -156,7 +156,7 @@ Rendering CudaRenderer::render(Scene& scene, DotPattern const& sources, RenderIm
   std::uint64_t const most =
       std::min(most_cone_bytes / sizeof(DotCone), static_cast<std::size_t>(most_steps_a_launch / steps));
   Rendering rendering = render_within_table(scene, [&](double farthest_aim) {
-    DeflectionTable const table = uploads_->deflections.table(*bench, sources, farthest_aim, medium.view<double>());
+    DeflectionTable const table = uploads_->deflections.table(*bench, sources, farthest_aim, medium.view());
     // Retry with smaller batches if device memory is short; results are bitwise the same.
     for (std::uint64_t batch = std::clamp<std::uint64_t>(most, 1, dots);; batch /= 2) try {
         return trace_all(batch, *bench, sources, medium, table, theory, images == RenderImages::no ? nullptr : &light);

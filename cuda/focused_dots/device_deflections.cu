@@ -33,8 +33,7 @@ __global__ void __launch_bounds__(threads, 3)
 
 }  // namespace
 
-DeviceDeflections::DeviceDeflections(FocusedDots const& dots, DeflectionPlan const& plan,
-                                     DeviceMedium<double> const& medium) {
+DeviceDeflections::DeviceDeflections(FocusedDots const& dots, DeflectionPlan const& plan, DeviceMedium const& medium) {
   if (!plan.wanted()) return;
   BenchView const bench = dots.bench();
   values_ = DeviceArray<std::byte>(plan.table.bytes(), "the deflection table");

@@ -20,8 +20,8 @@ struct RayTally {
 };
 
 /// Aims at the dots and traces their check rays, one warp per dot. @param found  output: errors and ray counts
-void check_dots(DotModel const& model, DeviceMedium<double> const& medium, SourcesView<double> const& dots,
-                std::uint64_t count, DotCone* cones, DotFound* found, RayTally* tally);
+void check_dots(DotModel const& model, DeviceMedium const& medium, SourcesView<double> const& dots, std::uint64_t count,
+                DotCone* cones, DotFound* found, RayTally* tally);
 
 /// Integrates the ray cones of the dots to obtain the truth, one block per dot.
 void integrate_cones(DotModel const& model, std::uint64_t count, DotCone* cones, DotFound* found);
@@ -33,7 +33,7 @@ void make_moment_images(DotModel const& model, double* out);
 void expose_dots(DotModel const& model, std::uint64_t count, DotCone const* cones, DeviceImages const& images);
 
 /// Integrates the density gradient along the straight rays of the dots, for the small-angle theory.
-void integrate_theory(DotModel const& model, TheoryModel const& theory, DeviceMedium<double> const& medium,
+void integrate_theory(DotModel const& model, TheoryModel const& theory, DeviceMedium const& medium,
                       SourcesView<double> const& dots, std::uint64_t count, DotTheory* out);
 
 }  // namespace gladstone::cuda

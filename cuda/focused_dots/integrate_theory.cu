@@ -30,7 +30,7 @@ __global__ void __launch_bounds__(threads)
 
 }  // namespace
 
-void integrate_theory(DotModel const& model, TheoryModel const& theory, DeviceMedium<double> const& medium,
+void integrate_theory(DotModel const& model, TheoryModel const& theory, DeviceMedium const& medium,
                       SourcesView<double> const& dots, std::uint64_t count, DotTheory* out) {
   std::visit(
       [&](auto const& held) {

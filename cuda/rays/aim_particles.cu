@@ -94,7 +94,7 @@ void list_particles(LadderView const& ladder, PulseAim const* aims, int const* a
 }
 
 void aim_particles(StopView const& stop, ParticlesLaunch const& launch, LadderView const& ladder,
-                   DeviceMedium<double> const& medium, std::uint64_t count, PulseAim* aims, Vec2d* origins,
+                   DeviceMedium const& medium, std::uint64_t count, PulseAim* aims, Vec2d* origins,
                    ParticleSteps const& steps) {
   auto const blocks = static_cast<unsigned int>((count + threads - 1) / threads);
   std::visit(

@@ -31,7 +31,7 @@ class BatchPass {
  public:
   /// Starts aiming the particles on the device. @param launches  launches of the batch's particles, one per ladder step
   BatchPass(ParticleLaunches const& host, LaunchesOnDevice const& on_device, std::vector<ParticlesLaunch> launches,
-            HostPulses const& pulses, Medium const& medium, DeviceMedium<double> const& mirrored, ParticleBatch& batch,
+            HostPulses const& pulses, Medium const& medium, DeviceMedium const& mirrored, ParticleBatch& batch,
             double across_medium, unsigned long long* ends)
       : host_(host),
         on_device_(on_device),
@@ -53,7 +53,7 @@ class BatchPass {
     constexpr bool bends = !std::is_same_v<Medium, NoMedium<double>>;
     std::size_t const count = batch_.count();
     DotTruth* const ambient_there = bends ? batch_.ambient().data() : nullptr;
-    trace_listed(AimState::filled, 1);
+    trace_listed(1);
     if (counted(LadderView::most_steps) > 0) aim_wide();
     while (true) {
       batch_.counts().zero();
@@ -95,10 +95,11 @@ class BatchPass {
                    batch_.listed(launches_.size()));
   }
   /// Traces the listed aims. @param sign  -1 removes the light and the ray counts of an earlier call
-  void trace_listed(AimState state, double sign) {
+  void trace_listed(double sign) {
     batch_.counts().download(counts_, LadderView::most_steps + 1);
     for (std::size_t step = 0; step < launches_.size(); ++step) {
-      trace(state, step, batch_.listed(launches_.size()) + step * frame_count * batch_.count(), counted(step), sign);
+      trace(AimState::filled, step, batch_.listed(launches_.size()) + step * frame_count * batch_.count(),
+            counted(step), sign);
     }
   }
   /// Traces `count` aims of one ladder step. @param listed  indices of the aims, in device memory
@@ -121,10 +122,10 @@ class BatchPass {
     std::size_t const count = batch_.count();
     batch_.counts().zero();
     list(batch_.steps().step);
-    trace_listed(AimState::filled, -1);
+    trace_listed(-1);
     batch_.counts().zero();
     list(batch_.steps().next);
-    trace_listed(AimState::filled, 1);
+    trace_listed(1);
     if (wide_.empty()) return;
     std::vector<int> steps(3 * count);
     batch_.all_steps().download(steps.data(), steps.size());
@@ -163,7 +164,7 @@ class BatchPass {
     batch_.all_steps().upload(steps.data());
     batch_.counts().zero();
     list(batch_.steps().step);
-    trace_listed(AimState::filled, 1);
+    trace_listed(1);
     trace_wider(wide_, steps.data());
   }
 
@@ -250,7 +251,7 @@ class BatchPass {
   std::vector<ParticlesLaunch> launches_;
   HostPulses const& pulses_;
   Medium const& medium_;
-  DeviceMedium<double> const& mirrored_;
+  DeviceMedium const& mirrored_;
   ParticleBatch& batch_;
   double across_medium_;
   unsigned long long* ends_;
@@ -272,7 +273,7 @@ std::size_t batch_size(Scene const& scene, LaunchesOnDevice const& launches) {
 }  // namespace
 
 Rendering trace_particles_on_device(Scene& scene, Particles const& particles, ParticleLight light, RenderImages images,
-                                    DeviceMedium<double> const& medium, ScatteringCache& kept, PinnedBuffer& staging) {
+                                    DeviceMedium const& medium, ScatteringCache& kept, PinnedBuffer& staging) {
   std::optional<AiryTable> airy;
   bool const lit = images != RenderImages::no;
   ParticleLaunches const host(scene, lit ? make_spot(scene, airy) : SpotView{}, images);
@@ -281,12 +282,12 @@ Rendering trace_particles_on_device(Scene& scene, Particles const& particles, Pa
   if (lit) frames.emplace(camera.columns, camera.rows);
   LaunchesOnDevice const launches(host, medium, frames ? &*frames : nullptr,
                                   lit ? 1 / photon_unit(scene, particles, light) : 0);
-  LaserSheet<double> const sheet = laser_sheet<double>(scene.setup.piv->laser);
+  LaserSheet<double> const sheet = laser_sheet(scene.setup.piv->laser);
   AnyScattering scattering;
   scattering.lambert.diameter = particles.diameter.data();
   if (light == ParticleLight::scattered) {
     scattering.kind = scene.mie ? AnyScattering::Kind::mie : AnyScattering::Kind::lambert;
-    if (scene.mie) scattering.mie = scene.mie->view<double>();
+    if (scene.mie) scattering.mie = scene.mie->view();
     kept.upload(scene.mie);
   }
   HostPulses pulses;

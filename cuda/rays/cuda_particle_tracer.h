@@ -12,6 +12,6 @@ namespace gladstone::cuda {
 /// @param kept  scattering table on the device, reused between scenes
 /// @param staging  page-locked buffer for transfers
 Rendering trace_particles_on_device(Scene& scene, Particles const& particles, ParticleLight light, RenderImages images,
-                                    DeviceMedium<double> const& medium, ScatteringCache& kept, PinnedBuffer& staging);
+                                    DeviceMedium const& medium, ScatteringCache& kept, PinnedBuffer& staging);
 
 }  // namespace gladstone::cuda

@@ -43,7 +43,7 @@ struct PatternOnDevice {
 class LaunchOnDevice {
  public:
   /// @param images  null: truth only
-  LaunchOnDevice(RaysLaunch const& host, PatternOnDevice const& pattern, DeviceMedium<double> const& medium,
+  LaunchOnDevice(RaysLaunch const& host, PatternOnDevice const& pattern, DeviceMedium const& medium,
                  ImagePairOnDevice* images)
       : host_(host),
         pattern_(pattern.host),
@@ -72,7 +72,6 @@ class LaunchOnDevice {
     widest_window_px_ = widest_window_px(launch_, medium);
   }
 
-  RaysLaunch const& host() const { return host_; }
   double light_per_weight() const { return host_.light_per_weight(pattern_.area()); }
   std::size_t sums_a_source() const { return launch_.shares() * static_cast<std::size_t>(launch_.scramblings()); }
   int scramblings() const { return launch_.scramblings(); }
@@ -146,7 +145,7 @@ struct AimedSources {
 /// Batch of sources being traced on the device.
 class Batch {
  public:
-  Batch(LaunchOnDevice const& scene, DeviceMedium<double> const& medium, AimedSources sources, double sign)
+  Batch(LaunchOnDevice const& scene, DeviceMedium const& medium, AimedSources sources, double sign)
       : scene_(scene),
         sources_(std::move(sources)),
         on_device_(sources_.placed.data(), sources_.placed.size(), "the sources"),
@@ -200,7 +199,7 @@ template <class Medium>
 class SceneTracer {
  public:
   SceneTracer(Scene const& scene, RaysLadder const& ladder, PatternOnDevice const& pattern, Medium const& medium,
-              DeviceMedium<double> const& mirrored, ImagePairOnDevice* images, TracingPass& pass)
+              DeviceMedium const& mirrored, ImagePairOnDevice* images, TracingPass& pass)
       : scene_(scene),
         ladder_(ladder),
         pattern_(pattern),
@@ -319,7 +318,7 @@ class SceneTracer {
   RaysLadder const& ladder_;
   PatternOnDevice const& pattern_;
   Medium const& medium_;
-  DeviceMedium<double> const& mirrored_;
+  DeviceMedium const& mirrored_;
   ImagePairOnDevice* images_;
   GroundTruth& truth_;
   StatusCounts& statuses_;
@@ -335,9 +334,9 @@ struct CudaRaysRenderer::Uploads {
   PinnedBuffer staging;
 
   /// Returns the scene's medium on the device; uploads it if necessary.
-  DeviceMedium<double> medium_of(Scene const& scene) {
-    if (!medium.serves(scene, true)) medium.upload(scene, true);
-    return medium.medium().view<double>();
+  DeviceMedium medium_of(Scene const& scene) {
+    if (!medium.serves(scene)) medium.upload(scene);
+    return medium.medium().view();
   }
 };
 
@@ -351,7 +350,7 @@ Rendering CudaRaysRenderer::render(Scene& scene, DotPattern const& sources, Rend
   bool const lit = images != RenderImages::no;
   std::optional<AiryTable> airy;
   RaysLaunch const launch(scene, lit ? make_spot(scene, airy) : SpotView{});
-  DeviceMedium<double> const mirrored = uploads_->medium_of(scene);
+  DeviceMedium const mirrored = uploads_->medium_of(scene);
   CameraSetup const& camera = scene.setup.camera;
   std::optional<ImagePairOnDevice> frames;
   if (lit) frames.emplace(camera.columns, camera.rows);

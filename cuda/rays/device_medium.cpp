@@ -1,5 +1,7 @@
 #include "cuda/rays/device_medium.h"
 
+#include <type_traits>
+
 namespace gladstone::cuda {
 namespace {
 
@@ -17,43 +19,51 @@ void require_room(char const* what_for, std::size_t bytes) {
 
 /// Returns a volume's polynomials; empty if they would need more than a quarter of the device's total memory. The limit
 /// does not refer to free memory, so that results do not depend on other programs on the device.
-template <class T, class Grid>
-DeviceArray<T> make_polynomials(Grid const& grid) {
-  using Cells = CellPolynomials<T, typename Grid::Interpolant, true>;
+template <class Grid>
+DeviceArray<double> make_polynomials(Grid const& grid) {
+  using Cells = CellPolynomials<typename Grid::Interpolant, true>;
   std::size_t const cell_count = Cells(grid, nullptr).cell_count(), count = cell_count * Cells::size;
-  if (cell_count > Cells::most_cells || count * sizeof(T) > device_room().total / 4) return {};
-  DeviceArray<T> cells(count, "the field's polynomials");
+  if (cell_count > Cells::most_cells || count * sizeof(double) > device_room().total / 4) return {};
+  DeviceArray<double> cells(count, "the field's polynomials");
   fill_cells(grid, cells.data());
   return cells;
 }
 
 }  // namespace
 
-MirroredMedium::MirroredMedium(Medium<double> const& medium, bool wide) : host_(medium) {
-  std::visit(
-      [&](auto const& grid) {
-        if constexpr (requires { grid.coefficients; }) {
-          using Grid = std::remove_cvref_t<decltype(grid)>;
-          using Stored = std::remove_cvref_t<decltype(*grid.coefficients)>;
-          std::size_t const count = coefficient_count(grid);
-          char const* const name = "the field's refractivity";
-          require_room(name, count * sizeof(Stored));
-          if constexpr (std::is_same_v<Stored, float>) {
-            floats_ = DeviceArray<float>(grid.coefficients, count, name);
-          } else {
-            doubles_ = DeviceArray<double>(grid.coefficients, count, name);
-          }
-          if constexpr (Grid::dimensions == 3) {
-            Grid on_device = grid;
-            on_device.coefficients = floats_.data();
-            if (!wide) {
-              single_polynomials_ =
-                  make_polynomials<float>(on_device);  // theory, in double precision, still reads the grid
-            } else {
-              polynomials_ = make_polynomials<double>(on_device);
-              if (polynomials_.size() > 0) floats_ = {};
-            }
-          }
+/// Uploads a grid's coefficients. @return its view on the device
+template <class Grid>
+DeviceMedium MirroredMedium::upload(Grid grid) {
+  using Stored = std::remove_cvref_t<decltype(*grid.coefficients)>;
+  std::size_t const count = coefficient_count(grid);
+  char const* const name = "the field's refractivity";
+  require_room(name, count * sizeof(Stored));
+  if constexpr (Grid::dimensions == 2) {
+    doubles_ = DeviceArray<double>(grid.coefficients, count, name);
+    grid.coefficients = doubles_.data();
+  } else {
+    floats_ = DeviceArray<float>(grid.coefficients, count, name);
+    grid.coefficients = floats_.data();
+    polynomials_ = make_polynomials(grid);
+    if (polynomials_.size() > 0) {
+      floats_ = {};
+      double const* const cells = polynomials_.data();
+      if (grid.periodic[0] || grid.periodic[1] || grid.periodic[2]) {
+        return CellPolynomials<typename Grid::Interpolant, true>(grid, cells);
+      }
+      return CellPolynomials<typename Grid::Interpolant, false>(grid, cells);
+    }
+  }
+  return grid;
+}
+
+MirroredMedium::MirroredMedium(Medium<double> const& medium) {
+  view_ = std::visit(
+      [this](auto const& held) -> DeviceMedium {
+        if constexpr (requires { held.coefficients; }) {
+          return upload(held);
+        } else {
+          return held;
         }
       },
       medium);

@@ -28,15 +28,15 @@ void ScatteringCache::upload(std::shared_ptr<MieScattering const> const& mie) {
 }
 
 MieScatteringView<double> ScatteringCache::view(std::uint64_t first) const {
-  MieScatteringView<double> view = owner_->view<double>();
+  MieScatteringView<double> view = owner_->view();
   view.table_of = table_of_.data() + first;
   view.table = tables_.data();
   view.coefficient = coefficients_.data();
   return view;
 }
 
-LaunchesOnDevice::LaunchesOnDevice(ParticleLaunches const& host, DeviceMedium<double> const& medium,
-                                   ImagePairOnDevice* images, double light_per_photon)
+LaunchesOnDevice::LaunchesOnDevice(ParticleLaunches const& host, DeviceMedium const& medium, ImagePairOnDevice* images,
+                                   double light_per_photon)
     : host_(host),
       sharp_(host.sharp.camera.elements.data(), host.sharp.camera.elements.size(), "the camera"),
       smooth_(host.ladder.size()),

@@ -29,7 +29,7 @@ class LaunchesOnDevice {
  public:
   /// @param images  null: truth only
   /// @param light_per_photon  light in the images per photon
-  LaunchesOnDevice(ParticleLaunches const& host, DeviceMedium<double> const& medium, ImagePairOnDevice* images,
+  LaunchesOnDevice(ParticleLaunches const& host, DeviceMedium const& medium, ImagePairOnDevice* images,
                    double light_per_photon);
 
   StopView const& stop() const { return stop_; }

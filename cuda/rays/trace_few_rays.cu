@@ -82,8 +82,8 @@ __global__ void __launch_bounds__(threads, 4)
 
 }  // namespace
 
-void trace_few_rays(ParticlesLaunch const& launch, DeviceMedium<double> const& medium, AimState state,
-                    PulseAim const* aims, Vec2d const* origins, std::uint32_t const* listed, std::uint64_t count,
+void trace_few_rays(ParticlesLaunch const& launch, DeviceMedium const& medium, AimState state, PulseAim const* aims,
+                    Vec2d const* origins, std::uint32_t const* listed, std::uint64_t count,
                     ParticlesTraced const& traced) {
   std::visit(
       [&](auto const& held) {

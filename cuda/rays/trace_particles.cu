@@ -148,7 +148,7 @@ __global__ void __launch_bounds__(seeing_threads)
 
 }  // namespace
 
-int widest_particle_window_px(ParticlesLaunch const& launch, DeviceMedium<double> const& medium) {
+int widest_particle_window_px(ParticlesLaunch const& launch, DeviceMedium const& medium) {
   std::size_t const there = std::visit(
       [](auto const& held) { return most_shared_bytes(trace_particles_kernel<std::remove_cvref_t<decltype(held)>>); },
       medium);
@@ -162,8 +162,8 @@ int widest_particle_window_px(ParticlesLaunch const& launch, DeviceMedium<double
   return probe.most_window_px;
 }
 
-void trace_particles(ParticlesLaunch const& launch, DeviceMedium<double> const& medium, AimState state,
-                     PulseAim const* aims, Vec2d const* origins, std::uint32_t const* listed, std::uint64_t count,
+void trace_particles(ParticlesLaunch const& launch, DeviceMedium const& medium, AimState state, PulseAim const* aims,
+                     Vec2d const* origins, std::uint32_t const* listed, std::uint64_t count,
                      ParticlesTraced const& traced) {
   if (launch.few_rays()) return trace_few_rays(launch, medium, state, aims, origins, listed, count, traced);
   std::visit(

@@ -92,7 +92,7 @@ struct ParticlesLaunch {
   ParticleSources<double, AnyScattering>
       pulses[frame_count];  ///< in device memory, indexed from the batch's first particle
   std::uint64_t first = 0;  ///< index of the batch's first particle in the scene
-  BundleView<double> choice;
+  BundleView choice;
   StopRuleView rule;  ///< in device memory; quadrature rule of rays that fill the stop, if any
   SpotView spot;
   HitSplineView spline;    ///< in device memory; null share: no windows of spline nodes
@@ -174,7 +174,7 @@ GLADSTONE_HD inline double weight_of_rim(ParticlesLaunch const& launch, PulseAim
 
 /// Returns the maximum side of windows [px]. It does not depend on the particles, so that the result of one is
 /// independent of the others.
-int widest_particle_window_px(ParticlesLaunch const& launch, DeviceMedium<double> const& medium);
+int widest_particle_window_px(ParticlesLaunch const& launch, DeviceMedium const& medium);
 
 /// Progress of the particles of a batch, in device memory.
 struct ParticleSteps {
@@ -189,7 +189,7 @@ struct ParticleSteps {
 /// @param stop  with its elements in device memory
 /// @param launch  of any ladder step
 void aim_particles(StopView const& stop, ParticlesLaunch const& launch, LadderView const& ladder,
-                   DeviceMedium<double> const& medium, std::uint64_t count, PulseAim* aims, Vec2d* origins,
+                   DeviceMedium const& medium, std::uint64_t count, PulseAim* aims, Vec2d* origins,
                    ParticleSteps const& steps);
 
 /// Lists, by ladder step, the aims of chosen particles that fill the stop.
@@ -203,13 +203,13 @@ void list_particles(LadderView const& ladder, PulseAim const* aims, int const* a
 /// units, so that the result of a particle is independent of the others.
 /// @param state  only aims in this state are traced
 /// @param listed  `count` indices of aims
-void trace_particles(ParticlesLaunch const& launch, DeviceMedium<double> const& medium, AimState state,
-                     PulseAim const* aims, Vec2d const* origins, std::uint32_t const* listed, std::uint64_t count,
+void trace_particles(ParticlesLaunch const& launch, DeviceMedium const& medium, AimState state, PulseAim const* aims,
+                     Vec2d const* origins, std::uint32_t const* listed, std::uint64_t count,
                      ParticlesTraced const& traced);
 
 /// Like trace_particles(), by warps. @pre launch.few_rays()
-void trace_few_rays(ParticlesLaunch const& launch, DeviceMedium<double> const& medium, AimState state,
-                    PulseAim const* aims, Vec2d const* origins, std::uint32_t const* listed, std::uint64_t count,
+void trace_few_rays(ParticlesLaunch const& launch, DeviceMedium const& medium, AimState state, PulseAim const* aims,
+                    Vec2d const* origins, std::uint32_t const* listed, std::uint64_t count,
                     ParticlesTraced const& traced);
 
 /// Computes the truth of the particles from the sums over their rays, and determines which of them need more rays.

@@ -100,7 +100,7 @@ __global__ void __launch_bounds__(threads, 3)
 
 }  // namespace
 
-int widest_window_px(SourcesLaunch const& launch, DeviceMedium<double> const& medium) {
+int widest_window_px(SourcesLaunch const& launch, DeviceMedium const& medium) {
   std::size_t const there = std::visit(
       [](auto const& held) { return most_shared_bytes(trace_sources_kernel<std::remove_cvref_t<decltype(held)>>); },
       medium);
@@ -113,7 +113,7 @@ int widest_window_px(SourcesLaunch const& launch, DeviceMedium<double> const& me
   return probe.most_window_px;
 }
 
-void trace_sources(SourcesLaunch const& launch, DeviceMedium<double> const& medium, SourceOnDevice const* sources,
+void trace_sources(SourcesLaunch const& launch, DeviceMedium const& medium, SourceOnDevice const* sources,
                    std::uint64_t count, SourcesTraced const& traced) {
   std::visit(
       [&](auto const& held) {

@@ -37,7 +37,7 @@ struct SourcesLaunch {
   CameraView<double> camera;  ///< camera with its elements in device memory
   TracingOptions<double> tracing;
   LambertSources<double> sources;  ///< sources in device memory
-  BundleView<double> choice;
+  BundleView choice;
   SpotView spot;
   HitSplineView spline;    ///< in device memory; null share: PSFs are added one by one
   int most_window_px = 0;  ///< maximum side of windows over all sources [px]
@@ -58,13 +58,13 @@ struct SourcesTraced {
 
 /// Returns the maximum side of windows [px]. It does not depend on the sources, so that the result of one is
 /// independent of the others.
-int widest_window_px(SourcesLaunch const& launch, DeviceMedium<double> const& medium);
+int widest_window_px(SourcesLaunch const& launch, DeviceMedium const& medium);
 
 /// Traces all rays of `count` sources in both frames, one block per share of a source. Adds their light, sums and
 /// status counts. Sums have a fixed order and light is in whole units, so that the result of a source is independent of
 /// the others.
 /// @param sources  in device memory
-void trace_sources(SourcesLaunch const& launch, DeviceMedium<double> const& medium, SourceOnDevice const* sources,
+void trace_sources(SourcesLaunch const& launch, DeviceMedium const& medium, SourceOnDevice const* sources,
                    std::uint64_t count, SourcesTraced const& traced);
 
 }  // namespace gladstone::cuda

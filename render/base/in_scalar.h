@@ -4,15 +4,11 @@
 
 namespace gladstone {
 
-/// Converts a vector, ray or pose to another scalar type U. With U = ceres::Jet, results computed from it carry their
+/// Converts a vector or pose to another scalar type U. With U = ceres::Jet, results computed from it carry their
 /// derivatives. Host code only.
 template <class U, class T>
 Vec3<U> in_scalar(Vec3<T> const& a) {
   return {U(a.x), U(a.y), U(a.z)};
-}
-template <class U, class T>
-Ray<U> in_scalar(Ray<T> const& ray) {
-  return {in_scalar<U>(ray.position), in_scalar<U>(ray.direction)};
 }
 template <class U, class T>
 Pose<U> in_scalar(Pose<T> const& pose) {

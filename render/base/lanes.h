@@ -38,32 +38,16 @@ struct Lanes {
     return load(from);
 #endif
   }
-  /// Loads an even number N of values with the fewest instructions.
-  /// @pre `from` is aligned to N sizeof(T) or 16 bytes, whichever is smaller, and constant while the kernel runs
-  GLADSTONE_HD static Lanes fetch_aligned(T const* from) {
+  /// Loads an even number N of doubles with the fewest instructions.
+  /// @pre `from` is aligned to 16 bytes, and constant while the kernel runs
+  GLADSTONE_HD static Lanes fetch_aligned(double const* from) {
     static_assert(N % 2 == 0);
 #if defined(__CUDA_ARCH__)
     Lanes a;
-    if constexpr (sizeof(T) == sizeof(double)) {
-      for (int i = 0; i < N; i += 2) {
-        double2 const two = __ldg(reinterpret_cast<double2 const*>(from + i));
-        a.v[i] = two.x;
-        a.v[i + 1] = two.y;
-      }
-    } else if constexpr (N % 4 == 0) {
-      for (int i = 0; i < N; i += 4) {
-        float4 const four = __ldg(reinterpret_cast<float4 const*>(from + i));
-        a.v[i] = four.x;
-        a.v[i + 1] = four.y;
-        a.v[i + 2] = four.z;
-        a.v[i + 3] = four.w;
-      }
-    } else {
-      for (int i = 0; i < N; i += 2) {
-        float2 const two = __ldg(reinterpret_cast<float2 const*>(from + i));
-        a.v[i] = two.x;
-        a.v[i + 1] = two.y;
-      }
+    for (int i = 0; i < N; i += 2) {
+      double2 const two = __ldg(reinterpret_cast<double2 const*>(from + i));
+      a.v[i] = two.x;
+      a.v[i + 1] = two.y;
     }
     return a;
 #else

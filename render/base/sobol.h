@@ -6,8 +6,7 @@
 
 namespace gladstone {
 
-/// Number of points of the Sobol sequence, limited by the 32-bit index.
-inline constexpr std::uint64_t sobol_points = std::uint64_t{1} << 32;
+/// Number of dimensions of the Sobol sequence.
 inline constexpr int sobol_dimensions = 4;
 
 namespace detail {

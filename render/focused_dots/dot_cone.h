@@ -243,7 +243,7 @@ GLADSTONE_HD inline ConeLight cone_light(CorrectedCone const& cone, ConeRule con
                                          double const* rims) {
   if (!rims) {
     constexpr double wide = CorrectedCone::reach;
-    ApertureStop<double> const stop{0, cone.stop_radius(), rule.smoothing};
+    ApertureStop<double> const stop{cone.stop_radius(), rule.smoothing};
     Vec2d const from_aim = (wide * cone.stop_radius()) * rule.scattered[point],
                 arrival = cone.arrival(offset, from_aim);
     double const weight = wide * wide / rule.scattered_count;

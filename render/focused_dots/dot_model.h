@@ -42,7 +42,7 @@ struct DotModel {
   PlaceRule places;
   MomentImages moment_images;
   int fewest_rays = 0, most_rays = 0;  ///< limits of the number of rays per dot
-  BundleView<double> choice;           ///< choice of the rays' sampling points
+  BundleView choice;                   ///< choice of the rays' sampling points
   SourceShape shape = SourceShape::disc;
 
   /// Number of scramblings to which the rays are assigned in turn.
@@ -165,7 +165,7 @@ GLADSTONE_HD inline DotAim aim_dot(DotModel const& model, Vec2d centre) {
 struct DotRay {
   Vec2d place, at;
 
-  GLADSTONE_HD static DotRay choose(BundleView<double> const& choice, SourceShape shape, Vec2d centre, int k) {
+  GLADSTONE_HD static DotRay choose(BundleView const& choice, SourceShape shape, Vec2d centre, int k) {
     using std::sqrt;
     double u[sobol_dimensions];
     sample_coordinates(choice, key_of(centre), static_cast<std::uint64_t>(k), u);

@@ -130,7 +130,7 @@ class LoneDot {
     spot.model = SpotModel::gaussian;
     spot.gaussian = model.spot;
     LightPatch patch(spot);
-    BundleView<double> choice;
+    BundleView choice;
     choice.seed = repeat_seed(scene_.setup.render.seed, 1000003u + static_cast<std::uint64_t>(scrambling));
     constexpr double wide = CorrectedCone::reach;
     auto const enter = [&](Vec2d on_dot, Vec2d moved, Vec2d arrival, double sign, LightImage& image,

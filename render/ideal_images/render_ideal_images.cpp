@@ -128,7 +128,7 @@ Rendering render_ideal_images(IdealImages const& ideal, Particles const& particl
     });
   }
   Rendering rendering;
-  rendering.table = TableState::by_rays;
+  rendering.table = TableState::by_formula;
   rendering.method = RenderMethod::formula;
   rendering.truth = truth_of(particles, spots);
   if (images == RenderImages::no) return rendering;

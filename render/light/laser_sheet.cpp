@@ -53,29 +53,23 @@ LaserSetup read_laser_setup(SetupTable table, double wavelength) {
   return laser;
 }
 
-template <class T>
-LaserSheet<T> laser_sheet(LaserSetup const& setup) {
-  auto const narrow = [](Vec3d v) { return Vec3<T>{T(v.x), T(v.y), T(v.z)}; };
-  LaserSheet<T> sheet;
+LaserSheet<double> laser_sheet(LaserSetup const& setup) {
+  LaserSheet<double> sheet;
   Vec3d const height_axis = cross(setup.normal, setup.direction);
   for (std::size_t pulse = 0; pulse < 2; ++pulse) {
-    Pose<double> const pose = Pose<double>{setup.centre, setup.direction, height_axis, setup.normal}
-                                  .moved({0, 0, setup.offset[pulse]})
-                                  .turned({setup.tilt[pulse], 0, 0});
-    sheet.pose[pulse] = {narrow(pose.origin), narrow(pose.x), narrow(pose.y), narrow(pose.z)};
+    sheet.pose[pulse] = Pose<double>{setup.centre, setup.direction, height_axis, setup.normal}
+                            .moved({0, 0, setup.offset[pulse]})
+                            .turned({setup.tilt[pulse], 0, 0});
   }
   sheet.profile = setup.profile;
-  sheet.pulse_energy = T(setup.pulse_energy);
-  sheet.thickness = T(setup.thickness);
-  sheet.height = T(setup.height);
-  sheet.growth = T(2 * std::tan(setup.divergence / 2));
-  sheet.cos_polarization = T(std::cos(setup.polarization));
-  sheet.sin_polarization = T(std::sin(setup.polarization));
-  sheet.photons_per_joule = T(setup.wavelength / (constant::planck * constant::speed_of_light));
+  sheet.pulse_energy = setup.pulse_energy;
+  sheet.thickness = setup.thickness;
+  sheet.height = setup.height;
+  sheet.growth = 2 * std::tan(setup.divergence / 2);
+  sheet.cos_polarization = std::cos(setup.polarization);
+  sheet.sin_polarization = std::sin(setup.polarization);
+  sheet.photons_per_joule = setup.wavelength / (constant::planck * constant::speed_of_light);
   return sheet;
 }
-
-template LaserSheet<double> laser_sheet(LaserSetup const& setup);
-template LaserSheet<float> laser_sheet(LaserSetup const& setup);
 
 }  // namespace gladstone

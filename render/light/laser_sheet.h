@@ -85,7 +85,6 @@ struct LaserSheet {
   }
 };
 
-template <class T>
-LaserSheet<T> laser_sheet(LaserSetup const& setup);
+LaserSheet<double> laser_sheet(LaserSetup const& setup);
 
 }  // namespace gladstone

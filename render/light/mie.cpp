@@ -40,7 +40,7 @@ int mie_terms(double x) {
   return static_cast<int>(std::ceil(x + above)) + 3;
 }
 
-MieCoefficients::MieCoefficients(double x, std::complex<double> m) : x_(x), m_(m) {
+MieCoefficients::MieCoefficients(double x, std::complex<double> m) : x_(x) {
   GLADSTONE_EXPECTS(x >= least_size_parameter && x <= largest_size_parameter);
   GLADSTONE_EXPECTS(m.real() > 0 && m.imag() >= 0);
   auto const terms = static_cast<std::size_t>(mie_terms(x));

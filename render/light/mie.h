@@ -38,8 +38,6 @@ class MieCoefficients {
   /// @pre least_size_parameter <= x <= largest_size_parameter; real part of m > 0, imaginary part >= 0
   MieCoefficients(double x, std::complex<double> m);
 
-  double size_parameter() const { return x_; }
-  std::complex<double> relative_index() const { return m_; }
   /// Coefficients a_n and b_n, n = 1, 2, ..., stored at index n - 1.
   std::vector<std::complex<double>> const& a() const { return a_; }
   std::vector<std::complex<double>> const& b() const { return b_; }
@@ -55,7 +53,6 @@ class MieCoefficients {
 
  private:
   double x_;
-  std::complex<double> m_;
   std::vector<std::complex<double>> a_, b_;
   std::vector<std::complex<double>> sum_, difference_;  ///< (2n+1)/(n(n+1)) (a_n +- b_n) / 2
 };

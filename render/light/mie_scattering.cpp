@@ -100,7 +100,7 @@ double fill_table(MieCoefficients const& sphere, AngleInterval angles, MieTable 
 
   MieTable const alone{0, table.cells, table.cells_per_radian};
   std::uint32_t const only = 0;
-  MieScatteringView<double> const view{&only, &alone, coefficient, {}, angles.least, angles.most, 1};
+  MieScatteringView<double> const view{&only, &alone, coefficient, angles.least, 1};
   Intensities const between(sphere, angles.least + step / 2, step, cells);
   double sum = 0, worst = 0;
   for (std::size_t i = 0; i < cells; ++i) {
@@ -120,11 +120,8 @@ double MieScattering::bytes_needed(std::vector<double> const& diameters, MieSett
 }
 
 MieScattering::MieScattering(std::vector<double> const& diameters, MieSetting const& setting, AngleInterval angles)
-    : setting_(setting), angles_(angles), wave_number_(wave_number_in(setting)) {
+    : angles_(angles), wave_number_(wave_number_in(setting)) {
   GLADSTONE_EXPECTS(angles.least >= 0 && angles.least < angles.most && angles.most <= pi);
-  GLADSTONE_EXPECTS(std::abs(length(setting.wave.propagation) - 1) < 1e-9);
-  GLADSTONE_EXPECTS(std::abs(length(setting.wave.field) - 1) < 1e-9);
-  GLADSTONE_EXPECTS(std::abs(dot(setting.wave.propagation, setting.wave.field)) < 1e-9);
   std::vector<double> const sizes = distinct(diameters);
   if (sizes.empty()) return;
   GLADSTONE_EXPECTS(sizes.front() >= 0);

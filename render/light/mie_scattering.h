@@ -20,12 +20,11 @@ struct LightWave {
   Vec3<T> field{T(0), T(1), T(0)};  ///< direction of the electric field, unit vector perpendicular to the propagation
 };
 
-/// Optical properties of a set of spheres and of the incident light.
+/// Optical properties of a set of spheres and of the incident light, except for its direction.
 struct MieSetting {
   std::complex<double> index{1.45, 0};  ///< refractive index of the spheres, n + i k [1]
   double wavelength = 532e-9;           ///< vacuum wavelength [m]
   double surroundings = 1;              ///< refractive index of the surrounding medium [1]
-  LightWave<double> wave;
 };
 
 /// Interval of scattering angles [rad].
@@ -46,29 +45,24 @@ struct MieScatteringView {
   std::uint32_t const* table_of = nullptr;  ///< index into `table` of every particle
   MieTable const* table = nullptr;          ///< one entry per distinct diameter
   float const* coefficient = nullptr;       ///< cubic B-spline coefficients of |S1|^2 and |S2|^2 [1]
-  LightWave<T> wave;
-  T least_angle{};           ///< smallest scattering angle of the table [rad]
-  T most_angle{};            ///< largest scattering angle of the table [rad]
-  T inverse_wave_number2{};  ///< 1/k^2, k the wave number in the surrounding medium [m^2]
+  T least_angle{};                          ///< smallest scattering angle of the table [rad]
+  T inverse_wave_number2{};                 ///< 1/k^2, k the wave number in the surrounding medium [m^2]
 
   /// Returns the differential scattering cross-section of a particle in a direction: power per solid angle over
   /// incident power per area, (|S2|^2 cos^2 phi + |S1|^2 sin^2 phi) / k^2, phi the angle between the electric field and
   /// the scattering plane (Bohren & Huffman 1983, sec. 3.3 and 4.4). Scattering angles outside the table are clamped.
   /// @param direction  unit vector away from the particle
+  /// @param wave       light that is incident on the particle
   /// @return [m^2/sr]
-  GLADSTONE_HD T cross_section(std::uint64_t particle, Vec3<T> direction) const {
-    return cross_section(particle, direction, wave);
-  }
-  /// Like above, for a wave that varies from particle to particle, as in a diverging sheet.
-  GLADSTONE_HD T cross_section(std::uint64_t particle, Vec3<T> direction, LightWave<T> const& own) const {
+  GLADSTONE_HD T cross_section(std::uint64_t particle, Vec3<T> direction, LightWave<T> const& wave) const {
     using std::atan2;
     using std::sqrt;
-    T const along = dot(direction, own.field);
-    T const across = dot(direction, cross(own.propagation, own.field));
+    T const along = dot(direction, wave.field);
+    T const across = dot(direction, cross(wave.propagation, wave.field));
     T const along2 = along * along, across2 = across * across;
     T const sine2 = along2 + across2;
     T s1, s2;
-    intensities(particle, atan2(sqrt(sine2), dot(direction, own.propagation)), s1, s2);
+    intensities(particle, atan2(sqrt(sine2), dot(direction, wave.propagation)), s1, s2);
     // phi is undefined for forward and backward scattering, where |S1| = |S2|
     T const share = sine2 > T(0) ? along2 / sine2 : T(0);
     return (s1 + (s2 - s1) * share) * inverse_wave_number2;
@@ -106,31 +100,19 @@ class MieScattering {
   /// @param diameters  diameters of all particles [m]; equal ones are computed once. A diameter of 0 scatters no light.
   /// @param angles     range of scattering angles
   /// @throws MemoryError if the table exceeds the available memory
-  /// @pre diameters >= 0, size parameters <= largest_size_parameter; the vectors of the wave are perpendicular unit
-  /// vectors; 0 <= angles.least < angles.most <= pi
+  /// @pre diameters >= 0, size parameters <= largest_size_parameter; 0 <= angles.least < angles.most <= pi
   MieScattering(std::vector<double> const& diameters, MieSetting const& setting, AngleInterval angles);
 
   /// Returns the memory required for the table [bytes].
   static double bytes_needed(std::vector<double> const& diameters, MieSetting const& setting, AngleInterval angles);
 
-  template <class T>
-  MieScatteringView<T> view() const {
-    auto const narrow = [](Vec3d v) { return Vec3<T>{T(v.x), T(v.y), T(v.z)}; };
-    return {table_of_.data(),
-            tables_.data(),
-            coefficients_.data(),
-            {narrow(setting_.wave.propagation), narrow(setting_.wave.field)},
-            T(angles_.least),
-            T(angles_.most),
-            T(1 / (wave_number_ * wave_number_))};
+  MieScatteringView<double> view() const {
+    return {table_of_.data(), tables_.data(), coefficients_.data(), angles_.least, 1 / (wave_number_ * wave_number_)};
   }
 
   /// Largest error of the tabulated |S1|^2 and |S2|^2, relative to their mean over the interval for the same diameter
   /// [1]. Measured midway between all nodes for all diameters.
   double error() const { return error_; }
-  std::size_t distinct_diameters() const { return tables_.size(); }
-  MieSetting const& setting() const { return setting_; }
-  AngleInterval angles() const { return angles_; }
 
   /// Data of the view, for copying to a device.
   std::vector<std::uint32_t> const& table_of() const { return table_of_; }
@@ -138,7 +120,6 @@ class MieScattering {
   std::vector<float> const& coefficients() const { return coefficients_; }
 
  private:
-  MieSetting setting_;
   AngleInterval angles_;
   double wave_number_;
   double error_ = 0;

@@ -2,12 +2,11 @@
 
 #include <cmath>
 #include <cstdint>
-#include <type_traits>
 
 #include "render/base/host_device.h"
 #include "render/base/random.h"
-#include "render/base/ray.h"
 #include "render/base/sobol.h"
+#include "render/base/vec.h"
 
 namespace gladstone {
 
@@ -56,33 +55,21 @@ GLADSTONE_HD constexpr int scrambling_bits(std::uint64_t rays) {
 }
 
 /// Sampling of the rays of a source. Both frames use the same sample points.
-template <class T>
 struct BundleView {
-  T lens_z{};        ///< Z of the pupil plane [m]
-  T pupil_radius{};  ///< radius of the sampled disc, the entrance pupil plus a margin [m]; 0: chief rays only
   std::uint64_t seed = 0;
   PupilSampling sampling = PupilSampling::sobol;
   int scrambling_bits = 0;  ///< ray j is point j >> bits of scrambling j mod 2^bits
 };
 
-/// Ray at its source.
-template <class T>
-struct EmittedRay {
-  Ray<T> ray;
-  Vec2<T> pupil;  ///< intersection of the undeflected ray with the pupil plane [m]
-  T weight{};     ///< radiance cos^4(angle to the axis) [1]: light of a Lambertian source per pupil area
-};
-
 /// Computes the sample coordinates of a ray, each in [0, 1): pupil radius^2 and angle, source radius^2 and angle.
 template <class T>
-GLADSTONE_HD void sample_coordinates(BundleView<T> const& bundle, std::uint64_t source, std::uint64_t ray,
+GLADSTONE_HD void sample_coordinates(BundleView const& bundle, std::uint64_t source, std::uint64_t ray,
                                      T (&u)[sobol_dimensions]) {
   if (bundle.sampling == PupilSampling::random) {
     for (int dimension = 0; dimension < sobol_dimensions; ++dimension) {
       std::uint64_t const bits = random_bits(bundle.seed, RandomStream::pupil, source,
                                              ray * sobol_dimensions + static_cast<std::uint64_t>(dimension));
       u[dimension] = T(to_unit(bits));
-      if (u[dimension] >= T(1)) u[dimension] = T(0);  // rounding up to one occurs in single precision only
     }
     return;
   }
@@ -96,11 +83,7 @@ GLADSTONE_HD void sample_coordinates(BundleView<T> const& bundle, std::uint64_t 
   sobol_point(static_cast<std::uint32_t>(ray >> bundle.scrambling_bits), point);
   for (int dimension = 0; dimension < sobol_dimensions; ++dimension) {
     std::uint32_t const x = owen_scramble(point[dimension], seeds[dimension]);
-    if constexpr (sizeof(T) > sizeof(float)) {
-      u[dimension] = T((static_cast<double>(x) + 0.5) * 0x1p-32);
-    } else {
-      u[dimension] = (static_cast<T>(x >> 8) + T(0.5)) * T(0x1p-24);
-    }
+    u[dimension] = T((static_cast<double>(x) + 0.5) * 0x1p-32);
   }
 }
 
@@ -109,42 +92,9 @@ template <class T>
 GLADSTONE_HD Vec2<T> point_of_circle(T radius, T turn) {
   using std::cos;
   using std::sin;
-#if defined(__CUDA_ARCH__)
-  if constexpr (std::is_same_v<T, float>) {
-    T sine, cosine;
-    sincospif(2.0f * turn, &sine, &cosine);
-    return {radius * cosine, radius * sine};
-  }
-#endif
   constexpr double two_pi = 6.28318530717958647693;
   T const angle = T(two_pi) * turn;
   return {radius * cos(angle), radius * sin(angle)};
-}
-
-/// Generates one ray of a source: draws its start point on the source and its target point on the pupil.
-template <class T>
-GLADSTONE_HD EmittedRay<T> emit(SourcesView<T> const& sources, BundleView<T> const& bundle, std::uint64_t source,
-                                std::uint64_t ray) {
-  using std::sqrt;
-  T u[sobol_dimensions];
-  sample_coordinates(bundle, source, ray, u);
-
-  Vec2<T> offset;
-  if (sources.shape == SourceShape::disc) {
-    offset = point_of_circle(sources.half_size * sqrt(u[2]), u[3]);
-  } else {
-    offset = {sources.half_size * (T(2) * u[2] - T(1)), sources.half_size * (T(2) * u[3] - T(1))};
-  }
-  EmittedRay<T> emitted;
-  emitted.pupil = point_of_circle(bundle.pupil_radius * sqrt(u[0]), u[1]);
-  Vec2<T> const start = sources.centre[source] + offset;
-  Vec3<T> const way{emitted.pupil.x - start.x, emitted.pupil.y - start.y, bundle.lens_z - sources.plane_z};
-  T const far = length(way);
-  emitted.ray = {{start.x, start.y, sources.plane_z}, way / far};
-  T const cosine2 = emitted.ray.direction.z * emitted.ray.direction.z;
-  T const radiance = sources.radiance ? sources.radiance[source] : T(1);
-  emitted.weight = radiance * cosine2 * cosine2;
-  return emitted;
 }
 
 }  // namespace gladstone

@@ -13,7 +13,6 @@ namespace gladstone {
 /// Density fields in closed form, each in a separate file. To add one, write its struct and add its name to the list.
 /// The struct is a medium, with bounds() [m] and sample(p) -> IndexSample, derives from Slab<T> and has
 /// - kind, read(SetupTable&): name in a setup, and reader of its keys (the members of Slab are set from [medium])
-/// - in_scalar<U>(): conversion to another scalar type
 /// - finest(): length scale that limits the step size [m]
 /// - steepest(): upper bound of |grad n| [1/m]
 /// - densities(half_extent): range of densities within a half width and half height [m]

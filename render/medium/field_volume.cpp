@@ -138,9 +138,23 @@ double finest_cell(FieldSetup const& field, RegularGrid const& grid) {
   return field.extrude ? across : std::min(across, grid.spacing.z);
 }
 
-/// Returns the upper limit of the step size in cells: within a cell a spline is smooth, a trilinear field is not.
-double cells_a_step(MediumSetup const& setup) {
-  return setup.interpolation == FieldInterpolation::cubic_bspline ? 2 : 0.25;
+/// Returns the upper limit of the step size in a file's field [m]: two cells, since within a cell a spline is smooth; a
+/// quarter of a cell of a trilinear field, which is not; a quarter of the thickness of an extruded spline, which does
+/// not vary along Z.
+double coarsest_step_in(MediumSetup const& setup, RegularGrid const& grid) {
+  bool const spline = setup.interpolation == FieldInterpolation::cubic_bspline;
+  if (spline && setup.field.extrude) return setup.thickness / 4;
+  return (spline ? 2 : 0.25) * finest_cell(setup.field, grid);
+}
+
+/// Returns the region of a file's field [m].
+Bounds<double> field_bounds(MediumSetup const& setup, RegularGrid const& grid) {
+  Bounds<double> box = grid_bounds(grid);
+  if (setup.field.extrude) {
+    box.low.z = setup.field.center.z - setup.thickness / 2;
+    box.high.z = setup.field.center.z + setup.thickness / 2;
+  }
+  return box;
 }
 
 template <class Stored, int Dimensions>
@@ -177,18 +191,17 @@ BuiltMedium build_grid(MediumSetup const& setup, RegularGrid const& grid, FieldS
   if (!lost.empty()) built.warnings.push_back(std::move(lost));
   std::string assumed = assumed_lengths(field, source, grid);
   if (!assumed.empty()) built.warnings.push_back(std::move(assumed));
-  double const half = setup.thickness / 2;
-  double const low = field.center.z - half, high = field.center.z + half;
+  Bounds<double> const box = field_bounds(setup, grid);
   if (spline) {
-    built.view = volume->template view<double, CubicBspline, Dimensions>(low, high);
+    built.view = volume->template view<double, CubicBspline, Dimensions>(box.low.z, box.high.z);
   } else {
-    built.view = volume->template view<double, Linear, Dimensions>(low, high);
+    built.view = volume->template view<double, Linear, Dimensions>(box.low.z, box.high.z);
   }
   built.owner = volume;
   built.grid = grid;
   built.steepest = volume->steepest();
   built.finest = finest_cell(field, grid);
-  built.coarsest_step = spline && field.extrude ? setup.thickness / 4 : cells_a_step(setup) * built.finest;
+  built.coarsest_step = coarsest_step_in(setup, grid);
   return built;
 }
 
@@ -234,21 +247,14 @@ std::vector<std::string> header_warnings(MediumSetup const& setup) {
 }
 
 Bounds<double> file_bounds(MediumSetup const& setup) {
-  FieldSetup const& field = setup.field;
-  RegularGrid const grid = world_grid(field, *open_file(field));
-  Bounds<double> box = grid_bounds(grid);
-  if (field.extrude) {
-    box.low.z = field.center.z - setup.thickness / 2;
-    box.high.z = field.center.z + setup.thickness / 2;
-  }
-  return box;
+  return field_bounds(setup, world_grid(setup.field, *open_file(setup.field)));
 }
 
 double steps_across(MediumSetup const& setup) {
   if (setup.field.kind != FieldKind::file) return setup.thickness / build_without_grid(setup).coarsest_step;
   RegularGrid const grid = world_grid(setup.field, *open_file(setup.field));
-  double const depth = setup.field.extrude ? setup.thickness : grid.spacing.z * grid.nodes[2];
-  return depth / (cells_a_step(setup) * finest_cell(setup.field, grid));
+  Bounds<double> const box = field_bounds(setup, grid);
+  return (box.high.z - box.low.z) / coarsest_step_in(setup, grid);
 }
 
 double finest_length(MediumSetup const& setup) {

@@ -16,8 +16,8 @@ constexpr bool possible_refractivity(double refractivity) { return refractivity 
 struct BuiltMedium {
   Medium<double> view = NoMedium<double>{};
   std::shared_ptr<void const> owner;  ///< owns the grid's memory; media with the same owner are identical
-  double finest = 0;                  ///< length scale that limits the step size, see steps_across() [m]
-  double coarsest_step = 0;           ///< upper limit of the step size, see choose_step() [m]
+  double finest = 0;                  ///< length scale that limits the step size [m]
+  double coarsest_step = 0;           ///< upper limit of the step size, see steps_across() [m]
   double steepest = 0;                ///< upper bound of |grad n|, if known [1/m]
   RegularGrid grid;                   ///< grid of a file's field
   double lowest = 0, highest = 0;     ///< range of n - 1 at the nodes of a file's field [1]
@@ -27,9 +27,10 @@ struct BuiltMedium {
 /// Returns the memory required for the field of a setup [bytes]; opens a file and reads its header.
 std::size_t medium_bytes_needed(MediumSetup const& setup);
 
-/// Returns the number of steps across the medium at the upper limit of the step size: a quarter of a wavelength or of a
-/// shock's thickness, half a radius, or for files two cells (trilinear: a quarter of a cell). At least four, except for
-/// files. Opens a file and reads its header.
+/// Returns the number of steps across the medium at the upper limit of the step size, BuiltMedium::coarsest_step: a
+/// quarter of a wavelength or of a shock's thickness, half a radius, a quarter of the medium's thickness; for the field
+/// of a file two cells (trilinear: a quarter of a cell), but a quarter of the thickness for an extruded spline. Opens a
+/// file and reads its header.
 /// @throws DataError if the file cannot be read
 double steps_across(MediumSetup const& setup);
 

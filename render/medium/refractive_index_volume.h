@@ -129,7 +129,7 @@ class RefractiveIndexVolume {
   enum class Interpolation { cubic_bspline, trilinear };
 
   /// Callback that provides planes of constant z, x fastest, as file values: `fill(first_plane, count, out)`. Values
-  /// are in double precision; only the refractivity minus offset() is rounded to Stored.
+  /// are in double precision; only the refractivity minus an offset is rounded to Stored.
   using PlaneFiller = std::function<void(int first_plane, int count, std::span<double> out)>;
 
   /// @param grid   nodes, spacing [m], origin [m]; a plane (nodes[2] = 1) does not depend on z
@@ -140,14 +140,10 @@ class RefractiveIndexVolume {
   RefractiveIndexVolume(RegularGrid const& grid, Interpolation interpolation, double scale, double shift,
                         PlaneFiller const& fill);
 
-  RegularGrid const& grid() const { return grid_; }
-  Interpolation interpolation() const { return interpolation_; }
-  double offset() const { return offset_; }
   double lowest() const { return lowest_; }    ///< smallest refractivity at a node
   double highest() const { return highest_; }  ///< largest refractivity at a node
   /// Upper bound of |grad n| [1/m]: a B-spline's derivative is a weighted mean of differences of its coefficients.
   double steepest() const { return steepest_; }
-  std::size_t bytes() const { return coefficients_.size() * sizeof(Stored); }
   /// Returns the memory required for a grid [bytes].
   static std::size_t bytes_needed(RegularGrid const& grid);
 

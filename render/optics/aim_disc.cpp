@@ -82,8 +82,6 @@ Ray<double> RayOrigin::ray_through(Vec2d p) const {
   return {on_plane - ahead * place, place};
 }
 
-double AimDisc::area() const { return pi * std::abs(a.x * b.y - a.y * b.x); }
-
 std::optional<Vec2d> place_in_stop(Lens const& lens, Ray<double> ray) {
   RayAccount<double> account;
   int failed_at;

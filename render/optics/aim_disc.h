@@ -27,7 +27,6 @@ struct AimDisc {
   Vec2d a{}, b{};  ///< conjugate semi-axes [m]
 
   Vec2d at(Vec2d unit_disc) const { return centre + unit_disc.x * a + unit_disc.y * b; }
-  double area() const;
 };
 
 /// Mapping of the rays of one source from the aim plane to the stop.

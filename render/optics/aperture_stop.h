@@ -1,14 +1,12 @@
 #pragma once
 
 #include "render/base/host_device.h"
-#include "render/base/ray.h"
 
 namespace gladstone {
 
-/// Circular aperture stop on the optical axis.
+/// Circular aperture stop about the origin of its plane.
 template <class T>
 struct ApertureStop {
-  T z{};       ///< position of its plane on the axis [m]
   T radius{};  ///< [m]
   T edge{};    ///< area of the smoothed zone about the edge, relative to the stop's area [1]; 0: sharp edge
 
@@ -24,16 +22,6 @@ struct ApertureStop {
     if (t >= T(1)) return T(1);
     T const tt = t * t;
     return T(0.5) + T(15.0 / 32.0) * t * (T(3) + tt * (T(-10.0 / 3.0) + T(1.4) * tt));
-  }
-
-  /// Moves a ray to the plane of the stop and multiplies its weight by the transmission.
-  /// @return vignetted outside the radius, even if the edge zone transmits part of the light
-  GLADSTONE_HD RayStatus interact(Ray<T>& ray, T& weight) const {
-    T const way = (z - ray.position.z) / ray.direction.z;
-    ray.position = ray.position + ray.direction * way;
-    T const x = ray.position.x, y = ray.position.y;
-    weight *= transmission(x, y);
-    return x * x + y * y > radius * radius ? RayStatus::vignetted : RayStatus::alive;
   }
 };
 

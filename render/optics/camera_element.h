@@ -27,7 +27,7 @@ struct PosedStop {
   GLADSTONE_HD RayStatus interact(Ray<T>& ray, RayAccount<T>& account) const {
     Vec2<T> p;
     if (!meet(ray, p)) return RayStatus::missed_lens;
-    account.weight = account.weight * ApertureStop<T>{T(0), radius, edge}.transmission(p.x, p.y);
+    account.weight = account.weight * ApertureStop<T>{radius, edge}.transmission(p.x, p.y);
     return p.x * p.x + p.y * p.y > radius * radius ? RayStatus::vignetted : RayStatus::alive;
   }
 
@@ -37,7 +37,8 @@ struct PosedStop {
   }
 };
 
-/// Ideal thin lens with any pose: ThinLens in its own frame. Light propagates along its +z axis.
+/// Ideal thin lens with any pose. Light propagates along its +z axis. Exact in slopes (a collinear map), and hence free
+/// of aberrations for every object plane.
 template <class T>
 struct PosedThinLens {
   Pose<T> pose;

@@ -116,8 +116,6 @@ double Glass::absorption(double wavelength) const {
   return (1 - share) * loss(*before) + share * loss(*after);
 }
 
-double Glass::vd() const { return (nd() - 1) / (index(spectral_line::F) - index(spectral_line::C)); }
-
 Glass Glass::from_nd_vd(double nd, double vd) {
   // Schott's formula represents Cauchy's one exactly: n^2 = (A + B/l^2)^2 = A^2 + 2 A B l^-2 + B^2 l^-4
   auto const inverse_square = [](double wavelength) { return 1e-12 / (wavelength * wavelength); };
@@ -128,15 +126,6 @@ Glass Glass::from_nd_vd(double nd, double vd) {
   glass.coefficients = {a * a, 0, 2 * a * b, b * b};
   glass.shortest = 0.3e-6;
   glass.longest = 2.5e-6;
-  return glass;
-}
-
-Glass Glass::constant(double index) {
-  Glass glass;
-  glass.name = fmt::format("index {:.6f}", index);
-  glass.coefficients = {index * index};
-  glass.shortest = 0;
-  glass.longest = 1;
   return glass;
 }
 

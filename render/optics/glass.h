@@ -60,14 +60,10 @@ struct Glass {
   /// 0 if the catalogue has no data.
   double absorption(double wavelength) const;
   double nd() const { return index(spectral_line::d); }
-  /// Returns the Abbe number (nd - 1) / (nF - nC).
-  double vd() const;
 
   /// Returns a glass with n = A + B / lambda^2 for given nd and Vd (Cauchy's formula). Accurate to 1e-3 in the visible
   /// range.
   static Glass from_nd_vd(double nd, double vd);
-  /// Returns a glass without dispersion.
-  static Glass constant(double index);
   /// Returns a glass with tabulated indices, in any order. @pre at least one sample; all wavelengths differ
   static Glass from_samples(std::string name, std::vector<Sample> samples);
 };

@@ -65,10 +65,6 @@ class GlassCatalogue {
   GlassMatch match(std::string_view name, double wavelength, std::string const& where,
                    std::vector<std::string> const& preferred = {},
                    std::optional<double> stated_nd = std::nullopt) const;
-  /// Like match(), without notes.
-  Glass const& find(std::string_view name, double wavelength, std::string const& where) const {
-    return *match(name, wavelength, where).glass;
-  }
   /// Returns true if a usable glass has the name, or is its successor.
   bool has(std::string_view name) const { return !candidates(name).empty() || !successors(name).empty(); }
 

@@ -45,7 +45,7 @@ template <class T>
 struct AimedBundle {
   Vec3<T> centre, a, b;    ///< rays are sent to centre + r (a cos + b sin), 0 <= r <= 1 [m]
   Vec3<T> across;          ///< area of that ellipse times its normal [m^2]; a unit vector for chief rays
-  BundleView<T> choice;    ///< choice of sampling points; its pupil is not used
+  BundleView choice;       ///< choice of sampling points
   Vec3<T> by_x{}, by_y{};  ///< shift of `centre` per offset in x and y of the ray's start from the source's middle [1]
 };
 

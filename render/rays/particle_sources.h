@@ -36,14 +36,13 @@ struct ParticleSources {
 
 /// Returns the point of the unit disc to which ray j of the particle with this key is sent. Rays of a scrambling come
 /// in pairs at opposite points, so that quantities that vary linearly over the lens do not shift their centroid.
-template <class T>
-GLADSTONE_HD Vec2<T> place_of_ray(BundleView<T> const& choice, std::uint64_t key, std::uint64_t j) {
+GLADSTONE_HD inline Vec2d place_of_ray(BundleView const& choice, std::uint64_t key, std::uint64_t j) {
   using std::sqrt;
   int const bits = choice.scrambling_bits;
   std::uint64_t const of_scrambling = j >> bits, scrambling = j & ((std::uint64_t{1} << bits) - 1);
-  T u[sobol_dimensions];
+  double u[sobol_dimensions];
   sample_coordinates(choice, key, ((of_scrambling >> 1) << bits) | scrambling, u);
-  Vec2<T> const at = point_of_circle(sqrt(u[0]), u[1]);
+  Vec2d const at = point_of_circle(sqrt(u[0]), u[1]);
   return of_scrambling % 2 == 1 ? -at : at;
 }
 

@@ -26,7 +26,7 @@ struct AimShift {
 struct RaysLaunch {
   Camera camera;  ///< camera; the edge of its stop as requested
   TracingOptions<double> tracing;
-  BundleView<double> choice;
+  BundleView choice;
   SpotView spot;
   std::uint64_t rays = 1;
   double z_b = 0;         ///< distance from the dots to the lens [m]

@@ -33,8 +33,8 @@ struct StopPlace {
 /// Returns the point of ray j of the particle with this key. A scrambling consists of every other node of a ring, or of
 /// every fourth.
 /// @param rule  rule with as many nodes as there are rays, or none
-GLADSTONE_HD inline StopPlace place_of_ray(StopRuleView const& rule, BundleView<double> const& choice,
-                                           std::uint64_t key, std::uint64_t j) {
+GLADSTONE_HD inline StopPlace place_of_ray(StopRuleView const& rule, BundleView const& choice, std::uint64_t key,
+                                           std::uint64_t j) {
   using std::sqrt;
   if (!rule) return {place_of_ray(choice, key, j)};
   auto const angles = static_cast<std::uint64_t>(rule.angles());

@@ -11,7 +11,7 @@ namespace gladstone {
 /// the medium.
 template <class Visit>
 auto with_particles(Scene const& scene, Particles const& particles, ParticleLight light, Visit&& visit) {
-  LaserSheet<double> const sheet = laser_sheet<double>(scene.setup.piv->laser);
+  LaserSheet<double> const sheet = laser_sheet(scene.setup.piv->laser);
   auto const with = [&]<class Scattering>(Scattering const& scattering) {
     ParticleSources<double, Scattering> pulses[frame_count];
     for (int frame = 0; frame < frame_count; ++frame) {
@@ -20,7 +20,7 @@ auto with_particles(Scene const& scene, Particles const& particles, ParticleLigh
     return std::visit([&](auto const& medium) { return visit(pulses, medium); }, scene.medium.view);
   };
   if (light == ParticleLight::equal) return with(EqualSpheres<double>{});
-  if (scene.mie) return with(scene.mie->view<double>());
+  if (scene.mie) return with(scene.mie->view());
   return with(LambertSpheres<double>{particles.diameter.data()});
 }
 

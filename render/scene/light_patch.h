@@ -22,9 +22,6 @@ class LightPatch {
   void flush(LightImage* image, double light_per_weight);
 
  protected:
-  SpotView const& spot() const { return spot_; }
-  /// Half width of a PSF's footprint, without its middle pixel [px].
-  int half() const { return half_; }
   /// Row length of the buffer [px].
   int side() const { return side_; }
   /// Makes room for a footprint and marks its pixels as used.

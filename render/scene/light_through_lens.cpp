@@ -11,8 +11,8 @@
 namespace gladstone {
 
 LightThroughLens::LightThroughLens(Scene const& scene, ParticleLight light)
-    : scene_(scene), light_(light), sheet_(laser_sheet<double>(scene.setup.piv->laser)) {
-  if (scene.mie) mie_ = scene.mie->view<double>();
+    : scene_(scene), light_(light), sheet_(laser_sheet(scene.setup.piv->laser)) {
+  if (scene.mie) mie_ = scene.mie->view();
 }
 
 double LightThroughLens::cross_section(Vec3d place, Vec3d direction, std::size_t particle, int pulse) const {

@@ -45,7 +45,7 @@ double seen_share(Setup const& setup) {
 
 /// Returns the range of scattering angles of light from all particles to the lens.
 AngleInterval seen_angles(Scene const& scene) {
-  LaserSheet<double> const sheet = laser_sheet<double>(scene.setup.piv->laser);
+  LaserSheet<double> const sheet = laser_sheet(scene.setup.piv->laser);
   AngleInterval angles{pi, 0};
   Vec3d const lens = scene.camera.aim_plane.origin;
   for (int pulse = 0; pulse < 2; ++pulse) {
@@ -144,7 +144,7 @@ std::string warning_of_small_volume(Scene const& scene, ParticleCensus const& ce
 std::string warning_of_dark_volume(Scene const& scene) {
   PivSetup const& piv = *scene.setup.piv;
   if (!piv.particles.volume) return {};
-  Pose<double> const sheet = laser_sheet<double>(piv.laser).pose[0];
+  Pose<double> const sheet = laser_sheet(piv.laser).pose[0];
   Vec3d const half = 0.5 * *piv.particles.volume, n = sheet.z;
   double half_depth = HUGE_VAL;  // half depth of the volume along the sheet's normal, through its centre
   for (int axis = 0; axis < 3; ++axis) {
@@ -208,7 +208,7 @@ MemoryNeed particle_memory(Setup const& setup) {
 void add_particles(Scene& scene) {
   scene.flow_warning = load_flow(scene.setup.piv->flow);
   PivSetup const& piv = *scene.setup.piv;
-  LaserSheet<double> const sheet = laser_sheet<double>(piv.laser);
+  LaserSheet<double> const sheet = laser_sheet(piv.laser);
   double const tolerance = path_tolerance_px * scene.setup.pixel_size();
   scene.particles = piv.particles.count == ParticleCount::file
                         ? read_particles(piv.particles, piv.flow, sheet, tolerance)
@@ -224,8 +224,7 @@ void add_particles(Scene& scene) {
                     "particles.volume_mm and center_mm, or seed more particles");
   }
   if (piv.particles.scattering == ParticleScattering::mie) {
-    MieSetting const setting{piv.particles.index, piv.laser.wavelength, scene.setup.ambient_index(),
-                             sheet.wave(piv.laser.centre, 0)};
+    MieSetting const setting{piv.particles.index, piv.laser.wavelength, scene.setup.ambient_index()};
     scene.mie = std::make_shared<MieScattering const>(particles.diameter, setting, seen_angles(scene));
   }
   double const brightest = brightest_photons(scene, scene.particles, ParticleLight::scattered);
@@ -319,7 +318,7 @@ void cross_check_particles(Setup const& setup, SetupTable root, std::vector<std:
                               setup.medium.wavelength / unit::nanometre));
   }
   if (piv.particles.volume) {
-    LaserSheet<double> const sheet = laser_sheet<double>(piv.laser);
+    LaserSheet<double> const sheet = laser_sheet(piv.laser);
     double const reach = (piv.laser.profile == SheetProfile::gaussian ? 1.5 : 0.5) * piv.laser.thickness;
     for (int pulse = 0; pulse < 2; ++pulse) {
       double const beside = sheet_beside(piv.particles, sheet.pose[pulse]);

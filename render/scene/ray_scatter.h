@@ -19,11 +19,6 @@ struct Sampled {
   std::vector<double> light;
 };
 
-/// Square of pixels around a dot.
-struct Window {
-  int left, top, side;
-};
-
 /// Mean and variance of a dot's displacement over independent scramblings of its rays.
 struct MeanDisplacement {
   Vec2d mean{};
@@ -32,7 +27,6 @@ struct MeanDisplacement {
   /// @param found  displacements [px]; NaN if the scrambling does not show the dot, which counts as zero displacement
   ///   if another scrambling does
   static MeanDisplacement of(Vec2d const (&found)[plan_scramblings]);
-  double variance_of_mean() const { return variance / plan_scramblings; }
 };
 /// Returns the mean variance of the dots that are visible [px^2]; NaN if none is.
 double mean_variance(std::vector<MeanDisplacement> const& displacements);

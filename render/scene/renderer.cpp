@@ -15,6 +15,8 @@ char const* to_string(TableState state) {
       return "there are no dots";
     case TableState::by_rays:
       return "dots are rendered ray by ray (method = \"rays\")";
+    case TableState::by_formula:
+      return "images and truth are given by a formula, without rays (method = \"formula\")";
     case TableState::field_too_small:
       return "the field does not extend beyond the light cones of the dots";
     case TableState::field_too_fine:

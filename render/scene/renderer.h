@@ -18,7 +18,8 @@ enum class TableState {
   no_sources,       ///< no dots in the scene
   field_too_small,  ///< the field extends hardly beyond the light cones
   field_too_fine,   ///< the table would need too many rays
-  by_rays,          ///< rendered ray by ray or by formula, which use no table
+  by_rays,          ///< rendered ray by ray, which uses no table
+  by_formula,       ///< rendered by a formula, without rays
   dots_too_wide,    ///< the light cone varies too much over the area of a dot
 };
 /// Returns the reason as the end of a sentence "no deflection table, since ..."; empty if there is a table.

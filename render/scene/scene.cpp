@@ -133,7 +133,7 @@ bool Scene::source_in_view(std::size_t source) const {
 }
 
 Pose<double> Scene::sheet_plane() const {
-  LaserSheet<double> const sheet = laser_sheet<double>(setup.piv->laser);
+  LaserSheet<double> const sheet = laser_sheet(setup.piv->laser);
   Pose<double> plane = sheet.pose[0];
   plane.origin = 0.5 * (sheet.pose[0].origin + sheet.pose[1].origin);
   plane.z = normalized(sheet.pose[0].z + sheet.pose[1].z);

@@ -95,10 +95,6 @@ double Setup::defocus_diameter_px() const {
   return magnification * geometry.entrance_pupil * std::abs(z_b() - focus) / z_b() / camera.pixel_pitch;
 }
 
-double Setup::image_diameter_px(double geometric_px) const {
-  return std::hypot(geometric_px, spot_e2_diameter_px(), defocus_diameter_px());
-}
-
 double Setup::pixel_area() const {
   if (pose || camera.tilted()) return posed_view_area(*this) / (camera.columns * camera.rows);
   double const px = camera.pixel_pitch / imaging().magnification;

@@ -108,10 +108,6 @@ struct Setup {
   double spot_e2_diameter_px() const;
   /// Diameter of the circle of confusion of a point in the dots' plane for a camera that is focused elsewhere [px].
   double defocus_diameter_px() const;
-  /// Diameter of a dot's image as used throughout: e^-2 diameters of the geometric image, the PSF and the circle of
-  /// confusion, added in quadrature (Adrian & Yao 1985; Olsen & Adrian 2000) [px].
-  /// @param geometric_px  diameter of the geometric image [px]
-  double image_diameter_px(double geometric_px) const;
   /// Diameter of the geometric image of a target dot [px].
   double geometric_dot_px() const { return dot_diameter() / pixel_size(); }
   /// Side of the square whose area equals the part of the dots' plane that a pixel sees at the target's centre, by

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "render/base/contracts.h"
+#include "render/base/not_a_number.h"
 
 namespace gladstone {
 namespace {
@@ -55,7 +55,7 @@ double standard_error(Renderer& renderer, Scene const& scene, Particles const& p
     for (auto const& one : found) sum += dot(one[i] - mean, one[i] - mean);
     count += 2.0 * (keys - 1);
   }
-  return count > 0 ? std::sqrt(sum / count) : std::numeric_limits<double>::quiet_NaN();
+  return count > 0 ? std::sqrt(sum / count) : not_a_number;
 }
 
 }  // namespace
@@ -80,7 +80,7 @@ Rendering render_in_two_media(Renderer& renderer, Scene& scene, Particles const&
   GroundTruth& truth = all.truth;
   truth.displacement_px = displacements(truth, later.truth);
   truth.displacement_std_px = later.truth.displacement_std_px;
-  double const error = lit == RenderImages::no ? 0 : standard_error(renderer, scene, particles);
+  double const error = lit == RenderImages::no ? not_a_number : standard_error(renderer, scene, particles);
   for (std::size_t i = 0; i < truth.size(); ++i) {
     truth.flux[i].y = later.truth.flux[i].y;
     truth.rays[i][1] = later.truth.rays[i][1];

@@ -38,9 +38,6 @@ class Detector {
 
   /// Model of one pixel, for recording on another device.
   PixelDetector const& pixel() const { return pixel_; }
-  /// Grey levels per unit of light.
-  double levels_per_light() const { return pixel_.electrons * pixel_.levels_per_electron; }
-  double full_scale() const { return pixel_.full_scale; }
 
  private:
   PixelDetector pixel_;

@@ -61,13 +61,8 @@ struct GaussianSpot {
       }
     }
   }
-  /// Taylor coefficient: derivative of one pixel's share with respect to p, of the given order, over order!.
-  GLADSTONE_HD T taylor_share(T p, int pixel, int order) const {
-    T const per_sigma = T(1) / sigma, left = (T(pixel) - T(0.5) - p) * per_sigma, right = left + per_sigma;
-    if (order == 0) return edge_value(right) - edge_value(left);
-    return EdgeTerms(right, per_sigma).of[order] - EdgeTerms(left, per_sigma).of[order];
-  }
-  /// Computes the shares and their Taylor coefficients with respect to p, up to the given order.
+  /// Computes the shares and their Taylor coefficients with respect to p, up to the given order: the derivative of
+  /// order k over k!.
   /// @param out  [order + 1][width]
   GLADSTONE_HD void taylor_shares(T p, int first, int width, int order, T* out) const {
     shares(p, first, width, out);

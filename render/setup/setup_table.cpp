@@ -160,11 +160,6 @@ std::string SetupTable::text(std::string const& key, std::string const& fallback
   return value;
 }
 
-std::string SetupTable::required_text(std::string const& key) {
-  if (!has(key)) problem(key, "is missing; give a text in quotes");
-  return text(key, "");
-}
-
 std::string SetupTable::word(std::string const& key, std::string const& fallback,
                              std::vector<std::string> const& words) {
   auto const* const node = read(*state_, path_, key);

@@ -144,7 +144,6 @@ class SetupTable {
   long long required_integer(std::string const& key, long long low, long long high);
   bool boolean(std::string const& key, bool fallback);
   std::string text(std::string const& key, std::string const& fallback);
-  std::string required_text(std::string const& key);
   /// Reads one of a closed set of words; the problem lists them and the most similar one.
   std::string word(std::string const& key, std::string const& fallback, std::vector<std::string> const& words);
   /// Reads one of a closed set of words and returns the value assigned to it.

@@ -120,8 +120,7 @@ nlohmann::json case_summary(CaseSetup& loaded, PreparedCase const& prepared, Ren
        {{"dots_by_table", accuracy.by_table},
         {"dots_by_rays", formula ? 0 : rendering.truth.size() - accuracy.by_table},
         {"dots_by_formula", formula ? rendering.truth.size() : 0},
-        {"no_table_since", formula ? "images and truth are given by a formula, without rays (method = \"formula\")"
-                                   : to_string(rendering.table)},
+        {"no_table_since", to_string(rendering.table)},
         {"table_error", outcome.table_error ? table_error_json(*outcome.table_error) : nlohmann::json(nullptr)},
         {"side_faces", plan.side_faces ? side_faces_json(*plan.side_faces, plan.bits) : nlohmann::json(nullptr)}}},
       {"method", to_string(rendering.method)},

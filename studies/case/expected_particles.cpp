@@ -53,7 +53,7 @@ double lit_thickness(PivSetup const& piv, Pose<double> const& sheet) {
 /// Returns the photons through the lens from particles of these diameters at one point of the sheet.
 std::vector<double> photons_of(Scene& scene, Vec3d place, std::vector<double> const& diameters) {
   PivSetup const& piv = *scene.setup.piv;
-  LaserSheet<double> const sheet = laser_sheet<double>(piv.laser);
+  LaserSheet<double> const sheet = laser_sheet(piv.laser);
   scene.particles.resize(diameters.size());
   scene.particles.diameter = diameters;
   for (int pulse = 0; pulse < 2; ++pulse) {
@@ -65,7 +65,7 @@ std::vector<double> photons_of(Scene& scene, Vec3d place, std::vector<double> co
     double const cosine = dot(normalized(scene.camera.aim_plane.origin - place), wave.propagation);
     double const angle = std::acos(std::clamp(cosine, -1.0, 1.0));
     scene.mie = std::make_shared<MieScattering const>(
-        diameters, MieSetting{piv.particles.index, piv.laser.wavelength, scene.setup.ambient_index(), wave},
+        diameters, MieSetting{piv.particles.index, piv.laser.wavelength, scene.setup.ambient_index()},
         AngleInterval{std::max(0.0, angle - angle_margin), std::min(pi, angle + angle_margin)});
   }
   std::vector<double> photons(diameters.size());
@@ -127,7 +127,7 @@ ParticleImage image_of(Setup const& setup, double diameter, double distance, dou
 /// Returns the distance from the camera's front principal plane to the sheet, along the camera's axis [m].
 double distance_of_sheet(Setup const& setup) {
   Pose<double> const camera = setup.camera_pose();
-  Vec3d const place = place_in_sheet(camera, laser_sheet<double>(setup.piv->laser).pose[0]);
+  Vec3d const place = place_in_sheet(camera, laser_sheet(setup.piv->laser).pose[0]);
   return std::abs(dot(place - camera.origin, camera.z));
 }
 
@@ -147,7 +147,7 @@ ExpectedParticles expected_particles(Setup const& setup) {
   scene.setup = setup;
   scene.imaging = setup.imaging();
   scene.camera = build_camera(setup);
-  Pose<double> const camera = setup.camera_pose(), sheet = laser_sheet<double>(piv.laser).pose[0];
+  Pose<double> const camera = setup.camera_pose(), sheet = laser_sheet(piv.laser).pose[0];
   Vec3d const place = place_in_sheet(camera, sheet);
   double const distance = distance_of_sheet(setup);
   double const pitch = setup.camera.pixel_pitch, facing = std::max(1e-3, std::abs(dot(camera.z, sheet.z)));

@@ -76,7 +76,7 @@ struct Bench {
   T spot_sigma_px() const { return 0.4206042622 * spot_scale() / given->camera.pixel_pitch; }
   T geometric_dot_px() const { return dot_diameter / pixel_at_dots(); }
   /// Returns d_tau of F14, the e^-2 diameter of the dot's image: diameter of the geometric image and four standard
-  /// deviations of the PSF in quadrature, as Setup::image_diameter_px() [px].
+  /// deviations of the PSF in quadrature (Adrian & Yao 1985; Olsen & Adrian 2000) [px].
   T dot_image_px() const {
     using std::sqrt;
     T const geometric = geometric_dot_px(), spot = spot_sigma_px();

@@ -33,8 +33,6 @@ enum class Bound {
 /// Returns true for lower limits, for which a larger value is stricter.
 inline bool from_below(Bound bound) { return bound == Bound::view_width || bound == Bound::view_height; }
 
-constexpr bool required_by_user(Bound bound) { return bound < Bound::focus; }
-
 /// A constraint with its limit, in SI.
 struct Limit {
   Bound bound;

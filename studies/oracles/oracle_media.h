@@ -57,13 +57,4 @@ struct FishEye {
   }
 };
 
-/// Uniform refractive index within a box.
-struct GlassBox {
-  double n = 1.5;
-  Bounds<double> box{{-1, -1, -1}, {1, 1, 1}};
-
-  Bounds<double> bounds() const { return box; }
-  IndexSample<double> sample(Vec3d) const { return {n - 1, {}}; }
-};
-
 }  // namespace gladstone::oracle

@@ -147,11 +147,6 @@ void CaseRunner::check_inputs(ManifestCase const& one) {
 
 CaseResult CaseRunner::run(ManifestCase const& one, std::string const& keep, CaseObserver const& observe) {
   check_inputs(one);
-  if (sharing_ == Sharing::no) {
-    auto files = std::move(shared_->files);
-    shared_ = std::make_unique<Shared>();
-    shared_->files = std::move(files);
-  }
   CaseResult result;
   result.index = one.index;
   result.line_hash = one.line_hash;

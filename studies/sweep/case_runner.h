@@ -13,11 +13,11 @@
 
 namespace gladstone {
 
-/// Reuse of intermediate results from earlier cases. `yes` shares only what is identical. `over_repeats` also shares,
-/// between cases that differ only in the random dots and rays, the planned step and number of rays and the truth and
-/// theory at common vectors. These then depend on which of the cases was computed first, within the tolerances of the
-/// ray budget.
-enum class Sharing { yes, no, over_repeats };
+/// Reuse of intermediate results from earlier cases. `identical` shares only what is identical. `over_repeats` also
+/// shares, between cases that differ only in the random dots and rays, the planned step and number of rays and the
+/// truth and theory at common vectors. These then depend on which of the cases was computed first, within the
+/// tolerances of the ray budget.
+enum class Sharing { identical, over_repeats };
 
 /// Results of a case, passed to an observer before they are discarded.
 struct ObservedCase {
@@ -37,7 +37,7 @@ class CaseRunner {
  public:
   /// @param least_apart_px  minimum spacing of the compared vectors; of a denser lattice, only every n-th row and
   ///                        column is compared
-  explicit CaseRunner(Device device, Sharing sharing = Sharing::yes, int least_apart_px = 0);
+  explicit CaseRunner(Device device, Sharing sharing = Sharing::identical, int least_apart_px = 0);
   ~CaseRunner();
 
   /// Computes a case. Errors in the computation become a result with status `failed`.

@@ -36,21 +36,12 @@ class AxisCollector {
   std::unordered_map<std::string, std::size_t> places_;
 };
 
-template <class Items, class Name>
-std::optional<std::size_t> place_in(Items const& items, Name const& matches) {
-  auto const found = std::find_if(items.begin(), items.end(), matches);
-  if (found == items.end()) return std::nullopt;
-  return static_cast<std::size_t>(found - items.begin());
-}
-
 }  // namespace
 
 std::optional<std::size_t> StudyTable::find_measure(std::string_view wanted) const {
-  return place_in(measures, [&](std::string const& known) { return known == wanted; });
-}
-
-std::optional<std::size_t> StudyTable::find_axis(std::string_view wanted) const {
-  return place_in(axes, [&](StudyAxis const& known) { return known.key == wanted; });
+  auto const found = std::find(measures.begin(), measures.end(), wanted);
+  if (found == measures.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - measures.begin());
 }
 
 std::vector<std::size_t> StudyTable::unfinished() const {

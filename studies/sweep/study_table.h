@@ -53,8 +53,6 @@ struct StudyTable {
 
   /// Returns the index of a measure in every row, or nullopt if no case has it.
   std::optional<std::size_t> find_measure(std::string_view name) const;
-  /// Returns the index of an axis, or nullopt if the study does not have it.
-  std::optional<std::size_t> find_axis(std::string_view key) const;
   /// Returns the largest number of repeats of a point.
   std::size_t repeats() const;
   /// Returns the distinct builds of gladstone that computed the rows, sorted.

@@ -149,6 +149,19 @@ TEST(PinholeFit, WhatLeavesACameraOpenIsRefused) {
   EXPECT_THROW(fit_pinhole(few, middle), std::invalid_argument);
 }
 
+/// Image of a dot by a polynomial camera model: its mean over disc_points [px].
+Vec2d image_of_dot(SoloffPolynomial const& polynomial, Vec3d centre, double radius) {
+  Vec2d pixel{};
+  for (std::size_t i = 0; i < polynomial.exponents.size(); ++i) {
+    auto const [x, y, z] = polynomial.exponents[i];
+    for (Vec2d const off : disc_points) {
+      pixel += 0.25 * std::pow(centre.x + radius * off.x, x) * std::pow(centre.y + radius * off.y, y) *
+               std::pow(centre.z, z) * polynomial.coefficients[i];
+    }
+  }
+  return pixel;
+}
+
 // What is such a polynomial is found again, to rounding.
 TEST(SoloffFit, FindsAPolynomial) {
   CalibrationPoints points = points_of(wide_camera(), 0);
@@ -162,7 +175,7 @@ TEST(SoloffFit, FindsAPolynomial) {
   EXPECT_EQ(fit.polynomial.exponents.size(), 19u);
   EXPECT_LT(fit.rms_px, 1e-10);
   Vec3d const at{0.031, -0.02, 0.017};
-  EXPECT_LT(length(fit.polynomial.image_of_dot(at, 0) - map(at)), 1e-9);
+  EXPECT_LT(length(image_of_dot(fit.polynomial, at, 0) - map(at)), 1e-9);
 }
 
 // The image of a pinhole camera is none, but it is followed as well as the residuals say.
@@ -170,7 +183,7 @@ TEST(SoloffFit, FollowsAPinholeCamera) {
   PinholeCamera const camera = wide_camera();
   SoloffFit const fit = fit_soloff(points_of(camera, 0));
   Vec3d const at{0.013, 0.027, 0.011};
-  EXPECT_LT(length(fit.polynomial.image_of_dot(at, 1e-3) - camera.image_of_dot(at, 1e-3)), 4 * fit.rms_px);
+  EXPECT_LT(length(image_of_dot(fit.polynomial, at, 1e-3) - camera.image_of_dot(at, 1e-3)), 4 * fit.rms_px);
   EXPECT_GT(fit.rms_px, 1e-4);
   EXPECT_LT(fit.rms_px, 1);
 }

@@ -139,7 +139,7 @@ TEST(PeakLocking, IsTheRmsOfTheBinnedSine) {
     error.push_back({0.05 * std::sin(2.0 * pi * d), 0.05 * std::sin(2.0 * pi * d)});
   }
   double const sinc = std::sin(pi / 20.0) / (pi / 20.0);
-  EXPECT_NEAR(peak_locking(truth, error, {}), 0.05 / std::sqrt(2.0) * sinc, 1e-6);
+  EXPECT_NEAR(peak_locking(truth, error), 0.05 / std::sqrt(2.0) * sinc, 1e-6);
 }
 
 // A constant bias is no locking to a fraction but shows as the mean of every bin.
@@ -149,20 +149,7 @@ TEST(PeakLocking, OfAConstantErrorIsThatError) {
     truth.push_back({0.013 * i, 0.0});
     error.push_back({-0.02, -0.02});
   }
-  EXPECT_NEAR(peak_locking(truth, error, {}), 0.02, 1e-15);
-}
-
-// Three patterns with errors 1, 2, 3: the mean estimator error is 2 on top of this pattern's window truth.
-TEST(MeanEstimatorStage, AddsTheMeanErrorOfThePatterns) {
-  std::vector<std::vector<Vec2d>> truth, measured;
-  for (int k = 1; k <= 3; ++k) {
-    truth.push_back({{10.0 * k, 0.0}});
-    measured.push_back({{10.0 * k + k, -1.0 * k}});
-  }
-  BudgetStage const stage = mean_estimator_stage(truth[0], truth, measured);
-  EXPECT_EQ(stage.name, "estimator");
-  EXPECT_DOUBLE_EQ(stage.displacement_px[0].x, 12.0);
-  EXPECT_DOUBLE_EQ(stage.displacement_px[0].y, -2.0);
+  EXPECT_NEAR(peak_locking(truth, error), 0.02, 1e-15);
 }
 
 }  // namespace

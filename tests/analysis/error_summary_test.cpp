@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <span>
 #include <vector>
 
 namespace gladstone {
@@ -77,10 +78,10 @@ TEST(ErrorMeasures, HaveTheNamesOfErrorsJsonInTheirOrder) {
   std::vector<std::string_view> const names{"count",       "valid_fraction", "bias_u_px", "bias_v_px",
                                             "random_u_px", "random_v_px",    "rms_px",    "rms_without_gross_px",
                                             "p95_px",      "gross_fraction"};
-  EXPECT_EQ(error_measure_names(), names);
   std::vector<Vec2d> const truth(2), measured{{0.25, 0.0}, {0.0, 0.5}};
   auto const values = error_measures(measured, truth, {1, 1}, 4);
   ASSERT_EQ(values.size(), names.size());
+  for (std::size_t i = 0; i < names.size(); ++i) EXPECT_EQ(values[i].first, names[i]);
   EXPECT_EQ(values[0].second, 2.0);
   EXPECT_EQ(values[1].second, 0.5);
   EXPECT_EQ(values[6].second, summarize_errors(measured, truth, {}).rms_px);
@@ -94,7 +95,8 @@ TEST(CommonMask, NeedsAValidStatusAndFiniteNumbersEverywhere) {
                   VectorStatus::invalid, VectorStatus::valid,    VectorStatus::valid};
   std::vector<Vec2d> reference(6);
   reference[5] = {0.0, nan};
-  EXPECT_EQ(common_mask(field, {reference, {}}), (VectorMask{1, 1, 0, 0, 0, 0}));
+  std::vector<std::span<Vec2d const>> const references{reference, {}};
+  EXPECT_EQ(common_mask(field, references), (VectorMask{1, 1, 0, 0, 0, 0}));
 }
 
 }  // namespace

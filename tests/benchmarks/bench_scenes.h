@@ -140,7 +140,7 @@ inline Scene points_scene(Setup setup, double dots_per_window = 1) {
 /// Some rays of a scene's dots to the pupil, straight.
 inline std::vector<Ray<double>> rays_of_dots(Scene const& scene, std::size_t every, int rays_a_dot) {
   BenchView const bench = focused_dots(scene).value().bench();
-  BundleView<double> choice;
+  BundleView choice;
   choice.scrambling_bits = scrambling_bits(static_cast<std::uint64_t>(rays_a_dot));
   std::vector<Ray<double>> rays;
   for (std::size_t dot = 0; dot < scene.dots.centre.size(); dot += every) {

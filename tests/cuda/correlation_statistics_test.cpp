@@ -8,8 +8,8 @@
 #include "analysis/correlation/correlator.h"
 #include "analysis/uncertainty/uncertainty.h"
 #include "cuda/backend.h"
-#include "cuda/device/device_memory.h"
 #include "studies/benchmark/particle_pair.h"
+#include "tests/cuda/memory_limits.h"
 
 namespace gladstone::cuda {
 namespace {

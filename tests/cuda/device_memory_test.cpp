@@ -15,6 +15,7 @@
 #include "render/base/error.h"
 #include "render/focused_dots/deflection_map.h"
 #include "studies/benchmark/particle_pair.h"
+#include "tests/cuda/memory_limits.h"
 #include "tests/scene/small_scenes.h"
 
 namespace gladstone::cuda {

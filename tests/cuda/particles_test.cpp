@@ -3,10 +3,10 @@
 #include <functional>
 #include <limits>
 
-#include "cuda/device/device_memory.h"
 #include "render/base/units.h"
 #include "render/rays/ray_planning.h"
 #include "tests/cuda/cuda_renderer_fixture.h"
+#include "tests/cuda/memory_limits.h"
 #include "tests/scene/real_lens_setups.h"
 
 namespace gladstone {

@@ -2,7 +2,6 @@
 #include <cmath>
 #include <limits>
 
-#include "cuda/device/device_memory.h"
 #include "render/optics/glass_catalogue.h"
 #include "render/optics/lens.h"
 #include "render/optics/paraxial.h"
@@ -10,6 +9,7 @@
 #include "render/rays/ray_planning.h"
 #include "render/scene/build_camera.h"
 #include "tests/cuda/cuda_renderer_fixture.h"
+#include "tests/cuda/memory_limits.h"
 #include "tests/optics/prescription_texts.h"
 
 namespace gladstone {

@@ -11,7 +11,7 @@ extern "C" int LLVMFuzzerTestOneInput(std::uint8_t const* data, std::size_t size
     GlassCatalogue catalogue;
     catalogue.add_file(path);
     for (Glass const* glass : catalogue.glasses()) {
-      fuzz::read(input, [&] { catalogue.find(glass->name, 550e-9, "lens:1"); });
+      fuzz::read(input, [&] { catalogue.match(glass->name, 550e-9, "lens:1"); });
     }
   });
   return 0;

@@ -94,9 +94,11 @@ TEST(IdealImages, EqualThoseOfRaysInFocus) {
   scene.rays_per_dot = 64;
   Rendering const rays =
       RaysRenderer().render_particles(scene, scene.particles, ParticleLight::scattered, RenderImages::yes);
+  EXPECT_EQ(formula.table, TableState::by_formula);
+  EXPECT_EQ(rays.table, TableState::by_rays);
   auto const brightest = *std::max_element(rays.light.reference.begin(), rays.light.reference.end());
-  double const levels =
-      Detector(scene.setup.camera, Detector::auto_exposure(scene.setup.camera, brightest)).levels_per_light();
+  Detector const detector(scene.setup.camera, Detector::auto_exposure(scene.setup.camera, brightest));
+  double const levels = detector.pixel().electrons * detector.pixel().levels_per_electron;
   double worst = 0;
   for (auto const frame : {&LightPair::reference, &LightPair::flow}) {
     Image<double> const &a = formula.light.*frame, &b = rays.light.*frame;

@@ -33,7 +33,7 @@ LaserSheet<double> wide_sheet() {
   LaserSetup laser;
   laser.profile = SheetProfile::top_hat;
   laser.thickness = laser.height = 1;
-  return laser_sheet<double>(laser);
+  return laser_sheet(laser);
 }
 
 std::string csv(std::string const& name, std::string const& text) {

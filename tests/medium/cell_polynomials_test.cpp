@@ -24,7 +24,7 @@ template <class Basis>
 struct Owned {
   template <class Grid>
   explicit Owned(Grid const& grid) {
-    using Cells = CellPolynomials<double, Basis, true>;
+    using Cells = CellPolynomials<Basis, true>;
     Cells const shape(grid, nullptr);
     values.resize(shape.cell_count() * Cells::size);
     double* out = values.data();
@@ -36,7 +36,7 @@ struct Owned {
     view = Cells(grid, values.data());
   }
   std::vector<double> values;
-  CellPolynomials<double, Basis, true> view;
+  CellPolynomials<Basis, true> view;
 };
 
 /// Returns positions in a box of 7 x 6 x 5 cells and on its faces, on the nodes and between them.
@@ -56,7 +56,7 @@ template <class Basis, class Grid>
 void expect_same(Grid const& grid) {
   double const tolerance = 64 * 1e-3 * 10 * 1.1e-16;
   Owned<Basis> const cells(grid);
-  CellPolynomials<double, Basis, false> const open(grid, cells.values.data());
+  CellPolynomials<Basis, false> const open(grid, cells.values.data());
   bool const repeats = grid.periodic[0] || grid.periodic[1] || grid.periodic[2];
   for (Vec3d const p : places()) {
     IndexSample<double> const a = grid.sample(p), b = cells.view.sample(p);

@@ -306,6 +306,24 @@ TEST_F(FieldVolume, PeriodicAxesTile) {
   EXPECT_NEAR(refractivity(built, p), refractivity(built, p + Vec3d{-80 * cell, 12 * cell, 0}), 1e-17);
 }
 
+// The number of steps that is stated before the field is read agrees with the step size of the built medium. This also
+// holds for a plane field, whose spline does not vary along Z, however small its cells are.
+TEST_F(FieldVolume, StepsAcrossAreThoseOfTheCoarsestStep) {
+  for (bool const extrude : {true, false}) {
+    for (auto const interpolation : {FieldInterpolation::cubic_bspline, FieldInterpolation::trilinear}) {
+      auto setup = file_setup(8, 7, extrude ? 1 : 6, ramp, 0.01);
+      setup.field.extrude = extrude;
+      setup.interpolation = interpolation;
+      BuiltMedium const built = build_medium(setup);
+      Bounds<double> const box = bounds(built);
+      EXPECT_NEAR(steps_across(setup) * built.coarsest_step / (box.high.z - box.low.z), 1, 1e-12);
+      if (extrude && interpolation == FieldInterpolation::cubic_bspline) {
+        EXPECT_DOUBLE_EQ(steps_across(setup), 4);
+      }
+    }
+  }
+}
+
 TEST_F(FieldVolume, ShapesThatDoNotFitAreRefused) {
   auto const message = [](std::string const& text) {
     return testing::ThrowsMessage<DataError>(testing::HasSubstr(text));

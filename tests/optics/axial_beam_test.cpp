@@ -71,7 +71,7 @@ TEST(AxialBeam, AnFNumberWiderThanTheLensIsToldOf) {
   };
   std::string const edged =
       changed(toml, "[[surface]]\n", "[[surface]]\nradius_mm = inf\nsemi_diameter_mm = 8.0\n[[surface]]\n");
-  double const n = GlassCatalogue::shipped().find("N-BK7", spectral_line::d, "").nd();
+  double const n = GlassCatalogue::shipped().match("N-BK7", spectral_line::d, "").glass->nd();
   double const f = 50 / (2 * (n - 1) - (n - 1) * (n - 1) * 6 / (n * 50));
   EXPECT_THAT(at(8, edged).warnings, IsEmpty());
   EXPECT_THAT(at(11, edged).warnings, IsEmpty());

@@ -58,7 +58,7 @@ double traced_focal_length(std::vector<double> const& curvatures, std::vector<do
 }
 
 /// Index of N-BK7 at the d line.
-double bk7() { return GlassCatalogue::shipped().find("N-BK7", spectral_line::d, "").nd(); }
+double bk7() { return GlassCatalogue::shipped().match("N-BK7", spectral_line::d, "").glass->nd(); }
 
 /// Focal length of the doublet in most of the files, 75.945005 mm.
 double doublet_focal_length(double crown = 1.62041, double flint = 1.71736) {
@@ -465,7 +465,7 @@ TEST(LensFiles, WithoutRdmNumbersAreCurvaturesUnlessTheyCannotBe) {
   Lens const lens = lens_of_case("without_rdm.seq");
   EXPECT_THAT(lens.warnings, Contains(AllOf(HasSubstr("without_rdm.seq:7"), HasSubstr("no RDM"))));
   auto const index = [](char const* name) {
-    return GlassCatalogue::shipped().find(name, 587.6e-9, "").index(587.6e-9);
+    return GlassCatalogue::shipped().match(name, 587.6e-9, "").glass->index(587.6e-9);
   };
   double const crown = index("N-SK16"), flint = index("F2");
   double const f =
@@ -769,13 +769,13 @@ TEST(LensFiles, AnOddGlassLeavesItsCatalogueUsable) {
   GlassCatalogue glasses;
   glasses.add_file(case_path("good_and_odd_glass.agf"));
   ASSERT_EQ(glasses.glasses().size(), 1u);
-  EXPECT_NEAR(glasses.find("GOODCROWN", spectral_line::d, "").nd(), std::sqrt(2.5571), 1e-15);
+  EXPECT_NEAR(glasses.match("GOODCROWN", spectral_line::d, "").glass->nd(), std::sqrt(2.5571), 1e-15);
   EXPECT_THAT(glasses.warnings(), ElementsAre(AllOf(HasSubstr("good_and_odd_glass.agf:5: 2 of 3 glasses"),
                                                     HasSubstr("ODDGLASS (line 5"), HasSubstr("NORANGE (line 8"))));
   EXPECT_THAT(
       [&] {
         try {
-          glasses.find("NORANGE", spectral_line::d, "lens:1");
+          glasses.match("NORANGE", spectral_line::d, "lens:1");
         } catch (DataError const& error) {
           return std::string(error.what());
         }
@@ -789,7 +789,7 @@ TEST(LensFiles, WrappedLinesOfACatalogueAreJoined) {
   GlassCatalogue wrapped, whole;
   wrapped.add_file(case_path("wrapped_lines.agf"));
   whole.add_file(case_path("whole_lines.agf"));
-  EXPECT_NEAR(wrapped.find("J-LASFH17", spectral_line::d, "").nd(), 2.00069, 5e-6);
+  EXPECT_NEAR(wrapped.match("J-LASFH17", spectral_line::d, "").glass->nd(), 2.00069, 5e-6);
   Lens const lens = lens_of_case("glass_of_wrapped_lines.zmx", wrapped);
   EXPECT_EQ(focal_length_mm(lens), focal_length_mm(lens_of_case("glass_of_wrapped_lines.zmx", whole)));
   EXPECT_THAT(lens.warnings, IsEmpty());
@@ -801,7 +801,7 @@ TEST(LensFiles, EveryLineOfNumbersOfACatalogueMayBeWrapped) {
   glasses.add(
       "NM X 1 0 1.5 60\nED 7 0\n0 0\nCD 2\n0.25 0\nTD 0\n0 0\nOD 1\n2\nLD 0.3\n2\nIT 0.4 0.9\n10\nIT 0.5\n0.99 10\n",
       "OWN", "own.agf");
-  Glass const& glass = glasses.find("X", 1e-6, "");
+  Glass const& glass = *glasses.match("X", 1e-6, "").glass;
   EXPECT_NEAR(glass.index(1e-6), 1.5, 1e-15) << "n^2 = 2 + 0.25 lambda^2 at 1 um";
   EXPECT_NEAR(glass.shortest, 0.3e-6, 1e-20);
   EXPECT_NEAR(glass.longest, 2e-6, 1e-20);

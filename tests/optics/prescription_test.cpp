@@ -43,7 +43,7 @@ TEST(Prescription, GlassesByIndexAloneAreWarnedOfOnce) {
 
 // The same lens in three formats: the biconvex singlet f = R / (2 (n - 1) - (n - 1)^2 t / (n R)).
 TEST(Prescription, OneLensInThreeFormatsIsOneLens) {
-  double const n = GlassCatalogue::shipped().find("N-BK7", spectral_line::d, "").nd();
+  double const n = GlassCatalogue::shipped().match("N-BK7", spectral_line::d, "").glass->nd();
   double const f = 50 / (2 * (n - 1) - (n - 1) * (n - 1) * 6 / (n * 50));
   EXPECT_NEAR(paraxial_of("one.toml", toml).effective_focal_length * 1e3, f, 1e-11);
   EXPECT_NEAR(paraxial_of("one.zmx", zmx).effective_focal_length * 1e3, f, 1e-11);

@@ -81,7 +81,7 @@ TEST(ShippedCatalogues, GlassesNameTheirLine) {
   EXPECT_EQ(glass.catalogue, "HIKARI");
   GlassCatalogue from_file;
   from_file.add_file(std::string(GLADSTONE_DATA_DIR) + "/glasses/hikari.agf");
-  Glass const& same = from_file.find("J-LASFH17", spectral_line::d, "lens:1");
+  Glass const& same = *from_file.match("J-LASFH17", spectral_line::d, "lens:1").glass;
   EXPECT_EQ("data/" + same.where.substr(std::string(GLADSTONE_DATA_DIR).size() + 1), glass.where);
   EXPECT_EQ(glass.coefficients, same.coefficients);
   EXPECT_EQ(glass.transmission.size(), same.transmission.size());
@@ -141,8 +141,8 @@ TEST(ShippedCatalogues, CataloguesOfTheUserComeFirst) {
   GlassCatalogue glasses = GlassCatalogue::shipped();
   glasses.add("NM S-BSL7 1\nCD 2.25\nLD 0.4 0.7\nNM N-BK7 1\nCD 2.25\nLD 0.4 0.7\n", "OWN", "own.agf");
   glasses.add("NM N-BK7 1\nCD 2.56\nLD 0.4 0.7\n", "SCHOTT_2020", "schott_2020.agf");
-  EXPECT_NEAR(glasses.find("S-BSL7", 5e-7, "lens:1").index(5e-7), 1.5, 1e-15);
-  EXPECT_NEAR(glasses.find("N-BK7", 5e-7, "lens:1").index(5e-7), 1.6, 1e-15);
+  EXPECT_NEAR(glasses.match("S-BSL7", 5e-7, "lens:1").glass->index(5e-7), 1.5, 1e-15);
+  EXPECT_NEAR(glasses.match("N-BK7", 5e-7, "lens:1").glass->index(5e-7), 1.6, 1e-15);
   EXPECT_THAT(glasses.match("S-BSL7", 5e-7, "lens:1").notes,
               ElementsAre(AllOf(HasSubstr("OWN:S-BSL7 (own.agf:1) is taken"), HasSubstr("OHARA:S-BSL7"))));
   GlassMatch const newer = glasses.match("N-BK7", 5e-7, "lens:1", {"SCHOTT"});

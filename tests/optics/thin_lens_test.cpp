@@ -5,26 +5,34 @@
 #include <limits>
 #include <vector>
 
-#include "render/base/units.h"
+#include "render/optics/camera_element.h"
 #include "render/optics/lens_setup.h"
-#include "render/optics/optical_train.h"
 
 namespace gladstone {
 namespace {
 
 constexpr double f = 0.105;
 
-/// The lens of Table 1 at z = 0.75 m: 105 mm, f/11.
-OpticalTrain<double> table1_lens() {
-  OpticalTrain<double> train;
-  train.append(ApertureStop<double>{0.75, f / 22, 0});
-  train.append(ThinLens<double>{0.75, f});
-  return train;
+/// Pose of an element on the axis, parallel to the XY plane.
+Pose<double> on_axis(double z) {
+  Pose<double> pose;
+  pose.origin = {0, 0, z};
+  return pose;
 }
 
-RayStatus carry(OpticalTrain<double> const& train, Ray<double>& ray) {
-  double weight = 1;
-  return train.carry(ray, weight);
+/// The lens of Table 1 at z = 0.75 m: 105 mm, f/11.
+std::vector<CameraElement<double>> table1_lens() {
+  return {PosedStop<double>{on_axis(0.75), f / 22, 0}, PosedThinLens<double>{on_axis(0.75), f}};
+}
+
+/// Traces a ray through elements until its weight is zero.
+RayStatus carry(std::vector<CameraElement<double>> const& elements, Ray<double>& ray) {
+  RayAccount<double> account{1, 0};
+  for (auto const& element : elements) {
+    RayStatus const status = pass_element(element, ray, account);
+    if (account.weight == 0) return status;
+  }
+  return RayStatus::alive;
 }
 
 /// Returns the ray from a point to a point of the lens plane.
@@ -109,14 +117,14 @@ TEST(ThinLens, ParallelRaysMeetInTheFocalPlane) {
   }
 }
 
-// Rays parallel to the axis keep their distance exactly: the last double inside the stop passes, the next one does not.
-TEST(ThinLens, StopsExactlyAtItsRadius) {
-  ApertureStop<double> const stop{0.75, 0.004, 0};
+// Rays parallel to the axis keep their distance exactly: the last double inside the stop passes, the next does not.
+TEST(PosedStop, StopsExactlyAtItsRadius) {
+  PosedStop<double> const stop{on_axis(0.75), 0.004, 0};
   auto const status_at = [&](double x) {
     Ray<double> ray{{x, 0, 0}, {0, 0, 1}};
-    double weight = 1;
-    RayStatus const status = stop.interact(ray, weight);
-    EXPECT_EQ(weight, status == RayStatus::alive ? 1 : 0);
+    RayAccount<double> account{1, 0};
+    RayStatus const status = stop.interact(ray, account);
+    EXPECT_EQ(account.weight, status == RayStatus::alive ? 1 : 0);
     return status;
   };
   EXPECT_EQ(status_at(0.004), RayStatus::alive);
@@ -127,7 +135,7 @@ TEST(ThinLens, StopsExactlyAtItsRadius) {
 // The edge kernel has the moments 1, 0, 0, 0: the integral of a parabola in the enclosed area over the smoothed stop
 // equals that over the sharp one.
 TEST(ApertureStop, SmoothedEdgeIntegratesParabolasExactly) {
-  ApertureStop<double> const smooth{0, 1, 0.3};
+  ApertureStop<double> const smooth{1, 0.3};
   double sums[4] = {};
   int const n = 200000;
   for (int i = 0; i < n; ++i) {
@@ -140,26 +148,32 @@ TEST(ApertureStop, SmoothedEdgeIntegratesParabolasExactly) {
 
 TEST(ThinLens, WithoutAStopPassesEverything) {
   Ray<double> ray{{5, 0, 0}, {0, 0, 1}};
-  double weight = 1;
-  ThinLens<double> const lens{0.75, f};
-  EXPECT_EQ(lens.interact(ray, weight), RayStatus::alive);
-  EXPECT_EQ(weight, 1);
+  RayAccount<double> account{1, 0};
+  EXPECT_EQ((PosedThinLens<double>{on_axis(0.75), f}.interact(ray, account)), RayStatus::alive);
+  EXPECT_EQ(account.weight, 1);
 }
 
 TEST(ThinLens, IsMissedByRaysThatRunAwayOrAlongIt) {
   for (double const dz : {0.0, -1.0}) {
     Ray<double> ray{{0, 0, 0}, normalized(Vec3d{1, 0, dz})};
-    EXPECT_EQ(carry(table1_lens(), ray), RayStatus::missed_lens);
+    EXPECT_EQ(carry({PosedThinLens<double>{on_axis(0.75), f}}, ray), RayStatus::missed_lens);
   }
 }
 
-// A vignetted ray retains its intersection with the lens plane, from which the deflection at the stop is measured.
-TEST(ThinLens, VignettedRaysEndOnTheLensPlane) {
-  Ray<double> ray = ray_between({0, 0, -0.25}, {0.02, 0.01}, 0.75);
-  EXPECT_EQ(carry(table1_lens(), ray), RayStatus::vignetted);
-  EXPECT_NEAR(ray.position.x, 0.02, 1e-16);
-  EXPECT_NEAR(ray.position.y, 0.01, 1e-16);
-  EXPECT_EQ(ray.position.z, 0.75);
+// A vignetted ray is not moved, but its intersection with the plane of the stop, from which the deflection at the stop
+// is measured, can be found.
+TEST(PosedStop, BlocksARayButFindsItsPlace) {
+  PosedStop<double> const stop{on_axis(0.75), f / 22, 0};
+  Ray<double> const sent = ray_between({0, 0, -0.25}, {0.02, 0.01}, 0.75);
+  Ray<double> ray = sent;
+  RayAccount<double> account{1, 0};
+  EXPECT_EQ(stop.interact(ray, account), RayStatus::vignetted);
+  EXPECT_EQ(account.weight, 0);
+  EXPECT_EQ(ray.position, sent.position);
+  Vec2d place;
+  ASSERT_TRUE(stop.meet(ray, place));
+  EXPECT_NEAR(place.x, 0.02, 1e-16);
+  EXPECT_NEAR(place.y, 0.01, 1e-16);
 }
 
 }  // namespace

@@ -25,7 +25,7 @@ Setup deep_sheet() { return piv_setup(30 * mm, 1 * mm); }
 Scene scene_with_particles(Setup const& setup, std::vector<Vec3d> const& first, std::vector<Vec3d> const& second,
                            std::uint64_t rays) {
   Scene scene = build_scene(setup);
-  LaserSheet<double> const sheet = laser_sheet<double>(setup.piv->laser);
+  LaserSheet<double> const sheet = laser_sheet(setup.piv->laser);
   scene.particles.resize(first.size());
   for (std::size_t i = 0; i < first.size(); ++i) {
     scene.particles.place[0][i] = first[i];
@@ -207,6 +207,9 @@ TEST(Particles, SeemToMoveWhereTheMediumChanges) {
     EXPECT_GT(seen.truth.displacement_error_px[i].x, 0);
     EXPECT_LT(seen.truth.displacement_error_px[i].x, 1e-3);
   }
+  Rendering const unlit =
+      render_in_two_media(renderer, scene, scene.particles, ParticleLight::scattered, RenderImages::no);
+  EXPECT_TRUE(std::isnan(unlit.truth.displacement_error_px[0].x)) << "not estimated without images";
   Scene second = at_second_pulse(scene);
   Rendering const alone = render(second, ParticleLight::scattered, RenderImages::yes);
   EXPECT_TRUE(std::equal(seen.light.flow.begin(), seen.light.flow.end(), alone.light.flow.begin()));

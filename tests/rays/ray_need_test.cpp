@@ -33,7 +33,7 @@ struct Place {
 /// brightest particle of 1 um.
 Scene scene_with(Setup const& setup, std::vector<Place> const& places) {
   Scene scene = build_scene(setup);
-  LaserSheet<double> const sheet = laser_sheet<double>(setup.piv->laser);
+  LaserSheet<double> const sheet = laser_sheet(setup.piv->laser);
   scene.particles.resize(places.size());
   for (std::size_t i = 0; i < places.size(); ++i) {
     scene.particles.place[0][i] = places[i].at;
@@ -93,7 +93,7 @@ double truth_error(GroundTruth const& found, GroundTruth const& exact) {
 
 // n nodes integrate x^p y^q over the unit disc for p + q up to 2 sqrt(n) - 1: sixteen nodes to degree 7.
 TEST(StopRule, IntegratesPolynomialsExactly) {
-  BundleView<double> choice;
+  BundleView choice;
   choice.seed = 5;
   for (std::uint64_t const rays : {4u, 16u, 64u}) {
     StopRule const rule(rays);

@@ -49,8 +49,8 @@ TEST(Detector, AnIdealSensorRoundsToItsBitDepth) {
     double const full = std::pow(2.0, bits) - 1, offset = 5;
     CameraSetup const camera = ideal_camera(bits, offset);
     Detector const detector(camera, 0.8 * camera.noise.full_well_e);
-    EXPECT_EQ(detector.full_scale(), full);
-    EXPECT_NEAR(detector.levels_per_light(), 0.8 * full, 1e-9);
+    EXPECT_EQ(detector.pixel().full_scale, full);
+    EXPECT_NEAR(detector.pixel().electrons * detector.pixel().levels_per_electron, 0.8 * full, 1e-9);
     EXPECT_NEAR(detector.ideal(light)(1, 0), offset + 0.4 * full, 1e-9);
     Recording const recording = detector.record(light, RandomStream::noise_reference);
     EXPECT_EQ(recording.image(0, 0), 5);

@@ -19,7 +19,7 @@ namespace {
 
 class CaseRunners : public StudyFolder {
  protected:
-  static CaseRunner runner(Sharing sharing) { return CaseRunner(open_device("cpu"), sharing); }
+  static CaseRunner runner(Sharing sharing = Sharing::identical) { return CaseRunner(open_device("cpu"), sharing); }
 };
 
 // Every axis touches another part of what is shared: field, geometry, rays, camera electronics and correlation alone.
@@ -38,11 +38,11 @@ TEST_F(CaseRunners, SharedPartsGiveTheSameBitsAsNoneInAnyOrder) {
 "correlate.window_px" = [[32, 16], [16]]
 )");
   ASSERT_EQ(cases.size(), 64u);
-  CaseRunner sharing = runner(Sharing::yes), backwards = runner(Sharing::yes), alone = runner(Sharing::no);
+  CaseRunner sharing = runner(), backwards = runner();
   std::vector<CaseResult> shared, reversed(cases.size());
   for (ManifestCase const& one : cases) shared.push_back(sharing.run(one));
   for (std::size_t i = cases.size(); i-- > 0;) reversed[i] = backwards.run(cases[i]);
-  for (std::size_t i = 0; i < cases.size(); i += 3) expect_same(shared[i], alone.run(cases[i]));
+  for (std::size_t i = 0; i < cases.size(); i += 3) expect_same(shared[i], runner().run(cases[i]));
   for (std::size_t i = 0; i < cases.size(); ++i) {
     expect_same(shared[i], reversed[i]);
     EXPECT_EQ(shared[i].status, CaseStatus::ok) << shared[i].error;
@@ -56,7 +56,7 @@ TEST_F(CaseRunners, TellOfACaseBeforeItIsLetGo) {
   auto const cases = plan("base = \"base.toml\"\n[axes]\n\"camera.bit_depth\" = [12]\n");
   std::size_t told = 0;
   double rms = 0;
-  CaseResult const result = runner(Sharing::yes).run(cases[0], "", [&](ObservedCase const& seen) {
+  CaseResult const result = runner().run(cases[0], "", [&](ObservedCase const& seen) {
     ++told;
     rms = summarize_errors(seen.comparison.measured.displacement_px, seen.comparison.point.eq9_px, seen.comparison.mask)
               .rms_px;
@@ -79,7 +79,7 @@ TEST_F(CaseRunners, WarnOfTruthAndFramesAsRenderDoes) {
 "camera.exposure" = [2000.0, 60000.0]
 )");
   ASSERT_EQ(cases.size(), 2u);
-  CaseRunner one = runner(Sharing::yes);
+  CaseRunner one = runner();
   CaseResult const first = one.run(cases[0]), second = one.run(cases[1]);
   ASSERT_EQ(first.error + second.error, "");
   std::vector<std::string> const &dim = first.warnings, &bright = second.warnings;
@@ -97,15 +97,15 @@ TEST_F(CaseRunners, PlannedRaysAreSharedWhereTheyAreTheSame) {
 "camera.bit_depth" = [2, 8]
 "correlate.overlap" = [0.5, 0.75]
 )");
-  CaseRunner sharing = runner(Sharing::yes), alone = runner(Sharing::no);
-  for (ManifestCase const& one : cases) expect_same(sharing.run(one), alone.run(one));
+  CaseRunner sharing = runner();
+  for (ManifestCase const& one : cases) expect_same(sharing.run(one), runner().run(one));
 }
 
 // Windows of 16 px that overlap by half are 8 px apart: of those every second row and column is compared, and of each
 // all that is known stays what it was.
 TEST_F(CaseRunners, CompareNoVectorsThatAreCloserThanIsAsked) {
   auto const cases = plan("base = \"base.toml\"\n[axes]\n\"camera.bit_depth\" = [12]\n");
-  CaseRunner all(open_device("cpu")), some(open_device("cpu"), Sharing::yes, 16);
+  CaseRunner all(open_device("cpu")), some(open_device("cpu"), Sharing::identical, 16);
   std::optional<Comparison> whole, thinned;
   all.run(cases[0], "", [&](ObservedCase const& seen) { whole = seen.comparison; });
   some.run(cases[0], "", [&](ObservedCase const& seen) { thinned = seen.comparison; });
@@ -132,11 +132,11 @@ TEST_F(CaseRunners, MayTakeTruthOverFromRepeats) {
   write("base.toml", std::string(small_base).replace(std::string(small_base).find("rays_per_dot = 32"), 17, ""));
   auto const cases = plan("base = \"base.toml\"\n[study]\nrepeats = 2\n[axes]\n\"camera.bit_depth\" = [12]\n");
   ASSERT_EQ(cases.size(), 2u);
-  CaseRunner over_repeats = runner(Sharing::over_repeats), alone = runner(Sharing::no);
+  CaseRunner over_repeats = runner(Sharing::over_repeats);
   std::optional<Comparison> first, second, own;
   over_repeats.run(cases[0], "", [&](ObservedCase const& seen) { first = seen.comparison; });
   over_repeats.run(cases[1], "", [&](ObservedCase const& seen) { second = seen.comparison; });
-  alone.run(cases[1], "", [&](ObservedCase const& seen) { own = seen.comparison; });
+  runner().run(cases[1], "", [&](ObservedCase const& seen) { own = seen.comparison; });
   ASSERT_TRUE(first && second && own);
   EXPECT_NE(first->measured.displacement_px, second->measured.displacement_px);
   EXPECT_EQ(second->measured.displacement_px, own->measured.displacement_px);
@@ -149,7 +149,7 @@ TEST_F(CaseRunners, MayTakeTruthOverFromRepeats) {
 
 TEST_F(CaseRunners, ACaseThatCannotBeIsAResultAndAChangedInputIsNot) {
   write("dots.csv", "x_mm,y_mm\n0,0\n0.1,0.1\n");
-  CaseRunner one = runner(Sharing::yes);
+  CaseRunner one = runner();
   write("base.toml", std::string(small_base)
                          .replace(std::string(small_base).find("dots_per_32px_window = 10.0"), 27,
                                   "kind = \"points\"\nfile = \"dots.csv\""));

@@ -140,7 +140,10 @@ TEST(DotImage, IsOneDiameterInSheetSetupAndRecommendation) {
   Bench<double> bench = bench_of(loaded.setup, given);
   DesignSheet const sheet = bos_sheet(loaded.setup, bench);
   EXPECT_DOUBLE_EQ(sheet["dot_diameter_px"], bench.dot_image_px());
-  EXPECT_NEAR(sheet["dot_diameter_px"], loaded.setup.image_diameter_px(loaded.setup.geometric_dot_px()), 1e-12);
+  EXPECT_NEAR(sheet["dot_diameter_px"],
+              std::hypot(loaded.setup.geometric_dot_px(), loaded.setup.spot_e2_diameter_px(),
+                         loaded.setup.defocus_diameter_px()),
+              1e-12);
   bench.f_number = sheet["f_number_ceiling"];
   EXPECT_NEAR(bench.dot_image_px(), random_error_range.most_image, 1e-9);
 }

@@ -159,7 +159,7 @@ double ResampledField::error_bound() {
 }
 
 std::vector<std::string> ResampledField::notes() {
-  load();
+  double const error = error_bound();
   std::vector<std::string> notes = source_->notes();
   std::string axes;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -172,7 +172,7 @@ std::vector<std::string> ResampledField::notes() {
   notes.push_back(
       fmt::format("axes that are not uniform were resampled: {}; nodes predicted from their neighbours are "
                   "off by at most {:.2g} ({:.2g} % of the range of values), which bounds the error",
-                  axes, error_, range_ > 0 ? 100 * error_ / range_ : 0.0));
+                  axes, error, range_ > 0 ? 100 * error / range_ : 0.0));
   return notes;
 }
 

@@ -12,10 +12,6 @@ struct GaussianBlob : GaussianField<T> {
   static constexpr char const* kind = "gaussian_blob";
 
   static GaussianBlob read(SetupTable& table) { return {GaussianField<T>::read_keys(table)}; }
-  template <class U>
-  GaussianBlob<U> in_scalar() const {
-    return {this->template keys_in_scalar<U>()};
-  }
 
   T steepest_mean_density(Vec2d half_extent) const { return this->steepest_mean_density_within(length(half_extent)); }
 

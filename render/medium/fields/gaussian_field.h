@@ -22,10 +22,6 @@ struct GaussianField : Slab<T> {
     double const amplitude = table.required_number("amplitude_kg_m3");
     return {{}, amplitude, table.required_number("radius_mm", Range::positive()) * unit::millimetre};
   }
-  template <class U>
-  GaussianField<U> keys_in_scalar() const {
-    return {this->template slab_in_scalar<U>(), U(amplitude), U(radius)};
-  }
 
   T finest() const { return radius / 2; }
   /// Upper bound of |grad n| [1/m]: the largest slope of A exp(-r^2/a^2) is sqrt(2/e) A / a.

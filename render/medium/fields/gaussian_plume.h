@@ -12,10 +12,6 @@ struct GaussianPlume : GaussianField<T> {
   static constexpr char const* kind = "gaussian_plume";
 
   static GaussianPlume read(SetupTable& table) { return {GaussianField<T>::read_keys(table)}; }
-  template <class U>
-  GaussianPlume<U> in_scalar() const {
-    return {this->template keys_in_scalar<U>()};
-  }
 
   T steepest_mean_density(Vec2d half_extent) const { return this->steepest_mean_density_within(half_extent.x); }
 

@@ -45,18 +45,6 @@ struct NormalShock : Slab<T> {
     double const tilt = table.number("tilt_deg", 0.0, {-89.0, 89.0, false, false}) * unit::degree;
     return front(mach, upstream, thickness, tilt, table.number("position_mm", 0.0) * unit::millimetre);
   }
-  template <class U>
-  NormalShock<U> in_scalar() const {
-    return {this->template slab_in_scalar<U>(),
-            U(upstream),
-            U(jump),
-            U(thickness),
-            U(position),
-            U(normal_x),
-            U(normal_z),
-            U(mach),
-            U(tilt)};
-  }
 
   GLADSTONE_HD IndexSample<T> sample(Vec3<T> p) const {
     using std::tanh;

@@ -39,11 +39,6 @@ struct Sinusoid : Slab<T> {
     }
     return wave(amplitude, wavelength, direction, table.number("phase_rad", 0.0));
   }
-  template <class U>
-  Sinusoid<U> in_scalar() const {
-    return {
-        this->template slab_in_scalar<U>(), U(amplitude), {U(wavevector.x), U(wavevector.y)}, U(phase), U(wavelength)};
-  }
 
   GLADSTONE_HD IndexSample<T> sample(Vec3<T> p) const {
     using std::cos;

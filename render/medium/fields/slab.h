@@ -1,7 +1,6 @@
 #pragma once
 
 #include "render/base/host_device.h"
-#include "render/base/in_scalar.h"
 #include "render/medium/index_sample.h"
 
 namespace gladstone {
@@ -26,10 +25,6 @@ struct Slab {
   /// Returns n - 1 = K rho (Gladstone & Dale 1863; Rajendran et al. 2019, eq. 1) and its gradient.
   GLADSTONE_HD IndexSample<T> from_density(T rho, Vec3<T> gradient) const {
     return {gladstone_dale * rho, gladstone_dale * gradient};
-  }
-  template <class U>
-  Slab<U> slab_in_scalar() const {
-    return {U(half_thickness), U(gladstone_dale), U(ambient_density)};
   }
 };
 

@@ -23,10 +23,6 @@ struct UniformGradient : Slab<T> {
     field.gradient = table.quantities("gradient_kg_m4", {10, 0, 0}, 1.0);
     return field;
   }
-  template <class U>
-  UniformGradient<U> in_scalar() const {
-    return {this->template slab_in_scalar<U>(), gladstone::in_scalar<U>(gradient)};
-  }
 
   GLADSTONE_HD IndexSample<T> sample(Vec3<T> p) const {
     return this->from_density(this->ambient_density + dot(gradient, p), gradient);

@@ -1,31 +1,19 @@
+#include "render/light/sources.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <map>
 #include <utility>
 #include <vector>
-
-#include "render/base/units.h"
-#include "render/light/sources.h"
 
 namespace gladstone {
 namespace {
 
 constexpr double two_pow_32 = 4294967296.0;
 
-/// A bundle towards a pupil of 5 mm radius, 1 m from the target.
-BundleView<double> bundle(PupilSampling sampling) { return {0.75, 5e-3, 11, sampling}; }
-
-/// Returns the index of the cell that contains a point of a disc, for rings x sectors cells of equal area.
-int equal_area_cell(Vec2d p, double radius, int rings, int sectors) {
-  double const r2 = dot(p, p) / (radius * radius);
-  double turn = std::atan2(p.y, p.x) / (2 * pi);
-  if (turn < 0) turn += 1;
-  return std::min(static_cast<int>(r2 * rings), rings - 1) * sectors +
-         std::min(static_cast<int>(turn * sectors), sectors - 1);
-}
+constexpr BundleView one_scrambling{.seed = 11};
 
 // The first eight points of Joe and Kuo's sequence (new-joe-kuo-6), which is listed in Gray-code order k ^ (k >> 1).
 TEST(Sobol, FirstPointsAreJoeAndKuos) {
@@ -101,15 +89,14 @@ TEST(OwenScrambling, KeepsTheNets) {
 // every coordinate. Different scramblings are independent: over 2000 sources, the correlation of their points is zero
 // within five standard errors.
 TEST(Sobol, RaysAreDealtToIndependentScramblings) {
-  BundleView<double> const alone = bundle(PupilSampling::sobol);
-  BundleView<double> dealt = alone;
+  BundleView dealt = one_scrambling;
   dealt.scrambling_bits = 2;
   double u[sobol_dimensions], v[sobol_dimensions];
   for (std::uint64_t scrambling = 0; scrambling < 4; ++scrambling) {
     int filled[sobol_dimensions] = {};
     for (std::uint64_t point = 0; point < 16; ++point) {
       sample_coordinates(dealt, 5, 4 * point + scrambling, u);
-      sample_coordinates(alone, 5, point, v);
+      sample_coordinates(one_scrambling, 5, point, v);
       for (int dimension = 0; dimension < sobol_dimensions; ++dimension) {
         filled[dimension] |= 1 << static_cast<int>(16 * u[dimension]);
         EXPECT_EQ(u[dimension] == v[dimension], scrambling == 0);
@@ -146,7 +133,7 @@ TEST(OwenScrambling, IsUnbiasedAndIndependentFromSourceToSource) {
     std::vector<double> value[4];
     for (std::uint64_t source = 0; source < n; ++source) {
       double u[sobol_dimensions];
-      sample_coordinates(bundle(PupilSampling::sobol), source, ray, u);
+      sample_coordinates(one_scrambling, source, ray, u);
       for (int d = 0; d < 4; ++d) value[d].push_back(u[d]);
     }
     for (int d = 0; d < 4; ++d) {
@@ -181,97 +168,9 @@ TEST(RandomStreams, OfOneSeedAreIndependent) {
   }
 }
 
-// Cells of equal area of the disc are elementary intervals of (radius^2, angle), so a net fills all of them equally.
-TEST(Emission, SobolPupilPointsFillCellsOfEqualAreaEqually) {
-  Vec2d const centre{1e-3, -2e-3};
-  SourcesView<double> const sources{&centre, nullptr, 1, -0.25, 1e-4, SourceShape::disc};
-  std::map<int, int> pupil, disc;
-  for (std::uint64_t ray = 0; ray < 4096; ++ray) {
-    EmittedRay<double> const emitted = emit(sources, bundle(PupilSampling::sobol), 0, ray);
-    ASSERT_LE(length(emitted.pupil), 5e-3);
-    Vec2d const on_disc = Vec2d{emitted.ray.position.x, emitted.ray.position.y} - centre;
-    ASSERT_LE(length(on_disc), 1e-4 * (1 + 1e-9));
-    ++pupil[equal_area_cell(emitted.pupil, 5e-3, 8, 8)];
-    ++disc[equal_area_cell(on_disc, 1e-4, 8, 8)];
-  }
-  ASSERT_EQ(pupil.size(), 64u);
-  ASSERT_EQ(disc.size(), 64u);
-  for (auto const& [cell, count] : pupil) EXPECT_EQ(count, 64) << cell;
-  for (auto const& [cell, count] : disc) EXPECT_EQ(count, 64) << cell;
-}
-
-// For a uniform disc of radius R: <x> = <y> = <x y> = 0, <x^2> = <y^2> = R^2/4, <x^4> = R^4/8. The variances of these
-// averages per point are R^2/4, R^4/24, R^4/8 - R^4/16 and R^8 (7/128 - 1/64) (moments of cos^2p and r^2p). Tolerance:
-// five standard errors.
-TEST(Emission, RandomPupilPointsHaveTheMomentsOfADisc) {
-  Vec2d const centre{};
-  SourcesView<double> const sources{&centre, nullptr, 1, -0.25, 0.0, SourceShape::disc};
-  constexpr int n = 20000;
-  double const R = 5e-3;
-  double x = 0, y = 0, xy = 0, xx = 0, yy = 0, x4 = 0;
-  for (std::uint64_t ray = 0; ray < n; ++ray) {
-    EmittedRay<double> const emitted = emit(sources, bundle(PupilSampling::random), 0, ray);
-    ASSERT_EQ(emitted.ray.position, (Vec3d{0, 0, -0.25}));
-    Vec2d const p = emitted.pupil / R;
-    x += p.x / n, y += p.y / n, xy += p.x * p.y / n, xx += p.x * p.x / n, yy += p.y * p.y / n;
-    x4 += p.x * p.x * p.x * p.x / n;
-  }
-  EXPECT_NEAR(x, 0, 5 * std::sqrt(1.0 / 4 / n));
-  EXPECT_NEAR(y, 0, 5 * std::sqrt(1.0 / 4 / n));
-  EXPECT_NEAR(xy, 0, 5 * std::sqrt(1.0 / 24 / n));
-  EXPECT_NEAR(xx, 0.25, 5 * std::sqrt(1.0 / 16 / n));
-  EXPECT_NEAR(yy, 0.25, 5 * std::sqrt(1.0 / 16 / n));
-  EXPECT_NEAR(x4, 0.125, 5 * std::sqrt((7.0 / 128 - 1.0 / 64) / n));
-}
-
-// The ray is along the vector from the source to the pupil point, and its weight is the radiance times cos^4 of the
-// angle to the axis. The only errors are those of rounding.
-TEST(Emission, RaysRunToTheirPupilPointWithWeightRadianceCosFour) {
-  Vec2d const centres[] = {{0, 0}, {0.02, -0.03}};
-  double const radiance[] = {1.0, 0.25};
-  SourcesView<double> const sources{centres, radiance, 2, -0.25, 2e-4, SourceShape::disc};
-  for (std::uint64_t source = 0; source < 2; ++source) {
-    for (std::uint64_t ray = 0; ray < 50; ++ray) {
-      EmittedRay<double> const emitted = emit(sources, bundle(PupilSampling::sobol), source, ray);
-      Vec3d const start = emitted.ray.position, way = emitted.ray.direction;
-      EXPECT_EQ(start.z, -0.25);
-      EXPECT_NEAR(length(way), 1, 1e-15);
-      EXPECT_NEAR(start.x + way.x / way.z, emitted.pupil.x, 1e-16);
-      EXPECT_NEAR(start.y + way.y / way.z, emitted.pupil.y, 1e-16);
-      double const dx = emitted.pupil.x - start.x, dy = emitted.pupil.y - start.y;
-      double const cosine = 1 / std::sqrt(1 + dx * dx + dy * dy);
-      EXPECT_NEAR(emitted.weight, radiance[source] * std::pow(cosine, 4), 1e-15);
-    }
-  }
-}
-
-TEST(Emission, ChiefRaysAllCrossThePupilsCentre) {
-  Vec2d const centre{0.01, 0.0};
-  SourcesView<double> const sources{&centre, nullptr, 1, -0.25, 2e-4, SourceShape::disc};
-  BundleView<double> chief = bundle(PupilSampling::sobol);
-  chief.pupil_radius = 0;
-  for (std::uint64_t ray = 0; ray < 50; ++ray) EXPECT_EQ(emit(sources, chief, 0, ray).pupil, (Vec2d{0, 0}));
-}
-
-// Eight by eight squares of a square source are elementary intervals of its pair of dimensions.
-TEST(Emission, SquareSourcesAreFilledEvenly) {
-  Vec2d const centre{};
-  SourcesView<double> const sources{&centre, nullptr, 1, -0.25, 1.0, SourceShape::square};
-  std::map<std::pair<int, int>, int> counts;
-  for (std::uint64_t ray = 0; ray < 4096; ++ray) {
-    Vec3d const p = emit(sources, bundle(PupilSampling::sobol), 0, ray).ray.position;
-    ++counts[{static_cast<int>(std::floor(4 * p.x)), static_cast<int>(std::floor(4 * p.y))}];
-  }
-  ASSERT_EQ(counts.size(), 64u);
-  for (auto const& [cell, count] : counts) {
-    EXPECT_EQ(count, 64);
-    EXPECT_TRUE(cell.first >= -4 && cell.first < 4 && cell.second >= -4 && cell.second < 4);
-  }
-}
-
 // A position beyond the range of integer nanometres also has a key, one for each side; all other positions have
 // different keys if they differ by a nanometre.
-TEST(Emission, EveryFinitePlaceHasAKey) {
+TEST(SourceKey, EveryFinitePlaceHasAKey) {
   EXPECT_EQ(key_of({1e300, 0}), key_of({1e10, 0}));
   EXPECT_EQ(key_of({0, -1e300}), key_of({0, -1e10}));
   EXPECT_NE(key_of({1e300, 0}), key_of({-1e300, 0}));
