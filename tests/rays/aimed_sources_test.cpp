@@ -86,8 +86,8 @@ TEST(AimedSources, RandomPupilPointsHaveTheMomentsOfADisc) {
 }
 
 // A Lambertian source of radiance L emits the flux L A cos^4 / D^2 per unit area into a pupil of area A at the distance
-// D along the axis. The factor cos^4 is the product of the cosine at the source, the cosine at the pupil, and cos^2 from
-// the squared distance. Tolerance: about ten rounding errors of 1.1e-16.
+// D along the axis. The factor cos^4 is the product of the cosine at the source, the cosine at the pupil, and cos^2
+// from the squared distance. Tolerance: about ten rounding errors of 1.1e-16.
 TEST(AimedSources, RaysRunToTheirPupilPointWithWeightRadianceCosFour) {
   Vec2d const centres[] = {{0, 0}, {0.02, -0.03}};
   double const radiance[] = {1.0, 0.25};
