@@ -66,7 +66,7 @@ std::unique_ptr<Renderer> make_rays_renderer() {
 
 std::unique_ptr<Correlator> make_correlator(CorrelationSettings const& settings) {
   if (std::string const missing = missing_on_gpu(settings); !missing.empty())
-    throw DeviceError("correlate." + missing + " is computed on the CPU alone");
+    throw DeviceError("correlate." + missing + " is computed on the CPU only");
   require_device();
   return std::make_unique<CudaCorrelator>(settings);
 }

@@ -68,8 +68,8 @@ struct WindowJob {
 /// Peak of a correlation plane: its highest sample and those around it.
 struct PeakSample {
   int x, y;
-  float height;       ///< interpolated between the samples
-  float value[3][3];  ///< rows downwards
+  float height;       ///< height interpolated between the samples
+  float value[3][3];  ///< samples around the peak, rows downwards
 };
 
 /// Peaks of a window's plane, to be measured by measure_peaks().
@@ -98,8 +98,8 @@ struct LinePlan {
   int size;
   int radix[most_stages];
   int stages;
-  int warps;                 ///< per block
-  std::size_t shared_bytes;  ///< per block
+  int warps;                 ///< number of warps per block
+  std::size_t shared_bytes;  ///< shared memory per block [bytes]
   bool window_in_shared;     ///< false: a window of pitch() * size complex values is in `scratch`
   GLADSTONE_HD int pitch() const { return size + 1; }
   std::size_t window_values() const { return 2 * static_cast<std::size_t>(pitch()) * static_cast<std::size_t>(size); }

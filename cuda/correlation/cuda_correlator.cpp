@@ -173,7 +173,7 @@ class CorrelationPlan {
     int side, size;  ///< side of a window's pixels, length of its transform
     LinePlan lines;
     DeviceArray<Complex> roots;
-    DeviceArray<float> particles;  ///< for rpc
+    DeviceArray<float> particles;  ///< weights of the phases for rpc
   };
 
   Pass make_pass(int pass) const {

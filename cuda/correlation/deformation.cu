@@ -50,7 +50,7 @@ __global__ void extend_nodes(InterrogationGrid grid, Vec2d const* nodes, double 
       k % predictor.columns - predictor.ghosts, k / predictor.columns - predictor.ghosts);
 }
 
-/// Copies the displacements of sound vectors and lists the others.
+/// Copies the displacements of valid vectors and lists the others.
 __global__ void gather_nodes(GridVector const* vectors, int size, Vec2d* nodes, char* known, Replacement* list,
                              int* count) {
   int const i = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
@@ -61,8 +61,8 @@ __global__ void gather_nodes(GridVector const* vectors, int size, Vec2d* nodes, 
   if (!sound) list[atomicAdd(count, 1)] = {i, FailedTest::none, Replacement::open, {}};
 }
 
-/// Fills the listed nodes from the rim of each gap inwards; within a round, only nodes known before it count. Single
-/// block.
+/// Fills the listed nodes from the edge of each gap inwards; within a round, only nodes known before it are used.
+/// Single block.
 __global__ void __launch_bounds__(threads_of_rounds)
     fill_nodes(Vec2d* nodes, char* known, int columns, int rows, Replacement* list, int const* count) {
   int progress = *count > 0;

@@ -51,8 +51,8 @@ __device__ inline void insert_listed(PeakList<float>& found, PlanePeak<float> co
 /// Positive maximum of a plane, encoded as integers: interpolated heights have the order of their bit patterns, shifts
 /// have reading order.
 struct RankedPeak {
-  unsigned height = 0;  ///< 0: none
-  unsigned order = 0;   ///< decreases in reading order
+  unsigned height = 0;  ///< bit pattern of the height; 0: no peak
+  unsigned order = 0;   ///< position; decreases in reading order
 
   __device__ int x() const { return static_cast<int>(~order % 256u) - 128; }
   __device__ int y() const { return static_cast<int>(~order / 256u) - 128; }

@@ -6,7 +6,7 @@ namespace gladstone::cuda {
 
 /// Phase of the cross spectrum, weighted by the spectrum of particle images. Eckstein & Vlachos (2009).
 struct PhaseSpectrum {
-  float const* particles;  ///< spectrum along one axis
+  float const* particles;  ///< spectrum of particle images along one axis
   __device__ Complex operator()(Complex c, int kx, int ky) const {
     if (kx == 0 && ky == 0) return {0.0f, 0.0f};  // windows have zero mean: rounding error
     float const to = particles[kx] * particles[ky] / (sqrtf(c.re * c.re + c.im * c.im) + 1e-30f);

@@ -25,8 +25,8 @@ __global__ void find_spurious(GridVector const* vectors, int columns, int rows, 
   if (failed != FailedTest::none) list[atomicAdd(count, 1)] = {i, failed, Replacement::open, {}};
 }
 
-/// Replaces spurious vectors in rounds, from the rim of a group of them inwards; within a round, only vectors sound
-/// before it count, so that the order of the list does not matter. Single block.
+/// Replaces spurious vectors in rounds, from the edge of a cluster of them inwards; within a round, only vectors that
+/// were valid before it are used, so that the order of the list does not matter. Single block.
 __global__ void __launch_bounds__(threads_of_rounds)
     replace_spurious(GridVector* vectors, int columns, int rows, ValidationRule rule, Replacement* list,
                      int const* count) {

@@ -57,8 +57,8 @@ __device__ Complex take_pixels(Transform const& transform, WindowJob const& job,
   return {weight_x * sum.re, weight_x * sum.im};
 }
 
-/// Sums over this thread's pixels that are known in both images: weights and weighted grey levels of both. Rarely
-/// needed.
+/// Sums over this thread's pixels that are known in both images: weights and weighted grey levels of both. Called only
+/// for windows with unknown pixels.
 template <class Transform>
 __device__ void sum_known_pixels(Transform const& transform, int side, float const* weight_y, float weight_x,
                                  float (&sums)[3]) {
@@ -77,7 +77,7 @@ template <class Transform, bool phase_only>
 __global__ void __launch_bounds__(Transform::threads)
     correlate_window_by_factors(WindowJob const __grid_constant__ job, WindowPeaks* const all_peaks) {
   constexpr int size = Transform::size, threads = Transform::threads, warps = threads / 32;
-  static_assert(warps > 1);  // one warp does not search
+  static_assert(warps > 1);  // one of the warps does not search
   extern __shared__ __align__(16) unsigned char memory[];
   auto& own = *reinterpret_cast<BlockMemory<size>*>(memory);
   int const thread = static_cast<int>(threadIdx.x);
@@ -97,7 +97,7 @@ __global__ void __launch_bounds__(Transform::threads)
   float sums[2] = {share.re, share.im};
   block_sums(sums, own.sums);
   Complex mean{sums[0] / full, sums[1] / full};
-  if (isnan(mean.re + mean.im)) {  // some pixels are unknown
+  if (isnan(mean.re + mean.im)) {  // some pixels of the window are unknown
     float known[3] = {0.0f, 0.0f, 0.0f};
     sum_known_pixels(transform, job.side, own.weight_y, weight_x, known);
     block_sums(known, own.known);

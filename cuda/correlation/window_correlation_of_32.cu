@@ -91,7 +91,7 @@ __global__ void __launch_bounds__(size, 18)
   sums[1] *= weight_x;
   warp_sums(sums);
   float mean_a = sums[0] / full, mean_b = sums[1] / full;
-  if (isnan(sums[0]) || isnan(sums[1])) {  // some pixels are unknown
+  if (isnan(sums[0]) || isnan(sums[1])) {  // some pixels of the window are unknown
     float known[3] = {0.0f, 0.0f, 0.0f};
 #pragma unroll
     for (int y = 0; y < size; ++y) {
@@ -139,7 +139,7 @@ __global__ void __launch_bounds__(size, 18)
   int const wave = thread / 2, odd = thread % 2;
   float const sign = odd ? -1.0f : 1.0f;  // even threads process a, odd threads b
 #pragma unroll 1
-  for (int turn = 0; turn <= turns; ++turn) {  // along y, then along x
+  for (int turn = 0; turn <= turns; ++turn) {  // transforms along y, then along x
     if (turn > 0) {
       // 2. From columns to rows. The values of rows 0 and `half` are chosen so that the sums below give 2 (A_0 + i
       //    A_half).
@@ -156,7 +156,7 @@ __global__ void __launch_bounds__(size, 18)
 #pragma unroll
       for (int x = 0; x < size; ++x) {
         Complex const d = direct[x], m = mirror[x];
-        z[x] = {d.re + sign * m.re, d.im - sign * m.im};  // 2 A, or 2 i B
+        z[x] = {d.re + sign * m.re, d.im - sign * m.im};  // 2 A in even threads, 2 i B in odd ones
       }
     }
     Forward::apply(z);
@@ -190,9 +190,9 @@ __global__ void __launch_bounds__(size, 18)
   using Back = RegisterFourier<half, 1>;
   int const x = thread % half, parity = thread / half;
 #pragma unroll 1
-  for (int turn = 0; turn <= turns; ++turn) {  // along x, then along y
+  for (int turn = 0; turn <= turns; ++turn) {  // transforms along x, then along y
     if (turn > 0) {
-      // 4. From rows to columns.
+      // 4. Exchange from rows to columns.
       Complex* const out = shared + wave * parts_pitch + odd * odd_part;
 #pragma unroll
       for (int k = 0; k < half; ++k) out[k] = g[Back::place(k)];

@@ -16,7 +16,8 @@ constexpr unsigned all_lanes = 0xffffffffu;
 constexpr int size = Transform::size;
 constexpr int warps = Transform::threads / 32;
 constexpr int most_width = 2 * Transform::largest_radius + 1;
-constexpr int most_maxima = (most_width + 1) * (most_width + 1) / 4;  ///< two maxima are never adjacent
+constexpr int most_maxima = (most_width + 1) * (most_width + 1) / 4;  ///< maximum number of maxima, since two of them
+                                                                      ///< are never adjacent
 static_assert(2 * SearchBlock::most_columns > most_width && 4 * SearchBlock::most_rows >= most_width);
 
 __device__ Transform::Roots const roots_of_64 = Transform::make_roots();
@@ -145,7 +146,7 @@ struct ThreadPixels {
 };
 
 /// Computes the sums of a warp's share of the pixels known in both images: weights and weighted grey levels of both.
-/// Rarely needed; reads the pixels again to reduce the code size.
+/// Called only for windows with unknown pixels; reads the pixels again to reduce the code size.
 __device__ __noinline__ void sum_known_pixels(WindowJob const& job, int column, int row, float* slots) {
   int const lane = static_cast<int>(threadIdx.x % 32u), warp = static_cast<int>(threadIdx.x / 32u);
   float sums[4] = {0.0f, 0.0f, 0.0f, 0.0f};
@@ -177,9 +178,9 @@ __global__ void __launch_bounds__(Transform::threads, 4)
     correlate_window_of_64(WindowJob const __grid_constant__ job, int const first_row, WindowPeaks* const all_peaks) {
   extern __shared__ __align__(16) unsigned char memory[];
   BlockMemory& own = *reinterpret_cast<BlockMemory*>(memory);
-  // Some steps involve only a few warps. Rotate the warp numbers by 5/4 of the block number, so that in blocks on the
-  // same multiprocessor, including those a multiple of four apart, these warps are distributed over its four
-  // schedulers.
+  // Some steps involve only a few warps. Rotate the warp numbers by 5/4 of the block number, so that these warps are
+  // distributed over the four schedulers of a multiprocessor, also if it runs blocks whose numbers differ by a multiple
+  // of four.
   unsigned const turned = (threadIdx.x + (40u * blockIdx.x & 224u)) % Transform::threads;
   int const thread = static_cast<int>(turned), lane = static_cast<int>(turned % 32u),
             warp = static_cast<int>(turned / 32u);
@@ -284,7 +285,7 @@ __global__ void __launch_bounds__(Transform::threads, 4)
 void correlate_windows_of_64(WindowJob const& job, WindowPeaks* peaks) {
   allow_shared_bytes(correlate_window_of_64, sizeof(BlockMemory));
   GLADSTONE_EXPECTS(job.search_radius_px <= Transform::largest_radius);
-  constexpr int most_rows = 65535;  // per launch
+  constexpr int most_rows = 65535;  // maximum number of window rows per launch
   for (int first = 0; first < job.grid.rows; first += most_rows) {
     dim3 const blocks(static_cast<unsigned>(job.grid.columns),
                       static_cast<unsigned>(std::min(most_rows, job.grid.rows - first)));

@@ -26,7 +26,7 @@ struct WindowTransform {
   static constexpr int threads = 256;
   static constexpr int pitch = 72;
   static constexpr int values = size * pitch;
-  static constexpr int upper = 32 * pitch;         ///< start of the upper half
+  static constexpr int upper = 32 * pitch;         ///< offset of the upper half of the memory
   static constexpr int plane_pitch = 73;           ///< stride of the plane in the upper half; odd for SearchBlock
   static constexpr int largest_radius = size / 4;  ///< largest search radius; shifts up to one more are valid
 
@@ -57,7 +57,7 @@ struct WindowTransform {
   /// Offset of the row of this thread's wave number, and of the mirrored row.
   GLADSTONE_HD int row() const { return (thread >> 3) * pitch; }
   GLADSTONE_HD int mirror() const {
-    int const line = thread >> 3;  // 4 p + q
+    int const line = thread >> 3;  // equals 4 p + q, see the layout above
     return (warp() > 0 ? 67 - line : 32 + (-line & 3)) * pitch;
   }
 
@@ -111,7 +111,7 @@ struct WindowTransform {
       memory[mirror() + 9 * k + along()] = b[k];
     }
   }
-  /// Second pass: wave numbers along + 8 k. Must be followed by a barrier of the warp.
+  /// Second pass. Value k of the thread is then wave number along() + 8 k. Must be followed by a barrier of the warp.
   GLADSTONE_HD void rows_together(Complex (&a)[8], Complex (&b)[8]) const {
     for (int n = 0; n < 8; ++n) {
       a[n] = memory[row() + 9 * along() + n];
@@ -160,7 +160,7 @@ struct WindowTransform {
     turn<1>(c, along());
     for (int k = 0; k < 8; ++k) memory[row() + 9 * k + along()] = c[k];
   }
-  /// Second pass: shifts along + 8 k. Must be followed by a barrier of the warp.
+  /// Second pass. Value k of the thread is then shift along() + 8 k. Must be followed by a barrier of the warp.
   GLADSTONE_HD void rows_together_again(Complex (&c)[8]) const {
     for (int n = 0; n < 8; ++n) c[n] = memory[row() + 9 * along() + n];
     small_transform<8, 1, 1>(c);
@@ -198,7 +198,8 @@ struct WindowTransform {
     Complex* const out = exchange() + along();
     for (int k = 0; k < 8; ++k) out[9 * k] = g[k];
   }
-  /// Second pass. @param g  output: shifts along + 8 k. Must be followed by a barrier of the warp.
+  /// Second pass. Must be followed by a barrier of the warp.
+  /// @param g  output: value k is that at shift along() + 8 k
   GLADSTONE_HD void columns_together_again(Complex (&g)[8]) const {
     Complex const* const in = exchange() + 9 * along();
     for (int n = 0; n < 8; ++n) g[n] = in[n];

@@ -8,7 +8,7 @@ namespace gladstone::cuda {
 
 /// Images under accumulation: 64-bit fixed point, row by row.
 struct DeviceImages {
-  unsigned long long* light[frame_count] = {};  ///< null: no images
+  unsigned long long* light[frame_count] = {};  ///< pixels of each frame; null: no images
   int columns = 0;
   int rows = 0;
   double units_per_weight = 0;  ///< fixed-point units per unit of ray weight

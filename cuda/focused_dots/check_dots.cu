@@ -11,7 +11,7 @@ constexpr int threads = dot_threads, warps = dot_warps;
 struct CheckingWarp : Warp {
   static constexpr int abreast = 1;
   int scramblings;
-  TableCheck* shared;  ///< one per scrambling
+  TableCheck* shared;  ///< sums over the rays, one per scrambling
   unsigned int (*statuses)[ray_status_count];
   TableCheck sums{};  ///< sums of this lane, whose rays all belong to one scrambling
 

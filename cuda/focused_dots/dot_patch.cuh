@@ -15,9 +15,9 @@ namespace gladstone::cuda {
 struct Patch {
   DeviceImages const& images;
   Frame frame;
-  double* light;  ///< [warp][side][side], whole units
+  double* light;  ///< light in whole units: [warp][side][side]
   int side;
-  int left = 0, top = 0;  ///< image position of its corner
+  int left = 0, top = 0;  ///< image position of the stamp's corner
 
   __device__ double* of_warp(int warp) const { return light + static_cast<std::size_t>(warp) * side * side; }
   __device__ double units_per_weight() const { return images.units_per_weight; }

@@ -312,7 +312,7 @@ Rendering trace_particles_on_device(Scene& scene, Particles const& particles, Pa
       }
       BatchPass pass(host, launches, std::move(of_batch), pulses, host_medium, medium, batch, scene.steps_across(),
                      ends.data());
-      if (first == 0) rendering = empty_rendering(particles);  // while the device is working
+      if (first == 0) rendering = empty_rendering(particles);  // the truth is allocated while the device is working
       pass.finish(staging, rendering.truth);
       margin = std::max(margin, pass.largest_margin());
       progress.advance(count);

@@ -19,7 +19,7 @@ struct Block {
 /// that the order of summation does not matter; their unit is so small that rounding the shares of all rays changes a
 /// pixel by less than 1e-6 of the source's light.
 struct HitWindow {
-  int* nodes = nullptr;  ///< [side][side]; null: accepts no light
+  int* nodes = nullptr;  ///< light at the nodes: [side][side]; null: accepts no light
   int side, per_px;
   int left, top;  ///< pixel of node (0, 0)
   double units;   ///< integer units per weight of 1
@@ -67,8 +67,8 @@ struct HitWindow {
 /// @tparam Launch  has camera, spline, most_window_px, and windows (number per block)
 struct SharedParts {
   CameraElement<double>* elements;
-  RaySums* sums;      ///< one per thread
-  double* rows_seen;  ///< shares the memory of `sums`, which are no longer needed then
+  RaySums* sums;      ///< sums over the rays of each thread
+  double* rows_seen;  ///< overlaps the memory of `sums`, which are no longer needed at that time
   double* share;      ///< values of the spline
   int* nodes;         ///< of all windows; null: no windows
 

@@ -11,10 +11,10 @@ constexpr int threads = source_threads;
 
 /// Part of a particle's rays at one pulse that is traced by one block.
 struct BlockShare {
-  std::uint64_t particle;  ///< index in the batch
+  std::uint64_t particle;  ///< index of the particle in the batch
   int pulse;
-  std::uint64_t first, last;  ///< range of its rays
-  std::uint64_t key;          ///< key of its random numbers
+  std::uint64_t first, last;  ///< range of the particle's rays
+  std::uint64_t key;          ///< key of the particle's random numbers
   Vec2d origin;
 };
 

@@ -44,7 +44,7 @@ struct PulseAim {
   AimState state = AimState::none;
   AimMap seen, ambient;  ///< aim map with and without the medium
   Vec2d low{}, high{};   ///< approximate extent of the rays on the sensor [px]
-  double spread2 = 0;    ///< as in FilledStop
+  double spread2 = 0;    ///< variance of the hits, as FilledStop::spread2 [px^2]
 };
 
 /// Ladder of ray counts per particle (RaysLadder), on the device.
@@ -85,7 +85,7 @@ struct LadderView {
 
 /// Particles of a batch, and data common to those with the same number of rays.
 struct ParticlesLaunch {
-  static constexpr std::size_t windows = 1;  ///< per block
+  static constexpr std::size_t windows = 1;  ///< number of windows per block
 
   CameraView<double> camera;  ///< elements in device memory; the stop has a sharp edge, or a smooth one for wide aims
   TracingOptions<double> tracing;
@@ -98,7 +98,7 @@ struct ParticlesLaunch {
   HitSplineView spline;    ///< in device memory; null share: no windows of spline nodes
   int most_window_px = 0;  ///< maximum side of a window of spline nodes [px]
   int patch_px = 0;        ///< widest square of pixels in which a warp accumulates PSFs; 0: none
-  DeviceImages images;     ///< may be empty
+  DeviceImages images;     ///< images to which light is added; may be empty
   std::uint64_t rays = 1;
   std::uint64_t sums_a_pulse = 1;  ///< distance between the sums of successive aims
   bool chief_rays = false;         ///< the camera has no stop: trace chief rays only
@@ -126,13 +126,13 @@ struct ParticlesLaunch {
 struct ParticlesTraced {
   RaySums* sums;             ///< [particle][pulse][share][scrambling]: sums with and without the medium
   double* moved2;            ///< [particle][pulse]: largest squared displacement of a ray by the medium [m^2]
-  unsigned long long* ends;  ///< [pulse][status]: ray counts, incremented
+  unsigned long long* ends;  ///< ray counts to be incremented: [pulse][status]
 };
 
 /// Square of pixels in which the light of a particle at one pulse is accumulated.
 struct LightSquare {
-  int side = 0;           ///< [px]; 0: none
-  int left = 0, top = 0;  ///< its first pixel
+  int side = 0;           ///< side of the square [px]; 0: no square
+  int left = 0, top = 0;  ///< first pixel of the square
 };
 
 /// Returns the square of pixels for the light of an aim, with a margin of a tenth.

@@ -22,8 +22,8 @@ inline constexpr std::size_t most_block_bytes = 96 * 1024;
 
 /// Directions of the rays of a source, and the expected position of their light.
 struct SourceOnDevice {
-  std::uint64_t source;                               ///< index in the pattern
-  Vec3d centre, a, b, across, by_x, by_y;             ///< as in AimedBundle
+  std::uint64_t source;                               ///< index of the source in the pattern
+  Vec3d centre, a, b, across, by_x, by_y;             ///< target area and its shift, as in AimedBundle
   Vec2d origin;                                       ///< origin of its sums [px]
   int window_px = 0;                                  ///< side of the windows that accumulate its light; 0: none
   int left[frame_count] = {}, top[frame_count] = {};  ///< pixel of the first node in each frame
@@ -32,16 +32,16 @@ struct SourceOnDevice {
 
 /// Data common to all sources of a launch.
 struct SourcesLaunch {
-  static constexpr std::size_t windows = frame_count;  ///< per block: one per frame
+  static constexpr std::size_t windows = frame_count;  ///< number of windows per block: one per frame
 
-  CameraView<double> camera;  ///< elements in device memory
+  CameraView<double> camera;  ///< camera with its elements in device memory
   TracingOptions<double> tracing;
-  LambertSources<double> sources;  ///< in device memory
+  LambertSources<double> sources;  ///< sources in device memory
   BundleView choice;
   SpotView spot;
   HitSplineView spline;    ///< in device memory; null share: PSFs are added one by one
-  int most_window_px = 0;  ///< maximum over the sources
-  DeviceImages images;     ///< may be empty
+  int most_window_px = 0;  ///< maximum side of windows over all sources [px]
+  DeviceImages images;     ///< images to which light is added; may be empty
   std::uint64_t rays = 1;
   double sign = 1;  ///< sign of the light
 
@@ -53,7 +53,7 @@ struct SourcesLaunch {
 struct SourcesTraced {
   RaySums* sums;             ///< [source][share][scrambling]
   double* moved2;            ///< [source]: largest squared displacement of a ray by the medium [m^2]
-  unsigned long long* ends;  ///< [frame][status]: ray counts, incremented
+  unsigned long long* ends;  ///< ray counts to be incremented: [frame][status]
 };
 
 /// Returns the maximum side of windows [px]. It does not depend on the sources, so that the result of one is

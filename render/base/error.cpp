@@ -32,14 +32,14 @@ bool lacks_memory(std::exception const& error) {
 
 std::string message_of(std::exception const& error) {
   if (dynamic_cast<Error const*>(&error)) return error.what();
-  if (dynamic_cast<std::invalid_argument const*>(&error)) return error.what();  // only gladstone's own code throws it
+  if (dynamic_cast<std::invalid_argument const*>(&error)) return error.what();  // thrown by gladstone's own code only
   if (lacks_memory(error)) return "out of memory; reduce the image, the field or the number of dots";
   if (auto const* const file = dynamic_cast<std::filesystem::filesystem_error const*>(&error)) {
-    return file->path1().string() + ": cannot be looked at or changed (" + file->code().message() +
-           "); check the name and the rights";
+    return file->path1().string() + ": cannot be accessed (" + file->code().message() +
+           "); check the name and the permissions";
   }
-  return std::string("a fault of gladstone itself, or of a library that it uses (") + error.what() +
-         "); try other inputs, and report this with the command line";
+  return std::string("internal error of gladstone or of a library that it uses (") + error.what() +
+         "); try other inputs, and report this error with the command line";
 }
 
 }  // namespace gladstone

@@ -19,7 +19,7 @@ class Error : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Maximum number of problems that a SetupError describes; further ones are counted.
+/// Maximum number of problems that a SetupError describes; further ones are only counted.
 inline constexpr std::size_t most_problems_told = 20;
 
 /// All problems of a user's setup. The message has one line for each of the first most_problems_told problems, then the
@@ -42,7 +42,7 @@ class DataError : public Error {
  public:
   DataError(std::string const& file, std::string const& message)
       : Error(file + ": " + message), file_(file), message_(message) {}
-  /// File, or key of a setup, in which the problem is.
+  /// file, or key of a setup, that contains the problem
   std::string const& file() const { return file_; }
   std::string const& message() const { return message_; }
 

@@ -29,7 +29,7 @@ extern "C" void remember_interrupt(int signal) {
 void catch_interrupts() {
   std::signal(SIGINT, remember_interrupt);
   std::signal(SIGTERM, remember_interrupt);
-  // remain ignoring SIGHUP under nohup
+  // SIGHUP remains ignored under nohup
   if (std::signal(SIGHUP, remember_interrupt) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);  // a write beyond the file size limit then fails with EFBIG, like a full disk
 }

@@ -123,12 +123,13 @@ void refuse_what_is_in_the_way(fs::path const& staged, fs::path const& folder, s
     std::error_code error;
     refuse_recorded_input(folder / file, fs::path(asked) / file);
     if (fs::is_directory(fs::symlink_status(folder / file, error))) {
-      throw OutputError((fs::path(asked) / file).string(), "is a folder where a file belongs; move it elsewhere");
+      throw OutputError((fs::path(asked) / file).string(),
+                        "is a folder, but a file is to be written there; move it elsewhere");
     }
     fs::path const above = folder / file.parent_path();
     if (fs::exists(above, error) && !fs::is_directory(above, error)) {
       throw OutputError((fs::path(asked) / file.parent_path()).string(),
-                        "is a file where a folder belongs; move it elsewhere");
+                        "is a file, but a folder is needed there; move it elsewhere");
     }
   }
 }
@@ -157,7 +158,7 @@ bool is_complete(std::string const& folder, FolderContent const& content) {
   do {
     finish_replacement(folder, content);
     if (is_there(marker)) return true;
-  } while (is_there(work));  // another replacement began after finish_replacement()
+  } while (is_there(work));  // repeat if another replacement began after finish_replacement()
   return is_there(marker);
 }
 
@@ -170,7 +171,7 @@ void replace_files(Partial& partial, std::string const& folder, std::string cons
   std::vector<fs::path> const files = files_below(fs::path(name) / staged_files, content.marker);
   refuse_what_is_in_the_way(fs::path(name) / staged_files, folder, asked, content);
   auto const fail = [&asked](std::string const& what, int error) {
-    throw OutputError(asked, what + " (" + std::strerror(error) + "); the old files are in their places");
+    throw OutputError(asked, what + " (" + std::strerror(error) + "); the old files are unchanged");
   };
   if (::mkdir((fs::path(name) / old_files).c_str(), 0777) != 0) fail("cannot be written", errno);
   // rename() does not replace a directory that is not empty: an existing .replacing is completed first.
@@ -215,7 +216,7 @@ void finish_replacement(std::string const& folder, FolderContent const& content)
         throw OutputError(stuck.path.string(),
                           std::string("cannot be moved (") + std::strerror(stuck.error) +
                               "), and the replacement of the files in " + folder +
-                              " that was broken off cannot be completed; see to it that the file can be moved");
+                              " that was interrupted cannot be completed; make sure that the file can be moved");
       }
       std::error_code error;
       if (::rename(work.c_str(), aside.c_str()) == 0) fs::remove_all(aside, error);
@@ -226,7 +227,7 @@ void finish_replacement(std::string const& folder, FolderContent const& content)
     throw_if_interrupted();
     if (std::chrono::steady_clock::now() > end) {
       throw OutputError(folder, "is being replaced by " + writer_of(work.string()) +
-                                    "; try again when that has ended, or, where it was broken off, on that host");
+                                    "; try again when it has finished or, if it was interrupted, on that host");
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }

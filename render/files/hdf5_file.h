@@ -64,8 +64,8 @@ class Hdf5Reader {
   std::string attribute(std::string const& name) const;
   /// Returns a text or numeric attribute of a numeric dataset as text; empty if it does not exist.
   std::string attribute_of(std::string const& dataset, std::string const& name) const;
-  /// Returns a numeric attribute of a numeric dataset, one number or several; empty if it does not exist or is no
-  /// number.
+  /// Returns a numeric attribute of a numeric dataset, one number or several; empty if it does not exist or is not
+  /// numeric.
   std::vector<double> number_attribute(std::string const& dataset, std::string const& name) const;
 
  private:

@@ -199,7 +199,7 @@ Id Hdf5Reader::Handle::open(std::string const& path, std::string const& dataset,
   if (!opened.valid()) {
     auto names = all_datasets(file);
     std::string message = "has no dataset \"" + dataset + '"';
-    if (names.empty()) throw DataError(path, message + "; it has none at all");
+    if (names.empty()) throw DataError(path, message + "; it has no datasets");
     if (auto const nearest = nearest_name(dataset, names)) message += "; did you mean \"" + *nearest + "\"?";
     constexpr std::size_t most = 20;
     bool const cut = names.size() > most;
@@ -461,7 +461,7 @@ std::string attribute_text(hid_t object, std::string const& name, std::uint64_t 
     return value;
   }
   if (kind == H5T_STRING) {
-    if (H5Tget_size(type) > most) return {};  // damaged file
+    if (H5Tget_size(type) > most) return {};  // the file is damaged
     std::string value(H5Tget_size(type), '\0');
     if (H5Aread(opened, type, value.data()) < 0) return {};
     value = value.substr(0, value.find('\0'));

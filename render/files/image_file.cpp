@@ -82,16 +82,18 @@ void check_size(PageHeader const& spec, std::string const& path, std::uint64_t f
   bool const packed = spec.compression != "none";
   double const most = static_cast<double>(file_bytes) * (packed ? most_packed : 4.0);
   if (stored > std::max(most, packed ? believed_image_bytes : 0.0) || spec.width <= 0 || spec.height <= 0) {
-    throw DataError(path, fmt::format("is damaged or cut short: its header tells of {}, {:.3g} MB, and the file has "
-                                      "{:.3g} MB; copy it again",
-                                      sizes, stored / 1e6, static_cast<double>(file_bytes) / 1e6));
+    throw DataError(
+        path,
+        fmt::format(
+            "is damaged or cut short: its header declares {}, {:.3g} MB, but the file has {:.3g} MB; copy it again",
+            sizes, stored / 1e6, static_cast<double>(file_bytes) / 1e6));
   }
-  if (spec.depth > 1) throw DataError(path, fmt::format("is a volume of {} slices; give one picture", spec.depth));
+  if (spec.depth > 1) throw DataError(path, fmt::format("is a volume of {} slices; give a single image", spec.depth));
   // Memory: tile or strip of the codec library, samples as stored, samples as double, and the image.
   double const tile = spec.tile_px[0] * spec.tile_px[1] * std::max(spec.tile_px[2], 1.0);
   double const tile_bytes = tile * spec.channels * static_cast<double>(spec.sample_bytes);
   double const sample_bytes = static_cast<double>(spec.sample_bytes) + sizeof(double);
-  require_memory(path, "a picture of " + sizes, tile_bytes + samples * sample_bytes + pixels * sizeof(double));
+  require_memory(path, "an image of " + sizes, tile_bytes + samples * sample_bytes + pixels * sizeof(double));
 }
 
 /// Reads all samples with their stored values. OpenImageIO scales 10, 12 and other bit depths up to 8 or 16 bits;
@@ -138,7 +140,7 @@ std::vector<double> read_samples(PageReader& input, std::string const& path) {
       break;
   }
   throw DataError(path, "has samples of type " + spec.type_name +
-                            ", which is not read; write it with unsigned integers of 8 or 16 bits, or floats");
+                            ", which is not supported; write it with unsigned integers of 8 or 16 bits, or floats");
 }
 
 constexpr std::size_t ink_count = 4;
@@ -150,13 +152,13 @@ constexpr std::array<double, 3> luminance_weights{0.2126, 0.7152, 0.0722};
 void check_channels(PageHeader const& spec, std::string const& path) {
   bool const grey = spec.colours == Colours::grey || spec.colours == Colours::inverted;
   if (grey && spec.channels > 2) {
-    throw DataError(path, fmt::format("has {} values a pixel that are no colours (its header calls them grey); write "
-                                      "the channel that is meant to a file of its own",
+    throw DataError(path, fmt::format("has {} values per pixel that are not colours (its header declares them as "
+                                      "grey); write the intended channel to a separate file",
                                       spec.channels));
   }
   if (spec.colours == Colours::inks && static_cast<std::size_t>(spec.channels) != ink_count) {
-    throw DataError(path, fmt::format("is of {} printing inks, where cyan, magenta, yellow and black are read; write "
-                                      "it as grey levels or RGB",
+    throw DataError(path, fmt::format("has {} printing inks, but only cyan, magenta, yellow and black are supported; "
+                                      "write it as grey levels or RGB",
                                       spec.channels));
   }
 }
@@ -223,12 +225,13 @@ Image<double> turn_upright(Image<double> stored, int orientation) {
 class Picture {
  public:
   explicit Picture(std::string const& path)
-      : path_(path), file_(path, "a picture"), directories_(read_tiff_directories(file_, most_pages_counted)) {
+      : path_(path), file_(path, "an image"), directories_(read_tiff_directories(file_, most_pages_counted)) {
     input_ = image_codecs().open(path);
     if (!input_) {
-      throw DataError(path, "cannot be read as a picture (it is of another format, " + unreadable_samples() +
-                                "damaged or cut short); give TIFF, PNG, JPEG or EXR, if need be written anew without "
-                                "compression");
+      throw DataError(
+          path,
+          "cannot be read as an image (it is of another format, " + unreadable_samples() +
+              "damaged or cut short); give TIFF, PNG, JPEG or EXR, if necessary written again without compression");
     }
     count_pages();
   }
@@ -309,9 +312,9 @@ auto named(std::string const& path, Read const& read) {
   try {
     return read();
   } catch (std::bad_alloc const&) {
-    throw MemoryError(path, "does not fit into memory; give a smaller picture, or use a machine with more");
+    throw MemoryError(path, "does not fit into memory; give a smaller image, or use a machine with more");
   } catch (std::length_error const&) {
-    throw MemoryError(path, "does not fit into memory; give a smaller picture, or use a machine with more");
+    throw MemoryError(path, "does not fit into memory; give a smaller image, or use a machine with more");
   }
 }
 
@@ -321,10 +324,12 @@ Image<double> read_image(std::string const& path, ImageMetadata* metadata) {
   return named(path, [&] {
     Picture picture(path);
     if (picture.pages() > 1) {
-      throw DataError(path, fmt::format("has {} pages, and one picture is needed; write the page that is meant to a "
-                                        "file of its own (a file of two frames, reference and flow, is given alone: "
-                                        "gladstone correlate PAIR.tif -o vectors.csv)",
-                                        picture.pages()));
+      throw DataError(
+          path,
+          fmt::format(
+              "has {} pages, but a single image is needed; write the intended page to a separate file (a file of two "
+              "frames, reference and flow, is passed as the only input: gladstone correlate PAIR.tif -o vectors.csv)",
+              picture.pages()));
     }
     return picture.read(0, metadata);
   });
@@ -334,9 +339,11 @@ std::array<Image<double>, 2> read_frame_pair(std::string const& path, ImageMetad
   return named(path, [&] {
     Picture picture(path);
     if (picture.pages() != 2) {
-      throw DataError(path, fmt::format("has {} {}, and a file that is given alone needs two: reference and flow; give "
-                                        "two pictures, or a case folder",
-                                        picture.pages(), picture.pages() == 1 ? "page" : "pages"));
+      throw DataError(
+          path,
+          fmt::format(
+              "has {} {}, but a single input file needs two: reference and flow; give two images, or a case folder",
+              picture.pages(), picture.pages() == 1 ? "page" : "pages"));
     }
     Image<double> reference = picture.read(0, metadata);
     return std::array{std::move(reference), picture.read(1, nullptr)};
@@ -367,7 +374,7 @@ void write_tiff(std::string const& path, Image<std::uint16_t> const& image, Imag
 std::string encode_png(Image<std::uint8_t> const& image) {
   std::vector<unsigned char> bytes;
   std::string const why = image_codecs().encode_png(image.columns(), image.rows(), image.data(), bytes);
-  if (!why.empty()) throw DataError("a picture in memory", "cannot be encoded as PNG: " + why);
+  if (!why.empty()) throw DataError("an image in memory", "cannot be encoded as PNG: " + why);
   return {bytes.begin(), bytes.end()};
 }
 

@@ -18,7 +18,8 @@ namespace {
 
 [[noreturn]] void not_opened(std::string const& path, int error) {
   if (error == ENOENT || error == ENOTDIR) throw DataError(path, "does not exist; check the name");
-  throw DataError(path, std::string("cannot be opened (") + std::strerror(error) + "); check the name and the rights");
+  throw DataError(path,
+                  std::string("cannot be opened (") + std::strerror(error) + "); check the name and the permissions");
 }
 
 void refuse_what_is_no_file(std::string const& path, mode_t mode, std::string const& wanted) {
@@ -26,8 +27,8 @@ void refuse_what_is_no_file(std::string const& path, mode_t mode, std::string co
   if (S_ISDIR(mode)) throw DataError(path, "is a folder; name " + wanted);
   char const* const kind = S_ISFIFO(mode) ? "a pipe" : S_ISSOCK(mode) ? "a socket" : "a device";
   throw DataError(path, std::string("is ") + kind +
-                            " (inputs are regular files, which can be read more than once and have an end); write "
-                            "what it gives to a file, and name " +
+                            " (inputs must be regular files, which have an end and can be read more than once); save "
+                            "its content to a file, and name " +
                             wanted);
 }
 

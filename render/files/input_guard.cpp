@@ -20,7 +20,7 @@ using FileId = std::pair<dev_t, ino_t>;
 struct Record {
   std::mutex mutex;
   int guards = 0;
-  std::map<FileId, std::string> inputs;  ///< name by which each input was opened
+  std::map<FileId, std::string> inputs;  ///< name by which each input was opened, by file identity
   std::set<FileId> outputs;
   std::vector<ProtectedFiles> results;
 };
@@ -79,7 +79,7 @@ void refuse_recorded_input(std::string const& path, std::string const& asked) {
   std::lock_guard const lock(record().mutex);
   auto const input = record().inputs.find(id_of(file));
   if (input == record().inputs.end()) return;
-  throw OutputError(asked, "would be overwritten, and is read by this command" +
+  throw OutputError(asked, "would be overwritten, but is an input of this command" +
                                (asked == input->second ? std::string() : " (as " + input->second + ')') +
                                "; choose another output");
 }

@@ -38,12 +38,11 @@ OutputFile::OutputFile(std::string const& path, std::string const& kind) : place
   std::error_code error;
   if (fs::is_directory(place_.path(), error)) throw OutputError(place_.asked(), "is a folder; name a file");
   if (std::string const special = special_file(place_.path()); !special.empty()) {
-    throw OutputError(place_.asked(), "is no ordinary file (it is " + special + "); name a file");
+    throw OutputError(place_.asked(), "is not a regular file (it is " + special + "); name a file");
   }
   if (is_mount(place_.path())) {
-    throw OutputError(
-        place_.asked(),
-        "cannot be replaced (a file of its own is mounted there); mount its folder, or name another file");
+    throw OutputError(place_.asked(),
+                      "cannot be replaced (it is a mount point); mount its folder, or name another file");
   }
   refuse_recorded_input(place_.path(), place_.asked());
   refuse_protected_file(place_.path(), place_.asked());
@@ -79,7 +78,7 @@ void OutputFile::write(void const* data, std::size_t size) {
 void OutputFile::refuse_replacing(std::string const& kind) const {
   std::string const old = file_kind(place_.path());
   if (old.empty() || old == kind) return;
-  throw OutputError(place_.asked(), "holds data of another kind (" + old + "), and would be overwritten" +
+  throw OutputError(place_.asked(), "contains data of another kind (" + old + "), and would be overwritten" +
                                         (kind.empty() ? "" : " by " + kind) +
                                         "; choose another output, or remove this file");
 }

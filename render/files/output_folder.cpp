@@ -48,7 +48,7 @@ OutputFolder::OutputFolder(std::string const& path, FolderContent content)
   remove_leftovers(place_.folder(), stem);
   if (::stat(place_.path().c_str(), &there) == 0) {
     if (std::string const kind = special_file(place_.path()); !kind.empty()) {
-      throw OutputError(place_.asked(), "is no folder (it is " + kind + "); name a folder");
+      throw OutputError(place_.asked(), "is not a folder (it is " + kind + "); name a folder");
     }
     if (!S_ISDIR(there.st_mode)) throw OutputError(place_.asked(), "is a file; name a folder");
     refuse_foreign_folder();
@@ -74,7 +74,7 @@ void OutputFolder::stage(std::string const& parent, std::string const& stem) {
     partial_.reset();
     place_.remove_made_parents();
     bool const is_there = parent == place_.path();
-    place_.fail(is_there ? "cannot be written" : "the folder cannot be made", problem.code().value());
+    place_.fail(is_there ? "cannot be written" : "the folder cannot be created", problem.code().value());
   }
 }
 

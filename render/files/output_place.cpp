@@ -23,20 +23,20 @@ fs::path resolved(fs::path place, std::string const& asked) {
     if (!error && place.has_filename()) place = folder / place.filename();
     // A process that has the file open would not see its replacement.
     if (place.string().starts_with("/proc/") && place.string().find("/fd/") != std::string::npos) {
-      throw OutputError(asked, "is a file or pipe that a process has open; name a file of its own");
+      throw OutputError(asked, "is a file or pipe that a process has open; name another file");
     }
     fs::path const target = fs::read_symlink(place, error);
     if (error) return place;
     place = target.is_absolute() ? target : folder / target;
     if (!place.has_filename()) place = place.parent_path();
   }
-  throw OutputError(asked, "cannot be written (its links lead in a circle); name another place");
+  throw OutputError(asked, "cannot be written (its symbolic links form a circle); choose another path");
 }
 
 }  // namespace
 
 OutputPlace::OutputPlace(std::string path) : asked_(std::move(path)) {
-  if (asked_.empty()) throw OutputError("output", "has no name; give one");
+  if (asked_.empty()) throw OutputError("output", "has an empty name; give a name");
   std::error_code error;
   fs::path place = fs::absolute(asked_, error);
   if (error) throw OutputError(asked_, "cannot be written (the working folder is gone); change to another one");
@@ -64,7 +64,7 @@ void OutputPlace::make_parents() {
       int const error = errno;
       remove_made_parents();
       asked_ = above->string();
-      fail("the folder cannot be made", error);
+      fail("the folder cannot be created", error);
     }
   }
 }
@@ -77,7 +77,7 @@ void OutputPlace::fail(std::string const& what, int error) const {
   std::string hint;
   if (error == ENOSPC || error == EDQUOT) hint = "; free some space or choose another folder";
   if (error == EACCES || error == EPERM || error == EROFS) hint = "; choose a folder that you may write to";
-  if (error == ENOENT) hint = "; choose a place where a folder can be made";
+  if (error == ENOENT) hint = "; choose a path where a folder can be created";
   if (error == ENOTDIR) hint = "; a part of the path is a file";
   if (error == EFBIG) hint = "; raise the limit on the size of files (ulimit -f)";
   if (error == ENAMETOOLONG) hint = "; choose a shorter name";
@@ -97,7 +97,7 @@ void refuse_inputs_as_outputs(std::vector<std::string> const& outputs, std::vect
     for (std::string const& input : inputs) {
       bool const same = fs::equivalent(output, input, error) && !error;
       if (!same) continue;
-      throw OutputError(output, "would be overwritten, and is read by this command" +
+      throw OutputError(output, "would be overwritten, but is an input of this command" +
                                     (output == input ? std::string() : " (as " + input + ')') +
                                     "; choose another output");
     }

@@ -29,7 +29,8 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view label = "partial-";
 constexpr std::string_view lock_label = "lock-";
-constexpr char const* without_lock = "unlocked";  // boot id of writers without a lock: their end cannot be detected
+// replaces the boot id for writers without a lock, whose end cannot be detected
+constexpr char const* without_lock = "unlocked";
 
 std::string this_host() {
   char name[256] = {};
@@ -145,7 +146,8 @@ Partial::Partial(std::string const& parent, std::string const& stem, Kind kind) 
     int const error = locked ? lock_bytes(descriptor_, 0, 0) : 0;
     if (error == 0 && leads_to(lock, descriptor_)) return;
     ::close(std::exchange(descriptor_, -1));
-    if (error == EAGAIN || error == 0) continue;  // another process has taken it for a leftover
+    // another process has mistaken it for an abandoned output and removed it
+    if (error == EAGAIN || error == 0) continue;
     locked = false;
     std::error_code ignored;
     fs::remove_all(path_, ignored);
@@ -231,10 +233,11 @@ void remove_leftovers(std::string const& folder) {
 }
 
 std::string stem_beside(std::string const& name) {
-  constexpr std::size_t longest = 120;  // 255 bytes less up to 130 for the writer
+  constexpr std::size_t longest = 120;  // 255 bytes minus up to 130 for the identification of the writer
   if (name.size() <= longest) return '.' + name + '.';
   std::size_t cut = longest - 17;
-  while (cut > 0 && (static_cast<unsigned char>(name[cut]) & 0xc0) == 0x80) --cut;  // not within a UTF-8 character
+  // do not cut within a UTF-8 character
+  while (cut > 0 && (static_cast<unsigned char>(name[cut]) & 0xc0) == 0x80) --cut;
   return '.' + name.substr(0, cut) + '-' + content_hash(name) + '.';
 }
 

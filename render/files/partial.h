@@ -46,7 +46,7 @@ class Leftover {
   Leftover(Leftover&& other) noexcept;
   Leftover& operator=(Leftover&&) = delete;
 
-  /// Returns the name that its writer would give it for another stem.
+  /// Returns the name that the same writer would give to a partial output with another stem.
   std::string name(std::string const& stem) const;
 
  private:

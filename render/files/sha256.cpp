@@ -13,7 +13,7 @@ struct Sha256::Context {
 namespace {
 
 void check(int good) {
-  if (good != 1) throw std::runtime_error("OpenSSL gives no SHA-256 (its configuration forbids it?)");
+  if (good != 1) throw std::runtime_error("OpenSSL provides no SHA-256 (disabled by its configuration?)");
 }
 
 }  // namespace

@@ -14,7 +14,7 @@
 namespace gladstone {
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "numbers are hashed as they lie in memory");
+static_assert(std::endian::native == std::endian::little, "numbers are hashed as stored in memory");
 
 Sha256 started_picture(int columns, int rows, int sample_bits, char const* numbers) {
   Sha256 hash;
@@ -38,7 +38,7 @@ void add_dataset(Sha256& hash, Hdf5Reader const& file, std::string const& path, 
     hash.add(value.data(), value.size() * sizeof(double));
     return;
   }
-  constexpr std::size_t most = std::size_t{1} << 20;  // values per read
+  constexpr std::size_t most = std::size_t{1} << 20;  // number of values per read
   std::size_t const row = count / shape[0], rows = std::max<std::size_t>(1, most / row);
   // A damaged header can declare any size.
   require_memory(path, "a row of dataset \"" + name + '"', 1.0 * sizeof(double) * static_cast<double>(row));
@@ -143,7 +143,7 @@ void SourceFiles::check() const {
       if (hash_of(source.path, source.holds) == source.sha256) continue;
     } catch (MemoryError const&) {
       throw;
-    } catch (DataError const& error) {  // removed, or partly overwritten
+    } catch (DataError const& error) {  // the file was removed, or partly overwritten
       what = "it cannot be read any more: " + error.message();
     }
     throw DataError(source.path, "has changed since it was read (" + what + "), and nothing was written; " + advice_);

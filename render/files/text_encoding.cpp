@@ -39,7 +39,7 @@ std::string from_utf16(std::string_view bytes, bool little, std::string const& n
     std::uint32_t point = unit_at(i);
     if (point >= 0xd800 && point < 0xe000) {
       bool const pair = point < 0xdc00 && i + 2 < bytes.size() && unit_at(i + 2) >= 0xdc00 && unit_at(i + 2) < 0xe000;
-      if (!pair) throw DataError(name, "is no text (broken UTF-16); save it again as UTF-8");
+      if (!pair) throw DataError(name, "is not text (invalid UTF-16); save it again as UTF-8");
       point = 0x10000 + ((point - 0xd800) << 10) + (unit_at(i + 2) - 0xdc00);
       i += 2;
     }
@@ -100,7 +100,7 @@ std::string decoded_text(std::string_view bytes, std::string const& name) {
     }
   }
   if (text.find('\0') != std::string::npos) {
-    throw DataError(name, "is no text (it holds zero bytes); UTF-16 needs its byte order mark");
+    throw DataError(name, "is not text (it contains zero bytes); UTF-16 needs its byte order mark");
   }
   return with_plain_line_ends(text);
 }

@@ -23,8 +23,7 @@ std::string read_text_file(std::string const& path, std::string const& wanted, s
     while (true) {
       std::size_t const done = text.size();
       if (done > most_bytes || file.size() > most_bytes) {
-        throw DataError(path,
-                        "is longer than " + mebibytes(most_bytes) + ", the most that is read here; name " + wanted);
+        throw DataError(path, "is longer than " + mebibytes(most_bytes) + ", the maximum size; name " + wanted);
       }
       text.resize(done + std::max<std::size_t>(piece, done < file.size() ? file.size() - done + 1 : 0));
       std::size_t const got = file.read(done, text.data() + done, text.size() - done);
@@ -70,8 +69,9 @@ std::optional<std::string_view> LineReader::next() {
     begin_ = 0;
     end_ = searched;
     if (end_ > most_line_bytes) {
-      throw DataError(file_.path() + ':' + std::to_string(number_ + 1),
-                      "is longer than " + mebibytes(most_line_bytes) + ", as no line of a table is; check the file");
+      throw DataError(
+          file_.path() + ':' + std::to_string(number_ + 1),
+          "is longer than " + mebibytes(most_line_bytes) + ", too long for a line of a table; check the file");
     }
     buffer_.resize(std::max<std::size_t>(2 * end_, std::size_t{64} << 10));
     std::size_t const got = file_.read(offset_ + end_, buffer_.data() + end_, buffer_.size() - end_);
@@ -85,7 +85,8 @@ std::string LineReader::place() const { return file_.path() + ':' + std::to_stri
 std::string excerpt(std::string_view text, std::size_t longest) {
   if (text.size() <= longest) return std::string(text);
   std::size_t end = longest - 3;
-  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xc0u) == 0x80u) --end;  // not within a UTF-8 character
+  // do not cut within a UTF-8 character
+  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xc0u) == 0x80u) --end;
   return std::string(text.substr(0, end)) + "...";
 }
 

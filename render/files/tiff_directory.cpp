@@ -129,13 +129,13 @@ Image<double> read_bilevel_page(InputFile const& file, TiffDirectory const& page
   if (page.value(TiffTag::compression, uncompressed) != uncompressed || offsets.empty() ||
       page.value(TiffTag::samples_per_pixel, 1) != 1) {
     throw DataError(file.path(),
-                    "has one bit a pixel by default (its entry BitsPerSample is missing), which is read in strips "
-                    "without compression only; write it with 8 bits a pixel");
+                    "has one bit per pixel by default (its entry BitsPerSample is missing), which is supported only in "
+                    "uncompressed strips; write it with 8 bits per pixel");
   }
   std::uint64_t const row_bytes = (columns + bits_in_byte - 1) / bits_in_byte;
   std::uint64_t const strip_rows = std::min(page.value(TiffTag::rows_per_strip, rows), rows);
   auto const cut_short = [&] {
-    return DataError(file.path(), fmt::format("is damaged or cut short: its header tells of {} x {} px of one bit, and "
+    return DataError(file.path(), fmt::format("is damaged or cut short: its header declares {} x {} px of one bit, but "
                                               "the file has {} bytes; copy it again",
                                               columns, rows, file.size()));
   };
@@ -145,7 +145,7 @@ Image<double> read_bilevel_page(InputFile const& file, TiffDirectory const& page
       (!sizes.empty() && sizes.size() < offsets.size())) {
     throw cut_short();
   }
-  require_memory(file.path(), fmt::format("a picture of {} x {} px", columns, rows),
+  require_memory(file.path(), fmt::format("an image of {} x {} px", columns, rows),
                  static_cast<double>(columns * rows) * sizeof(double));
   bool const inverted = page.value(TiffTag::photometric, 1) == 0, reversed = page.value(TiffTag::fill_order, 1) == 2;
   Image<double> image(static_cast<int>(columns), static_cast<int>(rows));

@@ -12,11 +12,12 @@ namespace gladstone {
 namespace {
 
 constexpr double most_rays = 1e8;     // maximum number of rays of a table
-constexpr double cheap_rays = 2.5e5;  // maximum number of rays of a table with twice the node density
-constexpr double fine_rays = 2.5e7;   // the same if a finer table is requested
+constexpr double cheap_rays = 2.5e5;  // maximum number of rays of a table with doubled node density
+constexpr double fine_rays = 2.5e7;   // the same limit if a finer table is requested
 constexpr double fewest_nodes = 12;   // minimum number of nodes along either axis of the view
-constexpr double slope_reach = 0.6;  // pupil points for the slopes, in radii of the stop: the mean radius of its points
-constexpr double leaning = 2;        // in radii of the stop: rays farther out are ignored at a field's sides
+// pupil points for the slopes, in radii of the stop: mean radius of the points of the stop
+constexpr double slope_reach = 0.6;
+constexpr double leaning = 2;  // in radii of the stop: rays farther out are ignored at the side faces of a field
 
 /// Lane that traces four rays together.
 struct FourAbreast : OneLane {
@@ -151,7 +152,7 @@ DeflectionPlan::DeflectionPlan(FocusedDots const& dots, DotPattern const& source
   low = (1 - way) * low - Vec2d{reach, reach};
   high = (1 - way) * high + Vec2d{reach, reach};
   double const to_lens = (1 - way) * (bench.lens_z - bench.plane_z), half_depth = 0.5 * (bounds.high.z - bounds.low.z);
-  // Rays through q meet the faces at up to half_depth (|q| + leaning stop) / to_lens from q.
+  // Rays through q meet the faces at distances of up to half_depth (|q| + leaning * stop) / to_lens from q.
   double const lean = half_depth / to_lens, aside = lean * leaning * stop;
   auto const inside = [&](double side) { return (side - aside) / (side > aside ? 1 + lean : 1 - lean); };
   low = {std::max(low.x, -inside(-bounds.low.x)), std::max(low.y, -inside(-bounds.low.y))};

@@ -81,7 +81,7 @@ class LastDeflections {
     return map_->table();
   }
   void forget() { map_.reset(); }
-  /// State of the last table requested.
+  /// Returns whether the last table requested was built, and the reason if not.
   TableState state() const { return state_; }
 
  private:

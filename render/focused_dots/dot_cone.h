@@ -14,7 +14,7 @@ namespace gladstone {
 /// Node of a cone's cross-section, on rings that share their directions.
 struct ConePoint {
   double radius;  ///< radius in units of the stop's radius
-  double weight;  ///< fraction of the area
+  double weight;  ///< weight: fraction of the area
   int direction;  ///< index of the direction
 };
 /// Cubature rule over a light cone's cross-section.
@@ -117,7 +117,7 @@ class CorrectedCone {
         per_distance2_(1 / (distance * distance)),
         centre_(centre),
         aim_(aim) {
-    if (!(check.rays > 0)) return;  // no deflection
+    if (!(check.rays > 0)) return;  // no traced rays: the dot's rays are not deflected
     shift_ = check.shift / check.rays;
     origin_ = check.traced / check.rays;
     miss_ = check.miss / check.rays;

@@ -11,7 +11,7 @@ struct SeenDot : DotCone, DotFound {
   double farthest_aim = 0;  ///< as DotAim::farthest [m]
 };
 
-/// Single lane that checks a dot's rays against the table, two traced together.
+/// Single lane that compares a dot's rays with the table, tracing two rays together.
 struct CheckingLane : OneLane {
   static constexpr int abreast = 2;
   int scramblings = 1;

@@ -30,8 +30,8 @@ class DotPatch : public LightPatch {
       for (int i = 0; i < spot.width; ++i) corner[row * side() + i] += line[i];
     }
   }
-  /// Receives pixels of a square's image in row order, from `first` on, and adds the image when the last pixel is
-  /// received.
+  /// Receives the pixels of a square's image in row order, starting with `first`, and adds the image when the last
+  /// pixel has been received.
   template <int pixels>
   void add_run(Footprint const& square, int first, double const (&light)[pixels]) {
     std::copy_n(light, pixels, of_square_.data() + first);

@@ -21,18 +21,19 @@ TheoryModel FocusedDots::theory_model() const {
 }
 
 std::string reason_against_focused_dots(Setup const& setup) {
-  if (setup.piv) return "particles are no flat dots";
+  if (setup.piv) return "particles are not flat dots";
   if (setup.lens.prescription) return "the lens is a prescription";
-  if (setup.pose) return "the camera has a pose of its own";
+  if (setup.pose) return "the camera is not on the Z axis (camera.pose)";
   if (!setup.windows.empty()) return "there are windows";
   if (setup.camera.tilted()) return "the sensor is tilted";
   if (setup.camera.distorted()) return "the lens distorts";
-  if (setup.lenslets) return "there are lenslets before the sensor";
-  if (!setup.on_bench()) return "the camera is no ideal thin lens alone on its axis";
+  if (setup.lenslets) return "there are lenslets in front of the sensor";
+  if (!setup.on_bench()) return "the camera is not a single ideal thin lens";
   if (std::isinf(setup.lens.f_number)) return "the lens has no stop (f_number = inf)";
   if (!(std::abs(setup.focus_distance() - setup.z_b()) <= 1e-12 * setup.z_b())) return "the dots are out of focus";
-  if (setup.lens.spot == SpotModel::airy || setup.lens.spot == SpotModel::none) return "the spot is no Gaussian";
-  if (setup.render.sampling != PupilSampling::sobol) return "render.sampling = \"random\" takes rays as they are";
+  if (setup.lens.spot == SpotModel::airy || setup.lens.spot == SpotModel::none)
+    return "the point spread function is not Gaussian";
+  if (setup.render.sampling != PupilSampling::sobol) return "render.sampling = \"random\" requires ray tracing";
   return "";
 }
 

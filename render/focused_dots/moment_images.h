@@ -62,7 +62,8 @@ struct DotSquares {
     using std::floor;
     auto const nearest = [per_side = lattice.per_side()](double p) {
       double const at = floor(p * per_side + 0.5);
-      return at < -1e7 ? -1e7 : (at > 1e7 ? 1e7 : at);  // farther displacements are not sorted
+      // clamped, since farther displacements are not sorted into squares
+      return at < -1e7 ? -1e7 : (at > 1e7 ? 1e7 : at);
     };
     origin = origin - Vec2d{MomentLattice::aside, MomentLattice::aside};
     Vec2d const at{nearest(origin.x), nearest(origin.y)};
@@ -157,7 +158,7 @@ struct MomentImages {
   /// @param terms  6, or 1 for a point
   static MomentImages plan(double half_px, GaussianSpot<double> const& spot, double side, int terms);
 
-  static constexpr int pad = 16;  ///< `stride` is a multiple of this
+  static constexpr int pad = 16;  ///< alignment: `stride` is a multiple of this
   /// Number of PSF factors of one point.
   GLADSTONE_HD static constexpr int factors(int pitch) { return 2 * (DisplacementMoments::order + 1) * pitch; }
 

@@ -30,7 +30,7 @@ GLADSTONE_HD void lay_down_points(Group const& group, DotModel const& model, Vec
   int const width = 2 * spot.half_width() + 1, pitch = pixels > 1 ? pixels : width + 1;
   auto const team = group.team();
   auto const eight = team.eight();
-  if (!(abs(origin.x) < 1e8 && abs(origin.y) < 1e8)) return;  // outside any image
+  if (!(abs(origin.x) < 1e8 && abs(origin.y) < 1e8)) return;  // the position is outside any image
   CubatureView const& source = model.source;
   double const units = light * patch.units_per_weight();
   auto const at_point = [&](int i) { return origin + model.half_size_px() * source.points[i]; };

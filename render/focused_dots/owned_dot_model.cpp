@@ -12,7 +12,8 @@ namespace gladstone {
 
 namespace {
 
-constexpr std::uint64_t most_given_rays = std::uint64_t{1} << 24;  ///< more do not reduce the table's error
+constexpr std::uint64_t most_given_rays = std::uint64_t{1} << 24;  ///< maximum number of check rays: more do not reduce
+                                                                   ///< the table's error
 constexpr std::uint64_t most_chosen_rays = 256;                    ///< maximum number of rays per dot for "auto"
 
 /// Returns the position along a space-filling curve (Morton 1966) that keeps neighbouring points of the unit disc
@@ -121,7 +122,8 @@ OwnedDotModel::OwnedDotModel(FocusedDots const& dots, DotPattern const& sources,
 
   bool const given = scene.setup.render.rays_per_dot.has_value();
   std::uint64_t const asked = std::min(scene.rays_per_dot, most_given_rays);
-  std::uint64_t const wanted = given ? asked : (std::max<std::uint64_t>(asked, 1) + 31) / 32 * 32;  // whole warps
+  // round up to whole warps
+  std::uint64_t const wanted = given ? asked : (std::max<std::uint64_t>(asked, 1) + 31) / 32 * 32;
   model.choice.seed = scene.setup.render.seed;
   model.choice.scrambling_bits = scrambling_bits(wanted);
   model.shape = sources.shape;

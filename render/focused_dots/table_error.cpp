@@ -39,7 +39,7 @@ struct RaySample {
   };
   int rays = 0;                           ///< number of rays whose landing the table has predicted
   Sum predicted, also_predicted, traced;  ///< all predicted rays; those that are also traced, both ways
-  LightImage light, difference;           ///< of the predicted rays; traced minus predicted rays
+  LightImage light, difference;           ///< sums over the predicted rays; sums of traced minus predicted rays
 
   explicit RaySample(int side) : light(side, side), difference(side, side) {}
 };
@@ -62,7 +62,8 @@ class LoneDot {
     if (left()) return;
     Vec2d const moved = seen_.truth.hits[1].mean() - seen_.truth.hits[0].mean();
     take_frame(1, std::isfinite(moved.x) ? moved : Vec2d{});
-    for (Sampled& off : off_) off.light.resize(as_seen_.light.size());  // no difference in the reference image
+    // no difference in the reference image, whose light is known in closed form
+    for (Sampled& off : off_) off.light.resize(as_seen_.light.size());
     if (seen_.kind == DotKind::still) return;
     for (int scrambling = 0; scrambling < plan_scramblings; ++scrambling) samples_.emplace_back(side);
   }

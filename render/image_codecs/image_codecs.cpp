@@ -47,7 +47,7 @@ OIIO::TypeDesc stored_as(SampleType type) {
   }
 }
 
-constexpr int photometric_inverted = 0, photometric_grey = 1, photometric_inks = 5;  // of TIFF 6.0, section 8
+constexpr int photometric_inverted = 0, photometric_grey = 1, photometric_inks = 5;  // values of TIFF 6.0, section 8
 
 int photometric(OIIO::ImageSpec const& spec) { return spec.get_int_attribute("tiff:PhotometricInterpretation", -1); }
 
@@ -68,7 +68,8 @@ enum class InkColours { converted, stored };
 
 std::unique_ptr<OIIO::ImageInput> open_input(std::string const& path, InkColours inks) {
   OIIO::ImageSpec configuration;
-  configuration["oiio:UnassociatedAlpha"] = 1;  // colours as stored, not multiplied by their opacity
+  // read unassociated alpha: colours as stored, not multiplied by their opacity
+  configuration["oiio:UnassociatedAlpha"] = 1;
   if (inks == InkColours::stored) configuration["oiio:RawColor"] = 1;
   return OIIO::ImageInput::open(path, &configuration);
 }
@@ -106,7 +107,7 @@ class OiioReader final : public PageReader {
     OIIO::ImageSpec const spec = input_->spec();
     bool const whole = input_->read_image(input_->current_subimage(), 0, 0, spec.nchannels,
                                           stored_as(sample_type(spec.format)), samples);
-    // of a TIFF cut short it says true, and leaves an error for every missing strip
+    // for a truncated TIFF it returns true, and reports an error for every missing strip
     if (whole && !input_->has_error()) return "";
     std::string const why = input_->geterror();
     return why.empty() ? "no reason given" : why.substr(0, why.find('\n'));
@@ -115,8 +116,8 @@ class OiioReader final : public PageReader {
   void clear_errors() override { input_->geterror(); }
 
  private:
-  /// Opens the file anew where its page is of printing inks: the library's conversion to red, green and blue writes
-  /// beyond its buffers where the page is stored in tiles (OpenImageIO 2.4, issue 5315).
+  /// Reopens the file if its page consists of printing inks: the library's conversion to red, green and blue writes
+  /// beyond its buffers if the page is stored in tiles (OpenImageIO 2.4, issue 5315).
   bool read_inks_as_stored() {
     if (inks_ == InkColours::stored || photometric(input_->spec()) != photometric_inks) return true;
     int const page = input_->current_subimage();
@@ -150,7 +151,7 @@ class OiioCodecs final : public ImageCodecs {
     spec["compression"] = "none";
     spec["ImageDescription"] = page.description;
     spec["Software"] = page.software;
-    spec["DateTime"] = 0;  // not a text, so that no date is written: equal images are equal files
+    spec["DateTime"] = 0;  // not a string, so that no date is written: equal images result in equal files
     if (page.pixels_per_centimetre > 0.0) {
       float const resolution = static_cast<float>(page.pixels_per_centimetre);
       spec["XResolution"] = resolution;
@@ -158,7 +159,7 @@ class OiioCodecs final : public ImageCodecs {
       spec["ResolutionUnit"] = "cm";
     }
     auto const output = OIIO::ImageOutput::create("tif");
-    if (!output) return "no writer of TIFF is installed";
+    if (!output) return "no TIFF writer is installed";
     OIIO::Filesystem::IOVecOutput memory(bytes);
     bool const written = output->set_ioproxy(&memory) && output->open(path, spec) &&
                          output->write_image(OIIO::TypeDesc::UINT16, page.values);
@@ -169,7 +170,7 @@ class OiioCodecs final : public ImageCodecs {
                          std::vector<unsigned char>& bytes) const override {
     OIIO::ImageSpec const spec(columns, rows, 1, OIIO::TypeDesc::UINT8);
     auto const output = OIIO::ImageOutput::create("png");
-    if (!output) return "no writer of PNG is installed";
+    if (!output) return "no PNG writer is installed";
     OIIO::Filesystem::IOVecOutput memory(bytes);
     bool const written = output->set_ioproxy(&memory) && output->open("picture.png", spec) &&
                          output->write_image(OIIO::TypeDesc::UINT8, values);

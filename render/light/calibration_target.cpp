@@ -27,7 +27,7 @@ CalibrationTarget read_calibration_target(SetupTable table) {
   for (double const z : planes) read.planes.push_back(z * unit::millimetre);
   std::sort(planes.begin(), planes.end());
   if (std::adjacent_find(planes.begin(), planes.end()) != planes.end()) {
-    table.problem("planes_mm", "has a plane twice (nothing is learnt from the second); remove one");
+    table.problem("planes_mm", "contains a plane twice (the second one adds no information); remove one");
   }
   TargetSetup& target = read.target;
   target.kind = TargetKind::lattice;
@@ -37,8 +37,8 @@ CalibrationTarget read_calibration_target(SetupTable table) {
   target.dot_diameter_m = table.number("dot_diameter_mm", 0.8, Range::positive(1e6)) * unit::millimetre;
   if (*target.dot_diameter_m > 0.8 * target.spacing) {
     table.problem("dot_diameter_mm",
-                  fmt::format("leaves less than a fifth of calibration.spacing_mm = {:.6g} between dots (their images "
-                              "run together); use smaller dots or a wider spacing",
+                  fmt::format("leaves a gap of less than a fifth of calibration.spacing_mm = {:.6g} between dots "
+                              "(their images would merge); use smaller dots or a wider spacing",
                               target.spacing / unit::millimetre));
   }
   auto const extent = table.numbers("extent_mm", {40, 40}, 2, Range::positive(1e9));

@@ -59,7 +59,7 @@ class OccupiedCells {
   double side_;
   std::ptrdiff_t columns_;
   std::ptrdiff_t rows_;
-  std::vector<std::uint32_t> latest_;   // most recent disc of each cell
+  std::vector<std::uint32_t> latest_;   // most recently added disc of each cell
   std::vector<std::uint32_t> earlier_;  // previous disc in the same cell, for each disc
 };
 
@@ -92,8 +92,10 @@ std::vector<Vec2d> random_dots(Vec2d extent, std::size_t count, double diameter,
       centres.push_back(p);
       misses = 0;
     } else if (++misses > 100000) {
-      throw DataError("target", fmt::format("only {} of {} dots of {:.4g} mm found room; use fewer or smaller dots",
-                                            centres.size(), count, diameter / unit::millimetre));
+      throw DataError(
+          "target",
+          fmt::format("only {} of {} dots of {:.4g} mm could be placed without overlap; use fewer or smaller dots",
+                      centres.size(), count, diameter / unit::millimetre));
     }
     if ((misses & 1023u) == 1023u) throw_if_interrupted();
   }
@@ -142,12 +144,11 @@ void refuse_coincident(std::string const& path, std::vector<Vec2d> const& centre
     if (dot < second) first = before, second = dot;
   }
   if (repeated == 0) return;
-  throw DataError(
-      fmt::format("{}:{}", path, lines[second]),
-      fmt::format("the dot at {:.6g}, {:.6g} mm stands in line {} already ({} of {} dots lie where an earlier "
-                  "one lies, and would count twice in light and truth); remove the repeated lines",
-                  centres[second].x / unit::millimetre, centres[second].y / unit::millimetre, lines[first], repeated,
-                  centres.size()));
+  throw DataError(fmt::format("{}:{}", path, lines[second]),
+                  fmt::format("the dot at {:.6g}, {:.6g} mm repeats line {} ({} of {} dots coincide with an earlier "
+                              "one and would be counted twice in light and truth); remove the repeated lines",
+                              centres[second].x / unit::millimetre, centres[second].y / unit::millimetre, lines[first],
+                              repeated, centres.size()));
 }
 
 }  // namespace
@@ -177,17 +178,16 @@ std::vector<Vec2d> dots_from_csv(std::string const& path, double farthest) {
     }
     Vec2d const centre{value[0] * unit::millimetre, value[1] * unit::millimetre};
     if (std::max(std::abs(centre.x), std::abs(centre.y)) > farthest) {
-      throw DataError(
-          file.place(),
-          fmt::format("the dot at {:.6g}, {:.6g} mm lies so far off the axis that no lens sees it ({:.6g} mm "
-                      "at most, ten times the way to the lens); places are in mm",
-                      value[0], value[1], farthest / unit::millimetre));
+      throw DataError(file.place(),
+                      fmt::format("the dot at {:.6g}, {:.6g} mm is too far from the axis to be imaged ({:.6g} mm at "
+                                  "most, ten times the distance to the lens); positions are in mm",
+                                  value[0], value[1], farthest / unit::millimetre));
     }
     require_room(centres, path, "dots");
     centres.push_back(centre);
     lines.push_back(file.number());
   }
-  if (centres.empty()) throw DataError(path, "holds no dots (a line x_mm,y_mm for each is needed)");
+  if (centres.empty()) throw DataError(path, "contains no dots (one line x_mm,y_mm is needed for each)");
   refuse_coincident(path, centres, lines);
   return centres;
 }
@@ -195,16 +195,17 @@ std::vector<Vec2d> dots_from_csv(std::string const& path, double farthest) {
 DotPattern picture_target(std::string const& path, Vec2d extent) {
   Image<double> const picture = read_image(path);
   if (std::size_t const bad = count_not_finite(picture); bad > 0) {
-    throw DataError(path, fmt::format("{} of {} pixels are nan or infinite (grey values are the radiance); mend them",
-                                      bad, picture.size()));
+    throw DataError(path,
+                    fmt::format("{} of {} pixels are nan or infinite (grey values are the radiance); correct them", bad,
+                                picture.size()));
   }
   double const white = picture.empty() ? 0.0 : *std::max_element(picture.begin(), picture.end());
-  if (!(white > 0)) throw DataError(path, "is black all over (no pixel sends light)");
+  if (!(white > 0)) throw DataError(path, "is entirely black (no pixel emits light)");
   double const side = extent.x / picture.columns();
   if (std::abs(side * picture.rows() - extent.y) > 0.5 * side) {
     throw DataError(
-        path, fmt::format("is {} x {} pixels but the target is {:.4g} x {:.4g} mm (pixels must be square); "
-                          "set target.extent_mm to the picture's proportions",
+        path, fmt::format("is {} x {} pixels but the target is {:.4g} x {:.4g} mm (pixels must be square); give "
+                          "target.extent_mm the aspect ratio of the image",
                           picture.columns(), picture.rows(), extent.x / unit::millimetre, extent.y / unit::millimetre));
   }
   DotPattern pattern;

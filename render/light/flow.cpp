@@ -38,10 +38,9 @@ FlowSetup read_flow_setup(SetupTable table, std::optional<ShockPlane> const& sho
   if (shock && word == NormalShockFlow::kind) {
     Vec3d const normal{std::cos(shock->tilt), 0, std::sin(shock->tilt)};
     if (std::abs(dot(setup.flow.uniform, normal)) > 1e-9 * length(setup.flow.uniform)) {
-      table.problem(
-          "velocity_m_s",
-          "has a part across the shock's front (which stands still, and gas crosses it at medium.field.mach); "
-          "give one along the front");
+      table.problem("velocity_m_s",
+                    "has a component normal to the shock front (which is at rest while gas crosses it at "
+                    "medium.field.mach); give a velocity parallel to the front");
     }
   }
   setup.dt = table.quantity("dt_us", setup.dt, unit::microsecond, Range::positive(1e12));

@@ -13,7 +13,7 @@ Vec3d read_unit_vector(SetupTable& table, std::string const& key, Vec3d fallback
   if (parts.size() != 3) return fallback;
   Vec3d const vector{parts[0], parts[1], parts[2]};
   if (length(vector) < 1e-9) {
-    table.problem(key, "has no length (it is a direction in X, Y, Z); give one, as [1.0, 0.0, 0.0]");
+    table.problem(key, "is zero (a direction in X, Y, Z is needed); give one such as [1.0, 0.0, 0.0]");
     return fallback;
   }
   return normalized(vector);
@@ -30,11 +30,10 @@ LaserSetup read_laser_setup(SetupTable table, double wavelength) {
   laser.normal = read_unit_vector(table, "normal", laser.normal);
   double const lean = dot(laser.direction, laser.normal);
   if (std::abs(lean) > square_enough) {
-    table.problem(
-        table.has("normal") ? "normal" : "direction",
-        fmt::format("leaves {:.4g} deg between the sheet's normal and the laser's direction (a sheet holds its "
-                    "laser's direction, so that they are square); turn one of them",
-                    std::acos(std::min(std::abs(lean), 1.0)) / unit::degree));
+    table.problem(table.has("normal") ? "normal" : "direction",
+                  fmt::format("makes an angle of {:.4g} deg between the sheet's normal and the laser's direction (they "
+                              "must be perpendicular, since the beam lies in the sheet); rotate one of them",
+                              std::acos(std::min(std::abs(lean), 1.0)) / unit::degree));
     // replace the normal by one that is not parallel to the direction, so that reading can continue
     Vec3d const other = std::abs(laser.direction.z) < 0.7 ? Vec3d{0, 0, 1} : Vec3d{1, 0, 0};
     laser.normal = other;

@@ -130,11 +130,12 @@ MieScattering::MieScattering(std::vector<double> const& diameters, MieSetting co
   double const bytes = bytes_of(sizes, diameters.size(), setting, angles);
   double const available = available_memory();
   if (bytes > always_there && bytes > available) {
-    throw MemoryError("particles",
-                      fmt::format("the light scattered by {} different diameters of up to {:.4g} um takes a "
-                                  "table of {:.3g} GB of memory ({:.3g} GB are available); take fewer "
-                                  "particles, fewer or smaller diameters, or scattering = \"lambert\"",
-                                  sizes.size(), sizes.back() / unit::micrometre, bytes / 1e9, available / 1e9));
+    throw MemoryError(
+        "particles",
+        fmt::format(
+            "the light scattered by {} different diameters of up to {:.4g} um needs a table of {:.3g} GB of memory "
+            "({:.3g} GB are available); use fewer particles, fewer or smaller diameters, or scattering = \"lambert\"",
+            sizes.size(), sizes.back() / unit::micrometre, bytes / 1e9, available / 1e9));
   }
 
   table_of_.resize(diameters.size());

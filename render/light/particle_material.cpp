@@ -100,7 +100,7 @@ std::complex<double> read_particle_index(SetupTable table, double wavelength) {
     }
     return {parts[0], parts[1]};
   }
-  table.refuse("index", "stands beside material, which has an index of its own; remove one of them");
+  table.refuse("index", "conflicts with material, which determines the index; remove one of them");
   std::string const name = table.word("material", "dehs", particle_material_names());
   ParticleMaterial const& material = particle_material(name);
   if (wavelength < material.shortest || wavelength > material.longest) {

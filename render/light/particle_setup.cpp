@@ -22,7 +22,8 @@ void read_count(SetupTable& table, ParticleSetup& setup) {
   bool found = false;
   for (char const* const key : keys) {
     if (!table.has(key)) continue;
-    if (found) table.refuse(key, fmt::format("stands beside {} (one of them says how many); remove one", chosen));
+    if (found)
+      table.refuse(key, fmt::format("conflicts with {} (both set the number of particles); remove one", chosen));
     if (!found) chosen = key;
     found = true;
   }
@@ -59,7 +60,7 @@ DiameterSetup read_diameter(SetupTable& table) {
     setup.width = spread.number("std_um", 0.1, Range::at_least(0, widest_um)) * unit::micrometre;
     if (setup.width > setup.middle / 3) {
       spread.problem("std_um",
-                     "is more than a third of mean_um (one in a thousand diameters and more would be negative); use a "
+                     "is more than a third of mean_um (at least one in a thousand diameters would be negative); use a "
                      "smaller one, or kind = \"lognormal\"");
     }
   } else {
@@ -81,7 +82,7 @@ ParticleSetup read_particle_setup(SetupTable table, double wavelength) {
   }
   setup.center = table.quantities("center_mm", setup.center, unit::millimetre, {-1e6, 1e6});
   if (listed) {
-    table.refuse("diameter_um", "stands beside file (which has a diameter for each particle); remove it");
+    table.refuse("diameter_um", "conflicts with file (which gives the diameter of each particle); remove it");
   } else {
     setup.diameter = read_diameter(table);
   }
@@ -94,7 +95,9 @@ ParticleSetup read_particle_setup(SetupTable table, double wavelength) {
     setup.density = table.number("density_kg_m3", 1000.0, Range::positive(1e6));
     setup.viscosity = table.number("viscosity_pa_s", setup.viscosity, Range::positive(1e6));
   } else {
-    table.refuse("viscosity_pa_s", "is of particles that lag (whose density_kg_m3 is given); add it, or remove this");
+    table.refuse(
+        "viscosity_pa_s",
+        "applies only to particles with lag, for which density_kg_m3 is given; add density_kg_m3, or remove this key");
   }
   setup.seed = static_cast<std::uint64_t>(
       table.integer("seed", static_cast<long long>(setup.seed), 0, std::numeric_limits<long long>::max()));

@@ -10,7 +10,7 @@
 
 namespace gladstone {
 
-/// Specification of the number of particles.
+/// Key that specifies the number of particles.
 enum class ParticleCount { number, per_mm3, per_pixel, file };
 /// Distribution of the particle diameters.
 enum class DiameterSpread { one, lognormal, normal, table };

@@ -86,7 +86,8 @@ struct DiameterTable {
       diameter.push_back((*row)[0] * unit::micrometre);
       up_to.push_back(sum += (*row)[1]);
     }
-    if (!(sum > 0)) throw DataError(path, "holds no diameter with a weight (a line diameter_um,weight for each)");
+    if (!(sum > 0))
+      throw DataError(path, "contains no diameter with a weight (one line diameter_um,weight is needed for each)");
   }
   double at(double share) const {
     auto const found = std::upper_bound(up_to.begin(), up_to.end(), share * up_to.back());
@@ -240,18 +241,16 @@ Particles read_particles(ParticleSetup const& setup, FlowSetup const& flow, Lase
   NumberTable file(setup.file, "a table of particles", {"x_mm", "y_mm", "z_mm", "diameter_um"});
   while (auto const row = file.next()) {
     if (!((*row)[3] > 0)) {
-      throw DataError(
-          file.place(),
-          fmt::format("the diameter is {:.6g} um (nothing so small scatters light); give one above zero, or "
-                      "remove the particle",
-                      (*row)[3]));
+      throw DataError(file.place(),
+                      fmt::format("the diameter is {:.6g} um (it must be positive); correct it, or remove the particle",
+                                  (*row)[3]));
     }
     require_room(particles.diameter, setup.file, "particles");
     particles.place[0].push_back(Vec3d{(*row)[0], (*row)[1], (*row)[2]} * unit::millimetre);
     particles.diameter.push_back((*row)[3] * unit::micrometre);
   }
   if (particles.diameter.empty()) {
-    throw DataError(setup.file, "holds no particles (a line x_mm,y_mm,z_mm,diameter_um for each is needed)");
+    throw DataError(setup.file, "contains no particles (one line x_mm,y_mm,z_mm,diameter_um is needed for each)");
   }
   std::vector<Vec3d> const& start = particles.place[0];
   particles.path = plan_paths(setup, flow, start, particles.diameter, flow.dt, tolerance);

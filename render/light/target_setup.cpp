@@ -24,13 +24,14 @@ TargetSetup read_target_setup(SetupTable table) {
   } else {
     setup.file = table.required_path("file");
     if (std::error_code error; !setup.file.empty() && !std::filesystem::exists(setup.file, error)) {
-      table.problem("file", "there is no file " + setup.file + "; relative names start at the setup file's folder");
+      table.problem("file",
+                    "file not found: " + setup.file + "; relative names are resolved against the setup file's folder");
     }
   }
   if (setup.kind != TargetKind::image) {
     if (table.has("dot_diameter_mm")) {
       if (table.has("dot_diameter_px")) {
-        table.problem("dot_diameter_mm", "stands beside dot_diameter_px (one size is enough); remove one of them");
+        table.problem("dot_diameter_mm", "conflicts with dot_diameter_px (both set the dot size); remove one of them");
         table.number("dot_diameter_px", *setup.dot_diameter_px);
       }
       setup.dot_diameter_m = table.number("dot_diameter_mm", 0.0, Range::at_least(0.0)) * unit::millimetre;
@@ -40,7 +41,7 @@ TargetSetup read_target_setup(SetupTable table) {
     }
   }
   if (setup.kind == TargetKind::image) {
-    table.refuse("polarity", "does not apply to a picture (its grey values are the radiance); remove it");
+    table.refuse("polarity", "does not apply to an image (its grey values are the radiance); remove it");
   } else {
     setup.polarity = table.choice("polarity", setup.polarity, {{"bright", Polarity::bright}, {"dark", Polarity::dark}});
   }

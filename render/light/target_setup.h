@@ -22,7 +22,8 @@ enum class Polarity { bright, dark };
 struct TargetSetup {
   TargetKind kind = TargetKind::dots;
   double dots_per_32px_window = 20.0;
-  std::optional<double> dot_diameter_px = 3.0;  ///< of the geometric image [px]; empty: dot_diameter_m is given
+  std::optional<double> dot_diameter_px = 3.0;  ///< diameter of the geometric image [px]; empty: dot_diameter_m is
+                                                ///< given
   std::optional<double> dot_diameter_m;         ///< diameter of a dot on the target [m]
   DotArrangement arrangement = DotArrangement::random;
   Polarity polarity = Polarity::bright;

@@ -84,7 +84,7 @@ FileFlow FileFlow::read(SetupTable& table, FlowSetup& setup) {
   file.axes = table.text("axes", "");
   if (!file.axes.empty() && !is_axis_order(file.axes)) {
     table.problem("axes",
-                  "is no order of axes; name those of the file, the slowest first: \"zyx\", or \"yx\" of a plane");
+                  "is not an order of axes; list the axes of the file, slowest first: \"zyx\", or \"yx\" for a plane");
   }
   if (table.has("scale")) file.scale = table.number("scale", 1.0, {-1e12, 1e12});
   if (table.has("spacing_mm")) file.spacing = table.quantities("spacing_mm", {mm, mm, mm}, mm, Range::positive(1e9));
@@ -101,11 +101,11 @@ RegularGrid velocity_grid(VelocityFile const& setup) {
   RegularGrid grid = source->grid();
   auto const refuse = [&](std::string const& why) { throw DataError(setup.file, source->name() + ' ' + why); };
   if (setup.extrude && grid.nodes[2] != 1) {
-    refuse(fmt::format("has {} planes along z (extrude = true takes a single plane); set flow.extrude = false",
+    refuse(fmt::format("has {} planes along z (extrude = true needs a single plane); set flow.extrude = false",
                        grid.nodes[2]));
   }
   if (!setup.extrude && grid.nodes[2] < 2) {
-    refuse("is a single plane (a volume needs at least two); set flow.extrude = true to have it the same along Z");
+    refuse("is a single plane (a volume needs at least two); set flow.extrude = true to extend it along Z");
   }
   if (grid.nodes[0] < 2 || grid.nodes[1] < 2) {
     refuse(fmt::format("has {} x {} nodes (at least 2 x 2 are needed)", grid.nodes[0], grid.nodes[1]));

@@ -21,9 +21,10 @@ std::unique_ptr<FieldSource> open_file(FieldSetup const& field) {
 RegularGrid world_grid(FieldSetup const& field, FieldSource const& source) {
   RegularGrid grid = source.grid();
   if (field.extrude && grid.nodes[2] != 1) {
-    throw DataError(field.file, fmt::format("{} has {} planes along z (extrude = true takes a single plane); set "
-                                            "medium.field.extrude = false",
-                                            source.name(), grid.nodes[2]));
+    throw DataError(
+        field.file,
+        fmt::format("{} has {} planes along z (extrude = true needs a single plane); set medium.field.extrude = false",
+                    source.name(), grid.nodes[2]));
   }
   if (!field.extrude && grid.nodes[2] < 2) {
     throw DataError(field.file, fmt::format("{} is a single plane (a volume needs at least two); set "
@@ -81,9 +82,9 @@ std::string lost_digits(FieldSetup const& field, FieldSource const& source, doub
   double const largest = (1 + high) / std::abs(scale);
   double const step = std::abs(scale) * std::ldexp(1.0, std::ilogb(largest) + 1 - bits);
   return fmt::format(
-      "medium.field.quantity: {} of {} holds refractive indices in {} bits, so n - 1 is known in steps of {:.2g} only, "
-      "{:.2g} % of its range in this field (digits are lost that nothing brings back, and gradients are noisy); write "
-      "the file as refractivity (n - 1) or density, or in double",
+      "medium.field.quantity: {} of {} stores refractive indices with {} bits, so that n - 1 is resolved in steps of "
+      "only {:.2g}, {:.2g} % of its range in this field (the lost digits cannot be recovered, and gradients are "
+      "noisy); write the file as refractivity (n - 1) or density, or in double precision",
       source.name(), field.file, bits, step, 100 * step / std::max(high - low, step));
 }
 
@@ -100,12 +101,12 @@ std::string unlikely_range(MediumSetup const& setup, std::string const& name, do
   bool const density = field.quantity == FieldQuantity::density;
   double const unit = density ? setup.gladstone_dale : 1.0;  // refractivity per unit of the values
   std::string likely;
-  // a gas has 1e-5 < n - 1 < 2e-3, so that indices read as densities are 1 to within 0.2 %
+  // gases have 1e-5 < n - 1 < 2e-3, so that densities all within 0.2 % of 1 may be refractive indices
   bool const index = density && scale == 1.0 && low > (1 + 1e-5) * unit && high < (1 + 2e-3) * unit;
   if (index) {
     likely = "these would be refractive indices of a gas; if they are, set quantity = \"refractive_index\"";
   } else if (high < ambient / factor) {
-    // of the readings within a factor of ten of the ambient, suggest the closest
+    // among the readings within a factor of ten of the ambient value, suggest the closest
     auto const decades_off = [&](double ratio) {
       bool const fits = high * ratio > ambient / 10 && low * ratio < ambient * 10;
       return fits ? std::abs(std::log10(0.5 * (low + high) * ratio / ambient)) : HUGE_VAL;
@@ -168,8 +169,8 @@ BuiltMedium build_grid(MediumSetup const& setup, RegularGrid const& grid, FieldS
       grid, spline ? Volume::Interpolation::cubic_bspline : Volume::Interpolation::trilinear, scale, shift,
       [&](int first, int count, std::span<double> out) { source.read_planes(first, count, out); });
   if (!possible_refractivity(volume->lowest()) || !possible_refractivity(volume->highest())) {
-    throw DataError(field.file, fmt::format("{} gives refractive indices from {:.6g} to {:.6g} (no such medium); check "
-                                            "medium.field.quantity and scale",
+    throw DataError(field.file, fmt::format("{} gives refractive indices from {:.6g} to {:.6g} (no medium has such "
+                                            "indices); check medium.field.quantity and scale",
                                             source.name(), 1 + volume->lowest(), 1 + volume->highest()));
   }
   BuiltMedium built;

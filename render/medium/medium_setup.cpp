@@ -33,13 +33,14 @@ void read_file_field(SetupTable& table, FieldSetup& field) {
   field.file = table.required_path("file");
   field.where = table.where("file");
   if (std::error_code error; !field.file.empty() && !std::filesystem::exists(field.file, error)) {
-    table.problem("file", "there is no file " + field.file + "; relative names start at the setup file's folder");
+    table.problem("file",
+                  "file not found: " + field.file + "; relative names are resolved against the setup file's folder");
   }
   field.dataset = table.text("dataset", "");
   field.axes = table.text("axes", "");
   if (!field.axes.empty() && !is_axis_order(field.axes)) {
     table.problem("axes",
-                  "is no order of axes; name those of the file, the slowest first: \"zyx\", or \"yx\" of a plane");
+                  "is not an order of axes; list the axes of the file, slowest first: \"zyx\", or \"yx\" for a plane");
   }
   field.quantity = table.choice("quantity", field.quantity,
                                 {{"density", FieldQuantity::density},
@@ -91,7 +92,7 @@ MediumSetup read_medium_setup(SetupTable table) {
   setup.faces = table.choice("faces", setup.faces, {{"matched", Faces::matched}, {"refract", Faces::refract}});
   auto fields = table.tables("field");
   if (fields.size() > 1) {
-    table.problem("field", "is an array of several fields, which is not available yet (one field a setup); keep one");
+    table.problem("field", "is an array of several fields, which is not available yet (one field per setup); keep one");
     for (std::size_t other = 1; other < fields.size(); ++other) fields[other].excuse();
   }
   setup.field = read_field(fields.empty() ? table.table("field") : fields.front());

@@ -13,7 +13,7 @@ namespace gladstone {
 template <class T, class Shape>
 GLADSTONE_HD bool intersect_asphere(Shape const& shape, Ray<T> const& ray, T& way) {
   constexpr int max_steps = 30;
-  constexpr double tolerance = 1e-9;  // [m]; the residual is far smaller on a hit, and far larger on a miss
+  constexpr double tolerance = 1e-9;  // tolerance [m]; the residual is far smaller on a hit and far larger on a miss
   if (!shape.conic.intersect(ray, way)) {
     if (ray.direction.z == T(0)) return false;
     way = -ray.position.z / ray.direction.z;

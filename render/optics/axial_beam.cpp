@@ -48,9 +48,8 @@ std::optional<std::string> told_backwards(Lens const& lens, Ray<double> ray) {
     begun = account.optical_path;
     if (i == 0 || n == 1 || way > -least_backwards) continue;
     return fmt::format(
-        "{}: surface {}: light of the axial beam meets it {:.4g} mm ahead of the face before it, at a "
-        "height of {:.4g} mm: the faces cross within the beam, which no lens can have; make the glass "
-        "thicker, or the stop narrower",
+        "{}: surface {}: the axial beam meets it {:.4g} mm ahead of the preceding face, at a height of {:.4g} mm: the "
+        "faces cross within the beam, which is impossible; make the glass thicker, or the stop narrower",
         lens.prescription.surfaces[at].where, i + 1, -way / unit::millimetre, height / unit::millimetre);
   }
   return std::nullopt;

@@ -117,7 +117,7 @@ double Glass::absorption(double wavelength) const {
 }
 
 Glass Glass::from_nd_vd(double nd, double vd) {
-  // Schott's formula represents it exactly: n^2 = (A + B/l^2)^2 = A^2 + 2 A B l^-2 + B^2 l^-4
+  // Schott's formula represents Cauchy's one exactly: n^2 = (A + B/l^2)^2 = A^2 + 2 A B l^-2 + B^2 l^-4
   auto const inverse_square = [](double wavelength) { return 1e-12 / (wavelength * wavelength); };
   double const b = (nd - 1) / (vd * (inverse_square(spectral_line::F) - inverse_square(spectral_line::C)));
   double const a = nd - b * inverse_square(spectral_line::d);

@@ -39,7 +39,7 @@ bool covers(Glass const& glass, double wavelength) {
   return wavelength >= glass.shortest && wavelength <= glass.longest && is_index(glass.index(wavelength));
 }
 
-/// Throws DataError if none of the glasses covers the wavelength.
+/// Throws DataError unless at least one of the glasses covers the wavelength.
 void require_range(std::vector<Glass const*> const& found, double wavelength, std::string const& where) {
   if (std::any_of(found.begin(), found.end(), [=](Glass const* glass) { return covers(*glass, wavelength); })) return;
   Glass const& glass = *found.front();
@@ -52,14 +52,14 @@ void require_range(std::vector<Glass const*> const& found, double wavelength, st
 /// Choice among the glasses that a name can refer to.
 struct Choice {
   std::vector<Glass const*> found;  ///< glasses to choose from, in order
-  Glass const* glass = nullptr;     ///< glass that is taken
+  Glass const* glass = nullptr;     ///< chosen glass
   bool in_no_catalogue = false;     ///< no catalogue contains the name
   bool followed = false;            ///< the glasses are successors
-  bool listed = false;              ///< its catalogue is in the lens file's list, or there is no list
+  bool listed = false;              ///< its catalogue is in the lens file's list, or the file has no list
   bool added = false;               ///< its catalogue was added
   bool ambiguous = false;           ///< another glass has a different index
 
-  /// Describes the assumptions made: "may be A, B, of different index; A is taken"; empty if none was made.
+  /// Describes the assumptions made: "may be A, B, with different indices; A is taken"; empty if none was made.
   std::string text(std::vector<std::string> const& list, std::optional<double> stated_nd) const {
     std::vector<std::string> reasons;
     if (followed) {
@@ -70,7 +70,7 @@ struct Choice {
     if (ambiguous) {
       std::vector<std::string> names;
       for (Glass const* other : found) names.push_back(place_of(*other));
-      reasons.push_back(fmt::format("may be {}, of different index", fmt::join(names, ", ")));
+      reasons.push_back(fmt::format("may be {}, with different indices", fmt::join(names, ", ")));
     }
     if (reasons.empty()) return {};
     std::string taken = place_of(*glass);
@@ -100,17 +100,18 @@ void GlassCatalogue::add(std::string_view text, std::string const& catalogue, st
                     fmt::format("the catalogue has no usable glass: {}", list_left_out(out)));
   }
   if (content.glasses.empty()) {
-    throw DataError(file, "holds no glass (a catalogue in the AGF format has lines NM, CD and LD)");
+    throw DataError(file, "contains no glass (a catalogue in the AGF format has lines NM, CD and LD)");
   }
   if (!out.empty()) {
-    warnings_.push_back(fmt::format("{}:{}: {} of {} glasses cannot be used and {} left out: {}", file,
+    warnings_.push_back(fmt::format("{}:{}: {} of {} glasses cannot be used and {} ignored: {}", file,
                                     out[0].fault.line, out.size(), out.size() + content.glasses.size(),
                                     out.size() == 1 ? "is" : "are", list_left_out(out)));
   }
   if (!content.passed_over.empty()) {
-    warnings_.push_back(fmt::format(
-        "{}:{}: {} lines IT are no share of light and a positive thickness, and are passed over (the first: {})", file,
-        content.passed_over[0].line, content.passed_over.size(), content.passed_over[0].text));
+    warnings_.push_back(
+        fmt::format("{}:{}: {} lines IT do not consist of a transmittance and a positive thickness, and are ignored "
+                    "(the first: {})",
+                    file, content.passed_over[0].line, content.passed_over.size(), content.passed_over[0].text));
   }
   for (Glass& glass : content.glasses) glass.where = fmt::format("{}:{}", file, glass.where);
   for (AgfContent::LeftOut const& one : out) {
@@ -213,14 +214,14 @@ void GlassCatalogue::refuse_unknown(std::string_view name, std::string const& wh
                                 [&](LeftOut const& one) { return glass_key(one.name) == glass_key(name); });
   if (out != left_out_.end()) {
     throw DataError(
-        where, fmt::format("glass \"{}\" cannot be used ({}); correct the catalogue, or give a lens its index", name,
+        where, fmt::format("glass \"{}\" cannot be used ({}); correct the catalogue, or give the lens an index", name,
                            out->reason));
   }
   std::string_view const own = name.substr(std::min(name.find(':') + 1, name.size()));
-  throw DataError(where, fmt::format("glass \"{}\" is in no catalogue ({} glasses are known){}; add its catalogue "
-                                     "(AGF) to the setup's lens.glasses = [\"FILE.agf\"] (of info lens: --glass), or "
-                                     "give a lens its index",
-                                     name, names().size(), glasses_like(own.substr(0, own.rfind('_')))));
+  throw DataError(
+      where, fmt::format("glass \"{}\" is in no catalogue ({} glasses are known){}; add its catalogue (AGF) to the "
+                         "setup's lens.glasses = [\"FILE.agf\"] (for info lens: --glass), or give the lens an index",
+                         name, names().size(), glasses_like(own.substr(0, own.rfind('_')))));
 }
 
 std::vector<Glass const*> GlassCatalogue::successors(std::string_view name) const {
@@ -278,10 +279,11 @@ GlassMatch GlassCatalogue::match(std::string_view name, double wavelength, std::
     result.notes.push_back(fmt::format("{}: glass \"{}\" {}", where, name, text));
   }
   constexpr double d = spectral_line::d;
-  bool const printed = glass.printed_nd > 1 && d >= glass.shortest && d <= glass.longest;  // 0, 1: none
+  // values of 0 and 1 are placeholders
+  bool const printed = glass.printed_nd > 1 && d >= glass.shortest && d <= glass.longest;
   if (printed && std::abs(glass.nd() - glass.printed_nd) > same_index) {
     result.notes.push_back(
-        fmt::format("{}: glass {}:{}: its formula gives nd = {:.6f}, its catalogue prints {:.6f}; the formula is taken",
+        fmt::format("{}: glass {}:{}: its formula gives nd = {:.6f}, its catalogue prints {:.6f}; the formula is used",
                     where, glass.catalogue, glass.name, glass.nd(), glass.printed_nd));
   }
   return result;

@@ -88,7 +88,7 @@ class GlassCatalogue {
   std::vector<FullName> names() const;
 
   bool has_shipped_ = false;
-  std::vector<Glass> glasses_;  ///< of added catalogues
+  std::vector<Glass> glasses_;  ///< glasses of added catalogues
   struct LeftOut {
     std::string name, reason;
   };

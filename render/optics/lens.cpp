@@ -102,8 +102,8 @@ class LensBuilder {
     }
     if (!(lens_.stop_radius > 0) || !std::isfinite(lens_.stop_radius)) {
       throw DataError(stop.where,
-                      "no light passes the stop (its aperture comes to nothing or to no end); give the entrance pupil, "
-                      "the f-number or the stop's semi-diameter another value");
+                      "no light passes the stop (its radius is zero or infinite); correct the entrance pupil, the "
+                      "f-number or the stop's semi-diameter");
     }
     auto& surface = lens_.surfaces[static_cast<std::size_t>(lens_.stop)];
     surface = surface.visit([&](auto opened) -> LensSurface<double> {
@@ -126,8 +126,7 @@ class LensBuilder {
         return opened;
       });
       lens_.warnings.push_back(
-          fmt::format("{}: an aperture from {:.6g} mm to infinity would block all light of the lens; "
-                      "it is passed over",
+          fmt::format("{}: an aperture from {:.6g} mm to infinity would block all light of the lens; it is ignored",
                       prescribed.where, prescribed.obscured / unit::millimetre));
     }
   }
@@ -155,7 +154,7 @@ class LensBuilder {
     double const radius = std::abs(diameter) / 2;
     if (!std::isfinite(radius)) {
       throw DataError(lens_.prescription.file,
-                      "an f-number sets no stop of an afocal lens; give the entrance pupil or the "
+                      "an f-number does not define the aperture of an afocal lens; give the entrance pupil or the "
                       "stop's semi-diameter");
     }
     lens_.paraxial_stop_radius = std::abs(ray_transfer(lens_, 0, lens_.stop).a) * radius;
@@ -176,8 +175,8 @@ class LensBuilder {
     double const slope = 1 / (2 * f_number * std::abs(all.c * distance + all.d * lens_.object_index));
     if (!std::isfinite(distance) || !std::isfinite(slope)) {
       throw DataError(lens_.prescription.file,
-                      "an f-number sets no stop of a telecentric lens whose object stands nowhere; give the file's "
-                      "object distance, or the stop's semi-diameter");
+                      "an f-number does not define the aperture of a telecentric lens without an object distance; give "
+                      "the file's object distance, or the stop's semi-diameter");
     }
     open_by_slope(slope, distance);
   }
@@ -200,7 +199,9 @@ class LensBuilder {
     if (!named.otherwise) return found_glass(catalogue_.match(name, lens_.wavelength, where, listed), name, where);
     double const nd = named.otherwise->nd, vd = named.otherwise->vd;
     std::string const line_taken = fmt::format(
-        "nd = {:.6g} and Vd = {:.4g} of its line are taken as n = A + B/lambda^2 (add its catalogue for more)", nd, vd);
+        "nd = {:.6g} and Vd = {:.4g} of its line are used for n = A + B/lambda^2 (add its catalogue for better "
+        "accuracy)",
+        nd, vd);
     std::string const key = fmt::format("{} {:.6g} {:.4g}", name, nd, vd);
     if (!catalogue_.has(name)) {
       note_once(key, fmt::format("{}: glass \"{}\" is in no catalogue; {}", where, name, line_taken));
@@ -215,10 +216,9 @@ class LensBuilder {
       note_once(key, fmt::format("{}; {}", contradiction, line_taken));
       return Glass::from_nd_vd(nd, vd);
     }
-    note_once(key,
-              fmt::format("{}, but its line says nd = {:.6g}; the catalogue's glass is taken (if the line is right, "
-                          "list the catalogue of its glass first in GCAT)",
-                          contradiction, nd));
+    note_once(key, fmt::format("{}, but its line says nd = {:.6g}; the catalogue's glass is used (if the line is "
+                               "right, list the catalogue of its glass first in GCAT)",
+                               contradiction, nd));
     return glass;
   }
 
@@ -290,8 +290,8 @@ class LensBuilder {
       names.push_back(one ? glass.name : fmt::format("{} (line {})", glass.name, line_in_file(glass.where)));
     }
     lens_.warnings.push_back(fmt::format(
-        "{}: {} {} taken as n = A + B/lambda^2, good to about 1e-3 away from 587.6 nm; name {} of a "
-        "catalogue for more",
+        "{}: {} {} approximated by n = A + B/lambda^2, accurate to about 1e-3 away from 587.6 nm; name {} of a "
+        "catalogue for better accuracy",
         described_.front().where,
         one ? "glass " + names.front() : fmt::format("{} glasses ({})", names.size(), fmt::join(names, "; ")),
         one ? "is" : "are", one ? "a glass" : "glasses"));
@@ -398,10 +398,11 @@ void note_wide_stop(Lens& lens, double f_number, double own_radius, double objec
   if (auto const widest = widest_beam(lens, object_distance)) {
     RayTransfer const to_stop = ray_transfer(lens, 0, lens.stop);
     double const asked = lens.paraxial_stop_radius / std::abs(to_stop.a + to_stop.b / object_distance);
-    text += fmt::format("; on the axis the lens passes f/{:.4g} at the widest, light beyond is lost at its edges",
-                        f_number * asked / *widest);
+    text += fmt::format(
+        "; on the axis the lens passes f/{:.4g} at the widest, light outside this beam is lost at its edges",
+        f_number * asked / *widest);
   } else {
-    text += "; no edge of its surfaces limits that beam, which the lens may not be made for: give semi-diameters";
+    text += "; no edge of its surfaces limits that beam, for which the lens may not be designed: give semi-diameters";
   }
   lens.warnings.push_back(text);
 }

@@ -18,7 +18,7 @@ LensSetup read_lens_setup(SetupTable table, std::string const& focus_on) {
     setup.file = table.required_path("file");
     // NaN: the stop is set by the prescription's own aperture, unless the setup gives an f-number
     setup.f_number = table.optional_number("f_number", aperture).value_or(std::nan(""));
-    table.refuse("focal_length_mm", "stands beside a prescription (which has its own); remove it");
+    table.refuse("focal_length_mm", "conflicts with a prescription (which defines its own); remove it");
   } else {
     table.refuse("file", "names a prescription (the model is a thin lens); use model = \"prescription\"");
     setup.focal_length = table.quantity("focal_length_mm", setup.focal_length, unit::millimetre, Range::positive(1e5));
@@ -27,7 +27,7 @@ LensSetup read_lens_setup(SetupTable table, std::string const& focus_on) {
   setup.glasses = table.path_list("glasses");
   if (table.has("focus_distance_mm")) {
     if (table.has("focus")) {
-      table.problem("focus_distance_mm", "stands beside focus (one of them is enough); remove one");
+      table.problem("focus_distance_mm", "conflicts with focus (both set the plane in focus); remove one");
       table.word("focus", focus_on, {focus_on, "medium"});
     }
     setup.focus = Focus::distance;
@@ -72,11 +72,10 @@ void build_prescription(LensSetup& setup, SetupTable table, GlassCatalogue const
     if (lens->object_index != 1 || std::abs(lens->paraxial.back().n_after) != 1) {
       std::string const& object_where = lens->prescription.object_medium.where;
       bool const in_object_space = lens->object_index != 1 && !object_where.empty();
-      table.problem("file",
-                    fmt::format("{}: has index {:.6g} ahead of it and {:.6g} behind it (scenes are in gas, and a "
-                                "lens stands in air); end it with a surface towards air on either side",
-                                in_object_space ? object_where : setup.file, lens->object_index,
-                                std::abs(lens->paraxial.back().n_after)));
+      table.problem("file", fmt::format("{}: has index {:.6g} ahead of it and {:.6g} behind it (a lens must have air "
+                                        "on both sides); end it with a surface towards air on either side",
+                                        in_object_space ? object_where : setup.file, lens->object_index,
+                                        std::abs(lens->paraxial.back().n_after)));
       return;
     }
     ParaxialLens const paraxial = paraxial_lens(*lens);

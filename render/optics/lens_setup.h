@@ -20,7 +20,7 @@ enum class Transmittance {
 
 /// Table [lens] of a setup, in SI.
 struct LensSetup {
-  double focal_length = 0.105;  ///< [m]; infinite for afocal prescriptions
+  double focal_length = 0.105;  ///< focal length [m]; infinite for afocal prescriptions
   double f_number = 11.0;       ///< infinite: chief rays only; NaN: not defined by the setup or the prescription
   Focus focus = Focus::target;
   double focus_distance = 0.0;  ///< from the front principal plane, for Focus::distance [m]

@@ -10,7 +10,8 @@ std::optional<LensletSetup> read_lenslets(SetupTable table) {
   Range const length = Range::positive(1e6);
   setup.pitch = table.required_number("pitch_um", length) * unit::micrometre;
   if (table.has("radius_um") || table.has("index")) {
-    table.refuse("focal_length_um", "stands beside radius_um and index (which give it); remove it, or them");
+    table.refuse("focal_length_um",
+                 "conflicts with radius_um and index (which determine it); remove it, or both of them");
     double const radius = table.required_number("radius_um", length) * unit::micrometre;
     setup.focal_length = radius / (table.required_number("index", {1, 5, true, false}) - 1);
   } else {

@@ -101,12 +101,12 @@ void check_medium(PrescribedMedium const& medium, std::string const& surface_whe
   auto const* const index = std::get_if<PrescribedMedium::Index>(&medium.is);
   if (index && !(index->n >= 1 && index->n < 5)) {
     throw DataError(where,
-                    fmt::format("an index of {:.4g} is no glass (it lies between 1 and 5); correct it", index->n));
+                    fmt::format("an index of {:.4g} is not that of a glass (between 1 and 5); correct it", index->n));
   }
   auto const* const described = std::get_if<PrescribedMedium::Described>(&medium.is);
   if (described && !(described->nd > 1 && described->nd < 5 && described->vd > 0)) {
-    throw DataError(where, fmt::format("nd = {:.4g}, Vd = {:.4g} is no glass (nd lies between 1 and 5, Vd above 0); "
-                                       "correct it or name a glass",
+    throw DataError(where, fmt::format("nd = {:.4g}, Vd = {:.4g} are not those of a glass (nd between 1 and 5, Vd "
+                                       "above 0); correct them or name a glass",
                                        described->nd, described->vd));
   }
 }
@@ -154,7 +154,7 @@ Prescription read_prescription(std::string const& path) {
     }
     known += (known.empty() ? "" : ", ") + std::string(format.extension);
   }
-  throw DataError(path, "is of no format of lens prescriptions that is read here; known are " + known);
+  throw DataError(path, "has no supported format of lens prescriptions; supported are " + known);
 }
 
 void assume_stop(Prescription& lens) {
@@ -195,22 +195,23 @@ std::vector<std::string> check_prescription(Prescription const& lens) {
     bool const last = i + 1 == lens.surfaces.size();
     any_real = any_real || is_real(lens, i);
     if (surface.stop) {
-      if (!stop.empty()) throw DataError(surface.where, "a second stop (the first stands at " + stop + "); remove one");
+      if (!stop.empty()) throw DataError(surface.where, "a second stop (the first one is at " + stop + "); remove one");
       stop = surface.where;
     }
     if (!(std::abs(surface.thickness) <= longest) && !last) {
       throw DataError(surface.where,
-                      fmt::format("a thickness of {:.4g} mm is no distance within a lens (at most a kilometre is)",
+                      fmt::format("a thickness of {:.4g} mm is too long for a lens (at most a kilometre)",
                                   surface.thickness / unit::millimetre));
     }
     if (!(std::abs(advance(surface)) <= longest)) {
-      throw DataError(surface.where,
-                      fmt::format("the coordinate breaks ahead move it by {:.4g} mm, which is no distance "
-                                  "within a lens (at most a kilometre is)",
-                                  advance(surface) / unit::millimetre));
+      throw DataError(
+          surface.where,
+          fmt::format(
+              "the coordinate breaks ahead move it by {:.4g} mm, which is too long for a lens (at most a kilometre)",
+              advance(surface) / unit::millimetre));
     }
     if (!(surface.semi_diameter > 0)) {
-      throw DataError(surface.where, "the semi-diameter is not positive; give the radius that light passes within");
+      throw DataError(surface.where, "the semi-diameter is not positive; give the radius within which light passes");
     }
     double const edge = surface.semi_diameter_is_an_edge ? surface.semi_diameter : HUGE_VAL;
     if (!(surface.obscured >= 0 && surface.obscured < edge)) {
@@ -221,11 +222,10 @@ std::vector<std::string> check_prescription(Prescription const& lens) {
     }
     if (surface.after.is_mirror()) forwards = -forwards;
     if (!surface.after.is_mirror() && !surface.after.is_air() && forwards * surface.thickness < 0 && !last) {
-      throw DataError(
-          surface.where,
-          fmt::format("a thickness of {:.4g} mm of glass runs against the light, which goes {} here; change "
-                      "its sign (behind an odd number of mirrors thicknesses are negative)",
-                      surface.thickness / unit::millimetre, forwards > 0 ? "forwards" : "back"));
+      throw DataError(surface.where,
+                      fmt::format("a thickness of {:.4g} mm of glass is directed against the light, which travels {} "
+                                  "here; change its sign (behind an odd number of mirrors thicknesses are negative)",
+                                  surface.thickness / unit::millimetre, forwards > 0 ? "forwards" : "back"));
     }
     warn(find_short_surface(surface));
     if (surface.shape == PrescribedSurface::Shape::ideal_lens && surface.focal_length == 0) {

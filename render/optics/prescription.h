@@ -108,7 +108,7 @@ struct Prescription {
   PrescribedMedium object_medium;                                    ///< medium ahead of the first surface
   std::vector<std::string> catalogues;  ///< glass catalogues named by the file, in its order
   PrescribedAperture aperture;
-  double primary_wavelength = 0;      ///< [m]; 0: not given
+  double primary_wavelength = 0;      ///< primary wavelength [m]; 0: not given
   double defocus = 0;                 ///< from the paraxial image to the image, if the last thickness is 0 [m]
   bool ends_at_image = false;         ///< the last thickness is the distance to the image, even if it is 0
   std::vector<double> field_angles;   ///< field angles in the y-z plane, for an object at infinity [rad]

@@ -32,7 +32,7 @@ ShippedCatalogue::ShippedCatalogue() {
 
 int ShippedCatalogue::add_entries(std::string_view text, int first_line) {
   int line = first_line;
-  std::size_t begin = std::string_view::npos;  // of the glass that is not yet complete
+  std::size_t begin = std::string_view::npos;  // lines of the glass that is being read
   auto const end_glass = [&](std::size_t end) {
     if (begin != std::string_view::npos) entries_.back().text = text.substr(begin, end - begin);
   };

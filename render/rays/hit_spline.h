@@ -34,7 +34,7 @@ struct DealtHit {
 
 /// Range of nodes along one axis. Node 0 is at the centre of pixel 0.
 struct NodeRange {
-  int low, high;  ///< [low, high)
+  int low, high;  ///< first node, and one past the last one
 };
 
 /// Light of a node on the pixels along one axis: a non-owning view.

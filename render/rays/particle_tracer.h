@@ -107,7 +107,7 @@ class ParticleTracer {
   struct Aim {
     enum class Sent { not_at_all, filled, wide };
     Sent sent = Sent::not_at_all;
-    FilledStop straight, bent;  ///< without and with the medium
+    FilledStop straight, bent;  ///< rays that fill the stop, without and with the medium
     SourceAim wide;
   };
 

@@ -10,7 +10,7 @@ namespace gladstone {
 /// Integrals along a straight ray of the components of grad n perpendicular to the camera's axis.
 struct AcrossAxis {
   Vec3d plain{};                       ///< [1]
-  Vec3d levered{};                     ///< each slice times its distance along the axis from the ray's start [m]
+  Vec3d levered{};                     ///< grad n times the axial distance from the ray's start [m]
   double refractivity = 0, depth = 0;  ///< integrals of n - 1 and of 1 over the distance along the axis [m]
 };
 
@@ -45,7 +45,7 @@ class RayTheory {
 
     auto const disc = launch.sight(middle);
     if (!disc) return;
-    // Without a residual, the target area is the same share of the stop for all sources, see stop_share_.
+    // With the residual set to zero, the target area is the same fraction of the stop for all sources, see stop_share_.
     AimShift aim_shift = launch.aim_shift(*disc, middle, sources.reach());
     aim_shift.residual = 0;
     AimedBundle<double> const bundle = launch.bundle(*disc, aim_shift, 0);

@@ -34,7 +34,7 @@ std::optional<AimShift> difference_shift(Camera const& camera, WorldAimDisc cons
     shift.by_y += (2 * towards[k].y / (corners * radius)) * there->centre;
   }
   // The remaining shift grows with the square of the offset, the change of size and shape in proportion to it. A
-  // quadratic form on the circle is at most 5/3 of its largest value at the corners, a linear form 1.16 of it.
+  // quadratic form on the circle is at most 5/3 of its largest value at the corners, a linear form at most 1.16 times.
   constexpr double between_corners = 5.0 / 3;
   double const larger = reach / radius;
   for (int k = 0; k < corners; ++k) {

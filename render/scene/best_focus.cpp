@@ -30,7 +30,7 @@ std::vector<Vec3d> aims_of_bundle(Camera const& camera, Vec3d point) {
   }
   if (aims.size() < 10) {
     throw DataError("lens",
-                    "no light of the plane in focus passes it (too few of its axial rays reach the sensor); check "
+                    "no light from the plane in focus passes it (too few axial rays reach the sensor); check "
                     "lens.focus, geometry and lens.f_number");
   }
   return aims;
@@ -76,7 +76,7 @@ struct FocusMiss {
   int windows;
   std::vector<Vec3d> const& aims;
   Vec3d point;
-  bool point_moves;  ///< the point has a fixed distance from the lens
+  bool point_moves;  ///< true: the point moves with the lens
   double z_sensor;   ///< position of the fixed sensor [m]
 
   template <class T>
@@ -110,8 +110,8 @@ double paraxial_place(Setup const& setup) {
   double const square = sum * sum - 4 * sum * f;
   if (!(square > 0)) {
     throw DataError("geometry.z_sensor_mm",
-                    "is too near the plane in focus (no place of the lens images it there: that takes four focal "
-                    "lengths); move the sensor away, or take a shorter lens");
+                    "is too close to the plane in focus (an image requires a distance of at least four focal lengths); "
+                    "move the sensor away, or use a shorter focal length");
   }
   return z_sensor - apart - (sum - std::sqrt(square)) / 2;
 }
@@ -126,7 +126,7 @@ void place_lens_by_sensor(Setup& setup) {
   setup.z_a = paraxial_place(setup);
   if (!(setup.z_a > 0) || !std::isfinite(setup.z_a)) {
     throw DataError("geometry.z_sensor_mm",
-                    "leaves no place for the lens before the medium's mid-plane; move the sensor away from it");
+                    "leaves no room for the lens in front of the medium's mid-plane; move the sensor away from it");
   }
   bool const chief = std::isinf(setup.lens.f_number);
   if (chief || (!setup.lens.prescription && setup.windows.empty())) return;
@@ -148,7 +148,7 @@ void place_lens_by_sensor(Setup& setup) {
     constexpr double near_enough = 1e-7;  // [mm]
     if (!(std::sqrt(2 * summary.final_cost) < near_enough)) {
       throw DataError("geometry.z_sensor_mm",
-                      "gets no sharp picture of the plane in focus, wherever the lens stands; check lens.focus");
+                      "receives no sharp image of the plane in focus at any position of the lens; check lens.focus");
     }
     setup.z_a += moved[0] * unit::millimetre;
   }

@@ -12,7 +12,7 @@
 namespace gladstone {
 namespace {
 
-constexpr double sharp = 0;  // edge of a stop
+constexpr double sharp = 0;  // width of the smoothed edge of a stop; 0: sharp
 
 /// Appends a window's two faces, in the order of light along +Z.
 void append_window(Camera& camera, WindowSetup const& window, bool fresnel) {
@@ -78,7 +78,7 @@ Vec2d scheimpflug_tilt(Vec3d normal, double magnification) {
 /// Returns the point of the dots' plane that a pixel sees [m].
 Vec2d seen_place(Camera const& camera, Setup const& setup, Vec2d pixel) {
   auto const seen = camera.unproject(pixel, Pose<double>{{0, 0, -setup.z_d}});
-  if (!seen) throw DataError("camera.pose", "its picture reaches beyond the dots' plane; turn the camera less");
+  if (!seen) throw DataError("camera.pose", "its field of view extends beyond the dots' plane; rotate the camera less");
   return seen->place;
 }
 
@@ -158,7 +158,7 @@ Vec2d posed_extent(Setup const& setup) {
 double posed_pixel_size(Setup const& setup) {
   auto const seen = build_camera(setup).see(setup.target_centre(), Pose<double>{{0, 0, -setup.z_d}});
   double const area = seen ? std::abs(seen->by_x.x * seen->by_y.y - seen->by_x.y * seen->by_y.x) : 0;  // [px^2/m^2]
-  if (!(area > 0)) throw DataError("camera.pose", "sees nothing of the target's middle; turn the camera there");
+  if (!(area > 0)) throw DataError("camera.pose", "does not see the centre of the target; turn the camera towards it");
   return 1 / std::sqrt(area);
 }
 

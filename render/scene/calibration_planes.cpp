@@ -50,28 +50,28 @@ void cross_check_calibration(Setup const& setup, SetupTable root, std::vector<st
   double const front = setup.lens.prescription ? paraxial_camera(setup).front : 0.0;  // first vertex of a prescription
   if (double const way = plane_setup(setup, nearest).z_b() + front; !(way > least)) {
     calibration.problem("planes_mm",
-                        fmt::format("has the plane Z = {:.6g} mm, {:.6g} mm before the lens (within its focal length, "
-                                    "or behind it: there is no image); move the planes or the camera",
+                        fmt::format("has the plane Z = {:.6g} mm, {:.6g} mm in front of the lens (within its focal "
+                                    "length, or behind the lens: there is no image); move the planes or the camera",
                                     nearest / mm, way / mm));
   }
   for (WindowSetup const& window : setup.windows) {
     if (window.position.z - window.thickness / 2 > nearest) continue;
     calibration.problem("planes_mm",
-                        fmt::format("has the plane Z = {:.6g} mm, at or before the window at Z = {:.6g} mm "
-                                    "(which is to stand between all planes and the camera); move one",
+                        fmt::format("has the plane Z = {:.6g} mm, at the window at Z = {:.6g} mm or on its camera side "
+                                    "(a window must be between all planes and the camera); move one",
                                     nearest / mm, window.position.z / mm));
   }
   double const px = setup.pixel_size(), diameter_px = setup.dot_diameter() / px;
   if (diameter_px < least_dot_px) {
     warnings.push_back(
-        fmt::format("calibration.dot_diameter_mm: dots are {:.2f} px wide in the picture, which leaves "
-                    "their centres to the pixels; {} px or more are better",
+        fmt::format("calibration.dot_diameter_mm: dots are {:.2f} px wide in the image, too few to measure their "
+                    "centres accurately; use at least {} px",
                     diameter_px, least_dot_px));
   }
   if (double const gap_px = setup.target.spacing / px - diameter_px; gap_px < least_gap_px) {
     warnings.push_back(
-        fmt::format("calibration.spacing_mm: dots are {:.2f} px apart in the picture, edge to edge, "
-                    "where {} px are needed to tell them from their background; use a wider spacing",
+        fmt::format("calibration.spacing_mm: dots are {:.2f} px apart in the image, edge to edge, but {} px are needed "
+                    "to separate them from the background; use a wider spacing",
                     gap_px, least_gap_px));
   }
 }

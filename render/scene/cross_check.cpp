@@ -42,13 +42,13 @@ void cross_check_extents(Setup const& setup, Vec2d view, SetupTable target, Setu
   if (std::max(view.x, view.y) > widest) {
     camera_table(root).problem(
         "pixel_pitch_um",
-        fmt::format("makes a field of view of {:.4g} x {:.4g} mm ({:.4g} mm at most, 168 degrees: no lens sees more); "
-                    "pitches are in um; use a longer lens or fewer or smaller pixels",
+        fmt::format("makes a field of view of {:.4g} x {:.4g} mm (at most {:.4g} mm, 168 degrees, are supported); "
+                    "pitches are in um; use a longer focal length or fewer or smaller pixels",
                     view.x / mm, view.y / mm, widest / mm));
   } else if (setup.target.extent_m && std::max(setup.target.extent_m->x, setup.target.extent_m->y) > widest) {
     target.problem("extent_mm",
-                   fmt::format("reaches beyond what any lens sees, 168 degrees ({:.4g} mm at most, ten times "
-                               "the way to the lens to each side); use the view or a little more",
+                   fmt::format("exceeds the largest supported field of view, 168 degrees ({:.4g} mm, ten times the "
+                               "distance to the lens on each side); use the view or a little more",
                                widest / mm));
   }
 }
@@ -59,9 +59,8 @@ void cross_check_noise(Setup const& setup, std::vector<std::string>& warnings) {
     NoiseSetup const& noise = setup.camera.noise;
     double const levels = noise.read_noise_e * (std::pow(2.0, setup.camera.bit_depth) - 1) / noise.full_well_e;
     warnings.push_back(fmt::format(
-        "camera.offset_dn: the read noise of {:.3g} grey levels is cut off at black, which makes dark pixels "
-        "{:.3g} levels too bright on average and dim ones less (levels are never below 0); set "
-        "camera.offset_dn = {:.0f} or more, as cameras do",
+        "camera.offset_dn: the read noise of {:.3g} grey levels is clipped at zero, which makes dark pixels {:.3g} "
+        "levels too bright on average and dim ones less; set camera.offset_dn to {:.0f} or more, as real cameras do",
         levels, clipped, std::ceil(4 * levels)));
   }
 }
@@ -72,12 +71,11 @@ void cross_check_lenslets(Setup const& setup, std::vector<std::string>& warnings
   ImagingGeometry const imaging = setup.imaging();
   double const picture = setup.lenslets->to_sensor * imaging.entrance_pupil / imaging.image_distance;
   if (picture <= setup.lenslets->pitch) return;
-  warnings.push_back(
-      fmt::format("camera.lenslets: each shows the stop {:.4g} um wide, more than the {:.4g} um between them, so that "
-                  "pictures overlap; "
-                  "stop the lens down to f/{:.3g} or take lenslets of a shorter focal length",
-                  picture / unit::micrometre, setup.lenslets->pitch / unit::micrometre,
-                  setup.lens.f_number * picture / setup.lenslets->pitch));
+  warnings.push_back(fmt::format(
+      "camera.lenslets: each images the stop with a diameter of {:.4g} um, more than their pitch of {:.4g} um, so that "
+      "these images overlap; stop the lens down to f/{:.3g} or use lenslets of a shorter focal length",
+      picture / unit::micrometre, setup.lenslets->pitch / unit::micrometre,
+      setup.lens.f_number * picture / setup.lenslets->pitch));
 }
 
 /// Checks that lens and camera form an image of the dots.
@@ -85,9 +83,10 @@ bool cross_check_lens(Setup const& setup, SetupTable root, std::vector<std::stri
   double const mm = unit::millimetre;
   SetupTable lens = root.table("lens"), geometry = root.table("geometry");
   if (setup.lens.f_number < fastest_lens) {
-    lens.problem("f_number", fmt::format("is below {} (no lens in air opens wider than twice its focal length); stop "
-                                         "it down",
-                                         fastest_lens));
+    lens.problem(
+        "f_number",
+        fmt::format("is below {} (in air, the aperture of a lens is at most twice its focal length); increase it",
+                    fastest_lens));
     return false;
   }
   if (!setup.lens.prescription && setup.focus_distance() <= setup.lens.focal_length) {
@@ -95,13 +94,14 @@ bool cross_check_lens(Setup const& setup, SetupTable root, std::vector<std::stri
     (by_distance ? lens : geometry)
         .problem(by_distance ? "focus_distance_mm" : "z_a_mm",
                  fmt::format(
-                     "focus is impossible: the plane in focus lies {:.6g} mm from a lens of {:.6g} mm focal length (an "
-                     "image needs more than the focal length); move the lens away or take a shorter one{}",
+                     "focus is impossible: the plane in focus lies {:.6g} mm from a lens of {:.6g} mm focal length "
+                     "(the distance must exceed the focal length); move the lens away or use a shorter focal length{}",
                      setup.focus_distance() / mm, setup.lens.focal_length / mm, metres_hint(setup.focus_distance())));
     return false;
   }
   if (!setup.lens.prescription && setup.z_b() <= setup.lens.focal_length) {
-    geometry.problem("z_a_mm", "the dots lie within the focal length (no image of them exists); move the lens away");
+    geometry.problem("z_a_mm",
+                     "the dots lie within the focal length, where they have no real image; move the lens away");
     return false;
   }
   if (!setup.on_bench() && !cross_check_camera(setup, root)) return false;
@@ -114,14 +114,13 @@ void cross_check_spot(Setup const& setup, double diffraction_px, SetupTable lens
   double const widest_px = setup.lens.spot == SpotModel::airy ? widest_airy_px : widest_spot_px;
   if (diffraction_px > widest_px && setup.camera.pixel_pitch < finest_pitch) {
     camera_table(root).problem("pixel_pitch_um",
-                               fmt::format("makes the diffraction spot {:.4g} px wide ({} at most: nothing could be "
-                                           "seen); pitches are in um, and pixels of cameras are 1 to 20 of them wide",
+                               fmt::format("makes the diffraction spot {:.4g} px wide ({} px at most, or nothing is "
+                                           "resolved); pitches are in um, and camera pixels are 1 to 20 um wide",
                                            diffraction_px, widest_px));
   } else if (diffraction_px > widest_px) {
-    lens.problem("f_number",
-                 fmt::format("the diffraction spot would be {:.4g} px wide ({} at most: nothing could be seen); open "
-                             "the lens or focus farther away",
-                             diffraction_px, widest_px));
+    lens.problem("f_number", fmt::format("the diffraction spot would be {:.4g} px wide ({} px at most, or nothing is "
+                                         "resolved); open the lens or focus farther away",
+                                         diffraction_px, widest_px));
   }
 }
 
@@ -133,23 +132,22 @@ void cross_check_target(Setup const& setup, SetupTable root) {
   Vec2d view{setup.camera.columns * px, setup.camera.rows * px}, needed = view + setup.beyond_view();
   if (setup.pose || setup.camera.tilted()) needed = view = posed_view(setup);
   if (setup.target.extent_m && (setup.target.extent_m->x < needed.x || setup.target.extent_m->y < needed.y)) {
-    target.problem("extent_mm",
-                   fmt::format("the field of view, {:.4g} x {:.4g} mm at the dots, is larger than the target, or lies "
-                               "partly beside it ({:.4g} x {:.4g} mm about its middle hold all of the view); enlarge "
-                               "the target or leave extent_mm out",
-                               view.x / mm, view.y / mm, needed.x / mm, needed.y / mm));
+    target.problem("extent_mm", fmt::format("the field of view, {:.4g} x {:.4g} mm at the dots, is larger than the "
+                                            "target or partly outside of it ({:.4g} x {:.4g} mm about its centre would "
+                                            "contain the whole view); enlarge the target or leave extent_mm out",
+                                            view.x / mm, view.y / mm, needed.x / mm, needed.y / mm));
   }
   cross_check_extents(setup, view, target, root);
   if (setup.target.kind != TargetKind::image) {
     double const diameter_px = setup.geometric_dot_px();
     cross_check_spot(setup, setup.spot_diameter_px(), lens, root);
     if (setup.target.polarity == Polarity::dark && diameter_px == 0) {
-      target.problem("polarity", "dark dots of no size cannot be seen; give dot_diameter_px");
+      target.problem("polarity", "dark dots of zero size cannot be seen; give dot_diameter_px");
     }
     if (setup.target.polarity == Polarity::dark && setup.lenslets) {
       target.problem("polarity",
-                     "dark dots on white paper are not rendered through lenslets (the paper's light through each of "
-                     "them is not known); take bright dots");
+                     "dark dots on white paper cannot be rendered through lenslets (the light of the paper through "
+                     "each lenslet is unknown); use bright dots");
     }
   }
 }

@@ -10,8 +10,9 @@
 namespace gladstone {
 namespace {
 
-constexpr double negligible_loss = 0.01;  // tolerated truncation of the displacement, given thickness
-constexpr double noticeable_loss = 1e-4;  // the same for "auto": 1e-4 px at 1 px, as accurate as the truth
+constexpr double negligible_loss = 0.01;  // tolerated relative truncation of the displacement for a given thickness
+// limit for "auto": 1e-4 px for a displacement of 1 px, as accurate as the truth
+constexpr double noticeable_loss = 1e-4;
 
 /// Returns half the width and height of the region of the medium that the dots' rays cross [m].
 Vec2d half_extent_at_medium(Setup const& setup) {
@@ -30,7 +31,7 @@ Vec2d half_extent_at_medium(Setup const& setup) {
 struct FieldDensities {
   DensityRange range;
   char const* key;     ///< key that determines the range
-  bool endless_range;  ///< negative at some distance, whatever the field's strength
+  bool endless_range;  ///< the density is negative at some distance, whatever the field's strength
 };
 
 /// Returns the range of a closed-form field; for other fields, the ambient density.
@@ -59,13 +60,13 @@ void cross_check_thickness(Setup const& setup, std::vector<std::string>& warning
   double const mm = unit::millimetre, lost = cut_off_share(slab);
   bool const limited = slab.automatic_thickness && lost > noticeable_loss;
   if (limited || lost > negligible_loss) {
-    warnings.push_back(fmt::format(
-        "medium.thickness_mm: {:.6g} mm{} cut {:.2g} % of the displacement off, since the field of {:.6g} mm radius "
-        "goes on beyond them; {}",
-        slab.thickness / mm, limited ? ", all that fits between the dots and the lens," : "", 100 * lost,
-        radius_along_z(slab.field) / mm,
-        limited ? "increase geometry.z_d_mm or z_a_mm"
-                : fmt::format("use \"auto\", {:.6g} mm", automatic_thickness_mm(slab.field))));
+    warnings.push_back(
+        fmt::format("medium.thickness_mm: {:.6g} mm{} cut {:.2g} % of the displacement off, since the field of {:.6g} "
+                    "mm radius extends beyond them; {}",
+                    slab.thickness / mm, limited ? ", all that fits between the dots and the lens," : "", 100 * lost,
+                    radius_along_z(slab.field) / mm,
+                    limited ? "increase geometry.z_d_mm or z_a_mm"
+                            : fmt::format("use \"auto\", {:.6g} mm", automatic_thickness_mm(slab.field))));
   }
 }
 
@@ -75,8 +76,9 @@ void cross_check_density(Setup const& setup, SetupTable& medium, std::vector<std
   if (!possible_refractivity(K * ambient)) {
     medium.problem(
         "ambient_density_kg_m3",
-        fmt::format("gives a refractive index of {:.6g} (no such medium); check it and medium.gladstone_dale",
-                    1 + K * ambient));
+        fmt::format(
+            "gives a refractive index of {:.6g} (no medium has such an index); check it and medium.gladstone_dale",
+            1 + K * ambient));
     return;
   }
   FieldDensities const densities = field_densities(setup);
@@ -84,18 +86,17 @@ void cross_check_density(Setup const& setup, SetupTable& medium, std::vector<std
   char const* const key = densities.key;
   if (!possible_refractivity(K * lowest) || !possible_refractivity(K * highest)) {
     medium.tables(of_field).front().problem(
-        key, fmt::format("gives refractive indices from {:.6g} to {:.6g} where rays cross the field (no such medium); "
-                         "check it and medium.gladstone_dale",
+        key, fmt::format("gives refractive indices from {:.6g} to {:.6g} where rays cross the field (no medium has "
+                         "such an index); check it and medium.gladstone_dale",
                          1 + K * lowest, 1 + K * highest));
   } else if (lowest >= 0) {
     return;
   } else if (densities.endless_range) {
     Vec2d const half = half_extent_at_medium(setup);
-    warnings.push_back(
-        fmt::format("medium.{}.{}: the density is negative, {:.4g} kg/m^3 at the lowest, over a part of "
-                    "the {:.4g} x {:.4g} mm that rays cross (no gas has that); reduce the gradient or increase "
-                    "medium.ambient_density_kg_m3",
-                    of_field, key, lowest, 2 * half.x / unit::millimetre, 2 * half.y / unit::millimetre));
+    warnings.push_back(fmt::format(
+        "medium.{}.{}: the density is negative, {:.4g} kg/m^3 at the lowest, over a part of the {:.4g} x {:.4g} mm "
+        "that rays cross, which is impossible; reduce the gradient or increase medium.ambient_density_kg_m3",
+        of_field, key, lowest, 2 * half.x / unit::millimetre, 2 * half.y / unit::millimetre));
   } else {
     medium.tables(of_field).front().problem(
         key,

@@ -74,7 +74,7 @@ void cross_check_windows(Setup const& setup, SetupTable root) {
   if (setup.windows.empty()) return;
   CameraAxis const axis{front_of(setup), setup.camera_pose().z};
   double const infinite = std::numeric_limits<double>::infinity();
-  std::vector<OnTheWay> way;  // in the required order of the light path
+  std::vector<OnTheWay> way;  // objects in the required order of the light path
   if (!setup.piv) way.push_back({"the dots", axis.meets_plane(-setup.z_d), axis.meets_plane(-setup.z_d), false});
   for (WindowSide const side : {WindowSide::target, WindowSide::camera}) {
     for (std::size_t i = 0; i < setup.windows.size(); ++i) {
@@ -95,9 +95,10 @@ void cross_check_windows(Setup const& setup, SetupTable root) {
   OnTheWay const* last = &way.front();  // object that extends farthest so far
   for (OnTheWay const& next : way) {
     if (&next != last && next.enters < last->leaves - touching && (next.window || last->window)) {
-      root.problem("window", fmt::format("light is to meet {} and then {}, but along the camera's axis the one begins "
-                                         "{:.6g} mm before the other ends; move one of them, or say the other side",
-                                         last->name, next.name, (last->leaves - next.enters) / unit::millimetre));
+      root.problem("window",
+                   fmt::format("light must pass {} and then {}, but along the camera's axis the latter begins {:.6g} "
+                               "mm before the former ends; move one of them, or give the other side",
+                               last->name, next.name, (last->leaves - next.enters) / unit::millimetre));
     }
     if (next.leaves > last->leaves) last = &next;
   }

@@ -64,14 +64,14 @@ std::string FieldCoverage::warning() const {
   if (!small && !huge) return {};
   double const mm = unit::millimetre;
   std::string text = fmt::format(
-      "medium.field: the field is {:.4g} x {:.4g} mm wide and fills {:.2g} % of the {:.4g} x "
-      "{:.4g} mm that are seen where it stands",
+      "medium.field: the field is {:.4g} x {:.4g} mm wide and fills {:.2g} % of the {:.4g} x {:.4g} mm of the view at "
+      "its position",
       field.x / mm, field.y / mm, 100 * share, view.x / mm, view.y / mm);
   if (huge) {
-    text += fmt::format("; were its lengths in um, it would be {:.4g} x {:.4g} mm wide", field.x / mm / 1e3,
+    text += fmt::format("; with lengths in um, it would be {:.4g} x {:.4g} mm wide", field.x / mm / 1e3,
                         field.y / mm / 1e3);
   } else if (!endless && ratio < 1 / another_unit) {
-    text += fmt::format("; were its lengths in metres, it would be {:.4g} x {:.4g} mm wide", field.x / mm * 1e3,
+    text += fmt::format("; with lengths in metres, it would be {:.4g} x {:.4g} mm wide", field.x / mm * 1e3,
                         field.y / mm * 1e3);
   }
   return text + "; check medium.field.spacing_mm and center_mm";
@@ -101,8 +101,8 @@ std::string side_face_warning(BuiltMedium const& medium, Setup const& setup) {
   if (faces.empty()) return {};
   return fmt::format(
       "medium.field: at its faces {} the field differs from the ambient by up to {:.2g} % of its range (rms), and rays "
-      "that pass it by see a jump there; if it should fade into the ambient, check medium.field.axes (gladstone info "
-      "field reports how axes are read) and medium.ambient_density_kg_m3",
+      "that miss the field see a jump there; if it should fade into the ambient, check medium.field.axes (gladstone "
+      "info field reports how axes are read) and medium.ambient_density_kg_m3",
       faces, 100 * largest);
 }
 

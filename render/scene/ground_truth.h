@@ -79,7 +79,7 @@ struct GroundTruth {
   std::vector<Vec2d> chief_px;                    ///< Eq. 9 along the chief ray, with the lever of each slice
   std::vector<Vec2d> eq9_cone_px;  ///< aperture-averaged theory: mean over dot and pupil, levers of slices
   std::vector<TruthPath> path;     ///< method that computed displacement_px
-  ParticleTruth particles;         ///< empty for dots
+  ParticleTruth particles;         ///< additional truth of particles; empty for dots
 
   std::size_t size() const { return position_m.size(); }
   void resize(std::size_t count);

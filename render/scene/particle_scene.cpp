@@ -82,10 +82,12 @@ void cross_check_velocity_file(Setup const& setup, SetupTable flow) {
       double const half = (*particles.volume)[axis] / 2, middle = particles.center[axis];
       double const rounding = 1e-9 * (high - low);
       if (middle - half >= low - rounding && middle + half <= high + rounding) continue;
-      flow.problem("file", fmt::format("holds a velocity that reaches from {} = {:.6g} to {:.6g} mm, and ends inside "
-                                       "the particles' volume, {:.6g} to {:.6g} mm; make particles.volume_mm smaller, "
-                                       "or check flow.spacing_mm, center_mm and periodic",
-                                       "XYZ"[axis], low / mm, high / mm, (middle - half) / mm, (middle + half) / mm));
+      flow.problem(
+          "file",
+          fmt::format(
+              "contains a velocity field from {} = {:.6g} to {:.6g} mm, which ends inside the particles' volume, "
+              "{:.6g} to {:.6g} mm; make particles.volume_mm smaller, or check flow.spacing_mm, center_mm and periodic",
+              "XYZ"[axis], low / mm, high / mm, (middle - half) / mm, (middle + half) / mm));
     }
   } catch (DataError const&) {
   }
@@ -100,8 +102,8 @@ std::string warning_of_wide_particles(Scene const& scene) {
   double const point_px = std::max(scene.setup.spot_diameter_px(), 1.0);
   if (px <= 0.5 * point_px) return {};
   return fmt::format(
-      "particles.diameter_um: the largest, {:.4g} um, has an image {:.2g} px wide, but is drawn as a point "
-      "({:.2g} px, of diffraction and pixel); use smaller ones",
+      "particles.diameter_um: the largest, {:.4g} um, has an image {:.2g} px wide, but is rendered as a point ({:.2g} "
+      "px wide by diffraction and pixel size); use smaller ones",
       widest / unit::micrometre, px, point_px);
 }
 
@@ -109,7 +111,7 @@ std::string warning_of_wide_particles(Scene const& scene) {
 /// view.
 std::string warning_of_small_volume(Scene const& scene, ParticleCensus const& census) {
   constexpr int along = 16;            // points of the view along each side
-  constexpr double negligible = 0.01;  // fraction of these points
+  constexpr double negligible = 0.01;  // tolerated fraction of these points outside the volume
   ParticleSetup const& particles = scene.setup.piv->particles;
   if (!particles.volume || census.in_view == 0) return {};
   Pose<double> const plane = scene.sheet_plane();
@@ -132,8 +134,8 @@ std::string warning_of_small_volume(Scene const& scene, ParticleCensus const& ce
   double const share = static_cast<double>(std::count(outside.begin(), outside.end(), 1)) / std::max(1, seen.load());
   if (share < negligible) return {};
   return fmt::format(
-      "particles.volume_mm: the volume is smaller than the view: {:.0f} % of the image sees no particles (the sensor "
-      "sees some {:.4g} x {:.4g} mm of the sheet); enlarge volume_mm, or check center_mm",
+      "particles.volume_mm: the volume is smaller than the view: {:.0f} % of the image shows no particles (the sensor "
+      "sees about {:.4g} x {:.4g} mm of the sheet); enlarge volume_mm, or check center_mm",
       100 * share, camera.columns * scene.setup.pixel_size() * 1e3, camera.rows * scene.setup.pixel_size() * 1e3);
 }
 
@@ -155,8 +157,8 @@ std::string warning_of_dark_volume(Scene const& scene) {
   double const share = lit / (2 * half_depth);
   if (!(share < lit_share)) return {};
   return fmt::format(
-      "particles.volume_mm: {:.0f} % of the volume lies outside the laser sheet, whose particles are counted "
-      "(particles.per_pixel, number) but not seen; make the volume as thin as the sheet, {:.4g} mm with its wings, or "
+      "particles.volume_mm: {:.0f} % of the volume lies outside the laser sheet, where particles are counted "
+      "(particles.per_pixel, number) but not seen; make the volume as thin as the sheet, {:.4g} mm with its tails, or "
       "check laser.offset_mm",
       100 * (1 - share), 2 * reach / unit::millimetre);
 }
@@ -166,8 +168,7 @@ std::string warning_of_small_displacements(Scene const& scene, ParticleCensus co
   if (census.in_view == 0 || !(census.largest_px > 0) || census.largest_px >= measurable_displacement_px) return {};
   return fmt::format(
       "flow.dt_us: displacements are too small to measure: no particle in view moves by more than {:.2g} px "
-      "(correlation "
-      "resolves {} px at best); lengthen the time between the pulses, to some {:.3g} us for 8 px",
+      "(correlation resolves {} px at best); increase the time between the pulses, to about {:.3g} us for 8 px",
       census.largest_px, measurable_displacement_px,
       8 / census.largest_px * scene.setup.piv->flow.dt / unit::microsecond);
 }
@@ -182,7 +183,8 @@ double particle_count(Setup const& setup) {
       return particles.amount * v.x * v.y * v.z / std::pow(unit::millimetre, 3);
     case ParticleCount::per_pixel: {
       double const pixels = static_cast<double>(setup.camera.columns) * setup.camera.rows, share = seen_share(setup);
-      if (!(share > 0)) throw DataError("particles.volume_mm", "lies wholly out of the camera's view; check center_mm");
+      if (!(share > 0))
+        throw DataError("particles.volume_mm", "lies entirely outside the camera's view; check center_mm");
       return particles.amount * pixels / share;
     }
     case ParticleCount::number:
@@ -218,7 +220,7 @@ void add_particles(Scene& scene) {
   };
   if (!lit(0) && !lit(1)) {
     throw DataError("laser",
-                    "lights no particle (none lies in the sheet at either pulse); check laser.offset_mm, "
+                    "illuminates no particle (none lies in the sheet at either pulse); check laser.offset_mm, "
                     "particles.volume_mm and center_mm, or seed more particles");
   }
   if (piv.particles.scattering == ParticleScattering::mie) {
@@ -259,18 +261,16 @@ std::vector<std::string> warnings_of_particles(Scene const& scene) {
   std::vector<std::string> warnings;
   ParticleCensus const census = count_particles(scene);
   if (census.in_view == 0) {
-    warnings.push_back(
-        fmt::format("particles: none of {} lit at the first pulse lies in the camera's view: the images "
-                    "will be empty; check particles.center_mm and volume_mm, laser.offset_mm and the "
-                    "camera's place",
-                    census.lit[0]));
-  } else if (static_cast<double>(census.paired) < kept_pairs * static_cast<double>(census.in_view)) {
     warnings.push_back(fmt::format(
-        "flow: {:.0f} % of the particles in view have left the volume or most of the sheet's light by the second pulse "
-        "(beyond a quarter, correlation suffers; Keane & Adrian 1990); shorten flow.dt_us, or take a thicker sheet in "
-        "a "
-        "thicker volume",
-        100 - 100.0 * static_cast<double>(census.paired) / static_cast<double>(census.in_view)));
+        "particles: none of the {} illuminated at the first pulse lies in the camera's view: the images will be empty; "
+        "check particles.center_mm and volume_mm, laser.offset_mm and the position of the camera",
+        census.lit[0]));
+  } else if (static_cast<double>(census.paired) < kept_pairs * static_cast<double>(census.in_view)) {
+    warnings.push_back(
+        fmt::format("flow: {:.0f} % of the particles in view have left the volume or most of the sheet's light by the "
+                    "second pulse (beyond a quarter, correlation suffers; Keane & Adrian 1990); shorten flow.dt_us, or "
+                    "use a thicker sheet in a thicker volume",
+                    100 - 100.0 * static_cast<double>(census.paired) / static_cast<double>(census.in_view)));
   }
   for (std::string const& text : {warning_of_wide_particles(scene), warning_of_small_volume(scene, census),
                                   warning_of_dark_volume(scene), warning_of_small_displacements(scene, census)}) {
@@ -279,22 +279,22 @@ std::vector<std::string> warnings_of_particles(Scene const& scene) {
   if (!scene.flow_warning.empty()) warnings.push_back(scene.flow_warning);
   if (std::size_t const outside = scene.particles.outside_flow; outside > 0) {
     warnings.push_back(
-        fmt::format("flow.file: {} of {} particles are beyond the velocity field at either pulse (they move as at its "
-                    "edge); take a larger field, or a smaller particles.volume_mm",
+        fmt::format("flow.file: {} of {} particles are outside the velocity field at either pulse (they move with the "
+                    "velocity at its edge); use a larger field, or a smaller particles.volume_mm",
                     outside, scene.particles.size()));
   }
   PathPlan const& path = scene.particles.path;
   double const px = scene.setup.pixel_size();
   if (path.error > path_tolerance_px * px) {
     warnings.push_back(
-        fmt::format("flow: halving the {} steps of a particle's path changes where it ends by {:.2g} px "
-                    "still; shorten flow.dt_us",
+        fmt::format("flow: doubling the {} integration steps of a particle's path still changes its end by {:.2g} px; "
+                    "shorten flow.dt_us",
                     path.steps, path.error / px));
   }
   if (path.lag_error > 0.01 * px) {
     warnings.push_back(
-        fmt::format("particles.density_kg_m3: the lag is known to first order of the response time only; "
-                    "the next term would move particles by {:.2g} px more; use smaller or lighter ones",
+        fmt::format("particles.density_kg_m3: the lag is computed to first order in the response time only; the "
+                    "second-order term would move particles by another {:.2g} px; use smaller or lighter ones",
                     path.lag_error / px));
   }
   return warnings;
@@ -308,13 +308,13 @@ void cross_check_particles(Setup const& setup, SetupTable root, std::vector<std:
       std::abs(piv.particles.index - setup.ambient_index()) < scattering_contrast) {
     particles.problem(particles.has("material") ? "material" : "index",
                       fmt::format("differs by less than {:g} from that of the surroundings, {:.6g} (such particles "
-                                  "scatter next to no light); use another substance",
+                                  "scatter hardly any light); use another material",
                                   scattering_contrast, setup.ambient_index()));
   }
   if (std::abs(piv.laser.wavelength - setup.medium.wavelength) > 1e-6 * setup.medium.wavelength) {
     laser.problem("wavelength_nm",
-                  fmt::format("is not medium.wavelength_nm = {:.6g} (the camera sees the laser's light, "
-                              "and n and spot are of it); give both the same",
+                  fmt::format("is not medium.wavelength_nm = {:.6g} (the camera sees the laser's light, which "
+                              "determines n and the point spread function); give both the same value",
                               setup.medium.wavelength / unit::nanometre));
   }
   if (piv.particles.volume) {
@@ -323,10 +323,12 @@ void cross_check_particles(Setup const& setup, SetupTable root, std::vector<std:
     for (int pulse = 0; pulse < 2; ++pulse) {
       double const beside = sheet_beside(piv.particles, sheet.pose[pulse]);
       if (beside <= reach) continue;
-      laser.problem("offset_mm", fmt::format("puts the sheet of pulse {} beside the particles' volume ({:.4g} mm lie "
-                                             "between them: nothing is lit); move laser.offset_mm, laser.center_mm, "
-                                             "particles.center_mm or thicken particles.volume_mm",
-                                             pulse + 1, beside / mm));
+      laser.problem(
+          "offset_mm",
+          fmt::format(
+              "puts the sheet of pulse {} outside the particles' volume ({:.4g} mm away, so that no particle is "
+              "illuminated); move laser.offset_mm, laser.center_mm, particles.center_mm or thicken particles.volume_mm",
+              pulse + 1, beside / mm));
       break;
     }
     Vec3d const far = piv.particles.center + 0.5 * *piv.particles.volume;
@@ -339,17 +341,17 @@ void cross_check_particles(Setup const& setup, SetupTable root, std::vector<std:
     double const face = window.position.z - window.thickness / 2;
     if (window.side == WindowSide::target) {
       root.problem("window",
-                   "has side = \"target\", behind the particles, where no light of theirs goes; use side = "
-                   "\"camera\", or remove it");
+                   "has side = \"target\", behind the particles, where none of their light reaches the camera; use "
+                   "side = \"camera\", or remove it");
     } else if (piv.particles.volume && face < piv.particles.center.z + piv.particles.volume->z / 2) {
-      root.problem("window", fmt::format("at Z = {:.6g} mm stands in the particles' volume, or behind it; move one",
+      root.problem("window", fmt::format("at Z = {:.6g} mm is inside the particles' volume, or behind it; move one",
                                          window.position.z / mm));
     }
   }
   if (setup.camera.absolute_exposure && !setup.camera.noise.enabled) {
     warnings.push_back(
-        fmt::format("camera.exposure: \"absolute\" counts electrons by a quantum efficiency of {:.3g} and "
-                    "a full well of {:.6g}, since there is no [camera.noise] that says otherwise",
+        fmt::format("camera.exposure: \"absolute\" uses the default quantum efficiency of {:.3g} and full well of "
+                    "{:.6g}, since there is no table [camera.noise]",
                     setup.camera.noise.quantum_efficiency, setup.camera.noise.full_well_e));
   }
 }

@@ -29,7 +29,7 @@ inline constexpr double image_tolerance_levels = 0.5;
 /// resulting maximum is between 1024 and 65,536 rays.
 inline constexpr double source_budget_s = 0.012;
 
-/// NaN: not measured.
+/// Value of errors that were not measured (NaN).
 inline constexpr double not_told = std::numeric_limits<double>::quiet_NaN();
 
 /// Returns the larger of the two errors in units of their tolerances; errors that were not measured count as 0.
@@ -54,7 +54,7 @@ struct RaysPlan {
   std::uint64_t most = 0;                ///< maximum number of rays per source if adaptive; 0: all sources have `rays`
   std::optional<RaysByNeed> by_need;     ///< criteria of the adaptive ray number; empty: not adaptive
   std::uint64_t rays_at_side_faces = 0;  ///< maximum number of rays of dots at side faces (side_faces.h); 0: as others
-  int fineness = 1;                      ///< as Scene::fineness
+  int fineness = 1;                      ///< refinement of table and rules, as Scene::fineness
   double truth_error_px = not_told;      ///< rms error of displacements [px]; NaN: not measured, or no ray passed
   double image_error_levels = not_told;  ///< rms error of lit pixels, worse image [levels at `bits`]; NaN: unknown
   double truth_resolution_px = 0;        ///< detection limit of truth_error_px: two standard errors at zero error [px]
@@ -62,8 +62,9 @@ struct RaysPlan {
   int bits = 0;                          ///< bit depth of the grey levels
   bool extrapolated = false;             ///< the errors were measured with up to 4096 rays and extrapolated
   bool converged = true;                 ///< false: the errors exceed the tolerances
-  double rays_wanted = not_told;         ///< estimated rays per source that meet the tolerances; NaN: unknown or none
-  double seconds = not_told;             ///< estimated processor time of a rendering by ray_seconds() [s]
+  double rays_wanted = not_told;  ///< estimated rays per source that meet the tolerances; NaN: unknown, or no number of
+                                  ///< rays is sufficient
+  double seconds = not_told;      ///< estimated processor time of a rendering by ray_seconds() [s]
 
   std::optional<SideFaceErrors> side_faces;  ///< for the fast renderer; empty: no dot in view is at a side face
 

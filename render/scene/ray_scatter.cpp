@@ -60,7 +60,7 @@ double GreyLevels::error(Scatter const& scatter) const {
 Scatter measure_scatter(std::vector<std::size_t> const& dots, GreyLevels const& levels,
                         std::function<Sampled(std::size_t dot, int scrambling)> const& sample) {
   struct PerDot {
-    std::vector<double> mean, variance;  // of each pixel's light
+    std::vector<double> mean, variance;  // mean and variance of the light of each pixel
   };
   Scatter scatter;
   scatter.displacements.resize(dots.size());
@@ -99,7 +99,7 @@ Scatter measure_scatter(std::vector<std::size_t> const& dots, GreyLevels const& 
     MeanDot& sums = frames[frame];
     sum_over_frame(frame, [&](double mean, double variance) {
       sums.light += share * mean;
-      sums.square += share * (mean * mean + variance * (1 - 1.0 / plan_scramblings));  // for a single scrambling
+      sums.square += share * (mean * mean + variance * (1 - 1.0 / plan_scramblings));  // for one scrambling
       scatter.brightest = std::max(scatter.brightest, mean);
     });
     // Light of randomly overlapping dots: mean plus three standard deviations (Campbell's theorem).

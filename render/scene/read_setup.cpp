@@ -20,8 +20,8 @@ SetupTable camera_table(SetupTable& root) {
   auto cameras = root.tables("camera");
   if (cameras.size() > 1) {
     root.problem("camera",
-                 "is an array of several cameras, of which one is needed here (gladstone render makes a case of each); "
-                 "keep one, or take the setup.toml of its case");
+                 "is an array of several cameras, but this command needs a single one (gladstone render makes a case "
+                 "of each); keep one, or use the setup.toml of its case");
     for (std::size_t other = 1; other < cameras.size(); ++other) cameras[other].excuse();
   }
   return cameras.empty() ? root.table("camera") : cameras.front();
@@ -33,7 +33,7 @@ RenderSetup read_render_setup(SetupTable table) {
   RenderSetup setup;
   if (auto const rays = table.number_or_auto("rays_per_dot", Range::at_least(1, 1e7))) {
     if (*rays != std::floor(*rays)) {
-      table.problem("rays_per_dot", "is not a whole number (rays are counted); use a whole number or \"auto\"");
+      table.problem("rays_per_dot", "is not a whole number; use a whole number or \"auto\"");
     }
     setup.rays_per_dot = static_cast<std::uint64_t>(*rays);
     table.resolve("rays_per_dot", static_cast<long long>(*rays));
@@ -52,7 +52,8 @@ RenderSetup read_render_setup(SetupTable table) {
   return setup;
 }
 
-constexpr double automatic_reach = 0.99;  // limit of an "auto" half thickness over the distance to dots or lens
+// upper limit of an "auto" half thickness, relative to the distance to dots or lens
+constexpr double automatic_reach = 0.99;
 
 /// Sets medium.thickness to the depth of the field's volume, regardless of thickness_mm.
 /// @return false if the thickness follows from thickness_mm (slab, extruded plane), or the file cannot be read, which
@@ -96,12 +97,12 @@ void resolve_thickness(Setup& setup, SetupTable medium) {
 std::optional<Pose<double>> read_pose(SetupTable table) {
   if (!table.present()) return std::nullopt;
   Range const place{-1e9, 1e9};
-  if (!table.has("position_mm")) table.problem("position_mm", "is missing (where the camera stands); add it");
+  if (!table.has("position_mm")) table.problem("position_mm", "is missing (position of the camera); add it");
   Pose<double> pose;
   pose.origin = table.quantities("position_mm", {0, 0, 0.75}, unit::millimetre, place);
   if (table.has("rotation_deg")) {
     if (table.has("look_at_mm")) {
-      table.problem("rotation_deg", "stands beside look_at_mm (one of them says where the camera looks); remove one");
+      table.problem("rotation_deg", "conflicts with look_at_mm (both set the direction of view); remove one");
     }
     pose = pose.turned(table.quantities("rotation_deg", Vec3d{}, unit::degree, {-360, 360}));
   } else {
@@ -109,8 +110,8 @@ std::optional<Pose<double>> read_pose(SetupTable table) {
     Vec3d const right = cross(Vec3d{0, 1, 0}, towards);
     if (!(length(right) > 1e-9 * length(towards)) || towards == Vec3d{}) {
       table.problem("look_at_mm",
-                    "is straight above, below or where the camera stands (its picture has no upright then); use "
-                    "rotation_deg");
+                    "is directly above, below or at the camera, so that the upright direction of the image is "
+                    "undefined; use rotation_deg");
       return std::nullopt;
     }
     pose.z = normalized(towards);
@@ -123,7 +124,7 @@ std::optional<Pose<double>> read_pose(SetupTable table) {
   if (!(pose.z.z > least_cosine)) {
     table.problem(table.has("rotation_deg") ? "rotation_deg" : "look_at_mm",
                   "turns the camera away from the dots, or along their plane (its axis must meet Z = 0 within 87 "
-                  "degrees of the normal, from the side of positive Z); look another way");
+                  "degrees of the normal, from the side of positive Z); change the direction of view");
     return std::nullopt;
   }
   return pose;
@@ -134,7 +135,7 @@ void read_place(Setup& setup, SetupTable camera, SetupTable geometry) {
   SetupTable pose = camera.table("pose");
   setup.pose = read_pose(pose);
   for (char const* key : {"z_a_mm", "z_front_mm", "z_sensor_mm"}) {
-    if (pose.present()) geometry.refuse(key, "stands beside camera.pose (which places the camera); remove one");
+    if (pose.present()) geometry.refuse(key, "conflicts with camera.pose (which positions the camera); remove one");
   }
   if (pose.present()) {
     if (setup.pose) setup.z_a = setup.pose->origin.z / setup.pose->z.z;
@@ -143,17 +144,17 @@ void read_place(Setup& setup, SetupTable camera, SetupTable geometry) {
   bool const thin = setup.lens.file.empty();
   if (geometry.has("z_sensor_mm")) {  // the lens is positioned after it is read
     for (char const* key : {"z_a_mm", "z_front_mm"}) {
-      geometry.refuse(key, "stands beside z_sensor_mm (one of them places the lens); remove one");
+      geometry.refuse(key, "conflicts with z_sensor_mm (both position the lens); remove one");
     }
     setup.z_sensor = geometry.number("z_sensor_mm", 900.0, Range::positive(1e9)) * unit::millimetre;
     return;
   }
-  if (thin) geometry.refuse("z_front_mm", "is of prescriptions (a thin lens has no first vertex); use z_a_mm");
+  if (thin) geometry.refuse("z_front_mm", "is for prescriptions only (a thin lens has no first vertex); use z_a_mm");
   if (thin || !geometry.has("z_front_mm")) {
     setup.z_a = geometry.quantity("z_a_mm", setup.z_a, unit::millimetre, Range::positive(1e9));
     return;
   }
-  geometry.refuse("z_a_mm", "stands beside z_front_mm (one of them places the lens); remove one");
+  geometry.refuse("z_a_mm", "conflicts with z_front_mm (both position the lens); remove one");
   setup.z_a = geometry.number("z_front_mm", 700.0, Range::positive(1e9)) * unit::millimetre;
 }
 
@@ -172,7 +173,7 @@ void find_window_glasses(Setup& setup, SetupTable root, GlassCatalogue const& gl
       window.index = glass.index(wavelength);
       if (setup.lens.transmittance == Transmittance::glass) window.absorption = glass.absorption(wavelength);
     } catch (DataError const& error) {
-      tables[i].problem("glass", std::string(error.what()).substr(where.size() + 2));  // without place
+      tables[i].problem("glass", std::string(error.what()).substr(where.size() + 2));  // message without its location
     }
   }
 }
@@ -195,10 +196,11 @@ void build_optics(Setup& setup, SetupTable root, std::vector<std::string>& warni
     if (geometry.has("z_front_mm")) {
       if (!afocal) setup.z_a += principal;
     } else if (!setup.z_sensor && (afocal || telecentric) && !setup.pose) {
-      geometry.problem("z_a_mm",
-                       fmt::format("cannot place {} lens (it is no distance of its {}); give z_front_mm, of "
-                                   "its first vertex",
-                                   afocal ? "an afocal" : "a telecentric", afocal ? "principal plane" : "perspective"));
+      geometry.problem(
+          "z_a_mm",
+          fmt::format("cannot position {} lens (it has no {}); give z_front_mm, the position of its first vertex",
+                      afocal ? "an afocal" : "a telecentric",
+                      afocal ? "principal planes" : "entrance pupil at a finite distance"));
     }
   }
   find_window_glasses(setup, root, glasses, warnings);
@@ -209,7 +211,7 @@ void focus_on_sensor(Setup& setup, SetupTable geometry) {
   if (!setup.z_sensor) return;
   bool const known = setup.lens.file.empty() || setup.lens.prescription;
   if (known && !std::isfinite(setup.lens.focal_length)) {
-    geometry.problem("z_sensor_mm", "cannot place an afocal lens (it has no focus); give z_front_mm");
+    geometry.problem("z_sensor_mm", "cannot position an afocal lens (it has no focus); give z_front_mm");
   } else if (known) {
     try {
       place_lens_by_sensor(setup);
@@ -221,14 +223,14 @@ void focus_on_sensor(Setup& setup, SetupTable geometry) {
 
 void read_target(Setup& setup, SetupTable root) {
   setup.target = read_target_setup(root.table("target"));
-  root.refuse("calibration", "stands in a setup of BOS (it is of experiment = \"calibration\"); remove it");
+  root.refuse("calibration", "does not apply to BOS (it requires experiment = \"calibration\"); remove it");
 }
 
 void read_calibration(Setup& setup, SetupTable root) {
   CalibrationTarget read = read_calibration_target(root.table("calibration"));
   setup.target = std::move(read.target);
   setup.planes = std::move(read.planes);
-  root.refuse("target", "is of BOS (a calibration's dots are those of [calibration]); remove it");
+  root.refuse("target", "applies to BOS only (the dots of a calibration are those of [calibration]); remove it");
 }
 
 /// Returns the shock front of a medium of kind normal_shock, for the flow.
@@ -245,11 +247,11 @@ void read_piv(Setup& setup, SetupTable root) {
   piv.flow = read_flow_setup(root.table("flow"), shock_plane(setup.medium.field));
   if (setup.medium.second_field && piv.flow.flow.kind_word() == NormalShockFlow::kind) {
     root.table("medium").problem("second_field",
-                                 "stands beside a flow of kind \"normal_shock\", which is steady; remove one");
+                                 "conflicts with a flow of kind \"normal_shock\", which is steady; remove one");
   }
   setup.piv = piv;
-  root.refuse("target", "is of BOS (PIV's sources are [particles]); remove it");
-  root.refuse("calibration", "stands in a setup of PIV (it is of experiment = \"calibration\"); remove it");
+  root.refuse("target", "applies to BOS only (the sources of PIV are [particles]); remove it");
+  root.refuse("calibration", "does not apply to PIV (it requires experiment = \"calibration\"); remove it");
 }
 
 }  // namespace
@@ -267,31 +269,33 @@ Setup read_setup(SetupTable root) {
   setup.windows = read_windows(root);
   setup.lenslets = read_lenslets(camera.table("lenslets"));
   if (!setup.lens.file.empty() && setup.camera.distorted()) {
-    camera.table("sensor").problem("distortion", "is of thin lenses (a prescription has its own); remove it");
+    camera.table("sensor").problem("distortion",
+                                   "applies to thin lenses only (a prescription has its own distortion); remove it");
   }
   SetupTable geometry = root.table("geometry");
   read_place(setup, camera, geometry);
   if (piv || calibration) {
-    geometry.refuse("z_d_mm", piv ? "is of BOS (PIV's z_a_mm reaches to the origin, and laser.center_mm places the "
-                                    "sheet); remove it"
-                                  : "is of BOS (calibration.planes_mm places the dots); remove it");
+    geometry.refuse("z_d_mm", piv ? "applies to BOS only (for PIV, z_a_mm is the distance to the origin, and "
+                                    "laser.center_mm positions the sheet); remove it"
+                                  : "applies to BOS only (calibration.planes_mm positions the dots); remove it");
     setup.z_d = 0;
   } else {
     setup.z_d = geometry.quantity("z_d_mm", setup.z_d, unit::millimetre, Range::positive(1e9));
   }
   setup.medium = read_medium_setup(root.table("medium"));
   if (!piv && setup.medium.second_field) {
-    root.table("medium").problem("second_field", "is what PIV's second pulse sees; remove it, or change experiment");
+    root.table("medium").problem("second_field",
+                                 "applies to PIV only (field at the second pulse); remove it, or change experiment");
   }
   if (calibration && setup.medium.field.kind != FieldKind::none) {
-    root.table("medium").problem("field", "is of BOS (a camera is calibrated without flow); remove it");
+    root.table("medium").problem("field", "does not apply to a calibration, which is made without a flow; remove it");
   }
   build_optics(setup, root, setup.warnings);
   focus_on_sensor(setup, geometry);
   resolve_thickness(setup, root.table("medium"));
   if (setup.camera.absolute_exposure && !piv) {
     camera.problem("exposure",
-                   "\"absolute\" is of PIV (whose [laser] says how much light there is); use \"auto\" or a "
+                   "\"absolute\" applies to PIV only (where [laser] determines the amount of light); use \"auto\" or a "
                    "number of electrons");
   }
   if (piv) {
@@ -299,7 +303,7 @@ Setup read_setup(SetupTable root) {
   } else {
     calibration ? read_calibration(setup, root) : read_target(setup, root);
     for (char const* other : {"particles", "laser", "flow"}) {
-      root.refuse(other, "is of experiment = \"piv\"; remove it, or change experiment");
+      root.refuse(other, "requires experiment = \"piv\"; remove it, or change experiment");
     }
   }
   setup.render = read_render_setup(root.table("render"));

@@ -10,7 +10,7 @@ char const* to_string(TableState state) {
     case TableState::made:
       break;
     case TableState::no_medium:
-      return "nothing bends rays";
+      return "no medium deflects rays";
     case TableState::no_sources:
       return "there are no dots";
     case TableState::by_rays:
@@ -18,17 +18,17 @@ char const* to_string(TableState state) {
     case TableState::by_formula:
       return "images and truth are given by a formula, without rays (method = \"formula\")";
     case TableState::field_too_small:
-      return "the field does not reach beyond the dots' cones of rays";
+      return "the field does not extend beyond the light cones of the dots";
     case TableState::field_too_fine:
-      return "the field is so fine beside the view that a table would take too many rays";
+      return "the field is so fine compared with the view that a table would need too many rays";
     case TableState::dots_too_wide:
-      return "the dots are wide beside what the field changes on";
+      return "the dots are wide compared with the length scale of the field";
   }
   return "";
 }
 
 Rendering Renderer::render_particles(Scene&, Particles const&, ParticleLight, RenderImages) {
-  throw DeviceError("this renderer traces dots alone; particles are traced by the general one");
+  throw DeviceError("this renderer supports dots only; particles need the general renderer");
 }
 
 TracingPass::TracingPass(Scene const& scene, DotPattern const& sources) {

@@ -22,7 +22,7 @@ enum class TableState {
   by_formula,       ///< rendered by a formula, without rays
   dots_too_wide,    ///< the light cone varies too much over the area of a dot
 };
-/// Returns the reason as the end of the sentence "there is no deflection table: ..."; empty if there is a table.
+/// Returns the reason as the end of a sentence "no deflection table, since ..."; empty if there is a table.
 char const* to_string(TableState state);
 
 /// Result of rendering a scene.
@@ -32,7 +32,7 @@ struct Rendering {
   GroundTruth truth;
   StatusCounts statuses{};
   std::int64_t rays = 0;          ///< number of rays traced, both images together
-  std::vector<std::size_t> left;  ///< fallback dots: to be rendered by another renderer, without truth or light here
+  std::vector<std::size_t> left;  ///< fallback dots: without truth or light here, to be rendered by another renderer
   TableState table = TableState::no_sources;  ///< whether a deflection table was built
   RenderMethod method = RenderMethod::focused_dots;
   std::string device;  ///< device that rendered it; empty: that of the renderer

@@ -29,7 +29,7 @@ double lowest_density(MediumSetup const& setup, BuiltMedium const& medium) {
     return std::static_pointer_cast<RefractiveIndexVolume<Stored> const>(medium.owner)->lowest();
   };
   return (setup.field.extrude ? lowest(double{}) : lowest(float{})) /
-         setup.gladstone_dale;  // stored by build_medium in this type
+         setup.gladstone_dale;  // type in which build_medium() stores the values
 }
 
 /// Reports negative densities in a field file, with their number and the first position.
@@ -52,10 +52,11 @@ void refuse_negative_density(MediumSetup const& setup, BuiltMedium const& medium
       if (count++ == 0) first = fmt::format("{}, {}, {}", i % width, i / width, k);
     }
   }
-  throw DataError(field.file,
-                  fmt::format("dataset \"{}\": {} of {} points are negative densities (the first at node x, y, z = {}; "
-                              "the lowest is {:.6g} kg/m^3); mend the field, or check medium.field.quantity and scale",
-                              source->name(), count, grid.size(), first, lowest));
+  throw DataError(
+      field.file,
+      fmt::format("dataset \"{}\": {} of {} points are negative densities (the first at node x, y, z = {}; the lowest "
+                  "is {:.6g} kg/m^3); correct the field, or check medium.field.quantity and scale",
+                  source->name(), count, grid.size(), first, lowest));
 }
 
 /// Adds the dots of a target to a scene.
@@ -100,8 +101,8 @@ double Scene::stop_edge(double rays) { return 1.2 / std::pow(rays, 0.25); }
 void refuse_shift_beyond_any_bench(double shift, double z_b) {
   if (shift <= z_b) return;
   throw DataError("medium.field",
-                  fmt::format("bends rays by more than {:.3g} mm before they reach the lens, {:.6g} mm away, which no "
-                              "bench does; reduce its gradients, or check their unit",
+                  fmt::format("deflects rays by more than {:.3g} mm before they reach the lens, {:.6g} mm away, which "
+                              "no real set-up does; reduce its gradients, or check their unit",
                               shift / unit::millimetre, z_b / unit::millimetre));
 }
 
@@ -184,9 +185,8 @@ void check_memory(Setup const& setup, FieldMemory field_memory, std::vector<Memo
   if (needed <= available) return;
   auto const most = std::max_element(needs.begin(), needs.end(),
                                      [](MemoryNeed const& a, MemoryNeed const& b) { return a.bytes < b.bytes; });
-  throw DataError(most->key,
-                  fmt::format("needs {:.3g} GB of memory ({}) but this machine has {:.3g} GB free; reduce {}",
-                              gigabytes(needed), sizes, gigabytes(available), most->key));
+  throw DataError(most->key, fmt::format("needs {:.3g} GB of memory ({}), but {:.3g} GB are available; reduce {}",
+                                         gigabytes(needed), sizes, gigabytes(available), most->key));
 }
 
 BuiltMedium build_checked_medium(MediumSetup const& setup) {

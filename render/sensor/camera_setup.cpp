@@ -11,7 +11,7 @@
 namespace gladstone {
 namespace {
 
-constexpr double max_background = 0.8;  // fraction of the full well
+constexpr double max_background = 0.8;  // largest background as a fraction of the full well
 constexpr long long largest_seed = std::numeric_limits<long long>::max();
 
 void read_pattern(SetupTable& noise, NoiseSetup& setup) {
@@ -30,8 +30,8 @@ BackgroundSetup read_background(SetupTable table, double full_well_e) {
   if (table.has("glare_file")) {
     setup.glare_file = table.required_path("glare_file");
     if (std::error_code error; !setup.glare_file.empty() && !std::filesystem::exists(setup.glare_file, error)) {
-      table.problem("glare_file",
-                    "there is no file " + setup.glare_file + "; relative names start at the setup file's folder");
+      table.problem("glare_file", "file not found: " + setup.glare_file +
+                                      "; relative names are resolved against the setup file's folder");
     }
     setup.glare_e = table.number("glare_e", 0.1 * full_well_e, Range::positive(1e9));
   } else {

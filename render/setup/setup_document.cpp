@@ -60,7 +60,7 @@ std::string unread_message(SetupDocument::State const& state, std::vector<std::s
   if (elsewhere != "?") {
     return message + "; it belongs " + (elsewhere.empty() ? "before the first table" : "in [" + elsewhere + ']');
   }
-  if (known.empty()) return message + "; remove it (nothing is read here)";
+  if (known.empty()) return message + "; remove it (no keys are read here)";
   return message + "; known are " + quoted_list(known);
 }
 
@@ -237,8 +237,7 @@ void SetupDocument::override_key(std::string const& assignment) {
   }
   if (path.size() > most_setup_depth) {
     add_problem(where, "has a key of " + std::to_string(path.size()) +
-                           " parts (no setup is so deep); write the key "
-                           "that is meant");
+                           " parts, which is more than any setup needs; write the intended key");
     return;
   }
   std::string const text = assignment.substr(equals + 1);

@@ -140,8 +140,8 @@ std::optional<SetupPlace> too_deep(std::string_view text) {
 SetupNode parse_toml(std::string_view text, std::string const& name) {
   if (auto const deep = too_deep(text)) {
     throw SetupError({{name + ':' + std::to_string(deep->line) + ':' + std::to_string(deep->column),
-                       "tables or arrays lie more than " + std::to_string(most_setup_depth) +
-                           " deep in one another (no setup is so deep); write the key that is meant"}});
+                       "tables or arrays are nested more than " + std::to_string(most_setup_depth) +
+                           " levels deep, which is more than any setup needs; write the intended key"}});
   }
   try {
     SetupNode root = converted(toml::parse(text));

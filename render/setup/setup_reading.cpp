@@ -27,7 +27,7 @@ double in_unit(double si, double unit) {
 }
 
 std::string broken_rule(double value, Range const& range) {
-  if (std::isnan(value)) return "must be a number (nan is none)";
+  if (std::isnan(value)) return "must be a number (nan is not allowed)";
   if (std::isinf(value) && !range.allow_inf) return "must be finite";
   bool const too_low = range.low_open ? value <= range.low : value < range.low;
   if (!too_low && value <= range.high) return {};

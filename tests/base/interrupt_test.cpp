@@ -13,8 +13,8 @@
 namespace gladstone {
 namespace {
 
-/// A process that catches interrupts and then waits in one call for ever, as in opening a file of a server that is
-/// gone.
+/// Child process that catches interrupts and is then blocked in a single call, like a program that opens a file of an
+/// unreachable server.
 class Blocked {
  public:
   explicit Blocked(std::function<void()> const& prepare = [] {}) {
@@ -29,7 +29,7 @@ class Blocked {
       sigprocmask(SIG_SETMASK, &all, nullptr);
       for (;;) {
         if (write(ready_[1], "x", 1) != 1) _exit(1);
-        sigsuspend(&none);  // signals come here and nowhere else; back when one has been handled
+        sigsuspend(&none);  // signals are only delivered here; the call returns after one has been handled
       }
     }
     close(ready_[1]);
@@ -44,7 +44,8 @@ class Blocked {
   Blocked(Blocked const&) = delete;
   Blocked& operator=(Blocked const&) = delete;
 
-  /// Sends a signal. @return the exit code; -1 where it goes on, 128 + N where signal N ended it
+  /// Sends a signal to the process.
+  /// @return exit code; 128 + N if signal N terminated it; -1 if it is still running
   int after(int signal) {
     ::kill(child_, signal);
     if (goes_on()) return -1;
@@ -55,7 +56,7 @@ class Blocked {
   }
 
  private:
-  /// Waits until it waits for the next signal, or has ended.
+  /// Waits until the process is ready for the next signal (true) or has ended (false).
   bool goes_on() const {
     char x = 0;
     return read(ready_[0], &x, 1) == 1;
@@ -67,11 +68,12 @@ class Blocked {
 
 TEST(Interrupt, ASecondControlCEndsAtOnceWhateverBlocks) {
   Blocked process;
-  EXPECT_EQ(process.after(SIGINT), -1) << "long work polls";
+  EXPECT_EQ(process.after(SIGINT), -1) << "the first Ctrl-C only sets a flag";
   EXPECT_EQ(process.after(SIGINT), 130);
 }
 
-// `timeout` and a study's parent send SIGTERM to who has a signal already; it still cleans up.
+// `timeout` and the parent process of a study may send SIGTERM to a process that has already received a signal; the
+// process must still clean up.
 TEST(Interrupt, OtherSignalsAreOnlyRememberedHoweverManyCome) {
   Blocked process;
   for (int const signal : {SIGTERM, SIGTERM, SIGHUP, SIGHUP, SIGINT, SIGTERM}) EXPECT_EQ(process.after(signal), -1);

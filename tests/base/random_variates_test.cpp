@@ -12,15 +12,16 @@ constexpr int draws = 200000;
 
 KeyedEngine engine_of(int item) { return {11, RandomStream::noise_flow, static_cast<std::uint64_t>(item)}; }
 
-// ln k! against the library's ln Gamma(k + 1).
+// Compares ln k! with ln Gamma(k + 1) of the standard library.
 TEST(LogFactorial, IsThatOfTheGammaFunction) {
   for (double const k : {0.0, 1.0, 2.0, 6.0, 7.0, 8.0, 20.0, 170.0, 1e5, 1e9}) {
     EXPECT_NEAR(log_factorial(k), std::lgamma(k + 1), 1e-9 + 1e-14 * std::lgamma(k + 1)) << k;
   }
 }
 
-// Every share of a Poisson distribution, on both sides of where the method changes: P(k) = m^k e^-m / k!. The count of
-// k among n draws has the variance n P (1 - P); five standard deviations allowed, where ten are expected at least.
+// All probabilities of a Poisson distribution, P(k) = m^k e^-m / k!, for means on both sides of the change of method.
+// The count of k among n draws has the variance n P (1 - P). The tolerance is five standard deviations, for all k with
+// an expected count of at least ten.
 TEST(PoissonVariate, HasEveryShareOfItsDistribution) {
   for (double const mean : {0.05, 1.0, 3.7, 9.99, 10.0, 31.0, 400.0}) {
     std::map<double, int> counts;
@@ -36,7 +37,8 @@ TEST(PoissonVariate, HasEveryShareOfItsDistribution) {
   }
 }
 
-// Mean and variance are both the mean; the variance of n draws scatters by m sqrt((2 + 1/m)/n). Five of these.
+// Mean and variance of a Poisson distribution both equal m; the sample variance of n draws has the standard deviation m
+// sqrt((2 + 1/m)/n). The tolerance is five standard deviations.
 TEST(PoissonVariate, HasTheMomentsOfLargeMeans) {
   for (double const mean : {1e3, 1e6, 1e11}) {
     double sum = 0, square = 0;
@@ -51,7 +53,7 @@ TEST(PoissonVariate, HasTheMomentsOfLargeMeans) {
   }
 }
 
-// Shares of intervals by the error function, as above.
+// Probabilities of intervals from the error function, with the same tolerance as above.
 TEST(NormalVariate, HasEveryShareOfItsDistribution) {
   std::map<int, int> counts;
   for (int i = 0; i < draws; ++i) {

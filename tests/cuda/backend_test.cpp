@@ -9,7 +9,7 @@
 namespace gladstone::cuda {
 namespace {
 
-/// What was compiled in and what can run are two things; both have words.
+/// Whether CUDA is compiled in and whether a device is usable are independent; both are reported in words.
 TEST(CudaBackend, SaysWhatItIsAndWhetherItCanRun) {
   EXPECT_EQ(compiled_in(), description().find("not compiled in") == std::string::npos) << description();
   DeviceState const state = device_state();

@@ -35,14 +35,16 @@ ParticlePair moved_dots(std::function<Vec2d(Vec2d)> const& displacement, double 
 
 Vec2d shear(Vec2d p) { return {0.4 + 0.01 * p.y, -0.3}; }
 
-/// A standard uncertainty against another of the same vector. The device deforms the frames by the same spline in
-/// another order: coefficients are sums of some forty products in float, which leaves up to 2e-6 of the contrast in a
-/// pixel. Frames of 8 bits differ by 1.6e-3 of it at least (1/255/sqrt(12) in either), and sigma is the root of a sum
-/// of products of that difference: were all pixels off alike, it would move by 2e-6/1.6e-3 of what the products come to
-/// without signs. That is sigma in noise, but without noise products of either sign may cancel down to 0: what they
-/// come to is then at least that of 8 bits, 1e-3 px (noise of 5 % gives 0.04 px, so that 0.11 % gives that).
-/// @param of_vector_px by which the vectors differ: a sigma moves no more than the vector that its frames are matched
-/// by
+/// Compares two estimates of the standard uncertainty of a vector. The device deforms the frames by the same spline in
+/// another order of operations: coefficients are sums of about forty products in float, which causes errors of up to
+/// 2e-6 of the contrast in a pixel. Frames of 8 bits differ by at least 1.6e-3 of the contrast (1/255/sqrt(12) in
+/// each), and sigma is the square root of a sum of products of that difference. If all pixels had the same error, sigma
+/// would change by 2e-6/1.6e-3 of the sum of the products' magnitudes. With noise, that sum corresponds to sigma
+/// itself; without noise, the products may cancel, and the sum corresponds at least to 8 bits, 1e-3 px (noise of 5 %
+/// results in 0.04 px, so 0.11 % results in that).
+/// @param of_vector_px  difference of the vectors: sigma changes by at most the difference of the vector that deforms
+///   its
+///   frames
 void expect_near(Vec2d sigma, Vec2d expected, double of_vector_px, std::size_t i) {
   for (double Vec2d::*axis : {&Vec2d::x, &Vec2d::y}) {
     double const found = sigma.*axis, right = expected.*axis;
@@ -63,9 +65,9 @@ bool alike_around(DisplacementField const& a, DisplacementField const& b, std::s
   return true;
 }
 
-/// Compares what comes with the device's vectors with what the CPU estimates of the same vectors, and of its own, which
-/// differ by up to 1e-4 px.
-/// @return vectors that have one
+/// Compares the uncertainties of the device with those that the CPU estimates for the same vectors, and for its own
+/// vectors, which differ by up to 1e-4 px.
+/// @return number of vectors with an uncertainty
 std::size_t expect_sigma_of_the_cpu(CorrelationSettings const& settings, ParticlePair const& pair) {
   HostFrames const frames(pair.reference, pair.flow);
   DisplacementField const field = cuda::make_correlator(settings)->correlate_pair(frames);
@@ -86,7 +88,7 @@ std::size_t expect_sigma_of_the_cpu(CorrelationSettings const& settings, Particl
   return known;
 }
 
-// Every vector of these has one, those of windows that the border cuts among them.
+// All of these vectors have an uncertainty, including those whose windows are cut by the border.
 TEST_F(CudaSigma, OfUniformDisplacementAndShearIsThatOfTheCpu) {
   for (double const noise : {0.0, 0.05}) {
     CorrelationSettings const settings = with_statistics();
@@ -123,14 +125,14 @@ TEST_F(CudaSigma, OfFramesOfOtherBrightnessIsThatOfTheCpu) {
   EXPECT_GT(expect_sigma_of_the_cpu(with_statistics(), pair), 500u);
 }
 
-// One pass, whose frames are deformed for the uncertainty alone; windows of fewer pixels than a warp has threads, and
-// of more than a block.
+// A single pass, whose frames are deformed for the uncertainty only; windows with fewer pixels than the threads of a
+// warp, and with more than those of a block.
 TEST_F(CudaSigma, OfSmallAndLargeWindowsIsThatOfTheCpu) {
   EXPECT_GT(expect_sigma_of_the_cpu(with_statistics({8}), moved_dots(shear, 0.02)), 500u);
   EXPECT_GT(expect_sigma_of_the_cpu(with_statistics({160}), moved_dots(shear, 0.02)), 0u);
 }
 
-// Windows half masked and more, of which none is known; windows without a dot, where there is nothing to measure.
+// Windows that are partly or completely masked, and windows without a dot, which contain no signal.
 TEST_F(CudaSigma, OfMaskedAndDotFreeWindowsIsThatOfTheCpu) {
   ParticlePair pair = moved_dots(shear, 0.02);
   for (int j = 0; j < 70; ++j)
@@ -153,7 +155,7 @@ TEST_F(CudaSigma, IsNotKnownWhereNothingIs) {
   for (Vec2d const& sigma : field.sigma_px) EXPECT_TRUE(std::isnan(sigma.x) && std::isnan(sigma.y));
 }
 
-// The vectors are the same with it and without, and every time.
+// The vectors are the same with and without uncertainties, and in every run.
 TEST_F(CudaSigma, LeavesTheVectorsAndIsTheSameEveryTime) {
   ParticlePair const pair = moved_dots(shear, 0.3), other = moved_dots(shear, 0.1);
   auto const correlator = cuda::make_correlator(with_statistics());
@@ -165,7 +167,7 @@ TEST_F(CudaSigma, LeavesTheVectorsAndIsTheSameEveryTime) {
   };
   EXPECT_TRUE(same(first.displacement_px, without.displacement_px));
   EXPECT_TRUE(same(first.status, without.status));
-  correlator->correlate(other.reference, other.flow);  // leaves something else in the kept memory
+  correlator->correlate(other.reference, other.flow);  // leaves other data in the retained memory
   DisplacementField const again = correlator->correlate(pair.reference, pair.flow);
   for (std::size_t i = 0; i < first.size(); ++i)
     for (double Vec2d::*axis : {&Vec2d::x, &Vec2d::y}) {
@@ -174,9 +176,9 @@ TEST_F(CudaSigma, LeavesTheVectorsAndIsTheSameEveryTime) {
     }
 }
 
-// Where a window does not fit into shared memory a block has it in the device's, one window after the other. The two
-// kernels add in the same order, but may fuse other products: 4e-6 of what these come to without signs, twenty times
-// the variance at most.
+// If a window does not fit into shared memory, a block processes its windows in device memory, one after the other. The
+// two kernels sum in the same order, but may fuse different products: the variances differ by 4e-6 of the sum of the
+// products' magnitudes, which is at most twenty times the variance.
 TEST_F(CudaSigma, IsTheSameWithLittleSharedMemory) {
   ParticlePair const pair = moved_dots(shear, 0.03, 400, 400);
   CorrelationSettings settings = with_statistics({64, 32});
@@ -184,7 +186,7 @@ TEST_F(CudaSigma, IsTheSameWithLittleSharedMemory) {
   DisplacementField const expected = cuda::make_correlator(settings)->correlate(pair.reference, pair.flow);
   SharedMemoryLimit const limit(8000);
   DisplacementField const field = cuda::make_correlator(settings)->correlate(pair.reference, pair.flow);
-  ASSERT_GT(field.size(), 264u) << "more windows than are worked on together";
+  ASSERT_GT(field.size(), 264u) << "more windows than are processed at a time";
   for (std::size_t i = 0; i < field.size(); ++i) {
     ASSERT_TRUE(std::isfinite(expected.sigma_px[i].x) && std::isfinite(expected.sigma_px[i].y));
     EXPECT_NEAR(field.sigma_px[i].x / expected.sigma_px[i].x, 1.0, 4e-5) << i;
@@ -192,7 +194,7 @@ TEST_F(CudaSigma, IsTheSameWithLittleSharedMemory) {
   }
 }
 
-// What other methods give the CPU estimates of the device's vectors.
+// For other methods, the CPU estimates the uncertainties of the device's vectors.
 TEST_F(CudaSigma, OfAnotherMethodIsLeftToTheCpu) {
   ParticlePair const pair = moved_dots(shear, 0.03);
   CorrelationSettings settings;

@@ -42,15 +42,15 @@ CorrelationSettings with_windows(std::vector<int> windows) {
   return settings;
 }
 
-/// What the CPU measures by the method that scc is held to: whole transforms in double precision.
+/// Returns the vectors measured on the CPU by the reference method for scc: complete transforms in double precision.
 DisplacementField reference_vectors(CorrelationSettings settings, ParticlePair const& pair) {
   if (settings.method == "scc") settings.method = "opencv";
   return gladstone::make_correlator(settings)->correlate(pair.reference, pair.flow);
 }
 
-/// Compares the device with the CPU: both do the same arithmetic in another order, here float in the transforms
-/// (relative 6e-8, some tens of times over), so that peaks agree to 1e-4 px; a status differs only where a residual or
-/// two peaks are that close to each other.
+/// Compares the device with the CPU: both use the same arithmetic in another order, and the device's transforms in
+/// float (relative errors of 6e-8, some tens of times), so that peaks agree to 1e-4 px. A status may only differ if a
+/// residual is that close to its limit or two peaks are that close to each other.
 void expect_same(CorrelationSettings const& settings, ParticlePair const& pair) {
   DisplacementField const expected = reference_vectors(settings, pair);
   DisplacementField const field = cuda::make_correlator(settings)->correlate(pair.reference, pair.flow);
@@ -79,7 +79,7 @@ TEST_F(CudaCorrelation, OfTheDefaultPassesIsThatOfTheCpu) { expect_same({}, smoo
 
 TEST_F(CudaCorrelation, OfNoisyImagesIsThatOfTheCpu) { expect_same({}, smooth_pair(500, 390, 0.1)); }
 
-// Noise that fails vectors in every test, first replaced and then left out.
+// Noise that makes vectors fail each of the tests; they are first replaced, then not.
 TEST_F(CudaCorrelation, OfVectorsThatFailTestsIsThatOfTheCpu) {
   CorrelationSettings settings;
   settings.least_peak_ratio = 1.3;
@@ -90,7 +90,7 @@ TEST_F(CudaCorrelation, OfVectorsThatFailTestsIsThatOfTheCpu) {
   }
 }
 
-// 0.7 to 2.7 px along x: vectors beyond the limit, and replacements that are.
+// Displacements of 0.7 to 2.7 px along x: some vectors exceed the limit, and so do some replacements.
 TEST_F(CudaCorrelation, WithinALimitIsThatOfTheCpu) {
   CorrelationSettings settings;
   settings.max_displacement_px = 1.8;
@@ -107,10 +107,9 @@ TEST_F(CudaCorrelation, WithUniformWindowsAndCubicSplinesIsThatOfTheCpu) {
   expect_same(settings, smooth_pair(300, 260));
 }
 
-// Supports of 32 and 64 px have kernels of their own, those of 40, 48, 96 and 128 px are transformed by factors, others
-// up to about 160 px line by line in shared memory, larger ones in device memory; 22, 46 and 94 bring the primes 11, 23
-// and 47. Windows of 8 px need more particles to hold a
-// signal at all.
+// Supports of 32 and 64 px have specialised kernels; those of 40, 48, 96 and 128 px are transformed by factors, others
+// up to about 160 px line by line in shared memory, larger ones in device memory. 22, 46 and 94 px contain the primes
+// 11, 23 and 47. Windows of 8 px need a higher particle density to contain any signal.
 class CudaWindowSize : public CudaCorrelation, public ::testing::WithParamInterface<int> {};
 TEST_P(CudaWindowSize, GivesTheVectorsOfTheCpu) {
   int const window = GetParam();
@@ -125,7 +124,7 @@ TEST_F(CudaCorrelation, ByNinePointsIsThatOfTheCpu) {
   expect_same(settings, smooth_pair(512, 512, 0.05));
 }
 
-// Phases of wave numbers that hold nothing but rounding are chance; noise as in any picture fills them.
+// The phases of wave numbers without signal are random; noise, as in real images, fills them.
 TEST_F(CudaCorrelation, ByPhasesIsThatOfTheCpu) {
   CorrelationSettings settings;
   settings.method = "rpc";
@@ -146,7 +145,8 @@ TEST_F(CudaCorrelation, OfUniformWindowsIsThatOfTheCpu) {
   }
 }
 
-// A twentieth of the vectors is off by several pixels or has no agreeing neighbours: every branch of the validation.
+// A twentieth of the vectors is wrong by several pixels or has no agreeing neighbours, which covers every branch of the
+// validation.
 TEST_F(CudaCorrelation, ReplacesSpuriousVectorsAsTheCpuDoes) {
   ParticlePair const pair = smooth_pair(400, 300, 0.3);
   CorrelationSettings const settings = with_windows({16});
@@ -162,7 +162,7 @@ TEST_F(CudaCorrelation, OfDenselyOverlappingWindowsIsThatOfTheCpu) {
   expect_same(settings, smooth_pair(301, 259, 0.05));
 }
 
-// Pixels unknown in one image or the other; a patch without any signal.
+// Pixels that are unknown in one of the images, and an area without signal.
 TEST_F(CudaCorrelation, LeavesOutUnknownPixelsAsTheCpuDoes) {
   ParticlePair pair = smooth_pair(300, 260);
   for (int j = 0; j < 70; ++j)
@@ -174,7 +174,7 @@ TEST_F(CudaCorrelation, LeavesOutUnknownPixelsAsTheCpuDoes) {
   expect_same(with_windows({16}), pair);
 }
 
-// A whole image without signal has no contrast to compare with: every vector is invalid, in every pass.
+// An image without signal has no contrast: every vector is invalid, in every pass.
 TEST_F(CudaCorrelation, FindsNothingInAnEvenImage) {
   Image<double> const even(128, 128, 40.0);
   for (VectorStatus const status : cuda::make_correlator({})->correlate(even, even).status)
@@ -184,7 +184,7 @@ TEST_F(CudaCorrelation, FindsNothingInAnEvenImage) {
     EXPECT_EQ(status, VectorStatus::masked);
 }
 
-// The unit of grey is the user's: the measured displacement does not depend on it.
+// The measured displacement does not depend on the unit of the grey levels.
 TEST_F(CudaCorrelation, DoesNotDependOnTheUnitOfGrey) {
   ParticlePair pair = smooth_pair(128, 128);
   auto const correlator = cuda::make_correlator(with_windows({32, 16}));
@@ -205,7 +205,7 @@ TEST_F(CudaCorrelation, GivesTheSameBitsEveryTime) {
     return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(a[0])) == 0;
   };
   DisplacementField const first = correlator->correlate(pair.reference, pair.flow);
-  correlator->correlate(other.reference, other.flow);  // leaves something else in the kept memory
+  correlator->correlate(other.reference, other.flow);  // leaves other data in the retained memory
   for (DisplacementField const& again : {correlator->correlate(pair.reference, pair.flow),
                                          cuda::make_correlator({})->correlate(pair.reference, pair.flow)}) {
     EXPECT_TRUE(same(first.displacement_px, again.displacement_px));

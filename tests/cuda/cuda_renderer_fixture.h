@@ -15,9 +15,9 @@
 
 namespace gladstone {
 
-using BosSetup = Setup;  // testing::Test has a Setup of its own
+using BosSetup = Setup;  // testing::Test has a member named Setup
 
-/// A grey level of 16 bits when the brightest pixel of a frame is at 90 % of full scale.
+/// A grey level of 16 bits if the brightest pixel of a frame is at 90 % of full scale.
 inline double grey_level(Image<double> const& frame) {
   return *std::max_element(frame.begin(), frame.end()) / (0.9 * 65535);
 }
@@ -46,7 +46,7 @@ inline bool same_bits(Image<double> const& a, Image<double> const& b) {
   return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin());
 }
 
-/// A volume of 12 x 14 x 10 nodes, 1.5 mm apart.
+/// Returns a volume of 12 x 14 x 10 nodes, 1.5 mm apart.
 inline FieldSetup volume_file() {
   FieldSetup field;
   field.kind = FieldKind::file;
@@ -63,7 +63,7 @@ inline FieldSetup volume_file() {
   return field;
 }
 
-/// The renderers of a method on either device, and how far their images may differ [levels of 16 bits].
+/// The renderers of a method on both devices, and the tolerance of their images [levels of 16 bits].
 struct FocusedDotsMethod {
   static FocusedDotsRenderer on_cpu() { return {}; }
   static std::unique_ptr<Renderer> on_device() { return cuda::make_renderer(); }
@@ -72,11 +72,11 @@ struct FocusedDotsMethod {
 struct RaysMethod {
   static RaysRenderer on_cpu() { return {}; }
   static std::unique_ptr<Renderer> on_device() { return cuda::make_rays_renderer(); }
-  /// the device gathers hits in whole numbers
+  /// the device accumulates hits in integers
   static constexpr double levels = 1;
 };
 
-/// Renders on the device and beside it on the CPU; skipped where there is no device.
+/// Renders on the device and on the CPU; skipped if there is no device.
 template <class Method>
 class OnBothDevices : public testing::Test {
  protected:
@@ -88,12 +88,12 @@ class OnBothDevices : public testing::Test {
     return renderer_->render(scene, scene.dots, RenderImages::yes, RenderTheory::yes);
   }
 
-  /// The device's rendering must be the CPU's: truth and theory to 1e-9 px, images to its share of a grey level, counts
-  /// exactly.
-  /// Scenes that the fast renderer does not take are the general one's.
+  /// The results of the device must equal those of the CPU: truth and theory to 1e-9 px, images to a fraction of a grey
+  /// level, counts exactly. Scenes that the fast renderer does not support are compared by the test of the general
+  /// renderer.
   void expect_as_on_cpu(Scene scene) {
     if (std::is_same_v<Method, FocusedDotsMethod> && !focused_dots(scene)) {
-      GTEST_SKIP() << "the fast renderer does not take this scene; the general one's test compares it";
+      GTEST_SKIP() << "the fast renderer does not support this scene; the test of the general renderer compares it";
     }
     Scene again = scene;
     Rendering const cpu = on_cpu_.render(scene, scene.dots, RenderImages::yes, RenderTheory::yes),
@@ -123,7 +123,8 @@ class OnBothDevices : public testing::Test {
     setup.medium.field = field;
     if (change) change(setup);
     std::vector<Vec2d> places = lattice(96, 6, 14);
-    for (Vec2d& place : places) place += {0.0173, 0.0091};  // off the pixels' edges, where rounding moves a spot's cut
+    // away from pixel edges, where rounding changes the footprint of a PSF
+    for (Vec2d& place : places) place += {0.0173, 0.0091};
     return scene_with_dots(setup, places, rays);
   }
 

@@ -25,7 +25,7 @@ using ::testing::HasSubstr;
 
 constexpr std::size_t mebibyte = std::size_t{1} << 20;
 
-/// What happens on a card that is too small: with less memory smaller batches, then an error that names the sizes.
+/// Behaviour on a device with little memory: first smaller batches, then an error that states the sizes.
 class SmallDevice : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -44,7 +44,7 @@ Scene scene_of(FieldSetup const& field, int dots_a_side, std::uint64_t rays) {
   return scene_with_dots(setup, lattice(96, dots_a_side, 14), rays);
 }
 
-/// The volume of benchmark case P: 64^3 floats, just over 1 MiB.
+/// The volume of benchmark case P: 64^3 floats, slightly more than 1 MiB.
 FieldSetup volume() {
   FieldSetup field;
   field.kind = FieldKind::file;
@@ -78,7 +78,7 @@ TEST_F(SmallDevice, RendersTheSameBitsInSmallerBatches) {
   constexpr std::size_t dot_bytes = sizeof(DotCone);
   for (FieldSetup const& field : {dns_plane("kepeak"), volume()}) {
     Scene scene = scene_of(field, 6, rays);
-    render(scene);  // puts the field on the device, where it stays
+    render(scene);  // uploads the field, which remains on the device
     auto const with_limit = [&](std::size_t bytes, std::size_t& most) {
       DeviceMemoryLimit const limit(bytes);
       Rendering rendering = render(scene);
@@ -87,8 +87,8 @@ TEST_F(SmallDevice, RendersTheSameBitsInSmallerBatches) {
     };
     std::size_t whole = 0, parts = 0;
     Rendering const expected = with_limit(DeviceMemoryLimit::none, whole);
-    ASSERT_GT(whole, 36 * dot_bytes) << "36 dots at once";
-    // room for 6 dots or a few more, whatever else is held: halved batches of 36 get there with 4
+    ASSERT_GT(whole, 36 * dot_bytes) << "all 36 dots are processed at a time";
+    // memory for slightly more than 6 dots: halving batches of 36 dots ends at batches of 4
     std::size_t const room = whole - 30 * dot_bytes;
     Rendering const rendering = with_limit(room, parts);
     EXPECT_LE(parts, room);
@@ -96,8 +96,8 @@ TEST_F(SmallDevice, RendersTheSameBitsInSmallerBatches) {
   }
 }
 
-// Rays leave nothing behind but sums, a DotCone a dot: a million of one dot do with what its images and the points of a
-// few cones take, where records of 64 bytes each would not.
+// Of the rays of a dot, only sums are stored, one DotCone per dot: a million rays of one dot need only the memory of
+// the images and of the points of a few cones, whereas records of 64 bytes per ray would exceed the limit.
 TEST_F(SmallDevice, TracesAMillionRaysOfADotInTheMemoryOfAFew) {
   Scene scene = scene_of(uniform_gradient(20, -8), 1, mebibyte);
   DeviceMemoryLimit const limit(64 * mebibyte);
@@ -105,8 +105,8 @@ TEST_F(SmallDevice, TracesAMillionRaysOfADotInTheMemoryOfAFew) {
   EXPECT_LT(limit.most_held(), 64 * mebibyte);
 }
 
-// Light is gathered in squares of up to 56 x 56 px a warp where a block's shared memory has room for that; not on every
-// card. Sums are of whole numbers, so that a pixel's does not depend on what was gathered before it went to the image.
+// A warp accumulates light in squares of up to 56 x 56 px if the shared memory of a block is large enough, which is not
+// the case on every device. The sums are integers, so that a pixel does not depend on the accumulation.
 TEST_F(SmallDevice, GathersTheSameLightWithLessSharedMemory) {
   gladstone::Setup setup = table1_setup(96);
   setup.target.dot_diameter_px = 30;
@@ -132,7 +132,8 @@ TEST_F(SmallDevice, NamesTheSizeOfATableThatDoesNotFit) {
   DeflectionPlan const plan(dots, scene.dots, usual_aim);
   DeflectionPlan const of_few(focused_dots(few).value(), few.dots, usual_aim);
   ASSERT_TRUE(plan.wanted() && of_few.wanted());
-  render(few);  // puts the field on the device, where it stays, and a table, which goes before the next one comes
+  // uploads the field, which remains on the device, and a table, which is released before the next one is allocated
+  render(few);
   {
     DeviceMemoryLimit const limit(plan.table.bytes() - of_few.table.bytes() - 1);
     char size[32];
@@ -144,15 +145,15 @@ TEST_F(SmallDevice, NamesTheSizeOfATableThatDoesNotFit) {
   EXPECT_EQ(render(scene).truth.size(), 64u);
 }
 
-// In caustics each of 400 blocks keeps a cone's points, 1024 and more of 32 bytes at each of 7 places on a dot. With
-// half the room half the blocks work.
+// In caustics, each of 400 blocks stores the points of a cone, at least 1024 of 32 bytes at each of 7 positions on a
+// dot. With half the memory, half as many blocks run at a time.
 TEST_F(SmallDevice, LaysDownWideConesInFewerBlocks) {
   FieldSetup field = dns_plane("kepeak");
   field.scale = 4 * field.scale.value_or(1);
   gladstone::Setup setup = table1_setup(96);
   setup.medium.field = field;
   Scene scene = scene_with_dots(setup, lattice(96, 20, 4.3), 64);
-  render(scene);  // puts field and table on the device, where they stay
+  render(scene);  // uploads field and table, which remain on the device
   auto const with_limit = [&](std::size_t bytes, std::size_t& most) {
     DeviceMemoryLimit const limit(bytes);
     Rendering rendering = render(scene);
@@ -168,8 +169,8 @@ TEST_F(SmallDevice, LaysDownWideConesInFewerBlocks) {
   expect_same(expected, rendering);
 }
 
-// A volume whose polynomials would take more than a quarter of the device is traced by its coefficients, to the same
-// numbers.
+// A volume whose polynomials would need more than a quarter of the device's memory is traced by its coefficients, with
+// the same results.
 TEST_F(SmallDevice, TracesAVolumeByItsCoefficientsWherePolynomialsAreTooLarge) {
   Scene scene = scene_of(volume(), 6, 64);
   std::size_t with_polynomials = 0;
@@ -197,7 +198,7 @@ TEST_F(SmallDevice, RefusesAVolumeThatIsLargerThanItBeforeAnyAllocation) {
                                         "1\\.000 of 1\\.000 MiB are free; .*"));
     EXPECT_EQ(limit.most_held(), 0u);
   }
-  // what was rendered before the refusal is rendered alike after it
+  // results after the error equal those before it
   Rendering const expected = render(before);
   {
     DeviceMemoryLimit const limit(0);
@@ -223,7 +224,7 @@ void expect_same(DisplacementField const& a, DisplacementField const& b) {
   }
 }
 
-// At whichever allocation it fails.
+// The error may occur in any of the allocations.
 TEST_F(SmallDevice, RefusesACorrelationThatDoesNotFitAndThenGoesOn) {
   ParticlePair const pair = particles(256, 256);
   auto const field_of = [&](Correlator const& correlator) { return correlator.correlate(pair.reference, pair.flow); };
@@ -246,8 +247,8 @@ TEST_F(SmallDevice, RefusesACorrelationThatDoesNotFitAndThenGoesOn) {
   }
 }
 
-// Windows of 94 px have supports of 188 px, 2 * 189 * 188 floats each, which lie in the device's memory: fewer of them
-// are worked on at a time.
+// Windows of 94 px have supports of 188 px and need 2 * 189 * 188 floats each in device memory: fewer of them are
+// processed at a time.
 TEST_F(SmallDevice, CorrelatesFewerLargeWindowsAtATime) {
   ParticlePair const pair = particles(300, 260);
   CorrelationSettings settings;
@@ -266,8 +267,8 @@ TEST_F(SmallDevice, CorrelatesFewerLargeWindowsAtATime) {
   expect_same(expected, field);
 }
 
-// A support of 128 px (windows of 64) lies in shared memory where there is room for it, else in the device's; one of
-// 800 px has fewer warps, whose sums of floats have another order.
+// A support of 128 px (windows of 64 px) is in shared memory if it fits, else in device memory; one of 800 px has fewer
+// warps, whose float sums have another order.
 TEST_F(SmallDevice, CorrelatesWithLessSharedMemory) {
   ParticlePair const pair = particles(420, 410);
   for (int const window : {64, 400}) {

@@ -13,7 +13,7 @@
 namespace gladstone::cuda {
 namespace {
 
-/// sum over n of z(n) exp(sign 2 pi i k n / size), by its definition.
+/// Computes sum over n of z(n) exp(sign 2 pi i k n / size) by its definition.
 template <int radix, int sign>
 void expect_small_transform() {
   std::mt19937 random(radix);
@@ -41,8 +41,8 @@ void expect_small_transforms() {
 
 TEST(SmallTransform, IsTheSumThatDefinesIt) { expect_small_transforms<2, 3, 4, 5, 6, 8, 12, 16>(); }
 
-/// The threads of a block, one after the other, in rising or falling order: where threads exchanged values without a
-/// barrier between, the two orders would not give the same.
+/// Executes the threads of a block one after the other, in ascending or descending order: if threads exchanged values
+/// without a barrier in between, the results of the two orders would differ.
 template <class Transform>
 std::vector<float> plane_by_threads(std::vector<float> const& a, std::vector<float> const& b, int side, int radius,
                                     bool falling) {
@@ -78,7 +78,7 @@ std::vector<float> plane_by_threads(std::vector<float> const& a, std::vector<flo
   return plane;
 }
 
-/// Against the sum over the window's pixels, shifts modulo the transform's size.
+/// Compares with the sum over the window's pixels, with shifts modulo the transform's size.
 template <class Transform>
 void expect_correlation(int side, int radius) {
   int const size = Transform::size;
@@ -100,7 +100,8 @@ void expect_correlation(int side, int radius) {
             sum += static_cast<double>(a[static_cast<std::size_t>(y * side + x)]) *
                    b[static_cast<std::size_t>(to_y * side + to_x)];
         }
-      // `size` values of order 1 add up to float's 6e-8 of their root of a sum of squares, in some twenty steps
+      // `size` values of order 1 with float's relative error of 6e-8 of their root sum of squares, in about twenty
+      // steps
       ASSERT_NEAR(plane[at], sum, 2e-6 * side) << dx << ", " << dy;
     }
 }

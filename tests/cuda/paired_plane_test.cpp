@@ -13,7 +13,7 @@ namespace {
 constexpr int pitch = 73, pairs = 24, middle = 12, above = 32;
 using Maximum = std::tuple<int, int, float>;
 
-/// Levels -2, -1 .. `levels`, the fewer the more neighbours are equal.
+/// Plane of random integers from -2 to `levels`: the smaller `levels`, the more neighbours are equal.
 class RandomPlane {
  public:
   RandomPlane(int levels, unsigned seed) : memory_(pitch * pairs) {
@@ -27,7 +27,7 @@ class RandomPlane {
   std::vector<Complex> memory_;
 };
 
-/// By definition, in reading order.
+/// Maxima by definition, in reading order.
 std::vector<Maximum> all_maxima(PairedPlane<pitch> const& plane, int radius) {
   std::vector<Maximum> maxima;
   for (int y = -radius; y <= radius; ++y)
@@ -60,7 +60,7 @@ TEST(PairedPlane, HasColumnsSideBySide) {
   EXPECT_EQ(random.view()(-2, -3), centre[-pitch - 3].re);
 }
 
-// Of equal neighbours the first in reading order is a maximum, as is_maximum() has it.
+// Of equal neighbours, the first in reading order is a maximum, as in is_maximum().
 TEST(PairedPlane, ItsBlocksHaveEveryMaximumOnce) {
   for (int radius = 1; radius <= 16; ++radius)
     for (int const levels : {1, 3, 1000}) {

@@ -12,8 +12,8 @@
 namespace gladstone {
 namespace {
 
-/// PIV through the lens of Table 1 at f/8, 750 mm before a Gaussian sheet, with 40 droplets in view and about it that
-/// move along all three axes.
+/// PIV with the lens of Table 1 at f/8, 750 mm in front of a Gaussian sheet, with 40 droplets inside and outside of the
+/// view that move along all three axes.
 BosSetup droplets_setup() {
   BosSetup setup;
   setup.camera.columns = setup.camera.rows = 96;
@@ -41,8 +41,9 @@ class CudaParticlesTest : public OnBothDevices<RaysMethod> {
     return renderer_->render_particles(scene, scene.particles, light, images);
   }
 
-  /// As expect_as_on_cpu() of dots: places to 1e-9 px, photons to 1e-9 of themselves, counts exactly, images to a level
-  /// of 16 bits. @return the widest that any particle was aimed beyond the stop [m]
+  /// Like expect_as_on_cpu() for dots: positions to 1e-9 px, photons to a relative 1e-9, counts exactly, images to a
+  /// level of 16 bits.
+  /// @return largest margin by which a particle was aimed beyond the stop [m]
   double expect_particles_as_on_cpu(Scene scene, ParticleLight light = ParticleLight::scattered,
                                     RenderImages images = RenderImages::yes) {
     Scene again = scene;
@@ -89,7 +90,7 @@ class CudaParticlesTest : public OnBothDevices<RaysMethod> {
 
 FieldSetup blob() { return GaussianBlob<double>{{{}, -0.8, 5e-3}}; }
 
-// A warp gathers the spots of few rays, a block the hits of many; of more than 16384 rays several blocks do.
+// A warp accumulates the PSFs of few rays, a block the hits of many; for more than 16384 rays, several blocks do.
 TEST_F(CudaParticlesTest, FewRaysAndMany) {
   for (std::uint64_t const rays : {1u, 6u, 32u, 100u, 300u, 40000u}) {
     SCOPED_TRACE(rays);
@@ -101,12 +102,12 @@ TEST_F(CudaParticlesTest, EveryScattering) {
   auto const lambert = [](BosSetup& setup) { setup.piv->particles.scattering = ParticleScattering::lambert; };
   expect_particles_as_on_cpu(droplets(64, lambert));
   expect_particles_as_on_cpu(droplets(64), ParticleLight::equal);
-  // drops of 30 um, whose light has 170 lobes over the half circle
+  // drops of 30 um, whose scattered light has 170 lobes over the half circle
   expect_particles_as_on_cpu(droplets(400, [](BosSetup& setup) { setup.piv->particles.diameter.middle = 30e-6; }));
 }
 
-// Every particle takes what it needs: few in focus, many out of it, through ideal lenses and real ones, in a medium,
-// and where some do not fill the stop. The choice is the CPU's.
+// Every particle uses the number of rays that it needs: few in focus, many out of focus, through ideal and real lenses,
+// in a medium, and if rays do not fill the stop. The numbers equal those of the CPU.
 TEST_F(CudaParticlesTest, TakesTheRaysThatEachNeeds) {
   auto const deep = [](BosSetup& setup) {
     setup.piv->laser.profile = SheetProfile::top_hat;
@@ -173,8 +174,8 @@ TEST_F(CudaParticlesTest, ThroughWindowsAndLensletsOnATiltedSensor) {
   }));
 }
 
-// A wave so fine that what fills the stop has no smooth rim: rays go to a wider disc that the host aims them to, and
-// are taken back where they are bent beyond it.
+// In a fine wave, the rays that fill the stop have no smooth edge: the host sends rays to a larger disc, and if they
+// are deflected beyond it, they are removed and sent again.
 TEST_F(CudaParticlesTest, ThatDoNotFillTheStop) {
   for (std::uint64_t const rays : {48u, 1500u}) {
     double const margin = expect_particles_as_on_cpu(droplets(rays, [](BosSetup& setup) {
@@ -196,7 +197,7 @@ TEST_F(CudaParticlesTest, ThroughAPinhole) {
 }
 
 TEST_F(CudaParticlesTest, EverySpot) {
-  // a pixel wide, so that patches and windows hold much of it
+  // PSFs with a standard deviation of a pixel, so that squares and windows contain many pixels
   for (std::uint64_t const rays : {48u, 300u}) {
     expect_particles_as_on_cpu(droplets(rays, [](BosSetup& setup) {
       setup.camera.pixel_pitch = 4e-6;
@@ -210,8 +211,8 @@ TEST_F(CudaParticlesTest, EverySpot) {
   }
 }
 
-// Particles before and behind the plane in focus by more than the widest patch and window: what these do not take is
-// laid down ray by ray.
+// Particles in front of and behind the plane in focus, whose images exceed the largest square and window: the light
+// outside of these is added ray by ray.
 TEST_F(CudaParticlesTest, FarOutOfFocus) {
   for (std::uint64_t const rays : {100u, 2000u}) {
     expect_particles_as_on_cpu(droplets(rays, [](BosSetup& setup) {
@@ -228,7 +229,7 @@ TEST_F(CudaParticlesTest, TruthAlone) {
   }
 }
 
-// A particle's bits hang on nothing but itself, and two runs give the same.
+// The results of a particle are bitwise independent of other particles and equal in two runs.
 TEST_F(CudaParticlesTest, GiveTheSameBits) {
   auto const change = [](BosSetup& setup) { setup.medium.field = blob(); };
   Scene one = droplets(100, change), other = one, alone = one;
@@ -244,8 +245,8 @@ TEST_F(CudaParticlesTest, GiveTheSameBits) {
   EXPECT_EQ(first.truth.reference_px[0], of_one.truth.reference_px[0]);
 }
 
-// Many particles pass in batches of 256 MB; to these come two images of 96 x 96 px in fixed point and as light, and the
-// table of what they scatter, 3 kB for a droplet of its own diameter.
+// Many particles are processed in batches of 256 MB. In addition, there are two images of 96 x 96 px in fixed point and
+// as light, and the scattering table, 3 kB per droplet diameter.
 TEST_F(CudaParticlesTest, ManyPassInBatches) {
   Scene scene = droplets(32, [](BosSetup& setup) {
     setup.piv->particles.amount = 250000;
@@ -256,7 +257,7 @@ TEST_F(CudaParticlesTest, ManyPassInBatches) {
   EXPECT_LT(limit.most_held(), std::size_t{270} << 20);
 }
 
-// A block without the memory for windows lays every ray down by itself, to the same images.
+// A block without the memory for windows adds every ray individually, with the same images.
 TEST_F(CudaParticlesTest, LittleSharedMemoryGivesTheSame) {
   cuda::SharedMemoryLimit const limit(20000);
   expect_particles_as_on_cpu(droplets(300));

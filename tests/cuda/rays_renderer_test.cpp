@@ -15,7 +15,7 @@
 namespace gladstone {
 namespace {
 
-/// Table 1's bench with a lens in place of its own, by the name of its file.
+/// Returns the set-up of Table 1 with another lens, given by the name of its file.
 void put_lens_of(BosSetup& setup, std::string const& path) {
   LensOptions options;
   options.f_number = setup.lens.f_number = 8;
@@ -23,12 +23,12 @@ void put_lens_of(BosSetup& setup, std::string const& path) {
       build_lens(read_prescription(path), GlassCatalogue::shipped(), setup.medium.wavelength, options));
   setup.lens.focal_length = paraxial_lens(*setup.lens.prescription).effective_focal_length;
 }
-/// The same with a lens of data/lenses.
+/// Like above, with a lens of data/lenses.
 void put_lens(BosSetup& setup, std::string const& name) {
   put_lens_of(setup, std::string(GLADSTONE_DATA_DIR) + "/lenses/" + name + ".toml");
 }
 
-/// A scene of any camera, with 36 dots about the middle of its picture.
+/// Returns a scene of any camera, with 36 dots around the centre of the image.
 Scene seen_through(std::uint64_t rays, std::function<void(BosSetup&)> const& change) {
   BosSetup setup = table1_setup(96);
   setup.medium.field = sinusoid(0.1, 6e-3);
@@ -52,7 +52,8 @@ TEST_F(CudaRaysTest, LensesOfManySurfaces) {
   }
 }
 
-// Every point takes what it needs: those behind the blob more than others. The choice is the CPU's.
+// Every point uses the number of rays that it needs: those behind the blob more than others. The numbers equal those of
+// the CPU.
 TEST_F(CudaRaysTest, TakeTheRaysThatEachNeeds) {
   Scene scene = seen_through(1, [](BosSetup& setup) {
     setup.medium.field = GaussianBlob<double>{{{1e-3, 0, 0}, -0.4, 0.8e-3}};
@@ -91,7 +92,8 @@ TEST_F(CudaRaysTest, WindowsPosesAndTiltedSensors) {
   }));
 }
 
-// A conic, an even asphere, a weak cylinder, an obscured plate and two flat mirrors in one lens, its glass reflecting.
+// A lens with a conic, an even asphere, a weak cylinder, an obscured plate and two flat mirrors, and Fresnel
+// reflection.
 TEST_F(CudaRaysTest, SurfacesOfEveryShape) {
   std::string const path = file_of("every_shape.toml", R"(schema = 1
 f_number = 8.0
@@ -127,7 +129,7 @@ thickness_mm = 10.0
 
 TEST_F(CudaRaysTest, CamerasThatLookFromAside) {
   expect_as_on_cpu(seen_through(300, [](BosSetup& setup) {
-    // 0.2 rad about y through the origin: the camera stands aside and looks there
+    // 0.2 rad about y through the origin: the camera is off the Z axis and looks at the origin
     Pose<double> const turned = Pose<double>{}.turned({0, 0.2, 0});
     setup.pose = turned.moved({0, 0, setup.z_a});
     setup.camera.tilt = {0.01, 0.02};
@@ -142,8 +144,8 @@ TEST_F(CudaRaysTest, LensletsBeforeTheSensor) {
   }
 }
 
-// A source that is blurred over more than the widest window, and one of more rays than a block traces: what no window
-// takes is laid down ray by ray.
+// A source that is blurred over more than the largest window, and one with more rays than a block traces: light outside
+// of the window is added ray by ray.
 TEST_F(CudaRaysTest, WideBlursAndManyRays) {
   Scene blurred = scene_of(sinusoid(0.1, 6e-3), 2000, [](BosSetup& setup) {
     setup.lens.focus = Focus::distance;
@@ -157,13 +159,13 @@ TEST_F(CudaRaysTest, WideBlursAndManyRays) {
   expect_as_on_cpu(many);
 }
 
-// The first look at what the medium bends is too short for a fine wave in front of a wide pupil: the light of the rays
-// is taken back, to the last unit, and they are sent again, wider.
+// For a fine wave in front of a wide pupil, the first estimate of the deflection is too small: the light of the rays is
+// removed, to the last unit, and they are sent again with a larger margin.
 TEST_F(CudaRaysTest, TakesLightBackWhereRaysAreBentBeyondTheirMargin) {
   expect_as_on_cpu(scene_of(sinusoid(0.6, 1.1e-3), 1500, [](BosSetup& setup) { setup.lens.f_number = 2.8; }));
 }
 
-// Dots whose images' middles lie on pixels' edges and corners.
+// Dots whose image centres are on the edges and corners of pixels.
 TEST_F(CudaRaysTest, DotsOnEdgesOfPixels) {
   for (SpotModel const spot : {SpotModel::gaussian, SpotModel::airy}) {
     BosSetup setup = table1_setup(64);
@@ -173,14 +175,14 @@ TEST_F(CudaRaysTest, DotsOnEdgesOfPixels) {
   }
 }
 
-// A source's bits hang on nothing but itself: not on how many others there are.
+// The results of a source are bitwise independent of the number of other sources.
 TEST_F(CudaRaysTest, ASourceAloneIsTheSourceAmongMany) {
   Scene many = scene_of(dns_plane("late"), 700), alone = many;
   alone.dots.centre.resize(1);
   Rendering const of_many = on_device(many), of_one = on_device(alone);
   EXPECT_EQ(of_many.truth.displacement_px[0], of_one.truth.displacement_px[0]);
   EXPECT_EQ(of_many.truth.displacement_error_px[0], of_one.truth.displacement_error_px[0]);
-  // its light, too: no neighbour's comes within 5 px of it
+  // its light as well: no neighbour is closer than 5 px
   Vec2d const at = of_one.truth.reference_px[0];
   for (int row = static_cast<int>(at.y) - 5; row <= static_cast<int>(at.y) + 5; ++row) {
     for (int column = static_cast<int>(at.x) - 5; column <= static_cast<int>(at.x) + 5; ++column) {
@@ -189,7 +191,7 @@ TEST_F(CudaRaysTest, ASourceAloneIsTheSourceAmongMany) {
   }
 }
 
-// A block without the memory for windows lays every ray down by itself, to the same images.
+// A block without the memory for windows adds every ray individually, with the same images.
 TEST_F(CudaRaysTest, LittleSharedMemoryGivesTheSameImages) {
   cuda::SharedMemoryLimit const limit(20000);
   expect_as_on_cpu(scene_of(sinusoid(0.1, 6e-3), 300));

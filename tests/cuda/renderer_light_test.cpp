@@ -7,13 +7,13 @@
 #include "render/focused_dots/owned_dot_model.h"
 #include "tests/cuda/cuda_renderer_fixture.h"
 
-/// Every way in which a dot's light is laid down, on the device as on the CPU.
+/// Every method by which a dot's light is rendered, on the device compared with the CPU.
 namespace gladstone {
 namespace {
 
 class CudaLightTest : public CudaRendererTest {
  protected:
-  /// 400 dots on 96 x 96 px before a DNS plane. @param times its density
+  /// Returns 400 dots on 96 x 96 px behind a DNS plane. @param times  factor of its density
   static Scene dense_scene(std::string const& instant, double times, std::uint64_t rays) {
     BosSetup setup = table1_setup(96);
     setup.medium.field = dns_plane(instant);
@@ -24,7 +24,8 @@ class CudaLightTest : public CudaRendererTest {
   }
 };
 
-/// Dots with cones by the table whose stop's edge is crossed more than once in some direction: they lie in a caustic.
+/// Returns the number of dots in caustics: the edge of the stop, as seen through the table, is crossed more than once
+/// in some direction.
 int dots_in_caustics(Scene const& scene) {
   FocusedDots const dots = focused_dots(scene).value();
   DeflectionMap const map(dots, DeflectionPlan(dots, scene.dots, scene.imaging.entrance_pupil));
@@ -39,14 +40,15 @@ int dots_in_caustics(Scene const& scene) {
   }));
 }
 
-/// Largest standard deviation of where a dot's light lands [px]; half a pixel and more is the dot's own.
+/// Returns the largest standard deviation of the landing positions of a dot's light [px]; about half a pixel is due to
+/// the dot's size.
 double widest_dot(GroundTruth const& truth) {
   double widest = 0;
   for (Vec2d const s : truth.displacement_std_px) widest = std::max(widest, length(s));
   return widest;
 }
 
-// All cones of the late plane see the stop's edge as a simple curve, some of the early one's do not.
+// For all cones of the late plane, the edge of the stop is a simple curve; for some of the early plane, it is not.
 TEST_F(CudaLightTest, TablesOnPlanes) {
   for (std::string const instant : {"late", "kepeak"}) {
     SCOPED_TRACE(instant);
@@ -56,8 +58,8 @@ TEST_F(CudaLightTest, TablesOnPlanes) {
   }
 }
 
-// With four times its density the early plane focuses: cones are so wide that they are sorted by squares of
-// displacement, and hardly one has a simple edge.
+// With four times its density, the early plane focuses: cones are so wide that their displacements are sorted into
+// squares, and hardly any cone has a simple edge.
 TEST_F(CudaLightTest, TablesInCaustics) {
   for (std::uint64_t const rays : {64, 1100}) {
     SCOPED_TRACE(rays);
@@ -76,7 +78,7 @@ TEST_F(CudaLightTest, SquareSources) {
   }
 }
 
-// Grey values from black, which sends no rays, to white, over a part of the view.
+// Grey values from black, which emits no rays, to white, over a part of the view.
 TEST_F(CudaLightTest, PictureAsSources) {
   Image<std::uint16_t> picture(9, 7);
   for (std::size_t i = 0; i < picture.size(); ++i) picture.data()[i] = static_cast<std::uint16_t>(i % 4 * 15000);
@@ -109,7 +111,7 @@ TEST_F(CudaLightTest, SourcesWithoutRadiance) {
   }
 }
 
-// Spots of 23 and 43 px, the latter the widest that moments are laid down for.
+// PSFs of 23 and 43 px, the latter the widest that is rendered by moments.
 TEST_F(CudaLightTest, WideSpots) {
   struct Case {
     double f_number;
@@ -127,7 +129,7 @@ TEST_F(CudaLightTest, WideSpots) {
   }
 }
 
-// 144 dots inside, across and outside the image's border, still ones and with cones by tables.
+// 144 dots inside, across and outside the image's border, undisplaced ones and ones with cones by tables.
 TEST_F(CudaLightTest, DotsAtTheBorder) {
   std::vector<Vec2d> const few{{0.3, 0.4},   {-1.2, 47.3},  {95.4, 20.1},  {31.7, 96.6}, {98.2, 98.1},
                                {-4.3, -3.6}, {48.2, -30.1}, {-60.3, 50.2}, {150.1, 47.8}};

@@ -7,8 +7,7 @@
 namespace gladstone {
 namespace {
 
-/// Every kind of medium, source and spot that the bench has goes through here, by the fast renderer and by the general
-/// one.
+/// Every kind of medium, source and PSF of the thin-lens camera, rendered by the fast and by the general renderer.
 template <class Method>
 class ByBothMethods : public OnBothDevices<Method> {};
 using Methods = testing::Types<FocusedDotsMethod, RaysMethod>;
@@ -79,9 +78,9 @@ TYPED_TEST(ByBothMethods, TwoRunsGiveTheSameBits) {
   EXPECT_EQ(one.truth.eq9_cone_px, two.truth.eq9_cone_px);
 }
 
-// What is kept on the device is what would have been brought to the host: light, the camera's levels of it, noise
-// included, and the brightest pixel. Logarithms differ in their last digits, so that a noisy pixel in 10,000 may round
-// to the next level or, where a rejection flips, be drawn anew.
+// Data that remain on the device equal those copied to the host: light, grey levels of the camera including noise, and
+// the brightest pixel. Logarithms differ in their last digits, so that a noisy pixel in 10,000 may be rounded to the
+// next level, or drawn again if a rejection differs.
 TEST_F(CudaRendererTest, RecordsWhereTheLightIsAsTheHostDoes) {
   for (bool const noisy : {false, true}) {
     Scene scene = scene_of(dns_plane("late"), 64, [&](BosSetup& setup) {
@@ -111,12 +110,12 @@ TEST_F(CudaRendererTest, RecordsWhereTheLightIsAsTheHostDoes) {
         differ += recorded.levels->flow().data()[i] != on_host.levels->flow().data()[i];
       }
       EXPECT_LE(differ, 2 * recorded.levels->flow().size() / 10000);
-      // where light that differs in its last bits rounds, or counts electrons, to the other side
+      // light that differs in its last bits may be rounded, or counted as electrons, differently
       EXPECT_LE(largest_difference(recorded.levels->reference(), on_host.levels->reference()), 1);
       EXPECT_LE(largest_difference(recorded.levels->flow(), on_host.levels->flow()), 1);
       EXPECT_TRUE(same_bits(recorded.levels->flow(), kept.in_place->record(detector).levels->flow()));
 
-      // and correlated where they are, as if they had been brought to the host and back
+      // correlated on the device, with the same result as after copies to the host and back
       auto const correlator = cuda::make_correlator({});
       DisplacementField const here = correlator->correlate_pair(*recorded.levels);
       DisplacementField const there = correlator->correlate(recorded.levels->reference(), recorded.levels->flow());
@@ -126,8 +125,8 @@ TEST_F(CudaRendererTest, RecordsWhereTheLightIsAsTheHostDoes) {
   }
 }
 
-// A preview had 1e-3 px and a 12-bit level to itself; single precision is rendered in double, to the same bits, truth,
-// theory and light.
+// Single precision was a preview with errors of 1e-3 px and a 12-bit level; it is now rendered in double precision,
+// with bitwise identical truth, theory and light.
 TEST_F(CudaRendererTest, SinglePrecisionIsRenderedInDouble) {
   for (FieldSetup const& field : {dns_plane("late"), volume_file()}) {
     Scene scene = scene_of(field, 256), asked = scene;

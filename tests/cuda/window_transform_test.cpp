@@ -15,8 +15,8 @@ using Transform = WindowTransform;
 constexpr int size = Transform::size, count = size * size;
 constexpr int warps = Transform::threads / 32;
 
-/// The threads of a block, one after the other, in rising or falling order: where threads exchanged values without a
-/// barrier between, the two orders would not give the same.
+/// Executes the threads of a block one after the other, in ascending or descending order: if threads exchanged values
+/// without a barrier in between, the results of the two orders would differ.
 class Block {
  public:
   explicit Block(bool falling) : falling_(falling), memory_(Transform::values) {
@@ -25,7 +25,7 @@ class Block {
     for (unsigned k = 0; k < Transform::threads; ++k) thread_.emplace_back(k, memory_.data(), &roots);
   }
 
-  /// The correlation at shifts up to radius + 1 along either axis, row by row.
+  /// Returns the correlation at shifts up to radius + 1 along either axis, row by row.
   std::vector<float> correlate(std::vector<float> const& a, std::vector<float> const& b, int radius) {
     warps_do([&](int warp) {
       lanes_do(warp, [&](int k) {
@@ -60,7 +60,7 @@ class Block {
     for (int k = 0; k < 32; ++k) work(32 * warp + (falling_ ? 31 - k : k));
   }
 
-  /// What a warp does to its rows without waiting for the others.
+  /// Steps of a warp on its rows, without barriers for other warps.
   void rows(int warp) {
     struct Lines {
       Complex a[8], b[8];
@@ -83,7 +83,7 @@ class Block {
     lanes_do(warp, [&](int k) { thread_[k].keep_shifts(of[k].a); });
   }
 
-  /// What a warp does to its columns of the plane.
+  /// Steps of a warp on its columns of the plane.
   void columns(int warp, int radius) {
     if (!thread_[32 * warp].has_columns(radius)) return;
     struct Column {
@@ -117,8 +117,8 @@ double norm(std::vector<float> const& values) {
 constexpr int largest_radius = Transform::largest_radius;
 
 // The correlation at shift d is the sum over p of a(p) b(p + d), p + d modulo 64. Four transforms of twelve levels,
-// each of which rounds by 6e-8 rms, leave an error of 4 sqrt(12) 6e-8 = 8e-7 of the product of the norms, in the norm
-// of the whole plane, hence in no value more.
+// each with a rounding error of 6e-8 rms, have an error of 4 sqrt(12) 6e-8 = 8e-7 of the product of the norms, in the
+// norm of the whole plane, and hence no larger error in any value.
 TEST(WindowTransform, GivesTheSumsThatDefineACorrelation) {
   std::vector<float> const a = noise(1), b = noise(2);
   double const tolerance = 1e-6 * norm(a) * norm(b);
@@ -142,7 +142,7 @@ TEST(WindowTransform, GivesTheSumsThatDefineACorrelation) {
   }
 }
 
-// A window moved by (5, -7) correlates with itself as if it had not moved, only there.
+// The correlation of a window with its copy shifted by (5, -7) is the shifted autocorrelation.
 TEST(WindowTransform, HasItsPeakWhereAWindowMoved) {
   std::vector<float> const a = noise(3);
   std::vector<float> b(count);

@@ -31,7 +31,7 @@ class DataErrors : public Workplace {
 
 TEST_F(DataErrors, MissingFieldFileStandsAtItsLine) {
   std::string const text = file_setup("nowhere.h5");
-  expect_setup_refused(text, {"setup.toml:" + place_of(text, "file = \"nowhere"), "there is no file", "nowhere.h5"});
+  expect_setup_refused(text, {"setup.toml:" + place_of(text, "file = \"nowhere"), "file not found", "nowhere.h5"});
 }
 
 TEST_F(DataErrors, NotAnHdf5File) {
@@ -57,7 +57,7 @@ TEST_F(DataErrors, WrongRank) {
   write_field("field.h5", {8, 8}, ramp(64));
   expect_setup_refused(file_setup("field.h5", "dataset = \"density\""), {"field.h5: ", "is a single plane", "extrude"});
   write_field("field.h5", {4, 4, 2, 2}, ramp(64));
-  expect_setup_refused(file_setup("field.h5", "dataset = \"density\""), {"holds 2 values a point"});
+  expect_setup_refused(file_setup("field.h5", "dataset = \"density\""), {"has 2 values per point"});
 }
 
 TEST_F(DataErrors, HolesOfTheDatabaseAreCounted) {
@@ -98,9 +98,9 @@ TEST_F(DataErrors, TruncatedNrrd) {
 
 TEST_F(DataErrors, FieldOfUnknownFormat) {
   write("field.npy", "NUMPY");
-  expect_setup_refused(file_setup("field.npy"), {"field.npy: ", "known are .h5"});
+  expect_setup_refused(file_setup("field.npy"), {"field.npy: ", "supported are .h5"});
   write("field.vtk", "# vtk DataFile");
-  expect_setup_refused(file_setup("field.vtk"), {"field.vtk: ", "neither ASCII nor BINARY"});
+  expect_setup_refused(file_setup("field.vtk"), {"field.vtk: ", "neither as ASCII nor as BINARY"});
 }
 
 TEST_F(DataErrors, DotsInsideAVolume) {
@@ -118,7 +118,7 @@ TEST_F(DataErrors, DotsFromABrokenTable) {
   refused("x,y\n1,2\n", "dots.csv:1: ");
   refused("x_mm,y_mm\n1,2\n1,two\n", "dots.csv:3: \"1,two\" is not two finite numbers");
   refused("x_mm,y_mm\n1,2,3\n", "dots.csv:2: ");
-  refused("x_mm,y_mm\n", "holds no dots");
+  refused("x_mm,y_mm\n", "contains no dots");
 }
 
 TEST_F(DataErrors, ImagesOfDifferentSize) {
@@ -134,7 +134,7 @@ TEST_F(DataErrors, ImagesSmallerThanAWindow) {
 
 TEST_F(DataErrors, WhatIsNoImage) {
   write_tiff(in("a.tif").string(), Image<std::uint16_t>(64, 64), {});
-  expect_refused({"correlate", "a.tif", "setup.toml", "-o", "v.h5"}, 2, {"setup.toml: cannot be read as a picture"});
+  expect_refused({"correlate", "a.tif", "setup.toml", "-o", "v.h5"}, 2, {"setup.toml: cannot be read as an image"});
   expect_refused({"correlate", "a.tif", "nowhere.tif", "-o", "v.h5"}, 2, {"nowhere.tif: does not exist"});
   write("cut.tif", read("a.tif").substr(0, 300));
   expect_refused({"correlate", "a.tif", "cut.tif", "-o", "v.h5"}, 2, {"cut.tif: "});

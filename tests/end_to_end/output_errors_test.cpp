@@ -40,7 +40,7 @@ TEST_F(OutputErrors, AFileInThePath) {
 }
 
 TEST_F(OutputErrors, APlaceWhereNothingCanBeMade) {
-  expect_refused({"render", "setup.toml", "-o", "/proc/nowhere/case"}, 2, {"/proc/nowhere: ", "choose a place"});
+  expect_refused({"render", "setup.toml", "-o", "/proc/nowhere/case"}, 2, {"/proc/nowhere: ", "choose a path"});
 }
 
 TEST_F(OutputErrors, SomebodyElsesFolderIsLeftAlone) {
@@ -59,7 +59,7 @@ TEST_F(OutputErrors, ReadOnlyFolder) {
   if (outcome.exit_code == 126) GTEST_SKIP() << "the program cannot be run without root's rights from here";
   EXPECT_EQ(outcome.exit_code, 2) << outcome.err;
   EXPECT_THAT(outcome.err,
-              testing::AllOf(testing::HasSubstr("locked/case: the folder cannot be made (Permission denied)"),
+              testing::AllOf(testing::HasSubstr("locked/case: the folder cannot be created (Permission denied)"),
                              testing::HasSubstr("choose a folder that you may write to")));
   EXPECT_TRUE(names("locked").empty());
 }

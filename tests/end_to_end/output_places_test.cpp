@@ -162,9 +162,9 @@ TEST_F(Places, DevicesAndOpenFilesAreRefusedBeforeAnythingIsComputed) {
   write("rays.csv", "x_mm,y_mm,z_mm,dx,dy,dz\n0,0,-250,0,0,1\n");
   for (std::string const place : {"/dev/full", "/dev/null"}) {
     expect_refused({"render", "setup.toml", "-o", place}, 2,
-                   {place + ": is no folder (it is a device); name a folder"});
+                   {place + ": is not a folder (it is a device); name a folder"});
     expect_refused({"trace", "setup.toml", "--rays", "rays.csv", "-o", place}, 2,
-                   {place + ": is no ordinary file (it is a device); name a file"});
+                   {place + ": is not a regular file (it is a device); name a file"});
     expect_refused({"demo", "-o", place}, 2, {place});
   }
   expect_refused({"trace", "setup.toml", "--rays", "rays.csv", "-o", "/dev/stdout"}, 2,
@@ -179,7 +179,7 @@ TEST_F(Places, AnOutputIsNeverAnInput) {
   std::string const around = "../" + folder_.filename().string() + "/rays.csv";
   for (std::string const& output : std::vector<std::string>{"rays.csv", "link.csv", "hard.csv", around}) {
     expect_refused({"trace", "setup.toml", "--rays", "rays.csv", "-o", output}, 2,
-                   {output + ": would be overwritten, and is read by this command"});
+                   {output + ": would be overwritten, but is an input of this command"});
   }
   expect_refused({"trace", "setup.toml", "--rays", "rays.csv", "-o", "setup.toml"}, 2,
                  {"setup.toml: would be overwritten"});

@@ -18,8 +18,8 @@ class OverwrittenInputs : public Workplace {
     Outcome const outcome = gladstone(arguments);
     EXPECT_EQ(outcome.exit_code, 2) << testing::PrintToString(arguments) << outcome.err;
     EXPECT_THAT(outcome.err, HasSubstr(file));
-    EXPECT_THAT(outcome.err, AnyOf(HasSubstr("would be overwritten"), HasSubstr("is no folder"), HasSubstr("is a file"),
-                                   HasSubstr("is not written by this command")));
+    EXPECT_THAT(outcome.err, AnyOf(HasSubstr("would be overwritten"), HasSubstr("is not a folder"),
+                                   HasSubstr("is a file"), HasSubstr("is not written by this command")));
     EXPECT_TRUE(read(file) == before) << file << " is destroyed by " << testing::PrintToString(arguments);
   }
   /// Expects the command to be rejected because `output` is its input `file`, which is unchanged.
@@ -29,7 +29,7 @@ class OverwrittenInputs : public Workplace {
     ASSERT_NE(before, "") << file;
     Outcome const outcome = gladstone(arguments);
     EXPECT_EQ(outcome.exit_code, 2) << testing::PrintToString(arguments) << outcome.err;
-    EXPECT_THAT(outcome.err, HasSubstr(output + ": would be overwritten, and is read by this command"));
+    EXPECT_THAT(outcome.err, HasSubstr(output + ": would be overwritten, but is an input of this command"));
     EXPECT_TRUE(read(file) == before) << file << " is destroyed by " << testing::PrintToString(arguments);
   }
 };

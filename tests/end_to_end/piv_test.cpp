@@ -210,7 +210,7 @@ TEST_F(Piv, MovesParticlesByTheVelocityOfAFile) {
     EXPECT_NEAR(truth[2 * i], expected, 1e-3);
   }
   auto const summary = nlohmann::json::parse(read("case/summary.json"));
-  EXPECT_THAT(summary["warnings"].dump(), testing::Not(testing::HasSubstr("beyond the velocity field")));
+  EXPECT_THAT(summary["warnings"].dump(), testing::Not(testing::HasSubstr("outside the velocity field")));
   // the source file of a case is identified by its content
   EXPECT_THAT(Hdf5Reader(in("case/truth.h5").string()).attribute("inputs_sha256"), testing::HasSubstr("velocity.h5"));
   std::string const short_of_it = with(by_file, "spacing_mm = [1, 1, 1]", "spacing_mm = [0.8, 1, 1]");
@@ -408,7 +408,7 @@ TEST_F(Piv, ExtractsViewsOfAPlenopticPicture) {
   // a link to an input of the command is not replaced
   std::filesystem::create_hard_link(in("case/flow.tif"), in("three/flow_refocused.tif"));
   expect_refused({"views", "case", "--views", "3", "-o", "three", "--quiet"}, 2,
-                 {"would be overwritten, and is read by this command"});
+                 {"would be overwritten, but is an input of this command"});
   // The stop is 12.04 px wide: 13 views across contain all information, 30 give 707 files per frame and a warning
   Outcome const enough = gladstone({"views", "case", "--views", "13", "-o", "enough"});
   EXPECT_THAT(enough.err, testing::Not(testing::HasSubstr("--views 13")));

@@ -47,7 +47,7 @@ TEST_F(SetupErrors, SyntaxErrorHasLineAndColumn) {
 }
 
 TEST_F(SetupErrors, NanIsNoNumber) {
-  refused("f_number = 11.0", "f_number = nan", "f_number", {"must be a number (nan is none)"});
+  refused("f_number = 11.0", "f_number = nan", "f_number", {"must be a number (nan is not allowed)"});
 }
 
 TEST_F(SetupErrors, NegativePitch) {
@@ -76,7 +76,7 @@ TEST_F(SetupErrors, TooLittleMemoryStandsAtThePixelsThatTakeIt) {
 }
 
 TEST_F(SetupErrors, NoLensOpensWiderThanHalfASpace) {
-  refused("f_number = 11.0", "f_number = 1e-300", "f_number", {"is below 0.5", "stop it down"});
+  refused("f_number = 11.0", "f_number = 1e-300", "f_number", {"is below 0.5", "increase it"});
 }
 
 TEST_F(SetupErrors, NegativeDensitiesOfClosedForms) {
@@ -94,16 +94,16 @@ TEST_F(SetupErrors, ClosedFormsThatNoMediumIs) {
   std::string const gradient = "kind = \"uniform_gradient\"\ngradient_kg_m4 = [20.0, 10.0, 0.0]";
   for (std::string const steep : {"[1e18, 0, 0]", "[1e300, 0, 0]", "[0, 0, -1e6]", "[2e6, 2e6, 0]"}) {
     refused(gradient, "kind = \"uniform_gradient\"\ngradient_kg_m4 = " + steep, "gradient_kg_m4",
-            {"gives refractive indices from -", "no such medium"});
+            {"gives refractive indices from -", "no medium has such"});
   }
   for (std::string const kind : {"gaussian_blob", "gaussian_plume"}) {
     refused(gradient, "kind = \"" + kind + "\"\namplitude_kg_m3 = 1e6\nradius_mm = 3", "amplitude_kg_m3",
-            {"gives refractive indices from 1.00028 to 227", "no such medium"});
+            {"gives refractive indices from 1.00028 to 227", "no medium has such"});
   }
   refused(gradient, "kind = \"sinusoid\"\namplitude_kg_m3 = 1e6\nwavelength_mm = 4", "amplitude_kg_m3",
-          {"gives refractive indices from -225", "no such medium"});
+          {"gives refractive indices from -225", "no medium has such"});
   refused(gradient, "kind = \"normal_shock\"\nmach = 3\nupstream_density_kg_m3 = 1e5\nshock_thickness_mm = 1",
-          "upstream_density_kg_m3", {"gives refractive indices from 23.6 to 88", "no such medium"});
+          "upstream_density_kg_m3", {"gives refractive indices from 23.6 to 88", "no medium has such"});
   refused("[medium.field]", "[medium]\nambient_density_kg_m3 = 1e4\ngladstone_dale = 0.1\n[medium.field]",
           "ambient_density_kg_m3", {"gives a refractive index of 1001", "medium.gladstone_dale"});
 }
@@ -111,9 +111,9 @@ TEST_F(SetupErrors, ClosedFormsThatNoMediumIs) {
 // Ten times the 1000 mm between dots and lens, to each side.
 TEST_F(SetupErrors, ViewsAndTargetsWiderThanAnyLensSees) {
   refused("dots_per_32px_window = 10.0", "dots_per_32px_window = 1e-9\nextent_mm = [1e9, 1e9]", "extent_mm",
-          {"beyond what any lens sees", "2e+04 mm at most"});
+          {"exceeds the largest supported field of view", "2e+04 mm"});
   refused("[64, 64]\npixel_pitch_um = 10.0", "[400, 400]\npixel_pitch_um = 1e4", "pixel_pitch_um",
-          {"makes a field of view of 3.41e+04 x 3.41e+04 mm", "no lens sees more"});
+          {"makes a field of view of 3.41e+04 x 3.41e+04 mm", "168 degrees, are supported"});
 }
 
 TEST_F(SetupErrors, LengthsThatLookLikeMetres) {
@@ -190,12 +190,12 @@ TEST_F(SetupErrors, SeveralProblemsComeTogetherInTheOrderOfTheFile) {
 }
 
 TEST_F(SetupErrors, WhatIsOfOthersOrDueLaterIsRefusedByName) {
-  refused("\"bos\"", "\"piv\"", "target]", {"is of BOS", "[particles]", "geometry.z_d_mm"});
+  refused("\"bos\"", "\"piv\"", "target]", {"applies to BOS only", "[particles]", "geometry.z_d_mm"});
   refused("[correlate]", "[correlate]\nmethod = \"rcp\"", "method", {"\"scc\"", "did you mean \"rpc\"?"});
   std::string const two = with(with(small_setup, "[camera]", "[[camera]]"), "[lens]", "[[camera]]\n[lens]");
   expect_setup_refused(two, {"camera.name", "is missing"});
   expect_setup_refused(std::string(small_setup) + "[flow]\nkind = \"uniform\"\n",
-                       {"flow", "is of experiment = \"piv\""});
+                       {"flow", "requires experiment = \"piv\""});
 }
 
 TEST_F(SetupErrors, SetWithoutSenseIsRefusedAsSuch) {

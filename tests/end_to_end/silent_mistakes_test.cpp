@@ -73,7 +73,7 @@ TEST_F(SilentMistakes, CoordinatesWithoutAUnitAndAFieldThatNobodySeesAreWarnedOf
       "center_mm = [1.0, 1.0, 0.0]";
   EXPECT_THAT(warnings(with_field(field)),
               AllOf(Contains(HasSubstr("name no unit and are taken as mm (the field is 0.008 x 0.008 mm wide)")),
-                    Contains(HasSubstr("were its lengths in metres, it would be 8 x 8 mm wide")),
+                    Contains(HasSubstr("with lengths in metres, it would be 8 x 8 mm wide")),
                     Contains(HasSubstr("no displacement: "))));
 }
 
@@ -82,7 +82,7 @@ TEST_F(SilentMistakes, ASpacingInMetresIsWarnedOf) {
   std::string const field =
       "kind = \"file\"\nfile = \"plane.h5\"\ndataset = \"density\"\nextrude = true\n"
       "spacing_mm = [0.375e-3, 0.375e-3, 0.375e-3]";
-  EXPECT_THAT(warnings(with_field(field)), Contains(HasSubstr("were its lengths in metres")));
+  EXPECT_THAT(warnings(with_field(field)), Contains(HasSubstr("with lengths in metres")));
   EXPECT_THAT(warnings(with_field(field), {"--set", "medium.field.spacing_mm=[0.375, 0.375, 0.375]"}), IsEmpty());
 }
 
@@ -137,7 +137,7 @@ TEST_F(SilentMistakes, InfoTellsUnitsExtentAndWhatOfAViewIsFilled) {
   EXPECT_THAT(json["warnings"].dump(), Not(HasSubstr("lengths name no unit")));
   EXPECT_THAT(succeed({"info", "field", "unnamed.h5", "--dataset", "density", "--setup", "setup.toml"}),
               AllOf(HasSubstr("lengths name no unit and are taken as mm, so the field is 0.002 x 0.002"),
-                    HasSubstr("were its lengths in metres"), HasSubstr("values are in kg m-3")));
+                    HasSubstr("with lengths in metres"), HasSubstr("values are in kg m-3")));
 }
 
 // A MATLAB array of meshgrid, [nz, nx, ny], and a header without a spacing.
@@ -157,7 +157,7 @@ TEST_F(SilentMistakes, InfoReportsWhichAxisIsTakenForWhich) {
   EXPECT_THAT(json_of({"info", "field", folder + "h_stretch.h5"})["notes"][0].get<std::string>(),
               HasSubstr("axes that are not uniform were resampled: y"));
   EXPECT_THAT(succeed({"info", "field", folder + "h_descx.h5"}),
-              HasSubstr("[16, 20, 24] is read as z, y, x (by the lengths of its coordinates); x runs backwards"));
+              HasSubstr("[16, 20, 24] is read as z, y, x (by the lengths of its coordinates); x descends"));
 }
 
 // A header without a spacing along z, and a file without coordinates: a spacing of 1 is not printed as if it were in

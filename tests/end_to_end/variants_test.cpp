@@ -251,7 +251,7 @@ TEST_F(FieldFiles, AnIndexInSinglePrecisionIsWarnedOfInTheSummary) {
   write("n.toml", setup("n.nrrd", "extrude = true\nquantity = \"refractive_index\""));
   render("case", {}, "n.toml");
   EXPECT_THAT(nlohmann::json::parse(read("case/summary.json"))["warnings"].dump(),
-              testing::HasSubstr("holds refractive indices in 24 bits"));
+              testing::HasSubstr("stores refractive indices with 24 bits"));
 }
 
 TEST_F(FieldFiles, Hdf5PlaneExtrudedBendsAsTheGradientItHolds) {
@@ -298,7 +298,7 @@ TEST_F(Variants, TruthThatIsNotKnownWellIsWarnedOf) {
   EXPECT_THAT(outcome.err, testing::HasSubstr(" px; increase render.rays_per_dot, now 32, if this matters"));
   EXPECT_THAT(outcome.err, testing::Not(testing::HasSubstr("truth is computed from rays only")))
       << "the remark is omitted if it applies to all dots";
-  EXPECT_THAT(outcome.err, testing::HasSubstr("camera.offset_dn: the read noise of 6.55 grey levels is cut off"));
+  EXPECT_THAT(outcome.err, testing::HasSubstr("camera.offset_dn: the read noise of 6.55 grey levels is clipped"));
   auto const summary = nlohmann::json::parse(read("case/summary.json"));
   double const rms = summary["truth_error_px"]["rms"];
   EXPECT_GT(rms, 1e-3);
@@ -328,7 +328,7 @@ TEST_F(Variants, GradientsThatBendRaysPastAnyLensAreRefused) {
     Outcome const outcome = gladstone({"render", "setup.toml", "-o", "case", "--set", "render.method=" + method,
                                        "--set", "medium.field.gradient_kg_m4=" + steep});
     EXPECT_EQ(outcome.exit_code, 2) << steep;
-    EXPECT_THAT(outcome.err, testing::HasSubstr("medium.field: bends rays by more than"));
+    EXPECT_THAT(outcome.err, testing::HasSubstr("medium.field: deflects rays by more than"));
     EXPECT_FALSE(std::filesystem::exists(in("case")));
   }
 }

@@ -10,7 +10,7 @@
 namespace gladstone {
 namespace {
 
-// Of the algorithm's own test vectors, seed 0.
+// Test vectors of the algorithm with seed 0.
 TEST(ContentHash, IsXxh64) {
   EXPECT_EQ(content_hash(""), "ef46db3751d8e999");
   EXPECT_EQ(content_hash("abc"), "44bc2cf5ad770999");
@@ -22,7 +22,7 @@ TEST(ContentHash, OfAFileIsThatOfItsBytesAndSeesEveryByteOfALongOne) {
   EXPECT_EQ(file_hash(path), content_hash("abc"));
   std::ofstream(path, std::ios::binary) << "";
   EXPECT_EQ(file_hash(path), content_hash(""));
-  std::string bytes((std::size_t{16} << 20) + 5, 'a');  // longer than the piece that is read at once
+  std::string bytes((std::size_t{16} << 20) + 5, 'a');  // longer than one block
   std::ofstream(path, std::ios::binary) << bytes;
   std::string const before = file_hash(path);
   EXPECT_EQ(file_hash(path), before);

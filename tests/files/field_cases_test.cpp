@@ -22,19 +22,19 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::ThrowsMessage;
 
-/// Files as other programs write them: one property each. All hold the same field,
-/// rho = 1.2 + 0.02 x + 0.05 y + 0.001 z [kg/m^3], x, y, z in mm from the centre of 24 x 20 x 16 nodes with spacings
-/// 1, 1.2 and 1.5 mm, in the order of its indices.
+/// Files as written by other programs, each with one special property. All contain the same field, rho = 1.2 + 0.02 x +
+/// 0.05 y + 0.001 z [kg/m^3], with x, y, z in mm from the centre of 24 x 20 x 16 nodes with spacings of 1, 1.2 and 1.5
+/// mm, as a function of the indices.
 std::string case_file(std::string const& name) {
   return std::string(GLADSTONE_DATA_DIR) + "/../tests/cases/fields/" + name;
 }
 
-/// Change of the field along x, y and z [kg/m^3/mm].
+/// Gradient of the field along x, y and z [kg/m^3/mm].
 struct Slopes {
   double x = 0.02, y = 0.05, z = 0.001;
 };
 
-/// Largest difference from the linear field about the centre of the grid [kg/m^3].
+/// Returns the largest difference from the linear field about the centre of the grid [kg/m^3].
 double largest_error(FieldSource& source, Slopes const& slopes = {}, Vec3d centre = {}) {
   RegularGrid const& grid = source.grid();
   std::vector<double> values(grid.size());
@@ -55,13 +55,13 @@ double largest_error(FieldSource& source, Slopes const& slopes = {}, Vec3d centr
   return largest;
 }
 
-/// Values are floats up to 2.01, so they are rounded by up to 2^-24 * 2 = 1.2e-7; coordinates are floats, too, where a
-/// file has them: 1e-7 more.
+/// Values are floats up to 2.01 and hence rounded by up to 2^-24 * 2 = 1.2e-7; coordinates may also be floats, which
+/// adds 1e-7.
 constexpr double rounding = 2.5e-7;
 
 struct FieldCase {
   char const* file;
-  char const* reading;  ///< what info field says of the axes
+  char const* reading;  ///< text of `gladstone info field` about the axes
 };
 std::ostream& operator<<(std::ostream& out, FieldCase const& one) { return out << one.file; }
 
@@ -81,21 +81,22 @@ TEST_P(FieldCases, GiveTheFieldWithoutAWarning) {
 
 constexpr char by_coordinates[] = "[16, 20, 24] is read as z, y, x (by the lengths of its coordinates)";
 constexpr char as_nrrd[] = "[16, 20, 24] is read as z, y, x (the default order)";
-constexpr char as_vtk[] = "[16, 20, 24] is read as z, y, x (as VTK has it)";
+constexpr char as_vtk[] = "[16, 20, 24] is read as z, y, x (as VTK defines it)";
 INSTANTIATE_TEST_SUITE_P(
     OfOtherPrograms, FieldCases,
     testing::Values(
         FieldCase{"h_group.h5", by_coordinates}, FieldCase{"h_lead1.h5", by_coordinates},
         FieldCase{"h_descx.h5",
-                  "[16, 20, 24] is read as z, y, x (by the lengths of its coordinates); x runs backwards "
-                  "in the file and is turned round"},
+                  "[16, 20, 24] is read as z, y, x (by the lengths of its coordinates); x descends "
+                  "in the file and is reversed"},
         FieldCase{"h_matlab_mesh.h5", "[16, 24, 20] is read as z, x, y (by the lengths of its coordinates)"},
         FieldCase{"n_ascii.nrrd", as_nrrd}, FieldCase{"n_hex.nrrd", as_nrrd}, FieldCase{"n_bz2.nrrd", as_nrrd},
         FieldCase{"n_minmax.nrrd", as_nrrd}, FieldCase{"n_minmax_cell.nrrd", as_nrrd},
         FieldCase{"n_tabs.nrrd", as_nrrd}, FieldCase{"v_b64_lines.vti", as_vtk}, FieldCase{"v_b64_sep.vti", as_vtk},
         FieldCase{"v_b64_lzma_32.vti", as_vtk}, FieldCase{"v_raw_lz4_32.vti", as_vtk},
         FieldCase{"v_pieces.vti", as_vtk}, FieldCase{"v_single_quotes.vti", as_vtk}, FieldCase{"v_legacy.vtk", as_vtk},
-        FieldCase{"v_cell.vti", "[16, 20, 24] is read as z, y, x (as VTK has it; data of cells, at their centres)"}));
+        FieldCase{"v_cell.vti",
+                  "[16, 20, 24] is read as z, y, x (as VTK defines it; data of cells, at their centres)"}));
 
 TEST(FieldCase, PlaneHasTwoAxes) {
   auto const source = open_field(case_file("h_2d.h5"), "");
@@ -104,19 +105,19 @@ TEST(FieldCase, PlaneHasTwoAxes) {
   EXPECT_LT(largest_error(*source, {}, {0, 0, 0.75}), rounding);
 }
 
-// The header lays node (0, 0, 0) at the origin and x and y along -1: the field, which ascends with its indices,
+// The header places node (0, 0, 0) at the origin, with x and y along -1: the field, which ascends with the indices,
 // descends in space.
 TEST(FieldCase, AxesThatRunBackwardsAreTurnedRound) {
   for (char const* const name : {"n_dirs_neg.nrrd", "v_dir_neg.vti"}) {
     auto const source = open_field(case_file(name), "");
-    EXPECT_THAT(source->reading().text(), HasSubstr("x, y run backwards in the file and are turned round")) << name;
+    EXPECT_THAT(source->reading().text(), HasSubstr("x, y descend in the file and are reversed")) << name;
     EXPECT_LT(largest_error(*source, {-0.02, -0.05, 0.001}), rounding) << name;
     EXPECT_NEAR(source->grid().origin.x, -23, 1e-12);
     EXPECT_NEAR(source->grid().origin.y, -22.8, 1e-12);
   }
 }
 
-// The header lays the first index along y and the second along x.
+// The header assigns the first index to y and the second to x.
 TEST(FieldCase, ExchangedDirectionsArePutInOrder) {
   auto const source = open_field(case_file("n_dirs_perm.nrrd"), "");
   EXPECT_THAT(source->grid().nodes, ElementsAre(20, 24, 16));
@@ -137,7 +138,8 @@ TEST(FieldCase, AxesAreThoseThatTheKeyNames) {
               ThrowsMessage<DataError>(HasSubstr("names 2 axes of an array that has 3")));
 }
 
-// y of this file is stretched as a hyperbolic tangent, and the field linear in the index: along y it is smooth.
+// The y coordinates of this file are a hyperbolic tangent of the index and the field is linear in the index: along y,
+// the field is smooth.
 TEST(FieldCase, StretchedAxisIsResampledWithTheErrorStated) {
   auto const source = open_field(case_file("h_stretch.h5"), "");
   EXPECT_EQ(source->grid().nodes[0], 24);
@@ -148,8 +150,8 @@ TEST(FieldCase, StretchedAxisIsResampledWithTheErrorStated) {
                                         HasSubstr("(0.08 % of the range of values), which bounds the error")));
 }
 
-// Nodes at 12 sinh(t) / sinh(1), |t| < 1: spacings differ by a factor of 1.5. A cubic comes back to rounding, and
-// sin(y / 3) to the bound that is stated, which is less than ten times the true error.
+// Nodes at 12 sinh(t) / sinh(1), |t| < 1, whose spacings differ by a factor of 1.5. A cubic is reproduced up to
+// rounding, and sin(y / 3) within the stated error bound, which is less than ten times the true error.
 TEST(FieldCase, StatedErrorOfResamplingBoundsTheTrueOne) {
   fs::path const folder = fs::path(testing::TempDir()) / "field_case_stretched";
   fs::create_directories(folder);

@@ -28,7 +28,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
-/// A folder of its own for each test.
+/// Fixture with a separate directory for each test.
 class FieldFiles : public testing::Test {
  protected:
   void SetUp() override {
@@ -48,7 +48,7 @@ std::vector<double> read_all(FieldSource& source) {
   return values;
 }
 
-/// Value 100 z + 10 y + x at node (x, y, z), so that every mix-up of axes shows.
+/// Returns the value 100 z + 10 y + x at node (x, y, z), so that any confusion of axes is detected.
 std::vector<double> numbered(int nx, int ny, int nz) {
   std::vector<double> values;
   for (int z = 0; z < nz; ++z) {
@@ -59,7 +59,7 @@ std::vector<double> numbered(int nx, int ny, int nz) {
   return values;
 }
 
-/// The numbers in a stored type, in the byte order asked for.
+/// Returns the bytes of numbers in a stored type and byte order.
 template <class Stored>
 std::string bytes(std::vector<double> const& values, bool big_endian = false) {
   std::string text;
@@ -81,7 +81,7 @@ class JhtdbField : public FieldFiles {
  protected:
   using Shape = std::vector<std::size_t>;
 
-  /// One dataset after the other, closed at the end.
+  /// Datasets to be written one after the other.
   struct Dataset {
     std::string name;
     Shape shape;
@@ -99,7 +99,7 @@ class JhtdbField : public FieldFiles {
   static Dataset density(int nx = 4, int ny = 3, int nz = 2) {
     return {"Density_0001", Shape{std::size_t(nz), std::size_t(ny), std::size_t(nx), 1}, numbered(nx, ny, nz)};
   }
-  /// first + i step, rounded to float as in a cut-out.
+  /// Returns coordinates first + i step, rounded to float as in a cut-out.
   static Dataset axis(std::string const& name, int nodes, double first, double step) {
     Dataset dataset{name, {std::size_t(nodes)}, {}};
     for (int i = 0; i < nodes; ++i) dataset.values.push_back(static_cast<float>(first + i * step));
@@ -124,10 +124,10 @@ TEST_F(JhtdbField, LayoutWithCoordinatesGivesGridAndValues) {
   for (std::size_t i = 0; i < values.size(); ++i) EXPECT_EQ(values[i], expected[i]);
   std::vector<double> plane(12);
   source->read_planes(1, 1, plane);
-  EXPECT_EQ(plane[1 + 4 * 2], 121.0f);  // x = 1, y = 2 of z = 1
+  EXPECT_EQ(plane[1 + 4 * 2], 121.0f);  // node x = 1, y = 2, z = 1
 }
 
-/// A cut-out whose x and y axes name these units.
+/// A cut-out with the given units of the x and y axes.
 TEST_F(JhtdbField, UnitsAreThoseOfTheAttributes) {
   auto const with_units = [&](std::string const& x_unit, std::string const& y_unit) {
     std::string const path = in_folder("units.h5");
@@ -144,7 +144,7 @@ TEST_F(JhtdbField, UnitsAreThoseOfTheAttributes) {
   EXPECT_TRUE(source->units().spaced);
   EXPECT_EQ(source->units().length, "m");
   EXPECT_EQ(source->units().values, "kg m-3");
-  auto const mixed = open_field(with_units("m", "mm"), "Density_0001");  // lengths are in the first axis' unit
+  auto const mixed = open_field(with_units("m", "mm"), "Density_0001");  // lengths are in the unit of the first axis
   EXPECT_EQ(mixed->units().length, "m");
   EXPECT_NEAR(mixed->grid().spacing.x, 0.5, 1e-12);
   EXPECT_NEAR(mixed->grid().spacing.y, 0.5e-3, 1e-12);
@@ -161,7 +161,7 @@ TEST_F(JhtdbField, UnitsAreThoseOfTheAttributes) {
 }
 
 TEST_F(JhtdbField, LayoutWithoutCoordinatesHasUnitSpacing) {
-  // the older client's file: a field beside the numbers of the request
+  // file of the older client, which contains a field and the parameters of the request
   auto const source = open_field(
       write({{"p00000", {2, 3, 4, 1}, numbered(4, 3, 2)}, {"_size", {4}, {1, 4, 3, 2}}, {"_start", {4}, {0, 0, 0, 0}}}),
       "");
@@ -184,12 +184,13 @@ TEST_F(JhtdbField, RealCutOutIsRead) {
     EXPECT_EQ(source->significant_bits(), 24) << "the database's cut-outs are floats";
     EXPECT_EQ(source->name(), "Density_0001");
     EXPECT_THAT(source->grid().nodes, ElementsAre(512, 512, 1));
-    // a periodic box of 2 pi in 512 nodes; coordinates rounded to float
+    // a periodic box of length 2 pi with 512 nodes; coordinates are rounded to float
     EXPECT_NEAR(source->grid().spacing.x * 512, 2.0 * M_PI, 1e-5);
     EXPECT_NEAR(source->grid().spacing.y, source->grid().spacing.x, 1e-8);
     auto const values = read_all(*source);
-    // two fluids of densities 1 and 1.05/0.95 = 1.105 (Atwood number 0.05) mix: half and half in the box, about so in
-    // a plane of it, and beyond the two only by the overshoot of a spectral simulation
+    // Two fluids of densities 1 and 1.05/0.95 = 1.105 (Atwood number 0.05) mix. The mean density corresponds to equal
+    // parts in the whole box, and nearly so in a plane; only the overshoot of the spectral simulation exceeds the two
+    // densities.
     EXPECT_NEAR(std::accumulate(values.begin(), values.end(), 0.0) / 262144.0, 1.0526, 0.01);
     EXPECT_GT(*std::min_element(values.begin(), values.end()), 0.99f);
     EXPECT_LT(*std::max_element(values.begin(), values.end()), 1.115f);
@@ -197,7 +198,7 @@ TEST_F(JhtdbField, RealCutOutIsRead) {
 }
 
 TEST_F(JhtdbField, FloatCoordinatesOfAFineGridAreUniform) {
-  // 2 pi / 4096 is 0.0015; a float near 2 pi is good to 2.4e-7, 1.6e-4 of a step: more than the tolerance of 1e-4
+  // 2 pi / 4096 is 0.0015; a float near 2 pi has an error of 2.4e-7, or 1.6e-4 of a step, above the tolerance of 1e-4.
   int const nodes = 4096;
   double const step = 2.0 * M_PI / nodes;
   auto const source = open_field(write({density(nodes, 1, 1), axis("xcoor", nodes, 0.0, step)}), "");
@@ -206,7 +207,7 @@ TEST_F(JhtdbField, FloatCoordinatesOfAFineGridAreUniform) {
 
 TEST_F(JhtdbField, AxesThatAreNotUniformAreResampledAndBackwardOnesTurned) {
   auto stretched = axis("ycoor", 3, 0.0, 1.0);
-  stretched.values[1] = 1.00005;  // half the tolerance of 1e-4 of a step
+  stretched.values[1] = 1.00005;  // half of the tolerance, which is 1e-4 of a step
   auto const x = axis("xcoor", 4, 0.0, 1.0), z = axis("zcoor", 2, 0.0, 1.0);
   EXPECT_TRUE(open_field(write({density(), x, stretched, z}), "")->notes().empty());
   stretched.values[1] = 1.001;
@@ -238,7 +239,7 @@ TEST_F(JhtdbField, CoordinatesThatDoNotFitAreRefused) {
         open_field(write({density(), axis("zcoor", 5, 0.0, 1.0)}), "");
       },
       refused("cutout.h5", "dataset \"zcoor\" has 5 coordinates for the 2 nodes of \"Density_0001\""));
-  // 3 along z of [2, 3, 4]: x and y may be either of the others
+  // zcoor has 3 values, which fits only the middle axis of [2, 3, 4]: x and y may be either of the others
   EXPECT_THAT(
       [&] {
         open_field(write({density(), axis("zcoor", 3, 0.0, 1.0)}), "");
@@ -248,7 +249,7 @@ TEST_F(JhtdbField, CoordinatesThatDoNotFitAreRefused) {
   EXPECT_THAT(named->grid().nodes, ElementsAre(2, 4, 3));
 }
 
-// x, y and z of all nodes, as numpy's meshgrid makes them: each varies along one axis.
+// x, y and z are given at all nodes, as by numpy's meshgrid: each of them varies along one axis.
 TEST_F(JhtdbField, CoordinatesOfAllNodesAreUsed) {
   Dataset x{"x", {2, 3, 4}, {}}, y{"y", {2, 3, 4}, {}}, z{"z", {2, 3, 4}, {}};
   for (int k = 0; k < 2; ++k) {
@@ -266,7 +267,7 @@ TEST_F(JhtdbField, CoordinatesOfAllNodesAreUsed) {
   EXPECT_TRUE(source->units().spaced);
   EXPECT_EQ(source->reading().text(), "[2, 3, 4] is read as z, y, x (by its coordinates)");
   EXPECT_TRUE(source->notes().empty());
-  // the dataset "x" varies along the slowest axis: the array is [nx, ny, nz]
+  // the dataset "x" varies along the slowest axis, so that the array is [nx, ny, nz]
   std::swap(x.values, z.values);
   auto const turned = open_field(write({density(), x, y, z}), "");
   EXPECT_THAT(turned->grid().nodes, ElementsAre(2, 3, 4));
@@ -284,9 +285,9 @@ TEST_F(JhtdbField, CoordinatesOfAllNodesAreUsed) {
       refused("cutout.h5", "dataset \"y\" of shape [2, 3, 4] varies along several axes of \"Density_0001\""));
 }
 
-// MATLAB's [X, Y, Z] = ndgrid(x, y, z) are arrays [nx, ny, nz], which HDF5 stores as [nz, ny, nx]; those of meshgrid
-// are [ny, nx, nz], stored as [nz, nx, ny]. On a cube only the coordinates distinguish them. A MAT-file begins with a
-// block of 512 bytes that is not HDF5.
+// MATLAB's [X, Y, Z] = ndgrid(x, y, z) results in arrays [nx, ny, nz], which HDF5 stores as [nz, ny, nx]; the arrays of
+// meshgrid are [ny, nx, nz], stored as [nz, nx, ny]. If all axes have the same length, only the coordinates distinguish
+// them. A MAT-file begins with a block of 512 bytes that is not HDF5.
 TEST_F(JhtdbField, CoordinatesTellMatlabsNdgridFromItsMeshgrid) {
   auto const matlab_file = [&](bool ndgrid, bool with_coordinates) {
     Dataset rho{"rho", {3, 3, 3}, {}}, x{"X", {3, 3, 3}, {}}, y{"Y", {3, 3, 3}, {}}, z{"Z", {3, 3, 3}, {}};
@@ -328,7 +329,7 @@ TEST_F(JhtdbField, CoordinatesTellMatlabsNdgridFromItsMeshgrid) {
     EXPECT_EQ(read_all(*source), numbered(3, 3, 3)) << ndgrid;
     EXPECT_TRUE(source->notes().empty());
   }
-  // without coordinates nothing decides: an array of ndgrid is assumed, and a warning names the other order
+  // Without coordinates the order is ambiguous: an array of ndgrid is assumed, and a warning reports the other order.
   auto const assumed = open_field(matlab_file(true, false), "");
   EXPECT_EQ(read_all(*assumed), numbered(3, 3, 3));
   EXPECT_THAT(assumed->notes(), ElementsAre(AllOf(HasSubstr("an array of MATLAB of shape [3, 3, 3]"),
@@ -371,7 +372,7 @@ TEST_F(JhtdbField, CoordinatesOfEdgesMakeCells) {
       refused("cutout.h5", "has 5 coordinates for the 4 nodes"));
 }
 
-// The names by which a table of docs/file-formats.md says that coordinates are found, each with its unit.
+// Names of coordinate datasets in a table of docs/file-formats.md, each with its unit.
 TEST_F(JhtdbField, CoordinatesAreFoundByEachOfTheirNames) {
   auto const length = [&](std::string const& suffix) {
     return open_field(write({density(), axis("x" + suffix, 4, 0.0, 0.5), axis("y" + suffix, 3, 0.0, 0.5),
@@ -400,7 +401,7 @@ TEST_F(JhtdbField, PackedValuesAreUnpackedAndFillValuesRefused) {
   auto const read = read_all(*packed(values));
   for (std::size_t i = 0; i < read.size(); ++i) EXPECT_EQ(read[i], 10 + 0.5 * values[i]);
   values[5] = -32767;
-  values[6] = static_cast<float>(1e20);  // fewer digits than the attribute
+  values[6] = static_cast<float>(1e20);  // the value has fewer digits than the attribute
   EXPECT_THAT([&] { read_all(*packed(values)); }, refused("packed.nc", "2 of 24 points are nan or infinite"));
 }
 
@@ -446,13 +447,13 @@ TEST_F(JhtdbField, ComplexNumbersAreNamed) {
   EXPECT_THAT([&] { open_field(path, "rho"); }, refused("cutout.h5", "dataset \"rho\" holds complex numbers"));
 }
 
-// Every type of number in either byte order, through each filter of the HDF5 library, under every extension.
+// Every numeric type in either byte order, through every filter of the HDF5 library, with every file name extension.
 TEST_F(FieldFiles, EveryNumberOfHdf5IsRead) {
   struct Stored {
     hid_t type;
     int significant_bits;
   };
-  std::vector<double> const values = numbered(4, 3, 2);  // up to 123: fits every type
+  std::vector<double> const values = numbered(4, 3, 2);  // values up to 123, which fit into every type
   hsize_t const shape[]{2, 3, 4}, chunk[]{1, 2, 4};
   auto const write = [&](std::string const& name, hid_t type, bool filtered) {
     hid_t const file = H5Fcreate(in_folder(name).c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
@@ -490,7 +491,7 @@ TEST_F(JhtdbField, HolesAreCountedOverTheWholeField) {
   field.values[7] = field.values[30] = field.values[59] = -999.9;
   auto const source = open_field(write({field}), "");
   std::vector<double> plane(12);
-  EXPECT_NO_THROW(source->read_planes(1, 1, plane));  // nodes 12 to 23 are sound
+  EXPECT_NO_THROW(source->read_planes(1, 1, plane));  // nodes 12 to 23 are valid
   EXPECT_THAT([&] { source->read_planes(0, 1, plane); },
               refused("cutout.h5", "dataset \"Density_0001\": 3 of 60 points are holes (-999.9"));
 }
@@ -504,7 +505,8 @@ TEST_F(JhtdbField, NanAndInfinityAreRefused) {
   EXPECT_THAT([&] { read_all(*source); }, refused("Density_0001", "3 of 24 points are nan or infinite"));
 }
 
-// n of air differs from 1 by 2.7e-4: what a gradient is made of stands behind the seventh digit, where a float ends.
+// The index of air differs from 1 by 2.7e-4: the variations that determine the gradient are beyond the seventh digit,
+// the last one of a float.
 TEST_F(FieldFiles, DoublesKeepAllTheirDigits) {
   std::vector<double> const values{1 + 2.7e-4, 1 + 2.7e-4 + 1e-12, 0.1, -1.0 / 3};
   std::string const h5 = in_folder("n.h5");
@@ -535,9 +537,9 @@ TEST_F(JhtdbField, WrongRankNamesTheShape) {
               refused("cutout.h5", "dataset \"line\" of shape [4] has rank 1"));
   auto const velocity = Dataset{"Velocity_0001", {1, 1, 2, 3}, {1, 2, 3, 4, 5, 6}};
   EXPECT_THAT([&] { open_field(write({velocity}), "Velocity_0001"); },
-              refused("cutout.h5", "dataset \"Velocity_0001\" of shape [1, 1, 2, 3] holds 3 values a point"));
+              refused("cutout.h5", "dataset \"Velocity_0001\" of shape [1, 1, 2, 3] has 3 values per point"));
   auto const first = Dataset{"v", {3, 1, 9, 8}, numbered(8, 9, 3)};
-  EXPECT_THAT([&] { open_field(write({first}), "v"); }, refused("cutout.h5", "holds 3 values a point"));
+  EXPECT_THAT([&] { open_field(write({first}), "v"); }, refused("cutout.h5", "has 3 values per point"));
   EXPECT_THAT(
       [&] {
         open_field(write({velocity, line}), "");
@@ -547,7 +549,7 @@ TEST_F(JhtdbField, WrongRankNamesTheShape) {
               "2, 3], \"line\" [4]"));
 }
 
-// [64, 32, 3] may be a volume of three nodes along x, or a plane of velocities.
+// [64, 32, 3] may be a volume with three nodes along x, or a plane of velocities.
 TEST_F(JhtdbField, AxisThatMayHoldComponentsIsReported) {
   auto const narrow = Dataset{"v", {16, 12, 3}, numbered(3, 12, 16)};
   auto const source = open_field(write({narrow}), "v");
@@ -562,7 +564,7 @@ TEST_F(JhtdbField, SeveralFieldsAskForAName) {
   std::string const path = write({density(), second});
   EXPECT_THAT(
       [&] { open_field(path, ""); },
-      refused("cutout.h5", "has several fields; say which with dataset = \"Density_0001\" or \"Density_0002\""));
+      refused("cutout.h5", "has several fields; select one with dataset = \"Density_0001\" or \"Density_0002\""));
   EXPECT_THAT([&] { open_field(path, "Density_001"); },
               refused("cutout.h5", "has no dataset \"Density_001\"; did you mean \"Density_0001\"?"));
 }
@@ -571,9 +573,9 @@ TEST_F(FieldFiles, UnknownFormatsAndMissingFilesAreNamed) {
   EXPECT_THAT([&] { open_field(in_folder("absent.h5"), ""); }, refused("absent.h5", "does not exist"));
   std::ofstream(in_folder("field.npy")) << "x";
   EXPECT_THAT([&] { open_field(in_folder("field.npy"), ""); },
-              refused("field.npy", "known are .h5, .hdf5, .he5, .nc, .mat, .vti, .vtr, .vtk, .nrrd, .nhdr"));
+              refused("field.npy", "supported are .h5, .hdf5, .he5, .nc, .mat, .vti, .vtr, .vtk, .nrrd, .nhdr"));
   std::ofstream(in_folder("field.vtk")) << "x";
-  EXPECT_THAT([&] { open_field(in_folder("field.vtk"), ""); }, refused("field.vtk", "is no legacy VTK file"));
+  EXPECT_THAT([&] { open_field(in_folder("field.vtk"), ""); }, refused("field.vtk", "is not a legacy VTK file"));
   std::ofstream(in_folder("text.H5")) << "x";
   EXPECT_THAT([&] { open_field(in_folder("text.H5"), ""); }, refused("text.H5", "is not an HDF5 file"));
   EXPECT_THAT([&] { open_field(folder_.string(), ""); }, refused("", "is a folder"));
@@ -610,7 +612,7 @@ class NrrdField : public FieldFiles {
 constexpr char grid_432[] = "dimension: 3\nsizes: 4 3 2\n";
 
 TEST_F(NrrdField, EveryTypeAndByteOrderIsRead) {
-  auto const values = numbered(4, 3, 2);  // up to 123: fits every type
+  auto const values = numbered(4, 3, 2);  // values up to 123, which fit into every type
   auto const check = [&](std::string const& type, std::string const& little, std::string const& big) {
     for (bool const is_big : {false, true}) {
       std::string const fields = "type: " + type + "\nencoding: raw\nendian: " + (is_big ? "big" : "little") + "\n";
@@ -703,7 +705,7 @@ TEST_F(NrrdField, UnitsAreThoseOfTheHeader) {
   EXPECT_EQ(units("space dimension: 3\nspace units: \"um\" \"um\" \"um\"\nspace directions: (1,0,0) (0,1,0) (0,0,1)\n")
                 .length,
             "um");
-  // lengths are in the first axis' unit
+  // lengths are in the unit of the first axis
   auto const mixed = open_field(
       write("b.nrrd", header(std::string(grid_432) + "spacings: 1 1 1\nunits: \"m\" \"mm\" \"m\"\n" + rest)), "");
   EXPECT_EQ(mixed->units().length, "m");
@@ -732,7 +734,7 @@ TEST_F(NrrdField, FieldsGivenTwiceAreRefusedWithTheirLines) {
   std::string const twice =
       write("a.nrrd", header(std::string(grid_432) + "spacings: 1 1 1\nspacings: 2 2 2\n" + rest));
   EXPECT_THAT([&] { open_field(twice, ""); },
-              refused("a.nrrd:7", "gives the NRRD field \"spacings\" again, as \"2 2 2\" (line 6 says \"1 1 1\")"));
+              refused("a.nrrd:7", "repeats the NRRD field \"spacings\" as \"2 2 2\" (line 6 says \"1 1 1\")"));
   std::string const same = write("b.nrrd", header(std::string(grid_432) + "spacings: 2 2 2\nspacings: 2 2 2\n" + rest));
   EXPECT_EQ(open_field(same, "")->grid().spacing, (Vec3d{2, 2, 2}));
 }
@@ -745,7 +747,7 @@ TEST_F(NrrdField, ListOfOneDataFileIsRead) {
   std::string const several = write("b.nhdr", header(fields + "b.raw\n"));
   EXPECT_THAT([&] { open_field(several, ""); }, refused("b.nhdr",
                                                         "names several files (2); data in several files are not "
-                                                        "read here: join them into one file"));
+                                                        "supported: join them into one file"));
 }
 
 TEST_F(NrrdField, TwoDimensionsAreOnePlane) {
@@ -758,7 +760,7 @@ TEST_F(NrrdField, TwoDimensionsAreOnePlane) {
   EXPECT_EQ(read_all(*source)[4 * 2 + 1], 21.0f);
 }
 
-// The components of a velocity are the fastest axis; axes of length one are ignored wherever they are.
+// The components of a velocity are the fastest axis; axes of length one are ignored at any position.
 TEST_F(NrrdField, VelocityHasItsComponentsFastest) {
   std::vector<double> values;
   for (double const value : numbered(4, 3, 2)) values.insert(values.end(), {value, -value, value + 0.5});
@@ -774,7 +776,7 @@ TEST_F(NrrdField, VelocityHasItsComponentsFastest) {
   }
   std::string const scalar = write("s.nrrd", header(std::string(grid_432) + rest));
   EXPECT_THAT([&] { open_field(scalar, "", 3); },
-              refused("s.nrrd", "has no first axis of 3 components, as a velocity has"));
+              refused("s.nrrd", "has no first axis of 3 components, which a velocity needs"));
 }
 
 TEST_F(NrrdField, AxesOfLengthOneAreIgnored) {
@@ -783,7 +785,7 @@ TEST_F(NrrdField, AxesOfLengthOneAreIgnored) {
     expect_numbered(write("one.nrrd", header("dimension: 4\nsizes: " + std::string(sizes) + '\n' + rest)));
 }
 
-// Negative spacings lay the nodes towards -x and -y of the first one.
+// Negative spacings place the nodes in -x and -y direction from the first one.
 TEST_F(NrrdField, NegativeSpacingsRunBackwards) {
   auto const source =
       open_field(write("back.nrrd", header(std::string(grid_432) + "spacings: -0.5 -0.25 2\naxis mins: 1 2 3\n" +
@@ -801,13 +803,14 @@ TEST_F(NrrdField, NegativeSpacingsRunBackwards) {
 TEST_F(NrrdField, TruncatedDataSayHowMuchIsThere) {
   std::string const data = bytes<float>(numbered(4, 3, 2));  // 96 bytes
   std::string const type = std::string(grid_432) + "type: float\nendian: little\n";
-  auto const message = "is cut short: 50 bytes of data are there and 96 are needed (sizes 4 x 3 x 2, 4 bytes a value)";
+  auto const message =
+      "is cut short: 50 bytes of data are present and 96 are needed (sizes 4 x 3 x 2, 4 bytes per value)";
   std::string const raw = write("raw.nrrd", header(type + "encoding: raw\n") + "\n" + data.substr(0, 50));
   EXPECT_THAT([&] { open_field(raw, ""); }, refused("raw.nrrd", message));
-  // compressed: the stream is whole but too short ...
+  // compressed: the stream is complete but too short ...
   std::string const few = write("few.nrrd", header(type + "encoding: gzip\n") + "\n" + gzipped(data.substr(0, 50)));
   EXPECT_THAT([&] { read_all(*open_field(few, "")); }, refused("few.nrrd", message));
-  // ... or itself cut
+  // ... or is itself truncated
   std::string const stream = gzipped(data);
   std::string const cut =
       write("cut.nrrd", header(type + "encoding: gzip\n") + "\n" + stream.substr(0, stream.size() - 20));
@@ -824,7 +827,7 @@ TEST_F(NrrdField, DamagedCompressedDataAreNoticed) {
   EXPECT_THAT([&] { read_all(*open_field(path, "")); }, refused("bad.nrrd", "is damaged"));
   std::string const plain = write(
       "plain.nrrd", header(std::string(grid_432) + "type: uint8\nencoding: gzip\n") + "\n" + std::string(24, 'x'));
-  EXPECT_THAT([&] { read_all(*open_field(plain, "")); }, refused("plain.nrrd", "is said to be gzip, and is not"));
+  EXPECT_THAT([&] { read_all(*open_field(plain, "")); }, refused("plain.nrrd", "is declared as gzip, but is not"));
 }
 
 TEST_F(NrrdField, NanAndHolesAreRefused) {
@@ -845,20 +848,20 @@ TEST_F(NrrdField, WhatIsNotReadIsRefusedByName) {
     EXPECT_THAT([&] { read_all(*open_field(path, "")); }, refused("a.nrrd", why)) << fields;
   };
   std::string const type = "type: uint8\n", raw = "encoding: raw\n", grid = grid_432;
-  refuses(grid + type + "encoding: zrl\n", "\"encoding: zrl\" is not read here");
+  refuses(grid + type + "encoding: zrl\n", "\"encoding: zrl\" is not supported");
   refuses(grid + type + "encoding: ascii\n", "number 1 of its text is ");
   refuses("dimension: 3\nsizes: 400 300 2\n" + type + "encoding: ascii\n",
           "its 24 bytes of text cannot hold 240000 values");
-  refuses(grid + type + "encoding: hex\n", "digit 1 of its hex is no digit");
+  refuses(grid + type + "encoding: hex\n", "digit 1 of its hex data is not a hexadecimal digit");
   refuses(grid + type + "encoding: bzip2\n", "bzip2 cannot decompress it");
   refuses(grid + type + raw + "data file: LIST\n", "names several files");
   refuses(grid + type + raw + "data file: slice%03d.raw 1 9 1\n", "names several files");
   refuses(grid + type + raw + "space directions: (1,0.1,0) (0,1,0) (0,0,1)\n", "is oblique");
-  refuses(grid + type + raw + "space directions: (1,0,0) (2,0,0) (0,0,1)\n", "gives two axes one direction");
+  refuses(grid + type + raw + "space directions: (1,0,0) (2,0,0) (0,0,1)\n", "gives two axes the same direction");
   refuses(grid + type + raw + "space directions: none (0,1,0) (0,0,1)\n", "must give each axis in space a vector");
   refuses(grid + type + raw + "spacings: 1 1\n", "must be 3 numbers");
-  refuses(grid + type + raw + "spacings: 1 0 1\n", "gives an axis no length");
-  refuses(grid + "type: block\n" + raw, "is no type of numbers");
+  refuses(grid + type + raw + "spacings: 1 0 1\n", "gives an axis zero length");
+  refuses(grid + "type: block\n" + raw, "is not a numeric type");
   refuses(grid + "type: float\n" + raw, "\"endian\" must be little or big");
   refuses("dimension: 4\nsizes: 3 4 3 2\n" + type + raw, "\"dimension: 4\" must be 2 or 3");
   refuses("dimension: 3\nsizes: 4 -3 2\n" + type + raw, "must be positive");
@@ -867,7 +870,7 @@ TEST_F(NrrdField, WhatIsNotReadIsRefusedByName) {
           "must be whole numbers, of 18 digits at most");
   refuses(type + raw + "dimension: 3\n", "\"sizes\" is missing");
   refuses(grid + type, "\"encoding\" is missing");
-  refuses("no colon here\n", "is no NRRD field");
+  refuses("no colon here\n", "is not an NRRD field");
   std::string const foreign = write("b.nrrd", "PNG\n");
   EXPECT_THAT([&] { open_field(foreign, ""); }, refused("b.nrrd", "is not a NRRD file"));
   std::string const absent = write("c.nhdr", header(grid + type + raw + "data file: absent.raw\n"));
@@ -875,7 +878,7 @@ TEST_F(NrrdField, WhatIsNotReadIsRefusedByName) {
   EXPECT_THAT([&] { open_field(absent, "Density_0001"); }, refused("c.nhdr", "leave dataset = \"Density_0001\" out"));
 }
 
-// Cut-outs of the older client have the three components of a velocity side by side.
+// In cut-outs of the older client, the three components of a velocity are adjacent.
 TEST_F(JhtdbField, VelocityHasThreeValuesAPoint) {
   std::vector<double> values;
   for (double const value : numbered(4, 3, 2)) values.insert(values.end(), {value, -value, value + 0.5});
@@ -887,11 +890,11 @@ TEST_F(JhtdbField, VelocityHasThreeValuesAPoint) {
   source->read_planes(1, 1, plane);
   EXPECT_TRUE(std::equal(plane.begin(), plane.end(), values.begin() + 36));
   EXPECT_THAT([&] { open_field(path, "Density_0001", 3); },
-              refused("cutout.h5", "holds 1 values a point; a velocity has shape [nz, ny, nx, 3]"));
+              refused("cutout.h5", "has 1 values per point; a velocity has shape [nz, ny, nx, 3]"));
   EXPECT_THAT([&] { open_field(write({density()}), "", 3); }, refused("cutout.h5", "has no velocity, [nz, ny, nx, 3]"));
 }
 
-// Other programs store a velocity as one array after the other, [3, nz, ny, nx] or, of a plane, [3, ny, nx].
+// Other programs store the components of a velocity one after the other, [3, nz, ny, nx] or, for a plane, [3, ny, nx].
 TEST_F(JhtdbField, VelocityMayHaveItsComponentsFirst) {
   std::vector<double> stored, expected;
   for (auto const component :
@@ -911,7 +914,7 @@ TEST_F(JhtdbField, VelocityMayHaveItsComponentsFirst) {
   source->read_rows(1, 2, 1, row);
   EXPECT_TRUE(std::equal(row.begin(), row.end(), expected.begin() + 60)) << "the last row alone";
 
-  // axes in another order: the components remain u, v, w
+  // with the axes in another order, the components remain u, v, w
   auto const exchanged = open_field(write({{"u", {3, 2, 3, 4}, stored}}), "", 3, "xyz");
   EXPECT_THAT(exchanged->grid().nodes, ElementsAre(2, 3, 4));
   exchanged->read_planes(0, 4, all);
@@ -934,8 +937,8 @@ TEST_F(JhtdbField, VelocityMayHaveItsComponentsFirst) {
   }
 }
 
-/// Files that VTK 9.7 has written, in each of its ways: a velocity (v, -v, v + 0.5) and a density v, v = 100 z + 10 y +
-/// x, on 4 x 3 x 2 nodes whose first is number 1 along x.
+/// Files written by VTK 9.7 in all of its encodings: a velocity (v, -v, v + 0.5) and a density v, v = 100 z + 10 y + x,
+/// on 4 x 3 x 2 nodes whose first index along x is 1.
 std::string vtk_file(std::string const& name) {
   return std::string(GLADSTONE_DATA_DIR) + "/../tests/fuzz/corpus/vti_field/" + name;
 }
@@ -964,7 +967,7 @@ TEST(VtiField, IsReadInEachOfVtksWays) {
 
 class VtiFiles : public FieldFiles {
  protected:
-  /// A file of this text, opened and read.
+  /// Writes a file with the given text and reads it.
   void read(std::string const& text, std::string const& dataset = "", int values = 1) {
     std::ofstream(in_folder("field.vti")) << text;
     auto const source = open_field(in_folder("field.vti"), dataset, values);
@@ -980,7 +983,7 @@ class VtiFiles : public FieldFiles {
   }
 };
 
-// ParaView marks duplicate and hidden points by an array of this name beside the field.
+// ParaView marks duplicate and hidden points by an additional array of this name.
 TEST_F(VtiFiles, ArraysThatMarkGhostsAreNoFields) {
   std::string const good = array("Name=\"a\" format=\"ascii\"", "1 2 3 4");
   std::string const ghosts = "<DataArray type=\"UInt8\" Name=\"vtkGhostType\" format=\"ascii\">0 0 0 0</DataArray>";
@@ -995,7 +998,7 @@ TEST_F(VtiFiles, ArraysThatMarkGhostsAreNoFields) {
   EXPECT_THAT(read_all(*legacy), ElementsAre(1, 2, 3, 4));
 }
 
-/// Base64 (RFC 4648), with padding.
+/// Encodes bytes as base64 with padding (RFC 4648).
 std::string base64(std::string const& data) {
   constexpr char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::string text;
@@ -1008,7 +1011,7 @@ std::string base64(std::string const& data) {
   return text;
 }
 
-/// A VTK image of 4 x 3 x 2 points whose first one is number 0. @param keys  more attributes of the file
+/// A VTK image of 4 x 3 x 2 points whose indices start at 0. @param keys  additional attributes of the file
 std::string vtk_image(std::string const& keys, std::string const& arrays, std::string const& appended = "") {
   return "<?xml version=\"1.0\"?>\n<VTKFile type=\"ImageData\" version=\"1.0\" " + keys +
          "><ImageData WholeExtent=\"0 3 0 2 0 1\" Origin=\"1 -1 3\" Spacing=\"0.5 0.25 2\">"
@@ -1016,9 +1019,9 @@ std::string vtk_image(std::string const& keys, std::string const& arrays, std::s
          arrays + "</PointData></Piece></ImageData>" + appended + "</VTKFile>\n";
 }
 
-// Lengths of 8 bytes (header_type UInt64) ahead of data that zlib has compressed: the number of blocks, the size of a
-// block, that of the last one if it is smaller, and the compressed size of each. 24 floats are two blocks of 40 bytes
-// and one of 16. In base64 the lengths and the blocks are encoded apart.
+// Compressed data (zlib) are preceded by a header of 8-byte integers (header_type UInt64): the number of blocks, the
+// size of a block, the size of the last block if it is smaller, and the compressed size of each block. 24 floats are
+// two blocks of 40 bytes and one of 16. In base64, the header and the blocks are encoded separately.
 TEST_F(VtiFiles, CompressedDataHaveLengthsOfFourOrEightBytes) {
   std::string const path = in_folder("packed.vti");
   for (bool const wide : {true, false}) {
@@ -1054,7 +1057,7 @@ TEST_F(VtiFiles, CompressedDataHaveLengthsOfFourOrEightBytes) {
         EXPECT_EQ(read_all(*source), numbered(4, 3, 2)) << wide << big_endian << text;
         EXPECT_TRUE(source->notes().empty());
       }
-      // lengths of the other width are damage, not other numbers
+      // a header with integers of the other width must be reported as damage, not be read as other numbers
       std::string const other = wide ? "UInt32" : "UInt64";
       std::string wrong = vtk_image(keys, at_four, appended("raw", header + blocks));
       wrong.replace(wrong.find("header_type") + 13, 6, other);
@@ -1064,10 +1067,10 @@ TEST_F(VtiFiles, CompressedDataHaveLengthsOfFourOrEightBytes) {
   }
 }
 
-// Every type of number, as raw bytes in base64 ahead of which their length is.
+// Every numeric type, as raw bytes in base64, preceded by their length.
 TEST_F(VtiFiles, EveryTypeOfNumberIsRead) {
   std::string const path = in_folder("types.vti");
-  auto const values = numbered(4, 3, 2);  // up to 123: fits every type
+  auto const values = numbered(4, 3, 2);  // values up to 123, which fit into every type
   auto const expect_read = [&](std::string const& type, std::string const& raw, int significant_bits) {
     std::string const length = bytes<std::uint32_t>({static_cast<double>(raw.size())});
     std::ofstream(path, std::ios::binary) << vtk_image(
@@ -1088,16 +1091,16 @@ TEST_F(VtiFiles, EveryTypeOfNumberIsRead) {
   expect_read("Int64", bytes<std::int64_t>(values), 63);
   expect_read("UInt64", bytes<std::uint64_t>(values), 64);
   std::ofstream(path) << vtk_image("", "<DataArray type=\"String\" Name=\"rho\" format=\"ascii\">1</DataArray>");
-  EXPECT_THAT([&] { open_field(path, ""); }, refused("types.vti", "of type \"String\", which is no number"));
+  EXPECT_THAT([&] { open_field(path, ""); }, refused("types.vti", "of type \"String\", which is not numeric"));
 }
 
-/// A legacy file of 4 x 3 x 2 points. @param data  from POINT_DATA or CELL_DATA on
+/// A legacy file of 4 x 3 x 2 points. @param data  content from POINT_DATA or CELL_DATA on
 std::string legacy_image(std::string const& encoding, std::string const& data) {
   return "# vtk DataFile Version 3.0\ntitle\n" + encoding +
          "\nDATASET STRUCTURED_POINTS\nDIMENSIONS 4 3 2\nORIGIN 1 -1 3\nSPACING 0.5 0.25 2\n" + data;
 }
 
-// Legacy files name types as C does; binary numbers have the most significant byte first.
+// Legacy files use C's names of types; binary numbers are big-endian.
 TEST_F(VtiFiles, LegacyFilesHaveEveryTypeOfNumber) {
   std::string const path = in_folder("types.vtk");
   auto const values = numbered(4, 3, 2);
@@ -1116,8 +1119,8 @@ TEST_F(VtiFiles, LegacyFilesHaveEveryTypeOfNumber) {
     expect_read(type, bytes<std::int64_t>(values, true));
 }
 
-// VTK writes indices, vtkIdType, with 4 bytes (vtkDataWriter) though they have 8 in memory. An array of them does not
-// shift the field behind it.
+// VTK writes indices (vtkIdType) with 4 bytes (vtkDataWriter), although they have 8 bytes in memory. The field after an
+// array of indices must be read at the right position.
 TEST_F(VtiFiles, LegacyIndicesHaveFourBytes) {
   auto const values = numbered(4, 3, 2);
   std::string const path = in_folder("indices.vtk");
@@ -1155,8 +1158,8 @@ TEST_F(VtiFiles, LegacyFilesHaveVelocitiesAndCells) {
   EXPECT_EQ(read_all(*cells), numbered(3, 2, 1));
 }
 
-// i along y and j along x: columns of the Direction matrix are the directions of i, j and k. The key "axes" overrides
-// it, and the order of any other file of VTK.
+// i is along y and j along x: the columns of the Direction matrix are the directions of i, j and k. The key "axes"
+// overrides it, as it does for any other VTK file.
 TEST_F(VtiFiles, DirectionAndTheKeyOrderTheAxes) {
   std::string values;
   for (double const value : numbered(4, 3, 2)) values += std::to_string(value) + ' ';
@@ -1180,13 +1183,13 @@ TEST_F(VtiFiles, DirectionAndTheKeyOrderTheAxes) {
   }
 }
 
-/// Coordinates 0, 0.5, 1, 1.5 along x, 1, 1.25, 1.5 along y and -1, 1 along z.
+/// Expects the coordinates 0, 0.5, 1, 1.5 along x, 1, 1.25, 1.5 along y and -1, 1 along z.
 void expect_rectilinear(std::string const& path) {
   auto const source = open_field(path, "");
   EXPECT_THAT(source->grid().nodes, ElementsAre(4, 3, 2));
   EXPECT_EQ(source->grid().spacing, (Vec3d{0.5, 0.25, 2}));
   EXPECT_EQ(source->grid().origin, (Vec3d{0, 1, -1}));
-  EXPECT_EQ(source->reading().text(), "[2, 3, 4] is read as z, y, x (as VTK has it)");
+  EXPECT_EQ(source->reading().text(), "[2, 3, 4] is read as z, y, x (as VTK defines it)");
   EXPECT_EQ(read_all(*source), numbered(4, 3, 2));
 }
 
@@ -1209,7 +1212,7 @@ TEST_F(VtiFiles, RectilinearGridsAreReadAsXmlAndInTheLegacyFormat) {
   expect_rectilinear(in_folder("field.vtk"));
 }
 
-// Coordinates along x descend, those along y are not uniform, and data may be of the 3 x 2 x 1 cells between them.
+// The coordinates along x may descend, those along y may be non-uniform, and data may belong to the 3 x 2 x 1 cells.
 TEST_F(VtiFiles, RectilinearGridsMayDescendStretchAndHaveCells) {
   auto const grid = [&](std::string const& x, std::string const& y, std::string const& data) {
     std::ofstream(in_folder("field.vtr"))
@@ -1229,7 +1232,7 @@ TEST_F(VtiFiles, RectilinearGridsMayDescendStretchAndHaveCells) {
   EXPECT_EQ(descending->grid().origin.x, 0);
   EXPECT_EQ(read_all(*descending).front(), 3);
 
-  // 0, 1, 3: to the finest spacing, four nodes; the values are 10 j, and not linear in y
+  // Coordinates 0, 1, 3 are resampled to the finest spacing, that is, four nodes; the values 10 j are not linear in y.
   auto const stretched = grid("0 0.5 1 1.5", "0 1 3", points);
   EXPECT_THAT(stretched->grid().nodes, ElementsAre(4, 4, 2));
   EXPECT_THAT(stretched->notes(), ElementsAre(HasSubstr("axes that are not uniform were resampled: y")));
@@ -1240,7 +1243,7 @@ TEST_F(VtiFiles, RectilinearGridsMayDescendStretchAndHaveCells) {
   EXPECT_EQ(cells->grid().origin, (Vec3d{0.25, 1.125, 0}));
   EXPECT_EQ(cells->grid().spacing.x, 0.5);
   EXPECT_EQ(cells->grid().spacing.y, 0.25);
-  EXPECT_EQ(cells->reading().by, "as VTK has it; data of cells, at their centres");
+  EXPECT_EQ(cells->reading().by, "as VTK defines it; data of cells, at their centres");
   EXPECT_EQ(read_all(*cells), numbered(3, 2, 1));
 }
 
@@ -1250,23 +1253,23 @@ TEST_F(VtiFiles, RefusesWhatItCannotRead) {
   };
   std::string const good = array("Name=\"a\" format=\"ascii\"", "1 2 3 4");
   EXPECT_NO_THROW(read(image(good)));
-  refuses("", "is no VTK file");
-  refuses("<VTKFile type=\"ImageData\">", "is no whole XML");
+  refuses("", "is not a VTK file");
+  refuses("<VTKFile type=\"ImageData\">", "is not complete XML");
   refuses("<VTKFile type=\"UnstructuredGrid\"></VTKFile>", "holds VTK's \"UnstructuredGrid\"");
   refuses(image(""), "has no scalar field among its data of points and cells");
   refuses(image(good), "has no scalar field \"b\" among its data of points and cells, which are \"a\"", "b");
-  refuses(image(good + array("Name=\"b\"", "1 2 3 4")), "say which with dataset = \"a\" or \"b\"");
-  refuses(image(array("Name=\"a\" NumberOfComponents=\"2\"", "1 2")), "holds 2 values a point where 1 are", "a");
+  refuses(image(good + array("Name=\"b\"", "1 2 3 4")), "select one with dataset = \"a\" or \"b\"");
+  refuses(image(array("Name=\"a\" NumberOfComponents=\"2\"", "1 2")), "has 2 values per point, but 1 are", "a");
   refuses(image(good, "WholeExtent=\"0 2 0 1 0 0\""), "its pieces do not fill its WholeExtent");
   refuses(image(good, "WholeExtent=\"0 1 0 1\""), "is not 6 numbers");
   refuses(image(good, "WholeExtent=\"0 1 0 1 0 0\" Spacing=\"1 0 1\""), "has no usable grid");
-  refuses(image(good, "WholeExtent=\"0 1 0 1 0 0\" Direction=\"0.6 0.8 0 -0.8 0.6 0 0 0 1\""), "has turned axes");
-  refuses(image(array("Name=\"a\" format=\"ascii\"", "1 2 3")), "3 of 4 numbers are there");
+  refuses(image(good, "WholeExtent=\"0 1 0 1 0 0\" Direction=\"0.6 0.8 0 -0.8 0.6 0 0 0 1\""), "has rotated axes");
+  refuses(image(array("Name=\"a\" format=\"ascii\"", "1 2 3")), "3 of 4 numbers are present");
   refuses(image(array("Name=\"a\" format=\"ascii\"", "1 2 nan 3")), "1 of 4 points are nan");
   refuses(image(array("Name=\"a\" format=\"binary\"", "AAAA")), "is cut short");
-  refuses(image(array("Name=\"a\" format=\"binary\"", "EAAAAAAAAAAAAAAA?AAAAAAAAAA=")), "holds other characters");
+  refuses(image(array("Name=\"a\" format=\"binary\"", "EAAAAAAAAAAAAAAA?AAAAAAAAAA=")), "contains invalid characters");
   refuses(image(array("Name=\"a\" format=\"binary\"", "DAAAAAAAAAAAAAAAAAAAAAAAAAA=")),
-          "its length is 12 where its grid needs 16");
+          "its length is 12, but its grid needs 16");
   refuses(image(array("Name=\"a\" format=\"appended\" offset=\"0\"", "")), "has no data");
   refuses("<VTKFile type=\"ImageData\" compressor=\"vtkOtherCompressor\"></VTKFile>",
           "compressed by \"vtkOtherCompressor\"");

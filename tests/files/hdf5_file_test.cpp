@@ -70,7 +70,7 @@ TEST_F(Hdf5, WhatIsWrittenIsReadBack) {
   for (std::size_t i = 0; i < values.size(); ++i) {
     EXPECT_TRUE(back[i] == values[i] || (std::isnan(back[i]) && std::isnan(values[i]))) << i;
   }
-  EXPECT_THAT(reader.read_integers("counts"), ElementsAre(-1, 9007199254740993));  // 2^53 + 1: no double
+  EXPECT_THAT(reader.read_integers("counts"), ElementsAre(-1, 9007199254740993));  // 2^53 + 1 is not a double
   EXPECT_THAT(reader.read("counts"), ElementsAre(-1.0, 9007199254740992.0));
   EXPECT_TRUE(reader.read("/none").empty());
   EXPECT_THAT(reader.dataset_names(), ElementsAre("counts", "none"));
@@ -91,7 +91,7 @@ TEST_F(Hdf5, WhatIsWrittenIsReadBack) {
 TEST_F(Hdf5, LongSetupsFitIntoTheAttribute) {
   std::string const path = in_folder("long.h5");
   FileOrigin long_origin = origin();
-  long_origin.setup = std::string(300000, 'x');  // a plain attribute ends at 64 KiB
+  long_origin.setup = std::string(300000, 'x');  // an ordinary attribute is limited to 64 KiB
   Hdf5Writer(path, long_origin).close();
   EXPECT_EQ(Hdf5Reader(path).attribute("setup"), long_origin.setup);
 }
@@ -150,8 +150,9 @@ TEST_F(Hdf5, FileCutShortIsSaidToBeDamaged) {
               ThrowsMessage<DataError>(AllOf(HasSubstr("cut.h5"), HasSubstr("cut short"))));
 }
 
-// Of 10007 rows written in chunks, 240 kB, the header of a damaged file says 2^60 bytes, or 2.4 GB, which a machine may
-// well have: no compression makes a file so short. It is refused before memory is asked for.
+// A file of 10007 rows written in chunks has 240 kB. The header of a damaged copy declares 2^60 bytes, or 2.4 GB, which
+// would fit into the memory of some machines. No compression ratio explains such a short file, so it must be refused
+// before memory is allocated.
 TEST_F(Hdf5, WhatAHeaderPromisesIsHeldAgainstTheFile) {
   std::string const path = in_folder("promise.h5");
   for (std::string const& promised : {std::string("\0\0\0\0\0\0\0\x02", 8), std::string("\0\xe1\xf5\x05\0\0\0\0", 8)}) {
@@ -173,7 +174,7 @@ TEST_F(Hdf5, WhatAHeaderPromisesIsHeldAgainstTheFile) {
   }
 }
 
-// Zeros deflate to less than a thousandth; 160 MB of them are read all the same.
+// Zeros are compressed to less than a thousandth of their size; 160 MB of them must still be read.
 TEST_F(Hdf5, WhatCompressesWellIsNoDamage) {
   std::string const path = in_folder("zeros.h5");
   std::size_t const count = 20'000'000;

@@ -12,7 +12,8 @@
 namespace gladstone {
 namespace {
 
-// The library is looked for once a process: the test runs itself anew, where no picture was read before.
+// The library is searched for once per process. The test therefore restarts itself as a process in which no image has
+// been read.
 TEST(ImageCodecs, AreNamedWithTheCureWhereTheyAreMissing) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   auto const read_without = [] {

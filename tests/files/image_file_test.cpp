@@ -24,14 +24,14 @@ using testing::ThrowsMessage;
 
 std::string temporary(std::string const& name) { return (fs::path(testing::TempDir()) / ("image_" + name)).string(); }
 
-/// Every 16-bit value once.
+/// Image that contains every 16-bit value once.
 Image<std::uint16_t> all_values() {
   Image<std::uint16_t> image(256, 256);
   for (int i = 0; i < 65536; ++i) image.data()[i] = static_cast<std::uint16_t>(i);
   return image;
 }
 
-/// A picture in any format that OpenImageIO writes.
+/// Writes an image in any format supported by OpenImageIO.
 template <class Sample>
 std::string write_picture(std::string const& name, std::vector<Sample> const& samples, int columns, int channels) {
   std::string const path = temporary(name);
@@ -65,7 +65,7 @@ TEST(ImageFile, OtherProgramsFindResolutionAndSoftware) {
   ASSERT_TRUE(input);
   EXPECT_EQ(input->spec().format, OIIO::TypeDesc::UINT16);
   EXPECT_EQ(input->spec().nchannels, 1);
-  EXPECT_FLOAT_EQ(input->spec().get_float_attribute("XResolution"), 1000.0f);  // 10 um: 1000 pixels a centimetre
+  EXPECT_FLOAT_EQ(input->spec().get_float_attribute("XResolution"), 1000.0f);  // 10 um: 1000 pixels per centimetre
   EXPECT_FLOAT_EQ(input->spec().get_float_attribute("YResolution"), 1000.0f);
   EXPECT_EQ(input->spec().get_string_attribute("ResolutionUnit"), "cm");
   EXPECT_THAT(std::string(input->spec().get_string_attribute("Software")), HasSubstr("gladstone"));
@@ -123,7 +123,8 @@ TEST(ImageFile, ColourBecomesLuminanceAndAlphaIsIgnored) {
   EXPECT_NEAR(colour(3, 0), 9.0, 1e-12);
   auto const grey = read_image(write_picture<std::uint8_t>("greyalpha.png", {80, 255, 50, 128}, 2, 2));
   EXPECT_EQ(grey(0, 0), 80.0);
-  // OpenImageIO's writer takes 50 as multiplied by the opacity 128/255 already and stores 50 / (128/255) = 99.6.
+  // OpenImageIO's writer assumes that 50 is already multiplied by the opacity 128/255, and stores 50 / (128/255) =
+  // 99.6.
   EXPECT_NEAR(grey(1, 0), 99.6, 1.0);
 }
 
@@ -138,14 +139,14 @@ TEST(ImageFile, UnreadablePicturesAreNamed) {
               ThrowsMessage<DataError>(HasSubstr("/no/such/picture.tif: does not exist")));
   std::ofstream(temporary("text.tif")) << "not a picture";
   EXPECT_THAT([] { read_image(temporary("text.tif")); },
-              ThrowsMessage<DataError>(AllOf(HasSubstr("text.tif"), HasSubstr("cannot be read as a picture"))));
+              ThrowsMessage<DataError>(AllOf(HasSubstr("text.tif"), HasSubstr("cannot be read as an image"))));
   write_tiff(temporary("cut.tif"), all_values(), {});
   std::string const whole = content(temporary("cut.tif"));
   std::ofstream(temporary("cut.tif"), std::ios::binary) << whole.substr(0, whole.size() / 2);
   EXPECT_THAT([] { read_image(temporary("cut.tif")); }, ThrowsMessage<DataError>(HasSubstr("cut.tif")));
 }
 
-/// Pages of one TIFF, each with its number as the value of every pixel.
+/// Writes a TIFF with several pages; the value of all pixels of a page is its number.
 std::string write_pages(std::string const& name, std::vector<std::pair<int, int>> const& sizes) {
   std::string const path = temporary(name);
   auto const output = OIIO::ImageOutput::create(path);
@@ -175,7 +176,7 @@ TEST(ImageFile, SeveralPagesAreRefusedWithTheirNumberAndTwoAreAPair) {
   EXPECT_THAT([&] { read_frame_pair(one); }, ThrowsMessage<DataError>(HasSubstr("one.tif: has 1 page, ")));
 }
 
-// Cameras and viewers put small copies behind a picture.
+// Cameras and image viewers append small previews to an image.
 TEST(ImageFile, PreviewsAreNoPages) {
   EXPECT_EQ(read_image(write_pages("preview.tif", {{64, 48}, {16, 12}}))(0, 0), 1);
   auto const [reference, flow] = read_frame_pair(write_pages("previews.tif", {{64, 48}, {16, 12}, {64, 48}, {16, 12}}));
@@ -183,7 +184,7 @@ TEST(ImageFile, PreviewsAreNoPages) {
   EXPECT_EQ(flow(0, 0), 3);
 }
 
-/// Puts another value into a TIFF's header. @param tag 256 the width, 257 the height
+/// Replaces a value in the header of a TIFF. @param tag  256: width, 257: height
 std::string with_tag(std::string bytes, std::uint16_t tag, std::uint32_t value) {
   auto const number = [&](std::size_t place, std::size_t size) {
     std::uint32_t found = 0;
@@ -194,7 +195,7 @@ std::string with_tag(std::string bytes, std::uint16_t tag, std::uint32_t value) 
   for (std::size_t entry = 0; entry < number(directory, 2); ++entry) {
     std::size_t const place = directory + 2 + 12 * entry;
     if (number(place, 2) != tag) continue;
-    bytes[place + 2] = 4;  // of 32 bits
+    bytes[place + 2] = 4;  // type with 32 bits
     for (std::size_t i = 0; i < 4; ++i) bytes[place + 8 + i] = static_cast<char>(value >> (8 * i) & 0xffu);
   }
   return bytes;
@@ -204,18 +205,18 @@ std::string case_path(std::string const& name) {
   return std::string(GLADSTONE_DATA_DIR "/../tests/cases/pictures/") + name;
 }
 
-/// The level of a pixel, by column and row, of a picture in tests/cases/pictures (make.py there).
+/// Grey level of a pixel, by column and row, of an image in tests/cases/pictures (created by make.py there).
 using Levels = double (*)(int, int);
 double byte_level(int i, int j) { return 10 + 30 * i + 5 * j; }
 double word_level(int i, int j) { return 1000 + 7000 * i + 1500 * j; }
 
-/// Every picture reads as the levels that were written, upright, whatever its file says of turns, byte order, samples,
-/// compression and colours. Tolerances: 0 but for
-/// - luminance of three equal colours, whose weights sum to 1 but for rounding,
+/// Every image is read with the grey levels that were written and in upright orientation, for all orientations, byte
+/// orders, sample types, compression methods and colour models. The tolerance is 0, except for
+/// - the luminance of three equal colours, whose weights sum to 1 up to rounding,
 /// - float_16, whose 11 bits round 0.75 by 2^-12,
-/// - ink levels, which are as exact as their 8 bits,
-/// - JPEG, whose discrete cosine transform rounds each of 64 coefficients by half a level, seldom all to one side,
-/// - a TIFF's palette of 16 bits, of which the library keeps 8: one level.
+/// - the levels of printing inks, whose 8 bits limit the accuracy,
+/// - JPEG, whose discrete cosine transform rounds each of 64 coefficients by half a level; the errors rarely add up,
+/// - a TIFF palette of 16 bits, of which the library retains 8: one level.
 TEST(ImageFile, EveryKindOfPictureReadsAsItsLevels) {
   constexpr double rounding = 1e-9, jpeg = 2, palette = 1 + rounding;
   Levels const first_bits[] = {[](int i, int j) { return std::floor(byte_level(i, j) / 64); },
@@ -292,8 +293,8 @@ TEST(ImageFile, EveryKindOfPictureReadsAsItsLevels) {
   }
 }
 
-// Doubles keep all their digits; OpenEXR stores half floats (11 bits: 0.1 to 2^-15) and floats, and packs like TIFF
-// without loss.
+// Doubles retain all digits; OpenEXR stores half floats (11 bits: 0.1 is exact to 2^-15) and floats. Compression in
+// OpenEXR and TIFF is lossless.
 TEST(ImageFile, EveryFloatAndEveryPackingOfTiffKeepsItsValues) {
   auto const read = [](std::string const& path) {
     Image<double> const image = read_image(path);
@@ -343,8 +344,8 @@ TEST(ImageFile, PicturesThatHaveNoGreyLevelsAreRefusedWithTheReason) {
            {"uint_64.tif", "unsigned integers of 64 bits"},
            {"complex.tif", "complex floating-point numbers of 64 bits"},
            {"compression_jpeg2000.tif", "compressed by an unknown method"},
-           {"inks_five_tiled.tif", "is of 5 printing inks"},
-           {"channels_seven.tif", "has 7 values a pixel that are no colours"},
+           {"inks_five_tiled.tif", "has 5 printing inks"},
+           {"channels_seven.tif", "has 7 values per pixel that are not colours"},
            {"pages_3.tif", "has 3 pages"},
        }) {
     std::string const path = case_path(name);
@@ -353,7 +354,7 @@ TEST(ImageFile, PicturesThatHaveNoGreyLevelsAreRefusedWithTheReason) {
   }
 }
 
-/// A TIFF of black and white without the entry BitsPerSample, whose default is one bit. @param packing its compression
+/// A black-and-white TIFF without the entry BitsPerSample, whose default is one bit. @param packing  compression method
 std::string bilevel_tiff(std::uint32_t packing, std::size_t bytes_of_pixels) {
   constexpr std::uint32_t columns = 256, rows = 200, entries = 8, pixels_at = 10 + 12 * entries + 4;
   std::uint32_t const entry[entries][2] = {{256, columns},   {257, rows}, {259, packing}, {262, 1},
@@ -368,7 +369,7 @@ std::string bilevel_tiff(std::uint32_t packing, std::size_t bytes_of_pixels) {
   put(entries, 2);
   for (auto const& [tag, value] : entry) {
     put(tag, 2);
-    put(4, 2);  // of 32 bits
+    put(4, 2);  // type with 32 bits
     put(1, 4);
     put(value, 4);
   }
@@ -377,7 +378,7 @@ std::string bilevel_tiff(std::uint32_t packing, std::size_t bytes_of_pixels) {
   return bytes;
 }
 
-// 0x55 is 01010101: every second pixel of a row is white, beginning with the second.
+// 0x55 is 01010101: every second pixel of a row is white, starting with the second one.
 TEST(ImageFile, OneBitAPixelIsReadWithoutTheEntryThatSaysSo) {
   std::string const path = temporary("bits.tif");
   std::ofstream(path, std::ios::binary) << bilevel_tiff(1, 256 / 8 * 200);
@@ -393,7 +394,7 @@ TEST(ImageFile, OneBitAPixelIsReadWithoutTheEntryThatSaysSo) {
   EXPECT_THAT([&] { read_image(path); }, ThrowsMessage<DataError>(HasSubstr("BitsPerSample is missing")));
 }
 
-// 50,000 x 50,000 px of 16 bits are 5 GB; the file has 128 kB, and packed as densely as can be 0.3 GB.
+// 50,000 x 50,000 px of 16 bits are 5 GB, and 0.3 GB at the highest compression ratio, but the file has 128 kB.
 TEST(ImageFile, AHeaderIsHeldAgainstTheSizeOfItsFile) {
   for (char const* packing : {"none", "zip", "lzw"}) {
     std::string const path = temporary("damaged.tif");
@@ -410,7 +411,7 @@ TEST(ImageFile, AHeaderIsHeldAgainstTheSizeOfItsFile) {
   }
 }
 
-// An even grey packs as densely as any picture, a thousand to one.
+// A uniform grey image has the highest compression ratio of any image, a thousand to one.
 TEST(ImageFile, DenselyPackedPicturesAreRead) {
   for (char const* name : {"even.png", "even.exr", "even.tif"}) {
     std::string const path = temporary(name);

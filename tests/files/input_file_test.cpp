@@ -39,7 +39,7 @@ class InputFiles : public testing::Test {
   fs::path folder_;
 };
 
-// Opening a pipe without a writer waits for ever, and a device has no end.
+// Opening a pipe without a writer blocks for ever, and a device has no end.
 TEST_F(InputFiles, WhatIsNoRegularFileIsRefusedByNameBeforeItIsOpened) {
   ASSERT_EQ(::mkfifo(in("pipe").c_str(), 0600), 0);
   EXPECT_THAT([&] { InputFile file(in("pipe"), "a setup file"); },
@@ -77,13 +77,13 @@ TEST_F(InputFiles, AreReadFromAnyPlaceUpToTheirEnd) {
 
 TEST_F(InputFiles, ATextThatIsLongerThanAllowedIsRefusedUnread) {
   std::string const path = write("long", "");
-  fs::resize_file(path, std::uintmax_t{1} << 40);  // of holes: the disk has no such room
+  fs::resize_file(path, std::uintmax_t{1} << 40);  // a sparse file: the disk does not have this much space
   EXPECT_THAT([&] { read_text_file(path, "a setup file", std::uint64_t{32} << 20); },
               ThrowsMessage<DataError>(AllOf(HasSubstr("long: is longer than 32 MiB"), HasSubstr("a setup file"))));
   EXPECT_EQ(read_text_file(write("short", std::string(100, 'x')), "a setup file", 100), std::string(100, 'x'));
 }
 
-// The kernel's own files say that they have no bytes.
+// Files of the kernel report a size of zero.
 TEST_F(InputFiles, AFileThatTellsNoSizeIsReadToItsEnd) {
   EXPECT_THAT(read_text_file("/proc/self/status"), HasSubstr("VmRSS:"));
 }
@@ -103,8 +103,8 @@ TEST_F(InputFiles, LinesComeWithoutTheirEnds) {
   EXPECT_EQ(LineReader(write("empty", "")).next(), std::nullopt);
 }
 
-// Lines of 0 to 999 characters lie in every way across the ends of what is read at once.
-// Spreadsheets put U+FEFF in front of a text in UTF-8. Offsets count it, and only the first line may have it.
+// Lines of 0 to 999 characters cross the ends of the read buffer at all positions. Spreadsheets put U+FEFF in front of
+// a text in UTF-8. Offsets include it, and it is removed from the first line only.
 TEST_F(InputFiles, AByteOrderMarkBelongsToNoLine) {
   LineReader lines(write("marked.csv",
                          "\xEF\xBB\xBFx_mm,y_mm\n\xEF\xBB\xBF"
@@ -139,7 +139,7 @@ TEST(Excerpt, CutsBetweenCharacters) {
   EXPECT_EQ(excerpt("short"), "short");
   EXPECT_EQ(excerpt(std::string(60, 'a')), std::string(60, 'a'));
   EXPECT_EQ(excerpt(std::string(61, 'a')), std::string(57, 'a') + "...");
-  std::string const umlauts = "\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4";  // three bytes are one and a half of them
+  std::string const umlauts = "\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4";  // three bytes are one and a half of these characters
   EXPECT_EQ(excerpt(umlauts, 6), "\xc3\xa4...");
 }
 

@@ -24,7 +24,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
-/// What a command has read is not replaced by what it writes.
+/// Fixture: the input files of a command must not be replaced by its outputs.
 class InputGuards : public Output {
  protected:
   void SetUp() override {
@@ -32,7 +32,7 @@ class InputGuards : public Output {
     std::ofstream(in_folder("input.txt")) << "precious";
   }
   auto refused() const {
-    return ThrowsMessage<OutputError>(HasSubstr("would be overwritten, and is read by this command"));
+    return ThrowsMessage<OutputError>(HasSubstr("would be overwritten, but is an input of this command"));
   }
 };
 
@@ -40,7 +40,7 @@ TEST_F(InputGuards, WhatWasReadIsRefusedAsOutputUnderEveryName) {
   fs::create_symlink("input.txt", in_folder("link.txt"));
   fs::create_hard_link(in_folder("input.txt"), in_folder("hard.txt"));
   InputGuard const guard;
-  std::thread([&] { read_text_file(in_folder("input.txt")); }).join();  // by any thread
+  std::thread([&] { read_text_file(in_folder("input.txt")); }).join();  // reading in any thread counts
   for (std::string const name : {"input.txt", "link.txt", "hard.txt"}) {
     EXPECT_THAT([&] { OutputFile::write_text(in_folder(name), "new"); }, refused()) << name;
   }
@@ -95,7 +95,7 @@ TEST_F(InputGuards, WithoutAGuardNothingIsRecorded) {
   OutputFile::write_text(in_folder("input.txt"), "new");
 }
 
-// Files of other results are refused by name, whether they exist or not, except to the command that makes them.
+// Files of other results are refused by name, whether or not they exist, except for the command that makes them.
 TEST_F(InputGuards, FilesOfOtherResultsAreNotWritten) {
   fs::create_directories(in_folder("run/jobs"));
   std::ofstream(in_folder("run/marker")) << "marker";
@@ -118,7 +118,7 @@ TEST_F(InputGuards, FilesOfOtherResultsAreNotWritten) {
   OutputFile::write_text(in_folder("run/list"), "new");
 }
 
-/// What files of a case and a run hold, by content.
+/// Fixture: kinds of the files of a case and of a study, determined from their content.
 class FileKinds : public Output {
  protected:
   void put(std::string const& name, std::string const& text) const {
@@ -177,13 +177,13 @@ TEST_F(FileKinds, AreToldByContent) {
   EXPECT_EQ(kind("absent"), "");
 }
 
-// A report that is sent to a truth file, whoever has read it.
+// An HTML report that would overwrite a truth file is refused, even if the truth file has not been read.
 TEST_F(FileKinds, AnOutputOfAnotherKindDestroysNoResult) {
   Hdf5Writer(in_folder("truth.h5"), {"gladstone truth", 2, "", 0, "cpu"}).close();
   std::string const before = content(in_folder("truth.h5"));
-  auto const refused = ThrowsMessage<OutputError>(
-      AllOf(HasSubstr("truth.h5: holds data of another kind (gladstone truth)"), HasSubstr("choose another output")));
-  EXPECT_THAT([&] { OutputFile(in_folder("truth.h5"), "HTML"); }, refused) << "before anything is computed";
+  auto const refused = ThrowsMessage<OutputError>(AllOf(
+      HasSubstr("truth.h5: contains data of another kind (gladstone truth)"), HasSubstr("choose another output")));
+  EXPECT_THAT([&] { OutputFile(in_folder("truth.h5"), "HTML"); }, refused) << "refused before any computation";
   EXPECT_THAT([&] { OutputFile::write_text(in_folder("truth.h5"), "<html>"); }, refused);
   EXPECT_THAT([&] { OutputFile::write_text(in_folder("truth.h5"), "# Markdown"); }, refused);
   EXPECT_THAT([&] { Hdf5Writer(in_folder("truth.h5"), {"gladstone vectors", 1, "", 0, "cpu"}); }, refused);
@@ -191,7 +191,7 @@ TEST_F(FileKinds, AnOutputOfAnotherKindDestroysNoResult) {
   Hdf5Writer(in_folder("truth.h5"), {"gladstone truth", 2, "other", 0, "cpu"}).close();
   put("damaged.h5", "\x89HDF\r\n\x1a\n and no more");
   EXPECT_THAT([&] { OutputFile::write_text(in_folder("damaged.h5"), "<html>"); },
-              ThrowsMessage<OutputError>(HasSubstr("damaged.h5: holds data of another kind (damaged HDF5)")));
+              ThrowsMessage<OutputError>(HasSubstr("damaged.h5: contains data of another kind (damaged HDF5)")));
   put("study.csv", "case,seed,status,repeat\n");
   EXPECT_THAT([&] { OutputFile::write_text(in_folder("study.csv"), "x_px,y_px,u_px,v_px\n"); },
               ThrowsMessage<OutputError>(HasSubstr("gladstone study table")));
@@ -199,7 +199,7 @@ TEST_F(FileKinds, AnOutputOfAnotherKindDestroysNoResult) {
               ThrowsMessage<OutputError>(HasSubstr("gladstone study table")));
   OutputFile::write_text(in_folder("study.csv"), "case,seed,status,repeat\n0,1,ok,0\n");
   put("notes.txt", "mine");
-  OutputFile::write_text(in_folder("notes.txt"), "<html>");  // named by the user, and of no kind that is known
+  OutputFile::write_text(in_folder("notes.txt"), "<html>");  // named by the user, and of an unknown kind
 }
 
 }  // namespace

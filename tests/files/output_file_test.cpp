@@ -71,7 +71,8 @@ TEST_F(OutputFileTest, ALinkToNothingIsFollowedToWhereItLeads) {
   EXPECT_TRUE(fs::is_symlink(in_folder("link.txt")));
   EXPECT_EQ(content(in_folder("there/real.txt")), "new");
   fs::create_symlink("circle.txt", in_folder("circle.txt"));
-  EXPECT_THAT([&] { OutputFile file(in_folder("circle.txt")); }, ThrowsMessage<OutputError>(HasSubstr("in a circle")));
+  EXPECT_THAT([&] { OutputFile file(in_folder("circle.txt")); },
+              ThrowsMessage<OutputError>(HasSubstr("form a circle")));
 }
 
 TEST_F(OutputFileTest, TheRightsOfTheOldFileStay) {
@@ -84,7 +85,7 @@ TEST_F(OutputFileTest, TheRightsOfTheOldFileStay) {
 
 TEST_F(OutputFileTest, TheLongestNamesOfAFileSystemAreWritten) {
   std::string name;
-  for (int i = 0; i < 85; ++i) name += "\u20ac";  // three bytes each
+  for (int i = 0; i < 85; ++i) name += "\u20ac";  // three bytes per character
   ASSERT_EQ(name.size(), 255u);
   OutputFile::write_text(in_folder(name), "text");
   EXPECT_THAT(names(), ElementsAre(name));
@@ -101,11 +102,11 @@ TEST_F(OutputFileTest, FolderDeviceAndFileInThePathAreRefused) {
   std::ofstream(in_folder("file")) << "x";
   EXPECT_THAT([&] { OutputFile file(in_folder("file/a.txt")); },
               ThrowsMessage<OutputError>(HasSubstr("a part of the path is a file")));
-  EXPECT_THAT([] { OutputFile file(""); }, ThrowsMessage<OutputError>(HasSubstr("has no name")));
+  EXPECT_THAT([] { OutputFile file(""); }, ThrowsMessage<OutputError>(HasSubstr("has an empty name")));
 }
 
-// /dev/stdout is a link to whatever is open there, here an ordinary file: who opened it would not see what is renamed
-// over its name.
+// /dev/stdout is a link to an open file, here an ordinary one: the process that opened it would not see a file that is
+// renamed to its name.
 TEST_F(OutputFileTest, NamesOfOpenFilesAreRefused) {
   int const file = open(in_folder("open").c_str(), O_RDWR | O_CREAT, 0666);
   ASSERT_GE(file, 0);
@@ -120,7 +121,7 @@ TEST_F(OutputFileTest, ReadOnlyFolderIsRefusedAtTheStart) {
   fs::permissions(folder_,
                   fs::perms::owner_read | fs::perms::owner_exec | fs::perms::others_read | fs::perms::others_exec);
   bool const root = geteuid() == 0;
-  if (root && seteuid(65534) != 0) GTEST_SKIP() << "cannot give up root";
+  if (root && seteuid(65534) != 0) GTEST_SKIP() << "the process cannot drop root privileges";
   EXPECT_THAT([&] { OutputFile file(in_folder("a.txt")); },
               ThrowsMessage<OutputError>(testing::AllOf(HasSubstr("Permission denied"), HasSubstr("may write to"))));
   EXPECT_THAT(

@@ -18,11 +18,12 @@
 
 namespace {
 
-int renames_until_death = -1, renames_until_failure = -1;  // -1: neither
+int renames_until_death = -1, renames_until_failure = -1;  // -1: disabled
 
 }  // namespace
 
-/// Takes the place of the C library's in this test: a process may be killed before any of its renames, or one may fail.
+/// Replaces rename() of the C library in this test: a process can be killed before any of its renames, or a rename can
+/// fail.
 extern "C" int rename(char const* from, char const* to) noexcept {
   if (renames_until_death >= 0 && renames_until_death-- == 0) _exit(42);
   if (renames_until_failure >= 0 && renames_until_failure-- == 0) {
@@ -45,7 +46,7 @@ FolderContent const content_of_case{"setup.toml", {"vectors.h5"}};
 
 class OutputFolderTest : public Output {
  protected:
-  /// A whole case: three files that say which version they are of, one of them in a folder below.
+  /// Writes a complete case: three files that contain their version, one of them in a subdirectory.
   void write_case(std::string const& version, bool vectors = false) const {
     OutputFolder folder(in_folder("case"), content_of_case);
     stage(folder, version);
@@ -64,14 +65,15 @@ class OutputFolderTest : public Output {
   }
   bool has(std::string const& name) const { return fs::exists(fs::symlink_status(folder_ / "case" / name)); }
 
-  /// An old case with vectors and with something of the user's.
+  /// Writes an old case with vectors and a file of the user.
   void write_old_case() const {
     fs::remove_all(folder_ / "case");
     write_case("old");
     write("case/vectors.h5", "old");
     write("case/notes.txt", "mine");
   }
-  /// Replaces the case in a process that is killed before one of its renames. @return whether it came to its end
+  /// Replaces the case in a process that is killed before one of its renames. @return true if the process ended
+  /// normally
   bool replace_and_die(int rename) const {
     pid_t const child = fork();
     if (child == 0) {
@@ -130,10 +132,11 @@ TEST_F(OutputFolderTest, WhatAUserPutIntoItStaysAndWhatDependsOnTheOldGoes) {
   EXPECT_EQ(fs::read_symlink(folder_ / "case/link"), "nowhere");
   EXPECT_FALSE(has("vectors.h5"));
   write_case("newer", true);
-  EXPECT_EQ(read("vectors.h5"), "newer") << "derived, but written with the others";
+  EXPECT_EQ(read("vectors.h5"), "newer") << "a derived file that is written with the others is kept";
 }
 
-// A shell that stands in the folder, a mount on it, its rights, owner and access list: all belong to the folder itself.
+// The directory itself is retained, since the working directory of a shell, a mount, permissions, owner and access list
+// belong to it.
 TEST_F(OutputFolderTest, TheFolderStaysItselfWithItsRights) {
   for (bool const empty : {true, false}) {
     fs::remove_all(folder_ / "case");
@@ -150,7 +153,7 @@ TEST_F(OutputFolderTest, TheFolderStaysItselfWithItsRights) {
       stage(folder, "new");
       folder.commit();
     }
-    EXPECT_TRUE(fs::exists("setup.toml")) << "seen from where the shell stands";
+    EXPECT_TRUE(fs::exists("setup.toml")) << "seen from the working directory";
     fs::current_path(home);
     EXPECT_TRUE(is_of("new"));
     ASSERT_EQ(stat(in_folder("case").c_str(), &after), 0);
@@ -168,7 +171,7 @@ TEST_F(OutputFolderTest, AWritableFolderInAnUnwritableOneIsWritten) {
   }
   ASSERT_EQ(chmod(folder_.c_str(), 0555), 0);
   bool const root = geteuid() == 0;
-  if (root && seteuid(65534) != 0) GTEST_SKIP() << "cannot give up root";
+  if (root && seteuid(65534) != 0) GTEST_SKIP() << "the process cannot drop root privileges";
   EXPECT_NO_THROW(write_case("new"));
   if (root) {
     ASSERT_EQ(seteuid(0), 0);
@@ -185,7 +188,7 @@ TEST_F(OutputFolderTest, AMountedFolderIsWritten) {
     bool const mounted = unshare(CLONE_NEWNS) == 0 && mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) == 0 &&
                          mount("none", in_folder("case").c_str(), "tmpfs", 0, "size=1m") == 0;
     if (!mounted) _exit(77);
-    fs::create_directory(folder_ / "case/lost+found");  // as a fresh disk has it
+    fs::create_directory(folder_ / "case/lost+found");  // exists on a freshly formatted disk
     bool good = false;
     try {
       write_case("old");
@@ -201,14 +204,15 @@ TEST_F(OutputFolderTest, AMountedFolderIsWritten) {
   int status = 0;
   waitpid(child, &status, 0);
   ASSERT_TRUE(WIFEXITED(status));
-  if (WEXITSTATUS(status) == 77) GTEST_SKIP() << "no mount namespace here; see TheFolderStaysItselfWithItsRights";
+  if (WEXITSTATUS(status) == 77)
+    GTEST_SKIP() << "mount namespaces are not available; see TheFolderStaysItselfWithItsRights";
   EXPECT_EQ(WEXITSTATUS(status), 0);
 }
 
 TEST_F(OutputFolderTest, SomebodyElsesFolderIsRefusedAtTheStartAndAtCommit) {
   fs::create_directory(folder_ / "case");
   auto const refused = ThrowsMessage<OutputError>(HasSubstr("is not empty and was not made by gladstone"));
-  OutputFolder early(in_folder("case"), content_of_case);  // an empty one is fine
+  OutputFolder early(in_folder("case"), content_of_case);  // an empty directory is accepted
   write("case/chapter1.tex", "precious");
   EXPECT_THAT([&] { OutputFolder folder(in_folder("case"), content_of_case); }, refused);
   EXPECT_THAT([&] { early.commit(); }, refused);
@@ -216,7 +220,7 @@ TEST_F(OutputFolderTest, SomebodyElsesFolderIsRefusedAtTheStartAndAtCommit) {
   EXPECT_THAT([&] { OutputFolder folder(in_folder("case/chapter1.tex"), content_of_case); },
               ThrowsMessage<OutputError>(HasSubstr("is a file; name a folder")));
   EXPECT_THAT([&] { OutputFolder folder("/dev/null", content_of_case); },
-              ThrowsMessage<OutputError>(HasSubstr("/dev/null: is no folder (it is a device)")));
+              ThrowsMessage<OutputError>(HasSubstr("/dev/null: is not a folder (it is a device)")));
 }
 
 TEST_F(OutputFolderTest, AFolderOfTheUsersInAFilesPlaceIsRefusedWithNothingMoved) {
@@ -260,7 +264,7 @@ TEST_F(OutputFolderTest, WhatKilledWritersOfItsFilesLeftGoesToo) {
   EXPECT_THAT(names("case"), ElementsAre("flow.tif", "maps", "notes.txt", "setup.toml"));
 }
 
-// Where the marker is, all files are of one version; where it is not, the next look completes the new one.
+// If the marker exists, all files are of one version; otherwise the next access completes the new version.
 TEST_F(OutputFolderTest, KilledAtAnyStepItIsTheOldCaseOrTheNewOne) {
   bool ended = false;
   int step = 0, completed = 0;
@@ -283,7 +287,7 @@ TEST_F(OutputFolderTest, KilledAtAnyStepItIsTheOldCaseOrTheNewOne) {
     EXPECT_THAT(names(), ElementsAre("case"));
   }
   EXPECT_GE(completed, 8)
-      << "four files to retire, three to install and the folder's name, before each of which it died";
+      << "the process was killed before each of eight renames: four files retired, three installed, one directory";
 }
 
 TEST_F(OutputFolderTest, KilledWhileItCompletesAKilledOneItIsCompletedByTheNext) {
@@ -313,10 +317,10 @@ TEST_F(OutputFolderTest, WhereAFileCannotBeMovedAllGoBack) {
     renames_until_failure = -1;
     if (!failed) break;
     if (message.empty()) {
-      EXPECT_TRUE(is_of("new")) << "nothing but the clearing away failed";
+      EXPECT_TRUE(is_of("new")) << "only the cleanup failed";
     } else {
       EXPECT_THAT(message, testing::AllOf(HasSubstr("case: "), HasSubstr("Device or resource busy"),
-                                          HasSubstr("the old files are in their places")));
+                                          HasSubstr("the old files are unchanged")));
       EXPECT_TRUE(is_of("old")) << step;
       EXPECT_TRUE(has("vectors.h5")) << step;
     }
@@ -324,7 +328,8 @@ TEST_F(OutputFolderTest, WhereAFileCannotBeMovedAllGoBack) {
   }
 }
 
-// What is derived goes wherever new files come, by name or by a pattern; elsewhere it stays, and so does what is not.
+// Derived files are removed, by name or pattern, in every subdirectory that receives new files; elsewhere they are
+// retained, as are all other files.
 TEST_F(OutputFolderTest, WhatIsDerivedGoesInEveryFolderThatGetsNewFiles) {
   FolderContent const content{"setup.toml", {"vectors.h5", "plane_*.tif"}};
   auto const write_cameras = [&](std::vector<std::string> const& cameras) {

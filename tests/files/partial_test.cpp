@@ -25,7 +25,7 @@ enum Part { host, boot, disk, process };
 
 class PartialTest : public Output {
  protected:
-  /// Another process that makes a partial and lives until it is told to end, by a signal that leaves it no time.
+  /// Another process that creates a partial output and waits until it is killed by SIGKILL, without any cleanup.
   class Writer {
    public:
     Writer(fs::path const& folder, Partial::Kind kind) {
@@ -54,13 +54,13 @@ class PartialTest : public Output {
     pid_t child_ = 0;
   };
 
-  /// What a killed writer leaves.
+  /// Returns the partial output of a killed writer.
   fs::path leftover(Partial::Kind kind) {
     Writer(folder_, kind).kill();
     return folder_ / names().front();
   }
 
-  /// The same with another part in its name, and in that of its lock.
+  /// Renames a partial output and its lock file so that one part of the name has another value.
   static fs::path renamed(fs::path const& partial, Part part, std::string const& value) {
     auto const changed = [&](std::string name) {
       std::size_t begin = name.find('-') + 1;
@@ -77,7 +77,7 @@ class PartialTest : public Output {
     fs::rename(partial, fresh);
     return fresh;
   }
-  /// As if it had been changed last before this system was started, which was after 1980.
+  /// Sets the time of the last change to before the start of this system, which was after 1980.
   static void make_old(fs::path const& partial) {
     auto const long_ago = fs::file_time_type::clock::now() - std::chrono::hours(24 * 365 * 40);
     if (fs::is_directory(partial)) {
@@ -96,7 +96,7 @@ TEST_F(PartialTest, IsThereWhileItsWriterLivesWhateverItsNumber) {
     Writer writer(folder_, kind);
     fs::path partial = folder_ / names().front();
     EXPECT_FALSE(is_cleared_away(partial));
-    // in a namespace of its own a process has a number that is nobody's here, or somebody else's
+    // in another process namespace, the number of a process may be unused here or belong to another process
     partial = renamed(partial, process, "1999999999");
     EXPECT_FALSE(is_cleared_away(partial));
     partial = renamed(partial, process, std::to_string(getpid()));
@@ -130,13 +130,13 @@ TEST_F(PartialTest, OfAnotherHostIsLeftAlone) {
 TEST_F(PartialTest, OfAnEarlierBootOfThisHostIsClearedAwayUnlessItIsYounger) {
   for (auto const kind : {Partial::Kind::file, Partial::Kind::folder}) {
     fs::path const partial = renamed(leftover(kind), boot, "0123456789abcdef");
-    EXPECT_FALSE(is_cleared_away(partial)) << "another machine of the same name writes";
+    EXPECT_FALSE(is_cleared_away(partial)) << "may belong to another machine of the same name";
     make_old(partial);
     EXPECT_TRUE(is_cleared_away(partial));
   }
 }
 
-// Locks of another mount of the same network disk may not be seen here.
+// Locks made through another mount of the same network disk may be invisible here.
 TEST_F(PartialTest, SeenThroughAnotherMountIsLeftAlone) {
   fs::path const partial = renamed(leftover(Partial::Kind::folder), disk, "fffffff0");
   EXPECT_FALSE(is_cleared_away(partial));

@@ -48,7 +48,7 @@ TEST_F(SourceFilesTest, PixelsHaveOneHashWhateverTheFileSaysBesides) {
   EXPECT_EQ(hash.size(), 64u);
   EXPECT_EQ(pixel_sha256(in_folder("a.tif")), hash);
   EXPECT_EQ(pixel_sha256(in_folder("b.tif")), hash);
-  // the same pixels as another program writes them
+  // the same pixels, written by another program
   auto const png = OIIO::ImageOutput::create("png");
   ASSERT_TRUE(png->open(in_folder("c.png"), OIIO::ImageSpec(5, 3, 1, OIIO::TypeDesc::UINT16)));
   ASSERT_TRUE(png->write_image(OIIO::TypeDesc::UINT16, picture().data()));
@@ -71,7 +71,7 @@ TEST_F(SourceFilesTest, EveryPixelSizeAndDepthCounts) {
   std::copy(same.begin(), same.end(), real.begin());
   EXPECT_EQ(pixel_sha256(real, 16), hash);
   EXPECT_NE(pixel_sha256(real, 8), hash);
-  real(2, 1) += 0.25;  // of a float picture
+  real(2, 1) += 0.25;  // value of a floating-point image
   std::string const finer = pixel_sha256(real, 32);
   real(2, 1) = std::nextafter(real(2, 1), 0.0);
   EXPECT_NE(pixel_sha256(real, 32), finer);
@@ -145,7 +145,7 @@ TEST_F(SourceFilesTest, AnOutputIsNoInputUnderAnyName) {
   fs::create_directory_symlink(".", in_folder("again"));
   for (std::string const name : {"rays.csv", "link.csv", "hard.csv", "again/rays.csv", "./again/again/rays.csv"}) {
     EXPECT_THAT([&] { refuse_inputs_as_outputs({in_folder(name)}, {in_folder("rays.csv")}); },
-                ThrowsMessage<OutputError>(AllOf(HasSubstr(name), HasSubstr("is read by this command"))))
+                ThrowsMessage<OutputError>(AllOf(HasSubstr(name), HasSubstr("is an input of this command"))))
         << name;
   }
   refuse_inputs_as_outputs({in_folder("new.csv"), in_folder("again/new.csv")},

@@ -16,7 +16,7 @@ struct Value {
   double value, slope;
 };
 
-/// The spline at u (in cells from node 0) from its coefficients; `ghosts` before node 0.
+/// Evaluates the spline at u (in cells from node 0). @param line  coefficients, beginning with one ghost
 Value spline_at(std::vector<double> const& line, int nodes, double u) {
   int cell = static_cast<int>(std::floor(u));
   cell = std::min(std::max(cell, 0), nodes - 2);
@@ -38,7 +38,7 @@ std::vector<double> open_spline(int nodes, std::function<double(double)> const& 
   return line;
 }
 
-/// The same with the ghosts that a volume copies: one before, two after.
+/// Like open_spline(), for a periodic spline with the ghosts that a volume copies: one before, two after.
 std::vector<double> periodic_spline(int nodes, std::function<double(double)> const& f) {
   std::vector<double> values(static_cast<std::size_t>(nodes));
   for (int i = 0; i < nodes; ++i) values[static_cast<std::size_t>(i)] = f(i);
@@ -54,13 +54,13 @@ TEST(CubicBsplineWeights, SumToOneAndReproduceALine) {
     CubicBspline::weigh(u, w, d);
     EXPECT_NEAR(w[0] + w[1] + w[2] + w[3], 1, 1e-15);
     EXPECT_NEAR(d[0] + d[1] + d[2] + d[3], 0, 1e-15);
-    EXPECT_NEAR(-w[0] + w[2] + 2 * w[3], u, 1e-15);  // coefficients of a line are its values
+    EXPECT_NEAR(-w[0] + w[2] + 2 * w[3], u, 1e-15);  // the coefficients of a linear function are its values
     EXPECT_NEAR(-d[0] + d[2] + 2 * d[3], 1, 1e-15);
   }
 }
 
-// Not-a-knot ends: with N nodes, every polynomial up to degree min(3, N - 1) comes back with its derivative, from the
-// first node to the last. Tolerance: some 100 roundings of values up to 4 N^3.
+// Not-a-knot ends: with N nodes, every polynomial up to degree min(3, N - 1) and its derivative are reproduced from the
+// first node to the last. Tolerance: about 100 roundings of values up to 4 N^3.
 TEST(OpenSpline, ReproducesPolynomialsUpToTheEdge) {
   for (int nodes : {2, 3, 4, 5, 6, 7, 12, 65}) {
     for (int degree = 0; degree <= std::min(3, nodes - 1); ++degree) {
@@ -90,7 +90,7 @@ TEST(OpenSpline, InterpolatesItsNodesWhateverTheyHold) {
 }
 
 TEST(OpenSpline, ThirdDerivativeDoesNotJumpAtTheSecondNode) {
-  // the not-a-knot condition itself: the fourth difference of the coefficients about node 1 and N - 2 vanishes
+  // the not-a-knot condition: the fourth difference of the coefficients about nodes 1 and N - 2 vanishes
   std::vector<double> const c = open_spline(9, [](double x) { return std::sin(2.1 * x); });
   auto const fourth = [&](std::size_t i) { return c[i - 2] - 4 * c[i - 1] + 6 * c[i] - 4 * c[i + 1] + c[i + 2]; };
   EXPECT_NEAR(fourth(2), 0, 1e-14);
@@ -98,7 +98,8 @@ TEST(OpenSpline, ThirdDerivativeDoesNotJumpAtTheSecondNode) {
   EXPECT_GT(std::abs(fourth(5)), 0.1);
 }
 
-// The discrete B-spline is 4/6 + 2/6 cos(q) in frequency: a sampled cosine's coefficients are known exactly, for any N.
+// The transfer function of the discrete B-spline is 4/6 + 2/6 cos(q): the coefficients of a sampled cosine are known
+// exactly for any N.
 TEST(PeriodicSpline, CoefficientsOfACosineAreExact) {
   for (int nodes : {1, 2, 3, 4, 5, 8, 31, 200}) {
     for (int wave = 0; wave <= nodes / 2; wave = wave < 3 ? wave + 1 : 2 * wave) {
@@ -107,7 +108,7 @@ TEST(PeriodicSpline, CoefficientsOfACosineAreExact) {
       for (int i = 0; i < nodes; ++i) c[static_cast<std::size_t>(i)] = std::cos(q * i + 0.3);
       prefilter_periodic(c);
       for (int i = 0; i < nodes; ++i) {
-        // 2e-13: the argument q i grows to 600
+        // tolerance 2e-13, since the argument q i grows to 600
         EXPECT_NEAR(c[static_cast<std::size_t>(i)], std::cos(q * i + 0.3) * 6 / (4 + 2 * std::cos(q)), 2e-13)
             << nodes << " nodes, wave " << wave;
       }
@@ -115,7 +116,7 @@ TEST(PeriodicSpline, CoefficientsOfACosineAreExact) {
   }
 }
 
-// Between nodes the spline of a sine is off by O(h^4), its slope by O(h^3).
+// Between the nodes, the error of the spline of a sine is O(h^4), that of its slope O(h^3).
 TEST(PeriodicSpline, ConvergesToASineWithItsOrders) {
   double value_before = 0, slope_before = 0;
   for (int nodes = 8; nodes <= 128; nodes *= 2) {

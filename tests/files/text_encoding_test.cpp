@@ -14,14 +14,14 @@ TEST(Utf8, IsWhatRfc3629Allows) {
 
 TEST(Utf8, IsNothingElse) {
   for (std::string_view const text : {"D\xfcse",               // ISO-8859-1
-                                      "\x80",                  // begins in the middle
-                                      "\xc3",                  // cut short
-                                      "\xe2\x82",              // cut short
-                                      "\xe2\x28\xac",          // no continuation
-                                      "\xc0\xaf",              // longer than needed
-                                      "\xe0\x80\xaf",          // longer than needed
-                                      "\xf0\x80\x80\xaf",      // longer than needed
-                                      "\xed\xa0\x80",          // a surrogate
+                                      "\x80",                  // begins with a continuation byte
+                                      "\xc3",                  // truncated
+                                      "\xe2\x82",              // truncated
+                                      "\xe2\x28\xac",          // no continuation byte
+                                      "\xc0\xaf",              // overlong form
+                                      "\xe0\x80\xaf",          // overlong form
+                                      "\xf0\x80\x80\xaf",      // overlong form
+                                      "\xed\xa0\x80",          // surrogate
                                       "\xf4\x90\x80\x80",      // above U+10FFFF
                                       "\xf8\x88\x80\x80\x80",  // five bytes
                                       "\xff"})

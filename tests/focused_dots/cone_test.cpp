@@ -9,7 +9,7 @@
 namespace gladstone {
 namespace {
 
-/// A sinusoid along x whose gradient peaks on the axis.
+/// A sinusoid along x whose gradient has its maximum on the axis.
 Setup sinusoid_setup(double wavelength, double peak_gradient) {
   auto setup = table1_setup(64);
   setup.target.dot_diameter_px = 0;
@@ -17,9 +17,10 @@ Setup sinusoid_setup(double wavelength, double peak_gradient) {
   return setup;
 }
 
-// F10 for points at Table 1 with L_z = 10 mm, by numerical average of lever times 2 J1(pi D/L)/(pi D/L) over the slab:
-// 0.620565 at 4 mm, 0.894131 at 8 mm. Peak gradient 0.5 kg/m^4: g = 0.1875 K L_z 0.5 (2 pi/4 mm) = 3.3e-4 < 1e-3; 2^13
-// points of a net add 1e-4. The spread of the rays' displacements over Eq. 9 is 0.3519 and 0.1039.
+// F10 for points at Table 1 with L_z = 10 mm, by the numerical average of lever times 2 J1(pi D/L)/(pi D/L) over the
+// slab: 0.620565 at 4 mm, 0.894131 at 8 mm. For the peak gradient of 0.5 kg/m^4, g = 0.1875 K L_z 0.5 (2 pi/4 mm) =
+// 3.3e-4 < 1e-3; 2^13 points of a net add 1e-4. The ratio of the standard deviation of the rays' displacements to Eq. 9
+// is 0.3519 and 0.1039.
 TEST(ConeAveraging, KeepsTheFractionOfEq9ThatTheConeLeaves) {
   struct Case {
     double wavelength, kept, spread;
@@ -36,7 +37,7 @@ TEST(ConeAveraging, KeepsTheFractionOfEq9ThatTheConeLeaves) {
   }
 }
 
-// F10's own integrals, so that the two numbers above do not rest on a table.
+// Recomputes the integrals of F10, so that the two numbers above are verified independently.
 TEST(ConeAveraging, FractionsAreThoseOfTheBesselAverage) {
   for (double const wavelength : {4e-3, 8e-3}) {
     double sum = 0, levers = 0;
@@ -49,8 +50,8 @@ TEST(ConeAveraging, FractionsAreThoseOfTheBesselAverage) {
   }
 }
 
-// A disc of 3 px, 0.256 mm on the target, is 0.192 mm wide at the medium (Z_A/Z_B): another 2 J1(v)/v with v = pi
-// 0.192/4.
+// A disc of 3 px, 0.256 mm on the target, is 0.192 mm wide in the medium (Z_A/Z_B): this adds a factor 2 J1(v)/v with v
+// = pi 0.192/4.
 TEST(ConeAveraging, ADotsDiscAveragesToo) {
   auto setup = sinusoid_setup(4e-3, 0.5);
   setup.target.dot_diameter_px = 3;
@@ -62,9 +63,9 @@ TEST(ConeAveraging, ADotsDiscAveragesToo) {
   EXPECT_NEAR(truth.displacement_px[0].x, truth.eq9_px[0].x * 0.620565 * disc, 2e-4);
 }
 
-// rho = rho_0 + c x^2/2 spreads a point's rays by Z_D K L_z c D_c/(4 n0) on the target (standard deviation of a uniform
-// disc: a quarter of its diameter). c = 1000 kg/m^5 strains by g = 0.1875 K L_z c = 4e-4; float file values disturb the
-// gradient by 1e-4.
+// For rho = rho_0 + c x^2/2, the standard deviation of a point's rays on the target is Z_D K L_z c D_c/(4 n0) (for a
+// uniform disc, it is a quarter of the diameter). For c = 1000 kg/m^5, the strain is g = 0.1875 K L_z c = 4e-4; float
+// values in the file change the gradient by 1e-4.
 TEST(ConeAveraging, QuadraticFieldSpreadsAPointByTheConesWidth) {
   std::string const path = (std::filesystem::path(testing::TempDir()) / "quadratic.nrrd").string();
   double const c = 1000;

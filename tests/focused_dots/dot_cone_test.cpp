@@ -17,8 +17,8 @@ namespace {
 
 constexpr double stop = 4.77e-3, distance = 1.0, way = 0.25;  // Table 1 [m]
 
-/// A table whose rays are displaced by d and bent by b times the pupil point, as seen from the dot on the axis: a lens
-/// for a medium.
+/// Table whose rays have the displacement d and the deflection b times the pupil point, relative to the dot on the
+/// axis: the medium is a lens.
 struct LensTable {
   DeflectionTable table;
   std::vector<TableVector> displacements, shifts;
@@ -45,7 +45,7 @@ struct LensTable {
     table.displacement_slopes = table.shift_slopes = none.data();
   }
 
-  /// The dot's cone where rays agree with the table.
+  /// Returns the light cone of the dot if the traced rays agree with the table.
   CorrectedCone cone() const {
     TableCheck check;
     check.rays = check.square = 1;
@@ -53,8 +53,8 @@ struct LensTable {
   }
 };
 
-// Cubic Lagrange polynomials reproduce cubics up to the lattice's edges, and a node within with the same bits wherever
-// it begins.
+// Cubic Lagrange polynomials reproduce cubics up to the edges of the lattice. Values in the interior are bitwise
+// independent of the extent of the lattice.
 TEST(SquareLattice, ReproducesCubicsWhereverItBegins) {
   auto const cubic = [](Vec2d q) { return Vec2d{q.x * q.x * q.x - 2 * q.x * q.y * q.y, q.y * q.y * q.y + q.x}; };
   auto const lattice_from = [](int column, int row, int columns, int rows) {
@@ -77,11 +77,11 @@ TEST(SquareLattice, ReproducesCubicsWhereverItBegins) {
   for (Vec2d const q : {Vec2d{-0.59, 2.11}, Vec2d{1.19, 3.29}, Vec2d{-0.31, 2.97}, Vec2d{0.3, 2.9}}) {
     ASSERT_TRUE(small.covers(q, 0));
     EXPECT_LT(length(value(small, q) - cubic(q)), 1e-12) << q.x << " " << q.y;
-    // the compiler may fuse other products where it inlines the same sum a second time
+    // if the compiler inlines the same sum a second time, it may fuse other products
     EXPECT_DOUBLE_EQ(value(small, q).x, value(large, q).x) << q.x << " " << q.y;
     EXPECT_DOUBLE_EQ(value(small, q).y, value(large, q).y) << q.x << " " << q.y;
   }
-  // at the edges, of x from -0.9 to 1.5 and y from 1.8 to 3.6, within the rounding of numbers of some tens as above
+  // at the edges, for x from -0.9 to 1.5 and y from 1.8 to 3.6, within the rounding of numbers of some tens as above
   for (Vec2d const q : {Vec2d{-0.9, 3.6}, Vec2d{-0.9, 1.8}, Vec2d{1.5, 3.6}, Vec2d{-0.89, 3.58}, Vec2d{1.45, 1.85}}) {
     EXPECT_LT(length(value(small, q) - cubic(q)), 1e-12) << q.x << " " << q.y;
   }
@@ -90,10 +90,10 @@ TEST(SquareLattice, ReproducesCubicsWhereverItBegins) {
   EXPECT_FALSE(small.covers({std::nan(""), 3}, 0));
 }
 
-// Rays to a pupil point P arrive at (1 + b) P: those that pass the stop were sent within R / (1 + b), whether the look
-// for the edge is a short one (b = 0.002) or a long one (0.3); what is linear both find to rounding. A medium that
-// bends more than it spreads light, b < -1, turns the pupil over: no simple edge. Rays further out than 1.25 R
-// (CorrectedCone::reach) are not looked at, which b = -0.2 would send there: -0.15 sends them to 1.18 R.
+// Rays to a pupil point P arrive at (1 + b) P: those that pass the stop were sent to points within R / (1 + b). Both
+// the short search for the edge (b = 0.002) and the long one (0.3) find this up to rounding, since the problem is
+// linear. A medium with b < -1 inverts the pupil, so that there is no simple edge. Rays farther out than 1.25 R
+// (CorrectedCone::reach) are not searched: b = -0.2 would need them, b = -0.15 needs rays up to 1.18 R.
 TEST(CorrectedCone, FindsTheRimThatTheMediumMovedInOrOut) {
   for (double const b : {0.0, 0.002, -0.004, 0.3, -0.15}) {
     LensTable const lens(0, b);
@@ -106,12 +106,13 @@ TEST(CorrectedCone, FindsTheRimThatTheMediumMovedInOrOut) {
   EXPECT_TRUE(std::isnan(folded.cone().rim({}, {1, 0})));
 }
 
-// Uniform displacement d P over a disc of radius r: variance along x is d^2 r^2 / 4, the fourth moment d^4 r^4 / 8, the
-// light that arrives (r/R)^2 of what left, r = R/(1 + b). Both rules. With a rim to 1e-9 beside what cos^4 makes. Where
-// the stop's edge is smoothed, the smoothing itself leaves nothing of light, second and fourth moments, integrals of 1,
-// u and u^2 over u = (r/R)^2, since three moments of its kernel vanish (ApertureStop); the N points, 1024 and more,
-// leave N^(-3/4) = 5.5e-3 of a sharp edge's and less than half of that, 2e-3, of a smooth one's: three times as much of
-// u^2, whose integral u^3/3 changes with the rim three times as fast as the light does.
+// A displacement d P, uniform over a disc of radius r: the variance along x is d^2 r^2 / 4, the fourth moment d^4 r^4 /
+// 8, and the fraction (r/R)^2 of the light arrives, r = R/(1 + b). This is tested with both rules. With a simple edge,
+// the accuracy is 1e-9, apart from cos^4. With a smoothed edge, smoothing does not change light, second and fourth
+// moments, which are integrals of 1, u and u^2 over u = (r/R)^2, since three moments of its kernel vanish
+// (ApertureStop). The N points, at least 1024, have an error of N^(-3/4) = 5.5e-3 with a sharp edge and less than half
+// of that, 2e-3, with a smoothed one; for u^2 it is three times as large, since the integral u^3/3 changes three times
+// as fast with the edge as the light does.
 TEST(ConeRule, IntegratesALensInClosedForm) {
   double const d = 20.0, b = 0.02;
   auto const setup = table1_setup(64);
@@ -136,7 +137,7 @@ TEST(ConeRule, IntegratesALensInClosedForm) {
     }
     cone.finish(moments, all);
     double const light_here = moments.of[0], x2 = moments.of[M::at(2, 0)], x4 = moments.of[M::at(4, 0)];
-    // cos^4 falls by 2 (P/Z)^2 towards the rim: 2.3e-5 of it all, which the mean takes out
+    // Towards the edge, cos^4 decreases by 2 (P/Z)^2, 2.3e-5; its mean over the cone is included in the light.
     EXPECT_NEAR(light_here, r * r / (stop * stop), 1e-6 + tolerance);
     EXPECT_NEAR(x2 / light_here / (d * d * r * r / 4), 1, 2e-5 + tolerance);
     EXPECT_NEAR(moments.of[M::at(0, 2)] / x2, 1, 1e-6 + tolerance);
@@ -145,8 +146,8 @@ TEST(ConeRule, IntegratesALensInClosedForm) {
   }
 }
 
-// A spot moved by m is its Taylor series: what is left after the fourth order is the fifth, m^5/5! times at most 5.8
-// sigma^-5 of the peak (the Hermite polynomial He_5 under the bell).
+// A PSF displaced by m is represented by its Taylor series: after the fourth order, the remainder is the fifth, at most
+// m^5/5! times 5.8 sigma^-5 of the peak (maximum of the Hermite polynomial He_5 times the Gaussian).
 TEST(GaussianSpot, MovesByItsTaylorSeries) {
   GaussianSpot<double> const spot{0.6};
   int const width = 2 * spot.half_width() + 1;
@@ -175,9 +176,10 @@ struct FineSpot {
 };
 class TableAgainstRays : public testing::TestWithParam<FineSpot> {};
 
-// Few rays with a table give what very many give by themselves, in truth and in light: four dots each by 256 rays and
-// by 65,536 of the general renderer, which know truth to some 1e-4 px and images to half a level of 12 bits, rms over
-// lit pixels; spots much finer than a pixel show what the series leaves. Truth is within three of both stated errors.
+// Few rays with a table have the same truth and light as very many rays alone: four dots by 256 rays, and by 65,536
+// rays of the general renderer, whose errors are about 1e-4 px in the truth and half a level of 12 bits, rms over lit
+// pixels, in images. PSFs much narrower than a pixel reveal the truncation of the series. The truths agree within three
+// times the stated errors of both.
 TEST_P(TableAgainstRays, AgreesOnTruthAndLight) {
   auto const [instant, f_number, dot_px, levels] = GetParam();
   auto setup = table1_setup(96);

@@ -8,9 +8,9 @@
 namespace gladstone {
 namespace {
 
-// f_number = inf: each disc point sends its one ray through the pupil's centre, never clipped. In a uniform gradient
-// that ray is turned like any other, and Eq. 9 with each slice's own lever is its displacement within theta^2 = (2.6
-// mm/1 m)^2 = 7e-6 at 30 px off the axis, and within the field's own n - n0 there, K g 1.9 mm = 2.1e-5.
+// f_number = inf: each point of the dot sends one ray through the pupil's centre, which is never clipped. In a uniform
+// gradient, this ray is deflected like any other, and its displacement is Eq. 9 with the lever of each slice, within
+// theta^2 = (2.6 mm/1 m)^2 = 7e-6 at 30 px off the axis, and within the field's own n - n0 there, K g 1.9 mm = 2.1e-5.
 TEST(ChiefRays, TruthIsTheChiefRaysDisplacement) {
   auto setup = table1_setup(128);
   setup.lens.f_number = std::numeric_limits<double>::infinity();
@@ -27,14 +27,15 @@ TEST(ChiefRays, TruthIsTheChiefRaysDisplacement) {
     EXPECT_NEAR(rendering.truth.displacement_px[i].y, rendering.truth.chief_px[i].y, 4e-5 * 0.33);
     EXPECT_NEAR(rendering.truth.chief_px[i].x, rendering.truth.eq9_px[i].x, 1e-9);
   }
-  // without diffraction a ray's light stays in its pixel: a dot of 3 px touches five pixels at most each way
+  // without diffraction, the light of a ray stays in one pixel: a dot of 3 px covers at most five pixels in each
+  // direction
   int lit = 0;
   for (double const light : rendering.light.reference) lit += light > 0;
   EXPECT_LE(lit, 2 * 25);
   EXPECT_GE(lit, 2 * 7);
 }
 
-// The chief ray of a point: no cone, so a sinusoid keeps all of Eq. 9's amplitude (62 % of it at f/11).
+// A chief ray of a point has no cone, so that a sinusoid has the full amplitude of Eq. 9 (62 % of it at f/11).
 TEST(ChiefRays, DoNotAverage) {
   auto setup = table1_setup(64);
   setup.lens.f_number = std::numeric_limits<double>::infinity();
@@ -43,13 +44,13 @@ TEST(ChiefRays, DoNotAverage) {
   Scene scene = scene_with_dots(setup, {{31.5, 31.5}}, 1);
   GroundTruth const truth = trace_truth(scene);
   EXPECT_NEAR(truth.displacement_px[0].x / truth.eq9_px[0].x, 1, 1e-4);
-  EXPECT_NEAR(truth.displacement_std_px[0].x, 0, 1e-8);  // the root of what rounding leaves of squares
+  EXPECT_NEAR(truth.displacement_std_px[0].x, 0, 1e-8);  // square root of the rounding errors of squares
 }
 
-// Focused on the medium the dots are blurred into discs of diameter d_A |1 - z_i/z_i'| about their chief rays, which
-// land at M = z_i/Z_B: 9.5455 mm times 4.070 % = 38.84 px, a standard deviation of a quarter of it. cos^4 over the
-// pupil moves the centroid by 4 theta r^2/(4 R) of the blur, below 1e-3 px; a net of 2^12 points gives the mean to 38.8
-// px/2^10.
+// If the camera is focused on the medium, the dots are blurred into discs of diameter d_A |1 - z_i/z_i'| about their
+// chief rays, which land at M = z_i/Z_B: 9.5455 mm times 4.070 % = 38.84 px, with a standard deviation of a quarter of
+// it. cos^4 over the pupil moves the centroid by 4 theta r^2/(4 R) of the blur, below 1e-3 px; a net of 2^12 points
+// determines the mean to 38.8 px/2^10.
 TEST(Defocus, BlursByThePupilAndKeepsTheMagnification) {
   auto setup = table1_setup(256);
   setup.lens.focus = Focus::medium;
@@ -69,7 +70,8 @@ TEST(Defocus, BlursByThePupilAndKeepsTheMagnification) {
   }
 }
 
-// In the picture: no light beyond the blur disc (and the spot), even light within: sum over the disc's area.
+// In the image, there is no light beyond the blur disc plus the PSF, and the light inside is uniform: total light over
+// the disc's area.
 TEST(Defocus, SpreadsTheDotsLightOverTheBlurDisc) {
   auto setup = table1_setup(96);
   setup.lens.focus = Focus::medium;
@@ -91,7 +93,7 @@ TEST(Defocus, SpreadsTheDotsLightOverTheBlurDisc) {
   EXPECT_NEAR(inside / pixels / even, 1, 0.02);
 }
 
-// A defocused camera displaces by M Z_D with its own M; the medium acts on the same rays.
+// A defocused camera displaces dots by M Z_D with its own M; the medium deflects the same rays.
 TEST(Defocus, DisplacementFollowsTheActualMagnification) {
   auto setup = table1_setup(96);
   setup.lens.focus = Focus::medium;
@@ -100,8 +102,7 @@ TEST(Defocus, DisplacementFollowsTheActualMagnification) {
   GroundTruth const truth = trace_truth(scene);
   double const M = 0.105 * 0.75 / (0.75 - 0.105), n0 = 1 + 2.26e-4 * 1.225;
   EXPECT_NEAR(truth.eq9_px[0].x, -M * 0.25 * 2.26e-4 * 0.01 * 100 / n0 / 10e-6, 1e-9);
-  // the clipped pupil stays centred: the displaced bundle keeps its chief ray's shift at the dots, seen through the
-  // stop
+  // the clipped pupil remains centred: the bundle has the displacement of its chief ray
   EXPECT_NEAR(truth.displacement_px[0].x, truth.eq9_px[0].x, 0.02);
 }
 

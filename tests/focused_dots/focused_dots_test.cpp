@@ -33,7 +33,7 @@ TEST(FocusedDots, AreNothingButFlatDotsInFocusOfAThinLens) {
   EXPECT_TRUE(refused([](auto& s) { s.render.sampling = PupilSampling::random; }));
 }
 
-// A table has at most 1e8 rays, of 20 bytes each: 2 GB beside what the picture takes.
+// A table has at most 1e8 rays, of 20 bytes each: 2 GB in addition to the image.
 TEST(Memory, OfATableCountsBesideImagesFieldAndDots) {
   auto setup = table1_setup(1000000);
   setup.medium.field = sinusoid(0.1, 4e-3);
@@ -41,8 +41,8 @@ TEST(Memory, OfATableCountsBesideImagesFieldAndDots) {
               testing::ThrowsMessage<DataError>(testing::HasSubstr("table of deflections 2)")));
 }
 
-// The estimate for a table counts nodes by area; the table itself has whole numbers of rows and columns, up to two
-// more. Where rays are chosen, the table may be the finer one.
+// The estimated size of a table counts nodes by area; the table itself has integer numbers of rows and columns, up to
+// two more. If the number of rays is automatic, the finer table is assumed.
 TEST(Memory, OfATableIsKnownFromItsSetup) {
   for (FieldSetup const& field : {dns_plane("late"), sinusoid(0.1, 2e-3)}) {
     auto setup = table1_setup(256);

@@ -21,16 +21,16 @@ Vec2d centroid_of(Image<double> const& image) {
   return sum / sum_of(image);
 }
 
-// An isolated dot inside the frame: image and flux hold its area's light, pi d^2/4 (cos^4 takes 2.3e-5 of it), in both
-// frames, as a uniform gradient neither magnifies nor focuses. Rays at the stop's edge leave a stratum, 1/512, to
-// chance.
+// The image and the flux of an isolated dot inside the frame contain the light of its area, pi d^2/4 (cos^4 reduces it
+// by 2.3e-5), in both frames, since a uniform gradient neither magnifies nor focuses. The number of rays that pass the
+// stop varies by one stratum of the samples, 1/512.
 TEST(Light, OfADotsImageIsItsFlux) {
   for (SpotModel const spot :
        {SpotModel::gaussian, SpotModel::airy, SpotModel::gaussian_first_zero, SpotModel::seed_eq8, SpotModel::none}) {
     auto setup = table1_setup(64);
     setup.lens.spot = spot;
     setup.medium.field = uniform_gradient(60, -80);
-    // the stop's edge cuts the discs that rays are sent to: N^(-3/4) of N points, 1.2e-3 of 8192
+    // the stop's edge cuts the discs to which rays are sent: N^(-3/4) for N points, 1.2e-3 for 8192
     bool const by_rays = spot == SpotModel::airy || spot == SpotModel::none;
     Scene scene = scene_with_dots(setup, {{30.3, 33.8}}, by_rays ? 8192 : 32);
     Rendering const rendering = render_all(scene);
@@ -42,8 +42,8 @@ TEST(Light, OfADotsImageIsItsFlux) {
   }
 }
 
-// A bright dot of diameter d has pi d^2/4 fully lit pixels of light on the axis, times the mean cos^4 of its cone, 1 -
-// 2 <theta^2> = 1 - 2 (4.773 mm)^2/2; off the axis times cos^4.
+// A bright dot of diameter d on the axis has the light of pi d^2/4 fully lit pixels, times the mean cos^4 of its cone,
+// 1 - 2 <theta^2> = 1 - 2 (4.773 mm)^2/2; off the axis, times cos^4.
 TEST(Light, IsTheDotsAreaTimesTheMeanCosFour) {
   auto const setup = table1_setup(128);
   double const area = pi / 4 * 9, cone = 1 - std::pow(0.105 / 22, 2);
@@ -54,8 +54,8 @@ TEST(Light, IsTheDotsAreaTimesTheMeanCosFour) {
   EXPECT_NEAR(truth.flux[1].x / area, cone * cosine2 * cosine2, 1e-5);
 }
 
-// A dot of 40 px is white paper in its middle: light 1 per pixel. The mean over 11 x 11 px holds a tenth of 2^15 points
-// of a net; its relative error is below sqrt(1/6000) = 1.3 % even for independent points.
+// The middle of a dot of 40 px is like white paper: light 1 per pixel. The mean over 11 x 11 px contains a tenth of the
+// 2^15 points of a net; its relative error is below sqrt(1/6000) = 1.3 % even for independent points.
 TEST(Light, OfAFullyLitAreaIsOne) {
   auto setup = table1_setup(64);
   setup.target.dot_diameter_px = 40;
@@ -68,10 +68,10 @@ TEST(Light, OfAFullyLitAreaIsOne) {
   EXPECT_NEAR(mean, 1, 0.013);
 }
 
-// Spots symmetric about their ray keep the centroid, up to the aliasing of pixels, exp(-2 pi^2 sigma^2)/pi < 1e-13 px
-// at sigma = 1.25 px; a footprint ends at 5.5 sigma. The picture's dot lies where truth says and holds the flux that
-// truth says, in both frames, up to what 2^13 rays leave to chance in a dot of 0.75 px standard deviation: 0.75
-// px/2^6.5 = 8e-3 px at worst.
+// PSFs that are symmetric about their ray preserve the centroid, up to the aliasing of pixels, exp(-2 pi^2 sigma^2)/pi
+// < 1e-13 px at sigma = 1.25 px; a footprint ends at 5.5 sigma. The dot in the image has the position and the flux of
+// the truth, in both frames, up to the scatter of 2^13 rays in a dot of 0.75 px standard deviation: 0.75 px/2^6.5 =
+// 8e-3 px at worst.
 TEST(Light, OfADotIsCentredWhereTruthSays) {
   auto setup = table1_setup(64);
   setup.lens.spot = SpotModel::seed_eq8;
@@ -89,8 +89,8 @@ TEST(Light, OfADotIsCentredWhereTruthSays) {
   }
 }
 
-// A smaller sensor about the same axis sees what a larger one sees of dots inside, across and beyond its border.
-// Rounding to fixed point alone differs, some 1e-13.
+// A smaller sensor about the same axis records the same image as a larger one, for dots inside, across and outside its
+// border. Only the rounding to fixed point differs, by about 1e-13.
 TEST(Light, AtTheBorderIsThatOfALargerSensor) {
   std::vector<Vec2d> const small_px{{20.3, 30.4}, {-1.2, 27.3}, {63.4, 20.1}, {31.7, 64.6}, {-4.3, -3.6}, {66.2, 65.9}};
   std::vector<Vec2d> large_px = small_px;
@@ -112,7 +112,7 @@ TEST(Light, AtTheBorderIsThatOfALargerSensor) {
   }
 }
 
-// The sensor's own view of white paper: cos^4 of the angle to the axis.
+// The image of white paper: cos^4 of the angle to the axis.
 TEST(Light, OfWhitePaperFallsWithCosFour) {
   Scene const scene = build_scene(table1_setup(101));
   Image<double> const white = white_light(scene);
@@ -122,8 +122,8 @@ TEST(Light, OfWhitePaperFallsWithCosFour) {
   EXPECT_NEAR(white(0, 100), std::pow(1 + 2 * tangent * tangent, -2), 1e-9);
 }
 
-// Dark dots on white are white less the bright dots' light, pixel by pixel; the medium leaves the paper between as it
-// is.
+// Dark dots on white paper are white minus the light of bright dots, pixel by pixel; the medium does not change the
+// paper between them.
 TEST(Light, OfDarkDotsIsWhitePaperLessTheDots) {
   auto setup = table1_setup(64);
   setup.medium.field = uniform_gradient(100, 50);
@@ -141,7 +141,7 @@ TEST(Light, OfDarkDotsIsWhitePaperLessTheDots) {
   }
   EXPECT_EQ(paper.light.flow(10, 50), white(10, 50));
   EXPECT_LT(paper.light.reference(20, 20), 0.3);
-  // a large dark dot is black in its middle
+  // the middle of a large dark dot is black
   setup.target.dot_diameter_px = 30;
   Scene large = scene_with_dots(setup, {{31.5, 31.5}}, 1 << 14);
   EXPECT_NEAR(render_all(large).light.reference(31, 31), 0, 0.05);

@@ -12,7 +12,7 @@
 namespace gladstone {
 namespace {
 
-// Squares tile the sensor: wherever they lie, on either side of its edge, pixel and offset give back their middles.
+// Squares tile the sensor: their centres are recovered from pixel and offset, on either side of the sensor's edge.
 TEST(MomentLattice, PutsSquaresOnPixels) {
   for (double const most : {0.23, 0.4, 0.5, 0.99, 1.0, 3.7}) {
     MomentLattice const lattice = MomentLattice::no_coarser(most);
@@ -45,7 +45,7 @@ TEST(DotSquares, CountDisplacementsFromTheMiddlesOfTheSensorsSquares) {
     }
 }
 
-/// A patch's light at pixels 0 .. 63.
+/// Returns the light of a buffer at pixels 0 to 63.
 Image<double> light_of(DotPatch& patch) {
   LightImage image(64, 64);
   patch.flush(&image, 1);
@@ -58,10 +58,10 @@ struct Source {
 };
 class SpreadSource : public testing::TestWithParam<Source> {};
 
-// A disc whose points are moved, each by its own displacement d = d0 + s (x, -y / 2), a linear function of its place,
-// is the sum of its points' spots where they end up, up to the series' fifth order in |d| / sigma, d from the square's
-// middle: for a point's spot 5.8 |d / sigma|^5 / 5! (He_5 under the bell) in either of two axes, and the cross terms,
-// less than as much again; for a disc it acts at the rim alone, and less by He_4's 2.3 / 5.8.
+// A disc whose points have displacements d = d0 + s (x, -y / 2), linear in the position, is the sum of the PSFs of its
+// displaced points, up to the fifth order of the series in |d| / sigma, with d from the square's centre. For the PSF of
+// a point, the remainder is 5.8 |d / sigma|^5 / 5! (He_5 times the Gaussian) along each axis, and less than as much
+// again for the cross terms. For a disc, it only acts at the rim, and less, by the ratio to He_4's maximum, 2.3 / 5.8.
 TEST_P(SpreadSource, IsTheSumOfItsPointsWhereTheyAreMoved) {
   auto const [name, half_px, sigma] = GetParam();
   SourceCubature const source = SourceCubature::make(SourceShape::disc, half_px, sigma);
@@ -86,7 +86,7 @@ TEST_P(SpreadSource, IsTheSumOfItsPointsWhereTheyAreMoved) {
     Vec2<int> const square = squares.square_of(d0);
     Vec2d const rest = squares.from_middle(d0, square);
     DotPatch direct(spot, images), by_moments(spot, images);
-    // moments as functions of the place, term by term: (rest.x + s x)^a (rest.y - s y / 2)^b up to second order in s
+    // moments as functions of the position, term by term: (rest.x + s x)^a (rest.y - s y / 2)^b up to second order in s
     MomentField field{};
     for (int a = 0; a <= DisplacementMoments::order; ++a) {
       for (int b = 0; a + b <= DisplacementMoments::order; ++b) {
@@ -130,7 +130,7 @@ INSTANTIATE_TEST_SUITE_P(Dots, SpreadSource,
                                          Source{"finest", 1.4, 0.1}, Source{"fine_point", 0.0, 0.14}),
                          [](auto const& instance) { return std::string(instance.param.name); });
 
-// Sources so large that the images would not fit are left to their rays.
+// Sources so large that their images would need too much memory have no moment images.
 TEST(MomentImages, AreNotMadeWhereTheyWouldTakeTooMuchMemory) {
   GaussianSpot<double> const spot{0.28};
   EXPECT_TRUE(MomentImages::plan(20, spot, 0.4, PlaceRule::terms).exist());

@@ -7,9 +7,10 @@
 
 namespace gladstone {
 
-/// What a picture is off by over the lit pixels of the right one, a level and more.
+/// Error of an image over those pixels in which the correct image has at least one grey level.
 struct PictureError {
-  double rms_levels = 0;  ///< grey levels of 12 bits, the right one's brightest pixel at 90 % of full scale
+  double rms_levels = 0;  ///< grey levels of 12 bits, with the brightest pixel of the correct image at 90 % of full
+                          ///< scale
   int lit = 0;            ///< pixels
 };
 

@@ -12,7 +12,7 @@
 namespace gladstone {
 namespace {
 
-/// The plan of "auto", by the fast renderer where the scene is one.
+/// Returns the automatic plan, by the fast renderer if it supports the scene.
 RaysPlan plan_rays(Scene& scene) {
   auto const dots = focused_dots(scene);
   if (!dots) return plan_rays_by_rays(scene);
@@ -25,16 +25,16 @@ RaysPlan plan_rays_anew(Scene& scene) {
   return plan_rays(scene);
 }
 
-/// Truth of a scene at another step with the same rays.
+/// Returns the truth of a scene with another step and the same rays.
 GroundTruth truth_at_step(Scene const& scene, double step) {
   Scene other = scene;
   other.step = step;
   return trace_truth(other);
 }
 
-// Halving the planned step moves no dot by 1e-4 px: checked with rays of the renderer instead of the plan's five. Point
-// dots and a margin of zero gradient at the stop's edge: rays that change sides of the stop are the same in both runs
-// to 1e-7.
+// Halving the planned step changes no displacement by 1e-4 px, checked with rays of the renderer instead of the five
+// rays of the plan. Dots are points, and the stop's edge has a margin of zero gradient: rays that change sides of the
+// edge are the same in both runs to 1e-7.
 TEST(PlanStep, HalvingChangesNoDotByATenThousandthOfAPixel) {
   for (char const* instant : {"kepeak", "late"}) {
     auto setup = table1_setup(512);
@@ -56,8 +56,8 @@ TEST(PlanStep, HalvingChangesNoDotByATenThousandthOfAPixel) {
   }
 }
 
-// A trilinear field's gradient jumps from cell to cell: a quarter of a cell at most. A shock: a quarter of its
-// thickness.
+// The gradient of a trilinear field is discontinuous between cells: the step is at most a quarter of a cell. For a
+// shock, it is at most a quarter of its thickness.
 TEST(PlanStep, ResolvesCellsAndShocks) {
   auto setup = table1_setup(64);
   setup.medium.field = dns_plane("late");
@@ -96,7 +96,7 @@ TEST(PlanRays, KeepsAGivenNumber) {
   EXPECT_EQ(scene.rays_per_dot, 77u);
 }
 
-// A chief ray of a point has nothing to average.
+// The chief ray of a point needs no average.
 TEST(PlanRays, OneChiefRayOfAPointIsEnough) {
   auto setup = table1_setup(64);
   setup.lens.f_number = std::numeric_limits<double>::infinity();
@@ -107,9 +107,9 @@ TEST(PlanRays, OneChiefRayOfAPointIsEnough) {
   EXPECT_TRUE(plan.converged);
 }
 
-// Fronts of a cell's width under a cone of 38 cells: no number of rays mends what table and rules leave of images, by
-// which rays of another choice are off. The plan makes both twice as fine, which takes off more than half of it, and
-// says what is left.
+// Fronts as narrow as a cell, with a light cone of 38 cells: the error of table and rules in images does not decrease
+// with the number of rays. The plan refines both by a factor of two, which reduces the error by more than half, and
+// reports the remaining error.
 TEST(PlanRays, MakesTableAndRulesFinerWhereFrontsAskForIt) {
   auto setup = table1_setup(64);
   setup.medium.field = dns_plane("kepeak");
@@ -124,8 +124,8 @@ TEST(PlanRays, MakesTableAndRulesFinerWhereFrontsAskForIt) {
   EXPECT_GT(plan.image_error_levels, 0.5);
 }
 
-// What is chosen for the table hangs on the view and what lies in it, not on the dots that are there: a dot's truth is
-// the same whatever others there are.
+// The plan of the table depends on the view and the field, not on the dots of the scene: the truth of a dot is
+// independent of the others.
 TEST(PlanRays, HangsOnNoDots) {
   auto setup = table1_setup(64);
   setup.medium.field = dns_plane("kepeak");
@@ -138,7 +138,7 @@ TEST(PlanRays, HangsOnNoDots) {
   EXPECT_GT(one.truth_error_px, 0);
 }
 
-// Under a cone of 105 cells, at f/4, it says that it cannot reach what is asked.
+// With a light cone of 105 cells, at f/4, the plan reports that the required accuracy cannot be reached.
 TEST(PlanRays, AdmitsWhatItCannotReach) {
   auto setup = table1_setup(64);
   setup.medium.field = dns_plane("kepeak");
@@ -148,13 +148,14 @@ TEST(PlanRays, AdmitsWhatItCannotReach) {
   EXPECT_FALSE(plan.converged);
   EXPECT_EQ(plan.fineness, 2);
   EXPECT_GT(plan.image_error_levels, 0.5);
-  EXPECT_TRUE(std::isnan(plan.rays_wanted)) << "no number would do";
+  EXPECT_TRUE(std::isnan(plan.rays_wanted)) << "no number of rays is sufficient";
 }
 
-// Out of focus every ray's light stays where it lands, and half a grey level under discs twenty deep would take more
-// rays than anybody waits for. A dot stops at its budget of processor time, counted and not clocked, and the plan tells
-// what was asked, what it got, and what it would have taken. The bounds are on one source, 12 ms, where they were on a
-// scene, 60 s: the same for the 5000 dots of 512 x 512 px, and no dot has the fewer rays for the others.
+// Out of focus, the light of every ray stays where it lands, and half a grey level with twenty overlapping discs would
+// need too many rays. The number is limited by a budget of processor time per dot, which is estimated, not measured.
+// The plan reports the requirement, the achieved accuracy, and the number of rays that would be needed. The budget
+// applies per source, 12 ms, so that the number of rays of a dot does not depend on the others: 60 s for the 5000 dots
+// of 512 x 512 px.
 TEST(PlanRays, StaysWithinItsBudget) {
   auto setup = table1_setup(512);
   setup.lens.focus = Focus::medium;
@@ -165,12 +166,12 @@ TEST(PlanRays, StaysWithinItsBudget) {
   EXPECT_GT(plan.image_error_levels, image_tolerance_levels);
   double const seconds = ray_seconds(scene) * static_cast<double>(plan.most);
   EXPECT_LE(seconds, source_budget_s);
-  EXPECT_GT(2 * seconds, source_budget_s) << "twice as many would not be within it";
+  EXPECT_GT(2 * seconds, source_budget_s) << "twice as many would exceed the budget";
   EXPECT_EQ(plan.rays, plan.most);
   EXPECT_GT(plan.rays_wanted, static_cast<double>(plan.rays));
 }
 
-// A ray's time is counted in steps and lit pixels; 1024 rays are always taken where they are asked for.
+// The time of a ray is estimated from the numbers of steps and lit pixels; up to 1024 rays are always allowed.
 TEST(PlanRays, CountsTheTimeOfARay) {
   auto setup = table1_setup(64);
   setup.medium.field = dns_plane("kepeak");
@@ -183,8 +184,8 @@ TEST(PlanRays, CountsTheTimeOfARay) {
   EXPECT_EQ(most_rays_of_source(scene), 1024u);
 }
 
-// The promise: truth to 1e-3 px rms and the flow picture to half a grey level of 12 bits rms over lit pixels, against
-// 65,536 rays by themselves, which scatter by some 4e-4 px and a third of a level.
+// The stated accuracy is reached: truth to 1e-3 px rms, and the measurement image to half a grey level of 12 bits, rms
+// over lit pixels, compared with 65,536 rays alone, whose scatter is about 4e-4 px and a third of a level.
 TEST(PlanRays, KeepsItsPromiseAgainstManyRaysByThemselves) {
   auto setup = table1_setup(64);
   setup.medium.field = sinusoid(0.015, 5e-3);
@@ -210,8 +211,8 @@ TEST(PlanRays, KeepsItsPromiseAgainstManyRaysByThemselves) {
   EXPECT_LT(error.rms_levels, std::hypot(0.5, 0.4));
 }
 
-/// rms over lit pixels of the scatter of one picture, from two of other seeds, in grey levels of 12 bits when the
-/// brightest pixel of both frames is at 90 % of full scale; the worse frame's.
+/// Returns the scatter of an image in the worse frame, from two images with different seeds: rms over lit pixels, in
+/// grey levels of 12 bits with the brightest pixel of both frames at 90 % of full scale.
 double scatter_of_pictures(Scene scene) {
   LightPair const one = RaysRenderer().render(scene, scene.dots, RenderImages::yes, RenderTheory::no).light;
   scene.setup.render.seed = repeat_seed(scene.setup.render.seed, 5);
@@ -234,10 +235,10 @@ double scatter_of_pictures(Scene scene) {
   return worse;
 }
 
-// What is said of pictures from single dots holds for the pictures of all of them, out of focus too, where discs of 39
-// px lie over each other twenty deep and every ray's light stays where it lands. The scatter itself is found to a few
-// percent; the brightest pixel, of which it is a share, is estimated as three standard deviations above the mean where
-// dots overlap: 25 %.
+// The image error estimated from single dots applies to images of all dots, also out of focus, where discs of 39 px
+// overlap twenty-fold and every ray's light stays where it lands. The estimate of the scatter itself is accurate to a
+// few per cent; that of the brightest pixel, to which it refers, is three standard deviations above the mean where dots
+// overlap: 25 %.
 TEST(MeasureRays, FindsTheScatterOfWholePictures) {
   for (Focus const focus : {Focus::target, Focus::medium}) {
     auto setup = table1_setup(64);
@@ -253,7 +254,8 @@ TEST(MeasureRays, FindsTheScatterOfWholePictures) {
   }
 }
 
-/// What a scene's fast picture of the flow is off by beside 65,536 rays alone, which scatter by a third of a level.
+/// Returns the error of the measurement image by the fast renderer, compared with 65,536 rays alone, whose scatter is a
+/// third of a level.
 double table_is_off(Scene const& scene) {
   Scene fast = scene, many = scene;
   many.rays_per_dot = 65536;
@@ -263,8 +265,8 @@ double table_is_off(Scene const& scene) {
   return picture_error(found.light.flow, exact.light.flow).rms_levels;
 }
 
-// Where fronts spread a dot's rays over pixels a table is off by levels, and says by how many: nine dots by the scene's
-// own light, each by its own, a factor of two allowed for the fronts that they see.
+// If fronts spread a dot's rays over pixels, the error of a table is several grey levels, and it is reported: nine dots
+// are compared, each with the measured error of images; a factor of two is allowed for the fronts that they see.
 TEST(MeasureTableError, TellsHowFarImagesAreOff) {
   for (char const* instant : {"kepeak", "late"}) {
     auto setup = table1_setup(64);
@@ -277,8 +279,8 @@ TEST(MeasureTableError, TellsHowFarImagesAreOff) {
   }
 }
 
-// A uniform gradient bends all rays of a dot alike but for second order: what the table is off by is below what the
-// rays of the measurement scatter by, and is not told from nothing.
+// A uniform gradient deflects all rays of a dot equally up to second order: the error of the table is below the scatter
+// of the rays by which it is measured, and cannot be distinguished from zero.
 TEST(MeasureTableError, TellsWhatItCanResolve) {
   auto setup = table1_setup(64);
   setup.medium.field = uniform_gradient(20, 10);
@@ -290,8 +292,8 @@ TEST(MeasureTableError, TellsWhatItCanResolve) {
   EXPECT_LT(told.truth_error_px, 2 * told.truth_resolution_px);
 }
 
-// A uniform gradient moves all dots alike, by 2.6 px or by 60: what is told of their images is the same to what rays of
-// another choice scatter by.
+// A uniform gradient displaces all dots equally, by 2.6 px or by 60 px: the detection limit of the image error is about
+// the same for both.
 TEST(MeasureTableError, FollowsDotsThatMoveFar) {
   double told[2] = {};
   for (double const gradient : {400.0, 9000.0}) {
@@ -304,7 +306,8 @@ TEST(MeasureTableError, FollowsDotsThatMoveFar) {
   EXPECT_GT(told[1], told[0] / 2);
 }
 
-// A dot that no scrambling shows tells nothing; one that some of them show moves from there to nowhere, which scatters.
+// A dot that is invisible in all scramblings is ignored; one that is visible in some of them counts as displaced from
+// its position to zero, which increases the scatter.
 TEST(RayScatter, ADotThatIsNotSeenTellsNothing) {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   MeanDisplacement const unseen = MeanDisplacement::of({{nan, nan}, {nan, nan}, {nan, nan}, {nan, nan}});

@@ -15,7 +15,7 @@ bool same_bits(Range const& a, Range const& b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(*a.data())) == 0;
 }
 
-// Interface.md, Repeatability: images accumulate in integers, a dot's sums run in the order of its rays.
+// interface.md, Repeatability: images accumulate in integers, and a dot's sums follow the order of its rays.
 TEST(FocusedDotsRenderer, GivesTheSameBitsOnAnyNumberOfThreads) {
   auto setup = table1_setup(64);
   setup.medium.field = dns_plane("kepeak");
@@ -57,8 +57,8 @@ TEST(FocusedDotsRenderer, WithoutAMediumBothFramesAreEqual) {
   }
 }
 
-// A uniform slab bends nothing: with matched faces whatever its density, with refracting ones at the ambient density.
-// The interface allows 1e-11 px; rounding of positions of 1e3 px leaves 1e-13.
+// A uniform slab displaces nothing: with matched faces at any density, with refracting ones at the ambient density. The
+// interface allows 1e-11 px; the rounding of positions of 1e3 px amounts to 1e-13.
 TEST(FocusedDotsRenderer, UniformDensityDisplacesNothing) {
   std::string const path = (std::filesystem::path(testing::TempDir()) / "uniform.nrrd").string();
   write_plane(path, 16, 16, [](int, int) { return 1.7; });
@@ -90,7 +90,7 @@ TEST(FocusedDotsRenderer, UniformDensityDisplacesNothing) {
   }
 }
 
-// No medium and a point in focus: every ray of every dot lands where the pinhole would put it.
+// Without a medium and for a point in focus, every ray of every dot lands at the pinhole projection.
 TEST(FocusedDotsRenderer, ReferenceIsWhereThePinholeSees) {
   auto setup = table1_setup(256);
   setup.target.dot_diameter_px = 0;
@@ -103,9 +103,9 @@ TEST(FocusedDotsRenderer, ReferenceIsWhereThePinholeSees) {
   }
 }
 
-// A dot is aimed at by itself, whatever the bend: through a prism of 2.26e-4 * g * L_z its cone passes the stop a bend
-// aside, here more than half of the stop's radius, beyond what a table has room for at first. In a uniform gradient all
-// of its light arrives, displaced by Eq. 9 within theta^2.
+// Each dot is aimed at individually, for any deflection: behind a prism of 2.26e-4 * g * L_z, its light cone passes the
+// stop at a displacement of more than half of the stop's radius, for which the initial table is too small. In a uniform
+// gradient, all of its light arrives, displaced by Eq. 9 within theta^2.
 TEST(FocusedDotsRenderer, AimsAtADotThatIsBentFarAsideAgain) {
   auto setup = table1_setup(64);
   setup.target.dot_diameter_px = 0;
@@ -122,7 +122,8 @@ TEST(FocusedDotsRenderer, AimsAtADotThatIsBentFarAsideAgain) {
   EXPECT_EQ(truth.rays_planned[0], 32);
 }
 
-// Whatever else is in the scene: the table's nodes lie at fixed places, rays are the same of every dot.
+// The result of a dot does not depend on the other dots: the table's nodes are at fixed positions, and all dots have
+// the same rays.
 TEST(FocusedDotsRenderer, ADotIsTheSameBitsAloneAndAmongManyOthers) {
   for (FieldSetup const& field : {dns_plane("late"), sinusoid(0.1, 4e-3)}) {
     auto setup = table1_setup(256);
@@ -144,7 +145,7 @@ TEST(FocusedDotsRenderer, ADotIsTheSameBitsAloneAndAmongManyOthers) {
   }
 }
 
-// Light adds up in whole units: what the others leave out is the one dot's, bit by bit.
+// Light is accumulated in whole units: all dots minus the others equals the one dot, to the last bit.
 TEST(FocusedDotsRenderer, TheLightOfADotIsTheSameAloneAndAmongOthers) {
   auto setup = table1_setup(96);
   setup.medium.field = dns_plane("late");
@@ -154,13 +155,13 @@ TEST(FocusedDotsRenderer, TheLightOfADotIsTheSameAloneAndAmongOthers) {
   others.dots.centre.erase(others.dots.centre.begin() + static_cast<std::ptrdiff_t>(dot));
   LightPair const all = render_all(many).light, one = render_all(alone).light, rest = render_all(others).light;
   for (std::size_t i = 0; i < all.flow.size(); ++i) {
-    // 1/2^n of exact sums: doubles hold them without rounding
+    // multiples of 1/2^n, which doubles represent without rounding
     ASSERT_EQ(all.flow.data()[i], one.flow.data()[i] + rest.flow.data()[i]);
     ASSERT_EQ(all.reference.data()[i], one.reference.data()[i] + rest.reference.data()[i]);
   }
 }
 
-// Dots whose rays miss the sensor's area have a truth like any other; one out of the picture leaves no light in it.
+// Dots whose rays miss the sensor's area have a truth like any other; a dot outside the image adds no light to it.
 TEST(FocusedDotsRenderer, DotsOutsideThePictureHaveTruthButNoLight) {
   auto setup = table1_setup(64);
   setup.target.dot_diameter_px = 0;

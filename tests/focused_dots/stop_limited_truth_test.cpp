@@ -10,7 +10,7 @@
 namespace gladstone {
 namespace {
 
-/// A density plane of our own making: periodic cubic B-spline, read and filtered independently of render/medium.
+/// Independent implementation of a density plane: periodic cubic B-spline, read and filtered without render/medium.
 class PeriodicPlane {
  public:
   explicit PeriodicPlane(FieldSetup const& field) {
@@ -50,7 +50,8 @@ class PeriodicPlane {
     double const s = 1 - t;
     return {-s * s / 2, (3 * t * t - 4 * t) / 2, (4 * s - 3 * s * s) / 2, t * t / 2};
   }
-  /// Solves (c[i-1] + 4 c[i] + c[i+1])/6 = f[i] on a ring: c = sqrt(3) sum z^|k| f[i+k], z = sqrt(3) - 2 (Unser 1993).
+  /// Solves the periodic system (c[i-1] + 4 c[i] + c[i+1])/6 = f[i]: c = sqrt(3) sum z^|k| f[i+k], z = sqrt(3) - 2
+  /// (Unser 1993).
   void filter(int start, int stride, int n) {
     std::vector<double> f(static_cast<std::size_t>(n));
     for (int i = 0; i < n; ++i) f[std::size_t(i)] = coefficients_[std::size_t(start + i * stride)];
@@ -69,14 +70,15 @@ class PeriodicPlane {
   std::vector<double> coefficients_;
 };
 
-/// What straight rays say of one dot, in px: clipped at the stop in each frame, clipped to rays common to both,
-/// unclipped.
+/// Displacement of one dot by straight rays [px]: clipped at the stop in each frame, clipped to the rays common to
+/// both, and unclipped.
 struct StraightTruth {
   Vec2d clipped, common, unclipped;
 };
 
-/// Rays of one dot through slices of the field, each of which turns the ray by K grad rho dz/n0 where the undeflected
-/// ray meets it. Disc and enlarged pupil are covered by the additive recurrence on the four-dimensional golden ratio.
+/// Computes the displacement of one dot by rays through slices of the field, each of which deflects the ray by K grad
+/// rho dz/n0 at its intersection with the undeflected ray. The dot and the enlarged pupil are sampled by the additive
+/// recurrence of the four-dimensional golden ratio.
 StraightTruth straight_truth(PeriodicPlane const& plane, Scene const& scene, Vec2d centre, int rays) {
   double const phi = 1.1673039782614187;  // real root of x^5 = x + 1
   double const stop = scene.imaging.entrance_pupil / 2, wide = stop + scene.pupil_margin, z_b = scene.setup.z_b();
@@ -112,7 +114,7 @@ StraightTruth straight_truth(PeriodicPlane const& plane, Scene const& scene, Vec
           to_px(unclipped / in_stop[0])};
 }
 
-/// Places spread over the view by the plastic number's recurrence.
+/// Returns positions spread over the view by the recurrence of the plastic number.
 std::vector<Vec2d> spread_places(int count) {
   std::vector<Vec2d> places;
   double whole;
@@ -136,12 +138,12 @@ Scene dns_scene(std::string const& instant, int dots, double dot_px, std::uint64
   return scene_with_dots(setup, spread_places(dots), rays);
 }
 
-/// rms difference between the renderer's truth and straight rays over rms truth, on 40 dots. Each of the four sequences
-/// that their rays are dealt to has 2^13 points.
+/// Returns the rms difference between the renderer's truth and straight rays over the rms truth, for 40 dots. Each of
+/// the four scramblings of their rays has 2^13 points.
 double straight_ray_error(std::string const& instant, double dot_px) {
   Scene scene = dns_scene(instant, 40, dot_px, 1 << 15);
   GroundTruth const truth =
-      RaysRenderer().render(scene, scene.dots, RenderImages::no, RenderTheory::no).truth;  // nothing but rays
+      RaysRenderer().render(scene, scene.dots, RenderImages::no, RenderTheory::no).truth;  // by ray tracing alone
   PeriodicPlane const plane(scene.setup.medium.field);
   RmsRatio ratio;
   for (std::size_t i = 0; i < truth.size(); ++i) {
@@ -150,25 +152,26 @@ double straight_ray_error(std::string const& instant, double dot_px) {
   return ratio.value();
 }
 
-// Rays through the late plane are turned by 2e-5 rad rms and leave the straight line by 1e-7 m = 0.2 % of a cell; 2^14
-// points of the cone leave 0.2 % of the signal of 0.07 px to chance. Rays at the stop's edge that pass in one frame
-// only make up g = 1e-2 of the bundle and carry the disc's radius: with dots of 3 px sqrt(g N) 0.75 px/N = 6e-4 px
-// more, in both sums.
+// Rays through the late plane are deflected by 2e-5 rad rms and depart from the straight line by 1e-7 m = 0.2 % of a
+// cell; the sampling error of 2^14 points of the cone is 0.2 % of the displacement of 0.07 px. Rays at the stop's edge
+// that pass in one frame only are g = 1e-2 of the bundle and have the dot's radius: for dots of 3 px, this adds sqrt(g
+// N) 0.75 px/N = 6e-4 px in both sums.
 TEST(StopLimitedTruth, AgreesWithStraightRaysOnTheLatePlane) {
   EXPECT_LT(straight_ray_error("late", 0), 0.004);
   EXPECT_LT(straight_ray_error("late", 3), 0.03);
 }
 
-// On the earlier plane rays are turned by 1.8e-4 rad rms (1.6e-3 at most) and leave the straight line by 1e-6 m, 1.5 %
-// of a cell: 1 % of the gradient where it changes over a front's width of a few cells.
+// On the early plane, rays are deflected by 1.8e-4 rad rms (1.6e-3 at most) and depart from the straight line by 1e-6
+// m, 1.5 % of a cell: 1 % of the gradient where it changes over a front's width of a few cells.
 TEST(StopLimitedTruth, AgreesWithStraightRaysOnTheEarlierPlane) {
   EXPECT_LT(straight_ray_error("kepeak", 0), 0.015);
   EXPECT_LT(straight_ray_error("kepeak", 3), 0.02);
 }
 
-// Launching over the ambient pupil without clipping is off by about 25 % rms on the earlier plane and 2 % on the late
-// one, clipping to rays common to both frames by 16 % and 2 % (rms of the vector difference over rms of the
-// displacement, over the view; 300 points sample a few independent fronts, hence the wide intervals).
+// The truth without clipping, from rays over the undeflected pupil, has an error of about 25 % rms on the early plane
+// and 2 % on the late one; clipping to rays common to both frames has errors of 16 % and 2 % (rms of the vector
+// difference over rms of the displacement, over the view; the tolerances are wide, since 300 points sample only a few
+// independent fronts).
 TEST(StopLimitedTruth, CannotBeHadWithoutClippingInEachFrame) {
   struct Case {
     char const* instant;

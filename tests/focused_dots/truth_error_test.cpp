@@ -11,16 +11,17 @@
 namespace gladstone {
 namespace {
 
-using BosSetup = Setup;  // testing::Test has a Setup of its own
+using BosSetup = Setup;  // testing::Test has a member named Setup
 
-/// How many components of the dots' displacements lie within one standard error of what many more rays say.
+/// Comparison of the stated errors of dots with their deviations from many more rays.
 struct Coverage {
   double share = 0;
   TableState table = TableState::made;
-  double told = 0, found = 0;  ///< rms [px]
+  double told = 0, found = 0;  ///< rms of the stated errors and of the deviations [px]
 };
 
-/// @param scene with its number of rays @param seeds that it is rendered with
+/// @param scene  with its number of rays
+/// @param seeds  number of seeds with which it is rendered
 Coverage coverage_of(Scene const& scene, std::uint64_t many_rays, int seeds) {
   FocusedDotsRenderer fast;
   RaysRenderer general;
@@ -38,7 +39,7 @@ Coverage coverage_of(Scene const& scene, std::uint64_t many_rays, int seeds) {
   for (int seed = 1; seed <= seeds; ++seed) {
     GroundTruth const truth = truth_of(scene.rays_per_dot, static_cast<std::uint64_t>(seed)).truth;
     for (std::size_t dot = 0; dot < truth.size(); ++dot) {
-      if (std::isnan(truth.displacement_px[dot].x)) continue;  // left to the other renderer
+      if (std::isnan(truth.displacement_px[dot].x)) continue;  // fallback dot of the fast renderer
       Vec2d const off = truth.displacement_px[dot] - reference.truth.displacement_px[dot];
       Vec2d const error = truth.displacement_error_px[dot];
       within += (std::abs(off.x) <= error.x) + (std::abs(off.y) <= error.y);
@@ -53,7 +54,7 @@ Coverage coverage_of(Scene const& scene, std::uint64_t many_rays, int seeds) {
   return coverage;
 }
 
-/// A volume of one wave in x and y that ends within the view: dots there see it through its faces.
+/// Writes a volume with one wave in x and y that ends within the view, so that dots are seen through its side faces.
 FieldSetup small_volume(std::string const& path) {
   constexpr int side = 24, layers = 8;
   std::ofstream file(path, std::ios::binary);
@@ -75,11 +76,11 @@ FieldSetup small_volume(std::string const& path) {
   return field;
 }
 
-// Two thirds of independent errors of known size lie within that size, 0.683 for normal ones. Whatever made truth: a
-// table's integral that rays correct (a plane of turbulence, a wave), a volume's, beside rays alone where its faces
-// part them, rays of a lens out of focus. The reference, many more rays of another seed, adds less than a tenth. With
-// some 600 components, of which the two of a dot and all seeds of it share the reference, the share scatters by 2 to 3
-// %: 0.60 to 0.76.
+// Of independent errors with a known standard error, two thirds are within it, 0.683 for normal ones. This must hold
+// for all kinds of truth: the integral of a table corrected by rays (a plane of turbulence, a wave), a volume whose
+// side faces require rays alone, and rays of a defocused lens. The error of the reference, many more rays with another
+// seed, is less than a tenth. With about 600 components, of which the two of a dot and all its seeds share the
+// reference, the standard deviation of the fraction is 2 to 3 %: 0.60 to 0.76.
 TEST(TruthError, TwoThirdsOfTheDotsLieWithinIt) {
   struct Case {
     char const* name;
@@ -105,14 +106,14 @@ TEST(TruthError, TwoThirdsOfTheDotsLieWithinIt) {
     Scene const scene = scene_with_dots(setup, lattice(96, 6, 14), one.rays);
     Coverage const coverage = coverage_of(scene, one.many_rays, 8);
     EXPECT_EQ(coverage.table, one.table) << one.name;
-    EXPECT_GE(coverage.share, 0.60) << one.name << ": told " << coverage.told << " px, found " << coverage.found;
-    if (coverage.told < 3e-5) continue;  // what rounding and rims leave makes up for it
-    EXPECT_LE(coverage.share, 0.76) << one.name << ": told " << coverage.told << " px, found " << coverage.found;
+    EXPECT_GE(coverage.share, 0.60) << one.name << ": stated " << coverage.told << " px, actual " << coverage.found;
+    if (coverage.told < 3e-5) continue;  // rounding and the edge of the stop make the stated error too large
+    EXPECT_LE(coverage.share, 0.76) << one.name << ": stated " << coverage.told << " px, actual " << coverage.found;
   }
 }
 
-// A uniform gradient bends all rays alike, and a table knows what they do to some 1e-5 px: at any thickness, in any
-// view. Rays alone would scatter by 0.01 px, since other rays pass the stop in the flow than in the reference.
+// A uniform gradient deflects all rays equally, and the error of a table is about 1e-5 px, at any thickness and in any
+// view. Rays alone would scatter by 0.01 px, since different rays pass the stop with and without the medium.
 TEST(TruthError, AUniformGradientHasATableAtAnyThickness) {
   for (double const thickness : {10e-3, 30e-3, 50e-3, 200e-3}) {
     auto setup = table1_setup(96);
@@ -128,7 +129,7 @@ TEST(TruthError, AUniformGradientHasATableAtAnyThickness) {
   }
 }
 
-// What does not scatter is known exactly, and what a single ray says is not known at all.
+// Results without scatter have an error of zero; the error of a single ray is unknown.
 TEST(TruthError, IsZeroWithoutAFieldAndUnknownOfASingleRay) {
   auto const truth_with = [](std::uint64_t rays, std::function<void(BosSetup&)> const& change) {
     auto setup = table1_setup(64);
@@ -145,7 +146,7 @@ TEST(TruthError, IsZeroWithoutAFieldAndUnknownOfASingleRay) {
   });
   EXPECT_EQ(truth_accuracy(chief, 1e-3).largest_px, 0.0);
   EXPECT_EQ(truth_accuracy(chief, 1e-3).unknown, 0u);
-  // rays are sent to more than the stop: some dots' only ray misses it, and these dots are not seen
+  // rays are sent to an area larger than the stop: the only ray of some dots misses it, and these dots are invisible
   TruthAccuracy const single = truth_accuracy(truth_with(1, [](BosSetup&) {}), 1e-3);
   EXPECT_GE(single.unknown, 4u);
   EXPECT_TRUE(std::isnan(single.rms_px));
@@ -154,8 +155,8 @@ TEST(TruthError, IsZeroWithoutAFieldAndUnknownOfASingleRay) {
   }
 }
 
-// Of groups of equal weight a weighted mean's error is the standard deviation of the groups' means over the square root
-// of their number, times Student's factor: here 1, 2, 3 and 6 about their mean 3, so sqrt(14/3/4) = 1.0801.
+// For groups of equal weight, the error of a weighted mean is the standard deviation of the groups' means over the
+// square root of their number, times Student's factor: here 1, 2, 3 and 6 with mean 3, hence sqrt(14/3/4) = 1.0801.
 TEST(TruthError, IsThatOfTheMeanOfIndependentGroups) {
   RaySums of[4], all;
   TableCheck check[4], all_checked;
@@ -174,7 +175,7 @@ TEST(TruthError, IsThatOfTheMeanOfIndependentGroups) {
   CheckErrors const errors = check_errors(check, 4, all_checked);
   EXPECT_NEAR(std::sqrt(errors.scatter2.x), expected, 1e-12);
   EXPECT_EQ(errors.scatter2.y, 0);
-  EXPECT_NEAR(errors.miss2.x, 14.0 / 4, 1e-12);  // the rays' own variance
+  EXPECT_NEAR(errors.miss2.x, 14.0 / 4, 1e-12);  // variance between the rays
 }
 
 TEST(TruthAccuracy, CountsDotsAboveALimit) {
@@ -182,7 +183,7 @@ TEST(TruthAccuracy, CountsDotsAboveALimit) {
   truth.resize(4);
   double const nan = std::numeric_limits<double>::quiet_NaN();
   truth.displacement_error_px = {{3e-4, 4e-4}, {0, 2e-3}, {nan, nan}, {nan, nan}};
-  truth.displacement_px[3] = {nan, nan};  // not seen: there is no truth whose error could be unknown
+  truth.displacement_px[3] = {nan, nan};  // invisible dot: it has no truth, and hence no unknown error
   truth.path = {TruthPath::table, TruthPath::rays, TruthPath::rays, TruthPath::rays};
   TruthAccuracy const accuracy = truth_accuracy(truth, 1e-3);
   EXPECT_NEAR(accuracy.rms_px, std::sqrt((9e-8 + 16e-8 + 4e-6) / 4), 1e-15);

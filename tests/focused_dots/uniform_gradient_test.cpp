@@ -10,10 +10,11 @@
 namespace gladstone {
 namespace {
 
-/// Eq. 9 on paper for Table 1: 0.006626657 px per kg/m^4.
+/// Sensitivity of Eq. 9 for Table 1: 0.006626657 px per kg/m^4.
 constexpr double px_per_gradient = 0.006626657;
 
-/// Shift of a whole picture from the phase of its lowest Fourier modes; exact for a rigid shift of what lies inside.
+/// Returns the shift of a whole image from the phase of its lowest Fourier modes; exact for a rigid shift of an image
+/// with a dark border.
 Vec2d shift_by_phase(Image<double> const& from, Image<double> const& to) {
   auto const mode = [](Image<double> const& image, int k, int l) {
     std::complex<double> sum = 0;
@@ -37,7 +38,8 @@ Vec2d shift_by_phase(Image<double> const& from, Image<double> const& to) {
   return {shift.x / weight_x, shift.y / weight_y};
 }
 
-// Dots move against grad n: left for a density rising to the right, down (v > 0) for one rising upwards.
+// Dots are displaced against grad n: to the left if the density increases to the right, downwards (v > 0) if it
+// increases upwards.
 TEST(UniformGradient, MovesDotsAgainstTheGradient) {
   struct Case {
     Vec2d gradient;
@@ -49,7 +51,7 @@ TEST(UniformGradient, MovesDotsAgainstTheGradient) {
     setup.medium.field = uniform_gradient(one.gradient.x, one.gradient.y);
     Scene scene = scene_with_dots(setup, {{31.5, 31.5}}, 64);
     GroundTruth const truth = trace_truth(scene);
-    // eq. 9 to the digits of the printed sensitivity; truth within F27's theta^2 averaged over the cone, (4.77
+    // Eq. 9 to the digits of the printed sensitivity; the truth differs by F27's theta^2, averaged over the cone, (4.77
     // mrad)^2/2 = 1.1e-5
     EXPECT_NEAR(truth.eq9_px[0].x, one.u * 10 * px_per_gradient, 1e-8);
     EXPECT_NEAR(truth.eq9_px[0].y, one.v * 10 * px_per_gradient, 1e-8);
@@ -59,10 +61,11 @@ TEST(UniformGradient, MovesDotsAgainstTheGradient) {
   }
 }
 
-// F27 of a chief ray at angle theta, in the plane of the gradient: truth over Eq. 9 is 1 + theta^2 with matched faces,
-// 1 + 2 theta^2 with refracting ones; across it 1 + theta^2 in both cases. Refracting faces also make the slab a plane
-// plate of index n0 + a x, x = Z_A theta where the ray crosses it, which shifts the ray by L_z theta a x/n0 the other
-// way: -theta^2 Z_A/Z_D = -3 theta^2 in the plane of the gradient. The next terms are of order theta^4 and K g x.
+// F27 for a chief ray at the angle theta, in the plane of the gradient: the ratio of truth to Eq. 9 is 1 + theta^2 with
+// matched faces and 1 + 2 theta^2 with refracting ones; perpendicular to it, it is 1 + theta^2 in both cases. With
+// refracting faces, the slab is also a plane plate of index n0 + a x, x = Z_A theta at the ray, which shifts the ray by
+// L_z theta a x/n0 in the opposite direction: -theta^2 Z_A/Z_D = -3 theta^2 in the plane of the gradient. The next
+// terms are of order theta^4 and K g x.
 TEST(UniformGradient, DepartsFromEq9ByTheSquareOfTheFieldAngle) {
   for (Faces const faces : {Faces::matched, Faces::refract}) {
     for (bool const along : {true, false}) {
@@ -85,10 +88,10 @@ TEST(UniformGradient, DepartsFromEq9ByTheSquareOfTheFieldAngle) {
   }
 }
 
-// The whole picture shifts by the mean truth of its dots: an estimator that knows nothing of rays, both signs, both
-// axes. A spot of sigma 1.25 px (seed_eq8) keeps the aliasing of pixels below 1e-6, the field angle makes dots differ
-// by 1e-5 px, and the light of a dot, which pulls a low mode's phase by its distance from the middle (30 px), repeats
-// to a few 1e-5 at 2^16 rays.
+// The image as a whole is shifted by the mean truth of its dots, measured by an estimator that is independent of ray
+// tracing, for both signs and both axes. For a PSF of sigma 1.25 px (seed_eq8), the aliasing of pixels is below 1e-6;
+// dots differ by 1e-5 px due to the field angle; and the light of a dot, which changes the phase of a low mode in
+// proportion to its distance from the centre (30 px), is repeatable to a few 1e-5 with 2^16 rays.
 TEST(UniformGradient, ImagesShiftByTheTruth) {
   for (Vec2d const gradient : {Vec2d{100, 0}, Vec2d{-100, 0}, Vec2d{0, 100}, Vec2d{0, -100}, Vec2d{150, -40}}) {
     auto setup = table1_setup(96);
@@ -107,8 +110,9 @@ TEST(UniformGradient, ImagesShiftByTheTruth) {
   }
 }
 
-// Nothing curves within the field: eps is 2e-4 at 100 kg/m^4, eps^2 below 1e-7. Euler's steps lag by half a step of the
-// lever; a first-order error of which halving the step removes less than 1e-4 px is itself below 2e-4 px.
+// Rays are straight to high accuracy: eps is 2e-4 at 100 kg/m^4, and eps^2 below 1e-7. The error of Euler's steps is
+// half a step of the lever; if halving the step removes less than 1e-4 px of a first-order error, the error itself is
+// below 2e-4 px.
 TEST(UniformGradient, IntegratorsAgree) {
   Vec2d displacement[3];
   int i = 0;

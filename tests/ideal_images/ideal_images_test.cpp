@@ -19,7 +19,8 @@ namespace {
 
 constexpr double mm = 1e-3;
 
-/// White spheres in a plane sheet, seen by 105 mm at f/16 from 750 mm: sigma is 0.83 of the pixels of 5 um.
+/// White spheres in a plane sheet, imaged by a lens of 105 mm at f/16 from 750 mm; the standard deviation of the PSF is
+/// 0.83 px at a pixel pitch of 5 um.
 Setup piv_setup(ParticleScattering scattering = ParticleScattering::gaussian) {
   Setup setup;
   setup.camera.columns = 160;
@@ -42,9 +43,10 @@ Rendering by_formula(Scene const& scene, RenderImages images = RenderImages::yes
   return render_ideal_images(ideal_images(scene).value(), scene.particles, ParticleLight::scattered, images);
 }
 
-// A Gaussian of the matched sigma about z_i / p (X, -Y) / (z_a - Z), integrated over pixels: differences of error
-// functions. Light is the disc's share of the fluence, over all directions, that the lens takes. The pixels' error
-// function is good to 1e-12, and a spot is cut off where 4e-8 of it are left.
+// The image is a Gaussian of the matched sigma about z_i / p (X, -Y) / (z_a - Z), integrated over pixels as differences
+// of error functions. Its light is the fluence times the geometric cross-section times the fraction of all directions
+// that the lens subtends. The error of the error function is 1e-12, and the PSF is cut off where 4e-8 of the light
+// remain.
 TEST(IdealImages, AreAGaussianOverPixels) {
   Scene scene = build_scene(piv_setup());
   Vec3d const first{0.3 * mm, -0.7 * mm, 0.4 * mm}, second{0.5 * mm, -0.8 * mm, -0.2 * mm};
@@ -81,9 +83,9 @@ TEST(IdealImages, AreAGaussianOverPixels) {
   EXPECT_LT(length(rendering.truth.displacement_px[0] - (b - a)), 1e-10);
 }
 
-// In the plane in focus all rays of a particle meet where the formula has its image, and what they carry is what the
-// middle of the lens sees, to a square of its half angle, (3.3 / 750)^2 = 2e-5: images differ by less than half a grey
-// level of 12 bits, and truth by rounding.
+// For a particle in the plane in focus, all rays meet at the image position of the formula, and their light equals that
+// of the lens' centre up to the square of the lens' half angle, (3.3 / 750)^2 = 2e-5. The images differ by less than
+// half a grey level at 12 bits, and the truth by rounding only.
 TEST(IdealImages, EqualThoseOfRaysInFocus) {
   Scene scene = build_scene(piv_setup(ParticleScattering::lambert));
   ASSERT_GT(scene.particles.size(), 500u);
@@ -111,7 +113,7 @@ TEST(IdealImages, EqualThoseOfRaysInFocus) {
   }
 }
 
-// Each band of rows adds up in one order, whoever draws it.
+// Sums within a band of rows have a fixed order, whichever thread computes them.
 TEST(IdealImages, AreTheSameBitsOnAnyNumberOfThreads) {
   Scene const scene = build_scene(piv_setup());
   int const before = thread_count();
@@ -122,14 +124,15 @@ TEST(IdealImages, AreTheSameBitsOnAnyNumberOfThreads) {
   set_thread_count(before);
   EXPECT_TRUE(std::equal(one.light.flow.begin(), one.light.flow.end(), many.light.flow.begin()));
   EXPECT_GT(std::accumulate(one.light.flow.begin(), one.light.flow.end(), 0.0), 0);
-  // what is lit at one pulse alone has no displacement; images of others lie beside the sensor, which does not matter
+  // A particle that is illuminated at one pulse only has no displacement. The images of some particles are outside the
+  // sensor, which does not matter here.
   for (std::size_t i = 0; i < one.truth.size(); ++i) {
     bool const both = one.truth.flux[i].x > 0 && one.truth.flux[i].y > 0;
     EXPECT_EQ(std::isfinite(one.truth.displacement_px[i].x), both);
   }
 }
 
-// M D z / (Z - z), z = 0.5 mm at f/16: 0.1628 * 6.5625 mm * 0.5 / 749.5 over 5 um.
+// Circle of confusion M D z / (Z - z) for z = 0.5 mm at f/16: 0.1628 * 6.5625 mm * 0.5 / 749.5 over 5 um.
 TEST(IdealImages, SayWhatBlurTheyLeaveOut) {
   Scene scene = build_scene(piv_setup());
   for (auto& places : scene.particles.place) {
@@ -151,11 +154,11 @@ TEST(IdealImages, HaveOneDoor) {
   };
   EXPECT_THAT(reason([](gladstone::Setup& s) { s.piv.reset(); }), HasSubstr("only particles"));
   EXPECT_THAT(reason([](gladstone::Setup& s) { s.medium.field = Sinusoid<double>::wave(0.1, 4e-3); }),
-              HasSubstr("medium bends rays"));
+              HasSubstr("medium deflects rays"));
   EXPECT_THAT(reason([](gladstone::Setup& s) { s.medium.second_field = FieldSetup{}; }),
-              HasSubstr("medium bends rays"));
-  EXPECT_THAT(reason([](gladstone::Setup& s) { s.camera.tilt = {0.1, 0}; }), HasSubstr("no ideal thin lens"));
-  EXPECT_THAT(reason([](gladstone::Setup& s) { s.windows.emplace_back(); }), HasSubstr("no ideal thin lens"));
+              HasSubstr("medium deflects rays"));
+  EXPECT_THAT(reason([](gladstone::Setup& s) { s.camera.tilt = {0.1, 0}; }), HasSubstr("not an ideal thin lens"));
+  EXPECT_THAT(reason([](gladstone::Setup& s) { s.windows.emplace_back(); }), HasSubstr("not an ideal thin lens"));
   EXPECT_THAT(reason([](gladstone::Setup& s) { s.lens.focus = Focus::distance; }),
               HasSubstr("not focused on the sheet"));
   EXPECT_THAT(reason([](gladstone::Setup& s) { s.lens.f_number = std::numeric_limits<double>::infinity(); }),

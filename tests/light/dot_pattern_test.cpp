@@ -28,7 +28,7 @@ std::string write_text(std::string const& name, std::string const& text) {
   return path;
 }
 
-// 2000 discs over 45 % of the area, near the limit of what random placing reaches: every pair is compared.
+// 2000 discs cover 45 % of the area, near the limit of random placement. Every pair is checked for overlap.
 TEST(RandomDots, NeverOverlapAndAreAllThere) {
   Vec2d const extent{0.10, 0.05};
   double const diameter = std::sqrt(0.45 * extent.x * extent.y / (2000 * 0.785398));
@@ -41,8 +41,8 @@ TEST(RandomDots, NeverOverlapAndAreAllThere) {
   }
 }
 
-// Chi-square of the counts in 100 equal cells: for points 99 +- sqrt(198), five standard deviations allowed; discs that
-// keep apart are more even than points, never less.
+// Chi-square statistic of the counts in 100 equal cells. For points, it is 99 +- sqrt(198); the tolerance is five
+// standard deviations. Discs without overlap are more even than points, never less.
 TEST(RandomDots, AreUniform) {
   for (double const diameter : {0.0, 0.004}) {
     auto const dots = random_dots({1, 1}, 20000, diameter, 3);
@@ -67,7 +67,7 @@ TEST(RandomDots, AMillionTakeSeconds) {
   EXPECT_LT(static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC, 10.0);
 }
 
-// Memory follows the number of dots, not the ratio of target to dot size.
+// The memory is proportional to the number of dots, not to the ratio of target size to dot size.
 TEST(RandomDots, MayBeTinyOnALargeTarget) { EXPECT_EQ(random_dots({1.0, 1.0}, 1000, 1e-9, 7).size(), 1000u); }
 
 TEST(RandomDots, RepeatBySeed) {
@@ -77,7 +77,7 @@ TEST(RandomDots, RepeatBySeed) {
 }
 
 TEST(RandomDots, TooManyAreRefused) {
-  // 1000 discs of 4 cm on a square metre: 126 %
+  // 1000 discs of 4 cm on one square metre: 126 % of the area
   EXPECT_THAT(
       [] {
         random_dots({1, 1}, 1000, 0.04, 7);
@@ -85,7 +85,7 @@ TEST(RandomDots, TooManyAreRefused) {
       ThrowsMessage<DataError>(AllOf(HasSubstr("target"), HasSubstr("126 %"), HasSubstr("fewer or smaller"))));
 }
 
-// 0.25 per square millimetre: a lattice of 2 mm; 7 x 5 mm hold three by two, centred on the axis.
+// 0.25 dots per square millimetre form a lattice of 2 mm; 7 x 5 mm contain three by two dots, centred on the axis.
 TEST(RegularDots, LieOnACentredSquareLattice) {
   auto const dots = regular_dots({7e-3, 5e-3}, 0.25e6, 1e-3);
   ASSERT_EQ(dots.size(), 6u);
@@ -126,23 +126,24 @@ TEST(DotsFromCsv, MistakesAreReportedWithFileAndLine) {
   refused("x_mm,y_mm\nnan,2\n", ":2", "finite");
   refused("x_mm,y_mm\n1,1e999\n", ":2", "finite");
   refused("x_mm,y_mm\n", "", "no dots");
-  refused("x_mm,y_mm\n1,2\n1e9,0\n", ":3", "no lens sees it (1000 mm at most");
-  refused("x_mm,y_mm\n1,2\n0,-1000.1\n", ":3", "no lens sees it");
+  refused("x_mm,y_mm\n1,2\n1e9,0\n", ":3", "too far from the axis to be imaged (1000 mm at most");
+  refused("x_mm,y_mm\n1,2\n0,-1000.1\n", ":3", "too far from the axis to be imaged");
   EXPECT_THAT([] { dots_from_csv(temporary("absent.csv"), 1.0); },
               ThrowsMessage<DataError>(HasSubstr("does not exist")));
 }
 
-// Two dots at one place are one dot to a camera. The first pair in the file is named, all are counted; a nanometre
-// apart they are two.
+// Two dots at one position are a single dot to a camera. The message names the first pair in the file and the number of
+// all; dots a nanometre apart are distinct.
 TEST(DotsFromCsv, CoincidentDotsAreRefused) {
   auto const read = [](std::string const& text) { return dots_from_csv(write_text("twice.csv", text), 1.0); };
   EXPECT_THAT([&] { read("x_mm,y_mm\n5,6\n1,2\n\n3,4\n1.0,2e0\n3.0000000001,4\n1,2\n"); },
-              ThrowsMessage<DataError>(AllOf(HasSubstr("twice.csv:6"), HasSubstr("1, 2 mm stands in line 3 already"),
-                                             HasSubstr("3 of 6 dots"))));
+              ThrowsMessage<DataError>(
+                  AllOf(HasSubstr("twice.csv:6"), HasSubstr("1, 2 mm repeats line 3"), HasSubstr("3 of 6 dots"))));
   EXPECT_EQ(read("x_mm,y_mm\n1,2\n1.000002,2\n2,1\n1,2.000002\n").size(), 4u);
 }
 
-// Four by two pixels over 8 x 4 mm: squares of 2 mm; first row on top; grey over the largest grey; black sends nothing.
+// Four by two pixels over 8 x 4 mm are squares of 2 mm. The first row is at the top, the radiance is the grey value
+// relative to the largest one, and black pixels emit no light.
 TEST(PictureTarget, PixelsAreSquaresOfTheirGrey) {
   Image<std::uint16_t> picture(4, 2, 0);
   picture(0, 0) = 1000;
@@ -162,7 +163,7 @@ TEST(PictureTarget, PixelsAreSquaresOfTheirGrey) {
 
   EXPECT_THAT([&] { picture_target(path, {8e-3, 8e-3}); }, ThrowsMessage<DataError>(HasSubstr("square")));
   write_tiff(path, Image<std::uint16_t>(4, 2, 0), {16, 10e-6, ""});
-  EXPECT_THAT([&] { picture_target(path, {8e-3, 4e-3}); }, ThrowsMessage<DataError>(HasSubstr("black all over")));
+  EXPECT_THAT([&] { picture_target(path, {8e-3, 4e-3}); }, ThrowsMessage<DataError>(HasSubstr("entirely black")));
 }
 
 }  // namespace

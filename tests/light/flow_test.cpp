@@ -36,8 +36,9 @@ std::vector<FlowSetup> some_of_every_kind() {
           flow_of("jet", "peak_m_s = 20\ndirection = [3, 4]")};
 }
 
-// Every one of these flows is incompressible: differences of the velocity over 2 um give no divergence beside the
-// gradient itself. Their third derivatives, at most 7 m/s over (3 mm)^3, leave 1e-5 1/s of it.
+// All of these flows are incompressible: central differences of the velocity over 2 um result in a divergence that is
+// negligible compared with the gradient. The third derivatives, at most 7 m/s over (3 mm)^3, cause an error of 1e-5
+// 1/s.
 TEST(Flow, OfEveryKindIsWithoutDivergence) {
   for (FlowSetup const& setup : some_of_every_kind()) {
     for (Vec3d const p : {Vec3d{1e-3, 2e-3, 0}, {-3e-3, 0.5e-3, 1e-3}, {6e-3, -7e-3, 0}}) {
@@ -51,7 +52,8 @@ TEST(Flow, OfEveryKindIsWithoutDivergence) {
   }
 }
 
-// u_theta(r) = Gamma / (2 pi r) (1 - exp(-r^2 / r_c^2)), and within a hundredth of the core solid rotation to 5e-5.
+// u_theta(r) = Gamma / (2 pi r) (1 - exp(-r^2 / r_c^2)); within a hundredth of the core radius, this is solid-body
+// rotation to 5e-5.
 TEST(LambOseen, TurnsAsItsFormula) {
   Flow const u = flow_of("lamb_oseen", "circulation_m2_s = 0.2\ncore_radius_mm = 5").flow;
   for (double const r : {1e-3, 5e-3, 30e-3}) {
@@ -63,7 +65,8 @@ TEST(LambOseen, TurnsAsItsFormula) {
   EXPECT_EQ(length(u(Vec3d{})), 0);
 }
 
-// Solid inside, free outside: r u_theta is Gamma / (2 pi) from the core on, and a quarter of it at half of the core.
+// Solid-body rotation inside the core and a free vortex outside: r u_theta is Gamma / (2 pi) from the core radius on,
+// and a quarter of it at half the core radius.
 TEST(Rankine, IsSolidInsideAndFreeOutside) {
   Flow const u = flow_of("rankine", "circulation_m2_s = 0.2\ncore_radius_mm = 4").flow;
   double const at_core = 0.2 / (2 * pi);
@@ -72,7 +75,7 @@ TEST(Rankine, IsSolidInsideAndFreeOutside) {
   EXPECT_NEAR(9e-3 * u(Vec3d{9e-3, 0, 0}).y, at_core, 1e-15);
 }
 
-// Pathlines of rotation by an angle of 0.8: the error of n Runge-Kutta steps falls as n^-4.
+// Pathlines of a rotation by an angle of 0.8: the error of n Runge-Kutta steps decreases as n^-4.
 TEST(FlowPath, IsOfFourthOrder) {
   ParticleVelocity const u{flow_of("rotation", "rate_rad_s = 800").flow};
   Vec3d const start{5e-3, 0, 0}, end{5e-3 * std::cos(0.8), 5e-3 * std::sin(0.8), 0};
@@ -81,8 +84,8 @@ TEST(FlowPath, IsOfFourthOrder) {
   EXPECT_LT(distance(moved(u, start, 1e-3, 64), end), 1e-11);
 }
 
-// Shear: x + rate y t, which is linear in time, to rounding. Stagnation: x exp(a t), y exp(-a t): sixteen steps of
-// 0.05 leave 0.05^5 / 120 of the place each.
+// Shear: the path x + rate y t is linear in time and exact up to rounding. Stagnation flow: the paths are x exp(a t), y
+// exp(-a t), and sixteen steps of a dt = 0.05 have a relative error of 0.05^5 / 120 each.
 TEST(FlowPath, FollowsShearAndStagnation) {
   ParticleVelocity const shear{flow_of("shear", "rate_1_s = 800").flow};
   EXPECT_LT(distance(moved(shear, {1e-3, 2e-3, 3e-3}, 1e-3, 3), {1e-3 + 0.8 * 2e-3, 2e-3, 3e-3}), 1e-17);
@@ -91,7 +94,7 @@ TEST(FlowPath, FollowsShearAndStagnation) {
   EXPECT_LT(distance(moved(stagnation, {1e-3, 2e-3, 0}, 1e-3, 16), end), 16 * std::pow(0.05, 5) / 120 * 4e-3);
 }
 
-// A vortex carries particles round at their radius, by u_theta t / r.
+// A vortex carries particles around at constant radius, by the angle u_theta t / r.
 TEST(FlowPath, GoesRoundAVortex) {
   ParticleVelocity const u{flow_of("lamb_oseen", "circulation_m2_s = 0.2\ncore_radius_mm = 5").flow};
   double const r = 4e-3, angle = u({r, 0, 0}).y / r * 2e-4;
@@ -99,29 +102,30 @@ TEST(FlowPath, GoesRoundAVortex) {
   EXPECT_LT(distance(end, {r * std::cos(angle), r * std::sin(angle), 0}), 1e-12);
 }
 
-// In solid rotation at W a heavy particle moves as exp(L t) with tau L^2 + L = i W, of which first order of tau keeps
-// L = i W + tau W^2: it spirals out. The next term, -2 i tau^2 W^3, is what is stated as neglected.
+// In solid-body rotation at the rate W, a heavy particle moves as exp(L t) with tau L^2 + L = i W. To first order in
+// tau, L = i W + tau W^2, so that it spirals outwards. The next term, -2 i tau^2 W^3, is reported as neglected.
 TEST(LaggingParticle, SpiralsOutOfARotation) {
   double const w = 500, tau = 2e-5, time = 1e-3, r = 5e-3;
   ParticleVelocity const v{flow_of("rotation", "rate_rad_s = 500").flow, tau, 1e-6};
   Vec3d const end = moved(v, {r, 0, 0}, time, 64);
   double const grown = r * std::exp(tau * w * w * time);
   EXPECT_LT(distance(end, {grown * std::cos(w * time), grown * std::sin(w * time), 0}), 1e-6 * r);
-  // differences over a turn of 5e-4 are good to a square of it
+  // central differences with a rotation of 5e-4 per time step have a relative error of the square of that
   EXPECT_NEAR(length(v.neglected({r, 0, 0})), 2 * tau * tau * w * w * w * r, 1e-5 * 2 * tau * tau * w * w * w * r);
-  // the exact root beside it: a departure of that size and no more
+  // velocity to first order in tau, without the neglected term
   EXPECT_NEAR(length(v({r, 0, 0}) - Vec3d{tau * w * w * r, w * r, 0}), 0, 1e-6 * w * r);
 }
 
-/// The flow through the front of a normal shock of Mach 2 that leans by 30 degrees, in air of 300 K.
+/// Returns the flow through the front of a normal shock at Mach 2, inclined by 30 degrees, in air at 300 K.
 FlowSetup shock_flow() {
   SetupDocument document =
       SetupDocument::from_text("kind = \"normal_shock\"\nupstream_temperature_k = 300", "flow.toml");
   return read_flow_setup(document.root(), ShockPlane{2, 8.0 / 3, 1e-3, 30 * unit::degree});
 }
 
-// Mach 2 at 300 K: u_1 = 2 sqrt(1.4 * 287.05287 * 300) = 694.4 m/s, u_2 = 3/8 of it (NACA 1135, eq. 94: 6 M^2 / (M^2 +
-// 5) = 8/3). A particle that crosses the front goes x(t) = u_2 t + (u_1 - u_2) tau (1 - exp(-t / tau)) behind it.
+// Mach 2 at 300 K: u_1 = 2 sqrt(1.4 * 287.05287 * 300) = 694.4 m/s, and u_2 is 3/8 of it (NACA 1135, eq. 94: 6 M^2 /
+// (M^2 + 5) = 8/3). A time t after crossing the front, a particle is at the distance x(t) = u_2 t + (u_1 - u_2) tau (1
+// - exp(-t / tau)) behind it.
 TEST(NormalShockFlow, SlowsParticlesDownExponentially) {
   FlowSetup const flow = shock_flow();
   double const u1 = 2 * std::sqrt(1.4 * 287.05287 * 300), u2 = u1 * 3 / 8, tau = 3e-6;
@@ -137,13 +141,14 @@ TEST(NormalShockFlow, SlowsParticlesDownExponentially) {
       Vec3d const start = front - u1 * before * normal + Vec3d{0, 3e-3, 0};
       Vec3d const end = moved(v, start, before + t, 1);
       EXPECT_LT(distance(end, front + s * normal + Vec3d{0, 3e-3, 0}), 1e-15) << t << ' ' << lag;
-      EXPECT_LT(distance(moved(v, end, -before - t, 1), start), 1e-13);  // and back: exp(t / tau) of rounding
+      // backwards; rounding errors grow as exp(t / tau)
+      EXPECT_LT(distance(moved(v, end, -before - t, 1), start), 1e-13);
     }
   }
 }
 
-// Continuity of the particles: as many as cross a plane before the front cross any plane behind it, n v = n_1 u_1. v is
-// a difference of places over 1 ns, good to v' / 2 of it, 3e-4.
+// Continuity of the particles: the flux n v = n_1 u_1 is the same through any plane in front of and behind the shock. v
+// is a difference of positions over 1 ns; its error is v' / 2 times that time, 3e-4.
 TEST(NormalShockFlow, CrowdsParticlesAsContinuitySays) {
   FlowSetup const flow = shock_flow();
   auto const held = flow.flow.kind.visit([](auto const& one) {
@@ -158,7 +163,7 @@ TEST(NormalShockFlow, CrowdsParticlesAsContinuitySays) {
     EXPECT_NEAR(held.crowding(p, tau) * v, u1, 5e-4 * u1) << x;
   }
   EXPECT_NEAR(held.crowding({30e-3, 0, 0}, 0), 8.0 / 3, 1e-12);
-  // a volume halved by the front, which leans: the mean of both densities
+  // a volume that the inclined front divides into halves: mean of both densities
   EXPECT_NEAR(held.mean_crowding({4e-3, 1e-3, 2e-3}, {1e-3, 0, 0}, 0), (1 + 8.0 / 3) / 2, 1e-9);
 }
 
@@ -174,14 +179,14 @@ TEST(NormalShockFlow, SharesTheFrontOfTheMedium) {
         read_flow_setup(document.root(), ShockPlane{2, 8.0 / 3, 0, 0});
         document.finish();
       },
-      ThrowsMessage<SetupError>(HasSubstr("across the shock's front")));
+      ThrowsMessage<SetupError>(HasSubstr("normal to the shock front")));
 }
 
 TEST(FlowSetup, RefusesWhatMovesNothing) {
   using testing::HasSubstr;
   using testing::ThrowsMessage;
   EXPECT_THAT([] { read_flow("[flow]\ndt_us = 0\n"); }, ThrowsMessage<SetupError>(HasSubstr("dt_us = 0")));
-  EXPECT_THAT([] { flow_of("jet", "direction = [0, 0]"); }, ThrowsMessage<SetupError>(HasSubstr("points nowhere")));
+  EXPECT_THAT([] { flow_of("jet", "direction = [0, 0]"); }, ThrowsMessage<SetupError>(HasSubstr("needs a direction")));
   EXPECT_THAT([] { flow_of("lamb-oseen", ""); }, ThrowsMessage<SetupError>(HasSubstr("lamb_oseen")));
   EXPECT_THAT([] { flow_of("rankine", "rate_1_s = 3"); }, ThrowsMessage<SetupError>(HasSubstr("rate_1_s")));
 }

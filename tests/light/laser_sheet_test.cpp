@@ -24,13 +24,14 @@ LaserSetup read_laser(std::string const& keys) {
   return laser;
 }
 
-/// Energy that a pulse sends through the plane at `along` from the sheet's centre, square to its axis [J]: fluence is
-/// across the light's way, which leans on the plane's normal where the sheet fans out.
+/// Returns the energy of a pulse through the plane at distance `along` from the sheet's centre, perpendicular to its
+/// axis [J]. The fluence refers to an area perpendicular to the light, which is inclined to the plane's normal in a
+/// diverging sheet.
 double energy_through(LaserSheet<double> const& sheet, int pulse, double along) {
   GaussLegendre const rule(60);
   Pose<double> const pose = sheet.pose[pulse];
   double const half_height = (sheet.height + along * sheet.growth) / 2;
-  // beyond three widths a Gaussian has exp(-72) left; a top-hat is summed within its edges
+  // Beyond three widths, exp(-72) of a Gaussian remains; a top-hat is integrated between its edges.
   double const half_depth = sheet.profile == SheetProfile::gaussian ? 3 * sheet.thickness : sheet.thickness / 2;
   double sum = 0;
   for (std::size_t i = 0; i < rule.node.size(); ++i) {
@@ -43,8 +44,8 @@ double energy_through(LaserSheet<double> const& sheet, int pulse, double along) 
   return sum * half_height * half_depth;
 }
 
-// Whatever its profile, fan and place, a pulse's energy goes through every plane square to its axis. 60 nodes integrate
-// exp(-8 z^2/w^2) over 6 w to 1e-10.
+// The energy of a pulse is the same through every plane perpendicular to the axis, for any profile, divergence and
+// position. 60 nodes integrate exp(-8 z^2/w^2) over 6 w to 1e-10.
 TEST(LaserSheet, IntegratesToThePulseEnergy) {
   for (char const* const profile : {"gaussian", "top_hat"}) {
     for (double const divergence : {0.0, 20.0, -10.0}) {
@@ -62,8 +63,8 @@ TEST(LaserSheet, IntegratesToThePulseEnergy) {
   }
 }
 
-// In the middle of a Gaussian sheet E/(h w sqrt(pi/8)): 1994.71 J/m^2 for 50 mJ in 40 mm by 1 mm; e^-2 of it half a
-// width off; nothing beyond the height.
+// In the middle of a Gaussian sheet, the fluence is E/(h w sqrt(pi/8)): 1994.71 J/m^2 for 50 mJ in 40 mm by 1 mm. At
+// half a width from the middle, it is e^-2 of that; beyond the height, it is zero.
 TEST(LaserSheet, GaussianHasItsPeakAndWidth) {
   LaserSheet<double> const sheet = laser_sheet(read_laser(""));
   EXPECT_NEAR(sheet.fluence({0, 0, 0}, 0), 1994.71, 0.005);
@@ -85,8 +86,8 @@ TEST(LaserSheet, TopHatHasEdges) {
   EXPECT_EQ(sheet.fluence({0, 0, -1.01e-3}, 0), 0);
 }
 
-// Either pulse has its own offset along the normal and its own turn about the laser's direction, right-handed: a tilted
-// sheet is lit at (y cos t, y sin t).
+// Each pulse has its own offset along the normal and its own right-handed rotation about the laser's direction: a
+// tilted sheet illuminates (y cos t, y sin t).
 TEST(LaserSheet, PulsesHaveTheirOwnPlaceAndTilt) {
   LaserSheet<double> const sheet = laser_sheet(read_laser("offset_mm = [0.4, -0.1]\ntilt_deg = [0.0, 5.0]"));
   double const peak = 1994.711402007;
@@ -96,8 +97,9 @@ TEST(LaserSheet, PulsesHaveTheirOwnPlaceAndTilt) {
   EXPECT_LT(sheet.fluence({0, 0.01, -0.1e-3}, 1), 0.1 * peak);
 }
 
-// A sheet that fans out by 20 degrees has grown by 2 tan(10 deg) of its way, and thinned as much on the axis; the light
-// goes along the lines from the fan's origin, and its field stays square to it.
+// A sheet with a divergence of 20 degrees widens by 2 tan(10 deg) per length, and the fluence on the axis decreases
+// accordingly. The light travels along lines from the origin of the fan, and its electric field is perpendicular to
+// them.
 TEST(LaserSheet, FansOut) {
   LaserSheet<double> const sheet = laser_sheet(read_laser("divergence_deg = 20\npolarization_deg = 30"));
   double const half = std::tan(10 * unit::degree), grown = 40e-3 + 2 * half * 0.1;
@@ -105,7 +107,7 @@ TEST(LaserSheet, FansOut) {
   EXPECT_GT(sheet.fluence({0.1, 0.499 * grown, 0}, 0), 0);
   EXPECT_EQ(sheet.fluence({0.1, 0.501 * grown, 0}, 0), 0);
   double const origin = -20e-3 / half;
-  EXPECT_EQ(sheet.fluence({origin - 0.01, 0, 0}, 0), 0);  // before the fan's origin
+  EXPECT_EQ(sheet.fluence({origin - 0.01, 0, 0}, 0), 0);  // upstream of the fan's origin
   for (Vec3d const point : {Vec3d{0, 0, 0}, Vec3d{0, 0.02, 0}, Vec3d{0.1, -0.03, 1e-4}}) {
     LightWave<double> const wave = sheet.wave(point, 0);
     Vec3d const way = normalized(Vec3d{point.x - origin, point.y, 0});
@@ -116,14 +118,15 @@ TEST(LaserSheet, FansOut) {
   }
 }
 
-// Light along X in a sheet across Z: its field is along Y at 0 degrees and along Z at 90.
+// For light along X in a sheet perpendicular to Z, the electric field is along Y at 0 degrees and along Z at 90.
 TEST(LaserSheet, PolarisationTurnsOutOfTheSheet) {
   EXPECT_LT(length(laser_sheet(read_laser("")).wave({0, 0, 0}, 0).field - Vec3d{0, 1, 0}), 1e-15);
   EXPECT_LT(length(laser_sheet(read_laser("polarization_deg = 90")).wave({0, 0, 0}, 1).field - Vec3d{0, 0, 1}), 1e-15);
 }
 
-// 50 mJ in a sheet of 40 mm by 1 mm at 532 nm, a droplet of 1 um in its middle, seen square through a lens of 105 mm,
-// f/8, at 0.75 m: 45,443 photons, 27,267 electrons at a quantum efficiency of 0.6. Over the lens S1 varies: 1 %.
+// A sheet of 50 mJ, 40 mm by 1 mm, at 532 nm illuminates a droplet of 1 um in its middle, seen perpendicularly through
+// a lens of 105 mm, f/8, at 0.75 m: 45,443 photons, and 27,267 electrons at a quantum efficiency of 0.6. Since S1
+// varies over the lens, the tolerance is 1 %.
 TEST(LaserSheet, DropletSendsItsPhotonsThroughALens) {
   LaserSheet<double> const sheet = laser_sheet(read_laser(""));
   MieScattering const scattering({1e-6}, {}, {1.5, 1.64});
@@ -144,26 +147,28 @@ TEST(LaserSheet, DropletSendsItsPhotonsThroughALens) {
       solid_angle += share;
     }
   }
-  // the disc's area over the square of its distance, 2.40528e-4 sr, but for 3/4 (radius/distance)^2 of it
+  // The solid angle of the lens is its area over the square of its distance, 2.40528e-4 sr, up to a relative error of
+  // 3/4 (radius/distance)^2.
   EXPECT_NEAR(solid_angle, 2.40528e-4 * (1 - 0.75 * std::pow(radius / distance, 2)), 1e-9);
   EXPECT_NEAR(photons, 45443, 454);
   EXPECT_NEAR(0.6 * photons, 27267, 272);
 }
 
-// Everything that is wrong with a laser is told together, each with its place and cure.
+// All errors in a table [laser] are reported together, each with its location and remedy.
 TEST(LaserSheet, RefusesWhatIsNoSheet) {
   EXPECT_THAT(
       [] { read_laser("thickness_mm = 0.0\npulse_energy_mj = -5.0\nnormal = [2.0, 0.0, 0.0]\nheight_mm = -1.0"); },
-      ThrowsMessage<SetupError>(AllOf(HasSubstr("case.toml:2:1: laser.thickness_mm = 0.0"),
-                                      HasSubstr("case.toml:3:1: laser.pulse_energy_mj = -5.0"),
-                                      HasSubstr("case.toml:4:1: laser.normal"),
-                                      HasSubstr("leaves 0 deg between the sheet's normal and the laser's direction"),
-                                      HasSubstr("case.toml:5:1: laser.height_mm"))));
-  EXPECT_THAT([] { read_laser("direction = [0.0, 0.0, 0.0]"); }, ThrowsMessage<SetupError>(HasSubstr("has no length")));
-  EXPECT_THAT([] { read_laser("direction = [1.0, 0.0, 1.0]"); }, ThrowsMessage<SetupError>(HasSubstr("leaves 45 deg")));
+      ThrowsMessage<SetupError>(
+          AllOf(HasSubstr("case.toml:2:1: laser.thickness_mm = 0.0"),
+                HasSubstr("case.toml:3:1: laser.pulse_energy_mj = -5.0"), HasSubstr("case.toml:4:1: laser.normal"),
+                HasSubstr("makes an angle of 0 deg between the sheet's normal and the laser's direction"),
+                HasSubstr("case.toml:5:1: laser.height_mm"))));
+  EXPECT_THAT([] { read_laser("direction = [0.0, 0.0, 0.0]"); }, ThrowsMessage<SetupError>(HasSubstr("is zero")));
+  EXPECT_THAT([] { read_laser("direction = [1.0, 0.0, 1.0]"); },
+              ThrowsMessage<SetupError>(HasSubstr("makes an angle of 45 deg")));
   EXPECT_THAT([] { read_laser("profile = \"gausian\""); }, ThrowsMessage<SetupError>(HasSubstr("\"gaussian\"")));
   EXPECT_THAT([] { read_laser("thicknes_mm = 1.0"); }, ThrowsMessage<SetupError>(HasSubstr("thickness_mm")));
-  // rounded components are square enough, and made so
+  // directions with rounded components are accepted as perpendicular, and made exactly so
   LaserSetup const rounded = read_laser("direction = [0.707, 0.0, 0.707]\nnormal = [-0.7, 0.0, 0.71]");
   EXPECT_NEAR(dot(rounded.direction, rounded.normal), 0, 1e-15);
 }

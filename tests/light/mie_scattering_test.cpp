@@ -25,17 +25,17 @@ constexpr double micrometre = unit::micrometre;
 /// Oil in air, green light.
 MieSetting droplets() { return {}; }
 
-/// Light along X, its field along Y.
+/// Light along X with its electric field along Y.
 constexpr LightWave<double> along_x;
 
-/// The unit vector at an angle from X, turned about X by phi from Y towards Z.
+/// Returns the unit vector at an angle from X, rotated about X by phi from Y towards Z.
 Vec3d towards(double angle, double phi) {
   return {std::cos(angle), std::sin(angle) * std::cos(phi), std::sin(angle) * std::sin(phi)};
 }
 
 double wave_number(MieSetting const& setting) { return 2 * pi * setting.surroundings / setting.wavelength; }
 
-/// Diameters that differ, about log-normal, of a median of 1 um.
+/// Returns different diameters, distributed approximately log-normally with a median of 1 um.
 std::vector<double> many_diameters(std::size_t count) {
   std::vector<double> diameters;
   for (std::uint64_t i = 0; i < count; ++i) {
@@ -46,8 +46,9 @@ std::vector<double> many_diameters(std::size_t count) {
   return diameters;
 }
 
-// Light along X seen along Z (Bohren & Huffman sec. 3.3): with the field along Y, across the plane of scattering,
-// the sphere sends |S1|^2/k^2; with the field along Z, in it, |S2|^2/k^2; in between as cos^2 and sin^2.
+// For light along X seen along Z (Bohren & Huffman sec. 3.3), the sphere scatters |S1|^2/k^2 if the field is along Y,
+// perpendicular to the scattering plane, and |S2|^2/k^2 if it is along Z, in that plane; in between, the two are
+// weighted by cos^2 and sin^2.
 TEST(MieScattering, SeesTheFieldAcrossByS1AndInThePlaneByS2) {
   MieScattering const scattering({micrometre}, droplets(), {1.2, 2.0});
   MieCoefficients const sphere(pi / 0.532, 1.45);
@@ -58,13 +59,13 @@ TEST(MieScattering, SeesTheFieldAcrossByS1AndInThePlaneByS2) {
     double const expected =
         (std::norm(s1) * std::pow(std::cos(polarization), 2) + std::norm(s2) * std::pow(std::sin(polarization), 2)) /
         (k * k);
-    // error() is over the mean, which at 90 degrees is of the size of the value
+    // error() refers to the mean, which is similar to the value at 90 degrees
     EXPECT_NEAR(scattering.view().cross_section(0, {0, 0, 1}, wave) / expected, 1, 5 * scattering.error());
   }
 }
 
-// A sphere has no direction of its own: light and camera turned together see the same, light mirrored in a plane that
-// holds the field too, and two crossed fields send together twice what light without polarisation sends.
+// Symmetries of a sphere: rotating light and camera together, or mirroring the light in a plane that contains the
+// field, does not change the intensity. Two perpendicular fields together scatter twice as much as unpolarised light.
 TEST(MieScattering, TurnsWithTheLight) {
   MieSetting const setting = droplets();
   MieScattering const scattering({1.7 * micrometre}, setting, {0, pi});
@@ -75,13 +76,13 @@ TEST(MieScattering, TurnsWithTheLight) {
   LightWave<double> const crossed{along_x.propagation, {0, 0, 1}};
   double const k = wave_number(setting);
   MieCoefficients const sphere(1.7 * pi / 0.532, 1.45);
-  // the table's error, as a share of the mean cross-section
+  // error of the table relative to the mean cross-section
   double const mean = sphere.efficiencies().q_sca * pow(1.7 * micrometre, 2) / 16;
   for (double const angle : {0.0, 0.2, 1.0, 1.9, 3.0, pi}) {
     for (double const phi : {0.0, 0.5, 2.0, 4.0}) {
       Vec3d const direction = towards(angle, phi);
       double const seen = view.cross_section(0, direction, along_x);
-      // forward and backward |S1| and |S2| are equal but for the rounding of their float coefficients
+      // In forward and backward direction, |S1| and |S2| are equal up to the rounding of their float coefficients.
       double const rounding = 2e-7 * seen + 1e-9 * mean;
       EXPECT_NEAR(view.cross_section(0, turned.direction_outwards(direction), other), seen, rounding);
       EXPECT_NEAR(view.cross_section(0, towards(angle, -phi), along_x), seen, 1e-12 * mean);
@@ -91,9 +92,9 @@ TEST(MieScattering, TurnsWithTheLight) {
   }
 }
 
-// The table is what the series says, to the error that it states, at angles that are not its nodes; what it states was
-// measured half-way between nodes, where a cubic spline errs most, up to a few per cent. The error is a few 1e-4 for
-// side scatter; a node's phase of 0.5 gives 1.6e-4 of the fastest ripple's height.
+// At angles between its nodes, the table agrees with the series within its stated error. That error was measured midway
+// between the nodes, where the error of a cubic spline is largest, within a few per cent. It is a few 1e-4 for side
+// scatter: with a phase of 0.5 per node, 1.6e-4 of the fastest ripple's amplitude.
 TEST(MieScattering, TableErrsNoMoreThanItSays) {
   for (double const size : {0.05, 0.4, 1.0, 3.0, 11.0, 60.0}) {
     AngleInterval const angles{1.3, 1.9};
@@ -111,14 +112,14 @@ TEST(MieScattering, TableErrsNoMoreThanItSays) {
       worst = std::max({worst, std::abs(table1 - std::norm(s1)), std::abs(table2 - std::norm(s2))});
       mean += (std::norm(s1) + std::norm(s2)) / 2 / tried;
     }
-    // 1000 angles tell the mean to about a tenth
+    // 1000 angles determine the mean to about a tenth
     EXPECT_LE(worst / mean, 1.2 * scattering.error()) << size << " um";
     EXPECT_GT(worst / mean, scattering.error() / 10) << size << " um";
     EXPECT_LT(scattering.error(), 5e-4) << size << " um";
   }
 }
 
-// Every diameter has its own series, however many there are; equal ones share.
+// Every distinct diameter has its own series, whatever their number; equal diameters share one.
 TEST(MieScattering, EveryDistinctDiameterIsExact) {
   std::vector<double> diameters = many_diameters(500);
   diameters.push_back(diameters[7]);
@@ -136,7 +137,7 @@ TEST(MieScattering, EveryDistinctDiameterIsExact) {
   EXPECT_EQ(view.cross_section(7, towards(1.5, 1), along_x), view.cross_section(500, towards(1.5, 1), along_x));
 }
 
-// Small spheres send light as d^6 (Rayleigh), up to x^2, 1e-4 here.
+// The intensity of small spheres is proportional to d^6 (Rayleigh), up to corrections of order x^2, 1e-4 here.
 TEST(MieScattering, SmallParticlesShineAsTheSixthPower) {
   double const d = 0.8e-3 * micrometre;  // x = 0.005
   MieScattering const scattering({d, 2 * d, 0.5 * d}, droplets(), {1.4, 1.7});
@@ -146,10 +147,11 @@ TEST(MieScattering, SmallParticlesShineAsTheSixthPower) {
   EXPECT_NEAR(one / view.cross_section(2, {0, 0, 1}, along_x), 64, 64 * 4e-4);
 }
 
-// Large ones send it as d^2, averaged over the ripples: over sizes within 10 %, angles from 46 to 57 degrees and both
-// polarisations. The rays of geometrical optics go there; what is beside them is the edge's, of order x^(-2/3), 0.03 at
-// 40 um, which over a factor of 8 in size turns the exponent by up to 0.03/ln 8. (About 93 degrees refracted rays of
-// m = 1.45 end, with an edge as wide as x^(-1/3): no size is large there.)
+// The intensity of large spheres is proportional to d^2 if it is averaged over the ripples: over sizes within 10 %,
+// angles from 46 to 57 degrees and both polarisations. These angles are reached by the rays of geometrical optics. The
+// contribution of the edge is of order x^(-2/3), 0.03 at 40 um, and changes the exponent over a factor of 8 in size by
+// up to 0.03/ln 8. (Refracted rays for m = 1.45 end at about 93 degrees, with a transition as wide as x^(-1/3); no size
+// is large in this sense there.)
 TEST(MieScattering, LargeParticlesShineAsTheSquare) {
   auto const mean = [](double diameter) {
     std::vector<double> diameters;
@@ -169,8 +171,8 @@ TEST(MieScattering, LargeParticlesShineAsTheSquare) {
   EXPECT_NEAR(std::log(mean(320 * micrometre) / mean(40 * micrometre)) / std::log(8.0), 2, 0.015);
 }
 
-// What is around the particle shortens the wave and takes from its contrast: in a liquid of its own index it vanishes,
-// and otherwise scatters as a sphere of m = n/n0 in light of lambda/n0 does in air.
+// A surrounding medium reduces the wavelength and the refractive index contrast: in a liquid of its own index, a
+// particle vanishes; otherwise it scatters like a sphere of m = n/n0 in light of wavelength lambda/n0.
 TEST(MieScattering, SurroundingsTakeTheirPart) {
   MieSetting setting = droplets();
   setting.surroundings = 1.45;
@@ -181,7 +183,7 @@ TEST(MieScattering, SurroundingsTakeTheirPart) {
   thin.wavelength = setting.wavelength / 1.33;
   EXPECT_NEAR(MieScattering({micrometre}, setting, {1.4, 1.7}).view().cross_section(0, {0, 0, 1}, along_x) /
                   MieScattering({micrometre}, thin, {1.4, 1.7}).view().cross_section(0, {0, 0, 1}, along_x),
-              1, 1e-6);  // coefficients are float
+              1, 1e-6);  // the coefficients are floats
 }
 
 TEST(MieScattering, NoParticleAndParticlesOfNoSizeSendNothing) {
@@ -191,7 +193,7 @@ TEST(MieScattering, NoParticleAndParticlesOfNoSizeSendNothing) {
   EXPECT_GT(scattering.view().cross_section(1, {0, 0, 1}, along_x), 0);
 }
 
-// The same bits on any number of threads.
+// Results are bitwise identical for any number of threads.
 TEST(MieScattering, ThreadsMakeNoDifference) {
   std::vector<double> const diameters = many_diameters(300);
   set_thread_count(1);
@@ -203,8 +205,9 @@ TEST(MieScattering, ThreadsMakeNoDifference) {
   EXPECT_EQ(one.error(), four.error());
 }
 
-// The size is known beforehand, and grows as particles over their wavelength do: 1e5 droplets about 1 um that all
-// differ take some 10 MB for side scatter, (0.3 rad x 2 x 7/0.5 + 3) x 8 bytes each. What no machine has is refused.
+// The size of the table is known beforehand and proportional to particle diameter over wavelength: 1e5 different
+// droplets of about 1 um need about 10 MB for side scatter, (0.3 rad x 2 x 7/0.5 + 3) x 8 bytes each. A table that
+// exceeds the memory of any machine is refused.
 TEST(MieScattering, SaysItsSizeBeforeItTakesIt) {
   std::vector<double> const diameters = many_diameters(1000);
   AngleInterval const angles{1.4, 1.7};
@@ -222,7 +225,7 @@ TEST(MieScattering, SaysItsSizeBeforeItTakesIt) {
         MieScattering(marbles, droplets(), {0, pi});
       },
       ThrowsMessage<MemoryError>(AllOf(HasSubstr("100000 different diameters of up to 1.51e+04 um"),
-                                       HasSubstr("GB of memory"), HasSubstr("take fewer particles"))));
+                                       HasSubstr("GB of memory"), HasSubstr("use fewer particles"))));
 }
 
 }  // namespace

@@ -14,13 +14,13 @@ namespace {
 
 using Complex = std::complex<double>;
 
-/// Half of the last of so many printed digits of a number, and what rounding of our own leaves beside it.
+/// Tolerance: half of the last one of so many printed digits, plus the rounding errors of our own computation.
 double printed(double value, int digits) {
   return 0.501 * std::pow(10.0, std::floor(std::log10(std::abs(value))) - (digits - 1));
 }
 
 // Bohren & Huffman's example, x = 2 pi 0.525/0.6328 (the book prints 5.213), m = 1.55: efficiencies to 12 digits, and
-// its table of the scattering matrix as printed, S11/S11(0), POL = -S12/S11, S33/S11, S34/S11 (eq. 4.77).
+// the book's table of the scattering matrix, S11/S11(0), POL = -S12/S11, S33/S11, S34/S11 (eq. 4.77).
 TEST(Mie, BohrenAndHuffmansExampleToThePrintedDigits) {
   MieCoefficients const sphere(2 * pi * 0.525 / 0.6328, 1.55);
   MieEfficiencies const q = sphere.efficiencies();
@@ -56,7 +56,7 @@ TEST(Mie, BohrenAndHuffmansExampleToThePrintedDigits) {
     double const value[4] = {s11 / forward, (std::norm(s1) - std::norm(s2)) / (2 * s11),
                              (s1 * std::conj(s2)).real() / s11, -(s1 * std::conj(s2)).imag() / s11};
     for (int i = 0; i < 4; ++i) {
-      // what is printed as 0 is 0 but for rounding
+      // values printed as 0 are 0 up to rounding
       double const tolerance = row[i + 1] == 0 ? 1e-12 : printed(row[i + 1], 8);
       EXPECT_NEAR(value[i], row[i + 1], tolerance) << row[0] << " deg, column " << i + 1;
     }
@@ -64,7 +64,7 @@ TEST(Mie, BohrenAndHuffmansExampleToThePrintedDigits) {
 }
 
 // Other published and independent values, to half of their last digit: Wiscombe's MIEV0 (NCAR TN-140, 1979) with
-// absorption, and particles as flows are seeded with.
+// absorption, and typical seeding particles.
 TEST(Mie, PublishedEfficienciesToThePrintedDigits) {
   struct Known {
     double x;
@@ -88,7 +88,7 @@ TEST(Mie, PublishedEfficienciesToThePrintedDigits) {
       }
     }
   }
-  // a droplet of 1 um at 532 nm, x = 5.90524934885 to 12 digits: q_ext changes by up to 1 for a unit of x
+  // droplet of 1 um at 532 nm, x = 5.90524934885 to 12 digits: q_ext changes by up to 1 per unit of x
   MieCoefficients const droplet(pi / 0.532, 1.45);
   EXPECT_NEAR(droplet.efficiencies().q_ext, 3.51981554304, 1e-11);
   EXPECT_NEAR(droplet.efficiencies().q_back, 1.18152590667, 1e-11);
@@ -102,9 +102,9 @@ TEST(Mie, PublishedEfficienciesToThePrintedDigits) {
   EXPECT_NEAR(std::norm(ten.amplitudes(pi).s1), 42.376590, printed(42, 8));
 }
 
-// A small sphere is a dipole of polarizability (m^2 - 1)/(m^2 + 2) (Rayleigh; Bohren & Huffman sec. 5.2):
-// q_sca = 8/3 x^4 |.|^2 (1 + 6/5 (m^2 - 2)/(m^2 + 2) x^2 + O(x^4)), the second term for real m, where O(x^4) is 1e-12
-// at x = 1e-3 (its factor is about one); q_abs = 4 x Im(.) (1 + O(x^2)); S2 = S1 cos theta, to O(x^2).
+// A small sphere is a dipole of polarisability (m^2 - 1)/(m^2 + 2) (Rayleigh; Bohren & Huffman sec. 5.2): q_sca = 8/3
+// x^4 |.|^2 (1 + 6/5 (m^2 - 2)/(m^2 + 2) x^2 + O(x^4)). The second term holds for real m, and O(x^4) is 1e-12 at x =
+// 1e-3 (its factor is about one). Further, q_abs = 4 x Im(.) (1 + O(x^2)), and S2 = S1 cos theta up to O(x^2).
 TEST(Mie, SmallSpheresAreDipoles) {
   double const x = 1e-3;
   for (double const m : {1.33, 1.45, 2.6}) {
@@ -120,9 +120,9 @@ TEST(Mie, SmallSpheresAreDipoles) {
   EXPECT_NEAR(MieCoefficients(x, m).efficiencies().q_ext / (4 * x * k.imag()), 1, 10 * x * x);
 }
 
-// Large spheres take out twice the light that falls on them, and an edge more: for an absorbing one, without ripples,
-// q_ext = 2 + 1.9923861 x^(-2/3) + O(1/x) (Nussenzveig & Wiscombe, Phys. Rev. Lett. 45 (1980) 1490). The term in 1/x of
-// a sphere of m of order one is of order one. Refraction makes ripples of order 1/x^(2/3) on a transparent one.
+// Large spheres remove twice the light that falls on them, plus an edge term. For an absorbing sphere, which has no
+// ripples, q_ext = 2 + 1.9923861 x^(-2/3) + O(1/x) (Nussenzveig & Wiscombe, Phys. Rev. Lett. 45 (1980) 1490); for m of
+// order one, the factor of 1/x is of order one. Refraction causes ripples of order 1/x^(2/3) for a transparent sphere.
 TEST(Mie, LargeSpheresTakeOutTwiceTheirShadow) {
   for (double const x : {1e3, 3e3, 1e4}) {
     double const edge = 1.9923861 * std::pow(x, -2.0 / 3);
@@ -132,9 +132,9 @@ TEST(Mie, LargeSpheresTakeOutTwiceTheirShadow) {
   }
 }
 
-// From x = 1e-3 to 1e4: a transparent sphere sends on what it takes out, in every multipole for itself (Re a_n =
-// |a_n|^2 as a_n is p/(p + i q), p and q real); an absorbing one sends on less. The optical theorem: q_ext = 4/x^2 Re
-// S(0) (eq. 4.76). Rounding adds up along the recurrences of x orders.
+// From x = 1e-3 to 1e4: a transparent sphere scatters all the light that it removes, in each multipole separately (Re
+// a_n = |a_n|^2, since a_n is p/(p + i q) with real p and q); an absorbing sphere scatters less. The optical theorem:
+// q_ext = 4/x^2 Re S(0) (eq. 4.76). Rounding errors accumulate along the recurrences of x orders.
 TEST(Mie, EnergyIsConservedFromTheSmallestToTheLargest) {
   for (double x = 1e-3; x < 1.01e4; x *= std::pow(10.0, 0.25)) {
     double const rounding = 1e-12 + 1e-14 * x;
@@ -158,9 +158,9 @@ TEST(Mie, EnergyIsConservedFromTheSmallestToTheLargest) {
   }
 }
 
-// S11 over all directions is what is scattered, and its mean cosine is g: q_sca = 2/x^2 integral of S11 d(cos theta).
-// S11 is a polynomial of degree 2 n_max in cos theta, which n_max + 2 Gauss-Legendre nodes integrate exactly, times
-// cos theta too.
+// The integral of S11 over all directions is the scattered light, and its mean cosine is g: q_sca = 2/x^2 times the
+// integral of S11 d(cos theta). S11 is a polynomial of degree 2 n_max in cos theta, which n_max + 2 Gauss-Legendre
+// nodes integrate exactly, also if multiplied by cos theta.
 TEST(Mie, ScatteredLightIntegratesToTheEfficiency) {
   for (double const x : {1e-3, 0.3, 5.9, 80.0, 700.0}) {
     for (Complex const m : {Complex(1.45, 0), Complex(1.5, 0.5)}) {
@@ -179,7 +179,7 @@ TEST(Mie, ScatteredLightIntegratesToTheEfficiency) {
   }
 }
 
-// What has the index of its surroundings is not there.
+// A sphere with the index of its surroundings scatters no light.
 TEST(Mie, NothingIsScatteredWithoutAChangeOfIndex) {
   for (double const x : {1e-3, 1.0, 5.2, 300.0, 1e4}) {
     MieCoefficients const nothing(x, 1.0);
@@ -193,10 +193,9 @@ TEST(Mie, NothingIsScatteredWithoutAChangeOfIndex) {
   }
 }
 
-// As m tends to 1 every part of the sphere scatters for itself (Rayleigh-Gans; Bohren & Huffman sec. 6.1):
-// |S1| = 2/3 x^3 |m - 1| f(u), S2 = S1 cos theta, f = 3 (sin u - u cos u)/u^3, u = 2 x sin(theta/2). The rest is of
-// order m
-// - 1 and of 2 x (m - 1), the phase that light gains in the sphere, of the forward amplitude.
+// As m tends to 1, every part of the sphere scatters independently (Rayleigh-Gans; Bohren & Huffman sec. 6.1): |S1| =
+// 2/3 x^3 |m - 1| f(u), S2 = S1 cos theta, f = 3 (sin u - u cos u)/u^3, u = 2 x sin(theta/2). The relative error is of
+// the order of m - 1 and of 2 x (m - 1), the phase shift of light in the sphere, at the forward amplitude.
 TEST(Mie, FaintSpheresFollowRayleighAndGans) {
   double const delta = 1e-6;
   for (double const x : {0.01, 1.0, 6.0, 30.0}) {
@@ -206,7 +205,7 @@ TEST(Mie, FaintSpheresFollowRayleighAndGans) {
       double const u = 2 * x * std::sin(angle / 2);
       double const f = u < 1e-2 ? 1 - u * u / 10 : 3 * (std::sin(u) - u * std::cos(u)) / (u * u * u);
       auto const [s1, s2] = sphere.amplitudes(angle);
-      // where u is small f is good to u^4/280
+      // the series of f for small u has an error of u^4/280
       double const tolerance = 2 * (1 + x) * delta + 1e-10;
       EXPECT_NEAR(std::abs(s1) / forward, std::abs(f), tolerance) << x << " " << angle;
       EXPECT_NEAR(std::abs(s2) / forward, std::abs(f * std::cos(angle)), tolerance) << x << " " << angle;
@@ -214,7 +213,8 @@ TEST(Mie, FaintSpheresFollowRayleighAndGans) {
   }
 }
 
-// Forward and backward no plane of scattering is special: S1 = S2 and S1 = -S2. Light sent back gives q_back.
+// In forward and backward direction, no scattering plane is distinguished: S1 = S2 and S1 = -S2. The backscattered
+// light determines q_back.
 TEST(Mie, ForwardAndBackwardNoPolarisationIsSpecial) {
   for (double const x : {0.01, 5.9, 250.0}) {
     MieCoefficients const sphere(x, {1.45, 0.01});
@@ -226,7 +226,8 @@ TEST(Mie, ForwardAndBackwardNoPolarisationIsSpecial) {
   }
 }
 
-// Angles one at a time or several together: the same, but for how products and sums are rounded together.
+// Angles evaluated one at a time or several together have the same results, up to the rounding of fused products and
+// sums.
 TEST(Mie, AnglesTogetherAreTheAnglesAlone) {
   MieCoefficients const sphere(20, {1.5, 0.1});
   std::vector<double> angles;

@@ -22,7 +22,7 @@ std::complex<double> read_index(std::string const& keys, double wavelength = 532
 }
 
 // Handbook values at the sodium line, 589.3 nm (CRC Handbook of Chemistry and Physics): water at 20 C 1.3330, rutile
-// 2.613 and 2.909 (mean 2.712), sapphire 1.768 and 1.760 (mean 1.765), soda-lime 1.52, each to its digits.
+// 2.613 and 2.909 (mean 2.712), sapphire 1.768 and 1.760 (mean 1.765), soda-lime glass 1.52, to all printed digits.
 TEST(ParticleMaterial, HasTheIndexOfHandbooks) {
   double const sodium = 589.3e-9;
   EXPECT_NEAR(particle_material("water").index(sodium).real(), 1.3330, 5e-4);

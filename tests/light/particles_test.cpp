@@ -28,7 +28,7 @@ ParticleSetup cube_of_particles(double side) {
   return setup;
 }
 
-/// Light everywhere.
+/// A sheet that illuminates the whole volume.
 LaserSheet<double> wide_sheet() {
   LaserSetup laser;
   laser.profile = SheetProfile::top_hat;
@@ -42,8 +42,8 @@ std::string csv(std::string const& name, std::string const& text) {
   return path;
 }
 
-// Both pulses see a volume that is as full as was asked for: 20000 particles give or take the square root of them (what
-// moves in is random), within four of it; and the particles move by u dt.
+// At both pulses, the volume contains the requested number of particles: 20000 up to the square root of that number
+// (the number that moves in is random), within four standard deviations. The particles move by u dt.
 TEST(SeededParticles, FillTheVolumeAtBothPulses) {
   FlowSetup const flow = uniform_flow({100, -30, 60});
   Particles const particles = seed_particles(cube_of_particles(10 * mm), 20000, flow, wide_sheet(), 1e-12);
@@ -57,7 +57,7 @@ TEST(SeededParticles, FillTheVolumeAtBothPulses) {
   }
 }
 
-// A particle is lit just while it is in the volume.
+// A particle is illuminated if and only if it is in the volume.
 TEST(SeededParticles, AreDarkOutsideTheVolume) {
   Particles const particles =
       seed_particles(cube_of_particles(10 * mm), 5000, uniform_flow({0, 0, 100}), wide_sheet(), 1e-12);
@@ -70,17 +70,17 @@ TEST(SeededParticles, AreDarkOutsideTheVolume) {
       dark += inside ? 0 : 1;
     }
   }
-  // a tenth of the volume moves out, as much moves in
+  // a tenth of the volume moves out, and as much moves in
   EXPECT_NEAR(static_cast<double>(dark), 1000, 4 * std::sqrt(1000.0));
 }
 
-// The middle of either half of the path is the same: at mid-time a particle is where it was seeded, for any dt.
+// At mid-time, a particle is at its seeded position for any dt.
 TEST(SeededParticles, SitAtMidTimeWhereTheyAreSeeded) {
   FlowSetup vortex = uniform_flow({});
   vortex.flow.kind = RotationFlow{2e4, {}};
   ParticleSetup const setup = cube_of_particles(4 * mm);
   Particles const turned = seed_particles(setup, 100, vortex, wide_sheet(), 1e-12);
-  // solid rotation by +-0.1: the middle of both ends is cos(0.1) of the seeded place, the radius stays
+  // solid-body rotation by +-0.1: the midpoint of both ends is at cos(0.1) times the radius, which is constant
   for (std::size_t i = 0; i < turned.size(); ++i) {
     Vec3d const a = turned.place[0][i], b = turned.place[1][i], middle = 0.5 * (a + b);
     double const radius = std::hypot(a.x, a.y);
@@ -92,8 +92,9 @@ TEST(SeededParticles, SitAtMidTimeWhereTheyAreSeeded) {
   EXPECT_LE(turned.path.error, 1e-12);
 }
 
-// Behind a normal shock of Mach 2 gas, and particles that follow it, are 8/3 times as dense: of a volume that the front
-// halves 3 of 11 particles are before it at either pulse, 20000 in all; four deviations.
+// Behind a normal shock at Mach 2, the density of the gas, and of particles that follow it, is 8/3 of that in front. Of
+// a volume that the front divides into halves, 3 of 11 particles are in front of it at either pulse, of 20000 in all.
+// Tolerance: four standard deviations.
 TEST(SeededParticles, CrowdBehindAShock) {
   FlowSetup flow;
   flow.dt = 2e-6;
@@ -131,7 +132,8 @@ TEST(SeededParticles, AreTheSameForAnyNumberOfThreads) {
   EXPECT_EQ(one.photons[1], many.photons[1]);
 }
 
-// Mean and deviation over N draws scatter by sigma / sqrt(N) and sigma / sqrt(2 N): four of these.
+// The mean and the standard deviation of N draws have standard errors of sigma / sqrt(N) and sigma / sqrt(2 N).
+// Tolerance: four standard errors.
 TEST(Diameters, AreDrawnFromTheirDistribution) {
   constexpr std::size_t n = 40000;
   auto const moments = [](std::vector<double> const& values) {
@@ -182,11 +184,11 @@ TEST(ParticleFile, IsRefusedWithThePlaceOfItsMistake) {
   EXPECT_THAT(reading(header + "1,2,3\n"), ThrowsMessage<DataError>(HasSubstr("bad.csv:2")));
   EXPECT_THAT(reading(header + "1,2,3,1\n0,0,0,0\n"), ThrowsMessage<DataError>(HasSubstr("bad.csv:3")));
   EXPECT_THAT(reading(header + "1,2,nan,1\n"), ThrowsMessage<DataError>(HasSubstr("4 finite numbers")));
-  EXPECT_THAT(reading(header), ThrowsMessage<DataError>(HasSubstr("holds no particles")));
+  EXPECT_THAT(reading(header), ThrowsMessage<DataError>(HasSubstr("contains no particles")));
 }
 
-// White spheres send all the light away that falls on them: the integral over all directions is pi d^2 / 4. The
-// midpoint rule is good to (pi / 20000)^2 / 24 of the second derivatives.
+// White spheres scatter all the light that falls on them: the integral over all directions is pi d^2 / 4. The error of
+// the midpoint rule is (pi / 20000)^2 / 24 times the second derivative.
 TEST(LambertSpheres, SendAwayWhatTheyCatch) {
   double const d = 3 * um;
   LambertSpheres<double> const spheres{&d};
@@ -199,7 +201,7 @@ TEST(LambertSpheres, SendAwayWhatTheyCatch) {
   }
   EXPECT_NEAR(sum, pi * d * d / 4, 1e-7 * d * d);
   EXPECT_EQ(spheres.cross_section(0, {1, 0, 0}, wave), 0);
-  // seen from the laser: a geometric albedo of 2/3
+  // seen from the laser: geometric albedo of 2/3
   EXPECT_NEAR(spheres.cross_section(0, {-1, 0, 0}, wave), d * d / 6, 1e-12 * d * d);
 }
 

@@ -15,7 +15,7 @@ constexpr double two_pow_32 = 4294967296.0;
 
 constexpr BundleView one_scrambling{.seed = 11};
 
-// The first eight points of Joe and Kuo's sequence (new-joe-kuo-6), listed there in Gray-code order k ^ (k >> 1).
+// The first eight points of Joe and Kuo's sequence (new-joe-kuo-6), which is listed in Gray-code order k ^ (k >> 1).
 TEST(Sobol, FirstPointsAreJoeAndKuos) {
   double const points[8][4] = {{0, 0, 0, 0},
                                {0.5, 0.5, 0.5, 0.5},
@@ -32,7 +32,7 @@ TEST(Sobol, FirstPointsAreJoeAndKuos) {
   }
 }
 
-// A point is its coordinates, whatever bits its index has: bytes full and empty, and single bits.
+// Coordinates are correct for any bit pattern of the index: full and empty bytes, and single bits.
 TEST(Sobol, PointHasItsCoordinates) {
   std::vector<std::uint32_t> indices{0u, 255u, 256u, 65535u, 65536u, 0xff00ff00u, 0x12345678u, 0xffffffffu};
   for (std::uint32_t k = 0; k < 32; ++k) indices.push_back(1u << k);
@@ -43,7 +43,8 @@ TEST(Sobol, PointHasItsCoordinates) {
   }
 }
 
-/// Largest and smallest number of points in the elementary intervals of 2^-bits volume of a pair of dimensions.
+/// Returns the smallest and the largest number of points in the elementary intervals of volume 2^-bits of a pair of
+/// dimensions.
 std::pair<int, int> extremes_of_elementary_intervals(int first, int second, int points_log2, int bits,
                                                      std::uint32_t const (&seeds)[2]) {
   int fewest = 1 << points_log2, most = 0;
@@ -65,7 +66,8 @@ std::pair<int, int> extremes_of_elementary_intervals(int first, int second, int 
 }
 
 // A (0,m,2)-net has exactly one of its 2^m points in every elementary interval of volume 2^-m (Niederreiter 1987). The
-// first two Sobol dimensions are one; dimensions of polynomial degrees 2 and 3 are a (t,m,2)-net with t = 1 + 2.
+// first two Sobol dimensions are such a net; dimensions with polynomials of degrees 2 and 3 are a (t,m,2)-net with t =
+// 1 + 2.
 TEST(Sobol, PupilPairIsANetWithOnePointPerElementaryInterval) {
   EXPECT_EQ(extremes_of_elementary_intervals(0, 1, 8, 8, {0, 0}), (std::pair{1, 1}));
 }
@@ -82,9 +84,10 @@ TEST(OwenScrambling, KeepsTheNets) {
   }
 }
 
-// Rays are dealt in turn to scramblings of their own: ray 4 k + i is point k of the i-th of four. The first is the one
-// that would be alone; sixteen points of each fill the sixteen intervals of every coordinate; and what one says of a
-// point's place says nothing of another's: their correlation over 2000 sources stays within five standard errors.
+// Rays are assigned to the scramblings in turn: ray 4 k + i is point k of scrambling i of four. The first scrambling is
+// the one that is used alone if there is only one. Sixteen points of each scrambling fill the sixteen intervals of
+// every coordinate. Different scramblings are independent: over 2000 sources, the correlation of their points is zero
+// within five standard errors.
 TEST(Sobol, RaysAreDealtToIndependentScramblings) {
   BundleView dealt = one_scrambling;
   dealt.scrambling_bits = 2;
@@ -121,9 +124,9 @@ TEST(Sobol, AHandfulOfRaysHasFewerScramblings) {
   }
 }
 
-// Over the scramblings of many sources every point is uniform: mean 1/2 and variance 1/12 within five standard errors,
-// sqrt(1/(12 n)) and sqrt((1/80 - 1/144)/n); coordinates of different dimensions and of neighbouring sources, and bits
-// of different streams, are uncorrelated within 5/sqrt(n).
+// Over the scramblings of many sources, every point is uniformly distributed, with mean 1/2 and variance 1/12 within
+// five standard errors, sqrt(1/(12 n)) and sqrt((1/80 - 1/144)/n). Coordinates of different dimensions, of neighbouring
+// sources, and bits of different streams are uncorrelated within 5/sqrt(n).
 TEST(OwenScrambling, IsUnbiasedAndIndependentFromSourceToSource) {
   constexpr int n = 8192;
   for (std::uint64_t const ray : {0ull, 5ull, 1000ull}) {
@@ -165,8 +168,8 @@ TEST(RandomStreams, OfOneSeedAreIndependent) {
   }
 }
 
-// A place that no whole number of nanometres can tell has a key all the same, one for each side; all others have keys
-// of their own, to the nanometre.
+// A position beyond the range of integer nanometres also has a key, one for each side; all other positions have
+// different keys if they differ by a nanometre.
 TEST(SourceKey, EveryFinitePlaceHasAKey) {
   EXPECT_EQ(key_of({1e300, 0}), key_of({1e10, 0}));
   EXPECT_EQ(key_of({0, -1e300}), key_of({0, -1e10}));

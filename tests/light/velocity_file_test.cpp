@@ -15,7 +15,7 @@ namespace {
 
 constexpr double node_step = unit::millimetre;
 
-/// A cut-out of nodes a millimetre apart about the origin, with the velocity of their places [m/s, m].
+/// Writes a cut-out of nodes a millimetre apart about the origin. @param velocity  velocity at a position [m/s, m]
 std::string cutout(std::string const& name, std::array<int, 3> nodes, std::function<Vec3d(Vec3d)> const& velocity,
                    std::string const& unit = "m/s") {
   std::string const path = testing::TempDir() + "/velocity_" + name + ".h5";
@@ -44,13 +44,13 @@ VelocityFile a_millimetre_apart(std::string const& path) {
   return setup;
 }
 
-/// A cubic of X, Y, Z and their products [m/s], 10 at most on 6 mm.
+/// A velocity that is cubic in X, Y, Z and contains their products [m/s], at most 10 over 6 mm.
 Vec3d cubic(Vec3d p) {
   double const x = p.x / node_step, y = p.y / node_step, z = p.z / node_step;
   return {1 + 0.02 * x * x * x - y, 0.05 * x * y * z + 2, z * z - 0.3 * x + 0.01 * y * y * y};
 }
 
-// Splines that are not-a-knot at their ends reproduce cubics up to the ends; coefficients are floats, 6e-8 of 30 m/s.
+// Splines with not-a-knot ends reproduce cubics up to the ends; coefficients are floats, with errors of 6e-8 of 30 m/s.
 TEST(VelocityFile, ReproducesACubicBetweenItsNodes) {
   LoadedVelocity const loaded = load_velocity(a_millimetre_apart(cutout("cubic", {7, 6, 5}, cubic)));
   for (double const x : {-3.0, -2.7, 0.1, 2.4, 3.0}) {
@@ -64,11 +64,11 @@ TEST(VelocityFile, ReproducesACubicBetweenItsNodes) {
   }
   EXPECT_FALSE(loaded.flow.covers(Vec3d{3.01, 0, 0} * node_step));
   EXPECT_FALSE(loaded.flow.covers(Vec3d{0, 0, -2.01} * node_step));
-  // beyond its end the velocity is that of the end
+  // beyond the end of the grid, the velocity is that at the end
   EXPECT_LT(length(loaded.flow(Vec3d{9, 0.4, 0} * node_step) - cubic(Vec3d{3, 0.4, 0} * node_step)), 1e-5);
 }
 
-// The file is [5, 6, 7, 3]; with its axes exchanged its slowest is X. Components stay those along X, Y and Z.
+// The file is [5, 6, 7, 3]; with exchanged axes, its slowest axis is X. The components remain those along X, Y and Z.
 TEST(VelocityFile, TakesAxesInTheOrderOfTheKey) {
   VelocityFile setup = a_millimetre_apart(cutout("exchanged", {7, 6, 5}, cubic));
   setup.axes = "xyz";
@@ -92,7 +92,7 @@ TEST(VelocityFile, PassesOnWhatItsReaderHadToAssume) {
   EXPECT_LT(length(loaded.flow(Vec3d{}) - Vec3d{1.5, 1.5, 1.5}), 1e-6);
 }
 
-// A velocity of 1500 mm/s; the scale of the setup replaces the unit of the file.
+// A velocity of 1500 mm/s; the scale given in the setup replaces the unit of the file.
 TEST(VelocityFile, ConvertsTheUnitOfTheFile) {
   auto const uniform = [](Vec3d) { return Vec3d{1500, 0, 0}; };
   VelocityFile setup = a_millimetre_apart(cutout("millimetres", {4, 4, 3}, uniform, "mm/s"));
@@ -105,8 +105,8 @@ TEST(VelocityFile, ConvertsTheUnitOfTheFile) {
               testing::HasSubstr("values are in \"K\", which is not a known unit of velocity"));
 }
 
-// A wave over the period of 16 nodes, sampled at 16: a cubic spline's error is (2 pi / 16)^4 / 384 of it at most, and
-// it goes on beyond the nodes.
+// A wave over the period of 16 nodes: the error of a cubic spline is at most (2 pi / 16)^4 / 384 of its amplitude, and
+// the wave continues periodically beyond the nodes.
 TEST(VelocityFile, RepeatsWhatIsPeriodic) {
   auto const wave = [](Vec3d p) {
     return Vec3d{std::sin(2 * pi * p.x / (16 * node_step)), std::cos(2 * pi * p.y / (16 * node_step)), 0};
@@ -139,7 +139,7 @@ TEST(VelocityFile, RefusesWhatIsNoVelocityAndSaysWhatItAssumes) {
   EXPECT_GE(velocity_bytes(volume), 4 * 4 * 2 * 3 * sizeof(float));
 }
 
-// A flow of kind "file" is at rest until its file is read.
+// A flow of kind "file" has zero velocity until its file is loaded.
 TEST(VelocityFile, IsReadWhenItIsNeeded) {
   std::string const path = cutout("late", {4, 4, 3}, [](Vec3d) { return Vec3d{7, -2, 1}; });
   SetupDocument document = SetupDocument::from_text(

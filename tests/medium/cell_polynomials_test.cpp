@@ -14,12 +14,12 @@ namespace {
 using test::open_grid;
 using test::sampled;
 
-/// A field without symmetry, smooth over several cells of a unit grid.
+/// A field without symmetry that is smooth over several cells of a unit grid.
 double rough(Vec3d p) {
   return 1e-4 * (std::sin(0.7 * p.x + 0.1) * std::cos(0.5 * p.y - 0.4) + 0.3 * std::sin(0.9 * p.z + p.x));
 }
 
-/// A grid's polynomials with their memory.
+/// Polynomials of a grid together with their memory.
 template <class Basis>
 struct Owned {
   template <class Grid>
@@ -39,7 +39,7 @@ struct Owned {
   CellPolynomials<Basis, true> view;
 };
 
-/// Places in a box of 7 x 6 x 5 cells and on its faces, on nodes and between them.
+/// Returns positions in a box of 7 x 6 x 5 cells and on its faces, on the nodes and between them.
 std::vector<Vec3d> places() {
   std::vector<Vec3d> all;
   for (double x = 0; x <= 7; x += 0.875) {
@@ -50,8 +50,8 @@ std::vector<Vec3d> places() {
   return all;
 }
 
-// The same polynomial written in two ways. Its coefficients are below 1e-3 (a field of 1.3e-4, differenced three times
-// in three directions), 64 of them, with some ten roundings of 1.1e-16 each.
+// Both representations are the same polynomial. Its coefficients are below 1e-3 (a field of 1.3e-4, differenced three
+// times in three directions); there are 64 of them, with about ten roundings of 1.1e-16 each.
 template <class Basis, class Grid>
 void expect_same(Grid const& grid) {
   double const tolerance = 64 * 1e-3 * 10 * 1.1e-16;
@@ -64,7 +64,7 @@ void expect_same(Grid const& grid) {
     if (!repeats) {
       EXPECT_EQ(b.refractivity, open.sample(p).refractivity);
     }
-    // on nodes a linear field's slope belongs to either side
+    // at the nodes, the slope of a linear field is that of either neighbouring cell
     if (Basis::support == 2 && (p.x == std::floor(p.x) || p.y == std::floor(p.y) || p.z == std::floor(p.z))) continue;
     EXPECT_LT(length(a.gradient - b.gradient), tolerance);
   }
@@ -77,7 +77,7 @@ TEST(CellPolynomials, SayWhatTheGridSays) {
   expect_same<Linear>(linear.view<double, Linear, 3>(0, 0));
 }
 
-// Nodes at 2 + 0.5 i and so on: slopes grow with 1/spacing.
+// Nodes at 2 + 0.5 i and so on: slopes are proportional to 1/spacing.
 TEST(CellPolynomials, CountInMetres) {
   auto const volume = sampled<float>(open_grid(8, 7, 6, {0.5, 0.25, 2}, {2, -1, 3}), rough);
   auto const grid = volume.view<double, CubicBspline, 3>(0, 0);
@@ -105,8 +105,8 @@ TEST(CellPolynomials, RepeatWhereTheGridDoes) {
   expect_same<Linear>(linear.view<double, Linear, 3>(0, 0));
 }
 
-// A neighbour on the far side of a face is off by what two polynomials with three derivatives in common differ by:
-// less than 1e-3 times its distance cubed.
+// The second point is in the neighbouring cell. The polynomials of both cells have three derivatives in common at the
+// face, so their difference is less than 1e-3 times the cubed distance from it.
 TEST(CellPolynomials, SampleTwoPointsSideBySide) {
   auto const volume = sampled<float>(open_grid(8, 7, 6), rough);
   auto const grid = volume.view<double, CubicBspline, 3>(0, 0);
@@ -119,8 +119,9 @@ TEST(CellPolynomials, SampleTwoPointsSideBySide) {
   EXPECT_LT(length(at[1].gradient - grid.sample(q).gradient), 1e-3 * 3e-8);
 }
 
-// Rays through the box, out at its side in mid-flight, past it, from within: sampled in pairs they take the steps that
-// they take otherwise. Roundings as in trace_together_test: 30 steps, lengths of 10 m, directions of 1.
+// Rays through the box, out of its side between two steps, past it, and from inside it: with samples in pairs, they
+// take the same steps as with single samples. The tolerances are the roundings of trace_together_test: 30 steps,
+// lengths of 10 m, directions of length 1.
 TEST(CellPolynomials, TraceTheSameRays) {
   auto const volume = sampled<float>(open_grid(9, 9, 9), [](Vec3d p) { return 10 * rough(p); });
   auto const grid = volume.view<double, CubicBspline, 3>(0, 0);

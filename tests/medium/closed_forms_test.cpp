@@ -14,7 +14,7 @@ namespace {
 
 constexpr double K = 2.26e-4, rho_0 = 1.225, n_0 = 1 + K * rho_0;
 
-/// The medium that a setup with this field has.
+/// Returns the medium of a setup with this field.
 template <class Field>
 Field built(Field const& field, double thickness = 0.01) {
   MediumSetup setup;
@@ -27,7 +27,7 @@ TracingOptions<double> options(double step, Integrator integrator = Integrator::
   return {step, K * rho_0, integrator, Faces::matched};
 }
 
-/// Slope dx/dz with which a ray along the axis leaves at x.
+/// Returns the slope dx/dz with which a ray that starts along the axis at x leaves the medium.
 template <class Field>
 double deflection(Field const& field, double x, double step, double from = -0.25) {
   Ray<double> const start{{x, 0, from}, {0, 0, 1}};
@@ -45,7 +45,8 @@ void expect_consistent_gradient(Field const& field, double length_scale) {
       Vec3d step{};
       step[axis] = h;
       double const difference = (field.sample(at + step).refractivity - field.sample(at - step).refractivity) / (2 * h);
-      // h^2/6 times the third derivative, some 1e-7 of the largest gradient; rounding of n - 1 over h
+      // truncation error h^2/6 times the third derivative, about 1e-7 of the largest gradient, and rounding of n - 1
+      // over h
       EXPECT_NEAR(gradient[axis], difference, 1e-6 * field.gladstone_dale / length_scale) << "axis " << axis;
     }
   }
@@ -71,10 +72,12 @@ TEST(ClosedForms, ValuesAreThoseOfTheFormulae) {
 }
 
 // Abel pair of the Gaussian: eps(x) = -2 sqrt(pi) (dn/n0)(x/a) exp(-x^2/a^2), largest at x = a/sqrt(2), where it is
-// sqrt(2 pi / e) dn/n0 = 1.520347 dn/n0. Bending moves the ray by eps a, so with dn = 2.3e-7 the rest is below 1e-6.
+// sqrt(2 pi / e) dn/n0 = 1.520347 dn/n0. The deflection moves the ray by eps a, so with dn = 2.3e-7 the error is below
+// 1e-6.
 TEST(GaussianPlumeField, LargestDeflectionIsTheAbelIntegral) {
   double const a = 5e-3;
-  auto const plume = built(GaussianPlume<double>{{{}, 1e-3, a}}, 12 * a);  // cut where exp(-36)
+  // the slab ends where the field has decayed to exp(-36)
+  auto const plume = built(GaussianPlume<double>{{{}, 1e-3, a}}, 12 * a);
   double const dn = K * 1e-3;
   auto const scaled = [&](double x) { return -deflection(plume, x, a / 20) * n_0 / dn; };
   EXPECT_NEAR(scaled(a / std::sqrt(2.0)), 1.520347, 2e-6);
@@ -116,13 +119,15 @@ TEST(NormalShockField, RunsFromUpstreamToDownstreamOverItsThickness) {
   EXPECT_NEAR(shock.sample({2e-3, 0, 0}).gradient.x, K * 0.5 * (5.0 / 3) / 1e-3, 1e-13) << "jump / thickness";
 }
 
-/// Snell at a plane whose normal is `incidence` from the ray: the component of n d along the plane stays.
+/// Snell's law at a plane whose normal makes the angle `incidence` with the ray: the tangential component of n d is
+/// conserved.
 double snell_slope(double n1, double n2, double incidence) {
   return std::tan(incidence - std::asin(n1 / n2 * std::sin(incidence)));
 }
 
-// A jump refracts by Snell on the tilted plane, whatever its width, once the ray has crossed all of it; tilt 30 degrees
-// is an incidence of 60. The tails, tanh(4 d / w), end within the slab for small w: the error falls with it.
+// A ray that crosses the whole jump is refracted by Snell's law at the tilted plane, whatever the width of the jump; a
+// tilt of 30 degrees is an angle of incidence of 60. For a small width, the tails, tanh(4 d / w), decay within the
+// slab, so that the error decreases with the width.
 TEST(NormalShockField, TiltedJumpConvergesToSnell) {
   double const tilt = 30 * unit::degree, incidence = pi / 2 - tilt;
   double const n1 = 1 + K * 0.5, n2 = 1 + K * 0.5 * 8 / 3;
@@ -135,10 +140,10 @@ TEST(NormalShockField, TiltedJumpConvergesToSnell) {
     EXPECT_LT(error, 0.5 * before) << width;
     before = error;
   }
-  EXPECT_LT(before, 1e-7) << "2 exp(-4 * 5 mm / 1 mm) = 4e-9, and the scheme's";
+  EXPECT_LT(before, 1e-7) << "tails of 2 exp(-4 * 5 mm / 1 mm) = 4e-9, and the error of the scheme";
 }
 
-// The same on a grid of 0.1 mm: float nodes, spline between them.
+// The same jump on a grid of 0.1 mm, with nodal values in float and a spline between them.
 TEST(NormalShockField, GriddedJumpRefractsLikeSnell) {
   double const tilt = 30 * unit::degree, incidence = pi / 2 - tilt, cell = 1e-4;
   double const n1 = 1 + K * 0.5, n2 = 1 + K * 0.5 * 8 / 3;
@@ -148,8 +153,8 @@ TEST(NormalShockField, GriddedJumpRefractsLikeSnell) {
     auto const grid = test::open_grid(41, 4, 101, {cell, cell, cell}, {-20 * cell, -cell, -50 * cell});
     auto const volume = test::sampled<float>(grid, [&](Vec3d p) { return shock.sample(p).refractivity; });
     double const traced = deflection(volume.view<double, CubicBspline, 3>(0, 0), 0, cell / 4);
-    // tails within +-5 mm along z: 2 exp(-4 * 2.5 / 1.6) = 4e-3 for the widest; the grid resolves the narrowest by 4
-    // cells
+    // The tails extend over +-5 mm along z: 2 exp(-4 * 2.5 / 1.6) = 4e-3 for the widest jump. The grid resolves the
+    // narrowest jump by 4 cells.
     EXPECT_NEAR(traced / snell, 1, 2.2 * std::exp(-4 * 2.5e-3 / width) + 1e-3) << width;
   }
 }

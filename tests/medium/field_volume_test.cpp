@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Small field files, written by each test into a folder of its own.
+/// Fixture: each test writes small field files into its own directory.
 class FieldVolume : public testing::Test {
  protected:
   void SetUp() override {
@@ -27,7 +27,8 @@ class FieldVolume : public testing::Test {
   }
   void TearDown() override { fs::remove_all(folder_); }
 
-  /// A JHTDB-like cut-out of values f(i, j, k), with coordinates of the given step where it is positive.
+  /// Writes a file in the style of JHTDB with values f(i, j, k), and with coordinates of the given step if it is
+  /// positive.
   template <class Function>
   MediumSetup file_setup(int nx, int ny, int nz, Function const& f, double coordinate_step = 0,
                          std::string const& length_unit = "mm", std::string const& value_unit = "1") {
@@ -82,7 +83,7 @@ TEST_F(FieldVolume, NodesLieAboutTheCentre) {
     EXPECT_NEAR(bounds(built).high.y, 23e-3, 1e-17);
     EXPECT_NEAR(bounds(built).low.z, 2e-3, 1e-17);
     EXPECT_NEAR(bounds(built).high.z, 8e-3, 1e-17);
-    // a linear field comes back anywhere; float volume: 1e-7 of the range 2.3e-4
+    // a linear field is reproduced everywhere; float volume: 1e-7 of the range of 2.3e-4
     EXPECT_NEAR(refractivity(built, {8e-3, 17e-3, 2e-3}), 1e-6 * ramp(0, 0, 0), 1e-10);
     EXPECT_NEAR(refractivity(built, {12e-3, 23e-3, 8e-3}), 1e-6 * ramp(4, 3, 2), 1e-10);
     EXPECT_NEAR(refractivity(built, {10e-3, 20e-3, 5e-3}), 1e-6 * (1 + 2 + 15 + 100), 1e-10);
@@ -94,7 +95,7 @@ TEST_F(FieldVolume, CoordinatesInTheFileAreMillimetres) {
   setup.field.scale = 0.01;
   BuiltMedium const built = build_medium(setup);
   EXPECT_NEAR(built.grid.spacing.x, 0.25e-3, 1e-15);
-  EXPECT_NEAR(bounds(built).low.x, -0.5e-3, 1e-15) << "the file's origin gives way to center_mm";
+  EXPECT_NEAR(bounds(built).low.x, -0.5e-3, 1e-15) << "center_mm replaces the origin of the file";
   setup.field.spacing = Vec3d{1e-3, 1e-3, 1e-3};
   EXPECT_NEAR(bounds(build_medium(setup)).low.x, -2e-3, 1e-15) << "spacing_mm replaces the coordinates";
 }
@@ -113,7 +114,7 @@ TEST_F(FieldVolume, UnknownUnitsOfLengthAreRefusedAndKnownOnesConverted) {
   EXPECT_EQ(build_medium(setup).grid.spacing.x, 1e-3);
 }
 
-// 1.2e-3 g/cm^3 = 1.2 kg/m^3; the scale of the setup replaces the unit of the file.
+// 1.2e-3 g/cm^3 = 1.2 kg/m^3; the scale given in the setup replaces the unit of the file.
 TEST_F(FieldVolume, ValuesAreConvertedFromTheUnitOfTheFile) {
   auto const of_unit = [this](std::string const& unit, std::optional<double> scale = std::nullopt,
                               FieldQuantity quantity = FieldQuantity::density) {
@@ -138,7 +139,7 @@ TEST_F(FieldVolume, ValuesAreConvertedFromTheUnitOfTheFile) {
 }
 
 TEST_F(FieldVolume, QuantitiesBecomeRefractivities) {
-  // the same field told three ways
+  // the same field as density, refractivity and refractive index
   auto const rho = [](int i, int j, int k) { return 1 + 0.125 * i - 0.25 * j + 0.5 * k; };
   double const K = 2.26e-4;
   Vec3d const corner{-2e-3, -2e-3, -2e-3}, centre{};
@@ -158,12 +159,14 @@ TEST_F(FieldVolume, QuantitiesBecomeRefractivities) {
   auto index = file_setup(5, 5, 5, [&](int i, int j, int k) { return (1 + 2 * K * rho(i, j, k)) / 2; });
   index.field.quantity = FieldQuantity::refractive_index;
   index.field.scale = 2;
-  expect(index, 1e-10);  // n in double, to 2e-16; only what is left of n - 1 becomes a float
+  // n is read in double, exact to 2e-16; only the difference of n - 1 from the offset is rounded to float
+  expect(index, 1e-10);
 }
 
-// n in double and n - 1 in double are one field: nodes of both are good to a float's ulp of the range K g L = 7.2e-6,
-// 4e-13, and gradients on 0.1 mm to twice that over a cell, 9e-9 / m of 2.3e-3 / m. (n in float: steps of 1.2e-7, half
-// the gradient of a cell.) Eq. 9's integral over the thickness is K g L_z; the spline reproduces the ramp.
+// Files with n in double and n - 1 in double represent the same field: their nodal values agree to a float's ulp of the
+// range K g L = 7.2e-6, 4e-13, and the gradients on a grid of 0.1 mm to twice that over a cell, 9e-9 / m of 2.3e-3 / m.
+// (With n in float, steps of 1.2e-7 would be half the gradient of a cell.) The integral in Eq. 9 over the thickness is
+// K g L_z, since the spline reproduces the ramp.
 TEST_F(FieldVolume, RefractiveIndexInDoubleKeepsItsGradient) {
   double const K = 2.26e-4, g = 10, cell = 1e-4;  // [m^3/kg], [kg/m^4], [m]
   auto const excess = [&](int i, int j, int k) { return K * (1.225 + g * cell * (i + 0.5 * j - 0.25 * k)); };
@@ -179,7 +182,7 @@ TEST_F(FieldVolume, RefractiveIndexInDoubleKeepsItsGradient) {
     BuiltMedium const refractivities = built(FieldQuantity::refractivity, 0, interpolation);
     EXPECT_TRUE(index.warnings.empty());
     for (double x = -1.55e-3; x < 1.6e-3; x += 0.13e-3) {
-      Vec3d integral{};  // of grad n along z
+      Vec3d integral{};  // integral of grad n along z
       int const slices = 64;
       double const depth = 10 * cell;
       for (int slice = 0; slice < slices; ++slice) {
@@ -210,15 +213,17 @@ TEST_F(FieldVolume, RefractiveIndexInFloatIsWarnedOf) {
   auto const warnings = build_medium(setup).warnings;
   ASSERT_EQ(warnings.size(), 1u);
   // an ulp of 1.00027 is 2^-23 = 1.2e-7, 4 % of the range of 3e-6
-  EXPECT_THAT(warnings[0], testing::HasSubstr("holds refractive indices in 24 bits, so n - 1 is known in steps of "
-                                              "1.2e-07 only, 4 % of its range"));
+  EXPECT_THAT(warnings[0],
+              testing::HasSubstr("stores refractive indices with 24 bits, so that n - 1 is resolved in steps of only "
+                                 "1.2e-07, 4 % of its range"));
   EXPECT_THAT(warnings[0], testing::HasSubstr("write the file as refractivity (n - 1) or density"));
   setup.field.quantity = FieldQuantity::density;
-  setup.field.scale = 1.2;  // as it is, a density of 1.00027 would be asked about: see below
-  EXPECT_TRUE(build_medium(setup).warnings.empty()) << "floats are enough for a density";
+  setup.field.scale = 1.2;  // without the scale, a density of 1.00027 would cause another warning, see below
+  EXPECT_TRUE(build_medium(setup).warnings.empty()) << "a density in float is accurate enough";
 }
 
-// Values that are plausible in another quantity or unit than the one they are read in; the ambient has 1.225 kg/m^3.
+// Values that are plausible as another quantity or in another unit than the one in which they are read; the ambient
+// density is 1.225 kg/m^3.
 TEST_F(FieldVolume, ValuesOfAnotherQuantityAreAskedAbout) {
   auto const warnings = [this](double value, FieldQuantity quantity, double scale = 1) {
     auto setup = file_setup(4, 4, 4, [value](int i, int j, int) { return value * (1 + 0.01 * i - 0.01 * j); });
@@ -296,13 +301,13 @@ TEST_F(FieldVolume, PeriodicAxesTile) {
   BuiltMedium const built = build_medium(setup);
   EXPECT_EQ(bounds(built).high.x, unbounded);
   Vec3d const p{0.3e-3, 0.1e-3, 0};
-  // 1e-17: places of 1e-2 m are rounded to 2e-18 m, times dn/dx of 0.2 /m, and n - 1 to 3e-20
+  // 1e-17: positions of 1e-2 m are rounded to 2e-18 m, times dn/dx of 0.2 /m, and n - 1 to 3e-20
   EXPECT_NEAR(refractivity(built, p), refractivity(built, p + Vec3d{8 * cell, 0, 0}), 1e-17);
   EXPECT_NEAR(refractivity(built, p), refractivity(built, p + Vec3d{-80 * cell, 12 * cell, 0}), 1e-17);
 }
 
-// What is said before the field is read is what the built medium asks for, also of a plane, whose spline does not vary
-// along Z however fine its cells are.
+// The number of steps that is stated before the field is read agrees with the step size of the built medium. This also
+// holds for a plane field, whose spline does not vary along Z, however small its cells are.
 TEST_F(FieldVolume, StepsAcrossAreThoseOfTheCoarsestStep) {
   for (bool const extrude : {true, false}) {
     for (auto const interpolation : {FieldInterpolation::cubic_bspline, FieldInterpolation::trilinear}) {
@@ -336,7 +341,7 @@ TEST_F(FieldVolume, ShapesThatDoNotFitAreRefused) {
   EXPECT_THAT([&] { build_medium(wrong_quantity); }, message("quantity"));
 }
 
-/// A number of /proc/self/status in bytes; negative where there is none.
+/// Returns a value of /proc/self/status in bytes; negative if there is none.
 double process_memory(std::string const& key) {
   std::ifstream status("/proc/self/status");
   std::string word;
@@ -347,11 +352,12 @@ double process_memory(std::string const& key) {
   return kilobytes * 1024;
 }
 
-/// Starts the high-water mark anew (Linux, clear_refs 5).
+/// Resets the peak of the memory in use (Linux, clear_refs 5).
 bool reset_peak() { return static_cast<bool>(std::ofstream("/proc/self/clear_refs") << "5" << std::flush); }
 
-// A volume is read straight into its place and filtered there: at no time is it held twice. 256^3 floats are 67 MB; a
-// second copy would make 134, the allowance is 1.3 times plus 24 MB for the slab being read and the threads.
+// A volume is read directly into its final memory and filtered in place: there is never a second copy. 256^3 floats are
+// 67 MB, so a second copy would need 134; the limit is 1.3 times the size plus 24 MB for the slab being read and the
+// threads.
 TEST_F(FieldVolume, LoadingNeedsLittleMoreThanTheVolume) {
   constexpr int nodes = 256;
   std::string const path = (folder_ / "volume.nrrd").string();
@@ -372,7 +378,7 @@ TEST_F(FieldVolume, LoadingNeedsLittleMoreThanTheVolume) {
   setup.field.file = path;
   double const size = 4.0 * nodes * nodes * nodes;
   EXPECT_LT(static_cast<double>(medium_bytes_needed(setup)), 1.03 * size);
-  if (!reset_peak()) GTEST_SKIP() << "this system does not tell a process's peak memory";
+  if (!reset_peak()) GTEST_SKIP() << "this system does not report the peak memory of a process";
   double const before = process_memory("VmRSS");
   BuiltMedium const built = build_medium(setup);
   double const grown = process_memory("VmHWM") - before;

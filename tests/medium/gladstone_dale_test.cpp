@@ -11,7 +11,7 @@ struct Row {
   double wavelength_nm, refractivity, ciddor, merzkirch;  // n_s - 1 in 1e-4; K in 1e-4 m^3/kg
 };
 
-// Ciddor 1996 for standard air (450 ppm CO2), rho_s = 1.225458 kg/m^3, and Merzkirch's fit, to the digits printed.
+// Ciddor 1996 for standard air (450 ppm CO2), rho_s = 1.225458 kg/m^3, and Merzkirch's fit, to all printed digits.
 class GladstoneDale : public testing::TestWithParam<Row> {};
 
 TEST_P(GladstoneDale, ConstantsAreThePrintedOnes) {

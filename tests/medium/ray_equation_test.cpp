@@ -20,7 +20,7 @@ struct Path {
   double optical_path = 0;
 };
 
-/// N equal steps over the parameter t.
+/// Integrates a ray by N equal steps over the parameter t.
 template <class Medium>
 Path walk(Medium const& medium, RayState<double> ray, double t, int steps, Integrator integrator = Integrator::rk4) {
   Path path{ray};
@@ -33,7 +33,7 @@ Path walk(Medium const& medium, RayState<double> ray, double t, int steps, Integ
   return path;
 }
 
-/// A meridional ray in the x-z plane, at (x, z), `angle` from the z axis.
+/// Returns a meridional ray in the x-z plane, at (x, z), with an angle to the z axis.
 template <class Medium>
 RayState<double> launch(Medium const& medium, double x, double z, double angle) {
   Vec3d const at{x, 0, z};
@@ -41,8 +41,8 @@ RayState<double> launch(Medium const& medium, double x, double z, double angle) 
   return {at, {n * std::sin(angle), 0, n * std::cos(angle)}};
 }
 
-// n grad n is constant where n^2 is linear, and the scheme integrates a constant force exactly: a single step must give
-// the parabola to rounding.
+// If n^2 is linear, n grad n is constant, and the scheme integrates a constant force exactly: a single step must
+// reproduce the parabola up to rounding.
 TEST(LinearSquaredIndexMedium, OneStepIsExact) {
   LinearSquaredIndex const medium;
   RayState<double> const end = advance(medium, launch(medium, 0, 0, 10 * unit::degree), 5.0);
@@ -53,7 +53,7 @@ TEST(LinearSquaredIndexMedium, OneStepIsExact) {
 }
 
 TEST(LinearSquaredIndexMedium, OpticalPathIsCubicInT) {
-  // n^2 along the parabola is a quadratic of t, which Simpson's rule integrates exactly
+  // n^2 along the parabola is quadratic in t, which Simpson's rule integrates exactly
   LinearSquaredIndex const medium;
   double const t = 5, px = std::sin(10 * unit::degree), a = medium.a;
   double const exact = t + 2 * a * (px * t * t / 2 + a * t * t * t / 6);
@@ -67,7 +67,7 @@ double rod_error(int steps, Integrator integrator) {
   return std::abs(walk(rod, start, t, steps, integrator).end.position.x - -0.425287303350492);
 }
 
-// Errors of the scheme at z = 20 mm, computed independently: they fix the scheme, not only its order.
+// Errors of the scheme at z = 20 mm, computed independently: they determine the scheme, not only its order.
 TEST(ParabolicRod, RungeKuttaIsOfOrderFour) {
   double const printed[] = {1.612e-4, 9.723e-6, 5.946e-7, 3.672e-8, 2.281e-9};
   double before = 0;
@@ -87,7 +87,7 @@ TEST(ParabolicRod, EulerIsOfOrderOne) {
   EXPECT_NEAR(ratio, 2, 0.05);
 }
 
-// |T| = n along every ray (the eikonal equation): the drift of |T|^2 - n^2 falls with the scheme's order.
+// |T| = n along every ray (eikonal equation): |T|^2 - n^2 decreases with the order of the scheme.
 TEST(ParabolicRod, OpticalDirectionKeepsTheLengthOfTheIndex) {
   ParabolicRod const rod;
   RayState<double> const start = launch(rod, 0.5, 0, 5 * unit::degree);
@@ -104,7 +104,7 @@ TEST(ParabolicRod, OpticalDirectionKeepsTheLengthOfTheIndex) {
   EXPECT_LT(before, 1e-9);
 }
 
-// The paraxial period is 2 pi / g = 62.83 mm; the exact one depends on the launch: 2 pi p_z / (n0 g).
+// The paraxial period is 2 pi / g = 62.83 mm; the exact one depends on the initial direction: 2 pi p_z / (n0 g).
 TEST(ParabolicRod, RayReturnsAfterItsExactPeriod) {
   ParabolicRod const rod;
   RayState<double> const start = launch(rod, 1, 0, 0);
@@ -119,10 +119,10 @@ class Luneburg : public testing::TestWithParam<double> {};
 TEST_P(Luneburg, ParallelRaysMeetAtThePole) {
   LuneburgSphere const sphere;
   double const h = GetParam();
-  double const entry = -std::sqrt(1 - h * h);  // n = 1 there: no refraction
+  double const entry = -std::sqrt(1 - h * h);  // n = 1 there, so that there is no refraction
   RayState<double> const start{{h, 0, entry}, {0, 0, 1}};
   Path const path = walk(sphere, start, pi / 2, 2000);
-  // error at 80 steps is 1.5e-9 (below), so at 2000 steps 4e-15; rounding of 2000 sums dominates
+  // the error with 80 steps is 1.5e-9 (below), so with 2000 steps 4e-15; the rounding of 2000 sums dominates
   EXPECT_NEAR(path.end.position.x, 0, 1e-13);
   EXPECT_NEAR(path.end.position.z, 1, 1e-13);
   EXPECT_NEAR(path.end.optical_direction.x, -h, 1e-13);
@@ -151,8 +151,8 @@ TEST(LuneburgSphereMedium, ErrorsFallAsComputed) {
   }
 }
 
-// The circle through (-1, 0) and (1, 0) that starts at 30 degrees has its centre at -sqrt(3) and radius 2; along it
-// dt = ds/n = (8 - 4 sqrt(3) cos(phi)) d phi, phi from -30 to 30 degrees: t = 8 pi / 3 - 4 sqrt(3).
+// The circle through (-1, 0) and (1, 0) that starts at 30 degrees has its centre at -sqrt(3) and the radius 2. Along
+// it, dt = ds/n = (8 - 4 sqrt(3) cos(phi)) d phi, phi from -30 to 30 degrees, so that t = 8 pi / 3 - 4 sqrt(3).
 TEST(MaxwellFishEye, EveryRayMeetsTheAntipode) {
   FishEye const eye;
   double const t = 8 * pi / 3 - 4 * std::sqrt(3.0);

@@ -14,16 +14,16 @@ namespace {
 using test::open_grid;
 using test::sampled;
 
-/// Cubic in each variable; its values at small whole numbers are exact in float.
+/// A field that is cubic in each variable; its values at small integers are exact in float.
 double cubic(double x) { return x * x * x - 2 * x * x - 3 * x + 1; }
 double cubic_slope(double x) { return 3 * x * x - 4 * x - 3; }
 
-/// A field without symmetry, smooth over several cells of a unit grid.
+/// A field without symmetry that is smooth over several cells of a unit grid.
 double rough(Vec3d p) {
   return 1e-4 * (std::sin(0.7 * p.x + 0.1) * std::cos(0.5 * p.y - 0.4) + 0.3 * std::sin(0.9 * p.z + p.x));
 }
 
-// --- what the spline reproduces: all products of cubics, values and gradients, edges included
+// --- the spline reproduces all products of cubics, values and gradients, including the edges
 
 TEST(SplinePlane, ReproducesBicubicPolynomialsToTheEdge) {
   auto const volume = sampled<double>(open_grid(7, 6, 1), [](Vec3d p) { return cubic(p.x) * cubic(p.y); });
@@ -59,12 +59,12 @@ void expect_tricubic(double relative) {
   }
 }
 
-// three filterings of floats of the largest value, each amplified up to 6-fold at the not-a-knot ends: some tens of
-// 6e-8
+// Tolerance: three filter passes over floats, each of which amplifies rounding errors up to 6-fold at the not-a-knot
+// ends: some tens of 6e-8 times the largest value.
 TEST(SplineVolume, ReproducesTricubicPolynomialsToFloat) { expect_tricubic<float>(5e-6); }
 TEST(SplineVolume, ReproducesTricubicPolynomialsInDouble) { expect_tricubic<double>(1e-13); }
 
-// N nodes carry a polynomial of degree N - 1 at most.
+// N nodes determine a polynomial of degree at most N - 1.
 TEST(SplineVolume, SmallGridsReproduceWhatTheyCan) {
   for (int nodes : {2, 3, 4, 5}) {
     int const degree = std::min(nodes - 1, 3);
@@ -99,7 +99,7 @@ TEST(LinearVolume, ReproducesTrilinearFunctions) {
   }
 }
 
-// --- where the nodes are
+// --- positions of the nodes
 
 TEST(GriddedIndex, NodeIOfNIsAtNodeI) {
   RegularGrid const grid = open_grid(9, 8, 7, {0.5e-3, 0.25e-3, 2e-3}, {-1e-3, 3e-3, -5e-3});
@@ -112,7 +112,7 @@ TEST(GriddedIndex, NodeIOfNIsAtNodeI) {
     for (int j = 0; j < 8; ++j) {
       for (int i = 0; i < 9; ++i) {
         Vec3d const node{-1e-3 + i * 0.5e-3, 3e-3 + j * 0.25e-3, -5e-3 + k * 2e-3};
-        EXPECT_NEAR(a.sample(node).refractivity, f(node), 2e-10);  // 1e-4 in float, filtered thrice
+        EXPECT_NEAR(a.sample(node).refractivity, f(node), 2e-10);  // 1e-4 in float, filtered three times
         EXPECT_NEAR(b.sample(node).refractivity, f(node), 2e-11);
       }
     }
@@ -136,8 +136,8 @@ void expect_consistent_gradient(View const& view, std::initializer_list<Vec3d> p
   }
 }
 
-// D = n grad n is consistent with n only if the gradient is the interpolant's own. Central difference: h^2/6 times the
-// third derivative (1e-4) and rounding of values of 1e-4 over h, 1e-16.
+// D = n grad n is consistent with n only if the gradient is the derivative of the interpolant. Central difference:
+// error of h^2/6 times the third derivative (1e-4), and rounding of values of 1e-4 over h, 1e-16.
 TEST(GriddedIndex, GradientIsTheDerivativeOfTheValue) {
   auto const points = {Vec3d{1.3, 2.2, 3.7}, Vec3d{0.01, 0.5, 0.5}, Vec3d{4.5, 4.99, 2.5}, Vec3d{3.25, 1.75, 4.9}};
   auto const spline = sampled<float>(open_grid(6, 6, 6), rough);
@@ -148,7 +148,7 @@ TEST(GriddedIndex, GradientIsTheDerivativeOfTheValue) {
   expect_consistent_gradient(plane.view<double, CubicBspline, 2>(-9, 9), points, 1e-11);
 }
 
-// --- tiling
+// --- periodic axes
 
 RegularGrid periodic_grid(int nx, int ny, int nz, std::array<bool, 3> periodic) {
   RegularGrid grid = open_grid(nx, ny, nz);
@@ -162,7 +162,7 @@ TEST(PeriodicGrid, WrapsWithPeriodNTimesSpacing) {
   auto const view = spline.view<double, CubicBspline, 3>(0, 0);
   auto const linear = sampled<float>(periodic_grid(8, 7, 6, {true, true, true}), f, false);
   auto const flat = linear.view<double, Linear, 3>(0, 0);
-  // dyadic places, so that adding periods is exact
+  // dyadic positions, so that adding periods is exact
   for (Vec3d p : {Vec3d{0, 0, 0}, Vec3d{7.75, 6.5, 5.25}, Vec3d{3.125, 0.25, 2.5}}) {
     for (Vec3d shift : {Vec3d{8, 0, 0}, Vec3d{-16, 7, 0}, Vec3d{0, -21, 6}, Vec3d{0, 0, -12}}) {
       EXPECT_EQ(view.sample(p).refractivity, view.sample(p + shift).refractivity);
@@ -170,15 +170,16 @@ TEST(PeriodicGrid, WrapsWithPeriodNTimesSpacing) {
       EXPECT_EQ(flat.sample(p).refractivity, flat.sample(p + shift).refractivity);
     }
   }
-  // the linear one joins the last node to the first
+  // linear interpolation connects the last node with the first
   EXPECT_NEAR(flat.sample({7.5, 0, 0}).refractivity, 0.5 * (f({7, 0, 0}) + f({0, 0, 0})), 1e-11);
-  // and the spline is smooth across the seam
+  // and the spline is smooth across the boundary of the period
   Vec3d const seam{8, 2.3, 1.1};
   double const e = 1e-7;
   EXPECT_NEAR(view.sample(seam - Vec3d{e, 0, 0}).gradient.x, view.sample(seam + Vec3d{e, 0, 0}).gradient.x, 1e-10);
 }
 
-// A sampled sine on a periodic axis: its spline is off by h^4 in value and h^3 in slope (2e-11: float values).
+// A sampled sine on a periodic axis: the error of its spline is of order h^4 in the value and h^3 in the slope (2e-11
+// for float values).
 TEST(PeriodicGrid, SplineOfASineConverges) {
   auto const worst = [](int nodes) {
     double const q = 2 * pi / nodes;
@@ -212,7 +213,7 @@ TEST(PeriodicGrid, IsEndlessAcrossTheViewAndOnePeriodDeep) {
   EXPECT_EQ(box.high.z, 5.5);
 }
 
-// --- an extruded plane is the stack of its copies
+// --- an extruded plane equals a stack of copies of it
 
 TEST(ExtrudedPlane, EqualsTheStackedVolume) {
   Vec3d const spacing{0.5e-3, 0.5e-3, 1e-3}, origin{-4e-3, -4e-3, -5e-3};
@@ -234,7 +235,7 @@ TEST(ExtrudedPlane, EqualsTheStackedVolume) {
   }
 }
 
-// --- bookkeeping
+// --- scale, bounds and memory
 
 TEST(RefractiveIndexVolume, ScaleAndShiftMakeRefractivities) {
   RegularGrid const grid = open_grid(3, 3, 3);
@@ -275,7 +276,7 @@ TEST(RefractiveIndexVolume, LargeVolumesNeedLittleMoreThanTheirSize) {
     EXPECT_GE(needed, size);
     EXPECT_LT(needed, 1.3 * size);
   }
-  // one more node on each side
+  // The volume has one additional node at each end of every axis.
   EXPECT_EQ(RefractiveIndexVolume<float>::bytes_needed(open_grid(5, 6, 7)), 7 * 8 * 9 * sizeof(float));
 }
 

@@ -17,7 +17,7 @@ MediumSetup gaussian(double radius, double thickness) {
 using Plume = GaussianPlume<double>;
 using Blob = GaussianBlob<double>;
 
-/// Integral of d n / d x along Z through the slab, beside the axis, by the midpoint rule.
+/// Integrates d n / d x along Z through the slab, at a distance from the axis, by the midpoint rule.
 double deflection(MediumSetup const& setup) {
   BuiltMedium const built = build_medium(setup);
   return std::visit(
@@ -35,9 +35,9 @@ double deflection(MediumSetup const& setup) {
       built.view);
 }
 
-// The density of either is a product of a function of x and y and exp(-z^2/a^2), so that faces at -h and h cut
-// erfc(h/a) of every integral along Z off: 0.637 of it for a = 15 mm and h = 5 mm. The midpoint rule is good to
-// (h/a)^2/4000^2.
+// The density of plume and blob is a product of a function of x and y and exp(-z^2/a^2), so that faces at -h and h
+// remove the fraction erfc(h/a) of every integral along Z: 0.637 for a = 15 mm and h = 5 mm. The error of the midpoint
+// rule is (h/a)^2/4000^2.
 template <class Field>
 class GaussianThickness : public testing::Test {};
 using GaussianFields = testing::Types<Plume, Blob>;
@@ -61,7 +61,7 @@ TEST(Thickness, AutomaticallyHoldsAllOfAGaussianThatMatters) {
   EXPECT_EQ(automatic_thickness_mm(gaussian<Blob>(15e-3, 0).field), 105.0);
 }
 
-// A small plume stands in 10 mm of gas as before, and so does what has no size along Z.
+// The automatic thickness is 10 mm for a thin plume and for fields without a length scale along Z.
 TEST(Thickness, IsTenMillimetresWhereTheFieldDoesNotAskForMore) {
   EXPECT_EQ(automatic_thickness_mm(gaussian<Plume>(1e-3, 0).field), 10.0);
   FieldSetup file;

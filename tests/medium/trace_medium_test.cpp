@@ -43,7 +43,8 @@ UniformGradient<double> slab(Vec3d gradient, double thickness = 0.01) {
 
 Ray<double> ray(Vec3d position, Vec3d direction) { return {position, normalized(direction)}; }
 
-// --- the BOS slab n = n0 + alpha x, on axis: x(z) = (n0/alpha)(cosh(alpha z/n0) - 1), a catenary; physics: 40 digits
+// --- the BOS slab n = n0 + alpha x, on the axis: x(z) = (n0/alpha)(cosh(alpha z/n0) - 1), a catenary; reference values
+// with 40 digits
 
 double slab_displacement(double gradient, Faces faces, double step) {
   Ray<double> const start = ray({0, 0, -0.25}, {0, 0, 1});
@@ -75,15 +76,15 @@ TEST(BosSlab, RayIsACatenary) {
   EXPECT_NEAR(out.x / std::sinh(K * 10 * 0.01 / n_0), 1, 1e-10);
 }
 
-// The departure from Eq. 9 is eps^2 [2/3 + (7/24) L/Z_D] with refracting faces, eps^2 [1/6 + (1/24) L/Z_D] with matched
-// ones; at 1000 kg/m^4 the next order, eps^4, is 3e-11.
+// The relative deviation from Eq. 9 is eps^2 [2/3 + (7/24) L/Z_D] with refracting faces and eps^2 [1/6 + (1/24) L/Z_D]
+// with matched ones; at 1000 kg/m^4, the next order, eps^4, is 3e-11.
 TEST(BosSlab, DeparturesFromEquationNineAreOfSecondOrder) {
   double const eps = K * 1000 * 0.01 / n_0, eq9 = -0.25 * eps, ratio = 0.01 / 0.25;
   EXPECT_NEAR(slab_displacement(1000, Faces::refract, 1e-3) / eq9 - 1, eps * eps * (2.0 / 3 + 7.0 / 24 * ratio), 2e-10);
   EXPECT_NEAR(slab_displacement(1000, Faces::matched, 1e-3) / eq9 - 1, eps * eps * (1.0 / 6 + 1.0 / 24 * ratio), 2e-10);
 }
 
-// --- no field, no change
+// --- without a gradient nothing changes
 
 TEST(UniformDensity, DisplacesNothingToTheLastBit) {
   auto const check = [](auto const& medium) {
@@ -99,7 +100,7 @@ TEST(UniformDensity, DisplacesNothingToTheLastBit) {
   };
   check(slab({0, 0, 0}));
   auto dense = slab({0, 0, 0});
-  dense.ambient_density = 7;  // matched faces: whatever the density
+  dense.ambient_density = 7;  // with matched faces, for any density
   check(dense);
   auto const constant = [](Vec3d) { return 2.7e-4; };
   auto const plane = test::sampled<double>(test::open_grid(9, 9, 1, {0.1, 0.1, 0.1}, {-0.4, -0.4, 0}), constant);
@@ -117,7 +118,8 @@ TEST(UniformDensity, RefractingFacesOfTheAmbientIndexDisplaceNothing) {
 }
 
 TEST(UniformDensity, AnotherIndexBehindRefractingFacesIsAPlaneParallelPlate) {
-  // lateral shift of the apparent source along x: L (tan i - tan r); physics 3.3 gives the perpendicular one
+  // lateral shift of the apparent source along x: L (tan i - tan r); physics.md, section 3.3, gives the perpendicular
+  // one
   GlassBox const plate{1.5168, {{-10, -10, 0}, {10, 10, 10e-3}}};
   for (auto [degrees, lateral] :
        {std::pair{10.0, 0.601580184310577e-3}, {30.0, 1.97621122205116e-3}, {60.0, 5.18297750549795e-3}}) {
@@ -148,7 +150,7 @@ TEST(UniformDensity, GradientAlongTheAxisMovesNoAxialRay) {
 TEST(TracedRod, ExitIsTheAnalyticOneOnTheFace) {
   ParabolicRod const rod;
   Ray<double> const start = ray({0.5, 0, -3}, {0, 0, 1});
-  // a free flight of 3 mm to the face, then the rod; matched faces keep the direction
+  // straight path of 3 mm to the face, then the rod; matched faces do not change the direction
   MediumPassage<double> const way = trace_medium(rod, options(0.013), start);
   Vec3d const out = exit_position(start, way);
   double const n = 1 + rod.sample({0.5, 0, 0}).refractivity, w = rod.n0 * rod.g;
@@ -159,7 +161,7 @@ TEST(TracedRod, ExitIsTheAnalyticOneOnTheFace) {
   EXPECT_NEAR(length(d), 1, 1e-15);
   Vec3d const T = way.straight + way.turn;
   EXPECT_NEAR(length(T), std::sqrt(rod.squared_index(out)), 1e-11) << "|T| = n";
-  // n0^2 (1 - g^2 r^2) integrated over t
+  // integral of n0^2 (1 - g^2 r^2) over t
   double const t = 20 / n, c = 0.5 * rod.g;
   double const inside = rod.n0 * rod.n0 * (t - c * c * (t / 2 + std::sin(2 * w * t) / (4 * w)));
   EXPECT_NEAR(way.optical_path, 3 * n_0 + inside, 1e-8);
@@ -174,7 +176,8 @@ TEST(TracedRod, PrintedObliqueRayIsMet) {
   EXPECT_NEAR(d.x / d.z, -0.082695012375395, 1e-11);
 }
 
-// Steps that do not divide the thickness: the first and the last one are partial, and no accuracy is lost to landing.
+// Steps that do not divide the thickness: the first and the last one are partial, and the exit face is reached without
+// loss of accuracy.
 TEST(TracedRod, AnyStepKeepsOrderFour) {
   ParabolicRod const rod;
   auto const error = [&](double step) {
@@ -184,7 +187,7 @@ TEST(TracedRod, AnyStepKeepsOrderFour) {
     EXPECT_NEAR(out.z, 20, 1e-14) << step;
     return std::abs(out.x - -0.425287303350492);
   };
-  // the error of N = 20 / h whole steps is 9.5e-8 (h / 0.5 mm)^4 (the table of physics 3.1, N = 40: 3.7e-8 ...)
+  // the error of N = 20 / h whole steps is 9.5e-8 (h / 0.5 mm)^4 (table in physics.md, section 3.1; N = 40: 3.7e-8 ...)
   for (double step : {0.31, 0.47, 0.7, 0.83, 1.3, 1.9}) {
     double const whole = 5.946e-7 * std::pow(step, 4);
     EXPECT_LT(error(step), 1.2 * whole) << step;
@@ -203,7 +206,7 @@ TEST(TracedRod, EulerIsOfOrderOne) {
   EXPECT_NEAR(error(0.01) / error(0.005), 2, 0.05);
 }
 
-// --- the straight integrator: each slice acts with its own lever, dz along the undeflected ray
+// --- the straight integrator: each slice has its own lever, dz along the undeflected ray
 
 TEST(StraightIntegrator, GivesTheLeveredIntegralOfASinusoid) {
   Sinusoid<double> field;
@@ -224,14 +227,14 @@ TEST(StraightIntegrator, GivesTheLeveredIntegralOfASinusoid) {
       return q == 0 ? std::cos(phase) * s * s / 2 : s * std::sin(phase) / q + std::cos(phase) / (q * q);
     };
     double const levered = K * 10 * (primitive(s2) - primitive(s1));
-    // T_z keeps its value, so tan(theta') - tan(theta) = (1 + m^2) / n0 times the integral: relative terms of K
-    // amplitude (1.4e-6) and of Simpson's rule (k m h)^4/2880 are left
+    // T_z is constant, so tan(theta') - tan(theta) = (1 + m^2) / n0 times the integral, up to relative terms of K
+    // amplitude (1.4e-6) and of Simpson's rule, (k m h)^4/2880.
     EXPECT_NEAR(apparent_ray(start, way).position.x - x0, -(1 + slope * slope) / n_0 * levered,
                 1e-5 * std::abs(K * 10 * 0.0025));
   }
 }
 
-// --- reversal: the ray equation has no arrow of time
+// --- reversal: the ray equation is symmetric under reversal of the direction
 
 template <class Medium>
 void expect_reversible(Medium const& medium, TracingOptions<double> const& how, Ray<double> const& start,
@@ -245,7 +248,7 @@ void expect_reversible(Medium const& medium, TracingOptions<double> const& how, 
   ASSERT_EQ(home.status, RayStatus::alive);
   Vec3d const d = exit_direction(back, home);
   EXPECT_LT(length(d + start.direction), 1e-10);
-  // where the returning line passes the start
+  // point at which the reversed ray passes the start
   Vec3d const p = exit_position(back, home);
   Vec3d const missed = p + d * dot(start.position - p, d) - start.position;
   EXPECT_LT(length(missed), 1e-10 * std::max(1.0, length(start.position)));
@@ -266,7 +269,7 @@ TEST(TimeReversal, HoldsInASinusoidWithBothFaces) {
 }
 
 TEST(TimeReversal, HoldsInAGriddedVolume) {
-  // a smooth three-dimensional blob pattern, amplitude 1e-4, features of a dozen cells
+  // a smooth three-dimensional pattern of blobs, amplitude 1e-4, structures of a dozen cells
   auto const grid = test::open_grid(33, 33, 33, {5e-4, 5e-4, 5e-4}, {-8e-3, -8e-3, -8e-3});
   auto const volume = test::sampled<float>(grid, [](Vec3d p) {
     return 2.7e-4 + 1e-4 * std::sin(900 * p.x + 0.3) * std::cos(700 * p.y) * std::sin(800 * p.z + 1);
@@ -275,7 +278,7 @@ TEST(TimeReversal, HoldsInAGriddedVolume) {
   for (Faces faces : {Faces::matched, Faces::refract}) {
     expect_reversible(medium, options(1e-4, faces), ray({1e-3, 2e-3, -0.25}, {0, 0, 1}), 0.3);
     expect_reversible(medium, options(1e-4, faces), ray({-1e-2, 2e-3, -0.25}, {0.04, -0.01, 1}), 0.3);
-    // in through a side, out through the rear
+    // in through a side face, out through the rear face
     expect_reversible(medium, options(1e-4, faces), ray({-2e-2, 1e-3, -1e-2}, {1, 0.1, 0.8}), 0.05);
   }
 }
@@ -284,7 +287,7 @@ TEST(TimeReversal, HoldsInTheRod) {
   expect_reversible(ParabolicRod{}, options(0.01), ray({0.7, -0.4, -2}, {0.03, 0.05, 1}), 3);
 }
 
-// --- faces, edges and what never comes out
+// --- faces, edges and rays that do not leave the medium
 
 TEST(TraceMedium, RayThatMissesComesBackAsItWas) {
   GlassBox const box;
@@ -306,7 +309,7 @@ TEST(TraceMedium, NoMediumIsNeverCrossed) {
   EXPECT_FALSE(trace_medium(NoMedium<double>{}, options(1e-3), start).crossed);
 }
 
-// In by a side face and out by the rear one: Snell keeps the components of n d along each face.
+// In through a side face and out through the rear one: Snell's law conserves the components of n d along each face.
 TEST(TraceMedium, RayEntersThroughASide) {
   GlassBox const box{1.1, {{-1, -1, -1}, {1, 1, 1}}};
   Ray<double> const start = ray({-1.5, 0.1, 0}, {0.5, 0.1, 0.8});
@@ -325,7 +328,7 @@ TEST(TraceMedium, RayEntersThroughASide) {
   EXPECT_NEAR(way.optical_path, length(entry - start.position) + glass, 1e-14);
 }
 
-// n^2 > 2: light that entered by one face of a cube leaves by no adjacent one.
+// n^2 > 2: light that enters a cube through one face cannot leave it through an adjacent one.
 TEST(TraceMedium, GlassCubeReflectsTotally) {
   GlassBox const box{1.5, {{-1, -1, -1}, {1, 1, 1}}};
   Ray<double> const start = ray({-1.5, 0, -0.5}, {0.5, 0, 0.6});
@@ -336,7 +339,7 @@ TEST(TraceMedium, GlassCubeReflectsTotally) {
 
 TEST(TraceMedium, ThinnerMediumReflectsAtItsEntry) {
   GlassBox const bubble{1.0, {{-1, -1, -1}, {1, 1, 1}}};
-  Ray<double> const start = ray({-1, 0, -2}, {1, 0, 0.9});  // 48 degrees; the critical angle from 1.5 is 41.8
+  Ray<double> const start = ray({-1, 0, -2}, {1, 0, 0.9});  // 48 degrees; the critical angle for 1.5 is 41.8 degrees
   EXPECT_EQ(trace_medium(bubble, options(0.1, Faces::refract, Integrator::rk4, 0.5), start).status,
             RayStatus::total_internal_reflection);
 }
@@ -354,7 +357,7 @@ TEST(TraceMedium, RayThatStartsInsideGoesOnFromThere) {
 
 TEST(TraceMedium, RayParallelToAFaceIsCarriedToTheOneAcross) {
   GlassBox const box{1.1, {{-1, -1, -1}, {1, 1, 1}}};
-  for (double x : {-1.0, 0.25, 1.0}) {  // in the faces themselves, too
+  for (double x : {-1.0, 0.25, 1.0}) {  // positions in the faces themselves are included
     Ray<double> const start = ray({x, 0, -2}, {0, 0, 1});
     MediumPassage<double> const way = trace_medium(box, options(0.3), start);
     EXPECT_TRUE(way.crossed);
@@ -377,14 +380,14 @@ TEST(TraceMedium, LandsOnTheRearFaceExactly) {
   }
 }
 
-// A strong gradient turns a grazing ray back: it leaves by the face that it came in through, as a parabola does.
+// A strong gradient reverses a grazing ray: it leaves through the face by which it entered, along a parabola.
 TEST(TraceMedium, RayMayTurnBack) {
   oracle::LinearSquaredIndex medium;
   medium.box = {{-unbounded, -unbounded, -unbounded}, {10, unbounded, unbounded}};
   medium.box.low.x = -20;
   medium.a = 0.02;
-  // up the slope at 30 degrees, from x = 1: p_x = -0.5 n; turns at x = 1 - p_x^2 / (2 a), above the lower bound; back
-  // at x = 1 with +p_x and out at x = 10
+  // The ray starts at x = 1 up the slope at 30 degrees, with p_x = -0.5 n, turns at x = 1 - p_x^2 / (2 a), above the
+  // lower bound, returns to x = 1 with +p_x and leaves at x = 10.
   Ray<double> const start = ray({1, 0, 0}, {-0.5, 0, std::sqrt(0.75)});
   double const n = std::sqrt(1.04), px = -0.5 * n, pz = std::sqrt(0.75) * n;
   double const t = (-px + std::sqrt(px * px + 2 * 0.02 * 9)) / 0.02;
@@ -394,14 +397,14 @@ TEST(TraceMedium, RayMayTurnBack) {
   EXPECT_NEAR(exit_position(start, way).z, pz * t, 1e-10);
 }
 
-// A circle about the centre of the fish-eye never ends.
+// A ray on a circle about the centre of the fish-eye lens never leaves it.
 TEST(TraceMedium, TrappedRayIsGivenUp) {
   FishEye const eye;
   Ray<double> const start = ray({1, 0, 0}, {0, 0, 1});
   EXPECT_EQ(trace_medium(eye, options(0.05), start).status, RayStatus::lost_in_medium);
 }
 
-// Far out in a gradient without end the index falls to zero: nothing goes on from there, and nothing is tried.
+// Far out in an infinite gradient, the index decreases to zero. Rays there are not traced.
 TEST(TraceMedium, RayWhereNoMediumCanBeIsGivenUp) {
   for (double const x : {-1.0, -1e3}) {
     auto const way = trace_medium(slab({8e3, 0, 0}), options(1e-3), ray({x, 0, -0.1}, {0, 0, 1}));
@@ -409,12 +412,12 @@ TEST(TraceMedium, RayWhereNoMediumCanBeIsGivenUp) {
   }
 }
 
-// A slab has no end along x and y: a ray that runs within it must be given up, not followed for ever.
+// A slab is infinite along x and y: a ray that travels within it must be abandoned, not followed for ever.
 TEST(TraceMedium, RayWithinAnEndlessSlabEnds) {
   Ray<double> const start = ray({-1, 0, 0}, {1, 0, 0});
   EXPECT_EQ(trace_medium(slab({0, 0, 0}), options(1e-3), start).status, RayStatus::lost_in_medium);
-  // a gradient across bends it out: z = alpha x^2 / (2 n0) reaches 5 mm after 2.1 m; n = n0 + alpha z makes it a
-  // catenary
+  // A gradient across the slab deflects the ray out of it: z = alpha x^2 / (2 n0) reaches 5 mm after 2.1 m; with n = n0
+  // + alpha z, the path is a catenary.
   MediumPassage<double> const way = trace_medium(slab({0, 0, 10}), options(1e-3), start);
   ASSERT_EQ(way.status, RayStatus::alive);
   double const a = n_0 / (K * 10);
@@ -422,8 +425,8 @@ TEST(TraceMedium, RayWithinAnEndlessSlabEnds) {
   EXPECT_NEAR(exit_position(start, way).z, 0.005, 1e-15);
 }
 
-// Rays from everywhere through a violently uneven glass (n from 1.1 to 1.5 over four cells), grazing ones among them:
-// whatever comes out does so on a face, with a unit direction.
+// Rays from many positions, including grazing ones, through a strongly inhomogeneous glass (n from 1.1 to 1.5 over four
+// cells): every ray that leaves it does so on a face, with a unit direction.
 TEST(TraceMedium, EveryRayEndsOnAFace) {
   auto grid = test::open_grid(12, 10, 11, {1e-3, 1.1e-3, 0.9e-3}, {-5e-3, -5e-3, -5e-3});
   for (bool periodic : {false, true}) {
@@ -435,7 +438,7 @@ TEST(TraceMedium, EveryRayEndsOnAFace) {
     Bounds<double> const box = medium.bounds();
     int alive = 0;
     for (int i = 0; i < 20000; ++i) {
-      // a low-discrepancy walk over positions and directions
+      // low-discrepancy sequence of positions and directions
       auto const u = [i](double irrational) { return 2 * std::fmod((i + 1) * irrational, 1.0) - 1; };
       Vec3d const direction{u(0.754877666), u(0.569840291), 0.05 + std::abs(u(0.430159709))};
       Ray<double> const start =
@@ -452,12 +455,12 @@ TEST(TraceMedium, EveryRayEndsOnAFace) {
       EXPECT_LT(off, 1e-15) << i;
       EXPECT_NEAR(length(exit_direction(start, way)), 1, 1e-14) << i;
     }
-    EXPECT_GT(alive, 1000) << "of 20000; some miss, some are reflected totally";
+    EXPECT_GT(alive, 1000) << "of 20000 rays; some miss the medium, some are totally reflected";
   }
 }
 
-// Rounding may put a ray's entry in front of the face by more than its first step may be long, where the steps nearly
-// divide the chord: it is inside all the same and crosses the whole slab.
+// By rounding, the computed entry point can be in front of the face. If the steps nearly divide the chord, this is more
+// than the length of the first step. The ray must still count as inside and cross the whole slab.
 TEST(TraceMedium, RaysDoNotLeaveByTheFaceTheyEnter) {
   for (int i = 0; i < 2000; ++i) {
     double const slope = 0.02 * i / 2000;

@@ -11,8 +11,8 @@ namespace {
 using test::open_grid;
 using test::sampled;
 
-/// Rays that do different things in a cube of 0 .. 8 m: through it, out at its side in mid-flight, past it, from
-/// within.
+/// Rays with different paths in a cube from 0 to 8 m: through it, out of its side between two steps, past it, and from
+/// inside it.
 constexpr int count = 4;
 Ray<double> ray_number(int i) {
   Ray<double> const rays[count] = {{{3.1, 4.2, -2}, normalized(Vec3d{0.05, -0.02, 1})},
@@ -22,8 +22,8 @@ Ray<double> ray_number(int i) {
   return rays[i];
 }
 
-// Side by side or alone a ray takes the same steps, so both agree to the rounding of some 30 steps: lengths of 10 m and
-// directions of 1 to 30 x 2.2e-16 of them, with a margin of 3.
+// A ray takes the same steps in a group as alone. The tolerance is three times the rounding of 30 steps: lengths of 10
+// m and directions of 1 to 30 x 2.2e-16 of them.
 void expect_equal_to_single_rays(TracingOptions<double> const& options, int const (&which)[2]) {
   auto const volume = sampled<float>(open_grid(9, 9, 9), [](Vec3d p) {
     return 1e-3 * (std::sin(0.7 * p.x + 0.1) * std::cos(0.5 * p.y - 0.4) + 0.3 * std::sin(0.9 * p.z + p.x));
@@ -58,7 +58,7 @@ TEST(TraceTogether, GivesWhatSingleRaysGive) {
   }
 }
 
-// The medium does bend these rays, or the comparison above would compare nothing.
+// The medium deflects these rays noticeably, so that the comparison above is meaningful.
 TEST(TraceTogether, BendsItsRays) {
   auto const volume = sampled<float>(open_grid(9, 9, 9), [](Vec3d p) { return 1e-3 * std::sin(0.7 * p.x); });
   auto const medium = volume.view<double, CubicBspline, 3>(0, 0);

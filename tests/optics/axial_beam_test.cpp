@@ -20,7 +20,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-// Two lenses 2 mm through each other, whether a bare stop stands between them or not, and wherever it is told to stand.
+// Two lenses that overlap by 2 mm, with or without a stop between them, and for any position of that stop.
 TEST(AxialBeam, LensesThatOverlapAreRefusedAcrossAStop) {
   auto const pair = [](std::string const& between) {
     std::string const one =
@@ -60,8 +60,8 @@ TEST(AxialBeam, FacesThatCrossWithinItAreToldOf) {
   EXPECT_THAT(warnings(30), ElementsAre(HasSubstr("faces cross")));
 }
 
-// A singlet of f/8 that is asked for f/2 opens as far and says so. Its front, R = 50 mm, is the stop, so that a ray
-// parallel to the axis meets its edge at the edge's own radius: 8 mm pass f / 16 mm.
+// A singlet of f/8 with a requested f-number of 2 opens as far as its edges permit, and a warning reports this. A plane
+// of semi-diameter 8 mm in front of the lens limits rays parallel to the axis, so that the lens passes f / 16 mm.
 TEST(AxialBeam, AnFNumberWiderThanTheLensIsToldOf) {
   auto const at = [](double f_number, std::string const& text) {
     LensOptions options;
@@ -79,7 +79,7 @@ TEST(AxialBeam, AnFNumberWiderThanTheLensIsToldOf) {
   EXPECT_THAT(
       at(2, edged).warnings,
       ElementsAre(AllOf(HasSubstr("f/2 opens"), HasSubstr(fmt::format("passes f/{:.4g} at the widest", f / 16)))));
-  // an aperture on the stop bounds it, which is told of, too: 2 mm of 50 mm
+  // An aperture of 2 mm on the stop limits it, which is also reported.
   LensOptions options;
   options.f_number = 4;
   Lens const closed =
@@ -88,7 +88,7 @@ TEST(AxialBeam, AnFNumberWiderThanTheLensIsToldOf) {
   EXPECT_THAT(closed.warnings, ElementsAre(HasSubstr(fmt::format("opens to f/{:.4g} at the widest", f / 4))));
 }
 
-// The f/2 double Gauss passes its axial beam whole and little more: f/1.2 is lost at its edges.
+// The f/2 double Gauss transmits its axial beam completely, but little more: at f/1.2, light is lost at its edges.
 TEST(AxialBeam, TheDoubleGaussDoesNotPassF1Point2) {
   LensOptions options;
   options.f_number = 1.2;
@@ -99,7 +99,7 @@ TEST(AxialBeam, TheDoubleGaussDoesNotPassF1Point2) {
   double const widest = std::stod(lens.warnings[0].substr(lens.warnings[0].find(key) + key.size()));
   EXPECT_GT(widest, 1.2);
   EXPECT_LE(widest, 2);
-  for (double const inside : {0.99, 1.01}) {  // a ray within passes, one beyond is taken
+  for (double const inside : {0.99, 1.01}) {  // a ray inside the reported beam passes, one outside is vignetted
     Ray<double> ray = parallel_ray(inside * 0.5e3 * paraxial_lens(lens).effective_focal_length / widest);
     EXPECT_EQ(carry(lens, ray) == RayStatus::alive, inside < 1) << widest;
   }

@@ -14,7 +14,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// A .zmx file of these blocks SURF, numbered in their order; the object, at a distance, comes ahead of them.
+/// Returns a .zmx file with these blocks SURF, numbered in their order, after the object at a given distance.
 std::string zmx_of(std::initializer_list<std::string> blocks, std::string const& object = "INFINITY") {
   std::string text =
       "MODE SEQ\nUNIT MM\nENPD 10\nFTYP 0 0 1 1\nYFLN 0\nWAVM 1 0.5876 1\nPWAV 1\nSURF 0\n  DISZ " + object;
@@ -37,8 +37,8 @@ double thick_focal_length(double n, double radius, double thickness) {
   return 1 / ((n - 1) * (2 / radius - (n - 1) * thickness / (n * radius * radius)));
 }
 
-// The airspace between two lenses may stand in a break. f = f1 f2 / (f1 + f2 - d), d from principal plane to principal
-// plane, each (n - 1) f t / (n R) inside its lens.
+// The airspace between two lenses may be contained in a coordinate break. f = f1 f2 / (f1 + f2 - d), with d between the
+// principal planes, each of which is (n - 1) f t / (n R) inside its lens.
 TEST(CoordinateBreak, ItsThicknessIsAnAirspace) {
   std::string const by_break = zmx_of({front_face, "CURV -0.016666666666666667\n  DISZ 0", "TYPE COORDBRK\n  DISZ 20",
                                        third_face, fourth_face, image_block});
@@ -52,7 +52,7 @@ TEST(CoordinateBreak, ItsThicknessIsAnAirspace) {
   }
 }
 
-// Ahead of the first surface it adds to the object's distance: 100 + 20 mm, wherever the break puts them.
+// Ahead of the first surface, a break adds to the object distance: 100 + 20 mm, at any position of the break.
 TEST(CoordinateBreak, ItsThicknessAddsToTheObjectsDistance) {
   std::string const last = "CURV -0.016666666666666667\n  DISZ 0";
   Lens const lens =
@@ -68,12 +68,12 @@ TEST(CoordinateBreak, ItsThicknessAddsToTheObjectsDistance) {
               HasSubstr("coordinate break"));
   EXPECT_THAT(refusal("far.zmx",
                       zmx_of({front_face, last, "TYPE COORDBRK\n  DISZ 1e300", third_face, fourth_face, image_block})),
-              HasSubstr("no distance within a lens"));
+              HasSubstr("too long for a lens"));
 }
 
-// Newton's telescope: a paraboloid of f = 200 mm, a flat mirror at 45 degrees 150 mm in front of it, and the image
-// 50 mm beside the axis. Behind the second break stands the image itself, or a plane of reference and then the image:
-// parallel light meets in a point on the axis either way, and a field angle u at f tan u.
+// Newtonian telescope: a paraboloid of f = 200 mm, a flat mirror at 45 degrees 150 mm in front of it, and the image 50
+// mm from the axis. The second break is followed by the image, or by a reference plane and then the image. In both
+// cases, parallel light is focused on the axis, and light of a field angle u at f tan u.
 TEST(CoordinateBreak, AheadOfTheImageItTurnsTheImage) {
   std::string const paraboloid = "STOP\n  CURV -0.0025\n  CONI -1\n  DISZ -150\n  GLAS MIRROR 0 0";
   std::string const flat = "CURV 0\n  DISZ 0\n  GLAS MIRROR 0 0", turn = "TYPE COORDBRK\n  PARM 3 45\n  DISZ ";
@@ -88,7 +88,7 @@ TEST(CoordinateBreak, AheadOfTheImageItTurnsTheImage) {
     EXPECT_NEAR(field.image_plane, 0.05, 1e-16);
     EXPECT_LT(field.points[0].spot_rms, 1e-14);
     EXPECT_LT(length(field.points[0].chief), 1e-14);
-    // the chief ray meets the paraboloid's vertex and is turned there by 2 u: exactly f tan u on a plane 200 mm away
+    // the chief ray meets the vertex of the paraboloid and is deflected by 2 u: exactly f tan u on a plane 200 mm away
     EXPECT_NEAR(length(field.points[1].chief), 0.2 * std::tan(0.1 * unit::degree), 1e-14);
     Vec3d const centre = lens.poses.back().moved({0, 0, field.image_plane}).origin;
     EXPECT_LT(length(centre - Vec3d{0, centre.y, 0.17 - 0.15}), 1e-16);
@@ -96,7 +96,8 @@ TEST(CoordinateBreak, AheadOfTheImageItTurnsTheImage) {
   }
 }
 
-// A break that only tilts the image: the plane stays where the thickness before it put it, 0 behind the break.
+// A break that only tilts the image: the plane remains at the position given by the preceding thickness, at a distance
+// of 0 behind the break.
 TEST(CoordinateBreak, ATiltedImageStaysInItsPlace) {
   std::string const last = "CURV -0.016666666666666667\n  DISZ 50";
   Lens const lens =

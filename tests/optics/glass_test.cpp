@@ -31,7 +31,8 @@ std::string error_of(Action const& action) {
   return "";
 }
 
-// Schott's data sheet of N-BK7: nF, nd, nC, Vd; at 532 and 632.8 nm by the same formula to nine digits.
+// Schott's data sheet of N-BK7: nF, nd, nC, Vd; the values at 532 and 632.8 nm are computed by the same formula to nine
+// digits.
 TEST(Glass, BK7HasItsDataSheetsIndices) {
   Glass const& bk7 = glass("N-BK7");
   EXPECT_NEAR(bk7.index(486.1327e-9), 1.52237629, 5e-9);
@@ -48,7 +49,7 @@ TEST(Glass, FusedSilicaHasMalitsonsIndices) {
   EXPECT_NEAR(glass("silica").nd(), 1.458463687, 5e-10);
 }
 
-// Zemax's name of fused silica has a bar that names no catalogue; CODE V's bars do.
+// Zemax's name of fused silica contains an underscore that does not separate a catalogue; in CODE V's names it does.
 TEST(Glass, ABarMayBePartOfTheName) {
   GlassCatalogue catalogue;
   std::string const malitson =
@@ -63,8 +64,8 @@ TEST(Glass, ABarMayBePartOfTheName) {
 }
 
 // 1628 glasses: 156 of SCHOTT, 410 OHARA, 190 HOYA, 375 HIKARI, 314 CDGM, 176 SUMITA and 7 others. The extremes in
-// their makers' catalogues are magnesium fluoride (nd 1.3777, Vd 106.2), SUMITA's K-PSFn215 (nd 2.1540) and HOYA's
-// FDS16-W (Vd 16.48). A wrong copy of a coefficient would mostly lead outside.
+// their manufacturers' catalogues are magnesium fluoride (nd 1.3777, Vd 106.2), SUMITA's K-PSFn215 (nd 2.1540) and
+// HOYA's FDS16-W (Vd 16.48). With a wrong coefficient, a glass would most likely be outside of these limits.
 TEST(Glass, EveryShippedGlassHasAPlausibleIndexAndAbbeNumber) {
   EXPECT_GT(GlassCatalogue::shipped().glasses().size(), 1627u);
   for (Glass const* g : GlassCatalogue::shipped().glasses()) {
@@ -76,7 +77,7 @@ TEST(Glass, EveryShippedGlassHasAPlausibleIndexAndAbbeNumber) {
   }
 }
 
-// n = A + B / lambda^2 has the nd and Vd that it was made from, and is within 1e-3 of the true glass in the visible.
+// n = A + B / lambda^2 has the nd and Vd from which it was made, and is within 1e-3 of the real glass in the visible.
 TEST(Glass, DescribedByNdAndVdReturnsThem) {
   Glass const described = Glass::from_nd_vd(1.5168, 64.17);
   EXPECT_NEAR(described.nd(), 1.5168, 1e-14);
@@ -86,7 +87,8 @@ TEST(Glass, DescribedByNdAndVdReturnsThem) {
   }
 }
 
-// 10 mm of F2 pass what the catalogue says between its wavelengths too: Beer's law, linear in the loss.
+// 10 mm of F2 transmit the light stated in the catalogue, also between its wavelengths: Beer's law, with linear
+// interpolation of the absorption coefficient.
 TEST(Glass, AbsorbsAsTheCatalogueSays) {
   Glass const& bk7 = glass("N-BK7");
   ASSERT_FALSE(bk7.transmission.empty());
@@ -105,14 +107,14 @@ TEST(GlassCatalogue, FindsNamesAsProgramsWriteThem) {
 TEST(GlassCatalogue, NamesTheNearestGlassAndTheRange) {
   EXPECT_THAT(error_of([] { glass("N-BK77"); }),
               AllOf(HasSubstr("test:1"), HasSubstr("did you mean \"SCHOTT:N-BK7\"")));
-  // several as near, and the glass that succeeded one of lead first
+  // several names are equally similar; the successor of a glass with lead is named first
   EXPECT_THAT(error_of([] { glass("N-BK8"); }), AllOf(HasSubstr("\"SCHOTT:N-BK7\""), HasSubstr(" or \"SCHOTT:")));
   EXPECT_THAT(error_of([] { glass("BAF10X"); }), HasSubstr("\"SCHOTT:N-BAF10\""));
   EXPECT_THAT(error_of([] { GlassCatalogue::shipped().match("N-BK7", 12e-6, "test:1"); }),
               HasSubstr("300 to 2500 nm, not at 1.2e+04 nm"));
 }
 
-// Each dispersion formula against its definition, at one micrometre, where every power of the wavelength is one.
+// Compares each dispersion formula with its definition at one micrometre, where every power of the wavelength is one.
 TEST(GlassCatalogue, KnowsAllFormulasOfTheFormat) {
   struct Row {
     int formula;
@@ -141,7 +143,7 @@ TEST(GlassCatalogue, KnowsAllFormulasOfTheFormat) {
   }
 }
 
-// A damaged catalogue is refused at its line.
+// A damaged catalogue is refused, with the line of the error.
 TEST(GlassCatalogue, RefusesWhatIsNoGlassAtItsLine) {
   auto const refusal = [](char const* text) { return error_of([&] { GlassCatalogue().add(text, "TEST", "x.agf"); }); };
   EXPECT_THAT(refusal("NM X 2 0\nCD 1 nan\nLD 0.4 0.7\n"), AllOf(HasSubstr("x.agf:2"), HasSubstr("finite number")));
@@ -149,11 +151,11 @@ TEST(GlassCatalogue, RefusesWhatIsNoGlassAtItsLine) {
   EXPECT_THAT(refusal("NM X 2\nLD 0.4 0.7\n"), HasSubstr("no coefficients"));
   EXPECT_THAT(refusal("NM X 2\nCD 1 .01\n"), HasSubstr("no range"));
   EXPECT_THAT(refusal("NM X 1\nCD 90\nLD 0.4 0.7\n"), HasSubstr("which no glass has"));
-  EXPECT_THAT(refusal("CC nothing here\n"), HasSubstr("holds no glass"));
+  EXPECT_THAT(refusal("CC nothing here\n"), HasSubstr("contains no glass"));
 }
 
-// Of two catalogues the first that was added counts, unless one of them is preferred; where that makes a difference a
-// note says so.
+// The first one of two added catalogues is used, unless one of them is preferred; a note reports the choice if the
+// indices differ.
 TEST(GlassCatalogue, ANameOfDifferentGlassesIsNoted) {
   GlassCatalogue catalogue;
   catalogue.add("NM X 1\nCD 2.25\nLD 0.4 0.7\nNM Y 1\nCD 2.25\nLD 0.4 0.7\n", "ONE", "one.agf");
@@ -164,8 +166,8 @@ TEST(GlassCatalogue, ANameOfDifferentGlassesIsNoted) {
   GlassMatch const preferred = catalogue.match("X", 5e-7, "here", {"two"});
   EXPECT_NEAR(preferred.glass->index(5e-7), 1.6, 1e-15);
   EXPECT_THAT(preferred.notes, testing::IsEmpty());
-  EXPECT_THAT(catalogue.match("Y", 5e-7, "here").notes, testing::IsEmpty());  // the same within 1e-4
-  // two glasses of one catalogue and one name are told apart by their lines
+  EXPECT_THAT(catalogue.match("Y", 5e-7, "here").notes, testing::IsEmpty());  // both indices agree to 1e-4
+  // two glasses of one name in one catalogue are distinguished by their lines
   catalogue.add("NM Z 1\nCD 2.25\nLD 0.4 0.7\nNM Z 1\nCD 2.56\nLD 0.4 0.7\n", "TWICE", "twice.agf");
   EXPECT_THAT(catalogue.match("Z", 5e-7, "here").notes,
               testing::ElementsAre(AllOf(HasSubstr("TWICE:Z (twice.agf:1), TWICE:Z (twice.agf:4)"),
@@ -174,14 +176,14 @@ TEST(GlassCatalogue, ANameOfDifferentGlassesIsNoted) {
   EXPECT_NEAR(catalogue.match("X_ONE", 5e-7, "here").glass->index(5e-7), 1.5, 1e-15);
 }
 
-// ONE comes first, but its X is known in the visible alone.
+// ONE is the first catalogue, but its glass X is defined in the visible range only.
 TEST(GlassCatalogue, PassesOverACatalogueWhoseRangeEndsBeforeTheWavelength) {
   GlassCatalogue catalogue;
   catalogue.add("NM X 1\nCD 2.25\nLD 0.4 0.7\n", "ONE", "one.agf");
   catalogue.add("NM X 1\nCD 2.56\nLD 0.4 2\n", "TWO", "two.agf");
   EXPECT_EQ(catalogue.match("X", 5e-7, "here").glass->catalogue, "ONE");
   EXPECT_EQ(catalogue.match("X", 1.5e-6, "here").glass->catalogue, "TWO");
-  EXPECT_EQ(catalogue.match("X", 1.5e-6, "here", {"ONE"}).glass->catalogue, "TWO") << "though the lens lists ONE";
+  EXPECT_EQ(catalogue.match("X", 1.5e-6, "here", {"ONE"}).glass->catalogue, "TWO") << "although the lens lists ONE";
   EXPECT_THAT(error_of([&] { catalogue.match("X", 3e-6, "here"); }), HasSubstr("not at 3000 nm"));
 }
 

@@ -17,7 +17,7 @@
 #include "tests/optics/prescription_texts.h"
 
 // One test for every row of the table of .zmx, .seq and .agf files in docs/file-formats.md. The files in
-// tests/cases/lenses have one property each that files of other programs have.
+// tests/cases/lenses each have one property of files written by other programs.
 namespace gladstone {
 namespace {
 
@@ -45,8 +45,8 @@ Lens lens_of_text(std::string const& name, std::string const& text) { return len
 
 double focal_length_mm(Lens const& lens) { return paraxial_lens(lens).effective_focal_length / unit::millimetre; }
 
-/// Focal length by the y-nu trace of Welford (1986), chapter 3: curvatures [1/mm], indices ahead of, between and behind
-/// the surfaces, thicknesses [mm].
+/// Returns the focal length by the y-nu trace of Welford (1986), chapter 3: curvatures [1/mm], indices ahead of,
+/// between and behind the surfaces, thicknesses [mm].
 double traced_focal_length(std::vector<double> const& curvatures, std::vector<double> const& indices,
                            std::vector<double> const& thicknesses) {
   double y = 1, nu = 0;
@@ -60,12 +60,12 @@ double traced_focal_length(std::vector<double> const& curvatures, std::vector<do
 /// Index of N-BK7 at the d line.
 double bk7() { return GlassCatalogue::shipped().match("N-BK7", spectral_line::d, "").glass->nd(); }
 
-/// The doublet of most files: 75.945005 mm.
+/// Focal length of the doublet in most of the files, 75.945005 mm.
 double doublet_focal_length(double crown = 1.62041, double flint = 1.71736) {
   return traced_focal_length({1 / 62.5, -1 / 44.0, -1 / 128.0}, {1, crown, flint, 1}, {5, 2.2});
 }
 
-/// Sag of the first surface at a height [mm].
+/// Returns the sag of the first surface at a height [mm].
 double sag_of_first_surface(Lens const& lens, double height_mm) {
   return lens.surfaces[0].visit([&](auto const& s) { return s.shape.sag(0.0, height_mm * unit::millimetre); }) /
          unit::millimetre;
@@ -75,7 +75,7 @@ double sphere_sag(double curvature, double r) {
   return curvature * r * r / (1 + std::sqrt(1 - curvature * curvature * r * r));
 }
 
-/// What becomes of a ray that is parallel to the axis at a place [mm], past a stop that is wide open.
+/// Traces a ray parallel to the axis at a position [mm] through a lens whose stop is wide open.
 RayStatus fate(Lens lens, Vec2d place_mm) {
   auto& stop = lens.surfaces[static_cast<std::size_t>(lens.stop)];
   stop = stop.visit([](auto opened) -> LensSurface<double> {
@@ -94,8 +94,8 @@ TEST(LensFiles, TheLastLineNeedsNoEnd) {
   EXPECT_THAT(lens.warnings, Contains(HasSubstr("no_final_newline.zmx:33: the file ends within its line DISZ")));
 }
 
-// An aperture from 7.5 mm to infinity about a pupil of 6 mm would leave no light at all; one from 2 mm on blocks a
-// disc.
+// An aperture from 7.5 mm to infinity around a pupil of 6 mm would block all light and is ignored; one from 2 mm on
+// blocks a disc.
 TEST(LensFiles, AnApertureMayHaveNoUpperLimit) {
   Lens const lens = lens_of_case("clap_inf.zmx");
   EXPECT_NEAR(focal_length_mm(lens), doublet_focal_length(), 1e-10);
@@ -113,23 +113,23 @@ TEST(LensFiles, AnUnknownGlassHasNdAndVdInItsLine) {
                                          AllOf(HasSubstr("zmx:23"), HasSubstr("MYFLINT"), HasSubstr("29.5"))));
 }
 
-// Every glass that nd and Vd describe is named with the line that describes it: GLAS, S, SO or GLA.
+// The warning lists every glass specified by nd and Vd with its line: GLAS, S, SO or GLA.
 TEST(LensFiles, WarningsOfGlassesNameTheLineOfEachGlass) {
   EXPECT_THAT(lens_of_case("object_in_water.zmx").warnings,
-              Contains(HasSubstr("object_in_water.zmx:16: glass nd 1.33300, Vd 55.80 is taken")));
+              Contains(HasSubstr("object_in_water.zmx:16: glass nd 1.33300, Vd 55.80 is approximated")));
   std::string const water = changed(changed(seq, "SO 0.0 1e13", "SO 0.0 1e13 1.333:55.8"), "NBK7_SCHOTT", "517642");
   EXPECT_THAT(lens_of_text("water.seq", changed(water, "STO;", "STO;\n GLA 1.62:60.3;")).warnings,
               Contains(AllOf(HasSubstr(
                   "water.seq:7: 2 glasses (nd 1.33300, Vd 55.80 (line 7); nd 1.62000, Vd 60.30 (line 10))"))));
 }
 
-// 1.5 and 40 are what Zemax writes where it knows nothing: no glass.
+// 1.5 and 40 are Zemax's default values for unknown nd and Vd; they do not describe a glass.
 TEST(LensFiles, FilledInIndicesDescribeNoGlass) {
   EXPECT_THAT(refusal("filled.zmx", changed(zmx, "N-BK7 0 0 1.5 40", "NOGLASS 0 0 1.5 40")),
               HasSubstr("\"NOGLASS\" is in no catalogue"));
 }
 
-// Six digits: nd - 1 in thousandths, ten times Vd.
+// A six-digit code: nd - 1 in thousandths, ten times Vd.
 TEST(LensFiles, MilCodesAreGlasses) {
   double const f = traced_focal_length({0.02, -0.02}, {1, 1.517, 1}, {5});
   EXPECT_NEAR(focal_length_mm(lens_of_case("mil_glass.zmx")), f, 1e-10);
@@ -137,8 +137,8 @@ TEST(LensFiles, MilCodesAreGlasses) {
               traced_focal_length({0.02, -0.02}, {1, 1.517, 1}, {6}), 1e-10);
 }
 
-// GLAS of surface 0 is what the object lies in: power -c2 (1 - n) - ..., 72.011 mm in air behind the lens. The front
-// focal length is measured in water, n times as long.
+// GLAS of surface 0 is the medium of the object: power -c2 (1 - n) - ..., focal length 72.011 mm in air behind the
+// lens. The front focal length is measured in water and n times as long.
 TEST(LensFiles, TheObjectMayLieInWater) {
   double const glass = bk7(), water = 1.333;
   Lens const lens = lens_of_case("object_in_water.zmx");
@@ -146,20 +146,21 @@ TEST(LensFiles, TheObjectMayLieInWater) {
   double const f = traced_focal_length({0.02, -0.02}, {water, glass, 1}, {5});
   EXPECT_NEAR(f, 72.0111, 5e-5);
   EXPECT_NEAR(focal_length_mm(lens), f, 1e-7);
-  // backwards, from air into water: the other focus is n f from its principal plane
+  // backwards, from air into water: the other focus is at n f from its principal plane
   double const back = traced_focal_length({0.02, -0.02}, {1, glass, water}, {5});
   EXPECT_NEAR(back, f, 1e-7);
   ParaxialLens const paraxial = paraxial_lens(lens);
   EXPECT_NEAR((paraxial.front_principal_plane - paraxial.front_focal_length) / unit::millimetre, water * f, 1e-7);
   EXPECT_NEAR((paraxial.back_focal_length - paraxial.rear_principal_plane) / unit::millimetre, f, 1e-7);
-  // a real ray near the axis meets the focus where the paraxial one does: spherical aberration goes with its square
+  // a real ray close to the axis meets the paraxial focus: spherical aberration is proportional to the square of the
+  // height
   Ray<double> ray{{0, 1e-5, -0.01}, {0, 0, 1}};
   ASSERT_EQ(carry(lens, ray), RayStatus::alive);
   double const meets = ray.position.z - ray.position.y * ray.direction.z / ray.direction.y;
   EXPECT_NEAR(meets - lens.poses.back().origin.z, paraxial.back_focal_length, 1e-8);
 }
 
-// A point in water is imaged where n / s + 1 / s' = 1 / f says, from the principal planes.
+// The image of a point in water follows from n / s + 1 / s' = 1 / f, with distances from the principal planes.
 TEST(LensFiles, APointInWaterIsImagedByItsReducedDistance) {
   std::string const near = changed(zmx, "DISZ INFINITY", "DISZ 400.0\n  GLAS ___BLANK 1 0 1.333 0");
   Lens const lens = lens_of_text("near_in_water.zmx", near);
@@ -171,14 +172,14 @@ TEST(LensFiles, APointInWaterIsImagedByItsReducedDistance) {
               1e-13);
 }
 
-// What lies behind the image bends no ray.
+// Media behind the image do not deflect rays.
 TEST(LensFiles, TheImageMayHaveGlassBehindIt) {
   double const glass = bk7();
   EXPECT_NEAR(focal_length_mm(lens_of_case("glass_behind_the_image.zmx")),
               traced_focal_length({0.02, -0.02}, {1, glass, 1}, {5}), 1e-7);
 }
 
-// A disc as large as the surface's drawn semi-diameter: light passes outside.
+// An obscuring disc as large as the surface's drawn semi-diameter: light passes outside.
 TEST(LensFiles, AnObscurationMayFillItsSurface) {
   Lens const lens = lens_of_case("obscuration_fills_its_surface.zmx");
   EXPECT_EQ(fate(lens, {0, 1.9}), RayStatus::vignetted);
@@ -187,7 +188,8 @@ TEST(LensFiles, AnObscurationMayFillItsSurface) {
   EXPECT_NEAR(focal_length_mm(lens), traced_focal_length({0.02, -0.02}, {1, bk7(), 1}, {5}), 1e-7);
 }
 
-// R = 30 mm, 1.5 mm thick: the faces meet at a height of 6.65 mm, outside the light of 6 mm; their edges are at 12 mm.
+// R = 30 mm, 1.5 mm thick: the faces meet at a height of 6.65 mm, outside of the beam of 6 mm; their edges are at 12
+// mm.
 TEST(LensFiles, DrawnEdgesMayOverlapOutsideTheLight) {
   Lens const lens = lens_of_case("drawn_edges_overlap.zmx");
   EXPECT_NEAR(focal_length_mm(lens), traced_focal_length({1 / 30.0, -1 / 30.0}, {1, 1.62041, 1}, {1.5}), 1e-10);
@@ -201,7 +203,8 @@ TEST(LensFiles, ASurfaceMayEndWithinItsSemiDiameter) {
   EXPECT_EQ(fate(lens, {0, 5.5}), RayStatus::missed_lens);
 }
 
-// XASPHERE: the conic and 1.2e-3 (r/10)^4 - 4e-5 (r/10)^6; no term of r^2, so the focal length is the doublet's.
+// XASPHERE: a conic and 1.2e-3 (r/10)^4 - 4e-5 (r/10)^6, without a term of r^2, so that the focal length is that of the
+// doublet.
 TEST(LensFiles, ExtendedEvenAspheresAreNormalisedByARadius) {
   Lens const lens = lens_of_case("extended_even_asphere.zmx");
   EXPECT_NEAR(focal_length_mm(lens), doublet_focal_length(), 1e-10);
@@ -212,7 +215,7 @@ TEST(LensFiles, ExtendedEvenAspheresAreNormalisedByARadius) {
   }
 }
 
-// XOSPHERE: the conic and 1e-3 (r/10)^3 + 2e-3 (r/10)^4.
+// XOSPHERE: a conic and 1e-3 (r/10)^3 + 2e-3 (r/10)^4.
 TEST(LensFiles, ExtendedOddAspheresAreNormalisedByARadius) {
   Lens const lens = lens_of_case("extended_odd_asphere.zmx");
   EXPECT_NEAR(focal_length_mm(lens), doublet_focal_length(), 1e-10);
@@ -222,7 +225,7 @@ TEST(LensFiles, ExtendedOddAspheresAreNormalisedByARadius) {
   }
 }
 
-// ODDASPHE: the conic and 1e-6 r^3 + 2e-7 r^4. A term of r^2 adds twice itself to the vertex' curvature.
+// ODDASPHE: a conic and 1e-6 r^3 + 2e-7 r^4. A term of r^2 adds twice its coefficient to the vertex curvature.
 TEST(LensFiles, OddAspheresAddPowersOfR) {
   Lens const lens = lens_of_case("odd_asphere.zmx");
   EXPECT_NEAR(focal_length_mm(lens), doublet_focal_length(), 1e-10);
@@ -235,7 +238,7 @@ TEST(LensFiles, OddAspheresAddPowersOfR) {
               1e-10);
 }
 
-// PARAXIAL: every ray of a parallel bundle crosses the axis in the focus, on either side of it.
+// PARAXIAL: all rays of a parallel bundle, on either side of the axis, cross the axis in the focus.
 TEST(LensFiles, AnIdealLensHasNoAberration) {
   Lens const lens = lens_of_case("ideal_lens.zmx");
   EXPECT_NEAR(focal_length_mm(lens), 100, 1e-12);
@@ -248,7 +251,7 @@ TEST(LensFiles, AnIdealLensHasNoAberration) {
               HasSubstr("focal length of 0"));
 }
 
-// Behind a mirror, light that runs back is focused as well: a lens of 100 mm, 30 mm behind a flat mirror.
+// Light that travels back from a mirror is focused as well: an ideal lens of 100 mm, 30 mm behind a flat mirror.
 TEST(LensFiles, AnIdealLensFocusesLightThatRunsBack) {
   Lens const lens = lens_of_text(
       "back.zmx",
@@ -261,7 +264,7 @@ TEST(LensFiles, AnIdealLensFocusesLightThatRunsBack) {
 }
 
 // TILTSURF: a plane z = 0.1 y at the end of glass of 1.5 deviates the axial ray by asin(1.5 sin a) - a, tan a = 0.1;
-// the next surface stands in an untilted frame.
+// the frame of the next surface is not tilted.
 TEST(LensFiles, ATiltedSurfaceIsAPrism) {
   Lens const lens = lens_of_case("tilted_surface.zmx");
   Ray<double> ray = parallel_ray(0);
@@ -272,7 +275,7 @@ TEST(LensFiles, ATiltedSurfaceIsAPrism) {
   EXPECT_NEAR(focal_length_mm(lens), 200, 1e-11);
 }
 
-// SQAP 6 6: a square of 12 mm; light passes in its corners, and none beside it.
+// SQAP 6 6: a square of 12 mm; light passes in its corners, but not outside of the square.
 TEST(LensFiles, RectangularAperturesAreTraced) {
   Lens const lens = lens_of_case("square_aperture.zmx");
   EXPECT_NEAR(focal_length_mm(lens), doublet_focal_length(), 1e-10);
@@ -295,7 +298,7 @@ TEST(LensFiles, RectangularAperturesAreTraced) {
   EXPECT_EQ(fate(codev, {0, -0.6}), RayStatus::vignetted);
 }
 
-// A circle of 3 mm about (2, 0); the spider across it is passed over.
+// A circle of 3 mm about (2, 0); the spider across it is ignored.
 TEST(LensFiles, DecentredAperturesAreTracedAndSpidersPassedOver) {
   Lens const lens = lens_of_case("decentred_apertures.zmx");
   EXPECT_EQ(fate(lens, {4.9, 0}), RayStatus::alive);
@@ -326,7 +329,8 @@ TEST(LensFiles, CodeVMayBeWrittenInLowerCase) {
   EXPECT_TRUE(std::isinf(lens.prescription.object_distance));
 }
 
-// PRV: at a wavelength of the table its index, between them Cauchy's polynomial in 1/lambda^2 through the three.
+// PRV: at a wavelength of the table, its index; between them, Cauchy's polynomial in 1/lambda^2 through the three
+// values.
 TEST(LensFiles, PrivateGlassesAreInterpolated) {
   Lens const lens = lens_of_case("private_glass.seq");
   EXPECT_NEAR(focal_length_mm(lens), doublet_focal_length(), 1e-10);
@@ -343,7 +347,7 @@ TEST(LensFiles, PrivateGlassesAreInterpolated) {
   EXPECT_THAT(refusal("far.seq", changed(changed(seq, "SO 0.0", "PRV\nPWL 700 600\n'own' 1.5 1.51\nEND\nSO 0.0"),
                                          "NBK7_SCHOTT", "'own'")),
               AllOf(HasSubstr("given from 600 to 700 nm, not at 587.6 nm")));
-  // Laurent's series is Schott's formula: n^2 = 2.25 everywhere
+  // Laurent's series is identical to Schott's formula: n^2 = 2.25 at all wavelengths
   Lens const laurent = lens_of_text(
       "laurent.seq", changed(changed(seq, "SO 0.0", "prv\n'own' LAU 2.25 0 0\nend\nSO 0.0"), "NBK7_SCHOTT", "'own'"));
   EXPECT_NEAR(focal_length_mm(laurent), traced_focal_length({0.02, -0.02}, {1, 1.5, 1}, {6}), 1e-10);
@@ -366,8 +370,8 @@ TEST(LensFiles, CodeVsAsphericTermsGoToJ) {
               AllOf(HasSubstr("cuf.seq:9"), HasSubstr("CUF")));
 }
 
-// DAR: the surface at 12 mm is shifted by 1 mm and tilted by 30 degrees, the next one stands on the axis at 32 mm. BEN:
-// a mirror at 45 degrees turns light and axis by 90. REV: what follows is turned back by 90 degrees.
+// DAR: the surface at 12 mm is decentred by 1 mm and tilted by 30 degrees, and the next one is on the axis at 32 mm.
+// BEN: a mirror at 45 degrees rotates light and axis by 90 degrees. REV: what follows is rotated back by 90 degrees.
 TEST(LensFiles, CodeVsDecentresReturnBendAndReverse) {
   Lens const lens = lens_of_case("decentres.seq");
   auto const expect_place = [&](std::size_t i, Vec3d place_mm, Vec3d axis) {
@@ -387,8 +391,8 @@ TEST(LensFiles, CodeVsDecentresReturnBendAndReverse) {
   EXPECT_LT(length(ray.direction - Vec3d{0, -1, 0}), 1e-15);
 }
 
-// One tilt or decentre alone, ahead of the second face of the singlet: right-handed about x, y and z in a break of
-// Zemax and in TOML, left-handed about x and y in CODE V. Two tilts follow each other about the rotated axes.
+// A single tilt or decentre ahead of the second face of the singlet: right-handed about x, y and z in a coordinate
+// break of Zemax and in TOML, left-handed about x and y in CODE V. Two tilts are about the successively rotated axes.
 TEST(LensFiles, EachTiltAndDecentreAloneIsTheSameInEveryFormat) {
   struct Break {
     char const *of_toml, *of_zmx, *of_seq;
@@ -422,8 +426,9 @@ TEST(LensFiles, EachTiltAndDecentreAloneIsTheSameInEveryFormat) {
   }
 }
 
-// A flat mirror behind the singlet that a single angle of CODE V turns. ADE 20 turns its normal towards +y and BDE 20
-// towards -x, so that the axial ray is reflected 40 degrees off the axis to the other side; CDE leaves it on the axis.
+// A flat mirror behind the singlet is rotated by a single angle of CODE V. ADE 20 turns its normal towards +y and BDE
+// 20 towards -x, so that the axial ray is reflected at 40 degrees from the axis to the other side; CDE does not deflect
+// it.
 TEST(LensFiles, ASingleAngleOfCodeVTurnsAMirror) {
   double const s = std::sin(40 * unit::degree), c = std::cos(40 * unit::degree);
   struct Turned {
@@ -438,14 +443,14 @@ TEST(LensFiles, ASingleAngleOfCodeVTurnsAMirror) {
     ASSERT_EQ(carry(lens, ray), RayStatus::alive) << one.angle;
     EXPECT_LT(length(ray.direction - one.reflected), 1e-15) << one.angle;
   }
-  // about the axis CDE turns a rectangle of 4 x 1 mm, right-handed: its long side from +x towards +y
+  // about the axis, CDE rotates a rectangle of 4 x 1 mm in right-handed sense: its long side from +x towards +y
   Lens const lens = lens_of_text("slit.seq", changed(seq, "CIR 8.0", "REX 2; REY 0.5; CDE 30"));
   double const along_x = 1.9 * std::cos(30 * unit::degree), along_y = 1.9 * std::sin(30 * unit::degree);
   EXPECT_EQ(fate(lens, {along_x, along_y}), RayStatus::alive);
   EXPECT_EQ(fate(lens, {along_x, -along_y}), RayStatus::vignetted);
 }
 
-// ZDE shifts along the axis, and DAR takes that back as well.
+// ZDE shifts along the axis, and DAR restores this as well.
 TEST(LensFiles, CodeVsShiftAlongTheAxisIsADistance) {
   std::string const text = changed(seq, "SI 0.0", "S 0 10\n ZDE 2\nS 0 10\n ZDE 2; DAR\nS 0 5\nSI 0.0");
   Lens const lens = lens_of_text("zde.seq", text);
@@ -454,8 +459,8 @@ TEST(LensFiles, CodeVsShiftAlongTheAxisIsADistance) {
   EXPECT_NEAR(lens.poses[4].origin.z, 75e-3, 1e-15);
 }
 
-// Without RDM numbers are curvatures, CODE V's default; those of this triplet would be spheres of 0.05 mm about a pupil
-// of 10 mm, and are radii. 50.33 mm is what a program computes that reads radii.
+// Without RDM, numbers are curvatures, CODE V's default. Those of this triplet would be spheres of 0.05 mm with a pupil
+// of 10 mm, and are therefore taken as radii. A program that reads radii computes 50.33 mm.
 TEST(LensFiles, WithoutRdmNumbersAreCurvaturesUnlessTheyCannotBe) {
   Lens const lens = lens_of_case("without_rdm.seq");
   EXPECT_THAT(lens.warnings, Contains(AllOf(HasSubstr("without_rdm.seq:7"), HasSubstr("no RDM"))));
@@ -479,7 +484,7 @@ TEST(LensFiles, CodeVCommandsThatChangeTheSurfaceAreRefusedAndOthersNoted) {
   for (char const* const command : {"GRT", "DIF DOE", "HOE", "SPS XYP", "YTO", "RET S1", "NSS"}) {
     EXPECT_THAT(
         refusal("refused.seq", changed(seq, "STO;", std::string("STO; ") + command + ";")),
-        AllOf(HasSubstr("refused.seq:9"), HasSubstr(std::string(command).substr(0, 3)), HasSubstr("is not read")))
+        AllOf(HasSubstr("refused.seq:9"), HasSubstr(std::string(command).substr(0, 3)), HasSubstr("is not supported")))
         << command;
   }
   Lens const lens = lens_of_text("noted.seq", changed(seq, "STO;", "STO; QQQ 1; WWW; QQQ 2;"));
@@ -490,8 +495,8 @@ TEST(LensFiles, CodeVCommandsThatChangeTheSurfaceAreRefusedAndOthersNoted) {
   EXPECT_THAT(hole.warnings, Contains(HasSubstr("HOL")));
 }
 
-// CIR on the stop closes what EPD or FNO open too far, as CLAP does in a .zmx file: a pupil of 3 mm, not of 6 mm. A
-// drawing (EDG) and a circle off the axis, which is an outline, leave the pupil as it is.
+// CIR on the stop limits an aperture that EPD or FNO would open too far, as CLAP does in a .zmx file: the pupil is 3
+// mm, not 6 mm. A drawing (EDG) and a circle off the axis, which is an outline, do not change the pupil.
 TEST(LensFiles, AnApertureOnTheStopLimitsTheLens) {
   auto const pupil_mm = [](std::string const& text, char const* name = "stop.seq") {
     return paraxial_lens(lens_of_text(name, text)).entrance.diameter / unit::millimetre;
@@ -504,7 +509,7 @@ TEST(LensFiles, AnApertureOnTheStopLimitsTheLens) {
   EXPECT_NEAR(pupil_mm(changed(zmx, "  STOP\n", "  STOP\n  CLAP 0 1.5 0\n"), "stop.zmx"), 3, 1e-12);
 }
 
-// RMD REFL makes a mirror of any surface: R = 50 mm, f = R / 2, the same as REFL in place of a glass.
+// RMD REFL turns any surface into a mirror: R = 50 mm, f = R / 2, as with REFL in place of a glass.
 TEST(LensFiles, CodeVsRefractionModeMakesAMirror) {
   std::string const mirror = changed(seq, "S 50.0 6.0 NBK7_SCHOTT", "S -50.0 -6.0 REFL");
   std::string const flat = changed(changed(mirror, "S -50.0 &", "S 0.0 &"), "  47.0", "  -19.0");
@@ -523,7 +528,7 @@ TEST(LensFiles, CodeVsRefractionModeMakesAMirror) {
               AllOf(HasSubstr("tir.seq:9"), HasSubstr("RMD TIR")));
 }
 
-// PIM puts the image at its paraxial place, whatever the last thickness is; the thickness of SI is its defocus.
+// PIM puts the image at its paraxial position, whatever the last thickness is; the thickness of SI is its defocus.
 TEST(LensFiles, CodeVsParaxialImageSolveIsObeyed) {
   auto const image_mm = [](std::string const& text) {
     Lens const lens = lens_of_text("pim.seq", text);
@@ -539,8 +544,8 @@ TEST(LensFiles, CodeVsParaxialImageSolveIsObeyed) {
               Contains(AllOf(HasSubstr("tilt.seq:14"), HasSubstr("PIM"))));
 }
 
-// Vignetting factors bend the light of no lens: each command is named where any factor differs from 0, several of them
-// in one warning.
+// Vignetting factors do not change the light: each command is listed if any factor differs from 0, several of them in
+// one warning.
 TEST(LensFiles, VignettingFactorsAreNotUsed) {
   double const f = focal_length_mm(lens_of_text("plain.zmx", zmx));
   auto const of_zemax = [](std::string const& lines) {
@@ -565,7 +570,7 @@ TEST(LensFiles, VignettingFactorsAreNotUsed) {
   }
 }
 
-// Fields of CODE V that are no angles in the y-z plane.
+// Fields of CODE V that are not angles in the y-z plane.
 TEST(LensFiles, CodeVsOtherFieldsAreNamed) {
   for (std::string const key : {"XAN", "XOB", "YOB", "XIM", "YIM", "XRI", "YRI"}) {
     auto const warnings = [&](std::string const& fields) {
@@ -602,7 +607,7 @@ TEST(LensFiles, PrivateGlassesNeedAnIndexForEveryWavelengthAndAnEnd) {
   EXPECT_THAT(refusal("cut.seq", "RDM\nPRV\nPWL 656.3 486.1\n"), AllOf(HasSubstr("cut.seq:2"), HasSubstr("END")));
 }
 
-// The unit of length in lower case is the same unit.
+// The unit of length may be in lower case.
 TEST(LensFiles, UnitsMayBeInLowerCase) {
   EXPECT_EQ(focal_length_mm(lens_of_text("lower.zmx", changed(zmx, "UNIT MM", "UNIT mm"))),
             focal_length_mm(lens_of_text("upper.zmx", zmx)));
@@ -610,7 +615,8 @@ TEST(LensFiles, UnitsMayBeInLowerCase) {
               10 * focal_length_mm(lens_of_text("upper.zmx", zmx)), 1e-10);
 }
 
-/// A lens file with the commands of a row of the documented table, and a number that only holds if they are obeyed.
+/// A lens file with the commands of a row of the documented table, and a number that is correct only if they are
+/// obeyed.
 struct CommandRow {
   char const* commands;
   std::string text;
@@ -622,8 +628,8 @@ void expect_rows(std::string const& name, std::vector<CommandRow> const& rows) {
     EXPECT_NEAR(row.measure(lens_of_text(name, row.text)), row.expected, 1e-9) << row.commands;
 }
 
-// Rows of the documented table that no other test covers: each has a number that only holds if the commands of the row
-// are obeyed.
+// Rows of the documented table that no other test covers, each with a number that is correct only if its commands are
+// obeyed.
 TEST(LensFiles, TheDocumentedCodeVCommandsAreObeyed) {
   auto const with = [](std::string const& from, std::string const& to) { return changed(seq, from, to); };
   auto const on_stop = [&](std::string const& commands) { return with("CIR 8.0", commands); };
@@ -650,7 +656,7 @@ TEST(LensFiles, TheDocumentedCodeVCommandsAreObeyed) {
       {"RDM N", curvatures, focal_length, f},
       {"517.642", with("NBK7_SCHOTT", "517.642"), focal_length, traced_focal_length({0.02, -0.02}, {1, 1.517, 1}, {6})},
       {"FNO", with("EPD 6.0", "FNO 9"), pupil_mm, f / 9},
-      // the cone of a numerical aperture s meets the stop, the first surface, at 100 mm s / sqrt(1 - s^2)
+      // the cone of a numerical aperture s has the radius 100 mm s / sqrt(1 - s^2) at the stop, the first surface
       {"NAO", changed(with("EPD 6.0", "NAO 0.02"), "SO 0.0 1e13", "SO 0.0 100"), pupil_mm,
        200 * 0.02 / std::sqrt(1 - 0.0004)},
       {"CIR", with("  47.0", "  47.0\n  CIR 2"), light_at(0, 3), 0},
@@ -689,7 +695,7 @@ TEST(LensFiles, TheDocumentedCodeVCommandsAreObeyed) {
   expect_rows("row.seq", rows);
 }
 
-// The same for Zemax' files.
+// Like above, for Zemax files.
 TEST(LensFiles, TheDocumentedZemaxCommandsAreObeyed) {
   auto const with = [](std::string const& from, std::string const& to) { return changed(zmx, from, to); };
   auto const focal_length = [](Lens const& lens) { return focal_length_mm(lens); };
@@ -733,12 +739,13 @@ TEST(LensFiles, GratingsAndOtherSurfacesAreRefusedByName) {
   for (char const* const type : {"DGRATING", "GRINSUR1", "BIREFRIN", "NONSEQCO", "BINARY_2", "TOROIDAL", "FZERNSAG"}) {
     EXPECT_THAT(refusal("type.zmx",
                         changed(zmx, "TYPE STANDARD\n  CURV -0.02", std::string("TYPE ") + type + "\n  CURV -0.02")),
-                AllOf(HasSubstr("type.zmx:23"), HasSubstr(type), HasSubstr("is not read")))
+                AllOf(HasSubstr("type.zmx:23"), HasSubstr(type), HasSubstr("is not supported")))
         << type;
   }
 }
 
-// Two makers have a glass of one name: the one that the file names, else the first of the documented order.
+// Two manufacturers have a glass of the same name: that of the catalogue listed in the file is used, else the first in
+// the documented order.
 TEST(LensFiles, TheFilesCatalogueIsThatOfAGlassOfSeveral) {
   GlassCatalogue glasses;
   glasses.add("NM SF1 1 0 1.5 60\nCD 2.25\nLD 0.3 2\n", "OHARA", "ohara.agf");
@@ -757,7 +764,7 @@ TEST(LensFiles, TheFilesCatalogueIsThatOfAGlassOfSeveral) {
   EXPECT_THAT(assumed.warnings, ElementsAre(AllOf(HasSubstr("zmx:18"), HasSubstr("OHARA:SF1"), HasSubstr("is taken"))));
 }
 
-// One usable glass, one of an index below 1, one without a range of wavelengths.
+// A usable glass, one with an index below 1, and one without a range of wavelengths.
 TEST(LensFiles, AnOddGlassLeavesItsCatalogueUsable) {
   GlassCatalogue glasses;
   glasses.add_file(case_path("good_and_odd_glass.agf"));
@@ -777,7 +784,7 @@ TEST(LensFiles, AnOddGlassLeavesItsCatalogueUsable) {
       AllOf(HasSubstr("cannot be used"), HasSubstr("good_and_odd_glass.agf:8")));
 }
 
-// Coefficients that go on in the next line are the same glass, nd 2.00069, and so the same lens.
+// Coefficients that continue on the next line define the same glass, nd 2.00069, and hence the same lens.
 TEST(LensFiles, WrappedLinesOfACatalogueAreJoined) {
   GlassCatalogue wrapped, whole;
   wrapped.add_file(case_path("wrapped_lines.agf"));
@@ -788,7 +795,7 @@ TEST(LensFiles, WrappedLinesOfACatalogueAreJoined) {
   EXPECT_THAT(lens.warnings, IsEmpty());
 }
 
-// Each kind of line that may go on in a line of numbers alone.
+// Every kind of line that may be continued by a line of numbers.
 TEST(LensFiles, EveryLineOfNumbersOfACatalogueMayBeWrapped) {
   GlassCatalogue glasses;
   glasses.add(
@@ -804,7 +811,7 @@ TEST(LensFiles, EveryLineOfNumbersOfACatalogueMayBeWrapped) {
   EXPECT_THAT(glasses.warnings(), IsEmpty());
 }
 
-// A glass without coefficients, one without a range, one of an unknown formula and one of an index that no glass has.
+// A glass without coefficients, one without a range, one of an unknown formula, and one with an impossible index.
 TEST(LensFiles, GlassesThatCannotBeUsedAreLeftOutTogether) {
   GlassCatalogue glasses;
   glasses.add(
@@ -817,8 +824,8 @@ TEST(LensFiles, GlassesThatCannotBeUsedAreLeftOutTogether) {
                                                     HasSubstr("DENSE (line 11"))));
 }
 
-// Of n^2 = 2.25 the catalogue prints nd = 1.6: warned of where it is used; 1 and 0 are no values, and lines IT that are
-// none are passed over.
+// The catalogue prints nd = 1.6 for n^2 = 2.25, which causes a warning where the glass is used. Printed values of 1 and
+// 0 are placeholders, and invalid lines IT are ignored.
 TEST(LensFiles, ACatalogueThatContradictsItselfIsWarnedOf) {
   GlassCatalogue glasses;
   glasses.add("NM X 1 0 1.6 50\nCD 2.25\nLD 0.3 2\nIT 0.4 0.9 0\nIT 0.5 0.99 10\nNM Y 1 0 1 0\nCD 2.25\nLD 0.3 2\n",
@@ -830,15 +837,15 @@ TEST(LensFiles, ACatalogueThatContradictsItselfIsWarnedOf) {
   EXPECT_THAT(glasses.warnings(), ElementsAre(AllOf(HasSubstr("own.agf:4"), HasSubstr("IT"))));
 }
 
-// SCHOTT's glass without lead has the index of the one that it followed: 1.5168 both.
+// SCHOTT's lead-free glass has the same index as the one that it replaced: 1.5168.
 TEST(LensFiles, AnOlderGlassIsItsSuccessor) {
   Lens const lens = lens_of_text("bk7.zmx", changed(zmx, "GLAS N-BK7", "GLAS BK7"));
   EXPECT_EQ(focal_length_mm(lens), focal_length_mm(lens_of_text("nbk7.zmx", zmx)));
   EXPECT_THAT(lens.warnings, ElementsAre(AllOf(HasSubstr("bk7.zmx:20"), HasSubstr("N-BK7"))));
 }
 
-// A file of the lens' surfaces alone, without object and image: the singlet. An index of -1 is a mirror: R = 50 mm,
-// f = R / 2.
+// A file with the surfaces of the singlet only, without object and image. An index of -1 is a mirror: R = 50 mm, f = R
+// / 2.
 TEST(LensFiles, OtherProgramsLeaveOutTheObjectOrWriteMirrorsAsIndices) {
   Lens const bare = lens_of_text("bare.zmx",
                                  "MODE SEQ\nUNIT MM\nSURF 1\n  CURV 0.02\n  DISZ 6\n  DIAM 8\n  GLAS ___BLANK 1 0 1.5\n"

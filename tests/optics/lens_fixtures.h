@@ -11,7 +11,7 @@
 
 namespace gladstone {
 
-/// One surface of a lens under test, lengths in mm.
+/// Surface of a lens under test, with lengths in mm.
 struct SurfaceMm {
   double radius;  ///< infinite: a plane
   double thickness;
@@ -20,7 +20,8 @@ struct SurfaceMm {
   double conic = 0;
 };
 
-/// A lens of given surfaces in air; the first one is the stop unless another is, with this semi-diameter [mm].
+/// Builds a lens from surfaces in air. The first surface is the stop unless another one is. @param stop_semi_diameter
+/// [mm]
 inline Lens lens_of(std::vector<SurfaceMm> const& surfaces, double stop_semi_diameter) {
   Prescription prescription;
   prescription.file = "test";
@@ -41,7 +42,7 @@ inline Lens lens_of(std::vector<SurfaceMm> const& surfaces, double stop_semi_dia
   return build_lens(prescription, GlassCatalogue::shipped(), spectral_line::d);
 }
 
-/// Runs a ray through all surfaces.
+/// Traces a ray through all surfaces.
 inline RayStatus carry(Lens const& lens, Ray<double>& ray, RayAccount<double>& account) {
   return lens.view().carry(ray, account);
 }
@@ -50,10 +51,10 @@ inline RayStatus carry(Lens const& lens, Ray<double>& ray) {
   return carry(lens, ray, account);
 }
 
-/// A ray parallel to the axis at a height [mm].
+/// Returns a ray parallel to the axis at a height [mm].
 inline Ray<double> parallel_ray(double height_mm) { return {{0, height_mm * unit::millimetre, -0.1}, {0, 0, 1}}; }
 
-/// Height of a ray at a plane behind the last vertex [mm].
+/// Returns the height of a ray at a plane behind the last vertex [mm].
 inline double height_behind(Lens const& lens, Ray<double> const& ray, double distance_mm) {
   double const z = lens.poses.back().origin.z + distance_mm * unit::millimetre;
   return (ray.position.y + (z - ray.position.z) * ray.direction.y / ray.direction.z) / unit::millimetre;

@@ -52,10 +52,10 @@ TEST(LensSetup, ImpossibleLensesAreRefused) {
   EXPECT_THAT([] { read("f_number = 0\n"); }, ThrowsMessage<SetupError>(HasSubstr("f_number")));
   EXPECT_THAT([] { read("f_number = nan\n"); }, ThrowsMessage<SetupError>(HasSubstr("f_number")));
   EXPECT_THAT([] { read("focus = \"target\"\nfocus_distance_mm = 900\n"); },
-              ThrowsMessage<SetupError>(AllOf(HasSubstr("lens.toml:3"), HasSubstr("stands beside focus"))));
+              ThrowsMessage<SetupError>(AllOf(HasSubstr("lens.toml:3"), HasSubstr("conflicts with focus"))));
 }
 
-// Scenes are in gas: a lens with water ahead of it would be focused wrongly, and is refused.
+// A lens with water ahead of it would be focused incorrectly, since scenes are in gas, and is refused.
 TEST(LensSetup, ALensInWaterIsRefused) {
   std::string const file = std::string(GLADSTONE_DATA_DIR) + "/../tests/cases/lenses/object_in_water.zmx";
   auto const build = [&] {

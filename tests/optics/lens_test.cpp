@@ -14,16 +14,16 @@ namespace {
 
 constexpr double flat = std::numeric_limits<double>::infinity();
 
-/// @param options f/1.9, say, lets the listing's rim ray at f/2 pass whatever its rounding
+/// @param options  an f-number of 1.9 lets the listing's marginal ray at f/2 pass despite rounding
 Lens double_gauss(LensOptions const& options = {}) {
   Prescription prescription = read_prescription(GLADSTONE_DATA_DIR "/lenses/double_gauss.toml");
   double const wavelength = prescription.primary_wavelength;
   return build_lens(std::move(prescription), GlassCatalogue::shipped(), wavelength, options);
 }
 
-// The listing of the lens by the program it comes with: focal length 100.0038, back focus 61.4875, front focus
-// -29.3208, entrance pupil 50 at 57.9120, exit pupil 57.3201 at -53.1569; recomputed to more digits from its own
-// indices.
+// Reference listing of the lens by the design program that contains it: focal length 100.0038, back focus 61.4875,
+// front focus -29.3208, entrance pupil 50 at 57.9120, exit pupil 57.3201 at -53.1569; recomputed to more digits from
+// its own indices.
 TEST(DoubleGauss, HasThePublishedCardinalPoints) {
   ParaxialLens const paraxial = paraxial_lens(double_gauss());
   EXPECT_NEAR(paraxial.effective_focal_length * 1e3, 100.00375702793, 1e-9);
@@ -36,7 +36,7 @@ TEST(DoubleGauss, HasThePublishedCardinalPoints) {
   EXPECT_NEAR(paraxial.f_number, 2.0, 1e-4);
 }
 
-// The listing's real ray at a height of 25 mm: height, sag and slope behind every surface, printed to 1e-6 mm.
+// Real ray of the listing at a height of 25 mm: height, sag and slope behind every surface, printed to 1e-6 mm.
 TEST(DoubleGauss, MarginalRayFollowsTheListing) {
   struct Row {
     double y, z, slope;
@@ -59,7 +59,7 @@ TEST(DoubleGauss, MarginalRayFollowsTheListing) {
   }
 }
 
-// The listing's transverse aberration on the axis, in mm, on the image plane.
+// Transverse aberration of the listing on the axis in the image plane [mm].
 TEST(DoubleGauss, AxialRaysMeetTheImageWhereTheListingSays) {
   Lens const lens = double_gauss({.f_number = 1.9});
   double const listing[][2] = {{25, 0.0141382}, {20, -0.0128508}, {15, 0.0079713}, {10, 0.0222848}, {5, 0.0176394}};
@@ -70,8 +70,8 @@ TEST(DoubleGauss, AxialRaysMeetTheImageWhereTheListingSays) {
   }
 }
 
-// The listing's chief ray at 10 degrees: 17.485856 mm on the image plane; in front of the lens it aims at a point of
-// the axis 58.7753 mm behind the first vertex, further than the paraxial pupil at 57.9120.
+// Chief ray of the listing at 10 degrees: 17.485856 mm in the image plane. In front of the lens it is directed at a
+// point of the axis 58.7753 mm behind the first vertex, farther than the paraxial pupil at 57.9120.
 TEST(DoubleGauss, ChiefRayAtTenDegreesFollowsTheListing) {
   Lens const lens = double_gauss();
   double const angle = 10.0000000023 * unit::degree;
@@ -84,8 +84,8 @@ TEST(DoubleGauss, ChiefRayAtTenDegreesFollowsTheListing) {
   EXPECT_NEAR(height_behind(lens, ray, *lens.image_distance * 1e3), 17.485856, 6e-7);
 }
 
-// Lens maker's formula of thick lenses, two balls' worth of digits: R = +-100, t = 10, n = 1.5168; a plano-convex lens;
-// R = +-50, t = 20, n = 1.5 (150 / 2.8); and a ball of 10 mm, n D / (4 (n - 1)).
+// Lens maker's formula of thick lenses: R = +-100, t = 10, n = 1.5168; a plano-convex lens; R = +-50, t = 20, n = 1.5
+// (150 / 2.8); and a ball of 10 mm, n D / (4 (n - 1)).
 TEST(ThickLens, HasTheFocalLengthsOfItsFormula) {
   auto const expect = [](std::vector<SurfaceMm> const& surfaces, double focal, double back) {
     ParaxialLens const p = paraxial_lens(lens_of(surfaces, 1));
@@ -98,7 +98,7 @@ TEST(ThickLens, HasTheFocalLengthsOfItsFormula) {
   expect({{5, 10, 1.5168}, {-5, 0, 1}}, 7.3374613003096, 7.3374613003096 - 5);
 }
 
-// A ray that comes back is the same ray: turned round behind the lens, it leaves as it came.
+// Reversibility of light: a ray that is reversed behind the lens leaves the lens along the incoming ray.
 TEST(Lens, RaysAreReversible) {
   Lens const lens = double_gauss();
   std::mt19937 engine(5);
@@ -108,7 +108,7 @@ TEST(Lens, RaysAreReversible) {
     Ray<double> const sent{start, normalized(Vec3d{0.05 * pick(engine), 0.05 * pick(engine), 1})};
     Ray<double> ray = sent;
     if (carry(lens, ray) != RayStatus::alive) continue;
-    // the same surfaces from behind, indices exchanged
+    // the same surfaces from behind, with the indices exchanged
     ray.direction = -ray.direction;
     for (std::size_t k = lens.surfaces.size(); k-- > 0;) {
       RayAccount<double> account;
@@ -124,8 +124,8 @@ TEST(Lens, RaysAreReversible) {
   }
 }
 
-// Fermat: the optical path between two points is stationary at the traced ray, so that a change of first order in where
-// it meets a surface changes the path in second order only.
+// Fermat's principle: the optical path between two points is stationary at the traced ray, so that a first-order change
+// of its intersection with a surface changes the path in second order only.
 TEST(Lens, TracedPathIsStationary) {
   Lens const lens = lens_of({{60, 8, 1.6}, {-80, 5, 1}, {flat, 3, 1.5}, {120, 0, 1}}, 30);
   Ray<double> ray{{0.004, 0.009, -0.05}, normalized(Vec3d{0.03, -0.02, 1})};
@@ -144,7 +144,7 @@ TEST(Lens, TracedPathIsStationary) {
     return sum;
   };
   EXPECT_NEAR(account.optical_path + 0.1, path(met), 1e-15);
-  auto const moved = [&](std::size_t i, Vec2d by) {  // a point of surface i, slid along it
+  auto const moved = [&](std::size_t i, Vec2d by) {  // shifts the intersection with surface i along the surface
     std::vector<Vec3d> points = met;
     Vec3d& p = points[i + 1];
     p.x += by.x;
@@ -153,17 +153,18 @@ TEST(Lens, TracedPathIsStationary) {
     p.z = vertex + lens.surfaces[i].visit([&](auto const& surface) { return surface.shape.sag(p.x, p.y); });
     return path(points);
   };
-  double const h = 3e-7;  // differences err by slope h^2 / d^2, d >= 3 mm apart, and by rounding of a path over h
+  // error of the differences: slope h^2 / d^2, with d >= 3 mm between surfaces, and rounding of a path over h
+  double const h = 3e-7;
   for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {
     for (Vec2d const by : {Vec2d{h, 0}, Vec2d{0, h}}) {
       double const slope = (moved(i, by) - moved(i, -by)) / (2 * h);
-      EXPECT_NEAR(slope, 0, 2e-9) << i;  // 0.05 (1e-4)^2 + 5e-17 / 3e-7
+      EXPECT_NEAR(slope, 0, 2e-9) << i;  // tolerance: 0.05 (1e-4)^2 + 5e-17 / 3e-7
     }
   }
 }
 
 // As its thickness and aperture shrink, a real lens images like a thin one: the error of the image height of a parallel
-// ray falls as the square of its height.
+// ray decreases as the square of its height.
 TEST(Lens, TendsToTheThinLensAsItShrinks) {
   double last = 0;
   for (double const height : {4.0, 2.0, 1.0}) {
@@ -179,8 +180,8 @@ TEST(Lens, TendsToTheThinLensAsItShrinks) {
   EXPECT_LT(last, 5e-4);
 }
 
-// A plano-hyperbolic lens (k = -n^2 on the side of the image) images parallel light to one point exactly, at any
-// height: Descartes' surface.
+// A plano-hyperbolic lens (k = -n^2 on the image side) focuses parallel light exactly, at any height: Descartes'
+// surface.
 TEST(Lens, DescartesHyperbolaIsStigmatic) {
   double const n = 1.5168;
   Lens const lens = lens_of({{flat, 5, n}, {-20, 0, 1, false, -n * n}}, 12);
@@ -193,12 +194,12 @@ TEST(Lens, DescartesHyperbolaIsStigmatic) {
   }
 }
 
-// The aplanatic points of a sphere (Born & Wolf, section 4.2.3): a point at distance R/n from the centre inside the
-// ball is imaged exactly to R n, and Abbe's sine condition holds: sin u over sin u' is n for every ray.
+// The aplanatic points of a sphere (Born & Wolf, section 4.2.3): a point inside the ball at a distance R/n from the
+// centre is imaged exactly to R n, and Abbe's sine condition is satisfied: sin u over sin u' is n for every ray.
 TEST(Lens, AplanatObeysAbbesSineRule) {
   double const n = 1.6, radius = 0.010;
   ShapedSurface<double, Quadric<double>> ball;
-  ball.shape = {-1 / radius};  // its vertex at 0, its centre at -R
+  ball.shape = {-1 / radius};  // vertex at 0, centre at -R
   ball.semi_diameter = 1;
   ball.n_before = n;
   ball.n_after = 1;
@@ -214,7 +215,7 @@ TEST(Lens, AplanatObeysAbbesSineRule) {
   }
 }
 
-// Of the light that a stop lets pass, edges of other surfaces take the rest: counted by surface.
+// Light that passes the stop can be lost at the edges of other surfaces: the surface is reported.
 TEST(Lens, NamesTheSurfaceWhereARayIsLost) {
   Lens lens = lens_of({{50, 5, 1.5}, {-50, 10, 1}, {flat, 0, 1, true}}, 2);
   Ray<double> ray = parallel_ray(8);

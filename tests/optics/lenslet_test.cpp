@@ -21,13 +21,13 @@ LensletArray<double> array_of(LensletLayout layout) {
   return {Pose<double>{{0.001, -0.002, 0.05}}.turned({0.1, -0.2, 0.3}), pitch_m, focal_m, layout};
 }
 
-/// Axes of a layout, from its definition.
+/// Returns the axes of a layout, from its definition.
 Vec2d axis_of(LensletLayout layout, int column, int row) {
   if (layout == LensletLayout::square) return {column * pitch_m, row * pitch_m};
   return {(column + (row % 2 != 0 ? 0.5 : 0.0)) * pitch_m, row * pitch_m * std::sqrt(0.75)};
 }
 
-// A place belongs to the lens whose axis is nearest: held against a search over all.
+// A point belongs to the lenslet with the nearest axis, compared with a search over all axes.
 TEST(LensletArray, AxisIsTheNearestOfItsLayout) {
   for (LensletLayout const layout : {LensletLayout::square, LensletLayout::hexagonal}) {
     LensletArray<double> const array = array_of(layout);
@@ -45,7 +45,8 @@ TEST(LensletArray, AxisIsTheNearestOfItsLayout) {
   }
 }
 
-// A plane wave of slope s is gathered at f s from the axis of every lens: spots at pitch, whatever the array's pose.
+// A plane wave of slope s is focused at f s from the axis of every lenslet: the foci are one pitch apart, at any pose
+// of the array.
 TEST(LensletArray, ImagesAPlaneWaveIntoSpotsAtItsPitch) {
   for (LensletLayout const layout : {LensletLayout::square, LensletLayout::hexagonal}) {
     LensletArray<double> const array = array_of(layout);
@@ -60,13 +61,13 @@ TEST(LensletArray, ImagesAPlaneWaveIntoSpotsAtItsPitch) {
         Vec2d const spot{local.position.x + focal_m * local.direction.x / local.direction.z,
                          local.position.y + focal_m * local.direction.y / local.direction.z};
         EXPECT_NEAR(length(spot - array.axis_at(at) - focal_m * slope), 0, 1e-16 * 100) << k;
-        EXPECT_EQ(account.weight, 1);  // no light is lost between lenses
+        EXPECT_EQ(account.weight, 1);  // no light is lost between the lenslets
       }
     }
   }
 }
 
-// Rays along the plane or from behind are not its to turn.
+// Rays parallel to the plane or from behind are not deflected.
 TEST(LensletArray, IsMissedFromBehind) {
   LensletArray<double> const array{{}, pitch_m, focal_m, LensletLayout::square};
   Ray<double> ray{{0, 0, 1}, {0, 0, -1}};
@@ -81,7 +82,7 @@ std::optional<LensletSetup> lenslets_of(std::string const& text) {
   return setup;
 }
 
-// f = R / (n - 1) of a plano-convex lens; the sensor stands in the focal plane unless told otherwise.
+// f = R / (n - 1) of a plano-convex lens; the sensor is in the focal plane by default.
 TEST(LensletSetup, ReadsEveryKey) {
   EXPECT_FALSE(lenslets_of(""));
   auto const plain = lenslets_of("[lenslets]\npitch_um = 125\nfocal_length_um = 500\n");

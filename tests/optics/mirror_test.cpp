@@ -20,13 +20,13 @@ ShapedSurface<double, Quadric<double>> mirror_of(double radius, double conic, do
   return mirror;
 }
 
-/// How far from the axis a ray passes a plane z = const [m].
+/// Returns the distance from the axis at which a ray crosses a plane z = const [m].
 double off_axis_at(Ray<double> const& ray, double z) {
   double const way = (z - ray.position.z) / ray.direction.z;
   return std::hypot(ray.position.x + way * ray.direction.x, ray.position.y + way * ray.direction.y);
 }
 
-// A flat mirror sends back what comes along its normal, and turns a ray by twice its own tilt.
+// A flat mirror reflects rays along its normal back, and deflects a ray by twice its own tilt.
 TEST(Mirror, FlatOneTurnsARayByTwiceItsTilt) {
   for (double const degrees : {0.0, 10.0, 45.0}) {
     auto mirror = mirror_of(std::numeric_limits<double>::infinity(), 0);
@@ -40,8 +40,8 @@ TEST(Mirror, FlatOneTurnsARayByTwiceItsTilt) {
   }
 }
 
-// Light from one focus of an ellipsoid goes to the other, by paths that are all 2 a long. With semi-axes a and
-// eccentricity e the vertex has radius a (1 - e^2) and k = -e^2, the foci lie a (1 - e) and a (1 + e) from it.
+// Light from one focus of an ellipsoid is reflected to the other one along paths of length 2 a. With semi-axis a and
+// eccentricity e, the vertex has the radius a (1 - e^2) and k = -e^2; the foci are at a (1 - e) and a (1 + e) from it.
 TEST(Mirror, EllipsoidImagesFocusToFocus) {
   double const a = 0.3, e = 0.6;
   auto const mirror = mirror_of(-a * (1 - e * e), -e * e);  // vertex at 0, concave towards -z
@@ -56,8 +56,8 @@ TEST(Mirror, EllipsoidImagesFocusToFocus) {
   }
 }
 
-// A ray parallel to the axis at height h = R sin(i) of a spherical mirror crosses it R / (2 cos i) from the centre: at
-// R/2 for paraxial rays, nearer the vertex by (R/2)(1 / cos i - 1), which is h^2 / (4 R) to lowest order.
+// A ray parallel to the axis at height h = R sin(i) of a spherical mirror crosses the axis at R / (2 cos i) from the
+// centre: at R/2 for paraxial rays, closer to the vertex by (R/2)(1 / cos i - 1), which is h^2 / (4 R) to lowest order.
 TEST(Mirror, SphereHasItsLongitudinalAberration) {
   double const R = 0.2;
   auto const mirror = mirror_of(-R, 0);
@@ -77,7 +77,8 @@ TEST(Mirror, SphereHasItsLongitudinalAberration) {
   EXPECT_NEAR(crossing, -R / 2, 1e-4 * 1e-4 / (4 * R) * 1.001);
 }
 
-// A parabolic cylinder gathers parallel light in a line: exactly in its focal plane across, untouched along.
+// A parabolic cylinder focuses parallel light to a line: exactly in its focal plane across the axis of the cylinder,
+// and not at all along it.
 TEST(Mirror, ParabolicCylinderHasALineFocus) {
   double const f = 0.1;
   auto const mirror = mirror_of(-2 * f, -1, 0);
@@ -91,8 +92,8 @@ TEST(Mirror, ParabolicCylinderHasALineFocus) {
   }
 }
 
-// In its plane of curvature a cylinder lens is the spherical one; across it, a plane plate, which leaves a parallel ray
-// where it was.
+// In its plane of curvature, a cylindrical lens equals a spherical one. In the perpendicular plane it is a plane plate,
+// which does not change a parallel ray.
 TEST(Cylinder, RefractsLikeASphereAcrossAndLikeAPlateAlong) {
   auto const lens = [](double along_y) {
     ShapedSurface<double, Quadric<double>> front;
@@ -119,19 +120,19 @@ TEST(Cylinder, RefractsLikeASphereAcrossAndLikeAPlateAlong) {
     EXPECT_EQ(plate.position.y, height);
     EXPECT_NEAR(length(plate.direction - Vec3d{0, 0, 1}), 0, 1e-16);
   }
-  // off both planes light still ends in the line: x at the focus is what it is for y = 0
+  // for rays outside both planes, the light is still focused to the line: x at the focus is that for y = 0
   double const paraxial = 0.05 / 0.5168 - 0.004 / 1.5168 + 0.004;  // plano-convex, curved side first
   Ray<double> const one = lens(0)({{1e-5, 0, -0.1}, {0, 0, 1}}), other = lens(0)({{1e-5, 0.02, -0.1}, {0, 0, 1}});
-  // of the cube of height over focal length: 1e-5 (1e-5 / 0.05)^2
+  // aberration of the order of the cubed height over focal length: 1e-5 (1e-5 / 0.05)^2
   EXPECT_NEAR(one.position.x + (paraxial - one.position.z) * one.direction.x / one.direction.z, 0, 1e-12);
   EXPECT_NEAR(other.position.x - one.position.x, 0, 1e-18);
   EXPECT_EQ(other.position.y, 0.02);
 }
 
-// Two mirrors as a telescope (Cassegrain): a paraboloid and a hyperboloid that shares its focus image parallel light to
-// one point at any height. With f1 = 200, d = 150 apart and a magnification m of the second of 3: p = f1 - d = 50
-// before it, p' = m p = 150 behind, R2 = -2 p p' / (p' - p), k2 = -((m + 1) / (m - 1))^2; the focal length is m f1 =
-// 600.
+// Two mirrors as a telescope (Cassegrain): a paraboloid and a hyperboloid with a common focus image parallel light to
+// one point at any height. With f1 = 200, d = 150 and a magnification of the second mirror of m = 3: p = f1 - d = 50 in
+// front of it, p' = m p = 150 behind it, R2 = -2 p p' / (p' - p), k2 = -((m + 1) / (m - 1))^2; the focal length is m f1
+// = 600.
 TEST(Mirror, CassegrainIsStigmaticAndAsLongAsItsFormulaSays) {
   Prescription prescription;
   prescription.file = "test";
@@ -156,14 +157,14 @@ TEST(Mirror, CassegrainIsStigmaticAndAsLongAsItsFormulaSays) {
     Ray<double> ray{{0, height * 1e-3, -0.3}, {0, 0, 1}};
     RayAccount<double> account;
     ASSERT_EQ(carry(lens, ray, account), RayStatus::alive);
-    double const way = (0.0 - ray.position.z) / ray.direction.z;  // the focus lies in the vertex of the primary
+    double const way = (0.0 - ray.position.z) / ray.direction.z;  // the focus is in the vertex of the primary mirror
     EXPECT_NEAR(ray.position.y + way * ray.direction.y, 0, 1e-14) << height;
     EXPECT_NEAR(account.optical_path + way, 0.3 + 0.15 + 0.15, 1e-14) << height;
   }
 }
 
-// What a stop lets pass of an even beam is its share of the beam's area, and a plate of glass takes off that
-// 1 - ((n - 1)/(n + 1))^2 at either face, and exp(-a t) within.
+// A stop transmits the share of a uniform beam that corresponds to its area. A plate of glass transmits 1 - ((n - 1)/(n
+// + 1))^2 at either face, and exp(-a t) inside.
 TEST(Energy, WeightsSumToWhatPasses) {
   double const n = 1.5, absorption = 30, thickness = 0.005, radius = 0.004, beam = 0.01;
   PosedStop<double> const stop{{}, radius, 0};
@@ -186,7 +187,7 @@ TEST(Energy, WeightsSumToWhatPasses) {
   }
   double const face = 1 - std::pow((n - 1) / (n + 1), 2);
   double const expected = std::pow(radius / beam, 2) * face * face * std::exp(-absorption * thickness);
-  // points of a sunflower lie ring by ring: within a radius there are their share of all, to one
+  // the number of sunflower points within a radius is that of the area, up to one
   EXPECT_NEAR(passed, expected, 1.5 / rays);
 }
 

@@ -31,17 +31,17 @@ std::string utf16(std::string const& text, bool little) {
   return bytes;
 }
 
-// Its six glasses, of which two are the same, are said in one breath.
+// The six glasses of the lens, two of which are the same, are listed in one warning.
 TEST(Prescription, GlassesByIndexAloneAreWarnedOfOnce) {
   Lens const lens = build_lens(read_prescription(std::string(GLADSTONE_DATA_DIR) + "/lenses/wide_angle.toml"),
                                GlassCatalogue::shipped(), spectral_line::d);
-  EXPECT_THAT(
-      lens.warnings,
-      ElementsAre(AllOf(HasSubstr("wide_angle.toml:13:1: 5 glasses (nd 1.62374, Vd 47.00 (line 13:1); "),
-                        HasSubstr("nd 1.58913, Vd 61.20 (line "), HasSubstr(") are taken as n = A + B/lambda^2"))));
+  EXPECT_THAT(lens.warnings,
+              ElementsAre(AllOf(HasSubstr("wide_angle.toml:13:1: 5 glasses (nd 1.62374, Vd 47.00 (line 13:1); "),
+                                HasSubstr("nd 1.58913, Vd 61.20 (line "),
+                                HasSubstr(") are approximated by n = A + B/lambda^2"))));
 }
 
-// One lens in three formats is one lens: the biconvex singlet f = R / (2 (n - 1) - (n - 1)^2 t / (n R)).
+// The same lens in three formats: the biconvex singlet f = R / (2 (n - 1) - (n - 1)^2 t / (n R)).
 TEST(Prescription, OneLensInThreeFormatsIsOneLens) {
   double const n = GlassCatalogue::shipped().match("N-BK7", spectral_line::d, "").glass->nd();
   double const f = 50 / (2 * (n - 1) - (n - 1) * (n - 1) * 6 / (n * 50));
@@ -135,12 +135,12 @@ thickness_mm = -3.0
   EXPECT_THAT(refusal("two.toml", changed(toml, "f_number", "entrance_pupil_mm = 6.0\nf_number")),
               HasSubstr("another key that sets the stop"));
   EXPECT_THAT(refusal("glasses.toml", changed(toml, "glass = \"N-BK7\"", "glass = \"N-BK7\"\nindex = 1.5")),
-              HasSubstr("stands beside index"));
+              HasSubstr("conflicts with index"));
   EXPECT_THAT(refusal("radii.toml", changed(toml, "radius_mm = 50.0", "radius_mm = 50.0\ncurvature_per_mm = 0.02")),
-              HasSubstr("stands beside curvature_per_mm"));
+              HasSubstr("conflicts with curvature_per_mm"));
 }
 
-// Design programs write UTF-16, UTF-8 with a mark or ISO-8859-1, with any line ends: the same lens.
+// Design programs write UTF-16, UTF-8 with a byte order mark or ISO-8859-1, with any line ends: the lens is the same.
 TEST(Prescription, EncodingDoesNotMatter) {
   double const f = paraxial_of("utf8.zmx", zmx).effective_focal_length;
   std::string windows;
@@ -151,7 +151,7 @@ TEST(Prescription, EncodingDoesNotMatter) {
   EXPECT_EQ(paraxial_of("latin.zmx", "NOTE 0 f\xfcr\n" + std::string(zmx)).effective_focal_length, f);
 }
 
-// A coordinate break and its opposite in reversed order bring the frame back to where it was.
+// A coordinate break followed by the opposite one in reversed order restores the frame.
 TEST(Prescription, CoordinateBreaksUndoThemselves) {
   std::string const there =
       "SURF 1\n  TYPE COORDBRK\n  PARM 1 1.5\n  PARM 2 -0.7\n  PARM 3 12\n  PARM 4 -7\n  PARM 5 30\n"
@@ -171,9 +171,9 @@ TEST(Prescription, CoordinateBreaksUndoThemselves) {
   EXPECT_LT(length(lens.poses[0].z - Vec3d{0, 0, 1}), 1e-15);
 }
 
-// A file that was cut off anywhere before its image surface was whole is no other, shorter lens: it is refused, or,
-// where it ends within a line DISZ that may be the image's, warned of. Breaks and glass of the lens may stand at no
-// distance, as the image does; a number may be cut to 0.
+// A truncated file must not be read as another, shorter lens: if it ends before its image surface is complete, it is
+// refused, or a warning is given if it ends within a line DISZ that may belong to the image. Breaks and glass surfaces
+// may have a thickness of 0, as the image does, and a number may be truncated to 0.
 TEST(Prescription, RefusesZemaxFilesThatAreCutShort) {
   std::string const more =
       "SURF 3\n  TYPE COORDBRK\n  DISZ 0\nSURF 4\n  DISZ 0.5\n  GLAS N-BK7 0 0\nSURF 5\n  DISZ 0.7\nSURF 6\n";
@@ -182,14 +182,15 @@ TEST(Prescription, RefusesZemaxFilesThatAreCutShort) {
   for (std::size_t cut = 0; cut < text.size(); ++cut) {
     std::string const kept = text.substr(0, cut);
     if (!refusal("cut.zmx", kept).empty()) continue;
-    EXPECT_THAT(read_prescription(file_of("cut.zmx", kept)).warnings, Contains(HasSubstr("lacks its end"))) << kept;
+    EXPECT_THAT(read_prescription(file_of("cut.zmx", kept)).warnings, Contains(HasSubstr("without a line end")))
+        << kept;
   }
   EXPECT_THAT(refusal("cut.zmx", text.substr(0, text.find("SURF 4"))),
               AllOf(HasSubstr("cut.zmx:27"), HasSubstr("cut short")));
 }
 
-// All glasses that are not known are told at once, each with its line and what it may have meant; one by itself is told
-// in the same words.
+// All unknown glasses are reported together, each with its line and the most similar names; a single one is reported in
+// the same way.
 TEST(Prescription, NamesAllUnknownGlassesTogether) {
   std::string const three =
       changed(changed(toml, "N-BK7", "N-BK77"), "thickness_mm = 0.0", "thickness_mm = 2.0\nglass = \"SF99\"") +
@@ -203,7 +204,7 @@ TEST(Prescription, NamesAllUnknownGlassesTogether) {
   EXPECT_THAT(one, AllOf(HasSubstr("glasses.toml:7:1: glass \"N-BK77\""), testing::Not(HasSubstr("\n"))));
 }
 
-// "STO S2" marks the second surface wherever it stands; a number that no surface has is refused.
+// "STO S2" marks the second surface, wherever the command is; the number of a surface that does not exist is refused.
 TEST(Prescription, CodeVCommandsNameTheirSurface) {
   auto const stop_of = [](std::string const& text) {
     Prescription const lens = read_prescription(file_of("named.seq", text));
@@ -217,12 +218,12 @@ TEST(Prescription, CodeVCommandsNameTheirSurface) {
   EXPECT_EQ(conic.surfaces[0].conic, -0.5);
   EXPECT_EQ(conic.surfaces[1].conic, 0);
   EXPECT_THAT(refusal("t.seq", changed(unmarked, "GO\n", "STO S3\nGO\n")),
-              AllOf(HasSubstr("t.seq:12"), HasSubstr("no such surface")));
+              AllOf(HasSubstr("t.seq:12"), HasSubstr("this surface does not precede this line")));
   EXPECT_THAT(refusal("u.seq", changed(unmarked, "GO\n", "STO L'iris'\nGO\n")), HasSubstr("names no surface"));
   EXPECT_THAT(refusal("v.seq", changed(unmarked, "GO\n", "STO\nGO\n")), HasSubstr("cannot be the stop"));
 }
 
-// Fields that are no angles in the y-z plane are not left out in silence; on the axis they say nothing.
+// Fields that are not angles in the y-z plane are not ignored silently; fields on the axis need no warning.
 TEST(Prescription, TellsOfFieldsThatAreLeftOut) {
   auto const notes = [](char const* name, std::string const& text) {
     return read_prescription(file_of(name, text)).warnings;
@@ -236,8 +237,8 @@ TEST(Prescription, TellsOfFieldsThatAreLeftOut) {
   EXPECT_THAT(notes("along.seq", changed(seq, "REF 2", "REF 2\nXAN 0 0\nYAN 0 5")), IsEmpty());
 }
 
-// A wavelength in the wrong unit would be traced far outside the range of every glass. Wavelengths that are not the
-// primary one may have any value: design programs write unused ones.
+// A wavelength in the wrong unit would be far outside the range of every glass. Wavelengths other than the primary one
+// may have any value, since design programs write unused ones.
 TEST(Prescription, WavelengthsInTheWrongUnitAreRefused) {
   EXPECT_THAT(refusal("nm.zmx", changed(zmx, "WAVM 2 0.58756180", "WAVM 2 550")),
               AllOf(HasSubstr("nm.zmx:9: a wavelength of 550 um"), HasSubstr("is 0.55 um meant?")));
@@ -254,7 +255,7 @@ TEST(Prescription, WavelengthsInTheWrongUnitAreRefused) {
   EXPECT_EQ(refusal("infrared.seq", changed(changed(seq, "WL 486.1 587.5618", "WL 10600"), "REF 2", "REF 1")), "");
 }
 
-// What a file does not say is assumed with one warning that names a line.
+// Each assumption about missing data is reported by one warning with a line.
 TEST(Prescription, AMissingWavelengthOrApertureIsWarnedOfAtALine) {
   auto const notes = [](char const* name, std::string const& text) {
     return read_prescription(file_of(name, text)).warnings;
@@ -269,17 +270,17 @@ TEST(Prescription, AMissingWavelengthOrApertureIsWarnedOfAtALine) {
   EXPECT_THAT(notes("open.seq", changed(seq, "EPD 6.0\n", "")),
               ElementsAre(AllOf(HasSubstr("open.seq:7:"), HasSubstr("sets no aperture (EPD, FNO, NAO)"))));
   EXPECT_NEAR(paraxial_of("open.seq", changed(seq, "EPD 6.0\n", "")).entrance.diameter, 16e-3, 1e-15);
-  // the cone of an object at infinity has no width
+  // a numerical aperture defines no cone for an object at infinity
   EXPECT_THAT(notes("cone.zmx", changed(zmx, "ENPD 6.0", "OBNA 0.1 0")),
               ElementsAre(AllOf(HasSubstr("cone.zmx:5:"), HasSubstr("object at infinity"))));
   EXPECT_THAT(notes("near.zmx", changed(changed(zmx, "ENPD 6.0", "OBNA 0.01 0"), "DISZ INFINITY", "DISZ 150")),
               IsEmpty());
 }
 
-// What a user may hand over by mistake: each refusal names file, line and cause.
+// Typical mistakes of users: each error message contains file, line and cause.
 TEST(Prescription, RefusesBadFilesByLineAndCause) {
   EXPECT_THAT(refusal("a.zmx", changed(zmx, "  TYPE STANDARD\n  CURV -0.02", "  TYPE BINARY_2\n  CURV -0.02")),
-              AllOf(HasSubstr("a.zmx:23"), HasSubstr("surface 2: type BINARY_2 is not read")));
+              AllOf(HasSubstr("a.zmx:23"), HasSubstr("surface 2: type BINARY_2 is not supported")));
   EXPECT_THAT(refusal("b.zmx", changed(zmx, "N-BK7", "N-BK8")),
               AllOf(HasSubstr("b.zmx:20"), HasSubstr("\"N-BK8\" is in no")));
   EXPECT_THAT(refusal("c.zmx", changed(zmx, "CURV 0.02", "CURV nan")),
@@ -288,13 +289,13 @@ TEST(Prescription, RefusesBadFilesByLineAndCause) {
   EXPECT_THAT(refusal("e.zmx", changed(zmx, "MODE SEQ", "MODE NSC")), HasSubstr("e.zmx:2"));
   EXPECT_THAT(refusal("f.zmx", utf16(zmx, true).substr(0, 501)), HasSubstr("cut short"));
   EXPECT_THAT(refusal("g.toml", changed(toml, "stop = true\n", "")), HasSubstr("has no stop"));
-  EXPECT_THAT(refusal("j.zmx", std::string(200, '\0')), HasSubstr("is no text"));
+  EXPECT_THAT(refusal("j.zmx", std::string(200, '\0')), HasSubstr("is not text"));
   EXPECT_THAT(refusal("l.seq", changed(seq, "STO;", "STO; GRO 3;")), AllOf(HasSubstr("l.seq:9"), HasSubstr("GRO")));
   EXPECT_THAT(refusal("n.toml", changed(toml, "radius_mm = 50.0", "radius_mm = 0.0")),
               AllOf(HasSubstr("n.toml:5"), HasSubstr("a radius of 0")));
   EXPECT_THAT(refusal("o.toml", changed(toml, "glass", "glas")), HasSubstr("did you mean \"glass\"?"));
   EXPECT_THAT(refusal("p.toml", changed(toml, "thickness_mm = 6.0", "thickness_mm = nan")), HasSubstr("p.toml:6"));
-  EXPECT_THAT(refusal("q.lens", toml), HasSubstr("known are .toml, .zmx, .seq"));
+  EXPECT_THAT(refusal("q.lens", toml), HasSubstr("supported are .toml, .zmx, .seq"));
   EXPECT_THAT(refusal("r.toml", "schema = 1\n"), HasSubstr("no surface"));
   EXPECT_THAT(refusal("s.toml", changed(toml, "f_number = 8.0", "")), HasSubstr("the stop has no semi-diameter"));
 }

@@ -20,7 +20,7 @@ inline std::string file_of(std::string const& name, std::string const& bytes) {
   return path;
 }
 
-/// Why a file is refused; empty: it is not.
+/// Returns the reason why a file is refused; empty if it is accepted.
 inline std::string refusal(std::string const& name, std::string const& bytes) {
   try {
     Prescription const lens = read_prescription(file_of(name, bytes));
@@ -31,7 +31,7 @@ inline std::string refusal(std::string const& name, std::string const& bytes) {
   return "";
 }
 
-/// The biconvex singlet R = 50 mm, t = 6 mm, N-BK7, in our format, in Zemax' and in CODE V's.
+/// The biconvex singlet R = 50 mm, t = 6 mm, N-BK7, in our format and in those of Zemax and CODE V.
 inline constexpr char const* toml = R"(schema = 1
 title = "singlet"
 f_number = 8.0
@@ -91,7 +91,7 @@ SI 0.0 0.0
 GO
 )";
 
-/// A text with its first `from` replaced.
+/// Returns a text with the first occurrence of `from` replaced.
 inline std::string changed(std::string text, std::string const& from, std::string const& to) {
   text.replace(text.find(from), from.size(), to);
   return text;

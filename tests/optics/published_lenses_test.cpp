@@ -22,7 +22,7 @@ Lens build(Prescription prescription, double wavelength = spectral_line::d) {
   return build_lens(std::move(prescription), GlassCatalogue::shipped(), wavelength);
 }
 
-/// Surfaces [first, last) of a lens as a lens of their own, with the stop on the first of them.
+/// Returns surfaces [first, last) of a lens as a separate lens, whose stop is the first of them.
 Prescription part(Prescription const& whole, std::size_t first, std::size_t last) {
   Prescription result = whole;
   auto const begin = whole.surfaces.begin();
@@ -33,9 +33,9 @@ Prescription part(Prescription const& whole, std::size_t first, std::size_t last
   return result;
 }
 
-/// How far the printed digits leave a quantity open: the patents print lengths to 0.001 and indices to 0.00001, each
-/// good to half of that; the changes that these make add up.
-/// @param scale of the shipped lens over the printed one [1]
+/// Returns the uncertainty of a quantity due to the printed digits: patents print lengths to 0.001 and indices to
+/// 0.00001, each exact to half a digit; the resulting changes are added up.
+/// @param scale  ratio of the shipped lens to the printed one [1]
 template <class Quantity>
 double left_open(Prescription const& printed, double scale, Quantity const& quantity) {
   double const as_printed = quantity(printed), half_length = 0.0005 * scale * unit::millimetre;
@@ -57,7 +57,7 @@ double left_open(Prescription const& printed, double scale, Quantity const& quan
   return sum;
 }
 
-/// Holds a quantity against its published value, within what the digits of both leave open.
+/// Compares a quantity with its published value, within the uncertainty of the printed digits of both.
 template <class Quantity>
 void expect_published(Prescription const& lens, double scale, Quantity const& quantity, double published,
                       double half_a_digit) {
@@ -68,7 +68,7 @@ void expect_published(Prescription const& lens, double scale, Quantity const& qu
 double focal_length(Prescription const& lens) { return paraxial_lens(build(lens)).effective_focal_length; }
 double back_focus(Prescription const& lens) { return paraxial_lens(build(lens)).back_focal_length; }
 
-/// First surface to last [m].
+/// Returns the distance from the first to the last surface [m].
 double vertex_length(Prescription const& lens) {
   double sum = 0;
   for (std::size_t i = 0; i + 1 < lens.surfaces.size(); ++i) sum += lens.surfaces[i].thickness;
@@ -77,9 +77,9 @@ double vertex_length(Prescription const& lens) {
 
 constexpr double mm = unit::millimetre;
 
-// JP H9-105860, Example 1: the shipped doublet before the patent's rear component, 107 mm behind it, is the published
+// JP H9-105860, Example 1: the shipped doublet, followed after 107 mm by the patent's rear component, is the published
 // lens: f = 390.004, Bf = 174.594, front and rear focal lengths of 0.541 and -0.520 f, length to the image 0.762 f. The
-// beam of the lens, at f/8.13, is the doublet's own.
+// beam at f/8.13 is limited by the doublet.
 TEST(PublishedLenses, AchromatIsTheFrontOfThePublishedTelephoto) {
   Prescription const doublet = shipped("achromat.toml");
   Prescription whole = doublet;
@@ -107,8 +107,9 @@ TEST(PublishedLenses, AchromatIsTheFrontOfThePublishedTelephoto) {
   EXPECT_NEAR(paraxial.f_number, 0.541 * 8.13, 0.0005 * 8.13 + 0.541 * 0.005);
 }
 
-// A single lens of the doublet's crown has its foci for F and C f / V apart, 3.7 mm; the flint takes nine tenths of
-// that away, and the spherical aberration with it: on the axis rays of every height meet within two Airy discs' radii.
+// The foci of a single lens of the doublet's crown glass for F and C are f / V apart, 3.7 mm; the flint lens
+// compensates nine tenths of that, and the spherical aberration as well: on the axis, rays of all heights meet within
+// two radii of the Airy disc.
 TEST(PublishedLenses, AchromatBringsColoursAndZonesTogether) {
   Prescription const doublet = shipped("achromat.toml");
   double const f = focal_length(doublet);
@@ -128,7 +129,7 @@ TEST(PublishedLenses, AchromatBringsColoursAndZonesTogether) {
 }
 
 // US 4,099,850, Example 5: f = 100.0, back focus 137.350, aperture ratio 1:3.5, and a front pair of |f12| between 1.5
-// and 1.75 f; the shipped lens is 0.28 of it.
+// and 1.75 f; the shipped lens is scaled by 0.28.
 TEST(PublishedLenses, WideAngleHasThePublishedFoci) {
   constexpr double scale = 0.28;
   Prescription const lens = shipped("wide_angle.toml");
@@ -140,7 +141,8 @@ TEST(PublishedLenses, WideAngleHasThePublishedFoci) {
   EXPECT_LT(pair, 1.75);
 }
 
-// It images 74.2 degrees: the chief ray of the corner passes every edge and lands within 3 % of f tan(37.1 degrees).
+// The field is 74.2 degrees: the chief ray of the corner passes all edges and is imaged within 3 % of f tan(37.1
+// degrees).
 TEST(PublishedLenses, WideAngleReachesItsCorner) {
   Lens const lens = build(shipped("wide_angle.toml"));
   double const angle = 37.1 * unit::degree;
@@ -156,9 +158,9 @@ TEST(PublishedLenses, WideAngleReachesItsCorner) {
   EXPECT_NEAR(height / (paraxial.effective_focal_length * std::tan(angle)), 1, 0.03);
 }
 
-// US 4,338,001, Embodiment 2: focal lengths of the forward and the rearward group 80.383 and -118.959, their principal
-// points 57.046 apart, which makes f = 100, and a telephoto ratio of 0.957; the shipped lens is 1.8 of it. Its stop is
-// not the patent's.
+// US 4,338,001, Embodiment 2: focal lengths of the forward and the rearward group 80.383 and -118.959, with principal
+// points 57.046 apart, hence f = 100, and a telephoto ratio of 0.957; the shipped lens is scaled by 1.8. Its stop
+// differs from that of the patent.
 TEST(PublishedLenses, TelecentricLensIsThePublishedTelephoto) {
   constexpr double scale = 1.8, published_f = 80.383 * -118.959 / (80.383 - 118.959 - 57.046);
   Prescription const lens = part(shipped("telecentric.toml"), 0, 10);
@@ -182,7 +184,7 @@ TEST(PublishedLenses, TelecentricLensIsThePublishedTelephoto) {
       lens, scale, [](auto const& p) { return (vertex_length(p) + back_focus(p)) / focal_length(p); }, 0.957, 0.0005);
 }
 
-/// The chief ray of a point at a height above the axis, `distance` in front of the first vertex.
+/// Returns the chief ray of a point at a height above the axis, `distance` in front of the first vertex.
 Ray<double> chief_ray(Lens const& lens, double height, double distance) {
   RayOrigin const origin = RayOrigin::point({0, height, -distance});
   auto const disc = find_aim_disc(lens, origin);
@@ -190,8 +192,8 @@ Ray<double> chief_ray(Lens const& lens, double height, double distance) {
   return origin.ray_through(disc->centre);
 }
 
-// Of the field, 44 mm wide, chief rays leave parallel to the axis within 0.005 degrees: what is left is the spherical
-// aberration of the published lens, which images parallel light on the stop.
+// Chief rays from the field, 44 mm wide, are parallel to the axis within 0.005 degrees: the residual is the spherical
+// aberration of the published lens, which images parallel light onto the stop.
 TEST(PublishedLenses, TelecentricLensTakesChiefRaysParallelToTheAxis) {
   Lens const lens = build(shipped("telecentric.toml"));
   EXPECT_TRUE(std::isinf(paraxial_lens(lens).entrance.position));
@@ -203,8 +205,9 @@ TEST(PublishedLenses, TelecentricLensTakesChiefRaysParallelToTheAxis) {
   }
 }
 
-// So an object keeps its size when it moves: 0.3 m nearer or further its image changes by less than 1 / 1000, where a
-// camera that looked on from the first vertex would show it a third larger or a fifth smaller.
+// Hence the image of an object keeps its size when the object moves: if it is 0.3 m nearer or farther, its image
+// changes by less than 1 / 1000, whereas a perspective camera at the first vertex would show it a third larger or a
+// fifth smaller.
 TEST(PublishedLenses, TelecentricLensKeepsTheSizeOfWhatMoves) {
   Lens const lens = build(shipped("telecentric.toml"));
   double const distance = lens.prescription.object_distance;
@@ -219,9 +222,9 @@ TEST(PublishedLenses, TelecentricLensKeepsTheSizeOfWhatMoves) {
   for (double const way : {-0.3, 0.3}) EXPECT_NEAR(image(way) / here, 1, 1e-3) << way;
 }
 
-// US 2,532,751, Example 1: F = 1.000 at f/2, printed to 0.001 with indices to 0.001, so that these leave open what half
-// a thousandth of each makes, beside the lengths and the digits of F. The sample lens that has its form has its glass
-// as thick to 0.1 mm, and other airspaces and curvatures.
+// US 2,532,751, Example 1: F = 1.000 at f/2. Lengths and indices are printed to 0.001, so the uncertainty includes the
+// effect of half a thousandth in each index, in addition to the lengths and the digits of F. The sample lens of the
+// same form has the same glass thicknesses to 0.1 mm, but other airspaces and curvatures.
 TEST(PublishedLenses, DoubleGaussHasThePatentsFocalLength) {
   Prescription const lens = shipped("double_gauss_patent.toml");
   double const as_printed = focal_length(lens);

@@ -5,9 +5,9 @@
 namespace gladstone {
 namespace {
 
-// Rays that meet in (c, z0): seen on the plane z = 0 they lie at c - z0 s. Uniform slopes over a disc of radius r have
-// a mean square of r^2 / 2; equal areas of the disc have equal numbers of a sunflower's points, to one in 500,
-// which moves their mean by r/500.
+// Rays that meet in (c, z0) cross the plane z = 0 at c - z0 s. Uniform slopes over a disc of radius r have a mean
+// square of r^2 / 2; equal areas of the disc contain equal numbers of sunflower points, up to one in 500, which changes
+// their mean by r/500.
 TEST(RayBundle, IsNarrowestWhereItsRaysMeet) {
   double const z0 = 3e-3, r = 0.05;
   Vec2d const c{1e-3, -2e-3};
@@ -24,7 +24,7 @@ TEST(RayBundle, IsNarrowestWhereItsRaysMeet) {
   EXPECT_NEAR(spot.centroid.y, c.y, 2e-3 * z0 * r);
 }
 
-// A single ray, or parallel ones, are as narrow anywhere.
+// A single ray, or parallel rays, have the same cross-section everywhere.
 TEST(RayBundle, OfParallelRaysHasItsFocusOnThePlane) {
   BundleSpot<double> const spot = spot_of<double>({{0, 0}, {2, 0}}, {{0.1, 0.2}, {0.1, 0.2}});
   EXPECT_EQ(spot.best_focus, 0);

@@ -25,7 +25,8 @@ GlassMatch shipped_match(std::string const& name, std::vector<std::string> const
   return GlassCatalogue::shipped().match(name, spectral_line::d, "lens:1", preferred);
 }
 
-// The makers' tables of indices at the lines C, d and F, of 2018 (HOYA) to 2024 (CDGM), printed to five or six digits.
+// The manufacturers' tables of indices at the lines C, d and F, from 2018 (HOYA) to 2024 (CDGM), printed to five or six
+// digits.
 TEST(ShippedCatalogues, GlassesHaveTheIndicesOfTheirDataSheets) {
   struct Row {
     char const* glass;
@@ -62,12 +63,12 @@ TEST(ShippedCatalogues, GlassesTransmitWhatTheirDataSheetsSay) {
   EXPECT_NEAR(transmittance(2400e-9), 0.85, 2e-6);
 }
 
-// Makers state nd beside the coefficients, rounded to five or six digits, SUMITA less exactly: a wrong copy of either
-// would show.
+// Manufacturers state nd in addition to the coefficients, rounded to five or six digits, SUMITA less exactly: a wrong
+// copy of either would be detected.
 TEST(ShippedCatalogues, FormulasGiveTheStatedIndex) {
   int stated = 0;
   for (Glass const* glass : GlassCatalogue::shipped().glasses()) {
-    if (glass->printed_nd == 0 || glass->catalogue == "MISC") continue;  // MISC: three digits
+    if (glass->printed_nd == 0 || glass->catalogue == "MISC") continue;  // MISC has three digits only
     EXPECT_NEAR(glass->nd(), glass->printed_nd, glass->catalogue == "SUMITA" ? 4e-5 : 6e-6) << glass->name;
     ++stated;
   }
@@ -86,7 +87,7 @@ TEST(ShippedCatalogues, GlassesNameTheirLine) {
   EXPECT_EQ(glass.transmission.size(), same.transmission.size());
 }
 
-// F2 is SCHOTT's 1.62004 and also HIKARI's, but CDGM's is 1.61293; BAF10 is the same glass of HOYA and HIKARI.
+// The index of F2 is 1.62004 for SCHOTT and HIKARI, but 1.61293 for CDGM; BAF10 is the same glass of HOYA and HIKARI.
 TEST(ShippedCatalogues, AreSearchedInTheDocumentedOrder) {
   GlassMatch const f2 = shipped_match("F2");
   EXPECT_EQ(f2.glass->catalogue, "SCHOTT");
@@ -111,7 +112,8 @@ TEST(ShippedCatalogues, TheLensFileChoosesAmongThem) {
   }
 }
 
-// CDGM's F4, nd 1.62005, is not SCHOTT's former F4, nd 1.61659: a lens of SCHOTT's glasses does not get it silently.
+// CDGM's F4, nd 1.62005, differs from SCHOTT's former F4, nd 1.61659: a lens file that lists SCHOTT does not get it
+// without a note.
 TEST(ShippedCatalogues, AGlassOfACatalogueThatTheLensFileDoesNotListIsNoted) {
   GlassMatch const f4 = shipped_match("F4", {"SCHOTT"});
   EXPECT_EQ(f4.glass->catalogue, "CDGM");
@@ -119,7 +121,8 @@ TEST(ShippedCatalogues, AGlassOfACatalogueThatTheLensFileDoesNotListIsNoted) {
   EXPECT_THAT(shipped_match("F4").notes, IsEmpty());
 }
 
-// BAF4 is a glass of HIKARI and another of CDGM; for a lens of SCHOTT's glasses it is N-BAF4, which followed SCHOTT's.
+// HIKARI and CDGM have different glasses BAF4; for a lens file that lists SCHOTT, it is N-BAF4, the successor of
+// SCHOTT's BAF4.
 TEST(ShippedCatalogues, TheSuccessorInTheListedCatalogueComesBeforeOtherMakersGlasses) {
   GlassMatch const schott = shipped_match("BAF4", {"SCHOTT"});
   EXPECT_EQ(schott.glass->name, "N-BAF4");
@@ -132,7 +135,8 @@ TEST(ShippedCatalogues, TheSuccessorInTheListedCatalogueComesBeforeOtherMakersGl
   EXPECT_THAT(open.notes, ElementsAre(AllOf(HasSubstr("HIKARI:BAF4"), HasSubstr("CDGM:BAF4"))));
 }
 
-// The user's catalogue is an explicit choice, whatever its name; a newer edition of a shipped one, too.
+// A catalogue added by the user is an explicit choice, whatever its name, also if it is a newer edition of a shipped
+// one.
 TEST(ShippedCatalogues, CataloguesOfTheUserComeFirst) {
   GlassCatalogue glasses = GlassCatalogue::shipped();
   glasses.add("NM S-BSL7 1\nCD 2.25\nLD 0.4 0.7\nNM N-BK7 1\nCD 2.25\nLD 0.4 0.7\n", "OWN", "own.agf");
@@ -146,7 +150,7 @@ TEST(ShippedCatalogues, CataloguesOfTheUserComeFirst) {
   EXPECT_FALSE(newer.assumed);
 }
 
-/// A singlet whose glass is given by a line GLAS, in a file that lists catalogues; at the d line.
+/// Returns a singlet at the d line whose glass is given by a line GLAS, in a file that lists catalogues.
 Lens lens_of_glass(std::string const& glass, std::string const& listed = "") {
   std::string const text = changed(zmx, "GLAS N-BK7 0 0 1.5 40", "GLAS " + glass);
   return build_lens(read_prescription(file_of(
@@ -154,11 +158,11 @@ Lens lens_of_glass(std::string const& glass, std::string const& listed = "") {
                     GlassCatalogue::shipped(), spectral_line::d);
 }
 
-/// Index behind the first surface.
+/// Returns the index behind the first surface.
 double index_of(Lens const& lens) { return lens.paraxial.front().n_after; }
 
-// The line of SCHOTT's former F4 says nd 1.61659, which the only F4 of the catalogues does not have; that of CDGM's
-// says 1.62005.
+// The line of SCHOTT's former F4 states nd 1.61659, which differs from the only F4 of the catalogues; CDGM's is
+// 1.62005.
 TEST(ShippedCatalogues, AGlassThatContradictsTheLensFileIsNotTaken) {
   EXPECT_THAT(lens_of_glass("F4 0 0 1.61659 36.63").warnings,
               ElementsAre(AllOf(HasSubstr("CDGM:F4"), HasSubstr("has nd = 1.62005"), HasSubstr("nd = 1.61659"))));
@@ -181,11 +185,11 @@ TEST(ShippedCatalogues, AListedGlassThatContradictsItsLineIsTakenWithAWarning) {
   EXPECT_NEAR(index_of(lens), 1.62004, 1e-5);
   EXPECT_THAT(lens.warnings,
               ElementsAre(AllOf(HasSubstr("flint.zmx:21"), HasSubstr("SCHOTT:F2"), HasSubstr("has nd = 1.62004"),
-                                HasSubstr("says nd = 1.61293"), HasSubstr("the catalogue's glass is taken"))));
+                                HasSubstr("says nd = 1.61293"), HasSubstr("the catalogue's glass is used"))));
   EXPECT_THAT(lens_of_glass("F2 0 0 1.61293 36.96", "CDGM").warnings, IsEmpty());
 }
 
-// SCHOTT's LAK8 and N-LAK8 have nd = 1.713 both; a line that says otherwise means another glass.
+// SCHOTT's LAK8 and N-LAK8 both have nd = 1.713; a line with another nd means another glass.
 TEST(ShippedCatalogues, TheSuccessorIsTakenUnlessTheLineContradictsIt) {
   Lens const lens = lens_of_glass("LAK8 0 0 1.713 53.83");
   EXPECT_EQ(index_of(lens), shipped_match("N-LAK8").glass->nd());
@@ -196,14 +200,14 @@ TEST(ShippedCatalogues, TheSuccessorIsTakenUnlessTheLineContradictsIt) {
   EXPECT_THAT(other.warnings, ElementsAre(AllOf(HasSubstr("SCHOTT:N-LAK8"), HasSubstr("1.713"), HasSubstr("1.65"))));
 }
 
-// Neither the lens file's catalogue nor any other has BK7: one sentence says so.
+// Neither the catalogue listed in the lens file nor any other one contains BK7: one note reports this.
 TEST(ShippedCatalogues, ASuccessorInACatalogueThatTheLensFileDoesNotListIsNotedOnce) {
   EXPECT_THAT(shipped_match("BK7", {"HOYA"}).notes,
               ElementsAre(AllOf(HasSubstr("\"BK7\" is in no catalogue;"), HasSubstr("SCHOTT:N-BK7"),
                                 HasSubstr("which followed it, is taken"), HasSubstr("lists only HOYA"))));
 }
 
-// Glasses are read when they are asked for, by any thread, and once: all threads see the same glass.
+// Glasses are read when they are first used, by any thread, and only once: all threads get the same glass.
 TEST(ShippedCatalogues, AreReadByAllThreadsAtOnce) {
   std::vector<std::vector<Glass const*>> seen(4);
   {

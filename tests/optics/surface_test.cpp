@@ -41,11 +41,11 @@ TEST(Refraction, PlaneParallelPlateShiftsARaySideways) {
   }
 }
 
-// A prism of 60 degrees, n = 1.5168: deviation at three angles of incidence, the least at 49.32 degrees.
+// A prism of 60 degrees, n = 1.5168: deviation at three angles of incidence; the minimum is at 49.32 degrees.
 TEST(Refraction, PrismDeviatesAsItsFormulaSays) {
   double const deviations[][2] = {{49.3233477362499, 38.6466954724999}, {40, 40.2742311354229}, {60, 40.1969846970311}};
   for (auto const& [incidence, deviation] : deviations) {
-    // normals of the faces turned by -+30 degrees; the ray meets the first one at the angle of incidence
+    // normals of the faces rotated by -+30 degrees; the ray meets the first face at the angle of incidence
     double const half = 30 * unit::degree;
     Flat const front = plane(0, 1, 1.5168, {half, 0, 0}), back = plane(0.02, 1.5168, 1, {-half, 0, 0});
     double const angle = incidence * unit::degree - half;  // above the axis
@@ -58,7 +58,7 @@ TEST(Refraction, PrismDeviatesAsItsFormulaSays) {
   }
 }
 
-// From glass of 1.5168 to air nothing leaves beyond 41.2451903696126 degrees.
+// Total internal reflection from glass of 1.5168 to air beyond 41.2451903696126 degrees.
 TEST(Refraction, EndsAtTheCriticalAngle) {
   for (double const beside : {-1e-9, 1e-9}) {
     Ray<double> ray = ray_at(41.2451903696126 * unit::degree + beside);
@@ -68,7 +68,7 @@ TEST(Refraction, EndsAtTheCriticalAngle) {
   }
 }
 
-// Snell, whatever the ray's sense: a ray towards -z obeys it as one towards +z.
+// Snell's law for both directions of light along z.
 TEST(Refraction, TakesRaysOfAnyDirection) {
   Ray<double> ray{{0, 0, 0.01}, normalized(Vec3d{0.3, 0.1, -1})};
   double const sine = std::hypot(ray.direction.x, ray.direction.y);
@@ -79,7 +79,8 @@ TEST(Refraction, TakesRaysOfAnyDirection) {
   EXPECT_NEAR(length(ray.direction), 1, 1e-15);
 }
 
-// At normal incidence a bare surface passes 4 n / (n + 1)^2; at Brewster's angle one polarisation is not reflected.
+// At normal incidence, an uncoated surface transmits 4 n / (n + 1)^2; at Brewster's angle, one polarisation is not
+// reflected.
 TEST(Fresnel, NormalIncidenceAndBrewster) {
   double const n = 1.5;
   EXPECT_NEAR(fresnel_transmittance(1.0, n, 1.0, 1.0), 4 * n / ((n + 1) * (n + 1)), 1e-15);
@@ -88,7 +89,7 @@ TEST(Fresnel, NormalIncidenceAndBrewster) {
   EXPECT_NEAR(fresnel_transmittance(1.0, n, std::cos(brewster), std::cos(after)), 1 - s / 2, 1e-15);
 }
 
-// A paraboloid mirror gathers parallel rays in its focus, whatever their height.
+// A parabolic mirror focuses parallel rays of any height.
 TEST(Mirror, ParaboloidFocusesParallelRays) {
   Flat mirror;
   mirror.shape = {-1 / 0.2, -1};  // concave towards the light, focus 0.1 m in front of it
@@ -118,7 +119,7 @@ void expect_on_surface(Shape const& shape, double reach) {
     ASSERT_TRUE(shape.intersect(ray, way)) << i;
     Vec3d const met = ray.position + way * ray.direction;
     EXPECT_NEAR(met.z, shape.sag(met.x, met.y), 1e-14) << i;
-    // the normal is across the surface: its tangents by differences
+    // the normal is perpendicular to the surface, whose tangents are computed by differences
     Vec3d const normal = shape.normal(met);
     double const h = 1e-6;
     Vec3d const along_x{2 * h, 0, shape.sag(met.x + h, met.y) - shape.sag(met.x - h, met.y)};
@@ -147,8 +148,8 @@ TEST(RadialAsphere, RaysEndOnTheSurfaceAndItsNormalIsAcross) {
   expect_on_surface(RadialAsphere<double>{{0, 0}, 0.01, false, {0, 0, 1e-4}}, 0.015);
 }
 
-// Terms of r^2, r^4, ... at a normalising radius of 10 mm are those of an even asphere times its powers; of all powers
-// the even ones are the same surface.
+// Terms of r^2, r^4, ... with a normalisation radius of 10 mm equal those of an even asphere times its powers; if all
+// powers are allowed, the even ones describe the same surface.
 TEST(RadialAsphere, OfEvenPowersIsTheEvenAsphere) {
   Quadric<double> const conic{1 / 0.05, -0.6};
   EvenAsphere<double> const even{conic, {2.0, 3e3, -2e6}};
@@ -171,10 +172,10 @@ TEST(TiltedPlane, RaysEndOnTheSurfaceAndItsNormalIsAcross) {
   EXPECT_FALSE((TiltedPlane<double>{{1, 0}}.intersect({{0, 0, 1}, normalized(Vec3d{1, 0, 1})}, way)));  // along it
 }
 
-// A device holds lens surfaces as bytes.
+// Lens surfaces are copied to a device as bytes.
 static_assert(std::is_trivially_copyable_v<LensSurface<double>>);
 
-// A sphere written as an asphere: the sag of a sphere has r^2 / 2R as its first term, which the conic takes over.
+// A sphere written as an asphere: the first term of its sag is r^2 / 2R, which the conic represents.
 TEST(EvenAsphere, WithoutTermsIsItsConic) {
   Quadric<double> const sphere{1 / 0.04};
   EvenAsphere<double> const same{sphere, {}};
@@ -184,7 +185,7 @@ TEST(EvenAsphere, WithoutTermsIsItsConic) {
   EXPECT_NEAR(one, other, 1e-16);
 }
 
-// A sphere's far side is not the surface: rays that pass beside the sheet through the vertex miss it.
+// The far side of a sphere is not part of the surface: rays that pass outside the sheet through the vertex miss it.
 TEST(Quadric, IsMissedBesideItsSheet) {
   Quadric<double> const sphere{1 / 0.01};
   double way;

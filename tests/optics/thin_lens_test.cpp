@@ -35,7 +35,7 @@ RayStatus carry(std::vector<CameraElement<double>> const& elements, Ray<double>&
   return RayStatus::alive;
 }
 
-/// The ray from a point to a point of the lens plane.
+/// Returns the ray from a point to a point of the lens plane.
 Ray<double> ray_between(Vec3d from, Vec2d pupil, double lens_z) {
   return {from, normalized(Vec3d{pupil.x - from.x, pupil.y - from.y, lens_z - from.z})};
 }
@@ -49,7 +49,7 @@ std::vector<Vec2d> pupil_points(double radius) {
   return points;
 }
 
-/// Where a ray that has left the lens meets a plane.
+/// Returns the intersection of the ray behind the lens with a plane.
 Vec2d meets(Ray<double> const& ray, double z) {
   double const way = (z - ray.position.z) / ray.direction.z;
   return {ray.position.x + way * ray.direction.x, ray.position.y + way * ray.direction.y};
@@ -64,7 +64,8 @@ TEST(ThinLensImaging, Table1Numbers) {
   EXPECT_NEAR(imaging.entrance_pupil, 9.545455e-3, 5e-10);
 }
 
-// Focused on the medium at 0.75 m the sensor stands at z_i = 1/(1/f - 1/0.75), and M = z_i/Z_B with that distance.
+// If the lens is focused on the medium at 0.75 m, the sensor is at z_i = 1/(1/f - 1/0.75), and M = z_i/Z_B with that
+// z_i.
 TEST(ThinLensImaging, MagnificationTakesTheActualSensorDistanceWhenDefocused) {
   ImagingGeometry const imaging = thin_lens_imaging(f, 11, 0.75, 1.0);
   EXPECT_NEAR(imaging.image_distance, 0.105 * 0.75 / 0.645, 1e-16);
@@ -75,7 +76,7 @@ TEST(ThinLensImaging, InfiniteFNumberHasNoPupil) {
   EXPECT_EQ(thin_lens_imaging(f, std::numeric_limits<double>::infinity(), 1.0, 1.0).entrance_pupil, 0.0);
 }
 
-// Every ray of a point meets the others at -M X: 1e-15 m is ten roundings of a position of 1 cm after half a metre.
+// All rays of a point meet at -M X: the tolerance of 1e-15 m is ten roundings of a position of 1 cm after half a metre.
 TEST(ThinLens, IsStigmaticOnAndOffTheAxis) {
   double const M = f / (1.0 - f), z_i = 1 / (1 / f - 1.0);
   for (Vec2d const X : {Vec2d{0, 0}, Vec2d{0.02, 0}, Vec2d{-0.03, 0.025}, Vec2d{0.1, -0.2}}) {
@@ -90,8 +91,8 @@ TEST(ThinLens, IsStigmaticOnAndOffTheAxis) {
   }
 }
 
-// A point whose sharp image lies at z_i' is cut by the sensor at z_i in a disc of diameter d_A |1 - z_i/z_i'| about the
-// chief ray, filled like the pupil (a scaled picture of it).
+// A point whose sharp image is at z_i' is imaged by a sensor at z_i to a disc of diameter d_A |1 - z_i/z_i'| about the
+// chief ray, which is a scaled image of the pupil.
 TEST(ThinLens, ADefocusedPointIsADiscOfThePupilsShape) {
   double const sensor = f * 0.75 / (0.75 - f), sharp = f / (1.0 - f);
   double const scale = 1 - sensor / sharp;
@@ -106,7 +107,7 @@ TEST(ThinLens, ADefocusedPointIsADiscOfThePupilsShape) {
   EXPECT_NEAR(f / 11 * std::abs(scale), 388.4e-6, 1e-7);  // 9.5455 mm times 4.070 %
 }
 
-// Parallel light of slope s meets in the focal plane at s f.
+// Parallel light of slope s is focused at s f in the focal plane.
 TEST(ThinLens, ParallelRaysMeetInTheFocalPlane) {
   for (Vec2d const pupil : pupil_points(f / 22)) {
     Ray<double> ray{{pupil.x - 0.1 * 0.5, pupil.y, 0.25}, normalized(Vec3d{0.1, 0, 1})};
@@ -116,7 +117,7 @@ TEST(ThinLens, ParallelRaysMeetInTheFocalPlane) {
   }
 }
 
-// Rays along the axis keep their distance exactly: the last double at the stop passes, the next one does not.
+// Rays parallel to the axis keep their distance exactly: the last double inside the stop passes, the next does not.
 TEST(PosedStop, StopsExactlyAtItsRadius) {
   PosedStop<double> const stop{on_axis(0.75), 0.004, 0};
   auto const status_at = [&](double x) {
@@ -131,8 +132,8 @@ TEST(PosedStop, StopsExactlyAtItsRadius) {
   EXPECT_EQ(status_at(0.004 * (1 + 4e-16)), RayStatus::vignetted);
 }
 
-// The edge kernel has moments 1, 0, 0, 0: a parabola in the enclosed area integrates over the smoothed stop as over the
-// sharp one.
+// The edge kernel has the moments 1, 0, 0, 0: the integral of a parabola in the enclosed area over the smoothed stop
+// equals that over the sharp one.
 TEST(ApertureStop, SmoothedEdgeIntegratesParabolasExactly) {
   ApertureStop<double> const smooth{1, 0.3};
   double sums[4] = {};
@@ -159,7 +160,8 @@ TEST(ThinLens, IsMissedByRaysThatRunAwayOrAlongIt) {
   }
 }
 
-// The place where a vignetted ray meets the plane of the stop is known, and the ray itself is not moved.
+// A vignetted ray is not moved, but its intersection with the plane of the stop, from which the deflection at the stop
+// is measured, can be found.
 TEST(PosedStop, BlocksARayButFindsItsPlace) {
   PosedStop<double> const stop{on_axis(0.75), f / 22, 0};
   Ray<double> const sent = ray_between({0, 0, -0.25}, {0.02, 0.01}, 0.75);

@@ -12,8 +12,8 @@
 namespace gladstone {
 namespace {
 
-/// A fisheye of 17 surfaces for 170 degrees, focal length 0.205 mm. Its entrance pupil moves forwards and turns with
-/// the field: from some 50 degrees of field on no ray through the paraxial one gets through the first lenses.
+/// A fisheye lens of 17 surfaces for 170 degrees, focal length 0.205 mm. Its entrance pupil moves forwards and tilts
+/// with the field angle: beyond about 50 degrees, rays through the paraxial pupil do not pass the first lenses.
 Lens wide_lens() {
   Prescription prescription = read_prescription(GLADSTONE_DATA_DIR "/../tests/cases/lenses/wide_170.toml");
   double const wavelength = prescription.primary_wavelength;
@@ -26,8 +26,9 @@ struct ChiefRay {
   double image_mm;  ///< height on the paraxial image plane, 0.832527873288451 mm behind the last vertex
 };
 
-// From an independent tracer in Python (spheres by the quadratic formula): rays started at the stop's centre, traced to
-// the object, with the slope in the stop found by bisection, then traced through the whole lens.
+// Reference values from an independent ray tracer in Python (spheres by the quadratic formula): rays started at the
+// centre of the stop, with the slope in the stop found by bisection so that they reach the object, then traced through
+// the whole lens.
 constexpr ChiefRay listing[] = {
     {10, -0.24555132315715886, 0.03568273422133241}, {30, -0.7648619872884432, 0.10458230256032489},
     {40, -1.0576281895988204, 0.13669240518909703},  {50, -1.3945640719594576, 0.16661085700531653},
@@ -39,8 +40,8 @@ RayOrigin field(double degrees) {
   return RayOrigin::direction({0, std::sin(angle), std::cos(angle)});
 }
 
-// Chief rays meet the stop's centre to 1e-10 of its radius (0.35 mm), and the aim plane to that over the cosine; the
-// listing is as exact as bisection in double: 1e-9 mm for either.
+// Chief rays meet the stop's centre to 1e-10 of its radius (0.35 mm), and the aim plane to that over the cosine. The
+// reference values are as exact as bisection in double: 1e-9 mm for both.
 TEST(WideAngleLens, ChiefRaysToEightyFiveDegreesFollowAnIndependentTracer) {
   Lens const lens = wide_lens();
   ParaxialLens const paraxial = paraxial_lens(lens);
@@ -59,8 +60,8 @@ TEST(WideAngleLens, ChiefRaysToEightyFiveDegreesFollowAnIndependentTracer) {
   }
 }
 
-// A ray traced back from the stop's centre, turned round, comes to the stop's centre at the slope that it left by:
-// through glass, and through an ideal lens before the stop, which is exact in slopes of one sense alone.
+// A ray traced backwards from the stop's centre and then reversed returns to the stop's centre with its initial slope:
+// through glass, and through an ideal lens in front of the stop, which is exact in slopes for one direction only.
 TEST(TraceBack, RunsAlongTheRayThatComes) {
   Prescription prescription =
       lens_of({{50, 5, 1.5}, {-80, 20, 1}, {HUGE_VAL, 10, 1}, {HUGE_VAL, 10, 1, true}}, 5).prescription;
@@ -84,7 +85,7 @@ TEST(TraceBack, RunsAlongTheRayThatComes) {
   }
 }
 
-// Symmetry: a field turned about the axis by an angle sees the pupil turned by it.
+// Symmetry: rotating the field about the axis rotates the pupil as seen from it.
 TEST(WideAngleLens, SeesItsPupilAlikeAllRound) {
   Lens const lens = wide_lens();
   double const s = std::sin(70 * unit::degree), c = std::cos(70 * unit::degree);
@@ -98,8 +99,9 @@ TEST(WideAngleLens, SeesItsPupilAlikeAllRound) {
   }
 }
 
-// No light of the source is lost: every ray of a lattice three times as wide as the disc that passes the stop passes
-// the aim plane within the disc, and most of the disc's rays pass: it is not wider than its margin needs.
+// No light of the source is lost: of a lattice three times as wide as the ellipse, every ray that passes the stop
+// crosses the aim plane inside the ellipse. Most rays through the ellipse pass the stop, so that it is no wider than
+// its margin requires.
 TEST(WideAngleLens, AimDiscHoldsEveryRayThatPassesTheStop) {
   Lens const lens = wide_lens();
   for (double const degrees : {0.0, 30.0, 45.0, 50.0, 55.0, 60.0, 70.0, 80.0}) {
@@ -122,8 +124,8 @@ TEST(WideAngleLens, AimDiscHoldsEveryRayThatPassesTheStop) {
   }
 }
 
-// What `info lens` prints, on the image plane at the back focal length: all of the stop's rays get through at every
-// field angle of the file and at 80 degrees.
+// Results of `info lens` in the image plane at the back focal length: all rays of the stop pass at every field angle of
+// the file and at 80 degrees.
 TEST(WideAngleLens, ImagesItsWholeField) {
   Lens lens = wide_lens();
   lens.image_distance.reset();

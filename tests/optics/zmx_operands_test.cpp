@@ -19,7 +19,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-/// The singlet with a line more in its second surface.
+/// Returns the singlet with an additional line in its second surface.
 std::string with_operand(std::string const& line) {
   return changed(zmx, "  CURV -0.02", "  " + line + "\n  CURV -0.02");
 }
@@ -32,7 +32,7 @@ std::vector<std::string> notes_of(std::string const& name, std::string const& te
   return read_prescription(file_of(name, text)).warnings;
 }
 
-/// What becomes of a ray parallel to the axis at a height, past a stop that is wide open.
+/// Traces a ray parallel to the axis at a height through a lens whose stop is wide open.
 RayStatus fate(Lens lens, double height_mm) {
   lens.surfaces[0] = lens.surfaces[0].visit([](auto opened) -> LensSurface<double> {
     opened.semi_diameter = 8 * unit::millimetre;
@@ -42,8 +42,8 @@ RayStatus fate(Lens lens, double height_mm) {
   return carry(lens, ray);
 }
 
-// A circular aperture is an edge, whatever the surface's own width is; a disc in its middle takes what meets it. Rays
-// of the singlet at 2, 4 and 6 mm meet its second face a tenth lower.
+// A circular aperture is an edge, whatever the semi-diameter of the surface; an obscuring disc in the middle blocks the
+// rays that meet it. Rays of the singlet at 2, 4 and 6 mm meet its second face a tenth lower.
 TEST(ZmxOperands, CircularAperturesAndObscurationsAreTraced) {
   Lens const bare = zmx_lens("bare.zmx", zmx);
   for (double const height : {1.0, 4.0, 6.0}) EXPECT_EQ(fate(bare, height), RayStatus::alive);
@@ -59,7 +59,7 @@ TEST(ZmxOperands, CircularAperturesAndObscurationsAreTraced) {
   EXPECT_EQ(fate(zmx_lens("flap.zmx", with_operand("FLAP 0 5.0 0")), 6), RayStatus::vignetted);
 }
 
-// The same in CODE V and in TOML.
+// Like above, in CODE V and in TOML.
 TEST(ZmxOperands, OtherFormatsHaveTheSameObscuration) {
   auto const of = [](char const* name, std::string const& text) {
     return build_lens(read_prescription(file_of(name, text)), GlassCatalogue::shipped(), spectral_line::d);
@@ -69,27 +69,27 @@ TEST(ZmxOperands, OtherFormatsHaveTheSameObscuration) {
             RayStatus::vignetted);
 }
 
-// An aperture on the stop closes what the system's aperture would open further: a radius of 2 mm, not 3.
+// An aperture on the stop limits the system aperture: the radius is 2 mm, not 3 mm.
 TEST(ZmxOperands, AnApertureOnTheStopBoundsIt) {
   Lens const lens = zmx_lens("stopped.zmx", changed(zmx, "  STOP\n", "  STOP\n  CLAP 0 2.0 0\n"));
   EXPECT_NEAR(lens.stop_radius, 2e-3, 1e-15);
   EXPECT_NEAR(paraxial_lens(lens).entrance.diameter, 4e-3, 1e-15);
 }
 
-// A semi-diameter that the design program filled in by itself (flag 0) is for drawings and takes no light; one that is
-// given (flag 1) is an edge, and so is an aperture.
+// A semi-diameter computed by the design program (flag 0) is for drawings and does not vignette; a given one (flag 1)
+// is an edge, and so is an aperture.
 TEST(ZmxOperands, AnAutomaticSemiDiameterIsNoEdge) {
   std::string const given = changed(zmx, "DISZ 47.0\n  DIAM 8.0 1", "DISZ 47.0\n  DIAM 3.0 1");
   std::string const automatic = changed(zmx, "DISZ 47.0\n  DIAM 8.0 1", "DISZ 47.0\n  DIAM 3.0 0");
   EXPECT_EQ(fate(zmx_lens("given.zmx", given), 4), RayStatus::vignetted);
   Lens const lens = zmx_lens("automatic.zmx", automatic);
   EXPECT_EQ(fate(lens, 4), RayStatus::alive);
-  EXPECT_EQ(lens.prescription.surfaces[1].semi_diameter, 3e-3);  // as it is drawn
+  EXPECT_EQ(lens.prescription.surfaces[1].semi_diameter, 3e-3);  // as in the drawing
   EXPECT_EQ(fate(zmx_lens("clap.zmx", changed(automatic, "  DIAM 3.0", "  CLAP 0 3.0 0\n  DIAM 3.0")), 4),
             RayStatus::vignetted);
 }
 
-// Shapes that are not traced are passed over with a warning that names line and operand; what is no shape is refused.
+// Shapes that are not traced are ignored with a warning that contains line and operand; impossible shapes are refused.
 TEST(ZmxOperands, WhatBlocksLightOtherwiseIsNotedByName) {
   for (char const* const line : {"SPID 0.5 3 0", "UDAP 0 0", "UDOB 0 0", "OBSC 1 2 0"}) {
     std::string const key = std::string(line).substr(0, 4);
@@ -101,8 +101,8 @@ TEST(ZmxOperands, WhatBlocksLightOtherwiseIsNotedByName) {
   EXPECT_THAT(refusal("flat.zmx", with_operand("SQAP 3 0 0")), AllOf(HasSubstr("flat.zmx:24"), HasSubstr("no area")));
 }
 
-// A ring that reaches the surface's edge leaves the circle within it; a disc as large as the surface leaves what is
-// outside.
+// A ring-shaped obscuration that extends to the edge of the surface leaves a circular aperture; if a disc is as large
+// as the surface, light passes outside.
 TEST(ZmxOperands, ObscurationsThatReachTheEdgeAreTraced) {
   Lens const circle = zmx_lens("circle.zmx", with_operand("OBSC 3 9 0"));
   EXPECT_EQ(fate(circle, 2), RayStatus::alive);
@@ -110,14 +110,14 @@ TEST(ZmxOperands, ObscurationsThatReachTheEdgeAreTraced) {
   EXPECT_THAT(notes_of("large.zmx", with_operand("OBSC 0 9 0")), ElementsAre(HasSubstr("light passes outside")));
 }
 
-// What changes less than where rays go is said, and what nobody knows.
+// Operands that only change the amount of light cause a warning, and so do unknown ones.
 TEST(ZmxOperands, WhatIsPassedOverIsNoted) {
   EXPECT_THAT(notes_of("quiet.zmx", zmx), IsEmpty());
   EXPECT_THAT(notes_of("quiet.zmx", changed(zmx, "PWAV 2", "PWAV 2\nVCYN 0 0 0")), IsEmpty());
   EXPECT_THAT(notes_of("vignetting.zmx", changed(zmx, "PWAV 2", "PWAV 2\nVCYN 0 0.2 0")),
               ElementsAre(HasSubstr("vignetting factors")));
   EXPECT_THAT(notes_of("coat.zmx", with_operand("COAT AR")), ElementsAre(HasSubstr("coatings")));
-  EXPECT_THAT(notes_of("new.zmx", with_operand("QQQQ 1 2")), ElementsAre(HasSubstr("QQQQ is not known")));
+  EXPECT_THAT(notes_of("new.zmx", with_operand("QQQQ 1 2")), ElementsAre(HasSubstr("QQQQ is unknown")));
   EXPECT_THAT(zmx_lens("kept.zmx", with_operand("QQQQ 1 2")).warnings, Contains(HasSubstr("QQQQ")));
   EXPECT_THAT(notes_of("hot.zmx", changed(zmx, "PWAV 2", "PWAV 2\nENVD 40 1 1")), ElementsAre(HasSubstr("ENVD")));
   EXPECT_THAT(notes_of("cold.zmx", changed(zmx, "PWAV 2", "PWAV 2\nENVD 20 1 1")), IsEmpty());
@@ -125,8 +125,8 @@ TEST(ZmxOperands, WhatIsPassedOverIsNoted) {
               ElementsAre(HasSubstr("coatings")));
 }
 
-// FNUM and OBNA have two meanings each. The working f-number of a lens whose object stands s before it is v / D for its
-// image at v: 1/(2 u') of the marginal ray; a cone's half angle is the arcsine of a numerical aperture.
+// FNUM and OBNA have two meanings each. The working f-number of a lens with an object at the distance s is v / D for an
+// image at v: 1/(2 u') of the marginal ray; the half angle of a cone is the arcsine of the numerical aperture.
 TEST(ZmxOperands, AperturesMeanWhatTheirSecondValueSays) {
   std::string const near = changed(zmx, "DISZ INFINITY", "DISZ 150.0");
   Lens const lens = zmx_lens("working.zmx", changed(near, "ENPD 6.0", "FNUM 20 1"));
@@ -140,8 +140,8 @@ TEST(ZmxOperands, AperturesMeanWhatTheirSecondValueSays) {
   EXPECT_NEAR(cone.stop_radius / na.stop_radius, 1, 1e-13);
 }
 
-// Model glasses: without dispersion where Vd is 0; nothing else but plausible ones. Glass that runs against the light
-// is none; behind a mirror it is.
+// Model glasses have no dispersion if Vd is 0; otherwise, only plausible values are accepted. A glass thickness against
+// the direction of light is refused, except behind a mirror.
 TEST(ZmxOperands, ModelGlassesAndNegativeThicknessesAreChecked) {
   auto const model = [](char const* text) {
     return changed(zmx, "GLAS N-BK7 0 0 1.5 40", std::string("GLAS ") + text);
@@ -157,7 +157,7 @@ TEST(ZmxOperands, ModelGlassesAndNegativeThicknessesAreChecked) {
               AllOf(HasSubstr("back.zmx:15"), HasSubstr("against the light")));
 }
 
-// The ray along the axis is to get through; where it ends, its surface and cause are named.
+// The ray along the axis must pass the lens; otherwise, the surface and the cause are reported.
 TEST(ZmxOperands, AnAxialRayThatIsLostNamesItsSurface) {
   std::string const turned = changed(toml, "thickness_mm = 0.0", "thickness_mm = 0.0\ntilt_deg = [89, 0, 0]");
   EXPECT_THAT(refusal("tilted.toml", turned), AllOf(HasSubstr("tilted.toml:9"), HasSubstr("surface 2")));

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double pupil_radius = 5e-3, pupil_z = 0.75, target_z = -0.25;
 
-/// Bundle towards a pupil of 5 mm radius, 1 m from the target.
+/// Returns a bundle of rays towards a pupil of 5 mm radius, 1 m from the target.
 AimedBundle<double> towards_pupil(PupilSampling sampling, double radius = pupil_radius) {
   AimedBundle<double> aimed{
       {0, 0, pupil_z}, {radius, 0, 0}, {0, radius, 0}, {}, {.seed = 11, .sampling = sampling}, {}, {}};
@@ -27,13 +27,13 @@ LambertSources<double> source_at(Vec2d const& centre, double half_size, SourceSh
   return {{&centre, nullptr, 1, target_z, half_size, shape}};
 }
 
-/// Intersection of a ray with the plane of the pupil [m].
+/// Returns the intersection of a ray with the plane of the pupil [m].
 Vec2d at_pupil(Ray<double> const& ray) {
   double const way = (pupil_z - ray.position.z) / ray.direction.z;
   return {ray.position.x + way * ray.direction.x, ray.position.y + way * ray.direction.y};
 }
 
-/// Index of the cell that contains a point of a disc, of rings x sectors cells of equal area.
+/// Returns the index of the cell that contains a point of a disc, for rings x sectors cells of equal area.
 int equal_area_cell(Vec2d p, double radius, int rings, int sectors) {
   double const r2 = dot(p, p) / (radius * radius);
   double turn = std::atan2(p.y, p.x) / (2 * pi);
@@ -42,8 +42,8 @@ int equal_area_cell(Vec2d p, double radius, int rings, int sectors) {
          std::min(static_cast<int>(turn * sectors), sectors - 1);
 }
 
-// Cells of equal area of the disc are elementary intervals of (radius^2, angle): a net fills them all equally. So do
-// pairs of opposite points, since half a turn maps every cell to another one.
+// Cells of equal area of the disc are elementary intervals of (radius^2, angle), so a net fills all of them equally.
+// Pairs of opposite points do so too, since a rotation by 180 degrees maps every cell to another one.
 TEST(AimedSources, SobolPointsFillCellsOfEqualAreaEqually) {
   Vec2d const centre{1e-3, -2e-3};
   LambertSources<double> const source = source_at(centre, 1e-4);
@@ -62,9 +62,9 @@ TEST(AimedSources, SobolPointsFillCellsOfEqualAreaEqually) {
   for (auto const& [cell, count] : disc) EXPECT_EQ(count, 64) << cell;
 }
 
-// Uniform disc of radius R: <x> = <y> = <x y> = 0, <x^2> = <y^2> = R^2/4, <x^4> = R^4/8; variances of these averages
-// per point are R^2/4, R^4/24, R^4/8 - R^4/16 and R^8 (7/128 - 1/64) (moments of cos^2p and r^2p), five standard errors
-// allowed. Rays 2 k and 2 k + 1 share their pupil point, so that only every other one is counted.
+// For a uniform disc of radius R: <x> = <y> = <x y> = 0, <x^2> = <y^2> = R^2/4, <x^4> = R^4/8. The variances of these
+// averages per point are R^2/4, R^4/24, R^4/8 - R^4/16 and R^8 (7/128 - 1/64) (moments of cos^2p and r^2p). Tolerance:
+// five standard errors. Rays 2 k and 2 k + 1 share their pupil point, so only every second ray is counted.
 TEST(AimedSources, RandomPupilPointsHaveTheMomentsOfADisc) {
   Vec2d const centre{};
   LambertSources<double> const source = source_at(centre, 0);
@@ -85,8 +85,9 @@ TEST(AimedSources, RandomPupilPointsHaveTheMomentsOfADisc) {
   EXPECT_NEAR(x4, 0.125, 5 * std::sqrt((7.0 / 128 - 1.0 / 64) / n));
 }
 
-// Radiance L, area A of the pupil at the distance D along the axis: a Lambertian source sends L A cos^4 / D^2 per area,
-// cos^4 from its own cosine, the pupil's, and the squared distance. Some ten roundings of 1.1e-16.
+// A Lambertian source of radiance L emits the flux L A cos^4 / D^2 per unit area into a pupil of area A at the distance
+// D along the axis. The factor cos^4 is the product of the cosine at the source, the cosine at the pupil, and cos^2
+// from the squared distance. Tolerance: about ten rounding errors of 1.1e-16.
 TEST(AimedSources, RaysRunToTheirPupilPointWithWeightRadianceCosFour) {
   Vec2d const centres[] = {{0, 0}, {0.02, -0.03}};
   double const radiance[] = {1.0, 0.25};
@@ -115,7 +116,7 @@ TEST(AimedSources, ChiefRaysAllCrossThePupilsCentre) {
   }
 }
 
-// Eight by eight squares in a square source are elementary intervals of its pair of dimensions.
+// Eight by eight squares of a square source are elementary intervals of its pair of dimensions.
 TEST(AimedSources, SquareSourcesAreFilledEvenly) {
   Vec2d const centre{};
   LambertSources<double> const source = source_at(centre, 1.0, SourceShape::square);

@@ -18,8 +18,9 @@ Rendering rendered_with_images(Scene& scene) {
 
 double all_light(Image<double> const& image) { return std::accumulate(image.begin(), image.end(), 0.0); }
 
-// An object-space telecentric lens, placed by its first vertex, before a gas of uniform gradient: light is turned by
-// eps = K L g / n0, and dots move by M Z_D eps / p, M that of the lens at their distance, whatever lies between.
+// An object-space telecentric lens, positioned by its first vertex, in front of a uniform gradient: light is deflected
+// by eps = K L g / n0, and dots are displaced by M Z_D eps / p, with M of the lens at their distance, whatever is
+// between.
 TEST(TelecentricRendering, DisplacesDotsByTheLensMagnification) {
   gladstone::Setup setup =
       read_setup_text("[camera]\npixels = [128, 128]\n[lens]\nmodel = \"prescription\"\nfile = \"" +
@@ -40,30 +41,31 @@ TEST(TelecentricRendering, DisplacesDotsByTheLensMagnification) {
   for (std::size_t dot = 0; dot < result.truth.size(); ++dot) {
     if (!scene.in_view(scene.dots.centre[dot])) continue;
     ++seen;
-    // Eq. 9 is that formula but for the lens' distortion: 1.14 % at 22 mm, and so 0.05 % at 4.5 mm, the corner here;
-    // the magnification along the radius departs by three times that
+    // Eq. 9 equals this formula up to the distortion of the lens: 1.14 % at 22 mm, and hence 0.05 % at 4.5 mm, the
+    // corner here; the radial magnification deviates by three times as much
     Vec2d const formula{-20 * scale, 10 * scale}, eq9 = result.truth.eq9_px[dot];
     EXPECT_NEAR(length(eq9 - formula) / length(formula), 0, 1.6e-3) << dot;
-    // rays give it within their own errors, which 8 scramblings tell: one of 200 Student's t of 7 degrees of freedom
-    // exceeds 6 by a chance of 10 %
+    // The ray result agrees within its own errors, estimated from 8 scramblings: of 200 values of Student's t with 7
+    // degrees of freedom, one exceeds 6 with a probability of 10 %.
     Vec2d const off = result.truth.displacement_px[dot] - eq9, error = result.truth.displacement_error_px[dot];
     EXPECT_LT(std::abs(off.x), 6 * error.x + 1e-3 * length(formula)) << dot;
     EXPECT_LT(std::abs(off.y), 6 * error.y + 1e-3 * length(formula)) << dot;
     squares += (off.x * off.x + off.y * off.y);
     errors += (error.x * error.x + error.y * error.y);
   }
-  // and on the average just so, 300 squares telling their mean to a tenth, but for the magnification along the radius
+  // On average, the deviations equal the stated errors (300 squares determine their mean to a tenth), apart from the
+  // deviation of the radial magnification.
   double const departing = 1.6e-3 * std::hypot(20, 10) * scale;
   EXPECT_LT(squares, 1.5 * errors + 2 * static_cast<double>(seen) * departing * departing);
   EXPECT_GT(seen, 20u);
   EXPECT_GT(all_light(result.light.reference), 0);
 }
 
-// Lenslets before the sensor sort light and take none: the same rays of dots amid the picture light as many pixels'
-// worth, but elsewhere.
+// Lenslets in front of the sensor redistribute light but block none: the same rays of dots inside the image correspond
+// to the light of as many pixels, at other positions.
 TEST(PlenopticRendering, SortsAllTheLightOfThePicture) {
   gladstone::Setup setup = table1_setup(96);
-  setup.camera.tilt = {1e-9, 0};  // off the bench, so that both are the same general camera
+  setup.camera.tilt = {1e-9, 0};  // a tilt, so that both cameras use the general model
   setup.target.dots_per_32px_window = 1;
   auto const picture = [](gladstone::Setup const& of) {
     Scene scene = build_scene(of);
@@ -77,8 +79,8 @@ TEST(PlenopticRendering, SortsAllTheLightOfThePicture) {
   for (LensletLayout const layout : {LensletLayout::square, LensletLayout::hexagonal}) {
     setup.lenslets = LensletSetup{80e-6, 900e-6, 900e-6, layout};
     Rendering const sorted = picture(setup);
-    // light is counted in fully lit pixels, which see (1 + d / z_i)^2 less of the target through the lens alone, d from
-    // lenslets to sensor; spots of 5.5 standard deviations leave out 1e-7 of the light
+    // Light is in units of fully lit pixels, which see (1 + d / z_i)^2 less of the target without lenslets, with d the
+    // distance from the lenslets to the sensor; PSFs cut at 5.5 standard deviations lose 1e-7 of the light.
     double const larger = std::pow(1 + 900e-6 / setup.imaging().image_distance, 2);
     EXPECT_NEAR(all_light(sorted.light.reference) / all_light(plain.light.reference), larger, 1e-6);
     double apart = 0;
@@ -88,7 +90,7 @@ TEST(PlenopticRendering, SortsAllTheLightOfThePicture) {
     EXPECT_GT(apart, 0.5 * all_light(plain.light.reference));
     for (std::size_t dot = 0; dot < 3; ++dot) {
       EXPECT_EQ(sorted.truth.rays[dot], plain.truth.rays[dot]);
-      EXPECT_EQ(sorted.truth.displacement_px[dot], Vec2d{}) << "without a medium nothing moves";
+      EXPECT_EQ(sorted.truth.displacement_px[dot], Vec2d{}) << "no displacement without a medium";
     }
   }
 }

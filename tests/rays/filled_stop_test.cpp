@@ -9,7 +9,7 @@
 namespace gladstone {
 namespace {
 
-/// A camera 750 mm before Z = 0, its stop sharp. @param lens of data/lenses; empty: an ideal one
+/// Returns a camera 750 mm in front of Z = 0 with a sharp stop. @param lens  of data/lenses; empty: an ideal one
 Camera camera_with(std::string const& lens, double f_number) {
   auto setup = lens.empty() ? table1_setup(96) : real_lens_setup(lens, 96, f_number);
   setup.z_d = 0;
@@ -28,7 +28,7 @@ Filled filled(Camera const& camera, Vec3d point) {
   return result;
 }
 
-/// A point that shines alike into all directions.
+/// Point source with equal intensity in all directions.
 struct Point {
   Vec3d at;
   Vec3d point(std::uint64_t, Vec2d) const { return at; }
@@ -36,7 +36,7 @@ struct Point {
   double intensity(std::uint64_t, Vec3d) const { return 1; }
 };
 
-// The stop of an ideal lens lies in the plane that rays are aimed at: 105 mm at f/4, as wide from everywhere.
+// The stop of an ideal lens is in the aim plane: for 105 mm at f/4, its size is the same as seen from anywhere.
 TEST(FillStop, OfAnIdealLensIsTheStop) {
   Camera const camera = camera_with("", 4);
   for (Vec3d const point : {Vec3d{}, Vec3d{30e-3, -10e-3, 20e-3}}) {
@@ -50,7 +50,7 @@ TEST(FillStop, OfAnIdealLensIsTheStop) {
   }
 }
 
-// The derivative of the map, by differences of 1e-5: to 1e-9 of the area.
+// The derivative of the map, compared with differences of 1e-5: to 1e-9 of the area.
 TEST(FillStop, StretchesAsItMaps) {
   AimMap map;
   map.centre = {1, 2};
@@ -66,11 +66,10 @@ TEST(FillStop, StretchesAsItMaps) {
   }
 }
 
-// Light of a point that passes a double Gauss at full aperture, off its axis: by rays that fill the stop through the
-// map, and by a fine grid of rays over all of the aim plane that the stop is seen in. A rim crosses some 3000 of the
-// grid's 1000^2 cells at random places, which leaves a third of sqrt(3000) cells of 780000: 2e-5. The map is the
-// stop's to 6e-5 at worst, and better; 64^2 rays of its own, at the middles of equal parts of radius squared and angle,
-// add less.
+// Light of a point off the axis that passes a double Gauss at full aperture, by rays that fill the stop through the
+// map, and by a fine grid of rays over the whole entrance pupil. The rim crosses about 3000 of the grid's 1000^2 cells
+// at random positions, which causes an error of a third of sqrt(3000) cells of 780000: 2e-5. The error of the map is at
+// most 6e-5; that of its 64^2 rays, at the centres of equal parts of radius squared and angle, is smaller.
 TEST(FillStop, PassesTheLightThatARealLensTakes) {
   Camera const camera = camera_with("double_gauss", 2.8);
   for (Vec3d const point : {Vec3d{}, Vec3d{25e-3, 15e-3, 8e-3}}) {

@@ -10,7 +10,7 @@
 namespace gladstone {
 namespace {
 
-/// Light of hits gathered on a grid, and laid down spot by spot.
+/// Light of the same hits, accumulated on a grid and as individual PSFs.
 struct Both {
   Image<double> grid, spots;
 };
@@ -40,9 +40,9 @@ double largest_difference(Both const& both) {
   return largest;
 }
 
-// One hit is the worst case: the spline through what a pixel sees is off by h^4 / 384 of its fourth derivative, 1.38 /
-// sigma^4 at most for a pixel far wider than the spot, whose edges do not help each other: 4.5e-5 with three nodes a
-// sigma.
+// A single hit is the worst case: the error of the spline is h^4 / 384 of the fourth derivative of a pixel's light,
+// which is at most 1.38 / sigma^4 for a pixel much wider than the PSF, whose two edges do not compensate: 4.5e-5 with
+// three nodes per sigma.
 TEST(HitGrid, LaysASingleRaysSpotDownToAFifthOfALevelOfTwelveBits) {
   for (double const sigma : {0.15, 0.275, 0.5, 0.9, 2.0}) {
     for (Vec2d const at : {Vec2d{20, 20}, {20.5, 20.5}, {19.53, 20.31}, {20.017, 19.999}}) {
@@ -51,7 +51,7 @@ TEST(HitGrid, LaysASingleRaysSpotDownToAFifthOfALevelOfTwelveBits) {
   }
 }
 
-// Rays spread over a dot's image: their departures have either sign and cancel.
+// For rays spread over a dot's image, the errors have either sign and cancel.
 TEST(HitGrid, LaysADotDownToATenthOfALevel) {
   std::vector<Vec2d> hits;
   for (std::uint64_t i = 0; i < 2000; ++i) {
@@ -59,10 +59,11 @@ TEST(HitGrid, LaysADotDownToATenthOfALevel) {
     double const turn = 6.283185307179586 * to_unit(random_bits(1, RandomStream::pupil, i, 1));
     hits.push_back({19.3 + r * std::cos(turn), 20.8 + r * std::sin(turn)});
   }
-  EXPECT_LT(largest_difference(lay_down(0.275, hits)), 2.4e-5 * 0.14);  // of the brightest pixel, 0.14 of all light
+  // relative to the brightest pixel, which has 0.14 of all light
+  EXPECT_LT(largest_difference(lay_down(0.275, hits)), 2.4e-5 * 0.14);
 }
 
-// Hits that a grid does not hold together, beyond the picture, or nowhere, and all light is there.
+// Hits that exceed the capacity of the grid, are outside the image, or are invalid: all light is conserved.
 TEST(HitGrid, MovesOnWhereRaysSpread) {
   Both const both = lay_down(0.4, {{3, 4}, {35, 33}, {3.2, 30}, {20, 20}, {-300, 5}, {1e300, 4}, {std::nan(""), 2}});
   EXPECT_LT(largest_difference(both), 5e-5 / 7);
@@ -71,7 +72,7 @@ TEST(HitGrid, MovesOnWhereRaysSpread) {
   EXPECT_NEAR(sum, 4.0 / 7, 1e-6);
 }
 
-// Images wider than all tiles together: some take others' places in turn.
+// Images wider than all tiles together: tiles are reused for other positions.
 TEST(HitGrid, LaysWideDotsDownInTiles) {
   for (double const radius : {14.0, 80.0, 140.0}) {
     std::vector<Vec2d> hits;
@@ -81,7 +82,7 @@ TEST(HitGrid, LaysWideDotsDownInTiles) {
       hits.push_back({150 + r * std::cos(turn), 150 + r * std::sin(turn)});
     }
     Both const both = lay_down(0.5, hits, 300);
-    // 5e-5 at worst of each ray that lights a pixel: those of the nine pixels about it
+    // at most 5e-5 of each ray that illuminates a pixel: those of the nine pixels around it
     EXPECT_LT(largest_difference(both), 5e-5 * 9 / (3.14 * radius * radius)) << radius;
     double sum = 0;
     for (double const light : both.grid) sum += light;

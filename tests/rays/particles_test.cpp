@@ -21,7 +21,7 @@ constexpr double mm = 1e-3;
 /// White spheres of 1 um in a volume 1 mm deep, in a sheet of 30 mm.
 Setup deep_sheet() { return piv_setup(30 * mm, 1 * mm); }
 
-/// A scene with particles at these places, at either pulse.
+/// Returns a scene with particles at these positions, for each pulse.
 Scene scene_with_particles(Setup const& setup, std::vector<Vec3d> const& first, std::vector<Vec3d> const& second,
                            std::uint64_t rays) {
   Scene scene = build_scene(setup);
@@ -46,14 +46,14 @@ Rendering render(Scene& scene, ParticleLight light = ParticleLight::scattered, R
 
 double sum_of(Image<double> const& image) { return std::accumulate(image.begin(), image.end(), 0.0); }
 
-/// Image distance over that of the particle, per pixel [px/m].
+/// Image distance over the distance of the particle, per pixel pitch [px/m].
 double scale_at(Scene const& scene, double z) {
   return scene.imaging.image_distance / (scene.setup.z_a - z) / scene.setup.camera.pixel_pitch;
 }
 
-// Photons = fluence / (h nu) times d^2 / (6 pi) at 90 degrees times the solid angle of the lens, 2 pi (1 - cos): the
-// cross-section varies over the cone of +-0.5 degrees by odd powers, which 32 pairs of rays to opposite places cancel,
-// and by a square below 1e-4.
+// Photons = fluence / (h nu) times d^2 / (6 pi) at 90 degrees times the solid angle of the lens, 2 pi (1 - cos). Over
+// the cone of +-0.5 degrees, the cross-section varies by odd powers, which cancel for 32 pairs of opposite rays, and by
+// a square below 1e-4.
 TEST(Particles, SendTheirPhotonsIntoTheLens) {
   Scene scene = scene_with_particles(deep_sheet(), {{0, 0, 0}}, {{0, 0, 0}}, 64);
   LaserSetup const& laser = scene.setup.piv->laser;
@@ -64,13 +64,14 @@ TEST(Particles, SendTheirPhotonsIntoTheLens) {
   Rendering const rendering = render(scene, ParticleLight::scattered, RenderImages::yes);
   EXPECT_NEAR(rendering.truth.flux[0].x, expected, 2e-4 * expected);
   EXPECT_NEAR(rendering.truth.flux[0].y, expected, 2e-4 * expected);
-  // all of it is in the picture, but for the tails that a spot is cut off at
+  // all of it is in the image, except for the tails at which the PSF is cut off
   EXPECT_NEAR(sum_of(rendering.light.reference) * scene.photon_unit, rendering.truth.flux[0].x, 1e-5 * expected);
 }
 
-// 50 mJ in a Gaussian sheet 40 mm high and 1 mm thick leave 1994.71 J/m^2 in its middle. A droplet of 1 um and m = 1.45
-// in a vacuum has |S1|^2 = 4.933372 and |S2|^2 = 8.263150 at 90 degrees, over k^2; the lens takes 2.40528e-4 sr: 45443
-// photons with the field across the plane of scattering, 27267 electrons at 0.6. S1 and S2 vary over the cone: 1 %.
+// 50 mJ in a Gaussian sheet of 40 mm by 1 mm result in 1994.71 J/m^2 in its middle. For a droplet of 1 um and m = 1.45
+// in vacuum, |S1|^2 = 4.933372 and |S2|^2 = 8.263150 at 90 degrees, over k^2; the solid angle of the lens is 2.40528e-4
+// sr. With the field perpendicular to the scattering plane, this is 45443 photons, and 27267 electrons at an efficiency
+// of 0.6. S1 and S2 vary over the cone: 1 %.
 TEST(Particles, SendThePhotonsOfMieScattering) {
   gladstone::Setup setup = deep_sheet();
   setup.medium.ambient_density = 0;
@@ -86,8 +87,8 @@ TEST(Particles, SendThePhotonsOfMieScattering) {
   }
 }
 
-// Equal sources in a plane: the lens' solid angle falls as cos^3 of the field angle, its area seen at cos over a square
-// of the way. The cosine varies over the lens by 1e-3 of itself, oddly.
+// For equal sources in a plane, the solid angle of the lens is proportional to cos^3 of the field angle: its projected
+// area over the squared distance. Over the lens, the cosine varies by a relative 1e-3, as an odd function.
 TEST(Particles, FallOffAsCosCubed) {
   Vec3d const off{100 * mm, 50 * mm, 0};
   Scene scene = scene_with_particles(deep_sheet(), {{}, off}, {{}, off}, 64);
@@ -97,12 +98,12 @@ TEST(Particles, FallOffAsCosCubed) {
   EXPECT_NEAR(truth.flux[1].x / truth.flux[0].x, std::pow(cosine, 3), 2e-4);
 }
 
-// All light is in the picture, of white spheres and of equal sources alike, but for the tails that a spot is cut off
-// at: light of 1 is the brightest particle's, which the fixed point of pictures holds 5e5 times. Equal sources send
-// 1e12 times what a sphere of 1 um scatters; in units of that the sums would wrap around.
+// All light is in the image, for white spheres and for equal sources, except for the tails at which the PSF is cut off.
+// A light of 1 is that of the brightest particle, and the fixed-point images hold 5e5 times as much. Equal sources emit
+// 1e12 times the light scattered by a sphere of 1 um; in the unit of the latter, the sums would overflow.
 TEST(Particles, LightThePictureByTheirFlux) {
   std::vector<Vec3d> const places{{1 * mm, 2 * mm, 0}, {-2 * mm, 1 * mm, 3 * mm}, {2.5 * mm, -1 * mm, -2 * mm}};
-  for (std::uint64_t const rays : {64u, 300u}) {  // spot by spot, and gathered
+  for (std::uint64_t const rays : {64u, 300u}) {  // both methods: PSF by PSF, and by a grid
     Scene scene = scene_with_particles(deep_sheet(), places, places, rays);
     for (ParticleLight const light : {ParticleLight::scattered, ParticleLight::equal}) {
       Rendering const rendering = render(scene, light, RenderImages::yes);
@@ -113,15 +114,15 @@ TEST(Particles, LightThePictureByTheirFlux) {
       }
       double const unit = photon_unit(scene, scene.particles, light);
       if (light == ParticleLight::equal) {
-        EXPECT_NEAR(unit, most, 1e-3 * most);  // cos over the lens' cone
+        EXPECT_NEAR(unit, most, 1e-3 * most);  // cosine over the lens' cone
       }
       EXPECT_NEAR(sum_of(rendering.light.reference) * unit, flux, 1e-5 * flux);
     }
   }
 }
 
-// Chief rays of a pinhole: column and row are z_i / p times X and -Y over the distance, for every place, out of the
-// sheet too.
+// Chief rays of a pinhole: column and row are z_i / p times X and -Y over the distance, at any position, also outside
+// the sheet.
 TEST(Particles, AreProjectedByAPinhole) {
   gladstone::Setup setup = deep_sheet();
   setup.lens.f_number = std::numeric_limits<double>::infinity();
@@ -139,7 +140,7 @@ TEST(Particles, AreProjectedByAPinhole) {
   }
 }
 
-// A particle out of the sheet sends no light; one that leaves it is seen once, and its displacement is not known.
+// A particle outside the sheet sends no light; one that leaves it is visible once, and its displacement is NaN.
 TEST(Particles, BesideTheSheetAreNotSeen) {
   gladstone::Setup setup = deep_sheet();
   setup.piv->laser.thickness = 2 * mm;
@@ -155,11 +156,11 @@ TEST(Particles, BesideTheSheetAreNotSeen) {
   EXPECT_EQ(truth.rays[1][0], 0);
 }
 
-// Elsinga, van Oudheusden & Scarano (2005): a particle inside a slab of linear index gradient g, at a way l before its
-// face, appears at xi = -g l^2 / 2 [m] (a ray bent by g l, as seen from its middle): the position error. Where it moves
-// along the line of sight xi changes with it: the velocity error (v . grad) xi. Across it there is none. Angles
-// squared, (g l)^2 = 1e-5 and 8e-5 of the cone, are what this leaves out, and 512 rays add little: the cone is turned
-// as a whole, and fills the stop.
+// Elsinga, van Oudheusden & Scarano (2005): a particle inside a slab with a linear index gradient g, at a distance l
+// from its face, appears at xi = -g l^2 / 2 [m] (a ray deflected by g l, seen from its middle): the position error. If
+// the particle moves along the line of sight, xi changes: the velocity error (v . grad) xi. If it moves across, there
+// is none. The neglected terms are angles squared, (g l)^2 = 1e-5, and 8e-5 of the cone. 512 rays add little, since the
+// cone is deflected as a whole and fills the stop.
 TEST(Particles, InAnIndexGradientAreDisplaced) {
   gladstone::Setup setup = deep_sheet();
   setup.medium.thickness = 40 * mm;
@@ -183,9 +184,9 @@ TEST(Particles, InAnIndexGradientAreDisplaced) {
   EXPECT_LT(xi_px(first[0]), -0.7);
 }
 
-// What stands still seems to move where the medium changes between the pulses: by xi_2 - xi_1, Elsinga's d xi / dt,
-// with xi = -g l^2 / 2 as above. Light and rays are those of either pulse. 512 rays' displacements are wrong by far
-// less than 2e-3 of xi, and by as much as is said, give or take its own scatter: a third at six components' worth.
+// A particle at rest appears to move if the medium changes between the pulses: by xi_2 - xi_1, Elsinga's d xi / dt,
+// with xi = -g l^2 / 2 as above. Light and rays are those of each pulse. The errors of the displacements by 512 rays
+// are far below 2e-3 of xi, and equal the stated ones within their own scatter: a third for six components.
 TEST(Particles, SeemToMoveWhereTheMediumChanges) {
   gladstone::Setup setup = deep_sheet();
   setup.medium.thickness = 40 * mm;
@@ -216,9 +217,9 @@ TEST(Particles, SeemToMoveWhereTheMediumChanges) {
   EXPECT_GT(seen.truth.displacement_px[0].x, 1);
 }
 
-// A point z before the plane in focus leaves a uniform disc of diameter M D_a |z| / (Z - z) (exact for a thin lens):
-// the second moment of a disc is a sixteenth of its diameter squared along either axis; 4096 rays
-// are good to a part in a thousand.
+// The image of a point at a distance z in front of the plane in focus is a uniform disc of diameter M D_a |z| / (Z - z)
+// (exact for a thin lens). The second moment of a disc along either axis is a sixteenth of its squared diameter; the
+// relative error with 4096 rays is 1e-3.
 TEST(Particles, OutOfFocusLeaveADisc) {
   double const z = 10 * mm;
   gladstone::Setup setup = deep_sheet();
@@ -230,7 +231,7 @@ TEST(Particles, OutOfFocusLeaveADisc) {
   EXPECT_LT(truth.displacement_std_px[1].x, 1e-6);
 }
 
-/// Variance of an image's light along a row, about its own middle [px^2].
+/// Returns the variance of an image's light along a row, about its centroid [px^2].
 double variance_along_row(Image<double> const& image) {
   double sum = 0, first = 0, second = 0;
   for (int row = 0; row < image.rows(); ++row) {
@@ -243,12 +244,13 @@ double variance_along_row(Image<double> const& image) {
   return second / sum - first / sum * (first / sum);
 }
 
-// d^2 = d_diff^2 + d_blur^2 in diameters of four standard deviations (Olsen & Adrian 2000), exact for variances: an
-// image is the disc of confusion, of diameter M D |z| / (Z - z), smeared by the spot and by the pixel, whose variance
-// is a twelfth. 4096 rays know the disc's to a part in a thousand; the spot is cut off where 4e-8 of it are left.
+// d^2 = d_diff^2 + d_blur^2 for diameters of four standard deviations (Olsen & Adrian 2000), exact for variances: the
+// image is the circle of confusion, of diameter M D |z| / (Z - z), convolved with the PSF and the pixel, whose variance
+// is a twelfth. The relative error of the circle's variance with 4096 rays is 1e-3; the PSF is cut off where 4e-8 of
+// its light remain.
 TEST(Particles, AreAsWideAsDiffractionAndBlurTogether) {
   gladstone::Setup setup = deep_sheet();
-  setup.camera.pixel_pitch = 2e-6;  // a sigma is a pixel: its place within it does not matter
+  setup.camera.pixel_pitch = 2e-6;  // sigma is one pixel, so that the position within the pixel has no effect
   for (double const z : {0.0, 2 * mm, 6 * mm, -6 * mm}) {
     Scene scene = scene_with_particles(setup, {{0, 0, z}}, {{0, 0, z}}, 4096);
     Rendering const rendering = render(scene, ParticleLight::scattered, RenderImages::yes);
@@ -260,8 +262,9 @@ TEST(Particles, AreAsWideAsDiffractionAndBlurTogether) {
   }
 }
 
-// Depth of field 4.88 ((M + 1) / M)^2 N^2 lambda (Adrian 1991): at its ends the disc of confusion is as wide as the
-// diffraction spot between its first zeros. Paraxial: z / Z = 0.0014 of it is left, and 4.88 is 2 * 2.43934 rounded.
+// Depth of field 4.88 ((M + 1) / M)^2 N^2 lambda (Adrian 1991): at its ends, the circle of confusion is as wide as the
+// diffraction spot between its first zeros. The formula is paraxial, with a relative error of z / Z = 0.0014, and 4.88
+// is 2 * 2.43934 rounded.
 TEST(Particles, BlurAsMuchAsDiffractionAtTheEndsOfTheDepthOfField) {
   gladstone::Setup setup = deep_sheet();
   setup.lens.f_number = 4;

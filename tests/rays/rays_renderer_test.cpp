@@ -22,8 +22,8 @@ Rendering by_rays(Scene scene, RenderImages images = RenderImages::yes, RenderTh
 
 double brightest(Image<double> const& image) { return *std::max_element(image.begin(), image.end()); }
 
-/// Root mean square over lit pixels of what two pictures differ by, in grey levels of 12 bits, the brightest pixel at
-/// 90 % of full scale.
+/// Returns the rms difference of two images over lit pixels, in grey levels of 12 bits with the brightest pixel at 90 %
+/// of full scale.
 double levels_between(Image<double> const& a, Image<double> const& b) {
   double const level = brightest(b) / (0.9 * 4095);
   double squares = 0, lit = 0;
@@ -42,9 +42,10 @@ Scene late_scene(std::uint64_t rays) {
   return scene_with_dots(setup, lattice(48, 2, 17.3), rays);
 }
 
-// The same scene by both methods. Truth: within three of the errors that both state, and the little that table and rule
-// leave where their errors are far below it. Images: half a grey level of 12 bits of scatter between these rays; in the
-// flow there comes the third of a level that a deflection table leaves whatever the number of rays (measure_rays).
+// The same scene rendered by both methods. The truths agree within three times the stated errors of both, plus the
+// error of table and rule where their stated errors are far below it. The images agree within half a grey level of 12
+// bits, the scatter of these rays; in the measurement image, a third of a level is added, the error of a deflection
+// table at any number of rays.
 TEST(RaysRenderer, GivesTheTruthAndTheImagesOfFocusedDots) {
   Scene scene = late_scene(65536);
   ASSERT_TRUE(focused_dots(scene));
@@ -56,7 +57,7 @@ TEST(RaysRenderer, GivesTheTruthAndTheImagesOfFocusedDots) {
     EXPECT_LE(std::abs(off.y), 3 * std::hypot(one.y, other.y) + 2e-5) << dot;
     EXPECT_LT(one.x, 1e-3);
     EXPECT_NEAR(length(rays.truth.reference_px[dot] - fast.truth.reference_px[dot]), 0, 5e-4);
-    // both integrate along straight rays: the cone by rules of their own
+    // both integrate along straight rays, but use different rules for the light cone
     EXPECT_NEAR(length(rays.truth.eq9_px[dot] - fast.truth.eq9_px[dot]), 0, 1e-8);
     EXPECT_NEAR(length(rays.truth.chief_px[dot] - fast.truth.chief_px[dot]), 0, 1e-8);
     EXPECT_NEAR(length(rays.truth.eq9_cone_px[dot] - fast.truth.eq9_cone_px[dot]), 0, 2e-3);
@@ -76,7 +77,7 @@ TEST(RaysRenderer, LeavesWhatNothingBendsWhereItIs) {
   EXPECT_TRUE(std::equal(still.light.reference.begin(), still.light.reference.end(), still.light.flow.begin()));
 }
 
-// Eq. 9 exactly, small angles apart: u = -M Z_D K L_z g_x / (n_0 p), v with the other sign (F27: 5e-4 off the axis).
+// Eq. 9 exactly, up to small angles: u = -M Z_D K L_z g_x / (n_0 p), v with the opposite sign (F27: 5e-4 off the axis).
 TEST(RaysRenderer, ShowsTheDisplacementOfEqNine) {
   auto setup = table1_setup(64);
   setup.medium.field = uniform_gradient(50, 30);
@@ -106,7 +107,7 @@ TEST(RaysRenderer, GivesTheSameBitsOnAnyNumberOfThreads) {
   EXPECT_EQ(one.statuses, three.statuses);
 }
 
-// A dot's truth depends on nothing but its own setup: neither on how many others there are nor on its place among them.
+// The truth of a dot depends on its own data only: neither on the number of dots nor on its position in the list.
 TEST(RaysRenderer, KnowsADotByItself) {
   Scene all = late_scene(256), turned = all;
   std::reverse(turned.dots.centre.begin(), turned.dots.centre.end());
@@ -119,12 +120,13 @@ TEST(RaysRenderer, KnowsADotByItself) {
   }
 }
 
-// White paper under a thin lens: cos^4 of the angle to the axis.
+// White paper imaged by a thin lens: cos^4 of the angle to the axis.
 TEST(RaysRenderer, SeesWhitePaperByTheFourthPowerOfTheCosine) {
   auto const setup = table1_setup(512);
   Scene const scene = scene_with_dots(setup, {{200, 200}}, 64);
   Image<double> const white = white_picture(scene), expected = white_light(scene);
-  // 4096 rays with a smoothed rim, the pupil's own width: cos^4 over f/11's cone is 2e-5 less than on the axis
+  // 4096 rays and a smoothed edge of the stop; over the light cone at f/11, the mean of cos^4 is 2e-5 less than on the
+  // axis
   EXPECT_NEAR(white(0, 0), expected(0, 0), 2e-4);
   EXPECT_NEAR(white(255, 255), 1, 2e-4);
   EXPECT_NEAR(white(400, 100), expected(400, 100), 2e-4);
@@ -142,7 +144,7 @@ TEST(RaysRenderer, PlansStepAndRaysByTracing) {
   EXPECT_TRUE(rays.converged);
   EXPECT_LE(rays.truth_error_px, truth_tolerance_px);
   EXPECT_LE(rays.image_error_levels, image_tolerance_levels);
-  // and what it promises is so: another choice of as many rays gives the same to that
+  // the stated errors are true: another seed with as many rays has the same result within them
   Rendering const one = by_rays(scene, RenderImages::no);
   scene.setup.render.seed = 99;
   Rendering const two = by_rays(scene, RenderImages::no);

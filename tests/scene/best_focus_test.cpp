@@ -14,7 +14,7 @@
 namespace gladstone {
 namespace {
 
-/// Where the sensor stands, from the paraxial image of what is in focus [m].
+/// Returns the position of the sensor at the paraxial image of the point in focus [m].
 double from_paraxial_image(gladstone::Setup const& setup) {
   Camera const camera = build_camera(setup);
   RayTransfer const& m = camera.paraxial.whole;
@@ -24,10 +24,10 @@ double from_paraxial_image(gladstone::Setup const& setup) {
   return behind.point_inwards(camera.sensor.pose.origin).z - image;
 }
 
-// A lens corrected for spherical aberration on its axis has its best focus in the paraxial one as its aperture shrinks:
-// what is left falls as the square of the aperture, four times a halving, but for terms of the next order, that fall
-// four times faster yet. At f/16 those are 1e-3 of the rest, as the double Gauss' listing shows: its aberrations at
-// heights of 5 and 10 mm (f/10, f/5) have a ratio of 3.8.
+// For a lens corrected for spherical aberration on its axis, the best focus tends to the paraxial focus as the aperture
+// decreases: the difference is proportional to the square of the aperture, so that halving the aperture divides it by
+// four, up to terms of the next order, which decrease four times faster. At f/16, these are 1e-3 of the difference, as
+// the listing of the double Gauss shows: its aberrations at heights of 5 and 10 mm (f/10, f/5) have a ratio of 3.8.
 TEST(BestFocus, TendsToTheParaxialFocusAsTheApertureShrinks) {
   for (char const* const lens : {"double_gauss", "achromat"}) {
     double const wide = from_paraxial_image(real_lens_setup(lens, 64, 16)),
@@ -35,11 +35,11 @@ TEST(BestFocus, TendsToTheParaxialFocusAsTheApertureShrinks) {
                  quarter = from_paraxial_image(real_lens_setup(lens, 64, 64));
     EXPECT_GT(std::abs(wide), 1e-7) << lens;
     EXPECT_NEAR(wide / half, 4, 0.1) << lens;
-    EXPECT_NEAR(half / quarter, 4, 0.025) << lens;  // a quarter of that
+    EXPECT_NEAR(half / quarter, 4, 0.025) << lens;  // next-order terms, and so the tolerance, divided by four
   }
 }
 
-/// Mean square radius of the axis point's bundle on the sensor [m^2].
+/// Returns the mean square radius, on the sensor, of the ray bundle of a point on the axis [m^2].
 double mean_square_on_sensor(Camera const& camera, Vec3d point) {
   auto const disc = camera.aim_disc(point);
   std::vector<Vec2d> places, slopes;
@@ -62,8 +62,8 @@ gladstone::Setup with_sensor_at(gladstone::Setup setup, double z_sensor) {
   return setup;
 }
 
-// Bessel: an object and a screen L apart have a lens of focal length f image one on the other from (L +- sqrt(L^2 - 4 L
-// f)) / 2; the one nearer the screen gives the smaller picture. Nearer than 4 f there is none.
+// Bessel: if an object and a screen are L apart, a lens of focal length f images one onto the other at distances (L +-
+// sqrt(L^2 - 4 L f)) / 2; the position closer to the screen has the smaller image. For L < 4 f there is no image.
 TEST(LensPlacedBySensor, OfAThinLensIsBessels) {
   gladstone::Setup const setup = with_sensor_at(table1_setup(64), 0.87);
   double const L = 0.87 + 0.25, v = (L - std::sqrt(L * L - 4 * L * 0.105)) / 2;
@@ -71,15 +71,15 @@ TEST(LensPlacedBySensor, OfAThinLensIsBessels) {
   Camera const camera = build_camera(setup);
   EXPECT_NEAR(camera.sensor.pose.origin.z, 0.87, 1e-15);
   EXPECT_THROW(with_sensor_at(table1_setup(64), 0.16), DataError);
-  // at a given distance from the lens, 1/f - 1/u alone says where it stands
+  // at a fixed distance of the object from the lens, 1/f - 1/u alone determines the position
   gladstone::Setup near = table1_setup(64);
   near.lens.focus = Focus::distance;
   near.lens.focus_distance = 0.6;
   EXPECT_NEAR(with_sensor_at(near, 0.87).z_a, 0.87 - 1 / (1 / 0.105 - 1 / 0.6), 1e-15);
 }
 
-// A real lens, through a window: where it ends the camera's own best focus is the sensor's place, and moving the sensor
-// either way from there makes the bundle of the point in focus wider.
+// A real lens behind a window: at the position found, the best focus of the camera is the position of the sensor, and
+// moving the sensor in either direction widens the bundle of the point in focus.
 TEST(LensPlacedBySensor, OfARealLensIsWhereTheSensorSeesTheNarrowestBundle) {
   gladstone::Setup base = double_gauss_setup(64, 2.8);
   WindowSetup window;
@@ -106,7 +106,7 @@ TEST(LensPlacedBySensor, OfARealLensIsWhereTheSensorSeesTheNarrowestBundle) {
   }
 }
 
-// The setup's key, beside the others that place the lens.
+// The key of the setup, and its conflicts with other keys that position the lens.
 TEST(LensPlacedBySensor, IsReadFromTheSetup) {
   auto const read = [](std::string const& text) { return read_setup_text(text).setup; };
   gladstone::Setup const setup = read("[geometry]\nz_sensor_mm = 870\n");

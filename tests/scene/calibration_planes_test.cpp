@@ -18,7 +18,7 @@ std::string calibration(std::string const& more = "", std::string const& table =
   return "experiment = \"calibration\"\n[calibration]\n" + table + more;
 }
 
-/// The pinhole's pixel, by OpenCV's formulae.
+/// Returns the pixel of a point by OpenCV's formulae of a pinhole camera.
 Vec2d project(Pinhole const& pinhole, Vec3d world) {
   Vec3d const d{dot(pinhole.rows[0], world) + pinhole.translation.x,
                 dot(pinhole.rows[1], world) + pinhole.translation.y,
@@ -27,7 +27,7 @@ Vec2d project(Pinhole const& pinhole, Vec3d world) {
   return {pinhole.fx * moved.x + pinhole.cx, pinhole.fy * moved.y + pinhole.cy};
 }
 
-// A thin lens is a pinhole camera, wherever it stands, with its sensor square or tilted, and with distortion.
+// A thin lens is a pinhole camera at any pose, with a perpendicular or tilted sensor, and with distortion.
 TEST(CalibrationPlanes, AThinLensIsAPinholeCamera) {
   std::string const posed = "[camera.pose]\nposition_mm = [200, 100, 700]\nroll_deg = 7\n";
   for (std::string const& more : {std::string(), posed, posed + "[camera.sensor]\nscheimpflug = \"auto\"\n",
@@ -40,7 +40,7 @@ TEST(CalibrationPlanes, AThinLensIsAPinholeCamera) {
     for (Vec3d const at : {Vec3d{}, Vec3d{0.01, -0.007, 0.002}, Vec3d{-0.012, 0.01, -0.005}}) {
       auto const seen = camera.project(at);
       ASSERT_TRUE(seen) << more;
-      EXPECT_LT(length(*seen - project(*pinhole, at)), 1e-7) << more;  // project() stops at 1e-9 of the stop
+      EXPECT_LT(length(*seen - project(*pinhole, at)), 1e-7) << more;  // project() stops at 1e-9 of the stop's radius
     }
   }
 }
@@ -53,7 +53,7 @@ TEST(CalibrationPlanes, WhatIsNoPinholeIsNotCalledOne) {
   }
 }
 
-// Focus, tilt and place are those for Z = 0, on whichever plane the dots are.
+// The camera's focus, tilt and position are those for Z = 0, whichever plane contains the dots.
 TEST(CalibrationPlanes, AllPlanesAreSeenByOneCamera) {
   gladstone::Setup const setup =
       read_setup_text(calibration("[camera.pose]\nposition_mm = [300, 0, 700]\n[camera.sensor]\n"
@@ -77,7 +77,7 @@ TEST(CalibrationTarget, ItsMiddleDotIsTheOrigin) {
       read_setup_text(calibration("", "spacing_mm = 3.0\nextent_mm = [40.0, 12.0]\nplanes_mm = [1.0, -4.0]\n")).setup;
   Lattice const lattice(setup.target);
   EXPECT_EQ(lattice.half_columns, 6);  // 18 of 20 mm
-  EXPECT_EQ(lattice.half_rows, 2);     // at the very edge
+  EXPECT_EQ(lattice.half_rows, 2);     // dots exactly on the edge
   std::vector<Vec2d> const dots = lattice.dots();
   ASSERT_EQ(dots.size(), 13u * 5u);
   for (std::size_t k = 0; k < dots.size(); ++k) {
@@ -90,21 +90,22 @@ TEST(CalibrationTarget, ItsMiddleDotIsTheOrigin) {
 TEST(CalibrationSetup, MistakesAreNamedWithTheirCure) {
   auto const text = [](std::string const& line) { return calibration("", line + "\n"); };
   EXPECT_THAT([&] { read_setup_text(text("planes_mm = [0, 1, 0]")); }, refused("3:1", "a plane twice"));
-  EXPECT_THAT([&] { read_setup_text(text("dot_diameter_mm = 2.4")); }, refused("3:1", "run together"));
+  EXPECT_THAT([&] { read_setup_text(text("dot_diameter_mm = 2.4")); }, refused("3:1", "would merge"));
   EXPECT_THAT([&] { read_setup_text(text("spacing_mm = 1e-3\ndot_diameter_mm = 1e-4")); },
               refused("3:1", "dots on a plane"));
-  EXPECT_THAT([&] { read_setup_text(text("planes_mm = [0, 700]")); }, refused("3:1", "before the lens"));
+  EXPECT_THAT([&] { read_setup_text(text("planes_mm = [0, 700]")); }, refused("3:1", "in front of the lens"));
   EXPECT_THAT([&] { read_setup_text(text("planes_mm = [0, 50]\n[[window]]\nposition_mm = [0, 0, 40]")); },
               refused("3:1", "window at Z = 40 mm"));
-  EXPECT_THAT([&] { read_setup_text(text("[geometry]\nz_d_mm = 250")); }, refused("4:1", "planes_mm places the dots"));
+  EXPECT_THAT([&] { read_setup_text(text("[geometry]\nz_d_mm = 250")); },
+              refused("4:1", "planes_mm positions the dots"));
   EXPECT_THAT([&] { read_setup_text(text("[target]\nseed = 1")); }, refused("3:", "[calibration]"));
   EXPECT_THAT([&] { read_setup_text(text("[medium.field]\nkind = \"uniform_gradient\"\ngradient_kg_m4 = [1, 0, 0]")); },
-              refused("3:", "without flow"));
+              refused("3:", "without a flow"));
   EXPECT_THAT([] { read_setup_text("[calibration]\n"); }, refused("1:", "experiment = \"calibration\""));
 }
 
-// The wide-angle lens is 94 mm long, and its glass begins before its front principal plane, which stands at Z = 300 mm:
-// a plane 10 mm before that is within the lens.
+// The wide-angle lens is 94 mm long and begins in front of its front principal plane, which is at Z = 300 mm: a plane
+// 10 mm in front of that is inside the lens.
 TEST(CalibrationPlanes, WithinALensAreRefused) {
   std::string const lens = "[lens]\nmodel = \"prescription\"\nfile = \"" + std::string(GLADSTONE_DATA_DIR) +
                            "/lenses/wide_angle.toml\"\n[geometry]\nz_a_mm = 300\n";

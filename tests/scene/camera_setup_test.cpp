@@ -27,7 +27,7 @@ std::string double_gauss(std::string const& more = "") {
          "/lenses/double_gauss.toml\"\n" + more;
 }
 
-// Looking at a point: the axis runs from the camera through it, columns stay level.
+// If the camera looks at a point, its axis runs through that point, and the image columns are vertical.
 TEST(CameraPose, LooksAtAPoint) {
   gladstone::Setup const setup =
       setup_of("[camera.pose]\nposition_mm = [300, 0, 700]\nlook_at_mm = [0, 0, 0]\n[geometry]\nz_d_mm = 70\n");
@@ -37,11 +37,11 @@ TEST(CameraPose, LooksAtAPoint) {
   EXPECT_NEAR(pose.x.y, 0, 1e-15);
   EXPECT_NEAR(pose.y.y, 1, 1e-15);
   EXPECT_NEAR(dot(cross(pose.x, pose.y), pose.z), 1, 1e-15);
-  // lengths along the axis: to Z = 0, and on to the dots, where it arrives 30 mm to the left
+  // distances along the axis: to Z = 0, and further to the dots, where the axis is 30 mm to the left
   EXPECT_NEAR(setup.z_a, far, 1e-15);
   EXPECT_NEAR(setup.z_b(), 1.1 * far, 1e-15);
   EXPECT_NEAR(setup.target_centre().x, -0.03, 1e-15);
-  // near enough the same as turning about y by the angle to the axis
+  // almost the same as a rotation about y by the angle to the axis
   gladstone::Setup const turned =
       setup_of("[camera.pose]\nposition_mm = [300, 0, 700]\nrotation_deg = [0, 23.19859051364819, 0]\n");
   EXPECT_NEAR(length(turned.camera_pose().z - pose.z), 0, 1e-12);
@@ -50,13 +50,13 @@ TEST(CameraPose, LooksAtAPoint) {
 
 TEST(CameraPose, ThatMakesNoSenseIsRefused) {
   EXPECT_THAT([] { setup_of("[camera.pose]\nposition_mm = [0, 0, 700]\n[geometry]\nz_a_mm = 750\n"); },
-              refused("4:1", "stands beside camera.pose"));
+              refused("4:1", "conflicts with camera.pose"));
   EXPECT_THAT([] { setup_of("[camera.pose]\nlook_at_mm = [0, 0, 0]\n"); }, refused("1:", "position_mm"));
   EXPECT_THAT([] { setup_of("[camera.pose]\nposition_mm = [0, 0, -700]\n"); }, refused("1:", "away from the dots"));
-  EXPECT_THAT([] { setup_of("[camera.pose]\nposition_mm = [0, 700, 0]\n"); }, refused("1:", "no upright"));
+  EXPECT_THAT([] { setup_of("[camera.pose]\nposition_mm = [0, 700, 0]\n"); }, refused("1:", "upright direction"));
   EXPECT_THAT(
       [] { setup_of("[camera.pose]\nposition_mm = [0, 0, 700]\nlook_at_mm = [0, 0, 0]\nrotation_deg = [0, 0, 0]\n"); },
-      refused("4:1", "stands beside look_at_mm"));
+      refused("4:1", "conflicts with look_at_mm"));
   EXPECT_THAT([] { setup_of("[camera.sensor]\nscheimpflug = \"auto\"\ntilt_deg = [1, 0]\n"); },
               refused("2:1", "conflicts with tilt_deg"));
 }
@@ -86,8 +86,8 @@ TEST(Windows, OfUnknownGlassAreNamedOnceAtTheirKey) {
   }
 }
 
-// What a plate of glass passes of the light along the axis: each face 4 n / (n + 1)^2, and the glass what its catalogue
-// says of so much thickness (10 mm of N-BK7 pass 0.998 at 546 nm).
+// Transmittance of a plate of glass along the axis: 4 n / (n + 1)^2 at each face, and that of the glass catalogue for
+// the thickness (10 mm of N-BK7 transmit 0.998 at 546 nm).
 TEST(Windows, TakeOffTheLightThatIsAskedFor) {
   auto const passed = [](std::string const& transmittance) {
     Camera const camera = build_camera(setup_of("[lens]\ntransmittance = \"" + transmittance +
@@ -113,20 +113,20 @@ TEST(PrescribedLens, SetsFocalLengthAndStop) {
   EXPECT_NEAR(own.lens.f_number, 2, 0.02);
   gladstone::Setup const stopped = setup_of(double_gauss("f_number = 8\n"));
   EXPECT_NEAR(stopped.lens.prescription->stop_radius / own.lens.prescription->stop_radius, 2.0 / 8, 0.01);
-  // M = f / (Z_B - f) from the front principal plane
+  // M = f / (Z_B - f), measured from the front principal plane
   EXPECT_NEAR(own.imaging().magnification, own.lens.focal_length / (1 - own.lens.focal_length), 1e-9);
 }
 
-/// A file in the folder of temporary files. @return its name
+/// Writes a file into the directory of temporary files. @return its name
 std::string written_file(std::string const& name, std::string const& text) {
   std::string const path = testing::TempDir() + name;
   std::ofstream(path) << text;
   return path;
 }
 
-// A catalogue of one's own: n^2 = 1 + 1.25 lambda^2 / (lambda^2 - 0) = 2.25, and fused silica by Malitson (J. Opt. Soc.
-// Am. 55 (1965) 1205), 1.460706345 at 532 nm. A lens of n = 1.5 with radii R = 100 mm and t = 2 mm thick has
-// 1/f = (n - 1) (2 / R - (n - 1) t / (n R^2)).
+// A user's glass catalogue: n^2 = 1 + 1.25 lambda^2 / (lambda^2 - 0) = 2.25, and fused silica by Malitson (J. Opt. Soc.
+// Am. 55 (1965) 1205), 1.460706345 at 532 nm. A lens of n = 1.5 with radii R = 100 mm and thickness t = 2 mm has 1/f =
+// (n - 1) (2 / R - (n - 1) t / (n R^2)).
 TEST(Glasses, OfOnesOwnCatalogueMakeLensesAndWindows) {
   std::string const own =
       written_file("own_glasses.agf",
@@ -143,7 +143,7 @@ TEST(Glasses, OfOnesOwnCatalogueMakeLensesAndWindows) {
   EXPECT_NEAR(setup.windows.at(0).index, 1.460706345, 5e-10);
   EXPECT_THAT([&] { setup_of(model); }, refused("3:1", "to the setup's lens.glasses"));
   EXPECT_THAT([&] { setup_of("[lens]\nglasses = [\"none.agf\"]\n"); }, refused("2:1", "none.agf"));
-  EXPECT_THAT([&] { setup_of("[lens]\nglasses = [\"" + lens + "\"]\n"); }, refused("2:1", "holds no glass"));
+  EXPECT_THAT([&] { setup_of("[lens]\nglasses = [\"" + lens + "\"]\n"); }, refused("2:1", "contains no glass"));
 }
 
 TEST(PrescribedLens, MayBePlacedByItsFirstVertex) {
@@ -151,7 +151,7 @@ TEST(PrescribedLens, MayBePlacedByItsFirstVertex) {
   double const principal = paraxial_lens(*by_vertex.lens.prescription).front_principal_plane;
   EXPECT_NEAR(by_vertex.z_a, 0.68 + principal, 1e-15);
   EXPECT_THAT([] { setup_of(double_gauss("[geometry]\nz_front_mm = 680\nz_a_mm = 750\n")); },
-              refused("6:1", "stands beside z_front_mm"));
+              refused("6:1", "conflicts with z_front_mm"));
   EXPECT_THAT([] { setup_of("[geometry]\nz_front_mm = 680\n"); }, refused("2:1", "a thin lens has no first vertex"));
 }
 
@@ -160,10 +160,10 @@ TEST(PrescribedLens, ThatIsWrongIsNamed) {
   EXPECT_THAT([] { setup_of("[lens]\nmodel = \"prescription\"\nfile = \"none.zmx\"\n"); }, refused("3:1", "none.zmx"));
   EXPECT_THAT([] { setup_of("[lens]\nfile = \"a.zmx\"\n"); }, refused("2:1", "model = \"prescription\""));
   EXPECT_THAT([] { setup_of(double_gauss("focal_length_mm = 100\n")); },
-              refused("4:1", "stands beside a prescription"));
+              refused("4:1", "conflicts with a prescription"));
   EXPECT_THAT([] { setup_of(double_gauss("[camera.sensor]\ndistortion = [0.1, 0, 0, 0]\n")); },
-              refused("5:1", "is of thin lenses"));
-  // the dots within the focal length
+              refused("5:1", "applies to thin lenses only"));
+  // the dots are within the focal length
   EXPECT_THAT([] { setup_of(double_gauss("[geometry]\nz_a_mm = 60\nz_d_mm = 30\n")); },
               refused("3:1", "no real image"));
 }

@@ -12,7 +12,8 @@ namespace {
 
 Pose<double> dots_plane(Setup const& setup) { return {{0, 0, -setup.z_d}}; }
 
-// A thin lens in focus maps (X, Y) to M (X, Y) / p from the axis pixel, columns right and rows down, M = f / (Z_B - f).
+// A thin lens in focus maps (X, Y) to M (X, Y) / p from the axis pixel, columns to the right and rows downwards, M = f
+// / (Z_B - f).
 TEST(ThinCamera, ProjectsByTheMagnification) {
   auto const setup = table1_setup(512);
   Camera const camera = build_camera(setup);
@@ -41,13 +42,14 @@ TEST(ThinCamera, SourcesSeeItsStopAsItIs) {
   ASSERT_TRUE(disc);
   double const radius = 0.105 / 11 / 2;
   EXPECT_NEAR(length(disc->centre - Vec3d{0, 0, 0.75}), 0, 1e-12);
-  // as wide as the stop, and by no more than the margin that rim points are found with wider
+  // as wide as the stop, plus at most the safety margin for the number of rim points
   EXPECT_GE(length(disc->a) / radius, 1);
   EXPECT_LT(length(disc->a) / radius, 1.02);
   EXPECT_NEAR(length(disc->a), length(disc->b), 1e-12);
 }
 
-// A camera of its own pose sees a point where it sees the turned point without: (R x - position) for x.
+// A camera with a pose images a point like a camera without pose images the rotated point, with (R x - position) in
+// place of x.
 TEST(PosedCamera, SeesAsTheTurnedWorldIsSeen) {
   auto straight = table1_setup(512);
   straight.lens.focus = Focus::distance;
@@ -65,8 +67,8 @@ TEST(PosedCamera, SeesAsTheTurnedWorldIsSeen) {
   }
 }
 
-// The image of a point that is out of focus lies about its chief ray's, which runs straight through the lens' centre:
-// a pinhole there, whose image plane is the sensor's, tilted or not.
+// The image of a point out of focus is centred on that of its chief ray, which passes the lens' centre undeflected. The
+// camera is a pinhole there, whose image plane is that of the sensor, tilted or not.
 TEST(PosedCamera, IsAPinholeThroughTheLensCentre) {
   auto setup = table1_setup(512);
   setup.camera.tilt = {2 * unit::degree, -3 * unit::degree};
@@ -82,8 +84,8 @@ TEST(PosedCamera, IsAPinholeThroughTheLensCentre) {
   }
 }
 
-// Scheimpflug: with the sensor in the image plane of a tilted object plane every point of that plane is imaged to a
-// point, by rays through the rim of the stop as by the chief ray.
+// Scheimpflug: if the sensor is in the image plane of a tilted object plane, every point of that plane has a sharp
+// image, formed by rays through the rim of the stop as by the chief ray.
 TEST(PosedCamera, ScheimpflugIsSharpAllOverThePlane) {
   auto setup = table1_setup(512);
   setup.lens.f_number = 2.8;
@@ -114,11 +116,11 @@ TEST(PosedCamera, ScheimpflugIsSharpAllOverThePlane) {
     EXPECT_LT(blur(camera, point), 1e-7);
     without_tilt = std::max(without_tilt, blur(square, point));
   }
-  EXPECT_GT(without_tilt, 0.3) << "[px], where the sensor is square to the axis";
+  EXPECT_GT(without_tilt, 0.3) << "blur [px] on a sensor perpendicular to the axis";
 }
 
-/// Turned by 45 degrees about Y, 1 m from the dots that its axis meets; the sensor square to the axis, or in the image
-/// plane of the dots' plane.
+/// Returns a camera rotated by 45 degrees about Y, 1 m from the intersection of its axis with the dots' plane; the
+/// sensor is perpendicular to the axis, or in the image plane of the dots' plane.
 Setup at_45_degrees(bool scheimpflug) {
   auto setup = table1_setup(512);
   Vec3d const middle{0, 0, -setup.z_d}, along = normalized(Vec3d{1, 0, 1});
@@ -128,7 +130,7 @@ Setup at_45_degrees(bool scheimpflug) {
   return setup;
 }
 
-/// Area of the picture that a disc of the target about its middle takes, as a polygon of 360 corners [px^2].
+/// Returns the image area of a disc about the centre of the target, as a polygon with 360 corners [px^2].
 double image_area(Setup const& setup, double diameter) {
   Camera const camera = build_camera(setup);
   Vec2d const middle = setup.target_centre();
@@ -146,9 +148,9 @@ double image_area(Setup const& setup, double diameter) {
   return std::abs(twice) / 2;
 }
 
-// About the axis M = f / (Z - f) across the tilt; along it M cos(45) on a sensor square to the axis, and that over
-// cos(phi), tan(phi) = M tan(45), on one in the image plane (Scheimpflug). A pixel's size is what the root of the
-// product makes of its pitch. The polygon is 5e-5 smaller than its circle.
+// Near the axis, the magnification is M = f / (Z - f) across the tilt. Along it, it is M cos(45) on a sensor
+// perpendicular to the axis, and that over cos(phi), tan(phi) = M tan(45), on one in the image plane (Scheimpflug). The
+// pixel size is the pitch over the geometric mean of both. The polygon is 5e-5 smaller than its circle.
 TEST(PosedCamera, SizesOfDotsInPixelsAreThoseOfTheirImages) {
   for (bool const scheimpflug : {false, true}) {
     auto setup = at_45_degrees(scheimpflug);
@@ -158,13 +160,13 @@ TEST(PosedCamera, SizesOfDotsInPixelsAreThoseOfTheirImages) {
     setup.target.dot_diameter_px = 4;
     EXPECT_NEAR(image_area(setup, setup.dot_diameter()) / (pi * 4), 1, 1e-4) << scheimpflug;
     EXPECT_EQ(2 * build_scene(setup).dots.half_size, setup.dot_diameter()) << scheimpflug;
-    // the same where the dots lie about another place
+    // the same for a target with another centre
     setup.target.centre_m = Vec2d{0.01, 0.005};
     EXPECT_NEAR(image_area(setup, setup.dot_diameter()) / (pi * 4), 1, 1e-4) << scheimpflug;
   }
 }
 
-// OpenCV's formula, on (x, y) / z_i with x right and y down.
+// OpenCV's formula, applied to (x, y) / z_i with x to the right and y down.
 TEST(PosedCamera, DistortsAsBrownSays) {
   auto setup = table1_setup(512);
   Camera const plain = build_camera(setup);
@@ -183,8 +185,8 @@ TEST(PosedCamera, DistortsAsBrownSays) {
   }
 }
 
-// A plane plate moves a ray aside by t sin(a) (1 - cos(a) / sqrt(n^2 - sin(a)^2)) across it, whatever stands behind.
-// Square to the axis it brings the dots nearer by t (1 - 1/n) for rays near the axis.
+// A plane plate displaces a ray by t sin(a) (1 - cos(a) / sqrt(n^2 - sin(a)^2)) perpendicular to it, whatever is behind
+// the plate. For rays near its normal, it shifts the dots towards the camera by t (1 - 1/n).
 TEST(Window, ActsAsThePlanePlate) {
   auto setup = table1_setup(512);
   WindowSetup window;
@@ -192,7 +194,8 @@ TEST(Window, ActsAsThePlanePlate) {
   window.thickness = 10e-3;
   window.position = {0, 0, 0.1};
   setup.windows = {window};
-  setup.lens.f_number = 64;  // narrow, so that the plate's spherical aberration does not move the best focus
+  // a small aperture, so that the plate's spherical aberration does not change the best focus
+  setup.lens.f_number = 64;
   auto bare = setup;
   bare.windows.clear();
   bare.z_d -= window.shift();
@@ -202,7 +205,7 @@ TEST(Window, ActsAsThePlanePlate) {
   Vec2d const seen = *camera.project({1e-3, 2e-3, -setup.z_d}), expected = *nearer.project({1e-3, 2e-3, -bare.z_d});
   EXPECT_NEAR(length(seen - expected), 0, 1e-4);
 
-  // tilted by 30 degrees: 1.97621122205116 mm across the ray along the axis
+  // tilted by 30 degrees: 1.97621122205116 mm perpendicular to the ray along the axis
   window.tilt = {0, 30 * unit::degree};
   setup.windows = {window};
   Camera const tilted = build_camera(setup);
@@ -213,8 +216,8 @@ TEST(Window, ActsAsThePlanePlate) {
   EXPECT_NEAR(ray.direction.z, 1, 1e-15);
 }
 
-// The double Gauss in Table 1's place: about the axis it is as good as a thin lens of its focal length at its front
-// principal plane; away from it, it distorts. Its chief rays pass the entrance pupil's middle.
+// The double Gauss in place of Table 1's lens: near the axis it equals a thin lens of its focal length at its front
+// principal plane; farther out it distorts. Its chief rays pass the centre of the entrance pupil.
 TEST(PrescribedCamera, IsPlacedByItsFrontPrincipalPlane) {
   auto const setup = double_gauss_setup(512);
   Camera const camera = build_camera(setup);
@@ -223,18 +226,18 @@ TEST(PrescribedCamera, IsPlacedByItsFrontPrincipalPlane) {
   auto const seen = camera.unproject({255.5, 255.5}, dots_plane(setup));
   ASSERT_TRUE(seen);
   EXPECT_NEAR(length(seen->place), 0, 1e-9);
-  // the sensor stands in best and not in paraxial focus: some 0.01 mm of 112
+  // the sensor is at the best focus, not at the paraxial one: a difference of about 0.01 mm in 112 mm
   EXPECT_NEAR(seen->by_x.x * setup.camera.pixel_pitch / M, 1, 1e-3);
   Vec3d const corner{0.02, 0.02, -setup.z_d};
   Vec2d const ideal = camera.ideal_project(corner), real = *camera.project(corner);
   EXPECT_GT(length(real - ideal), 1e-3);
   EXPECT_LT(length(real - ideal), 1.0);
-  // near the axis distortion falls with the cube of the field
+  // near the axis, distortion is proportional to the cube of the field angle
   Vec3d const near{0.002, 0.002, -setup.z_d};
   EXPECT_LT(length(*camera.project(near) - camera.ideal_project(near)), 2e-3 * length(real - ideal));
 }
 
-// Best focus: moving the sensor either way makes the axial bundle wider.
+// At the best focus, moving the sensor in either direction widens the axial bundle.
 TEST(PrescribedCamera, IsFocusedWhereTheAxialBundleIsNarrowest) {
   auto const setup = double_gauss_setup(64, 2.8);
   Camera camera = build_camera(setup);

@@ -21,15 +21,15 @@ Bounds<double> box(double width, double height, Vec2d centre = {}) {
   return {{centre.x - width / 2, centre.y - height / 2, -5e-3}, {centre.x + width / 2, centre.y + height / 2, 5e-3}};
 }
 
-// Table 1 with 512 px of 10 um: M = 0.117318, so that 43.642 mm are seen at the dots and Z_A / Z_B of that, 32.732 mm,
-// at the mid-plane, which chief rays cross three quarters of the way to the lens.
+// Table 1 with 512 px of 10 um: M = 0.117318, so that the view is 43.642 mm wide at the dots, and Z_A / Z_B of that,
+// 32.732 mm, at the mid-plane, which chief rays cross at a quarter of the distance to the lens.
 TEST(FieldCoverage, IsTheShareOfTheViewAtTheField) {
   FieldCoverage const seen = field_coverage(box(10e-3, 20e-3), table1_setup(512));
   EXPECT_NEAR(seen.view.x, 32.732e-3, 1e-6);
   EXPECT_NEAR(seen.share, 10e-3 * 20e-3 / (seen.view.x * seen.view.y), 1e-12);
   EXPECT_NEAR(seen.ratio, 20e-3 / seen.view.y, 1e-12);
   EXPECT_THAT(seen.warning(), IsEmpty());
-  // half of it beyond the view's edge
+  // half of the field is outside the view
   FieldCoverage const beside = field_coverage(box(10e-3, 20e-3, {seen.view.x / 2, 0}), table1_setup(512));
   EXPECT_NEAR(beside.share, seen.share / 2, 1e-12);
 }
@@ -40,13 +40,13 @@ TEST(FieldCoverage, WarnsOfAFieldThatFillsLittle) {
   EXPECT_THAT(field_coverage(box(32e-3, 32e-3, {0.1, 0}), table1_setup(512)).warning(), HasSubstr("fills 0 %"));
 }
 
-// Metres or micrometres taken for millimetres.
+// Lengths in metres or micrometres that are read as millimetres.
 TEST(FieldCoverage, NamesTheUnitThatWouldFit) {
   EXPECT_THAT(field_coverage(box(32e-6, 32e-6), table1_setup(512)).warning(),
-              HasSubstr("were its lengths in metres, it would be 32 x 32 mm wide"));
+              HasSubstr("with lengths in metres, it would be 32 x 32 mm wide"));
   EXPECT_THAT(field_coverage(box(32, 32), table1_setup(512)).warning(),
-              HasSubstr("were its lengths in um, it would be 32 x 32 mm wide"));
-  EXPECT_THAT(field_coverage(box(1, 1), table1_setup(512)).warning(), IsEmpty()) << "large, and why not";
+              HasSubstr("with lengths in um, it would be 32 x 32 mm wide"));
+  EXPECT_THAT(field_coverage(box(1, 1), table1_setup(512)).warning(), IsEmpty()) << "a large field is plausible";
 }
 
 TEST(FieldCoverage, HasNothingToSayOfFieldsWithoutEnd) {
@@ -56,8 +56,9 @@ TEST(FieldCoverage, HasNothingToSayOfFieldsWithoutEnd) {
   EXPECT_THAT(slab.warning(), IsEmpty());
 }
 
-// A bump that fades into the ambient at all faces but those across one axis. Along z nobody sees them from the side;
-// along x their profile sin^2 is 1/2 rms: at the far face (1.2 of the range 1.2) 50 %, at the near one (0.2) 8 %.
+// A bump that decays to the ambient density at all faces except those normal to one axis. If that axis is z, these are
+// not side faces. If it is x, the rms of their profile sin^2 is 1/2: 50 % at the far face (1.2 of the range 1.2), and 8
+// % at the near one (0.2).
 TEST(SideFaces, ThatDifferFromTheAmbientAreReported) {
   auto const warning = [](char const* axes, double cell) {
     fs::path const folder = fs::path(testing::TempDir()) / "side_faces";
@@ -66,7 +67,7 @@ TEST(SideFaces, ThatDifferFromTheAmbientAreReported) {
     std::vector<double> values;
     for (int z = 0; z < 9; ++z) {
       for (int y = 0; y < 9; ++y) {
-        // a bump within the layer, the ambient at every face but those across the slowest axis
+        // a bump within the layer, with the ambient density at every face except those normal to the slowest axis
         for (int x = 0; x < 9; ++x) {
           double const fade = std::sin(M_PI * x / 8) * std::sin(M_PI * y / 8);
           values.push_back(1.225 + 0.5 * fade * (0.2 + z / 8.0));
@@ -89,7 +90,7 @@ TEST(SideFaces, ThatDifferFromTheAmbientAreReported) {
   EXPECT_THAT(warning("zyx", 1e-3), IsEmpty());
   EXPECT_THAT(warning("xyz", 1e-3),
               AllOf(HasSubstr("at its faces x = 4 mm the field"), HasSubstr("medium.field.axes")));
-  EXPECT_THAT(warning("xyz", 8e-3), IsEmpty()) << "faces beyond the view of 32.7 mm";
+  EXPECT_THAT(warning("xyz", 8e-3), IsEmpty()) << "the faces are outside the view of 32.7 mm";
 }
 
 }  // namespace

@@ -12,7 +12,8 @@
 namespace gladstone {
 namespace {
 
-// Averages along the chief ray: density ambient + g . x at the crossing X_A = X Z_A/Z_B, the gradient g itself, Eq. 9.
+// Averages along the chief ray: density ambient + g . x at the intersection X_A = X Z_A/Z_B with the mid-plane,
+// gradient g, and displacement by Eq. 9.
 TEST(FieldMap, ShowsAUniformGradientAsItIs) {
   auto setup = table1_setup(128);
   setup.medium.field = uniform_gradient(20, -5);
@@ -40,8 +41,8 @@ TEST(FieldMap, IsAmbientWithoutAField) {
   EXPECT_EQ(map.density_gradient(1, 1), (Vec2d{0, 0}));
 }
 
-// The same displacement everywhere strains nothing; every point has the same pupil points only up to its scrambling,
-// but the gradient is the same at all of them.
+// A uniform displacement has no strain. The pupil points of different lattice points differ by their scrambling, but
+// the gradient is the same at all of them.
 TEST(StrainMap, OfAUniformGradientIsZero) {
   auto setup = table1_setup(256);
   setup.medium.field = uniform_gradient(100, 50);
@@ -50,8 +51,8 @@ TEST(StrainMap, OfAUniformGradientIsZero) {
   EXPECT_EQ(map.caustic_fraction, 0);
 }
 
-// rho = A sin(k x): in the image du/dx = (Z_A Z_D/Z_B) K L_z/n0 A k^2 H sin(k X_A), H = 0.894131 at 8 mm. Central
-// differences over 2 h lower it by sin(k h)/(k h); h = 4 px are 0.256 mm at the medium, k h = 0.2.
+// For rho = A sin(k x), du/dx in the image is (Z_A Z_D/Z_B) K L_z/n0 A k^2 H sin(k X_A), with H = 0.894131 at 8 mm.
+// Central differences over 2 h reduce it by sin(k h)/(k h); h = 4 px are 0.256 mm in the medium, k h = 0.2.
 TEST(StrainMap, OfASinusoidHasItsKnownAmplitude) {
   auto setup = table1_setup(512);
   setup.medium.field = sinusoid(0.02, 8e-3);
@@ -60,14 +61,15 @@ TEST(StrainMap, OfASinusoidHasItsKnownAmplitude) {
   double const k = 2 * pi / 8e-3, n0 = 1 + 2.26e-4 * 1.225;
   double const h = map.spacing_px * 10e-6 / scene.imaging.magnification * 0.75;
   double const amplitude = 0.75 * 0.25 * 2.26e-4 * 0.01 / n0 * 0.02 * k * k * 0.894131 * std::sin(k * h) / (k * h);
-  // the lattice meets the crests within half a spacing, 1 - (k h/2)^2/2, and 64 points of a net average to a percent
+  // the distance of the lattice from the crests is at most half a spacing, 1 - (k h/2)^2/2; 64 points of a net average
+  // to one percent
   EXPECT_NEAR(*std::max_element(map.strain.begin(), map.strain.end()) / amplitude, 1, 0.03);
   EXPECT_NEAR(*std::max_element(map.caustic.begin(), map.caustic.end()) / amplitude, 1, 0.03);
   EXPECT_EQ(map.caustic_fraction, 0);
 }
 
-// F19: rays cross on the converging side only, where du/dx = 1 in the image: 3 times the amplitude of 1 does it over
-// acos(1/3)/pi = 39 % of the view, to the lattice's 0.03 and the net's percent.
+// F19: rays cross only where they converge, that is, where du/dx >= 1 in the image. With an amplitude of 3, this is the
+// case in acos(1/3)/pi = 39 % of the view, within 0.03 for the lattice and one percent for the net.
 TEST(StrainMap, FindsCausticsWhereRaysConverge) {
   auto setup = table1_setup(512);
   double const k = 2 * pi / 16e-3;
@@ -76,13 +78,13 @@ TEST(StrainMap, FindsCausticsWhereRaysConverge) {
   setup.medium.field = sinusoid(3 / (0.75 * 0.25 * 2.26e-4 * 0.01 * k * k * kept), 16e-3, {0, 1});
   StrainMap const map = map_strain(scene_with_dots(setup, {{64, 64}}, 1));
   EXPECT_NEAR(*std::max_element(map.caustic.begin(), map.caustic.end()), 3, 0.1);
-  // 32.7 mm are 2.04 periods; the part beyond two periods shifts the fraction by up to 2 %
+  // 32.7 mm are 2.04 periods; the part beyond two periods changes the fraction by up to 2 %
   EXPECT_NEAR(map.caustic_fraction, std::acos(1.0 / 3) / pi, 0.04);
 }
 
-// Averaged over the cone (2.4 mm) the fronts of the earlier plane, a few cells of 0.0625 mm wide, strain mildly; each
-// for itself their rays cross, which chief rays alone (f_number = inf: no cone) show. The late plane has no such
-// fronts.
+// Averaged over the light cone (2.4 mm), the strain of the fronts in the early DNS plane, which are a few cells of
+// 0.0625 mm wide, is small. Without averaging, rays cross, as chief rays alone (f_number = inf: no cone) show. The late
+// plane has no such fronts.
 TEST(StrainMap, ConeAveragingHidesTheCausticsOfTheEarlierDnsPlane) {
   double largest[2], without_cone[2];
   int i = 0;

@@ -12,7 +12,8 @@
 namespace gladstone {
 namespace {
 
-/// A camera whose lens is written in a file of its own, its first vertex 2 m before the medium, the dots 0.25 m behind.
+/// Returns a camera with a lens from a separate file, whose first vertex is 2 m in front of the medium; the dots are
+/// 0.25 m behind it.
 Camera camera_with(std::string const& name, std::string const& surfaces) {
   std::filesystem::path const file = std::filesystem::path(testing::TempDir()) / ("gladstone_" + name + ".toml");
   std::ofstream(file) << "schema = 1\nentrance_pupil_mm = 10.0\n" << surfaces;
@@ -25,16 +26,17 @@ Camera camera_with(std::string const& name, std::string const& surfaces) {
   return build_camera(setup);
 }
 
-/// How far from the axis pixel a point of the dots' plane is seen [px].
+/// Returns the distance of a point of the dots' plane from the axis pixel in the image [px].
 double off_axis_px(Camera const& camera, Vec2d at) {
   auto const pixel = camera.project({at.x, at.y, -0.25});
   EXPECT_TRUE(pixel);
   return pixel ? length(*pixel - camera.sensor.axis_pixel()) : std::nan("");
 }
 
-// A concave mirror of f = 200 mm with the stop at its vertex: the image of a plane s = 2250 mm away lies
-// s' = 1/(1/200 - 1/2250) mm before it, and chief rays turn at the vertex, so that heights are as the distances. An
-// ellipsoid whose foci are these points, e = (s - s')/(s + s') = 37/45, images one into the other by all of its stop.
+// A concave mirror of f = 200 mm with the stop at its vertex: the image of a plane at the distance s = 2250 mm is s' =
+// 1/(1/200 - 1/2250) mm in front of it. Chief rays are reflected at the vertex, so that image heights are proportional
+// to the distances. An ellipsoid with foci at these points, e = (s - s')/(s + s') = 37/45, images one onto the other
+// through the whole stop.
 TEST(MirrorCamera, ImagesByOneMirror) {
   Camera const camera = camera_with(
       "one_mirror", "[[surface]]\nradius_mm = -400.0\nconic = -0.67604938271604938\nglass = \"mirror\"\nstop = true\n");
@@ -45,7 +47,7 @@ TEST(MirrorCamera, ImagesByOneMirror) {
   }
 }
 
-// Flat mirrors fold a path and do nothing else: behind one, two or three of them a lens images as without them.
+// Flat mirrors only fold the light path: a lens followed by one, two or three of them images as without them.
 TEST(MirrorCamera, SeesThroughFoldsAsWithoutThem) {
   std::string const lens =
       "[[surface]]\nradius_mm = 100\nthickness_mm = 4\nglass = \"N-BK7\"\nstop = true\n"
@@ -57,7 +59,7 @@ TEST(MirrorCamera, SeesThroughFoldsAsWithoutThem) {
        {std::pair{"one_fold", back}, {"two_folds", back + forth}, {"three_folds", back + forth + back}}) {
     Camera const folded = camera_with(name, lens + folds);
     for (Vec2d const at : {Vec2d{5e-3, 0}, {0, -7e-3}, {4e-3, 3e-3}}) {
-      // the sensor's place is found to some 1e-9 of its distance
+      // the position of the sensor is found to about 1e-9 of its distance
       EXPECT_NEAR(off_axis_px(folded, at), off_axis_px(straight, at), 1e-6) << name;
     }
   }

@@ -11,7 +11,7 @@
 namespace gladstone {
 namespace {
 
-/// A PIV setup with more in its tables.
+/// Returns a PIV setup with additional keys in its tables.
 std::string piv_text(std::string const& particles = "", std::string const& laser = "", std::string const& flow = "",
                      std::string const& more = "") {
   return "experiment = \"piv\"\n[camera]\npixels = [64, 64]\n" + more + "[particles]\n" + particles + "[laser]\n" +
@@ -43,7 +43,7 @@ TEST(PivSetup, SaysWhatIsOfOtherExperiments) {
   EXPECT_THAT(refused_piv(piv_text("", "", "", "[geometry]\nz_d_mm = 250\n")), told("laser.center_mm"));
   EXPECT_THAT(refused_piv("[particles]\nnumber = 3\n"), told("experiment = \"piv\""));
   EXPECT_THAT(refused_piv("[laser]\n"), told("experiment = \"piv\""));
-  EXPECT_THAT(refused_piv("[camera]\nexposure = \"absolute\"\n"), told("is of PIV"));
+  EXPECT_THAT(refused_piv("[camera]\nexposure = \"absolute\"\n"), told("applies to PIV only"));
 }
 
 TEST(PivSetup, RefusesWhatGivesNoPicture) {
@@ -52,11 +52,11 @@ TEST(PivSetup, RefusesWhatGivesNoPicture) {
   EXPECT_THAT(refused_piv(piv_text("diameter_um = { kind = \"normal\", mean_um = 1, std_um = 0.5 }\n")),
               told("a third"));
   EXPECT_THAT(refused_piv(piv_text("", "", "dt_us = 0\n")), told("dt_us = 0"));
-  EXPECT_THAT(refused_piv(piv_text("index = [1.000277, 0]\n")), told("scatter next to no light"));
-  EXPECT_THAT(refused_piv(piv_text("", "offset_mm = [0, 5]\n")), told("sheet of pulse 2 beside"));
-  EXPECT_THAT(refused_piv(piv_text("number = 10\nper_pixel = 0.1\n")), told("stands beside number"));
+  EXPECT_THAT(refused_piv(piv_text("index = [1.000277, 0]\n")), told("scatter hardly any light"));
+  EXPECT_THAT(refused_piv(piv_text("", "offset_mm = [0, 5]\n")), told("sheet of pulse 2 outside"));
+  EXPECT_THAT(refused_piv(piv_text("number = 10\nper_pixel = 0.1\n")), told("conflicts with number"));
   EXPECT_THAT(refused_piv(piv_text("viscosity_pa_s = 1e-5\n")), told("density_kg_m3"));
-  EXPECT_THAT(refused_piv(piv_text("file = \"nowhere.csv\"\n")), told("there is no file"));
+  EXPECT_THAT(refused_piv(piv_text("file = \"nowhere.csv\"\n")), told("file not found"));
   EXPECT_THAT(refused_piv(piv_text("", "wavelength_nm = 633\n")), told("medium.wavelength_nm"));
   EXPECT_THAT(refused_piv(piv_text("volume_mm = [10, 10, 2000]\n")), told("reaches to the lens"));
   EXPECT_THAT(refused_piv(piv_text("", "", "", "[[window]]\nglass = \"N-BK7\"\nposition_mm = [0, 0, 0.5]\n")),
@@ -71,15 +71,15 @@ TEST(PivSetup, RefusesVelocitiesThatEndInsideTheVolume) {
                     volume = "volume_mm = [12, 12, 2]\nscattering = \"lambert\"\n";
   EXPECT_NO_THROW(read_setup_text(piv_text(volume, "", flow(spacing))));
   EXPECT_THAT(refused_piv(piv_text(volume, "", flow("spacing_mm = [3.9, 6, 2]\n"))),
-              told("reaches from X = -5.85 to 5.85 mm, and ends inside the particles' volume, -6 to 6 mm"));
+              told("field from X = -5.85 to 5.85 mm, which ends inside the particles' volume, -6 to 6 mm"));
   EXPECT_NO_THROW(
       read_setup_text(piv_text(volume, "", flow("spacing_mm = [3.9, 6, 2]\nperiodic = [true, false, false]\n"))));
   EXPECT_THAT(refused_piv(piv_text(volume, "", flow(spacing + "center_mm = [0, 0, 1]\n"))), told("from Z = 0 to 2 mm"));
-  EXPECT_THAT(refused_piv(piv_text("", "", "kind = \"file\"\nfile = \"nowhere.h5\"\n")), told("there is no file"));
+  EXPECT_THAT(refused_piv(piv_text("", "", "kind = \"file\"\nfile = \"nowhere.h5\"\n")), told("file not found"));
   EXPECT_THAT(refused_piv(piv_text("", "", "kind = \"file\"\n")), told("file"));
 }
 
-// Particles that come in from beyond the field, 60 m/s times 5 us on either side of 12 mm, are told.
+// Particles that enter from outside the velocity field, 60 m/s times 5 us on either side of 12 mm, cause a warning.
 TEST(PivSetup, WarnsOfParticlesBeyondTheVelocityField) {
   std::string const file = std::string(GLADSTONE_DATA_DIR) + "/../tests/fuzz/corpus/vti_field/appended_raw.vti";
   gladstone::Setup const setup =
@@ -87,7 +87,7 @@ TEST(PivSetup, WarnsOfParticlesBeyondTheVelocityField) {
                                "kind = \"file\"\nfile = \"" + file + "\"\nspacing_mm = [4, 6, 2]\nscale = 0.5\n"))
           .setup;
   auto const warnings = warnings_of_particles(build_scene(setup));
-  EXPECT_THAT(warnings, testing::Contains(testing::HasSubstr("beyond the velocity field")));
+  EXPECT_THAT(warnings, testing::Contains(testing::HasSubstr("outside the velocity field")));
 }
 
 TEST(PivSetup, KnowsWhatTheSecondPulseSees) {
@@ -110,7 +110,7 @@ TEST(PivSetup, KnowsWhatTheSecondPulseSees) {
               told("which is steady"));
 }
 
-// An absurd number of particles is told with the memory that it would take, before any is.
+// An absurd number of particles is refused with the memory that it would need, before any is created.
 TEST(PivSetup, CountsTheMemoryOfParticles) {
   gladstone::Setup const setup =
       read_setup_text(piv_text("number = 3e9\nvolume_mm = [10, 10, 10]\n", "", "velocity_m_s = [0, 0, 0]\n")).setup;
@@ -120,10 +120,10 @@ TEST(PivSetup, CountsTheMemoryOfParticles) {
   EXPECT_THAT([&] { build_scene(setup); }, testing::ThrowsMessage<DataError>(testing::HasSubstr("GB of memory (")));
 }
 
-// 64 x 64 px of 10 um at M = 105 / 645 see a square of 3.93 mm of the plane Z = 0, all of it within the volume: 0.1 a
-// pixel are 409.6 particles in view, and 8 x 8 / 3.93^2 times as many in the volume. Depths of +-1 mm in 750 change the
-// square evenly. Of the 16384 places some 3950 are in view; their share is good to what lies near the square's corners,
-// some ten places.
+// 64 x 64 px of 10 um at M = 105 / 645 see a square of 3.93 mm of the plane Z = 0, which is inside the volume: 0.1
+// particles per pixel are 409.6 particles in view, and 8 x 8 / 3.93^2 times as many in the volume. The variation of the
+// square over the depth of +-1 mm in 750 mm averages out. About 3950 of the 16384 sample points are in view; the error
+// of their fraction is due to the points near the corners, about ten.
 TEST(PivSetup, SeedsByThePixel) {
   gladstone::Setup const setup = read_setup_text(piv_text("per_pixel = 0.1\nvolume_mm = [8, 8, 2]\n")).setup;
   double const side = 64 * 10e-3 / (105.0 / 645);
@@ -132,10 +132,10 @@ TEST(PivSetup, SeedsByThePixel) {
   EXPECT_NEAR(particle_count(by_volume), 1600, 1e-9);
 }
 
-// The same seen from 45 degrees: columns, at slopes of up to t = 32 px / (z_i / pitch) to either side of the axis, meet
-// Z = 0 at x = Z sqrt(2) u / (1 - u), from the camera's axis, and rows there at heights of v Z / (1 - u), each to first
-// order in nothing: the quadrilateral's area is Z^2 sqrt(2) 4 t^2 / (1 - t^2)^2. With the sensor in the image plane of
-// Z = 0 (Scheimpflug) a pixel sees cos(phi) of that, tan(phi) = M, to second order in t = 0.004.
+// The same plane seen from 45 degrees. Columns and rows at slopes of up to t = 32 px / (z_i / pitch) from the axis
+// intersect Z = 0 at x = Z sqrt(2) u / (1 - u), measured from the camera's axis, and at heights v Z / (1 - u). The area
+// of this quadrilateral is exactly Z^2 sqrt(2) 4 t^2 / (1 - t^2)^2. With the sensor in the image plane of Z = 0
+// (Scheimpflug), a pixel sees cos(phi) of that, tan(phi) = M, to second order in t = 0.004.
 TEST(PivSetup, SeedsByThePixelOfAPosedCamera) {
   for (bool const scheimpflug : {false, true}) {
     gladstone::Setup const setup =
@@ -150,7 +150,7 @@ TEST(PivSetup, SeedsByThePixelOfAPosedCamera) {
   }
 }
 
-// Particles never enter the fast renderer of flat dots, whatever else its bench asks for is there.
+// Particles are never rendered by the fast renderer of flat dots, even if the camera satisfies its conditions.
 TEST(PivScene, IsNotOfFocusedDots) {
   gladstone::Setup const setup = read_setup_text(piv_text("number = 20\nscattering = \"lambert\"\n")).setup;
   EXPECT_TRUE(setup.on_bench());
@@ -163,18 +163,18 @@ TEST(PivScene, RefusesALightThatMeetsNoParticle) {
   std::ofstream(path) << "x_mm,y_mm,z_mm,diameter_um\n0,0,20,1\n1,1,-15,1\n";
   std::string const text = piv_text("file = \"" + path + "\"\n", "profile = \"top_hat\"\n");
   gladstone::Setup const setup = read_setup_text(text).setup;
-  EXPECT_THAT([&] { build_scene(setup); }, testing::ThrowsMessage<DataError>(testing::HasSubstr("lights no particle")));
+  EXPECT_THAT([&] { build_scene(setup); },
+              testing::ThrowsMessage<DataError>(testing::HasSubstr("illuminates no particle")));
 }
 
-// A sheet of 1 mm in a flow of 60 m/s along its normal: in 10 us six tenths of the
-// particles leave it.
+// A sheet of 1 mm in a flow of 60 m/s along its normal: six tenths of the particles leave it in 10 us.
 TEST(PivScene, WarnsOfPairsThatAreLost) {
   gladstone::Setup const lost =
       read_setup_text(piv_text("number = 500\nvolume_mm = [2, 2, 3]\nscattering = \"lambert\"\n",
                                "profile = \"top_hat\"\n", "velocity_m_s = [0, 0, 60]\n"))
           .setup;
   auto const warnings = warnings_of_particles(build_scene(lost));
-  // seeded over 3 mm, two in three of them are in the dark; and 2 mm of the view's 3.9 mm hold any
+  // particles are seeded over 3 mm, so that two thirds of them are dark, and cover 2 mm of the 3.9 mm view
   EXPECT_THAT(warnings, testing::UnorderedElementsAre(testing::HasSubstr("shorten flow.dt_us"),
                                                       testing::HasSubstr("outside the laser sheet"),
                                                       testing::HasSubstr("smaller than the view")));
@@ -185,8 +185,8 @@ TEST(PivScene, WarnsOfPairsThatAreLost) {
   EXPECT_THAT(unseen[0], testing::HasSubstr("images will be empty"));
 }
 
-// Rays go out from a particle's middle. 105 / 645 of 100 um are 1.6 px of 10 um, those of 1 um are not worth a word: at
-// f/11 the spot is 2.44 x 645 / 540 x 11 x 0.532 um, 1.7 px.
+// Rays start from the centre of a particle. The images of particles of 100 um are 105 / 645 of that, 1.6 px of 10 um,
+// which causes a warning; those of 1 um do not. At f/11, the PSF is 2.44 x 645 / 540 x 11 x 0.532 um, 1.7 px.
 TEST(PivScene, WarnsOfParticlesThatAreNoPoints) {
   auto const warned = [](std::string const& diameter) {
     std::string const keys = "number = 200\nvolume_mm = [4, 4, 2]\nscattering = \"lambert\"\ndiameter_um = ";
@@ -197,9 +197,10 @@ TEST(PivScene, WarnsOfParticlesThatAreNoPoints) {
               testing::ElementsAre(testing::HasSubstr("the largest, 100 um, has an image 1.6 px wide")));
 }
 
-// An index of 1 differs from air's by 2.7e-4: light less than that of a droplet by the square of a thousandth.
+// A refractive index of 1 differs from that of air by 2.7e-4: the scattered light is less than that of a droplet by the
+// square of a thousandth.
 TEST(PivSetup, RefusesParticlesThatScatterNextToNothing) {
-  EXPECT_THAT(refused_piv(piv_text("index = [1.0, 0.0]\n")), told("scatter next to no light"));
+  EXPECT_THAT(refused_piv(piv_text("index = [1.0, 0.0]\n")), told("scatter hardly any light"));
   EXPECT_NO_THROW(read_setup_text(piv_text("index = [1.01, 0.0]\n")));
   EXPECT_NO_THROW(read_setup_text(piv_text("index = [1.0, 0.5]\n")));
 }

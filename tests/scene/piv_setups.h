@@ -4,8 +4,8 @@
 
 namespace gladstone {
 
-/// PIV through the lens of Table 1 at f/8, 750 mm before a sheet of uniform light, with white spheres of 1 um.
-/// @param sheet,depth thickness of the light and of the volume with particles, along the line of sight [m]
+/// PIV with the lens of Table 1 at f/8, 750 mm in front of a sheet of uniform light, with white spheres of 1 um.
+/// @param sheet,depth  thickness of the light sheet and of the volume with particles, along the line of sight [m]
 inline Setup piv_setup(double sheet, double depth) {
   constexpr double mm = 1e-3;
   Setup setup;

@@ -8,7 +8,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-/// Table 1's bench with a medium of 10 mm and these windows, each "side, Z in mm, thickness in mm".
+/// Returns the set-up of Table 1 with a medium of 10 mm and these windows, each "side, Z in mm, thickness in mm".
 std::string bench(std::string const& windows) {
   return "[camera]\npixels = [128, 128]\n[lens]\nfocal_length_mm = 105.0\n[geometry]\nz_a_mm = 750.0\nz_d_mm = 250.0\n"
          "[medium]\nthickness_mm = 10.0\n[medium.field]\nkind = \"uniform_gradient\"\ngradient_kg_m4 = [1, 0, 0]\n" +
@@ -21,14 +21,15 @@ std::string window(std::string const& side, double z_mm, double thickness_mm) {
 
 TEST(Windows, StandInTheOrderLightMeetsThem) {
   EXPECT_NO_THROW(read_setup_text(bench(window("target", -100, 20) + window("target", -50, 20) +
-                                        window("camera", 50, 20) + window("camera", 70, 20))));  // faces may touch
+                                        // faces may be in contact
+                                        window("camera", 50, 20) + window("camera", 70, 20))));
 }
 
 TEST(Windows, AreRefusedWhereSomethingElseStands) {
   auto const says = [](std::string const& windows, std::string const& first, std::string const& then) {
     EXPECT_THAT([&] { read_setup_text(bench(windows)); },
                 testing::ThrowsMessage<SetupError>(testing::AllOf(
-                    HasSubstr("case.toml:"), HasSubstr("light is to meet " + first), HasSubstr("and then " + then))));
+                    HasSubstr("case.toml:"), HasSubstr("light must pass " + first), HasSubstr("and then " + then))));
   };
   says(window("target", -300, 10), "the dots", "window 1");
   says(window("target", 0, 20), "window 1", "the medium");
@@ -44,7 +45,7 @@ TEST(Lens, IsRefusedWhereItsFirstVertexStandsInTheMedium) {
                            std::string(GLADSTONE_DATA_DIR) +
                            "/lenses/double_gauss.toml\"\n[medium]\nthickness_mm = 10.0\n[medium.field]\n"
                            "kind = \"uniform_gradient\"\ngradient_kg_m4 = [1, 0, 0]\n[geometry]\nz_d_mm = 1250.0\n";
-  // the principal plane lies 70 mm behind the first vertex
+  // the principal plane is 70 mm behind the first vertex
   EXPECT_THAT([&] { read_setup_text(lens + "z_a_mm = 60.0\n"); },
               testing::ThrowsMessage<SetupError>(testing::AllOf(HasSubstr("the lens lies inside the medium"),
                                                                 HasSubstr("its first vertex lies at Z = -"))));

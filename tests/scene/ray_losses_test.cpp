@@ -10,7 +10,7 @@
 namespace gladstone {
 namespace {
 
-/// Share of what was sent that ends at a place for a cause.
+/// Returns the fraction of all rays sent that end at a place for a cause.
 double share_of(RayLosses const& losses, std::string const& place, RayStatus cause, Frame frame) {
   double share = 0;
   for (RaysLostAt const& lost : losses.lost) {
@@ -19,9 +19,9 @@ double share_of(RayLosses const& losses, std::string const& place, RayStatus cau
   return share;
 }
 
-// A stop of radius r on the first face of a plano-convex lens, R = 51.5 mm, t = 3.6 mm, n = 1.5168, fills its second
-// face to y2 = r (1 + t / (n D) - t (n - 1) / (n R)) with light of a point at D; an edge of 3 mm there takes the rest.
-// 256 points spread evenly tell areas to some two hundredths of the rim's.
+// A stop of radius r on the first face of a plano-convex lens, R = 51.5 mm, t = 3.6 mm, n = 1.5168. Light of a point at
+// the distance D fills its second face up to y2 = r (1 + t / (n D) - t (n - 1) / (n R)); an edge of 3 mm there blocks
+// the outer part. 256 uniformly distributed points determine areas to about two hundredths.
 TEST(RayLosses, AreCountedBySurfaceAndCause) {
   std::string const path = testing::TempDir() + "ray_losses_singlet.toml";
   std::ofstream(path) << "schema = 1\nf_number = 10.0\n[[surface]]\nradius_mm = 51.5\nthickness_mm = 3.6\n"
@@ -39,12 +39,13 @@ TEST(RayLosses, AreCountedBySurfaceAndCause) {
   double const lost = share_of(losses, "surface 2", RayStatus::vignetted, Frame::reference);
   EXPECT_NEAR(lost, 1 - 9 / (rim * rim), 0.03);
   EXPECT_GT(lost, 0.3);
-  EXPECT_LT(share_of(losses, "surface 1", RayStatus::vignetted, Frame::reference), 0.02) << "the stop lets all pass";
+  EXPECT_LT(share_of(losses, "surface 1", RayStatus::vignetted, Frame::reference), 0.02) << "the stop blocks no ray";
   EXPECT_EQ(share_of(losses, "surface 2", RayStatus::vignetted, Frame::flow), lost) << "there is no medium";
 }
 
-// A uniform gradient bends all rays by e = K L |grad rho| and moves them by s = e Z_A on the lens, whose stop of radius
-// r then takes 1 - (2 / pi) (acos q - q sqrt(1 - q^2)), q = s / (2 r), of those that it lets pass without.
+// A uniform gradient deflects all rays by e = K L |grad rho| and displaces them by s = e Z_A on the lens. Of the rays
+// that pass the stop of radius r without the medium, the fraction 1 - (2 / pi) (acos q - q sqrt(1 - q^2)), q = s / (2
+// r), is then blocked.
 TEST(RayLosses, TellThoseThatTheFlowBendsPastTheStop) {
   auto setup = table1_setup(64);
   setup.medium.field = uniform_gradient(150, 0);
@@ -57,8 +58,8 @@ TEST(RayLosses, TellThoseThatTheFlowBendsPastTheStop) {
   EXPECT_LT(share_of(losses, "stop", RayStatus::vignetted, Frame::reference), 0.1 * lost);
 }
 
-// What takes light of a double Gauss behind a window are the lens' edges, none of the window's faces: places keep their
-// names with more elements before them. At f/2 the stop is filled to what the edges let pass.
+// For a double Gauss behind a window, light is lost at the edges of the lens, not at the faces of the window: surfaces
+// of the lens are numbered as without the window. At f/2, the stop transmits almost all light that the edges transmit.
 TEST(RayLosses, NameSurfacesBehindAWindowAsTheLensCountsThem) {
   auto setup = double_gauss_setup(64, 2);
   WindowSetup window;
@@ -72,7 +73,7 @@ TEST(RayLosses, NameSurfacesBehindAWindowAsTheLensCountsThem) {
   RayLosses const losses = sample_ray_losses(scene);
   EXPECT_FALSE(losses.lost.empty());
   for (RaysLostAt const& lost : losses.lost) {
-    EXPECT_EQ(lost.place.find("surface"), 0u) << lost.place << ": the window passes all, the lens' edges do not";
+    EXPECT_EQ(lost.place.find("surface"), 0u) << lost.place << ": light is lost at the edges of the lens only";
   }
 }
 

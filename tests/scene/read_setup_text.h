@@ -15,7 +15,7 @@ struct ReadSetup {
 };
 
 /// Reads and cross-checks a setup, case.toml, as the commands do.
-/// @throws SetupError.
+/// @throws SetupError
 inline ReadSetup read_setup_text(std::string const& text) {
   SetupDocument document = SetupDocument::from_text(text, "case.toml");
   ReadSetup result{read_setup(document.root()), {}};
@@ -24,7 +24,7 @@ inline ReadSetup read_setup_text(std::string const& text) {
   return result;
 }
 
-/// Matches what throws a SetupError of case.toml at `where`, "line:column", that says `why`.
+/// Matches a SetupError of case.toml with a problem at `where`, "line:column", whose text contains `why`.
 inline auto refused(std::string const& where, std::string const& why) {
   return testing::ThrowsMessage<SetupError>(
       testing::AllOf(testing::HasSubstr("case.toml:" + where), testing::HasSubstr(why)));

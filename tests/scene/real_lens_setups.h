@@ -8,7 +8,7 @@
 
 namespace gladstone {
 
-/// Table 1 with a lens of data/lenses/ in its place, by its front principal plane.
+/// Returns Table 1 with a lens of data/lenses/, positioned by its front principal plane.
 inline Setup real_lens_setup(std::string const& lens, int pixels, double f_number) {
   Setup setup = table1_setup(pixels);
   LensOptions options;

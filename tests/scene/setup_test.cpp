@@ -26,7 +26,7 @@ TEST(Setup, DefaultsAreTable1WithoutAnyComplaint) {
   EXPECT_DOUBLE_EQ(seen.setup.z_b(), 1.0);
   EXPECT_NEAR(seen.setup.imaging().magnification, 0.117318436, 1e-9);
   EXPECT_NEAR(seen.setup.ambient_index(), 1.00027685, 1e-12);
-  // 20 dots in 32 x 32 px over 512 px and a window of 64 px all round
+  // 20 dots in 32 x 32 px over 512 px, plus a window of 64 px on all sides
   EXPECT_EQ(seen.setup.dot_count(), std::round(20.0 / 1024 * 640 * 640));
   EXPECT_NEAR(seen.setup.target_extent().x, 640 * 10e-6 / 0.117318436, 1e-9);
   EXPECT_NEAR(seen.setup.dot_diameter(), 3 * 10e-6 / 0.117318436, 1e-12);
@@ -47,10 +47,10 @@ TEST(Setup, DotsAndLensMustStandOutsideTheMedium) {
   EXPECT_THAT([&] { read_setup_text(field + "[lens]\nfocal_length_mm = 10\n[geometry]\nz_a_mm = 30\n"); },
               refused("9:1", "lens lies inside"));
   EXPECT_THAT(read_setup_text("[medium]\nthickness_mm = 100\n[geometry]\nz_d_mm = 20\n").warnings,
-              IsEmpty());  // no field, no medium
+              IsEmpty());  // without a field there is no medium
 }
 
-/// Reads a plume of this radius in a setup with more keys; its resolved thickness comes with it.
+/// A plume of a given radius read from a setup with additional keys, and its resolved setup.
 struct ReadPlume {
   ReadSetup seen;
   std::string resolved;
@@ -66,7 +66,8 @@ ReadPlume read_plume(std::string const& radius_mm, std::string const& medium, st
   return {seen, document.resolved()};
 }
 
-// Seven radii hold all but 7e-7 of a plume's displacement; the resolved setup holds the number and gives it back.
+// A thickness of seven radii contains all but 7e-7 of a plume's displacement; the resolved setup contains the number,
+// which is read back identically.
 TEST(Setup, AutomaticThicknessHoldsAPlume) {
   for (std::string const medium : {"", "thickness_mm = \"auto\""}) {
     ReadPlume const plume = read_plume("15", medium);
@@ -82,7 +83,8 @@ TEST(Setup, AutomaticThicknessHoldsAPlume) {
   EXPECT_THAT(bare.resolved(), HasSubstr("thickness_mm = 10.0\n"));
 }
 
-// erfc(5 / 15) = 0.637 of the displacement lies beyond 10 mm; erfc(5 / 2.7) = 0.88 % is let pass.
+// A thickness of 10 mm truncates the fraction erfc(5 / 15) = 0.637 of the displacement; erfc(5 / 2.7) = 0.88 % is
+// tolerated.
 TEST(Setup, AThicknessThatCutsAPlumeOffIsWarnedOf) {
   EXPECT_THAT(read_plume("15", "thickness_mm = 10").seen.warnings,
               testing::ElementsAre(AllOf(HasSubstr("medium.thickness_mm: 10 mm cut 64 % of the displacement off"),
@@ -90,7 +92,7 @@ TEST(Setup, AThicknessThatCutsAPlumeOffIsWarnedOf) {
   EXPECT_THAT(read_plume("2.7", "thickness_mm = 10").seen.warnings, IsEmpty());
 }
 
-// Z_D = 20 mm leaves 39.6 mm about the mid-plane: erfc(19.8 / 15) = 6.2 % are lost.
+// Z_D = 20 mm leaves 39.6 mm around the mid-plane, so that erfc(19.8 / 15) = 6.2 % are truncated.
 TEST(Setup, AutomaticThicknessStopsShortOfDotsAndLens) {
   ReadPlume const near_dots = read_plume("15", "", "[geometry]\nz_d_mm = 20\n");
   EXPECT_NEAR(near_dots.seen.setup.medium.thickness, 2 * 0.99 * 0.02, 1e-12);
@@ -101,11 +103,11 @@ TEST(Setup, AutomaticThicknessStopsShortOfDotsAndLens) {
   EXPECT_NEAR(near_lens.seen.setup.medium.thickness, 2 * 0.99 * 0.03, 1e-12);
   EXPECT_THAT([] { read_plume("15", "thickness_mm = 105", "[geometry]\nz_d_mm = 20\n"); },
               refused("8:1", "dots lie inside the medium"))
-      << "told, not automatic";
+      << "a given thickness is not limited";
 }
 
-// Rays follow a wave in quarters of its length, a shock in quarters of its thickness, a plume in halves of its radius,
-// a trilinear grid in quarters of a cell: 1e6 steps across 10 mm at most, whoever asks for them.
+// The step is limited to a quarter of a wavelength, a quarter of a shock's thickness, half a plume's radius, and a
+// quarter of a cell of a trilinear grid. At most 1e6 steps across 10 mm are accepted, however they are requested.
 TEST(Setup, LengthsThatNoRayGetsToTheEndOfAreRefusedAtTheirKey) {
   std::string const wave = "[medium.field]\nkind = \"sinusoid\"\namplitude_kg_m3 = 0.1\nwavelength_mm = ";
   EXPECT_THAT([&] { read_setup_text(wave + "1e-9\n"); },
@@ -154,7 +156,7 @@ TEST(Setup, WhatIsOfOthersOrDueLaterIsRefusedByName) {
   EXPECT_THAT([] { read_setup_text("schema = 2\n"); }, refused("1:1", "schema"));
 }
 
-// A word that decides which keys a table has, and is wrong, leaves nothing to say of the others.
+// If a word that determines the other keys of its table is wrong, no problems of the other keys are reported.
 TEST(Setup, KeysOfARefusedKindAreNotCalledUnknown) {
   auto const only = [](std::string const& why) {
     return ThrowsMessage<SetupError>(
@@ -173,7 +175,7 @@ TEST(Setup, KeysOfARefusedKindAreNotCalledUnknown) {
             "[[medium.field]]\n[[medium.field]]\nkind = \"gaussian_blob\"\nradius_mm = 1\namplitude_kg_m3 = 1\n");
       },
       only("several fields"));
-  // but a table beside it is read as ever
+  // but other tables are checked as usual
   EXPECT_THAT([] { read_setup_text("[medium]\nstep = 1\n[medium.field]\nkind = \"sinusiod\"\n"); },
               refused("2:1", "unknown key \"step\""));
 }
@@ -189,7 +191,7 @@ TEST(Setup, AllProblemsComeTogether) {
                                       HasSubstr("case.toml:6:1"), HasSubstr("case.toml:8:1"))));
 }
 
-// A picture of 1e6 x 1e6 px takes 1e12 pixels of two frames: tens of terabytes, refused by its figure, before
+// Two frames of 1e6 x 1e6 px have 2e12 pixels and need tens of terabytes; they are refused, with this number, before
 // allocation.
 TEST(Memory, ThatTheMachineDoesNotHaveIsRefusedWithItsFigure) {
   gladstone::Setup setup;
@@ -197,7 +199,7 @@ TEST(Memory, ThatTheMachineDoesNotHaveIsRefusedWithItsFigure) {
   EXPECT_THAT(
       [&] { build_scene(setup); },
       ThrowsMessage<DataError>(AllOf(HasSubstr("GB of memory"), HasSubstr("images 3.6e+04"), HasSubstr("reduce"))));
-  // and so is what a renderer needs beside images, field and dots
+  // the same applies to the memory of a renderer in addition to images, field and dots
   EXPECT_THAT(
       [&] {
         check_memory(setup, FieldMemory::needed, {{"lens", "what a renderer keeps", 2e9}});
@@ -210,18 +212,19 @@ TEST(BuildScene, MakesTheDotsOfTheTarget) {
   setup.camera.columns = setup.camera.rows = 64;
   EXPECT_EQ(static_cast<double>(build_scene(setup).dots.centre.size()), setup.dot_count());
   setup.target.arrangement = DotArrangement::regular;
-  Scene const regular = build_scene(setup);  // whole rows and columns: up to one of 26 less, each way
+  // a regular target has whole rows and columns: up to one of 26 less in each direction
+  Scene const regular = build_scene(setup);
   EXPECT_NEAR(static_cast<double>(regular.dots.centre.size()), setup.dot_count(), 0.08 * setup.dot_count());
   EXPECT_EQ(regular.dots.half_size, setup.dot_diameter() / 2);
-  // picture and target are each other's images
+  // to_pixel() and to_target() are inverse to each other
   Vec2d const px{12.5, 40.25}, back = regular.to_pixel(regular.to_target(px));
   EXPECT_NEAR(back.x, px.x, 1e-12);
   EXPECT_NEAR(back.y, px.y, 1e-12);
 }
 
-// Dots stand at random, so the number in the picture is binomial about the mean that the setup asks for: 20 in 32 x 32
-// px make 1280 in 256 x 256, with a standard deviation below sqrt(1280) = 36. By the magnification on the axis alone a
-// view at 60 degrees would hold 1 / cos(60 deg) = 2 times as many.
+// Dots are placed at random, so the number in the image is binomially distributed about the mean that the setup
+// requests: 20 in 32 x 32 px are 1280 in 256 x 256, with a standard deviation below sqrt(1280) = 36. If only the
+// magnification on the axis were considered, a view at 60 degrees would contain 1 / cos(60 deg) = 2 times as many.
 TEST(BuildScene, AnObliqueViewHoldsTheDotsThatAreAskedFor) {
   for (std::string const sensor : {"", "[camera.sensor]\nscheimpflug = \"auto\"\n"}) {
     ReadSetup const read = read_setup_text(
@@ -237,7 +240,8 @@ TEST(BuildScene, AnObliqueViewHoldsTheDotsThatAreAskedFor) {
   }
 }
 
-// F13 at Table 1: first zero 1.595 px wide; matched sigma 0.4206 of 0.6539 px; the seed's print times pi, 5.01 px.
+// F13 at Table 1: first zero 1.595 px wide; matched sigma 0.4206 of 0.6539 px; with the factor pi printed in Rajendran
+// et al. 2019, 5.01 px.
 TEST(BuildScene, SpotsHaveTheSizesOfTable1) {
   gladstone::Setup setup;
   setup.camera.columns = setup.camera.rows = 32;

@@ -30,8 +30,8 @@ inline FieldSetup sinusoid(double amplitude, double wavelength, Vec2d direction 
   return Sinusoid<double>::wave(amplitude, wavelength, direction);
 }
 
-/// The DNS plane of that name, as the demo maps it: 1.225 kg/m^3, 32 mm, periodic in x and y, stacked over the
-/// thickness.
+/// Returns the DNS plane of that name, scaled as in the demo: 1.225 kg/m^3, 32 mm, periodic in x and y, extruded over
+/// the thickness.
 inline FieldSetup dns_plane(std::string const& instant) {
   FieldSetup field;
   field.kind = FieldKind::file;
@@ -46,7 +46,8 @@ inline FieldSetup dns_plane(std::string const& instant) {
 
 inline StepPlan plan_step(Scene& scene) { return plan_step_by_rays(scene); }
 
-/// A scene with dots at given places of the reference picture [px], its step and margin planned, its rays given.
+/// Returns a scene with dots at given positions in the reference image [px] and a given number of rays, with its step
+/// and margin planned.
 inline Scene scene_with_dots(Setup const& setup, std::vector<Vec2d> const& at_px, std::uint64_t rays) {
   Setup bare = setup;
   bare.target.dots_per_32px_window = 1;
@@ -61,7 +62,7 @@ inline Scene scene_with_dots(Setup const& setup, std::vector<Vec2d> const& at_px
   return scene;
 }
 
-/// By the fast renderer, or by the general one what it does not take, or not all of.
+/// Renders a scene by the fast renderer, or by the general one if the fast renderer does not support all of its dots.
 inline Rendering render_either(Scene& scene, RenderImages images, RenderTheory theory) {
   if (focused_dots(scene)) {
     Rendering rendering = FocusedDotsRenderer().render(scene, scene.dots, images, theory);
@@ -74,7 +75,7 @@ inline GroundTruth trace_truth(Scene& scene, RenderTheory theory = RenderTheory:
   return render_either(scene, RenderImages::no, theory).truth;
 }
 
-/// A lattice of points, `pitch` apart, in the middle of a square picture.
+/// Returns a lattice of points, `pitch` apart, in the middle of a square image [px].
 inline std::vector<Vec2d> lattice(int pixels, int per_side, double pitch) {
   std::vector<Vec2d> points;
   for (int j = 0; j < per_side; ++j) {

@@ -12,8 +12,8 @@
 namespace gladstone {
 namespace {
 
-/// The shipped lens, telecentric at 587.6 nm, about so at 532 nm: at its working distance, 1160 mm before its first
-/// vertex, its magnification is 0.2.
+/// The shipped lens, telecentric at 587.6 nm and approximately at 532 nm. At its working distance, 1160 mm in front of
+/// its first vertex, the magnification is 0.2.
 std::string telecentric(std::string const& f_number, std::string const& place = "z_front_mm = 960.0") {
   return "[camera]\npixels = [256, 256]\npixel_pitch_um = 20.0\n[lens]\nmodel = \"prescription\"\nfile = \"" +
          std::string(GLADSTONE_DATA_DIR) + "/lenses/telecentric.toml\"\n" + f_number + "[geometry]\n" + place +
@@ -24,8 +24,8 @@ gladstone::Setup telecentric_setup(std::string const& f_number = "") {
   return read_setup_text(telecentric(f_number)).setup;
 }
 
-// Chief rays run parallel to the axis: a point that moves along it keeps its place in the picture. 0.3 m nearer or
-// further a perspective camera at 1.16 m would show it a third larger, or a fifth smaller.
+// Chief rays are parallel to the axis: a point that moves along the axis keeps its position in the image. If it moves
+// by 0.3 m, a perspective camera at 1.16 m would show it a third larger, or a fifth smaller.
 TEST(TelecentricCamera, ShowsPointsWhereTheyAreAtAnyDistance) {
   gladstone::Setup const setup = telecentric_setup();
   EXPECT_NEAR(setup.imaging().magnification, 0.2, 0.004);
@@ -38,14 +38,14 @@ TEST(TelecentricCamera, ShowsPointsWhereTheyAreAtAnyDistance) {
     for (double const z : {-0.5, 0.1}) {
       auto const there = camera.project({at.x, at.y, z});
       ASSERT_TRUE(there);
-      // at 532 nm the pupil stands some tens of metres off: 0.3 m change the picture by less than a hundredth
+      // at 532 nm, the pupil is some tens of metres away: 0.3 m change the image by less than a hundredth
       EXPECT_NEAR(length(*there - axis) / length(*here - axis), 1, 0.01);
     }
   }
 }
 
-// The aim disc is found by tracing: its rays fill the stop, and light leaves a point of the target straight along the
-// axis, wherever it stands.
+// The entrance pupil is found by ray tracing: its rays fill the stop, and the chief ray of any point of the target is
+// parallel to the axis.
 TEST(TelecentricCamera, AimsAtItsStopThoughItsPupilIsInfinitelyFar) {
   gladstone::Setup const setup = telecentric_setup();
   Camera const camera = build_camera(setup);
@@ -65,7 +65,7 @@ TEST(TelecentricCamera, AimsAtItsStopThoughItsPupilIsInfinitelyFar) {
   }
 }
 
-// An f-number of such a lens is the working one, of the cone that comes to a point of the picture: 1 / (2 tan u').
+// The f-number of such a lens is the working one, of the light cone that converges on an image point: 1 / (2 tan u').
 TEST(TelecentricCamera, FNumberSetsTheStopByTheConeOfLightInTheImage) {
   double last = 0;
   for (double const N : {8.0, 16.0}) {
@@ -80,7 +80,7 @@ TEST(TelecentricCamera, FNumberSetsTheStopByTheConeOfLightInTheImage) {
       pass_element(element, rim, account);
     }
     double const slope = std::hypot(rim.direction.x, rim.direction.y) / rim.direction.z;
-    // the aim disc is as wide as its furthest rim point, the slope's aberration of the order of its cube
+    // the rim ray has an aberration of third order in its slope
     EXPECT_NEAR(2 * N * slope, 1, 0.01) << N;
     EXPECT_NEAR(setup.imaging().image_distance / setup.imaging().entrance_pupil, N, 0.005 * N);
     if (last > 0) {
@@ -90,7 +90,7 @@ TEST(TelecentricCamera, FNumberSetsTheStopByTheConeOfLightInTheImage) {
   }
 }
 
-// No distance to a principal plane says where such a lens stands.
+// Such a lens cannot be positioned by its principal plane.
 TEST(TelecentricCamera, IsPlacedByItsFirstVertexAlone) {
   EXPECT_THAT([] { read_setup_text(telecentric("", "z_a_mm = 960.0")); }, refused("8:1", "telecentric"));
   ParaxialLens const paraxial = paraxial_lens(*telecentric_setup().lens.prescription);

@@ -14,24 +14,25 @@
 namespace gladstone {
 namespace {
 
-/// What a ray's place on the sensor may depend on.
+/// Parameters on which the landing position of a ray on the sensor depends.
 enum Parameter {
   source_x,  // [m]
   source_y,
   source_z,
-  aim_x,  // on the aim plane: the ray's direction [m]
+  aim_x,  // position on the aim plane, which determines the ray's direction [m]
   aim_y,
-  sensor_distance,     // by which the sensor is moved along its axis [m]
-  window_tilt,         // by which the first face is turned about its x [rad]
-  curvature_added,     // to a surface's, or to the power of a thin lens [1/m]
-  element_decentring,  // of that surface along its x [m]
+  sensor_distance,     // displacement of the sensor along its axis [m]
+  window_tilt,         // rotation of the first face about its x axis [rad]
+  curvature_added,     // change of a surface's curvature, or of the power of a thin lens [1/m]
+  element_decentring,  // decentring of that surface along its x axis [m]
   parameters
 };
 using Jet = ceres::Jet<double, parameters>;
 template <class T>
 using Values = std::array<T, parameters>;
 
-/// Where a ray lands, by everything it depends on. @param changed element that curvature and decentring are of
+/// Returns the landing position of a ray as a function of all parameters. @param changed  element to which curvature
+/// and decentring apply
 template <class T>
 Vec2<T> landing(Camera const& camera, int changed, Values<T> const& v) {
   std::vector<CameraElement<T>> elements;
@@ -66,15 +67,15 @@ Vec2<T> landing(Camera const& camera, int changed, Values<T> const& v) {
   return hit.pixel;
 }
 
-/// Holds Jets against differences of eighth order: with steps h of 1e-2 of the way f changes over, they err by
-/// (h/way)^8 = 1e-16, and by the rounding of f over h: 1e-12 px of some px. 1e-8 of each parameter's derivative is left
-/// to both.
+/// Compares the derivatives of Jets with differences of eighth order. With steps h of 1e-2 of the length over which f
+/// varies, the truncation error is (1e-2)^8 = 1e-16, and rounding of f over h contributes 1e-12 px for values of some
+/// px. The tolerance is 1e-8 of each derivative.
 void expect_exact_derivatives(Camera const& camera, int changed, Values<double> const& at) {
   Values<Jet> jets;
   for (int k = 0; k < parameters; ++k) jets[static_cast<std::size_t>(k)] = Jet(at[static_cast<std::size_t>(k)], k);
   Vec2<Jet> const traced = landing(camera, changed, jets);
   Vec2d const plain = landing(camera, changed, at);
-  // a Jet computes what a double does, but for where the compiler fuses products with sums
+  // the value of a Jet equals that in double, up to the rounding of fused products and sums
   EXPECT_NEAR(traced.x.a, plain.x, 1e-9);
   EXPECT_NEAR(traced.y.a, plain.y, 1e-9);
   Values<double> const steps{1e-4, 1e-4, 1e-3, 1e-4, 1e-4, 1e-4, 2e-4, 1e-2, 1e-5};
@@ -105,7 +106,7 @@ WindowSetup tilted_window() {
 
 constexpr Values<double> off_axis{0.012, -0.015, -0.25, 0.004, 0.007, 0, 0, 0, 0};
 
-// The chain rule through a window, eleven surfaces and a tilted sensor, as Jets run it, is what differences approach.
+// The chain rule through a window, eleven surfaces and a tilted sensor, as computed by Jets, agrees with differences.
 TEST(TrainDerivatives, ThroughADoubleGaussAreExact) {
   gladstone::Setup setup = double_gauss_setup(512, 4);
   setup.windows = {tilted_window()};
@@ -114,7 +115,7 @@ TEST(TrainDerivatives, ThroughADoubleGaussAreExact) {
   expect_exact_derivatives(camera, 6, off_axis);
 }
 
-// The same through an ideal lens, whose place on the sensor is distorted.
+// Like above, through an ideal lens with distortion of the image position.
 TEST(TrainDerivatives, ThroughAThinLensAreExact) {
   gladstone::Setup setup = table1_setup(512);
   setup.windows = {tilted_window()};
@@ -126,7 +127,7 @@ TEST(TrainDerivatives, ThroughAThinLensAreExact) {
   expect_exact_derivatives(camera, static_cast<int>(camera.elements.size()) - 1, at);
 }
 
-/// The double Gauss with its last surface in another shape of the same conic.
+/// Returns the double Gauss with its last surface represented by another shape with the same conic.
 template <class MakeShape>
 Camera camera_with_last(MakeShape const& shape_of) {
   gladstone::Setup setup = double_gauss_setup(512, 4);
@@ -146,7 +147,7 @@ Camera camera_with_last(MakeShape const& shape_of) {
   return camera;
 }
 
-// An asphere is met by iteration: the derivative is that of the place it ends at.
+// The intersection with an asphere is found by iteration: the derivative is that of the converged solution.
 TEST(TrainDerivatives, ThroughAnAsphereAreExact) {
   Camera const even = camera_with_last([](Quadric<double> const& conic) {
     return EvenAsphere<double>{conic, {0, 30.0, -4e4, 2e7}};

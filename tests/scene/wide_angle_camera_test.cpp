@@ -13,8 +13,8 @@
 namespace gladstone {
 namespace {
 
-/// The fisheye of 170 degrees (focal length 0.205 mm, image circle 0.5 mm wide) at f/4 before dots that stand 100 mm in
-/// front of its first vertex, which is where it is focused.
+/// The fisheye lens of 170 degrees (focal length 0.205 mm, image circle 0.5 mm wide) at f/4 in front of dots at a
+/// distance of 100 mm from its first vertex, on which it is focused.
 Setup wide_setup(int pixels, double pitch) {
   Setup setup = table1_setup(pixels);
   setup.camera.pixel_pitch = pitch;
@@ -28,19 +28,19 @@ Setup wide_setup(int pixels, double pitch) {
   setup.lens.focal_length = paraxial.effective_focal_length;
   setup.lens.f_number = 4;
   setup.z_d = 0.05;
-  // z_a reaches to the front principal plane
+  // z_a is the distance to the front principal plane
   setup.z_a = 0.05 + paraxial.front_principal_plane;
   return setup;
 }
 
 struct ChiefRay {
-  double degrees;  ///< under which the first vertex sees the point
-  double y_mm;     ///< where the chief ray passes the plane of the last vertex
-  double slope;    ///< and its slope there
+  double degrees;  ///< angle under which the first vertex sees the point
+  double y_mm;     ///< intersection of the chief ray with the plane of the last vertex
+  double slope;    ///< slope of the chief ray there
 };
 
-// From an independent tracer in Python: rays started at the stop's centre, traced back through the lens until they pass
-// the point (0, 100 mm tan(angle)), then through the whole lens.
+// Reference values from an independent ray tracer in Python: rays started at the centre of the stop, traced backwards
+// through the lens so that they pass the point (0, 100 mm tan(angle)), then through the whole lens.
 constexpr ChiefRay listing[] = {{0, 0, 0},
                                 {20, -0.029306102972631542, -0.048733846496671292},
                                 {40, -0.056872352603961993, -0.094554229130358103},
@@ -56,8 +56,8 @@ Vec3d point_at(double degrees, double turn = 0) {
   return {-r * std::sin(turn), r * std::cos(turn), -0.05};
 }
 
-// Heights on the sensor, which stands in best focus a known way behind the last vertex: chief rays meet the stop's
-// centre to 1e-10 of its radius (0.16 mm), 1e-7 px of 1 um.
+// Heights on the sensor, which is in the best focus at a known distance behind the last vertex: chief rays meet the
+// stop's centre to 1e-10 of its radius (0.16 mm), 1e-7 px of 1 um.
 TEST(WideAngleCamera, ProjectsToEightyDegreesAsAnIndependentTracer) {
   auto const setup = wide_setup(513, 1e-6);
   Camera const camera = build_camera(setup);
@@ -74,9 +74,9 @@ TEST(WideAngleCamera, ProjectsToEightyDegreesAsAnIndependentTracer) {
   }
 }
 
-// unproject() undoes project(), and its derivatives are those of project(): they are central differences over a pixel
-// of the axis, 0.5 mm here, whose rays pass the pupil (0.03 mm) 5 um beside its middle: (5/30)^2 of a tenth, the share
-// that aberrations have in it, is 3e-3.
+// unproject() is the inverse of project(), and its derivatives are those of project(). They are central differences
+// over a pixel on the axis, 0.5 mm here, whose rays pass the pupil (0.03 mm) 5 um from its centre. With (5/30)^2 times
+// a tenth, the contribution of aberrations, the error is 3e-3.
 TEST(WideAngleCamera, UnprojectsWhatItProjects) {
   auto const setup = wide_setup(513, 1e-6);
   Camera const camera = build_camera(setup);
@@ -87,7 +87,7 @@ TEST(WideAngleCamera, UnprojectsWhatItProjects) {
     ASSERT_TRUE(pixel) << row.degrees;
     auto const seen = camera.unproject(*pixel, plane);
     ASSERT_TRUE(seen) << row.degrees;
-    // solved to 1e-6 px; a pixel there sees 100 mm / (205 px cos^2): 16 mm at 80 degrees
+    // solved to 1e-6 px; a pixel at this position sees 100 mm / (205 px cos^2): 16 mm at 80 degrees
     EXPECT_NEAR(length(seen->place - Vec2d{point.x, point.y}), 0, 2e-8) << row.degrees;
     double const h = 1e-5;
     auto const right = camera.project(point + Vec3d{h, 0, 0}), left = camera.project(point - Vec3d{h, 0, 0});
@@ -97,7 +97,7 @@ TEST(WideAngleCamera, UnprojectsWhatItProjects) {
   }
 }
 
-// No ray that passes the stop goes to the aim plane beside what a source sees of the stop.
+// No ray that passes the stop crosses the aim plane outside of the entrance pupil as seen from the source.
 TEST(WideAngleCamera, SourcesSeeTheWholeStop) {
   Camera const camera = build_camera(wide_setup(65, 8e-6));
   for (double const degrees : {0.0, 45.0, 60.0, 70.0, 80.0}) {
@@ -122,8 +122,8 @@ TEST(WideAngleCamera, SourcesSeeTheWholeStop) {
   }
 }
 
-// The renderer lights dots at 0, 40 and 60 degrees where project() has them: the centroid departs from the chief ray by
-// the lens' coma alone, below a tenth of its spot, which is some pixels of 8 um at most.
+// Dots at 0, 40 and 60 degrees are rendered at the positions of project(): the centroid differs from the chief ray only
+// by the coma of the lens, less than a tenth of its spot, which is at most some pixels of 8 um.
 TEST(WideAngleRendering, ShowsDotsAtTheRimOfTheField) {
   auto setup = wide_setup(36, 8e-6);  // corners at 0.204 mm, 63 degrees
   setup.target.dots_per_32px_window = 1;
@@ -142,7 +142,7 @@ TEST(WideAngleRendering, ShowsDotsAtTheRimOfTheField) {
     ASSERT_TRUE(pixel);
     EXPECT_GT(result.truth.rays[dot][0], 500) << dot;
     EXPECT_NEAR(length(result.truth.reference_px[dot] - *pixel), 0, 0.3) << dot;
-    EXPECT_EQ(result.truth.displacement_px[dot], Vec2d{}) << "without a medium nothing moves";
+    EXPECT_EQ(result.truth.displacement_px[dot], Vec2d{}) << "no displacement without a medium";
   }
 }
 
@@ -159,10 +159,10 @@ Rendering render_dots(Scene& scene, std::vector<double> const& degrees, double h
   return RaysRenderer().render(scene, scene.dots, RenderImages::yes, RenderTheory::yes);
 }
 
-// Dots of 3 mm are 30 times as wide as the pupil. Each of their rays starts towards the pupil as seen from its own
-// start, so that nearly as many rays pass as of a point, nine tenths on the axis: the others meet the margin of the
-// target area. Light per area departs from that of the centre by the curvature of the cos^4 law over the dot, at most
-// (1.5 mm / 100 mm)^2 of it times a factor of order 1; 4096 Sobol points add some 0.2 %.
+// Dots of 3 mm are 30 times as wide as the pupil. Each of their rays is directed at the pupil as seen from its own
+// start point, so that nearly as many rays pass as for a point, nine tenths on the axis; the others are in the margin
+// of the target area. The light per area differs from that of the centre by the curvature of the cos^4 law over the
+// dot, at most (1.5 mm / 100 mm)^2 times a factor of order 1; 4096 Sobol points add an error of about 0.2 %.
 TEST(WideAngleRendering, DotsLargerThanThePupilLoseNoRays) {
   auto setup = wide_setup(65, 8e-6);
   setup.target.dots_per_32px_window = 1;
@@ -179,14 +179,14 @@ TEST(WideAngleRendering, DotsLargerThanThePupilLoseNoRays) {
     EXPECT_NEAR(length(dots.truth.reference_px[dot] - points.truth.reference_px[dot]), 0, 0.02) << degrees[dot];
     EXPECT_TRUE(std::isfinite(dots.truth.eq9_cone_px[dot].x)) << degrees[dot];
   }
-  // A pixel on the axis that its dot fills is fully lit.
+  // A pixel on the axis that is filled by its dot is fully lit.
   auto const seen = scene.camera.see({}, scene.target_plane());
   ASSERT_TRUE(seen);
   double const pixels = pi * large * large * std::abs(seen->by_x.x * seen->by_y.y - seen->by_x.y * seen->by_y.x);
   EXPECT_NEAR(dots.truth.flux[0].x / pixels, 1, 0.02);
 }
 
-// No ray from the rim of a dot of 10 mm passes the stop outside the target area of that ray.
+// No ray from the rim of a dot of 10 mm passes the stop outside of its target area.
 TEST(WideAngleRendering, TargetAreasOfLargeDotsHoldTheWholeStop) {
   auto setup = wide_setup(65, 8e-6);
   setup.target.dots_per_32px_window = 1;
@@ -222,8 +222,8 @@ TEST(WideAngleRendering, TargetAreasOfLargeDotsHoldTheWholeStop) {
   }
 }
 
-// Rays of sources up to as large as the pupil are sent to the pupil as seen from the source's middle, enlarged by
-// the source's size.
+// Rays of sources up to as large as the pupil are sent to the pupil as seen from the source's centre, enlarged by the
+// source's size.
 TEST(WideAngleRendering, SmallSourcesAimAtThePupilSeenFromTheirMiddle) {
   auto setup = wide_setup(65, 8e-6);
   setup.target.dots_per_32px_window = 1;
@@ -234,7 +234,7 @@ TEST(WideAngleRendering, SmallSourcesAimAtThePupilSeenFromTheirMiddle) {
   ASSERT_TRUE(disc);
   double const larger = std::max(length(disc->a), length(disc->b));
   double const area = length(cross(disc->a, disc->b));
-  double const below = 0.99 * area / std::hypot(length(disc->a), length(disc->b));  // below either semi-axis
+  double const below = 0.99 * area / std::hypot(length(disc->a), length(disc->b));  // smaller than either semi-axis
   AimShift const small = launch.aim_shift(*disc, middle, below);
   EXPECT_EQ(small.by_x, Vec3d{});
   EXPECT_EQ(small.by_y, Vec3d{});

@@ -12,7 +12,7 @@
 namespace gladstone {
 namespace {
 
-/// A camera whose grey level is an electron, without shot and read noise.
+/// A camera with one grey level per electron, without shot noise and read noise.
 CameraSetup counting_camera(int columns, int rows) {
   CameraSetup camera;
   camera.columns = columns;
@@ -49,7 +49,7 @@ double deviation_of(Image<std::uint16_t> const& image) {
   return std::sqrt(sum / static_cast<double>(image.size() - 1));
 }
 
-// Level in the middle, and by how much it grows from the first column (row) to the last; light comes on top.
+// Level at the image centre, and its increase from the first to the last column (row); light is added to it.
 TEST(Background, IsALevelAndAGradient) {
   CameraSetup camera = counting_camera(5, 3);
   camera.background.level_e = 500;
@@ -60,12 +60,12 @@ TEST(Background, IsALevelAndAGradient) {
       EXPECT_EQ(image(column, row), 530 + 100 * (column - 2) - 50 * (row - 1));
     }
   }
-  // the sources' light alone
+  // contains the light of the sources only
   EXPECT_DOUBLE_EQ(Detector(camera, 30).ideal_level(1.0), 30);
 }
 
-// A ramp of four pixels stretched over eight: their centres fall on 0.5, 2.5, 4.5, 6.5 of the sensor's, and it is flat
-// beyond the outermost. Its brightest pixel is worth glare_e.
+// A ramp of four pixels is stretched over eight: the pixel centres of the ramp are at 0.5, 2.5, 4.5 and 6.5 of the
+// sensor, and the glare is constant beyond the outermost ones. The brightest pixel of the ramp corresponds to glare_e.
 TEST(Background, StretchesAGlareOverTheSensor) {
   std::string const path = testing::TempDir() + "/glare.tif";
   Image<std::uint16_t> ramp(4, 1);
@@ -84,7 +84,8 @@ TEST(Background, StretchesAGlareOverTheSensor) {
   EXPECT_THROW(Detector(camera, 1), DataError);
 }
 
-// Background has shot noise as other light: its variance is its mean; five standard errors of a variance.
+// The background has shot noise like any other light, with a variance equal to its mean. Tolerance: five standard
+// errors of a variance.
 TEST(Background, HasShotNoise) {
   CameraSetup camera = patterned_camera();
   camera.noise.shot_noise = true;
@@ -93,8 +94,9 @@ TEST(Background, HasShotNoise) {
   EXPECT_NEAR(variance, 1000 + 1.0 / 12, 5 * 1000 * std::sqrt(2.0 / 90000));
 }
 
-// Gains of 2 % deviation make 20000 electrons differ by 400, black levels of 30 electrons differ by those, whatever the
-// light; both are the same in either frame. Five standard errors of a standard deviation.
+// A relative gain deviation of 2 % makes pixels at 20000 electrons differ by 400 electrons rms; black levels differ by
+// 30 electrons rms at any light. Both patterns are the same in both frames. Tolerance: five standard errors of a
+// standard deviation.
 TEST(FixedPattern, ScalesTheLightAndShiftsTheDark) {
   CameraSetup camera = patterned_camera();
   double const error = 5 / std::sqrt(2.0 * 90000);
@@ -102,7 +104,8 @@ TEST(FixedPattern, ScalesTheLightAndShiftsTheDark) {
   Image<std::uint16_t> const bright = recorded(camera, 20000), dim = recorded(camera, 2000);
   EXPECT_NEAR(deviation_of(bright), 400, 400 * error);
   EXPECT_NEAR(mean_of(bright), 21000, 5 * 400 / 300.0);
-  // the same gains at any light: a tenth of the light shows a tenth of them, to the rounding of either
+  // The gains do not depend on the light: a tenth of the light shows a tenth of the deviation, apart from rounding of
+  // both.
   for (std::size_t i = 0; i < bright.size(); ++i) {
     EXPECT_NEAR(dim.data()[i] - 1000.0, (bright.data()[i] - 1000.0) / 10, 0.55 + 1e-9);
   }
@@ -118,8 +121,8 @@ TEST(FixedPattern, ScalesTheLightAndShiftsTheDark) {
   EXPECT_FALSE(std::equal(dark.begin(), dark.end(), other.begin()));
 }
 
-// A share of 1 % of the pixels collects charges with an exponential distribution: 900 of 90000, four deviations; their
-// mean, four of its own. The black level's pattern does not move them.
+// 1 % of the pixels, 900 of 90000, have an exponentially distributed charge. Tolerance: four standard deviations of the
+// number, and four of the mean charge. The pattern of black levels does not change which pixels are hot.
 TEST(HotPixels, AreAShareOfAllWithAnExponentialCharge) {
   CameraSetup camera = patterned_camera();
   camera.noise.hot_pixel_share = 0.01;
@@ -160,7 +163,7 @@ TEST(CameraSetup, RefusesABackgroundThatHidesAll) {
   EXPECT_THAT([&] { read("background.level_e = 29000"); }, ThrowsMessage<SetupError>(HasSubstr("the limit is 24000")));
   EXPECT_THAT([&] { read("background.glare_e = 5"); }, ThrowsMessage<SetupError>(HasSubstr("glare_file")));
   EXPECT_THAT([&] { read("background.glare_file = \"absent.png\""); },
-              ThrowsMessage<SetupError>(HasSubstr("there is no file")));
+              ThrowsMessage<SetupError>(HasSubstr("file not found")));
   EXPECT_THAT([&] { read("noise.hot_pixel_share = 2"); }, ThrowsMessage<SetupError>(HasSubstr("hot_pixel_share")));
   EXPECT_THAT([&] { read("bit_depth = 18"); }, ThrowsMessage<SetupError>(HasSubstr("bit_depth")));
 }

@@ -71,15 +71,15 @@ TEST(Detector, SaturationIsClippedAndCounted) {
   EXPECT_EQ(recording.image(3, 0), 255);
   EXPECT_EQ(recording.image(0, 0), 128);
 
-  // a full well is saturated although read noise moves it about full scale
+  // a pixel at full well counts as saturated although read noise changes its level
   CameraSetup const noisy = noisy_camera();
   EXPECT_EQ(Detector(noisy, noisy.noise.full_well_e).record(light, RandomStream::noise_flow).saturated, 2u);
 }
 
-// Photon transfer: electrons are Poisson of mean m = light + dark, read noise r is added, gain k levels an electron,
-// and rounding adds 1/12: mean = offset + k m, variance = k^2 (m + r^2) + 1/12. With n = 40000 pixels the mean scatters
-// by sqrt(variance/n) and the variance by variance sqrt((2 + 1/m)/n) (kurtosis of a Poisson number); five of these
-// allowed.
+// Photon transfer: the number of electrons is Poisson distributed with mean m = light + dark; read noise r is added;
+// the gain is k levels per electron; rounding adds 1/12. Hence mean = offset + k m and variance = k^2 (m + r^2) + 1/12.
+// For n = 40000 pixels, the standard deviation of the mean is sqrt(variance/n) and that of the variance is variance
+// sqrt((2 + 1/m)/n) (kurtosis of a Poisson distribution). Tolerance: five standard deviations.
 TEST(Detector, PhotonTransferIsGainTimesMeanPlusReadNoise) {
   CameraSetup const camera = noisy_camera();
   Detector const detector(camera, 10000);
@@ -94,7 +94,7 @@ TEST(Detector, PhotonTransferIsGainTimesMeanPlusReadNoise) {
   }
 }
 
-// Without shot noise only read noise and rounding remain, at any light.
+// Without shot noise, only read noise and rounding remain at any light.
 TEST(Detector, ShotNoiseCanBeSwitchedOff) {
   CameraSetup camera = noisy_camera();
   camera.noise.shot_noise = false;
@@ -104,7 +104,7 @@ TEST(Detector, ShotNoiseCanBeSwitchedOff) {
   EXPECT_NEAR(m.variance, variance, 5 * variance * std::sqrt(2.0 / 40000));
 }
 
-// Correlation of the frames' and of neighbouring pixels' noise within 5/sqrt(n).
+// The noise of the two frames, and of neighbouring pixels, is uncorrelated within 5/sqrt(n).
 TEST(Detector, NoiseIsIndependentBetweenFramesAndPixelsAndRepeatsBySeed) {
   CameraSetup camera = noisy_camera();
   Image<double> const flat(200, 200, 0.5);
@@ -142,7 +142,7 @@ TEST(Detector, RecordsTheSameBitsOnAnyNumberOfThreads) {
   set_thread_count(0);
 }
 
-// The brightest noise-free pixel comes to 90 % of full scale, black level included.
+// The brightest noise-free pixel is at 90 % of full scale, including the black level.
 TEST(Detector, AutoExposurePutsTheBrightestPixelAtNinetyPercent) {
   for (double const offset : {0.0, 200.0}) {
     CameraSetup const camera = ideal_camera(12, offset);
@@ -151,7 +151,7 @@ TEST(Detector, AutoExposurePutsTheBrightestPixelAtNinetyPercent) {
     EXPECT_NEAR(detector.ideal_level(0), offset, 1e-12);
   }
   CameraSetup const camera = ideal_camera(12);
-  EXPECT_GT(Detector::auto_exposure(camera, 0.0), 0);  // a black frame has some exposure too
+  EXPECT_GT(Detector::auto_exposure(camera, 0.0), 0);  // the exposure of a black frame is positive, too
 }
 
 TEST(CameraSetup, NoiseIsOffUnlessItsTableIsThere) {

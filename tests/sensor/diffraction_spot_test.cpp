@@ -11,11 +11,12 @@
 namespace gladstone {
 namespace {
 
-// At Table 1 N (1 + M) lambda = 11 * 1.117318 * 532 nm = 6.5385 um.
+// For Table 1, N (1 + M) lambda = 11 * 1.117318 * 532 nm = 6.5385 um.
 TEST(SpotSize, Table1IsSixteenMicrometresToTheFirstZero) {
   SpotSize const spot{11 * (1 + 0.105 / 0.895) * 532e-9};
   EXPECT_NEAR(spot.scale, 6.538547e-6, 1e-12);
-  EXPECT_NEAR(spot.first_zero_diameter(), 15.954e-6 * 2.43934 / 2.44, 6e-9);  // 15.954 um is with the rounded 2.44
+  // 15.954 um contains the rounded factor 2.44
+  EXPECT_NEAR(spot.first_zero_diameter(), 15.954e-6 * 2.43934 / 2.44, 6e-9);
 }
 
 // The first zero of J1(pi r)/(pi r) is at r = 1.2196698912664505.
@@ -24,8 +25,8 @@ TEST(SpotSize, FirstZeroIsWhereBesselVanishes) {
   EXPECT_NEAR(std::cyl_bessel_j(1.0, pi * SpotSize{1.0}.first_zero_diameter() / 2), 0, 2e-6);
 }
 
-// The Gaussian that fits the Airy pattern best within its first zero, weighted by area, with the peak fixed: where the
-// derivative of sum r (airy - exp(-r^2/2s^2))^2 by s changes sign.
+// The Gaussian with the smallest area-weighted squared deviation from the Airy pattern within its first zero, with the
+// same peak: the sum of r (airy - exp(-r^2/2s^2))^2 has its minimum at the matched s.
 TEST(SpotSize, MatchedSigmaFitsTheAiryPatternBest) {
   auto const misfit = [](double sigma) {
     double sum = 0;
@@ -50,8 +51,9 @@ std::vector<double> gaussian_shares(GaussianSpot<double> const& spot, double p, 
   return shares;
 }
 
-// What lies beyond the footprint is erfc((5.5 sigma + 0.5)/(sqrt 2 sigma)) < 4e-8 an axis, and the centroid of shares
-// differs from the position by the aliasing of pixels, sum exp(-2 pi^2 k^2 sigma^2)/(pi k): 1e-6 px beyond it allowed.
+// The light outside the footprint is erfc((5.5 sigma + 0.5)/(sqrt 2 sigma)) < 4e-8 per axis. The centroid of the shares
+// differs from the position by the aliasing of the pixels, sum of exp(-2 pi^2 k^2 sigma^2)/(pi k); the tolerance is
+// 1e-6 px more.
 TEST(GaussianSpot, KeepsItsLightAndItsCentroid) {
   for (double const sigma : {0.1, 0.275, 0.65, 1.0, 2.5}) {
     for (double const p : {10.0, 10.25, 10.4999, 10.5, -3.3}) {
@@ -69,7 +71,8 @@ TEST(GaussianSpot, KeepsItsLightAndItsCentroid) {
   }
 }
 
-// Pixel shares against a midpoint rule of 2000 points a pixel, whose error is (1/24) (1/2000)^2 max|f''| < 1e-7.
+// Compares pixel shares with a midpoint rule of 2000 points per pixel, whose error is (1/24) (1/2000)^2 max|f''| <
+// 1e-7.
 TEST(GaussianSpot, SharesAreIntegralsOverPixels) {
   for (double const sigma : {0.4, 0.65, 1.5}) {
     Footprint at{};
@@ -117,9 +120,9 @@ TEST(AiryTable, SumsToOneAndIsSymmetric) {
   }
 }
 
-// Every pixel's share against a midpoint rule of 80 x 80 points, both normalised over the footprint. The table has 62
-// points a pixel; such a rule errs by h^2/24 times the Laplacian, pi^2/scale^2 at the peak: 2.5e-4 of a share that is
-// below 0.4.
+// Compares the share of every pixel with a midpoint rule of 80 x 80 points, both normalised over the footprint. The
+// table is built from 62 points per pixel; the error of such a rule is h^2/24 times the Laplacian, pi^2/scale^2 at the
+// peak: 2.5e-4 of a share that is below 0.4.
 TEST(AiryTable, SharesAreIntegralsOverPixels) {
   double const scale = 0.654;
   Shares const shares(scale);
@@ -150,9 +153,9 @@ TEST(AiryTable, SharesAreIntegralsOverPixels) {
   }
 }
 
-// 83.778 % of an Airy pattern's light lies within its first zero, 1 - J0^2 - J1^2 within radius r; the table is cut
-// between r = 6.05 and 6.1 scales. At a scale of 10 px pixels resolve the circle (where the irradiance is zero): 2e-3
-// allowed.
+// 83.778 % of the light of an Airy pattern is within its first zero, and 1 - J0^2 - J1^2 within radius r; the table is
+// cut between r = 6.05 and 6.1 scales. At a scale of 10 px, the pixels resolve the first zero, where the irradiance
+// vanishes. Tolerance: 2e-3.
 TEST(AiryTable, HoldsEightyFourPercentWithinTheFirstZero) {
   double const scale = 10;
   Shares const shares(scale);

@@ -16,9 +16,10 @@ struct LevelMoments {
   double mean = 0, variance = 0;
 };
 
-/// Of one pixel by its definition: k electrons, a Poisson number; level = floor(offset + gain (k + read noise) + 1/2),
-/// clipped to [0, full scale]. A mean of whole numbers is the sum over levels of the chance to reach them; so is
-/// that of squares, with 2 level - 1 as weights.
+/// Computes the moments of one pixel's grey level from its definition: the number of electrons k is Poisson
+/// distributed; level = floor(offset + gain (k + read noise) + 1/2), clipped to [0, full scale]. The mean of a
+/// non-negative integer is the sum over levels of the probability to reach them; the mean square is the same sum with
+/// weights 2 level - 1.
 LevelMoments exact_level(CameraSetup const& camera, double electrons) {
   double const full = std::pow(2.0, camera.bit_depth) - 1, gain = full / camera.noise.full_well_e;
   double const sigma = gain * camera.noise.read_noise_e;
@@ -40,7 +41,7 @@ LevelMoments exact_level(CameraSetup const& camera, double electrons) {
   return {mean, square - mean * mean};
 }
 
-/// Mean of a flat field recorded many times over, pixel by pixel.
+/// Returns the mean grey level of repeated recordings of a flat field.
 double recorded_mean(CameraSetup camera, double electrons, int frames, int side) {
   Image<double> const flat(side, side, electrons / 10000);
   double sum = 0;
@@ -52,9 +53,9 @@ double recorded_mean(CameraSetup camera, double electrons, int frames, int side)
   return sum / (static_cast<double>(frames) * side * side);
 }
 
-// A few electrons a pixel, where read noise, shot noise, rounding and black meet: the mean level of 262,144 pixels is
-// that of the definition within four standard errors, some 0.001 to 0.1 levels, with and without a black level. One
-// case in 16,000 would fall outside by chance; the noise is keyed, so that none does here.
+// At a few electrons per pixel, read noise, shot noise, rounding and clipping at zero interact. The mean level of
+// 262,144 pixels agrees with the exact one within four standard errors, about 0.001 to 0.1 levels, with and without a
+// black level. One case in 16,000 would fail by chance; since the noise is keyed, none does.
 TEST(LowLight, TheMeanLevelIsThatOfPoissonReadNoiseRoundingAndBlack) {
   struct Camera {
     int bits;
@@ -77,7 +78,7 @@ TEST(LowLight, TheMeanLevelIsThatOfPoissonReadNoiseRoundingAndBlack) {
       for (double const electrons : {0.0, 0.3, 2.0, 9.0, 11.0, 40.0}) {
         LevelMoments const exact = exact_level(camera, electrons);
         int const frames = 4, side = 256;
-        // the variance of a constant level is a difference of rounded squares, of either sign
+        // the variance of a constant level is a difference of rounded squares and may be negative
         double const error = std::sqrt(std::max(0.0, exact.variance) / (frames * side * side));
         EXPECT_NEAR(recorded_mean(camera, electrons, frames, side), exact.mean, 4 * error + 1e-9)
             << kind.bits << " bits, " << kind.full_well_e << " e, read noise " << kind.read_noise_e << " e, offset "
@@ -87,9 +88,9 @@ TEST(LowLight, TheMeanLevelIsThatOfPoissonReadNoiseRoundingAndBlack) {
   }
 }
 
-// What is left of black above four standard deviations of read noise: the mean is gain times electrons to a thousandth
-// of a level, and without it a dim pixel is too bright, by 0.1 to 0.5 levels at a few electrons. It is the clipping at
-// zero alone.
+// With a black level of four standard deviations of the read noise, the mean is gain times electrons to within a
+// thousandth of a level. Without a black level, dim pixels are too bright by 0.1 to 0.5 levels at a few electrons, due
+// to the clipping at zero alone.
 TEST(LowLight, OnlyBlackMakesDimPixelsTooBright) {
   CameraSetup camera;
   camera.bit_depth = 12;
@@ -99,7 +100,7 @@ TEST(LowLight, OnlyBlackMakesDimPixelsTooBright) {
   double const gain = 4095.0 / 10000;
   double last = clipped_at_black(camera);
   EXPECT_NEAR(exact_level(camera, 0).mean, last, 1e-9);
-  EXPECT_NEAR(last, 5 * gain / std::sqrt(2 * 3.14159265358979), 0.03);  // of a continuous level
+  EXPECT_NEAR(last, 5 * gain / std::sqrt(2 * 3.14159265358979), 0.03);  // value for a continuous level
   for (double const electrons : {1.0, 2.0, 4.0, 8.0}) {
     double const excess = exact_level(camera, electrons).mean - gain * electrons;
     EXPECT_GT(excess, 0.005) << electrons;
@@ -115,17 +116,17 @@ TEST(LowLight, OnlyBlackMakesDimPixelsTooBright) {
 
 TEST(LowLight, ClippingAtBlackIsToldForAnyNoise) {
   CameraSetup camera;
-  EXPECT_EQ(clipped_at_black(camera), 0.0);  // without noise nothing falls below black
+  EXPECT_EQ(clipped_at_black(camera), 0.0);  // without noise, no level is clipped at zero
   camera.noise.enabled = true;
   camera.noise.read_noise_e = 0;
   EXPECT_EQ(clipped_at_black(camera), 0.0);
-  // much noise: a normal number's positive part is sigma / sqrt(2 pi); the sum and the closed form meet
+  // for large noise, the mean positive part of a normal variate is sigma / sqrt(2 pi); the sum approaches this value
   camera.noise.full_well_e = 65535;
   for (double const electrons : {99.0, 101.0, 1e6}) {
     camera.noise.read_noise_e = electrons;
     EXPECT_NEAR(clipped_at_black(camera), electrons / std::sqrt(2 * 3.14159265358979), 1e-3 * electrons);
   }
-  // dark electrons lift black; beside 100 of them 3 e of read noise never reach zero
+  // dark electrons raise the level: a read noise of 3 e around a mean of 100 e never reaches zero
   camera.noise.read_noise_e = 3;
   camera.noise.dark_current_e = 100;
   EXPECT_LT(clipped_at_black(camera), 1e-15);

@@ -11,11 +11,11 @@ namespace {
 
 Sensor<double> const sensor{0.867, 10e-6, 640, 480};
 
-// Pixel centres are whole numbers from 0, so the middle of 640 x 480 is (319.5, 239.5).
+// Pixel centres are at integers from 0, so that the centre of 640 x 480 pixels is at (319.5, 239.5).
 TEST(Sensor, AxisHitsTheMiddleOfThePixels) { EXPECT_EQ(sensor.to_pixel(0, 0), (Vec2d{319.5, 239.5})); }
 
-// A lens throws scene right (+X) on the left of its sensor (-x) and scene up (+Y) below (-y); in the picture right is a
-// larger column and up a smaller row.
+// The lens images the right of the scene (+X) to the left of the sensor (-x) and the top (+Y) to the bottom (-y). In
+// the stored image, right is a larger column and up a smaller row.
 TEST(Sensor, PictureIsNotInverted) {
   Vec2d const scene_right = sensor.to_pixel(-50e-6, 0), scene_up = sensor.to_pixel(0, -50e-6);
   EXPECT_NEAR(scene_right.x, 324.5, 1e-12);
@@ -33,7 +33,7 @@ TEST(Sensor, CoversHalfAPixelAroundTheOuterCentres) {
   EXPECT_FALSE(sensor.covers({std::nan(""), 0}));
 }
 
-// Units of 2^-44: half a unit rounds away from zero, less than half to zero, both signs alike.
+// The unit is 2^-44: half a unit is rounded away from zero and less than half to zero, for both signs.
 TEST(FixedPoint, RoundsToTheNearestUnit) {
   double const unit = 0x1p-44;
   EXPECT_EQ(to_fixed_point(1.0), std::int64_t{1} << 44);
@@ -44,7 +44,7 @@ TEST(FixedPoint, RoundsToTheNearestUnit) {
   EXPECT_EQ(to_fixed_point(-0.49 * unit), 0);
   EXPECT_EQ(to_fixed_point(-0.5 * unit), -1);
   EXPECT_EQ(to_fixed_point(-7.51 * unit), -8);
-  EXPECT_EQ(to_fixed_point(5e5), static_cast<std::int64_t>(5e5) << 44);  // the brightest that fits
+  EXPECT_EQ(to_fixed_point(5e5), static_cast<std::int64_t>(5e5) << 44);  // largest value that fits
 }
 
 }  // namespace

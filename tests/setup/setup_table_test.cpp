@@ -19,7 +19,7 @@ using testing::HasSubstr;
 
 SetupDocument document(std::string_view text) { return SetupDocument::from_text(text, "case.toml", "/data/cases"); }
 
-/// The problems of a document after finish(), each as "where: message".
+/// Returns the problems of a document after finish(), each as "where: message".
 std::vector<std::string> problems(SetupDocument& setup) {
   std::vector<std::string> lines;
   try {
@@ -55,7 +55,8 @@ periodic = [true, false, true]
   EXPECT_NO_THROW(setup.finish());
 }
 
-// 10e-6 / 1e-6 and 532e-9 / 1e-9 are not 10 and 532 in binary numbers; the setup says so all the same.
+// 10e-6 / 1e-6 and 532e-9 / 1e-9 are not exactly 10 and 532 in binary arithmetic; the resolved setup must still contain
+// these numbers.
 TEST(SetupTable, QuantitiesAreInSiAndTheirDefaultsInTheKeysUnit) {
   auto setup = document("given_mm = 2.5\n");
   SetupTable root = setup.root();
@@ -148,10 +149,10 @@ TEST(SetupTable, NanIsAlwaysRefusedAndInfinityUnlessAllowed) {
   EXPECT_EQ(setup.root().number("b", 1.0, Range::positive()), 1.0);
   EXPECT_TRUE(std::isinf(setup.root().number("c", 1.0, unbounded)));
   setup.root().numbers("d", {0.0, 0.0}, 2);
-  EXPECT_THAT(
-      problems(setup),
-      ElementsAre("case.toml:1:1: a = nan: must be a number (nan is none)", "case.toml:2:1: b = inf: must be finite",
-                  "case.toml:4:1: d = [1.0, nan]: value 2, nan, must be a number (nan is none)"));
+  EXPECT_THAT(problems(setup),
+              ElementsAre("case.toml:1:1: a = nan: must be a number (nan is not allowed)",
+                          "case.toml:2:1: b = inf: must be finite",
+                          "case.toml:4:1: d = [1.0, nan]: value 2, nan, must be a number (nan is not allowed)"));
 }
 
 TEST(SetupTable, EndsOfARangeAreIncludedUnlessOpen) {
@@ -351,7 +352,7 @@ TEST(SetupDocument, SyntaxErrorHasLineAndColumn) {
   }
 }
 
-/// "a.a.a", of so many parts.
+/// Returns a dotted key "a.a.a" with a given number of parts.
 std::string dotted(std::size_t parts) {
   std::string key = "a";
   for (std::size_t i = 1; i < parts; ++i) key += ".a";
@@ -364,7 +365,8 @@ std::string repeated(std::string const& text, std::size_t count) {
   return all;
 }
 
-// Every part is a call deeper in the parser and in what goes over its tree; stacks hold some ten thousand.
+// The parser and the functions that process its tree recurse once per part; a stack is exhausted at about ten thousand
+// levels.
 TEST(SetupDocument, KeysAndBracketsAreBoundedInDepth) {
   std::size_t const many = 100000;
   std::vector<std::pair<std::string, std::string>> const deep{
@@ -375,7 +377,7 @@ TEST(SetupDocument, KeysAndBracketsAreBoundedInDepth) {
       {"x = " + repeated("[", many) + repeated("]", many) + '\n', "1:37"},
       {"x = " + repeated("{ a = ", many) + '1' + repeated("}", many) + '\n', "1:197"},
       {repeated("\"a\" . 'a' .", many) + "a = 1\n", ""},
-      // what looks like the inside of a text and is not
+      // text that only looks like the inside of a string
       {"x = [ \"\"\"a\"\"\"\", { " + dotted(many) + " = 1 } ]\n", ""},
       {"x = '\\' # '\ny = { " + dotted(many) + " = '' }\n", "2:70"},
   };
@@ -385,7 +387,7 @@ TEST(SetupDocument, KeysAndBracketsAreBoundedInDepth) {
       ADD_FAILURE() << "accepted " << text.substr(0, 40);
     } catch (SetupError const& error) {
       EXPECT_THAT(error.problems()[0].where, testing::StartsWith("case.toml:" + place)) << text.substr(0, 40);
-      EXPECT_THAT(error.problems()[0].message, HasSubstr("more than 32 deep")) << text.substr(0, 40);
+      EXPECT_THAT(error.problems()[0].message, HasSubstr("more than 32 levels deep")) << text.substr(0, 40);
     }
   }
   EXPECT_NO_THROW(document(dotted(most_setup_depth) + " = 1.5\n"));
@@ -398,15 +400,16 @@ TEST(SetupOverride, KeysAndValuesAreBoundedInDepth) {
   auto setup = document("b = 1\n");
   setup.override_key(dotted(100000) + "=1");
   setup.override_key("b=" + repeated("[", 100000) + repeated("]", 100000));
-  setup.root().text("b", "");  // what is no TOML is a text
+  setup.root().text("b", "");  // text that is not TOML is read as a string
   auto const found = problems(setup);
   ASSERT_EQ(found.size(), 1u);
   EXPECT_THAT(found[0], HasSubstr("has a key of 100000 parts"));
   EXPECT_LT(found[0].size(), 400u);
 }
 
-// A message for every key took 47 MB for 200,000 of them, and the search among all messages for each of them 214 s.
-// Only the first ones are put into words now: what takes the time is the parser, far more than 20,000 keys a second.
+// Messages for all keys would need 47 MB for 200,000 unknown keys, and searching all messages for each key 214 s.
+// Therefore only the first ones are formulated; the parser dominates the time and processes far more than 20,000 keys
+// per second.
 TEST(SetupDocument, ManyUnknownKeysAreCountedAndTheFirstTold) {
   std::string text;
   std::size_t const count = 100000;
@@ -477,7 +480,7 @@ TEST(SetupDocument, FileNamesAreRelativeToTheSetup) {
   std::filesystem::remove_all(folder);
 }
 
-/// Reads every kind of key; what the resolved text must hold and read back.
+/// Reads every kind of key, and returns the resolved text, which must contain and reproduce all values.
 std::string read_everything(SetupDocument& setup) {
   auto root = setup.root();
   auto medium = root.table("medium");
@@ -507,7 +510,7 @@ std::string read_everything(SetupDocument& setup) {
   return setup.resolved();
 }
 
-/// A value of another file, as parsed there.
+/// Returns a value that was parsed from another file.
 SetupNode value_of_study(std::string const& text) {
   SetupNode root = parse_toml("value = " + text, "study.toml");
   SetupNode value = *root.find("value");

@@ -201,7 +201,7 @@ TEST_F(CaseRunners, AnyErrorOfACaseIsItsResultButNotThatOfADevice) {
   fail = [] { throw std::runtime_error("something odd"); };
   CaseResult const odd = one.run(cases[0]);
   EXPECT_EQ(odd.status, CaseStatus::failed);
-  EXPECT_THAT(odd.error, testing::AllOf(testing::StartsWith("a fault of gladstone itself, or of a library"),
+  EXPECT_THAT(odd.error, testing::AllOf(testing::StartsWith("internal error of gladstone or of a library"),
                                         testing::HasSubstr("(something odd)")));
   EXPECT_FALSE(odd.again);
   ManifestCase elsewhere = cases[0];

@@ -11,10 +11,10 @@
 
 namespace gladstone::test {
 
-/// Cells of the rows of a table, without its header.
+/// Cells of each row of a table, without its header.
 using DocumentedRows = std::vector<std::vector<std::string>>;
 
-/// The tables below a heading of docs/file-formats.md whose first column has this title.
+/// Returns the tables below a heading of docs/file-formats.md whose first column has the given title.
 inline std::vector<DocumentedRows> documented_tables(std::string const& heading, std::string const& first_column) {
   std::ifstream page(GLADSTONE_DATA_DIR "/../docs/file-formats.md");
   std::vector<DocumentedRows> tables;
@@ -43,7 +43,8 @@ inline std::vector<DocumentedRows> documented_tables(std::string const& heading,
   return tables;
 }
 
-/// Names in backticks. One without a folder is in that of the name before it: "`/pinhole/rvec`, `tvec`".
+/// Returns the names in backticks. A name without a directory is in that of the preceding name: "`/pinhole/rvec`,
+/// `tvec`".
 inline std::vector<std::string> names_of(std::string const& cell) {
   std::vector<std::string> names;
   for (std::size_t at = cell.find('`'); at != std::string::npos; at = cell.find('`', at + 1)) {
@@ -57,12 +58,12 @@ inline std::vector<std::string> names_of(std::string const& cell) {
   return names;
 }
 
-/// The first of these tables.
+/// Returns the first table below a heading whose first column has the given title.
 inline DocumentedRows documented_table(std::string const& heading, std::string const& first_column) {
   return documented_tables(heading, first_column).at(0);
 }
 
-/// Names in backticks of the first column.
+/// Returns the names in backticks in the first column.
 inline std::set<std::string> names_of_first_column(DocumentedRows const& rows) {
   std::set<std::string> names;
   for (auto const& cells : rows) {

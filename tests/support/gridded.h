@@ -8,10 +8,10 @@
 
 namespace gladstone::test {
 
-/// Refractivity as a function of the node's world position.
+/// Refractivity as a function of the world position of a node.
 using Refractivity = std::function<double(Vec3d)>;
 
-/// The grid of nodes whose first one lies at `origin`.
+/// Returns a grid of nodes whose first node is at `origin`.
 inline RegularGrid open_grid(int nx, int ny, int nz, Vec3d spacing = {1, 1, 1}, Vec3d origin = {}) {
   RegularGrid grid;
   grid.nodes = {nx, ny, nz};
@@ -20,7 +20,7 @@ inline RegularGrid open_grid(int nx, int ny, int nz, Vec3d spacing = {1, 1, 1}, 
   return grid;
 }
 
-/// Samples a function at the nodes, as a file's reader would give it (in float).
+/// Evaluates a function at the nodes and rounds it to float, as if it were read from a file.
 template <class Stored>
 RefractiveIndexVolume<Stored> sampled(RegularGrid const& grid, Refractivity const& f, bool spline = true) {
   using Volume = RefractiveIndexVolume<Stored>;

@@ -11,7 +11,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Whether any user may enter a folder and all that it lies in.
+/// Returns true if any user may enter a directory and all of its parents.
 bool all_may_enter(fs::path folder) {
   for (folder = fs::absolute(folder); folder.has_relative_path(); folder = folder.parent_path()) {
     if ((fs::status(folder).permissions() & fs::perms::others_exec) == fs::perms::none) return false;
@@ -19,15 +19,15 @@ bool all_may_enter(fs::path folder) {
   return true;
 }
 
-/// ctest runs tests of one fixture side by side, each in a process of its own: gives this process a TempDir() of its
-/// own, and removes it at the end.
+/// Gives each test process its own TempDir(), removed at the end, since ctest runs the tests of one fixture
+/// concurrently in separate processes.
 class OwnFolder final : public ::testing::Environment {
  public:
   void SetUp() override {
-    // run by root, some tests are another user for a moment, who cannot enter root's home
+    // As root, some tests temporarily switch to another user, who cannot enter root's home directory.
     bool const here = ::geteuid() != 0 || all_may_enter(::testing::TempDir());
     folder_ = here ? ::testing::TempDir() + "XXXXXX" : (fs::temp_directory_path() / "gladstone-test-XXXXXX").string();
-    if (::mkdtemp(folder_.data()) == nullptr) throw std::runtime_error(folder_ + ": cannot be made");
+    if (::mkdtemp(folder_.data()) == nullptr) throw std::runtime_error(folder_ + ": cannot be created");
     fs::permissions(folder_, fs::perms(0755));
     ::setenv("TEST_TMPDIR", folder_.c_str(), 1);
   }

@@ -24,8 +24,8 @@ std::string listed(std::string_view axes) {
 std::string FieldReading::text() const {
   std::string text = fmt::format("[{}] is read as {} ({})", fmt::join(shape, ", "), listed(axes), by);
   if (!turned_round.empty()) {
-    text += fmt::format("; {} {} backwards in the file and {} turned round", listed(turned_round),
-                        turned_round.size() == 1 ? "runs" : "run", turned_round.size() == 1 ? "is" : "are");
+    text += fmt::format("; {} {} in the file and {} reversed", listed(turned_round),
+                        turned_round.size() == 1 ? "descends" : "descend", turned_round.size() == 1 ? "is" : "are");
   }
   return text;
 }
@@ -41,8 +41,8 @@ bool is_axis_order(std::string_view axes) {
 void name_axes(StoredAxes& stored, std::string const& axes, std::size_t rank, std::string const& path) {
   if (axes.empty()) return;
   if (!is_axis_order(axes)) {
-    throw DataError(path, fmt::format("axes = \"{}\" is no order of axes; name those of the file, the slowest first, "
-                                      "such as \"zyx\", or \"yx\" of a plane",
+    throw DataError(path, fmt::format("axes = \"{}\" is not an order of axes; list the axes of the file, slowest "
+                                      "first, such as \"zyx\", or \"yx\" for a plane",
                                       axes));
   }
   if (axes.size() != rank) {
@@ -60,7 +60,7 @@ void name_axes(StoredAxes& stored, std::string const& axes, std::size_t rank, st
 StoredAxis axis_from_coordinates(std::vector<double> x, std::string const& path, std::string const& what) {
   auto const refuse = [&](std::string const& why) { throw DataError(path, what + ": " + why); };
   if (!std::all_of(x.begin(), x.end(), [](double value) { return std::isfinite(value); })) {
-    refuse("coordinates are not finite; write them anew");
+    refuse("coordinates are not finite; correct them");
   }
   StoredAxis axis;
   axis.first = x.front();

@@ -45,7 +45,7 @@ std::unique_ptr<FieldSource> open_field(std::string const& path, std::string con
     }
     known += (known.empty() ? "" : ", ") + std::string(format.extension);
   }
-  throw DataError(path, "is of no format that is read here; known are " + known);
+  throw DataError(path, "has an unsupported format; supported are " + known);
 }
 
 }  // namespace gladstone

@@ -27,7 +27,7 @@ struct JetFlow {
     if (length(given) > 0) {
       flow.along = given / length(given);
     } else {
-      table.problem("direction", "has no length (the jet points nowhere); use [1, 0] for one along X");
+      table.problem("direction", "is zero (a jet needs a direction); use [1, 0] for a jet along X");
     }
     return flow;
   }

@@ -15,8 +15,8 @@ NormalShockFlow NormalShockFlow::read(SetupTable& table, FlowSetup& setup) {
   double const temperature = table.number("upstream_temperature_k", 293.15, Range::positive(1e5));
   if (!setup.shock) {
     table.problem("kind",
-                  "is \"normal_shock\" where the medium has none (the flow shares its front); set medium.field.kind = "
-                  "\"normal_shock\", or take another flow");
+                  "is \"normal_shock\", but the medium has no shock (flow and medium share the front); set "
+                  "medium.field.kind = \"normal_shock\", or choose another flow");
     flow.upstream = flow.downstream = 1;
     return flow;
   }

@@ -13,7 +13,7 @@ struct UniformGradient : Slab<T> {
   static constexpr char const* kind = "uniform_gradient";
   static constexpr char const* density_key = "gradient_kg_m4";
   static constexpr char const* length_key = "kind";
-  /// The density is negative somewhere, for any gradient.
+  /// The density is negative somewhere for any gradient, since the slab is infinite.
   static constexpr bool endless_range = true;
 
   Vec3<T> gradient{};  ///< g [kg/m^4]

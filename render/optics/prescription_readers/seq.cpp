@@ -40,7 +40,7 @@ class SeqReader {
       return;
     } else if (is_refused_command(command)) {
       throw DataError(line.where,
-                      fmt::format("command {} is not read; leave it out if it does not change the lens", line[0]));
+                      fmt::format("command {} is not supported; remove it if it does not change the lens", line[0]));
     } else if (!read_of_surface(command, line) && !is_harmless_command(command)) {
       if (unknown_.empty()) unknown_where_ = line.where;
       if (std::find(unknown_.begin(), unknown_.end(), command) == unknown_.end()) {
@@ -58,14 +58,14 @@ class SeqReader {
     }
     if (!image_) {
       warn(surfaces_.back().surface.where +
-           ": the file has no image surface SI behind this one, whose thickness is taken to lead to the image; if the "
-           "file was cut short, get it whole");
+           ": the file has no image surface SI behind this one, whose thickness is taken as the distance to the image; "
+           "if the file was cut short, copy it again");
     }
     if (!radii_said_) judge_curvatures();
     if (result_.aperture.kind == PrescribedAperture::Kind::entrance_pupil) result_.aperture.value = pupil_ * unit_;
     PrescribedSurface const& object = surfaces_.front().surface;
     if (object.after.is_mirror())
-      throw DataError(object.where, "the object is a mirror (REFL); name what is ahead of the lens");
+      throw DataError(object.where, "the object is a mirror (REFL); name the medium ahead of the lens");
     result_.object_distance = object.thickness;
     result_.object_medium = resolved(object.after);
     take_surfaces();
@@ -76,8 +76,8 @@ class SeqReader {
     assume_aperture(result_, "EPD, FNO, NAO");
     if (!unknown_.empty()) {
       bool const one = unknown_.size() == 1;
-      warn(fmt::format("{}: {} {} {} not known here and {} passed over; check that {} not change the lens",
-                       unknown_where_, one ? "command" : "commands", fmt::join(unknown_, ", "), one ? "is" : "are",
+      warn(fmt::format("{}: {} {} {} unknown and {} ignored; check that {} not change the lens", unknown_where_,
+                       one ? "command" : "commands", fmt::join(unknown_, ", "), one ? "is" : "are",
                        one ? "was" : "were", one ? "it does" : "they do"));
     }
     return std::move(result_);
@@ -91,7 +91,7 @@ class SeqReader {
 
   [[noreturn]] void refuse_missing_end() const {
     throw DataError(private_glasses_where_,
-                    "PRV: the private glasses that begin here have no END; put END behind the last of them");
+                    "PRV: the list of private glasses that begins here has no END; put END behind the last glass");
   }
 
   /// Returns the primary wavelength: that of REF, or the middle one without REF, as in CODE V; null if none is listed.
@@ -158,7 +158,7 @@ class SeqReader {
                         line.where, command));
       }
     } else if (command == "ZOO") {
-      warn(line.where + ": ZOO: of a zoom lens the position that its surfaces hold is read");
+      warn(line.where + ": ZOO: only the zoom position stored in the surfaces is read");
     } else {
       return false;
     }
@@ -172,7 +172,7 @@ class SeqReader {
     if (command == "YAN") {
       for (std::size_t i = 1; i < line.size(); ++i) result_.field_angles.push_back(line.number(i) * unit::degree);
     } else if (others.contains(command)) {
-      note_unless_zero(line, "fields are angles in the y-z plane (YAN) here; these are not judged");
+      note_unless_zero(line, "only field angles in the y-z plane (YAN) are supported; these fields are ignored");
     } else if (vignetting.contains(command)) {
       note_unless_zero(line, "vignetting factors are not used; the edges of the surfaces vignette");
     } else {
@@ -193,7 +193,7 @@ class SeqReader {
     if (command == "SI") {
       image_ = true;
       image_surface_.surface.where = line.where;
-      surfaces_.back().surface.thickness += thickness;  // defocus of the image
+      surfaces_.back().surface.thickness += thickness;  // add the defocus of the image
       image_defocus_ = thickness;
       return;
     }
@@ -234,17 +234,16 @@ class SeqReader {
       PrescriptionLine const digits{line.where, {line[0], line[1].substr(1)}};
       auto const number = static_cast<std::size_t>(digits.integer(1));
       if (number == 0 || number >= surfaces_.size()) {
-        throw DataError(line.where,
-                        fmt::format("{} {}: there is no such surface before this line (S1 to S{} are); correct the "
-                                    "number, or put the command below its surface",
-                                    line[0], line[1], surfaces_.size() - 1));
+        throw DataError(line.where, fmt::format("{} {}: this surface does not precede this line (S1 to S{} do); "
+                                                "correct the number, or put the command below its surface",
+                                                line[0], line[1], surfaces_.size() - 1));
       }
       line.words.erase(line.words.begin() + 1);
       return surfaces_[number];
     }
     if (in_capitals(line[0]).starts_with("STO") && line.size() > 1) {
       PrescriptionLine const number{line.where, {line[0], "S" + line[1]}};
-      if (is_numbered_surface(number[1])) {  // "stop 2"
+      if (is_numbered_surface(number[1])) {  // the surface is given by its number, "stop 2"
         line.words[1] = number[1];
         return named_surface(line);
       }
@@ -311,9 +310,9 @@ class SeqReader {
       surface.curvature = curvature_of(surface.curvature * unit_, true);
     }
     warn(
-        fmt::format("{}: the file has no RDM, so that its numbers would be curvatures, CODE V's default; surfaces as "
-                    "strongly curved would not reach across the light, so they are taken as radii (say RDM, or RDM N "
-                    "for curvatures)",
+        fmt::format("{}: the file has no RDM, so that its numbers would be curvatures, CODE V's default; surfaces with "
+                    "such curvatures would be narrower than the beam, so the numbers are taken as radii (write RDM, or "
+                    "RDM N for curvatures)",
                     surfaces_[1].surface.where));
   }
 
@@ -340,7 +339,7 @@ class SeqReader {
   }
 
   Prescription result_;
-  std::vector<SeqSurface> surfaces_;  // the object is the first
+  std::vector<SeqSurface> surfaces_;  // surfaces of the file; the first one is the object
   SeqSurface image_surface_;          // only its coordinate frame is used
   PrivateGlasses private_glasses_;
   std::vector<ListedWavelength> wavelengths_;

@@ -82,10 +82,10 @@ void PrivateGlasses::read(PrescriptionLine const& line) {
   bool const formula = line.size() > 1 && std::isalpha(static_cast<unsigned char>(line[1][0])) != 0;
   if (formula) {
     if (in_capitals(line[1]) != "LAU") {
-      throw DataError(line.where,
-                      fmt::format("glass {}: formula {} is not read (LAU, and indices at the wavelengths of "
-                                  "PWL, are)",
-                                  line[0], line[1]));
+      throw DataError(
+          line.where,
+          fmt::format("glass {}: formula {} is not supported (LAU, and indices at the wavelengths of PWL, are)",
+                      line[0], line[1]));
     }
     Glass glass;
     glass.name = line[0];

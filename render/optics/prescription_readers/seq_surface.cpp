@@ -90,7 +90,8 @@ bool read_seq_surface(std::string const& command, PrescriptionLine const& line, 
     if (mode == "REFL") {
       surface.after = {PrescribedMedium::Mirror{}, line.where};
     } else if (mode != "REFR") {
-      throw DataError(line.where, fmt::format("RMD {}: this refraction mode is not read (REFL and REFR are)", mode));
+      throw DataError(line.where,
+                      fmt::format("RMD {}: this refraction mode is not supported (REFL and REFR are)", mode));
     }
   } else if (command == "K") {
     surface.conic = line.number(1);
@@ -112,7 +113,7 @@ bool read_seq_surface(std::string const& command, PrescriptionLine const& line, 
     seq.kind = SeqSurface::Decentre::reverse;
   } else if (command == "CUF") {
     if (line.number(1) != 0) {
-      throw DataError(line.where, "a Fresnel surface on a curved base (CUF) is not read; write the lens as TOML");
+      throw DataError(line.where, "a Fresnel surface on a curved base (CUF) is not supported; write the lens as TOML");
     }
   } else if (command.size() == 1 && command[0] >= 'A' && command[0] <= 'J' && command[0] != 'I') {
     std::size_t const term = aspheric_term(command[0]);
@@ -146,7 +147,7 @@ void finish_seq_surface(SeqSurface& seq, double unit, std::vector<std::string>& 
       surface.outline = {Outline::Kind::ellipse, blocks, {radius, radius}, seq.centre};
     } else {
       warnings.push_back(surface.where +
-                         ": of several decentred apertures on a surface one alone is traced; light passes the other");
+                         ": of several decentred apertures on a surface only one is traced; the others block no light");
     }
   };
   if (std::isfinite(surface.semi_diameter)) {

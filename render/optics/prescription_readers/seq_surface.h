@@ -14,7 +14,8 @@ struct SeqSurface {
   enum class Decentre {
     basic,    ///< this surface and all following ones
     ret,      ///< this surface only (DAR)
-    bend,     ///< this surface; the frame of the following ones is tilted once more (BEN), as by a fold mirror
+    bend,     ///< this surface; the frame of the following ones is rotated by the same angles once more (BEN), as by a
+              ///< fold mirror
     reverse,  ///< the following surfaces, with the inverse transformation (REV)
   };
   PrescribedSurface surface;

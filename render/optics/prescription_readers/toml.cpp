@@ -13,11 +13,11 @@ using unit::millimetre;
 
 PrescribedMedium read_medium(SetupTable& table) {
   if (table.has("index")) {
-    table.refuse("glass", "stands beside index (one of them says what is behind the surface); remove one");
+    table.refuse("glass", "conflicts with index (both define the medium behind the surface); remove one");
     return {PrescribedMedium::Index{table.number("index", 1.5, {1, 5, false, false})}};
   }
   if (table.has("nd") || table.has("vd")) {
-    table.refuse("glass", "stands beside nd and vd (one of them says what is behind the surface); remove one");
+    table.refuse("glass", "conflicts with nd and vd (both define the medium behind the surface); remove one");
     double const nd = table.required_number("nd", {1, 5, true, false});
     return {PrescribedMedium::Described{nd, table.required_number("vd", Range::positive(1e4))}};
   }
@@ -34,14 +34,14 @@ PrescribedSurface read_surface(SetupTable& table) {
     surface.shape = PrescribedSurface::Shape::cylinder;
   }
   if (table.has("curvature_per_mm")) {
-    table.refuse("radius_mm", "stands beside curvature_per_mm (one of them is enough); remove one");
+    table.refuse("radius_mm", "conflicts with curvature_per_mm (both set the curvature); remove one");
     surface.curvature = table.number("curvature_per_mm", 0) / millimetre;
   } else {
     Range any = Range::any();
     any.allow_inf = true;
     double const radius = table.number("radius_mm", HUGE_VAL, any);
     if (radius == 0) {
-      table.problem("radius_mm", "a radius of 0 is no surface; a plane has inf");
+      table.problem("radius_mm", "a radius of 0 is impossible; a plane has inf");
     } else {
       surface.curvature = 1 / (radius * millimetre);
     }
@@ -100,7 +100,7 @@ Prescription read_toml_prescription(std::string const& path) {
     auto const value = root.optional_number(key, range);
     if (!value) return;
     if (result.aperture.kind != Kind::stop) {
-      root.problem(key, "stands beside another key that sets the stop (one is enough); remove one");
+      root.problem(key, "conflicts with another key that sets the stop (one is enough); remove one");
     }
     result.aperture = {kind, *value * scale, root.where(key)};
   };

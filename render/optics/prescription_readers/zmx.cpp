@@ -46,9 +46,9 @@ class ZmxReader {
 
   /// Warns that the file ends within a line DISZ, and may be truncated.
   void note_end(PrescriptionLine const& line) {
-    result_.warnings.push_back(line.where +
-                               ": the file ends within its line DISZ, which lacks its end; if it was cut short there, "
-                               "get it whole");
+    result_.warnings.push_back(
+        line.where +
+        ": the file ends within its line DISZ, without a line end; if it was cut short there, copy it again");
   }
 
   Prescription finish() {
@@ -64,7 +64,7 @@ class ZmxReader {
     }
     PrescribedSurface const& object = surfaces_.front().surface;
     if (object.after.is_mirror())
-      throw DataError(object.where, "the object is a mirror (GLAS); name what is ahead of the lens");
+      throw DataError(object.where, "the object is a mirror (GLAS); name the medium ahead of the lens");
     result_.object_distance = object.thickness;
     result_.object_medium = object.after;
     bool const is_listed = primary_ >= 1 && primary_ <= static_cast<int>(wavelengths_.size());
@@ -83,7 +83,7 @@ class ZmxReader {
   void read_system(PrescriptionLine const& line) {
     std::string const& key = line[0];
     if (key == "MODE" && line.size() > 1 && line[1] != "SEQ") {
-      throw DataError(line.where, fmt::format("mode {} is not read (sequential lenses, SEQ, are)", line[1]));
+      throw DataError(line.where, fmt::format("mode {} is not supported (sequential lenses, SEQ, are)", line[1]));
     }
     if (key == "NAME") {
       for (std::size_t i = 1; i < line.size(); ++i) result_.title += (i > 1 ? " " : "") + line[i];
@@ -136,7 +136,7 @@ class ZmxReader {
       if (zmx.type == "COORDBRK") {
         breaks.push_back(break_of(zmx, unit_));
         if (!zmx.surface.stop) continue;
-        surface.where = zmx.surface.where;  // stop in the transformed frame
+        surface.where = zmx.surface.where;  // a stop surface may be in the transformed frame
         surface.stop = true;
         surface.semi_diameter = zmx.surface.semi_diameter;
         surface.thickness = std::exchange(breaks.back().advance, 0);
@@ -148,7 +148,7 @@ class ZmxReader {
     }
     PrescribedSurface const& image = surfaces_.back().surface;
     if (image.curvature != 0) {
-      result_.warnings.push_back(image.where + ": the image is curved; it is judged on a plane");
+      result_.warnings.push_back(image.where + ": the image is curved; the lens is evaluated on a plane");
     }
     break_before_image(result_, std::move(breaks), image.where);
   }
@@ -159,11 +159,11 @@ class ZmxReader {
     if (heights_at_.empty()) result_.field_angles = fields_;
     if (!heights_at_.empty() && (any_along || !across_at_.empty())) {
       result_.warnings.push_back(heights_at_ +
-                                 ": FTYP: fields that are heights are not read, the lens is judged on its axis alone; "
+                                 ": FTYP: field heights are not supported, the lens is evaluated on its axis only; "
                                  "give field angles (FTYP 0)");
     } else if (!across_at_.empty()) {
       result_.warnings.push_back(across_at_ +
-                                 ": XFLN: fields beside the y-z plane are left out; give them along y (YFLN)");
+                                 ": XFLN: fields outside the y-z plane are ignored; give them along y (YFLN)");
     }
   }
 
@@ -192,8 +192,8 @@ class ZmxReader {
     char const* const why = why_no_image(last);
     if (why == nullptr) return;
     throw DataError(last.surface.where,
-                    fmt::format("the last surface {}, so it is no image surface, with which a .zmx file ends: the file "
-                                "is cut short; get it whole, or add the image (SURF, TYPE STANDARD, DISZ 0)",
+                    fmt::format("the last surface {}, so it is not the image surface with which a .zmx file ends: the "
+                                "file is cut short; copy it again, or add the image (SURF, TYPE STANDARD, DISZ 0)",
                                 why));
   }
 

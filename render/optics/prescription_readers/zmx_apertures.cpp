@@ -30,7 +30,7 @@ bool is_harmless(std::string const& key) {
 Outline outline_of(PrescriptionLine const& line, double unit, Outline::Kind kind, bool blocks) {
   Vec2d const half{line.number_or_infinity(1) * unit, line.number_or_infinity(2) * unit};
   if (half.x > 0 && half.y > 0) return {kind, blocks, half, {}};
-  throw DataError(line.where, fmt::format("{}: half widths of {} and {} are no area; give positive ones", line[0],
+  throw DataError(line.where, fmt::format("{}: half widths of {} and {} enclose no area; give positive ones", line[0],
                                           line[1], line[2]));
 }
 
@@ -40,8 +40,8 @@ bool read_zmx_aperture(PrescriptionLine const& line, double unit, ZmxApertures& 
                        std::vector<std::string>& warnings) {
   std::string const& key = line[0];
   if (key == "SPID" || key == "UDAP" || key == "UDOB") {
-    warnings.push_back(fmt::format("{}: {}: {} not traced; light passes there", line.where, key,
-                                   key == "SPID" ? "spiders are" : "shapes of the user's own are"));
+    warnings.push_back(fmt::format("{}: {}: {} not traced and do not block light", line.where, key,
+                                   key == "SPID" ? "spiders are" : "user-defined shapes are"));
     return true;
   }
   if (key == "OBDC") {
@@ -80,10 +80,10 @@ void put_apertures(ZmxApertures const& apertures, PrescribedSurface& surface, st
     surface.obscured_without_end = disc > 0 && std::isinf(largest);
   }
   if (auto const& ring = apertures.obscured_ring) {
-    if (ring->largest >= surface.semi_diameter) {  // a circular aperture remains
+    if (ring->largest >= surface.semi_diameter) {  // the ring leaves a circular aperture
       largest = largest > 0 ? std::min(largest, ring->least) : ring->least;
     } else {
-      warn("OBSC: an obscuration that is a ring within the surface is not traced; light passes there");
+      warn("OBSC: a ring-shaped obscuration within the surface is not traced and blocks no light");
     }
   }
   surface.outline = apertures.outline;
@@ -92,7 +92,7 @@ void put_apertures(ZmxApertures const& apertures, PrescribedSurface& surface, st
   // represent circles off the axis as ellipses
   auto const as_outline = [&](double radius, bool blocks) {
     if (surface.outline.kind != Outline::Kind::none) {
-      warn("of several decentred apertures on a surface one alone is traced; light passes the other");
+      warn("of several decentred apertures on a surface only one is traced; the others block no light");
     } else {
       surface.outline = {Outline::Kind::ellipse, blocks, {radius, radius}, centre};
     }
@@ -138,17 +138,17 @@ void ZmxNotes::read(PrescriptionLine const& line) {
     note("vignetting",
          fmt::format("{}: {}: vignetting factors are not used; the edges of the surfaces vignette", line.where, key));
   } else if (key == "COAT") {
-    note(key, line.where + ": COAT: coatings take and give no light here; surfaces pass all of it");
+    note(key, line.where + ": COAT: coatings are ignored; surfaces transmit all light");
   } else if (key == "MNUM") {
     if (line.size() > 1 && line[1] != "1") {
-      note(key, fmt::format("{}: MNUM: of {} configurations, the one that the surfaces hold is read", line.where,
+      note(key, fmt::format("{}: MNUM: of {} configurations, only the one stored in the surfaces is read", line.where,
                             line[1].substr(0, 40)));
     }
   } else if (key == "ENVD") {
     // temperature, pressure, and flag: adjust indices to them
     if (line.size() > 3 && line[3] != "0" && (line.number(1) != 20 || line.number(2) != 1)) {
       note(key, line.where +
-                    ": ENVD: indices are not adjusted to an environment; those of the catalogue are traced, at 20 "
+                    ": ENVD: indices are not adjusted to an environment; those of the catalogue are used, at 20 "
                     "degrees and 1 atmosphere");
     }
   } else if (!is_harmless(key) && keys_.insert(key).second) {
@@ -161,9 +161,9 @@ std::vector<std::string> ZmxNotes::warnings() const {
   std::vector<std::string> all = notes_;
   if (!unknown_.empty()) {
     bool const one = unknown_.size() == 1;
-    all.push_back(fmt::format("{}: {} {} {} not known here and {} passed over; check that {} not change the lens",
-                              unknown_where_, one ? "operand" : "operands", fmt::join(unknown_, ", "),
-                              one ? "is" : "are", one ? "was" : "were", one ? "it does" : "they do"));
+    all.push_back(fmt::format("{}: {} {} {} unknown and {} ignored; check that {} not change the lens", unknown_where_,
+                              one ? "operand" : "operands", fmt::join(unknown_, ", "), one ? "is" : "are",
+                              one ? "was" : "were", one ? "it does" : "they do"));
   }
   return all;
 }

@@ -24,8 +24,8 @@ PrescribedMedium model_glass(PrescriptionLine const& line, std::vector<std::stri
     return {PrescribedMedium::Mirror{}};
   }
   if (!is_glass(nd, vd)) {
-    throw DataError(line.where, fmt::format("GLAS: a model glass of nd = {:.6g}, Vd = {:.6g} is none (nd lies "
-                                            "between 1 and 5, Vd above 0); correct it or name a glass",
+    throw DataError(line.where, fmt::format("GLAS: nd = {:.6g}, Vd = {:.6g} of the model glass are impossible (nd must "
+                                            "lie between 1 and 5, Vd above 0); correct them or name a glass",
                                             nd, vd));
   }
   if (line.size() > 6 && line.number(6) != 0) {
@@ -126,7 +126,7 @@ PrescribedSurface shaped_surface(ZmxSurface const& zmx, int number, double unit,
   using Shape = PrescribedSurface::Shape;
   auto const no_extra_data = [&] {
     if (zmx.extra_where.empty()) return;
-    warnings.push_back(fmt::format("{}: XDAT: extra data of a surface {} are passed over", zmx.extra_where, zmx.type));
+    warnings.push_back(fmt::format("{}: XDAT: extra data of a surface {} are ignored", zmx.extra_where, zmx.type));
   };
   if (zmx.type == "STANDARD") {
     no_extra_data();
@@ -158,10 +158,9 @@ PrescribedSurface shaped_surface(ZmxSurface const& zmx, int number, double unit,
     surface.slope = {zmx.parameter(1), zmx.parameter(2)};
     surface.curvature = surface.conic = 0;
   } else {
-    throw DataError(zmx.type_where,
-                    fmt::format("surface {}: type {} is not read (STANDARD, EVENASPH, ODDASPHE, XASPHERE, XOSPHERE, "
-                                "PARAXIAL, TILTSURF and COORDBRK are)",
-                                number, zmx.type));
+    throw DataError(zmx.type_where, fmt::format("surface {}: type {} is not supported (STANDARD, EVENASPH, ODDASPHE, "
+                                                "XASPHERE, XOSPHERE, PARAXIAL, TILTSURF and COORDBRK are)",
+                                                number, zmx.type));
   }
   put_apertures(zmx.apertures, surface, warnings);
   return surface;

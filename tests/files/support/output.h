@@ -18,7 +18,7 @@ inline std::string content(std::filesystem::path const& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// While it lives no file may grow beyond some bytes: writing fails as on a full disk, for this process only.
+/// RAII guard that limits the size of files in this process, so that writing fails as on a full disk.
 class FileSizeLimit {
  public:
   explicit FileSizeLimit(rlim_t bytes) : handler_(signal(SIGXFSZ, SIG_IGN)) {
@@ -36,7 +36,7 @@ class FileSizeLimit {
   rlimit before_{};
 };
 
-/// A fresh folder for each test of what writes.
+/// Fixture with a new directory for each test.
 class Output : public testing::Test {
  protected:
   void SetUp() override {

@@ -84,7 +84,7 @@ std::optional<NamedCoordinate> coordinate_name(std::string const& path) {
   return std::nullopt;
 }
 
-/// Returns the only dataset that can be the field, if the user names none.
+/// Returns the only dataset that can be the field, for use if the user names none.
 /// @throws DataError if there is none, or several
 std::string only_field(Hdf5Reader const& file, std::string const& path, int values) {
   std::vector<std::string> volumes, planes;
@@ -108,7 +108,7 @@ std::string only_field(Hdf5Reader const& file, std::string const& path, int valu
                                                   : fmt::format("velocity, [nz, ny, nx, {}]", values),
                                       others.empty() ? "no numbers at all" : others));
   }
-  throw DataError(path, "has several fields; say which with dataset = " + quoted_list(fields));
+  throw DataError(path, "has several fields; select one with dataset = " + quoted_list(fields));
 }
 
 /// Coordinates of the nodes along one axis of an array.
@@ -146,7 +146,8 @@ class Hdf5Source final : public CheckedSource {
     describe(nodes, rank(), by);
     if (cells_) reading_.by += "; data of cells, at their centres";
     std::vector<double> first(1);
-    file_.read_box(name_, Shape(shape_.size(), 0), Shape(shape_.size(), 1), first);  // reports a missing filter
+    // reading one value reports a missing filter
+    file_.read_box(name_, Shape(shape_.size(), 0), Shape(shape_.size(), 1), first);
   }
 
  private:
@@ -158,7 +159,7 @@ class Hdf5Source final : public CheckedSource {
   [[noreturn]] void refuse_shape() const {
     bool const in_front = shape_.size() == 4 && shape_[3] > 3 && may_be_components(shape_[0]);
     std::string const why = shape_.size() == 4
-                                ? fmt::format("holds {} values a point", in_front ? shape_[0] : shape_[3])
+                                ? fmt::format("has {} values per point", in_front ? shape_[0] : shape_[3])
                                 : fmt::format("has rank {}", shape_.size());
     std::string const wanted = values_ == 1 ? "a scalar field has shape [nz, ny, nx], [nz, ny, nx, 1] or [ny, nx]"
                                             : fmt::format("a velocity has shape [nz, ny, nx, {}]", values_);
@@ -167,7 +168,7 @@ class Hdf5Source final : public CheckedSource {
 
   /// Assigns world axes and coordinates to the stored axes. @return source of the assignment
   std::string place_axes(std::string const& wanted) {
-    std::array<std::optional<Coordinates>, 3> own;  // by stored axis, fastest first
+    std::array<std::optional<Coordinates>, 3> own;  // coordinates of each stored axis, fastest first
     std::array<std::optional<Coordinates>, 3> of_letter;
     std::string order;
     auto const scales = file_.dimension_scales(name_);
@@ -210,7 +211,8 @@ class Hdf5Source final : public CheckedSource {
     return by;
   }
 
-  /// Replaces the coordinates of the edges of cells by those of their centres, if each axis has one more than nodes.
+  /// If each axis has one more coordinate than nodes, takes the coordinates as those of cell edges and replaces them by
+  /// the cell centres.
   void centre_edges(std::array<std::optional<Coordinates>, 3>& own) {
     for (std::size_t i = 0; i < rank(); ++i) {
       if (length(i) == 1 && (!own[i] || own[i]->places.size() == 1)) continue;
@@ -296,7 +298,7 @@ class Hdf5Source final : public CheckedSource {
       if (wide <= 1) return found;
     } catch (MemoryError const&) {
       throw;
-    } catch (DataError const&) {  // not numeric
+    } catch (DataError const&) {  // the dataset is not numeric
       return std::nullopt;
     }
     reduce_mesh(found, shape);
@@ -305,7 +307,7 @@ class Hdf5Source final : public CheckedSource {
 
   /// Returns true if an array of coordinates has the shape of the field, apart from axes of length one.
   bool is_mesh(Shape shape) const {
-    if (coordinate_name(name_)) return false;  // x, y and z are then fields themselves
+    if (coordinate_name(name_)) return false;  // the datasets x, y and z are then fields themselves
     Shape field;
     for (std::size_t i = rank(); i-- > 0;) field.push_back(length(i));
     std::erase(field, 1u);
@@ -402,7 +404,7 @@ class Hdf5Source final : public CheckedSource {
     if (rank() == 2) letters = !wide('z') || (wide('x') && wide('y')) ? "xy" : wide('y') ? "yz" : "xz";
     std::string const usual(letters.rbegin(), letters.rend());
     std::vector<std::string> fitting = fitting_orders(letters, of_letter, 0);
-    if (fitting.empty()) fitting = fitting_orders(letters, of_letter, 1);  // edges of cells
+    if (fitting.empty()) fitting = fitting_orders(letters, of_letter, 1);  // n + 1 coordinates: edges of cells
     bool some = false, meshes = false;
     for (auto const& own : of_letter) {
       some = some || own;

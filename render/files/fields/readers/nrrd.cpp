@@ -85,7 +85,7 @@ class NrrdBytes {
     std::vector<char> block(64 * 1024);
     for (long lines = header_.line_skip; lines > 0;) {
       std::size_t const got = file_.read(offset_, block.data(), block.size());
-      if (got == 0) throw DataError(header_.data_path, "ends before the lines that \"line skip\" leaves out");
+      if (got == 0) throw DataError(header_.data_path, "ends within the lines to be skipped by \"line skip\"");
       std::size_t used = 0;
       while (used < got && lines > 0) lines -= block[used++] == '\n';
       offset_ += used;
@@ -136,7 +136,7 @@ class NrrdBytes {
 
   void decode() {
     std::string const bytes = stored();
-    // Plausibility of the header: at most 8 values per encoded byte as text or hex, 8e6 per byte of bzip2.
+    // Limits of a plausible header: at most 8 values per byte of text or hex data, 8e6 per byte of bzip2 data.
     double const most = header_.encoding == Encoding::bzip2 ? 1e6 : 1;
     if (static_cast<double>(values()) > most * 8 * static_cast<double>(bytes.size())) {
       throw DataError(
@@ -186,9 +186,9 @@ class NrrdBytes {
   }
 
   [[noreturn]] void too_few_numbers(std::size_t there) const {
-    throw DataError(header_.data_path, fmt::format("is cut short: {} numbers are there and {} are needed (sizes {}); "
-                                                   "copy it again",
-                                                   there, values(), header_.sizes_text()));
+    throw DataError(header_.data_path,
+                    fmt::format("is cut short: {} numbers are present and {} are needed (sizes {}); copy it again",
+                                there, values(), header_.sizes_text()));
   }
 
   void decode_hex(std::string const& text) {
@@ -197,8 +197,9 @@ class NrrdBytes {
       if (is_blank(c)) continue;
       int const digit = hex_digit(c);
       if (digit < 0) {
-        throw DataError(header_.data_path,
-                        fmt::format("is damaged: digit {} of its hex is no digit; copy it again", digits + 1));
+        throw DataError(
+            header_.data_path,
+            fmt::format("is damaged: digit {} of its hex data is not a hexadecimal digit; copy it again", digits + 1));
       }
       if (digits / 2 < decoded_.size()) {
         char& byte = decoded_[digits / 2];
@@ -268,7 +269,7 @@ class NrrdBytes {
     int const got = gzread(stream_, &first, 1);
     if (got < 0) damaged();
     if (got == 0) cut_short(0);
-    if (gzdirect(stream_)) throw DataError(header_.data_path, "is said to be gzip, and is not");
+    if (gzdirect(stream_)) throw DataError(header_.data_path, "is declared as gzip, but is not compressed by gzip");
     if (gzrewind(stream_) != 0) damaged();
     discard(skipped_);
     position_ = 0;
@@ -319,16 +320,16 @@ class NrrdBytes {
 
   [[noreturn]] void cut_short(std::size_t there) const {
     throw DataError(header_.data_path,
-                    fmt::format("is cut short: {} bytes of data are there and {} are needed (sizes {}, {} bytes a "
+                    fmt::format("is cut short: {} bytes of data are present and {} are needed (sizes {}, {} bytes per "
                                 "value); copy it again",
                                 there, header_.data_bytes(), header_.sizes_text(), header_.value_bytes()));
   }
 
   [[noreturn]] void too_long(std::size_t there) const {
     throw DataError(header_.data_path,
-                    fmt::format("holds more data than its header says: {} bytes or more are there and {} are needed "
-                                "(sizes {}, {} bytes a value), so that the place of the field is unknown; correct the "
-                                "sizes, or give \"byte skip\" if something stands before the field",
+                    fmt::format("holds more data than its header says: {} bytes or more are present and {} are needed "
+                                "(sizes {}, {} bytes per value), so that the position of the field is unknown; correct "
+                                "the sizes, or give \"byte skip\" if other data precede the field",
                                 there, header_.data_bytes(), header_.sizes_text(), header_.value_bytes()));
   }
 
@@ -419,7 +420,7 @@ class NrrdSource final : public CheckedSource {
 
 std::unique_ptr<CheckedSource> open_nrrd(std::string const& path, FieldWish const& wish) {
   if (!wish.dataset.empty()) {
-    throw DataError(path, "holds one field without a name; leave dataset = \"" + wish.dataset + "\" out");
+    throw DataError(path, "contains one field without a name; leave dataset = \"" + wish.dataset + "\" out");
   }
   return std::make_unique<NrrdSource>(path, read_nrrd_header(path, wish.values), wish);
 }

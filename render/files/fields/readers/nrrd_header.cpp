@@ -63,13 +63,14 @@ class Fields {
   bool read(LineReader& file) {
     constexpr std::uint64_t most_bytes = std::uint64_t{16} << 20;
     while (auto const text = file.next()) {
-      if (file.offset() > most_bytes) throw DataError(path_, "has a header of more than 16 MiB, as no NRRD file has");
+      if (file.offset() > most_bytes)
+        throw DataError(path_, "has a header of more than 16 MiB, which no NRRD file has");
       std::string const line = trimmed(*text);
       if (line.empty()) return true;
       if (line.front() == '#' || line.find(":=") != std::string::npos) continue;
       auto const colon = line.find(':');
       if (colon == std::string::npos) {
-        throw DataError(path_, "header line \"" + excerpt(line) + "\" is no NRRD field");
+        throw DataError(path_, "header line \"" + excerpt(line) + "\" is not an NRRD field");
       }
       std::string const key = canonical(trimmed(lower_case(line.substr(0, colon))));
       std::string const value = trimmed(line.substr(colon + 1));
@@ -77,9 +78,9 @@ class Fields {
       if (first) {
         lines_[key] = file.number();
       } else if (given->second != value) {
-        throw DataError(file.place(), fmt::format("gives the NRRD field \"{}\" again, as \"{}\" (line {} says \"{}\"); "
-                                                  "remove one of them",
-                                                  excerpt(key), excerpt(value), lines_[key], excerpt(given->second)));
+        throw DataError(file.place(),
+                        fmt::format("repeats the NRRD field \"{}\" as \"{}\" (line {} says \"{}\"); remove one of them",
+                                    excerpt(key), excerpt(value), lines_[key], excerpt(given->second)));
       }
       if (key == "data file" && is_list(value)) {
         read_list(file);
@@ -187,7 +188,7 @@ void read_type(Fields const& fields, NrrdHeader& header) {
   auto const found = std::find_if(all.begin(), all.end(), [&](TypeName const& type) {
     return std::find(type.names.begin(), type.names.end(), name) != type.names.end();
   });
-  if (found == all.end()) fields.refuse("type", "is no type of numbers; write float, double, or an integer type");
+  if (found == all.end()) fields.refuse("type", "is not a numeric type; write float, double, or an integer type");
   header.type = found->type;
 }
 
@@ -200,7 +201,7 @@ void read_encoding(Fields const& fields, NrrdHeader& header) {
       {"text", Encoding::ascii},  {"txt", Encoding::ascii}, {"hex", Encoding::hex}};
   auto const found = known.find(name);
   if (found == known.end()) {
-    fields.refuse("encoding", "is not read here; write the field in encoding raw, gzip, bzip2, ascii or hex");
+    fields.refuse("encoding", "is not supported; write the field in encoding raw, gzip, bzip2, ascii or hex");
   }
   header.encoding = found->second;
   std::string const endian = lower_case(fields.text("endian"));
@@ -251,7 +252,7 @@ class Axes {
  private:
   void read_sizes() {
     int const dimension = fields_.number<int>("dimension", 0, 1);
-    if (dimension > 16) fields_.refuse("dimension", "is more than 16, the most that NRRD has");
+    if (dimension > 16) fields_.refuse("dimension", "exceeds 16, the maximum of NRRD");
     sizes_ = fields_.numbers<long long>("sizes", static_cast<std::size_t>(dimension));
     double all = 1;
     for (long long const size : sizes_) {
@@ -268,7 +269,7 @@ class Axes {
     for (std::size_t axis = 0; axis < sizes_.size(); ++axis) kept_.push_back(axis);
     if (values > 1) {
       if (sizes_.size() < 3 || sizes_.front() != values) {
-        fields_.refuse("sizes", fmt::format("has no first axis of {} components, as a velocity has", values));
+        fields_.refuse("sizes", fmt::format("has no first axis of {} components, which a velocity needs", values));
       }
       kept_.erase(kept_.begin());
     }
@@ -282,14 +283,14 @@ class Axes {
       kept_.erase(last.base() - 1);
     }
     if (kept_.size() == 2 || kept_.size() == 3) return;
-    fields_.refuse("dimension", fmt::format("must be 2 or 3 ({} at every point), beside axes of length one",
+    fields_.refuse("dimension", fmt::format("must be 2 or 3 ({} at every point), not counting axes of length one",
                                             values == 1 ? "one number" : fmt::format("{} numbers", values)));
   }
 
   /// Names the world axes by "labels", if they are x, y and z.
   void name_by_labels() {
     auto const labels = quoted_words(fields_, "labels");
-    std::string names;  // fastest first
+    std::string names;  // letters of the axes, fastest first
     for (std::size_t const axis : kept_) {
       std::string const label = axis < labels.size() ? lower_case(labels[axis]) : "";
       if (label.size() == 1) names += label;
@@ -329,7 +330,7 @@ class Axes {
                                             axis + 1, sizes_[axis], placed.world);
       }
       if (placed.step == 0 || !std::isfinite(placed.step)) {
-        fields_.refuse(spacings.empty() ? "axis maxs" : "spacings", "gives an axis no length; it must be other than 0");
+        fields_.refuse(spacings.empty() ? "axis maxs" : "spacings", "gives an axis zero length; it must not be 0");
       }
       if (!lows.empty() && std::isfinite(lows[axis])) {
         placed.first = lows[axis] + (centre == Centre::node ? 0.0 : placed.step / 2);
@@ -373,7 +374,7 @@ class Axes {
         if (std::abs(direction[k]) > std::abs(direction[along])) along = k;
       }
       double const step = direction[along];
-      if (step == 0) fields_.refuse(key, "gives an axis no length");
+      if (step == 0) fields_.refuse(key, "gives an axis zero length");
       for (std::size_t k = 0; k < direction.size(); ++k) {
         constexpr double rounding = 1e-6;  // tolerance of angles [rad]: a millionth of the width of the field
         if (k != along && std::abs(direction[k]) > rounding * std::abs(step)) {
@@ -381,7 +382,7 @@ class Axes {
         }
       }
       char const world = "xyz"[along];
-      if (taken.find(world) != std::string::npos) fields_.refuse(key, "gives two axes one direction");
+      if (taken.find(world) != std::string::npos) fields_.refuse(key, "gives two axes the same direction");
       taken += world;
       header_.axes[i].world = world;
       header_.axes[i].step = step;
@@ -450,7 +451,7 @@ NrrdHeader read_nrrd_header(std::string const& path, int values) {
   header.line_skip = fields.number<long>("line skip", 0, 0);
   header.byte_skip = fields.number<long long>("byte skip", 0, -1);
   if (header.byte_skip == -1 && header.encoding != NrrdHeader::Encoding::raw) {
-    fields.refuse("byte skip", "goes with encoding raw only");
+    fields.refuse("byte skip", "requires encoding raw");
   }
   if (!fields.has("data file")) {
     if (!attached)
@@ -465,7 +466,7 @@ NrrdHeader read_nrrd_header(std::string const& path, int values) {
   if (Fields::is_list(data) || data.find('%') != std::string::npos) {
     std::string const which = Fields::is_list(data) ? fmt::format(" ({})", listed.size()) : " by a pattern";
     fields.refuse("data file", "names several files" + which +
-                                   "; data in several files are not read here: join them into one file, in the order "
+                                   "; data in several files are not supported: join them into one file, in the order "
                                    "of the field, and name that");
   }
   if (data.empty()) fields.refuse("data file", "must be a file name");

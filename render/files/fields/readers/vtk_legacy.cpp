@@ -53,7 +53,7 @@ class Cursor {
     constexpr std::size_t most = 4096;
     while (peek() >= 0 && std::isspace(peek()) == 0) {
       text += static_cast<char>(take());
-      if (text.size() > most) throw DataError(file_.path(), "has a word longer than any of a legacy VTK file");
+      if (text.size() > most) throw DataError(file_.path(), "has a word too long for a legacy VTK file");
     }
     return text;
   }
@@ -63,7 +63,7 @@ class Cursor {
     constexpr std::size_t most = 65536;
     for (int c = take(); c >= 0 && c != '\n'; c = take()) {
       text += static_cast<char>(c);
-      if (text.size() > most) throw DataError(file_.path(), "has a line longer than any of a legacy VTK file");
+      if (text.size() > most) throw DataError(file_.path(), "has a line too long for a legacy VTK file");
     }
     if (!text.empty() && text.back() == '\r') text.pop_back();
     return text;
@@ -101,10 +101,12 @@ class LegacyReader {
  public:
   LegacyReader(std::string const& path, FieldWish const& wish)
       : file_(std::make_shared<InputFile>(path, "a field file")), cursor_(*file_), wish_(wish) {
-    if (!cursor_.line().starts_with("# vtk DataFile")) refuse("is no legacy VTK file (it does not begin with # vtk)");
+    if (!cursor_.line().starts_with("# vtk DataFile"))
+      refuse("is not a legacy VTK file (it does not begin with # vtk)");
     cursor_.line();  // title
     std::string const encoding = lower_case(cursor_.word());
-    if (encoding != "ascii" && encoding != "binary") refuse("is said to be neither ASCII nor BINARY; copy it again");
+    if (encoding != "ascii" && encoding != "binary")
+      refuse("is declared neither as ASCII nor as BINARY; copy it again");
     text_ = encoding == "ascii";
     read_grid();
     read_arrays();
@@ -118,19 +120,19 @@ class LegacyReader {
       names.push_back(array.name);
       bool const fits = array.components == static_cast<std::uint64_t>(wish_.values);
       if (array.name == wish_.dataset && !fits) {
-        refuse(fmt::format("data array \"{}\" holds {} values a point where {} are needed", excerpt(array.name),
+        refuse(fmt::format("data array \"{}\" has {} values per point, but {} are needed", excerpt(array.name),
                            array.components, wish_.values));
       }
       if (fits && (wish_.dataset.empty() || array.name == wish_.dataset)) fitting.push_back(array);
     }
     if (fitting.empty()) refuse(no_such_array(wish_, names));
     if (fitting.size() > 1 && wish_.dataset.empty()) {
-      refuse("has several such fields; say which with dataset = " + quoted_list(names));
+      refuse("has several such fields; select one with dataset = " + quoted_list(names));
     }
     LegacyArray const& chosen = fitting.front();
     VtkField field{chosen.name, chosen.place, chosen.number.significant_bits, grid_, {}, {}};
     if (fitting.size() > 1)
-      field.notes.push_back(fmt::format("\"{}\" is there twice; the first is taken", chosen.name));
+      field.notes.push_back(fmt::format("\"{}\" occurs twice; the first one is used", chosen.name));
     field.load = [file = file_, chosen, text = text_] { return load(*file, chosen, text); };
     return field;
   }
@@ -144,7 +146,7 @@ class LegacyReader {
     Number value{};
     auto const [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
     if (error != std::errc() || end != word.data() + word.size()) {
-      refuse(fmt::format("{}: \"{}\" is no number; copy it again", what, excerpt(word)));
+      refuse(fmt::format("{}: \"{}\" is not a number; copy it again", what, excerpt(word)));
     }
     return value;
   }
@@ -153,7 +155,7 @@ class LegacyReader {
     std::string const type = lower_case(name);
     auto const* const found = std::find_if(vtk_numbers.begin(), vtk_numbers.end(),
                                            [&type](VtkNumber const& one) { return lower_case(one.legacy) == type; });
-    if (found == vtk_numbers.end()) refuse(fmt::format("has data of type \"{}\", which is no number", excerpt(name)));
+    if (found == vtk_numbers.end()) refuse(fmt::format("has data of type \"{}\", which is not numeric", excerpt(name)));
     return *found;
   }
 
@@ -223,13 +225,13 @@ class LegacyReader {
         place = key == "point_data" ? VtkPlace::points : VtkPlace::cells;
         std::uint64_t const there = number<std::uint64_t>(key);
         if (there != nodes(*place)) {
-          refuse(fmt::format("has {} values in its {} for {} {} of its grid; copy it again", there, key, nodes(*place),
-                             *place == VtkPlace::points ? "points" : "cells"));
+          refuse(fmt::format("has {} values in its {}, but its grid has {} {}; copy it again", there, key,
+                             nodes(*place), *place == VtkPlace::points ? "points" : "cells"));
         }
       } else if (key == "metadata") {
         skip_metadata();
       } else if (!place) {
-        refuse(fmt::format("has \"{}\" where POINT_DATA or CELL_DATA is expected; copy it again", excerpt(key)));
+        refuse(fmt::format("has \"{}\" instead of POINT_DATA or CELL_DATA; copy it again", excerpt(key)));
       } else if (!read_attribute(key, *place)) {
         return;  // the length of an unknown attribute is not defined, so that reading must stop here
       }
@@ -260,7 +262,7 @@ class LegacyReader {
       std::string const rest = trimmed(cursor_.line());
       if (!rest.empty() &&
           std::from_chars(rest.data(), rest.data() + rest.size(), array.components).ec != std::errc()) {
-        refuse(fmt::format("SCALARS {}: \"{}\" is no number of components", excerpt(array.name), excerpt(rest)));
+        refuse(fmt::format("SCALARS {}: \"{}\" is not a number of components", excerpt(array.name), excerpt(rest)));
       }
       std::string next(12, ' ');
       next.resize(file_->read(cursor_.place(), next.data(), next.size()));
@@ -268,7 +270,7 @@ class LegacyReader {
         cursor_.word();
         cursor_.word();
       } else {
-        cursor_.go_to(cursor_.place() - 1);  // to the preceding line end
+        cursor_.go_to(cursor_.place() - 1);  // go back to the preceding line end
       }
     } else if (key == "vectors" || key == "normals") {
       array.number = number_type(cursor_.word());
@@ -292,7 +294,7 @@ class LegacyReader {
   }
 
   void read_field(VtkPlace place, bool kept) {
-    cursor_.word();  // name of the FIELD
+    cursor_.word();  // skip the name of the FIELD
     std::uint64_t const count = number<std::uint64_t>("FIELD");
     for (std::uint64_t i = 0; i < count; ++i) {
       LegacyArray array;
@@ -303,7 +305,7 @@ class LegacyReader {
         --i;
         continue;
       }
-      if (name.empty()) refuse("is cut short: a FIELD has fewer arrays than it says; copy it again");
+      if (name.empty()) refuse("is cut short: a FIELD has fewer arrays than it declares; copy it again");
       array.name = decoded_name(name);
       array.components = number<std::uint64_t>("FIELD");
       array.tuples = number<std::uint64_t>("FIELD");
@@ -340,8 +342,8 @@ class LegacyReader {
   }
 
   [[noreturn]] static void cut_short(InputFile const& file, LegacyArray const& array) {
-    throw DataError(file.path(), fmt::format("is cut short: data array \"{}\" ends before its values do; copy it again",
-                                             excerpt(array.name)));
+    throw DataError(file.path(),
+                    fmt::format("is cut short: data array \"{}\" is incomplete; copy it again", excerpt(array.name)));
   }
 
   static ValueStore load(InputFile const& file, LegacyArray const& array, bool text) {
@@ -356,9 +358,9 @@ class LegacyReader {
         double value = 0;
         std::size_t const sign = word.starts_with('+') ? 1 : 0;
         if (std::from_chars(word.data() + sign, word.data() + word.size(), value).ec == std::errc::invalid_argument) {
-          throw DataError(file.path(), fmt::format("data array \"{}\" is damaged ({} of {} numbers are there); copy it "
-                                                   "again",
-                                                   excerpt(array.name), i, count));
+          throw DataError(file.path(),
+                          fmt::format("data array \"{}\" is damaged ({} of {} numbers are present); copy it again",
+                                      excerpt(array.name), i, count));
         }
         values.set(i, value);
       }

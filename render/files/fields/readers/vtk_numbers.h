@@ -48,7 +48,8 @@ inline constexpr std::array vtk_numbers{
     vtk_number<std::uint64_t>("UInt64", "unsigned_long"),
     vtk_number<std::int64_t>("Int64", "vtktypeint64"),
     vtk_number<std::uint64_t>("UInt64", "vtktypeuint64"),
-    vtk_number<std::int32_t>("Int32", "vtkIdType"),  // legacy files store 4 bytes, whatever the size in memory
+    // legacy files store 4 bytes per index, whatever its size in memory
+    vtk_number<std::int32_t>("Int32", "vtkIdType"),
 };
 
 }  // namespace gladstone

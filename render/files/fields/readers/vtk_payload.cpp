@@ -55,9 +55,8 @@ class ByteStream {
 
  private:
   [[noreturn]] void cut_short() const {
-    throw DataError(
-        file_.path(),
-        fmt::format("is cut short: data array \"{}\" ends before its values do; copy it again", excerpt(name_)));
+    throw DataError(file_.path(),
+                    fmt::format("is cut short: data array \"{}\" is incomplete; copy it again", excerpt(name_)));
   }
 
   char next_decoded() {
@@ -78,11 +77,11 @@ class ByteStream {
       }
       int const six = c < 0 ? -1 : value_of(static_cast<unsigned char>(c));
       if (c < 0 || c == '<') cut_short();
-      if (six < 0 || padding > 0) refuse_damaged(file_, name_, "its base64 holds other characters");
+      if (six < 0 || padding > 0) refuse_damaged(file_, name_, "its base64 text contains invalid characters");
       bits = bits << 6 | static_cast<std::uint32_t>(six);
       ++digits;
     }
-    if (digits < 2) refuse_damaged(file_, name_, "its base64 holds other characters");
+    if (digits < 2) refuse_damaged(file_, name_, "its base64 text contains invalid characters");
     for (std::size_t k = 0; k < 3; ++k) group_[k] = static_cast<char>(bits >> (16 - 8 * k));
     decoded_ = digits - 1;
     given_ = 0;
@@ -180,7 +179,7 @@ std::vector<char> decode_bytes(VtkPayload const& payload, VtkEncoding const& enc
                                std::string const& name, std::uint64_t size) {
   auto const check_length = [&](std::uint64_t there) {
     if (there == size) return;
-    refuse_damaged(file, name, fmt::format("its length is {} where its grid needs {}", there, size));
+    refuse_damaged(file, name, fmt::format("its length is {}, but its grid needs {}", there, size));
   };
   ByteStream stream(payload, file, name);
   if (encoding.compressor == VtkEncoding::Compressor::none) {
@@ -193,7 +192,7 @@ std::vector<char> decode_bytes(VtkPayload const& payload, VtkEncoding const& enc
                       partial = length_at(header, 2, encoding);
   double const whole = static_cast<double>(blocks - (blocks > 0 && partial > 0 ? 1 : 0)) * static_cast<double>(block);
   check_length(whole + static_cast<double>(partial) > 9e18 ? 0 : static_cast<std::uint64_t>(whole) + partial);
-  if (blocks > file.size()) refuse_damaged(file, name, "it says to have more blocks than the file has bytes");
+  if (blocks > file.size()) refuse_damaged(file, name, "it declares more blocks than the file has bytes");
   auto const sizes = stream.next(blocks * encoding.length_bytes);
   require_memory(file.path(), "data array \"" + excerpt(name) + '"', static_cast<double>(size));
   std::vector<char> bytes(size);
@@ -206,7 +205,7 @@ std::vector<char> decode_bytes(VtkPayload const& payload, VtkEncoding const& enc
     if (!got) refuse_damaged(file, name, fmt::format("block {} of {} cannot be decompressed", i + 1, blocks));
     done += *got;
   }
-  if (done != size) refuse_damaged(file, name, "it is shorter than its header says");
+  if (done != size) refuse_damaged(file, name, "it is shorter than its header declares");
   return bytes;
 }
 
@@ -214,7 +213,7 @@ std::vector<double> decode_text(VtkPayload const& payload, InputFile const& file
                                 std::uint64_t count) {
   std::string_view const text = payload.text;
   if (count > text.size()) {
-    refuse_damaged(file, name, fmt::format("its length is {} where its grid needs {}", text.size(), count));
+    refuse_damaged(file, name, fmt::format("its length is {}, but its grid needs {}", text.size(), count));
   }
   require_memory(file.path(), "data array \"" + excerpt(name) + '"', static_cast<double>(count) * sizeof(double));
   std::vector<double> values;
@@ -233,9 +232,9 @@ std::vector<double> decode_text(VtkPayload const& payload, InputFile const& file
     at = rest;
   }
   if (values.size() < count) {
-    refuse_damaged(file, name, fmt::format("{} of {} numbers are there", values.size(), count));
+    refuse_damaged(file, name, fmt::format("{} of {} numbers are present", values.size(), count));
   }
-  if (at != end) refuse_damaged(file, name, fmt::format("it holds more than the {} numbers of its grid", count));
+  if (at != end) refuse_damaged(file, name, fmt::format("it contains more than the {} numbers of its grid", count));
   return values;
 }
 

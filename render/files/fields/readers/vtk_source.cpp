@@ -24,11 +24,12 @@ StoredAxes image_axes(VtkGrid const& grid, VtkPlace place, std::string const& pa
     for (std::size_t row = 0; row < 3; ++row) {
       constexpr double rounding = 1e-6;  // tolerance of angles [rad]: a millionth of the width of the field
       if (std::isfinite(along(row)) && (row == largest || std::abs(along(row)) <= rounding)) continue;
-      throw DataError(path, "has turned axes (Direction) that are not along X, Y and Z; resample it along them");
+      throw DataError(path, "has rotated axes (Direction) that are not along X, Y and Z; resample it along them");
     }
     char const world = "xyz"[largest];
     if (taken.find(world) != std::string::npos || std::abs(std::abs(along(largest)) - 1) > 1e-6) {
-      throw DataError(path, "has a Direction that is no rotation or reflection; resample it along X, Y and Z");
+      throw DataError(path,
+                      "has a Direction that is neither a rotation nor a reflection; resample it along X, Y and Z");
     }
     taken += world;
     StoredAxis& axis = axes[column];
@@ -74,7 +75,7 @@ class VtkSource final : public CheckedSource {
     describe(nodes, 3,
              !wish.axes.empty() ? "axes = \"" + wish.axes + '"'
              : turned           ? "by its Direction"
-                                : "as VTK has it");
+                                : "as VTK defines it");
     units_.spaced = true;
     notes_ = field_.notes;
     if (field_.place == VtkPlace::cells) reading_.by += "; data of cells, at their centres";
@@ -116,7 +117,7 @@ void check_grid(VtkGrid const& grid, int values, std::string const& path) {
     }
     all *= points;
   }
-  if (all * sizeof(double) > 1e15) throw DataError(path, "has a grid larger than any field; check its extent");
+  if (all * sizeof(double) > 1e15) throw DataError(path, "has an implausibly large grid; check its extent");
 }
 
 std::unique_ptr<CheckedSource> make_vtk_source(std::string const& path, VtkField field, FieldWish const& wish) {

@@ -132,9 +132,9 @@ class VtkXmlReader {
     pugi::xml_document document;
     auto const result = document.load_buffer_inplace(head_.xml.data(), head_.xml.size());
     pugi::xml_node const root = document.child("VTKFile");
-    if (!root) refuse("is no VTK file (XML, with a tag <VTKFile>)");
+    if (!root) refuse("is not a VTK file (XML, with a tag <VTKFile>)");
     if (!result) {
-      refuse(fmt::format("is no whole XML ({} at byte {}); copy it again", result.description(), result.offset));
+      refuse(fmt::format("is not complete XML ({} at byte {}); copy it again", result.description(), result.offset));
     }
     read_kind(root);
     pugi::xml_node const grid = root.child(kind_.c_str());
@@ -193,7 +193,7 @@ class VtkXmlReader {
     if (compressor == "vtkLZ4DataCompressor") encoding.compressor = VtkEncoding::Compressor::lz4;
     if (compressor == "vtkLZMADataCompressor") encoding.compressor = VtkEncoding::Compressor::lzma;
     if (!compressor.empty() && encoding.compressor == VtkEncoding::Compressor::none) {
-      refuse(fmt::format("is compressed by \"{}\", which is not read here; use zlib, LZ4, LZMA or none",
+      refuse(fmt::format("is compressed by \"{}\", which is not supported; use zlib, LZ4, LZMA or none",
                          excerpt(compressor)));
     }
   }
@@ -232,15 +232,15 @@ class VtkXmlReader {
       if (!names.empty()) break;
     }
     if (fitting.empty() && !wish_.dataset.empty() && !components.empty()) {
-      refuse(fmt::format("data array \"{}\" holds {} values a point where {} are needed", excerpt(wish_.dataset),
+      refuse(fmt::format("data array \"{}\" has {} values per point, but {} are needed", excerpt(wish_.dataset),
                          components, wish_.values));
     }
     if (fitting.empty()) refuse(no_such_array(wish_, names));
     if (fitting.size() > 1 && wish_.dataset.empty()) {
-      refuse("has several such fields; say which with dataset = " + quoted_list(names));
+      refuse("has several such fields; select one with dataset = " + quoted_list(names));
     }
     if (fitting.size() > 1) {
-      notes_.push_back(fmt::format("\"{}\" is there of points and of cells; that of {} is taken", fitting.front(),
+      notes_.push_back(fmt::format("\"{}\" exists for points and for cells; that of {} is used", fitting.front(),
                                    places.front() == VtkPlace::points ? "points" : "cells"));
     }
     arrays_->name = fitting.front();
@@ -293,7 +293,7 @@ class VtkXmlReader {
     auto const* const number =
         std::find_if(vtk_numbers.begin(), vtk_numbers.end(), [type](VtkNumber const& one) { return one.xml == type; });
     if (number == vtk_numbers.end()) {
-      refuse(fmt::format("data array \"{}\" is of type \"{}\", which is no number", excerpt(name), excerpt(type)));
+      refuse(fmt::format("data array \"{}\" is of type \"{}\", which is not numeric", excerpt(name), excerpt(type)));
     }
     piece.number = *number;
     VtkPayload& payload = piece.payload;
@@ -303,11 +303,12 @@ class VtkXmlReader {
       if (!head_.data) refuse(fmt::format("data array \"{}\" has no data; copy it again", excerpt(name)));
       payload.format = appended_format_;
       payload.offset = *head_.data + numbers<std::uint64_t, 1>(tag, "offset", nullptr)[0];
-      if (payload.offset < *head_.data) refuse("has an offset beyond any file; copy it again");
+      if (payload.offset < *head_.data) refuse("has an impossible offset; copy it again");
       return;
     }
     payload.format = format == "ascii" ? VtkPayload::Format::ascii : VtkPayload::Format::base64;
-    for (pugi::xml_node const text : tag.children()) payload.text += text.value();  // comments split it
+    // comments divide the text into several nodes
+    for (pugi::xml_node const text : tag.children()) payload.text += text.value();
   }
 
   /// Copies the coordinates of a piece into those of the whole grid.
@@ -332,7 +333,7 @@ class VtkXmlReader {
                 grid_.coordinates[axis].begin() + static_cast<std::ptrdiff_t>(offset_in(extent, grid_.extent, axis)));
       ++axis;
     }
-    if (axis < 3) refuse("has no three arrays of <Coordinates>; write it anew");
+    if (axis < 3) refuse("does not have three arrays in <Coordinates>; write it anew");
   }
 
   std::shared_ptr<VtkArrays> arrays_;
