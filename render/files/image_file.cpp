@@ -87,6 +87,11 @@ void check_size(PageHeader const& spec, std::string const& path, std::uint64_t f
   }
   if (spec.depth > 1) throw DataError(path, fmt::format("is a volume of {} slices; give one picture", spec.depth));
   double const tile = spec.tile_px[0] * spec.tile_px[1] * std::max(spec.tile_px[2], 1.0);
+  if (tile * spec.pixel_bits / 8 > std::max(most, believed_image_bytes)) {
+    throw DataError(path, fmt::format("is damaged or cut short: its header tells of tiles of {:.0f} x {:.0f} px, and "
+                                      "the file has {:.3g} MB; copy it again",
+                                      spec.tile_px[0], spec.tile_px[1], static_cast<double>(file_bytes) / 1e6));
+  }
   // Memory: tile or strip of the codec library, samples as stored, samples as double, and the image.
   double const tile_bytes = tile * spec.channels * static_cast<double>(spec.sample_bytes);
   double const sample_bytes = static_cast<double>(spec.sample_bytes) + sizeof(double);

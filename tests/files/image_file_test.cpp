@@ -423,6 +423,16 @@ TEST(ImageFile, AHeaderIsHeldAgainstTheSizeOfItsFile) {
   }
 }
 
+// A tile of 50,000 x 50,000 px is 5 GB, while the image has 35 px.
+TEST(ImageFile, TheTileSizeIsHeldAgainstTheSizeOfTheFile) {
+  std::string const path = temporary("damaged_tiles.tif");
+  constexpr std::uint16_t tile_width = 322, tile_length = 323;
+  std::ofstream(path, std::ios::binary) << with_tag(with_tag(content(case_path("tiled.tif")), tile_width, 50000),
+                                                    tile_length, 50000);
+  EXPECT_THAT([&] { read_image(path); },
+              ThrowsMessage<DataError>(AllOf(HasSubstr("damaged_tiles.tif: is damaged"), HasSubstr("50000 x 50000"))));
+}
+
 // An even grey packs as densely as any picture, a thousand to one.
 TEST(ImageFile, DenselyPackedPicturesAreRead) {
   for (char const* name : {"even.png", "even.exr", "even.tif"}) {
