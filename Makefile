@@ -25,7 +25,7 @@ JOBS ?= $(shell cores=$$(nproc 2>/dev/null || echo 2); \
 
 # Packages of Debian bookworm. Three small OpenCV packages replace libopencv-dev, which depends on two hundred others.
 PACKAGES := g++ cmake ninja-build pkg-config libeigen3-dev libtbb-dev libfmt-dev libspdlog-dev nlohmann-json3-dev \
-	libcli11-dev libtomlplusplus-dev libhdf5-dev libopenimageio-dev libopencv-core-dev libopencv-imgproc-dev \
+	libcli11-dev libtomlplusplus-dev libhdf5-dev libtiff-dev libopenimageio-dev libopencv-core-dev libopencv-imgproc-dev \
 	libopencv-video-dev libceres-dev libnlopt-cxx-dev zlib1g-dev libbz2-dev libpugixml-dev liblz4-dev liblzma-dev libssl-dev gnuplot-nox fonts-dejavu-core node-d3 libgtest-dev libgmock-dev libbenchmark-dev
 LINT_PACKAGES := clang-format python3-venv
 # From PyPI: unlike Debian's clang-tidy 14 it skips system headers, which takes a third of the time.

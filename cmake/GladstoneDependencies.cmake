@@ -8,6 +8,7 @@ find_package(nlohmann_json REQUIRED)
 find_package(CLI11 REQUIRED)
 # found by pkg-config, because its CMake package also requires the command line tools
 pkg_check_modules(OpenImageIO REQUIRED IMPORTED_TARGET OpenImageIO)
+pkg_check_modules(Tiff REQUIRED IMPORTED_TARGET libtiff-4)
 find_package(OpenCVModules REQUIRED)
 find_package(Ceres 2.1 REQUIRED)
 pkg_check_modules(NLopt REQUIRED IMPORTED_TARGET nlopt_cxx)

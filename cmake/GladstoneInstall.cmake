@@ -7,7 +7,7 @@ get_property(rooms GLOBAL PROPERTY GLADSTONE_ROOMS)
 target_compile_options(gladstone_base INTERFACE
   $<INSTALL_INTERFACE:$<$<COMPILE_LANGUAGE:CXX>:${GLADSTONE_USAGE_FLAGS}>>)
 install(TARGETS ${rooms} EXPORT gladstoneTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
-# loaded when an image is first read or written
+# loaded when an image is first read or written that is not a plain TIFF
 install(TARGETS gladstone_image_codecs LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
 if(TARGET gladstone)
   set_target_properties(gladstone PROPERTIES INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL_LIBDIR}")

@@ -21,7 +21,7 @@
 #include "render/files/image_codecs.h"
 #include "render/files/input_file.h"
 #include "render/files/output_file.h"
-#include "render/files/tiff_directory.h"
+#include "render/files/tiff_file.h"
 
 namespace gladstone {
 namespace {
@@ -67,20 +67,19 @@ ImageMetadata metadata_of(PageHeader const& header) {
 /// Upper limit on the compression ratio of an image: above 1032 for deflate (2 bits for a run of 258 bytes) and 1365
 /// for LZW (12 bits for at most 4 kB). Higher ratios only occur in formats that are not used for images.
 constexpr double most_packed = 2048;
-constexpr double believed_image_bytes =
-    16e6;  // decoded size up to which a compressed image's header is trusted [bytes]
-constexpr int most_pages_counted = 1000;
+/// Decoded size of a compressed image, or of a tile, up to which the header is trusted [bytes].
+constexpr double believed_image_bytes = 16e6;
 
-/// Throws unless the file is long enough for the pixels that its header declares, and memory is available for them.
+/// Throws unless the file is long enough for the pixels and tiles that its header declares, and memory is available for
+/// them.
 void check_size(PageHeader const& spec, std::string const& path, std::uint64_t file_bytes) {
   double const pixels = static_cast<double>(spec.width) * spec.height * spec.depth;
   double const samples = pixels * spec.channels;
   std::string const sizes = fmt::format("{} x {} px of {} {}", spec.width, spec.height, spec.channels,
                                         spec.channels == 1 ? "value" : "values");
-  double const stored = samples * std::max(spec.bits, 1) / 8;
-  // uncompressed palette images: one index byte is expanded to three colour values
+  double const stored = pixels * spec.pixel_bits / 8;
   bool const packed = spec.compression != "none";
-  double const most = static_cast<double>(file_bytes) * (packed ? most_packed : 4.0);
+  double const most = static_cast<double>(file_bytes) * (packed ? most_packed : 1.0);
   if (stored > std::max(most, packed ? believed_image_bytes : 0.0) || spec.width <= 0 || spec.height <= 0) {
     throw DataError(
         path,
@@ -89,15 +88,20 @@ void check_size(PageHeader const& spec, std::string const& path, std::uint64_t f
             sizes, stored / 1e6, static_cast<double>(file_bytes) / 1e6));
   }
   if (spec.depth > 1) throw DataError(path, fmt::format("is a volume of {} slices; give a single image", spec.depth));
-  // Memory: tile or strip of the codec library, samples as stored, samples as double, and the image.
   double const tile = spec.tile_px[0] * spec.tile_px[1] * std::max(spec.tile_px[2], 1.0);
+  if (tile * spec.pixel_bits / 8 > std::max(most, believed_image_bytes)) {
+    throw DataError(path, fmt::format("is damaged or cut short: its header declares tiles of {:.0f} x {:.0f} px, but "
+                                      "the file has {:.3g} MB; copy it again",
+                                      spec.tile_px[0], spec.tile_px[1], static_cast<double>(file_bytes) / 1e6));
+  }
+  // Memory: tile or strip of the codec library, samples as stored, samples as double, and the image.
   double const tile_bytes = tile * spec.channels * static_cast<double>(spec.sample_bytes);
   double const sample_bytes = static_cast<double>(spec.sample_bytes) + sizeof(double);
   require_memory(path, "an image of " + sizes, tile_bytes + samples * sample_bytes + pixels * sizeof(double));
 }
 
-/// Reads all samples with their stored values. OpenImageIO scales 10, 12 and other bit depths up to 8 or 16 bits;
-/// `shift` [bits] undoes this.
+/// Reads all samples with their stored values. Readers scale 10, 12 and other bit depths up to 8 or 16 bits; `shift`
+/// [bits] undoes this.
 template <class Stored>
 std::vector<double> read_samples(PageReader& input, std::string const& path, int shift) {
   PageHeader const spec = input.header();
@@ -150,8 +154,7 @@ constexpr std::array<double, 3> luminance_weights{0.2126, 0.7152, 0.0722};
 
 /// Throws DataError if the channels are neither grey levels nor colours.
 void check_channels(PageHeader const& spec, std::string const& path) {
-  bool const grey = spec.colours == Colours::grey || spec.colours == Colours::inverted;
-  if (grey && spec.channels > 2) {
+  if (spec.colours == Colours::grey && spec.channels > 2) {
     throw DataError(path, fmt::format("has {} values per pixel that are not colours (its header declares them as "
                                       "grey); write the intended channel to a separate file",
                                       spec.channels));
@@ -184,20 +187,10 @@ double grey_level(PageHeader const& spec, double const* sample) {
   return level;
 }
 
-/// Returns true if the samples must be inverted: zero is white, and OpenImageIO has not inverted them, as it does with
-/// 8-bit samples.
-bool is_inverted(PageHeader const& spec) {
-  return spec.colours == Colours::inverted && (spec.type == SampleType::uint16 || spec.type == SampleType::uint32);
-}
-
 Image<double> grey_image(PageHeader const& spec, std::vector<double> const& samples) {
   auto const channels = static_cast<std::size_t>(spec.channels);
   Image<double> image(spec.width, spec.height);
-  bool const inverted = is_inverted(spec);
-  for (std::size_t i = 0; i < image.size(); ++i) {
-    double const level = grey_level(spec, samples.data() + i * channels);
-    image.data()[i] = inverted ? full_scale(spec) - level : level;
-  }
+  for (std::size_t i = 0; i < image.size(); ++i) image.data()[i] = grey_level(spec, samples.data() + i * channels);
   return image;
 }
 
@@ -224,14 +217,15 @@ Image<double> turn_upright(Image<double> stored, int orientation) {
 /// Image file opened for reading.
 class Picture {
  public:
-  explicit Picture(std::string const& path)
-      : path_(path), file_(path, "an image"), directories_(read_tiff_directories(file_, most_pages_counted)) {
-    input_ = image_codecs().open(path);
+  explicit Picture(std::string const& path) : path_(path), file_(path, "an image"), input_(open_tiff(file_)) {
+    if (!input_) input_ = image_codecs().open(path);
     if (!input_) {
-      throw DataError(
-          path,
-          "cannot be read as an image (it is of another format, " + unreadable_samples() +
-              "damaged or cut short); give TIFF, PNG, JPEG or EXR, if necessary written again without compression");
+      std::string const samples = describe_tiff_samples(file_);
+      throw DataError(path,
+                      "cannot be read as an image (it is of another format, " +
+                          (samples.empty() ? "" : "a TIFF with " + samples + ", ") +
+                          "damaged or cut short); give TIFF, PNG, JPEG or EXR, if necessary written again without "
+                          "compression");
     }
     count_pages();
   }
@@ -244,52 +238,23 @@ class Picture {
       throw DataError(path_, fmt::format("page {} cannot be read (the file is damaged); copy it again", page + 1));
     }
     PageHeader const spec = input_->header();
-    auto const directory = static_cast<std::size_t>(pages_[page]);
-    bool const bilevel = directory < directories_.size() && is_bilevel_by_default(directories_[directory]);
-    Image<double> image = bilevel ? read_bilevel_page(file_, directories_[directory]) : read_levels(spec);
-    image = turn_upright(std::move(image), spec.orientation);
+    check_size(spec, path_, file_.size());
+    check_channels(spec, path_);
+    Image<double> image = turn_upright(grey_image(spec, read_samples(*input_, path_)), spec.orientation);
     if (metadata) {
       *metadata = metadata_of(spec);
       metadata->channels = spec.colours == Colours::inks ? spec.channels - 1 : spec.channels;
-      metadata->sample_bits = bilevel ? 1 : spec.bits;
+      metadata->sample_bits = spec.bits;
       metadata->orientation = spec.orientation;
-      if (bilevel) metadata->bit_depth = 1;
     }
     return image;
   }
 
  private:
-  /// Describes the samples of a TIFF that cannot be opened, for the message.
-  std::string unreadable_samples() const {
-    if (directories_.empty()) return "";
-    constexpr std::array<char const*, 7> formats{"unknown numbers",
-                                                 "unsigned integers",
-                                                 "signed integers",
-                                                 "floating-point numbers",
-                                                 "undefined values",
-                                                 "complex integers",
-                                                 "complex floating-point numbers"};
-    std::uint64_t const format = directories_[0].value(TiffTag::sample_format, 1);
-    return fmt::format("a TIFF with {} of {} bits and compression {}, ", formats[format < formats.size() ? format : 0],
-                       directories_[0].value(TiffTag::bits_per_sample, 1),
-                       directories_[0].value(TiffTag::compression, 1));
-  }
-
-  /// Returns true if BitsPerSample is missing: the default of TIFF is 1, but OpenImageIO 2.4 assumes 8.
-  static bool is_bilevel_by_default(TiffDirectory const& page) {
-    return page.has(TiffTag::width) && !page.has(TiffTag::bits_per_sample);
-  }
-
-  Image<double> read_levels(PageHeader const& spec) {
-    check_size(spec, path_, file_.size());
-    check_channels(spec, path_);
-    return grey_image(spec, read_samples(*input_, path_));
-  }
-
-  /// Collects the pages that are not previews of the first one, up to most_pages_counted.
+  /// Collects the pages that are not previews of the first one, up to max_pages.
   void count_pages() {
     PageHeader const first = input_->header();
-    for (int page = 1; page < most_pages_counted && input_->seek(page); ++page) {
+    for (int page = 1; page < max_pages && input_->seek(page); ++page) {
       throw_if_interrupted();
       PageHeader const spec = input_->header();
       if (spec.width < first.width && spec.height < first.height) continue;
@@ -301,7 +266,6 @@ class Picture {
 
   std::string path_;
   InputFile file_;
-  std::vector<TiffDirectory> directories_;  ///< directories of a TIFF, one per page
   std::unique_ptr<PageReader> input_;
   std::vector<int> pages_{0};
 };
@@ -356,16 +320,11 @@ std::size_t count_not_finite(Image<double> const& image) {
 }
 
 void write_tiff(std::string const& path, Image<std::uint16_t> const& image, ImageMetadata const& metadata) {
-  auto const fail = [&](std::string const& why) {
-    throw OutputError(path, "the image cannot be written (" + why + ')');
-  };
   GreyPage page{image.columns(), image.rows(), image.data(), described(metadata), "gladstone " + std::string(version)};
   if (metadata.pixel_pitch_m > 0.0) page.pixels_per_centimetre = 0.01 / metadata.pixel_pitch_m;
 
   // Encode in memory first, since libtiff does not report a full disk.
-  std::vector<unsigned char> bytes;
-  if (std::string const why = image_codecs().encode_tiff(path, page, bytes); !why.empty()) fail(why);
-
+  std::vector<unsigned char> const bytes = named(path, [&] { return encode_tiff(path, page); });
   OutputFile file(path);
   file.write(bytes.data(), bytes.size());
   file.commit();

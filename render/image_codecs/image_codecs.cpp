@@ -3,6 +3,8 @@
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
+#include <algorithm>
+
 namespace gladstone {
 namespace {
 
@@ -47,14 +49,14 @@ OIIO::TypeDesc stored_as(SampleType type) {
   }
 }
 
-constexpr int photometric_inverted = 0, photometric_grey = 1, photometric_inks = 5;  // values of TIFF 6.0, section 8
+// PhotometricInterpretation of TIFF 6.0, section 8
+constexpr int photometric_inverted = 0, photometric_grey = 1, photometric_palette = 3, photometric_inks = 5;
 
 int photometric(OIIO::ImageSpec const& spec) { return spec.get_int_attribute("tiff:PhotometricInterpretation", -1); }
 
 Colours colours_of(OIIO::ImageSpec const& spec) {
   switch (photometric(spec)) {
     case photometric_inverted:
-      return Colours::inverted;
     case photometric_grey:
       return Colours::grey;
     case photometric_inks:
@@ -62,6 +64,22 @@ Colours colours_of(OIIO::ImageSpec const& spec) {
     default:
       return Colours::by_count;
   }
+}
+
+/// Inverts unsigned samples of 16 and 32 bits; OpenImageIO inverts those of 8 bits.
+void invert(OIIO::ImageSpec const& spec, void* samples) {
+  if (spec.format != OIIO::TypeDesc::UINT16 && spec.format != OIIO::TypeDesc::UINT32) return;
+  auto* const bytes = static_cast<unsigned char*>(samples);
+  std::transform(bytes, bytes + spec.image_bytes(), bytes,
+                 [](unsigned char byte) { return static_cast<unsigned char>(~byte); });
+}
+
+/// Returns a lower limit on the stored bits per pixel before compression.
+double pixel_bits(OIIO::ImageSpec const& spec, int sample_bits, bool uncompressed) {
+  if (photometric(spec) == photometric_palette) return spec.get_int_attribute("tiff:BitsPerSample", sample_bits);
+  // Colour channels can have a lower resolution than brightness, and channels of EXR fewer bits than the widest one.
+  constexpr double smallest_share = 0.25;
+  return spec.nchannels * sample_bits * (uncompressed ? smallest_share : 1.0);
 }
 
 enum class InkColours { converted, stored };
@@ -93,6 +111,7 @@ class OiioReader final : public PageReader {
     header.sample_bytes = spec.format.size();
     header.bits = spec.get_int_attribute("oiio:BitsPerSample", static_cast<int>(8 * spec.format.size()));
     header.compression = std::string(spec.get_string_attribute("compression", "unknown"));
+    header.pixel_bits = pixel_bits(spec, header.bits, header.compression == "none");
     header.tile_px = {static_cast<double>(spec.tile_width), static_cast<double>(spec.tile_height),
                       static_cast<double>(spec.tile_depth)};
     header.description = std::string(spec.get_string_attribute("ImageDescription"));
@@ -107,8 +126,11 @@ class OiioReader final : public PageReader {
     OIIO::ImageSpec const spec = input_->spec();
     bool const whole = input_->read_image(input_->current_subimage(), 0, 0, spec.nchannels,
                                           stored_as(sample_type(spec.format)), samples);
-    // for a truncated TIFF it returns true, and reports an error for every missing strip
-    if (whole && !input_->has_error()) return "";
+    // read_image() returns true for a truncated TIFF, and stores an error for every missing strip.
+    if (whole && !input_->has_error()) {
+      if (photometric(spec) == photometric_inverted) invert(spec, samples);
+      return "";
+    }
     std::string const why = input_->geterror();
     return why.empty() ? "no reason given" : why.substr(0, why.find('\n'));
   }
@@ -143,27 +165,6 @@ class OiioCodecs final : public ImageCodecs {
     }
     auto reader = std::make_unique<OiioReader>(path, std::move(input));
     return reader->seek(0) ? std::move(reader) : nullptr;
-  }
-
-  std::string encode_tiff(std::string const& path, GreyPage const& page,
-                          std::vector<unsigned char>& bytes) const override {
-    OIIO::ImageSpec spec(page.columns, page.rows, 1, OIIO::TypeDesc::UINT16);
-    spec["compression"] = "none";
-    spec["ImageDescription"] = page.description;
-    spec["Software"] = page.software;
-    spec["DateTime"] = 0;  // not a string, so that no date is written: equal images result in equal files
-    if (page.pixels_per_centimetre > 0.0) {
-      float const resolution = static_cast<float>(page.pixels_per_centimetre);
-      spec["XResolution"] = resolution;
-      spec["YResolution"] = resolution;
-      spec["ResolutionUnit"] = "cm";
-    }
-    auto const output = OIIO::ImageOutput::create("tif");
-    if (!output) return "no TIFF writer is installed";
-    OIIO::Filesystem::IOVecOutput memory(bytes);
-    bool const written = output->set_ioproxy(&memory) && output->open(path, spec) &&
-                         output->write_image(OIIO::TypeDesc::UINT16, page.values);
-    return !output->close() || !written ? "out of memory?" : "";
   }
 
   std::string encode_png(int columns, int rows, std::uint8_t const* values,

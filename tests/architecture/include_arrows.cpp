@@ -45,7 +45,7 @@ std::vector<Room> const& table() {
       {"render/files",
        {"render/base"},
        {},
-       {"HDF5", "OpenImageIO", "OpenSSL", "zlib", "bzip2", "lz4", "lzma", "pugixml", "fmt"}},
+       {"HDF5", "libtiff", "OpenImageIO", "OpenSSL", "zlib", "bzip2", "lz4", "lzma", "pugixml", "fmt"}},
       {"render/image_codecs", {"render/base", "render/files"}, {}, {"OpenImageIO"}},
       {"render/light", {"render/base", "render/setup", "render/files"}, {"Eigen"}, {"fmt"}},
       {"render/medium", {"render/base", "render/setup", "render/files"}, {"Eigen"}, {"fmt"}},
@@ -137,6 +137,7 @@ std::vector<LibraryPattern> const& known_libraries() {
   static std::vector<LibraryPattern> const libraries = {
       {"Eigen", "Eigen/.*|unsupported/Eigen/.*"},
       {"HDF5", "hdf5\\.h|hdf5_hl\\.h|H5.*\\.h"},
+      {"libtiff", "tiff(io)?\\.h"},
       {"OpenImageIO", "OpenImageIO/.*"},
       {"OpenSSL", "openssl/.*"},
       {"toml++", "toml\\+\\+/.*|toml\\.hpp|toml\\.h"},

@@ -5,6 +5,7 @@
 
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 
 #include "render/base/error.h"
 #include "render/files/image_file.h"
@@ -12,14 +13,13 @@
 namespace gladstone {
 namespace {
 
-// The library is searched for once per process. The test therefore restarts itself as a process in which no image has
-// been read.
+// A process loads the library once: the test runs in a new process, in which no image has been read.
 TEST(ImageCodecs, AreNamedWithTheCureWhereTheyAreMissing) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   auto const read_without = [] {
     setenv("GLADSTONE_IMAGE_CODECS", "/nowhere", 1);
     try {
-      write_tiff("never.tif", Image<std::uint16_t>(2, 2), {});
+      encode_png(Image<std::uint8_t>(2, 2));
     } catch (DataError const& error) {
       std::fputs(error.what(), stderr);
       std::exit(3);
@@ -28,6 +28,17 @@ TEST(ImageCodecs, AreNamedWithTheCureWhereTheyAreMissing) {
   };
   EXPECT_EXIT(read_without(), testing::ExitedWithCode(3), testing::HasSubstr("/nowhere/libgladstone_image_codecs.so"));
   EXPECT_EXIT(read_without(), testing::ExitedWithCode(3), testing::HasSubstr("set GLADSTONE_IMAGE_CODECS"));
+}
+
+TEST(ImageCodecs, AreNotLoadedForTiffs) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  auto const write_and_read = [] {
+    setenv("GLADSTONE_IMAGE_CODECS", "/nowhere", 1);
+    std::string const path = std::filesystem::path(testing::TempDir()) / "without_codecs.tif";
+    write_tiff(path, Image<std::uint16_t>(2, 3, 7), {});
+    std::exit(read_image(path)(1, 2) == 7.0 ? 0 : 1);
+  };
+  EXPECT_EXIT(write_and_read(), testing::ExitedWithCode(0), "");
 }
 
 }  // namespace

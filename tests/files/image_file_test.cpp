@@ -281,6 +281,7 @@ TEST(ImageFile, EveryKindOfPictureReadsAsItsLevels) {
            {"inks.tif", byte_level, rounding},
            {"inks_tiled.tif", byte_level, rounding},
            {"inks_planar.tif", byte_level, rounding},
+           {"inks_jpeg.tif", byte_level, jpeg},
            {"inks_16_tiled.tif", [](int i, int j) { return 257 * byte_level(i, j); }, 1e-6},
        }) {
     Image<double> const image = read_image(case_path(kind.name));
@@ -354,11 +355,13 @@ TEST(ImageFile, PicturesThatHaveNoGreyLevelsAreRefusedWithTheReason) {
   }
 }
 
-/// A black-and-white TIFF without the entry BitsPerSample, whose default is one bit. @param packing  compression method
-std::string bilevel_tiff(std::uint32_t packing, std::size_t bytes_of_pixels) {
+/// A TIFF of 256 x 200 px without the entry BitsPerSample, whose default is one bit.
+/// @param packing, colours  its entries Compression and PhotometricInterpretation
+std::string bilevel_tiff(std::uint32_t packing, std::uint32_t colours, std::string const& pixels) {
   constexpr std::uint32_t columns = 256, rows = 200, entries = 8, pixels_at = 10 + 12 * entries + 4;
-  std::uint32_t const entry[entries][2] = {{256, columns},   {257, rows}, {259, packing}, {262, 1},
-                                           {273, pixels_at}, {277, 1},    {278, rows},    {279, columns / 8 * rows}};
+  auto const pixel_bytes = static_cast<std::uint32_t>(pixels.size());
+  std::uint32_t const entry[entries][2] = {{256, columns},   {257, rows}, {259, packing}, {262, colours},
+                                           {273, pixels_at}, {277, 1},    {278, rows},    {279, pixel_bytes}};
   std::string bytes;
   auto const put = [&bytes](std::uint32_t value, int size) {
     for (int i = 0; i < size; ++i) bytes += static_cast<char>(value >> (8 * i) & 0xffu);
@@ -374,23 +377,33 @@ std::string bilevel_tiff(std::uint32_t packing, std::size_t bytes_of_pixels) {
     put(value, 4);
   }
   put(0, 4);
-  bytes.append(bytes_of_pixels, '\x55');
-  return bytes;
+  return bytes + pixels;
 }
 
 // 0x55 is 01010101: every second pixel of a row is white, starting with the second one.
 TEST(ImageFile, OneBitAPixelIsReadWithoutTheEntryThatSaysSo) {
-  std::string const path = temporary("bits.tif");
-  std::ofstream(path, std::ios::binary) << bilevel_tiff(1, 256 / 8 * 200);
-  Image<double> const image = read_image(path);
-  ASSERT_EQ(image.columns(), 256);
-  ASSERT_EQ(image.rows(), 200);
+  constexpr std::uint32_t none = 1, packbits = 32773, black_is_zero = 1, rgb = 2;
+  std::string const path = temporary("bits.tif"), row(256 / 8, '\x55');
+  std::string plain, packed;
   for (int j = 0; j < 200; ++j) {
-    for (int i = 0; i < 256; ++i) ASSERT_EQ(image(i, j), i % 2) << i << ' ' << j;
+    plain += row;
+    packed += std::string("\xe1\x55", 2);  // the byte 0x55 32 times (TIFF 6.0, section 9: 1 - 32 = -31)
   }
-  std::ofstream(path, std::ios::binary) << bilevel_tiff(1, 256 / 8 * 100);
+  for (std::string const& file :
+       {bilevel_tiff(none, black_is_zero, plain), bilevel_tiff(packbits, black_is_zero, packed)}) {
+    std::ofstream(path, std::ios::binary) << file;
+    ImageMetadata metadata;
+    Image<double> const image = read_image(path, &metadata);
+    EXPECT_EQ(metadata.bit_depth, 1);
+    ASSERT_EQ(image.columns(), 256);
+    ASSERT_EQ(image.rows(), 200);
+    for (int j = 0; j < 200; ++j) {
+      for (int i = 0; i < 256; ++i) ASSERT_EQ(image(i, j), i % 2) << i << ' ' << j;
+    }
+  }
+  std::ofstream(path, std::ios::binary) << bilevel_tiff(none, black_is_zero, plain.substr(0, plain.size() / 2));
   EXPECT_THAT([&] { read_image(path); }, ThrowsMessage<DataError>(HasSubstr("damaged or cut short")));
-  std::ofstream(path, std::ios::binary) << bilevel_tiff(32773, 256 / 8 * 200);
+  std::ofstream(path, std::ios::binary) << bilevel_tiff(none, rgb, plain);
   EXPECT_THAT([&] { read_image(path); }, ThrowsMessage<DataError>(HasSubstr("BitsPerSample is missing")));
 }
 
@@ -409,6 +422,16 @@ TEST(ImageFile, AHeaderIsHeldAgainstTheSizeOfItsFile) {
                 ThrowsMessage<DataError>(AllOf(HasSubstr("damaged.tif: is damaged"), HasSubstr("50000 x 50000 px"))))
         << packing;
   }
+}
+
+// A tile of 50,000 x 50,000 px is 5 GB, while the image has 35 px.
+TEST(ImageFile, TheTileSizeIsComparedWithTheSizeOfTheFile) {
+  std::string const path = temporary("damaged_tiles.tif");
+  constexpr std::uint16_t tile_width = 322, tile_length = 323;
+  std::ofstream(path, std::ios::binary) << with_tag(with_tag(content(case_path("tiled.tif")), tile_width, 50000),
+                                                    tile_length, 50000);
+  EXPECT_THAT([&] { read_image(path); },
+              ThrowsMessage<DataError>(AllOf(HasSubstr("damaged_tiles.tif: is damaged"), HasSubstr("50000 x 50000"))));
 }
 
 // A uniform grey image has the highest compression ratio of any image, a thousand to one.

@@ -68,6 +68,7 @@ write("inks", inks, photometric="separated")
 write("inks_tiled", inks, photometric="separated", tile=(16, 16))
 write("inks_16_tiled", inks.astype("u2") * 257, photometric="separated", tile=(16, 16))
 write("inks_planar", numpy.moveaxis(inks, -1, 0), photometric="separated", planarconfig="separate")
+Image.fromarray(inks, "CMYK").save("inks_jpeg.tif", compression="jpeg", quality=100)
 write("inks_five_tiled", numpy.dstack([inks, inks[..., :1]]), photometric="separated", tile=(16, 16),
       extrasamples=["unspecified"])
 write("channels_seven", numpy.stack([bytes_ + k for k in range(7)], -1), photometric="minisblack",

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "render/files/image_codecs.h"
+#include "render/files/input_file.h"
+
+/// TIFF files through libtiff, without the 250 libraries that OpenImageIO loads.
+namespace gladstone {
+
+/// Opens a TIFF or BigTIFF whose pages store grey levels, RGB colours or printing inks:
+/// - unsigned integers of 1 to 16 or 32 bits, signed integers of 16 or 32 bits, floats of 32 or 64 bits,
+/// - in strips or tiles, with interleaved or separate channels,
+/// - uncompressed, or compressed by LZW, deflate, PackBits, LZMA, Zstandard, LERC, WebP, CCITT (groups 3 and 4) or JPEG
+///   without a conversion to YCbCr.
+/// Pages smaller than the first one in both directions are previews, whose layout does not matter.
+/// @param file  must outlive the returned reader, whose functions throw what InputFile::read() throws
+/// @return nullptr if the file is not such a TIFF; OpenImageIO may read it
+/// @throws DataError if BitsPerSample is missing in a page that libtiff does not decode: OpenImageIO 2.4 assumes 8
+///         bits instead of 1
+std::unique_ptr<PageReader> open_tiff(InputFile const& file);
+
+/// Describes the samples of the first page of a TIFF, for error messages: "unsigned integers of 64 bits and compression
+/// 1". Empty if libtiff cannot open the file.
+std::string describe_tiff_samples(InputFile const& file);
+
+/// 16-bit grey image to be encoded.
+struct GreyPage {
+  int columns = 0, rows = 0;
+  std::uint16_t const* values = nullptr;
+  std::string description, software;
+  double pixels_per_centimetre = 0.0;  ///< resolution, stored as X/YResolution [1/cm]; 0: not stored
+};
+
+/// Encodes an uncompressed TIFF without a date, so that equal images are equal files.
+/// @param path  path of the file to be written, for error messages
+/// @throws OutputError if libtiff fails, std::bad_alloc
+std::vector<unsigned char> encode_tiff(std::string const& path, GreyPage const& page);
+
+}  // namespace gladstone
