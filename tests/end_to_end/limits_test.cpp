@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "render/base/image_file.h"
+#include "render/files/image_file.h"
 #include "tests/end_to_end/support/workplace.h"
 
 #if defined(__SANITIZE_ADDRESS__)
