@@ -2,8 +2,12 @@
 # A room is one library of the .cpp files of its folder (except main.cpp); its alias is gladstone::name.
 # A room that consists of headers is an INTERFACE library.
 function(gladstone_room name)
-  cmake_parse_arguments(ROOM "" "" "DEPENDS;PUBLIC;PRIVATE" ${ARGN})
-  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
+  cmake_parse_arguments(ROOM "WITHOUT_FOLDERS" "" "DEPENDS;PUBLIC;PRIVATE" ${ARGN})
+  set(glob GLOB_RECURSE)
+  if(ROOM_WITHOUT_FOLDERS)
+    set(glob GLOB)
+  endif()
+  file(${glob} sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
   list(FILTER sources EXCLUDE REGEX "/main\\.cpp$")
   list(TRANSFORM ROOM_DEPENDS PREPEND gladstone::)
   if(sources)

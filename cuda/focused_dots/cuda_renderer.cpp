@@ -142,7 +142,8 @@ CudaRenderer::CudaRenderer() : uploads_(std::make_unique<Uploads>()) {
 }
 CudaRenderer::~CudaRenderer() = default;
 
-Rendering CudaRenderer::render(Scene& scene, DotPattern const& sources, RenderImages images, RenderTheory theory) {
+Rendering CudaRenderer::render(Scene const& scene, DotPattern const& sources, RenderImages images,
+                               RenderTheory theory) {
   std::optional<FocusedDots> const bench = focused_dots(scene);
   GLADSTONE_EXPECTS(bench);
   if (!uploads_->medium.serves(scene)) {
@@ -165,6 +166,7 @@ Rendering CudaRenderer::render(Scene& scene, DotPattern const& sources, RenderIm
       }
   });
   rendering.table = uploads_->deflections.state();
+  rendering.pupil_margin = scene.pupil_margin;
   if (light && scene.setup.target.polarity == Polarity::dark) light->take_from(white_light(scene));
   if (images == RenderImages::yes) rendering.light = light->to_host(uploads_->staging);
   if (images == RenderImages::in_place) rendering.in_place = std::move(light);

@@ -272,8 +272,9 @@ std::size_t batch_size(Scene const& scene, LaunchesOnDevice const& launches) {
 
 }  // namespace
 
-Rendering trace_particles_on_device(Scene& scene, Particles const& particles, ParticleLight light, RenderImages images,
-                                    DeviceMedium const& medium, ScatteringCache& kept, PinnedBuffer& staging) {
+Rendering trace_particles_on_device(Scene const& scene, Particles const& particles, ParticleLight light,
+                                    RenderImages images, DeviceMedium const& medium, ScatteringCache& kept,
+                                    PinnedBuffer& staging) {
   std::optional<AiryTable> airy;
   bool const lit = images != RenderImages::no;
   ParticleLaunches const host(scene, lit ? make_spot(scene, airy) : SpotView{}, images);
@@ -323,7 +324,7 @@ Rendering trace_particles_on_device(Scene& scene, Particles const& particles, Pa
   } else {
     rendering = empty_rendering(particles);
   }
-  scene.pupil_margin = margin;
+  rendering.pupil_margin = margin;
   unsigned long long ended[frame_count * ray_status_count] = {};
   ends.download(ended, frame_count * ray_status_count);
   for (std::size_t i = 0; i < frame_count * ray_status_count; ++i) {

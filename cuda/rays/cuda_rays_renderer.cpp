@@ -346,7 +346,8 @@ CudaRaysRenderer::CudaRaysRenderer() : uploads_(std::make_unique<Uploads>()) {
 }
 CudaRaysRenderer::~CudaRaysRenderer() = default;
 
-Rendering CudaRaysRenderer::render(Scene& scene, DotPattern const& sources, RenderImages images, RenderTheory theory) {
+Rendering CudaRaysRenderer::render(Scene const& scene, DotPattern const& sources, RenderImages images,
+                                   RenderTheory theory) {
   bool const lit = images != RenderImages::no;
   std::optional<AiryTable> airy;
   RaysLaunch const launch(scene, lit ? make_spot(scene, airy) : SpotView{});
@@ -362,7 +363,7 @@ Rendering CudaRaysRenderer::render(Scene& scene, DotPattern const& sources, Rend
   std::visit(
       [&](auto const& medium) {
         SceneTracer tracer(scene, ladder, pattern, medium, mirrored, frames ? &*frames : nullptr, pass);
-        scene.pupil_margin = tracer.trace(lit ? "tracing rays" : "tracing truth");
+        rendering.pupil_margin = tracer.trace(lit ? "tracing rays" : "tracing truth");
         if (theory == RenderTheory::no) return;
         parallel_chunks(rendering.truth.size(), 8, [&](std::size_t begin, std::size_t end) {
           for (std::size_t dot = begin; dot < end; ++dot) {
@@ -381,7 +382,7 @@ Rendering CudaRaysRenderer::render(Scene& scene, DotPattern const& sources, Rend
   return pass.finish();
 }
 
-Rendering CudaRaysRenderer::render_particles(Scene& scene, Particles const& particles, ParticleLight light,
+Rendering CudaRaysRenderer::render_particles(Scene const& scene, Particles const& particles, ParticleLight light,
                                              RenderImages images) {
   return trace_particles_on_device(scene, particles, light, images, uploads_->medium_of(scene), uploads_->scattering,
                                    uploads_->staging);

@@ -71,7 +71,7 @@ void apply_polarity(Scene const& scene, LightPair& light) {
 
 }  // namespace
 
-Rendering FocusedDotsRenderer::render(Scene& scene, DotPattern const& sources, RenderImages images,
+Rendering FocusedDotsRenderer::render(Scene const& scene, DotPattern const& sources, RenderImages images,
                                       RenderTheory theory) {
   std::optional<FocusedDots> const dots = focused_dots(scene);
   GLADSTONE_EXPECTS(dots);
@@ -81,6 +81,7 @@ Rendering FocusedDotsRenderer::render(Scene& scene, DotPattern const& sources, R
                       scene.medium.view);
   });
   rendering.table = deflections_.state();
+  rendering.pupil_margin = scene.pupil_margin;
   if (images != RenderImages::no) apply_polarity(scene, rendering.light);
   if (images == RenderImages::in_place) {
     rendering.in_place = std::make_shared<HostLight const>(std::move(rendering.light));

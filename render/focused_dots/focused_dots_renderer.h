@@ -13,7 +13,7 @@ class FocusedDotsRenderer : public Renderer {
  public:
   std::string device() const override { return "cpu"; }
   /// @pre focused_dots(scene)
-  Rendering render(Scene& scene, DotPattern const& sources, RenderImages images, RenderTheory theory) override;
+  Rendering render(Scene const& scene, DotPattern const& sources, RenderImages images, RenderTheory theory) override;
 
  private:
   LastDeflections<DeflectionMap> deflections_;

@@ -224,8 +224,8 @@ class RayErrors {
 
 }  // namespace
 
-StepPlan plan_step_by_rays(Scene& scene) {
-  StepPlan const plan = choose_step(scene, [&](double step, auto const& search) {
+StepPlan plan_step_by_rays(Scene const& scene) {
+  return choose_step(scene, [&](double step, auto const& search) {
     StepProbes probes;
     probes.dots.resize(scene.source_count());
     std::iota(probes.dots.begin(), probes.dots.end(), std::size_t{0});
@@ -239,8 +239,6 @@ StepPlan plan_step_by_rays(Scene& scene) {
     };
     search(probes);
   });
-  use_step(scene, plan);
-  return plan;
 }
 
 RaysPlan measure_rays_by_rays(Scene const& scene, std::uint64_t most) {
@@ -277,21 +275,18 @@ RaysByNeed need_of(Scene const& scene) {
   return need;
 }
 
-RaysPlan plan_rays_by_rays(Scene& scene) {
-  if (auto const given = given_rays(scene.setup)) {
-    use_rays(scene, *given);
-    return *given;
-  }
+RaysPlan plan_rays_by_rays(Scene const& scene) {
+  if (auto const given = given_rays(scene.setup)) return *given;
   return plan_rays_by_rays(scene, need_of(scene));
 }
 
-RaysPlan plan_rays_by_rays(Scene& scene, RaysByNeed const& need) {
+RaysPlan plan_rays_by_rays(Scene const& scene, RaysByNeed const& need) {
   bool const one_path = scene.chief_rays_only() && (scene.setup.piv || scene.dots.half_size == 0);
   RaysPlan plan;
   plan.most = one_path ? 1 : most_rays_of_source(scene);
   plan.by_need = need;
-  use_rays(scene, plan);
-  RaysPlan const measured = RayErrors(scene).measure();
+  Scene const planned = with_rays(scene, plan);
+  RaysPlan const measured = RayErrors(planned).measure();
   plan.rays = measured.rays;
   plan.truth_error_px = measured.truth_error_px;
   plan.image_error_levels = measured.image_error_levels;

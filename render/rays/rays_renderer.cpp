@@ -16,7 +16,7 @@ namespace gladstone {
 namespace {
 
 template <class Medium>
-Rendering trace_all(Scene& scene, DotPattern const& sources, Medium const& medium, SpotView const* spot,
+Rendering trace_all(Scene const& scene, DotPattern const& sources, Medium const& medium, SpotView const* spot,
                     RenderTheory theory) {
   RaysLaunch const launch(scene, spot ? *spot : SpotView{});
   LambertSources<double> const lambert{sources.view(-scene.setup.z_d)};
@@ -53,7 +53,7 @@ Rendering trace_all(Scene& scene, DotPattern const& sources, Medium const& mediu
     }
   });
   if (spot) pass.rendering.light = {images[0]->to_light(), images[1]->to_light()};
-  scene.pupil_margin = margin;
+  pass.rendering.pupil_margin = margin;
   return pass.finish();
 }
 
@@ -89,7 +89,8 @@ void take_from_white(Scene const& scene, LightPair& light) {
 
 }  // namespace
 
-Rendering RaysRenderer::render(Scene& scene, DotPattern const& sources, RenderImages images, RenderTheory theory) {
+Rendering RaysRenderer::render(Scene const& scene, DotPattern const& sources, RenderImages images,
+                               RenderTheory theory) {
   std::optional<AiryTable> airy;
   SpotView const spot = make_spot(scene, airy);
   Rendering rendering = std::visit(
@@ -108,7 +109,7 @@ Rendering RaysRenderer::render(Scene& scene, DotPattern const& sources, RenderIm
   return rendering;
 }
 
-Rendering RaysRenderer::render_particles(Scene& scene, Particles const& particles, ParticleLight light,
+Rendering RaysRenderer::render_particles(Scene const& scene, Particles const& particles, ParticleLight light,
                                          RenderImages images) {
   return trace_particles(scene, particles, light, images);
 }

@@ -10,8 +10,8 @@ namespace gladstone {
 class RaysRenderer : public Renderer {
  public:
   std::string device() const override { return "cpu"; }
-  Rendering render(Scene& scene, DotPattern const& sources, RenderImages images, RenderTheory theory) override;
-  Rendering render_particles(Scene& scene, Particles const& particles, ParticleLight light,
+  Rendering render(Scene const& scene, DotPattern const& sources, RenderImages images, RenderTheory theory) override;
+  Rendering render_particles(Scene const& scene, Particles const& particles, ParticleLight light,
                              RenderImages images) override;
 };
 

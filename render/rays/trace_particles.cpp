@@ -49,7 +49,7 @@ void count_rays(Rendering& rendering) {
   rendering.rays = frame_count * std::accumulate(planned.begin(), planned.end(), std::int64_t{0});
 }
 
-Rendering trace_particles(Scene& scene, Particles const& particles, ParticleLight light, RenderImages images) {
+Rendering trace_particles(Scene const& scene, Particles const& particles, ParticleLight light, RenderImages images) {
   std::optional<AiryTable> airy;
   SpotView const spot = make_spot(scene, airy);
   bool const lit = images != RenderImages::no;
@@ -87,7 +87,7 @@ Rendering trace_particles(Scene& scene, Particles const& particles, ParticleLigh
     rendering.in_place = std::make_shared<HostLight const>(std::move(rendering.light));
     rendering.light = {};
   }
-  scene.pupil_margin = margin;
+  rendering.pupil_margin = margin;
   return rendering;
 }
 

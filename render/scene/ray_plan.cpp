@@ -71,9 +71,10 @@ StepPlan choose_step(Scene const& scene,
   return plan;
 }
 
-void use_step(Scene& scene, StepPlan const& plan) {
+Scene with_step(Scene scene, StepPlan const& plan) {
   scene.step = plan.step_mm * unit::millimetre;
   scene.widen_pupil(1.25 * plan.largest_shift);
+  return scene;
 }
 
 double ray_seconds(Scene const& scene) {
@@ -110,11 +111,13 @@ std::optional<RaysPlan> given_rays(Setup const& setup) {
   return plan;
 }
 
-void use_rays(Scene& scene, RaysPlan const& plan) {
+Scene with_rays(Scene scene, RaysPlan const& plan) {
   scene.rays_per_dot = plan.most > 0 ? plan.most : plan.rays;
   scene.by_need = plan.by_need;
   scene.rays_at_side_faces = plan.rays_at_side_faces;
   scene.fineness = plan.fineness;
+  if (plan.method != RenderMethod::automatic) scene.setup.render.method = plan.method;
+  return scene;
 }
 
 }  // namespace gladstone

@@ -111,18 +111,19 @@ std::vector<std::size_t> largest_of(std::vector<double> const& value);
 
 /// Chooses the integration step such that halving it changes no dot's displacement by more than 1e-4 px.
 /// The search starts at medium.coarsest_step and halves it up to 12 times. A step given in the setup is used unchanged,
-/// and its error is measured. Does not change the scene; see use_step().
+/// and its error is measured.
 /// @param prepare  creates the probes for the first step and passes them to its second argument, which runs the search
 StepPlan choose_step(Scene const& scene,
                      std::function<void(double step, std::function<void(StepProbes const&)> const&)> const& prepare);
 
-/// Sets scene.step and scene.pupil_margin.
-void use_step(Scene& scene, StepPlan const& plan);
+/// Returns the scene with the step and the pupil margin of a plan.
+Scene with_step(Scene scene, StepPlan const& plan);
 
 /// Returns the plan of a setup with a given number of rays; nullopt for "auto".
 std::optional<RaysPlan> given_rays(Setup const& setup);
 
-/// Sets scene.rays_per_dot, by_need and rays_at_side_faces.
-void use_rays(Scene& scene, RaysPlan const& plan);
+/// Returns the scene with the ray numbers of a plan, the refinement of the fast renderer, and the method if the plan
+/// chose one.
+Scene with_rays(Scene scene, RaysPlan const& plan);
 
 }  // namespace gladstone

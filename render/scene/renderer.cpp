@@ -27,7 +27,7 @@ char const* to_string(TableState state) {
   return "";
 }
 
-Rendering Renderer::render_particles(Scene&, Particles const&, ParticleLight, RenderImages) {
+Rendering Renderer::render_particles(Scene const&, Particles const&, ParticleLight, RenderImages) {
   throw DeviceError("this renderer supports dots only; particles need the general renderer");
 }
 

@@ -31,6 +31,8 @@ struct Rendering {
   std::shared_ptr<RenderedLight const> in_place;  ///< light on the device; only with RenderImages::in_place
   GroundTruth truth;
   StatusCounts statuses{};
+  /// Margin by which the pupil was enlarged so that no deflected ray was lost [m].
+  double pupil_margin = 0;
   std::int64_t rays = 0;          ///< number of rays traced, both images together
   std::vector<std::size_t> left;  ///< fallback dots: without truth or light here, to be rendered by another renderer
   TableState table = TableState::no_sources;  ///< whether a deflection table was built
@@ -52,11 +54,11 @@ class Renderer {
   virtual std::string device() const = 0;
 
   /// Renders `sources` (the scene's dots or virtual ones) of a scene whose step and ray numbers are planned.
-  virtual Rendering render(Scene& scene, DotPattern const& sources, RenderImages images, RenderTheory theory) = 0;
+  virtual Rendering render(Scene const& scene, DotPattern const& sources, RenderImages images, RenderTheory theory) = 0;
 
   /// Renders particles (the scene's own or virtual ones) of a planned PIV scene, with the medium in both frames.
   /// @throws DeviceError if this renderer does not support particles
-  virtual Rendering render_particles(Scene& scene, Particles const& particles, ParticleLight light,
+  virtual Rendering render_particles(Scene const& scene, Particles const& particles, ParticleLight light,
                                      RenderImages images);
 };
 

@@ -70,7 +70,7 @@ Scene at_second_pulse(Scene const& scene) {
   return second;
 }
 
-Rendering render_in_two_media(Renderer& renderer, Scene& scene, Particles const& particles, ParticleLight light,
+Rendering render_in_two_media(Renderer& renderer, Scene const& scene, Particles const& particles, ParticleLight light,
                               RenderImages images) {
   RenderImages const lit = images == RenderImages::no ? RenderImages::no : RenderImages::yes;
   Scene first = scene, second = at_second_pulse(scene);
@@ -93,7 +93,7 @@ Rendering render_in_two_media(Renderer& renderer, Scene& scene, Particles const&
     all.in_place = std::make_shared<HostLight const>(std::move(all.light));
     all.light = {};
   }
-  scene.pupil_margin = std::max(first.pupil_margin, second.pupil_margin);
+  all.pupil_margin = std::max(all.pupil_margin, later.pupil_margin);
   return all;
 }
 

@@ -38,7 +38,7 @@ SeedMean mean_of(std::vector<Sample> const& samples, double Sample::*value) {
 
 }  // namespace
 
-std::vector<CoverageRow> measure_coverage(int seeds, Device const& device) {
+std::vector<CoverageRow> measure_coverage(int seeds, Backend const& device) {
   TestedFlow const flows[] = {{"uniform", uniform_flow({0.3, -0.3})},
                               {"shear", shear_flow(0.02, coverage_pixels)},
                               {"vortex", vortex_flow(100.0, coverage_pixels)},

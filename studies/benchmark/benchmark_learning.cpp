@@ -21,7 +21,7 @@ struct Seeding {
 
 }  // namespace
 
-UncertaintyCombination learn_combination(Device const& device) {
+UncertaintyCombination learn_combination(Backend const& device) {
   std::vector<std::string> methods = uncertainty_methods();
   std::erase(methods, "combination");
   DisplacementAt const flows[] = {uniform_flow({0.3, -0.6}), shear_flow(0.02, learning_pixels), [](Vec2d p) {

@@ -44,7 +44,7 @@ Image<std::uint16_t> levels_of(Image<double> const& image) {
   return levels;
 }
 
-MadeCase make_case(BenchmarkCase const& one, Device const& device) {
+MadeCase make_case(BenchmarkCase const& one, Backend const& device) {
   ParticlePair pair;
   DisplacementAt truth = one.flow;
   std::string setup;
@@ -155,7 +155,7 @@ std::vector<std::string> vector_files_of(BenchmarkOptions const& options) {
   return paths;
 }
 
-BenchmarkResult run_benchmark(BenchmarkOptions const& options, Device const& device) {
+BenchmarkResult run_benchmark(BenchmarkOptions const& options, Backend const& device) {
   std::vector<BenchmarkCase> const cases = wanted_cases(options);
   std::vector<ForeignCode> codes;
   for (ForeignVectors const& given : options.vectors) codes.emplace_back(given, cases);

@@ -8,7 +8,7 @@
 #include "analysis/errors/uncertainty_quality.h"
 #include "analysis/uncertainty/combination.h"
 #include "studies/benchmark/benchmark_score.h"
-#include "studies/case/device.h"
+#include "studies/case/backend.h"
 #include "studies/report/report_page.h"
 
 namespace gladstone {
@@ -97,7 +97,7 @@ std::vector<std::string> vector_files_of(BenchmarkOptions const& options);
 /// and of external software on them.
 /// @throws DataError if an external file is unreadable, fits no conventions, or has repeated or missing vectors;
 ///         OutputError
-BenchmarkResult run_benchmark(BenchmarkOptions const& options, Device const& device);
+BenchmarkResult run_benchmark(BenchmarkOptions const& options, Backend const& device);
 
 /// True window displacements for the windows of the last pass, from the dots visible in both frames: window_truth() and
 /// deformed_window_truth().
@@ -109,13 +109,13 @@ WindowTruths window_truths_of(DisplacementField const& field, ParticlePair const
 
 /// Measures the coverage of every uncertainty method with the default passes, on uniform displacement, shear, vortex
 /// and refracted turbulence of 512 x 512 px at 1, 5 and 10 % noise. The seeds were not used to choose any parameter.
-std::vector<CoverageRow> measure_coverage(int seeds, Device const& device);
+std::vector<CoverageRow> measure_coverage(int seeds, Backend const& device);
 
 /// Fits the combination of uncertainty methods (analysis/uncertainty/combination.h) to the errors of the default
 /// passes. The training set has 48 pairs of 512 x 512 px: uniform displacement, shear and stretch, at 1, 2, 5 and 10 %
 /// noise, with particles of 2.2 to 4.5 px and 12 to 40 of them per 32 x 32 px. It contains no vortices and no
 /// turbulence, on which measure_coverage() also evaluates it.
-UncertaintyCombination learn_combination(Device const& device);
+UncertaintyCombination learn_combination(Backend const& device);
 
 /// Formats the results as a report page, as JSON and as CSV.
 ReportPage benchmark_page(BenchmarkResult const& result, std::string const& folder);

@@ -65,8 +65,8 @@ DisplacementAt RefractedTurbulence::truth() const {
   InterrogationGrid const grid = make_interrogation_grid(pixels, pixels, 2 * lattice_px, 0.5);
   std::vector<Vec2d> centres(grid.size());
   for (std::size_t i = 0; i < centres.size(); ++i) centres[i] = grid.centre(i);
-  Scene scene = prepared_.scene;  // copied, since virtual dots may require a wider pupil than the images
-  GroundTruth const points = truth_at_points(scene, renderer_, centres, TruthAt::mid_position, RenderTheory::no);
+  GroundTruth const points =
+      truth_at_points(prepared_.scene, renderer_, centres, TruthAt::mid_position, RenderTheory::no);
   auto const map = std::make_shared<DensePredictor const>(grid, points.displacement_px, pixels, pixels);
   return [map](Vec2d p) { return map->at(p); };
 }

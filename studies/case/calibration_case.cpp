@@ -12,10 +12,11 @@
 #include "render/base/units.h"
 #include "render/files/image_file.h"
 #include "render/files/output_file.h"
+#include "render/method.h"
+#include "render/planning.h"
 #include "render/scene/calibration_planes.h"
 #include "studies/case/case_warnings.h"
 #include "studies/case/json_text.h"
-#include "studies/case/scene_renderer.h"
 
 namespace gladstone {
 namespace {
@@ -30,8 +31,7 @@ constexpr int dots_for_a_fit = 12;  // minimum number of dots per plane for a ho
 Scene plane_scene(Setup const& setup, double z) {
   Scene scene = build_scene(plane_setup(setup, z));
   scene.setup.render.method = RenderMethod::rays;
-  plan_step_of(scene);
-  return scene;
+  return with_chosen_step(std::move(scene));
 }
 
 /// Selects up to `dots_traced_again` dots, evenly distributed over the pattern.
@@ -70,7 +70,7 @@ std::uint64_t rays_for(Setup const& setup, Renderer& renderer) {
   if (setup.render.rays_per_dot) return *setup.render.rays_per_dot;
   auto const nearer = [](double a, double b) { return std::abs(a) < std::abs(b); };
   Scene scene = plane_scene(setup, *std::max_element(setup.planes.begin(), setup.planes.end(), nearer));
-  scene.rays_per_dot = std::max(least_rays, plan_rays_of(scene).rays);
+  scene.rays_per_dot = std::max(least_rays, choose_rays(scene).rays);
   scene.by_need.reset();  // use the same number of rays for all dots
   while (scene.rays_per_dot < most_rays && place_error(scene, renderer).rms_px > place_tolerance_px) {
     scene.rays_per_dot *= 2;
@@ -189,7 +189,7 @@ nlohmann::json write_calibration(CaseSetup& loaded, RenderedCalibration const& r
   for (auto const& [path, hash] : loaded.input_hashes) origin.sources.add("", path, SourceFiles::Holds::bytes, hash);
   origin.sources.add_known("inputs", nlohmann::json(loaded.input_hashes).dump());
   write_calibration_truth(place(case_file::truth), rendered, origin);
-  OutputFile::write_text(place(case_file::setup), resolved);
+  OutputFile::write_text(place(case_file::setup), with_uncertain_inputs(resolved, loaded.uncertain));
   nlohmann::json summary{{"experiment", "calibration"},
                          {"planes", planes},
                          {"dots", dots},

@@ -1,9 +1,9 @@
 #include <Eigen/Geometry>
 
 #include "render/light/calibration_target.h"
+#include "render/method.h"
 #include "render/scene/calibration_planes.h"
 #include "studies/case/calibration_case.h"
-#include "studies/case/scene_renderer.h"
 
 namespace gladstone {
 namespace {

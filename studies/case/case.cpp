@@ -9,13 +9,14 @@
 #include "render/files/text_encoding.h"
 #include "render/focused_dots/focused_dots.h"
 #include "render/ideal_images/ideal_images.h"
+#include "render/method.h"
+#include "render/planning.h"
 #include "render/scene/field_coverage.h"
 #include "render/scene/particle_scene.h"
 #include "studies/case/cameras.h"
 #include "studies/case/case_warnings.h"
 #include "studies/case/light_exposure.h"
 #include "studies/case/peak_locking.h"
-#include "studies/case/scene_renderer.h"
 #include "studies/case/uncertain_inputs.h"
 #include "studies/case/usual_values.h"
 
@@ -142,8 +143,12 @@ CaseSetup load_case_setup(std::string const& path, std::vector<std::string> cons
 }
 
 CaseSetup load_case_setup(SetupDocument document, FieldMemory field) {
-  take_uncertain_inputs(document);  // callers that need the uncertainties extract them before
-  CaseSetup loaded{with_own_lens(std::move(document)), {}, {}, {}, {}};
+  std::vector<UncertainInput> uncertain = take_uncertain_inputs(document);
+  CaseSetup loaded{.document = with_own_lens(std::move(document)),
+                   .setup = {},
+                   .correlate = {},
+                   .warnings = {},
+                   .uncertain = std::move(uncertain)};
   SetupTable root = loaded.document.root();
   loaded.setup = read_setup(root);
   if (loaded.setup.calibration()) {
@@ -195,12 +200,8 @@ PreparedCase prepare_case(CaseSetup& loaded, KnownParts const& known) {
     for (auto const& text : scene.second_medium->warnings) warn(prepared.warnings, text);
   }
   warn_of_field(scene, prepared.warnings);  // before rays are traced through the field
-  if (known.step) {
-    prepared.step = *known.step;
-    use_step(scene, prepared.step);
-  } else {
-    prepared.step = plan_step_of(scene);
-  }
+  prepared.step = known.step ? *known.step : choose_step(scene);
+  scene = with_step(std::move(scene), prepared.step);
   if (prepared.step.change_px >= 1e-4) {
     warn(prepared.warnings,
          fmt::format("step_mm = {:.4g}: halving it would still shift dot {} by {:.2g} px; use a smaller medium.step_mm",
@@ -208,9 +209,8 @@ PreparedCase prepare_case(CaseSetup& loaded, KnownParts const& known) {
   }
   warn_of_view(scene, prepared.warnings);
   warn_of_blur(scene, prepared.warnings);
-  prepared.rays = known.rays ? *known.rays : plan_rays_of(scene);
-  use_rays(scene, prepared.rays);
-  if (prepared.rays.method != RenderMethod::automatic) scene.setup.render.method = prepared.rays.method;
+  prepared.rays = known.rays ? *known.rays : choose_rays(scene);
+  scene = with_rays(std::move(scene), prepared.rays);
   bool const by_table = method_of(scene) == RenderMethod::focused_dots;
   if (by_table) {
     warn_of_side_faces(prepared.warnings, scene, prepared.rays);
@@ -218,7 +218,7 @@ PreparedCase prepare_case(CaseSetup& loaded, KnownParts const& known) {
     warn_of_few_rays(prepared.warnings, scene, prepared.rays);
   }
   if (loaded.setup.medium.field.kind != FieldKind::none && !loaded.setup.piv) {
-    prepared.strain = known.strain ? *known.strain : strain_of(scene);
+    prepared.strain = known.strain ? *known.strain : strain_in_view(scene);
     if (prepared.strain.largest_px < least_displacement_px) {
       warn(prepared.warnings,
            fmt::format("no displacement: according to Eq. 9 the field displaces no point in the view by more than "

@@ -14,6 +14,7 @@
 #include "render/sensor/detector.h"
 #include "render/setup/setup_table.h"
 #include "studies/case/case_files.h"
+#include "studies/case/uncertain_inputs.h"
 
 namespace gladstone {
 
@@ -23,6 +24,7 @@ struct CaseSetup {
   Setup setup;
   CorrelationSettings correlate;
   std::vector<std::string> warnings;
+  std::vector<UncertainInput> uncertain = {};  ///< numbers given with an uncertainty that were not taken before
   /// SHA-256 of each file that the setup names, computed before the scene is built; empty: not computed yet.
   std::map<std::string, std::string> input_hashes = {};
 };
@@ -58,9 +60,8 @@ PreparedCase prepare_case(CaseSetup& loaded, KnownParts const& known = {});
 /// A rendered case in memory.
 struct RenderedCase {
   std::shared_ptr<Rendering const> rendering;
-  double pupil_margin = 0;  ///< pupil enlargement used by the rendering [m]
-  double exposure_e = 0;    ///< electrons in a fully lit pixel on the axis [e]
-  double seconds = 0;       ///< wall time [s]
+  double exposure_e = 0;  ///< electrons in a fully lit pixel on the axis [e]
+  double seconds = 0;     ///< wall time [s]
 };
 
 /// Returns the announcement of a long rendering: its sources, the expected time and how to shorten it. Empty if it

@@ -5,10 +5,10 @@
 #include <nlohmann/json.hpp>
 
 #include "render/base/units.h"
+#include "render/method.h"
 #include "render/scene/ray_losses.h"
 #include "studies/case/json_text.h"
 #include "studies/case/particle_case.h"
-#include "studies/case/scene_renderer.h"
 
 namespace gladstone {
 namespace {
@@ -131,7 +131,7 @@ nlohmann::json case_summary(CaseSetup& loaded, PreparedCase const& prepared, Ren
         {"reference", status_counts(rendering.statuses, 0)},
         {"flow", status_counts(rendering.statuses, 1)}}},
       {"rays_lost_by_surface", formula ? nlohmann::json(nullptr) : losses_json(sample_ray_losses(scene))},
-      {"pupil_margin_mm", rendered.pupil_margin / unit::millimetre},
+      {"pupil_margin_mm", rendered.rendering->pupil_margin / unit::millimetre},
       {"caustic_fraction", prepared.strain.caustic_fraction},
       {"saturated", {{"reference", frames.saturated_reference}, {"flow", frames.saturated_flow}}},
       {"reference_sha256", outcome.reference_sha256},

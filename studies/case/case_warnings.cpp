@@ -230,7 +230,7 @@ RenderedOutcome warn_of_rendering(std::vector<std::string>& warnings, PreparedCa
                      rendered.exposure_e * rendering.in_place->brightest());
   warn_of_exposure(warnings, prepared.scene, rendered.exposure_e, rendering.in_place->brightest());
   RenderedOutcome outcome;
-  outcome.unseen = warn_of_unseen(warnings, prepared.scene, rendering.truth, rendered.pupil_margin);
+  outcome.unseen = warn_of_unseen(warnings, prepared.scene, rendering.truth, rendering.pupil_margin);
   outcome.accuracy = truth_accuracy(rendering.truth, truth_tolerance_px);
   warn_of_truth(warnings, rendering, outcome.accuracy, prepared.rays, setup.piv ? "particles" : "dots");
   return outcome;

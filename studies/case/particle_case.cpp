@@ -7,8 +7,8 @@
 #include "render/base/not_a_number.h"
 #include "render/base/units.h"
 #include "render/ideal_images/ideal_images.h"
+#include "render/method.h"
 #include "render/scene/particle_scene.h"
-#include "studies/case/scene_renderer.h"
 
 namespace gladstone {
 namespace {

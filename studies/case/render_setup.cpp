@@ -9,7 +9,6 @@
 
 #include "render/files/output_file.h"
 #include "render/files/output_folder.h"
-#include "render/files/text_file.h"
 #include "render/setup/setup_node.h"
 #include "studies/case/calibration_case.h"
 #include "studies/case/json_text.h"
@@ -30,8 +29,7 @@ SetupDocument read_document(std::string const& path, std::vector<std::string> co
 SetupRendering::SetupRendering(std::string path, std::vector<std::string> const& overrides)
     : path_(std::move(path)), document_(read_document(path_, overrides)) {
   for (CameraCase& one : camera_cases(document_)) {
-    SetupDocument written = one.document.copy();
-    cameras_.push_back({one.name, load_case_setup(std::move(one.document)), take_uncertain_inputs(written)});
+    cameras_.push_back({one.name, load_case_setup(std::move(one.document))});
   }
 }
 
@@ -81,9 +79,6 @@ nlohmann::ordered_json SetupRendering::render_one(OneCamera& camera, Renderer& r
       fs::path const own = fs::path(place) / camera.name;
       fs::create_directories(own);
       summary = write(own.string());
-      if (camera.uncertain.empty()) return;
-      std::string const setup = (own / case_file::setup).string();
-      OutputFile::write_text(setup, with_uncertain_inputs(read_text_file(setup), camera.uncertain));
     });
   };
   if (camera.loaded.setup.calibration()) {

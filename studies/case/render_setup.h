@@ -8,7 +8,6 @@
 
 #include "studies/case/cameras.h"
 #include "studies/case/case.h"
-#include "studies/case/uncertain_inputs.h"
 
 namespace gladstone {
 
@@ -51,7 +50,6 @@ class SetupRendering {
   struct OneCamera {
     std::string name;  ///< empty for the only camera
     CaseSetup loaded;
-    std::vector<UncertainInput> uncertain;  ///< numbers of its setup given with an uncertainty
   };
   /// Renders one camera's case into its part of the output folder.
   /// @return the contents of its summary.json

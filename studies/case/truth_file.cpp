@@ -4,9 +4,9 @@
 #include <array>
 
 #include "render/base/not_a_number.h"
+#include "render/method.h"
 #include "studies/case/flat_values.h"
 #include "studies/case/particle_case.h"
-#include "studies/case/scene_renderer.h"
 
 namespace gladstone {
 namespace {

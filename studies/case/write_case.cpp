@@ -13,6 +13,9 @@
 #include "render/files/output_folder.h"
 #include "render/files/stop_point.h"
 #include "render/focused_dots/table_error.h"
+#include "render/method.h"
+#include "render/planning.h"
+#include "render/render.h"
 #include "render/scene/particle_scene.h"
 #include "render/sensor/detector.h"
 #include "studies/case/case.h"
@@ -20,7 +23,6 @@
 #include "studies/case/case_warnings.h"
 #include "studies/case/json_text.h"
 #include "studies/case/particle_case.h"
-#include "studies/case/scene_renderer.h"
 #include "studies/case/truth_file.h"
 
 namespace gladstone {
@@ -78,14 +80,10 @@ RenderedCase render_case(PreparedCase const& prepared, Renderer& renderer, Rende
   }
   auto const start = std::chrono::steady_clock::now();
   RenderedCase rendered;
-  Scene scene = prepared.scene;  // copy: tracing may widen its pupil
   stop_point("rendering");
-  rendered.rendering = std::make_shared<Rendering const>(
-      scene.setup.piv
-          ? renderer.render_particles(scene, scene.particles, ParticleLight::scattered, RenderImages::in_place)
-          : renderer.render(scene, scene.dots, RenderImages::in_place, theory));
-  rendered.pupil_margin = scene.pupil_margin;
-  rendered.exposure_e = exposure_of(scene, *rendered.rendering->in_place);
+  rendered.rendering =
+      std::make_shared<Rendering const>(render_planned(prepared.scene, renderer, RenderImages::in_place, theory));
+  rendered.exposure_e = exposure_of(prepared.scene, *rendered.rendering->in_place);
   rendered.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return rendered;
 }
@@ -122,8 +120,8 @@ nlohmann::json write_case(CaseSetup& loaded, PreparedCase const& prepared, Rende
     warn(warnings, "render.precision = \"single\" is obsolete, and double precision is used; remove it");
   }
   Scene scene = prepared.scene;
-  scene.pupil_margin = rendered.pupil_margin;
   Rendering const& rendering = *rendered.rendering;
+  scene.pupil_margin = rendering.pupil_margin;
   CameraSetup const& camera = scene.setup.camera;
   bool const by_table = rendering.method == RenderMethod::focused_dots;
   std::optional<RaysPlan>& table_error = outcome.table_error;
@@ -162,10 +160,10 @@ nlohmann::json write_case(CaseSetup& loaded, PreparedCase const& prepared, Rende
   if (scene.setup.piv) {
     write_particle_truth(place(case_file::truth), scene, rendering.truth, rendering.statuses, rendering.method, origin);
   } else {
-    write_truth(place(case_file::truth), scene, rendering.truth, rendering.statuses, field_of(scene, map_spacing_px),
-                rendering.method, table_error ? &*table_error : nullptr, origin);
+    write_truth(place(case_file::truth), scene, rendering.truth, rendering.statuses,
+                field_in_view(scene, map_spacing_px), rendering.method, table_error ? &*table_error : nullptr, origin);
   }
-  OutputFile::write_text(place(case_file::setup), resolved);
+  OutputFile::write_text(place(case_file::setup), with_uncertain_inputs(resolved, loaded.uncertain));
 
   RenderedOutcome const told = warn_of_rendering(warnings, prepared, rendered, frames);
   outcome.unseen = told.unseen;

@@ -127,7 +127,7 @@ CommandBody attach_benchmark(CLI::App& app, GlobalOptions const& options) {
                              "noise_against_gain.png", "error_against_uncertainty.png"})
       outputs.push_back(in_place(name));
     refuse_inputs_as_outputs(outputs, inputs);
-    Device const device = options.open_device();
+    Backend const device = options.open_device();
     if (arguments->learn) {
       OutputFile file(in_place("combination.csv"));
       UncertaintyCombination const combination = learn_combination(device);

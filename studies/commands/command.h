@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "studies/case/device.h"
+#include "studies/case/backend.h"
 
 namespace CLI {
 class App;
@@ -32,7 +32,7 @@ struct GlobalOptions {
   std::string device = "auto";
 
   /// Opens the device of --device, see gladstone::open_device().
-  Device open_device() const { return gladstone::open_device(device); }
+  Backend open_device() const { return gladstone::open_device(device); }
 };
 
 /// A command adds its options to its sub-application and returns the function to run, which returns the exit code.

@@ -130,7 +130,7 @@ CommandBody attach_compare(CLI::App& app, GlobalOptions const& options) {
                  "files in other units the size of a pixel in them, px=0.0614,px/frame=6.14");
   app.add_flag("--no-figures", arguments->no_figures, "Draw no figures");
   return [arguments, &options] {
-    Device const device = options.open_device();
+    Backend const device = options.open_device();
     CompareOptions compare = arguments->compare;
     if (arguments->truth_at == "reference") compare.truth_at = TruthAt::reference;
     if (!arguments->conventions.empty()) compare.conventions = arguments->conventions;

@@ -54,7 +54,7 @@ CommandBody attach_correlate(CLI::App& app, GlobalOptions const& options) {
       throw DataError("correlate", fmt::format("got {} images (a measurement requires a reference and a flow frame); "
                                                "give two, or --ensemble for pairs of one displacement",
                                                given));
-    Device const device = options.open_device();
+    Backend const device = options.open_device();
     std::string const& output = arguments->output;
     if (!output.empty() && !output.ends_with(".h5") && !output.ends_with(".csv")) {
       throw OutputError(output, "has an ending that is neither .h5 nor .csv; choose one of them");

@@ -7,10 +7,10 @@
 #include "render/files/output_file.h"
 #include "render/files/source_files.h"
 #include "render/files/stop_point.h"
+#include "render/planning.h"
 #include "studies/case/case.h"
 #include "studies/case/json_text.h"
 #include "studies/case/ray_file.h"
-#include "studies/case/scene_renderer.h"
 #include "studies/commands/arguments.h"
 #include "studies/commands/command.h"
 
@@ -43,7 +43,7 @@ CommandBody attach_trace(CLI::App& app, GlobalOptions const& options) {
     for (std::string const& text : loaded.warnings) spdlog::warn("{}", text);
     Scene scene = build_scene(loaded.setup);
     for (auto const& text : scene.medium.warnings) spdlog::warn("{}", text);
-    plan_step_of(scene);
+    scene = with_chosen_step(std::move(scene));
     Through const through = arguments->through == "medium"   ? Through::medium
                             : arguments->through == "optics" ? Through::optics
                                                              : Through::all;

@@ -6,7 +6,7 @@
 
 #include "render/base/contracts.h"
 #include "render/files/fields/field_file.h"
-#include "studies/case/scene_renderer.h"
+#include "render/planning.h"
 
 namespace gladstone {
 namespace {
@@ -91,7 +91,7 @@ PlaneAgreement agreement_over_plane(Setup setup, int nodes, double spacing, Rend
         for (int i = 0; i < dots; ++i)
           scene.dots.centre.push_back({pitch * (i - 0.5 * (dots - 1)), pitch * (j - 0.5 * (dots - 1))});
       }
-      plan_step_of(scene);
+      scene = with_chosen_step(std::move(scene));
       scene.rays_per_dot = *setup.render.rays_per_dot;
       GroundTruth const truth = renderer.render(scene, scene.dots, RenderImages::no, RenderTheory::yes).truth;
       for (int j = 0; j < dots; ++j) {

@@ -11,10 +11,10 @@
 #include "analysis/errors/deformed_window_truth.h"
 #include "render/base/error.h"
 #include "render/files/stop_point.h"
+#include "render/method.h"
 #include "render/rays/rays_renderer.h"
 #include "render/scene/build_camera.h"
 #include "render/sensor/detector.h"
-#include "studies/case/scene_renderer.h"
 #include "studies/case/truth_file.h"
 #include "studies/compare/budget_stages.h"
 #include "studies/compare/compared_vectors.h"
@@ -81,12 +81,11 @@ void name_sources(Comparison& comparison, ComparedFiles files) {
   comparison.sources = std::move(files.sources);
 }
 
-GroundTruth truth_at_points(Scene& scene, Renderer& renderer, std::vector<Vec2d> const& centres_px, TruthAt at,
+GroundTruth truth_at_points(Scene const& scene, Renderer& renderer, std::vector<Vec2d> const& centres_px, TruthAt at,
                             RenderTheory theory) {
   DotPattern virtual_dots;
   virtual_dots.shape = scene.dots.shape;
   for (Vec2d const& c : centres_px) virtual_dots.centre.push_back(scene.to_target(c));
-  std::uint64_t const all_rays = scene.rays_per_dot, all_at_faces = scene.rays_at_side_faces;
   auto const correct = [&](GroundTruth const& truth) {
     for (std::size_t i = 0; i < centres_px.size(); ++i) {
       Vec2d const shift = at == TruthAt::mid_position ? 0.5 * truth.displacement_px[i] : Vec2d{};
@@ -97,14 +96,13 @@ GroundTruth truth_at_points(Scene& scene, Renderer& renderer, std::vector<Vec2d>
     }
   };
   // Both corrections use few rays, the first with point dots, the second with dots of the target's size.
-  scene.rays_per_dot = std::min<std::uint64_t>(all_rays, 128);
-  scene.rays_at_side_faces = std::min<std::uint64_t>(all_at_faces, 1024);
+  Scene rough = scene;
+  rough.rays_per_dot = std::min<std::uint64_t>(scene.rays_per_dot, 128);
+  rough.rays_at_side_faces = std::min<std::uint64_t>(scene.rays_at_side_faces, 1024);
   for (double const half_size : {0.0, scene.dots.half_size}) {
     virtual_dots.half_size = half_size;
-    correct(renderer.render(scene, virtual_dots, RenderImages::no, RenderTheory::no).truth);
+    correct(renderer.render(rough, virtual_dots, RenderImages::no, RenderTheory::no).truth);
   }
-  scene.rays_per_dot = all_rays;
-  scene.rays_at_side_faces = all_at_faces;
   return renderer.render(scene, virtual_dots, RenderImages::no, theory).truth;
 }
 
@@ -128,7 +126,7 @@ std::vector<Vec2d> ideal_lens_truth(Scene scene, Renderer& renderer, GroundTruth
 
 PointTruth truth_of_vectors(PreparedCase const& prepared, Renderer& renderer, std::vector<Vec2d> const& position_px,
                             TruthAt at) {
-  Scene scene = prepared.scene;  // copy: virtual dots may require a wider pupil than the images
+  Scene const& scene = prepared.scene;
   PointTruth truth;
   if (scene.setup.piv) {
     ParticlePoints points = particle_points(scene, renderer, position_px, at);
@@ -139,7 +137,7 @@ PointTruth truth_of_vectors(PreparedCase const& prepared, Renderer& renderer, st
   return truth;
 }
 
-Comparison compare_case(std::string const& folder, Device const& device, CompareOptions const& options) {
+Comparison compare_case(std::string const& folder, Backend const& device, CompareOptions const& options) {
   ComparedFiles files = compared_files(folder, options.vectors);
   if (!files.unverified.empty()) {
     spdlog::warn(
@@ -176,7 +174,7 @@ Comparison compare_case(std::string const& folder, Device const& device, Compare
 }
 
 Comparison compare_vectors(PreparedCase const& prepared, GroundTruth const& dots, RenderedCase const* rendered,
-                           MeasuredVectors vectors, PointTruth truth, Device const& device, TruthAt at) {
+                           MeasuredVectors vectors, PointTruth truth, Backend const& device, TruthAt at) {
   Comparison comparison = comparison_of(vectors, prepared.scene.setup.piv.has_value());
   comparison.point = std::move(truth.point);
   comparison.thin_lens = std::move(truth.thin_lens);

@@ -11,8 +11,8 @@
 #include "analysis/vectors/convention_detection.h"
 #include "analysis/vectors/vector_screening.h"
 #include "render/scene/renderer.h"
+#include "studies/case/backend.h"
 #include "studies/case/case.h"
-#include "studies/case/device.h"
 #include "studies/compare/compared_files.h"
 
 namespace gladstone {
@@ -68,7 +68,7 @@ struct Comparison {
 
 /// Traces virtual dots of the target's size whose mid-position (or reference position) is each of `centres_px`. Finds
 /// their positions on the target by two corrections with few rays, then computes truth and theory with all rays.
-GroundTruth truth_at_points(Scene& scene, Renderer& renderer, std::vector<Vec2d> const& centres_px, TruthAt at,
+GroundTruth truth_at_points(Scene const& scene, Renderer& renderer, std::vector<Vec2d> const& centres_px, TruthAt at,
                             RenderTheory theory);
 
 /// Computes the displacements of the same virtual dots through an ideal thin lens that images the target sharply at the
@@ -105,7 +105,7 @@ PointTruth truth_of_vectors(PreparedCase const& prepared, Renderer& renderer, st
 /// @param truth     truth and theory at the vectors
 /// @throws DataError if no vector can be compared
 Comparison compare_vectors(PreparedCase const& prepared, GroundTruth const& dots, RenderedCase const* rendered,
-                           MeasuredVectors vectors, PointTruth truth, Device const& device,
+                           MeasuredVectors vectors, PointTruth truth, Backend const& device,
                            TruthAt at = TruthAt::mid_position);
 
 /// Stores the compared files and their hashes in a comparison, for errors.json.
@@ -113,7 +113,7 @@ void name_sources(Comparison& comparison, ComparedFiles files);
 
 /// Compares the vectors of a CASE with its truth and theory. Renders again what the comparison needs, unless
 /// options.reuse is set and a stored comparison of the same files exists.
-Comparison compare_case(std::string const& folder, Device const& device, CompareOptions const& options);
+Comparison compare_case(std::string const& folder, Backend const& device, CompareOptions const& options);
 
 /// Returns error measures against ray_truth, eq9, eq9_cone (PIV: flow, ambient_truth) and window_truth, and the budget.
 nlohmann::ordered_json errors_of(Comparison const& comparison);

@@ -72,7 +72,7 @@ void warn_of_reading(std::string const& path, ImageMetadata const& metadata) {
 }
 
 /// Applies masks and preprocessing steps to the frames and correlates the result.
-Measurement correlate_prepared(FramePair const& frames, CorrelationSettings settings, Device const& device) {
+Measurement correlate_prepared(FramePair const& frames, CorrelationSettings settings, Backend const& device) {
   auto const start = std::chrono::steady_clock::now();
   HostFrames const prepared = prepare_frames(frames, settings.preparation);
   settings.preparation = {};
@@ -104,7 +104,7 @@ void check_finite(std::string const& reference_name, Image<double> const& refere
 
 Measurement correlate_frames(std::string const& reference_name, Image<double> const& reference,
                              std::string const& flow_name, Image<double> const& flow,
-                             CorrelationSettings const& settings, Device const& device) {
+                             CorrelationSettings const& settings, Backend const& device) {
   if (reference.columns() != flow.columns() || reference.rows() != flow.rows()) {
     throw DataError(flow_name,
                     fmt::format("is {} x {} px but {} is {} x {} (both frames must have one size)", flow.columns(),
@@ -121,7 +121,7 @@ Measurement correlate_frames(std::string const& reference_name, Image<double> co
   return correlate_frames(FramesView(reference, flow), settings, device);
 }
 
-Measurement correlate_frames(FramePair const& frames, CorrelationSettings const& settings, Device const& device) {
+Measurement correlate_frames(FramePair const& frames, CorrelationSettings const& settings, Backend const& device) {
   if (!settings.preparation.empty()) return correlate_prepared(frames, settings, device);
   auto const start = std::chrono::steady_clock::now();
   std::unique_ptr<Correlator> const correlator = device.correlator(settings);
@@ -229,7 +229,7 @@ void warn_of_exchanged_frames(DisplacementField& field, SourceFiles const& sourc
 }
 
 Measurement correlate_case(std::string const& folder, std::string const& output, CorrelationFile const* other,
-                           Device const& device) {
+                           Backend const& device) {
   std::string const reference = in_case(folder, case_file::reference), flow = in_case(folder, case_file::flow);
   std::string const setup = in_case(folder, case_file::setup);
   SourceFiles sources;

@@ -7,7 +7,7 @@
 #include "analysis/vectors/displacement_field.h"
 #include "render/base/image.h"
 #include "render/files/source_files.h"
-#include "studies/case/device.h"
+#include "studies/case/backend.h"
 
 namespace gladstone {
 
@@ -22,10 +22,10 @@ struct Measurement {
 /// @throws DataError if they differ in size or are smaller than an interrogation window
 Measurement correlate_frames(std::string const& reference_name, Image<double> const& reference,
                              std::string const& flow_name, Image<double> const& flow,
-                             CorrelationSettings const& settings, Device const& device);
+                             CorrelationSettings const& settings, Backend const& device);
 /// Correlates two frames that may be stored on a device.
 /// @pre the frames are at least as large as the largest interrogation window
-Measurement correlate_frames(FramePair const& frames, CorrelationSettings const& settings, Device const& device);
+Measurement correlate_frames(FramePair const& frames, CorrelationSettings const& settings, Backend const& device);
 
 /// Settings of a [correlate] table.
 struct CorrelationFile {
@@ -64,6 +64,6 @@ void warn_of_exchanged_frames(DisplacementField& field, SourceFiles const& sourc
 /// @param other   settings that replace those of the case; null: those of the case
 /// @throws DataError if frames or setup changed meanwhile; nothing is written then
 Measurement correlate_case(std::string const& folder, std::string const& output, CorrelationFile const* other,
-                           Device const& device);
+                           Backend const& device);
 
 }  // namespace gladstone

@@ -90,20 +90,19 @@ bool without_medium(Scene const& scene) {
 enum class SeenThrough { medium, ambient };
 
 /// Traces the particles whose images coincide with the points.
-GroundTruth trace_points(Scene& scene, Renderer& renderer, SheetPoints here, TruthAt at, SeenThrough through) {
-  std::uint64_t const all_rays = scene.rays_per_dot;
-  auto const trace = [&] {
-    return renderer.render_particles(scene, here.particles(), ParticleLight::equal, RenderImages::no).truth;
+GroundTruth trace_points(Scene const& scene, Renderer& renderer, SheetPoints here, TruthAt at, SeenThrough through) {
+  auto const trace = [&](Scene const& with_rays) {
+    return renderer.render_particles(with_rays, here.particles(), ParticleLight::equal, RenderImages::no).truth;
   };
   bool const ambient = through == SeenThrough::ambient;
-  scene.rays_per_dot = std::min(all_rays, rough_rays);
+  Scene rough = scene;
+  rough.rays_per_dot = std::min(scene.rays_per_dot, rough_rays);
   for (int round = 0; round < correction_rounds; ++round) {
-    GroundTruth const truth = trace();
+    GroundTruth const truth = trace(rough);
     here.correct(ambient ? truth.particles.reference_ambient_px : truth.reference_px,
                  ambient ? truth.particles.displacement_ambient_px : truth.displacement_px, at);
   }
-  scene.rays_per_dot = all_rays;
-  return trace();
+  return trace(scene);
 }
 
 /// Computes the displacements of the particles whose pinhole projections coincide with the points. With an ideal lens
@@ -132,7 +131,8 @@ std::vector<Vec2d> project_points(Scene const& scene, SheetPoints here, TruthAt 
 
 }  // namespace
 
-ParticlePoints particle_points(Scene& scene, Renderer& renderer, std::vector<Vec2d> const& places_px, TruthAt at) {
+ParticlePoints particle_points(Scene const& scene, Renderer& renderer, std::vector<Vec2d> const& places_px,
+                               TruthAt at) {
   SheetPoints const start(scene, places_px);
   ParticlePoints points;
   points.flow_px = start.flow_px();
@@ -144,7 +144,7 @@ ParticlePoints particle_points(Scene& scene, Renderer& renderer, std::vector<Vec
   return points;
 }
 
-std::vector<Vec2d> particle_displacements(Scene& scene, Renderer& renderer, std::vector<Vec2d> const& places_px,
+std::vector<Vec2d> particle_displacements(Scene const& scene, Renderer& renderer, std::vector<Vec2d> const& places_px,
                                           TruthAt at) {
   SheetPoints start(scene, places_px);
   if (without_medium(scene) && scene.setup.on_bench()) return project_points(scene, std::move(start), at);

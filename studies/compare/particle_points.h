@@ -22,11 +22,11 @@ struct ParticlePoints {
 /// the points; then all rays are traced. NaN if the camera sees no point of the sheet there.
 /// @param places_px  points in the image [px]
 /// @param at         mid_position: a point is the midpoint of both images; reference: the position of the first image
-ParticlePoints particle_points(Scene& scene, Renderer& renderer, std::vector<Vec2d> const& places_px, TruthAt at);
+ParticlePoints particle_points(Scene const& scene, Renderer& renderer, std::vector<Vec2d> const& places_px, TruthAt at);
 
 /// Computes only the displacements with the medium of the particles found by particle_points() [px]. Without a medium
 /// and with an ideal thin lens on the Z axis no rays are traced, since the pinhole projection is exact.
-std::vector<Vec2d> particle_displacements(Scene& scene, Renderer& renderer, std::vector<Vec2d> const& places_px,
+std::vector<Vec2d> particle_displacements(Scene const& scene, Renderer& renderer, std::vector<Vec2d> const& places_px,
                                           TruthAt at);
 
 }  // namespace gladstone

@@ -96,7 +96,7 @@ void add_sheet(DesignRequest const& request, CaseSetup const& loaded, std::vecto
     sheet = bos_sheet(loaded.setup, bench);
     if (draws) draw_bench(request, report, bench, std::nullopt);
     if (!uncertain.empty()) {
-      Device const device = request.open_device();
+      Backend const device = request.open_device();
       uncertainty = measurement_uncertainty(loaded, uncertain, bench, shown_gradient(given), *device.renderer);
     }
   }

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "studies/case/device.h"
+#include "studies/case/backend.h"
 #include "studies/design/verification.h"
 
 namespace gladstone {
@@ -16,9 +16,9 @@ struct DesignRequest {
   std::vector<std::string> overrides;
   std::string figures;  ///< folder of the figures; empty: no figures
   std::string figure_format = "png";
-  std::string apply;                    ///< file for the recommended setup; empty: not written
-  VerificationPlan verification;        ///< zero benches: no simulation
-  std::function<Device()> open_device;  ///< opens the device of the simulation
+  std::string apply;                     ///< file for the recommended setup; empty: not written
+  VerificationPlan verification;         ///< zero benches: no simulation
+  std::function<Backend()> open_device;  ///< opens the device of the simulation
 };
 
 /// Result of `gladstone design`.

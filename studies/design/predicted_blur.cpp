@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "render/base/parallel.h"
+#include "render/planning.h"
 #include "render/scene/field_map.h"
 #include "render/scene/scene.h"
-#include "studies/case/scene_renderer.h"
 
 namespace gladstone {
 namespace {
@@ -110,8 +110,7 @@ PredictedBlur predicted_blur(Setup const& setup, Bench<double> const& bench, std
   Setup wider = setup;
   wider.camera.columns += 2 * margin;
   wider.camera.rows += 2 * margin;
-  Scene scene = build_scene(wider);
-  plan_step_of(scene);
+  Scene const scene = with_chosen_step(build_scene(wider));
   Lattice const sharp(map_field(scene, spacing_px).eq9_px);
   Lattice const cone = blurred(sharp, offsets);
   PredictedBlur blur;

@@ -5,10 +5,10 @@
 #include <optional>
 
 #include "render/base/contracts.h"
+#include "render/planning.h"
 #include "render/scene/field_map.h"
 #include "render/scene/scene.h"
 #include "studies/case/light_exposure.h"
-#include "studies/case/scene_renderer.h"
 
 namespace gladstone {
 namespace {
@@ -34,8 +34,7 @@ double largest_gradient(Setup const& setup) {
   }
   double largest = 0;
   constexpr int lattice_px = 4;
-  Scene scene = build_scene(setup);
-  plan_step_of(scene);
+  Scene const scene = with_chosen_step(build_scene(setup));
   for (Vec2d const gradient : map_field(scene, lattice_px).density_gradient) {
     largest = std::max(largest, length(gradient));
   }

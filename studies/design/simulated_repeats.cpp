@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "render/base/not_a_number.h"
-#include "studies/case/scene_renderer.h"
+#include "render/method.h"
 #include "studies/design/predicted_blur.h"
 
 namespace gladstone {

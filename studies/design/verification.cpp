@@ -209,7 +209,7 @@ void compare_with_formulas(VerifiedBench& verified, std::vector<Limit> const& re
 
 Verification verify(DesignQuestion const& question, std::vector<DesignVariant> const& variants,
                     std::vector<DesignBranch> const& branches, Recommendation const& answer,
-                    VerificationPlan const& plan, Device device) {
+                    VerificationPlan const& plan, Backend device) {
   std::string const device_name = device.name();
   Verification verification;
   std::vector<BranchOutcome> best;

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "studies/case/device.h"
+#include "studies/case/backend.h"
 #include "studies/design/recommend.h"
 #include "studies/design/simulation.h"
 
@@ -74,6 +74,6 @@ void compare_with_formulas(VerifiedBench& verified, std::vector<Limit> const& re
 /// @pre answer.feasible()
 Verification verify(DesignQuestion const& question, std::vector<DesignVariant> const& variants,
                     std::vector<DesignBranch> const& branches, Recommendation const& answer,
-                    VerificationPlan const& plan, Device device);
+                    VerificationPlan const& plan, Backend device);
 
 }  // namespace gladstone

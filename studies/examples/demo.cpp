@@ -134,7 +134,7 @@ AgreementSeries agreement_series(Setup const& setup, GradientSpectrum const& spe
 
 }  // namespace
 
-std::string run_demo(std::string const& folder, Device const& device) {
+std::string run_demo(std::string const& folder, Backend const& device) {
   namespace fs = std::filesystem;
   auto const start = std::chrono::steady_clock::now();
   std::string const shared = shared_folder();

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "studies/case/device.h"
+#include "studies/case/backend.h"
 
 namespace gladstone {
 
@@ -11,6 +11,6 @@ namespace gladstone {
 /// then by rays and theory alone on increasingly fine fields (agreement.png). Writes summary.md, whose first
 /// section is docs/demo.md.
 /// @return text of summary.md
-std::string run_demo(std::string const& folder, Device const& device);
+std::string run_demo(std::string const& folder, Backend const& device);
 
 }  // namespace gladstone

@@ -66,7 +66,7 @@ MapFigure grey_figure(int columns, std::vector<GalleryPicture> const& of, std::v
 
 }  // namespace
 
-std::string run_gallery(std::string const& folder, Device const& device) {
+std::string run_gallery(std::string const& folder, Backend const& device) {
   std::string const cases = (fs::path(shared_folder()) / "studies" / "cases" / "figure1").string();
   std::vector<Image<double>> images;
   std::vector<GalleryPicture> const all(pictures.begin(), pictures.end());

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "studies/case/device.h"
+#include "studies/case/backend.h"
 
 namespace gladstone {
 
@@ -11,6 +11,6 @@ namespace gladstone {
 /// one at equal grey scale as NAME/beside.png, and gallery.png with all of them.
 /// @return text that describes what each image shows
 /// @throws SetupError, OutputError, DataError, DeviceError
-std::string run_gallery(std::string const& folder, Device const& device);
+std::string run_gallery(std::string const& folder, Backend const& device);
 
 }  // namespace gladstone

@@ -4,10 +4,10 @@
 #include <vector>
 
 #include "render/base/units.h"
+#include "render/planning.h"
 #include "render/scene/build_camera.h"
 #include "render/scene/scene.h"
 #include "render/sensor/diffraction_spot.h"
-#include "studies/case/scene_renderer.h"
 #include "studies/oracles/oracles.h"
 
 namespace gladstone::oracle {
@@ -28,7 +28,7 @@ GroundTruth truth_of(Setup const& setup, std::vector<Vec2d> const& points, std::
   scene.camera = build_camera(setup);
   scene.dots.centre = points;
   scene.medium = build_medium(setup.medium);
-  plan_step_of(scene);
+  scene = with_chosen_step(std::move(scene));
   scene.rays_per_dot = rays;
   return renderer.render(scene, scene.dots, RenderImages::no, RenderTheory::yes).truth;
 }

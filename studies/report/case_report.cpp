@@ -173,7 +173,7 @@ FramePictures frame_pictures(std::string const& folder, std::string const& title
       png_of(flow, black, white)};
 }
 
-ReportPage case_report(ReportOptions const& options, Device const& device) {
+ReportPage case_report(ReportOptions const& options, Backend const& device) {
   CompareOptions compare;
   compare.vectors = options.vectors;
   if (!options.conventions.empty()) compare.conventions = options.conventions;

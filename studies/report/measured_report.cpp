@@ -40,7 +40,7 @@ MeasurementInput typical_displacement(MeanOfRepeats const& mean, double formula_
 
 /// Simulates the twin of a measurement with vectors on a lattice.
 SimulatedTwin twin_of(CaseSetup const& loaded, DisplacementField const& field, MeasuredGradients const& all,
-                      double pixel_at_medium, Device const& device) {
+                      double pixel_at_medium, Backend const& device) {
   double const spacing = (field.position_px[1].x - field.position_px[0].x) * pixel_at_medium;
   Vec2d const middle = (field.position_px.front() + field.position_px.back()) / 2.0;
   Vec2d const axis{(loaded.setup.camera.columns - 1) / 2.0, (loaded.setup.camera.rows - 1) / 2.0};
@@ -116,7 +116,7 @@ CaseSetup measured_bench(std::string const& setup_file, std::vector<UncertainInp
 
 }  // namespace
 
-ReportPage measured_report(ReportOptions const& options, Device const& device) {
+ReportPage measured_report(ReportOptions const& options, Backend const& device) {
   std::vector<UncertainInput> uncertain;
   MeasuredFiles const files = measured_files(options);
   CaseSetup const loaded = measured_bench(files.setup, uncertain);

@@ -56,7 +56,7 @@ ReportSection how_it_was_made(SourceFiles const& sources, std::vector<std::strin
                      "error analysis and experiment design, Measurement Science and Technology 30 (2019) 085302."}}};
 }
 
-WrittenReport write_report(ReportOptions const& options, Device const& device) {
+WrittenReport write_report(ReportOptions const& options, Backend const& device) {
   bool const run = fs::exists(fs::path(options.source) / run_file::manifest);
   if (!run && !fs::exists(fs::path(options.source) / case_file::setup)) {
     throw DataError(options.source, fmt::format("is neither a study (no {} in it) nor a case (no {}); give the folder "

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "render/files/source_files.h"
-#include "studies/case/device.h"
+#include "studies/case/backend.h"
 #include "studies/report/report_page.h"
 
 namespace gladstone {
@@ -32,18 +32,18 @@ struct WrittenReport {
 /// Writes the report of a study, a case or a measurement, and its figures.
 /// @throws DataError if the folder contains no study, case or measurement, no finished case, or no vectors
 /// @throws OutputError if a file cannot be written
-WrittenReport write_report(ReportOptions const& options, Device const& device);
+WrittenReport write_report(ReportOptions const& options, Backend const& device);
 
 /// Creates the report of a RUN from the finished cases, without computations.
 ReportPage run_report(ReportOptions const& options);
 
 /// Creates the report of a CASE, which is compared with truth and theory again.
-ReportPage case_report(ReportOptions const& options, Device const& device);
+ReportPage case_report(ReportOptions const& options, Backend const& device);
 
 /// Creates the uncertainty report of a measurement, a folder without truth that contains the setup, the vectors and,
 /// optionally, the frames. It reports density gradients with uncertainties, and the errors of a simulated twin.
 /// @throws SetupError, DataError
-ReportPage measured_report(ReportOptions const& options, Device const& device);
+ReportPage measured_report(ReportOptions const& options, Backend const& device);
 
 /// Returns the figures for a publication as blocks that name their files; empty if none are requested.
 /// @param draw  draws the figures into a folder in a format and returns their paths; skipped without gnuplot

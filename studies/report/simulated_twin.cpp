@@ -61,7 +61,7 @@ StudyFile study_of(CaseSetup const& loaded, SetupNode field) {
 }  // namespace
 
 SimulatedTwin simulate_twin(CaseSetup const& loaded, Image<double> const& density, double spacing, Vec2d centre,
-                            Device device) {
+                            Backend device) {
   SimulatedTwin twin;
   try {
     PassingFolder const folder;

@@ -27,6 +27,6 @@ inline constexpr int most_twin_px = 512;  ///< maximum width and height of the s
 /// @param spacing  distance between its nodes [m]
 /// @param centre   X and Y of its centre [m]
 SimulatedTwin simulate_twin(CaseSetup const& loaded, Image<double> const& density, double spacing, Vec2d centre,
-                            Device device);
+                            Backend device);
 
 }  // namespace gladstone

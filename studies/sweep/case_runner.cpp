@@ -16,10 +16,10 @@
 #include "render/files/output_file.h"
 #include "render/files/output_folder.h"
 #include "render/focused_dots/focused_dots.h"
+#include "render/method.h"
 #include "render/setup/setup_node.h"
 #include "studies/case/case_warnings.h"
 #include "studies/case/quiet_log.h"
-#include "studies/case/scene_renderer.h"
 #include "studies/case/version_text.h"
 #include "studies/compare/correlate.h"
 #include "studies/compare/thinned_vectors.h"
@@ -118,7 +118,7 @@ std::vector<std::pair<std::string, double>> flat_measures(nlohmann::ordered_json
   return measures;
 }
 
-CaseRunner::CaseRunner(Device device, Sharing sharing, int least_apart_px)
+CaseRunner::CaseRunner(Backend device, Sharing sharing, int least_apart_px)
     : device_(std::move(device)),
       sharing_(sharing),
       least_apart_px_(least_apart_px),

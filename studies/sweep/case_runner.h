@@ -37,7 +37,7 @@ class CaseRunner {
  public:
   /// @param least_apart_px  minimum spacing of the compared vectors; of a denser lattice, only every n-th row and
   ///                        column is compared
-  explicit CaseRunner(Device device, Sharing sharing = Sharing::identical, int least_apart_px = 0);
+  explicit CaseRunner(Backend device, Sharing sharing = Sharing::identical, int least_apart_px = 0);
   ~CaseRunner();
 
   /// Computes a case. Errors in the computation become a result with status `failed`.
@@ -54,7 +54,7 @@ class CaseRunner {
   void check_inputs(ManifestCase const& one);
   void compute(ManifestCase const& one, std::string const& keep, CaseObserver const& observe, CaseResult& result);
 
-  Device device_;
+  Backend device_;
   Sharing sharing_;
   int least_apart_px_;
   std::unique_ptr<Shared> shared_;

@@ -19,7 +19,7 @@ namespace gladstone::bench {
 inline constexpr double volume_width = 32.7e-3;
 inline constexpr double ambient_refractivity = 2.26e-4 * 1.225;
 
-inline void plan_step(Scene& scene) { plan_step_by_rays(scene); }
+inline void plan_step(Scene& scene) { scene = with_step(scene, plan_step_by_rays(scene)); }
 
 /// A seeded smooth refractivity that varies along all three axes, over five to ten cells of a 64^3 grid.
 inline double smooth_refractivity(Vec3d p, unsigned seed) {

@@ -15,9 +15,13 @@ namespace {
 /// Returns the automatic plan, by the fast renderer if it supports the scene.
 RaysPlan plan_rays(Scene& scene) {
   auto const dots = focused_dots(scene);
-  if (!dots) return plan_rays_by_rays(scene);
-  RaysPlan const plan = plan_rays(*dots);
-  scene.rays_per_dot = plan.rays;
+  if (dots) {
+    RaysPlan const plan = plan_rays(*dots);
+    scene.rays_per_dot = plan.rays;
+    return plan;
+  }
+  RaysPlan const plan = plan_rays_by_rays(scene);
+  scene = with_rays(std::move(scene), plan);
   return plan;
 }
 RaysPlan plan_rays_anew(Scene& scene) {

@@ -29,7 +29,7 @@ dots_per_32px_window = 1.0
 )",
                                                     "setup.toml");
   Scene scene = build_scene(read_setup(document.root()));
-  plan_step_by_rays(scene);
+  scene = with_step(scene, plan_step_by_rays(scene));
   return scene;
 }
 

@@ -35,7 +35,7 @@ Scene scene_with_particles(Setup const& setup, std::vector<Vec3d> const& first, 
       scene.particles.photons[pulse][i] = sheet.photons(scene.particles.place[pulse][i], pulse);
     }
   }
-  plan_step_by_rays(scene);
+  scene = with_step(scene, plan_step_by_rays(scene));
   scene.rays_per_dot = rays;
   return scene;
 }
@@ -285,7 +285,7 @@ TEST(Particles, GiveTheSameBitsOnAnyNumberOfThreads) {
   auto const render_on = [&](int threads) {
     set_thread_count(threads);
     Scene scene = build_scene(setup);
-    plan_step_by_rays(scene);
+    scene = with_step(scene, plan_step_by_rays(scene));
     scene.rays_per_dot = 32;
     return render(scene, ParticleLight::scattered, RenderImages::yes);
   };

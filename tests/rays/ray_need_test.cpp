@@ -43,8 +43,8 @@ Scene scene_with(Setup const& setup, std::vector<Place> const& places) {
       scene.particles.photons[pulse][i] = sheet.photons(scene.particles.place[pulse][i], pulse);
     }
   }
-  plan_step_by_rays(scene);
-  plan_rays_by_rays(scene);
+  scene = with_step(scene, plan_step_by_rays(scene));
+  scene = with_rays(scene, plan_rays_by_rays(scene));
   return scene;
 }
 
@@ -201,6 +201,7 @@ TEST(RayNeed, PlanTellsWhatARuleLeavesOfAberrations) {
   for (int i = 0; i < 20; ++i) places.push_back({{(0.5 * i - 5) * mm, (i % 5 - 2) * 2 * mm, (i % 3 - 1) * mm}});
   Scene scene = scene_with(setup, places);
   RaysPlan const plan = plan_rays_by_rays(scene);
+  scene = with_rays(scene, plan);
   Rendering const found = render(scene), exact = render(of_most_rays(scene));
   double const off = image_error(scene, found.light, exact.light);
   EXPECT_GT(off, 0.01);
@@ -218,8 +219,8 @@ TEST(RayNeed, IsTheSameOnAnyNumberOfThreads) {
   auto const render_on = [&](int threads) {
     set_thread_count(threads);
     Scene scene = build_scene(setup);
-    plan_step_by_rays(scene);
-    plan_rays_by_rays(scene);
+    scene = with_step(scene, plan_step_by_rays(scene));
+    scene = with_rays(scene, plan_rays_by_rays(scene));
     return render(scene);
   };
   int const before = thread_count();
@@ -240,7 +241,7 @@ Scene points_behind_blob(std::vector<Vec2d> const& at_px) {
   setup.target.dot_diameter_px = 0;
   Scene scene = scene_with_dots(setup, at_px, 1);
   scene.setup.render.rays_per_dot.reset();
-  plan_rays_by_rays(scene);
+  scene = with_rays(scene, plan_rays_by_rays(scene));
   return scene;
 }
 
@@ -253,14 +254,14 @@ TEST(RayNeed, IsMoreOfADotThatNoRayShows) {
   setup.medium.thickness = 50 * mm;
   setup.camera.exposure_e = 20000;
   Scene scene = scene_with_dots(setup, lattice(64, 6, 9), 32);
-  plan_step_by_rays(scene);
+  scene = with_step(scene, plan_step_by_rays(scene));
   auto const unseen = [](GroundTruth const& truth) {
     return std::count_if(truth.displacement_px.begin(), truth.displacement_px.end(),
                          [](Vec2d d) { return std::isnan(d.x); });
   };
   EXPECT_GT(unseen(render(scene).truth), 0);
   scene.setup.render.rays_per_dot.reset();
-  plan_rays_by_rays(scene);
+  scene = with_rays(scene, plan_rays_by_rays(scene));
   EXPECT_EQ(unseen(render(scene).truth), 0);
 }
 

@@ -139,8 +139,11 @@ TEST(RaysRenderer, PlansStepAndRaysByTracing) {
   setup.target.dot_diameter_px = 0;
   Scene scene = scene_with_dots(setup, lattice(64, 3, 15), 64);
   scene.setup.render.rays_per_dot.reset();
-  EXPECT_LT(plan_step_by_rays(scene).change_px, 1e-4);
+  StepPlan const step = plan_step_by_rays(scene);
+  EXPECT_LT(step.change_px, 1e-4);
+  scene = with_step(std::move(scene), step);
   RaysPlan const rays = plan_rays_by_rays(scene);
+  scene = with_rays(scene, rays);
   EXPECT_TRUE(rays.converged);
   EXPECT_LE(rays.truth_error_px, truth_tolerance_px);
   EXPECT_LE(rays.image_error_levels, image_tolerance_levels);

@@ -44,7 +44,12 @@ inline FieldSetup dns_plane(std::string const& instant) {
   return field;
 }
 
-inline StepPlan plan_step(Scene& scene) { return plan_step_by_rays(scene); }
+/// Plans the step of a scene and sets it.
+inline StepPlan plan_step(Scene& scene) {
+  StepPlan const plan = plan_step_by_rays(scene);
+  scene = with_step(std::move(scene), plan);
+  return plan;
+}
 
 /// Returns a scene with dots at given positions in the reference image [px] and a given number of rays, with its step
 /// and margin planned.
@@ -63,15 +68,15 @@ inline Scene scene_with_dots(Setup const& setup, std::vector<Vec2d> const& at_px
 }
 
 /// Renders a scene by the fast renderer, or by the general one if the fast renderer does not support all of its dots.
-inline Rendering render_either(Scene& scene, RenderImages images, RenderTheory theory) {
+inline Rendering render_either(Scene const& scene, RenderImages images, RenderTheory theory) {
   if (focused_dots(scene)) {
     Rendering rendering = FocusedDotsRenderer().render(scene, scene.dots, images, theory);
     if (rendering.left.empty()) return rendering;
   }
   return RaysRenderer().render(scene, scene.dots, images, theory);
 }
-inline Rendering render_all(Scene& scene) { return render_either(scene, RenderImages::yes, RenderTheory::yes); }
-inline GroundTruth trace_truth(Scene& scene, RenderTheory theory = RenderTheory::yes) {
+inline Rendering render_all(Scene const& scene) { return render_either(scene, RenderImages::yes, RenderTheory::yes); }
+inline GroundTruth trace_truth(Scene const& scene, RenderTheory theory = RenderTheory::yes) {
   return render_either(scene, RenderImages::no, theory).truth;
 }
 

@@ -134,7 +134,7 @@ TEST(WideAngleRendering, ShowsDotsAtTheRimOfTheField) {
     scene.dots.centre.push_back({point.x, point.y});
   }
   scene.dots.half_size = 1e-6;
-  plan_step_by_rays(scene);
+  scene = with_step(scene, plan_step_by_rays(scene));
   scene.rays_per_dot = 1024;
   Rendering const result = RaysRenderer().render(scene, scene.dots, RenderImages::yes, RenderTheory::no);
   for (std::size_t dot = 0; dot < 3; ++dot) {
@@ -154,7 +154,7 @@ Rendering render_dots(Scene& scene, std::vector<double> const& degrees, double h
     scene.dots.centre.push_back({point.x, point.y});
   }
   scene.dots.half_size = half_size;
-  plan_step_by_rays(scene);
+  scene = with_step(scene, plan_step_by_rays(scene));
   scene.rays_per_dot = 4096;
   return RaysRenderer().render(scene, scene.dots, RenderImages::yes, RenderTheory::yes);
 }

@@ -192,7 +192,7 @@ TEST(RecentValues, AreCountedWhileTheyAreKept) {
 TEST_F(CaseRunners, AnyErrorOfACaseIsItsResultButNotThatOfADevice) {
   auto const cases = plan("base = \"base.toml\"\n[axes]\n\"lens.f_number\" = [8]\n");
   std::function<void()> fail;
-  Device device = open_device("cpu");
+  Backend device = open_device("cpu");
   device.correlator = [&fail](CorrelationSettings const&) -> std::unique_ptr<Correlator> {
     fail();
     return nullptr;

@@ -1,7 +1,7 @@
 #include <cmath>
 
 #include "cuda/backend.h"
-#include "studies/case/device.h"
+#include "studies/case/backend.h"
 #include "studies/sweep/case_runner.h"
 #include "tests/studies/support/same_results.h"
 #include "tests/studies/support/study_folder.h"

@@ -7,9 +7,10 @@
 
 #include "render/base/units.h"
 #include "render/files/hdf5_file.h"
+#include "render/planning.h"
+#include "render/render.h"
 #include "render/scene/field_map.h"
 #include "render/scene/scene.h"
-#include "studies/case/scene_renderer.h"
 #include "studies/design/sheet.h"
 #include "studies/report/bench_view.h"
 
@@ -56,7 +57,7 @@ class DepthOfTheMedium : public testing::Test {
 /// Largest displacement by Eq. 9 in the truth of a rendering, over all pixels [px].
 double rendered_displacement(CaseSetup const& loaded) {
   Scene scene = build_scene(loaded.setup);
-  plan_step_of(scene);
+  scene = with_chosen_step(std::move(scene));
   double largest = 0;
   for (Vec2d const one : map_field(scene, 1).eq9_px) largest = std::max(largest, length(one));
   return largest;

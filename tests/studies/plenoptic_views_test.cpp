@@ -45,7 +45,7 @@ Image<double> picture(Setup const& setup, std::vector<Vec3d> const& places) {
   }
   scene.particles.diameter.assign(places.size(), 1e-6);
   scene.photon_unit = 1;
-  plan_step_by_rays(scene);
+  scene = with_step(scene, plan_step_by_rays(scene));
   scene.rays_per_dot = 2048;
   return RaysRenderer()
       .render_particles(scene, scene.particles, ParticleLight::equal, RenderImages::yes)

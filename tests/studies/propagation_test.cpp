@@ -5,7 +5,7 @@
 #include <cmath>
 #include <tuple>
 
-#include "studies/case/device.h"
+#include "studies/case/backend.h"
 #include "studies/design/measurement_inputs.h"
 
 namespace gladstone {
@@ -292,7 +292,7 @@ window_px = [32]
   std::vector<UncertainInput> const uncertain = take_uncertain_inputs(document);
   CaseSetup const loaded = load_case_setup(std::move(document));
   ASSERT_EQ(uncertain.size(), 6u);
-  Device device = open_device("cpu");
+  Backend device = open_device("cpu");
   std::vector<MeasurementInput> const inputs = measurement_inputs(loaded, uncertain, *device.renderer);
   PropagatedResult const gradient = propagate(gradient_measurement(loaded.setup, 32, 0.1), inputs)[0];
   for (std::size_t i = 0; i < inputs.size(); ++i) {
@@ -315,7 +315,7 @@ window_px = [32]
                                                     "vacuum");
   std::vector<UncertainInput> const uncertain = take_uncertain_inputs(document);
   CaseSetup const loaded = load_case_setup(std::move(document));
-  Device device = open_device("cpu");
+  Backend device = open_device("cpu");
   std::optional<double> const slope = traced_log_derivative(loaded, uncertain.at(0), *device.renderer);
   ASSERT_TRUE(slope);
   EXPECT_NEAR(*slope, -2.26e-4, 1e-6);
@@ -343,7 +343,7 @@ window_px = [32]
                                                     "gauss", GLADSTONE_DATA_DIR);
   std::vector<UncertainInput> const uncertain = take_uncertain_inputs(document);
   CaseSetup const loaded = load_case_setup(std::move(document));
-  Device device = open_device("cpu");
+  Backend device = open_device("cpu");
   std::vector<MeasurementInput> const inputs = measurement_inputs(loaded, uncertain, *device.renderer);
   GradientMeasurement<double> const at = gradient_measurement(loaded.setup, 32, 0.1);
   auto const traced = propagate(at, inputs);

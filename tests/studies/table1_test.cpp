@@ -3,8 +3,9 @@
 #include <cmath>
 
 #include "render/focused_dots/table_error.h"
+#include "render/planning.h"
+#include "render/render.h"
 #include "studies/case/case.h"
-#include "studies/case/scene_renderer.h"
 #include "studies/case/shared_folder.h"
 
 namespace gladstone {
@@ -17,8 +18,10 @@ namespace {
 TEST(Table1, IsAsGoodAsItSays) {
   CaseSetup const loaded = load_case_setup(shared_folder() + "/studies/cases/table1.toml", {});
   Scene scene = build_scene(loaded.setup);
-  plan_step_of(scene);
-  ASSERT_EQ(plan_rays_of(scene).rays, 1024u);
+  scene = with_chosen_step(std::move(scene));
+  RaysPlan const plan = choose_rays(scene);
+  ASSERT_EQ(plan.rays, 1024u);
+  scene = with_rays(std::move(scene), plan);
   RaysPlan const error = measure_table_error(focused_dots(scene).value());
   EXPECT_LT(error.truth_error_px, 1e-4);
   EXPECT_LT(error.truth_resolution_px, 1e-4);

@@ -4,15 +4,13 @@
 
 #include <limits>
 
-#include "render/focused_dots/focused_dots_renderer.h"
-#include "render/rays/rays_renderer.h"
-#include "studies/case/scene_renderer.h"
+#include "render/render.h"
 
 namespace gladstone {
 namespace {
 
 TEST(Oracles, AreMetByTheCpu) {
-  SceneRenderer renderer(std::make_unique<FocusedDotsRenderer>(), std::make_unique<RaysRenderer>());
+  Device renderer = cpu();
   auto const results = run_oracles(renderer);
   EXPECT_GE(results.size(), 20u);
   for (OracleResult const& result : results) {

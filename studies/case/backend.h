@@ -9,8 +9,8 @@
 
 namespace gladstone {
 
-/// Device on which a command renders and correlates: the CPU's cores or a GPU.
-struct Device {
+/// Renderer and correlator of the device on which a command runs: the CPU's cores or a GPU.
+struct Backend {
   std::unique_ptr<Renderer> renderer;
   std::function<std::unique_ptr<Correlator>(CorrelationSettings const&)> correlator;
 
@@ -27,7 +27,7 @@ std::string left_to_cpu(CorrelationSettings const& settings);
 /// Opens a device and logs which one is used.
 /// @param wanted  "cpu", "cuda", or "auto": the GPU if one is usable
 /// @throws DeviceError if "cuda" is not available, with the reason
-Device open_device(std::string const& wanted);
+Backend open_device(std::string const& wanted);
 
 /// Returns the number of usable GPUs.
 int gpu_count();

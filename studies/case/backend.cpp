@@ -1,4 +1,4 @@
-#include "studies/case/device.h"
+#include "studies/case/backend.h"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -10,9 +10,7 @@
 #include "render/base/error.h"
 #include "render/base/parallel.h"
 #include "render/base/version.h"
-#include "render/focused_dots/focused_dots_renderer.h"
-#include "render/rays/rays_renderer.h"
-#include "studies/case/scene_renderer.h"
+#include "render/render.h"
 #include "studies/case/version_text.h"
 
 namespace gladstone {
@@ -40,21 +38,20 @@ std::string left_to_cpu(CorrelationSettings const& settings) {
   return fmt::format("uncertainty = \"{}\"", settings.uncertainty);
 }
 
-Device open_device(std::string const& wanted) {
+Backend open_device(std::string const& wanted) {
   std::string instead;
   if (wanted != "cpu") {
     cuda::DeviceState const state = cuda::device_state();
     if (state.usable) {
       spdlog::info("device: cuda, {}", state.text);
-      return {std::make_unique<SceneRenderer>(cuda::make_renderer(), cuda::make_rays_renderer()),
+      return {std::make_unique<Device>(cuda::make_renderer(), cuda::make_rays_renderer()),
               [wanted](CorrelationSettings const& settings) { return correlator_on_gpu(settings, wanted == "cuda"); }};
     }
     if (wanted == "cuda") throw DeviceError("--device cuda: " + state.text + "; use --device cpu or auto");
     instead = " (" + state.text + ")";
   }
   spdlog::info("device: cpu, {} threads{}", thread_count(), instead);
-  return {std::make_unique<SceneRenderer>(std::make_unique<FocusedDotsRenderer>(), std::make_unique<RaysRenderer>()),
-          make_correlator};
+  return {std::make_unique<Device>(cpu()), make_correlator};
 }
 
 int gpu_count() { return cuda::device_count(); }

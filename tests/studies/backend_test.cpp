@@ -1,4 +1,4 @@
-#include "studies/case/device.h"
+#include "studies/case/backend.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ class NominalGpu final : public Renderer {
 // With --device auto, the CPU correlates if the GPU does not support the settings; the result must name the device that
 // was used.
 TEST(Measurement, NamesTheDeviceThatCorrelated) {
-  Device const device{std::make_unique<NominalGpu>(), make_correlator};
+  Backend const device{std::make_unique<NominalGpu>(), make_correlator};
   ParticlePair const pair = render_particle_pair({.columns = 64, .rows = 64}, [](Vec2d) { return Vec2d{0.5, 0.0}; });
   CorrelationSettings settings;
   settings.window_px = {32};
@@ -56,7 +56,7 @@ TEST(LeftToCpu, NamesWhatAGpuDoesNotHave) {
 // Skipped without a GPU.
 TEST(CudaDevice, RefusesWhatIsLeftToTheCpu) {
   if (cuda::DeviceState const state = cuda::device_state(); !state.usable) GTEST_SKIP() << state.text;
-  Device const only = open_device("cuda"), any = open_device("auto");
+  Backend const only = open_device("cuda"), any = open_device("auto");
   CorrelationSettings settings;
   settings.uncertainty = "correlation_statistics";
   EXPECT_NE(only.correlator(settings), nullptr);
@@ -87,16 +87,16 @@ class WithSigma final : public Correlator {
 // An uncertainty returned with the vectors is used and not estimated again. If half of the frames are unrelated and the
 // decorrelation test rejects their vectors, the uncertainty of the others is estimated again without them.
 TEST(Measurement, KeepsTheUncertaintyThatCameWithTheVectors) {
-  Device const device{std::make_unique<NominalGpu>(),
-                      [](CorrelationSettings const& settings) { return std::make_unique<WithSigma>(settings); }};
+  Backend const device{std::make_unique<NominalGpu>(),
+                       [](CorrelationSettings const& settings) { return std::make_unique<WithSigma>(settings); }};
   CorrelationSettings settings;
   settings.window_px = {32};
   settings.uncertainty = "correlation_statistics";
   auto const still = [](Vec2d) { return Vec2d{0.5, 0.0}; };
   ParticlePair pair = render_particle_pair({.columns = 256, .rows = 256, .noise = 0.02}, still);
   ParticlePair const other = render_particle_pair({.columns = 256, .rows = 256, .noise = 0.02, .seed = 2}, still);
-  Device const without{std::make_unique<NominalGpu>(), make_correlator};
-  auto const measured = [&](Device const& by) {
+  Backend const without{std::make_unique<NominalGpu>(), make_correlator};
+  auto const measured = [&](Backend const& by) {
     return correlate_frames("a.tif", pair.reference, "b.tif", pair.flow, settings, by).field;
   };
   for (Vec2d const& sigma : measured(device).sigma_px) EXPECT_EQ(sigma, (Vec2d{0.25, 0.5}));

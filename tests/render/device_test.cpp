@@ -1,5 +1,3 @@
-#include "studies/case/scene_renderer.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -8,10 +6,10 @@
 #include <fstream>
 
 #include "render/base/random.h"
-#include "render/focused_dots/focused_dots_renderer.h"
+#include "render/planning.h"
 #include "render/rays/rays_renderer.h"
+#include "render/render.h"
 #include "render/scene/side_faces.h"
-#include "studies/case/case.h"
 #include "tests/scene/piv_setups.h"
 #include "tests/scene/small_scenes.h"
 
@@ -39,9 +37,7 @@ Scene volume_in_view(std::uint64_t rays) {
   return scene_with_dots(setup, lattice(96, 8, 11), rays);
 }
 
-SceneRenderer on_cpu() { return {std::make_unique<FocusedDotsRenderer>(), std::make_unique<RaysRenderer>()}; }
-
-Rendering render(Scene scene) { return on_cpu().render(scene, scene.dots, RenderImages::yes, RenderTheory::yes); }
+Rendering render(Scene scene) { return cpu().render(scene, scene.dots, RenderImages::yes, RenderTheory::yes); }
 
 // For a source that is not listed, either all straight rays to the pupil cross the volume from face to face, or none
 // does.
@@ -164,7 +160,8 @@ TEST(SideFaces, DarkDotsAreWhiteLessBright) {
 TEST(SideFaces, AreWhereAutoTakesMoreRays) {
   Scene scene = volume_in_view(1);
   scene.setup.render.rays_per_dot.reset();
-  RaysPlan const plan = plan_rays_of(scene);
+  RaysPlan const plan = choose_rays(scene);
+  scene = with_rays(scene, plan);
   EXPECT_EQ(scene.rays_per_dot, plan.rays);
   EXPECT_EQ(scene.rays_at_side_faces, plan.rays_at_side_faces);
   EXPECT_LE(plan.rays, 256u);
@@ -178,7 +175,8 @@ TEST(SideFaces, AreWhereAutoTakesMoreRays) {
 TEST(SideFaces, AreMeasuredWithAGivenNumber) {
   auto const measured = [](std::uint64_t rays) {
     Scene scene = volume_in_view(rays);
-    RaysPlan const plan = plan_rays_of(scene);
+    RaysPlan const plan = choose_rays(scene);
+    scene = with_rays(scene, plan);
     EXPECT_EQ(plan.rays, rays);
     EXPECT_EQ(plan.rays_at_side_faces, 0u) << "the user has specified the number";
     EXPECT_TRUE(plan.side_faces);
@@ -198,7 +196,8 @@ TEST(SideFaces, AreMeasuredWithAGivenNumber) {
 // rays, which scatter equally. A factor of two is allowed for the choice of illuminated pixels.
 TEST(SideFaces, ImagesAreOffByWhatThePlanSays) {
   Scene scene = volume_in_view(32);
-  RaysPlan const plan = plan_rays_of(scene);
+  RaysPlan const plan = choose_rays(scene);
+  scene = with_rays(scene, plan);
   ASSERT_TRUE(plan.side_faces);
   DotPattern const all = scene.dots;
   scene.dots.centre.clear();
@@ -237,10 +236,10 @@ TEST(ParticlesNearView, AreAllThatFramesShow) {
   setup.medium.field = plume;
   setup.medium.thickness = 20e-3;
   Scene scene = build_scene(setup);
-  plan_step_of(scene);
-  plan_rays_of(scene);
+  scene = with_chosen_step(std::move(scene));
+  scene = with_rays(scene, choose_rays(scene));
   Scene all = scene;
-  Rendering const near = on_cpu().render_particles(scene, scene.particles, ParticleLight::scattered, RenderImages::yes);
+  Rendering const near = cpu().render_particles(scene, scene.particles, ParticleLight::scattered, RenderImages::yes);
   Rendering const every =
       RaysRenderer().render_particles(all, all.particles, ParticleLight::scattered, RenderImages::yes);
   EXPECT_TRUE(std::equal(near.light.reference.begin(), near.light.reference.end(), every.light.reference.begin()));

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "render/focused_dots/focused_dots.h"
+#include "render/scene/scene.h"
+
+namespace gladstone {
+
+/// Returns the method that renders a scene: resolves `automatic` to rays, focused_dots or formula.
+RenderMethod method_of(Scene const& scene);
+
+/// Returns the name of the method in files: "focused_dots", "formula" or "rays" (also for `automatic`).
+char const* to_string(RenderMethod method);
+
+/// @throws DataError if the scene does not meet the conditions of "focused_dots"
+FocusedDots require_focused_dots(Scene const& scene);
+
+/// Selects some dots of a pattern.
+/// @param numbers  their indices
+DotPattern select_dots(DotPattern const& all, std::vector<std::size_t> const& numbers);
+
+/// Copies a scene with other, bright dots and the given number of rays per dot (maximum if chosen per dot).
+Scene with_bright_dots(Scene const& scene, DotPattern dots, std::uint64_t rays);
+
+}  // namespace gladstone

@@ -1,0 +1,128 @@
+#include "render/render.h"
+
+#include <algorithm>
+#include <functional>
+#include <numeric>
+#include <utility>
+
+#include "render/base/error.h"
+#include "render/focused_dots/focused_dots_renderer.h"
+#include "render/ideal_images/ideal_images.h"
+#include "render/method.h"
+#include "render/planning.h"
+#include "render/rays/particles_in_view.h"
+#include "render/rays/ray_planning.h"
+#include "render/rays/rays_renderer.h"
+#include "render/scene/two_media.h"
+
+namespace gladstone {
+namespace {
+
+/// Merges the rendering of some sources, rendered as bright dots, into that of all.
+void merge(Rendering& all, Rendering const& some, std::vector<std::size_t> const& numbers, Polarity polarity) {
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    all.truth.copy(some.truth, i, numbers[i]);
+  }
+  all.rays += some.rays;
+  for (std::size_t frame = 0; frame < all.statuses.size(); ++frame) {
+    for (std::size_t status = 0; status < ray_status_count; ++status) {
+      all.statuses[frame][status] += some.statuses[frame][status];
+    }
+  }
+  // the light of dark dots is subtracted from the light of white paper
+  double const sign = polarity == Polarity::dark ? -1 : 1;
+  auto const add = [sign](Image<double>& to, Image<double> const& from) {
+    std::transform(to.begin(), to.end(), from.begin(), to.begin(),
+                   [sign](double there, double light) { return there + sign * light; });
+  };
+  if (some.light.reference.empty()) return;
+  add(all.light.reference, some.light.reference);
+  add(all.light.flow, some.light.flow);
+}
+
+}  // namespace
+
+Device::Device(std::unique_ptr<Renderer> focused_dots, std::unique_ptr<Renderer> rays)
+    : focused_dots_(std::move(focused_dots)), rays_(std::move(rays)) {}
+
+Rendering Device::render_particles(Scene const& scene, Particles const& particles, ParticleLight light,
+                                   RenderImages images) {
+  if (scene.second_medium) return render_in_two_media(*this, scene, particles, light, images);
+  if (method_of(scene) == RenderMethod::formula) {
+    auto const ideal = ideal_images(scene);
+    GLADSTONE_EXPECTS(ideal);
+    Rendering rendering = render_ideal_images(*ideal, particles, light, images);
+    rendering.device = "cpu";
+    return rendering;
+  }
+  bool const as_lit = light == ParticleLight::scattered && images != RenderImages::no;
+  Rendering rendering =
+      as_lit ? render_near_view(scene, particles, images) : rays_->render_particles(scene, particles, light, images);
+  rendering.device = device();
+  return rendering;
+}
+
+Rendering Device::render_near_view(Scene const& scene, Particles const& particles, RenderImages images) {
+  std::vector<char> const near = particles_near_view(scene, particles);
+  if (std::find(near.begin(), near.end(), 0) == near.end()) {
+    return rays_->render_particles(scene, particles, ParticleLight::scattered, images);
+  }
+  Particles lit = particles;  // particles without light are not traced
+  for (std::size_t i = 0; i < near.size(); ++i) {
+    if (near[i] == 0) lit.photons[0][i] = lit.photons[1][i] = 0;
+  }
+  Rendering rendering = rays_->render_particles(scene, lit, ParticleLight::scattered, images);
+  std::vector<std::int64_t>& planned = rendering.truth.rays_planned;
+  for (std::size_t i = 0; i < near.size(); ++i) {
+    if (near[i] == 0) planned[i] = 0;
+  }
+  rendering.rays = frame_count * std::accumulate(planned.begin(), planned.end(), std::int64_t{0});
+  return rendering;
+}
+
+Rendering Device::render(Scene const& scene, DotPattern const& sources, RenderImages images, RenderTheory theory) {
+  RenderMethod const method = method_of(scene);
+  Rendering rendering = method == RenderMethod::focused_dots ? render_focused(scene, sources, images, theory)
+                                                             : rays_->render(scene, sources, images, theory);
+  rendering.method = method;
+  rendering.device = device();
+  return rendering;
+}
+
+Rendering Device::render_focused(Scene const& scene, DotPattern const& sources, RenderImages images,
+                                 RenderTheory theory) {
+  require_focused_dots(scene);
+  Rendering all = focused_dots_->render(scene, sources, images, theory);
+  if (all.left.empty()) return all;
+  std::vector<std::size_t> const left = all.left;
+  RenderImages const lit = images == RenderImages::no ? RenderImages::no : RenderImages::yes;
+  if (auto const light = std::exchange(all.in_place, nullptr)) all.light = light->to_host();
+  Scene by_rays =
+      with_bright_dots(scene, select_dots(sources, left), std::max(scene.rays_per_dot, scene.rays_at_side_faces));
+  if (!scene.by_need && !scene.setup.render.rays_per_dot) {  // the ray budget did not include these dots
+    by_rays.by_need = need_of(scene);
+    by_rays.rays_per_dot = most_rays_of_source(by_rays);
+  }
+  Rendering const rest = rays_->render(by_rays, by_rays.dots, lit, theory);
+  merge(all, rest, left, scene.setup.target.polarity);
+  all.pupil_margin = std::max(all.pupil_margin, rest.pupil_margin);
+  if (images == RenderImages::in_place) {
+    all.in_place = std::make_shared<HostLight const>(std::move(all.light));
+    all.light = {};
+  }
+  return all;
+}
+
+Device cpu() { return {std::make_unique<FocusedDotsRenderer>(), std::make_unique<RaysRenderer>()}; }
+
+Rendering render_planned(Scene const& scene, Renderer& renderer, RenderImages images, RenderTheory theory) {
+  return scene.setup.piv ? renderer.render_particles(scene, scene.particles, ParticleLight::scattered, images)
+                         : renderer.render(scene, scene.dots, images, theory);
+}
+
+Rendering render(Scene const& scene, Device& device, RenderImages images, RenderTheory theory) {
+  Scene const with_step = with_chosen_step(scene);
+  return render_planned(with_rays(with_step, choose_rays(with_step)), device, images, theory);
+}
+
+}  // namespace gladstone

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "render/scene/renderer.h"
+
+/// The way from a scene to its light and its true displacements.
+namespace gladstone {
+
+/// Device that renders every scene by its method. Dots that the fast renderer rejects, at a side face of the medium or
+/// with lost rays, are rendered by individual rays, with a separate number of rays.
+class Device : public Renderer {
+ public:
+  /// @param focused_dots  fast renderer of this device
+  /// @param rays          general renderer of this device
+  Device(std::unique_ptr<Renderer> focused_dots, std::unique_ptr<Renderer> rays);
+
+  std::string device() const override { return rays_->device(); }
+  Rendering render(Scene const& scene, DotPattern const& sources, RenderImages images, RenderTheory theory) override;
+  Rendering render_particles(Scene const& scene, Particles const& particles, ParticleLight light,
+                             RenderImages images) override;
+
+ private:
+  /// Renders the particles whose light can reach the sensor; the others have no truth and zero planned rays.
+  Rendering render_near_view(Scene const& scene, Particles const& particles, RenderImages images);
+  Rendering render_focused(Scene const& scene, DotPattern const& sources, RenderImages images, RenderTheory theory);
+
+  std::unique_ptr<Renderer> focused_dots_, rays_;
+};
+
+/// Returns the CPU's cores as a device.
+Device cpu();
+
+/// Renders both frames of a scene (build_scene()): its dots, or the particles of a PIV scene.
+/// The integration step, the number of rays and the method are chosen first (planning.h) where the setup leaves them
+/// open.
+/// @param images  whether light is rendered, or displacements alone
+/// @param theory  whether small-angle theory (Eq. 9) is computed at every dot
+/// @throws DataError if the scene does not meet the conditions of its method, Interrupted
+Rendering render(Scene const& scene, Device& device, RenderImages images = RenderImages::yes,
+                 RenderTheory theory = RenderTheory::yes);
+
+/// Like render(), by any renderer that supports the scene, whose step and rays are set (with_step(), with_rays()).
+Rendering render_planned(Scene const& scene, Renderer& renderer, RenderImages images, RenderTheory theory);
+
+}  // namespace gladstone

@@ -1,0 +1,58 @@
+#include "render/render.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "render/planning.h"
+#include "tests/scene/piv_setups.h"
+#include "tests/scene/small_scenes.h"
+
+namespace gladstone {
+namespace {
+
+// A scene is rendered with the rooms of render/ alone. It has a weak wave, so that small-angle theory (Eq. 9) is exact
+// to the square of the deflection angle, 1e-4 of the displacement, and the table's error is below 1e-3 px.
+TEST(Render, ChoosesStepRaysAndMethodOfAScene) {
+  Setup setup = table1_setup(64);
+  setup.medium.field = sinusoid(0.05, 4e-3);
+  Scene const scene = build_scene(setup);
+  Device device = cpu();
+  Rendering const rendering = render(scene, device);
+  EXPECT_EQ(scene.step, 0) << "a scene is not changed";
+  EXPECT_EQ(rendering.method, RenderMethod::focused_dots);
+  EXPECT_EQ(rendering.device, "cpu");
+  EXPECT_GT(rendering.rays, 0);
+  ASSERT_EQ(rendering.truth.size(), scene.dots.centre.size());
+  double largest = 0;
+  for (std::size_t i = 0; i < rendering.truth.size(); ++i) {
+    largest = std::max(largest, length(rendering.truth.displacement_px[i]));
+    EXPECT_LT(length(rendering.truth.displacement_px[i] - rendering.truth.eq9_cone_px[i]), 2e-3) << i;
+  }
+  EXPECT_GT(largest, 0.1);
+  EXPECT_EQ(rendering.light.reference.columns(), 64);
+  EXPECT_FALSE(
+      std::equal(rendering.light.reference.begin(), rendering.light.reference.end(), rendering.light.flow.begin()));
+
+  // the same, step by step
+  Scene const stepped = with_step(scene, choose_step(scene));
+  Scene const planned = with_rays(stepped, choose_rays(stepped));
+  Rendering const again = render_planned(planned, device, RenderImages::no, RenderTheory::no);
+  EXPECT_EQ(again.truth.displacement_px, rendering.truth.displacement_px);
+  EXPECT_TRUE(again.light.flow.empty());
+}
+
+TEST(Render, RendersTheParticlesOfAPivScene) {
+  Setup setup = piv_setup(2e-3, 1e-3);
+  setup.camera.columns = setup.camera.rows = 64;
+  setup.piv->particles.amount = 50;
+  Scene const scene = build_scene(setup);
+  Device device = cpu();
+  Rendering const rendering = render(scene, device);
+  EXPECT_EQ(rendering.truth.size(), scene.particles.size());
+  EXPECT_GT(*std::max_element(rendering.light.flow.begin(), rendering.light.flow.end()), 0);
+}
+
+}  // namespace
+}  // namespace gladstone
