@@ -217,9 +217,8 @@ window_px = [32, 16]
   EXPECT_THAT(findings, HasSubstr("combined standard uncertainty"));
   EXPECT_THAT(findings, HasSubstr("coverage factor k = 2.00"));
   EXPECT_THAT(findings, HasSubstr("kg/m^4, in the simulated twin"));
-  EXPECT_THAT(
-      findings,
-      HasSubstr("was measured: the true displacement averaged over the window minus the displacement by Eq. 9"));
+  EXPECT_THAT(findings, HasSubstr("medium is the measured density: the true displacement averaged over the window "
+                                  "minus the displacement by Eq. 9"));
   std::string const html = read("measured/report.html");
   EXPECT_THAT(html, HasSubstr("of the simulated twin and not of the measurement itself"));
   EXPECT_THAT(html, HasSubstr("data-chart=\"budget\""));
