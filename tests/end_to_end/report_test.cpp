@@ -371,7 +371,7 @@ window_px = [32, 16]
   }
   write("measured/other.csv", "x_px,y_px,u_px,v_px\n10,10,0.1,0\n20,10,0.1,0\n");
   expect_refused({"report", "measured", "--vectors", "measured/1.csv", "--repeats", "measured/1.csv"}, 2,
-                 {"measured/1.csv", "has the same vectors as measured/1.csv", "leave it out"});
+                 {"measured/1.csv", "has the same vectors as measured/1.csv", "remove it"});
   expect_refused({"report", "measured", "--vectors", "measured/1.csv", "--repeats", "measured/other.csv"}, 2,
                  {"other.csv", "at other positions"});
   expect_refused({"report", "case1", "--repeats", "measured/2.csv"}, 2, {"is not a measurement"});
