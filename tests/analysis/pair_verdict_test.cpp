@@ -292,7 +292,7 @@ TEST(PairVerdict, StandsInOneWord) {
   EXPECT_THAT(judged(twice, settings).warnings,
               ElementsAre(HasSubstr("longer than correlate.max_displacement_px = 0.1")));
   EXPECT_THAT(judged(render_particle_pair({.columns = 64, .rows = 64}, everywhere(0.3, 0.0)), windows_of(64)).verdict,
-              HasSubstr("not judged: fewer than 4 windows"));
+              HasSubstr("not judged: there are fewer than 4 windows"));
   twice.flow = twice.reference;
   EXPECT_EQ(judged(twice).verdict, "not judged: both frames are the same image");
 }

@@ -235,7 +235,7 @@ window_px = [32, 16]
 
 TEST_F(Design, RefusesWhatItCannotAnswer) {
   expect_refused({"design", "setup.toml", "--apply", "out.toml"}, 2, {"has no [requirements]"});
-  expect_refused({"design", "setup.toml", "--set", "lens.f_number=inf"}, 2, {"has no stop"});
+  expect_refused({"design", "setup.toml", "--set", "lens.f_number=inf"}, 2, {"has no aperture stop"});
   write("tunnel.toml", std::string(tunnel) + "[lens]\nfocus = \"medium\"\n");
   expect_refused({"design", "tunnel.toml"}, 2, {"tunnel.toml:", "lens.focus"});
 }

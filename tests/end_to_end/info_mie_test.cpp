@@ -43,8 +43,8 @@ TEST_F(InfoMie, DrawsTheScatteredLight) {
 }
 
 TEST_F(InfoMie, NamesWhatIsNoSphere) {
-  expect_refused({"info", "mie"}, 2, {"info mie: needs --x"});
-  expect_refused({"info", "mie", "--x", "1"}, 2, {"info mie: needs --m"});
+  expect_refused({"info", "mie"}, 2, {"info mie: requires --x"});
+  expect_refused({"info", "mie", "--x", "1"}, 2, {"info mie: requires --m"});
   for (char const* x : {"0", "-1", "nan", "inf", "1e9", "5.9um"}) {
     expect_refused({"info", "mie", "--x", x, "--m", "1.45"}, 2,
                    {"is not a valid size parameter", "from 1e-06 to 100000"});

@@ -419,7 +419,8 @@ TEST_F(Piv, ExtractsViewsOfAPlenopticPicture) {
   write("plain.toml", piv_setup);
   render("plain", {}, "plain.toml");
   expect_refused({"views", "plain"}, 2, {"plain/setup.toml", "no [camera.lenslets]"});
-  expect_refused({"views", "case", "--refocus", "700"}, 2, {"--refocus", "within the focal length"});
+  expect_refused({"views", "case", "--refocus", "700"}, 2,
+                 {"--refocus", "less than a focal length in front of the lens"});
 }
 
 TEST_F(Piv, RefusesMoreParticlesThanMemoryHolds) {

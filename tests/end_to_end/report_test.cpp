@@ -217,9 +217,8 @@ window_px = [32, 16]
   EXPECT_THAT(findings, HasSubstr("combined standard uncertainty"));
   EXPECT_THAT(findings, HasSubstr("coverage factor k = 2.00"));
   EXPECT_THAT(findings, HasSubstr("kg/m^4, in the simulated twin"));
-  EXPECT_THAT(
-      findings,
-      HasSubstr("was measured: the true displacement averaged over the window minus the displacement by Eq. 9"));
+  EXPECT_THAT(findings, HasSubstr("medium is the measured density: the true displacement averaged over the window "
+                                  "minus the displacement by Eq. 9"));
   std::string const html = read("measured/report.html");
   EXPECT_THAT(html, HasSubstr("of the simulated twin and not of the measurement itself"));
   EXPECT_THAT(html, HasSubstr("data-chart=\"budget\""));
@@ -372,7 +371,7 @@ window_px = [32, 16]
   }
   write("measured/other.csv", "x_px,y_px,u_px,v_px\n10,10,0.1,0\n20,10,0.1,0\n");
   expect_refused({"report", "measured", "--vectors", "measured/1.csv", "--repeats", "measured/1.csv"}, 2,
-                 {"measured/1.csv", "has the same vectors as measured/1.csv", "leave it out"});
+                 {"measured/1.csv", "has the same vectors as measured/1.csv", "remove it"});
   expect_refused({"report", "measured", "--vectors", "measured/1.csv", "--repeats", "measured/other.csv"}, 2,
                  {"other.csv", "at other positions"});
   expect_refused({"report", "case1", "--repeats", "measured/2.csv"}, 2, {"is not a measurement"});

@@ -60,7 +60,7 @@ TEST(PivSetup, RefusesWhatGivesNoPicture) {
   EXPECT_THAT(refused_piv(piv_text("", "wavelength_nm = 633\n")), told("medium.wavelength_nm"));
   EXPECT_THAT(refused_piv(piv_text("volume_mm = [10, 10, 2000]\n")), told("reaches to the lens"));
   EXPECT_THAT(refused_piv(piv_text("", "", "", "[[window]]\nglass = \"N-BK7\"\nposition_mm = [0, 0, 0.5]\n")),
-              told("in the particles' volume"));
+              told("inside the particles' volume"));
 }
 
 TEST(PivSetup, RefusesVelocitiesThatEndInsideTheVolume) {

@@ -97,14 +97,14 @@ TEST(PlenopticCamera, LosesNoLight) {
 }
 
 // The images of the stop, d D_a / z_i wide, must not exceed the pitch of the lenslets. For 105 mm f/11 in focus at 1 m,
-// z_i / D_a = 12.29, so that they are 122 um wide at a distance of 1.5 mm.
+// z_i / D_a = 12.29, so that their diameter is 122 um at a distance of 1.5 mm.
 TEST(PlenopticCamera, IsToldWhereItsPicturesOverlap) {
   auto const warnings = [](char const* pitch_um) {
     return read_setup_text(std::string("[camera.lenslets]\nfocal_length_um = 1500\npitch_um = ") + pitch_um + "\n")
         .warnings;
   };
   EXPECT_THAT(warnings("123"), testing::Not(testing::Contains(testing::HasSubstr("overlap"))));
-  EXPECT_THAT(warnings("121"), testing::Contains(testing::HasSubstr("122 um wide")));
+  EXPECT_THAT(warnings("121"), testing::Contains(testing::HasSubstr("diameter of 122 um")));
 }
 
 // The PSF is that of a lenslet's light cone: wavelength times its distance over its pitch.

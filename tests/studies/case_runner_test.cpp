@@ -166,7 +166,7 @@ TEST_F(CaseRunners, ACaseThatCannotBeIsAResultAndAChangedInputIsNot) {
   } catch (DataError const& error) {
     what = error.what();
   }
-  EXPECT_THAT(what, testing::HasSubstr("dots.csv: cannot be read any more"));
+  EXPECT_THAT(what, testing::HasSubstr("dots.csv: can no longer be read"));
   EXPECT_THAT(what, testing::HasSubstr("case 0 (lens.f_number = 8)"));
 }
 

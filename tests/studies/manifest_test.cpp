@@ -117,7 +117,7 @@ TEST_F(Runs, ManifestsThatAreNotWholeAreRefusedByLine) {
   planned();
   std::string const whole = content("run/manifest.jsonl");
   write("run/manifest.jsonl", whole.substr(0, whole.size() - 40));
-  EXPECT_THAT(reading_fails(), testing::HasSubstr("manifest.jsonl:4: is damaged or cut short"));
+  EXPECT_THAT(reading_fails(), testing::HasSubstr("manifest.jsonl:4: is damaged or truncated"));
   std::size_t const second = whole.find('\n') + 1;
   write("run/manifest.jsonl", whole.substr(second));
   EXPECT_THAT(reading_fails(), testing::HasSubstr("manifest.jsonl:1: contains case 1 in place of case 0"));
@@ -330,7 +330,7 @@ TEST_F(Runs, AResultOfAnotherVersionIsNeitherDamagedNorThrownAway) {
       EXPECT_THAT(error.what(),
                   testing::HasSubstr("run/cases/2.json: is a result of version 1 (this gladstone reads version 2)"));
       EXPECT_THAT(error.what(),
-                  testing::HasSubstr("remove " + in("run/cases") + "/*.json to compute every case again"));
+                  testing::HasSubstr("delete " + in("run/cases") + "/*.json to compute every case again"));
     }
   }
   EXPECT_EQ(content("run/cases/2.json"), older);
