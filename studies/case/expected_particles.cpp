@@ -51,7 +51,7 @@ double lit_thickness(PivSetup const& piv, Pose<double> const& sheet) {
 }
 
 /// Returns the photons through the lens from particles of these diameters at one point of the sheet.
-std::vector<double> photons_of(Scene& scene, Vec3d place, std::vector<double> const& diameters) {
+std::vector<double> photons_of(Scene scene, Vec3d place, std::vector<double> const& diameters) {
   PivSetup const& piv = *scene.setup.piv;
   LaserSheet<double> const sheet = laser_sheet(piv.laser);
   scene.particles.resize(diameters.size());
@@ -93,7 +93,7 @@ double visible_electrons(NoiseSetup const& noise) {
   return (k2 + std::sqrt(k2 * k2 + 4 * k2 * dark)) / 2;
 }
 
-double smallest_visible(Scene& scene, Vec3d place, double electrons_per_photon) {
+double smallest_visible(Scene const& scene, Vec3d place, double electrons_per_photon) {
   std::vector<double> diameters;
   double const decades = std::log10(largest_tried / smallest_tried);
   for (int i = 0; i <= decades * sizes_a_decade; ++i) {

@@ -15,7 +15,7 @@ using Clock = std::chrono::steady_clock;
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 /// Seconds that images and truth of a scene take on that many threads, ray by ray; no theory.
-double seconds_to_render(Scene& scene, int threads, RenderImages images = RenderImages::yes) {
+double seconds_to_render(Scene const& scene, int threads, RenderImages images = RenderImages::yes) {
   set_thread_count(threads);
   auto const start = Clock::now();
   Rendering const rendering = RaysRenderer().render(scene, scene.dots, images, RenderTheory::no);
@@ -26,7 +26,8 @@ double seconds_to_render(Scene& scene, int threads, RenderImages images = Render
 }
 
 /// One run of the renderer is one iteration; a ray goes through both frames.
-void report_rendering(benchmark::State& state, Scene& scene, int threads, RenderImages images = RenderImages::yes) {
+void report_rendering(benchmark::State& state, Scene const& scene, int threads,
+                      RenderImages images = RenderImages::yes) {
   Progress::enable(false);
   double fastest = 1e300;
   for (auto _ : state) {

@@ -40,7 +40,8 @@ Scene scene_with_particles(Setup const& setup, std::vector<Vec3d> const& first, 
   return scene;
 }
 
-Rendering render(Scene& scene, ParticleLight light = ParticleLight::scattered, RenderImages images = RenderImages::no) {
+Rendering render(Scene const& scene, ParticleLight light = ParticleLight::scattered,
+                 RenderImages images = RenderImages::no) {
   return RaysRenderer().render_particles(scene, scene.particles, light, images);
 }
 

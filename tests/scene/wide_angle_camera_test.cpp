@@ -147,7 +147,7 @@ TEST(WideAngleRendering, ShowsDotsAtTheRimOfTheField) {
 }
 
 /// Renders dots of one size at the listed angles from the axis, with 4096 rays each.
-Rendering render_dots(Scene& scene, std::vector<double> const& degrees, double half_size) {
+Rendering render_dots(Scene scene, std::vector<double> const& degrees, double half_size) {
   scene.dots.centre.clear();
   for (double const angle : degrees) {
     Vec3d const point = point_at(angle, 0.25 * pi);

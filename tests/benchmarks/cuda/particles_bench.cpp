@@ -40,7 +40,7 @@ Scene droplets_scene(Setup const& setup, std::uint64_t rays) {
 }
 
 /// Renders a pair again and again, and says how many rays particles take. @return the median time [s]
-double seconds_a_pair(benchmark::State& state, Scene& scene, RenderImages images) {
+double seconds_a_pair(benchmark::State& state, Scene const& scene, RenderImages images) {
   auto const renderer = cuda::make_rays_renderer();
   Rendering const first = renderer->render_particles(scene, scene.particles, ParticleLight::scattered, images);
   std::vector<std::int64_t> const& rays = first.truth.rays_planned;
