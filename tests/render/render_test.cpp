@@ -12,8 +12,9 @@
 namespace gladstone {
 namespace {
 
-// A scene is rendered with the rooms of render/ alone. Its wave is weak: small-angle theory (Eq. 9) differs by the square
-// of the displacements, by 4e-3 px at 2.5 times the amplitude and thus by 7e-4 px here; truth by rays adds 1e-3 px.
+// A scene is rendered with the rooms of render/ alone. Its wave is weak: small-angle theory (Eq. 9) differs by the
+// square of the displacements, by 4e-3 px at 2.5 times the amplitude and thus by 7e-4 px here; truth by rays adds 1e-3
+// px.
 TEST(Render, ChoosesStepAndMethodOfAScene) {
   auto setup = table1_setup(64);
   setup.medium.field = sinusoid(0.02, 4e-3);
