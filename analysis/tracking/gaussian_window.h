@@ -1,0 +1,39 @@
+#pragma once
+
+#include <span>
+
+#include "render/base/displacement_field.h"
+
+namespace gladstone::tracking {
+
+/// Order of the polynomial that is fitted under the window. The weighted mean is biased by a gradient where the vectors
+/// are not symmetric about the point; the plane reproduces linear fields, at 10 to 20 % more noise inside the field.
+enum class WindowOrder { mean, plane };
+
+/// Settings of the adaptive Gaussian window.
+struct GaussianWindow {
+  WindowOrder order = WindowOrder::plane;
+  double width_over_spacing = 1.24;  ///< H over the local spacing of the vectors [1]
+  double farthest_over_spacing = 2;  ///< largest distance of the nearest vector over the mean spacing [1]
+};
+
+/// Interpolates scattered vectors by the adaptive Gaussian window of Agui & Jimenez, J. Fluid Mech. 185 (1987) 447: the
+/// weight of a vector at the distance r is exp(-r^2 / H^2) with H = 1.24 times the spacing of the vectors. The spacing
+/// is local: the root of the area per vector within the circle of the eight nearest vectors. A plane instead of the
+/// weighted mean is an addition to the source.
+/// @param vectors  vectors that do not count (DisplacementField::counts()) are ignored
+/// @param points   [px]
+/// @return one vector per point, in their order. sigma_px is propagated from that of the vectors, as independent
+/// errors; it does not contain the smoothing of the displacement. A point without a vector near it
+/// (farthest_over_spacing), or that is not finite, has status invalid and NaN.
+DisplacementField interpolate_vectors(DisplacementField const& vectors, std::span<Vec2d const> points,
+                                      GaussianWindow const& window = {});
+
+/// Interpolates scattered vectors onto a regular grid, stored row by row.
+/// @param first_px  position of the first node [px]
+/// @param step_px   distance of the nodes along both axes [px]
+/// @pre columns > 0, rows > 0, step_px > 0
+DisplacementField grid_vectors(DisplacementField const& vectors, int columns, int rows, Vec2d first_px, double step_px,
+                               GaussianWindow const& window = {});
+
+}  // namespace gladstone::tracking
