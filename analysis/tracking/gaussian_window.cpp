@@ -13,7 +13,9 @@
 namespace gladstone::tracking {
 namespace {
 
-constexpr std::size_t local_count = 8;    // vectors that determine the local spacing
+constexpr std::size_t local_count = 8;                // vectors that determine the local spacing
+constexpr double mean_width = 1.24, plane_width = 2;  // of the windows, over the spacing
+constexpr double per_root_pi = 0.56418958354775628695;
 constexpr double weight_reach = 2.5;      // radius of the window in widths; the weight there is 0.002
 constexpr double most_amplification = 2;  // largest sum of squared weights of a plane, over that of the mean
 
@@ -30,11 +32,11 @@ Weighted weights_at(Vec2d point, std::span<Vec2d const> positions, NearestPoints
   std::vector<std::size_t> const local = cells.nearest(point, local_count, everything);
   if (local.empty()) return result;
   double const nearest = length(positions[local.front()] - point);
-  if (!(nearest <= window.farthest_over_spacing * cells.spacing())) return result;
+  if (!(nearest <= window.farthest_over_spacing * cells.spacing() * per_root_pi)) return result;
   double const farthest = length(positions[local.back()] - point);
-  double const spacing =
-      std::max(farthest * std::sqrt(3.14159265358979323846 / static_cast<double>(local.size())), 1e-9);
-  double const width = window.width_over_spacing * spacing;
+  double const spacing = std::max(farthest / std::sqrt(static_cast<double>(local.size())), 1e-9);
+  double const ratio = window.order == WindowOrder::mean ? mean_width : plane_width;
+  double const width = (window.width_over_spacing > 0 ? window.width_over_spacing : ratio) * spacing;
   result.index = cells.within(point, std::max(weight_reach * width, 1.0001 * nearest));
   auto const count = static_cast<Eigen::Index>(result.index.size());
   Eigen::MatrixXd terms(count, 3);
@@ -61,7 +63,7 @@ Weighted weights_at(Vec2d point, std::span<Vec2d const> positions, NearestPoints
 
 DisplacementField interpolate_vectors(DisplacementField const& vectors, std::span<Vec2d const> points,
                                       GaussianWindow const& window) {
-  GLADSTONE_EXPECTS(window.width_over_spacing > 0);
+  GLADSTONE_EXPECTS(window.width_over_spacing >= 0);
   std::vector<Vec2d> positions, values, sigmas;
   for (std::size_t i = 0; i < vectors.size(); ++i) {
     if (!vectors.counts(i) || !is_finite(vectors.position_px[i]) || !is_finite(vectors.displacement_px[i])) continue;

@@ -9,19 +9,19 @@
 namespace gladstone::tracking {
 namespace {
 
-constexpr double side = 400, omega = 0.05;
+constexpr double extent = 400, omega = 0.05;
 
 /// Particles in solid-body rotation about the centre, by `omega` per frame, plus noise of 0.05 px; particle k has index
 /// k in every frame.
 std::vector<std::vector<Vec2d>> rotating_frames(std::size_t count, std::size_t frames) {
   KeyedEngine random(4, RandomStream::particles, 0);
-  std::vector<Vec2d> const places = test::random_places(count, side, 0, random);
+  std::vector<Vec2d> const places = test::random_places(count, extent, 0, random);
   std::vector<std::vector<Vec2d>> sequence(frames);
   for (std::size_t n = 0; n < frames; ++n)
     for (Vec2d const p : places) {
-      double const x = p.x - side / 2, y = p.y - side / 2, c = std::cos(omega * static_cast<double>(n));
+      double const x = p.x - extent / 2, y = p.y - extent / 2, c = std::cos(omega * static_cast<double>(n));
       double const s = std::sin(omega * static_cast<double>(n));
-      sequence[n].push_back(Vec2d{side / 2 + c * x - s * y, side / 2 + s * x + c * y} +
+      sequence[n].push_back(Vec2d{extent / 2 + c * x - s * y, extent / 2 + s * x + c * y} +
                             0.05 * Vec2d{normal_variate(random), normal_variate(random)});
     }
   return sequence;
@@ -45,16 +45,16 @@ Links links_of(std::vector<Track> const& tracks, std::size_t count, std::size_t 
 // Displacements of up to 14 px. The spacing falls from 20 to 8 px; the prediction by the flow field, in error by 10 %,
 // is needed for the first step of each track only.
 TEST(ParticleTracks, FollowParticlesThroughARotation) {
-  auto const predict = [](Vec2d p) { return 0.9 * omega * Vec2d{-(p.y - side / 2), p.x - side / 2}; };
+  auto const predict = [](Vec2d p) { return 0.9 * omega * Vec2d{-(p.y - extent / 2), p.x - extent / 2}; };
   std::printf("   spacing   displacement/spacing   right links   found links\n");
   for (double const spacing : {20.0, 12.0, 8.0}) {
-    auto const count = static_cast<std::size_t>(side * side / (spacing * spacing));
+    auto const count = static_cast<std::size_t>(extent * extent / (spacing * spacing));
     auto const frames = rotating_frames(count, 8);
     TrackSettings settings;
     settings.search_radius_px = 2;
     settings.start_radius_px = 3;
     Links const links = links_of(track_particles(frames, predict, settings), count, 8);
-    std::printf("%8.1f %14.2f %20.4f %12.4f\n", spacing, 0.38 * omega * side / spacing, links.right, links.found);
+    std::printf("%8.1f %14.2f %20.4f %12.4f\n", spacing, 0.38 * omega * extent / spacing, links.right, links.found);
     EXPECT_GT(links.right, 0.98) << spacing;
     EXPECT_GT(links.found, 0.96) << spacing;
   }
