@@ -13,6 +13,7 @@ namespace {
 
 constexpr std::size_t supporters = 12;       // neighbours that support a displacement
 constexpr std::size_t least_supporters = 3;  // fewer neighbours do not identify a displacement
+constexpr int most_rounds = 5;               // repeated predictions from certain matches
 constexpr double alias_range = 1.5;          // range of alternatives beyond the search radius [spacings]
 
 /// Round of the matching: prediction, and lengths in px.
@@ -36,46 +37,42 @@ class DotMatcher {
 
   std::vector<DotMatch> run(std::span<Vec2d const> prediction) const {
     double const spacing = cells_a_.spacing(), bound = settings_.displacement_bound_px;
-    Round round;
-    for (std::size_t i = 0; i < a_.size(); ++i)
-      round.prediction.push_back(!prediction.empty() && is_finite(prediction[i]) ? prediction[i] : Vec2d{});
-    std::vector<Vec2d> const given = round.prediction;
+    std::vector<Vec2d> given(a_.size());
+    for (std::size_t i = 0; i < prediction.size(); ++i)
+      if (is_finite(prediction[i])) given[i] = prediction[i];
     double const radius = settings_.search_radius_px > 0 ? settings_.search_radius_px : 0.75 * spacing;
-    round.radius = std::min(radius, bound);
-    round.range = std::min(radius + alias_range * spacing, bound);
-    round.tolerance = settings_.tolerance_px > 0 ? settings_.tolerance_px : 0.15 * spacing;
+    double const tolerance = settings_.tolerance_px > 0 ? settings_.tolerance_px : 0.15 * spacing;
+    Round round{given, std::min(radius, bound), std::min(radius + alias_range * spacing, bound), tolerance};
     std::vector<DotMatch> matches = match(round);
 
-    // Predict again from the certain matches. A dot without certain neighbours keeps its match.
-    DisplacementField certain;
-    for (std::size_t i = 0; i < a_.size(); ++i) {
-      if (matches[i].status != MatchStatus::matched) continue;
-      certain.position_px.push_back(a_[i]);
-      certain.displacement_px.push_back(b_[matches[i].partner] - a_[i]);
+    // Predict again from the certain matches, which spread from where the prediction is good.
+    for (int repeat = 0; repeat < most_rounds; ++repeat) {
+      std::size_t const before = count_certain(matches);
+      if (before <= least_supporters) return matches;
+      std::vector<char> const outliers =
+          find_outliers(a_, deviations(matches, predicted(matches, {}, given)), settings_.outliers);
+      round.prediction = predicted(matches, outliers, given);
+      round.tolerance = 0.5 * tolerance;
+      matches = match(round);
+      for (std::size_t i = 0; i < a_.size(); ++i)  // the search radius refers to the given prediction
+        if (matches[i].status == MatchStatus::matched &&
+            !(length(b_[matches[i].partner] - a_[i] - given[i]) <= round.radius))
+          matches[i].status = MatchStatus::unmatched;
+      if (static_cast<double>(count_certain(matches)) < 1.01 * static_cast<double>(before)) break;
     }
-    if (certain.size() < least_supporters + 1) return matches;
-    DisplacementField const refined = interpolate_vectors(certain, a_);
-    std::vector<char> const outliers =
-        find_outliers(a_, deviations(matches, refined.displacement_px), settings_.outliers);
-    certain = without_outliers(matches, outliers);
-    DisplacementField const cleaned = interpolate_vectors(certain, a_);
+    resolve_close_pairs(matches, round);
+    std::vector<char> const outliers = find_outliers(a_, deviations(matches, round.prediction), settings_.outliers);
     for (std::size_t i = 0; i < a_.size(); ++i)
-      if (cleaned.counts(i)) round.prediction[i] = cleaned.displacement_px[i];
-    round.tolerance *= 0.5;
-    std::vector<DotMatch> second = match(round);
-    for (std::size_t i = 0; i < a_.size(); ++i) {
-      // The search radius refers to the given prediction.
-      bool const far = second[i].status == MatchStatus::matched &&
-                       !(length(b_[second[i].partner] - a_[i] - given[i]) <= round.radius);
-      if (far) second[i].status = MatchStatus::unmatched;
-    }
-    std::vector<char> const wrong = find_outliers(a_, deviations(second, round.prediction), settings_.outliers);
-    for (std::size_t i = 0; i < a_.size(); ++i)
-      if (wrong[i]) second[i].status = MatchStatus::outlier;
-    return second;
+      if (outliers[i]) matches[i].status = MatchStatus::outlier;
+    return matches;
   }
 
  private:
+  static std::size_t count_certain(std::vector<DotMatch> const& matches) {
+    return static_cast<std::size_t>(std::count_if(
+        matches.begin(), matches.end(), [](DotMatch const& match) { return match.status == MatchStatus::matched; }));
+  }
+
   /// Returns displacements minus a prediction; NaN without a certain match.
   std::vector<Vec2d> deviations(std::vector<DotMatch> const& matches, std::vector<Vec2d> const& prediction) const {
     std::vector<Vec2d> values(a_.size(), Vec2d{not_a_number, not_a_number});
@@ -84,14 +81,42 @@ class DotMatcher {
     return values;
   }
 
-  DisplacementField without_outliers(std::vector<DotMatch> const& matches, std::vector<char> const& outliers) const {
-    DisplacementField field;
+  /// Interpolates the certain matches that are no outliers; far from them, returns the given prediction.
+  std::vector<Vec2d> predicted(std::vector<DotMatch> const& matches, std::vector<char> const& outliers,
+                               std::vector<Vec2d> prediction) const {
+    DisplacementField certain;
     for (std::size_t i = 0; i < a_.size(); ++i) {
-      if (matches[i].status != MatchStatus::matched || outliers[i]) continue;
-      field.position_px.push_back(a_[i]);
-      field.displacement_px.push_back(b_[matches[i].partner] - a_[i]);
+      if (matches[i].status != MatchStatus::matched || (!outliers.empty() && outliers[i])) continue;
+      certain.position_px.push_back(a_[i]);
+      certain.displacement_px.push_back(b_[matches[i].partner] - a_[i]);
     }
-    return field;
+    DisplacementField const refined = interpolate_vectors(certain, a_);
+    for (std::size_t i = 0; i < a_.size(); ++i)
+      if (refined.counts(i)) prediction[i] = refined.displacement_px[i];
+    return prediction;
+  }
+
+  /// Distinguishes candidates closer to each other than the tolerance by a smaller tolerance: three times the median
+  /// deviation of the certain matches from their prediction.
+  void resolve_close_pairs(std::vector<DotMatch>& matches, Round round) const {
+    std::vector<double> sizes;
+    std::vector<char> taken(b_.size());
+    for (std::size_t i = 0; i < a_.size(); ++i) {
+      if (matches[i].status != MatchStatus::matched) continue;
+      sizes.push_back(length(b_[matches[i].partner] - a_[i] - round.prediction[i]));
+      taken[matches[i].partner] = 1;
+    }
+    if (sizes.empty()) return;
+    auto const middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+    std::nth_element(sizes.begin(), middle, sizes.end());
+    round.tolerance = std::clamp(3 * *middle, 0.01 * cells_a_.spacing(), round.tolerance);
+    std::vector<DotMatch> const closer = match(round);
+    for (std::size_t i = 0; i < a_.size(); ++i) {
+      bool const resolved = matches[i].status == MatchStatus::ambiguous && closer[i].status == MatchStatus::matched;
+      if (!resolved || taken[closer[i].partner]) continue;
+      matches[i] = closer[i];
+      taken[closer[i].partner] = 1;
+    }
   }
 
   /// Returns the share of the neighbours of dot i that have a partner at the same deviation from the prediction.

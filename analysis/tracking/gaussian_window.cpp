@@ -14,6 +14,7 @@ namespace gladstone::tracking {
 namespace {
 
 constexpr std::size_t local_count = 8;                // vectors that determine the local spacing
+constexpr double local_reach = 30;                    // largest distance of those vectors, in mean spacings
 constexpr double mean_width = 1.24, plane_width = 2;  // of the windows, over the spacing
 constexpr double per_root_pi = 0.56418958354775628695;
 constexpr double weight_reach = 2.5;      // radius of the window in widths; the weight there is 0.002
@@ -28,8 +29,7 @@ struct Weighted {
 Weighted weights_at(Vec2d point, std::span<Vec2d const> positions, NearestPoints const& cells,
                     GaussianWindow const& window) {
   Weighted result;
-  double const everything = cells.radius_of_all(point);
-  std::vector<std::size_t> const local = cells.nearest(point, local_count, everything);
+  std::vector<std::size_t> const local = cells.nearest(point, local_count, local_reach * cells.spacing());
   if (local.empty()) return result;
   double const nearest = length(positions[local.front()] - point);
   if (!(nearest <= window.farthest_over_spacing * cells.spacing() * per_root_pi)) return result;

@@ -58,14 +58,6 @@ class NearestPoints {
     return nearest2 <= radius * radius ? std::sqrt(nearest2) : std::numeric_limits<double>::infinity();
   }
 
-  /// Returns a radius around c that contains every point [px].
-  double radius_of_all(Vec2d c) const {
-    double most = 1;
-    for (Vec2d const p : points_)
-      if (is_finite(p)) most = std::max(most, length(p - c));
-    return 1.001 * most;
-  }
-
  private:
   static double mean_spacing(std::span<Vec2d const> points) {
     double const infinity = std::numeric_limits<double>::infinity();
