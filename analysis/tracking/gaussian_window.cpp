@@ -13,30 +13,22 @@
 namespace gladstone::tracking {
 namespace {
 
-constexpr std::size_t local_count = 8;                // vectors that determine the local spacing
-constexpr double local_reach = 30;                    // largest distance of those vectors, in mean spacings
-constexpr double mean_width = 1.24, plane_width = 2;  // of the windows, over the spacing
+constexpr std::size_t local_count = 8;                  // vectors that determine the local spacing
+constexpr double local_reach = 30;                      // largest distance of those vectors, in mean spacings
+constexpr double mean_width = 1.24, plane_width = 1.5;  // of the windows, over the spacing
 constexpr double per_root_pi = 0.56418958354775628695;
-constexpr double weight_reach = 2.5;      // radius of the window in widths; the weight there is 0.002
-constexpr double most_amplification = 2;  // largest sum of squared weights of a plane, over that of the mean
+constexpr double weight_reach = 2.5;  // radius of the window in widths; the weight there is 0.002
+constexpr double widest = 3;          // widest window of a plane, over the usual one
 
 struct Weighted {
   std::vector<std::size_t> index;
   Eigen::VectorXd weight;  ///< sums to one
 };
 
-/// Returns the weights of the vectors around a point.
-Weighted weights_at(Vec2d point, std::span<Vec2d const> positions, NearestPoints const& cells,
-                    GaussianWindow const& window) {
+/// Returns the weights of the vectors under a window of the given width.
+Weighted weights_under(Vec2d point, std::span<Vec2d const> positions, NearestPoints const& cells, double nearest,
+                       double width, WindowOrder order) {
   Weighted result;
-  std::vector<std::size_t> const local = cells.nearest(point, local_count, local_reach * cells.spacing());
-  if (local.empty()) return result;
-  double const nearest = length(positions[local.front()] - point);
-  if (!(nearest <= window.farthest_over_spacing * cells.spacing() * per_root_pi)) return result;
-  double const farthest = length(positions[local.back()] - point);
-  double const spacing = std::max(farthest / std::sqrt(static_cast<double>(local.size())), 1e-9);
-  double const ratio = window.order == WindowOrder::mean ? mean_width : plane_width;
-  double const width = (window.width_over_spacing > 0 ? window.width_over_spacing : ratio) * spacing;
   result.index = cells.within(point, std::max(weight_reach * width, 1.0001 * nearest));
   auto const count = static_cast<Eigen::Index>(result.index.size());
   Eigen::MatrixXd terms(count, 3);
@@ -44,19 +36,38 @@ Weighted weights_at(Vec2d point, std::span<Vec2d const> positions, NearestPoints
   for (Eigen::Index k = 0; k < count; ++k) {
     Vec2d const at = (positions[result.index[static_cast<std::size_t>(k)]] - point) / width;
     terms.row(k) << 1, at.x, at.y;
-    gaussian[k] = std::exp(-dot(at, at) +
-                           dot(point - positions[local.front()], point - positions[local.front()]) / (width * width));
+    // Relative to the nearest vector, so that the weights do not vanish.
+    gaussian[k] = std::exp(nearest * nearest / (width * width) - dot(at, at));
   }
   result.weight = gaussian / gaussian.sum();
-  if (window.order == WindowOrder::mean || count < 4) return result;
+  if (order == WindowOrder::mean) return result;
   Eigen::Matrix3d const normal = terms.transpose() * gaussian.asDiagonal() * terms;
   Eigen::LDLT<Eigen::Matrix3d> const solver(normal);
-  if (solver.info() != Eigen::Success || !(solver.rcond() > 1e-6)) return result;
+  if (count < 4 || solver.info() != Eigen::Success || !(solver.rcond() > 1e-6)) return {};
   Eigen::Vector3d const first = solver.solve(Eigen::Vector3d(1, 0, 0));
-  Eigen::VectorXd const plane = gaussian.asDiagonal() * (terms * first);
-  // Extrapolation amplifies errors; there the weighted mean is better.
-  if (plane.squaredNorm() <= most_amplification * result.weight.squaredNorm()) result.weight = plane;
+  result.weight = gaussian.asDiagonal() * (terms * first);
   return result;
+}
+
+/// Returns the weights of the vectors around a point.
+Weighted weights_at(Vec2d point, std::span<Vec2d const> positions, NearestPoints const& cells,
+                    GaussianWindow const& window) {
+  std::vector<std::size_t> const local = cells.nearest(point, local_count, local_reach * cells.spacing());
+  if (local.empty()) return {};
+  double const nearest = length(positions[local.front()] - point);
+  if (!(nearest <= window.farthest_over_spacing * cells.spacing() * per_root_pi)) return {};
+  double const farthest = length(positions[local.back()] - point);
+  double const spacing = std::max(farthest / std::sqrt(static_cast<double>(local.size())), 1e-9);
+  double const ratio = window.order == WindowOrder::mean ? mean_width : plane_width;
+  double const width = (window.width_over_spacing > 0 ? window.width_over_spacing : ratio) * spacing;
+  if (window.order == WindowOrder::plane) {
+    // A plane that is noisier than a single vector extrapolates: widen the window.
+    for (double wider = width; wider < widest * width; wider *= 1.25) {
+      Weighted const plane = weights_under(point, positions, cells, nearest, wider, WindowOrder::plane);
+      if (!plane.index.empty() && plane.weight.squaredNorm() <= 1) return plane;
+    }
+  }
+  return weights_under(point, positions, cells, nearest, width, WindowOrder::mean);
 }
 
 }  // namespace
