@@ -13,9 +13,8 @@
 namespace gladstone::tracking {
 namespace {
 
-constexpr std::size_t local_count = 8;                  // vectors that determine the local spacing
-constexpr double local_reach = 30;                      // largest distance of those vectors, in mean spacings
-constexpr double mean_width = 1.24, plane_width = 1.5;  // of the windows, over the spacing
+constexpr std::size_t local_count = 8;  // vectors that determine the local spacing
+constexpr double local_reach = 30;      // largest distance of those vectors, in mean spacings
 constexpr double per_root_pi = 0.56418958354775628695;
 constexpr double weight_reach = 2.5;  // radius of the window in widths; the weight there is 0.002
 constexpr double widest = 3;          // widest window of a plane, over the usual one
@@ -58,8 +57,7 @@ Weighted weights_at(Vec2d point, std::span<Vec2d const> positions, NearestPoints
   if (!(nearest <= window.farthest_over_spacing * cells.spacing() * per_root_pi)) return {};
   double const farthest = length(positions[local.back()] - point);
   double const spacing = std::max(farthest / std::sqrt(static_cast<double>(local.size())), 1e-9);
-  double const ratio = window.order == WindowOrder::mean ? mean_width : plane_width;
-  double const width = (window.width_over_spacing > 0 ? window.width_over_spacing : ratio) * spacing;
+  double const width = window.width_over_spacing * spacing;
   if (window.order == WindowOrder::plane) {
     // A plane that is noisier than a single vector extrapolates: widen the window.
     for (double wider = width; wider < widest * width; wider *= 1.25) {
@@ -74,7 +72,7 @@ Weighted weights_at(Vec2d point, std::span<Vec2d const> positions, NearestPoints
 
 DisplacementField interpolate_vectors(DisplacementField const& vectors, std::span<Vec2d const> points,
                                       GaussianWindow const& window) {
-  GLADSTONE_EXPECTS(window.width_over_spacing >= 0);
+  GLADSTONE_EXPECTS(window.width_over_spacing > 0);
   std::vector<Vec2d> positions, values, sigmas;
   for (std::size_t i = 0; i < vectors.size(); ++i) {
     if (!vectors.counts(i) || !is_finite(vectors.position_px[i]) || !is_finite(vectors.displacement_px[i])) continue;

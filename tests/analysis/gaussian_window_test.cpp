@@ -50,10 +50,9 @@ TEST(GaussianWindow, PropagatesTheUncertainty) {
     double const nodes = static_cast<double>(grid.size());
     // 1568 numbers, of which a fifth share half of their vectors: about 3 %
     EXPECT_NEAR(std::sqrt(normalised / (2 * nodes)), 1.0, 0.09);
-    // Weights exp(-r^2/H^2) average 2 pi H^2 count / area = 2 (H / spacing)^2 vectors: 3.1 and 4.5; a plane
-    // through irregular places is noisier than the mean.
-    double const ratio = order == WindowOrder::mean ? 1.24 : 1.5;
-    EXPECT_NEAR(std::sqrt(variance / nodes) / (0.1 / std::sqrt(2 * ratio * ratio)), 1.0, 0.25);
+    // Weights exp(-r^2/H^2) average 2 pi H^2 count / area = 2 (H / spacing)^2 = 3.1 vectors; a plane through irregular
+    // places is noisier than the mean.
+    EXPECT_NEAR(std::sqrt(variance / nodes) / (0.1 / std::sqrt(2 * 1.24 * 1.24)), 1.0, 0.25);
   }
 }
 
