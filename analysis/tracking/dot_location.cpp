@@ -18,9 +18,12 @@ namespace gladstone::tracking {
 namespace {
 
 constexpr std::array<int, 4> additions_per_sweep{0, 4, 4, 0};
-constexpr double closest_px_share = 0.35;    // dots closer than this, in standard deviations, are one dot
-constexpr double least_spread = 0.02;        // of the prior, relative to its mean
-constexpr double least_mismatch = 0.005;     // deviation of real dot images from the Gaussian, relative to their levels
+constexpr double closest_px_share = 0.35;  // dots closer than this, in standard deviations, are one dot
+constexpr double least_spread = 0.02;      // of the prior, relative to its mean
+constexpr double least_mismatch = 0.005;   // deviation of real dot images from the Gaussian, relative to their levels
+// of the detection threshold, as the smallest flux of a fitted dot: its uncertainty contains those of width and
+// background, which are not part of the detection
+constexpr double kept_share = 0.6;
 constexpr std::size_t enough_isolated = 10;  // dots that determine the prior
 
 double middle_of(std::vector<double> values) {
@@ -145,7 +148,12 @@ class FrameFit {
       std::vector<FitPixel> const pixels = pixels_of(start, light);
       if (pixels.size() < start.size() * (3 + shape_parameters(settings_.shape)) + 1) return;
       DotFit const fit = fit_overlapping_dots(pixels, start, model_, settings_.resolve_overlaps ? additions : 0);
-      if (!std::isfinite(fit.cost)) return;
+      if (!std::isfinite(fit.cost)) {
+        // Keep the dots: a later sweep has better starts and a narrower prior.
+        for (GaussianDot const& dot : start)
+          fitted[g].push_back({dot, {not_a_number, not_a_number}, not_a_number, 1, 0});
+        return;
+      }
       if (fit.dots.size() == 1) mismatch[g] = mismatch_of(fit, pixels);
       double const reduced = fit.freedom > 0 ? fit.chi2 / fit.freedom : 1.0;
       double const scale = std::sqrt(std::max(1.0, reduced));
@@ -165,10 +173,13 @@ class FrameFit {
     return c.x > -0.5 && c.y > -0.5 && c.x < raw_.columns() - 0.5 && c.y < raw_.rows() - 0.5;
   }
 
+  /// Returns whether a fit is significant and its size compatible with the other dots. The width of a dot of few pixels
+  /// is uncertain, hence the comparison with the spread over the frame.
   bool valid(LocatedDot const& dot) const {
-    double const typical = model_.prior.mean[0];
-    return inside(dot) && dot.image.flux > settings_.detection_threshold * dot.flux_sigma &&
-           dot.image.xx > 0.25 * typical && dot.image.xx < 4 * typical && is_finite(dot.sigma_px) &&
+    double const typical = model_.prior.mean[0], size = dot.image.xx;
+    bool const usual =
+        (size > 0.25 * typical && size < 4 * typical) || std::abs(size - typical) < 4 * model_.prior.sigma[0];
+    return inside(dot) && usual && dot.image.flux > kept_share * settings_.detection_threshold * dot.flux_sigma &&
            length(dot.sigma_px) < 1;
   }
 
@@ -196,7 +207,7 @@ class FrameFit {
     std::array<std::vector<double>, 3> values;
     std::vector<double> fluxes;
     for (LocatedDot const& dot : located_) {
-      if (dot.group_size != 1 || !(dot.image.flux > 2 * settings_.detection_threshold * dot.flux_sigma)) continue;
+      if (dot.group_size != 1 || !(dot.image.flux > settings_.detection_threshold * dot.flux_sigma)) continue;
       values[0].push_back(dot.image.xx);
       values[1].push_back(dot.image.xy);
       values[2].push_back(dot.image.yy);

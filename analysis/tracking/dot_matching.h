@@ -30,7 +30,7 @@ struct DotMatch {
 struct MatchSettings {
   double search_radius_px = 0;  ///< largest deviation of a displacement from its prediction [px]; 0: 0.75 spacings
   /// Deviation from the prediction that is known not to be exceeded [px]. Without it, displacements beyond the search
-  /// radius count as alternatives, so that a regular pattern remains ambiguous.
+  /// radius count as alternatives, so that a regular pattern remains ambiguous. A wrong bound lets aliases pass.
   double displacement_bound_px = std::numeric_limits<double>::infinity();
   double tolerance_px = 0;        ///< standard deviation of neighbours' displacements [px]; 0: 0.15 spacings
   double least_support = 0.35;    ///< smallest support of a match
@@ -46,9 +46,11 @@ struct MatchSettings {
 /// by exp(-e^2 / (2 tolerance^2)) of its distance e (two-frame relaxation methods: Baek & Lee, Exp. Fluids 22 (1996)
 /// 23; Ohmi & Li, Meas. Sci. Technol. 11 (2000) 603). The candidate with the highest support is the match. A match is
 /// ambiguous if another displacement within the search radius plus 1.5 spacings has nearly the same support: a regular
-/// pattern, which matches itself after a shift by its pitch, is never guessed. Further rounds, with
-/// half the tolerance, predict from the certain matches by an adaptive Gaussian window, until no more matches are
-/// found. Finally, deviations from this prediction are tested against the neighbours (find_outliers()).
+/// pattern, which matches itself after a shift by its pitch, is never guessed.
+///
+/// Further rounds, with half the tolerance, predict from the certain matches by an adaptive Gaussian window, until no
+/// more matches are found. Finally, deviations from this prediction are tested against the neighbours
+/// (find_outliers()). Without a prediction, gradients up to 0.1 px/px are followed.
 /// @param a, b        centres of the dots of frames A and B [px]; for BOS, a may be the known pattern
 /// @param prediction  displacement of each dot of a [px], for example of a correlation (interpolate_vectors()); empty:
 ///                    zero; NaN: zero for this dot

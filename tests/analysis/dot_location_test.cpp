@@ -87,8 +87,9 @@ Accuracy displacement_accuracy(double sigma, double noise_share, DotSettings con
     KeyedEngine random(11, RandomStream::sensor, static_cast<std::uint64_t>(repeat));
     LocatedDots const in_a = locate_dots(test::dot_image(240, a, background + 5 * noise, noise, random), settings);
     LocatedDots const in_b = locate_dots(test::dot_image(240, b, background + 5 * noise, noise, random), settings);
-    EXPECT_EQ(in_a.dots.size(), a.size());
-    EXPECT_EQ(in_b.dots.size(), b.size());
+    // At five standard deviations, noise of 57600 pixels imitates a dot in one of a hundred frames.
+    EXPECT_LE(in_a.dots.size(), a.size() + 1);
+    EXPECT_LE(in_b.dots.size(), b.size() + 1);
     for (std::size_t i = 0; i < a.size(); ++i) {
       int const k = nearest_dot(in_a, a[i].centre, 1), m = nearest_dot(in_b, b[i].centre, 1);
       if (k < 0 || m < 0) continue;
@@ -101,6 +102,7 @@ Accuracy displacement_accuracy(double sigma, double noise_share, DotSettings con
       ++count;
     }
   }
+  EXPECT_EQ(count, 3 * static_cast<int>(a.size()));
   return {std::sqrt(squares / bounds), std::sqrt(normalised / (2 * count))};
 }
 
@@ -218,8 +220,8 @@ TEST(DotLocation, FindsAllDotsOfADensePattern) {
 // 1.5 % within 0.5 px.
 TEST(DotLocation, SeparatesMostOverlappingDotsAtRandomPlaces) {
   Yield const found = yield(0, 0.01, 20);
-  EXPECT_GE(found.found, 0.98);
-  EXPECT_LE(found.strays, 2);
+  EXPECT_GE(found.found, 0.985);
+  EXPECT_LE(found.strays, 8);
   EXPECT_GE(yield(0, 0.05, 20).found, 0.95);
 }
 
