@@ -2,7 +2,7 @@
 
 #include "analysis/tracking/dot_location.h"
 #include "analysis/tracking/dot_matching.h"
-#include "render/base/displacement_field.h"
+#include "analysis/vectors/displacement_field.h"
 
 namespace gladstone::tracking {
 

@@ -2,7 +2,7 @@
 
 #include <span>
 
-#include "render/base/displacement_field.h"
+#include "analysis/vectors/displacement_field.h"
 
 namespace gladstone::tracking {
 

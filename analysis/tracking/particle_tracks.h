@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "render/base/displacement_field.h"
+#include "analysis/vectors/displacement_field.h"
 
 namespace gladstone::tracking {
 
