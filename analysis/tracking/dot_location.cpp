@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <tuple>
 #include <utility>
 
@@ -36,7 +37,9 @@ double middle_of(std::vector<double> values) {
 /// State of the dot location in one frame.
 class FrameFit {
  public:
-  FrameFit(Image<double> const& frame, DotSettings const& settings)
+  /// @param places  approximate centres of all dots [px]; none: found in the frame
+  FrameFit(Image<double> const& frame, DotSettings const& settings,
+           std::optional<std::span<Vec2d const>> places = std::nullopt)
       : settings_(settings), frame_(prepare_dot_frame(frame, settings)), raw_(frame) {
     whole_levels_ = std::all_of(frame.begin(), frame.end(),
                                 [](double level) { return !std::isfinite(level) || level == std::floor(level); });
@@ -48,8 +51,10 @@ class FrameFit {
     double const variance = sigma * sigma;
     double const loose = settings.diameter_px > 0 ? 0.5 * variance : variance;
     model_.prior = {{variance, 0, variance}, {loose, loose, loose}, 0, 0};
-    for (GaussianDot const& dot : find_dot_candidates(frame_, sigma, settings.detection_threshold))
-      located_.push_back({dot, {}, 0, 0, 1});
+    std::vector<GaussianDot> const start =
+        places ? dots_at(*places, variance) : find_dot_candidates(frame_, sigma, settings.detection_threshold);
+    for (GaussianDot const& dot : start) located_.push_back({dot, {}, 0, 0, 1});
+    if (places) settings_.resolve_overlaps = false;
   }
 
   LocatedDots run() {
@@ -79,6 +84,19 @@ class FrameFit {
   }
 
  private:
+  /// Returns dots at the places within the frame, with fluxes estimated from the nearest pixels.
+  std::vector<GaussianDot> dots_at(std::span<Vec2d const> places, double variance) const {
+    std::vector<GaussianDot> dots;
+    for (Vec2d const place : places) {
+      if (!is_finite(place) || !inside(place)) continue;
+      double const level = frame_.above(static_cast<int>(std::lround(place.x)), static_cast<int>(std::lround(place.y)));
+      if (!std::isfinite(level)) continue;
+      double const height = std::max(level, frame_.noise);
+      dots.push_back({place, height * 6.28318530717958647693 * (variance + 1.0 / 12), variance, 0, variance});
+    }
+    return dots;
+  }
+
   double typical_sigma() const { return std::sqrt(model_.prior.mean[0] + 1.0 / 12); }
 
   /// Returns the light of all dots on every pixel.
@@ -163,13 +181,12 @@ class FrameFit {
     located_.clear();
     for (std::vector<LocatedDot> const& group : fitted)
       for (LocatedDot const& dot : group)
-        if (inside(dot)) located_.push_back(dot);
+        if (inside(dot.image.centre)) located_.push_back(dot);
     std::erase_if(mismatch, [](double value) { return !std::isfinite(value); });
     model_.mismatch = std::max(least_mismatch, std::sqrt(std::max(0.0, middle_of(mismatch))));
   }
 
-  bool inside(LocatedDot const& dot) const {
-    Vec2d const c = dot.image.centre;
+  bool inside(Vec2d c) const {
     return c.x > -0.5 && c.y > -0.5 && c.x < raw_.columns() - 0.5 && c.y < raw_.rows() - 0.5;
   }
 
@@ -179,8 +196,8 @@ class FrameFit {
     double const typical = model_.prior.mean[0], size = dot.image.xx;
     bool const usual =
         (size > 0.25 * typical && size < 4 * typical) || std::abs(size - typical) < 4 * model_.prior.sigma[0];
-    return inside(dot) && usual && dot.image.flux > kept_share * settings_.detection_threshold * dot.flux_sigma &&
-           length(dot.sigma_px) < 1;
+    return inside(dot.image.centre) && usual &&
+           dot.image.flux > kept_share * settings_.detection_threshold * dot.flux_sigma && length(dot.sigma_px) < 1;
   }
 
   /// Removes the fainter of two dots at nearly the same place, which two groups have added.
@@ -266,6 +283,11 @@ class FrameFit {
 LocatedDots locate_dots(Image<double> const& frame, DotSettings const& settings) {
   if (frame.columns() < 5 || frame.rows() < 5) return {};
   return FrameFit(frame, settings).run();
+}
+
+LocatedDots locate_dots_near(Image<double> const& frame, DotSettings const& settings, std::span<Vec2d const> places) {
+  if (frame.columns() < 5 || frame.rows() < 5) return {};
+  return FrameFit(frame, settings, places).run();
 }
 
 }  // namespace gladstone::tracking

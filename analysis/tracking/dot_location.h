@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "analysis/tracking/gaussian_dot.h"
@@ -39,5 +40,12 @@ struct LocatedDots {
 /// @return no dots if nothing exceeds the noise or the frame is smaller than 5x5 px
 /// @throws Interrupted
 LocatedDots locate_dots(Image<double> const& frame, DotSettings const& settings);
+
+/// Locates dots near known places, for example those of a printed pattern, instead of searching for maxima and adding
+/// dots where images overlap.
+/// @param places  approximate centres, within about one standard deviation of a dot image [px]; those outside the frame
+///                and those that are not finite are ignored
+/// @return like locate_dots(); places without a significant dot are left out
+LocatedDots locate_dots_near(Image<double> const& frame, DotSettings const& settings, std::span<Vec2d const> places);
 
 }  // namespace gladstone::tracking

@@ -7,6 +7,7 @@
 #include "render/base/contracts.h"
 #include "render/base/error.h"
 #include "render/base/not_a_number.h"
+#include "render/base/point_cells.h"
 
 namespace gladstone::tracking {
 
@@ -44,25 +45,69 @@ DisplacementField matched_vectors(LocatedDots const& a, LocatedDots const& b, st
     field.ambiguous.push_back(match.status == MatchStatus::ambiguous ? Ambiguity::here : Ambiguity::none);
     ambiguous += match.status == MatchStatus::ambiguous ? 1 : 0;
   }
+  if (a.dots.empty() || b.dots.empty())
+    field.warnings.push_back(
+        fmt::format("no dots in frame {} (nothing exceeds the noise by {:g} standard deviations as a dot); check the "
+                    "frames, and correlate.tracking.polarity and diameter_px",
+                    a.dots.empty() ? "A" : "B", DotSettings{}.detection_threshold));
   if (2 * ambiguous > matches.size())
     field.warnings.push_back(
         fmt::format("{} of {} dots have ambiguous displacements (the pattern matches itself after a shift within the "
-                    "search range); "
-                    "use a random pattern, or state a bound of the displacement below half the pitch",
+                    "search range); use a random pattern, or set correlate.tracking.displacement_bound_px below half "
+                    "the pitch if no displacement is larger",
                     ambiguous, matches.size()));
   return field;
 }
+
+namespace {
+
+/// Returns the displacements of a prediction at the given places; empty without vectors.
+std::vector<Vec2d> predict(DisplacementField const& predictor, std::span<Vec2d const> places) {
+  return predictor.size() > 0 ? interpolate_vectors(predictor, places).displacement_px : std::vector<Vec2d>{};
+}
+
+/// Returns where the dots of frame A are expected in frame B: at their partners, or else at their predicted places.
+/// Dots of frame B far from all of these are added; they may have entered the frame.
+std::vector<Vec2d> expected_places(LocatedDots const& a, LocatedDots const& b, std::span<DotMatch const> matches) {
+  std::vector<Vec2d> const centres_a = centres_of(a);
+  std::vector<Vec2d> const displacements = predict(matched_vectors(a, b, matches), centres_a);
+  std::vector<Vec2d> places;
+  for (std::size_t i = 0; i < matches.size(); ++i) {
+    bool const matched = matches[i].status == MatchStatus::matched;
+    Vec2d const place = matched ? b.dots[matches[i].partner].image.centre : centres_a[i] + displacements[i];
+    if (is_finite(place)) places.push_back(place);
+  }
+  double const apart = 0.75 * b.diameter_px;
+  PointCells const cells(places, std::max(apart, 1.0));
+  std::vector<Vec2d> const centres_b = centres_of(b);
+  std::vector<Vec2d> others;
+  for (Vec2d const centre : centres_b) {
+    bool near = false;
+    cells.for_near(centre, apart, [&](std::size_t k) { near = near || length(places[k] - centre) < apart; });
+    if (!near) others.push_back(centre);
+  }
+  places.insert(places.end(), others.begin(), others.end());
+  return places;
+}
+
+}  // namespace
 
 DisplacementField track_dots(Image<double> const& a, Image<double> const& b, DisplacementField const& predictor,
                              TrackingSettings const& settings) {
   if (a.columns() != b.columns() || a.rows() != b.rows())
     throw DataError("frame B", fmt::format("has {}x{} px, but frame A has {}x{} px; give frames of one size",
                                            b.columns(), b.rows(), a.columns(), a.rows()));
-  LocatedDots const dots_a = locate_dots(a, settings.dots), dots_b = locate_dots(b, settings.dots);
-  std::vector<Vec2d> const centres_a = centres_of(dots_a), centres_b = centres_of(dots_b);
-  std::vector<Vec2d> prediction;
-  if (predictor.size() > 0) prediction = interpolate_vectors(predictor, centres_a).displacement_px;
-  return matched_vectors(dots_a, dots_b, match_dots(centres_a, centres_b, prediction, settings.matching));
+  bool const known = !settings.known_places_px.empty();
+  LocatedDots const dots_a =
+      known ? locate_dots_near(a, settings.dots, settings.known_places_px) : locate_dots(a, settings.dots);
+  LocatedDots dots_b = locate_dots(b, settings.dots);
+  std::vector<Vec2d> const centres_a = centres_of(dots_a), prediction = predict(predictor, centres_a);
+  std::vector<DotMatch> matches = match_dots(centres_a, centres_of(dots_b), prediction, settings.matching);
+  if (known) {
+    dots_b = locate_dots_near(b, settings.dots, expected_places(dots_a, dots_b, matches));
+    matches = match_dots(centres_a, centres_of(dots_b), prediction, settings.matching);
+  }
+  return matched_vectors(dots_a, dots_b, matches);
 }
 
 }  // namespace gladstone::tracking

@@ -10,9 +10,17 @@ namespace gladstone::tracking {
 struct TrackingSettings {
   DotSettings dots;
   MatchSettings matching;
+  /// Places of all dots in frame A, for example of the known pattern of a BOS target, within about one standard
+  /// deviation of a dot image [px]; empty: dots are found in the frames.
+  std::vector<Vec2d> known_places_px;
 };
 
 /// Measures the displacement of every dot (BOS) or particle (PIV) between two frames.
+///
+/// With known places, the dots of frame A are fitted there. Those of frame B are first found as without, and then
+/// fitted again: at the places of the matched dots, and at the predicted places of the others. Overlapping images are
+/// thus fitted with the same dots in both frames (prior knowledge of the pattern: Rajendran, Bane & Vlachos, Exp.
+/// Fluids 60 (2019) 162).
 /// @param predictor  displacement field that predicts the displacements, for example of a correlation; vectors that do
 ///                   not count are ignored; without vectors: zero
 /// @return one vector per dot of frame A (see matched_vectors()), with warnings on dots without a valid vector

@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "analysis/tracking/tracking_correlator.h"
 #include "analysis/uncertainty/uncertainty.h"
 #include "cuda/backend.h"
 #include "render/base/error.h"
@@ -26,7 +27,7 @@ std::unique_ptr<Correlator> correlator_on_gpu(CorrelationSettings const& setting
     throw DeviceError(fmt::format("--device cuda: correlate.{} is computed on the CPU alone; use --device auto", left));
   if (!missing_on_gpu(settings).empty()) {
     spdlog::info("correlate.{} is computed on the CPU, {} threads", left, thread_count());
-    return make_correlator(settings);
+    return tracking::make_cpu_correlator(settings);
   }
   spdlog::info("correlate.{} is estimated on the CPU, {} threads", left, thread_count());
   return cuda::make_correlator(settings);
@@ -54,7 +55,7 @@ Device open_device(std::string const& wanted) {
   }
   spdlog::info("device: cpu, {} threads{}", thread_count(), instead);
   return {std::make_unique<SceneRenderer>(std::make_unique<FocusedDotsRenderer>(), std::make_unique<RaysRenderer>()),
-          make_correlator};
+          tracking::make_cpu_correlator};
 }
 
 int gpu_count() { return cuda::device_count(); }
