@@ -8,6 +8,7 @@
 #include <limits>
 #include <random>
 
+#include "analysis/correlation/correlation_methods.h"
 #include "render/base/units.h"
 #include "studies/benchmark/particle_pair.h"
 
