@@ -163,7 +163,8 @@ Comparison compare_case(std::string const& folder, Device const& device, Compare
     PreparedCase const prepared = prepare_case(loaded);
     given = prepared.warnings;
     std::optional<RenderedCase> rendered;
-    if (!vectors.foreign) rendered = render_case(prepared, *device.renderer, RenderTheory::no);
+    bool const again = !vectors.foreign && !vectors.settings.gives_scattered_vectors();
+    if (again) rendered = render_case(prepared, *device.renderer, RenderTheory::no);
     PointTruth point = truth_of_vectors(prepared, *device.renderer, vectors.field.position_px, options.truth_at);
     comparison = compare_vectors(prepared, dots, rendered ? &*rendered : nullptr, std::move(vectors), std::move(point),
                                  device, options.truth_at);

@@ -71,8 +71,6 @@ class TrackedDots : public Workplace {
       if (output == "scattered") {
         EXPECT_EQ(errors["window_truth"]["rms_px"], errors["ray_truth"]["rms_px"]);
       }
-      std::printf("%-9s %4.0f vectors, %4.0f valid, rms %.4f px, coverage %s\n", output.c_str(), vectors, valid, rms,
-                  errors["uncertainty"]["ray_truth"].dump().c_str());
     }
   }
 };
