@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "analysis/calibration/dot_regions.h"
-#include "analysis/calibration/illumination.h"
+#include "analysis/preparation/illumination.h"
 
 namespace gladstone {
 namespace {

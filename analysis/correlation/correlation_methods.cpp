@@ -17,6 +17,7 @@ constexpr std::array rows{
     CorrelationMethod{.name = "opencv", .correlate = correlate_by_opencv, .in_ensembles = false},
     CorrelationMethod{.name = "dis", .optical_flow = dense_inverse_search, .in_ensembles = false},
     CorrelationMethod{.name = "horn_schunck", .optical_flow = horn_schunck_flow, .in_ensembles = false},
+    CorrelationMethod{.name = "tracking", .in_ensembles = false, .tracks_dots = true},
 };
 
 }  // namespace

@@ -29,13 +29,15 @@ std::vector<WindowCorrelation> correlate_mqd(InterrogationJob const& job);
 /// Standard cross-correlation by OpenCV's Fourier transforms in double precision: reference for the faster methods.
 std::vector<WindowCorrelation> correlate_by_opencv(InterrogationJob const& job);
 
-/// Displacement measurement method: either correlation of windows or optical flow.
+/// Displacement measurement method: correlation of windows, optical flow, or tracking of dots.
 struct CorrelationMethod {
   char const* name;
   CorrelateWindows correlate = nullptr;
   EstimateFlow optical_flow = nullptr;  ///< estimator used instead of the correlation of windows
   bool on_gpu = false;                  ///< whether the CUDA correlator supports it
   bool in_ensembles = true;             ///< whether it supports InterrogationJob::ensemble
+  bool tracks_dots = false;  ///< dots are tracked: tracking::make_cpu_correlator() creates the correlator, which
+                             ///< estimates sigma_px itself
 };
 
 /// Returns all methods.

@@ -4,10 +4,27 @@
 
 #include <algorithm>
 
+#include "analysis/correlation/correlation_methods.h"
 #include "analysis/correlation/correlator.h"
 #include "analysis/correlation/subpixel_fit.h"
 
 namespace gladstone {
+namespace {
+
+TrackingTable read_tracking_table(SetupTable table) {
+  TrackingTable tracking;
+  tracking.diameter_px = table.number_or_auto("diameter_px", Range::positive(64.0));
+  tracking.polarity = table.word("polarity", tracking.polarity, {"auto", "bright", "dark"});
+  tracking.shape = table.word("shape", tracking.shape, {"round", "elliptic"});
+  tracking.search_radius_px = table.number_or_auto("search_radius_px", Range::positive(512.0));
+  tracking.displacement_bound_px =
+      table.number_or_word("displacement_bound_px", {{}, "none"}, {"none", "off"}, Range::positive(512.0)).number;
+  tracking.output = table.word("output", tracking.output, {"grid", "scattered"});
+  return tracking;
+}
+
+}  // namespace
+
 CorrelationSettings read_correlation_settings(SetupTable table) {
   CorrelationSettings settings;
   std::vector<long long> const fallback(settings.window_px.begin(), settings.window_px.end());
@@ -47,6 +64,13 @@ CorrelationSettings read_correlation_settings(SetupTable table) {
   settings.least_correlation =
       table.number_or_word("least_correlation", {{}, "off"}, {"off"}, Range::at_least(0.0, 1.0)).number;
   settings.replace = table.boolean("replace", settings.replace);
+  bool const tracks_dots = correlation_method(settings.method).tracks_dots;
+  if (tracks_dots && settings.uncertainty != "none")
+    table.problem(
+        "uncertainty",
+        "conflicts with method = \"tracking\" (which estimates the uncertainty from the fit of each dot); use "
+        "\"none\"");
+  if (tracks_dots || table.has("tracking")) settings.tracking = read_tracking_table(table.table("tracking"));
   settings.preparation = read_frame_preparation(table);
   return settings;
 }

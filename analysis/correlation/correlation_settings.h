@@ -5,9 +5,22 @@
 #include <vector>
 
 #include "analysis/preparation/frame_preparation.h"
+#include "render/base/vec.h"
 #include "render/setup/setup_table.h"
 
 namespace gladstone {
+
+/// Table [correlate.tracking] of a setup: parameters of method = "tracking".
+struct TrackingTable {
+  std::optional<double> diameter_px;  ///< e^-2 diameter of a typical dot image [px]; none: estimated from the frames
+  std::string polarity = "auto";      ///< "bright" or "dark" dots; "auto": that of the largest contrast
+  std::string shape = "round";        ///< dot images: "round" or "elliptic" Gaussians
+  std::optional<double> search_radius_px;       ///< largest deviation from the predicted displacement [px]; none: 0.75
+                                                ///< mean spacings of the dots
+  std::optional<double> displacement_bound_px;  ///< deviation from the prediction that is known not to be exceeded
+                                                ///< [px]; none: aliases beyond the search radius count
+  std::string output = "grid";                  ///< vectors: "grid" of the last pass, or "scattered", one per dot
+};
 
 /// Table [correlate] of a setup: parameters of the displacement measurement.
 struct CorrelationSettings {
@@ -34,7 +47,13 @@ struct CorrelationSettings {
   /// Peak ratio from which a vector of the first pass may deviate from its neighbours, see is_trusted(); none: no
   /// vector may.
   std::optional<double> trusted_peak_ratio = 2.0;
+  TrackingTable tracking;  ///< of method "tracking"
+  /// Known places of the dots of a BOS target in frame A [px], used by method "tracking"; not part of a setup.
+  std::vector<Vec2d> known_dots_px;
   FramePreparation preparation;  ///< preprocessing; correlators expect preprocessed frames
+
+  /// Returns true if vectors are at the dots instead of the grid of the last pass.
+  bool gives_scattered_vectors() const { return method == "tracking" && tracking.output == "scattered"; }
 };
 
 /// Reads the table [correlate]; problems are collected in its document.

@@ -5,6 +5,7 @@
 #include "analysis/correlation/correlation_methods.h"
 #include "analysis/correlation/optical_flow/optical_flow_correlator.h"
 #include "analysis/correlation/standard_correlator.h"
+#include "render/base/contracts.h"
 
 namespace gladstone {
 std::vector<std::string> correlation_methods() {
@@ -15,6 +16,7 @@ std::vector<std::string> correlation_methods() {
 
 std::unique_ptr<Correlator> make_correlator(CorrelationSettings const& settings) {
   CorrelationMethod const& method = correlation_method(settings.method);
+  GLADSTONE_EXPECTS(!method.tracks_dots);
   return method.optical_flow ? make_optical_flow_correlator(settings, method.optical_flow)
                              : make_standard_correlator(settings);
 }

@@ -20,8 +20,9 @@ class Correlator {
   /// @param reference, flow  grey levels of frame A and frame B, of equal size; pixels that are not finite are masked
   /// @return one vector per window of final_grid(), in px: u to the right, v downwards, at the mid-position between the
   /// frames; NaN if its status is masked (more than half of the window is unknown) or invalid (no signal, or spurious
-  /// and not replaced). sigma_px is empty unless the correlator's device estimates it together with the vectors. The
-  /// result is bitwise the same for any number of threads.
+  /// and not replaced). Tracking with output "scattered" returns one vector per dot instead. sigma_px is empty unless
+  /// the correlator's device or method estimates it together with the vectors; the verdict is empty unless the
+  /// correlator has performed the decorrelation test itself. The result is bitwise the same for any number of threads.
   /// @throws DataError if the sizes differ or a window does not fit into the image; Interrupted
   virtual DisplacementField correlate(Image<double> const& reference, Image<double> const& flow) const = 0;
   /// Like correlate(), for frames in host or device memory. Frames on the correlator's own device are not copied to the
@@ -34,7 +35,8 @@ class Correlator {
 /// Returns the names accepted as CorrelationSettings::method.
 std::vector<std::string> correlation_methods();
 
-/// Creates the correlator for the CPU that the settings select. @pre settings.method is one of correlation_methods()
+/// Creates the correlator for the CPU that the settings select.
+/// @pre settings.method is one of correlation_methods(), but not "tracking" (see tracking::make_cpu_correlator())
 std::unique_ptr<Correlator> make_correlator(CorrelationSettings const& settings);
 
 /// Returns the first setting that the CUDA correlator does not support, such as `method = "spc"`; empty if it supports

@@ -294,6 +294,7 @@ bool same_picture(Image<double> const& a, Image<double> const& b) {
 
 void judge_pair(DisplacementField& field, FramePair const& frames, Correlator const& correlator,
                 CorrelationSettings const& settings) {
+  if (!field.verdict.empty()) return;
   name_windows_outside(field, frames, settings);
   judge(field,
         {[&] { return same_picture(frames.reference(), frames.flow()); },

@@ -28,6 +28,7 @@ void leave_out_chance(DisplacementField& field, DisplacementField const& chance,
 ///   masked, a periodic pattern, optical flow, too few windows, a disabled median test, or no vector that passed its
 ///   tests.
 /// - Masked windows outside the frames are first marked by name_windows_outside().
+/// - Does nothing if the correlator has set a verdict itself.
 /// @param field  result of the correlator for these frames
 /// @throws the exceptions of Correlator::correlate()
 void judge_pair(DisplacementField& field, FramePair const& frames, Correlator const& correlator,

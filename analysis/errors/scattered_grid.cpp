@@ -5,10 +5,10 @@
 #include <limits>
 #include <vector>
 
-#include "analysis/errors/point_cells.h"
 #include "render/base/contracts.h"
 #include "render/base/not_a_number.h"
 #include "render/base/parallel.h"
+#include "render/base/point_cells.h"
 
 namespace gladstone {
 namespace {

@@ -3,10 +3,10 @@
 #include <atomic>
 #include <cmath>
 
-#include "analysis/errors/point_cells.h"
 #include "render/base/contracts.h"
 #include "render/base/not_a_number.h"
 #include "render/base/parallel.h"
+#include "render/base/point_cells.h"
 
 namespace gladstone {
 

@@ -96,7 +96,7 @@ bool uncertainty_on_gpu(std::string const& method) {
 }
 
 void estimate_uncertainty(DisplacementField& field, FramePair const& frames, CorrelationSettings const& settings) {
-  if (settings.uncertainty == "none") return;
+  if (settings.uncertainty == "none" || correlation_method(settings.method).tracks_dots) return;
   InterrogationGrid const grid = final_grid(settings, frames.reference().columns(), frames.reference().rows());
   GLADSTONE_EXPECTS(grid.size() == field.size());
   ImagePair const matched = matched_frames(field, grid, frames, CorrelationSchedule(settings));

@@ -60,8 +60,8 @@ bool uncertainty_on_gpu(std::string const& method);
 /// warning.
 std::string uncertainty_caveat(CorrelationSettings const& settings);
 
-/// Estimates field.sigma_px by settings.uncertainty; does nothing for "none". Vectors whose status is not valid get
-/// NaN: replaced vectors were not measured in their own window.
+/// Estimates field.sigma_px by settings.uncertainty; does nothing for "none" and for tracked dots. Vectors whose status
+/// is not valid get NaN: replaced vectors were not measured in their own window.
 /// @param field  result of a correlator for these frames and settings
 void estimate_uncertainty(DisplacementField& field, FramePair const& frames, CorrelationSettings const& settings);
 

@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "analysis/tracking/tracking_correlator.h"
 #include "analysis/uncertainty/uncertainty.h"
 #include "cuda/backend.h"
 #include "render/base/error.h"
@@ -24,7 +25,7 @@ std::unique_ptr<Correlator> correlator_on_gpu(CorrelationSettings const& setting
     throw DeviceError(fmt::format("--device cuda: correlate.{} is computed on the CPU alone; use --device auto", left));
   if (!missing_on_gpu(settings).empty()) {
     spdlog::info("correlate.{} is computed on the CPU, {} threads", left, thread_count());
-    return make_correlator(settings);
+    return tracking::make_cpu_correlator(settings);
   }
   spdlog::info("correlate.{} is estimated on the CPU, {} threads", left, thread_count());
   return cuda::make_correlator(settings);
@@ -51,7 +52,7 @@ Backend open_device(std::string const& wanted) {
     instead = " (" + state.text + ")";
   }
   spdlog::info("device: cpu, {} threads{}", thread_count(), instead);
-  return {std::make_unique<Device>(cpu()), make_correlator};
+  return {std::make_unique<Device>(cpu()), tracking::make_cpu_correlator};
 }
 
 int gpu_count() { return cuda::device_count(); }

@@ -7,6 +7,7 @@
 #include <limits>
 #include <optional>
 
+#include "analysis/correlation/correlation_methods.h"
 #include "analysis/correlation/standard_correlator.h"
 #include "analysis/errors/deformed_window_truth.h"
 #include "render/base/error.h"
@@ -23,6 +24,7 @@
 #include "studies/compare/particle_points.h"
 #include "studies/compare/stored_comparison.h"
 #include "studies/compare/thinned_vectors.h"
+#include "studies/compare/tracked_dots.h"
 
 namespace gladstone {
 namespace {
@@ -159,7 +161,8 @@ Comparison compare_case(std::string const& folder, Backend const& device, Compar
     PreparedCase const prepared = prepare_case(loaded);
     given = prepared.warnings;
     std::optional<RenderedCase> rendered;
-    if (!vectors.foreign) rendered = render_case(prepared, *device.renderer, RenderTheory::no);
+    bool const again = !vectors.foreign && !vectors.settings.gives_scattered_vectors();
+    if (again) rendered = render_case(prepared, *device.renderer, RenderTheory::no);
     PointTruth point = truth_of_vectors(prepared, *device.renderer, vectors.field.position_px, options.truth_at);
     comparison = compare_vectors(prepared, dots, rendered ? &*rendered : nullptr, std::move(vectors), std::move(point),
                                  device, options.truth_at);
@@ -185,15 +188,25 @@ Comparison compare_vectors(PreparedCase const& prepared, GroundTruth const& dots
   CorrelationSettings const& settings = vectors.settings;
   CameraSetup const& camera = prepared.scene.setup.camera;
   std::vector<double> const flux = correlation_flux(dots);
-  comparison.window = window_truth(dots.reference_px, dots.displacement_px, flux, measured.position_px,
-                                   correlation_window(window_weighting(settings), settings.window_px.back()), at);
-  comparison.deformed_window = deformed_window_truth(dots.reference_px, dots.displacement_px, flux,
-                                                     measured.position_px, settings, camera.columns, camera.rows, at);
-  comparison.frames_deformed = settings.window_px.size() > 1 || settings.final_passes > 1;
-  if (rendered) {
+  bool const tracked = correlation_method(settings.method).tracks_dots;
+  if (tracked) {
+    comparison.window =
+        tracked_truth(dots, flux, camera, comparison.point.displacement_px, measured.position_px, settings, at);
+    comparison.deformed_window = comparison.window;
+  } else {
+    comparison.window = window_truth(dots.reference_px, dots.displacement_px, flux, measured.position_px,
+                                     correlation_window(window_weighting(settings), settings.window_px.back()), at);
+    comparison.deformed_window = deformed_window_truth(dots.reference_px, dots.displacement_px, flux,
+                                                       measured.position_px, settings, camera.columns, camera.rows, at);
+  }
+  comparison.frames_deformed = !tracked && (settings.window_px.size() > 1 || settings.final_passes > 1);
+  if (rendered && !settings.gives_scattered_vectors()) {  // other dots may be found in noise-free images
     Detector const detector(prepared.scene.setup.camera, rendered->exposure_e);
-    DisplacementField again = every_nth(
-        correlate_frames(*rendered->rendering->in_place->ideal(detector), settings, device).field, vectors.every);
+    DisplacementField again =
+        every_nth(correlate_frames(*rendered->rendering->in_place->ideal(detector),
+                                   with_known_dots(settings, prepared.scene.setup, dots.reference_px), device)
+                      .field,
+                  vectors.every);
     if (again.size() == measured.size()) comparison.noise_free = std::move(again.displacement_px);
   }
 

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <filesystem>
 
+#include "analysis/correlation/correlation_methods.h"
 #include "analysis/correlation/correlator.h"
 #include "analysis/correlation/ensemble.h"
 #include "analysis/correlation/pair_verdict.h"
@@ -19,6 +20,8 @@
 #include "render/setup/setup_table.h"
 #include "studies/case/case.h"
 #include "studies/case/peak_locking.h"
+#include "studies/case/truth_file.h"
+#include "studies/compare/tracked_dots.h"
 
 namespace gladstone {
 namespace {
@@ -43,6 +46,18 @@ CorrelationFile read_document(SetupDocument document, std::vector<std::string> c
   document.finish();
   file.resolved = document.resolved();
   return file;
+}
+
+/// Adds the known dots of a BOS case to settings of dot tracking, if its truth belongs to the reference image.
+CorrelationSettings with_dots_of_case(CorrelationSettings const& settings, Setup const& setup,
+                                      std::string const& folder, SourceFiles& sources) {
+  std::string const truth = in_case(folder, case_file::truth);
+  std::error_code error;
+  if (!correlation_method(settings.method).tracks_dots || setup.piv || !std::filesystem::exists(truth, error))
+    return settings;
+  if (Hdf5Reader(truth).attribute("reference_sha256") != sources.sha256("reference")) return settings;
+  sources.add("", truth, SourceFiles::Holds::bytes);
+  return with_known_dots(settings, setup, read_truth(truth).reference_px);
 }
 
 /// Non-owning pair of frames.
@@ -240,7 +255,8 @@ Measurement correlate_case(std::string const& folder, std::string const& output,
   Image<double> const reference_frame = read_frame(reference, "reference", sources);
   Image<double> const flow_frame = read_frame(flow, "flow", sources);
   add_preparation(settings, sources);
-  Measurement measurement = correlate_frames(reference, reference_frame, flow, flow_frame, settings, device);
+  Measurement measurement = correlate_frames(reference, reference_frame, flow, flow_frame,
+                                             with_dots_of_case(settings, loaded.setup, folder, sources), device);
   warn_of_exchanged_frames(measurement.field, sources);
   FileOrigin origin{
       "gladstone vectors", 1,      other ? other->resolved : loaded.document.resolved(), loaded.setup.render.seed,

@@ -23,6 +23,7 @@
 #include "studies/case/version_text.h"
 #include "studies/compare/correlate.h"
 #include "studies/compare/thinned_vectors.h"
+#include "studies/compare/tracked_dots.h"
 #include "studies/sweep/case_keys.h"
 #include "studies/sweep/recent.h"
 
@@ -228,7 +229,8 @@ void CaseRunner::compute(ManifestCase const& one, std::string const& keep, CaseO
   }
 
   std::string const name = fmt::format("case {}", one.index);
-  Measurement measured = correlate_frames(*frames.levels, loaded.correlate, device_);
+  Measurement measured = correlate_frames(
+      *frames.levels, with_known_dots(loaded.correlate, loaded.setup, rendered.rendering->truth.reference_px), device_);
   result.seconds_correlate = measured.seconds;
   int const every = lattice_step(measured.field, least_apart_px_);
   measured.field = every_nth(std::move(measured.field), every);

@@ -2,7 +2,9 @@
 
 #include <string>
 
+#include "analysis/correlation/correlation_methods.h"
 #include "analysis/correlation/correlator.h"
+#include "analysis/tracking/tracking_correlator.h"
 #include "analysis/uncertainty/uncertainty.h"
 #include "studies/benchmark/benchmark_run.h"
 
@@ -30,7 +32,7 @@ void measure(benchmark::State& state, CorrelationSettings const& settings, Bench
   HostFrames const frames(std::move(pair.reference), std::move(pair.flow));
   DisplacementField field;
   for (auto _ : state) {
-    field = make_correlator(settings)->correlate_pair(frames);
+    field = tracking::make_cpu_correlator(settings)->correlate_pair(frames);
     estimate_uncertainty(field, frames, settings);
   }
   report_errors(state, field, one);
@@ -50,12 +52,19 @@ int register_all() {
     if (one.refracted()) continue;
     for (BenchmarkEstimator const& estimator : benchmark_estimators())
       add(estimator.name + '/' + one.name, estimator.settings, one);
-    for (std::string const& method : correlation_methods()) {
+    CorrelationSettings tracked;
+    tracked.method = "tracking";
+    for (char const* output : {"grid", "scattered"}) {
+      tracked.tracking.output = output;
+      add(std::string("tracking_") + output + '/' + one.name, tracked, one);
+    }
+    for (CorrelationMethod const& method : all_correlation_methods()) {
+      if (method.tracks_dots) continue;
       CorrelationSettings settings;
       settings.window_px = {32};
       settings.overlap = 0.5;
-      settings.method = method;
-      add("one_pass_" + method + '/' + one.name, settings, one);
+      settings.method = method.name;
+      add(std::string("one_pass_") + method.name + '/' + one.name, settings, one);
     }
   }
   for (int const percent : {1, 5, 10})

@@ -211,5 +211,24 @@ TEST_F(DocumentedFiles, OfVectorsHaveTheDocumentedDefaults) {
   EXPECT_GT(keys, 15u);
 }
 
+// Each key of [correlate.tracking] has the documented default, and all keys are documented.
+TEST_F(DocumentedFiles, OfTrackedDotsHaveTheDocumentedDefaults) {
+  render("case");
+  write("plain.toml", "[correlate]\nwindow_px = [32]\nmethod = \"tracking\"\n");
+  succeed({"correlate", "case/reference.tif", "case/flow.tif", "--config", "plain.toml", "-o", "v.h5"});
+  std::string const settings = Hdf5Reader(in("v.h5").string()).attribute("setup");
+  std::string const title = "[correlate.tracking]\n";
+  auto const at = settings.find(title);
+  ASSERT_NE(at, std::string::npos) << settings;
+  std::map<std::string, std::string> values;
+  std::istringstream table(settings.substr(at + title.size()));
+  for (std::string line; std::getline(table, line) && line.find(" = ") != std::string::npos;)
+    values[line.substr(0, line.find(" = "))] = line.substr(line.find(" = ") + 3);
+  std::map<std::string, std::string> documented;
+  for (auto const& cells : documented_table("vectors.h5, vectors.csv", "`[correlate.tracking]` key"))
+    documented[names_of(cells[0]).at(0)] = cells[1];
+  EXPECT_EQ(values, documented);
+}
+
 }  // namespace
 }  // namespace gladstone::end_to_end

@@ -1,4 +1,4 @@
-#include "analysis/errors/point_cells.h"
+#include "render/base/point_cells.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "analysis/calibration/illumination.h"
+#include "analysis/preparation/illumination.h"
 
 #include <algorithm>
 #include <vector>

@@ -1,0 +1,146 @@
+#include "analysis/tracking/dot_candidates.h"
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+#include "analysis/preparation/illumination.h"
+#include "render/base/not_a_number.h"
+
+namespace gladstone::tracking {
+namespace {
+
+constexpr double rounding_noise = 0.28867513459481288;  // 1 / sqrt(12)
+constexpr double per_median = 1.4826;                   // standard deviation over median absolute deviation
+constexpr double filter_share = 0.7;                    // width of the filter over that of the dots
+
+double median_of(std::vector<double>& values) {
+  if (values.empty()) return 0;
+  auto const middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Filters an image by a Gaussian; ignored pixels count as background.
+Image<double> filtered(Image<double> const& levels, double sigma) {
+  Image<double> known = levels, smooth(levels.columns(), levels.rows());
+  for (double& level : known)
+    if (!std::isfinite(level)) level = 0;
+  cv::Mat const in(known.rows(), known.columns(), CV_64F, known.data());
+  cv::Mat out(smooth.rows(), smooth.columns(), CV_64F, smooth.data());
+  int const side = 2 * static_cast<int>(std::ceil(4 * sigma)) + 1;
+  cv::GaussianBlur(in, out, {side, side}, sigma, sigma, cv::BORDER_REFLECT_101);
+  return smooth;
+}
+
+/// Returns the factor by which the filter reduces the standard deviation of uncorrelated noise.
+double noise_reduction(double sigma) {
+  int const side = 2 * static_cast<int>(std::ceil(4 * sigma)) + 1;
+  cv::Mat const kernel = cv::getGaussianKernel(side, sigma, CV_64F);
+  return kernel.dot(kernel);  // the square root of the sum of squares, in two dimensions
+}
+
+/// Returns the offset of the vertex of the parabola through three levels, at most half a pixel.
+double vertex(double before, double here, double after) {
+  double const curvature = 2 * here - before - after;
+  return curvature > 0 ? std::clamp(0.5 * (after - before) / curvature, -0.5, 0.5) : 0.0;
+}
+
+}  // namespace
+
+DotFrame prepare_dot_frame(Image<double> const& frame, DotSettings const& settings) {
+  DotFrame prepared;
+  Image<double> known = frame;
+  std::vector<double> levels;
+  for (double const level : frame)
+    if (std::isfinite(level)) levels.push_back(level);
+  double const middle = median_of(levels);
+  for (double& level : known)
+    if (!std::isfinite(level)) level = middle;
+  prepared.background = estimate_background(known);
+  prepared.above = Image<double>(frame.columns(), frame.rows());
+  for (std::size_t i = 0; i < frame.size(); ++i) {
+    double const level = frame.data()[i];
+    bool const usable = std::isfinite(level) && level < settings.saturation;
+    prepared.above.data()[i] = usable ? level - prepared.background.data()[i] : not_a_number;
+  }
+  prepared.bright = settings.polarity == DotPolarity::bright;
+  if (settings.polarity == DotPolarity::automatic) {
+    Image<double> const smooth = filtered(prepared.above, 0.8);
+    auto const [low, high] = std::minmax_element(smooth.begin(), smooth.end());
+    prepared.bright = *high >= -*low;
+  }
+  if (!prepared.bright)
+    for (double& level : prepared.above) level = -level;
+  std::vector<double> below;
+  for (double const level : prepared.above)
+    if (level <= 0) below.push_back(-level);
+  prepared.noise = per_median * median_of(below);
+  return prepared;
+}
+
+double estimate_noise(Image<double> const& residual, bool whole_levels) {
+  std::vector<double> values;
+  for (double const level : residual)
+    if (std::isfinite(level)) values.push_back(level);
+  double const middle = median_of(values);
+  for (double& value : values) value = std::abs(value - middle);
+  return std::max(per_median * median_of(values), whole_levels ? rounding_noise : 0.0);
+}
+
+double estimate_dot_sigma(Image<double> const& above) {
+  double sum = 0, count = 0;
+  for (double const level : above) {
+    if (!std::isfinite(level)) continue;
+    sum += level;
+    ++count;
+  }
+  double const mean = count > 0 ? sum / count : 0;
+  auto const correlation = [&](int shift) {
+    double total = 0;
+    for (int row = 0; row < above.rows(); ++row)
+      for (int column = 0; column < above.columns(); ++column) {
+        double const here = above(column, row) - mean;
+        if (!std::isfinite(here)) continue;
+        double const right = column + shift < above.columns() ? above(column + shift, row) - mean : not_a_number;
+        double const low = row + shift < above.rows() ? above(column, row + shift) - mean : not_a_number;
+        if (std::isfinite(right)) total += here * right;
+        if (std::isfinite(low)) total += here * low;
+      }
+    return total;
+  };
+  double const one = correlation(1), two = correlation(2);
+  if (!(one > 0)) return 0.75;
+  // A second value near or below zero belongs to dots of a pixel.
+  double const ratio = std::log(one / std::max(two, 1e-3 * one));
+  return std::clamp(std::sqrt(0.75 / ratio), 0.3, 10.0);
+}
+
+std::vector<GaussianDot> find_dot_candidates(DotFrame const& frame, double sigma_px, double detection_threshold) {
+  double const width = filter_share * sigma_px;
+  Image<double> const smooth = filtered(frame.above, width);
+  double const threshold = detection_threshold * frame.noise * noise_reduction(width);
+  // A Gaussian dot has this flux per unit of its height after the filter; pixels add a variance of 1/12 px^2.
+  double const variance = sigma_px * sigma_px + width * width + 1.0 / 12;
+  double const flux_per_height = 6.28318530717958647693 * variance;
+  std::vector<GaussianDot> found;
+  for (int row = 1; row + 1 < smooth.rows(); ++row)
+    for (int column = 1; column + 1 < smooth.columns(); ++column) {
+      double const here = smooth(column, row);
+      if (!(here > threshold) || !(here > 0)) continue;
+      bool highest = true;
+      for (int dy = -1; dy <= 1 && highest; ++dy)
+        for (int dx = -1; dx <= 1; ++dx) {
+          bool const before = dy < 0 || (dy == 0 && dx < 0);
+          double const other = smooth(column + dx, row + dy);
+          if ((dx != 0 || dy != 0) && (other > here || (before && other == here))) highest = false;
+        }
+      if (!highest) continue;
+      Vec2d const centre{column + vertex(smooth(column - 1, row), here, smooth(column + 1, row)),
+                         row + vertex(smooth(column, row - 1), here, smooth(column, row + 1))};
+      found.push_back({centre, here * flux_per_height, sigma_px * sigma_px, 0, sigma_px * sigma_px});
+    }
+  return found;
+}
+
+}  // namespace gladstone::tracking

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "analysis/tracking/gaussian_dot.h"
+
+namespace gladstone::tracking {
+
+/// Pixel of a joint fit.
+struct FitPixel {
+  int column = 0, row = 0;
+  double level = 0;      ///< level above the estimated background, positive for light of dots [grey levels]
+  double per_sigma = 1;  ///< reciprocal of the noise's standard deviation [1/grey level]
+};
+
+/// Distribution of shape and flux over the dots of a frame.
+struct DotPrior {
+  std::array<double, 3> mean{1, 0, 1};   ///< of the shape parameters xx, or xx, xy and yy [px^2]
+  std::array<double, 3> sigma{1, 1, 1};  ///< standard deviations of the shape parameters [px^2]
+  double flux_mean = 0;                  ///< [grey levels]
+  double flux_sigma = 0;                 ///< standard deviation of the flux [grey levels]; 0: no prior
+};
+
+/// Dots fitted together.
+struct DotFit {
+  std::vector<GaussianDot> dots;
+  std::vector<Vec2d> sigma;        ///< standard uncertainty of the centres, from the Fisher information [px]
+  std::vector<double> flux_sigma;  ///< standard uncertainty of the fluxes [grey levels]
+  double background = 0;           ///< constant in addition to the estimated background [grey levels]
+  double cost = 0;                 ///< sum of squares: chi2, plus the deviations from the prior [1]
+  double chi2 = 0;                 ///< sum of squared residuals over the variance of the noise [1]
+  int freedom = 0;                 ///< number of pixels minus that of the parameters without a prior
+  std::vector<double> residual;    ///< of every pixel, measured minus fitted [grey levels]
+};
+
+/// Fits Gaussian dots and a constant background to pixels by weighted least squares (Levenberg-Marquardt). For normal
+/// noise this is the maximum-likelihood estimate, whose covariance is the inverse of the Fisher information (Cramer-Rao
+/// bound). Shape and flux are constrained by their distribution over the frame, which hardly affects the centres of
+/// isolated dots and separates overlapping ones: the shape by a normal prior, the flux by Student's t distribution with
+/// four degrees of freedom, so that a dot of another brightness is not distorted.
+/// @param start  first estimates; their number is that of the fitted dots
+/// @return dots in the order of start; infinite cost and no uncertainties if the pixels do not determine them
+/// @pre there are pixels and dots; start values have positive definite second moments
+DotFit fit_dots(std::span<FitPixel const> pixels, std::span<GaussianDot const> start, DotShape shape,
+                PixelResponse response, DotPrior const& prior);
+
+}  // namespace gladstone::tracking

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "analysis/tracking/gaussian_dot.h"
+#include "render/base/image.h"
+
+namespace gladstone::tracking {
+
+/// Dot measured in a frame.
+struct LocatedDot {
+  GaussianDot image;           ///< fitted Gaussian; flux of dark dots: light missing from the background
+  Vec2d sigma_px{};            ///< standard uncertainty of the centre [px]
+  double flux_sigma = 0;       ///< standard uncertainty of the flux [grey levels]
+  double reduced_chi2 = 0;     ///< chi2 of the joint fit over its degrees of freedom [1]
+  std::size_t group_size = 1;  ///< number of dots that were fitted together
+};
+
+/// Dots of a frame.
+struct LocatedDots {
+  std::vector<LocatedDot> dots;  ///< sorted by row, then column of the nearest pixel
+  bool bright = true;            ///< polarity
+  double noise = 0;              ///< standard deviation of the noise in the background [grey levels]
+  double diameter_px = 0;        ///< median e^-2 diameter of the isolated dots, four standard deviations [px]
+  std::size_t rejected = 0;      ///< number of candidates without a valid fit
+};
+
+/// Locates the dots (BOS) or particles (PIV) of a frame by least-squares fits of Gaussians.
+///
+/// Candidates are maxima of the filtered frame. Dots whose images overlap are fitted together, and dots are added where
+/// the residual demands it (fit_overlapping_dots()); the light of all other dots is subtracted first, as in DAOPHOT
+/// (Stetson, PASP 99 (1987) 191). Background, noise and the distribution of widths are estimated from the frame and
+/// updated after each of four sweeps. The uncertainty of a centre is the Cramer-Rao bound of its fit (inverse Fisher
+/// information; for BOS dots see Rajendran, Bane & Vlachos, Exp. Fluids 61 (2020) 139) times the square root of the
+/// reduced chi2 where that exceeds one. For uncorrelated noise, the errors of isolated Gaussian dots reach the bound.
+/// The result is bitwise the same for any number of threads.
+/// @param frame  grey levels; pixels that are not finite are ignored
+/// @return no dots if nothing exceeds the noise or the frame is smaller than 5x5 px
+/// @throws Interrupted
+LocatedDots locate_dots(Image<double> const& frame, DotSettings const& settings);
+
+/// Locates dots near known places, for example those of a printed pattern, instead of searching for maxima and adding
+/// dots where images overlap.
+/// @param places  approximate centres, within about one standard deviation of a dot image [px]; those outside the frame
+///                and those that are not finite are ignored
+/// @return like locate_dots(); places without a significant dot are left out
+LocatedDots locate_dots_near(Image<double> const& frame, DotSettings const& settings, std::span<Vec2d const> places);
+
+}  // namespace gladstone::tracking

@@ -1,0 +1,200 @@
+#include "analysis/tracking/dot_matching.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "analysis/tracking/nearest_points.h"
+#include "render/base/contracts.h"
+#include "render/base/not_a_number.h"
+#include "render/base/parallel.h"
+
+namespace gladstone::tracking {
+namespace {
+
+constexpr std::size_t supporters = 12;       // neighbours that support a displacement
+constexpr std::size_t least_supporters = 3;  // fewer neighbours do not identify a displacement
+constexpr int most_rounds = 5;               // repeated predictions from certain matches
+constexpr double alias_range = 1.5;          // range of alternatives beyond the search radius [spacings]
+
+/// Round of the matching: prediction, and lengths in px.
+struct Round {
+  std::vector<Vec2d> prediction;
+  double radius, range, tolerance;
+};
+
+class DotMatcher {
+ public:
+  DotMatcher(std::span<Vec2d const> a, std::span<Vec2d const> b, MatchSettings const& settings)
+      : a_(a), b_(b), settings_(settings), cells_a_(a), cells_b_(b), around_(a.size()) {
+    parallel_chunks(a.size(), 256, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        around_[i] = cells_a_.nearest(a_[i], supporters + 1, 8 * cells_a_.spacing());
+        std::erase(around_[i], i);
+        around_[i].resize(std::min(around_[i].size(), supporters));
+      }
+    });
+  }
+
+  std::vector<DotMatch> run(std::span<Vec2d const> prediction) const {
+    double const spacing = cells_a_.spacing(), bound = settings_.displacement_bound_px;
+    std::vector<Vec2d> given(a_.size());
+    for (std::size_t i = 0; i < prediction.size(); ++i)
+      if (is_finite(prediction[i])) given[i] = prediction[i];
+    double const radius = settings_.search_radius_px > 0 ? settings_.search_radius_px : 0.75 * spacing;
+    double const tolerance = settings_.tolerance_px > 0 ? settings_.tolerance_px : 0.15 * spacing;
+    Round round{given, std::min(radius, bound), std::min(radius + alias_range * spacing, bound), tolerance};
+    std::vector<DotMatch> matches = match(round);
+
+    // Predict again from the certain matches, which spread from where the prediction is good.
+    for (int repeat = 0; repeat < most_rounds; ++repeat) {
+      std::size_t const before = count_certain(matches);
+      if (before <= least_supporters) return matches;
+      std::vector<char> const outliers =
+          find_outliers(a_, deviations(matches, predicted(matches, {}, given)), settings_.outliers);
+      round.prediction = predicted(matches, outliers, given);
+      round.tolerance = 0.5 * tolerance;
+      matches = match(round);
+      for (std::size_t i = 0; i < a_.size(); ++i)  // the search radius refers to the given prediction
+        if (matches[i].status == MatchStatus::matched &&
+            !(length(b_[matches[i].partner] - a_[i] - given[i]) <= round.radius))
+          matches[i].status = MatchStatus::unmatched;
+      if (static_cast<double>(count_certain(matches)) < 1.01 * static_cast<double>(before)) break;
+    }
+    resolve_close_pairs(matches, round);
+    std::vector<char> const outliers = find_outliers(a_, deviations(matches, round.prediction), settings_.outliers);
+    for (std::size_t i = 0; i < a_.size(); ++i)
+      if (outliers[i]) matches[i].status = MatchStatus::outlier;
+    return matches;
+  }
+
+ private:
+  static std::size_t count_certain(std::vector<DotMatch> const& matches) {
+    return static_cast<std::size_t>(std::count_if(
+        matches.begin(), matches.end(), [](DotMatch const& match) { return match.status == MatchStatus::matched; }));
+  }
+
+  /// Returns displacements minus a prediction; NaN without a certain match.
+  std::vector<Vec2d> deviations(std::vector<DotMatch> const& matches, std::vector<Vec2d> const& prediction) const {
+    std::vector<Vec2d> values(a_.size(), Vec2d{not_a_number, not_a_number});
+    for (std::size_t i = 0; i < a_.size(); ++i)
+      if (matches[i].status == MatchStatus::matched) values[i] = b_[matches[i].partner] - a_[i] - prediction[i];
+    return values;
+  }
+
+  /// Interpolates the certain matches that are no outliers; far from them, returns the given prediction.
+  std::vector<Vec2d> predicted(std::vector<DotMatch> const& matches, std::vector<char> const& outliers,
+                               std::vector<Vec2d> prediction) const {
+    DisplacementField certain;
+    for (std::size_t i = 0; i < a_.size(); ++i) {
+      if (matches[i].status != MatchStatus::matched || (!outliers.empty() && outliers[i])) continue;
+      certain.position_px.push_back(a_[i]);
+      certain.displacement_px.push_back(b_[matches[i].partner] - a_[i]);
+    }
+    DisplacementField const refined = interpolate_vectors(certain, a_);
+    for (std::size_t i = 0; i < a_.size(); ++i)
+      if (refined.counts(i)) prediction[i] = refined.displacement_px[i];
+    return prediction;
+  }
+
+  /// Distinguishes candidates closer to each other than the tolerance by a smaller tolerance: three times the median
+  /// deviation of the certain matches from their prediction.
+  void resolve_close_pairs(std::vector<DotMatch>& matches, Round round) const {
+    std::vector<double> sizes;
+    std::vector<char> taken(b_.size());
+    for (std::size_t i = 0; i < a_.size(); ++i) {
+      if (matches[i].status != MatchStatus::matched) continue;
+      sizes.push_back(length(b_[matches[i].partner] - a_[i] - round.prediction[i]));
+      taken[matches[i].partner] = 1;
+    }
+    if (sizes.empty()) return;
+    auto const middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+    std::nth_element(sizes.begin(), middle, sizes.end());
+    round.tolerance = std::clamp(3 * *middle, 0.01 * cells_a_.spacing(), round.tolerance);
+    std::vector<DotMatch> const closer = match(round);
+    for (std::size_t i = 0; i < a_.size(); ++i) {
+      bool const resolved = matches[i].status == MatchStatus::ambiguous && closer[i].status == MatchStatus::matched;
+      if (!resolved || taken[closer[i].partner]) continue;
+      matches[i] = closer[i];
+      taken[closer[i].partner] = 1;
+    }
+  }
+
+  /// Returns the share of the neighbours of dot i that have a partner at the same deviation from the prediction.
+  double support(std::size_t i, Vec2d deviation, Round const& round) const {
+    double sum = 0;
+    for (std::size_t const k : around_[i]) {
+      double const e = cells_b_.distance(a_[k] + round.prediction[k] + deviation, 3 * round.tolerance);
+      if (std::isfinite(e)) sum += std::exp(-0.5 * e * e / (round.tolerance * round.tolerance));
+    }
+    return sum / static_cast<double>(around_[i].size());
+  }
+
+  DotMatch best_match(std::size_t i, Round const& round) const {
+    DotMatch match;
+    if (!is_finite(a_[i])) return match;
+    Vec2d const place = a_[i] + round.prediction[i];
+    std::vector<std::size_t> const candidates = cells_b_.within(place, round.range);
+    if (around_[i].size() < least_supporters) {
+      // Without neighbours only a single candidate is certain.
+      if (candidates.empty() || !(length(b_[candidates.front()] - place) <= round.radius)) return match;
+      match.partner = candidates.front();
+      match.status = candidates.size() == 1 ? MatchStatus::matched : MatchStatus::ambiguous;
+      return match;
+    }
+    bool any = false;
+    for (std::size_t const k : candidates) {
+      Vec2d const deviation = b_[k] - place;
+      double const own = support(i, deviation, round);
+      if (length(deviation) <= round.radius && (!any || own > match.support)) {
+        if (any) match.other_support = std::max(match.other_support, match.support);
+        match.support = own;
+        match.partner = k;
+        any = true;
+      } else {
+        match.other_support = std::max(match.other_support, own);
+      }
+    }
+    if (!any || match.support < settings_.least_support) return match;
+    match.status =
+        match.other_support < settings_.ambiguity_ratio * match.support ? MatchStatus::matched : MatchStatus::ambiguous;
+    return match;
+  }
+
+  std::vector<DotMatch> match(Round const& round) const {
+    std::vector<DotMatch> matches(a_.size());
+    parallel_chunks(a_.size(), 64, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) matches[i] = best_match(i, round);
+    });
+    // A partner belongs to the dot whose prediction it fits best.
+    std::vector<std::size_t> owner(b_.size(), a_.size());
+    auto const misfit = [&](std::size_t i) { return length(b_[matches[i].partner] - a_[i] - round.prediction[i]); };
+    for (std::size_t i = 0; i < a_.size(); ++i) {
+      if (matches[i].status != MatchStatus::matched) continue;
+      std::size_t& own = owner[matches[i].partner];
+      if (own == a_.size()) {
+        own = i;
+        continue;
+      }
+      bool const closer = misfit(i) < misfit(own);
+      matches[closer ? own : i].status = MatchStatus::unmatched;
+      if (closer) own = i;
+    }
+    return matches;
+  }
+
+  std::span<Vec2d const> a_, b_;
+  MatchSettings settings_;
+  NearestPoints cells_a_, cells_b_;
+  std::vector<std::vector<std::size_t>> around_;  // nearest dots of each dot of frame A
+};
+
+}  // namespace
+
+std::vector<DotMatch> match_dots(std::span<Vec2d const> a, std::span<Vec2d const> b, std::span<Vec2d const> prediction,
+                                 MatchSettings const& settings) {
+  GLADSTONE_EXPECTS(prediction.empty() || prediction.size() == a.size());
+  if (a.empty() || b.empty()) return std::vector<DotMatch>(a.size());
+  return DotMatcher(a, b, settings).run(prediction);
+}
+
+}  // namespace gladstone::tracking

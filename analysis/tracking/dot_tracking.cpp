@@ -1,0 +1,113 @@
+#include "analysis/tracking/dot_tracking.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "render/base/contracts.h"
+#include "render/base/error.h"
+#include "render/base/not_a_number.h"
+#include "render/base/point_cells.h"
+
+namespace gladstone::tracking {
+
+std::vector<Vec2d> centres_of(LocatedDots const& located) {
+  std::vector<Vec2d> centres;
+  for (LocatedDot const& dot : located.dots) centres.push_back(dot.image.centre);
+  return centres;
+}
+
+DisplacementField matched_vectors(LocatedDots const& a, LocatedDots const& b, std::span<DotMatch const> matches) {
+  GLADSTONE_EXPECTS(matches.size() == a.dots.size());
+  Vec2d const unknown{not_a_number, not_a_number};
+  DisplacementField field;
+  std::size_t ambiguous = 0;
+  for (std::size_t i = 0; i < matches.size(); ++i) {
+    DotMatch const& match = matches[i];
+    LocatedDot const& here = a.dots[i];
+    bool const found = match.status != MatchStatus::unmatched, valid = match.status == MatchStatus::matched;
+    Vec2d displacement = unknown, sigma = unknown;
+    if (found) {
+      LocatedDot const& there = b.dots[match.partner];
+      displacement = there.image.centre - here.image.centre;
+      sigma = {std::hypot(here.sigma_px.x, there.sigma_px.x), std::hypot(here.sigma_px.y, there.sigma_px.y)};
+    }
+    field.position_px.push_back(valid ? here.image.centre + 0.5 * displacement : here.image.centre);
+    field.displacement_px.push_back(valid ? displacement : unknown);
+    field.raw_px.push_back(displacement);
+    field.sigma_px.push_back(valid ? sigma : unknown);
+    field.correlation.push_back(found ? match.support : not_a_number);
+    field.peak_ratio.push_back(found && match.other_support > 0 ? match.support / match.other_support : not_a_number);
+    field.status.push_back(valid ? VectorStatus::valid : VectorStatus::invalid);
+    field.reason.push_back(valid ? VectorReason::measured
+                                 : (found ? VectorReason::not_replaced : VectorReason::beyond_limit));
+    field.failed.push_back(match.status == MatchStatus::outlier ? FailedTest::median : FailedTest::none);
+    field.ambiguous.push_back(match.status == MatchStatus::ambiguous ? Ambiguity::here : Ambiguity::none);
+    ambiguous += match.status == MatchStatus::ambiguous ? 1 : 0;
+  }
+  if (a.dots.empty() || b.dots.empty())
+    field.warnings.push_back(
+        fmt::format("no dots in frame {} (nothing exceeds the noise by {:g} standard deviations as a dot); check the "
+                    "frames, and correlate.tracking.polarity and diameter_px",
+                    a.dots.empty() ? "A" : "B", DotSettings{}.detection_threshold));
+  if (2 * ambiguous > matches.size())
+    field.warnings.push_back(
+        fmt::format("{} of {} dots have ambiguous displacements (the pattern matches itself after a shift within the "
+                    "search range); use a random pattern, or set correlate.tracking.displacement_bound_px below half "
+                    "the pitch if no displacement is larger",
+                    ambiguous, matches.size()));
+  return field;
+}
+
+namespace {
+
+/// Returns the displacements of a prediction at the given places; empty without vectors.
+std::vector<Vec2d> predict(DisplacementField const& predictor, std::span<Vec2d const> places) {
+  return predictor.size() > 0 ? interpolate_vectors(predictor, places).displacement_px : std::vector<Vec2d>{};
+}
+
+/// Returns where the dots of frame A are expected in frame B: at their partners, or else at their predicted places.
+/// Dots of frame B far from all of these are added; they may have entered the frame.
+std::vector<Vec2d> expected_places(LocatedDots const& a, LocatedDots const& b, std::span<DotMatch const> matches) {
+  std::vector<Vec2d> const centres_a = centres_of(a);
+  std::vector<Vec2d> const displacements = predict(matched_vectors(a, b, matches), centres_a);
+  std::vector<Vec2d> places;
+  for (std::size_t i = 0; i < matches.size(); ++i) {
+    bool const matched = matches[i].status == MatchStatus::matched;
+    Vec2d const place = matched ? b.dots[matches[i].partner].image.centre : centres_a[i] + displacements[i];
+    if (is_finite(place)) places.push_back(place);
+  }
+  double const apart = 0.75 * b.diameter_px;
+  PointCells const cells(places, std::max(apart, 1.0));
+  std::vector<Vec2d> const centres_b = centres_of(b);
+  std::vector<Vec2d> others;
+  for (Vec2d const centre : centres_b) {
+    bool near = false;
+    cells.for_near(centre, apart, [&](std::size_t k) { near = near || length(places[k] - centre) < apart; });
+    if (!near) others.push_back(centre);
+  }
+  places.insert(places.end(), others.begin(), others.end());
+  return places;
+}
+
+}  // namespace
+
+DisplacementField track_dots(Image<double> const& a, Image<double> const& b, DisplacementField const& predictor,
+                             TrackingSettings const& settings) {
+  if (a.columns() != b.columns() || a.rows() != b.rows())
+    throw DataError("frame B", fmt::format("has {}x{} px, but frame A has {}x{} px; give frames of one size",
+                                           b.columns(), b.rows(), a.columns(), a.rows()));
+  bool const known = !settings.known_places_px.empty();
+  LocatedDots const dots_a =
+      known ? locate_dots_near(a, settings.dots, settings.known_places_px) : locate_dots(a, settings.dots);
+  LocatedDots dots_b = locate_dots(b, settings.dots);
+  std::vector<Vec2d> const centres_a = centres_of(dots_a), prediction = predict(predictor, centres_a);
+  std::vector<DotMatch> matches = match_dots(centres_a, centres_of(dots_b), prediction, settings.matching);
+  if (known) {
+    dots_b = locate_dots_near(b, settings.dots, expected_places(dots_a, dots_b, matches));
+    matches = match_dots(centres_a, centres_of(dots_b), prediction, settings.matching);
+  }
+  return matched_vectors(dots_a, dots_b, matches);
+}
+
+}  // namespace gladstone::tracking

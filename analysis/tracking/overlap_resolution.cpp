@@ -1,0 +1,142 @@
+#include "analysis/tracking/overlap_resolution.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace gladstone::tracking {
+namespace {
+
+constexpr double least_decrease = 25;   // of the sum of squares, by which an added dot is accepted
+constexpr std::size_t most_splits = 3;  // dots that are tried to be split, per added dot
+constexpr double closest_share = 0.35;  // smallest distance of two dots in standard deviations of their images
+
+DotFit plain_fit(std::span<FitPixel const> pixels, std::span<GaussianDot const> start, DotModel const& model) {
+  return fit_dots(pixels, start, model.shape, model.response, model.prior);
+}
+
+/// Returns the pixels with the mismatch of the model added to their noise.
+std::vector<FitPixel> with_mismatch(std::span<FitPixel const> pixels, DotFit const& fit, double mismatch) {
+  std::vector<FitPixel> changed(pixels.begin(), pixels.end());
+  for (std::size_t i = 0; i < changed.size(); ++i) {
+    double const light = mismatch * std::max(0.0, pixels[i].level - fit.residual[i] - fit.background);
+    changed[i].per_sigma = 1 / std::hypot(1 / pixels[i].per_sigma, light);
+  }
+  return changed;
+}
+
+/// Returns the indices of the dots in the order of decreasing chi2 within two standard deviations of their centres.
+std::vector<std::size_t> worst_first(std::span<FitPixel const> pixels, DotFit const& fit) {
+  std::vector<std::pair<double, std::size_t>> order;
+  for (std::size_t k = 0; k < fit.dots.size(); ++k) {
+    GaussianDot const& one = fit.dots[k];
+    double sum = 0;
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+      Vec2d const at = Vec2d{1.0 * pixels[i].column, 1.0 * pixels[i].row} - one.centre;
+      if (dot(at, at) < 2 * (one.xx + one.yy)) sum += std::pow(fit.residual[i] * pixels[i].per_sigma, 2);
+    }
+    order.emplace_back(-sum, k);
+  }
+  std::sort(order.begin(), order.end());
+  std::vector<std::size_t> indices;
+  for (auto const& entry : order) indices.push_back(entry.second);
+  return indices;
+}
+
+/// Splits dot k along the axis of the largest second moment of its residual.
+std::vector<GaussianDot> split_dot(std::span<FitPixel const> pixels, DotFit const& fit, std::size_t k) {
+  GaussianDot const one = fit.dots[k];
+  double const variance = 0.5 * (one.xx + one.yy);
+  double xx = 0, xy = 0, yy = 0;
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    Vec2d const at = Vec2d{1.0 * pixels[i].column, 1.0 * pixels[i].row} - one.centre;
+    double const weight = fit.residual[i] * std::exp(-0.25 * dot(at, at) / variance);
+    xx += weight * at.x * at.x;
+    xy += weight * at.x * at.y;
+    yy += weight * at.y * at.y;
+  }
+  double const angle = 0.5 * std::atan2(2 * xy, xx - yy);
+  Vec2d const step = 0.6 * std::sqrt(variance) * Vec2d{std::cos(angle), std::sin(angle)};
+  std::vector<GaussianDot> dots = fit.dots;
+  dots[k].flux *= 0.5;
+  dots.push_back(dots[k]);
+  dots[k].centre = one.centre - step;
+  dots.back().centre = one.centre + step;
+  return dots;
+}
+
+/// Adds a dot at the largest residual, after a filter of the dots' shape.
+std::vector<GaussianDot> add_at_residual(std::span<FitPixel const> pixels, DotFit const& fit, DotModel const& model) {
+  double const variance = model.prior.mean[0];
+  GaussianDot added{{}, 0, variance, 0, variance};
+  double most = 0;
+  for (FitPixel const& centre : pixels) {
+    double product = 0, square = 0;
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+      double const x = pixels[i].column - centre.column, y = pixels[i].row - centre.row;
+      double const r2 = x * x + y * y;
+      if (r2 > 9 * variance + 1) continue;
+      double const shape = std::exp(-0.5 * r2 / variance), weight = pixels[i].per_sigma * pixels[i].per_sigma;
+      product += weight * shape * fit.residual[i];
+      square += weight * shape * shape;
+    }
+    if (!(product / std::sqrt(square) > most)) continue;
+    most = product / std::sqrt(square);
+    added.centre = {1.0 * centre.column, 1.0 * centre.row};
+    added.flux = 6.28318530717958647693 * variance * product / square;
+  }
+  std::vector<GaussianDot> dots = fit.dots;
+  if (most > 0) dots.push_back(added);
+  return dots;
+}
+
+/// Returns whether all dots of a fit are significant, near the pixels and apart from each other.
+bool plausible(std::span<FitPixel const> pixels, DotFit const& fit, DotModel const& model) {
+  if (!std::isfinite(fit.cost)) return false;
+  for (std::size_t k = 0; k < fit.dots.size(); ++k) {
+    GaussianDot const& one = fit.dots[k];
+    if (!(fit.dots[k].flux > model.detection_threshold * fit.flux_sigma[k])) return false;
+    bool const inside = std::any_of(pixels.begin(), pixels.end(), [&](FitPixel const& pixel) {
+      return std::abs(pixel.column - one.centre.x) <= 1 && std::abs(pixel.row - one.centre.y) <= 1;
+    });
+    if (!inside) return false;
+    for (std::size_t m = 0; m < k; ++m)
+      if (length(one.centre - fit.dots[m].centre) < closest_share * std::sqrt(one.xx)) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+DotFit fit_overlapping_dots(std::span<FitPixel const> pixels, std::span<GaussianDot const> start, DotModel const& model,
+                            int most_additions) {
+  DotFit const first = plain_fit(pixels, start, model);
+  if (most_additions == 0 || !std::isfinite(first.cost)) return first;
+  std::vector<FitPixel> const tolerant = with_mismatch(pixels, first, model.mismatch);
+  DotFit best = model.mismatch > 0 ? plain_fit(tolerant, first.dots, model) : first;
+  int added = 0;
+  for (; added < most_additions; ++added) {
+    // Without a significant residual there is nothing to add.
+    if (!(best.cost > best.freedom - std::sqrt(2.0 * best.freedom))) break;
+    DotFit better;
+    better.cost = best.cost - least_decrease;
+    bool found = false;
+    std::vector<std::vector<GaussianDot>> trials{add_at_residual(tolerant, best, model)};
+    std::vector<std::size_t> const worst = worst_first(tolerant, best);
+    for (std::size_t k = 0; k < std::min(most_splits, worst.size()); ++k)
+      trials.push_back(split_dot(tolerant, best, worst[k]));
+    for (std::vector<GaussianDot> const& dots : trials) {
+      if (dots.size() == best.dots.size()) continue;
+      DotFit fit = plain_fit(tolerant, dots, model);
+      if (!(fit.cost < better.cost) || !plausible(tolerant, fit, model)) continue;
+      better = std::move(fit);
+      found = true;
+    }
+    if (!found) break;
+    best = std::move(better);
+  }
+  if (added == 0) return first;
+  return model.mismatch > 0 ? plain_fit(pixels, best.dots, model) : best;
+}
+
+}  // namespace gladstone::tracking

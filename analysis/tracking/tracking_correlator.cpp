@@ -1,0 +1,128 @@
+#include "analysis/tracking/tracking_correlator.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "analysis/correlation/correlation_methods.h"
+#include "analysis/correlation/pair_verdict.h"
+#include "render/base/contracts.h"
+#include "render/base/not_a_number.h"
+
+namespace gladstone::tracking {
+namespace {
+
+constexpr Vec2d unknown{not_a_number, not_a_number};
+
+/// Returns the settings of the correlation that predicts the displacements.
+CorrelationSettings predictor_settings(CorrelationSettings settings) {
+  settings.method = "scc";
+  settings.uncertainty = "none";
+  settings.tracking = {};
+  settings.known_dots_px.clear();
+  return settings;
+}
+
+/// Returns a correlation without its ambiguous vectors.
+DisplacementField certain_vectors(DisplacementField field) {
+  for (std::size_t i = 0; i < field.size(); ++i)
+    if (field.ambiguous[i] != Ambiguity::none && field.status[i] != VectorStatus::masked)
+      field.status[i] = VectorStatus::invalid;
+  return field;
+}
+
+/// Invalidates the vectors of frames that do not correlate.
+void invalidate(DisplacementField& field) {
+  for (std::size_t i = 0; i < field.size(); ++i) {
+    if (field.status[i] == VectorStatus::masked) continue;
+    field.displacement_px[i] = field.sigma_px[i] = unknown;
+    field.status[i] = VectorStatus::invalid;
+    field.reason[i] = VectorReason::uncorrelated;
+    field.failed[i] = FailedTest::none;
+  }
+}
+
+class TrackingCorrelator final : public Correlator {
+ public:
+  TrackingCorrelator(CorrelationSettings const& settings, GaussianWindow const& window)
+      : predictor_settings_(predictor_settings(settings)),
+        predictor_(make_correlator(predictor_settings_)),
+        tracking_(tracking_settings(settings)),
+        on_grid_(settings.tracking.output == "grid"),
+        window_(window) {}
+
+  DisplacementField correlate(Image<double> const& reference, Image<double> const& flow) const override {
+    return correlate_pair(HostFrames(reference, flow));
+  }
+
+  DisplacementField correlate_pair(FramePair const& frames) const override {
+    DisplacementField predictor = predictor_->correlate_pair(frames);
+    judge_pair(predictor, frames, *predictor_, predictor_settings_);
+    DisplacementField const dots = track_dots(frames.reference(), frames.flow(), certain_vectors(predictor), tracking_);
+    DisplacementField field = on_grid_ ? on_grid_of(predictor, dots) : dots;
+    field.verdict = predictor.verdict;
+    field.warnings.clear();
+    for (std::string const& warning : predictor.warnings)
+      field.warnings.push_back("correlation that predicts the displacements of dots: " + warning);
+    field.warnings.insert(field.warnings.end(), dots.warnings.begin(), dots.warnings.end());
+    if (!frames_correlate(predictor)) invalidate(field);
+    return field;
+  }
+
+ private:
+  /// Interpolates the vectors of the dots to the grid of the predictor.
+  DisplacementField on_grid_of(DisplacementField const& predictor, DisplacementField const& dots) const {
+    DisplacementField field = interpolate_vectors(dots, predictor.position_px, window_);
+    for (std::size_t i = 0; i < field.size(); ++i) {
+      if (predictor.status[i] != VectorStatus::masked) continue;
+      field.status[i] = VectorStatus::masked;
+      field.reason[i] = VectorReason::masked;
+      field.displacement_px[i] = field.sigma_px[i] = unknown;
+    }
+    field.columns = predictor.columns;
+    field.rows = predictor.rows;
+    field.raw_px = field.displacement_px;
+    field.peak_ratio.assign(field.size(), not_a_number);
+    field.correlation.assign(field.size(), not_a_number);
+    field.failed.assign(field.size(), FailedTest::none);
+    field.ambiguous.assign(field.size(), Ambiguity::none);
+    return field;
+  }
+
+  CorrelationSettings predictor_settings_;
+  std::unique_ptr<Correlator> predictor_;
+  TrackingSettings tracking_;
+  bool on_grid_;
+  GaussianWindow window_;
+};
+
+}  // namespace
+
+TrackingSettings tracking_settings(CorrelationSettings const& correlate) {
+  TrackingTable const& table = correlate.tracking;
+  GLADSTONE_EXPECTS(table.polarity == "auto" || table.polarity == "bright" || table.polarity == "dark");
+  GLADSTONE_EXPECTS(table.shape == "round" || table.shape == "elliptic");
+  TrackingSettings settings;
+  settings.dots.polarity = table.polarity == "auto"     ? DotPolarity::automatic
+                           : table.polarity == "bright" ? DotPolarity::bright
+                                                        : DotPolarity::dark;
+  settings.dots.shape = table.shape == "round" ? DotShape::round : DotShape::elliptic;
+  settings.dots.diameter_px = table.diameter_px.value_or(0.0);
+  settings.matching.search_radius_px = table.search_radius_px.value_or(0.0);
+  if (table.displacement_bound_px) settings.matching.displacement_bound_px = *table.displacement_bound_px;
+  settings.known_places_px = correlate.known_dots_px;
+  return settings;
+}
+
+std::unique_ptr<Correlator> make_tracking_correlator(CorrelationSettings const& settings,
+                                                     GaussianWindow const& window) {
+  return std::make_unique<TrackingCorrelator>(settings, window);
+}
+
+std::unique_ptr<Correlator> make_cpu_correlator(CorrelationSettings const& settings) {
+  return correlation_method(settings.method).tracks_dots ? make_tracking_correlator(settings)
+                                                         : make_correlator(settings);
+}
+
+}  // namespace gladstone::tracking
