@@ -20,15 +20,25 @@ NormalEquations::NormalEquations(Matrix matrix, std::size_t direct_limit) : matr
 
 Eigen::VectorXd NormalEquations::solve(Eigen::VectorXd const& right_side) const {
   if (direct_) return direct_->solve(right_side);
-  // Eigen's own loop: its class ConjugateGradient keeps its state in mutable members and cannot be shared by threads
-  Eigen::VectorXd x = Eigen::VectorXd::Zero(right_side.size());
-  Eigen::Index iterations = 20 * 1000;
-  double error = 1e-10;
-  Eigen::internal::conjugate_gradient(matrix_, right_side, x, *preconditioner_, iterations, error);
-  if (error <= 1e-8) return x;
-  throw DataError("density gradient", fmt::format("the integration did not converge (relative residual {:.1e} after {} "
-                                                  "iterations); check the uncertainties, or use fewer vectors",
-                                                  error, iterations));
+  // Preconditioned conjugate gradients. Eigen's class keeps its state in members and cannot be shared by threads
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(right_side.size()), residual = right_side;
+  Eigen::VectorXd preconditioned = preconditioner_->solve(residual), direction = preconditioned;
+  double const goal = 1e-10 * right_side.norm();
+  double product = residual.dot(preconditioned);
+  for (int iteration = 0; iteration < 20'000; ++iteration) {
+    if (residual.norm() <= goal) return x;
+    Eigen::VectorXd const mapped = matrix_ * direction;
+    double const step = product / direction.dot(mapped);
+    x += step * direction;
+    residual -= step * mapped;
+    preconditioned = preconditioner_->solve(residual);
+    double const next = residual.dot(preconditioned);
+    direction = preconditioned + (next / product) * direction;
+    product = next;
+  }
+  throw DataError("density gradient", fmt::format("the integration did not converge (relative residual {:.1e}); check "
+                                                  "the uncertainties, or use fewer vectors",
+                                                  residual.norm() / right_side.norm()));
 }
 
 }  // namespace gladstone::density

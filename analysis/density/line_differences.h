@@ -10,7 +10,7 @@ namespace gladstone::density {
 
 /// Quadrature rule for the density difference between neighbouring nodes.
 enum class EdgeRule {
-  /// (g0 + g1)/2: Southwell, J. Opt. Soc. Am. 70 (1980) 998, Eq. 3; error h^3 g''/12 per edge.
+  /// (g0 + g1)/2: Southwell, J. Opt. Soc. Am. 70 (1980) 998; error h^3 g''/12 per edge.
   trapezoid,
   /// (-g-1 + 13 g0 + 13 g1 - g2)/24, the integral of the cubic through four nodes, error 11 h^5 g''''/720 per edge;
   /// next

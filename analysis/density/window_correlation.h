@@ -21,7 +21,7 @@ struct WindowOverlap {
 /// Correlation of the errors of vectors whose interrogation windows overlap. Errors that are linear in the noise of the
 /// pixels correlate by the shared area of the two windows, for uniform windows of m grid steps
 ///   r(i, j) = max(0, 1 - |i| / m_x) max(0, 1 - |j| / m_y)
-/// for vectors i columns and j rows apart (Sciacchitano & Wieneke, Meas. Sci. Technol. 27 (2016) 084006, Sec. 2). The
+/// for vectors i columns and j rows apart (cf. Sciacchitano & Wieneke, Meas. Sci. Technol. 27 (2016) 084006). The
 /// two components of a vector are uncorrelated. The matrix of all correlations is the Kronecker product of two banded
 /// matrices, whose Cholesky factors are stored.
 class WindowCorrelation {
