@@ -15,7 +15,7 @@ namespace gladstone::density {
 namespace {
 
 /// Largest number of rows from which the regularisation parameter is determined.
-constexpr int regularization_rows = 16;
+constexpr int regularization_rows = 8;
 
 void check_axisymmetric_settings(GradientMap const& map, AxisymmetricSettings const& settings) {
   std::vector<SetupProblem> problems;

@@ -11,15 +11,17 @@
 namespace gladstone::density {
 
 enum class AbelMethod {
-  direct,   ///< make_gradient_inversion(): fourth order, noise grows towards the axis
-  tikhonov  ///< make_regularized_inversion(): less noise, smooths fine structures
+  direct,  ///< make_gradient_inversion(): fourth order, noise grows towards the axis
+  /// make_regularized_inversion(): less noise where the vectors are much finer than the structures, but smooths. The
+  /// inversion of a gradient amplifies noise little, so the gain is small on coarse grids.
+  tikhonov
 };
 
 struct AxisymmetricSettings {
   AxisDirection direction = AxisDirection::vertical;
   std::optional<double> axis;  ///< x of a vertical, y of a horizontal axis [m]; nullopt: find_symmetry_axis()
   AbelMethod method = AbelMethod::direct;
-  RegularizationChoice choice = RegularizationChoice::discrepancy;
+  RegularizationChoice choice = RegularizationChoice::cross_validation;
   double lambda = 0.0;           ///< regularisation parameter for RegularizationChoice::given [1]
   WindowOverlap overlap;         ///< of the interrogation windows, for sigma
   double ambient_density = 0.0;  ///< density beyond the last radius: the gauge [kg/m^3]

@@ -2,8 +2,10 @@
 
 #include <Eigen/Cholesky>
 #include <cmath>
+#include <vector>
 
 #include "render/base/contracts.h"
+#include "render/base/parallel.h"
 
 namespace gladstone::density {
 namespace {
@@ -32,22 +34,31 @@ struct FitQuality {
   double chi_square = 0.0, effective_parameters = 0.0, count = 0.0;
 };
 
-FitQuality evaluate_fit(Eigen::MatrixXd const& projection, std::span<RadialProfile const> profiles, double lambda) {
-  FitQuality quality;
-  for (RadialProfile const& profile : profiles) {
-    Eigen::MatrixXd const inversion = make_regularized_inversion(projection, profile, lambda);
-    Eigen::VectorXd const weights = make_weights(profile);
-    Eigen::VectorXd const gradient = profile.gradient.array().isFinite().select(profile.gradient.array(), 0.0);
-    Eigen::MatrixXd const hat = projection * inversion;
-    Eigen::VectorXd const residual = gradient - hat * gradient;
-    quality.chi_square += residual.cwiseAbs2().dot(weights);
-    for (Eigen::Index i = 0; i < weights.size(); ++i)
-      if (weights[i] > 0.0) {
-        quality.effective_parameters += hat(i, i);
-        quality.count += 1.0;
-      }
-  }
+FitQuality evaluate_row(Eigen::MatrixXd const& projection, RadialProfile const& profile, double lambda) {
+  Eigen::MatrixXd const inversion = make_regularized_inversion(projection, profile, lambda);
+  Eigen::VectorXd const weights = make_weights(profile);
+  Eigen::VectorXd const gradient = profile.gradient.array().isFinite().select(profile.gradient.array(), 0.0);
+  Eigen::MatrixXd const hat = projection * inversion;
+  Eigen::VectorXd const residual = gradient - hat * gradient;
+  FitQuality quality{residual.cwiseAbs2().dot(weights), 0.0, 0.0};
+  for (Eigen::Index i = 0; i < weights.size(); ++i)
+    if (weights[i] > 0.0) {
+      quality.effective_parameters += hat(i, i);
+      quality.count += 1.0;
+    }
   return quality;
+}
+
+FitQuality evaluate_fit(Eigen::MatrixXd const& projection, std::span<RadialProfile const> profiles, double lambda) {
+  std::vector<FitQuality> rows(profiles.size());
+  parallel_for(rows.size(), [&](std::size_t i) { rows[i] = evaluate_row(projection, profiles[i], lambda); });
+  FitQuality sum;
+  for (FitQuality const& row : rows) {
+    sum.chi_square += row.chi_square;
+    sum.effective_parameters += row.effective_parameters;
+    sum.count += row.count;
+  }
+  return sum;
 }
 
 }  // namespace
@@ -68,9 +79,9 @@ Eigen::MatrixXd make_regularized_inversion(Eigen::MatrixXd const& projection, Ra
 double choose_regularization(Eigen::MatrixXd const& projection, std::span<RadialProfile const> profiles,
                              RegularizationChoice choice) {
   GLADSTONE_EXPECTS(!profiles.empty() && choice != RegularizationChoice::given);
-  double low = std::log(1e-8), high = std::log(1e8);
+  double low = std::log(1e-4), high = std::log(1e8);
   if (choice == RegularizationChoice::discrepancy) {  // chi^2 increases with lambda
-    for (int i = 0; i < 24; ++i) {
+    for (int i = 0; i < 16; ++i) {
       double const middle = 0.5 * (low + high);
       FitQuality const quality = evaluate_fit(projection, profiles, std::exp(middle));
       (quality.chi_square < quality.count ? low : high) = middle;
@@ -78,8 +89,8 @@ double choose_regularization(Eigen::MatrixXd const& projection, std::span<Radial
     return std::exp(0.5 * (low + high));
   }
   double best = low, best_score = 0.0;
-  for (int i = 0; i <= 48; ++i) {  // a factor of 2.15 per step
-    double const logarithm = low + (high - low) * i / 48;
+  for (int i = 0; i <= 24; ++i) {  // a factor of 3.2 per step
+    double const logarithm = low + (high - low) * i / 24;
     FitQuality const quality = evaluate_fit(projection, profiles, std::exp(logarithm));
     double const freedom = 1.0 - quality.effective_parameters / quality.count;
     double const score = quality.chi_square / (freedom * freedom);

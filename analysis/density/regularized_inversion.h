@@ -25,8 +25,9 @@ enum class RegularizationChoice {
   cross_validation  ///< generalised cross-validation (Golub, Heath & Wahba, Technometrics 21 (1979) 215)
 };
 
-/// Determines lambda from profiles by the discrepancy principle or by cross-validation, between 1e-8 and 1e8. Both
-/// assume independent errors: for overlapping windows cross-validation regularises too little.
+/// Determines lambda from profiles by the discrepancy principle or by cross-validation, between 1e-4 and 1e8. Both
+/// assume independent errors: for overlapping windows cross-validation regularises too little. The discrepancy
+/// principle tends to smooth too much.
 /// @param profiles  of at least one row
 double choose_regularization(Eigen::MatrixXd const& projection, std::span<RadialProfile const> profiles,
                              RegularizationChoice choice);

@@ -64,8 +64,6 @@ TEST(ApertureDeconvolution, RestoresWhatTheConeAverages) {
   EXPECT_GT(before.largest, 0.1);
   EXPECT_LT(after.largest, 0.1 * before.largest);
   EXPECT_LT(after.rms, 0.1 * before.rms);
-  std::printf("deconvolution: largest error %.4f -> %.4f, rms %.5f -> %.5f\n", before.largest, after.largest,
-              before.rms, after.rms);
 
   // A hole away from the Gaussian hardly matters; its nodes stay NaN
   std::vector<std::uint8_t> determined = all;
@@ -115,8 +113,6 @@ TEST(ApertureDeconvolution, StatesTheNoiseItCosts) {
   std::size_t const node = map.grid.index(15, 12);
   EXPECT_GT(after.sigma[node], 1.05 * before.sigma[node]);
   EXPECT_LT(after.sigma[node], deconvolution.white_noise_gain() * before.sigma[node]);
-  std::printf("noise cost %.3f, white noise %.3f\n", after.sigma[node] / before.sigma[node],
-              deconvolution.white_noise_gain());
 }
 
 TEST(ApertureDeconvolution, RejectsBadInput) {

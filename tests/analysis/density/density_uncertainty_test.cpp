@@ -112,8 +112,6 @@ TEST(DensityUncertainty, CoversTheErrorsOfCorrelatedNoise) {
           within_independent += std::abs(density[i] - truth[i]) <= independent.sigma[i];
         }
       }
-      std::printf("overlap %.2f method %d: coverage %.3f, without correlation %.3f\n", overlap,
-                  static_cast<int>(method), within / count, within_independent / count);
       EXPECT_GT(within / count, 0.60);
       EXPECT_LT(within / count, 0.76);
       if (overlap > 0.6) {
@@ -137,7 +135,6 @@ TEST(DensityUncertainty, IsReducedByTheWeights) {
     for (double e : weighted.integrate_error(noise)) weighted_sum += e * e;
     for (double e : poisson.integrate_error(noise)) poisson_sum += e * e;
   }
-  std::printf("random error, weighted / Poisson: %.3f\n", std::sqrt(weighted_sum / poisson_sum));
   EXPECT_LT(std::sqrt(weighted_sum / poisson_sum), 0.7);
 }
 
