@@ -121,6 +121,41 @@ TEST(DensityUncertainty, CoversTheErrorsOfCorrelatedNoise) {
   }
 }
 
+// The same with noise that does not come from WindowCorrelation: each vector's error is the mean of white pixel noise
+// over its window of 4 x 4 cells, one cell being the distance between vectors (75 % overlap).
+TEST(DensityUncertainty, CoversTheErrorsOfPixelNoiseInTheWindows) {
+  int const n = 25, cells = 4;
+  GradientMap const map = noisy_map(n);
+  DensityIntegrator const integrator(map, zero_left_side(map.grid));
+  DensityUncertainty const result = propagate_uncertainty(integrator, map.sigma, WindowOverlap::from_fraction(0.75));
+  double within = 0.0, count = 0.0;
+  for (std::uint64_t seed = 1; seed <= 30; ++seed) {
+    KeyedEngine engine(seed, RandomStream::noise_reference, 11);
+    int const pixels = n + cells - 1;
+    std::vector<Vec2d> pixel(static_cast<std::size_t>(pixels * pixels));
+    for (Vec2d& value : pixel) value = {normal_variate(engine), normal_variate(engine)};
+    std::vector<Vec2d> error(map.grid.size());
+    for (int row = 0; row < n; ++row)
+      for (int column = 0; column < n; ++column) {
+        Vec2d mean{};
+        for (int j = 0; j < cells; ++j)
+          for (int i = 0; i < cells; ++i)
+            mean += pixel[static_cast<std::size_t>((row + j) * pixels + column + i)] / cells;  // of unit variance
+        Vec2d const sigma = map.sigma[map.grid.index(column, row)];
+        error[map.grid.index(column, row)] = {sigma.x * mean.x, sigma.y * mean.y};
+      }
+    std::vector<double> const density_error = integrator.integrate_error(error);
+    for (std::size_t i = 0; i < density_error.size(); ++i) {
+      if (integrator.reference_nodes()[i] != 0) continue;
+      count += 1.0;
+      within += std::abs(density_error[i]) <= result.sigma[i];
+    }
+  }
+  RecordProperty("coverage", std::to_string(within / count));
+  EXPECT_GT(within / count, 0.60);
+  EXPECT_LT(within / count, 0.76);
+}
+
 // Noise varies over the field by a factor of 11: the weights keep the noisy band out.
 TEST(DensityUncertainty, IsReducedByTheWeights) {
   int const n = 49;
