@@ -2,22 +2,14 @@
 
 #include <cmath>
 
-#include "render/base/gauss_legendre.h"
+#include "analysis/density/disc_transfer.h"
 
 namespace gladstone::density {
 
 double compute_aperture_transfer(ApertureCone const& cone, double wavenumber) {
-  static GaussLegendre const rule(12);
-  double sum = 0.0, weights = 0.0;
-  for (std::size_t i = 0; i < rule.node.size(); ++i) {
-    double const s = cone.target_distance + 0.5 * cone.thickness * rule.node[i];
-    double const diameter = cone.pupil_diameter * s / (cone.lens_distance + cone.target_distance);
-    double const phase = pi * diameter * std::abs(wavenumber);
-    double const transfer = phase < 1e-6 ? 1.0 : 2.0 * std::cyl_bessel_j(1.0, phase) / phase;
-    sum += rule.weight[i] * s * transfer;
-    weights += rule.weight[i] * s;
-  }
-  return sum / weights;
+  if (wavenumber == 0.0) return 1.0;
+  return cone_transfer(cone.pupil_diameter, cone.lens_distance + cone.target_distance, cone.target_distance,
+                       cone.thickness, 1.0 / std::abs(wavenumber));
 }
 
 double find_resolved_wavelength(ApertureCone const& cone, double wiener_parameter) {
