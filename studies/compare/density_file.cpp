@@ -179,6 +179,10 @@ std::string reconstruction_report(Reconstruction const& reconstruction) {
           fmt::format("  {:.1f} % of the errors lie within one standard uncertainty (normal distribution: 68.3 %)\n",
                       100.0 * errors.coverage);
   }
+  if (!reconstruction.budget.empty())
+    text += fmt::format("  {:<28} {:>10} {:>10}\n", "causes of the error [kg/m^3]", "bias", "rms");
+  for (DensityTerm const& term : reconstruction.budget)
+    text += fmt::format("  {:<28} {:>10.3g} {:>10.3g}\n", term.name, term.bias, term.rms);
   return text;
 }
 

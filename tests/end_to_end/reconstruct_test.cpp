@@ -73,7 +73,7 @@ class ReconstructedDensity : public Workplace {
 };
 
 // The mean density over L = 14 mm is 1.2 + A a sqrt(pi)/L exp(-(x^2 + y^2)/a^2), 1.3266 kg/m^3 at the centre. Windows
-// of 16 px (1.0 mm) and the cone lower the peak by about (1.0^2/12 + 0.82^2/16) 2/a^2 = 6 % of the excess.
+// of 16 px (1.0 mm) and the cone lower the peak by at most (1.0^2/12 + 0.82^2/16) 2/a^2 = 6 % of the excess.
 TEST_F(ReconstructedDensity, IsTheMeanDensityOfABlob) {
   measure();
   auto const result = json_of({"reconstruct", "case", "-o", "density.h5", "--reference", "left", "--reference", "top"});
@@ -207,7 +207,7 @@ TEST_F(ReconstructedDensity, RefusesWhatDeterminesNoDensity) {
   refused({"--axisymmetric", "--axis", "x=70"}, 2, {"axis", "70"});
   refused({"--axisymmetric", "--abel", "tikhonov", "--lambda", "-1"}, 2, {"lambda", "-1"});
   refused({"--reference", "left", "--overlap", "1"}, 2, {"--overlap"});
-  refused({"--reference", "left", "--deconvolve", "0.5"}, 2, {"gain"});
+  refused({"--reference", "left", "--deconvolve", "0.5"}, 2, {"--deconvolve", "0.5"});
   refused({"--reference", "left", "--vectors", "absent.h5"}, 2, {"absent.h5"});
   expect_refused({"reconstruct", "setup.toml", "--reference", "left", "-o", "density.h5"}, 2, {"--vectors"});
   succeed({"correlate", "case", "-o", "v.csv"});
