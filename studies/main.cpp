@@ -35,6 +35,8 @@ constexpr std::array commands{
             attach_correlate},
     Command{"compare", "Compare measured vectors with ray truth and theory", "gladstone compare out/case",
             attach_compare},
+    Command{"reconstruct", "Convert the displacement of a BOS measurement to density and its uncertainty",
+            "gladstone reconstruct out/case --reference left -o out/density.h5", attach_reconstruct},
     Command{"trace", "Trace given rays and report where and why they end",
             "gladstone trace table1.toml --rays rays.csv -o out.csv", attach_trace},
     Command{"info", "Describe a field, an image, a lens, a sphere or a setup's particles",

@@ -148,7 +148,7 @@ Comparison compare_case(std::string const& folder, Backend const& device, Compar
   }
   CaseSetup loaded = load_case_setup(files.setup, {});
   GroundTruth const dots = read_truth(files.truth);
-  MeasuredVectors vectors = load_vectors(files.vectors, loaded, dots, options);
+  MeasuredVectors vectors = load_vectors(files.vectors, loaded, &dots, options);
   stop_point("comparing");
   std::vector<std::string> given;  // warnings already logged
   std::string fingerprint = comparison_fingerprint(files.sources, options);

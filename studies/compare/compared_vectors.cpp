@@ -123,7 +123,7 @@ void log_remarks(VectorFile const& file) {
   for (std::string const& note : file.notes) spdlog::info("{}", note);
 }
 
-MeasuredVectors load_vectors(std::string const& path, CaseSetup const& loaded, GroundTruth const& truth,
+MeasuredVectors load_vectors(std::string const& path, CaseSetup const& loaded, GroundTruth const* truth,
                              CompareOptions const& options) {
   VectorFile file = read_vectors(path);
   log_remarks(file);
@@ -142,8 +142,12 @@ MeasuredVectors load_vectors(std::string const& path, CaseSetup const& loaded, G
   bool const hdf5 = path.ends_with(".h5") || path.ends_with(".hdf5");
   if (options.conventions && specifies_reading(*options.conventions)) {
     vectors.report = file.format + " vectors, as specified: " + describe(file.conventions);
+  } else if (!truth) {
+    vectors.report =
+        fmt::format("{} vectors, read as {} (the conventions of this format; there is no truth to test them)",
+                    file.format, describe(file.conventions));
   } else if (file.foreign || !hdf5) {  // our .h5 files name their frames, so their conventions are certain
-    vectors.detected = detect(file, path, truth, camera);
+    vectors.detected = detect(file, path, *truth, camera);
     vectors.report = vectors.detected->report;
     file.conventions = vectors.detected->conventions;
   }

@@ -12,8 +12,9 @@ void log_remarks(VectorFile const& file);
 /// Reads a file of vectors, our own or another code's, by the conventions of its format or those given by the user.
 /// Rejects vectors that lie or point outside the image. Detects wrong axes, signs, units and positions by comparison
 /// with the case's truth; warns of them and stores them in `detected`.
+/// @param truth  of the case; null: unknown, and the conventions of the format are used without a test
 /// @throws DataError if no vector remains, no position is in px, or no convention fits the truth
-MeasuredVectors load_vectors(std::string const& path, CaseSetup const& loaded, GroundTruth const& truth,
+MeasuredVectors load_vectors(std::string const& path, CaseSetup const& loaded, GroundTruth const* truth,
                              CompareOptions const& options);
 
 }  // namespace gladstone

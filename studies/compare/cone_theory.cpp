@@ -5,10 +5,10 @@
 #include <complex>
 #include <cstddef>
 
+#include "analysis/density/disc_transfer.h"
 #include "render/base/contracts.h"
 #include "render/base/parallel.h"
 #include "render/base/units.h"
-#include "studies/compare/disc_transfer.h"
 
 namespace gladstone {
 namespace {

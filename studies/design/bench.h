@@ -4,12 +4,12 @@
 #include <cmath>
 #include <optional>
 
+#include "analysis/density/disc_transfer.h"
 #include "render/light/target_setup.h"
 #include "render/sensor/camera_equation.h"
 #include "render/sensor/camera_setup.h"
 #include "render/sensor/diffraction_spot.h"
 #include "studies/case/random_error.h"
-#include "studies/compare/disc_transfer.h"
 #include "studies/design/window_transfer.h"
 
 namespace gladstone {

@@ -98,6 +98,31 @@ TEST_F(DocumentedFiles, OfACaseHoldWhatTheirTablesName) {
   for (char const* attribute : {"errors_sha256", "made_from"}) EXPECT_NE(comparison.attribute(attribute), "");
 }
 
+TEST_F(DocumentedFiles, OfADensityHoldWhatTheirTablesName) {
+  render("case");
+  succeed({"correlate", "case", "-o", "v.csv"});
+  auto const tables = documented_tables("density.h5", "dataset");
+  ASSERT_EQ(tables.size(), 2u) << "one table for every file, one for rendered cases";
+  std::set<std::string> documented = names_of_first_column(tables[0]);
+  succeed(
+      {"reconstruct", "setup.toml", "--vectors", "v.csv", "--reference", "left", "-o", "density.h5", "--no-figures"});
+  expect_datasets("density.h5", documented);
+  documented.merge(names_of_first_column(tables[1]));
+  auto const summary = json_of({"reconstruct", "case", "--vectors", "v.csv", "--axisymmetric", "--axis", "x=0", "-o",
+                                "density.h5", "--no-figures"});
+  expect_datasets("density.h5", documented);
+  Hdf5Reader const file(in("density.h5").string());
+  for (char const* attribute : {"reference_density_kg_m3", "window_overlap_x", "window_overlap_y", "white_noise_gain",
+                                "samples", "axisymmetric", "axis_direction", "axis_mm", "axis_sigma_mm", "lambda",
+                                "asymmetry", "border_gradient", "vectors_sha256", "truth_sha256"})
+    EXPECT_NE(file.attribute(attribute), "") << attribute;
+  for (char const* key : {"vectors", "columns", "rows", "determined", "density_kg_m3.least", "density_kg_m3.median",
+                          "sigma_kg_m3.largest", "sigma_random_kg_m3.largest", "reference_density_kg_m3",
+                          "white_noise_gain", "axis.position_mm", "file", "error_kg_m3.count", "error_kg_m3.bias",
+                          "error_kg_m3.rms", "error_kg_m3.largest", "error_kg_m3.contrast", "error_kg_m3.coverage"})
+    EXPECT_TRUE(has_path(summary, key)) << key;
+}
+
 TEST_F(DocumentedFiles, OfACaseOfPivHoldWhatTheirTablesName) {
   write("setup.toml", R"(experiment = "piv"
 [camera]

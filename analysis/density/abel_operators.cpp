@@ -1,0 +1,93 @@
+#include "analysis/density/abel_operators.h"
+
+#include <array>
+#include <cmath>
+
+#include "render/base/contracts.h"
+#include "render/base/gauss_legendre.h"
+#include "render/base/units.h"
+
+namespace gladstone::density {
+namespace {
+
+/// Values (or derivatives) at t in [0, 1] of the Lagrange cubics of the nodes -1, 0, 1, 2.
+std::array<double, 4> lagrange_cubics(double t) {
+  return {-t * (t - 1) * (t - 2) / 6, (t + 1) * (t - 1) * (t - 2) / 2, -(t + 1) * t * (t - 2) / 2,
+          (t + 1) * t * (t - 1) / 6};
+}
+std::array<double, 4> lagrange_cubic_slopes(double t) {
+  return {-(3 * t * t - 6 * t + 2) / 6, (3 * t * t - 4 * t - 1) / 2, -(3 * t * t - 2 * t - 2) / 2, (3 * t * t - 1) / 6};
+}
+
+/// Calls visit(x, weight) for the quadrature of integral h(x) dx / sqrt(x^2 - r^2) over [low, high], r <= low, in units
+/// of the spacing. The substitution x^2 = r^2 + y^2 turns dx / sqrt(x^2 - r^2) into dy / x, which is smooth.
+template <class Visit>
+void integrate_abel_kernel(GaussLegendre const& rule, double r, double low, double high, Visit const& visit) {
+  double const y0 = std::sqrt(std::max(0.0, low * low - r * r)), y1 = std::sqrt(high * high - r * r);
+  for (std::size_t k = 0; k < rule.node.size(); ++k) {
+    double const y = 0.5 * (y0 + y1) + 0.5 * (y1 - y0) * rule.node[k];
+    double const x = std::sqrt(r * r + y * y);
+    visit(x, 0.5 * (y1 - y0) * rule.weight[k] / x);
+  }
+}
+
+}  // namespace
+
+Eigen::MatrixXd make_three_point_inversion(int n) {
+  GLADSTONE_EXPECTS(n >= 3);
+  Eigen::MatrixXd d = Eigen::MatrixXd::Zero(n, n);
+  // Adds factor times P_j, which is even about the axis and zero beyond the last radius
+  auto const add = [&](int i, int j, double factor) {
+    if (std::abs(j) < n) d(i, std::abs(j)) += factor;
+  };
+  for (int i = 0; i < n; ++i) {
+    for (int j = i; j <= n; ++j) {
+      // Around node j the projection is a parabola, its slope (P_j+1 - P_j-1)/2 + (x - j)(P_j+1 - 2 P_j + P_j-1)
+      double const low = std::max<double>(i, j - 0.5), high = j + 0.5, r = i;
+      double const s0 = std::sqrt(std::max(0.0, low * low - r * r)), s1 = std::sqrt(high * high - r * r);
+      // On the axis the slope at node 0 is x (P_1 - 2 P_0 + P_-1), and the logarithm has no factor
+      double const logarithm = i == 0 && j == 0 ? 0.0 : std::log((high + s1) / (low + s0));
+      double const slope = -logarithm / pi, curvature = -(s1 - s0 - j * logarithm) / pi;
+      add(i, j + 1, 0.5 * slope + curvature);
+      add(i, j, -2.0 * curvature);
+      add(i, j - 1, -0.5 * slope + curvature);
+    }
+  }
+  return d;
+}
+
+Eigen::MatrixXd make_gradient_inversion(int n) {
+  GLADSTONE_EXPECTS(n >= 3);
+  GaussLegendre const rule(12);
+  Eigen::MatrixXd d = Eigen::MatrixXd::Zero(n, n);
+  for (int i = 0; i < n; ++i)
+    for (int j = i; j + 1 < n; ++j)
+      integrate_abel_kernel(rule, i, j, j + 1, [&](double x, double weight) {
+        std::array<double, 4> const cubic = lagrange_cubics(x - j);
+        for (int k = 0; k < 4; ++k) {
+          int const node = j - 1 + k;
+          if (node == 0 || node >= n) continue;  // zero on the axis and beyond the last radius
+          double const sign = node < 0 ? -1.0 : 1.0;
+          d(i, std::abs(node)) -= sign * weight * cubic[static_cast<std::size_t>(k)] / pi;
+        }
+      });
+  return d;
+}
+
+Eigen::MatrixXd make_gradient_projection(int n) {
+  GLADSTONE_EXPECTS(n >= 3);
+  GaussLegendre const rule(12);
+  Eigen::MatrixXd f = Eigen::MatrixXd::Zero(n, n);
+  for (int i = 1; i < n; ++i)
+    for (int j = i; j < n; ++j)
+      integrate_abel_kernel(rule, i, j, j + 1, [&](double x, double weight) {
+        std::array<double, 4> const slope = lagrange_cubic_slopes(x - j);
+        for (int k = 0; k < 4; ++k) {
+          int const node = std::abs(j - 1 + k);
+          if (node < n) f(i, node) += 2.0 * i * weight * slope[static_cast<std::size_t>(k)];
+        }
+      });
+  return f;
+}
+
+}  // namespace gladstone::density

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "analysis/density/aperture_transfer.h"
+#include "analysis/density/gradient_map.h"
+
+namespace gladstone::density {
+
+/// Linear filter that compensates the averaging over the aperture cone in an integrated density, with a Wiener gain
+///   G(q) = H (1 + nu) / (H^2 + nu)
+/// of the transfer function H of compute_aperture_transfer(). G(0) = 1, the largest gain is (1 + nu)/(2 sqrt(nu)), and
+/// waves near and beyond the first zero of H stay lost. Applied by a cosine transform, which continues the density by
+/// reflection at the borders; holes are bridged by a harmonic function (Laplace equation). Within one cone diameter of
+/// borders and holes the result is therefore less accurate.
+///
+/// The deconvolution amplifies noise: pass apply() as the filter of propagate_uncertainty() for the sigma it costs.
+class ApertureDeconvolution {
+ public:
+  /// @param determined    nodes with a density [grid.size()]: 1 or 0
+  /// @param maximum_gain  largest amplification of any wave, above 1 [1]
+  /// @throws SetupError   if the gain is not above 1, or a length of the cone is not positive and finite
+  /// @throws DataError    if no node has a density
+  ApertureDeconvolution(PlaneGrid const& grid, std::span<std::uint8_t const> determined, ApertureCone const& cone,
+                        double maximum_gain);
+  ~ApertureDeconvolution();
+  ApertureDeconvolution(ApertureDeconvolution&&) noexcept;
+  ApertureDeconvolution& operator=(ApertureDeconvolution&&) noexcept;
+
+  /// Filters a density, or an error of the density.
+  /// @param density  [grid.size()]; ignored at nodes that are not determined
+  /// @return         [grid.size()]; NaN where the argument was NaN, 0 at other nodes that are not determined
+  std::vector<double> apply(std::span<double const> density) const;
+
+  double wiener_parameter() const;  ///< nu [1]
+  /// Amplification of white noise, rms of the gain over all waves of the grid [1]. An integrated density has mostly
+  /// long-waved noise, which is amplified less.
+  double white_noise_gain() const;
+
+ private:
+  struct Filter;
+  std::unique_ptr<Filter const> filter_;
+};
+
+}  // namespace gladstone::density

@@ -1,0 +1,157 @@
+#include "analysis/density/axisymmetric_inversion.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "analysis/density/abel_operators.h"
+#include "analysis/density/radial_profile.h"
+#include "render/base/error.h"
+#include "render/base/not_a_number.h"
+#include "render/base/parallel.h"
+
+namespace gladstone::density {
+namespace {
+
+/// Largest number of rows from which the regularisation parameter is determined.
+constexpr int regularization_rows = 8;
+
+void check_axisymmetric_settings(GradientMap const& map, AxisymmetricSettings const& settings) {
+  std::vector<SetupProblem> problems;
+  double const first = map.grid.origin.x, last = first + (map.grid.columns - 1) * map.grid.spacing.x;
+  if (settings.axis && !(*settings.axis >= first && *settings.axis <= last))
+    problems.push_back({"axis", fmt::format("the axis at {:.4g} mm is outside the image ({:.4g} to {:.4g} mm); give a "
+                                            "position inside, or none to find it",
+                                            1e3 * *settings.axis, 1e3 * first, 1e3 * last)});
+  if (settings.method == AbelMethod::tikhonov && settings.choice == RegularizationChoice::given &&
+      !(settings.lambda > 0.0 && std::isfinite(settings.lambda)))
+    problems.push_back({"lambda", fmt::format("expected a positive number, got {}", settings.lambda)});
+  if (!std::isfinite(settings.ambient_density))
+    problems.push_back({"ambient_density", fmt::format("expected a finite density, got {}", settings.ambient_density)});
+  if (!(settings.ambient_sigma >= 0.0))
+    problems.push_back({"ambient_sigma", fmt::format("expected 0 or more, got {}", settings.ambient_sigma)});
+  if (!problems.empty()) throw SetupError(problems);
+  if (settings.method == AbelMethod::tikhonov && settings.choice == RegularizationChoice::discrepancy &&
+      map.sigma.empty())
+    throw DataError("density gradient",
+                    "the discrepancy principle needs the uncertainty of the vectors (none is "
+                    "given); use cross-validation, or give lambda");
+}
+
+/// Determines lambda from rows spread over the map.
+double determine_lambda(Eigen::MatrixXd const& projection, std::vector<RadialProfile> const& profiles,
+                        AxisymmetricSettings const& settings) {
+  if (settings.choice == RegularizationChoice::given) return settings.lambda;
+  std::vector<RadialProfile> chosen;
+  auto const rows = static_cast<int>(profiles.size()), count = std::min(rows, regularization_rows);
+  for (int k = 0; k < count; ++k) {
+    RadialProfile const& profile = profiles[static_cast<std::size_t>((2 * k + 1) * rows / (2 * count))];
+    if (profile.gradient.tail(profile.gradient.size() - 1).array().isFinite().any()) chosen.push_back(profile);
+  }
+  if (chosen.empty())
+    throw DataError("density gradient", "no row has valid vectors; check the mask and the axis of symmetry");
+  return choose_regularization(projection, chosen, settings.choice);
+}
+
+/// Smallest radius whose density the direct method determines: all larger radii are measured.
+int find_first_radius(RadialProfile const& profile) {
+  auto radius = static_cast<int>(profile.gradient.size());
+  while (radius > 0 && std::isfinite(profile.gradient[radius - 1])) --radius;
+  return radius;
+}
+
+/// Standard uncertainties of linear combinations of one row's vectors, with the correlation of overlapping windows.
+/// @param weights  [radii, columns]
+Eigen::VectorXd propagate_row(Eigen::MatrixXd const& weights, GradientMap const& map, int row, double window) {
+  Eigen::Index const columns = weights.cols();
+  Eigen::MatrixXd scaled = weights;
+  for (Eigen::Index i = 0; i < columns; ++i) scaled.col(i) *= map.sigma[map.grid.index(static_cast<int>(i), row)].x;
+  Eigen::VectorXd variance = scaled.rowwise().squaredNorm();
+  for (Eigen::Index lag = 1; lag < std::min<double>(columns, window); ++lag) {
+    double const correlation = 1.0 - static_cast<double>(lag) / window;
+    variance += 2.0 * correlation *
+                scaled.leftCols(columns - lag).cwiseProduct(scaled.rightCols(columns - lag)).rowwise().sum();
+  }
+  return variance.cwiseMax(0.0).cwiseSqrt();
+}
+
+/// Sums of squares of the gradient in all radii and in the outer 5 %, as a ratio of rms values.
+double compute_border_gradient(std::vector<RadialProfile> const& profiles) {
+  double all = 0.0, border = 0.0, count_all = 0.0, count_border = 0.0;
+  for (RadialProfile const& profile : profiles)
+    for (Eigen::Index i = 1; i < profile.gradient.size(); ++i) {
+      double const square = profile.gradient[i] * profile.gradient[i];
+      if (!std::isfinite(square)) continue;
+      all += square;
+      count_all += 1.0;
+      if (static_cast<double>(i) < 0.95 * static_cast<double>(profile.gradient.size() - 1)) continue;
+      border += square;
+      count_border += 1.0;
+    }
+  return std::sqrt(border / count_border / (all / count_all));
+}
+
+}  // namespace
+
+AxisymmetricDensity invert_axisymmetric(GradientMap const& projected, AxisymmetricSettings const& settings) {
+  check_gradient_map(projected);
+  if (settings.direction == AxisDirection::horizontal) {
+    AxisymmetricSettings vertical = settings;
+    vertical.direction = AxisDirection::vertical;
+    vertical.overlap = {settings.overlap.y, settings.overlap.x};
+    return invert_axisymmetric(transpose_map(projected), vertical);
+  }
+  check_axisymmetric_settings(projected, settings);
+  WindowCorrelation const checked(projected.grid.columns, projected.grid.rows, settings.overlap);
+
+  // Fold all rows about the axis
+  AxisymmetricDensity result;
+  result.axis = settings.axis ? SymmetryAxis{*settings.axis, not_a_number}
+                              : find_symmetry_axis(projected, AxisDirection::vertical, settings.overlap);
+  int const radii = count_radii(projected.grid, result.axis.position), rows = projected.grid.rows;
+  if (radii < 4)
+    throw DataError("density gradient", fmt::format("{} radii beside the axis are too few for an Abel inversion (at "
+                                                    "least 4); use smaller windows or more overlap",
+                                                    radii));
+  std::vector<RadialProfile> profiles(static_cast<std::size_t>(rows));
+  parallel_for(profiles.size(), [&](std::size_t row) {
+    profiles[row] = fold_row(projected, static_cast<int>(row), result.axis.position);
+  });
+  double odd = 0.0, even = 0.0;
+  for (RadialProfile const& profile : profiles) {
+    odd += profile.odd_square;
+    even += profile.even_square;
+  }
+  result.asymmetry = odd > 0.0 ? std::sqrt(even / odd) : not_a_number;
+  result.border_gradient = compute_border_gradient(profiles);
+
+  // Invert row by row
+  bool const is_direct = settings.method == AbelMethod::direct;
+  Eigen::MatrixXd const direct = is_direct ? make_gradient_inversion(radii) : Eigen::MatrixXd();
+  Eigen::MatrixXd const projection = is_direct ? Eigen::MatrixXd() : make_gradient_projection(radii);
+  if (!is_direct) result.lambda = determine_lambda(projection, profiles, settings);
+  result.grid = {radii, rows, {0.0, projected.grid.origin.y}, projected.grid.spacing};
+  result.density.assign(result.grid.size(), not_a_number);
+  result.sigma.assign(result.grid.size(), not_a_number);
+  parallel_for(profiles.size(), [&](std::size_t r) {
+    RadialProfile const& profile = profiles[r];
+    int const row = static_cast<int>(r), first = is_direct ? find_first_radius(profile) : 0;
+    bool const is_measured = profile.gradient.tail(radii - 1).array().isFinite().any();
+    if (!is_measured) return;
+    Eigen::VectorXd const gradient = profile.gradient.array().isFinite().select(profile.gradient.array(), 0.0);
+    Eigen::MatrixXd const inversion =
+        is_direct ? direct : make_regularized_inversion(projection, profile, result.lambda);
+    Eigen::VectorXd const excess = inversion * gradient;
+    Eigen::VectorXd const sigma = projected.sigma.empty()
+                                      ? Eigen::VectorXd::Constant(radii, not_a_number)
+                                      : propagate_row(inversion * profile.fold, projected, row, settings.overlap.x);
+    for (int i = first; i < radii; ++i) {
+      result.density[result.grid.index(i, row)] = settings.ambient_density + excess[i];
+      result.sigma[result.grid.index(i, row)] = std::hypot(sigma[i], settings.ambient_sigma);
+    }
+  });
+  return result;
+}
+
+}  // namespace gladstone::density

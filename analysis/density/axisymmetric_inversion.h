@@ -1,0 +1,58 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "analysis/density/gradient_map.h"
+#include "analysis/density/regularized_inversion.h"
+#include "analysis/density/symmetry_axis.h"
+#include "analysis/density/window_correlation.h"
+
+namespace gladstone::density {
+
+enum class AbelMethod {
+  direct,  ///< make_gradient_inversion(): fourth order, noise grows towards the axis
+  /// make_regularized_inversion(): less noise where the vectors are much finer than the structures, but smooths. The
+  /// inversion of a gradient amplifies noise little, so the gain is small on coarse grids.
+  tikhonov
+};
+
+struct AxisymmetricSettings {
+  AxisDirection direction = AxisDirection::vertical;
+  std::optional<double> axis;  ///< x of a vertical, y of a horizontal axis [m]; nullopt: find_symmetry_axis()
+  AbelMethod method = AbelMethod::direct;
+  RegularizationChoice choice = RegularizationChoice::cross_validation;
+  double lambda = 0.0;           ///< regularisation parameter for RegularizationChoice::given [1]
+  WindowOverlap overlap;         ///< of the interrogation windows, for sigma
+  double ambient_density = 0.0;  ///< density beyond the last radius: the gauge [kg/m^3]
+  double ambient_sigma = 0.0;    ///< its standard uncertainty [kg/m^3]
+};
+
+/// Density in a half plane through the axis of symmetry.
+struct AxisymmetricDensity {
+  PlaneGrid grid;               ///< x: radius from 0, y: position along the axis [m]
+  std::vector<double> density;  ///< [kg/m^3, grid.size()]; NaN: not determined
+  /// Propagated standard uncertainty [kg/m^3, grid.size()]; NaN without sigma. It includes neither the position of the
+  /// axis nor the smoothing of the regularisation.
+  std::vector<double> sigma;
+  SymmetryAxis axis;    ///< sigma is NaN if the axis was given
+  double lambda = 0.0;  ///< regularisation parameter; 0: none
+  /// Even over odd part of the gradient about the axis, rms [1]: 0 for an axisymmetric flow without noise.
+  double asymmetry = 0.0;
+  /// Gradient in the outer 5 % of the radii relative to that of all radii, rms [1]. If it is not small, the flow
+  /// extends beyond the image, and the density is biased.
+  double border_gradient = 0.0;
+};
+
+/// Inverts the projected gradient of an axisymmetric flow to density, row by row across the axis. A deflection is
+/// already the derivative of the projection, so nothing is differentiated. Assumes parallel lines of sight and ambient
+/// density beyond the last radius. With the direct method a hole in the gradient leaves all smaller radii of its row
+/// undetermined.
+/// @param projected  from compute_projected_gradient() [kg/m^3]
+/// @throws SetupError  if the axis is outside the grid, lambda is not positive (choice `given`), the ambient density is
+///                     not finite, or the overlap does not fit the grid
+/// @throws DataError   if the discrepancy principle is chosen for a gradient without sigma; see also
+///                     check_gradient_map() and find_symmetry_axis()
+AxisymmetricDensity invert_axisymmetric(GradientMap const& projected, AxisymmetricSettings const& settings);
+
+}  // namespace gladstone::density

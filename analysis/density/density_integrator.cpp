@@ -1,0 +1,218 @@
+#include "analysis/density/density_integrator.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/SparseCore>
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "analysis/density/least_squares_solver.h"
+#include "render/base/contracts.h"
+#include "render/base/error.h"
+#include "render/base/not_a_number.h"
+
+namespace gladstone::density {
+namespace {
+
+constexpr int not_unknown = -1;
+
+/// Checks the reference against the map and counts the reference nodes of every region.
+void count_references(GradientMap const& map, ReferenceDensity const& reference, RegionMap& regions) {
+  if (reference.value.size() != map.grid.size())
+    throw SetupError(
+        {SetupProblem{"reference", fmt::format("{} reference values for {} nodes; give one per node, NaN elsewhere",
+                                               reference.value.size(), map.grid.size())}});
+  std::size_t given = 0, used = 0;
+  for (std::size_t i = 0; i < map.grid.size(); ++i) {
+    if (std::isnan(reference.value[i])) continue;
+    if (!std::isfinite(reference.value[i]))
+      throw SetupError({SetupProblem{"reference", "a reference density is infinite; expected finite numbers"}});
+    ++given;
+    if (regions.label[i] < 0) continue;
+    ++used;
+    ++regions.regions[static_cast<std::size_t>(regions.label[i])].reference_nodes;
+  }
+  if (given == 0)
+    throw SetupError({SetupProblem{"reference",
+                                   "no reference density is given (the gradient determines the density up to a "
+                                   "constant); name a region of known density"}});
+  if (used == 0)
+    throw DataError("reference",
+                    fmt::format("all {} nodes of the reference region are masked or invalid (no node fixes "
+                                "the density); move the reference region or the mask",
+                                given));
+}
+
+void reject_unreferenced(RegionMap const& regions) {
+  std::string list;
+  std::size_t count = 0;
+  for (Region const& region : regions.regions) {
+    if (region.reference_nodes > 0) continue;
+    if (count++ < 5) list += (list.empty() ? "" : "; ") + describe_region(region);
+  }
+  if (count == 0) return;
+  throw DataError("reference", fmt::format("{} of {} disconnected regions have no reference density ({}{}); name a "
+                                           "reference region in each, or leave these regions out",
+                                           count, regions.regions.size(), list, count > 5 ? "; ..." : ""));
+}
+
+}  // namespace
+
+/// Equations of the integration and their factorised normal equations.
+struct DensityIntegrator::System {
+  PlaneGrid grid;
+  RegionMap regions;
+  ReferenceDensity reference;
+  std::vector<std::uint8_t> determined, is_reference;
+  std::vector<int> unknown;                 ///< index of the node's unknown; not_unknown: reference or undetermined
+  std::vector<std::size_t> node;            ///< node of every unknown
+  std::vector<LineDifference> differences;  ///< of the determined nodes
+  std::vector<double> weight;               ///< of every difference
+  std::optional<NormalEquations> equations;
+
+  /// Adds A^T W r to the right-hand side of the unknowns, with r the right-hand side of one difference.
+  void add_difference(Eigen::VectorXd& right_side, std::size_t k, double value) const {
+    int const from = unknown[differences[k].from], to = unknown[differences[k].to];
+    if (from != not_unknown) right_side[from] -= weight[k] * value;
+    if (to != not_unknown) right_side[to] += weight[k] * value;
+  }
+
+  double line_integral(LineDifference const& d, std::span<Vec2d const> gradient) const {
+    double sum = 0.0;
+    for (int t = 0; t < d.terms; ++t) {
+      auto const i = static_cast<std::size_t>(t);
+      Vec2d const& g = gradient[d.node[i]];
+      sum += d.factor[i] * (d.axis == Axis::x ? g.x : g.y);
+    }
+    return sum;
+  }
+
+  /// Solves for the unknowns with the given density at the reference nodes.
+  std::vector<double> solve(std::span<Vec2d const> gradient, bool with_reference) const {
+    GLADSTONE_EXPECTS(gradient.size() == grid.size());
+    std::vector<double> density(grid.size(), with_reference ? not_a_number : 0.0);
+    if (with_reference)
+      for (std::size_t i = 0; i < grid.size(); ++i)
+        if (is_reference[i] != 0) density[i] = reference.value[i];
+    if (node.empty()) return density;
+    Eigen::VectorXd right_side = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(node.size()));
+    for (std::size_t k = 0; k < differences.size(); ++k) {
+      LineDifference const& d = differences[k];
+      double value = line_integral(d, gradient);
+      if (with_reference && is_reference[d.from] != 0) value += reference.value[d.from];
+      if (with_reference && is_reference[d.to] != 0) value -= reference.value[d.to];
+      add_difference(right_side, k, value);
+    }
+    Eigen::VectorXd const x = equations->solve(right_side);
+    for (std::size_t i = 0; i < node.size(); ++i) density[node[i]] = x[static_cast<Eigen::Index>(i)];
+    return density;
+  }
+
+  void factorize(std::size_t direct_limit) {
+    std::vector<Eigen::Triplet<double>> triplets;
+    triplets.reserve(4 * differences.size());
+    for (std::size_t k = 0; k < differences.size(); ++k) {
+      int const from = unknown[differences[k].from], to = unknown[differences[k].to];
+      if (from != not_unknown) triplets.emplace_back(from, from, weight[k]);
+      if (to != not_unknown) triplets.emplace_back(to, to, weight[k]);
+      if (from == not_unknown || to == not_unknown) continue;
+      triplets.emplace_back(from, to, -weight[k]);
+      triplets.emplace_back(to, from, -weight[k]);
+    }
+    auto const size = static_cast<Eigen::Index>(node.size());
+    NormalEquations::Matrix matrix(size, size);
+    matrix.setFromTriplets(triplets.begin(), triplets.end());
+    equations.emplace(std::move(matrix), direct_limit);
+  }
+};
+
+DensityIntegrator::DensityIntegrator(GradientMap const& map, ReferenceDensity const& reference,
+                                     IntegrationSettings const& settings) {
+  check_gradient_map(map);
+  auto system = std::make_unique<System>();
+  system->grid = map.grid;
+  system->reference = reference;
+  system->regions = find_regions(map);
+  count_references(map, reference, system->regions);
+  if (settings.unreferenced == UnreferencedRegions::error) reject_unreferenced(system->regions);
+
+  // Number the unknowns
+  std::size_t const size = map.grid.size();
+  system->determined.assign(size, 0);
+  system->is_reference.assign(size, 0);
+  system->unknown.assign(size, not_unknown);
+  for (std::size_t i = 0; i < size; ++i) {
+    int const label = system->regions.label[i];
+    if (label < 0 || system->regions.regions[static_cast<std::size_t>(label)].reference_nodes == 0) continue;
+    system->determined[i] = 1;
+    if (!std::isnan(reference.value[i])) {
+      system->is_reference[i] = 1;
+      continue;
+    }
+    system->unknown[i] = static_cast<int>(system->node.size());
+    system->node.push_back(i);
+  }
+
+  // Set up the equations and their weights
+  bool const is_poisson = settings.method == IntegrationMethod::poisson;
+  for (LineDifference const& d : make_line_differences(map, is_poisson ? EdgeRule::trapezoid : settings.rule)) {
+    if (system->determined[d.from] == 0) continue;
+    system->differences.push_back(d);
+    double const spacing = d.axis == Axis::x ? map.grid.spacing.x : map.grid.spacing.y;
+    system->weight.push_back(is_poisson ? 0.5 * std::max(d.cells, 1) / (spacing * spacing)
+                                        : 1.0 / compute_variance(d, map.sigma));
+  }
+  if (!system->node.empty()) system->factorize(settings.direct_limit);
+  system_ = std::move(system);
+}
+
+DensityIntegrator::~DensityIntegrator() = default;
+DensityIntegrator::DensityIntegrator(DensityIntegrator&&) noexcept = default;
+DensityIntegrator& DensityIntegrator::operator=(DensityIntegrator&&) noexcept = default;
+
+PlaneGrid const& DensityIntegrator::grid() const { return system_->grid; }
+std::vector<Region> const& DensityIntegrator::regions() const { return system_->regions.regions; }
+std::vector<std::uint8_t> const& DensityIntegrator::determined() const { return system_->determined; }
+std::vector<std::uint8_t> const& DensityIntegrator::reference_nodes() const { return system_->is_reference; }
+std::size_t DensityIntegrator::unknowns() const { return system_->node.size(); }
+
+std::vector<double> DensityIntegrator::integrate(std::span<Vec2d const> gradient) const {
+  return system_->solve(gradient, true);
+}
+
+std::vector<double> DensityIntegrator::integrate_error(std::span<Vec2d const> gradient_error) const {
+  return system_->solve(gradient_error, false);
+}
+
+std::vector<Vec2d> DensityIntegrator::compute_sensitivity(std::size_t node) const {
+  System const& s = *system_;
+  GLADSTONE_EXPECTS(node < s.grid.size() && s.determined[node] != 0);
+  std::vector<Vec2d> sensitivity(s.grid.size());
+  if (s.unknown[node] == not_unknown) return sensitivity;
+  // The row of N^-1 A^T W B that belongs to the node: N is symmetric
+  Eigen::VectorXd unit = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(s.node.size()));
+  unit[s.unknown[node]] = 1.0;
+  Eigen::VectorXd const y = s.equations->solve(unit);
+  for (std::size_t k = 0; k < s.differences.size(); ++k) {
+    LineDifference const& d = s.differences[k];
+    int const from = s.unknown[d.from], to = s.unknown[d.to];
+    double const value = s.weight[k] * ((to != not_unknown ? y[to] : 0.0) - (from != not_unknown ? y[from] : 0.0));
+    for (int t = 0; t < d.terms; ++t) {
+      auto const i = static_cast<std::size_t>(t);
+      Vec2d& target = sensitivity[d.node[i]];
+      (d.axis == Axis::x ? target.x : target.y) += d.factor[i] * value;
+    }
+  }
+  return sensitivity;
+}
+
+DensityMap integrate_density(GradientMap const& map, ReferenceDensity const& reference,
+                             IntegrationSettings const& settings) {
+  DensityIntegrator const integrator(map, reference, settings);
+  return {map.grid, integrator.integrate(map.gradient), integrator.regions()};
+}
+
+}  // namespace gladstone::density

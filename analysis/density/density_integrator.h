@@ -1,0 +1,84 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "analysis/density/gradient_map.h"
+#include "analysis/density/line_differences.h"
+#include "analysis/density/reference_density.h"
+#include "analysis/density/regions.h"
+
+namespace gladstone::density {
+
+enum class IntegrationMethod {
+  /// Minimises sum of (density difference - line integral of the gradient)^2 / variance over all pairs of neighbouring
+  /// nodes. Rajendran, Zhang, Bane & Vlachos, Exp. Fluids 61 (2020) 239.
+  weighted_least_squares,
+  /// Five-point Poisson equation with the divergence of the gradient by central differences and natural Neumann
+  /// boundaries: the same minimisation by the trapezoid, without weights. For comparison.
+  poisson
+};
+
+/// Treatment of a region without reference nodes, whose density is undetermined by a constant.
+enum class UnreferencedRegions { error, leave_out };
+
+struct IntegrationSettings {
+  IntegrationMethod method = IntegrationMethod::weighted_least_squares;
+  EdgeRule rule = EdgeRule::four_point;  ///< of the weighted least squares
+  UnreferencedRegions unreferenced = UnreferencedRegions::error;
+  /// Largest number of unknowns that is solved by sparse Cholesky factorisation; above, by conjugate gradients.
+  std::size_t direct_limit = 400'000;
+};
+
+/// Density on the grid of the gradient.
+struct DensityMap {
+  PlaneGrid grid;
+  /// Density, unit of the gradient times m: kg/m^2 projected, kg/m^3 averaged [grid.size()]; NaN: not determined.
+  std::vector<double> density;
+  std::vector<Region> regions;  ///< in descending order of size
+};
+
+/// Integration of a gradient map by least squares, prepared once for any number of right-hand sides. The reference
+/// nodes have exactly the given density; all other borders, also of holes, have the natural (Neumann) condition that
+/// the density's normal derivative is that of the measurement. Second order in the spacing with the trapezoid, third at
+/// borders and fourth inside with the four-point rule, also next to borders and holes.
+class DensityIntegrator {
+ public:
+  /// @param map  gradient, with or without sigma: without it, all equations have equal weights
+  /// @throws DataError   see check_gradient_map(); also if the reference nodes are all masked, or if a region has no
+  ///                     reference node and `unreferenced` is `error`
+  /// @throws SetupError  if no reference node is given (no gauge), a reference value is infinite, or the reference
+  ///                     belongs to another grid
+  DensityIntegrator(GradientMap const& map, ReferenceDensity const& reference,
+                    IntegrationSettings const& settings = {});
+  ~DensityIntegrator();
+  DensityIntegrator(DensityIntegrator&&) noexcept;
+  DensityIntegrator& operator=(DensityIntegrator&&) noexcept;
+
+  PlaneGrid const& grid() const;
+  std::vector<Region> const& regions() const;
+  /// Nodes whose density is determined, including reference nodes [grid.size()]; 1 or 0.
+  std::vector<std::uint8_t> const& determined() const;
+  std::vector<std::uint8_t> const& reference_nodes() const;
+  std::size_t unknowns() const;
+
+  /// Integrates a gradient [grid.size()] with the reference density. NaN at nodes without a determined density.
+  std::vector<double> integrate(std::span<Vec2d const> gradient) const;
+  /// Integrates an error of the gradient, i.e. with zero density at the reference nodes; zero at undetermined nodes.
+  std::vector<double> integrate_error(std::span<Vec2d const> gradient_error) const;
+  /// Derivative of the density at one node with respect to every gradient component [m], [grid.size()].
+  /// @pre the node is determined
+  std::vector<Vec2d> compute_sensitivity(std::size_t node) const;
+
+ private:
+  struct System;
+  std::unique_ptr<System const> system_;
+};
+
+/// Integrates a gradient map to density; see DensityIntegrator for settings and errors.
+DensityMap integrate_density(GradientMap const& map, ReferenceDensity const& reference,
+                             IntegrationSettings const& settings = {});
+
+}  // namespace gladstone::density

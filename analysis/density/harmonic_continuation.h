@@ -1,0 +1,35 @@
+#pragma once
+
+#include <Eigen/SparseCholesky>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "analysis/density/gradient_map.h"
+
+namespace gladstone::density {
+
+/// Linear continuation of a density into its holes by the five-point Laplace equation, with natural conditions at the
+/// borders of the grid.
+class HarmonicContinuation {
+ public:
+  /// @param determined  nodes with a density [grid.size()]: 1, holes: 0
+  /// @pre at least one node has a density
+  HarmonicContinuation(PlaneGrid const& grid, std::span<std::uint8_t const> determined);
+  /// Replaces the values in the holes.
+  /// @param density  [grid.size()], ignored in the holes
+  Eigen::VectorXd fill(std::span<double const> density) const;
+
+ private:
+  /// Neighbour with a density of a node in a hole.
+  struct Link {
+    std::size_t hole, node;
+    double weight;  ///< [1/m^2]
+  };
+  std::vector<std::size_t> hole_;
+  std::vector<Link> outer_;
+  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> laplace_;
+};
+
+}  // namespace gladstone::density

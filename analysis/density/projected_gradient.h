@@ -1,0 +1,67 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+
+#include "analysis/density/gradient_map.h"
+#include "analysis/vectors/displacement_field.h"
+
+namespace gladstone::density {
+
+/// Optics of a BOS set-up, as far as they convert displacement to density gradient.
+struct ProjectionOptics {
+  double magnification = 0.0;    ///< M, of the dot plane [1]
+  double lens_distance = 0.0;    ///< Z_A, front principal plane of the lens to the medium's mid-plane [m]
+  double target_distance = 0.0;  ///< Z_D, medium's mid-plane to the dot plane [m]
+  double pixel_pitch = 0.0;      ///< p [m]
+  double gladstone_dale = 0.0;   ///< K [m^3/kg]
+  double ambient_index = 1.0;    ///< n0, refractive index around the medium [1]
+  Vec2d axis_px{};               ///< pixel coordinates of the optical axis (column, row) [px]
+
+  /// Displacement per projected density gradient, M Z_D K / (n0 p) [px/(kg/m^3)].
+  double sensitivity() const {
+    return magnification * target_distance * gladstone_dale / (ambient_index * pixel_pitch);
+  }
+  /// Magnification of the medium's mid-plane, M_A = M Z_B / Z_A with Z_B = Z_A + Z_D [1].
+  double medium_magnification() const { return magnification * (lens_distance + target_distance) / lens_distance; }
+};
+
+/// Standard uncertainties of the set-up, relative to the quantities [1].
+struct RelativeUncertainties {
+  double magnification = 0.0;
+  double target_distance = 0.0;
+  double gladstone_dale = 0.0;
+  double pixel_pitch = 0.0;
+  double thickness = 0.0;
+};
+
+/// Projected gradient and the number of vectors that were treated specially.
+struct ProjectedGradient {
+  GradientMap map;
+  std::size_t invalid = 0;        ///< vectors that are masked or invalid: holes of the map
+  std::size_t without_sigma = 0;  ///< valid vectors without sigma in a field with sigmas; they get the largest sigma
+};
+
+/// Converts the displacement of a BOS measurement on a regular grid to the projected density gradient,
+///   integral of d(rho)/dx dz = -u n0 p / (M Z_D K),   integral of d(rho)/dy dz = +v n0 p / (M Z_D K),
+/// in the world frame (x right, y up), where u and v are the displacement to the right and downwards. Rajendran, Bane &
+/// Vlachos, Meas. Sci. Technol. 30 (2019), Eq. 9; valid for small angles and a medium thin compared with Z_D (relative
+/// error eps^2 (2/3 + 7/24 L_z / Z_D)). The grid is that of the vectors, divided by the magnification M_A of the
+/// mid-plane, and its rows are reversed so that y increases.
+/// @param field  displacement [px] on an interrogation grid of at least 2 x 2 vectors
+/// @return projected gradient and its sigma [kg/m^3]; sigma is empty if no vector has one
+/// @throws SetupError  if a number of the optics is not positive and finite
+/// @throws DataError   if the vectors are not on a regular grid, or a displacement is not finite at a valid vector
+/// @throws NoValidVector  if no vector is valid
+ProjectedGradient compute_projected_gradient(DisplacementField const& field, ProjectionOptics const& optics);
+
+/// Divides a projected gradient by the thickness of the medium: mean density gradient along the line of sight [kg/m^4].
+/// @param thickness  L_z [m]
+/// @throws SetupError  if the thickness is not positive and finite
+GradientMap compute_mean_gradient(GradientMap const& projected, double thickness);
+
+/// Combines the relative uncertainties of the factors of Eq. 9, sqrt(sum of squares) [1]. The result is a scale error
+/// common to the whole field: it adds |rho - rho_reference| times this value to the uncertainty of the density.
+double combine_scale_uncertainty(RelativeUncertainties const& relative);
+
+}  // namespace gladstone::density

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "analysis/density/gradient_map.h"
+
+namespace gladstone::density {
+
+/// Radial profile of the gradient across a vertical axis in one row, combined from both sides of the axis.
+struct RadialProfile {
+  Eigen::VectorXd gradient;  ///< (g(axis + r) - g(axis - r))/2 at r = i spacing; NaN: no side is valid [radii]
+  Eigen::VectorXd sigma;     ///< of independent vectors, unit of the gradient (1 without sigma) [radii]
+  Eigen::MatrixXd fold;      ///< gradient = fold times the row's gradients [radii, columns]
+  double odd_square = 0.0;   ///< sum of squares of the folded gradient, over radii with both sides
+  double even_square = 0.0;  ///< sum of squares of the even part (g(axis + r) + g(axis - r))/2, over the same radii
+};
+
+/// Number of radii from the axis to the farther border of the grid.
+int count_radii(PlaneGrid const& grid, double axis);
+
+/// Folds one row about the axis. Each side is interpolated by the cubic through four valid nodes (linearly next to
+/// holes), and the sides are weighted with their inverse variances. The gradient on the axis is zero.
+/// @param axis  x of the axis, within the grid [m]
+RadialProfile fold_row(GradientMap const& map, int row, double axis);
+
+}  // namespace gladstone::density

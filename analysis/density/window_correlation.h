@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "analysis/density/gradient_map.h"
+
+namespace gladstone::density {
+
+/// Size of the interrogation windows relative to the distance between vectors, along x and y [1]: 1 / (1 - overlap).
+/// Values up to 1 mean vectors with independent errors. For weighted windows the size of the uniform window with the
+/// same noise: the effective window size.
+struct WindowOverlap {
+  double x = 1.0;
+  double y = 1.0;
+  /// Overlap as a fraction of the window size, 0 to below 1, equal along both axes.
+  static WindowOverlap from_fraction(double overlap);
+};
+
+/// Correlation of the errors of vectors whose interrogation windows overlap. Errors that are linear in the noise of the
+/// pixels correlate by the shared area of the two windows, for uniform windows of m grid steps
+///   r(i, j) = max(0, 1 - |i| / m_x) max(0, 1 - |j| / m_y)
+/// for vectors i columns and j rows apart (cf. Sciacchitano & Wieneke, Meas. Sci. Technol. 27 (2016) 084006). The
+/// two components of a vector are uncorrelated. The matrix of all correlations is the Kronecker product of two banded
+/// matrices, whose Cholesky factors are stored.
+class WindowCorrelation {
+ public:
+  /// @throws SetupError  if a size is not finite and positive, or exceeds the grid
+  WindowCorrelation(int columns, int rows, WindowOverlap overlap);
+
+  /// Correlates independent values of unit variance: L z, so that the covariance of the result is r.
+  /// @param values  [rows columns], row by row
+  std::vector<double> correlate(std::span<double const> values) const;
+  /// Transposed operation L^T z: the squared length of the result is z^T r z.
+  std::vector<double> correlate_transposed(std::span<double const> values) const;
+
+ private:
+  /// Banded Cholesky factor of one axis; row i has the elements of columns i - band to i.
+  struct Factor {
+    int size = 0, band = 0;
+    std::vector<double> element;
+    double operator()(int i, int j) const { return element[static_cast<std::size_t>(i) * (band + 1) + (j - i + band)]; }
+  };
+  static Factor factorize(int size, double window);
+  int columns_, rows_;
+  Factor along_x_, along_y_;
+};
+
+}  // namespace gladstone::density

@@ -1,0 +1,189 @@
+#include "studies/compare/density_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <span>
+
+#include "analysis/errors/error_summary.h"
+#include "render/base/not_a_number.h"
+#include "render/files/hdf5_file.h"
+#include "studies/case/json_text.h"
+
+namespace gladstone {
+namespace {
+
+constexpr char const* plane_axes = "row (y upwards), column (x)";
+
+std::vector<double> select_finite(std::vector<double> const& values) {
+  std::vector<double> finite;
+  std::copy_if(values.begin(), values.end(), std::back_inserter(finite), [](double v) { return std::isfinite(v); });
+  return finite;
+}
+
+/// Least, median and largest of the finite values; NaN without any.
+struct ValueRange {
+  std::size_t count = 0;
+  double least = not_a_number, median = not_a_number, largest = not_a_number;
+};
+
+ValueRange find_range(std::vector<double> const& values) {
+  std::vector<double> const finite = select_finite(values);
+  if (finite.empty()) return {};
+  auto const [least, largest] = std::minmax_element(finite.begin(), finite.end());
+  return {finite.size(), *least, quantile(finite, 0.5), *largest};
+}
+
+nlohmann::ordered_json range_json(ValueRange const& range) {
+  return {{"least", known_or_null(range.least)},
+          {"median", known_or_null(range.median)},
+          {"largest", known_or_null(range.largest)}};
+}
+
+char const* direction_name(density::AxisDirection direction) {
+  return direction == density::AxisDirection::vertical ? "vertical" : "horizontal";
+}
+
+std::vector<double> subtract(std::vector<double> const& a, std::vector<double> const& b) {
+  std::vector<double> difference(a.size());
+  std::transform(a.begin(), a.end(), b.begin(), difference.begin(), std::minus<>{});
+  return difference;
+}
+
+void write_axes(Hdf5Writer& file, density::PlaneGrid const& grid) {
+  std::vector<double> x_mm, y_mm;
+  for (int column = 0; column < grid.columns; ++column) x_mm.push_back(1e3 * grid.position(column, 0).x);
+  for (int row = 0; row < grid.rows; ++row) y_mm.push_back(1e3 * grid.position(0, row).y);
+  file.write("/x_mm", std::span<double const>(x_mm), {x_mm.size()}, "mm",
+             "position in the mid-plane of the medium, to the right of the optical axis", "column");
+  file.write("/y_mm", std::span<double const>(y_mm), {y_mm.size()}, "mm",
+             "position in the mid-plane of the medium, above the optical axis", "row");
+}
+
+void write_attributes(Hdf5Writer& file, Reconstruction const& reconstruction) {
+  file.attribute("/", "reference_density_kg_m3", reconstruction.reference_density);
+  file.attribute("/", "window_overlap_x", reconstruction.overlap.x);
+  file.attribute("/", "window_overlap_y", reconstruction.overlap.y);
+  file.attribute("/", "white_noise_gain", reconstruction.white_noise_gain);
+  file.attribute("/", "samples", static_cast<std::int64_t>(reconstruction.samples));
+  file.attribute("/", "axisymmetric", std::int64_t{reconstruction.axisymmetry ? 1 : 0});
+  if (!reconstruction.axisymmetry) return;
+  AxisymmetryResult const& flow = *reconstruction.axisymmetry;
+  file.attribute("/", "axis_direction", std::string(direction_name(flow.direction)));
+  file.attribute("/", "axis_mm", 1e3 * flow.axis.position);
+  file.attribute("/", "axis_sigma_mm", 1e3 * flow.axis.sigma);
+  file.attribute("/", "lambda", flow.lambda);
+  file.attribute("/", "asymmetry", flow.asymmetry);
+  file.attribute("/", "border_gradient", flow.border_gradient);
+}
+
+}  // namespace
+
+void write_density(std::string const& path, Reconstruction const& reconstruction) {
+  Hdf5Writer file(path,
+                  {"gladstone density", 1, reconstruction.setup, reconstruction.seed, "cpu", reconstruction.sources});
+  auto const rows = static_cast<std::size_t>(reconstruction.grid.rows),
+             columns = static_cast<std::size_t>(reconstruction.grid.columns);
+  bool const is_radial = reconstruction.axisymmetry.has_value();
+  auto const write = [&](char const* dataset, std::vector<double> const& values, char const* description) {
+    file.write(dataset, std::span<double const>(values), {rows, columns}, "kg/m^3", description, plane_axes);
+  };
+  write_axes(file, reconstruction.grid);
+  write("/density_kg_m3", reconstruction.density,
+        is_radial ? "density in the plane through the axis; NaN: not determined"
+                  : "density, mean over the thickness of the medium; NaN: not determined");
+  write("/sigma_kg_m3", reconstruction.sigma,
+        "standard uncertainty of the density: vectors, reference density and scale; NaN: unknown");
+  write("/sigma_random_kg_m3", reconstruction.sigma_random, "the part of the uncertainty that is due to the vectors");
+  std::vector<double> gradient;
+  gradient.reserve(2 * reconstruction.gradient.size());
+  for (Vec2d const& g : reconstruction.gradient) gradient.insert(gradient.end(), {g.x, g.y});
+  file.write("/gradient_kg_m4", std::span<double const>(gradient), {rows, columns, 2}, "kg/m^4",
+             is_radial ? "differences of the density" : "measured density gradient, mean over the thickness",
+             "row (y upwards), column (x), component (d/dx, d/dy)");
+  file.write("/region", std::span<std::int64_t const>(reconstruction.region), {rows, columns}, "1",
+             "connected region of valid vectors, 0: the largest; -1: no valid vector", plane_axes);
+  file.write("/reference", std::span<std::int64_t const>(reconstruction.reference), {rows, columns}, "1",
+             "1: node with the reference density", plane_axes);
+  if (!reconstruction.truth.empty()) {
+    write("/truth_kg_m3", reconstruction.truth, "true density of the rendered case");
+    write("/error_kg_m3", subtract(reconstruction.density, reconstruction.truth), "density minus true density");
+  }
+  write_attributes(file, reconstruction);
+  file.close();
+}
+
+nlohmann::ordered_json summarize_reconstruction(Reconstruction const& reconstruction) {
+  ValueRange const density = find_range(reconstruction.density);
+  nlohmann::ordered_json json{{"vectors", reconstruction.vectors},
+                              {"columns", reconstruction.grid.columns},
+                              {"rows", reconstruction.grid.rows},
+                              {"determined", density.count},
+                              {"density_kg_m3", range_json(density)},
+                              {"sigma_kg_m3", range_json(find_range(reconstruction.sigma))},
+                              {"sigma_random_kg_m3", range_json(find_range(reconstruction.sigma_random))},
+                              {"reference_density_kg_m3", reconstruction.reference_density},
+                              {"white_noise_gain", reconstruction.white_noise_gain}};
+  if (reconstruction.axisymmetry) {
+    AxisymmetryResult const& flow = *reconstruction.axisymmetry;
+    json["axis"] = {
+        {"direction", direction_name(flow.direction)},      {"position_mm", 1e3 * flow.axis.position},
+        {"sigma_mm", known_or_null(1e3 * flow.axis.sigma)}, {"lambda", flow.lambda},
+        {"asymmetry", known_or_null(flow.asymmetry)},       {"border_gradient", known_or_null(flow.border_gradient)}};
+  }
+  if (!reconstruction.truth.empty()) {
+    DensityErrors const errors = compute_density_errors(reconstruction);
+    json["error_kg_m3"] = {{"count", errors.count},
+                           {"bias", known_or_null(errors.bias)},
+                           {"rms", known_or_null(errors.rms)},
+                           {"largest", known_or_null(errors.largest)},
+                           {"contrast", known_or_null(errors.contrast)},
+                           {"coverage", known_or_null(errors.coverage)}};
+  }
+  for (DensityTerm const& term : reconstruction.budget)
+    json["budget_kg_m3"][term.name] = {{"bias", known_or_null(term.bias)}, {"rms", known_or_null(term.rms)}};
+  return json;
+}
+
+std::string reconstruction_report(Reconstruction const& reconstruction) {
+  ValueRange const density = find_range(reconstruction.density), sigma = find_range(reconstruction.sigma);
+  std::string text = fmt::format("Density at {} of {} x {} nodes: {:.5g} to {:.5g} kg/m^3, median {:.5g} kg/m^3\n",
+                                 density.count, reconstruction.grid.columns, reconstruction.grid.rows, density.least,
+                                 density.largest, density.median);
+  if (sigma.count > 0)
+    text += fmt::format("  standard uncertainty: median {:.3g} kg/m^3, largest {:.3g} kg/m^3\n", sigma.median,
+                        sigma.largest);
+  if (reconstruction.axisymmetry) {
+    AxisymmetryResult const& flow = *reconstruction.axisymmetry;
+    text += fmt::format("  {} axis at {} = {:.4f} mm{}; asymmetry of the gradient {:.1f} %\n",
+                        direction_name(flow.direction), flow.direction == density::AxisDirection::vertical ? "x" : "y",
+                        1e3 * flow.axis.position,
+                        std::isfinite(flow.axis.sigma) ? fmt::format(" +- {:.2g} mm", 1e3 * flow.axis.sigma) : "",
+                        100.0 * flow.asymmetry);
+    if (flow.lambda > 0.0) text += fmt::format("  regularisation parameter {:.3g}\n", flow.lambda);
+  }
+  if (reconstruction.white_noise_gain != 1.0)
+    text += fmt::format("  the deconvolution amplifies white noise by {:.2f}\n", reconstruction.white_noise_gain);
+  if (!reconstruction.truth.empty()) {
+    DensityErrors const errors = compute_density_errors(reconstruction);
+    text += fmt::format(
+        "  error against the true density: bias {:.3g}, rms {:.3g}, largest {:.3g} kg/m^3 (the true density varies by "
+        "{:.3g} kg/m^3, standard deviation)\n",
+        errors.bias, errors.rms, errors.largest, errors.contrast);
+    if (std::isfinite(errors.coverage))
+      text +=
+          fmt::format("  {:.1f} % of the errors lie within one standard uncertainty (normal distribution: 68.3 %)\n",
+                      100.0 * errors.coverage);
+  }
+  if (!reconstruction.budget.empty())
+    text += fmt::format("  {:<28} {:>10} {:>10}\n", "causes of the error [kg/m^3]", "bias", "rms");
+  for (DensityTerm const& term : reconstruction.budget)
+    text += fmt::format("  {:<28} {:>10.3g} {:>10.3g}\n", term.name, term.bias, term.rms);
+  return text;
+}
+
+}  // namespace gladstone

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "studies/compare/reconstruct.h"
+
+namespace gladstone {
+
+/// Writes density.h5 (filetype "gladstone density"): /x_mm [nx], /y_mm [ny], fields [ny, nx] of density, uncertainty,
+/// region and reference, /gradient_kg_m4 [ny, nx, 2], and for a rendered case truth and error; rows upwards. Tables in
+/// docs/file-formats.md.
+/// @throws OutputError; DataError if a source has changed since it was read
+void write_density(std::string const& path, Reconstruction const& reconstruction);
+
+/// Summary of a reconstruction, printed with --json (docs/file-formats.md).
+nlohmann::ordered_json summarize_reconstruction(Reconstruction const& reconstruction);
+
+/// The same as text.
+std::string reconstruction_report(Reconstruction const& reconstruction);
+
+}  // namespace gladstone

@@ -1,0 +1,214 @@
+#include "studies/compare/reconstruct.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <utility>
+
+#include "analysis/density/aperture_deconvolution.h"
+#include "analysis/density/density_uncertainty.h"
+#include "analysis/density/projected_gradient.h"
+#include "render/base/error.h"
+#include "render/base/not_a_number.h"
+#include "studies/compare/reconstruct_axisymmetric.h"
+
+namespace gladstone {
+namespace {
+
+void check_reconstruct_options(ReconstructOptions const& options) {
+  std::vector<SetupProblem> problems;
+  auto const conflict = [&](char const* option, char const* reason) {
+    problems.push_back({option, std::string("conflicts with --axisymmetric (") + reason + "); remove one of them"});
+  };
+  if (options.axis) {
+    if (!options.reference.empty()) conflict("--reference", "the density beyond the largest radius is the reference");
+    if (options.deconvolution_gain) conflict("--deconvolve", "a radial density is not deconvolved");
+  } else if (options.reference.empty()) {
+    problems.push_back({"--reference",
+                        "is required (a gradient determines the density only up to a constant); give the side of the "
+                        "image, or the box X0,Y0,X1,Y1 in mm, where the density is known"});
+  }
+  if (options.overlap && !(*options.overlap >= 0.0 && *options.overlap < 1.0))
+    problems.push_back({"--overlap", fmt::format("expected 0 to below 1, got {}", *options.overlap)});
+  if (!(options.scale_uncertainty >= 0.0 && options.scale_uncertainty < 1.0))
+    problems.push_back(
+        {"--scale-uncertainty", fmt::format("expected 0 to below 1, got {}", options.scale_uncertainty)});
+  if (options.deconvolution_gain && !(*options.deconvolution_gain > 1.0 && std::isfinite(*options.deconvolution_gain)))
+    problems.push_back({"--deconvolve", fmt::format("expected a gain above 1, got {}", *options.deconvolution_gain)});
+  if (!problems.empty()) throw SetupError(std::move(problems));
+}
+
+/// Throws for setups whose displacement is not proportional to the density gradient in the axes of the image.
+void check_reconstructed_setup(Setup const& setup) {
+  std::vector<SetupProblem> problems;
+  if (setup.piv || setup.calibration())
+    problems.push_back({"experiment", "is not \"bos\": only the displacement of a background contains the density"});
+  if (setup.pose || setup.camera.tilted() || setup.lenslets)
+    problems.push_back({"camera",
+                        "has a pose, a tilt or lenslets: density is reconstructed for a camera on the Z axis "
+                        "with its sensor perpendicular to it; dewarp the vectors to such a view first"});
+  if (!problems.empty()) throw SetupError(std::move(problems));
+}
+
+density::ProjectionOptics make_projection_optics(Setup const& setup) {
+  return {setup.imaging().magnification,
+          setup.z_a,
+          setup.z_d,
+          setup.camera.pixel_pitch,
+          setup.medium.gladstone_dale,
+          setup.ambient_index(),
+          {0.5 * (setup.camera.columns - 1), 0.5 * (setup.camera.rows - 1)}};
+}
+
+/// Returns the size of the windows in units of the distance between vectors, limited to the grid.
+density::WindowOverlap determine_overlap(DisplacementField const& field, double window_px,
+                                         std::optional<double> const& overlap) {
+  if (overlap) return density::WindowOverlap::from_fraction(*overlap);
+  Vec2d const extent = field.position_px.back() - field.position_px.front();
+  auto const relative = [&](double length, int nodes) {
+    return std::clamp(window_px * (nodes - 1) / length, 1.0, static_cast<double>(nodes));
+  };
+  return {relative(extent.x, field.columns), relative(extent.y, field.rows)};
+}
+
+density::ReferenceDensity make_reference(density::PlaneGrid const& grid, ReconstructOptions const& options,
+                                         double value) {
+  std::optional<density::ReferenceDensity> reference;
+  for (ReferenceRegion const& region : options.reference) {
+    density::ReferenceDensity one =
+        region.side ? make_side_reference(grid, *region.side, value, region.depth, options.reference_sigma)
+                    : make_box_reference(grid, region.low, region.high, value, options.reference_sigma);
+    reference = reference ? combine_references(std::move(*reference), one) : std::move(one);
+  }
+  return *reference;
+}
+
+density::ApertureDeconvolution make_deconvolution(density::DensityIntegrator const& integrator, Setup const& setup,
+                                                  double gain) {
+  density::ApertureCone const cone{setup.imaging().entrance_pupil, setup.z_a, setup.z_d, setup.medium.thickness};
+  if (!(cone.pupil_diameter > 0.0))
+    throw SetupError({SetupProblem{"--deconvolve",
+                                   "the setup has no aperture (f_number = inf: chief rays only); remove the option"}});
+  return {integrator.grid(), integrator.determined(), cone, gain};
+}
+
+/// Combines the uncertainty from the vectors with that of the reference density and that of the scale.
+void combine_uncertainties(Reconstruction& result, ReconstructOptions const& options) {
+  result.sigma = result.sigma_random;
+  for (double& sigma : result.sigma) sigma = std::hypot(sigma, options.reference_sigma);
+  result.sigma = density::add_scale_uncertainty(std::move(result.sigma), result.density, result.reference_density,
+                                                options.scale_uncertainty);
+}
+
+/// Warns of regions whose density is undetermined because they contain no reference node.
+void warn_of_regions(Reconstruction& result, std::vector<density::Region> const& regions) {
+  std::size_t without = 0, nodes = 0;
+  density::Region const* largest = nullptr;
+  for (density::Region const& region : regions) {
+    if (region.reference_nodes > 0) continue;
+    if (!largest) largest = &region;
+    ++without;
+    nodes += region.nodes;
+  }
+  if (without == 0) return;
+  result.warnings.push_back(
+      fmt::format("{} of {} regions of valid vectors contain no reference density, so that {} vectors have no density; "
+                  "the largest has {}; add --reference X0,Y0,X1,Y1 within it if its density is known somewhere",
+                  without, regions.size(), nodes, describe_region(*largest)));
+}
+
+/// Integrates a mean gradient with the reference density, and propagates the uncertainty of the vectors.
+/// @param result  with overlap and reference_density
+Reconstruction integrate_plane(Reconstruction result, density::GradientMap const& map, Setup const& setup,
+                               ReconstructOptions const& options) {
+  using namespace density;
+  IntegrationSettings settings;
+  settings.method = options.method;
+  settings.unreferenced = UnreferencedRegions::leave_out;
+  DensityIntegrator const integrator(map, make_reference(map.grid, options, result.reference_density), settings);
+  result.grid = map.grid;
+  result.gradient = map.gradient;
+  for (std::size_t i = 0; i < map.grid.size(); ++i)
+    if (map.valid[i] == 0) result.gradient[i] = {not_a_number, not_a_number};
+  for (int const label : find_regions(map).label) result.region.push_back(label);
+  for (std::uint8_t const is_reference : integrator.reference_nodes()) result.reference.push_back(is_reference);
+  warn_of_regions(result, integrator.regions());
+
+  result.density = integrator.integrate(map.gradient);
+  DensityFilter filter;
+  std::optional<ApertureDeconvolution> deconvolution;
+  if (options.deconvolution_gain) {
+    deconvolution.emplace(make_deconvolution(integrator, setup, *options.deconvolution_gain));
+    result.density = deconvolution->apply(result.density);
+    result.white_noise_gain = deconvolution->white_noise_gain();
+    filter = [&](std::span<double const> error) { return deconvolution->apply(error); };
+  }
+  result.sigma_random.assign(map.grid.size(), not_a_number);
+  if (map.sigma.empty() || !options.propagate) return result;
+  PropagationSettings propagation;
+  propagation.samples = options.samples;
+  DensityUncertainty const uncertainty =
+      propagate_uncertainty(integrator, map.sigma, result.overlap, 0.0, propagation, filter);
+  result.sigma_random = uncertainty.sigma;
+  result.samples = uncertainty.samples;
+  return result;
+}
+
+}  // namespace
+
+Reconstruction reconstruct_density(DisplacementField const& field, Setup const& setup, double window_px,
+                                   ReconstructOptions const& options) {
+  check_reconstruct_options(options);
+  check_reconstructed_setup(setup);
+  density::ProjectedGradient const projected = compute_projected_gradient(field, make_projection_optics(setup));
+  Reconstruction result;
+  result.overlap = determine_overlap(field, window_px, options.overlap);
+  result.reference_density = options.reference_density.value_or(setup.medium.ambient_density);
+  if (projected.map.sigma.empty())
+    result.warnings.push_back(
+        "the vectors have no uncertainty, so that the density has none; correlate with an "
+        "uncertainty method, e.g. --set correlate.uncertainty=correlation_statistics");
+  if (projected.without_sigma > 0)
+    result.warnings.push_back(fmt::format("{} vectors have no uncertainty; the largest of the others is used for them",
+                                          projected.without_sigma));
+  if (setup.camera.distorted())
+    result.warnings.push_back("the distortion of the lens is neglected; undistort the images for accurate positions");
+  if (options.deconvolution_gain && setup.lens.focus != Focus::target)
+    result.warnings.push_back("the deconvolution assumes focus on the dots, but lens.focus is another plane");
+  result = options.axis ? invert_flow(std::move(result), projected.map, options)
+                        : integrate_plane(std::move(result),
+                                          compute_mean_gradient(projected.map, setup.medium.thickness), setup, options);
+  combine_uncertainties(result, options);
+  return result;
+}
+
+DensityErrors compute_density_errors(Reconstruction const& reconstruction) {
+  DensityErrors errors;
+  double sum = 0.0, squares = 0.0, truth_sum = 0.0, truth_squares = 0.0;
+  std::size_t with_sigma = 0, covered = 0;
+  for (std::size_t i = 0; i < reconstruction.truth.size(); ++i) {
+    double const truth = reconstruction.truth[i], error = reconstruction.density[i] - truth;
+    if (!std::isfinite(error)) continue;
+    ++errors.count;
+    sum += error;
+    squares += error * error;
+    errors.largest = std::max(errors.largest, std::abs(error));
+    double const excess = truth - reconstruction.reference_density;  // avoids loss of digits
+    truth_sum += excess;
+    truth_squares += excess * excess;
+    double const sigma = reconstruction.sigma[i];
+    if (!std::isfinite(sigma) || sigma == 0.0) continue;
+    ++with_sigma;
+    if (std::abs(error) <= sigma) ++covered;
+  }
+  double const n = static_cast<double>(errors.count);
+  errors.bias = sum / n;
+  errors.rms = std::sqrt(squares / n);
+  errors.contrast = std::sqrt(std::max(0.0, truth_squares / n - (truth_sum / n) * (truth_sum / n)));
+  errors.coverage = with_sigma > 0 ? static_cast<double>(covered) / static_cast<double>(with_sigma) : not_a_number;
+  return errors;
+}
+
+}  // namespace gladstone

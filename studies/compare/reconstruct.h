@@ -1,0 +1,117 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analysis/density/axisymmetric_inversion.h"
+#include "analysis/density/density_integrator.h"
+#include "render/files/source_files.h"
+#include "render/scene/setup.h"
+#include "studies/compare/compare.h"
+
+namespace gladstone {
+
+/// Region of known density in the mid-plane of the medium: the vectors along one side of the image, or within a box.
+struct ReferenceRegion {
+  std::optional<density::GridSide> side;  ///< empty: a box
+  int depth = 1;                          ///< number of columns or rows of vectors, counted from the side
+  Vec2d low{}, high{};                    ///< corners of the box, x to the right and y up from the optical axis [m]
+};
+
+/// Axis of an axisymmetric flow.
+struct AxisOption {
+  density::AxisDirection direction = density::AxisDirection::vertical;
+  std::optional<double> position;  ///< x of a vertical, y of a horizontal axis [m]; empty: found by symmetry
+};
+
+/// Options of a reconstruction of density.
+struct ReconstructOptions {
+  std::string vectors;                      ///< path of the vectors; empty: CASE/vectors.h5
+  std::optional<std::string> conventions;   ///< as given by the user; empty: those of the file's format
+  std::vector<ReferenceRegion> reference;   ///< gauge of the integration; empty for axisymmetric flows
+  std::optional<double> reference_density;  ///< density there; empty: ambient density of the setup [kg/m^3]
+  double reference_sigma = 0.0;             ///< its standard uncertainty [kg/m^3]
+  double scale_uncertainty = 0.0;           ///< combined relative uncertainty of M, Z_D, K, p and thickness [1]
+  density::IntegrationMethod method = density::IntegrationMethod::weighted_least_squares;
+  std::optional<double> overlap;             ///< of the interrogation windows, 0 to below 1 [1]; empty: [correlate]
+  std::optional<double> deconvolution_gain;  ///< largest gain of the aperture's deconvolution [1]; empty: none
+  std::optional<AxisOption> axis;            ///< axisymmetric flow; empty: planar integration
+  density::AbelMethod abel = density::AbelMethod::direct;
+  std::optional<double> lambda;  ///< of AbelMethod::tikhonov [1]; empty: by cross-validation
+  std::size_t samples = 400;     ///< random samples for the uncertainty of large grids
+  bool propagate = true;         ///< compute the uncertainty from the vectors
+  bool budget = false;           ///< split the error of a rendered case into its causes
+};
+
+/// Term of a density's error budget, see compute_density_budget().
+struct DensityTerm {
+  std::string name;              ///< cause: `integration`, or a term of the displacement's budget; `total`
+  double bias = 0.0, rms = 0.0;  ///< mean and root mean square [kg/m^3]
+};
+
+/// Properties of an axisymmetric inversion; see density::AxisymmetricDensity.
+struct AxisymmetryResult {
+  density::AxisDirection direction = density::AxisDirection::vertical;
+  density::SymmetryAxis axis;    ///< [m]; sigma is NaN if the axis was given
+  double lambda = 0.0;           ///< regularisation parameter [1]; 0: none
+  double asymmetry = 0.0;        ///< even over odd part of the gradient about the axis, rms [1]
+  double border_gradient = 0.0;  ///< gradient at the largest radii relative to that of all radii, rms [1]
+};
+
+/// Reconstructed density. Fields are stored row by row from the lowest row, NaN where not determined.
+struct Reconstruction {
+  density::PlaneGrid grid;  ///< nodes in the mid-plane of the medium, x right and y up from the optical axis [m]
+  /// Mean over the thickness of the medium along the line of sight; for an axisymmetric flow in the plane through the
+  /// axis perpendicular to the line of sight [kg/m^3, grid.size()].
+  std::vector<double> density;
+  std::vector<double> sigma;         ///< standard uncertainty [kg/m^3, grid.size()]; NaN: vectors without sigma
+  std::vector<double> sigma_random;  ///< the part that is due to the vectors [kg/m^3, grid.size()]
+  /// Measured gradient, mean over the thickness; for an axisymmetric flow differences of the density
+  /// [kg/m^4, grid.size()].
+  std::vector<Vec2d> gradient;
+  std::vector<std::int64_t> region;     ///< connected region of the node, 0: the largest; -1: no valid vector
+  std::vector<std::int64_t> reference;  ///< 1: node of given density
+  std::vector<double> truth;            ///< density of a rendered case [kg/m^3, grid.size()]; empty: unknown
+  std::vector<DensityTerm> budget;      ///< causes of the error; empty: not requested
+  double reference_density = 0.0;       ///< [kg/m^3]
+  density::WindowOverlap overlap;       ///< that determines the correlation of the vectors' errors
+  double white_noise_gain = 1.0;        ///< of the deconvolution [1]; 1: none
+  std::size_t samples = 0;              ///< random samples of sigma; 0: exact
+  std::optional<AxisymmetryResult> axisymmetry;
+  std::vector<std::string> warnings;
+  std::string setup;         ///< resolved setup
+  std::uint64_t seed = 0;    ///< of the rendering
+  std::string vectors;       ///< path of the vectors
+  SourceFiles sources = {};  ///< setup, vectors, and truth
+};
+
+/// Errors of a reconstruction of a rendered case against its true density, over all nodes where both exist.
+struct DensityErrors {
+  std::size_t count = 0;
+  double bias = 0.0, rms = 0.0, largest = 0.0;  ///< mean, root mean square and largest magnitude [kg/m^3]
+  double contrast = 0.0;  ///< standard deviation of the true density, to compare with rms [kg/m^3]
+  double coverage = 0.0;  ///< fraction of errors within sigma [1]; NaN without sigma
+};
+DensityErrors compute_density_errors(Reconstruction const& reconstruction);
+
+/// Reconstructs density from BOS vectors of a camera on the Z axis, in memory: displacement to projected gradient (Eq.
+/// 9 of Rajendran, Bane & Vlachos 2019), then integration, optional deconvolution, or Abel inversion. Valid for small
+/// angles and a medium thin compared with Z_D.
+/// @param field      displacement on a complete grid [px]
+/// @param window_px  size of the interrogation windows, for the correlation of errors unless options.overlap is set
+/// @throws SetupError  for invalid options (no gauge, axis outside the image, ..) and unsupported setups
+/// @throws DataError   if the vectors do not determine a density; NoValidVector
+Reconstruction reconstruct_density(DisplacementField const& field, Setup const& setup, double window_px,
+                                   ReconstructOptions const& options);
+
+/// Reconstructs density from the vectors of a CASE, or of a setup whose images were measured, and for a rendered CASE
+/// adds the true density and, with options.budget, the causes of the error, for which it compares the vectors with
+/// truth and theory (compare_case()). Writes nothing.
+/// @param place   case folder, with or without truth.h5, or a setup (TOML) together with options.vectors
+/// @param device  for the comparison
+/// @throws DataError, SetupError  as reconstruct_density(), and for files that are missing, invalid, or of other frames
+Reconstruction reconstruct_case(std::string const& place, ReconstructOptions const& options, Device const& device);
+
+}  // namespace gladstone

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "analysis/density/gradient_map.h"
+#include "render/base/random_variates.h"
+#include "render/base/units.h"
+
+/// Manufactured density fields with known gradient, for the tests of analysis/density.
+namespace gladstone::density {
+
+/// Map of n x n nodes on the unit square with all nodes valid and gradient(x, y).
+template <class Gradient>
+GradientMap make_map(int n, Gradient const& gradient) {
+  GradientMap map;
+  map.grid = {n, n, {0.0, 0.0}, {1.0 / (n - 1), 1.0 / (n - 1)}};
+  map.valid.assign(map.grid.size(), 1);
+  for (int row = 0; row < n; ++row)
+    for (int column = 0; column < n; ++column) map.gradient.push_back(gradient(map.grid.position(column, row)));
+  return map;
+}
+
+/// Smooth field that is not symmetric and whose normal derivatives do not vanish at any border.
+inline double wave_density(Vec2d p) { return std::sin(3.0 * p.x + 1.0) * std::cos(2.0 * p.y - 0.4) + 0.3 * p.x * p.y; }
+inline Vec2d wave_gradient(Vec2d p) {
+  return {3.0 * std::cos(3.0 * p.x + 1.0) * std::cos(2.0 * p.y - 0.4) + 0.3 * p.y,
+          -2.0 * std::sin(3.0 * p.x + 1.0) * std::sin(2.0 * p.y - 0.4) + 0.3 * p.x};
+}
+
+/// Gaussian of width s at the centre of the unit square.
+inline double blob_density(Vec2d p, double s = 0.15) {
+  double const x = p.x - 0.5, y = p.y - 0.5;
+  return std::exp(-(x * x + y * y) / (s * s));
+}
+inline Vec2d blob_gradient(Vec2d p, double s = 0.15) {
+  return (-2.0 / (s * s) * blob_density(p, s)) * Vec2d{p.x - 0.5, p.y - 0.5};
+}
+
+/// Largest and root-mean-square difference from density(x, y) over the finite nodes.
+struct FieldError {
+  double largest = 0.0, rms = 0.0;
+  std::size_t count = 0;
+};
+template <class Density>
+FieldError compare_with(PlaneGrid const& grid, std::vector<double> const& result, Density const& density) {
+  FieldError error;
+  for (int row = 0; row < grid.rows; ++row)
+    for (int column = 0; column < grid.columns; ++column) {
+      double const value = result[grid.index(column, row)];
+      if (!std::isfinite(value)) continue;
+      double const difference = value - density(grid.position(column, row));
+      error.largest = std::max(error.largest, std::abs(difference));
+      error.rms += difference * difference;
+      ++error.count;
+    }
+  error.rms = std::sqrt(error.rms / static_cast<double>(error.count));
+  return error;
+}
+
+}  // namespace gladstone::density
