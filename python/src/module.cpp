@@ -1,0 +1,18 @@
+#include "python/src/call.h"
+
+NB_MODULE(_core, module) {
+  using namespace gladstone::python;
+  module.doc() = "Compiled part of gladstone; use the package gladstone.";
+  take_log();
+  translate_errors();
+  bind_setup(module);
+  bind_case(module);
+  bind_truth(module);
+  bind_field(module);
+  bind_comparison(module);
+  bind_information(module);
+  bind_benchmark(module);
+  bind_calibration(module);
+  bind_design(module);
+  bind_study(module);
+}
