@@ -36,14 +36,14 @@ PACKAGES += $(if $(filter dev,$(PRESET)),$(DEV_PACKAGES))
 # Programs that only tests call; those tests are skipped if the programs are missing.
 TEST_PACKAGES := munge slurmctld slurmd slurm-client chromium chromium-driver python3-selenium tidy
 
-ROOMS := render analysis cuda studies
+ROOMS := render analysis cuda studies python
 space := $(subst ,, )
 SOURCES = $(shell find $(ROOMS) tests -name '*.h' -o -name '*.cpp' -o -name '*.cu' -o -name '*.cuh')
 # Files that a build compiles: those of a room, or the unity file of one of its folders.
 TIDY_SOURCES = sed -n 's|^ *"file": "\(.*\.c[px][px]\)".*|\1|p' $(BUILD)/compile_commands.json | \
 	grep -E '^$(CURDIR)/($(subst $(space),|,$(strip $(ROOMS))))/|/Unity/unity_($(subst $(space),|,$(strip $(ROOMS))))_'
 
-.PHONY: build test demo gallery studies bench fuzz soak check-long lint format install clean help packages configure
+.PHONY: build test demo gallery studies python bench fuzz soak check-long lint format install clean help packages configure
 .DEFAULT_GOAL := build
 
 build: configure  ## install missing Debian packages and build build/bin/gladstone
@@ -72,6 +72,12 @@ studies: build  ## compute the shipped studies into out/studies; some: STUDIES='
 		[ -z "$(DOCS)" ] || for figure in $$(grep -o "$$study/[a-z0-9_]*[.]png" docs/studies/$$study.md); do \
 			mkdir -p docs/studies/$$study && cp $$run/figures/$${figure##*/} docs/studies/$$figure || exit; done; \
 	done
+
+python: PACKAGES += python3-venv python3-dev
+python: build  ## build the Python package into build/python and run its tests; some of them: PYTEST='-k truth'
+	@[ -x build/python/venv/bin/pip ] || python3 -m venv build/python/venv
+	CMAKE_BUILD_PARALLEL_LEVEL=$(JOBS) build/python/venv/bin/pip install -q '.[test]'
+	GLADSTONE_PROGRAM=$(CURDIR)/$(BUILD)/bin/gladstone build/python/venv/bin/pytest -q python/tests $(PYTEST)
 
 bench: configure  ## run the benchmarks (rays/s, steps/s, vectors/s); options: BENCH='--benchmark_filter=...'
 	cmake --build $(BUILD) --parallel $(JOBS) --target gladstone_bench
