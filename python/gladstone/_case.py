@@ -91,12 +91,12 @@ class Truth:
     @property
     def eq9_px(self) -> np.ndarray | None:
         """[N, 2] displacement by the small-angle theory, Eq. 9 of Rajendran et al. (2019) [px]. BOS only."""
-        return self._optional("eq9_px")
+        return None if self._core.is_piv else self._optional("eq9_px")
 
     @property
     def eq9_cone_px(self) -> np.ndarray | None:
         """[N, 2] the same theory averaged over dot and aperture [px]. BOS only."""
-        return self._optional("eq9_cone_px")
+        return None if self._core.is_piv else self._optional("eq9_cone_px")
 
     @property
     def second_m(self) -> np.ndarray | None:

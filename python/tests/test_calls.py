@@ -130,17 +130,23 @@ def resident_mb() -> float:
 
 # Renders allocate and free the same; RSS is level once the allocator's pools are filled.
 def test_many_small_renders_leak_nothing(bos):
-    count = int(os.environ.get("GLADSTONE_LEAK_RENDERS", "60"))
-    small = bos.replace({"camera.pixels": [48, 48], "correlate.window_px": [16], "render.rays_per_dot": 16})
-    for seed in range(20):
-        small.replace({"target.seed": seed}).render(device="cpu")
-    before = resident_mb()
-    for seed in range(count):
+    count = int(os.environ.get("GLADSTONE_LEAK_RENDERS", "400"))
+    field = {"kind": "uniform_gradient", "gradient_kg_m4": [150.0, 75.0, 0.0]}
+    small = bos.replace({"camera.pixels": [48, 48], "correlate.window_px": [16], "medium.field": field})
+    small = small.replace({"render.rays_per_dot": 16, "render.method": "rays"})
+
+    def work(seed):
         case = small.replace({"target.seed": seed}).render(device="cpu")
         case.correlate(device="cpu")
         with pytest.raises(gs.SetupError):
             small.replace({"lens.f_numbr": 1}).render()
-    assert resident_mb() - before < 10
+
+    for seed in range(100):
+        work(seed)
+    before = resident_mb()
+    for seed in range(count):
+        work(seed)
+    assert resident_mb() - before < 15
 
 
 def test_number_of_threads_changes_no_bit(bos, case):

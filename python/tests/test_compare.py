@@ -30,7 +30,7 @@ def test_loaded_case_gives_the_same_errors(report, written_case):
 
 
 def test_budget_adds_up(report):
-    total = sum(term["bias_u_px"] for term in report.budget.values())
+    total = sum(term["bias_u_px"] or 0 for term in report.budget.values())
     assert total == pytest.approx(report.errors["budget"]["total"]["bias_u_px"], abs=1e-9)
     assert report.budget["noise"]["rms_px"] > 0
 

@@ -44,7 +44,7 @@ def test_piv_equals_that_of_the_program(piv, program, tmp_path):
     written, case = gs.Case.load(tmp_path / "case"), piv.render(device="cpu")
     assert case.is_piv and written.is_piv
     assert same(case.images, written.images)
-    for name in ("position_m", "second_m", "diameter_m", "displacement_px", "displacement_ambient_px", "flux"):
+    for name in ("position_m", "second_m", "diameter_m", "displacement_px", "flux", "rays", "rays_planned"):
         assert same(getattr(case.truth, name), getattr(written.truth, name)), name
     assert case.truth.eq9_px is None
 
