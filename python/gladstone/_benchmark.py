@@ -24,6 +24,7 @@ class BenchmarkCase:
 
     @property
     def name(self) -> str:
+        """Name of the case."""
         return self._core.name
 
     @property
@@ -42,13 +43,13 @@ class BenchmarkCase:
         return self._core.images()[1]
 
     def truth(self, x, y) -> np.ndarray:
-        """Returns the displacement [..., 2] of what is midway between its images at the points x, y [px]."""
+        """Returns the displacement [..., 2] at the points x, y, each the midpoint of both image positions [px]."""
         x, y = np.broadcast_arrays(np.asarray(x, float), np.asarray(y, float))
         flat = self._core.truth(np.ascontiguousarray(x.ravel()), np.ascontiguousarray(y.ravel()))
         return flat.reshape(*x.shape, 2)
 
     def score(self, field) -> dict[str, float]:
-        """Returns the error measures of a field, or of what `Field.of` takes [px]."""
+        """Returns the error measures of a field, or of anything that `Field.of` accepts [px]."""
         return self._core.score(Field.of(field)._core)
 
 
@@ -103,9 +104,9 @@ def benchmark(
     estimators: functions of two frames (uint8 [rows, columns]) by name. Each returns a `Field`, arrays (x, y, u, v)
         in px, or dense displacements [rows, columns, 2] or [2, rows, columns] at every pixel.
     cases: names of the cases; default: all.
-    own: gladstone's estimators that are scored beside them; `benchmark_estimators` lists them.
-    at: where dense displacements belong: "mid" (midway between both images of a particle) or "a" (in frame a, as
-        most networks for optical flow estimate them).
+    own: gladstone's estimators to score for comparison; `benchmark_estimators` lists them.
+    at: position to which dense displacements refer: "mid" (midpoint of both images of a particle) or "a" (position in
+        frame a, as for most optical-flow networks).
 
     Returns the scores, a row for each estimator and case; `print` shows the rms errors in px.
     """

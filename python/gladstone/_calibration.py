@@ -50,22 +50,22 @@ class Calibration:
 
     @property
     def world_m(self) -> np.ndarray:
-        """[N, 3] places of the dots [m]."""
+        """[N, 3] world positions of the dots [m]."""
         return self._core.array("world_m")
 
     @property
     def pixel(self) -> np.ndarray:
-        """[N, 2] places of their images [px]."""
+        """[N, 2] positions of their images [px]."""
         return self._core.array("pixel")
 
     @property
     def residual_px(self) -> np.ndarray:
-        """[N, 2] measured minus fitted place, of the pinhole camera [px]."""
+        """[N, 2] measured minus fitted position, for the pinhole camera [px]."""
         return self._core.array("residual_px")
 
     @property
     def plane_of(self) -> np.ndarray:
-        """[N] plane of each dot, from 0."""
+        """[N] index of the plane of each dot, from 0."""
         return self._core.array("plane_of")
 
     @property
@@ -75,6 +75,7 @@ class Calibration:
 
     @property
     def warnings(self) -> list[str]:
+        """Warnings about the calibration."""
         return list(self._core.warnings)
 
     def save(self, path: str | os.PathLike) -> None:

@@ -123,12 +123,13 @@ class Truth:
     ) -> np.ndarray:
         """Computes the exact displacement at every pixel, without interpolation between dots or particles.
 
-        at: "a": displacement of what frame a shows at the pixel, as optical-flow networks estimate it;
-            "mid": displacement of what is at the pixel midway between its images in both frames, as correlation
-            with symmetric window deformation measures it.
-        spacing_px: only every n-th column and row.
+        at: "a": displacement of the object point whose image in frame a is at the pixel, the convention of
+            optical-flow networks;
+            "mid": displacement of the object point whose images in both frames have the pixel as their midpoint, the
+            convention of correlation with symmetric window deformation.
+        spacing_px: distance of the computed columns and rows [px].
 
-        Returns [rows, columns, 2] in px. BOS traces a virtual dot for each pixel; that takes some time.
+        Returns [rows, columns, 2] in px. Rays are traced for each of these pixels.
         """
         if at not in ("mid", "a"):
             raise ValueError(f'at must be "mid" or "a", got {at!r}')

@@ -53,7 +53,7 @@ def design(
     device: str = "auto",
     progress: Progress = False,
 ) -> Design:
-    """Tells what a setup can measure, and, if it has a table [requirements], recommends a set-up that meets them.
+    """Computes the design sheet of a setup. With a table [requirements], also recommends a set-up that meets them.
 
     verify: number of the best combinations to render and correlate; 0: closed forms only.
     repeats, seed: of these simulations.

@@ -53,7 +53,7 @@ class Study:
         return study
 
     def plan(self, folder: str | os.PathLike, *, device: str = "auto", progress: Progress = False) -> StudyRun:
-        """Checks all cases and writes the plan into a folder. An equal plan is left as it is."""
+        """Checks all cases and writes the plan into a folder. An equal plan remains unchanged."""
         place = os.fspath(folder)
         with reporting(progress) as report:
             if self._path is not None:
@@ -76,7 +76,7 @@ class Study:
         retry_failed: bool = False,
         progress: Progress = False,
     ) -> StudyRun:
-        """Plans the study and computes the cases that the folder lacks. Returns its results."""
+        """Plans the study and computes the missing cases. Returns the results."""
         run = self.plan(folder, device=device)
         run.compute(keep_images=keep_images, retry_failed=retry_failed, progress=progress)
         return run

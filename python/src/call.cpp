@@ -35,12 +35,12 @@ class CallMessages {
       all.swap(all_);
     }
     if (all.empty()) return;
-    nb::object const tell = nb::module_::import_("gladstone._messages").attr("deliver");
+    nb::object const deliver_to_python = nb::module_::import_("gladstone._messages").attr("deliver");
     nb::list messages;
     for (auto const& [level, text] : all) {
       messages.append(nb::make_tuple(level >= spdlog::level::warn, nb::str(text.data(), text.size())));
     }
-    tell(messages);
+    deliver_to_python(messages);
   }
 
  private:
@@ -48,8 +48,9 @@ class CallMessages {
   std::vector<std::pair<spdlog::level::level_enum, std::string>> all_;
 };
 
-/// Messages of threads that no call runs in, such as those of a parallel loop; the next call to end delivers them.
-CallMessages& messages_of_no_call() {
+/// Messages of threads that belong to no call, such as workers of a parallel loop; the next call that ends delivers
+/// them.
+CallMessages& unassigned_messages() {
   static CallMessages all;
   return all;
 }
@@ -59,7 +60,7 @@ thread_local CallMessages* messages_of_thread = nullptr;
 class PythonSink final : public spdlog::sinks::base_sink<std::mutex> {
  private:
   void sink_it_(spdlog::details::log_msg const& message) override {
-    CallMessages& all = messages_of_thread ? *messages_of_thread : messages_of_no_call();
+    CallMessages& all = messages_of_thread ? *messages_of_thread : unassigned_messages();
     all.add(message.level, std::string(message.payload.data(), message.payload.size()));
   }
   void flush_() override {}
@@ -94,7 +95,7 @@ struct Call {
   std::exception_ptr error;
 };
 
-void compute(Call& call, std::function<void()> const& work) {
+void run_work(Call& call, std::function<void()> const& work) {
   messages_of_thread = &call.messages;
   ProgressMonitor::Scope const scope(call.monitor);
   try {
@@ -117,7 +118,7 @@ void report_progress(ProgressMonitor const& monitor, nb::handle progress) {
 
 }  // namespace
 
-void take_log() {
+void route_log_to_python() {
   auto const log = std::make_shared<spdlog::logger>("gladstone", std::make_shared<PythonSink>());
   log->set_level(spdlog::level::info);
   spdlog::set_default_logger(log);
@@ -126,9 +127,9 @@ void take_log() {
 void run_released(std::function<void()> const& work, nb::handle progress) {
   Call call;
   running_calls.begin();
-  std::thread thread(compute, std::ref(call), std::cref(work));
+  std::thread thread(run_work, std::ref(call), std::cref(work));
   std::optional<nb::python_error> raised;  // by a signal handler or by `progress`
-  auto const attend = [&] {
+  auto const handle_signals_and_progress = [&] {
     if (raised) return;
     try {
       if (PyErr_CheckSignals() != 0) throw nb::python_error();
@@ -145,7 +146,7 @@ void run_released(std::function<void()> const& work, nb::handle progress) {
       lock.unlock();
       {
         nb::gil_scoped_acquire const held;
-        attend();
+        handle_signals_and_progress();
       }
       lock.lock();
     }
@@ -156,7 +157,7 @@ void run_released(std::function<void()> const& work, nb::handle progress) {
   if (raised) throw nb::python_error(*raised);
   if (!progress.is_none()) report_progress(call.monitor, progress);
   call.messages.deliver();
-  messages_of_no_call().deliver();
+  unassigned_messages().deliver();
   if (call.error) std::rethrow_exception(call.error);
 }
 

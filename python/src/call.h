@@ -13,7 +13,7 @@ namespace nb = nanobind;
 
 /// Routes the log of the library to Python: warnings become Python warnings, information goes to
 /// logging.getLogger("gladstone"). Messages are delivered when the call during which they were logged ends.
-void take_log();
+void route_log_to_python();
 
 /// Runs `work` in a thread of its own with the GIL released, so that other Python threads run meanwhile. The calling
 /// thread handles Python's signals: an exception from a handler, such as KeyboardInterrupt, stops the computation at

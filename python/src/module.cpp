@@ -3,7 +3,7 @@
 NB_MODULE(_core, module) {
   using namespace gladstone::python;
   module.doc() = "Compiled part of gladstone; use the package gladstone.";
-  take_log();
+  route_log_to_python();
   translate_errors();
   bind_setup(module);
   bind_case(module);
