@@ -105,10 +105,10 @@ def test_exception_in_progress_ends_the_call(bos):
 
 def test_warnings_name_the_caller(bos):
     still = bos.replace({"medium.field": {"kind": "uniform_gradient", "gradient_kg_m4": [0.0, 0.0, 0.0]}})
-    with pytest.warns(gs.GladstoneWarning, match="nothing moves") as caught:
+    with pytest.warns(gs.GladstoneWarning) as caught:
         case = still.render(device="cpu")
-    assert any("nothing moves" in warning for warning in case.summary["warnings"])
-    assert caught[0].filename == __file__
+    assert {str(warning.message) for warning in caught} & set(case.summary["warnings"])
+    assert all(warning.filename == __file__ for warning in caught)
 
 
 def test_nothing_is_printed(tmp_path):
