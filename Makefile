@@ -90,7 +90,8 @@ python: packages  ## build the Python package and run its tests; some of them: P
 	cmake --install $(BUILD) --component python --prefix build/python/site
 	cmake --install $(BUILD) --component python_codecs --prefix build/python/site
 	cp -r python/gladstone build/python/site
-	PYTHONPATH=build/python/site GLADSTONE_PROGRAM=$(BUILD)/bin/gladstone $(VENV)/bin/pytest -q python/tests $(PYTEST)
+	PYTHONPATH=$(CURDIR)/build/python/site GLADSTONE_PROGRAM=$(CURDIR)/$(BUILD)/bin/gladstone \
+		$(VENV)/bin/pytest -q python/tests $(PYTEST)
 
 # The image codecs are left out of the wheel: they depend on some 200 more libraries, several under the GPL.
 wheel: PACKAGES += python3-venv python3-dev
@@ -142,7 +143,7 @@ packages:
 	$(if $(OPTIONAL_PACKAGES),@cmake/install_packages.sh --optional $(OPTIONAL_PACKAGES))
 
 configure: packages
-	@cmake --preset $(PRESET) -DGLADSTONE_WARNINGS_AS_ERRORS=$(WARNINGS_AS_ERRORS) $(CMAKE_OPTIONS)
+	@cmake --preset $(PRESET) -DGLADSTONE_WARNINGS_AS_ERRORS=$(WARNINGS_AS_ERRORS) -DGLADSTONE_PYTHON=OFF $(CMAKE_OPTIONS)
 
 help:  ## print this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "make %-10s %s\n", $$1, $$2}' Makefile

@@ -97,7 +97,7 @@ std::string report(std::string const& folder, std::string const& output, std::st
   options.source = folder;
   options.output = output;
   options.figure_format = "png";
-  return write_report(options, open_device(device));
+  return write_report(options, open_device(device)).findings;
 }
 
 }  // namespace

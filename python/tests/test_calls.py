@@ -128,7 +128,8 @@ def resident_mb() -> float:
         return int(file.read().split()[1]) * resource.getpagesize() / 1e6
 
 
-# Renders allocate and free the same; RSS is level once the allocator's pools are filled.
+# Every call frees what it allocates: the resident memory is level once the allocators' pools are filled. Arenas of
+# parallel loops once lost 49 KB per iteration, 20 MB here; GLADSTONE_LEAK_RENDERS=10000 is the long run.
 def test_many_small_renders_leak_nothing(bos):
     count = int(os.environ.get("GLADSTONE_LEAK_RENDERS", "400"))
     field = {"kind": "uniform_gradient", "gradient_kg_m4": [150.0, 75.0, 0.0]}
@@ -146,7 +147,7 @@ def test_many_small_renders_leak_nothing(bos):
     before = resident_mb()
     for seed in range(count):
         work(seed)
-    assert resident_mb() - before < 15
+    assert resident_mb() - before < 5
 
 
 def test_number_of_threads_changes_no_bit(bos, case):
