@@ -3,6 +3,7 @@
 NB_MODULE(_core, module) {
   using namespace gladstone::python;
   module.doc() = "Compiled part of gladstone; use the package gladstone.";
+  nb::set_leak_warnings(false);  // arrays in global variables may outlive the module at exit
   route_log_to_python();
   translate_errors();
   bind_setup(module);
