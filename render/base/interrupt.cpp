@@ -34,6 +34,10 @@ void catch_interrupts() {
   std::signal(SIGXFSZ, SIG_IGN);  // a write beyond the file size limit then fails with EFBIG, like a full disk
 }
 
+void request_interrupt() { interrupted.store(true, std::memory_order_relaxed); }
+
+void clear_interrupt() { interrupted.store(false, std::memory_order_relaxed); }
+
 void throw_if_interrupted() {
   if (interrupted.load(std::memory_order_relaxed)) throw Interrupted();
 }

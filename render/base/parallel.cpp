@@ -5,8 +5,11 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <map>
 #include <memory>
+#include <mutex>
 #include <thread>
+#include <vector>
 
 #include "render/base/interrupt.h"
 
@@ -14,6 +17,54 @@ namespace gladstone {
 namespace {
 
 int configured_threads = 0;
+
+/// Arenas of the loops, by number of threads. oneTBB does not free all the memory of a destroyed arena in which workers
+/// ran (8 KB each with version 2021.8), so that arenas are reused. Concurrent and nested loops have arenas of their
+/// own.
+class ArenaPool {
+ public:
+  using Arena = std::unique_ptr<tbb::task_arena>;
+
+  /// The pool, which is never destroyed, since oneTBB may be unloaded before static objects are destroyed.
+  static ArenaPool& instance() {
+    static ArenaPool& pool = *new ArenaPool;
+    return pool;
+  }
+  /// Returns an idle arena, or a new one if there is none.
+  Arena acquire(int threads) {
+    std::lock_guard const lock(mutex_);
+    std::vector<Arena>& idle = idle_[threads];
+    if (idle.empty()) {
+      idle.reserve(idle.capacity() + 1);  // a place for every arena, so that release() allocates nothing
+      return std::make_unique<tbb::task_arena>(threads);
+    }
+    Arena arena = std::move(idle.back());
+    idle.pop_back();
+    return arena;
+  }
+  void release(int threads, Arena arena) {
+    std::lock_guard const lock(mutex_);
+    idle_[threads].push_back(std::move(arena));
+  }
+
+ private:
+  std::mutex mutex_;
+  std::map<int, std::vector<Arena>> idle_;
+};
+
+/// RAII guard: an arena of the pool, for one loop.
+class LoopArena {
+ public:
+  explicit LoopArena(int threads) : threads_(threads), arena_(ArenaPool::instance().acquire(threads)) {}
+  ~LoopArena() { ArenaPool::instance().release(threads_, std::move(arena_)); }
+  LoopArena(LoopArena const&) = delete;
+  LoopArena& operator=(LoopArena const&) = delete;
+  tbb::task_arena& operator*() const { return *arena_; }
+
+ private:
+  int threads_;
+  ArenaPool::Arena arena_;
+};
 
 }  // namespace
 
@@ -34,8 +85,8 @@ void parallel_chunks(std::size_t count, std::size_t grain,
   std::size_t const pieces = (count + grain - 1) / grain;
   int const threads = thread_count();
   tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
-  tbb::task_arena arena(threads);
-  arena.execute([&] {
+  LoopArena const arena(threads);
+  (*arena).execute([&] {
     tbb::parallel_for(
         std::size_t{0}, pieces,
         [&](std::size_t piece) {

@@ -11,15 +11,40 @@ bool enabled = true;
 
 constexpr long long line_interval_ms = 30'000;  // interval between lines if stderr is not a terminal
 
+std::mutex drawing;  // several bars share stderr
+
+thread_local ProgressMonitor* monitor_of_thread = nullptr;
+
 bool on_terminal() { return isatty(STDERR_FILENO) == 1; }
 
 }  // namespace
+
+ProgressMonitor::Report ProgressMonitor::report() const {
+  std::lock_guard const lock(mutex_);
+  Report report = report_;
+  report.done = done_.load(std::memory_order_relaxed);
+  return report;
+}
+
+void ProgressMonitor::begin(std::string const& label, std::size_t total) {
+  std::lock_guard const lock(mutex_);
+  report_ = {report_.number + 1, label, 0, total};
+  done_.store(0, std::memory_order_relaxed);
+}
+
+ProgressMonitor::Scope::Scope(ProgressMonitor& monitor) : outer_(monitor_of_thread) { monitor_of_thread = &monitor; }
+
+ProgressMonitor::Scope::~Scope() { monitor_of_thread = outer_; }
 
 void Progress::enable(bool on) { enabled = on; }
 
 Progress::Progress(std::string label, std::size_t total)
     : label_(std::move(label)), total_(total), start_(std::chrono::steady_clock::now()), shown_(enabled && total > 0) {
   if (!on_terminal()) next_draw_ms_ = line_interval_ms;
+  if (total > 0 && monitor_of_thread) {
+    monitor_ = monitor_of_thread;
+    monitor_->begin(label_, total);
+  }
 }
 
 Progress::~Progress() {
@@ -30,6 +55,7 @@ Progress::~Progress() {
 }
 
 void Progress::advance(std::size_t done) {
+  if (monitor_) return monitor_->advance(done);
   std::size_t const now_done = done_.fetch_add(done, std::memory_order_relaxed) + done;
   if (!shown_) return;
   auto const elapsed = std::chrono::steady_clock::now() - start_;
@@ -40,7 +66,7 @@ void Progress::advance(std::size_t done) {
 }
 
 void Progress::draw(std::size_t done, bool last) {
-  std::lock_guard const lock(mutex_);
+  std::lock_guard const lock(drawing);
   constexpr int width = 30;
   double const fraction = static_cast<double>(done) / static_cast<double>(total_);
   double const elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();

@@ -8,8 +8,46 @@
 
 namespace gladstone {
 
+/// Receives the progress reports that its thread makes, in place of stderr. Another thread may read them at any time.
+class ProgressMonitor {
+ public:
+  ProgressMonitor() = default;
+  ProgressMonitor(ProgressMonitor const&) = delete;
+  ProgressMonitor& operator=(ProgressMonitor const&) = delete;
+
+  /// Report of the computation that began last.
+  struct Report {
+    std::size_t number = 0;  ///< number of computations begun so far; 0: none
+    std::string label;
+    std::size_t done = 0, total = 0;
+  };
+  Report report() const;
+
+  /// RAII guard: the Progress objects made by this thread report to `monitor`.
+  class Scope {
+   public:
+    explicit Scope(ProgressMonitor& monitor);
+    ~Scope();
+    Scope(Scope const&) = delete;
+    Scope& operator=(Scope const&) = delete;
+
+   private:
+    ProgressMonitor* outer_;
+  };
+
+ private:
+  friend class Progress;
+  void begin(std::string const& label, std::size_t total);
+  void advance(std::size_t done) { done_.fetch_add(done, std::memory_order_relaxed); }
+
+  mutable std::mutex mutex_;
+  Report report_;
+  std::atomic<std::size_t> done_{0};
+};
+
 /// Progress report on stderr with the remaining time. On a terminal it is a bar, redrawn at most ten times a second,
-/// whose line ends on destruction; otherwise it is a line of text every 30 s. Thread-safe.
+/// whose line ends on destruction; otherwise it is a line of text every 30 s. Thread-safe. A
+/// ProgressMonitor of the thread receives it in place of stderr.
 class Progress {
  public:
   Progress(std::string label, std::size_t total);
@@ -30,9 +68,9 @@ class Progress {
   std::atomic<std::size_t> done_{0};
   std::chrono::steady_clock::time_point start_;
   std::atomic<long long> next_draw_ms_{200};
-  std::mutex mutex_;
   bool shown_;
   bool drawn_ = false;
+  ProgressMonitor* monitor_ = nullptr;
 };
 
 }  // namespace gladstone

@@ -26,39 +26,10 @@ namespace fs = std::filesystem;
 
 constexpr int truth_spacing_px = 8;
 
-/// Images and truth of a case.
-struct MadeCase {
-  CaseRecord record;
-  HostFrames frames;
-  ParticlePair dots;  ///< particles or dots, without the images
-  DisplacementAt truth;
-  std::string setup;  ///< setup of the refracted case; otherwise empty
-
-  int columns() const { return frames.reference().columns(); }
-  int rows() const { return frames.reference().rows(); }
-};
-
 Image<std::uint16_t> levels_of(Image<double> const& image) {
   Image<std::uint16_t> levels(image.columns(), image.rows());
   std::transform(image.begin(), image.end(), levels.begin(), [](double v) { return static_cast<std::uint16_t>(v); });
   return levels;
-}
-
-MadeCase make_case(BenchmarkCase const& one, Backend const& device) {
-  ParticlePair pair;
-  DisplacementAt truth = one.flow;
-  std::string setup;
-  if (one.refracted()) {
-    RefractedTurbulence const turbulence(one.particles.seed, *device.renderer);
-    pair = turbulence.frames(one.particles.noise, one.particles.seed);
-    truth = turbulence.truth();
-    setup = turbulence.resolved();
-  } else {
-    pair = render_particle_pair(one.particles, one.flow);
-  }
-  CaseRecord record{one, pixel_sha256(levels_of(pair.reference)), pixel_sha256(levels_of(pair.flow))};
-  HostFrames frames(std::move(pair.reference), std::move(pair.flow));
-  return {std::move(record), std::move(frames), std::move(pair), std::move(truth), std::move(setup)};
 }
 
 std::string truth_text(MadeCase const& made) {
@@ -100,6 +71,23 @@ bool runs_on(BenchmarkEstimator const& estimator, std::string const& of_case) {
 }
 
 }  // namespace
+
+MadeCase make_case(BenchmarkCase const& one, Backend const& device) {
+  ParticlePair pair;
+  DisplacementAt truth = one.flow;
+  std::string setup;
+  if (one.refracted()) {
+    RefractedTurbulence const turbulence(one.particles.seed, *device.renderer);
+    pair = turbulence.frames(one.particles.noise, one.particles.seed);
+    truth = turbulence.truth();
+    setup = turbulence.resolved();
+  } else {
+    pair = render_particle_pair(one.particles, one.flow);
+  }
+  CaseRecord record{one, pixel_sha256(levels_of(pair.reference)), pixel_sha256(levels_of(pair.flow))};
+  HostFrames frames(std::move(pair.reference), std::move(pair.flow));
+  return {std::move(record), std::move(frames), std::move(pair), std::move(truth), std::move(setup)};
+}
 
 WindowTruths window_truths_of(DisplacementField const& field, ParticlePair const& dots,
                               CorrelationSettings const& settings, int columns, int rows) {

@@ -84,6 +84,20 @@ struct BenchmarkResult {
   std::string device;
 };
 
+/// Images and truth of a case.
+struct MadeCase {
+  CaseRecord record;
+  HostFrames frames;
+  ParticlePair dots;  ///< particles or dots, without the images
+  DisplacementAt truth;
+  std::string setup;  ///< setup of the refracted case; otherwise empty
+
+  int columns() const { return frames.reference().columns(); }
+  int rows() const { return frames.reference().rows(); }
+};
+/// Renders a case in memory.
+MadeCase make_case(BenchmarkCase const& one, Backend const& device);
+
 /// Name of the truth in a case's folder.
 inline constexpr char const* benchmark_truth = "truth.csv";
 

@@ -152,6 +152,11 @@ nlohmann::json place_error_json(PlaceError const& error) {
 
 }  // namespace
 
+Recording record_plane(CameraSetup const& camera, RenderedCalibration const& rendered, std::size_t plane) {
+  Detector const detector(camera_of_frame(camera, plane), rendered.exposure_e);
+  return detector.record(rendered.planes[plane].light, RandomStream::noise_reference);
+}
+
 nlohmann::json write_calibration(CaseSetup& loaded, RenderedCalibration const& rendered, std::string const& folder) {
   CameraSetup const& camera = loaded.setup.camera;
   std::string const resolved = loaded.document.resolved();
@@ -162,8 +167,7 @@ nlohmann::json write_calibration(CaseSetup& loaded, RenderedCalibration const& r
   std::size_t dots = 0, all_saturated = 0;
   for (std::size_t i = 0; i < rendered.planes.size(); ++i) {
     RenderedPlane const& plane = rendered.planes[i];
-    Detector const detector(camera_of_frame(camera, i), rendered.exposure_e);
-    Recording const frame = detector.record(plane.light, RandomStream::noise_reference);
+    Recording const frame = record_plane(camera, rendered, i);
     std::string const name = case_file::plane(i);
     write_tiff(place(name), frame.image, {camera.bit_depth, camera.pixel_pitch, resolved});
     origin.sources.add_known(name.substr(0, name.find('.')), pixel_sha256(frame.image));

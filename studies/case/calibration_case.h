@@ -40,6 +40,9 @@ struct RenderedCalibration {
 /// Renders the dots of every plane by ray tracing through the same camera.
 RenderedCalibration render_planes(CaseSetup& loaded, Renderer& renderer);
 
+/// Records the image of a plane with the camera's noise, which is independent between planes.
+Recording record_plane(CameraSetup const& camera, RenderedCalibration const& rendered, std::size_t plane);
+
 /// Writes plane_000.tif, ..., truth.h5, setup.toml and summary.json into a folder.
 /// @return the contents of summary.json
 nlohmann::json write_calibration(CaseSetup& loaded, RenderedCalibration const& rendered, std::string const& folder);

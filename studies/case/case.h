@@ -3,6 +3,7 @@
 #include <map>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -95,9 +96,29 @@ FinishedCase finish_case(CaseSetup& loaded, Renderer& renderer, KnownParts const
 /// Renders a setup into a CASE folder: reference.tif, flow.tif, truth.h5, setup.toml and summary.json.
 FinishedCase render_to_folder(CaseSetup& loaded, Renderer& renderer, std::string const& folder);
 
+/// Quantities of a rendered case that its summary reports besides those of the rendering.
+struct CaseOutcome {
+  TruthAccuracy accuracy;
+  std::size_t unseen = 0;               ///< number of dots or particles without truth in one of the frames
+  std::optional<RaysPlan> table_error;  ///< error of the deflection table, if the truth was computed with one
+  std::string device, reference_sha256, flow_sha256;
+  std::vector<std::string> warnings;  ///< all warnings of the case, those of its preparation first
+};
+
+/// Determines accuracy and warnings of a rendered case, logs its warnings, and stores the values used for "auto" in the
+/// setup.
+CaseOutcome judge_case(CaseSetup& loaded, PreparedCase const& prepared, RenderedCase const& rendered,
+                       RecordedFrames const& frames, Renderer const& renderer);
+
+/// Converts grey levels, which are whole numbers, to the integers of an image file.
+Image<std::uint16_t> grey_levels(Image<double> const& levels);
+
 /// Writes the files of a rendered case.
 /// @return the contents of summary.json
 /// @throws DataError if a file that the setup names has changed since it was hashed
+nlohmann::json write_case(CaseSetup& loaded, PreparedCase const& prepared, RenderedCase const& rendered,
+                          RecordedFrames const& frames, CaseOutcome const& outcome, std::string const& folder);
+/// Judges a case by judge_case() and writes its files.
 nlohmann::json write_case(CaseSetup& loaded, PreparedCase const& prepared, RenderedCase const& rendered,
                           RecordedFrames const& frames, Renderer const& renderer, std::string const& folder);
 

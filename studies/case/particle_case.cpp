@@ -139,6 +139,10 @@ GroundTruth read_particle_truth(std::string const& path) {
   std::vector<std::int64_t> const rays = file.read_integers("/particles/rays");
   require_count(path, "/particles/rays", rays.size(), 2 * count);
   for (std::size_t i = 0; i < count; ++i) truth.rays[i] = {rays[2 * i], rays[2 * i + 1]};
+  if (file.has("/particles/rays_planned")) {
+    truth.rays_planned = file.read_integers("/particles/rays_planned");
+    require_count(path, "/particles/rays_planned", truth.rays_planned.size(), count);
+  }
   return truth;
 }
 

@@ -81,7 +81,34 @@ TracedRay trace_one(Scene const& scene, TracingOptions<double> const& options, M
   return traced;
 }
 
+/// Converts a row of a table of rays.
+/// @param place  of the row, for messages
+Ray<double> ray_of(double const* v, std::string const& place, double farthest) {
+  Vec3d const start = Vec3d{v[0], v[1], v[2]} * unit::millimetre;
+  if (std::max({std::abs(start.x), std::abs(start.y), std::abs(start.z)}) > farthest) {
+    throw DataError(place,
+                    fmt::format("the ray starts at {:.6g}, {:.6g}, {:.6g} mm, far outside the set-up ({:.6g} mm at "
+                                "most, ten times the distance from the dots to the lens); positions are in mm",
+                                v[0], v[1], v[2], farthest / unit::millimetre));
+  }
+  return {start, unit_direction({v[3], v[4], v[5]})};
+}
+
 }  // namespace
+
+std::vector<Ray<double>> rays_of(std::vector<double> const& rows, std::string const& name, double farthest) {
+  std::vector<Ray<double>> rays;
+  for (std::size_t i = 0; i + 6 <= rows.size(); i += 6) {
+    double const* const v = rows.data() + i;
+    std::string const place = fmt::format("{}:{}", name, i / 6);
+    bool const finite = std::all_of(v, v + 6, [](double value) { return std::isfinite(value); });
+    if (!finite || Vec3d{v[3], v[4], v[5]} == Vec3d{}) {
+      throw DataError(place, "is not six finite numbers with a direction that is not zero");
+    }
+    rays.push_back(ray_of(v, place, farthest));
+  }
+  return rays;
+}
 
 std::vector<Ray<double>> read_rays(std::string const& path, double farthest) {
   LineReader file(path, "a table of rays with --rays");
@@ -107,15 +134,9 @@ std::vector<Ray<double>> read_rays(std::string const& path, double farthest) {
       throw DataError(file.place(), fmt::format("\"{}\" is not six finite numbers with a direction that is not zero",
                                                 excerpt(*line)));
     }
-    Vec3d const start = Vec3d{v[0], v[1], v[2]} * unit::millimetre;
-    if (std::max({std::abs(start.x), std::abs(start.y), std::abs(start.z)}) > farthest) {
-      throw DataError(file.place(),
-                      fmt::format("the ray starts at {:.6g}, {:.6g}, {:.6g} mm, far outside the set-up ({:.6g} mm at "
-                                  "most, ten times the distance from the dots to the lens); positions are in mm",
-                                  v[0], v[1], v[2], farthest / unit::millimetre));
-    }
+    Ray<double> const ray = ray_of(v, file.place(), farthest);
     require_room(rays, path, "rays");
-    rays.push_back({start, unit_direction(direction)});
+    rays.push_back(ray);
   }
   return rays;
 }

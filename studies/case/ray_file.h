@@ -24,6 +24,12 @@ struct TracedRay {
 /// @throws DataError with file:line
 std::vector<Ray<double>> read_rays(std::string const& path, double farthest);
 
+/// Returns the rays of a table with rows x_mm, y_mm, z_mm, dx, dy, dz, stored row by row.
+/// @param name      of the table, for messages
+/// @param farthest  largest admissible coordinate of a start point [m]
+/// @throws DataError at name:row, counted from 0
+std::vector<Ray<double>> rays_of(std::vector<double> const& rows, std::string const& name, double farthest);
+
 /// Traces rays through the medium and the lens to the sensor. A ray that misses the medium is not changed by it.
 std::vector<TracedRay> trace_rays(Scene const& scene, std::vector<Ray<double>> const& rays, Through through);
 

@@ -1,5 +1,7 @@
 #include "studies/case/shared_folder.h"
 
+#include <dlfcn.h>
+
 #include <filesystem>
 #include <system_error>
 
@@ -12,7 +14,12 @@ std::string shared_folder() {
   std::error_code error;
   fs::path const executable = fs::read_symlink("/proc/self/exe", error);
   fs::path const installed = executable.parent_path().parent_path() / "share" / "gladstone";
-  for (fs::path const& folder : {installed, fs::path(GLADSTONE_SOURCE_DIR)}) {
+  // The Python package contains the folder beside its extension module.
+  Dl_info module{};
+  fs::path const packaged = ::dladdr(reinterpret_cast<void const*>(&shared_folder), &module) != 0
+                                ? fs::path(module.dli_fname).parent_path() / "share" / "gladstone"
+                                : fs::path();
+  for (fs::path const& folder : {installed, packaged, fs::path(GLADSTONE_SOURCE_DIR)}) {
     if (fs::exists(folder / "studies" / "cases" / "table1.toml")) return folder.string();
   }
   throw DataError(installed.string(),

@@ -142,6 +142,10 @@ GroundTruth read_truth(std::string const& path) {
   std::vector<std::int64_t> const rays = file.read_integers("/dots/rays");
   require_length(path, "/dots/rays", rays.size(), 2 * truth.size());
   for (std::size_t i = 0; i < truth.size(); ++i) truth.rays[i] = {rays[2 * i], rays[2 * i + 1]};
+  if (file.has("/dots/rays_planned")) {
+    truth.rays_planned = file.read_integers("/dots/rays_planned");
+    require_length(path, "/dots/rays_planned", truth.rays_planned.size(), truth.size());
+  }
   return truth;
 }
 

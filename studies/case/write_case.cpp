@@ -38,14 +38,6 @@ RaysPlan error_of_table(Scene const& scene, RaysPlan const& plan) {
   return measured ? plan : measure_table_error(focused_dots(scene).value());
 }
 
-/// Converts grey levels, which are whole numbers, to the integers of an image file.
-Image<std::uint16_t> picture_of(Image<double> const& levels) {
-  Image<std::uint16_t> picture(levels.columns(), levels.rows());
-  std::transform(levels.begin(), levels.end(), picture.begin(),
-                 [](double level) { return static_cast<std::uint16_t>(level); });
-  return picture;
-}
-
 }  // namespace
 
 void hash_inputs(CaseSetup& loaded) {
@@ -111,9 +103,15 @@ FinishedCase render_to_folder(CaseSetup& loaded, Renderer& renderer, std::string
   return finished;
 }
 
-nlohmann::json write_case(CaseSetup& loaded, PreparedCase const& prepared, RenderedCase const& rendered,
-                          RecordedFrames const& frames, Renderer const& renderer, std::string const& folder) {
-  namespace fs = std::filesystem;
+Image<std::uint16_t> grey_levels(Image<double> const& levels) {
+  Image<std::uint16_t> picture(levels.columns(), levels.rows());
+  std::transform(levels.begin(), levels.end(), picture.begin(),
+                 [](double level) { return static_cast<std::uint16_t>(level); });
+  return picture;
+}
+
+CaseOutcome judge_case(CaseSetup& loaded, PreparedCase const& prepared, RenderedCase const& rendered,
+                       RecordedFrames const& frames, Renderer const& renderer) {
   CaseOutcome outcome;
   std::vector<std::string>& warnings = outcome.warnings = prepared.warnings;
   if (loaded.setup.render.precision == Precision::single) {
@@ -124,10 +122,9 @@ nlohmann::json write_case(CaseSetup& loaded, PreparedCase const& prepared, Rende
   scene.pupil_margin = rendering.pupil_margin;
   CameraSetup const& camera = scene.setup.camera;
   bool const by_table = rendering.method == RenderMethod::focused_dots;
-  std::optional<RaysPlan>& table_error = outcome.table_error;
   if (by_table) {
-    table_error = error_of_table(scene, prepared.rays);
-    warn_of_table(warnings, *table_error);
+    outcome.table_error = error_of_table(scene, prepared.rays);
+    warn_of_table(warnings, *outcome.table_error);
   }
   outcome.device = rendering.device.empty() ? renderer.device() : rendering.device;
   // If the rays are chosen again, they are chosen for the same exposure, so "auto" remains.
@@ -142,18 +139,30 @@ nlohmann::json write_case(CaseSetup& loaded, PreparedCase const& prepared, Rende
   if (by_table || prepared.rays.method != RenderMethod::automatic) {
     loaded.document.root().table("render").resolve("method", std::string(to_string(rendering.method)));
   }
+  outcome.reference_sha256 = pixel_sha256(grey_levels(frames.levels->reference()));
+  outcome.flow_sha256 = pixel_sha256(grey_levels(frames.levels->flow()));
+  RenderedOutcome const seen = warn_of_rendering(warnings, prepared, rendered, frames);
+  outcome.unseen = seen.unseen;
+  outcome.accuracy = seen.accuracy;
+  return outcome;
+}
+
+nlohmann::json write_case(CaseSetup& loaded, PreparedCase const& prepared, RenderedCase const& rendered,
+                          RecordedFrames const& frames, CaseOutcome const& outcome, std::string const& folder) {
+  namespace fs = std::filesystem;
+  Scene scene = prepared.scene;
+  Rendering const& rendering = *rendered.rendering;
+  scene.pupil_margin = rendering.pupil_margin;
+  CameraSetup const& camera = scene.setup.camera;
   std::string const resolved = loaded.document.resolved();
 
   auto const place = [&](char const* name) { return (fs::path(folder) / name).string(); };
   ImageMetadata const metadata{camera.bit_depth, camera.pixel_pitch, resolved};
+  write_tiff(place(case_file::reference), grey_levels(frames.levels->reference()), metadata);
+  write_tiff(place(case_file::flow), grey_levels(frames.levels->flow()), metadata);
   FileOrigin origin{"gladstone truth", 2, resolved, scene.setup.render.seed, outcome.device};
-  auto const write_frame = [&](char const* name, char const* file, Image<double> const& frame) {
-    Image<std::uint16_t> const picture = picture_of(frame);
-    write_tiff(place(file), picture, metadata);
-    origin.sources.add_known(name, pixel_sha256(picture));
-  };
-  write_frame("reference", case_file::reference, frames.levels->reference());
-  write_frame("flow", case_file::flow, frames.levels->flow());
+  origin.sources.add_known("reference", outcome.reference_sha256);
+  origin.sources.add_known("flow", outcome.flow_sha256);
   if (loaded.input_hashes.empty()) hash_inputs(loaded);
   for (auto const& [path, hash] : loaded.input_hashes) origin.sources.add("", path, SourceFiles::Holds::bytes, hash);
   origin.sources.add_known("inputs", nlohmann::json(loaded.input_hashes).dump());
@@ -161,18 +170,19 @@ nlohmann::json write_case(CaseSetup& loaded, PreparedCase const& prepared, Rende
     write_particle_truth(place(case_file::truth), scene, rendering.truth, rendering.statuses, rendering.method, origin);
   } else {
     write_truth(place(case_file::truth), scene, rendering.truth, rendering.statuses,
-                field_in_view(scene, map_spacing_px), rendering.method, table_error ? &*table_error : nullptr, origin);
+                field_in_view(scene, map_spacing_px), rendering.method,
+                outcome.table_error ? &*outcome.table_error : nullptr, origin);
   }
   OutputFile::write_text(place(case_file::setup), with_uncertain_inputs(resolved, loaded.uncertain));
-
-  RenderedOutcome const told = warn_of_rendering(warnings, prepared, rendered, frames);
-  outcome.unseen = told.unseen;
-  outcome.accuracy = told.accuracy;
-  outcome.reference_sha256 = origin.sources.sha256("reference");
-  outcome.flow_sha256 = origin.sources.sha256("flow");
   nlohmann::json summary = case_summary(loaded, prepared, rendered, frames, outcome);
   OutputFile::write_text(place(case_file::summary), json_text(summary) + "\n");
   return summary;
+}
+
+nlohmann::json write_case(CaseSetup& loaded, PreparedCase const& prepared, RenderedCase const& rendered,
+                          RecordedFrames const& frames, Renderer const& renderer, std::string const& folder) {
+  return write_case(loaded, prepared, rendered, frames, judge_case(loaded, prepared, rendered, frames, renderer),
+                    folder);
 }
 
 }  // namespace gladstone

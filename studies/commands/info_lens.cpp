@@ -108,7 +108,7 @@ std::string lens_text(LensQuestion const& question, Lens const& lens, ParaxialLe
 
 }  // namespace
 
-int describe_lens(LensQuestion const& question, GlobalOptions const& options) {
+Description describe_lens(LensQuestion const& question) {
   GlassCatalogue catalogue = GlassCatalogue::shipped();
   for (std::string const& file : question.glasses) catalogue.add_file(file);
   Prescription prescription = read_prescription(question.file);
@@ -129,8 +129,7 @@ int describe_lens(LensQuestion const& question, GlobalOptions const& options) {
       spdlog::warn("{}", missing.what());
     }
   }
-  print_result(options, json_text(json), lens_text(question, lens, paraxial, field));
-  return ok;
+  return {json_text(json), lens_text(question, lens, paraxial, field)};
 }
 
 }  // namespace gladstone

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "studies/commands/command.h"
+#include "studies/commands/description.h"
 
 namespace gladstone {
 
@@ -17,6 +17,6 @@ struct LensQuestion {
 
 /// Reports cardinal points, f-number, pupils and spot sizes of a lens prescription; draws its layout with rays, spot
 /// diagrams, distortion, field curvature and vignetting.
-int describe_lens(LensQuestion const& question, GlobalOptions const& options);
+Description describe_lens(LensQuestion const& question);
 
 }  // namespace gladstone

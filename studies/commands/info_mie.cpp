@@ -80,7 +80,7 @@ nlohmann::json pairs(std::vector<double> const& angles, std::vector<double> cons
 
 }  // namespace
 
-int describe_mie(MieQuestion const& question, GlobalOptions const& options) {
+Description describe_mie(MieQuestion const& question) {
   double const x = size_parameter(question);
   std::complex<double> const m = relative_index(question);
   MieCoefficients const sphere(x, m);
@@ -128,8 +128,7 @@ int describe_mie(MieQuestion const& question, GlobalOptions const& options) {
       spdlog::warn("{}", missing.what());
     }
   }
-  print_result(options, json_text(json), text);
-  return ok;
+  return {json_text(json), text};
 }
 
 }  // namespace gladstone

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "studies/commands/command.h"
+#include "studies/commands/description.h"
 
 namespace gladstone {
 
@@ -15,6 +15,6 @@ struct MieQuestion {
 
 /// Reports the efficiencies of a sphere and its scattered light over angle: S11 and polarization in steps of one
 /// degree, or finer if required by the ripples. Draws the scattered light as a polar plot with logarithmic radius.
-int describe_mie(MieQuestion const& question, GlobalOptions const& options);
+Description describe_mie(MieQuestion const& question);
 
 }  // namespace gladstone

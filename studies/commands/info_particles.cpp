@@ -83,10 +83,10 @@ std::string particles_text(ExpectedParticles const& expected, CaseSetup const& l
 
 }  // namespace
 
-int describe_particles(std::string const& path, GlobalOptions const& options) {
+Description describe_particles(SetupDocument const& setup, std::string const& path) {
   std::string text;
   nlohmann::json cameras = nlohmann::json::object(), only;
-  for (CameraCase& camera : camera_cases(SetupDocument::from_file(path))) {
+  for (CameraCase& camera : camera_cases(setup)) {
     CaseSetup const loaded = load_case_setup(std::move(camera.document));
     if (!loaded.setup.piv) {
       throw DataError(path, "has no particles (experiment is not \"piv\"); give the setup of a PIV experiment");
@@ -99,8 +99,7 @@ int describe_particles(std::string const& path, GlobalOptions const& options) {
     if (!camera.name.empty()) cameras[camera.name] = only;
   }
   nlohmann::json const json = cameras.empty() ? only : nlohmann::json{{"cameras", cameras}};
-  print_result(options, json_text(json), text);
-  return ok;
+  return {json_text(json), text};
 }
 
 }  // namespace gladstone

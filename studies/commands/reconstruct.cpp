@@ -148,7 +148,7 @@ CommandBody attach_reconstruct(CLI::App& app, GlobalOptions const& options) {
                "theory, which is computed unless gladstone compare has stored it");
   app.add_flag("--no-figures", arguments->no_figures, "Draw no figure");
   return [arguments, &options] {
-    Device const device = options.open_device();
+    Backend const device = options.open_device();
     ReconstructOptions reconstruct = arguments->reconstruct;
     for (std::string const& text : arguments->reference) reconstruct.reference.push_back(parse_reference(text));
     if (!arguments->conventions.empty()) reconstruct.conventions = arguments->conventions;

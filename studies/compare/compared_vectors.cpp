@@ -123,37 +123,44 @@ void log_remarks(VectorFile const& file) {
   for (std::string const& note : file.notes) spdlog::info("{}", note);
 }
 
-MeasuredVectors load_vectors(std::string const& path, CaseSetup const& loaded, GroundTruth const* truth,
-                             CompareOptions const& options) {
-  VectorFile file = read_vectors(path);
-  log_remarks(file);
+MeasuredVectors accept_vectors(VectorFile file, std::string const& name, CaseSetup const& loaded,
+                               GroundTruth const* truth, CompareOptions const& options, bool certain) {
   if (options.conventions) override_conventions(file, *options.conventions);
-  file = convert_to_pixels(std::move(file), path);
+  file = convert_to_pixels(std::move(file), name);
   CameraSetup const& camera = loaded.setup.camera;
-  LeftOutVectors const left_out = screen(file, path, camera);
+  LeftOutVectors const left_out = screen(file, name, camera);
   // rejected vectors count as valid unless their displacement was not finite
   bool any_valid = left_out.all() > left_out.displacement_not_finite;
   for (std::size_t i = 0; i < file.field.size() && !any_valid; ++i) any_valid = file.field.counts(i);
   if (!any_valid)
-    throw NoValidVector(path, fmt::format("none of its {} vectors is valid; check the frames and how they were "
+    throw NoValidVector(name, fmt::format("none of its {} vectors is valid; check the frames and how they were "
                                           "correlated",
                                           file.field.size()));
-  MeasuredVectors vectors{{}, loaded.correlate, file.foreign, {}, path, left_out, {}};
-  bool const hdf5 = path.ends_with(".h5") || path.ends_with(".hdf5");
+  MeasuredVectors vectors{{}, loaded.correlate, file.foreign, {}, name, left_out, {}};
   if (options.conventions && specifies_reading(*options.conventions)) {
     vectors.report = file.format + " vectors, as specified: " + describe(file.conventions);
-  } else if (!truth) {
+  } else if (!certain && truth) {
+    vectors.detected = detect(file, name, *truth, camera);
+    vectors.report = vectors.detected->report;
+    file.conventions = vectors.detected->conventions;
+  } else if (!certain) {
     vectors.report =
         fmt::format("{} vectors, read as {} (the conventions of this format; there is no truth to test them)",
                     file.format, describe(file.conventions));
-  } else if (file.foreign || !hdf5) {  // our .h5 files name their frames, so their conventions are certain
-    vectors.detected = detect(file, path, *truth, camera);
-    vectors.report = vectors.detected->report;
-    file.conventions = vectors.detected->conventions;
   }
   vectors.complete = file.complete;
   vectors.field = apply_conventions(std::move(file.field), file.conventions, camera.rows);
-  if (!file.foreign && hdf5) {
+  return vectors;
+}
+
+MeasuredVectors load_vectors(std::string const& path, CaseSetup const& loaded, GroundTruth const* truth,
+                             CompareOptions const& options) {
+  VectorFile file = read_vectors(path);
+  log_remarks(file);
+  bool const foreign = file.foreign, hdf5 = path.ends_with(".h5") || path.ends_with(".hdf5");
+  bool const certain = !foreign && hdf5;  // our .h5 files name their frames
+  MeasuredVectors vectors = accept_vectors(std::move(file), path, loaded, truth, options, certain);
+  if (certain) {
     Hdf5Reader const measured(path);
     std::string const text = measured.attribute("setup");
     if (!text.empty()) {
@@ -161,7 +168,7 @@ MeasuredVectors load_vectors(std::string const& path, CaseSetup const& loaded, G
       vectors.settings = read_correlation_settings(document.root().table("correlate"));
       check_preparation(measured, path, vectors.settings);
     }
-  } else if (!file.foreign) {
+  } else if (!foreign) {
     vectors.foreign = true;  // a CSV file does not contain the correlation settings
   }
   return vectors;

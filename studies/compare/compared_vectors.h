@@ -17,4 +17,10 @@ void log_remarks(VectorFile const& file);
 MeasuredVectors load_vectors(std::string const& path, CaseSetup const& loaded, GroundTruth const* truth,
                              CompareOptions const& options);
 
+/// Checks and converts vectors as load_vectors() does, for vectors that are already in memory.
+/// @param name     of their origin, for messages
+/// @param certain  false: the conventions are checked by comparison with the truth, unless `options` has others
+MeasuredVectors accept_vectors(VectorFile file, std::string const& name, CaseSetup const& loaded,
+                               GroundTruth const* truth, CompareOptions const& options, bool certain);
+
 }  // namespace gladstone

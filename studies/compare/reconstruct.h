@@ -112,6 +112,6 @@ Reconstruction reconstruct_density(DisplacementField const& field, Setup const& 
 /// @param place   case folder, with or without truth.h5, or a setup (TOML) together with options.vectors
 /// @param device  for the comparison
 /// @throws DataError, SetupError  as reconstruct_density(), and for files that are missing, invalid, or of other frames
-Reconstruction reconstruct_case(std::string const& place, ReconstructOptions const& options, Device const& device);
+Reconstruction reconstruct_case(std::string const& place, ReconstructOptions const& options, Backend const& device);
 
 }  // namespace gladstone

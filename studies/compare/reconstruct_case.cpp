@@ -78,7 +78,7 @@ std::vector<double> compute_truth(Reconstruction const& result, DisplacementFiel
 
 }  // namespace
 
-Reconstruction reconstruct_case(std::string const& place, ReconstructOptions const& options, Device const& device) {
+Reconstruction reconstruct_case(std::string const& place, ReconstructOptions const& options, Backend const& device) {
   ReconstructedFiles files = find_files(place, options.vectors);
   CaseSetup loaded = load_case_setup(files.setup, {});
   if (loaded.setup.piv || loaded.setup.calibration())

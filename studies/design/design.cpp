@@ -145,6 +145,10 @@ void add_answer(DesignRequest const& request, SetupDocument const& document, Des
 DesignReport design(DesignRequest const& request) {
   SetupDocument document = SetupDocument::from_file(request.setup);
   for (std::string const& assignment : request.overrides) document.override_key(assignment);
+  return design(std::move(document), request);
+}
+
+DesignReport design(SetupDocument document, DesignRequest const& request) {
   SetupDocument const written = document.copy();
   std::vector<UncertainInput> const uncertain = take_uncertain_inputs(document);
   std::optional<DesignQuestion> question = read_design_question(document);

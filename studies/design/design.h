@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "render/setup/setup_table.h"
 #include "studies/case/backend.h"
 #include "studies/design/verification.h"
 
@@ -35,5 +36,7 @@ struct DesignReport {
 /// @throws DataError if the design has no light cone, or for --apply without [requirements]
 /// @throws OutputError if a file cannot be written
 DesignReport design(DesignRequest const& request);
+/// Does the same for a setup in memory; request.setup is its name in messages and request.overrides are ignored.
+DesignReport design(SetupDocument document, DesignRequest const& request);
 
 }  // namespace gladstone

@@ -112,6 +112,7 @@ std::vector<Room> const& table() {
       {"studies/oracles", libraries + Names{"studies/case"}, studies_use, {}},
       {"studies/examples", libraries + Names{"studies/case", "studies/compare", "studies/figures"}, studies_use, {}},
       {"studies/commands", libraries + studies, studies_use + Names{"CLI11"}, {}},
+      {"python/src", libraries + studies + Names{"studies/commands"}, studies_use + Names{"nanobind"}, {}},
       {"studies", libraries + studies + Names{"studies/commands"}, studies_use + Names{"CLI11"}, {}},  // main.cpp
   };
   return rooms;
@@ -156,6 +157,7 @@ std::vector<LibraryPattern> const& known_libraries() {
       {"spdlog", "spdlog/.*"},
       {"nlohmann_json", "nlohmann/.*"},
       {"CLI11", "CLI/.*"},
+      {"nanobind", "nanobind/.*"},
       {"OpenCV", "opencv2/.*"},
       {"Ceres", "ceres/.*"},
       {"NLopt", "nlopt\\.h(pp)?"},

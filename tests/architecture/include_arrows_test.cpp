@@ -168,7 +168,7 @@ TEST(IncludeArrows, RefuseASourceInNoRoom) {
 }
 
 TEST(Tree, HasOnlyTheArrowsOfTheTable) {
-  std::vector<SourceFile> const files = sources_of({"render", "analysis", "cuda", "studies"});
+  std::vector<SourceFile> const files = sources_of({"render", "analysis", "cuda", "studies", "python"});
   ASSERT_GT(files.size(), 20U);
   std::size_t includes = 0;
   for (SourceFile const& file : files) {
@@ -222,7 +222,7 @@ bool draws_cuda(std::string const& path, IncludesOfFiles const& files, std::set<
 
 TEST(Tree, KeepsCudaHeadersInTheirRoom) {
   IncludesOfFiles files;
-  for (SourceFile const& file : sources_of({"render", "analysis", "cuda", "studies", "tests"})) {
+  for (SourceFile const& file : sources_of({"render", "analysis", "cuda", "studies", "python", "tests"})) {
     files[file.path] = includes_of(file.text);
     if (room_of(file.path) == "tests") {
       EXPECT_THAT(forbidden_arrows(file.path, file.text), IsEmpty());

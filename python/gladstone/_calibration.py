@@ -1,0 +1,113 @@
+"""Camera calibration from images of a dot grid."""
+
+from __future__ import annotations
+
+import json
+import os
+import tempfile
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+
+from . import _core
+from ._case import CalibrationCase
+from ._progress import Progress, reporting
+from ._setup import Setup
+
+
+class Calibration:
+    """Pinhole camera with distortion and polynomial, fitted to the dots of several planes."""
+
+    def __init__(self, core: _core.Calibration):
+        self._core = core
+
+    @property
+    def camera_matrix(self) -> np.ndarray:
+        """[3, 3] OpenCV's camera matrix [px]."""
+        fx, fy, cx, cy = self._core.array("pinhole")[:4]
+        return np.array([[fx, 0, cx], [0, fy, cy], [0, 0, 1]])
+
+    @property
+    def distortion(self) -> np.ndarray:
+        """[4] OpenCV's distortion k1, k2, p1, p2."""
+        return self._core.array("pinhole")[4:8]
+
+    @property
+    def rvec(self) -> np.ndarray:
+        """[3] OpenCV's rotation vector from world to camera [rad]."""
+        return self._core.array("pinhole")[8:11]
+
+    @property
+    def tvec(self) -> np.ndarray:
+        """[3] OpenCV's translation from world to camera [m]."""
+        return self._core.array("pinhole")[11:14]
+
+    @property
+    def standard_error(self) -> np.ndarray:
+        """[14] standard errors of fx, fy, cx, cy, k1, k2, p1, p2, rvec, tvec, in their units."""
+        return self._core.array("standard_error")
+
+    @property
+    def world_m(self) -> np.ndarray:
+        """[N, 3] world positions of the dots [m]."""
+        return self._core.array("world_m")
+
+    @property
+    def pixel(self) -> np.ndarray:
+        """[N, 2] positions of their images [px]."""
+        return self._core.array("pixel")
+
+    @property
+    def residual_px(self) -> np.ndarray:
+        """[N, 2] measured minus fitted position, for the pinhole camera [px]."""
+        return self._core.array("residual_px")
+
+    @property
+    def plane_of(self) -> np.ndarray:
+        """[N] index of the plane of each dot, from 0."""
+        return self._core.array("plane_of")
+
+    @property
+    def results(self) -> dict[str, Any]:
+        """All results, as `gladstone calibrate --json` prints them."""
+        return json.loads(self._core.json())
+
+    @property
+    def warnings(self) -> list[str]:
+        """Warnings about the calibration."""
+        return list(self._core.warnings)
+
+    def save(self, path: str | os.PathLike) -> None:
+        """Writes calibration.h5."""
+        self._core.save(os.fspath(path))
+
+    def draw(self, path: str | os.PathLike) -> None:
+        """Draws the residuals by gnuplot (.png, .svg)."""
+        self._core.draw(os.fspath(path))
+
+    def __str__(self) -> str:
+        return self._core.text()
+
+    def __repr__(self) -> str:
+        rms = float(np.sqrt(np.mean(self.residual_px**2)))
+        return f"<gladstone.Calibration {len(self.pixel)} dots, rms {rms:.4g} px>"
+
+
+def calibrate(given, images: Iterable[str | os.PathLike] = (), *, progress: Progress = False) -> Calibration:
+    """Fits a camera to images of a dot grid in several planes.
+
+    given: a `CalibrationCase`, the CASE folder of one, or, with `images`, a setup that describes the grid.
+    images: your own image files, one for each plane of calibration.planes_mm in that order.
+    """
+    pictures = [os.fspath(one) for one in images]
+    with reporting(progress) as report, tempfile.TemporaryDirectory() as folder:
+        if isinstance(given, CalibrationCase):
+            place = os.path.join(folder, "case")
+            given.save(place)
+        elif isinstance(given, Setup):
+            place = os.path.join(folder, "setup.toml")
+            given.save(place)
+        else:
+            place = os.fspath(given)
+        return Calibration(_core.calibrate(place, pictures, report))

@@ -1,0 +1,262 @@
+"""Rendered cases: images with known displacement."""
+
+from __future__ import annotations
+
+import json
+import os
+from typing import Any, Literal, NamedTuple
+
+import numpy as np
+
+from . import _core
+from ._field import Field
+from ._progress import Progress, reporting
+
+
+class Accuracy(NamedTuple):
+    """Standard error of the true displacements, from the scatter of the rays."""
+
+    rms_px: float
+    """Rms over dots and components [px]; NaN: unknown."""
+    largest_px: float
+    """Largest error of a component [px]."""
+    worst: int
+    """Index of the dot or particle with the largest error."""
+    above: int
+    """Number of dots with an error above 0.001 px."""
+    unknown: int
+    """Number of visible dots whose error is unknown, since too few rays reached the sensor."""
+
+
+class Truth:
+    """True positions and displacements of the dots or particles of a case. Arrays are read-only views.
+
+    Pixel coordinates: column x to the right, row y downwards, from 0 at the centre of the first pixel. Displacements
+    are those from frame a to frame b, u to the right and v downwards. NaN: no light reaches the sensor.
+    """
+
+    def __init__(self, core: _core.PairCase):
+        self._core = core
+
+    def _array(self, name: str) -> np.ndarray:
+        array = _core.truth_array(self._core, name)
+        return np.empty((0, 2)) if array is None else array
+
+    def _optional(self, name: str) -> np.ndarray | None:
+        return _core.truth_array(self._core, name)
+
+    def __len__(self) -> int:
+        return len(self._array("position_m"))
+
+    @property
+    def position_m(self) -> np.ndarray:
+        """[N, 3] world position in frame a [m]."""
+        return self._array("position_m")
+
+    @property
+    def position_px(self) -> np.ndarray:
+        """[N, 2] position of the image in frame a [px]."""
+        return self._array("reference_px")
+
+    @property
+    def displacement_px(self) -> np.ndarray:
+        """[N, 2] displacement by ray tracing [px]."""
+        return self._array("displacement_px")
+
+    @property
+    def error_px(self) -> np.ndarray:
+        """[N, 2] standard error of the displacement [px]; NaN: unknown."""
+        return self._array("displacement_error_px")
+
+    @property
+    def std_px(self) -> np.ndarray:
+        """[N, 2] standard deviation of the ray hits in frame b [px]."""
+        return self._array("displacement_std_px")
+
+    @property
+    def flux(self) -> np.ndarray:
+        """[N, 2] light in frames a and b; BOS: in fully lit pixels, PIV: in photons."""
+        return self._array("flux")
+
+    @property
+    def rays(self) -> np.ndarray:
+        """[N, 2] number of rays that reached the sensor in frames a and b."""
+        return self._array("rays")
+
+    @property
+    def rays_planned(self) -> np.ndarray:
+        """[N] number of rays that were traced in each frame."""
+        return self._array("rays_planned")
+
+    @property
+    def eq9_px(self) -> np.ndarray | None:
+        """[N, 2] displacement by the small-angle theory, Eq. 9 of Rajendran et al. (2019) [px]. BOS only."""
+        return None if self._core.is_piv else self._optional("eq9_px")
+
+    @property
+    def eq9_cone_px(self) -> np.ndarray | None:
+        """[N, 2] the same theory averaged over dot and aperture [px]. BOS only."""
+        return None if self._core.is_piv else self._optional("eq9_cone_px")
+
+    @property
+    def second_m(self) -> np.ndarray | None:
+        """[N, 3] position at the second pulse [m]. PIV only."""
+        return self._optional("second_m")
+
+    @property
+    def diameter_m(self) -> np.ndarray | None:
+        """[N] diameter of the particles [m]. PIV only."""
+        return self._optional("diameter_m")
+
+    @property
+    def displacement_ambient_px(self) -> np.ndarray | None:
+        """[N, 2] displacement without the refractive medium [px]. PIV only."""
+        return self._optional("displacement_ambient_px")
+
+    def flow(
+        self,
+        at: Literal["mid", "a"] = "mid",
+        *,
+        spacing_px: int = 1,
+        device: str = "auto",
+        progress: Progress = False,
+    ) -> np.ndarray:
+        """Computes the exact displacement at every pixel, without interpolation between dots or particles.
+
+        at: "a": displacement of the object point whose image in frame a is at the pixel, the convention of
+            optical-flow networks;
+            "mid": displacement of the object point whose images in both frames have the pixel as their midpoint, the
+            convention of correlation with symmetric window deformation.
+        spacing_px: distance of the computed columns and rows [px].
+
+        Returns [rows, columns, 2] in px. Rays are traced for each of these pixels.
+        """
+        if at not in ("mid", "a"):
+            raise ValueError(f'at must be "mid" or "a", got {at!r}')
+        with reporting(progress) as report:
+            return _core.flow(self._core, at == "a", spacing_px, device, report)
+
+
+class Case:
+    """Image pair of one camera with its truth."""
+
+    def __init__(self, core: _core.PairCase):
+        self._core = core
+
+    @classmethod
+    def load(cls, folder: str | os.PathLike) -> Case:
+        """Loads a CASE folder, as written by `save` or `gladstone render`."""
+        return cls(_core.PairCase.load(os.fspath(folder)))
+
+    @property
+    def images(self) -> np.ndarray:
+        """[2, rows, columns] grey levels of both frames, uint16."""
+        return self._core.images()
+
+    @property
+    def a(self) -> np.ndarray:
+        """[rows, columns] first frame, uint16. BOS: the reference image."""
+        return self.images[0]
+
+    @property
+    def b(self) -> np.ndarray:
+        """[rows, columns] second frame, uint16. BOS: the measurement image."""
+        return self.images[1]
+
+    @property
+    def truth(self) -> Truth:
+        """True positions and displacements."""
+        return Truth(self._core)
+
+    @property
+    def accuracy(self) -> Accuracy:
+        """Standard error of the true displacements."""
+        return Accuracy(**self._core.accuracy())
+
+    @property
+    def summary(self) -> dict[str, Any]:
+        """Contents of summary.json: magnification, exposure, rays, warnings and more."""
+        return json.loads(self._core.summary())
+
+    @property
+    def is_piv(self) -> bool:
+        """True for PIV, False for BOS."""
+        return self._core.is_piv
+
+    @property
+    def setup(self):
+        """Setup with every default and every "auto" replaced by the value used."""
+        from ._setup import Setup
+
+        return Setup(self._core.resolved())
+
+    def correlate(self, **settings) -> Field:
+        """Measures the displacement with the settings of the case's own [correlate] table; see `correlate`."""
+        from ._field import correlate
+
+        own = self.setup.to_dict().get("correlate", {})
+        aliases = {"window": "window_px"}
+        given = {aliases.get(name, name): value for name, value in settings.items()}
+        return correlate(self.a, self.b, **{**own, **given})
+
+    def compare(self, field, *, truth_at: Literal["mid", "a"] = "mid", device: str = "auto", progress: Progress = False):
+        """Compares measured vectors with truth and theory.
+
+        field: a `Field`, or (x, y, u, v) arrays in px.
+        truth_at: where a dot counts: "mid" (symmetric estimators) or "a" (one-sided estimators).
+
+        Returns a `Report`.
+        """
+        from ._report import Report
+
+        if truth_at not in ("mid", "a"):
+            raise ValueError(f'truth_at must be "mid" or "a", got {truth_at!r}')
+        field = Field.of(field)
+        with reporting(progress) as report:
+            compared = _core.compare(self._core, field._core, truth_at == "a", device, report)
+        return Report(compared, self, field)
+
+    def save(self, folder: str | os.PathLike) -> None:
+        """Writes the CASE folder: reference.tif, flow.tif, truth.h5, setup.toml, summary.json."""
+        self._core.save(os.fspath(folder))
+
+    def __repr__(self) -> str:
+        _, rows, columns = self.images.shape
+        return f"<gladstone.Case {'PIV' if self.is_piv else 'BOS'}, {columns} x {rows} px, {len(self.truth)} sources>"
+
+
+class CalibrationCase:
+    """Images of a dot grid in several planes, taken by one camera."""
+
+    def __init__(self, core: _core.PlanesCase):
+        self._core = core
+
+    @property
+    def images(self) -> np.ndarray:
+        """[planes, rows, columns] grey levels, uint16."""
+        return self._core.images()
+
+    @property
+    def planes_m(self) -> np.ndarray:
+        """[planes] Z of each plane [m]."""
+        return np.asarray(self._core.planes_m)
+
+    @property
+    def setup(self):
+        """Setup with every default and every "auto" replaced by the value used."""
+        from ._setup import Setup
+
+        return Setup(self._core.resolved())
+
+    def save(self, folder: str | os.PathLike) -> None:
+        """Writes the CASE folder: plane_000.tif, ..., truth.h5, setup.toml, summary.json."""
+        self._core.save(os.fspath(folder))
+
+    def __repr__(self) -> str:
+        planes, rows, columns = self.images.shape
+        return f"<gladstone.CalibrationCase {planes} planes, {columns} x {rows} px>"
+
+
+def wrap(core):
+    """Returns the Python object of a rendered camera."""
+    return Case(core) if isinstance(core, _core.PairCase) else CalibrationCase(core)

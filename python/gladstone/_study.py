@@ -1,0 +1,132 @@
+"""Parameter studies."""
+
+from __future__ import annotations
+
+import json
+import os
+import tempfile
+from collections.abc import Mapping, Sequence
+from typing import Any, Literal
+
+import numpy as np
+
+from . import _core, _toml
+from ._progress import Progress, reporting
+from ._setup import as_setup
+
+
+class Study:
+    """Study of any keys of a setup, computed case by case into a folder; can be interrupted and continued."""
+
+    def __init__(
+        self,
+        base,
+        axes: Mapping[str, Sequence[Any] | Mapping[str, Any]],
+        *,
+        repeats: int = 1,
+        seed: int = 1,
+        mode: Literal["grid", "zip", "sobol"] = "grid",
+        samples: int | None = None,
+    ):
+        """Describes a study.
+
+        base: setup of all cases: a `Setup`, a dictionary of tables, or a setup file.
+        axes: values by key path: `{"lens.f_number": [4, 8, 16], "geometry.z_d_mm": {"linear": [100, 1000, 10]}}`.
+        repeats: cases of each point that differ in the random dots, rays and noise.
+        mode: "grid" (all combinations), "zip" (values side by side) or "sobol" (samples of the ranges).
+        """
+        self._path: str | None = None
+        self._base = as_setup(base)
+        settings: dict[str, Any] = {"mode": mode, "repeats": repeats, "seed": seed}
+        if samples is not None:
+            settings["samples"] = samples
+        lines = ['base = "base.toml"', "", "[axes]"]
+        lines += [f"{json.dumps(path)} = {_toml.value(values)}" for path, values in axes.items()]
+        lines += ["", "[study]", *(f"{name} = {_toml.value(value)}" for name, value in settings.items())]
+        self._text = "\n".join(lines) + "\n"
+
+    @classmethod
+    def from_file(cls, path: str | os.PathLike) -> Study:
+        """Reads a study file (TOML)."""
+        study = cls.__new__(cls)
+        study._path = os.fspath(path)
+        return study
+
+    def plan(self, folder: str | os.PathLike, *, device: str = "auto", progress: Progress = False) -> StudyRun:
+        """Checks all cases and writes the plan into a folder. An equal plan remains unchanged."""
+        place = os.fspath(folder)
+        with reporting(progress) as report:
+            if self._path is not None:
+                _core.study_plan(self._path, place, device, report)
+            else:
+                with tempfile.TemporaryDirectory() as temporary:
+                    self._base.save(os.path.join(temporary, "base.toml"))
+                    path = os.path.join(temporary, "study.toml")
+                    with open(path, "w", encoding="utf-8") as file:
+                        file.write(self._text)
+                    _core.study_plan(path, place, device, report)
+        return StudyRun(place)
+
+    def run(
+        self,
+        folder: str | os.PathLike,
+        *,
+        device: str = "auto",
+        keep_images: bool = False,
+        retry_failed: bool = False,
+        progress: Progress = False,
+    ) -> StudyRun:
+        """Plans the study and computes the missing cases. Returns the results."""
+        run = self.plan(folder, device=device)
+        run.compute(keep_images=keep_images, retry_failed=retry_failed, progress=progress)
+        return run
+
+
+class StudyRun:
+    """Folder of a study with its results."""
+
+    def __init__(self, folder: str | os.PathLike):
+        self.folder = os.fspath(folder)
+
+    def compute(self, *, keep_images: bool = False, retry_failed: bool = False, progress: Progress = False) -> None:
+        """Computes the missing cases.
+
+        keep_images: write the images and all other files of each case too.
+        retry_failed: compute failed cases again.
+        """
+        with reporting(progress) as report:
+            _core.study_run(self.folder, keep_images, retry_failed, report)
+
+    @property
+    def state(self) -> dict[str, Any]:
+        """Numbers of cases, done, failed, missing and running, and the failures with their errors."""
+        return json.loads(_core.study_state(self.folder))
+
+    @property
+    def table(self) -> dict[str, np.ndarray]:
+        """Columns of study.csv by name, a value for each case; writes study.csv and study.h5 too.
+
+        Axes are named by their key path, measures as in errors.json: "ray_truth.rms_px".
+        """
+        columns = {}
+        for name, (values, labels, _) in _core.study_collect(self.folder).items():
+            columns[name] = np.array(labels)[values.astype(int)] if labels else values
+        return columns
+
+    def to_pandas(self):
+        """Returns the table as a pandas.DataFrame, a row for each case."""
+        import pandas
+
+        return pandas.DataFrame(self.table)
+
+    def pack(self, path: str | os.PathLike, *, device: str = "auto", progress: Progress = False) -> int:
+        """Packs images and true displacements of all cases into one HDF5 file for training and tests.
+
+        Needs cases computed with keep_images. Returns their number.
+        """
+        with reporting(progress) as report:
+            return _core.study_dataset(self.folder, os.fspath(path), device, report)
+
+    def __repr__(self) -> str:
+        state = self.state
+        return f"<gladstone.StudyRun {self.folder}: {state['done']} of {state['cases']} cases>"

@@ -1,0 +1,179 @@
+#include <fmt/format.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/shared_ptr.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "analysis/correlation/pair_verdict.h"
+#include "analysis/vectors/vector_file.h"
+#include "python/src/arrays.h"
+#include "python/src/call.h"
+#include "python/src/field.h"
+#include "render/base/error.h"
+#include "render/files/hdf5_file.h"
+#include "render/files/source_files.h"
+#include "studies/case/peak_locking.h"
+#include "studies/compare/compared_vectors.h"
+#include "studies/compare/correlate.h"
+
+namespace gladstone::python {
+namespace {
+
+using Field = std::shared_ptr<MeasuredField>;
+
+Field correlate(ImageArray const& a, ImageArray const& b, std::vector<std::string> const& overrides,
+                std::string const& device_name, nb::handle progress) {
+  GivenImage const reference = read_array(a, "a"), flow = read_array(b, "b");
+  return run(
+      [&] {
+        CorrelationFile const given = default_correlation(overrides);
+        Backend const device = open_device(device_name);
+        auto field = std::make_shared<MeasuredField>();
+        Measurement measured = correlate_frames("a", reference.image, "b", flow.image, given.settings, device);
+        if (std::string advice = locking_advice(reference.image); frames_correlate(measured.field) && !advice.empty())
+          measured.field.warnings.push_back(std::move(advice));
+        field->field = std::move(measured.field);
+        field->foreign = false;
+        field->settings = given.settings;
+        field->resolved = given.resolved;
+        field->device = measured.device;
+        field->seconds = measured.seconds;
+        field->reference_sha256 = pixel_sha256(reference.image, reference.sample_bits);
+        field->flow_sha256 = pixel_sha256(flow.image, flow.sample_bits);
+        return field;
+      },
+      progress);
+}
+
+/// Reads a file of vectors and converts it to our conventions.
+/// @param conventions  as read by parse_conventions(); empty: those of the format
+/// @param image_rows   number of rows of the image, for conventions with "y-up-image"
+Field load_field(std::string const& path, std::string const& conventions, int image_rows) {
+  VectorFile file = read_vectors(path);
+  log_remarks(file);
+  if (!conventions.empty()) override_conventions(file, conventions);
+  file = convert_to_pixels(std::move(file), path);
+  if (file.conventions.y_up && file.conventions.mirror == VectorConventions::Mirror::image && image_rows <= 0) {
+    throw DataError(path, "counts y upwards from the image's lower edge; give image_rows, its number of rows");
+  }
+  auto field = std::make_shared<MeasuredField>();
+  field->name = path;
+  field->foreign = file.foreign;
+  field->complete = file.complete;
+  field->field = apply_conventions(std::move(file.field), file.conventions, image_rows);
+  if (file.foreign || !(path.ends_with(".h5") || path.ends_with(".hdf5"))) return field;
+  Hdf5Reader const measured(path);
+  field->resolved = measured.attribute("setup");
+  field->device = measured.attribute("device");
+  field->reference_sha256 = measured.attribute("reference_sha256");
+  field->flow_sha256 = measured.attribute("flow_sha256");
+  if (field->resolved.empty()) return field;
+  SetupDocument document = SetupDocument::from_text(field->resolved, path);
+  field->settings = read_correlation_settings(document.root().table("correlate"));
+  return field;
+}
+
+std::vector<Vec2d> pairs(NumberArray const& x, NumberArray const& y) {
+  std::vector<Vec2d> both(x.shape(0));
+  for (std::size_t i = 0; i < both.size(); ++i) both[i] = {x.data()[i], y.data()[i]};
+  return both;
+}
+
+/// Makes a field of arrays of equal length; a complete lattice is sorted row by row.
+Field field_of_arrays(NumberArray const& x, NumberArray const& y, NumberArray const& u, NumberArray const& v,
+                      std::optional<NumberArray> const& sigma_u, std::optional<NumberArray> const& sigma_v) {
+  std::size_t const count = x.shape(0);
+  auto const check = [count](NumberArray const& array, char const* name) {
+    if (array.shape(0) == count) return;
+    throw DataError(
+        "field", fmt::format("{} has {} values where x has {}; give one for each vector", name, array.shape(0), count));
+  };
+  check(y, "y");
+  check(u, "u");
+  check(v, "v");
+  auto made = std::make_shared<MeasuredField>();
+  DisplacementField& field = made->field;
+  field.position_px = pairs(x, y);
+  field.displacement_px = pairs(u, v);
+  if (sigma_u && sigma_v) {
+    check(*sigma_u, "sigma_u");
+    check(*sigma_v, "sigma_v");
+    field.sigma_px = pairs(*sigma_u, *sigma_v);
+  }
+  for (Vec2d const& d : field.displacement_px) {
+    bool const known = std::isfinite(d.x) && std::isfinite(d.y);
+    field.status.push_back(known ? VectorStatus::valid : VectorStatus::invalid);
+  }
+  arrange_as_grid(field);
+  return made;
+}
+
+void save(MeasuredField const& self, std::string const& path) {
+  SourceFiles sources;
+  if (!self.reference_sha256.empty()) {
+    sources.add_known("reference", self.reference_sha256);
+    sources.add_known("flow", self.flow_sha256);
+  }
+  if (!path.ends_with(".h5") && !path.ends_with(".csv")) {
+    throw OutputError(path, "has an ending that is neither .h5 nor .csv; choose one of them");
+  }
+  write_vectors(path, self.field, {"gladstone vectors", 1, self.resolved, 0, self.device, std::move(sources)});
+}
+
+/// Returns one array of the vectors by name, of length `size`; None if it was not measured.
+nb::object field_array(nb::handle_t<MeasuredField> self, std::string const& name) {
+  DisplacementField const& field = nb::cast<MeasuredField&>(self).field;
+  if (name == "position") return view_of(field.position_px, self);
+  if (name == "displacement") return view_of(field.displacement_px, self);
+  if (name == "sigma") return view_of(field.sigma_px, self);
+  if (name == "raw") return view_of(field.raw_px, self);
+  if (name == "peak_ratio") return view_of(field.peak_ratio, self);
+  if (name == "correlation") return view_of(field.correlation, self);
+  auto const codes = [](auto const& values) -> nb::object {
+    if (values.empty()) return nb::none();
+    std::vector<std::uint8_t> numbers;
+    for (auto const value : values) numbers.push_back(static_cast<std::uint8_t>(value));
+    std::size_t const count = numbers.size();
+    return array_of(std::move(numbers), {count});
+  };
+  if (name == "status") return codes(field.status);
+  if (name == "reason") return codes(field.reason);
+  if (name == "failed_test") return codes(field.failed);
+  if (name == "ambiguous") return codes(field.ambiguous);
+  return nb::none();
+}
+
+}  // namespace
+
+void bind_field(nb::module_& module) {
+  nb::class_<MeasuredField>(module, "MeasuredField", "Displacement vectors with their origin.")
+      .def_prop_ro("size", [](MeasuredField const& self) { return self.field.size(); })
+      .def_prop_ro("columns", [](MeasuredField const& self) { return self.field.columns; })
+      .def_prop_ro("rows", [](MeasuredField const& self) { return self.field.rows; })
+      .def_prop_ro("warnings", [](MeasuredField const& self) { return self.field.warnings; })
+      .def_prop_ro("verdict", [](MeasuredField const& self) { return self.field.verdict; })
+      .def_ro("name", &MeasuredField::name)
+      .def_ro("foreign", &MeasuredField::foreign)
+      .def_ro("settings", &MeasuredField::resolved)
+      .def_ro("device", &MeasuredField::device)
+      .def_ro("seconds", &MeasuredField::seconds)
+      .def("array", &field_array, nb::arg("name"))
+      .def(
+          "save", [](MeasuredField const& self, std::string const& path) { run([&] { save(self, path); }); },
+          nb::arg("path"));
+  module.def("correlate", &correlate, nb::arg("a"), nb::arg("b"), nb::arg("overrides"), nb::arg("device"),
+             nb::arg("progress").none());
+  module.def(
+      "load_field",
+      [](std::string const& path, std::string const& conventions, int image_rows) {
+        return run([&] { return load_field(path, conventions, image_rows); });
+      },
+      nb::arg("path"), nb::arg("conventions"), nb::arg("image_rows"));
+  module.def("field_of_arrays", &field_of_arrays, nb::arg("x"), nb::arg("y"), nb::arg("u"), nb::arg("v"),
+             nb::arg("sigma_u").none(), nb::arg("sigma_v").none());
+}
+
+}  // namespace gladstone::python

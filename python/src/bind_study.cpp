@@ -1,0 +1,96 @@
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <nlohmann/json.hpp>
+#include <numeric>
+
+#include "python/src/arrays.h"
+#include "python/src/call.h"
+#include "render/base/progress.h"
+#include "studies/case/json_text.h"
+#include "studies/sweep/collect.h"
+#include "studies/sweep/dataset.h"
+#include "studies/sweep/plan.h"
+#include "studies/sweep/run.h"
+#include "studies/sweep/state_report.h"
+#include "studies/sweep/study_columns.h"
+
+namespace gladstone::python {
+namespace {
+
+std::size_t plan(std::string const& study, std::string const& folder, std::string const& device) {
+  StudyFile read = read_study(study);
+  try_plan_place(folder, read);
+  std::string const planned = device == "auto" ? open_device(device).name() : device;
+  StudyPlan const all = plan_study(std::move(read), planned);
+  write_plan(folder, all);
+  return all.size();
+}
+
+/// Computes the missing cases in this process, one after the other.
+void compute(std::string const& folder, RunSelection const& selection) {
+  Manifest const cases = read_manifest(folder);
+  std::vector<std::size_t> const selected = selected_cases(cases.size(), selection);
+  std::size_t const due = forget_failures(folder, cases, selected, selection).missing.size();
+  if (due == 0) return;
+  Progress progress("cases", due);
+  ProgressMonitor of_cases;  // unread: the study reports whole cases
+  ProgressMonitor::Scope const scope(of_cases);
+  CaseRunner runner(open_device(cases[0].device));
+  run_cases(folder, cases, selected, selection, runner, 0, [&](std::size_t, CaseEvent event) {
+    if (event == CaseEvent::finished) progress.advance();
+  });
+}
+
+std::string state(std::string const& folder) {
+  Manifest const cases = read_manifest(folder);
+  std::vector<std::size_t> all(cases.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  return json_text(state_json(folder, cases, state_of(folder, cases, all)));
+}
+
+/// Returns the columns of a study's table: name to (values, labels, description).
+nb::dict columns_of(StudyTable const& table) {
+  nb::dict columns;
+  for (StudyColumn const& column : table_columns(table)) {
+    std::vector<double> values;
+    for (StudyRow const& row : table.rows) values.push_back(column.number(row));
+    std::size_t const count = values.size();
+    columns[column.name.c_str()] =
+        nb::make_tuple(array_of(std::move(values), {count}), nb::cast(column.labels), column.description);
+  }
+  return columns;
+}
+
+}  // namespace
+
+void bind_study(nb::module_& module) {
+  module.def(
+      "study_plan",
+      [](std::string const& study, std::string const& folder, std::string const& device, nb::handle progress) {
+        return run([&] { return plan(study, folder, device); }, progress);
+      },
+      nb::arg("study"), nb::arg("folder"), nb::arg("device"), nb::arg("progress").none());
+  module.def(
+      "study_run",
+      [](std::string const& folder, bool keep_images, bool retry_failed, nb::handle progress) {
+        RunSelection selection;
+        selection.keep_images = keep_images;
+        selection.retry_failed = retry_failed;
+        run([&] { compute(folder, selection); }, progress);
+      },
+      nb::arg("folder"), nb::arg("keep_images"), nb::arg("retry_failed"), nb::arg("progress").none());
+  module.def(
+      "study_state", [](std::string const& folder) { return run([&] { return state(folder); }); }, nb::arg("folder"));
+  module.def(
+      "study_collect", [](std::string const& folder) { return columns_of(run([&] { return collect_study(folder); })); },
+      nb::arg("folder"));
+  module.def(
+      "study_dataset",
+      [](std::string const& folder, std::string const& path, std::string const& device, nb::handle progress) {
+        return run([&] { return pack_dataset(folder, path, *open_device(device).renderer).cases; }, progress);
+      },
+      nb::arg("folder"), nb::arg("path"), nb::arg("device"), nb::arg("progress").none());
+}
+
+}  // namespace gladstone::python

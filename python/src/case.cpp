@@ -1,0 +1,123 @@
+#include "python/src/case.h"
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "render/files/image_file.h"
+#include "render/files/output_file.h"
+#include "render/files/output_folder.h"
+#include "render/files/source_files.h"
+#include "render/files/text_file.h"
+#include "studies/case/case_summary.h"
+#include "studies/case/json_text.h"
+#include "studies/case/quiet_log.h"
+#include "studies/case/truth_file.h"
+
+namespace gladstone::python {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double accuracy_limit_px = 1e-3;
+
+std::vector<UncertainInput> uncertain_inputs(SetupDocument const& document) {
+  SetupDocument written = document.copy();
+  return take_uncertain_inputs(written);
+}
+
+/// Fills a CASE folder by `write`; all files are written, or none.
+template <class Write>
+void write_folder(std::string const& folder, CaseSetup const& loaded, std::vector<UncertainInput> const& uncertain,
+                  Write const& write) {
+  refuse_case_over_inputs(folder, loaded.document.file_names());
+  OutputFolder output(folder, case_content());
+  output.fill([&](std::string const& place) {
+    write(place);
+    if (uncertain.empty()) return;
+    std::string const setup = (fs::path(place) / case_file::setup).string();
+    OutputFile::write_text(setup, with_uncertain_inputs(read_text_file(setup), uncertain));
+  });
+  output.commit();
+}
+
+}  // namespace
+
+PairCase::PairCase(std::string camera, SetupDocument document, Backend const& device, KnownParts const& known)
+    : camera_(std::move(camera)),
+      uncertain_(uncertain_inputs(document)),
+      loaded_(load_case_setup(std::move(document))) {
+  FinishedCase finished = finish_case(loaded_, *device.renderer, known);
+  outcome_ = judge_case(loaded_, finished.prepared, finished.rendered, finished.frames, *device.renderer);
+  take_images(grey_levels(finished.frames.levels->reference()), grey_levels(finished.frames.levels->flow()));
+  accuracy_ = outcome_->accuracy;
+  reference_sha256_ = outcome_->reference_sha256;
+  flow_sha256_ = outcome_->flow_sha256;
+  prepared_ = std::move(finished.prepared);
+  rendered_ = std::move(finished.rendered);
+  frames_ = std::move(finished.frames);
+}
+
+PairCase::PairCase(std::string folder)
+    : loaded_(load_case_setup(in_case(folder, case_file::setup), {})), folder_(std::move(folder)) {
+  stored_truth_ = read_truth(in_case(folder_, case_file::truth));
+  Image<std::uint16_t> const reference = grey_levels(read_image(in_case(folder_, case_file::reference)));
+  Image<std::uint16_t> const flow = grey_levels(read_image(in_case(folder_, case_file::flow)));
+  reference_sha256_ = pixel_sha256(reference);
+  flow_sha256_ = pixel_sha256(flow);
+  take_images(reference, flow);
+  accuracy_ = truth_accuracy(stored_truth_, accuracy_limit_px);
+  summary_ = read_text_file(in_case(folder_, case_file::summary));
+}
+
+void PairCase::take_images(Image<std::uint16_t> const& reference, Image<std::uint16_t> const& flow) {
+  images_.assign(reference.begin(), reference.end());
+  images_.insert(images_.end(), flow.begin(), flow.end());
+}
+
+std::string PairCase::summary() {
+  std::lock_guard const lock(mutex_);
+  if (summary_.empty()) summary_ = json_text(case_summary(loaded_, *prepared_, *rendered_, *frames_, *outcome_)) + "\n";
+  return summary_;
+}
+
+void PairCase::save(std::string const& folder) {
+  if (!outcome_) throw DataError(folder_, "was loaded from this folder, which holds its files; copy them from there");
+  std::lock_guard const lock(mutex_);
+  write_folder(folder, loaded_, uncertain_, [&](std::string const& place) {
+    write_case(loaded_, *prepared_, *rendered_, *frames_, *outcome_, place);
+  });
+}
+
+PreparedCase const& PairCase::prepared() {
+  std::lock_guard const lock(mutex_);
+  if (!prepared_) {
+    QuietLog const quiet;  // summary.json holds the warnings
+    prepared_ = prepare_case(loaded_);
+  }
+  return *prepared_;
+}
+
+RenderedCase const& PairCase::rendered(Backend const& device) {
+  PreparedCase const& scene = prepared();
+  std::lock_guard const lock(mutex_);
+  if (rendered_) return *rendered_;
+  if (!rendered_again_) rendered_again_ = render_case(scene, *device.renderer, RenderTheory::no);
+  return *rendered_again_;
+}
+
+PlanesCase::PlanesCase(std::string name, SetupDocument document, Backend const& device)
+    : camera(std::move(name)), uncertain(uncertain_inputs(document)), loaded(load_case_setup(std::move(document))) {
+  hash_inputs(loaded);
+  rendered = render_planes(loaded, *device.renderer);
+  for (std::size_t plane = 0; plane < rendered.planes.size(); ++plane) {
+    Recording const frame = record_plane(loaded.setup.camera, rendered, plane);
+    images.insert(images.end(), frame.image.begin(), frame.image.end());
+  }
+}
+
+void PlanesCase::save(std::string const& folder) {
+  write_folder(folder, loaded, uncertain,
+               [&](std::string const& place) { write_calibration(loaded, rendered, place); });
+}
+
+}  // namespace gladstone::python

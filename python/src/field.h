@@ -1,0 +1,24 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "analysis/correlation/correlation_settings.h"
+#include "analysis/vectors/vector_file.h"
+
+namespace gladstone::python {
+
+/// Displacement vectors in our conventions, with their origin.
+struct MeasuredField {
+  DisplacementField field;
+  std::string name = "field";                   ///< for messages: path of the file, or "field"
+  bool foreign = true;                          ///< not measured by gladstone
+  std::optional<CorrelationSettings> settings;  ///< of our measurement
+  std::string resolved;                         ///< the same as TOML
+  std::string device;                           ///< "cpu" or "cuda"; empty: foreign
+  double seconds = 0;                           ///< wall time of the correlation [s]
+  std::string reference_sha256, flow_sha256;    ///< of the frames; empty: unknown
+  bool complete = true;                         ///< false: the file's header declares another number of vectors
+};
+
+}  // namespace gladstone::python

@@ -1,0 +1,97 @@
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <filesystem>
+
+#include "python/src/call.h"
+#include "python/src/setup_text.h"
+#include "render/base/parallel.h"
+#include "render/files/text_file.h"
+#include "render/setup/setup_node.h"
+#include "studies/case/backend.h"
+#include "studies/case/cameras.h"
+#include "studies/case/case.h"
+#include "studies/case/uncertain_inputs.h"
+#include "studies/case/version_text.h"
+
+namespace gladstone::python {
+namespace {
+
+SetupText read_setup_file(std::string const& path) {
+  SetupDocument::from_file(path);  // reports a file that cannot be read or is not TOML
+  return {read_text_file(path), path, std::filesystem::absolute(path).parent_path().string(), {}};
+}
+
+/// Returns the resolved setups of all cameras, whose name is empty if there is one camera only.
+/// @throws SetupError with all problems
+std::vector<std::pair<std::string, std::string>> resolve(SetupText const& setup) {
+  std::vector<std::pair<std::string, std::string>> resolved;
+  for (CameraCase& camera : camera_cases(setup.document())) {
+    CaseSetup const loaded = load_case_setup(std::move(camera.document));
+    resolved.emplace_back(camera.name, loaded.document.resolved());
+  }
+  return resolved;
+}
+
+/// Returns the setup without defaults. File names are absolute, unless the setup has problems.
+std::string written(SetupText const& setup) {
+  SetupDocument document = setup.document();
+  try {
+    std::vector<CameraCase> cameras = camera_cases(document);
+    SetupNode const* const tables = document.find({"camera"});
+    std::vector<std::vector<std::string>> keys;
+    for (std::size_t i = 0; i < cameras.size(); ++i) {
+      bool const own_lens = cameras.size() > 1 && tables->elements[i].find("lens");
+      CaseSetup const loaded = load_case_setup(std::move(cameras[i].document));
+      for (std::vector<std::string> key : loaded.document.file_keys()) {
+        if (own_lens && key.front() == "lens") key.insert(key.begin(), {"camera", '[' + std::to_string(i) + ']'});
+        keys.push_back(std::move(key));
+      }
+    }
+    document.name_files(keys);
+  } catch (SetupError const&) {
+    return setup.document().written();
+  }
+  return document.written();
+}
+
+}  // namespace
+
+SetupDocument SetupText::document() const {
+  SetupDocument document = SetupDocument::from_text(text, name, folder);
+  for (std::string const& assignment : overrides) document.override_key(assignment);
+  return document;
+}
+
+void bind_setup(nb::module_& module) {
+  nb::class_<SetupText>(module, "SetupText", "Setup as TOML text with replaced keys, not yet read.")
+      .def(nb::new_([](std::string text, std::string name, std::string folder, std::vector<std::string> overrides) {
+             SetupText setup{std::move(text), std::move(name), std::move(folder), std::move(overrides)};
+             setup.document();
+             return setup;
+           }),
+           nb::arg("text"), nb::arg("name"), nb::arg("folder"), nb::arg("overrides"))
+      .def_static("from_file", &read_setup_file, nb::arg("path"))
+      .def_ro("text", &SetupText::text)
+      .def_ro("name", &SetupText::name)
+      .def_ro("folder", &SetupText::folder)
+      .def_ro("overrides", &SetupText::overrides)
+      .def(
+          "written", [](SetupText const& setup) { return run([&] { return written(setup); }); },
+          "Returns the setup as one TOML document, without defaults.")
+      .def(
+          "resolved",
+          [](SetupText const& setup) {
+            auto const resolved = run([&] { return resolve(setup); });
+            nb::dict by_camera;
+            for (auto const& [camera, text] : resolved) by_camera[camera.c_str()] = text;
+            return by_camera;
+          },
+          "Checks the setup and returns it with all defaults, as TOML by name of the camera.");
+  module.def("version", &version_text, "Version, commit and backends.");
+  module.def("version_json", &version_json, "The same as a JSON object.");
+  module.def("set_threads", &set_thread_count, nb::arg("threads"), "Sets the number of threads; 0: all cores.");
+  module.def("threads", &thread_count, "Number of threads of parallel work.");
+}
+
+}  // namespace gladstone::python

@@ -1,0 +1,68 @@
+import json
+
+import numpy as np
+import pytest
+
+import gladstone as gs
+
+
+@pytest.fixture(scope="module")
+def field(case):
+    return case.correlate(device="cpu")
+
+
+@pytest.fixture(scope="module")
+def report(case, field):
+    return case.compare(field, device="cpu")
+
+
+def test_errors_equal_those_of_the_program(report, written_case):
+    mine, theirs = dict(report.errors), json.loads((written_case / "errors.json").read_text())
+    for errors in (mine, theirs):
+        errors.pop("made_from", None)
+    assert mine == theirs
+
+
+def test_loaded_case_gives_the_same_errors(report, written_case):
+    again = gs.Case.load(written_case)
+    loaded = again.compare(gs.Field.load(written_case / "vectors.h5"), device="cpu")
+    assert loaded.errors == report.errors
+
+
+def test_budget_adds_up(report):
+    total = sum(term["bias_u_px"] or 0 for term in report.budget.values())
+    assert total == pytest.approx(report.errors["budget"]["total"]["bias_u_px"], abs=1e-9)
+    assert report.budget["noise"]["rms_px"] > 0
+
+
+def test_arrays_agree_with_the_measures(report):
+    errors = report.error_px[report.mask]
+    assert np.sqrt(np.mean(errors**2)) == pytest.approx(report.rms_px, rel=1e-12)
+    assert report.truth_px.shape == (*report.shape, 2)
+
+
+def test_vectors_of_another_code(case, field):
+    report = case.compare((field.x, field.y, field.u, field.v), device="cpu")
+    assert report.budget["noise"]["rms_px"] is None, "unknown for foreign vectors"
+    assert report.rms_px == pytest.approx(case.compare(field, device="cpu").rms_px, rel=0.2)
+
+
+def test_frames_of_another_case_are_noticed(case, field, bos):
+    other = bos.replace({"target.seed": 99}).render(device="cpu")
+    with pytest.warns(gs.GladstoneWarning, match="not measured on the frames"):
+        other.compare(field, device="cpu")
+    with pytest.raises(gs.DataError, match="opposite sign"):
+        case.compare(gs.correlate(case.b, case.a, window=[32, 16], overlap=0.5, device="cpu"))
+
+
+def test_report_is_drawn(report):
+    matplotlib = pytest.importorskip("matplotlib")
+    matplotlib.use("agg")
+    figure = report.plot()
+    assert len(figure.axes) >= 8
+    assert "<table>" in report._repr_html_() and "Error budget" in str(report)
+
+
+def test_html_report(report, tmp_path):
+    findings = report.to_html(tmp_path / "report.html", device="cpu")
+    assert findings and (tmp_path / "report.html").read_text().startswith("<!")

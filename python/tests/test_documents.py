@@ -1,0 +1,55 @@
+"""The code of docs/python.md, run as it is written there."""
+
+import pathlib
+import re
+
+import pytest
+
+import gladstone as gs
+
+PAGE = pathlib.Path(__file__).parents[2] / "docs" / "python.md"
+
+
+def code_blocks() -> list[str]:
+    return re.findall(r"^```python\n(.*?)^```", PAGE.read_text(), re.DOTALL | re.MULTILINE)
+
+
+# One small setup under all names that the page uses. The blocks run in their order, in one namespace.
+def test_code_of_the_page_runs(bos, tmp_path, monkeypatch):
+    pytest.importorskip("matplotlib").use("agg")
+    for name in ("pandas", "xarray"):
+        pytest.importorskip(name)
+    small = bos.replace({"camera.pixels": [160, 160], "correlate.window_px": [32]})
+    (tmp_path / "studies" / "cases").mkdir(parents=True)
+    small.save(tmp_path / "studies" / "cases" / "table1.toml")
+    small.save(tmp_path / "setup.toml")
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("gladstone._benchmark.benchmark_cases", lambda: ["vortex"])
+    names = {"my_network": lambda a, b: gs.correlate(a, b, window=32).to_xarray()}
+    blocks = code_blocks()
+    assert len(blocks) >= 5
+    for block in blocks:
+        if "gladstone.torch" in block:
+            try:
+                import torch  # noqa: F401
+            except ImportError:
+                continue
+        exec(compile(block, str(PAGE), "exec"), names)
+        if "case" in names and "a" not in names:
+            names.update(a=names["case"].a, b=names["case"].b)
+    assert names["report"].rms_px > 0
+    assert (tmp_path / "report.html").exists()
+    assert names["data"]["u"].dims == ("y", "x", "t")
+    assert {row["estimator"] for row in names["scores"]} == {"default", "mine"}
+    assert len(names["table"]) == 9
+
+
+def test_every_public_name_has_a_docstring():
+    for name in gs.__all__:
+        member = getattr(gs, name)
+        if name.startswith("__") or name == "info":
+            continue
+        assert member.__doc__, name
+        for attribute, inner in vars(member).items() if isinstance(member, type) else ():
+            if not attribute.startswith("_") and (callable(inner) or isinstance(inner, (property, classmethod))):
+                assert inner.__doc__, f"{name}.{attribute}"

@@ -1,0 +1,70 @@
+#include "studies/commands/info_field.h"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "render/base/vec.h"
+#include "render/files/fields/field_file.h"
+#include "studies/case/json_text.h"
+#include "studies/commands/field_place.h"
+#include "studies/commands/field_statistics.h"
+
+namespace gladstone {
+namespace {
+
+nlohmann::json json_of(Vec3d const& values) {
+  return {known_or_null(values.x), known_or_null(values.y), known_or_null(values.z)};
+}
+
+/// Describes the steepest differences, "steepest difference between neighbours 0.02, 0.05, unknown per unit length
+/// along x, y, z".
+std::string steepest_text(Vec3d const& steepest, FieldPlace const& place) {
+  std::string text;
+  bool any = false;
+  for (int axis = 0; axis < 3; ++axis) {
+    any = any || std::isfinite(place.spacing[axis]);
+    text += axis > 0 ? ", " : "";
+    text += std::isfinite(steepest[axis]) ? fmt::format("{:.4g}", steepest[axis]) : "unknown";
+  }
+  return "steepest difference between neighbours " + text + (any ? " per unit length" : "") + " along x, y, z";
+}
+
+}  // namespace
+
+Description describe_field(std::string const& path, std::string const& dataset, std::string const& axes,
+                           std::string const& setup) {
+  auto const source = open_field(path, dataset, 1, axes);
+  RegularGrid const& grid = source->grid();
+  FieldStatistics const seen = field_statistics(*source);
+  FieldPlace const place = field_place(*source, path, dataset, axes, setup);
+  Vec3d steepest = seen.steepest;  // per unit length, which is unknown along an axis of undefined spacing
+  for (int axis = 0; axis < 3; ++axis) {
+    if (std::isnan(place.spacing[axis]) && std::isnan(place.extent_mm[axis])) steepest[axis] = place.spacing[axis];
+  }
+  FieldReading const& reading = source->reading();
+  std::vector<std::string> const notes = source->notes();
+  for (std::string const& note : notes) spdlog::warn("{}: {}", path, note);
+  if (!place.warning.empty()) spdlog::warn("{}: {}", path, place.warning);
+  nlohmann::json const json{
+      {"dataset", source->name()},
+      {"nodes", {grid.nodes[0], grid.nodes[1], grid.nodes[2]}},
+      {"spacing", json_of(place.spacing)},
+      {"minimum", seen.minimum},
+      {"maximum", seen.maximum},
+      {"steepest_gradient", json_of(steepest)},
+      {"axes",
+       {{"order", reading.axes}, {"by", reading.by}, {"shape", reading.shape}, {"turned_round", reading.turned_round}}},
+      {"notes", notes},
+      {"units", place.units},
+      {"extent_mm", json_of(place.extent_mm)},
+      {"coverage", place.coverage}};
+  return {json_text(json),
+          fmt::format("{}: {} x {} x {} nodes, {}, values {:.6g} to {:.6g}, {}; {}; {}", source->name(), grid.nodes[0],
+                      grid.nodes[1], grid.nodes[2], place.spacing_text, seen.minimum, seen.maximum,
+                      steepest_text(steepest, place), reading.text(), place.text)};
+}
+
+}  // namespace gladstone

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <string>
+
+#include "studies/commands/description.h"
+
+namespace gladstone {
+
+/// Describes a density or refractive-index field: nodes, units, extent, extremes and steepest gradient.
+/// @param dataset  name within the file; empty: its only one
+/// @param axes     world axes in the order of the file, the slowest first; empty: the file's own
+/// @param setup    path of a setup whose view the field should cover; empty: none
+/// @throws DataError if the field cannot be read
+Description describe_field(std::string const& path, std::string const& dataset, std::string const& axes,
+                           std::string const& setup);
+
+}  // namespace gladstone

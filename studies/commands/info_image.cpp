@@ -1,0 +1,67 @@
+#include "studies/commands/info_image.h"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "render/base/error.h"
+#include "studies/case/image_statistics.h"
+#include "studies/case/json_text.h"
+
+namespace gladstone {
+
+Description describe_image(std::string const& path) {
+  ImageMetadata metadata;
+  Image<double> const image = read_image(path, &metadata);
+  return describe_image(path, image, metadata);
+}
+
+Description describe_image(std::string const& path, Image<double> const& image, ImageMetadata const& metadata) {
+  std::size_t const not_finite = count_not_finite(image);
+  if (not_finite == image.size()) {
+    throw DataError(path, fmt::format("all of its {} pixels are nan or infinite; export it again", not_finite));
+  }
+  if (not_finite > 0) {
+    spdlog::warn("{}: {} of {} pixels are nan or infinite, and are excluded", path, not_finite, image.size());
+  }
+  double least = HUGE_VAL, most = -HUGE_VAL;
+  for (double const value : image) {
+    if (!std::isfinite(value)) continue;
+    least = std::min(least, value);
+    most = std::max(most, value);
+  }
+  ImageStatistics const seen = image_statistics(image);
+  auto const known = [](double value) {
+    return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(nullptr);
+  };
+  nlohmann::json const json{{"columns", image.columns()},
+                            {"rows", image.rows()},
+                            {"bit_depth", metadata.bit_depth},
+                            {"pixel_pitch_um", metadata.pixel_pitch_m * 1e6},
+                            {"minimum", least},
+                            {"maximum", most},
+                            {"mean", seen.mean},
+                            {"not_finite", not_finite},
+                            {"dot_diameter_px", known(seen.dot_diameter_px)},
+                            {"channels", metadata.channels},
+                            {"orientation", metadata.orientation},
+                            {"background", known(seen.background)},
+                            {"dot_height", known(seen.dot_height)},
+                            {"noise", known(seen.noise)},
+                            {"snr", known(seen.snr())}};
+  return {json_text(json),
+          fmt::format(
+              "{}: {} x {} px, {} bits{}{}, grey levels {:.6g} to {:.6g}, mean {:.6g}, dots {:.2f} px (e^-2), {}", path,
+              image.columns(), image.rows(), metadata.bit_depth,
+              metadata.channels >= 3 ? ", colour converted to luminance" : "",
+              metadata.orientation == 1 ? "" : fmt::format(", Orientation {} rotated upright", metadata.orientation),
+              least, most, seen.mean, seen.dot_diameter_px,
+              std::isfinite(seen.snr()) ? fmt::format("SNR {:.3g} (dots {:.4g} levels high, noise {:.3g})", seen.snr(),
+                                                      seen.dot_height, seen.noise)
+                                        : "SNR unknown (no noise or no dots detected)")};
+}
+
+}  // namespace gladstone
