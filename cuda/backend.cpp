@@ -41,7 +41,7 @@ DeviceState device_state() {
   if (status != cudaSuccess) {
     return {false, fmt::format("no usable CUDA device: {}", cudaGetErrorString(status))};
   }
-  if (std::string const why = why_code_cannot_run(); !why.empty()) {
+  if (std::string const why = reason_code_cannot_run(); !why.empty()) {
     return {false, fmt::format("{} cannot be used: {}", device.name, why)};
   }
   return {true, fmt::format("{}, {:.0f} GiB", device.name, static_cast<double>(device.totalGlobalMem) / 0x1p30)};

@@ -9,7 +9,7 @@
 
 namespace gladstone {
 
-RenderMethod method_of(Scene const& scene) {
+RenderMethod resolve_render_method(Scene const& scene) {
   RenderMethod const wanted = scene.setup.render.method;
   if (wanted != RenderMethod::automatic) return wanted;
   if (scene.setup.piv && scene.setup.piv->particles.scattering == ParticleScattering::gaussian) {

@@ -10,7 +10,7 @@
 namespace gladstone {
 
 /// Returns the method that renders a scene: resolves `automatic` to rays, focused_dots or formula.
-RenderMethod method_of(Scene const& scene);
+RenderMethod resolve_render_method(Scene const& scene);
 
 /// Returns the name of the method in files: "focused_dots", "formula" or "rays" (also for `automatic`).
 char const* to_string(RenderMethod method);

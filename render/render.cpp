@@ -48,7 +48,7 @@ Device::Device(std::unique_ptr<Renderer> focused_dots, std::unique_ptr<Renderer>
 Rendering Device::render_particles(Scene const& scene, Particles const& particles, ParticleLight light,
                                    RenderImages images) {
   if (scene.second_medium) return render_in_two_media(*this, scene, particles, light, images);
-  if (method_of(scene) == RenderMethod::formula) {
+  if (resolve_render_method(scene) == RenderMethod::formula) {
     auto const ideal = ideal_images(scene);
     GLADSTONE_EXPECTS(ideal);
     Rendering rendering = render_ideal_images(*ideal, particles, light, images);
@@ -81,7 +81,7 @@ Rendering Device::render_near_view(Scene const& scene, Particles const& particle
 }
 
 Rendering Device::render(Scene const& scene, DotPattern const& sources, RenderImages images, RenderTheory theory) {
-  RenderMethod const method = method_of(scene);
+  RenderMethod const method = resolve_render_method(scene);
   Rendering rendering = method == RenderMethod::focused_dots ? render_focused(scene, sources, images, theory)
                                                              : rays_->render(scene, sources, images, theory);
   rendering.method = method;
@@ -99,9 +99,9 @@ Rendering Device::render_focused(Scene const& scene, DotPattern const& sources, 
   if (auto const light = std::exchange(all.in_place, nullptr)) all.light = light->to_host();
   Scene by_rays =
       with_bright_dots(scene, select_dots(sources, left), std::max(scene.rays_per_dot, scene.rays_at_side_faces));
-  if (!scene.by_need && !scene.setup.render.rays_per_dot) {  // the ray budget did not include these dots
-    by_rays.by_need = need_of(scene);
-    by_rays.rays_per_dot = most_rays_of_source(by_rays);
+  if (!scene.adaptive_criteria && !scene.setup.render.rays_per_dot) {  // the ray budget did not include these dots
+    by_rays.adaptive_criteria = determine_adaptive_criteria(scene);
+    by_rays.rays_per_dot = max_rays_per_source(by_rays);
   }
   Rendering const rest = rays_->render(by_rays, by_rays.dots, lit, theory);
   merge(all, rest, left, scene.setup.target.polarity);
@@ -122,7 +122,7 @@ Rendering render_planned(Scene const& scene, Renderer& renderer, RenderImages im
 
 Rendering render(Scene const& scene, Device& device, RenderImages images, RenderTheory theory) {
   Scene const with_step = with_chosen_step(scene);
-  return render_planned(with_rays(with_step, choose_rays(with_step)), device, images, theory);
+  return render_planned(with_rays(with_step, choose_ray_budget(with_step)), device, images, theory);
 }
 
 }  // namespace gladstone

@@ -165,7 +165,7 @@ int guarded(int argc, char** argv) {
   } catch (DeviceError const& error) {
     return fail("device error: ", error.what(), device_error);
   } catch (std::exception const& error) {
-    return fail("", message_of(error), bad_input);
+    return fail("", format_user_message(error), bad_input);
   }
 }
 

@@ -166,7 +166,7 @@ SmoothGrid clean(std::vector<DetectedDot> const& dots, Places& places) {
   for (auto const& [place, dot] : places) {
     all.push_back({place.first, place.second, dots[dot].centre_px, dots[dot].diameter_px});
   }
-  SmoothGrid grid = remove_strangers(std::move(all));
+  SmoothGrid grid = remove_inconsistent_spots(std::move(all));
   Places kept;
   for (GridDot const& dot : grid.dots) kept[{dot.i, dot.j}] = places.at({dot.i, dot.j});
   places = std::move(kept);
@@ -193,7 +193,7 @@ AssignedDots assign_to_grid(std::vector<DetectedDot> const& dots, CalibrationGri
   bool const all_rows = assigned.rows == 2 * grid.half_rows + 1;
   std::pair<int, int> origin{span.left + grid.half_columns, span.low + grid.half_rows};
   if (!all_columns || !all_rows) {
-    assigned.middle_by = MiddleBy::expected_view;
+    assigned.middle_by = CentreDotMethod::expected_view;
     GridPoint const middle = point_at(dots, places, expected.middle_px, beginning->steps);
     auto const choose = [&assigned](double point, int& place) {
       place = static_cast<int>(std::lround(point));

@@ -100,7 +100,7 @@ bool remove_missized(SmoothGrid& grid) {
 
 }  // namespace
 
-SmoothGrid remove_strangers(std::vector<GridDot> dots) {
+SmoothGrid remove_inconsistent_spots(std::vector<GridDot> dots) {
   SmoothGrid grid{std::move(dots), {}, 0};
   for (int round = 0; round < most_rounds && grid.dots.size() >= least_dots; ++round) {
     if (!remove_missized(grid) && !remove_misplaced(grid)) break;

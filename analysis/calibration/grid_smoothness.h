@@ -21,6 +21,6 @@ struct SmoothGrid {
 /// - for the diameter: a quarter of the median diameter and 1 px.
 /// The robust standard deviation follows from the median of the residuals: divided by 1.1774 for positions (Rayleigh
 /// distribution), times 1.4826 for diameters (normal distribution).
-SmoothGrid remove_strangers(std::vector<GridDot> dots);
+SmoothGrid remove_inconsistent_spots(std::vector<GridDot> dots);
 
 }  // namespace gladstone

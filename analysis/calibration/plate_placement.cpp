@@ -37,10 +37,10 @@ Vec2d principal_point(CalibrationPoints const& points) {
 /// @return nullopt if the iteration does not converge or |x| reaches largest_drift
 template <class Map>
 std::optional<Vec2d> solve(Map const& f, Vec2d target) {
-  constexpr int most_steps = 50;
+  constexpr int max_step_count = 50;
   constexpr double probe = 1e-4;
   Vec2d at{};
-  for (int step = 0; step < most_steps; ++step) {
+  for (int step = 0; step < max_step_count; ++step) {
     Vec2d const off = f(at) - target;
     if (length(off) < precision_px) return at;
     Vec2d const x = (f(at + Vec2d{probe, 0}) - target - off) / probe;
@@ -161,7 +161,7 @@ CalibrationPoints PlateDots::points(PlatePlacement const& placement) const {
   return points;
 }
 
-std::optional<std::vector<std::size_t>> find_picture_order(PlateDots const& dots) {
+std::optional<std::vector<std::size_t>> find_image_order(PlateDots const& dots) {
   if (dots.z.size() < 3 || dots.z.size() > most_planes) return std::nullopt;
   PlatePlacement placement;
   placement.order.resize(dots.z.size());
@@ -179,7 +179,7 @@ std::optional<std::vector<std::size_t>> find_picture_order(PlateDots const& dots
   return least_gain * least < given ? best : std::nullopt;
 }
 
-std::optional<PlatePlacement> find_moved_middles(PlateDots const& dots, Vec2d principal_point_px) {
+std::optional<PlatePlacement> find_misidentified_centres(PlateDots const& dots, Vec2d principal_point_px) {
   Fit const given{Moves(dots.z.size()), linear_residual_px(dots.points())};
   Fit best = given;
   while (best.residual_px > rounding_px) {

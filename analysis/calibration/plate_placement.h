@@ -32,7 +32,7 @@ struct PlateDots {
 /// Finds an order of the images in which a pinhole camera without distortion fits the dots at least five times better
 /// than in the given order.
 /// @return nullopt if there is none, or for fewer than three or more than six planes
-std::optional<std::vector<std::size_t>> find_picture_order(PlateDots const& dots);
+std::optional<std::vector<std::size_t>> find_image_order(PlateDots const& dots);
 
 /// Finds the planes whose centre dots were misidentified by whole columns or rows: the offsets that improve the fit of
 /// a pinhole camera without distortion at least five-fold. The offsets of one plane, or of two planes at once, are
@@ -40,7 +40,7 @@ std::optional<std::vector<std::size_t>> find_picture_order(PlateDots const& dots
 /// determined from the principal point, as in find_drift(). An offset common to all planes does not affect the camera;
 /// the smallest offsets are returned.
 /// @return nullopt if no offsets improve the fit sufficiently
-std::optional<PlatePlacement> find_moved_middles(PlateDots const& dots, Vec2d principal_point_px);
+std::optional<PlatePlacement> find_misidentified_centres(PlateDots const& dots, Vec2d principal_point_px);
 
 /// Determines the drift of a plate that was not translated along its normal, from the position of the principal point,
 /// which a drift d shifts by f d. If index offsets by a whole number of spacings from plane to plane bring the

@@ -26,7 +26,7 @@ struct AxisWeightsView {
     return autocorrelations[static_cast<long long>(window) * lags(size) + (lag < 0 ? -lag : lag)];
   }
   /// Relative decrease of a correlation plane with the shift: autocorrelation of the weights over its value at lag 0.
-  GLADSTONE_HD double fall_off(int window, int lag) const {
+  GLADSTONE_HD double shift_attenuation(int window, int lag) const {
     return autocorrelation(window, lag) / autocorrelation(window, 0);
   }
 };

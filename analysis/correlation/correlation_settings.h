@@ -44,8 +44,8 @@ struct CorrelationSettings {
   bool replace = true;  ///< true: spurious vectors of the last pass are replaced; false: they are invalid
   /// Estimator of sigma_px: one of uncertainty_methods(), or "none".
   std::string uncertainty = "none";
-  /// Peak ratio from which a vector of the first pass may deviate from its neighbours, see is_trusted(); none: no
-  /// vector may.
+  /// Peak ratio from which a vector of the first pass may deviate from its neighbours, see has_reliable_correlation();
+  /// none: no vector may.
   std::optional<double> trusted_peak_ratio = 2.0;
   TrackingTable tracking;  ///< of method "tracking"
   /// Known places of the dots of a BOS target in frame A [px], used by method "tracking"; not part of a setup.

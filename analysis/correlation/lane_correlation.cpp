@@ -17,37 +17,37 @@ namespace {
 constexpr std::size_t windows_per_chunk = 8 * lane_count;
 
 /// Workspace of one thread for a chunk of windows; reused for later chunks.
-struct Workplace {
+struct Workspace {
   LaneCorrelation correlation;
   LanePlane plane;
   VisitPlanes visit;
 };
 
 /// Idle workspaces.
-class FreeWorkplaces {
+class WorkspacePool {
  public:
-  explicit FreeWorkplaces(std::function<std::unique_ptr<Workplace>()> make) : make_(std::move(make)) {}
+  explicit WorkspacePool(std::function<std::unique_ptr<Workspace>()> make) : make_(std::move(make)) {}
 
-  std::unique_ptr<Workplace> take() {
+  std::unique_ptr<Workspace> take() {
     {
       std::lock_guard<std::mutex> const lock(mutex_);
       if (!free_.empty()) {
-        std::unique_ptr<Workplace> place = std::move(free_.back());
+        std::unique_ptr<Workspace> place = std::move(free_.back());
         free_.pop_back();
         return place;
       }
     }
     return make_();
   }
-  void give_back(std::unique_ptr<Workplace> place) {
+  void give_back(std::unique_ptr<Workspace> place) {
     std::lock_guard<std::mutex> const lock(mutex_);
     free_.push_back(std::move(place));
   }
 
  private:
-  std::function<std::unique_ptr<Workplace>()> make_;
+  std::function<std::unique_ptr<Workspace>()> make_;
   std::mutex mutex_;
-  std::vector<std::unique_ptr<Workplace>> free_;
+  std::vector<std::unique_ptr<Workspace>> free_;
 };
 
 }  // namespace
@@ -153,19 +153,19 @@ void visit_planes(InterrogationJob const& job, PlaneMethod const& method,
   WindowMeans const means(job, x.view(), y.view());
   LaneFourier const fourier(LaneCorrelation::transform_size(job, method.with_margin));
   Progress progress(job.label, job.grid.size());
-  FreeWorkplaces workplaces([&] {
-    return std::unique_ptr<Workplace>(new Workplace{
+  WorkspacePool workspaces([&] {
+    return std::unique_ptr<Workspace>(new Workspace{
         {job, x.view(), y.view(), tiles, means, fourier, method.with_margin}, LanePlane(radius), make_visitor()});
   });
   parallel_chunks(job.grid.size(), windows_per_chunk, [&](std::size_t begin, std::size_t end) {
-    std::unique_ptr<Workplace> here = workplaces.take();
+    std::unique_ptr<Workspace> here = workspaces.take();
     for (std::size_t first = begin; first < end; first += lane_count) {
       int const count = static_cast<int>(std::min<std::size_t>(lane_count, end - first));
       here->correlation.windows().place(first, count);
       method.make(here->correlation, here->plane);
       here->visit(first, count, here->correlation, here->plane);
     }
-    workplaces.give_back(std::move(here));
+    workspaces.give_back(std::move(here));
     progress.advance(end - begin);
   });
 }
@@ -173,7 +173,7 @@ void visit_planes(InterrogationJob const& job, PlaneMethod const& method,
 std::vector<WindowCorrelation> correlate_in_lanes(InterrogationJob const& job, PlaneMethod const& method) {
   std::vector<WindowCorrelation> results(job.grid.size());
   visit_planes(job, method, [&] {
-    auto const peaks = std::make_shared<LanePeaks>(job, method.falls_off);
+    auto const peaks = std::make_shared<LanePeaks>(job, method.decreases_with_shift);
     return [peaks, &results, &job](std::size_t first, int count, LaneCorrelation& work, LanePlane& plane) {
       WindowCorrelation::Outcome outcome[lane_count];
       for (int lane = 0; lane < count; ++lane) outcome[lane] = work.windows().outcome(lane);

@@ -82,7 +82,8 @@ using MakePlane = void (*)(LaneCorrelation& work, LanePlane& plane);
 struct PlaneMethod {
   MakePlane make;
   bool with_margin = false;  ///< whether it reads the search range around the window
-  bool falls_off = true;     ///< whether its planes decrease with the shift like the autocorrelation of the weights
+  bool decreases_with_shift =
+      true;  ///< whether its planes decrease with the shift like the autocorrelation of the weights
 };
 
 /// Returns the length of the transforms for the plane of a window without the search range around it.

@@ -105,7 +105,8 @@ float third_largest(float const* numbers, std::size_t count) {
 
 }  // namespace
 
-LanePeaks::LanePeaks(InterrogationJob const& job, bool falls_off) : job_(job), falls_off_(falls_off) {
+LanePeaks::LanePeaks(InterrogationJob const& job, bool decreases_with_shift)
+    : job_(job), decreases_with_shift_(decreases_with_shift) {
   std::size_t const count = static_cast<std::size_t>(2 * job.search_radius_px + 1);
   found_.resize((count + 7) / 8 * 8);
   // Two maxima are never adjacent.
@@ -193,7 +194,7 @@ PeakList<float> LanePeaks::rank(LanePlane const& plane, int lane) {
   std::fill_n(heights_[lane].data() + counts_[lane], lane_count, 0.0f);
   PeakList<float> found;
   for (float least = third_highest(lane);; least = 0.0f) {
-    float const enough = static_cast<float>(nearly_as_high) *
+    float const enough = static_cast<float>(ambiguous_height_ratio) *
                          least;  // lower limit that also includes the candidates of prefer_nearest()
     found = {};
     refined_.clear();
@@ -215,7 +216,7 @@ PeakList<float> LanePeaks::rank(LanePlane const& plane, int lane) {
 
 /// Measures a peak by any subpixel fit, one lane at a time; also used if a sample is not positive.
 MeasuredPeak LanePeaks::measure(LaneCorrelation const& work, LanePlaneView const& plane, int x, int y) const {
-  if (!falls_off_) return fitted_peak(job_.fit, plane, x, y);
+  if (!decreases_with_shift_) return fitted_peak(job_.fit, plane, x, y);
   return fitted_peak(job_.fit, plane, x, y, work.weights_x(), work.windows().column(plane.lane), work.weights_y(),
                      work.windows().row_of(plane.lane));
 }
@@ -230,11 +231,11 @@ void LanePeaks::measure_all(LaneCorrelation const& work, LanePlane const& plane,
     if (p >= found[lane].count) continue;
     PlanePeak<float> const& peak = found[lane].peak[p];
     samples.read(lane, {plane, lane}, peak);
-    if (!falls_off_) continue;
+    if (!decreases_with_shift_) continue;
     int const column = work.windows().column(lane), row = work.windows().row_of(lane);
     for (int i = -1; i <= 1; ++i) {
-      across[i + 1][lane] = static_cast<float>(work.weights_x().fall_off(column, peak.x + i));
-      down[i + 1][lane] = static_cast<float>(work.weights_y().fall_off(row, peak.y + i));
+      across[i + 1][lane] = static_cast<float>(work.weights_x().shift_attenuation(column, peak.x + i));
+      down[i + 1][lane] = static_cast<float>(work.weights_y().shift_attenuation(row, peak.y + i));
     }
   }
   samples.beside[0] /= across[0] * down[1];

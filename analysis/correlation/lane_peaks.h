@@ -11,8 +11,8 @@ namespace gladstone {
 /// fitted_peak().
 class LanePeaks {
  public:
-  /// @param falls_off  whether the planes decrease with the shift like the autocorrelation of the weights
-  LanePeaks(InterrogationJob const& job, bool falls_off);
+  /// @param decreases_with_shift  whether the planes decrease with the shift like the autocorrelation of the weights
+  LanePeaks(InterrogationJob const& job, bool decreases_with_shift);
 
   /// Finds and measures the peaks of the first `count` windows.
   /// @param outcome  outcome of each window so far: only measured ones have a plane
@@ -31,7 +31,7 @@ class LanePeaks {
                    WindowCorrelation* results) const;
 
   InterrogationJob const& job_;
-  bool falls_off_;
+  bool decreases_with_shift_;
   std::vector<FloatLanes> highest_[3];  // [above, here, below][column] highest of three neighbours in a row
   std::vector<unsigned char> found_;    // maxima in a row: one bit per lane
   int counts_[lane_count] = {};

@@ -105,7 +105,7 @@ void LaneWindows::copy_lane(int lane, int first_x, int first_y, float const* wei
     }
   }
   float const all = sum_of_lanes(sums.weight);
-  if (all < smallest_known_part * x_.sum(column_[lane]) * y_.sum(row_[lane]))
+  if (all < min_valid_weight_fraction * x_.sum(column_[lane]) * y_.sum(row_[lane]))
     outcome_[lane] = WindowCorrelation::Outcome::masked;
   float const mean_reference = sums.mean_reference(all > 0.0f ? all : 1.0f);
   float const mean_flow = sums.mean_flow(all > 0.0f ? all : 1.0f);

@@ -72,14 +72,14 @@ double least_seen(int window_px) { return 8.0 / window_px; }
 /// Returns the geometric mean of a peak's heights one pixel from its centre along both axes, on the Gaussian through
 /// its samples. The height there is the peak height times the square root of the product of the relative heights of the
 /// two samples next to the highest one, along each axis.
-/// @param fall_off  decrease of the plane with the shift, caused by the weights, which is divided out
-double height_beside(PlaneView<double> const& plane, PlanePeak<double> const& peak, double fall_off) {
+/// @param shift_attenuation  decrease of the plane with the shift, caused by the weights, which is divided out
+double height_beside(PlaneView<double> const& plane, PlanePeak<double> const& peak, double shift_attenuation) {
   double const centre = plane(peak.x, peak.y);
   double const beside[4] = {plane(peak.x - 1, peak.y), plane(peak.x + 1, peak.y), plane(peak.x, peak.y - 1),
                             plane(peak.x, peak.y + 1)};
   double product = 1.0;
   for (double const value : beside) product *= std::max(0.0, value) / centre;
-  return peak.height / fall_off * std::pow(product, 0.25);
+  return peak.height / shift_attenuation * std::pow(product, 0.25);
 }
 
 }  // namespace
@@ -107,13 +107,13 @@ std::optional<PatternPeriod> pattern_period(Image<double> const& image, Correlat
       for (int k = 0; k < found.count; ++k) {
         PlanePeak<double> const& peak = found.peak[k];
         if (peak.x == 0 && peak.y == 0) continue;
-        double const fall_off = x.autocorrelation(column, peak.x) * y.autocorrelation(row, peak.y) /
-                                (x.autocorrelation(column, 0) * y.autocorrelation(row, 0));
-        double const whole = peak.height / fall_off / plane(0, 0);
+        double const shift_attenuation = x.autocorrelation(column, peak.x) * y.autocorrelation(row, peak.y) /
+                                         (x.autocorrelation(column, 0) * y.autocorrelation(row, 0));
+        double const whole = peak.height / shift_attenuation / plane(0, 0);
         double const beside =
-            main > least_seen(window) * plane(0, 0) ? height_beside(plane, peak, fall_off) / main : 0.0;
+            main > least_seen(window) * plane(0, 0) ? height_beside(plane, peak, shift_attenuation) / main : 0.0;
         double const height = std::max(whole, beside);
-        if (height < nearly_as_high) continue;
+        if (height < ambiguous_height_ratio) continue;
         repeats = true;
         RefinedPeak<double> const at = refined_peak(plane, peak.x, peak.y, plane(peak.x, peak.y));
         double const pitch = std::hypot(at.x, at.y);

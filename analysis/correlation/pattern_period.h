@@ -15,10 +15,10 @@ struct PatternPeriod {
 
 /// Determines the period of a pattern from the autocorrelation of up to sixteen windows of twice the first pass'
 /// window, at least 128 px, so that a few dots do not match by coincidence.
-/// A window repeats if a side peak is at least nearly_as_high times the main peak. Uncorrelated noise affects only the
-/// sample at shift 0, so the peaks are also compared one pixel from their centres along the axes: the samples of the
-/// main peak with the Gaussian fitted to the side peak. Dots of one pixel have no signal there, and are compared at the
-/// peak centres.
+/// A window repeats if a side peak is at least ambiguous_height_ratio times the main peak. Uncorrelated noise affects
+/// only the sample at shift 0, so the peaks are also compared one pixel from their centres along the axes: the samples
+/// of the main peak with the Gaussian fitted to the side peak. Dots of one pixel have no signal there, and are compared
+/// at the peak centres.
 /// @return nullopt if fewer than a quarter of the windows repeat within twice the search range of the first pass; a
 /// smaller period makes displacements within the search range ambiguous
 std::optional<PatternPeriod> pattern_period(Image<double> const& image, CorrelationSettings const& settings);

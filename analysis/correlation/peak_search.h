@@ -107,12 +107,12 @@ GLADSTONE_HD void insert_peak(PeakList<T>& found, PlanePeak<T> const& candidate)
 /// Height ratio above which two peaks are considered equally high. In windows of a regular pattern, the heights of
 /// aliases differ by this much, because each alias lacks different dots at the window border and the three-point
 /// Gaussian does not match the peak shape exactly.
-constexpr double nearly_as_high = 0.9;
+constexpr double ambiguous_height_ratio = 0.9;
 
 /// Returns whether no higher maximum is close to a peak, so that the peak is not the shoulder of another one. Of equal
 /// maxima, the first in reading order counts as the higher.
 template <class Plane, class T>
-GLADSTONE_HD bool is_summit(Plane const& plane, int radius, PlanePeak<T> const& peak) {
+GLADSTONE_HD bool is_dominant_maximum(Plane const& plane, int radius, PlanePeak<T> const& peak) {
   for (int y = peak.y - 2; y <= peak.y + 2; ++y)
     for (int x = peak.x - 2; x <= peak.x + 2; ++x) {
       bool const before = y < peak.y || (y == peak.y && x < peak.x);
@@ -130,7 +130,7 @@ GLADSTONE_HD bool is_summit(Plane const& plane, int radius, PlanePeak<T> const& 
 /// @param for_each_maximum  calls its argument with every positive local maximum in reading order
 template <class Plane, class T, class Maxima>
 GLADSTONE_HD void prefer_nearest(Plane const& plane, int radius, PeakList<T>& found, Maxima const& for_each_maximum) {
-  T const enough = T(nearly_as_high) * found.peak[0].height;
+  T const enough = T(ambiguous_height_ratio) * found.peak[0].height;
   if (found.count < 2 || found.peak[1].height < enough) return;
   auto const distance = [&](PlanePeak<T> const& peak) {
     RefinedPeak<T> const at = refined_peak(plane, peak.x, peak.y, plane(peak.x, peak.y));
@@ -141,7 +141,7 @@ GLADSTONE_HD void prefer_nearest(Plane const& plane, int radius, PeakList<T>& fo
   for_each_maximum([&](PlanePeak<T> const& peak) {
     if (peak.height < enough) return;
     T const here = distance(peak);
-    if (!(here < least) || !is_summit(plane, radius, peak)) return;
+    if (!(here < least) || !is_dominant_maximum(plane, radius, peak)) return;
     least = here;
     nearest = peak;
   });
@@ -167,8 +167,8 @@ GLADSTONE_HD void visit_maxima(Plane const& plane, int radius, Visit const& visi
 
 /// Visits the maxima from which prefer_nearest() chooses.
 template <class Plane, class T, class Visit>
-GLADSTONE_HD void visit_rivals(Plane const& plane, int radius, PeakList<T> const& found, Visit const& visit) {
-  T const enough = T(nearly_as_high) * found.peak[0].height;
+GLADSTONE_HD void visit_candidate_peaks(Plane const& plane, int radius, PeakList<T> const& found, Visit const& visit) {
+  T const enough = T(ambiguous_height_ratio) * found.peak[0].height;
   visit_maxima(plane, radius, visit, [enough](T height) { return height >= enough; });
 }
 
@@ -185,7 +185,7 @@ GLADSTONE_HD PeakList<T> find_peaks(PlaneView<T> plane, int radius) {
         if (can_enter(found, peak.height)) insert_peak(found, peak);
       },
       [&](T height) { return can_enter(found, height); });
-  prefer_nearest(plane, radius, found, [&](auto const& visit) { visit_rivals(plane, radius, found, visit); });
+  prefer_nearest(plane, radius, found, [&](auto const& visit) { visit_candidate_peaks(plane, radius, found, visit); });
   return found;
 }
 

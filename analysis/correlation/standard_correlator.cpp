@@ -154,7 +154,7 @@ ValidationRule CorrelationSchedule::rule(int pass) const {
     rule.least_peak_ratio = rule.least_correlation = 0.0;
     rule.replaces = true;
   }
-  if (pass > 0) rule.trusted_ratio = std::numeric_limits<double>::infinity();
+  if (pass > 0) rule.reliable_peak_ratio = std::numeric_limits<double>::infinity();
   // In the first pass the total displacement equals the increment, which has been tested already.
   if (pass == 0 || !is_last(pass)) rule.displacement_threshold = std::numeric_limits<double>::infinity();
   return rule;

@@ -106,7 +106,7 @@ GLADSTONE_HD inline GridVector grid_vector(WindowCorrelation const& window, Vec2
     if (!is_within(whole, limit_px)) continue;
     if (vector.status == VectorStatus::valid) {
       vector.alternatives[vector.alternative_count++] = whole;
-      if (window.coefficient[k] >= nearly_as_high * vector.correlation) vector.ambiguous = Ambiguity::here;
+      if (window.coefficient[k] >= ambiguous_height_ratio * vector.correlation) vector.ambiguous = Ambiguity::here;
       continue;
     }
     vector.status = VectorStatus::valid;
@@ -134,7 +134,7 @@ GLADSTONE_HD inline MeasuredVector measured_vector(GridVector const& vector, Win
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   bool const measured = is_measured(vector);
   MeasuredVector result;
-  result.displacement = is_sound(vector.status) ? vector.displacement : Vec2d{nan, nan};
+  result.displacement = is_valid_or_replaced(vector.status) ? vector.displacement : Vec2d{nan, nan};
   result.raw = vector.raw;
   result.peak_ratio = window.outcome == WindowCorrelation::Outcome::measured ? window.peak_ratio : nan;
   result.correlation = measured ? (vector.correlation < 1.0 ? vector.correlation : 1.0) : nan;

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t validated_per_chunk = 256;
 
-void validate_by(Judgement by, std::span<GridVector> vectors, int columns, ValidationRule const& rule) {
+void validate_by(ValidationStage by, std::span<GridVector> vectors, int columns, ValidationRule const& rule) {
   int const count = static_cast<int>(vectors.size()), rows = count / columns;
   std::vector<FailedTest> failed(vectors.size());
   parallel_chunks(vectors.size(), validated_per_chunk, [&](std::size_t begin, std::size_t end) {
@@ -20,7 +20,7 @@ void validate_by(Judgement by, std::span<GridVector> vectors, int columns, Valid
   std::vector<int> spurious;
   for (int i = 0; i < count; ++i)
     if (failed[i] != FailedTest::none) spurious.push_back(i);
-  for (int const i : spurious) take_out(vectors[i], failed[i]);
+  for (int const i : spurious) reject_vector(vectors[i], failed[i]);
   if (!rule.replaces) return;
 
   // Replace from the rim of a group of spurious vectors inwards; within a round, only vectors that were sound before it
@@ -45,7 +45,8 @@ void validate_by(Judgement by, std::span<GridVector> vectors, int columns, Valid
 
 void validate_vectors(std::span<GridVector> vectors, int columns, ValidationRule const& rule) {
   GLADSTONE_EXPECTS(columns > 0 && vectors.size() % columns == 0);
-  for (int by = 0; by < judgements(rule); ++by) validate_by(static_cast<Judgement>(by), vectors, columns, rule);
+  for (int by = 0; by < validation_stage_count(rule); ++by)
+    validate_by(static_cast<ValidationStage>(by), vectors, columns, rule);
 }
 
 std::vector<Vec2d> filled_displacement(std::span<GridVector const> vectors, int columns) {
@@ -55,7 +56,7 @@ std::vector<Vec2d> filled_displacement(std::span<GridVector const> vectors, int 
   std::vector<char> known(vectors.size(), false);
   std::vector<int> holes;
   for (int i = 0; i < static_cast<int>(vectors.size()); ++i) {
-    known[i] = is_sound(vectors[i].status);
+    known[i] = is_valid_or_replaced(vectors[i].status);
     if (known[i])
       filled[i] = vectors[i].displacement;
     else
@@ -65,7 +66,7 @@ std::vector<Vec2d> filled_displacement(std::span<GridVector const> vectors, int 
   while (!holes.empty()) {
     std::vector<int> left, done;
     for (int const i : holes) {
-      bool const found = find_filling(
+      bool const found = find_gap_value(
           filled.data(), i, columns, rows, [&](int k) { return known[k] != 0; }, filled[i]);
       (found ? done : left).push_back(i);
     }

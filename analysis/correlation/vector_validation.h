@@ -96,13 +96,14 @@ GLADSTONE_HD inline bool is_measured(GridVector const& vector) { return vector.r
 
 /// Criteria for spurious vectors.
 struct ValidationRule {
-  double threshold = 2.0;      ///< largest normalised median residual [1]
-  double epsilon_px = 0.1;     ///< noise level in the normalised median residual [px]
-  double trusted_ratio = 2.0;  ///< peak ratio from which a vector may deviate from its neighbours [1], see is_trusted()
+  double threshold = 2.0;   ///< largest normalised median residual [1]
+  double epsilon_px = 0.1;  ///< noise level in the normalised median residual [px]
+  double reliable_peak_ratio =
+      2.0;  ///< peak ratio from which a vector may deviate from its neighbours [1], see has_reliable_correlation()
   double limit_px = std::numeric_limits<double>::infinity();  ///< largest displacement along either axis
   double least_peak_ratio = 0.0;   ///< lowest peak ratio of a vector, regardless of its neighbours [1]
   double least_correlation = 0.0;  ///< lowest correlation coefficient of its peak [1]
-  /// Largest normalised median residual of the total displacement, see is_unlike(); infinite: no test.
+  /// Largest normalised median residual of the total displacement, see is_displacement_outlier(); infinite: no test.
   double displacement_threshold = std::numeric_limits<double>::infinity();
   bool replaces = true;  ///< true: spurious vectors are replaced; false: they are invalid
 };
@@ -111,7 +112,7 @@ struct ValidationRule {
 /// windows share dots: if their displacements differed by more than a dot diameter, 2 to 4 px, the dots of one window
 /// would not agree on one peak. A single clear peak with a larger deviation has another cause, such as a speck or a
 /// reflection.
-constexpr double most_trusted_px = 2.0;
+constexpr double max_reliable_deviation_px = 2.0;
 
 GLADSTONE_HD inline bool is_within(Vec2d displacement, double limit_px) {
   using std::abs;
@@ -169,17 +170,18 @@ GLADSTONE_HD inline Neighbours<double> without_slope(Neighbours<double> neighbou
 /// Smallest number of neighbours for the median test.
 constexpr int fewest_neighbours = 3;
 
-GLADSTONE_HD inline bool is_sound(VectorStatus status) {
+GLADSTONE_HD inline bool is_valid_or_replaced(VectorStatus status) {
   return status == VectorStatus::valid || status == VectorStatus::replaced;
 }
 
 /// Returns whether the correlation of a vector outweighs a deviation from its neighbours: its peak ratio is high, it is
-/// not ambiguous, and the deviation is at most most_trusted_px. In windows of 16 px with five dots, 19 of 20 random
-/// peaks that exceed the true peak in noise have a peak ratio below 2; of the true peaks in clean images, 1 in 50.
-GLADSTONE_HD inline bool is_trusted(GridVector const& vector, Neighbours<double> const& neighbours,
-                                    ValidationRule const& rule) {
-  return vector.peak_ratio >= rule.trusted_ratio && vector.ambiguous == Ambiguity::none &&
-         length(vector.displacement - vector.predictor - neighbours.median()) <= most_trusted_px;
+/// not ambiguous, and the deviation is at most max_reliable_deviation_px. In windows of 16 px with five dots, 19 of 20
+/// random peaks that exceed the true peak in noise have a peak ratio below 2; of the true peaks in clean images, 1
+/// in 50.
+GLADSTONE_HD inline bool has_reliable_correlation(GridVector const& vector, Neighbours<double> const& neighbours,
+                                                  ValidationRule const& rule) {
+  return vector.peak_ratio >= rule.reliable_peak_ratio && vector.ambiguous == Ambiguity::none &&
+         length(vector.displacement - vector.predictor - neighbours.median()) <= max_reliable_deviation_px;
 }
 
 /// Usable neighbours of a vector: their displacements and the increments that the pass added to the predictor.
@@ -218,7 +220,7 @@ GLADSTONE_HD inline bool agrees(Vec2d displacement, Vec2d predictor, Surrounding
 }
 
 /// Fraction of the neighbours' median correlation below which a window correlates worse than they do.
-constexpr double as_correlated = 0.9;
+constexpr double min_relative_correlation = 0.9;
 
 /// Returns whether a total displacement deviates from its neighbours and its window also correlates worse than theirs.
 /// A gross error of an earlier pass is contained in the predictor, and the last increment is small, so that the median
@@ -226,8 +228,8 @@ constexpr double as_correlated = 0.9;
 /// too, but no lower correlation. At the border, where the median is biased by the gradient, the test must also fail
 /// for the neighbours without their slopes.
 template <class Usable>
-GLADSTONE_HD bool is_unlike(GridVector const* vectors, int i, int columns, int rows, ValidationRule const& rule,
-                            Usable const& usable) {
+GLADSTONE_HD bool is_displacement_outlier(GridVector const* vectors, int i, int columns, int rows,
+                                          ValidationRule const& rule, Usable const& usable) {
   double const threshold = rule.displacement_threshold;
   if (!(threshold < std::numeric_limits<double>::infinity())) return false;
   Neighbours<double> offset, again;
@@ -244,32 +246,33 @@ GLADSTONE_HD bool is_unlike(GridVector const* vectors, int i, int columns, int r
         return Vec2d{vectors[k].correlation, 0.0};
       },
       usable, again);
-  return vectors[i].correlation < as_correlated * correlation.median().x;
+  return vectors[i].correlation < min_relative_correlation * correlation.median().x;
 }
 
 /// Successive tests of a grid: vectors rejected by the first no longer count as neighbours in the second.
-enum class Judgement { increments, displacements };
+enum class ValidationStage { increments, displacements };
 
 /// Returns the test that a valid vector i fails: peak ratio, correlation or agreement with its valid neighbours; for
-/// Judgement::displacements, only is_unlike(). See validate_vectors().
+/// ValidationStage::displacements, only is_displacement_outlier(). See validate_vectors().
 GLADSTONE_HD inline FailedTest failed_test(GridVector const* vectors, int i, int columns, int rows,
-                                           ValidationRule const& rule, Judgement by) {
+                                           ValidationRule const& rule, ValidationStage by) {
   GridVector const& vector = vectors[i];
   auto const valid = [&](int k) { return vectors[k].status == VectorStatus::valid; };
   if (!valid(i)) return FailedTest::none;
-  if (by == Judgement::displacements)
-    return is_unlike(vectors, i, columns, rows, rule, valid) ? FailedTest::displacement : FailedTest::none;
+  if (by == ValidationStage::displacements)
+    return is_displacement_outlier(vectors, i, columns, rows, rule, valid) ? FailedTest::displacement
+                                                                           : FailedTest::none;
   if (vector.peak_ratio < rule.least_peak_ratio) return FailedTest::peak_ratio;
   if (vector.correlation < rule.least_correlation) return FailedTest::correlation;
   Surroundings const around(vectors, i, columns, rows, valid);
   bool const stands = around.increment.count < fewest_neighbours ||
                       agrees(vector.displacement, vector.predictor, around, rule) ||
-                      is_trusted(vector, around.increment, rule);
+                      has_reliable_correlation(vector, around.increment, rule);
   return stands ? FailedTest::none : FailedTest::median;
 }
 
 /// Returns the number of successive tests that a rule requires.
-GLADSTONE_HD inline int judgements(ValidationRule const& rule) {
+GLADSTONE_HD inline int validation_stage_count(ValidationRule const& rule) {
   return rule.displacement_threshold < std::numeric_limits<double>::infinity() ? 2 : 1;
 }
 
@@ -284,11 +287,11 @@ struct VectorReplacement {
 GLADSTONE_HD inline bool find_replacement(GridVector const* vectors, int i, int columns, int rows,
                                           ValidationRule const& rule, VectorReplacement& found) {
   GridVector const& vector = vectors[i];
-  auto const usable = [&](int k) { return is_sound(vectors[k].status); };
+  auto const usable = [&](int k) { return is_valid_or_replaced(vectors[k].status); };
   Surroundings const around(vectors, i, columns, rows, usable);
   if (around.increment.count < fewest_neighbours) return false;
-  if (is_unlike(vectors, i, columns, rows, rule,
-                usable)) {  // the predictor is wrong, and so are all peaks found with it
+  if (is_displacement_outlier(vectors, i, columns, rows, rule,
+                              usable)) {  // the predictor is wrong, and so are all peaks found with it
     Neighbours<double> offset;
     Neighbours<double> const displacement = neighbours_of(
         i, columns, rows, [&](int k) { return vectors[k].displacement; }, usable, offset);
@@ -308,8 +311,8 @@ GLADSTONE_HD inline bool find_replacement(GridVector const* vectors, int i, int 
   return true;
 }
 
-/// take_out() marks a vector as spurious; replace() stores its replacement, which is invalid beyond the limit.
-GLADSTONE_HD inline void take_out(GridVector& vector, FailedTest failed) {
+/// reject_vector() marks a vector as spurious; replace() stores its replacement, which is invalid beyond the limit.
+GLADSTONE_HD inline void reject_vector(GridVector& vector, FailedTest failed) {
   vector.status = VectorStatus::invalid;
   vector.reason = VectorReason::not_replaced;
   vector.failed = failed;
@@ -324,7 +327,7 @@ GLADSTONE_HD inline void replace(GridVector& vector, VectorReplacement const& by
 
 /// Finds the value of the unknown node i as the median of its known neighbours. @return false if it has none
 template <class Known>
-GLADSTONE_HD bool find_filling(Vec2d const* nodes, int i, int columns, int rows, Known const& known, Vec2d& value) {
+GLADSTONE_HD bool find_gap_value(Vec2d const* nodes, int i, int columns, int rows, Known const& known, Vec2d& value) {
   Neighbours<double> offset;
   Neighbours<double> const around = neighbours_of(
       i, columns, rows, [&](int k) { return nodes[k]; }, known, offset);
@@ -340,11 +343,12 @@ GLADSTONE_HD inline Vec2d smoothed(Vec2d before, Vec2d middle, Vec2d after, doub
 
 /// Finds spurious vectors among the valid ones of a grid, and replaces them. The result does not depend on their order.
 /// - The median test applies to the increments to the predictor, which no longer contain steep gradients; see
-///   agrees() for the border. Then, if the rule requires it, is_unlike() tests the total displacements.
+///   agrees() for the border. Then, if the rule requires it, is_displacement_outlier() tests the total displacements.
 /// - A spurious vector is replaced by the highest secondary peak that agrees with the sound neighbours, otherwise by
 ///   their median. It becomes invalid if fewer than three neighbours are sound, the replacement exceeds the limit, or
 ///   the rule does not allow replacements.
-/// - Vectors with fewer than three neighbours and those accepted by is_trusted() remain unchanged: the median would
+/// - Vectors with fewer than three neighbours and those accepted by has_reliable_correlation() remain unchanged: the
+/// median would
 ///   clip the maxima of structures as fine as the grid.
 void validate_vectors(std::span<GridVector> vectors, int columns, ValidationRule const& rule);
 

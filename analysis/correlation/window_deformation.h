@@ -8,7 +8,7 @@
 #include "analysis/correlation/interrogation_grid.h"
 #include "analysis/correlation/predictor_view.h"
 #include "render/base/image.h"
-#include "render/base/unset_vector.h"
+#include "render/base/uninitialized_vector.h"
 #include "render/base/vec.h"
 
 namespace gladstone {
@@ -18,10 +18,10 @@ namespace gladstone {
 struct ImagePair {
   int columns = 0;
   int rows = 0;
-  UnsetVector<float> reference;
-  UnsetVector<float> flow;
-  UnsetVector<float> available;  ///< 1 if both images are known, otherwise 0; empty: known everywhere
-  float contrast = 0.0f;         ///< scaled range of the grey levels of both images
+  UninitializedVector<float> reference;
+  UninitializedVector<float> flow;
+  UninitializedVector<float> available;  ///< 1 if both images are known, otherwise 0; empty: known everywhere
+  float contrast = 0.0f;                 ///< scaled range of the grey levels of both images
 };
 
 /// Interpolates a displacement from the nodes of a grid to every pixel: cubic convolution (Keys, IEEE Trans. ASSP 29

@@ -28,7 +28,7 @@ WindowMeans::WindowMeans(InterrogationJob const& job, AxisWeightsView const& x, 
   ImagePair const& pair = job.pair;
   int const side = window_side_px(job.weighting, job.grid.window_px), offset = (x.size - side) / 2;
   int const whole = pair.columns / lane_count * lane_count;
-  auto const add = [&](UnsetVector<float> const& image, int row, float weight, std::vector<float>& sums) {
+  auto const add = [&](UninitializedVector<float> const& image, int row, float weight, std::vector<float>& sums) {
     float const* const value = image.data() + static_cast<std::size_t>(row) * pair.columns;
     add_row(weight, value, sums.data(), whole);
     for (int i = whole; i < pair.columns; ++i) sums[static_cast<std::size_t>(i)] += weight * value[i];

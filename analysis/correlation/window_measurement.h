@@ -30,7 +30,7 @@ constexpr double largest_peak_ratio = 1000.0;
 /// are rounding errors.
 constexpr double smallest_contrast = 1e-6;
 /// Smallest fraction of a window's weight on known pixels: one half, with a margin for rounding.
-constexpr double smallest_known_part = 0.5 - 1e-5;
+constexpr double min_valid_weight_fraction = 0.5 - 1e-5;
 
 /// Returns the factor that converts a plane of unnormalised transforms of size^2 values to correlation coefficients; 0
 /// if the nominal window has no signal in one of the images.

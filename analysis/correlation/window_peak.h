@@ -9,7 +9,7 @@
 namespace gladstone {
 
 /// Converts a subpixel fit to a peak position and height. @param height  value of the peak's highest sample
-GLADSTONE_HD inline MeasuredPeak peak_of(PeakFit const& fit, int peak_x, int peak_y, double height) {
+GLADSTONE_HD inline MeasuredPeak to_measured_peak(PeakFit const& fit, int peak_x, int peak_y, double height) {
   double const rise = std::exp(fit.log_rise);
   return {{peak_x + fit.x, peak_y + fit.y}, height * (rise < largest_rise ? rise : largest_rise)};
 }
@@ -29,7 +29,7 @@ GLADSTONE_HD MeasuredPeak fitted_peak(Fit const& fit, Plane const& plane, int pe
       patch.value[j + 1][i + 1] =
           plane(peak_x + i, peak_y + j) * down * x.autocorrelation(column, 0) / x.autocorrelation(column, peak_x + i);
   }
-  return peak_of(fit(patch), peak_x, peak_y, patch.value[1][1]);
+  return to_measured_peak(fit(patch), peak_x, peak_y, patch.value[1][1]);
 }
 
 /// Like fitted_peak() above, for planes that do not decrease with the shift.
@@ -38,7 +38,7 @@ GLADSTONE_HD MeasuredPeak fitted_peak(Fit const& fit, Plane const& plane, int pe
   PeakPatch patch;
   for (int j = -1; j <= 1; ++j)
     for (int i = -1; i <= 1; ++i) patch.value[j + 1][i + 1] = plane(peak_x + i, peak_y + j);
-  return peak_of(fit(patch), peak_x, peak_y, patch.value[1][1]);
+  return to_measured_peak(fit(patch), peak_x, peak_y, patch.value[1][1]);
 }
 
 }  // namespace gladstone

@@ -50,7 +50,7 @@ void read_changes(SetupTable& correlate, std::string const& key, Rows const& row
     std::string const kind = table.kind_word("kind", "", names_of(rows));  // "" if the value was rejected
     if (!table.has("kind")) {
       table.problem("kind", "is missing; give " + quoted(names_of(rows)));
-      table.excuse();
+      table.suppress_unread_keys();
     }
     for (NamedChange const& row : rows)
       if (kind == row.name) changes.push_back(row.read(table, preparation));
@@ -97,7 +97,7 @@ HostFrames prepare_frames(FramePair const& frames, FramePreparation const& prepa
   return {std::move(prepared.reference), std::move(prepared.flow)};
 }
 
-double known_part(FramePair const& frames) {
+double valid_pixel_fraction(FramePair const& frames) {
   Image<double> const& reference = frames.reference();
   auto const known = std::count_if(reference.begin(), reference.end(), [](double level) { return level == level; });
   return reference.empty() ? 0.0 : static_cast<double>(known) / static_cast<double>(reference.size());

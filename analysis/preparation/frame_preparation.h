@@ -39,6 +39,6 @@ FramePreparation read_frame_preparation(SetupTable& correlate);
 HostFrames prepare_frames(FramePair const& frames, FramePreparation const& preparation);
 
 /// Returns the fraction of pixels of the first frame (`reference`) that are not NaN [1].
-double known_part(FramePair const& frames);
+double valid_pixel_fraction(FramePair const& frames);
 
 }  // namespace gladstone

@@ -8,7 +8,7 @@ namespace gladstone {
 
 /// Returns a library's matrix of doubles, such as cv::Mat1d, as a view on an image; writing to it changes the image.
 template <class Matrix>
-Matrix view_of(Image<double>& picture) {
+Matrix matrix_view(Image<double>& picture) {
   return Matrix(picture.rows(), picture.columns(), picture.data());
 }
 
@@ -16,9 +16,9 @@ Matrix view_of(Image<double>& picture) {
 template <class Matrix, class Change>
 void for_both(PreparedFrames& frames, Change const& change) {
   if (std::all_of(frames.known.begin(), frames.known.end(), [](double known) { return known == 0.0; })) return;
-  Matrix const known = view_of<Matrix>(frames.known);
+  Matrix const known = matrix_view<Matrix>(frames.known);
   for (Image<double>* picture : {&frames.reference, &frames.flow}) {
-    Matrix levels = view_of<Matrix>(*picture);
+    Matrix levels = matrix_view<Matrix>(*picture);
     change(levels, known);
   }
 }

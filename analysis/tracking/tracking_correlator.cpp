@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "analysis/correlation/correlation_methods.h"
-#include "analysis/correlation/pair_verdict.h"
+#include "analysis/correlation/pair_assessment.h"
 #include "render/base/contracts.h"
 #include "render/base/not_a_number.h"
 
@@ -58,7 +58,7 @@ class TrackingCorrelator final : public Correlator {
 
   DisplacementField correlate_pair(FramePair const& frames) const override {
     DisplacementField predictor = predictor_->correlate_pair(frames);
-    judge_pair(predictor, frames, *predictor_, predictor_settings_);
+    assess_pair(predictor, frames, *predictor_, predictor_settings_);
     DisplacementField const dots = track_dots(frames.reference(), frames.flow(), certain_vectors(predictor), tracking_);
     DisplacementField field = on_grid_ ? on_grid_of(predictor, dots) : dots;
     field.verdict = predictor.verdict;

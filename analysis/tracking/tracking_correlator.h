@@ -10,7 +10,8 @@ namespace gladstone::tracking {
 /// Creates a correlator whose vectors are those of tracked dots.
 ///
 /// - Prediction: the standard cross-correlation with the given settings; its ambiguous vectors do not count.
-/// - Decorrelation test: that of the prediction (judge_pair()). If its frames do not correlate, all vectors are invalid
+/// - Decorrelation test: that of the prediction (assess_pair()). If its frames do not correlate, all vectors are
+/// invalid
 ///   with reason `uncorrelated`.
 /// - Vectors: settings.tracking.output "grid" interpolates them to the grid of the last pass (interpolate_vectors());
 ///   windows that the correlation reports as masked remain masked. "scattered" returns those of track_dots().

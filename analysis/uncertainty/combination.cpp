@@ -13,8 +13,8 @@ namespace gladstone {
 namespace {
 
 /// Returns the negative log-likelihood sum ln sigma + e^2/(2 sigma^2), and optionally its derivatives.
-double unlikelihood(std::span<UncertaintySample const> samples, Eigen::VectorXd const& c, Eigen::VectorXd* gradient,
-                    Eigen::MatrixXd* curvature) {
+double negative_log_likelihood(std::span<UncertaintySample const> samples, Eigen::VectorXd const& c,
+                               Eigen::VectorXd* gradient, Eigen::MatrixXd* curvature) {
   double sum = 0.0;
   Eigen::VectorXd x(c.size());
   if (gradient) gradient->setZero(c.size());
@@ -87,10 +87,11 @@ UncertaintyCombination fit_combination(std::span<UncertaintySample const> sample
   c(0) = 0.5 * std::log(squares / static_cast<double>(samples.size()));
   Eigen::MatrixXd curvature;
   for (int step = 0; step < 100; ++step) {
-    double const before = unlikelihood(samples, c, &gradient, &curvature);
+    double const before = negative_log_likelihood(samples, c, &gradient, &curvature);
     Eigen::VectorXd const direction = -curvature.ldlt().solve(gradient);
     double length = 1.0;
-    while (length > 1e-10 && !(unlikelihood(samples, c + length * direction, nullptr, nullptr) < before)) length *= 0.5;
+    while (length > 1e-10 && !(negative_log_likelihood(samples, c + length * direction, nullptr, nullptr) < before))
+      length *= 0.5;
     if (!(length > 1e-10)) break;
     c += length * direction;
     if ((length * direction).norm() < 1e-9) break;

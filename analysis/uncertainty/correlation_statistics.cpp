@@ -51,7 +51,7 @@ StatisticsSums sums_of_window(LanePixels const& pixels, int side, std::vector<fl
   window.clear();
   WindowSums<double> const light = window.sum_pixels(pixels);
   if (!(light.weight > 0.0)) return {};
-  WindowLevels const means = means_of(light), levels = equally_bright(means, window.sum_squares(pixels, means));
+  WindowLevels const means = weighted_means(light), levels = equally_bright(means, window.sum_squares(pixels, means));
   StatisticsSums sums;
   for (int n = 0; n < window.steps(side); ++n) window.step(n, pixels, levels, sums);
   return sums;

@@ -21,7 +21,7 @@ std::vector<Vec2d> image_matching(UncertaintyInput const& input) {
   visit_matched_windows(input, [&](std::size_t i, MatchedWindow const& window) {
     thread_local std::vector<ParticleImagePair> pairs;
     find_particle_pairs(window, pairs);
-    leave_out_mismatches(pairs);
+    remove_mismatched_pairs(pairs);
     number[i] = effective_number(pairs);
     if (!(number[i] > 0.0)) return;
     double weights = 0.0;

@@ -85,7 +85,7 @@ void find_particle_pairs(MatchedWindow const& w, std::vector<ParticleImagePair>&
     }
 }
 
-void leave_out_mismatches(std::vector<ParticleImagePair>& pairs) {
+void remove_mismatched_pairs(std::vector<ParticleImagePair>& pairs) {
   if (pairs.size() < 3) return;
   std::vector<double> values(pairs.size());
   auto const median = [&] {

@@ -21,7 +21,7 @@ void find_particle_pairs(MatchedWindow const& window, std::vector<ParticleImageP
 /// deviations, estimated as 1.4826 times the median absolute deviation. They arise if dots overlap and the maxima in
 /// both frames belong to different dots. For normally distributed disparities, this reduces the variance by 1 % (9 % at
 /// 2.5 standard deviations).
-void leave_out_mismatches(std::vector<ParticleImagePair>& pairs);
+void remove_mismatched_pairs(std::vector<ParticleImagePair>& pairs);
 
 /// Returns the equivalent number of dots with equal weights c: (sum c)^2 / sum c^2.
 double effective_number(std::vector<ParticleImagePair> const& pairs);

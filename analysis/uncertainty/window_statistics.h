@@ -36,7 +36,7 @@ struct WindowLevels {
   float flow_gain = 1.0f;  ///< factor that gives the mean-free frame B the same weighted sum of squares as frame A
 };
 
-GLADSTONE_HD inline WindowLevels means_of(WindowSums<double> const& sums) {
+GLADSTONE_HD inline WindowLevels weighted_means(WindowSums<double> const& sums) {
   return {static_cast<float>(sums.reference / sums.weight), static_cast<float>(sums.flow / sums.weight), 1.0f};
 }
 
@@ -256,9 +256,9 @@ GLADSTONE_HD inline double displacement_variance(StatisticsSums const& sums, int
   using std::log;
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   // Divide out the decrease caused by the weights, as the correlator does.
-  double const fall_off = sums.overlap[axis] / sums.whole, beside = sums.beside[axis] / fall_off;
+  double const shift_attenuation = sums.overlap[axis] / sums.whole, beside = sums.beside[axis] / shift_attenuation;
   if (!(beside > 0.0 && sums.centre > beside)) return nan;
-  double const slope = 4.0 * beside * log(sums.centre / beside) * fall_off;
+  double const slope = 4.0 * beside * log(sums.centre / beside) * shift_attenuation;
   double const lost = sums.lost[axis] / (sums.shares[axis] * sums.shares[axis]);
   double const variance = sums.terms[axis] / ((1.0 - lost) * slope * slope);
   return variance < 0.0 ? 0.0 : (variance > largest_variance ? largest_variance : variance);

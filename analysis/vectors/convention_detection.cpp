@@ -53,7 +53,7 @@ std::vector<VectorConventions> every_choice(std::vector<VectorConventions> const
 }
 
 bool surely_better(ConventionFit const& a, ConventionFit const& b) {
-  return a.spread_px < b.spread_px && evidence_for(a, b) > 9.0;
+  return a.spread_px < b.spread_px && log_likelihood_statistic(a, b) > 9.0;
 }
 
 bool better(ConventionFit const& a, ConventionFit const& b) { return a.spread_px < b.spread_px; }
@@ -78,16 +78,16 @@ std::vector<ConventionFit> best_of_axes(std::vector<ConventionFit> const& fits) 
 Verdict judge(ConventionFit const& best) {
   // Require three standard errors, since this is the best of some sixty candidates.
   if (best.spread_px < best.signal_spread_px && best.slope > 3.0 * best.slope_error) return Verdict::fits;
-  if (!(best.signal_px >= telling_signal_px)) return Verdict::cannot_be_told;
+  if (!(best.signal_px >= min_decidable_signal_px)) return Verdict::cannot_be_told;
   bool const follows = best.slope - 2.0 * best.slope_error > 0.5 && best.slope < 2.0;
-  return follows ? Verdict::noisy : Verdict::fits_none;
+  return follows ? Verdict::noisy : Verdict::no_convention_fits;
 }
 
 /// Returns true if the difference from the best fit is insignificant, or small enough to be caused by estimator errors
 /// in a flow of similar appearance: 10 % of the rms for other axes, 5 % for another offset.
 bool fits_as_well(ConventionFit const& fit, ConventionFit const& best) {
   double const part = same_axes(fit.conventions, best.conventions) ? 0.95 : 0.9;
-  return !(part * fit.spread_px > best.spread_px) || evidence_for(best, fit) < 9.0;
+  return !(part * fit.spread_px > best.spread_px) || log_likelihood_statistic(best, fit) < 9.0;
 }
 
 /// Returns the likeliest of the conventions that fit as well as the best.
@@ -95,7 +95,7 @@ ConventionFit likeliest(std::vector<ConventionFit> const& fits, std::vector<Vect
   ConventionFit const best = *std::min_element(fits.begin(), fits.end(), better);
   return *std::min_element(fits.begin(), fits.end(), [&](ConventionFit const& a, ConventionFit const& b) {
     auto const rank = [&](ConventionFit const& fit) {
-      return fits_as_well(fit, best) ? detail::unlikelihood(fit.conventions, own)
+      return fits_as_well(fit, best) ? detail::convention_penalty(fit.conventions, own)
                                      : std::numeric_limits<double>::infinity();
     };
     return rank(a) < rank(b);
@@ -138,7 +138,7 @@ DetectedConventions detect_conventions(VectorFile const& file, Truth const& trut
   result.verdict = judge(*std::min_element(fits.begin(), fits.end(), better));
   result.tried = best_of_axes(fits);
   result.best = likeliest(fits, own);
-  if (result.verdict == Verdict::fits_none && !detail::is_zero(few) &&
+  if (result.verdict == Verdict::no_convention_fits && !detail::is_zero(few) &&
       is_too_fine_for_windows(apply_conventions(file.field, chosen.conventions, image_rows), truth))
     result.verdict = Verdict::cannot_be_told;
   if (result.verdict == Verdict::cannot_be_told) chosen = fits.front();
@@ -149,20 +149,22 @@ DetectedConventions detect_conventions(VectorFile const& file, Truth const& trut
   double const clearly = same_axes(result.best.conventions, chosen.conventions) ? 0.95 : 0.9;
   bool const is_own = std::find(own.begin(), own.end(), result.best.conventions) != own.end();
   if (reads && !is_own && result.best.spread_px < clearly * chosen.spread_px &&
-      evidence_for(result.best, chosen) > 16.0) {
-    result.mistake = {difference_of(result.best.conventions, chosen.conventions), describe(result.best.conventions),
-                      result.best, chosen};
+      log_likelihood_statistic(result.best, chosen) > 16.0) {
+    result.mistake = {describe_difference(result.best.conventions, chosen.conventions),
+                      describe(result.best.conventions), result.best, chosen};
     for (ConventionFit const& other : result.tried) {  // other mistakes that are indistinguishable in this displacement
       if (same_axes(other.conventions, result.best.conventions) || !fits_as_well(other, result.best)) continue;
-      if (detail::unlikelihood(other.conventions, own) > detail::unlikelihood(result.best.conventions, own) + 0.5)
+      if (detail::convention_penalty(other.conventions, own) >
+          detail::convention_penalty(result.best.conventions, own) + 0.5)
         continue;
-      result.mistake.text += ", or " + difference_of(other.conventions, chosen.conventions);
+      result.mistake.text += ", or " + describe_difference(other.conventions, chosen.conventions);
     }
   }
   if (result.verdict != Verdict::cannot_be_told) {
-    LikelyMistake other = detail::find_scale_or_shift({few, truth, image_rows, most, chosen}, fits, own,
-                                                      result.verdict == Verdict::fits_none);
-    if (other.found() && (!result.mistake.found() || other.mended.spread_px < 0.9 * result.mistake.mended.spread_px))
+    ProbableMistake other = detail::find_scale_or_shift({few, truth, image_rows, most, chosen}, fits, own,
+                                                        result.verdict == Verdict::no_convention_fits);
+    if (other.found() &&
+        (!result.mistake.found() || other.corrected_fit.spread_px < 0.9 * result.mistake.corrected_fit.spread_px))
       result.mistake = std::move(other);
   }
   if (result.mistake.found()) result.verdict = Verdict::mistaken;
@@ -177,8 +179,8 @@ DetectedConventions detect_conventions(VectorFile const& file, Truth const& trut
   VectorConventions without = chosen.conventions;
   without.offset_px = 0.0;
   result.without_offset = fit_within(few, without, truth, image_rows, most);
-  result.report =
-      result.verdict == Verdict::fits_none ? detail::misfit_report(file, result) : detail::found_report(file, result);
+  result.report = result.verdict == Verdict::no_convention_fits ? detail::misfit_report(file, result)
+                                                                : detail::found_report(file, result);
   return result;
 }
 

@@ -37,10 +37,10 @@ struct VectorCorrection {
 };
 
 /// Probable error in foreign vectors: an interpretation other than the format's own fits the truth clearly better.
-struct LikelyMistake {
+struct ProbableMistake {
   std::string text;               ///< "v points up", "displacements are 10 times the truth"; empty: no mistake found
   std::string conventions;        ///< words for --conventions that correct the mistake; empty: no words can
-  ConventionFit mended{};         ///< fit after correction, in the interpretation without the mistake
+  ConventionFit corrected_fit{};  ///< fit after correction, in the interpretation without the mistake
   ConventionFit as_read{};        ///< fit without correction
   VectorCorrection correction{};  ///< numbers without the mistake
 
@@ -52,15 +52,15 @@ struct LikelyMistake {
 /// Result of detect_conventions().
 struct DetectedConventions {
   enum class Verdict {
-    fits,            ///< significantly closer to the truth than zero vectors
-    noisy,           ///< not closer than zero vectors, but correlated with the truth: right axes, large errors
-    mistaken,        ///< an interpretation, scale or shift that is not the format's own fits clearly better
-    cannot_be_told,  ///< neither fits nor noisy, and the truth is too small or too fine to decide
-    fits_none,       ///< neither fits nor noisy, although the truth is large and smooth enough to decide
+    fits,                ///< significantly closer to the truth than zero vectors
+    noisy,               ///< not closer than zero vectors, but correlated with the truth: right axes, large errors
+    mistaken,            ///< an interpretation, scale or shift that is not the format's own fits clearly better
+    cannot_be_told,      ///< neither fits nor noisy, and the truth is too small or too fine to decide
+    no_convention_fits,  ///< neither fits nor noisy, although the truth is large and smooth enough to decide
   };
   VectorConventions conventions;  ///< conventions to use: of the format's own, those that fit best
   Verdict verdict = Verdict::fits;
-  LikelyMistake mistake;
+  ProbableMistake mistake;
   ConventionFit fit;             ///< fit of `conventions`
   ConventionFit best;            ///< best fit of all interpretations; of equally good ones, the likeliest
   ConventionFit without_offset;  ///< fit of `conventions` with offset 0
@@ -68,13 +68,13 @@ struct DetectedConventions {
   std::vector<ConventionFit> tried;
   /// Another choice of axes or sign fits as well; `conventions` are the format's own.
   bool ambiguous = false;
-  /// One line for the log; for fits_none, the tried interpretations and probable causes.
+  /// One line for the log; for no_convention_fits, the tried interpretations and probable causes.
   std::string report;
 };
 
 /// Minimum rms of the truth that allows conventions to be distinguished: about the error of correlation on good images
 /// [px].
-inline constexpr double telling_signal_px = 0.01;
+inline constexpr double min_decidable_signal_px = 0.01;
 
 /// Returns true if the truth varies so much within windows of four grid spacings (16 to 64 px) that vectors of such
 /// windows follow less than a fifth of it.
@@ -96,12 +96,12 @@ DetectedConventions detect_conventions(VectorFile const& file, std::function<Vec
 
 /// Describes the difference between an interpretation and the format's own as a mistake: "v points up", "the frames
 /// were exchanged".
-std::string difference_of(VectorConventions const& reading, VectorConventions const& own);
+std::string describe_difference(VectorConventions const& reading, VectorConventions const& own);
 
 /// Returns a penalty for the differences between an interpretation and the format's own; the likeliest interpretation
 /// has the smallest. Axes and signs count 1 each, exchanged columns 1.2, the offset 0.3, the mirror 0.2; y and v that
 /// are both reversed count 1.1 together.
-double unlikelihood(VectorConventions const& reading, VectorConventions const& own);
+double convention_penalty(VectorConventions const& reading, VectorConventions const& own);
 
 /// Returns "x - 0.5 px fits better: rms 0.0021 instead of 0.0050 px", or that it does not; empty for offset 0.
 std::string offset_report(DetectedConventions const& detected);
@@ -109,6 +109,6 @@ std::string offset_report(DetectedConventions const& detected);
 /// Returns twice the log-likelihood ratio of fit a to fit b, for errors with the given spreads: 9 corresponds to three
 /// standard deviations. At an overlap of one half, each vector shares its image with three others, so a quarter of the
 /// components is taken as independent. Spreads below 1e-4 px count as equal.
-double evidence_for(ConventionFit const& a, ConventionFit const& b);
+double log_likelihood_statistic(ConventionFit const& a, ConventionFit const& b);
 
 }  // namespace gladstone

@@ -104,22 +104,22 @@ double largest_difference(DisplacementField const& field, VectorConventions cons
   return std::isfinite(signal) ? std::max(1.0, 3.0 * signal) : 1.0;
 }
 
-double unlikelihood(VectorConventions const& reading, std::vector<VectorConventions> const& own) {
+double convention_penalty(VectorConventions const& reading, std::vector<VectorConventions> const& own) {
   double least = std::numeric_limits<double>::infinity();
-  for (VectorConventions const& one : own) least = std::min(least, unlikelihood(reading, one));
+  for (VectorConventions const& one : own) least = std::min(least, convention_penalty(reading, one));
   return least;
 }
 
 }  // namespace detail
 
-double unlikelihood(VectorConventions const& reading, VectorConventions const& own) {
+double convention_penalty(VectorConventions const& reading, VectorConventions const& own) {
   bool const y = reading.y_up != own.y_up, v = reading.v_up != own.v_up;
   return (y && v ? 1.1 : (y ? 1.0 : 0.0) + (v ? 1.0 : 0.0)) + (reading.swapped != own.swapped ? 1.0 : 0.0) +
          (reading.exchange != own.exchange ? 1.2 : 0.0) + (reading.offset_px != own.offset_px ? 0.3 : 0.0) +
          (reading.y_up && own.y_up && reading.mirror != own.mirror ? 0.2 : 0.0);
 }
 
-double evidence_for(ConventionFit const& a, ConventionFit const& b) {
+double log_likelihood_statistic(ConventionFit const& a, ConventionFit const& b) {
   constexpr double alike_px = 1e-4;
   double const independent = 0.25 * static_cast<double>(std::min(a.components, b.components));
   return independent * 2.0 * std::log(std::max(b.spread_px, alike_px) / std::max(a.spread_px, alike_px));

@@ -34,7 +34,7 @@ ConventionFit fit_within(DisplacementField const& field, VectorConventions const
 double largest_difference(DisplacementField const& field, VectorConventions const& conventions, Truth const& truth,
                           int image_rows);
 
-/// Returns the smallest unlikelihood relative to any of the format's own conventions.
-double unlikelihood(VectorConventions const& reading, std::vector<VectorConventions> const& own);
+/// Returns the smallest convention_penalty relative to any of the format's own conventions.
+double convention_penalty(VectorConventions const& reading, std::vector<VectorConventions> const& own);
 
 }  // namespace gladstone::detail

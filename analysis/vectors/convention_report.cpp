@@ -58,14 +58,14 @@ std::string found_report(VectorFile const& file, DetectedConventions const& dete
   if (std::string const offset = offset_report(detected); !offset.empty()) report += "; " + offset;
   if (detected.verdict == Verdict::mistaken) {
     report += "; likely mistake: " + detected.mistake.warning();
-  } else if (detected.verdict == Verdict::cannot_be_told && fit.signal_px >= telling_signal_px) {
+  } else if (detected.verdict == Verdict::cannot_be_told && fit.signal_px >= min_decidable_signal_px) {
     report +=
         "; this displacement is too fine for windows of four grid spacings, so that vectors need not follow it: the "
         "conventions cannot be verified, and the format's own are used";
   } else if (detected.verdict == Verdict::cannot_be_told) {
     report += fmt::format(
         "; the displacement is below {} px, too small to verify the conventions, and the format's own are used",
-        telling_signal_px);
+        min_decidable_signal_px);
   } else if (detected.verdict == Verdict::noisy) {
     report += fmt::format(
         "; they differ from the truth by more than its rms, but follow {:.0f} +- {:.0f} % of it, like noisy vectors",
@@ -84,7 +84,7 @@ std::string found_report(VectorFile const& file, DetectedConventions const& dete
 
 }  // namespace detail
 
-std::string difference_of(VectorConventions const& reading, VectorConventions const& own) {
+std::string describe_difference(VectorConventions const& reading, VectorConventions const& own) {
   std::vector<std::string> parts;
   bool const y = reading.y_up != own.y_up, v = reading.v_up != own.v_up, frames = reading.swapped != own.swapped;
   auto const direction = [](bool up) { return up ? "up" : "down"; };
@@ -119,12 +119,12 @@ std::string difference_of(VectorConventions const& reading, VectorConventions co
   return text;
 }
 
-std::string LikelyMistake::warning() const {
+std::string ProbableMistake::warning() const {
   std::string const remedy =
       conventions.empty() ? "correct the file" : "correct the file, or accept it with --conventions " + conventions;
   return fmt::format(
       "{} (without this the rms difference from the truth would be {:.3g} px, as read it is {:.3g} px); {}", text,
-      mended.rms_px, as_read.rms_px, remedy);
+      corrected_fit.rms_px, as_read.rms_px, remedy);
 }
 
 std::string offset_report(DetectedConventions const& detected) {

@@ -27,7 +27,7 @@ struct Sample {
 
 /// A possible mistake, and the evidence for it from all files.
 struct Candidate {
-  LikelyMistake mistake;
+  ProbableMistake mistake;
   double sum = 0.0;
   std::size_t decisive = 0;  ///< index of the file with the strongest evidence
   double strongest = 0.0;
@@ -36,19 +36,19 @@ struct Candidate {
   void add(ConventionFit const& undone, ConventionFit const& as_read, std::size_t file) {
     ++files;
     followed += undone.spread_px < 0.5 * undone.signal_spread_px ? 1 : 0;
-    double const evidence = evidence_for(undone, as_read);
+    double const evidence = log_likelihood_statistic(undone, as_read);
     if (std::isfinite(evidence)) sum += evidence;
     if (!(evidence > strongest)) return;
     strongest = evidence;
     decisive = file;
-    mistake.mended = undone;
+    mistake.corrected_fit = undone;
     mistake.as_read = as_read;
   }
   bool corrects() const { return !(mistake.correction == VectorCorrection{}); }
   bool is_found() const {
     if (2 * followed <= files) return false;  // files with different mistakes, for example
     return sum > (corrects() ? 25.0 : 16.0) &&
-           mistake.mended.spread_px < (corrects() ? 0.5 : 0.9) * mistake.as_read.spread_px;
+           mistake.corrected_fit.spread_px < (corrects() ? 0.5 : 0.9) * mistake.as_read.spread_px;
   }
 };
 
@@ -67,7 +67,7 @@ VectorConventions choose_own(std::vector<Sample>& samples, std::vector<VectorCon
     std::vector<ConventionFit> fits;
     double sum = 0.0;
     for (Sample const& sample : samples) {
-      double const evidence = evidence_for(fits.emplace_back(sample.fit(own[k])), sample.as_read);
+      double const evidence = log_likelihood_statistic(fits.emplace_back(sample.fit(own[k])), sample.as_read);
       if (std::isfinite(evidence)) sum += evidence;
     }
     if (!(sum > most)) continue;
@@ -87,16 +87,16 @@ std::vector<Candidate> other_axes(std::vector<DetectedConventions> const& detect
       auto const same = [&fit](VectorConventions const& reading) { return same_axes(reading, fit.conventions); };
       if (std::any_of(own.begin(), own.end(), same)) continue;
       auto known = std::find_if(all.begin(), all.end(),
-                                [&](Candidate const& one) { return same(one.mistake.mended.conventions); });
+                                [&](Candidate const& one) { return same(one.mistake.corrected_fit.conventions); });
       if (known == all.end()) {
         known = all.insert(all.end(), Candidate{});
-        known->mistake.mended.conventions = fit.conventions;
-        known->mistake.text = difference_of(fit.conventions, chosen);
+        known->mistake.corrected_fit.conventions = fit.conventions;
+        known->mistake.text = describe_difference(fit.conventions, chosen);
       }
       known->add(fit, samples[i].as_read, i);
     }
   }
-  for (Candidate& one : all) one.mistake.conventions = describe(one.mistake.mended.conventions);
+  for (Candidate& one : all) one.mistake.conventions = describe(one.mistake.corrected_fit.conventions);
   return all;
 }
 
@@ -105,27 +105,29 @@ std::vector<Candidate> corrections(std::vector<DetectedConventions> const& detec
                                    VectorConventions const& chosen) {
   std::vector<Candidate> all;
   for (DetectedConventions const& one : detected) {
-    LikelyMistake const& mistake = one.mistake;
-    bool const only_axes = mistake.correction == VectorCorrection{} && !same_axes(mistake.mended.conventions, chosen);
+    ProbableMistake const& mistake = one.mistake;
+    bool const only_axes =
+        mistake.correction == VectorCorrection{} && !same_axes(mistake.corrected_fit.conventions, chosen);
     if (!mistake.found() || only_axes) continue;
     Candidate candidate;
     candidate.mistake = mistake;
     for (std::size_t i = 0; i < samples.size(); ++i)
-      candidate.add(samples[i].fit(mistake.mended.conventions, mistake.correction), samples[i].as_read, i);
+      candidate.add(samples[i].fit(mistake.corrected_fit.conventions, mistake.correction), samples[i].as_read, i);
     all.push_back(std::move(candidate));
   }
   return all;
 }
 
-double unlikelihood_of(Candidate const& candidate, std::vector<VectorConventions> const& own) {
-  return (candidate.corrects() ? 1.5 : 0.0) + detail::unlikelihood(candidate.mistake.mended.conventions, own);
+double candidate_penalty(Candidate const& candidate, std::vector<VectorConventions> const& own) {
+  return (candidate.corrects() ? 1.5 : 0.0) +
+         detail::convention_penalty(candidate.mistake.corrected_fit.conventions, own);
 }
 
 /// Returns true if two candidates state the same mistake: the same axes and signs without a correction, or both with
 /// one.
 bool alike(Candidate const& a, Candidate const& b) {
   return a.mistake.correction == b.mistake.correction
-             ? same_axes(a.mistake.mended.conventions, b.mistake.mended.conventions)
+             ? same_axes(a.mistake.corrected_fit.conventions, b.mistake.corrected_fit.conventions)
              : a.corrects() && b.corrects();
 }
 
@@ -138,8 +140,8 @@ std::size_t most_telling_file(std::vector<DetectedConventions> const& detected, 
     auto const rival = std::find_if(detected[i].tried.begin(), detected[i].tried.end(), [&](ConventionFit const& fit) {
       return !same_axes(fit.conventions, as_read.conventions);
     });
-    if (rival == detected[i].tried.end() || !(evidence_for(as_read, *rival) > strongest)) continue;
-    strongest = evidence_for(as_read, *rival);
+    if (rival == detected[i].tried.end() || !(log_likelihood_statistic(as_read, *rival) > strongest)) continue;
+    strongest = log_likelihood_statistic(as_read, *rival);
     telling = i;
   }
   return telling;
@@ -148,8 +150,8 @@ std::size_t most_telling_file(std::vector<DetectedConventions> const& detected, 
 /// Returns true if a file has an individual mistake, see CommonConventions::mistaken.
 bool is_mistaken(DetectedConventions const& detected) {
   if (detected.mistake.found())
-    return detected.mistake.mended.spread_px < 0.5 * detected.mistake.mended.signal_spread_px;
-  return detected.verdict == Verdict::fits_none;
+    return detected.mistake.corrected_fit.spread_px < 0.5 * detected.mistake.corrected_fit.signal_spread_px;
+  return detected.verdict == Verdict::no_convention_fits;
 }
 
 }  // namespace
@@ -184,13 +186,13 @@ CommonConventions detect_common_conventions(std::vector<VectorsWithTruth> const&
   // Estimator errors in a flow of similar appearance can account for a tenth of the evidence.
   double const most = best->sum, close = std::max(9.0, 0.1 * most);
   for (auto one = all.begin(); one != all.end(); ++one) {
-    if (most - one->sum <= close && unlikelihood_of(*one, own) < unlikelihood_of(*best, own)) best = one;
+    if (most - one->sum <= close && candidate_penalty(*one, own) < candidate_penalty(*best, own)) best = one;
   }
   result.mistake = best->mistake;
   result.decisive = best->decisive;
   result.fit = samples[result.decisive].as_read;
   for (Candidate const& other : all) {
-    bool const as_likely = unlikelihood_of(other, own) < unlikelihood_of(*best, own) + 0.5;
+    bool const as_likely = candidate_penalty(other, own) < candidate_penalty(*best, own) + 0.5;
     if (alike(other, *best) || most - other.sum > close || !as_likely) continue;
     result.mistake.text += ", or " + other.mistake.text;
     result.mistake.conventions.clear();

@@ -21,7 +21,7 @@ struct CommonConventions {
   std::vector<DetectedConventions> detected;  ///< results for the single files, in their order
   /// Mistake that all files have in common; if several are indistinguishable, the text names all of them and
   /// `conventions` is empty.
-  LikelyMistake mistake;
+  ProbableMistake mistake;
   /// Indices of files with an individual mistake: either its correction makes the vectors follow the truth, or they do
   /// not follow the truth at all, although vectors from windows of 64 px would.
   std::vector<std::size_t> mistaken;
@@ -34,7 +34,8 @@ struct CommonConventions {
 /// Determines the conventions that several files of one program have in common, and detects a mistake that they have in
 /// common. The evidence of all files is added, so that the files whose displacement distinguishes the interpretations
 /// decide: a uniform displacement is evidence neither for nor against a shift of the positions.
-/// - The first of the format's own conventions is used unless another has at least 9 more evidence, see evidence_for().
+/// - The first of the format's own conventions is used unless another has at least 9 more evidence, see
+/// log_likelihood_statistic().
 /// - A mistake is reported above an evidence of 16 (other axes or signs) or 25 (factor, shift, offset), and if it
 ///   reduces the rms difference in the decisive file by 10 or 50 %. After the correction of a factor, shift or offset,
 ///   most files must follow the truth: rms difference below half the truth's rms.

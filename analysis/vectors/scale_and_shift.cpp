@@ -46,12 +46,13 @@ double component_signal(DisplacementField const& ours, Truth const& truth, doubl
 }
 
 /// Searches for displacements that are a multiple of the true ones.
-LikelyMistake find_factor(Search const& search) {
+ProbableMistake find_factor(Search const& search) {
   DisplacementField const ours = apply_conventions(search.few, search.own.conventions, search.image_rows);
   Vec2d const share = share_in_windows(ours, search.truth, 64.0);
   constexpr double least_followed = 0.05;  // minimum slope of windows that still measure a displacement
   auto const determines = [&](double Vec2d::*component) {
-    return component_signal(ours, search.truth, component) > std::max(telling_signal_px, 0.2 * search.own.signal_px);
+    return component_signal(ours, search.truth, component) >
+           std::max(min_decidable_signal_px, 0.2 * search.own.signal_px);
   };
   Vec2d factor{1.0, 1.0};
   for (auto const component : {&Vec2d::x, &Vec2d::y}) {
@@ -67,8 +68,8 @@ LikelyMistake find_factor(Search const& search) {
   // Apply the factors to the columns of the file, which may be exchanged.
   VectorCorrection correction;
   correction.factor = search.own.conventions.exchanges_components() ? Vec2d{factor.y, factor.x} : factor;
-  ConventionFit const mended = search.fit(search.few, correction);
-  if (!search.is_mended(mended)) return {};
+  ConventionFit const corrected_fit = search.fit(search.few, correction);
+  if (!search.is_improved(corrected_fit)) return {};
   std::string text;
   if (both)
     text = fmt::format("displacements are {:.3g} times the truth, as if in another unit than px", factor.x);
@@ -80,11 +81,11 @@ LikelyMistake find_factor(Search const& search) {
     text = fmt::format("u is {:.3g} times and v {:.3g} times the truth", factor.x, factor.y);
   VectorConventions scaled = search.own.conventions;
   scaled.px_per_frame = std::stod(fmt::format("{:.3g}", scaled.px_per_frame.value_or(1.0) * factor.x));
-  return {text, both ? describe(scaled) : std::string(), mended, search.own, correction};
+  return {text, both ? describe(scaled) : std::string(), corrected_fit, search.own, correction};
 }
 
 /// Searches for a constant that all displacements have in addition.
-LikelyMistake find_offset(Search const& search) {
+ProbableMistake find_offset(Search const& search) {
   if (is_zero(search.few)) return {};  // in a uniform displacement an offset would explain it
   DisplacementField const ours = apply_conventions(search.few, search.own.conventions, search.image_rows);
   Vec2d offset{};
@@ -110,9 +111,9 @@ LikelyMistake find_offset(Search const& search) {
   if (c.v_up) offset.y = -offset.y;
   VectorCorrection correction;
   correction.offset_px = c.exchanges_components() ? Vec2d{offset.y, offset.x} : offset;
-  ConventionFit const mended = search.fit(search.few, correction);
-  if (!search.is_mended(mended)) return {};
-  return {text, {}, mended, search.own, correction};
+  ConventionFit const corrected_fit = search.fit(search.few, correction);
+  if (!search.is_improved(corrected_fit)) return {};
+  return {text, {}, corrected_fit, search.own, correction};
 }
 
 VectorCorrection shift_by(Vec2d shift_px) {
@@ -131,7 +132,8 @@ struct FittedShift {
 };
 
 /// Refines a shift by least squares: Newton's method on the mean square difference from the truth, whose derivatives
-/// are finite differences. The standard errors assume that neighbouring windows overlap by half, as evidence_for().
+/// are finite differences. The standard errors assume that neighbouring windows overlap by half, as
+/// log_likelihood_statistic().
 FittedShift refine_shift(Search const& search, FittedShift fitted) {
   constexpr double h = 0.5, farthest = 1.0;  // step of the differences, and distance from the first estimate [px]
   double components = 1.0;
@@ -190,7 +192,7 @@ std::string describe_shift(FittedShift const& fitted) {
 
 /// Searches for positions with another origin: the shift that fits best, on a lattice of 4 px up to 64 px, refined by
 /// least squares.
-LikelyMistake find_shift(Search const& search) {
+ProbableMistake find_shift(Search const& search) {
   constexpr double farthest = 64.0;
   DisplacementField const fewer = sample(search.few, 400);
   auto const fit = [&](Vec2d shift) { return search.fit(fewer, shift_by(shift)).spread_px; };
@@ -213,18 +215,19 @@ LikelyMistake find_shift(Search const& search) {
   for (auto const component : {&Vec2d::x, &Vec2d::y}) {
     Vec2d other = best;
     other.*component = 0.0;
-    if (evidence_for(search.fit(fewer, shift_by(best)), search.fit(fewer, shift_by(other))) < 9.0) best = other;
+    if (log_likelihood_statistic(search.fit(fewer, shift_by(best)), search.fit(fewer, shift_by(other))) < 9.0)
+      best = other;
   }
   constexpr double counting = 2.0;  // conventions of pixel counting differ by less
   if (!(std::max(std::abs(best.x), std::abs(best.y)) > counting)) return {};
   FittedShift const fitted = refine_shift(search, {best, {finest, finest}});
-  ConventionFit const mended = search.fit(search.few, shift_by(fitted.shift_px));
-  if (!search.is_mended(mended)) return {};
-  return {describe_shift(fitted), {}, mended, search.own, shift_by(fitted.shift_px)};
+  ConventionFit const corrected_fit = search.fit(search.few, shift_by(fitted.shift_px));
+  if (!search.is_improved(corrected_fit)) return {};
+  return {describe_shift(fitted), {}, corrected_fit, search.own, shift_by(fitted.shift_px)};
 }
 
 /// Searches for positions that are a multiple of the true ones.
-LikelyMistake find_place_factor(Search const& search) {
+ProbableMistake find_place_factor(Search const& search) {
   auto const scaled = [](double factor) {
     VectorCorrection correction;
     correction.place_factor = factor;
@@ -243,12 +246,12 @@ LikelyMistake find_place_factor(Search const& search) {
   look_around(1.0, 1.4, 0.01);  // from a quarter to four times
   look_around(best, 0.01, 0.001);
   if (std::abs(best - 1.0) < 0.01) return {};
-  ConventionFit const mended = search.fit(search.few, scaled(best));
-  if (!search.is_mended(mended)) return {};
+  ConventionFit const corrected_fit = search.fit(search.few, scaled(best));
+  if (!search.is_improved(corrected_fit)) return {};
   VectorConventions words = search.own.conventions;
   words.px = std::stod(fmt::format("{:.3g}", words.px.value_or(1.0) * best));
   return {fmt::format("positions are {:.3g} times the true ones, as if in another unit than px", best), describe(words),
-          mended, search.own, scaled(best)};
+          corrected_fit, search.own, scaled(best)};
 }
 
 }  // namespace
@@ -292,11 +295,11 @@ DisplacementField corrected(DisplacementField field, VectorCorrection const& cor
   return field;
 }
 
-LikelyMistake find_scale_or_shift(Search search, std::vector<ConventionFit> const& fits,
-                                  std::vector<VectorConventions> const& own, bool any_reading) {
-  LikelyMistake best;
-  auto const consider = [&best](LikelyMistake found) {
-    if (found.found() && (!best.found() || found.mended.spread_px < 0.9 * best.mended.spread_px))
+ProbableMistake find_scale_or_shift(Search search, std::vector<ConventionFit> const& fits,
+                                    std::vector<VectorConventions> const& own, bool any_reading) {
+  ProbableMistake best;
+  auto const consider = [&best](ProbableMistake found) {
+    if (found.found() && (!best.found() || found.corrected_fit.spread_px < 0.9 * best.corrected_fit.spread_px))
       best = std::move(found);
   };
   consider(find_factor(search));
@@ -313,11 +316,11 @@ LikelyMistake find_scale_or_shift(Search search, std::vector<ConventionFit> cons
   for (ConventionFit const& fit : fits) {
     if (fit.conventions.offset_px != first.offset_px) continue;
     search.own = fit;
-    LikelyMistake found = find_factor(search);
-    double const unlikely = unlikelihood(fit.conventions, own);
+    ProbableMistake found = find_factor(search);
+    double const unlikely = convention_penalty(fit.conventions, own);
     if (!found.found() || !(unlikely < least_unlikely)) continue;
     least_unlikely = unlikely;
-    found.text = difference_of(fit.conventions, first) + " and " + found.text;
+    found.text = describe_difference(fit.conventions, first) + " and " + found.text;
     found.as_read = as_read;
     best = std::move(found);
   }

@@ -30,16 +30,16 @@ struct Search {
   }
   /// Returns true if a correction halves the spread and the improvement is significant at five standard deviations.
   /// Vectors with random factors are on average too long, but no common factor halves their error.
-  bool is_mended(ConventionFit const& other) const {
+  bool is_improved(ConventionFit const& other) const {
     return other.spread_px < 0.5 * own.spread_px && other.spread_px < 0.7 * other.signal_spread_px &&
-           evidence_for(other, own) > 25.0;
+           log_likelihood_statistic(other, own) > 25.0;
   }
 };
 
 /// Searches for a factor or offset of the displacements and a shift or factor of the positions with the conventions in
 /// use, and returns the one that fits best. If `any_reading` and none fits, also searches for a factor with all other
 /// conventions.
-LikelyMistake find_scale_or_shift(Search search, std::vector<ConventionFit> const& fits,
-                                  std::vector<VectorConventions> const& own, bool any_reading);
+ProbableMistake find_scale_or_shift(Search search, std::vector<ConventionFit> const& fits,
+                                    std::vector<VectorConventions> const& own, bool any_reading);
 
 }  // namespace gladstone::detail

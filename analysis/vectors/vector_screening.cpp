@@ -62,7 +62,7 @@ RepeatedPlaces find_repeated_places(DisplacementField const& screened) {
 
 }  // namespace
 
-std::string LeftOutVectors::text() const {
+std::string RejectedVectors::text() const {
   std::string list;
   auto const add = [&list](std::size_t count, std::string const& reason) {
     if (count > 0) list += fmt::format("{}{} {}", list.empty() ? "" : ", ", count, reason);
@@ -74,8 +74,8 @@ std::string LeftOutVectors::text() const {
   return list;
 }
 
-LeftOutVectors screen_vectors(DisplacementField& field, double offset_px, int image_columns, int image_rows) {
-  LeftOutVectors left_out;
+RejectedVectors screen_vectors(DisplacementField& field, double offset_px, int image_columns, int image_rows) {
+  RejectedVectors left_out;
   field.status.resize(field.size(), VectorStatus::valid);
   std::vector<std::size_t> kept;
   Extent extent;
@@ -108,8 +108,8 @@ LeftOutVectors screen_vectors(DisplacementField& field, double offset_px, int im
   return left_out;
 }
 
-std::string refusal_of_places(DisplacementField const& screened, LeftOutVectors const& left_out, int image_columns,
-                              int image_rows) {
+std::string reason_to_reject_positions(DisplacementField const& screened, RejectedVectors const& left_out,
+                                       int image_columns, int image_rows) {
   std::string const image = fmt::format("the image of {} x {} px", image_columns, image_rows);
   if (screened.size() == 0) {
     std::string const where =
@@ -141,7 +141,7 @@ std::string refusal_of_places(DisplacementField const& screened, LeftOutVectors 
   return {};
 }
 
-std::string doubt_about_places(DisplacementField const& screened, int image_columns, int image_rows) {
+std::string describe_suspect_positions(DisplacementField const& screened, int image_columns, int image_rows) {
   constexpr std::size_t fewest = 16;  // minimum number of vectors to judge the extent of a grid
   Extent const extent = extent_of(screened);
   Vec2d const size = extent.high - extent.low;

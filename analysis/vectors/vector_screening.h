@@ -12,7 +12,7 @@ namespace gladstone {
 inline constexpr double outside_margin_px = 2.0;
 
 /// Numbers of implausible vectors of a file, by reason.
-struct LeftOutVectors {
+struct RejectedVectors {
   std::size_t place_not_finite = 0;
   std::size_t outside_image = 0;              ///< outside of the image by more than outside_margin_px
   std::size_t displacement_not_finite = 0;    ///< unless masked in the file
@@ -30,14 +30,14 @@ struct LeftOutVectors {
 /// is not finite or larger than the image. This bounds run time, memory and averages for arbitrary input.
 /// @param field      vectors in the file's conventions; the image's range is the same in all of them
 /// @param offset_px  offset to be added to the file's coordinates, see VectorConventions
-LeftOutVectors screen_vectors(DisplacementField& field, double offset_px, int image_columns, int image_rows);
+RejectedVectors screen_vectors(DisplacementField& field, double offset_px, int image_columns, int image_rows);
 
 /// Returns the reason why screened vectors cannot be compared at all: most are outside of the image, there are more
 /// than two per pixel, or some positions occur twice. Returns an empty string if they can.
-std::string refusal_of_places(DisplacementField const& screened, LeftOutVectors const& left_out, int image_columns,
-                              int image_rows);
+std::string reason_to_reject_positions(DisplacementField const& screened, RejectedVectors const& left_out,
+                                       int image_columns, int image_rows);
 
 /// Returns a warning if at least 16 vectors cover less than a twentieth of the image's area, else an empty string.
-std::string doubt_about_places(DisplacementField const& screened, int image_columns, int image_rows);
+std::string describe_suspect_positions(DisplacementField const& screened, int image_columns, int image_rows);
 
 }  // namespace gladstone

@@ -61,7 +61,7 @@ __global__ void __launch_bounds__(most_threads)
     WindowSums<double> const share = own.sum_pixels(pixels);
     double light[3] = {share.weight, share.reference, share.flow};
     block_sums(light, light_slots);
-    WindowLevels const means = means_of({light[0], light[1], light[2]});
+    WindowLevels const means = weighted_means({light[0], light[1], light[2]});
     Vec2d const squares_share = own.sum_squares(pixels, means);
     double squares[2] = {squares_share.x, squares_share.y};
     block_sums(squares, square_slots);

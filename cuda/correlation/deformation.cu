@@ -55,7 +55,7 @@ __global__ void gather_nodes(GridVector const* vectors, int size, Vec2d* nodes, 
                              int* count) {
   int const i = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
   if (i >= size) return;
-  bool const sound = is_sound(vectors[i].status);
+  bool const sound = is_valid_or_replaced(vectors[i].status);
   nodes[i] = sound ? vectors[i].displacement : Vec2d{};
   known[i] = sound;
   if (!sound) list[atomicAdd(count, 1)] = {i, FailedTest::none, Replacement::open, {}};
@@ -71,7 +71,7 @@ __global__ void __launch_bounds__(threads_of_rounds)
     for (int n = static_cast<int>(threadIdx.x); n < *count; n += static_cast<int>(blockDim.x)) {
       Replacement& hole = list[n];
       if (hole.state == Replacement::open &&
-          find_filling(
+          find_gap_value(
               nodes, hole.index, columns, rows, [&](int k) { return known[k] != 0; }, hole.by.value))
         hole.state = Replacement::found;
     }

@@ -8,12 +8,12 @@
 /// Wave number k is then at place(k); inverse transforms perform the steps in reverse order.
 ///
 /// With a and b the windows, z = a + i b:
-///  1. transform columns of z along y, then rows along x (columns_apart, columns_together, rows_apart,
-///     rows_together);
+///  1. transform columns of z along y, then rows along x (column_first_pass, column_second_pass, row_first_pass,
+///     row_second_pass);
 ///  2. form the cross spectrum for wave numbers kx <= size/2, which suffice since planes are real, and transform it
-///     back along y (product, columns_together_again);
+///     back along y (product, inverse_column_second_pass);
 ///  3. transform back along x, two rows of the plane as one complex line, for those rows only that the peak search
-///     reads (rows_apart_again, rows_together_again).
+///     reads (inverse_row_first_pass, inverse_row_second_pass).
 /// A step is the work of one thread between two barriers. Between barriers, no two threads access the same memory
 /// unless both only read.
 ///
@@ -61,7 +61,7 @@ struct FactoredTransform {
   /// @param weighted  weighted(pixel, y) returns z of a pixel in row y
   /// @param side  side of the window [px]; z is 0 beyond it
   template <class Weighted>
-  GLADSTONE_HD void columns_apart(int side, Weighted const& weighted) const {
+  GLADSTONE_HD void column_first_pass(int side, Weighted const& weighted) const {
     if (line >= side) return;
     GLADSTONE_KEEP_LOOP
     for (int n = group; n < inner; n += groups) {
@@ -74,13 +74,13 @@ struct FactoredTransform {
     }
   }
 
-  GLADSTONE_HD void columns_together(int side) const {
+  GLADSTONE_HD void column_second_pass(int side) const {
     if (line >= side) return;
     GLADSTONE_KEEP_LOOP
     for (int k = group; k < outer; k += groups) transform_neighbours(memory + k * inner * pitch + line, pitch);
   }
 
-  GLADSTONE_HD void rows_apart(int side) const {
+  GLADSTONE_HD void row_first_pass(int side) const {
     GLADSTONE_KEEP_LOOP
     for (int n = group; n < inner; n += groups) {
       Complex* const row = memory + line * pitch + n;
@@ -91,7 +91,7 @@ struct FactoredTransform {
     }
   }
 
-  GLADSTONE_HD void rows_together() const {
+  GLADSTONE_HD void row_second_pass() const {
     GLADSTONE_KEEP_LOOP
     for (int k = group; k < outer; k += groups) transform_neighbours(memory + line * pitch + k * inner, 1);
   }
@@ -116,7 +116,7 @@ struct FactoredTransform {
     }
   }
 
-  GLADSTONE_HD void columns_together_again() const {
+  GLADSTONE_HD void inverse_column_second_pass() const {
     GLADSTONE_KEEP_LOOP
     for (int task = thread; task < waves * inner; task += threads) {
       Complex* const column = memory + task / waves * pitch + wave_column(wave(task % waves));
@@ -128,7 +128,7 @@ struct FactoredTransform {
   }
 
   /// Joins rows dy and dy + 1, and performs the first step of the inverse transform along x.
-  GLADSTONE_HD void rows_apart_again(int radius) const {
+  GLADSTONE_HD void inverse_row_first_pass(int radius) const {
     int const lines = joined(radius);
     GLADSTONE_KEEP_LOOP
     for (int task = thread; task < lines * outer; task += threads) {
@@ -150,7 +150,7 @@ struct FactoredTransform {
   }
 
   /// Writes the plane to the beginning of the memory: rows of plane_pitch values, from dy = -radius - 1 on.
-  GLADSTONE_HD void rows_together_again(int radius) const {
+  GLADSTONE_HD void inverse_row_second_pass(int radius) const {
     float* const out = centre(radius);
     GLADSTONE_KEEP_LOOP
     for (int task = thread; task < joined(radius) * inner; task += threads) {

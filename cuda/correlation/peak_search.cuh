@@ -228,7 +228,8 @@ __device__ int join_shares(Plane const& plane, int radius, HighestPeaks const* s
   int const peaks = (first.height != 0) + (second.height != 0) + (third.height != 0);
   bool const close = (peaks > 1 && are_close(first.peak(), second.peak())) ||
                      (peaks > 2 && (are_close(first.peak(), third.peak()) || are_close(second.peak(), third.peak())));
-  bool const rivals = peaks > 1 && second.peak().height >= static_cast<float>(nearly_as_high) * first.peak().height;
+  bool const rivals =
+      peaks > 1 && second.peak().height >= static_cast<float>(ambiguous_height_ratio) * first.peak().height;
   if (close || missed_below > third.height || rivals) {
     find_all_peaks(plane, radius, list, found);
     own = found.peak[lane < capacity ? lane : 0];

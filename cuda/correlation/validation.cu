@@ -17,7 +17,7 @@ __global__ void make_vectors(WindowCorrelation const* windows, InterrogationGrid
   ambiguous[i] = vector.ambiguous != Ambiguity::none;
 }
 
-__global__ void find_spurious(GridVector const* vectors, int columns, int rows, ValidationRule rule, Judgement by,
+__global__ void find_spurious(GridVector const* vectors, int columns, int rows, ValidationRule rule, ValidationStage by,
                               Replacement* list, int* count) {
   int const i = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
   if (i >= columns * rows) return;
@@ -31,7 +31,7 @@ __global__ void __launch_bounds__(threads_of_rounds)
     replace_spurious(GridVector* vectors, int columns, int rows, ValidationRule rule, Replacement* list,
                      int const* count) {
   int const first = static_cast<int>(threadIdx.x), step = static_cast<int>(blockDim.x);
-  for (int n = first; n < *count; n += step) take_out(vectors[list[n].index], list[n].failed);
+  for (int n = first; n < *count; n += step) reject_vector(vectors[list[n].index], list[n].failed);
   int progress = __syncthreads_or(rule.replaces && *count > 0);
   while (progress) {
     progress = 0;
@@ -71,10 +71,10 @@ void take_vectors(WindowCorrelation const* windows, GridVector* vectors, Interro
 
 void validate(GridVector* vectors, InterrogationGrid const& grid, ValidationRule const& rule, Replacement* list,
               int* count) {
-  for (int by = 0; by < judgements(rule); ++by) {
+  for (int by = 0; by < validation_stage_count(rule); ++by) {
     check(cudaMemsetAsync(count, 0, sizeof(int)), "cudaMemsetAsync");
-    find_spurious<<<blocks(grid), threads>>>(vectors, grid.columns, grid.rows, rule, static_cast<Judgement>(by), list,
-                                             count);
+    find_spurious<<<blocks(grid), threads>>>(vectors, grid.columns, grid.rows, rule, static_cast<ValidationStage>(by),
+                                             list, count);
     check_launch("find_spurious");
     replace_spurious<<<1, threads_of_rounds>>>(vectors, grid.columns, grid.rows, rule, list, count);
     check_launch("replace_spurious");

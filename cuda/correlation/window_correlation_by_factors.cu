@@ -101,8 +101,8 @@ __global__ void __launch_bounds__(Transform::threads)
     float known[3] = {0.0f, 0.0f, 0.0f};
     sum_known_pixels(transform, job.side, own.weight_y, weight_x, known);
     block_sums(known, own.known);
-    if (known[0] < smallest_known_part * full) {
-      if (thread == 0) leave_nothing(WindowCorrelation::Outcome::masked, result);
+    if (known[0] < min_valid_weight_fraction * full) {
+      if (thread == 0) write_no_result(WindowCorrelation::Outcome::masked, result);
       return;
     }
     mean = {known[1] / known[0], known[2] / known[0]};
@@ -110,7 +110,7 @@ __global__ void __launch_bounds__(Transform::threads)
   float energy[4] = {0.0f, 0.0f, 0.0f, 0.0f};
   int const core = job.x.size / 4 - job.margin, core_end = job.side - core;
   bool const column_inside = transform.line >= core && transform.line < core_end;
-  transform.columns_apart(job.side, [&](Complex pixel, int y) {
+  transform.column_first_pass(job.side, [&](Complex pixel, int y) {
     float const weight = weight_x * own.weight_y[y];
     Complex const z = isnan(pixel.re + pixel.im)
                           ? Complex{0.0f, 0.0f}
@@ -124,23 +124,23 @@ __global__ void __launch_bounds__(Transform::threads)
     return z;
   });
   block_sums(energy, own.energy);
-  transform.columns_together(job.side);
+  transform.column_second_pass(job.side);
   __syncthreads();
-  transform.rows_apart(job.side);
+  transform.row_first_pass(job.side);
   __syncthreads();
-  transform.rows_together();
+  transform.row_second_pass();
   __syncthreads();
   if constexpr (phase_only)
     transform.product(PhaseSpectrum{own.particles});
   else
     transform.product(WholeSpectrum());
   __syncthreads();
-  transform.columns_together_again();
+  transform.inverse_column_second_pass();
   __syncthreads();
   int const radius = job.search_radius_px;
-  transform.rows_apart_again(radius);
+  transform.inverse_row_first_pass(radius);
   __syncthreads();
-  transform.rows_together_again(radius);
+  transform.inverse_row_second_pass(radius);
   __syncthreads();
 
   // A warp searches 32 groups of four shifts at a time. Few warps take part, because each one ranks its own maxima.
@@ -159,11 +159,11 @@ __global__ void __launch_bounds__(Transform::threads)
   if (warp != 0) return;
   double const scale = own.scale;
   if (scale > 0.0)
-    leave_peaks(plane, radius, own.highest, searching,
+    write_peaks(plane, radius, own.highest, searching,
                 reinterpret_cast<PlanePeak<float>*>(transform.behind_plane(radius)), own.found,
                 phase_only ? 1.0 : scale, result);
   else if (thread == 0)
-    leave_nothing(WindowCorrelation::Outcome::no_signal, result);
+    write_no_result(WindowCorrelation::Outcome::no_signal, result);
 }
 
 template <int outer, int inner, int threads>

@@ -145,8 +145,8 @@ __global__ void correlate_window_by_lines(WindowJob const job, LinePlan const pl
       sums[2] += static_cast<double>(weight) * b;
     });
     block_sums(sums, slots_of_sums);
-    if (sums[0] < smallest_known_part * job.x.sum(column) * job.y.sum(row)) {
-      if (thread == 0) leave_nothing(WindowCorrelation::Outcome::masked, result);
+    if (sums[0] < min_valid_weight_fraction * job.x.sum(column) * job.y.sum(row)) {
+      if (thread == 0) write_no_result(WindowCorrelation::Outcome::masked, result);
       continue;
     }
     float const mean_a = static_cast<float>(sums[1] / sums[0]), mean_b = static_cast<float>(sums[2] / sums[0]);
@@ -169,7 +169,7 @@ __global__ void correlate_window_by_lines(WindowJob const job, LinePlan const pl
                                       static_cast<float>(energy[2]), static_cast<float>(energy[3])},
                                      *job.contrast, job.grid.window_px, size);
     if (scale == 0.0) {
-      if (thread == 0) leave_nothing(WindowCorrelation::Outcome::no_signal, result);
+      if (thread == 0) write_no_result(WindowCorrelation::Outcome::no_signal, result);
       continue;
     }
 
@@ -202,10 +202,11 @@ __global__ void correlate_window_by_lines(WindowJob const job, LinePlan const pl
       __syncwarp();
     }
     if (thread == 0)
-      prefer_nearest(plane, radius, found, [&](auto const& visit) { visit_rivals(plane, radius, found, visit); });
+      prefer_nearest(plane, radius, found,
+                     [&](auto const& visit) { visit_candidate_peaks(plane, radius, found, visit); });
     __syncwarp();
-    leave_samples(plane, found.count, found.peak[thread < PeakList<float>::capacity ? thread : 0],
-                  job.particles != nullptr ? 1.0 : scale, result);
+    write_peak_samples(plane, found.count, found.peak[thread < PeakList<float>::capacity ? thread : 0],
+                       job.particles != nullptr ? 1.0 : scale, result);
   }
 }
 

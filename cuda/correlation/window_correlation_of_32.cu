@@ -104,8 +104,8 @@ __global__ void __launch_bounds__(size, 18)
 #pragma unroll
     for (float& sum : known) sum *= weight_x;
     warp_sums(known);
-    if (known[0] < smallest_known_part * full) {
-      if (thread == 0) leave_nothing(WindowCorrelation::Outcome::masked, result);
+    if (known[0] < min_valid_weight_fraction * full) {
+      if (thread == 0) write_no_result(WindowCorrelation::Outcome::masked, result);
       return;
     }
     mean_a = known[1] / known[0];
@@ -132,7 +132,7 @@ __global__ void __launch_bounds__(size, 18)
   double const scale =
       0.25 * plane_scale({energy[0], energy[1], energy[2], energy[3]}, *job.contrast, job.grid.window_px, size);
   if (scale == 0.0) {
-    if (thread == 0) leave_nothing(WindowCorrelation::Outcome::no_signal, result);
+    if (thread == 0) write_no_result(WindowCorrelation::Outcome::no_signal, result);
     return;
   }
   using Forward = RegisterFourier<size, -1>;
@@ -247,7 +247,7 @@ __global__ void __launch_bounds__(size, 18)
   HighestPeaks const highest = search_rows(plane, radius, -radius, radius + 1);
   if (thread == 0) own.highest = highest;
   __syncwarp();
-  leave_peaks(plane, radius, &own.highest, 1, reinterpret_cast<PlanePeak<float>*>(plane_values + size * plane_pitch),
+  write_peaks(plane, radius, &own.highest, 1, reinterpret_cast<PlanePeak<float>*>(plane_values + size * plane_pitch),
               own.found, scale, result);
 }
 

@@ -211,8 +211,8 @@ __global__ void __launch_bounds__(Transform::threads, 4)
       __syncthreads();
       float known_sums[4];
       sum_slots(own.known, known_sums);
-      if (known_sums[0] < smallest_known_part * full) {
-        if (thread == 0) leave_nothing(WindowCorrelation::Outcome::masked, result);
+      if (known_sums[0] < min_valid_weight_fraction * full) {
+        if (thread == 0) write_no_result(WindowCorrelation::Outcome::masked, result);
         return;
       }
       mean = {known_sums[1] / known_sums[0], known_sums[2] / known_sums[0]};
@@ -220,19 +220,19 @@ __global__ void __launch_bounds__(Transform::threads, 4)
     float energy[4];
     pixels.weight(mean, energy);
     warp_sums(energy, own.energy + 4 * warp);
-    transform.columns_apart(pixels.z);
+    transform.column_first_pass(pixels.z);
   }
   __syncthreads();
-  transform.columns_together();
+  transform.column_second_pass();
   __syncthreads();
   Complex a[8];
   {
     Complex b[8];
-    transform.rows_apart(a, b);
+    transform.row_first_pass(a, b);
     __syncwarp();
     transform.keep_rows(a, b);
     __syncwarp();
-    transform.rows_together(a, b);
+    transform.row_second_pass(a, b);
     __syncwarp();
     if (transform.has_packed_row()) transform.keep_packed(a, b);
     Transform::product(a, b);
@@ -244,17 +244,17 @@ __global__ void __launch_bounds__(Transform::threads, 4)
     transform.take_packed(a);
     __syncwarp();
   }
-  transform.rows_apart_again(a);
+  transform.inverse_row_first_pass(a);
   __syncwarp();
-  transform.rows_together_again(a);
+  transform.inverse_row_second_pass(a);
   __syncwarp();
   transform.keep_shifts(a);
   __syncthreads();
   int const radius = job.search_radius_px;
   if (transform.has_columns(radius)) {
-    transform.columns_apart_again(radius);
+    transform.inverse_column_first_pass(radius);
     __syncwarp();
-    transform.columns_together_again(a);
+    transform.inverse_column_second_pass(a);
     __syncwarp();
     transform.keep_plane(a);
   } else if (warp == warps - 1) {
@@ -273,10 +273,10 @@ __global__ void __launch_bounds__(Transform::threads, 4)
   if (warp != 0) return;
   double const scale = own.scale;
   if (scale == 0.0) {
-    if (lane == 0) leave_nothing(WindowCorrelation::Outcome::no_signal, result);
+    if (lane == 0) write_no_result(WindowCorrelation::Outcome::no_signal, result);
     return;
   }
-  leave_peaks(plane, radius, own.highest, SearchBlock::warps, reinterpret_cast<PlanePeak<float>*>(own.values),
+  write_peaks(plane, radius, own.highest, SearchBlock::warps, reinterpret_cast<PlanePeak<float>*>(own.values),
               own.found, scale, result);
 }
 

@@ -7,7 +7,7 @@
 namespace gladstone::cuda {
 
 /// Writes the result of a window that was not correlated.
-__device__ inline void leave_nothing(WindowCorrelation::Outcome why, WindowPeaks& peaks) {
+__device__ inline void write_no_result(WindowCorrelation::Outcome why, WindowPeaks& peaks) {
   peaks.outcome = why;
   peaks.count = 0;
   peaks.scale = 0.0;
@@ -16,8 +16,8 @@ __device__ inline void leave_nothing(WindowCorrelation::Outcome why, WindowPeaks
 
 /// Writes peaks with their surrounding samples. Called by one full warp. @param peak  the k-th peak in lane k < count
 template <class Plane>
-__device__ void leave_samples(Plane const& plane, int count, PlanePeak<float> const& peak, double scale,
-                              WindowPeaks& peaks) {
+__device__ void write_peak_samples(Plane const& plane, int count, PlanePeak<float> const& peak, double scale,
+                                   WindowPeaks& peaks) {
   int const lane = static_cast<int>(threadIdx.x % 32u);
   if (lane < PeakList<float>::capacity) {
     bool const there = lane < count;
@@ -38,11 +38,11 @@ __device__ void leave_samples(Plane const& plane, int count, PlanePeak<float> co
 /// @param list  capacity for all maxima
 /// @param found  memory for the slow search
 template <class Plane>
-__device__ void leave_peaks(Plane const& plane, int radius, HighestPeaks const* shares, int share_count,
+__device__ void write_peaks(Plane const& plane, int radius, HighestPeaks const* shares, int share_count,
                             PlanePeak<float>* list, PeakList<float>& found, double scale, WindowPeaks& peaks) {
   PlanePeak<float> peak;
   int const count = join_shares(plane, radius, shares, share_count, list, found, peak);
-  leave_samples(plane, count, peak, scale, peaks);
+  write_peak_samples(plane, count, peak, scale, peaks);
 }
 
 }  // namespace gladstone::cuda

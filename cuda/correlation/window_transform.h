@@ -6,12 +6,12 @@
 /// them through shared memory. A transform of 64 values takes two short passes of eight values, 64 = 8 x 8.
 ///
 /// With a and b the windows, z = a + i b, and tilde a transform along y, the steps are:
-///  1. transform columns of z along y (columns_apart, columns_together);
-///  2. extract rows k < 32 of the spectra of a and b from rows k and -k, and transform along x (rows_apart,
-///     rows_together); rows 0 and 32, whose columns are real, share a row as real and imaginary part;
-///  3. form conj(A) B and transform back along x (product, rows_apart_again, rows_together_again);
+///  1. transform columns of z along y (column_first_pass, column_second_pass);
+///  2. extract rows k < 32 of the spectra of a and b from rows k and -k, and transform along x (row_first_pass,
+///     row_second_pass); rows 0 and 32, whose columns are real, share a row as real and imaginary part;
+///  3. form conj(A) B and transform back along x (product, inverse_row_first_pass, inverse_row_second_pass);
 ///  4. transform columns 2 x and 2 x + 1 of the plane, joined as complex numbers, back along y, for those columns
-///     only that the peak search reads (columns_apart_again, columns_together_again, keep_plane).
+///     only that the peak search reads (inverse_column_first_pass, inverse_column_second_pass, keep_plane).
 /// A step is the work of one thread between two barriers, which are given in the comments. The rows of a warp in steps
 /// 2 and 3 and its columns in step 4 are exchanged within the warp only. Between barriers, no two threads access the
 /// same memory unless both only read.
@@ -64,7 +64,7 @@ struct WindowTransform {
   // ---- along y: each warp processes columns lane and lane + 32
 
   /// First pass. @param z  columns lane and lane + 32, rows warp + 8 r. Must be followed by a barrier of all threads.
-  GLADSTONE_HD void columns_apart(Complex (&z)[2][8]) const {
+  GLADSTONE_HD void column_first_pass(Complex (&z)[2][8]) const {
     for (int half = 0; half < 2; ++half) {
       small_transform<8, -1, 1>(z[half]);
       turn<-1>(z[half], warp());
@@ -72,7 +72,7 @@ struct WindowTransform {
     }
   }
   /// Second pass, columns 2 lane and 2 lane + 1. Must be followed by a barrier of all threads.
-  GLADSTONE_HD void columns_together() const {
+  GLADSTONE_HD void column_second_pass() const {
     Complex z[2][8];
     for (int n = 0; n < 8; ++n) {
       ComplexPair const both = pair_at(place(warp(), n) + 2 * lane());
@@ -81,7 +81,7 @@ struct WindowTransform {
     }
     for (Complex(&column)[8] : z) {
       small_transform<8, -1, 1>(column);
-      if (warp() == 0) {  // so that the sums in rows_apart() give 2 (A_0 + i A_32) and 2 (B_0 + i B_32)
+      if (warp() == 0) {  // so that the sums in row_first_pass() give 2 (A_0 + i A_32) and 2 (B_0 + i B_32)
         Complex const zero = column[0], nyquist = column[4];
         column[0] = {zero.re + zero.im, nyquist.re + nyquist.im};
         column[4] = {zero.re - zero.im, nyquist.im - nyquist.re};
@@ -93,7 +93,7 @@ struct WindowTransform {
   // ---- along x: eight lanes process a row of a and of b
 
   /// First pass. @param a, b  output: 2 A and 2 i B after the first pass. Must be followed by a barrier of the warp.
-  GLADSTONE_HD void rows_apart(Complex (&a)[8], Complex (&b)[8]) const {
+  GLADSTONE_HD void row_first_pass(Complex (&a)[8], Complex (&b)[8]) const {
     for (int r = 0; r < 8; ++r) {
       Complex const d = memory[row() + along() + 8 * r], m = memory[mirror() + along() + 8 * r];
       a[r] = {d.re + m.re, d.im - m.im};
@@ -112,7 +112,7 @@ struct WindowTransform {
     }
   }
   /// Second pass. Value k of the thread is then wave number along() + 8 k. Must be followed by a barrier of the warp.
-  GLADSTONE_HD void rows_together(Complex (&a)[8], Complex (&b)[8]) const {
+  GLADSTONE_HD void row_second_pass(Complex (&a)[8], Complex (&b)[8]) const {
     for (int n = 0; n < 8; ++n) {
       a[n] = memory[row() + 9 * along() + n];
       b[n] = memory[mirror() + 9 * along() + n];
@@ -155,13 +155,13 @@ struct WindowTransform {
   // ---- inverse transform along x
 
   /// First pass. Must be followed by a barrier of the warp.
-  GLADSTONE_HD void rows_apart_again(Complex (&c)[8]) const {
+  GLADSTONE_HD void inverse_row_first_pass(Complex (&c)[8]) const {
     small_transform<8, 1, 1>(c);
     turn<1>(c, along());
     for (int k = 0; k < 8; ++k) memory[row() + 9 * k + along()] = c[k];
   }
   /// Second pass. Value k of the thread is then shift along() + 8 k. Must be followed by a barrier of the warp.
-  GLADSTONE_HD void rows_together_again(Complex (&c)[8]) const {
+  GLADSTONE_HD void inverse_row_second_pass(Complex (&c)[8]) const {
     for (int n = 0; n < 8; ++n) c[n] = memory[row() + 9 * along() + n];
     small_transform<8, 1, 1>(c);
   }
@@ -178,7 +178,7 @@ struct WindowTransform {
   /// Returns whether this warp has pairs of columns.
   GLADSTONE_HD bool has_columns(int radius) const { return 4 * warp() < radius + 2; }
   /// First pass, from the lower half to the upper half. Must be followed by a barrier of the warp.
-  GLADSTONE_HD void columns_apart_again(int radius) const {
+  GLADSTONE_HD void inverse_column_first_pass(int radius) const {
     int const x = kept_place(0) + 2 * (own_pair() - middle_pair(radius));
     int const near = place(along(), 0) + 2 * along() + x;
     int const opposite = -along() & 7, far = place(opposite, 3) + 2 * opposite + x;
@@ -200,7 +200,7 @@ struct WindowTransform {
   }
   /// Second pass. Must be followed by a barrier of the warp.
   /// @param g  output: value k is that at shift along() + 8 k
-  GLADSTONE_HD void columns_together_again(Complex (&g)[8]) const {
+  GLADSTONE_HD void inverse_column_second_pass(Complex (&g)[8]) const {
     Complex const* const in = exchange() + 9 * along();
     for (int n = 0; n < 8; ++n) g[n] = in[n];
     small_transform<8, 1, 1>(g);

@@ -57,7 +57,7 @@ void find_brightest(double const* light, std::size_t count, unsigned long long* 
   launch("find_brightest", find_brightest_kernel, count, light, count, key);
 }
 
-double brightest_of(unsigned long long key) {
+double brightness_from_key(unsigned long long key) {
   return std::bit_cast<double>(key >> 63 ? key & 0x7fffffffffffffffull : ~key);
 }
 

@@ -14,7 +14,7 @@ void take_from_white(double const* white, double* light, std::size_t count);
 /// @param key  must be initialised to zero
 void find_brightest(double const* light, std::size_t count, unsigned long long* key);
 /// Converts such a key to its value, on the host.
-double brightest_of(unsigned long long key);
+double brightness_from_key(unsigned long long key);
 
 /// Applies PixelDetector::record() to every pixel.
 /// @param saturated  number of saturated pixels; must be initialised to zero

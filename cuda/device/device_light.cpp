@@ -74,7 +74,7 @@ double DeviceLight::brightest() const {
   for (auto const& light : light_) find_brightest(light.data(), pixels(), key.data());
   unsigned long long found = 0;
   key.download(&found, 1);
-  return brightest_of(found);
+  return brightness_from_key(found);
 }
 
 RecordedFrames DeviceLight::record(Detector const& detector) const {

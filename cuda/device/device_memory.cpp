@@ -37,7 +37,7 @@ std::string mebibytes(std::size_t bytes) {
 }
 
 std::string shortage(std::string const& what_for, std::size_t bytes) {
-  DeviceRoom const room = device_room();
+  DeviceMemoryInfo const room = query_device_memory();
   return fmt::format(
       "out of device memory: {} needs {} MiB, {} of {} MiB are free; use fewer rays, smaller images or volumes, or "
       "--device cpu",
@@ -49,9 +49,9 @@ std::string shortage(std::string const& what_for, std::size_t bytes) {
 OutOfDeviceMemory::OutOfDeviceMemory(std::string const& what_for, std::size_t bytes)
     : DeviceError(shortage(what_for, bytes)) {}
 
-DeviceRoom device_room() {
+DeviceMemoryInfo query_device_memory() {
   check(cudaStreamSynchronize(nullptr), "cudaStreamSynchronize");  // memory is released in stream order
-  DeviceRoom room{};
+  DeviceMemoryInfo room{};
   check(cudaMemGetInfo(&room.free, &room.total), "cudaMemGetInfo");
   int device = 0;
   check(cudaGetDevice(&device), "cudaGetDevice");

@@ -24,14 +24,14 @@ inline DeviceMemoryAccount device_memory_account;
 inline std::atomic<std::size_t> shared_memory_limit{std::numeric_limits<std::size_t>::max()};
 
 /// Free and total memory [bytes].
-struct DeviceRoom {
+struct DeviceMemoryInfo {
   std::size_t free;
   std::size_t total;
 };
 
 /// Returns the memory available to arrays, including unused memory in the pool. Waits for the default stream.
 /// @throws DeviceError
-DeviceRoom device_room();
+DeviceMemoryInfo query_device_memory();
 
 /// Thrown if an allocation fails for lack of device memory: callers may retry with a smaller one. what() reports the
 /// sizes.

@@ -12,7 +12,7 @@ namespace gladstone::cuda {
 
 /// Maximum number of ray-tracing steps per launch, equivalent to a second or two. A running launch cannot be cancelled,
 /// so Ctrl-C has to wait for it.
-inline constexpr double most_steps_a_launch = 4e10;
+inline constexpr double max_steps_per_launch = 4e10;
 
 /// Returns the number of blocks that fills the device, at most `wanted`.
 template <class Kernel>

@@ -9,7 +9,7 @@ __global__ void any_kernel() {}
 
 }  // namespace
 
-std::string why_code_cannot_run() {
+std::string reason_code_cannot_run() {
   cudaFuncAttributes attributes{};
   if (cudaFuncGetAttributes(&attributes, any_kernel) != cudaSuccess) {
     cudaGetLastError();  // clear the error, so that the next launch is not reported as failed

@@ -5,6 +5,6 @@
 namespace gladstone::cuda {
 
 /// Returns the reason why the current device cannot run the compiled code; empty if it can.
-std::string why_code_cannot_run();
+std::string reason_code_cannot_run();
 
 }  // namespace gladstone::cuda

@@ -50,11 +50,11 @@ __global__ void __launch_bounds__(threads, 3)
   for (std::uint64_t dot = blockIdx.x * warps + warp; dot < count; dot += gridDim.x * warps) {
     farthest = fmax(farthest, check_dot(lanes, model, medium, dots.centre[dot], cones[dot], found[dot]).farthest);
     if (lanes.lane() == 0) {
-      cones[dot].light = model.light_of(dots.centre[dot], dots.radiance ? dots.radiance[dot] : 1.0);
+      cones[dot].light = model.reference_light(dots.centre[dot], dots.radiance ? dots.radiance[dot] : 1.0);
     }
   }
   if (lanes.lane() == 0) {
-    atomicMax(&tally->farthest_aim, static_cast<unsigned long long>(__double_as_longlong(farthest)));
+    atomicMax(&tally->largest_aim_distance, static_cast<unsigned long long>(__double_as_longlong(farthest)));
   }
   __syncthreads();
   for (int i = threadIdx.x; i < frame_count * ray_status_count; i += threads) {

@@ -117,7 +117,7 @@ TracingPass trace_all(std::uint64_t dots_a_batch, FocusedDots const& bench, DotP
     }
     RayTally counted{};
     tally.download(&counted, 1);
-    pass.farthest_aim = std::bit_cast<double>(counted.farthest_aim);
+    pass.largest_aim_distance = std::bit_cast<double>(counted.largest_aim_distance);
     for (std::size_t frame = 0; frame < frame_count; ++frame) {
       for (std::size_t status = 0; status < ray_status_count; ++status) {
         pass.rendering.statuses[frame][status] = static_cast<std::int64_t>(counted.statuses[frame][status]);
@@ -132,7 +132,7 @@ TracingPass trace_all(std::uint64_t dots_a_batch, FocusedDots const& bench, DotP
 
 struct CudaRenderer::Uploads {
   MediumCache medium;
-  LastDeflections<DeviceDeflections> deflections;
+  DeflectionTableCache<DeviceDeflections> deflections;
   PinnedBuffer staging;
 };
 
@@ -155,9 +155,9 @@ Rendering CudaRenderer::render(Scene const& scene, DotPattern const& sources, Re
   std::uint64_t const dots = std::max<std::uint64_t>(1, sources.centre.size());
   double const steps = static_cast<double>(scene.rays_per_dot) * std::max(1.0, scene.steps_across());
   std::uint64_t const most =
-      std::min(most_cone_bytes / sizeof(DotCone), static_cast<std::size_t>(most_steps_a_launch / steps));
-  Rendering rendering = render_within_table(scene, [&](double farthest_aim) {
-    DeflectionTable const table = uploads_->deflections.table(*bench, sources, farthest_aim, medium.view());
+      std::min(most_cone_bytes / sizeof(DotCone), static_cast<std::size_t>(max_steps_per_launch / steps));
+  Rendering rendering = render_within_table(scene, [&](double largest_aim_distance) {
+    DeflectionTable const table = uploads_->deflections.table(*bench, sources, largest_aim_distance, medium.view());
     // Retry with smaller batches if device memory is short; results are bitwise the same.
     for (std::uint64_t batch = std::clamp<std::uint64_t>(most, 1, dots);; batch /= 2) try {
         return trace_all(batch, *bench, sources, medium, table, theory, images == RenderImages::no ? nullptr : &light);
@@ -167,7 +167,7 @@ Rendering CudaRenderer::render(Scene const& scene, DotPattern const& sources, Re
   });
   rendering.table = uploads_->deflections.state();
   rendering.pupil_margin = scene.pupil_margin;
-  if (light && scene.setup.target.polarity == Polarity::dark) light->take_from(white_light(scene));
+  if (light && scene.setup.target.polarity == Polarity::dark) light->take_from(render_white_light(scene));
   if (images == RenderImages::yes) rendering.light = light->to_host(uploads_->staging);
   if (images == RenderImages::in_place) rendering.in_place = std::move(light);
   return rendering;

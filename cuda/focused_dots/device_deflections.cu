@@ -24,18 +24,19 @@ struct FourLanes {
 /// Computes groups of four table entries. @param first  index of the first group of this launch
 template <class Medium>
 __global__ void __launch_bounds__(threads, 3)
-    deflect_kernel(BenchView const __grid_constant__ bench, Medium const __grid_constant__ medium,
+    deflect_kernel(FocusedSetupView const __grid_constant__ bench, Medium const __grid_constant__ medium,
                    DeflectionTable const __grid_constant__ plan, DeflectionTable::Values const values,
                    long long const first) {
   long long const four = first + (blockIdx.x * static_cast<long long>(threads) + threadIdx.x) / 4;
-  if (four < plan.fours()) trace_four(FourLanes{}, bench, medium, plan, values, four);
+  if (four < plan.fours()) trace_ray_group(FourLanes{}, bench, medium, plan, values, four);
 }
 
 }  // namespace
 
-DeviceDeflections::DeviceDeflections(FocusedDots const& dots, DeflectionPlan const& plan, DeviceMedium const& medium) {
+DeviceDeflections::DeviceDeflections(FocusedDots const& dots, DeflectionTableLayout const& plan,
+                                     DeviceMedium const& medium) {
   if (!plan.wanted()) return;
-  BenchView const bench = dots.bench();
+  FocusedSetupView const bench = dots.bench();
   values_ = DeviceArray<std::byte>(plan.table.bytes(), "the deflection table");
   DeflectionTable::Values const values = plan.table.values_in(values_.data());
   std::visit(
@@ -44,7 +45,7 @@ DeviceDeflections::DeviceDeflections(FocusedDots const& dots, DeflectionPlan con
         constexpr std::size_t fours_a_block = threads / 4;
         std::size_t const all = (static_cast<std::size_t>(plan.table.fours()) + fours_a_block - 1) / fours_a_block;
         double const steps = threads * std::max(1.0, dots.scene().steps_across());
-        std::size_t const most = std::max<std::size_t>(1, static_cast<std::size_t>(most_steps_a_launch / steps));
+        std::size_t const most = std::max<std::size_t>(1, static_cast<std::size_t>(max_steps_per_launch / steps));
         for (std::size_t first = 0; first < all; first += most) {
           throw_if_interrupted();
           auto const blocks = static_cast<unsigned>(std::min(most, all - first));

@@ -12,7 +12,7 @@ namespace gladstone::cuda {
 class DeviceDeflections {
  public:
   /// @throws OutOfDeviceMemory with the size of the whole table
-  DeviceDeflections(FocusedDots const& dots, DeflectionPlan const& plan, DeviceMedium const& medium);
+  DeviceDeflections(FocusedDots const& dots, DeflectionTableLayout const& plan, DeviceMedium const& medium);
 
   /// Returns the table; exists() is false if the plan does not require one.
   DeflectionTable const& table() const { return table_; }

@@ -16,7 +16,7 @@ namespace gladstone::cuda {
 struct RayTally {
   unsigned long long statuses[frame_count][ray_status_count];
   unsigned long long
-      farthest_aim;  ///< bit pattern of a non-negative double, which has the same order as the numbers [m]
+      largest_aim_distance;  ///< bit pattern of a non-negative double, which has the same order as the numbers [m]
 };
 
 /// Aims at the dots and traces their check rays, one warp per dot. @param found  output: errors and ray counts

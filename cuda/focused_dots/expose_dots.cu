@@ -13,13 +13,13 @@ constexpr int room = 512;                    // capacity of the numbers of the p
 
 /// Accumulates the light of a source disc. @tparam orders  1: without moments
 template <int orders>
-__device__ void lay_down(DotModel const& model, Vec2d origin, double light, MomentField const* field, Patch patch,
-                         double (*numbers)[room]) {
+__device__ void accumulate_light(DotModel const& model, Vec2d origin, double light, MomentField const* field,
+                                 Patch patch, double (*numbers)[room]) {
   constexpr int most_points = orders > 1 ? 4 : 16;
   int const edges = 2 * model.spot.half_width() + 2;
   patch.begin(origin);
-  lay_down_points<orders, 1>(Block{}, model, origin, light, field, patch, numbers[threadIdx.x / warp_size],
-                             min(most_points, room / point_numbers(orders, edges)));
+  accumulate_light_by_points<orders, 1>(Block{}, model, origin, light, field, patch, numbers[threadIdx.x / warp_size],
+                                        min(most_points, room / point_numbers(orders, edges)));
   patch.flush();
 }
 
@@ -35,15 +35,15 @@ __global__ void __launch_bounds__(dot_threads, 6)
     Vec2d const origin = model.to_pixel(dot.centre);
     int const frames = dot.kind == DotKind::still ? frame_count : 1;
     for (int frame = 0; frame < frames; ++frame) {
-      lay_down<1>(model, origin, dot.light, nullptr, {images, static_cast<Frame>(frame), light, side}, numbers);
+      accumulate_light<1>(model, origin, dot.light, nullptr, {images, static_cast<Frame>(frame), light, side}, numbers);
     }
     if (dot.kind != DotKind::narrow) continue;
     constexpr int terms = PlaceRule::terms;
     for (int k = threadIdx.x; k < DisplacementMoments::count * terms; k += dot_threads) {
       field.coefficient[k / terms][k % terms] = dot.field.coefficient[k / terms][k % terms];
     }
-    lay_down<DisplacementMoments::order + 1>(model, origin + dot.origin, dot.light, &field,
-                                             {images, Frame::flow, light, side}, numbers);
+    accumulate_light<DisplacementMoments::order + 1>(model, origin + dot.origin, dot.light, &field,
+                                                     {images, Frame::flow, light, side}, numbers);
   }
 }
 
@@ -62,15 +62,15 @@ __global__ void __launch_bounds__(dot_threads, 4)
     DotCone const& dot = cones[i];
     if (dot.kind != DotKind::wide) continue;
     __syncthreads();
-    if (threadIdx.x == 0) cone = cone_of(model, dot);
+    if (threadIdx.x == 0) cone = make_corrected_cone(model, dot);
     __syncthreads();
     ConeLight* const points = room + blockIdx.x * points_a_block;
     integrate_cone(Block{}, model, cone, whole, points);
     Patch patch{images, Frame::flow, dynamic, side};
     patch.begin(model.to_pixel(dot.centre) + dot.origin);
-    lay_down_squares<1>(Block{}, model, dot, cone, whole,
-                        {points, order + blockIdx.x * points_a_block, model.cone.points_of(whole.simple)},
-                        *reinterpret_cast<Squares*>(square_storage), patch);
+    accumulate_light_by_squares<1>(Block{}, model, dot, cone, whole,
+                                   {points, order + blockIdx.x * points_a_block, model.cone.points_of(whole.simple)},
+                                   *reinterpret_cast<Squares*>(square_storage), patch);
     patch.flush();
   }
 }

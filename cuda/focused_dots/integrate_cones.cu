@@ -17,7 +17,7 @@ __global__ void __launch_bounds__(dot_threads, 5)
   for (std::uint64_t i = blockIdx.x; i < count; i += gridDim.x) {
     if (cones[i].kind == DotKind::left) continue;
     __syncthreads();
-    if (threadIdx.x == 0) cone = cone_of(model, cones[i]);
+    if (threadIdx.x == 0) cone = make_corrected_cone(model, cones[i]);
     __syncthreads();
     integrate_cone(Block{}, model, cone, whole, nullptr);
     conclude(Block{}, model, cone.origin(), whole, cones[i], found[i]);

@@ -35,7 +35,7 @@ __device__ void aim_pulse(StopView const& stop, ParticlesLaunch const& launch, L
   aim.state = AimState::filled;
   aim.seen = bent.map;
   aim.ambient = straight.map;
-  if (!placed) origin = origin_of(straight);
+  if (!placed) origin = sum_origin(straight);
   aim.low = bent.low;
   aim.high = bent.high;
   aim.spread2 = bent.spread2;
@@ -67,7 +67,7 @@ __global__ void __launch_bounds__(threads)
   origins[i] = origin;
   steps.step[i] = steps.next[i] = step;
   steps.chosen[i] = missing == 0 ? 1 : 0;
-  if (missing > 0) atomicAdd(steps.count + LadderView::most_steps, missing);
+  if (missing > 0) atomicAdd(steps.count + LadderView::max_step_count, missing);
 }
 
 __global__ void __launch_bounds__(threads)

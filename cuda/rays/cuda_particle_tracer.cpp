@@ -54,14 +54,14 @@ class BatchPass {
     std::size_t const count = batch_.count();
     DotTruth* const ambient_there = bends ? batch_.ambient().data() : nullptr;
     trace_listed(1);
-    if (counted(LadderView::most_steps) > 0) aim_wide();
+    if (counted(LadderView::max_step_count) > 0) aim_wide();
     while (true) {
       batch_.counts().zero();
       see_particles(on_device_.ladder(), batch_.aims().data(), batch_.origins().data(), batch_.sums().data(), count,
                     batch_.steps(), batch_.truth().data(), ambient_there);
       if (launches_.size() == 1) break;
-      batch_.counts().download(counts_, LadderView::most_steps + 1);
-      if (counted(LadderView::most_steps) == 0) break;
+      batch_.counts().download(counts_, LadderView::max_step_count + 1);
+      if (counted(LadderView::max_step_count) == 0) break;
       throw_if_interrupted();
       go_on();
     }
@@ -96,7 +96,7 @@ class BatchPass {
   }
   /// Traces the listed aims. @param sign  -1 removes the light and the ray counts of an earlier call
   void trace_listed(double sign) {
-    batch_.counts().download(counts_, LadderView::most_steps + 1);
+    batch_.counts().download(counts_, LadderView::max_step_count + 1);
     for (std::size_t step = 0; step < launches_.size(); ++step) {
       trace(AimState::filled, step, batch_.listed(launches_.size()) + step * frame_count * batch_.count(),
             counted(step), sign);
@@ -108,7 +108,7 @@ class BatchPass {
     launch.sign = sign;
     if (state == AimState::wide) launch.camera.elements = on_device_.smooth(step);
     // Limit the number of aims per launch, so that no launch takes long.
-    double const at_once = most_steps_a_launch / on_device_.steps_a_particle(across_medium_, step);
+    double const at_once = max_steps_per_launch / on_device_.steps_per_particle(across_medium_, step);
     auto const most = static_cast<std::size_t>(std::clamp(frame_count * at_once, 1.0, 1e9));
     for (std::size_t first = 0; first < count; first += most) {
       throw_if_interrupted();
@@ -233,10 +233,10 @@ class BatchPass {
     AimedBundle<double> const bundle = host_.ladder[step].bundle(*found.disc, {}, found.margin);
     Pose<double> const& plane = launches_[0].camera.aim_plane;
     auto const along = [&plane](Vec3d v) {
-      Vec3d const there = plane.direction_inwards(v);
+      Vec3d const there = plane.direction_to_local(v);
       return Vec2d{there.x, there.y};
     };
-    Vec3d const centre = plane.point_inwards(bundle.centre);
+    Vec3d const centre = plane.point_to_local(bundle.centre);
     aim.seen = {};
     aim.seen.centre = {centre.x, centre.y};
     aim.seen.a[0] = along(bundle.a);
@@ -255,7 +255,7 @@ class BatchPass {
   ParticleBatch& batch_;
   double across_medium_;
   unsigned long long* ends_;
-  unsigned int counts_[LadderView::most_steps + 1] = {};
+  unsigned int counts_[LadderView::max_step_count + 1] = {};
   std::vector<PulseAim> aims_;       ///< aims of the batch, if the host aims some of them
   std::vector<SourceAim> found_;     ///< results of aim_at_stop() for these
   std::vector<std::uint32_t> wide_;  ///< indices of the aims set by the host
@@ -263,9 +263,9 @@ class BatchPass {
 
 /// Returns the number of particles per batch, limited by memory and by the duration of a launch.
 std::size_t batch_size(Scene const& scene, LaunchesOnDevice const& launches) {
-  double const at_once = most_steps_a_launch / launches.steps_a_particle(scene.steps_across(), 0);
+  double const at_once = max_steps_per_launch / launches.steps_per_particle(scene.steps_across(), 0);
   return std::clamp<std::size_t>(
-      std::min(most_batch_bytes / ParticleBatch::bytes_a_particle(launches.ladder().sums_a_pulse),
+      std::min(most_batch_bytes / ParticleBatch::device_bytes_per_particle(launches.ladder().sums_per_pulse),
                static_cast<std::size_t>(std::min(at_once, 1e9))),
       1, most_of_batch);
 }
@@ -305,7 +305,7 @@ Rendering trace_particles_on_device(Scene const& scene, Particles const& particl
     for (std::size_t first = 0; first < particles.size(); first += most) {
       throw_if_interrupted();
       std::size_t const count = std::min(most, particles.size() - first);
-      ParticleBatch batch(particles, first, count, launches.ladder().sums_a_pulse, staging);
+      ParticleBatch batch(particles, first, count, launches.ladder().sums_per_pulse, staging);
       if (scattering.kind == AnyScattering::Kind::mie) scattering.mie = kept.view(first);
       std::vector<ParticlesLaunch> of_batch;
       for (std::size_t step = 0; step < launches.steps(); ++step) {

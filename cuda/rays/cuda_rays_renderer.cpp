@@ -63,7 +63,8 @@ class LaunchOnDevice {
     if (host.spot.model == SpotModel::airy) {
       airy_ = DeviceArray<double>(host.spot.airy.shares, host.spot.airy.count(), "the Airy table");
       launch_.spot.airy.shares = airy_.data();
-    } else if (host.spot.model != SpotModel::none && HitGrid::pays(host.spot.gaussian.sigma, host.rays)) {
+    } else if (host.spot.model != SpotModel::none &&
+               HitGrid::is_faster_than_psfs(host.spot.gaussian.sigma, host.rays)) {
       HitSpline const spline(host.spot.gaussian);
       launch_.spline = spline.view();
       share_ = DeviceArray<double>(launch_.spline.share, static_cast<std::size_t>(launch_.spline.count()), "a spline");
@@ -236,7 +237,7 @@ class SceneTracer {
   /// time for the first aims.
   std::size_t at_once(std::size_t step) {
     LaunchOnDevice const& launch = on_device(step);
-    double const launches_at_once = most_steps_a_launch / launch.steps_a_source(scene_.steps_across());
+    double const launches_at_once = max_steps_per_launch / launch.steps_a_source(scene_.steps_across());
     return std::clamp<std::size_t>(std::min(most_sum_bytes / (launch.sums_a_source() * sizeof(RaySums)),
                                             static_cast<std::size_t>(std::min(launches_at_once, 1e9))),
                                    1, 1 << 14);
@@ -300,7 +301,8 @@ class SceneTracer {
       RaySums sums[most_scramblings];
       batch.sum(at, sums);
       bool const beyond = !launch.camera.chief_rays_only() && batch.moved(at) > aim.margin;
-      std::size_t const next = beyond ? step : ladder_.next(step, RaysSent::clipped, {}, sums, here.light_per_weight());
+      std::size_t const next =
+          beyond ? step : ladder_.next(step, RayPlacement::clipped, {}, sums, here.light_per_weight());
       if (!beyond && next == step) {
         largest_margin_ = std::max(largest_margin_, aim.margin);
         truth_.set_hits(placed.source, source_truth(sums, here.scramblings(), placed.origin), here.light_per_weight());
@@ -376,7 +378,7 @@ Rendering CudaRaysRenderer::render(Scene const& scene, DotPattern const& sources
   if (!lit) return pass.finish();
   auto light = std::make_shared<DeviceLight>(camera.columns, camera.rows);
   frames->to_light(*light);
-  if (scene.setup.target.polarity == Polarity::dark) light->take_from(white_picture(scene));
+  if (scene.setup.target.polarity == Polarity::dark) light->take_from(render_white_target(scene));
   if (images == RenderImages::yes) rendering.light = light->to_host(uploads_->staging);
   if (images == RenderImages::in_place) rendering.in_place = std::move(light);
   return pass.finish();

@@ -14,7 +14,7 @@ std::size_t coefficient_count(Grid const& grid) {
 
 /// @throws OutOfDeviceMemory before anything is allocated
 void require_room(char const* what_for, std::size_t bytes) {
-  if (bytes > device_room().free) throw OutOfDeviceMemory(what_for, bytes);
+  if (bytes > query_device_memory().free) throw OutOfDeviceMemory(what_for, bytes);
 }
 
 /// Returns a volume's polynomials; empty if they would need more than a quarter of the device's total memory. The limit
@@ -23,7 +23,7 @@ template <class Grid>
 DeviceArray<double> make_polynomials(Grid const& grid) {
   using Cells = CellPolynomials<typename Grid::Interpolant, true>;
   std::size_t const cell_count = Cells(grid, nullptr).cell_count(), count = cell_count * Cells::size;
-  if (cell_count > Cells::most_cells || count * sizeof(double) > device_room().total / 4) return {};
+  if (cell_count > Cells::most_cells || count * sizeof(double) > query_device_memory().total / 4) return {};
   DeviceArray<double> cells(count, "the field's polynomials");
   fill_cells(grid, cells.data());
   return cells;

@@ -39,7 +39,7 @@ struct HitWindow {
   __device__ bool take(Vec2d p, double weight) const {
     if (!nodes || !(fabs(weight) <= most_weight)) return false;
     if (!(fabs(p.x) < 1e7 && fabs(p.y) < 1e7)) return false;
-    DealtHit const x((p.x - left) * per_px), y((p.y - top) * per_px);
+    HitStencil const x((p.x - left) * per_px), y((p.y - top) * per_px);
     if (x.first < 0 || y.first < 0 || x.first + 4 > side || y.first + 4 > side) return false;
     int* line = nodes + y.first * side + x.first;
     for (int j = 0; j < 4; ++j, line += side) {

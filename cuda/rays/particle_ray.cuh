@@ -28,7 +28,7 @@ __device__ ParticleRay trace_particle_ray(ParticlesLaunch const& launch, CameraV
                                           std::uint64_t key, std::uint64_t j) {
   auto const& particles = launch.pulses[pulse];
   StopRuleView const rule = aim.state == AimState::filled ? launch.rule : StopRuleView{};
-  StopPlace const to = place_of_ray(rule, launch.choice, key, j);
+  StopSamplePoint const to = sample_stop_point(rule, launch.choice, key, j);
   AimedRay<double> const aimed = aimed_ray(launch, particles, aim.seen, particle, to.at);
   ParticleRay ray;
   ray.seen = trace_ray(camera, medium, launch.tracing, aimed.ray, to.share * aimed.weight);

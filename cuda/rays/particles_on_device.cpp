@@ -42,7 +42,7 @@ LaunchesOnDevice::LaunchesOnDevice(ParticleLaunches const& host, DeviceMedium co
       smooth_(host.ladder.size()),
       stop_(host.sharp.camera) {
   RaysLaunch const& shared = host.ladder[0];
-  GLADSTONE_EXPECTS(host.ladder.size() <= LadderView::most_steps);
+  GLADSTONE_EXPECTS(host.ladder.size() <= LadderView::max_step_count);
   stop_.camera.elements = sharp_.data();
   ParticlesLaunch launch;
   launch.camera = stop_.camera;
@@ -60,7 +60,8 @@ LaunchesOnDevice::LaunchesOnDevice(ParticleLaunches const& host, DeviceMedium co
     if (shared.spot.model == SpotModel::airy) {
       airy_ = DeviceArray<double>(shared.spot.airy.shares, shared.spot.airy.count(), "the Airy table");
       launch.spot.airy.shares = airy_.data();
-    } else if (gaussian && HitGrid::pays(shared.spot.gaussian.sigma, host.ladder[host.ladder.size() - 1].rays)) {
+    } else if (gaussian &&
+               HitGrid::is_faster_than_psfs(shared.spot.gaussian.sigma, host.ladder[host.ladder.size() - 1].rays)) {
       HitSpline const owner(shared.spot.gaussian);
       spline = owner.view();
       share_ = DeviceArray<double>(spline.share, static_cast<std::size_t>(spline.count()), "a spline");
@@ -77,13 +78,13 @@ LaunchesOnDevice::LaunchesOnDevice(ParticleLaunches const& host, DeviceMedium co
     rules.insert(rules.end(), launch.rule.share, launch.rule.share + launch.rule.rings);
     ladder_.rays[step] = here.rays;
     ladder_.scrambling_bits[step] = here.choice.scrambling_bits;
-    ladder_.sums_a_pulse =
-        std::max(ladder_.sums_a_pulse, launch.shares() * static_cast<std::uint64_t>(launch.scramblings()));
+    ladder_.sums_per_pulse =
+        std::max(ladder_.sums_per_pulse, launch.shares() * static_cast<std::uint64_t>(launch.scramblings()));
     launch.spline = {};
     launch.most_window_px = launch.patch_px = 0;
     if (images) {
       launch.images = images->view(light_per_photon / static_cast<double>(here.rays));
-      if (gaussian && HitGrid::pays(shared.spot.gaussian.sigma, here.rays)) {
+      if (gaussian && HitGrid::is_faster_than_psfs(shared.spot.gaussian.sigma, here.rays)) {
         launch.spline = spline;
         launch.most_window_px = widest_particle_window_px(launch, medium);
       } else if (gaussian && 2 * shared.spot.half_width() + 1 <= widest_patch_px) {
@@ -95,7 +96,7 @@ LaunchesOnDevice::LaunchesOnDevice(ParticleLaunches const& host, DeviceMedium co
   rules_ = DeviceArray<double>(rules.data(), rules.size(), "the rules");
   double const* rule = rules_.data();
   for (ParticlesLaunch& one : launches_) {
-    one.sums_a_pulse = ladder_.sums_a_pulse;
+    one.sums_per_pulse = ladder_.sums_per_pulse;
     one.rule.radius2 = rule;
     one.rule.share = rule + one.rule.rings;
     rule += 2 * one.rule.rings;
@@ -110,7 +111,7 @@ CameraElement<double> const* LaunchesOnDevice::smooth(std::size_t step) const {
   return smooth_[step].data();
 }
 
-double LaunchesOnDevice::steps_a_particle(double across_medium, std::size_t step) const {
+double LaunchesOnDevice::steps_per_particle(double across_medium, std::size_t step) const {
   ParticlesLaunch const& launch = launches_[step];
   int const wide = 2 * launch.spot.half_width() + 1;
   double const light = launch.images.light[0] ? wide * wide / 16.0 : 0;

@@ -42,7 +42,7 @@ class LaunchesOnDevice {
 
   /// Estimates the operations of all rays of a particle at a ladder step, in units of integration steps, to limit the
   /// duration of a launch.
-  double steps_a_particle(double across_medium, std::size_t step) const;
+  double steps_per_particle(double across_medium, std::size_t step) const;
 
  private:
   ParticleLaunches const& host_;
@@ -59,18 +59,18 @@ class ParticleBatch {
  public:
   /// Uploads the particles. @param staging  page-locked buffer; must not be written before the first kernel of the
   /// batch has run
-  ParticleBatch(Particles const& particles, std::size_t first, std::size_t count, std::size_t sums_a_pulse,
+  ParticleBatch(Particles const& particles, std::size_t first, std::size_t count, std::size_t sums_per_pulse,
                 PinnedBuffer& staging)
       : count_(count),
         diameters_(count, "the particles"),
         aims_(frame_count * count, "the particles"),
         origins_(count, "the particles"),
-        sums_(frame_count * count * sums_a_pulse, "the sums over a batch's rays"),
+        sums_(frame_count * count * sums_per_pulse, "the sums over a batch's rays"),
         moved2_(frame_count * count, "the sums over a batch's rays"),
         truth_(count, "the particles"),
         ambient_(count, "the particles"),
         steps_(3 * count, "the particles"),
-        counts_(LadderView::most_steps + 1, "the particles") {
+        counts_(LadderView::max_step_count + 1, "the particles") {
     for (int pulse = 0; pulse < frame_count; ++pulse) {
       places_[pulse] = DeviceArray<Vec3d>(count, "the particles");
       photons_[pulse] = DeviceArray<double>(count, "the particles");
@@ -79,9 +79,10 @@ class ParticleBatch {
   }
 
   /// Returns the device memory per particle [bytes].
-  static std::size_t bytes_a_particle(std::size_t sums_a_pulse) {
-    std::size_t const a_pulse = sizeof(PulseAim) + sizeof(Vec3d) + 2 * sizeof(double) + sums_a_pulse * sizeof(RaySums);
-    std::size_t const listed = LadderView::most_steps * frame_count * sizeof(std::uint32_t);
+  static std::size_t device_bytes_per_particle(std::size_t sums_per_pulse) {
+    std::size_t const a_pulse =
+        sizeof(PulseAim) + sizeof(Vec3d) + 2 * sizeof(double) + sums_per_pulse * sizeof(RaySums);
+    std::size_t const listed = LadderView::max_step_count * frame_count * sizeof(std::uint32_t);
     return frame_count * a_pulse + sizeof(double) + sizeof(Vec2d) + 2 * sizeof(DotTruth) + 3 * sizeof(int) + listed;
   }
 

@@ -70,12 +70,13 @@ __global__ void __launch_bounds__(threads, 4)
       if (launch.patch_px == 0) continue;
       double const units = launch.sign * ray.seen.weight * launch.images.units_per_weight;
       bool const alone =
-          !spots.lay_down(launch.spot, square, ray.seen.pixel, units, lanes, pulse, launch.images) && units != 0;
-      lay_down_spots(launch, alone, ray.seen, pulse);
+          !spots.accumulate_light(launch.spot, square, ray.seen.pixel, units, lanes, pulse, launch.images) &&
+          units != 0;
+      add_psfs(launch, alone, ray.seen, pulse);
     }
     if (moved2 > 0 && state == AimState::wide) keep_largest(traced.moved2 + at, moved2);
     sum_lanes(sums, lanes, launch.scramblings());
-    if (mine && ray_of_lane < launch.scramblings()) traced.sums[at * launch.sums_a_pulse + ray_of_lane] = sums;
+    if (mine && ray_of_lane < launch.scramblings()) traced.sums[at * launch.sums_per_pulse + ray_of_lane] = sums;
   }
   add_ends(launch, counts, traced.ends);
 }

@@ -1,7 +1,7 @@
 #include "cuda/device/block_sum.cuh"
 #include "cuda/device/launch.h"
+#include "cuda/rays/add_psf.cuh"
 #include "cuda/rays/hit_window.cuh"
-#include "cuda/rays/lay_down_spot.cuh"
 #include "cuda/rays/particle_ray.cuh"
 
 namespace gladstone::cuda {
@@ -38,7 +38,7 @@ __device__ void trace_share(ParticlesLaunch const& launch, CameraView<double> co
                             PulseAim const& aim, BlockShare const& share, HitWindow const& window, unsigned int* counts,
                             RaySums& sums, double& moved2) {
   bool const lit = launch.images.light[0] != nullptr;
-  // Whole warps take part in every iteration, because lay_down_spots() is collective.
+  // Whole warps take part in every iteration, because add_psfs() is collective.
   for (std::uint64_t of_block = share.first; of_block < share.last; of_block += threads) {
     std::uint64_t const j = of_block + threadIdx.x;
     ParticleRay ray;
@@ -50,7 +50,7 @@ __device__ void trace_share(ParticlesLaunch const& launch, CameraView<double> co
       atomicAdd(counts + share.pulse * ray_status_count + static_cast<int>(ray.seen.status), 1u);
       alone = lit && ray.seen.weight != 0 && !window.take(ray.seen.pixel, ray.seen.weight);
     }
-    if (lit) lay_down_spots(launch, alone, ray.seen, share.pulse);
+    if (lit) add_psfs(launch, alone, ray.seen, share.pulse);
   }
 }
 
@@ -75,11 +75,11 @@ __global__ void __launch_bounds__(threads, 3)
     std::uint64_t const at = listed[item / shares], part = item % shares;
     PulseAim const& aim = aims[at];
     if (aim.state != state) continue;
-    std::uint64_t const first = part * ParticlesLaunch::most_rays_of_block, particle = at / frame_count;
+    std::uint64_t const first = part * ParticlesLaunch::max_rays_per_block, particle = at / frame_count;
     BlockShare const share{particle,
                            static_cast<int>(at % frame_count),
                            first,
-                           min(launch.rays, first + ParticlesLaunch::most_rays_of_block),
+                           min(launch.rays, first + ParticlesLaunch::max_rays_per_block),
                            launch.pulses[0].key(particle),
                            origins[particle]};
     HitWindow window;
@@ -91,7 +91,7 @@ __global__ void __launch_bounds__(threads, 3)
                 spline.per_px,
                 square.left,
                 square.top,
-                HitWindow::units_per_weight(most_weight, min(launch.rays, ParticlesLaunch::most_rays_of_block)),
+                HitWindow::units_per_weight(most_weight, min(launch.rays, ParticlesLaunch::max_rays_per_block)),
                 most_weight};
       window.clear();
     }
@@ -103,7 +103,7 @@ __global__ void __launch_bounds__(threads, 3)
     __syncthreads();
     block_sums(sums, parts.sums, scramblings);
     if (threadIdx.x < scramblings) {
-      traced.sums[at * launch.sums_a_pulse + part * scramblings + threadIdx.x] = parts.sums[threadIdx.x];
+      traced.sums[at * launch.sums_per_pulse + part * scramblings + threadIdx.x] = parts.sums[threadIdx.x];
     }
     __syncthreads();
     if (window.nodes) window.flush(spline, parts.rows_seen, launch.images, share.pulse, launch.sign);
@@ -131,17 +131,18 @@ __global__ void __launch_bounds__(seeing_threads)
     clipped = clipped || state == AimState::wide;
     for (std::uint64_t share = 0; share < shares; ++share) {
       for (int k = 0; k < scramblings; ++k) {
-        RaySums const& here = sums[at * ladder.sums_a_pulse + share * scramblings + k];
+        RaySums const& here = sums[at * ladder.sums_per_pulse + share * scramblings + k];
         through_medium[k].hits[pulse] += here.hits[0];
         if (ambient) without[k].hits[pulse] += here.hits[1];
       }
     }
   }
   PulseAim const &first = aims[frame_count * i], &second = aims[frame_count * i + 1];
-  RimSpread const rim{{first.spread2, second.spread2}, {first.state == AimState::wide, second.state == AimState::wide}};
-  steps.next[i] = ladder.next(step, clipped ? RaysSent::clipped : RaysSent::by_rule, rim, through_medium);
+  EdgeRaySpread const rim{{first.spread2, second.spread2},
+                          {first.state == AimState::wide, second.state == AimState::wide}};
+  steps.next[i] = ladder.next(step, clipped ? RayPlacement::clipped : RayPlacement::by_rule, rim, through_medium);
   steps.chosen[i] = steps.next[i] > step ? 1 : 0;
-  if (steps.chosen[i] != 0) atomicAdd(steps.count + LadderView::most_steps, 1u);
+  if (steps.chosen[i] != 0) atomicAdd(steps.count + LadderView::max_step_count, 1u);
   truth[i] = source_truth(through_medium, scramblings, origins[i]);
   if (ambient) ambient[i] = source_truth(without, scramblings, origins[i]);
 }

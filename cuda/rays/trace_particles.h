@@ -9,7 +9,7 @@
 #include "render/rays/filled_stop.h"
 #include "render/rays/hit_spline.h"
 #include "render/rays/particle_sources.h"
-#include "render/rays/ray_need.h"
+#include "render/rays/ray_requirement.h"
 #include "render/rays/source_truth.h"
 #include "render/rays/stop_rule.h"
 #include "render/scene/spot.h"
@@ -49,16 +49,16 @@ struct PulseAim {
 
 /// Ladder of ray counts per particle (RaysLadder), on the device.
 struct LadderView {
-  static constexpr int most_steps = 16;
+  static constexpr int max_step_count = 16;
 
-  RayGoal goal;
+  RequiredRayAccuracy goal;
   double light_per_photon = 0;  ///< light in the images per photon
   int steps = 1;
   int first_clipped = 0;  ///< first step of particles whose rays are clipped
   bool ruled = false;     ///< rays that fill the stop follow quadrature rules
-  std::uint64_t rays[most_steps] = {};
-  int scrambling_bits[most_steps] = {};
-  std::uint64_t sums_a_pulse = 1;  ///< number of sums of one particle and pulse; maximum over the steps
+  std::uint64_t rays[max_step_count] = {};
+  int scrambling_bits[max_step_count] = {};
+  std::uint64_t sums_per_pulse = 1;  ///< number of sums of one particle and pulse; maximum over the steps
 
   /// Like RaysLadder::at_least().
   GLADSTONE_HD int at_least(double wanted) const {
@@ -68,15 +68,15 @@ struct LadderView {
   }
   /// Like ParticleLaunches::step_filled().
   GLADSTONE_HD int step_filled(double light, double spread2) const {
-    return at_least(rays_for_spread(goal, ruled ? RaysSent::by_rule : RaysSent::clipped, light, spread2,
-                                    static_cast<double>(rays[0])));
+    return at_least(estimate_rays_for_spread(goal, ruled ? RayPlacement::by_rule : RayPlacement::clipped, light,
+                                             spread2, static_cast<double>(rays[0])));
   }
   /// Like RaysLadder::next().
-  GLADSTONE_HD int next(int step, RaysSent sent, RimSpread const& rim, RaySums const* of_scramblings) const {
+  GLADSTONE_HD int next(int step, RayPlacement sent, EdgeRaySpread const& rim, RaySums const* of_scramblings) const {
     if (step + 1 >= steps) return step;
     auto const here = static_cast<double>(rays[step]);
-    double const asked =
-        rays_asked(goal, sent, rim, of_scramblings, 1 << scrambling_bits[step], here, light_per_photon / here);
+    double const asked = estimate_required_rays(goal, sent, rim, of_scramblings, 1 << scrambling_bits[step], here,
+                                                light_per_photon / here);
     if (!(asked > here)) return step;
     int const found = at_least(asked);
     return found > step ? found : step + 1;
@@ -100,13 +100,13 @@ struct ParticlesLaunch {
   int patch_px = 0;        ///< widest square of pixels in which a warp accumulates PSFs; 0: none
   DeviceImages images;     ///< images to which light is added; may be empty
   std::uint64_t rays = 1;
-  std::uint64_t sums_a_pulse = 1;  ///< distance between the sums of successive aims
-  bool chief_rays = false;         ///< the camera has no stop: trace chief rays only
-  double sign = 1;                 ///< sign of the light and of the ray counts; -1 removes those of an earlier launch
+  std::uint64_t sums_per_pulse = 1;  ///< distance between the sums of successive aims
+  bool chief_rays = false;           ///< the camera has no stop: trace chief rays only
+  double sign = 1;                   ///< sign of the light and of the ray counts; -1 removes those of an earlier launch
 
   GLADSTONE_HD int scramblings() const { return 1 << choice.scrambling_bits; }
   GLADSTONE_HD static std::uint64_t shares_of(std::uint64_t rays) {
-    return (rays + most_rays_of_block - 1) / most_rays_of_block;
+    return (rays + max_rays_per_block - 1) / max_rays_per_block;
   }
   GLADSTONE_HD std::uint64_t shares() const { return shares_of(rays); }
   /// Returns whether a warp traces all rays of a particle, because a window of spline nodes would not be efficient.
@@ -119,7 +119,7 @@ struct ParticlesLaunch {
   }
 
   /// Maximum number of rays of a particle traced by one block; larger numbers are divided among several blocks.
-  static constexpr std::uint64_t most_rays_of_block = 16384;
+  static constexpr std::uint64_t max_rays_per_block = 16384;
 };
 
 /// Output of a launch, in device memory.
@@ -168,7 +168,7 @@ inline constexpr double heavier_in_window = 4;
 /// Returns the weight of ray k: a ray to the rim for k < rim_rays, the central ray for k = rim_rays.
 GLADSTONE_HD inline double weight_of_rim(ParticlesLaunch const& launch, PulseAim const& aim, int pulse, std::uint64_t i,
                                          int k) {
-  Vec2d const at = k < rim_rays ? point_of_circle(1.0, static_cast<double>(k) / rim_rays) : Vec2d{};
+  Vec2d const at = k < rim_rays ? point_on_circle(1.0, static_cast<double>(k) / rim_rays) : Vec2d{};
   return aimed_ray(launch, launch.pulses[pulse], aim.seen, i, at).weight;
 }
 

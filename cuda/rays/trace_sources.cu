@@ -1,7 +1,7 @@
 #include "cuda/device/block_sum.cuh"
 #include "cuda/device/launch.h"
+#include "cuda/rays/add_psf.cuh"
 #include "cuda/rays/hit_window.cuh"
-#include "cuda/rays/lay_down_spot.cuh"
 
 namespace gladstone::cuda {
 namespace {
@@ -19,7 +19,7 @@ __device__ void trace_share(SourcesLaunch const& launch, CameraView<double> cons
   auto const count = [counts](int frame, RayStatus status) {
     atomicAdd(counts + frame * ray_status_count + static_cast<int>(status), 1u);
   };
-  // Whole warps take part in every iteration, because lay_down_spots() is collective.
+  // Whole warps take part in every iteration, because add_psfs() is collective.
   for (std::uint64_t of_block = first; of_block < last; of_block += threads) {
     std::uint64_t const j = of_block + threadIdx.x;
     RayHit<double> hit[frame_count];
@@ -35,7 +35,7 @@ __device__ void trace_share(SourcesLaunch const& launch, CameraView<double> cons
       moved2 = fmax(moved2, here2);
     }
     if (lit) {
-      for (int frame = 0; frame < frame_count; ++frame) lay_down_spots(launch, alone[frame], hit[frame], frame);
+      for (int frame = 0; frame < frame_count; ++frame) add_psfs(launch, alone[frame], hit[frame], frame);
     }
   }
 }
@@ -54,13 +54,13 @@ __global__ void __launch_bounds__(threads, 3)
   camera.elements = parts.elements;
   HitSplineView spline = launch.spline;
   spline.share = parts.share;
-  std::uint64_t const shares = (launch.rays + most_rays_a_share - 1) / most_rays_a_share;
+  std::uint64_t const shares = (launch.rays + max_rays_per_share - 1) / max_rays_per_share;
   unsigned int const scramblings = 1u << launch.choice.scrambling_bits;
   for (std::uint64_t item = blockIdx.x; item < count * shares; item += gridDim.x) {
-    std::uint64_t const at = item / shares, first = item % shares * most_rays_a_share;
-    std::uint64_t const last = min(launch.rays, first + most_rays_a_share);
+    std::uint64_t const at = item / shares, first = item % shares * max_rays_per_share;
+    std::uint64_t const last = min(launch.rays, first + max_rays_per_share);
     SourceOnDevice const& aim = sources[at];
-    double const units = HitWindow::units_per_weight(aim.most_weight, min(launch.rays, most_rays_a_share));
+    double const units = HitWindow::units_per_weight(aim.most_weight, min(launch.rays, max_rays_per_share));
     HitWindow window[frame_count];
     bool const windows = parts.nodes != nullptr && aim.window_px > 0;
     int const side = aim.window_px * spline.per_px;

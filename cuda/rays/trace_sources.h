@@ -13,7 +13,7 @@
 namespace gladstone::cuda {
 
 /// Maximum number of rays of a source traced by one block; larger numbers are divided among several blocks.
-inline constexpr std::uint64_t most_rays_a_share = 16384;
+inline constexpr std::uint64_t max_rays_per_share = 16384;
 
 /// Maximum side of a source's window in spline nodes, and shared memory of a block for it, which all cards since 2020
 /// provide. On cards with less, the PSFs of rays are added one by one.
@@ -46,7 +46,7 @@ struct SourcesLaunch {
   double sign = 1;  ///< sign of the light
 
   int scramblings() const { return 1 << choice.scrambling_bits; }
-  std::uint64_t shares() const { return (rays + most_rays_a_share - 1) / most_rays_a_share; }
+  std::uint64_t shares() const { return (rays + max_rays_per_share - 1) / max_rays_per_share; }
 };
 
 /// Output of a launch, in device memory.

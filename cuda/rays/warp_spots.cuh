@@ -1,6 +1,6 @@
 #pragma once
 
-#include "cuda/rays/lay_down_spot.cuh"
+#include "cuda/rays/add_psf.cuh"
 #include "cuda/rays/trace_particles.h"
 
 namespace gladstone::cuda {
@@ -22,8 +22,8 @@ class WarpSpots {
   /// @param units  light of the ray; 0: none
   /// @param lanes  number of adjacent lanes per particle
   /// @return false if the ray's light is outside its square
-  __device__ bool lay_down(SpotView const& spot, LightSquare const& square, Vec2d p, double units, int lanes, int frame,
-                           DeviceImages const& images) const {
+  __device__ bool accumulate_light(SpotView const& spot, LightSquare const& square, Vec2d p, double units, int lanes,
+                                   int frame, DeviceImages const& images) const {
     int const lane = threadIdx.x % warp_size;
     int const half = spot.half_width(), width = 2 * half + 1;
     bool taken = false;

@@ -13,7 +13,7 @@ namespace gladstone::python {
 namespace {
 
 Calibration calibrate(std::string const& place, std::vector<std::string> const& pictures) {
-  Calibration calibration = pictures.empty() ? calibrate_case(place) : calibrate_pictures(place, pictures);
+  Calibration calibration = pictures.empty() ? calibrate_case(place) : calibrate_images(place, pictures);
   for (std::string const& warning : calibration.warnings) spdlog::warn("{}", warning);
   return calibration;
 }

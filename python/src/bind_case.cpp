@@ -28,7 +28,7 @@ std::vector<AnyCase> render_cameras(SetupText const& setup, std::string const& d
       rendered.emplace_back(std::make_shared<PlanesCase>(one.name, std::move(one.document), device));
       continue;
     }
-    KnownParts known;
+    ReusableParts known;
     if (first) known.medium = &first->prepared().scene.medium;
     auto const pair = std::make_shared<PairCase>(one.name, std::move(one.document), device, known);
     if (!first) first = pair;

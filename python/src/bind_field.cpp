@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "analysis/correlation/pair_verdict.h"
+#include "analysis/correlation/pair_assessment.h"
 #include "analysis/vectors/vector_file.h"
 #include "python/src/arrays.h"
 #include "python/src/call.h"

@@ -38,7 +38,7 @@ nb::object mie_amplitudes(double x, std::complex<double> m, NumberArray const& a
 /// Traces rays given as six columns: start [mm] and direction.
 std::vector<TracedRay> trace(SetupText const& setup, std::vector<double> const& rows, Through through) {
   CaseSetup loaded = load_case_setup(setup.document());
-  std::vector<Ray<double>> const rays = rays_of(rows, "rays", loaded.setup.farthest_off_axis());
+  std::vector<Ray<double>> const rays = rays_of(rows, "rays", loaded.setup.max_off_axis_distance());
   for (std::string const& text : loaded.warnings) spdlog::warn("{}", text);
   Scene scene = build_scene(loaded.setup);
   for (std::string const& text : scene.medium.warnings) spdlog::warn("{}", text);

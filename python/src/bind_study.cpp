@@ -20,7 +20,7 @@ namespace {
 
 std::size_t plan(std::string const& study, std::string const& folder, std::string const& device) {
   StudyFile read = read_study(study);
-  try_plan_place(folder, read);
+  check_plan_folder(folder, read);
   std::string const planned = device == "auto" ? open_device(device).name() : device;
   StudyPlan const all = plan_study(std::move(read), planned);
   write_plan(folder, all);
@@ -31,7 +31,7 @@ std::size_t plan(std::string const& study, std::string const& folder, std::strin
 void compute(std::string const& folder, RunSelection const& selection) {
   Manifest const cases = read_manifest(folder);
   std::vector<std::size_t> const selected = selected_cases(cases.size(), selection);
-  std::size_t const due = forget_failures(folder, cases, selected, selection).missing.size();
+  std::size_t const due = remove_failed_results(folder, cases, selected, selection).missing.size();
   if (due == 0) return;
   Progress progress("cases", due);
   ProgressMonitor of_cases;  // unread: the study reports whole cases
@@ -46,7 +46,7 @@ std::string state(std::string const& folder) {
   Manifest const cases = read_manifest(folder);
   std::vector<std::size_t> all(cases.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
-  return json_text(state_json(folder, cases, state_of(folder, cases, all)));
+  return json_text(state_json(folder, cases, determine_run_state(folder, cases, all)));
 }
 
 /// Returns the columns of a study's table: name to (values, labels, description).

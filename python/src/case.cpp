@@ -10,7 +10,7 @@
 #include "render/files/text_file.h"
 #include "studies/case/case_summary.h"
 #include "studies/case/json_text.h"
-#include "studies/case/quiet_log.h"
+#include "studies/case/log_silencer.h"
 #include "studies/case/truth_file.h"
 
 namespace gladstone::python {
@@ -22,7 +22,7 @@ constexpr double accuracy_limit_px = 1e-3;
 
 std::vector<UncertainInput> uncertain_inputs(SetupDocument const& document) {
   SetupDocument written = document.copy();
-  return take_uncertain_inputs(written);
+  return extract_uncertain_inputs(written);
 }
 
 /// Fills a CASE folder by `write`; all files are written, or none.
@@ -35,18 +35,18 @@ void write_folder(std::string const& folder, CaseSetup const& loaded, std::vecto
     write(place);
     if (uncertain.empty()) return;
     std::string const setup = (fs::path(place) / case_file::setup).string();
-    OutputFile::write_text(setup, with_uncertain_inputs(read_text_file(setup), uncertain));
+    OutputFile::write_text(setup, insert_uncertain_inputs(read_text_file(setup), uncertain));
   });
   output.commit();
 }
 
 }  // namespace
 
-PairCase::PairCase(std::string camera, SetupDocument document, Backend const& device, KnownParts const& known)
+PairCase::PairCase(std::string camera, SetupDocument document, Backend const& device, ReusableParts const& known)
     : camera_(std::move(camera)),
       uncertain_(uncertain_inputs(document)),
       loaded_(load_case_setup(std::move(document))) {
-  FinishedCase finished = finish_case(loaded_, *device.renderer, known);
+  RecordedCase finished = render_case_in_memory(loaded_, *device.renderer, known);
   outcome_ = judge_case(loaded_, finished.prepared, finished.rendered, finished.frames, *device.renderer);
   take_images(grey_levels(finished.frames.levels->reference()), grey_levels(finished.frames.levels->flow()));
   accuracy_ = outcome_->accuracy;
@@ -91,7 +91,7 @@ void PairCase::save(std::string const& folder) {
 PreparedCase const& PairCase::prepared() {
   std::lock_guard const lock(mutex_);
   if (!prepared_) {
-    QuietLog const quiet;  // summary.json holds the warnings
+    LogSilencer const quiet;  // summary.json holds the warnings
     prepared_ = prepare_case(loaded_);
   }
   return *prepared_;

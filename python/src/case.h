@@ -18,7 +18,7 @@ namespace gladstone::python {
 class PairCase {
  public:
   /// Renders the case of one camera.
-  PairCase(std::string camera, SetupDocument document, Backend const& device, KnownParts const& known);
+  PairCase(std::string camera, SetupDocument document, Backend const& device, ReusableParts const& known);
   /// Loads a CASE folder.
   explicit PairCase(std::string folder);
 

@@ -9,7 +9,7 @@ namespace gladstone {
 namespace {
 
 std::string joined(std::vector<SetupProblem> const& problems, std::size_t more) {
-  std::size_t const told = std::min(problems.size(), most_problems_told);
+  std::size_t const told = std::min(problems.size(), max_reported_problems);
   std::string text;
   for (std::size_t i = 0; i < told; ++i) {
     if (i > 0) text += '\n';
@@ -24,16 +24,16 @@ std::string joined(std::vector<SetupProblem> const& problems, std::size_t more) 
 SetupError::SetupError(std::vector<SetupProblem> problems, std::size_t more)
     : Error(joined(problems, more)), problems_(std::move(problems)), more_(more) {}
 
-bool lacks_memory(std::exception const& error) {
+bool is_out_of_memory(std::exception const& error) {
   return dynamic_cast<std::bad_alloc const*>(&error) || dynamic_cast<std::length_error const*>(&error) ||
          dynamic_cast<MemoryError const*>(&error) ||
          std::string_view(error.what()).find("(-4:Insufficient memory)") != std::string_view::npos;
 }
 
-std::string message_of(std::exception const& error) {
+std::string format_user_message(std::exception const& error) {
   if (dynamic_cast<Error const*>(&error)) return error.what();
   if (dynamic_cast<std::invalid_argument const*>(&error)) return error.what();  // thrown by gladstone's own code only
-  if (lacks_memory(error)) return "out of memory; reduce the image, the field or the number of dots";
+  if (is_out_of_memory(error)) return "out of memory; reduce the image, the field or the number of dots";
   if (auto const* const file = dynamic_cast<std::filesystem::filesystem_error const*>(&error)) {
     return file->path1().string() + ": cannot be accessed (" + file->code().message() +
            "); check the name and the permissions";

@@ -13,17 +13,17 @@ struct SetupProblem {
   std::string message;  ///< "key = value: problem (why); suggestion"
 };
 
-/// Base class of errors whose text was written for the user; see message_of().
+/// Base class of errors whose text was written for the user; see format_user_message().
 class Error : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
 /// Maximum number of problems that a SetupError describes; further ones are only counted.
-inline constexpr std::size_t most_problems_told = 20;
+inline constexpr std::size_t max_reported_problems = 20;
 
-/// All problems of a user's setup. The message has one line for each of the first most_problems_told problems, then the
-/// number of further ones. Exit code 2.
+/// All problems of a user's setup. The message has one line for each of the first max_reported_problems problems, then
+/// the number of further ones. Exit code 2.
 class SetupError : public Error {
  public:
   /// @param more  number of further problems, without a description
@@ -88,10 +88,10 @@ class Interrupted : public Error {
 
 /// Returns true if an error means that memory is exhausted: std::bad_alloc, std::length_error (a size refused before
 /// its allocation), MemoryError, or an OpenCV error of code -4.
-bool lacks_memory(std::exception const& error);
+bool is_out_of_memory(std::exception const& error);
 
 /// Returns the text that is shown to the user for an error. The text of an Error is returned as it is; errors of
 /// libraries are put into a sentence that says what failed and what to do.
-std::string message_of(std::exception const& error);
+std::string format_user_message(std::exception const& error);
 
 }  // namespace gladstone

@@ -15,15 +15,15 @@ struct Pose {
   Vec3<T> z{T(0), T(0), T(1)};
 
   /// Coordinate transforms from the outer to the local frame (inwards) and from the local to the outer one (outwards).
-  GLADSTONE_HD Vec3<T> direction_inwards(Vec3<T> d) const { return {dot(d, x), dot(d, y), dot(d, z)}; }
-  GLADSTONE_HD Vec3<T> direction_outwards(Vec3<T> d) const { return d.x * x + d.y * y + d.z * z; }
-  GLADSTONE_HD Vec3<T> point_inwards(Vec3<T> p) const { return direction_inwards(p - origin); }
-  GLADSTONE_HD Vec3<T> point_outwards(Vec3<T> p) const { return origin + direction_outwards(p); }
+  GLADSTONE_HD Vec3<T> direction_to_local(Vec3<T> d) const { return {dot(d, x), dot(d, y), dot(d, z)}; }
+  GLADSTONE_HD Vec3<T> direction_to_outer(Vec3<T> d) const { return d.x * x + d.y * y + d.z * z; }
+  GLADSTONE_HD Vec3<T> point_to_local(Vec3<T> p) const { return direction_to_local(p - origin); }
+  GLADSTONE_HD Vec3<T> point_to_outer(Vec3<T> p) const { return origin + direction_to_outer(p); }
   GLADSTONE_HD Ray<T> inwards(Ray<T> const& ray) const {
-    return {point_inwards(ray.position), direction_inwards(ray.direction)};
+    return {point_to_local(ray.position), direction_to_local(ray.direction)};
   }
   GLADSTONE_HD Ray<T> outwards(Ray<T> const& ray) const {
-    return {point_outwards(ray.position), direction_outwards(ray.direction)};
+    return {point_to_outer(ray.position), direction_to_outer(ray.direction)};
   }
   /// Intersects the infinite line of a ray with the local plane z = 0.
   /// @param ray    ray in the outer frame
@@ -39,11 +39,11 @@ struct Pose {
 
   /// Returns this pose, given in the frame `outer`, as a pose in the frame in which `outer` is given.
   Pose within(Pose const& outer) const {
-    return {outer.point_outwards(origin), outer.direction_outwards(x), outer.direction_outwards(y),
-            outer.direction_outwards(z)};
+    return {outer.point_to_outer(origin), outer.direction_to_outer(x), outer.direction_to_outer(y),
+            outer.direction_to_outer(z)};
   }
   /// Returns the pose translated by a vector in local coordinates [m].
-  Pose moved(Vec3<T> by) const { return {point_outwards(by), x, y, z}; }
+  Pose moved(Vec3<T> by) const { return {point_to_outer(by), x, y, z}; }
   /// Returns the pose after right-handed rotations about its local x axis, the rotated y axis and then the rotated z
   /// axis.
   /// @param angles  rotation angles about x, y and z [rad]

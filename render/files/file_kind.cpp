@@ -28,7 +28,7 @@ std::string first_bytes(std::string const& path) {
 }
 
 std::string kind_of_hdf5(std::string const& path) {
-  UnguardedReading const unguarded;
+  UnrecordedReading const unguarded;
   try {
     std::string const filetype = Hdf5Reader(path).attribute("filetype");
     return filetype.empty() ? "HDF5" : filetype;

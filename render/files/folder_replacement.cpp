@@ -145,20 +145,20 @@ bool is_derived(std::string const& name, FolderContent const& content) {
   });
 }
 
-void finish_replacement_above(std::string const& folder, FolderContent const& content) {
+void complete_parent_replacement(std::string const& folder, FolderContent const& content) {
   fs::path const part = fs::absolute(fs::path(folder) / "").parent_path();
   fs::path const work = part.parent_path() / replacing;
   for (char const* of : {staged_files, old_files, retired_files}) {
-    if (is_there(work / of / part.filename())) return finish_replacement(part.parent_path().string(), content);
+    if (is_there(work / of / part.filename())) return complete_replacement(part.parent_path().string(), content);
   }
 }
 
 bool is_complete(std::string const& folder, FolderContent const& content) {
   fs::path const marker = fs::path(folder) / content.marker, work = fs::path(folder) / replacing;
   do {
-    finish_replacement(folder, content);
+    complete_replacement(folder, content);
     if (is_there(marker)) return true;
-  } while (is_there(work));  // repeat if another replacement began after finish_replacement()
+  } while (is_there(work));  // repeat if another replacement began after complete_replacement()
   return is_there(marker);
 }
 
@@ -177,7 +177,7 @@ void replace_files(Partial& partial, std::string const& folder, std::string cons
   // rename() does not replace a directory that is not empty: an existing .replacing is completed first.
   while (int const error = partial.move_to(work.string())) {
     if (error != ENOTEMPTY && error != EEXIST) fail("its files cannot be replaced", error);
-    finish_replacement(folder, content);
+    complete_replacement(folder, content);
   }
   flush_to_disk(folder);
   stop_point("replacement-begun");
@@ -203,11 +203,11 @@ void replace_files(Partial& partial, std::string const& folder, std::string cons
   flush_to_disk(folder);
 }
 
-void finish_replacement(std::string const& folder, FolderContent const& content) {
+void complete_replacement(std::string const& folder, FolderContent const& content) {
   fs::path const work = fs::path(folder) / replacing;
   auto const end = std::chrono::steady_clock::now() + std::chrono::seconds(5);
   while (is_there(work)) {
-    if (auto const taken = Leftover::take(work.string())) {
+    if (auto const taken = AbandonedOutput::take(work.string())) {
       std::string const aside = (fs::path(folder) / taken->name(".")).string();
       try {
         retire(folder, content);
@@ -226,7 +226,7 @@ void finish_replacement(std::string const& folder, FolderContent const& content)
     if (::rmdir(work.c_str()) == 0) return;  // empty: its content was lost in a crash of the system
     throw_if_interrupted();
     if (std::chrono::steady_clock::now() > end) {
-      throw OutputError(folder, "is being replaced by " + writer_of(work.string()) +
+      throw OutputError(folder, "is being replaced by " + describe_writer(work.string()) +
                                     "; try again when it has finished or, if it was interrupted, on that host");
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(10));

@@ -23,7 +23,7 @@ inline constexpr char const* staged_files = "new";
 
 /// Moves the files of PARTIAL/new into an existing directory, which retains its identity, owner, permissions and other
 /// files. Readers never see a mixture of old and new files as complete; after a kill at any moment, the directory has
-/// the old files, or finish_replacement() completes the new ones.
+/// the old files, or complete_replacement() completes the new ones.
 /// 1. PARTIAL is renamed to FOLDER/.replacing. From here on, the new files are the valid content: any other process
 ///    that finds .replacing waits, completes it or reports an error, so that two writers are serialised.
 /// 2. The marker, then every other file to be replaced and every derived file, moves to .replacing/old, which is then
@@ -39,15 +39,15 @@ void replace_files(Partial& partial, std::string const& folder, std::string cons
 /// Completes an interrupted replacement of files. If its writer is still running, waits for it for up to five seconds.
 /// @throws OutputError if it is still running then, if its writer is on another host and cannot be checked, or if a
 ///         file cannot be moved
-void finish_replacement(std::string const& folder, FolderContent const& content);
+void complete_replacement(std::string const& folder, FolderContent const& content);
 
-/// Calls finish_replacement() for the parent directory if that is replaced as a whole, with `folder` as one of its
+/// Calls complete_replacement() for the parent directory if that is replaced as a whole, with `folder` as one of its
 /// parts.
 /// @param content  files of the parent directory
-void finish_replacement_above(std::string const& folder, FolderContent const& content);
+void complete_parent_replacement(std::string const& folder, FolderContent const& content);
 
-/// Returns true if a directory has its marker file, after finish_replacement().
-/// @throws OutputError as finish_replacement()
+/// Returns true if a directory has its marker file, after complete_replacement().
+/// @throws OutputError as complete_replacement()
 bool is_complete(std::string const& folder, FolderContent const& content);
 
 /// Returns true if a directory entry's name is that of a running replacement or of a partial directory for one.

@@ -51,11 +51,11 @@ InputGuard::~InputGuard() {
   record().results.clear();
 }
 
-UnguardedReading::UnguardedReading() { ++unguarded; }
-UnguardedReading::~UnguardedReading() { --unguarded; }
+UnrecordedReading::UnrecordedReading() { ++unguarded; }
+UnrecordedReading::~UnrecordedReading() { --unguarded; }
 
-ProtectedWriting::ProtectedWriting() { ++writing_protected; }
-ProtectedWriting::~ProtectedWriting() { --writing_protected; }
+ProtectedWritePermit::ProtectedWritePermit() { ++writing_protected; }
+ProtectedWritePermit::~ProtectedWritePermit() { --writing_protected; }
 
 void record_input(std::string const& path, struct stat const& file) {
   if (unguarded > 0) return;

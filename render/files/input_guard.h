@@ -29,21 +29,21 @@ class InputGuard {
 
 /// RAII guard: files that this thread opens are not recorded as inputs. For files that are read in order to be
 /// replaced.
-class UnguardedReading {
+class UnrecordedReading {
  public:
-  UnguardedReading();
-  ~UnguardedReading();
-  UnguardedReading(UnguardedReading const&) = delete;
-  UnguardedReading& operator=(UnguardedReading const&) = delete;
+  UnrecordedReading();
+  ~UnrecordedReading();
+  UnrecordedReading(UnrecordedReading const&) = delete;
+  UnrecordedReading& operator=(UnrecordedReading const&) = delete;
 };
 
 /// RAII guard: this thread may write protected files. For the commands that make the folders of results.
-class ProtectedWriting {
+class ProtectedWritePermit {
  public:
-  ProtectedWriting();
-  ~ProtectedWriting();
-  ProtectedWriting(ProtectedWriting const&) = delete;
-  ProtectedWriting& operator=(ProtectedWriting const&) = delete;
+  ProtectedWritePermit();
+  ~ProtectedWritePermit();
+  ProtectedWritePermit(ProtectedWritePermit const&) = delete;
+  ProtectedWritePermit& operator=(ProtectedWritePermit const&) = delete;
 };
 
 /// Records a file that has been opened for reading.
@@ -61,7 +61,7 @@ void refuse_recorded_input(std::string const& path, std::string const& asked);
 /// Throws if a file belongs to a folder of results (ProtectedFiles), whether it exists or not.
 /// @param path   file to be written, absolute and without links
 /// @param asked  name of the output for messages
-/// @throws OutputError if the file is protected and no ProtectedWriting exists in this thread
+/// @throws OutputError if the file is protected and no ProtectedWritePermit exists in this thread
 void refuse_protected_file(std::string const& path, std::string const& asked);
 
 }  // namespace gladstone

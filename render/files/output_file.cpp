@@ -48,8 +48,8 @@ OutputFile::OutputFile(std::string const& path, std::string const& kind) : place
   refuse_protected_file(place_.path(), place_.asked());
   if (!kind.empty()) refuse_replacing(kind);
   place_.make_parents();
-  std::string const stem = stem_beside(place_.name());
-  remove_leftovers(place_.folder(), stem);
+  std::string const stem = sibling_stem(place_.name());
+  remove_abandoned_outputs(place_.folder(), stem);
   try {
     partial_.emplace(place_.folder(), stem, Partial::Kind::file);
   } catch (std::system_error const& problem) {

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "render/files/output_place.h"
+#include "render/files/output_destination.h"
 #include "render/files/partial.h"
 
 namespace gladstone {
@@ -39,7 +39,7 @@ class OutputFile {
  private:
   void refuse_replacing(std::string const& kind) const;
 
-  OutputPlace place_;
+  OutputDestination place_;
   std::optional<Partial> partial_;
   bool committed_ = false;
 };

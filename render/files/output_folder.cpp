@@ -44,15 +44,15 @@ bool is_vacant(std::string const& folder) {
 OutputFolder::OutputFolder(std::string const& path, FolderContent content)
     : place_(path), content_(std::move(content)) {
   struct stat there {};
-  std::string const stem = stem_beside(place_.name());
-  remove_leftovers(place_.folder(), stem);
+  std::string const stem = sibling_stem(place_.name());
+  remove_abandoned_outputs(place_.folder(), stem);
   if (::stat(place_.path().c_str(), &there) == 0) {
     if (std::string const kind = special_file(place_.path()); !kind.empty()) {
       throw OutputError(place_.asked(), "is not a folder (it is " + kind + "); name a folder");
     }
     if (!S_ISDIR(there.st_mode)) throw OutputError(place_.asked(), "is a file; name a folder");
     refuse_foreign_folder();
-    remove_leftovers(place_.path());
+    remove_abandoned_outputs(place_.path());
     stage(place_.path(), inside);
     return;
   }
@@ -85,8 +85,8 @@ void OutputFolder::refuse_foreign_folder() const {
 }
 
 void OutputFolder::fill(std::function<void(std::string const& folder)> const& write) const {
-  ProtectedWriting const own;
-  name_final_place(staged_, place_.asked(), [&] { write(staged_); });
+  ProtectedWritePermit const own;
+  report_final_path(staged_, place_.asked(), [&] { write(staged_); });
 }
 
 void OutputFolder::commit() {
@@ -110,7 +110,7 @@ void OutputFolder::commit() {
       throw OutputError(place_.asked(), "is a file; name a folder");
     }
     fs::path const name = fs::path(partial_->path()).filename();
-    std::string const writer = name.string().substr(stem_beside(place_.name()).size());
+    std::string const writer = name.string().substr(sibling_stem(place_.name()).size());
     if (int const problem = partial_->move_to((fs::path(place_.path()) / (inside + writer)).string())) {
       place_.fail("cannot be put in its place", problem);
     }

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "render/files/folder_replacement.h"
-#include "render/files/output_place.h"
+#include "render/files/output_destination.h"
 #include "render/files/partial.h"
 
 namespace gladstone {
@@ -37,7 +37,7 @@ class OutputFolder {
   void stage(std::string const& parent, std::string const& stem);
   void refuse_foreign_folder() const;
 
-  OutputPlace place_;
+  OutputDestination place_;
   FolderContent content_;
   std::optional<Partial> partial_;
   std::string staged_;

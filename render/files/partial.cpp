@@ -172,7 +172,7 @@ void Partial::keep() {
   if (descriptor_ >= 0) ::close(std::exchange(descriptor_, -1));
 }
 
-std::optional<Leftover> Leftover::take(std::string const& path) {
+std::optional<AbandonedOutput> AbandonedOutput::take(std::string const& path) {
   struct stat found {};
   struct stat disk {};
   if (::lstat(path.c_str(), &found) != 0) return std::nullopt;
@@ -187,20 +187,20 @@ std::optional<Leftover> Leftover::take(std::string const& path) {
   if (!writer->can_be_judged(disk.st_dev, has_lock ? touched.st_mtime : found.st_mtime)) return std::nullopt;
   int const file = ::open(lock.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW | (folder ? O_CREAT : 0), 0666);
   if (file < 0) return std::nullopt;
-  Leftover taken(file, text);
+  AbandonedOutput taken(file, text);
   if (lock_bytes(file, 0, 0) != 0 || !leads_to(lock, file)) return std::nullopt;
   return taken;
 }
 
-Leftover::~Leftover() {
+AbandonedOutput::~AbandonedOutput() {
   if (lock_ >= 0) ::close(lock_);
 }
-Leftover::Leftover(Leftover&& other) noexcept
+AbandonedOutput::AbandonedOutput(AbandonedOutput&& other) noexcept
     : lock_(std::exchange(other.lock_, -1)), writer_(std::move(other.writer_)) {}
 
-std::string Leftover::name(std::string const& stem) const { return stem + std::string(label) + writer_; }
+std::string AbandonedOutput::name(std::string const& stem) const { return stem + std::string(label) + writer_; }
 
-std::string writer_of(std::string const& folder) {
+std::string describe_writer(std::string const& folder) {
   std::optional<Writer> const writer = Writer::of(writer_text(folder));
   return writer ? "process " + writer->process + " on host " + writer->host : "another process";
 }
@@ -216,23 +216,23 @@ void remove_dead(std::string const& folder, Chosen const& chosen) {
     if (chosen(entry->path().filename().string())) found.push_back(entry->path());
   }
   for (fs::path const& path : found) {
-    if (auto const taken = Leftover::take(path.string())) fs::remove_all(path, error);
+    if (auto const taken = AbandonedOutput::take(path.string())) fs::remove_all(path, error);
   }
 }
 
 }  // namespace
 
-void remove_leftovers(std::string const& parent, std::string const& stem) {
+void remove_abandoned_outputs(std::string const& parent, std::string const& stem) {
   remove_dead(parent, [&](std::string const& name) { return is_partial(name, stem); });
 }
 
-void remove_leftovers(std::string const& folder) {
+void remove_abandoned_outputs(std::string const& folder) {
   remove_dead(folder, [](std::string const& name) {
     return name.starts_with('.') && name.find('.' + std::string(label)) != std::string::npos;
   });
 }
 
-std::string stem_beside(std::string const& name) {
+std::string sibling_stem(std::string const& name) {
   constexpr std::size_t longest = 120;  // 255 bytes minus up to 130 for the identification of the writer
   if (name.size() <= longest) return '.' + name + '.';
   std::size_t cut = longest - 17;
@@ -245,7 +245,7 @@ bool is_partial(std::string const& name, std::string const& stem) {
   return name.starts_with(stem) && std::string_view(name).substr(stem.size()).starts_with(label);
 }
 
-void name_final_place(std::string const& staged, std::string const& place, std::function<void()> const& write) try {
+void report_final_path(std::string const& staged, std::string const& place, std::function<void()> const& write) try {
   write();
 } catch (OutputError const& error) {
   if (!error.path().starts_with(staged)) throw;

@@ -35,43 +35,43 @@ class Partial {
 };
 
 /// Incomplete output of a process that ended, locked by this process for completion or removal.
-class Leftover {
+class AbandonedOutput {
  public:
   /// Locks an incomplete output if its writer has ended, else returns nullopt. The lock shows whether a writer of this
   /// boot and disk is running. A writer of an earlier boot of this host has ended. For other hosts, and for writers
   /// without locks, this cannot be determined, and nullopt is returned.
   /// @param path  path of a partial output, or of a directory renamed by Partial::move_to()
-  static std::optional<Leftover> take(std::string const& path);
-  ~Leftover();
-  Leftover(Leftover&& other) noexcept;
-  Leftover& operator=(Leftover&&) = delete;
+  static std::optional<AbandonedOutput> take(std::string const& path);
+  ~AbandonedOutput();
+  AbandonedOutput(AbandonedOutput&& other) noexcept;
+  AbandonedOutput& operator=(AbandonedOutput&&) = delete;
 
   /// Returns the name that the same writer would give to a partial output with another stem.
   std::string name(std::string const& stem) const;
 
  private:
-  Leftover(int lock, std::string writer) : lock_(lock), writer_(std::move(writer)) {}
+  AbandonedOutput(int lock, std::string writer) : lock_(lock), writer_(std::move(writer)) {}
   int lock_;
   std::string writer_;
 };
 
 /// Describes the writer of a partial directory: "process 4711 on host lab3".
-std::string writer_of(std::string const& folder);
+std::string describe_writer(std::string const& folder);
 
 /// Removes the partial outputs of a stem in a directory whose writers have ended.
-void remove_leftovers(std::string const& parent, std::string const& stem);
+void remove_abandoned_outputs(std::string const& parent, std::string const& stem);
 
 /// Removes the partial outputs of all stems in a directory that belongs to gladstone, if their writers have ended.
-void remove_leftovers(std::string const& folder);
+void remove_abandoned_outputs(std::string const& folder);
 
 /// Returns the stem of temporary names next to a file or directory: ".NAME.", shortened (with a hash of the name) if
 /// the file system's limit of 255 bytes would be exceeded.
-std::string stem_beside(std::string const& name);
+std::string sibling_stem(std::string const& name);
 
 /// Returns true if a directory entry's name is that of a partial output with this stem, of any writer.
 bool is_partial(std::string const& name, std::string const& stem);
 
 /// Calls `write`; an OutputError about a path below `staged` is rethrown about the same path below `place`.
-void name_final_place(std::string const& staged, std::string const& place, std::function<void()> const& write);
+void report_final_path(std::string const& staged, std::string const& place, std::function<void()> const& write);
 
 }  // namespace gladstone

@@ -23,11 +23,11 @@ struct TheoryModel {
 
 /// Weighted sums over a dot's area and the stop, for the aperture average.
 struct ConeSum {
-  Vec2d levered{};
+  Vec2d lever_weighted{};
   double weight = 0;
 
   GLADSTONE_HD ConeSum& operator+=(ConeSum const& o) {
-    levered += o.levered;
+    lever_weighted += o.lever_weighted;
     weight += o.weight;
     return *this;
   }
@@ -56,7 +56,7 @@ GLADSTONE_HD DotTheory integrate_theory(Group const& group, DotModel const& mode
                                  (at.radius * model.stop_radius) * model.cone.directions[at.direction]);
     double const cosine2 = ray.direction.z * ray.direction.z;
     double const weight = model.places.weights[place] * at.weight * cosine2 * cosine2;
-    sum += {weight * integrate_gradient(medium, ray, theory.step).levered, weight};
+    sum += {weight * integrate_gradient(medium, ray, theory.step).lever_weighted, weight};
   }
   found.cone = group.sum(sum);
   if (group.lane() == 0) found.along = integrate_gradient(medium, model.bench.straight_ray(centre, {}), theory.step);
@@ -66,8 +66,8 @@ GLADSTONE_HD DotTheory integrate_theory(Group const& group, DotModel const& mode
 /// Stores the theoretical displacements of a dot.
 inline void set_theory(GroundTruth& truth, std::size_t dot, TheoryModel const& theory, DotTheory const& found) {
   truth.eq9_px[dot] = theory.displacement(found.along.plain, theory.lever);
-  truth.chief_px[dot] = theory.displacement(found.along.levered, 1.0);
-  truth.eq9_cone_px[dot] = theory.displacement(found.cone.levered / found.cone.weight, 1.0);
+  truth.chief_px[dot] = theory.displacement(found.along.lever_weighted, 1.0);
+  truth.eq9_cone_px[dot] = theory.displacement(found.cone.lever_weighted / found.cone.weight, 1.0);
 }
 
 }  // namespace gladstone

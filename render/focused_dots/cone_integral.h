@@ -95,7 +95,7 @@ GLADSTONE_HD DotAim check_dot(Lanes& lanes, DotModel const& model, Medium const&
   return aim;
 }
 
-GLADSTONE_HD inline CorrectedCone cone_of(DotModel const& model, DotCone const& dot) {
+GLADSTONE_HD inline CorrectedCone make_corrected_cone(DotModel const& model, DotCone const& dot) {
   DeflectionTable const nothing;
   return {dot.kind == DotKind::still ? nothing : model.table,
           model.stop_radius,
@@ -107,11 +107,12 @@ GLADSTONE_HD inline CorrectedCone cone_of(DotModel const& model, DotCone const& 
 
 /// Integrals over a dot's light cone, shared by the lanes of a group.
 struct ConeIntegral {
-  DisplacementMoments moments[PlaceRule::most_places];  ///< moments of the whole cone at each point of the source rule
-  double without_medium[PlaceRule::most_places];        ///< sum of weights in the reference image
-  double* rims = nullptr;                  ///< [place][direction] radii at the edge of the stop [m]; external memory
-  Extent extents[PlaceRule::most_places];  ///< range of displacements
-  bool simple, sound, narrow;              ///< single-valued edge of the stop; finite moments; narrow spread
+  DisplacementMoments
+      moments[PlaceRule::max_positions];            ///< moments of the whole cone at each point of the source rule
+  double without_medium[PlaceRule::max_positions];  ///< sum of weights in the reference image
+  double* rims = nullptr;                    ///< [place][direction] radii at the edge of the stop [m]; external memory
+  Extent extents[PlaceRule::max_positions];  ///< range of displacements
+  bool simple, sound, narrow;                ///< single-valued edge of the stop; finite moments; narrow spread
 };
 
 /// Computes the moments of the whole cone at every point of the source rule, one team per point, and determines from

@@ -56,7 +56,8 @@ double cone_reach(double way, double half_size, double stop) {
 /// Returns the extent of the mid-plane that the light cones of the whole view cross [m].
 Vec2d crossed_extent(Setup const& setup, double way) {
   double const stop = setup.imaging().entrance_pupil / 2;
-  double const beyond = 2 * (cone_reach(way, setup.dot_diameter() / 2, stop) + way * DeflectionPlan::usual_aim * stop);
+  double const beyond =
+      2 * (cone_reach(way, setup.dot_diameter() / 2, stop) + way * DeflectionTableLayout::default_aim_distance * stop);
   Vec2d const extent = setup.target_extent();
   return {(1 - way) * extent.x + beyond, (1 - way) * extent.y + beyond};
 }
@@ -114,7 +115,8 @@ TableState table_state(Scene const& scene) {
                                                                           : TableState::field_too_fine;
 }
 
-DeflectionPlan::DeflectionPlan(FocusedDots const& dots, DotPattern const& sources, double farthest_aim) {
+DeflectionTableLayout::DeflectionTableLayout(FocusedDots const& dots, DotPattern const& sources,
+                                             double largest_aim_distance) {
   Scene const& scene = dots.scene();
   state = table_state(scene);
   if (state == TableState::no_medium) {
@@ -126,7 +128,7 @@ DeflectionPlan::DeflectionPlan(FocusedDots const& dots, DotPattern const& source
   if (state != TableState::made) return;
   Bounds<double> const bounds = bounds_of(scene);
   double const stop = scene.imaging.entrance_pupil / 2, way = way_to(bounds, scene.setup);
-  BenchView const bench = dots.bench();
+  FocusedSetupView const bench = dots.bench();
   table.way = way;
   table.pupil_step = slope_reach * stop;
   table.low = {bounds.low.x, bounds.low.y};
@@ -147,8 +149,8 @@ DeflectionPlan::DeflectionPlan(FocusedDots const& dots, DotPattern const& source
   }
   NodeDensity const density = density_of(scene, crossed_extent(scene.setup, way));
   double const spacing_of_slopes = density.coarseness * density.spacing;
-  double const reach = cone_reach(way, std::max(sources.half_size, scene.dots.half_size), stop) + way * farthest_aim +
-                       3 * spacing_of_slopes;
+  double const reach = cone_reach(way, std::max(sources.half_size, scene.dots.half_size), stop) +
+                       way * largest_aim_distance + 3 * spacing_of_slopes;
   low = (1 - way) * low - Vec2d{reach, reach};
   high = (1 - way) * high + Vec2d{reach, reach};
   double const to_lens = (1 - way) * (bench.lens_z - bench.plane_z), half_depth = 0.5 * (bounds.high.z - bounds.low.z);
@@ -181,14 +183,14 @@ DeflectionPlan::DeflectionPlan(FocusedDots const& dots, DotPattern const& source
   medium_ = scene.medium.owner;
 }
 
-bool DeflectionPlan::same_table(DeflectionPlan const& other) const {
+bool DeflectionTableLayout::same_table(DeflectionTableLayout const& other) const {
   return wanted() && other.wanted() && medium_ && medium_ == other.medium_ && numbers_ == other.numbers_;
 }
 
-DeflectionMap::DeflectionMap(FocusedDots const& dots, DeflectionPlan const& plan) {
+DeflectionMap::DeflectionMap(FocusedDots const& dots, DeflectionTableLayout const& plan) {
   constexpr std::size_t grain = 64;
   if (!plan.wanted()) return;
-  BenchView const bench = dots.bench();
+  FocusedSetupView const bench = dots.bench();
   values_.resize(plan.table.bytes());
   DeflectionTable::Values const values = plan.table.values_in(values_.data());
   std::visit(
@@ -196,7 +198,7 @@ DeflectionMap::DeflectionMap(FocusedDots const& dots, DeflectionPlan const& plan
         parallel_chunks(static_cast<std::size_t>(plan.table.fours()), grain, [&](std::size_t begin, std::size_t end) {
           throw_if_interrupted();
           for (std::size_t four = begin; four < end; ++four) {
-            trace_four(FourAbreast{}, bench, medium, plan.table, values, static_cast<long long>(four));
+            trace_ray_group(FourAbreast{}, bench, medium, plan.table, values, static_cast<long long>(four));
           }
         });
       },

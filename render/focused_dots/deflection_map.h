@@ -17,21 +17,21 @@ TableState table_state(Scene const& scene);
 /// Lattices of a scene's deflection table. Nodes are at multiples of a spacing that depends on field, view and light
 /// cone only. The lattices cover the cones of the scene's own dots and of the given sources, as far as they are within
 /// the medium.
-struct DeflectionPlan {
+struct DeflectionTableLayout {
   /// Default for the largest distance of an aim point from the pupil's centre that the table covers, in radii of the
   /// stop.
-  static constexpr double usual_aim = 0.25;
+  static constexpr double default_aim_distance = 0.25;
 
   DeflectionTable table;  ///< the table without values
   TableState state = TableState::no_sources;
   bool wanted() const { return state == TableState::made; }
 
-  DeflectionPlan() = default;
-  /// @param farthest_aim  largest distance of the centre of a dot's light cone from the pupil's centre [m]
-  DeflectionPlan(FocusedDots const& dots, DotPattern const& sources, double farthest_aim);
+  DeflectionTableLayout() = default;
+  /// @param largest_aim_distance  largest distance of the centre of a dot's light cone from the pupil's centre [m]
+  DeflectionTableLayout(FocusedDots const& dots, DotPattern const& sources, double largest_aim_distance);
   /// Returns true if the table of the other plan is identical to the last bit: the same nodes, ray geometry and medium
   /// (by its owner).
-  bool same_table(DeflectionPlan const& other) const;
+  bool same_table(DeflectionTableLayout const& other) const;
 
  private:
   std::vector<double> numbers_;  ///< all numbers, besides the medium, on which the table's values depend
@@ -48,7 +48,7 @@ class DeflectionMap {
  public:
   /// Traces the table's rays on all CPU cores.
   /// @throws Interrupted
-  DeflectionMap(FocusedDots const& dots, DeflectionPlan const& plan);
+  DeflectionMap(FocusedDots const& dots, DeflectionTableLayout const& plan);
   DeflectionMap(DeflectionMap const&) = delete;  // the table points into values_
   DeflectionMap& operator=(DeflectionMap const&) = delete;
 
@@ -64,13 +64,14 @@ class DeflectionMap {
 /// vectors of each correlation pass.
 /// @tparam Map  DeflectionMap, or that of a device
 template <class Map>
-class LastDeflections {
+class DeflectionTableCache {
  public:
   /// Returns the table of a scene, which is valid until the next call.
   /// @param more  further arguments of Map's constructor
   template <class... More>
-  DeflectionTable table(FocusedDots const& dots, DotPattern const& sources, double farthest_aim, More const&... more) {
-    DeflectionPlan plan(dots, sources, farthest_aim);
+  DeflectionTable table(FocusedDots const& dots, DotPattern const& sources, double largest_aim_distance,
+                        More const&... more) {
+    DeflectionTableLayout plan(dots, sources, largest_aim_distance);
     state_ = plan.state;
     if (!plan.wanted()) return plan.table;
     if (!map_ || !plan.same_table(plan_)) {
@@ -86,7 +87,7 @@ class LastDeflections {
 
  private:
   TableState state_ = TableState::no_sources;
-  DeflectionPlan plan_;
+  DeflectionTableLayout plan_;
   std::unique_ptr<Map> map_;
 };
 

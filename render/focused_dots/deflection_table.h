@@ -11,7 +11,7 @@ namespace gladstone {
 
 /// Set-up whose lens images the target sharply: wherever a ray passes the lens, it lands on the image of its apparent
 /// point of origin on the target.
-struct BenchView {
+struct FocusedSetupView {
   double plane_z = 0, lens_z = 0;  ///< Z of the target and of the lens [m]
   double px_per_metre = 0;         ///< image scale: pixels per metre on the target [px/m]
   TracingOptions<double> tracing;
@@ -32,8 +32,8 @@ struct Deflection {
 /// @param from  starting points on the target [m]
 /// @param pupil  intersections of the undeflected rays with the lens plane [m]
 template <int N, class Medium>
-GLADSTONE_HD void deflect(BenchView const& bench, Medium const& medium, Vec2d const (&from)[N], Vec2d const (&pupil)[N],
-                          Deflection (&out)[N]) {
+GLADSTONE_HD void deflect(FocusedSetupView const& bench, Medium const& medium, Vec2d const (&from)[N],
+                          Vec2d const (&pupil)[N], Deflection (&out)[N]) {
   Ray<double> start[N];
   for (int i = 0; i < N; ++i) start[i] = bench.straight_ray(from[i], pupil[i]);
   MediumPassage<double> way[N];
@@ -246,8 +246,8 @@ struct DeflectionTable {
 /// Traces group `which` of four rays of a table and stores their results.
 /// @tparam Four  lanes that share the four rays; each traces `abreast` of them together
 template <class Four, class Medium>
-GLADSTONE_HD void trace_four(Four const& four, BenchView const& bench, Medium const& medium,
-                             DeflectionTable const& table, DeflectionTable::Values const& out, long long which) {
+GLADSTONE_HD void trace_ray_group(Four const& four, FocusedSetupView const& bench, Medium const& medium,
+                                  DeflectionTable const& table, DeflectionTable::Values const& out, long long which) {
   constexpr int abreast = Four::abreast;
   bool const straight = which < table.straight_fours();
   SquareLattice const& lattice = straight ? table.straight : table.sloping;

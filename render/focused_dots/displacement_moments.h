@@ -16,7 +16,7 @@ struct DisplacementMoments {
   GLADSTONE_HD static constexpr int at(int a, int b) { return (a + b) * (a + b + 1) / 2 + b; }
 
   /// Total order of the moment with this index.
-  GLADSTONE_HD static constexpr int order_of(int moment) {
+  GLADSTONE_HD static constexpr int total_order(int moment) {
     return (moment > 0) + (moment > 2) + (moment > 5) + (moment > 9);
   }
 
@@ -36,11 +36,11 @@ struct DisplacementMoments {
 /// the position on the source.
 struct PlaceRule {
   static constexpr int terms = 6;  ///< terms of the polynomial: 1, x, y, x^2, x y, y^2
-  static constexpr int most_places = 9;
+  static constexpr int max_positions = 9;
   int count = 0;
-  Vec2d places[most_places];  ///< points in units of the half size, y downwards
-  double weights[most_places];
-  double fit[terms][most_places];  ///< coefficient of a term = sum over points of fit times the value there
+  Vec2d places[max_positions];  ///< points in units of the half size, y downwards
+  double weights[max_positions];
+  double fit[terms][max_positions];  ///< coefficient of a term = sum over points of fit times the value there
 
   GLADSTONE_HD static void basis(Vec2d place, double (&value)[terms]) {
     value[0] = 1;

@@ -22,26 +22,26 @@ void DotIntegrator::integrate() {
   conclude(OneLane{}, model_, cone.origin(), whole_, seen_, seen_);
 }
 
-void DotIntegrator::lay_down(LightImage* const (&images)[frame_count]) {
+void DotIntegrator::accumulate_light(LightImage* const (&images)[frame_count]) {
   constexpr int orders = DisplacementMoments::order + 1;
   for (std::size_t frame = 0; frame < frame_count; ++frame) patches_[frame].begin(images[frame]);
-  lay_down_points<1>(0, {});
-  if (seen_.kind == DotKind::still) lay_down_points<1>(1, {});
-  if (seen_.kind == DotKind::narrow) lay_down_points<orders>(1, seen_.origin);
+  accumulate_light_by_points<1>(0, {});
+  if (seen_.kind == DotKind::still) accumulate_light_by_points<1>(1, {});
+  if (seen_.kind == DotKind::narrow) accumulate_light_by_points<orders>(1, seen_.origin);
   if (seen_.kind == DotKind::wide) {
-    lay_down_squares<MomentImages::pad>(OneLane{}, model_, seen_, cone(), whole_,
-                                        {points_.data(), order_.data(), model_.cone.points_of(whole_.simple)}, squares_,
-                                        patches_[1]);
+    accumulate_light_by_squares<MomentImages::pad>(
+        OneLane{}, model_, seen_, cone(), whole_, {points_.data(), order_.data(), model_.cone.points_of(whole_.simple)},
+        squares_, patches_[1]);
   }
   for (std::size_t frame = 0; frame < frame_count; ++frame) patches_[frame].flush(images[frame], 1);
 }
 
 template <int orders>
-void DotIntegrator::lay_down_points(std::size_t frame, Vec2d moved) {
+void DotIntegrator::accumulate_light_by_points(std::size_t frame, Vec2d moved) {
   with_lanes(2 * model_.spot.half_width() + 1, [&]<int lanes>() {
     double room[point_numbers(orders, lanes)];
-    gladstone::lay_down_points<orders, lanes>(OneLane{}, model_, seen_.truth.origin + moved, seen_.light, &seen_.field,
-                                              patches_[frame], room, 1);
+    gladstone::accumulate_light_by_points<orders, lanes>(OneLane{}, model_, seen_.truth.origin + moved, seen_.light,
+                                                         &seen_.field, patches_[frame], room, 1);
   });
 }
 

@@ -7,8 +7,8 @@
 
 namespace gladstone {
 
-struct SeenDot : DotCone, DotFound {
-  double farthest_aim = 0;  ///< as DotAim::farthest [m]
+struct RenderedDot : DotCone, DotFound {
+  double largest_aim_distance = 0;  ///< as DotAim::farthest [m]
 };
 
 /// Single lane that compares a dot's rays with the table, tracing two rays together.
@@ -36,19 +36,19 @@ class DotIntegrator {
   /// Traces the dot's rays and integrates its light cone. For a fallback dot, only its kind is valid.
   /// @throws Interrupted
   template <class Medium>
-  SeenDot const& see(Medium const& medium, Vec2d centre, double radiance) {
+  RenderedDot const& see(Medium const& medium, Vec2d centre, double radiance) {
     seen_ = {};
-    seen_.farthest_aim = check_dot(lane_, model_, medium, centre, seen_, seen_).farthest;
-    seen_.light = model_.light_of(centre, radiance);
+    seen_.largest_aim_distance = check_dot(lane_, model_, medium, centre, seen_, seen_).farthest;
+    seen_.light = model_.reference_light(centre, radiance);
     if (seen_.kind != DotKind::left) integrate();
     return seen_;
   }
   /// Renders the dot's light in both images.
   /// @pre it is not a fallback dot, and the model's moment images are computed
-  void lay_down(LightImage* const (&images)[frame_count]);
+  void accumulate_light(LightImage* const (&images)[frame_count]);
 
   /// Light cone of the last dot.
-  CorrectedCone cone() const { return cone_of(model_, seen_); }
+  CorrectedCone cone() const { return make_corrected_cone(model_, seen_); }
   StatusCounts const& statuses() const { return lane_.statuses; }
 
  private:
@@ -56,11 +56,11 @@ class DotIntegrator {
   /// Renders the light point by point.
   /// @param moved  mean displacement of the light [px]
   template <int orders>
-  void lay_down_points(std::size_t frame, Vec2d moved);
+  void accumulate_light_by_points(std::size_t frame, Vec2d moved);
 
   DotModel const& model_;
   std::vector<DotPatch> patches_;
-  SeenDot seen_;
+  RenderedDot seen_;
   CheckingLane lane_;
   std::vector<double> rims_;
   ConeIntegral whole_;             ///< refers to rims_

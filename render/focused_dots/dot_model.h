@@ -3,8 +3,8 @@
 #include "render/focused_dots/dot_cone.h"
 #include "render/focused_dots/moment_images.h"
 #include "render/scene/ground_truth.h"
+#include "render/scene/ray_budget.h"
 #include "render/scene/ray_hit.h"
-#include "render/scene/ray_plan.h"
 #include "render/scene/spot.h"
 
 /// Computation of a dot's truth and light from its light cone, for all devices.
@@ -34,7 +34,7 @@ struct DotModel {
   double source_half = 0;     ///< radius of a dot, or half the side of a pixel of an image target [m]
   double stop_radius = 1;     ///< radius of the entrance pupil [m]
   double dot_light = 0;       ///< light of a white dot, without cos^4 [fully lit px]
-  BenchView bench;
+  FocusedSetupView bench;
   GaussianSpot<double> spot;
   CubatureView source;
   DeflectionTable table;
@@ -59,7 +59,7 @@ struct DotModel {
     return pixel.x >= -0.5 && pixel.x < columns - 0.5 && pixel.y >= -0.5 && pixel.y < rows - 0.5;
   }
   /// Returns the light of a dot in the reference image [fully lit px].
-  GLADSTONE_HD double light_of(Vec2d centre, double radiance) const {
+  GLADSTONE_HD double reference_light(Vec2d centre, double radiance) const {
     double const spread = 1 + (dot(centre, centre) + 0.5 * stop_radius * stop_radius) / (distance() * distance());
     return dot_light * radiance / (spread * spread);
   }
@@ -168,9 +168,9 @@ struct DotRay {
   GLADSTONE_HD static DotRay choose(BundleView const& choice, SourceShape shape, Vec2d centre, int k) {
     using std::sqrt;
     double u[sobol_dimensions];
-    sample_coordinates(choice, key_of(centre), static_cast<std::uint64_t>(k), u);
-    return {shape == SourceShape::disc ? point_of_circle(sqrt(u[2]), u[3]) : Vec2d{2 * u[2] - 1, 2 * u[3] - 1},
-            point_of_circle(sqrt(u[0]), u[1])};
+    sample_coordinates(choice, random_key(centre), static_cast<std::uint64_t>(k), u);
+    return {shape == SourceShape::disc ? point_on_circle(sqrt(u[2]), u[3]) : Vec2d{2 * u[2] - 1, 2 * u[3] - 1},
+            point_on_circle(sqrt(u[0]), u[1])};
   }
 };
 

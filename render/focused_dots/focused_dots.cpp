@@ -7,7 +7,7 @@
 
 namespace gladstone {
 
-BenchView FocusedDots::bench() const {
+FocusedSetupView FocusedDots::bench() const {
   Setup const& setup = scene_->setup;
   return {-setup.z_d,
           setup.z_a,
@@ -28,7 +28,7 @@ std::string reason_against_focused_dots(Setup const& setup) {
   if (setup.camera.tilted()) return "the sensor is tilted";
   if (setup.camera.distorted()) return "the lens distorts";
   if (setup.lenslets) return "there are lenslets in front of the sensor";
-  if (!setup.on_bench()) return "the camera is not a single ideal thin lens";
+  if (!setup.has_closed_form_layout()) return "the camera is not a single ideal thin lens";
   if (std::isinf(setup.lens.f_number)) return "the lens has no stop (f_number = inf)";
   if (!(std::abs(setup.focus_distance() - setup.z_b()) <= 1e-12 * setup.z_b())) return "the dots are out of focus";
   if (setup.lens.spot == SpotModel::airy || setup.lens.spot == SpotModel::none)
@@ -45,7 +45,7 @@ std::optional<FocusedDots> focused_dots(Scene const& scene) {
   return FocusedDots(scene);
 }
 
-std::vector<MemoryNeed> focused_dots_memory(Setup const& setup) {
+std::vector<MemoryRequirement> focused_dots_memory(Setup const& setup) {
   return {{"camera.pixels", "table of deflections", table_bytes_needed(setup)}};
 }
 

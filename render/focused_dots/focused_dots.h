@@ -17,7 +17,7 @@ namespace gladstone {
 class FocusedDots {
  public:
   Scene const& scene() const { return *scene_; }
-  BenchView bench() const;
+  FocusedSetupView bench() const;
   /// Parameters of small-angle theory (Eq. 9).
   TheoryModel theory_model() const;
 
@@ -38,6 +38,6 @@ std::optional<FocusedDots> focused_dots(Scene const& scene);
 
 /// Returns the memory requirements of the fast renderer beyond images, field and dots, for check_memory(), before
 /// anything is built.
-std::vector<MemoryNeed> focused_dots_memory(Setup const& setup);
+std::vector<MemoryRequirement> focused_dots_memory(Setup const& setup);
 
 }  // namespace gladstone

@@ -35,12 +35,12 @@ TracingPass trace_all(FocusedDots const& dots, DotPattern const& sources, Medium
   Progress progress(lit ? "tracing rays" : "tracing truth", count);
   parallel_chunks(count, 16, [&](std::size_t begin, std::size_t end) {
     DotIntegrator integrator(owned.model);
-    double farthest_aim = 0;
+    double largest_aim_distance = 0;
     for (std::size_t dot = begin; dot < end; ++dot) {
-      SeenDot const& seen = integrator.see(medium, sources.centre[dot], sources.radiance_of(dot));
-      farthest_aim = std::max(farthest_aim, seen.farthest_aim);
+      RenderedDot const& seen = integrator.see(medium, sources.centre[dot], sources.radiance_of(dot));
+      largest_aim_distance = std::max(largest_aim_distance, seen.largest_aim_distance);
       pass.enter(dot, seen.truth, seen.rays, seen.kind == DotKind::left);
-      if (lit && seen.kind != DotKind::left) integrator.lay_down(targets);
+      if (lit && seen.kind != DotKind::left) integrator.accumulate_light(targets);
       if (theory == RenderTheory::yes) {
         set_theory(pass.rendering.truth, dot, theory_model,
                    integrate_theory(OneLane{}, owned.model, theory_model, medium, sources.centre[dot]));
@@ -48,7 +48,7 @@ TracingPass trace_all(FocusedDots const& dots, DotPattern const& sources, Medium
     }
     progress.advance(end - begin);
     std::lock_guard const lock(merge);
-    pass.farthest_aim = std::max(pass.farthest_aim, farthest_aim);
+    pass.largest_aim_distance = std::max(pass.largest_aim_distance, largest_aim_distance);
     for (std::size_t frame = 0; frame < frame_count; ++frame) {
       for (std::size_t status = 0; status < ray_status_count; ++status) {
         pass.rendering.statuses[frame][status] += integrator.statuses()[frame][status];
@@ -62,7 +62,7 @@ TracingPass trace_all(FocusedDots const& dots, DotPattern const& sources, Medium
 /// Subtracts the light of the dots from that of a white target if the dots are dark.
 void apply_polarity(Scene const& scene, LightPair& light) {
   if (scene.setup.target.polarity != Polarity::dark) return;
-  Image<double> const white = white_light(scene);
+  Image<double> const white = render_white_light(scene);
   for (Image<double>* frame : {&light.reference, &light.flow}) {
     std::transform(white.begin(), white.end(), frame->begin(), frame->begin(),
                    [](double paper, double dots) { return paper - dots; });
@@ -75,8 +75,8 @@ Rendering FocusedDotsRenderer::render(Scene const& scene, DotPattern const& sour
                                       RenderTheory theory) {
   std::optional<FocusedDots> const dots = focused_dots(scene);
   GLADSTONE_EXPECTS(dots);
-  Rendering rendering = render_within_table(scene, [&](double farthest_aim) {
-    DeflectionTable const table = deflections_.table(*dots, sources, farthest_aim);
+  Rendering rendering = render_within_table(scene, [&](double largest_aim_distance) {
+    DeflectionTable const table = deflections_.table(*dots, sources, largest_aim_distance);
     return std::visit([&](auto const& medium) { return trace_all(*dots, sources, medium, table, images, theory); },
                       scene.medium.view);
   });
@@ -90,17 +90,18 @@ Rendering FocusedDotsRenderer::render(Scene const& scene, DotPattern const& sour
   return rendering;
 }
 
-Rendering render_within_table(Scene const& scene, std::function<TracingPass(double farthest_aim)> const& trace) {
-  double room = DeflectionPlan::usual_aim * scene.imaging.entrance_pupil / 2;
+Rendering render_within_table(Scene const& scene,
+                              std::function<TracingPass(double largest_aim_distance)> const& trace) {
+  double room = DeflectionTableLayout::default_aim_distance * scene.imaging.entrance_pupil / 2;
   while (true) {
     TracingPass pass = trace(room);
-    if (pass.farthest_aim <= room) return pass.finish();
-    refuse_shift_beyond_any_bench(pass.farthest_aim, scene.setup.z_b());
-    room = 1.5 * pass.farthest_aim;
+    if (pass.largest_aim_distance <= room) return pass.finish();
+    check_deflection_limit(pass.largest_aim_distance, scene.setup.z_b());
+    room = 1.5 * pass.largest_aim_distance;
   }
 }
 
-Image<double> white_light(Scene const& scene) {
+Image<double> render_white_light(Scene const& scene) {
   Image<double> light(scene.setup.camera.columns, scene.setup.camera.rows);
   for (int row = 0; row < light.rows(); ++row) {
     for (int column = 0; column < light.columns(); ++column) {

@@ -16,16 +16,16 @@ class FocusedDotsRenderer : public Renderer {
   Rendering render(Scene const& scene, DotPattern const& sources, RenderImages images, RenderTheory theory) override;
 
  private:
-  LastDeflections<DeflectionMap> deflections_;
+  DeflectionTableCache<DeflectionMap> deflections_;
 };
 
 /// Renders with a deflection table of default size, and again with a larger one if a dot's aim point is outside it.
 /// Implements render() on every device. The size of a table does not change the results of dots that it covers.
 /// @param trace  renders once with a table that covers aim points up to a given distance from the axis [m]
-Rendering render_within_table(Scene const& scene, std::function<TracingPass(double farthest_aim)> const& trace);
+Rendering render_within_table(Scene const& scene, std::function<TracingPass(double largest_aim_distance)> const& trace);
 
 /// Renders a white target: light per pixel, cos^4 of the angle to the axis. Dark dots are subtracted from it. It is the
 /// same in both images, since radiance is conserved along rays.
-Image<double> white_light(Scene const& scene);
+Image<double> render_white_light(Scene const& scene);
 
 }  // namespace gladstone

@@ -223,7 +223,7 @@ GLADSTONE_HD void add_to_images(Group const& group, MomentImages const& images, 
         double const* const along_x = room + which * 2 * orders * pitch + i;
         double const* const along_y = room + which * 2 * orders * pitch + orders * pitch + j;
         for (int k = 0; k < moments; ++k) {
-          int const order = M::order_of(begin + k), b = begin + k - M::at(order, 0);
+          int const order = M::total_order(begin + k), b = begin + k - M::at(order, 0);
           for (int term = 0; term < terms && term < images.terms; ++term) {
             double const share = source.weights[base + which] * basis[term] * along_y[b * pitch];
             double* const to =

@@ -22,8 +22,8 @@ GLADSTONE_HD constexpr int point_numbers(int orders, int pitch) {
 /// @param room  work space of a team
 /// @param points  number of points for which there is work space
 template <int orders, int pixels, class Group, class Patch>
-GLADSTONE_HD void lay_down_points(Group const& group, DotModel const& model, Vec2d origin, double light,
-                                  MomentField const* field, Patch& patch, double* room, int points) {
+GLADSTONE_HD void accumulate_light_by_points(Group const& group, DotModel const& model, Vec2d origin, double light,
+                                             MomentField const* field, Patch& patch, double* room, int points) {
   using M = DisplacementMoments;
   using std::abs;
   GaussianSpot<double> const spot = model.spot;

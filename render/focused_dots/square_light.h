@@ -11,10 +11,11 @@ namespace gladstone {
 template <int abreast>
 struct SquareSums {
   SquareRange range;
-  int listed;                                                      ///< number of squares that contain light
-  unsigned short list[SquareRange::most];                          ///< indices of these squares
-  unsigned short ends[PlaceRule::most_places][SquareRange::most];  ///< end of each square's points in the sorted order
-  DisplacementMoments moments[abreast][PlaceRule::most_places];
+  int listed;                              ///< number of squares that contain light
+  unsigned short list[SquareRange::most];  ///< indices of these squares
+  unsigned short ends[PlaceRule::max_positions]
+                     [SquareRange::most];  ///< end of each square's points in the sorted order
+  DisplacementMoments moments[abreast][PlaceRule::max_positions];
   double shares[DisplacementMoments::count * PlaceRule::terms][abreast];  ///< weights of the images
 
   GLADSTONE_HD int begin(int place, int square) const { return square > 0 ? ends[place][square - 1] : 0; }
@@ -145,9 +146,9 @@ GLADSTONE_HD void add_squares(Group const& group, MomentImages const& images, Do
 /// Renders the light of a wide dot.
 /// @tparam pixels  number of pixels that a lane processes together
 template <int pixels, class Group, int abreast, class Patch>
-GLADSTONE_HD void lay_down_squares(Group const& group, DotModel const& model, DotCone const& dot,
-                                   CorrectedCone const& cone, ConeIntegral const& whole, ConePoints const& points,
-                                   SquareSums<abreast>& sums, Patch& patch) {
+GLADSTONE_HD void accumulate_light_by_squares(Group const& group, DotModel const& model, DotCone const& dot,
+                                              CorrectedCone const& cone, ConeIntegral const& whole,
+                                              ConePoints const& points, SquareSums<abreast>& sums, Patch& patch) {
   MomentImages const& images = model.moment_images;
   SpannedSquares const spanned(images.lattice, model.to_pixel(dot.centre) + dot.origin, dot.extent);
   DotSquares const& squares = spanned.squares;

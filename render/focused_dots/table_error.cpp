@@ -51,9 +51,9 @@ class LoneDot {
   LoneDot(Scene const& scene, Vec2d place, int side) : scene_(alone(scene, place)), side_(side) {
     FocusedDots const dots = focused_dots(scene_).value();
     Vec2d const centre = scene_.dots.centre[0];
-    double room = DeflectionPlan::usual_aim * scene_.imaging.entrance_pupil / 2;
+    double room = DeflectionTableLayout::default_aim_distance * scene_.imaging.entrance_pupil / 2;
     do {
-      table_ = std::make_unique<DeflectionMap>(dots, DeflectionPlan(dots, scene_.dots, room));
+      table_ = std::make_unique<DeflectionMap>(dots, DeflectionTableLayout(dots, scene_.dots, room));
       owned_ = std::make_unique<OwnedDotModel>(dots, scene_.dots, table_->table(), true);
       aim_ = aim_dot(owned_->model, centre);
       room *= 2;
@@ -65,7 +65,7 @@ class LoneDot {
     // no difference in the reference image, whose light is known in closed form
     for (Sampled& off : off_) off.light.resize(as_seen_.light.size());
     if (seen_.kind == DotKind::still) return;
-    for (int scrambling = 0; scrambling < plan_scramblings; ++scrambling) samples_.emplace_back(side);
+    for (int scrambling = 0; scrambling < budget_scramblings; ++scrambling) samples_.emplace_back(side);
   }
 
   bool left() const { return seen_.kind == DotKind::left; }
@@ -115,7 +115,7 @@ class LoneDot {
     if (left()) return;
     LightImage frames[frame_count] = {{side_, side_}, {side_, side_}};
     LightImage* const images[frame_count] = {&frames[0], &frames[1]};
-    integrator_->lay_down(images);
+    integrator_->accumulate_light(images);
     Image<double> const light = frames[frame].to_light();
     as_seen_.light.insert(as_seen_.light.end(), light.begin(), light.end());
   }
@@ -168,12 +168,12 @@ class LoneDot {
   std::unique_ptr<OwnedDotModel> owned_;
   std::unique_ptr<DotIntegrator> integrator_;
   DotAim aim_;
-  SeenDot seen_;
-  Sampled as_seen_, off_[plan_scramblings];
+  RenderedDot seen_;
+  Sampled as_seen_, off_[budget_scramblings];
 };
 
 /// Sets the errors and detection limits of a plan from lone dots that were compared with rays.
-void state_errors(RaysPlan& plan, std::vector<std::unique_ptr<LoneDot>> const& lone, GreyLevels const& levels) {
+void state_errors(RayBudget& plan, std::vector<std::unique_ptr<LoneDot>> const& lone, GreyLevels const& levels) {
   std::vector<std::size_t> places(lone.size());
   std::iota(places.begin(), places.end(), std::size_t{0});
   // Let the four samples deviate from the rendered dot by s (e + noise), with e the error, s^2 = 3/4 and alternating
@@ -182,13 +182,13 @@ void state_errors(RaysPlan& plan, std::vector<std::unique_ptr<LoneDot>> const& l
   // 0 and standard deviation 2 s^2 noise^2 / 3, divided by sqrt(n) for n independent values. The squared detection
   // limit is twice this value. The pixels of a dot count as one value.
   double const share = std::sqrt(0.75);
-  auto const scatter_of = [&](double odd) {
+  auto const compute_scatter = [&](double odd) {
     return measure_scatter(places, levels, [&](std::size_t dot, int scrambling) {
       return lone[dot]->sample(scrambling, scrambling % 2 == 0 ? share : odd);
     });
   };
-  Scatter off = scatter_of(-share);
-  Scatter const noise = scatter_of(share);
+  Scatter off = compute_scatter(-share);
+  Scatter const noise = compute_scatter(share);
   auto const less = [](double all, double by_chance) { return std::max(all - by_chance, 0.0); };  // NaN is retained
   auto const resolved = [](double by_chance, double n) { return std::sqrt(4.0 / 3 / std::sqrt(n) * by_chance); };
   auto const dot_count = static_cast<double>(lone.size());
@@ -214,9 +214,9 @@ DotPattern measured_places(Scene const& scene) {
   return white;
 }
 
-RaysPlan measure_table_error(FocusedDots const& dots) {
+RayBudget measure_table_error(FocusedDots const& dots) {
   Scene const& scene = dots.scene();
-  RaysPlan plan;
+  RayBudget plan;
   plan.rays = scene.rays_per_dot;
   plan.fineness = scene.fineness;
   double const px = scene.imaging.magnification / scene.setup.camera.pixel_pitch;
@@ -244,17 +244,19 @@ RaysPlan measure_table_error(FocusedDots const& dots) {
 
 double table_seconds(FocusedDots const& dots) {
   Scene const& scene = dots.scene();
-  DeflectionPlan const plan(dots, scene.dots, DeflectionPlan::usual_aim * scene.imaging.entrance_pupil / 2);
+  DeflectionTableLayout const plan(dots, scene.dots,
+                                   DeflectionTableLayout::default_aim_distance * scene.imaging.entrance_pupil / 2);
   if (!plan.wanted()) return 0;
   double const of_table = 4.0 * static_cast<double>(plan.table.fours());
-  double const measured = static_cast<double>(place_count) * plan_scramblings * largest_sample / predicted_per_traced;
+  double const measured = static_cast<double>(place_count) * budget_scramblings * largest_sample / predicted_per_traced;
   return (of_table + measured) * ray_seconds(scene);
 }
 
 double dots_seconds(FocusedDots const& dots, RenderTheory theory) {
   constexpr double a_node = 0.1e-6;  // look-ups at a node of the cone [s]
   Scene const& scene = dots.scene();
-  DeflectionPlan const plan(dots, scene.dots, DeflectionPlan::usual_aim * scene.imaging.entrance_pupil / 2);
+  DeflectionTableLayout const plan(dots, scene.dots,
+                                   DeflectionTableLayout::default_aim_distance * scene.imaging.entrance_pupil / 2);
   if (plan.state == TableState::no_medium) return 0;
   OwnedDotModel const owned(dots, scene.dots, plan.table, false);
   double const nodes = static_cast<double>(owned.model.cone.count) * owned.model.places.count;
@@ -263,13 +265,13 @@ double dots_seconds(FocusedDots const& dots, RenderTheory theory) {
   return table_seconds(dots) + static_cast<double>(scene.source_count()) * of_dot;
 }
 
-RaysPlan plan_rays(FocusedDots const& dots) {
-  if (auto const given = given_rays(dots.scene().setup)) return *given;
+RayBudget determine_ray_budget(FocusedDots const& dots) {
+  if (auto const given = configured_ray_budget(dots.scene().setup)) return *given;
   Scene searched = dots.scene();  // copy in which fineness and number of rays are varied
   FocusedDots const here = focused_dots(searched).value();
   searched.rays_per_dot = 32;
   searched.fineness = 1;
-  RaysPlan plan;
+  RayBudget plan;
   double last = std::numeric_limits<double>::infinity();
   while (true) {
     plan = measure_table_error(here);

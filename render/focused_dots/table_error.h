@@ -1,7 +1,7 @@
 #pragma once
 
 #include "render/focused_dots/focused_dots.h"
-#include "render/scene/ray_plan.h"
+#include "render/scene/ray_budget.h"
 #include "render/scene/renderer.h"
 
 /// Error of truth and images due to the deflection table, and the number of rays per dot that correct it. The scene is
@@ -19,14 +19,14 @@ DotPattern measured_places(Scene const& scene);
 /// samples are doubled, up to 65,536 rays, until errors and detection limits are within 75 % of the tolerances.
 /// Grey levels refer to the image of a single dot or, for an image target, of adjacent squares. Positions that the
 /// table does not cover are ignored.
-RaysPlan measure_table_error(FocusedDots const& dots);
+RayBudget measure_table_error(FocusedDots const& dots);
 
 /// Plans the number of rays per dot that correct the table, and the fineness of table and rules.
 /// A number given in the setup is used unchanged. Otherwise the plan starts with 32 rays. If the errors exceed 1e-3 px
 /// rms in the truth or half a grey level in images, table and rules are refined by a factor of two; then 128 and 512
 /// rays are tried, as long as each step reduces the error by at least 30 %. Dots with large scatter use up to 256 rays
 /// (DotModel). The plan states the remaining errors and whether they meet the tolerances (`converged`).
-RaysPlan plan_rays(FocusedDots const& dots);
+RayBudget determine_ray_budget(FocusedDots const& dots);
 
 /// Estimates the processor time of a scene's deflection table and of the measurement of its error by ray_seconds() [s].
 /// The table has the same number of rays for a hundred dots as for thousands.

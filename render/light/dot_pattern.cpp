@@ -192,7 +192,7 @@ std::vector<Vec2d> dots_from_csv(std::string const& path, double farthest) {
   return centres;
 }
 
-DotPattern picture_target(std::string const& path, Vec2d extent) {
+DotPattern image_target(std::string const& path, Vec2d extent) {
   Image<double> const picture = read_image(path);
   if (std::size_t const bad = count_not_finite(picture); bad > 0) {
     throw DataError(path,

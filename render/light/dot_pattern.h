@@ -42,6 +42,6 @@ std::vector<Vec2d> dots_from_csv(std::string const& path, double farthest);
 /// largest one; black pixels are omitted. The image fills the extent [m], columns along +X, rows along -Y.
 /// @throws DataError if the image has values that are not finite, is black, or does not have the proportions of the
 /// extent
-DotPattern picture_target(std::string const& path, Vec2d extent);
+DotPattern image_target(std::string const& path, Vec2d extent);
 
 }  // namespace gladstone

@@ -55,7 +55,7 @@ struct LaserSheet {
   GLADSTONE_HD T fluence(Vec3<T> point, int pulse) const {
     using std::exp;
     using std::sqrt;
-    Vec3<T> const p = pose[pulse].point_inwards(point);
+    Vec3<T> const p = pose[pulse].point_to_local(point);
     T const h = height + p.x * growth;
     if (!(h > T(0)) || p.y + p.y > h || p.y + p.y < -h) return T(0);
     T across;  // profile, normalised to an integral over z of one [1/m]
@@ -76,12 +76,12 @@ struct LaserSheet {
   /// Returns propagation and polarisation of the light at a point of the sheet.
   GLADSTONE_HD LightWave<T> wave(Vec3<T> point, int pulse) const {
     using std::sqrt;
-    Vec3<T> const p = pose[pulse].point_inwards(point);
+    Vec3<T> const p = pose[pulse].point_to_local(point);
     T const h = height + p.x * growth;
     T const slope = h > T(0) ? p.y * growth / h : T(0);
     T const cosine = T(1) / sqrt(T(1) + slope * slope), sine = slope * cosine;
-    return {pose[pulse].direction_outwards({cosine, sine, T(0)}),
-            pose[pulse].direction_outwards({-sine * cos_polarization, cosine * cos_polarization, sin_polarization})};
+    return {pose[pulse].direction_to_outer({cosine, sine, T(0)}),
+            pose[pulse].direction_to_outer({-sine * cos_polarization, cosine * cos_polarization, sin_polarization})};
   }
 };
 

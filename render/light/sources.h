@@ -30,7 +30,7 @@ struct SourcesView {
 /// Returns the key of a source's random numbers. It depends on the source's position rounded to a nanometre only, not
 /// on the other sources. Coordinates are clamped to +-9e9 m, the range of 64-bit nanometres.
 /// @param centre  centre of the source [m]
-GLADSTONE_HD inline std::uint64_t key_of(Vec2d centre) {
+GLADSTONE_HD inline std::uint64_t random_key(Vec2d centre) {
   using std::floor;
   auto const nanometres = [](double at) {
     constexpr double farthest = 9e18;  // [nm], within the range of a 64-bit integer
@@ -89,7 +89,7 @@ GLADSTONE_HD void sample_coordinates(BundleView const& bundle, std::uint64_t sou
 
 /// Returns the point of a circle about the origin at a polar angle given as a fraction of a full turn.
 template <class T>
-GLADSTONE_HD Vec2<T> point_of_circle(T radius, T turn) {
+GLADSTONE_HD Vec2<T> point_on_circle(T radius, T turn) {
   using std::cos;
   using std::sin;
   constexpr double two_pi = 6.28318530717958647693;

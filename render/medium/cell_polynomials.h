@@ -70,7 +70,7 @@ struct CellPolynomials {
 
   /// Samples p and q, both from the polynomial of p's cell.
   /// @pre q is so close to p that the error of extrapolation into the neighbouring cell is negligible
-  [[gnu::always_inline]] GLADSTONE_HD void sample_beside(Vec3d p, Vec3d q, IndexSample<double> (&at)[2]) const {
+  [[gnu::always_inline]] GLADSTONE_HD void sample_pair(Vec3d p, Vec3d q, IndexSample<double> (&at)[2]) const {
     Vec3d local[2];
     double const* const cell = locate(p, local[0]);
     local[1] = local[0] + (q - p);

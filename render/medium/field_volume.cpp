@@ -168,7 +168,7 @@ BuiltMedium build_grid(MediumSetup const& setup, RegularGrid const& grid, FieldS
   auto const volume = std::make_shared<Volume const>(
       grid, spline ? Volume::Interpolation::cubic_bspline : Volume::Interpolation::trilinear, scale, shift,
       [&](int first, int count, std::span<double> out) { source.read_planes(first, count, out); });
-  if (!possible_refractivity(volume->lowest()) || !possible_refractivity(volume->highest())) {
+  if (!is_plausible_refractivity(volume->lowest()) || !is_plausible_refractivity(volume->highest())) {
     throw DataError(field.file, fmt::format("{} gives refractive indices from {:.6g} to {:.6g} (no medium has such "
                                             "indices); check medium.field.quantity and scale",
                                             source.name(), 1 + volume->lowest(), 1 + volume->highest()));
@@ -216,7 +216,7 @@ BuiltMedium build_without_grid(MediumSetup const& setup) {
           built.finest = form.finest();
           built.steepest = form.steepest();
         },
-        closed_form_of(setup));
+        make_closed_form(setup));
   }
   built.coarsest_step = std::min(built.finest, setup.thickness / 4);
   built.owner = std::make_shared<FieldSetup const>(setup.field);

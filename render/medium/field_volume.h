@@ -10,7 +10,7 @@
 namespace gladstone {
 
 /// Returns true if n - 1 is within the accepted range, which applies to files and closed forms alike.
-constexpr bool possible_refractivity(double refractivity) { return refractivity > -0.5 && refractivity < 3.0; }
+constexpr bool is_plausible_refractivity(double refractivity) { return refractivity > -0.5 && refractivity < 3.0; }
 
 /// Refractive medium of a setup. Owns the grid of the view, if there is one.
 struct BuiltMedium {

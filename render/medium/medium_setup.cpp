@@ -93,7 +93,7 @@ MediumSetup read_medium_setup(SetupTable table) {
   auto fields = table.tables("field");
   if (fields.size() > 1) {
     table.problem("field", "is an array of several fields, which is not available yet (one field per setup); keep one");
-    for (std::size_t other = 1; other < fields.size(); ++other) fields[other].excuse();
+    for (std::size_t other = 1; other < fields.size(); ++other) fields[other].suppress_unread_keys();
   }
   setup.field = read_field(fields.empty() ? table.table("field") : fields.front());
   if (SetupTable second = table.table("second_field"); second.present()) setup.second_field = read_field(second);
@@ -102,14 +102,14 @@ MediumSetup read_medium_setup(SetupTable table) {
   return setup;
 }
 
-MediumSetup at_second_pulse(MediumSetup const& setup) {
+MediumSetup select_second_pulse(MediumSetup const& setup) {
   MediumSetup second = setup;
   second.field = *setup.second_field;
   second.second_field.reset();
   return second;
 }
 
-ClosedForm<double> closed_form_of(MediumSetup const& setup) {
+ClosedForm<double> make_closed_form(MediumSetup const& setup) {
   GLADSTONE_EXPECTS(setup.field.kind == FieldKind::closed_form);
   ClosedForm<double> whole = setup.field.form;
   std::visit(
@@ -143,7 +143,7 @@ double automatic_thickness_mm(FieldSetup const& field) {
   return std::max(10.0, std::round(radii * radius_along_z(field) / unit::nanometre) * 1e-6);
 }
 
-double cut_off_share(MediumSetup const& setup) {
+double truncated_fraction(MediumSetup const& setup) {
   double const radius = radius_along_z(setup.field);
   return radius > 0 ? std::erfc(setup.thickness / 2 / radius) : 0.0;
 }

@@ -39,7 +39,7 @@ struct FieldSetup {
   bool extrude = false;
   std::array<bool, 3> periodic{false, false, false};
   // closed form
-  ClosedForm<double> form;  ///< parameters without those of Slab, which come from [medium], see closed_form_of()
+  ClosedForm<double> form;  ///< parameters without those of Slab, which come from [medium], see make_closed_form()
 
   /// Returns the closed form if it has the given type, else null.
   template <class Form>
@@ -68,10 +68,10 @@ struct MediumSetup {
 MediumSetup read_medium_setup(SetupTable table);
 
 /// Returns the closed form with the slab parameters of its medium. @pre setup.field.kind is closed_form
-ClosedForm<double> closed_form_of(MediumSetup const& setup);
+ClosedForm<double> make_closed_form(MediumSetup const& setup);
 
 /// Returns the setup with the field of the second pulse. @pre setup.second_field has a value
-MediumSetup at_second_pulse(MediumSetup const& setup);
+MediumSetup select_second_pulse(MediumSetup const& setup);
 
 /// Returns true if a field is a volume from a file, whose depth does not depend on thickness_mm.
 bool has_own_depth(FieldSetup const& field);
@@ -89,6 +89,6 @@ double automatic_thickness_mm(MediumSetup const& setup);
 
 /// Returns the fraction of a field's displacement that is lost by truncation at the slab's faces [1]: erfc(half
 /// thickness / radius) for a plume or blob, whose density is Gaussian along Z; 0 for other fields.
-double cut_off_share(MediumSetup const& setup);
+double truncated_fraction(MediumSetup const& setup);
 
 }  // namespace gladstone

@@ -52,13 +52,13 @@ struct Force {
   T n2;       ///< n^2 [1]
 };
 template <class T>
-[[gnu::always_inline]] GLADSTONE_HD inline Force<T> force_of(IndexSample<T> const& s) {
+[[gnu::always_inline]] GLADSTONE_HD inline Force<T> compute_force(IndexSample<T> const& s) {
   T const n = T(1) + s.refractivity;
   return {n * s.gradient, n * n};
 }
 template <class T, class Medium>
 [[gnu::always_inline]] GLADSTONE_HD inline Force<T> force_at(Medium const& medium, Vec3<T> p) {
-  return force_of<T>(medium.sample(p));
+  return compute_force<T>(medium.sample(p));
 }
 
 /// Evaluates the three stages of Sharma's step for N rays together, so that the samples of different rays are

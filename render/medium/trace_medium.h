@@ -102,14 +102,14 @@ GLADSTONE_HD Chord<T> chord_in(Bounds<T> const& box, Vec3<T> p, Vec3<T> d) {
 
 /// Distance along T from R to the next face, as Sharma's t [m], and the axis normal to that face.
 template <class T>
-struct WayOut {
+struct FaceExit {
   T t;
   int axis;
 };
 
 template <class T>
-GLADSTONE_HD WayOut<T> way_out(Bounds<T> const& box, Vec3<T> R, Vec3<T> direction) {
-  WayOut<T> out{T(unbounded), 2};
+GLADSTONE_HD FaceExit<T> find_face_exit(Bounds<T> const& box, Vec3<T> R, Vec3<T> direction) {
+  FaceExit<T> out{T(unbounded), 2};
   for (int axis = 0; axis < 3; ++axis) {
     if (direction[axis] == T(0)) continue;
     T const face = direction[axis] > T(0) ? box.high[axis] : box.low[axis];
@@ -122,7 +122,7 @@ GLADSTONE_HD WayOut<T> way_out(Bounds<T> const& box, Vec3<T> R, Vec3<T> directio
 /// Returns the axis normal to the face through which a ray at R with the given direction has left a box, or -1 if it
 /// has not. A point just outside a face by rounding counts as inside if the ray is directed inwards.
 template <class T>
-GLADSTONE_HD int face_left_by(Bounds<T> const& box, Vec3<T> R, Vec3<T> direction) {
+GLADSTONE_HD int find_exit_face(Bounds<T> const& box, Vec3<T> R, Vec3<T> direction) {
   for (int axis = 2; axis >= 0; --axis) {
     if (R[axis] < box.low[axis] && direction[axis] < T(0)) return axis;
     if (R[axis] > box.high[axis] && direction[axis] > T(0)) return axis;
@@ -162,7 +162,7 @@ template <class T, class Medium>
   for (int trial = 0; trial <= 64; ++trial) {
     StepIncrement<T> const add = step_increment(medium, integrator, from.position, from.optical_direction, next);
     Vec3<T> const reached = from.position + from.optical_direction * next + add.position;
-    int const left_by = face_left_by(box, reached, from.optical_direction + add.optical_direction);
+    int const left_by = find_exit_face(box, reached, from.optical_direction + add.optical_direction);
     if (trial == 0) part.add = add;
     if (trial == 0 && left_by < 0) return part;
     if (left_by >= 0) {
@@ -199,7 +199,7 @@ GLADSTONE_HD bool lies_inside(Bounds<T> const& box, Vec3<T> p) {
          p.z < box.high.z;
 }
 
-/// Returns false if a straight step dt certainly ends inside the box. Cheaper than way_out(), which divides.
+/// Returns false if a straight step dt certainly ends inside the box. Cheaper than find_face_exit(), which divides.
 template <class T>
 GLADSTONE_HD bool may_reach_face(Bounds<T> const& box, Vec3<T> R, Vec3<T> direction, T dt) {
   return !lies_inside(box, R + direction * (dt * T(1 + 1e-9)));
@@ -253,8 +253,8 @@ GLADSTONE_HD Crossing<T> enter_medium(Medium const& medium, TracingOptions<T> co
 /// Integrates a ray from its current state to its exit from the medium. Not inlined, to limit the register use of a
 /// device's loop over full steps.
 template <class T, class Medium>
-[[gnu::noinline]] GLADSTONE_HD void leave_medium(Medium const& medium, TracingOptions<T> const& options,
-                                                 Ray<T> const& start, Crossing<T>& crossing) {
+[[gnu::noinline]] GLADSTONE_HD void integrate_to_exit(Medium const& medium, TracingOptions<T> const& options,
+                                                      Ray<T> const& start, Crossing<T>& crossing) {
   if (crossing.steps_left == 0) return;
   MediumPassage<T>& way = crossing.way;
   Bounds<T> const& box = crossing.box;
@@ -267,15 +267,15 @@ template <class T, class Medium>
     Vec3<T> const where =
         options.integrator == Integrator::straight ? start.position + way.straight * (way.entry + way.t) : R;
     Vec3<T> const along = options.integrator == Integrator::straight ? way.straight : direction;
-    WayOut<T> out{T(unbounded), 2};
-    if (may_reach_face(box, where, along, dt)) out = way_out(box, where, along);
+    FaceExit<T> out{T(unbounded), 2};
+    if (may_reach_face(box, where, along, dt)) out = find_face_exit(box, where, along);
     bool landing = out.t <= dt * landing_margin<T>;
     T step = dt;
     if (landing) step = out.t;
     StepIncrement<T> add = step_increment(medium, options.integrator, where, along, step);
     if (!landing) {
       Vec3<T> const reached = where + along * step + add.position;
-      int const left_by = face_left_by(box, reached, along + add.optical_direction);
+      int const left_by = find_exit_face(box, reached, along + add.optical_direction);
       if (options.integrator != Integrator::straight && left_by >= 0) {
         // a curved ray left the box within the step: end the step on the crossed face
         landing = true;
@@ -336,9 +336,9 @@ template <class T, class Medium>
 }
 
 /// Integrates several rays together through the interior of a medium, until one of them may reach a face in the next
-/// step. leave_medium() integrates the remaining steps.
+/// step. integrate_to_exit() integrates the remaining steps.
 template <class T, class Medium, int N>
-GLADSTONE_HD void cross_together(Medium const& medium, Ray<T> const (&start)[N], Crossing<T> (&crossing)[N]) {
+GLADSTONE_HD void integrate_together(Medium const& medium, Ray<T> const (&start)[N], Crossing<T> (&crossing)[N]) {
   // local copies, for a device's registers
   Crossing<T> ray[N];
   for (int i = 0; i < N; ++i) ray[i] = crossing[i];
@@ -358,8 +358,8 @@ GLADSTONE_HD void cross_together(Medium const& medium, Ray<T> const (&start)[N],
     if (!stay) break;
     step_increments(medium, T(1), R, direction, dt, add);
     for (int i = 0; i < N; ++i) {
-      stay &=
-          face_left_by(box, R[i] + direction[i] * dt[i] + add[i].position, direction[i] + add[i].optical_direction) < 0;
+      stay &= find_exit_face(box, R[i] + direction[i] * dt[i] + add[i].position,
+                             direction[i] + add[i].optical_direction) < 0;
     }
     if (!stay) break;
     for (int i = 0; i < N; ++i) {
@@ -378,36 +378,36 @@ GLADSTONE_HD void cross_together(Medium const& medium, Ray<T> const (&start)[N],
 /// Media that sample two neighbouring points at little more than the cost of one.
 template <class T, class Medium>
 concept SamplesPairs = requires(Medium const& medium, Vec3<T> p, IndexSample<T> (&at)[2]) {
-  medium.sample_beside(p, p, at);
+  medium.sample_pair(p, p, at);
 };
 
-/// Like cross_together() for a single ray, but samples the end of a step together with the start of the next one. The
-/// two points are (A - B) dt^2/6 apart, and neither sample depends on the other.
+/// Like integrate_together() for a single ray, but samples the end of a step together with the start of the next one.
+/// The two points are (A - B) dt^2/6 apart, and neither sample depends on the other.
 template <class T, class Medium>
-GLADSTONE_HD void cross_in_pairs(Medium const& medium, Ray<T> const& start, Crossing<T>& crossing) {
+GLADSTONE_HD void integrate_in_pairs(Medium const& medium, Ray<T> const& start, Crossing<T>& crossing) {
   Crossing<T> ray = crossing;
   MediumPassage<T>& way = ray.way;
   Bounds<T> const box = medium.bounds();
   Vec3<T> R = start.position + way.straight * (way.entry + way.t) + way.shift;
-  Force<T> A = force_of(medium.sample(R));
+  Force<T> A = compute_force(medium.sample(R));
   while (ray.steps_left > 1) {
     T const dt = ray.dt, dt2 = dt * dt;
     Vec3<T> const direction = way.straight + way.turn;
     if (may_reach_face(box, R, direction, dt)) break;
-    Force<T> const B = force_of(medium.sample(R + (T(0.5) * dt) * direction + (T(0.125) * dt2) * A.d));
+    Force<T> const B = compute_force(medium.sample(R + (T(0.5) * dt) * direction + (T(0.125) * dt2) * A.d));
     Vec3<T> const moved = (T(1.0 / 6.0) * dt2) * (A.d + T(2) * B.d);
     Vec3<T> const straight_on = R + dt * direction, reached = straight_on + moved;
     IndexSample<T> at[2];
-    medium.sample_beside(straight_on + (T(0.5) * dt2) * B.d, reached, at);
-    Force<T> const C = force_of(at[0]);
+    medium.sample_pair(straight_on + (T(0.5) * dt2) * B.d, reached, at);
+    Force<T> const C = compute_force(at[0]);
     Vec3<T> const turned = (T(1.0 / 6.0) * dt) * (A.d + T(4) * B.d + C.d);
-    if (!lies_inside(box, reached) && face_left_by(box, reached, direction + turned) >= 0) break;
+    if (!lies_inside(box, reached) && find_exit_face(box, reached, direction + turned) >= 0) break;
     way.shift += way.turn * dt + moved;
     way.turn += turned;
     way.optical_path += (T(1.0 / 6.0) * dt) * (A.n2 + T(4) * B.n2 + C.n2);
     way.t += dt;
     R = reached;
-    A = force_of(at[1]);
+    A = compute_force(at[1]);
     ray.dt = ray.whole_step;
     --ray.steps_left;
   }
@@ -427,7 +427,7 @@ template <class T, class Medium>
 GLADSTONE_HD MediumPassage<T> trace_medium(Medium const& medium, TracingOptions<T> const& options,
                                            Ray<T> const& start) {
   detail::Crossing<T> crossing = detail::enter_medium(medium, options, start);
-  detail::leave_medium(medium, options, start, crossing);
+  detail::integrate_to_exit(medium, options, start, crossing);
   return crossing.way;
 }
 
@@ -444,13 +444,13 @@ GLADSTONE_HD void trace_medium(Medium const& medium, TracingOptions<T> const& op
   }
   if (together) {
     if constexpr (N == 1 && detail::SamplesPairs<T, Medium>) {
-      detail::cross_in_pairs(medium, start[0], crossing[0]);
+      detail::integrate_in_pairs(medium, start[0], crossing[0]);
     } else {
-      detail::cross_together(medium, start, crossing);
+      detail::integrate_together(medium, start, crossing);
     }
   }
   for (int i = 0; i < N; ++i) {
-    detail::leave_medium(medium, options, start[i], crossing[i]);
+    detail::integrate_to_exit(medium, options, start[i], crossing[i]);
     way[i] = crossing[i].way;
   }
 }

@@ -128,7 +128,7 @@ class AgfReader {
     if (at && share && thick && *at > 0 && *share >= 0 && *share <= 1 && *thick > 0) {
       glass_->transmission.push_back({*at * unit::micrometre, *share, *thick * unit::millimetre});
     } else {
-      content_.passed_over.push_back({record.line, fmt::format("internal transmission of {}", glass_->name)});
+      content_.skipped_lines.push_back({record.line, fmt::format("internal transmission of {}", glass_->name)});
     }
   }
 

@@ -22,7 +22,7 @@ struct AgfContent {
   };
   std::vector<Glass> glasses;  ///< usable glasses; `where` is the line number
   std::vector<LeftOut> left_out;
-  std::vector<AgfFault> passed_over;  ///< skipped lines of glasses that are used without them
+  std::vector<AgfFault> skipped_lines;  ///< skipped lines of glasses that are used without them
 };
 
 /// Reads the lines NM, CD, LD and IT of a catalogue.

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "render/base/units.h"
-#include "render/optics/aim_disc.h"
+#include "render/optics/apparent_pupil.h"
 
 namespace gladstone {
 namespace {
@@ -20,13 +20,13 @@ constexpr double least_backwards = 1e-9;  // [m]; smaller distances are rounding
 /// Beam from the axial object point through the stop.
 struct AxialBeam {
   RayOrigin origin;
-  AimDisc disc;
+  ApparentPupil disc;
 
   static std::optional<AxialBeam> of(Lens const& lens, double object_distance) {
     if (!(object_distance > 0)) return std::nullopt;
     RayOrigin const origin =
         std::isfinite(object_distance) ? RayOrigin::point({0, 0, -object_distance}) : RayOrigin::direction({0, 0, 1});
-    auto const disc = find_aim_disc(lens, origin);
+    auto const disc = find_apparent_pupil(lens, origin);
     if (!disc) return std::nullopt;
     return AxialBeam{origin, *disc};
   }
@@ -68,7 +68,7 @@ std::optional<std::string> crossed_faces(Lens const& lens, double object_distanc
   return std::nullopt;
 }
 
-std::optional<double> widest_beam(Lens const& lens, double object_distance) {
+std::optional<double> max_axial_beam_radius(Lens const& lens, double object_distance) {
   auto const beam = AxialBeam::of(lens, object_distance);
   if (!beam) return std::nullopt;
   auto const passes = [&](double height) {
@@ -84,7 +84,7 @@ std::optional<double> widest_beam(Lens const& lens, double object_distance) {
     double const tried = (free + taken) / 2;
     (passes(tried) ? free : taken) = tried;
   }
-  auto const place = place_in_stop(lens, beam->at(free, beam_sides[0]));
+  auto const place = intersect_stop(lens, beam->at(free, beam_sides[0]));
   constexpr double whole = 0.97;  // relative height in the stop that the rim ray reaches if it is not vignetted
   if (free == within_disc && place && length(*place) > whole * lens.stop_radius) return std::nullopt;
   return length(free * beam->disc.a);

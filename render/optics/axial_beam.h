@@ -16,6 +16,6 @@ std::optional<std::string> crossed_faces(Lens const& lens, double object_distanc
 /// Returns the radius of the widest axial beam that is not vignetted by the edges of the surfaces, on the tangent plane
 /// of the first vertex [m]; nullopt if the stop is the only limit.
 /// @param object_distance  distance from the object to the first vertex [m]
-std::optional<double> widest_beam(Lens const& lens, double object_distance);
+std::optional<double> max_axial_beam_radius(Lens const& lens, double object_distance);
 
 }  // namespace gladstone

@@ -20,7 +20,7 @@ class ImagePlane {
     double const way = (z - local.position.z) / local.direction.z;
     return {local.position.x + way * local.direction.x, local.position.y + way * local.direction.y};
   }
-  Vec3d outwards(Vec2d p) const { return pose_.point_outwards({p.x, p.y, 0}); }
+  Vec3d outwards(Vec2d p) const { return pose_.point_to_outer({p.x, p.y, 0}); }
 
  private:
   Pose<double> pose_;
@@ -37,7 +37,7 @@ class FieldTracer {
     FieldPoint point;
     point.angle = angle;
     RayOrigin const origin = field_origin(lens_, paraxial_, angle);
-    auto const disc = find_aim_disc(lens_, origin);
+    auto const disc = find_apparent_pupil(lens_, origin);
     if (!disc) return point;
     trace_spot(origin, *disc, point);
     trace_chief(origin, *disc, point);
@@ -45,13 +45,13 @@ class FieldTracer {
   }
 
  private:
-  void trace_spot(RayOrigin const& origin, AimDisc const& disc, FieldPoint& point) const {
+  void trace_spot(RayOrigin const& origin, ApparentPupil const& disc, FieldPoint& point) const {
     int through_stop = 0;
     std::map<std::pair<int, RayStatus>, int> lost;
     std::vector<Ray<double>> arrived;
     for (int k = 0; k < rays_; ++k) {
       Ray<double> ray = origin.ray_through(disc.at(sunflower(k, rays_)));
-      auto const in_stop = place_in_stop(lens_, ray);
+      auto const in_stop = intersect_stop(lens_, ray);
       if (in_stop && length(*in_stop) > lens_.stop_radius) continue;  // misses the stop
       through_stop += in_stop ? 1 : 0;
       RayAccount<double> account;
@@ -74,14 +74,14 @@ class FieldTracer {
       point.spot.push_back(ImagePlane::meets(ray, 0));
       slopes.push_back(slope(ray));
     }
-    BundleSpot<double> const spot = spot_of(point.spot, slopes);
+    BundleSpot<double> const spot = compute_bundle_spot(point.spot, slopes);
     point.centroid = spot.centroid;
     point.spot_rms = std::sqrt(spot.mean_square);
     point.best_focus = spot.best_focus;
     point.best_spot_rms = std::sqrt(spot.best_mean_square);
   }
 
-  void trace_chief(RayOrigin const& origin, AimDisc const& disc, FieldPoint& point) const {
+  void trace_chief(RayOrigin const& origin, ApparentPupil const& disc, FieldPoint& point) const {
     auto const through = [&](Vec2d p) {
       Ray<double> ray = origin.ray_through(disc.at(p));
       RayAccount<double> account;
@@ -112,7 +112,7 @@ class FieldTracer {
   }
 
   /// Returns the point of the unit disc that maps to a given direction from the ellipse's centre.
-  static Vec2d along(AimDisc const& disc, Vec2d direction) {
+  static Vec2d along(ApparentPupil const& disc, Vec2d direction) {
     double const determinant = disc.a.x * disc.b.y - disc.a.y * disc.b.x;
     Vec2d const p{(direction.x * disc.b.y - direction.y * disc.b.x) / determinant,
                   (disc.a.x * direction.y - disc.a.y * direction.x) / determinant};

@@ -3,14 +3,14 @@
 #include <limits>
 #include <vector>
 
-#include "render/optics/aim_disc.h"
+#include "render/optics/apparent_pupil.h"
 #include "render/optics/lens.h"
 #include "render/optics/paraxial.h"
 
 namespace gladstone {
 
 /// Rays lost at one surface for one reason. Rays that pass the plane of the stop outside its radius are not counted.
-struct LostRays {
+struct SurfaceRayLoss {
   int surface;
   RayStatus cause;
   double share;  ///< fraction of all rays traced for the field point [1]
@@ -30,7 +30,7 @@ struct FieldPoint {
   double tangential_focus = 0;  ///< tangential focus of a narrow bundle about the chief ray, from the image plane [m]
   double sagittal_focus = 0;    ///< sagittal focus, from the image plane [m]
   double vignetting = 0;        ///< fraction of the rays through the stop that do not reach the image [1]
-  std::vector<LostRays> lost;   ///< sorted by surface, then by reason
+  std::vector<SurfaceRayLoss> lost;  ///< sorted by surface, then by reason
 };
 
 /// Analysis of a lens over its field.

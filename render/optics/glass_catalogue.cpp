@@ -107,11 +107,11 @@ void GlassCatalogue::add(std::string_view text, std::string const& catalogue, st
                                     out[0].fault.line, out.size(), out.size() + content.glasses.size(),
                                     out.size() == 1 ? "is" : "are", list_left_out(out)));
   }
-  if (!content.passed_over.empty()) {
+  if (!content.skipped_lines.empty()) {
     warnings_.push_back(
         fmt::format("{}:{}: {} lines IT do not consist of a transmittance and a positive thickness, and are ignored "
                     "(the first: {})",
-                    file, content.passed_over[0].line, content.passed_over.size(), content.passed_over[0].text));
+                    file, content.skipped_lines[0].line, content.skipped_lines.size(), content.skipped_lines[0].text));
   }
   for (Glass& glass : content.glasses) glass.where = fmt::format("{}:{}", file, glass.where);
   for (AgfContent::LeftOut const& one : out) {
@@ -156,7 +156,7 @@ std::vector<GlassCatalogue::FullName> GlassCatalogue::names() const {
   return all;
 }
 
-std::string GlassCatalogue::glasses_like(std::string_view name) const {
+std::string GlassCatalogue::suggest_glasses(std::string_view name) const {
   constexpr std::size_t most = 5, half = 2;  // names are short, so that half of the letters may differ
   std::string const key = glass_key(name);
   std::vector<FullName> const all = names();
@@ -221,7 +221,7 @@ void GlassCatalogue::refuse_unknown(std::string_view name, std::string const& wh
   throw DataError(
       where, fmt::format("glass \"{}\" is in no catalogue ({} glasses are known){}; add its catalogue (AGF) to the "
                          "setup's lens.glasses = [\"FILE.agf\"] (for info lens: --glass), or give the lens an index",
-                         name, names().size(), glasses_like(own.substr(0, own.rfind('_')))));
+                         name, names().size(), suggest_glasses(own.substr(0, own.rfind('_')))));
 }
 
 std::vector<Glass const*> GlassCatalogue::successors(std::string_view name) const {

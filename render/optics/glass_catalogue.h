@@ -70,7 +70,7 @@ class GlassCatalogue {
 
  private:
   /// Returns "; did you mean ...?" with the most similar names; empty if no name is similar.
-  std::string glasses_like(std::string_view name) const;
+  std::string suggest_glasses(std::string_view name) const;
   /// Returns the glasses with the given name, in the given catalogue or, if that is empty, in all; in the order of
   /// match() without preferred catalogues.
   std::vector<Glass const*> named(std::string_view name, std::string_view catalogue) const;

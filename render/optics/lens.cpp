@@ -307,7 +307,7 @@ class LensBuilder {
       surface.shape = shape;
       surface.pose = frame;
       surface.semi_diameter = std::numeric_limits<double>::infinity();
-      if (prescribed.semi_diameter_is_an_edge) surface.semi_diameter = prescribed.semi_diameter;
+      if (prescribed.semi_diameter_vignettes) surface.semi_diameter = prescribed.semi_diameter;
       surface.n_before = before.n;
       surface.n_after = after.n;
       surface.absorption = before.absorption;
@@ -395,7 +395,7 @@ void note_wide_stop(Lens& lens, double f_number, double own_radius, double objec
   if (lens.paraxial_stop_radius <= (1 + rounding) * own_radius) return;
   std::string text = fmt::format("{}: f/{:.4g} opens the stop wider than the prescription itself, which is f/{:.4g}",
                                  lens.prescription.file, f_number, f_number * lens.paraxial_stop_radius / own_radius);
-  if (auto const widest = widest_beam(lens, object_distance)) {
+  if (auto const widest = max_axial_beam_radius(lens, object_distance)) {
     RayTransfer const to_stop = ray_transfer(lens, 0, lens.stop);
     double const asked = lens.paraxial_stop_radius / std::abs(to_stop.a + to_stop.b / object_distance);
     text += fmt::format(

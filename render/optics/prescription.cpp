@@ -78,7 +78,7 @@ std::string find_overlap(Prescription const& lens, std::size_t i, double forward
   if (next_real == lens.surfaces.size()) return "";
   PrescribedSurface const& next = lens.surfaces[next_real];
   double const height = std::min(one.semi_diameter, next.semi_diameter);
-  if (!std::isfinite(height) || !one.semi_diameter_is_an_edge || !next.semi_diameter_is_an_edge) return "";
+  if (!std::isfinite(height) || !one.semi_diameter_vignettes || !next.semi_diameter_vignettes) return "";
   for (int k = 0; k <= 32; ++k) {
     double const r = height * k / 32;
     double const gap = forwards * (way + sag(next, r) - sag(one, r));
@@ -113,7 +113,7 @@ void check_medium(PrescribedMedium const& medium, std::string const& surface_whe
 
 /// Returns a warning if a surface ends inside its semi-diameter; empty otherwise.
 std::string find_short_surface(PrescribedSurface const& surface) {
-  bool const edge = surface.semi_diameter_is_an_edge && std::isfinite(surface.semi_diameter);
+  bool const edge = surface.semi_diameter_vignettes && std::isfinite(surface.semi_diameter);
   if (!edge || std::isfinite(sag(surface, surface.semi_diameter))) return "";
   return fmt::format(
       "{}: a surface of radius {:.4g} mm does not reach its semi-diameter of {:.4g} mm; rays beyond its rim miss it "
@@ -213,7 +213,7 @@ std::vector<std::string> check_prescription(Prescription const& lens) {
     if (!(surface.semi_diameter > 0)) {
       throw DataError(surface.where, "the semi-diameter is not positive; give the radius within which light passes");
     }
-    double const edge = surface.semi_diameter_is_an_edge ? surface.semi_diameter : HUGE_VAL;
+    double const edge = surface.semi_diameter_vignettes ? surface.semi_diameter : HUGE_VAL;
     if (!(surface.obscured >= 0 && surface.obscured < edge)) {
       throw DataError(surface.where,
                       fmt::format("an obscuration of radius {:.4g} mm covers the surface's semi-diameter of {:.4g} mm; "

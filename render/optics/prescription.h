@@ -70,11 +70,11 @@ struct PrescribedSurface {
   double thickness = 0;         ///< distance along the axis to the next surface; negative behind a mirror [m]
   PrescribedMedium after;
   double semi_diameter = std::numeric_limits<double>::infinity();  ///< [m]
-  bool semi_diameter_is_an_edge = true;  ///< false: for drawings, from a design program; does not vignette
-  bool has_aperture = false;             ///< has an aperture of that semi-diameter, which limits a stop too
-  double obscured = 0;                   ///< radius of a central obscuration [m]
-  bool obscured_without_end = false;     ///< obscuration of an aperture that has an inner radius only
-  SurfaceOutline<double> outline;        ///< aperture or obscuration that is not a circle about the axis
+  bool semi_diameter_vignettes = true;  ///< false: for drawings, from a design program; does not vignette
+  bool has_aperture = false;            ///< has an aperture of that semi-diameter, which limits a stop too
+  double obscured = 0;                  ///< radius of a central obscuration [m]
+  bool obscured_without_end = false;    ///< obscuration of an aperture that has an inner radius only
+  SurfaceOutline<double> outline;       ///< aperture or obscuration that is not a circle about the axis
   bool stop = false;
   std::vector<CoordinateBreak> before;  ///< coordinate breaks ahead of the surface
 };

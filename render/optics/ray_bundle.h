@@ -25,7 +25,7 @@ struct BundleSpot {
 /// @param slopes  slopes of the rays relative to the plane's normal [1]
 /// @pre both have the same size, at least one
 template <class T>
-BundleSpot<T> spot_of(std::vector<Vec2<T>> const& places, std::vector<Vec2<T>> const& slopes) {
+BundleSpot<T> compute_bundle_spot(std::vector<Vec2<T>> const& places, std::vector<Vec2<T>> const& slopes) {
   T const count(static_cast<double>(places.size()));
   Vec2<T> place{}, slope{};
   for (std::size_t i = 0; i < places.size(); ++i) {

@@ -14,7 +14,7 @@ std::vector<WindowSetup> read_windows(SetupTable root) {
     window.position = table.quantities("position_mm", window.position, unit::millimetre);
     if (!table.has("position_mm")) table.problem("position_mm", "is missing (the centre of the window); add it");
     window.tilt = table.quantities("tilt_deg", window.tilt, unit::degree, {-80, 80});
-    table.pass_over("cameras");  // the cameras that look through it, in setups with several
+    table.mark_as_read("cameras");  // the cameras that look through it, in setups with several
     windows.push_back(window);
   }
   return windows;

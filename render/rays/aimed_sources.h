@@ -15,7 +15,7 @@ struct LambertSources {
   /// Maps uniform random numbers u, v in [0, 1) to a position in the unit disc or the square [-1, 1]^2.
   GLADSTONE_HD Vec2<T> place(T u, T v) const {
     using std::sqrt;
-    if (dots.shape == SourceShape::disc) return point_of_circle(sqrt(u), v);
+    if (dots.shape == SourceShape::disc) return point_on_circle(sqrt(u), v);
     return {T(2) * u - T(1), T(2) * v - T(1)};
   }
   /// Returns the point of source i at such a position [m]. Sources are symmetric about the centre: -place is as likely
@@ -28,7 +28,7 @@ struct LambertSources {
     return (dots.radiance ? dots.radiance[i] : T(1)) * (direction.z > T(0) ? direction.z : T(0));
   }
   /// Key of the source's random numbers.
-  GLADSTONE_HD std::uint64_t key(std::uint64_t i) const { return key_of({dots.centre[i].x, dots.centre[i].y}); }
+  GLADSTONE_HD std::uint64_t key(std::uint64_t i) const { return random_key({dots.centre[i].x, dots.centre[i].y}); }
   GLADSTONE_HD Vec3<T> middle(std::uint64_t i) const { return {dots.centre[i].x, dots.centre[i].y, dots.plane_z}; }
   /// Maximum distance of a point of the source from its centre [m].
   GLADSTONE_HD T reach() const {
@@ -86,7 +86,7 @@ GLADSTONE_HD AimedRay<T> aim_ray(Sources const& sources, AimedBundle<T> const& b
   T u[sobol_dimensions];
   sample_coordinates(bundle.choice, sources.key(i), ((of_scrambling >> 1) << bits) | scrambling, u);
   Vec2<T> const place = sources.place(u[2], u[3]);
-  return ray_to(sources, bundle, i, of_scrambling % 2 == 0 ? place : -place, point_of_circle(sqrt(u[0]), u[1]));
+  return ray_to(sources, bundle, i, of_scrambling % 2 == 0 ? place : -place, point_on_circle(sqrt(u[0]), u[1]));
 }
 
 /// Adds the results of one ray in both images to status counts, centroid sums and light.

@@ -18,7 +18,7 @@ namespace gladstone {
 
 /// Tolerance of the edge of the filled disc, as a fraction of the stop's radius. The relative error of a source's light
 /// is at most twice that: half a grey level at 12 bits.
-inline constexpr double filled_to = 6e-5;
+inline constexpr double fill_tolerance = 6e-5;
 
 /// Stop of a camera and the optics in front of it, as required to aim rays at it: a non-owning view.
 struct StopView {
@@ -82,7 +82,7 @@ namespace detail {
 
 /// Traces a ray through an element, ignoring vignetting.
 /// @return false if the ray is lost
-GLADSTONE_HD inline bool goes_on(CameraElement<double> const& element, Ray<double>& ray) {
+GLADSTONE_HD inline bool trace_ignoring_vignetting(CameraElement<double> const& element, Ray<double>& ray) {
   RayAccount<double> account;
   RayStatus const status = element.visit([&](auto const& held) { return held.interact(ray, account); });
   return status == RayStatus::alive || status == RayStatus::vignetted;
@@ -96,7 +96,7 @@ GLADSTONE_HD bool meets_stop(StopView const& view, Medium const& medium, Tracing
                              Ray<double> ray, Vec2d& place) {
   CameraView<double> const& camera = view.camera;
   for (int i = 0; i < camera.before_medium; ++i) {
-    if (!goes_on(camera.elements[i], ray)) return false;
+    if (!trace_ignoring_vignetting(camera.elements[i], ray)) return false;
   }
   if constexpr (!std::is_same_v<Medium, NoMedium<double>>) {
     Ray<double> const start[1] = {ray};
@@ -106,7 +106,7 @@ GLADSTONE_HD bool meets_stop(StopView const& view, Medium const& medium, Tracing
     ray = outgoing_ray(ray, way[0]);
   }
   for (int i = camera.before_medium; i < view.stop; ++i) {
-    if (!goes_on(camera.elements[i], ray)) return false;
+    if (!trace_ignoring_vignetting(camera.elements[i], ray)) return false;
   }
   return camera.elements[view.stop].visit([&](auto const& held) { return held.meet(ray, place); });
 }
@@ -115,12 +115,12 @@ GLADSTONE_HD bool meets_stop(StopView const& view, Medium const& medium, Tracing
 
 /// Returns the ray from a point to a position on the aim plane.
 GLADSTONE_HD inline Ray<double> ray_to_aim(CameraView<double> const& camera, Vec3d point, Vec2d aim) {
-  return {point, normalized(camera.aim_plane.point_outwards({aim.x, aim.y, 0}) - point)};
+  return {point, normalized(camera.aim_plane.point_to_outer({aim.x, aim.y, 0}) - point)};
 }
 
 /// Returns the paraxial entrance pupil as seen from a point, without medium.
 GLADSTONE_HD inline AimMap paraxial_aim(StopView const& view, Vec3d point) {
-  Vec3d const q = view.pose.point_inwards(point);
+  Vec3d const q = view.pose.point_to_local(point);
   double const distance = view.front - q.z - view.window_shift;
   double const per_slope = view.to_stop.a * distance + view.to_stop.b;  // in the stop, over a ray's slope [m]
   double const height = view.to_stop.b / per_slope, radius = view.radius * distance / per_slope;
@@ -145,7 +145,7 @@ GLADSTONE_HD bool fit_to_stop(StopView const& view, Medium const& medium, Tracin
   constexpr int most_turns = 16;
   constexpr double settled = 1e-7;  // relative to the pupil radius; the final residual is far smaller
   Vec2d aim[rim_rays], miss[rim_rays];
-  for (int k = 0; k < rim_rays; ++k) aim[k] = map.at(point_of_circle(1.0, static_cast<double>(k) / rim_rays));
+  for (int k = 0; k < rim_rays; ++k) aim[k] = map.at(point_on_circle(1.0, static_cast<double>(k) / rim_rays));
   double change = 1;
   GLADSTONE_RAY_BY_RAY
   for (int turn = 0; !(change <= settled); ++turn) {
@@ -155,7 +155,7 @@ GLADSTONE_HD bool fit_to_stop(StopView const& view, Medium const& medium, Tracin
     for (int k = 0; k < rim_rays; ++k) {
       Vec2d met;
       if (!detail::meets_stop(view, medium, options, ray_to_aim(view.camera, point, aim[k]), met)) return false;
-      Vec2d const here = point_of_circle(1.0, static_cast<double>(k) / rim_rays);
+      Vec2d const here = point_on_circle(1.0, static_cast<double>(k) / rim_rays);
       a += (2.0 / rim_rays) * here.x * aim[k];
       b += (2.0 / rim_rays) * here.y * aim[k];
       by_a += (2.0 / rim_rays) * here.x * met;
@@ -177,7 +177,7 @@ GLADSTONE_HD bool fit_to_stop(StopView const& view, Medium const& medium, Tracin
   for (int k = 0; k < rim_rays; ++k) {
     map.centre += (1.0 / rim_rays) * aim[k];
     for (int m = 0; m < AimMap::orders; ++m) {
-      Vec2d const here = point_of_circle(2.0 / rim_rays, static_cast<double>(k * (m + 1)) / rim_rays);
+      Vec2d const here = point_on_circle(2.0 / rim_rays, static_cast<double>(k * (m + 1)) / rim_rays);
       map.a[m] += here.x * aim[k];
       map.b[m] += here.y * aim[k];
     }
@@ -200,7 +200,7 @@ GLADSTONE_HD bool fill_stop(StopView const& view, Medium const& medium, TracingO
   for (int k = 0; k < 2 * rim_rays; ++k) {
     bool const within = k % 2 == 0;
     int const pair = k / 2;
-    Vec2d const at = point_of_circle(within ? 1 - filled_to : 1 + filled_to, (pair + 0.5) / rim_rays);
+    Vec2d const at = point_on_circle(within ? 1 - fill_tolerance : 1 + fill_tolerance, (pair + 0.5) / rim_rays);
     RayHit<double> const hit =
         trace_ray(view.camera, medium, options, ray_to_aim(view.camera, point, filled.map.at(at)), 1.0);
     if (within ? !reaches_sensor_plane(hit.status) : hit.status != RayStatus::vignetted) return false;
@@ -224,7 +224,7 @@ GLADSTONE_HD bool fill_stop(StopView const& view, Medium const& medium, TracingO
 }
 
 /// Returns the whole-pixel position to which a source's sums are relative [px].
-GLADSTONE_HD inline Vec2d origin_of(FilledStop const& filled) {
+GLADSTONE_HD inline Vec2d sum_origin(FilledStop const& filled) {
   using std::floor;
   Vec2d const middle = 0.5 * (filled.low + filled.high);
   return {floor(middle.x + 0.5), floor(middle.y + 0.5)};
@@ -235,7 +235,7 @@ GLADSTONE_HD inline Vec2d origin_of(FilledStop const& filled) {
 template <class Sources>
 GLADSTONE_HD AimedRay<double> ray_to_plane(Sources const& sources, Pose<double> const& plane, Vec2d place, double area,
                                            std::uint64_t i) {
-  AimedBundle<double> const there{plane.point_outwards({place.x, place.y, 0}), {}, {}, area * plane.z, {}};
+  AimedBundle<double> const there{plane.point_to_outer({place.x, place.y, 0}), {}, {}, area * plane.z, {}};
   return ray_to(sources, there, i, {}, {});
 }
 

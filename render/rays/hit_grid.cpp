@@ -10,7 +10,9 @@ constexpr std::uint64_t fewest_rays = 192;  // number of rays above which the gr
 
 }  // namespace
 
-bool HitGrid::pays(double sigma, std::uint64_t rays) { return rays >= fewest_rays && HitSpline::serves(sigma); }
+bool HitGrid::is_faster_than_psfs(double sigma, std::uint64_t rays) {
+  return rays >= fewest_rays && HitSpline::serves(sigma);
+}
 
 // Node 0 is in a margin in front of the tile; a hit at the tile's end reaches two nodes beyond it.
 HitGrid::HitGrid(GaussianSpot<double> const& spot)
@@ -33,7 +35,7 @@ void HitGrid::deposit(Vec2d p, double weight, LightImage* image, double light_pe
     tile.columns = tile.lines = {side_, 0};
     tile.light.resize(static_cast<std::size_t>(side_) * static_cast<std::size_t>(side_));
   }
-  DealtHit const x((p.x - at.x * tile_px + pad_px) * view_.per_px), y((p.y - at.y * tile_px + pad_px) * view_.per_px);
+  HitStencil const x((p.x - at.x * tile_px + pad_px) * view_.per_px), y((p.y - at.y * tile_px + pad_px) * view_.per_px);
   tile.columns = {std::min(tile.columns.low, x.first), std::max(tile.columns.high, x.first + 4)};
   tile.lines = {std::min(tile.lines.low, y.first), std::max(tile.lines.high, y.first + 4)};
   double* line = tile.light.data() + y.first * side_ + x.first;

@@ -16,7 +16,7 @@ class HitGrid {
 
   /// Returns true if this method is faster for the given number of rays and the PSF is wide enough for a grid of
   /// moderate size.
-  static bool pays(double sigma, std::uint64_t rays);
+  static bool is_faster_than_psfs(double sigma, std::uint64_t rays);
 
   /// Adds the light of a ray at p [px]. A tile that occupies the slot of the required one is first added to the image.
   void deposit(Vec2d p, double weight, LightImage* image, double light_per_weight);

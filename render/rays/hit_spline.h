@@ -16,12 +16,12 @@
 namespace gladstone {
 
 /// The four nodes over which a hit is distributed along one axis, and their weights.
-struct DealtHit {
+struct HitStencil {
   int first;
   double share[4];
 
   /// @param u  position of the hit, in node spacings
-  GLADSTONE_HD explicit DealtHit(double u) {
+  GLADSTONE_HD explicit HitStencil(double u) {
     using std::floor;
     double const whole = floor(u), t = u - whole, s = 1 - t;
     first = static_cast<int>(whole) - 1;

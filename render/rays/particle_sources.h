@@ -27,7 +27,7 @@ struct ParticleSources {
   }
   /// Key of the particle's random numbers, if these are its positions at the first pulse.
   GLADSTONE_HD std::uint64_t key(std::uint64_t i) const {
-    return random_bits(key_of({at[i].x, at[i].y}), RandomStream::pupil, key_of({at[i].z, T(0)}), 0);
+    return random_bits(random_key({at[i].x, at[i].y}), RandomStream::pupil, random_key({at[i].z, T(0)}), 0);
   }
   GLADSTONE_HD Vec3<T> middle(std::uint64_t i) const { return at[i]; }
   GLADSTONE_HD T reach() const { return T(0); }
@@ -36,13 +36,13 @@ struct ParticleSources {
 
 /// Returns the point of the unit disc to which ray j of the particle with this key is sent. Rays of a scrambling come
 /// in pairs at opposite points, so that quantities that vary linearly over the lens do not shift their centroid.
-GLADSTONE_HD inline Vec2d place_of_ray(BundleView const& choice, std::uint64_t key, std::uint64_t j) {
+GLADSTONE_HD inline Vec2d sample_stop_point(BundleView const& choice, std::uint64_t key, std::uint64_t j) {
   using std::sqrt;
   int const bits = choice.scrambling_bits;
   std::uint64_t const of_scrambling = j >> bits, scrambling = j & ((std::uint64_t{1} << bits) - 1);
   double u[sobol_dimensions];
   sample_coordinates(choice, key, ((of_scrambling >> 1) << bits) | scrambling, u);
-  Vec2d const at = point_of_circle(sqrt(u[0]), u[1]);
+  Vec2d const at = point_on_circle(sqrt(u[0]), u[1]);
   return of_scrambling % 2 == 1 ? -at : at;
 }
 

@@ -27,8 +27,9 @@ struct ParticleLaunches {
   /// @param spread2  as FilledStop::spread2 [px^2]
   std::size_t step_filled(double light, double spread2) const {
     RaysLaunch const& least = ladder[0];
-    RaysSent const sent = least.rule.view() ? RaysSent::by_rule : RaysSent::clipped;
-    return ladder.at_least(rays_for_spread(ladder.goal(), sent, light, spread2, static_cast<double>(least.rays)));
+    RayPlacement const sent = least.rule.view() ? RayPlacement::by_rule : RayPlacement::clipped;
+    return ladder.at_least(
+        estimate_rays_for_spread(ladder.goal(), sent, light, spread2, static_cast<double>(least.rays)));
   }
   /// Returns the first step of the ladder for a particle whose rays are vignetted at the stop.
   std::size_t step_clipped() const { return ladder.at_least(least_clipped); }
@@ -64,8 +65,8 @@ class ParticleTracer {
   /// @param light_per_photon  light of an image per photon
   /// @param least  minimum step of the ladder
   /// @return its truth; NaN at a pulse that does not illuminate it or if no ray passes
-  ParticleSeen trace(std::uint64_t particle, LightImage* const (&images)[frame_count], double light_per_photon,
-                     std::size_t least = 0) {
+  TracedParticleTruth trace(std::uint64_t particle, LightImage* const (&images)[frame_count], double light_per_photon,
+                            std::size_t least = 0) {
     key_ = pulses_[0].key(particle);
     light_per_photon_ = light_per_photon;
     origin_ = {};
@@ -75,9 +76,9 @@ class ParticleTracer {
       StatusCounts const before = statuses_;
       trace_all(particle, images, 1);
       bool const clipped = aims_[0].sent == Aim::Sent::wide || aims_[1].sent == Aim::Sent::wide;
-      RimSpread const rim{{aims_[0].bent.spread2, aims_[1].bent.spread2},
-                          {aims_[0].sent == Aim::Sent::wide, aims_[1].sent == Aim::Sent::wide}};
-      RaysSent const sent = clipped || !launch_->rule.view() ? RaysSent::clipped : RaysSent::by_rule;
+      EdgeRaySpread const rim{{aims_[0].bent.spread2, aims_[1].bent.spread2},
+                              {aims_[0].sent == Aim::Sent::wide, aims_[1].sent == Aim::Sent::wide}};
+      RayPlacement const sent = clipped || !launch_->rule.view() ? RayPlacement::clipped : RayPlacement::by_rule;
       std::size_t const next = launches_.ladder.next(step, sent, rim, seen_, light_per_weight());
       if (next == step) break;
       if (with_images_) trace_all(particle, images, -1);
@@ -101,7 +102,7 @@ class ParticleTracer {
  private:
   static constexpr bool bends = !std::is_same_v<Medium, NoMedium<double>>;
   /// Number of rays traced together, as in SourceTracer.
-  static constexpr int side_by_side = bends ? 2 : 4;
+  static constexpr int rays_traced_together = bends ? 2 : 4;
 
   /// Target of a particle's rays at one pulse.
   struct Aim {
@@ -130,7 +131,7 @@ class ParticleTracer {
       Vec3d const place = pulse.middle(particle);
       if (fill(place, aim)) {
         aim.sent = Aim::Sent::filled;
-        if (!placed) origin_ = origin_of(aim.straight);
+        if (!placed) origin_ = sum_origin(aim.straight);
         double const weight = ray_to(pulse, stop_.camera.aim_plane, aim.bent.map, particle, {}).weight;
         step = std::max(step, launches_.step_filled(weight * light_per_photon_, aim.bent.spread2));
       } else {
@@ -176,7 +177,7 @@ class ParticleTracer {
     };
     if (with_images_) light_[frame]->begin(image, sign * light_per_weight(), launch_->rays);
     largest_shift2_ = 0;
-    all_rays(launch_->rule.view(), [&]<int N>(std::uint64_t const(&ray)[N], StopPlace const(&to)[N]) {
+    all_rays(launch_->rule.view(), [&]<int N>(std::uint64_t const(&ray)[N], StopSamplePoint const(&to)[N]) {
       RayHit<double> seen[N], ambient[N];
       trace_through(aimed_by(aim.bent.map), to, stop_.camera, medium_, seen);
       if constexpr (bends) {
@@ -198,7 +199,7 @@ class ParticleTracer {
       auto const aimed = [&](Vec2d at) { return ray_to(pulses_[frame], bundle, particle, {}, at); };
       if (with_images_) light_[frame]->begin(image, of_light * light_per_weight(), launch_->rays);
       largest_shift2_ = 0;
-      all_rays(StopRuleView{}, [&]<int N>(std::uint64_t const(&ray)[N], StopPlace const(&to)[N]) {
+      all_rays(StopRuleView{}, [&]<int N>(std::uint64_t const(&ray)[N], StopSamplePoint const(&to)[N]) {
         RayHit<double> seen[N], ambient[N];
         trace_through(aimed, to, view_, NoMedium<double>{}, ambient);
         if constexpr (bends) {
@@ -227,17 +228,18 @@ class ParticleTracer {
   template <class Some>
   void all_rays(StopRuleView const& rule, Some&& some) {
     std::uint64_t ray = 0;
-    for (; ray + side_by_side <= launch_->rays; ray += side_by_side) these_rays<side_by_side>(rule, ray, some);
+    for (; ray + rays_traced_together <= launch_->rays; ray += rays_traced_together)
+      these_rays<rays_traced_together>(rule, ray, some);
     for (; ray < launch_->rays; ++ray) these_rays<1>(rule, ray, some);
   }
   template <int N, class Some>
   void these_rays(StopRuleView const& rule, std::uint64_t first, Some&& some) {
     throw_if_interrupted();
     std::uint64_t ray[N];
-    StopPlace to[N];
+    StopSamplePoint to[N];
     for (int i = 0; i < N; ++i) {
       ray[i] = first + static_cast<std::uint64_t>(i);
-      to[i] = place_of_ray(rule, launch_->choice, key_, ray[i]);
+      to[i] = sample_stop_point(rule, launch_->choice, key_, ray[i]);
     }
     some(ray, to);
   }
@@ -245,7 +247,7 @@ class ParticleTracer {
   /// Traces N rays through a medium and the camera.
   /// @param aimed  returns the AimedRay to a point of the unit disc
   template <int N, class Aimed, class Through>
-  void trace_through(Aimed const& aimed, StopPlace const (&to)[N], CameraView<double> const& view,
+  void trace_through(Aimed const& aimed, StopSamplePoint const (&to)[N], CameraView<double> const& view,
                      Through const& medium, RayHit<double> (&hit)[N]) const {
     Ray<double> start[N];
     double weight[N];

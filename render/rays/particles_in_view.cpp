@@ -40,7 +40,7 @@ bool reaches(Camera const& camera, Vec3d place, double margin_px) {
   double const apart = std::max(beside.x, beside.y);
   if (apart <= margin_px) return true;
   if (camera.chief_rays_only()) return false;
-  auto const disc = camera.aim_disc(place);
+  auto const disc = camera.apparent_pupil(place);
   if (!disc) return true;
   CameraView<double> const view = camera.view();
   double blur_px = 0;

@@ -38,7 +38,7 @@ Probe probe_dots(Scene const& scene, std::vector<std::size_t> const& dots, std::
         parallel_chunks(dots.size(), 16, [&](std::size_t begin, std::size_t end) {
           for (std::size_t i = begin; i < end; ++i) {
             Vec3d const start = scene.source_place(dots[i]);
-            auto const disc = scene.camera.aim_disc(start);
+            auto const disc = scene.camera.apparent_pupil(start);
             Vec2d sum{};
             int seen = 0;
             for (std::size_t k = 0; disc && k < rays.size(); ++k) {
@@ -90,12 +90,12 @@ class RayErrors {
     side_ = 2 * spot_.half_width() + 49 + static_cast<int>(std::min(widest_image_px(), most_window_px) + 2 * farthest);
   }
 
-  RaysPlan measure() {
-    RaysPlan plan;
+  RayBudget measure() {
+    RayBudget plan;
     plan.rays = scene_.rays_per_dot;
     plan.bits = levels_.bits;
     if (sample_.empty()) return plan;
-    taken_.assign(sample_.size() * plan_scramblings, 0);
+    taken_.assign(sample_.size() * budget_scramblings, 0);
     std::vector<std::size_t> places(sample_.size());
     std::iota(places.begin(), places.end(), std::size_t{0});
     Scatter const scatter =
@@ -131,7 +131,7 @@ class RayErrors {
     bool const finer = scrambling % 2 == 1;
     DotTruth const truth = scene_.setup.piv ? particle(change, sample_[place], images, finer, rays)
                                             : dot(change, sample_[place], images, rays);
-    taken_[place * plan_scramblings + static_cast<std::size_t>(scrambling)] = rays;
+    taken_[place * budget_scramblings + static_cast<std::size_t>(scrambling)] = rays;
     Sampled sampled;
     sampled.displacement = truth.hits[1].mean() - truth.hits[0].mean();
     for (LightImage const& frame : frames) {
@@ -169,7 +169,7 @@ class RayErrors {
                             ParticleTracer tracer(launches, pulses, medium, true);
                             double const light = 1 / scene_.photon_unit;
                             bool const twice = finer && launches.ladder[0].rule.view();
-                            ParticleSeen const found = tracer.trace(source, twice ? none : images, light);
+                            TracedParticleTruth const found = tracer.trace(source, twice ? none : images, light);
                             rays = tracer.rays();
                             return twice ? tracer.trace(source, images, light, tracer.step() + 1).truth : found.truth;
                           });
@@ -178,7 +178,7 @@ class RayErrors {
   /// Returns the pixel position of a source's chief ray in the measurement image [px].
   std::optional<Vec2d> place_in_flow(std::size_t source) const {
     Vec3d const start = scene_.setup.piv ? scene_.particles.place[1][source] : scene_.source_place(source);
-    auto const disc = scene_.camera.aim_disc(start);
+    auto const disc = scene_.camera.apparent_pupil(start);
     if (!disc) return {};
     CameraView<double> const camera = scene_.camera.view();
     TracingOptions<double> const tracing = RaysLaunch(scene_, spot_).tracing;
@@ -196,7 +196,7 @@ class RayErrors {
     CameraView<double> const camera = scene_.camera.view();
     for (std::size_t const dot : sample_) {
       Vec3d const start = scene_.source_place(dot);
-      auto const disc = scene_.camera.aim_disc(start);
+      auto const disc = scene_.camera.apparent_pupil(start);
       if (!disc) continue;
       std::optional<Vec2d> chief;
       for (Vec2d const at : cone) {
@@ -224,7 +224,7 @@ class RayErrors {
 
 }  // namespace
 
-StepPlan plan_step_by_rays(Scene const& scene) {
+IntegrationStep determine_step_by_tracing(Scene const& scene) {
   return choose_step(scene, [&](double step, auto const& search) {
     StepProbes probes;
     probes.dots.resize(scene.source_count());
@@ -241,11 +241,11 @@ StepPlan plan_step_by_rays(Scene const& scene) {
   });
 }
 
-RaysPlan measure_rays_by_rays(Scene const& scene, std::uint64_t most) {
+RayBudget measure_errors_by_tracing(Scene const& scene, std::uint64_t most) {
   Scene fewer = scene;
-  fewer.by_need.reset();
+  fewer.adaptive_criteria.reset();
   fewer.rays_per_dot = std::min(scene.rays_per_dot, most);
-  RaysPlan plan = RayErrors(fewer).measure();
+  RayBudget plan = RayErrors(fewer).measure();
   double const gain = std::sqrt(static_cast<double>(fewer.rays_per_dot) / static_cast<double>(scene.rays_per_dot));
   plan.truth_error_px *= gain;
   plan.image_error_levels *= gain;
@@ -254,11 +254,11 @@ RaysPlan measure_rays_by_rays(Scene const& scene, std::uint64_t most) {
   return plan;
 }
 
-RaysByNeed need_of(Scene const& scene) {
+AdaptiveRayCriteria determine_adaptive_criteria(Scene const& scene) {
   constexpr std::uint64_t rays = 64;  // accuracy of a few percent for the brightest pixel and thus for a grey level
   CameraSetup const& camera = scene.setup.camera;
-  double const full_scale = std::pow(2.0, plan_bits(camera)) - 1;
-  RaysByNeed need;
+  double const full_scale = std::pow(2.0, error_bit_depth(camera)) - 1;
+  AdaptiveRayCriteria need;
   need.brightest_at = 0.9 * full_scale;
   if (camera.absolute_exposure || camera.exposure_e) {
     double const electrons =
@@ -267,7 +267,7 @@ RaysByNeed need_of(Scene const& scene) {
     return need;
   }
   Scene same = scene;
-  same.by_need.reset();
+  same.adaptive_criteria.reset();
   same.rays_per_dot = rays;
   RayErrors errors(same);
   errors.measure();
@@ -275,18 +275,18 @@ RaysByNeed need_of(Scene const& scene) {
   return need;
 }
 
-RaysPlan plan_rays_by_rays(Scene const& scene) {
-  if (auto const given = given_rays(scene.setup)) return *given;
-  return plan_rays_by_rays(scene, need_of(scene));
+RayBudget determine_ray_budget_by_tracing(Scene const& scene) {
+  if (auto const given = configured_ray_budget(scene.setup)) return *given;
+  return determine_ray_budget_by_tracing(scene, determine_adaptive_criteria(scene));
 }
 
-RaysPlan plan_rays_by_rays(Scene const& scene, RaysByNeed const& need) {
+RayBudget determine_ray_budget_by_tracing(Scene const& scene, AdaptiveRayCriteria const& need) {
   bool const one_path = scene.chief_rays_only() && (scene.setup.piv || scene.dots.half_size == 0);
-  RaysPlan plan;
-  plan.most = one_path ? 1 : most_rays_of_source(scene);
-  plan.by_need = need;
+  RayBudget plan;
+  plan.most = one_path ? 1 : max_rays_per_source(scene);
+  plan.adaptive_criteria = need;
   Scene const planned = with_rays(scene, plan);
-  RaysPlan const measured = RayErrors(planned).measure();
+  RayBudget const measured = RayErrors(planned).measure();
   plan.rays = measured.rays;
   plan.truth_error_px = measured.truth_error_px;
   plan.image_error_levels = measured.image_error_levels;

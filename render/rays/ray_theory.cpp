@@ -22,7 +22,7 @@ RayTheory::RayTheory(Scene const& scene, RaysLaunch const& launch, SourceShape s
   int const rings = std::min(most_rings, static_cast<int>(std::ceil(0.35 * lengths)) + 4);
   int const directions = std::min(6 * most_rings, 4 * static_cast<int>(std::ceil(0.45 * lengths + 3)));
   pupil_ = SourceCubature::disc(rings, 6, directions);
-  double const seen = launch.camera.sight_margin();
+  double const seen = launch.camera.pupil_safety_factor();
   AimedBundle<double> const whole = launch.bundle({{}, {1, 0, 0}, {0, 1, 0}}, {}, 0);
   stop_share_ = 1 / (length(whole.a) * seen);
 }
@@ -36,9 +36,9 @@ std::optional<Ray<double>> RayTheory::before_medium(CameraView<double> const& ca
   return ray;
 }
 
-Vec2d RayTheory::shift(SeenPoint const& seen, Ray<double> const& ray, Vec3d levered) const {
+Vec2d RayTheory::shift(ImagedPoint const& seen, Ray<double> const& ray, Vec3d lever_weighted) const {
   // Dots appear displaced against grad n; project the displacement along the ray onto their plane.
-  Vec3d const across = (-1 / n0_) * levered;
+  Vec3d const across = (-1 / n0_) * lever_weighted;
   Vec3d const moved = across - (across.z / ray.direction.z) * ray.direction;
   return seen.moved({moved.x, moved.y});
 }
@@ -65,7 +65,7 @@ FieldMap map_field_by_rays(Scene const& scene, int spacing_px) {
             auto const seen = scene.camera.unproject(map.position_px(column, row), scene.target_plane());
             auto const chief = seen ? theory.before_medium(camera, seen->chief) : std::nullopt;
             if (!chief) continue;
-            AcrossAxis const along = theory.integrate(medium, *chief);
+            TransverseGradientIntegral const along = theory.integrate(medium, *chief);
             map.eq9_px(column, row) = theory.shift(*seen, *chief, theory.lever(*chief) * along.plain);
             if (!(along.depth > 0)) continue;
             double const mean = 1 / (scene.setup.medium.gladstone_dale * along.depth);
@@ -103,7 +103,7 @@ StrainMap map_strain_by_rays(Scene const& scene) {
         });
       },
       scene.medium.view);
-  return strain_of(displacement, spacing_px);
+  return compute_strain(displacement, spacing_px);
 }
 
 }  // namespace gladstone

@@ -8,9 +8,9 @@
 namespace gladstone {
 
 /// Integrals along a straight ray of the components of grad n perpendicular to the camera's axis.
-struct AcrossAxis {
+struct TransverseGradientIntegral {
   Vec3d plain{};                       ///< [1]
-  Vec3d levered{};                     ///< grad n times the axial distance from the ray's start [m]
+  Vec3d lever_weighted{};              ///< grad n times the axial distance from the ray's start [m]
   double refractivity = 0, depth = 0;  ///< integrals of n - 1 and of 1 over the distance along the axis [m]
 };
 
@@ -39,9 +39,9 @@ class RayTheory {
     CameraView<double> const camera = launch.camera.view();
     auto const chief = before_medium(camera, seen->chief);
     if (!chief) return;
-    AcrossAxis const along = integrate(medium, *chief);
+    TransverseGradientIntegral const along = integrate(medium, *chief);
     truth.eq9_px[source] = shift(*seen, *chief, lever(*chief) * along.plain);
-    truth.chief_px[source] = shift(*seen, *chief, along.levered);
+    truth.chief_px[source] = shift(*seen, *chief, along.lever_weighted);
 
     auto const disc = launch.sight(middle);
     if (!disc) return;
@@ -60,7 +60,7 @@ class RayTheory {
         auto const straight = before_medium(camera, aimed.ray);
         if (!reaches_sensor_plane(hit.status) || !straight) continue;
         double const share = aimed.weight * places_.weights[i] * pupil_.weights[k];
-        sum += share * shift(*seen, *straight, integrate(medium, *straight).levered);
+        sum += share * shift(*seen, *straight, integrate(medium, *straight).lever_weighted);
         weight += share;
       }
     }
@@ -74,13 +74,13 @@ class RayTheory {
   /// Integrates along the part of a straight ray inside the medium.
   /// @param start  ray, starting in the plane from which levers are measured
   template <class Medium>
-  AcrossAxis integrate(Medium const& medium, Ray<double> const& start) const {
-    AcrossAxis sum;
+  TransverseGradientIntegral integrate(Medium const& medium, Ray<double> const& start) const {
+    TransverseGradientIntegral sum;
     double const cosine = dot(start.direction, axis_);
     along_field(medium, start, step_, [&](IndexSample<double> const& sample, double s, double ds) {
       Vec3d const slice = (ds * cosine) * (sample.gradient - dot(sample.gradient, axis_) * axis_);
       sum.plain += slice;
-      sum.levered += (s * cosine) * slice;
+      sum.lever_weighted += (s * cosine) * slice;
       sum.refractivity += sample.refractivity * ds * cosine;
       sum.depth += ds * cosine;
     });
@@ -95,7 +95,7 @@ class RayTheory {
     return -start.position.z / start.direction.z * dot(start.direction, axis_);
   }
   /// Returns the displacement of the pixel for an integral with levers [px].
-  Vec2d shift(SeenPoint const& seen, Ray<double> const& ray, Vec3d levered) const;
+  Vec2d shift(ImagedPoint const& seen, Ray<double> const& ray, Vec3d lever_weighted) const;
 
  private:
   Pose<double> plane_;

@@ -27,15 +27,15 @@ double smooth_spot2(Scene const& scene) {
 }  // namespace
 
 RaysLadder::RaysLadder(Scene const& scene, RenderImages images) {
-  if (scene.by_need && images != RenderImages::no) goal_.level = scene.by_need->level;
-  if (scene.by_need) goal_.brightest_at = scene.by_need->brightest_at;
+  if (scene.adaptive_criteria && images != RenderImages::no) goal_.level = scene.adaptive_criteria->level;
+  if (scene.adaptive_criteria) goal_.brightest_at = scene.adaptive_criteria->brightest_at;
   goal_.spot2 = smooth_spot2(scene);
 }
 
 RaysLadder RaysLadder::of_points(Scene const& scene, RaysLaunch const& shared, RenderImages images) {
   constexpr std::uint64_t least = 32;
   RaysLadder ladder(scene, images);
-  for (std::uint64_t rays = least; scene.by_need && rays < scene.rays_per_dot; rays *= 2) {
+  for (std::uint64_t rays = least; scene.adaptive_criteria && rays < scene.rays_per_dot; rays *= 2) {
     ladder.launches_.push_back(shared.with_rays(rays));
   }
   ladder.launches_.push_back(shared.with_rays(scene.rays_per_dot));
@@ -48,7 +48,7 @@ RaysLadder RaysLadder::of_rules(Scene const& scene, RaysLaunch const& shared, Re
   std::uint64_t const least = aberrates(setup) ? 64 : 4;
   bool const smooth = !setup.lenslets && (images == RenderImages::no || shared.spot.model != SpotModel::none);
   bool const ruled =
-      scene.by_need && smooth && shared.choice.sampling == PupilSampling::sobol && !scene.chief_rays_only();
+      scene.adaptive_criteria && smooth && shared.choice.sampling == PupilSampling::sobol && !scene.chief_rays_only();
   if (!ruled || scene.rays_per_dot < least) return of_points(scene, shared, images);
   RaysLadder ladder(scene, images);
   for (std::uint64_t rays = least; rays <= scene.rays_per_dot; rays *= 4) {
@@ -66,13 +66,13 @@ std::size_t RaysLadder::at_least(double rays) const {
   return step;
 }
 
-std::size_t RaysLadder::next(std::size_t step, RaysSent sent, RimSpread const& rim, RaySums const* of_scramblings,
-                             double light_per_weight) const {
+std::size_t RaysLadder::next(std::size_t step, RayPlacement sent, EdgeRaySpread const& rim,
+                             RaySums const* of_scramblings, double light_per_weight) const {
   if (step + 1 == launches_.size()) return step;
   RaysLaunch const& launch = launches_[step];
   double const rays = static_cast<double>(launch.rays);
-  double const asked =
-      rays_asked(goal_, sent, rim, of_scramblings, 1 << launch.choice.scrambling_bits, rays, light_per_weight);
+  double const asked = estimate_required_rays(goal_, sent, rim, of_scramblings, 1 << launch.choice.scrambling_bits,
+                                              rays, light_per_weight);
   return asked > rays ? std::max(step + 1, at_least(asked)) : step;
 }
 

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "render/rays/ray_need.h"
+#include "render/rays/ray_requirement.h"
 #include "render/rays/rays_launch.h"
 #include "render/scene/renderer.h"
 
@@ -22,12 +22,12 @@ class RaysLadder {
 
   std::size_t size() const { return launches_.size(); }
   RaysLaunch const& operator[](std::size_t step) const { return launches_[step]; }
-  RayGoal const& goal() const { return goal_; }
+  RequiredRayAccuracy const& goal() const { return goal_; }
   /// Returns the first step with at least this number of rays; otherwise the last step.
   std::size_t at_least(double rays) const;
   /// Returns the step that a source requires according to its rays at the given step; the same step if they suffice.
   /// @param light_per_weight  light in the image per unit of ray weight at this step
-  std::size_t next(std::size_t step, RaysSent sent, RimSpread const& rim, RaySums const* of_scramblings,
+  std::size_t next(std::size_t step, RayPlacement sent, EdgeRaySpread const& rim, RaySums const* of_scramblings,
                    double light_per_weight) const;
 
   template <class Change>
@@ -38,7 +38,7 @@ class RaysLadder {
  private:
   RaysLadder(Scene const& scene, RenderImages images);
   std::vector<RaysLaunch> launches_;
-  RayGoal goal_;
+  RequiredRayAccuracy goal_;
 };
 
 }  // namespace gladstone

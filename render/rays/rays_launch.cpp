@@ -11,7 +11,7 @@ namespace gladstone {
 namespace {
 
 /// Returns the smaller semi-axis of the ellipse [m].
-double smaller_semi_axis(WorldAimDisc const& disc) {
+double smaller_semi_axis(WorldApparentPupil const& disc) {
   // Semi-axes are the singular values of (a b), computed from their sum of squares and their product.
   double const squares = dot(disc.a, disc.a) + dot(disc.b, disc.b), area = length(cross(disc.a, disc.b));
   return std::sqrt(0.5 * (squares - std::sqrt(std::max(0.0, squares * squares - 4 * area * area))));
@@ -19,15 +19,15 @@ double smaller_semi_axis(WorldAimDisc const& disc) {
 
 /// Returns the shift of the entrance pupil from its differences between the corners of a hexagon of circumradius
 /// `radius` around the source's middle; nullopt if no chief ray passes from one of the corners.
-std::optional<AimShift> difference_shift(Camera const& camera, WorldAimDisc const& disc, Vec3d middle, double reach,
-                                         double radius) {
+std::optional<AimShift> difference_shift(Camera const& camera, WorldApparentPupil const& disc, Vec3d middle,
+                                         double reach, double radius) {
   constexpr int corners = 6;
   Vec2d towards[corners];
-  WorldAimDisc seen[corners];
+  WorldApparentPupil seen[corners];
   AimShift shift;
   for (int k = 0; k < corners; ++k) {
-    towards[k] = point_of_circle(1.0, static_cast<double>(k) / corners);
-    auto const there = camera.aim_disc(middle + radius * Vec3d{towards[k].x, towards[k].y, 0});
+    towards[k] = point_on_circle(1.0, static_cast<double>(k) / corners);
+    auto const there = camera.apparent_pupil(middle + radius * Vec3d{towards[k].x, towards[k].y, 0});
     if (!there) return std::nullopt;
     seen[k] = *there;
     shift.by_x += (2 * towards[k].x / (corners * radius)) * there->centre;
@@ -63,13 +63,13 @@ RaysLaunch::RaysLaunch(Scene const& scene, SpotView const& shown, StopRim rim)
   auto const seen = camera.unproject(camera.sensor.axis_pixel(), scene.target_plane());
   if (!seen) throw DataError("lens", "the camera's axis meets no place of the dots' plane; check the geometry");
   point_area = 1 / std::abs(seen->by_x.x * seen->by_y.y - seen->by_x.y * seen->by_y.x);
-  Vec3d const from = scene.target_plane().point_outwards({seen->place.x, seen->place.y, 0});
+  Vec3d const from = scene.target_plane().point_to_outer({seen->place.x, seen->place.y, 0});
   double const cosine = std::abs(seen->chief.direction.z);
   if (camera.chief_rays_only()) {
     Vec3d const way = camera.aim_plane.origin - from;
     light_unit = point_area * cosine * std::abs(dot(seen->chief.direction, camera.aim_plane.z)) / dot(way, way);
   } else {
-    double const slope = camera.paraxial.marginal_slope(camera.paraxial.front - camera.pose.point_inwards(from).z);
+    double const slope = camera.paraxial.marginal_slope(camera.paraxial.front - camera.pose.point_to_local(from).z);
     light_unit = point_area * cosine * pi * slope * slope;
   }
 }
@@ -90,7 +90,7 @@ bool RaysLaunch::soft() const {
   });
 }
 
-AimShift RaysLaunch::aim_shift(WorldAimDisc const& disc, Vec3d middle, double reach) const {
+AimShift RaysLaunch::aim_shift(WorldApparentPupil const& disc, Vec3d middle, double reach) const {
   AimShift const none{{}, {}, reach};
   if (camera.chief_rays_only() || reach <= smaller_semi_axis(disc)) return none;
   // At the edge of the field of view, chief rays may pass only from points closer to the middle.
@@ -101,7 +101,7 @@ AimShift RaysLaunch::aim_shift(WorldAimDisc const& disc, Vec3d middle, double re
   return none;
 }
 
-AimedBundle<double> RaysLaunch::bundle(WorldAimDisc const& disc, AimShift const& shift, double margin) const {
+AimedBundle<double> RaysLaunch::bundle(WorldApparentPupil const& disc, AimShift const& shift, double margin) const {
   if (camera.chief_rays_only()) return {disc.centre, {}, {}, camera.aim_plane.z, choice};
   double const rim = soft() ? std::sqrt(1 + Scene::stop_edge(static_cast<double>(rays)) / 2) : 1;
   double const wider = rim + (margin + shift.residual) / smaller_semi_axis(disc);
@@ -112,7 +112,7 @@ AimedBundle<double> RaysLaunch::bundle(WorldAimDisc const& disc, AimShift const&
 
 double RaysLaunch::wider_margin(double shift) const {
   double const margin = 1.02 * shift;
-  refuse_shift_beyond_any_bench(margin, z_b);
+  check_deflection_limit(margin, z_b);
   return margin;
 }
 

@@ -43,7 +43,7 @@ struct RaysLaunch {
     return (source_area > 0 ? source_area : point_area) / (static_cast<double>(rays) * light_unit);
   }
   /// Returns the entrance pupil as seen from a point; nullopt if no chief ray passes.
-  std::optional<WorldAimDisc> sight(Vec3d middle) const { return camera.aim_disc(middle); }
+  std::optional<WorldApparentPupil> sight(Vec3d middle) const { return camera.apparent_pupil(middle); }
   /// Returns the shift of the entrance pupil over a source that is parallel to the XY plane.
   ///
   /// For a source up to as large as the pupil, the shift is zero and the residual is `reach`: rays are sent to the
@@ -51,11 +51,11 @@ struct RaysLaunch {
   /// the middle. For larger sources, the shift is a finite difference between entrance pupils as seen from six points.
   /// @param disc  entrance pupil as seen from the source's middle
   /// @param reach  maximum distance of a point of the source from its middle [m]
-  AimShift aim_shift(WorldAimDisc const& disc, Vec3d middle, double reach) const;
+  AimShift aim_shift(WorldApparentPupil const& disc, Vec3d middle, double reach) const;
   /// Returns the target area of a source's rays.
   /// @param disc  entrance pupil as seen from the source's middle
   /// @param margin  upper limit of the deflection by the medium on the aim plane [m]
-  AimedBundle<double> bundle(WorldAimDisc const& disc, AimShift const& shift, double margin) const;
+  AimedBundle<double> bundle(WorldApparentPupil const& disc, AimShift const& shift, double margin) const;
   /// Returns the margin for a source of which a ray was deflected by `shift` on the aim plane [m].
   /// @throws DataError if no real set-up has such a deflection
   double wider_margin(double shift) const;

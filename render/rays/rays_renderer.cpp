@@ -80,7 +80,7 @@ void finish_rays(IdealView const& view, Ray<double> (&ray)[N], RayAccount<double
 
 /// Subtracts the light of bright dots from a white target.
 void take_from_white(Scene const& scene, LightPair& light) {
-  Image<double> const white = white_picture(scene);
+  Image<double> const white = render_white_target(scene);
   for (Image<double>* frame : {&light.reference, &light.flow}) {
     std::transform(white.begin(), white.end(), frame->begin(), frame->begin(),
                    [](double paper, double dots) { return paper - dots; });
@@ -137,7 +137,7 @@ std::vector<Vec2d> ideal_displacements(Scene const& scene, DotPattern const& sou
   return displacement;
 }
 
-Image<double> white_picture(Scene const& scene) {
+Image<double> render_white_target(Scene const& scene) {
   constexpr int nodes = 17, rays = 4096;
   Scene many = scene;
   many.rays_per_dot = rays;

@@ -22,6 +22,6 @@ class RaysRenderer : public Renderer {
 std::vector<Vec2d> ideal_displacements(Scene const& scene, DotPattern const& sources);
 
 /// Renders a white target: light per pixel, from which dark dots are subtracted.
-Image<double> white_picture(Scene const& scene);
+Image<double> render_white_target(Scene const& scene);
 
 }  // namespace gladstone

@@ -8,7 +8,7 @@ void RayLight::begin(LightImage* image, double light_per_weight, std::uint64_t r
   image_ = image;
   light_per_weight_ = light_per_weight;
   bool const gaussian = spot_.model != SpotModel::none && spot_.model != SpotModel::airy;
-  by_grid_ = gaussian && HitGrid::pays(spot_.gaussian.sigma, rays);
+  by_grid_ = gaussian && HitGrid::is_faster_than_psfs(spot_.gaussian.sigma, rays);
   if (by_grid_ && !grid_) grid_.emplace(spot_.gaussian);
 }
 

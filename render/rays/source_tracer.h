@@ -38,7 +38,7 @@ class RayLight {
 
 /// Target of a source's rays.
 struct SourceAim {
-  std::optional<WorldAimDisc> disc;           ///< entrance pupil as seen from the source; empty: no ray passes
+  std::optional<WorldApparentPupil> disc;     ///< entrance pupil as seen from the source; empty: no ray passes
   Vec2d origin{};                             ///< whole-pixel position to which sums are relative [px]
   AimShift shift;                             ///< shift of the entrance pupil over the source
   double margin = 0;                          ///< margin by which the target area exceeds the entrance pupil [m]
@@ -101,7 +101,7 @@ class SourceTracer {
       double const shift = trace_all(source, aim, images, 1);
       bool const beyond = !launch_->camera.chief_rays_only() && shift > aim.margin;
       std::size_t const next = beyond ? step_
-                                      : ladder_.next(step_, RaysSent::clipped, {}, of_scramblings_,
+                                      : ladder_.next(step_, RayPlacement::clipped, {}, of_scramblings_,
                                                      launch_->light_per_weight(sources_.area()));
       if (!beyond && next == step_) break;
       if (with_images_) trace_all(source, aim, images, -1);
@@ -138,8 +138,8 @@ class SourceTracer {
     std::fill_n(of_scramblings_, most_scramblings, RaySums{});
     largest_shift2_ = 0;
     std::uint64_t ray = 0;
-    for (; ray + side_by_side <= launch_->rays; ray += side_by_side) {
-      trace_some<side_by_side>(bundle, source, ray, aim.origin);
+    for (; ray + rays_traced_together <= launch_->rays; ray += rays_traced_together) {
+      trace_some<rays_traced_together>(bundle, source, ray, aim.origin);
     }
     for (; ray < launch_->rays; ++ray) trace_some<1>(bundle, source, ray, aim.origin);
     for (int frame = 0; with_images_ && frame < frame_count; ++frame) light_[frame]->finish();
@@ -147,7 +147,7 @@ class SourceTracer {
   }
 
   /// Number of rays traced together: two through a medium, which needs the registers of both.
-  static constexpr int side_by_side = std::is_same_v<Medium, NoMedium<double>> ? 4 : 2;
+  static constexpr int rays_traced_together = std::is_same_v<Medium, NoMedium<double>> ? 4 : 2;
 
   template <int N>
   void trace_some(AimedBundle<double> const& bundle, std::uint64_t source, std::uint64_t first, Vec2d origin) {

@@ -26,7 +26,7 @@ GLADSTONE_HD inline DotTruth source_truth(RaySums const* of_scramblings, int scr
 }
 
 /// Truth of one particle.
-struct ParticleSeen {
+struct TracedParticleTruth {
   DotTruth truth;    ///< frames A and B, with the medium
   DotTruth ambient;  ///< frames A and B, without the medium
 };

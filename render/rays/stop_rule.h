@@ -25,7 +25,7 @@ struct StopRuleView {
 };
 
 /// Point of the unit disc to which a ray is sent.
-struct StopPlace {
+struct StopSamplePoint {
   Vec2d at;
   double share = 1;  ///< weight of the ray relative to equal weights
 };
@@ -33,15 +33,15 @@ struct StopPlace {
 /// Returns the point of ray j of the particle with this key. A scrambling consists of every other node of a ring, or of
 /// every fourth.
 /// @param rule  rule with as many nodes as there are rays, or none
-GLADSTONE_HD inline StopPlace place_of_ray(StopRuleView const& rule, BundleView const& choice, std::uint64_t key,
-                                           std::uint64_t j) {
+GLADSTONE_HD inline StopSamplePoint sample_stop_point(StopRuleView const& rule, BundleView const& choice,
+                                                      std::uint64_t key, std::uint64_t j) {
   using std::sqrt;
-  if (!rule) return {place_of_ray(choice, key, j)};
+  if (!rule) return {sample_stop_point(choice, key, j)};
   auto const angles = static_cast<std::uint64_t>(rule.angles());
   std::uint64_t const ring = j / angles, angle = j % angles;
   double const turned = to_unit(random_bits(choice.seed, RandomStream::pupil, key, 0));
   double const turn = (static_cast<double>(angle) + (ring % 2 == 0 ? 0.0 : 0.5)) / static_cast<double>(angles);
-  return {point_of_circle(sqrt(rule.radius2[ring]), turn + turned), rule.share[ring]};
+  return {point_on_circle(sqrt(rule.radius2[ring]), turn + turned), rule.share[ring]};
 }
 
 /// Owner of a StopRuleView's data.

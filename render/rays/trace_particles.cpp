@@ -35,7 +35,7 @@ Rendering empty_rendering(Particles const& particles) {
   return rendering;
 }
 
-void set_particle(GroundTruth& truth, std::size_t particle, ParticleSeen const& seen, std::uint64_t rays) {
+void set_particle(GroundTruth& truth, std::size_t particle, TracedParticleTruth const& seen, std::uint64_t rays) {
   truth.set_hits(particle, seen.truth, 1 / static_cast<double>(rays));
   truth.rays_planned[particle] = static_cast<std::int64_t>(rays);
   CentroidSum<double> const &first = seen.ambient.hits[0], &second = seen.ambient.hits[1];
@@ -68,7 +68,7 @@ Rendering trace_particles(Scene const& scene, Particles const& particles, Partic
     parallel_chunks(particles.size(), 32, [&](std::size_t begin, std::size_t end) {
       ParticleTracer tracer(launches, pulses, medium, lit);
       for (std::size_t i = begin; i < end; ++i) {
-        ParticleSeen const seen = tracer.trace(i, targets, light_per_photon);
+        TracedParticleTruth const seen = tracer.trace(i, targets, light_per_photon);
         set_particle(rendering.truth, i, seen, tracer.rays());
       }
       progress.advance(end - begin);

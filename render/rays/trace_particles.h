@@ -29,7 +29,7 @@ Rendering empty_rendering(Particles const& particles);
 
 /// Stores the truth of a particle.
 /// @param rays  number of its rays at each pulse
-void set_particle(GroundTruth& truth, std::size_t particle, ParticleSeen const& seen, std::uint64_t rays);
+void set_particle(GroundTruth& truth, std::size_t particle, TracedParticleTruth const& seen, std::uint64_t rays);
 
 /// Sums up the rays of all particles.
 void count_rays(Rendering& rendering);

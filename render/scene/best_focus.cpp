@@ -18,7 +18,7 @@ constexpr int bundle_rays = 500;
 
 /// Returns the aim points of rays from a point that reach the sensor, relative to the aim plane's origin [m].
 std::vector<Vec3d> aims_of_bundle(Camera const& camera, Vec3d point) {
-  auto const disc = camera.aim_disc(point);
+  auto const disc = camera.apparent_pupil(point);
   std::vector<Vec3d> aims;
   for (int k = 0; disc && k < bundle_rays; ++k) {
     Vec2d const at = sunflower(k, bundle_rays);
@@ -67,7 +67,7 @@ T narrowest(Camera const& camera, int windows, std::vector<Vec3d> const& aims, V
     places.push_back({local.position.x - s.x * local.position.z, local.position.y - s.y * local.position.z});
     slopes.push_back(s);
   }
-  return spot_of(places, slopes).best_focus;
+  return compute_bundle_spot(places, slopes).best_focus;
 }
 
 /// Residual for the solver: distance of the best focus from the fixed sensor, for a lens moved along its axis.
@@ -122,7 +122,7 @@ double best_focus(Camera const& camera, Vec3d point) {
   return narrowest(camera, 0, aims_of_bundle(camera, point), point, 0.0);
 }
 
-void place_lens_by_sensor(Setup& setup) {
+void position_lens_from_sensor(Setup& setup) {
   setup.z_a = paraxial_place(setup);
   if (!(setup.z_a > 0) || !std::isfinite(setup.z_a)) {
     throw DataError("geometry.z_sensor_mm",

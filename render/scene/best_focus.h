@@ -16,6 +16,6 @@ double best_focus(Camera const& camera, Vec3d point);
 /// A thin lens has two such positions (Bessel); the one nearer the sensor is chosen. For prescriptions and cameras
 /// behind windows, Ceres refines the paraxial position with automatic derivatives (Jets) of the traced rays.
 /// @throws DataError if no lens position images the plane in focus onto the sensor
-void place_lens_by_sensor(Setup& setup);
+void position_lens_from_sensor(Setup& setup);
 
 }  // namespace gladstone

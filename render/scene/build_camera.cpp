@@ -86,7 +86,7 @@ Vec2d seen_place(Camera const& camera, Setup const& setup, Vec2d pixel) {
 
 Vec2d sensor_tilt(Setup const& setup) {
   if (!setup.camera.scheimpflug) return setup.camera.tilt;
-  return scheimpflug_tilt(setup.camera_pose().direction_inwards({0, 0, 1}), setup.imaging().magnification);
+  return scheimpflug_tilt(setup.camera_pose().direction_to_local({0, 0, 1}), setup.imaging().magnification);
 }
 
 ParaxialCamera paraxial_camera(Setup const& setup) {

@@ -25,7 +25,7 @@ Setup plane_setup(Setup const& setup, double z) {
   return there;
 }
 
-std::optional<Pinhole> pinhole_of(Setup const& setup, Camera const& camera) {
+std::optional<Pinhole> equivalent_pinhole(Setup const& setup, Camera const& camera) {
   bool const tilted = !(sensor_tilt(setup) == Vec2d{});
   bool const thin = !setup.lens.prescription && setup.windows.empty() && !setup.lenslets;
   if (!thin || (tilted && setup.camera.distorted())) return std::nullopt;

@@ -27,7 +27,7 @@ struct Pinhole {
 /// sensor's normal, and (cx, cy) is where the normal through the lens meets the sensor.
 /// @return nullopt without an equivalent: for a prescription, windows or lenslets, and for a tilted sensor with
 /// distortion, whose centre of distortion is not (cx, cy)
-std::optional<Pinhole> pinhole_of(Setup const& setup, Camera const& camera);
+std::optional<Pinhole> equivalent_pinhole(Setup const& setup, Camera const& camera);
 
 /// Checks a calibration setup: object distances that the lens can image, windows in front of all planes, diameter and
 /// spacing of the dots in the image.

@@ -51,7 +51,7 @@ void Camera::smooth_stop(double edge) {
 }
 
 Ray<double> Camera::towards(Vec3d point, Vec2d aim) const {
-  return {point, normalized(aim_plane.point_outwards({aim.x, aim.y, 0}) - point)};
+  return {point, normalized(aim_plane.point_to_outer({aim.x, aim.y, 0}) - point)};
 }
 
 std::optional<Vec2d> Camera::in_stop(Vec3d point, Vec2d aim) const {
@@ -82,17 +82,17 @@ std::optional<Camera::Sight> Camera::sight(Vec3d point, Vec2d aim) const {
 
 double Camera::in_stop_unit() const { return stop_radius > 0 ? stop_radius : 1e4 * aim_step; }
 
-StopSight Camera::stop_sight(Vec3d point) const {
+StopMapping Camera::stop_sight(Vec3d point) const {
   auto const back = [this](Vec2d slope) -> std::optional<Ray<double>> {
     auto const line = trace_back_from_stop(elements, stop, slope);
     return line ? std::optional(aim_plane.inwards(*line)) : std::nullopt;
   };
   return {[this, point](Vec2d aim) { return in_stop(point, aim); }, in_stop_unit(), aim_step,
-          RayOrigin::point(aim_plane.point_inwards(point)), back};
+          RayOrigin::point(aim_plane.point_to_local(point)), back};
 }
 
 Vec2d Camera::paraxial_aim(Vec3d point) const {
-  Vec3d const q = pose.point_inwards(point);
+  Vec3d const q = pose.point_to_local(point);
   double const distance = paraxial.front - q.z;
   double const scale = 1 + paraxial.chief_slope(distance) * (distance - paraxial.window_shift);
   return {scale * q.x, scale * q.y};
@@ -115,10 +115,10 @@ double Camera::place_step(Pose<double> const& plane) const {
   return sensor.pitch * std::max(1.0, length(plane.origin - pose.origin) / focal);
 }
 
-bool Camera::differentiate(Vec2d aim, Pose<double> const& plane, SeenPoint& seen) const {
+bool Camera::differentiate(Vec2d aim, Pose<double> const& plane, ImagedPoint& seen) const {
   double const h = place_step(plane);
   auto const point = [&](double dx, double dy) {
-    return plane.point_outwards({seen.place.x + dx, seen.place.y + dy, 0});
+    return plane.point_to_outer({seen.place.x + dx, seen.place.y + dy, 0});
   };
   // Derivatives of pixel and stop position with respect to object point and aim; the chief ray remains at its stop
   // position.
@@ -142,17 +142,17 @@ bool Camera::differentiate(Vec2d aim, Pose<double> const& plane, SeenPoint& seen
   return true;
 }
 
-std::optional<SeenPoint> Camera::see(Vec2d place, Pose<double> const& plane) const {
-  SeenPoint seen;
+std::optional<ImagedPoint> Camera::see(Vec2d place, Pose<double> const& plane) const {
+  ImagedPoint seen;
   seen.place = place;
-  Vec3d const point = plane.point_outwards({place.x, place.y, 0});
+  Vec3d const point = plane.point_to_outer({place.x, place.y, 0});
   auto const aim = chief_aim(point);
   if (!aim || !differentiate(*aim, plane, seen)) return std::nullopt;
   seen.chief = towards(point, *aim);
   return seen;
 }
 
-std::optional<SeenPoint> Camera::unproject(Vec2d pixel, Pose<double> const& plane) const {
+std::optional<ImagedPoint> Camera::unproject(Vec2d pixel, Pose<double> const& plane) const {
   // Start where the camera's axis meets the plane.
   Ray<double> const axis = plane.inwards(Ray<double>{pose.origin, -1.0 * pose.z});
   if (!(std::abs(axis.direction.z) > 0)) return std::nullopt;
@@ -162,9 +162,9 @@ std::optional<SeenPoint> Camera::unproject(Vec2d pixel, Pose<double> const& plan
   return seen ? seen : find_place(pixel, plane, start);
 }
 
-std::optional<SeenPoint> Camera::find_place(Vec2d pixel, Pose<double> const& plane, Vec2d place) const {
+std::optional<ImagedPoint> Camera::find_place(Vec2d pixel, Pose<double> const& plane, Vec2d place) const {
   constexpr int most_iterations = 60;
-  auto const pixel_of = [&](Vec2d p) { return project(plane.point_outwards({p.x, p.y, 0})); };
+  auto const pixel_of = [&](Vec2d p) { return project(plane.point_to_outer({p.x, p.y, 0})); };
   auto here = pixel_of(place);
   for (int iteration = 0; here && length(*here - pixel) > 1e-9 && iteration < most_iterations; ++iteration) {
     auto const seen = see(place, plane);
@@ -188,8 +188,8 @@ std::optional<SeenPoint> Camera::find_place(Vec2d pixel, Pose<double> const& pla
   return here && length(*here - pixel) < 1e-6 ? see(place, plane) : std::nullopt;
 }
 
-std::optional<SeenPoint> Camera::find_place_and_aim(Vec2d pixel, Pose<double> const& plane, Vec2d place) const {
-  auto const point = [&](Vec2d p) { return plane.point_outwards({p.x, p.y, 0}); };
+std::optional<ImagedPoint> Camera::find_place_and_aim(Vec2d pixel, Pose<double> const& plane, Vec2d place) const {
+  auto const point = [&](Vec2d p) { return plane.point_to_outer({p.x, p.y, 0}); };
   auto const found = chief_aim(point(place));
   if (!found) return std::nullopt;
   Vec2d aim = *found;
@@ -229,29 +229,30 @@ std::optional<SeenPoint> Camera::find_place_and_aim(Vec2d pixel, Pose<double> co
     if (!better) break;
   }
   if (!(miss_of(*here) < 1e-6)) return std::nullopt;
-  SeenPoint seen;
+  ImagedPoint seen;
   seen.place = place;
   seen.chief = towards(point(place), aim);
   if (!differentiate(aim, plane, seen)) return std::nullopt;
   return seen;
 }
 
-double Camera::sight_margin() { return aim_margin(rim_points); }
+double Camera::pupil_safety_factor() { return ellipse_safety_factor(rim_points); }
 
-std::optional<WorldAimDisc> Camera::aim_disc(Vec3d source) const {
+std::optional<WorldApparentPupil> Camera::apparent_pupil(Vec3d source) const {
   if (chief_rays_only()) {
     auto const aim = chief_aim(source);
     if (!aim) return std::nullopt;
-    return WorldAimDisc{aim_plane.point_outwards({aim->x, aim->y, 0}), {}, {}};
+    return WorldApparentPupil{aim_plane.point_to_outer({aim->x, aim->y, 0}), {}, {}};
   }
-  auto const disc = find_aim_disc(stop_sight(source), paraxial_aim(source), rim_points);
+  auto const disc = find_apparent_pupil(stop_sight(source), paraxial_aim(source), rim_points);
   if (!disc) return std::nullopt;
-  auto const along = [this](Vec2d v) { return aim_plane.direction_outwards({v.x, v.y, 0}); };
-  return WorldAimDisc{aim_plane.point_outwards({disc->centre.x, disc->centre.y, 0}), along(disc->a), along(disc->b)};
+  auto const along = [this](Vec2d v) { return aim_plane.direction_to_outer({v.x, v.y, 0}); };
+  return WorldApparentPupil{aim_plane.point_to_outer({disc->centre.x, disc->centre.y, 0}), along(disc->a),
+                            along(disc->b)};
 }
 
 Vec2d Camera::ideal_project(Vec3d point) const {
-  Vec3d const q = pose.point_inwards(point);
+  Vec3d const q = pose.point_to_local(point);
   double const distance = paraxial.front - q.z, slope = paraxial.chief_slope(distance);
   double const height = 1 + slope * (distance - paraxial.window_shift);  // at the first surface, per object height
   double const out = paraxial.whole.a * height + paraxial.whole.b * slope;

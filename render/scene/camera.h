@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "render/optics/aim_disc.h"
+#include "render/optics/apparent_pupil.h"
 #include "render/optics/paraxial.h"
 #include "render/scene/trace_ray.h"
 
@@ -29,7 +29,7 @@ struct ParaxialCamera {
 };
 
 /// Object point whose chief ray meets a pixel.
-struct SeenPoint {
+struct ImagedPoint {
   Vec2d place{};         ///< position in the frame of the object plane [m]
   Ray<double> chief;     ///< chief ray from the point towards the camera, in the world frame
   Vec2d by_x{}, by_y{};  ///< derivatives of the pixel position by the point's x and y in the plane [px/m]
@@ -40,7 +40,7 @@ struct SeenPoint {
 
 /// Entrance pupil as seen from a source: ellipse on the aim plane, in the world frame, that contains all rays passing
 /// the stop.
-struct WorldAimDisc {
+struct WorldApparentPupil {
   Vec3d centre{}, a{}, b{};  ///< centre + a cos + b sin [m]
 };
 
@@ -70,16 +70,17 @@ class Camera {
   /// Lenslets are ignored: the result is the centre of the sub-images that they form of the point.
   std::optional<Vec2d> project(Vec3d point) const;
   /// Finds the point of a plane whose chief ray meets a pixel; nullopt if there is none.
-  std::optional<SeenPoint> unproject(Vec2d pixel, Pose<double> const& plane) const;
+  std::optional<ImagedPoint> unproject(Vec2d pixel, Pose<double> const& plane) const;
   /// Returns the chief ray of a point of a plane and the derivatives of its pixel position; nullopt if no chief ray
   /// passes.
   /// @param place  position in the plane's frame [m]
-  std::optional<SeenPoint> see(Vec2d place, Pose<double> const& plane) const;
-  /// Returns the safety factor by which aim_disc() exceeds the entrance pupil of a lens without pupil aberrations [1].
-  static double sight_margin();
-  /// Returns the entrance pupil as seen from a source, enlarged by sight_margin(); without a stop, the point of the
-  /// chief ray on the aim plane. nullopt if no chief ray passes.
-  std::optional<WorldAimDisc> aim_disc(Vec3d source) const;
+  std::optional<ImagedPoint> see(Vec2d place, Pose<double> const& plane) const;
+  /// Returns the safety factor by which apparent_pupil() exceeds the entrance pupil of a lens without pupil aberrations
+  /// [1].
+  static double pupil_safety_factor();
+  /// Returns the entrance pupil as seen from a source, enlarged by pupil_safety_factor(); without a stop, the point of
+  /// the chief ray on the aim plane. nullopt if no chief ray passes.
+  std::optional<WorldApparentPupil> apparent_pupil(Vec3d source) const;
   /// Returns the pixel position of a point's paraxial chief ray without distortion [px]: the camera as an ideal lens
   /// (collinear map).
   Vec2d ideal_project(Vec3d point) const;
@@ -94,23 +95,23 @@ class Camera {
   /// Returns the length by which positions in the stop are normalised: the stop's radius or, without a stop, 1e4 aim
   /// steps [m].
   double in_stop_unit() const;
-  StopSight stop_sight(Vec3d point) const;
+  StopMapping stop_sight(Vec3d point) const;
   Vec2d paraxial_aim(Vec3d point) const;
   Ray<double> towards(Vec3d point, Vec2d aim) const;
   std::optional<Vec2d> chief_aim(Vec3d point) const;
   /// Finds the point of a plane whose chief ray meets a pixel by Newton's method in four unknowns (position in the
   /// plane, position on the aim plane). Solves for no chief ray in between.
   /// @param place  start value [m]
-  std::optional<SeenPoint> find_place_and_aim(Vec2d pixel, Pose<double> const& plane, Vec2d place) const;
+  std::optional<ImagedPoint> find_place_and_aim(Vec2d pixel, Pose<double> const& plane, Vec2d place) const;
   /// Like find_place_and_aim(), by damped Newton iterations over the position alone, with a chief ray found at each
   /// iterate. Slower, but robust in wide-angle lenses, where a small change of the aim point loses the ray.
-  std::optional<SeenPoint> find_place(Vec2d pixel, Pose<double> const& plane, Vec2d place) const;
+  std::optional<ImagedPoint> find_place(Vec2d pixel, Pose<double> const& plane, Vec2d place) const;
   /// Computes the derivatives of the pixel position of the chief ray by the position of its object point. The chief ray
   /// continues to meet the same point of the stop.
   /// @param aim  point of the chief ray on the aim plane [m]
   /// @param seen  receives by_x and by_y at seen.place
   /// @return false if a neighbouring ray is lost
-  bool differentiate(Vec2d aim, Pose<double> const& plane, SeenPoint& seen) const;
+  bool differentiate(Vec2d aim, Pose<double> const& plane, ImagedPoint& seen) const;
   double place_step(Pose<double> const& plane) const;
 };
 

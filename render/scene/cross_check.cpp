@@ -38,7 +38,7 @@ bool cross_check_camera(Setup const& setup, SetupTable root) {
 /// Reports views and targets that extend farther off the axis than a lens can image: no chief rays are found from
 /// there.
 void cross_check_extents(Setup const& setup, Vec2d view, SetupTable target, SetupTable root) {
-  double const widest = 2 * setup.farthest_off_axis(), mm = unit::millimetre;
+  double const widest = 2 * setup.max_off_axis_distance(), mm = unit::millimetre;
   if (std::max(view.x, view.y) > widest) {
     camera_table(root).problem(
         "pixel_pitch_um",
@@ -104,7 +104,7 @@ bool cross_check_lens(Setup const& setup, SetupTable root, std::vector<std::stri
                      "the dots lie within the focal length, where they have no real image; move the lens away");
     return false;
   }
-  if (!setup.on_bench() && !cross_check_camera(setup, root)) return false;
+  if (!setup.has_closed_form_layout() && !cross_check_camera(setup, root)) return false;
   if (setup.lenslets) cross_check_lenslets(setup, warnings);
   return true;
 }
@@ -129,7 +129,7 @@ void cross_check_target(Setup const& setup, SetupTable root) {
   double const mm = unit::millimetre;
   SetupTable lens = root.table("lens"), target = root.table("target");
   double const px = setup.pixel_size();
-  Vec2d view{setup.camera.columns * px, setup.camera.rows * px}, needed = view + setup.beyond_view();
+  Vec2d view{setup.camera.columns * px, setup.camera.rows * px}, needed = view + setup.target_view_margin();
   if (setup.pose || setup.camera.tilted()) needed = view = posed_view(setup);
   if (setup.target.extent_m && (setup.target.extent_m->x < needed.x || setup.target.extent_m->y < needed.y)) {
     target.problem("extent_mm", fmt::format("the field of view, {:.4g} x {:.4g} mm at the dots, is larger than the "
@@ -203,7 +203,7 @@ std::vector<std::string> cross_check(Setup const& setup, SetupTable root) {
   cross_check_density(setup, medium, warnings);
   if (setup.medium.second_field) {
     Setup second = setup;
-    second.medium = at_second_pulse(setup.medium);
+    second.medium = select_second_pulse(setup.medium);
     cross_check_geometry(second, root.table("geometry"));
     cross_check_steps(second, medium, "second_field");
     cross_check_density(second, medium, warnings, "second_field");

@@ -43,7 +43,7 @@ FieldDensities field_densities(Setup const& setup) {
     return {form.densities(half_extent_at_medium(setup)), form.density_key, requires {form.endless_range; }
 };
 },
-      closed_form_of(setup.medium));
+      make_closed_form(setup.medium));
 }
 
 /// Returns the key of the field's length scale.
@@ -57,7 +57,7 @@ std::string length_key(FieldSetup const& field) {
 
 void cross_check_thickness(Setup const& setup, std::vector<std::string>& warnings) {
   MediumSetup const& slab = setup.medium;
-  double const mm = unit::millimetre, lost = cut_off_share(slab);
+  double const mm = unit::millimetre, lost = truncated_fraction(slab);
   bool const limited = slab.automatic_thickness && lost > noticeable_loss;
   if (limited || lost > negligible_loss) {
     warnings.push_back(
@@ -73,7 +73,7 @@ void cross_check_thickness(Setup const& setup, std::vector<std::string>& warning
 void cross_check_density(Setup const& setup, SetupTable& medium, std::vector<std::string>& warnings,
                          std::string const& of_field) {
   double const K = setup.medium.gladstone_dale, ambient = setup.medium.ambient_density;
-  if (!possible_refractivity(K * ambient)) {
+  if (!is_plausible_refractivity(K * ambient)) {
     medium.problem(
         "ambient_density_kg_m3",
         fmt::format(
@@ -84,7 +84,7 @@ void cross_check_density(Setup const& setup, SetupTable& medium, std::vector<std
   FieldDensities const densities = field_densities(setup);
   auto const [lowest, highest] = densities.range;
   char const* const key = densities.key;
-  if (!possible_refractivity(K * lowest) || !possible_refractivity(K * highest)) {
+  if (!is_plausible_refractivity(K * lowest) || !is_plausible_refractivity(K * highest)) {
     medium.tables(of_field).front().problem(
         key, fmt::format("gives refractive indices from {:.6g} to {:.6g} where rays cross the field (no medium has "
                          "such an index); check it and medium.gladstone_dale",
@@ -109,10 +109,10 @@ void cross_check_density(Setup const& setup, SetupTable& medium, std::vector<std
 void cross_check_steps(Setup const& setup, SetupTable medium, std::string const& of_field) {
   if (setup.medium.field.kind == FieldKind::none) return;
   double const thickness_mm = setup.medium.thickness / unit::millimetre;
-  if (setup.medium.step_mm && thickness_mm > most_steps * *setup.medium.step_mm) {
+  if (setup.medium.step_mm && thickness_mm > max_step_count * *setup.medium.step_mm) {
     medium.problem("step_mm", fmt::format("is so short that a ray would need {:.3g} steps across the medium ({:.0g} at "
                                           "most); use \"auto\" or a longer step",
-                                          thickness_mm / *setup.medium.step_mm, most_steps));
+                                          thickness_mm / *setup.medium.step_mm, max_step_count));
   }
   double steps = 0;
   try {
@@ -120,12 +120,12 @@ void cross_check_steps(Setup const& setup, SetupTable medium, std::string const&
   } catch (DataError const&) {
     return;
   }
-  if (steps <= most_steps) return;
+  if (steps <= max_step_count) return;
   std::string const key = length_key(setup.medium.field);
   medium.tables(of_field).front().problem(
       key, fmt::format("makes the field so fine that a ray would need {:.3g} steps across the medium ({:.0g} at most); "
                        "{}lengths are in mm",
-                       steps, most_steps, key == "file" ? "give medium.field.spacing_mm; " : "use a longer one; "));
+                       steps, max_step_count, key == "file" ? "give medium.field.spacing_mm; " : "use a longer one; "));
 }
 
 }  // namespace gladstone

@@ -28,7 +28,7 @@ std::optional<MediumEnds> medium_ends(Setup const& setup) {
 
 /// Returns the point where the camera's axis enters the camera: the first vertex of its lens, or its principal plane if
 /// it has no surfaces [m].
-Vec3d front_of(Setup const& setup) { return setup.camera_pose().point_outwards({0, 0, paraxial_camera(setup).front}); }
+Vec3d front_of(Setup const& setup) { return setup.camera_pose().point_to_outer({0, 0, paraxial_camera(setup).front}); }
 
 /// The camera's axis; distances along it are measured from the lens' front, negative in front of it [m].
 struct CameraAxis {

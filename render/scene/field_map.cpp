@@ -43,7 +43,7 @@ FieldMap map_field(Scene const& scene, int spacing_px) {
   return map;
 }
 
-StrainMap strain_of(Image<Vec2d> const& displacement, int spacing_px) {
+StrainMap compute_strain(Image<Vec2d> const& displacement, int spacing_px) {
   StrainMap map;
   map.spacing_px = spacing_px;
   int const columns = displacement.columns(), rows = displacement.rows();
@@ -138,7 +138,7 @@ StrainMap map_strain(Scene const& scene) {
                                               fine_px * (row - margin * finer) + 0.5 * spacing_px});
             Vec3d const start{at.x, at.y, plane_z};
             Ray<double> const ray{start, normalized(Vec3d{-at.x, -at.y, scene.setup.z_a - start.z})};
-            along_chief(column, row) = integrate_gradient(medium, ray, scene.medium.coarsest_step).levered;
+            along_chief(column, row) = integrate_gradient(medium, ray, scene.medium.coarsest_step).lever_weighted;
           }
         });
       },
@@ -156,7 +156,7 @@ StrainMap map_strain(Scene const& scene) {
           theory_displacement(sum, 1.0, scene.imaging.magnification, scene.setup.ambient_index(), camera.pixel_pitch);
     }
   });
-  return strain_of(displacement, spacing_px);
+  return compute_strain(displacement, spacing_px);
 }
 
 }  // namespace gladstone

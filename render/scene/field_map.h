@@ -37,7 +37,7 @@ struct StrainMap {
 /// Computes the strain of displacements on a lattice by central differences, one-sided at the edges.
 /// @param displacement  displacements [px]
 /// @pre at least 2 x 2 lattice points
-StrainMap strain_of(Image<Vec2d> const& displacement, int spacing_px);
+StrainMap compute_strain(Image<Vec2d> const& displacement, int spacing_px);
 
 /// Computes the strain of aperture-averaged theory (Eq. 9 averaged over the light cone) on a lattice of virtual dots.
 /// The rays of a dot's cone are approximated by the chief rays of neighbouring lattice points that cross the medium's

@@ -128,7 +128,7 @@ std::string warning_of_small_volume(Scene const& scene, ParticleCensus const& ce
     auto const at = scene.camera.unproject({share.x * camera.columns - 0.5, share.y * camera.rows - 0.5}, plane);
     if (!at) return;
     ++seen;
-    Vec3d const off = plane.point_outwards({at->place.x, at->place.y, 0}) - particles.center;
+    Vec3d const off = plane.point_to_outer({at->place.x, at->place.y, 0}) - particles.center;
     outside[i] = std::abs(off.x) > half.x || std::abs(off.y) > half.y || std::abs(off.z) > half.z ? 1 : 0;
   });
   double const share = static_cast<double>(std::count(outside.begin(), outside.end(), 1)) / std::max(1, seen.load());
@@ -194,7 +194,7 @@ double particle_count(Setup const& setup) {
   return particles.amount;
 }
 
-MemoryNeed particle_memory(Setup const& setup) {
+MemoryRequirement particle_memory(Setup const& setup) {
   ParticleSetup const& particles = setup.piv->particles;
   if (particles.count == ParticleCount::file) return {"particles.file", "particles", 0};
   char const* const key = particles.count == ParticleCount::per_mm3     ? "particles.per_mm3"

@@ -15,7 +15,7 @@ namespace gladstone {
 double particle_count(Setup const& setup);
 
 /// Returns the memory that a setup's particles need, with the key of [particles] that sets their number.
-MemoryNeed particle_memory(Setup const& setup);
+MemoryRequirement particle_memory(Setup const& setup);
 
 /// Adds particles, their scattering properties and the unit of light to a scene whose camera has been built.
 /// @throws DataError if no particle is illuminated

@@ -95,13 +95,13 @@ RayLosses sample_ray_losses(Scene const& scene) {
   auto const follow = [&](std::size_t frame, auto const& place_of, auto const& medium) {
     parallel_for(sources.size(), [&](std::size_t i) {
       Vec3d const start = place_of(sources[i]);
-      auto const disc = scene.camera.aim_disc(start);
+      auto const disc = scene.camera.apparent_pupil(start);
       if (!disc) return;
       std::map<End, std::size_t> ended;
       for (std::size_t k = 0; k < losses.rays; ++k) {
         throw_if_interrupted();
         Vec2d const at =
-            losses.rays == 1 ? Vec2d{} : sunflower(static_cast<int>(k), sampled_rays) / Camera::sight_margin();
+            losses.rays == 1 ? Vec2d{} : sunflower(static_cast<int>(k), sampled_rays) / Camera::pupil_safety_factor();
         Vec3d const aim = disc->centre + at.x * disc->a + at.y * disc->b;
         if (auto const end = end_of(camera, medium, options, {start, normalized(aim - start)})) ++ended[*end];
       }
@@ -124,7 +124,7 @@ RayLosses sample_ray_losses(Scene const& scene) {
   std::vector<std::string> const names = names_of(scene);
   double const all = static_cast<double>(losses.sources * losses.rays);
   for (auto const& [end, count] : counts) {
-    RaysLostAt& lost = losses.lost.emplace_back();
+    ElementRayLoss& lost = losses.lost.emplace_back();
     lost.place = names.at(static_cast<std::size_t>(end.place));
     lost.cause = end.cause;
     for (std::size_t frame = 0; frame < frame_count; ++frame)

@@ -13,7 +13,7 @@
 namespace gladstone {
 
 /// Fraction of rays lost at one element for one cause.
-struct RaysLostAt {
+struct ElementRayLoss {
   std::string place;  ///< "surface 3" of a prescription (counted from 1, as in `gladstone info lens`), "stop", "thin
                       ///< lens", "window 1, first face", "lenslets", "medium" or "sensor"
   RayStatus cause;
@@ -22,9 +22,9 @@ struct RaysLostAt {
 
 /// Result of sample_ray_losses().
 struct RayLosses {
-  std::size_t sources = 0;       ///< number of sampled sources, spread evenly over those in view
-  std::size_t rays = 0;          ///< number of rays per source
-  std::vector<RaysLostAt> lost;  ///< losses in the order of the light path
+  std::size_t sources = 0;           ///< number of sampled sources, spread evenly over those in view
+  std::size_t rays = 0;              ///< number of rays per source
+  std::vector<ElementRayLoss> lost;  ///< losses in the order of the light path
 };
 
 /// Traces 256 rays from the centre of each of up to 32 sources in view and records where they are lost.

@@ -18,17 +18,17 @@ struct MeanDot {
 
 }  // namespace
 
-MeanDisplacement MeanDisplacement::of(Vec2d const (&found)[plan_scramblings]) {
+MeanDisplacement MeanDisplacement::of(Vec2d const (&found)[budget_scramblings]) {
   auto const shown = [](Vec2d one) { return std::isfinite(one.x); };
   MeanDisplacement result;
   if (std::none_of(std::begin(found), std::end(found), shown)) return {{not_a_number, not_a_number}, not_a_number};
   auto const moved = [&shown](Vec2d one) { return shown(one) ? one : Vec2d{}; };
-  for (Vec2d const one : found) result.mean += moved(one) / static_cast<double>(plan_scramblings);
+  for (Vec2d const one : found) result.mean += moved(one) / static_cast<double>(budget_scramblings);
   for (Vec2d const one : found) {
     Vec2d const off = moved(one) - result.mean;
     result.variance += 0.5 * dot(off, off);
   }
-  result.variance /= plan_scramblings - 1;
+  result.variance /= budget_scramblings - 1;
   return result;
 }
 
@@ -42,10 +42,10 @@ double mean_variance(std::vector<MeanDisplacement> const& displacements) {
   return sum / count;
 }
 
-int plan_bits(CameraSetup const& camera) { return std::min(camera.bit_depth, 12); }
+int error_bit_depth(CameraSetup const& camera) { return std::min(camera.bit_depth, 12); }
 
-GreyLevels::GreyLevels(CameraSetup const& camera, double dots_a_pixel)
-    : density(dots_a_pixel), bits(plan_bits(camera)) {
+GreyLevels::GreyLevels(CameraSetup const& camera, double dots_per_pixel)
+    : density(dots_per_pixel), bits(error_bit_depth(camera)) {
   double const full_scale = std::pow(2.0, bits) - 1;
   // A given exposure determines the light of a grey level; "auto" puts the brightest pixel at 90 % of full scale.
   level = camera.exposure_e ? camera.noise.full_well_e / *camera.exposure_e / full_scale : 0.0;
@@ -67,17 +67,17 @@ Scatter measure_scatter(std::vector<std::size_t> const& dots, GreyLevels const& 
   std::vector<PerDot> measured(dots.size());
   parallel_for(dots.size(), [&](std::size_t index) {
     std::vector<Sampled> samples;
-    for (int scrambling = 0; scrambling < plan_scramblings; ++scrambling) {
+    for (int scrambling = 0; scrambling < budget_scramblings; ++scrambling) {
       samples.push_back(sample(dots[index], scrambling));
     }
     PerDot& result = measured[index];
     auto const unbiased = [&](auto const& value_of) {
       double mean = 0, square = 0;
-      for (Sampled const& one : samples) mean += value_of(one) / plan_scramblings;
+      for (Sampled const& one : samples) mean += value_of(one) / budget_scramblings;
       for (Sampled const& one : samples) square += (value_of(one) - mean) * (value_of(one) - mean);
-      return std::pair{mean, square / (plan_scramblings - 1)};
+      return std::pair{mean, square / (budget_scramblings - 1)};
     };
-    Vec2d found[plan_scramblings];
+    Vec2d found[budget_scramblings];
     for (std::size_t k = 0; k < samples.size(); ++k) found[k] = samples[k].displacement;
     scatter.displacements[index] = MeanDisplacement::of(found);
     for (std::size_t i = 0; i < samples[0].light.size(); ++i) {
@@ -99,7 +99,7 @@ Scatter measure_scatter(std::vector<std::size_t> const& dots, GreyLevels const& 
     MeanDot& sums = frames[frame];
     sum_over_frame(frame, [&](double mean, double variance) {
       sums.light += share * mean;
-      sums.square += share * (mean * mean + variance * (1 - 1.0 / plan_scramblings));  // for one scrambling
+      sums.square += share * (mean * mean + variance * (1 - 1.0 / budget_scramblings));  // for one scrambling
       scatter.brightest = std::max(scatter.brightest, mean);
     });
     // Light of randomly overlapping dots: mean plus three standard deviations (Campbell's theorem).

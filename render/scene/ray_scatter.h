@@ -9,7 +9,7 @@
 /// Scatter between independent scramblings of a scene's rays, from which the number of rays is planned.
 namespace gladstone {
 
-inline constexpr int plan_scramblings = 4;
+inline constexpr int budget_scramblings = 4;
 inline constexpr std::size_t plan_sample_dots = 96;
 
 /// Result of one scrambling of one dot's rays: the displacement [px], NaN if no ray passes, and the light of a pixel
@@ -26,7 +26,7 @@ struct MeanDisplacement {
 
   /// @param found  displacements [px]; NaN if the scrambling does not show the dot, which counts as zero displacement
   ///   if another scrambling does
-  static MeanDisplacement of(Vec2d const (&found)[plan_scramblings]);
+  static MeanDisplacement of(Vec2d const (&found)[budget_scramblings]);
 };
 /// Returns the mean variance of the dots that are visible [px^2]; NaN if none is.
 double mean_variance(std::vector<MeanDisplacement> const& displacements);
@@ -39,7 +39,7 @@ struct Scatter {
 };
 
 /// Returns the bit depth in which errors are measured: the camera's, 12 at most.
-int plan_bits(CameraSetup const& camera);
+int error_bit_depth(CameraSetup const& camera);
 
 /// Unit of image errors: grey levels at the camera's bit depth, 12 bits at most.
 struct GreyLevels {
@@ -48,7 +48,7 @@ struct GreyLevels {
   double at_peak = 0;  ///< grey levels of the brightest pixel for auto exposure
   int bits = 12;
 
-  GreyLevels(CameraSetup const& camera, double dots_a_pixel);
+  GreyLevels(CameraSetup const& camera, double dots_per_pixel);
   /// Returns the rms scatter of the light over lit pixels [grey levels]; NaN if no pixel is lit.
   double error(Scatter const& scatter) const;
 };

@@ -22,7 +22,7 @@ SetupTable camera_table(SetupTable& root) {
     root.problem("camera",
                  "is an array of several cameras, but this command needs a single one (gladstone render makes a case "
                  "of each); keep one, or use the setup.toml of its case");
-    for (std::size_t other = 1; other < cameras.size(); ++other) cameras[other].excuse();
+    for (std::size_t other = 1; other < cameras.size(); ++other) cameras[other].suppress_unread_keys();
   }
   return cameras.empty() ? root.table("camera") : cameras.front();
 }
@@ -214,7 +214,7 @@ void focus_on_sensor(Setup& setup, SetupTable geometry) {
     geometry.problem("z_sensor_mm", "cannot position an afocal lens (it has no focus); give z_front_mm");
   } else if (known) {
     try {
-      place_lens_by_sensor(setup);
+      position_lens_from_sensor(setup);
     } catch (DataError const& error) {
       geometry.problem("z_sensor_mm", error.what());
     }

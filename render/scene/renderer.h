@@ -65,7 +65,7 @@ class Renderer {
 /// One attempt at rendering a scene. It is repeated with a larger deflection table if a dot needs one.
 struct TracingPass {
   Rendering rendering;
-  double farthest_aim = 0;  ///< largest distance of any aim point from the axis in the pupil [m]
+  double largest_aim_distance = 0;  ///< largest distance of any aim point from the axis in the pupil [m]
 
   /// Initialises positions and ray numbers of the dots. The renderer fills in the other results.
   TracingPass(Scene const& scene, DotPattern const& sources);

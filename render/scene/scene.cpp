@@ -77,10 +77,10 @@ void add_dots(Scene& scene) {
       scene.dots.centre = Lattice(setup.target).dots();
       break;
     case TargetKind::points:
-      scene.dots.centre = dots_from_csv(setup.target.file, setup.farthest_off_axis());
+      scene.dots.centre = dots_from_csv(setup.target.file, setup.max_off_axis_distance());
       break;
     case TargetKind::image:
-      scene.dots = picture_target(setup.target.file, setup.target_extent());
+      scene.dots = image_target(setup.target.file, setup.target_extent());
       break;
   }
   if (setup.target.kind != TargetKind::image) scene.dots.half_size = diameter / 2;
@@ -98,7 +98,7 @@ double Scene::steps_across() const {
 
 double Scene::stop_edge(double rays) { return 1.2 / std::pow(rays, 0.25); }
 
-void refuse_shift_beyond_any_bench(double shift, double z_b) {
+void check_deflection_limit(double shift, double z_b) {
   if (shift <= z_b) return;
   throw DataError("medium.field",
                   fmt::format("deflects rays by more than {:.3g} mm before they reach the lens, {:.6g} mm away, which "
@@ -107,7 +107,7 @@ void refuse_shift_beyond_any_bench(double shift, double z_b) {
 }
 
 void Scene::widen_pupil(double margin) {
-  refuse_shift_beyond_any_bench(margin, setup.z_b());
+  check_deflection_limit(margin, setup.z_b());
   pupil_margin = margin;
 }
 
@@ -123,7 +123,7 @@ double Scene::spot_sigma_px() const { return setup.lens.spot == SpotModel::airy 
 bool Scene::in_view(Vec2d on_target) const {
   Vec2d const pixel = to_pixel(on_target);
   Sensor<double> const square_to_axis{0, setup.camera.pixel_pitch, setup.camera.columns, setup.camera.rows};
-  return setup.on_bench() ? square_to_axis.covers(pixel) : camera.sensor.covers(pixel);
+  return setup.has_closed_form_layout() ? square_to_axis.covers(pixel) : camera.sensor.covers(pixel);
 }
 
 bool Scene::source_in_view(std::size_t source) const {
@@ -142,7 +142,7 @@ Pose<double> Scene::sheet_plane() const {
 }
 
 Vec2d Scene::to_pixel(Vec2d on_target) const {
-  if (!setup.on_bench()) {
+  if (!setup.has_closed_form_layout()) {
     return camera.project({on_target.x, on_target.y, -setup.z_d}).value_or(Vec2d{not_a_number, not_a_number});
   }
   double const scale = imaging.magnification / setup.camera.pixel_pitch;
@@ -150,7 +150,7 @@ Vec2d Scene::to_pixel(Vec2d on_target) const {
 }
 
 Vec2d Scene::to_target(Vec2d pixel) const {
-  if (!setup.on_bench()) {
+  if (!setup.has_closed_form_layout()) {
     auto const seen = camera.unproject(pixel, target_plane());
     return seen ? seen->place : Vec2d{not_a_number, not_a_number};
   }
@@ -158,17 +158,17 @@ Vec2d Scene::to_target(Vec2d pixel) const {
   return {(pixel.x - 0.5 * (setup.camera.columns - 1)) * scale, (0.5 * (setup.camera.rows - 1) - pixel.y) * scale};
 }
 
-void check_memory(Setup const& setup, FieldMemory field_memory, std::vector<MemoryNeed> const& more) {
+void check_memory(Setup const& setup, FieldMemory field_memory, std::vector<MemoryRequirement> const& more) {
   double const pixels = static_cast<double>(setup.camera.columns) * setup.camera.rows;
-  std::vector<MemoryNeed> needs{
+  std::vector<MemoryRequirement> needs{
       {"camera.pixels", "images", pixels * 2 * (sizeof(std::int64_t) + sizeof(double) + sizeof(std::uint16_t))},
       {"medium.field.file", "field",
        field_memory == FieldMemory::needed ? static_cast<double>(medium_bytes_needed(setup.medium)) : 0},
       setup.piv ? particle_memory(setup)
-                : MemoryNeed{"target.dots_per_32px_window", "dots",
-                             setup.target.kind == TargetKind::dots ? setup.dot_count() * 200 : 0.0}};
+                : MemoryRequirement{"target.dots_per_32px_window", "dots",
+                                    setup.target.kind == TargetKind::dots ? setup.dot_count() * 200 : 0.0}};
   if (setup.medium.second_field) {
-    double const bytes = static_cast<double>(medium_bytes_needed(at_second_pulse(setup.medium)));
+    double const bytes = static_cast<double>(medium_bytes_needed(select_second_pulse(setup.medium)));
     needs.push_back({"medium.second_field.file", "second field", bytes});
   }
   if (setup.piv && setup.piv->flow.file) {
@@ -177,14 +177,15 @@ void check_memory(Setup const& setup, FieldMemory field_memory, std::vector<Memo
   needs.insert(needs.end(), more.begin(), more.end());
   double needed = 0;
   std::string sizes;
-  for (MemoryNeed const& need : needs) {
+  for (MemoryRequirement const& need : needs) {
     needed += need.bytes;
     sizes += fmt::format("{}{} {:.3g}", sizes.empty() ? "" : ", ", need.what, gigabytes(need.bytes));
   }
   double const available = available_memory();
   if (needed <= available) return;
-  auto const most = std::max_element(needs.begin(), needs.end(),
-                                     [](MemoryNeed const& a, MemoryNeed const& b) { return a.bytes < b.bytes; });
+  auto const most =
+      std::max_element(needs.begin(), needs.end(),
+                       [](MemoryRequirement const& a, MemoryRequirement const& b) { return a.bytes < b.bytes; });
   throw DataError(most->key, fmt::format("needs {:.3g} GB of memory ({}), but {:.3g} GB are available; reduce {}",
                                          gigabytes(needed), sizes, gigabytes(available), most->key));
 }
@@ -201,7 +202,7 @@ Scene build_scene(Setup const& setup, BuiltMedium const* medium) {
   scene.setup = setup;
   scene.imaging = setup.imaging();
   scene.camera = build_camera(setup);
-  if (!setup.on_bench()) {  // use the actual sensor position
+  if (!setup.has_closed_form_layout()) {  // use the actual sensor position
     if (auto const axis = scene.camera.unproject(scene.camera.sensor.axis_pixel(), scene.target_plane())) {
       double const area = std::abs(axis->by_x.x * axis->by_y.y - axis->by_x.y * axis->by_y.x);  // [px^2/m^2]
       scene.imaging.magnification = setup.camera.pixel_pitch * std::sqrt(area);
@@ -214,7 +215,7 @@ Scene build_scene(Setup const& setup, BuiltMedium const* medium) {
   }
 
   scene.medium = medium ? *medium : build_checked_medium(setup.medium);
-  if (setup.medium.second_field) scene.second_medium = build_checked_medium(at_second_pulse(setup.medium));
+  if (setup.medium.second_field) scene.second_medium = build_checked_medium(select_second_pulse(setup.medium));
   if (setup.medium.field.kind == FieldKind::file && !setup.medium.field.extrude) {
     Bounds<double> const box = std::visit([](auto const& view) { return view.bounds(); }, scene.medium.view);
     bool const dots_inside = !setup.piv && -setup.z_d > box.low.z;

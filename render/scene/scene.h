@@ -15,7 +15,7 @@
 namespace gladstone {
 
 /// Camera-dependent criteria by which the general renderer chooses the number of rays of each source.
-struct RaysByNeed {
+struct AdaptiveRayCriteria {
   double level = 0;         ///< light of one grey level
   double brightest_at = 0;  ///< grey levels of the brightest pixel at the chosen exposure
 };
@@ -33,9 +33,9 @@ struct Scene {
   BuiltMedium medium;
   std::optional<BuiltMedium> second_medium;  ///< medium at the second laser pulse, if different
   double step = 0;                           ///< integration step [m]
-  double pupil_margin = 0;               ///< margin by which the pupil is enlarged so that no deflected ray is lost [m]
-  std::uint64_t rays_per_dot = 1;        ///< rays of every source; maximum number if adaptive
-  std::optional<RaysByNeed> by_need;     ///< criteria of the adaptive ray number; empty: not adaptive
+  double pupil_margin = 0;         ///< margin by which the pupil is enlarged so that no deflected ray is lost [m]
+  std::uint64_t rays_per_dot = 1;  ///< rays of every source; maximum number if adaptive
+  std::optional<AdaptiveRayCriteria> adaptive_criteria;  ///< criteria of the adaptive ray number; empty: not adaptive
   std::uint64_t rays_at_side_faces = 0;  ///< like rays_per_dot, for dots at side faces (side_faces.h); 0: as others
   int fineness = 1;  ///< refinement of the fast renderer's table and rules: 1, or 2 for steep fronts
 
@@ -84,7 +84,7 @@ struct Scene {
 enum class FieldMemory { needed, taken };
 
 /// Memory requirement of one part of a rendering, and the key that reduces it.
-struct MemoryNeed {
+struct MemoryRequirement {
   char const* key;
   char const* what;
   double bytes;
@@ -95,10 +95,10 @@ struct MemoryNeed {
 /// @param more  requirements of a renderer beyond images, field and dots
 /// @throws DataError with the sizes
 void check_memory(Setup const& setup, FieldMemory field = FieldMemory::needed,
-                  std::vector<MemoryNeed> const& more = {});
+                  std::vector<MemoryRequirement> const& more = {});
 
 /// Builds the scene: camera, dots or particles, and medium. Step, margin and ray numbers must be planned afterwards
-/// (ray_plan.h).
+/// (ray_budget.h).
 /// @param medium  the medium of this setup, if it is already built
 Scene build_scene(Setup const& setup, BuiltMedium const* medium = nullptr);
 

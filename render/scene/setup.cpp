@@ -41,10 +41,10 @@ Vec2d Setup::target_extent() const {
   // Compute in mm, so that the resolved setup, which stores mm, reproduces the dots to the last bit.
   double const px_mm = camera.pixel_pitch / imaging().magnification / unit::millimetre;
   Vec2d const view_mm{(camera.columns + 2.0 * view_margin_px) * px_mm, (camera.rows + 2.0 * view_margin_px) * px_mm};
-  return view_mm * unit::millimetre + beyond_view();
+  return view_mm * unit::millimetre + target_view_margin();
 }
 
-Vec2d Setup::beyond_view() const {
+Vec2d Setup::target_view_margin() const {
   Vec2d const off = target_centre() - axis_on_target();
   return {2 * std::abs(off.x), 2 * std::abs(off.y)};
 }

@@ -18,10 +18,10 @@
 namespace gladstone {
 
 /// e^-2 diameter of dot and particle images below which correlation is biased towards whole pixels (peak locking) [px].
-inline constexpr double least_image_px = 2;
+inline constexpr double min_image_px = 2;
 
 /// Maximum number of integration steps per ray: 10 nm each in 10 mm.
-inline constexpr double most_steps = 1e6;
+inline constexpr double max_step_count = 1e6;
 
 /// Precision in which rays are traced. The truth requires double; single is a preview mode of the GPU.
 enum class Precision { double_precision, single };
@@ -78,17 +78,17 @@ struct Setup {
   /// Centre of the target in its plane: as configured, or the intersection with the camera's axis [m].
   Vec2d target_centre() const;
   /// Returns the amount by which a target must be larger than the view because its centre is off the camera's axis [m].
-  Vec2d beyond_view() const;
+  Vec2d target_view_margin() const;
   /// Returns true for the set-up that closed forms describe: an ideal thin lens on the Z axis without windows, lenslets
   /// or distortion, and a sensor perpendicular to the axis.
-  bool on_bench() const {
+  bool has_closed_form_layout() const {
     return !lens.prescription && !pose && windows.empty() && !camera.tilted() && !camera.distorted() && !lenslets;
   }
   bool calibration() const { return !planes.empty(); }
   /// Distance from the front principal plane to the plane in focus [m].
   double focus_distance() const;
   /// Maximum distance of objects from the axis in x or y: ten times their distance from the lens, 84 degrees [m].
-  double farthest_off_axis() const { return 10 * z_b(); }
+  double max_off_axis_distance() const { return 10 * z_b(); }
   /// Returns image distance, magnification and entrance pupil near the axis. For prescriptions and cameras behind
   /// windows, these are paraxial values with the sensor in the paraxial image.
   ImagingGeometry imaging() const;

@@ -33,8 +33,8 @@ void cross_check_thickness(Setup const& setup, std::vector<std::string>& warning
 void cross_check_density(Setup const& setup, SetupTable& medium, std::vector<std::string>& warnings,
                          std::string const& of_field = "field");
 
-/// Reports steps, or length scales of the field, that would require more than `most_steps` integration steps across the
-/// medium. A file that cannot be read is ignored; its reader reports it.
+/// Reports steps, or length scales of the field, that would require more than `max_step_count` integration steps across
+/// the medium. A file that cannot be read is ignored; its reader reports it.
 void cross_check_steps(Setup const& setup, SetupTable medium, std::string const& of_field = "field");
 
 }  // namespace gladstone

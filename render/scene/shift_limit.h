@@ -7,6 +7,6 @@ namespace gladstone {
 /// @param shift  deflection on the lens plane [m]
 /// @param z_b  distance from the dots to the lens [m]
 /// @throws DataError if shift > z_b
-void refuse_shift_beyond_any_bench(double shift, double z_b);
+void check_deflection_limit(double shift, double z_b);
 
 }  // namespace gladstone

@@ -8,10 +8,10 @@ namespace gladstone {
 /// Integrals over z along a straight ray through the medium.
 template <class T>
 struct GradientIntegral {
-  T refractivity{};   ///< integral of (n - 1) dz [m]
-  T depth{};          ///< integral of dz inside the medium [m]
-  Vec2<T> plain{};    ///< integral of (dn/dx, dn/dy) dz [1]
-  Vec2<T> levered{};  ///< integral of (dn/dx, dn/dy) z' dz, z' measured from the plane of the ray's start [m]
+  T refractivity{};          ///< integral of (n - 1) dz [m]
+  T depth{};                 ///< integral of dz inside the medium [m]
+  Vec2<T> plain{};           ///< integral of (dn/dx, dn/dy) dz [1]
+  Vec2<T> lever_weighted{};  ///< integral of (dn/dx, dn/dy) z' dz, z' measured from the plane of the ray's start [m]
 };
 
 /// Calls visit(sample, s, ds) at the nodes of a composite Gauss-Legendre quadrature (three nodes per panel) along a
@@ -47,15 +47,15 @@ GLADSTONE_HD GradientIntegral<T> integrate_gradient(Medium const& medium, Ray<T>
     sum.refractivity += sample.refractivity * dz;
     sum.depth += dz;
     sum.plain += slice;
-    sum.levered += slice * (s * start.direction.z);
+    sum.lever_weighted += slice * (s * start.direction.z);
   });
   return sum;
 }
 
 /// Computes the displacement on the sensor from a deflection integral by small-angle theory [px]: M Z_D / (n_0 p) times
 /// the integral (Rajendran et al. 2019, Eq. 9). Dots appear displaced against grad n, and image rows run downwards.
-/// @param integral  member `plain` or `levered` of GradientIntegral
-/// @param lever  Z_D [m] with `plain`, 1 with `levered`
+/// @param integral  member `plain` or `lever_weighted` of GradientIntegral
+/// @param lever  Z_D [m] with `plain`, 1 with `lever_weighted`
 /// @param magnification  M [1]
 /// @param n0  ambient index [1]
 /// @param pitch  pixel pitch p [m]

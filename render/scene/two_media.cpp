@@ -40,7 +40,7 @@ double standard_error(Renderer& renderer, Scene const& scene, Particles const& p
   for (std::size_t key = 0; key < keys; ++key) {
     Scene first = scene;
     first.setup.render.seed += 7919 * (key + 1);
-    Scene second = at_second_pulse(first);
+    Scene second = select_second_pulse(first);
     first.second_medium.reset();
     auto const trace = [&](Scene& one) {
       return renderer.render_particles(one, some, ParticleLight::equal, RenderImages::no).truth;
@@ -60,7 +60,7 @@ double standard_error(Renderer& renderer, Scene const& scene, Particles const& p
 
 }  // namespace
 
-Scene at_second_pulse(Scene const& scene) {
+Scene select_second_pulse(Scene const& scene) {
   GLADSTONE_EXPECTS(scene.second_medium);
   Scene second = scene;
   second.medium = *scene.second_medium;
@@ -73,7 +73,7 @@ Scene at_second_pulse(Scene const& scene) {
 Rendering render_in_two_media(Renderer& renderer, Scene const& scene, Particles const& particles, ParticleLight light,
                               RenderImages images) {
   RenderImages const lit = images == RenderImages::no ? RenderImages::no : RenderImages::yes;
-  Scene first = scene, second = at_second_pulse(scene);
+  Scene first = scene, second = select_second_pulse(scene);
   first.second_medium.reset();
   Rendering all = renderer.render_particles(first, particles, light, lit);
   Rendering const later = renderer.render_particles(second, particles, light, lit);

@@ -6,7 +6,7 @@ namespace gladstone {
 
 /// Returns the scene with its second medium as its only one, as seen by the second pulse.
 /// @pre scene.second_medium
-Scene at_second_pulse(Scene const& scene);
+Scene select_second_pulse(Scene const& scene);
 
 /// Renders particles with a different medium at each pulse: renders each medium separately with the same random keys,
 /// and takes frame A from the first and frame B from the second.

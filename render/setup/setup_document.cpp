@@ -98,7 +98,7 @@ void collect_unread(SetupNode const& node, SetupRecord const& record, std::vecto
   }
 }
 
-/// Adds problems for the keys that were not read, at most most_problems_told.
+/// Adds problems for the keys that were not read, at most max_reported_problems.
 /// @return number of such keys
 std::size_t add_unread(SetupDocument::State& state) {
   std::vector<std::string> path;
@@ -110,7 +110,7 @@ std::size_t add_unread(SetupDocument::State& state) {
   };
   std::stable_sort(unread.begin(), unread.end(),
                    [&](UnreadKey const& a, UnreadKey const& b) { return place(a) < place(b); });
-  for (std::size_t i = 0; i < std::min(unread.size(), most_problems_told); ++i) {
+  for (std::size_t i = 0; i < std::min(unread.size(), max_reported_problems); ++i) {
     auto const& [table, record, member] = unread[i];
     state.problems.push_back(
         {state.where(member->value.place), unread_message(state, *table, *record, member->key, member->value)});
@@ -152,7 +152,7 @@ SetupNode const* SetupDocument::State::find(std::vector<std::string> const& path
   return node;
 }
 
-SetupRecord& SetupDocument::State::record_of(std::vector<std::string> const& path) {
+SetupRecord& SetupDocument::State::find_or_create_record(std::vector<std::string> const& path) {
   SetupRecord* table = &record;
   for (std::size_t i = 0; i < path.size(); ++i) {
     auto& entry = table->entry(path[i]);

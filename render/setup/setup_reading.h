@@ -16,7 +16,7 @@ inline std::vector<std::string> below(std::vector<std::string> path, std::string
 /// Returns the record of a key of a table, creating it: the key is known from now on.
 inline SetupRecord::Entry& known(SetupDocument::State& state, std::vector<std::string> const& table,
                                  std::string const& key) {
-  return state.record_of(table).entry(key);
+  return state.find_or_create_record(table).entry(key);
 }
 
 /// Marks a key as read and returns its value; null if it is absent.

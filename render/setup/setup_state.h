@@ -31,7 +31,7 @@ struct SetupDocument::State {
     return const_cast<SetupNode*>(std::as_const(*this).find(path));
   }
   /// Returns the record of the table at a path, creating it if necessary.
-  SetupRecord& record_of(std::vector<std::string> const& path);
+  SetupRecord& find_or_create_record(std::vector<std::string> const& path);
   std::string where(SetupPlace const& place) const;
   /// Location of the value at a path, or of the nearest existing table above it, for messages.
   std::string where(std::vector<std::string> const& path) const;

@@ -15,7 +15,7 @@ using Kind = SetupNode::Kind;
 
 SetupTable::SetupTable(SetupDocument::State* state, std::vector<std::string> path)
     : state_(state), path_(std::move(path)) {
-  state_->record_of(path_).present = present();
+  state_->find_or_create_record(path_).present = present();
 }
 
 SetupTable SetupTable::table(std::string const& key) {
@@ -179,11 +179,11 @@ std::string SetupTable::kind_word(std::string const& key, std::string const& fal
                                   std::vector<std::string> const& words) {
   std::size_t const problems = state_->problems.size();
   std::string value = word(key, fallback, words);
-  if (state_->problems.size() > problems) excuse();
+  if (state_->problems.size() > problems) suppress_unread_keys();
   return value;
 }
 
-void SetupTable::excuse() { state_->record_of(path_).excused = true; }
+void SetupTable::suppress_unread_keys() { state_->find_or_create_record(path_).excused = true; }
 
 std::string SetupTable::required_word(std::string const& key, std::vector<std::string> const& words) {
   if (!has(key)) problem(key, "is missing; give " + quoted_list(words));
@@ -214,7 +214,7 @@ void SetupTable::resolve(std::string const& key, std::string const& word) {
   settle(*state_, path_, key, toml_text(word));
 }
 
-void SetupTable::pass_over(std::string const& key) { read(*state_, path_, key); }
+void SetupTable::mark_as_read(std::string const& key) { read(*state_, path_, key); }
 
 void SetupTable::refuse(std::string const& key, std::string const& reason) {
   if (!has(key)) return;
@@ -231,7 +231,7 @@ void SetupTable::problem(std::string const& key, std::string const& message) {
     std::string const value = toml_text(*node);
     text += " = " + (value.size() <= longest ? value : value.substr(0, longest - 3) + "...");
   } else if (!key.empty()) {
-    auto const* const entry = state_->record_of(path_).find(key);
+    auto const* const entry = state_->find_or_create_record(path_).find(key);
     if (entry && !entry->value.empty()) text += " = " + entry->value + " (default)";
   }
   state_->problems.push_back({where(key), text + ": " + message});

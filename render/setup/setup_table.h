@@ -187,10 +187,10 @@ class SetupTable {
   /// are excused.
   std::string kind_word(std::string const& key, std::string const& fallback, std::vector<std::string> const& words);
   /// Suppresses the problems about unread keys of this table, since their meaning depends on a key that was wrong.
-  void excuse();
+  void suppress_unread_keys();
 
   /// Marks a key, or the whole table of that name, as read, because it is read elsewhere.
-  void pass_over(std::string const& key);
+  void mark_as_read(std::string const& key);
 
   /// Adds a problem if the key is present. @param reason  text of the problem, "is not available yet: thin lenses only"
   void refuse(std::string const& key, std::string const& reason);

@@ -64,7 +64,7 @@ std::vector<CoverageRow> measure_coverage(int seeds, Backend const& device) {
         HostFrames const frames(std::move(pair.reference), std::move(pair.flow));
         DisplacementField field = correlate_frames(frames, settings, device).field;
         std::vector<Vec2d> const point = truth_at_vectors(field, truth);
-        WindowTruths const on = window_truths_of(field, pair, settings, coverage_pixels, coverage_pixels);
+        WindowTruths const on = compute_window_truths(field, pair, settings, coverage_pixels, coverage_pixels);
         VectorMask mask = benchmark_mask(field, coverage_pixels, coverage_pixels);
         for (std::size_t i = 0; i < mask.size(); ++i) mask[i] = mask[i] && field.status[i] == VectorStatus::valid;
         for (std::string const& method : uncertainty_methods()) {

@@ -156,7 +156,7 @@ ReportSection uncertainty_section(BenchmarkResult const& result) {
 }
 
 /// Summarises each estimator's error in the vortex and at 5 % noise, and its gain at fine structures.
-std::vector<std::string> findings_of(BenchmarkResult const& result) {
+std::vector<std::string> summarize_findings(BenchmarkResult const& result) {
   std::vector<std::string> findings;
   for (std::string const& code : codes_of(result)) {
     std::string text;
@@ -192,7 +192,7 @@ ReportPage benchmark_page(BenchmarkResult const& result, std::string const& fold
   ReportPage page;
   page.title = "Accuracy of displacement estimators";
   page.question = "How accurately do estimators measure image pairs with known displacements?";
-  page.findings = findings_of(result);
+  page.findings = summarize_findings(result);
   page.sections.push_back(error_section(result));
   if (!result.uncertainties.empty() || !result.coverage.empty()) page.sections.push_back(uncertainty_section(result));
   TextTable cases{"Cases: each has a folder with reference.tif, flow.tif and truth.csv",

@@ -15,7 +15,7 @@ bool is_whole(std::string_view measure) {
 }
 
 nlohmann::json number(std::string_view measure, double value) {
-  return is_whole(measure) ? nlohmann::json(static_cast<long long>(value)) : known_or_null(value);
+  return is_whole(measure) ? nlohmann::json(static_cast<long long>(value)) : number_or_null(value);
 }
 
 nlohmann::ordered_json quality_json(UncertaintyQuality const& quality) {
@@ -25,7 +25,7 @@ nlohmann::ordered_json quality_json(UncertaintyQuality const& quality) {
 }
 
 nlohmann::ordered_json mean_json(SeedMean const& mean) {
-  return {{"mean", known_or_null(mean.mean)}, {"standard_error", known_or_null(mean.error)}};
+  return {{"mean", number_or_null(mean.mean)}, {"standard_error", number_or_null(mean.error)}};
 }
 
 }  // namespace

@@ -89,8 +89,8 @@ MadeCase make_case(BenchmarkCase const& one, Backend const& device) {
   return {std::move(record), std::move(frames), std::move(pair), std::move(truth), std::move(setup)};
 }
 
-WindowTruths window_truths_of(DisplacementField const& field, ParticlePair const& dots,
-                              CorrelationSettings const& settings, int columns, int rows) {
+WindowTruths compute_window_truths(DisplacementField const& field, ParticlePair const& dots,
+                                   CorrelationSettings const& settings, int columns, int rows) {
   return {window_truth(dots.dot_reference_px, dots.dot_displacement_px, dots.dot_light, field.position_px,
                        correlation_window(window_weighting(settings), settings.window_px.back()))
               .displacement_px,
@@ -128,7 +128,7 @@ std::vector<BenchmarkEstimator> const& benchmark_estimators() {
   return all;
 }
 
-std::vector<std::string> case_files_of(BenchmarkOptions const& options) {
+std::vector<std::string> benchmark_case_files(BenchmarkOptions const& options) {
   std::vector<std::string> paths;
   for (BenchmarkCase const& one : wanted_cases(options))
     for (char const* name : {benchmark_truth, case_file::reference, case_file::flow, case_file::setup})
@@ -136,7 +136,7 @@ std::vector<std::string> case_files_of(BenchmarkOptions const& options) {
   return paths;
 }
 
-std::vector<std::string> vector_files_of(BenchmarkOptions const& options) {
+std::vector<std::string> foreign_vector_files(BenchmarkOptions const& options) {
   std::vector<std::string> paths;
   for (ForeignVectors const& given : options.vectors)
     for (auto const& [of_case, path] : find_vectors(given, wanted_cases(options))) paths.push_back(path);
@@ -166,7 +166,7 @@ BenchmarkResult run_benchmark(BenchmarkOptions const& options, Backend const& de
       if (estimator.name != "default") continue;
       std::vector<Vec2d> const point = truth_at_vectors(measured.field, made.truth);
       WindowTruths const on =
-          window_truths_of(measured.field, made.dots, estimator.settings, made.columns(), made.rows());
+          compute_window_truths(measured.field, made.dots, estimator.settings, made.columns(), made.rows());
       VectorMask const mask = benchmark_mask(measured.field, made.columns(), made.rows());
       for (std::string const& method : uncertainty_methods()) {
         CorrelationSettings settings = estimator.settings;

@@ -102,10 +102,10 @@ MadeCase make_case(BenchmarkCase const& one, Backend const& device);
 inline constexpr char const* benchmark_truth = "truth.csv";
 
 /// Returns the paths of the files that run_benchmark() writes or removes in the folders of its cases.
-std::vector<std::string> case_files_of(BenchmarkOptions const& options);
+std::vector<std::string> benchmark_case_files(BenchmarkOptions const& options);
 /// Returns the paths of the external vector files that run_benchmark() reads.
 /// @throws DataError if an external code has none
-std::vector<std::string> vector_files_of(BenchmarkOptions const& options);
+std::vector<std::string> foreign_vector_files(BenchmarkOptions const& options);
 
 /// Creates the cases in FOLDER/CASE/, each with reference.tif, flow.tif and truth.csv, and scores vectors of gladstone
 /// and of external software on them.
@@ -118,8 +118,8 @@ BenchmarkResult run_benchmark(BenchmarkOptions const& options, Backend const& de
 struct WindowTruths {
   std::vector<Vec2d> window, deformed_window;
 };
-WindowTruths window_truths_of(DisplacementField const& field, ParticlePair const& dots,
-                              CorrelationSettings const& settings, int columns, int rows);
+WindowTruths compute_window_truths(DisplacementField const& field, ParticlePair const& dots,
+                                   CorrelationSettings const& settings, int columns, int rows);
 
 /// Measures the coverage of every uncertainty method with the default passes, on uniform displacement, shear, vortex
 /// and refracted turbulence of 512 x 512 px at 1, 5 and 10 % noise. The seeds were not used to choose any parameter.

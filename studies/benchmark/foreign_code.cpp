@@ -83,9 +83,9 @@ void ForeignCode::read(std::string const& of_case, DisplacementAt const& truth, 
   if (told_) override_conventions(file, *told_);
   file = convert_to_pixels(std::move(file), path);
   bool const turned = file.conventions.exchanges_places();
-  LeftOutVectors const left_out =
+  RejectedVectors const left_out =
       screen_vectors(file.field, file.conventions.offset_px, turned ? rows : columns, turned ? columns : rows);
-  if (std::string const refusal = refusal_of_places(file.field, left_out, columns, rows); !refusal.empty())
+  if (std::string const refusal = reason_to_reject_positions(file.field, left_out, columns, rows); !refusal.empty())
     throw DataError(path, refusal);
   if (std::none_of(file.field.displacement_px.begin(), file.field.displacement_px.end(), is_finite))
     throw DataError(path, "contains no finite displacement; export the vectors with their values");
@@ -101,13 +101,15 @@ std::vector<BenchmarkRow> ForeignCode::score() {
   if (told) reading_ = fmt::format("{} vectors, as specified: {}", first.format, describe(conventions));
   if (!told && !ours) {
     CommonConventions const common = detect_common_conventions(vectors_);
-    auto const fits_none = [](DetectedConventions const& one) { return one.verdict == Verdict::fits_none; };
+    auto const no_convention_fits = [](DetectedConventions const& one) {
+      return one.verdict == Verdict::no_convention_fits;
+    };
     auto const can_tell = [](DetectedConventions const& one) { return one.verdict != Verdict::cannot_be_told; };
     bool const any_tells = std::any_of(common.detected.begin(), common.detected.end(), can_tell);
     bool const none_fits = std::all_of(common.detected.begin(), common.detected.end(),
-                                       [&](auto const& one) { return fits_none(one) || !can_tell(one); });
+                                       [&](auto const& one) { return no_convention_fits(one) || !can_tell(one); });
     if (any_tells && none_fits && !common.mistake.found()) {
-      auto const worst = std::find_if(common.detected.begin(), common.detected.end(), fits_none);
+      auto const worst = std::find_if(common.detected.begin(), common.detected.end(), no_convention_fits);
       throw DataError(cases_[static_cast<std::size_t>(worst - common.detected.begin())].path, worst->report);
     }
     conventions = common.conventions;
@@ -126,7 +128,7 @@ std::vector<BenchmarkRow> ForeignCode::score() {
     Case const& one = cases_[i];
     VectorsWithTruth& vectors = vectors_[i];
     DisplacementField const field = apply_conventions(std::move(vectors.file.field), conventions, vectors.image_rows);
-    if (std::string const refusal = refusal_of_gaps(field, one.columns, vectors.image_rows); !refusal.empty())
+    if (std::string const refusal = reason_to_reject_gaps(field, one.columns, vectors.image_rows); !refusal.empty())
       throw DataError(one.path, refusal);
     std::vector<Vec2d> const truth = truth_at_vectors(field, vectors.truth);
     rows.push_back({name_, one.name, score_vectors(field, truth, one.columns, vectors.image_rows), {}});
@@ -143,7 +145,7 @@ std::vector<BenchmarkRow> ForeignCode::score() {
 }
 
 std::string ForeignCode::describe_mistake(CommonConventions const& common) const {
-  LikelyMistake const& mistake = common.mistake;
+  ProbableMistake const& mistake = common.mistake;
   if (mistake.found()) {
     std::string const& decisive = cases_[common.decisive].name;
     std::string cure = "correct the files";
@@ -156,14 +158,14 @@ std::string ForeignCode::describe_mistake(CommonConventions const& common) const
     return fmt::format(
         "{}: likely mistake: {} (by {}: without this the rms difference from the truth would be {:.3g} px, as scored "
         "it is {:.3g} px); {}",
-        name_, mistake.text, decisive, mistake.mended.rms_px, mistake.as_read.rms_px, cure);
+        name_, mistake.text, decisive, mistake.corrected_fit.rms_px, mistake.as_read.rms_px, cure);
   }
   if (common.mistaken.empty()) return {};
   constexpr std::size_t most_named = 3;
   std::string found;
   for (std::size_t k = 0; k < std::min(most_named, common.mistaken.size()); ++k) {
     std::size_t const i = common.mistaken[k];
-    LikelyMistake const& own = common.detected[i].mistake;
+    ProbableMistake const& own = common.detected[i].mistake;
     found += fmt::format("{}{}: {}", found.empty() ? "" : "; ", cases_[i].name,
                          own.found() ? own.text : "the vectors do not follow the truth in any reading");
   }
@@ -173,7 +175,7 @@ std::string ForeignCode::describe_mistake(CommonConventions const& common) const
                      cases_.size(), found, common.mistaken.size() == 1 ? "it" : "them");
 }
 
-std::string refusal_of_gaps(DisplacementField const& field, int columns, int rows) {
+std::string reason_to_reject_gaps(DisplacementField const& field, int columns, int rows) {
   constexpr double margin_px = benchmark_border_px + 64.0;
   Nodes const x = find_nodes(field, &Vec2d::x), y = find_nodes(field, &Vec2d::y);
   bool const lattice = x.spacing > 0.0 && y.spacing > 0.0 &&

@@ -27,7 +27,7 @@ class ForeignCode {
   /// @throws DataError if they cannot be scored, see run_benchmark()
   void read(std::string const& of_case, DisplacementAt const& truth, int columns, int rows);
   /// Determines the conventions from all vectors that were read, and scores them.
-  /// @throws DataError if no conventions fit, or for the reason of refusal_of_gaps()
+  /// @throws DataError if no conventions fit, or for the reason of reason_to_reject_gaps()
   std::vector<BenchmarkRow> score();
 
   /// Returns a description of the conventions; empty for files of gladstone.
@@ -55,6 +55,6 @@ class ForeignCode {
 /// Returns the reason why vectors do not cover the grid on which a case is scored: missing nodes between others, or no
 /// nodes up to 96 px from the border, which windows of 128 px reach. Returns an empty string if the grid is complete or
 /// the vectors are scattered.
-std::string refusal_of_gaps(DisplacementField const& field, int columns, int rows);
+std::string reason_to_reject_gaps(DisplacementField const& field, int columns, int rows);
 
 }  // namespace gladstone

@@ -19,7 +19,7 @@ namespace {
 
 /// Creates the correlator of a GPU; for settings it does not support, that of the CPU, unless only the GPU is allowed.
 std::unique_ptr<Correlator> correlator_on_gpu(CorrelationSettings const& settings, bool only_gpu) {
-  std::string const left = left_to_cpu(settings);
+  std::string const left = settings_requiring_cpu(settings);
   if (left.empty()) return cuda::make_correlator(settings);
   if (only_gpu)
     throw DeviceError(fmt::format("--device cuda: correlate.{} is computed on the CPU alone; use --device auto", left));
@@ -33,7 +33,7 @@ std::unique_ptr<Correlator> correlator_on_gpu(CorrelationSettings const& setting
 
 }  // namespace
 
-std::string left_to_cpu(CorrelationSettings const& settings) {
+std::string settings_requiring_cpu(CorrelationSettings const& settings) {
   std::string const missing = missing_on_gpu(settings);
   if (!missing.empty() || uncertainty_on_gpu(settings.uncertainty)) return missing;
   return fmt::format("uncertainty = \"{}\"", settings.uncertainty);

@@ -22,7 +22,7 @@ struct Backend {
 };
 
 /// Returns the settings that a GPU does not support, e.g. `uncertainty = "image_matching"`; empty if all are supported.
-std::string left_to_cpu(CorrelationSettings const& settings);
+std::string settings_requiring_cpu(CorrelationSettings const& settings);
 
 /// Opens a device and logs which one is used.
 /// @param wanted  "cpu", "cuda", or "auto": the GPU if one is usable

@@ -43,8 +43,8 @@ DotPattern some_dots(Scene const& scene) {
   return some;
 }
 
-PlaceError place_error(Scene scene, Renderer& renderer) {
-  PlaceError error;
+DotPositionError place_error(Scene scene, Renderer& renderer) {
+  DotPositionError error;
   if (scene.chief_rays_only()) return error;
   DotPattern const some = some_dots(scene);
   auto const places = [&](std::uint64_t repeat) {
@@ -70,8 +70,8 @@ std::uint64_t rays_for(Setup const& setup, Renderer& renderer) {
   if (setup.render.rays_per_dot) return *setup.render.rays_per_dot;
   auto const nearer = [](double a, double b) { return std::abs(a) < std::abs(b); };
   Scene scene = plane_scene(setup, *std::max_element(setup.planes.begin(), setup.planes.end(), nearer));
-  scene.rays_per_dot = std::max(least_rays, choose_rays(scene).rays);
-  scene.by_need.reset();  // use the same number of rays for all dots
+  scene.rays_per_dot = std::max(least_rays, choose_ray_budget(scene).rays);
+  scene.adaptive_criteria.reset();  // use the same number of rays for all dots
   while (scene.rays_per_dot < most_rays && place_error(scene, renderer).rms_px > place_tolerance_px) {
     scene.rays_per_dot *= 2;
   }
@@ -145,7 +145,7 @@ RenderedCalibration render_planes(CaseSetup& loaded, Renderer& renderer) {
 
 namespace {
 
-nlohmann::json place_error_json(PlaceError const& error) {
+nlohmann::json place_error_json(DotPositionError const& error) {
   auto const rms = std::isfinite(error.rms_px) ? nlohmann::json(error.rms_px) : nlohmann::json(nullptr);
   return {{"rms", rms}, {"largest", error.largest_px}, {"dots", error.dots}};
 }
@@ -193,7 +193,7 @@ nlohmann::json write_calibration(CaseSetup& loaded, RenderedCalibration const& r
   for (auto const& [path, hash] : loaded.input_hashes) origin.sources.add("", path, SourceFiles::Holds::bytes, hash);
   origin.sources.add_known("inputs", nlohmann::json(loaded.input_hashes).dump());
   write_calibration_truth(place(case_file::truth), rendered, origin);
-  OutputFile::write_text(place(case_file::setup), with_uncertain_inputs(resolved, loaded.uncertain));
+  OutputFile::write_text(place(case_file::setup), insert_uncertain_inputs(resolved, loaded.uncertain));
   nlohmann::json summary{{"experiment", "calibration"},
                          {"planes", planes},
                          {"dots", dots},

@@ -11,7 +11,7 @@ namespace gladstone {
 
 /// Monte Carlo error of the dot images' positions. Some dots are traced twice with independent random numbers; the
 /// difference of two independent positions is sqrt(2) times the error of either.
-struct PlaceError {
+struct DotPositionError {
   std::size_t dots = 0;   ///< number of dots that were traced twice and seen
   double rms_px = 0;      ///< rms over dots and components [px]; NaN if none was seen
   double largest_px = 0;  ///< largest error of a component [px]
@@ -24,7 +24,7 @@ struct RenderedPlane {
   Image<double> light;  ///< light per pixel, in fully lit pixels on the axis
   GroundTruth truth;
   StatusCounts statuses{};
-  PlaceError place_error;
+  DotPositionError place_error;
 };
 
 /// A calibration rendered in memory.

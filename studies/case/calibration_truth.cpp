@@ -72,7 +72,7 @@ void write_calibration_truth(std::string const& path, RenderedCalibration const&
              "grid position relative to the middle of the grid, in spacings along X and Y", "dot, (x, y)");
   file.write("/planes/z_m", std::span<double const>(z), {z.size()}, "m", "Z of the planes", "plane");
   Scene const& scene = rendered.planes.front().scene;
-  if (auto const pinhole = pinhole_of(scene.setup, scene.camera)) write_pinhole(file, *pinhole);
+  if (auto const pinhole = equivalent_pinhole(scene.setup, scene.camera)) write_pinhole(file, *pinhole);
   file.attribute("/", "method", to_string(RenderMethod::rays));
   file.close();
 }

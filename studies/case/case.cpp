@@ -41,7 +41,8 @@ void cross_check_windows(CaseSetup& loaded) {
 /// are reported by their readers.
 void cross_check_memory(CaseSetup& loaded, FieldMemory field) {
   try {
-    check_memory(loaded.setup, field, loaded.setup.piv ? std::vector<MemoryNeed>{} : focused_dots_memory(loaded.setup));
+    check_memory(loaded.setup, field,
+                 loaded.setup.piv ? std::vector<MemoryRequirement>{} : focused_dots_memory(loaded.setup));
   } catch (DataError const& error) {
     std::string const text = error.what();
     SetupTable root = loaded.document.root();
@@ -124,7 +125,7 @@ void warn_of_field(Scene const& scene, std::vector<std::string>& warnings) {
 
 /// Warns if ideal images neglect a visible defocus blur.
 void warn_of_blur(Scene const& scene, std::vector<std::string>& warnings) {
-  if (!scene.setup.piv || method_of(scene) != RenderMethod::formula) return;
+  if (!scene.setup.piv || resolve_render_method(scene) != RenderMethod::formula) return;
   double const blur = ideal_images(scene)->largest_blur_px(scene.particles), spot = 4 * scene.spot_sigma_px();
   if (blur < 0.5 * spot) return;
   warn(warnings,
@@ -143,7 +144,7 @@ CaseSetup load_case_setup(std::string const& path, std::vector<std::string> cons
 }
 
 CaseSetup load_case_setup(SetupDocument document, FieldMemory field) {
-  std::vector<UncertainInput> uncertain = take_uncertain_inputs(document);
+  std::vector<UncertainInput> uncertain = extract_uncertain_inputs(document);
   CaseSetup loaded{.document = with_own_lens(std::move(document)),
                    .setup = {},
                    .correlate = {},
@@ -152,14 +153,15 @@ CaseSetup load_case_setup(SetupDocument document, FieldMemory field) {
   SetupTable root = loaded.document.root();
   loaded.setup = read_setup(root);
   if (loaded.setup.calibration()) {
-    root.pass_over("correlate");
+    root.mark_as_read("correlate");
   } else {
     loaded.correlate = read_correlation_settings(root.table("correlate"));
   }
   std::optional<PaperLight> const light = read_light(root);
   if (loaded.setup.piv) root.refuse("light", "applies to BOS only (in PIV, [laser] defines the light); remove it");
   // A setup may contain the tables of a design question, which rendering ignores.
-  for (char const* const table : {"requirements", "limits", "inventory", "free", "correlations"}) root.pass_over(table);
+  for (char const* const table : {"requirements", "limits", "inventory", "free", "correlations"})
+    root.mark_as_read(table);
   if (!loaded.correlate.window_px.empty()) loaded.setup.view_margin_px = loaded.correlate.window_px.front();
   for (std::string const& name : loaded.document.file_names()) {
     if (is_utf8(name)) continue;
@@ -176,7 +178,7 @@ CaseSetup load_case_setup(SetupDocument document, FieldMemory field) {
     cross_check_method(loaded);
   }
   if (light && !loaded.document.has_problems()) {
-    loaded.setup.camera.exposure_e = exposure_under(*light, loaded.setup);
+    loaded.setup.camera.exposure_e = exposure_from_light(*light, loaded.setup);
   }
   if (!loaded.document.has_problems()) cross_check_memory(loaded, field);
   std::vector<std::string> const unusual = unusual_values(loaded.document);
@@ -189,7 +191,7 @@ CaseSetup load_case_setup(SetupDocument document, FieldMemory field) {
   return loaded;
 }
 
-PreparedCase prepare_case(CaseSetup& loaded, KnownParts const& known) {
+PreparedCase prepare_case(CaseSetup& loaded, ReusableParts const& known) {
   PreparedCase prepared;
   prepared.correlate = loaded.correlate;
   for (auto const& text : loaded.warnings) warn(prepared.warnings, text);
@@ -209,9 +211,9 @@ PreparedCase prepare_case(CaseSetup& loaded, KnownParts const& known) {
   }
   warn_of_view(scene, prepared.warnings);
   warn_of_blur(scene, prepared.warnings);
-  prepared.rays = known.rays ? *known.rays : choose_rays(scene);
+  prepared.rays = known.rays ? *known.rays : choose_ray_budget(scene);
   scene = with_rays(std::move(scene), prepared.rays);
-  bool const by_table = method_of(scene) == RenderMethod::focused_dots;
+  bool const by_table = resolve_render_method(scene) == RenderMethod::focused_dots;
   if (by_table) {
     warn_of_side_faces(prepared.warnings, scene, prepared.rays);
   } else {
@@ -242,7 +244,7 @@ PreparedCase prepare_case(CaseSetup& loaded, KnownParts const& known) {
   SetupTable root = loaded.document.root();
   root.table("medium").resolve("step_mm", prepared.step.step_mm);
   // "auto" remains if the number of rays differs between sources
-  if ((by_table || prepared.rays.by_need) && !loaded.setup.render.rays_per_dot) {
+  if ((by_table || prepared.rays.adaptive_criteria) && !loaded.setup.render.rays_per_dot) {
     root.table("render").resolve("rays_per_dot", std::string("auto"));
   } else {
     root.table("render").resolve("rays_per_dot", static_cast<long long>(prepared.rays.rays));

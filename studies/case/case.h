@@ -9,7 +9,7 @@
 
 #include "analysis/correlation/correlation_settings.h"
 #include "render/scene/field_map.h"
-#include "render/scene/ray_plan.h"
+#include "render/scene/ray_budget.h"
 #include "render/scene/renderer.h"
 #include "render/scene/setup.h"
 #include "render/sensor/detector.h"
@@ -40,23 +40,23 @@ CaseSetup load_case_setup(SetupDocument document, FieldMemory field = FieldMemor
 struct PreparedCase {
   Scene scene;
   CorrelationSettings correlate;
-  StepPlan step;
-  RaysPlan rays;
+  IntegrationStep step;
+  RayBudget rays;
   StrainMap strain;
   std::vector<std::string> warnings;
 };
 
 /// Parts of a PreparedCase that can be reused from another case with the same values; null: compute.
-struct KnownParts {
+struct ReusableParts {
   BuiltMedium const* medium = nullptr;
-  StepPlan const* step = nullptr;
-  RaysPlan const* rays = nullptr;
+  IntegrationStep const* step = nullptr;
+  RayBudget const* rays = nullptr;
   StrainMap const* strain = nullptr;
 };
 
 /// Builds the scene and determines step and rays. Resolves every "auto" value of the setup except the exposure and, if
 /// rays are chosen per dot, render.rays_per_dot.
-PreparedCase prepare_case(CaseSetup& loaded, KnownParts const& known = {});
+PreparedCase prepare_case(CaseSetup& loaded, ReusableParts const& known = {});
 
 /// A rendered case in memory.
 struct RenderedCase {
@@ -74,13 +74,13 @@ RenderedCase render_case(PreparedCase const& prepared, Renderer& renderer, Rende
 
 /// Returns the exposure: the camera's own, or the one chosen from the brightest pixel, but at most the electrons
 /// released by the particles' photons (photon_limited_exposure) [e].
-double exposure_of(Scene const& scene, RenderedLight const& light);
+double choose_exposure(Scene const& scene, RenderedLight const& light);
 
 /// Records both frames of a rendering with the camera's noise and quantization.
 RecordedFrames record_frames(PreparedCase const& prepared, RenderedCase const& rendered);
 
 /// All stages of a case, from the scene to the recorded frames.
-struct FinishedCase {
+struct RecordedCase {
   PreparedCase prepared;
   RenderedCase rendered;
   RecordedFrames frames;
@@ -91,16 +91,16 @@ struct FinishedCase {
 void hash_inputs(CaseSetup& loaded);
 
 /// Renders a case in memory.
-FinishedCase finish_case(CaseSetup& loaded, Renderer& renderer, KnownParts const& known = {});
+RecordedCase render_case_in_memory(CaseSetup& loaded, Renderer& renderer, ReusableParts const& known = {});
 
 /// Renders a setup into a CASE folder: reference.tif, flow.tif, truth.h5, setup.toml and summary.json.
-FinishedCase render_to_folder(CaseSetup& loaded, Renderer& renderer, std::string const& folder);
+RecordedCase render_to_folder(CaseSetup& loaded, Renderer& renderer, std::string const& folder);
 
 /// Quantities of a rendered case that its summary reports besides those of the rendering.
 struct CaseOutcome {
   TruthAccuracy accuracy;
-  std::size_t unseen = 0;               ///< number of dots or particles without truth in one of the frames
-  std::optional<RaysPlan> table_error;  ///< error of the deflection table, if the truth was computed with one
+  std::size_t unseen = 0;                ///< number of dots or particles without truth in one of the frames
+  std::optional<RayBudget> table_error;  ///< error of the deflection table, if the truth was computed with one
   std::string device, reference_sha256, flow_sha256;
   std::vector<std::string> warnings;  ///< all warnings of the case, those of its preparation first
 };

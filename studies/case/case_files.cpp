@@ -70,7 +70,7 @@ void refuse_case_over_inputs(std::string const& folder, std::vector<std::string>
 }
 
 void require_case(std::string const& folder) {
-  finish_replacement_above(folder, case_content());
+  complete_parent_replacement(folder, case_content());
   if (!is_complete(folder, case_content())) {
     throw DataError(
         folder, "is not a case (it contains no setup.toml); create one with: gladstone render SETUP.toml -o " + folder);

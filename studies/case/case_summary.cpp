@@ -39,7 +39,7 @@ nlohmann::json losses_json(RayLosses const& losses) {
   nlohmann::json json{{"sample", {{"sources", losses.sources}, {"rays_of_each", losses.rays}}},
                       {"reference", nlohmann::json::object()},
                       {"flow", nlohmann::json::object()}};
-  for (RaysLostAt const& lost : losses.lost) {
+  for (ElementRayLoss const& lost : losses.lost) {
     for (std::size_t frame = 0; frame < frame_count; ++frame) {
       if (lost.share[frame] > 0) {
         json[frame == 0 ? "reference" : "flow"][lost.place][to_string(lost.cause)] = lost.share[frame];
@@ -51,38 +51,38 @@ nlohmann::json losses_json(RayLosses const& losses) {
 
 /// Returns an error; null if it is below its resolution or was not measured.
 nlohmann::json resolved(double error, double resolution) {
-  return error < resolution ? nlohmann::json(nullptr) : known_or_null(error);
+  return error < resolution ? nlohmann::json(nullptr) : number_or_null(error);
 }
 
-nlohmann::json table_error_json(RaysPlan const& error) {
+nlohmann::json table_error_json(RayBudget const& error) {
   return {{"fineness", error.fineness},
           {"truth_px", resolved(error.truth_error_px, error.truth_resolution_px)},
           {"image_levels", resolved(error.image_error_levels, error.image_resolution_levels)},
-          {"truth_resolution_px", known_or_null(error.truth_resolution_px)},
-          {"image_resolution_levels", known_or_null(error.image_resolution_levels)},
+          {"truth_resolution_px", number_or_null(error.truth_resolution_px)},
+          {"image_resolution_levels", number_or_null(error.image_resolution_levels)},
           {"bits", error.bits}};
 }
 
 nlohmann::json side_faces_json(SideFaceErrors const& there, int bits) {
   return {{"dots", there.dots},
           {"rays", there.rays},
-          {"truth_error_px", known_or_null(there.truth_error_px)},
-          {"image_error_levels", known_or_null(there.image_error_levels)},
+          {"truth_error_px", number_or_null(there.truth_error_px)},
+          {"image_error_levels", number_or_null(there.image_error_levels)},
           {"bits", bits},
-          {"rays_wanted", known_or_null(there.rays_wanted)}};
+          {"rays_wanted", number_or_null(there.rays_wanted)}};
 }
 
-nlohmann::json plan_json(RaysPlan const& plan, std::size_t sources) {
+nlohmann::json plan_json(RayBudget const& plan, std::size_t sources) {
   return {{"truth_error_px", resolved(plan.truth_error_px, plan.truth_resolution_px)},
           {"image_error_levels", resolved(plan.image_error_levels, plan.image_resolution_levels)},
-          {"truth_resolution_px", known_or_null(plan.truth_resolution_px)},
-          {"image_resolution_levels", known_or_null(plan.image_resolution_levels)},
+          {"truth_resolution_px", number_or_null(plan.truth_resolution_px)},
+          {"image_resolution_levels", number_or_null(plan.image_resolution_levels)},
           {"bits", plan.bits},
           {"extrapolated", plan.extrapolated},
           {"truth_asked_px", truth_tolerance_px},
           {"image_asked_levels", image_tolerance_levels},
-          {"rays_wanted", known_or_null(plan.rays_wanted)},
-          {"processor_seconds", known_or_null(plan.seconds)},
+          {"rays_wanted", number_or_null(plan.rays_wanted)},
+          {"processor_seconds", number_or_null(plan.seconds)},
           {"processor_seconds_allowed", source_budget_s * static_cast<double>(sources)}};
 }
 
@@ -93,7 +93,7 @@ nlohmann::json case_summary(CaseSetup& loaded, PreparedCase const& prepared, Ren
   Scene const& scene = prepared.scene;
   Rendering const& rendering = *rendered.rendering;
   TruthAccuracy const& accuracy = outcome.accuracy;
-  RaysPlan const& plan = prepared.rays;
+  RayBudget const& plan = prepared.rays;
   bool const piv = scene.setup.piv.has_value(), formula = rendering.method == RenderMethod::formula;
   nlohmann::json summary{
       {"magnification", scene.imaging.magnification},
@@ -111,7 +111,7 @@ nlohmann::json case_summary(CaseSetup& loaded, PreparedCase const& prepared, Ren
       {"dots", rendering.truth.size()},
       {"dots_unseen", outcome.unseen},
       {"truth_error_px",
-       {{"rms", known_or_null(accuracy.rms_px)},
+       {{"rms", number_or_null(accuracy.rms_px)},
         {"largest", std::isnan(accuracy.rms_px) ? nlohmann::json(nullptr) : nlohmann::json(accuracy.largest_px)},
         {"largest_dot", accuracy.worst},
         {"dots_above_1e-3", accuracy.above},

@@ -18,33 +18,33 @@ void warn(std::vector<std::string>& warnings, std::string text) {
   warnings.push_back(std::move(text));
 }
 
-std::string error_in_words(double error, double resolution, std::string_view unit) {
+std::string describe_error(double error, double resolution, std::string_view unit) {
   if (std::isnan(error)) return "an unknown amount";
   if (error < resolution) return fmt::format("less than {:.2g} {}", resolution, unit);
   return error < 99.5 ? fmt::format("{:.2g} {}", error, unit) : fmt::format("{:.0f} {}", error, unit);
 }
 
-std::string image_error_in_words(RaysPlan const& plan) {
-  return error_in_words(plan.image_error_levels, plan.image_resolution_levels,
+std::string describe_image_error(RayBudget const& plan) {
+  return describe_error(plan.image_error_levels, plan.image_resolution_levels,
                         fmt::format("grey levels of {} bits", plan.bits));
 }
 
-std::string truth_error_in_words(RaysPlan const& plan) {
-  return error_in_words(plan.truth_error_px, plan.truth_resolution_px, "px");
+std::string describe_truth_error(RayBudget const& plan) {
+  return describe_error(plan.truth_error_px, plan.truth_resolution_px, "px");
 }
 
-void warn_of_few_rays(std::vector<std::string>& warnings, Scene const& scene, RaysPlan const& plan) {
+void warn_of_few_rays(std::vector<std::string>& warnings, Scene const& scene, RayBudget const& plan) {
   if (plan.converged) return;
   warn(warnings,
        fmt::format(
            "rays_per_dot = \"auto\" is limited to {} rays per source: the errors of image and truth are {} and {}, and "
            "their goals are {} and {} (the worst sources would require some {:.0f} rays, {:.2g} s of processor time "
            "for each source; \"auto\" permits {:.2g} s or 1024 rays); increase render.rays_per_dot if this matters",
-           plan.rays, image_error_in_words(plan), truth_error_in_words(plan), image_tolerance_levels,
+           plan.rays, describe_image_error(plan), describe_truth_error(plan), image_tolerance_levels,
            truth_tolerance_px, plan.rays_wanted, ray_seconds(scene) * plan.rays_wanted, source_budget_s));
 }
 
-void warn_of_side_faces(std::vector<std::string>& warnings, Scene const& scene, RaysPlan const& plan) {
+void warn_of_side_faces(std::vector<std::string>& warnings, Scene const& scene, RayBudget const& plan) {
   if (!plan.side_faces || !(plan.side_faces->excess() > 1)) return;
   SideFaceErrors const& there = *plan.side_faces;
   bool const given = scene.setup.render.rays_per_dot.has_value(),
@@ -58,15 +58,15 @@ void warn_of_side_faces(std::vector<std::string>& warnings, Scene const& scene, 
            "render.rays_per_dot: {} dots lie at side faces of the medium, which cut their light cones, and are traced "
            "ray by ray, with {} rays each. The rms errors of their truth and images are {} and {} (the goals are {} "
            "and {}){}; {}",
-           there.dots, there.rays, error_in_words(there.truth_error_px, 0, "px"),
-           error_in_words(there.image_error_levels, 0, fmt::format("grey levels of {} bits", plan.bits)),
+           there.dots, there.rays, describe_error(there.truth_error_px, 0, "px"),
+           describe_error(there.image_error_levels, 0, fmt::format("grey levels of {} bits", plan.bits)),
            truth_tolerance_px, image_tolerance_levels,
            by_brightest ? ", and camera.exposure = \"auto\" is chosen from the brightest pixel of such images" : "",
            cure));
 }
 
 void warn_of_truth(std::vector<std::string>& warnings, Rendering const& rendering, TruthAccuracy const& accuracy,
-                   RaysPlan const& plan, std::string_view sources) {
+                   RayBudget const& plan, std::string_view sources) {
   if (accuracy.unknown > 0) {
     warn(warnings, fmt::format("truth: the standard error of the displacements of {} of {} {} is unknown (a single ray "
                                "has no scatter); increase render.rays_per_dot to 8 or more",
@@ -93,13 +93,13 @@ void warn_of_truth(std::vector<std::string>& warnings, Rendering const& renderin
                    accuracy.largest_px, why, plan.rays));
 }
 
-void warn_of_table(std::vector<std::string>& warnings, RaysPlan const& error) {
+void warn_of_table(std::vector<std::string>& warnings, RayBudget const& error) {
   if (!(error.excess() > 1)) return;
   warn(warnings,
        fmt::format(
            "residual error of the deflection table: {} in the images, {} in the truth, and the goals are {} and {}; "
            "{}render.method = \"rays\" has no such error, but requires many render.rays_per_dot for less scatter",
-           image_error_in_words(error), truth_error_in_words(error), image_tolerance_levels, truth_tolerance_px,
+           describe_image_error(error), describe_truth_error(error), image_tolerance_levels, truth_tolerance_px,
            error.fineness == 1 ? "render.rays_per_dot = \"auto\" selects a finer table; " : ""));
 }
 

@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "render/scene/ray_plan.h"
+#include "render/scene/ray_budget.h"
 #include "render/scene/renderer.h"
 #include "studies/case/case.h"
 
@@ -18,25 +18,25 @@ void warn(std::vector<std::string>& warnings, std::string text);
 /// amount" if NaN.
 /// @param error       error, in `unit`; NaN: unknown
 /// @param resolution  smallest error that the estimate resolves, in `unit`
-std::string error_in_words(double error, double resolution, std::string_view unit);
+std::string describe_error(double error, double resolution, std::string_view unit);
 /// Formats the image error of a ray budget in grey levels.
-std::string image_error_in_words(RaysPlan const& plan);
+std::string describe_image_error(RayBudget const& plan);
 /// Formats the truth error of a ray budget in px.
-std::string truth_error_in_words(RaysPlan const& plan);
+std::string describe_truth_error(RayBudget const& plan);
 
 /// Warns if rays_per_dot = "auto" is limited to fewer rays than the accuracy goals require.
-void warn_of_few_rays(std::vector<std::string>& warnings, Scene const& scene, RaysPlan const& plan);
+void warn_of_few_rays(std::vector<std::string>& warnings, Scene const& scene, RayBudget const& plan);
 
 /// Warns of dots at side faces of a volume that have too few rays for the requested accuracy of truth or images.
-void warn_of_side_faces(std::vector<std::string>& warnings, Scene const& scene, RaysPlan const& plan);
+void warn_of_side_faces(std::vector<std::string>& warnings, Scene const& scene, RayBudget const& plan);
 
 /// Warns if the truth is less accurate than requested or its accuracy is unknown.
 /// @param sources  "dots" or "particles"
 void warn_of_truth(std::vector<std::string>& warnings, Rendering const& rendering, TruthAccuracy const& accuracy,
-                   RaysPlan const& plan, std::string_view sources);
+                   RayBudget const& plan, std::string_view sources);
 
 /// Warns if the interpolation error of the deflection table exceeds the requested accuracy of truth or images.
-void warn_of_table(std::vector<std::string>& warnings, RaysPlan const& error);
+void warn_of_table(std::vector<std::string>& warnings, RayBudget const& error);
 
 /// Warns of dots that are not seen in one of the frames, and names the cause: the lens, the flow or too few rays.
 /// @param pupil_margin  pupil enlargement used by the rendering [m]; 0: no ray is deflected

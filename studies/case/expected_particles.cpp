@@ -162,7 +162,7 @@ ExpectedParticles expected_particles(Setup const& setup) {
   expected.diffraction_px = image(0).diffraction_px;
   auto const sheet_area_of_a_pixel = [&] {
     Pose<double> const there{place, sheet.x, sheet.y, sheet.z};
-    auto const seen = setup.on_bench() ? std::nullopt : scene.camera.see({}, there);
+    auto const seen = setup.has_closed_form_layout() ? std::nullopt : scene.camera.see({}, there);
     double const area = seen ? std::abs(seen->by_x.x * seen->by_y.y - seen->by_x.y * seen->by_y.x) : 0;
     return area > 0 ? 1 / area : std::pow(pitch / magnification, 2) / facing;
   };

@@ -13,7 +13,7 @@ std::string json_text(Json const& json) {
 }
 
 /// Returns the number, or null if it is NaN or infinite.
-inline nlohmann::json known_or_null(double value) {
+inline nlohmann::json number_or_null(double value) {
   return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(nullptr);
 }
 

@@ -13,7 +13,7 @@ std::optional<PaperLight> read_light(SetupTable root) {
   return light;
 }
 
-double exposure_under(PaperLight const& light, Setup const& setup) {
+double exposure_from_light(PaperLight const& light, Setup const& setup) {
   ImagingGeometry const imaging = setup.imaging();
   double const working = imaging.image_distance / imaging.entrance_pupil;  // N (1 + M)
   return fully_lit_electrons(light, working, 0.0, setup.camera.pixel_pitch, setup.medium.wavelength,

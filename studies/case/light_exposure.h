@@ -11,6 +11,6 @@ namespace gladstone {
 std::optional<PaperLight> read_light(SetupTable root);
 
 /// Returns the value of camera.exposure under this light: electrons in a fully lit pixel on the axis [e].
-double exposure_under(PaperLight const& light, Setup const& setup);
+double exposure_from_light(PaperLight const& light, Setup const& setup);
 
 }  // namespace gladstone

@@ -156,7 +156,7 @@ nlohmann::json particle_summary(Scene const& scene, GroundTruth const& truth, do
   double const pixels = static_cast<double>(camera.columns) * camera.rows;
   double const px = camera.pixel_pitch / scene.imaging.magnification;
   PathPlan const& path = scene.particles.path;
-  bool const by_formula = method_of(scene) == RenderMethod::formula;
+  bool const by_formula = resolve_render_method(scene) == RenderMethod::formula;
   nlohmann::json particles{
       {"seeded", truth.size()},
       {"lit", {{"first", census.lit[0]}, {"second", census.lit[1]}}},

@@ -16,8 +16,8 @@ namespace {
 constexpr double usual_dots = 20;      // dots per window assumed for the expected error
 constexpr double smallest_seen = 0.5;  // [px] a narrower autocorrelation peak is noise, not dots
 
-constexpr double warned_image_px = 0.995 * least_image_px;  // the remedies are rounded
-constexpr int most_judged_px = 512;                         // size of the evaluated central part of a frame
+constexpr double warned_image_px = 0.995 * min_image_px;  // the remedies are rounded
+constexpr int most_judged_px = 512;                       // size of the evaluated central part of a frame
 
 double square(double x) { return x * x; }
 
@@ -28,19 +28,19 @@ double round_up(double value) {
 }
 
 /// Returns the remedies of a setup as keys with values.
-std::string cures(Setup const& setup, SmallImages const& images) {
+std::string cures(Setup const& setup, ImageDiameters const& images) {
   std::string text;
   auto const add = [&text](std::string const& cure) { text += (text.empty() ? "" : " or ") + cure; };
-  if (double const factor = images.f_number_factor(least_image_px); std::isfinite(factor * setup.lens.f_number)) {
+  if (double const factor = images.f_number_factor(min_image_px); std::isfinite(factor * setup.lens.f_number)) {
     add(fmt::format("lens.f_number = {:.3g}", round_up(factor * setup.lens.f_number)));
   }
   // Ideal images assume particles in focus.
   bool const ideal = setup.piv && setup.piv->particles.scattering == ParticleScattering::gaussian;
-  if (double const focus = defocus_distance(setup, least_image_px); !ideal && std::isfinite(focus)) {
+  if (double const focus = defocus_distance(setup, min_image_px); !ideal && std::isfinite(focus)) {
     add(fmt::format("lens.focus_distance_mm = {:.6g}", focus / unit::millimetre));
   }
   if (!setup.piv) {
-    double const needed = std::sqrt(square(least_image_px) - square(images.spot_px) - square(images.blur_px));
+    double const needed = std::sqrt(square(min_image_px) - square(images.spot_px) - square(images.blur_px));
     add(fmt::format("target.dot_diameter_mm = {:.4g}", needed * setup.pixel_size() / unit::millimetre));
   }
   return text;
@@ -58,13 +58,13 @@ Image<double> middle_of(Image<double> const& frame) {
 
 }  // namespace
 
-double SmallImages::diameter_px() const { return std::hypot(geometric_px, spot_px, blur_px); }
+double ImageDiameters::diameter_px() const { return std::hypot(geometric_px, spot_px, blur_px); }
 
-double SmallImages::locking_error_px() const {
+double ImageDiameters::locking_error_px() const {
   return pattern_error_px(geometric_px, std::hypot(spot_px, blur_px) / 4, usual_dots);
 }
 
-double SmallImages::f_number_factor(double diameter_px) const {
+double ImageDiameters::f_number_factor(double diameter_px) const {
   // larger root k of g^2 + k^2 spot^2 + blur^2 / k^2 = d^2
   double const room = square(diameter_px) - square(geometric_px);
   double const root = square(room) - 4 * square(spot_px * blur_px);
@@ -73,7 +73,7 @@ double SmallImages::f_number_factor(double diameter_px) const {
   return factor > 1 ? factor : std::nan("");
 }
 
-SmallImages expected_images(Setup const& setup) {
+ImageDiameters expected_images(Setup const& setup) {
   if (!setup.piv) return {setup.geometric_dot_px(), setup.spot_e2_diameter_px(), setup.defocus_diameter_px()};
   ParticleImage const image = particle_image(setup);
   return {image.geometric_px, image.diffraction_px, image.blur_px};
@@ -81,7 +81,7 @@ SmallImages expected_images(Setup const& setup) {
 
 double defocus_distance(Setup const& setup, double diameter_px) {
   if (setup.lens.prescription || setup.lenslets || !setup.windows.empty()) return std::nan("");
-  SmallImages const images = expected_images(setup);
+  ImageDiameters const images = expected_images(setup);
   double const blur = std::sqrt(square(diameter_px) - square(images.geometric_px) - square(images.spot_px));
   double const pupil = setup.lens.focal_length / setup.lens.f_number;
   if (!(blur > 0) || !(pupil > 0)) return std::nan("");
@@ -95,7 +95,7 @@ double defocus_distance(Setup const& setup, double diameter_px) {
     double const sensor = sharp * (1 + wanted * setup.camera.pixel_pitch / pupil);
     focused.lens.focus_distance = 1 / (1 / setup.lens.focal_length - 1 / sensor);
     // The magnification, and with it the rest of the image, changes with the focus.
-    SmallImages const there = expected_images(focused);
+    ImageDiameters const there = expected_images(focused);
     wanted *= std::sqrt(square(diameter_px) - square(there.geometric_px) - square(there.spot_px)) / there.blur_px;
   }
   return focused.lens.focus_distance;
@@ -103,31 +103,31 @@ double defocus_distance(Setup const& setup, double diameter_px) {
 
 std::string locking_advice(Setup const& setup) {
   if (!setup.piv && setup.target.kind == TargetKind::image) return {};  // dot sizes of an image target are unknown
-  SmallImages const images = expected_images(setup);
+  ImageDiameters const images = expected_images(setup);
   double const diameter = images.diameter_px();
   if (!(diameter < warned_image_px)) return {};
   std::string text = fmt::format(
       "{} images are {:.2f} px wide (e^-2 diameter): below {:g} px peak locking occurs, an error of about {:.2g} px",
-      setup.piv ? "particle" : "dot", diameter, least_image_px, images.locking_error_px());
+      setup.piv ? "particle" : "dot", diameter, min_image_px, images.locking_error_px());
   std::string const cure = cures(setup, images);
   if (cure.empty()) return text + "; widen them";
-  SmallImages const wide{images.geometric_px,
-                         std::sqrt(square(least_image_px) - square(images.geometric_px) - square(images.blur_px)),
-                         images.blur_px};
+  ImageDiameters const wide{images.geometric_px,
+                            std::sqrt(square(min_image_px) - square(images.geometric_px) - square(images.blur_px)),
+                            images.blur_px};
   return text +
-         fmt::format("; {} widens them to {:g} px (about {:.2g} px)", cure, least_image_px, wide.locking_error_px());
+         fmt::format("; {} widens them to {:g} px (about {:.2g} px)", cure, min_image_px, wide.locking_error_px());
 }
 
 std::string locking_advice(Image<double> const& frame) {
   double const seen = image_statistics(middle_of(frame)).dot_diameter_px;
   double const diameter = std::sqrt(square(seen) - 16.0 / 12);
   if (!(diameter > smallest_seen && diameter < warned_image_px)) return {};
-  SmallImages const images{0, diameter, 0}, wide{0, least_image_px, 0};
+  ImageDiameters const images{0, diameter, 0}, wide{0, min_image_px, 0};
   return fmt::format(
       "dot images are about {:.2f} px wide (e^-2 diameter, by their autocorrelation): below {:g} px peak locking "
       "occurs, an error of about {:.2g} px; an f-number {:.2g} times as large, or a little defocus, widens them to "
       "{:g} px (about {:.2g} px)",
-      diameter, least_image_px, images.locking_error_px(), images.f_number_factor(least_image_px), least_image_px,
+      diameter, min_image_px, images.locking_error_px(), images.f_number_factor(min_image_px), min_image_px,
       wide.locking_error_px());
 }
 

@@ -8,7 +8,7 @@
 namespace gladstone {
 
 /// Image diameters of dots or particles, and the peak-locking error that they cause.
-struct SmallImages {
+struct ImageDiameters {
   double geometric_px = 0;  ///< diameter of the geometric image [px]
   double spot_px = 0;       ///< e^-2 diameter of the diffraction-limited PSF [px]
   double blur_px = 0;       ///< diameter of the circle of confusion [px]
@@ -26,13 +26,13 @@ struct SmallImages {
 /// Returns the expected images of the target's dots, or of the median particle in the middle of the sheet, from closed
 /// forms.
 /// @pre not a calibration
-SmallImages expected_images(Setup const& setup);
+ImageDiameters expected_images(Setup const& setup);
 
 /// Returns the focus distance, somewhat in front of dots or sheet, at which the images have the width `diameter_px`
 /// [m]. NaN unless the lens is an ideal thin lens, or if the images are already that wide.
 double defocus_distance(Setup const& setup, double diameter_px);
 
-/// Returns a warning of images more than 0.5 % below least_image_px, with their diameter, the expected error, and the
+/// Returns a warning of images more than 0.5 % below min_image_px, with their diameter, the expected error, and the
 /// f-number or focus distance that avoids it. Empty if the images are large enough.
 /// @pre not a calibration
 std::string locking_advice(Setup const& setup);

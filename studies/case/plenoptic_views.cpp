@@ -90,7 +90,7 @@ Image<double> PlenopticViews::refocused(std::vector<Vec2d> const& stops, double 
   });
 }
 
-std::vector<Vec2d> places_of_stop(double diameter, int across) {
+std::vector<Vec2d> stop_positions(double diameter, int across) {
   std::vector<Vec2d> places;
   auto const at = [&](int i) { return diameter * ((i + 0.5) / across - 0.5); };
   for (int row = 0; row < across; ++row) {

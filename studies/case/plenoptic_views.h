@@ -62,7 +62,7 @@ class PlenopticViews {
 };
 
 /// Returns the positions within a stop of a square grid with `across` points per diameter [m].
-std::vector<Vec2d> places_of_stop(double diameter, int across);
+std::vector<Vec2d> stop_positions(double diameter, int across);
 
 /// Result of write_views().
 struct ViewsWritten {

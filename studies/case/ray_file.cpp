@@ -33,7 +33,7 @@ TracedRay dead(RayStatus status) {
 
 /// Returns true if the element is in front of the ray.
 bool runs_to(CameraElement<double> const& element, Ray<double> const& ray) {
-  return element.visit([&](auto const& held) { return held.pose.point_inwards(ray.position).z < 0; });
+  return element.visit([&](auto const& held) { return held.pose.point_to_local(ray.position).z < 0; });
 }
 
 template <class Medium>
@@ -59,8 +59,8 @@ TracedRay trace_one(Scene const& scene, TracingOptions<double> const& options, M
   }
   traced = {RayStatus::alive, ray.position, ray.direction, account.optical_path, {not_a_number, not_a_number}};
   if (through == Through::medium) return traced;
-  bool const behind = camera.aim_plane.point_inwards(ray.position).z > 0;
-  if (behind || !(camera.aim_plane.direction_inwards(ray.direction).z > 0)) return dead(RayStatus::missed_lens);
+  bool const behind = camera.aim_plane.point_to_local(ray.position).z > 0;
+  if (behind || !(camera.aim_plane.direction_to_local(ray.direction).z > 0)) return dead(RayStatus::missed_lens);
   for (int i = camera.before_medium; i < camera.count; ++i) {
     RayStatus const status = pass_element(camera.elements[i], ray, account);
     if (status != RayStatus::alive) return dead(status);
@@ -74,7 +74,7 @@ TracedRay trace_one(Scene const& scene, TracingOptions<double> const& options, M
   if (through == Through::optics) return traced;
   Vec2d place;
   if (!camera.sensor.meet(ray, place)) return dead(RayStatus::missed_lens);
-  traced.position = camera.sensor.pose.point_outwards({place.x, place.y, 0});
+  traced.position = camera.sensor.pose.point_to_outer({place.x, place.y, 0});
   if (!thin) traced.optical_path += dot(traced.position - ray.position, ray.direction);
   traced.pixel = camera.sensor.to_pixel(place.x, place.y);
   if (!camera.sensor.covers(traced.pixel)) traced.status = RayStatus::missed_sensor;

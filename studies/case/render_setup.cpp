@@ -26,14 +26,14 @@ SetupDocument read_document(std::string const& path, std::vector<std::string> co
 
 }  // namespace
 
-SetupRendering::SetupRendering(std::string path, std::vector<std::string> const& overrides)
+SetupRenderer::SetupRenderer(std::string path, std::vector<std::string> const& overrides)
     : path_(std::move(path)), document_(read_document(path_, overrides)) {
   for (CameraCase& one : camera_cases(document_)) {
     cameras_.push_back({one.name, load_case_setup(std::move(one.document))});
   }
 }
 
-void SetupRendering::refuse_over_inputs(std::string const& folder) const {
+void SetupRenderer::refuse_over_inputs(std::string const& folder) const {
   for (OneCamera const& camera : cameras_) {
     std::vector<std::string> inputs = camera.loaded.document.file_names();
     inputs.push_back(path_);
@@ -42,14 +42,14 @@ void SetupRendering::refuse_over_inputs(std::string const& folder) const {
   }
 }
 
-RenderedSetup SetupRendering::render(Renderer& renderer, std::string const& folder) {
+RenderedSetup SetupRenderer::render(Renderer& renderer, std::string const& folder) {
   OutputFolder output(folder, case_content());
   BuiltMedium medium;
   RenderedSetup all;
   for (OneCamera& camera : cameras_) {
     bool const first = &camera == &cameras_.front();
     if (!camera.name.empty()) spdlog::info("camera {}", camera.name);
-    KnownParts known;
+    ReusableParts known;
     if (!first) known.medium = &medium;
     RenderedCamera& told = all.cameras.emplace_back();
     told.folder = camera.name.empty() ? folder : (fs::path(folder) / camera.name).string();
@@ -70,9 +70,9 @@ RenderedSetup SetupRendering::render(Renderer& renderer, std::string const& fold
   return all;
 }
 
-nlohmann::ordered_json SetupRendering::render_one(OneCamera& camera, Renderer& renderer, KnownParts const& known,
-                                                  BuiltMedium& medium, OutputFolder const& output,
-                                                  RenderedCamera& told) const {
+nlohmann::ordered_json SetupRenderer::render_one(OneCamera& camera, Renderer& renderer, ReusableParts const& known,
+                                                 BuiltMedium& medium, OutputFolder const& output,
+                                                 RenderedCamera& told) const {
   nlohmann::ordered_json summary;
   auto const fill = [&](auto const& write) {
     output.fill([&](std::string const& place) {
@@ -92,7 +92,7 @@ nlohmann::ordered_json SetupRendering::render_one(OneCamera& camera, Renderer& r
     told.device = rendered.device;
     return summary;
   }
-  FinishedCase const finished = finish_case(camera.loaded, renderer, known);
+  RecordedCase const finished = render_case_in_memory(camera.loaded, renderer, known);
   fill([&](std::string const& place) {
     return write_case(camera.loaded, finished.prepared, finished.rendered, finished.frames, renderer, place);
   });
@@ -114,7 +114,7 @@ nlohmann::ordered_json SetupRendering::render_one(OneCamera& camera, Renderer& r
   return summary;
 }
 
-std::string SetupRendering::written() const {
+std::string SetupRenderer::written() const {
   SetupDocument document = document_.copy();
   SetupNode const* const all = document.find({"camera"});
   std::vector<std::vector<std::string>> keys;

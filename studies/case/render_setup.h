@@ -32,11 +32,11 @@ struct RenderedSetup {
 };
 
 /// Reads, checks and renders a setup of any experiment with any number of cameras; implements `gladstone render`.
-class SetupRendering {
+class SetupRenderer {
  public:
   /// @param path  path of the setup file
   /// @throws SetupError if the setup is invalid
-  SetupRendering(std::string path, std::vector<std::string> const& overrides);
+  SetupRenderer(std::string path, std::vector<std::string> const& overrides);
 
   /// @throws OutputError if rendering into the folder would overwrite one of the setup's input files
   void refuse_over_inputs(std::string const& folder) const;
@@ -53,8 +53,8 @@ class SetupRendering {
   };
   /// Renders one camera's case into its part of the output folder.
   /// @return the contents of its summary.json
-  nlohmann::ordered_json render_one(OneCamera& camera, Renderer& renderer, KnownParts const& known, BuiltMedium& medium,
-                                    class OutputFolder const& output, RenderedCamera& told) const;
+  nlohmann::ordered_json render_one(OneCamera& camera, Renderer& renderer, ReusableParts const& known,
+                                    BuiltMedium& medium, class OutputFolder const& output, RenderedCamera& told) const;
   /// Returns the setup as written, with absolute file names.
   std::string written() const;
 

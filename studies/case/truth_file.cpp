@@ -42,7 +42,7 @@ constexpr std::array<PairDataset, 8> pair_datasets{{
 }  // namespace
 
 void write_truth(std::string const& path, Scene const& scene, GroundTruth const& truth, StatusCounts const& statuses,
-                 FieldMap const& field, RenderMethod method, RaysPlan const* table, FileOrigin const& origin) {
+                 FieldMap const& field, RenderMethod method, RayBudget const* table, FileOrigin const& origin) {
   Hdf5Writer file(path, origin);
   std::size_t const count = truth.size();
   std::vector<double> position;

@@ -5,7 +5,7 @@
 #include "render/files/hdf5_file.h"
 #include "render/scene/field_map.h"
 #include "render/scene/ground_truth.h"
-#include "render/scene/ray_plan.h"
+#include "render/scene/ray_budget.h"
 #include "render/scene/scene.h"
 
 namespace gladstone {
@@ -13,7 +13,7 @@ namespace gladstone {
 /// Writes truth.h5: /dots, /rays, /field (docs/file-formats.md).
 /// @param table  measured errors of the deflection table; null: no table was used
 void write_truth(std::string const& path, Scene const& scene, GroundTruth const& truth, StatusCounts const& statuses,
-                 FieldMap const& field, RenderMethod method, RaysPlan const* table, FileOrigin const& origin);
+                 FieldMap const& field, RenderMethod method, RayBudget const* table, FileOrigin const& origin);
 
 /// Reads the dots, or the particles, of a truth.h5.
 /// @throws DataError if the file is invalid

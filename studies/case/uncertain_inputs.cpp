@@ -250,7 +250,7 @@ char const* to_string(InputDistribution distribution) {
   return distribution == InputDistribution::normal ? "normal" : "rectangular";
 }
 
-std::vector<UncertainInput> take_uncertain_inputs(SetupDocument& document) {
+std::vector<UncertainInput> extract_uncertain_inputs(SetupDocument& document) {
   Reader reader(document);
   SetupNode const root = *document.find({});
   for (SetupMember const& member : root.members) {
@@ -270,7 +270,7 @@ std::vector<UncertainInput> take_uncertain_inputs(SetupDocument& document) {
   return reader.inputs;
 }
 
-std::string with_uncertain_inputs(std::string const& text, std::vector<UncertainInput> const& inputs) {
+std::string insert_uncertain_inputs(std::string const& text, std::vector<UncertainInput> const& inputs) {
   if (inputs.empty()) return text;
   SetupNode root = parse_toml(text, "setup");
   for (UncertainInput const& input : inputs) {

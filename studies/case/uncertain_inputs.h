@@ -38,10 +38,11 @@ struct UncertainInput {
 /// the uncertainties. Also removes and returns the correlations in [[correlations]], { keys = [.., ..], coefficient =
 /// -0.5 }. Problems are added to the document at the key concerned. Tables of a design question (requirements, limits,
 /// ...) are not searched.
-std::vector<UncertainInput> take_uncertain_inputs(SetupDocument& document);
+std::vector<UncertainInput> extract_uncertain_inputs(SetupDocument& document);
 
-/// Writes a setup with the uncertainties at their numbers and their correlations; inverse of take_uncertain_inputs().
+/// Writes a setup with the uncertainties at their numbers and their correlations; inverse of
+/// extract_uncertain_inputs().
 /// @param text  TOML, in which each input's key is a number or missing
-std::string with_uncertain_inputs(std::string const& text, std::vector<UncertainInput> const& inputs);
+std::string insert_uncertain_inputs(std::string const& text, std::vector<UncertainInput> const& inputs);
 
 }  // namespace gladstone

@@ -31,7 +31,7 @@ namespace {
 constexpr int map_spacing_px = 2;  // spacing of the maps in truth.h5; turbulent fronts are a few pixels wide
 
 /// Returns the errors of truth and images caused by the deflection table; measures them unless the ray budget has.
-RaysPlan error_of_table(Scene const& scene, RaysPlan const& plan) {
+RayBudget error_of_table(Scene const& scene, RayBudget const& plan) {
   // With dots at side faces, the errors in an "auto" budget include those of their rays.
   bool const measured =
       plan.rays_at_side_faces == 0 && (std::isfinite(plan.truth_error_px) || std::isfinite(plan.image_error_levels));
@@ -48,7 +48,7 @@ void hash_inputs(CaseSetup& loaded) {
   }
 }
 
-double exposure_of(Scene const& scene, RenderedLight const& light) {
+double choose_exposure(Scene const& scene, RenderedLight const& light) {
   CameraSetup const& camera = scene.setup.camera;
   if (camera.absolute_exposure) return scene.photon_unit * camera.noise.quantum_efficiency;
   if (camera.exposure_e) return *camera.exposure_e;
@@ -75,7 +75,7 @@ RenderedCase render_case(PreparedCase const& prepared, Renderer& renderer, Rende
   stop_point("rendering");
   rendered.rendering =
       std::make_shared<Rendering const>(render_planned(prepared.scene, renderer, RenderImages::in_place, theory));
-  rendered.exposure_e = exposure_of(prepared.scene, *rendered.rendering->in_place);
+  rendered.exposure_e = choose_exposure(prepared.scene, *rendered.rendering->in_place);
   rendered.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return rendered;
 }
@@ -84,8 +84,8 @@ RecordedFrames record_frames(PreparedCase const& prepared, RenderedCase const& r
   return rendered.rendering->in_place->record(Detector(prepared.scene.setup.camera, rendered.exposure_e));
 }
 
-FinishedCase finish_case(CaseSetup& loaded, Renderer& renderer, KnownParts const& known) {
-  FinishedCase finished;
+RecordedCase render_case_in_memory(CaseSetup& loaded, Renderer& renderer, ReusableParts const& known) {
+  RecordedCase finished;
   hash_inputs(loaded);
   finished.prepared = prepare_case(loaded, known);
   finished.rendered = render_case(finished.prepared, renderer, RenderTheory::yes);
@@ -93,9 +93,9 @@ FinishedCase finish_case(CaseSetup& loaded, Renderer& renderer, KnownParts const
   return finished;
 }
 
-FinishedCase render_to_folder(CaseSetup& loaded, Renderer& renderer, std::string const& folder) {
+RecordedCase render_to_folder(CaseSetup& loaded, Renderer& renderer, std::string const& folder) {
   OutputFolder output(folder, case_content());
-  FinishedCase finished = finish_case(loaded, renderer);
+  RecordedCase finished = render_case_in_memory(loaded, renderer);
   output.fill([&](std::string const& place) {
     write_case(loaded, finished.prepared, finished.rendered, finished.frames, renderer, place);
   });
@@ -130,7 +130,7 @@ CaseOutcome judge_case(CaseSetup& loaded, PreparedCase const& prepared, Rendered
   // If the rays are chosen again, they are chosen for the same exposure, so "auto" remains.
   if (camera.absolute_exposure) {
     loaded.document.root().table("camera").resolve("exposure", std::string("absolute"));
-  } else if ((by_table || scene.by_need) && !loaded.setup.render.rays_per_dot && !camera.exposure_e) {
+  } else if ((by_table || scene.adaptive_criteria) && !loaded.setup.render.rays_per_dot && !camera.exposure_e) {
     loaded.document.root().table("camera").resolve("exposure", std::string("auto"));
   } else {
     loaded.document.root().table("camera").resolve("exposure", rendered.exposure_e);
@@ -173,7 +173,7 @@ nlohmann::json write_case(CaseSetup& loaded, PreparedCase const& prepared, Rende
                 field_in_view(scene, map_spacing_px), rendering.method,
                 outcome.table_error ? &*outcome.table_error : nullptr, origin);
   }
-  OutputFile::write_text(place(case_file::setup), with_uncertain_inputs(resolved, loaded.uncertain));
+  OutputFile::write_text(place(case_file::setup), insert_uncertain_inputs(resolved, loaded.uncertain));
   nlohmann::json summary = case_summary(loaded, prepared, rendered, frames, outcome);
   OutputFile::write_text(place(case_file::summary), json_text(summary) + "\n");
   return summary;

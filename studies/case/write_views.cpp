@@ -56,7 +56,7 @@ ViewsWritten write_views(std::string const& case_folder, std::string const& fold
   ViewsWritten written;
   written.folder = folder;
   written.camera = PlenopticCamera::of(setup, setup_file);
-  std::vector<Vec2d> const stops = places_of_stop(written.camera.stop_diameter, across);
+  std::vector<Vec2d> const stops = stop_positions(written.camera.stop_diameter, across);
   written.views = stops.size();
   double const mm = unit::millimetre, stop = written.camera.stop_diameter;
   nlohmann::ordered_json summary{{"lenslet_pictures_px", written.camera.picture_px()},

@@ -8,8 +8,8 @@
 
 #include "analysis/vectors/vector_file.h"
 #include "render/base/error.h"
+#include "render/files/output_destination.h"
 #include "render/files/output_file.h"
-#include "render/files/output_place.h"
 #include "render/files/text_file.h"
 #include "studies/benchmark/benchmark_run.h"
 #include "studies/case/json_text.h"
@@ -121,7 +121,7 @@ CommandBody attach_benchmark(CLI::App& app, GlobalOptions const& options) {
     for (std::string const& given : arguments->conventions) assign_conventions(benchmark.vectors, given);
     fs::path const folder = benchmark.folder;
     auto const in_place = [&](char const* name) { return (folder / name).string(); };
-    std::vector<std::string> inputs = vector_files_of(benchmark), outputs = case_files_of(benchmark);
+    std::vector<std::string> inputs = foreign_vector_files(benchmark), outputs = benchmark_case_files(benchmark);
     for (ForeignVectors const& given : benchmark.vectors) inputs.push_back(given.path);
     for (char const* name : {"benchmark.html", "benchmark.md", "benchmark.json", "benchmark.csv",
                              "noise_against_gain.png", "error_against_uncertainty.png"})

@@ -75,7 +75,7 @@ CommandBody attach_calibrate(CLI::App& app, GlobalOptions const& options) {
                                 (fs::path(place) / case_file::calibration_figure).string()},
                                inputs);
       OutputFolder folder(place, {case_file::calibration, {case_file::calibration_figure}});
-      Calibration const calibration = calibrate_pictures(arguments->folder, arguments->pictures);
+      Calibration const calibration = calibrate_images(arguments->folder, arguments->pictures);
       log_warnings(calibration);
       folder.fill(
           [&](std::string const& staged) { write_results(staged, calibration, !arguments->no_figures, place); });

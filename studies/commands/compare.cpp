@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 /// @param place  final folder, for messages
 void draw_if_possible(fs::path const& folder, std::string const& place, Comparison const& comparison) {
   try {
-    name_final_place(folder.string(), place, [&] { draw_comparison(folder.string(), comparison); });
+    report_final_path(folder.string(), place, [&] { draw_comparison(folder.string(), comparison); });
   } catch (GnuplotMissing const& missing) {
     spdlog::warn("{}", missing.what());
   }
@@ -54,16 +54,16 @@ struct Written {
 Written write_parts(fs::path const& folder, std::string const& place, Comparison const& comparison, bool figures) {
   if (figures) draw_if_possible(folder, place, comparison);
   Written written{figures_in(folder), errors_json(comparison)};
-  name_final_place(folder.string(), place,
-                   [&] { write_chain((folder / case_file::comparison).string(), comparison, written.json); });
+  report_final_path(folder.string(), place,
+                    [&] { write_chain((folder / case_file::comparison).string(), comparison, written.json); });
   return written;
 }
 
 /// Writes errors.json, comparison.h5 and the figures into the case folder. If creating any of them fails, none is
 /// written.
 Written write_beside(std::string const& place, Comparison const& comparison, bool figures) {
-  remove_leftovers(place, stem_beside("comparison"));
-  Partial const staging(place, stem_beside("comparison"), Partial::Kind::folder);
+  remove_abandoned_outputs(place, sibling_stem("comparison"));
+  Partial const staging(place, sibling_stem("comparison"), Partial::Kind::folder);
   fs::path const made = fs::path(staging.path()) / "figures";
   fs::create_directory(made);
   Written written = write_parts(made, place, comparison, figures);

@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "analysis/correlation/pair_verdict.h"
+#include "analysis/correlation/pair_assessment.h"
 #include "analysis/vectors/vector_file.h"
 #include "render/base/error.h"
 #include "render/files/input_file.h"

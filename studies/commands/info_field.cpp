@@ -16,7 +16,7 @@ namespace gladstone {
 namespace {
 
 nlohmann::json json_of(Vec3d const& values) {
-  return {known_or_null(values.x), known_or_null(values.y), known_or_null(values.z)};
+  return {number_or_null(values.x), number_or_null(values.y), number_or_null(values.z)};
 }
 
 /// Describes the steepest differences, "steepest difference between neighbours 0.02, 0.05, unknown per unit length
@@ -44,7 +44,7 @@ Description describe_field(std::string const& path, std::string const& dataset, 
   for (int axis = 0; axis < 3; ++axis) {
     if (std::isnan(place.spacing[axis]) && std::isnan(place.extent_mm[axis])) steepest[axis] = place.spacing[axis];
   }
-  FieldReading const& reading = source->reading();
+  AxisAssignment const& reading = source->reading();
   std::vector<std::string> const notes = source->notes();
   for (std::string const& note : notes) spdlog::warn("{}: {}", path, note);
   if (!place.warning.empty()) spdlog::warn("{}: {}", path, place.warning);

@@ -19,8 +19,8 @@ namespace {
 constexpr int spot_rays = 2000;
 
 nlohmann::json pupil_json(Pupil const& pupil) {
-  return {{"position", known_or_null(pupil.position / unit::millimetre)},
-          {"diameter", known_or_null(pupil.diameter / unit::millimetre)}};
+  return {{"position", number_or_null(pupil.position / unit::millimetre)},
+          {"diameter", number_or_null(pupil.diameter / unit::millimetre)}};
 }
 
 /// Returns the JSON name of a field angle: "on_axis", "10_deg".
@@ -46,13 +46,13 @@ nlohmann::json lens_json(Lens const& lens, ParaxialLens const& paraxial, FieldAn
       row["best_spot_rms_um"] = point.best_spot_rms * 1e6;
       row["best_focus_mm"] = point.best_focus * 1e3;
       row["chief_ray_mm"] = {point.chief.x * 1e3, point.chief.y * 1e3};
-      row["distortion"] = known_or_null(point.distortion);
-      row["tangential_focus_mm"] = known_or_null(point.tangential_focus * 1e3);
-      row["sagittal_focus_mm"] = known_or_null(point.sagittal_focus * 1e3);
+      row["distortion"] = number_or_null(point.distortion);
+      row["tangential_focus_mm"] = number_or_null(point.tangential_focus * 1e3);
+      row["sagittal_focus_mm"] = number_or_null(point.sagittal_focus * 1e3);
       row["vignetting"] = point.vignetting;
     }
     row["lost"] = nlohmann::json::array();
-    for (LostRays const& lost : point.lost) {
+    for (SurfaceRayLoss const& lost : point.lost) {
       row["lost"].push_back({{"surface", lost.surface + 1}, {"cause", to_string(lost.cause)}, {"share", lost.share}});
     }
     points.push_back(row);
@@ -61,15 +61,15 @@ nlohmann::json lens_json(Lens const& lens, ParaxialLens const& paraxial, FieldAn
           {"source", lens.prescription.source},
           {"wavelength_nm", lens.wavelength / unit::nanometre},
           {"surfaces", lens.surfaces.size()},
-          {"effective_focal_length_mm", known_or_null(paraxial.effective_focal_length / unit::millimetre)},
-          {"back_focal_length_mm", known_or_null(paraxial.back_focal_length / unit::millimetre)},
-          {"front_focal_length_mm", known_or_null(paraxial.front_focal_length / unit::millimetre)},
-          {"front_principal_plane_mm", known_or_null(paraxial.front_principal_plane / unit::millimetre)},
-          {"rear_principal_plane_mm", known_or_null(paraxial.rear_principal_plane / unit::millimetre)},
-          {"f_number", known_or_null(paraxial.f_number)},
+          {"effective_focal_length_mm", number_or_null(paraxial.effective_focal_length / unit::millimetre)},
+          {"back_focal_length_mm", number_or_null(paraxial.back_focal_length / unit::millimetre)},
+          {"front_focal_length_mm", number_or_null(paraxial.front_focal_length / unit::millimetre)},
+          {"front_principal_plane_mm", number_or_null(paraxial.front_principal_plane / unit::millimetre)},
+          {"rear_principal_plane_mm", number_or_null(paraxial.rear_principal_plane / unit::millimetre)},
+          {"f_number", number_or_null(paraxial.f_number)},
           {"entrance_pupil_mm", pupil_json(paraxial.entrance)},
           {"exit_pupil_mm", pupil_json(paraxial.exit)},
-          {"image_plane_mm", known_or_null(field.image_plane / unit::millimetre)},
+          {"image_plane_mm", number_or_null(field.image_plane / unit::millimetre)},
           {"spot_rms_um", spots},
           {"field", points},
           {"warnings", lens.warnings}};

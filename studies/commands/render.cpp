@@ -52,7 +52,7 @@ CommandBody attach_render(CLI::App& app, GlobalOptions const& options) {
       ->expected(1)
       ->trigger_on_parse(false);
   return [arguments, &options] {
-    SetupRendering rendering(arguments->setup, arguments->overrides);
+    SetupRenderer rendering(arguments->setup, arguments->overrides);
     rendering.refuse_over_inputs(arguments->folder);
     auto const renderer = options.open_device().renderer;
     RenderedSetup const rendered = rendering.render(*renderer, arguments->folder);

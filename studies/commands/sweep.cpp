@@ -19,13 +19,13 @@
 namespace gladstone {
 namespace {
 
-char const* to_string(Planned planned) {
+char const* to_string(PlanOutcome planned) {
   switch (planned) {
-    case Planned::fresh:
+    case PlanOutcome::fresh:
       return "fresh";
-    case Planned::unchanged:
+    case PlanOutcome::unchanged:
       return "unchanged";
-    case Planned::replaced:
+    case PlanOutcome::replaced:
       break;
   }
   return "replaced";
@@ -51,11 +51,11 @@ CommandBody attach_plan(CLI::App& app, GlobalOptions const& options) {
   app.add_option("-o,--output", arguments->run, "RUN folder to create")->required();
   return [arguments, &options] {
     StudyFile read = read_study(arguments->study);
-    try_plan_place(arguments->run, read);
+    check_plan_folder(arguments->run, read);
     std::string const device = options.device == "auto" ? options.open_device().name() : options.device;
     StudyPlan const plan = plan_study(std::move(read), device);
     StudyFile const& study = plan.study();
-    Planned const planned = write_plan(arguments->run, plan);
+    PlanOutcome const planned = write_plan(arguments->run, plan);
     nlohmann::ordered_json json{{"run", arguments->run},
                                 {"cases", plan.size()},
                                 {"repeats", study.repeats},
@@ -70,7 +70,7 @@ CommandBody attach_plan(CLI::App& app, GlobalOptions const& options) {
     }
     print_result(options, json_text(json),
                  fmt::format("{}: {} cases for {}{}\n{}", arguments->run, plan.size(), device,
-                             planned == Planned::unchanged ? ", planned already" : "", axes));
+                             planned == PlanOutcome::unchanged ? ", planned already" : "", axes));
     return ok;
   };
 }
@@ -86,7 +86,7 @@ CommandBody attach_status(CLI::App& app, GlobalOptions const& options) {
   app.add_option("run", *run, "RUN folder")->required();
   return [run, &options] {
     Manifest const cases = read_manifest(*run);
-    RunState const state = state_of(*run, cases, all_of(cases));
+    RunState const state = determine_run_state(*run, cases, all_of(cases));
     print_result(options, json_text(state_json(*run, cases, state)), state_text(*run, cases, state));
     return ok;
   };
@@ -121,7 +121,7 @@ CommandBody attach_collect(CLI::App& app, GlobalOptions const& options) {
                    builds.size(), fmt::join(builds, ", "));
     }
     Manifest const cases = read_manifest(run);
-    RunState const state = state_of(run, cases, all_of(cases));
+    RunState const state = determine_run_state(run, cases, all_of(cases));
     std::vector<std::string> figures;
     if (!arguments->no_figures) figures = draw_figures(run, table);
     nlohmann::ordered_json json = state_json(run, cases, state);

@@ -138,7 +138,7 @@ void run_here(Arguments const& arguments, Manifest const& cases, std::vector<std
 int print_state(Arguments const& arguments, GlobalOptions const& options, Manifest const& cases,
                 std::vector<std::size_t> const& selected, nlohmann::ordered_json const& more_json,
                 std::string const& more_text) {
-  RunState const state = state_of(arguments.run, cases, selected);
+  RunState const state = determine_run_state(arguments.run, cases, selected);
   nlohmann::ordered_json json = state_json(arguments.run, cases, state);
   json.update(more_json);
   print_result(options, json_text(json), state_text(arguments.run, cases, state) + more_text);
@@ -174,7 +174,7 @@ int run_study(Arguments const& arguments, GlobalOptions const& options) {
   bool const worker = arguments.worker >= 0;
   std::size_t due = selected.size();
   if (!worker) {  // remove failures once here, so that workers do not repeat them several times
-    due = forget_failures(arguments.run, cases, selected, arguments.selection).missing.size();
+    due = remove_failed_results(arguments.run, cases, selected, arguments.selection).missing.size();
   }
   int code = ok;
   std::size_t computed = 0;

@@ -29,7 +29,7 @@ void remove_done(std::string const& run, Manifest const& cases, RunSelection con
   std::erase_if(remaining, [&](std::size_t index) {
     if (!there.contains(fs::path(result_path(run, index)).filename().string())) return false;
     auto const result = read_result(run, index, cases.line_hash(index), ResultPart::head);
-    return result && !is_due(*result, selection) && !lacks_images(run, *result, selection);
+    return result && !needs_recomputation(*result, selection) && !is_missing_images(run, *result, selection);
   });
 }
 
@@ -59,7 +59,7 @@ std::string words_of_failed_tasks(JobArray const& array, std::string const& job,
       text += fmt::format("  ... and {} more tasks\n", tasks.size() - most_told);
       break;
     }
-    std::string const words = last_words(array, job, task);
+    std::string const words = last_log_message(array, job, task);
     text += fmt::format("  task {}_{} (cases {}) did not finish its cases; {}\n", job, task, array.tasks[task],
                         words.empty() ? "no message" : "last message: " + words);
   }
@@ -102,7 +102,7 @@ std::optional<JobReport> run_on_cluster(std::string const& run, Manifest const& 
   };
 
   std::string const folder = fs::canonical(run).string();
-  if (auto const job = job_going_on(folder); job && !arguments.dry_run) {
+  if (auto const job = find_running_job(folder); job && !arguments.dry_run) {
     wait_for_job(*job, count_remaining);
     return JobReport{*job, ""};
   }

@@ -37,7 +37,7 @@ CommandBody attach_trace(CLI::App& app, GlobalOptions const& options) {
     inputs.insert(inputs.end(), {arguments->setup, arguments->rays});
     refuse_inputs_as_outputs({arguments->output}, inputs);
     OutputFile output(arguments->output);
-    std::vector<Ray<double>> const rays = read_rays(arguments->rays, loaded.setup.farthest_off_axis());
+    std::vector<Ray<double>> const rays = read_rays(arguments->rays, loaded.setup.max_off_axis_distance());
     stop_point("tracing-rays");
     if (options.device == "cuda") throw DeviceError("trace: traces its few rays on the CPU; use --device cpu or auto");
     for (std::string const& text : loaded.warnings) spdlog::warn("{}", text);

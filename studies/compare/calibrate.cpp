@@ -60,7 +60,7 @@ ExpectedCamera expected_camera(Setup const& setup) {
   ExpectedCamera expected;
   expected.is_pinhole = setup.windows.empty();
   if (!expected.is_pinhole) return expected;
-  if (auto const pinhole = pinhole_of(setup, build_camera(plane_setup(setup, 0)))) {
+  if (auto const pinhole = equivalent_pinhole(setup, build_camera(plane_setup(setup, 0)))) {
     expected.principal_point_px = Vec2d{pinhole->cx, pinhole->cy};
     expected.focal_length_px = pinhole->fx;
   } else if (sensor_tilt(setup) == Vec2d{}) {
@@ -121,7 +121,7 @@ void warn_of_assignment(Calibration& calibration, AssignedDots const& assigned, 
                     "these, since the edges determine the middle of the grid",
                     file, assigned.columns, assigned.rows, columns, rows));
   }
-  if (assigned.middle_by == MiddleBy::expected_view && assigned.middle_offset > doubtful) {
+  if (assigned.middle_by == CentreDotMethod::expected_view && assigned.middle_offset > doubtful) {
     calibration.warnings.push_back(
         fmt::format("{}: the middle dot is a guess: the camera of the setup sees the middle {:.2f} spacings from it; "
                     "give the position of the camera more accurately, or show the whole grid",
@@ -233,7 +233,7 @@ Calibration calibrate_case(std::string const& folder) {
   return calibration;
 }
 
-Calibration calibrate_pictures(std::string const& setup, std::vector<std::string> const& pictures) {
+Calibration calibrate_images(std::string const& setup, std::vector<std::string> const& pictures) {
   SetupDocument document = SetupDocument::from_file(setup);
   if (std::vector<std::string> const cameras = camera_names(document); !cameras.empty()) {
     throw DataError(setup, fmt::format("has {} cameras ({}), but the images belong to one; keep only its [[camera]], "

@@ -23,7 +23,7 @@ struct CalibratedPlane {
   std::size_t not_dots = 0;  ///< number of detected spots with neither the size nor the shape of the dots
   /// spots at nodes of the grid that do not fit the other dots, excluded from the fit [px]
   std::vector<Vec2d> strangers;
-  MiddleBy middle_by = MiddleBy::whole_grid;
+  CentreDotMethod middle_by = CentreDotMethod::whole_grid;
   double smoothness_px = 0;  ///< rms scatter of the dots about a smooth grid, per component [px]
 };
 
@@ -53,7 +53,7 @@ Calibration calibrate_case(std::string const& folder);
 /// describes the dot grid; its camera and lens are needed only approximately.
 /// @throws DataError as calibrate_case(), and if number or size of the images differ from the setup
 /// @throws SetupError if the setup is invalid
-Calibration calibrate_pictures(std::string const& setup, std::vector<std::string> const& pictures);
+Calibration calibrate_images(std::string const& setup, std::vector<std::string> const& pictures);
 
 /// Writes calibration.h5 (docs/file-formats.md).
 void write_calibration_file(std::string const& path, Calibration const& calibration);

@@ -124,7 +124,7 @@ class CalibrationFit {
   }
 
   void explain_residuals() {
-    if (auto const order = find_picture_order(dots_)) {
+    if (auto const order = find_image_order(dots_)) {
       std::vector<std::string> names(order->size());
       for (std::size_t k = 0; k < order->size(); ++k) names[(*order)[k]] = file(k);
       throw DataError(name_,
@@ -132,7 +132,7 @@ class CalibrationFit {
                                   "the images in the order of calibration.planes_mm, or correct planes_mm",
                                   pinhole().rms_px, fmt::join(names, ", ")));
     }
-    try_placement(find_moved_middles(dots_, expected_.principal_point_px.value_or(middle_px())));
+    try_placement(find_misidentified_centres(dots_, expected_.principal_point_px.value_or(middle_px())));
   }
 
   void explain_principal_point() {
@@ -270,7 +270,7 @@ class CalibrationFit {
     if (length(placement_.drift) == 0) return;
     std::vector<std::string> guessed;
     for (CalibratedPlane const& plane : calibration_.planes) {
-      if (plane.middle_by == MiddleBy::expected_view) guessed.push_back(plane.file);
+      if (plane.middle_by == CentreDotMethod::expected_view) guessed.push_back(plane.file);
     }
     if (guessed.empty()) return;
     PinholeCamera const& camera = calibration_.pinhole.camera;

@@ -152,7 +152,7 @@ nlohmann::ordered_json calibration_json(Calibration const& calibration) {
                       {"not_dots", plane.not_dots},
                       {"strangers", strangers_json(plane)},
                       {"scatter_px", plane.smoothness_px},
-                      {"middle_by", plane.middle_by == MiddleBy::whole_grid ? "whole_grid" : "setup"}});
+                      {"middle_by", plane.middle_by == CentreDotMethod::whole_grid ? "whole_grid" : "setup"}});
   }
   PinholeFit const& fit = calibration.pinhole;
   auto const finite = [](double value) { return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr); };
@@ -198,7 +198,7 @@ std::string calibration_table(Calibration const& calibration) {
     text += fmt::format(
         "Z = {:.6g} mm: {} of {} detected dots are on the grid{}{}\n", plane.z / unit::millimetre, plane.used,
         plane.found,
-        plane.middle_by == MiddleBy::whole_grid ? "" : ", whose middle was determined from the setup's camera",
+        plane.middle_by == CentreDotMethod::whole_grid ? "" : ", whose middle was determined from the setup's camera",
         spots_in_words(plane));
   }
   return text + fmt::format(

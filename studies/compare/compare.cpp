@@ -109,14 +109,14 @@ GroundTruth truth_at_points(Scene const& scene, Renderer& renderer, std::vector<
 }
 
 std::vector<Vec2d> ideal_lens_truth(Scene scene, Renderer& renderer, GroundTruth const& point) {
-  if (method_of(scene) == RenderMethod::focused_dots && scene.setup.lens.focus == Focus::target)
+  if (resolve_render_method(scene) == RenderMethod::focused_dots && scene.setup.lens.focus == Focus::target)
     return point.displacement_px;
   DotPattern virtual_dots;
   virtual_dots.half_size = scene.dots.half_size;
   virtual_dots.shape = scene.dots.shape;
   for (Vec3d const& p : point.position_m) virtual_dots.centre.push_back({p.x, p.y});
   // On the optical axis, the ideal lens can be rendered by the fast renderer, unless rays are requested.
-  bool const focusable = scene.setup.on_bench() && !scene.chief_rays_only();
+  bool const focusable = scene.setup.has_closed_form_layout() && !scene.chief_rays_only();
   if (!focusable || scene.setup.render.method == RenderMethod::rays) return ideal_displacements(scene, virtual_dots);
   // Retain the sensor's position, and so the magnification; change the focal length to focus on the target.
   scene.setup.lens.focal_length = 1 / (1 / scene.imaging.image_distance + 1 / scene.setup.z_b());

@@ -42,7 +42,7 @@ struct Comparison {
   ErrorBudget budget;  ///< budget relative to the truth on undeformed windows, as measured by a single pass
   ErrorBudget budget_after_passes;  ///< budget relative to the truth on deformed windows; empty unless frames_deformed
   std::string report;               ///< conventions detected in a foreign file; empty for our own
-  LeftOutVectors left_out;          ///< vectors of the file that were rejected; `measured` holds the others
+  RejectedVectors left_out;         ///< vectors of the file that were rejected; `measured` holds the others
   std::optional<DetectedConventions> detected;  ///< for a foreign file
   bool complete = true;                         ///< false: the file's header declares another number of vectors
   bool foreign = false;
@@ -83,7 +83,7 @@ struct MeasuredVectors {
   bool foreign = false;          ///< true if the vectors cannot be measured again on noise-free images
   std::string report{};          ///< conventions detected in a foreign file
   std::string name{};            ///< name of the file or the case, for messages
-  LeftOutVectors left_out{};
+  RejectedVectors left_out{};
   std::optional<DetectedConventions> detected{};  ///< for a foreign file
   bool complete = true;                           ///< false: the file's header declares another number of vectors
   /// the vectors are every n-th of the lattice defined by the settings, see every_nth()
@@ -116,8 +116,8 @@ void name_sources(Comparison& comparison, ComparedFiles files);
 Comparison compare_case(std::string const& folder, Backend const& device, CompareOptions const& options);
 
 /// Returns error measures against ray_truth, eq9, eq9_cone (PIV: flow, ambient_truth) and window_truth, and the budget.
-nlohmann::ordered_json errors_of(Comparison const& comparison);
-/// Returns errors_of() as the text of errors.json.
+nlohmann::ordered_json compute_error_measures(Comparison const& comparison);
+/// Returns compute_error_measures() as the text of errors.json.
 std::string errors_json(Comparison const& comparison);
 
 /// Draws displacement maps, error histograms, error against gradient and the budget into a folder.

@@ -58,17 +58,17 @@ class TruthMap {
 
 /// Rejects vectors that lie or point outside the image.
 /// @throws DataError if no vector remains, or no position is in px
-LeftOutVectors screen(VectorFile& file, std::string const& path, CameraSetup const& camera) {
+RejectedVectors screen(VectorFile& file, std::string const& path, CameraSetup const& camera) {
   bool const turned = file.conventions.exchanges_places();  // the file's x then points down
   int const columns = turned ? camera.rows : camera.columns, rows = turned ? camera.columns : camera.rows;
-  LeftOutVectors const left_out = screen_vectors(file.field, file.conventions.offset_px, columns, rows);
-  std::string const refusal = refusal_of_places(file.field, left_out, columns, rows);
+  RejectedVectors const left_out = screen_vectors(file.field, file.conventions.offset_px, columns, rows);
+  std::string const refusal = reason_to_reject_positions(file.field, left_out, columns, rows);
   if (!refusal.empty()) throw DataError(path, refusal);
   if (left_out.all() > 0) {
     spdlog::warn("{}: {} of {} vectors are excluded: {}", path, left_out.all(),
                  file.field.size() + left_out.without_place(), left_out.text());
   }
-  std::string const doubt = doubt_about_places(file.field, columns, rows);
+  std::string const doubt = describe_suspect_positions(file.field, columns, rows);
   if (!doubt.empty()) spdlog::warn("{}: {}", path, doubt);
   return left_out;
 }
@@ -104,7 +104,7 @@ DetectedConventions detect(VectorFile const& file, std::string const& path, Grou
   TruthMap const map(truth, camera);
   DetectedConventions detected = detect_conventions(
       file, [&map](Vec2d c) { return map.at(c); }, camera.rows);
-  if (detected.verdict == Verdict::fits_none) {
+  if (detected.verdict == Verdict::no_convention_fits) {
     throw DataError(path,
                     detected.report + ", or specify its reading with --conventions if the file cannot be corrected");
   }
@@ -128,7 +128,7 @@ MeasuredVectors accept_vectors(VectorFile file, std::string const& name, CaseSet
   if (options.conventions) override_conventions(file, *options.conventions);
   file = convert_to_pixels(std::move(file), name);
   CameraSetup const& camera = loaded.setup.camera;
-  LeftOutVectors const left_out = screen(file, name, camera);
+  RejectedVectors const left_out = screen(file, name, camera);
   // rejected vectors count as valid unless their displacement was not finite
   bool any_valid = left_out.all() > left_out.displacement_not_finite;
   for (std::size_t i = 0; i < file.field.size() && !any_valid; ++i) any_valid = file.field.counts(i);

@@ -12,11 +12,11 @@ namespace gladstone {
 namespace {
 
 nlohmann::json term_json(BudgetTerm const& term) {
-  nlohmann::json json{{"bias_u_px", known_or_null(term.bias_u_px)},
-                      {"bias_v_px", known_or_null(term.bias_v_px)},
-                      {"random_u_px", known_or_null(term.random_u_px)},
-                      {"random_v_px", known_or_null(term.random_v_px)},
-                      {"rms_px", known_or_null(term.rms_px)}};
+  nlohmann::json json{{"bias_u_px", number_or_null(term.bias_u_px)},
+                      {"bias_v_px", number_or_null(term.bias_v_px)},
+                      {"random_u_px", number_or_null(term.random_u_px)},
+                      {"random_v_px", number_or_null(term.random_v_px)},
+                      {"rms_px", number_or_null(term.rms_px)}};
   if (!term.includes.empty()) json["includes"] = term.includes;
   return json;
 }
@@ -25,14 +25,14 @@ nlohmann::json matrix_json(CovarianceMatrix const& matrix) {
   nlohmann::json rows = nlohmann::json::array();
   for (std::size_t i = 0; i < matrix.size; ++i) {
     nlohmann::json row = nlohmann::json::array();
-    for (std::size_t j = 0; j < matrix.size; ++j) row.push_back(known_or_null(matrix(i, j)));
+    for (std::size_t j = 0; j < matrix.size; ++j) row.push_back(number_or_null(matrix(i, j)));
     rows.push_back(row);
   }
   return rows;
 }
 
 nlohmann::ordered_json fit_json(ConventionFit const& fit) {
-  return {{"conventions", describe(fit.conventions)}, {"rms_px", known_or_null(fit.rms_px)}};
+  return {{"conventions", describe(fit.conventions)}, {"rms_px", number_or_null(fit.rms_px)}};
 }
 
 /// Returns how a foreign file's vectors fit the truth: with the detected conventions, without offset, and with every
@@ -44,17 +44,17 @@ nlohmann::ordered_json fit_json(DetectedConventions const& detected) {
                     : detected.verdict == Verdict::noisy    ? "noisy"
                     : detected.verdict == Verdict::mistaken ? "mistaken"
                                                             : "cannot_be_told";
-  LikelyMistake const& mistake = detected.mistake;
+  ProbableMistake const& mistake = detected.mistake;
   json["likely_mistake"] = nullptr;
   if (mistake.found()) {
-    json["likely_mistake"] = {{"text", mistake.text}, {"rms_without_px", known_or_null(mistake.mended.rms_px)}};
+    json["likely_mistake"] = {{"text", mistake.text}, {"rms_without_px", number_or_null(mistake.corrected_fit.rms_px)}};
     if (!mistake.conventions.empty()) json["likely_mistake"]["conventions"] = mistake.conventions;
   }
   json["ambiguous"] = detected.ambiguous;
-  json["signal_px"] = known_or_null(detected.fit.signal_px);
-  json["slope"] = known_or_null(detected.fit.slope);
+  json["signal_px"] = number_or_null(detected.fit.signal_px);
+  json["slope"] = number_or_null(detected.fit.slope);
   json["offset_px"] = detected.conventions.offset_px;
-  json["rms_without_offset_px"] = known_or_null(detected.without_offset.rms_px);
+  json["rms_without_offset_px"] = number_or_null(detected.without_offset.rms_px);
   json["tried"] = nlohmann::ordered_json::array();
   for (ConventionFit const& fit : detected.tried) json["tried"].push_back(fit_json(fit));
   return json;
@@ -77,7 +77,7 @@ nlohmann::ordered_json uncertainty_json(Comparison const& comparison) {
     for (auto const& [measure, value] : quality_measures(quality)) {
       bool const is_count = measure == "count" || measure == "gross" || measure == "without_sigma";
       json[name][std::string(measure)] =
-          is_count ? nlohmann::json(static_cast<long long>(value)) : known_or_null(value);
+          is_count ? nlohmann::json(static_cast<long long>(value)) : number_or_null(value);
     }
   }
   json["bins"] = nlohmann::ordered_json::array();
@@ -90,14 +90,14 @@ nlohmann::ordered_json uncertainty_json(Comparison const& comparison) {
 
 }  // namespace
 
-nlohmann::ordered_json errors_of(Comparison const& comparison) {
+nlohmann::ordered_json compute_error_measures(Comparison const& comparison) {
   nlohmann::ordered_json json;
   auto const summary = [&](std::vector<Vec2d> const& truth) {
     nlohmann::ordered_json measures;
     for (auto const& [name, value] :
          error_measures(comparison.measured.displacement_px, truth, comparison.mask, comparison.vectors_in_file())) {
       measures[std::string(name)] =
-          name == "count" ? nlohmann::json(static_cast<long long>(value)) : known_or_null(value);
+          name == "count" ? nlohmann::json(static_cast<long long>(value)) : number_or_null(value);
     }
     return measures;
   };
@@ -130,13 +130,13 @@ nlohmann::ordered_json errors_of(Comparison const& comparison) {
                           {"both_px2", matrix_json(comparison.budget.covariance)},
                           {"u_px2", matrix_json(comparison.budget.covariance_u)},
                           {"v_px2", matrix_json(comparison.budget.covariance_v)}};
-  budget["peak_locking_px"] = known_or_null(comparison.budget.peak_locking_px);
-  budget["closure_px"] = known_or_null(comparison.budget.closure_px);
+  budget["peak_locking_px"] = number_or_null(comparison.budget.peak_locking_px);
+  budget["closure_px"] = number_or_null(comparison.budget.closure_px);
   json["budget"] = budget;
   json["vectors"] = {{"total", comparison.vectors_in_file()},
                      {"left_out_fewer_than_three_dots", comparison.window.left_out},
                      {"conventions", comparison.report}};
-  LeftOutVectors const& left_out = comparison.left_out;
+  RejectedVectors const& left_out = comparison.left_out;
   if (comparison.foreign || left_out.all() > 0) {  // vectors measured within a study have none
     json["vectors"].update({{"left_out_place_not_finite", left_out.place_not_finite},
                             {"left_out_outside_image", left_out.outside_image},
@@ -155,7 +155,7 @@ nlohmann::ordered_json errors_of(Comparison const& comparison) {
   return json;
 }
 
-std::string errors_json(Comparison const& comparison) { return json_text(errors_of(comparison)) + "\n"; }
+std::string errors_json(Comparison const& comparison) { return json_text(compute_error_measures(comparison)) + "\n"; }
 
 std::vector<std::string> draw_comparison(std::string const& folder, Comparison const& comparison,
                                          std::string const& format) {

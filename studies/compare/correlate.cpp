@@ -10,7 +10,7 @@
 #include "analysis/correlation/correlation_methods.h"
 #include "analysis/correlation/correlator.h"
 #include "analysis/correlation/ensemble.h"
-#include "analysis/correlation/pair_verdict.h"
+#include "analysis/correlation/pair_assessment.h"
 #include "analysis/uncertainty/uncertainty.h"
 #include "analysis/vectors/vector_file.h"
 #include "render/base/contracts.h"
@@ -32,7 +32,7 @@ CorrelationFile read_document(SetupDocument document, std::vector<std::string> c
   for (char const* other :
        {"schema", "experiment", "camera", "lens", "geometry", "window", "medium", "target", "light", "particles",
         "laser", "flow", "calibration", "render", "requirements", "limits", "inventory", "free", "correlations"}) {
-    if (root.has(other)) root.pass_over(other);
+    if (root.has(other)) root.mark_as_read(other);
   }
   for (auto const& assignment : overrides) {
     if (assignment.starts_with("correlate.") || assignment.starts_with("correlate=")) {
@@ -92,7 +92,7 @@ Measurement correlate_prepared(FramePair const& frames, CorrelationSettings sett
   HostFrames const prepared = prepare_frames(frames, settings.preparation);
   settings.preparation = {};
   Measurement measurement = correlate_frames(prepared, settings, device);
-  if (known_part(prepared) == 0.0)
+  if (valid_pixel_fraction(prepared) == 0.0)
     measurement.field.warnings.emplace_back(
         "the masks cover every pixel of the frames (so that every vector is masked); reduce correlate.mask");
   measurement.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -141,7 +141,7 @@ Measurement correlate_frames(FramePair const& frames, CorrelationSettings const&
   auto const start = std::chrono::steady_clock::now();
   std::unique_ptr<Correlator> const correlator = device.correlator(settings);
   Measurement measurement{correlator->correlate_pair(frames), 0, device.correlates_on(settings)};
-  judge_pair(measurement.field, frames, *correlator, settings);
+  assess_pair(measurement.field, frames, *correlator, settings);
   complete_uncertainty(measurement.field, frames, settings);
   auto const counts = [](VectorStatus status) { return status <= VectorStatus::replaced; };
   bool const any = std::any_of(measurement.field.status.begin(), measurement.field.status.end(), counts);
@@ -194,7 +194,7 @@ Measurement correlate_ensemble_files(std::vector<std::string> const& files, Corr
     bool const is_flow = k % 2 == 1;
     Image<double> frame =
         read_frame(files[k], fmt::format("{}_{}", is_flow ? "flow" : "reference", k / 2 + 1), sources);
-    if (is_flow && same_picture(reference, frame)) twice.push_back(files[k]);
+    if (is_flow && are_identical_frames(reference, frame)) twice.push_back(files[k]);
     if (k == 0) {
       columns = frame.columns();
       rows = frame.rows();
@@ -211,7 +211,7 @@ Measurement correlate_ensemble_files(std::vector<std::string> const& files, Corr
                              return prepare_frames(frames, settings.preparation);
                            }};
   Measurement measurement{correlate_ensemble(pairs, settings), 0, "cpu"};
-  judge_ensemble(measurement.field, pairs, settings);
+  assess_ensemble(measurement.field, pairs, settings);
   if (!twice.empty() && twice.size() < pairs.size)
     measurement.field.warnings.push_back(
         fmt::format("{} of {} pairs consist of two identical images (which biases the displacement towards 0), the "

@@ -13,7 +13,7 @@ namespace gladstone {
 
 /// Result of correlating one or several image pairs.
 struct Measurement {
-  DisplacementField field;  ///< vectors after validation by judge_pair() or judge_ensemble()
+  DisplacementField field;  ///< vectors after validation by assess_pair() or assess_ensemble()
   double seconds = 0;       ///< wall time [s]
   std::string device;       ///< device of the correlation: "cpu" or "cuda"
 };

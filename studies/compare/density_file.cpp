@@ -39,9 +39,9 @@ ValueRange find_range(std::vector<double> const& values) {
 }
 
 nlohmann::ordered_json range_json(ValueRange const& range) {
-  return {{"least", known_or_null(range.least)},
-          {"median", known_or_null(range.median)},
-          {"largest", known_or_null(range.largest)}};
+  return {{"least", number_or_null(range.least)},
+          {"median", number_or_null(range.median)},
+          {"largest", number_or_null(range.largest)}};
 }
 
 char const* direction_name(density::AxisDirection direction) {
@@ -131,21 +131,21 @@ nlohmann::ordered_json summarize_reconstruction(Reconstruction const& reconstruc
   if (reconstruction.axisymmetry) {
     AxisymmetryResult const& flow = *reconstruction.axisymmetry;
     json["axis"] = {
-        {"direction", direction_name(flow.direction)},      {"position_mm", 1e3 * flow.axis.position},
-        {"sigma_mm", known_or_null(1e3 * flow.axis.sigma)}, {"lambda", flow.lambda},
-        {"asymmetry", known_or_null(flow.asymmetry)},       {"border_gradient", known_or_null(flow.border_gradient)}};
+        {"direction", direction_name(flow.direction)},       {"position_mm", 1e3 * flow.axis.position},
+        {"sigma_mm", number_or_null(1e3 * flow.axis.sigma)}, {"lambda", flow.lambda},
+        {"asymmetry", number_or_null(flow.asymmetry)},       {"border_gradient", number_or_null(flow.border_gradient)}};
   }
   if (!reconstruction.truth.empty()) {
     DensityErrors const errors = compute_density_errors(reconstruction);
     json["error_kg_m3"] = {{"count", errors.count},
-                           {"bias", known_or_null(errors.bias)},
-                           {"rms", known_or_null(errors.rms)},
-                           {"largest", known_or_null(errors.largest)},
-                           {"contrast", known_or_null(errors.contrast)},
-                           {"coverage", known_or_null(errors.coverage)}};
+                           {"bias", number_or_null(errors.bias)},
+                           {"rms", number_or_null(errors.rms)},
+                           {"largest", number_or_null(errors.largest)},
+                           {"contrast", number_or_null(errors.contrast)},
+                           {"coverage", number_or_null(errors.coverage)}};
   }
   for (DensityTerm const& term : reconstruction.budget)
-    json["budget_kg_m3"][term.name] = {{"bias", known_or_null(term.bias)}, {"rms", known_or_null(term.rms)}};
+    json["budget_kg_m3"][term.name] = {{"bias", number_or_null(term.bias)}, {"rms", number_or_null(term.rms)}};
   return json;
 }
 

@@ -36,7 +36,7 @@ class SheetPoints {
     virtual_ones.resize(place_.size());
     double const half = scene_.setup.piv->flow.dt / 2;
     parallel_for(place_.size(), [&](std::size_t i) {
-      Vec3d const middle = plane_.point_outwards({place_[i].x, place_[i].y, 0});
+      Vec3d const middle = plane_.point_to_outer({place_[i].x, place_[i].y, 0});
       virtual_ones.place[0][i] = moved(velocity_, middle, -half, scene_.particles.path.steps);
       virtual_ones.place[1][i] = moved(velocity_, middle, half, scene_.particles.path.steps);
       virtual_ones.diameter[i] = diameter_;
@@ -65,8 +65,8 @@ class SheetPoints {
         moves.push_back({out_of_sight, out_of_sight});
         continue;
       }
-      Vec3d const middle = plane_.point_outwards({seen->place.x, seen->place.y, 0});
-      Vec3d const way = plane_.direction_inwards(dt * velocity_.flow(middle));
+      Vec3d const middle = plane_.point_to_outer({seen->place.x, seen->place.y, 0});
+      Vec3d const way = plane_.direction_to_local(dt * velocity_.flow(middle));
       moves.push_back(seen->moved({way.x, way.y}));
     }
     return moves;
@@ -76,7 +76,7 @@ class SheetPoints {
   Scene const& scene_;
   Pose<double> plane_;
   std::vector<Vec2d> const& wanted_;
-  std::vector<std::optional<SeenPoint>> seen_;
+  std::vector<std::optional<ImagedPoint>> seen_;
   std::vector<Vec2d> place_;  // at mid-time, on the plane [m]
   double diameter_ = 0;
   ParticleVelocity velocity_;
@@ -147,7 +147,7 @@ ParticlePoints particle_points(Scene const& scene, Renderer& renderer, std::vect
 std::vector<Vec2d> particle_displacements(Scene const& scene, Renderer& renderer, std::vector<Vec2d> const& places_px,
                                           TruthAt at) {
   SheetPoints start(scene, places_px);
-  if (without_medium(scene) && scene.setup.on_bench()) return project_points(scene, std::move(start), at);
+  if (without_medium(scene) && scene.setup.has_closed_form_layout()) return project_points(scene, std::move(start), at);
   return trace_points(scene, renderer, std::move(start), at, SeenThrough::medium).displacement_px;
 }
 

@@ -4,7 +4,7 @@
 
 namespace gladstone {
 
-std::string uncorrected_bias_words(BudgetChain chain) {
+std::string describe_uncorrected_bias(BudgetChain chain) {
   bool const piv = chain == BudgetChain::piv;
   return std::string("the true displacement averaged over the window minus the displacement ") +
          (piv ? "of the flow" : "by Eq. 9") + ", rms over the vectors. " +

@@ -22,7 +22,7 @@ struct Predicted {
   double value;  ///< in the key's unit
 };
 
-std::vector<Predicted> predicted(Bench<double> const& b) {
+std::vector<Predicted> predicted(DesignPoint<double> const& b) {
   return {{"sensitivity_px_per_kg_m4", b.sensitivity()},
           {"gradient_min_kg_m4", b.smallest_gradient()},
           {"random_px", b.random_error()},
@@ -39,11 +39,11 @@ std::vector<Predicted> predicted(Bench<double> const& b) {
 }
 
 /// Returns the recommended value of every free key, in the unit of the key.
-std::vector<std::pair<std::string, double>> recommended(DesignQuestion const& question, Bench<double> const& b) {
+std::vector<std::pair<std::string, double>> recommended(DesignQuestion const& question, DesignPoint<double> const& b) {
   std::array<double, choice_count> const value{b.focal_length, b.f_number, b.z_a, b.z_d, b.dot_diameter};
   std::vector<std::pair<std::string, double>> keys;
   for (FreeChoice const& free : question.free) {
-    ChoiceKey const& key = key_of(free.choice);
+    ChoiceKey const& key = choice_key(free.choice);
     keys.emplace_back(key.path, value[static_cast<std::size_t>(free.choice)] / key.unit);
   }
   return keys;
@@ -84,7 +84,7 @@ std::string outcome_text(AnsweredQuestion const& answered, BranchOutcome const& 
 }
 
 std::string feasible_text(AnsweredQuestion const& answered) {
-  Bench<double> const best = answered.best();
+  DesignPoint<double> const best = answered.best();
   std::string text = "recommended\n";
   for (auto const& [key, value] : recommended(answered.question, best)) {
     text += fmt::format("  {:<28}{:.6g}\n", key, value);
@@ -142,7 +142,7 @@ std::string infeasible_text(AnsweredQuestion const& answered) {
 
 Json feasible_json(AnsweredQuestion const& answered) {
   Json json;
-  Bench<double> const best = answered.best();
+  DesignPoint<double> const best = answered.best();
   Recommendation const& answer = answered.answer;
   for (auto const& [key, value] : recommended(answered.question, best)) json["recommended"][key] = value;
   DesignVariant const& variant = answered.variants[answer.outcomes.front().branch.variant];

@@ -24,7 +24,7 @@ struct AnsweredQuestion {
     bool const simulated = verification && verification->chosen;
     return simulated ? verification->benches[*verification->chosen].outcome : answer.outcomes.front();
   }
-  Bench<double> best() const { return bench_at(chosen().branch, chosen().solution.logarithms); }
+  DesignPoint<double> best() const { return design_point_at(chosen().branch, chosen().solution.logarithms); }
   /// Returns true if a design is feasible by formula and no simulation contradicts it.
   bool feasible() const { return answer.feasible() && (!verification || verification->chosen || !verification->any()); }
 };

@@ -24,7 +24,7 @@ constexpr char const* raffel = "Raffel 2015, Exp. Fluids 56:60";
 constexpr char const* seed = "Rajendran, Bane & Vlachos";
 constexpr char const* derived = "derived in docs/design.md";
 
-void add_imaging(DesignSheet& sheet, Setup const& setup, Bench<double> const& b) {
+void add_imaging(DesignSheet& sheet, Setup const& setup, DesignPoint<double> const& b) {
   CameraSetup const& camera = b.given->camera;
   auto& rows = sheet.rows;
   rows.push_back({"F1", "image_distance_mm", "image distance z_i", b.image_distance() / mm, "mm", "1 / (1/f - 1/Z_B)",
@@ -52,9 +52,9 @@ void add_imaging(DesignSheet& sheet, Setup const& setup, Bench<double> const& b)
                   "minimum size of the target"});
 }
 
-void add_sensitivity(DesignSheet& sheet, Bench<double> const& b) {
+void add_sensitivity(DesignSheet& sheet, DesignPoint<double> const& b) {
   auto& rows = sheet.rows;
-  double const gradient = shown_gradient(*b.given), quarter = b.given->first_window_px / 4.0;
+  double const gradient = sheet_gradient(*b.given), quarter = b.given->first_window_px / 4.0;
   std::string const of = fmt::format("of {:.4g} kg/m^4{}", gradient,
                                      b.given->largest_gradient > 0 ? ", the largest in the setup's view" : "");
   rows.push_back({"F5", "deflection_urad", "deflection", gradient * b.deflection() * 1e6, "urad",
@@ -74,9 +74,10 @@ void add_sensitivity(DesignSheet& sheet, Bench<double> const& b) {
        b.given->largest_gradient > 0 ? at_most(b.smallest_gradient(), 0.1 * gradient, gradient) : Margin::none,
        "two standard deviations of F26"});
   rows.push_back(
-      {"F19", "gradient_max_kg_m4", "largest gradient of the first pass", b.gradient_of(quarter), "kg/m^4",
-       "(N_w / 4) / sensitivity", "Keane & Adrian 1992, Appl. Sci. Res. 49:191",
-       b.given->largest_gradient > 0 ? at_least(b.gradient_of(quarter), 2 * gradient, gradient) : Margin::none,
+      {"F19", "gradient_max_kg_m4", "largest gradient of the first pass", b.gradient_from_displacement(quarter),
+       "kg/m^4", "(N_w / 4) / sensitivity", "Keane & Adrian 1992, Appl. Sci. Res. 49:191",
+       b.given->largest_gradient > 0 ? at_least(b.gradient_from_displacement(quarter), 2 * gradient, gradient)
+                                     : Margin::none,
        fmt::format("a quarter of the window of {} px", b.given->first_window_px)});
   double const lever = b.z_a * b.z_d / b.z_b();
   rows.push_back({"F19", "curvature_max_kg_m5", "largest second derivative of density",
@@ -91,7 +92,7 @@ std::string resolution_limit(double window, double cone, double pixels) {
   return window >= std::max(cone, pixels) ? "the window" : cone >= pixels ? "the cone" : "two pixels";
 }
 
-void add_blur(DesignSheet& sheet, Bench<double> const& b) {
+void add_blur(DesignSheet& sheet, DesignPoint<double> const& b) {
   auto& rows = sheet.rows;
   double const cone = b.cone_diameter(), window = b.window_width(), pixels = 2 * b.pixel_at_medium();
   double const smallest = std::max({window, cone, pixels}), resolved = resolved_wavelength(b);
@@ -121,7 +122,7 @@ void add_blur(DesignSheet& sheet, Bench<double> const& b) {
   double const dot = b.dot_image_px();
   rows.push_back(
       {"F14", "dot_diameter_px", "dot image, e^-2 diameter", dot, "px", "sqrt((M d / p)^2 + (4 s)^2)", adrian,
-       std::max(at_least(dot, least_image_px, 1.5), at_most(dot, random_error_range.most_image, 7)),
+       std::max(at_least(dot, min_image_px, 1.5), at_most(dot, random_error_range.most_image, 7)),
        fmt::format(
            "of dots {:.4g} mm wide, s = 0.4206 N (1 + M) lambda / p = {:.3g} px; 2 to 3 px for correlation, 3 to "
            "5 px for tracking",
@@ -140,7 +141,7 @@ void add_blur(DesignSheet& sheet, Bench<double> const& b) {
 
 /// Returns the peak charge that equals q times its noise: n / sqrt(n + sigma_r^2) = q, with sigma_r^2 the variance
 /// without shot noise [e].
-double peak_of_signal(Bench<double> const& b, double q) {
+double peak_of_signal(DesignPoint<double> const& b, double q) {
   double const n = b.peak_electrons(), variance = std::pow(b.noise() * n, 2);
   NoiseSetup const& noise = b.given->camera.noise;
   double const shot = noise.enabled && noise.shot_noise ? 1 : 0;
@@ -149,19 +150,19 @@ double peak_of_signal(Bench<double> const& b, double q) {
 
 /// Returns the largest f-number at which the dot images are within the recommended size (Bound::dot_most); 0 if the
 /// geometric image alone exceeds it.
-double widest_images_stop(Bench<double> const& b) {
+double widest_images_stop(DesignPoint<double> const& b) {
   double const most = random_error_range.most_image, geometric = b.geometric_dot_px();
   return b.f_number * std::sqrt(std::max(0.0, most * most - geometric * geometric)) / (4 * b.spot_sigma_px());
 }
 
 /// Returns the largest f-number with sufficiently bright peaks, assuming the peak share of the present f-number;
 /// infinite if the light is not specified.
-double brightest_stop(Bench<double> const& b) {
+double brightest_stop(DesignPoint<double> const& b) {
   if (!b.given->light) return HUGE_VAL;
   return b.f_number * std::sqrt(b.peak_electrons() / peak_of_signal(b, good_signal));
 }
 
-void add_light(DesignSheet& sheet, Bench<double> const& b) {
+void add_light(DesignSheet& sheet, DesignPoint<double> const& b) {
   auto& rows = sheet.rows;
   CameraSetup const& camera = b.given->camera;
   double const peak = b.peak_electrons(), full = camera.noise.full_well_e;
@@ -202,7 +203,7 @@ void add_light(DesignSheet& sheet, Bench<double> const& b) {
 
 }  // namespace
 
-std::string beyond_study(Bench<double> const& b) {
+std::string beyond_study(DesignPoint<double> const& b) {
   RandomErrorRange const& range = random_error_range;
   std::string text;
   auto const check = [&text](char const* what, double value, double low, double high, double unit, char const* name) {
@@ -222,7 +223,7 @@ std::string beyond_study(Bench<double> const& b) {
 
 namespace {
 
-void add_errors(DesignSheet& sheet, Setup const& setup, Bench<double> const& b) {
+void add_errors(DesignSheet& sheet, Setup const& setup, DesignPoint<double> const& b) {
   auto& rows = sheet.rows;
   double const sigma = b.random_error(), pitch = b.given->camera.pixel_pitch, q = b.noise();
   std::string const beyond = beyond_study(b);
@@ -245,7 +246,7 @@ void add_errors(DesignSheet& sheet, Setup const& setup, Bench<double> const& b) 
                               "of {:.3g} px, noise {:.3g} % of the peak, {:.3g} dots in a window{}",
                               b.geometric_dot_px(), b.spot_sigma_px(), 100 * q, b.dots_in_window(),
                               beyond.empty() ? "" : "; outside the range of the study: " + beyond)});
-  double const epsilon = shown_gradient(*b.given) * b.deflection(), slab = b.given->thickness / b.z_d;
+  double const epsilon = sheet_gradient(*b.given) * b.deflection(), slab = b.given->thickness / b.z_d;
   double const theta = b.given->camera.columns * pitch / 2 / b.image_distance();
   bool const matched = setup.medium.faces == Faces::matched;
   double const on_axis = epsilon * epsilon * (matched ? 1.0 / 6 + slab / 24 : 2.0 / 3 + 7 * slab / 24);
@@ -264,11 +265,11 @@ void add_errors(DesignSheet& sheet, Setup const& setup, Bench<double> const& b) 
 
 }  // namespace
 
-double shown_gradient(BenchGiven const& given) {
+double sheet_gradient(FixedDesignParameters const& given) {
   return given.largest_gradient > 0 ? given.largest_gradient : gradient_without_field;
 }
 
-DesignSheet bos_sheet(Setup const& setup, Bench<double> const& bench) {
+DesignSheet bos_sheet(Setup const& setup, DesignPoint<double> const& bench) {
   DesignSheet sheet;
   add_imaging(sheet, setup, bench);
   add_sensitivity(sheet, bench);

@@ -64,7 +64,7 @@ std::vector<Limit> required_limits(Requirements const& r) {
   return limits;
 }
 
-std::vector<Limit> bench_limits(BenchGiven const& given) {
+std::vector<Limit> feasibility_limits(FixedDesignParameters const& given) {
   constexpr double clearance = 1.02;  // distance from the mid-plane, in half thicknesses
   std::vector<Limit> limits{{Bound::focus, 0},
                             {Bound::dots_clear, clearance * given.thickness / 2},

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "studies/design/bench.h"
+#include "studies/design/design_point.h"
 #include "studies/design/question.h"
 
 namespace gladstone {
@@ -51,7 +51,7 @@ BoundKey bound_key(Bound bound);
 /// Returns the limits required by the user.
 std::vector<Limit> required_limits(Requirements const& requirements);
 /// Returns the limits that every set-up must meet.
-std::vector<Limit> bench_limits(BenchGiven const& given);
+std::vector<Limit> feasibility_limits(FixedDesignParameters const& given);
 
 inline constexpr double closest_focus = 1.02;  ///< minimum distance of the dots from the lens, in focal lengths
 /// maximum fraction of the target covered by dots; random discs without overlap reach 0.5
@@ -62,11 +62,11 @@ inline constexpr double most_coverage = 0.45;
 /// excess over the limit `focus` instead.
 /// @param bench  set-up; may contain derivatives
 template <class T>
-T excess(Limit const& limit, Bench<T> const& bench) {
+T excess(Limit const& limit, DesignPoint<T> const& bench) {
   using std::log;
   T const beyond_focus = bench.z_b() / bench.focal_length;
   if (beyond_focus < closest_focus || limit.bound == Bound::focus) return log(closest_focus / beyond_focus);
-  BenchGiven const& given = *bench.given;
+  FixedDesignParameters const& given = *bench.given;
   switch (limit.bound) {
     case Bound::gradient_min:
       return log(bench.smallest_gradient() / limit.value);
@@ -106,7 +106,7 @@ T excess(Limit const& limit, Bench<T> const& bench) {
 /// Returns the quantity that an objective minimizes, in SI.
 /// @param value  the same set-up without derivatives
 template <class T>
-T objective_value(Objective objective, Bench<T> const& bench, Bench<double> const& value) {
+T objective_value(Objective objective, DesignPoint<T> const& bench, DesignPoint<double> const& value) {
   switch (objective) {
     case Objective::gradient_min:
       return bench.smallest_gradient();
@@ -132,7 +132,7 @@ struct DesignProblem {
 
 /// One combination of the discrete design variables, with the intervals of the continuous ones.
 struct DesignBranch {
-  BenchGiven const* given = nullptr;
+  FixedDesignParameters const* given = nullptr;
   std::array<double, choice_count> value{};  ///< value of every variable that is not continuous [SI]
   /// diameter of the geometric dot image, if given in px and not a design variable [px]
   std::optional<double> dot_px;
@@ -142,14 +142,14 @@ struct DesignBranch {
 
 /// Returns the set-up at a point of a branch, given the logarithms of its continuous design variables.
 template <class T>
-Bench<T> bench_at(DesignBranch const& branch, std::vector<T> const& logarithms) {
+DesignPoint<T> design_point_at(DesignBranch const& branch, std::vector<T> const& logarithms) {
   using std::exp;
   std::array<T, choice_count> v;
   for (std::size_t i = 0; i < choice_count; ++i) v[i] = T(branch.value[i]);
   for (std::size_t i = 0; i < branch.continuous.size(); ++i) {
     v[static_cast<std::size_t>(branch.continuous[i].choice)] = exp(logarithms[i]);
   }
-  Bench<T> bench{branch.given, v[0], v[1], v[2], v[3], v[4]};
+  DesignPoint<T> bench{branch.given, v[0], v[1], v[2], v[3], v[4]};
   if (branch.dot_px && bench.z_b() > bench.focal_length) bench.dot_diameter = *branch.dot_px * bench.pixel_at_dots();
   return bench;
 }

@@ -66,7 +66,7 @@ DesignVariant load_variant(SetupDocument document, DesignQuestion const& questio
     SetupTable table = dot == std::string::npos ? document.root() : document.root().table(key.substr(0, dot));
     throw SetupError({{table.where(dot == std::string::npos ? key : key.substr(dot + 1)), key + ' ' + reason}});
   }
-  auto given = std::make_unique<BenchGiven>(bench_given(loaded));
+  auto given = std::make_unique<FixedDesignParameters>(collect_fixed_parameters(loaded));
   return {camera, lens, std::move(document), loaded.setup, std::move(given)};
 }
 
@@ -175,13 +175,14 @@ std::string branch_name(DesignBranch const& branch, std::vector<DesignVariant> c
     bool const continuous = std::any_of(branch.continuous.begin(), branch.continuous.end(),
                                         [&free](FreeChoice const& other) { return other.choice == free.choice; });
     if (continuous) continue;
-    ChoiceKey const& key = key_of(free.choice);
+    ChoiceKey const& key = choice_key(free.choice);
     add(fmt::format("{} = {:.6g}", key.limit, branch.value[static_cast<std::size_t>(free.choice)] / key.unit));
   }
   return name.empty() ? "the setup" : name;
 }
 
-std::string applied_setup(DesignVariant const& variant, DesignQuestion const& question, Bench<double> const& bench) {
+std::string applied_setup(DesignVariant const& variant, DesignQuestion const& question,
+                          DesignPoint<double> const& bench) {
   SetupDocument document = variant.document.copy();
   std::array<double, choice_count> const value{bench.focal_length, bench.f_number, bench.z_a, bench.z_d,
                                                bench.dot_diameter};
@@ -189,16 +190,16 @@ std::string applied_setup(DesignVariant const& variant, DesignQuestion const& qu
   if (chooses_dots(question)) leave_out(document, "target", "dot_diameter_px");
   for (FreeChoice const& free : question.free) {
     if (free.choice == Choice::focal_length && !variant.lens.empty()) continue;
-    ChoiceKey const& key = key_of(free.choice);
+    ChoiceKey const& key = choice_key(free.choice);
     std::string const path = key.path;
     auto const dot = path.find('.');
     document.set({path.substr(0, dot), path.substr(dot + 1)},
                  setup_number(value[static_cast<std::size_t>(free.choice)] / key.unit));
   }
   // Load the setup again: verifies that it can be rendered, and makes its file names absolute.
-  std::vector<UncertainInput> const uncertain = take_uncertain_inputs(document);
+  std::vector<UncertainInput> const uncertain = extract_uncertain_inputs(document);
   CaseSetup const loaded = load_case_setup(std::move(document));
-  SetupNode root = parse_toml(with_uncertain_inputs(loaded.document.written(), uncertain), "setup");
+  SetupNode root = parse_toml(insert_uncertain_inputs(loaded.document.written(), uncertain), "setup");
   std::erase_if(root.members, [](SetupMember const& member) {
     return std::find(question_tables.begin(), question_tables.end(), member.key) != question_tables.end();
   });

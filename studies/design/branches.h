@@ -15,7 +15,7 @@ struct DesignVariant {
   std::string lens;    ///< prescription of the inventory; empty: thin lens, or the setup's prescription
   SetupDocument document;
   Setup setup;
-  std::unique_ptr<BenchGiven> given;
+  std::unique_ptr<FixedDesignParameters> given;
 };
 
 /// A camera or lens of the inventory that is incompatible with the setup.
@@ -43,6 +43,7 @@ std::string branch_name(DesignBranch const& branch, std::vector<DesignVariant> c
 
 /// Returns the setup of a design, ready to render: the variant's setup with the design's values, without the tables of
 /// the question.
-std::string applied_setup(DesignVariant const& variant, DesignQuestion const& question, Bench<double> const& bench);
+std::string applied_setup(DesignVariant const& variant, DesignQuestion const& question,
+                          DesignPoint<double> const& bench);
 
 }  // namespace gladstone

@@ -49,8 +49,8 @@ void draw(DesignRequest const& request, DesignReport& report, std::string const&
   }
 }
 
-void draw_bench(DesignRequest const& request, DesignReport& report, Bench<double> const& bench,
-                std::optional<Requirements> const& requirements) {
+void draw_layout_and_map(DesignRequest const& request, DesignReport& report, DesignPoint<double> const& bench,
+                         std::optional<Requirements> const& requirements) {
   draw(request, report, "layout", [&](std::string const& path) { write_layout_figure(path, bench); });
   draw(request, report, "design_map", [&](std::string const& path) { write_design_map(path, bench, requirements); });
 }
@@ -81,7 +81,7 @@ void add_sheet(DesignRequest const& request, CaseSetup const& loaded, std::vecto
                     "has no aperture stop (lens.f_number); a design requires the light cone, so give a number");
   }
   report.warnings = loaded.warnings;
-  std::vector<std::string> const neglected = beyond_closed_forms(loaded.setup);
+  std::vector<std::string> const neglected = list_neglected_effects(loaded.setup);
   report.warnings.insert(report.warnings.end(), neglected.begin(), neglected.end());
   std::vector<std::string> const of_field = header_warnings(loaded.setup.medium);
   report.warnings.insert(report.warnings.end(), of_field.begin(), of_field.end());
@@ -91,13 +91,13 @@ void add_sheet(DesignRequest const& request, CaseSetup const& loaded, std::vecto
     sheet = piv_sheet(loaded);
     if (draws) draw_piv(request, report, loaded.setup);
   } else {
-    BenchGiven const given = bench_given(loaded);
-    Bench<double> const bench = bench_of(loaded.setup, given);
+    FixedDesignParameters const given = collect_fixed_parameters(loaded);
+    DesignPoint<double> const bench = make_design_point(loaded.setup, given);
     sheet = bos_sheet(loaded.setup, bench);
-    if (draws) draw_bench(request, report, bench, std::nullopt);
+    if (draws) draw_layout_and_map(request, report, bench, std::nullopt);
     if (!uncertain.empty()) {
       Backend const device = request.open_device();
-      uncertainty = measurement_uncertainty(loaded, uncertain, bench, shown_gradient(given), *device.renderer);
+      uncertainty = measurement_uncertainty(loaded, uncertain, bench, sheet_gradient(given), *device.renderer);
     }
   }
   report.json["sheet"] = sheet_json(sheet);
@@ -117,16 +117,16 @@ void add_answer(DesignRequest const& request, SetupDocument const& document, Des
   report.feasible = result.feasible();
   if (!result.answer.feasible()) {
     // draw the given setup together with the requirements
-    BenchGiven const given = bench_given(loaded);
+    FixedDesignParameters const given = collect_fixed_parameters(loaded);
     if (!request.figures.empty()) {
-      draw_bench(request, report, bench_of(loaded.setup, given), result.question.requirements);
+      draw_layout_and_map(request, report, make_design_point(loaded.setup, given), result.question.requirements);
     }
     return;
   }
-  Bench<double> const best = result.best();
+  DesignPoint<double> const best = result.best();
   if (!request.figures.empty()) {
     Requirements const& requirements = result.question.requirements;
-    draw_bench(request, report, best, requirements);
+    draw_layout_and_map(request, report, best, requirements);
     if (!result.answer.front.empty()) {
       draw(request, report, "front",
            [&](std::string const& path) { write_design_front(path, result.answer, requirements.objective); });
@@ -150,7 +150,7 @@ DesignReport design(DesignRequest const& request) {
 
 DesignReport design(SetupDocument document, DesignRequest const& request) {
   SetupDocument const written = document.copy();
-  std::vector<UncertainInput> const uncertain = take_uncertain_inputs(document);
+  std::vector<UncertainInput> const uncertain = extract_uncertain_inputs(document);
   std::optional<DesignQuestion> question = read_design_question(document);
   CaseSetup const loaded = load_case_setup(std::move(document));  // reports problems of setup and question together
   if (loaded.setup.calibration()) {

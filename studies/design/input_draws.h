@@ -25,7 +25,7 @@ std::vector<CorrelatedGroup> correlated_groups(std::vector<MeasurementInput> con
 /// Draws samples of all inputs minus their values, from the distributions named by drawn_distribution().
 class InputDraws {
  public:
-  /// @pre the coefficients have a Cholesky factor, as checked by take_uncertain_inputs()
+  /// @pre the coefficients have a Cholesky factor, as checked by extract_uncertain_inputs()
   explicit InputDraws(std::vector<MeasurementInput> const& inputs);
 
   /// Draws one sample, with one component per input in its own unit.

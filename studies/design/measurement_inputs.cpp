@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "render/medium/gladstone_dale.h"
-#include "studies/case/quiet_log.h"
+#include "studies/case/log_silencer.h"
 
 namespace gladstone {
 namespace {
@@ -71,7 +71,7 @@ MeasurementInput of_setup(UncertainInput const& input, CaseSetup const& loaded) 
   MeasurementInput one{
       input.key, input.value,        input.sigma, input.distribution, input.degrees_of_freedom, {}, 1, 1,
       {},        input.correlations, {}};
-  bool const bench = loaded.setup.on_bench();
+  bool const bench = loaded.setup.has_closed_form_layout();
   for (FormulaKey const& known : formula_keys) {
     if (input.key != known.key) continue;
     (bench ? one.enters : one.scales) = known.input;
@@ -95,7 +95,7 @@ MeasurementInput of_setup(UncertainInput const& input, CaseSetup const& loaded) 
 
 std::optional<double> traced_log_derivative(CaseSetup const& loaded, UncertainInput const& input, Renderer& renderer) {
   if (input.key == "lens.f_number") return std::nullopt;  // the aperture does not affect the displacement of chief rays
-  QuietLog const quiet;
+  LogSilencer const quiet;
   double const step = input.value != 0 ? step_share * std::abs(input.value) : step_share * input.sigma;
   if (step == 0) return std::nullopt;
   auto const displacement_at = [&](double value) -> std::optional<double> {
@@ -137,7 +137,7 @@ std::vector<MeasurementInput> measurement_inputs(CaseSetup const& loaded, std::v
 }
 
 MeasurementUncertainty measurement_uncertainty(CaseSetup const& loaded, std::vector<UncertainInput> const& uncertain,
-                                               Bench<double> const& bench, double gradient, Renderer& renderer) {
+                                               DesignPoint<double> const& bench, double gradient, Renderer& renderer) {
   MeasurementUncertainty told;
   told.random_px = bench.random_error();
   told.inputs.push_back({"displacement_px", bench.sensitivity() * gradient, told.random_px, InputDistribution::normal,

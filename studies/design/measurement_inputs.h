@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "studies/case/case.h"
-#include "studies/design/bench.h"
+#include "studies/design/design_point.h"
 #include "studies/design/propagation.h"
 
 namespace gladstone {
@@ -30,7 +30,7 @@ std::optional<double> traced_log_derivative(CaseSetup const& loaded, UncertainIn
 /// Returns the inputs of the measurement formula for a displacement [px] measured with a setup.
 GradientMeasurement<double> gradient_measurement(Setup const& setup, int window_px, double displacement_px);
 
-/// Converts the setup's uncertain inputs (extracted by take_uncertain_inputs() before loading) to inputs of the
+/// Converts the setup's uncertain inputs (extracted by extract_uncertain_inputs() before loading) to inputs of the
 /// measurement. Those that the formula does not contain, and all inputs of a setup off the optical axis, get
 /// derivatives by ray tracing.
 std::vector<MeasurementInput> measurement_inputs(CaseSetup const& loaded, std::vector<UncertainInput> const& uncertain,
@@ -40,7 +40,7 @@ std::vector<MeasurementInput> measurement_inputs(CaseSetup const& loaded, std::v
 /// @param gradient  density gradient to be measured [kg/m^4]
 /// @pre the setup is BOS
 MeasurementUncertainty measurement_uncertainty(CaseSetup const& loaded, std::vector<UncertainInput> const& uncertain,
-                                               Bench<double> const& bench, double gradient, Renderer& renderer);
+                                               DesignPoint<double> const& bench, double gradient, Renderer& renderer);
 
 /// Returns "geometry.z_a_mm and geometry.z_d_mm, -0.8" for every correlated pair.
 std::vector<std::string> correlation_texts(std::vector<MeasurementInput> const& inputs);

@@ -23,7 +23,7 @@ struct Offset {
 /// Samples slice, position in the cone and position in the dot by an additive recurrence in five dimensions (Roberts
 /// 2018; the root of x^6 = x + 1). Every point is paired with its opposite, so that a uniform gradient is averaged
 /// exactly.
-std::vector<Offset> blur_offsets(Bench<double> const& bench) {
+std::vector<Offset> blur_offsets(DesignPoint<double> const& bench) {
   constexpr int points = 256;
   constexpr double root = 1.1347241384015194;
   double const pixel = bench.pixel_at_medium(), dot = bench.dot_diameter * bench.z_a / bench.z_b() / pixel;
@@ -101,7 +101,8 @@ Vec2d in_window(Lattice const& lattice, WindowTransfer const& window, Vec2d plac
 
 }  // namespace
 
-PredictedBlur predicted_blur(Setup const& setup, Bench<double> const& bench, std::vector<Vec2d> const& places_px) {
+PredictedBlur predicted_blur(Setup const& setup, DesignPoint<double> const& bench,
+                             std::vector<Vec2d> const& places_px) {
   std::vector<Offset> const offsets = blur_offsets(bench);
   double reach = static_cast<double>(bench.given->window.side().size());
   double farthest = 0;

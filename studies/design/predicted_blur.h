@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "render/scene/setup.h"
-#include "studies/design/bench.h"
+#include "studies/design/design_point.h"
 
 namespace gladstone {
 
@@ -18,6 +18,6 @@ struct PredictedBlur {
 /// the dots, and all slices are assumed to be equal.
 /// @param setup      setup of the view, which may be a part of the set-up's view about the axis
 /// @param places_px  positions of the vectors, in pixels of that setup's camera
-PredictedBlur predicted_blur(Setup const& setup, Bench<double> const& bench, std::vector<Vec2d> const& places_px);
+PredictedBlur predicted_blur(Setup const& setup, DesignPoint<double> const& bench, std::vector<Vec2d> const& places_px);
 
 }  // namespace gladstone

@@ -20,7 +20,7 @@ using unit::mm;
 std::vector<std::string> texts(SetupDocument& document, std::string const& table, std::string const& key) {
   std::vector<std::string> found;
   SetupTable owner = document.root().table(table);
-  owner.pass_over(key);
+  owner.mark_as_read(key);
   SetupNode const* const node = document.find({table, key});
   if (!node) return found;
   bool good = node->kind == SetupNode::Kind::array;
@@ -82,7 +82,7 @@ Allowed read_limit(SetupTable limits, ChoiceKey const& key) {
 }
 
 FreeChoice read_free_choice(Choice choice, SetupTable free, SetupTable const& limits, SetupTable inventory) {
-  ChoiceKey const& key = key_of(choice);
+  ChoiceKey const& key = choice_key(choice);
   FreeChoice found{choice, {}, 0, 0};
   Allowed allowed = read_limit(limits, key);
   if (key.inventory && inventory.has(key.inventory)) {
@@ -117,8 +117,8 @@ bool refuse_prescriptions(SetupDocument& document, SetupTable limits, SetupTable
   SetupNode const* const node = document.find({"inventory", key.inventory});
   auto const is_text = [](SetupNode const& one) { return one.kind == SetupNode::Kind::text; };
   if (!node || std::none_of(node->elements.begin(), node->elements.end(), is_text)) return false;
-  limits.pass_over(key.limit);
-  inventory.pass_over(key.inventory);
+  limits.mark_as_read(key.limit);
+  inventory.mark_as_read(key.inventory);
   inventory.problem(key.inventory,
                     "must be numbers (focal lengths of ideal lenses, in mm); list prescription files as "
                     "inventory.lenses = [\"...\"]");
@@ -179,8 +179,8 @@ std::vector<std::string> owned_files(SetupDocument& document, std::string const&
   return files;
 }
 
-std::vector<OwnedCamera> read_cameras(SetupDocument& document) {
-  std::vector<OwnedCamera> cameras;
+std::vector<InventoryCamera> read_cameras(SetupDocument& document) {
+  std::vector<InventoryCamera> cameras;
   for (std::string const& path : owned_files(document, "cameras")) {
     SetupNode const file = parse_toml(read_text_file(path), path);
     SetupNode const* const table = file.find("camera");
@@ -219,7 +219,7 @@ std::optional<DesignQuestion> read_design_question(SetupDocument& document) {
   if (!requirements.present()) {
     for (char const* const table : {"limits", "inventory", "free"}) {
       root.refuse(table, "requires [requirements] (there is no design problem without them); add them or remove it");
-      root.table(table).excuse();
+      root.table(table).suppress_unread_keys();
     }
     return std::nullopt;
   }

@@ -29,7 +29,7 @@ inline constexpr std::array<ChoiceKey, choice_count> choice_keys{{
     {"geometry.z_d_mm", "z_d_mm", nullptr, 1e-3},
     {"target.dot_diameter_mm", "dot_diameter_mm", nullptr, 1e-3},
 }};
-constexpr ChoiceKey const& key_of(Choice choice) { return choice_keys[static_cast<std::size_t>(choice)]; }
+constexpr ChoiceKey const& choice_key(Choice choice) { return choice_keys[static_cast<std::size_t>(choice)]; }
 
 /// Quantity to be minimized.
 enum class Objective { gradient_min, resolution, uncertainty, z_total };
@@ -59,7 +59,7 @@ struct FreeChoice {
 };
 
 /// A camera of the inventory: contents of [camera] in its file.
-struct OwnedCamera {
+struct InventoryCamera {
   std::string file;
   SetupNode table;
 };
@@ -68,8 +68,8 @@ struct OwnedCamera {
 struct DesignQuestion {
   Requirements requirements;
   std::vector<FreeChoice> free;
-  std::vector<OwnedCamera> cameras;  ///< empty: the setup's camera
-  std::vector<std::string> lenses;   ///< absolute paths of prescription files, in addition to the thin lenses
+  std::vector<InventoryCamera> cameras;  ///< empty: the setup's camera
+  std::vector<std::string> lenses;       ///< absolute paths of prescription files, in addition to the thin lenses
 };
 
 /// Reads the question; adds every problem to the document at its key.

@@ -20,7 +20,7 @@ constexpr double front_span = 1.6;  ///< range of limits on the front, as a fact
 
 /// Adds the limits of every set-up, which depend on the branch's camera.
 DesignProblem complete(DesignProblem problem, DesignBranch const& branch) {
-  for (Limit const& limit : bench_limits(*branch.given)) problem.limits.push_back(limit);
+  for (Limit const& limit : feasibility_limits(*branch.given)) problem.limits.push_back(limit);
   return problem;
 }
 
@@ -32,7 +32,7 @@ double moved(Limit const& limit, double factor) {
 /// Branches of a question, and the designs of each found so far.
 struct Search {
   std::vector<DesignBranch> const& branches;
-  std::vector<KnownBenches> known{branches.size()};
+  std::vector<KnownDesigns> known{branches.size()};
 
   std::vector<BranchOutcome> solved(DesignProblem const& problem) { return solve_branches(problem, branches, &known); }
   bool feasible(DesignProblem const& problem) { return any_feasible(problem, branches, known); }
@@ -48,14 +48,14 @@ struct Search {
 
 std::vector<std::string> binding_of(DesignProblem const& problem, BranchOutcome const& best) {
   std::vector<std::string> names;
-  Bench<double> const bench = bench_at(best.branch, best.solution.logarithms);
+  DesignPoint<double> const bench = design_point_at(best.branch, best.solution.logarithms);
   for (Limit const& limit : complete(problem, best.branch).limits) {
     if (excess(limit, bench) > -spare) names.push_back(bound_name(limit.bound));
   }
   for (std::size_t i = 0; i < best.branch.continuous.size(); ++i) {
     FreeChoice const& free = best.branch.continuous[i];
     double const x = best.solution.logarithms[i];
-    std::string const key = std::string("limits.") + key_of(free.choice).limit;
+    std::string const key = std::string("limits.") + choice_key(free.choice).limit;
     bool const at_low = x - std::log(free.low) < spare, at_high = std::log(free.high) - x < spare;
     if (at_low && at_high)
       names.push_back(key);  // the interval contains a single value
@@ -208,7 +208,7 @@ void search_again(Recommendation& answer, DesignProblem const& problem, Search& 
 }  // namespace
 
 std::vector<BranchOutcome> solve_branches(DesignProblem const& problem, std::vector<DesignBranch> const& branches,
-                                          std::vector<KnownBenches>* known) {
+                                          std::vector<KnownDesigns>* known) {
   throw_if_interrupted();
   std::vector<BranchOutcome> outcomes(branches.size());
   parallel_for(branches.size(), [&](std::size_t i) {
@@ -219,7 +219,7 @@ std::vector<BranchOutcome> solve_branches(DesignProblem const& problem, std::vec
       outcome.skipped = true;
       outcome.solution.worst = *bound;
     } else {
-      outcome.solution = solve(whole, branches[i], known ? (*known)[i] : KnownBenches{});
+      outcome.solution = solve(whole, branches[i], known ? (*known)[i] : KnownDesigns{});
       if (known) (*known)[i].push_back(outcome.solution.logarithms);
     }
   });
@@ -232,14 +232,14 @@ std::vector<BranchOutcome> solve_branches(DesignProblem const& problem, std::vec
 }
 
 bool any_feasible(DesignProblem const& problem, std::vector<DesignBranch> const& branches,
-                  std::vector<KnownBenches> const& known) {
+                  std::vector<KnownDesigns> const& known) {
   throw_if_interrupted();
   std::atomic<bool> found = false;
   parallel_for(branches.size(), [&](std::size_t i) {
     if (found) return;
     DesignProblem const whole = complete(problem, branches[i]);
     if (excluded_by(whole, branches[i])) return;
-    BranchSolution const least = least_violation(whole, branches[i], known.empty() ? KnownBenches{} : known[i]);
+    BranchSolution const least = least_violation(whole, branches[i], known.empty() ? KnownDesigns{} : known[i]);
     if (least.feasible()) found = true;
   });
   return found;

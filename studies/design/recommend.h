@@ -55,12 +55,12 @@ struct Recommendation {
 /// @param known  known designs of every branch, or null; solutions are added to it
 /// @return outcomes, the best one first
 std::vector<BranchOutcome> solve_branches(DesignProblem const& problem, std::vector<DesignBranch> const& branches,
-                                          std::vector<KnownBenches>* known = nullptr);
+                                          std::vector<KnownDesigns>* known = nullptr);
 
 /// Returns true if any branch has a design within the limits.
 /// @param known  known designs of every branch, or empty
 bool any_feasible(DesignProblem const& problem, std::vector<DesignBranch> const& branches,
-                  std::vector<KnownBenches> const& known = {});
+                  std::vector<KnownDesigns> const& known = {});
 
 /// Determines the best design, its active limits and the cost of each requirement; or the smallest set of conflicting
 /// requirements and the relaxation of each that suffices while the others are met; or, if no single one does, a joint

@@ -29,7 +29,7 @@ double largest_gradient(Setup const& setup) {
           if constexpr (requires { form.steepest_mean_density(half); }) return form.steepest_mean_density(half);
           return std::nullopt;
         },
-        closed_form_of(setup.medium));
+        make_closed_form(setup.medium));
     if (known) return *known;
   }
   double largest = 0;
@@ -62,9 +62,9 @@ SheetRow const& DesignSheet::row(std::string const& key) const {
   return *found;
 }
 
-BenchGiven bench_given(CaseSetup const& loaded) {
+FixedDesignParameters collect_fixed_parameters(CaseSetup const& loaded) {
   Setup const& setup = loaded.setup;
-  BenchGiven given;
+  FixedDesignParameters given;
   given.camera = setup.camera;
   given.light = read_light(loaded.document.copy().root());
   given.wavelength = setup.medium.wavelength;
@@ -80,16 +80,16 @@ BenchGiven bench_given(CaseSetup const& loaded) {
   return given;
 }
 
-Bench<double> bench_of(Setup const& setup, BenchGiven const& given) {
+DesignPoint<double> make_design_point(Setup const& setup, FixedDesignParameters const& given) {
   return {&given, setup.lens.focal_length, setup.lens.f_number, setup.z_a, setup.z_d, setup.dot_diameter()};
 }
 
-std::vector<std::string> beyond_closed_forms(Setup const& setup) {
+std::vector<std::string> list_neglected_effects(Setup const& setup) {
   std::vector<std::string> warnings;
   if (setup.lens.focus != Focus::target && !setup.piv) {
     warnings.emplace_back("lens.focus: the sheet assumes dots in focus, but these are out of focus");
   }
-  if (!setup.on_bench()) {
+  if (!setup.has_closed_form_layout()) {
     warnings.emplace_back(
         "the sheet assumes a thin lens on the axis, perpendicular to the target: it neglects poses, tilts, windows, "
         "distortion and aberrations");

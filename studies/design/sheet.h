@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "studies/case/case.h"
-#include "studies/design/bench.h"
+#include "studies/design/design_point.h"
 
 namespace gladstone {
 
@@ -51,22 +51,22 @@ struct DesignSheet {
 
 /// Collects the given properties of a BOS setup, including its largest density gradient.
 /// @throws DataError if the field cannot be read
-BenchGiven bench_given(CaseSetup const& loaded);
+FixedDesignParameters collect_fixed_parameters(CaseSetup const& loaded);
 /// Returns the closed-form model of a setup; `given` must outlive it.
-Bench<double> bench_of(Setup const& setup, BenchGiven const& given);
+DesignPoint<double> make_design_point(Setup const& setup, FixedDesignParameters const& given);
 
 /// Returns warnings for properties of a setup that closed forms neglect: defocused dots, a posed camera, windows.
-std::vector<std::string> beyond_closed_forms(Setup const& setup);
+std::vector<std::string> list_neglected_effects(Setup const& setup);
 
 /// Returns the gradient for the sheet's displacements: the largest in view, or 10 kg/m^4 if there is none [kg/m^4].
-double shown_gradient(BenchGiven const& given);
+double sheet_gradient(FixedDesignParameters const& given);
 
 /// Returns how a set-up exceeds the range of the study to which the random error (F26) was fitted, e.g. "dots below 0.8
 /// px, ..."; empty: within.
-std::string beyond_study(Bench<double> const& bench);
+std::string beyond_study(DesignPoint<double> const& bench);
 
 /// Computes the sheet of a BOS set-up, F1 to F27. If no gradient is given, deflections are for 10 kg/m^4.
-DesignSheet bos_sheet(Setup const& setup, Bench<double> const& bench);
+DesignSheet bos_sheet(Setup const& setup, DesignPoint<double> const& bench);
 
 /// Computes the sheet of a PIV setup: imaging, particle images, particles per window, light and admissible
 /// displacements.

@@ -25,7 +25,7 @@ std::vector<Vec2d> mean_of(std::vector<std::vector<Vec2d>> const& repeats) {
 }
 
 /// Returns the rms over the components of the vectors for which `counts` is finite.
-double rms_of(std::vector<Vec2d> const& values, std::vector<Vec2d> const& counts) {
+double compute_rms(std::vector<Vec2d> const& values, std::vector<Vec2d> const& counts) {
   double sum = 0;
   std::size_t count = 0;
   for (std::size_t i = 0; i < values.size(); ++i) {
@@ -90,9 +90,9 @@ void enter(Repeats& repeats, ObservedCase const& seen, double border) {
     repeats.lens = all.point.displacement_px;
     repeats.setup = seen.prepared.scene.setup;
     repeats.magnification = seen.prepared.scene.imaging.magnification;
-    RaysPlan const& plan = seen.prepared.rays;
-    bool const plain = method_of(seen.prepared.scene) == RenderMethod::focused_dots && plan.fineness == 1;
-    if (plain && !plan.by_need) repeats.rays = plan.rays;
+    RayBudget const& plan = seen.prepared.rays;
+    bool const plain = resolve_render_method(seen.prepared.scene) == RenderMethod::focused_dots && plan.fineness == 1;
+    if (plain && !plan.adaptive_criteria) repeats.rays = plan.rays;
   }
   std::vector<Vec2d>& error = repeats.error.emplace_back(all.mask.size(), Vec2d{not_a_number, not_a_number});
   for (std::size_t i = 0; i < all.mask.size(); ++i) {
@@ -103,7 +103,7 @@ void enter(Repeats& repeats, ObservedCase const& seen, double border) {
   repeats.causes.push_back(budget_differences(all));
 }
 
-void add_errors(SimulatedBench& bench, Repeats const& repeats, Bench<double> const& formulas) {
+void add_errors(SimulatedDesign& bench, Repeats const& repeats, DesignPoint<double> const& formulas) {
   RepeatSplit const split = split_repeats(repeats.error);
   bench.vectors = split.vectors;
   auto const count = static_cast<double>(repeats.error.size());
@@ -116,7 +116,7 @@ void add_errors(SimulatedBench& bench, Repeats const& repeats, Bench<double> con
   bench.bias_px = {split.systematic_px, std::sqrt(bias2 + error2) - split.systematic_px};
   std::vector<Vec2d> const counts = mean_of(repeats.error);
   PredictedBlur const blur = predicted_blur(*repeats.setup, formulas, repeats.place);
-  bench.predicted_bias_px = rms_of(blur.whole_px, counts);
+  bench.predicted_bias_px = compute_rms(blur.whole_px, counts);
   // window plus estimator; only the part common to all dot patterns is assigned to the window below
   std::vector<std::vector<Vec2d>> window;
   for (std::size_t k = 0; k < repeats.error.size(); ++k) {
@@ -124,14 +124,14 @@ void add_errors(SimulatedBench& bench, Repeats const& repeats, Bench<double> con
     for (std::size_t i = 0; i < counts.size(); ++i) window[k][i] += 0.0 * counts[i];  // NaN at invalid vectors
   }
   bench.causes = {
-      {"cone", rms_of(mean_term(repeats, "cone"), counts), rms_of(blur.cone_px, counts)},
-      {"window", split_repeats(window).systematic_px, rms_of(sum_of(blur.whole_px, blur.cone_px, -1), counts)},
-      {"refraction", rms_of(mean_term(repeats, "refraction"), counts), 0},
-      {"aberration", rms_of(mean_term(repeats, "aberration"), counts), 0},
-      {"small_angle", rms_of(mean_term(repeats, "small_angle"), counts), 0}};
+      {"cone", compute_rms(mean_term(repeats, "cone"), counts), compute_rms(blur.cone_px, counts)},
+      {"window", split_repeats(window).systematic_px, compute_rms(sum_of(blur.whole_px, blur.cone_px, -1), counts)},
+      {"refraction", compute_rms(mean_term(repeats, "refraction"), counts), 0},
+      {"aberration", compute_rms(mean_term(repeats, "aberration"), counts), 0},
+      {"small_angle", compute_rms(mean_term(repeats, "small_angle"), counts), 0}};
 }
 
-WaveShares shares_of(Repeats const& repeats, double wavelength, int window_px) {
+WaveShares compute_wave_shares(Repeats const& repeats, double wavelength, int window_px) {
   std::vector<Vec2d> const error = mean_of(repeats.error);
   WaveShares shares;
   shares.wavelength = wavelength;

@@ -29,11 +29,11 @@ void enter(Repeats& repeats, ObservedCase const& seen, double border);
 /// Computes random and systematic error over the repeats by RepeatSplit. In the limit of many windows, the square of
 /// the systematic error has a standard deviation of sqrt((v^2 + 2 b^2 v) / n), with v the variance of a mean over
 /// repeats and n = 2 N components in N independent windows.
-void add_errors(SimulatedBench& bench, Repeats const& repeats, Bench<double> const& formulas);
+void add_errors(SimulatedDesign& bench, Repeats const& repeats, DesignPoint<double> const& formulas);
 
 /// Computes the amplitude of a wave after each stage.
 /// @param wavelength  of the density wave [m]
 /// @param window_px   size of the last pass's interrogation window [px]
-WaveShares shares_of(Repeats const& repeats, double wavelength, int window_px);
+WaveShares compute_wave_shares(Repeats const& repeats, double wavelength, int window_px);
 
 }  // namespace gladstone

@@ -15,7 +15,7 @@ constexpr double shorter_wave = 0.85;  ///< wavelength of the shorter wave, rela
 /// dots whose image centre is this close to a pixel's centre are used for the peak
 constexpr double near_centre_px = 0.15;
 
-SetupNode wave_field(Bench<double> const& bench, double wavelength) {
+SetupNode wave_field(DesignPoint<double> const& bench, double wavelength) {
   double const length_px = wavelength / bench.pixel_at_medium();
   double const displacement_px = wave_strain * length_px / (2 * pi);
   double const amplitude = displacement_px / bench.sensitivity() * wavelength / (2 * pi);
@@ -62,7 +62,8 @@ struct BenchStudies {
   }
 };
 
-BenchStudies studies_of(std::string const& setup, Bench<double> const& bench, std::size_t repeats, std::uint64_t seed) {
+BenchStudies studies_of(std::string const& setup, DesignPoint<double> const& bench, std::size_t repeats,
+                        std::uint64_t seed) {
   SetupDocument base = SetupDocument::from_text(setup, "recommended setup");
   CameraSetup const& camera = bench.given->camera;
   int const side =
@@ -119,12 +120,12 @@ struct Peaks {
 
 }  // namespace
 
-int compared_apart_px(Bench<double> const& bench) { return bench.given->window.window_px() / 2; }
+int compared_apart_px(DesignPoint<double> const& bench) { return bench.given->window.window_px() / 2; }
 
-SimulatedBench simulate(std::string const& setup, Bench<double> const& bench, std::size_t repeat_count,
-                        std::uint64_t seed, CaseRunner& runner, std::string const& device,
-                        std::function<void()> const& finished) {
-  SimulatedBench simulated;
+SimulatedDesign simulate(std::string const& setup, DesignPoint<double> const& bench, std::size_t repeat_count,
+                         std::uint64_t seed, CaseRunner& runner, std::string const& device,
+                         std::function<void()> const& finished) {
+  SimulatedDesign simulated;
   int const window_px = bench.given->window.window_px();
   auto const run = [&](StudyFile const& study, std::vector<Repeats>& repeats, Peaks* peaks) {
     StudyPlan const plan = plan_study(study, device);
@@ -161,8 +162,8 @@ SimulatedBench simulate(std::string const& setup, Bench<double> const& bench, st
   simulated.displacement_px = own.displacement_px;
   simulated.peak_electrons = peaks.mean();
   add_errors(simulated, own, bench);
-  simulated.waves = {shares_of(waves[0], wavelength, window_px),
-                     shares_of(waves[1], shorter_wave * wavelength, window_px)};
+  simulated.waves = {compute_wave_shares(waves[0], wavelength, window_px),
+                     compute_wave_shares(waves[1], shorter_wave * wavelength, window_px)};
   simulated.resolution = resolution_of(simulated.waves);
   return simulated;
 }

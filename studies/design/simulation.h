@@ -33,7 +33,7 @@ struct SystematicCause {
 
 /// Errors of the simulated measurement of a design. Repeats differ in dots, rays and noise; the systematic error is
 /// common to all repeats, the random error differs between them.
-struct SimulatedBench {
+struct SimulatedDesign {
   int columns = 0, rows = 0;  ///< size of the simulated central part of the image [px]
   std::size_t repeats = 0;
   std::size_t vectors = 0;       ///< valid in every repeat and away from the border
@@ -56,7 +56,7 @@ inline constexpr int simulated_windows = 12, least_simulated_px = 192, most_simu
 constexpr std::size_t simulated_cases(std::size_t repeats) { return 3 * repeats; }
 
 /// Returns the distance between the compared vectors: half a window, since closer vectors are strongly correlated [px].
-int compared_apart_px(Bench<double> const& bench);
+int compared_apart_px(DesignPoint<double> const& bench);
 
 /// Simulates a design: renders, correlates and compares three media, namely the setup's, and density waves of the
 /// wavelength resolved by formula and of a shorter one.
@@ -65,7 +65,8 @@ int compared_apart_px(Bench<double> const& bench);
 /// @param seed      base seed of the repeats
 /// @param finished  called after every case
 /// @throws as CaseRunner::run; errors of a case are reported in `failed`
-SimulatedBench simulate(std::string const& setup, Bench<double> const& bench, std::size_t repeats, std::uint64_t seed,
-                        CaseRunner& runner, std::string const& device, std::function<void()> const& finished);
+SimulatedDesign simulate(std::string const& setup, DesignPoint<double> const& bench, std::size_t repeats,
+                         std::uint64_t seed, CaseRunner& runner, std::string const& device,
+                         std::function<void()> const& finished);
 
 }  // namespace gladstone

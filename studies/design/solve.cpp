@@ -27,12 +27,14 @@ struct Task {
 
   std::size_t own() const { return branch->continuous.size(); }
 
-  Bench<Jet> jets(double const* x) const {
+  DesignPoint<Jet> jets(double const* x) const {
     std::vector<Jet> variables;
     for (std::size_t i = 0; i < own(); ++i) variables.emplace_back(x[i], static_cast<int>(i));
-    return bench_at(*branch, variables);
+    return design_point_at(*branch, variables);
   }
-  Bench<double> numbers(double const* x) const { return bench_at(*branch, std::vector<double>(x, x + own())); }
+  DesignPoint<double> numbers(double const* x) const {
+    return design_point_at(*branch, std::vector<double>(x, x + own()));
+  }
 };
 
 void copy_derivatives(Jet const& value, std::size_t own, double* gradient) {
@@ -48,7 +50,7 @@ double objective_of(unsigned n, double const* x, double* gradient, void* data) {
     }
     return x[n - 1];
   }
-  Bench<double> const here = task.numbers(x);
+  DesignPoint<double> const here = task.numbers(x);
   double const lacking = excess({Bound::focus, 0}, here);
   if (lacking > 0) {  // no image exists: minimize the excess instead
     if (gradient) copy_derivatives(excess({Bound::focus, 0}, task.jets(x)), task.own(), gradient);
@@ -65,11 +67,11 @@ void limits_of(unsigned m, double* result, unsigned n, double const* x, double* 
   double const slack = task.slack ? x[n - 1] : 0;
   auto const& limits = task.problem->limits;
   if (!gradient) {
-    Bench<double> const here = task.numbers(x);
+    DesignPoint<double> const here = task.numbers(x);
     for (unsigned i = 0; i < m; ++i) result[i] = excess(limits[i], here) - slack;
     return;
   }
-  Bench<Jet> const here = task.jets(x);
+  DesignPoint<Jet> const here = task.jets(x);
   for (unsigned i = 0; i < m; ++i) {
     Jet const value = excess(limits[i], here);
     result[i] = value.a - slack;
@@ -80,7 +82,7 @@ void limits_of(unsigned m, double* result, unsigned n, double const* x, double* 
 
 BranchSolution judged(DesignProblem const& problem, DesignBranch const& branch, std::vector<double> x) {
   x.resize(branch.continuous.size());
-  Bench<double> const bench = bench_at(branch, x);
+  DesignPoint<double> const bench = design_point_at(branch, x);
   BranchSolution solution;
   solution.violation = -HUGE_VAL;
   for (Limit const& limit : problem.limits) {
@@ -126,7 +128,7 @@ bool far_from(std::vector<BranchSolution> const& chosen, BranchSolution const& p
 /// Selects starting points, best first: the best of many points with a minimum distance from each other, so that narrow
 /// feasible regions are found too, and the best known designs.
 std::vector<BranchSolution> start_points(DesignProblem const& problem, DesignBranch const& branch,
-                                         KnownBenches const& known) {
+                                         KnownDesigns const& known) {
   std::vector<BranchSolution> points, chosen, before;
   int const count = branch.continuous.empty() ? 1 : candidates;
   for (int i = 0; i < count; ++i) points.push_back(judged(problem, branch, spread_point(branch, i)));
@@ -183,7 +185,7 @@ std::optional<Bound> excluded_by(DesignProblem const& problem, DesignBranch cons
     least.push_back(std::log(distance ? free.low : free.high));
     most.push_back(std::log(distance ? free.high : focal ? free.low : free.high));
   }
-  Bench<double> const near = bench_at(branch, least), far = bench_at(branch, most);
+  DesignPoint<double> const near = design_point_at(branch, least), far = design_point_at(branch, most);
   for (Limit const& limit : problem.limits) {
     if (limit.bound == Bound::z_total && near.z_b() > limit.value * (1 + allowed_excess)) return limit.bound;
     bool const farthest = limit.bound == Bound::focus || limit.bound == Bound::view_width ||
@@ -194,7 +196,7 @@ std::optional<Bound> excluded_by(DesignProblem const& problem, DesignBranch cons
   return std::nullopt;
 }
 
-BranchSolution least_violation(DesignProblem const& problem, DesignBranch const& branch, KnownBenches const& known) {
+BranchSolution least_violation(DesignProblem const& problem, DesignBranch const& branch, KnownDesigns const& known) {
   std::vector<BranchSolution> const points = start_points(problem, branch, known);
   BranchSolution best = points.front();
   for (BranchSolution const& start : points) {
@@ -208,7 +210,7 @@ BranchSolution least_violation(DesignProblem const& problem, DesignBranch const&
   return best;
 }
 
-BranchSolution solve(DesignProblem const& problem, DesignBranch const& branch, KnownBenches const& known) {
+BranchSolution solve(DesignProblem const& problem, DesignBranch const& branch, KnownDesigns const& known) {
   BranchSolution best = least_violation(problem, branch, known);
   if (!best.feasible() || branch.continuous.empty()) return best;
   std::vector<BranchSolution> points = start_points(problem, branch, known);

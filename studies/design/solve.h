@@ -20,7 +20,7 @@ struct BranchSolution {
 
 /// Designs of a branch from the solutions of other problems, as logarithms of the continuous design variables. They
 /// serve as additional starting points; the solution is never worse than the best of them.
-using KnownBenches = std::vector<std::vector<double>>;
+using KnownDesigns = std::vector<std::vector<double>>;
 
 /// Returns a limit that no design of the branch can meet, determined from the ends of its intervals alone; nullopt: not
 /// excluded.
@@ -29,10 +29,10 @@ std::optional<Bound> excluded_by(DesignProblem const& problem, DesignBranch cons
 /// Minimizes the objective within the limits by sequential quadratic programming (Kraft's SLSQP, ACM Trans. Math.
 /// Softw. 20 (1994) 262, as implemented in NLopt) in the logarithms of the design variables, with derivatives from Jets
 /// and several starting points. If no design meets the limits, returns the one with the smallest excess.
-BranchSolution solve(DesignProblem const& problem, DesignBranch const& branch, KnownBenches const& known = {});
+BranchSolution solve(DesignProblem const& problem, DesignBranch const& branch, KnownDesigns const& known = {});
 
 /// Minimizes the largest excess over a limit, ignoring the objective. Stops as soon as all limits are met.
 BranchSolution least_violation(DesignProblem const& problem, DesignBranch const& branch,
-                               KnownBenches const& known = {});
+                               KnownDesigns const& known = {});
 
 }  // namespace gladstone

@@ -21,7 +21,7 @@ constexpr double least_explained = 0.5;
 
 /// Returns the cause with the largest difference between simulation and prediction, if it accounts for the total
 /// difference.
-std::string why_biased(SimulatedBench const& simulated) {
+std::string why_biased(SimulatedDesign const& simulated) {
   SystematicCause const* farthest = nullptr;
   auto const off = [](SystematicCause const& cause) { return std::abs(cause.simulated - cause.predicted); };
   for (SystematicCause const& cause : simulated.causes) {
@@ -44,7 +44,7 @@ std::string why_biased(SimulatedBench const& simulated) {
 }
 
 /// Returns the stage of the wave's transfer that deviates most from its formula, and its actual value.
-std::string why_resolved(SimulatedBench const& simulated, Bench<double> const& bench) {
+std::string why_resolved(SimulatedDesign const& simulated, DesignPoint<double> const& bench) {
   WaveShares const& wave = simulated.waves.front();
   double const cone = cone_transfer(bench.pupil(), bench.z_b(), bench.z_d, bench.given->thickness, wave.wavelength) *
                       disc_transfer(bench.dot_diameter * bench.z_a / bench.z_b(), wave.wavelength);
@@ -69,7 +69,7 @@ std::string why_resolved(SimulatedBench const& simulated, Bench<double> const& b
 /// Largest displacement either way in the formula's study, which covers all fractions of a pixel [px].
 constexpr double studied_displacement_px = 0.5;
 
-std::string why_random(SimulatedBench const& simulated) {
+std::string why_random(SimulatedDesign const& simulated) {
   if (simulated.displacement_px < studied_displacement_px) {
     return fmt::format("displacements reach only {:.2g} px; the formula covers all fractions of a pixel",
                        simulated.displacement_px);
@@ -77,7 +77,7 @@ std::string why_random(SimulatedBench const& simulated) {
   return "noise, dots or strain differ from those in the study of the formula";
 }
 
-std::string why_lit(Bench<double> const& bench) {
+std::string why_lit(DesignPoint<double> const& bench) {
   bool const automatic = !bench.given->light && !bench.given->camera.exposure_e;
   return automatic ? "exposure = \"auto\" depends on the brightest pixel, where dots are close together"
                    : "light of neighbouring dots, or vignetting";
@@ -85,19 +85,19 @@ std::string why_lit(Bench<double> const& bench) {
 
 /// Returns the smallest detectable gradient, at two standard deviations, from the simulated random error and
 /// magnification.
-Estimate gradient_seen(SimulatedBench const& simulated, Bench<double> const& bench) {
+Estimate gradient_seen(SimulatedDesign const& simulated, DesignPoint<double> const& bench) {
   double const per_px = 2 / (bench.sensitivity() * simulated.magnification / bench.magnification());
   return {simulated.random_px.value * per_px, simulated.random_px.standard_error * per_px};
 }
 
-Estimate view_of(SimulatedBench const& simulated, Bench<double> const& bench, int pixels) {
+Estimate estimate_view_size(SimulatedDesign const& simulated, DesignPoint<double> const& bench, int pixels) {
   double const at_medium = simulated.magnification * bench.z_b() / bench.z_a;
   return {pixels * bench.given->camera.pixel_pitch / at_medium, 0};
 }
 
 /// Returns prediction and simulation of a limited quantity; nullopt if a simulation adds no information.
-std::optional<std::pair<double, Estimate>> simulated_of(Bound bound, SimulatedBench const& simulated,
-                                                        Bench<double> const& bench) {
+std::optional<std::pair<double, Estimate>> simulated_of(Bound bound, SimulatedDesign const& simulated,
+                                                        DesignPoint<double> const& bench) {
   CameraSetup const& camera = bench.given->camera;
   switch (bound) {
     case Bound::gradient_min:
@@ -109,21 +109,21 @@ std::optional<std::pair<double, Estimate>> simulated_of(Bound bound, SimulatedBe
     case Bound::uncertainty_max:
       return {{bench.random_error(), simulated.random_px}};
     case Bound::view_width:
-      return {{camera.columns * bench.pixel_at_medium(), view_of(simulated, bench, camera.columns)}};
+      return {{camera.columns * bench.pixel_at_medium(), estimate_view_size(simulated, bench, camera.columns)}};
     case Bound::view_height:
-      return {{camera.rows * bench.pixel_at_medium(), view_of(simulated, bench, camera.rows)}};
+      return {{camera.rows * bench.pixel_at_medium(), estimate_view_size(simulated, bench, camera.rows)}};
     default:
       return std::nullopt;
   }
 }
 
-VerifiedBench simulated_bench(DesignQuestion const& question, std::vector<DesignVariant> const& variants,
-                              BranchOutcome const& outcome, VerificationPlan const& plan, CaseRunner& runner,
-                              std::string const& device, Progress& progress) {
-  VerifiedBench verified;
+VerifiedDesign simulated_bench(DesignQuestion const& question, std::vector<DesignVariant> const& variants,
+                               BranchOutcome const& outcome, VerificationPlan const& plan, CaseRunner& runner,
+                               std::string const& device, Progress& progress) {
+  VerifiedDesign verified;
   verified.outcome = outcome;
   verified.name = branch_name(outcome.branch, variants, question);
-  Bench<double> const bench = bench_at(outcome.branch, outcome.solution.logarithms);
+  DesignPoint<double> const bench = design_point_at(outcome.branch, outcome.solution.logarithms);
   std::size_t cases = 0;
   auto const finished = [&] {
     ++cases;
@@ -143,7 +143,7 @@ VerifiedBench simulated_bench(DesignQuestion const& question, std::vector<Design
 }
 
 /// Tightens the limits that were missed by the ratio of simulation to prediction.
-std::vector<Limit> tightened(std::vector<Limit> limits, VerifiedBench const& missed) {
+std::vector<Limit> tightened(std::vector<Limit> limits, VerifiedDesign const& missed) {
   for (VerifiedRequirement const& requirement : missed.requirements) {
     if (requirement.kept()) continue;
     for (Limit& limit : limits) {
@@ -169,20 +169,20 @@ bool VerifiedRequirement::kept() const {
   return from_below(bound) ? simulated.value >= required - slack : simulated.value <= required + slack;
 }
 
-bool VerifiedBench::kept() const {
+bool VerifiedDesign::kept() const {
   return simulated.failed.empty() && std::all_of(requirements.begin(), requirements.end(),
                                                  [](VerifiedRequirement const& one) { return one.kept(); });
 }
 
 bool Verification::any() const {
   return std::any_of(benches.begin(), benches.end(),
-                     [](VerifiedBench const& one) { return one.simulated.failed.empty(); });
+                     [](VerifiedDesign const& one) { return one.simulated.failed.empty(); });
 }
 
-void compare_with_formulas(VerifiedBench& verified, std::vector<Limit> const& required) {
-  SimulatedBench const& simulated = verified.simulated;
+void compare_with_formulas(VerifiedDesign& verified, std::vector<Limit> const& required) {
+  SimulatedDesign const& simulated = verified.simulated;
   if (!simulated.failed.empty()) return;
-  Bench<double> const bench = bench_at(verified.outcome.branch, verified.outcome.solution.logarithms);
+  DesignPoint<double> const bench = design_point_at(verified.outcome.branch, verified.outcome.solution.logarithms);
   auto const add = [&](char const* key, double predicted, double accuracy, Estimate found, double unit,
                        std::string const& why, bool rms = false) {
     VerifiedQuantity quantity{key,
@@ -218,7 +218,7 @@ Verification verify(DesignQuestion const& question, std::vector<DesignVariant> c
   }
   BranchOutcome const& first = answer.outcomes.front();
   CaseRunner runner(std::move(device), Sharing::over_repeats,
-                    compared_apart_px(bench_at(first.branch, first.solution.logarithms)));
+                    compared_apart_px(design_point_at(first.branch, first.solution.logarithms)));
   Progress progress("verifying", best.size() * simulated_cases(plan.repeats));
   for (BranchOutcome const& outcome : best) {
     verification.benches.push_back(simulated_bench(question, variants, outcome, plan, runner, device_name, progress));
@@ -227,8 +227,8 @@ Verification verify(DesignQuestion const& question, std::vector<DesignVariant> c
     }
   }
   std::vector<Limit> limits = required_limits(question.requirements);
-  std::optional<VerifiedBench> missed;
-  for (VerifiedBench const& one : verification.benches) {
+  std::optional<VerifiedDesign> missed;
+  for (VerifiedDesign const& one : verification.benches) {
     if (!missed && one.simulated.failed.empty()) missed = one;
   }
   for (int round = 0; round < most_tightened && !verification.chosen && missed; ++round) {
@@ -236,7 +236,7 @@ Verification verify(DesignQuestion const& question, std::vector<DesignVariant> c
     BranchOutcome const next = solve_branches({question.requirements.objective, limits}, branches).front();
     if (!next.solution.feasible()) break;
     Progress again("verifying stricter limits", simulated_cases(plan.repeats));
-    VerifiedBench& verified =
+    VerifiedDesign& verified =
         verification.benches.emplace_back(simulated_bench(question, variants, next, plan, runner, device_name, again));
     verified.tightened = true;
     if (verified.kept()) verification.chosen = verification.benches.size() - 1;

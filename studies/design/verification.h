@@ -35,10 +35,10 @@ struct VerifiedRequirement {
 };
 
 /// A recommended design that was simulated.
-struct VerifiedBench {
+struct VerifiedDesign {
   BranchOutcome outcome;
   std::string name;
-  SimulatedBench simulated;
+  SimulatedDesign simulated;
   std::vector<VerifiedQuantity> quantities;       ///< empty if the simulation failed
   std::vector<VerifiedRequirement> requirements;  ///< requirements that a simulation can check
   /// solved with stricter limits, because earlier designs missed the required ones in simulation
@@ -50,8 +50,8 @@ struct VerifiedBench {
 
 /// Result of simulating a recommendation.
 struct Verification {
-  std::vector<VerifiedBench> benches;  ///< in the order in which they were simulated
-  std::optional<std::size_t> chosen;   ///< first design that meets the requirements
+  std::vector<VerifiedDesign> benches;  ///< in the order in which they were simulated
+  std::optional<std::size_t> chosen;    ///< first design that meets the requirements
 
   /// Returns true if any simulation succeeded.
   bool any() const;
@@ -67,7 +67,7 @@ struct VerificationPlan {
 inline constexpr int most_tightened = 2;  ///< maximum number of times that limits are tightened
 
 /// Compares predicted and simulated quantities of a design.
-void compare_with_formulas(VerifiedBench& verified, std::vector<Limit> const& required);
+void compare_with_formulas(VerifiedDesign& verified, std::vector<Limit> const& required);
 
 /// Simulates the best feasible combinations. If no design meets the requirements, tightens the limits missed by the
 /// best one by the ratio of simulation to formula, solves again, and simulates the new best design.

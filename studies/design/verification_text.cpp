@@ -12,14 +12,14 @@ using Json = nlohmann::ordered_json;
 
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
-std::string bench_text(VerifiedBench const& one, DesignQuestion const& question) {
+std::string bench_text(VerifiedDesign const& one, DesignQuestion const& question) {
   std::string text = fmt::format("  {}{}\n", one.name, one.tightened ? ", for stricter limits" : "");
-  Bench<double> const bench = bench_at(one.outcome.branch, one.outcome.solution.logarithms);
+  DesignPoint<double> const bench = design_point_at(one.outcome.branch, one.outcome.solution.logarithms);
   std::array<double, choice_count> const value{bench.focal_length, bench.f_number, bench.z_a, bench.z_d,
                                                bench.dot_diameter};
   std::string place;
   for (FreeChoice const& free : question.free) {
-    ChoiceKey const& key = key_of(free.choice);
+    ChoiceKey const& key = choice_key(free.choice);
     place += fmt::format("{}{} {:.6g}", place.empty() ? "" : ", ", key.limit,
                          value[static_cast<std::size_t>(free.choice)] / key.unit);
   }
@@ -40,7 +40,7 @@ std::string bench_text(VerifiedBench const& one, DesignQuestion const& question)
   return text;
 }
 
-Json quantities_json(VerifiedBench const& one) {
+Json quantities_json(VerifiedDesign const& one) {
   Json rows = Json::array();
   for (VerifiedQuantity const& quantity : one.quantities) {
     rows.push_back({{"key", quantity.key},
@@ -54,7 +54,7 @@ Json quantities_json(VerifiedBench const& one) {
   return rows;
 }
 
-Json requirements_json(VerifiedBench const& one) {
+Json requirements_json(VerifiedDesign const& one) {
   Json rows = Json::array();
   for (VerifiedRequirement const& requirement : one.requirements) {
     double const unit = bound_key(requirement.bound).unit;
@@ -71,13 +71,13 @@ Json requirements_json(VerifiedBench const& one) {
 
 std::string verification_text(Verification const& verification, DesignQuestion const& question) {
   if (verification.benches.empty()) return "";
-  SimulatedBench const& first = verification.benches.front().simulated;
+  SimulatedDesign const& first = verification.benches.front().simulated;
   std::string text = fmt::format(
       "verified by rendering and correlating the middle {} x {} px, {} patterns of dots and noise\n"
       "    {:<18}{:>12} +- {:<9}{:>12} +- {:<9}{}\n",
       first.columns, first.rows, first.repeats, "", "predicted", "error", "simulated", "error",
       "cause of the difference");
-  for (VerifiedBench const& one : verification.benches) text += bench_text(one, question);
+  for (VerifiedDesign const& one : verification.benches) text += bench_text(one, question);
   if (!verification.any()) return text + "  none could be simulated: the recommendation is by the formulas only\n";
   if (!verification.chosen) {
     text += "  infeasible in simulation: no combination meets the requirements (--verify 0 uses the formulas only)\n";
@@ -91,13 +91,13 @@ std::string verification_text(Verification const& verification, DesignQuestion c
 Json verification_json(Verification const& verification) {
   Json json;
   if (verification.chosen) {
-    VerifiedBench const& chosen = verification.benches[*verification.chosen];
+    VerifiedDesign const& chosen = verification.benches[*verification.chosen];
     for (VerifiedQuantity const& quantity : chosen.quantities) {
       json["simulated"][quantity.key] = number(quantity.simulated.value);
     }
   }
   json["verification"] = Json::array();
-  for (VerifiedBench const& one : verification.benches) {
+  for (VerifiedDesign const& one : verification.benches) {
     Json row{{"name", one.name}, {"tightened", one.tightened}};
     if (one.simulated.failed.empty()) {
       row["pixels"] = {one.simulated.columns, one.simulated.rows};

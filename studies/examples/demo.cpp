@@ -154,7 +154,7 @@ std::string run_demo(std::string const& folder, Backend const& device) {
     CaseSetup loaded = load_instant(shared, instant, finenesses[0], rays_of_case);
     paper = loaded.setup;
     refuse_case_over_inputs(place, loaded.document.file_names());
-    FinishedCase const made = render_to_folder(loaded, *device.renderer, place);
+    RecordedCase const made = render_to_folder(loaded, *device.renderer, place);
     spdlog::info("{}: correlating", instant.name);
     Measurement const measured = correlate_case(place, "", nullptr, device);
     spdlog::info("{}: {} vectors in {:.1f} s; comparing with truth and theory", instant.name, measured.field.size(),

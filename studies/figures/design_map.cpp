@@ -58,13 +58,13 @@ std::string colour_of_stop(std::size_t index) {
 
 }  // namespace
 
-std::vector<DesignCurve> design_curves(Bench<double> const& bench) {
+std::vector<DesignCurve> design_curves(DesignPoint<double> const& bench) {
   constexpr int points = 81;
   std::vector<DesignCurve> curves;
   for (double const stop : f_numbers) {
     DesignCurve curve{stop, {}, {}, {}, {}};
     for (int i = 0; i < points; ++i) {
-      Bench<double> b = bench;
+      DesignPoint<double> b = bench;
       b.f_number = stop;
       b.z_d = bench.z_a * 0.05 * std::pow(80.0, i / (points - 1.0));
       if (b.z_b() < 1.05 * b.focal_length) continue;
@@ -79,7 +79,7 @@ std::vector<DesignCurve> design_curves(Bench<double> const& bench) {
   return curves;
 }
 
-void write_design_map(std::string const& path, Bench<double> const& bench,
+void write_design_map(std::string const& path, DesignPoint<double> const& bench,
                       std::optional<Requirements> const& requirements) {
   std::vector<DesignCurve> const curves = design_curves(bench);
   GnuplotFigure plot(map_width, map_height);
@@ -101,7 +101,7 @@ void write_design_map(std::string const& path, Bench<double> const& bench,
   for (double const share : marked_z_d) {
     std::vector<double> sensitivity, resolution;
     for (double const stop : f_numbers) {
-      Bench<double> b = bench;
+      DesignPoint<double> b = bench;
       b.f_number = stop;
       b.z_d = share * bench.z_a;
       if (b.z_b() < 1.05 * b.focal_length) continue;

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "studies/design/bench.h"
+#include "studies/design/design_point.h"
 #include "studies/design/question.h"
 #include "studies/design/recommend.h"
 
@@ -20,12 +20,12 @@ struct DesignCurve {
 };
 
 /// Returns curves for the standard f-numbers from f/2.8 to f/32, with Z_D from 0.05 to 4 times Z_A.
-std::vector<DesignCurve> design_curves(Bench<double> const& bench);
+std::vector<DesignCurve> design_curves(DesignPoint<double> const& bench);
 
 /// Draws these curves, the setup as a point, the limit by the light cone alone, and the requirements as lines.
 /// @param requirements  empty: no requirements
 /// @throws GnuplotMissing, OutputError
-void write_design_map(std::string const& path, Bench<double> const& bench,
+void write_design_map(std::string const& path, DesignPoint<double> const& bench,
                       std::optional<Requirements> const& requirements);
 
 /// Draws the best objective against the limit of a requirement.

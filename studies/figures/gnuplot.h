@@ -7,7 +7,7 @@
 
 #include "render/base/error.h"
 #include "render/base/image.h"
-#include "studies/figures/passing_folder.h"
+#include "studies/figures/temporary_directory.h"
 
 namespace gladstone {
 
@@ -60,7 +60,7 @@ class GnuplotFigure {
 
   int width_px_;
   int height_px_;
-  PassingFolder temporary_;
+  TemporaryDirectory temporary_;
   std::string folder_;  ///< path of temporary_
   std::string script_;
   int files_ = 0;

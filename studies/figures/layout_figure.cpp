@@ -35,7 +35,7 @@ struct Drawing {
   Outlines planes, medium, lens, view, cone, sheet;
 };
 
-Drawing drawing_of(BenchLayout const& l) {
+Drawing drawing_of(OpticalLayout const& l) {
   Drawing d;
   if (l.sheet_half_height > 0) {
     double const w = l.sheet_half_thickness, height = l.sheet_half_height;
@@ -102,7 +102,7 @@ struct LayoutWords {
   std::string medium;  ///< empty: no label
 };
 
-void write_layout(std::string const& path, BenchLayout const& l, LayoutWords const& words) {
+void write_layout(std::string const& path, OpticalLayout const& l, LayoutWords const& words) {
   Drawing const drawing = drawing_of(l);
   bool const dots = l.sheet_half_height == 0;
   double const length = l.sensor_z - l.dots_z, z_high = l.sensor_z + 0.06 * length;
@@ -150,7 +150,7 @@ void write_layout(std::string const& path, BenchLayout const& l, LayoutWords con
 
 }  // namespace
 
-BenchLayout bench_layout(Bench<double> const& b) {
+OpticalLayout make_optical_layout(DesignPoint<double> const& b) {
   double const half = b.given->camera.rows / 2.0;
   return {-b.z_d,
           b.z_a,
@@ -163,8 +163,8 @@ BenchLayout bench_layout(Bench<double> const& b) {
           b.cone_diameter() / 2};
 }
 
-void write_layout_figure(std::string const& path, Bench<double> const& bench) {
-  BenchLayout const l = bench_layout(bench);
+void write_layout_figure(std::string const& path, DesignPoint<double> const& bench) {
+  OpticalLayout const l = make_optical_layout(bench);
   write_layout(path, l,
                {fmt::format("Layout: f = {:.5g} mm, f/{:.4g}, M = {:.4g}", bench.focal_length / mm, bench.f_number,
                             bench.magnification()),
@@ -172,7 +172,7 @@ void write_layout_figure(std::string const& path, Bench<double> const& bench) {
                 fmt::format("medium: view {:.4g} mm, cone {:.3g} mm", 2 * l.medium_half / mm, 2 * l.cone_radius / mm)});
 }
 
-BenchLayout piv_layout(Setup const& setup) {
+OpticalLayout piv_layout(Setup const& setup) {
   ImagingGeometry const imaging = setup.imaging();
   double const half = setup.camera.rows / 2.0 * setup.camera.pixel_pitch, seen = half / imaging.magnification;
   return {0,
@@ -189,7 +189,7 @@ BenchLayout piv_layout(Setup const& setup) {
 }
 
 void write_piv_layout(std::string const& path, Setup const& setup) {
-  BenchLayout const l = piv_layout(setup);
+  OpticalLayout const l = piv_layout(setup);
   LaserSetup const& laser = setup.piv->laser;
   write_layout(path, l,
                {fmt::format("Layout: f/{:.4g}, M = {:.4g}, sheet {:.4g} mm thick", setup.lens.f_number,

@@ -3,13 +3,13 @@
 #include <string>
 
 #include "render/scene/setup.h"
-#include "studies/design/bench.h"
+#include "studies/design/design_point.h"
 
 namespace gladstone {
 
 /// Geometry of a set-up in its plane through the optical axis [m]: Z along the axis from the medium's mid-plane towards
 /// the camera, Y perpendicular to it.
-struct BenchLayout {
+struct OpticalLayout {
   double dots_z, lens_z, sensor_z;
   double medium_half_thickness;
   double pupil_radius;
@@ -19,16 +19,16 @@ struct BenchLayout {
   double sheet_half_thickness = 0, sheet_half_height = 0;  ///< of a laser sheet; 0 for BOS
 };
 
-BenchLayout bench_layout(Bench<double> const& bench);
+OpticalLayout make_optical_layout(DesignPoint<double> const& bench);
 
 /// Draws a set-up from the side: target, medium, lens, sensor, light cone of the dot on the axis, field of view and
 /// distances; above to scale, below with stretched heights.
 /// @throws GnuplotMissing, OutputError
-void write_layout_figure(std::string const& path, Bench<double> const& bench);
+void write_layout_figure(std::string const& path, DesignPoint<double> const& bench);
 
 /// Returns the geometry of a PIV setup, with the laser sheet in the plane Z = 0.
 /// @pre setup.piv
-BenchLayout piv_layout(Setup const& setup);
+OpticalLayout piv_layout(Setup const& setup);
 
 /// Draws the geometry of a PIV setup with the laser sheet and a particle on the axis.
 /// @throws GnuplotMissing, OutputError

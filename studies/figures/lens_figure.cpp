@@ -7,7 +7,7 @@
 
 #include "render/base/not_a_number.h"
 #include "render/base/units.h"
-#include "render/optics/aim_disc.h"
+#include "render/optics/apparent_pupil.h"
 #include "studies/figures/gnuplot.h"
 
 namespace gladstone {
@@ -40,10 +40,10 @@ std::vector<double> drawn_heights(Lens const& lens, std::vector<std::vector<Vec3
     double height = lens.prescription.surfaces[i].semi_diameter;
     if (static_cast<int>(i) == lens.stop) {
       height = lens.stop_radius;
-    } else if (!lens.prescription.surfaces[i].semi_diameter_is_an_edge || !std::isfinite(height)) {
+    } else if (!lens.prescription.surfaces[i].semi_diameter_vignettes || !std::isfinite(height)) {
       if (!std::isfinite(height)) height = 0;
       for (auto const& ray : rays) {
-        if (i + 1 < ray.size()) height = std::max(height, 1.05 * std::abs(lens.poses[i].point_inwards(ray[i + 1]).y));
+        if (i + 1 < ray.size()) height = std::max(height, 1.05 * std::abs(lens.poses[i].point_to_local(ray[i + 1]).y));
       }
     }
     heights.push_back(height);
@@ -63,9 +63,9 @@ std::vector<Vec3d> half_outline(Lens const& lens, std::size_t i, double own_heig
     double const sag = lens.surfaces[i].visit([y](auto const& surface) { return surface.shape.sag(0.0, y); });
     if (!std::isfinite(sag)) break;
     last = sag;
-    points.push_back(lens.poses[i].point_outwards({0, y, sag}));
+    points.push_back(lens.poses[i].point_to_outer({0, y, sag}));
   }
-  if (height > own_height) points.push_back(lens.poses[i].point_outwards({0, side * height, last}));
+  if (height > own_height) points.push_back(lens.poses[i].point_to_outer({0, side * height, last}));
   return points;
 }
 
@@ -99,8 +99,8 @@ LensDrawing drawing_of(Lens const& lens, std::vector<double> const& heights) {
       for (double const side : {-1.0, 1.0}) {
         double const sag = lens.surfaces[i].visit([&](auto const& s) { return s.shape.sag(0.0, lens.stop_radius); });
         double const z = std::isfinite(sag) ? sag : 0;
-        drawing.stop.add(lens.poses[i].point_outwards({0, side * lens.stop_radius, z}));
-        drawing.stop.add(lens.poses[i].point_outwards({0, side * std::max(1.3 * lens.stop_radius, widths[i]), z}));
+        drawing.stop.add(lens.poses[i].point_to_outer({0, side * lens.stop_radius, z}));
+        drawing.stop.add(lens.poses[i].point_to_outer({0, side * std::max(1.3 * lens.stop_radius, widths[i]), z}));
         drawing.stop.end();
       }
       if (!refracts && !mirror) continue;
@@ -124,7 +124,7 @@ std::vector<std::vector<Vec3d>> drawn_rays(Lens const& lens, ParaxialLens const&
                                            double angle, double total) {
   std::vector<std::vector<Vec3d>> rays;
   RayOrigin const origin = field_origin(lens, paraxial, angle);
-  auto const disc = find_aim_disc(lens, origin);
+  auto const disc = find_apparent_pupil(lens, origin);
   if (!disc) return rays;
   double foremost = 0;  // behind a mirror, surfaces may be in front of the first one
   for (Pose<double> const& pose : lens.poses) foremost = std::min(foremost, pose.origin.z);
@@ -159,8 +159,8 @@ void draw_layout(GnuplotFigure& plot, Lens const& lens, ParaxialLens const& para
   double tallest = 1e-4;
   for (FieldPoint const& point : field.points) tallest = std::max(tallest, 1.1 * std::abs(point.chief.y));
   Pose<double> const plane = lens.poses.back().moved({0, 0, field.image_plane});
-  image.add(plane.point_outwards({0, -tallest, 0}));
-  image.add(plane.point_outwards({0, tallest, 0}));
+  image.add(plane.point_to_outer({0, -tallest, 0}));
+  image.add(plane.point_to_outer({0, tallest, 0}));
 
   plot.set_margins(panel.left, panel.right, panel.top, panel.bottom);
   plot.command("set size ratio -1; set xrange [*:*]; set yrange [*:*]; set xlabel 'z [mm]'; set ylabel 'y [mm]'");

@@ -62,7 +62,7 @@ void write_piv_map(std::string const& path, Setup const& setup) {
   plot.command(
       fmt::format("set object 1 rectangle from graph 0,first {:g} to graph 1,first {:g} fillcolor '#d8ecd8' "
                   "fillstyle solid noborder behind",
-                  least_image_px, most_image_px));
+                  min_image_px, most_image_px));
   auto const line = [&](std::vector<double> const& y, std::string const& look, std::string const& title) {
     return fmt::format("{} using 1:2 with linespoints pointtype 7 {} title {}", plot.add_table({f_number, y}), look,
                        GnuplotFigure::quoted(title));

@@ -105,10 +105,10 @@ FigureAxis figure_axis(StudyAxis const& axis, std::size_t most) {
   return figure;
 }
 
-Scatter scatter_of(std::vector<double> values, bool repeats_alone) {
+Scatter compute_scatter(std::vector<double> values, bool only_repeats_differ) {
   std::erase_if(values, [](double value) { return !std::isfinite(value); });
   if (values.empty()) return {not_a_number, not_a_number, not_a_number};
-  if (!repeats_alone) return {quantile(values, 0.5), quantile(values, 0.1), quantile(values, 0.9)};
+  if (!only_repeats_differ) return {quantile(values, 0.5), quantile(values, 0.1), quantile(values, 0.9)};
   double squares = 0;
   for (double const value : values) squares += value * value;
   auto const [low, high] = std::minmax_element(values.begin(), values.end());

@@ -38,7 +38,7 @@ struct Scatter {
 
 /// Summarizes values: for repeats, root mean square, minimum and maximum; for cases that differ in more than dots and
 /// noise, median and the 10 and 90 % quantiles. Non-finite values are ignored; NaN if none remain.
-Scatter scatter_of(std::vector<double> values, bool repeats_alone);
+Scatter compute_scatter(std::vector<double> values, bool only_repeats_differ);
 
 /// Returns gnuplot tics at 1, 2 and 5 times powers of ten, or at powers of ten only if there are many.
 /// @pre 0 < low < high

@@ -44,7 +44,7 @@ std::unique_ptr<GnuplotFigure> draw_budget(StudyCells const& cells, std::size_t 
   FigureAxis const& axis = cells.axis(axis_index);
   std::vector<CurveChoice> const choices = curves_over(cells, axis_index, 3);
   std::vector<std::vector<Term>> panels;
-  bool repeats_alone = true;
+  bool only_repeats_differ = true;
   std::size_t repeats = 0;
   double low = std::numeric_limits<double>::infinity(), high = 0;
   for (CurveChoice const& choice : choices) {
@@ -54,8 +54,8 @@ std::unique_ptr<GnuplotFigure> draw_budget(StudyCells const& cells, std::size_t 
       auto places = choice.places;
       places[axis_index] = place;
       std::vector<std::size_t> const rows = cells.rows_at(places);
-      bool const alone = cells.repeats_alone(rows);
-      repeats_alone = repeats_alone && alone;
+      bool const alone = cells.only_repeats_differ(rows);
+      only_repeats_differ = only_repeats_differ && alone;
       repeats = std::max(repeats, rows.size());
       for (Term& term : terms) {
         std::string const measure =
@@ -71,7 +71,7 @@ std::unique_ptr<GnuplotFigure> draw_budget(StudyCells const& cells, std::size_t 
         if (points && (term.name == "estimator" || term.name == "pattern")) {
           values = points->values(fmt::format("budget.{}_px", term.name), points->rows_at(places));
         }
-        term.rms.push_back(scatter_of(values, alone).centre);
+        term.rms.push_back(compute_scatter(values, alone).centre);
         if (std::isfinite(term.rms.back())) high = std::max(high, term.rms.back());
       }
     }
@@ -110,9 +110,9 @@ std::unique_ptr<GnuplotFigure> draw_budget(StudyCells const& cells, std::size_t 
   set_texts(plot, "Error budget over " + axis.title,
             fmt::format("{}; {}{}\nthe terms are correlated: neither their heights nor their squares add up",
                         study_name(cells),
-                        !repeats_alone ? "medians of the cases"
-                        : repeats > 1  ? fmt::format("root mean square over {} repeats", repeats)
-                                       : std::string("single cases"),
+                        !only_repeats_differ ? "medians of the cases"
+                        : repeats > 1        ? fmt::format("root mean square over {} repeats", repeats)
+                                             : std::string("single cases"),
                         nothing.empty() ? "" : "; below the axis: " + nothing));
   plot.command("set multiplot");
   plot.command("set grid ytics linecolor '#e4e4e4' linewidth 1 linetype 1");

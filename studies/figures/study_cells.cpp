@@ -21,14 +21,14 @@ std::string place_name(FigureAxis const& axis, std::size_t place) {
 }  // namespace
 
 std::size_t sampled_places_in_maps(std::size_t points) {
-  if (points < 8) return most_places;
-  return std::min(most_places, static_cast<std::size_t>(std::sqrt(static_cast<double>(points) / 2.0)));
+  if (points < 8) return max_positions;
+  return std::min(max_positions, static_cast<std::size_t>(std::sqrt(static_cast<double>(points) / 2.0)));
 }
 
 StudyCells::StudyCells(StudyTable const& table, std::size_t sampled_places) : table_(&table) {
   for (std::size_t k = 0; k < table.axes.size(); ++k) {
     StudyAxis const& axis = table.axes[k];
-    axes_.push_back(figure_axis(axis, most_places));
+    axes_.push_back(figure_axis(axis, max_positions));
     if (axes_[k].numeric && axis.labels.size() == table.points.size()) axes_[k] = figure_axis(axis, sampled_places);
     if (axes_[k].size() > 1) varied_.push_back(k);
   }
@@ -55,7 +55,7 @@ std::vector<double> StudyCells::values(std::string const& measure, std::vector<s
   return found;
 }
 
-bool StudyCells::repeats_alone(std::vector<std::size_t> const& rows) const {
+bool StudyCells::only_repeats_differ(std::vector<std::size_t> const& rows) const {
   return std::all_of(rows.begin(), rows.end(),
                      [&](std::size_t row) { return table_->rows[row].value == table_->rows[rows.front()].value; });
 }

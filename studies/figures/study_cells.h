@@ -10,7 +10,7 @@
 namespace gladstone {
 
 /// Maximum number of positions on an axis of a figure.
-inline constexpr std::size_t most_places = 12;
+inline constexpr std::size_t max_positions = 12;
 
 /// Returns the number of positions of sampled axes in maps, for an average of two points per cell: sqrt(points / 2), at
 /// most 12; for fewer than 8 points, which do not suffice for a map, the general maximum.
@@ -21,7 +21,7 @@ class StudyCells {
  public:
   /// @param sampled_places  maximum number of positions on a numeric axis with a different value in every point of the
   ///                        study, as sampled by "sobol"
-  explicit StudyCells(StudyTable const& table, std::size_t sampled_places = most_places);
+  explicit StudyCells(StudyTable const& table, std::size_t sampled_places = max_positions);
 
   /// Returns the axes with more than one value.
   std::vector<std::size_t> const& varied() const { return varied_; }
@@ -36,7 +36,7 @@ class StudyCells {
   /// Returns the values of a measure in rows; empty if the study does not have the measure.
   std::vector<double> values(std::string const& measure, std::vector<std::size_t> const& rows) const;
   /// Returns true if rows differ by repeats only, that is, if all axes have the same value.
-  bool repeats_alone(std::vector<std::size_t> const& rows) const;
+  bool only_repeats_differ(std::vector<std::size_t> const& rows) const;
 
  private:
   StudyTable const* table_;

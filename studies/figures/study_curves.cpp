@@ -38,7 +38,7 @@ constexpr char const* signal = "signal_px";
 struct CurveMaker {
   StudyCells const& cells;
   std::size_t axis;
-  bool repeats_alone = true;
+  bool only_repeats_differ = true;
   std::size_t repeats = 0;
   double low = std::numeric_limits<double>::infinity(), high = 0;
 
@@ -49,10 +49,10 @@ struct CurveMaker {
       auto places = choice.places;
       places[axis] = place;
       std::vector<std::size_t> const rows = cells.rows_at(places);
-      bool const alone = cells.repeats_alone(rows);
-      repeats_alone = repeats_alone && alone;
+      bool const alone = cells.only_repeats_differ(rows);
+      only_repeats_differ = only_repeats_differ && alone;
       repeats = std::max(repeats, rows.size());
-      Scatter const point = scatter_of(cells.values(measure, rows), alone);
+      Scatter const point = compute_scatter(cells.values(measure, rows), alone);
       if (point.low > 0) low = std::min(low, point.low);
       if (std::isfinite(point.high)) high = std::max(high, point.high);
       curve.points.push_back(point);
@@ -164,7 +164,7 @@ std::unique_ptr<GnuplotFigure> draw_error_curves(StudyCells const& cells, std::s
   }
   if (!(make.high > 0)) return nullptr;
   return lay_out(axis, panels, make.low, make.high, "Error against " + axis.title,
-                 fmt::format("{}\n{}{}", study_name(cells), meaning(make.repeats_alone, make.repeats), dashes));
+                 fmt::format("{}\n{}{}", study_name(cells), meaning(make.only_repeats_differ, make.repeats), dashes));
 }
 
 std::unique_ptr<GnuplotFigure> draw_repeats(StudyCells const& points, std::size_t axis_index) {
@@ -190,7 +190,7 @@ std::unique_ptr<GnuplotFigure> draw_repeats(StudyCells const& points, std::size_
       axis, panels, make.low, make.high, "Error over the repeats, against " + axis.title,
       fmt::format("study {}, {} points{}\nsolid: the same in every repeat; dashed: standard deviation between "
                   "repeats (dots, rays, noise)",
-                  points.table().name, points.finished(), make.repeats_alone ? "" : ", medians of them"));
+                  points.table().name, points.finished(), make.only_repeats_differ ? "" : ", medians of them"));
 }
 
 }  // namespace gladstone

@@ -33,7 +33,7 @@ void set_y_axis(GnuplotFigure& plot, std::string const& title, double low, doubl
 /// Returns e.g. "study NAME, 28 cases".
 std::string study_name(StudyCells const& cells);
 /// Returns the caption's explanation of points and bars.
-std::string meaning(bool repeats_alone, std::size_t repeats);
+std::string meaning(bool only_repeats_differ, std::size_t repeats);
 
 }  // namespace study_drawing
 }  // namespace gladstone

@@ -98,8 +98,8 @@ std::string study_name(StudyCells const& cells) {
   return fmt::format("study {}, {} cases", cells.table().name, cells.finished());
 }
 
-std::string meaning(bool repeats_alone, std::size_t repeats) {
-  if (!repeats_alone) return "points: medians of the cases, bars: 10 to 90 % of them";
+std::string meaning(bool only_repeats_differ, std::size_t repeats) {
+  if (!only_repeats_differ) return "points: medians of the cases, bars: 10 to 90 % of them";
   if (repeats < 2) return "points: single cases";
   return fmt::format("points: root mean square over {} repeats, bars: smallest to largest", repeats);
 }

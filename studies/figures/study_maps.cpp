@@ -41,7 +41,7 @@ std::unique_ptr<GnuplotFigure> draw_error_map(StudyCells const& cells, std::size
   FigureAxis const& y = cells.axis(y_axis);
   std::vector<ErrorMap> maps{{"ray_truth.rms_px", "measured − ray truth [px]"},
                              {"eq9.rms_px", "measured − Eq. 9 [px]"}};
-  bool repeats_alone = true;
+  bool only_repeats_differ = true;
   std::size_t repeats = 0, most_filled = 0;
   double low = std::numeric_limits<double>::infinity(), high = 0;
   for (ErrorMap& map : maps) {
@@ -49,9 +49,9 @@ std::unique_ptr<GnuplotFigure> draw_error_map(StudyCells const& cells, std::size
     for (std::size_t j = 0; j < y.size(); ++j) {
       for (std::size_t i = 0; i < x.size(); ++i) {
         std::vector<std::size_t> const rows = cells.rows_at({{x_axis, i}, {y_axis, j}});
-        bool const alone = cells.repeats_alone(rows);
-        double const error = scatter_of(cells.values(map.measure, rows), alone).centre;
-        repeats_alone = repeats_alone && alone;
+        bool const alone = cells.only_repeats_differ(rows);
+        double const error = compute_scatter(cells.values(map.measure, rows), alone).centre;
+        only_repeats_differ = only_repeats_differ && alone;
         repeats = std::max(repeats, rows.size());
         map.columns[0].push_back(static_cast<double>(i));
         map.columns[1].push_back(static_cast<double>(j));
@@ -78,9 +78,9 @@ std::unique_ptr<GnuplotFigure> draw_error_map(StudyCells const& cells, std::size
   GnuplotFigure& plot = *figure;
   set_texts(plot, fmt::format("Error over {} and {}", x.title, y.title),
             fmt::format("{}\n{}", study_name(cells),
-                        !repeats_alone ? "median of all cases of a cell"
-                        : repeats > 1  ? fmt::format("root mean square over {} repeats; per component", repeats)
-                                       : std::string("single cases; rms per component")));
+                        !only_repeats_differ ? "median of all cases of a cell"
+                        : repeats > 1        ? fmt::format("root mean square over {} repeats; per component", repeats)
+                                             : std::string("single cases; rms per component")));
   plot.command("set multiplot");
   plot.command(sequential_palette());
   double const least = logarithmic ? low : 0.0;

@@ -22,7 +22,7 @@ std::string largest_term(ErrorBudget const& budget) {
       largest->random_u_px, largest->random_v_px, largest->rms_px, budget.total.rms_px);
 }
 
-std::string budget_words(Comparison const& all) {
+std::string explain_budget(Comparison const& all) {
   std::string text =
       "Scatter is the standard deviation over the vectors of the field. For estimator and noise it varies between "
       "repeats, because dots and noise change; for the other causes it is the same in every repeat.";
@@ -72,11 +72,11 @@ std::vector<std::string> uncertainty_statements(CaseView const& view) {
                   "measurement. The expanded uncertainty is {:.3g} and {:.3g} px with a coverage factor of 2.",
                   u, v, truth, all.budget.count, 2 * u, 2 * v));
   statements.push_back(fmt::format("The uncorrected bias is {:.3g} px: {}", uncorrected_bias_px(all),
-                                   uncorrected_bias_words(all.chain)));
+                                   describe_uncorrected_bias(all.chain)));
   return statements;
 }
 
-std::vector<std::string> findings_of(CaseView const& view) {
+std::vector<std::string> summarize_findings(CaseView const& view) {
   Comparison const& all = view.comparison;
   std::vector<std::string> findings;
   auto const rms = [&](std::vector<Vec2d> const& truth) {

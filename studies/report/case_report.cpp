@@ -12,8 +12,8 @@
 #include "studies/case/case_files.h"
 #include "studies/compare/budget_stages.h"
 #include "studies/compare/compare.h"
-#include "studies/report/bench_view.h"
 #include "studies/report/case_view.h"
+#include "studies/report/layout_view.h"
 #include "studies/report/report.h"
 #include "studies/sweep/job_array.h"
 
@@ -188,15 +188,15 @@ ReportPage case_report(ReportOptions const& options, Backend const& device) {
   page.question = fmt::format(
       "How large is the error of this {} measurement, and what causes it? {} vectors, compared with the light rays.",
       view.piv ? "PIV" : "BOS", all.vectors_in_file());
-  page.findings = findings_of(view);
+  page.findings = summarize_findings(view);
   bool const mistaken = all.detected && all.detected->mistake.found();
   if (mistaken || !all.complete) {
     page.doubtful.push_back(options.vectors.empty() ? in_case(options.source, case_file::vectors) : options.vectors);
   }
   bool const gridded = all.measured.columns > 1 && all.measured.rows > 1;
   page.data = {{"errors", view.errors}, {"budget", budget_json(all.shown_budget())}};
-  std::optional<LayoutView> const bench = bench_view(load_case_setup(in_case(options.source, case_file::setup), {}));
-  if (bench) page.sections.push_back(bench_section(*bench, "the case"));
+  std::optional<LayoutView> const bench = layout_view(load_case_setup(in_case(options.source, case_file::setup), {}));
+  if (bench) page.sections.push_back(layout_section(*bench, "the case"));
   page.sections.push_back({"Images", {frame_pictures(options.source, "The two frames")}});
   if (gridded) {
     page.data["fields"] = view.fields;
@@ -214,7 +214,7 @@ ReportPage case_report(ReportOptions const& options, Backend const& device) {
        {Chart{"budget", "rms of every cause", largest_term(all.shown_budget())},
         budget_table("The error budget [px]; the terms correlate, so that their squares do not add up",
                      all.shown_budget()),
-        Paragraph{budget_words(all)}}});
+        Paragraph{explain_budget(all)}}});
   ReportSection uncertainty{"Uncertainty", {TextList{uncertainty_statements(view)}}};
   if (nlohmann::json bins = reliability_of(all); !bins.empty()) {
     uncertainty.blocks.emplace_back(Chart{
@@ -230,7 +230,7 @@ ReportPage case_report(ReportOptions const& options, Backend const& device) {
   auto const draw = [&](std::string const& folder, std::string const& format) {
     std::vector<std::string> drawn = draw_comparison(folder, all, format);
     if (!bench) return drawn;
-    for (std::string& path : draw_bench(folder, format, *bench)) drawn.push_back(std::move(path));
+    for (std::string& path : draw_layout_and_map(folder, format, *bench)) drawn.push_back(std::move(path));
     return drawn;
   };
   if (ReportSection figures = drawn_figures(options, draw); !figures.blocks.empty()) {
@@ -249,7 +249,7 @@ ReportPage case_report(ReportOptions const& options, Backend const& device) {
   for (char const* command : {"compare", "report"}) {
     commands.push_back(fmt::format("gladstone {} {}{}", command, place, of_vectors));
   }
-  page.sections.push_back(how_it_was_made(case_sources(options.source, all), commands));
+  page.sections.push_back(provenance_section(case_sources(options.source, all), commands));
   return page;
 }
 

@@ -66,12 +66,12 @@ nlohmann::json budget_json(ErrorBudget const& budget);
 std::string largest_term(ErrorBudget const& budget);
 
 /// Returns an explanation of the budget's terms.
-std::string budget_words(Comparison const& all);
+std::string explain_budget(Comparison const& all);
 
 /// Returns the statements of an uncertainty report in the terms of the GUM (JCGM 100:2008).
 std::vector<std::string> uncertainty_statements(CaseView const& view);
 
 /// Returns the main results for the beginning of the report.
-std::vector<std::string> findings_of(CaseView const& view);
+std::vector<std::string> summarize_findings(CaseView const& view);
 
 }  // namespace gladstone

@@ -31,7 +31,7 @@ std::string pixels_of(CameraSetup const& camera) { return fmt::format("{} x {} p
 /// Rejects vectors that lie or point outside the image.
 /// @throws DataError if positions do not match this camera
 void screen(VectorFile& file, std::string const& path, std::string const& setup, CameraSetup const& camera) {
-  LeftOutVectors const left_out = screen_vectors(file.field, file.conventions.offset_px, camera.columns, camera.rows);
+  RejectedVectors const left_out = screen_vectors(file.field, file.conventions.offset_px, camera.columns, camera.rows);
   if (left_out.outside_image > 0) {
     throw DataError(
         path, fmt::format("has {} of {} vectors outside the {} of the camera of {} (their x from {:.6g} to {:.6g}, y "
@@ -40,12 +40,12 @@ void screen(VectorFile& file, std::string const& path, std::string const& setup,
                           left_out.outside_image, left_out.all() + file.field.size(), pixels_of(camera), setup,
                           left_out.low_px.x, left_out.high_px.x, left_out.low_px.y, left_out.high_px.y));
   }
-  std::string const refusal = refusal_of_places(file.field, left_out, camera.columns, camera.rows);
+  std::string const refusal = reason_to_reject_positions(file.field, left_out, camera.columns, camera.rows);
   if (!refusal.empty()) throw DataError(path, refusal);
   if (left_out.without_place() + left_out.displacement_beyond_image > 0) {
     spdlog::warn("{}: vectors are excluded: {}", path, left_out.text());
   }
-  std::string const doubt = doubt_about_places(file.field, camera.columns, camera.rows);
+  std::string const doubt = describe_suspect_positions(file.field, camera.columns, camera.rows);
   if (!doubt.empty()) spdlog::warn("{}: {}", path, doubt);
 }
 
@@ -106,7 +106,7 @@ MeasuredFiles measured_files(ReportOptions const& options) {
   return files;
 }
 
-void require_frames_of(MeasuredFiles const& files, ReportOptions const& options, CameraSetup const& camera) {
+void check_frames_match_camera(MeasuredFiles const& files, ReportOptions const& options, CameraSetup const& camera) {
   if (!files.frames) return;
   for (auto const& [name, file] : frame_files) {
     std::string const path = (fs::path(options.source) / file).string();

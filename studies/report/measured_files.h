@@ -24,7 +24,7 @@ MeasuredFiles measured_files(ReportOptions const& options);
 
 /// Checks that the frames are from the setup's camera and those of the vectors.
 /// @throws DataError if their number of pixels differs from the setup's camera, or vectors.h5 names other frames
-void require_frames_of(MeasuredFiles const& files, ReportOptions const& options, CameraSetup const& camera);
+void check_frames_match_camera(MeasuredFiles const& files, ReportOptions const& options, CameraSetup const& camera);
 
 /// Vectors of a measurement and its repeats.
 struct RepeatedVectors {

@@ -66,7 +66,7 @@ std::string about_setup(MeasurementKnown const& known) {
 }
 
 std::string about_bias(MeasurementKnown const& known) {
-  std::string const words = uncorrected_bias_words(BudgetChain::bos);
+  std::string const words = describe_uncorrected_bias(BudgetChain::bos);
   if (!known.simulated()) return "The uncorrected bias is unknown without a simulated twin: " + words;
   double const bias_px = uncorrected_bias_px(known.twin->comparison);
   return fmt::format(
@@ -88,7 +88,7 @@ MeasurementStatements measurement_statements(MeasurementKnown const& known) {
       "The measurand is the density gradient, averaged over the thickness, at each of {} vectors: rms {:.4g} kg/m^4. "
       "Its combined standard uncertainty is {:.3g} kg/m^4 in the median of the components ({:.3g} to {:.3g} kg/m^4 for "
       "10 to 90 % of them).",
-      known.gradients.count, rms_of(finite_components(known.gradients.gradient)), median, quantile(combined, 0.1),
+      known.gradients.count, compute_rms(finite_components(known.gradients.gradient)), median, quantile(combined, 0.1),
       quantile(combined, 0.9));
   PropagatedResult const& typical = known.typical;
   said.expanded = fmt::format(

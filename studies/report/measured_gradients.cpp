@@ -20,7 +20,7 @@ void add_map(nlohmann::json& fields, std::string const& name, std::string const&
 
 }  // namespace
 
-MeasuredGradients gradients_of(DisplacementField const& field, Bench<double> const& bench, double common) {
+MeasuredGradients compute_gradients(DisplacementField const& field, DesignPoint<double> const& bench, double common) {
   MeasuredGradients all;
   all.common = common;
   double const per_px = 1 / bench.sensitivity(), formula = bench.random_error();
@@ -60,7 +60,7 @@ std::vector<double> finite_components(std::vector<Vec2d> const& values) {
   return found;
 }
 
-double rms_of(std::vector<double> const& values) {
+double compute_rms(std::vector<double> const& values) {
   double sum = 0;
   for (double const value : values) sum += value * value;
   return values.empty() ? std::nan("") : std::sqrt(sum / static_cast<double>(values.size()));

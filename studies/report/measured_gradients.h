@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "analysis/vectors/displacement_field.h"
-#include "studies/design/bench.h"
+#include "studies/design/design_point.h"
 
 namespace gladstone {
 
@@ -23,13 +23,13 @@ struct MeasuredGradients {
 
 /// Computes gradients and uncertainties at the vectors of a field.
 /// @param common  relative uncertainty from all parameters of the setup [1]
-MeasuredGradients gradients_of(DisplacementField const& field, Bench<double> const& bench, double common);
+MeasuredGradients compute_gradients(DisplacementField const& field, DesignPoint<double> const& bench, double common);
 
 /// Returns both components of all finite vectors.
 std::vector<double> finite_components(std::vector<Vec2d> const& values);
 
 /// Returns the root mean square; NaN for no values.
-double rms_of(std::vector<double> const& values);
+double compute_rms(std::vector<double> const& values);
 
 /// Returns maps for the report, for vectors on a lattice: displacement, gradient, its combined uncertainty, and the
 /// displacement's contribution.

@@ -9,8 +9,8 @@
 #include "render/files/text_file.h"
 #include "studies/design/measurement_inputs.h"
 #include "studies/design/sheet.h"
-#include "studies/report/bench_view.h"
 #include "studies/report/case_view.h"
+#include "studies/report/layout_view.h"
 #include "studies/report/measured_density.h"
 #include "studies/report/measured_files.h"
 #include "studies/report/measured_findings.h"
@@ -29,8 +29,8 @@ MeasurementInput typical_displacement(MeanOfRepeats const& mean, double formula_
   bool const repeated = mean.count > 1;
   MeasurementInput input;
   input.key = "displacement_px";
-  input.value = rms_of(finite_components(mean.field.displacement_px));
-  input.sigma = repeated        ? rms_of(sigma)  // for few repeats, the median is biased low
+  input.value = compute_rms(finite_components(mean.field.displacement_px));
+  input.sigma = repeated        ? compute_rms(sigma)  // for few repeats, the median is biased low
                 : sigma.empty() ? formula_px
                                 : quantile(sigma, 0.5);
   if (repeated) input.degrees_of_freedom = static_cast<double>(mean.count - 1);
@@ -70,7 +70,7 @@ ReportSection causes_section(ReportPage& page, SimulatedTwin const* twin) {
   causes.blocks.emplace_back(
       budget_table("Budget by cause, of the simulated twin and not of the measurement itself [px]",
                    twin->comparison.shown_budget()));
-  causes.blocks.emplace_back(Paragraph{budget_words(twin->comparison)});
+  causes.blocks.emplace_back(Paragraph{explain_budget(twin->comparison)});
   return causes;
 }
 
@@ -104,9 +104,9 @@ std::string command_of(ReportOptions const& options) {
 
 CaseSetup measured_bench(std::string const& setup_file, std::vector<UncertainInput>& uncertain) {
   SetupDocument document = SetupDocument::from_file(setup_file);
-  uncertain = take_uncertain_inputs(document);
+  uncertain = extract_uncertain_inputs(document);
   CaseSetup loaded = load_case_setup(std::move(document));
-  if (loaded.setup.piv || loaded.setup.calibration() || !loaded.setup.on_bench()) {
+  if (loaded.setup.piv || loaded.setup.calibration() || !loaded.setup.has_closed_form_layout()) {
     throw DataError(setup_file,
                     "does not describe a BOS set-up with a thin lens on the axis, perpendicular to the target (the "
                     "uncertainty of a measurement requires one); describe the measurement by such a set-up");
@@ -121,9 +121,9 @@ ReportPage measured_report(ReportOptions const& options, Backend const& device) 
   MeasuredFiles const files = measured_files(options);
   CaseSetup const loaded = measured_bench(files.setup, uncertain);
   CameraSetup const& camera = loaded.setup.camera;
-  require_frames_of(files, options, camera);
-  BenchGiven const given = bench_given(loaded);
-  Bench<double> const bench = bench_of(loaded.setup, given);
+  check_frames_match_camera(files, options, camera);
+  FixedDesignParameters const given = collect_fixed_parameters(loaded);
+  DesignPoint<double> const bench = make_design_point(loaded.setup, given);
   RepeatedVectors const read = read_repeats(files, options, camera);
   MeanOfRepeats const mean = mean_of_repeats(read.fields, bench.random_error());
   DisplacementField const& field = mean.field;
@@ -136,7 +136,7 @@ ReportPage measured_report(ReportOptions const& options, Backend const& device) 
   GradientMeasurement<double> const at =
       gradient_measurement(loaded.setup, given.window.window_px(), inputs.front().value);
   PropagatedResult const typical = propagate(at, inputs).front();
-  MeasuredGradients const all = gradients_of(field, bench, common_relative_uncertainty(at, inputs));
+  MeasuredGradients const all = compute_gradients(field, bench, common_relative_uncertainty(at, inputs));
   bool const gridded = field.columns > 1 && field.rows > 1;
   std::optional<SimulatedTwin> twin;
   if (gridded) twin = twin_of(loaded, field, all, bench.pixel_at_medium(), device);
@@ -149,8 +149,8 @@ ReportPage measured_report(ReportOptions const& options, Backend const& device) 
                               field.size(), fs::path(files.vectors).filename().string());
   page.findings = {said.measurand, said.expanded, said.bias};
   page.doubtful = read.incomplete;
-  std::optional<LayoutView> const drawn_bench = bench_view(load_case_setup(files.setup, {}));
-  if (drawn_bench) page.sections.push_back(bench_section(*drawn_bench, "the measurement"));
+  std::optional<LayoutView> const drawn_bench = layout_view(load_case_setup(files.setup, {}));
+  if (drawn_bench) page.sections.push_back(layout_section(*drawn_bench, "the measurement"));
   if (files.frames) page.sections.push_back({"Images", {frame_pictures(options.source, "The two frames")}});
   if (gridded) page.sections.push_back(maps_section(page, field, all, camera, said.measurand));
   page.sections.push_back({"Uncertainty", {TextList{said.all()}, inputs_table(known)}});
@@ -159,14 +159,14 @@ ReportPage measured_report(ReportOptions const& options, Backend const& device) 
     std::vector<std::string> drawn;
     if (gridded) drawn.push_back(draw_measured_maps(folder + "/measured_maps." + format, field, all));
     if (!drawn_bench) return drawn;
-    for (std::string& path : draw_bench(folder, format, *drawn_bench)) drawn.push_back(std::move(path));
+    for (std::string& path : draw_layout_and_map(folder, format, *drawn_bench)) drawn.push_back(std::move(path));
     return drawn;
   };
   if (ReportSection figures = drawn_figures(options, draw); !figures.blocks.empty()) {
     page.sections.push_back(std::move(figures));
   }
   page.sections.push_back({"Settings", {Verbatim{"The setup", read_text_file(files.setup)}}});
-  page.sections.push_back(how_it_was_made(files.sources, {command_of(options)}));
+  page.sections.push_back(provenance_section(files.sources, {command_of(options)}));
   files.sources.check();
   return page;
 }

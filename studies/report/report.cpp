@@ -41,7 +41,7 @@ ReportSection drawn_figures(
   return section;
 }
 
-ReportSection how_it_was_made(SourceFiles const& sources, std::vector<std::string> const& commands) {
+ReportSection provenance_section(SourceFiles const& sources, std::vector<std::string> const& commands) {
   TextTable files{"Sources of this report (SHA-256)", {"what", "of its", "SHA-256"}, {}};
   for (SourceFiles::Source const& source : sources.all()) {
     if (!source.name.empty()) files.rows.push_back({{source.name}, {words_of(source.holds)}, {source.sha256}});

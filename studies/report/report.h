@@ -53,7 +53,7 @@ ReportSection drawn_figures(
 
 /// Returns the final section of every report: versions, checksums, commands, citation.
 /// @param sources  inputs of the report; those with a name are listed with their SHA-256
-ReportSection how_it_was_made(SourceFiles const& sources, std::vector<std::string> const& commands);
+ReportSection provenance_section(SourceFiles const& sources, std::vector<std::string> const& commands);
 
 /// Converts both frames to 8-bit images of equal grey scale; of large frames, the central part.
 FramePictures frame_pictures(std::string const& folder, std::string const& title);

@@ -11,7 +11,7 @@
 #include "studies/case/case_files.h"
 #include "studies/figures/study_axes.h"
 #include "studies/figures/study_figures.h"
-#include "studies/report/bench_view.h"
+#include "studies/report/layout_view.h"
 #include "studies/report/report.h"
 #include "studies/report/study_view.h"
 #include "studies/sweep/job_array.h"
@@ -41,7 +41,7 @@ ReportBlock frames_of(std::string const& run, StudyView const& study, StudyRow c
 std::optional<LayoutView> bench_of_text(std::string const& setup, std::string const& name) {
   if (setup.empty()) return std::nullopt;
   try {
-    return bench_view(load_case_setup(SetupDocument::from_text(setup, name)));
+    return layout_view(load_case_setup(SetupDocument::from_text(setup, name)));
   } catch (Error const&) {
     return std::nullopt;
   }
@@ -56,7 +56,7 @@ std::string text_in_run(std::string const& run, char const* name) {
 /// Describes the base setup and the axes of the study.
 ReportSection setup_section(StudyView const& study, LayoutView const* base) {
   ReportSection section{"Set-up", {}};
-  if (base) section = bench_section(*base, "the base");
+  if (base) section = layout_section(*base, "the base");
   TextList axes;
   for (StudyAxis const& axis : study.table.axes) {
     std::string values;
@@ -105,7 +105,7 @@ ReportPage run_report(ReportOptions const& options) {
   }
   ReportPage page;
   page.title = "Study " + study.table.name;
-  page.question = question_of(study);
+  page.question = describe_question(study);
   page.findings = {extremes(study, best, *worst)};
   for (std::string const& finding : {largest_cause(study), strongest_axis(study), uncertainty_finding(study)}) {
     if (!finding.empty()) page.findings.push_back(finding);
@@ -145,7 +145,7 @@ ReportPage run_report(ReportOptions const& options) {
   auto const draw = [&](std::string const& folder, std::string const& format) {
     std::vector<std::string> drawn = draw_study(folder, study.table, {format});
     if (!base) return drawn;
-    for (std::string& path : draw_bench(folder, format, *base)) drawn.push_back(std::move(path));
+    for (std::string& path : draw_layout_and_map(folder, format, *base)) drawn.push_back(std::move(path));
     return drawn;
   };
   if (ReportSection figures = drawn_figures(options, draw); !figures.blocks.empty()) {
@@ -174,7 +174,7 @@ ReportPage run_report(ReportOptions const& options) {
   std::string const place = shell_word(run);
   std::vector<StudyRow const*> shown{&best};
   if (worst != &best) shown.push_back(worst);
-  page.sections.push_back(how_it_was_made(
+  page.sections.push_back(provenance_section(
       run_sources(run, shown), {"gladstone sweep plan study.toml -o " + place, "gladstone sweep run " + place,
                                 "gladstone sweep collect " + place, "gladstone report " + place}));
   return page;

@@ -8,7 +8,7 @@
 #include "render/base/error.h"
 #include "render/base/progress.h"
 #include "render/base/units.h"
-#include "studies/figures/passing_folder.h"
+#include "studies/figures/temporary_directory.h"
 #include "studies/report/measured_density.h"
 #include "studies/sweep/case_runner.h"
 #include "studies/sweep/plan.h"
@@ -64,7 +64,7 @@ SimulatedTwin simulate_twin(CaseSetup const& loaded, Image<double> const& densit
                             Backend device) {
   SimulatedTwin twin;
   try {
-    PassingFolder const folder;
+    TemporaryDirectory const folder;
     std::string const file = folder.path() + "/density.nrrd";
     write_density_plane(file, density, margin_nodes, loaded.setup.medium.ambient_density);
     StudyPlan const plan = plan_study(study_of(loaded, field_of(file, spacing, centre)), device.name());

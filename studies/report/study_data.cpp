@@ -22,9 +22,9 @@ nlohmann::json study_data(StudyView const& study) {
   data["axes"] = data["measures"] = data["rows"] = nlohmann::json::array();
   std::vector<FigureAxis> axes;
   for (StudyAxis const& axis : study.table.axes) {
-    axes.push_back(figure_axis(axis, std::max<std::size_t>(2, std::min(most_places, axis.labels.size()))));
+    axes.push_back(figure_axis(axis, std::max<std::size_t>(2, std::min(max_positions, axis.labels.size()))));
     nlohmann::json numbers = nlohmann::json::array();
-    for (double const position : axes.back().position) numbers.push_back(known_or_null(position));
+    for (double const position : axes.back().position) numbers.push_back(number_or_null(position));
     data["axes"].push_back({{"key", axis.key},
                             {"title", axes.back().title},
                             {"numeric", axes.back().numeric},
@@ -45,7 +45,7 @@ nlohmann::json study_data(StudyView const& study) {
     for (std::size_t k = 0; k < axes.size(); ++k) one["v"].push_back(axes[k].place_of[row.value[k]]);
     for (auto const& measure : data["measures"]) {
       one["m"].push_back(row.status == CaseStatus::ok
-                             ? known_or_null(study.of(row, measure["name"].get_ref<std::string const&>()))
+                             ? number_or_null(study.of(row, measure["name"].get_ref<std::string const&>()))
                              : nlohmann::json(nullptr));
     }
     data["rows"].push_back(std::move(one));

@@ -50,7 +50,7 @@ std::vector<double> StudyView::values(std::string const& measure) const {
   return known;
 }
 
-std::string question_of(StudyView const& study) {
+std::string describe_question(StudyView const& study) {
   std::string axes;
   for (StudyAxis const& axis : study.table.axes) {
     if (axis.labels.size() < 2) continue;
@@ -101,7 +101,7 @@ std::string strongest_axis(StudyView const& study) {
   for (std::size_t k = 0; k < study.table.axes.size(); ++k) {
     StudyAxis const& axis = study.table.axes[k];
     FigureAxis const places =
-        figure_axis(axis, std::min<std::size_t>(most_places, std::max<std::size_t>(2, axis.labels.size())));
+        figure_axis(axis, std::min<std::size_t>(max_positions, std::max<std::size_t>(2, axis.labels.size())));
     double least = std::numeric_limits<double>::infinity(), most = 0;
     std::string least_at, most_at;
     for (std::size_t i = 0; i < places.size(); ++i) {

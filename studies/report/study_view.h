@@ -15,7 +15,7 @@ namespace gladstone {
 /// Fraction of the errors against window-averaged truth that are within their estimated uncertainty.
 inline constexpr char const* coverage_measure = "uncertainty.window_truth.coverage_1";
 /// maximum number of positions on an axis of a chart; more values are binned
-inline constexpr std::size_t most_places = 24;
+inline constexpr std::size_t max_positions = 24;
 
 /// A study with the quantities of its report.
 struct StudyView {
@@ -51,7 +51,7 @@ nlohmann::json study_data(StudyView const& study);
 TextTable cases_table(StudyView const& study);
 
 /// Describes the question of the study and its progress.
-std::string question_of(StudyView const& study);
+std::string describe_question(StudyView const& study);
 
 /// Describes the cases with the smallest and largest error.
 std::string extremes(StudyView const& study, StudyRow const& best, StudyRow const& worst);

@@ -19,13 +19,13 @@
 #include "render/method.h"
 #include "render/setup/setup_node.h"
 #include "studies/case/case_warnings.h"
-#include "studies/case/quiet_log.h"
+#include "studies/case/log_silencer.h"
 #include "studies/case/version_text.h"
 #include "studies/compare/correlate.h"
 #include "studies/compare/thinned_vectors.h"
 #include "studies/compare/tracked_dots.h"
 #include "studies/sweep/case_keys.h"
-#include "studies/sweep/recent.h"
+#include "studies/sweep/lru_cache.h"
 
 namespace gladstone {
 namespace {
@@ -70,7 +70,7 @@ std::string hash_of_input(std::string const& path, ManifestCase const& one) {
 /// another machine may have more.
 bool wants_memory(std::exception const& error) {
   std::string_view const text = error.what();
-  return lacks_memory(error) || text.starts_with("out of device memory") ||
+  return is_out_of_memory(error) || text.starts_with("out of device memory") ||
          text.find("GB of memory (") != text.npos;  // wording of check_memory(), which throws before allocating
 }
 
@@ -102,15 +102,15 @@ struct CaseRunner::Shared {
     std::string hash;
   };
   struct Plan {
-    StepPlan step;
+    IntegrationStep step;
     StrainMap strain;
   };
   std::map<std::string, HashedFile> files;
-  Recent<BuiltMedium> media{8};
-  Recent<Plan> plans{64};
-  Recent<RaysPlan> rays{64};
-  Recent<RenderedCase> renderings{2};
-  Recent<PointTruth> truths{4};
+  LruCache<BuiltMedium> media{8};
+  LruCache<Plan> plans{64};
+  LruCache<RayBudget> rays{64};
+  LruCache<RenderedCase> renderings{2};
+  LruCache<PointTruth> truths{4};
 };
 
 std::vector<std::pair<std::string, double>> flat_measures(nlohmann::ordered_json const& errors) {
@@ -154,7 +154,7 @@ CaseResult CaseRunner::run(ManifestCase const& one, std::string const& keep, Cas
   result.device = device_.name();
   result.build = build_text();
   CaseResult const fresh = result;
-  QuietLog const quiet;
+  LogSilencer const quiet;
   try {
     try {
       compute(one, keep, observe, result);
@@ -167,7 +167,7 @@ CaseResult CaseRunner::run(ManifestCase const& one, std::string const& keep, Cas
   } catch (std::exception const& error) {
     bool const no_memory = wants_memory(error);
     if (!no_memory && stops_the_run(error)) throw;
-    return failed_case(one.index, one.line_hash, device_.name(), message_of(error), no_memory);
+    return failed_case(one.index, one.line_hash, device_.name(), format_user_message(error), no_memory);
   }
   check_inputs(one);  // the inputs must not have changed during the computation either
   return result;
@@ -188,13 +188,13 @@ void CaseRunner::compute(ManifestCase const& one, std::string const& keep, CaseO
     folder.emplace(keep, case_content());
   }
 
-  KnownParts known;
+  ReusableParts known;
   BuiltMedium* medium = shared.media.find(keys.medium);
   if (!medium) {
     std::size_t const bytes = medium_bytes_needed(loaded.setup.medium);
     shared.media.make_room(bytes, kept_media_bytes);
     check_memory(loaded.setup, FieldMemory::needed,
-                 loaded.setup.piv ? std::vector<MemoryNeed>{} : focused_dots_memory(loaded.setup));
+                 loaded.setup.piv ? std::vector<MemoryRequirement>{} : focused_dots_memory(loaded.setup));
     medium = &shared.media.keep(keys.medium, build_checked_medium(loaded.setup.medium), bytes);
   }
   known.medium = medium;
@@ -209,16 +209,16 @@ void CaseRunner::compute(ManifestCase const& one, std::string const& keep, CaseO
   if (!known.rays) shared.rays.keep(plans.rays, prepared.rays);
 
   RenderTheory const theory = keep.empty() ? RenderTheory::no : RenderTheory::yes;  // theory at the dots, for truth.h5
-  std::string const traced =
-      fmt::format("\n{}, rays {}, at side faces {}, for a level {}, fineness {}{}",
-                  to_string(method_of(prepared.scene)), prepared.scene.rays_per_dot, prepared.scene.rays_at_side_faces,
-                  prepared.rays.by_need ? prepared.rays.by_need->level : 0.0, prepared.rays.fineness,
-                  keep.empty() ? "" : ", theory");
+  std::string const traced = fmt::format("\n{}, rays {}, at side faces {}, for a level {}, fineness {}{}",
+                                         to_string(resolve_render_method(prepared.scene)), prepared.scene.rays_per_dot,
+                                         prepared.scene.rays_at_side_faces,
+                                         prepared.rays.adaptive_criteria ? prepared.rays.adaptive_criteria->level : 0.0,
+                                         prepared.rays.fineness, keep.empty() ? "" : ", theory");
   std::string const frames_key = keys.scene + traced;
   RenderedCase* const made = shared.renderings.find(frames_key);
   RenderedCase rendered = made ? *made : render_case(prepared, *device_.renderer, theory);
   if (!made) shared.renderings.keep(frames_key, rendered);
-  rendered.exposure_e = exposure_of(prepared.scene, *rendered.rendering->in_place);
+  rendered.exposure_e = choose_exposure(prepared.scene, *rendered.rendering->in_place);
   RecordedFrames const frames = record_frames(prepared, rendered);
   result.seconds_render = seconds_since(start);
 
@@ -248,7 +248,7 @@ void CaseRunner::compute(ManifestCase const& one, std::string const& keep, CaseO
   Comparison comparison = compare_vectors(
       prepared, rendered.rendering->truth, &rendered,
       {.field = measured.field, .settings = loaded.correlate, .name = name, .every = every}, *truth, device_);
-  result.measures = flat_measures(errors_of(comparison));
+  result.measures = flat_measures(compute_error_measures(comparison));
   std::vector<Vec2d> const still(places.size());
   result.measures.emplace_back("signal_px",
                                summarize_errors(comparison.point.displacement_px, still, comparison.mask).rms_px);

@@ -78,7 +78,7 @@ StudyTable collect_study(std::string const& run) {
   std::error_code error;
   if (!fs::exists(manifest, error)) read_manifest(run);  // throws DataError with an explanation
   refuse_inputs_as_outputs({in_run(run_file::table), in_run(run_file::table_text), points}, {study, manifest});
-  ProtectedWriting const own;
+  ProtectedWritePermit const own;
   OutputFile const tried(in_run(run_file::table));
   SourceFiles sources;
   sources.add("manifest", manifest, SourceFiles::Holds::bytes);

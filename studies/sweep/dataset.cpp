@@ -13,11 +13,11 @@
 #include "render/base/progress.h"
 #include "render/files/hdf5_file.h"
 #include "render/files/image_file.h"
-#include "render/files/output_place.h"
+#include "render/files/output_destination.h"
 #include "render/files/text_file.h"
 #include "studies/case/case.h"
 #include "studies/case/case_files.h"
-#include "studies/case/quiet_log.h"
+#include "studies/case/log_silencer.h"
 #include "studies/compare/compared_files.h"
 #include "studies/compare/displacement_truth.h"
 #include "studies/sweep/run.h"
@@ -95,10 +95,10 @@ constexpr std::array maps{
 /// Prepares a stored case for ray tracing. @throws DataError if one of its input files has changed
 PreparedCase prepare_again(CaseWithImages const& one) {
   require_unchanged_inputs(one.folder);
-  QuietLog const quiet;  // its warnings are already in its summary.json
+  LogSilencer const quiet;  // its warnings are already in its summary.json
   CaseSetup loaded = load_case_setup(in_case(one.folder, case_file::setup), {});
   StrainMap const unused{};
-  KnownParts known;
+  ReusableParts known;
   known.strain = &unused;
   return prepare_case(loaded, known);
 }

@@ -149,7 +149,7 @@ std::string hash_of_line(std::string_view line) {
                         : content_hash(line);
 }
 
-std::optional<int> version_of_manifest(InputFile const& file) {
+std::optional<int> read_manifest_version(InputFile const& file) {
   // Try the format of manifest_line() first; parse the line if another version or program wrote it.
   std::string text(64, '\0');
   text.resize(file.read(0, text.data(), text.size()));

@@ -49,7 +49,7 @@ namespace run_file {
 inline constexpr char const* manifest = "manifest.jsonl";
 inline constexpr char const* study = "study.toml";  ///< copy of the study file
 inline constexpr char const* base = "base.toml";    ///< base setup of all cases, with absolute file names
-inline constexpr char const* claims = "claims";     ///< lock file, one byte per case, see Claims
+inline constexpr char const* claims = "claims";     ///< lock file, one byte per case, see CaseLocks
 inline constexpr char const* cases = "cases";       ///< folder of the results INDEX.json
 inline constexpr char const* table = "study.h5";
 inline constexpr char const* table_text = "study.csv";
@@ -66,7 +66,7 @@ std::string manifest_line(ManifestCase const& one);
 std::string hash_of_line(std::string_view line);
 
 /// Returns the manifest version from the first line of a file, or nullopt if it is not a gladstone manifest.
-std::optional<int> version_of_manifest(InputFile const& file);
+std::optional<int> read_manifest_version(InputFile const& file);
 
 /// Index of RUN/manifest.jsonl, which is not held in memory: cases are read and parsed on access. Each of many workers
 /// needs only some of the cases, and reading results requires only the hashes of the lines.

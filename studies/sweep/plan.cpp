@@ -20,7 +20,7 @@
 #include "render/files/output_file.h"
 #include "render/files/partial.h"
 #include "render/files/text_file.h"
-#include "studies/sweep/claims.h"
+#include "studies/sweep/case_locks.h"
 #include "studies/sweep/results.h"
 
 namespace gladstone {
@@ -51,9 +51,9 @@ bool left_by_a_cut_plan(fs::path const& folder) {
   bool const ours = fs::is_directory(folder / run_file::cases, error) && fs::is_empty(folder / run_file::cases, error);
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
     std::string const name = entry->path().filename().string();
-    bool const partial = is_partial(name, stem_beside(run_file::manifest)) ||
-                         is_partial(name, stem_beside(run_file::study)) ||
-                         is_partial(name, stem_beside(run_file::base));
+    bool const partial = is_partial(name, sibling_stem(run_file::manifest)) ||
+                         is_partial(name, sibling_stem(run_file::study)) ||
+                         is_partial(name, sibling_stem(run_file::base));
     bool const written =
         name == run_file::cases || name == run_file::study || name == run_file::base || name == run_file::claims;
     if (!partial && !(ours && written) && name != "lost+found") return false;
@@ -66,8 +66,8 @@ void refuse_foreign_run(fs::path const& folder) {
   fs::path const manifest = folder / run_file::manifest;
   std::error_code error;
   if (fs::exists(manifest, error)) {
-    UnguardedReading const to_be_replaced;
-    if (version_of_manifest(InputFile(manifest.string(), "another folder"))) return;
+    UnrecordedReading const to_be_replaced;
+    if (read_manifest_version(InputFile(manifest.string(), "another folder"))) return;
     throw OutputError(
         manifest.string(),
         "is not a gladstone manifest, and would be overwritten; choose another folder, or remove this file");
@@ -127,28 +127,28 @@ void write_lines(StudyPlan const& plan, std::string const& path, std::string con
 
 }  // namespace
 
-void try_plan_place(std::string const& run, StudyFile const& study) {
+void check_plan_folder(std::string const& run, StudyFile const& study) {
   fs::path const folder(run), manifest = folder / run_file::manifest;
   refuse_foreign_run(folder);
   refuse_inputs_as_outputs({manifest.string(), (folder / run_file::study).string(), (folder / run_file::base).string(),
                             (folder / run_file::claims).string()},
                            {study.path, study.base_path});
-  ProtectedWriting const own;
+  ProtectedWritePermit const own;
   OutputFile const tried(manifest.string());
 }
 
-Planned write_plan(std::string const& run, StudyPlan const& plan) {
+PlanOutcome write_plan(std::string const& run, StudyPlan const& plan) {
   fs::path const folder(run), manifest = folder / run_file::manifest;
   std::error_code error;
-  Planned planned = Planned::fresh;
+  PlanOutcome planned = PlanOutcome::fresh;
   if (fs::exists(manifest, error)) {
     refuse_foreign_run(folder);
-    UnguardedReading const to_be_replaced;
+    UnrecordedReading const to_be_replaced;
     InputFile const there(manifest.string(), "another folder");
-    int const version = *version_of_manifest(there);
+    int const version = *read_manifest_version(there);
     std::vector<CaseResult> const results = whole_results(folder);
-    if (is_the_same(there, plan)) return Planned::unchanged;
-    planned = Planned::replaced;
+    if (is_the_same(there, plan)) return PlanOutcome::unchanged;
+    planned = PlanOutcome::replaced;
     auto const lost = [&plan](CaseResult const& result) {
       return result.index >= plan.size() || plan[result.index].line_hash != result.line_hash;
     };
@@ -164,7 +164,7 @@ Planned write_plan(std::string const& run, StudyPlan const& plan) {
                                     "or remove this one",
                                     why, count, results.size()));
     }
-    if (Claims(run, Claims::Use::look).any_held()) {
+    if (CaseLocks(run, CaseLocks::Use::look).any_held()) {
       throw OutputError(run,
                         "was planned from another study whose cases are being computed; choose another folder, or "
                         "stop them first");
@@ -172,13 +172,13 @@ Planned write_plan(std::string const& run, StudyPlan const& plan) {
   } else {
     refuse_foreign_run(folder);
   }
-  ProtectedWriting const own;
+  ProtectedWritePermit const own;
   OutputFile output(manifest.string());
   fs::create_directories(folder / run_file::cases, error);
   if (error) throw OutputError((folder / run_file::cases).string(), "cannot be created (" + error.message() + ')');
   OutputFile::write_text((folder / run_file::study).string(), plan.study().text);
   OutputFile::write_text((folder / run_file::base).string(), plan.base());
-  Claims const made(run, Claims::Use::take);
+  CaseLocks const made(run, CaseLocks::Use::take);
   write_lines(plan, output.temporary_path(), manifest.string());
   output.commit();
   return planned;

@@ -9,10 +9,10 @@ namespace gladstone {
 /// Checks whether a study can be planned into RUN.
 /// @throws OutputError if RUN contains something other than a study, cannot be written, or the plan would overwrite one
 ///         of its own inputs
-void try_plan_place(std::string const& run, StudyFile const& study);
+void check_plan_folder(std::string const& run, StudyFile const& study);
 
 /// Result of planning: into a new folder, onto an identical plan, or replacing a different plan.
-enum class Planned { fresh, unchanged, replaced };
+enum class PlanOutcome { fresh, unchanged, replaced };
 
 /// Writes RUN/manifest.jsonl and copies of the study file and its base setup. An existing identical manifest is left
 /// unchanged. A different one is replaced if no result would be lost, that is, if every existing result belongs to the
@@ -20,6 +20,6 @@ enum class Planned { fresh, unchanged, replaced };
 /// Lines are generated in parallel and written in blocks of some thousand.
 /// @throws OutputError if results would be lost, cases are being computed, or RUN contains something else; DataError if
 ///         results in RUN are of another version, or an input cannot be read
-Planned write_plan(std::string const& run, StudyPlan const& plan);
+PlanOutcome write_plan(std::string const& run, StudyPlan const& plan);
 
 }  // namespace gladstone

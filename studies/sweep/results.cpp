@@ -225,8 +225,8 @@ void remove_result(std::string const& run, std::size_t index) {
   }
 }
 
-void remove_left_partials(std::string const& run) {
-  remove_leftovers((std::filesystem::path(run) / run_file::cases).string());
+void remove_abandoned_results(std::string const& run) {
+  remove_abandoned_outputs((std::filesystem::path(run) / run_file::cases).string());
 }
 
 void write_result(std::string const& run, CaseResult const& result) {
@@ -235,7 +235,7 @@ void write_result(std::string const& run, CaseResult const& result) {
   std::string const text = result_text(result);
   int error = 0;
   try {
-    Partial partial(path.parent_path().string(), stem_beside(path.filename().string()), Partial::Kind::file);
+    Partial partial(path.parent_path().string(), sibling_stem(path.filename().string()), Partial::Kind::file);
     for (std::size_t done = 0; error == 0 && done < text.size();) {
       ssize_t const written = ::write(partial.descriptor(), text.data() + done, text.size() - done);
       if (written > 0) done += static_cast<std::size_t>(written);

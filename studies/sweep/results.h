@@ -70,6 +70,6 @@ void remove_result(std::string const& run, std::size_t index);
 void write_result(std::string const& run, CaseResult const& result);
 
 /// Removes the temporary files of processes that were killed while writing results.
-void remove_left_partials(std::string const& run);
+void remove_abandoned_results(std::string const& run);
 
 }  // namespace gladstone

@@ -12,7 +12,7 @@
 #include "render/base/interrupt.h"
 #include "render/files/stop_point.h"
 #include "studies/sweep/case_list.h"
-#include "studies/sweep/claims.h"
+#include "studies/sweep/case_locks.h"
 
 namespace gladstone {
 namespace {
@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 /// RAII guard that holds a claim.
 class Claim {
  public:
-  Claim(Claims& claims, std::size_t index) : claims_(claims), index_(index), taken_(claims.take(index)) {}
+  Claim(CaseLocks& claims, std::size_t index) : claims_(claims), index_(index), taken_(claims.take(index)) {}
   ~Claim() {
     if (taken_) claims_.release(index_);
   }
@@ -31,7 +31,7 @@ class Claim {
   bool taken() const { return taken_; }
 
  private:
-  Claims& claims_;
+  CaseLocks& claims_;
   std::size_t index_;
   bool taken_;
 };
@@ -53,9 +53,9 @@ std::vector<std::size_t> selected_cases(std::size_t count, RunSelection const& s
   return {end_of(selection.shard), end_of(selection.shard + 1)};
 }
 
-RunState state_of(std::string const& run, Manifest const& cases, std::vector<std::size_t> const& selected) {
+RunState determine_run_state(std::string const& run, Manifest const& cases, std::vector<std::size_t> const& selected) {
   RunState state;
-  Claims const claims(run, Claims::Use::look);
+  CaseLocks const claims(run, CaseLocks::Use::look);
   for (std::size_t const index : selected) {
     throw_if_interrupted();
     // Skip cases without a result file, whose manifest lines need not be read.
@@ -73,28 +73,28 @@ RunState state_of(std::string const& run, Manifest const& cases, std::vector<std
   return state;
 }
 
-bool is_due(CaseResult const& result, RunSelection const& selection) {
+bool needs_recomputation(CaseResult const& result, RunSelection const& selection) {
   return result.status == CaseStatus::failed && (result.again || selection.retry_failed);
 }
 
-bool lacks_images(std::string const& run, CaseResult const& result, RunSelection const& selection) {
+bool is_missing_images(std::string const& run, CaseResult const& result, RunSelection const& selection) {
   return selection.keep_images && result.status == CaseStatus::ok && !fs::exists(images_folder(run, result.index));
 }
 
-RunState forget_failures(std::string const& run, Manifest const& cases, std::vector<std::size_t> const& selected,
-                         RunSelection const& selection) {
-  RunState state = state_of(run, cases, selected);
+RunState remove_failed_results(std::string const& run, Manifest const& cases, std::vector<std::size_t> const& selected,
+                               RunSelection const& selection) {
+  RunState state = determine_run_state(run, cases, selected);
   if (selection.keep_images) {
     for (std::size_t const index : selected) {
       auto const result = read_result(run, index, cases.line_hash(index), ResultPart::head);
-      if (!result || !lacks_images(run, *result, selection)) continue;
+      if (!result || !is_missing_images(run, *result, selection)) continue;
       state.missing.push_back(index);
       --state.ok;
     }
   }
-  auto const due = [&](CaseResult const& one) { return is_due(one, selection); };
+  auto const due = [&](CaseResult const& one) { return needs_recomputation(one, selection); };
   if (std::none_of(state.failed.begin(), state.failed.end(), due)) return state;
-  Claims claims(run, Claims::Use::take);
+  CaseLocks claims(run, CaseLocks::Use::take);
   std::erase_if(state.failed, [&](CaseResult const& failed) {
     Claim const claim(claims, failed.index);
     if (!claim.taken()) return false;
@@ -110,7 +110,7 @@ RunState forget_failures(std::string const& run, Manifest const& cases, std::vec
 
 bool record_failure(std::string const& run, Manifest const& cases, std::size_t index, std::string const& error,
                     bool again) {
-  Claims claims(run, Claims::Use::take);
+  CaseLocks claims(run, CaseLocks::Use::take);
   Claim const claim(claims, index);
   if (!claim.taken() || read_result(run, index, cases.line_hash(index), ResultPart::head)) return false;
   write_result(run, failed_case(index, cases.line_hash(index), cases[index].device, error, again));
@@ -124,11 +124,11 @@ void run_cases(std::string const& run, Manifest const& cases, std::vector<std::s
   std::error_code error;
   fs::create_directories(results, error);
   if (error) throw OutputError(results.string(), "cannot be created (" + error.message() + ')');
-  remove_left_partials(run);
-  Claims claims(run, Claims::Use::take);
+  remove_abandoned_results(run);
+  CaseLocks claims(run, CaseLocks::Use::take);
   auto const is_done = [&](std::size_t index) {
     auto const result = read_result(run, index, cases.line_hash(index), ResultPart::head);
-    return result && !lacks_images(run, *result, selection);
+    return result && !is_missing_images(run, *result, selection);
   };
   std::vector<std::size_t> waiting = selected;
   if (!waiting.empty()) std::rotate(waiting.begin(), waiting.begin() + (first % waiting.size()), waiting.end());

@@ -33,23 +33,23 @@ struct RunState {
 
 /// Determines the state from results and claims without computing anything. @throws OutputError if the claims cannot be
 /// read
-RunState state_of(std::string const& run, Manifest const& cases, std::vector<std::size_t> const& selected);
+RunState determine_run_state(std::string const& run, Manifest const& cases, std::vector<std::size_t> const& selected);
 
 /// Returns true if the next run recomputes a case with this result.
-bool is_due(CaseResult const& result, RunSelection const& selection);
+bool needs_recomputation(CaseResult const& result, RunSelection const& selection);
 
 /// Returns the folder in which a run with keep_images stores the files of a case: RUN/cases/INDEX.
 std::string images_folder(std::string const& run, std::size_t index);
 
 /// Returns true if images are requested, the case is finished and they do not exist, so that it must be recomputed.
-bool lacks_images(std::string const& run, CaseResult const& result, RunSelection const& selection);
+bool is_missing_images(std::string const& run, CaseResult const& result, RunSelection const& selection);
 
 /// Removes the results of the failed cases that a run will repeat. They are removed before the workers start, so that
 /// each is recomputed once, regardless of the number of workers. Cases claimed by other processes are skipped.
 /// @return state afterwards; cases without requested images count as missing
 /// @throws OutputError
-RunState forget_failures(std::string const& run, Manifest const& cases, std::vector<std::size_t> const& selected,
-                         RunSelection const& selection);
+RunState remove_failed_results(std::string const& run, Manifest const& cases, std::vector<std::size_t> const& selected,
+                               RunSelection const& selection);
 
 /// Records that a case could not be computed, unless it has a result or another process has claimed it.
 /// @return true if the failure was recorded

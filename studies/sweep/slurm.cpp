@@ -191,7 +191,7 @@ std::size_t most_array_tasks() {
   return slurms_default;
 }
 
-std::optional<std::string> job_going_on(std::string const& run) {
+std::optional<std::string> find_running_job(std::string const& run) {
   std::string job;
   std::ifstream(job_file(job_script_path(run))) >> job;
   if (job.empty() || job.find_first_not_of("0123456789") != std::string::npos) return std::nullopt;
@@ -203,7 +203,7 @@ std::optional<std::string> job_going_on(std::string const& run) {
 }
 
 JobEnd run_job_array(JobArray const& array, CountRemaining const& remaining) {
-  ProtectedWriting const own;
+  ProtectedWritePermit const own;
   OutputFile::write_text(array.script_path, array.script);
   Started sbatch(array.command);
   std::string const job = submitted_job(sbatch);
@@ -226,7 +226,7 @@ JobEnd wait_for_job(std::string const& job, CountRemaining const& remaining) {
   });
 }
 
-std::string last_words(JobArray const& array, std::string const& job, std::size_t task) {
+std::string last_log_message(JobArray const& array, std::string const& job, std::size_t task) {
   std::ifstream log(std::filesystem::path(array.script_path).replace_filename(fmt::format("{}_{}.log", job, task)));
   std::string last, slurms_own;
   for (std::string line; std::getline(log, line);) {

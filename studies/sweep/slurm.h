@@ -29,7 +29,7 @@ struct JobEnd {
 
 /// Returns the job that run_job_array() submitted last for this study if it is still queued or running (squeue).
 /// @param run  absolute path of the RUN folder
-std::optional<std::string> job_going_on(std::string const& run);
+std::optional<std::string> find_running_job(std::string const& run);
 
 /// Returns the number of cases without an intact result. Called at most about once a second, less often if it is slow.
 using CountRemaining = std::function<std::size_t()>;
@@ -40,11 +40,11 @@ using CountRemaining = std::function<std::size_t()>;
 ///         continues, and the message explains how to cancel it and how to wait for it again
 JobEnd run_job_array(JobArray const& array, CountRemaining const& remaining);
 
-/// Waits for a job returned by job_going_on(). @throws Interrupted, as run_job_array()
+/// Waits for a job returned by find_running_job(). @throws Interrupted, as run_job_array()
 JobEnd wait_for_job(std::string const& job, CountRemaining const& remaining);
 
 /// Returns the last line of a task's log, or the last message of Slurm itself if there is one, for example
 /// "slurmstepd: error: *** JOB 12 ON node3 CANCELLED ... DUE TO TIME LIMIT ***". Empty if there is no log.
-std::string last_words(JobArray const& array, std::string const& job, std::size_t task);
+std::string last_log_message(JobArray const& array, std::string const& job, std::size_t task);
 
 }  // namespace gladstone

@@ -143,7 +143,7 @@ TEST(PinholeFit, DistortionIsKnownToAHundredthOfAPixel) {
   EXPECT_LT(worst, 0.01);
 }
 
-TEST(PinholeFit, WhatLeavesACameraOpenIsRefused) {
+TEST(PinholeFit, RejectsDegenerateCalibration) {
   EXPECT_THROW(fit_pinhole(points_of(wide_camera(), 0, 1, 1), middle), std::invalid_argument);
   CalibrationPoints few = points_of(wide_camera(), 0);
   few.world.resize(11);

@@ -85,7 +85,7 @@ TEST(DetectConventions, GivesVectorsInOurOrder) {
 
 // A uniform shift to the right is symmetric under a reflection in y: the conventions of the format are used and the
 // ambiguity is reported.
-TEST(DetectConventions, SaysWhatCannotBeTold) {
+TEST(DetectConventions, ReportsUndecidableConventions) {
   VectorFile file = written_by({}, 200, -0.5);
   for (Vec2d& d : file.field.displacement_px) d = {2.0, 0.0};
   DetectedConventions const found = detect_conventions(
@@ -132,7 +132,7 @@ using Verdict = DetectedConventions::Verdict;
 // The mistake in a file is reported, but the file is read as its format specifies. A shift by a quarter of a period, an
 // exchange of columns and a factor cause differences of sqrt(2), sqrt(2) and 9 times the rms of the truth, and none
 // after correction.
-TEST(DetectConventions, NamesTheLikelyMistake) {
+TEST(DetectConventions, ReportsProbableError) {
   struct Wrong {
     char const* mistake;
     void (*make)(Vec2d& place, Vec2d& displacement);
@@ -178,7 +178,7 @@ TEST(DetectConventions, NamesTheLikelyMistake) {
     EXPECT_THAT(found.mistake.text, testing::StartsWith(wrong.mistake));
     EXPECT_EQ(found.mistake.conventions, wrong.conventions) << wrong.mistake;
     EXPECT_EQ(found.conventions, file.conventions) << "the file is read by the conventions of its format";
-    EXPECT_LT(found.mistake.mended.rms_px, 0.02 * found.mistake.as_read.rms_px) << wrong.mistake;
+    EXPECT_LT(found.mistake.corrected_fit.rms_px, 0.02 * found.mistake.as_read.rms_px) << wrong.mistake;
     EXPECT_EQ(found.tried.size(), 32u) << "2 directions of y, 2 of v, 2 orders of the frames, 4 exchanges of columns";
     EXPECT_THAT(found.report, HasSubstr("likely mistake"));
   }
@@ -186,7 +186,7 @@ TEST(DetectConventions, NamesTheLikelyMistake) {
 
 // Windows as long as a wave reduce it to a quarter of the truth; for a uniform displacement only another unit has this
 // effect.
-TEST(DetectConventions, TellsAFactorFromWideWindows) {
+TEST(DetectConventions, DistinguishesScaleFromWindowAveraging) {
   VectorFile file = waves_on_a_grid();
   for (Vec2d& d : file.field.displacement_px) d = 0.25 * d;
   EXPECT_EQ(detect_conventions(file, waves, 200).verdict, Verdict::fits);
@@ -198,7 +198,7 @@ TEST(DetectConventions, TellsAFactorFromWideWindows) {
 
 // A rotation about the middle is symmetric under an exchange of the frames with a reflection of both axes: both
 // readings are reported.
-TEST(DetectConventions, NamesEveryMistakeThatLooksTheSame) {
+TEST(DetectConventions, ReportsAllIndistinguishableErrors) {
   VectorFile file;
   file.format = "test";
   auto const vortex = [](Vec2d p) { return Vec2d{0.02 * (p.y - 99.5), -0.02 * (p.x - 99.5)}; };
@@ -218,7 +218,7 @@ TEST(DetectConventions, NamesEveryMistakeThatLooksTheSame) {
 // The same with errors that differ by 2 % between readings, as for an estimator with a bias to the right: the most
 // likely mistake is still reported first, and a shift is not reported as an exchange of axes, although an exchange
 // reduces its effect.
-TEST(DetectConventions, NamesTheLikeliestOfReadingsThatFitAlmostAlike) {
+TEST(DetectConventions, ReportsMostProbableOfSimilarFits) {
   VectorFile file;
   file.format = "test";
   auto const vortex = [](Vec2d p) {
@@ -281,21 +281,21 @@ TEST(DetectConventions, ShiftIsKnownToItsResolution) {
 }
 
 // Zero displacement, noise, and positions in mm (all within 16 px) follow the truth in no reading.
-TEST(DetectConventions, RefusesWhatFitsNone) {
+TEST(DetectConventions, RejectsVectorsThatFitNoConvention) {
   for (auto const make : {+[](Vec2d&, Vec2d&d, Vec2d) { d = {}; }, +[](Vec2d&, Vec2d&d, Vec2d n) { d = 0.1 * n; },
                           +[](Vec2d&p, Vec2d&, Vec2d) { p = 0.085 * p; }}) {
     VectorFile file = waves_on_a_grid();
     for (std::size_t i = 0; i < file.field.size(); ++i)
       make(file.field.position_px[i], file.field.displacement_px[i], noise(i));
     DetectedConventions const found = detect_conventions(file, waves, 200);
-    EXPECT_EQ(found.verdict, Verdict::fits_none) << found.report;
+    EXPECT_EQ(found.verdict, Verdict::no_convention_fits) << found.report;
     EXPECT_THAT(found.report, AllOf(HasSubstr("fit no convention"), HasSubstr("v-up,frames-exchanged"),
                                     HasSubstr("the truth itself is 0.0"), HasSubstr("correct the file")));
   }
 }
 
 // A shear determines only a shift across its layers, and a uniform stretch of u only a factor of u.
-TEST(DetectConventions, TellsOnlyWhatTheDisplacementDetermines) {
+TEST(DetectConventions, ReportsOnlyDeterminableConventions) {
   auto const shear = [](Vec2d p) { return Vec2d{2.0 * std::sin(p.y / 20.0), 0.0}; };
   VectorFile shifted = waves_on_a_grid(), stretched = shifted;
   for (std::size_t i = 0; i < shifted.field.size(); ++i) {
@@ -312,7 +312,7 @@ TEST(DetectConventions, TellsOnlyWhatTheDisplacementDetermines) {
 
 // A bias of u is not reported as a shift of positions by a pixel, which would change the many small errors of v but
 // hardly the bias.
-TEST(DetectConventions, TakesABiasOfOneComponentForNoShift) {
+TEST(DetectConventions, BiasOfOneComponentIsNoShift) {
   VectorFile file = waves_on_a_grid();
   for (std::size_t i = 0; i < file.field.size(); ++i)
     file.field.displacement_px[i] += Vec2d{0.1, 0.0} + 0.01 * noise(i);
@@ -329,13 +329,13 @@ TEST(DetectConventions, NamesVectorsThatAreAllZero) {
         return Vec2d{3.2, 0.0};
       },
       200);
-  EXPECT_EQ(found.verdict, Verdict::fits_none);
+  EXPECT_EQ(found.verdict, Verdict::no_convention_fits);
   EXPECT_FALSE(found.mistake.found()) << found.mistake.text;
   EXPECT_THAT(found.report, HasSubstr("all displacements are 0"));
 }
 
 // Windows of 64 px do not resolve a sine of 32 px: such vectors are noise, not a mistake in the file.
-TEST(DetectConventions, DoesNotJudgeWindowsByWavesThatAreTooFineForThem) {
+TEST(DetectConventions, IgnoresWavesThatWindowsCannotResolve) {
   auto const sine = [](Vec2d p) { return Vec2d{2.0 * std::sin(2.0 * 3.14159265358979 * p.y / 32.0), 0.0}; };
   VectorFile file = waves_on_a_grid();
   for (std::size_t i = 0; i < file.field.size(); ++i) file.field.displacement_px[i] = 0.1 * noise(i);
@@ -346,7 +346,7 @@ TEST(DetectConventions, DoesNotJudgeWindowsByWavesThatAreTooFineForThem) {
 
 // With few vectors the best of sixty choices is closer to the truth by chance than zero displacement. Twenty vectors of
 // the shifted field, or of noise, must fit no reading; twenty correct ones must fit.
-TEST(DetectConventions, DoesNotTakeChanceForAFit) {
+TEST(DetectConventions, DoesNotMistakeRandomVectorsForFit) {
   VectorFile file = waves_on_a_grid();
   std::vector<std::size_t> few;
   for (std::size_t i = 0; i < 460; i += 23) few.push_back(i);
@@ -361,7 +361,7 @@ TEST(DetectConventions, DoesNotTakeChanceForAFit) {
 }
 
 // 480 vectors with noise of three times the signal: the slope is 1 with two standard errors of 2 * 3 / sqrt(960) = 0.2.
-TEST(DetectConventions, KeepsWhatFollowsTheTruthHoweverNoisy) {
+TEST(DetectConventions, AcceptsNoisyVectorsThatFollowTruth) {
   VectorFile file = waves_on_a_grid();
   double const three_times = 3.0 * std::sqrt(3.0) * 0.1 / std::sqrt(2.0);  // of numbers uniform in (-1, 1)
   for (std::size_t i = 0; i < file.field.size(); ++i) file.field.displacement_px[i] += three_times * noise(i);
@@ -371,12 +371,12 @@ TEST(DetectConventions, KeepsWhatFollowsTheTruthHoweverNoisy) {
   EXPECT_FALSE(found.conventions.v_up);
   EXPECT_THAT(found.report, HasSubstr("like noisy vectors"));
   for (std::size_t i = 0; i < file.field.size(); ++i) file.field.displacement_px[i] = three_times * noise(i);
-  EXPECT_EQ(detect_conventions(file, waves, 200).verdict, Verdict::fits_none) << "noise alone";
+  EXPECT_EQ(detect_conventions(file, waves, 200).verdict, Verdict::no_convention_fits) << "noise alone";
 }
 
 // Without displacement, or with a displacement below the resolution of a correlation, every choice fits equally well:
 // the conventions of the format are used.
-TEST(DetectConventions, CannotTellByASignalBelowTheNoise) {
+TEST(DetectConventions, IsUndecidedIfSignalIsBelowNoise) {
   for (double const signal : {0.0, 0.05}) {
     VectorFile file = waves_on_a_grid();
     file.conventions.offset_px = -0.5;
@@ -392,7 +392,7 @@ TEST(DetectConventions, CannotTellByASignalBelowTheNoise) {
 }
 
 // A small signal with small errors is sufficient.
-TEST(DetectConventions, TellsBySmallSignalsThatAreMeasuredBetter) {
+TEST(DetectConventions, DecidesOnSmallAccurateSignals) {
   VectorFile file = waves_on_a_grid();
   auto const truth = [](Vec2d p) { return 0.05 * waves(p); };
   for (std::size_t i = 0; i < file.field.size(); ++i) {
@@ -451,7 +451,7 @@ VectorFile noisy_waves(double moved, double offset) {
 // Half a pixel in waves of slope 0.017 is 0.006 px rms, 0.3 times the errors: their rms grows by 4 %, which a thousand
 // vectors distinguish from chance, both for codes whose multi-pass vectors are at the grid positions and for those
 // whose vectors are not.
-TEST(DetectConventions, TellsHalfAPixelInNoise) {
+TEST(DetectConventions, DetectsHalfPixelOffsetInNoise) {
   DetectedConventions const deformed = detect_conventions(noisy_waves(0.0, -0.5), waves, 200);
   EXPECT_EQ(deformed.conventions.offset_px, 0.0) << deformed.report;
   DetectedConventions const plain = detect_conventions(noisy_waves(0.5, -0.5), waves, 200);
@@ -459,11 +459,11 @@ TEST(DetectConventions, TellsHalfAPixelInNoise) {
 }
 
 // One vector in a hundred is wrong by 50 px: it counts as 1 px, and the axes are detected as before.
-TEST(DetectConventions, DoesNotHangOnAFewWildVectors) {
+TEST(DetectConventions, IsRobustAgainstOutliers) {
   VectorFile file = waves_on_a_grid();
   for (std::size_t i = 0; i < file.field.size(); i += 100) file.field.displacement_px[i] = {50.0, -50.0};
   DetectedConventions const found = detect_conventions(file, waves, 200);
-  EXPECT_NE(found.verdict, Verdict::fits_none) << found.report;
+  EXPECT_NE(found.verdict, Verdict::no_convention_fits) << found.report;
   EXPECT_EQ(found.conventions, VectorConventions{});
 }
 
@@ -543,7 +543,7 @@ TEST(DetectConventions, FindsWhereEachFormatCountsFrom) {
 // 160 x 160 px, 1 % noise, seed 77 and this displacement. Both write x = ws/2. The single pass measures half a pixel
 // away from that position; windef deforms the images at exactly these positions, to which its vectors therefore belong.
 // Only the file name and the displacement distinguish the two.
-TEST(DetectConventions, TellsOnePassOfOpenPivFromItsDeformingOne) {
+TEST(DetectConventions, DistinguishesOpenPivPassTypes) {
   auto const flow = [](Vec2d p) { return Vec2d{1.5 + std::sin(2.0 * pi * p.y / 160.0), 0.02 * (p.x - 79.5)}; };
   std::string const folder = std::string(GLADSTONE_DATA_DIR) + "/../tests/fuzz/corpus/vector_text/openpiv_0.26_";
   for (auto const& [name, offset] : {std::pair{"windef", 0.0}, {"one_pass", -0.5}}) {

@@ -140,10 +140,10 @@ TEST(SinglePass, KeepsTheCrestsOfAWaveOfTwoWindows) {
 TEST(MultiPass, TrustsTheFirstPassAlone) {
   CorrelationSettings const settings;
   CorrelationSchedule const schedule(settings);
-  EXPECT_EQ(schedule.rule(0).trusted_ratio, 2.0);
-  EXPECT_EQ(schedule.rule(1).trusted_ratio, std::numeric_limits<double>::infinity());
+  EXPECT_EQ(schedule.rule(0).reliable_peak_ratio, 2.0);
+  EXPECT_EQ(schedule.rule(1).reliable_peak_ratio, std::numeric_limits<double>::infinity());
   int const last = schedule.passes() - 1;
-  EXPECT_EQ(schedule.rule(last).trusted_ratio, std::numeric_limits<double>::infinity());
+  EXPECT_EQ(schedule.rule(last).reliable_peak_ratio, std::numeric_limits<double>::infinity());
   EXPECT_EQ(schedule.rule(last).epsilon_px, settings.median_epsilon_px);
   EXPECT_EQ(schedule.rule(last - 1).epsilon_px, 0.5);
 }

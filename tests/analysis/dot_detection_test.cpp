@@ -65,7 +65,7 @@ struct Scenery {
 
 // For any sub-pixel position the centroid of a dot is its centre. The sum over pixels of a band-limited image is its
 // integral; a Gaussian of sigma = 0.7 px transmits exp(-2 pi^2 0.7^2) = 6e-5 at the first aliased frequency, 1/px.
-TEST(DotDetection, IsUnbiasedWhereverADotLies) {
+TEST(DotDetection, IsUnbiasedAtAnySubpixelPosition) {
   for (double const radius : {2.0, 3.0, 6.5}) {
     Scenery const scenery(radius, 0.7);
     auto const errors = scenery.errors();
@@ -115,7 +115,7 @@ TEST(DotDetection, ErrorsAreThoseOfTheNoise) {
   EXPECT_LT(length(sum / static_cast<double>(count)), 4 * expected / std::sqrt(static_cast<double>(count)));
 }
 
-TEST(DotDetection, WhatIsNoDotIsLeftOut) {
+TEST(DotDetection, ExcludesRegionsThatAreNoDots) {
   Scenery scenery(3, 0.7);
   add_dot(scenery.picture, {0.5, 80}, 3, 0.7, 40000);      // dot cut by the edge
   add_dot(scenery.picture, {100.2, 44.8}, 0.4, 0.5, 1e6);  // dust: a 25th of a dot's area, bright
@@ -188,7 +188,7 @@ TEST(DotDetection, DenseDarkDotsUnderUnevenLightAreFoundWhereTheyAre) {
 
 // Letters about as large as the dots, between them: bars, rings and angles are not filled ellipses in the shape of the
 // dots.
-TEST(DotDetection, LettersAreLeftOutAndCounted) {
+TEST(DotDetection, ExcludesAndCountsLetters) {
   Scenery scenery(3, 0.7);
   auto const fill = [&](int left, int top, int columns, int rows) {
     for (int row = top; row < top + rows; ++row) {
@@ -208,7 +208,7 @@ TEST(DotDetection, LettersAreLeftOutAndCounted) {
   for (Vec2d const error : scenery.errors()) EXPECT_LT(length(error), 1e-3);
 }
 
-TEST(DotDetection, NothingIsFoundWhereNothingIs) {
+TEST(DotDetection, FindsNoDotsInBlankImage) {
   Image<double> picture(64, 64);
   EXPECT_TRUE(detect_dots(picture).dots.empty());
   std::mt19937 random(3);

@@ -28,7 +28,7 @@ struct EnsembleErrors {
   double rms = 0.0;    ///< rms error of the others, per component [px]
 };
 
-EnsembleErrors errors_of(DisplacementField const& field) {
+EnsembleErrors compute_error_measures(DisplacementField const& field) {
   EnsembleErrors errors;
   double good = 0.0;
   for (Vec2d const& d : field.raw_px) {
@@ -72,8 +72,8 @@ TEST(Ensemble, OfOnePairIsThePair) {
 TEST(Ensemble, FindsWhatNoSinglePairShows) {
   ParticleSettings const seeding{.particles_per_px = 2.0 / 256.0, .noise = 0.1, .seed = 11};
   CorrelationSettings const settings = settings_of({16});
-  EnsembleErrors const alone = errors_of(correlate_ensemble(sequence_of(1, seeding), settings));
-  EnsembleErrors const together = errors_of(correlate_ensemble(sequence_of(16, seeding), settings));
+  EnsembleErrors const alone = compute_error_measures(correlate_ensemble(sequence_of(1, seeding), settings));
+  EnsembleErrors const together = compute_error_measures(correlate_ensemble(sequence_of(16, seeding), settings));
   EXPECT_GT(alone.gross, 0.1);
   EXPECT_LT(together.gross, 0.005);
   EXPECT_LT(together.rms, 1.5 * alone.rms / 4.0);
@@ -83,8 +83,8 @@ TEST(Ensemble, OfSeveralPassesFollowsTheFrames) {
   for (char const* method : {"scc", "rpc", "zncc"}) {
     CorrelationSettings settings = settings_of({32, 16});
     settings.method = method;
-    EnsembleErrors const errors =
-        errors_of(correlate_ensemble(sequence_of(6, {.particles_per_px = 3.0 / 256.0, .noise = 0.05}), settings));
+    EnsembleErrors const errors = compute_error_measures(
+        correlate_ensemble(sequence_of(6, {.particles_per_px = 3.0 / 256.0, .noise = 0.05}), settings));
     EXPECT_EQ(errors.gross, 0.0) << method;
     EXPECT_LT(errors.rms, 0.04) << method;
   }
@@ -104,7 +104,7 @@ TEST(Ensemble, TakesWhatEachPairHas) {
   DisplacementField const field = correlate_ensemble(holed, settings_of({32}));
   EXPECT_EQ(std::count(field.status.begin(), field.status.end(), VectorStatus::valid),
             static_cast<std::ptrdiff_t>(field.size()));
-  EXPECT_EQ(errors_of(field).gross, 0.0);
+  EXPECT_EQ(compute_error_measures(field).gross, 0.0);
 }
 
 TEST(Ensemble, RefusesWhatIsOfSinglePairs) {

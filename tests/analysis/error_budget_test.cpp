@@ -96,7 +96,7 @@ TEST(ErrorBudget, BeginsWithTheFlowOfPiv) {
 
 // Vectors of another code: no noise-free images, no repeats. The remainder is attributed to the estimator; noise is
 // unknown.
-TEST(ErrorBudget, BooksAGapUnderItsFirstTerm) {
+TEST(ErrorBudget, AttributesGapToFirstTerm) {
   std::vector<BudgetStage> stages = chain(50);
   std::erase_if(stages, [](BudgetStage const& s) { return s.name == "estimator"; });
   for (BudgetStage& s : stages) {

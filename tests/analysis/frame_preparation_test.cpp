@@ -65,7 +65,7 @@ TEST(PolygonMask, LeavesOutThePixelsInside) {
       EXPECT_EQ(std::isnan(box.reference()(i, j)), i >= 10 && i < 20 && j >= 5 && j < 15) << i << ' ' << j;
       EXPECT_EQ(std::isnan(corner.flow()(i, j)), i + j < 40) << i << ' ' << j;
     }
-  EXPECT_DOUBLE_EQ(known_part(box), 1.0 - 100.0 / 4096.0);
+  EXPECT_DOUBLE_EQ(valid_pixel_fraction(box), 1.0 - 100.0 / 4096.0);
 }
 
 TEST(ImageMask, LeavesOutWhereThePictureIsBlack) {
@@ -105,9 +105,10 @@ TEST(IntensityMask, LeavesOutWhatIsBrightInEitherFrame) {
   HostFrames const frames = prepared(reference, flow, "[[correlate.mask]]\nkind = \"intensity\"\nabove_dn = 199.5\n");
   EXPECT_TRUE(std::isnan(frames.flow()(3, 4)) && std::isnan(frames.reference()(20, 21)));
   EXPECT_TRUE(std::isnan(frames.reference()(9, 9)));
-  EXPECT_DOUBLE_EQ(known_part(frames), 1.0 - 3.0 / 1024.0);
-  EXPECT_DOUBLE_EQ(known_part(prepared(reference, flow, "[[correlate.mask]]\nkind = \"intensity\"\nbelow_dn = 500\n")),
-                   0.0);
+  EXPECT_DOUBLE_EQ(valid_pixel_fraction(frames), 1.0 - 3.0 / 1024.0);
+  EXPECT_DOUBLE_EQ(
+      valid_pixel_fraction(prepared(reference, flow, "[[correlate.mask]]\nkind = \"intensity\"\nbelow_dn = 500\n")),
+      0.0);
 }
 
 // A Gaussian average of standard deviation sigma transmits exp(-2 pi^2 sigma^2/L^2) of a wave of length L; the
@@ -184,7 +185,7 @@ TEST(LocalContrast, BringsUpWhatIsFaint) {
 
 // Dots move over a brighter pattern at rest: without background subtraction the windows find the pattern, with it the
 // dots. The minimum of a sequence is the pattern alone if no pixel is always covered by a dot.
-TEST(Background, TakesOffWhatStandsStill) {
+TEST(Background, SubtractsStationaryBackground) {
   auto const moved = [](std::uint64_t seed, Vec2d by) {
     return render_particle_pair({.particles_per_px = 10.0 / 1024.0, .seed = seed}, [by](Vec2d) { return by; });
   };

@@ -40,7 +40,7 @@ void expect_right(AssignedDots const& assigned) {
 TEST(GridAssignment, FollowsThePerspective) {
   AssignedDots const assigned = assign_to_grid(dots_of(-6, 6, -4, 4), grid, expected());
   EXPECT_EQ(assigned.dots.size(), 13u * 9u);
-  EXPECT_EQ(assigned.middle_by, MiddleBy::whole_grid);
+  EXPECT_EQ(assigned.middle_by, CentreDotMethod::whole_grid);
   expect_right(assigned);
 }
 
@@ -64,7 +64,7 @@ TEST(GridAssignment, OfAPartTakesTheExpectedMiddle) {
   rough.middle_px += Vec2d{15, 10};
   AssignedDots const assigned = assign_to_grid(dots_of(-1, 6, -4, 2), grid, rough);
   EXPECT_EQ(assigned.dots.size(), 8u * 7u);
-  EXPECT_EQ(assigned.middle_by, MiddleBy::expected_view);
+  EXPECT_EQ(assigned.middle_by, CentreDotMethod::expected_view);
   expect_right(assigned);
 }
 
@@ -74,14 +74,14 @@ TEST(GridAssignment, NeedsTheExpectedMiddleOnlyAlongTheAxisThatIsCut) {
   rough.middle_px = seen(1.6, 0.2);
   AssignedDots const assigned = assign_to_grid(dots_of(-6, 6, -4, 2), grid, rough);
   EXPECT_EQ(assigned.dots.size(), 13u * 7u);
-  EXPECT_EQ(assigned.middle_by, MiddleBy::expected_view);
+  EXPECT_EQ(assigned.middle_by, CentreDotMethod::expected_view);
   EXPECT_NEAR(assigned.middle_offset, 0.2, 0.02);
   expect_right(assigned);
 }
 
 // A spot displaced from a dot's position by a fifth of a spacing, and one half as large again: neither is a dot of the
 // grid.
-TEST(GridAssignment, SpotsThatFitNeitherPlacesNorSizesAreRemoved) {
+TEST(GridAssignment, RemovesSpotsOfWrongPositionOrSize) {
   std::vector<DetectedDot> dots = dots_of(-6, 6, -4, 4);
   for (DetectedDot& dot : dots) {
     if (length(dot.centre_px - seen(-3, 2)) < 1) dot.centre_px = seen(-2.85, 2.13);
@@ -90,7 +90,7 @@ TEST(GridAssignment, SpotsThatFitNeitherPlacesNorSizesAreRemoved) {
   AssignedDots const assigned = assign_to_grid(dots, grid, expected());
   EXPECT_EQ(assigned.dots.size(), 13u * 9u - 2);
   EXPECT_EQ(assigned.strangers.size(), 2u);
-  EXPECT_EQ(assigned.middle_by, MiddleBy::whole_grid);
+  EXPECT_EQ(assigned.middle_by, CentreDotMethod::whole_grid);
   expect_right(assigned);
 }
 
@@ -106,7 +106,7 @@ TEST(GridAssignment, TellsTheScatterOfItsDots) {
   EXPECT_NEAR(assign_to_grid(dots, grid, expected()).smoothness_px, 0.5, 0.5 * 0.15 + 0.02);
 }
 
-TEST(GridAssignment, GoesAroundMissingDotsAndLeavesOutStrangers) {
+TEST(GridAssignment, ToleratesMissingDotsAndOutliers) {
   std::vector<DetectedDot> dots = dots_of(-6, 6, -4, 4);
   std::erase_if(dots, [](DetectedDot const& dot) {
     return length(dot.centre_px - seen(0, 0)) < 1 || length(dot.centre_px - seen(-3, 2)) < 1;

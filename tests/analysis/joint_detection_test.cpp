@@ -46,7 +46,7 @@ VectorsWithTruth written(Flow const& truth, Flow const& change, Vec2d shift_px =
 
 Vec2d same(Vec2d d) { return d; }
 
-TEST(DetectCommonConventions, LetsThoseCasesDecideThatCan) {
+TEST(DetectCommonConventions, UsesDecisiveCasesOnly) {
   Flow const negative = [](Vec2d d) { return -d; };
   // the vortex alone: negative vectors are explained by exchanged frames and by both axes reversed
   CommonConventions const alone = detect_common_conventions({written(vortex, negative)});
@@ -61,7 +61,7 @@ TEST(DetectCommonConventions, LetsThoseCasesDecideThatCan) {
   EXPECT_NE(both.decisive, 0u) << "a uniform displacement does not distinguish exchanged frames from exchanged columns";
 }
 
-TEST(DetectCommonConventions, IsSureOfRightVectorsByOneCaseThatIsWithoutSymmetry) {
+TEST(DetectCommonConventions, OneAsymmetricCaseIsDecisive) {
   CommonConventions const symmetric = detect_common_conventions({written(vortex, same)});
   EXPECT_FALSE(symmetric.mistake.found());
   EXPECT_TRUE(symmetric.ambiguous);
@@ -71,7 +71,7 @@ TEST(DetectCommonConventions, IsSureOfRightVectorsByOneCaseThatIsWithoutSymmetry
   EXPECT_EQ(sure.decisive, 1u);
 }
 
-TEST(DetectCommonConventions, FindsAShiftThatMostCasesCannotSee) {
+TEST(DetectCommonConventions, FindsShiftVisibleInFewCases) {
   std::vector<VectorsWithTruth> files(5, written(uniform, same, {12.0, 0.0}));
   files.push_back(written(vortex, same, {12.0, 0.0}));
   CommonConventions const found = detect_common_conventions(files);
@@ -122,7 +122,7 @@ VectorsWithTruth with_outliers(VectorsWithTruth written, double share, double no
 }
 
 // Correct vectors with noise and outliers are not reported as a mistake, neither in a single case nor in several.
-TEST(DetectCommonConventions, TakesOutliersForNoMistake) {
+TEST(DetectCommonConventions, OutliersAreNoConventionError) {
   for (unsigned seed = 0; seed < 6; ++seed) {
     for (double const share : {0.005, 0.01, 0.05}) {
       std::vector<VectorsWithTruth> files;
@@ -167,7 +167,7 @@ TEST(DetectCommonConventions, FindsMistakesAmongOutliers) {
 }
 
 // Three files, one of them negated, one ten times too large, and one shifted: no common reading exists.
-TEST(DetectCommonConventions, FindsNothingInCommonInThreeMistakes) {
+TEST(DetectCommonConventions, FindsNoCommonErrorAmongThree) {
   CommonConventions const found = detect_common_conventions({written(vortex, [](Vec2d d) { return -d; }),
                                                              written(uniform, [](Vec2d d) { return 10.0 * d; }),
                                                              written(off_centre, same, {16.0, 0.0})});
@@ -177,7 +177,7 @@ TEST(DetectCommonConventions, FindsNothingInCommonInThreeMistakes) {
 }
 
 // One wrong file among correct ones is reported, whether it is ten times too large or noise.
-TEST(DetectCommonConventions, NamesTheOneFileThatIsWrong) {
+TEST(DetectCommonConventions, ReportsSingleFaultyFile) {
   VectorsWithTruth const large = written(vortex, [](Vec2d d) { return 10.0 * d; }), right = written(off_centre, same);
   EXPECT_EQ(detect_common_conventions({right, written(uniform, same), large}).mistaken, std::vector<std::size_t>{2});
   VectorsWithTruth const noise = with_outliers(written(vortex, [](Vec2d) { return Vec2d{}; }), 0.0, 1.0, 1);

@@ -26,7 +26,7 @@ TEST(Pyramid, PutsPixelIWherePixelTwoIWas) {
   GreyImage ramp{97, 60, {}};
   for (int j = 0; j < ramp.rows; ++j)
     for (int i = 0; i < ramp.columns; ++i) ramp.level.push_back(static_cast<float>(i + 3 * j));
-  std::vector<GreyImage> const levels = pyramid_of(ramp);
+  std::vector<GreyImage> const levels = build_pyramid(ramp);
   ASSERT_EQ(levels.size(), 2u);  // half of 60 is 30: another half would be below 24
   EXPECT_EQ(levels[1].columns, 49);
   EXPECT_EQ(levels[1].rows, 30);

@@ -70,23 +70,23 @@ TEST(PlatePlacement, APlateThatMovesAlongItsNormalHasNoDrift) {
   EXPECT_TRUE(placement->moved.empty());
 }
 
-TEST(PlatePlacement, AMiddleDotThatIsOffByOneIsFound) {
+TEST(PlatePlacement, FindsCentreDotOffByOne) {
   for (std::size_t plane = 0; plane < 3; ++plane) {
     std::array<int, 3> moved{};
     moved[plane] = 1;
     PlateDots const dots = dots_of_plate(0, 0, moved);
-    auto const placement = find_moved_middles(dots, picture_middle);
+    auto const placement = find_misidentified_centres(dots, picture_middle);
     ASSERT_TRUE(placement) << plane;
     for (std::size_t other = 0; other < 3; ++other) {
       EXPECT_EQ(placement->moved[other], (std::array<int, 2>{-moved[other], 0})) << plane;
     }
     EXPECT_NEAR(fit_pinhole(dots.points(*placement), picture_middle).camera.fx(), long_focal_length, 1e-3);
   }
-  EXPECT_FALSE(find_moved_middles(dots_of_plate(0.01, 0), picture_middle));
+  EXPECT_FALSE(find_misidentified_centres(dots_of_plate(0.01, 0), picture_middle));
 }
 
 // An index error that grows by one column per plane is a drift by whole spacings, which causes no residual.
-TEST(PlatePlacement, MiddleDotsThatDriftByWholeSpacingsAreFound) {
+TEST(PlatePlacement, FindsCentreDotsThatDrift) {
   PlateDots const dots = dots_of_plate(0, 0, {-1, 0, 1});
   EXPECT_LT(fit_pinhole(dots.points(), picture_middle).rms_px, 1e-6);
   auto const placement = find_drift(dots, picture_middle);
@@ -128,7 +128,7 @@ TEST(PlatePlacement, MiddleDotsOfTwoPlanesOfATiltedPlateAreFound) {
 TEST(PlatePlacement, MiddleDotsOfTwoPlanesThatAreOffDifferentlyAreFound) {
   for (std::array<int, 3> const moved : {std::array<int, 3>{-1, 0, 2}, {2, 0, 1}, {0, 1, -2}}) {
     PlateDots const dots = dots_of_plate(0, 0, moved);
-    auto const placement = find_moved_middles(dots, picture_middle);
+    auto const placement = find_misidentified_centres(dots, picture_middle);
     ASSERT_TRUE(placement);
     std::vector<int> sums;  // equal in all planes if the offsets are corrected
     for (std::size_t plane = 0; plane < 3; ++plane) {
@@ -140,11 +140,11 @@ TEST(PlatePlacement, MiddleDotsOfTwoPlanesThatAreOffDifferentlyAreFound) {
   }
 }
 
-TEST(PlatePlacement, PicturesInAnotherOrderAreFound) {
+TEST(PlatePlacement, FindsPermutedImages) {
   PlateDots dots = dots_of_plate(0.02, 0.01);
-  EXPECT_FALSE(find_picture_order(dots));
+  EXPECT_FALSE(find_image_order(dots));
   for (std::size_t& plane : dots.plane_of) plane = plane == 1 ? 2 : plane == 2 ? 1 : 0;
-  auto const order = find_picture_order(dots);
+  auto const order = find_image_order(dots);
   ASSERT_TRUE(order);
   EXPECT_EQ(*order, (std::vector<std::size_t>{0, 2, 1}));
 }

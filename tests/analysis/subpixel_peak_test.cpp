@@ -126,7 +126,7 @@ TEST(PeakSearch, PrefersTheNearestOfEquallyHighAliases) {
   }
 }
 
-// 0.85 is less than nearly_as_high: the higher peak remains first, however large its shift.
+// 0.85 is less than ambiguous_height_ratio: the higher peak remains first, however large its shift.
 TEST(PeakSearch, PrefersAFarPeakThatIsClearlyHigher) {
   Plane plane(-1e-3f);
   plane.add({7.0, 7.0}, 1.0);

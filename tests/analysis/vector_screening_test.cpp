@@ -36,13 +36,13 @@ DisplacementField lattice() {
 
 TEST(ScreenVectors, LeavesGoodOnesAsTheyAre) {
   DisplacementField field = lattice();
-  LeftOutVectors const left_out = screen_vectors(field, 0.0, columns, rows);
+  RejectedVectors const left_out = screen_vectors(field, 0.0, columns, rows);
   EXPECT_EQ(left_out.all(), 0u);
   EXPECT_THAT(left_out.text(), IsEmpty());
   EXPECT_EQ(field.columns, 11);
   EXPECT_EQ(field.rows, 5);
-  EXPECT_THAT(refusal_of_places(field, left_out, columns, rows), IsEmpty());
-  EXPECT_THAT(doubt_about_places(field, columns, rows), IsEmpty());
+  EXPECT_THAT(reason_to_reject_positions(field, left_out, columns, rows), IsEmpty());
+  EXPECT_THAT(describe_suspect_positions(field, columns, rows), IsEmpty());
 }
 
 // Three duplicate rows of a file would count twice in every mean.
@@ -54,8 +54,8 @@ TEST(ScreenVectors, RefusesVectorsGivenTwice) {
     field.peak_ratio.push_back(field.peak_ratio[i]);
     field.status.push_back(VectorStatus::valid);
   }
-  LeftOutVectors const left_out = screen_vectors(field, 0.0, columns, rows);
-  EXPECT_THAT(refusal_of_places(field, left_out, columns, rows),
+  RejectedVectors const left_out = screen_vectors(field, 0.0, columns, rows);
+  EXPECT_THAT(reason_to_reject_positions(field, left_out, columns, rows),
               AllOf(HasSubstr("3 of 58 vectors have the position"), HasSubstr("first at (47.5, 15.5) px")));
 }
 
@@ -67,7 +67,7 @@ TEST(ScreenVectors, TakesImpossiblePlacesOutAndCountsThem) {
   field.position_px[6].y = -1e308;
   field.position_px[7].x = columns + 1.5;  // 2.5 px beyond the last pixel's centre
   field.position_px[8].x = columns + 0.5;  // 1.5 px: another origin of pixel coordinates
-  LeftOutVectors const left_out = screen_vectors(field, 0.0, columns, rows);
+  RejectedVectors const left_out = screen_vectors(field, 0.0, columns, rows);
   EXPECT_EQ(left_out.place_not_finite, 2u);
   EXPECT_EQ(left_out.outside_image, 3u);
   EXPECT_EQ(left_out.all(), 5u);
@@ -88,7 +88,7 @@ TEST(ScreenVectors, MarksImpossibleDisplacementsInvalidAndKeepsTheirPlaces) {
   field.displacement_px[4] = {nan, 0.0};
   field.displacement_px[5] = {nan, nan};
   field.status[5] = VectorStatus::masked;
-  LeftOutVectors const left_out = screen_vectors(field, 0.0, columns, rows);
+  RejectedVectors const left_out = screen_vectors(field, 0.0, columns, rows);
   EXPECT_EQ(left_out.displacement_beyond_image, 3u);
   EXPECT_EQ(left_out.displacement_not_finite, 1u) << "a masked vector has none";
   EXPECT_EQ(field.columns, 11);
@@ -110,9 +110,9 @@ TEST(ScreenVectors, SaysWhereTheyAreWhenNoneIsLeft) {
   DisplacementField field = lattice();
   for (Vec2d& p : field.position_px) p = 100.0 * p;
   field.position_px[0].x = nan;
-  LeftOutVectors const left_out = screen_vectors(field, 0.0, columns, rows);
+  RejectedVectors const left_out = screen_vectors(field, 0.0, columns, rows);
   EXPECT_EQ(field.size(), 0u);
-  EXPECT_THAT(refusal_of_places(field, left_out, columns, rows),
+  EXPECT_THAT(reason_to_reject_positions(field, left_out, columns, rows),
               AllOf(HasSubstr("none of the 55 vectors lies in the image of 200 x 100 px"),
                     HasSubstr("x from 1550 to 17550, y from 1550 to 7950"), HasSubstr("54 outside the image"),
                     HasSubstr("1 with a position that is nan"), HasSubstr("px")));
@@ -122,9 +122,9 @@ TEST(ScreenVectors, SaysWhereTheyAreWhenNoneIsLeft) {
 TEST(ScreenVectors, RefusesAFileWhoseVectorsLieMostlyOutside) {
   DisplacementField field = lattice();
   for (Vec2d& p : field.position_px) p.x += 120.0;
-  LeftOutVectors const left_out = screen_vectors(field, 0.0, columns, rows);
+  RejectedVectors const left_out = screen_vectors(field, 0.0, columns, rows);
   ASSERT_GT(field.size(), 0u);
-  EXPECT_THAT(refusal_of_places(field, left_out, columns, rows),
+  EXPECT_THAT(reason_to_reject_positions(field, left_out, columns, rows),
               AllOf(HasSubstr("of 55 vectors lie outside the image of 200 x 100 px"), HasSubstr("another origin")));
 }
 
@@ -132,17 +132,17 @@ TEST(ScreenVectors, RefusesAFileWhoseVectorsLieMostlyOutside) {
 TEST(ScreenVectors, RefusesPlacesCloserThanPixels) {
   DisplacementField field = lattice();
   for (Vec2d& p : field.position_px) p = 0.01 * p;
-  LeftOutVectors const left_out = screen_vectors(field, 0.0, columns, rows);
-  EXPECT_THAT(refusal_of_places(field, left_out, columns, rows),
+  RejectedVectors const left_out = screen_vectors(field, 0.0, columns, rows);
+  EXPECT_THAT(reason_to_reject_positions(field, left_out, columns, rows),
               AllOf(HasSubstr("closer together than pixels"), HasSubstr("not in mm")));
 }
 
 TEST(ScreenVectors, DoubtsPlacesThatCrowdInACorner) {
   DisplacementField field = lattice();
   for (Vec2d& p : field.position_px) p = 0.1 * p;  // 16 x 6.4 px are 0.5 % of the image
-  LeftOutVectors const left_out = screen_vectors(field, 0.0, columns, rows);
-  EXPECT_THAT(refusal_of_places(field, left_out, columns, rows), IsEmpty());
-  EXPECT_THAT(doubt_about_places(field, columns, rows), HasSubstr("0.51 % of the image"));
+  RejectedVectors const left_out = screen_vectors(field, 0.0, columns, rows);
+  EXPECT_THAT(reason_to_reject_positions(field, left_out, columns, rows), IsEmpty());
+  EXPECT_THAT(describe_suspect_positions(field, columns, rows), HasSubstr("0.51 % of the image"));
 }
 
 }  // namespace

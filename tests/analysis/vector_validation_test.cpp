@@ -104,15 +104,15 @@ TEST(NormalisedMedian, LetsTheLimitBindReplacements) {
 }
 
 // Crest of a wave of four grid steps: the median of its neighbours is 0.
-TEST(NormalisedMedian, KeepsACrestThatItsWindowSpeaksFor) {
-  auto const status_of = [](double height, double peak_ratio, Ambiguity ambiguous, double trusted_ratio) {
+TEST(NormalisedMedian, RetainsCrestSupportedByCorrelation) {
+  auto const status_of = [](double height, double peak_ratio, Ambiguity ambiguous, double reliable_peak_ratio) {
     std::vector<GridVector> grid = smooth_grid(5, 5);
     for (GridVector& vector : grid) vector.displacement = {};
     grid[12].displacement = {height, 0.0};
     grid[12].peak_ratio = peak_ratio;
     grid[12].ambiguous = ambiguous;
     ValidationRule rule;
-    rule.trusted_ratio = trusted_ratio;
+    rule.reliable_peak_ratio = reliable_peak_ratio;
     validate_vectors(grid, 5, rule);
     return grid[12].status;
   };
@@ -166,7 +166,7 @@ TEST(ValidateVectors, SayWhichTestAVectorFailed) {
     grid[62].correlation = 0.2;
     ValidationRule rule;
     rule.displacement_threshold = 2.0;
-    rule.trusted_ratio = std::numeric_limits<double>::infinity();
+    rule.reliable_peak_ratio = std::numeric_limits<double>::infinity();
     rule.least_peak_ratio = 1.2;
     rule.least_correlation = 0.3;
     rule.replaces = replace;
@@ -191,7 +191,7 @@ TEST(ValidateVectors, SayWhichTestAVectorFailed) {
 // the field is steep. In the corner the vector is replaced by the plane through three neighbours, which have
 // irregularities of 0.02 px: the plane's value there, the sum of two neighbours minus the third, is wrong by three
 // irregularities along each axis and the vector by one, 4 * 0.02 * sqrt(2) = 0.11 px; 0.15 is required.
-TEST(WholeDisplacements, GiveAWrongPredictorAway) {
+TEST(WholeDisplacements, RevealWrongPredictor) {
   for (std::size_t const planted : {std::size_t{34}, std::size_t{0}})
     for (auto const& [correlation, threshold, replaced] :
          {std::tuple{0.5, 2.0, true}, std::tuple{0.75, 2.0, false},

@@ -66,7 +66,7 @@ StatisticsSums sums_by_threads(PlainWindow const& window, int threads, bool fall
   });
   WindowSums<double> all_light;
   for (WindowSums<double> const& share : light) all_light += share;
-  WindowLevels const means = means_of(all_light);
+  WindowLevels const means = weighted_means(all_light);
   Vec2d squares;
   threads_do([&](Window const& own, std::size_t thread) { square_shares[thread] = own.sum_squares(pixels, means); });
   for (Vec2d const& share : square_shares) squares += share;

@@ -19,7 +19,7 @@ namespace gladstone::bench {
 inline constexpr double volume_width = 32.7e-3;
 inline constexpr double ambient_refractivity = 2.26e-4 * 1.225;
 
-inline void plan_step(Scene& scene) { scene = with_step(scene, plan_step_by_rays(scene)); }
+inline void plan_step(Scene& scene) { scene = with_step(scene, determine_step_by_tracing(scene)); }
 
 /// A seeded smooth refractivity that varies along all three axes, over five to ten cells of a 64^3 grid.
 inline double smooth_refractivity(Vec3d p, unsigned seed) {
@@ -139,7 +139,7 @@ inline Scene points_scene(Setup setup, double dots_per_window = 1) {
 
 /// Some rays of a scene's dots to the pupil, straight.
 inline std::vector<Ray<double>> rays_of_dots(Scene const& scene, std::size_t every, int rays_a_dot) {
-  BenchView const bench = focused_dots(scene).value().bench();
+  FocusedSetupView const bench = focused_dots(scene).value().bench();
   BundleView choice;
   choice.scrambling_bits = scrambling_bits(static_cast<std::uint64_t>(rays_a_dot));
   std::vector<Ray<double>> rays;

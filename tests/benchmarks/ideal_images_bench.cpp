@@ -38,8 +38,8 @@ Rendering render_pair(Setup const& setup) {
       ideal && setup.piv->particles.scattering == ParticleScattering::gaussian) {
     return render_ideal_images(*ideal, scene.particles, ParticleLight::scattered, RenderImages::in_place);
   }
-  scene = with_step(scene, plan_step_by_rays(scene));
-  scene = with_rays(scene, plan_rays_by_rays(scene));
+  scene = with_step(scene, determine_step_by_tracing(scene));
+  scene = with_rays(scene, determine_ray_budget_by_tracing(scene));
   return RaysRenderer().render_particles(scene, scene.particles, ParticleLight::scattered, RenderImages::in_place);
 }
 

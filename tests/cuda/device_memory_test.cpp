@@ -128,9 +128,9 @@ TEST_F(SmallDevice, NamesTheSizeOfATableThatDoesNotFit) {
   Scene scene = scene_of(dns_plane("kepeak"), 8, 32), few = scene;
   few.dots.centre.resize(4);
   FocusedDots const dots = focused_dots(scene).value();
-  double const usual_aim = DeflectionPlan::usual_aim * scene.imaging.entrance_pupil / 2;
-  DeflectionPlan const plan(dots, scene.dots, usual_aim);
-  DeflectionPlan const of_few(focused_dots(few).value(), few.dots, usual_aim);
+  double const default_aim_distance = DeflectionTableLayout::default_aim_distance * scene.imaging.entrance_pupil / 2;
+  DeflectionTableLayout const plan(dots, scene.dots, default_aim_distance);
+  DeflectionTableLayout const of_few(focused_dots(few).value(), few.dots, default_aim_distance);
   ASSERT_TRUE(plan.wanted() && of_few.wanted());
   // uploads the field, which remains on the device, and a table, which is released before the next one is allocated
   render(few);

@@ -62,14 +62,14 @@ std::vector<float> plane_by_threads(std::vector<float> const& a, std::vector<flo
       auto const at = static_cast<std::size_t>(y * side + x);
       memory[static_cast<std::size_t>(y * Transform::pitch + x)] = {a[at], b[at]};
     }
-  threads_do([&](Transform const& t) { t.columns_apart(side, [](Complex z, int) { return z; }); });
-  threads_do([&](Transform const& t) { t.columns_together(side); });
-  threads_do([&](Transform const& t) { t.rows_apart(side); });
-  threads_do([&](Transform const& t) { t.rows_together(); });
+  threads_do([&](Transform const& t) { t.column_first_pass(side, [](Complex z, int) { return z; }); });
+  threads_do([&](Transform const& t) { t.column_second_pass(side); });
+  threads_do([&](Transform const& t) { t.row_first_pass(side); });
+  threads_do([&](Transform const& t) { t.row_second_pass(); });
   threads_do([&](Transform const& t) { t.product(WholeSpectrum()); });
-  threads_do([&](Transform const& t) { t.columns_together_again(); });
-  threads_do([&](Transform const& t) { t.rows_apart_again(radius); });
-  threads_do([&](Transform const& t) { t.rows_together_again(radius); });
+  threads_do([&](Transform const& t) { t.inverse_column_second_pass(); });
+  threads_do([&](Transform const& t) { t.inverse_row_first_pass(radius); });
+  threads_do([&](Transform const& t) { t.inverse_row_second_pass(radius); });
   float const* const centre = Transform{memory.data(), roots.data(), 0}.centre(radius);
   std::vector<float> plane;
   for (int dy = -radius - 1; dy <= radius + 1; ++dy)

@@ -81,7 +81,7 @@ class CudaParticlesTest : public OnBothDevices<RaysMethod> {
     BosSetup setup = droplets_setup();
     if (change) change(setup);
     Scene scene = build_scene(setup);
-    scene = with_step(scene, plan_step_by_rays(scene));
+    scene = with_step(scene, determine_step_by_tracing(scene));
     scene.rays_per_dot = rays;
     return scene;
   }
@@ -125,8 +125,8 @@ TEST_F(CudaParticlesTest, TakesTheRaysThatEachNeeds) {
       }};
   for (auto const& kind : kinds) {
     Scene scene = droplets(1, kind);
-    scene = with_rays(scene, plan_rays_by_rays(scene));
-    ASSERT_TRUE(scene.by_need);
+    scene = with_rays(scene, determine_ray_budget_by_tracing(scene));
+    ASSERT_TRUE(scene.adaptive_criteria);
     expect_particles_as_on_cpu(scene);
     expect_particles_as_on_cpu(scene, ParticleLight::scattered, RenderImages::no);
     std::vector<std::int64_t> const rays = on_device(scene).truth.rays_planned;

@@ -40,7 +40,7 @@ Scene seen_through(std::uint64_t rays, std::function<void(BosSetup&)> const& cha
     Vec2d const at = scene.to_target(place);
     if (std::isfinite(at.x)) scene.dots.centre.push_back(at);
   }
-  scene = with_step(scene, plan_step_by_rays(scene));
+  scene = with_step(scene, determine_step_by_tracing(scene));
   scene.rays_per_dot = rays;
   return scene;
 }
@@ -63,8 +63,8 @@ TEST_F(CudaRaysTest, TakeTheRaysThatEachNeeds) {
     setup.camera.tilt = {0.01, 0};
   });
   scene.dots.half_size = 0;
-  scene = with_rays(scene, plan_rays_by_rays(scene));
-  ASSERT_TRUE(scene.by_need);
+  scene = with_rays(scene, determine_ray_budget_by_tracing(scene));
+  ASSERT_TRUE(scene.adaptive_criteria);
   expect_as_on_cpu(scene);
   Scene again = scene;
   std::vector<std::int64_t> const rays =

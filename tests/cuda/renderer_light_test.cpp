@@ -28,7 +28,7 @@ class CudaLightTest : public CudaRendererTest {
 /// in some direction.
 int dots_in_caustics(Scene const& scene) {
   FocusedDots const dots = focused_dots(scene).value();
-  DeflectionMap const map(dots, DeflectionPlan(dots, scene.dots, scene.imaging.entrance_pupil));
+  DeflectionMap const map(dots, DeflectionTableLayout(dots, scene.dots, scene.imaging.entrance_pupil));
   OwnedDotModel const owned(dots, scene.dots, map.table(), false);
   DotModel const& model = owned.model;
   return static_cast<int>(std::count_if(scene.dots.centre.begin(), scene.dots.centre.end(), [&](Vec2d centre) {

@@ -35,10 +35,10 @@ class Block {
             int const at = (warp + 8 * r) * size + k % 32 + 32 * half;
             z[half][r] = {a[at], b[at]};
           }
-        thread_[k].columns_apart(z);
+        thread_[k].column_first_pass(z);
       });
     });
-    warps_do([&](int warp) { lanes_do(warp, [&](int k) { thread_[k].columns_together(); }); });
+    warps_do([&](int warp) { lanes_do(warp, [&](int k) { thread_[k].column_second_pass(); }); });
     warps_do([&](int warp) { rows(warp); });
     warps_do([&](int warp) { columns(warp, radius); });
     auto const plane = thread_[0].plane(radius);
@@ -67,9 +67,9 @@ class Block {
     };
     std::vector<Lines> of(Transform::threads);
     bool const packed = thread_[32 * warp].has_packed_row();
-    lanes_do(warp, [&](int k) { thread_[k].rows_apart(of[k].a, of[k].b); });
+    lanes_do(warp, [&](int k) { thread_[k].row_first_pass(of[k].a, of[k].b); });
     lanes_do(warp, [&](int k) { thread_[k].keep_rows(of[k].a, of[k].b); });
-    lanes_do(warp, [&](int k) { thread_[k].rows_together(of[k].a, of[k].b); });
+    lanes_do(warp, [&](int k) { thread_[k].row_second_pass(of[k].a, of[k].b); });
     lanes_do(warp, [&](int k) {
       if (packed) thread_[k].keep_packed(of[k].a, of[k].b);
       Transform::product(of[k].a, of[k].b);
@@ -78,8 +78,8 @@ class Block {
       lanes_do(warp, [&](int k) { thread_[k].multiply_packed(); });
       lanes_do(warp, [&](int k) { thread_[k].take_packed(of[k].a); });
     }
-    lanes_do(warp, [&](int k) { thread_[k].rows_apart_again(of[k].a); });
-    lanes_do(warp, [&](int k) { thread_[k].rows_together_again(of[k].a); });
+    lanes_do(warp, [&](int k) { thread_[k].inverse_row_first_pass(of[k].a); });
+    lanes_do(warp, [&](int k) { thread_[k].inverse_row_second_pass(of[k].a); });
     lanes_do(warp, [&](int k) { thread_[k].keep_shifts(of[k].a); });
   }
 
@@ -90,8 +90,8 @@ class Block {
       Complex g[8];
     };
     std::vector<Column> of(Transform::threads);
-    lanes_do(warp, [&](int k) { thread_[k].columns_apart_again(radius); });
-    lanes_do(warp, [&](int k) { thread_[k].columns_together_again(of[k].g); });
+    lanes_do(warp, [&](int k) { thread_[k].inverse_column_first_pass(radius); });
+    lanes_do(warp, [&](int k) { thread_[k].inverse_column_second_pass(of[k].g); });
     lanes_do(warp, [&](int k) { thread_[k].keep_plane(of[k].g); });
   }
 

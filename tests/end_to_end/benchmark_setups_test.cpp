@@ -2,13 +2,13 @@
 #include <sstream>
 
 #include "tests/benchmarks/bench_scenes.h"
-#include "tests/end_to_end/support/workplace.h"
+#include "tests/end_to_end/support/program_fixture.h"
 
 namespace gladstone::end_to_end {
 namespace {
 
 /// The setups in data/benchmarks are the scenes of the benchmarks.
-class BenchmarkSetups : public Workplace {
+class BenchmarkSetups : public ProgramFixture {
  protected:
   static std::string path(std::string const& name) { return std::string(GLADSTONE_DATA_DIR) + "/benchmarks/" + name; }
   /// Renders one of them with few rays and the given changes, and returns its summary.

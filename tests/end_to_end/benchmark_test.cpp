@@ -6,12 +6,12 @@
 #include <random>
 
 #include "studies/benchmark/benchmark_cases.h"
-#include "tests/end_to_end/support/workplace.h"
+#include "tests/end_to_end/support/program_fixture.h"
 
 namespace gladstone::end_to_end {
 namespace {
 
-class Benchmark : public Workplace {};
+class Benchmark : public ProgramFixture {};
 
 nlohmann::json score_of(nlohmann::json const& benchmark, std::string const& estimator, std::string const& of_case) {
   for (auto const& row : benchmark["scores"])

@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "analysis/calibration/pinhole_fit.h"
-#include "tests/end_to_end/support/workplace.h"
+#include "tests/end_to_end/support/program_fixture.h"
 
 namespace gladstone::end_to_end {
 namespace {
@@ -37,7 +37,7 @@ extent_mm = [60.0, 45.0]
 rays_per_dot = 1024
 )";
 
-class Calibrations : public Workplace {
+class Calibrations : public ProgramFixture {
  protected:
   std::vector<double> dataset(std::string const& file, std::string const& name) const {
     return Hdf5Reader(in(file).string()).read(name);
@@ -81,7 +81,7 @@ TEST_F(Calibrations, RenderPlanesOfDotsAndTheirTruth) {
 // Error of the positions due to the finite number of rays: the difference between two tracings equals the actual error,
 // since the true positions have a closed form for a thin lens in focus. Fewer rays have a larger error and cause a
 // warning.
-TEST_F(Calibrations, SayWhatRaysLeaveInTheDotsPlaces) {
+TEST_F(Calibrations, ReportPositionErrorDueToRays) {
   write("setup.toml", wide);
   auto const json = json_of({"render", "setup.toml", "-o", "case", "--quiet"});
   auto const image = dataset("case/truth.h5", "/dots/image_px"), chief = dataset("case/truth.h5", "/dots/chief_px");
@@ -273,13 +273,13 @@ TEST_F(Calibrations, WhatCannotBeCalibratedIsRefused) {
   expect_refused({"calibrate", "case"}, 2, {"case/plane_001.tif"});
 }
 
-TEST_F(Calibrations, NoDotsAtAllAreToldSo) {
+TEST_F(Calibrations, ReportMissingDots) {
   write("setup.toml", with(wide, "bit_depth = 12", "bit_depth = 12\nexposure = 1.0"));
   render("dark");
   expect_refused({"calibrate", "dark"}, 2, {"dark/plane_000.tif", "shows 0 dots", "focus, light and contrast"});
 }
 
-TEST_F(Calibrations, OtherCommandsSayWhatTheCaseIs) {
+TEST_F(Calibrations, OtherCommandsReportCalibrationCase) {
   write("setup.toml", wide);
   render("case");
   expect_refused({"correlate", "case"}, 2, {"case: is a calibration", "gladstone calibrate case"});
@@ -288,7 +288,7 @@ TEST_F(Calibrations, OtherCommandsSayWhatTheCaseIs) {
 
 // Images in any folder are calibrated like those of the case from which they were copied, with a setup that contains
 // the position of the camera to a centimetre only: the grid itself determines its middle.
-TEST_F(Calibrations, TakePicturesFromElsewhere) {
+TEST_F(Calibrations, AcceptExternalImages) {
   write("setup.toml", wide);
   succeed({"render", "setup.toml", "-o", "case", "--quiet"});
   std::vector<std::string> pictures;

@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "tests/end_to_end/support/workplace.h"
+#include "tests/end_to_end/support/program_fixture.h"
 
 namespace gladstone::end_to_end {
 namespace {
@@ -51,10 +51,10 @@ window_px = [32, 16]
 overlap = 0.5
 )";
 
-class Cameras : public Workplace {
+class Cameras : public ProgramFixture {
  protected:
   void SetUp() override {
-    Workplace::SetUp();
+    ProgramFixture::SetUp();
     write("setup.toml", stereo);
   }
   std::vector<double> dataset(std::string const& file, std::string const& name) const {

@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "tests/end_to_end/support/workplace.h"
+#include "tests/end_to_end/support/program_fixture.h"
 
 namespace gladstone::end_to_end {
 namespace {
@@ -10,7 +10,7 @@ using testing::HasSubstr;
 using testing::UnorderedElementsAre;
 
 /// Contents of a case, and their reproducibility bit by bit (interface.md, Files and Repeatability).
-using Case = Workplace;
+using Case = ProgramFixture;
 
 std::vector<std::string> keys(nlohmann::json const& object) {
   std::vector<std::string> names;

@@ -1,11 +1,11 @@
 #include <algorithm>
 
-#include "tests/end_to_end/support/workplace.h"
+#include "tests/end_to_end/support/program_fixture.h"
 
 namespace gladstone::end_to_end {
 namespace {
 
-using CommandLine = Workplace;
+using CommandLine = ProgramFixture;
 using testing::HasSubstr;
 
 TEST_F(CommandLine, UnknownCommandsAndOptionsNameTheNearest) {

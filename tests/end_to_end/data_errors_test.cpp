@@ -2,7 +2,7 @@
 #include <sstream>
 #include <string>
 
-#include "tests/end_to_end/support/workplace.h"
+#include "tests/end_to_end/support/program_fixture.h"
 
 namespace gladstone::end_to_end {
 namespace {
@@ -14,7 +14,7 @@ std::string file_setup(std::string const& file, std::string const& more = "") {
 }
 
 /// Invalid fields, images, vectors and cases: exit code 2, the message names file and dataset, nothing is written.
-class DataErrors : public Workplace {
+class DataErrors : public ProgramFixture {
  protected:
   void write_field(std::string const& name, std::vector<std::size_t> const& shape,
                    std::vector<double> const& values) const {

@@ -1,4 +1,4 @@
-#include "tests/end_to_end/support/workplace.h"
+#include "tests/end_to_end/support/program_fixture.h"
 
 namespace gladstone::end_to_end {
 namespace {
@@ -37,7 +37,7 @@ keys = ["geometry.z_a_mm", "geometry.z_d_mm", "lens.f_number", "lens.focal_lengt
 )";
 
 /// gladstone design: the sheet, the recommendation and the setup that it writes.
-class Design : public Workplace {};
+class Design : public ProgramFixture {};
 
 TEST_F(Design, PrintsTheSheetOfASetup) {
   auto const sheet = json_of({"design", "setup.toml"})["sheet"];
@@ -53,7 +53,7 @@ TEST_F(Design, PrintsTheSheetOfASetup) {
 }
 
 // A lens of 2 m has no field of view of 40 mm within 1.5 m.
-TEST_F(Design, NamesTheBoundThatSkipsCombinations) {
+TEST_F(Design, ReportsLimitOfExcludedCombinations) {
   std::string text = tunnel;
   text.replace(text.find("[50, 105]"), 9, "[50, 2000]");
   write("tunnel.toml", text);
@@ -121,7 +121,7 @@ TEST_F(Design, RendersAndCorrelatesWhatItRecommends) {
 
 // The setup has a dot size in pixels; the chosen size in mm replaces it. The recommended values as the only choices
 // give the same answer, although the view equals the requirement except for the last digits.
-TEST_F(Design, RecommendsWhatAnswersItsOwnQuestion) {
+TEST_F(Design, RecommendationSatisfiesItsRequirements) {
   std::string text = tunnel;
   text.insert(text.find("[correlate]"), "[target]\ndot_diameter_px = 2.5\n");
   write("tunnel.toml", text);
@@ -140,7 +140,7 @@ TEST_F(Design, RecommendsWhatAnswersItsOwnQuestion) {
   EXPECT_EQ(same["recommended"], json["recommended"]);
 }
 
-TEST_F(Design, EndsWithFourWhereNothingIsFeasible) {
+TEST_F(Design, ExitCodeIsFourIfInfeasible) {
   std::string text = tunnel;
   text.replace(text.find("resolution_mm = 12.0"), 20, "resolution_mm = 0.5");
   write("tunnel.toml", text);
@@ -175,7 +175,7 @@ TEST_F(Design, LightExposesWhatIsRendered) {
 
 // A Z_D of 250 mm with an uncertainty of 1 mm: the logarithm of g ~ (Z_B - f) / Z_D changes by (Z_D / (Z_B - f) - 1) /
 // 250.
-TEST_F(Design, PropagatesWhatASetupIsUncertainBy) {
+TEST_F(Design, PropagatesUncertainInputs) {
   write("bench.toml", R"(schema = 1
 [camera]
 pixels = [64, 64]
@@ -233,7 +233,7 @@ window_px = [32, 16]
   expect_refused({"design", "wrong.toml"}, 2, {"wrong.toml:3:1: geometry.z_d_mm", "write a number of 0 or more"});
 }
 
-TEST_F(Design, RefusesWhatItCannotAnswer) {
+TEST_F(Design, RejectsUnsupportedQuestions) {
   expect_refused({"design", "setup.toml", "--apply", "out.toml"}, 2, {"has no [requirements]"});
   expect_refused({"design", "setup.toml", "--set", "lens.f_number=inf"}, 2, {"has no aperture stop"});
   write("tunnel.toml", std::string(tunnel) + "[lens]\nfocus = \"medium\"\n");

@@ -2,7 +2,7 @@
 #include <set>
 #include <sstream>
 
-#include "tests/end_to_end/support/workplace.h"
+#include "tests/end_to_end/support/program_fixture.h"
 #include "tests/support/documented_tables.h"
 
 namespace gladstone::end_to_end {
@@ -24,7 +24,7 @@ bool has_path(nlohmann::json const& object, std::string const& path) {
   return true;
 }
 
-class DocumentedFiles : public Workplace {
+class DocumentedFiles : public ProgramFixture {
  protected:
   /// Expects the numeric datasets of a file to be the documented ones, with the attributes that every file has.
   void expect_datasets(std::string const& name, std::set<std::string> const& documented) const {

@@ -7,16 +7,16 @@
 #include <utility>
 
 #include "render/base/vec.h"
-#include "tests/end_to_end/support/workplace.h"
+#include "tests/end_to_end/support/program_fixture.h"
 
 namespace gladstone::end_to_end {
 namespace {
 
 /// The case's own vectors in the formats of other codes: compare must detect the conventions and find the same errors.
-class ForeignVectors : public Workplace {
+class ForeignVectors : public ProgramFixture {
  protected:
   void SetUp() override {
-    Workplace::SetUp();
+    ProgramFixture::SetUp();
     // A wave, in which a wrong position has an effect: its amplitude is half a pixel, and a position error of half a
     // pixel changes it by some hundredths. Its direction is so close to x that it is not symmetric under an exchange of
     // x and y.
@@ -261,7 +261,7 @@ TEST_F(ForeignVectors, ToldConventionsMustBeWords) {
 }
 
 /// tests/cases/vectors: one measurement of piv_case.toml as other programs write it.
-class OtherPrograms : public Workplace {};
+class OtherPrograms : public ProgramFixture {};
 
 // Against the rays all of them have the errors of the original vectors, 0.040 px rms. The printed values have three
 // digits, and the 267 vectors that Insight's file marks as invalid are a ninth of all: their contribution to an rms has

@@ -1,7 +1,7 @@
 #include <cmath>
 
 #include "render/files/source_files.h"
-#include "tests/end_to_end/support/workplace.h"
+#include "tests/end_to_end/support/program_fixture.h"
 
 namespace gladstone::end_to_end {
 namespace {
@@ -9,10 +9,10 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 
-class MaskedFrames : public Workplace {
+class MaskedFrames : public ProgramFixture {
  protected:
   void SetUp() override {
-    Workplace::SetUp();
+    ProgramFixture::SetUp();
     ASSERT_EQ(gladstone({"render", "setup.toml", "-o", "case"}).exit_code, 0);
   }
   Outcome correlate(std::string const& tables) const {

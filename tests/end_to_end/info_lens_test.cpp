@@ -1,4 +1,4 @@
-#include "tests/end_to_end/support/workplace.h"
+#include "tests/end_to_end/support/program_fixture.h"
 
 namespace gladstone::end_to_end {
 namespace {
@@ -6,7 +6,7 @@ namespace {
 using testing::HasSubstr;
 
 /// gladstone info lens: cardinal points and field properties of a prescription.
-class InfoLens : public Workplace {
+class InfoLens : public ProgramFixture {
  protected:
   static constexpr char const* singlet = R"(schema = 1
 title = "plano-convex"

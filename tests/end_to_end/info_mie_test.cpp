@@ -1,4 +1,4 @@
-#include "tests/end_to_end/support/workplace.h"
+#include "tests/end_to_end/support/program_fixture.h"
 
 namespace gladstone::end_to_end {
 namespace {
@@ -6,7 +6,7 @@ namespace {
 using testing::HasSubstr;
 
 /// gladstone info mie: light scattering by a sphere.
-class InfoMie : public Workplace {};
+class InfoMie : public ProgramFixture {};
 
 // Bohren & Huffman's example, appendix A: x = 2 pi 0.525/0.6328, m = 1.55.
 TEST_F(InfoMie, PrintsBohrenAndHuffmansExample) {

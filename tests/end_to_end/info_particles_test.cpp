@@ -1,4 +1,4 @@
-#include "tests/end_to_end/support/workplace.h"
+#include "tests/end_to_end/support/program_fixture.h"
 
 namespace gladstone::end_to_end {
 namespace {
@@ -6,7 +6,7 @@ namespace {
 using testing::HasSubstr;
 
 /// gladstone info particles: predictions for a PIV setup.
-class InfoParticles : public Workplace {
+class InfoParticles : public ProgramFixture {
  protected:
   static constexpr char const* piv_setup = R"(schema = 1
 experiment = "piv"

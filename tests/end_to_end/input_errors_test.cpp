@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tests/end_to_end/support/workplace.h"
+#include "tests/end_to_end/support/program_fixture.h"
 
 namespace gladstone::end_to_end {
 namespace {
@@ -20,7 +20,7 @@ std::string with_target(std::string const& kind, std::string const& file) {
   return with(small_setup, "dots_per_32px_window = 10.0", "kind = \"" + kind + "\"\nfile = \"" + file + "\"");
 }
 
-class Inputs : public Workplace {
+class Inputs : public ProgramFixture {
  protected:
   void make_pipe(std::string const& name) const { ASSERT_EQ(::mkfifo(in(name).c_str(), 0600), 0) << name; }
 
@@ -112,7 +112,7 @@ TEST_F(Inputs, ADeviceHasNoEndAndIsRefused) {
   }
 }
 
-TEST_F(Inputs, NamesThatNoFileSystemTakesAreToldAsSuch) {
+TEST_F(Inputs, RejectsNamesThatFileSystemsCannotStore) {
   std::string const name(5000, 'n');
   for (std::vector<std::string> const& command : {std::vector<std::string>{"render", name, "-o", "case"},
                                                   {"correlate", name},
@@ -141,7 +141,7 @@ TEST_F(Inputs, CommandLinesAreRefusedInOurWords) {
               "expected an integer from 1 to 4096, got \"0\". See gladstone sweep run --help");
 }
 
-TEST_F(Inputs, DamagedFilesAreToldInOurWords) {
+TEST_F(Inputs, ReportsDamagedFilesConsistently) {
   write("damaged.h5", "\x89HDF\r\n\x1a\n" + std::string(400, '\xff'));
   expect_told({"info", "field", "damaged.h5"}, "damaged.h5: ");
   write("damaged.tif", std::string("II*\0\x08\0\0\0\xff\xff", 10) + std::string(400, '\xff'));

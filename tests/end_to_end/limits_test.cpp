@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "render/files/image_file.h"
-#include "tests/end_to_end/support/workplace.h"
+#include "tests/end_to_end/support/program_fixture.h"
 
 #if defined(__SANITIZE_ADDRESS__)
 #define GLADSTONE_TEST_SANITIZED 1
@@ -20,7 +20,7 @@ using namespace std::chrono_literals;
 using testing::HasSubstr;
 
 /// A machine with little memory, closed or full streams, and an unusual environment.
-class Limits : public Workplace {
+class Limits : public ProgramFixture {
  protected:
   /// Writes a PNG of 8 bits from a TIFF of 12 bits.
   void write_png(std::string const& name, std::string const& tiff) const {

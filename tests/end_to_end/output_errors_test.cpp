@@ -2,7 +2,7 @@
 #include <sys/mount.h>
 #include <sys/resource.h>
 
-#include "tests/end_to_end/support/workplace.h"
+#include "tests/end_to_end/support/program_fixture.h"
 
 namespace gladstone::end_to_end {
 namespace {
@@ -10,7 +10,7 @@ namespace {
 using namespace std::chrono_literals;
 
 /// Unwritable outputs and interrupted runs: the old output remains, and nothing else.
-class OutputErrors : public Workplace {
+class OutputErrors : public ProgramFixture {
  protected:
   /// A rendering that would take minutes, interrupted when it begins to trace.
   Outcome interrupt_a_rendering(int signal) const {
@@ -43,7 +43,7 @@ TEST_F(OutputErrors, APlaceWhereNothingCanBeMade) {
   expect_refused({"render", "setup.toml", "-o", "/proc/nowhere/case"}, 2, {"/proc/nowhere: ", "choose a path"});
 }
 
-TEST_F(OutputErrors, SomebodyElsesFolderIsLeftAlone) {
+TEST_F(OutputErrors, UnrelatedFolderIsPreserved) {
   std::filesystem::create_directory(in("thesis"));
   write("thesis/chapter1.tex", "precious");
   expect_refused({"render", "setup.toml", "-o", "thesis"}, 2, {"thesis: is not empty and was not made by gladstone"});
@@ -152,7 +152,7 @@ TEST_F(OutputErrors, FilesThatMayNotGrow) {
   EXPECT_TRUE(everything() == before) << testing::PrintToString(names());
 }
 
-TEST_F(OutputErrors, ControlCInMidRenderLeavesNothing) {
+TEST_F(OutputErrors, InterruptedRenderLeavesNoFiles) {
   for (int const signal : {SIGINT, SIGTERM}) {
     Outcome const outcome = interrupt_a_rendering(signal);
     EXPECT_EQ(outcome.exit_code, 130) << outcome.err << outcome.signal;
@@ -169,7 +169,7 @@ TEST_F(OutputErrors, ControlCLeavesTheOldCaseAsItWas) {
   EXPECT_TRUE(everything() == before) << testing::PrintToString(names());
 }
 
-TEST_F(OutputErrors, WhatAKilledRunLeftIsClearedAwayByTheNext) {
+TEST_F(OutputErrors, NextRunRemovesAbandonedFiles) {
   interrupt_a_rendering(SIGKILL);
   EXPECT_TRUE(is_rendering());
   render("case");

@@ -4,7 +4,7 @@
 #include <sys/stat.h>
 
 #include "render/files/partial.h"
-#include "tests/end_to_end/support/workplace.h"
+#include "tests/end_to_end/support/program_fixture.h"
 
 namespace gladstone::end_to_end {
 namespace {
@@ -15,7 +15,7 @@ using testing::HasSubstr;
 namespace fs = std::filesystem;
 
 /// Permitted places of results; other writers and inputs are not affected.
-class Places : public Workplace {
+class Places : public ProgramFixture {
  protected:
   /// A rendering, and the disturbance when it begins to trace.
   Outcome signalled_rendering(int signal, std::function<bool()> const& prepare = {}) const {

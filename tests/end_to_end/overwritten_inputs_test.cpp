@@ -1,4 +1,4 @@
-#include "tests/end_to_end/support/workplace.h"
+#include "tests/end_to_end/support/program_fixture.h"
 
 namespace gladstone::end_to_end {
 namespace {
@@ -8,7 +8,7 @@ using testing::AnyOf;
 using testing::HasSubstr;
 
 /// No output replaces an input of the command, nor another part of a case or a study.
-class OverwrittenInputs : public Workplace {
+class OverwrittenInputs : public ProgramFixture {
  protected:
   /// Expects the command to end with exit code 2 and the name of the file, which is unchanged.
   void expect_kept(std::string const& file, std::vector<std::string> arguments) const {

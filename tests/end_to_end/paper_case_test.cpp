@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "tests/end_to_end/support/workplace.h"
+#include "tests/end_to_end/support/program_fixture.h"
 
 namespace gladstone::end_to_end {
 namespace {
@@ -11,7 +11,7 @@ struct Said {
   double eq9_px, rays_px, correlation;
 };
 
-class PaperCase : public Workplace {};
+class PaperCase : public ProgramFixture {};
 
 // Runs the case of docs/demo.md and compares it with the numbers in README.md and docs/demo.md. Those are averages over
 // the vectors, whose centres exclude 7.5 px at each edge of the view, 6 % of it. Over the view and over the vectors'

@@ -1,7 +1,7 @@
 #include <cmath>
 
 #include "render/base/vec.h"
-#include "tests/end_to_end/support/workplace.h"
+#include "tests/end_to_end/support/program_fixture.h"
 
 namespace gladstone::end_to_end {
 namespace {
@@ -39,17 +39,17 @@ dt_us = 10.0
 window_px = [32, 32]
 )";
 
-class Piv : public Workplace {
+class Piv : public ProgramFixture {
  protected:
   void SetUp() override {
-    Workplace::SetUp();
+    ProgramFixture::SetUp();
     write("setup.toml", piv_setup);
   }
   std::vector<double> dataset(std::string const& file, std::string const& name) const {
     return Hdf5Reader(in(file).string()).read(name);
   }
   /// Renders, correlates and compares; returns errors.json.
-  nlohmann::json errors_of(std::string const& setup) const {
+  nlohmann::json compute_error_measures(std::string const& setup) const {
     write("setup.toml", setup);
     render("case");
     succeed({"correlate", "case", "--quiet"});
@@ -64,7 +64,7 @@ double sum_of_levels(Image<double> const& image) {
 }
 
 TEST_F(Piv, RecoversAShiftOf2Point3Pixels) {
-  auto const errors = errors_of(piv_setup);
+  auto const errors = compute_error_measures(piv_setup);
   // noise-free, with only 13 particles per window: the error of the correlator is below 0.02 px
   EXPECT_NEAR(errors["ray_truth"]["bias_u_px"].get<double>(), 0, 0.02);
   EXPECT_LT(errors["ray_truth"]["rms_px"].get<double>(), 0.02);
@@ -91,7 +91,7 @@ TEST_F(Piv, RecoversAShiftOf2Point3Pixels) {
 TEST_F(Piv, ComparesAVortexWithItsFlow) {
   std::string const vortex = with(piv_setup, "velocity_m_s = [14.12857, 0.0, 0.0]",
                                   "kind = \"lamb_oseen\"\ncirculation_m2_s = 0.32\ncore_radius_mm = 2.0");
-  auto const errors = errors_of(vortex);
+  auto const errors = compute_error_measures(vortex);
   auto const& terms = errors["budget"]["terms"];
   EXPECT_LT(terms["projection"]["rms_px"].get<double>(), 3 * 0.13 * 0.13 / 24);
   EXPECT_LT(errors["ambient_truth"]["rms_px"].get<double>(), 0.15);
@@ -199,7 +199,7 @@ TEST_F(Piv, MovesParticlesByTheVelocityOfAFile) {
   file.close();
   std::string const by_file = with(piv_setup, "velocity_m_s = [14.12857, 0.0, 0.0]",
                                    "kind = \"file\"\nfile = \"velocity.h5\"\nspacing_mm = [1, 1, 1]");
-  auto const errors = errors_of(by_file);
+  auto const errors = compute_error_measures(by_file);
   EXPECT_LT(errors["ray_truth"]["rms_px"].get<double>(), 0.02);
   EXPECT_LT(errors["budget"]["terms"]["projection"]["rms_px"].get<double>(), 1e-4);
   auto const truth = dataset("case/truth.h5", "/particles/displacement_px");
@@ -228,7 +228,7 @@ TEST_F(Piv, MovesParticlesThroughAShock) {
       "[render]\nrays_per_dot = 64\n[medium]\nambient_density_kg_m3 = 1.0\n[medium.field]\nkind = "
       "\"normal_shock\"\nmach = "
       "1.5\nupstream_density_kg_m3 = 1.0\nshock_thickness_mm = 0.3\n[particles]");
-  auto const errors = errors_of(shock);
+  auto const errors = compute_error_measures(shock);
   EXPECT_LT(errors["budget"]["closure_px"].get<double>(), 1e-9);
   EXPECT_GT(errors["budget"]["terms"]["refraction"]["rms_px"].get<double>(), 0);
   auto const moved = dataset("case/truth.h5", "/particles/displacement_ambient_px");
@@ -309,7 +309,7 @@ TEST_F(Piv, SeesAMediumThatChanges) {
       with(with(piv_setup, "velocity_m_s = [14.12857, 0.0, 0.0]", "velocity_m_s = [0, 0, 0]"), "[particles]",
            "[render]\nrays_per_dot = 64\n[medium]\nthickness_mm = 40.0\n[medium.second_field]\nkind = "
            "\"uniform_gradient\"\ngradient_kg_m4 = [100.0, 0.0, 0.0]\n[particles]");
-  auto const errors = errors_of(changing);
+  auto const errors = compute_error_measures(changing);
   auto const moved = dataset("case/truth.h5", "/particles/displacement_px");
   auto const place = dataset("case/truth.h5", "/particles/position_m");
   for (std::size_t i = 0; i < moved.size() / 2; ++i) {
@@ -325,7 +325,7 @@ TEST_F(Piv, SeesAMediumThatChanges) {
 // Ideal images, without rays: 2.3 px again, and the method is recorded.
 TEST_F(Piv, DrawsIdealImages) {
   std::string const ideal = with(piv_setup, "scattering = \"lambert\"", "scattering = \"gaussian\"");
-  auto const errors = errors_of(ideal);
+  auto const errors = compute_error_measures(ideal);
   EXPECT_LT(errors["ray_truth"]["rms_px"].get<double>(), 0.02);
   auto const summary = nlohmann::json::parse(read("case/summary.json"));
   EXPECT_EQ(summary["method"], "formula");
@@ -350,7 +350,7 @@ TEST_F(Piv, DrawsIdealImages) {
 // vectors counts as noise.
 TEST_F(Piv, PicturesHaveABackground) {
   std::string const ideal = with(piv_setup, "scattering = \"lambert\"", "scattering = \"gaussian\"");
-  auto const clean = errors_of(ideal);
+  auto const clean = compute_error_measures(ideal);
   std::string const spoilt = with(
       ideal, "pixel_pitch_um = 10.0\n",
       "pixel_pitch_um = 10.0\nbit_depth = 12\n[camera.background]\nlevel_e = 500\ngradient_e = [300, 0]\nglare_file = "

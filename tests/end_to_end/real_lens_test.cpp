@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "tests/end_to_end/support/workplace.h"
+#include "tests/end_to_end/support/program_fixture.h"
 
 namespace gladstone::end_to_end {
 namespace {
@@ -8,7 +8,7 @@ namespace {
 using testing::HasSubstr;
 
 /// Scenes beyond the thin lens on the axis: rendered ray by ray, through the whole chain.
-class RealLens : public Workplace {
+class RealLens : public ProgramFixture {
  protected:
   nlohmann::json summary_of(std::string const& folder) const {
     return nlohmann::json::parse(read(folder + "/summary.json"));

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "tests/end_to_end/support/workplace.h"
+#include "tests/end_to_end/support/program_fixture.h"
 
 namespace gladstone::end_to_end {
 namespace {
@@ -45,10 +45,10 @@ window_px = [32, 16]
 overlap = 0.5
 )";
 
-class ReconstructedDensity : public Workplace {
+class ReconstructedDensity : public ProgramFixture {
  protected:
   void SetUp() override {
-    Workplace::SetUp();
+    ProgramFixture::SetUp();
     write("setup.toml", blob_setup);
   }
   /// Renders and correlates the case.

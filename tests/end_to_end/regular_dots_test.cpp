@@ -1,12 +1,12 @@
 #include <cmath>
 
-#include "tests/end_to_end/support/workplace.h"
+#include "tests/end_to_end/support/program_fixture.h"
 
 namespace gladstone::end_to_end {
 namespace {
 
 /// Regular dots, the standard target of BOS: a displacement is ambiguous by whole pitches.
-class RegularDots : public Workplace {
+class RegularDots : public ProgramFixture {
  protected:
   /// Renders dots 7.16 px apart, displaced by a uniform gradient, correlates and compares.
   /// @param gradient [kg/m^4]; -0.006627 px each with the set-up of Table 1

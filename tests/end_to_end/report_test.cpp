@@ -4,14 +4,14 @@
 #include <sstream>
 
 #include "render/files/source_files.h"
-#include "tests/end_to_end/support/workplace.h"
+#include "tests/end_to_end/support/program_fixture.h"
 
 namespace gladstone::end_to_end {
 namespace {
 
 using testing::HasSubstr;
 
-class Reports : public Workplace {
+class Reports : public ProgramFixture {
  protected:
   /// Six cases of a few milliseconds each.
   void finish_study() const {

@@ -1,6 +1,6 @@
 #include <sys/resource.h>
 
-#include "tests/end_to_end/support/workplace.h"
+#include "tests/end_to_end/support/program_fixture.h"
 
 namespace gladstone::end_to_end {
 namespace {
@@ -16,7 +16,7 @@ double seconds_of_children() {
 }
 
 /// Invalid setups: exit code 2, place, problem and remedy, and no case folder.
-class SetupErrors : public Workplace {
+class SetupErrors : public ProgramFixture {
  protected:
   /// Expects the small setup with `old` replaced to be rejected at the place of `at`, with these texts.
   void refused(std::string const& old, std::string const& replacement, std::string const& at,
@@ -75,7 +75,7 @@ TEST_F(SetupErrors, TooLittleMemoryStandsAtThePixelsThatTakeIt) {
                        {"setup.toml:" + place_of(text, "pixels") + ": camera.pixels = [1000000, 1000000]: needs"});
 }
 
-TEST_F(SetupErrors, NoLensOpensWiderThanHalfASpace) {
+TEST_F(SetupErrors, RejectsFNumberBelowOneHalf) {
   refused("f_number = 11.0", "f_number = 1e-300", "f_number", {"is below 0.5", "increase it"});
 }
 
@@ -198,7 +198,7 @@ TEST_F(SetupErrors, WhatIsOfOthersOrDueLaterIsRefusedByName) {
                        {"flow", "requires experiment = \"piv\""});
 }
 
-TEST_F(SetupErrors, SetWithoutSenseIsRefusedAsSuch) {
+TEST_F(SetupErrors, RejectsMalformedSetOption) {
   auto const refuse = [&](std::string const& assignment, std::string const& piece) {
     expect_refused({"render", "setup.toml", "-o", "case", "--set", assignment}, 2, {"--set " + assignment, piece});
   };

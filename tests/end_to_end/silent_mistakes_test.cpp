@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "tests/end_to_end/support/workplace.h"
+#include "tests/end_to_end/support/program_fixture.h"
 
 namespace gladstone::end_to_end {
 namespace {
@@ -12,7 +12,7 @@ using testing::IsEmpty;
 using testing::Not;
 
 /// Setups that are formally valid but probably not intended: they run, with warnings.
-class SilentMistakes : public Workplace {
+class SilentMistakes : public ProgramFixture {
  protected:
   std::string with_field(std::string const& field) const {
     return with(small_setup, "kind = \"uniform_gradient\"\ngradient_kg_m4 = [20.0, 10.0, 0.0]", field);
@@ -46,7 +46,7 @@ class SilentMistakes : public Workplace {
 
 // The displacement by a plume in a slab of half thickness h is a fraction erf(h / a) of the total: 0.363 in 10 mm for a
 // = 15 mm.
-TEST_F(SilentMistakes, APlumeIsNotCutOffUnlessToldAndThenWithAWarning) {
+TEST_F(SilentMistakes, PlumeIsTruncatedOnlyOnRequest) {
   std::string const plume = with_field("kind = \"gaussian_plume\"\namplitude_kg_m3 = -0.2\nradius_mm = 15.0");
   EXPECT_THAT(warnings(plume), IsEmpty());
   EXPECT_THAT(read("case/setup.toml"), HasSubstr("thickness_mm = 105.0"));
@@ -66,7 +66,7 @@ TEST_F(SilentMistakes, CoordinatesInMetresAreReadAsTheySayThemselves) {
 }
 
 // The same numbers without a unit are assumed to be millimetres: a field 0.008 mm wide in a view of 4 mm.
-TEST_F(SilentMistakes, CoordinatesWithoutAUnitAndAFieldThatNobodySeesAreWarnedOf) {
+TEST_F(SilentMistakes, WarnsOfUnitlessCoordinatesAndInvisibleField) {
   write_plane("unnamed.h5", 8e-3, "");
   std::string const field =
       "kind = \"file\"\nfile = \"unnamed.h5\"\ndataset = \"density\"\nextrude = true\n"
@@ -86,14 +86,14 @@ TEST_F(SilentMistakes, ASpacingInMetresIsWarnedOf) {
   EXPECT_THAT(warnings(with_field(field), {"--set", "medium.field.spacing_mm=[0.375, 0.375, 0.375]"}), IsEmpty());
 }
 
-TEST_F(SilentMistakes, AFieldThatMovesNothingIsWarnedOf) {
+TEST_F(SilentMistakes, WarnsOfNegligibleField) {
   EXPECT_THAT(
       warnings(with_field("kind = \"uniform_gradient\"\ngradient_kg_m4 = [1e-6, 0.0, 0.0]")),
       Contains(HasSubstr("no displacement: according to Eq. 9 the field displaces no point in the view by more than")));
   EXPECT_THAT(warnings(with_field("kind = \"none\"")), Not(Contains(HasSubstr("no displacement: "))));
 }
 
-TEST_F(SilentMistakes, AThicknessThatAVolumeHasNoUseForIsWarnedOf) {
+TEST_F(SilentMistakes, WarnsOfUnusedThickness) {
   std::vector<double> values;
   for (int k = 0; k < 5; ++k) {
     for (int j = 0; j < 9; ++j) {

@@ -1,7 +1,7 @@
 #include <cmath>
 
 #include "render/base/vec.h"
-#include "tests/end_to_end/support/workplace.h"
+#include "tests/end_to_end/support/program_fixture.h"
 
 namespace gladstone::end_to_end {
 namespace {
@@ -50,7 +50,7 @@ window_px = [32, 32]
 rays_per_dot = 8
 )";
 
-class SilentPhysics : public Workplace {
+class SilentPhysics : public ProgramFixture {
  protected:
   nlohmann::json summary_of(std::string const& setup, std::vector<std::string> const& assignments = {}) const {
     write("setup.toml", setup);
@@ -65,7 +65,7 @@ class SilentPhysics : public Workplace {
 
 // A photon releases quantum_efficiency electrons, never more. With sufficient light the exposure fills 90 % of the
 // well.
-TEST_F(SilentPhysics, AutoExposureCountsNoMoreElectronsThanPhotonsSetFree) {
+TEST_F(SilentPhysics, AutoExposureIsLimitedByPhotons) {
   auto const bright = summary_of(piv_setup, {"laser.pulse_energy_mj=5000"});
   EXPECT_LT(bright["particles"]["electrons_per_photon"].get<double>(), 0.5);
   EXPECT_THAT(bright["warnings"].dump(), Not(HasSubstr("limited by the light")));
@@ -109,7 +109,7 @@ TEST_F(SilentPhysics, WarnsOfVolumesSheetsAndTimesThatDoNotFit) {
   EXPECT_THAT(warnings_of({"flow.dt_us=1e-5"}), HasSubstr("too small to measure"));
 }
 
-TEST_F(SilentPhysics, SaysThatAFormulaDrewThePicture) {
+TEST_F(SilentPhysics, ReportsFormulaRendering) {
   auto const summary = summary_of(with(piv_setup, "\"lambert\"", "\"gaussian\""));
   EXPECT_EQ(summary["method"], "formula");
   EXPECT_EQ(summary["estimator"]["dots_by_rays"], 0);

@@ -1,6 +1,6 @@
 #include <cstdlib>
 
-#include "tests/end_to_end/support/workplace.h"
+#include "tests/end_to_end/support/program_fixture.h"
 
 namespace gladstone::end_to_end {
 namespace {
@@ -9,10 +9,10 @@ using testing::HasSubstr;
 
 /// A planned study of four cases, and substitutes for Slurm's programs in a folder that is first in PATH, or the only
 /// one.
-class SlurmCommand : public Workplace {
+class SlurmCommand : public ProgramFixture {
  protected:
   void SetUp() override {
-    Workplace::SetUp();
+    ProgramFixture::SetUp();
     write("study.toml", "base = \"setup.toml\"\n[axes]\n\"lens.f_number\" = [8, 11, 16, 22]\n");
     succeed({"sweep", "plan", "study.toml", "-o", "run", "--device", "cpu", "--quiet"});
     std::filesystem::create_directory(in("bin"));

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "tests/end_to_end/support/workplace.h"
+#include "tests/end_to_end/support/program_fixture.h"
 
 namespace gladstone::end_to_end {
 namespace {
@@ -12,7 +12,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 
 /// Results record their source files, and are rejected if these have changed.
-class Sources : public Workplace {
+class Sources : public ProgramFixture {
  protected:
   std::string attribute(std::string const& file, std::string const& name) const {
     return Hdf5Reader(in(file).string()).attribute(name);

@@ -9,8 +9,8 @@
 
 #include "render/files/content_hash.h"
 #include "render/files/image_file.h"
-#include "studies/sweep/claims.h"
-#include "tests/end_to_end/support/workplace.h"
+#include "studies/sweep/case_locks.h"
+#include "tests/end_to_end/support/program_fixture.h"
 
 namespace gladstone::end_to_end {
 namespace {
@@ -35,10 +35,10 @@ constexpr char const* slow_study = R"(base = "setup.toml"
 "render.rays_per_dot" = [1000, 1200, 1400]
 )";
 
-class Sweeps : public Workplace {
+class Sweeps : public ProgramFixture {
  protected:
   void SetUp() override {
-    Workplace::SetUp();
+    ProgramFixture::SetUp();
     write("study.toml", small_study);
   }
   void plan(std::string const& run, std::string const& study = "study.toml") const {
@@ -205,10 +205,10 @@ TEST_F(Sweeps, JobsAndShardsInAnyOrderGiveTheSameStudy) {
 
 // A process that has finished one case is killed at each of these points and loses its work on the second one; then the
 // first of three processes, whose workers end with it.
-TEST_F(Sweeps, KilledAtAnyPointTheNextRunFinishesTheSameStudy) {
+TEST_F(Sweeps, KilledRunIsCompletedByNextRun) {
   finish("whole");
   plan("run");
-  Claims const claims(in("run").string(), Claims::Use::look);
+  CaseLocks const claims(in("run").string(), CaseLocks::Use::look);
   auto const kill_at = [&](std::string const& point, std::string const& jobs) {
     Program program({"sweep", "run", "run", "--quiet", "--jobs", jobs}, folder_, stopping_at(point));
     ASSERT_TRUE(program.wait_until_stopped()) << point;
@@ -229,7 +229,7 @@ TEST_F(Sweeps, KilledAtAnyPointTheNextRunFinishesTheSameStudy) {
   expect_same_study("whole", "run");
 }
 
-TEST_F(Sweeps, OnlyWhatIsNotWholeIsComputedAgain) {
+TEST_F(Sweeps, RecomputesIncompleteResultsOnly) {
   finish("run");
   finish("whole");
   auto const before = results("run");
@@ -369,7 +369,7 @@ TEST_F(Sweeps, ACaseThatLackedMemoryIsTriedOnceByEveryRunUntilThereIsEnough) {
 }
 
 // A rejection by check_memory before the allocation counts as a lack of memory, too: 10^11 px require 3.6 TB.
-TEST_F(Sweeps, APictureThatNoMachineHoldsLacksMemoryAndStopsNothing) {
+TEST_F(Sweeps, OversizedImageFailsOnlyItsCase) {
   write("setup.toml", with(read("setup.toml"), "pixel_pitch_um = 10.0", "pixel_pitch_um = 1.0"));
   write("study.toml", "base = \"setup.toml\"\n[axes]\n\"camera.pixels\" = [[64, 64], [48, 48]]\n");
   plan("run");

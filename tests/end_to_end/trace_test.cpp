@@ -1,13 +1,13 @@
 #include <cmath>
 #include <sstream>
 
-#include "tests/end_to_end/support/workplace.h"
+#include "tests/end_to_end/support/program_fixture.h"
 
 namespace gladstone::end_to_end {
 namespace {
 
 /// gladstone trace: where and why given rays end.
-class Trace : public Workplace {
+class Trace : public ProgramFixture {
  protected:
   struct Row {
     std::string status;

@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "tests/end_to_end/support/workplace.h"
+#include "tests/end_to_end/support/program_fixture.h"
 
 namespace gladstone::end_to_end {
 namespace {
@@ -32,7 +32,7 @@ overlap = 0.5
 )";
 
 /// correlate.method = "tracking" from rendering to comparison.
-class TrackedDots : public Workplace {
+class TrackedDots : public ProgramFixture {
  protected:
   /// Correlates a case by tracking.
   nlohmann::json track(std::string const& output, std::string const& file) const {

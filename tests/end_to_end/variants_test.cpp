@@ -1,12 +1,12 @@
 #include <cmath>
 
-#include "tests/end_to_end/support/workplace.h"
+#include "tests/end_to_end/support/program_fixture.h"
 
 namespace gladstone::end_to_end {
 namespace {
 
 /// Other targets, sensors, apertures and media than in the small setup.
-class Variants : public Workplace {
+class Variants : public ProgramFixture {
  protected:
   std::vector<double> dataset(std::string const& name, std::string const& of = "case") const {
     return Hdf5Reader(in(of + "/truth.h5").string()).read(name);
@@ -290,7 +290,7 @@ TEST_F(Variants, OddButPossibleSetupsRender) {
 
 // The truth of a dot at the faces of a volume comes from its rays only; one rendering reports its accuracy and the
 // remedy.
-TEST_F(Variants, TruthThatIsNotKnownWellIsWarnedOf) {
+TEST_F(Variants, WarnsOfInaccurateTruth) {
   Outcome const outcome = gladstone(
       {"render", "setup.toml", "-o", "case", "--set", "lens.focus=medium", "--set", "camera.noise.read_noise_e=3"});
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
@@ -365,7 +365,7 @@ rays_per_dot = 64
   EXPECT_THAT(outcome.err, testing::Not(testing::HasSubstr("the medium deflects")));
 }
 
-TEST_F(Variants, ImpossibleGradientsAreSaidToHideTheDots) {
+TEST_F(Variants, ReportsDotsHiddenByExcessiveGradients) {
   Outcome const outcome =
       gladstone({"render", "setup.toml", "-o", "case", "--set", "medium.field.gradient_kg_m4=[5e4, 0, 0]"});
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;

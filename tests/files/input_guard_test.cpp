@@ -50,7 +50,7 @@ TEST_F(InputGuards, WhatWasReadIsRefusedAsOutputUnderEveryName) {
   OutputFile::write_text(in_folder("other.txt"), "new");
 }
 
-TEST_F(InputGuards, WhatIsReadAfterThePlaceWasTriedIsRefusedAtTheEnd) {
+TEST_F(InputGuards, InputReadLaterIsProtectedAtCommit) {
   InputGuard const guard;
   OutputFile output(in_folder("input.txt"));
   read_text_file(in_folder("input.txt"));
@@ -72,20 +72,20 @@ TEST_F(InputGuards, AFolderThatReplacesAnInputStaysAsItWas) {
   EXPECT_EQ(content(in_folder("case/derived.csv")), "precious");
 }
 
-TEST_F(InputGuards, WhatTheCommandItselfWroteIsNoInput) {
+TEST_F(InputGuards, OwnOutputIsNoInput) {
   InputGuard const guard;
   for (std::string const text : {"one", "two", "three"}) {
     OutputFile::write_text(in_folder("own.txt"), text);
     EXPECT_EQ(read_text_file(in_folder("own.txt")), text);
   }
   {
-    UnguardedReading const to_be_replaced;
+    UnrecordedReading const to_be_replaced;
     read_text_file(in_folder("input.txt"));
   }
   OutputFile::write_text(in_folder("input.txt"), "new");
 }
 
-TEST_F(InputGuards, WithoutAGuardNothingIsRecorded) {
+TEST_F(InputGuards, RecordsOnlyUnderGuard) {
   {
     InputGuard const guard;
     read_text_file(in_folder("input.txt"));
@@ -110,7 +110,7 @@ TEST_F(InputGuards, FilesOfOtherResultsAreNotWritten) {
   OutputFile::write_text(in_folder("run/other"), "new");
   OutputFile::write_text(in_folder("list"), "new");
   {
-    ProtectedWriting const own;
+    ProtectedWritePermit const own;
     OutputFile::write_text(in_folder("run/list"), "own");
   }
   EXPECT_EQ(content(in_folder("run/list")), "own");

@@ -121,7 +121,7 @@ TEST_F(OutputFolderTest, WithoutCommitTheOldFolderStaysAndNothingElse) {
   EXPECT_THAT(names(), ElementsAre("case"));
 }
 
-TEST_F(OutputFolderTest, WhatAUserPutIntoItStaysAndWhatDependsOnTheOldGoes) {
+TEST_F(OutputFolderTest, PreservesUserFilesRemovesDerivedFiles) {
   write_old_case();
   fs::create_directories(folder_ / "case/maps/deep");
   write("case/maps/deep/b.dat", "mine too");
@@ -209,7 +209,7 @@ TEST_F(OutputFolderTest, AMountedFolderIsWritten) {
   EXPECT_EQ(WEXITSTATUS(status), 0);
 }
 
-TEST_F(OutputFolderTest, SomebodyElsesFolderIsRefusedAtTheStartAndAtCommit) {
+TEST_F(OutputFolderTest, UnrelatedFolderIsRejected) {
   fs::create_directory(folder_ / "case");
   auto const refused = ThrowsMessage<OutputError>(HasSubstr("is not empty and was not made by gladstone"));
   OutputFolder early(in_folder("case"), content_of_case);  // an empty directory is accepted
@@ -251,7 +251,7 @@ TEST_F(OutputFolderTest, OfTwoWritersTheLastOneWinsAndNothingIsLeft) {
   }
 }
 
-TEST_F(OutputFolderTest, WhatKilledWritersOfItsFilesLeftGoesToo) {
+TEST_F(OutputFolderTest, RemovesAbandonedFilesOfItsContent) {
   write_old_case();
   pid_t const child = fork();
   if (child == 0) {
@@ -290,7 +290,7 @@ TEST_F(OutputFolderTest, KilledAtAnyStepItIsTheOldCaseOrTheNewOne) {
       << "the process was killed before each of eight renames: four files retired, three installed, one directory";
 }
 
-TEST_F(OutputFolderTest, KilledWhileItCompletesAKilledOneItIsCompletedByTheNext) {
+TEST_F(OutputFolderTest, RepeatedlyKilledReplacementIsCompleted) {
   for (int step = 0; step < 4; ++step) {
     write_old_case();
     ASSERT_FALSE(replace_and_die(3));
@@ -302,7 +302,7 @@ TEST_F(OutputFolderTest, KilledWhileItCompletesAKilledOneItIsCompletedByTheNext)
   }
 }
 
-TEST_F(OutputFolderTest, WhereAFileCannotBeMovedAllGoBack) {
+TEST_F(OutputFolderTest, FailedMoveRestoresAllFiles) {
   for (int step = 0;; ++step) {
     ASSERT_LT(step, 100);
     write_old_case();
@@ -357,9 +357,9 @@ TEST_F(OutputFolderTest, AReplacementThatWasBrokenOffIsCompletedForItsParts) {
   write_old_case();
   ASSERT_FALSE(replace_and_die(3));
   ASSERT_TRUE(has(".replacing"));
-  finish_replacement_above(in_folder("case/elsewhere"), content_of_case);
+  complete_parent_replacement(in_folder("case/elsewhere"), content_of_case);
   EXPECT_TRUE(has(".replacing"));
-  finish_replacement_above(in_folder("case/maps/"), content_of_case);
+  complete_parent_replacement(in_folder("case/maps/"), content_of_case);
   EXPECT_FALSE(has(".replacing"));
   EXPECT_TRUE(is_of("new"));
 }

@@ -86,12 +86,12 @@ class PartialTest : public Output {
     fs::last_write_time(partial, long_ago);
   }
   bool is_cleared_away(fs::path const& partial) const {
-    remove_leftovers(folder_.string(), ".a.");
+    remove_abandoned_outputs(folder_.string(), ".a.");
     return !fs::exists(partial);
   }
 };
 
-TEST_F(PartialTest, IsThereWhileItsWriterLivesWhateverItsNumber) {
+TEST_F(PartialTest, ExistsWhileWriterIsRunning) {
   for (auto const kind : {Partial::Kind::file, Partial::Kind::folder}) {
     Writer writer(folder_, kind);
     fs::path partial = folder_ / names().front();
@@ -107,7 +107,7 @@ TEST_F(PartialTest, IsThereWhileItsWriterLivesWhateverItsNumber) {
   }
 }
 
-TEST_F(PartialTest, OfThisProcessGoesWithTheObject) {
+TEST_F(PartialTest, OwnOutputIsRemovedOnDestruction) {
   for (auto const kind : {Partial::Kind::file, Partial::Kind::folder}) {
     Partial const one(folder_.string(), ".a.", kind), other(folder_.string(), ".a.", kind);
     EXPECT_NE(one.path(), other.path());
@@ -137,7 +137,7 @@ TEST_F(PartialTest, OfAnEarlierBootOfThisHostIsClearedAwayUnlessItIsYounger) {
 }
 
 // Locks made through another mount of the same network disk may be invisible here.
-TEST_F(PartialTest, SeenThroughAnotherMountIsLeftAlone) {
+TEST_F(PartialTest, FileOnOtherMountIsPreserved) {
   fs::path const partial = renamed(leftover(Partial::Kind::folder), disk, "fffffff0");
   EXPECT_FALSE(is_cleared_away(partial));
 }
@@ -154,19 +154,19 @@ TEST_F(PartialTest, WithoutLocksOrOfAnotherVersionIsLeftAlone) {
 
 TEST_F(PartialTest, OfAnotherNameIsLeftAlone) {
   fs::path const partial = leftover(Partial::Kind::file);
-  remove_leftovers(folder_.string(), ".b.");
+  remove_abandoned_outputs(folder_.string(), ".b.");
   EXPECT_TRUE(fs::exists(partial));
 }
 
-TEST_F(PartialTest, TellsWhoWrites) {
+TEST_F(PartialTest, DescribesWriter) {
   Partial const partial(folder_.string(), ".a.", Partial::Kind::folder);
-  EXPECT_THAT(writer_of(partial.path()), testing::HasSubstr("process " + std::to_string(getpid()) + " on host "));
+  EXPECT_THAT(describe_writer(partial.path()), testing::HasSubstr("process " + std::to_string(getpid()) + " on host "));
 }
 
 TEST_F(PartialTest, ErrorsNameTheFinalPlace) {
-  EXPECT_THAT([] { name_final_place("/a/.b", "case", [] { throw OutputError("/a/.b/flow.tif", "is full"); }); },
+  EXPECT_THAT([] { report_final_path("/a/.b", "case", [] { throw OutputError("/a/.b/flow.tif", "is full"); }); },
               testing::ThrowsMessage<OutputError>("case/flow.tif: is full"));
-  EXPECT_THAT([] { name_final_place("/a/.b", "case", [] { throw OutputError("/tmp/x", "is full"); }); },
+  EXPECT_THAT([] { report_final_path("/a/.b", "case", [] { throw OutputError("/tmp/x", "is full"); }); },
               testing::ThrowsMessage<OutputError>("/tmp/x: is full"));
 }
 

@@ -10,7 +10,7 @@
 #include "render/base/error.h"
 #include "render/files/hdf5_file.h"
 #include "render/files/image_file.h"
-#include "render/files/output_place.h"
+#include "render/files/output_destination.h"
 #include "tests/files/support/output.h"
 
 namespace gladstone {

@@ -6,7 +6,7 @@ namespace gladstone {
 namespace {
 
 // RFC 3629, section 3: one to four bytes, up to U+10FFFF.
-TEST(Utf8, IsWhatRfc3629Allows) {
+TEST(Utf8, AcceptsRfc3629Sequences) {
   for (std::string_view const text : {"", "plain", "\xc2\x80", "D\xc3\xbcse", "\xe2\x82\xac", "\xed\x9f\xbf",
                                       "\xee\x80\x80", "\xf0\x90\x80\x80", "\xf4\x8f\xbf\xbf"})
     EXPECT_TRUE(is_utf8(text)) << text;

@@ -115,7 +115,7 @@ TEST(Light, AtTheBorderIsThatOfALargerSensor) {
 // The image of white paper: cos^4 of the angle to the axis.
 TEST(Light, OfWhitePaperFallsWithCosFour) {
   Scene const scene = build_scene(table1_setup(101));
-  Image<double> const white = white_light(scene);
+  Image<double> const white = render_white_light(scene);
   EXPECT_EQ(white(50, 50), 1.0);
   double const tangent = 50 * 10e-6 / 0.117318436;
   EXPECT_NEAR(white(100, 50), std::pow(1 + tangent * tangent, -2), 1e-9);
@@ -132,7 +132,7 @@ TEST(Light, OfDarkDotsIsWhitePaperLessTheDots) {
   setup.target.polarity = Polarity::dark;
   Scene dark = scene_with_dots(setup, {{20, 20}, {44, 30}}, 256);
   Rendering const paper = render_all(dark);
-  Image<double> const white = white_light(dark);
+  Image<double> const white = render_white_light(dark);
   for (int row = 0; row < 64; ++row) {
     for (int column = 0; column < 64; ++column) {
       ASSERT_EQ(paper.light.reference(column, row), white(column, row) - dots.light.reference(column, row));

@@ -106,7 +106,7 @@ TEST(FocusedDotsRenderer, ReferenceIsWhereThePinholeSees) {
 // Each dot is aimed at individually, for any deflection: behind a prism of 2.26e-4 * g * L_z, its light cone passes the
 // stop at a displacement of more than half of the stop's radius, for which the initial table is too small. In a uniform
 // gradient, all of its light arrives, displaced by Eq. 9 within theta^2.
-TEST(FocusedDotsRenderer, AimsAtADotThatIsBentFarAsideAgain) {
+TEST(FocusedDotsRenderer, AimsAgainAtStronglyDeflectedDot) {
   auto setup = table1_setup(64);
   setup.target.dot_diameter_px = 0;
   setup.medium.field = uniform_gradient(1500, -800);

@@ -29,7 +29,7 @@ dots_per_32px_window = 1.0
 )",
                                                     "setup.toml");
   Scene scene = build_scene(read_setup(document.root()));
-  scene = with_step(scene, plan_step_by_rays(scene));
+  scene = with_step(scene, determine_step_by_tracing(scene));
   return scene;
 }
 
@@ -41,7 +41,7 @@ extern "C" int LLVMFuzzerTestOneInput(std::uint8_t const* data, std::size_t size
   static Scene const scene = gradient_scene();
   std::string const path = fuzz::file_of(input, "rays.csv");
   fuzz::read(input, [&] {
-    traced_rays_csv(trace_rays(scene, read_rays(path, scene.setup.farthest_off_axis()), Through::all));
+    traced_rays_csv(trace_rays(scene, read_rays(path, scene.setup.max_off_axis_distance()), Through::all));
   });
   return 0;
 }

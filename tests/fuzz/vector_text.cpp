@@ -25,9 +25,9 @@ extern "C" int LLVMFuzzerTestOneInput(std::uint8_t const* data, std::size_t size
   std::string const path = fuzz::file_of(input, "vectors.txt");
   fuzz::read(input, [&] {
     VectorFile file = convert_to_pixels(read_vectors(path), path);
-    LeftOutVectors const left_out = screen_vectors(file.field, file.conventions.offset_px, 128, 128);
-    if (!refusal_of_places(file.field, left_out, 128, 128).empty()) return;
-    doubt_about_places(file.field, 128, 128);
+    RejectedVectors const left_out = screen_vectors(file.field, file.conventions.offset_px, 128, 128);
+    if (!reason_to_reject_positions(file.field, left_out, 128, 128).empty()) return;
+    describe_suspect_positions(file.field, 128, 128);
     if (file.foreign) file.conventions = detect_conventions(file, truth, 128).conventions;
     DisplacementField const field = apply_conventions(std::move(file.field), file.conventions, 128);
     std::vector<Vec2d> const dots{{10, 10}, {14, 10}, {10, 14}, {14, 14}, {100, 90}};

@@ -90,7 +90,7 @@ TEST(IdealImages, EqualThoseOfRaysInFocus) {
   Scene scene = build_scene(piv_setup(ParticleScattering::lambert));
   ASSERT_GT(scene.particles.size(), 500u);
   Rendering const formula = by_formula(scene);
-  scene = with_step(scene, plan_step_by_rays(scene));
+  scene = with_step(scene, determine_step_by_tracing(scene));
   scene.rays_per_dot = 64;
   Rendering const rays =
       RaysRenderer().render_particles(scene, scene.particles, ParticleLight::scattered, RenderImages::yes);

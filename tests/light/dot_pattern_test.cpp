@@ -150,7 +150,7 @@ TEST(PictureTarget, PixelsAreSquaresOfTheirGrey) {
   picture(3, 1) = 4000;
   std::string const path = temporary("picture.tif");
   write_tiff(path, picture, {16, 10e-6, ""});
-  DotPattern const target = picture_target(path, {8e-3, 4e-3});
+  DotPattern const target = image_target(path, {8e-3, 4e-3});
   ASSERT_EQ(target.centre.size(), 2u);
   EXPECT_EQ(target.shape, SourceShape::square);
   EXPECT_NEAR(target.half_size, 1e-3, 1e-15);
@@ -161,9 +161,9 @@ TEST(PictureTarget, PixelsAreSquaresOfTheirGrey) {
   EXPECT_DOUBLE_EQ(target.radiance[0], 0.25);
   EXPECT_DOUBLE_EQ(target.radiance[1], 1.0);
 
-  EXPECT_THAT([&] { picture_target(path, {8e-3, 8e-3}); }, ThrowsMessage<DataError>(HasSubstr("square")));
+  EXPECT_THAT([&] { image_target(path, {8e-3, 8e-3}); }, ThrowsMessage<DataError>(HasSubstr("square")));
   write_tiff(path, Image<std::uint16_t>(4, 2, 0), {16, 10e-6, ""});
-  EXPECT_THAT([&] { picture_target(path, {8e-3, 4e-3}); }, ThrowsMessage<DataError>(HasSubstr("entirely black")));
+  EXPECT_THAT([&] { image_target(path, {8e-3, 4e-3}); }, ThrowsMessage<DataError>(HasSubstr("entirely black")));
 }
 
 }  // namespace

@@ -36,7 +36,7 @@ double energy_through(LaserSheet<double> const& sheet, int pulse, double along) 
   double sum = 0;
   for (std::size_t i = 0; i < rule.node.size(); ++i) {
     for (std::size_t j = 0; j < rule.node.size(); ++j) {
-      Vec3d const point = pose.point_outwards({along, half_height * rule.node[i], half_depth * rule.node[j]});
+      Vec3d const point = pose.point_to_outer({along, half_height * rule.node[i], half_depth * rule.node[j]});
       sum += rule.weight[i] * rule.weight[j] * sheet.fluence(point, pulse) *
              dot(sheet.wave(point, pulse).propagation, pose.x);
     }

@@ -71,8 +71,8 @@ TEST(MieScattering, TurnsWithTheLight) {
   MieScattering const scattering({1.7 * micrometre}, setting, {0, pi});
   auto const view = scattering.view();
   Pose<double> const turned = Pose<double>{}.turned({0.3, -1.1, 2.0});
-  LightWave<double> const other{turned.direction_outwards(along_x.propagation),
-                                turned.direction_outwards(along_x.field)};
+  LightWave<double> const other{turned.direction_to_outer(along_x.propagation),
+                                turned.direction_to_outer(along_x.field)};
   LightWave<double> const crossed{along_x.propagation, {0, 0, 1}};
   double const k = wave_number(setting);
   MieCoefficients const sphere(1.7 * pi / 0.532, 1.45);
@@ -84,7 +84,7 @@ TEST(MieScattering, TurnsWithTheLight) {
       double const seen = view.cross_section(0, direction, along_x);
       // In forward and backward direction, |S1| and |S2| are equal up to the rounding of their float coefficients.
       double const rounding = 2e-7 * seen + 1e-9 * mean;
-      EXPECT_NEAR(view.cross_section(0, turned.direction_outwards(direction), other), seen, rounding);
+      EXPECT_NEAR(view.cross_section(0, turned.direction_to_outer(direction), other), seen, rounding);
       EXPECT_NEAR(view.cross_section(0, towards(angle, -phi), along_x), seen, 1e-12 * mean);
       EXPECT_NEAR((seen + view.cross_section(0, direction, crossed)) / 2, sphere.amplitudes(angle).s11() / (k * k),
                   2 * scattering.error() * mean);
@@ -95,7 +95,7 @@ TEST(MieScattering, TurnsWithTheLight) {
 // At angles between its nodes, the table agrees with the series within its stated error. That error was measured midway
 // between the nodes, where the error of a cubic spline is largest, within a few per cent. It is a few 1e-4 for side
 // scatter: with a phase of 0.5 per node, 1.6e-4 of the fastest ripple's amplitude.
-TEST(MieScattering, TableErrsNoMoreThanItSays) {
+TEST(MieScattering, TableErrorIsWithinItsEstimate) {
   for (double const size : {0.05, 0.4, 1.0, 3.0, 11.0, 60.0}) {
     AngleInterval const angles{1.3, 1.9};
     MieScattering const scattering({size * micrometre}, droplets(), angles);
@@ -173,7 +173,7 @@ TEST(MieScattering, LargeParticlesShineAsTheSquare) {
 
 // A surrounding medium reduces the wavelength and the refractive index contrast: in a liquid of its own index, a
 // particle vanishes; otherwise it scatters like a sphere of m = n/n0 in light of wavelength lambda/n0.
-TEST(MieScattering, SurroundingsTakeTheirPart) {
+TEST(MieScattering, DependsOnAmbientIndex) {
   MieSetting setting = droplets();
   setting.surroundings = 1.45;
   EXPECT_EQ(MieScattering({micrometre}, setting, {1.4, 1.7}).view().cross_section(0, {0, 0, 1}, along_x), 0);
@@ -208,7 +208,7 @@ TEST(MieScattering, ThreadsMakeNoDifference) {
 // The size of the table is known beforehand and proportional to particle diameter over wavelength: 1e5 different
 // droplets of about 1 um need about 10 MB for side scatter, (0.3 rad x 2 x 7/0.5 + 3) x 8 bytes each. A table that
 // exceeds the memory of any machine is refused.
-TEST(MieScattering, SaysItsSizeBeforeItTakesIt) {
+TEST(MieScattering, ReportsMemoryBeforeAllocation) {
   std::vector<double> const diameters = many_diameters(1000);
   AngleInterval const angles{1.4, 1.7};
   MieScattering const scattering(diameters, droplets(), angles);

@@ -123,7 +123,7 @@ TEST(Mie, SmallSpheresAreDipoles) {
 // Large spheres remove twice the light that falls on them, plus an edge term. For an absorbing sphere, which has no
 // ripples, q_ext = 2 + 1.9923861 x^(-2/3) + O(1/x) (Nussenzveig & Wiscombe, Phys. Rev. Lett. 45 (1980) 1490); for m of
 // order one, the factor of 1/x is of order one. Refraction causes ripples of order 1/x^(2/3) for a transparent sphere.
-TEST(Mie, LargeSpheresTakeOutTwiceTheirShadow) {
+TEST(Mie, LargeSpheresHaveExtinctionEfficiencyTwo) {
   for (double const x : {1e3, 3e3, 1e4}) {
     double const edge = 1.9923861 * std::pow(x, -2.0 / 3);
     EXPECT_NEAR(MieCoefficients(x, {1.5, 1}).efficiencies().q_ext, 2 + edge, 1.5 / x);

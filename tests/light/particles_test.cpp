@@ -75,7 +75,7 @@ TEST(SeededParticles, AreDarkOutsideTheVolume) {
 }
 
 // At mid-time, a particle is at its seeded position for any dt.
-TEST(SeededParticles, SitAtMidTimeWhereTheyAreSeeded) {
+TEST(SeededParticles, AreAtSeededPositionsAtMidTime) {
   FlowSetup vortex = uniform_flow({});
   vortex.flow.kind = RotationFlow{2e4, {}};
   ParticleSetup const setup = cube_of_particles(4 * mm);
@@ -95,7 +95,7 @@ TEST(SeededParticles, SitAtMidTimeWhereTheyAreSeeded) {
 // Behind a normal shock at Mach 2, the density of the gas, and of particles that follow it, is 8/3 of that in front. Of
 // a volume that the front divides into halves, 3 of 11 particles are in front of it at either pulse, of 20000 in all.
 // Tolerance: four standard deviations.
-TEST(SeededParticles, CrowdBehindAShock) {
+TEST(SeededParticles, AreDenserBehindShock) {
   FlowSetup flow;
   flow.dt = 2e-6;
   NormalShockFlow shock;
@@ -189,7 +189,7 @@ TEST(ParticleFile, IsRefusedWithThePlaceOfItsMistake) {
 
 // White spheres scatter all the light that falls on them: the integral over all directions is pi d^2 / 4. The error of
 // the midpoint rule is (pi / 20000)^2 / 24 times the second derivative.
-TEST(LambertSpheres, SendAwayWhatTheyCatch) {
+TEST(LambertSpheres, ScatterAllIncidentLight) {
   double const d = 3 * um;
   LambertSpheres<double> const spheres{&d};
   LightWave<double> const wave;

@@ -171,12 +171,12 @@ TEST(RandomStreams, OfOneSeedAreIndependent) {
 // A position beyond the range of integer nanometres also has a key, one for each side; all other positions have
 // different keys if they differ by a nanometre.
 TEST(SourceKey, EveryFinitePlaceHasAKey) {
-  EXPECT_EQ(key_of({1e300, 0}), key_of({1e10, 0}));
-  EXPECT_EQ(key_of({0, -1e300}), key_of({0, -1e10}));
-  EXPECT_NE(key_of({1e300, 0}), key_of({-1e300, 0}));
-  EXPECT_NE(key_of({1e300, 0}), key_of({0, 1e300}));
-  EXPECT_NE(key_of({1e-9, 0}), key_of({2e-9, 0}));
-  EXPECT_NE(key_of({1e9, 0}), key_of({1e9 + 1e-6, 0}));
+  EXPECT_EQ(random_key({1e300, 0}), random_key({1e10, 0}));
+  EXPECT_EQ(random_key({0, -1e300}), random_key({0, -1e10}));
+  EXPECT_NE(random_key({1e300, 0}), random_key({-1e300, 0}));
+  EXPECT_NE(random_key({1e300, 0}), random_key({0, 1e300}));
+  EXPECT_NE(random_key({1e-9, 0}), random_key({2e-9, 0}));
+  EXPECT_NE(random_key({1e9, 0}), random_key({1e9 + 1e-6, 0}));
 }
 
 }  // namespace

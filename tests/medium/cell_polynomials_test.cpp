@@ -113,7 +113,7 @@ TEST(CellPolynomials, SampleTwoPointsSideBySide) {
   Owned<CubicBspline> const cells(grid);
   Vec3d const p{2.9999, 3.4, 1.00001}, q{3.0001, 3.4003, 0.9999};
   IndexSample<double> at[2];
-  cells.view.sample_beside(p, q, at);
+  cells.view.sample_pair(p, q, at);
   EXPECT_NEAR(at[0].refractivity, grid.sample(p).refractivity, 7e-17);
   EXPECT_NEAR(at[1].refractivity, grid.sample(q).refractivity, 1e-3 * 1e-12);
   EXPECT_LT(length(at[1].gradient - grid.sample(q).gradient), 1e-3 * 3e-8);

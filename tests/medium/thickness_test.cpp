@@ -47,16 +47,16 @@ TYPED_TEST(GaussianThickness, CutsOffTheTails) {
   double const whole = deflection(gaussian<TypeParam>(15e-3, 20 * 15e-3));
   for (double const thickness : {10e-3, 30e-3, 60e-3}) {
     MediumSetup const setup = gaussian<TypeParam>(15e-3, thickness);
-    EXPECT_NEAR(1 - deflection(setup) / whole, cut_off_share(setup), 1e-6);
+    EXPECT_NEAR(1 - deflection(setup) / whole, truncated_fraction(setup), 1e-6);
   }
-  EXPECT_NEAR(cut_off_share(gaussian<TypeParam>(15e-3, 10e-3)), 0.637, 5e-4);
+  EXPECT_NEAR(truncated_fraction(gaussian<TypeParam>(15e-3, 10e-3)), 0.637, 5e-4);
 }
 
 TEST(Thickness, AutomaticallyHoldsAllOfAGaussianThatMatters) {
   for (double const radius_mm : {0.1, 3.0, 15.0, 40.0}) {
     MediumSetup setup = gaussian<Plume>(radius_mm * 1e-3, 0);
     setup.thickness = automatic_thickness_mm(setup.field) * 1e-3;
-    EXPECT_LT(cut_off_share(setup), 1e-6) << radius_mm;
+    EXPECT_LT(truncated_fraction(setup), 1e-6) << radius_mm;
   }
   EXPECT_EQ(automatic_thickness_mm(gaussian<Blob>(15e-3, 0).field), 105.0);
 }
@@ -73,7 +73,7 @@ TEST(Thickness, IsTenMillimetresWhereTheFieldDoesNotAskForMore) {
     setup.field = field;
     setup.thickness = 1e-3;
     EXPECT_EQ(automatic_thickness_mm(setup.field), 10.0);
-    EXPECT_EQ(cut_off_share(setup), 0.0);
+    EXPECT_EQ(truncated_fraction(setup), 0.0);
   }
 }
 

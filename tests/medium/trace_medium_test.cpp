@@ -226,10 +226,10 @@ TEST(StraightIntegrator, GivesTheLeveredIntegralOfASinusoid) {
       double const phase = k * (x0 + slope * s) + field.phase, q = k * slope;
       return q == 0 ? std::cos(phase) * s * s / 2 : s * std::sin(phase) / q + std::cos(phase) / (q * q);
     };
-    double const levered = K * 10 * (primitive(s2) - primitive(s1));
+    double const lever_weighted = K * 10 * (primitive(s2) - primitive(s1));
     // T_z is constant, so tan(theta') - tan(theta) = (1 + m^2) / n0 times the integral, up to relative terms of K
     // amplitude (1.4e-6) and of Simpson's rule, (k m h)^4/2880.
-    EXPECT_NEAR(apparent_ray(start, way).position.x - x0, -(1 + slope * slope) / n_0 * levered,
+    EXPECT_NEAR(apparent_ray(start, way).position.x - x0, -(1 + slope * slope) / n_0 * lever_weighted,
                 1e-5 * std::abs(K * 10 * 0.0025));
   }
 }
@@ -398,14 +398,14 @@ TEST(TraceMedium, RayMayTurnBack) {
 }
 
 // A ray on a circle about the centre of the fish-eye lens never leaves it.
-TEST(TraceMedium, TrappedRayIsGivenUp) {
+TEST(TraceMedium, TrappedRayIsLost) {
   FishEye const eye;
   Ray<double> const start = ray({1, 0, 0}, {0, 0, 1});
   EXPECT_EQ(trace_medium(eye, options(0.05), start).status, RayStatus::lost_in_medium);
 }
 
 // Far out in an infinite gradient, the index decreases to zero. Rays there are not traced.
-TEST(TraceMedium, RayWhereNoMediumCanBeIsGivenUp) {
+TEST(TraceMedium, RayAtInvalidIndexIsLost) {
   for (double const x : {-1.0, -1e3}) {
     auto const way = trace_medium(slab({8e3, 0, 0}), options(1e-3), ray({x, 0, -0.1}, {0, 0, 1}));
     EXPECT_EQ(way.status, RayStatus::lost_in_medium) << x;  // n = 1 + 2.26e-4 8e3 x < 0

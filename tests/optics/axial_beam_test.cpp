@@ -43,7 +43,7 @@ TEST(AxialBeam, LensesThatOverlapAreRefusedAcrossAStop) {
 }
 
 // Faces of R = 60 mm, t = 0.2 mm apart, meet at r = sqrt(R^2 - (R - t/2)^2) = 3.46 mm.
-TEST(AxialBeam, FacesThatCrossWithinItAreToldOf) {
+TEST(AxialBeam, WarnsOfSurfacesThatCrossWithinBeam) {
   double const meet = std::sqrt(60 * 60 - 59.9 * 59.9);
   auto const lens = [](double pupil) {
     return "schema = 1\nentrance_pupil_mm = " + std::to_string(pupil) +
@@ -62,7 +62,7 @@ TEST(AxialBeam, FacesThatCrossWithinItAreToldOf) {
 
 // A singlet of f/8 with a requested f-number of 2 opens as far as its edges permit, and a warning reports this. A plane
 // of semi-diameter 8 mm in front of the lens limits rays parallel to the axis, so that the lens passes f / 16 mm.
-TEST(AxialBeam, AnFNumberWiderThanTheLensIsToldOf) {
+TEST(AxialBeam, WarnsOfFNumberBelowLensLimit) {
   auto const at = [](double f_number, std::string const& text) {
     LensOptions options;
     options.f_number = f_number;

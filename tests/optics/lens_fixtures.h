@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "render/base/units.h"
-#include "render/optics/aim_disc.h"
+#include "render/optics/apparent_pupil.h"
 #include "render/optics/paraxial.h"
 
 namespace gladstone {

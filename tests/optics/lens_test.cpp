@@ -76,7 +76,7 @@ TEST(DoubleGauss, ChiefRayAtTenDegreesFollowsTheListing) {
   Lens const lens = double_gauss();
   double const angle = 10.0000000023 * unit::degree;
   RayOrigin const origin = RayOrigin::direction({0, std::sin(angle), std::cos(angle)});
-  auto const disc = find_aim_disc(lens, origin);
+  auto const disc = find_apparent_pupil(lens, origin);
   ASSERT_TRUE(disc);
   EXPECT_NEAR(-disc->centre.y / std::tan(angle) * 1e3, 58.7753, 5e-5);
   Ray<double> ray = origin.ray_through(disc->centre);

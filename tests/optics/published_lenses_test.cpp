@@ -7,7 +7,7 @@
 #include <variant>
 
 #include "render/base/units.h"
-#include "render/optics/aim_disc.h"
+#include "render/optics/apparent_pupil.h"
 #include "render/optics/lens.h"
 #include "render/optics/paraxial.h"
 
@@ -147,7 +147,7 @@ TEST(PublishedLenses, WideAngleReachesItsCorner) {
   Lens const lens = build(shipped("wide_angle.toml"));
   double const angle = 37.1 * unit::degree;
   RayOrigin const corner = RayOrigin::direction({0, std::sin(angle), std::cos(angle)});
-  auto const disc = find_aim_disc(lens, corner);
+  auto const disc = find_apparent_pupil(lens, corner);
   ASSERT_TRUE(disc);
   Ray<double> ray = corner.ray_through(disc->centre);
   RayAccount<double> account;
@@ -187,7 +187,7 @@ TEST(PublishedLenses, TelecentricLensIsThePublishedTelephoto) {
 /// Returns the chief ray of a point at a height above the axis, `distance` in front of the first vertex.
 Ray<double> chief_ray(Lens const& lens, double height, double distance) {
   RayOrigin const origin = RayOrigin::point({0, height, -distance});
-  auto const disc = find_aim_disc(lens, origin);
+  auto const disc = find_apparent_pupil(lens, origin);
   EXPECT_TRUE(disc);
   return origin.ray_through(disc->centre);
 }

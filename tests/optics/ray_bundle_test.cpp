@@ -16,7 +16,7 @@ TEST(RayBundle, IsNarrowestWhereItsRaysMeet) {
     slopes.push_back(r * sunflower(k, 500) + Vec2d{0.1, 0});
     places.push_back(c - z0 * slopes.back());
   }
-  BundleSpot<double> const spot = spot_of(places, slopes);
+  BundleSpot<double> const spot = compute_bundle_spot(places, slopes);
   EXPECT_NEAR(spot.best_focus, z0, 1e-15);
   EXPECT_NEAR(spot.best_mean_square, 0, 1e-20);
   EXPECT_NEAR(spot.mean_square / (z0 * z0 * r * r / 2), 1, 2e-3);
@@ -26,7 +26,7 @@ TEST(RayBundle, IsNarrowestWhereItsRaysMeet) {
 
 // A single ray, or parallel rays, have the same cross-section everywhere.
 TEST(RayBundle, OfParallelRaysHasItsFocusOnThePlane) {
-  BundleSpot<double> const spot = spot_of<double>({{0, 0}, {2, 0}}, {{0.1, 0.2}, {0.1, 0.2}});
+  BundleSpot<double> const spot = compute_bundle_spot<double>({{0, 0}, {2, 0}}, {{0.1, 0.2}, {0.1, 0.2}});
   EXPECT_EQ(spot.best_focus, 0);
   EXPECT_EQ(spot.mean_square, 1);
 }

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "render/base/units.h"
-#include "render/optics/aim_disc.h"
+#include "render/optics/apparent_pupil.h"
 #include "render/optics/field_analysis.h"
 #include "render/optics/paraxial.h"
 #include "render/optics/trace_back.h"
@@ -48,7 +48,7 @@ TEST(WideAngleLens, ChiefRaysToEightyFiveDegreesFollowAnIndependentTracer) {
   EXPECT_NEAR(paraxial.back_focal_length * 1e3, 0.832527873288451, 1e-12);
   double const z = lens.poses.back().origin.z + paraxial.back_focal_length;
   for (auto const& [degrees, aim, image] : listing) {
-    auto const disc = find_aim_disc(lens, field(degrees));
+    auto const disc = find_apparent_pupil(lens, field(degrees));
     ASSERT_TRUE(disc) << degrees;
     EXPECT_NEAR(disc->centre.x * 1e3, 0, 1e-9) << degrees;
     EXPECT_NEAR(disc->centre.y * 1e3, aim, 1e-8) << degrees;
@@ -86,13 +86,13 @@ TEST(TraceBack, RunsAlongTheRayThatComes) {
 }
 
 // Symmetry: rotating the field about the axis rotates the pupil as seen from it.
-TEST(WideAngleLens, SeesItsPupilAlikeAllRound) {
+TEST(WideAngleLens, PupilIsRotationallySymmetric) {
   Lens const lens = wide_lens();
   double const s = std::sin(70 * unit::degree), c = std::cos(70 * unit::degree);
-  auto const along_y = find_aim_disc(lens, RayOrigin::direction({0, s, c}));
+  auto const along_y = find_apparent_pupil(lens, RayOrigin::direction({0, s, c}));
   ASSERT_TRUE(along_y);
   for (double const turn : {0.3, 1.7, -2.5}) {
-    auto const turned = find_aim_disc(lens, RayOrigin::direction({s * std::sin(turn), s * std::cos(turn), c}));
+    auto const turned = find_apparent_pupil(lens, RayOrigin::direction({s * std::sin(turn), s * std::cos(turn), c}));
     ASSERT_TRUE(turned) << turn;
     EXPECT_NEAR(turned->centre.x, along_y->centre.y * std::sin(turn), 1e-11);
     EXPECT_NEAR(turned->centre.y, along_y->centre.y * std::cos(turn), 1e-11);
@@ -105,14 +105,14 @@ TEST(WideAngleLens, SeesItsPupilAlikeAllRound) {
 TEST(WideAngleLens, AimDiscHoldsEveryRayThatPassesTheStop) {
   Lens const lens = wide_lens();
   for (double const degrees : {0.0, 30.0, 45.0, 50.0, 55.0, 60.0, 70.0, 80.0}) {
-    auto const disc = find_aim_disc(lens, field(degrees));
+    auto const disc = find_apparent_pupil(lens, field(degrees));
     ASSERT_TRUE(disc) << degrees;
     int passed = 0, outside = 0, within = 0;
     constexpr int half = 150;
     for (int i = -half; i <= half; ++i) {
       for (int j = -half; j <= half; ++j) {
         Vec2d const at{3.0 * i / half, 3.0 * j / half};
-        auto const place = place_in_stop(lens, field(degrees).ray_through(disc->at(at)));
+        auto const place = intersect_stop(lens, field(degrees).ray_through(disc->at(at)));
         bool const inside = length(at) <= 1, passes = place && length(*place) <= lens.stop_radius;
         within += inside ? 1 : 0;
         passed += passes ? 1 : 0;

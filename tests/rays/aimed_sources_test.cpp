@@ -95,7 +95,7 @@ TEST(AimedSources, RaysRunToTheirPupilPointWithWeightRadianceCosFour) {
   Vec2d const place{0.3, -0.6};
   for (std::uint64_t source = 0; source < 2; ++source) {
     for (int k = 0; k < 50; ++k) {
-      Vec2d const to = point_of_circle(std::sqrt((k + 0.5) / 50), 0.381966 * k);
+      Vec2d const to = point_on_circle(std::sqrt((k + 0.5) / 50), 0.381966 * k);
       auto const [ray, weight] = ray_to(sources, towards_pupil(PupilSampling::sobol), source, place, to);
       Vec2d const start = centres[source] + 2e-4 * place, pupil = pupil_radius * to;
       EXPECT_EQ(ray.position, (Vec3d{start.x, start.y, target_z}));

@@ -29,7 +29,7 @@ TEST(TelecentricRendering, DisplacesDotsByTheLensMagnification) {
                       "[medium.field]\nkind = \"uniform_gradient\"\ngradient_kg_m4 = [20.0, 10.0, 0.0]\n")
           .setup;
   Scene scene = build_scene(setup);
-  scene = with_step(scene, plan_step_by_rays(scene));
+  scene = with_step(scene, determine_step_by_tracing(scene));
   scene.rays_per_dot = 256;
   Rendering const result = rendered_with_images(scene);
   double const M = scene.imaging.magnification;
@@ -71,7 +71,7 @@ TEST(PlenopticRendering, SortsAllTheLightOfThePicture) {
     Scene scene = build_scene(of);
     scene.dots.centre = {{0, 0}, {1e-3, -0.8e-3}, {-1.2e-3, 1.5e-3}};
     scene.dots.half_size = 0.1e-3;
-    scene = with_step(scene, plan_step_by_rays(scene));
+    scene = with_step(scene, determine_step_by_tracing(scene));
     scene.rays_per_dot = 2048;
     return rendered_with_images(scene);
   };

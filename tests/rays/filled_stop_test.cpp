@@ -79,7 +79,7 @@ TEST(FillStop, PassesTheLightThatARealLensTakes) {
     int const side = 64;
     double through_map = 0;
     for (int k = 0; k < side * side; ++k) {
-      Vec2d const at = point_of_circle(std::sqrt((k / side + 0.5) / side), (k % side + 0.5) / side);
+      Vec2d const at = point_on_circle(std::sqrt((k / side + 0.5) / side), (k % side + 0.5) / side);
       AimedRay<double> const ray = ray_to(source, camera.aim_plane, stop.map, 0, at);
       RayHit<double> const hit = trace_ray(camera.view(), NoMedium<double>{}, {}, ray.ray, ray.weight);
       EXPECT_TRUE(reaches_sensor_plane(hit.status));

@@ -15,7 +15,7 @@ struct Both {
   Image<double> grid, spots;
 };
 
-Both lay_down(double sigma, std::vector<Vec2d> const& hits, int side = 40) {
+Both accumulate_light(double sigma, std::vector<Vec2d> const& hits, int side = 40) {
   SpotView spot;
   spot.model = SpotModel::gaussian;
   spot.gaussian.sigma = sigma;
@@ -46,7 +46,7 @@ double largest_difference(Both const& both) {
 TEST(HitGrid, LaysASingleRaysSpotDownToAFifthOfALevelOfTwelveBits) {
   for (double const sigma : {0.15, 0.275, 0.5, 0.9, 2.0}) {
     for (Vec2d const at : {Vec2d{20, 20}, {20.5, 20.5}, {19.53, 20.31}, {20.017, 19.999}}) {
-      EXPECT_LT(largest_difference(lay_down(sigma, {at})), 5e-5) << sigma;
+      EXPECT_LT(largest_difference(accumulate_light(sigma, {at})), 5e-5) << sigma;
     }
   }
 }
@@ -60,12 +60,13 @@ TEST(HitGrid, LaysADotDownToATenthOfALevel) {
     hits.push_back({19.3 + r * std::cos(turn), 20.8 + r * std::sin(turn)});
   }
   // relative to the brightest pixel, which has 0.14 of all light
-  EXPECT_LT(largest_difference(lay_down(0.275, hits)), 2.4e-5 * 0.14);
+  EXPECT_LT(largest_difference(accumulate_light(0.275, hits)), 2.4e-5 * 0.14);
 }
 
 // Hits that exceed the capacity of the grid, are outside the image, or are invalid: all light is conserved.
 TEST(HitGrid, MovesOnWhereRaysSpread) {
-  Both const both = lay_down(0.4, {{3, 4}, {35, 33}, {3.2, 30}, {20, 20}, {-300, 5}, {1e300, 4}, {std::nan(""), 2}});
+  Both const both =
+      accumulate_light(0.4, {{3, 4}, {35, 33}, {3.2, 30}, {20, 20}, {-300, 5}, {1e300, 4}, {std::nan(""), 2}});
   EXPECT_LT(largest_difference(both), 5e-5 / 7);
   double sum = 0;
   for (double const light : both.grid) sum += light;
@@ -81,7 +82,7 @@ TEST(HitGrid, LaysWideDotsDownInTiles) {
       double const turn = 6.283185307179586 * to_unit(random_bits(1, RandomStream::pupil, i, 1));
       hits.push_back({150 + r * std::cos(turn), 150 + r * std::sin(turn)});
     }
-    Both const both = lay_down(0.5, hits, 300);
+    Both const both = accumulate_light(0.5, hits, 300);
     // at most 5e-5 of each ray that illuminates a pixel: those of the nine pixels around it
     EXPECT_LT(largest_difference(both), 5e-5 * 9 / (3.14 * radius * radius)) << radius;
     double sum = 0;

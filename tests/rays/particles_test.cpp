@@ -35,7 +35,7 @@ Scene scene_with_particles(Setup const& setup, std::vector<Vec3d> const& first, 
       scene.particles.photons[pulse][i] = sheet.photons(scene.particles.place[pulse][i], pulse);
     }
   }
-  scene = with_step(scene, plan_step_by_rays(scene));
+  scene = with_step(scene, determine_step_by_tracing(scene));
   scene.rays_per_dot = rays;
   return scene;
 }
@@ -142,7 +142,7 @@ TEST(Particles, AreProjectedByAPinhole) {
 }
 
 // A particle outside the sheet sends no light; one that leaves it is visible once, and its displacement is NaN.
-TEST(Particles, BesideTheSheetAreNotSeen) {
+TEST(Particles, OutsideSheetAreInvisible) {
   gladstone::Setup setup = deep_sheet();
   setup.piv->laser.thickness = 2 * mm;
   Scene scene =
@@ -188,7 +188,7 @@ TEST(Particles, InAnIndexGradientAreDisplaced) {
 // A particle at rest appears to move if the medium changes between the pulses: by xi_2 - xi_1, Elsinga's d xi / dt,
 // with xi = -g l^2 / 2 as above. Light and rays are those of each pulse. The errors of the displacements by 512 rays
 // are far below 2e-3 of xi, and equal the stated ones within their own scatter: a third for six components.
-TEST(Particles, SeemToMoveWhereTheMediumChanges) {
+TEST(Particles, ApparentMotionIfMediumChanges) {
   gladstone::Setup setup = deep_sheet();
   setup.medium.thickness = 40 * mm;
   double const g[2] = {0.1, -0.05};  // [1/m]
@@ -211,7 +211,7 @@ TEST(Particles, SeemToMoveWhereTheMediumChanges) {
   Rendering const unlit =
       render_in_two_media(renderer, scene, scene.particles, ParticleLight::scattered, RenderImages::no);
   EXPECT_TRUE(std::isnan(unlit.truth.displacement_error_px[0].x)) << "not estimated without images";
-  Scene second = at_second_pulse(scene);
+  Scene second = select_second_pulse(scene);
   Rendering const alone = render(second, ParticleLight::scattered, RenderImages::yes);
   EXPECT_TRUE(std::equal(seen.light.flow.begin(), seen.light.flow.end(), alone.light.flow.begin()));
   EXPECT_EQ(seen.truth.flux[0].y, alone.truth.flux[0].y);
@@ -286,7 +286,7 @@ TEST(Particles, GiveTheSameBitsOnAnyNumberOfThreads) {
   auto const render_on = [&](int threads) {
     set_thread_count(threads);
     Scene scene = build_scene(setup);
-    scene = with_step(scene, plan_step_by_rays(scene));
+    scene = with_step(scene, determine_step_by_tracing(scene));
     scene.rays_per_dot = 32;
     return render(scene, ParticleLight::scattered, RenderImages::yes);
   };

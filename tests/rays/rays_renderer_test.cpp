@@ -67,7 +67,7 @@ TEST(RaysRenderer, GivesTheTruthAndTheImagesOfFocusedDots) {
   EXPECT_LT(levels_between(rays.light.flow, fast.light.flow), 0.5 + 1.0 / 3);
 }
 
-TEST(RaysRenderer, LeavesWhatNothingBendsWhereItIs) {
+TEST(RaysRenderer, UndeflectedDotsDoNotMove) {
   auto setup = table1_setup(32);
   setup.medium.field = uniform_gradient(0, 0);
   Scene const scene = scene_with_dots(setup, {{15.3, 16.9}}, 64);
@@ -108,7 +108,7 @@ TEST(RaysRenderer, GivesTheSameBitsOnAnyNumberOfThreads) {
 }
 
 // The truth of a dot depends on its own data only: neither on the number of dots nor on its position in the list.
-TEST(RaysRenderer, KnowsADotByItself) {
+TEST(RaysRenderer, TruthOfADotIsIndependentOfOthers) {
   Scene all = late_scene(256), turned = all;
   std::reverse(turned.dots.centre.begin(), turned.dots.centre.end());
   GroundTruth const truth = by_rays(all).truth, of_turned = by_rays(turned).truth;
@@ -124,7 +124,7 @@ TEST(RaysRenderer, KnowsADotByItself) {
 TEST(RaysRenderer, SeesWhitePaperByTheFourthPowerOfTheCosine) {
   auto const setup = table1_setup(512);
   Scene const scene = scene_with_dots(setup, {{200, 200}}, 64);
-  Image<double> const white = white_picture(scene), expected = white_light(scene);
+  Image<double> const white = render_white_target(scene), expected = render_white_light(scene);
   // 4096 rays and a smoothed edge of the stop; over the light cone at f/11, the mean of cos^4 is 2e-5 less than on the
   // axis
   EXPECT_NEAR(white(0, 0), expected(0, 0), 2e-4);
@@ -139,10 +139,10 @@ TEST(RaysRenderer, PlansStepAndRaysByTracing) {
   setup.target.dot_diameter_px = 0;
   Scene scene = scene_with_dots(setup, lattice(64, 3, 15), 64);
   scene.setup.render.rays_per_dot.reset();
-  StepPlan const step = plan_step_by_rays(scene);
+  IntegrationStep const step = determine_step_by_tracing(scene);
   EXPECT_LT(step.change_px, 1e-4);
   scene = with_step(std::move(scene), step);
-  RaysPlan const rays = plan_rays_by_rays(scene);
+  RayBudget const rays = determine_ray_budget_by_tracing(scene);
   scene = with_rays(scene, rays);
   EXPECT_TRUE(rays.converged);
   EXPECT_LE(rays.truth_error_px, truth_tolerance_px);

@@ -150,7 +150,7 @@ TEST(SideFaces, DarkDotsAreWhiteLessBright) {
   Rendering const bright = render(scene);
   scene.setup.target.polarity = Polarity::dark;
   Rendering const dark = render(scene);
-  Image<double> const white = white_light(scene);
+  Image<double> const white = render_white_light(scene);
   for (std::size_t i = 0; i < white.size(); ++i) {
     EXPECT_NEAR(dark.light.flow.data()[i], white.data()[i] - bright.light.flow.data()[i], 1e-13);
   }
@@ -160,13 +160,13 @@ TEST(SideFaces, DarkDotsAreWhiteLessBright) {
 TEST(SideFaces, AreWhereAutoTakesMoreRays) {
   Scene scene = volume_in_view(1);
   scene.setup.render.rays_per_dot.reset();
-  RaysPlan const plan = choose_rays(scene);
+  RayBudget const plan = choose_ray_budget(scene);
   scene = with_rays(scene, plan);
   EXPECT_EQ(scene.rays_per_dot, plan.rays);
   EXPECT_EQ(scene.rays_at_side_faces, plan.rays_at_side_faces);
   EXPECT_LE(plan.rays, 256u);
   EXPECT_GE(plan.rays_at_side_faces, 4 * plan.rays);
-  EXPECT_TRUE(scene.by_need);
+  EXPECT_TRUE(scene.adaptive_criteria);
 }
 
 // With a given number of rays the plan measures the residual errors of these dots in truth and images: 32 rays of a
@@ -175,7 +175,7 @@ TEST(SideFaces, AreWhereAutoTakesMoreRays) {
 TEST(SideFaces, AreMeasuredWithAGivenNumber) {
   auto const measured = [](std::uint64_t rays) {
     Scene scene = volume_in_view(rays);
-    RaysPlan const plan = choose_rays(scene);
+    RayBudget const plan = choose_ray_budget(scene);
     scene = with_rays(scene, plan);
     EXPECT_EQ(plan.rays, rays);
     EXPECT_EQ(plan.rays_at_side_faces, 0u) << "the user has specified the number";
@@ -196,7 +196,7 @@ TEST(SideFaces, AreMeasuredWithAGivenNumber) {
 // rays, which scatter equally. A factor of two is allowed for the choice of illuminated pixels.
 TEST(SideFaces, ImagesAreOffByWhatThePlanSays) {
   Scene scene = volume_in_view(32);
-  RaysPlan const plan = choose_rays(scene);
+  RayBudget const plan = choose_ray_budget(scene);
   scene = with_rays(scene, plan);
   ASSERT_TRUE(plan.side_faces);
   DotPattern const all = scene.dots;
@@ -237,7 +237,7 @@ TEST(ParticlesNearView, AreAllThatFramesShow) {
   setup.medium.thickness = 20e-3;
   Scene scene = build_scene(setup);
   scene = with_chosen_step(std::move(scene));
-  scene = with_rays(scene, choose_rays(scene));
+  scene = with_rays(scene, choose_ray_budget(scene));
   Scene all = scene;
   Rendering const near = cpu().render_particles(scene, scene.particles, ParticleLight::scattered, RenderImages::yes);
   Rendering const every =
@@ -276,7 +276,7 @@ TEST(RenderSeconds, CountTheoryOfEveryDot) {
     auto const of_theory = [&](int per_side, double step_share) {
       Scene scene = scene_with_dots(setup, lattice(96, per_side, 80.0 / per_side), 16);
       scene.step *= step_share;
-      RaysPlan plan;
+      RayBudget plan;
       plan.rays = 16;
       double const without = render_seconds(scene, plan, RenderTheory::no);
       EXPECT_GT(without, 0);

@@ -39,7 +39,7 @@ TEST(Render, ChoosesStepAndMethodOfAScene) {
 
   // the same, step by step
   Scene const stepped = with_step(scene, choose_step(scene));
-  Scene const planned = with_rays(stepped, choose_rays(stepped));
+  Scene const planned = with_rays(stepped, choose_ray_budget(stepped));
   Rendering const again = render_planned(planned, device, RenderImages::no, RenderTheory::no);
   EXPECT_EQ(again.truth.displacement_px, rendering.truth.displacement_px);
   EXPECT_TRUE(again.light.flow.empty());

@@ -21,7 +21,7 @@ double from_paraxial_image(gladstone::Setup const& setup) {
   double const object = setup.focus_distance() + camera.paraxial.front;
   double const image = -(m.a * object + m.b) / (m.c * object + m.d);
   Pose<double> const behind = camera.paraxial.behind.within(camera.pose);
-  return behind.point_inwards(camera.sensor.pose.origin).z - image;
+  return behind.point_to_local(camera.sensor.pose.origin).z - image;
 }
 
 // For a lens corrected for spherical aberration on its axis, the best focus tends to the paraxial focus as the aperture
@@ -41,7 +41,7 @@ TEST(BestFocus, TendsToTheParaxialFocusAsTheApertureShrinks) {
 
 /// Returns the mean square radius, on the sensor, of the ray bundle of a point on the axis [m^2].
 double mean_square_on_sensor(Camera const& camera, Vec3d point) {
-  auto const disc = camera.aim_disc(point);
+  auto const disc = camera.apparent_pupil(point);
   std::vector<Vec2d> places, slopes;
   for (int k = 0; k < 500; ++k) {
     Vec2d const at = sunflower(k, 500);
@@ -53,12 +53,12 @@ double mean_square_on_sensor(Camera const& camera, Vec3d point) {
     places.push_back(place);
     slopes.push_back({});
   }
-  return spot_of(places, slopes).mean_square;
+  return compute_bundle_spot(places, slopes).mean_square;
 }
 
 gladstone::Setup with_sensor_at(gladstone::Setup setup, double z_sensor) {
   setup.z_sensor = z_sensor;
-  place_lens_by_sensor(setup);
+  position_lens_from_sensor(setup);
   return setup;
 }
 

@@ -35,7 +35,7 @@ TEST(CalibrationPlanes, AThinLensIsAPinholeCamera) {
                                   posed + "[camera.sensor]\ndistortion = [0.3, -2.0, 0.004, -0.002]\n"}) {
     gladstone::Setup const setup = read_setup_text(calibration(more)).setup;
     Camera const camera = build_camera(setup);
-    auto const pinhole = pinhole_of(setup, camera);
+    auto const pinhole = equivalent_pinhole(setup, camera);
     ASSERT_TRUE(pinhole) << more;
     for (Vec3d const at : {Vec3d{}, Vec3d{0.01, -0.007, 0.002}, Vec3d{-0.012, 0.01, -0.005}}) {
       auto const seen = camera.project(at);
@@ -45,11 +45,11 @@ TEST(CalibrationPlanes, AThinLensIsAPinholeCamera) {
   }
 }
 
-TEST(CalibrationPlanes, WhatIsNoPinholeIsNotCalledOne) {
+TEST(CalibrationPlanes, NonPinholeCameraIsDetected) {
   for (std::string const& more : {std::string("[[window]]\nposition_mm = [0, 0, 300]\n"),
                                   std::string("[camera.sensor]\ntilt_deg = [4, 0]\ndistortion = [0.1, 0, 0, 0]\n")}) {
     gladstone::Setup const setup = read_setup_text(calibration(more)).setup;
-    EXPECT_FALSE(pinhole_of(setup, build_camera(setup))) << more;
+    EXPECT_FALSE(equivalent_pinhole(setup, build_camera(setup))) << more;
   }
 }
 

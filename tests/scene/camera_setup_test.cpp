@@ -48,7 +48,7 @@ TEST(CameraPose, LooksAtAPoint) {
   EXPECT_NEAR(length(turned.camera_pose().x - pose.x), 0, 1e-12);
 }
 
-TEST(CameraPose, ThatMakesNoSenseIsRefused) {
+TEST(CameraPose, InvalidPoseIsRejected) {
   EXPECT_THAT([] { setup_of("[camera.pose]\nposition_mm = [0, 0, 700]\n[geometry]\nz_a_mm = 750\n"); },
               refused("4:1", "conflicts with camera.pose"));
   EXPECT_THAT([] { setup_of("[camera.pose]\nlook_at_mm = [0, 0, 0]\n"); }, refused("1:", "position_mm"));

@@ -38,7 +38,7 @@ TEST(ThinCamera, ProjectsByTheMagnification) {
 TEST(ThinCamera, SourcesSeeItsStopAsItIs) {
   auto const setup = table1_setup(64);
   Camera const camera = build_camera(setup);
-  auto const disc = camera.aim_disc({0.01, -0.02, -setup.z_d});
+  auto const disc = camera.apparent_pupil({0.01, -0.02, -setup.z_d});
   ASSERT_TRUE(disc);
   double const radius = 0.105 / 11 / 2;
   EXPECT_NEAR(length(disc->centre - Vec3d{0, 0, 0.75}), 0, 1e-12);
@@ -61,7 +61,7 @@ TEST(PosedCamera, SeesAsTheTurnedWorldIsSeen) {
   Pose<double> const standing{{0, 0, 0.75}};
   for (Vec3d const point : {Vec3d{0.01, 0.02, -0.1}, {-0.05, 0.0, 0.05}, {0, -0.03, -0.25}}) {
     auto const seen = camera.project(point);
-    auto const expected = other.project(standing.point_outwards(posed.pose->point_inwards(point)));
+    auto const expected = other.project(standing.point_to_outer(posed.pose->point_to_local(point)));
     ASSERT_TRUE(seen && expected);
     EXPECT_NEAR(length(*seen - *expected), 0, 1e-8);
   }
@@ -100,7 +100,7 @@ TEST(PosedCamera, ScheimpflugIsSharpAllOverThePlane) {
   setup.camera.scheimpflug = false;
   Camera const square = build_camera(setup);
   auto const blur = [&](Camera const& of, Vec3d point) {
-    auto const disc = of.aim_disc(point);
+    auto const disc = of.apparent_pupil(point);
     double widest = 0;
     Vec2d const chief = *of.project(point);
     for (Vec3d const rim : {disc->a, disc->b, -1.0 * disc->a, -1.0 * disc->b}) {
@@ -242,7 +242,7 @@ TEST(PrescribedCamera, IsFocusedWhereTheAxialBundleIsNarrowest) {
   auto const setup = double_gauss_setup(64, 2.8);
   Camera camera = build_camera(setup);
   Vec3d const point{0, 0, -setup.z_d};
-  auto const disc = camera.aim_disc(point);
+  auto const disc = camera.apparent_pupil(point);
   ASSERT_TRUE(disc);
   auto const width = [&](double moved) {
     Camera other = camera;

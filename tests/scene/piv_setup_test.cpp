@@ -38,7 +38,7 @@ TEST(PivSetup, HasDefaults) {
   EXPECT_EQ(setup.piv->laser.wavelength, 532e-9);
 }
 
-TEST(PivSetup, SaysWhatIsOfOtherExperiments) {
+TEST(PivSetup, ReportsKeysOfOtherExperiments) {
   EXPECT_THAT(refused_piv(piv_text("", "", "", "[target]\n")), told("[particles]"));
   EXPECT_THAT(refused_piv(piv_text("", "", "", "[geometry]\nz_d_mm = 250\n")), told("laser.center_mm"));
   EXPECT_THAT(refused_piv("[particles]\nnumber = 3\n"), told("experiment = \"piv\""));
@@ -46,7 +46,7 @@ TEST(PivSetup, SaysWhatIsOfOtherExperiments) {
   EXPECT_THAT(refused_piv("[camera]\nexposure = \"absolute\"\n"), told("applies to PIV only"));
 }
 
-TEST(PivSetup, RefusesWhatGivesNoPicture) {
+TEST(PivSetup, RejectsSetupsWithoutImage) {
   EXPECT_THAT(refused_piv(piv_text("diameter_um = 0\n")), told("diameter_um = 0"));
   EXPECT_THAT(refused_piv(piv_text("diameter_um = -1.0\n")), told("greater than 0"));
   EXPECT_THAT(refused_piv(piv_text("diameter_um = { kind = \"normal\", mean_um = 1, std_um = 0.5 }\n")),
@@ -90,7 +90,7 @@ TEST(PivSetup, WarnsOfParticlesBeyondTheVelocityField) {
   EXPECT_THAT(warnings, testing::Contains(testing::HasSubstr("outside the velocity field")));
 }
 
-TEST(PivSetup, KnowsWhatTheSecondPulseSees) {
+TEST(PivSetup, ReadsMediumOfSecondPulse) {
   std::string const second =
       "[medium.second_field]\nkind = \"gaussian_plume\"\namplitude_kg_m3 = -0.4\nradius_mm = 4\n";
   gladstone::Setup const setup = read_setup_text(piv_text("", "", "", second)).setup;
@@ -114,7 +114,7 @@ TEST(PivSetup, KnowsWhatTheSecondPulseSees) {
 TEST(PivSetup, CountsTheMemoryOfParticles) {
   gladstone::Setup const setup =
       read_setup_text(piv_text("number = 3e9\nvolume_mm = [10, 10, 10]\n", "", "velocity_m_s = [0, 0, 0]\n")).setup;
-  MemoryNeed const need = particle_memory(setup);
+  MemoryRequirement const need = particle_memory(setup);
   EXPECT_STREQ(need.key, "particles.number");
   EXPECT_DOUBLE_EQ(need.bytes, 3e9 * bytes_per_particle);
   EXPECT_THAT([&] { build_scene(setup); }, testing::ThrowsMessage<DataError>(testing::HasSubstr("GB of memory (")));
@@ -153,12 +153,12 @@ TEST(PivSetup, SeedsByThePixelOfAPosedCamera) {
 // Particles are never rendered by the fast renderer of flat dots, even if the camera satisfies its conditions.
 TEST(PivScene, IsNotOfFocusedDots) {
   gladstone::Setup const setup = read_setup_text(piv_text("number = 20\nscattering = \"lambert\"\n")).setup;
-  EXPECT_TRUE(setup.on_bench());
+  EXPECT_TRUE(setup.has_closed_form_layout());
   EXPECT_THAT(reason_against_focused_dots(setup), testing::HasSubstr("particles"));
   EXPECT_FALSE(focused_dots(build_scene(setup)));
 }
 
-TEST(PivScene, RefusesALightThatMeetsNoParticle) {
+TEST(PivScene, RejectsSheetOutsideParticles) {
   std::string const path = testing::TempDir() + "/beside.csv";
   std::ofstream(path) << "x_mm,y_mm,z_mm,diameter_um\n0,0,20,1\n1,1,-15,1\n";
   std::string const text = piv_text("file = \"" + path + "\"\n", "profile = \"top_hat\"\n");
@@ -199,7 +199,7 @@ TEST(PivScene, WarnsOfParticlesThatAreNoPoints) {
 
 // A refractive index of 1 differs from that of air by 2.7e-4: the scattered light is less than that of a droplet by the
 // square of a thousandth.
-TEST(PivSetup, RefusesParticlesThatScatterNextToNothing) {
+TEST(PivSetup, RejectsParticlesWithNegligibleScattering) {
   EXPECT_THAT(refused_piv(piv_text("index = [1.0, 0.0]\n")), told("scatter hardly any light"));
   EXPECT_NO_THROW(read_setup_text(piv_text("index = [1.01, 0.0]\n")));
   EXPECT_NO_THROW(read_setup_text(piv_text("index = [1.0, 0.5]\n")));

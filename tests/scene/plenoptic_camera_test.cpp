@@ -24,7 +24,7 @@ gladstone::Setup plenoptic_setup() {
 
 /// Returns the positions on the sensor, relative to the axis pixel, of rays of a point through the whole stop [m].
 std::vector<Vec2d> landings(Camera const& camera, Vec3d point) {
-  auto const disc = camera.aim_disc(point);
+  auto const disc = camera.apparent_pupil(point);
   std::vector<Vec2d> places;
   for (int k = 0; k < 2000; ++k) {
     Vec2d const at = sunflower(k, 2000);
@@ -111,7 +111,7 @@ TEST(PlenopticCamera, IsToldWhereItsPicturesOverlap) {
 TEST(PlenopticCamera, HasTheLensletsSpot) {
   gladstone::Setup const setup = plenoptic_setup();
   EXPECT_NEAR(setup.spot_scale_px(), lenslet_f / pitch * 532e-9 / 10e-6, 1e-12);
-  EXPECT_FALSE(setup.on_bench());
+  EXPECT_FALSE(setup.has_closed_form_layout());
   EXPECT_THAT(reason_against_focused_dots(setup), testing::HasSubstr("lenslets"));
 }
 

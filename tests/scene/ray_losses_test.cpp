@@ -13,7 +13,7 @@ namespace {
 /// Returns the fraction of all rays sent that end at a place for a cause.
 double share_of(RayLosses const& losses, std::string const& place, RayStatus cause, Frame frame) {
   double share = 0;
-  for (RaysLostAt const& lost : losses.lost) {
+  for (ElementRayLoss const& lost : losses.lost) {
     if (lost.place == place && lost.cause == cause) share += lost.share[static_cast<std::size_t>(frame)];
   }
   return share;
@@ -46,7 +46,7 @@ TEST(RayLosses, AreCountedBySurfaceAndCause) {
 // A uniform gradient deflects all rays by e = K L |grad rho| and displaces them by s = e Z_A on the lens. Of the rays
 // that pass the stop of radius r without the medium, the fraction 1 - (2 / pi) (acos q - q sqrt(1 - q^2)), q = s / (2
 // r), is then blocked.
-TEST(RayLosses, TellThoseThatTheFlowBendsPastTheStop) {
+TEST(RayLosses, ReportRaysDeflectedPastStop) {
   auto setup = table1_setup(64);
   setup.medium.field = uniform_gradient(150, 0);
   Scene const scene = scene_with_dots(setup, lattice(64, 3, 18), 32);
@@ -72,7 +72,7 @@ TEST(RayLosses, NameSurfacesBehindAWindowAsTheLensCountsThem) {
   Scene const scene = scene_with_dots(setup, {{2, 2}, {61, 61}}, 32);
   RayLosses const losses = sample_ray_losses(scene);
   EXPECT_FALSE(losses.lost.empty());
-  for (RaysLostAt const& lost : losses.lost) {
+  for (ElementRayLoss const& lost : losses.lost) {
     EXPECT_EQ(lost.place.find("surface"), 0u) << lost.place << ": light is lost at the edges of the lens only";
   }
 }

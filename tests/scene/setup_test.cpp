@@ -108,7 +108,7 @@ TEST(Setup, AutomaticThicknessStopsShortOfDotsAndLens) {
 
 // The step is limited to a quarter of a wavelength, a quarter of a shock's thickness, half a plume's radius, and a
 // quarter of a cell of a trilinear grid. At most 1e6 steps across 10 mm are accepted, however they are requested.
-TEST(Setup, LengthsThatNoRayGetsToTheEndOfAreRefusedAtTheirKey) {
+TEST(Setup, RejectsExcessiveLengthsAtTheirKey) {
   std::string const wave = "[medium.field]\nkind = \"sinusoid\"\namplitude_kg_m3 = 0.1\nwavelength_mm = ";
   EXPECT_THAT([&] { read_setup_text(wave + "1e-9\n"); },
               refused("4:1", "would need 4e+10 steps across the medium (1e+06 at most)"));

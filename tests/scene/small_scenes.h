@@ -45,8 +45,8 @@ inline FieldSetup dns_plane(std::string const& instant) {
 }
 
 /// Plans the step of a scene and sets it.
-inline StepPlan plan_step(Scene& scene) {
-  StepPlan const plan = plan_step_by_rays(scene);
+inline IntegrationStep plan_step(Scene& scene) {
+  IntegrationStep const plan = determine_step_by_tracing(scene);
   scene = with_step(std::move(scene), plan);
   return plan;
 }

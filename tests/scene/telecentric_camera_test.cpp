@@ -50,13 +50,13 @@ TEST(TelecentricCamera, AimsAtItsStopThoughItsPupilIsInfinitelyFar) {
   gladstone::Setup const setup = telecentric_setup();
   Camera const camera = build_camera(setup);
   for (Vec3d const source : {Vec3d{0, 0, -0.2}, {8e-3, -8e-3, -0.2}}) {
-    auto const disc = camera.aim_disc(source);
+    auto const disc = camera.apparent_pupil(source);
     ASSERT_TRUE(disc);
     Vec3d const chief = disc->centre - source;
     EXPECT_LT(std::hypot(chief.x, chief.y) / chief.z, 1e-3);
     for (Vec3d const rim : {disc->a, disc->b, -1.0 * disc->a, -1.0 * disc->b}) {
       for (double const share : {0.97, 1.03}) {
-        Vec3d const aim = disc->centre + share / Camera::sight_margin() * rim;
+        Vec3d const aim = disc->centre + share / Camera::pupil_safety_factor() * rim;
         RayHit<double> const hit = trace_ray(camera.view(), NoMedium<double>{}, TracingOptions<double>{},
                                              Ray<double>{source, normalized(aim - source)}, 1.0);
         EXPECT_EQ(hit.status == RayStatus::vignetted, share > 1);
@@ -72,9 +72,9 @@ TEST(TelecentricCamera, FNumberSetsTheStopByTheConeOfLightInTheImage) {
     gladstone::Setup const setup = telecentric_setup("f_number = " + std::to_string(N) + "\n");
     Camera const camera = build_camera(setup);
     Vec3d const source{0, 0, -0.2};
-    auto const disc = camera.aim_disc(source);
+    auto const disc = camera.apparent_pupil(source);
     ASSERT_TRUE(disc);
-    Ray<double> rim{source, normalized(disc->centre + 1 / Camera::sight_margin() * disc->a - source)};
+    Ray<double> rim{source, normalized(disc->centre + 1 / Camera::pupil_safety_factor() * disc->a - source)};
     for (auto const& element : camera.elements) {
       RayAccount<double> account;
       pass_element(element, rim, account);

@@ -60,7 +60,7 @@ Vec2<T> landing(Camera const& camera, int changed, Values<T> const& v) {
   auto const aim_plane = in_scalar<T>(camera.aim_plane);
   CameraView<T> const view{elements.data(), camera.before_medium, static_cast<int>(elements.size()), sensor, aim_plane};
   Vec3<T> const source{v[source_x], v[source_y], v[source_z]};
-  Vec3<T> const aim = aim_plane.point_outwards({v[aim_x], v[aim_y], T(0)});
+  Vec3<T> const aim = aim_plane.point_to_outer({v[aim_x], v[aim_y], T(0)});
   Ray<T> const ray{source, normalized(aim - source)};
   RayHit<T> const hit = trace_ray(view, NoMedium<T>{}, TracingOptions<T>{}, ray, T(1));
   EXPECT_TRUE(reaches_sensor_plane(hit.status));

@@ -102,7 +102,7 @@ TEST(WideAngleCamera, SourcesSeeTheWholeStop) {
   Camera const camera = build_camera(wide_setup(65, 8e-6));
   for (double const degrees : {0.0, 45.0, 60.0, 70.0, 80.0}) {
     Vec3d const point = point_at(degrees, 1.1);
-    auto const disc = camera.aim_disc(point);
+    auto const disc = camera.apparent_pupil(point);
     ASSERT_TRUE(disc) << degrees;
     int passed = 0, outside = 0, within = 0;
     constexpr int half = 60;
@@ -134,7 +134,7 @@ TEST(WideAngleRendering, ShowsDotsAtTheRimOfTheField) {
     scene.dots.centre.push_back({point.x, point.y});
   }
   scene.dots.half_size = 1e-6;
-  scene = with_step(scene, plan_step_by_rays(scene));
+  scene = with_step(scene, determine_step_by_tracing(scene));
   scene.rays_per_dot = 1024;
   Rendering const result = RaysRenderer().render(scene, scene.dots, RenderImages::yes, RenderTheory::no);
   for (std::size_t dot = 0; dot < 3; ++dot) {
@@ -154,7 +154,7 @@ Rendering render_dots(Scene scene, std::vector<double> const& degrees, double ha
     scene.dots.centre.push_back({point.x, point.y});
   }
   scene.dots.half_size = half_size;
-  scene = with_step(scene, plan_step_by_rays(scene));
+  scene = with_step(scene, determine_step_by_tracing(scene));
   scene.rays_per_dot = 4096;
   return RaysRenderer().render(scene, scene.dots, RenderImages::yes, RenderTheory::yes);
 }

@@ -91,7 +91,7 @@ TEST(LowLight, TheMeanLevelIsThatOfPoissonReadNoiseRoundingAndBlack) {
 // With a black level of four standard deviations of the read noise, the mean is gain times electrons to within a
 // thousandth of a level. Without a black level, dim pixels are too bright by 0.1 to 0.5 levels at a few electrons, due
 // to the clipping at zero alone.
-TEST(LowLight, OnlyBlackMakesDimPixelsTooBright) {
+TEST(LowLight, DimPixelsAreBiasedByBlackClippingOnly) {
   CameraSetup camera;
   camera.bit_depth = 12;
   camera.noise.enabled = true;
@@ -114,7 +114,7 @@ TEST(LowLight, OnlyBlackMakesDimPixelsTooBright) {
   }
 }
 
-TEST(LowLight, ClippingAtBlackIsToldForAnyNoise) {
+TEST(LowLight, ReportsBlackClippingAtAnyNoise) {
   CameraSetup camera;
   EXPECT_EQ(clipped_at_black(camera), 0.0);  // without noise, no level is clipped at zero
   camera.noise.enabled = true;

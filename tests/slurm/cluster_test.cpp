@@ -14,7 +14,7 @@ int shell(std::string const& command) {
 
 // What everything else here stands on: sbatch --wait gives the largest exit code of an array's tasks, 1 for a task that
 // a signal ended, and 0 once the same array runs again and nothing fails.
-TEST(Cluster, GivesTheFailingTasksExitCodeBack) {
+TEST(Cluster, ReturnsExitCodeOfFailedTask) {
   std::string const submit = "sbatch --quiet --wait --output=/dev/null --array=0-2 --wrap ";
   EXPECT_EQ(shell(submit + "'test $SLURM_ARRAY_TASK_ID != 1 || exit 7'"), 7);
   EXPECT_EQ(shell(submit + "'test $SLURM_ARRAY_TASK_ID != 1 || kill -9 $$'"), 1);

@@ -2,8 +2,8 @@
 #include <functional>
 
 #include "render/files/hdf5_file.h"
-#include "studies/sweep/claims.h"
-#include "tests/end_to_end/support/workplace.h"
+#include "studies/sweep/case_locks.h"
+#include "tests/end_to_end/support/program_fixture.h"
 
 namespace gladstone::end_to_end {
 namespace {
@@ -29,10 +29,10 @@ bool comes_true(std::function<bool()> const& condition, std::chrono::seconds lim
 
 /// A study of six cases, planned twice: "local" is run here, "cluster" by a Slurm cluster's array. Cases that the test
 /// claims keep the tasks that have them waiting, so that tasks can be met at work.
-class StudyOnACluster : public Workplace {
+class StudyOnACluster : public ProgramFixture {
  protected:
   void SetUp() override {
-    Workplace::SetUp();
+    ProgramFixture::SetUp();
     write("study.toml",
           "base = \"setup.toml\"\n[axes]\n\"lens.f_number\" = [8, 11, 16]\n\"geometry.z_d_mm\" = [200, 250]\n");
     for (std::string const run : {"local", "cluster"})
@@ -43,7 +43,7 @@ class StudyOnACluster : public Workplace {
   void TearDown() override {
     output_of("scancel --user=$(id -u)");
     EXPECT_TRUE(comes_true([] { return output_of("squeue --noheader").empty(); }));
-    Workplace::TearDown();
+    ProgramFixture::TearDown();
   }
 
   void collect(std::string const& run) const { succeed({"sweep", "collect", run, "--no-figures", "--quiet"}); }
@@ -100,7 +100,7 @@ TEST_F(StudyOnACluster, AnArrayGivesWhatALocalRunGives) {
 // is incomplete and says so; submitted again it computes what is missing, and nothing else.
 TEST_F(StudyOnACluster, KilledTasksAreMadeUpForByTheNextSubmission) {
   {
-    Claims claims(in("cluster").string(), Claims::Use::take);
+    CaseLocks claims(in("cluster").string(), CaseLocks::Use::take);
     ASSERT_TRUE(claims.take(1) && claims.take(3));
     Program program(submit(), folder_);
     std::string const id = job();
@@ -124,7 +124,7 @@ TEST_F(StudyOnACluster, KilledTasksAreMadeUpForByTheNextSubmission) {
 
 // Preempted, or its node rebooted: Slurm starts the task again, which goes on where it was.
 TEST_F(StudyOnACluster, ARequeuedTaskGoesOn) {
-  Claims claims(in("cluster").string(), Claims::Use::take);
+  CaseLocks claims(in("cluster").string(), CaseLocks::Use::take);
   ASSERT_TRUE(claims.take(5));
   Program program(submit(), folder_);
   std::string const id = job();
@@ -140,7 +140,7 @@ TEST_F(StudyOnACluster, ARequeuedTaskGoesOn) {
 
 // Ctrl-C ends the waiting, not the job. The same command then waits for that job and submits nothing.
 TEST_F(StudyOnACluster, OutlivesTheOneWhoWaits) {
-  Claims claims(in("cluster").string(), Claims::Use::take);
+  CaseLocks claims(in("cluster").string(), CaseLocks::Use::take);
   ASSERT_TRUE(claims.take(0));
   std::string id;
   {

@@ -42,15 +42,15 @@ TEST(Measurement, NamesTheDeviceThatCorrelated) {
 // named.
 TEST(LeftToCpu, NamesWhatAGpuDoesNotHave) {
   CorrelationSettings settings;
-  EXPECT_EQ(left_to_cpu(settings), "");
+  EXPECT_EQ(settings_requiring_cpu(settings), "");
   settings.uncertainty = "correlation_statistics";
-  EXPECT_EQ(left_to_cpu(settings), "");
+  EXPECT_EQ(settings_requiring_cpu(settings), "");
   for (char const* method : {"image_matching", "peak_ratio", "moment_of_correlation", "combination"}) {
     settings.uncertainty = method;
-    EXPECT_EQ(left_to_cpu(settings), std::string("uncertainty = \"") + method + "\"");
+    EXPECT_EQ(settings_requiring_cpu(settings), std::string("uncertainty = \"") + method + "\"");
   }
   settings.method = "zncc";
-  EXPECT_EQ(left_to_cpu(settings), "method = \"zncc\"");
+  EXPECT_EQ(settings_requiring_cpu(settings), "method = \"zncc\"");
 }
 
 // Skipped without a GPU.

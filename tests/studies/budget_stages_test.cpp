@@ -111,7 +111,7 @@ TEST(ShownBudget, CountsAWindowAfterItsPasses) {
     EXPECT_NEAR(cause.displacement_px[0].x, term_of(comparison.shown_budget(), cause.name).bias_u_px, 1e-12)
         << cause.name;
   }
-  nlohmann::ordered_json const budget = errors_of(comparison)["budget"];
+  nlohmann::ordered_json const budget = compute_error_measures(comparison)["budget"];
   EXPECT_NEAR(budget["terms"]["window"]["bias_u_px"].get<double>(), -0.46, 1e-12) << "as ever";
   EXPECT_NEAR(budget["after_passes"]["terms"]["window"]["bias_u_px"].get<double>(), -0.02, 1e-12);
   EXPECT_NEAR(budget["after_passes"]["terms"]["estimator"]["rms_px"].get<double>(), 0, 1e-12);

@@ -46,7 +46,7 @@ PlateDots dots_of_plate(Plate const& plate) {
 
 /// Fits a camera to the dots.
 /// @param outer  how the middle dots of the first and the last plane were identified
-Calibration fitted(PlateDots const& dots, MiddleBy outer = MiddleBy::expected_view) {
+Calibration fitted(PlateDots const& dots, CentreDotMethod outer = CentreDotMethod::expected_view) {
   Calibration calibration;
   calibration.columns = 320;
   calibration.rows = 240;
@@ -55,7 +55,7 @@ Calibration fitted(PlateDots const& dots, MiddleBy outer = MiddleBy::expected_vi
     added.file = "plane" + std::to_string(plane) + ".tif";
     added.z = dots.z[plane];
     added.found = added.used = dots.pixel.size() / dots.z.size();
-    added.middle_by = plane == 1 ? MiddleBy::whole_grid : outer;
+    added.middle_by = plane == 1 ? CentreDotMethod::whole_grid : outer;
   }
   ExpectedCamera expected;
   expected.principal_point_px = expected_middle;
@@ -90,7 +90,8 @@ TEST(CalibrationFit, RefusesACameraOfUnequalFocalLengthsFromGuessedMiddleDots) {
   } catch (DataError const& error) {
     EXPECT_THAT(error.what(), testing::HasSubstr("the middle dots of plane0.tif, plane2.tif are guesses"));
   }
-  EXPECT_THAT(fitted(dots, MiddleBy::whole_grid).warnings, testing::Contains(testing::HasSubstr("differ, although")))
+  EXPECT_THAT(fitted(dots, CentreDotMethod::whole_grid).warnings,
+              testing::Contains(testing::HasSubstr("differ, although")))
       << "if every image shows the whole grid, the plate's motion must be wrong";
 }
 
@@ -99,7 +100,7 @@ TEST(CalibrationFit, WarnsOfAFocalLengthThatIsNotTheLenss) {
   auto const warnings = [](double share) {
     PlateDots dots = dots_of_plate({});
     dots.spacing *= share;
-    return fitted(dots, MiddleBy::whole_grid).warnings;
+    return fitted(dots, CentreDotMethod::whole_grid).warnings;
   };
   auto const warns = testing::Contains(testing::HasSubstr("the focal length of"));
   EXPECT_THAT(warnings(0.96), warns);
@@ -128,16 +129,16 @@ PlateDots dots_of_turned_plane(double angle) {
 TEST(CalibrationFit, RefusesResidualsThatTheScatterWithinPlanesDoesNotExplain) {
   double const degree = pi / 180;
   try {
-    fitted(dots_of_turned_plane(2 * degree), MiddleBy::whole_grid);
+    fitted(dots_of_turned_plane(2 * degree), CentreDotMethod::whole_grid);
     FAIL() << "must be refused";
   } catch (DataError const& error) {
     EXPECT_THAT(error.what(), testing::AllOf(testing::StartsWith("plane0.tif: the residual of the camera is 1.1"),
                                              testing::HasSubstr("largest at Z = -20 mm")));
   }
-  EXPECT_THAT(fitted(dots_of_turned_plane(0.2 * degree), MiddleBy::whole_grid).warnings,
+  EXPECT_THAT(fitted(dots_of_turned_plane(0.2 * degree), CentreDotMethod::whole_grid).warnings,
               testing::ElementsAre(testing::AllOf(testing::HasSubstr("the residual of the camera is 0.11"),
                                                   testing::HasSubstr("largest at Z = -20 mm"))));
-  EXPECT_THAT(fitted(dots_of_turned_plane(0.02 * degree), MiddleBy::whole_grid).warnings, testing::IsEmpty());
+  EXPECT_THAT(fitted(dots_of_turned_plane(0.02 * degree), CentreDotMethod::whole_grid).warnings, testing::IsEmpty());
 }
 
 }  // namespace

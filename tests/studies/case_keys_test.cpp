@@ -87,7 +87,7 @@ TEST_F(CaseKeysOf, LeaveOutTheSeedsOfRepeats) {
 }
 
 // Whatever the difference between two cases, the second one has the same bits as if it were computed alone.
-TEST_F(CaseKeysOf, GiveNoCaseWhatBelongsToAnother) {
+TEST_F(CaseKeysOf, SharedPartsDoNotChangeResults) {
   auto const same = [](CaseResult const& a, CaseResult const& b) {
     bool equal = a.status == b.status && a.error == b.error && a.measures.size() == b.measures.size();
     for (std::size_t i = 0; equal && i < a.measures.size(); ++i) {

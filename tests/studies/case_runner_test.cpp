@@ -7,9 +7,9 @@
 #include <optional>
 #include <thread>
 
-#include "studies/sweep/claims.h"
+#include "studies/sweep/case_locks.h"
 #include "studies/sweep/collect.h"
-#include "studies/sweep/recent.h"
+#include "studies/sweep/lru_cache.h"
 #include "studies/sweep/run.h"
 #include "tests/studies/support/same_results.h"
 #include "tests/studies/support/study_folder.h"
@@ -52,7 +52,7 @@ TEST_F(CaseRunners, SharedPartsGiveTheSameBitsAsNoneInAnyOrder) {
 }
 
 // The stored numbers of a case in memory are those from which its measures were computed.
-TEST_F(CaseRunners, TellOfACaseBeforeItIsLetGo) {
+TEST_F(CaseRunners, ObserverSeesCaseBeforeRelease) {
   auto const cases = plan("base = \"base.toml\"\n[axes]\n\"camera.bit_depth\" = [12]\n");
   std::size_t told = 0;
   double rms = 0;
@@ -172,7 +172,7 @@ TEST_F(CaseRunners, ACaseThatCannotBeIsAResultAndAChangedInputIsNot) {
 
 // An evicted entry no longer counts: 50 + 10 of 100 bytes are in use, so that another 40 fit.
 TEST(RecentValues, AreCountedWhileTheyAreKept) {
-  Recent<int> recent(2);
+  LruCache<int> recent(2);
   recent.keep("a", 1, 50);
   recent.keep("b", 2, 30);
   ASSERT_NE(recent.find("a"), nullptr);
@@ -241,7 +241,7 @@ TEST_F(CaseRunners, BookkeepingTakesFarLessThanFiveMillisecondsACase) {
   StudyFile const file = study("base = \"base.toml\"\n[axes]\n\"lens.f_number\" = { linear = [8, 16, 200] }\n");
   std::clock_t const start = std::clock();  // processor time, which other programs do not affect
   write_plan(in("run"), plan_study(file, "cpu"));
-  Claims claims(in("run"), Claims::Use::take);
+  CaseLocks claims(in("run"), CaseLocks::Use::take);
   CaseResult result;
   for (int i = 0; i < 98; ++i)
     result.measures.emplace_back("budget.terms.refraction.rms_px" + std::to_string(i), 1e-3 / 7);
@@ -259,7 +259,7 @@ TEST_F(CaseRunners, BookkeepingTakesFarLessThanFiveMillisecondsACase) {
     write_result(in("run"), result);
     claims.release(one.index);
   }
-  EXPECT_TRUE(state_of(in("run"), manifest, selected_cases(manifest.size(), {})).complete());
+  EXPECT_TRUE(determine_run_state(in("run"), manifest, selected_cases(manifest.size(), {})).complete());
   EXPECT_EQ(collect_study(in("run")).rows.size(), 200u);
   double const ms = 1e3 * static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC / 200;
   RecordProperty("milliseconds_a_case", std::to_string(ms));

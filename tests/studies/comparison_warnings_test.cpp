@@ -23,7 +23,7 @@ std::vector<std::string> warnings_of(double displacement_px, double error_px, Se
   return comparison_warnings(comparison, setup);
 }
 
-TEST(ComparisonWarnings, TellOfASignalThatCannotBeMeasured) {
+TEST(ComparisonWarnings, WarnOfUnmeasurableSignal) {
   EXPECT_THAT(warnings_of(0.5, 0.01), IsEmpty());
   EXPECT_THAT(warnings_of(0.004, 0.001),
               ElementsAre(HasSubstr("the true displacements are 0.004 px rms per component, below 0.01 px")));

@@ -47,7 +47,7 @@ Scene scene_of(ThinLensCase const& bench) {
     for (int i = 0; i <= side; ++i)
       scene.dots.centre.push_back({half * (2.0 * i / side - 1), half * (2.0 * j / side - 1)});
   }
-  scene = with_step(scene, plan_step_by_rays(scene));
+  scene = with_step(scene, determine_step_by_tracing(scene));
   scene.rays_per_dot = 1024;
   return scene;
 }

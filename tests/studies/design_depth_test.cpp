@@ -12,7 +12,7 @@
 #include "render/scene/field_map.h"
 #include "render/scene/scene.h"
 #include "studies/design/sheet.h"
-#include "studies/report/bench_view.h"
+#include "studies/report/layout_view.h"
 
 namespace gladstone {
 namespace {
@@ -47,8 +47,8 @@ class DepthOfTheMedium : public testing::Test {
     return load_case_setup(SetupDocument::from_text(text, "setup.toml", folder_.string()));
   }
   static DesignSheet sheet_of(CaseSetup const& loaded) {
-    BenchGiven const given = bench_given(loaded);
-    return bos_sheet(loaded.setup, bench_of(loaded.setup, given));
+    FixedDesignParameters const given = collect_fixed_parameters(loaded);
+    return bos_sheet(loaded.setup, make_design_point(loaded.setup, given));
   }
 
   std::filesystem::path folder_;
@@ -121,9 +121,9 @@ TEST_F(DepthOfTheMedium, SensitivityIsThatOfTheVolume) {
   EXPECT_NEAR(sheet["sensitivity_px_per_kg_m4"], 3 * 0.006626657, 2e-9);
   EXPECT_NEAR(sheet["displacement_px"], slope * 3 * 0.006626657, 1e-3);
   // the design map of a report uses the same depth, although it reads no field
-  std::optional<LayoutView> const view = bench_view(load("",
-                                                         "kind = \"file\"\nfile = \"volume.h5\"\nspacing_mm = [2.0, "
-                                                         "2.0, 5.0]"));
+  std::optional<LayoutView> const view = layout_view(load("",
+                                                          "kind = \"file\"\nfile = \"volume.h5\"\nspacing_mm = [2.0, "
+                                                          "2.0, 5.0]"));
   ASSERT_TRUE(view);
   EXPECT_NEAR(view->bench.sensitivity(), 3 * 0.006626657, 2e-9);
 }

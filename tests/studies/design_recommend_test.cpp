@@ -8,7 +8,7 @@
 #include "studies/case/shared_folder.h"
 #include "studies/design/branches.h"
 #include "studies/design/recommend.h"
-#include "tests/studies/support/table1_bench.h"
+#include "tests/studies/support/table1_design.h"
 
 namespace gladstone {
 namespace {
@@ -19,7 +19,7 @@ using testing::UnorderedElementsAre;
 FreeChoice interval(Choice choice, double low, double high) { return {choice, {}, low, high}; }
 
 /// The lens of Table 1 with both distances free.
-DesignBranch free_distances(BenchGiven const& given) {
+DesignBranch free_distances(FixedDesignParameters const& given) {
   DesignBranch branch;
   branch.given = &given;
   branch.value = {0.105, 11, 0, 0, 0};
@@ -32,13 +32,13 @@ DesignBranch free_distances(BenchGiven const& given) {
 // decreasing Z_A at the same Z_B: the best set-up has Z_B = Z, the longest allowed, and Z_A = W f Z / (w (Z - f)). The
 // dot images have 3 px, so that the random error changes only with the PSF, through M.
 TEST(Design, FindsTheOptimumOnPaper) {
-  BenchGiven const given = table1_given();
+  FixedDesignParameters const given = table1_given();
   constexpr double f = 0.105, z = 2.4, view = 0.08, sensor = 5.12e-3;
   std::vector<Limit> const required{{Bound::view_width, view}, {Bound::z_total, z}};
   Recommendation const answer = recommend(Objective::gradient_min, required, {free_distances(given)});
   ASSERT_TRUE(answer.feasible());
   BranchOutcome const& best = answer.outcomes.front();
-  Bench<double> const bench = bench_at(best.branch, best.solution.logarithms);
+  DesignPoint<double> const bench = design_point_at(best.branch, best.solution.logarithms);
   double const z_a = view * f * z / (sensor * (z - f));
   EXPECT_NEAR(bench.z_a, z_a, 1e-4 * z_a);
   EXPECT_NEAR(bench.z_d, z - z_a, 1e-4 * z);
@@ -53,8 +53,8 @@ TEST(Design, FindsTheOptimumOnPaper) {
 }
 
 // An interval with a single value is one binding constraint, not two.
-TEST(Design, NamesAValueThatBindsOnce) {
-  BenchGiven const given = table1_given();
+TEST(Design, ReportsBindingValueOnce) {
+  FixedDesignParameters const given = table1_given();
   DesignBranch branch = free_distances(given);
   branch.continuous = {interval(Choice::z_a, 0.75, 0.75), interval(Choice::z_d, 0.05, 0.25)};
   Recommendation const answer = recommend(Objective::gradient_min, {}, {branch});
@@ -65,7 +65,7 @@ TEST(Design, NamesAValueThatBindsOnce) {
 // The random error as a function of the dot size: its derivative vanishes at the minimum, found by a golden-section
 // search.
 TEST(Design, FindsTheBestDotSize) {
-  BenchGiven given = table1_given();
+  FixedDesignParameters given = table1_given();
   given.camera.noise.enabled = true;
   DesignBranch branch;
   branch.given = &given;
@@ -75,7 +75,7 @@ TEST(Design, FindsTheBestDotSize) {
   ASSERT_TRUE(answer.feasible());
   double best = HUGE_VAL;
   for (double d = 0.02e-3; d <= 0.3e-3; d *= 1.0001) {
-    Bench<double> const bench{&given, 0.105, 11, 0.75, 0.25, d};
+    DesignPoint<double> const bench{&given, 0.105, 11, 0.75, 0.25, d};
     bool const within = bench.dot_image_px() <= random_error_range.most_image && bench.coverage() <= most_coverage;
     if (within) best = std::min(best, bench.random_error());
   }
@@ -85,7 +85,7 @@ TEST(Design, FindsTheBestDotSize) {
 // A view of 300 mm at f = 105 mm and w = 5.12 mm requires a Z_A of 6 m, which exceeds the length of 2.4 m: the two
 // requirements conflict.
 TEST(Design, NamesTheFewestRequirementsThatConflict) {
-  BenchGiven const given = table1_given();
+  FixedDesignParameters const given = table1_given();
   std::vector<Limit> const required{
       {Bound::uncertainty_max, 1.0}, {Bound::view_width, 0.3}, {Bound::z_total, 2.4}, {Bound::displacement_max, 100}};
   Recommendation const answer = recommend(Objective::resolution, required, {free_distances(given)});
@@ -98,8 +98,8 @@ TEST(Design, NamesTheFewestRequirementsThatConflict) {
   EXPECT_NEAR(answer.relaxations.front().value, widest, 2e-3 * widest);
 }
 
-TEST(Design, NamesBothWhereTwoConflict) {
-  BenchGiven const given = table1_given();
+TEST(Design, ReportsConflictingRequirements) {
+  FixedDesignParameters const given = table1_given();
   std::vector<Limit> const required{{Bound::uncertainty_max, 1.0}, {Bound::view_width, 0.2}, {Bound::z_total, 2.4}};
   Recommendation const answer = recommend(Objective::resolution, required, {free_distances(given)});
   EXPECT_FALSE(answer.feasible());
@@ -108,8 +108,8 @@ TEST(Design, NamesBothWhereTwoConflict) {
 }
 
 // Pixels that are saturated at every distance exclude every set-up, whatever is required.
-TEST(Design, NamesWhatKeepsEveryBenchOut) {
-  BenchGiven given = table1_given();
+TEST(Design, ReportsLimitThatExcludesAllDesigns) {
+  FixedDesignParameters given = table1_given();
   given.camera.exposure_e = 1000 * given.camera.noise.full_well_e;
   Recommendation const answer =
       recommend(Objective::resolution, {{Bound::uncertainty_max, 1.0}}, {free_distances(given)});
@@ -122,8 +122,8 @@ TEST(Design, NamesWhatKeepsEveryBenchOut) {
 
 // Two requirements that are each infeasible: relaxing one does not help the other. Both are relaxed by the same factor,
 // the larger one that either requires.
-TEST(Design, RelaxesTogetherWhereNoSingleOneWouldDo) {
-  BenchGiven const given = table1_given();
+TEST(Design, RelaxesRequirementsJointly) {
+  FixedDesignParameters const given = table1_given();
   std::vector<Limit> const required{{Bound::uncertainty_max, 1e-4}, {Bound::view_width, 0.3}, {Bound::z_total, 100}};
   Recommendation const answer = recommend(Objective::resolution, required, {free_distances(given)});
   EXPECT_FALSE(answer.feasible());
@@ -148,14 +148,14 @@ struct DrawnQuestion {
   std::vector<DesignBranch> branches;
 };
 
-DrawnQuestion drawn_question(BenchGiven const& given, unsigned seed) {
+DrawnQuestion drawn_question(FixedDesignParameters const& given, unsigned seed) {
   std::mt19937 generator(seed);
   auto const uniform = [&generator](double low, double high) {
     return low + (high - low) * (static_cast<double>(generator()) / 4294967296.0);
   };
   DrawnQuestion question;
   question.objective = static_cast<Objective>(seed % 4);
-  Bench<double> middle{&given, 0.105, 11, uniform(0.5, 1.5), uniform(0.2, 1.0), 0};
+  DesignPoint<double> middle{&given, 0.105, 11, uniform(0.5, 1.5), uniform(0.2, 1.0), 0};
   middle.dot_diameter = uniform(1.5, 3.5) * middle.pixel_at_dots();
   auto const loose = [&] { return std::exp(uniform(-0.4, 0.6)); };
   if (question.objective != Objective::gradient_min) {
@@ -189,12 +189,12 @@ double best_of_grid(DrawnQuestion const& question) {
       FreeChoice const& free = branch.continuous[i];
       return std::log(free.low) + std::log(free.high / free.low) * k / (count - 1);
     };
-    std::vector<Limit> limits = bench_limits(*branch.given);
+    std::vector<Limit> limits = feasibility_limits(*branch.given);
     limits.insert(limits.end(), question.required.begin(), question.required.end());
     // the most expensive last
     std::stable_partition(limits.begin(), limits.end(), [](Limit const& l) { return l.bound != Bound::resolution; });
     for (int point = 0; point < distances * distances * sizes; ++point) {
-      Bench<double> const bench = bench_at(
+      DesignPoint<double> const bench = design_point_at(
           branch, std::vector<double>{at(0, point / sizes / distances, distances),
                                       at(1, point / sizes % distances, distances), at(2, point % sizes, sizes)});
       bool const kept =
@@ -208,7 +208,7 @@ double best_of_grid(DrawnQuestion const& question) {
 // The best point of a grid is no better than the global optimum, so a solver that finds the optimum is never worse than
 // the grid; 2 % are allowed. If the solver finds no feasible point, neither may the grid.
 TEST(Design, IsNeverWorseThanAGridOfAHundredThousandSetups) {
-  BenchGiven given = table1_given();
+  FixedDesignParameters given = table1_given();
   given.camera.noise.enabled = true;
   given.largest_gradient = 20;
   int feasible = 0;
@@ -250,7 +250,7 @@ struct ShippedQuestion {
 
 // One lens and one stop, about 85 mm and f/22: f = 85 mm, Z_A = 1100 mm, Z_D = 640 mm and dots of 0.2 mm already
 // satisfy 0.08 kg/m^4, and therefore every weaker requirement.
-TEST(Design, FindsWhatKeepsAStricterRequirement) {
+TEST(Design, FindsDesignThatMeetsStricterRequirement) {
   for (char const* const gradient : {"0.08", "0.09", "0.10", "0.11", "0.12", "0.13"}) {
     ShippedQuestion const asked({"requirements.objective=\"z_total\"",
                                  std::string("requirements.gradient_min_kg_m4=") + gradient,

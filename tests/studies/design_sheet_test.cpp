@@ -11,7 +11,7 @@
 #include "studies/figures/design_map.h"
 #include "studies/figures/layout_figure.h"
 #include "studies/figures/piv_map.h"
-#include "tests/studies/support/table1_bench.h"
+#include "tests/studies/support/table1_design.h"
 
 namespace gladstone {
 namespace {
@@ -28,13 +28,13 @@ window_px = [64, 32, 16]
 struct MadeSheet {
   explicit MadeSheet(CaseSetup setup)
       : loaded(std::move(setup)),
-        given(bench_given(loaded)),
-        bench(bench_of(loaded.setup, given)),
+        given(collect_fixed_parameters(loaded)),
+        bench(make_design_point(loaded.setup, given)),
         sheet(bos_sheet(loaded.setup, bench)) {}
 
   CaseSetup loaded;
-  BenchGiven given;
-  Bench<double> bench;
+  FixedDesignParameters given;
+  DesignPoint<double> bench;
   DesignSheet sheet;
 };
 
@@ -150,8 +150,8 @@ TEST(DesignSheet, PlumesHaveTheGradientOfTheirAbelTransform) {
 // The light cone of a dot on the axis is as wide at the medium as its lines in the figure, and the edge of the sensor
 // sees the edge of the dots through the middle of the lens.
 TEST(DesignSheet, LayoutIsToScale) {
-  BenchGiven const given = table1_given();
-  BenchLayout const l = bench_layout(table1_bench(given));
+  FixedDesignParameters const given = table1_given();
+  OpticalLayout const l = make_optical_layout(table1_design(given));
   EXPECT_DOUBLE_EQ(l.lens_z - l.dots_z, 1.0);
   EXPECT_NEAR(l.cone_radius / l.pupil_radius, -l.dots_z / (l.lens_z - l.dots_z), 1e-12);
   EXPECT_NEAR(l.dots_half / (l.lens_z - l.dots_z), l.sensor_half / (l.sensor_z - l.lens_z), 1e-12);
@@ -162,8 +162,8 @@ TEST(DesignSheet, LayoutIsToScale) {
 // On the map the resolution is never finer than that of the cone, which by F23 depends on sensitivity and f-number
 // only.
 TEST(DesignSheet, MapLiesAboveTheInvariant) {
-  BenchGiven const given = table1_given();
-  for (DesignCurve const& curve : design_curves(table1_bench(given))) {
+  FixedDesignParameters const given = table1_given();
+  for (DesignCurve const& curve : design_curves(table1_design(given))) {
     ASSERT_FALSE(curve.z_d.empty());
     for (std::size_t i = 0; i < curve.z_d.size(); ++i) {
       // slices of a thick field near the dots have narrower cones and shorter lever arms: 1 % at the smallest Z_D
@@ -211,7 +211,7 @@ TEST(DesignSheet, OfPivLimitsWhatMovesBetweenThePulses) {
 // The edge of the sensor sees the edge of the view in the sheet through the middle of the lens.
 TEST(DesignSheet, LayoutOfPivIsToScale) {
   CaseSetup const loaded = droplet_setup();
-  BenchLayout const l = piv_layout(loaded.setup);
+  OpticalLayout const l = piv_layout(loaded.setup);
   EXPECT_DOUBLE_EQ(l.lens_z, 0.75);
   EXPECT_NEAR(l.sensor_z - l.lens_z, 1 / (1 / 0.105 - 1 / 0.75), 1e-12);
   EXPECT_NEAR(l.dots_half / l.lens_z, l.sensor_half / (l.sensor_z - l.lens_z), 1e-12);

@@ -17,7 +17,7 @@ class OneNode final : public FieldSource {
   RegularGrid const& grid() const override { return grid_; }
   FieldUnits const& units() const override { return units_; }
   std::string const& name() const override { return name_; }
-  FieldReading const& reading() const override { return reading_; }
+  AxisAssignment const& reading() const override { return reading_; }
   std::vector<std::string> notes() override { return {}; }
   int significant_bits() const override { return 53; }
   void read_planes(int, int, std::span<double>) override {
@@ -36,7 +36,7 @@ class OneNode final : public FieldSource {
  private:
   RegularGrid grid_;
   FieldUnits units_;
-  FieldReading reading_;
+  AxisAssignment reading_;
   std::string name_ = "one node";
   std::array<int, 3> node_;
   std::size_t most_ = 0;

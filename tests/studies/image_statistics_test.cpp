@@ -59,7 +59,7 @@ TEST(ImageStatistics, LeavesOutPixelsThatAreNoNumbers) {
   EXPECT_NEAR(seen.dot_diameter_px, whole.dot_diameter_px, 0.05);
 }
 
-TEST(ImageStatistics, KnowsNoSnrWithoutNoiseOrWithoutDots) {
+TEST(ImageStatistics, SnrIsUndefinedWithoutNoiseOrDots) {
   Image<double> black(64, 64, 0.0);
   EXPECT_TRUE(std::isnan(image_statistics(black).snr()));
   for (int row : {12, 40}) black(30, row) = 100;

@@ -11,7 +11,7 @@
 #include "render/files/content_hash.h"
 #include "render/files/hdf5_file.h"
 #include "render/files/partial.h"
-#include "studies/sweep/claims.h"
+#include "studies/sweep/case_locks.h"
 #include "studies/sweep/collect.h"
 #include "studies/sweep/results.h"
 #include "studies/sweep/run.h"
@@ -176,7 +176,7 @@ TEST_F(Runs, AChangedLineIsRefusedWhereItsCaseIsAskedFor) {
   EXPECT_THAT(complaint_about(older, 0), testing::HasSubstr("manifest.jsonl:1: contains no hash of itself"));
   write_result(in("run"), result_of(cases[1], 0.5));
   StudyPlan const again = plan_study(study(two_axes), "cpu");
-  EXPECT_EQ(write_plan(in("run"), again), Planned::replaced);
+  EXPECT_EQ(write_plan(in("run"), again), PlanOutcome::replaced);
   EXPECT_EQ(content("run/manifest.jsonl"), whole);
   EXPECT_TRUE(read_result(in("run"), 1, again[1].line_hash).has_value());
 }
@@ -184,11 +184,11 @@ TEST_F(Runs, AChangedLineIsRefusedWhereItsCaseIsAskedFor) {
 TEST_F(Runs, PlanningAgainKeepsWhatIsThere) {
   auto cases = planned();
   write_result(in("run"), result_of(cases[1], 0.5));
-  EXPECT_EQ(write_plan(in("run"), plan_study(study(two_axes), "cpu")), Planned::unchanged);
+  EXPECT_EQ(write_plan(in("run"), plan_study(study(two_axes), "cpu")), PlanOutcome::unchanged);
 
   // more repeats are appended to the existing cases
   StudyPlan const more = plan_study(study(std::string(two_axes) + "[study]\nrepeats = 2\n"), "cpu");
-  EXPECT_EQ(write_plan(in("run"), more), Planned::replaced);
+  EXPECT_EQ(write_plan(in("run"), more), PlanOutcome::replaced);
   EXPECT_EQ(read_manifest(in("run")).size(), 8u);
   EXPECT_TRUE(read_result(in("run"), 1, more[1].line_hash).has_value());
 
@@ -206,10 +206,10 @@ TEST_F(Runs, PlanningAgainKeepsWhatIsThere) {
     EXPECT_THAT(error.what(), testing::HasSubstr("was planned by another gladstone (its manifest is of version 1"));
   }
   std::filesystem::remove(result_path(in("run"), 1));
-  EXPECT_EQ(write_plan(in("run"), other), Planned::replaced);
+  EXPECT_EQ(write_plan(in("run"), other), PlanOutcome::replaced);
 }
 
-TEST_F(Runs, AFolderOfSomethingElseIsLeftAlone) {
+TEST_F(Runs, ForeignFolderIsPreserved) {
   std::filesystem::create_directory(in("thesis"));
   write("thesis/chapter1.tex", "precious");
   StudyPlan const plan = plan_study(study(two_axes), "cpu");
@@ -217,10 +217,10 @@ TEST_F(Runs, AFolderOfSomethingElseIsLeftAlone) {
   EXPECT_FALSE(std::filesystem::exists(in("thesis/manifest.jsonl")));
 }
 
-TEST_F(Runs, WhatACutPlanLeavesIsPlannedAnewAndNothingElse) {
+TEST_F(Runs, InterruptedPlanIsReplaced) {
   StudyPlan const plan = plan_study(study(two_axes), "cpu");
   std::filesystem::create_directories(in("cut"));
-  std::string const partial = leave_partial(in("cut"), stem_beside(run_file::manifest));
+  std::string const partial = leave_partial(in("cut"), sibling_stem(run_file::manifest));
   write("cut/study.toml", "of somebody else");
   EXPECT_THROW(write_plan(in("cut"), plan), OutputError);
   EXPECT_EQ(content("cut/study.toml"), "of somebody else");
@@ -231,7 +231,7 @@ TEST_F(Runs, WhatACutPlanLeavesIsPlannedAnewAndNothingElse) {
   EXPECT_THROW(write_plan(in("cut"), plan), OutputError);
 
   std::filesystem::remove(in("cut/cases/notes.txt"));
-  EXPECT_EQ(write_plan(in("cut"), plan), Planned::fresh);
+  EXPECT_EQ(write_plan(in("cut"), plan), PlanOutcome::fresh);
   EXPECT_EQ(read_manifest(in("cut")).size(), 4u);
   EXPECT_FALSE(std::filesystem::exists(partial));
 }
@@ -239,7 +239,7 @@ TEST_F(Runs, WhatACutPlanLeavesIsPlannedAnewAndNothingElse) {
 // The base is stored next to the manifest as in the study, without the values of the axes, and loads from any folder.
 TEST_F(Runs, TheBaseIsKeptBesideTheManifest) {
   StudyPlan const plan = plan_study(study(two_axes), "cpu");
-  EXPECT_EQ(write_plan(in("run"), plan), Planned::fresh);
+  EXPECT_EQ(write_plan(in("run"), plan), PlanOutcome::fresh);
   SetupDocument base = SetupDocument::from_text(content("run/base.toml"), "base");
   ASSERT_NE(base.find({"lens", "f_number"}), nullptr);
   EXPECT_EQ(base.find({"lens", "f_number"})->as_double(), 11);
@@ -261,7 +261,7 @@ TEST_F(Runs, AManifestOfSomethingElseIsLeftAlone) {
   }
   // planned by another gladstone, and nothing computed: planned again
   write("package/manifest.jsonl", "{\"manifest\":1,\"index\":0}\n");
-  EXPECT_EQ(write_plan(in("package"), plan), Planned::replaced);
+  EXPECT_EQ(write_plan(in("package"), plan), PlanOutcome::replaced);
 }
 
 // Nested brackets use no stack, whatever their number.
@@ -308,7 +308,7 @@ TEST_F(Runs, AResultIsWholeOrNone) {
   EXPECT_FALSE(read_result(in("run"), 2, cases[1].line_hash).has_value());
 }
 
-TEST_F(Runs, AResultOfAnotherVersionIsNeitherDamagedNorThrownAway) {
+TEST_F(Runs, ResultOfOtherVersionIsPreserved) {
   auto cases = planned();
   std::string rest = result_text(result_of(cases[2], 0.5));
   rest = rest.substr(rest.find("\"result\":"));
@@ -316,12 +316,12 @@ TEST_F(Runs, AResultOfAnotherVersionIsNeitherDamagedNorThrownAway) {
   std::string const older = "{\"hash\":\"" + content_hash(rest) + "\"," + rest;
   write("run/cases/2.json", older);
   StudyPlan const plan = plan_study(study(two_axes), "cpu");
-  std::vector<std::function<void()>> const uses{[&] { read_result(in("run"), 2, cases[2].line_hash); },
-                                                [&] {
-                                                  state_of(in("run"), read_manifest(in("run")), {0, 1, 2, 3});
-                                                },
-                                                [&] { read_study_table(in("run")); },
-                                                [&] { write_plan(in("run"), plan); }};
+  std::vector<std::function<void()>> const uses{
+      [&] { read_result(in("run"), 2, cases[2].line_hash); },
+      [&] {
+        determine_run_state(in("run"), read_manifest(in("run")), {0, 1, 2, 3});
+      },
+      [&] { read_study_table(in("run")); }, [&] { write_plan(in("run"), plan); }};
   for (std::function<void()> const& use : uses) {
     try {
       use();
@@ -340,13 +340,13 @@ TEST_F(Runs, AResultOfAnotherVersionIsNeitherDamagedNorThrownAway) {
 TEST_F(Runs, AResultThatCannotBeReadIsMissingAndAFolderInItsPlaceIsNamed) {
   auto const cases = planned();
   std::filesystem::create_symlink("/proc/self/mem", in("run/cases/2.json"));
-  EXPECT_EQ(state_of(in("run"), read_manifest(in("run")), {2}).missing, std::vector<std::size_t>{2});
+  EXPECT_EQ(determine_run_state(in("run"), read_manifest(in("run")), {2}).missing, std::vector<std::size_t>{2});
   write_result(in("run"), result_of(cases[2], 0.5));
   EXPECT_TRUE(read_result(in("run"), 2, cases[2].line_hash).has_value());
 
   std::filesystem::create_directory(in("run/cases/3.json"));
   try {
-    state_of(in("run"), read_manifest(in("run")), {3});
+    determine_run_state(in("run"), read_manifest(in("run")), {3});
     ADD_FAILURE() << "a folder was accepted as a result";
   } catch (DataError const& error) {
     EXPECT_THAT(error.what(), testing::StartsWith(in("run/cases/3.json") + ": is a folder"));
@@ -388,7 +388,7 @@ TEST_F(Runs, ATableSaysWhichBuildsComputedIt) {
   EXPECT_EQ(file.attribute("computed_by"), "[\"0.1.0 (cafe)\",\"0.2.0 (beef)\"]");
 }
 
-TEST_F(Runs, OnlyFailuresThatAreDueAreForgottenAndNotThoseThatOthersCompute) {
+TEST_F(Runs, RemovesOnlyFailuresToBeRepeated) {
   auto const cases = planned();
   for (std::size_t index = 0; index < 4; ++index) {
     CaseResult result = result_of(cases[index], 0.5);
@@ -401,26 +401,26 @@ TEST_F(Runs, OnlyFailuresThatAreDueAreForgottenAndNotThoseThatOthersCompute) {
   };
   std::vector<std::size_t> const all{0, 1, 2, 3};
   {
-    Claims other(in("run"), Claims::Use::take);
+    CaseLocks other(in("run"), CaseLocks::Use::take);
     ASSERT_TRUE(other.take(3));
-    forget_failures(in("run"), read_manifest(in("run")), all, {});
+    remove_failed_results(in("run"), read_manifest(in("run")), all, {});
   }
   EXPECT_TRUE(there(0) && there(1) && !there(2) && there(3));
-  forget_failures(in("run"), read_manifest(in("run")), all, {});
+  remove_failed_results(in("run"), read_manifest(in("run")), all, {});
   EXPECT_TRUE(there(0) && there(1) && !there(3));
   RunSelection retry;
   retry.retry_failed = true;
-  forget_failures(in("run"), read_manifest(in("run")), all, retry);
+  remove_failed_results(in("run"), read_manifest(in("run")), all, retry);
   EXPECT_TRUE(there(0) && !there(1));
 }
 
-TEST_F(Runs, AClaimKeepsOthersOffUntilItsProcessIsGone) {
+TEST_F(Runs, LockExcludesOthersUntilProcessEnds) {
   planned();
-  Claims mine(in("run"), Claims::Use::take);
+  CaseLocks mine(in("run"), CaseLocks::Use::take);
   ASSERT_TRUE(mine.take(7));
   EXPECT_FALSE(mine.held(7));  // not held by another process
   {
-    Claims other(in("run"), Claims::Use::take);
+    CaseLocks other(in("run"), CaseLocks::Use::take);
     EXPECT_TRUE(other.held(7));
     EXPECT_FALSE(other.take(7));
     EXPECT_TRUE(other.take(8));
@@ -433,7 +433,7 @@ TEST_F(Runs, AClaimKeepsOthersOffUntilItsProcessIsGone) {
   ASSERT_EQ(::pipe(ready), 0);
   pid_t const child = ::fork();
   if (child == 0) {
-    Claims theirs(in("run"), Claims::Use::take);
+    CaseLocks theirs(in("run"), CaseLocks::Use::take);
     bool const taken = theirs.take(3);
     if (::write(ready[1], &taken, 1) != 1) ::_exit(1);
     ::pause();
@@ -452,12 +452,12 @@ TEST_F(Runs, AClaimKeepsOthersOffUntilItsProcessIsGone) {
   ::close(ready[1]);
 }
 
-TEST_F(Runs, ClaimsThatWereReplacedAreTakenInTheNewFile) {
+TEST_F(Runs, ReplacedLockFileIsReopened) {
   planned();
-  Claims mine(in("run"), Claims::Use::take);
+  CaseLocks mine(in("run"), CaseLocks::Use::take);
   ASSERT_TRUE(mine.take(1));
   std::filesystem::remove(in("run/claims"));
-  Claims other(in("run"), Claims::Use::take);
+  CaseLocks other(in("run"), CaseLocks::Use::take);
   ASSERT_TRUE(other.take(2));
   EXPECT_FALSE(mine.take(2));
   EXPECT_TRUE(mine.take(3));
@@ -471,7 +471,7 @@ TEST_F(Runs, PartialResultsOfKilledWritersAreRemovedAndOthersAreLeftAlone) {
   Partial const mine(in("run/cases"), ".1.json.", Partial::Kind::file);
   std::string const killed = leave_partial(in("run/cases"), ".1.json.");
   write_result(in("run"), result_of(cases[1], 0.5));
-  remove_left_partials(in("run"));
+  remove_abandoned_results(in("run"));
   EXPECT_FALSE(std::filesystem::exists(killed));
   EXPECT_TRUE(std::filesystem::exists(mine.path()));
   EXPECT_EQ(content(elsewhere), "{\"hash\":\"half");
@@ -479,10 +479,10 @@ TEST_F(Runs, PartialResultsOfKilledWritersAreRemovedAndOthersAreLeftAlone) {
   EXPECT_TRUE(read_result(in("run"), 1, cases[1].line_hash).has_value());
 }
 
-TEST_F(Runs, LookingAtClaimsWritesNothing) {
+TEST_F(Runs, ReadingLocksWritesNothing) {
   auto const cases = planned();
   std::filesystem::remove(in("run/claims"));
-  RunState const state = state_of(in("run"), read_manifest(in("run")), {0, 1});
+  RunState const state = determine_run_state(in("run"), read_manifest(in("run")), {0, 1});
   EXPECT_EQ(state.missing.size(), 2u);
   EXPECT_TRUE(state.running.empty());
   EXPECT_FALSE(std::filesystem::exists(in("run/claims")));
@@ -497,7 +497,7 @@ TEST_F(Runs, AReadOnlyRunSaysThatItIsReadOnly) {
   }
   std::string what = "nothing";
   try {
-    Claims(in("run"), Claims::Use::take);
+    CaseLocks(in("run"), CaseLocks::Use::take);
   } catch (OutputError const& error) {
     what = error.what();
   }

@@ -9,7 +9,7 @@
 
 #include "render/base/units.h"
 #include "studies/case/case.h"
-#include "studies/design/bench.h"
+#include "studies/design/design_point.h"
 #include "studies/design/sheet.h"
 
 namespace gladstone {
@@ -44,7 +44,7 @@ double number_behind(std::string const& text, std::string const& key) {
 // this correlator). The formula is within a factor of 1.7 of its study of dots, the smallest of which are 0.8 px; its
 // extrapolation to particles without size may add as much: within a factor of two.
 TEST(PeakLocking, ErrorFallsWithTheDiameterOfTheImage) {
-  SmallImages const small{0, 1.45, 0}, wide{0, 2.6, 0};
+  ImageDiameters const small{0, 1.45, 0}, wide{0, 2.6, 0};
   EXPECT_LT(std::abs(std::log(small.locking_error_px() / 0.06)), std::log(1.7));
   EXPECT_LT(std::abs(std::log(wide.locking_error_px() / 0.002)), std::log(2.0));
 }
@@ -52,7 +52,7 @@ TEST(PeakLocking, ErrorFallsWithTheDiameterOfTheImage) {
 // 1.682 x 8 x (1 + 105/645) x 0.532 um = 8.326 um over 5.74 um are 1.450 px. The recommended f-number widens the images
 // to exactly 2 px, since the PSF is proportional to it; the recommended focus does so within 1 %, by which it changes
 // M.
-TEST(PeakLocking, NamesTheStopAndTheFocusThatCureIt) {
+TEST(PeakLocking, RecommendsApertureAndFocus) {
   gladstone::Setup const setup = setup_of(one_lens_setup("f_number = 8.0", 5.742));
   EXPECT_NEAR(expected_images(setup).diameter_px(), 1.45, 1e-3);
   std::string const advice = locking_advice(setup);
@@ -76,7 +76,7 @@ TEST(PeakLocking, NamesTheStopAndTheFocusThatCureIt) {
 
 // A setup changed as recommended causes no warning: f-numbers are rounded up, and 0.5 % are allowed for the other
 // remedies.
-TEST(PeakLocking, IsSilentOnceTheAdviceIsFollowed) {
+TEST(PeakLocking, NoWarningAfterAdviceIsApplied) {
   for (double const pitch_um : {5.742, 6.45, 9.0, 10.0, 13.7}) {
     std::string const advice = locking_advice(setup_of(one_lens_setup("f_number = 8.0", pitch_um)));
     std::string const stop = std::to_string(number_behind(advice, "lens.f_number"));
@@ -138,8 +138,8 @@ TEST(PeakLocking, OfDotsCountsDefocusAndNamesTheirSize) {
 // the limit of the recommendation.
 TEST(DotImage, IsOneDiameterInSheetSetupAndRecommendation) {
   CaseSetup const loaded = load_case_setup(SetupDocument::from_text("schema = 1\n", "setup.toml"));
-  BenchGiven const given = bench_given(loaded);
-  Bench<double> bench = bench_of(loaded.setup, given);
+  FixedDesignParameters const given = collect_fixed_parameters(loaded);
+  DesignPoint<double> bench = make_design_point(loaded.setup, given);
   DesignSheet const sheet = bos_sheet(loaded.setup, bench);
   EXPECT_DOUBLE_EQ(sheet["dot_diameter_px"], bench.dot_image_px());
   EXPECT_NEAR(sheet["dot_diameter_px"],
@@ -169,7 +169,7 @@ Image<double> picture(double diameter) {
 
 // Without a setup the width is estimated from the frame: within 10 % of 1.4 px, since the autocorrelation is that of a
 // Gaussian, except for the pixels.
-TEST(PeakLocking, IsToldByTheFrameAlone) {
+TEST(PeakLocking, IsDetectedFromImageAlone) {
   std::string const advice = locking_advice(picture(1.4));
   std::smatch found;
   ASSERT_TRUE(std::regex_search(advice, found, std::regex("about ([0-9.]+) px wide"))) << advice;

@@ -45,7 +45,7 @@ Image<double> picture(Setup const& setup, std::vector<Vec3d> const& places) {
   }
   scene.particles.diameter.assign(places.size(), 1e-6);
   scene.photon_unit = 1;
-  scene = with_step(scene, plan_step_by_rays(scene));
+  scene = with_step(scene, determine_step_by_tracing(scene));
   scene.rays_per_dot = 2048;
   return RaysRenderer()
       .render_particles(scene, scene.particles, ParticleLight::equal, RenderImages::yes)
@@ -112,7 +112,7 @@ TEST_P(Views, AreFocusedOnAnotherPlane) {
   PlenopticCamera const camera = PlenopticCamera::of(setup, "test");
   Image<double> const raw = picture(setup, spread_at(60 * mm, 5, 5, GetParam()));
   PlenopticViews const views(camera, raw);
-  std::vector<Vec2d> const stops = places_of_stop(camera.stop_diameter, 9);
+  std::vector<Vec2d> const stops = stop_positions(camera.stop_diameter, 9);
   auto const sharpness = [&](double z) {
     Image<double> const image = views.refocused(stops, 750 * mm - z);
     double sum = 0, squares = 0;
@@ -130,11 +130,11 @@ TEST_P(Views, AreFocusedOnAnotherPlane) {
 INSTANTIATE_TEST_SUITE_P(Of, Views, testing::Values(LensletLayout::square, LensletLayout::hexagonal));
 
 TEST(PlenopticCamera, PlacesViewsEvenlyOverTheStop) {
-  std::vector<Vec2d> const places = places_of_stop(30 * mm, 3);
+  std::vector<Vec2d> const places = stop_positions(30 * mm, 3);
   ASSERT_EQ(places.size(), 9u);  // the corners are at sqrt(2) / 3 of the diameter, within half of it
   EXPECT_NEAR(length(places.front() - Vec2d{-10 * mm, 10 * mm}), 0, 1e-12);
   EXPECT_NEAR(length(places[4]), 0, 1e-12);
-  EXPECT_EQ(places_of_stop(30 * mm, 5).size(), 21u);  // the corners of 25 views are beyond it
+  EXPECT_EQ(stop_positions(30 * mm, 5).size(), 21u);  // the corners of 25 views are beyond it
 }
 
 TEST(PlenopticCamera, HasLensletsAndAStop) {

@@ -184,7 +184,7 @@ TEST(Propagation, CountsCorrelatedInputsAsOneByDegreesOfFreedom) {
 // For an evacuated ambient of 0 +- 0.02 kg/m^3 the index n0 = 1 + K rho has the derivative K, as for any density: g K,
 // and the same fraction of the density across a window. Three standard errors of the standard deviation of the samples:
 // 0.67 %.
-TEST(Propagation, TakesNumbersOfNothing) {
+TEST(Propagation, AcceptsZeroValues) {
   GradientMeasurement<double> at = measured_at_table1();
   at[GradientInput::ambient_density] = 0;
   for (PropagatedResult const& result : propagate(at, {input(GradientInput::ambient_density, 0, 0.02)})) {
@@ -199,7 +199,7 @@ TEST(Propagation, TakesNumbersOfNothing) {
 // For zero displacement the uncertainty of the displacement contributes 1 / S = 150.9 kg/m^4 per pixel, and all other
 // inputs nothing, since their effect is proportional to the displacement: in the samples by 0.5 % of a gradient whose
 // mean is 0.
-TEST(Propagation, TellsAMeasurementInWhichNothingMoved) {
+TEST(Propagation, HandlesZeroDisplacement) {
   GradientMeasurement<double> at = measured_at_table1();
   double const per_px = at.gradient() / at.value[0];
   at[GradientInput::displacement] = 0;
@@ -289,7 +289,7 @@ thickness_mm = { value = 10.0, sigma = 0.1 }
 window_px = [32]
 )",
                                                     "table1");
-  std::vector<UncertainInput> const uncertain = take_uncertain_inputs(document);
+  std::vector<UncertainInput> const uncertain = extract_uncertain_inputs(document);
   CaseSetup const loaded = load_case_setup(std::move(document));
   ASSERT_EQ(uncertain.size(), 6u);
   Backend device = open_device("cpu");
@@ -313,7 +313,7 @@ ambient_density_kg_m3 = { value = 0.0, sigma = 1.0 }
 window_px = [32]
 )",
                                                     "vacuum");
-  std::vector<UncertainInput> const uncertain = take_uncertain_inputs(document);
+  std::vector<UncertainInput> const uncertain = extract_uncertain_inputs(document);
   CaseSetup const loaded = load_case_setup(std::move(document));
   Backend device = open_device("cpu");
   std::optional<double> const slope = traced_log_derivative(loaded, uncertain.at(0), *device.renderer);
@@ -341,7 +341,7 @@ thickness_mm = { value = 10.0, sigma = 0.1 }
 window_px = [32]
 )",
                                                     "gauss", GLADSTONE_DATA_DIR);
-  std::vector<UncertainInput> const uncertain = take_uncertain_inputs(document);
+  std::vector<UncertainInput> const uncertain = extract_uncertain_inputs(document);
   CaseSetup const loaded = load_case_setup(std::move(document));
   Backend device = open_device("cpu");
   std::vector<MeasurementInput> const inputs = measurement_inputs(loaded, uncertain, *device.renderer);

@@ -151,12 +151,12 @@ TEST(FigureAxis, BinsManyNumbersByEqualCount) {
 // sqrt((9 + 16) / 2)
 TEST(Scatter, IsRootMeanSquareOfRepeatsAndMedianOfOthers) {
   double const nan = std::numeric_limits<double>::quiet_NaN();
-  Scatter const repeats = scatter_of({4, nan, 3}, true);
+  Scatter const repeats = compute_scatter({4, nan, 3}, true);
   EXPECT_DOUBLE_EQ(repeats.centre, std::sqrt(12.5));
   EXPECT_EQ(repeats.low, 3);
   EXPECT_EQ(repeats.high, 4);
-  EXPECT_EQ(scatter_of({1, 2, 90}, false).centre, 2);
-  EXPECT_TRUE(std::isnan(scatter_of({nan}, true).centre));
+  EXPECT_EQ(compute_scatter({1, 2, 90}, false).centre, 2);
+  EXPECT_TRUE(std::isnan(compute_scatter({nan}, true).centre));
 }
 
 TEST(StudyCurves, AreCombinationsOfTheOtherAxesWhileColoursLast) {
@@ -167,8 +167,8 @@ TEST(StudyCurves, AreCombinationsOfTheOtherAxesWhileColoursLast) {
   ASSERT_EQ(four.size(), 4u);
   EXPECT_EQ(four[1].name, "a, Z_D 2 mm");
   EXPECT_EQ(cells.rows_at({{2, 0}, {0, 0}, {1, 1}}).size(), 2u);
-  EXPECT_TRUE(cells.repeats_alone(cells.rows_at({{2, 0}, {0, 0}, {1, 1}})));
-  EXPECT_FALSE(cells.repeats_alone(cells.rows_at({{2, 0}, {0, 0}})));
+  EXPECT_TRUE(cells.only_repeats_differ(cells.rows_at({{2, 0}, {0, 0}, {1, 1}})));
+  EXPECT_FALSE(cells.only_repeats_differ(cells.rows_at({{2, 0}, {0, 0}})));
   std::vector<CurveChoice> const by_field = curves_over(cells, 2, 3);
   ASSERT_EQ(by_field.size(), 2u);
   EXPECT_EQ(by_field[1].name, "b");

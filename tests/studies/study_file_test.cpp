@@ -225,7 +225,7 @@ TEST_F(Studies, ManyCasesArePlannedInATimeThatGrowsWithTheirNumber) {
 )");
   std::clock_t const start = std::clock();  // processor time, which other programs do not affect
   StudyPlan const plan = plan_study(file, "cpu");
-  EXPECT_EQ(write_plan(in("run"), plan), Planned::fresh);
+  EXPECT_EQ(write_plan(in("run"), plan), PlanOutcome::fresh);
   EXPECT_LT(static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC, 20000 * 600e-6);
   Manifest const manifest = read_manifest(in("run"));
   ASSERT_EQ(manifest.size(), 20000u);
@@ -233,7 +233,7 @@ TEST_F(Studies, ManyCasesArePlannedInATimeThatGrowsWithTheirNumber) {
     EXPECT_EQ(manifest_line(manifest[index]), plan.line(index));
     EXPECT_EQ(manifest[index].line_hash, plan[index].line_hash);
   }
-  EXPECT_EQ(write_plan(in("run"), plan), Planned::unchanged);
+  EXPECT_EQ(write_plan(in("run"), plan), PlanOutcome::unchanged);
 }
 
 // 5000 of 6000 values are tried: the ends, and evenly spaced ones between them.

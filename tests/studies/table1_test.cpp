@@ -19,10 +19,10 @@ TEST(Table1, IsAsGoodAsItSays) {
   CaseSetup const loaded = load_case_setup(shared_folder() + "/studies/cases/table1.toml", {});
   Scene scene = build_scene(loaded.setup);
   scene = with_chosen_step(std::move(scene));
-  RaysPlan const plan = choose_rays(scene);
+  RayBudget const plan = choose_ray_budget(scene);
   ASSERT_EQ(plan.rays, 1024u);
   scene = with_rays(std::move(scene), plan);
-  RaysPlan const error = measure_table_error(focused_dots(scene).value());
+  RayBudget const error = measure_table_error(focused_dots(scene).value());
   EXPECT_LT(error.truth_error_px, 1e-4);
   EXPECT_LT(error.truth_resolution_px, 1e-4);
   EXPECT_LT(error.image_error_levels, 0.5);

@@ -36,7 +36,7 @@ std::string complaint(std::string const& number) {
 
 TEST(UncertainInputs, AreNumbersToAllThatReadThem) {
   SetupDocument document = SetupDocument::from_text(uncertain, "setup.toml");
-  std::vector<UncertainInput> const inputs = take_uncertain_inputs(document);
+  std::vector<UncertainInput> const inputs = extract_uncertain_inputs(document);
   CaseSetup const loaded = load_case_setup(std::move(document));
   EXPECT_DOUBLE_EQ(loaded.setup.z_d, 0.25);
   ASSERT_EQ(inputs.size(), 2u);
@@ -51,11 +51,11 @@ TEST(UncertainInputs, AreNumbersToAllThatReadThem) {
 // The setup that a case writes contains its uncertainties and is read back unchanged.
 TEST(UncertainInputs, StayInTheResolvedSetup) {
   SetupDocument document = SetupDocument::from_text(uncertain, "setup.toml");
-  std::vector<UncertainInput> const inputs = take_uncertain_inputs(document);
+  std::vector<UncertainInput> const inputs = extract_uncertain_inputs(document);
   CaseSetup const loaded = load_case_setup(std::move(document));
   SetupDocument written =
-      SetupDocument::from_text(with_uncertain_inputs(loaded.document.resolved(), inputs), "again.toml");
-  std::vector<UncertainInput> const others = take_uncertain_inputs(written);
+      SetupDocument::from_text(insert_uncertain_inputs(loaded.document.resolved(), inputs), "again.toml");
+  std::vector<UncertainInput> const others = extract_uncertain_inputs(written);
   CaseSetup const again = load_case_setup(std::move(written));
   ASSERT_EQ(others.size(), 2u);
   for (UncertainInput const& input : inputs) {
@@ -115,7 +115,7 @@ constexpr char const* both_distances = R"(["geometry.z_a_mm", "geometry.z_d_mm"]
 TEST(UncertainInputs, AreCorrelatedInPairsAndStaySo) {
   std::string const text = correlated + pair_of(both_distances, "-0.8");
   SetupDocument document = SetupDocument::from_text(text, "setup.toml");
-  std::vector<UncertainInput> const inputs = take_uncertain_inputs(document);
+  std::vector<UncertainInput> const inputs = extract_uncertain_inputs(document);
   ASSERT_EQ(inputs.size(), 4u);
   for (UncertainInput const& input : inputs) {
     bool const distance = input.key.starts_with("geometry.");
@@ -126,8 +126,8 @@ TEST(UncertainInputs, AreCorrelatedInPairsAndStaySo) {
   }
   CaseSetup const loaded = load_case_setup(std::move(document));
   SetupDocument written =
-      SetupDocument::from_text(with_uncertain_inputs(loaded.document.resolved(), inputs), "again.toml");
-  for (UncertainInput const& again : take_uncertain_inputs(written)) {
+      SetupDocument::from_text(insert_uncertain_inputs(loaded.document.resolved(), inputs), "again.toml");
+  for (UncertainInput const& again : extract_uncertain_inputs(written)) {
     EXPECT_EQ(again.correlations.size(), again.key.starts_with("geometry.") ? 1u : 0u) << again.key;
   }
   load_case_setup(std::move(written));

@@ -8,7 +8,7 @@
 #include "studies/design/predicted_blur.h"
 #include "studies/design/sheet.h"
 #include "studies/design/verification_text.h"
-#include "tests/studies/support/table1_bench.h"
+#include "tests/studies/support/table1_design.h"
 
 namespace gladstone {
 namespace {
@@ -30,8 +30,8 @@ wavelength_mm = 8.0
 window_px = [64, 32]
 )",
                                                                     "wave"));
-  BenchGiven const given = bench_given(loaded);
-  Bench<double> const bench = bench_of(loaded.setup, given);
+  FixedDesignParameters const given = collect_fixed_parameters(loaded);
+  DesignPoint<double> const bench = make_design_point(loaded.setup, given);
   double const wavelength = 8e-3, pixel = bench.pixel_at_medium();
   double const cone = cone_transfer(bench.pupil(), bench.z_b(), bench.z_d, given.thickness, wavelength) *
                       disc_transfer(bench.dot_diameter * bench.z_a / bench.z_b(), wavelength);
@@ -51,12 +51,12 @@ window_px = [64, 32]
 }
 
 /// The set-up of Table 1 with simulated values equal to the formulas.
-VerifiedBench as_predicted(BenchGiven const& given) {
-  Bench<double> const bench = table1_bench(given);
-  VerifiedBench verified;
+VerifiedDesign as_predicted(FixedDesignParameters const& given) {
+  DesignPoint<double> const bench = table1_design(given);
+  VerifiedDesign verified;
   verified.outcome.branch.given = &given;
   verified.outcome.branch.value = {0.105, 11, 0.75, 0.25, bench.dot_diameter};
-  SimulatedBench& simulated = verified.simulated;
+  SimulatedDesign& simulated = verified.simulated;
   simulated.columns = simulated.rows = 384;
   simulated.repeats = 2;
   simulated.random_px = {bench.random_error(), 1e-5};
@@ -73,16 +73,16 @@ VerifiedBench as_predicted(BenchGiven const& given) {
   return verified;
 }
 
-VerifiedQuantity const& quantity(VerifiedBench const& verified, std::string const& key) {
+VerifiedQuantity const& quantity(VerifiedDesign const& verified, std::string const& key) {
   for (VerifiedQuantity const& one : verified.quantities) {
     if (one.key == key) return one;
   }
   throw std::out_of_range(key);
 }
 
-TEST(Verification, HasNothingToSayWhereSimulationAndFormulaAgree) {
-  BenchGiven const given = table1_given();
-  VerifiedBench verified = as_predicted(given);
+TEST(Verification, ExplainsNothingIfSimulationAgrees) {
+  FixedDesignParameters const given = table1_given();
+  VerifiedDesign verified = as_predicted(given);
   compare_with_formulas(verified, {{Bound::resolution, 1.0}, {Bound::uncertainty_max, 1.0}});
   ASSERT_EQ(verified.quantities.size(), 4u);
   for (VerifiedQuantity const& one : verified.quantities) {
@@ -93,9 +93,9 @@ TEST(Verification, HasNothingToSayWhereSimulationAndFormulaAgree) {
   EXPECT_TRUE(verified.kept());
 }
 
-TEST(Verification, NamesTheCauseThatTheFormulasHaveWrong) {
-  BenchGiven const given = table1_given();
-  VerifiedBench verified = as_predicted(given);
+TEST(Verification, ReportsCauseOfDisagreement) {
+  FixedDesignParameters const given = table1_given();
+  VerifiedDesign verified = as_predicted(given);
   verified.simulated.bias_px.value = 0.014;
   verified.simulated.causes[2].simulated = 0.004;  // refraction
   verified.simulated.resolution.value *= 0.8;
@@ -113,10 +113,10 @@ TEST(Verification, NamesTheCauseThatTheFormulasHaveWrong) {
 
 // A mean of squares that consists of noise only is within its standard error of zero, however far its root appears to
 // be.
-TEST(Verification, JudgesABiasByItsSquare) {
-  BenchGiven const given = table1_given();
+TEST(Verification, ComparesSquaredBias) {
+  FixedDesignParameters const given = table1_given();
   for (auto const& [error2, agrees] : {std::pair{3e-5, true}, {2e-5, false}}) {
-    VerifiedBench verified = as_predicted(given);
+    VerifiedDesign verified = as_predicted(given);
     verified.simulated.predicted_bias_px = 4e-4;
     verified.simulated.bias_px = {0.007, std::sqrt(4.9e-5 + error2) - 0.007};  // 4.9e-5: 1.6 or 2.4 standard errors
     compare_with_formulas(verified, {});
@@ -124,9 +124,9 @@ TEST(Verification, JudgesABiasByItsSquare) {
   }
 }
 
-TEST(Verification, NamesNoCauseThatDoesNotExplain) {
-  BenchGiven const given = table1_given();
-  VerifiedBench verified = as_predicted(given);
+TEST(Verification, OmitsCausesThatDoNotExplain) {
+  FixedDesignParameters const given = table1_given();
+  VerifiedDesign verified = as_predicted(given);
   verified.simulated.bias_px.value = 0.014;
   verified.simulated.causes[1].simulated = 0.0025;
   compare_with_formulas(verified, {});
@@ -135,24 +135,24 @@ TEST(Verification, NamesNoCauseThatDoesNotExplain) {
 }
 
 TEST(Verification, KeepsARequirementWithinTwoStandardErrors) {
-  BenchGiven const given = table1_given();
-  double const wavelength = resolved_wavelength(table1_bench(given));  // with a standard error of 0.1 %
+  FixedDesignParameters const given = table1_given();
+  double const wavelength = resolved_wavelength(table1_design(given));  // with a standard error of 0.1 %
   for (auto const& [required, kept] : {std::pair{0.9985 * wavelength, true}, {0.997 * wavelength, false}}) {
-    VerifiedBench verified = as_predicted(given);
+    VerifiedDesign verified = as_predicted(given);
     compare_with_formulas(verified, {{Bound::resolution, required}});
     EXPECT_EQ(verified.kept(), kept);
   }
   // the view must not be smaller
-  double const view = 512 * table1_bench(given).pixel_at_medium();
+  double const view = 512 * table1_design(given).pixel_at_medium();
   for (auto const& [required, kept] : {std::pair{0.99 * view, true}, {1.01 * view, false}}) {
-    VerifiedBench verified = as_predicted(given);
+    VerifiedDesign verified = as_predicted(given);
     compare_with_formulas(verified, {{Bound::view_width, required}});
     EXPECT_EQ(verified.kept(), kept);
   }
 }
 
-TEST(Verification, SaysWhatNoneKeeps) {
-  BenchGiven const given = table1_given();
+TEST(Verification, ReportsRequirementsMissedByAllDesigns) {
+  FixedDesignParameters const given = table1_given();
   Verification verification;
   verification.benches.push_back(as_predicted(given));
   compare_with_formulas(verification.benches[0], {{Bound::resolution, 1e-3}});

@@ -28,7 +28,7 @@ void make_difference_plane(LaneCorrelation& work, LanePlane& plane) {
 }  // namespace
 
 std::vector<WindowCorrelation> correlate_mqd(InterrogationJob const& job) {
-  return correlate_in_lanes(job, {.make = make_difference_plane, .with_margin = true, .falls_off = false});
+  return correlate_in_lanes(job, {.make = make_difference_plane, .with_margin = true, .decreases_with_shift = false});
 }
 
 }  // namespace gladstone

@@ -80,7 +80,7 @@ class PairwiseCorrelation {
 
     WindowSums<float> sums;
     for (int j = view.begin_y; j < view.end_y; ++j) sums += sum_row(view, j);
-    if (!complete && sums.weight < smallest_known_part * x_.sum(column) * y_.sum(row)) {
+    if (!complete && sums.weight < min_valid_weight_fraction * x_.sum(column) * y_.sum(row)) {
       result.outcome = WindowCorrelation::Outcome::masked;
       return 0.0;
     }

@@ -28,7 +28,7 @@ void make_normalised_plane(LaneCorrelation& work, LanePlane& plane) {
 }  // namespace
 
 std::vector<WindowCorrelation> correlate_zncc(InterrogationJob const& job) {
-  return correlate_in_lanes(job, {.make = make_normalised_plane, .falls_off = false});
+  return correlate_in_lanes(job, {.make = make_normalised_plane, .decreases_with_shift = false});
 }
 
 }  // namespace gladstone

@@ -63,7 +63,7 @@ DenseFlow DenseFlow::finer(int width, int height) const {
   return fine;
 }
 
-std::vector<GreyImage> pyramid_of(GreyImage finest) {
+std::vector<GreyImage> build_pyramid(GreyImage finest) {
   constexpr int least_side = 24;
   std::vector<GreyImage> levels;
   levels.push_back(std::move(finest));

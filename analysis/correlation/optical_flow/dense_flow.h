@@ -38,7 +38,7 @@ struct DenseFlow {
 
 /// Image pyramid of a frame, finest level first. Each level is blurred by (1 4 6 4 1)/16 along both axes and
 /// subsampled, so that pixel i of a level is pixel 2 i of the next finer one. Coarser levels have no side below 24 px.
-std::vector<GreyImage> pyramid_of(GreyImage finest);
+std::vector<GreyImage> build_pyramid(GreyImage finest);
 
 /// Returns a frame without its local mean (Gaussian, sigma 8 px), divided by its rms, to compensate illumination
 /// differences.

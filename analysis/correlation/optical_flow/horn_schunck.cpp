@@ -84,8 +84,8 @@ BsplineImage<float> spline_of(GreyImage const& image) {
 }  // namespace
 
 DenseFlow horn_schunck_flow(GreyImage const& reference, GreyImage const& flow) {
-  std::vector<GreyImage> const first = pyramid_of(normalised_frame(reference)),
-                               second = pyramid_of(normalised_frame(flow));
+  std::vector<GreyImage> const first = build_pyramid(normalised_frame(reference)),
+                               second = build_pyramid(normalised_frame(flow));
   DenseFlow d(first.back().columns, first.back().rows);
   for (std::size_t level = first.size(); level-- > 0;) {
     if (level + 1 < first.size()) d = d.finer(first[level].columns, first[level].rows);

@@ -58,17 +58,17 @@ class OpticalFlowCorrelator final : public Correlator {
       Vec2d const value = dense.at(grid.centre(i));
       MeasuredVector& vector = vectors[i];
       vector = {value, value, nan, nan, VectorStatus::valid, VectorReason::measured, FailedTest::none, Ambiguity::none};
-      auto const take_out = [&](VectorStatus status, VectorReason reason) {
+      auto const reject_vector = [&](VectorStatus status, VectorReason reason) {
         vector.displacement = vector.raw = {nan, nan};
         vector.status = status;
         vector.reason = reason;
       };
-      if (known_part(pair, grid, i) < smallest_known_part)
-        take_out(VectorStatus::masked, VectorReason::masked);
+      if (valid_pixel_fraction(pair, grid, i) < min_valid_weight_fraction)
+        reject_vector(VectorStatus::masked, VectorReason::masked);
       else if (!has_signal(pair, pair.reference, grid, i) || !has_signal(pair, pair.flow, grid, i))
-        take_out(VectorStatus::invalid, VectorReason::no_signal);
+        reject_vector(VectorStatus::invalid, VectorReason::no_signal);
       else if (!is_within(value, limit))
-        take_out(VectorStatus::invalid, VectorReason::beyond_limit);
+        reject_vector(VectorStatus::invalid, VectorReason::beyond_limit);
     }
     DisplacementField field = displacement_field(grid, vectors);
     if (std::string warning = unheeded(settings_); !warning.empty()) field.warnings.push_back(std::move(warning));
@@ -83,7 +83,7 @@ class OpticalFlowCorrelator final : public Correlator {
   }
 
   /// Returns whether a window of one frame has contrast, by the criterion of plane_scale().
-  static bool has_signal(ImagePair const& pair, UnsetVector<float> const& frame, InterrogationGrid const& grid,
+  static bool has_signal(ImagePair const& pair, UninitializedVector<float> const& frame, InterrogationGrid const& grid,
                          std::size_t vector) {
     auto const [x, y] = first_pixel(grid, vector);
     double sum = 0.0, squares = 0.0;
@@ -98,7 +98,7 @@ class OpticalFlowCorrelator final : public Correlator {
   }
 
   /// Returns the known fraction of the pixels of a nominal window.
-  static double known_part(ImagePair const& pair, InterrogationGrid const& grid, std::size_t vector) {
+  static double valid_pixel_fraction(ImagePair const& pair, InterrogationGrid const& grid, std::size_t vector) {
     if (pair.available.empty()) return 1.0;
     auto const [x, y] = first_pixel(grid, vector);
     double known = 0.0;

@@ -1,5 +1,5 @@
 #include "analysis/preparation/frame_changes.h"
-#include "analysis/preparation/sized_picture.h"
+#include "analysis/preparation/frame_sized_image.h"
 
 namespace gladstone {
 
@@ -7,7 +7,7 @@ FrameChange read_image_mask(SetupTable& table, FramePreparation& preparation) {
   std::string const file = table.required_path("file");
   if (!file.empty()) preparation.files.push_back(file);
   return [file](PreparedFrames& frames) {
-    Image<double> const picture = read_sized_picture(file, frames.known);
+    Image<double> const picture = read_frame_sized_image(file, frames.known);
     for (std::size_t i = 0; i < picture.size(); ++i)
       if (!(picture.data()[i] != 0.0)) frames.known.data()[i] = 0.0;
   };

@@ -21,7 +21,7 @@ FrameChange read_intensity_mask(SetupTable& table, FramePreparation&) {
       if (above) left_out.setTo(1.0, average > *above);
       if (below) left_out.setTo(1.0, average < *below);
     });
-    view_of<cv::Mat1d>(frames.known).setTo(0.0, left_out > 0.5);
+    matrix_view<cv::Mat1d>(frames.known).setTo(0.0, left_out > 0.5);
   };
 }
 

@@ -1,7 +1,7 @@
 #include <algorithm>
 
 #include "analysis/preparation/frame_changes.h"
-#include "analysis/preparation/sized_picture.h"
+#include "analysis/preparation/frame_sized_image.h"
 
 namespace gladstone {
 namespace {
@@ -10,7 +10,7 @@ namespace {
 Image<double> background_of(std::vector<std::string> const& files, bool mean, Image<double> const& frame) {
   Image<double> background;
   for (std::string const& file : files) {
-    Image<double> const picture = read_sized_picture(file, frame);
+    Image<double> const picture = read_frame_sized_image(file, frame);
     if (background.empty()) {
       background = picture;
       continue;

@@ -10,7 +10,7 @@ FrameChange read_high_pass(SetupTable& table, FramePreparation&) {
   return [sigma_px](PreparedFrames& frames) {
     // Average over valid pixels only: divide the filtered levels by the filtered weights.
     cv::Mat1d weight;
-    cv::GaussianBlur(view_of<cv::Mat1d>(frames.known), weight, {}, sigma_px);
+    cv::GaussianBlur(matrix_view<cv::Mat1d>(frames.known), weight, {}, sigma_px);
     for_both<cv::Mat1d>(frames, [&](cv::Mat1d& levels, cv::Mat1d const& known) {
       cv::Mat1d sum, average;
       cv::GaussianBlur(levels.mul(known), sum, {}, sigma_px);

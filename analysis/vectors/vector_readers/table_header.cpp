@@ -92,7 +92,7 @@ ColumnName parse_column_name(std::string_view name) {
 std::vector<std::string> column_names(std::string_view line) {
   line = trim(line);
   while (!line.empty() && (line.front() == '#' || line.front() == '%')) line = trim(line.substr(1));
-  char const separator = separator_of(line);
+  char const separator = detect_separator(line);
   std::vector<std::string> names;
   if (separator == ' ' && line.find('[') != std::string_view::npos) {
     for (std::size_t at = 0; at < line.size();) {

@@ -9,7 +9,7 @@
 
 namespace gladstone::detail {
 
-char separator_of(std::string_view line) {
+char detect_separator(std::string_view line) {
   for (char const candidate : {';', '\t', ','}) {
     if (line.find(candidate) != std::string_view::npos) return candidate;
   }
@@ -75,7 +75,7 @@ RowFormat row_format(std::string_view line, std::size_t columns) {
                       });
     if (fits) return format;
   }
-  return {separator_of(line), '.'};
+  return {detect_separator(line), '.'};
 }
 
 bool has_ambiguous_commas(std::string_view line, std::size_t columns) {

@@ -13,7 +13,7 @@ inline constexpr std::string_view blanks = " \t\r";
 
 /// Returns the separator of a line: the first of semicolon, tab and comma (possibly a decimal comma) that occurs in it,
 /// else a blank.
-char separator_of(std::string_view line);
+char detect_separator(std::string_view line);
 
 /// Splits a line into fields without surrounding blanks. A field in quotation marks may contain the separator (RFC
 /// 4180), and loses its marks; with blanks as separator, quotation marks have no meaning.

@@ -104,7 +104,7 @@ TextTable read_text_table(std::string const& path) {
     if (text.empty()) continue;
 
     // Skip the lines before the first row of numbers; the last of them is the header.
-    if (format.separator == 0 && !number(split(text, separator_of(text)).front(), ',')) {
+    if (format.separator == 0 && !number(split(text, detect_separator(text)).front(), ',')) {
       if (at > most_lines_before_numbers) {
         fail(at, fmt::format("no row of numbers in {} lines; is this a table of vectors?", most_lines_before_numbers));
       }

@@ -21,7 +21,7 @@ std::string listed(std::string_view axes) {
 
 }  // namespace
 
-std::string FieldReading::text() const {
+std::string AxisAssignment::text() const {
   std::string text = fmt::format("[{}] is read as {} ({})", fmt::join(shape, ", "), listed(axes), by);
   if (!turned_round.empty()) {
     text += fmt::format("; {} {} in the file and {} reversed", listed(turned_round),

@@ -28,7 +28,7 @@ inline StoredAxes default_axes() {
 }
 
 /// Assignment of an array's axes to world axes, and its reason.
-struct FieldReading {
+struct AxisAssignment {
   std::string axes = "zyx";              ///< world axes in the order of the file, slowest first
   std::string by = "the default order";  ///< source of the order
   std::vector<std::size_t> shape;        ///< number of nodes along each, in the same order

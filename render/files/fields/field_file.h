@@ -23,7 +23,7 @@ class FieldSource {
   virtual RegularGrid const& grid() const = 0;
   virtual FieldUnits const& units() const = 0;
   /// Assignment of the file's axes to world axes.
-  virtual FieldReading const& reading() const = 0;
+  virtual AxisAssignment const& reading() const = 0;
   /// Returns warnings about assumptions, ignored information and the resampling error; may read the whole field.
   virtual std::vector<std::string> notes() = 0;
   /// Name of the array in the file ("Density_0001"), for messages.

@@ -37,7 +37,7 @@ double PrescriptionLine::number(std::size_t i) const {
 
 double PrescriptionLine::number_or_infinity(std::size_t i) const {
   if (i < words.size()) {
-    std::string const word = in_capitals(words[i]);
+    std::string const word = upper_case(words[i]);
     bool const sign = word.starts_with('-') || word.starts_with('+');
     std::string_view const size = std::string_view(word).substr(sign ? 1 : 0);
     if (size == "INF" || size == "INFINITY") return word.starts_with('-') ? -HUGE_VAL : HUGE_VAL;
@@ -80,7 +80,7 @@ void set_primary_wavelength(Prescription& lens, ListedWavelength const* primary,
                   primary ? primary->where : where, commands, spectral_line::d / unit::nanometre));
 }
 
-std::string in_capitals(std::string text) {
+std::string upper_case(std::string text) {
   std::transform(text.begin(), text.end(), text.begin(),
                  [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
   return text;

@@ -51,7 +51,7 @@ void set_primary_wavelength(Prescription& lens, ListedWavelength const* primary,
                             std::string_view unit_name, std::string const& where, char const* commands);
 
 /// Converts a text to upper case (ASCII).
-std::string in_capitals(std::string text);
+std::string upper_case(std::string text);
 
 /// Parses a numeric glass code: MIL-G-174's six digits (517642: nd 1.517, Vd 64.2), the same with more digits
 /// (516800641667), digits separated by a point (517.642, 516800.641667), or both values separated by a colon

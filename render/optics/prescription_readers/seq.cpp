@@ -26,7 +26,7 @@ class SeqReader {
 
   void read_command(PrescriptionLine const& line) {
     if (line.words.empty()) return;
-    std::string const command = in_capitals(line[0]);
+    std::string const command = upper_case(line[0]);
     if (!private_glasses_where_.empty()) {
       if (command == "SO" || command == "S" || command == "SI") refuse_missing_end();
       if (command == "END") {
@@ -38,10 +38,10 @@ class SeqReader {
       begin_surface(command, line);
     } else if (read_system(command, line) || read_fields(command, line)) {
       return;
-    } else if (is_refused_command(command)) {
+    } else if (is_unsupported_command(command)) {
       throw DataError(line.where,
                       fmt::format("command {} is not supported; remove it if it does not change the lens", line[0]));
-    } else if (!read_of_surface(command, line) && !is_harmless_command(command)) {
+    } else if (!read_of_surface(command, line) && !is_ignored_command(command)) {
       if (unknown_.empty()) unknown_where_ = line.where;
       if (std::find(unknown_.begin(), unknown_.end(), command) == unknown_.end()) {
         unknown_.push_back(command.substr(0, 40));
@@ -118,20 +118,20 @@ class SeqReader {
   void warn(std::string const& text) { result_.warnings.push_back(text); }
 
   void note_unless_zero(PrescriptionLine const& line, char const* what) {
-    if (line.has_nonzero_number()) warn(fmt::format("{}: {}: {}", line.where, in_capitals(line[0]), what));
+    if (line.has_nonzero_number()) warn(fmt::format("{}: {}: {}", line.where, upper_case(line[0]), what));
   }
 
   /// Reads a command that applies to the whole lens. @return false if it is not such a command
   bool read_system(std::string const& command, PrescriptionLine const& line) {
     using Kind = PrescribedAperture::Kind;
     if (command == "RDM") {
-      radii_ = line.size() < 2 || in_capitals(line[1]) != "N";
+      radii_ = line.size() < 2 || upper_case(line[1]) != "N";
       radii_said_ = true;
     } else if (command == "TITLE" || command == "TIT") {
       if (line.size() > 1) result_.title = line[1];
     } else if (command == "DIM") {
       static std::map<std::string, double> const units{{"M", 1e-3}, {"C", 1e-2}, {"I", 25.4e-3}};
-      auto const found = line.size() > 1 ? units.find(in_capitals(line[1]).substr(0, 1)) : units.end();
+      auto const found = line.size() > 1 ? units.find(upper_case(line[1]).substr(0, 1)) : units.end();
       if (found == units.end()) throw DataError(line.where, "DIM names no known unit (M: mm, C: cm, I: inches)");
       unit_ = found->second;
     } else if (command == "EPD") {
@@ -213,7 +213,7 @@ class SeqReader {
 
   /// Parses word i of a line as a medium.
   static PrescribedMedium medium(PrescriptionLine const& line, std::size_t i) {
-    std::string const name = in_capitals(line[i]);
+    std::string const name = upper_case(line[i]);
     if (name.empty() || name == "AIR") return {};
     if (name == "REFL") return {PrescribedMedium::Mirror{}, line.where};
     if (auto const code = read_glass_code(name)) return {code->is, line.where};
@@ -223,14 +223,14 @@ class SeqReader {
   /// Returns the private glass that a medium names, if there is one, else the medium itself.
   PrescribedMedium resolved(PrescribedMedium const& medium) const {
     auto const* const named = std::get_if<PrescribedMedium::Named>(&medium.is);
-    Glass const* const own = named ? private_glasses_.find(in_capitals(named->glass)) : nullptr;
+    Glass const* const own = named ? private_glasses_.find(upper_case(named->glass)) : nullptr;
     return own ? PrescribedMedium{PrescribedMedium::Private{*own}, medium.where} : medium;
   }
 
   /// Returns the surface named by a command ("STO S6"; the object is S0), by default the latest one, and removes its
   /// name from the line.
   SeqSurface& named_surface(PrescriptionLine& line) {
-    if (line.size() > 1 && is_numbered_surface(in_capitals(line[1]))) {
+    if (line.size() > 1 && is_numbered_surface(upper_case(line[1]))) {
       PrescriptionLine const digits{line.where, {line[0], line[1].substr(1)}};
       auto const number = static_cast<std::size_t>(digits.integer(1));
       if (number == 0 || number >= surfaces_.size()) {
@@ -241,7 +241,7 @@ class SeqReader {
       line.words.erase(line.words.begin() + 1);
       return surfaces_[number];
     }
-    if (in_capitals(line[0]).starts_with("STO") && line.size() > 1) {
+    if (upper_case(line[0]).starts_with("STO") && line.size() > 1) {
       PrescriptionLine const number{line.where, {line[0], "S" + line[1]}};
       if (is_numbered_surface(number[1])) {  // the surface is given by its number, "stop 2"
         line.words[1] = number[1];
@@ -278,7 +278,7 @@ class SeqReader {
     if (line.size() < 2) return;
     if (command == "GLA") {
       surface.after = medium(line, 1);
-    } else if (std::isalpha(static_cast<unsigned char>(line[1][0])) != 0 && in_capitals(line[1]) != "INF") {
+    } else if (std::isalpha(static_cast<unsigned char>(line[1][0])) != 0 && upper_case(line[1]) != "INF") {
       return;
     } else if (command == "THI") {
       surface.thickness = line.number_or_infinity(1) * unit_;

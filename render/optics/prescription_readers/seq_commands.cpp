@@ -48,7 +48,7 @@ void for_each_command(std::string_view text, std::function<void(std::string cons
   end_command();
 }
 
-bool is_harmless_command(std::string const& command) {
+bool is_ignored_command(std::string const& command) {
   static std::set<std::string> const harmless{
       "LEN", "INI", "WTW", "WTF", "CCY", "CCX", "THC", "GLC", "DER", "GO",  "SLB", "KC",  "AC",  "BC",  "CC",  "DC",
       "HC",  "POL", "WID", "RES", "WAV", "REM", "CA",  "CLS", "PIK", "THM", "CUM", "DDM", "FFO", "ADC", "BDC", "CDC",
@@ -56,7 +56,7 @@ bool is_harmless_command(std::string const& command) {
   return harmless.contains(command);
 }
 
-bool is_refused_command(std::string const& command) {
+bool is_unsupported_command(std::string const& command) {
   static std::set<std::string> const refused{
       "GRT", "GRO", "GRS", "GRX", "GRY", "GRZ", "DIF", "HOE", "HOR", "HWL", "HCT", "HCO", "HV1", "HV2", "HX1",
       "HY1", "HZ1", "HX2", "HY2", "HZ2", "NSS", "NSC", "SPS", "SPL", "UDS", "UD1", "UD2", "CYL", "YTO", "XTO",
@@ -65,7 +65,7 @@ bool is_refused_command(std::string const& command) {
 }
 
 void PrivateGlasses::read(PrescriptionLine const& line) {
-  if (in_capitals(line[0]) == "PWL") {
+  if (upper_case(line[0]) == "PWL") {
     wavelengths_.clear();
     for (std::size_t i = 1; i < line.size(); ++i) {
       double const wavelength = line.number(i) * unit::nanometre;
@@ -78,10 +78,10 @@ void PrivateGlasses::read(PrescriptionLine const& line) {
     }
     return;
   }
-  std::string const name = in_capitals(line[0]);
+  std::string const name = upper_case(line[0]);
   bool const formula = line.size() > 1 && std::isalpha(static_cast<unsigned char>(line[1][0])) != 0;
   if (formula) {
-    if (in_capitals(line[1]) != "LAU") {
+    if (upper_case(line[1]) != "LAU") {
       throw DataError(
           line.where,
           fmt::format("glass {}: formula {} is not supported (LAU, and indices at the wavelengths of PWL, are)",

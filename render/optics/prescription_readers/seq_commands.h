@@ -16,11 +16,11 @@ void for_each_command(std::string_view text, std::function<void(std::string cons
 
 /// Returns true if a command (in upper case) does not affect rays: weights, variables, names, and solves whose values
 /// are in the file.
-bool is_harmless_command(std::string const& command);
+bool is_ignored_command(std::string const& command);
 
 /// Returns true if a command (in upper case) defines an unsupported surface: gratings, holograms, toroids, splines,
 /// non-sequential parts, and coordinate frames that return to another surface.
-bool is_refused_command(std::string const& command);
+bool is_unsupported_command(std::string const& command);
 
 /// Glasses defined in the file itself, between PRV and END: indices at the wavelengths of PWL [nm], or the coefficients
 /// of Laurent's series (LAU), which is identical to Schott's formula.

@@ -23,7 +23,7 @@ void read_aperture(std::string const& command, PrescriptionLine const& line, dou
                    std::vector<std::string>& warnings) {
   std::string kind;
   for (std::size_t i = 1; i + 1 < line.size(); ++i) {
-    std::string const word = in_capitals(line[i]);
+    std::string const word = upper_case(line[i]);
     if (word == "OBS" || word == "HOL" || word == "EDG" || word == "CLR") kind = word;
   }
   if (line.size() < 2) throw DataError(line.where, fmt::format("{} has no value; the line is cut short", command));
@@ -86,7 +86,7 @@ bool read_seq_surface(std::string const& command, PrescriptionLine const& line, 
     if (is_image) throw DataError(line.where, "the image SI cannot be the stop; mark another one");
     surface.stop = true;
   } else if (command == "RMD") {
-    std::string const mode = line.size() > 1 ? in_capitals(line[1]) : "";
+    std::string const mode = line.size() > 1 ? upper_case(line[1]) : "";
     if (mode == "REFL") {
       surface.after = {PrescribedMedium::Mirror{}, line.where};
     } else if (mode != "REFR") {

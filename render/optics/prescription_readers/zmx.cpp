@@ -91,7 +91,7 @@ class ZmxReader {
     if (key == "UNIT") {
       static std::map<std::string, double> const lengths{
           {"MM", 1e-3}, {"CM", 1e-2}, {"IN", 25.4e-3}, {"METER", 1.0}, {"M", 1.0}};
-      auto const found = line.size() > 1 ? lengths.find(in_capitals(line[1])) : lengths.end();
+      auto const found = line.size() > 1 ? lengths.find(upper_case(line[1])) : lengths.end();
       if (found == lengths.end()) throw DataError(line.where, "UNIT names no known unit (MM, CM, IN or METER)");
       unit_ = found->second;
     }

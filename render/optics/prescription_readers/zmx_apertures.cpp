@@ -102,7 +102,7 @@ void put_apertures(ZmxApertures const& apertures, PrescribedSurface& surface, st
       as_outline(largest, false);
     } else {
       surface.semi_diameter = largest;
-      surface.semi_diameter_is_an_edge = surface.has_aperture = true;
+      surface.semi_diameter_vignettes = surface.has_aperture = true;
     }
   }
   if (disc > 0) {
@@ -112,13 +112,13 @@ void put_apertures(ZmxApertures const& apertures, PrescribedSurface& surface, st
       surface.obscured = disc;
     }
   }
-  bool const edge = surface.semi_diameter_is_an_edge && !surface.has_aperture;
+  bool const edge = surface.semi_diameter_vignettes && !surface.has_aperture;
   if (edge && surface.outline.kind != Outline::Kind::none && !surface.outline.blocks) {
-    surface.semi_diameter_is_an_edge = false;  // the aperture replaces it
+    surface.semi_diameter_vignettes = false;  // the aperture replaces it
   }
   double const blocked = off_axis ? 0 : disc;
   if (edge && blocked > 0 && blocked >= surface.semi_diameter) {
-    surface.semi_diameter_is_an_edge = false;
+    surface.semi_diameter_vignettes = false;
     warn(
         fmt::format("the obscuration is as large as the surface's semi-diameter, {:.6g} mm, which is taken as the "
                     "disc's own: light passes outside",

@@ -112,7 +112,7 @@ void read_zmx_surface(PrescriptionLine const& line, double unit, ZmxSurface& zmx
   }
   if (key == "DIAM" && line.number_or_infinity(1) > 0) {
     surface.semi_diameter = line.number_or_infinity(1) * unit;
-    surface.semi_diameter_is_an_edge = line.size() > 2 && line.integer(2) != 0;
+    surface.semi_diameter_vignettes = line.size() > 2 && line.integer(2) != 0;
   }
   if (key == "GLAS") {
     zmx.has_glass = true;

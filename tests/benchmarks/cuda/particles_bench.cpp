@@ -33,8 +33,8 @@ Setup droplets_setup(Setup setup, double sheet) {
 /// @param rays of a particle; 0: what accuracy takes
 Scene droplets_scene(Setup const& setup, std::uint64_t rays) {
   Scene scene = build_scene(setup);
-  scene = with_step(scene, plan_step_by_rays(scene));
-  if (rays == 0) scene = with_rays(scene, plan_rays_by_rays(scene));
+  scene = with_step(scene, determine_step_by_tracing(scene));
+  if (rays == 0) scene = with_rays(scene, determine_ray_budget_by_tracing(scene));
   if (rays > 0) scene.rays_per_dot = rays;
   return scene;
 }

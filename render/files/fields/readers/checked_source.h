@@ -11,7 +11,7 @@
 namespace gladstone {
 
 /// Selection of a field in a file.
-struct FieldWish {
+struct FieldSelection {
   std::string dataset;  ///< name of the array in the file; empty: the only suitable one
   int values = 1;       ///< number of values per node: 1, or 3 for a velocity
   std::string axes;     ///< world axes in the order of the file, slowest first; empty: determined from the file
@@ -32,7 +32,7 @@ class CheckedSource {
   std::array<int, 3> const& nodes() const { return nodes_; }  ///< nodes along each axis, fastest first
   StoredAxes const& axes() const { return axes_; }
   FieldUnits const& units() const { return units_; }
-  FieldReading const& reading() const { return reading_; }
+  AxisAssignment const& reading() const { return reading_; }
   std::vector<std::string> const& notes() const { return notes_; }
   virtual int significant_bits() const = 0;
 
@@ -55,7 +55,7 @@ class CheckedSource {
   std::array<int, 3> nodes_{1, 1, 1};
   StoredAxes axes_ = default_axes();
   FieldUnits units_;
-  FieldReading reading_;
+  AxisAssignment reading_;
   std::vector<std::string> notes_;
 
  private:

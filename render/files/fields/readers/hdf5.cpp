@@ -121,7 +121,7 @@ struct Coordinates {
 
 class Hdf5Source final : public CheckedSource {
  public:
-  Hdf5Source(Hdf5Reader file, std::string const& path, std::string const& dataset, FieldWish const& wish)
+  Hdf5Source(Hdf5Reader file, std::string const& path, std::string const& dataset, FieldSelection const& wish)
       : CheckedSource(path, dataset, wish.values), file_(std::move(file)), shape_(file_.shape(name_)) {
     auto const found = find_axes(shape_, values_);
     if (!found) refuse_shape();
@@ -468,7 +468,7 @@ class Hdf5Source final : public CheckedSource {
 
 }  // namespace
 
-std::unique_ptr<CheckedSource> open_hdf5(std::string const& path, FieldWish const& wish) {
+std::unique_ptr<CheckedSource> open_hdf5(std::string const& path, FieldSelection const& wish) {
   Hdf5Reader file(path);
   std::string const name = wish.dataset.empty() ? only_field(file, path, wish.values) : wish.dataset;
   return std::make_unique<Hdf5Source>(std::move(file), path, name, wish);

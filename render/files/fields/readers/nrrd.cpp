@@ -380,7 +380,7 @@ void convert(NrrdHeader::Type type, std::vector<char> const& bytes, bool swap, s
 
 class NrrdSource final : public CheckedSource {
  public:
-  NrrdSource(std::string const& path, NrrdHeader header, FieldWish const& wish)
+  NrrdSource(std::string const& path, NrrdHeader header, FieldSelection const& wish)
       : CheckedSource(path, header.content.empty() ? std::filesystem::path(path).filename().string() : header.content,
                       wish.values),
         header_(std::move(header)),
@@ -418,7 +418,7 @@ class NrrdSource final : public CheckedSource {
 
 }  // namespace
 
-std::unique_ptr<CheckedSource> open_nrrd(std::string const& path, FieldWish const& wish) {
+std::unique_ptr<CheckedSource> open_nrrd(std::string const& path, FieldSelection const& wish) {
   if (!wish.dataset.empty()) {
     throw DataError(path, "contains one field without a name; leave dataset = \"" + wish.dataset + "\" out");
   }

@@ -99,7 +99,7 @@ std::string decoded_name(std::string const& name) {
 
 class LegacyReader {
  public:
-  LegacyReader(std::string const& path, FieldWish const& wish)
+  LegacyReader(std::string const& path, FieldSelection const& wish)
       : file_(std::make_shared<InputFile>(path, "a field file")), cursor_(*file_), wish_(wish) {
     if (!cursor_.line().starts_with("# vtk DataFile"))
       refuse("is not a legacy VTK file (it does not begin with # vtk)");
@@ -383,7 +383,7 @@ class LegacyReader {
 
   std::shared_ptr<InputFile> file_;
   Cursor cursor_;
-  FieldWish const& wish_;
+  FieldSelection const& wish_;
   bool text_ = false;
   VtkGrid grid_;
   std::string next_key_;
@@ -392,7 +392,7 @@ class LegacyReader {
 
 }  // namespace
 
-std::unique_ptr<CheckedSource> open_vtk_legacy(std::string const& path, FieldWish const& wish) {
+std::unique_ptr<CheckedSource> open_vtk_legacy(std::string const& path, FieldSelection const& wish) {
   return make_vtk_source(path, LegacyReader(path, wish).field(), wish);
 }
 

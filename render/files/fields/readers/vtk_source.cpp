@@ -63,7 +63,7 @@ StoredAxes rectilinear_axes(VtkGrid const& grid, VtkPlace place, std::string con
 
 class VtkSource final : public CheckedSource {
  public:
-  VtkSource(std::string const& path, VtkField field, FieldWish const& wish)
+  VtkSource(std::string const& path, VtkField field, FieldSelection const& wish)
       : CheckedSource(path, field.name, wish.values), field_(std::move(field)) {
     VtkGrid const& grid = field_.grid;
     bool const image = grid.coordinates[0].empty();
@@ -120,11 +120,11 @@ void check_grid(VtkGrid const& grid, int values, std::string const& path) {
   if (all * sizeof(double) > 1e15) throw DataError(path, "has an implausibly large grid; check its extent");
 }
 
-std::unique_ptr<CheckedSource> make_vtk_source(std::string const& path, VtkField field, FieldWish const& wish) {
+std::unique_ptr<CheckedSource> make_vtk_source(std::string const& path, VtkField field, FieldSelection const& wish) {
   return std::make_unique<VtkSource>(path, std::move(field), wish);
 }
 
-std::string no_such_array(FieldWish const& wish, std::vector<std::string> const& names) {
+std::string no_such_array(FieldSelection const& wish, std::vector<std::string> const& names) {
   std::string const wanted = wish.values == 1 ? "scalar field" : fmt::format("field of {} components", wish.values);
   return fmt::format("has no {}{} among its data of points and cells{}", wanted,
                      wish.dataset.empty() ? "" : " \"" + wish.dataset + '"',

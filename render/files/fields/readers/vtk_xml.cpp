@@ -123,7 +123,7 @@ ValueStore load_pieces(VtkArrays const& arrays) {
 /// Reader of the XML tree of a file.
 class VtkXmlReader {
  public:
-  VtkXmlReader(std::string const& path, FieldWish const& wish)
+  VtkXmlReader(std::string const& path, FieldSelection const& wish)
       : arrays_(std::make_shared<VtkArrays>(VtkArrays{InputFile(path, "a field file"), {}, {}, {}, {}, {}, {}})),
         path_(path),
         wish_(wish),
@@ -338,7 +338,7 @@ class VtkXmlReader {
 
   std::shared_ptr<VtkArrays> arrays_;
   std::string path_;
-  FieldWish const& wish_;
+  FieldSelection const& wish_;
   Head head_;
   std::string kind_;
   VtkGrid grid_;
@@ -348,7 +348,7 @@ class VtkXmlReader {
 
 }  // namespace
 
-std::unique_ptr<CheckedSource> open_vtk_xml(std::string const& path, FieldWish const& wish) {
+std::unique_ptr<CheckedSource> open_vtk_xml(std::string const& path, FieldSelection const& wish) {
   return make_vtk_source(path, VtkXmlReader(path, wish).field(), wish);
 }
 

@@ -1,4 +1,4 @@
-#include "studies/sweep/claims.h"
+#include "studies/sweep/case_locks.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -24,12 +24,12 @@ namespace {
 }
 
 /// Opens the claims file. @return -1 with errno set if it cannot be opened
-int open_claims(std::string const& path, Claims::Use use) {
-  return ::open(path.c_str(), (use == Claims::Use::take ? O_RDWR | O_CREAT : O_RDONLY) | O_CLOEXEC, 0666);
+int open_claims(std::string const& path, CaseLocks::Use use) {
+  return ::open(path.c_str(), (use == CaseLocks::Use::take ? O_RDWR | O_CREAT : O_RDONLY) | O_CLOEXEC, 0666);
 }
 
-[[noreturn]] void not_opened(std::string const& path, Claims::Use use, int error) {
-  if (use == Claims::Use::take && (error == EACCES || error == EPERM || error == EROFS)) {
+[[noreturn]] void not_opened(std::string const& path, CaseLocks::Use use, int error) {
+  if (use == CaseLocks::Use::take && (error == EACCES || error == EPERM || error == EROFS)) {
     throw OutputError(path, fmt::format("is read-only ({}), but the process that computes a case must lock it there; "
                                         "grant write permission in {}, or run a copy of the study",
                                         std::strerror(error), std::filesystem::path(path).parent_path().string()));
@@ -39,16 +39,17 @@ int open_claims(std::string const& path, Claims::Use use) {
 
 }  // namespace
 
-Claims::Claims(std::string const& run, Use use) : path_((std::filesystem::path(run) / run_file::claims).string()) {
+CaseLocks::CaseLocks(std::string const& run, Use use)
+    : path_((std::filesystem::path(run) / run_file::claims).string()) {
   file_ = open_claims(path_, use);
   if (file_ < 0 && (use == Use::take || errno != ENOENT)) not_opened(path_, use, errno);
 }
 
-Claims::~Claims() {
+CaseLocks::~CaseLocks() {
   if (file_ >= 0) ::close(file_);
 }
 
-bool Claims::take(std::size_t index) {
+bool CaseLocks::take(std::size_t index) {
   bool taken = lock(index);
   // Limit the attempts: on some file systems the inode number changes with every call.
   for (int attempt = 0; attempt < 5 && is_replaced(); ++attempt) {
@@ -60,25 +61,25 @@ bool Claims::take(std::size_t index) {
   return taken;
 }
 
-bool Claims::lock(std::size_t index) {
+bool CaseLocks::lock(std::size_t index) {
   int const error = lock_bytes(file_, index, 1);
   if (error != 0 && error != EAGAIN) no_locks(path_, error);
   return error == 0;
 }
 
-bool Claims::is_replaced() const {
+bool CaseLocks::is_replaced() const {
   struct stat mine {};
   struct stat there {};
   if (::fstat(file_, &mine) != 0 || ::stat(path_.c_str(), &there) != 0) return true;
   return mine.st_dev != there.st_dev || mine.st_ino != there.st_ino;
 }
 
-void Claims::release(std::size_t index) { unlock_bytes(file_, index, 1); }
+void CaseLocks::release(std::size_t index) { unlock_bytes(file_, index, 1); }
 
-bool Claims::held(std::size_t index) const { return held_from(index, 1); }
-bool Claims::any_held() const { return held_from(0, 0); }
+bool CaseLocks::held(std::size_t index) const { return held_from(index, 1); }
+bool CaseLocks::any_held() const { return held_from(0, 0); }
 
-bool Claims::held_from(std::size_t first, std::size_t count) const {
+bool CaseLocks::held_from(std::size_t first, std::size_t count) const {
   if (file_ < 0) return false;
   int const error = find_lock(file_, first, count);
   if (error != 0 && error != EAGAIN) no_locks(path_, error);

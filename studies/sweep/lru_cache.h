@@ -9,9 +9,9 @@ namespace gladstone {
 
 /// Least-recently-used cache of values by a text key, with limits on the number of entries and on their size in bytes.
 template <class Value>
-class Recent {
+class LruCache {
  public:
-  explicit Recent(std::size_t most) : most_(most) {}
+  explicit LruCache(std::size_t most) : most_(most) {}
 
   /// Returns the value and marks it as most recently used, or returns nullptr if it is not cached.
   Value* find(std::string const& key) {

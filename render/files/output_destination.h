@@ -6,12 +6,12 @@
 namespace gladstone {
 
 /// Destination of an output: its absolute path with all links resolved, and the parent directories created for it.
-class OutputPlace {
+class OutputDestination {
  public:
   /// Resolves the path; creates nothing.
   /// @throws OutputError if the path is empty, names an open file of a process (/dev/stdout, /proc/self/fd/1), or its
   ///         links form a circle
-  explicit OutputPlace(std::string path);
+  explicit OutputDestination(std::string path);
 
   /// Path as the user wrote it, for messages.
   std::string const& asked() const { return asked_; }

@@ -2,7 +2,7 @@
 #include <random>
 
 #include "render/base/vec.h"
-#include "tests/end_to_end/support/workplace.h"
+#include "tests/end_to_end/support/program_fixture.h"
 
 namespace gladstone::end_to_end {
 namespace {
@@ -20,7 +20,7 @@ struct Scene {
 };
 
 /// The result of the decorrelation test is reported to the user.
-class PairOfFrames : public Workplace {
+class PairOfFrames : public ProgramFixture {
  protected:
   void write_frames(Scene const& scene, Vec2d displacement) const {
     std::mt19937 dots(1);

@@ -13,20 +13,20 @@ namespace gladstone {
 namespace {
 
 /// Returns the automatic plan, by the fast renderer if it supports the scene.
-RaysPlan plan_rays(Scene& scene) {
+RayBudget determine_ray_budget(Scene& scene) {
   auto const dots = focused_dots(scene);
   if (dots) {
-    RaysPlan const plan = plan_rays(*dots);
+    RayBudget const plan = determine_ray_budget(*dots);
     scene.rays_per_dot = plan.rays;
     return plan;
   }
-  RaysPlan const plan = plan_rays_by_rays(scene);
+  RayBudget const plan = determine_ray_budget_by_tracing(scene);
   scene = with_rays(std::move(scene), plan);
   return plan;
 }
-RaysPlan plan_rays_anew(Scene& scene) {
+RayBudget plan_rays_anew(Scene& scene) {
   scene.setup.render.rays_per_dot.reset();
-  return plan_rays(scene);
+  return determine_ray_budget(scene);
 }
 
 /// Returns the truth of a scene with another step and the same rays.
@@ -45,7 +45,7 @@ TEST(PlanStep, HalvingChangesNoDotByATenThousandthOfAPixel) {
     setup.target.dot_diameter_px = 0;
     setup.medium.field = dns_plane(instant);
     Scene scene = scene_with_dots(setup, lattice(512, 14, 36), 16);
-    StepPlan const plan = plan_step(scene);
+    IntegrationStep const plan = plan_step(scene);
     EXPECT_LT(plan.change_px, 1e-4);
     EXPECT_EQ(scene.step, plan.step_mm * 1e-3);
     EXPECT_LE(scene.step, scene.medium.coarsest_step);
@@ -80,7 +80,7 @@ TEST(PlanStep, KeepsAGivenStepAndMeasuresIt) {
   setup.medium.field = dns_plane("kepeak");
   setup.medium.step_mm = 5.0;
   Scene scene = scene_with_dots(setup, lattice(512, 10, 50), 1);
-  StepPlan const plan = plan_step(scene);
+  IntegrationStep const plan = plan_step(scene);
   EXPECT_EQ(plan.step_mm, 5.0);
   EXPECT_EQ(scene.step, 5e-3);
   EXPECT_GT(plan.change_px, 0);
@@ -91,7 +91,7 @@ TEST(PlanRays, KeepsAGivenNumber) {
   auto setup = table1_setup(64);
   Scene scene = scene_with_dots(setup, {{30, 30}}, 77);
   scene.rays_per_dot = 1;
-  RaysPlan const plan = plan_rays(scene);
+  RayBudget const plan = determine_ray_budget(scene);
   EXPECT_EQ(plan.rays, 77u);
   EXPECT_TRUE(std::isnan(plan.truth_error_px)) << "nothing was measured";
   EXPECT_TRUE(std::isnan(plan.image_error_levels));
@@ -106,7 +106,7 @@ TEST(PlanRays, OneChiefRayOfAPointIsEnough) {
   setup.lens.f_number = std::numeric_limits<double>::infinity();
   setup.target.dot_diameter_px = 0;
   Scene scene = scene_with_dots(setup, {{30, 30}, {12, 40}}, 1);
-  RaysPlan const plan = plan_rays_anew(scene);
+  RayBudget const plan = plan_rays_anew(scene);
   EXPECT_EQ(plan.rays, 1u);
   EXPECT_TRUE(plan.converged);
 }
@@ -118,9 +118,9 @@ TEST(PlanRays, MakesTableAndRulesFinerWhereFrontsAskForIt) {
   auto setup = table1_setup(64);
   setup.medium.field = dns_plane("kepeak");
   Scene scene = scene_with_dots(setup, lattice(64, 4, 14), 512);
-  RaysPlan const usual = measure_table_error(focused_dots(scene).value());
+  RayBudget const usual = measure_table_error(focused_dots(scene).value());
   EXPECT_EQ(usual.fineness, 1);
-  RaysPlan const plan = plan_rays_anew(scene);
+  RayBudget const plan = plan_rays_anew(scene);
   EXPECT_EQ(plan.fineness, 2);
   EXPECT_LT(plan.rays, usual.rays);
   EXPECT_LT(plan.image_error_levels, usual.image_error_levels / 2) << "of " << usual.image_error_levels;
@@ -130,11 +130,11 @@ TEST(PlanRays, MakesTableAndRulesFinerWhereFrontsAskForIt) {
 
 // The plan of the table depends on the view and the field, not on the dots of the scene: the truth of a dot is
 // independent of the others.
-TEST(PlanRays, HangsOnNoDots) {
+TEST(PlanRays, IsIndependentOfDots) {
   auto setup = table1_setup(64);
   setup.medium.field = dns_plane("kepeak");
   Scene few = scene_with_dots(setup, {{21, 40}}, 1), many = scene_with_dots(setup, lattice(64, 4, 14), 1);
-  RaysPlan const one = plan_rays_anew(few), other = plan_rays_anew(many);
+  RayBudget const one = plan_rays_anew(few), other = plan_rays_anew(many);
   EXPECT_EQ(one.fineness, other.fineness);
   EXPECT_EQ(one.rays, other.rays);
   EXPECT_EQ(one.truth_error_px, other.truth_error_px);
@@ -143,12 +143,12 @@ TEST(PlanRays, HangsOnNoDots) {
 }
 
 // With a light cone of 105 cells, at f/4, the plan reports that the required accuracy cannot be reached.
-TEST(PlanRays, AdmitsWhatItCannotReach) {
+TEST(PlanRays, ReportsUnreachableTolerance) {
   auto setup = table1_setup(64);
   setup.medium.field = dns_plane("kepeak");
   setup.lens.f_number = 4;
   Scene scene = scene_with_dots(setup, lattice(64, 4, 14), 1);
-  RaysPlan const plan = plan_rays_anew(scene);
+  RayBudget const plan = plan_rays_anew(scene);
   EXPECT_FALSE(plan.converged);
   EXPECT_EQ(plan.fineness, 2);
   EXPECT_GT(plan.image_error_levels, 0.5);
@@ -165,7 +165,7 @@ TEST(PlanRays, StaysWithinItsBudget) {
   setup.lens.focus = Focus::medium;
   Scene scene = build_scene(setup);
   plan_step(scene);
-  RaysPlan const plan = plan_rays_anew(scene);
+  RayBudget const plan = plan_rays_anew(scene);
   EXPECT_FALSE(plan.converged);
   EXPECT_GT(plan.image_error_levels, image_tolerance_levels);
   double const seconds = ray_seconds(scene) * static_cast<double>(plan.most);
@@ -185,16 +185,16 @@ TEST(PlanRays, CountsTheTimeOfARay) {
   EXPECT_NEAR(rays_seconds(scene) - coarse, 16 * 9 * steps * 0.12e-6, 1e-12);
   scene.step /= 1e5;  // a tenth of a second for every ray of a dot: none would be within the budget
   EXPECT_GT(ray_seconds(scene), source_budget_s);
-  EXPECT_EQ(most_rays_of_source(scene), 1024u);
+  EXPECT_EQ(max_rays_per_source(scene), 1024u);
 }
 
 // The stated accuracy is reached: truth to 1e-3 px rms, and the measurement image to half a grey level of 12 bits, rms
 // over lit pixels, compared with 65,536 rays alone, whose scatter is about 4e-4 px and a third of a level.
-TEST(PlanRays, KeepsItsPromiseAgainstManyRaysByThemselves) {
+TEST(PlanRays, EstimatedErrorMatchesReferenceWithManyRays) {
   auto setup = table1_setup(64);
   setup.medium.field = sinusoid(0.015, 5e-3);
   Scene scene = scene_with_dots(setup, lattice(64, 3, 18), 1);
-  RaysPlan const plan = plan_rays_anew(scene);
+  RayBudget const plan = plan_rays_anew(scene);
   ASSERT_TRUE(plan.converged) << plan.rays << " rays, " << plan.truth_error_px << " px, " << plan.image_error_levels
                               << " levels";
   EXPECT_EQ(plan.bits, 12);
@@ -253,7 +253,7 @@ TEST(MeasureRays, FindsTheScatterOfWholePictures) {
     Scene scene = build_scene(setup);
     plan_step(scene);
     scene.rays_per_dot = focus == Focus::target ? 256 : 2048;
-    double const estimated = measure_rays_by_rays(scene).image_error_levels, found = scatter_of_pictures(scene);
+    double const estimated = measure_errors_by_tracing(scene).image_error_levels, found = scatter_of_pictures(scene);
     EXPECT_NEAR(estimated / found, 1, 0.25) << estimated << " levels for " << found;
   }
 }
@@ -276,7 +276,7 @@ TEST(MeasureTableError, TellsHowFarImagesAreOff) {
     auto setup = table1_setup(64);
     setup.medium.field = dns_plane(instant);
     Scene const scene = scene_with_dots(setup, lattice(64, 3, 20), 128);
-    RaysPlan const told = measure_table_error(focused_dots(scene).value());
+    RayBudget const told = measure_table_error(focused_dots(scene).value());
     double const found = table_is_off(scene);
     EXPECT_LT(told.image_error_levels, 2 * found) << instant << " found " << found;
     EXPECT_GT(std::hypot(told.image_error_levels, 0.4), found / 2) << instant << " found " << found;
@@ -289,7 +289,7 @@ TEST(MeasureTableError, TellsWhatItCanResolve) {
   auto setup = table1_setup(64);
   setup.medium.field = uniform_gradient(20, 10);
   Scene const scene = scene_with_dots(setup, lattice(64, 3, 20), 32);
-  RaysPlan const told = measure_table_error(focused_dots(scene).value());
+  RayBudget const told = measure_table_error(focused_dots(scene).value());
   EXPECT_GT(told.truth_resolution_px, 0);
   EXPECT_LT(told.truth_resolution_px, 1e-4);
   EXPECT_GT(told.image_resolution_levels, 0);
@@ -312,7 +312,7 @@ TEST(MeasureTableError, FollowsDotsThatMoveFar) {
 
 // A dot that is invisible in all scramblings is ignored; one that is visible in some of them counts as displaced from
 // its position to zero, which increases the scatter.
-TEST(RayScatter, ADotThatIsNotSeenTellsNothing) {
+TEST(RayScatter, InvisibleDotsDoNotCount) {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   MeanDisplacement const unseen = MeanDisplacement::of({{nan, nan}, {nan, nan}, {nan, nan}, {nan, nan}});
   MeanDisplacement const twice = MeanDisplacement::of({{1, 0}, {nan, nan}, {1, 0}, {nan, nan}});

@@ -1,8 +1,8 @@
-#include "studies/design/bench.h"
+#include "studies/design/design_point.h"
 
 namespace gladstone {
 
-double resolved_wavelength(Bench<double> const& bench) {
+double resolved_wavelength(DesignPoint<double> const& bench) {
   // Initial guess: a Gaussian with the same curvature at long waves, 1 - (2 pi sigma / wavelength)^2 / 2; the sigma of
   // a disc is a quarter of its diameter.
   double const cone = bench.cone_diameter(), dot = bench.dot_diameter * bench.z_a / bench.z_b();

@@ -1,4 +1,4 @@
-#include "analysis/preparation/sized_picture.h"
+#include "analysis/preparation/frame_sized_image.h"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 
 namespace gladstone {
 
-Image<double> read_sized_picture(std::string const& file, Image<double> const& frame) {
+Image<double> read_frame_sized_image(std::string const& file, Image<double> const& frame) {
   Image<double> picture = read_image(file);
   if (picture.columns() != frame.columns() || picture.rows() != frame.rows())
     throw DataError(file, fmt::format("is {} x {} px, but the frames are {} x {} px (they are combined pixel by "

@@ -62,7 +62,7 @@ inline std::string place_of(std::string const& text, std::string const& piece) {
 }
 
 /// A new folder for each test, in which the program runs.
-class Workplace : public testing::Test {
+class ProgramFixture : public testing::Test {
  protected:
   void SetUp() override {
     auto const* const info = testing::UnitTest::GetInstance()->current_test_info();

@@ -1,4 +1,4 @@
-#include "render/scene/ray_plan.h"
+#include "render/scene/ray_budget.h"
 
 #include <algorithm>
 #include <cmath>
@@ -39,10 +39,11 @@ std::vector<std::size_t> largest_of(std::vector<double> const& value) {
 
 double Probe::largest_shift() const { return shift.empty() ? 0.0 : *std::max_element(shift.begin(), shift.end()); }
 
-StepPlan choose_step(Scene const& scene,
-                     std::function<void(double step, std::function<void(StepProbes const&)> const&)> const& prepare) {
+IntegrationStep choose_step(
+    Scene const& scene,
+    std::function<void(double step, std::function<void(StepProbes const&)> const&)> const& prepare) {
   // The step is stored in mm, so that a setup file contains exactly the number used.
-  StepPlan plan;
+  IntegrationStep plan;
   std::optional<double> const given = scene.setup.medium.step_mm;
   bool const empty = std::holds_alternative<NoMedium<double>>(scene.medium.view);
   double const coarsest = empty ? scene.setup.medium.thickness : scene.medium.coarsest_step;
@@ -61,7 +62,7 @@ StepPlan choose_step(Scene const& scene,
           plan.change_px = *most;
           plan.limiting_dot = probes.dots[static_cast<std::size_t>(most - change.begin())];
         }
-        bool const finest = halvings == 12 || depth_mm > 0.5 * most_steps * plan.step_mm;
+        bool const finest = halvings == 12 || depth_mm > 0.5 * max_step_count * plan.step_mm;
         if (given || plan.change_px < step_tolerance_px || finest) break;
         plan.step_mm /= 2;
         coarse = std::move(fine);
@@ -71,7 +72,7 @@ StepPlan choose_step(Scene const& scene,
   return plan;
 }
 
-Scene with_step(Scene scene, StepPlan const& plan) {
+Scene with_step(Scene scene, IntegrationStep const& plan) {
   scene.step = plan.step_mm * unit::millimetre;
   scene.widen_pupil(1.25 * plan.largest_shift);
   return scene;
@@ -82,7 +83,8 @@ double ray_seconds(Scene const& scene) {
   constexpr double a_ray = 0.6e-6, a_step = 0.12e-6, a_pixel = 1.4e-9, a_surface = 60e-9;
   std::optional<AiryTable> airy;
   double const width = 2 * make_spot(scene, airy).half_width() + 1;
-  double const surfaces = scene.setup.on_bench() ? 0.0 : static_cast<double>(scene.camera.elements.size());
+  double const surfaces =
+      scene.setup.has_closed_form_layout() ? 0.0 : static_cast<double>(scene.camera.elements.size());
   return a_ray + a_step * scene.steps_across() + frame_count * (a_pixel * width * width + a_surface * surfaces);
 }
 
@@ -96,24 +98,24 @@ double theory_ray_seconds(Scene const& scene) {
   return samples_of_panel * panels * a_sample;
 }
 
-std::uint64_t most_rays_of_source(Scene const& scene) {
+std::uint64_t max_rays_per_source(Scene const& scene) {
   double const seconds = ray_seconds(scene);
   std::uint64_t most = always_allowed;
   while (most < most_rays && 2 * static_cast<double>(most) * seconds <= source_budget_s) most *= 2;
   return most;
 }
 
-std::optional<RaysPlan> given_rays(Setup const& setup) {
+std::optional<RayBudget> configured_ray_budget(Setup const& setup) {
   if (!setup.render.rays_per_dot) return std::nullopt;
-  RaysPlan plan;
+  RayBudget plan;
   plan.rays = *setup.render.rays_per_dot;
-  plan.bits = plan_bits(setup.camera);
+  plan.bits = error_bit_depth(setup.camera);
   return plan;
 }
 
-Scene with_rays(Scene scene, RaysPlan const& plan) {
+Scene with_rays(Scene scene, RayBudget const& plan) {
   scene.rays_per_dot = plan.most > 0 ? plan.most : plan.rays;
-  scene.by_need = plan.by_need;
+  scene.adaptive_criteria = plan.adaptive_criteria;
   scene.rays_at_side_faces = plan.rays_at_side_faces;
   scene.fineness = plan.fineness;
   if (plan.method != RenderMethod::automatic) scene.setup.render.method = plan.method;

@@ -10,8 +10,7 @@ inline constexpr int warp_size = 32;
 inline constexpr unsigned int whole_warp = 0xffffffffu;
 
 /// Adds the PSF of one ray to an image. Called by one full warp.
-__device__ inline void lay_down_spot(SpotView const& spot, Vec2d p, double units, int frame,
-                                     DeviceImages const& images) {
+__device__ inline void add_psf(SpotView const& spot, Vec2d p, double units, int frame, DeviceImages const& images) {
   if (!(fabs(p.x) < 1e8 && fabs(p.y) < 1e8)) return;
   int const half = spot.half_width(), width = 2 * half + 1;
   int const column = static_cast<int>(floor(p.x + 0.5)) - half, row = static_cast<int>(floor(p.y + 0.5)) - half;
@@ -35,13 +34,13 @@ __device__ inline void lay_down_spot(SpotView const& spot, Vec2d p, double units
 /// @tparam Launch  has spot, sign and images
 /// @param mine  whether this lane's ray is to be added
 template <class Launch>
-__device__ void lay_down_spots(Launch const& launch, bool mine, RayHit<double> const& hit, int frame) {
+__device__ void add_psfs(Launch const& launch, bool mine, RayHit<double> const& hit, int frame) {
   for (unsigned int rest = __ballot_sync(whole_warp, mine); rest != 0; rest &= rest - 1) {
     int const lane = __ffs(static_cast<int>(rest)) - 1;
     Vec2d const p{__shfl_sync(whole_warp, hit.pixel.x, lane), __shfl_sync(whole_warp, hit.pixel.y, lane)};
     double const weight = __shfl_sync(whole_warp, hit.weight, lane);
     int const to = __shfl_sync(whole_warp, frame, lane);
-    lay_down_spot(launch.spot, p, launch.sign * weight * launch.images.units_per_weight, to, launch.images);
+    add_psf(launch.spot, p, launch.sign * weight * launch.images.units_per_weight, to, launch.images);
   }
 }
 

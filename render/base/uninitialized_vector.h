@@ -8,10 +8,10 @@ namespace gladstone {
 
 /// Allocator that default-initialises new elements, so that numbers are left uninitialised.
 template <class T>
-struct UnsetAllocator : std::allocator<T> {
+struct UninitializedAllocator : std::allocator<T> {
   template <class Other>
   struct rebind {
-    using other = UnsetAllocator<Other>;
+    using other = UninitializedAllocator<Other>;
   };
   template <class Other>
   void construct(Other* at) {
@@ -25,6 +25,6 @@ struct UnsetAllocator : std::allocator<T> {
 
 /// Vector whose resize() does not initialise numbers: for large arrays that threads fill right afterwards.
 template <class T>
-using UnsetVector = std::vector<T, UnsetAllocator<T>>;
+using UninitializedVector = std::vector<T, UninitializedAllocator<T>>;
 
 }  // namespace gladstone

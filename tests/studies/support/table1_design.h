@@ -1,13 +1,13 @@
 #pragma once
 
-#include "studies/design/bench.h"
+#include "studies/design/design_point.h"
 
 namespace gladstone {
 
 /// Medium of Table 1 (Rajendran et al. 2019), as evaluated in physics.md: K = 2.26e-4, n0 = 1.00027685, L_z = 10 mm, 10
 /// um pixels, 532 nm.
-inline BenchGiven table1_given() {
-  BenchGiven given;
+inline FixedDesignParameters table1_given() {
+  FixedDesignParameters given;
   given.camera.columns = given.camera.rows = 512;
   given.camera.pixel_pitch = 10e-6;
   given.window = WindowTransfer(WindowWeighting::gaussian, 16);
@@ -15,8 +15,8 @@ inline BenchGiven table1_given() {
 }
 
 /// Its set-up: f = 105 mm, f/11, Z_A = 750 mm, Z_D = 250 mm, dots of 3 px.
-inline Bench<double> table1_bench(BenchGiven const& given) {
-  Bench<double> bench{&given, 0.105, 11, 0.75, 0.25, 0};
+inline DesignPoint<double> table1_design(FixedDesignParameters const& given) {
+  DesignPoint<double> bench{&given, 0.105, 11, 0.75, 0.25, 0};
   bench.dot_diameter = 3 * bench.pixel_at_dots();
   return bench;
 }

@@ -1,4 +1,4 @@
-#include "render/optics/aim_disc.h"
+#include "render/optics/apparent_pupil.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,7 +15,7 @@ constexpr double near_enough = 1e-3;  // accuracy of the rim points, relative to
 constexpr double ahead = 1;           // start of parallel rays, ahead of the first vertex [m]
 
 /// Returns a full Newton step; nullopt if a neighbouring ray is lost or the Jacobian is singular.
-std::optional<Vec2d> newton_step(StopSight const& sight, Vec2d p, Vec2d miss) {
+std::optional<Vec2d> newton_step(StopMapping const& sight, Vec2d p, Vec2d miss) {
   auto const right = sight.place(p + Vec2d{sight.step, 0}), left = sight.place(p - Vec2d{sight.step, 0});
   auto const up = sight.place(p + Vec2d{0, sight.step}), down = sight.place(p - Vec2d{0, sight.step});
   if (!right || !left || !up || !down) return std::nullopt;
@@ -57,9 +57,9 @@ std::optional<Vec2d> aim_of_line(Ray<double> const& line) {
 /// Determines the chief ray's point on the aim plane by backward tracing: Newton's method for the slope in the stop
 /// whose line ahead of the lens passes through the source. The residual is an angle, which remains nearly linear in the
 /// slope for wide fields.
-std::optional<Vec2d> aim_from_stop(StopSight const& sight) {
+std::optional<Vec2d> aim_from_stop(StopMapping const& sight) {
   if (!sight.trace_back) return std::nullopt;
-  StopSight back;
+  StopMapping back;
   back.radius = 1;   // scale of the tolerance [rad]
   back.step = 1e-6;  // step of the slope [1]
   back.place = [&](Vec2d slope) -> std::optional<Vec2d> {
@@ -82,7 +82,7 @@ Ray<double> RayOrigin::ray_through(Vec2d p) const {
   return {on_plane - ahead * place, place};
 }
 
-std::optional<Vec2d> place_in_stop(Lens const& lens, Ray<double> ray) {
+std::optional<Vec2d> intersect_stop(Lens const& lens, Ray<double> ray) {
   RayAccount<double> account;
   int failed_at;
   RayStatus const status = lens.view().carry(ray, account, 0, lens.stop, failed_at);
@@ -95,7 +95,7 @@ std::optional<Vec2d> place_in_stop(Lens const& lens, Ray<double> ray) {
   return Vec2d{local.position.x + way * local.direction.x, local.position.y + way * local.direction.y};
 }
 
-bool aim_at(StopSight const& sight, Vec2d target, Vec2d& aim, double tolerance) {
+bool aim_at(StopMapping const& sight, Vec2d target, Vec2d& aim, double tolerance) {
   auto here = sight.place(aim);
   if (!here) return false;
   for (int iteration = 0; iteration < 40; ++iteration) {
@@ -118,7 +118,7 @@ bool aim_at(StopSight const& sight, Vec2d target, Vec2d& aim, double tolerance) 
   return false;
 }
 
-std::optional<Vec2d> find_chief_aim(StopSight const& sight, Vec2d guess) {
+std::optional<Vec2d> find_chief_aim(StopMapping const& sight, Vec2d guess) {
   for (Vec2d aim : {guess, Vec2d{}}) {
     if (aim_at(sight, {}, aim)) return aim;
   }
@@ -127,14 +127,14 @@ std::optional<Vec2d> find_chief_aim(StopSight const& sight, Vec2d guess) {
   return aim;
 }
 
-double aim_margin(int rim_points) {
+double ellipse_safety_factor(int rim_points) {
   // Between rim points, the footprint may exceed the ellipse by 1 - cos(pi / points) of its deviation from the ellipse,
   // which is assumed to be at most 10 %. The first term covers the accuracy of the points.
   return 1 + 2 * near_enough + 0.1 * (1 - std::cos(pi / rim_points));
 }
 
-std::optional<AimDisc> find_aim_disc(StopSight const& sight, Vec2d guess, int rim_points) {
-  AimDisc disc;
+std::optional<ApparentPupil> find_apparent_pupil(StopMapping const& sight, Vec2d guess, int rim_points) {
+  ApparentPupil disc;
   auto const chief = find_chief_aim(sight, guess);
   if (!chief) return std::nullopt;
   disc.centre = *chief;
@@ -172,19 +172,19 @@ std::optional<AimDisc> find_aim_disc(StopSight const& sight, Vec2d guess, int ri
     double const v = (disc.a.x * d.y - disc.a.y * d.x) / determinant;
     furthest = std::max(furthest, std::hypot(u, v));
   }
-  double const margin = aim_margin(rim_points);
+  double const margin = ellipse_safety_factor(rim_points);
   disc.a = margin * furthest * disc.a;
   disc.b = margin * furthest * disc.b;
   return disc;
 }
 
-std::optional<AimDisc> find_aim_disc(Lens const& lens, RayOrigin const& origin) {
+std::optional<ApparentPupil> find_apparent_pupil(Lens const& lens, RayOrigin const& origin) {
   double const scale = std::abs(ray_transfer(lens, 0, lens.stop).a);
-  StopSight const sight{[&](Vec2d p) { return place_in_stop(lens, origin.ray_through(p)); }, lens.stop_radius,
-                        1e-4 * lens.stop_radius / std::max(scale, 0.05), origin,
-                        [&](Vec2d slope) { return trace_back_from_stop(lens.surfaces, lens.stop, slope); }};
+  StopMapping const sight{[&](Vec2d p) { return intersect_stop(lens, origin.ray_through(p)); }, lens.stop_radius,
+                          1e-4 * lens.stop_radius / std::max(scale, 0.05), origin,
+                          [&](Vec2d slope) { return trace_back_from_stop(lens.surfaces, lens.stop, slope); }};
   constexpr int rim_points = 32;
-  return find_aim_disc(sight, paraxial_guess(lens, origin), rim_points);
+  return find_apparent_pupil(sight, paraxial_guess(lens, origin), rim_points);
 }
 
 }  // namespace gladstone

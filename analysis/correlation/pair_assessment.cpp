@@ -1,4 +1,4 @@
-#include "analysis/correlation/pair_verdict.h"
+#include "analysis/correlation/pair_assessment.h"
 
 #include <fmt/format.h>
 
@@ -173,7 +173,8 @@ std::string failed_text(DisplacementField const& field, Tally const& tally) {
 
 }  // namespace
 
-void leave_out_chance(DisplacementField& field, DisplacementField const& chance, CorrelationSettings const& settings) {
+void reject_uncorrelated_vectors(DisplacementField& field, DisplacementField const& chance,
+                                 CorrelationSettings const& settings) {
   InterrogationGrid const grid = final_grid(settings, settings.window_px.back(), settings.window_px.back());
   double const share = static_cast<double>(grid.spacing_px) / grid.window_px, windows_per_vector = share * share;
   int const reach = 2 * grid.window_px / grid.spacing_px;
@@ -226,7 +227,7 @@ struct Evidence {
 
 /// Returns the verdict from the remaining vectors. @pre the pair can be judged by its vectors
 std::string verdict_of(DisplacementField const& field, Tally const& left) {
-  if (std::any_of(field.status.begin(), field.status.end(), is_sound)) return correlates;
+  if (std::any_of(field.status.begin(), field.status.end(), is_valid_or_replaced)) return correlates;
   return left.nothing_left() ? uncorrelated_verdict : "not judged: no vector passed its tests";
 }
 
@@ -255,7 +256,7 @@ void judge(DisplacementField& field, Evidence const& evidence, CorrelationSettin
     // Ambiguities of earlier passes are cleared: large windows across a gradient have several peaks, among which the
     // smaller windows of later passes have chosen.
     std::replace(field.ambiguous.begin(), field.ambiguous.end(), Ambiguity::earlier, Ambiguity::none);
-    leave_out_chance(field, evidence.chance(), settings);
+    reject_uncorrelated_vectors(field, evidence.chance(), settings);
   }
   Tally const left(field);
   if (!period && why_not.empty()) field.verdict = verdict_of(field, left);
@@ -286,31 +287,31 @@ HostFrames known_in_any(PairSequence const& pairs) {
 
 bool frames_correlate(DisplacementField const& field) { return field.verdict != uncorrelated_verdict; }
 
-bool same_picture(Image<double> const& a, Image<double> const& b) {
+bool are_identical_frames(Image<double> const& a, Image<double> const& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](double x, double y) {
     return std::bit_cast<std::uint64_t>(x) == std::bit_cast<std::uint64_t>(y);
   });
 }
 
-void judge_pair(DisplacementField& field, FramePair const& frames, Correlator const& correlator,
-                CorrelationSettings const& settings) {
+void assess_pair(DisplacementField& field, FramePair const& frames, Correlator const& correlator,
+                 CorrelationSettings const& settings) {
   if (!field.verdict.empty()) return;
-  name_windows_outside(field, frames, settings);
+  mark_windows_outside(field, frames, settings);
   judge(field,
-        {[&] { return same_picture(frames.reference(), frames.flow()); },
+        {[&] { return are_identical_frames(frames.reference(), frames.flow()); },
          [&] { return pattern_period(frames.reference(), settings); },
          [&] { return correlator.correlate(frames.reference(), upside_down(frames.flow())); }},
         settings);
 }
 
-void judge_ensemble(DisplacementField& field, PairSequence const& pairs, CorrelationSettings const& settings) {
+void assess_ensemble(DisplacementField& field, PairSequence const& pairs, CorrelationSettings const& settings) {
   auto const is_masked = [](VectorReason reason) { return reason == VectorReason::masked; };
   if (std::any_of(field.reason.begin(), field.reason.end(), is_masked))
-    name_windows_outside(field, known_in_any(pairs), settings);
+    mark_windows_outside(field, known_in_any(pairs), settings);
   auto const all_same = [&] {
     for (std::size_t k = 0; k < pairs.size; ++k) {
       HostFrames const frames = pairs.frames(k);
-      if (!same_picture(frames.reference(), frames.flow())) return false;
+      if (!are_identical_frames(frames.reference(), frames.flow())) return false;
     }
     return true;
   };

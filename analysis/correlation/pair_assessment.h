@@ -16,7 +16,8 @@ namespace gladstone {
 ///   random peaks as they do true ones.
 /// - Not applicable to periodic patterns, which also match their rotated image.
 /// @param chance  result of the same correlator for frame A and the rotated frame B, on the same grid
-void leave_out_chance(DisplacementField& field, DisplacementField const& chance, CorrelationSettings const& settings);
+void reject_uncorrelated_vectors(DisplacementField& field, DisplacementField const& chance,
+                                 CorrelationSettings const& settings);
 
 /// Assesses a pair by its vectors: runs the decorrelation test, sets the field's verdict, and adds warnings to the
 /// field, each as "problem (reason); suggestion".
@@ -27,23 +28,23 @@ void leave_out_chance(DisplacementField& field, DisplacementField const& chance,
 ///   uncorrelated or beyond the search range; or "not judged: " and the reason: identical frames, no signal, everything
 ///   masked, a periodic pattern, optical flow, too few windows, a disabled median test, or no vector that passed its
 ///   tests.
-/// - Masked windows outside the frames are first marked by name_windows_outside().
+/// - Masked windows outside the frames are first marked by mark_windows_outside().
 /// - Does nothing if the correlator has set a verdict itself.
 /// @param field  result of the correlator for these frames
 /// @throws the exceptions of Correlator::correlate()
-void judge_pair(DisplacementField& field, FramePair const& frames, Correlator const& correlator,
-                CorrelationSettings const& settings);
+void assess_pair(DisplacementField& field, FramePair const& frames, Correlator const& correlator,
+                 CorrelationSettings const& settings);
 
-/// Returns false if judge_pair() found that the frames do not correlate.
+/// Returns false if assess_pair() found that the frames do not correlate.
 bool frames_correlate(DisplacementField const& field);
 
 /// Returns whether two frames are bitwise identical.
-bool same_picture(Image<double> const& a, Image<double> const& b);
+bool are_identical_frames(Image<double> const& a, Image<double> const& b);
 
-/// Like judge_pair(), for the vectors of an ensemble: the frames are identical if those of every pair are, the pattern
+/// Like assess_pair(), for the vectors of an ensemble: the frames are identical if those of every pair are, the pattern
 /// is periodic if that of any pair is, and a pixel is unknown if it is unknown in every pair. The decorrelation test
 /// uses the ensemble with every frame B rotated by 180 degrees.
 /// @param field  result of correlate_ensemble() for these pairs
-void judge_ensemble(DisplacementField& field, PairSequence const& pairs, CorrelationSettings const& settings);
+void assess_ensemble(DisplacementField& field, PairSequence const& pairs, CorrelationSettings const& settings);
 
 }  // namespace gladstone

@@ -1,4 +1,4 @@
-#include "studies/figures/passing_folder.h"
+#include "studies/figures/temporary_directory.h"
 
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -31,9 +31,9 @@ class PassingFolders : public testing::Test {
   fs::path const place_ = fs::path(testing::TempDir()) / "passing";
 };
 
-TEST_F(PassingFolders, AreEmptyPrivateAndGoneWithTheirOwner) {
+TEST_F(PassingFolders, IsPrivateAndRemovedOnDestruction) {
   {
-    PassingFolder const one, other;
+    TemporaryDirectory const one, other;
     EXPECT_NE(one.path(), other.path());
     EXPECT_TRUE(fs::is_empty(one.path()));
     EXPECT_EQ(fs::status(one.path()).permissions(), fs::perms::owner_all);
@@ -44,12 +44,12 @@ TEST_F(PassingFolders, AreEmptyPrivateAndGoneWithTheirOwner) {
 }
 
 // The killed process cannot remove anything; the folder of a running one remains.
-TEST_F(PassingFolders, OfKilledProcessesAreRemovedByTheNext) {
+TEST_F(PassingFolders, AbandonedOnesAreRemoved) {
   int ready[2];
   ASSERT_EQ(::pipe(ready), 0);
   pid_t const child = ::fork();
   if (child == 0) {
-    PassingFolder const left;
+    TemporaryDirectory const left;
     std::ofstream(left.path() + "/file") << "text";
     if (::write(ready[1], "x", 1) == 1) ::pause();
     ::_exit(1);
@@ -57,13 +57,13 @@ TEST_F(PassingFolders, OfKilledProcessesAreRemovedByTheNext) {
   char x = 0;
   ASSERT_EQ(::read(ready[0], &x, 1), 1);
   {
-    PassingFolder const next;
+    TemporaryDirectory const next;
     EXPECT_EQ(count(), 2) << "its process is still running";
   }
   ::kill(child, SIGKILL);
   ::waitpid(child, nullptr, 0);
   EXPECT_EQ(count(), 1);
-  PassingFolder const next;
+  TemporaryDirectory const next;
   EXPECT_EQ(count(), 1);
   EXPECT_TRUE(fs::is_directory(next.path()));
 }

@@ -22,7 +22,7 @@ struct RayOrigin {
 /// Entrance pupil as seen from a source: footprint, on the aim plane, of the rays that pass the stop. Represented by an
 /// ellipse, centre + a cos + b sin, and determined by ray tracing. It therefore accounts for the shift and
 /// shrinkage of the pupil off the axis, and for telecentric lenses, whose entrance pupil is at infinity.
-struct AimDisc {
+struct ApparentPupil {
   Vec2d centre{};  ///< intersection of the chief ray, through the centre of the stop, with the aim plane [m]
   Vec2d a{}, b{};  ///< conjugate semi-axes [m]
 
@@ -30,7 +30,7 @@ struct AimDisc {
 };
 
 /// Mapping of the rays of one source from the aim plane to the stop.
-struct StopSight {
+struct StopMapping {
   /// Intersection with the stop, in the stop's frame [m], of the ray through a point of the aim plane; nullopt if the
   /// ray does not reach the stop. Vignetted rays count as reaching it.
   std::function<std::optional<Vec2d>(Vec2d)> place;
@@ -48,31 +48,31 @@ struct StopSight {
 /// @param tolerance  accuracy, relative to the radius of the stop. If rounding stops the iteration earlier, 1000 times
 /// the tolerance is accepted.
 /// @return false if no solution is found
-bool aim_at(StopSight const& sight, Vec2d target, Vec2d& aim, double tolerance = 1e-10);
+bool aim_at(StopMapping const& sight, Vec2d target, Vec2d& aim, double tolerance = 1e-10);
 
 /// Returns the point of the aim plane on the chief ray, which passes the centre of the stop; nullopt if it is not
 /// found. Newton's method starts at the guess, then at the centre of the aim plane. If both fail, as for wide-angle
 /// lenses, whose entrance pupil moves with the field angle, it starts from a ray traced backwards from the stop to the
 /// source.
 /// @param guess  point of the paraxial chief ray [m]
-std::optional<Vec2d> find_chief_aim(StopSight const& sight, Vec2d guess);
+std::optional<Vec2d> find_chief_aim(StopMapping const& sight, Vec2d guess);
 
 /// Returns the safety factor by which the ellipse fitted to a number of rim points is enlarged.
-double aim_margin(int rim_points);
+double ellipse_safety_factor(int rim_points);
 
-/// Determines the entrance pupil as seen from a source, enlarged by aim_margin() so that it contains all rays that pass
-/// the stop.
+/// Determines the entrance pupil as seen from a source, enlarged by ellipse_safety_factor() so that it contains all
+/// rays that pass the stop.
 /// @param guess       initial guess of the chief ray's point on the aim plane [m]
 /// @param rim_points  number of rays aimed at the rim of the stop; more points allow a smaller margin
 /// @return nullopt if no ray reaches the centre of the stop
-std::optional<AimDisc> find_aim_disc(StopSight const& sight, Vec2d guess, int rim_points);
+std::optional<ApparentPupil> find_apparent_pupil(StopMapping const& sight, Vec2d guess, int rim_points);
 
 /// Determines the entrance pupil of a lens for an origin of rays. Returns nullopt if no ray reaches the centre of the
 /// stop, because of total internal reflection or because the rays miss the lens.
-std::optional<AimDisc> find_aim_disc(Lens const& lens, RayOrigin const& origin);
+std::optional<ApparentPupil> find_apparent_pupil(Lens const& lens, RayOrigin const& origin);
 
 /// Returns the intersection of a ray with the stop, in the stop's frame [m]; nullopt if the ray does not reach the
 /// stop. Vignetted rays count as reaching it.
-std::optional<Vec2d> place_in_stop(Lens const& lens, Ray<double> ray);
+std::optional<Vec2d> intersect_stop(Lens const& lens, Ray<double> ray);
 
 }  // namespace gladstone

@@ -1,4 +1,4 @@
-#include "analysis/correlation/pair_verdict.h"
+#include "analysis/correlation/pair_assessment.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -30,7 +30,7 @@ DisplacementField judged(ParticlePair const& pair, CorrelationSettings const& se
   auto const correlator = make_correlator(settings);
   HostFrames const frames(pair.reference, pair.flow);
   DisplacementField field = correlator->correlate_pair(frames);
-  judge_pair(field, frames, *correlator, settings);
+  assess_pair(field, frames, *correlator, settings);
   return field;
 }
 
@@ -72,7 +72,7 @@ ParticlePair noise_alone(int pixels) {
 }
 
 // The search radius of the first pass is 32 px.
-TEST(PairVerdict, TellsFramesThatDoNotCorrelate) {
+TEST(PairVerdict, DetectsUncorrelatedFrames) {
   std::vector<ParticlePair> const pairs{
       render_particle_pair({.columns = 200, .rows = 200}, everywhere(40.0, 0.0)),
       render_particle_pair({.columns = 200, .rows = 200, .noise = 0.05, .seed = 3}, everywhere(0.0, -40.0)),
@@ -90,7 +90,7 @@ TEST(PairVerdict, TellsFramesThatDoNotCorrelate) {
   }
 }
 
-TEST(PairVerdict, SaysNothingOfFramesThatCorrelate) {
+TEST(PairVerdict, DoesNotWarnOfCorrelatedFrames) {
   auto const sine = [](Vec2d p) { return Vec2d{std::sin(2.0 * pi * p.y / 64.0), std::sin(2.0 * pi * p.x / 64.0)}; };
   std::vector<ParticlePair> const pairs{
       render_particle_pair({.columns = 200, .rows = 200}, everywhere(0.3, -0.2)),
@@ -110,7 +110,7 @@ TEST(PairVerdict, SaysNothingOfFramesThatCorrelate) {
 
 // Few dots in strong noise: one vector in eleven is replaced, which triggers the test, but the remaining vectors agree
 // better than chance.
-TEST(PairVerdict, KeepsPoorVectorsThatAreMoreThanChance) {
+TEST(PairVerdict, RetainsWeaklyCorrelatedVectors) {
   DisplacementField const field = judged(render_particle_pair(
       {.columns = 200, .rows = 200, .particles_per_px = 6.0 / 1024.0, .noise = 0.1}, everywhere(2.3, -0.2)));
   EXPECT_GT(count(field, VectorReason::neighbours) + count(field, VectorReason::other_peak), field.size() / 20);
@@ -120,7 +120,7 @@ TEST(PairVerdict, KeepsPoorVectorsThatAreMoreThanChance) {
 
 // The same with a stricter test: if a fifth of the vectors is rejected, the pair counts as no measurement, whether they
 // are replaced or invalid.
-TEST(PairVerdict, TellsWhenAFifthFailsATest) {
+TEST(PairVerdict, WarnsIfOneFifthFailsValidation) {
   ParticlePair const pair = render_particle_pair(
       {.columns = 200, .rows = 200, .particles_per_px = 6.0 / 1024.0, .noise = 0.1}, everywhere(2.3, -0.2));
   CorrelationSettings settings;
@@ -156,7 +156,7 @@ TEST(EnsembleVerdict, IsThatOfAllPairs) {
   CorrelationSettings const settings = windows_of(32);
   auto const verdict = [&](PairSequence const& pairs) {
     DisplacementField field = correlate_ensemble(pairs, settings);
-    judge_ensemble(field, pairs, settings);
+    assess_ensemble(field, pairs, settings);
     return field;
   };
   DisplacementField const good = verdict(repeated(6, few, 2.3, 0));
@@ -198,7 +198,7 @@ TEST(EnsembleVerdict, DoesNotDependOnTheOrderOfPairs) {
       1, [nan](std::size_t) { return HostFrames(Image<double>(200, 200, nan), Image<double>(200, 200, nan)); }};
   for (PairSequence const& pairs : {one_after_another(regular, masked), one_after_another(masked, regular)}) {
     DisplacementField field = correlate_ensemble(pairs, settings);
-    judge_ensemble(field, pairs, settings);
+    assess_ensemble(field, pairs, settings);
     EXPECT_THAT(field.verdict, HasSubstr("the pattern repeats every "));
     EXPECT_EQ(count(field, VectorReason::masked), 0u);
     EXPECT_GT(std::count(field.ambiguous.begin(), field.ambiguous.end(), Ambiguity::here), 0);
@@ -206,7 +206,7 @@ TEST(EnsembleVerdict, DoesNotDependOnTheOrderOfPairs) {
 }
 
 // Frames that correlate, with a test that no vector passes.
-TEST(PairVerdict, DoesNotCallWhatFailsItsTestsUncorrelated) {
+TEST(PairVerdict, ValidationFailuresAreNotDecorrelation) {
   CorrelationSettings settings;
   settings.least_peak_ratio = 1e9;
   DisplacementField const field =
@@ -220,7 +220,7 @@ TEST(PairVerdict, DoesNotCallWhatFailsItsTestsUncorrelated) {
 
 // Left half 0.4 px, right half 45 px: windows farther from the middle than their search radius are either correct or
 // invalid.
-TEST(PairVerdict, LeavesOutTheHalfThatDoesNotCorrelate) {
+TEST(PairVerdict, RejectsUncorrelatedHalf) {
   std::size_t right_half = 0, left_out = 0;
   for (unsigned seed = 1; seed <= 8; ++seed) {
     ParticlePair pair = render_particle_pair({.seed = seed}, everywhere(0.4, 0.0));
@@ -260,13 +260,13 @@ TEST(PairVerdict, WarnsOfOnePictureGivenTwice) {
   EXPECT_THAT(judged(pair).warnings, IsEmpty()) << "the images differ, as for a small real displacement";
 }
 
-TEST(PairVerdict, SaysNoDisplacementOfPicturesWithoutASignal) {
+TEST(PairVerdict, ReportsNoDisplacementWithoutSignal) {
   ParticlePair const flat{Image<double>(128, 128, 100.0), Image<double>(128, 128, 100.0)};
   EXPECT_THAT(judged(flat).warnings, IsEmpty());
 }
 
 // Every pair has a verdict.
-TEST(PairVerdict, StandsInOneWord) {
+TEST(PairVerdict, EveryPairHasAResult) {
   ParticleSettings const small{.columns = 128, .rows = 128, .noise = 0.05};
   ParticlePair twice = render_particle_pair(small, everywhere(0.3, 0.0));
   EXPECT_EQ(judged(twice).verdict, "correlates");
@@ -351,7 +351,7 @@ TEST(PairVerdict, WarnsOfAPatternThatRepeats) {
 }
 
 // A displacement of 6 px with a limit of 4 px.
-TEST(PairVerdict, NamesTheLimitThatLeavesNothing) {
+TEST(PairVerdict, ReportsLimitThatRejectsAllVectors) {
   DisplacementField const regular = judged(render_particle_pair({.pitch_px = 12.5}, everywhere(6.0, 0.0)), within(4.0));
   EXPECT_EQ(counting(regular), 0u);
   EXPECT_EQ(count(regular, VectorReason::beyond_limit), regular.size());
@@ -387,36 +387,36 @@ CorrelationSettings windows_of_32() {
 
 // Random correlation: 0.3 +- 0.1. The mean over 25 windows scatters by 0.02, at a corner over 9 windows by 0.033.
 // Combined with the scatter of the mean over all 100, 0.01, two standard deviations are 0.045 and 0.07.
-TEST(Chance, IsWhatMeansOfFramesWithNothingInCommonReach) {
+TEST(Chance, IsCorrelationOfUnrelatedFrames) {
   DisplacementField const chance = with_correlation(0.3, 0.1);
   for (auto const& [mean, left_out] : {std::pair{0.30, 100u}, {0.34, 100u}, {0.39, 0u}, {0.90, 0u}}) {
     DisplacementField field = with_correlation(mean, 0.0);
-    leave_out_chance(field, chance, windows_of_32());
+    reject_uncorrelated_vectors(field, chance, windows_of_32());
     EXPECT_EQ(count(field, VectorReason::uncorrelated), left_out) << mean;
     EXPECT_EQ(counting(field), 100u - left_out) << mean;
   }
 }
 
 // A corner of 4 x 4 good windows is less than a quarter of all: random correlation produces such a patch, too.
-TEST(Chance, TakesAllWhereHardlyAnyIsBetter) {
+TEST(Chance, RejectsAllIfFewExceedIt) {
   for (auto const& [good, kept] : {std::pair{4, 0u}, {7, 49u}}) {
     DisplacementField field = with_correlation(0.1, 0.0);
     for (int j = 0; j < good; ++j)
       for (int i = 0; i < good; ++i) field.correlation[static_cast<std::size_t>(10 * j + i)] = 0.9;
-    leave_out_chance(field, with_correlation(0.3, 0.1), windows_of_32());
+    reject_uncorrelated_vectors(field, with_correlation(0.3, 0.1), windows_of_32());
     EXPECT_GE(counting(field), kept) << good;
     EXPECT_LE(counting(field), kept * 2) << "windows next to the good ones may be kept too";
   }
 }
 
-TEST(Chance, LeavesOtherReasonsAlone) {
+TEST(Chance, PreservesOtherReasons) {
   DisplacementField field = with_correlation(0.3, 0.0);
   std::vector<VectorReason> const reasons{VectorReason::masked, VectorReason::no_signal, VectorReason::beyond_limit};
   for (std::size_t i = 0; i < reasons.size(); ++i) {
     field.reason[i] = reasons[i];
     field.correlation[i] = std::numeric_limits<double>::quiet_NaN();
   }
-  leave_out_chance(field, with_correlation(0.3, 0.1), windows_of_32());
+  reject_uncorrelated_vectors(field, with_correlation(0.3, 0.1), windows_of_32());
   for (std::size_t i = 0; i < reasons.size(); ++i) EXPECT_EQ(field.reason[i], reasons[i]);
   EXPECT_EQ(count(field, VectorReason::uncorrelated), 97u);
 }

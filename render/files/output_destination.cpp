@@ -1,4 +1,4 @@
-#include "render/files/output_place.h"
+#include "render/files/output_destination.h"
 
 #include <sys/stat.h>
 #include <unistd.h>
@@ -35,7 +35,7 @@ fs::path resolved(fs::path place, std::string const& asked) {
 
 }  // namespace
 
-OutputPlace::OutputPlace(std::string path) : asked_(std::move(path)) {
+OutputDestination::OutputDestination(std::string path) : asked_(std::move(path)) {
   if (asked_.empty()) throw OutputError("output", "has an empty name; give a name");
   std::error_code error;
   fs::path place = fs::absolute(asked_, error);
@@ -48,10 +48,10 @@ OutputPlace::OutputPlace(std::string path) : asked_(std::move(path)) {
   path_ = place.string();
 }
 
-std::string OutputPlace::folder() const { return fs::path(path_).parent_path().string(); }
-std::string OutputPlace::name() const { return fs::path(path_).filename().string(); }
+std::string OutputDestination::folder() const { return fs::path(path_).parent_path().string(); }
+std::string OutputDestination::name() const { return fs::path(path_).filename().string(); }
 
-void OutputPlace::make_parents() {
+void OutputDestination::make_parents() {
   std::vector<fs::path> missing;
   std::error_code ignored;
   for (fs::path above = folder(); !fs::exists(above, ignored) && above.has_filename(); above = above.parent_path()) {
@@ -69,11 +69,11 @@ void OutputPlace::make_parents() {
   }
 }
 
-void OutputPlace::remove_made_parents() const {
+void OutputDestination::remove_made_parents() const {
   for (auto above = made_.rbegin(); above != made_.rend(); ++above) ::rmdir(above->c_str());
 }
 
-void OutputPlace::fail(std::string const& what, int error) const {
+void OutputDestination::fail(std::string const& what, int error) const {
   std::string hint;
   if (error == ENOSPC || error == EDQUOT) hint = "; free some space or choose another folder";
   if (error == EACCES || error == EPERM || error == EROFS) hint = "; choose a folder that you may write to";

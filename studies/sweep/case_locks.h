@@ -7,7 +7,7 @@ namespace gladstone {
 
 /// Locks on cases, one per case, held by the processes that compute them: byte INDEX of the file RUN/claims is locked
 /// (file_lock.h) while a process works on case INDEX.
-class Claims {
+class CaseLocks {
  public:
   enum class Use {
     take,  ///< for claiming cases; creates RUN/claims if it is missing
@@ -15,12 +15,12 @@ class Claims {
   };
   /// Opens RUN/claims. @throws OutputError if it cannot be opened, for example because RUN is read-only and Use is
   /// `take`
-  Claims(std::string const& run, Use use);
-  ~Claims();
-  Claims(Claims const&) = delete;
-  Claims& operator=(Claims const&) = delete;
+  CaseLocks(std::string const& run, Use use);
+  ~CaseLocks();
+  CaseLocks(CaseLocks const&) = delete;
+  CaseLocks& operator=(CaseLocks const&) = delete;
 
-  /// Claims a case for this object. If RUN/claims has been replaced or removed since it was opened, the new file is
+  /// CaseLocks a case for this object. If RUN/claims has been replaced or removed since it was opened, the new file is
   /// opened and locked, since other processes use that one.
   /// @return false if another process has claimed the case
   /// @pre opened with Use::take

@@ -1,4 +1,4 @@
-#include "studies/report/bench_view.h"
+#include "studies/report/layout_view.h"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -11,15 +11,15 @@
 #include "studies/figures/design_map.h"
 #include "studies/figures/gnuplot.h"
 #include "studies/figures/layout_figure.h"
-#include "studies/figures/passing_folder.h"
 #include "studies/figures/piv_map.h"
+#include "studies/figures/temporary_directory.h"
 
 namespace gladstone {
 namespace {
 
 constexpr double mm = unit::millimetre;
 
-std::string text_of_layout(Bench<double> const& b) {
+std::string text_of_layout(DesignPoint<double> const& b) {
   return fmt::format(
       "Side view, to scale: the dots are Z_D = {:.5g} mm behind the mid-plane of the medium, the lens (f = {:.5g} mm, "
       "f/{:.4g}) is Z_A = {:.5g} mm in front of it. The field of view is {:.4g} x {:.4g} mm in the medium and {:.4g} x "
@@ -63,7 +63,7 @@ bool is_drawn(Setup const& setup) {
 template <class Write>
 ReportBlock drawn_block(std::string title, std::string words, Write const& write) {
   try {
-    PassingFolder const folder;
+    TemporaryDirectory const folder;
     std::string const path = folder.path() + "/figure.png";
     write(path);
     return Picture{std::move(title), std::move(words), read_text_file(path)};
@@ -73,7 +73,7 @@ ReportBlock drawn_block(std::string title, std::string words, Write const& write
   }
 }
 
-std::string map_text(Bench<double> const& b) {
+std::string map_text(DesignPoint<double> const& b) {
   return fmt::format(
       "Resolution against sensitivity over Z_D, one curve per f-number. The set-up is the point at {:.4g} px per "
       "kg/m^4 and {:.4g} mm.",
@@ -92,12 +92,12 @@ void write_map(std::string const& path, LayoutView const& view) {
 
 }  // namespace
 
-std::optional<LayoutView> bench_view(CaseSetup loaded) {
+std::optional<LayoutView> layout_view(CaseSetup loaded) {
   if (!is_drawn(loaded.setup) || loaded.correlate.window_px.empty()) return std::nullopt;
   if (loaded.setup.piv) return LayoutView{nullptr, {}, std::move(loaded.setup)};
   loaded.setup.medium.field.kind = FieldKind::none;
-  auto given = std::make_unique<BenchGiven>(bench_given(loaded));
-  Bench<double> const bench = bench_of(loaded.setup, *given);
+  auto given = std::make_unique<FixedDesignParameters>(collect_fixed_parameters(loaded));
+  DesignPoint<double> const bench = make_design_point(loaded.setup, *given);
   return LayoutView{std::move(given), bench, std::nullopt};
 }
 
@@ -110,13 +110,14 @@ ReportBlock layout_block(LayoutView const& view, std::string const& whose) {
                      [&view](std::string const& path) { write_layout(path, view); });
 }
 
-ReportSection bench_section(LayoutView const& view, std::string const& whose) {
+ReportSection layout_section(LayoutView const& view, std::string const& whose) {
   ReportBlock map = drawn_block("Design map of " + whose, view.piv ? text_of_stop(*view.piv) : map_text(view.bench),
                                 [&view](std::string const& path) { write_map(path, view); });
   return {"Set-up", {layout_block(view, whose), std::move(map)}};
 }
 
-std::vector<std::string> draw_bench(std::string const& folder, std::string const& format, LayoutView const& view) {
+std::vector<std::string> draw_layout_and_map(std::string const& folder, std::string const& format,
+                                             LayoutView const& view) {
   std::vector<std::string> const drawn{folder + "/layout." + format, folder + "/design_map." + format};
   write_layout(drawn.front(), view);
   write_map(drawn.back(), view);

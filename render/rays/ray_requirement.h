@@ -4,19 +4,19 @@
 
 #include "render/base/units.h"
 #include "render/rays/source_truth.h"
-#include "render/scene/ray_plan.h"
+#include "render/scene/ray_budget.h"
 
 /// Number of rays that a source requires, determined from the source itself and the camera's exposure alone.
 namespace gladstone {
 
 /// Placement of a source's rays. Determines how fast their errors decrease with the number of rays.
-enum class RaysSent {
+enum class RayPlacement {
   by_rule,  ///< at the nodes of a cubature rule that fill the stop (stop_rule.h)
   clipped,  ///< at the points of a sequence over a disc larger than the stop
 };
 
 /// Required accuracy of a source's light and truth.
-struct RayGoal {
+struct RequiredRayAccuracy {
   double level = 0;         ///< light of one grey level; 0: no image is required
   double brightest_at = 0;  ///< grey levels of the brightest pixel of the image
   double spot2 = 0;         ///< squared radius of the PSF, as a smooth function [px^2]
@@ -45,17 +45,16 @@ struct RayGoal {
 /// The rule integrates the Taylor series of the PSF exactly to degree 2 sqrt(n) - 1. Empirical, for discs of 0.05 to 4
 /// times the PSF's radius, PSFs of 0.1 to 1.5 px and 4 to 1024 nodes: correct within a factor of 3, or one step of n.
 /// @param ratio2  variance of the hits along an axis over the PSF's squared radius (spot2) [1]
-GLADSTONE_HD inline bool rule_serves(double n, double ratio2, double allowed) {
+GLADSTONE_HD inline bool cubature_rule_suffices(double n, double ratio2, double allowed) {
   using std::log;
   using std::sqrt;
   return sqrt(n) * log(ratio2 / (5 + 0.085 * n)) <= log(allowed);
 }
 
-/// Estimates the image error of n rays at scrambled points, as in rule_serves(): for few rays the error of their
-/// variance, for many that of the number of rays within the PSF's area.
-/// Empirical, for discs of 0.1 to 24 times the PSF's radius, dots of 0 to 6 px and 32 to 16,384 rays: correct within a
-/// factor of 3.
-GLADSTONE_HD inline double left_by_points(double n, double ratio2) {
+/// Estimates the image error of n rays at scrambled points, as in cubature_rule_suffices(): for few rays the error of
+/// their variance, for many that of the number of rays within the PSF's area. Empirical, for discs of 0.1 to 24 times
+/// the PSF's radius, dots of 0 to 6 px and 32 to 16,384 rays: correct within a factor of 3.
+GLADSTONE_HD inline double estimate_point_sampling_error(double n, double ratio2) {
   using std::pow;
   double const within = n / (1 + ratio2 / 4);
   double const of_variance = within < 256 ? 8 * pow(within, -0.9) : 0.0544 * pow(within / 256, -1.2);
@@ -65,19 +64,20 @@ GLADSTONE_HD inline double left_by_points(double n, double ratio2) {
 
 /// Returns the number of rays that the spread of a source's hits requires.
 /// @param n  start value, which is quadrupled (rule) or doubled (points)
-GLADSTONE_HD inline double rays_for_spread(RayGoal const& goal, RaysSent sent, double light, double spread2, double n) {
+GLADSTONE_HD inline double estimate_rays_for_spread(RequiredRayAccuracy const& goal, RayPlacement sent, double light,
+                                                    double spread2, double n) {
   if (!(goal.level > 0 && light > 0)) return n;
   double const allowed = goal.allowed(goal.peak(light, spread2)), ratio2 = spread2 / goal.spot2;
-  if (sent == RaysSent::by_rule) {
-    while (n < goal.most && !rule_serves(n, ratio2, allowed)) n *= 4;
+  if (sent == RayPlacement::by_rule) {
+    while (n < goal.most && !cubature_rule_suffices(n, ratio2, allowed)) n *= 4;
   } else {
-    while (n < goal.most && !(left_by_points(n, ratio2) <= allowed)) n *= 2;
+    while (n < goal.most && !(estimate_point_sampling_error(n, ratio2) <= allowed)) n *= 2;
   }
   return n;
 }
 
 /// Properties of a source's rays known before they are traced, for each image.
-struct RimSpread {
+struct EdgeRaySpread {
   double spread2[frame_count] = {};          ///< as FilledStop::spread2, for rays placed by a rule [px^2]
   bool clipped[frame_count] = {true, true};  ///< rays are sent to a disc larger than the stop and may all be vignetted
 };
@@ -93,11 +93,12 @@ struct RimSpread {
 /// is negligible.
 /// @param of  sums of the scramblings
 /// @param light_per_weight  light in the image per unit of ray weight
-GLADSTONE_HD inline double rays_asked(RayGoal const& goal, RaysSent sent, RimSpread const& rim, RaySums const* of,
-                                      int scramblings, double rays, double light_per_weight) {
+GLADSTONE_HD inline double estimate_required_rays(RequiredRayAccuracy const& goal, RayPlacement sent,
+                                                  EdgeRaySpread const& rim, RaySums const* of, int scramblings,
+                                                  double rays, double light_per_weight) {
   using std::pow;
   using std::sqrt;
-  bool const by_rule = sent == RaysSent::by_rule;
+  bool const by_rule = sent == RayPlacement::by_rule;
   double asked = rays;
   auto const ask = [&asked](double n) {
     if (n > asked) asked = n;
@@ -123,7 +124,7 @@ GLADSTONE_HD inline double rays_asked(RayGoal const& goal, RaysSent sent, RimSpr
     double const square = (hits.second.x + hits.second.y) / hits.weight - dot(mean, mean);
     double const spread2 = square > 0 ? 0.5 * square : 0.0;
     double const allowed = goal.allowed(goal.peak(light, spread2));
-    ask(rays_for_spread(goal, sent, light, spread2, rays));
+    ask(estimate_rays_for_spread(goal, sent, light, spread2, rays));
     if (by_rule && rays < 64) {
       double const apart = spread2 - rim.spread2[frame], left = (rays < 16 ? 1.0 : 0.25) * (apart < 0 ? -apart : apart);
       if (0.4 * left / (goal.spot2 + spread2) > allowed) ask(4 * rays);

@@ -43,8 +43,8 @@ Scene scene_with(Setup const& setup, std::vector<Place> const& places) {
       scene.particles.photons[pulse][i] = sheet.photons(scene.particles.place[pulse][i], pulse);
     }
   }
-  scene = with_step(scene, plan_step_by_rays(scene));
-  scene = with_rays(scene, plan_rays_by_rays(scene));
+  scene = with_step(scene, determine_step_by_tracing(scene));
+  scene = with_rays(scene, determine_ray_budget_by_tracing(scene));
   return scene;
 }
 
@@ -58,13 +58,13 @@ std::vector<std::int64_t> planned(Scene const& scene) { return render(scene).tru
 
 /// Returns the scene with the maximum number of rays for every source.
 Scene of_most_rays(Scene scene) {
-  scene.by_need->level *= 1e-12;
+  scene.adaptive_criteria->level *= 1e-12;
   return scene;
 }
 
 /// Returns the rms error over the lit pixels of the worse frame [grey levels of the plan].
 double image_error(Scene const& scene, LightPair const& found, LightPair const& exact) {
-  double worse = 0, level = scene.by_need->level;
+  double worse = 0, level = scene.adaptive_criteria->level;
   for (auto frame : {&LightPair::reference, &LightPair::flow}) {
     double square = 0;
     int lit = 0;
@@ -102,7 +102,7 @@ TEST(StopRule, IntegratesPolynomialsExactly) {
       for (int q = 0; p + q <= degree; ++q) {
         double sum = 0;
         for (std::uint64_t j = 0; j < rays; ++j) {
-          StopPlace const to = place_of_ray(rule.view(), choice, 77, j);
+          StopSamplePoint const to = sample_stop_point(rule.view(), choice, 77, j);
           sum += to.share * std::pow(to.at.x, p) * std::pow(to.at.y, q) / static_cast<double>(rays);
         }
         // x^p y^q over the disc: Gamma((p+1)/2) Gamma((q+1)/2) / (pi Gamma((p+q)/2 + 2)) for even p and q
@@ -143,7 +143,7 @@ TEST(RayNeed, IsLessOfDimParticles) {
 
 // The number of rays of a particle, its truth and its image are independent of other particles, to the last bit, at a
 // given exposure.
-TEST(RayNeed, HangsOnNoOtherParticle) {
+TEST(RayNeed, IsIndependentOfOtherParticles) {
   gladstone::Setup setup = exposed_setup();
   setup.medium.field = GaussianBlob<double>{{{}, -0.8, 5 * mm}};
   setup.medium.thickness = 40 * mm;
@@ -200,7 +200,7 @@ TEST(RayNeed, PlanTellsWhatARuleLeavesOfAberrations) {
   std::vector<Place> places;
   for (int i = 0; i < 20; ++i) places.push_back({{(0.5 * i - 5) * mm, (i % 5 - 2) * 2 * mm, (i % 3 - 1) * mm}});
   Scene scene = scene_with(setup, places);
-  RaysPlan const plan = plan_rays_by_rays(scene);
+  RayBudget const plan = determine_ray_budget_by_tracing(scene);
   scene = with_rays(scene, plan);
   Rendering const found = render(scene), exact = render(of_most_rays(scene));
   double const off = image_error(scene, found.light, exact.light);
@@ -219,8 +219,8 @@ TEST(RayNeed, IsTheSameOnAnyNumberOfThreads) {
   auto const render_on = [&](int threads) {
     set_thread_count(threads);
     Scene scene = build_scene(setup);
-    scene = with_step(scene, plan_step_by_rays(scene));
-    scene = with_rays(scene, plan_rays_by_rays(scene));
+    scene = with_step(scene, determine_step_by_tracing(scene));
+    scene = with_rays(scene, determine_ray_budget_by_tracing(scene));
     return render(scene);
   };
   int const before = thread_count();
@@ -241,7 +241,7 @@ Scene points_behind_blob(std::vector<Vec2d> const& at_px) {
   setup.target.dot_diameter_px = 0;
   Scene scene = scene_with_dots(setup, at_px, 1);
   scene.setup.render.rays_per_dot.reset();
-  scene = with_rays(scene, plan_rays_by_rays(scene));
+  scene = with_rays(scene, determine_ray_budget_by_tracing(scene));
   return scene;
 }
 
@@ -254,14 +254,14 @@ TEST(RayNeed, IsMoreOfADotThatNoRayShows) {
   setup.medium.thickness = 50 * mm;
   setup.camera.exposure_e = 20000;
   Scene scene = scene_with_dots(setup, lattice(64, 6, 9), 32);
-  scene = with_step(scene, plan_step_by_rays(scene));
+  scene = with_step(scene, determine_step_by_tracing(scene));
   auto const unseen = [](GroundTruth const& truth) {
     return std::count_if(truth.displacement_px.begin(), truth.displacement_px.end(),
                          [](Vec2d d) { return std::isnan(d.x); });
   };
   EXPECT_GT(unseen(render(scene).truth), 0);
   scene.setup.render.rays_per_dot.reset();
-  scene = with_rays(scene, plan_rays_by_rays(scene));
+  scene = with_rays(scene, determine_ray_budget_by_tracing(scene));
   EXPECT_EQ(unseen(render(scene).truth), 0);
 }
 
@@ -286,7 +286,7 @@ TEST(RayNeed, IsOfTheDotsThatNeedIt) {
     EXPECT_EQ(alone.displacement_px[0], found.truth.displacement_px[i]);
   }
   Scene many = scene;
-  many.by_need.reset();
+  many.adaptive_criteria.reset();
   many.rays_per_dot = 65536;
   Rendering const exact = render(many);
   EXPECT_LT(truth_error(found.truth, exact.truth), truth_tolerance_px);
@@ -303,8 +303,8 @@ TEST(RayNeed, LeavesAGivenNumber) {
 
 // The errors of overlapping sources add up to half a grey level, whatever their number: for k sources, each with a k-th
 // of the light of the brightest pixel, the sum of the k squared errors is that of half a level.
-TEST(RayGoal, SharesHalfALevelByLight) {
-  RayGoal goal;
+TEST(RequiredRayAccuracy, SharesHalfALevelByLight) {
+  RequiredRayAccuracy goal;
   goal.level = 1e-4;
   goal.brightest_at = 3685;
   double const brightest = goal.level * goal.brightest_at;

@@ -1,4 +1,4 @@
-#include "studies/figures/passing_folder.h"
+#include "studies/figures/temporary_directory.h"
 
 #include <sys/stat.h>
 
@@ -22,11 +22,11 @@ std::string folder_of_temporaries() {
 
 }  // namespace
 
-PassingFolder::PassingFolder() {
+TemporaryDirectory::TemporaryDirectory() {
   std::string const above = folder_of_temporaries();
   int problem = 0;
   try {
-    remove_leftovers(above, stem);
+    remove_abandoned_outputs(above, stem);
     partial_.emplace(above, stem, Partial::Kind::folder);
     path_ = partial_->path() + "/files";
     // Other users may only check the lock, which shows whether this process is running.

@@ -6,12 +6,12 @@ namespace gladstone {
 
 /// RAII guard that silences log messages below `error`, for internally constructed setups and for warnings that are
 /// reported elsewhere.
-class QuietLog {
+class LogSilencer {
  public:
-  QuietLog() : level_(spdlog::get_level()) { spdlog::set_level(spdlog::level::err); }
-  ~QuietLog() { spdlog::set_level(level_); }
-  QuietLog(QuietLog const&) = delete;
-  QuietLog& operator=(QuietLog const&) = delete;
+  LogSilencer() : level_(spdlog::get_level()) { spdlog::set_level(spdlog::level::err); }
+  ~LogSilencer() { spdlog::set_level(level_); }
+  LogSilencer(LogSilencer const&) = delete;
+  LogSilencer& operator=(LogSilencer const&) = delete;
 
  private:
   spdlog::level::level_enum level_;

@@ -15,7 +15,7 @@
 namespace gladstone {
 
 /// Given properties of a BOS set-up, which do not change with distances or lens. In SI.
-struct BenchGiven {
+struct FixedDesignParameters {
   CameraSetup camera;               ///< pixels, pitch, noise, exposure
   std::optional<PaperLight> light;  ///< replaces the camera's exposure
   double wavelength = 532e-9;       ///< [m]
@@ -37,8 +37,8 @@ inline constexpr double automatic_peak = 0.9;
 /// is double, or a Jet for derivatives with respect to the five design variables. Symbols and numbers (F1 ...) as in
 /// docs/design.md.
 template <class T>
-struct Bench {
-  BenchGiven const* given;
+struct DesignPoint {
+  FixedDesignParameters const* given;
   T focal_length;  ///< f [m]
   T f_number;      ///< N [1]
   T z_a;           ///< distance from the lens to the medium's mid-plane [m]
@@ -141,18 +141,18 @@ struct Bench {
   }
   T random_error() const { return random_error_px(geometric_dot_px(), spot_sigma_px(), noise(), dots_in_window()); }
   /// Returns the gradient that causes a displacement [kg/m^4].
-  T gradient_of(T displacement_px) const { return displacement_px / sensitivity(); }
+  T gradient_from_displacement(T displacement_px) const { return displacement_px / sensitivity(); }
   /// Returns the smallest detectable gradient: two standard deviations of the random error [kg/m^4].
-  T smallest_gradient() const { return gradient_of(T(2.0 * random_error())); }
+  T smallest_gradient() const { return gradient_from_displacement(T(2.0 * random_error())); }
 };
 
 /// Returns the wavelength of density with a transfer of 1 / sqrt(2); the transfer of shorter waves is smaller [m].
-double resolved_wavelength(Bench<double> const& bench);
+double resolved_wavelength(DesignPoint<double> const& bench);
 
 /// Computes the same with the derivatives of a Jet, by the implicit function theorem: transfer(wavelength, choices) is
 /// constant.
 template <class T>
-T resolved_wavelength(Bench<T> const& bench, Bench<double> const& value) {
+T resolved_wavelength(DesignPoint<T> const& bench, DesignPoint<double> const& value) {
   double const wavelength = resolved_wavelength(value), step = 1e-5 * wavelength;
   double const slope = (value.transfer(wavelength + step) - value.transfer(wavelength - step)) / (2 * step);
   return wavelength - (bench.transfer(T(wavelength)) - transfer_at_resolution) / slope;

@@ -7,22 +7,22 @@
 
 #include "render/scene/setup.h"
 #include "studies/case/case.h"
-#include "studies/design/bench.h"
+#include "studies/design/design_point.h"
 #include "studies/report/report_page.h"
 
 namespace gladstone {
 
 /// Set-up of a setup as drawn in its report.
 struct LayoutView {
-  std::unique_ptr<BenchGiven> given;  ///< null for PIV
-  Bench<double> bench;                ///< unused for PIV
+  std::unique_ptr<FixedDesignParameters> given;  ///< null for PIV
+  DesignPoint<double> bench;                     ///< unused for PIV
   std::optional<Setup> piv;
 };
 
 /// Returns nullopt for set-ups that the drawing does not cover: a calibration, a posed, tilted or plenoptic camera,
 /// windows, no aperture stop, a lens that is neither thin nor rotationally symmetric on the axis, or, for PIV, a laser
 /// sheet outside the plane Z = 0. The medium's field is not read.
-std::optional<LayoutView> bench_view(CaseSetup loaded);
+std::optional<LayoutView> layout_view(CaseSetup loaded);
 
 /// Describes the contents of the layout in numbers.
 std::string layout_text(LayoutView const& view);
@@ -31,7 +31,7 @@ std::string layout_text(LayoutView const& view);
 /// images against f-number). Both are drawn now and embedded in the page; without gnuplot, they are replaced by their
 /// descriptions.
 /// @param whose  "the measurement", "the base"
-ReportSection bench_section(LayoutView const& view, std::string const& whose);
+ReportSection layout_section(LayoutView const& view, std::string const& whose);
 
 /// Returns the layout only.
 /// @param whose  e.g. "case 3"
@@ -40,6 +40,7 @@ ReportBlock layout_block(LayoutView const& view, std::string const& whose);
 /// Draws layout and design map into files for a publication.
 /// @return paths of the files
 /// @throws GnuplotMissing, OutputError
-std::vector<std::string> draw_bench(std::string const& folder, std::string const& format, LayoutView const& view);
+std::vector<std::string> draw_layout_and_map(std::string const& folder, std::string const& format,
+                                             LayoutView const& view);
 
 }  // namespace gladstone

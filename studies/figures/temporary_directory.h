@@ -9,10 +9,10 @@ namespace gladstone {
 
 /// Unique temporary directory, readable by this user only; removed on destruction. Directories left by killed processes
 /// of this user are removed when the next one is created in the same place (TMPDIR).
-class PassingFolder {
+class TemporaryDirectory {
  public:
   /// @throws OutputError if no directory can be created
-  PassingFolder();
+  TemporaryDirectory();
   std::string const& path() const { return path_; }
 
  private:
