@@ -27,8 +27,9 @@ class Problem(NamedTuple):
     """Key path, such as "lens.f_number"."""
     text: str
     """What is wrong, and how to correct it."""
-    code: str | None
-    """Code of the problem; None: this kind of problem has no code yet."""
+    code: str
+    """Kind of the problem: "invalid_value", "unknown_key", "missing_key", "wrong_type", "out_of_range",
+    "unknown_choice", "syntax" or "unreadable_file"."""
 
     def __str__(self) -> str:
         place = f"replace({self.key!r})" if self.file is None else self.file
@@ -38,28 +39,15 @@ class Problem(NamedTuple):
 
 
 _PLACE = re.compile(r"(?P<file>.*?):(?P<line>\d+):(?P<column>\d+)\Z", re.DOTALL)
-_UNKNOWN_KEY = re.compile(r'unknown (?:key|table) "(?P<key>[^"]+)"(?: in \[(?P<table>[^\]]+)\])?')
-_UNKNOWN_TABLE = re.compile(r"unknown table \[(?P<key>[^\]]+)\]")
-_KEY = re.compile(r"\[?(?P<key>[A-Za-z_][\w.\[\]-]*?)\]?(?: = .*?)?(?:: | )", re.DOTALL)
 
 
-def _key_of(text: str) -> str | None:
-    if match := _UNKNOWN_KEY.match(text):
-        table = match["table"]
-        return f"{table}.{match['key']}" if table else match["key"]
-    if match := _UNKNOWN_TABLE.match(text):
-        return match["key"]
-    match = _KEY.match(text)
-    return match["key"] if match and ("." in match["key"] or text.startswith("[")) else None
-
-
-def _problem(where: str, text: str) -> Problem:
+def _problem(where: str, text: str, key: str, code: str) -> Problem:
+    """Makes a problem of its location "file:line:column" or "--set key=value", its text, key and code."""
     if where.startswith("--set "):
-        key = where.removeprefix("--set ").split("=", 1)[0].strip()
-        return Problem(None, None, None, key, text, None)
+        return Problem(None, None, None, key or None, text, code)
     if match := _PLACE.match(where):
-        return Problem(match["file"], int(match["line"]), int(match["column"]), _key_of(text), text, None)
-    return Problem(where, None, None, _key_of(text), text, None)
+        return Problem(match["file"], int(match["line"]), int(match["column"]), key or None, text, code)
+    return Problem(where, None, None, key or None, text, code)
 
 
 class SetupError(Error, ValueError):
@@ -68,7 +56,7 @@ class SetupError(Error, ValueError):
     problems: tuple[Problem, ...]
 
     def __init__(self, problems=(), more: int = 0):
-        self.problems = tuple(_problem(*one) if len(one) == 2 else Problem(*one) for one in problems)
+        self.problems = tuple(_problem(*one) if len(one) == 4 else Problem(*one) for one in problems)
         self.more = more
         text = "\n".join(str(problem) for problem in self.problems)
         super().__init__(f"{text}\nand {more} problems more" if more else text)

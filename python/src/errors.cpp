@@ -19,7 +19,7 @@ void set_error(char const* name, Arguments&&... arguments) {
 void set_setup_error(SetupError const& error) {
   nb::list problems;
   for (SetupProblem const& problem : error.problems()) {
-    problems.append(nb::make_tuple(problem.where, problem.message));
+    problems.append(nb::make_tuple(problem.where, problem.message, problem.key, problem_code_name(problem.code)));
   }
   set_error("SetupError", problems, error.more());
 }

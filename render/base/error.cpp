@@ -21,6 +21,28 @@ std::string joined(std::vector<SetupProblem> const& problems, std::size_t more) 
 
 }  // namespace
 
+std::string problem_code_name(ProblemCode code) {
+  switch (code) {
+    case ProblemCode::invalid_value:
+      return "invalid_value";
+    case ProblemCode::unknown_key:
+      return "unknown_key";
+    case ProblemCode::missing_key:
+      return "missing_key";
+    case ProblemCode::wrong_type:
+      return "wrong_type";
+    case ProblemCode::out_of_range:
+      return "out_of_range";
+    case ProblemCode::unknown_choice:
+      return "unknown_choice";
+    case ProblemCode::syntax:
+      return "syntax";
+    case ProblemCode::unreadable_file:
+      return "unreadable_file";
+  }
+  return "invalid_value";
+}
+
 SetupError::SetupError(std::vector<SetupProblem> problems, std::size_t more)
     : Error(joined(problems, more)), problems_(std::move(problems)), more_(more) {}
 

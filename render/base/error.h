@@ -7,10 +7,27 @@
 
 namespace gladstone {
 
+/// Kinds of problems in a setup, for programs that handle problems by kind.
+enum class ProblemCode {
+  invalid_value,    ///< a value that does not fit the others, or any other problem
+  unknown_key,      ///< a key or table that is not read
+  missing_key,      ///< a required key without a value
+  wrong_type,       ///< a text instead of a number, or an array of another length
+  out_of_range,     ///< a number outside its limits
+  unknown_choice,   ///< a word that is not one of the choices
+  syntax,           ///< a file or an assignment that is not TOML
+  unreadable_file,  ///< a setup file that is missing or cannot be read
+};
+
+/// Returns the name of a code: "out_of_range".
+std::string problem_code_name(ProblemCode code);
+
 /// One problem in a setup: its location and how to correct it.
 struct SetupProblem {
-  std::string where;    ///< "file:line:column", or "--set key=value"
-  std::string message;  ///< "key = value: problem (why); suggestion"
+  std::string where;     ///< "file:line:column", or "--set key=value"
+  std::string message;   ///< "key = value: problem (why); suggestion"
+  std::string key = {};  ///< path of the key or table, "lens.f_number"; empty: not a problem of one key
+  ProblemCode code = ProblemCode::invalid_value;
 };
 
 /// Base class of errors whose text was written for the user; see format_user_message().

@@ -97,7 +97,8 @@ void resolve_thickness(Setup& setup, SetupTable medium) {
 std::optional<Pose<double>> read_pose(SetupTable table) {
   if (!table.present()) return std::nullopt;
   Range const place{-1e9, 1e9};
-  if (!table.has("position_mm")) table.problem("position_mm", "is missing (position of the camera); add it");
+  if (!table.has("position_mm"))
+    table.problem("position_mm", "is missing (position of the camera); add it", ProblemCode::missing_key);
   Pose<double> pose;
   pose.origin = table.quantities("position_mm", {0, 0, 0.75}, unit::millimetre, place);
   if (table.has("rotation_deg")) {

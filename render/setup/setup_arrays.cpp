@@ -33,12 +33,13 @@ SetupNode const* read_array(SetupTable& table, SetupNode const* node, std::strin
   if (node->kind != Kind::array) {
     std::string const bracketed = node->kind == Kind::text ? '[' + node->text + ']' : std::string();
     bool const brackets_are_missing = !bracketed.empty() && parse_toml_value(bracketed);
-    table.problem(key, wrong_kind(form, *node) + (brackets_are_missing ? "; write " + bracketed : ""));
+    table.problem(key, wrong_kind(form, *node) + (brackets_are_missing ? "; write " + bracketed : ""),
+                  ProblemCode::wrong_type);
     return nullptr;
   }
   std::size_t const count = node->elements.size();
   if (count < at_least || count > at_most) {
-    table.problem(key, "must be " + form + " (it has " + std::to_string(count) + ')');
+    table.problem(key, "must be " + form + " (it has " + std::to_string(count) + ')', ProblemCode::wrong_type);
     return nullptr;
   }
   for (std::size_t i = 0; i < count; ++i) {

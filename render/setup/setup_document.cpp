@@ -112,8 +112,11 @@ std::size_t add_unread(SetupDocument::State& state) {
                    [&](UnreadKey const& a, UnreadKey const& b) { return place(a) < place(b); });
   for (std::size_t i = 0; i < std::min(unread.size(), max_reported_problems); ++i) {
     auto const& [table, record, member] = unread[i];
-    state.problems.push_back(
-        {state.where(member->value.place), unread_message(state, *table, *record, member->key, member->value)});
+    std::vector<std::string> path = *table;
+    path.push_back(member->key);
+    state.problems.push_back({state.where(member->value.place),
+                              unread_message(state, *table, *record, member->key, member->value), dotted_path(path),
+                              ProblemCode::unknown_key});
   }
   return unread.size();
 }
@@ -204,12 +207,13 @@ SetupDocument SetupDocument::from_file(std::string const& path) {
   try {
     text = read_text_file(path, "a setup file", most_setup_bytes);
   } catch (DataError const& error) {
-    throw SetupError({{path, std::string(error.what()).substr(path.size() + 2)}});
+    throw SetupError({{path, std::string(error.what()).substr(path.size() + 2), "", ProblemCode::unreadable_file}});
   }
   auto const folder = std::filesystem::absolute(path).parent_path();
   SetupDocument document = from_text(text, path, folder.string());
   if (document.empty()) {
-    throw SetupError({{path, "is empty (no key is set); gladstone render --help shows a setup to begin with"}});
+    throw SetupError({{path, "is empty (no key is set); gladstone render --help shows a setup to begin with", "",
+                       ProblemCode::syntax}});
   }
   return document;
 }
@@ -227,12 +231,12 @@ void SetupDocument::override_key(std::string const& assignment) {
   std::string const where = "--set " + excerpt(assignment, longest_assignment);
   auto const equals = assignment.find('=');
   if (equals == std::string::npos) {
-    add_problem(where, "has no \"=\"; write --set key.path=value");
+    add_problem({where, "has no \"=\"; write --set key.path=value", "", ProblemCode::syntax});
     return;
   }
   auto const path = split_path(assignment.substr(0, equals));
   if (std::find(path.begin(), path.end(), "") != path.end()) {
-    add_problem(where, "has an empty key; write --set key.path=value");
+    add_problem({where, "has an empty key; write --set key.path=value", "", ProblemCode::syntax});
     return;
   }
   if (path.size() > most_setup_depth) {
@@ -242,7 +246,7 @@ void SetupDocument::override_key(std::string const& assignment) {
   }
   std::string const text = assignment.substr(equals + 1);
   if (text.find_first_not_of(" \t") == std::string::npos) {
-    add_problem(where, "has no value; write --set key.path=value");
+    add_problem({where, "has no value; write --set key.path=value", dotted_path(path), ProblemCode::syntax});
     return;
   }
   SetupNode value;
@@ -265,8 +269,10 @@ void SetupDocument::override_key(std::string const& assignment) {
     if (next->kind != SetupNode::Kind::table) {
       std::vector<std::string> const here(path.begin(), path.begin() + static_cast<std::ptrdiff_t>(i) + 1);
       bool const array = next->kind == SetupNode::Kind::array;
-      add_problem(where, dotted_path(here) + " is " + kind_name(*next) + ", not a table" +
-                             (array ? "; change its elements in the file" : "; set a key of a table"));
+      add_problem({where,
+                   dotted_path(here) + " is " + kind_name(*next) + ", not a table" +
+                       (array ? "; change its elements in the file" : "; set a key of a table"),
+                   dotted_path(path), ProblemCode::wrong_type});
       return;
     }
     table = next;
@@ -290,8 +296,9 @@ void SetupDocument::set(std::vector<std::string> const& path, SetupNode const& v
     if (next->kind == SetupNode::Kind::array && next->elements.size() == 1) next = &next->elements.front();
     if (next->kind != SetupNode::Kind::table) {
       std::vector<std::string> const here(path.begin(), path.begin() + static_cast<std::ptrdiff_t>(i) + 1);
-      add_problem(state_->where(value.place),
-                  dotted_path(path) + ": " + dotted_path(here) + " is " + kind_name(*next) + ", not a table");
+      add_problem({state_->where(value.place),
+                   dotted_path(path) + ": " + dotted_path(here) + " is " + kind_name(*next) + ", not a table",
+                   dotted_path(path), ProblemCode::wrong_type});
       return;
     }
     table = next;
@@ -315,9 +322,7 @@ SetupNode const* SetupDocument::find(std::vector<std::string> const& path) const
 
 SetupTable SetupDocument::root() { return SetupTable(state_.get(), {}); }
 
-void SetupDocument::add_problem(std::string where, std::string message) {
-  state_->problems.push_back({std::move(where), std::move(message)});
-}
+void SetupDocument::add_problem(SetupProblem problem) { state_->problems.push_back(std::move(problem)); }
 
 bool SetupDocument::has_problems() const { return !state_->problems.empty(); }
 

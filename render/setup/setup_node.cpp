@@ -141,7 +141,8 @@ SetupNode parse_toml(std::string_view text, std::string const& name) {
   if (auto const deep = too_deep(text)) {
     throw SetupError({{name + ':' + std::to_string(deep->line) + ':' + std::to_string(deep->column),
                        "tables or arrays are nested more than " + std::to_string(most_setup_depth) +
-                           " levels deep, which is more than any setup needs; write the intended key"}});
+                           " levels deep, which is more than any setup needs; write the intended key",
+                       "", ProblemCode::syntax}});
   }
   try {
     SetupNode root = converted(toml::parse(text));
@@ -149,8 +150,9 @@ SetupNode parse_toml(std::string_view text, std::string const& name) {
     return root;
   } catch (toml::parse_error const& error) {
     auto const begin = error.source().begin;
-    throw SetupError({{name + ':' + std::to_string(begin.line) + ':' + std::to_string(begin.column),
-                       "is not TOML: " + std::string(error.description()) + cure(error.description())}});
+    throw SetupError(
+        {{name + ':' + std::to_string(begin.line) + ':' + std::to_string(begin.column),
+          "is not TOML: " + std::string(error.description()) + cure(error.description()), "", ProblemCode::syntax}});
   }
 }
 

@@ -46,7 +46,8 @@ class SetupDocument {
   /// Returns the root table. Tables are views: the document must outlive them.
   SetupTable root();
 
-  void add_problem(std::string where, std::string message);
+  void add_problem(SetupProblem problem);
+  void add_problem(std::string where, std::string message) { add_problem({std::move(where), std::move(message)}); }
   bool has_problems() const;
   /// Returns true if no key is set.
   bool empty() const;
@@ -196,7 +197,7 @@ class SetupTable {
   void refuse(std::string const& key, std::string const& reason);
 
   /// Adds a problem at this key, or at the table if the key is empty or absent.
-  void problem(std::string const& key, std::string const& message);
+  void problem(std::string const& key, std::string const& message, ProblemCode code = ProblemCode::invalid_value);
   /// Location of the key, or of the table if it is absent: "file:line:column" or "--set ...".
   std::string where(std::string const& key) const;
 

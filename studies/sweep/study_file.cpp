@@ -104,8 +104,9 @@ class StudyReader {
   }
 
   void read_axes(SetupTable& root) {
-    if (!root.has("axes")) root.problem("axes", "is missing; write [axes] and below it \"key.path\" = [values]");
-    root.mark_as_read("axes");
+    if (!root.has("axes"))
+      root.problem("axes", "is missing; write [axes] and below it \"key.path\" = [values]", ProblemCode::missing_key);
+    root.pass_over("axes");
     SetupNode const* const axes = document_.find({"axes"});
     if (!axes) return;
     study_.place = placed(axes->place);
@@ -383,7 +384,7 @@ StudyFile read_study(std::string const& path) {
   try {
     text = read_text_file(path, "a study file", most_setup_bytes);
   } catch (DataError const& error) {
-    throw SetupError({{path, std::string(error.what()).substr(path.size() + 2)}});
+    throw SetupError({{path, std::string(error.what()).substr(path.size() + 2), "", ProblemCode::unreadable_file}});
   }
   return StudyReader(path, std::move(text)).read();
 }

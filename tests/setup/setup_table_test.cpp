@@ -407,6 +407,41 @@ TEST(SetupOverride, KeysAndValuesAreBoundedInDepth) {
   EXPECT_LT(found[0].size(), 400u);
 }
 
+// Programs handle problems by key and code, independently of the wording.
+TEST(SetupDocument, ProblemsNameTheirKeyAndCode) {
+  auto setup = document(R"(
+unit = "m"
+[lens]
+f_number = -1.0
+focus = "far"
+pixels = [1.0]
+sensor.pitch = "wide"
+)");
+  SetupTable lens = setup.root().table("lens");
+  lens.number("f_number", 8.0, Range::at_least(0.5));
+  lens.word("focus", "medium", {"medium", "target"});
+  lens.numbers("pixels", {1.0, 1.0}, 2, {});
+  lens.table("sensor").number("pitch", 1.0);
+  lens.required_number("focal_length_mm");
+  lens.problem("focus", "conflicts with f_number");
+  using enum ProblemCode;
+  std::vector<std::pair<std::string, ProblemCode>> const expected{{"unit", unknown_key},
+                                                                  {"lens.focal_length_mm", missing_key},
+                                                                  {"lens.f_number", out_of_range},
+                                                                  {"lens.focus", unknown_choice},
+                                                                  {"lens.focus", invalid_value},
+                                                                  {"lens.pixels", wrong_type},
+                                                                  {"lens.sensor.pitch", wrong_type}};
+  std::vector<std::pair<std::string, ProblemCode>> found;
+  try {
+    setup.finish();
+  } catch (SetupError const& error) {
+    for (auto const& problem : error.problems()) found.emplace_back(problem.key, problem.code);
+  }
+  EXPECT_EQ(found, expected);
+  EXPECT_EQ(problem_code_name(ProblemCode::out_of_range), "out_of_range");
+}
+
 // Messages for all keys would need 47 MB for 200,000 unknown keys, and searching all messages for each key 214 s.
 // Therefore only the first ones are formulated; the parser dominates the time and processes far more than 20,000 keys
 // per second.

@@ -27,7 +27,9 @@ FrameChange read_polygon_mask(SetupTable& table, FramePreparation&) {
   std::vector<double> const x = table.number_list("x_px", {}, fewest, most);
   std::vector<double> const y = table.number_list("y_px", {}, fewest, most);
   for (char const* key : {"x_px", "y_px"})
-    if (!table.has(key)) table.problem(key, "is missing (a polygon requires corners); give three or more numbers");
+    if (!table.has(key))
+      table.problem(key, "is missing (a polygon requires corners); give three or more numbers",
+                    ProblemCode::missing_key);
   if (!x.empty() && !y.empty() && x.size() != y.size())
     table.problem("y_px", "has another number of values than x_px (each corner has both coordinates); give as many");
   std::vector<Vec2d> corners;

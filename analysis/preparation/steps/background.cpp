@@ -39,7 +39,8 @@ FrameChange read_background(SetupTable& table, FramePreparation& preparation) {
   if (frames.empty())
     table.problem("frame",
                   "is missing (a background requires a sequence); give frame = [{ reference = \"a.tif\", flow = "
-                  "\"b.tif\" }, ...]");
+                  "\"b.tif\" }, ...]",
+                  ProblemCode::missing_key);
   std::vector<std::string> reference, flow;
   for (SetupTable& pair : frames) {
     reference.push_back(pair.required_path("reference"));
