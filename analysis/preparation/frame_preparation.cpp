@@ -50,7 +50,7 @@ void read_changes(SetupTable& correlate, std::string const& key, Rows const& row
     std::string const kind = table.kind_word("kind", "", names_of(rows));  // "" if the value was rejected
     if (!table.has("kind")) {
       table.problem("kind", "is missing; give " + quoted(names_of(rows)), ProblemCode::missing_key);
-      table.excuse();
+      table.suppress_unread_keys();
     }
     for (NamedChange const& row : rows)
       if (kind == row.name) changes.push_back(row.read(table, preparation));

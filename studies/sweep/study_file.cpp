@@ -106,7 +106,7 @@ class StudyReader {
   void read_axes(SetupTable& root) {
     if (!root.has("axes"))
       root.problem("axes", "is missing; write [axes] and below it \"key.path\" = [values]", ProblemCode::missing_key);
-    root.pass_over("axes");
+    root.mark_as_read("axes");
     SetupNode const* const axes = document_.find({"axes"});
     if (!axes) return;
     study_.place = placed(axes->place);
