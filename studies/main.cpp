@@ -10,6 +10,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <iostream>
+#include <nlohmann/json.hpp>
 #include <string_view>
 
 #include "render/base/error.h"
@@ -18,9 +19,11 @@
 #include "render/base/parallel.h"
 #include "render/base/progress.h"
 #include "render/files/input_guard.h"
+#include "studies/case/json_text.h"
 #include "studies/case/version_text.h"
 #include "studies/commands/arguments.h"
 #include "studies/commands/command.h"
+#include "studies/commands/error_json.h"
 #include "studies/commands/protected_files.h"
 #include "studies/commands/run_warnings.h"
 
@@ -62,7 +65,7 @@ constexpr std::array commands{
 };
 
 /// Reports a command line that names no command or contains unknown arguments.
-int refuse_arguments(std::vector<std::string> const& unknown, CLI::App const* command, CLI::App const& app) {
+int refuse_arguments(std::vector<std::string> const& unknown, CLI::App const* command, CLI::App const& app, bool json) {
   std::vector<std::string> known;
   for (Command const& one : commands) known.emplace_back(one.name);
   std::string const name = unknown.empty() ? "" : unknown.front();
@@ -96,7 +99,13 @@ int refuse_arguments(std::vector<std::string> const& unknown, CLI::App const* co
   }
   print_error(
       fmt::format("gladstone: {} See gladstone {}--help", message.ends_with('?') ? message : message + '.', path));
+  if (json) fmt::print("{}\n", json_text(argument_error_json(message, bad_input)));
   return bad_input;
+}
+
+/// Returns true if the arguments contain --json, also if they cannot be parsed.
+bool wants_json(int argc, char** argv) {
+  return std::find(argv + 1, argv + argc, std::string_view("--json")) != argv + argc;
 }
 
 int run(int argc, char** argv) {
@@ -127,17 +136,18 @@ int run(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (CLI::CallForVersion const&) {
-    // Parsing stops there, but --json may come before or after it.
-    options.json = std::find(argv + 1, argv + argc, std::string_view("--json")) != argv + argc;
+    options.json = wants_json(argc, argv);  // parsing stops there, but --json may come before or after it
     print_result(options, version_json(), version_text());
     return ok;
   } catch (CLI::ParseError const& error) {
-    return app.exit(error) == 0 ? ok : bad_input;
+    if (app.exit(error) == 0) return ok;
+    if (wants_json(argc, argv)) fmt::print("{}\n", json_text(argument_error_json(error.what(), bad_input)));
+    return bad_input;
   }
   auto const parsed_one =
       std::find_if(parsed.begin(), parsed.end(), [](CLI::App* command) { return command->parsed(); });
   if (std::vector<std::string> const unknown = app.remaining(true); !unknown.empty() || parsed_one == parsed.end()) {
-    return refuse_arguments(unknown, parsed_one == parsed.end() ? nullptr : *parsed_one, app);
+    return refuse_arguments(unknown, parsed_one == parsed.end() ? nullptr : *parsed_one, app, options.json);
   }
   if (options.quiet) spdlog::set_level(spdlog::level::warn);
   Progress::enable(!options.quiet);
@@ -149,23 +159,23 @@ int run(int argc, char** argv) {
 }
 
 int guarded(int argc, char** argv) {
-  auto const fail = [](char const* kind, std::string const& what, int code) {
-    print_error(fmt::format("gladstone: {}{}", kind, what));
+  auto const fail = [&](std::exception const& error, std::string const& message, int code) {
+    print_error(message);
+    if (wants_json(argc, argv)) fmt::print("{}\n", json_text(error_json(error, code)));
     return code;
   };
   try {
     return run(argc, argv);
   } catch (SetupError const& error) {
-    print_error(error.what());
-    return bad_input;
+    return fail(error, error.what(), bad_input);
   } catch (Interrupted const& error) {
-    return fail("", error.what(), interrupted_by_user);
+    return fail(error, fmt::format("gladstone: {}", error.what()), interrupted_by_user);
   } catch (NoValidVector const& error) {
-    return fail("", error.what(), check_missed);
+    return fail(error, fmt::format("gladstone: {}", error.what()), check_missed);
   } catch (DeviceError const& error) {
-    return fail("device error: ", error.what(), device_error);
+    return fail(error, fmt::format("gladstone: device error: {}", error.what()), device_error);
   } catch (std::exception const& error) {
-    return fail("", format_user_message(error), bad_input);
+    return fail(error, fmt::format("gladstone: {}", format_user_message(error)), bad_input);
   }
 }
 

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <exception>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+namespace gladstone {
+
+/// Describes an error as a JSON object, for --json: `exit_code`, `warnings`, and `errors` with one object per problem:
+/// `code`, `message` and, if they are known, `file`, `line`, `column` and `key`.
+/// The codes are those of ProblemCode for problems of a setup, else "arguments", "data", "device", "interrupted",
+/// "memory", "no_valid_vector", "output" and "internal".
+nlohmann::ordered_json error_json(std::exception const& error, int exit_code);
+
+/// Likewise, for a command line that cannot be parsed.
+nlohmann::ordered_json argument_error_json(std::string const& message, int exit_code);
+
+}  // namespace gladstone

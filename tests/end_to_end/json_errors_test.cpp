@@ -1,0 +1,70 @@
+#include <nlohmann/json.hpp>
+
+#include "tests/end_to_end/support/program_fixture.h"
+
+namespace gladstone::end_to_end {
+namespace {
+
+/// Errors with --json: one object on stdout; the text for people stays on stderr.
+class JsonErrors : public ProgramFixture {
+ protected:
+  nlohmann::json errors_of(std::vector<std::string> arguments, int exit_code) const {
+    arguments.emplace_back("--json");
+    Outcome const outcome = gladstone(std::move(arguments));
+    EXPECT_EQ(outcome.exit_code, exit_code) << outcome.err;
+    EXPECT_THAT(outcome.err, testing::Not(testing::IsEmpty()));
+    auto const json = nlohmann::json::parse(outcome.out, nullptr, false);
+    if (!json.is_object()) {
+      ADD_FAILURE() << outcome.out;
+      return nlohmann::json::array();
+    }
+    EXPECT_EQ(json["exit_code"], exit_code);
+    EXPECT_TRUE(json["warnings"].is_array());
+    return json["errors"];
+  }
+};
+
+TEST_F(JsonErrors, ListAllProblemsOfASetup) {
+  write("setup.toml", "[lens]\nfocal_lenght_mm = 105\nf_number = -1\n");
+  nlohmann::json const errors = errors_of({"render", "setup.toml", "-o", "case"}, 2);
+  auto const find = [&](std::string const& key) {
+    for (auto const& error : errors)
+      if (error.value("key", "") == key) return error;
+    ADD_FAILURE() << key << " is not in " << errors.dump(2);
+    return nlohmann::json::object();
+  };
+  nlohmann::json const unknown = find("lens.focal_lenght_mm"), range = find("lens.f_number");
+  EXPECT_EQ(unknown.value("code", ""), "unknown_key");
+  EXPECT_EQ(unknown.value("line", 0), 2);
+  EXPECT_EQ(unknown.value("column", 0), 1);
+  EXPECT_THAT(unknown.value("file", ""), testing::EndsWith("setup.toml"));
+  EXPECT_THAT(unknown.value("message", ""), testing::HasSubstr("did you mean"));
+  EXPECT_EQ(range.value("code", ""), "out_of_range");
+  EXPECT_EQ(range.value("line", 0), 3);
+}
+
+TEST_F(JsonErrors, NameTheFile) {
+  nlohmann::json const missing = errors_of({"render", "none.toml", "-o", "case"}, 2);
+  ASSERT_EQ(missing.size(), 1u);
+  EXPECT_EQ(missing[0]["code"], "unreadable_file");
+  EXPECT_THAT(missing[0]["file"], testing::EndsWith("none.toml"));
+  EXPECT_FALSE(missing[0].contains("line"));
+
+  nlohmann::json const image = errors_of({"info", "image", "none.tif"}, 2);
+  ASSERT_EQ(image.size(), 1u);
+  EXPECT_EQ(image[0]["code"], "data");
+  EXPECT_THAT(image[0]["file"], testing::EndsWith("none.tif"));
+}
+
+TEST_F(JsonErrors, CoverTheCommandLine) {
+  for (std::vector<std::string> const& wrong :
+       {std::vector<std::string>{"rendre"}, {"render"}, {"render", "a.toml", "-o", "b", "--thread", "1"}}) {
+    nlohmann::json const errors = errors_of(wrong, 2);
+    ASSERT_EQ(errors.size(), 1u) << wrong.front();
+    EXPECT_EQ(errors[0]["code"], "arguments");
+    EXPECT_FALSE(errors[0]["message"].get<std::string>().empty());
+  }
+}
+
+}  // namespace
+}  // namespace gladstone::end_to_end
