@@ -26,9 +26,10 @@ void check_reconstruct_options(ReconstructOptions const& options) {
     if (!options.reference.empty()) conflict("--reference", "the density beyond the largest radius is the reference");
     if (options.deconvolution_gain) conflict("--deconvolve", "a radial density is not deconvolved");
   } else if (options.reference.empty()) {
-    problems.push_back({"--reference",
-                        "is required (a gradient determines the density only up to a constant); give the side of the "
-                        "image, or the box X0,Y0,X1,Y1 in mm, where the density is known"});
+    problems.push_back(
+        {"--reference",
+         "is required (a gradient determines the density only up to a constant); give a side of the image (left, "
+         "right, top or bottom) or a box X0,Y0,X1,Y1 in mm, where the density is known"});
   }
   if (options.overlap && !(*options.overlap >= 0.0 && *options.overlap < 1.0))
     problems.push_back({"--overlap", fmt::format("expected 0 to below 1, got {}", *options.overlap)});
