@@ -8,7 +8,7 @@
 
 namespace gladstone::density {
 
-NormalEquations::NormalEquations(Matrix matrix, std::size_t direct_limit) : matrix_(std::move(matrix)) {
+NormalEquations::NormalEquations(Matrix const& matrix, std::size_t direct_limit) : matrix_(matrix) {
   if (static_cast<std::size_t>(matrix_.rows()) <= direct_limit) {
     direct_ = std::make_unique<Direct>(matrix_);
     if (direct_->info() == Eigen::Success) return;

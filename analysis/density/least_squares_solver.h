@@ -15,7 +15,7 @@ class NormalEquations {
  public:
   using Matrix = Eigen::SparseMatrix<double>;
   /// @throws DataError  if the factorisation fails
-  NormalEquations(Matrix matrix, std::size_t direct_limit);
+  NormalEquations(Matrix const& matrix, std::size_t direct_limit);
   /// @throws DataError  if the conjugate gradients do not converge
   Eigen::VectorXd solve(Eigen::VectorXd const& right_side) const;
 

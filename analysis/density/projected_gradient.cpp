@@ -47,8 +47,9 @@ PixelGrid find_pixel_grid(DisplacementField const& field) {
   if (!(grid.step_px.x > 0.0 && grid.step_px.y > 0.0))
     throw DataError("vectors", "the columns must run to the right and the rows downwards; reorder the vectors");
   for (std::size_t i = 0; i < field.size(); ++i) {
-    Vec2d const expected{first.x + static_cast<double>(i % columns) * grid.step_px.x,
-                         first.y + static_cast<double>(i / columns) * grid.step_px.y};
+    std::size_t const row = i / columns, column = i % columns;
+    Vec2d const expected{first.x + static_cast<double>(column) * grid.step_px.x,
+                         first.y + static_cast<double>(row) * grid.step_px.y};
     if (!(length(field.position_px[i] - expected) <= 1e-3 * std::min(grid.step_px.x, grid.step_px.y)))
       throw DataError("vectors",
                       fmt::format("vector {} at ({:.4f}, {:.4f}) px is not on the regular grid, expected "
