@@ -32,6 +32,8 @@ namespace {
 
 /// One row per command.
 constexpr std::array commands{
+    Command{"keys", "List the keys of setups with unit, default, allowed values and meaning", "gladstone keys f_number",
+            attach_keys},
     Command{"render", "Render the image pair of a setup, or the planes of a calibration, into a case folder",
             "gladstone render table1.toml -o out/case", attach_render},
     Command{"correlate", "Measure the displacement between two frames", "gladstone correlate out/case",

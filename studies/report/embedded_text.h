@@ -9,5 +9,6 @@ extern std::string_view const report_css;
 extern std::string_view const report_js;
 extern std::string_view const d3_js;       ///< Mike Bostock's d3, from Debian's package node-d3
 extern std::string_view const d3_licence;  ///< licence of d3, from the same package
+extern std::string_view const setup_keys;  ///< docs/reference/setup.md
 
 }  // namespace gladstone::embedded
