@@ -32,6 +32,8 @@ namespace {
 
 /// One row per command.
 constexpr std::array commands{
+    Command{"init", "Write a commented template of a setup, a study or a design problem",
+            "gladstone init bos -o bos.toml && gladstone render bos.toml -o out/bos", attach_init},
     Command{"keys", "List the keys of setups with unit, default, allowed values and meaning", "gladstone keys f_number",
             attach_keys},
     Command{"render", "Render the image pair of a setup, or the planes of a calibration, into a case folder",

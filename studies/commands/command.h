@@ -44,6 +44,7 @@ struct Command {
   CommandBody (*attach)(CLI::App& app, GlobalOptions const& options);
 };
 
+CommandBody attach_init(CLI::App& app, GlobalOptions const& options);
 CommandBody attach_keys(CLI::App& app, GlobalOptions const& options);
 CommandBody attach_render(CLI::App& app, GlobalOptions const& options);
 CommandBody attach_correlate(CLI::App& app, GlobalOptions const& options);

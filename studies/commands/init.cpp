@@ -1,0 +1,132 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "render/base/error.h"
+#include "render/files/output_file.h"
+#include "studies/case/json_text.h"
+#include "studies/commands/arguments.h"
+#include "studies/commands/command.h"
+#include "studies/commands/setup_keys.h"
+#include "studies/report/embedded_text.h"
+
+namespace gladstone {
+namespace {
+
+/// A kind of file that `gladstone init` writes.
+struct Template {
+  char const* kind;
+  std::string_view const* text;  ///< short template
+  char const* required;          ///< keys of the complete list that are not commented out
+};
+
+constexpr std::array templates{
+    Template{"bos", &embedded::template_bos, "schema = 1\nexperiment = \"bos\"\n"},
+    Template{"piv", &embedded::template_piv, "schema = 1\nexperiment = \"piv\"\n"},
+    Template{"stereo", &embedded::template_stereo, "schema = 1\nexperiment = \"piv\"\n"},
+    Template{"calibration", &embedded::template_calibration, "schema = 1\nexperiment = \"calibration\"\n"},
+    Template{"study", &embedded::template_study, "base = \"bos.toml\"\n\n[axes]\n\"lens.f_number\" = [5.6, 11, 22]\n"},
+    Template{"design", &embedded::template_design, "schema = 1\nexperiment = \"bos\"\n"},
+};
+
+std::vector<std::string> template_kinds() {
+  std::vector<std::string> kinds;
+  for (Template const& one : templates) kinds.emplace_back(one.kind);
+  return kinds;
+}
+
+/// Returns a line of the complete list: the commented key with its default, unit, values and meaning. Keys without a
+/// default in TOML have "..." in place of the value.
+std::string commented_key(SetupKey const& key) {
+  std::string const name = key.path.substr(key.path.rfind('.') + 1);
+  std::string text = fmt::format("# {} = {}  #", name, key.default_value.empty() ? "..." : key.default_value);
+  if (!key.unit.empty()) text += " [" + key.unit + ']';
+  text += ' ' + key.meaning;
+  if (!key.values.empty()) text += "; values: " + key.values;
+  if (!key.default_words.empty())
+    text += key.is_required() ? "; " + key.default_words : "; default: " + key.default_words;
+  return text + '\n';
+}
+
+/// Returns a file with every key of a kind, commented out except for those that the file requires.
+std::string complete_list(Template const& one) {
+  std::string text = fmt::format(
+      "# Every key of the kind \"{}\" with its default. To change a key, remove the \"# \" before it and before the "
+      "name "
+      "of\n# its table.\n{}",
+      one.kind, one.required);
+  for (SetupKeyTable const& table : setup_key_tables()) {
+    if (std::find(table.kinds.begin(), table.kinds.end(), one.kind) == table.kinds.end() || table.keys.empty())
+      continue;
+    if (!table.heading.empty()) {
+      text += fmt::format("\n# {}{}\n", table.heading, table.condition.empty() ? "" : "  # with " + table.condition);
+    }
+    for (SetupKey const& key : table.keys) {
+      bool const given = table.heading.empty() &&
+                         (std::string_view(one.required).starts_with(key.path + " =") ||
+                          std::string_view(one.required).find('\n' + key.path + " =") != std::string_view::npos);
+      if (!given) text += commented_key(key);
+    }
+  }
+  return text;
+}
+
+/// Replaces the name of the file in the commands of a template's comment.
+std::string with_file_name(std::string text, std::string const& kind, std::string const& file) {
+  std::string const name = kind + ".toml";
+  for (std::size_t at = text.find(name); at != std::string::npos; at = text.find(name, at + file.size())) {
+    text.replace(at, name.size(), file);
+  }
+  return text;
+}
+
+/// Returns the first command of a template's comment; empty if it has none.
+std::string first_command(std::string const& text) {
+  auto const start = text.find("gladstone ", text.find("\n#   "));
+  return start == std::string::npos ? "" : text.substr(start, text.find('\n', start) - start);
+}
+
+void write_new_file(std::string const& path, std::string const& text) {
+  namespace fs = std::filesystem;
+  if (std::error_code error; fs::exists(fs::symlink_status(path, error))) {
+    throw OutputError(path, "exists already and would be overwritten; choose another name, or delete it first");
+  }
+  OutputFile::write_text(path, text);
+}
+
+}  // namespace
+
+CommandBody attach_init(CLI::App& app, GlobalOptions const& options) {
+  struct Arguments {
+    std::string kind, output;
+    bool all = false;
+  };
+  auto arguments = std::make_shared<Arguments>();
+  app.add_option("kind", arguments->kind, "bos, piv, stereo, calibration, study or design")
+      ->required()
+      ->check(one_of(template_kinds()));
+  app.add_option("-o,--output", arguments->output, "File to create (TOML); default: the standard output");
+  app.add_flag("--all", arguments->all, "Every key with its default, commented out, in place of the ten that matter");
+  return [arguments, &options] {
+    auto const one = std::find_if(templates.begin(), templates.end(),
+                                  [&](Template const& other) { return arguments->kind == other.kind; });
+    std::string text = arguments->all ? complete_list(*one) : std::string(*one->text);
+    std::string const& file = arguments->output;
+    if (file.empty()) {
+      print_result(options, json_text(nlohmann::ordered_json{{"kind", one->kind}, {"text", text}}), text);
+      return ok;
+    }
+    if (!arguments->all) text = with_file_name(std::move(text), one->kind, file);
+    write_new_file(file, text);
+    std::string const next = arguments->all ? "" : first_command(text);
+    print_result(options, json_text(nlohmann::ordered_json{{"kind", one->kind}, {"file", file}, {"next", next}}),
+                 file + (next.empty() ? "" : "\nnext: " + next));
+    return ok;
+  };
+}
+
+}  // namespace gladstone
