@@ -2,7 +2,7 @@
 #include <sstream>
 
 #include "render/setup/setup_node.h"
-#include "tests/end_to_end/support/workplace.h"
+#include "tests/end_to_end/support/program_fixture.h"
 
 namespace gladstone::end_to_end {
 namespace {
@@ -11,7 +11,7 @@ using testing::HasSubstr;
 
 constexpr char const* template_kinds[] = {"bos", "piv", "stereo", "calibration", "study", "design"};
 
-class Init : public Workplace {
+class Init : public ProgramFixture {
  protected:
   void write_template(std::string const& kind) const {
     succeed({"init", kind, "-o", kind + ".toml", "--quiet"});

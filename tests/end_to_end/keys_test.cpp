@@ -4,7 +4,7 @@
 
 #include "studies/commands/setup_keys.h"
 #include "studies/sweep/unit_ending.h"
-#include "tests/end_to_end/support/workplace.h"
+#include "tests/end_to_end/support/program_fixture.h"
 #include "tests/support/reader_keys.h"
 
 namespace gladstone::end_to_end {
@@ -160,7 +160,7 @@ TEST(DocumentedKeys, HaveTheUnitsOfTheirNames) {
   }
 }
 
-class Keys : public Workplace {};
+class Keys : public ProgramFixture {};
 
 TEST_F(Keys, AreListedWithUnitDefaultAndValues) {
   auto const keys = json_of({"keys", "lens.f_number"}).at("keys");
