@@ -8,7 +8,7 @@ namespace {
 /// Errors with --json: one object on stdout; the text for people stays on stderr.
 class JsonErrors : public ProgramFixture {
  protected:
-  nlohmann::json compute_error_measures(std::vector<std::string> arguments, int exit_code) const {
+  nlohmann::json run_with_errors(std::vector<std::string> arguments, int exit_code) const {
     arguments.emplace_back("--json");
     Outcome const outcome = gladstone(std::move(arguments));
     EXPECT_EQ(outcome.exit_code, exit_code) << outcome.err;
@@ -26,7 +26,7 @@ class JsonErrors : public ProgramFixture {
 
 TEST_F(JsonErrors, ListAllProblemsOfASetup) {
   write("setup.toml", "[lens]\nfocal_lenght_mm = 105\nf_number = -1\n");
-  nlohmann::json const errors = compute_error_measures({"render", "setup.toml", "-o", "case"}, 2);
+  nlohmann::json const errors = run_with_errors({"render", "setup.toml", "-o", "case"}, 2);
   auto const find = [&](std::string const& key) {
     for (auto const& error : errors)
       if (error.value("key", "") == key) return error;
@@ -44,13 +44,13 @@ TEST_F(JsonErrors, ListAllProblemsOfASetup) {
 }
 
 TEST_F(JsonErrors, NameTheFile) {
-  nlohmann::json const missing = compute_error_measures({"render", "none.toml", "-o", "case"}, 2);
+  nlohmann::json const missing = run_with_errors({"render", "none.toml", "-o", "case"}, 2);
   ASSERT_EQ(missing.size(), 1u);
   EXPECT_EQ(missing[0]["code"], "unreadable_file");
   EXPECT_THAT(missing[0]["file"], testing::EndsWith("none.toml"));
   EXPECT_FALSE(missing[0].contains("line"));
 
-  nlohmann::json const image = compute_error_measures({"info", "image", "none.tif"}, 2);
+  nlohmann::json const image = run_with_errors({"info", "image", "none.tif"}, 2);
   ASSERT_EQ(image.size(), 1u);
   EXPECT_EQ(image[0]["code"], "data");
   EXPECT_THAT(image[0]["file"], testing::EndsWith("none.tif"));
@@ -59,7 +59,7 @@ TEST_F(JsonErrors, NameTheFile) {
 TEST_F(JsonErrors, CoverTheCommandLine) {
   for (std::vector<std::string> const& wrong :
        {std::vector<std::string>{"rendre"}, {"render"}, {"render", "a.toml", "-o", "b", "--thread", "1"}}) {
-    nlohmann::json const errors = compute_error_measures(wrong, 2);
+    nlohmann::json const errors = run_with_errors(wrong, 2);
     ASSERT_EQ(errors.size(), 1u) << wrong.front();
     EXPECT_EQ(errors[0]["code"], "arguments");
     EXPECT_FALSE(errors[0]["message"].get<std::string>().empty());
