@@ -88,8 +88,14 @@ class LensBuilder {
     } else if (aperture.kind == Kind::object_na && std::isfinite(prescribed)) {
       double const s = std::min(aperture.value, 1.0);
       open_by_slope(s / std::sqrt(std::max(1 - s * s, 1e-12)), prescribed);
-    } else {
+    } else if (std::isfinite(stop.semi_diameter)) {
       lens_.stop_radius = lens_.paraxial_stop_radius = stop.semi_diameter;
+    } else {
+      throw DataError(
+          stop.where,
+          "the stop has no semi-diameter, and the file sets no aperture from which it follows; add its "
+          "semi-diameter (.zmx: DIAM, .seq: CIR, .toml: semi_diameter_mm), an entrance pupil or an f-number "
+          "(ENPD, FNUM; EPD, FNO; entrance_pupil_mm, f_number), or lens.f_number to the setup");
     }
     if (stop.has_aperture) {  // limits the opening required by the system aperture
       if (options_.f_number && lens_.paraxial_stop_radius > stop.semi_diameter) {

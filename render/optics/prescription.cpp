@@ -242,9 +242,6 @@ std::vector<std::string> check_prescription(Prescription const& lens) {
     throw DataError(aperture.where.empty() ? lens.file : aperture.where, "the aperture is not positive; correct it");
   }
   auto const at = std::find_if(lens.surfaces.begin(), lens.surfaces.end(), [](auto const& s) { return s.stop; });
-  if (aperture.kind == PrescribedAperture::Kind::stop && !std::isfinite(at->semi_diameter)) {
-    throw DataError(at->where, "the stop has no semi-diameter, and nothing else sets it (entrance pupil, f-number)");
-  }
   if (aperture.kind == PrescribedAperture::Kind::object_na && !std::isfinite(lens.object_distance)) {
     warn(
         fmt::format("{}: a numerical aperture on the object's side does not define the aperture for an object at "
