@@ -13,6 +13,7 @@
 #include "render/base/text.h"
 #include "render/base/units.h"
 #include "render/optics/lens.h"
+#include "render/optics/prescription_readers/lines.h"
 #include "render/optics/prescription_readers/readers.h"
 
 namespace gladstone {
@@ -31,6 +32,9 @@ constexpr std::array formats{
 };
 
 constexpr double longest = 1e3;  // upper limit of any length in a lens [m]
+// Overlap of two surfaces on the axis that is traced: less than any tolerance of a thickness, so that rays do not
+// depend on its sign. Variables of an optimiser that end at contact are stored with such values. [m]
+constexpr double contact_tolerance = 1e-6;
 
 /// Returns true for an ideal lens, and for a surface that is a mirror or borders on a medium other than air. Reference
 /// planes and stops in air do not count.
@@ -62,7 +66,7 @@ bool is_turned(PrescribedSurface const& surface) {
 
 /// Checks whether a surface intersects the next real surface within their edges; reference planes between them are
 /// skipped. Semi-diameters for drawings are not considered as edges. An intersection off the axis causes a warning
-/// only, since it may be outside the light.
+/// only, since it may be outside the light, and so does one within the contact tolerance.
 /// @param forwards  sign of the light's direction between the surfaces
 /// @return a warning; empty: the surfaces do not overlap
 /// @throws DataError if they overlap on the axis
@@ -86,7 +90,8 @@ std::string find_overlap(Prescription const& lens, std::size_t i, double forward
     std::string const what =
         fmt::format("this surface and the one before it ({}) overlap by {:.4g} mm at a height of {:.4g} mm", one.where,
                     -gap / unit::millimetre, r / unit::millimetre);
-    if (k == 0) throw DataError(next.where, what + " (check radius, thickness and semi-diameter)");
+    if (gap < -contact_tolerance && k == 0)
+      throw DataError(next.where, what + " (check radius, thickness and semi-diameter)");
     return fmt::format(
         "{}: {}, within their semi-diameters; rays are traced from surface to surface all the same (check "
         "radius, thickness and semi-diameter)",
@@ -99,9 +104,10 @@ std::string find_overlap(Prescription const& lens, std::size_t i, double forward
 void check_medium(PrescribedMedium const& medium, std::string const& surface_where) {
   std::string const& where = medium.where.empty() ? surface_where : medium.where;
   auto const* const index = std::get_if<PrescribedMedium::Index>(&medium.is);
-  if (index && !(index->n >= 1 && index->n < 5)) {
-    throw DataError(where,
-                    fmt::format("an index of {:.4g} is not that of a glass (between 1 and 5); correct it", index->n));
+  if (index && !is_index_relative_to_air(index->n)) {
+    throw DataError(
+        where,
+        fmt::format("an index of {:.4g} is not that of a glass (between 1 and 5) or a gas; correct it", index->n));
   }
   auto const* const described = std::get_if<PrescribedMedium::Described>(&medium.is);
   if (described && !(described->nd > 1 && described->nd < 5 && described->vd > 0)) {
@@ -221,7 +227,9 @@ std::vector<std::string> check_prescription(Prescription const& lens) {
                                   surface.obscured / unit::millimetre, surface.semi_diameter / unit::millimetre));
     }
     if (surface.after.is_mirror()) forwards = -forwards;
-    if (!surface.after.is_mirror() && !surface.after.is_air() && forwards * surface.thickness < 0 && !last) {
+    bool const against =
+        !surface.after.is_mirror() && !surface.after.is_air() && forwards * surface.thickness < 0 && !last;
+    if (against && std::abs(surface.thickness) > contact_tolerance) {
       throw DataError(surface.where,
                       fmt::format("a thickness of {:.4g} mm of glass is directed against the light, which travels {} "
                                   "here; change its sign (behind an odd number of mirrors thicknesses are negative)",
@@ -232,7 +240,14 @@ std::vector<std::string> check_prescription(Prescription const& lens) {
       throw DataError(surface.where, "an ideal thin lens has a focal length of 0; give it another one");
     }
     check_medium(surface.after, surface.where);
-    if (is_real(lens, i)) warn(find_overlap(lens, i, forwards));
+    std::string const overlap = is_real(lens, i) ? find_overlap(lens, i, forwards) : "";
+    warn(overlap);
+    if (against && overlap.empty()) {
+      warn(
+          fmt::format("{}: a thickness of {:.4g} mm of glass is directed against the light; it is traced, since it is "
+                      "contact within {:.4g} mm",
+                      surface.where, surface.thickness / unit::millimetre, contact_tolerance / unit::millimetre));
+    }
   }
   if (!any_real) throw DataError(lens.file, "has no surface that refracts or reflects (every medium is air)");
   if (stop.empty())

@@ -16,7 +16,7 @@
 #include "tests/optics/lens_fixtures.h"
 #include "tests/optics/prescription_texts.h"
 
-// One test for every row of the table of .zmx, .seq and .agf files in docs/file-formats.md. The files in
+// One test for every row of the first table of .zmx, .seq and .agf files in docs/file-formats.md. The files in
 // tests/cases/lenses each have one property of files written by other programs.
 namespace gladstone {
 namespace {

@@ -45,6 +45,10 @@ double PrescriptionLine::number_or_infinity(std::size_t i) const {
   return number(i);
 }
 
+std::optional<double> PrescriptionLine::optional_number(std::size_t i) const {
+  return i < words.size() ? finite_number(words[i]) : std::nullopt;
+}
+
 bool PrescriptionLine::has_nonzero_number() const {
   return std::any_of(words.begin() + 1, words.end(),
                      [](std::string const& word) { return finite_number(word).value_or(0) != 0; });
@@ -80,7 +84,23 @@ void set_primary_wavelength(Prescription& lens, ListedWavelength const* primary,
                   primary ? primary->where : where, commands, spectral_line::d / unit::nanometre));
 }
 
-std::string upper_case(std::string text) {
+std::string replace_decimal_commas(std::vector<std::string>& words) {
+  std::string first;
+  for (std::size_t i = 1; i < words.size(); ++i) {
+    std::size_t const comma = words[i].find(',');
+    if (comma == std::string::npos || words[i].find('.') != std::string::npos) continue;
+    std::string with_point = words[i];
+    with_point[comma] = '.';
+    if (!are_digits(std::string_view(with_point).substr(comma + 1, 1)) || !finite_number(with_point)) continue;
+    if (first.empty()) first = words[i];
+    words[i] = with_point;
+  }
+  return first;
+}
+
+bool is_index_relative_to_air(double n) { return n >= 0.9996 && n < 5; }
+
+std::string in_capitals(std::string text) {
   std::transform(text.begin(), text.end(), text.begin(),
                  [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
   return text;
@@ -89,7 +109,7 @@ std::string upper_case(std::string text) {
 std::optional<PrescribedMedium> read_glass_code(std::string_view word) {
   auto const described = [](std::optional<double> nd, std::optional<double> vd) -> std::optional<PrescribedMedium> {
     if (!nd || !vd) return std::nullopt;
-    if (*vd == 0) return PrescribedMedium{PrescribedMedium::Index{*nd}};
+    if (*vd == 0 || *nd <= 1) return PrescribedMedium{PrescribedMedium::Index{*nd}};
     return PrescribedMedium{PrescribedMedium::Described{*nd, *vd}};
   };
   if (auto const colon = word.find(':'); colon != std::string_view::npos) {

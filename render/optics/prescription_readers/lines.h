@@ -20,6 +20,8 @@ struct PrescriptionLine {
   double number(std::size_t i) const;
   /// Like number(), but also accepts INF or INFINITY in any case and with either sign.
   double number_or_infinity(std::size_t i) const;
+  /// Returns word i as a number; nullopt if it is missing or not a finite number.
+  std::optional<double> optional_number(std::size_t i) const;
   /// Returns word i as an integer. @throws DataError if it is missing or invalid
   int integer(std::size_t i) const;
   /// Returns true if any word after the first is a number other than 0; words that are not numbers are ignored.
@@ -50,12 +52,20 @@ struct ListedWavelength {
 void set_primary_wavelength(Prescription& lens, ListedWavelength const* primary, double unit,
                             std::string_view unit_name, std::string const& where, char const* commands);
 
+/// Replaces the decimal commas of numbers ("1,5168") by points, in all words but the first.
+/// @return the first number with a comma, as it was; empty: there is none
+std::string replace_decimal_commas(std::vector<std::string>& words);
+
+/// Returns true if a number can be the index of a medium relative to air. The lower limit is slightly below the index
+/// of vacuum, which is 0.99973 at 587.6 nm and 0.99967 at 190 nm; the upper limit is 5.
+bool is_index_relative_to_air(double n);
+
 /// Converts a text to upper case (ASCII).
 std::string upper_case(std::string text);
 
 /// Parses a numeric glass code: MIL-G-174's six digits (517642: nd 1.517, Vd 64.2), the same with more digits
 /// (516800641667), digits separated by a point (517.642, 516800.641667), or both values separated by a colon
-/// (1.5168:64.17). A Vd of 0 denotes an index without dispersion.
+/// (1.5168:64.17). A Vd of 0 or an nd up to 1 denotes an index without dispersion.
 /// @return nullopt for other words
 std::optional<PrescribedMedium> read_glass_code(std::string_view word);
 

@@ -1,8 +1,12 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
+#include <functional>
 #include <map>
+#include <set>
 #include <utility>
 
 #include "render/base/error.h"
@@ -17,23 +21,46 @@
 namespace gladstone {
 namespace {
 
+/// Number of a surface, which other programs also write as 3.5 or 5AS: a number and a suffix.
+struct SurfaceNumber {
+  double number = 0;
+  std::string suffix;
+
+  auto operator<=>(SurfaceNumber const&) const = default;
+  bool is_whole() const { return suffix.empty() && number == std::floor(number); }
+};
+
+/// Reads the number of a line SURF. @throws DataError
+SurfaceNumber surface_number(PrescriptionLine const& line) {
+  std::string const word = line.size() > 1 ? line[1] : "";
+  SurfaceNumber read;
+  char const* const end_of_word = word.data() + word.size();
+  auto const [end, error] = std::from_chars(word.data(), end_of_word, read.number, std::chars_format::fixed);
+  if (error != std::errc() || !std::isfinite(read.number)) return {line.number(1), ""};
+  read.suffix.assign(end, end_of_word);
+  return read;
+}
+
+/// Returns true if the words of an operand are numbers, except for the first.
+bool has_numbers(std::string const& key) {
+  static std::set<std::string> const numeric{"ENPD", "FNUM", "OBNA", "XFLN", "YFLN", "XFLD", "YFLD", "WAVL",
+                                             "WAVM", "CURV", "CONI", "PARM", "XDAT", "DISZ", "DIAM", "GLAS",
+                                             "CLAP", "FLAP", "OBSC", "SQAP", "SQOB", "ELAP", "ELOB", "OBDC"};
+  return numeric.contains(key);
+}
+
 class ZmxReader {
  public:
   explicit ZmxReader(std::string const& path) : path_(path) { result_.file = path; }
 
-  void read_line(PrescriptionLine const& line) {
+  void read_line(PrescriptionLine line) {
     if (line.words.empty()) return;
     std::string const& key = line[0];
+    if (has_numbers(key)) replace_commas(line);
     if (key == "SURF") {
-      if (surfaces_.empty() && line.integer(1) == 1) assume_object(line.where);
-      if (line.integer(1) != static_cast<int>(surfaces_.size())) {
-        throw DataError(
-            line.where,
-            surfaces_.empty()
-                ? fmt::format("the first surface is {}, not the object 0; the file is damaged", line[1])
-                : fmt::format("surface {} comes after {}; the file is damaged", line[1], surfaces_.size() - 1));
-      }
+      numbers_.push_back(surface_number(line));
       surfaces_.emplace_back();
+      surfaces_.back().label = line[1].substr(0, 40);
       surfaces_.back().surface.where = line.where;
     } else if (surfaces_.empty()) {
       read_system(line);
@@ -52,6 +79,8 @@ class ZmxReader {
   }
 
   Prescription finish() {
+    note_commas();
+    if (!surfaces_.empty()) check_order();
     if (surfaces_.size() < 3) {
       throw DataError(path_,
                       "describes no lens (a .zmx file has blocks SURF: the object, the lens' surfaces, the image)");
@@ -141,7 +170,7 @@ class ZmxReader {
         surface.semi_diameter = zmx.surface.semi_diameter;
         surface.thickness = std::exchange(breaks.back().advance, 0);
       } else {
-        surface = shaped_surface(zmx, static_cast<int>(i), unit_, result_.warnings);
+        surface = shaped_surface(zmx, unit_, result_.warnings);
       }
       surface.before = std::exchange(breaks, {});
       result_.surfaces.push_back(std::move(surface));
@@ -167,15 +196,80 @@ class ZmxReader {
     }
   }
 
+  void replace_commas(PrescriptionLine& line) {
+    std::string const number = replace_decimal_commas(line.words);
+    if (number.empty()) return;
+    if (comma_lines_.empty()) first_comma_ = number;
+    comma_lines_.push_back(line.where);
+  }
+
+  /// Warns of decimal commas, with the first line that has one.
+  void note_commas() {
+    if (comma_lines_.empty()) return;
+    result_.warnings.push_back(
+        fmt::format("{}: numbers with a comma, such as \"{}\", are read with a decimal point (lines of this kind: {})",
+                    comma_lines_.front(), first_comma_, comma_lines_.size()));
+  }
+
+  /// Checks the numbers of the surfaces. Surfaces are read in the order of the file if their numbers increase, with a
+  /// warning if they are not consecutive, or if they decrease to 1, as in files of lenses turned round by hand. Adds
+  /// the object if the file omits it. @throws DataError for any other order
+  void check_order() {
+    constexpr std::size_t fewest_reversed = 3;  // two exchanged surfaces may be an error
+    auto const in_order = [this](auto const& compare) {
+      return std::adjacent_find(numbers_.begin(), numbers_.end(),
+                                [&](auto const& a, auto const& b) { return !compare(a, b); });
+    };
+    auto const fault = in_order(std::less<>{});
+    bool const reversed = numbers_.size() >= fewest_reversed && numbers_.back() == SurfaceNumber{1, ""} &&
+                          in_order(std::greater<>{}) == numbers_.end();
+    std::string const first = surfaces_.front().surface.where;
+    if (fault != numbers_.end() && !reversed) {
+      auto const i = static_cast<std::size_t>(fault - numbers_.begin());
+      throw DataError(surfaces_[i + 1].surface.where, fmt::format("surface {} comes after {}; the file is damaged",
+                                                                  surfaces_[i + 1].label, surfaces_[i].label));
+    }
+    if (reversed) {
+      result_.warnings.push_back(
+          fmt::format("{}: the surfaces are numbered backwards, from {} to 1; they are read in the order of the file",
+                      first, surfaces_.front().label));
+    } else {
+      if (numbers_.front().number != 0 && numbers_.front().number != 1) {
+        throw DataError(first, fmt::format("the first surface is {}, not the object 0; the file is damaged",
+                                           surfaces_.front().label));
+      }
+      note_gaps();
+    }
+    if (numbers_.front().number != 0) assume_object(first);
+  }
+
+  /// Warns of surfaces that are not numbered consecutively.
+  void note_gaps() {
+    std::vector<std::string> steps;
+    std::string where;
+    for (std::size_t i = 1; i < numbers_.size(); ++i) {
+      bool const gap = numbers_[i].number > std::floor(numbers_[i - 1].number) + 1;
+      if (!gap && numbers_[i].is_whole()) continue;
+      if (steps.empty()) where = surfaces_[i].surface.where;
+      steps.push_back(fmt::format("{} after {}", surfaces_[i].label, surfaces_[i - 1].label));
+    }
+    if (steps.empty()) return;
+    result_.warnings.push_back(
+        fmt::format("{}: surfaces are not numbered consecutively ({}); they are read in the order of the file; check "
+                    "that no surface is missing",
+                    where, fmt::join(steps, ", ")));
+  }
+
   /// Assumes an object at infinity if the file contains the surfaces of the lens only.
   void assume_object(std::string const& where) {
     object_assumed_ = true;
     result_.warnings.push_back(where +
                                ": the file has no surface 0, the object, which is taken at infinity; its last "
                                "surface is the image only if it has no thickness");
-    surfaces_.emplace_back();
-    surfaces_.back().surface.where = where;
-    surfaces_.back().surface.thickness = HUGE_VAL;
+    ZmxSurface object;
+    object.surface.where = where;
+    object.surface.thickness = HUGE_VAL;
+    surfaces_.insert(surfaces_.begin(), std::move(object));
   }
 
   /// Returns the reason why a block cannot be the image surface, or null if it can.
@@ -200,6 +294,9 @@ class ZmxReader {
   std::string path_;
   Prescription result_;
   std::vector<ZmxSurface> surfaces_;
+  std::vector<SurfaceNumber> numbers_;  // of the surfaces in the file
+  std::vector<std::string> comma_lines_;
+  std::string first_comma_;  // first number with a decimal comma
   ZmxNotes notes_;
   std::vector<ListedWavelength> wavelengths_;
   std::vector<double> fields_;

@@ -1,6 +1,7 @@
 #include "render/optics/prescription_readers/zmx_surface.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -8,41 +9,68 @@
 #include "render/base/error.h"
 #include "render/base/units.h"
 #include "render/optics/even_asphere.h"
+#include "render/optics/glass_name.h"
 #include "render/optics/radial_asphere.h"
 
 namespace gladstone {
 namespace {
 
-bool is_glass(double nd, double vd) { return nd >= 1 && nd < 5 && vd >= 0; }
+bool is_glass(double nd, double vd) { return is_index_relative_to_air(nd) && vd >= 0; }
 
-/// Reads a model glass from a line GLAS: nd and Vd in its fifth and sixth word; a Vd of 0 denotes a glass without
-/// dispersion.
+/// Reads a model glass from a line GLAS: nd and Vd in its fifth and sixth word. A Vd of 0 denotes a glass without
+/// dispersion; that of a gas, whose nd is at most 1, is ignored.
 PrescribedMedium model_glass(PrescriptionLine const& line, std::vector<std::string>& warnings) {
-  double const nd = line.number(4), vd = line.size() > 5 ? line.number(5) : 0;
+  double const nd = line.number(4), vd = line.optional_number(5).value_or(0);
   if (nd == -1 && vd == 0) {
     warnings.push_back(line.where + ": GLAS: an index of -1 is taken as a mirror");
     return {PrescribedMedium::Mirror{}};
   }
   if (!is_glass(nd, vd)) {
     throw DataError(line.where, fmt::format("GLAS: nd = {:.6g}, Vd = {:.6g} of the model glass are impossible (nd must "
-                                            "lie between 1 and 5, Vd above 0); correct them or name a glass",
+                                            "lie between 1 and 5, or be that of a gas, Vd above 0); correct them or "
+                                            "name a glass",
                                             nd, vd));
   }
-  if (line.size() > 6 && line.number(6) != 0) {
+  if (line.size() > 5 && !line.optional_number(5)) {
+    warnings.push_back(
+        fmt::format("{}: GLAS: the Vd of the model glass, \"{}\", is not a number; nd = {:.6g} is used "
+                    "at all wavelengths",
+                    line.where, line[5].substr(0, 40), nd));
+  }
+  if (line.optional_number(6).value_or(0) != 0) {
     warnings.push_back(line.where + ": GLAS: the deviation of a model glass' partial dispersion is not used");
   }
-  if (vd == 0) return {PrescribedMedium::Index{nd}};
+  if (vd == 0 || nd <= 1) return {PrescribedMedium::Index{nd}};
   return {PrescribedMedium::Described{nd, vd}};
+}
+
+/// Reads the name of a catalogue glass. "MAKER-FAMILY|NAME" is converted to "MAKER:NAME", or to NAME if the maker has
+/// no known catalogue, with a warning.
+std::string glass_name(PrescriptionLine const& line, std::vector<std::string>& warnings) {
+  std::string const& word = line[1];
+  std::size_t const bar = word.find('|');
+  if (bar == std::string::npos || bar + 1 == word.size()) return word;
+  std::string const maker = glass_key(word.substr(0, word.find_first_of("-_|"))), glass = word.substr(bar + 1);
+  bool const known = maker_rank(maker) < maker_rank("");
+  warnings.push_back(fmt::format("{}: GLAS: \"{}\" is read as glass {}{}", line.where, word.substr(0, 80), glass,
+                                 known ? " of " + maker : std::string()));
+  return known ? maker + ":" + glass : glass;
 }
 
 /// Reads a catalogue glass, with nd and Vd of the line as a fallback. 1.5 and 40 are ignored, since they are Zemax's
 /// default values.
-PrescribedMedium named_glass(PrescriptionLine const& line) {
-  PrescribedMedium::Named named{line[1], std::nullopt};
+PrescribedMedium named_glass(PrescriptionLine const& line, std::vector<std::string>& warnings) {
+  PrescribedMedium::Named named{glass_name(line, warnings), std::nullopt};
   if (line.size() > 5) {
-    PrescriptionLine const values{line.where, {line[0], line[4], line[5]}};
-    double const nd = values.number(1), vd = values.number(2);
-    if (is_glass(nd, vd) && nd > 1 && vd > 0 && !(nd == 1.5 && vd == 40)) named.otherwise = {nd, vd};
+    std::optional<double> const nd = line.optional_number(4), vd = line.optional_number(5);
+    if (!nd || !vd) {
+      warnings.push_back(
+          fmt::format("{}: GLAS: nd and Vd of the line, \"{}\" and \"{}\", are not numbers and are "
+                      "ignored",
+                      line.where, line[4].substr(0, 40), line[5].substr(0, 40)));
+    } else if (is_glass(*nd, *vd) && *nd > 1 && *vd > 0 && !(*nd == 1.5 && *vd == 40)) {
+      named.otherwise = {*nd, *vd};
+    }
   }
   return {named};
 }
@@ -53,7 +81,7 @@ PrescribedMedium medium_of(PrescriptionLine const& line, std::vector<std::string
   bool const blank = line[1] == "___BLANK";
   if (blank || (line.size() > 4 && line[2] == "1")) return model_glass(line, warnings);
   if (auto const code = read_glass_code(line[1])) return *code;
-  return named_glass(line);
+  return named_glass(line, warnings);
 }
 
 /// Reads the polynomial of extended aspheres: number of terms in XDAT 1, normalisation radius in XDAT 2, terms from
@@ -84,6 +112,22 @@ PrescribedSurface::RadialTerms extended_terms(ZmxSurface const& zmx, double unit
   return radial;
 }
 
+/// Warns of parameters of an asphere beyond its eight terms, which Zemax ignores as well.
+void note_excess_terms(ZmxSurface const& zmx, std::vector<int> const& excess, double unit,
+                       std::vector<std::string>& warnings) {
+  if (excess.empty()) return;
+  double const height = zmx.surface.semi_diameter / unit;
+  double sag = 0;
+  for (int const i : excess) sag += zmx.parameter(i) * std::pow(height, zmx.type == "EVENASPH" ? 2 * i : i);
+  std::string const effect =
+      std::isfinite(sag) && excess.front() > 0
+          ? fmt::format("; as a term of the asphere it would be a sag of {:.2g} mm at the semi-diameter",
+                        sag * unit / unit::millimetre)
+          : "";
+  warnings.push_back(fmt::format("{}: PARM: {} has 8 terms, parameter {} is ignored, as by Zemax{}", zmx.excess_where,
+                                 zmx.type, fmt::join(excess, ", "), effect));
+}
+
 }  // namespace
 
 double ZmxSurface::parameter(int i) const {
@@ -101,7 +145,12 @@ void read_zmx_surface(PrescriptionLine const& line, double unit, ZmxSurface& zmx
   if (key == "STOP") surface.stop = true;
   if (key == "CURV") surface.curvature = line.number(1) / unit;
   if (key == "CONI") surface.conic = line.number(1);
-  if (key == "PARM") zmx.parameters[line.integer(1)] = line.number(2);
+  if (key == "PARM") {
+    int const i = line.integer(1);
+    zmx.parameters[i] = line.number(2);
+    bool const excess = i < 1 || i > EvenAsphere<double>::terms;
+    if (excess && line.number(2) != 0 && zmx.excess_where.empty()) zmx.excess_where = line.where;
+  }
   if (key == "XDAT" && line.size() > 2) {
     zmx.extra_data[line.integer(1)] = line.number(2);
     if (line.number(2) != 0 && zmx.extra_where.empty()) zmx.extra_where = line.where;
@@ -121,7 +170,7 @@ void read_zmx_surface(PrescriptionLine const& line, double unit, ZmxSurface& zmx
   }
 }
 
-PrescribedSurface shaped_surface(ZmxSurface const& zmx, int number, double unit, std::vector<std::string>& warnings) {
+PrescribedSurface shaped_surface(ZmxSurface const& zmx, double unit, std::vector<std::string>& warnings) {
   PrescribedSurface surface = zmx.surface;
   using Shape = PrescribedSurface::Shape;
   auto const no_extra_data = [&] {
@@ -135,16 +184,19 @@ PrescribedSurface shaped_surface(ZmxSurface const& zmx, int number, double unit,
     bool const even = zmx.type == "EVENASPH";
     constexpr int terms = EvenAsphere<double>::terms;
     if (even) surface.asphere.assign(terms, 0.0);
+    std::vector<int> excess;
     for (auto const& [i, value] : zmx.parameters) {
       if (value == 0) continue;
-      if (i < 1 || i > terms) throw DataError(surface.where, fmt::format("{} has no parameter {}", zmx.type, i));
-      if (even) {
+      if (i < 1 || i > terms) {
+        excess.push_back(i);
+      } else if (even) {
         surface.asphere[static_cast<std::size_t>(i - 1)] = value / std::pow(unit, 2 * i - 1);
       } else {  // coefficient of r^i, r in the file's unit
         surface.radial.a.resize(static_cast<std::size_t>(i));
         surface.radial.a.back() = value * unit;
       }
     }
+    note_excess_terms(zmx, excess, unit, warnings);
     surface.radial.scale = unit;
     surface.radial.even_powers = false;
   } else if (zmx.type == "XASPHERE" || zmx.type == "XOSPHERE") {
@@ -160,7 +212,7 @@ PrescribedSurface shaped_surface(ZmxSurface const& zmx, int number, double unit,
   } else {
     throw DataError(zmx.type_where, fmt::format("surface {}: type {} is not supported (STANDARD, EVENASPH, ODDASPHE, "
                                                 "XASPHERE, XOSPHERE, PARAXIAL, TILTSURF and COORDBRK are)",
-                                                number, zmx.type));
+                                                zmx.label, zmx.type));
   }
   put_apertures(zmx.apertures, surface, warnings);
   return surface;
