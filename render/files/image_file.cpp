@@ -19,6 +19,7 @@
 #include "render/base/interrupt.h"
 #include "render/base/version.h"
 #include "render/files/image_codecs.h"
+#include "render/files/image_pages.h"
 #include "render/files/input_file.h"
 #include "render/files/output_file.h"
 #include "render/files/tiff_file.h"
@@ -232,6 +233,8 @@ class Picture {
 
   /// Number of pages, without the previews of the first one, which are smaller in both directions.
   std::size_t pages() const { return pages_.size(); }
+  /// True if the file has more than max_pages pages.
+  bool has_more_pages() const { return has_more_pages_; }
 
   Image<double> read(std::size_t page, ImageMetadata* metadata) {
     if (!input_->seek(pages_[page])) {
@@ -254,8 +257,12 @@ class Picture {
   /// Collects the pages that are not previews of the first one, up to max_pages.
   void count_pages() {
     PageHeader const first = input_->header();
-    for (int page = 1; page < max_pages && input_->seek(page); ++page) {
+    for (int page = 1; input_->seek(page); ++page) {
       throw_if_interrupted();
+      if (page == max_pages) {
+        has_more_pages_ = true;
+        break;
+      }
       PageHeader const spec = input_->header();
       if (spec.width < first.width && spec.height < first.height) continue;
       pages_.push_back(page);
@@ -268,6 +275,7 @@ class Picture {
   InputFile file_;
   std::unique_ptr<PageReader> input_;
   std::vector<int> pages_{0};
+  bool has_more_pages_ = false;
 };
 
 /// Calls `read`, and converts a failed allocation into a MemoryError that names the file.
@@ -311,6 +319,28 @@ std::array<Image<double>, 2> read_frame_pair(std::string const& path, ImageMetad
     }
     Image<double> reference = picture.read(0, metadata);
     return std::array{std::move(reference), picture.read(1, nullptr)};
+  });
+}
+
+std::size_t count_pages(std::string const& path) {
+  return named(path, [&] {
+    Picture const picture(path);
+    if (picture.has_more_pages()) {
+      throw DataError(path, fmt::format("has more than {} pages (which is the limit); write its pages to several files",
+                                        max_pages));
+    }
+    return picture.pages();
+  });
+}
+
+Image<double> read_page(std::string const& path, std::size_t page, ImageMetadata* metadata) {
+  return named(path, [&] {
+    Picture picture(path);
+    if (page >= picture.pages()) {
+      throw DataError(path, fmt::format("has {} {}, and no page {}; copy it again", picture.pages(),
+                                        picture.pages() == 1 ? "page" : "pages", page + 1));
+    }
+    return picture.read(page, metadata);
   });
 }
 
