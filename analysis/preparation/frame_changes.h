@@ -13,8 +13,9 @@ FrameChange read_image_mask(SetupTable& table, FramePreparation& preparation);
 /// after a Gaussian filter of standard deviation `blur_px`.
 FrameChange read_intensity_mask(SetupTable& table, FramePreparation& preparation);
 
-/// Subtracts a background from each frame: "minimum" or "mean" (`subtract`) of a sequence of frames, computed per
-/// pixel. `frame`: tables with the files of `reference` and `flow`. Grey levels may become negative.
+/// Subtracts a background from each frame: "minimum", "mean" or "median" (`subtract`) of a sequence of frames, computed
+/// per pixel and only once. `frame`: tables with the files of `reference` and `flow`; if it is missing, the background
+/// is that of the sequence being correlated (SequencePreparation). Grey levels may become negative.
 FrameChange read_background(SetupTable& table, FramePreparation& preparation);
 /// Subtracts a Gaussian average of standard deviation `sigma_px`.
 FrameChange read_high_pass(SetupTable& table, FramePreparation& preparation);

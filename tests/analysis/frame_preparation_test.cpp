@@ -217,7 +217,7 @@ TEST(Background, SubtractsStationaryBackground) {
     return u[u.size() / 2];
   };
   EXPECT_NEAR(median_u(HostFrames(first[0], first[1])), 0.0, 0.1);
-  for (char const* subtract : {"minimum", "mean"}) {
+  for (char const* subtract : {"minimum", "mean", "median"}) {
     std::string const table = std::string("[[correlate.preprocess]]\nkind = \"background\"\nsubtract = \"") + subtract +
                               "\"\nframe = [" + list + "]\n";
     EXPECT_NEAR(median_u(prepared(first[0], first[1], table)), 2.0, 0.05) << subtract;

@@ -1,41 +1,68 @@
-#include <algorithm>
+#include <fmt/format.h>
+
+#include <memory>
+#include <mutex>
 
 #include "analysis/preparation/frame_changes.h"
-#include "analysis/preparation/frame_sized_image.h"
+#include "analysis/preparation/sequence_background.h"
+#include "analysis/preparation/sized_picture.h"
+#include "render/base/error.h"
 
 namespace gladstone {
 namespace {
 
-/// Computes the minimum or mean of images, pixel by pixel.
-Image<double> background_of(std::vector<std::string> const& files, bool mean, Image<double> const& frame) {
-  Image<double> background;
-  for (std::string const& file : files) {
-    Image<double> const picture = read_frame_sized_image(file, frame);
-    if (background.empty()) {
-      background = picture;
-      continue;
-    }
-    for (std::size_t i = 0; i < picture.size(); ++i) {
-      double& level = background.data()[i];
-      level = mean ? level + picture.data()[i] : std::min(level, picture.data()[i]);
-    }
-  }
-  if (mean)
-    for (double& level : background) level /= static_cast<double>(files.size());
-  return background;
-}
-
-void take_off(std::vector<std::string> const& files, bool mean, Image<double>& frame) {
-  if (files.empty()) return;
-  Image<double> const background = background_of(files, mean, frame);
+void subtract_background(Image<double> const& background, Image<double>& frame) {
+  if (background.columns() != frame.columns() || background.rows() != frame.rows())
+    throw DataError("correlate.preprocess",
+                    fmt::format("the background is {} x {} px, but the frames are {} x {} px (it is subtracted pixel "
+                                "by pixel); correlate frames of one size",
+                                background.columns(), background.rows(), frame.columns(), frame.rows()));
   for (std::size_t i = 0; i < frame.size(); ++i) frame.data()[i] -= background.data()[i];
 }
+
+/// Backgrounds of listed files, computed for the first pair of frames and retained for the others.
+class ListedBackground {
+ public:
+  ListedBackground(std::string statistic, std::vector<std::string> reference, std::vector<std::string> flow)
+      : statistic_(std::move(statistic)), reference_files_(std::move(reference)), flow_files_(std::move(flow)) {}
+
+  void subtract_from(PreparedFrames& frames) {
+    {
+      std::lock_guard const lock(mutex_);
+      if (reference_.empty()) {
+        flow_ = compute(flow_files_, frames.flow);
+        reference_ = compute(reference_files_, frames.reference);
+      }
+    }
+    subtract_background(reference_, frames.reference);
+    subtract_background(flow_, frames.flow);
+  }
+
+ private:
+  Image<double> compute(std::vector<std::string> const& files, Image<double> const& frame) const {
+    return compute_background(statistic_, files.size(),
+                              [&](std::size_t k) { return std::optional(read_sized_picture(files[k], frame)); });
+  }
+
+  std::string statistic_;
+  std::vector<std::string> reference_files_, flow_files_;
+  std::mutex mutex_;
+  Image<double> reference_, flow_;
+};
 
 }  // namespace
 
 FrameChange read_background(SetupTable& table, FramePreparation& preparation) {
-  bool const mean = table.word("subtract", "minimum", {"minimum", "mean"}) == "mean";
+  std::string const statistic = table.word("subtract", "minimum", background_statistics());
   std::vector<SetupTable> frames = table.tables("frame");
+  SequencePreparation* const sequence = SequencePreparation::current();
+  if (frames.empty() && sequence != nullptr) {
+    std::shared_ptr<SequenceBackground> const own = sequence->add(statistic);
+    return [own](PreparedFrames& prepared) {
+      subtract_background(own->reference, prepared.reference);
+      subtract_background(own->flow, prepared.flow);
+    };
+  }
   if (frames.empty())
     table.problem("frame",
                   "is missing (a background requires a sequence); give frame = [{ reference = \"a.tif\", flow = "
@@ -48,10 +75,8 @@ FrameChange read_background(SetupTable& table, FramePreparation& preparation) {
   }
   for (auto const* files : {&reference, &flow})
     preparation.files.insert(preparation.files.end(), files->begin(), files->end());
-  return [mean, reference, flow](PreparedFrames& prepared) {
-    take_off(reference, mean, prepared.reference);
-    take_off(flow, mean, prepared.flow);
-  };
+  auto const listed = std::make_shared<ListedBackground>(statistic, reference, flow);
+  return [listed](PreparedFrames& prepared) { listed->subtract_from(prepared); };
 }
 
 }  // namespace gladstone

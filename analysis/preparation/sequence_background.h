@@ -1,0 +1,55 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "render/base/image.h"
+
+/// Backgrounds that are computed from many frames.
+namespace gladstone {
+
+/// Background of a sequence's own frames. A "background" step without `frame` subtracts it from every pair; whoever
+/// correlates the sequence computes the images beforehand.
+struct SequenceBackground {
+  std::string statistic;    ///< "minimum", "mean" or "median"
+  Image<double> reference;  ///< subtracted from frames A
+  Image<double> flow;       ///< subtracted from frames B
+};
+
+/// RAII guard: this thread reads the preparation of a sequence. While it exists, "background" steps may omit `frame`,
+/// and each of them adds its background to backgrounds().
+class SequencePreparation {
+ public:
+  SequencePreparation();
+  ~SequencePreparation();
+  SequencePreparation(SequencePreparation const&) = delete;
+  SequencePreparation& operator=(SequencePreparation const&) = delete;
+
+  std::vector<std::shared_ptr<SequenceBackground>> const& backgrounds() const { return backgrounds_; }
+
+  /// Returns the guard of this thread; null if there is none.
+  static SequencePreparation* current();
+  /// Adds a background whose images are still empty.
+  std::shared_ptr<SequenceBackground> add(std::string const& statistic);
+
+ private:
+  SequencePreparation* outer_;
+  std::vector<std::shared_ptr<SequenceBackground>> backgrounds_;
+};
+
+/// Names accepted as the statistic of a background.
+std::vector<std::string> background_statistics();
+
+/// Computes the minimum, mean or median of images, pixel by pixel. The mean and the minimum hold one image in memory;
+/// the median reads all images once per band of rows, so that it holds at most 256 MiB.
+/// @param statistic  one of background_statistics(); the median of an even number of values is the mean of the middle
+/// two
+/// @param read       returns image k, or nullopt if it does not count; images that count have equal sizes
+/// @return an empty image if no image counts
+Image<double> compute_background(std::string const& statistic, std::size_t count,
+                                 std::function<std::optional<Image<double>>(std::size_t k)> const& read);
+
+}  // namespace gladstone
