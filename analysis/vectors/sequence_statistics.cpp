@@ -1,0 +1,233 @@
+#include "analysis/vectors/sequence_statistics.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "render/base/contracts.h"
+#include "render/base/not_a_number.h"
+#include "render/base/parallel.h"
+
+namespace gladstone {
+namespace {
+
+constexpr std::size_t most_lag_bytes = std::size_t{512} << 20;
+constexpr std::size_t points_per_chunk = 1024;
+
+bool is_measured(DisplacementField const& field, std::size_t i) {
+  VectorStatus const status = field.status.empty() ? VectorStatus::valid : field.status[i];
+  bool const other_peak =
+      status == VectorStatus::replaced && !field.reason.empty() && field.reason[i] == VectorReason::other_peak;
+  return (status == VectorStatus::valid || other_peak) && is_finite(field.displacement_px[i]);
+}
+
+/// Returns the fourth central moment from the raw moments r1 to r4.
+double fourth_moment(double r1, double r2, double r3, double r4) {
+  return r4 - 4 * r1 * r3 + 6 * r1 * r1 * r2 - 3 * r1 * r1 * r1 * r1;
+}
+
+double standard_error(double variance, double samples) {
+  return samples > 0 ? std::sqrt(std::max(0.0, variance) / samples) : not_a_number;
+}
+
+}  // namespace
+
+SequenceStatistics::SequenceStatistics(std::size_t lags) : lags_(std::max<std::size_t>(1, lags)) {}
+
+void SequenceStatistics::start(DisplacementField const& field) {
+  size_ = field.size();
+  position_px_ = field.position_px;
+  columns_ = field.columns;
+  rows_ = field.rows;
+  std::size_t const lag_bytes = std::max<std::size_t>(1, size_ * (sizeof(Products) + sizeof(Deviation)));
+  lags_ = std::clamp<std::size_t>(most_lag_bytes / lag_bytes, std::min<std::size_t>(4, lags_), lags_);
+  first_.assign(size_, Vec2d{not_a_number, not_a_number});
+  powers_.assign(size_, {});
+  products_.assign(size_ * lags_, {});
+  history_.assign(size_ * lags_, {});
+}
+
+void SequenceStatistics::skip() {
+  if (size_ > 0) std::fill_n(slot(samples_), size_, Deviation{});
+  ++samples_;
+}
+
+void SequenceStatistics::add(DisplacementField const& field) {
+  if (size_ == 0) start(field);
+  GLADSTONE_EXPECTS(field.size() == size_);
+  // The oldest field occupies the slot of the new one; its products come first.
+  std::size_t const lags = std::min(lags_, samples_);
+  parallel_chunks(size_, points_per_chunk, [&](std::size_t begin, std::size_t end) {
+    std::vector<Deviation> now(end - begin);
+    for (std::size_t i = begin; i < end; ++i) {
+      if (!is_measured(field, i)) continue;
+      if (!is_finite(first_[i])) first_[i] = field.displacement_px[i];
+      Vec2d const d = field.displacement_px[i] - first_[i];
+      now[i - begin] = {d, 1.0};
+      double const a = d.x, b = d.y, aa = a * a, bb = b * b;
+      Powers& sum = powers_[i];
+      sum.n += 1;
+      sum.a += a;
+      sum.b += b;
+      sum.aa += aa;
+      sum.ab += a * b;
+      sum.bb += bb;
+      sum.aaa += aa * a;
+      sum.aab += aa * b;
+      sum.abb += a * bb;
+      sum.bbb += bb * b;
+      sum.aaaa += aa * aa;
+      sum.aabb += aa * bb;
+      sum.bbbb += bb * bb;
+    }
+    for (std::size_t lag = 1; lag <= lags; ++lag) {
+      Deviation const* const before = slot(samples_ - lag);
+      Products* const sums = products_.data() + (lag - 1) * size_;
+      for (std::size_t i = begin; i < end; ++i) {
+        Deviation const &x = now[i - begin], &y = before[i];
+        double const both = x.known * y.known;
+        Products& sum = sums[i];
+        sum.n += both;
+        sum.now = sum.now + both * x.value;
+        sum.before = sum.before + both * y.value;
+        sum.product = sum.product + Vec2d{x.value.x * y.value.x, x.value.y * y.value.y};
+      }
+    }
+    std::copy(now.begin(), now.end(), slot(samples_) + begin);
+  });
+  ++samples_;
+}
+
+SequenceStatistics::CentralMoments SequenceStatistics::central_moments(std::size_t point) const {
+  Powers const& sum = powers_[point];
+  double const n = sum.n, a = sum.a / n, b = sum.b / n;
+  CentralMoments m;
+  m.mean = {a, b};
+  m.m20 = std::max(0.0, sum.aa / n - a * a);
+  m.m02 = std::max(0.0, sum.bb / n - b * b);
+  m.m11 = sum.ab / n - a * b;
+  m.m40 = fourth_moment(a, sum.aa / n, sum.aaa / n, sum.aaaa / n);
+  m.m04 = fourth_moment(b, sum.bb / n, sum.bbb / n, sum.bbbb / n);
+  m.m22 = (sum.aabb - 2 * b * sum.aab - 2 * a * sum.abb + b * b * sum.aa + a * a * sum.bb + 4 * a * b * sum.ab) / n -
+          3 * a * a * b * b;
+  return m;
+}
+
+SequenceStatistics::IndependentSamples SequenceStatistics::count_independent(std::size_t point,
+                                                                             CentralMoments const& m) const {
+  double const n = powers_[point].n;
+  Vec2d sum;
+  double uu = 0, vv = 0, uv = 0;
+  bool u_positive = m.m20 > 0, v_positive = m.m02 > 0;
+  for (std::size_t lag = 1; lag <= lags_ && (u_positive || v_positive); ++lag) {
+    Products const& p = products_[(lag - 1) * size_ + point];
+    if (p.n == 0) {
+      u_positive = v_positive = false;
+      break;
+    }
+    // Mean of (x - mean)(y - mean) over the pairs of vectors that are both known.
+    auto const covariance = [&p](double product, double now, double before, double mean) {
+      return (product - mean * (now + before)) / p.n + mean * mean;
+    };
+    double const weight = std::max(0.0, 1 - static_cast<double>(lag) / n);
+    double const rho_u = u_positive ? covariance(p.product.x, p.now.x, p.before.x, m.mean.x) / m.m20 : 0;
+    double const rho_v = v_positive ? covariance(p.product.y, p.now.y, p.before.y, m.mean.y) / m.m02 : 0;
+    u_positive = rho_u > 0;
+    v_positive = rho_v > 0;
+    sum += weight * Vec2d{std::max(0.0, rho_u), std::max(0.0, rho_v)};
+    if (u_positive) uu += weight * rho_u * rho_u;
+    if (v_positive) vv += weight * rho_v * rho_v;
+    if (u_positive && v_positive) uv += weight * rho_u * rho_v;
+  }
+  auto const number = [n](double correlated) { return std::max(1.0, n / (1 + 2 * correlated)); };
+  return {{number(sum.x), number(sum.y)}, number(uu), number(vv), number(uv), u_positive || v_positive};
+}
+
+SequenceMoments SequenceStatistics::moments() const {
+  SequenceMoments result;
+  result.position_px = position_px_;
+  result.columns = columns_;
+  result.rows = rows_;
+  result.samples = samples_;
+  result.lags = lags_;
+  Vec2d const unknown{not_a_number, not_a_number};
+  result.count.assign(size_, 0);
+  for (auto* values :
+       {&result.mean_px, &result.mean_error_px, &result.rms_px, &result.rms_error_px, &result.independent})
+    values->assign(size_, unknown);
+  ReynoldsStress const no_stress{not_a_number, not_a_number, not_a_number};
+  result.stress_px2.assign(size_, no_stress);
+  result.stress_error.assign(size_, no_stress);
+
+  for (std::size_t i = 0; i < size_; ++i) {
+    double const n = powers_[i].n;
+    result.count[i] = static_cast<std::int64_t>(n);
+    if (n < 1) continue;
+    CentralMoments const m = central_moments(i);
+    result.mean_px[i] = first_[i] + m.mean;
+    if (n < 2) continue;
+    IndependentSamples const independents = count_independent(i, m);
+    result.unresolved += independents.unresolved;
+    result.independent[i] = independents.mean;
+    result.mean_error_px[i] = {standard_error(m.m20, independents.mean.x - 1),
+                               standard_error(m.m02, independents.mean.y - 1)};
+    double const unbiased = n / (n - 1);
+    ReynoldsStress const stress{unbiased * m.m20, unbiased * m.m02, unbiased * m.m11};
+    ReynoldsStress const errors{standard_error(m.m40 - m.m20 * m.m20, independents.uu),
+                                standard_error(m.m04 - m.m02 * m.m02, independents.vv),
+                                standard_error(m.m22 - m.m11 * m.m11, independents.uv)};
+    result.stress_px2[i] = stress;
+    result.stress_error[i] = errors;
+    result.rms_px[i] = {std::sqrt(stress.uu), std::sqrt(stress.vv)};
+    auto const rms_error = [](double stress_error, double rms) { return rms > 0 ? stress_error / (2 * rms) : 0.0; };
+    result.rms_error_px[i] = {rms_error(errors.uu, result.rms_px[i].x), rms_error(errors.vv, result.rms_px[i].y)};
+  }
+  return result;
+}
+
+void write_sequence_statistics(std::string const& path, SequenceMoments const& moments, FileOrigin const& origin) {
+  Hdf5Writer file(path, origin);
+  std::size_t const size = moments.position_px.size();
+  auto const write = [&](char const* name, char const* units, char const* description, auto const& value_of) {
+    std::vector<double> values(size);
+    for (std::size_t i = 0; i < size; ++i) values[i] = value_of(i);
+    file.write(name, std::span<double const>(values), {size}, units, description, "vector");
+  };
+  auto const write_both = [&](std::string const& quantity, std::string const& description,
+                              std::vector<Vec2d> const& values, std::string const& ending = "_px") {
+    char const* const units = ending.empty() ? "1" : "px";
+    write(("/u_" + quantity + ending).c_str(), units, (description + " of u").c_str(),
+          [&](std::size_t i) { return values[i].x; });
+    write(("/v_" + quantity + ending).c_str(), units, (description + " of v").c_str(),
+          [&](std::size_t i) { return values[i].y; });
+  };
+  auto const write_stress = [&](std::string const& ending, std::string const& description,
+                                std::vector<ReynoldsStress> const& values) {
+    write(("/uu" + ending).c_str(), "px^2", (description + "variance of u").c_str(),
+          [&](std::size_t i) { return values[i].uu; });
+    write(("/vv" + ending).c_str(), "px^2", (description + "variance of v").c_str(),
+          [&](std::size_t i) { return values[i].vv; });
+    write(("/uv" + ending).c_str(), "px^2", (description + "covariance of u and v").c_str(),
+          [&](std::size_t i) { return values[i].uv; });
+  };
+  write("/x_px", "px", "column of the window centre, pixel centres at integers from 0",
+        [&](std::size_t i) { return moments.position_px[i].x; });
+  write("/y_px", "px", "row of the window centre, downwards", [&](std::size_t i) { return moments.position_px[i].y; });
+  file.write("/count", std::span<std::int64_t const>(moments.count), {size}, "1",
+             "number of vectors that the statistics include: measured ones, not interpolated ones", "vector");
+  write_both("mean", "mean", moments.mean_px);
+  write_both("mean_error", "standard error of the mean", moments.mean_error_px);
+  write_both("rms", "standard deviation", moments.rms_px);
+  write_both("rms_error", "standard error of the standard deviation", moments.rms_error_px);
+  write_stress("_px2", "", moments.stress_px2);
+  write_stress("_error_px2", "standard error of the ", moments.stress_error);
+  write_both("independent", "effective number of independent samples", moments.independent, "");
+  file.attribute("/", "samples", static_cast<std::int64_t>(moments.samples));
+  file.attribute("/", "lags", static_cast<std::int64_t>(moments.lags));
+  if (moments.columns > 0) {
+    file.attribute("/", "grid_columns", std::int64_t{moments.columns});
+    file.attribute("/", "grid_rows", std::int64_t{moments.rows});
+  }
+  file.close();
+}
+
+}  // namespace gladstone
