@@ -16,34 +16,51 @@
 #include "studies/case/case.h"
 #include "studies/case/json_text.h"
 #include "studies/case/peak_locking.h"
+#include "studies/commands/arguments.h"
 #include "studies/commands/command.h"
+#include "studies/commands/correlate_sequence.h"
 
 namespace gladstone {
 
 CommandBody attach_correlate(CLI::App& app, GlobalOptions const& options) {
   struct Arguments {
     std::vector<std::string> inputs, overrides;
-    std::string output, config;
+    std::string output, config, pairing;
     bool ensemble = false;
   };
   auto arguments = std::make_shared<Arguments>();
   app.add_option("input", arguments->inputs,
                  "A case folder, two images (reference and flow), or one image file with both as pages; with "
-                 "--ensemble any number of pairs")
+                 "--ensemble any number of pairs; for a sequence two patterns ('A_*.tif' 'B_*.tif'), one pattern, a "
+                 "folder, or an image file of many pages")
       ->required()
       ->expected(-1);
   app.add_flag("--ensemble", arguments->ensemble,
                "The images are pairs of one displacement field, reference and flow alternating: their correlation "
                "planes are averaged (on the CPU)");
-  app.add_option("-o,--output", arguments->output, "Vectors to write: .h5 or .csv; default CASE/vectors.h5");
+  app.add_option("-o,--output", arguments->output,
+                 "Vectors to write: .h5 or .csv; default CASE/vectors.h5; for a sequence a folder");
+  app.add_option("--pairing", arguments->pairing,
+                 "Pairs of a sequence: pairs (frame A and frame B of each instant; the default), reference (the first "
+                 "image with each other one), consecutive (each image with the next one)")
+      ->check(one_of({"pairs", "reference", "consecutive"}));
   app.add_option("--config", arguments->config,
                  "TOML file with a table [correlate], for example a setup; default: the table of the case");
   app.add_option("--set", arguments->overrides, "Override a key: --set correlate.overlap=0.75")
       ->expected(1)
       ->take_all();
-  return [arguments, &options] {
+  return [arguments, &options]() -> int {
     if (arguments->ensemble && options.device == "cuda")
       throw DeviceError("--device cuda: ensembles are correlated on the CPU only; use --device auto");
+    if (!arguments->ensemble) {
+      SequenceArguments const sequence{arguments->inputs, arguments->overrides, arguments->output, arguments->config,
+                                       arguments->pairing};
+      arguments->inputs = expand_single_pair(sequence);
+      if (arguments->inputs == sequence.inputs && is_sequence(sequence)) return run_sequence(sequence, options);
+    } else if (!arguments->pairing.empty()) {
+      throw DataError("correlate",
+                      "--pairing conflicts with --ensemble (which has one result for all pairs); omit one");
+    }
     std::size_t const given = arguments->inputs.size();
     if (arguments->ensemble && given % 2 != 0)
       throw DataError(

@@ -1,0 +1,121 @@
+#include "studies/commands/correlate_sequence.h"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "render/base/error.h"
+#include "render/files/input_file.h"
+#include "render/files/output_place.h"
+#include "studies/case/case_files.h"
+#include "studies/case/json_text.h"
+#include "studies/compare/sequence.h"
+#include "studies/compare/sequence_frames.h"
+
+namespace gladstone {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t most_named_failures = 20;  // failed pairs that are named on stderr
+
+bool is_vector_file(std::string const& output) {
+  std::error_code error;
+  return (output.ends_with(".h5") || output.ends_with(".csv")) && !fs::is_directory(output, error);
+}
+
+bool is_folder(std::string const& output) {
+  std::error_code error;
+  return output.ends_with('/') || fs::is_directory(output, error);
+}
+
+bool has_patterns(std::vector<std::string> const& inputs) {
+  return std::any_of(inputs.begin(), inputs.end(), is_pattern);
+}
+
+/// Returns true if the only input is a case, which is one pair with its own settings.
+bool is_case(std::vector<std::string> const& inputs) {
+  std::error_code error;
+  return inputs.size() == 1 && fs::exists(fs::path(inputs[0]) / case_file::setup, error);
+}
+
+Pairing pairing_of(std::string const& text) {
+  if (text == "reference") return Pairing::reference;
+  return text == "consecutive" ? Pairing::consecutive : Pairing::pairs;
+}
+
+nlohmann::json describe_failures(SequenceResult const& result) {
+  nlohmann::json failed = nlohmann::json::array();
+  for (PairRecord const& record : result.pairs)
+    if (!record.error.empty()) failed.push_back({{"vectors", record.pair.vectors}, {"error", record.error}});
+  return failed;
+}
+
+/// Names the failed pairs in the log.
+void report_failures(SequenceResult const& result) {
+  std::size_t failed = 0;
+  for (PairRecord const& record : result.pairs) {
+    if (record.error.empty() || ++failed > most_named_failures) continue;
+    spdlog::warn("{}: {}", record.pair.vectors, record.error);
+  }
+  if (failed > most_named_failures)
+    spdlog::warn("{} further pairs failed; sequence.json lists them", failed - most_named_failures);
+}
+
+}  // namespace
+
+std::vector<std::string> expand_single_pair(SequenceArguments const& arguments) {
+  if (!arguments.pairing.empty() || !is_vector_file(arguments.output) || !has_patterns(arguments.inputs))
+    return arguments.inputs;
+  auto const pairs = form_pairs(list_sequence_files(arguments.inputs, Pairing::pairs), Pairing::pairs);
+  if (pairs.size() != 1 || !pairs[0].problem.empty()) return arguments.inputs;
+  SequencePair const& pair = pairs[0];
+  if (pair.reference.path == pair.flow.path) return {pair.reference.path};
+  return {pair.reference.path, pair.flow.path};
+}
+
+bool is_sequence(SequenceArguments const& arguments) {
+  if (arguments.pairing.empty() && is_case(arguments.inputs)) return false;
+  return !arguments.pairing.empty() || is_folder(arguments.output) || has_patterns(arguments.inputs) ||
+         (arguments.inputs.size() > 2 && !is_vector_file(arguments.output));
+}
+
+int run_sequence(SequenceArguments const& arguments, GlobalOptions const& options) {
+  std::string const& folder = arguments.output;
+  if (folder.empty()) throw OutputError("correlate", "a sequence requires a folder: -o DIR/");
+  if (is_vector_file(folder))
+    throw OutputError(folder, "is a file (a sequence has one file of vectors per pair); name a folder: -o DIR/");
+  Pairing const pairing = pairing_of(arguments.pairing);
+  SequenceSettings const settings = read_sequence_settings(pairing, arguments.config, arguments.overrides);
+  for (std::string const& input : arguments.inputs)
+    if (arguments.inputs.size() == 1 && !is_pattern(input) && !fs::is_directory(input))
+      require_input_file(input, "an image of several pages");
+  std::vector<SequencePair> const pairs = form_pairs(list_sequence_files(arguments.inputs, pairing), pairing);
+  Backend device = options.open_device();
+  SequenceResult const result = correlate_sequence(pairs, settings, folder, std::move(device), !options.quiet);
+  std::size_t const done = result.count(PairState::done), no_vector = result.count(PairState::no_valid_vector);
+  report_failures(result);
+  if (done + no_vector == 0)
+    throw DataError(folder, fmt::format("none of the {} pairs could be correlated; the first: {}", pairs.size(),
+                                        result.pairs.front().error));
+  for (std::string const& warning : result.warnings) spdlog::warn("{}", warning);
+  nlohmann::json const json{{"pairs", pairs.size()},
+                            {"done", done},
+                            {"resumed", result.count_resumed()},
+                            {"failed", describe_failures(result)},
+                            {"vectors", result.vectors},
+                            {"folder", folder},
+                            {"statistics", (fs::path(folder) / sequence_file::statistics).string()},
+                            {"sequence", (fs::path(folder) / sequence_file::state).string()},
+                            {"device", result.device},
+                            {"seconds_correlate", result.seconds}};
+  print_result(options, json_text(json),
+               fmt::format("{}: {} of {} pairs correlated ({} by an earlier run), {} vectors each, {:.2f} s", folder,
+                           done, pairs.size(), result.count_resumed(), result.vectors, result.seconds));
+  return done == pairs.size() ? ok : check_missed;
+}
+
+}  // namespace gladstone

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "studies/commands/command.h"
+
+namespace gladstone {
+
+/// Arguments of `gladstone correlate` that concern sequences.
+struct SequenceArguments {
+  std::vector<std::string> inputs, overrides;
+  std::string output, config;
+  std::string pairing;  ///< text of --pairing; empty: not given
+};
+
+/// Returns the two images if the inputs are patterns that match exactly one pair and the output is a file: such a pair
+/// is correlated like two named images. Otherwise returns the inputs.
+std::vector<std::string> expand_single_pair(SequenceArguments const& arguments);
+
+/// Returns true if the arguments ask for a sequence: by --pairing, an output folder, patterns, or more than two images
+/// without a file as output.
+bool is_sequence(SequenceArguments const& arguments);
+
+/// Correlates a sequence and prints a summary. @return exit code
+int run_sequence(SequenceArguments const& arguments, GlobalOptions const& options);
+
+}  // namespace gladstone

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "analysis/preparation/sequence_background.h"
+#include "studies/case/backend.h"
+#include "studies/compare/correlate.h"
+#include "studies/compare/sequence_frames.h"
+
+namespace gladstone {
+
+/// File names in the output folder of a sequence, besides the vectors of each pair.
+namespace sequence_file {
+inline constexpr char const* state = "sequence.json";
+inline constexpr char const* statistics = "statistics.h5";
+}  // namespace sequence_file
+
+/// Settings of a sequence.
+struct SequenceSettings {
+  Pairing pairing = Pairing::pairs;
+  CorrelationFile correlation;
+  /// Backgrounds that `correlation.settings` subtracts; their images are computed by correlate_sequence().
+  std::vector<std::shared_ptr<SequenceBackground>> backgrounds;
+};
+/// Reads the settings of a sequence: as read_correlation_file(), or default_correlation() if `path` is empty, but
+/// "background" steps may omit `frame`, which then stands for the frames of the sequence.
+SequenceSettings read_sequence_settings(Pairing pairing, std::string const& path,
+                                        std::vector<std::string> const& overrides);
+
+/// Progress of a pair, as stored in sequence.json.
+enum class PairState { pending, done, no_valid_vector, failed };
+
+/// Pair of a sequence with its result.
+struct PairRecord {
+  SequencePair pair;
+  PairState state = PairState::pending;
+  bool resumed = false;  ///< its vectors were computed by an earlier run
+  std::string error;     ///< reason of the state `failed` or `no_valid_vector`
+  std::string reference_sha256, flow_sha256;
+  std::vector<std::string> warnings;
+
+  bool has_vectors() const { return state == PairState::done || state == PairState::no_valid_vector; }
+};
+
+/// Result of correlate_sequence().
+struct SequenceResult {
+  std::vector<PairRecord> pairs;
+  std::string device;
+  double seconds = 0;                 ///< wall time [s]
+  std::size_t vectors = 0;            ///< vectors per field; 0: no field
+  std::vector<std::string> warnings;  ///< about several pairs at once, or about the statistics
+
+  /// Counts the pairs of a state, and those with vectors of an earlier run.
+  std::size_t count(PairState state) const;
+  std::size_t count_resumed() const;
+};
+
+/// Correlates the pairs of a sequence, thread_count() of them at a time, and writes the folder: the vectors of each
+/// pair as soon as it is done, then statistics.h5 and sequence.json.
+/// - A pair that fails does not affect the others; its record contains the reason.
+/// - All frames must have the size of the first readable one.
+/// - Vectors in the folder with the hashes of these frames and settings are read instead of computed again, so that the
+///   same call continues an interrupted run.
+/// - At most thread_count() pairs of frames are in memory, besides a background and the sums of the statistics.
+/// @param show_progress  report the progress on stderr
+/// @throws DataError if no frame is readable, or the frames are smaller than a window; OutputError; DeviceError;
+///         Interrupted, with the finished pairs stored
+SequenceResult correlate_sequence(std::vector<SequencePair> const& pairs, SequenceSettings const& settings,
+                                  std::string const& folder, Backend device, bool show_progress);
+
+}  // namespace gladstone

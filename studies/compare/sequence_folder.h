@@ -1,0 +1,45 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "studies/compare/sequence.h"
+
+namespace gladstone {
+
+/// Output folder of a sequence, locked while this object exists so that two runs never write to it at once.
+class SequenceFolder {
+ public:
+  /// Creates the folder if it is missing.
+  /// @throws OutputError if it cannot be written, contains other files but no sequence.json, or is locked by another
+  /// run
+  explicit SequenceFolder(std::string const& path);
+  ~SequenceFolder();
+  SequenceFolder(SequenceFolder const&) = delete;
+  SequenceFolder& operator=(SequenceFolder const&) = delete;
+
+  std::string file(std::string const& name) const;
+
+ private:
+  void lock();
+
+  std::string path_, lock_path_;
+  int lock_ = -1;
+};
+
+/// Content of sequence.json besides the pairs.
+struct SequenceState {
+  Pairing pairing = Pairing::pairs;
+  bool complete = false;  ///< true: statistics.h5 includes all pairs that have vectors
+  int columns = 0, rows = 0;
+  std::string settings, settings_sha256;
+};
+
+/// Writes sequence.json. @throws OutputError
+void write_sequence_state(std::string const& path, SequenceState const& state, std::vector<PairRecord> const& pairs);
+
+/// Returns the name of a state in sequence.json.
+char const* name_of(PairState state);
+char const* name_of(Pairing pairing);
+
+}  // namespace gladstone

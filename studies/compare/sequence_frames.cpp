@@ -1,0 +1,304 @@
+#include "studies/compare/sequence_frames.h"
+
+#include <fmt/format.h>
+#include <glob.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <set>
+
+#include "render/base/error.h"
+#include "render/files/image_pages.h"
+
+namespace gladstone {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_digit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
+
+/// File name divided into its numbers and the text around them: "A_{}_{}" and {"12", "3"}, without leading zeros.
+struct NumberedName {
+  std::string pattern;
+  std::vector<std::string> numbers;
+};
+
+NumberedName split_numbers(std::string const& text) {
+  NumberedName name;
+  for (std::size_t i = 0; i < text.size();) {
+    if (!is_digit(text[i])) {
+      name.pattern += text[i++];
+      continue;
+    }
+    std::size_t end = i;
+    while (end < text.size() && is_digit(text[end])) ++end;
+    while (i + 1 < end && text[i] == '0') ++i;
+    name.numbers.push_back(text.substr(i, end - i));
+    name.pattern += "{}";
+    i = end;
+  }
+  return name;
+}
+
+/// Compares texts so that numbers in them are ordered by value.
+bool is_before(std::string const& a, std::string const& b) {
+  std::size_t i = 0, j = 0;
+  while (i < a.size() && j < b.size()) {
+    if (!is_digit(a[i]) || !is_digit(b[j])) {
+      if (a[i] != b[j]) return a[i] < b[j];
+      ++i;
+      ++j;
+      continue;
+    }
+    auto const number = [](std::string const& text, std::size_t& at) {
+      while (at + 1 < text.size() && text[at] == '0' && is_digit(text[at + 1])) ++at;
+      std::size_t const begin = at;
+      while (at < text.size() && is_digit(text[at])) ++at;
+      return text.substr(begin, at - begin);
+    };
+    std::string const x = number(a, i), y = number(b, j);
+    if (x.size() != y.size()) return x.size() < y.size();
+    if (x != y) return x < y;
+  }
+  if (a.size() - i != b.size() - j) return a.size() - i < b.size() - j;
+  return a < b;
+}
+
+void sort_naturally(std::vector<std::string>& files) { std::sort(files.begin(), files.end(), is_before); }
+
+/// Returns true if the name ends like that of an image.
+bool has_image_ending(fs::path const& path) {
+  static constexpr std::array endings{".tif", ".tiff", ".png", ".bmp", ".jpg", ".jpeg", ".pgm", ".exr", ".jp2"};
+  std::string ending = path.extension().string();
+  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return std::find(endings.begin(), endings.end(), ending) != endings.end();
+}
+
+std::vector<std::string> list_folder(std::string const& folder) {
+  std::vector<std::string> files;
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    std::error_code ignored;
+    if (entry->is_regular_file(ignored) && has_image_ending(entry->path()) &&
+        !entry->path().filename().string().starts_with('.'))
+      files.push_back(entry->path().string());
+  }
+  if (error) throw DataError(folder, "cannot be listed (" + error.message() + "); check its permissions");
+  if (files.empty())
+    throw DataError(
+        folder, "contains no image (.tif, .png, .jpg, ...); name another folder, or give a pattern such as '" + folder +
+                    "/*.dat'");
+  sort_naturally(files);
+  return files;
+}
+
+std::vector<std::string> expand_pattern(std::string const& pattern) {
+  glob_t found{};
+  int const result = ::glob(pattern.c_str(), 0, nullptr, &found);
+  std::vector<std::string> files;
+  for (std::size_t i = 0; result == 0 && i < found.gl_pathc; ++i) {
+    std::error_code ignored;
+    if (!fs::is_directory(found.gl_pathv[i], ignored)) files.emplace_back(found.gl_pathv[i]);
+  }
+  ::globfree(&found);
+  if (files.empty()) throw DataError(pattern, "matches no file; check the folder and the pattern");
+  sort_naturally(files);
+  return files;
+}
+
+/// Splits files whose names follow exactly two patterns, such as A_{}.tif and B_{}.tif, into two lists in the order of
+/// their first files; other lists are returned whole.
+std::vector<std::vector<std::string>> split_by_name(std::vector<std::string> const& files) {
+  std::vector<std::string> patterns;
+  std::vector<std::vector<std::string>> lists;
+  for (std::string const& file : files) {
+    std::string const pattern = split_numbers(fs::path(file).filename().string()).pattern;
+    auto const known = std::find(patterns.begin(), patterns.end(), pattern);
+    std::size_t const list = static_cast<std::size_t>(known - patterns.begin());
+    if (known == patterns.end()) {
+      if (patterns.size() == 2) return {files};
+      patterns.push_back(pattern);
+      lists.emplace_back();
+    }
+    lists[list].push_back(file);
+  }
+  return lists;
+}
+
+std::vector<NumberedName> split_names(std::vector<std::string> const& files) {
+  std::vector<NumberedName> names;
+  for (std::string const& file : files) names.push_back(split_numbers(fs::path(file).stem().string()));
+  return names;
+}
+
+/// Returns true if the names follow one pattern.
+bool have_one_pattern(std::vector<NumberedName> const& names) {
+  return std::all_of(names.begin(), names.end(),
+                     [&](NumberedName const& name) { return name.pattern == names.front().pattern; });
+}
+
+/// Returns for each name those of its numbers that differ within one of the two lists: the number of the instant,
+/// without that of a camera. nullopt if the names do not determine the instant.
+std::optional<std::vector<std::string>> find_instants(std::vector<NumberedName> const& names,
+                                                      std::vector<NumberedName> const& others) {
+  std::size_t const count = names.front().numbers.size();
+  if (!have_one_pattern(names) || !have_one_pattern(others) || others.front().numbers.size() != count)
+    return std::nullopt;
+  auto const varies = [](std::vector<NumberedName> const& list, std::size_t k) {
+    return std::any_of(list.begin(), list.end(),
+                       [&](NumberedName const& name) { return name.numbers[k] != list.front().numbers[k]; });
+  };
+  std::vector<std::string> instants(names.size());
+  for (std::size_t k = 0; k < count; ++k) {
+    if (!varies(names, k) && !varies(others, k)) continue;
+    for (std::size_t i = 0; i < names.size(); ++i) instants[i] += names[i].numbers[k] + '/';
+  }
+  std::set<std::string> const distinct(instants.begin(), instants.end());
+  if (distinct.size() != instants.size()) return std::nullopt;
+  return instants;
+}
+
+/// Returns all pages of the files. An unreadable file counts as one page, so that its pair reports the reason.
+std::vector<SequenceFrame> list_frames(std::vector<std::string> const& files) {
+  std::vector<SequenceFrame> frames;
+  for (std::string const& file : files) {
+    std::size_t pages = 1;
+    try {
+      pages = count_pages(file);
+    } catch (DataError const&) {
+    }
+    for (std::size_t page = 0; page < pages; ++page) frames.push_back({file, page, pages});
+  }
+  return frames;
+}
+
+constexpr char const* no_partner = "has no partner";
+
+/// Matches two lists by the numbers in their names, or in their order.
+std::vector<SequencePair> match_lists(std::vector<std::string> const& a, std::vector<std::string> const& b) {
+  std::vector<NumberedName> const names_a = split_names(a), names_b = split_names(b);
+  auto const keys_a = find_instants(names_a, names_b), keys_b = find_instants(names_b, names_a);
+  std::map<std::string, std::string, bool (*)(std::string const&, std::string const&)> partners(is_before);
+  if (keys_a && keys_b)
+    for (std::size_t k = 0; k < b.size(); ++k) partners[(*keys_b)[k]] = b[k];
+  bool const by_number =
+      a.size() + b.size() > 2 && keys_a &&
+      std::any_of(keys_a->begin(), keys_a->end(), [&](std::string const& key) { return partners.contains(key); });
+  std::vector<SequencePair> pairs;
+  if (by_number) {
+    std::map<std::string, SequencePair, bool (*)(std::string const&, std::string const&)> matched(is_before);
+    for (std::size_t k = 0; k < a.size(); ++k) {
+      SequencePair& pair = matched[(*keys_a)[k]];
+      pair.reference.path = a[k];
+      pair.problem = fmt::format("{}: {} (no second image has its number); add it", a[k], no_partner);
+    }
+    for (auto const& [key, file] : partners) {
+      SequencePair& pair = matched[key];
+      pair.problem = pair.reference.path.empty()
+                         ? fmt::format("{}: {} (no first image has its number); add it", file, no_partner)
+                         : "";
+      pair.flow.path = file;
+    }
+    for (auto& [key, pair] : matched) pairs.push_back(std::move(pair));
+    return pairs;
+  }
+  std::vector<SequenceFrame> const first = list_frames(a), second = list_frames(b);
+  if (first.size() != second.size())
+    throw DataError(a.front(), fmt::format("the first list has {} images and the second {} (their numbers differ, so "
+                                           "that they are matched in their order); give equally many",
+                                           first.size(), second.size()));
+  for (std::size_t k = 0; k < first.size(); ++k) pairs.push_back({first[k], second[k], {}, {}});
+  return pairs;
+}
+
+/// Gives every pair a distinct file name, from its frame A, or with one reference from its frame B.
+void name_vectors(std::vector<SequencePair>& pairs, Pairing pairing) {
+  std::map<std::string, int> uses{{"statistics", 1}};
+  for (SequencePair& pair : pairs) {
+    SequenceFrame const& frame =
+        pairing == Pairing::reference || pair.reference.path.empty() ? pair.flow : pair.reference;
+    pair.vectors = fs::path(frame.path).stem().string();
+    if (frame.pages > 1) pair.vectors += fmt::format("_p{:04}", frame.page + 1);
+    ++uses[pair.vectors];
+  }
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    std::string& name = pairs[k].vectors;
+    if (uses[name] > 1) name = fmt::format("pair{:05}_{}", k + 1, name);
+    name += ".h5";
+  }
+}
+
+}  // namespace
+
+std::string SequenceFrame::name() const { return pages > 1 ? fmt::format("{} (page {})", path, page + 1) : path; }
+
+bool is_pattern(std::string const& text) {
+  std::error_code error;
+  return text.find_first_of("*?[") != std::string::npos && !fs::exists(text, error);
+}
+
+std::vector<std::vector<std::string>> list_sequence_files(std::vector<std::string> const& inputs, Pairing pairing) {
+  std::vector<std::vector<std::string>> lists;
+  bool names_only = true;
+  for (std::string const& input : inputs) {
+    std::error_code error;
+    if (is_pattern(input)) {
+      lists.push_back(expand_pattern(input));
+      names_only = false;
+    } else if (fs::is_directory(input, error)) {
+      lists.push_back(list_folder(input));
+      names_only = false;
+    } else {
+      lists.push_back({input});
+    }
+  }
+  if (names_only && inputs.size() > 2) lists = {inputs};
+  bool const keeps_first = pairing == Pairing::reference && names_only;
+  for (std::vector<std::string>& list : lists) {
+    if (list.size() > 1) std::sort(list.begin() + (keeps_first ? 1 : 0), list.end(), is_before);
+  }
+  if (pairing == Pairing::pairs && lists.size() == 1) lists = split_by_name(lists.front());
+  if (pairing == Pairing::pairs && lists.size() > 2)
+    throw DataError("correlate", fmt::format("got {} lists of images (pairs have a first and a second image); give two "
+                                             "patterns, or one folder or file with all images",
+                                             lists.size()));
+  return lists;
+}
+
+std::vector<SequencePair> form_pairs(std::vector<std::vector<std::string>> const& lists, Pairing pairing) {
+  std::vector<SequencePair> pairs;
+  if (pairing == Pairing::pairs && lists.size() == 2) {
+    pairs = match_lists(lists[0], lists[1]);
+    name_vectors(pairs, pairing);
+    return pairs;
+  }
+  std::vector<std::string> files;
+  for (std::vector<std::string> const& list : lists) files.insert(files.end(), list.begin(), list.end());
+  std::vector<SequenceFrame> const frames = list_frames(files);
+  if (frames.size() < 2)
+    throw DataError(files.front(), "is a single image (a sequence has at least two); give a pattern or a folder");
+  switch (pairing) {
+    case Pairing::pairs:
+      for (std::size_t k = 0; k + 1 < frames.size(); k += 2) pairs.push_back({frames[k], frames[k + 1], {}, {}});
+      if (frames.size() % 2 == 1)
+        pairs.push_back({frames.back(),
+                         {},
+                         {},
+                         fmt::format("{}: {} (the number of images is odd)", frames.back().name(), no_partner)});
+      break;
+    case Pairing::reference:
+      for (std::size_t k = 1; k < frames.size(); ++k) pairs.push_back({frames[0], frames[k], {}, {}});
+      break;
+    case Pairing::consecutive:
+      for (std::size_t k = 0; k + 1 < frames.size(); ++k) pairs.push_back({frames[k], frames[k + 1], {}, {}});
+      break;
+  }
+  name_vectors(pairs, pairing);
+  return pairs;
+}
+
+}  // namespace gladstone

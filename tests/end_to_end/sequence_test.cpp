@@ -1,0 +1,395 @@
+// Sequences of image pairs: gladstone correlate 'A_*.tif' 'B_*.tif' -o DIR/.
+#include <fmt/format.h>
+#include <tiffio.h>
+
+#include <cmath>
+#include <cstdint>
+#include <random>
+#include <set>
+
+#include "render/base/vec.h"
+#include "tests/end_to_end/support/workplace.h"
+#include "tests/support/documented_tables.h"
+
+namespace gladstone::end_to_end {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+constexpr int side = 64;
+
+/// Image of Gaussian dots of e^-2 diameter 3 px at the positions of a seed, displaced by a uniform shift, on a level.
+Image<std::uint16_t> dots_at(Vec2d shift, unsigned seed = 1, int columns = side, double level = 1000) {
+  std::mt19937 bits(seed);
+  std::uniform_real_distribution<double> place(-8, side + 8);
+  Image<double> light(columns, side, level);
+  for (int n = 0; n < 160; ++n) {
+    double const x = place(bits) + shift.x, y = place(bits) + shift.y;
+    for (int j = std::max(0, static_cast<int>(y) - 5); j < std::min(side, static_cast<int>(y) + 6); ++j)
+      for (int i = std::max(0, static_cast<int>(x) - 5); i < std::min(columns, static_cast<int>(x) + 6); ++i)
+        light(i, j) += 20000 * std::exp(-((i - x) * (i - x) + (j - y) * (j - y)) / (2 * 0.75 * 0.75));
+  }
+  Image<std::uint16_t> image(columns, side);
+  for (std::size_t i = 0; i < image.size(); ++i)
+    image.data()[i] = static_cast<std::uint16_t>(std::min(65535.0, std::round(light.data()[i])));
+  return image;
+}
+
+class Sequences : public Workplace {
+ protected:
+  void SetUp() override {
+    Workplace::SetUp();
+    write("config.toml", "[correlate]\nwindow_px = [32, 16]\noverlap = 0.5\n");
+  }
+  void write_image(std::string const& name, Image<std::uint16_t> const& image) const {
+    write_tiff(in(name).string(), image, {});
+  }
+  /// Writes A_1.tif, B_1.tif, ... whose displacements are `shifts`, in a numbering of two widths.
+  void write_pairs(std::vector<Vec2d> const& shifts) const {
+    for (std::size_t k = 0; k < shifts.size(); ++k) {
+      auto const seed = static_cast<unsigned>(k + 1);
+      write_image("A_" + std::to_string(8 + k) + ".tif", dots_at({}, seed));
+      write_image("B_" + std::to_string(8 + k) + ".tif", dots_at(shifts[k], seed));
+    }
+  }
+  /// Writes a TIFF of several pages.
+  void write_stack(std::string const& name, std::vector<Image<std::uint16_t>> const& pages) const {
+    TIFF* const file = TIFFOpen(in(name).c_str(), "w");
+    ASSERT_NE(file, nullptr);
+    for (Image<std::uint16_t> const& page : pages) {
+      TIFFSetField(file, TIFFTAG_IMAGEWIDTH, page.columns());
+      TIFFSetField(file, TIFFTAG_IMAGELENGTH, page.rows());
+      TIFFSetField(file, TIFFTAG_BITSPERSAMPLE, 16);
+      TIFFSetField(file, TIFFTAG_SAMPLESPERPIXEL, 1);
+      TIFFSetField(file, TIFFTAG_ROWSPERSTRIP, page.rows());
+      TIFFSetField(file, TIFFTAG_PLANARCONFIG, PLANARCONFIG_CONTIG);
+      TIFFSetField(file, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK);
+      auto copy = page;
+      EXPECT_GT(TIFFWriteEncodedStrip(file, 0, copy.data(), static_cast<tmsize_t>(copy.size() * 2)), 0);
+      EXPECT_TRUE(TIFFWriteDirectory(file));
+    }
+    TIFFClose(file);
+  }
+  std::vector<std::string> arguments(std::vector<std::string> inputs, std::string const& output,
+                                     std::vector<std::string> const& more = {}) const {
+    std::vector<std::string> all{"correlate"};
+    all.insert(all.end(), inputs.begin(), inputs.end());
+    for (std::string const& one : {std::string("-o"), output, std::string("--config"), std::string("config.toml")})
+      all.push_back(one);
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  }
+  nlohmann::json state_of(std::string const& folder) const {
+    return nlohmann::json::parse(read(folder + "/sequence.json"));
+  }
+  /// Mean displacement of the inner vectors of a file, whose windows are within both frames.
+  Vec2d mean_of(std::string const& name) const {
+    Hdf5Reader const file(in(name).string());
+    auto const x = file.read("/x_px"), y = file.read("/y_px"), u = file.read("/u_px"), v = file.read("/v_px");
+    Vec2d sum;
+    double n = 0;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      if (std::min(x[i], y[i]) < 16 || std::max(x[i], y[i]) > side - 16) continue;
+      sum += Vec2d{u[i], v[i]};
+      n += 1;
+    }
+    return sum / n;
+  }
+  void expect_shift(std::string const& name, Vec2d shift) const {
+    Vec2d const mean = mean_of(name);
+    EXPECT_NEAR(mean.x, shift.x, 0.05) << name;
+    EXPECT_NEAR(mean.y, shift.y, 0.05) << name;
+  }
+};
+
+// Frames are matched by their numbers (8, 9, 10), as quoted patterns and as expanded by the shell; each file is bit by
+// bit that of a single correlation.
+TEST_F(Sequences, OfPairsAreTheSingleCorrelations) {
+  std::vector<Vec2d> const shifts{{1.5, 0.5}, {-0.75, 1}, {2.25, -1.5}};
+  write_pairs(shifts);
+  auto const json = json_of(arguments({"A_*.tif", "B_*.tif"}, "out/"));
+  EXPECT_EQ(json["pairs"], 3);
+  EXPECT_EQ(json["done"], 3);
+  EXPECT_EQ(json["resumed"], 0);
+  EXPECT_THAT(json["failed"], testing::IsEmpty());
+  EXPECT_THAT(names("out"), ElementsAre("A_10.h5", "A_8.h5", "A_9.h5", "sequence.json", "statistics.h5"));
+  for (std::size_t k = 0; k < 3; ++k) {
+    std::string const number = std::to_string(8 + k);
+    expect_shift("out/A_" + number + ".h5", shifts[k]);
+    succeed(arguments({"A_" + number + ".tif", "B_" + number + ".tif"}, "single.h5"));
+    expect_same_datasets("out/A_" + number + ".h5", "single.h5");
+  }
+  auto const state = state_of("out");
+  EXPECT_EQ(state["complete"], true);
+  EXPECT_EQ(state["pairs"][2]["flow"]["file"], "B_10.tif");
+  EXPECT_EQ(state["pairs"][0]["reference"]["sha256"],
+            Hdf5Reader(in("out/A_8.h5").string()).attribute("reference_sha256"));
+
+  succeed(arguments({"A_8.tif", "A_9.tif", "A_10.tif", "B_8.tif", "B_9.tif", "B_10.tif"}, "expanded"));
+  for (char const* name : {"/A_8.h5", "/A_10.h5", "/statistics.h5"})
+    expect_same_datasets(std::string("out") + name, std::string("expanded") + name);
+}
+
+// One image file or two patterns that match one pair, with a file as output, remain a single correlation.
+TEST_F(Sequences, OfOnePairMayBeAFile) {
+  write_pairs({{1.5, 0.5}});
+  succeed(arguments({"A_*.tif", "B_*.tif"}, "v.h5"));
+  succeed(arguments({"A_8.tif", "B_8.tif"}, "single.h5"));
+  expect_same_datasets("v.h5", "single.h5");
+  write_pairs({{1.5, 0.5}, {1, 1}});
+  expect_refused(arguments({"A_*.tif", "B_*.tif"}, "w.h5"), 2, {"w.h5: is a file", "-o DIR/"});
+  expect_refused(arguments({"C_*.tif", "B_*.tif"}, "out/"), 2, {"C_*.tif: matches no file"});
+}
+
+// BOS: every image is measured against the first one.
+TEST_F(Sequences, HaveOneReference) {
+  write_image("ref.tif", dots_at({}));
+  for (int k = 1; k <= 3; ++k) write_image(fmt::format("flow{}.tif", k), dots_at({0.5 * k, -0.25 * k}));
+  succeed(arguments({"ref.tif", "flow*.tif"}, "out/", {"--pairing", "reference"}));
+  for (int k = 1; k <= 3; ++k) expect_shift(fmt::format("out/flow{}.h5", k), {0.5 * k, -0.25 * k});
+}
+
+// Consecutive images of a folder: displacements are the differences of the shifts.
+TEST_F(Sequences, HaveConsecutiveImages) {
+  std::filesystem::create_directory(in("images"));
+  std::vector<double> const at{0, 0.5, 1.75, 1};
+  for (std::size_t k = 0; k < at.size(); ++k)
+    write_image(fmt::format("images/t{}.tif", k + 8), dots_at({at[k], -at[k]}));
+  succeed(arguments({"images"}, "out/", {"--pairing", "consecutive"}));
+  for (std::size_t k = 0; k + 1 < at.size(); ++k)
+    expect_shift(fmt::format("out/t{}.h5", k + 8), {at[k + 1] - at[k], at[k] - at[k + 1]});
+}
+
+// The pages of one file, for each pairing.
+TEST_F(Sequences, AreThePagesOfOneFile) {
+  std::vector<double> const at{0, 1, 0.25, 1.75};
+  std::vector<Image<std::uint16_t>> pages;
+  for (double const u : at) pages.push_back(dots_at({u, 0}));
+  write_stack("stack.tif", pages);
+  succeed(arguments({"stack.tif"}, "pairs/"));
+  EXPECT_THAT(names("pairs"), ElementsAre("sequence.json", "stack_p0001.h5", "stack_p0003.h5", "statistics.h5"));
+  expect_shift("pairs/stack_p0001.h5", {1, 0});
+  expect_shift("pairs/stack_p0003.h5", {1.5, 0});
+  succeed(arguments({"stack.tif"}, "reference/", {"--pairing", "reference"}));
+  expect_shift("reference/stack_p0003.h5", {0.25, 0});
+  succeed(arguments({"stack.tif"}, "consecutive/", {"--pairing", "consecutive"}));
+  expect_shift("consecutive/stack_p0002.h5", {-0.75, 0});
+  EXPECT_EQ(state_of("consecutive")["pairs"][1]["flow"]["page"], 3);
+}
+
+// A damaged image, one of another size, a missing partner, and frames without signal are named; the other pairs are
+// correlated. Exit code 2 remains for sequences of which nothing could be done.
+TEST_F(Sequences, NameBadPairsAndDoTheOthers) {
+  write_pairs({{1, 0}, {1, 0}, {1, 0}, {1, 0}, {1, 0}});
+  write("B_9.tif", "not an image");
+  write_image("B_10.tif", dots_at({1, 0}, 3, 80));
+  std::filesystem::remove(in("B_11.tif"));
+  write_image("A_12.tif", Image<std::uint16_t>(side, side, 7));
+  write_image("B_12.tif", Image<std::uint16_t>(side, side, 7));
+  Outcome const outcome = gladstone(arguments({"A_*.tif", "B_*.tif"}, "out/", {"--json"}));
+  EXPECT_EQ(outcome.exit_code, 1) << outcome.err;
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("B_9.tif"), HasSubstr("B_10.tif: is 80 x 64 px but A_8.tif is 64 x 64 px"),
+                                 HasSubstr("A_11.tif: has no partner"), HasSubstr("A_12.h5")));
+  auto const json = nlohmann::json::parse(outcome.out);
+  EXPECT_EQ(json["done"], 1);
+  EXPECT_EQ(json["failed"].size(), 4u);
+  auto const pairs = state_of("out")["pairs"];
+  std::vector<std::string> states;
+  for (auto const& pair : pairs) states.push_back(pair["state"]);
+  EXPECT_THAT(states, ElementsAre("done", "failed", "failed", "failed", "no valid vector"));
+  EXPECT_TRUE(pairs[1]["vectors"].is_null());
+  EXPECT_THAT(pairs[1]["error"].get<std::string>(), HasSubstr("B_9.tif"));
+  expect_shift("out/A_8.h5", {1, 0});
+
+  // The remedy and the same command complete the sequence.
+  write_pairs({{1, 0}, {1, 0}, {1, 0}, {1, 0}, {1, 0}});
+  auto const again = json_of(arguments({"A_*.tif", "B_*.tif"}, "out/"));
+  EXPECT_EQ(again["done"], 5);
+  EXPECT_EQ(again["resumed"], 1);
+
+  for (int k = 8; k <= 12; ++k) write_image("B_" + std::to_string(k) + ".tif", dots_at({1, 0}, 3, 80));
+  Outcome const nothing = gladstone(arguments({"A_*.tif", "B_*.tif"}, "none/"));
+  EXPECT_EQ(nothing.exit_code, 2) << nothing.err;
+  EXPECT_THAT(nothing.err, HasSubstr("none of the 5 pairs"));
+}
+
+// Killed after its second pair, the run continues with the third; the result is that of an uninterrupted run. Other
+// settings or other frames are computed anew.
+TEST_F(Sequences, ContinueAfterAKill) {
+  std::vector<Vec2d> const shifts{{1.5, 0.5}, {-0.75, 1}, {2.25, -1.5}, {0.5, 0}};
+  write_pairs(shifts);
+  auto const command = arguments({"A_*.tif", "B_*.tif"}, "out/", {"--threads", "1"});
+  {
+    Program program(command, folder_, stopping_at("pair-finished:2"));
+    ASSERT_TRUE(program.wait_until_stopped());
+    expect_refused(command, 2, {"is being written by another gladstone correlate"});
+    EXPECT_EQ(state_of("out")["complete"], false);
+    program.send(SIGKILL);
+    EXPECT_EQ(program.finish(hang_limit).signal, SIGKILL);
+  }
+  EXPECT_THAT(names("out"), testing::Contains("A_9.h5"));
+  EXPECT_THAT(names("out"), testing::Not(testing::Contains("A_10.h5")));
+  auto const json = json_of(command);
+  EXPECT_EQ(json["done"], 4);
+  EXPECT_EQ(json["resumed"], 2);
+  succeed(arguments({"A_*.tif", "B_*.tif"}, "whole/", {"--threads", "3"}));
+  for (char const* name : {"/A_8.h5", "/A_9.h5", "/A_10.h5", "/A_11.h5", "/statistics.h5"})
+    expect_same_datasets(std::string("out") + name, std::string("whole") + name);
+  EXPECT_EQ(Hdf5Reader(in("out/statistics.h5").string()).attribute("sequence_sha256"),
+            Hdf5Reader(in("whole/statistics.h5").string()).attribute("sequence_sha256"));
+
+  write_image("B_9.tif", dots_at({3, 0}, 2));
+  EXPECT_EQ(json_of(command)["resumed"], 3);
+  expect_shift("out/A_9.h5", {3, 0});
+  auto changed = command;
+  changed.insert(changed.end(), {"--set", "correlate.overlap=0.25"});
+  EXPECT_EQ(json_of(changed)["resumed"], 0);
+}
+
+// Killed while a file is incomplete, a run leaves nothing that the next one takes for a result.
+TEST_F(Sequences, NeverStoreIncompleteVectors) {
+  write_pairs({{1.5, 0.5}, {-0.75, 1}});
+  auto const command = arguments({"A_*.tif", "B_*.tif"}, "out/", {"--threads", "1"});
+  {
+    Program program(command, folder_, stopping_at("file-written:2"));  // the first is sequence.json
+    ASSERT_TRUE(program.wait_until_stopped());
+    program.send(SIGKILL);
+    program.finish(hang_limit);
+  }
+  EXPECT_THAT(names("out"), testing::Not(testing::Contains("A_8.h5")));
+  EXPECT_EQ(json_of(command)["resumed"], 0);
+  EXPECT_THAT(names("out"), ElementsAre("A_8.h5", "A_9.h5", "sequence.json", "statistics.h5"));
+}
+
+// Ctrl-C ends the run with exit code 130 and retains the finished pairs.
+TEST_F(Sequences, EndOnInterrupt) {
+  write_pairs({{1.5, 0.5}, {-0.75, 1}, {1, 1}});
+  auto const command = arguments({"A_*.tif", "B_*.tif"}, "out/", {"--threads", "1"});
+  Program program(command, folder_, stopping_at("pair-finished"));
+  ASSERT_TRUE(program.wait_until_stopped());
+  program.send(SIGINT);
+  program.send(SIGCONT);
+  Outcome const outcome = program.finish(hang_limit);
+  EXPECT_EQ(outcome.exit_code, 130);
+  EXPECT_THAT(outcome.err, HasSubstr("1 of 3 pairs are done"));
+  EXPECT_EQ(json_of(command)["resumed"], 1);
+}
+
+// Statistics of the stored vectors, computed here by their definitions; and their truth: uniform shifts, whose mean and
+// standard deviation the measurement reproduces within its own error.
+TEST_F(Sequences, HaveTheStatisticsOfTheirVectors) {
+  std::vector<Vec2d> const shifts{{1.5, 0.5}, {0.75, 1}, {2.25, -0.5}, {1, 0}, {2, 0.25}, {1.25, -1}};
+  write_pairs(shifts);
+  succeed(arguments({"A_*.tif", "B_*.tif"}, "out/"));
+  Hdf5Reader const file(in("out/statistics.h5").string());
+  std::size_t const points = file.read("/x_px").size();
+  std::vector<std::vector<Vec2d>> series(points);
+  for (std::size_t k = 0; k < shifts.size(); ++k) {
+    Hdf5Reader const one(in("out/A_" + std::to_string(8 + k) + ".h5").string());
+    auto const u = one.read("/u_px"), v = one.read("/v_px"), reason = one.read("/reason");
+    ASSERT_EQ(u.size(), points);
+    EXPECT_EQ(one.read("/x_px"), file.read("/x_px"));
+    for (std::size_t i = 0; i < points; ++i)
+      if (reason[i] <= 1) series[i].push_back({u[i], v[i]});
+  }
+  auto const count = file.read("/count"), mean = file.read("/u_mean_px"), rms = file.read("/v_rms_px"),
+             uv = file.read("/uv_px2"), error = file.read("/u_mean_error_px"), number = file.read("/u_independent");
+  for (std::size_t i = 0; i < points; ++i) {
+    auto const n = static_cast<double>(series[i].size());
+    ASSERT_EQ(count[i], n);
+    if (n < 2) continue;
+    Vec2d m;
+    for (Vec2d const& d : series[i]) m += (1 / n) * d;
+    double uu = 0, vv = 0, both = 0;
+    for (Vec2d const& d : series[i]) {
+      uu += (d.x - m.x) * (d.x - m.x);
+      vv += (d.y - m.y) * (d.y - m.y);
+      both += (d.x - m.x) * (d.y - m.y);
+    }
+    EXPECT_NEAR(mean[i], m.x, 1e-12);
+    EXPECT_NEAR(rms[i], std::sqrt(vv / (n - 1)), 1e-12);
+    EXPECT_NEAR(uv[i], both / (n - 1), 1e-12);
+    EXPECT_NEAR(error[i], std::sqrt(uu / n / (number[i] - 1)), 1e-12);
+    EXPECT_TRUE(number[i] >= 1 && number[i] <= n);
+  }
+  Vec2d truth;
+  for (Vec2d const& d : shifts) truth += (1.0 / 6) * d;
+  double variance = 0;
+  for (Vec2d const& d : shifts) variance += (d.y - truth.y) * (d.y - truth.y) / 5;
+  auto const x = file.read("/x_px"), y = file.read("/y_px");
+  for (std::size_t i = 0; i < points; ++i) {
+    if (std::min(x[i], y[i]) < 16 || std::max(x[i], y[i]) > side - 16 || count[i] < 6) continue;
+    EXPECT_NEAR(mean[i], truth.x, 0.1);
+    EXPECT_NEAR(rms[i], std::sqrt(variance), 0.1);
+  }
+}
+
+// Dots move over a bright pattern at rest. Without subtraction the windows find the pattern; the background of the
+// sequence, which no `frame` lists, removes it.
+TEST_F(Sequences, SubtractTheirOwnBackground) {
+  Image<std::uint16_t> const still = dots_at({}, 99);
+  for (int k = 0; k < 7; ++k)
+    for (auto const& [letter, shift] : {std::pair('A', 0.0), std::pair('B', 2.0)}) {
+      Image<std::uint16_t> image = dots_at({shift, 0}, static_cast<unsigned>(k + 1));
+      for (std::size_t i = 0; i < image.size(); ++i)
+        image.data()[i] = static_cast<std::uint16_t>(image.data()[i] / 8 + still.data()[i] / 2);
+      write_image(fmt::format("{}_{}.tif", letter, k), image);
+    }
+  succeed(arguments({"A_*.tif", "B_*.tif"}, "raw/"));
+  EXPECT_NEAR(mean_of("raw/A_3.h5").x, 0, 0.3);
+  for (std::string const statistic : {"minimum", "mean", "median"}) {
+    write("config.toml",
+          "[correlate]\nwindow_px = [32, 16]\noverlap = 0.5\n[[correlate.preprocess]]\nkind = \"background\"\n"
+          "subtract = \"" +
+              statistic + "\"\n");
+    succeed(arguments({"A_*.tif", "B_*.tif"}, statistic + "/"));
+    Vec2d const mean = mean_of(statistic + "/A_3.h5");
+    EXPECT_NEAR(mean.x, 2, 0.2) << statistic;
+    EXPECT_NEAR(mean.y, 0, 0.2) << statistic;
+    EXPECT_NE(Hdf5Reader(in(statistic + "/A_3.h5").string()).attribute("background_1_flow_sha256"), "");
+  }
+  expect_refused(arguments({"A_0.tif", "B_0.tif"}, "v.h5"), 2, {"config.toml", "frame"});
+}
+
+TEST_F(Sequences, RefuseFoldersOfOtherFiles) {
+  write_pairs({{1, 0}, {1, 0}});
+  std::filesystem::create_directory(in("mine"));
+  write("mine/notes.txt", "important");
+  expect_refused(arguments({"A_*.tif", "B_*.tif"}, "mine"), 2, {"mine: contains other files"});
+  expect_refused(arguments({"A_*.tif", "B_*.tif"}, "."), 2, {"contains other files"});
+  expect_refused(arguments({"A_*.tif", "B_*.tif"}, "out/", {"--pairing", "all"}), 2, {"--pairing"});
+  write("config.toml", "[correlate]\nwindow_px = [128]\n");
+  expect_refused(arguments({"A_*.tif", "B_*.tif"}, "out/"), 2, {"A_8.tif", "128"});
+}
+
+// docs/file-formats.md names the datasets of statistics.h5 and the keys of sequence.json.
+TEST_F(Sequences, AreDocumented) {
+  write_pairs({{1, 0}, {0, 1}});
+  std::filesystem::remove(in("B_9.tif"));
+  Outcome const outcome = gladstone(arguments({"A_*.tif", "B_*.tif"}, "out/"));
+  EXPECT_EQ(outcome.exit_code, 1);
+  Hdf5Reader const file(in("out/statistics.h5").string());
+  std::set<std::string> documented;
+  for (auto const& cells : test::documented_table("The folder of a sequence", "dataset"))
+    for (std::string const& name : test::names_of(cells[0])) documented.insert(name);
+  auto const datasets = file.number_datasets();
+  EXPECT_EQ(std::set<std::string>(datasets.begin(), datasets.end()), documented);
+  for (char const* attribute : {"samples", "lags", "grid_columns", "grid_rows", "settings_sha256", "sequence_sha256"})
+    EXPECT_NE(file.attribute(attribute), "") << attribute;
+  std::set<std::string> keys;
+  for (auto const& cells : test::documented_table("The folder of a sequence", "key"))
+    for (std::string const& name : test::names_of(cells[0])) keys.insert(name);
+  auto const state = state_of("out");
+  for (auto const& item : state.items()) {
+    if (item.key() != "pairs") {
+      EXPECT_TRUE(keys.contains(item.key())) << item.key();
+    }
+  }
+  for (auto const& pair : state["pairs"])
+    for (auto const& item : pair.items()) EXPECT_TRUE(keys.contains("pairs[]." + item.key())) << item.key();
+}
+
+}  // namespace
+}  // namespace gladstone::end_to_end
