@@ -9,7 +9,7 @@
 
 #include "render/base/error.h"
 #include "render/files/input_file.h"
-#include "render/files/output_place.h"
+#include "render/files/output_destination.h"
 #include "studies/case/case_files.h"
 #include "studies/case/json_text.h"
 #include "studies/compare/sequence.h"

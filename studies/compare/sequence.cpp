@@ -14,7 +14,7 @@
 #include <sstream>
 
 #include "analysis/correlation/correlator.h"
-#include "analysis/correlation/pair_verdict.h"
+#include "analysis/correlation/pair_assessment.h"
 #include "analysis/vectors/sequence_statistics.h"
 #include "analysis/vectors/vector_file.h"
 #include "render/base/error.h"
@@ -332,7 +332,7 @@ class SequenceRun {
       throw;
     } catch (std::exception const& error) {
       record.state = PairState::failed;
-      record.error = message_of(error);
+      record.error = format_user_message(error);
       return {};
     }
   }
@@ -370,7 +370,7 @@ class SequenceRun {
   std::optional<DisplacementField> read_finished(std::string const& path, PairRecord& record) const {
     std::error_code error;
     if (!std::filesystem::exists(path, error)) return std::nullopt;
-    UnguardedReading const to_be_replaced;
+    UnrecordedReading const to_be_replaced;
     try {
       Hdf5Reader const file(path);
       if (file.attribute("settings_sha256") != settings_sha256_ ||

@@ -12,8 +12,8 @@
 #include "render/base/error.h"
 #include "render/base/version.h"
 #include "render/files/file_lock.h"
+#include "render/files/output_destination.h"
 #include "render/files/output_file.h"
-#include "render/files/output_place.h"
 #include "studies/case/json_text.h"
 
 namespace gladstone {
@@ -47,7 +47,7 @@ nlohmann::json describe_frame(SequenceFrame const& frame, std::string const& sha
 }  // namespace
 
 SequenceFolder::SequenceFolder(std::string const& path) {
-  OutputPlace const place(path);
+  OutputDestination const place(path);
   path_ = place.path();
   std::error_code error;
   if (fs::exists(path_, error) && !fs::is_directory(path_, error))
@@ -70,7 +70,7 @@ void SequenceFolder::lock() {
   // The previous owner removes the file when it ends: repeat until the locked file is the one in the folder.
   for (int attempt = 0; attempt < 5; ++attempt) {
     lock_ = ::open(lock_path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-    if (lock_ < 0) OutputPlace(path_).fail("cannot be written", errno);
+    if (lock_ < 0) OutputDestination(path_).fail("cannot be written", errno);
     if (lock_bytes(lock_, 0, 1) == EAGAIN) {
       ::close(lock_);
       lock_ = -1;

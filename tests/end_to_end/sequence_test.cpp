@@ -8,7 +8,7 @@
 #include <set>
 
 #include "render/base/vec.h"
-#include "tests/end_to_end/support/workplace.h"
+#include "tests/end_to_end/support/program_fixture.h"
 #include "tests/support/documented_tables.h"
 
 namespace gladstone::end_to_end {
@@ -37,10 +37,10 @@ Image<std::uint16_t> dots_at(Vec2d shift, unsigned seed = 1, int columns = side,
   return image;
 }
 
-class Sequences : public Workplace {
+class Sequences : public ProgramFixture {
  protected:
   void SetUp() override {
-    Workplace::SetUp();
+    ProgramFixture::SetUp();
     write("config.toml", "[correlate]\nwindow_px = [32, 16]\noverlap = 0.5\n");
   }
   void write_image(std::string const& name, Image<std::uint16_t> const& image) const {
@@ -81,7 +81,7 @@ class Sequences : public Workplace {
     all.insert(all.end(), more.begin(), more.end());
     return all;
   }
-  nlohmann::json state_of(std::string const& folder) const {
+  nlohmann::json determine_run_state(std::string const& folder) const {
     return nlohmann::json::parse(read(folder + "/sequence.json"));
   }
   /// Mean displacement of the inner vectors of a file, whose windows are within both frames.
@@ -121,7 +121,7 @@ TEST_F(Sequences, OfPairsAreTheSingleCorrelations) {
     succeed(arguments({"A_" + number + ".tif", "B_" + number + ".tif"}, "single.h5"));
     expect_same_datasets("out/A_" + number + ".h5", "single.h5");
   }
-  auto const state = state_of("out");
+  auto const state = determine_run_state("out");
   EXPECT_EQ(state["complete"], true);
   EXPECT_EQ(state["pairs"][2]["flow"]["file"], "B_10.tif");
   EXPECT_EQ(state["pairs"][0]["reference"]["sha256"],
@@ -176,7 +176,7 @@ TEST_F(Sequences, AreThePagesOfOneFile) {
   expect_shift("reference/stack_p0003.h5", {0.25, 0});
   succeed(arguments({"stack.tif"}, "consecutive/", {"--pairing", "consecutive"}));
   expect_shift("consecutive/stack_p0002.h5", {-0.75, 0});
-  EXPECT_EQ(state_of("consecutive")["pairs"][1]["flow"]["page"], 3);
+  EXPECT_EQ(determine_run_state("consecutive")["pairs"][1]["flow"]["page"], 3);
 }
 
 // A damaged image, one of another size, a missing partner, and frames without signal are named; the other pairs are
@@ -195,7 +195,7 @@ TEST_F(Sequences, NameBadPairsAndDoTheOthers) {
   auto const json = nlohmann::json::parse(outcome.out);
   EXPECT_EQ(json["done"], 1);
   EXPECT_EQ(json["failed"].size(), 4u);
-  auto const pairs = state_of("out")["pairs"];
+  auto const pairs = determine_run_state("out")["pairs"];
   std::vector<std::string> states;
   for (auto const& pair : pairs) states.push_back(pair["state"]);
   EXPECT_THAT(states, ElementsAre("done", "failed", "failed", "failed", "no valid vector"));
@@ -225,7 +225,7 @@ TEST_F(Sequences, ContinueAfterAKill) {
     Program program(command, folder_, stopping_at("pair-finished:2"));
     ASSERT_TRUE(program.wait_until_stopped());
     expect_refused(command, 2, {"is being written by another gladstone correlate"});
-    EXPECT_EQ(state_of("out")["complete"], false);
+    EXPECT_EQ(determine_run_state("out")["complete"], false);
     program.send(SIGKILL);
     EXPECT_EQ(program.finish(hang_limit).signal, SIGKILL);
   }
@@ -381,7 +381,7 @@ TEST_F(Sequences, AreDocumented) {
   std::set<std::string> keys;
   for (auto const& cells : test::documented_table("The folder of a sequence", "key"))
     for (std::string const& name : test::names_of(cells[0])) keys.insert(name);
-  auto const state = state_of("out");
+  auto const state = determine_run_state("out");
   for (auto const& item : state.items()) {
     if (item.key() != "pairs") {
       EXPECT_TRUE(keys.contains(item.key())) << item.key();

@@ -4,8 +4,8 @@
 #include <mutex>
 
 #include "analysis/preparation/frame_changes.h"
+#include "analysis/preparation/frame_sized_image.h"
 #include "analysis/preparation/sequence_background.h"
-#include "analysis/preparation/sized_picture.h"
 #include "render/base/error.h"
 
 namespace gladstone {
@@ -41,7 +41,7 @@ class ListedBackground {
  private:
   Image<double> compute(std::vector<std::string> const& files, Image<double> const& frame) const {
     return compute_background(statistic_, files.size(),
-                              [&](std::size_t k) { return std::optional(read_sized_picture(files[k], frame)); });
+                              [&](std::size_t k) { return std::optional(read_frame_sized_image(files[k], frame)); });
   }
 
   std::string statistic_;

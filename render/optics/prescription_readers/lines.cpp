@@ -100,7 +100,7 @@ std::string replace_decimal_commas(std::vector<std::string>& words) {
 
 bool is_index_relative_to_air(double n) { return n >= 0.9996 && n < 5; }
 
-std::string in_capitals(std::string text) {
+std::string upper_case(std::string text) {
   std::transform(text.begin(), text.end(), text.begin(),
                  [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
   return text;
