@@ -63,8 +63,8 @@ struct RayBudget {
   bool extrapolated = false;           ///< the errors were measured with up to 4096 rays and extrapolated
   bool converged = true;               ///< false: the errors exceed the tolerances
   double rays_wanted = not_measured;   ///< estimated rays per source that meet the tolerances; NaN: unknown, or no
-                                      ///< number of rays is sufficient
-  double seconds = not_measured;  ///< estimated processor time of a rendering by ray_seconds() [s]
+                                       ///< number of rays is sufficient
+  double seconds = not_measured;       ///< estimated processor time of a rendering by ray_seconds() [s]
 
   std::optional<SideFaceErrors> side_faces;  ///< for the fast renderer; empty: no dot in view is at a side face
 

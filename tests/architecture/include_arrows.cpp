@@ -170,7 +170,8 @@ std::vector<LibraryPattern> const& known_libraries() {
        "cu(da|fft|rand|blas|solver|sparse)[^/]*|cuda/.*|cub/.*|thrust/.*|cooperative_groups.*|mma\\.h|nv[^/]*/.*|"
        "nv(ml|rtc|Toolsext)\\w*\\.h|device_(launch_parameters|functions|types)\\.h|driver_types\\.h|"
        "(vector|sm_[0-9]+)_[a-z_]+\\.h(pp)?"},
-      {"POSIX", "sys/.*|(stdio|stdlib|unistd|fcntl|signal|dirent|dlfcn|poll|termios|pthread|spawn|malloc|fnmatch)\\.h"},
+      {"POSIX",
+       "sys/.*|(stdio|stdlib|unistd|fcntl|signal|dirent|dlfcn|glob|poll|termios|pthread|spawn|malloc|fnmatch)\\.h"},
       {"std", "[a-z_0-9]+"},
   };
   return libraries;
