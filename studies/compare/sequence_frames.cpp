@@ -284,11 +284,11 @@ std::vector<SequencePair> form_pairs(std::vector<std::vector<std::string>> const
   switch (pairing) {
     case Pairing::pairs:
       for (std::size_t k = 0; k + 1 < frames.size(); k += 2) pairs.push_back({frames[k], frames[k + 1], {}, {}});
-      if (frames.size() % 2 == 1)
-        pairs.push_back({frames.back(),
-                         {},
-                         {},
-                         fmt::format("{}: {} (the number of images is odd)", frames.back().name(), no_partner)});
+      if (frames.size() % 2 == 1) {
+        SequencePair& last = pairs.emplace_back();
+        last.reference = frames.back();
+        last.problem = fmt::format("{}: {} (the number of images is odd)", frames.back().name(), no_partner);
+      }
       break;
     case Pairing::reference:
       for (std::size_t k = 1; k < frames.size(); ++k) pairs.push_back({frames[0], frames[k], {}, {}});
