@@ -20,10 +20,9 @@ Image<Vec2d> displacement_truth(Scene const& scene, Renderer& renderer, TruthAt 
       places.push_back({static_cast<double>(column) * spacing_px, static_cast<double>(row) * spacing_px});
     }
   }
-  Scene traced = scene;  // copy: tracing may widen its pupil
   std::vector<Vec2d> const displacements =
-      scene.setup.piv ? particle_displacements(traced, renderer, places, at)
-                      : truth_at_points(traced, renderer, places, at, RenderTheory::no).displacement_px;
+      scene.setup.piv ? particle_displacements(scene, renderer, places, at)
+                      : truth_at_points(scene, renderer, places, at, RenderTheory::no).displacement_px;
   std::copy(displacements.begin(), displacements.end(), map.begin());
   return map;
 }

@@ -168,16 +168,17 @@ Reconstruction reconstruct_density(DisplacementField const& field, Setup const& 
   result.overlap = determine_overlap(field, window_px, options.overlap);
   result.reference_density = options.reference_density.value_or(setup.medium.ambient_density);
   if (projected.map.sigma.empty())
-    result.warnings.push_back(
+    result.warnings.emplace_back(
         "the vectors have no uncertainty, so that the density has none; correlate with an "
         "uncertainty method, e.g. --set correlate.uncertainty=correlation_statistics");
   if (projected.without_sigma > 0)
     result.warnings.push_back(fmt::format("{} vectors have no uncertainty; the largest of the others is used for them",
                                           projected.without_sigma));
   if (setup.camera.distorted())
-    result.warnings.push_back("the distortion of the lens is neglected; undistort the images for accurate positions");
+    result.warnings.emplace_back(
+        "the distortion of the lens is neglected; undistort the images for accurate positions");
   if (options.deconvolution_gain && setup.lens.focus != Focus::target)
-    result.warnings.push_back("the deconvolution assumes focus on the dots, but lens.focus is another plane");
+    result.warnings.emplace_back("the deconvolution assumes focus on the dots, but lens.focus is another plane");
   result = options.axis ? invert_flow(std::move(result), projected.map, options)
                         : integrate_plane(std::move(result),
                                           compute_mean_gradient(projected.map, setup.medium.thickness), setup, options);
