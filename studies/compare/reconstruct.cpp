@@ -120,6 +120,31 @@ void warn_of_regions(Reconstruction& result, std::vector<density::Region> const&
                   without, regions.size(), nodes, describe_region(*largest)));
 }
 
+/// Warns of a reference region in which the density is not uniform: its mean gradient, in which noise averages out, is
+/// compared with the rms gradient of all nodes.
+void warn_of_reference_gradient(Reconstruction& result) {
+  constexpr double largest_ratio = 0.4;
+  Vec2d sum;
+  double squares = 0;
+  std::size_t inside = 0, valid = 0;
+  for (std::size_t i = 0; i < result.gradient.size(); ++i) {
+    Vec2d const gradient = result.gradient[i];
+    if (!std::isfinite(gradient.x)) continue;
+    squares += dot(gradient, gradient);
+    ++valid;
+    if (result.reference[i] == 0) continue;
+    sum = sum + gradient;
+    ++inside;
+  }
+  if (inside == 0 || !(squares > 0)) return;
+  double const ratio = length(sum) / static_cast<double>(inside) / std::sqrt(squares / static_cast<double>(valid));
+  if (ratio < largest_ratio) return;
+  result.warnings.push_back(
+      fmt::format("the mean gradient in the reference region is {:.0f} % of the rms gradient of all vectors: the flow "
+                  "reaches into the region, so that the density has an offset; choose a side or a box outside the flow",
+                  100 * ratio));
+}
+
 /// Integrates a mean gradient with the reference density, and propagates the uncertainty of the vectors.
 /// @param result  with overlap and reference_density
 Reconstruction integrate_plane(Reconstruction result, density::GradientMap const& map, Setup const& setup,
@@ -136,6 +161,7 @@ Reconstruction integrate_plane(Reconstruction result, density::GradientMap const
   for (int const label : find_regions(map).label) result.region.push_back(label);
   for (std::uint8_t const is_reference : integrator.reference_nodes()) result.reference.push_back(is_reference);
   warn_of_regions(result, integrator.regions());
+  warn_of_reference_gradient(result);
 
   result.density = integrator.integrate(map.gradient);
   DensityFilter filter;

@@ -96,6 +96,10 @@ TEST_F(ReconstructedDensity, IsTheMeanDensityOfABlob) {
   EXPECT_NEAR(result["density_kg_m3"]["largest"].get<double>(), 1.2 + 0.94 * excess, 0.04 * excess);
   EXPECT_GT(result["sigma_kg_m3"]["median"].get<double>(), 0.0);
   EXPECT_TRUE(std::filesystem::exists(in("density.png")));
+  EXPECT_THAT(result["warnings"].dump(), testing::Not(testing::HasSubstr("reaches into the region")));
+  auto const inside = reconstruct({"--reference", "1,-1,2,1"});
+  EXPECT_THAT(inside["warnings"].dump(), testing::HasSubstr("reaches into the region"))
+      << "the gradient is largest there";
 }
 
 // Poisson integration without weights and the least squares differ only by their treatment of noise.
