@@ -115,14 +115,18 @@ class ProgramFixture : public testing::Test {
   }
 
   /// Expects the command to fail with this exit code and a message that contains each of these texts, with an empty
-  /// stdout and without any change of a file.
+  /// stdout (with --json: its errors) and without any change of a file.
   void expect_refused(std::vector<std::string> const& arguments, int code,
                       std::vector<std::string> const& pieces) const {
     auto const before = everything();
     Outcome const outcome = gladstone(arguments);
     EXPECT_EQ(outcome.exit_code, code) << outcome.err << " (signal " << outcome.signal << ')';
     for (auto const& piece : pieces) EXPECT_THAT(outcome.err, testing::HasSubstr(piece));
-    EXPECT_EQ(outcome.out, "");
+    if (std::find(arguments.begin(), arguments.end(), "--json") == arguments.end()) {
+      EXPECT_EQ(outcome.out, "");
+    } else {
+      EXPECT_TRUE(nlohmann::json::parse(outcome.out, nullptr, false).contains("errors")) << outcome.out;
+    }
     EXPECT_TRUE(everything() == before) << "files changed: " << testing::PrintToString(names());
   }
   /// Expects the rendering of this setup text to be rejected as invalid input.
