@@ -114,6 +114,7 @@ DotFit fit_overlapping_dots(std::span<FitPixel const> pixels, std::span<Gaussian
   if (most_additions == 0 || !std::isfinite(first.cost)) return first;
   std::vector<FitPixel> const tolerant = with_mismatch(pixels, first, model.mismatch);
   DotFit best = model.mismatch > 0 ? plain_fit(tolerant, first.dots, model) : first;
+  if (!std::isfinite(best.cost)) return first;  // a fit that failed has no residuals
   int added = 0;
   for (; added < most_additions; ++added) {
     // Without a significant residual there is nothing to add.
