@@ -110,13 +110,11 @@ TEST(SequenceStatistics, AreThoseOfMeasuredVectors) {
   double const n = static_cast<double>(used.size());
   Vec2d mean;
   for (Vec2d const& d : used) mean += (1 / n) * d;
-  double uu = 0, uv = 0, u4 = 0, u2v2 = 0;
+  double uu = 0, uv = 0;
   for (Vec2d const& d : used) {
     double const a = d.x - mean.x, b = d.y - mean.y;
     uu += a * a;
     uv += a * b;
-    u4 += a * a * a * a;
-    u2v2 += a * a * b * b;
   }
   EXPECT_EQ(m.samples, 8u);
   EXPECT_EQ(m.lags, 3u);
