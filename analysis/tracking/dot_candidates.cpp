@@ -113,6 +113,7 @@ double estimate_dot_sigma(Image<double> const& above) {
   if (!(one > 0)) return 0.75;
   // A second value near or below zero belongs to dots of a pixel.
   double const ratio = std::log(one / std::max(two, 1e-3 * one));
+  if (!(ratio > 0)) return 0.75;  // noise alone
   return std::clamp(std::sqrt(0.75 / ratio), 0.3, 10.0);
 }
 
