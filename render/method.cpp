@@ -38,11 +38,11 @@ FocusedDots require_focused_dots(Scene const& scene) {
                                        std::string(to_string(table_state(scene))) + "; use \"auto\" or \"rays\"");
 }
 
-DotPattern select_dots(DotPattern const& all, std::vector<std::size_t> const& numbers) {
+DotPattern select_dots(DotPattern const& all, std::vector<std::size_t> const& indices) {
   DotPattern some;
   some.half_size = all.half_size;
   some.shape = all.shape;
-  for (std::size_t const i : numbers) {
+  for (std::size_t const i : indices) {
     some.centre.push_back(all.centre[i]);
     if (!all.radiance.empty()) some.radiance.push_back(all.radiance[i]);
   }

@@ -15,14 +15,15 @@ RenderMethod resolve_render_method(Scene const& scene);
 /// Returns the name of the method in files: "focused_dots", "formula" or "rays" (also for `automatic`).
 char const* to_string(RenderMethod method);
 
+/// Returns the scene as the fast renderer requires it.
 /// @throws DataError if the scene does not meet the conditions of "focused_dots"
 FocusedDots require_focused_dots(Scene const& scene);
 
-/// Selects some dots of a pattern.
-/// @param numbers  their indices
-DotPattern select_dots(DotPattern const& all, std::vector<std::size_t> const& numbers);
+/// Returns the dots of a pattern that have the given indices.
+DotPattern select_dots(DotPattern const& all, std::vector<std::size_t> const& indices);
 
-/// Copies a scene with other, bright dots and the given number of rays per dot (maximum if chosen per dot).
+/// Returns a copy of a scene with other, bright dots and the given number of rays per dot (maximum if it is chosen per
+/// dot).
 Scene with_bright_dots(Scene const& scene, DotPattern dots, std::uint64_t rays);
 
 }  // namespace gladstone

@@ -5,7 +5,6 @@
 #include <optional>
 #include <utility>
 
-#include "render/focused_dots/focused_dots_renderer.h"
 #include "render/focused_dots/table_error.h"
 #include "render/method.h"
 #include "render/rays/ray_planning.h"
@@ -17,9 +16,7 @@ namespace gladstone {
 
 IntegrationStep choose_step(Scene const& scene) {
   if (!scene.second_medium) return determine_step_by_tracing(scene);
-  Scene first = scene;
-  first.second_medium.reset();
-  IntegrationStep const a = choose_step(first), b = choose_step(select_second_pulse(scene));
+  IntegrationStep const a = choose_step(select_first_pulse(scene)), b = choose_step(select_second_pulse(scene));
   IntegrationStep plan = b.step_mm < a.step_mm ? b : a;
   plan.largest_shift = std::max(a.largest_shift, b.largest_shift);
   return plan;
@@ -113,9 +110,7 @@ RayBudget plan_table_or_rays(Scene const& scene) {
 
 RayBudget choose_ray_budget(Scene const& scene) {
   if (scene.second_medium) {  // use the larger number of rays of both media
-    Scene first = scene;
-    first.second_medium.reset();
-    RayBudget const a = choose_ray_budget(first), b = choose_ray_budget(select_second_pulse(scene));
+    RayBudget const a = choose_ray_budget(select_first_pulse(scene)), b = choose_ray_budget(select_second_pulse(scene));
     return b.rays > a.rays ? b : a;
   }
   if (resolve_render_method(scene) == RenderMethod::formula) {  // no rays are traced; the recorded number is one

@@ -1,11 +1,9 @@
 #include "render/render.h"
 
 #include <algorithm>
-#include <functional>
-#include <numeric>
 #include <utility>
 
-#include "render/base/error.h"
+#include "render/base/contracts.h"
 #include "render/focused_dots/focused_dots_renderer.h"
 #include "render/ideal_images/ideal_images.h"
 #include "render/method.h"
@@ -13,22 +11,17 @@
 #include "render/rays/particles_in_view.h"
 #include "render/rays/ray_planning.h"
 #include "render/rays/rays_renderer.h"
+#include "render/rays/trace_particles.h"
 #include "render/scene/two_media.h"
 
 namespace gladstone {
 namespace {
 
-/// Merges the rendering of some sources, rendered as bright dots, into that of all.
-void merge(Rendering& all, Rendering const& some, std::vector<std::size_t> const& numbers, Polarity polarity) {
-  for (std::size_t i = 0; i < numbers.size(); ++i) {
-    all.truth.copy(some.truth, i, numbers[i]);
-  }
+/// Merges the rendering of the fallback dots `all.left`, rendered as bright dots, into that of all dots.
+void merge(Rendering& all, Rendering const& some, Polarity polarity) {
+  for (std::size_t i = 0; i < all.left.size(); ++i) all.truth.copy(some.truth, i, all.left[i]);
   all.rays += some.rays;
-  for (std::size_t frame = 0; frame < all.statuses.size(); ++frame) {
-    for (std::size_t status = 0; status < ray_status_count; ++status) {
-      all.statuses[frame][status] += some.statuses[frame][status];
-    }
-  }
+  add_counts(all.statuses, some.statuses);
   // the light of dark dots is subtracted from the light of white paper
   double const sign = polarity == Polarity::dark ? -1 : 1;
   auto const add = [sign](Image<double>& to, Image<double> const& from) {
@@ -76,7 +69,7 @@ Rendering Device::render_near_view(Scene const& scene, Particles const& particle
   for (std::size_t i = 0; i < near.size(); ++i) {
     if (near[i] == 0) planned[i] = 0;
   }
-  rendering.rays = frame_count * std::accumulate(planned.begin(), planned.end(), std::int64_t{0});
+  count_rays(rendering);
   return rendering;
 }
 
@@ -94,22 +87,18 @@ Rendering Device::render_focused(Scene const& scene, DotPattern const& sources, 
   require_focused_dots(scene);
   Rendering all = focused_dots_->render(scene, sources, images, theory);
   if (all.left.empty()) return all;
-  std::vector<std::size_t> const left = all.left;
   RenderImages const lit = images == RenderImages::no ? RenderImages::no : RenderImages::yes;
   if (auto const light = std::exchange(all.in_place, nullptr)) all.light = light->to_host();
   Scene by_rays =
-      with_bright_dots(scene, select_dots(sources, left), std::max(scene.rays_per_dot, scene.rays_at_side_faces));
+      with_bright_dots(scene, select_dots(sources, all.left), std::max(scene.rays_per_dot, scene.rays_at_side_faces));
   if (!scene.adaptive_criteria && !scene.setup.render.rays_per_dot) {  // the ray budget did not include these dots
     by_rays.adaptive_criteria = determine_adaptive_criteria(scene);
     by_rays.rays_per_dot = max_rays_per_source(by_rays);
   }
   Rendering const rest = rays_->render(by_rays, by_rays.dots, lit, theory);
-  merge(all, rest, left, scene.setup.target.polarity);
+  merge(all, rest, scene.setup.target.polarity);
   all.pupil_margin = std::max(all.pupil_margin, rest.pupil_margin);
-  if (images == RenderImages::in_place) {
-    all.in_place = std::make_shared<HostLight const>(std::move(all.light));
-    all.light = {};
-  }
+  if (images == RenderImages::in_place) all.store_light_in_place();
   return all;
 }
 

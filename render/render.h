@@ -5,11 +5,11 @@
 
 #include "render/scene/renderer.h"
 
-/// The way from a scene to its light and its true displacements.
+/// Rendering of a scene: light on the sensor and true displacements.
 namespace gladstone {
 
-/// Device that renders every scene by its method. Dots that the fast renderer rejects, at a side face of the medium or
-/// with lost rays, are rendered by individual rays, with a separate number of rays.
+/// Device that renders each scene by the method of its setup. Dots that the fast renderer rejects, at a side face of
+/// the medium or with lost rays, are rendered by individual rays, with a separate number of rays.
 class Device : public Renderer {
  public:
   /// @param focused_dots  fast renderer of this device
@@ -29,7 +29,7 @@ class Device : public Renderer {
   std::unique_ptr<Renderer> focused_dots_, rays_;
 };
 
-/// Returns the CPU's cores as a device.
+/// Returns a device that renders on all cores of the CPU.
 Device cpu();
 
 /// Renders both frames of a scene (build_scene()): its dots, or the particles of a PIV scene.

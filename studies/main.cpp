@@ -107,13 +107,13 @@ int refuse_arguments(std::vector<std::string> const& unknown, CLI::App const* co
   return bad_input;
 }
 
-/// Returns true if the arguments contain --json, also if they cannot be parsed.
+/// Returns true if the arguments contain --json, for command lines that are not parsed to the end.
 bool wants_json(int argc, char** argv) {
   return std::find(argv + 1, argv + argc, std::string_view("--json")) != argv + argc;
 }
 
-int run(int argc, char** argv) {
-  GlobalOptions options;
+/// Parses the arguments into `options` and runs the command. @return exit code
+int run(int argc, char** argv, GlobalOptions& options) {
   CLI::App app{"gladstone: ray-traced synthetic BOS images, correlation and error analysis"};
   app.set_version_flag("--version", version_text(), "Print the version and the backends compiled in");
   app.fallthrough();
@@ -140,7 +140,7 @@ int run(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (CLI::CallForVersion const&) {
-    options.json = wants_json(argc, argv);  // parsing stops there, but --json may come before or after it
+    options.json = wants_json(argc, argv);  // parsing ends at --version, but --json may be before or after it
     print_result(options, version_json(), version_text());
     return ok;
   } catch (CLI::ParseError const& error) {
@@ -162,14 +162,16 @@ int run(int argc, char** argv) {
   return bad_input;
 }
 
+/// Runs the program and reports exceptions. @return exit code
 int guarded(int argc, char** argv) {
+  GlobalOptions options;
   auto const fail = [&](std::exception const& error, std::string const& message, int code) {
     print_error(message);
-    if (wants_json(argc, argv)) fmt::print("{}\n", json_text(error_json(error, code)));
+    if (options.json) fmt::print("{}\n", json_text(error_json(error, code)));
     return code;
   };
   try {
-    return run(argc, argv);
+    return run(argc, argv, options);
   } catch (SetupError const& error) {
     return fail(error, error.what(), bad_input);
   } catch (Interrupted const& error) {

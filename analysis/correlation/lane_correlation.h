@@ -82,8 +82,8 @@ using MakePlane = void (*)(LaneCorrelation& work, LanePlane& plane);
 struct PlaneMethod {
   MakePlane make;
   bool with_margin = false;  ///< whether it reads the search range around the window
-  bool decreases_with_shift =
-      true;  ///< whether its planes decrease with the shift like the autocorrelation of the weights
+  /// Whether its planes decrease with the shift like the autocorrelation of the weights.
+  bool decreases_with_shift = true;
 };
 
 /// Returns the length of the transforms for the plane of a window without the search range around it.

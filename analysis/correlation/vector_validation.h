@@ -98,8 +98,8 @@ GLADSTONE_HD inline bool is_measured(GridVector const& vector) { return vector.r
 struct ValidationRule {
   double threshold = 2.0;   ///< largest normalised median residual [1]
   double epsilon_px = 0.1;  ///< noise level in the normalised median residual [px]
-  double reliable_peak_ratio =
-      2.0;  ///< peak ratio from which a vector may deviate from its neighbours [1], see has_reliable_correlation()
+  /// Peak ratio from which a vector may deviate from its neighbours [1], see has_reliable_correlation().
+  double reliable_peak_ratio = 2.0;
   double limit_px = std::numeric_limits<double>::infinity();  ///< largest displacement along either axis
   double least_peak_ratio = 0.0;   ///< lowest peak ratio of a vector, regardless of its neighbours [1]
   double least_correlation = 0.0;  ///< lowest correlation coefficient of its peak [1]
@@ -290,8 +290,8 @@ GLADSTONE_HD inline bool find_replacement(GridVector const* vectors, int i, int 
   auto const usable = [&](int k) { return is_valid_or_replaced(vectors[k].status); };
   Surroundings const around(vectors, i, columns, rows, usable);
   if (around.increment.count < fewest_neighbours) return false;
-  if (is_displacement_outlier(vectors, i, columns, rows, rule,
-                              usable)) {  // the predictor is wrong, and so are all peaks found with it
+  if (is_displacement_outlier(vectors, i, columns, rows, rule, usable)) {
+    // The predictor is wrong, and so are all peaks found with it.
     Neighbours<double> offset;
     Neighbours<double> const displacement = neighbours_of(
         i, columns, rows, [&](int k) { return vectors[k].displacement; }, usable, offset);
@@ -348,8 +348,7 @@ GLADSTONE_HD inline Vec2d smoothed(Vec2d before, Vec2d middle, Vec2d after, doub
 ///   their median. It becomes invalid if fewer than three neighbours are sound, the replacement exceeds the limit, or
 ///   the rule does not allow replacements.
 /// - Vectors with fewer than three neighbours and those accepted by has_reliable_correlation() remain unchanged: the
-/// median would
-///   clip the maxima of structures as fine as the grid.
+///   median would clip the maxima of structures as fine as the grid.
 void validate_vectors(std::span<GridVector> vectors, int columns, ValidationRule const& rule);
 
 /// Returns the displacement at every node, for a predictor. Masked and invalid nodes are filled with the median of

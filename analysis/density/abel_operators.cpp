@@ -1,23 +1,16 @@
 #include "analysis/density/abel_operators.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "analysis/density/lagrange_cubics.h"
 #include "render/base/contracts.h"
 #include "render/base/gauss_legendre.h"
 #include "render/base/units.h"
 
 namespace gladstone::density {
 namespace {
-
-/// Values (or derivatives) at t in [0, 1] of the Lagrange cubics of the nodes -1, 0, 1, 2.
-std::array<double, 4> lagrange_cubics(double t) {
-  return {-t * (t - 1) * (t - 2) / 6, (t + 1) * (t - 1) * (t - 2) / 2, -(t + 1) * t * (t - 2) / 2,
-          (t + 1) * t * (t - 1) / 6};
-}
-std::array<double, 4> lagrange_cubic_slopes(double t) {
-  return {-(3 * t * t - 6 * t + 2) / 6, (3 * t * t - 4 * t - 1) / 2, -(3 * t * t - 2 * t - 2) / 2, (3 * t * t - 1) / 6};
-}
 
 /// Calls visit(x, weight) for the quadrature of integral h(x) dx / sqrt(x^2 - r^2) over [low, high], r <= low, in units
 /// of the spacing. The substitution x^2 = r^2 + y^2 turns dx / sqrt(x^2 - r^2) into dy / x, which is smooth.
@@ -36,7 +29,7 @@ void integrate_abel_kernel(GaussLegendre const& rule, double r, double low, doub
 Eigen::MatrixXd make_three_point_inversion(int n) {
   GLADSTONE_EXPECTS(n >= 3);
   Eigen::MatrixXd d = Eigen::MatrixXd::Zero(n, n);
-  // Adds factor times P_j, which is even about the axis and zero beyond the last radius
+  // Adds the term factor * P_j to row i; P is even about the axis and zero beyond the last radius
   auto const add = [&](int i, int j, double factor) {
     if (std::abs(j) < n) d(i, std::abs(j)) += factor;
   };

@@ -2,7 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -14,7 +15,7 @@
 namespace gladstone::density {
 namespace {
 
-/// Orthonormal cosine transform (DCT-II) of n values: row k holds the wave of k half periods.
+/// Orthonormal cosine transform (DCT-II) of n values: row k contains the wave of k half periods.
 Eigen::MatrixXd make_cosine_transform(int n) {
   Eigen::MatrixXd transform(n, n);
   for (int k = 0; k < n; ++k)
@@ -52,7 +53,7 @@ struct ApertureDeconvolution::Filter {
   std::vector<std::uint8_t> determined;
   HarmonicContinuation continuation;
   Eigen::MatrixXd along_x, along_y;  ///< cosine transforms
-  Eigen::MatrixXd gain;              ///< of every wave [columns, rows]
+  Eigen::MatrixXd gain;              ///< Wiener gain of every wave [columns, rows]
   double wiener_parameter = 0.0;
 };
 
@@ -60,9 +61,8 @@ ApertureDeconvolution::ApertureDeconvolution(PlaneGrid const& grid, std::span<st
                                              ApertureCone const& cone, double maximum_gain) {
   GLADSTONE_EXPECTS(determined.size() == grid.size());
   check_deconvolution(cone, maximum_gain);
-  bool any = false;
-  for (std::uint8_t d : determined) any = any || d != 0;
-  if (!any) throw DataError("density", "no node has a density; nothing can be deconvolved");
+  if (std::none_of(determined.begin(), determined.end(), [](std::uint8_t d) { return d != 0; }))
+    throw DataError("density", "no node has a density; nothing can be deconvolved");
 
   auto filter = std::make_unique<Filter>(grid, determined);
   double const root = maximum_gain - std::sqrt(maximum_gain * maximum_gain - 1.0);

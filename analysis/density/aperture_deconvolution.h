@@ -12,12 +12,12 @@ namespace gladstone::density {
 
 /// Linear filter that compensates the averaging over the aperture cone in an integrated density, with a Wiener gain
 ///   G(q) = H (1 + nu) / (H^2 + nu)
-/// of the transfer function H of compute_aperture_transfer(). G(0) = 1, the largest gain is (1 + nu)/(2 sqrt(nu)), and
-/// waves near and beyond the first zero of H stay lost. Applied by a cosine transform, which continues the density by
-/// reflection at the borders; holes are bridged by a harmonic function (Laplace equation). Within one cone diameter of
-/// borders and holes the result is therefore less accurate.
+/// with the transfer function H of compute_aperture_transfer(). G(0) = 1, the largest gain is (1 + nu)/(2 sqrt(nu)),
+/// and waves near and beyond the first zero of H are not restored. The filter is applied by a cosine transform, which
+/// continues the density by reflection at the borders; holes are bridged by a harmonic function (Laplace equation).
+/// Within one cone diameter of borders and holes the result is therefore less accurate.
 ///
-/// The deconvolution amplifies noise: pass apply() as the filter of propagate_uncertainty() for the sigma it costs.
+/// The deconvolution amplifies noise; for its uncertainty, pass apply() as the filter of propagate_uncertainty().
 class ApertureDeconvolution {
  public:
   /// @param determined    nodes with a density [grid.size()]: 1 or 0
@@ -36,8 +36,8 @@ class ApertureDeconvolution {
   std::vector<double> apply(std::span<double const> density) const;
 
   double wiener_parameter() const;  ///< nu [1]
-  /// Amplification of white noise, rms of the gain over all waves of the grid [1]. An integrated density has mostly
-  /// long-waved noise, which is amplified less.
+  /// Amplification of white noise, rms of the gain over all waves of the grid [1]. The noise of an integrated density
+  /// consists mostly of long waves, which are amplified less.
   double white_noise_gain() const;
 
  private:

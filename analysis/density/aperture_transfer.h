@@ -13,16 +13,17 @@ struct ApertureCone {
   double diameter() const { return pupil_diameter * target_distance / (lens_distance + target_distance); }
 };
 
-/// Transfer function of the mean over the aperture cone for a density wave across the line of sight,
+/// Transfer function of the averaging over the aperture cone for a density wave perpendicular to the line of sight,
 ///   H = integral s H_c ds / integral s ds,   H_c = 2 J1(pi D_c(s) q) / (pi D_c(s) q),   D_c(s) = d_A s / (Z_A + Z_D),
-/// over the distances s of the medium from the dots; each slice acts with the lever s. Valid for a uniformly lit
-/// circular pupil, focus on the dots and deflections that hardly change the cone. Confirmed against ray tracing to
-/// 2e-5.
+/// integrated over the distances s of the medium from the dots: a deflection at s displaces the dot in proportion to s.
+/// Valid for a uniformly lit circular pupil, focus on the dots and deflections that hardly change the cone. Agrees with
+/// ray tracing to within 2e-5.
 /// @param wavenumber  q = 1/wavelength [1/m]
 /// @return            amplitude relative to infinitely thin rays [1]; negative beyond the first zero (D_c q = 1.22)
 double compute_aperture_transfer(ApertureCone const& cone, double wavenumber);
 
-/// Shortest wavelength that a response passes with more than 1/sqrt(2), i.e. resolution by the -3 dB criterion [m].
+/// Shortest wavelength that cone and deconvolution together transmit with more than 1/sqrt(2): resolution by the -3 dB
+/// criterion [m].
 /// @param wiener_parameter  nu of ApertureDeconvolution; infinity: no deconvolution
 double find_resolved_wavelength(ApertureCone const& cone, double wiener_parameter);
 

@@ -29,8 +29,6 @@ void check_axisymmetric_settings(GradientMap const& map, AxisymmetricSettings co
     problems.push_back({"lambda", fmt::format("expected a positive number, got {}", settings.lambda)});
   if (!std::isfinite(settings.ambient_density))
     problems.push_back({"ambient_density", fmt::format("expected a finite density, got {}", settings.ambient_density)});
-  if (!(settings.ambient_sigma >= 0.0))
-    problems.push_back({"ambient_sigma", fmt::format("expected 0 or more, got {}", settings.ambient_sigma)});
   if (!problems.empty()) throw SetupError(problems);
   if (settings.method == AbelMethod::tikhonov && settings.choice == RegularizationChoice::discrepancy &&
       map.sigma.empty())
@@ -47,7 +45,7 @@ double determine_lambda(Eigen::MatrixXd const& projection, std::vector<RadialPro
   auto const rows = static_cast<int>(profiles.size()), count = std::min(rows, regularization_rows);
   for (int k = 0; k < count; ++k) {
     RadialProfile const& profile = profiles[static_cast<std::size_t>((2 * k + 1) * rows / (2 * count))];
-    if (profile.gradient.tail(profile.gradient.size() - 1).array().isFinite().any()) chosen.push_back(profile);
+    if (profile.is_measured()) chosen.push_back(profile);
   }
   if (chosen.empty())
     throw DataError("density gradient", "no row has valid vectors; check the mask and the axis of symmetry");
@@ -76,7 +74,18 @@ Eigen::VectorXd propagate_row(Eigen::MatrixXd const& weights, GradientMap const&
   return variance.cwiseMax(0.0).cwiseSqrt();
 }
 
-/// Sums of squares of the gradient in all radii and in the outer 5 %, as a ratio of rms values.
+/// Returns the rms of the even part of the gradient about the axis, relative to that of the odd part; NaN if the latter
+/// is 0.
+double compute_asymmetry(std::vector<RadialProfile> const& profiles) {
+  double odd = 0.0, even = 0.0;
+  for (RadialProfile const& profile : profiles) {
+    odd += profile.odd_square;
+    even += profile.even_square;
+  }
+  return odd > 0.0 ? std::sqrt(even / odd) : not_a_number;
+}
+
+/// Returns the rms of the gradient in the outer 5 % of the radii, relative to that of all radii.
 double compute_border_gradient(std::vector<RadialProfile> const& profiles) {
   double all = 0.0, border = 0.0, count_all = 0.0, count_border = 0.0;
   for (RadialProfile const& profile : profiles)
@@ -103,7 +112,7 @@ AxisymmetricDensity invert_axisymmetric(GradientMap const& projected, Axisymmetr
     return invert_axisymmetric(transpose_map(projected), vertical);
   }
   check_axisymmetric_settings(projected, settings);
-  WindowCorrelation const checked(projected.grid.columns, projected.grid.rows, settings.overlap);
+  check_window_overlap(projected.grid.columns, projected.grid.rows, settings.overlap);
 
   // Fold all rows about the axis
   AxisymmetricDensity result;
@@ -111,19 +120,14 @@ AxisymmetricDensity invert_axisymmetric(GradientMap const& projected, Axisymmetr
                               : find_symmetry_axis(projected, AxisDirection::vertical, settings.overlap);
   int const radii = count_radii(projected.grid, result.axis.position), rows = projected.grid.rows;
   if (radii < 4)
-    throw DataError("density gradient", fmt::format("{} radii beside the axis are too few for an Abel inversion (at "
-                                                    "least 4); use smaller windows or more overlap",
+    throw DataError("density gradient", fmt::format("{} radii from the axis to the border are too few for an Abel "
+                                                    "inversion (at least 4); use smaller windows or more overlap",
                                                     radii));
   std::vector<RadialProfile> profiles(static_cast<std::size_t>(rows));
   parallel_for(profiles.size(), [&](std::size_t row) {
     profiles[row] = fold_row(projected, static_cast<int>(row), result.axis.position);
   });
-  double odd = 0.0, even = 0.0;
-  for (RadialProfile const& profile : profiles) {
-    odd += profile.odd_square;
-    even += profile.even_square;
-  }
-  result.asymmetry = odd > 0.0 ? std::sqrt(even / odd) : not_a_number;
+  result.asymmetry = compute_asymmetry(profiles);
   result.border_gradient = compute_border_gradient(profiles);
 
   // Invert row by row
@@ -136,19 +140,17 @@ AxisymmetricDensity invert_axisymmetric(GradientMap const& projected, Axisymmetr
   result.sigma.assign(result.grid.size(), not_a_number);
   parallel_for(profiles.size(), [&](std::size_t r) {
     RadialProfile const& profile = profiles[r];
+    if (!profile.is_measured()) return;
     int const row = static_cast<int>(r), first = is_direct ? find_first_radius(profile) : 0;
-    bool const is_measured = profile.gradient.tail(radii - 1).array().isFinite().any();
-    if (!is_measured) return;
-    Eigen::VectorXd const gradient = profile.gradient.array().isFinite().select(profile.gradient.array(), 0.0);
     Eigen::MatrixXd const inversion =
         is_direct ? direct : make_regularized_inversion(projection, profile, result.lambda);
-    Eigen::VectorXd const excess = inversion * gradient;
+    Eigen::VectorXd const excess = inversion * profile.filled_gradient();
     Eigen::VectorXd const sigma = projected.sigma.empty()
                                       ? Eigen::VectorXd::Constant(radii, not_a_number)
                                       : propagate_row(inversion * profile.fold, projected, row, settings.overlap.x);
     for (int i = first; i < radii; ++i) {
       result.density[result.grid.index(i, row)] = settings.ambient_density + excess[i];
-      result.sigma[result.grid.index(i, row)] = std::hypot(sigma[i], settings.ambient_sigma);
+      result.sigma[result.grid.index(i, row)] = sigma[i];
     }
   });
   return result;

@@ -25,22 +25,22 @@ struct AxisymmetricSettings {
   double lambda = 0.0;           ///< regularisation parameter for RegularizationChoice::given [1]
   WindowOverlap overlap;         ///< of the interrogation windows, for sigma
   double ambient_density = 0.0;  ///< density beyond the last radius: the gauge [kg/m^3]
-  double ambient_sigma = 0.0;    ///< its standard uncertainty [kg/m^3]
 };
 
 /// Density in a half plane through the axis of symmetry.
 struct AxisymmetricDensity {
   PlaneGrid grid;               ///< x: radius from 0, y: position along the axis [m]
   std::vector<double> density;  ///< [kg/m^3, grid.size()]; NaN: not determined
-  /// Propagated standard uncertainty [kg/m^3, grid.size()]; NaN without sigma. It includes neither the position of the
-  /// axis nor the smoothing of the regularisation.
+  /// Standard uncertainty propagated from the gradient [kg/m^3, grid.size()]; NaN: gradient without sigma. It excludes
+  /// the uncertainties of the axis and of the ambient density, and the smoothing by the regularisation.
   std::vector<double> sigma;
   SymmetryAxis axis;    ///< sigma is NaN if the axis was given
   double lambda = 0.0;  ///< regularisation parameter; 0: none
-  /// Even over odd part of the gradient about the axis, rms [1]: 0 for an axisymmetric flow without noise.
+  /// Rms of the even part of the gradient about the axis over that of the odd part [1]: 0 for an axisymmetric flow
+  /// without noise.
   double asymmetry = 0.0;
-  /// Gradient in the outer 5 % of the radii relative to that of all radii, rms [1]. If it is not small, the flow
-  /// extends beyond the image, and the density is biased.
+  /// Rms of the gradient in the outer 5 % of the radii over that of all radii [1]. If it is not small, the flow extends
+  /// beyond the image, and the density is biased.
   double border_gradient = 0.0;
 };
 

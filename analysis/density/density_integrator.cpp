@@ -19,8 +19,8 @@ namespace {
 
 constexpr int not_unknown = -1;
 
-/// Checks the reference against the map and counts the reference nodes of every region.
-void count_references(GradientMap const& map, ReferenceDensity const& reference, RegionMap& regions) {
+/// Checks the reference against the map and returns the regions with the number of their reference nodes.
+RegionMap count_references(GradientMap const& map, ReferenceDensity const& reference, RegionMap regions) {
   if (reference.value.size() != map.grid.size())
     throw SetupError(
         {SetupProblem{"reference", fmt::format("{} reference values for {} nodes; give one per node, NaN elsewhere",
@@ -44,6 +44,7 @@ void count_references(GradientMap const& map, ReferenceDensity const& reference,
                     fmt::format("all {} nodes of the reference region are masked or invalid (no node fixes "
                                 "the density); move the reference region or the mask",
                                 given));
+  return regions;
 }
 
 void reject_unreferenced(RegionMap const& regions) {
@@ -73,7 +74,7 @@ struct DensityIntegrator::System {
   std::vector<double> weight;               ///< of every difference
   std::optional<NormalEquations> equations;
 
-  /// Adds A^T W r to the right-hand side of the unknowns, with r the right-hand side of one difference.
+  /// Adds the contribution of difference k, of value r, to the right-hand side A^T W r of the normal equations.
   void add_difference(Eigen::VectorXd& right_side, std::size_t k, double value) const {
     int const from = unknown[differences[k].from], to = unknown[differences[k].to];
     if (from != not_unknown) right_side[from] -= weight[k] * value;
@@ -82,8 +83,7 @@ struct DensityIntegrator::System {
 
   double line_integral(LineDifference const& d, std::span<Vec2d const> gradient) const {
     double sum = 0.0;
-    for (int t = 0; t < d.terms; ++t) {
-      auto const i = static_cast<std::size_t>(t);
+    for (std::size_t i = 0; i < d.terms; ++i) {
       Vec2d const& g = gradient[d.node[i]];
       sum += d.factor[i] * (d.axis == Axis::x ? g.x : g.y);
     }
@@ -135,8 +135,7 @@ DensityIntegrator::DensityIntegrator(GradientMap const& map, ReferenceDensity co
   auto system = std::make_unique<System>();
   system->grid = map.grid;
   system->reference = reference;
-  system->regions = find_regions(map);
-  count_references(map, reference, system->regions);
+  system->regions = count_references(map, reference, find_regions(map));
   if (settings.unreferenced == UnreferencedRegions::error) reject_unreferenced(system->regions);
 
   // Number the unknowns
@@ -175,6 +174,7 @@ DensityIntegrator& DensityIntegrator::operator=(DensityIntegrator&&) noexcept = 
 
 PlaneGrid const& DensityIntegrator::grid() const { return system_->grid; }
 std::vector<Region> const& DensityIntegrator::regions() const { return system_->regions.regions; }
+std::vector<int> const& DensityIntegrator::region_labels() const { return system_->regions.label; }
 std::vector<std::uint8_t> const& DensityIntegrator::determined() const { return system_->determined; }
 std::vector<std::uint8_t> const& DensityIntegrator::reference_nodes() const { return system_->is_reference; }
 std::size_t DensityIntegrator::unknowns() const { return system_->node.size(); }
@@ -200,8 +200,7 @@ std::vector<Vec2d> DensityIntegrator::compute_sensitivity(std::size_t node) cons
     LineDifference const& d = s.differences[k];
     int const from = s.unknown[d.from], to = s.unknown[d.to];
     double const value = s.weight[k] * ((to != not_unknown ? y[to] : 0.0) - (from != not_unknown ? y[from] : 0.0));
-    for (int t = 0; t < d.terms; ++t) {
-      auto const i = static_cast<std::size_t>(t);
+    for (std::size_t i = 0; i < d.terms; ++i) {
       Vec2d& target = sensitivity[d.node[i]];
       (d.axis == Axis::x ? target.x : target.y) += d.factor[i] * value;
     }

@@ -59,6 +59,7 @@ class DensityIntegrator {
 
   PlaneGrid const& grid() const;
   std::vector<Region> const& regions() const;
+  std::vector<int> const& region_labels() const;  ///< index of the node's region; -1: invalid node [grid.size()]
   /// Nodes whose density is determined, including reference nodes [grid.size()]; 1 or 0.
   std::vector<std::uint8_t> const& determined() const;
   std::vector<std::uint8_t> const& reference_nodes() const;

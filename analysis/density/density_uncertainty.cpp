@@ -12,7 +12,7 @@
 namespace gladstone::density {
 namespace {
 
-/// Number of samples that are accumulated into one partial sum: sums do not depend on the number of threads.
+/// Number of samples in one partial sum; a fixed number makes the total independent of the number of threads.
 constexpr std::size_t samples_per_sum = 16;
 
 double square_sum(std::span<double const> values) {
@@ -33,7 +33,7 @@ double compute_node_variance(DensityIntegrator const& integrator, WindowCorrelat
   return square_sum(correlation.correlate_transposed(x)) + square_sum(correlation.correlate_transposed(y));
 }
 
-/// Mean square over random samples of the density's error.
+/// Estimates the variance of the density at every node by the mean square of its error over random samples.
 std::vector<double> estimate_variances(DensityIntegrator const& integrator, WindowCorrelation const& correlation,
                                        std::span<Vec2d const> sigma, PropagationSettings const& settings,
                                        DensityFilter const& filter) {

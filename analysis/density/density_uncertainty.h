@@ -12,9 +12,9 @@
 namespace gladstone::density {
 
 struct PropagationSettings {
-  /// Largest number of determined nodes for which every row of the integration is computed exactly.
+  /// Largest number of unknown nodes up to which the uncertainty is computed exactly.
   std::size_t exact_limit = 4'000;
-  std::size_t samples = 400;  ///< random samples above that limit
+  std::size_t samples = 400;  ///< number of random samples above that limit
   std::uint64_t seed = 1;
 };
 
@@ -31,10 +31,10 @@ using DensityFilter = std::function<std::vector<double>(std::span<double const>)
 /// Propagates the covariance of the vectors to the density: the diagonal of P C P^T, with P = N^-1 A^T W B the
 /// integration and C_ij = sigma_i sigma_j r_ij the covariance of the gradients with r of WindowCorrelation. Linear
 /// propagation as in Rajendran, Zhang, Bhattacharya, Bane & Vlachos, Meas. Sci. Technol. 31 (2020) 054002, whose code
-/// assumes independent vectors. Up to `exact_limit` nodes each row of P is solved for; for larger grids, and with a
-/// filter, the diagonal is estimated from random errors with covariance C, and the result states the standard error.
+/// assumes independent vectors. Up to `exact_limit` nodes each row of P is computed; for larger grids, and with a
+/// filter, the diagonal is estimated from random errors with covariance C, and the result contains its standard error.
 /// The common uncertainty of the reference density is added in quadrature: it shifts each region as a whole.
-/// @param sigma      of the gradient, in its unit [grid.size()], positive at valid nodes
+/// @param sigma      standard uncertainty of the gradient, in its unit [grid.size()], positive at valid nodes
 /// @param reference_sigma  unit of the density; see ReferenceDensity::sigma
 /// @throws SetupError  if the overlap does not fit the grid, or there are no samples
 /// @throws DataError   if sigma is empty: the vectors have no uncertainty

@@ -22,7 +22,7 @@ class HarmonicContinuation {
   Eigen::VectorXd fill(std::span<double const> density) const;
 
  private:
-  /// Neighbour with a density of a node in a hole.
+  /// Link between a node in a hole and a neighbour that has a density.
   struct Link {
     std::size_t hole, node;
     double weight;  ///< [1/m^2]

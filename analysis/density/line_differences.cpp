@@ -18,8 +18,8 @@ LineDifference make_difference(GradientMap const& map, int column, int row, Step
   d.from = node_at(0);
   d.to = node_at(1);
   auto const add = [&](int k, double factor) {
-    d.node[static_cast<std::size_t>(d.terms)] = node_at(k);
-    d.factor[static_cast<std::size_t>(d.terms++)] = factor * h;
+    d.node[d.terms] = node_at(k);
+    d.factor[d.terms++] = factor * h;
   };
   bool const before = rule == EdgeRule::four_point && is_valid(-1);
   bool const after = rule == EdgeRule::four_point && is_valid(2);
@@ -64,8 +64,7 @@ std::vector<LineDifference> make_line_differences(GradientMap const& map, EdgeRu
 
 double compute_variance(LineDifference const& difference, std::vector<Vec2d> const& sigma) {
   double sum = 0.0;
-  for (int k = 0; k < difference.terms; ++k) {
-    auto const i = static_cast<std::size_t>(k);
+  for (std::size_t i = 0; i < difference.terms; ++i) {
     Vec2d const s = sigma.empty() ? Vec2d{1.0, 1.0} : sigma[difference.node[i]];
     double const term = difference.factor[i] * (difference.axis == Axis::x ? s.x : s.y);
     sum += term * term;

@@ -12,9 +12,8 @@ namespace gladstone::density {
 enum class EdgeRule {
   /// (g0 + g1)/2: Southwell, J. Opt. Soc. Am. 70 (1980) 998; error h^3 g''/12 per edge.
   trapezoid,
-  /// (-g-1 + 13 g0 + 13 g1 - g2)/24, the integral of the cubic through four nodes, error 11 h^5 g''''/720 per edge;
-  /// next
-  /// to an invalid node the parabola through three, (5 g0 + 8 g1 - g2)/12, and the trapezoid where only two are valid.
+  /// Integral of the cubic through four nodes, (-g-1 + 13 g0 + 13 g1 - g2)/24; error 11 h^5 g''''/720 per edge. Next
+  /// to one invalid node the parabola through three, (5 g0 + 8 g1 - g2)/12; between two, the trapezoid.
   four_point
 };
 
@@ -24,7 +23,7 @@ enum class Axis { x, y };
 struct LineDifference {
   std::size_t from = 0, to = 0;  ///< neighbouring nodes, `to` at the larger coordinate
   Axis axis = Axis::x;
-  int terms = 0;  ///< number of gradients, 2 to 4
+  std::size_t terms = 0;  ///< number of gradients, 2 to 4
   std::array<std::size_t, 4> node{};
   std::array<double, 4> factor{};  ///< [m]
   int cells = 0;                   ///< number of grid cells with four valid nodes on both sides of the edge, 0 to 2

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <optional>
 
 #include "analysis/density/gradient_map.h"
 #include "analysis/vectors/displacement_field.h"

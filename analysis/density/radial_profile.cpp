@@ -1,35 +1,36 @@
 #include "analysis/density/radial_profile.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <utility>
 #include <vector>
 
+#include "analysis/density/lagrange_cubics.h"
 #include "render/base/not_a_number.h"
 
 namespace gladstone::density {
 namespace {
 
-using Weights = std::vector<std::pair<int, double>>;  ///< columns and their factors
+using Weights = std::vector<std::pair<int, double>>;  ///< columns and their weights
 
 /// Interpolation weights at a position in columns; nullopt if a neighbouring node is invalid or outside.
 std::optional<Weights> interpolate_row(GradientMap const& map, int row, double position) {
   double const nearest = std::round(position);
-  int const i = static_cast<int>(std::abs(position - nearest) < 1e-9 ? nearest : std::floor(position));
-  double const t = std::abs(position - nearest) < 1e-9 ? 0.0 : position - i;
+  bool const is_at_node = std::abs(position - nearest) < 1e-9;
+  int const i = static_cast<int>(is_at_node ? nearest : std::floor(position));
+  double const t = is_at_node ? 0.0 : position - i;
   auto const is_valid = [&](int column) { return map.is_valid(column, row); };
   if (!is_valid(i)) return std::nullopt;
   if (t == 0.0) return Weights{{i, 1.0}};
   if (!is_valid(i + 1)) return std::nullopt;
   if (!is_valid(i - 1) || !is_valid(i + 2)) return Weights{{i, 1.0 - t}, {i + 1, t}};
-  return Weights{{i - 1, -t * (t - 1) * (t - 2) / 6},
-                 {i, (t + 1) * (t - 1) * (t - 2) / 2},
-                 {i + 1, -(t + 1) * t * (t - 2) / 2},
-                 {i + 2, (t + 1) * t * (t - 1) / 6}};
+  std::array<double, 4> const cubic = lagrange_cubics(t);
+  return Weights{{i - 1, cubic[0]}, {i, cubic[1]}, {i + 1, cubic[2]}, {i + 2, cubic[3]}};
 }
 
-/// Value of one side of the axis and its variance.
+/// Gradient on one side of the axis and its variance.
 struct SideValue {
   double value = 0.0, variance = 0.0;
 };

@@ -13,6 +13,11 @@ struct RadialProfile {
   Eigen::MatrixXd fold;      ///< gradient = fold times the row's gradients [radii, columns]
   double odd_square = 0.0;   ///< sum of squares of the folded gradient, over radii with both sides
   double even_square = 0.0;  ///< sum of squares of the even part (g(axis + r) + g(axis - r))/2, over the same radii
+
+  /// Returns true if at least one radius besides the axis has a measured gradient.
+  bool is_measured() const { return gradient.tail(gradient.size() - 1).array().isFinite().any(); }
+  /// Returns the gradient with 0 at radii without a measurement [radii].
+  Eigen::VectorXd filled_gradient() const { return gradient.array().isFinite().select(gradient.array(), 0.0); }
 };
 
 /// Number of radii from the axis to the farther border of the grid.

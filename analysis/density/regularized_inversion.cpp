@@ -29,15 +29,17 @@ Eigen::VectorXd make_weights(RadialProfile const& profile) {
   return weights;
 }
 
-/// Weighted residuals of the rows for one lambda.
+/// Quality of the fit to one or several rows with one lambda.
 struct FitQuality {
-  double chi_square = 0.0, effective_parameters = 0.0, count = 0.0;
+  double chi_square = 0.0;            ///< sum of squares of the weighted residuals
+  double effective_parameters = 0.0;  ///< trace of the hat matrix over the measured radii
+  double count = 0.0;                 ///< number of measured radii
 };
 
 FitQuality evaluate_row(Eigen::MatrixXd const& projection, RadialProfile const& profile, double lambda) {
   Eigen::MatrixXd const inversion = make_regularized_inversion(projection, profile, lambda);
   Eigen::VectorXd const weights = make_weights(profile);
-  Eigen::VectorXd const gradient = profile.gradient.array().isFinite().select(profile.gradient.array(), 0.0);
+  Eigen::VectorXd const gradient = profile.filled_gradient();
   Eigen::MatrixXd const hat = projection * inversion;
   Eigen::VectorXd const residual = gradient - hat * gradient;
   FitQuality quality{residual.cwiseAbs2().dot(weights), 0.0, 0.0};

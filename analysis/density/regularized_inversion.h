@@ -20,7 +20,7 @@ Eigen::MatrixXd make_regularized_inversion(Eigen::MatrixXd const& projection, Ra
 
 /// Rules for the regularisation parameter.
 enum class RegularizationChoice {
-  given,            ///< value of the user
+  given,            ///< value given by the user
   discrepancy,      ///< residuals equal the uncertainties: chi^2 = number of data (Morozov 1966); needs sigma
   cross_validation  ///< generalised cross-validation (Golub, Heath & Wahba, Technometrics 21 (1979) 215)
 };

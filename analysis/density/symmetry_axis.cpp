@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
+#include "analysis/density/lagrange_cubics.h"
 #include "render/base/error.h"
 #include "render/base/not_a_number.h"
 
@@ -14,7 +16,7 @@ namespace {
 /// Gradient across the axis, less its mean and zero at invalid nodes and outside the grid.
 class CrossGradient {
  public:
-  explicit CrossGradient(GradientMap const& map) : columns_(map.grid.columns), rows_(map.grid.rows) {
+  explicit CrossGradient(GradientMap const& map) : grid_(map.grid) {
     double sum = 0.0, count = 0.0;
     for (std::size_t i = 0; i < map.grid.size(); ++i)
       if (map.valid[i] != 0) {
@@ -25,13 +27,8 @@ class CrossGradient {
       value_.push_back(map.valid[i] != 0 ? map.gradient[i].x - sum / count : 0.0);
   }
 
-  int columns() const { return columns_; }
-  int rows() const { return rows_; }
-
   double node(int column, int row) const {
-    if (column < 0 || column >= columns_) return 0.0;
-    return value_[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
-                  static_cast<std::size_t>(column)];
+    return grid_.contains(column, row) ? value_[grid_.index(column, row)] : 0.0;
   }
 
   /// Value between nodes by the cubic through four nodes.
@@ -39,24 +36,25 @@ class CrossGradient {
     double const floor = std::floor(column), t = column - floor;
     int const i = static_cast<int>(floor);
     if (t == 0.0) return node(i, row);
-    return -t * (t - 1) * (t - 2) / 6 * node(i - 1, row) + (t + 1) * (t - 1) * (t - 2) / 2 * node(i, row) -
-           (t + 1) * t * (t - 2) / 2 * node(i + 1, row) + (t + 1) * t * (t - 1) / 6 * node(i + 2, row);
+    std::array<double, 4> const cubic = lagrange_cubics(t);
+    return cubic[0] * node(i - 1, row) + cubic[1] * node(i, row) + cubic[2] * node(i + 1, row) +
+           cubic[3] * node(i + 2, row);
   }
 
-  /// S(c) with c in columns.
+  /// Symmetry S(c) of find_symmetry_axis(), with c in columns.
   double symmetry(double centre) const {
     double sum = 0.0;
-    for (int row = 0; row < rows_; ++row)
-      for (int column = 0; column < columns_; ++column) {
+    for (int row = 0; row < grid_.rows; ++row)
+      for (int column = 0; column < grid_.columns; ++column) {
         double const mirrored = 2.0 * centre - column;
-        if (mirrored < -2.0 || mirrored > columns_ + 1.0) continue;
+        if (mirrored < -2.0 || mirrored > grid_.columns + 1.0) continue;
         sum -= node(column, row) * at(mirrored, row);
       }
     return sum;
   }
 
  private:
-  int columns_, rows_;
+  PlaneGrid grid_;
   std::vector<double> value_;
 };
 
@@ -86,8 +84,8 @@ double refine_centre(CrossGradient const& gradient, double start) {
 double compute_centre_variance(GradientMap const& map, CrossGradient const& gradient, WindowOverlap overlap) {
   if (map.sigma.empty()) return not_a_number;
   double weighted = 0.0, slopes = 0.0;
-  for (int row = 0; row < gradient.rows(); ++row)
-    for (int column = 1; column + 1 < gradient.columns(); ++column) {
+  for (int row = 0; row < map.grid.rows; ++row)
+    for (int column = 1; column + 1 < map.grid.columns; ++column) {
       if (!map.is_valid(column, row)) continue;
       double const slope = 0.5 * (gradient.node(column + 1, row) - gradient.node(column - 1, row));
       double const sigma = map.sigma[map.grid.index(column, row)].x;

@@ -20,7 +20,8 @@ struct SymmetryAxis {
 /// Finds the axis about which the gradient across it is odd: the centre c of symmetry maximises
 ///   S(c) = -sum over nodes of g(x) g(2 c - x),
 /// the self-convolution of the gradient g less its mean, first in steps of half a node, then between nodes by cubic
-/// interpolation. The flow must lie within the image; if only one half is visible, the axis has to be given.
+/// interpolation. Assumes that the flow lies within the image; if only one half of it is visible, the axis must be
+/// given by the user.
 /// @param overlap  of the interrogation windows, for the uncertainty
 /// @throws DataError  if the gradient vanishes, or the axis found is within two nodes of the border
 SymmetryAxis find_symmetry_axis(GradientMap const& map, AxisDirection direction, WindowOverlap overlap = {});

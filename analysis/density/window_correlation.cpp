@@ -9,6 +9,16 @@
 #include "render/base/error.h"
 
 namespace gladstone::density {
+namespace {
+
+/// Throws if windows of `window` grid steps do not fit an axis of `size` nodes.
+void check_window(int size, double window) {
+  if (window > 0.0 && std::isfinite(window) && window <= size) return;
+  throw SetupError(
+      {SetupProblem{"overlap", fmt::format("expected windows of 0 to {} grid steps, got {}", size, window)}});
+}
+
+}  // namespace
 
 WindowOverlap WindowOverlap::from_fraction(double overlap) {
   if (!(overlap >= 0.0 && overlap < 1.0))
@@ -16,10 +26,13 @@ WindowOverlap WindowOverlap::from_fraction(double overlap) {
   return {1.0 / (1.0 - overlap), 1.0 / (1.0 - overlap)};
 }
 
+void check_window_overlap(int columns, int rows, WindowOverlap overlap) {
+  check_window(columns, overlap.x);
+  check_window(rows, overlap.y);
+}
+
 WindowCorrelation::Factor WindowCorrelation::factorize(int size, double window) {
-  if (!(window > 0.0) || !std::isfinite(window) || window > size)
-    throw SetupError(
-        {SetupProblem{"overlap", fmt::format("expected windows of 0 to {} grid steps, got {}", size, window)}});
+  check_window(size, window);
   Factor factor;
   factor.size = size;
   factor.band = std::max(0, static_cast<int>(std::ceil(window)) - 1);
@@ -39,30 +52,28 @@ WindowCorrelation::Factor WindowCorrelation::factorize(int size, double window) 
 WindowCorrelation::WindowCorrelation(int columns, int rows, WindowOverlap overlap)
     : columns_(columns), rows_(rows), along_x_(factorize(columns, overlap.x)), along_y_(factorize(rows, overlap.y)) {}
 
-std::vector<double> WindowCorrelation::correlate(std::span<double const> values) const {
+template <bool transposed>
+std::vector<double> WindowCorrelation::multiply(std::span<double const> values) const {
   GLADSTONE_EXPECTS(values.size() == static_cast<std::size_t>(columns_) * rows_);
   std::vector<double> half(values.size()), result(values.size());
   auto const at = [&](int column, int row) { return static_cast<std::size_t>(row) * columns_ + column; };
   for (int row = 0; row < rows_; ++row)
     for (int i = 0; i < columns_; ++i)
-      for (int k = std::max(0, i - along_x_.band); k <= i; ++k) half[at(i, row)] += along_x_(i, k) * values[at(k, row)];
+      for (int k = std::max(0, i - along_x_.band); k <= i; ++k)
+        half[at(transposed ? k : i, row)] += along_x_(i, k) * values[at(transposed ? i : k, row)];
   for (int j = 0; j < rows_; ++j)
     for (int k = std::max(0, j - along_y_.band); k <= j; ++k)
-      for (int i = 0; i < columns_; ++i) result[at(i, j)] += along_y_(j, k) * half[at(i, k)];
+      for (int i = 0; i < columns_; ++i)
+        result[at(i, transposed ? k : j)] += along_y_(j, k) * half[at(i, transposed ? j : k)];
   return result;
 }
 
+std::vector<double> WindowCorrelation::correlate(std::span<double const> values) const {
+  return multiply<false>(values);
+}
+
 std::vector<double> WindowCorrelation::correlate_transposed(std::span<double const> values) const {
-  GLADSTONE_EXPECTS(values.size() == static_cast<std::size_t>(columns_) * rows_);
-  std::vector<double> half(values.size()), result(values.size());
-  auto const at = [&](int column, int row) { return static_cast<std::size_t>(row) * columns_ + column; };
-  for (int row = 0; row < rows_; ++row)
-    for (int i = 0; i < columns_; ++i)
-      for (int k = std::max(0, i - along_x_.band); k <= i; ++k) half[at(k, row)] += along_x_(i, k) * values[at(i, row)];
-  for (int j = 0; j < rows_; ++j)
-    for (int k = std::max(0, j - along_y_.band); k <= j; ++k)
-      for (int i = 0; i < columns_; ++i) result[at(i, k)] += along_y_(j, k) * half[at(i, j)];
-  return result;
+  return multiply<true>(values);
 }
 
 }  // namespace gladstone::density

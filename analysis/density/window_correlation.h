@@ -1,10 +1,8 @@
 #pragma once
 
-#include <cstdint>
+#include <cstddef>
 #include <span>
 #include <vector>
-
-#include "analysis/density/gradient_map.h"
 
 namespace gladstone::density {
 
@@ -18,6 +16,10 @@ struct WindowOverlap {
   static WindowOverlap from_fraction(double overlap);
 };
 
+/// Checks that the size of the windows along each axis is positive, finite, and at most that of the grid.
+/// @throws SetupError  if it is not
+void check_window_overlap(int columns, int rows, WindowOverlap overlap);
+
 /// Correlation of the errors of vectors whose interrogation windows overlap. Errors that are linear in the noise of the
 /// pixels correlate by the shared area of the two windows, for uniform windows of m grid steps
 ///   r(i, j) = max(0, 1 - |i| / m_x) max(0, 1 - |j| / m_y)
@@ -26,13 +28,13 @@ struct WindowOverlap {
 /// matrices, whose Cholesky factors are stored.
 class WindowCorrelation {
  public:
-  /// @throws SetupError  if a size is not finite and positive, or exceeds the grid
+  /// @throws SetupError  see check_window_overlap()
   WindowCorrelation(int columns, int rows, WindowOverlap overlap);
 
   /// Correlates independent values of unit variance: L z, so that the covariance of the result is r.
   /// @param values  [rows columns], row by row
   std::vector<double> correlate(std::span<double const> values) const;
-  /// Transposed operation L^T z: the squared length of the result is z^T r z.
+  /// Applies the transposed factor: L^T z, whose squared length is z^T r z.
   std::vector<double> correlate_transposed(std::span<double const> values) const;
 
  private:
@@ -43,6 +45,9 @@ class WindowCorrelation {
     double operator()(int i, int j) const { return element[static_cast<std::size_t>(i) * (band + 1) + (j - i + band)]; }
   };
   static Factor factorize(int size, double window);
+  /// Multiplies by the Cholesky factor L, or by L^T if `transposed`.
+  template <bool transposed>
+  std::vector<double> multiply(std::span<double const> values) const;
   int columns_, rows_;
   Factor along_x_, along_y_;
 };

@@ -40,7 +40,7 @@ Image<double> compute_minimum(std::size_t count, ReadImage const& read) {
   return lowest;
 }
 
-/// @param values  reordered
+/// Returns the median; reorders the values.
 double median_level(std::vector<double>& values) {
   auto const middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());

@@ -11,8 +11,8 @@
 /// Backgrounds that are computed from many frames.
 namespace gladstone {
 
-/// Background of a sequence's own frames. A "background" step without `frame` subtracts it from every pair; whoever
-/// correlates the sequence computes the images beforehand.
+/// Background of a sequence's own frames. A "background" step without `frame` subtracts it from every pair; its images
+/// must be computed before the first pair is prepared.
 struct SequenceBackground {
   std::string statistic;    ///< "minimum", "mean" or "median"
   Image<double> reference;  ///< subtracted from frames A
@@ -36,7 +36,7 @@ class SequencePreparation {
   std::shared_ptr<SequenceBackground> add(std::string const& statistic);
 
  private:
-  SequencePreparation* outer_;
+  SequencePreparation* outer_;  ///< guard that existed before, and is current again afterwards
   std::vector<std::shared_ptr<SequenceBackground>> backgrounds_;
 };
 
@@ -44,11 +44,11 @@ class SequencePreparation {
 std::vector<std::string> background_statistics();
 
 /// Computes the minimum, mean or median of images, pixel by pixel. The mean and the minimum hold one image in memory;
-/// the median reads all images once per band of rows, so that it holds at most 256 MiB.
-/// @param statistic  one of background_statistics(); the median of an even number of values is the mean of the middle
-/// two
-/// @param read       returns image k, or nullopt if it does not count; images that count have equal sizes
-/// @return an empty image if no image counts
+/// the median reads all images once per band of pixels, so that it holds at most 256 MiB. The median of an even number
+/// of values is the mean of the middle two.
+/// @param statistic  one of background_statistics()
+/// @param read       returns image k, or nullopt to exclude it; all images have one size
+/// @return an empty image if all images are excluded
 Image<double> compute_background(std::string const& statistic, std::size_t count,
                                  std::function<std::optional<Image<double>>(std::size_t k)> const& read);
 

@@ -3,41 +3,46 @@
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
+#include <utility>
 
+#include "analysis/preparation/grey_levels.h"
 #include "analysis/preparation/illumination.h"
+#include "render/base/median.h"
 #include "render/base/not_a_number.h"
+#include "render/base/units.h"
 
 namespace gladstone::tracking {
 namespace {
 
 constexpr double rounding_noise = 0.28867513459481288;  // 1 / sqrt(12)
-constexpr double per_median = 1.4826;                   // standard deviation over median absolute deviation
 constexpr double filter_share = 0.7;                    // width of the filter over that of the dots
+constexpr double usual_sigma = 0.75;  // standard deviation of a dot image if the frame does not determine it [px]
 
-double median_of(std::vector<double>& values) {
-  if (values.empty()) return 0;
-  auto const middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+std::vector<double> finite_levels(Image<double> const& levels) {
+  std::vector<double> finite;
+  for (double const level : levels)
+    if (std::isfinite(level)) finite.push_back(level);
+  return finite;
 }
+
+/// Returns the number of rows and columns of the Gaussian filter.
+int filter_side(double sigma) { return 2 * static_cast<int>(std::ceil(4 * sigma)) + 1; }
 
 /// Filters an image by a Gaussian; ignored pixels count as background.
 Image<double> filtered(Image<double> const& levels, double sigma) {
   Image<double> known = levels, smooth(levels.columns(), levels.rows());
   for (double& level : known)
     if (!std::isfinite(level)) level = 0;
-  cv::Mat const in(known.rows(), known.columns(), CV_64F, known.data());
-  cv::Mat out(smooth.rows(), smooth.columns(), CV_64F, smooth.data());
-  int const side = 2 * static_cast<int>(std::ceil(4 * sigma)) + 1;
-  cv::GaussianBlur(in, out, {side, side}, sigma, sigma, cv::BORDER_REFLECT_101);
+  cv::Mat1d out = matrix_view<cv::Mat1d>(smooth);
+  int const side = filter_side(sigma);
+  cv::GaussianBlur(matrix_view<cv::Mat1d>(known), out, {side, side}, sigma, sigma, cv::BORDER_REFLECT_101);
   return smooth;
 }
 
 /// Returns the factor by which the filter reduces the standard deviation of uncorrelated noise.
 double noise_reduction(double sigma) {
-  int const side = 2 * static_cast<int>(std::ceil(4 * sigma)) + 1;
-  cv::Mat const kernel = cv::getGaussianKernel(side, sigma, CV_64F);
-  return kernel.dot(kernel);  // the square root of the sum of squares, in two dimensions
+  cv::Mat const kernel = cv::getGaussianKernel(filter_side(sigma), sigma, CV_64F);
+  return kernel.dot(kernel);  // root of the sum of squares of the two-dimensional kernel
 }
 
 /// Returns the offset of the vertex of the parabola through three levels, at most half a pixel.
@@ -51,18 +56,14 @@ double vertex(double before, double here, double after) {
 DotFrame prepare_dot_frame(Image<double> const& frame, DotSettings const& settings) {
   DotFrame prepared;
   Image<double> known = frame;
-  std::vector<double> levels;
-  for (double const level : frame)
-    if (std::isfinite(level)) levels.push_back(level);
-  double const middle = median_of(levels);
+  double const middle = upper_median(finite_levels(frame));
   for (double& level : known)
     if (!std::isfinite(level)) level = middle;
   prepared.background = estimate_background(known);
   prepared.above = Image<double>(frame.columns(), frame.rows());
   for (std::size_t i = 0; i < frame.size(); ++i) {
     double const level = frame.data()[i];
-    bool const usable = std::isfinite(level) && level < settings.saturation;
-    prepared.above.data()[i] = usable ? level - prepared.background.data()[i] : not_a_number;
+    prepared.above.data()[i] = std::isfinite(level) ? level - prepared.background.data()[i] : not_a_number;
   }
   prepared.bright = settings.polarity == DotPolarity::bright;
   if (settings.polarity == DotPolarity::automatic) {
@@ -75,17 +76,15 @@ DotFrame prepare_dot_frame(Image<double> const& frame, DotSettings const& settin
   std::vector<double> below;
   for (double const level : prepared.above)
     if (level <= 0) below.push_back(-level);
-  prepared.noise = per_median * median_of(below);
+  prepared.noise = sigma_per_median_deviation * upper_median(std::move(below));
   return prepared;
 }
 
 double estimate_noise(Image<double> const& residual, bool whole_levels) {
-  std::vector<double> values;
-  for (double const level : residual)
-    if (std::isfinite(level)) values.push_back(level);
-  double const middle = median_of(values);
+  std::vector<double> values = finite_levels(residual);
+  double const middle = upper_median(values);
   for (double& value : values) value = std::abs(value - middle);
-  return std::max(per_median * median_of(values), whole_levels ? rounding_noise : 0.0);
+  return std::max(sigma_per_median_deviation * upper_median(std::move(values)), whole_levels ? rounding_noise : 0.0);
 }
 
 double estimate_dot_sigma(Image<double> const& above) {
@@ -110,10 +109,10 @@ double estimate_dot_sigma(Image<double> const& above) {
     return total;
   };
   double const one = correlation(1), two = correlation(2);
-  if (!(one > 0)) return 0.75;
-  // A second value near or below zero belongs to dots of a pixel.
+  if (!(one > 0)) return usual_sigma;
+  // For dots of about one pixel, the second value is near or below zero.
   double const ratio = std::log(one / std::max(two, 1e-3 * one));
-  if (!(ratio > 0)) return 0.75;  // noise alone
+  if (!(ratio > 0)) return usual_sigma;  // noise alone
   return std::clamp(std::sqrt(0.75 / ratio), 0.3, 10.0);
 }
 
@@ -121,9 +120,9 @@ std::vector<GaussianDot> find_dot_candidates(DotFrame const& frame, double sigma
   double const width = filter_share * sigma_px;
   Image<double> const smooth = filtered(frame.above, width);
   double const threshold = detection_threshold * frame.noise * noise_reduction(width);
-  // A Gaussian dot has this flux per unit of its height after the filter; pixels add a variance of 1/12 px^2.
+  // Flux of a Gaussian dot over its height after the filter; the integration over pixels adds 1/12 px^2.
   double const variance = sigma_px * sigma_px + width * width + 1.0 / 12;
-  double const flux_per_height = 6.28318530717958647693 * variance;
+  double const flux_per_height = 2 * pi * variance;
   std::vector<GaussianDot> found;
   for (int row = 1; row + 1 < smooth.rows(); ++row)
     for (int column = 1; column + 1 < smooth.columns(); ++column) {

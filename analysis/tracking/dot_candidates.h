@@ -16,7 +16,7 @@ struct DotFrame {
 };
 
 /// Subtracts the background (estimate_background()) and determines the polarity: that of the largest deviation after
-/// smoothing. The noise follows from the pixels below the background, which have no light of dots.
+/// smoothing. The noise is estimated from the pixels below the background, which receive no light from dots.
 DotFrame prepare_dot_frame(Image<double> const& frame, DotSettings const& settings);
 
 /// Estimates the noise of a frame from its residual after subtraction of all fitted dots: 1.4826 times the median

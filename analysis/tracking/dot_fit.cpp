@@ -3,6 +3,7 @@
 #include <ceres/tiny_solver.h>
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -32,8 +33,8 @@ class JointDotCost {
   using Parameters = Eigen::VectorXd;
 
   JointDotCost(std::span<FitPixel const> pixels, std::span<GaussianDot const> start, DotShape shape,
-               PixelResponse response, DotPrior const& prior)
-      : pixels_(pixels), count_(start.size()), shape_(shape), response_(response), prior_(prior) {
+               DotPrior const& prior)
+      : pixels_(pixels), count_(start.size()), shape_(shape), prior_(prior) {
     origin_ = start.front().centre;
     for (GaussianDot const& dot : start) scale_ = std::max(scale_, std::abs(dot.flux));
   }
@@ -91,7 +92,7 @@ class JointDotCost {
         std::fill_n(residuals, rows, forbidden);
         return false;
       }
-      DotLight const light(one, shape_, response_);
+      DotLight const light(one, shape_);
       std::size_t const first = k * per_dot();
       for (std::size_t i = 0; i < pixels_.size(); ++i) {
         FitPixel const& pixel = pixels_[i];
@@ -122,7 +123,6 @@ class JointDotCost {
   std::span<FitPixel const> pixels_;
   std::size_t count_;
   DotShape shape_;
-  PixelResponse response_;
   DotPrior prior_;
   Vec2d origin_{};
   double scale_ = std::numeric_limits<double>::min();
@@ -131,9 +131,9 @@ class JointDotCost {
 }  // namespace
 
 DotFit fit_dots(std::span<FitPixel const> pixels, std::span<GaussianDot const> start, DotShape shape,
-                PixelResponse response, DotPrior const& prior) {
+                DotPrior const& prior) {
   GLADSTONE_EXPECTS(!pixels.empty() && !start.empty());
-  JointDotCost const cost(pixels, start, shape, response, prior);
+  JointDotCost const cost(pixels, start, shape, prior);
   JointDotCost::Parameters x = cost.parameters(start);
   ceres::TinySolver<JointDotCost> solver;
   solver.options.max_num_iterations = 40;

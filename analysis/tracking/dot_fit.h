@@ -44,6 +44,6 @@ struct DotFit {
 /// @return dots in the order of start; infinite cost and no uncertainties if the pixels do not determine them
 /// @pre there are pixels and dots; start values have positive definite second moments
 DotFit fit_dots(std::span<FitPixel const> pixels, std::span<GaussianDot const> start, DotShape shape,
-                PixelResponse response, DotPrior const& prior);
+                DotPrior const& prior);
 
 }  // namespace gladstone::tracking

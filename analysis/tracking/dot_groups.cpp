@@ -1,7 +1,7 @@
 #include "analysis/tracking/dot_groups.h"
 
 #include <algorithm>
-#include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "render/base/point_cells.h"
@@ -10,8 +10,8 @@ namespace gladstone::tracking {
 namespace {
 
 /// Returns the connected components of dots closer than a distance, in the order of their first dots.
-std::vector<std::vector<std::size_t>> linked(std::span<Vec2d const> centres, std::vector<std::size_t> const& members,
-                                             double distance) {
+std::vector<std::vector<std::size_t>> link_dots(std::span<Vec2d const> centres, std::vector<std::size_t> const& members,
+                                                double distance) {
   std::vector<Vec2d> points;
   for (std::size_t const i : members) points.push_back(centres[i]);
   PointCells const cells(points, distance);
@@ -40,13 +40,13 @@ std::vector<std::vector<std::size_t>> linked(std::span<Vec2d const> centres, std
 
 std::vector<std::vector<std::size_t>> group_dots(std::span<Vec2d const> centres, double distance_px) {
   std::vector<std::size_t> all(centres.size());
-  for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
+  std::iota(all.begin(), all.end(), std::size_t{0});
   std::vector<std::vector<std::size_t>> done;
   std::vector<std::pair<std::vector<std::size_t>, double>> open{{std::move(all), distance_px}};
   while (!open.empty()) {
     auto const [members, distance] = std::move(open.back());
     open.pop_back();
-    for (std::vector<std::size_t>& group : linked(centres, members, distance)) {
+    for (std::vector<std::size_t>& group : link_dots(centres, members, distance)) {
       if (group.size() <= largest_group || distance < 0.1 * distance_px)
         done.push_back(std::move(group));
       else

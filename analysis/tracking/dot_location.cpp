@@ -11,28 +11,22 @@
 #include "analysis/tracking/dot_candidates.h"
 #include "analysis/tracking/dot_groups.h"
 #include "analysis/tracking/overlap_resolution.h"
+#include "render/base/median.h"
 #include "render/base/not_a_number.h"
 #include "render/base/parallel.h"
 #include "render/base/point_cells.h"
+#include "render/base/units.h"
 
 namespace gladstone::tracking {
 namespace {
 
-constexpr std::array<int, 4> additions_per_sweep{0, 4, 4, 0};
-constexpr double closest_px_share = 0.35;  // dots closer than this, in standard deviations, are one dot
-constexpr double least_spread = 0.02;      // of the prior, relative to its mean
-constexpr double least_mismatch = 0.005;   // deviation of real dot images from the Gaussian, relative to their levels
-// of the detection threshold, as the smallest flux of a fitted dot: its uncertainty contains those of width and
-// background, which are not part of the detection
-constexpr double kept_share = 0.6;
-constexpr std::size_t enough_isolated = 10;  // dots that determine the prior
-
-double middle_of(std::vector<double> values) {
-  if (values.empty()) return 0;
-  auto const middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
+constexpr std::array<int, 4> additions_per_sweep{0, 4, 4, 0};  // largest number of dots added to a group
+constexpr double least_spread = 0.02;     // smallest standard deviation of the prior, relative to its mean
+constexpr double least_mismatch = 0.005;  // deviation of real dot images from the Gaussian, relative to their levels
+// Smallest flux of a fitted dot over the detection threshold. It is below 1 because the uncertainty of the flux
+// contains those of width and background, which do not affect the detection.
+constexpr double least_flux_share = 0.6;
+constexpr std::size_t enough_isolated = 10;  // number of isolated dots that determine the prior
 
 /// State of the dot location in one frame.
 class FrameFit {
@@ -40,13 +34,12 @@ class FrameFit {
   /// @param places  approximate centres of all dots [px]; none: found in the frame
   FrameFit(Image<double> const& frame, DotSettings const& settings,
            std::optional<std::span<Vec2d const>> places = std::nullopt)
-      : settings_(settings), frame_(prepare_dot_frame(frame, settings)), raw_(frame) {
+      : settings_(settings), frame_(prepare_dot_frame(frame, settings)), places_known_(places.has_value()) {
     whole_levels_ = std::all_of(frame.begin(), frame.end(),
                                 [](double level) { return !std::isfinite(level) || level == std::floor(level); });
     double const sigma = settings.diameter_px > 0 ? 0.25 * settings.diameter_px : estimate_dot_sigma(frame_.above);
     frame_.noise = std::max(frame_.noise, whole_levels_ ? 0.29 : 0.0);
     model_.shape = settings.shape;
-    model_.response = settings.response;
     model_.detection_threshold = settings.detection_threshold;
     double const variance = sigma * sigma;
     double const loose = settings.diameter_px > 0 ? 0.5 * variance : variance;
@@ -54,7 +47,6 @@ class FrameFit {
     std::vector<GaussianDot> const start =
         places ? dots_at(*places, variance) : find_dot_candidates(frame_, sigma, settings.detection_threshold);
     for (GaussianDot const& dot : start) located_.push_back({dot, {}, 0, 0, 1});
-    if (places) settings_.resolve_overlaps = false;
   }
 
   LocatedDots run() {
@@ -92,7 +84,7 @@ class FrameFit {
       double const level = frame_.above(static_cast<int>(std::lround(place.x)), static_cast<int>(std::lround(place.y)));
       if (!std::isfinite(level)) continue;
       double const height = std::max(level, frame_.noise);
-      dots.push_back({place, height * 6.28318530717958647693 * (variance + 1.0 / 12), variance, 0, variance});
+      dots.push_back({place, height * (2 * pi) * (variance + 1.0 / 12), variance, 0, variance});
     }
     return dots;
   }
@@ -100,10 +92,10 @@ class FrameFit {
   double typical_sigma() const { return std::sqrt(model_.prior.mean[0] + 1.0 / 12); }
 
   /// Returns the light of all dots on every pixel.
-  Image<double> light_of_all() const {
-    Image<double> light(raw_.columns(), raw_.rows());
+  Image<double> sum_light() const {
+    Image<double> light(frame_.above.columns(), frame_.above.rows());
     for (LocatedDot const& one : located_) {
-      DotLight const dot(one.image, settings_.shape, settings_.response);
+      DotLight const dot(one.image, settings_.shape);
       for (int row = std::max(0, dot.first_row()); row < std::min(light.rows(), dot.first_row() + dot.width()); ++row)
         for (int column = std::max(0, dot.first_column());
              column < std::min(light.columns(), dot.first_column() + dot.width()); ++column)
@@ -125,21 +117,21 @@ class FrameFit {
   }
 
   /// Returns the pixels within reach of a group's dots, without the light of the dots of other groups.
-  std::vector<FitPixel> pixels_of(std::vector<GaussianDot> const& group, Image<double> const& light) const {
+  std::vector<FitPixel> collect_pixels(std::vector<GaussianDot> const& group, Image<double> const& light) const {
     double const reach = std::max(2.5, 3.2 * typical_sigma() + 0.5);
     std::vector<DotLight> own;
-    double left = raw_.columns(), right = -1, top = raw_.rows(), low = -1;
+    int const columns = frame_.above.columns(), rows = frame_.above.rows();
+    double left = columns, right = -1, top = rows, low = -1;
     for (GaussianDot const& dot : group) {
-      own.emplace_back(dot, settings_.shape, settings_.response);
+      own.emplace_back(dot, settings_.shape);
       left = std::min(left, dot.centre.x - reach);
       right = std::max(right, dot.centre.x + reach);
       top = std::min(top, dot.centre.y - reach);
       low = std::max(low, dot.centre.y + reach);
     }
     std::vector<FitPixel> pixels;
-    for (int row = std::max(0, static_cast<int>(std::ceil(top))); row <= low && row < raw_.rows(); ++row)
-      for (int column = std::max(0, static_cast<int>(std::ceil(left))); column <= right && column < raw_.columns();
-           ++column) {
+    for (int row = std::max(0, static_cast<int>(std::ceil(top))); row <= low && row < rows; ++row)
+      for (int column = std::max(0, static_cast<int>(std::ceil(left))); column <= right && column < columns; ++column) {
         bool const near = std::any_of(group.begin(), group.end(), [&](GaussianDot const& one) {
           return length(one.centre - Vec2d{1.0 * column, 1.0 * row}) < reach;
         });
@@ -153,26 +145,27 @@ class FrameFit {
     return pixels;
   }
 
+  /// Fits all dots, in groups to each of which up to `additions` dots are added.
   void fit_groups(int additions) {
     std::vector<Vec2d> centres;
     for (LocatedDot const& dot : located_) centres.push_back(dot.image.centre);
     auto const groups = group_dots(centres, 6.2 * typical_sigma() + 0.5);
-    Image<double> const light = light_of_all();
+    Image<double> const light = sum_light();
     std::vector<std::vector<LocatedDot>> fitted(groups.size());
     std::vector<double> mismatch(groups.size(), not_a_number);
     parallel_for(groups.size(), [&](std::size_t g) {
       std::vector<GaussianDot> start;
       for (std::size_t const i : groups[g]) start.push_back(located_[i].image);
-      std::vector<FitPixel> const pixels = pixels_of(start, light);
+      std::vector<FitPixel> const pixels = collect_pixels(start, light);
       if (pixels.size() < start.size() * (3 + shape_parameters(settings_.shape)) + 1) return;
-      DotFit const fit = fit_overlapping_dots(pixels, start, model_, settings_.resolve_overlaps ? additions : 0);
+      DotFit const fit = fit_overlapping_dots(pixels, start, model_, places_known_ ? 0 : additions);
       if (!std::isfinite(fit.cost)) {
         // Keep the dots: a later sweep has better starts and a narrower prior.
         for (GaussianDot const& dot : start)
           fitted[g].push_back({dot, {not_a_number, not_a_number}, not_a_number, 1, 0});
         return;
       }
-      if (fit.dots.size() == 1) mismatch[g] = mismatch_of(fit, pixels);
+      if (fit.dots.size() == 1) mismatch[g] = estimate_mismatch(fit, pixels);
       double const reduced = fit.freedom > 0 ? fit.chi2 / fit.freedom : 1.0;
       double const scale = std::sqrt(std::max(1.0, reduced));
       for (std::size_t k = 0; k < fit.dots.size(); ++k)
@@ -183,26 +176,27 @@ class FrameFit {
       for (LocatedDot const& dot : group)
         if (inside(dot.image.centre)) located_.push_back(dot);
     std::erase_if(mismatch, [](double value) { return !std::isfinite(value); });
-    model_.mismatch = std::max(least_mismatch, std::sqrt(std::max(0.0, middle_of(mismatch))));
+    model_.mismatch = std::max(least_mismatch, std::sqrt(std::max(0.0, upper_median(std::move(mismatch)))));
   }
 
   bool inside(Vec2d c) const {
-    return c.x > -0.5 && c.y > -0.5 && c.x < raw_.columns() - 0.5 && c.y < raw_.rows() - 0.5;
+    return c.x > -0.5 && c.y > -0.5 && c.x < frame_.above.columns() - 0.5 && c.y < frame_.above.rows() - 0.5;
   }
 
-  /// Returns whether a fit is significant and its size compatible with the other dots. The width of a dot of few pixels
-  /// is uncertain, hence the comparison with the spread over the frame.
+  /// Returns whether a fit is significant and its size agrees with that of the other dots: within a factor of four, or,
+  /// since the width of a dot of few pixels is uncertain, within four times the spread over the frame.
   bool valid(LocatedDot const& dot) const {
     double const typical = model_.prior.mean[0], size = dot.image.xx;
     bool const usual =
         (size > 0.25 * typical && size < 4 * typical) || std::abs(size - typical) < 4 * model_.prior.sigma[0];
     return inside(dot.image.centre) && usual &&
-           dot.image.flux > kept_share * settings_.detection_threshold * dot.flux_sigma && length(dot.sigma_px) < 1;
+           dot.image.flux > least_flux_share * settings_.detection_threshold * dot.flux_sigma &&
+           length(dot.sigma_px) < 1;
   }
 
-  /// Removes the fainter of two dots at nearly the same place, which two groups have added.
+  /// Removes the fainter of two dots at nearly the same place, which may have been added to two groups.
   void merge_coincident() {
-    double const closest = closest_px_share * typical_sigma();
+    double const closest = closest_over_sigma * typical_sigma();
     std::vector<Vec2d> centres;
     for (LocatedDot const& dot : located_) centres.push_back(dot.image.centre);
     PointCells const cells(centres, std::max(closest, 1.0));
@@ -231,21 +225,22 @@ class FrameFit {
       fluxes.push_back(dot.image.flux);
     }
     if (values[0].size() < enough_isolated) return;
-    double const size = middle_of(values[0]);
+    double const size = upper_median(values[0]);
     for (int s = 0; s < 3; ++s) {
-      double const mean = middle_of(values[s]);
+      double const mean = upper_median(values[s]);
       for (double& value : values[s]) value = std::abs(value - mean);
       model_.prior.mean[s] = mean;
-      model_.prior.sigma[s] = std::max(1.4826 * middle_of(values[s]), least_spread * size);
+      model_.prior.sigma[s] = std::max(sigma_per_median_deviation * upper_median(values[s]), least_spread * size);
     }
-    model_.prior.flux_mean = middle_of(fluxes);
+    model_.prior.flux_mean = upper_median(fluxes);
     for (double& flux : fluxes) flux = std::abs(flux - model_.prior.flux_mean);
-    model_.prior.flux_sigma = std::max(1.4826 * middle_of(fluxes), least_spread * model_.prior.flux_mean);
+    model_.prior.flux_sigma =
+        std::max(sigma_per_median_deviation * upper_median(fluxes), least_spread * model_.prior.flux_mean);
   }
 
   /// Updates background and noise from the residual of the frame.
   void update_background() {
-    Image<double> residual = light_of_all();
+    Image<double> residual = sum_light();
     for (std::size_t i = 0; i < residual.size(); ++i) residual.data()[i] = frame_.above.data()[i] - residual.data()[i];
     // Fitted parameters absorb a part of the noise.
     double const pixels = static_cast<double>(residual.size()), parameters = 4.0 * static_cast<double>(located_.size());
@@ -261,7 +256,7 @@ class FrameFit {
   }
 
   /// Returns the squared residual of a single dot beyond the noise, over the squared level.
-  static double mismatch_of(DotFit const& fit, std::vector<FitPixel> const& pixels) {
+  static double estimate_mismatch(DotFit const& fit, std::vector<FitPixel> const& pixels) {
     double excess = 0, power = 0;
     for (std::size_t i = 0; i < pixels.size(); ++i) {
       excess += std::pow(fit.residual[i], 2) - std::pow(pixels[i].per_sigma, -2);
@@ -272,7 +267,7 @@ class FrameFit {
 
   DotSettings settings_;
   DotFrame frame_;
-  Image<double> const& raw_;
+  bool places_known_;  // no dots are added to those at the given places
   bool whole_levels_ = false;
   DotModel model_;
   std::vector<LocatedDot> located_;

@@ -30,7 +30,7 @@ struct LocatedDots {
 /// Locates the dots (BOS) or particles (PIV) of a frame by least-squares fits of Gaussians.
 ///
 /// Candidates are maxima of the filtered frame. Dots whose images overlap are fitted together, and dots are added where
-/// the residual demands it (fit_overlapping_dots()); the light of all other dots is subtracted first, as in DAOPHOT
+/// the residual is significant (fit_overlapping_dots()); the light of all other dots is subtracted first, as in DAOPHOT
 /// (Stetson, PASP 99 (1987) 191). Background, noise and the distribution of widths are estimated from the frame and
 /// updated after each of four sweeps. The uncertainty of a centre is the Cramer-Rao bound of its fit (inverse Fisher
 /// information; for BOS dots see Rajendran, Bane & Vlachos, Exp. Fluids 61 (2020) 139) times the square root of the
@@ -45,7 +45,7 @@ LocatedDots locate_dots(Image<double> const& frame, DotSettings const& settings)
 /// dots where images overlap.
 /// @param places  approximate centres, within about one standard deviation of a dot image [px]; those outside the frame
 ///                and those that are not finite are ignored
-/// @return like locate_dots(); places without a significant dot are left out
+/// @return like locate_dots(); no dot for places where none is significant
 LocatedDots locate_dots_near(Image<double> const& frame, DotSettings const& settings, std::span<Vec2d const> places);
 
 }  // namespace gladstone::tracking

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "analysis/tracking/nearest_points.h"
 #include "render/base/contracts.h"
+#include "render/base/median.h"
 #include "render/base/not_a_number.h"
 #include "render/base/parallel.h"
 
@@ -13,13 +15,15 @@ namespace {
 
 constexpr std::size_t supporters = 12;       // neighbours that support a displacement
 constexpr std::size_t least_supporters = 3;  // fewer neighbours do not identify a displacement
-constexpr int most_rounds = 5;               // repeated predictions from certain matches
+constexpr int most_rounds = 5;               // largest number of rounds that predict from certain matches
 constexpr double alias_range = 1.5;          // range of alternatives beyond the search radius [spacings]
 
-/// Round of the matching: prediction, and lengths in px.
+/// Parameters of a round of the matching.
 struct Round {
-  std::vector<Vec2d> prediction;
-  double radius, range, tolerance;
+  std::vector<Vec2d> prediction;  ///< displacement of each dot of frame A [px]
+  double radius;                  ///< largest deviation of a match from its prediction [px]
+  double range;                   ///< largest deviation of the alternatives that can make a match ambiguous [px]
+  double tolerance;               ///< standard deviation of neighbours' displacements [px]
 };
 
 class DotMatcher {
@@ -45,18 +49,18 @@ class DotMatcher {
     Round round{given, std::min(radius, bound), std::min(radius + alias_range * spacing, bound), tolerance};
     std::vector<DotMatch> matches = match(round);
 
-    // Predict again from the certain matches, which spread from where the prediction is good.
+    // Predict again from the certain matches: their number grows around the regions of good prediction.
     for (int repeat = 0; repeat < most_rounds; ++repeat) {
       std::size_t const before = count_certain(matches);
       if (before <= least_supporters) return matches;
       std::vector<char> const outliers =
-          find_outliers(a_, deviations(matches, predicted(matches, {}, given)), settings_.outliers);
-      round.prediction = predicted(matches, outliers, given);
+          find_outliers(a_, deviations(matches, refine_prediction(given, matches, {})), settings_.outliers);
+      round.prediction = refine_prediction(given, matches, outliers);
       round.tolerance = 0.5 * tolerance;
       matches = match(round);
       for (std::size_t i = 0; i < a_.size(); ++i)  // the search radius refers to the given prediction
         if (matches[i].status == MatchStatus::matched &&
-            !(length(b_[matches[i].partner] - a_[i] - given[i]) <= round.radius))
+            !(length(match_deviation(i, matches[i], given[i])) <= round.radius))
           matches[i].status = MatchStatus::unmatched;
       if (static_cast<double>(count_certain(matches)) < 1.01 * static_cast<double>(before)) break;
     }
@@ -73,17 +77,23 @@ class DotMatcher {
         matches.begin(), matches.end(), [](DotMatch const& match) { return match.status == MatchStatus::matched; }));
   }
 
-  /// Returns displacements minus a prediction; NaN without a certain match.
+  /// Returns the displacement of dot i by its match minus a prediction.
+  Vec2d match_deviation(std::size_t i, DotMatch const& match, Vec2d prediction) const {
+    return b_[match.partner] - a_[i] - prediction;
+  }
+
+  /// Returns the deviations of all dots from a prediction; NaN without a certain match.
   std::vector<Vec2d> deviations(std::vector<DotMatch> const& matches, std::vector<Vec2d> const& prediction) const {
     std::vector<Vec2d> values(a_.size(), Vec2d{not_a_number, not_a_number});
     for (std::size_t i = 0; i < a_.size(); ++i)
-      if (matches[i].status == MatchStatus::matched) values[i] = b_[matches[i].partner] - a_[i] - prediction[i];
+      if (matches[i].status == MatchStatus::matched) values[i] = match_deviation(i, matches[i], prediction[i]);
     return values;
   }
 
-  /// Interpolates the certain matches that are no outliers; far from them, returns the given prediction.
-  std::vector<Vec2d> predicted(std::vector<DotMatch> const& matches, std::vector<char> const& outliers,
-                               std::vector<Vec2d> prediction) const {
+  /// Interpolates the certain matches that are not outliers; retains the given prediction far from them.
+  /// @param outliers  as returned by find_outliers(); empty: none
+  std::vector<Vec2d> refine_prediction(std::vector<Vec2d> prediction, std::vector<DotMatch> const& matches,
+                                       std::vector<char> const& outliers) const {
     DisplacementField certain;
     for (std::size_t i = 0; i < a_.size(); ++i) {
       if (matches[i].status != MatchStatus::matched || (!outliers.empty() && outliers[i])) continue;
@@ -96,20 +106,18 @@ class DotMatcher {
     return prediction;
   }
 
-  /// Distinguishes candidates closer to each other than the tolerance by a smaller tolerance: three times the median
-  /// deviation of the certain matches from their prediction.
+  /// Matches ambiguous dots again with a smaller tolerance, to distinguish candidates that are close to each other. The
+  /// tolerance is three times the median deviation of the certain matches from their prediction.
   void resolve_close_pairs(std::vector<DotMatch>& matches, Round round) const {
     std::vector<double> sizes;
     std::vector<char> taken(b_.size());
     for (std::size_t i = 0; i < a_.size(); ++i) {
       if (matches[i].status != MatchStatus::matched) continue;
-      sizes.push_back(length(b_[matches[i].partner] - a_[i] - round.prediction[i]));
+      sizes.push_back(length(match_deviation(i, matches[i], round.prediction[i])));
       taken[matches[i].partner] = 1;
     }
     if (sizes.empty()) return;
-    auto const middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-    std::nth_element(sizes.begin(), middle, sizes.end());
-    round.tolerance = std::clamp(3 * *middle, 0.01 * cells_a_.spacing(), round.tolerance);
+    round.tolerance = std::clamp(3 * upper_median(std::move(sizes)), 0.01 * cells_a_.spacing(), round.tolerance);
     std::vector<DotMatch> const closer = match(round);
     for (std::size_t i = 0; i < a_.size(); ++i) {
       bool const resolved = matches[i].status == MatchStatus::ambiguous && closer[i].status == MatchStatus::matched;
@@ -119,7 +127,7 @@ class DotMatcher {
     }
   }
 
-  /// Returns the share of the neighbours of dot i that have a partner at the same deviation from the prediction.
+  /// Returns the support of a deviation of dot i from its prediction, see match_dots().
   double support(std::size_t i, Vec2d deviation, Round const& round) const {
     double sum = 0;
     for (std::size_t const k : around_[i]) {
@@ -167,7 +175,7 @@ class DotMatcher {
     });
     // A partner belongs to the dot whose prediction it fits best.
     std::vector<std::size_t> owner(b_.size(), a_.size());
-    auto const misfit = [&](std::size_t i) { return length(b_[matches[i].partner] - a_[i] - round.prediction[i]); };
+    auto const misfit = [&](std::size_t i) { return length(match_deviation(i, matches[i], round.prediction[i])); };
     for (std::size_t i = 0; i < a_.size(); ++i) {
       if (matches[i].status != MatchStatus::matched) continue;
       std::size_t& own = owner[matches[i].partner];

@@ -14,7 +14,7 @@ namespace gladstone::tracking {
 enum class MatchStatus {
   matched,
   unmatched,  ///< no dot within the search radius whose displacement the neighbours share
-  ambiguous,  ///< another displacement is supported (nearly) as well
+  ambiguous,  ///< another displacement has (nearly) the same support
   outlier,    ///< differs from its neighbours
 };
 
@@ -33,7 +33,7 @@ struct MatchSettings {
   /// radius count as alternatives, so that a regular pattern remains ambiguous. A wrong bound lets aliases pass.
   double displacement_bound_px = std::numeric_limits<double>::infinity();
   double tolerance_px = 0;        ///< standard deviation of neighbours' displacements [px]; 0: 0.15 spacings
-  double least_support = 0.35;    ///< smallest support of a match
+  double least_support = 0.35;    ///< smallest support of a match [1]
   double ambiguity_ratio = 0.75;  ///< smallest ratio of the supports of another and of the best displacement that makes
                                   ///< a match ambiguous
   OutlierTest outliers;
@@ -46,11 +46,12 @@ struct MatchSettings {
 /// by exp(-e^2 / (2 tolerance^2)) of its distance e (two-frame relaxation methods: Baek & Lee, Exp. Fluids 22 (1996)
 /// 23; Ohmi & Li, Meas. Sci. Technol. 11 (2000) 603). The candidate with the highest support is the match. A match is
 /// ambiguous if another displacement within the search radius plus 1.5 spacings has nearly the same support: a regular
-/// pattern, which matches itself after a shift by its pitch, is never guessed.
+/// pattern, which matches itself after a shift by its pitch, is ambiguous unless displacement_bound_px excludes that
+/// shift.
 ///
 /// Further rounds, with half the tolerance, predict from the certain matches by an adaptive Gaussian window, until no
 /// more matches are found. Finally, deviations from this prediction are tested against the neighbours
-/// (find_outliers()). Without a prediction, gradients up to 0.1 px/px are followed.
+/// (find_outliers()). Without a prediction, gradients up to 0.1 px/px are resolved.
 /// @param a, b        centres of the dots of frames A and B [px]; for BOS, a may be the known pattern
 /// @param prediction  displacement of each dot of a [px], for example of a correlation (interpolate_vectors()); empty:
 ///                    zero; NaN: zero for this dot

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <limits>
 #include <optional>
 
 namespace gladstone::tracking {
@@ -10,10 +9,6 @@ enum class DotPolarity { automatic, bright, dark };
 
 /// Shape of a dot image: a Gaussian of one width, or of any two widths and orientation.
 enum class DotShape { round, elliptic };
-
-/// Relation of a pixel's level to the irradiance: its integral over the pixel, as cameras and the renderers of this
-/// project record it, or its value at the pixel's centre.
-enum class PixelResponse { integrated, sampled };
 
 /// Temporal noise of a camera. The variance of a pixel is read_noise^2 + levels_per_electron (level - black_level).
 struct CameraNoise {
@@ -26,12 +21,9 @@ struct CameraNoise {
 struct DotSettings {
   DotPolarity polarity = DotPolarity::automatic;
   DotShape shape = DotShape::round;
-  PixelResponse response = PixelResponse::integrated;
   double diameter_px = 0;            ///< e^-2 diameter of a typical dot (four standard deviations) [px]; 0: estimated
   double detection_threshold = 5;    ///< smallest height of a dot after filtering, in standard deviations of noise [1]
-  std::optional<CameraNoise> noise;  ///< not given: uniform noise, estimated from the residual of the frame
-  double saturation = std::numeric_limits<double>::infinity();  ///< levels from here on are ignored [grey levels]
-  bool resolve_overlaps = true;  ///< whether a fit with a significant residual is repeated with more dots
+  std::optional<CameraNoise> noise;  ///< none: uniform noise, estimated from the residual of the frame
 };
 
 }  // namespace gladstone::tracking

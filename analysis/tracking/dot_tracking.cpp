@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "render/base/contracts.h"
@@ -11,7 +12,7 @@
 
 namespace gladstone::tracking {
 
-std::vector<Vec2d> centres_of(LocatedDots const& located) {
+std::vector<Vec2d> dot_centres(LocatedDots const& located) {
   std::vector<Vec2d> centres;
   for (LocatedDot const& dot : located.dots) centres.push_back(dot.image.centre);
   return centres;
@@ -69,7 +70,7 @@ std::vector<Vec2d> predict(DisplacementField const& predictor, std::span<Vec2d c
 /// Returns where the dots of frame A are expected in frame B: at their partners, or else at their predicted places.
 /// Dots of frame B far from all of these are added; they may have entered the frame.
 std::vector<Vec2d> expected_places(LocatedDots const& a, LocatedDots const& b, std::span<DotMatch const> matches) {
-  std::vector<Vec2d> const centres_a = centres_of(a);
+  std::vector<Vec2d> const centres_a = dot_centres(a);
   std::vector<Vec2d> const displacements = predict(matched_vectors(a, b, matches), centres_a);
   std::vector<Vec2d> places;
   for (std::size_t i = 0; i < matches.size(); ++i) {
@@ -79,14 +80,11 @@ std::vector<Vec2d> expected_places(LocatedDots const& a, LocatedDots const& b, s
   }
   double const apart = 0.75 * b.diameter_px;
   PointCells const cells(places, std::max(apart, 1.0));
-  std::vector<Vec2d> const centres_b = centres_of(b);
-  std::vector<Vec2d> others;
-  for (Vec2d const centre : centres_b) {
+  for (Vec2d const centre : dot_centres(b)) {
     bool near = false;
     cells.for_near(centre, apart, [&](std::size_t k) { near = near || length(places[k] - centre) < apart; });
-    if (!near) others.push_back(centre);
+    if (!near) places.push_back(centre);
   }
-  places.insert(places.end(), others.begin(), others.end());
   return places;
 }
 
@@ -101,11 +99,11 @@ DisplacementField track_dots(Image<double> const& a, Image<double> const& b, Dis
   LocatedDots const dots_a =
       known ? locate_dots_near(a, settings.dots, settings.known_places_px) : locate_dots(a, settings.dots);
   LocatedDots dots_b = locate_dots(b, settings.dots);
-  std::vector<Vec2d> const centres_a = centres_of(dots_a), prediction = predict(predictor, centres_a);
-  std::vector<DotMatch> matches = match_dots(centres_a, centres_of(dots_b), prediction, settings.matching);
+  std::vector<Vec2d> const centres_a = dot_centres(dots_a), prediction = predict(predictor, centres_a);
+  std::vector<DotMatch> matches = match_dots(centres_a, dot_centres(dots_b), prediction, settings.matching);
   if (known) {
     dots_b = locate_dots_near(b, settings.dots, expected_places(dots_a, dots_b, matches));
-    matches = match_dots(centres_a, centres_of(dots_b), prediction, settings.matching);
+    matches = match_dots(centres_a, dot_centres(dots_b), prediction, settings.matching);
   }
   return matched_vectors(dots_a, dots_b, matches);
 }

@@ -17,10 +17,10 @@ struct TrackingSettings {
 
 /// Measures the displacement of every dot (BOS) or particle (PIV) between two frames.
 ///
-/// With known places, the dots of frame A are fitted there. Those of frame B are first found as without, and then
-/// fitted again: at the places of the matched dots, and at the predicted places of the others. Overlapping images are
-/// thus fitted with the same dots in both frames (prior knowledge of the pattern: Rajendran, Bane & Vlachos, Exp.
-/// Fluids 60 (2019) 162).
+/// With known places, the dots of frame A are fitted there. Those of frame B are first located without known places,
+/// and then fitted again: at the places of the matched dots, and at the predicted places of the others. Overlapping
+/// images are thus fitted with the same dots in both frames (prior knowledge of the pattern: Rajendran, Bane & Vlachos,
+/// Exp. Fluids 60 (2019) 162).
 /// @param predictor  displacement field that predicts the displacements, for example of a correlation; vectors that do
 ///                   not count are ignored; without vectors: zero
 /// @return one vector per dot of frame A (see matched_vectors()), with warnings on dots without a valid vector
@@ -42,6 +42,6 @@ DisplacementField track_dots(Image<double> const& a, Image<double> const& b, Dis
 DisplacementField matched_vectors(LocatedDots const& a, LocatedDots const& b, std::span<DotMatch const> matches);
 
 /// Returns the centres of located dots [px].
-std::vector<Vec2d> centres_of(LocatedDots const& located);
+std::vector<Vec2d> dot_centres(LocatedDots const& located);
 
 }  // namespace gladstone::tracking

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "analysis/tracking/dot_settings.h"
@@ -27,37 +28,35 @@ struct DotLevel {
   std::array<double, 3> by_shape{};  ///< with respect to xx (round: of both axes), xy, yy [1/px^2]
 };
 
-/// Light of a Gaussian dot on the pixels around it. The levels of a round dot are products of one factor per column and
-/// one per row, by the error function if the response is integrated (as GaussianSpot of the renderers). Those of an
+/// Light of a Gaussian dot, integrated over each pixel around it. The levels of a round dot are products of one factor
+/// per column and one per row, computed by the error function (as in GaussianSpot of the renderers). Those of an
 /// elliptic dot are means over 3x3 Gauss-Legendre points; their error is below 1e-4 of the height for widths of 0.6 px
 /// and more.
 class DotLight {
  public:
   /// @pre the second moments are positive definite
-  DotLight(GaussianDot const& dot, DotShape shape, PixelResponse response)
-      : dot_(dot), shape_(shape), response_(response) {
+  DotLight(GaussianDot const& dot, DotShape shape) : dot_(dot), shape_(shape) {
     double const sigma = std::sqrt(std::max(dot.xx, dot.yy));
     reach_ = static_cast<int>(std::ceil(5 * sigma + 1));
     first_column_ = static_cast<int>(std::lround(dot.centre.x)) - reach_;
     first_row_ = static_cast<int>(std::lround(dot.centre.y)) - reach_;
     if (shape != DotShape::round) return;
-    int const width = 2 * reach_ + 1;
-    factors_.resize(2 * static_cast<std::size_t>(width));
-    for (int i = 0; i < width; ++i) {
+    factors_.resize(2 * static_cast<std::size_t>(width()));
+    for (int i = 0; i < width(); ++i) {
       factors_[i] = factor(first_column_ + i - dot.centre.x);
-      factors_[width + i] = factor(first_row_ + i - dot.centre.y);
+      factors_[width() + i] = factor(first_row_ + i - dot.centre.y);
     }
   }
 
   int first_column() const { return first_column_; }
   int first_row() const { return first_row_; }
-  int width() const { return 2 * reach_ + 1; }  ///< columns and rows outside of which there is no light [px]
+  int width() const { return 2 * reach_ + 1; }  ///< number of columns and of rows with light [px]
 
   DotLevel at(int column, int row) const {
-    int const i = column - first_column_, j = row - first_row_, width = 2 * reach_ + 1;
-    if (i < 0 || j < 0 || i >= width || j >= width) return {};
+    int const i = column - first_column_, j = row - first_row_;
+    if (i < 0 || j < 0 || i >= width() || j >= width()) return {};
     if (shape_ == DotShape::elliptic) return elliptic_level(column - dot_.centre.x, row - dot_.centre.y);
-    Factor const &u = factors_[i], &v = factors_[width + j];
+    Factor const &u = factors_[i], &v = factors_[width() + j];
     DotLevel level;
     level.by_flux = u.value * v.value;
     level.value = dot_.flux * level.by_flux;
@@ -68,20 +67,16 @@ class DotLight {
   }
 
  private:
-  /// Share of light along one axis.
+  /// Fraction of the light in one column or row, and its derivatives.
   struct Factor {
     double value, by_centre, by_variance;
   };
 
   /// @param t  pixel minus centre [px]
   Factor factor(double t) const {
-    constexpr double per_root_two_pi = 0.39894228040143267794, root_half = 0.70710678118654752440;
+    constexpr double root_half = 0.5 * std::numbers::sqrt2, per_root_two_pi = std::numbers::inv_sqrtpi * root_half;
     double const sigma = std::sqrt(dot_.xx);
     auto const normal = [&](double s) { return per_root_two_pi * std::exp(-0.5 * s * s) / sigma; };
-    if (response_ == PixelResponse::sampled) {
-      double const s = t / sigma, value = normal(s);
-      return {value, value * s / sigma, 0.5 * value * (s * s - 1) / dot_.xx};
-    }
     double const low = (t - 0.5) / sigma, high = (t + 0.5) / sigma;
     double const at_low = normal(low), at_high = normal(high);
     return {0.5 * (std::erf(high * root_half) - std::erf(low * root_half)), at_low - at_high,
@@ -89,7 +84,7 @@ class DotLight {
   }
 
   DotLevel elliptic_level(double x, double y) const {
-    constexpr double per_two_pi = 0.15915494309189533577;
+    constexpr double per_two_pi = 0.5 * std::numbers::inv_pi;
     constexpr std::array<double, 3> place{-0.38729833462074168852, 0, 0.38729833462074168852};
     constexpr std::array<double, 3> weight{5.0 / 18, 8.0 / 18, 5.0 / 18};
     double const determinant = dot_.xx * dot_.yy - dot_.xy * dot_.xy;
@@ -105,8 +100,7 @@ class DotLight {
       level.by_shape[1] += share * (p * q - b);
       level.by_shape[2] += 0.5 * share * (q * q - c);
     };
-    if (response_ == PixelResponse::sampled) add(x, y, 1);
-    for (int j = 0; response_ == PixelResponse::integrated && j < 3; ++j)
+    for (int j = 0; j < 3; ++j)
       for (int i = 0; i < 3; ++i) add(x + place[i], y + place[j], weight[i] * weight[j]);
     level.value = dot_.flux * level.by_flux;
     level.by_x *= dot_.flux;
@@ -117,7 +111,6 @@ class DotLight {
 
   GaussianDot dot_;
   DotShape shape_;
-  PixelResponse response_;
   int reach_ = 0, first_column_ = 0, first_row_ = 0;
   std::vector<Factor> factors_;  // of the columns, then of the rows
 };

@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "analysis/tracking/nearest_points.h"
@@ -15,19 +16,19 @@ namespace {
 
 constexpr std::size_t local_count = 8;  // vectors that determine the local spacing
 constexpr double local_reach = 30;      // largest distance of those vectors, in mean spacings
-constexpr double per_root_pi = 0.56418958354775628695;
-constexpr double weight_reach = 2.5;  // radius of the window in widths; the weight there is 0.002
-constexpr double widest = 3;          // widest window of a plane, over the usual one
+constexpr double weight_reach = 2.5;    // radius of the window in widths; the weight there is 0.002
+constexpr double widest = 3;            // widest window of a plane, over the usual one
 
-struct Weighted {
+/// Vectors under a window, with their weights.
+struct WeightedVectors {
   std::vector<std::size_t> index;
   Eigen::VectorXd weight;  ///< sums to one
 };
 
-/// Returns the weights of the vectors under a window of the given width.
-Weighted weights_under(Vec2d point, std::span<Vec2d const> positions, NearestPoints const& cells, double nearest,
-                       double width, WindowOrder order) {
-  Weighted result;
+/// Computes the weights of the vectors under a window of the given width.
+WeightedVectors compute_weights(Vec2d point, std::span<Vec2d const> positions, NearestPoints const& cells,
+                                double nearest, double width, WindowOrder order) {
+  WeightedVectors result;
   result.index = cells.within(point, std::max(weight_reach * width, 1.0001 * nearest));
   auto const count = static_cast<Eigen::Index>(result.index.size());
   Eigen::MatrixXd terms(count, 3);
@@ -48,24 +49,24 @@ Weighted weights_under(Vec2d point, std::span<Vec2d const> positions, NearestPoi
   return result;
 }
 
-/// Returns the weights of the vectors around a point.
-Weighted weights_at(Vec2d point, std::span<Vec2d const> positions, NearestPoints const& cells,
-                    GaussianWindow const& window) {
+/// Chooses the window at a point, and computes the weights of its vectors; none if no vector is near the point.
+WeightedVectors choose_weights(Vec2d point, std::span<Vec2d const> positions, NearestPoints const& cells,
+                               GaussianWindow const& window) {
   std::vector<std::size_t> const local = cells.nearest(point, local_count, local_reach * cells.spacing());
   if (local.empty()) return {};
   double const nearest = length(positions[local.front()] - point);
-  if (!(nearest <= window.farthest_over_spacing * cells.spacing() * per_root_pi)) return {};
+  if (!(nearest <= window.farthest_over_spacing * cells.spacing() * std::numbers::inv_sqrtpi)) return {};
   double const farthest = length(positions[local.back()] - point);
   double const spacing = std::max(farthest / std::sqrt(static_cast<double>(local.size())), 1e-9);
   double const width = window.width_over_spacing * spacing;
   if (window.order == WindowOrder::plane) {
     // A plane that is noisier than a single vector extrapolates: widen the window.
     for (double wider = width; wider < widest * width; wider *= 1.25) {
-      Weighted const plane = weights_under(point, positions, cells, nearest, wider, WindowOrder::plane);
+      WeightedVectors const plane = compute_weights(point, positions, cells, nearest, wider, WindowOrder::plane);
       if (!plane.index.empty() && plane.weight.squaredNorm() <= 1) return plane;
     }
   }
-  return weights_under(point, positions, cells, nearest, width, WindowOrder::mean);
+  return compute_weights(point, positions, cells, nearest, width, WindowOrder::mean);
 }
 
 }  // namespace
@@ -91,7 +92,7 @@ DisplacementField interpolate_vectors(DisplacementField const& vectors, std::spa
   parallel_chunks(points.size(), 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       if (!is_finite(points[i]) || positions.empty()) continue;
-      Weighted const used = weights_at(points[i], positions, cells, window);
+      WeightedVectors const used = choose_weights(points[i], positions, cells, window);
       if (used.index.empty()) continue;
       Vec2d value{}, variance{};
       for (std::size_t k = 0; k < used.index.size(); ++k) {

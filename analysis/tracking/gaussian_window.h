@@ -22,11 +22,11 @@ struct GaussianWindow {
 /// Interpolates scattered vectors by the adaptive Gaussian window of Agui & Jimenez, J. Fluid Mech. 185 (1987) 447.
 ///
 /// The weight of a vector at the distance r is exp(-r^2 / H^2) with H = 1.24 times the mean spacing of the vectors. The
-/// spacing is here sqrt(area / (pi count)) of the circle through the eighth nearest vector, for which our measured
-/// optimum is near the same factor (see WindowOrder); other implementations use sqrt(area / count). A mean thus
-/// contains 2 pi H^2 / area per vector = 3.1 vectors on average. The plane instead of the weighted mean is an addition
-/// to the source; where it would be noisier than a single vector, as at edges, its window is widened up to threefold,
-/// and beyond that the mean is used.
+/// spacing is defined as sqrt(area / (pi count)) of the circle through the eighth nearest vector; for this definition
+/// the measured optimum of H is near the same factor (see WindowOrder). Other implementations use sqrt(area / count). A
+/// mean thus contains 2 pi H^2 / area per vector = 3.1 vectors on average. The plane instead of the weighted mean is an
+/// addition to the source; where it would be noisier than a single vector, as at edges, its window is widened up to
+/// threefold, and beyond that the mean is used.
 /// @param vectors  vectors that do not count (DisplacementField::counts()) are ignored
 /// @param points   [px]
 /// @return one vector per point, in their order. sigma_px is propagated from that of the vectors, as independent

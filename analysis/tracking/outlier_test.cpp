@@ -22,7 +22,7 @@ std::vector<char> find_outliers(std::span<Vec2d const> positions, std::span<Vec2
       Neighbours<double> neighbours;
       for (std::size_t const k : cells.nearest(usable[i], Neighbours<double>::capacity + 1, 8 * cells.spacing()))
         if (k != i && neighbours.count < Neighbours<double>::capacity) neighbours.append(values[k]);
-      outlier[i] = neighbours.count >= 3 &&
+      outlier[i] = neighbours.count >= fewest_neighbours &&
                    normalised_median_residual(values[i], neighbours, test.epsilon_px, test.threshold) > test.threshold;
     }
   });

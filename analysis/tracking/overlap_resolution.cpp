@@ -4,15 +4,16 @@
 #include <cmath>
 #include <utility>
 
+#include "render/base/units.h"
+
 namespace gladstone::tracking {
 namespace {
 
-constexpr double least_decrease = 25;   // of the sum of squares, by which an added dot is accepted
-constexpr std::size_t most_splits = 3;  // dots that are tried to be split, per added dot
-constexpr double closest_share = 0.35;  // smallest distance of two dots in standard deviations of their images
+constexpr double least_decrease = 25;   // smallest decrease of the sum of squares for which a dot is added
+constexpr std::size_t most_splits = 3;  // number of dots whose division is tried per added dot
 
 DotFit plain_fit(std::span<FitPixel const> pixels, std::span<GaussianDot const> start, DotModel const& model) {
-  return fit_dots(pixels, start, model.shape, model.response, model.prior);
+  return fit_dots(pixels, start, model.shape, model.prior);
 }
 
 /// Returns the pixels with the mismatch of the model added to their noise.
@@ -26,7 +27,7 @@ std::vector<FitPixel> with_mismatch(std::span<FitPixel const> pixels, DotFit con
 }
 
 /// Returns the indices of the dots in the order of decreasing chi2 within two standard deviations of their centres.
-std::vector<std::size_t> worst_first(std::span<FitPixel const> pixels, DotFit const& fit) {
+std::vector<std::size_t> sort_by_residual(std::span<FitPixel const> pixels, DotFit const& fit) {
   std::vector<std::pair<double, std::size_t>> order;
   for (std::size_t k = 0; k < fit.dots.size(); ++k) {
     GaussianDot const& one = fit.dots[k];
@@ -83,7 +84,7 @@ std::vector<GaussianDot> add_at_residual(std::span<FitPixel const> pixels, DotFi
     if (!(product / std::sqrt(square) > most)) continue;
     most = product / std::sqrt(square);
     added.centre = {1.0 * centre.column, 1.0 * centre.row};
-    added.flux = 6.28318530717958647693 * variance * product / square;
+    added.flux = 2 * pi * variance * product / square;
   }
   std::vector<GaussianDot> dots = fit.dots;
   if (most > 0) dots.push_back(added);
@@ -101,7 +102,7 @@ bool plausible(std::span<FitPixel const> pixels, DotFit const& fit, DotModel con
     });
     if (!inside) return false;
     for (std::size_t m = 0; m < k; ++m)
-      if (length(one.centre - fit.dots[m].centre) < closest_share * std::sqrt(one.xx)) return false;
+      if (length(one.centre - fit.dots[m].centre) < closest_over_sigma * std::sqrt(one.xx)) return false;
   }
   return true;
 }
@@ -123,7 +124,7 @@ DotFit fit_overlapping_dots(std::span<FitPixel const> pixels, std::span<Gaussian
     better.cost = best.cost - least_decrease;
     bool found = false;
     std::vector<std::vector<GaussianDot>> trials{add_at_residual(tolerant, best, model)};
-    std::vector<std::size_t> const worst = worst_first(tolerant, best);
+    std::vector<std::size_t> const worst = sort_by_residual(tolerant, best);
     for (std::size_t k = 0; k < std::min(most_splits, worst.size()); ++k)
       trials.push_back(split_dot(tolerant, best, worst[k]));
     for (std::vector<GaussianDot> const& dots : trials) {

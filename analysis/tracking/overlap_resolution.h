@@ -4,10 +4,12 @@
 
 namespace gladstone::tracking {
 
+/// Smallest distance of two dots, in standard deviations of their images; closer dots are one dot.
+inline constexpr double closest_over_sigma = 0.35;
+
 /// Model of the dots of a frame, for fits of groups.
 struct DotModel {
   DotShape shape = DotShape::round;
-  PixelResponse response = PixelResponse::integrated;
   DotPrior prior;
   double mismatch = 0;             ///< rms deviation of dot images from the Gaussian over their level [1]
   double detection_threshold = 5;  ///< smallest flux of a dot, in standard uncertainties [1]
@@ -16,8 +18,8 @@ struct DotModel {
 /// Fits a group of dots and adds dots while this decreases the sum of squares significantly: by 25 or more, which noise
 /// alone does with a probability of about 1e-4 (chi2 of three parameters). A new dot is placed at the largest residual
 /// or by splitting one of the three dots with the worst residual along the principal axis of its second moments. Each
-/// addition is tested with the deviation of dot images from the Gaussian as a part of the noise, so that other shapes
-/// are not taken for several dots.
+/// addition is tested with the deviation of dot images from the Gaussian as a part of the noise, so that a dot of
+/// another shape is not fitted by several dots.
 /// @param most_additions  largest number of added dots; 0: plain fit
 /// @return the fit with the accepted dots, weighted by the noise alone
 DotFit fit_overlapping_dots(std::span<FitPixel const> pixels, std::span<GaussianDot const> start, DotModel const& model,

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <optional>
 #include <tuple>
+#include <utility>
 
 #include "analysis/tracking/nearest_points.h"
 #include "render/base/contracts.h"
@@ -26,9 +27,8 @@ struct Link {
 class FourFrameStep {
  public:
   FourFrameStep(std::span<std::vector<Vec2d> const> frames, std::size_t frame, TrackSettings const& settings)
-      : frames_(frames), frame_(frame), next_(frames[frame + 1]), settings_(settings) {
-    last_ = frame + 2 >= frames.size();
-    if (!last_) after_.emplace_back(frames[frame + 2]);
+      : frames_(frames), frame_(frame), next_(frames[frame + 1]) {
+    if (frame + 2 < frames.size()) after_.emplace(frames[frame + 2]);
     search_ = settings.search_radius_px > 0 ? settings.search_radius_px : 0.5 * next_.spacing();
     start_ = settings.start_radius_px > 0 ? settings.start_radius_px : search_;
   }
@@ -44,10 +44,10 @@ class FourFrameStep {
     for (std::size_t const k : next_.within(here + step, radius)) {
       Vec2d const there = frames_[frame_ + 1][k];
       double cost = length(there - here - step);
-      if (!last_) {
+      if (after_) {
         Vec2d const extended = starting ? 2.0 * there - here : 3.0 * (there - here) + place(track, 1);
         // Without a particle in the frame after the next, the distance decides among equally bad candidates.
-        double const distance = after_.front().distance(extended, search_);
+        double const distance = after_->distance(extended, search_);
         cost = std::isfinite(distance) ? distance : search_ + cost;
       }
       found.push_back({starting, cost, index, k});
@@ -64,9 +64,7 @@ class FourFrameStep {
   std::span<std::vector<Vec2d> const> frames_;
   std::size_t frame_;
   NearestPoints next_;
-  std::vector<NearestPoints> after_;  // the frame after the next one, if there is one
-  TrackSettings settings_;
-  bool last_ = false;
+  std::optional<NearestPoints> after_;  // the frame after the next one, if there is one
   double search_ = 0, start_ = 0;
 };
 

@@ -36,7 +36,8 @@ using DisplacementPrediction = std::function<Vec2d(Vec2d)>;
 /// within the search radius is extended to frame n + 2 with constant acceleration. The candidate whose extension is
 /// closest to a particle of frame n + 2 continues the track. A particle without an earlier place is predicted by the
 /// given displacement, and extended with constant velocity. In the last frame the distance from the prediction decides.
-/// A particle wanted by several tracks belongs to that of the smallest distance, and established tracks choose first.
+/// If several tracks could continue with the same particle, established tracks have priority over starting ones, then
+/// the track with the smallest distance.
 /// @param frames   places of the particles in each frame [px]; those that are not finite are ignored
 /// @param predict  displacement of particles without an earlier place, for example of a correlation; null: zero
 /// @return tracks of at least settings.shortest_track frames, by first frame and particle; each particle is in at most
@@ -46,7 +47,7 @@ std::vector<Track> track_particles(std::span<std::vector<Vec2d> const> frames, D
                                    TrackSettings const& settings = {});
 
 /// Returns the displacements of all tracked particles from a frame to the next one, at the mid-positions.
-/// @param sigmas  standard uncertainty of the places in each frame [px]; empty: not known
+/// @param sigmas  standard uncertainty of the places in each frame [px]; empty: unknown
 /// @pre frame + 1 < frames.size(); sigmas are empty or of the sizes of frames
 DisplacementField track_vectors(std::span<Track const> tracks, std::span<std::vector<Vec2d> const> frames,
                                 std::span<std::vector<Vec2d> const> sigmas, std::size_t frame);

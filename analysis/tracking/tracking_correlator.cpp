@@ -1,12 +1,8 @@
 #include "analysis/tracking/tracking_correlator.h"
 
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <utility>
-
 #include "analysis/correlation/correlation_methods.h"
 #include "analysis/correlation/pair_assessment.h"
+#include "analysis/tracking/dot_tracking.h"
 #include "render/base/contracts.h"
 #include "render/base/not_a_number.h"
 
@@ -14,6 +10,24 @@ namespace gladstone::tracking {
 namespace {
 
 constexpr Vec2d unknown{not_a_number, not_a_number};
+
+/// Converts the table [correlate.tracking] and the known dots to settings of track_dots().
+/// @pre the words of the table are valid
+TrackingSettings tracking_settings(CorrelationSettings const& correlate) {
+  TrackingTable const& table = correlate.tracking;
+  GLADSTONE_EXPECTS(table.polarity == "auto" || table.polarity == "bright" || table.polarity == "dark");
+  GLADSTONE_EXPECTS(table.shape == "round" || table.shape == "elliptic");
+  TrackingSettings settings;
+  settings.dots.polarity = table.polarity == "auto"     ? DotPolarity::automatic
+                           : table.polarity == "bright" ? DotPolarity::bright
+                                                        : DotPolarity::dark;
+  settings.dots.shape = table.shape == "round" ? DotShape::round : DotShape::elliptic;
+  settings.dots.diameter_px = table.diameter_px.value_or(0.0);
+  settings.matching.search_radius_px = table.search_radius_px.value_or(0.0);
+  if (table.displacement_bound_px) settings.matching.displacement_bound_px = *table.displacement_bound_px;
+  settings.known_places_px = correlate.known_dots_px;
+  return settings;
+}
 
 /// Returns the settings of the correlation that predicts the displacements.
 CorrelationSettings predictor_settings(CorrelationSettings settings) {
@@ -24,7 +38,7 @@ CorrelationSettings predictor_settings(CorrelationSettings settings) {
   return settings;
 }
 
-/// Returns a correlation without its ambiguous vectors.
+/// Invalidates the ambiguous vectors of a correlation.
 DisplacementField certain_vectors(DisplacementField field) {
   for (std::size_t i = 0; i < field.size(); ++i)
     if (field.ambiguous[i] != Ambiguity::none && field.status[i] != VectorStatus::masked)
@@ -45,12 +59,11 @@ void invalidate(DisplacementField& field) {
 
 class TrackingCorrelator final : public Correlator {
  public:
-  TrackingCorrelator(CorrelationSettings const& settings, GaussianWindow const& window)
+  explicit TrackingCorrelator(CorrelationSettings const& settings)
       : predictor_settings_(predictor_settings(settings)),
         predictor_(make_correlator(predictor_settings_)),
         tracking_(tracking_settings(settings)),
-        on_grid_(settings.tracking.output == "grid"),
-        window_(window) {}
+        on_grid_(settings.tracking.output == "grid") {}
 
   DisplacementField correlate(Image<double> const& reference, Image<double> const& flow) const override {
     return correlate_pair(HostFrames(reference, flow));
@@ -60,7 +73,7 @@ class TrackingCorrelator final : public Correlator {
     DisplacementField predictor = predictor_->correlate_pair(frames);
     assess_pair(predictor, frames, *predictor_, predictor_settings_);
     DisplacementField const dots = track_dots(frames.reference(), frames.flow(), certain_vectors(predictor), tracking_);
-    DisplacementField field = on_grid_ ? on_grid_of(predictor, dots) : dots;
+    DisplacementField field = on_grid_ ? interpolate_to_grid(predictor, dots) : dots;
     field.verdict = predictor.verdict;
     field.warnings.clear();
     for (std::string const& warning : predictor.warnings)
@@ -72,8 +85,8 @@ class TrackingCorrelator final : public Correlator {
 
  private:
   /// Interpolates the vectors of the dots to the grid of the predictor.
-  DisplacementField on_grid_of(DisplacementField const& predictor, DisplacementField const& dots) const {
-    DisplacementField field = interpolate_vectors(dots, predictor.position_px, window_);
+  static DisplacementField interpolate_to_grid(DisplacementField const& predictor, DisplacementField const& dots) {
+    DisplacementField field = interpolate_vectors(dots, predictor.position_px);
     for (std::size_t i = 0; i < field.size(); ++i) {
       if (predictor.status[i] != VectorStatus::masked) continue;
       field.status[i] = VectorStatus::masked;
@@ -94,30 +107,12 @@ class TrackingCorrelator final : public Correlator {
   std::unique_ptr<Correlator> predictor_;
   TrackingSettings tracking_;
   bool on_grid_;
-  GaussianWindow window_;
 };
 
 }  // namespace
 
-TrackingSettings tracking_settings(CorrelationSettings const& correlate) {
-  TrackingTable const& table = correlate.tracking;
-  GLADSTONE_EXPECTS(table.polarity == "auto" || table.polarity == "bright" || table.polarity == "dark");
-  GLADSTONE_EXPECTS(table.shape == "round" || table.shape == "elliptic");
-  TrackingSettings settings;
-  settings.dots.polarity = table.polarity == "auto"     ? DotPolarity::automatic
-                           : table.polarity == "bright" ? DotPolarity::bright
-                                                        : DotPolarity::dark;
-  settings.dots.shape = table.shape == "round" ? DotShape::round : DotShape::elliptic;
-  settings.dots.diameter_px = table.diameter_px.value_or(0.0);
-  settings.matching.search_radius_px = table.search_radius_px.value_or(0.0);
-  if (table.displacement_bound_px) settings.matching.displacement_bound_px = *table.displacement_bound_px;
-  settings.known_places_px = correlate.known_dots_px;
-  return settings;
-}
-
-std::unique_ptr<Correlator> make_tracking_correlator(CorrelationSettings const& settings,
-                                                     GaussianWindow const& window) {
-  return std::make_unique<TrackingCorrelator>(settings, window);
+std::unique_ptr<Correlator> make_tracking_correlator(CorrelationSettings const& settings) {
+  return std::make_unique<TrackingCorrelator>(settings);
 }
 
 std::unique_ptr<Correlator> make_cpu_correlator(CorrelationSettings const& settings) {

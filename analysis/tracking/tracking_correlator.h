@@ -3,29 +3,22 @@
 #include <memory>
 
 #include "analysis/correlation/correlator.h"
-#include "analysis/tracking/dot_tracking.h"
 
 namespace gladstone::tracking {
 
 /// Creates a correlator whose vectors are those of tracked dots.
 ///
-/// - Prediction: the standard cross-correlation with the given settings; its ambiguous vectors do not count.
-/// - Decorrelation test: that of the prediction (assess_pair()). If its frames do not correlate, all vectors are
-/// invalid
-///   with reason `uncorrelated`.
+/// - Prediction: the standard cross-correlation with the given settings, without its ambiguous vectors.
+/// - Decorrelation test: that of the prediction (assess_pair()). All vectors of frames that do not correlate are
+///   invalid, with reason `uncorrelated`.
 /// - Vectors: settings.tracking.output "grid" interpolates them to the grid of the last pass (interpolate_vectors());
 ///   windows that the correlation reports as masked remain masked. "scattered" returns those of track_dots().
 /// - sigma_px: from the uncertainties of the dots. On the grid, peak ratio and correlation are NaN.
-/// - Warnings: those of the prediction and of track_dots(), and frames without dots.
-std::unique_ptr<Correlator> make_tracking_correlator(CorrelationSettings const& settings,
-                                                     GaussianWindow const& window = {});
+/// - Warnings: those of the prediction and of track_dots().
+std::unique_ptr<Correlator> make_tracking_correlator(CorrelationSettings const& settings);
 
 /// Creates the CPU correlator of any method: make_tracking_correlator() or make_correlator().
 /// @pre settings.method is one of correlation_methods()
 std::unique_ptr<Correlator> make_cpu_correlator(CorrelationSettings const& settings);
-
-/// Converts the table [correlate.tracking] and the known dots to settings of track_dots().
-/// @pre the words of the table are valid
-TrackingSettings tracking_settings(CorrelationSettings const& correlate);
 
 }  // namespace gladstone::tracking

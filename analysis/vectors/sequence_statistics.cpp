@@ -10,7 +10,7 @@
 namespace gladstone {
 namespace {
 
-constexpr std::size_t most_lag_bytes = std::size_t{512} << 20;
+constexpr std::size_t most_lag_bytes = std::size_t{512} << 20;  // memory of the autocorrelation
 constexpr std::size_t points_per_chunk = 1024;
 
 bool is_measured(DisplacementField const& field, std::size_t i) {
@@ -187,7 +187,8 @@ SequenceMoments SequenceStatistics::moments() const {
 void write_sequence_statistics(std::string const& path, SequenceMoments const& moments, FileOrigin const& origin) {
   Hdf5Writer file(path, origin);
   std::size_t const size = moments.position_px.size();
-  auto const write = [&](char const* name, char const* units, char const* description, auto const& value_of) {
+  auto const write = [&](std::string const& name, std::string const& units, std::string const& description,
+                         auto const& value_of) {
     std::vector<double> values(size);
     for (std::size_t i = 0; i < size; ++i) values[i] = value_of(i);
     file.write(name, std::span<double const>(values), {size}, units, description, "vector");
@@ -195,19 +196,14 @@ void write_sequence_statistics(std::string const& path, SequenceMoments const& m
   auto const write_both = [&](std::string const& quantity, std::string const& description,
                               std::vector<Vec2d> const& values, std::string const& ending = "_px") {
     char const* const units = ending.empty() ? "1" : "px";
-    write(("/u_" + quantity + ending).c_str(), units, (description + " of u").c_str(),
-          [&](std::size_t i) { return values[i].x; });
-    write(("/v_" + quantity + ending).c_str(), units, (description + " of v").c_str(),
-          [&](std::size_t i) { return values[i].y; });
+    write("/u_" + quantity + ending, units, description + " of u", [&](std::size_t i) { return values[i].x; });
+    write("/v_" + quantity + ending, units, description + " of v", [&](std::size_t i) { return values[i].y; });
   };
   auto const write_stress = [&](std::string const& ending, std::string const& description,
                                 std::vector<ReynoldsStress> const& values) {
-    write(("/uu" + ending).c_str(), "px^2", (description + "variance of u").c_str(),
-          [&](std::size_t i) { return values[i].uu; });
-    write(("/vv" + ending).c_str(), "px^2", (description + "variance of v").c_str(),
-          [&](std::size_t i) { return values[i].vv; });
-    write(("/uv" + ending).c_str(), "px^2", (description + "covariance of u and v").c_str(),
-          [&](std::size_t i) { return values[i].uv; });
+    write("/uu" + ending, "px^2", description + "variance of u", [&](std::size_t i) { return values[i].uu; });
+    write("/vv" + ending, "px^2", description + "variance of v", [&](std::size_t i) { return values[i].vv; });
+    write("/uv" + ending, "px^2", description + "covariance of u and v", [&](std::size_t i) { return values[i].uv; });
   };
   write("/x_px", "px", "column of the window centre, pixel centres at integers from 0",
         [&](std::size_t i) { return moments.position_px[i].x; });

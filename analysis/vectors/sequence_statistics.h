@@ -37,8 +37,8 @@ struct SequenceMoments {
 /// Accumulates the statistics of a sequence of displacement fields on one grid. Memory is bounded: sums of the first
 /// four powers and products of (u, v), and for the autocorrelation the last `lags` fields and the products with them.
 ///
-/// A vector counts if it was measured: valid, or replaced by a secondary peak of its own window. Vectors replaced by
-/// the median of their neighbours are interpolated and would reduce the stresses.
+/// Only measured vectors are included: valid ones, and those replaced by a secondary peak of their own window. Vectors
+/// replaced by the median of their neighbours are interpolated and would reduce the stresses.
 ///
 /// With the autocorrelation rho_k at lag k and n vectors, the effective number of independent samples is
 /// N = n/(1 + 2 sum_k (1 - k/n) rho_k); the sum ends before the first rho_k <= 0 (Smith, Neal, Feero & Richards,
@@ -56,7 +56,7 @@ class SequenceStatistics {
 
   /// Adds the next field. @pre it has the positions of the first one
   void add(DisplacementField const& field);
-  /// Adds a field that is missing, so that the lags between its neighbours remain correct.
+  /// Adds a gap in place of a missing field, so that the lags between its neighbours remain correct.
   void skip();
 
   std::size_t samples() const { return samples_; }

@@ -49,7 +49,7 @@ struct PulseAim {
 
 /// Ladder of ray counts per particle (RaysLadder), on the device.
 struct LadderView {
-  static constexpr int max_step_count = 16;
+  static constexpr int max_step_count = 16;  ///< maximum number of steps of the ladder
 
   RequiredRayAccuracy goal;
   double light_per_photon = 0;  ///< light in the images per photon

@@ -9,6 +9,7 @@ from typing import Any, Literal
 import numpy as np
 
 from . import _core
+from ._errors import check_choice
 from ._field import Field
 from ._progress import Progress, reporting
 
@@ -29,7 +30,7 @@ class BenchmarkCase:
 
     @property
     def description(self) -> str:
-        """What the images show."""
+        """Displacement and noise of the images, in words."""
         return self._core.what
 
     @property
@@ -110,6 +111,7 @@ def benchmark(
 
     Returns the scores, a row for each estimator and case; `print` shows the rms errors in px.
     """
+    check_choice("at", at, ("mid", "a"))
     scores = Scores()
     names = list(cases) if cases is not None else benchmark_cases()
     with reporting(progress) as report:
@@ -122,17 +124,15 @@ def benchmark(
                 start = time.perf_counter()
                 given = estimate(case.a, case.b)
                 seconds = time.perf_counter() - start
-                field = _placed(given, at)
+                field = _at_mid_positions(given, at)
                 scores.append({"estimator": theirs, "case": name, "seconds": seconds, **case.score(field)})
             if report is not None:
                 report(1, "benchmark", number + 1, len(names))
     return scores
 
 
-def _placed(given, at: str) -> Field:
-    """Returns a field at the mid-positions of its vectors."""
-    if at not in ("mid", "a"):
-        raise ValueError(f'at must be "mid" or "a", got {at!r}')
+def _at_mid_positions(given, at: str) -> Field:
+    """Returns the field of an estimator; moves dense displacements of frame a to their mid-positions."""
     dense = not isinstance(given, (Field, tuple, list)) and not hasattr(given, "data_vars")
     field = Field.of(given)
     if at == "mid" or not dense:

@@ -97,10 +97,10 @@ class Calibration:
 def calibrate(given, images: Iterable[str | os.PathLike] = (), *, progress: Progress = False) -> Calibration:
     """Fits a camera to images of a dot grid in several planes.
 
-    given: a `CalibrationCase`, the CASE folder of one, or, with `images`, a setup that describes the grid.
+    given: a `CalibrationCase`, its CASE folder, or, with `images`, a setup (or its file) that describes the grid.
     images: your own image files, one for each plane of calibration.planes_mm in that order.
     """
-    pictures = [os.fspath(one) for one in images]
+    files = [os.fspath(one) for one in images]
     with reporting(progress) as report, tempfile.TemporaryDirectory() as folder:
         if isinstance(given, CalibrationCase):
             place = os.path.join(folder, "case")
@@ -110,4 +110,4 @@ def calibrate(given, images: Iterable[str | os.PathLike] = (), *, progress: Prog
             given.save(place)
         else:
             place = os.fspath(given)
-        return Calibration(_core.calibrate(place, pictures, report))
+        return Calibration(_core.calibrate(place, files, report))

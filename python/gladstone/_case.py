@@ -9,8 +9,11 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 
 from . import _core
-from ._field import Field
+from ._errors import check_choice
+from ._field import Field, correlate
 from ._progress import Progress, reporting
+from ._report import Report
+from ._setup import Setup
 
 
 class Accuracy(NamedTuple):
@@ -39,7 +42,7 @@ class Truth:
         self._core = core
 
     def _array(self, name: str) -> np.ndarray:
-        array = _core.truth_array(self._core, name)
+        array = self._optional(name)
         return np.empty((0, 2)) if array is None else array
 
     def _optional(self, name: str) -> np.ndarray | None:
@@ -95,7 +98,7 @@ class Truth:
 
     @property
     def eq9_cone_px(self) -> np.ndarray | None:
-        """[N, 2] the same theory averaged over dot and aperture [px]. BOS only."""
+        """[N, 2] displacement by the aperture-averaged theory: Eq. 9 averaged over dot and aperture [px]. BOS only."""
         return None if self._core.is_piv else self._optional("eq9_cone_px")
 
     @property
@@ -131,8 +134,7 @@ class Truth:
 
         Returns [rows, columns, 2] in px. Rays are traced for each of these pixels.
         """
-        if at not in ("mid", "a"):
-            raise ValueError(f'at must be "mid" or "a", got {at!r}')
+        check_choice("at", at, ("mid", "a"))
         with reporting(progress) as report:
             return _core.flow(self._core, at == "a", spacing_px, device, report)
 
@@ -184,33 +186,27 @@ class Case:
         return self._core.is_piv
 
     @property
-    def setup(self):
-        """Setup with every default and every "auto" replaced by the value used."""
-        from ._setup import Setup
-
+    def setup(self) -> Setup:
+        """Setup with every default, and the value used in place of every "auto"."""
         return Setup(self._core.resolved())
 
     def correlate(self, **settings) -> Field:
         """Measures the displacement with the settings of the case's own [correlate] table; see `correlate`."""
-        from ._field import correlate
-
         own = self.setup.to_dict().get("correlate", {})
-        aliases = {"window": "window_px"}
-        given = {aliases.get(name, name): value for name, value in settings.items()}
-        return correlate(self.a, self.b, **{**own, **given})
+        if "window" in settings:
+            own.pop("window_px", None)
+        return correlate(self.a, self.b, **{**own, **settings})
 
-    def compare(self, field, *, truth_at: Literal["mid", "a"] = "mid", device: str = "auto", progress: Progress = False):
+    def compare(
+        self, field, *, truth_at: Literal["mid", "a"] = "mid", device: str = "auto", progress: Progress = False
+    ) -> Report:
         """Compares measured vectors with truth and theory.
 
-        field: a `Field`, or (x, y, u, v) arrays in px.
-        truth_at: where a dot counts: "mid" (symmetric estimators) or "a" (one-sided estimators).
-
-        Returns a `Report`.
+        field: a `Field`, or anything that `Field.of` accepts [px].
+        truth_at: position to which the displacement of a dot belongs: "mid" (midway between both frames, symmetric
+            estimators) or "a" (in frame a, one-sided estimators).
         """
-        from ._report import Report
-
-        if truth_at not in ("mid", "a"):
-            raise ValueError(f'truth_at must be "mid" or "a", got {truth_at!r}')
+        check_choice("truth_at", truth_at, ("mid", "a"))
         field = Field.of(field)
         with reporting(progress) as report:
             compared = _core.compare(self._core, field._core, truth_at == "a", device, report)
@@ -242,10 +238,8 @@ class CalibrationCase:
         return np.asarray(self._core.planes_m)
 
     @property
-    def setup(self):
-        """Setup with every default and every "auto" replaced by the value used."""
-        from ._setup import Setup
-
+    def setup(self) -> Setup:
+        """Setup with every default, and the value used in place of every "auto"."""
         return Setup(self._core.resolved())
 
     def save(self, folder: str | os.PathLike) -> None:

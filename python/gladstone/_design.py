@@ -12,11 +12,11 @@ from ._setup import as_setup
 
 
 class Design:
-    """Answer of `design`."""
+    """Design sheet of a setup, and the recommended set-up; made by `design`."""
 
     def __init__(self, answer: dict[str, Any], text: str, feasible: bool):
         self.answer = answer
-        """The object that `gladstone design --json` prints."""
+        """All results, as `gladstone design --json` prints them."""
         self.feasible = feasible
         """Whether a set-up meets the requirements; True without requirements."""
         self._text = text
@@ -55,10 +55,11 @@ def design(
 ) -> Design:
     """Computes the design sheet of a setup. With a table [requirements], also recommends a set-up that meets them.
 
-    verify: number of the best combinations to render and correlate; 0: closed forms only.
-    repeats, seed: of these simulations.
-    apply: file (TOML) for the recommended setup.
-    figures: folder for the layout, the design map and the front.
+    verify: number of best combinations to verify by rendering and correlation; 0: closed forms only.
+    repeats: number of simulations of each of these combinations.
+    seed: seed of the random numbers of these simulations.
+    apply: file (TOML) to write the recommended setup to.
+    figures: folder for figures of the layout, the design map and the Pareto front.
     """
     with reporting(progress) as report:
         answer, text, feasible = _core.design(

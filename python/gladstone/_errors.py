@@ -3,7 +3,15 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from typing import NamedTuple
+
+
+def check_choice(name: str, given: str, choices: Sequence[str]) -> None:
+    """Raises ValueError if an argument is not one of its choices."""
+    if given not in choices:
+        listed = ", ".join(f'"{one}"' for one in choices[:-1]) + f' or "{choices[-1]}"'
+        raise ValueError(f"{name} must be {listed}, got {given!r}")
 
 
 class GladstoneWarning(UserWarning):
@@ -18,7 +26,7 @@ class Problem(NamedTuple):
     """One problem of a setup."""
 
     file: str | None
-    """Name of the setup file; None: the value was given by `Setup.replace`."""
+    """Name of the setup file; None if the value was given by `Setup.replace`."""
     line: int | None
     """Line in the file, from 1."""
     column: int | None
@@ -26,7 +34,7 @@ class Problem(NamedTuple):
     key: str | None
     """Key path, such as "lens.f_number"."""
     text: str
-    """What is wrong, and how to correct it."""
+    """Description of the problem, with its remedy."""
     code: str
     """Kind of the problem: "invalid_value", "unknown_key", "missing_key", "wrong_type", "out_of_range",
     "unknown_choice", "syntax" or "unreadable_file"."""
@@ -42,7 +50,7 @@ _PLACE = re.compile(r"(?P<file>.*?):(?P<line>\d+):(?P<column>\d+)\Z", re.DOTALL)
 
 
 def _problem(where: str, text: str, key: str, code: str) -> Problem:
-    """Makes a problem of its location "file:line:column" or "--set key=value", its text, key and code."""
+    """Makes a problem; `where` is its location, "file:line:column" or "--set key=value"."""
     if where.startswith("--set "):
         return Problem(None, None, None, key or None, text, code)
     if match := _PLACE.match(where):
@@ -51,25 +59,25 @@ def _problem(where: str, text: str, key: str, code: str) -> Problem:
 
 
 class SetupError(Error, ValueError):
-    """A setup with problems; `problems` lists all of them."""
+    """A setup with problems; `problems` lists them, `more` is the number of further ones."""
 
     problems: tuple[Problem, ...]
 
     def __init__(self, problems=(), more: int = 0):
-        self.problems = tuple(_problem(*one) if len(one) == 4 else Problem(*one) for one in problems)
+        self.problems = tuple(one if isinstance(one, Problem) else _problem(*one) for one in problems)
         self.more = more
         text = "\n".join(str(problem) for problem in self.problems)
         super().__init__(f"{text}\nand {more} problems more" if more else text)
 
     def __reduce__(self):
-        return type(self), ([tuple(problem) for problem in self.problems], self.more)
+        return type(self), (self.problems, self.more)
 
 
 class _FileError(Error):
     file: str
     """File or input in which the problem is."""
     text: str
-    """What is wrong, and how to correct it."""
+    """Description of the problem, with its remedy."""
 
     def __init__(self, file: str, text: str):
         self.file, self.text = file, text

@@ -30,11 +30,12 @@ def _host_image(image):
 
 
 def _overrides(settings: dict[str, Any]) -> list[str]:
-    given = dict(settings)
+    """Returns settings of the correlation as assignments of setup keys, "correlate.overlap=0.5"."""
+    given = {name: value for name, value in settings.items() if value is not None}
     if "window" in given:
         window = given.pop("window")
         given["window_px"] = [window] if np.ndim(window) == 0 else list(window)
-    return [f"correlate.{name}={_toml.value(value)}" for name, value in given.items() if value is not None]
+    return [f"correlate.{name}={_toml.value(value)}" for name, value in given.items()]
 
 
 def correlate(a, b, *, device: str = "auto", progress: Progress = False, **settings) -> Field:
@@ -55,7 +56,8 @@ def correlate(a, b, *, device: str = "auto", progress: Progress = False, **setti
     warnings = field.warnings
     if not warnings and not field.valid.any():
         warnings = [
-            f"none of {len(field)} vectors is valid; are these two frames of one scene, with dots in every window?"
+            f"none of the {len(field)} vectors is valid; "
+            "check that both frames show one scene, with dots in every window"
         ]
     deliver([(True, warning) for warning in warnings])
     return field
@@ -73,9 +75,9 @@ class Field:
 
         A displacement of NaN marks an invalid vector.
         """
-        arrays = [None if one is None else np.ascontiguousarray(one, float).ravel() for one in (x, y, u, v)]
-        sigma = [None if one is None else np.ascontiguousarray(one, float).ravel() for one in (sigma_u, sigma_v)]
-        self._core = _core.field_of_arrays(*arrays, *sigma)
+        arrays = (x, y, u, v, sigma_u, sigma_v)
+        flat = [None if one is None else np.ascontiguousarray(one, float).ravel() for one in arrays]
+        self._core = _core.field_of_arrays(*flat)
 
     @classmethod
     def _of(cls, core: _core.MeasuredField) -> Field:
@@ -111,8 +113,8 @@ class Field:
     def load(cls, path: str | os.PathLike, *, conventions: str = "", image_rows: int = 0) -> Field:
         """Reads a file of vectors: gladstone, OpenPIV, PIVlab, DaVis, Insight, Dantec, JPIV or any x, y, u, v.
 
-        conventions: how the file is to be read, as for `gladstone compare --conventions`; default: as its format says.
-        image_rows: rows of the image, for files that count y upwards from its lower edge.
+        conventions: conventions of the file, as for `gladstone compare --conventions`; default: those of its format.
+        image_rows: number of rows of the image, required for files that count y upwards from its lower edge.
         """
         return cls._of(_core.load_field(os.fspath(path), conventions, image_rows))
 
@@ -194,7 +196,7 @@ class Field:
 
     @property
     def verdict(self) -> str:
-        """Whether the frames correlate at all: "correlates", "does not correlate" or "not judged: REASON"."""
+        """Result of the decorrelation test: "correlates", "does not correlate" or "not judged: REASON"."""
         return self._core.verdict
 
     @property

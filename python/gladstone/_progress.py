@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
-from typing import Union
+from collections.abc import Callable, Iterator
+from contextlib import closing, contextmanager
+from typing import Any, Union
 
 Progress = Union[bool, Callable[[str, int, int], None]]
 """True: a progress bar; False: none; a function (label, done, total): called at most ten times a second."""
@@ -40,39 +41,25 @@ class _Lines:
             self._number = number
             print(f"{label}: {total}", file=sys.stderr)
 
-    def close(self) -> None:
-        pass
 
+@contextmanager
+def reporting(progress: Progress) -> Iterator[Callable[[int, str, int, int], Any] | None]:
+    """Context manager whose value is the callback of the compiled part, or None.
 
-class _Function:
-    def __init__(self, function):
-        self._function = function
-
-    def __call__(self, number: int, label: str, done: int, total: int) -> None:
-        self._function(label, done, total)
-
-    def close(self) -> None:
-        pass
-
-
-class reporting:
-    """Context manager whose value is the callback of the compiled part, or None."""
-
-    def __init__(self, progress: Progress):
-        self._sink = None
-        if callable(progress):
-            self._sink = _Function(progress)
-        elif progress:
-            try:
-                from tqdm.auto import tqdm
-            except ImportError:
-                self._sink = _Lines()
-            else:
-                self._sink = _Bars(tqdm)
-
-    def __enter__(self):
-        return self._sink
-
-    def __exit__(self, *_):
-        if self._sink is not None:
-            self._sink.close()
+    The callback takes the number of the computation, from 1, its label, and the steps done and in total.
+    """
+    if callable(progress):
+        yield lambda number, label, done, total: progress(label, done, total)
+        return
+    if not progress:
+        yield None
+        return
+    try:
+        from tqdm.auto import tqdm
+    except ImportError:
+        tqdm = None
+    if tqdm is None:
+        yield _Lines()
+        return
+    with closing(_Bars(tqdm)) as bars:
+        yield bars

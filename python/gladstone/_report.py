@@ -58,9 +58,7 @@ class Report:
 
     def _vectors(self, name: str) -> np.ndarray | None:
         array = self._core.array(name)
-        if array is None:
-            return None
-        return array.reshape(*self.shape, 2)
+        return None if array is None else array.reshape(*self.shape, 2)
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -91,7 +89,7 @@ class Report:
 
     @property
     def window_truth_px(self) -> np.ndarray:
-        """True displacements averaged as the interrogation windows average them."""
+        """True displacements averaged over the interrogation windows."""
         return self._vectors("window_truth_px")
 
     @property
@@ -101,7 +99,7 @@ class Report:
 
     @property
     def eq9_cone_px(self) -> np.ndarray | None:
-        """The same theory averaged over dot and aperture. BOS only."""
+        """Displacements by the aperture-averaged theory: Eq. 9 averaged over dot and aperture. BOS only."""
         return self._vectors("eq9_cone_px")
 
     @property
@@ -127,7 +125,7 @@ class Report:
     def to_html(self, path: str | os.PathLike, *, device: str = "auto") -> str:
         """Writes the report of `gladstone report`, one HTML file that works offline. Returns its findings.
 
-        The comparison is computed once more for it.
+        The comparison is computed again for this report.
         """
         with tempfile.TemporaryDirectory() as folder:
             place = os.path.join(folder, "case")

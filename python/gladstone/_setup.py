@@ -15,7 +15,7 @@ class Setup:
     """Setup of a BOS, PIV or calibration experiment; immutable.
 
     Keys and units are those of the setup file: lengths end in `_mm`, `_um` or `_px`, angles in `_deg`.
-    Problems are reported by `check` and `render` as one `SetupError` with all of them.
+    `check` and `render` raise a `SetupError` that lists all problems.
     """
 
     def __init__(self, text: str = "", *, name: str = "setup", folder: str | os.PathLike | None = None):
@@ -50,7 +50,7 @@ class Setup:
         return self._of(_core.SetupText(core.text, core.name, core.folder, [*core.overrides, *given]))
 
     def check(self) -> Setup:
-        """Reports all problems of the setup. Returns the setup. Raises `SetupError`."""
+        """Checks the setup and returns it. Raises `SetupError` with all problems."""
         self._core.resolved()
         return self
 
@@ -66,7 +66,7 @@ class Setup:
         """Returns the setup with every default. Several cameras: a dictionary by name of the camera."""
         texts = self._core.resolved()
         tables = {camera: tomllib.loads(text) for camera, text in texts.items()}
-        return tables[""] if list(tables) == [""] else tables
+        return tables.get("", tables)  # the name of a single camera is empty
 
     def __getitem__(self, path: str) -> Any:
         """Returns the value of a key, given or default: `setup["lens.f_number"]`."""
@@ -97,7 +97,7 @@ class Setup:
         with reporting(progress) as report:
             rendered = _core.render(self._core, device, report)
         cases = {one.camera: wrap(one) for one in rendered}
-        return cases[""] if list(cases) == [""] else cases
+        return cases.get("", cases)  # the name of a single camera is empty
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Setup) and self.__getstate__() == other.__getstate__()

@@ -32,8 +32,11 @@ class Study:
 
         base: setup of all cases: a `Setup`, a dictionary of tables, or a setup file.
         axes: values by key path: `{"lens.f_number": [4, 8, 16], "geometry.z_d_mm": {"linear": [100, 1000, 10]}}`.
-        repeats: cases of each point that differ in the random dots, rays and noise.
-        mode: "grid" (all combinations), "zip" (values side by side) or "sobol" (samples of the ranges).
+        repeats: number of cases per point, which differ in the random dots, rays and noise.
+        seed: random seed of the first repeat; those of further repeats are derived from it.
+        mode: "grid" (all combinations), "zip" (the first values of all axes, then the second ones, ...) or "sobol"
+            (quasi-random samples of the ranges).
+        samples: number of samples with "sobol".
         """
         self._path: str | None = None
         self._base = as_setup(base)
@@ -41,7 +44,7 @@ class Study:
         if samples is not None:
             settings["samples"] = samples
         lines = ['base = "base.toml"', "", "[axes]"]
-        lines += [f"{json.dumps(path)} = {_toml.value(values)}" for path, values in axes.items()]
+        lines += [f"{_toml.key(path)} = {_toml.value(values)}" for path, values in axes.items()]
         lines += ["", "[study]", *(f"{name} = {_toml.value(value)}" for name, value in settings.items())]
         self._text = "\n".join(lines) + "\n"
 
@@ -53,7 +56,7 @@ class Study:
         return study
 
     def plan(self, folder: str | os.PathLike, *, device: str = "auto", progress: Progress = False) -> StudyRun:
-        """Checks all cases and writes the plan into a folder. An equal plan remains unchanged."""
+        """Checks all cases and writes the plan into a folder, unless the folder already contains an equal plan."""
         place = os.fspath(folder)
         with reporting(progress) as report:
             if self._path is not None:
@@ -91,7 +94,7 @@ class StudyRun:
     def compute(self, *, keep_images: bool = False, retry_failed: bool = False, progress: Progress = False) -> None:
         """Computes the missing cases.
 
-        keep_images: write the images and all other files of each case too.
+        keep_images: also write the images and all other files of each case.
         retry_failed: compute failed cases again.
         """
         with reporting(progress) as report:
@@ -99,7 +102,7 @@ class StudyRun:
 
     @property
     def state(self) -> dict[str, Any]:
-        """Numbers of cases, done, failed, missing and running, and the failures with their errors."""
+        """Numbers of all, done, failed, missing and running cases, and the failed cases with their errors."""
         return json.loads(_core.study_state(self.folder))
 
     @property
@@ -122,7 +125,7 @@ class StudyRun:
     def pack(self, path: str | os.PathLike, *, device: str = "auto", progress: Progress = False) -> int:
         """Packs images and true displacements of all cases into one HDF5 file for training and tests.
 
-        Needs cases computed with keep_images. Returns their number.
+        Requires cases computed with keep_images. Returns their number.
         """
         with reporting(progress) as report:
             return _core.study_dataset(self.folder, os.fspath(path), device, report)

@@ -18,7 +18,7 @@ def key(name: str) -> str:
 
 def value(given) -> str:
     """Returns a value as TOML on one line."""
-    if hasattr(given, "tolist") and not isinstance(given, (str, bytes)):  # NumPy scalars and arrays
+    if hasattr(given, "tolist"):  # NumPy scalars and arrays
         given = given.tolist()
     if isinstance(given, bool):
         return "true" if given else "false"
@@ -38,7 +38,7 @@ def value(given) -> str:
         return "{ " + ", ".join(f"{key(str(k))} = {value(v)}" for k, v in given.items()) + " }"
     if isinstance(given, Sequence):
         return "[" + ", ".join(value(one) for one in given) + "]"
-    raise TypeError(f"{given!r} cannot be a value of a setup: give a number, a text, a list or a dictionary")
+    raise TypeError(f"{given!r} cannot be a value of a setup: give a number, a string, a list or a dictionary")
 
 
 def document(table: Mapping) -> str:

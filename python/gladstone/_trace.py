@@ -7,11 +7,12 @@ from typing import Literal
 import numpy as np
 
 from . import _core
+from ._errors import check_choice
 from ._setup import as_setup
 
 
 class TracedRays:
-    """Ends of traced rays; what is undefined is NaN."""
+    """Ends of traced rays; undefined numbers are NaN."""
 
     def __init__(self, status: list[str], numbers: np.ndarray):
         self.status: np.ndarray = np.array(status)
@@ -40,8 +41,7 @@ def trace(setup, start_mm, direction, *, through: Literal["medium", "optics", "a
     direction: [N, 3] directions of any length.
     through: where the rays end: behind the "medium", behind the "optics", or at the sensor ("all").
     """
-    if through not in ("medium", "optics", "all"):
-        raise ValueError(f'through must be "medium", "optics" or "all", got {through!r}')
+    check_choice("through", through, ("medium", "optics", "all"))
     start = np.asarray(start_mm, float).reshape(-1, 3)
     rows = np.concatenate(np.broadcast_arrays(start, np.asarray(direction, float).reshape(-1, 3)), axis=1)
     status, numbers = _core.trace(as_setup(setup)._core, np.ascontiguousarray(rows).ravel(), through)

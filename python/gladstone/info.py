@@ -1,4 +1,4 @@
-"""Descriptions of files and setups, as `gladstone info` gives them."""
+"""Descriptions of files and setups, as `gladstone info` prints them."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def image(given, *, bit_depth: int = 0) -> dict[str, Any]:
 
 
 def particles(setup) -> dict[str, Any]:
-    """Describes what is expected of the particles of a PIV setup: image diameter [px], photons, particles per window."""
+    """Describes the expected particles of a PIV setup: image diameter [px], photons, particles per window."""
     return json.loads(_core.info_particles(as_setup(setup)._core))
 
 

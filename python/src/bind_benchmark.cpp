@@ -14,17 +14,17 @@
 namespace gladstone::python {
 namespace {
 
-/// Published case in memory.
+/// Published case, rendered in memory.
 struct MadePair {
   MadeCase made;
   std::vector<std::uint8_t> images;  ///< grey levels [2, rows, columns]
 };
 
-std::shared_ptr<MadePair> make_pair_of(std::string const& name, std::string const& device_name) {
+std::shared_ptr<MadePair> render_published_case(std::string const& name, std::string const& device_name) {
   auto const& cases = benchmark_cases();
   auto const found =
       std::find_if(cases.begin(), cases.end(), [&](BenchmarkCase const& one) { return one.name == name; });
-  if (found == cases.end()) throw DataError(name, "is no case of the benchmark; see gladstone.benchmark_cases()");
+  if (found == cases.end()) throw DataError(name, "is not a case of the benchmark; see gladstone.benchmark_cases()");
   Backend const device = open_device(device_name);
   auto const pair = std::make_shared<MadePair>(MadePair{make_case(*found, device), {}});
   for (Image<double> const* frame : {&pair->made.frames.reference(), &pair->made.frames.flow()}) {
@@ -59,7 +59,8 @@ nb::dict score(MadePair const& pair, MeasuredField const& field) {
 std::shared_ptr<MeasuredField> estimate(MadePair const& pair, std::string const& name, std::string const& device_name) {
   auto const& all = benchmark_estimators();
   auto const found = std::find_if(all.begin(), all.end(), [&](auto const& one) { return one.name == name; });
-  if (found == all.end()) throw DataError(name, "is no estimator of the benchmark");
+  if (found == all.end())
+    throw DataError(name, "is not an estimator of the benchmark; see gladstone.benchmark_estimators()");
   Backend const device = open_device(device_name);
   Measurement measured = correlate_frames(pair.made.frames, found->settings, device);
   auto field = std::make_shared<MeasuredField>();
@@ -88,7 +89,7 @@ void bind_benchmark(nb::module_& module) {
   module.def(
       "benchmark_case",
       [](std::string const& name, std::string const& device) {
-        return run([&] { return make_pair_of(name, device); });
+        return run([&] { return render_published_case(name, device); });
       },
       nb::arg("name"), nb::arg("device"));
   module.def(

@@ -12,8 +12,8 @@
 namespace gladstone::python {
 namespace {
 
-Calibration calibrate(std::string const& place, std::vector<std::string> const& pictures) {
-  Calibration calibration = pictures.empty() ? calibrate_case(place) : calibrate_images(place, pictures);
+Calibration calibrate(std::string const& place, std::vector<std::string> const& images) {
+  Calibration calibration = images.empty() ? calibrate_case(place) : calibrate_images(place, images);
   for (std::string const& warning : calibration.warnings) spdlog::warn("{}", warning);
   return calibration;
 }
@@ -38,8 +38,6 @@ nb::object calibration_array(nb::handle_t<Calibration> self, std::string const& 
 
 void bind_calibration(nb::module_& module) {
   nb::class_<Calibration>(module, "Calibration", "Camera models fitted to images of a dot grid.")
-      .def_ro("columns", &Calibration::columns)
-      .def_ro("rows", &Calibration::rows)
       .def_ro("warnings", &Calibration::warnings)
       .def("array", &calibration_array, nb::arg("name"))
       .def("json", [](Calibration const& self) { return json_text(calibration_json(self)); })
@@ -53,10 +51,10 @@ void bind_calibration(nb::module_& module) {
           nb::arg("path"));
   module.def(
       "calibrate",
-      [](std::string const& place, std::vector<std::string> const& pictures, nb::handle progress) {
-        return run([&] { return calibrate(place, pictures); }, progress);
+      [](std::string const& place, std::vector<std::string> const& images, nb::handle progress) {
+        return run([&] { return calibrate(place, images); }, progress);
       },
-      nb::arg("place"), nb::arg("pictures"), nb::arg("progress").none());
+      nb::arg("place"), nb::arg("images"), nb::arg("progress").none());
 }
 
 }  // namespace gladstone::python

@@ -1,4 +1,3 @@
-#include <fmt/format.h>
 #include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
@@ -74,14 +73,11 @@ nb::object comparison_array(nb::handle_t<Comparison> self, std::string const& na
   Comparison const& all = nb::cast<Comparison&>(self);
   if (name == "position_px") return view_of(all.measured.position_px, self);
   if (name == "measured_px") return view_of(all.measured.displacement_px, self);
-  if (name == "sigma_px") return view_of(all.measured.sigma_px, self);
   if (name == "truth_px") return view_of(all.point.displacement_px, self);
   if (name == "eq9_px") return view_of(all.point.eq9_px, self);
   if (name == "eq9_cone_px") return view_of(all.point.eq9_cone_px, self);
   if (name == "flow_px") return view_of(all.flow_px, self);
-  if (name == "ambient_px") return view_of(all.ambient_px, self);
   if (name == "window_truth_px") return view_of(all.recorded().displacement_px, self);
-  if (name == "noise_free_px") return view_of(all.noise_free, self);
   if (name == "mask") {
     std::vector<std::uint8_t> mask;
     for (auto const counts : all.mask) mask.push_back(counts != 0 ? 1 : 0);

@@ -129,20 +129,14 @@ nb::object field_array(nb::handle_t<MeasuredField> self, std::string const& name
   if (name == "position") return view_of(field.position_px, self);
   if (name == "displacement") return view_of(field.displacement_px, self);
   if (name == "sigma") return view_of(field.sigma_px, self);
-  if (name == "raw") return view_of(field.raw_px, self);
   if (name == "peak_ratio") return view_of(field.peak_ratio, self);
   if (name == "correlation") return view_of(field.correlation, self);
-  auto const codes = [](auto const& values) -> nb::object {
-    if (values.empty()) return nb::none();
-    std::vector<std::uint8_t> numbers;
-    for (auto const value : values) numbers.push_back(static_cast<std::uint8_t>(value));
-    std::size_t const count = numbers.size();
-    return array_of(std::move(numbers), {count});
-  };
-  if (name == "status") return codes(field.status);
-  if (name == "reason") return codes(field.reason);
-  if (name == "failed_test") return codes(field.failed);
-  if (name == "ambiguous") return codes(field.ambiguous);
+  if (name == "status" && !field.status.empty()) {
+    std::vector<std::uint8_t> codes;
+    for (VectorStatus const status : field.status) codes.push_back(static_cast<std::uint8_t>(status));
+    std::size_t const count = codes.size();
+    return array_of(std::move(codes), {count});
+  }
   return nb::none();
 }
 
@@ -156,7 +150,6 @@ void bind_field(nb::module_& module) {
       .def_prop_ro("warnings", [](MeasuredField const& self) { return self.field.warnings; })
       .def_prop_ro("verdict", [](MeasuredField const& self) { return self.field.verdict; })
       .def_ro("name", &MeasuredField::name)
-      .def_ro("foreign", &MeasuredField::foreign)
       .def_ro("settings", &MeasuredField::resolved)
       .def_ro("device", &MeasuredField::device)
       .def_ro("seconds", &MeasuredField::seconds)

@@ -18,13 +18,11 @@
 namespace gladstone::python {
 namespace {
 
-std::size_t plan(std::string const& study, std::string const& folder, std::string const& device) {
+void plan(std::string const& study, std::string const& folder, std::string const& device) {
   StudyFile read = read_study(study);
   check_plan_folder(folder, read);
   std::string const planned = device == "auto" ? open_device(device).name() : device;
-  StudyPlan const all = plan_study(std::move(read), planned);
-  write_plan(folder, all);
-  return all.size();
+  write_plan(folder, plan_study(std::move(read), planned));
 }
 
 /// Computes the missing cases in this process, one after the other.
@@ -68,7 +66,7 @@ void bind_study(nb::module_& module) {
   module.def(
       "study_plan",
       [](std::string const& study, std::string const& folder, std::string const& device, nb::handle progress) {
-        return run([&] { return plan(study, folder, device); }, progress);
+        run([&] { plan(study, folder, device); }, progress);
       },
       nb::arg("study"), nb::arg("folder"), nb::arg("device"), nb::arg("progress").none());
   module.def(

@@ -21,7 +21,6 @@ nb::object truth_array(nb::handle_t<PairCase> self, std::string const& name) {
       {"flux", &truth.flux},
       {"eq9_px", &truth.eq9_px},
       {"eq9_cone_px", &truth.eq9_cone_px},
-      {"reference_ambient_px", &truth.particles.reference_ambient_px},
       {"displacement_ambient_px", &truth.particles.displacement_ambient_px}};
   if (auto const found = pairs.find(name); found != pairs.end()) return view_of(*found->second, self);
   if (name == "position_m") return view_of(truth.position_m, self);

@@ -155,7 +155,7 @@ void run_released(std::function<void()> const& work, nb::handle progress) {
   }
   running_calls.end();
   if (raised) throw nb::python_error(*raised);
-  if (!progress.is_none()) report_progress(call.monitor, progress);
+  report_progress(call.monitor, progress);
   call.messages.deliver();
   unassigned_messages().deliver();
   if (call.error) std::rethrow_exception(call.error);

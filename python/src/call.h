@@ -15,9 +15,9 @@ namespace nb = nanobind;
 /// logging.getLogger("gladstone"). Messages are delivered when the call during which they were logged ends.
 void route_log_to_python();
 
-/// Runs `work` in a thread of its own with the GIL released, so that other Python threads run meanwhile. The calling
-/// thread handles Python's signals: an exception from a handler, such as KeyboardInterrupt, stops the computation at
-/// its next check of the interrupt flag and is then raised.
+/// Runs `work` in a new thread without the GIL, so that other Python threads continue. The calling thread handles
+/// Python's signals: an exception from a handler, such as KeyboardInterrupt, stops the computation at its next check of
+/// the interrupt flag and is then raised.
 /// @param progress  callable (number, label, done, total), called at most ten times a second; or None
 void run_released(std::function<void()> const& work, nb::handle progress);
 

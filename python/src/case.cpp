@@ -1,10 +1,8 @@
 #include "python/src/case.h"
 
-#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "render/files/image_file.h"
-#include "render/files/output_file.h"
 #include "render/files/output_folder.h"
 #include "render/files/source_files.h"
 #include "render/files/text_file.h"
@@ -16,45 +14,26 @@
 namespace gladstone::python {
 namespace {
 
-namespace fs = std::filesystem;
-
-constexpr double accuracy_limit_px = 1e-3;
-
-std::vector<UncertainInput> uncertain_inputs(SetupDocument const& document) {
-  SetupDocument written = document.copy();
-  return extract_uncertain_inputs(written);
-}
-
 /// Fills a CASE folder by `write`; all files are written, or none.
 template <class Write>
-void write_folder(std::string const& folder, CaseSetup const& loaded, std::vector<UncertainInput> const& uncertain,
-                  Write const& write) {
+void write_folder(std::string const& folder, CaseSetup const& loaded, Write const& write) {
   refuse_case_over_inputs(folder, loaded.document.file_names());
   OutputFolder output(folder, case_content());
-  output.fill([&](std::string const& place) {
-    write(place);
-    if (uncertain.empty()) return;
-    std::string const setup = (fs::path(place) / case_file::setup).string();
-    OutputFile::write_text(setup, insert_uncertain_inputs(read_text_file(setup), uncertain));
-  });
+  output.fill(write);
   output.commit();
 }
 
 }  // namespace
 
 PairCase::PairCase(std::string camera, SetupDocument document, Backend const& device, ReusableParts const& known)
-    : camera_(std::move(camera)),
-      uncertain_(uncertain_inputs(document)),
-      loaded_(load_case_setup(std::move(document))) {
+    : camera_(std::move(camera)), loaded_(load_case_setup(std::move(document))) {
   RecordedCase finished = render_case_in_memory(loaded_, *device.renderer, known);
   outcome_ = judge_case(loaded_, finished.prepared, finished.rendered, finished.frames, *device.renderer);
-  take_images(grey_levels(finished.frames.levels->reference()), grey_levels(finished.frames.levels->flow()));
-  accuracy_ = outcome_->accuracy;
-  reference_sha256_ = outcome_->reference_sha256;
-  flow_sha256_ = outcome_->flow_sha256;
+  store_images(outcome_.reference, outcome_.flow);
   prepared_ = std::move(finished.prepared);
   rendered_ = std::move(finished.rendered);
   frames_ = std::move(finished.frames);
+  frames_->levels.reset();  // outcome_ contains the same grey levels
 }
 
 PairCase::PairCase(std::string folder)
@@ -62,36 +41,36 @@ PairCase::PairCase(std::string folder)
   stored_truth_ = read_truth(in_case(folder_, case_file::truth));
   Image<std::uint16_t> const reference = grey_levels(read_image(in_case(folder_, case_file::reference)));
   Image<std::uint16_t> const flow = grey_levels(read_image(in_case(folder_, case_file::flow)));
-  reference_sha256_ = pixel_sha256(reference);
-  flow_sha256_ = pixel_sha256(flow);
-  take_images(reference, flow);
-  accuracy_ = truth_accuracy(stored_truth_, accuracy_limit_px);
+  outcome_.reference_sha256 = pixel_sha256(reference);
+  outcome_.flow_sha256 = pixel_sha256(flow);
+  outcome_.accuracy = truth_accuracy(stored_truth_, truth_tolerance_px);
+  store_images(reference, flow);
   summary_ = read_text_file(in_case(folder_, case_file::summary));
 }
 
-void PairCase::take_images(Image<std::uint16_t> const& reference, Image<std::uint16_t> const& flow) {
+void PairCase::store_images(Image<std::uint16_t> const& reference, Image<std::uint16_t> const& flow) {
   images_.assign(reference.begin(), reference.end());
   images_.insert(images_.end(), flow.begin(), flow.end());
 }
 
 std::string PairCase::summary() {
   std::lock_guard const lock(mutex_);
-  if (summary_.empty()) summary_ = json_text(case_summary(loaded_, *prepared_, *rendered_, *frames_, *outcome_)) + "\n";
+  if (summary_.empty()) summary_ = json_text(case_summary(loaded_, *prepared_, *rendered_, *frames_, outcome_)) + "\n";
   return summary_;
 }
 
 void PairCase::save(std::string const& folder) {
-  if (!outcome_) throw DataError(folder_, "was loaded from this folder, which holds its files; copy them from there");
+  if (!frames_) throw DataError(folder_, "was loaded from this folder; copy its files instead");
   std::lock_guard const lock(mutex_);
-  write_folder(folder, loaded_, uncertain_, [&](std::string const& place) {
-    write_case(loaded_, *prepared_, *rendered_, *frames_, *outcome_, place);
+  write_folder(folder, loaded_, [&](std::string const& place) {
+    write_case(loaded_, *prepared_, *rendered_, *frames_, outcome_, place);
   });
 }
 
 PreparedCase const& PairCase::prepared() {
   std::lock_guard const lock(mutex_);
   if (!prepared_) {
-    LogSilencer const quiet;  // summary.json holds the warnings
+    LogSilencer const quiet;  // summary.json contains the warnings
     prepared_ = prepare_case(loaded_);
   }
   return *prepared_;
@@ -100,13 +79,12 @@ PreparedCase const& PairCase::prepared() {
 RenderedCase const& PairCase::rendered(Backend const& device) {
   PreparedCase const& scene = prepared();
   std::lock_guard const lock(mutex_);
-  if (rendered_) return *rendered_;
-  if (!rendered_again_) rendered_again_ = render_case(scene, *device.renderer, RenderTheory::no);
-  return *rendered_again_;
+  if (!rendered_) rendered_ = render_case(scene, *device.renderer, RenderTheory::no);
+  return *rendered_;
 }
 
 PlanesCase::PlanesCase(std::string name, SetupDocument document, Backend const& device)
-    : camera(std::move(name)), uncertain(uncertain_inputs(document)), loaded(load_case_setup(std::move(document))) {
+    : camera(std::move(name)), loaded(load_case_setup(std::move(document))) {
   hash_inputs(loaded);
   rendered = render_planes(loaded, *device.renderer);
   for (std::size_t plane = 0; plane < rendered.planes.size(); ++plane) {
@@ -116,8 +94,7 @@ PlanesCase::PlanesCase(std::string name, SetupDocument document, Backend const& 
 }
 
 void PlanesCase::save(std::string const& folder) {
-  write_folder(folder, loaded, uncertain,
-               [&](std::string const& place) { write_calibration(loaded, rendered, place); });
+  write_folder(folder, loaded, [&](std::string const& place) { write_calibration(loaded, rendered, place); });
 }
 
 }  // namespace gladstone::python

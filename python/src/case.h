@@ -10,7 +10,6 @@
 #include "studies/case/backend.h"
 #include "studies/case/calibration_case.h"
 #include "studies/case/case.h"
-#include "studies/case/uncertain_inputs.h"
 
 namespace gladstone::python {
 
@@ -24,12 +23,12 @@ class PairCase {
 
   std::string const& camera() const { return camera_; }
   CaseSetup const& loaded() const { return loaded_; }
-  GroundTruth const& truth() const { return rendered_ ? rendered_->rendering->truth : stored_truth_; }
+  GroundTruth const& truth() const { return frames_ ? rendered_->rendering->truth : stored_truth_; }
   /// Grey levels [2, rows, columns] of reference and measurement image.
   std::vector<std::uint16_t> const& images() const { return images_; }
-  TruthAccuracy const& accuracy() const { return accuracy_; }
-  std::string const& reference_sha256() const { return reference_sha256_; }
-  std::string const& flow_sha256() const { return flow_sha256_; }
+  TruthAccuracy const& accuracy() const { return outcome_.accuracy; }
+  std::string const& reference_sha256() const { return outcome_.reference_sha256; }
+  std::string const& flow_sha256() const { return outcome_.flow_sha256; }
 
   /// Contents of summary.json.
   std::string summary();
@@ -43,27 +42,23 @@ class PairCase {
   RenderedCase const& rendered(Backend const& device);
 
  private:
-  void take_images(Image<std::uint16_t> const& reference, Image<std::uint16_t> const& flow);
+  void store_images(Image<std::uint16_t> const& reference, Image<std::uint16_t> const& flow);
 
   std::string camera_;
-  std::vector<UncertainInput> uncertain_;
   CaseSetup loaded_;
   std::optional<PreparedCase> prepared_;
-  std::optional<RenderedCase> rendered_;        ///< with truth and theory
-  std::optional<RenderedCase> rendered_again_;  ///< of a loaded case, whose truth is stored_truth_
-  std::optional<RecordedFrames> frames_;
-  std::optional<CaseOutcome> outcome_;
-  GroundTruth stored_truth_;
-  TruthAccuracy accuracy_;
+  std::optional<RenderedCase> rendered_;  ///< of a loaded case: rendered on demand, without theory
+  std::optional<RecordedFrames> frames_;  ///< nullopt: the case was loaded
+  CaseOutcome outcome_;                   ///< of a loaded case: accuracy and hashes only
+  GroundTruth stored_truth_;              ///< truth of a loaded case
   std::vector<std::uint16_t> images_;
-  std::string folder_, reference_sha256_, flow_sha256_, summary_;
-  std::mutex mutex_;  ///< protects what is computed on demand
+  std::string folder_, summary_;
+  std::mutex mutex_;  ///< protects members that are computed on demand
 };
 
 /// Images of a calibration target in several planes, taken by one camera.
 struct PlanesCase {
   std::string camera;
-  std::vector<UncertainInput> uncertain;
   CaseSetup loaded;
   RenderedCalibration rendered;
   std::vector<std::uint16_t> images;  ///< grey levels [planes, rows, columns]

@@ -14,10 +14,10 @@ struct MeasuredField {
   std::string name = "field";                   ///< for messages: path of the file, or "field"
   bool foreign = true;                          ///< not measured by gladstone
   std::optional<CorrelationSettings> settings;  ///< of our measurement
-  std::string resolved;                         ///< the same as TOML
+  std::string resolved;                         ///< settings as TOML; empty: foreign
   std::string device;                           ///< "cpu" or "cuda"; empty: foreign
   double seconds = 0;                           ///< wall time of the correlation [s]
-  std::string reference_sha256, flow_sha256;    ///< of the frames; empty: unknown
+  std::string reference_sha256, flow_sha256;    ///< hashes of the frames; empty: unknown
   bool complete = true;                         ///< false: the file's header declares another number of vectors
 };
 

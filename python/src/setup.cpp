@@ -50,7 +50,7 @@ std::string written(SetupText const& setup) {
     }
     document.name_files(keys);
   } catch (SetupError const&) {
-    return setup.document().written();
+    return document.written();
   }
   return document.written();
 }
@@ -89,7 +89,7 @@ void bind_setup(nb::module_& module) {
           },
           "Checks the setup and returns it with all defaults, as TOML by name of the camera.");
   module.def("version", &version_text, "Version, commit and backends.");
-  module.def("version_json", &version_json, "The same as a JSON object.");
+  module.def("version_json", &version_json, "Version, commit and backends as a JSON object.");
   module.def("set_threads", &set_thread_count, nb::arg("threads"), "Sets the number of threads; 0: all cores.");
   module.def("threads", &thread_count, "Number of threads of parallel work.");
 }

@@ -1,4 +1,4 @@
-"""How calls behave: threads, Ctrl-C, progress, warnings, memory."""
+"""Behaviour of all calls: threads, Ctrl-C, progress, warnings, memory."""
 
 import os
 import resource
@@ -15,7 +15,7 @@ import pytest
 import gladstone as gs
 
 
-def test_two_threads_render_at_once(bos):
+def test_threads_render_at_once(bos):
     setups = [bos.replace({"target.seed": seed}) for seed in (1, 2, 3, 4)]
     alone = [setup.render(device="cpu").images.copy() for setup in setups]
     together: dict[int, np.ndarray] = {}

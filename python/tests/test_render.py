@@ -107,7 +107,7 @@ def test_flow_of_a_uniform_gradient_is_uniform(bos):
         assert np.allclose(flow, middle, atol=0.02)
 
 
-# The displacement at a pixel of frame a is that at the pixel half of it farther, midway.
+# The flow at pixel p of frame a equals the flow at the mid-position p + d/2, so that both differ little.
 def test_both_flows_agree(case):
     at_a, mid = case.truth.flow("a", spacing_px=4), case.truth.flow("mid", spacing_px=4)
     assert at_a.shape == mid.shape == (24, 24, 2)

@@ -9,13 +9,13 @@ namespace gladstone {
 namespace {
 
 std::string joined(std::vector<SetupProblem> const& problems, std::size_t more) {
-  std::size_t const told = std::min(problems.size(), max_reported_problems);
+  std::size_t const reported = std::min(problems.size(), max_reported_problems);
   std::string text;
-  for (std::size_t i = 0; i < told; ++i) {
+  for (std::size_t i = 0; i < reported; ++i) {
     if (i > 0) text += '\n';
     text += problems[i].where + ": " + problems[i].message;
   }
-  more += problems.size() - told;
+  more += problems.size() - reported;
   return more == 0 ? text : text + "\nand " + std::to_string(more) + (more == 1 ? " problem more" : " problems more");
 }
 

@@ -14,7 +14,8 @@ struct Pose {
   Vec3<T> y{T(0), T(1), T(0)};
   Vec3<T> z{T(0), T(0), T(1)};
 
-  /// Coordinate transforms from the outer to the local frame (inwards) and from the local to the outer one (outwards).
+  /// Coordinate transforms from the outer to the local frame (to_local, inwards) and from the local to the outer one
+  /// (to_outer, outwards).
   GLADSTONE_HD Vec3<T> direction_to_local(Vec3<T> d) const { return {dot(d, x), dot(d, y), dot(d, z)}; }
   GLADSTONE_HD Vec3<T> direction_to_outer(Vec3<T> d) const { return d.x * x + d.y * y + d.z * z; }
   GLADSTONE_HD Vec3<T> point_to_local(Vec3<T> p) const { return direction_to_local(p - origin); }

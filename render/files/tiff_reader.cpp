@@ -85,8 +85,8 @@ class TiffReader final : public PageReader {
       decodable = layout_.decodable;
       if (!decodable && !layout_.bits_are_stored) {
         throw DataError(file.path(),
-                        "has one bit a pixel by default (its entry BitsPerSample is missing), which is read as grey "
-                        "levels only; write it with 8 bits a pixel");
+                        "has one bit per pixel by default (its entry BitsPerSample is missing), which is read as grey "
+                        "levels only; write it with 8 bits per pixel");
       }
     }
     return seek(0) && decodable;

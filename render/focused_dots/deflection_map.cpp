@@ -187,23 +187,23 @@ bool DeflectionTableLayout::same_table(DeflectionTableLayout const& other) const
   return wanted() && other.wanted() && medium_ && medium_ == other.medium_ && numbers_ == other.numbers_;
 }
 
-DeflectionMap::DeflectionMap(FocusedDots const& dots, DeflectionTableLayout const& plan) {
+DeflectionMap::DeflectionMap(FocusedDots const& dots, DeflectionTableLayout const& layout) {
   constexpr std::size_t grain = 64;
-  if (!plan.wanted()) return;
+  if (!layout.wanted()) return;
   FocusedSetupView const bench = dots.bench();
-  values_.resize(plan.table.bytes());
-  DeflectionTable::Values const values = plan.table.values_in(values_.data());
+  values_.resize(layout.table.bytes());
+  DeflectionTable::Values const values = layout.table.values_in(values_.data());
   std::visit(
       [&](auto const& medium) {
-        parallel_chunks(static_cast<std::size_t>(plan.table.fours()), grain, [&](std::size_t begin, std::size_t end) {
+        parallel_chunks(static_cast<std::size_t>(layout.table.fours()), grain, [&](std::size_t begin, std::size_t end) {
           throw_if_interrupted();
           for (std::size_t four = begin; four < end; ++four) {
-            trace_ray_group(FourAbreast{}, bench, medium, plan.table, values, static_cast<long long>(four));
+            trace_ray_group(FourAbreast{}, bench, medium, layout.table, values, static_cast<long long>(four));
           }
         });
       },
       dots.scene().medium.view);
-  table_ = plan.table.with(values);
+  table_ = layout.table.with(values);
 }
 
 }  // namespace gladstone

@@ -29,8 +29,8 @@ struct DeflectionTableLayout {
   DeflectionTableLayout() = default;
   /// @param largest_aim_distance  largest distance of the centre of a dot's light cone from the pupil's centre [m]
   DeflectionTableLayout(FocusedDots const& dots, DotPattern const& sources, double largest_aim_distance);
-  /// Returns true if the table of the other plan is identical to the last bit: the same nodes, ray geometry and medium
-  /// (by its owner).
+  /// Returns true if the table of the other layout is identical to the last bit: the same nodes, ray geometry and
+  /// medium (by its owner).
   bool same_table(DeflectionTableLayout const& other) const;
 
  private:
@@ -48,11 +48,11 @@ class DeflectionMap {
  public:
   /// Traces the table's rays on all CPU cores.
   /// @throws Interrupted
-  DeflectionMap(FocusedDots const& dots, DeflectionTableLayout const& plan);
+  DeflectionMap(FocusedDots const& dots, DeflectionTableLayout const& layout);
   DeflectionMap(DeflectionMap const&) = delete;  // the table points into values_
   DeflectionMap& operator=(DeflectionMap const&) = delete;
 
-  /// The table; exists() is false if the plan has none.
+  /// The table; exists() is false if the layout has none.
   DeflectionTable const& table() const { return table_; }
 
  private:
@@ -71,13 +71,13 @@ class DeflectionTableCache {
   template <class... More>
   DeflectionTable table(FocusedDots const& dots, DotPattern const& sources, double largest_aim_distance,
                         More const&... more) {
-    DeflectionTableLayout plan(dots, sources, largest_aim_distance);
-    state_ = plan.state;
-    if (!plan.wanted()) return plan.table;
-    if (!map_ || !plan.same_table(plan_)) {
+    DeflectionTableLayout layout(dots, sources, largest_aim_distance);
+    state_ = layout.state;
+    if (!layout.wanted()) return layout.table;
+    if (!map_ || !layout.same_table(layout_)) {
       map_.reset();  // Free the old table before the new one is allocated.
-      map_ = std::make_unique<Map>(dots, plan, more...);
-      plan_ = std::move(plan);
+      map_ = std::make_unique<Map>(dots, layout, more...);
+      layout_ = std::move(layout);
     }
     return map_->table();
   }
@@ -87,7 +87,7 @@ class DeflectionTableCache {
 
  private:
   TableState state_ = TableState::no_sources;
-  DeflectionTableLayout plan_;
+  DeflectionTableLayout layout_;
   std::unique_ptr<Map> map_;
 };
 

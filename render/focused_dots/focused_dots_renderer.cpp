@@ -49,11 +49,7 @@ TracingPass trace_all(FocusedDots const& dots, DotPattern const& sources, Medium
     progress.advance(end - begin);
     std::lock_guard const lock(merge);
     pass.largest_aim_distance = std::max(pass.largest_aim_distance, largest_aim_distance);
-    for (std::size_t frame = 0; frame < frame_count; ++frame) {
-      for (std::size_t status = 0; status < ray_status_count; ++status) {
-        pass.rendering.statuses[frame][status] += integrator.statuses()[frame][status];
-      }
-    }
+    add_counts(pass.rendering.statuses, integrator.statuses());
   });
   if (lit) pass.rendering.light = {frames[0]->to_light(), frames[1]->to_light()};
   return pass;
@@ -83,10 +79,7 @@ Rendering FocusedDotsRenderer::render(Scene const& scene, DotPattern const& sour
   rendering.table = deflections_.state();
   rendering.pupil_margin = scene.pupil_margin;
   if (images != RenderImages::no) apply_polarity(scene, rendering.light);
-  if (images == RenderImages::in_place) {
-    rendering.in_place = std::make_shared<HostLight const>(std::move(rendering.light));
-    rendering.light = {};
-  }
+  if (images == RenderImages::in_place) rendering.store_light_in_place();
   return rendering;
 }
 

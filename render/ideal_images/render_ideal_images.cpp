@@ -137,10 +137,7 @@ Rendering render_ideal_images(IdealImages const& ideal, Particles const& particl
     for (Spot& spot : frame) spot.light /= unit;
   }
   rendering.light = {draw(spots[0], scene), draw(spots[1], scene)};
-  if (images == RenderImages::in_place) {
-    rendering.in_place = std::make_shared<HostLight const>(std::move(rendering.light));
-    rendering.light = {};
-  }
+  if (images == RenderImages::in_place) rendering.store_light_in_place();
   return rendering;
 }
 

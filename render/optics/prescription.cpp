@@ -32,8 +32,8 @@ constexpr std::array formats{
 };
 
 constexpr double longest = 1e3;  // upper limit of any length in a lens [m]
-// Overlap of two surfaces on the axis that is traced: less than any tolerance of a thickness, so that rays do not
-// depend on its sign. Variables of an optimiser that end at contact are stored with such values. [m]
+// Overlap of two surfaces on the axis up to which a lens is traced, with a warning [m]. It is below any tolerance of a
+// thickness. Optimisers store such values for surfaces in contact.
 constexpr double contact_tolerance = 1e-6;
 
 /// Returns true for an ideal lens, and for a surface that is a mirror or borders on a medium other than air. Reference
@@ -244,8 +244,8 @@ std::vector<std::string> check_prescription(Prescription const& lens) {
     warn(overlap);
     if (against && overlap.empty()) {
       warn(
-          fmt::format("{}: a thickness of {:.4g} mm of glass is directed against the light; it is traced, since it is "
-                      "contact within {:.4g} mm",
+          fmt::format("{}: a thickness of {:.4g} mm of glass is directed against the light; it is traced, since "
+                      "the surfaces are in contact to within {:.4g} mm",
                       surface.where, surface.thickness / unit::millimetre, contact_tolerance / unit::millimetre));
     }
   }

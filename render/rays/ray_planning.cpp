@@ -258,21 +258,21 @@ AdaptiveRayCriteria determine_adaptive_criteria(Scene const& scene) {
   constexpr std::uint64_t rays = 64;  // accuracy of a few percent for the brightest pixel and thus for a grey level
   CameraSetup const& camera = scene.setup.camera;
   double const full_scale = std::pow(2.0, error_bit_depth(camera)) - 1;
-  AdaptiveRayCriteria need;
-  need.brightest_at = 0.9 * full_scale;
+  AdaptiveRayCriteria criteria;
+  criteria.brightest_at = 0.9 * full_scale;
   if (camera.absolute_exposure || camera.exposure_e) {
     double const electrons =
         camera.absolute_exposure ? scene.photon_unit * camera.noise.quantum_efficiency : *camera.exposure_e;
-    need.level = camera.noise.full_well_e / electrons / full_scale;
-    return need;
+    criteria.level = camera.noise.full_well_e / electrons / full_scale;
+    return criteria;
   }
   Scene same = scene;
   same.adaptive_criteria.reset();
   same.rays_per_dot = rays;
   RayErrors errors(same);
   errors.measure();
-  need.level = errors.brightest() / need.brightest_at;
-  return need;
+  criteria.level = errors.brightest() / criteria.brightest_at;
+  return criteria;
 }
 
 RayBudget determine_ray_budget_by_tracing(Scene const& scene) {
@@ -280,11 +280,11 @@ RayBudget determine_ray_budget_by_tracing(Scene const& scene) {
   return determine_ray_budget_by_tracing(scene, determine_adaptive_criteria(scene));
 }
 
-RayBudget determine_ray_budget_by_tracing(Scene const& scene, AdaptiveRayCriteria const& need) {
+RayBudget determine_ray_budget_by_tracing(Scene const& scene, AdaptiveRayCriteria const& criteria) {
   bool const one_path = scene.chief_rays_only() && (scene.setup.piv || scene.dots.half_size == 0);
   RayBudget plan;
   plan.most = one_path ? 1 : max_rays_per_source(scene);
-  plan.adaptive_criteria = need;
+  plan.adaptive_criteria = criteria;
   Scene const planned = with_rays(scene, plan);
   RayBudget const measured = RayErrors(planned).measure();
   plan.rays = measured.rays;

@@ -24,6 +24,6 @@ AdaptiveRayCriteria determine_adaptive_criteria(Scene const& scene);
 /// measured on a sample traced with other random numbers.
 RayBudget determine_ray_budget_by_tracing(Scene const& scene);
 /// Like determine_ray_budget_by_tracing(scene), adaptive with known criteria.
-RayBudget determine_ray_budget_by_tracing(Scene const& scene, AdaptiveRayCriteria const& need);
+RayBudget determine_ray_budget_by_tracing(Scene const& scene, AdaptiveRayCriteria const& criteria);
 
 }  // namespace gladstone

@@ -46,11 +46,7 @@ Rendering trace_all(Scene const& scene, DotPattern const& sources, Medium const&
     progress.advance(end - begin);
     std::lock_guard const lock(merge);
     margin = std::max(margin, tracer.largest_margin());
-    for (std::size_t frame = 0; frame < frame_count; ++frame) {
-      for (std::size_t status = 0; status < ray_status_count; ++status) {
-        pass.rendering.statuses[frame][status] += tracer.statuses()[frame][status];
-      }
-    }
+    add_counts(pass.rendering.statuses, tracer.statuses());
   });
   if (spot) pass.rendering.light = {images[0]->to_light(), images[1]->to_light()};
   pass.rendering.pupil_margin = margin;
@@ -102,10 +98,7 @@ Rendering RaysRenderer::render(Scene const& scene, DotPattern const& sources, Re
   if (images != RenderImages::no && scene.setup.target.polarity == Polarity::dark) {
     take_from_white(scene, rendering.light);
   }
-  if (images == RenderImages::in_place) {
-    rendering.in_place = std::make_shared<HostLight const>(std::move(rendering.light));
-    rendering.light = {};
-  }
+  if (images == RenderImages::in_place) rendering.store_light_in_place();
   return rendering;
 }
 

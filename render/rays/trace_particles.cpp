@@ -74,19 +74,12 @@ Rendering trace_particles(Scene const& scene, Particles const& particles, Partic
       progress.advance(end - begin);
       std::lock_guard const lock(merge);
       margin = std::max(margin, tracer.largest_margin());
-      for (std::size_t frame = 0; frame < frame_count; ++frame) {
-        for (std::size_t status = 0; status < ray_status_count; ++status) {
-          rendering.statuses[frame][status] += tracer.statuses()[frame][status];
-        }
-      }
+      add_counts(rendering.statuses, tracer.statuses());
     });
   });
   count_rays(rendering);
   if (lit) rendering.light = {frames[0]->to_light(), frames[1]->to_light()};
-  if (images == RenderImages::in_place) {
-    rendering.in_place = std::make_shared<HostLight const>(std::move(rendering.light));
-    rendering.light = {};
-  }
+  if (images == RenderImages::in_place) rendering.store_light_in_place();
   rendering.pupil_margin = margin;
   return rendering;
 }

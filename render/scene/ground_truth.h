@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -106,5 +107,11 @@ TruthAccuracy truth_accuracy(GroundTruth const& truth, double limit_px);
 
 /// Number of rays for each RayStatus, for each of the two images.
 using StatusCounts = std::array<std::array<std::int64_t, ray_status_count>, 2>;
+/// Adds the counts of some rays to those of others.
+inline void add_counts(StatusCounts& all, StatusCounts const& some) {
+  for (std::size_t frame = 0; frame < all.size(); ++frame) {
+    for (std::size_t status = 0; status < all[frame].size(); ++status) all[frame][status] += some[frame][status];
+  }
+}
 
 }  // namespace gladstone

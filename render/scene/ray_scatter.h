@@ -9,7 +9,9 @@
 /// Scatter between independent scramblings of a scene's rays, from which the number of rays is planned.
 namespace gladstone {
 
+/// Number of independent scramblings of the rays of each sampled source.
 inline constexpr int budget_scramblings = 4;
+/// Maximum number of sampled sources.
 inline constexpr std::size_t plan_sample_dots = 96;
 
 /// Result of one scrambling of one dot's rays: the displacement [px], NaN if no ray passes, and the light of a pixel

@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "render/base/image.h"
@@ -38,6 +39,12 @@ struct Rendering {
   TableState table = TableState::no_sources;  ///< whether a deflection table was built
   RenderMethod method = RenderMethod::focused_dots;
   std::string device;  ///< device that rendered it; empty: that of the renderer
+
+  /// Moves the light of both images to `in_place`, for a device that renders in host memory.
+  void store_light_in_place() {
+    in_place = std::make_shared<HostLight const>(std::move(light));
+    light = {};
+  }
 };
 
 /// Whether images are rendered, and whether they remain in the memory of the renderer's device.

@@ -38,14 +38,12 @@ double standard_error(Renderer& renderer, Scene const& scene, Particles const& p
   Particles const some = some_of(particles);
   std::array<std::vector<Vec2d>, keys> found;
   for (std::size_t key = 0; key < keys; ++key) {
-    Scene first = scene;
-    first.setup.render.seed += 7919 * (key + 1);
-    Scene second = select_second_pulse(first);
-    first.second_medium.reset();
-    auto const trace = [&](Scene& one) {
+    Scene keyed = scene;
+    keyed.setup.render.seed += 7919 * (key + 1);
+    auto const trace = [&](Scene const& one) {
       return renderer.render_particles(one, some, ParticleLight::equal, RenderImages::no).truth;
     };
-    found[key] = displacements(trace(first), trace(second));
+    found[key] = displacements(trace(select_first_pulse(keyed)), trace(select_second_pulse(keyed)));
   }
   double sum = 0, count = 0;
   for (std::size_t i = 0; i < some.size(); ++i) {
@@ -60,6 +58,12 @@ double standard_error(Renderer& renderer, Scene const& scene, Particles const& p
 
 }  // namespace
 
+Scene select_first_pulse(Scene const& scene) {
+  Scene first = scene;
+  first.second_medium.reset();
+  return first;
+}
+
 Scene select_second_pulse(Scene const& scene) {
   GLADSTONE_EXPECTS(scene.second_medium);
   Scene second = scene;
@@ -73,10 +77,8 @@ Scene select_second_pulse(Scene const& scene) {
 Rendering render_in_two_media(Renderer& renderer, Scene const& scene, Particles const& particles, ParticleLight light,
                               RenderImages images) {
   RenderImages const lit = images == RenderImages::no ? RenderImages::no : RenderImages::yes;
-  Scene first = scene, second = select_second_pulse(scene);
-  first.second_medium.reset();
-  Rendering all = renderer.render_particles(first, particles, light, lit);
-  Rendering const later = renderer.render_particles(second, particles, light, lit);
+  Rendering all = renderer.render_particles(select_first_pulse(scene), particles, light, lit);
+  Rendering const later = renderer.render_particles(select_second_pulse(scene), particles, light, lit);
   GroundTruth& truth = all.truth;
   truth.displacement_px = displacements(truth, later.truth);
   truth.displacement_std_px = later.truth.displacement_std_px;
@@ -89,10 +91,7 @@ Rendering render_in_two_media(Renderer& renderer, Scene const& scene, Particles 
   all.statuses[1] = later.statuses[1];
   all.rays += later.rays;
   all.light.flow = later.light.flow;
-  if (images == RenderImages::in_place) {
-    all.in_place = std::make_shared<HostLight const>(std::move(all.light));
-    all.light = {};
-  }
+  if (images == RenderImages::in_place) all.store_light_in_place();
   all.pupil_margin = std::max(all.pupil_margin, later.pupil_margin);
   return all;
 }

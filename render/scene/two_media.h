@@ -4,6 +4,9 @@
 
 namespace gladstone {
 
+/// Returns the scene with its first medium as its only one, as seen by the first pulse.
+Scene select_first_pulse(Scene const& scene);
+
 /// Returns the scene with its second medium as its only one, as seen by the second pulse.
 /// @pre scene.second_medium
 Scene select_second_pulse(Scene const& scene);

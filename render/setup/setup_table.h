@@ -184,8 +184,8 @@ class SetupTable {
   void resolve(std::string const& key, std::vector<double> const& values);
   void resolve(std::string const& key, std::string const& word);
 
-  /// Reads a word, as word(), that determines which other keys the table has. If it is wrong, the table's other keys
-  /// are excused.
+  /// Reads a word, as word(), that determines which other keys the table has. If it is wrong, unread keys of
+  /// the table are not reported.
   std::string kind_word(std::string const& key, std::string const& fallback, std::vector<std::string> const& words);
   /// Suppresses the problems about unread keys of this table, since their meaning depends on a key that was wrong.
   void suppress_unread_keys();

@@ -16,6 +16,7 @@
 #include "render/files/output_folder.h"
 #include "render/files/source_files.h"
 #include "studies/benchmark/foreign_code.h"
+#include "studies/case/case.h"
 #include "studies/case/case_files.h"
 #include "studies/compare/correlate.h"
 
@@ -25,12 +26,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int truth_spacing_px = 8;
-
-Image<std::uint16_t> levels_of(Image<double> const& image) {
-  Image<std::uint16_t> levels(image.columns(), image.rows());
-  std::transform(image.begin(), image.end(), levels.begin(), [](double v) { return static_cast<std::uint16_t>(v); });
-  return levels;
-}
 
 std::string truth_text(MadeCase const& made) {
   std::string text = "x_px,y_px,u_px,v_px\n";
@@ -47,8 +42,8 @@ void write_case_folder(MadeCase const& made, std::string const& folder) {
   output.fill([&](std::string const& place) {
     auto const in_place = [&](char const* name) { return (fs::path(place) / name).string(); };
     ImageMetadata const metadata{8, 0.0, "gladstone benchmark, " + made.record.of.name + ": " + made.record.of.what};
-    write_tiff(in_place(case_file::reference), levels_of(made.frames.reference()), metadata);
-    write_tiff(in_place(case_file::flow), levels_of(made.frames.flow()), metadata);
+    write_tiff(in_place(case_file::reference), grey_levels(made.frames.reference()), metadata);
+    write_tiff(in_place(case_file::flow), grey_levels(made.frames.flow()), metadata);
     if (!made.setup.empty()) OutputFile::write_text(in_place(case_file::setup), made.setup);
     OutputFile::write_text(in_place(benchmark_truth), truth_text(made));
   });
@@ -84,7 +79,7 @@ MadeCase make_case(BenchmarkCase const& one, Backend const& device) {
   } else {
     pair = render_particle_pair(one.particles, one.flow);
   }
-  CaseRecord record{one, pixel_sha256(levels_of(pair.reference)), pixel_sha256(levels_of(pair.flow))};
+  CaseRecord record{one, pixel_sha256(grey_levels(pair.reference)), pixel_sha256(grey_levels(pair.flow))};
   HostFrames frames(std::move(pair.reference), std::move(pair.flow));
   return {std::move(record), std::move(frames), std::move(pair), std::move(truth), std::move(setup)};
 }

@@ -19,15 +19,16 @@ namespace {
 
 /// Creates the correlator of a GPU; for settings it does not support, that of the CPU, unless only the GPU is allowed.
 std::unique_ptr<Correlator> correlator_on_gpu(CorrelationSettings const& settings, bool only_gpu) {
-  std::string const left = settings_requiring_cpu(settings);
-  if (left.empty()) return cuda::make_correlator(settings);
+  std::string const unsupported = settings_requiring_cpu(settings);
+  if (unsupported.empty()) return cuda::make_correlator(settings);
   if (only_gpu)
-    throw DeviceError(fmt::format("--device cuda: correlate.{} is computed on the CPU alone; use --device auto", left));
+    throw DeviceError(
+        fmt::format("--device cuda: correlate.{} is computed on the CPU alone; use --device auto", unsupported));
   if (!missing_on_gpu(settings).empty()) {
-    spdlog::info("correlate.{} is computed on the CPU, {} threads", left, thread_count());
+    spdlog::info("correlate.{} is computed on the CPU, {} threads", unsupported, thread_count());
     return tracking::make_cpu_correlator(settings);
   }
-  spdlog::info("correlate.{} is estimated on the CPU, {} threads", left, thread_count());
+  spdlog::info("correlate.{} is estimated on the CPU, {} threads", unsupported, thread_count());
   return cuda::make_correlator(settings);
 }
 

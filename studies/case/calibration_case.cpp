@@ -146,8 +146,7 @@ RenderedCalibration render_planes(CaseSetup& loaded, Renderer& renderer) {
 namespace {
 
 nlohmann::json place_error_json(DotPositionError const& error) {
-  auto const rms = std::isfinite(error.rms_px) ? nlohmann::json(error.rms_px) : nlohmann::json(nullptr);
-  return {{"rms", rms}, {"largest", error.largest_px}, {"dots", error.dots}};
+  return {{"rms", number_or_null(error.rms_px)}, {"largest", error.largest_px}, {"dots", error.dots}};
 }
 
 }  // namespace

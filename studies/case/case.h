@@ -25,7 +25,7 @@ struct CaseSetup {
   Setup setup;
   CorrelationSettings correlate;
   std::vector<std::string> warnings;
-  std::vector<UncertainInput> uncertain = {};  ///< numbers given with an uncertainty that were not taken before
+  std::vector<UncertainInput> uncertain = {};  ///< numbers given with an uncertainty, unless the caller extracted them
   /// SHA-256 of each file that the setup names, computed before the scene is built; empty: not computed yet.
   std::map<std::string, std::string> input_hashes = {};
 };
@@ -96,17 +96,18 @@ RecordedCase render_case_in_memory(CaseSetup& loaded, Renderer& renderer, Reusab
 /// Renders a setup into a CASE folder: reference.tif, flow.tif, truth.h5, setup.toml and summary.json.
 RecordedCase render_to_folder(CaseSetup& loaded, Renderer& renderer, std::string const& folder);
 
-/// Quantities of a rendered case that its summary reports besides those of the rendering.
+/// Results of judge_case() that the files of a case contain besides those of the rendering.
 struct CaseOutcome {
   TruthAccuracy accuracy;
   std::size_t unseen = 0;                ///< number of dots or particles without truth in one of the frames
   std::optional<RayBudget> table_error;  ///< error of the deflection table, if the truth was computed with one
   std::string device, reference_sha256, flow_sha256;
-  std::vector<std::string> warnings;  ///< all warnings of the case, those of its preparation first
+  std::vector<std::string> warnings;     ///< all warnings of the case, those of its preparation first
+  Image<std::uint16_t> reference, flow;  ///< grey levels of the frames
 };
 
-/// Determines accuracy and warnings of a rendered case, logs its warnings, and stores the values used for "auto" in the
-/// setup.
+/// Determines accuracy, grey levels and warnings of a rendered case, logs its warnings, and stores the values used for
+/// "auto" in the setup.
 CaseOutcome judge_case(CaseSetup& loaded, PreparedCase const& prepared, RenderedCase const& rendered,
                        RecordedFrames const& frames, Renderer const& renderer);
 

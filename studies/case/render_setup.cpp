@@ -51,9 +51,9 @@ RenderedSetup SetupRenderer::render(Renderer& renderer, std::string const& folde
     if (!camera.name.empty()) spdlog::info("camera {}", camera.name);
     ReusableParts known;
     if (!first) known.medium = &medium;
-    RenderedCamera& told = all.cameras.emplace_back();
-    told.folder = camera.name.empty() ? folder : (fs::path(folder) / camera.name).string();
-    nlohmann::ordered_json summary = render_one(camera, renderer, known, medium, output, told);
+    RenderedCamera& entry = all.cameras.emplace_back();
+    entry.folder = camera.name.empty() ? folder : (fs::path(folder) / camera.name).string();
+    nlohmann::ordered_json summary = render_one(camera, renderer, known, medium, output, entry);
     if (cameras_.size() > 1) {
       all.summary["cameras"][camera.name] = std::move(summary);
     } else {
@@ -72,7 +72,7 @@ RenderedSetup SetupRenderer::render(Renderer& renderer, std::string const& folde
 
 nlohmann::ordered_json SetupRenderer::render_one(OneCamera& camera, Renderer& renderer, ReusableParts const& known,
                                                  BuiltMedium& medium, OutputFolder const& output,
-                                                 RenderedCamera& told) const {
+                                                 RenderedCamera& entry) const {
   nlohmann::ordered_json summary;
   auto const fill = [&](auto const& write) {
     output.fill([&](std::string const& place) {
@@ -85,11 +85,11 @@ nlohmann::ordered_json SetupRenderer::render_one(OneCamera& camera, Renderer& re
     hash_inputs(camera.loaded);
     RenderedCalibration const rendered = render_planes(camera.loaded, renderer);
     fill([&](std::string const& place) { return write_calibration(camera.loaded, rendered, place); });
-    told.planes = rendered.planes.size();
-    for (RenderedPlane const& plane : rendered.planes) told.sources += plane.truth.size();
-    told.rays = told.most_rays = rendered.rays;
-    told.seconds = rendered.seconds;
-    told.device = rendered.device;
+    entry.planes = rendered.planes.size();
+    for (RenderedPlane const& plane : rendered.planes) entry.sources += plane.truth.size();
+    entry.rays = entry.most_rays = rendered.rays;
+    entry.seconds = rendered.seconds;
+    entry.device = rendered.device;
     return summary;
   }
   RecordedCase const finished = render_case_in_memory(camera.loaded, renderer, known);
@@ -97,19 +97,19 @@ nlohmann::ordered_json SetupRenderer::render_one(OneCamera& camera, Renderer& re
     return write_case(camera.loaded, finished.prepared, finished.rendered, finished.frames, renderer, place);
   });
   Rendering const& rendering = *finished.rendered.rendering;
-  told.sources = rendering.truth.size();
-  told.particles = camera.loaded.setup.piv.has_value();
+  entry.sources = rendering.truth.size();
+  entry.particles = camera.loaded.setup.piv.has_value();
   std::vector<std::int64_t> planned = rendering.truth.rays_planned;
   std::erase(planned, 0);  // remove particles out of view
   if (!planned.empty()) {
     auto const [least, most] = std::minmax_element(planned.begin(), planned.end());
-    told.rays = static_cast<std::uint64_t>(*least);
-    told.most_rays = static_cast<std::uint64_t>(*most);
+    entry.rays = static_cast<std::uint64_t>(*least);
+    entry.most_rays = static_cast<std::uint64_t>(*most);
   }
-  told.step_mm = finished.prepared.step.step_mm;
-  told.magnification = finished.prepared.scene.imaging.magnification;
-  told.seconds = finished.rendered.seconds;
-  told.device = rendering.device.empty() ? renderer.device() : rendering.device;
+  entry.step_mm = finished.prepared.step.step_mm;
+  entry.magnification = finished.prepared.scene.imaging.magnification;
+  entry.seconds = finished.rendered.seconds;
+  entry.device = rendering.device.empty() ? renderer.device() : rendering.device;
   medium = finished.prepared.scene.medium;
   return summary;
 }

@@ -54,7 +54,7 @@ class SetupRenderer {
   /// Renders one camera's case into its part of the output folder.
   /// @return the contents of its summary.json
   nlohmann::ordered_json render_one(OneCamera& camera, Renderer& renderer, ReusableParts const& known,
-                                    BuiltMedium& medium, class OutputFolder const& output, RenderedCamera& told) const;
+                                    BuiltMedium& medium, class OutputFolder const& output, RenderedCamera& entry) const;
   /// Returns the setup as written, with absolute file names.
   std::string written() const;
 

@@ -104,10 +104,10 @@ RecordedCase render_to_folder(CaseSetup& loaded, Renderer& renderer, std::string
 }
 
 Image<std::uint16_t> grey_levels(Image<double> const& levels) {
-  Image<std::uint16_t> picture(levels.columns(), levels.rows());
-  std::transform(levels.begin(), levels.end(), picture.begin(),
+  Image<std::uint16_t> image(levels.columns(), levels.rows());
+  std::transform(levels.begin(), levels.end(), image.begin(),
                  [](double level) { return static_cast<std::uint16_t>(level); });
-  return picture;
+  return image;
 }
 
 CaseOutcome judge_case(CaseSetup& loaded, PreparedCase const& prepared, RenderedCase const& rendered,
@@ -117,12 +117,12 @@ CaseOutcome judge_case(CaseSetup& loaded, PreparedCase const& prepared, Rendered
   if (loaded.setup.render.precision == Precision::single) {
     warn(warnings, "render.precision = \"single\" is obsolete, and double precision is used; remove it");
   }
-  Scene scene = prepared.scene;
   Rendering const& rendering = *rendered.rendering;
-  scene.pupil_margin = rendering.pupil_margin;
-  CameraSetup const& camera = scene.setup.camera;
+  CameraSetup const& camera = prepared.scene.setup.camera;
   bool const by_table = rendering.method == RenderMethod::focused_dots;
   if (by_table) {
+    Scene scene = prepared.scene;
+    scene.pupil_margin = rendering.pupil_margin;
     outcome.table_error = error_of_table(scene, prepared.rays);
     warn_of_table(warnings, *outcome.table_error);
   }
@@ -130,7 +130,8 @@ CaseOutcome judge_case(CaseSetup& loaded, PreparedCase const& prepared, Rendered
   // If the rays are chosen again, they are chosen for the same exposure, so "auto" remains.
   if (camera.absolute_exposure) {
     loaded.document.root().table("camera").resolve("exposure", std::string("absolute"));
-  } else if ((by_table || scene.adaptive_criteria) && !loaded.setup.render.rays_per_dot && !camera.exposure_e) {
+  } else if ((by_table || prepared.scene.adaptive_criteria) && !loaded.setup.render.rays_per_dot &&
+             !camera.exposure_e) {
     loaded.document.root().table("camera").resolve("exposure", std::string("auto"));
   } else {
     loaded.document.root().table("camera").resolve("exposure", rendered.exposure_e);
@@ -139,8 +140,10 @@ CaseOutcome judge_case(CaseSetup& loaded, PreparedCase const& prepared, Rendered
   if (by_table || prepared.rays.method != RenderMethod::automatic) {
     loaded.document.root().table("render").resolve("method", std::string(to_string(rendering.method)));
   }
-  outcome.reference_sha256 = pixel_sha256(grey_levels(frames.levels->reference()));
-  outcome.flow_sha256 = pixel_sha256(grey_levels(frames.levels->flow()));
+  outcome.reference = grey_levels(frames.levels->reference());
+  outcome.flow = grey_levels(frames.levels->flow());
+  outcome.reference_sha256 = pixel_sha256(outcome.reference);
+  outcome.flow_sha256 = pixel_sha256(outcome.flow);
   RenderedOutcome const seen = warn_of_rendering(warnings, prepared, rendered, frames);
   outcome.unseen = seen.unseen;
   outcome.accuracy = seen.accuracy;
@@ -158,8 +161,8 @@ nlohmann::json write_case(CaseSetup& loaded, PreparedCase const& prepared, Rende
 
   auto const place = [&](char const* name) { return (fs::path(folder) / name).string(); };
   ImageMetadata const metadata{camera.bit_depth, camera.pixel_pitch, resolved};
-  write_tiff(place(case_file::reference), grey_levels(frames.levels->reference()), metadata);
-  write_tiff(place(case_file::flow), grey_levels(frames.levels->flow()), metadata);
+  write_tiff(place(case_file::reference), outcome.reference, metadata);
+  write_tiff(place(case_file::flow), outcome.flow, metadata);
   FileOrigin origin{"gladstone truth", 2, resolved, scene.setup.render.seed, outcome.device};
   origin.sources.add_known("reference", outcome.reference_sha256);
   origin.sources.add_known("flow", outcome.flow_sha256);

@@ -23,9 +23,7 @@
 namespace gladstone {
 
 CommandBody attach_correlate(CLI::App& app, GlobalOptions const& options) {
-  struct Arguments {
-    std::vector<std::string> inputs, overrides;
-    std::string output, config, pairing;
+  struct Arguments : SequenceArguments {
     bool ensemble = false;
   };
   auto arguments = std::make_shared<Arguments>();
@@ -53,10 +51,9 @@ CommandBody attach_correlate(CLI::App& app, GlobalOptions const& options) {
     if (arguments->ensemble && options.device == "cuda")
       throw DeviceError("--device cuda: ensembles are correlated on the CPU only; use --device auto");
     if (!arguments->ensemble) {
-      SequenceArguments const sequence{arguments->inputs, arguments->overrides, arguments->output, arguments->config,
-                                       arguments->pairing};
-      arguments->inputs = expand_single_pair(sequence);
-      if (arguments->inputs == sequence.inputs && is_sequence(sequence)) return run_sequence(sequence, options);
+      std::vector<std::string> const expanded = expand_single_pair(*arguments);
+      if (expanded == arguments->inputs && is_sequence(*arguments)) return run_sequence(*arguments, options);
+      arguments->inputs = expanded;
     } else if (!arguments->pairing.empty()) {
       throw DataError("correlate",
                       "--pairing conflicts with --ensemble (which has one result for all pairs); omit one");

@@ -9,7 +9,6 @@
 
 #include "render/base/error.h"
 #include "render/files/input_file.h"
-#include "render/files/output_destination.h"
 #include "studies/case/case_files.h"
 #include "studies/case/json_text.h"
 #include "studies/compare/sequence.h"
@@ -42,7 +41,7 @@ bool is_case(std::vector<std::string> const& inputs) {
   return inputs.size() == 1 && fs::exists(fs::path(inputs[0]) / case_file::setup, error);
 }
 
-Pairing pairing_of(std::string const& text) {
+Pairing parse_pairing(std::string const& text) {
   if (text == "reference") return Pairing::reference;
   return text == "consecutive" ? Pairing::consecutive : Pairing::pairs;
 }
@@ -88,14 +87,13 @@ int run_sequence(SequenceArguments const& arguments, GlobalOptions const& option
   if (folder.empty()) throw OutputError("correlate", "a sequence requires a folder: -o DIR/");
   if (is_vector_file(folder))
     throw OutputError(folder, "is a file (a sequence has one file of vectors per pair); name a folder: -o DIR/");
-  Pairing const pairing = pairing_of(arguments.pairing);
+  Pairing const pairing = parse_pairing(arguments.pairing);
   SequenceSettings const settings = read_sequence_settings(pairing, arguments.config, arguments.overrides);
-  for (std::string const& input : arguments.inputs)
-    if (arguments.inputs.size() == 1 && !is_pattern(input) && !fs::is_directory(input))
-      require_input_file(input, "an image of several pages");
+  if (std::string const& input = arguments.inputs.front();
+      arguments.inputs.size() == 1 && !is_pattern(input) && !fs::is_directory(input))
+    require_input_file(input, "an image of several pages");
   std::vector<SequencePair> const pairs = form_pairs(list_sequence_files(arguments.inputs, pairing), pairing);
-  Backend device = options.open_device();
-  SequenceResult const result = correlate_sequence(pairs, settings, folder, std::move(device), !options.quiet);
+  SequenceResult const result = correlate_sequence(pairs, settings, folder, options.open_device(), !options.quiet);
   std::size_t const done = result.count(PairState::done), no_vector = result.count(PairState::no_valid_vector);
   report_failures(result);
   if (done + no_vector == 0)

@@ -7,7 +7,7 @@
 
 namespace gladstone {
 
-/// Arguments of `gladstone correlate` that concern sequences.
+/// Arguments of `gladstone correlate`, except for those of ensembles.
 struct SequenceArguments {
   std::vector<std::string> inputs, overrides;
   std::string output, config;

@@ -3,6 +3,7 @@
 #include <charconv>
 #include <nlohmann/json.hpp>
 #include <string_view>
+#include <utility>
 
 #include "render/base/error.h"
 #include "studies/commands/run_warnings.h"
@@ -12,8 +13,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Removes ":number" from the end of a location, and returns the number; 0 if it does not end with one.
-int take_number(std::string_view& location) {
+/// Removes ":number" from the end of a location and returns the number; returns 0 if there is none.
+int remove_number(std::string_view& location) {
   std::size_t const colon = location.rfind(':');
   if (colon == std::string_view::npos || colon + 1 == location.size()) return 0;
   int number = 0;
@@ -27,7 +28,7 @@ int take_number(std::string_view& location) {
 Json problem_json(SetupProblem const& problem) {
   Json json{{"code", problem_code_name(problem.code)}, {"message", problem.message}};
   std::string_view location = problem.where;
-  int const column = take_number(location), line = column > 0 ? take_number(location) : 0;
+  int const column = remove_number(location), line = column > 0 ? remove_number(location) : 0;
   json["file"] = std::string(line > 0 ? location : std::string_view(problem.where));
   if (line > 0) {
     json["line"] = line;
@@ -37,30 +38,35 @@ Json problem_json(SetupProblem const& problem) {
   return json;
 }
 
-Json located(char const* code, std::string const& file, std::string const& message) {
-  return {{"code", code}, {"message", message}, {"file", file}};
+/// Returns the code of an error other than SetupError.
+char const* error_code(std::exception const& error) {
+  if (dynamic_cast<NoValidVector const*>(&error)) return "no_valid_vector";
+  if (dynamic_cast<MemoryError const*>(&error)) return "memory";
+  if (dynamic_cast<DataError const*>(&error)) return "data";
+  if (dynamic_cast<OutputError const*>(&error)) return "output";
+  if (dynamic_cast<DeviceError const*>(&error)) return "device";
+  if (dynamic_cast<Interrupted const*>(&error)) return "interrupted";
+  if (is_out_of_memory(error)) return "memory";
+  return dynamic_cast<Error const*>(&error) ? "data" : "internal";
 }
 
 Json list_problems(std::exception const& error) {
   Json errors = Json::array();
   if (auto const* const setup = dynamic_cast<SetupError const*>(&error)) {
     for (SetupProblem const& problem : setup->problems()) errors.push_back(problem_json(problem));
-  } else if (auto const* const vectors = dynamic_cast<NoValidVector const*>(&error)) {
-    errors.push_back(located("no_valid_vector", vectors->file(), vectors->message()));
-  } else if (auto const* const memory = dynamic_cast<MemoryError const*>(&error)) {
-    errors.push_back(located("memory", memory->file(), memory->message()));
-  } else if (auto const* const data = dynamic_cast<DataError const*>(&error)) {
-    errors.push_back(located("data", data->file(), data->message()));
-  } else if (auto const* const output = dynamic_cast<OutputError const*>(&error)) {
-    errors.push_back(located("output", output->path(), output->message()));
-  } else {
-    char const* const code = dynamic_cast<DeviceError const*>(&error)   ? "device"
-                             : dynamic_cast<Interrupted const*>(&error) ? "interrupted"
-                             : is_out_of_memory(error)                  ? "memory"
-                             : dynamic_cast<Error const*>(&error)       ? "data"
-                                                                        : "internal";
-    errors.push_back({{"code", code}, {"message", format_user_message(error)}});
+    return errors;
   }
+  Json json{{"code", error_code(error)}};
+  if (auto const* const data = dynamic_cast<DataError const*>(&error)) {
+    json["message"] = data->message();
+    json["file"] = data->file();
+  } else if (auto const* const output = dynamic_cast<OutputError const*>(&error)) {
+    json["message"] = output->message();
+    json["file"] = output->path();
+  } else {
+    json["message"] = format_user_message(error);
+  }
+  errors.push_back(std::move(json));
   return errors;
 }
 

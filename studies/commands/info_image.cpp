@@ -19,13 +19,13 @@ Description describe_image(std::string const& path) {
   return describe_image(path, image, metadata);
 }
 
-Description describe_image(std::string const& path, Image<double> const& image, ImageMetadata const& metadata) {
+Description describe_image(std::string const& name, Image<double> const& image, ImageMetadata const& metadata) {
   std::size_t const not_finite = count_not_finite(image);
   if (not_finite == image.size()) {
-    throw DataError(path, fmt::format("all of its {} pixels are nan or infinite; export it again", not_finite));
+    throw DataError(name, fmt::format("all of its {} pixels are nan or infinite; export it again", not_finite));
   }
   if (not_finite > 0) {
-    spdlog::warn("{}: {} of {} pixels are nan or infinite, and are excluded", path, not_finite, image.size());
+    spdlog::warn("{}: {} of {} pixels are nan or infinite, and are excluded", name, not_finite, image.size());
   }
   double least = HUGE_VAL, most = -HUGE_VAL;
   for (double const value : image) {
@@ -34,9 +34,6 @@ Description describe_image(std::string const& path, Image<double> const& image, 
     most = std::max(most, value);
   }
   ImageStatistics const seen = image_statistics(image);
-  auto const known = [](double value) {
-    return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(nullptr);
-  };
   nlohmann::json const json{{"columns", image.columns()},
                             {"rows", image.rows()},
                             {"bit_depth", metadata.bit_depth},
@@ -45,16 +42,16 @@ Description describe_image(std::string const& path, Image<double> const& image, 
                             {"maximum", most},
                             {"mean", seen.mean},
                             {"not_finite", not_finite},
-                            {"dot_diameter_px", known(seen.dot_diameter_px)},
+                            {"dot_diameter_px", number_or_null(seen.dot_diameter_px)},
                             {"channels", metadata.channels},
                             {"orientation", metadata.orientation},
-                            {"background", known(seen.background)},
-                            {"dot_height", known(seen.dot_height)},
-                            {"noise", known(seen.noise)},
-                            {"snr", known(seen.snr())}};
+                            {"background", number_or_null(seen.background)},
+                            {"dot_height", number_or_null(seen.dot_height)},
+                            {"noise", number_or_null(seen.noise)},
+                            {"snr", number_or_null(seen.snr())}};
   return {json_text(json),
           fmt::format(
-              "{}: {} x {} px, {} bits{}{}, grey levels {:.6g} to {:.6g}, mean {:.6g}, dots {:.2f} px (e^-2), {}", path,
+              "{}: {} x {} px, {} bits{}{}, grey levels {:.6g} to {:.6g}, mean {:.6g}, dots {:.2f} px (e^-2), {}", name,
               image.columns(), image.rows(), metadata.bit_depth,
               metadata.channels >= 3 ? ", colour converted to luminance" : "",
               metadata.orientation == 1 ? "" : fmt::format(", Orientation {} rotated upright", metadata.orientation),

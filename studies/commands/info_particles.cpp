@@ -16,8 +16,6 @@
 namespace gladstone {
 namespace {
 
-nlohmann::json or_null(double value) { return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(nullptr); }
-
 nlohmann::json spread_json(SizeSpread const& spread, double factor = 1) {
   return {{"p05", spread.p05 * factor}, {"median", spread.median * factor}, {"p95", spread.p95 * factor}};
 }
@@ -25,7 +23,7 @@ nlohmann::json spread_json(SizeSpread const& spread, double factor = 1) {
 nlohmann::json particles_json(ExpectedParticles const& expected, CaseSetup const& loaded) {
   nlohmann::json windows = nlohmann::json::array();
   for (int const window : loaded.correlate.window_px) {
-    windows.push_back({window, or_null(expected.per_pixel * window * window)});
+    windows.push_back({window, number_or_null(expected.per_pixel * window * window)});
   }
   return {{"magnification", expected.magnification},
           {"diameter_um", spread_json(expected.diameter, 1 / unit::micrometre)},
@@ -33,14 +31,14 @@ nlohmann::json particles_json(ExpectedParticles const& expected, CaseSetup const
           {"image_diameter_sheet_edge_px", expected.sheet_edge_diameter_px},
           {"diffraction_diameter_px", expected.diffraction_px},
           {"depth_of_field_mm", expected.depth_of_field / unit::millimetre},
-          {"particles_per_pixel", or_null(expected.per_pixel)},
+          {"particles_per_pixel", number_or_null(expected.per_pixel)},
           {"particles_per_window", windows},
-          {"source_density", or_null(expected.source_density)},
+          {"source_density", number_or_null(expected.source_density)},
           {"photons", spread_json(expected.photons)},
           {"electrons_peak", spread_json(expected.peak_electrons)},
           {"full_well_e", loaded.setup.camera.noise.full_well_e},
           {"saturated_fraction", expected.saturated},
-          {"smallest_visible_um", or_null(expected.smallest_visible / unit::micrometre)}};
+          {"smallest_visible_um", number_or_null(expected.smallest_visible / unit::micrometre)}};
 }
 
 std::string particles_text(ExpectedParticles const& expected, CaseSetup const& loaded) {
@@ -83,17 +81,17 @@ std::string particles_text(ExpectedParticles const& expected, CaseSetup const& l
 
 }  // namespace
 
-Description describe_particles(SetupDocument const& setup, std::string const& path) {
+Description describe_particles(SetupDocument const& setup, std::string const& name) {
   std::string text;
   nlohmann::json cameras = nlohmann::json::object(), only;
   for (CameraCase& camera : camera_cases(setup)) {
     CaseSetup const loaded = load_case_setup(std::move(camera.document));
     if (!loaded.setup.piv) {
-      throw DataError(path, "has no particles (experiment is not \"piv\"); give the setup of a PIV experiment");
+      throw DataError(name, "has no particles (experiment is not \"piv\"); give the setup of a PIV experiment");
     }
     for (std::string const& warning : loaded.warnings) spdlog::warn("{}", warning);
     ExpectedParticles const expected = expected_particles(loaded.setup);
-    text += fmt::format("{}{}\n", path, camera.name.empty() ? "" : ", camera " + camera.name);
+    text += fmt::format("{}{}\n", name, camera.name.empty() ? "" : ", camera " + camera.name);
     text += particles_text(expected, loaded);
     only = particles_json(expected, loaded);
     if (!camera.name.empty()) cameras[camera.name] = only;

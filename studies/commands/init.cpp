@@ -21,7 +21,7 @@ namespace {
 struct Template {
   char const* kind;
   std::string_view const* text;  ///< short template
-  char const* required;          ///< keys of the complete list that are not commented out
+  char const* required;          ///< first lines of the complete list: keys that are not commented out
 };
 
 constexpr std::array templates{
@@ -42,8 +42,7 @@ std::vector<std::string> template_kinds() {
 /// Returns a line of the complete list: the commented key with its default, unit, values and meaning. Keys without a
 /// default in TOML have "..." in place of the value.
 std::string commented_key(SetupKey const& key) {
-  std::string const name = key.path.substr(key.path.rfind('.') + 1);
-  std::string text = fmt::format("# {} = {}  #", name, key.default_value.empty() ? "..." : key.default_value);
+  std::string text = fmt::format("# {} = {}  #", key.name(), key.default_value.empty() ? "..." : key.default_value);
   if (!key.unit.empty()) text += " [" + key.unit + ']';
   text += ' ' + key.meaning;
   if (!key.values.empty()) text += "; values: " + key.values;
@@ -56,9 +55,9 @@ std::string commented_key(SetupKey const& key) {
 std::string complete_list(Template const& one) {
   std::string text = fmt::format(
       "# Every key of the kind \"{}\" with its default. To change a key, remove the \"# \" before it and before the "
-      "name "
-      "of\n# its table.\n{}",
+      "name of\n# its table.\n{}",
       one.kind, one.required);
+  std::string const required = std::string("\n") + one.required;
   for (SetupKeyTable const& table : setup_key_tables()) {
     if (std::find(table.kinds.begin(), table.kinds.end(), one.kind) == table.kinds.end() || table.keys.empty())
       continue;
@@ -66,9 +65,7 @@ std::string complete_list(Template const& one) {
       text += fmt::format("\n# {}{}\n", table.heading, table.condition.empty() ? "" : "  # with " + table.condition);
     }
     for (SetupKey const& key : table.keys) {
-      bool const given = table.heading.empty() &&
-                         (std::string_view(one.required).starts_with(key.path + " =") ||
-                          std::string_view(one.required).find('\n' + key.path + " =") != std::string_view::npos);
+      bool const given = table.heading.empty() && required.find('\n' + key.path + " =") != std::string::npos;
       if (!given) text += commented_key(key);
     }
   }
@@ -110,7 +107,8 @@ CommandBody attach_init(CLI::App& app, GlobalOptions const& options) {
       ->required()
       ->check(one_of(template_kinds()));
   app.add_option("-o,--output", arguments->output, "File to create (TOML); default: the standard output");
-  app.add_flag("--all", arguments->all, "Every key with its default, commented out, in place of the ten that matter");
+  app.add_flag("--all", arguments->all,
+               "Write every key with its default, commented out, instead of the most important keys");
   return [arguments, &options] {
     auto const one = std::find_if(templates.begin(), templates.end(),
                                   [&](Template const& other) { return arguments->kind == other.kind; });

@@ -26,7 +26,7 @@ std::vector<std::string> similar_keys(std::string const& pattern) {
   for (SetupKeyTable const& table : setup_key_tables()) {
     for (SetupKey const& key : table.keys) {
       paths.push_back(key.path);
-      names.push_back(key.path.substr(key.path.rfind('.') + 1));
+      names.push_back(key.name());
     }
   }
   std::vector<std::string> similar = nearest_names(pattern, paths, most);
@@ -45,20 +45,20 @@ nlohmann::ordered_json text_or_null(std::string const& text) {
   return text.empty() ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(text);
 }
 
-nlohmann::ordered_json to_json(SetupKey const& key, std::vector<std::string> const& kinds) {
+nlohmann::ordered_json to_json(SetupKey const& key, SetupKeyTable const& table) {
   return {{"key", key.path},
-          {"condition", key.condition},
+          {"condition", table.condition},
           {"unit", key.unit},
           {"default", text_or_null(key.default_value)},
           {"default_words", key.default_words},
           {"required", key.is_required()},
           {"values", key.values},
           {"meaning", key.meaning},
-          {"kinds", kinds}};
+          {"kinds", table.kinds}};
 }
 
 /// Returns two lines: the key with unit, default and values, and its meaning.
-std::string to_text(SetupKey const& key) {
+std::string to_text(SetupKey const& key, SetupKeyTable const& table) {
   std::string text = key.path;
   if (!key.unit.empty()) text += " [" + key.unit + ']';
   if (!key.default_value.empty()) {
@@ -70,7 +70,7 @@ std::string to_text(SetupKey const& key) {
   }
   if (!key.values.empty()) text += "  (" + key.values + ')';
   text += "\n    ";
-  if (!key.condition.empty()) text += "with " + key.condition + ": ";
+  if (!table.condition.empty()) text += "with " + table.condition + ": ";
   return text + key.meaning + '\n';
 }
 
@@ -86,8 +86,8 @@ CommandBody attach_keys(CLI::App& app, GlobalOptions const& options) {
     for (SetupKeyTable const& table : setup_key_tables()) {
       for (SetupKey const& key : table.keys) {
         if (!matches(key.path, *pattern)) continue;
-        keys.push_back(to_json(key, table.kinds));
-        text += to_text(key);
+        keys.push_back(to_json(key, table));
+        text += to_text(key, table);
       }
     }
     nlohmann::ordered_json result{{"keys", keys}};

@@ -84,7 +84,7 @@ AxisOption parse_axis(std::string const& text) {
   refuse_value("--axis", "vertical, horizontal, x=MM (vertical axis there) or y=MM (horizontal axis there)", text);
 }
 
-/// Draws the figure beside the file; without gnuplot, only warns.
+/// Draws the figure, or warns if gnuplot is not installed.
 void draw_density(std::string const& path, Reconstruction const& reconstruction) {
   try {
     write_density_figure(path, reconstruction);
@@ -109,19 +109,20 @@ CommandBody attach_reconstruct(CLI::App& app, GlobalOptions const& options) {
                  "Case folder, or with --vectors the setup (TOML) of measured images, whose camera, lens, geometry and "
                  "medium convert displacement to density")
       ->required();
-  app.add_option("-o,--output", arguments->output, "File for the density, .h5; a figure .png is written beside it")
+  app.add_option("-o,--output", arguments->output, "File for the density, .h5; the figure has the same name with .png")
       ->required();
   app.add_option("--vectors", reconstruct.vectors, "Vectors of gladstone or another program, default CASE/vectors.h5");
   app.add_option("--conventions", arguments->conventions, "Conventions of that file, see gladstone compare --help");
   app.add_option("--reference", arguments->reference,
-                 "Where the density is known: left, right, top or bottom side of the vectors (left:3 for three "
+                 "Region of known density: left, right, top or bottom side of the vectors (left:3 for three "
                  "columns), or a box X0,Y0,X1,Y1 in mm from the optical axis, x right, y up; may be repeated. Required "
                  "unless --axisymmetric")
       ->allow_extra_args(false);
   app.add_option("--reference-density", reconstruct.reference_density,
-                 "Density there, with --axisymmetric beyond the largest radius [kg/m^3], default "
+                 "Density in the reference region, with --axisymmetric beyond the largest radius [kg/m^3], default "
                  "medium.ambient_density_kg_m3");
-  app.add_option("--reference-sigma", reconstruct.reference_sigma, "Its standard uncertainty [kg/m^3]")
+  app.add_option("--reference-sigma", reconstruct.reference_sigma,
+                 "Standard uncertainty of the reference density [kg/m^3]")
       ->check(CLI::NonNegativeNumber);
   app.add_option("--scale-uncertainty", reconstruct.scale_uncertainty,
                  "Combined relative standard uncertainty of magnification, Z_D, Gladstone-Dale constant, pixel pitch "
@@ -135,13 +136,14 @@ CommandBody attach_reconstruct(CLI::App& app, GlobalOptions const& options) {
                  "Compensate the averaging over the aperture, amplifying no wave more than this, e.g. 3");
   app.add_flag("--axisymmetric", arguments->axisymmetric, "Abel inversion of an axisymmetric flow");
   app.add_option("--axis", arguments->axis,
-                 "Axis of symmetry: vertical, horizontal (both found), x=MM or y=MM; default vertical");
+                 "Axis of symmetry: vertical or horizontal (its position is determined), x=MM or y=MM; default "
+                 "vertical");
   app.add_option("--abel", arguments->abel, "Abel inversion: direct, or tikhonov (regularised)")
       ->check(one_of({"direct", "tikhonov"}));
   app.add_option("--lambda", reconstruct.lambda,
                  "Regularisation parameter of --abel tikhonov, default by cross-validation");
   app.add_option("--samples", reconstruct.samples,
-                 "Random samples for the uncertainty of more than 4000 nodes, or with --deconvolve")
+                 "Number of random samples for the uncertainty of more than 4000 nodes, or with --deconvolve")
       ->check(whole_number(10, 100'000));
   app.add_flag("--budget", reconstruct.budget,
                "Split the error of a rendered case into its causes, from the comparison of the vectors with truth and "

@@ -24,7 +24,8 @@ std::string plain_text(std::string_view markdown) {
   return text;
 }
 
-std::vector<std::string> cells_of(std::string_view row) {
+/// Returns the cells of a row: "| a | b |".
+std::vector<std::string> split_cells(std::string_view row) {
   std::vector<std::string> cells;
   for (std::size_t start = 1; start < row.size();) {
     std::size_t const end = std::min(row.find('|', start), row.size());
@@ -41,13 +42,12 @@ std::vector<std::string> quoted_names(std::string_view text) {
     std::size_t const end = std::min(text.find('`', open + 1), text.size());
     names.emplace_back(text.substr(open + 1, end - open - 1));
     open = end;
-    if (open == text.size()) break;
   }
   return names;
 }
 
 /// Reads a heading: "`[lens]`, `model = "prescription"`".
-SetupKeyTable table_of(std::string_view heading) {
+SetupKeyTable parse_heading(std::string_view heading) {
   SetupKeyTable table;
   std::vector<std::string> const names = quoted_names(heading);
   if (names.empty()) return table;
@@ -58,12 +58,11 @@ SetupKeyTable table_of(std::string_view heading) {
 }
 
 /// Reads a row of a table; its path begins with the name of the table.
-SetupKey key_of(std::vector<std::string> const& cells, SetupKeyTable const& table) {
+SetupKey parse_key(std::vector<std::string> const& cells, SetupKeyTable const& table) {
   SetupKey key;
   std::string name = table.heading;
   std::erase_if(name, [](char c) { return c == '[' || c == ']'; });
   key.path = (name.empty() ? "" : name + '.') + plain_text(cells[0]);
-  key.condition = table.condition;
   key.unit = cells[1];
   bool const fixed = cells[2].size() > 2 && cells[2].front() == '`' && cells[2].find('`', 1) == cells[2].size() - 1;
   (fixed ? key.default_value : key.default_words) = plain_text(cells[2]);
@@ -83,13 +82,13 @@ std::vector<SetupKeyTable> parse_key_tables(std::string_view page) {
     std::string_view const line = page.substr(start, end - start);
     start = end + 1;
     if (line.starts_with("## ")) {
-      table = table_of(line.substr(3));
+      table = parse_heading(line.substr(3));
     } else if (line.starts_with("Kinds: ")) {
       table.kinds = quoted_names(line);
       tables.push_back(table);
     } else if (line.starts_with("| `") && !tables.empty()) {
-      std::vector<std::string> const cells = cells_of(line);
-      if (cells.size() >= columns) tables.back().keys.push_back(key_of(cells, tables.back()));
+      std::vector<std::string> const cells = split_cells(line);
+      if (cells.size() >= columns) tables.back().keys.push_back(parse_key(cells, tables.back()));
     }
   }
   return tables;

@@ -9,20 +9,21 @@ namespace gladstone {
 /// Description of one key of a setup or study, from the tables of docs/reference/setup.md.
 struct SetupKey {
   std::string path;           ///< "lens.f_number"; without the brackets of an array of tables
-  std::string condition;      ///< key that the table must contain: `kind = "file"`; empty: none
   std::string unit;           ///< unit; "1": pure number; empty: not a number
   std::string default_value;  ///< TOML text of the default; empty: none, or default_words
   std::string default_words;  ///< "required", "none" or the default in words; empty: default_value
   std::string values;         ///< allowed values, in words
   std::string meaning;
 
+  /// Returns the last part of the path: "f_number".
+  std::string name() const { return path.substr(path.rfind('.') + 1); }
   bool is_required() const { return default_words.starts_with("required"); }
 };
 
 /// A table of a setup with its keys, as one section of docs/reference/setup.md.
 struct SetupKeyTable {
   std::string heading;             ///< "[lens]", "[[window]]"; empty: top level of the file
-  std::string condition;           ///< see SetupKey::condition
+  std::string condition;           ///< key that the table must contain: `kind = "file"`; empty: none
   std::vector<std::string> kinds;  ///< kinds of `gladstone init` to which the table applies
   std::vector<SetupKey> keys;
 };

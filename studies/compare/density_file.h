@@ -13,10 +13,10 @@ namespace gladstone {
 /// @throws OutputError; DataError if a source has changed since it was read
 void write_density(std::string const& path, Reconstruction const& reconstruction);
 
-/// Summary of a reconstruction, printed with --json (docs/file-formats.md).
+/// Summarizes a reconstruction as JSON, the output of --json (docs/file-formats.md).
 nlohmann::ordered_json summarize_reconstruction(Reconstruction const& reconstruction);
 
-/// The same as text.
+/// Formats the summary as text.
 std::string reconstruction_report(Reconstruction const& reconstruction);
 
 }  // namespace gladstone

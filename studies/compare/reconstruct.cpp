@@ -41,7 +41,7 @@ void check_reconstruct_options(ReconstructOptions const& options) {
   if (!problems.empty()) throw SetupError(std::move(problems));
 }
 
-/// Throws for setups whose displacement is not proportional to the density gradient in the axes of the image.
+/// Throws for setups whose displacement is not proportional to the density gradient along the axes of the image.
 void check_reconstructed_setup(Setup const& setup) {
   std::vector<SetupProblem> problems;
   if (setup.piv || setup.calibration())
@@ -63,7 +63,7 @@ density::ProjectionOptics make_projection_optics(Setup const& setup) {
           {0.5 * (setup.camera.columns - 1), 0.5 * (setup.camera.rows - 1)}};
 }
 
-/// Returns the size of the windows in units of the distance between vectors, limited to the grid.
+/// Returns the size of the windows in units of the distance between vectors, at most that of the grid.
 density::WindowOverlap determine_overlap(DisplacementField const& field, double window_px,
                                          std::optional<double> const& overlap) {
   if (overlap) return density::WindowOverlap::from_fraction(*overlap);
@@ -95,12 +95,12 @@ density::ApertureDeconvolution make_deconvolution(density::DensityIntegrator con
   return {integrator.grid(), integrator.determined(), cone, gain};
 }
 
-/// Combines the uncertainty from the vectors with that of the reference density and that of the scale.
-void combine_uncertainties(Reconstruction& result, ReconstructOptions const& options) {
-  result.sigma = result.sigma_random;
-  for (double& sigma : result.sigma) sigma = std::hypot(sigma, options.reference_sigma);
-  result.sigma = density::add_scale_uncertainty(std::move(result.sigma), result.density, result.reference_density,
-                                                options.scale_uncertainty);
+/// Combines the uncertainty due to the vectors with those of the reference density and of the scale.
+std::vector<double> combine_uncertainties(Reconstruction const& result, ReconstructOptions const& options) {
+  std::vector<double> combined = result.sigma_random;
+  for (double& sigma : combined) sigma = std::hypot(sigma, options.reference_sigma);
+  return density::add_scale_uncertainty(std::move(combined), result.density, result.reference_density,
+                                        options.scale_uncertainty);
 }
 
 /// Warns of regions whose density is undetermined because they contain no reference node.
@@ -158,8 +158,8 @@ Reconstruction integrate_plane(Reconstruction result, density::GradientMap const
   result.gradient = map.gradient;
   for (std::size_t i = 0; i < map.grid.size(); ++i)
     if (map.valid[i] == 0) result.gradient[i] = {not_a_number, not_a_number};
-  for (int const label : find_regions(map).label) result.region.push_back(label);
-  for (std::uint8_t const is_reference : integrator.reference_nodes()) result.reference.push_back(is_reference);
+  result.region.assign(integrator.region_labels().begin(), integrator.region_labels().end());
+  result.reference.assign(integrator.reference_nodes().begin(), integrator.reference_nodes().end());
   warn_of_regions(result, integrator.regions());
   warn_of_reference_gradient(result);
 
@@ -208,7 +208,7 @@ Reconstruction reconstruct_density(DisplacementField const& field, Setup const& 
   result = options.axis ? invert_flow(std::move(result), projected.map, options)
                         : integrate_plane(std::move(result),
                                           compute_mean_gradient(projected.map, setup.medium.thickness), setup, options);
-  combine_uncertainties(result, options);
+  result.sigma = combine_uncertainties(result, options);
   return result;
 }
 

@@ -31,16 +31,16 @@ struct ReconstructOptions {
   std::string vectors;                      ///< path of the vectors; empty: CASE/vectors.h5
   std::optional<std::string> conventions;   ///< as given by the user; empty: those of the file's format
   std::vector<ReferenceRegion> reference;   ///< gauge of the integration; empty for axisymmetric flows
-  std::optional<double> reference_density;  ///< density there; empty: ambient density of the setup [kg/m^3]
-  double reference_sigma = 0.0;             ///< its standard uncertainty [kg/m^3]
+  std::optional<double> reference_density;  ///< reference density; empty: ambient density of the setup [kg/m^3]
+  double reference_sigma = 0.0;             ///< standard uncertainty of the reference density [kg/m^3]
   double scale_uncertainty = 0.0;           ///< combined relative uncertainty of M, Z_D, K, p and thickness [1]
   density::IntegrationMethod method = density::IntegrationMethod::weighted_least_squares;
   std::optional<double> overlap;             ///< of the interrogation windows, 0 to below 1 [1]; empty: [correlate]
   std::optional<double> deconvolution_gain;  ///< largest gain of the aperture's deconvolution [1]; empty: none
   std::optional<AxisOption> axis;            ///< axisymmetric flow; empty: planar integration
   density::AbelMethod abel = density::AbelMethod::direct;
-  std::optional<double> lambda;  ///< of AbelMethod::tikhonov [1]; empty: by cross-validation
-  std::size_t samples = 400;     ///< random samples for the uncertainty of large grids
+  std::optional<double> lambda;  ///< parameter of AbelMethod::tikhonov [1]; empty: by cross-validation
+  std::size_t samples = 400;     ///< number of random samples for the uncertainty of large grids
   bool propagate = true;         ///< compute the uncertainty from the vectors
   bool budget = false;           ///< split the error of a rendered case into its causes
 };
@@ -56,8 +56,8 @@ struct AxisymmetryResult {
   density::AxisDirection direction = density::AxisDirection::vertical;
   density::SymmetryAxis axis;    ///< [m]; sigma is NaN if the axis was given
   double lambda = 0.0;           ///< regularisation parameter [1]; 0: none
-  double asymmetry = 0.0;        ///< even over odd part of the gradient about the axis, rms [1]
-  double border_gradient = 0.0;  ///< gradient at the largest radii relative to that of all radii, rms [1]
+  double asymmetry = 0.0;        ///< rms of the even part of the gradient about the axis over that of the odd part [1]
+  double border_gradient = 0.0;  ///< rms of the gradient at the largest radii over that of all radii [1]
 };
 
 /// Reconstructed density. Fields are stored row by row from the lowest row, NaN where not determined.
@@ -67,7 +67,7 @@ struct Reconstruction {
   /// axis perpendicular to the line of sight [kg/m^3, grid.size()].
   std::vector<double> density;
   std::vector<double> sigma;         ///< standard uncertainty [kg/m^3, grid.size()]; NaN: vectors without sigma
-  std::vector<double> sigma_random;  ///< the part that is due to the vectors [kg/m^3, grid.size()]
+  std::vector<double> sigma_random;  ///< part of sigma due to the vectors [kg/m^3, grid.size()]
   /// Measured gradient, mean over the thickness; for an axisymmetric flow differences of the density
   /// [kg/m^4, grid.size()].
   std::vector<Vec2d> gradient;
@@ -76,9 +76,9 @@ struct Reconstruction {
   std::vector<double> truth;            ///< density of a rendered case [kg/m^3, grid.size()]; empty: unknown
   std::vector<DensityTerm> budget;      ///< causes of the error; empty: not requested
   double reference_density = 0.0;       ///< [kg/m^3]
-  density::WindowOverlap overlap;       ///< that determines the correlation of the vectors' errors
-  double white_noise_gain = 1.0;        ///< of the deconvolution [1]; 1: none
-  std::size_t samples = 0;              ///< random samples of sigma; 0: exact
+  density::WindowOverlap overlap;       ///< overlap of the windows, which correlates the vectors' errors
+  double white_noise_gain = 1.0;        ///< noise amplification by the deconvolution [1]; 1: none
+  std::size_t samples = 0;              ///< number of random samples for sigma; 0: exact
   std::optional<AxisymmetryResult> axisymmetry;
   std::vector<std::string> warnings;
   std::string setup;         ///< resolved setup

@@ -10,7 +10,7 @@
 namespace gladstone {
 namespace {
 
-/// Gradient at the border relative to that of all radii above which an axisymmetric flow extends beyond the image.
+/// Threshold of AxisymmetryResult::border_gradient above which a warning is issued.
 constexpr double noticeable_border_gradient = 0.1;
 
 /// Differences of a density between neighbouring nodes, one-sided at borders and holes [kg/m^4].
@@ -33,7 +33,8 @@ std::vector<Vec2d> differentiate_density(density::PlaneGrid const& grid, std::ve
   return gradient;
 }
 
-/// Mirrors a radial density about its axis: fills the nodes at integer multiples of the spacing on both sides.
+/// Sets grid, density and sigma_random of the result by mirroring a radial density about its axis. The nodes are at
+/// integer multiples of the spacing from the axis, within the measured grid.
 void mirror_density(Reconstruction& result, density::AxisymmetricDensity const& half,
                     density::PlaneGrid const& measured) {
   using density::AxisDirection;

@@ -25,12 +25,13 @@ namespace fs = std::filesystem;
 /// Files of a reconstruction.
 struct ReconstructedFiles {
   std::string setup, vectors;
-  std::string truth;  ///< empty: the images were measured
+  std::string truth;  ///< empty: images of an experiment
   SourceFiles sources;
 };
 
-/// Returns the vectors of measured images, and their setup.
-/// @param place  setup, or a folder that contains one
+/// Locates the vectors of measured images and the setup of the experiment.
+/// @param place    setup, or a folder that contains one
+/// @param vectors  path; empty: those of the folder
 ReconstructedFiles find_measured_files(std::string const& place, std::string const& vectors) {
   ReconstructedFiles files;
   std::error_code error;
@@ -118,8 +119,8 @@ Reconstruction reconstruct_case(std::string const& place, ReconstructOptions con
   if (vectors.foreign && !options.overlap && has_sigma)
     spdlog::info(
         "windows of {} px, from [correlate] of the setup, are assumed for the correlation of the vectors' "
-        "errors; give another --overlap if it was measured otherwise",
-        vectors.settings.window_px.back());
+        "errors; give --overlap if the vectors were measured with other windows",
+        window_px);
   result.setup = loaded.document.resolved();
   result.seed = loaded.setup.render.seed;
   result.vectors = files.vectors;

@@ -107,7 +107,7 @@ class PairProgress {
   Progress progress_;
 };
 
-/// Removes what the statistics do not use.
+/// Removes the data that the statistics do not use.
 DisplacementField without_details(DisplacementField field) {
   field.sigma_px = field.raw_px = {};
   field.peak_ratio = field.correlation = {};
@@ -146,7 +146,7 @@ std::vector<std::string> summarise_warnings(std::vector<PairRecord> const& pairs
   return texts;
 }
 
-/// Work of correlate_sequence().
+/// Implementation of correlate_sequence().
 class SequenceRun {
  public:
   SequenceRun(std::vector<SequencePair> const& pairs, SequenceSettings const& settings, Backend device, bool shown)
@@ -236,7 +236,7 @@ class SequenceRun {
       add(fmt::format("preparation_{}", ++number), pixel_sha256(file));
     number = 0;
     for (auto const& background : settings_.backgrounds) {
-      compute(*background);
+      compute_images(*background);
       ++number;
       add(fmt::format("background_{}_reference", number), pixel_sha256(background->reference, 64));
       add(fmt::format("background_{}_flow", number), pixel_sha256(background->flow, 64));
@@ -245,8 +245,9 @@ class SequenceRun {
     sources_.add_known("settings", settings_sha256_);
   }
 
-  /// Computes the background of frames A and of frames B; with another pairing, where they are the same images, of all.
-  void compute(SequenceBackground& background) const {
+  /// Computes the background of frames A and that of frames B. With another pairing than Pairing::pairs they are images
+  /// of one series, and the background is that of all frames.
+  void compute_images(SequenceBackground& background) const {
     std::vector<SequenceFrame> first, second;
     for (PairRecord const& record : result_.pairs) {
       if (!record.pair.problem.empty()) continue;
@@ -257,13 +258,13 @@ class SequenceRun {
     if (settings_.pairing == Pairing::reference) first = {first.front()};
     if (settings_.pairing == Pairing::consecutive) second = {second.back()};
     if (!pairs) first.insert(first.end(), second.begin(), second.end());
-    background.reference = compute(background.statistic, first);
-    background.flow = pairs ? compute(background.statistic, second) : background.reference;
+    background.reference = compute_image(background.statistic, first);
+    background.flow = pairs ? compute_image(background.statistic, second) : background.reference;
     if (background.reference.empty() || background.flow.empty())
       throw DataError("correlate.preprocess", "no frame is suitable for the background; check that they are readable");
   }
 
-  Image<double> compute(std::string const& statistic, std::vector<SequenceFrame> const& frames) const {
+  Image<double> compute_image(std::string const& statistic, std::vector<SequenceFrame> const& frames) const {
     PairProgress progress("background", frames.size(), shown_);
     return compute_background(statistic, frames.size(), [&](std::size_t k) -> std::optional<Image<double>> {
       throw_if_interrupted();
@@ -306,8 +307,12 @@ class SequenceRun {
         }
       });
       if (fatal) std::rethrow_exception(fatal);
-      for (std::size_t k = begin; k < end; ++k)
-        result_.pairs[k].has_vectors() ? statistics_.add(fields[k - begin]) : statistics_.skip();
+      for (std::size_t k = begin; k < end; ++k) {
+        if (result_.pairs[k].has_vectors())
+          statistics_.add(fields[k - begin]);
+        else
+          statistics_.skip();
+      }
     }
   }
 
@@ -366,7 +371,7 @@ class SequenceRun {
   }
 
   /// Reads the vectors of an earlier run.
-  /// @return nullopt if there are none, or if they belong to other frames or settings
+  /// @return nullopt if they are missing or damaged, or if they belong to other frames or settings
   std::optional<DisplacementField> read_finished(std::string const& path, PairRecord& record) const {
     std::error_code error;
     if (!std::filesystem::exists(path, error)) return std::nullopt;
@@ -392,8 +397,7 @@ class SequenceRun {
     if (count_with_vectors() > 0) {
       SequenceMoments const moments = statistics_.moments();
       result_.vectors = moments.position_px.size();
-      // The independent samples are only of interest where there are several.
-      if (moments.unresolved * 10 > result_.vectors && moments.samples > moments.lags)
+      if (moments.unresolved * 10 > result_.vectors)
         result_.warnings.push_back(fmt::format(
             "{} of {} points remain correlated over all {} recorded lags (so that standard errors are too small); "
             "record a longer sequence at a lower rate",
@@ -454,6 +458,11 @@ SequenceSettings read_sequence_settings(Pairing pairing, std::string const& path
   settings.pairing = pairing;
   settings.correlation = path.empty() ? default_correlation(overrides) : read_correlation_file(path, overrides);
   settings.backgrounds = preparation.backgrounds();
+  if (settings.correlation.settings.gives_scattered_vectors())
+    throw DataError(
+        "correlate.tracking.output",
+        "\"scattered\" gives vectors at other points for each pair (the statistics of a sequence require one "
+        "grid); choose \"grid\"");
   return settings;
 }
 

@@ -26,7 +26,8 @@ struct SequenceSettings {
   std::vector<std::shared_ptr<SequenceBackground>> backgrounds;
 };
 /// Reads the settings of a sequence: as read_correlation_file(), or default_correlation() if `path` is empty, but
-/// "background" steps may omit `frame`, which then stands for the frames of the sequence.
+/// "background" steps may omit `frame`, and then subtract the background of the sequence.
+/// @throws SetupError; DataError if the vectors would not be on a grid
 SequenceSettings read_sequence_settings(Pairing pairing, std::string const& path,
                                         std::vector<std::string> const& overrides);
 

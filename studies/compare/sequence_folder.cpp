@@ -22,18 +22,47 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Returns true if the folder contains visible files.
-bool holds_files(std::string const& folder) {
+bool contains_files(std::string const& folder) {
   std::error_code error;
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
     if (!entry->path().filename().string().starts_with('.')) return true;
   return false;
 }
 
+/// Returns true if a path still refers to this open file.
 bool is_same_file(int file, std::string const& path) {
   struct stat open {};
   struct stat there {};
   return ::fstat(file, &open) == 0 && ::stat(path.c_str(), &there) == 0 && open.st_dev == there.st_dev &&
          open.st_ino == there.st_ino;
+}
+
+/// Returns the name of a state in sequence.json.
+char const* state_name(PairState state) {
+  switch (state) {
+    case PairState::pending:
+      return "pending";
+    case PairState::done:
+      return "done";
+    case PairState::no_valid_vector:
+      return "no valid vector";
+    case PairState::failed:
+      break;
+  }
+  return "failed";
+}
+
+/// Returns the name of a pairing, as in --pairing.
+char const* pairing_name(Pairing pairing) {
+  switch (pairing) {
+    case Pairing::pairs:
+      return "pairs";
+    case Pairing::reference:
+      return "reference";
+    case Pairing::consecutive:
+      break;
+  }
+  return "consecutive";
 }
 
 nlohmann::json describe_frame(SequenceFrame const& frame, std::string const& sha256) {
@@ -52,7 +81,7 @@ SequenceFolder::SequenceFolder(std::string const& path) {
   std::error_code error;
   if (fs::exists(path_, error) && !fs::is_directory(path_, error))
     throw OutputError(path, "is a file (a sequence has one file of vectors per pair); name a folder");
-  if (holds_files(path_) && !fs::exists(file(sequence_file::state), error))
+  if (contains_files(path_) && !fs::exists(file(sequence_file::state), error))
     throw OutputError(path, "contains other files (it has no sequence.json); name a new folder");
   fs::create_directories(path_, error);
   if (error) place.fail("cannot be created", error.value());
@@ -61,7 +90,6 @@ SequenceFolder::SequenceFolder(std::string const& path) {
 }
 
 SequenceFolder::~SequenceFolder() {
-  if (lock_ < 0) return;
   ::unlink(lock_path_.c_str());
   ::close(lock_);
 }
@@ -70,46 +98,19 @@ void SequenceFolder::lock() {
   // The previous owner removes the file when it ends: repeat until the locked file is the one in the folder.
   for (int attempt = 0; attempt < 5; ++attempt) {
     lock_ = ::open(lock_path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-    if (lock_ < 0) OutputDestination(path_).fail("cannot be written", errno);
+    if (int const error = errno; lock_ < 0) OutputDestination(path_).fail("cannot be written", error);
+    // Other errors mean that the file system has no locks: then the folder is used without one.
     if (lock_bytes(lock_, 0, 1) == EAGAIN) {
       ::close(lock_);
-      lock_ = -1;
       throw OutputError(path_, "is being written by another gladstone correlate; wait until it ends");
     }
     if (is_same_file(lock_, lock_path_)) return;
     ::close(lock_);
-    lock_ = -1;
   }
   throw OutputError(path_, "cannot be locked (other processes replace its file .lock); name another folder");
 }
 
 std::string SequenceFolder::file(std::string const& name) const { return (fs::path(path_) / name).string(); }
-
-char const* name_of(PairState state) {
-  switch (state) {
-    case PairState::pending:
-      return "pending";
-    case PairState::done:
-      return "done";
-    case PairState::no_valid_vector:
-      return "no valid vector";
-    case PairState::failed:
-      break;
-  }
-  return "failed";
-}
-
-char const* name_of(Pairing pairing) {
-  switch (pairing) {
-    case Pairing::pairs:
-      return "pairs";
-    case Pairing::reference:
-      return "reference";
-    case Pairing::consecutive:
-      break;
-  }
-  return "consecutive";
-}
 
 void write_sequence_state(std::string const& path, SequenceState const& state, std::vector<PairRecord> const& pairs) {
   nlohmann::json list = nlohmann::json::array();
@@ -117,7 +118,7 @@ void write_sequence_state(std::string const& path, SequenceState const& state, s
     nlohmann::json entry{{"vectors", record.has_vectors() ? nlohmann::json(record.pair.vectors) : nullptr},
                          {"reference", describe_frame(record.pair.reference, record.reference_sha256)},
                          {"flow", describe_frame(record.pair.flow, record.flow_sha256)},
-                         {"state", name_of(record.state)},
+                         {"state", state_name(record.state)},
                          {"warnings", record.warnings}};
     if (!record.error.empty()) entry["error"] = record.error;
     list.push_back(std::move(entry));
@@ -126,7 +127,7 @@ void write_sequence_state(std::string const& path, SequenceState const& state, s
                             {"version", 1},
                             {"software_version", version},
                             {"git_sha1", git_sha1},
-                            {"pairing", name_of(state.pairing)},
+                            {"pairing", pairing_name(state.pairing)},
                             {"complete", state.complete},
                             {"pixels", {state.columns, state.rows}},
                             {"settings", state.settings},

@@ -11,20 +11,20 @@ namespace gladstone {
 class SequenceFolder {
  public:
   /// Creates the folder if it is missing.
-  /// @throws OutputError if it cannot be written, contains other files but no sequence.json, or is locked by another
-  /// run
+  /// @throws OutputError if it cannot be written, contains files but no sequence.json, or is locked by another run
   explicit SequenceFolder(std::string const& path);
   ~SequenceFolder();
   SequenceFolder(SequenceFolder const&) = delete;
   SequenceFolder& operator=(SequenceFolder const&) = delete;
 
+  /// Returns the path of a file in the folder.
   std::string file(std::string const& name) const;
 
  private:
   void lock();
 
   std::string path_, lock_path_;
-  int lock_ = -1;
+  int lock_ = -1;  ///< descriptor of the locked file .lock
 };
 
 /// Content of sequence.json besides the pairs.
@@ -37,9 +37,5 @@ struct SequenceState {
 
 /// Writes sequence.json. @throws OutputError
 void write_sequence_state(std::string const& path, SequenceState const& state, std::vector<PairRecord> const& pairs);
-
-/// Returns the name of a state in sequence.json.
-char const* name_of(PairState state);
-char const* name_of(Pairing pairing);
 
 }  // namespace gladstone

@@ -12,6 +12,7 @@
 #include <set>
 
 #include "render/base/error.h"
+#include "render/base/text.h"
 #include "render/files/image_pages.h"
 
 namespace gladstone {
@@ -68,16 +69,17 @@ bool is_before(std::string const& a, std::string const& b) {
   return a < b;
 }
 
-void sort_naturally(std::vector<std::string>& files) { std::sort(files.begin(), files.end(), is_before); }
+/// Map whose keys are in natural order (2 before 10).
+template <class Value>
+using NaturalMap = std::map<std::string, Value, decltype(&is_before)>;
 
-/// Returns true if the name ends like that of an image.
+/// Returns true if the name has the ending of an image file.
 bool has_image_ending(fs::path const& path) {
   static constexpr std::array endings{".tif", ".tiff", ".png", ".bmp", ".jpg", ".jpeg", ".pgm", ".exr", ".jp2"};
-  std::string ending = path.extension().string();
-  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return std::find(endings.begin(), endings.end(), ending) != endings.end();
+  return std::find(endings.begin(), endings.end(), lower_case(path.extension().string())) != endings.end();
 }
 
+/// Lists the images in a folder, in any order.
 std::vector<std::string> list_folder(std::string const& folder) {
   std::vector<std::string> files;
   std::error_code error;
@@ -92,10 +94,10 @@ std::vector<std::string> list_folder(std::string const& folder) {
     throw DataError(
         folder, "contains no image (.tif, .png, .jpg, ...); name another folder, or give a pattern such as '" + folder +
                     "/*.dat'");
-  sort_naturally(files);
   return files;
 }
 
+/// Lists the files that match a pattern, in any order.
 std::vector<std::string> expand_pattern(std::string const& pattern) {
   glob_t found{};
   int const result = ::glob(pattern.c_str(), 0, nullptr, &found);
@@ -106,7 +108,6 @@ std::vector<std::string> expand_pattern(std::string const& pattern) {
   }
   ::globfree(&found);
   if (files.empty()) throw DataError(pattern, "matches no file; check the folder and the pattern");
-  sort_naturally(files);
   return files;
 }
 
@@ -182,7 +183,7 @@ constexpr char const* no_partner = "has no partner";
 std::vector<SequencePair> match_lists(std::vector<std::string> const& a, std::vector<std::string> const& b) {
   std::vector<NumberedName> const names_a = split_names(a), names_b = split_names(b);
   auto const keys_a = find_instants(names_a, names_b), keys_b = find_instants(names_b, names_a);
-  std::map<std::string, std::string, bool (*)(std::string const&, std::string const&)> partners(is_before);
+  NaturalMap<std::string> partners(is_before);
   if (keys_a && keys_b)
     for (std::size_t k = 0; k < b.size(); ++k) partners[(*keys_b)[k]] = b[k];
   bool const by_number =
@@ -190,7 +191,7 @@ std::vector<SequencePair> match_lists(std::vector<std::string> const& a, std::ve
       std::any_of(keys_a->begin(), keys_a->end(), [&](std::string const& key) { return partners.contains(key); });
   std::vector<SequencePair> pairs;
   if (by_number) {
-    std::map<std::string, SequencePair, bool (*)(std::string const&, std::string const&)> matched(is_before);
+    NaturalMap<SequencePair> matched(is_before);
     for (std::size_t k = 0; k < a.size(); ++k) {
       SequencePair& pair = matched[(*keys_a)[k]];
       pair.reference.path = a[k];

@@ -65,11 +65,10 @@ WrittenReport write_report(ReportOptions const& options, Backend const& device) 
                                                 run_file::manifest, case_file::setup));
   }
   if (run && (!options.vectors.empty() || !options.conventions.empty())) {
-    throw DataError(
-        options.source,
-        fmt::format("is a study, whose cases have vectors of their own; leave {} out, or give the folder of "
-                    "a case",
-                    options.vectors.empty() ? "--conventions" : "--vectors"));
+    throw DataError(options.source,
+                    fmt::format("is a study, each of whose cases has its vectors; leave {} out, or give the folder of "
+                                "a case",
+                                options.vectors.empty() ? "--conventions" : "--vectors"));
   }
   // fails early if the output cannot be written
   OutputFile output(options.output, options.markdown ? "Markdown" : "HTML");

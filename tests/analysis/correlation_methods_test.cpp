@@ -43,8 +43,8 @@ MethodError error_of(CorrelationSettings const& settings, double shift, double n
   return {std::sqrt(error.rms / count), error.bias / count};
 }
 
-// The same plane computed by other transforms: 24 bits over a plane of 48^2 or 64^2 values cause errors of 1e-6 of the
-// peak, whose width is about a pixel; ten times that for peaks on the flank of other peaks.
+// OpenCV computes the plane by other transforms: 24 bits over a plane of 48^2 or 64^2 values cause errors of 1e-6 of
+// the peak, whose width is about a pixel; ten times that for peaks on the flank of other peaks.
 TEST(Scc, IsOpenCVsPlaneToTenMicropixels) {
   ParticlePair const pair = render_particle_pair({.noise = 0.05}, [](Vec2d p) {
     return Vec2d{1.7 + std::sin(0.05 * p.y), -0.02 * p.x};

@@ -5,8 +5,8 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cstdio>
-#include <limits>
 
+#include "render/base/not_a_number.h"
 #include "render/base/parallel.h"
 #include "tests/analysis/synthetic_dots.h"
 
@@ -172,14 +172,13 @@ TEST(DotLocation, FindsDarkDotsOnUnevenPaper) {
   for (SyntheticDot const& dot : dots) EXPECT_GE(nearest_dot(located, dot.centre, 0.06), 0);
 }
 
-/// Fraction of dots away from the edge that are located within half a pixel, each by a dot of its own, and number of
-/// located dots that belong to none.
+/// Result of the location of all dots away from the edge.
 struct Yield {
-  double found = 0;
-  int strays = 0;
+  double found = 0;  ///< fraction located within half a pixel; each located dot counts for one true dot only
+  int strays = 0;    ///< number of located dots that do not belong to a true dot
 };
 
-Yield yield(double apart, double noise_share, double dots_per_window) {
+Yield measure_yield(double apart, double noise_share, double dots_per_window) {
   constexpr int side = 256;
   KeyedEngine random(7, RandomStream::target, 1);
   auto const places =
@@ -210,22 +209,22 @@ Yield yield(double apart, double noise_share, double dots_per_window) {
 // 20 dots of 3 px per 32x32 px that do not overlap: the pattern of the renderers.
 TEST(DotLocation, FindsAllDotsOfADensePattern) {
   for (double const noise : {0.01, 0.05}) {
-    Yield const found = yield(3, noise, 20);
+    Yield const found = measure_yield(3, noise, 20);
     EXPECT_GE(found.found, 0.995) << noise;
     EXPECT_LE(found.strays, 2) << noise;
   }
 }
 
-// At random places, 13 % of the dots have a neighbour within 1.5 px, closer than which two dots have one maximum, and
-// 1.5 % within 0.5 px.
+// At random places, 13 % of the dots have a neighbour within 1.5 px, and 1.5 % within 0.5 px. Two dots closer than
+// 1.5 px have a common maximum.
 TEST(DotLocation, SeparatesMostOverlappingDotsAtRandomPlaces) {
-  Yield const found = yield(0, 0.01, 20);
+  Yield const found = measure_yield(0, 0.01, 20);
   EXPECT_GE(found.found, 0.985);
   EXPECT_LE(found.strays, 8);
-  EXPECT_GE(yield(0, 0.05, 20).found, 0.95);
+  EXPECT_GE(measure_yield(0, 0.05, 20).found, 0.95);
 }
 
-// The noise of a camera with shot noise: errors follow the stated uncertainty.
+// For a camera with shot noise, the errors agree with the stated uncertainty.
 TEST(DotLocation, UncertaintyFollowsShotNoise) {
   constexpr double levels_per_electron = 20, read_noise = 60;
   KeyedEngine random(9, RandomStream::sensor, 0);
@@ -256,12 +255,11 @@ TEST(DotLocation, FindsNothingInNoiseAndIgnoresMaskedPixels) {
   EXPECT_LE(locate_dots(test::dot_image(128, {}, background, 30, random), {}).dots.size(), 1u);
   EXPECT_TRUE(locate_dots(Image<double>(128, 128, 7.0), {}).dots.empty());
   EXPECT_TRUE(locate_dots(Image<double>(3, 3, 7.0), {}).dots.empty());
-  double const nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_TRUE(locate_dots(Image<double>(64, 64, nan), {}).dots.empty());
+  EXPECT_TRUE(locate_dots(Image<double>(64, 64, not_a_number), {}).dots.empty());
   std::vector<SyntheticDot> const dots = isolated_dots(0.75);
   Image<double> image = test::dot_image(240, dots, background, 400, random);
   for (int row = 0; row < 240; ++row)
-    for (int column = 0; column < 120; ++column) image(column, row) = nan;
+    for (int column = 0; column < 120; ++column) image(column, row) = not_a_number;
   LocatedDots const located = locate_dots(image, {});
   auto const right = [](Vec2d p) { return p.x > 124; };
   auto const expected = std::count_if(dots.begin(), dots.end(), [&](auto const& dot) { return right(dot.centre); });

@@ -3,10 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
-#include <limits>
 
 #include "analysis/tracking/dot_tracking.h"
 #include "render/base/error.h"
+#include "render/base/not_a_number.h"
+#include "render/base/units.h"
 #include "tests/analysis/synthetic_dots.h"
 
 namespace gladstone::tracking {
@@ -38,11 +39,12 @@ TwoFrames random_frames(double spacing, double lost, Field const& field) {
   return frames;
 }
 
+/// Fractions of the dots with a partner; wrong matches of dots without a partner count as well.
 struct Shares {
   double right = 0, wrong = 0, ambiguous = 0;
 };
 
-Shares shares_of(TwoFrames const& frames, std::vector<DotMatch> const& matches) {
+Shares count_shares(TwoFrames const& frames, std::vector<DotMatch> const& matches) {
   Shares shares;
   double count = 0;
   for (std::size_t i = 0; i < matches.size(); ++i) {
@@ -66,7 +68,7 @@ Shares shares_of(TwoFrames const& frames, std::vector<DotMatch> const& matches) 
 /// Sine in both components with the largest gradient g over 80 px, plus a shift along x.
 auto sine_field(double shift, double g) {
   return [=](Vec2d p) {
-    constexpr double k = 2 * 3.14159265358979323846 / 80;
+    constexpr double k = 2 * pi / 80;
     return Vec2d{shift + g / k * std::sin(k * p.y), g / k * std::sin(k * p.x)};
   };
 }
@@ -81,7 +83,7 @@ TEST(DotMatching, FindsPartnersFarBeyondTheSpacing) {
       TwoFrames const frames = random_frames(spacing, lost, sine_field(ratio * spacing, 0.05));
       MatchSettings settings;
       settings.search_radius_px = 1.2 * ratio * spacing + 2;
-      Shares const shares = shares_of(frames, match_dots(frames.a, frames.b, {}, settings));
+      Shares const shares = count_shares(frames, match_dots(frames.a, frames.b, {}, settings));
       std::printf("%7.2f %6.2f %7.3f %7.3f %7.3f\n", lost, ratio, shares.right, shares.wrong, shares.ambiguous);
       EXPECT_GT(shares.right, 0.95) << ratio << ", lost " << lost;
       EXPECT_LT(shares.wrong, 0.02) << ratio << ", lost " << lost;
@@ -96,7 +98,7 @@ TEST(DotMatching, FollowsSteepGradientsByThePrediction) {
   for (Vec2d const p : frames.a) prediction.push_back(field(p) + Vec2d{0.5, -0.5});
   MatchSettings settings;
   settings.search_radius_px = 2;
-  Shares const shares = shares_of(frames, match_dots(frames.a, frames.b, prediction, settings));
+  Shares const shares = count_shares(frames, match_dots(frames.a, frames.b, prediction, settings));
   EXPECT_GT(shares.right, 0.96);
   EXPECT_LT(shares.wrong, 0.02);
 }
@@ -131,7 +133,7 @@ TEST(DotMatching, RegularDotsGiveNoSilentAlias) {
       TwoFrames const frames = regular_frames(pitch, {shift * pitch, 0.1 * pitch});
       MatchSettings settings;
       settings.search_radius_px = radius;
-      EXPECT_EQ(shares_of(frames, match_dots(frames.a, frames.b, {}, settings)).wrong, 0) << shift << ", " << radius;
+      EXPECT_EQ(count_shares(frames, match_dots(frames.a, frames.b, {}, settings)).wrong, 0) << shift << ", " << radius;
     }
 }
 
@@ -140,51 +142,30 @@ TEST(DotMatching, RegularDotsAreMatchedWithinAStatedBound) {
   TwoFrames const frames = regular_frames(10, {3.5, -2});
   MatchSettings settings;
   settings.displacement_bound_px = 4.9;
-  Shares const shares = shares_of(frames, match_dots(frames.a, frames.b, {}, settings));
+  Shares const shares = count_shares(frames, match_dots(frames.a, frames.b, {}, settings));
   EXPECT_GT(shares.right, 0.97);
   EXPECT_EQ(shares.wrong, 0);
 }
 
 TEST(DotMatching, AcceptsFramesWithoutDotsAndPlacesThatAreNotFinite) {
   EXPECT_TRUE(match_dots({}, {}, {}).empty());
-  double const nan = std::numeric_limits<double>::quiet_NaN();
-  std::vector<Vec2d> const few{{1, 1}, {nan, 2}, {5, 5}};
+  std::vector<Vec2d> const few{{1, 1}, {not_a_number, 2}, {5, 5}};
   EXPECT_EQ(match_dots(few, {}, {}).size(), 3u);
   auto const matches = match_dots(few, few, {});
   EXPECT_EQ(matches[1].status, MatchStatus::unmatched);
-}
-
-/// Two frames of dots that move by a field, with noise of 1 % of their height.
-struct DotFrames {
-  Image<double> a, b;
-  std::vector<Vec2d> places;
-};
-
-template <class Field>
-DotFrames dot_frames(double apart, Field const& field) {
-  constexpr int pixels = 192;
-  KeyedEngine random(21, RandomStream::target, 2);
-  DotFrames frames;
-  frames.places = test::random_places(720, pixels, apart, random);
-  std::vector<test::SyntheticDot> a, b;
-  for (Vec2d const p : frames.places) {
-    a.push_back({p, 40000});
-    b.push_back({p + field(p), 40000});
-  }
-  frames.a = test::dot_image(pixels, a, 2500, 400, random);
-  frames.b = test::dot_image(pixels, b, 2500, 400, random);
-  return frames;
 }
 
 // 20 dots of 3 px per 32x32 px, without overlap and at random places.
 TEST(DotTracking, GivesNearlyEveryDotAVector) {
   auto const field = sine_field(1.3, 0.05);
   for (double const apart : {3.0, 0.0}) {
-    DotFrames const frames = dot_frames(apart, field);
+    KeyedEngine random(21, RandomStream::target, 2);
+    std::vector<Vec2d> const places = test::random_places(720, 192, apart, random);
+    test::MovedDots const frames = test::moved_dots(192, places, field, random);
     DisplacementField const vectors = track_dots(frames.a, frames.b, {});
     int all = 0, found = 0, gross = 0;
-    std::vector<char> used(vectors.size());  // every dot needs a vector of its own
-    for (Vec2d const p : frames.places) {
+    std::vector<char> used(vectors.size());  // a vector counts for one dot only
+    for (Vec2d const p : places) {
       if (p.x < 6 || p.y < 6 || p.x > 185 || p.y > 185) continue;
       ++all;
       Vec2d const middle = p + 0.5 * field(p);

@@ -21,7 +21,7 @@ DisplacementField scattered(double sigma, Field const& field) {
   return vectors;
 }
 
-// A plane fitted to values of a plane is that plane, wherever the vectors lie.
+// A plane fitted to values of a plane is that plane, for any positions of the vectors.
 TEST(GaussianWindow, ReproducesLinearFields) {
   auto const field = [](Vec2d p) { return Vec2d{1 + 0.02 * p.x - 0.01 * p.y, 0.03 * p.y}; };
   DisplacementField const grid = grid_vectors(scattered(0, field), 25, 25, {15, 15}, 11);

@@ -118,8 +118,8 @@ TEST(PairVerdict, RetainsWeaklyCorrelatedVectors) {
   EXPECT_THAT(field.warnings, IsEmpty());
 }
 
-// The same with a stricter test: if a fifth of the vectors is rejected, the pair counts as no measurement, whether they
-// are replaced or invalid.
+// The pair of the previous test with a stricter validation: if a fifth of the vectors is rejected, the pair counts as
+// no measurement, whether they are replaced or invalid.
 TEST(PairVerdict, WarnsIfOneFifthFailsValidation) {
   ParticlePair const pair = render_particle_pair(
       {.columns = 200, .rows = 200, .particles_per_px = 6.0 / 1024.0, .noise = 0.1}, everywhere(2.3, -0.2));
@@ -405,6 +405,7 @@ TEST(Chance, RejectsAllIfFewExceedIt) {
       for (int i = 0; i < good; ++i) field.correlation[static_cast<std::size_t>(10 * j + i)] = 0.9;
     reject_uncorrelated_vectors(field, with_correlation(0.3, 0.1), windows_of_32());
     EXPECT_GE(counting(field), kept) << good;
+    // The local mean extends over two windows to each side, so that at most 9 x 9 = 81 windows have good ones in it.
     EXPECT_LE(counting(field), kept * 2) << "windows next to the good ones may be kept too";
   }
 }

@@ -27,12 +27,13 @@ std::vector<std::vector<Vec2d>> rotating_frames(std::size_t count, std::size_t f
   return sequence;
 }
 
-/// Fraction of the links of all tracks that connect the same particle, and of all possible links that were found.
+/// Links between consecutive places of a track.
 struct Links {
-  double right = 0, found = 0;
+  double right = 0;  ///< fraction of the links of all tracks that connect the same particle
+  double found = 0;  ///< fraction of all possible links that are right and in a track
 };
 
-Links links_of(std::vector<Track> const& tracks, std::size_t count, std::size_t frames) {
+Links measure_links(std::vector<Track> const& tracks, std::size_t count, std::size_t frames) {
   double links = 0, right = 0;
   for (Track const& track : tracks)
     for (std::size_t k = 1; k < track.length(); ++k) {
@@ -42,8 +43,8 @@ Links links_of(std::vector<Track> const& tracks, std::size_t count, std::size_t 
   return {right / links, right / static_cast<double>(count * (frames - 1))};
 }
 
-// Displacements of up to 14 px. The spacing falls from 20 to 8 px; the prediction by the flow field, in error by 10 %,
-// is needed for the first step of each track only.
+// Displacements are up to 14 px, and the spacing decreases from 20 to 8 px. The prediction by the flow field has an
+// error of 10 %; it is required for the first step of each track only.
 TEST(ParticleTracks, FollowParticlesThroughARotation) {
   auto const predict = [](Vec2d p) { return 0.9 * omega * Vec2d{-(p.y - extent / 2), p.x - extent / 2}; };
   std::printf("   spacing   displacement/spacing   right links   found links\n");
@@ -53,7 +54,7 @@ TEST(ParticleTracks, FollowParticlesThroughARotation) {
     TrackSettings settings;
     settings.search_radius_px = 2;
     settings.start_radius_px = 3;
-    Links const links = links_of(track_particles(frames, predict, settings), count, 8);
+    Links const links = measure_links(track_particles(frames, predict, settings), count, 8);
     std::printf("%8.1f %14.2f %20.4f %12.4f\n", spacing, 0.38 * omega * extent / spacing, links.right, links.found);
     EXPECT_GT(links.right, 0.98) << spacing;
     EXPECT_GT(links.found, 0.96) << spacing;
@@ -78,8 +79,8 @@ TEST(ParticleTracks, StartAndEndWithTheirParticles) {
   EXPECT_TRUE(track_particles({}, nullptr).empty());
 }
 
-// The four-frame estimate tells a particle apart from one that passes nearer to the predicted place but does not
-// continue there.
+// The four-frame estimate selects the particle whose extended path meets a particle in the next frame, although another
+// one is closer to the predicted place.
 TEST(ParticleTracks, TheFrameAfterTheNextDecides) {
   std::vector<std::vector<Vec2d>> const frames{{{0, 0}}, {{5, 0}}, {{10, 0.8}, {10, -0.4}}, {{15, 2.4}}};
   TrackSettings settings;

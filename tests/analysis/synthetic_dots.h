@@ -6,6 +6,7 @@
 
 #include "render/base/image.h"
 #include "render/base/random_variates.h"
+#include "render/base/units.h"
 #include "render/base/vec.h"
 
 namespace gladstone::test {
@@ -22,8 +23,7 @@ struct SyntheticDot {
 inline double light_on(SyntheticDot const& dot, int column, int row) {
   auto const share = [](double t, double sigma) {
     double const scale = std::sqrt(0.5) / sigma;
-    return sigma * std::sqrt(0.5 * 3.14159265358979323846) *
-           (std::erf((t + 0.5) * scale) - std::erf((t - 0.5) * scale));
+    return sigma * std::sqrt(0.5 * pi) * (std::erf((t + 0.5) * scale) - std::erf((t - 0.5) * scale));
   };
   return dot.height * share(column - dot.centre.x, dot.sigma_x) * share(row - dot.centre.y, dot.sigma_y);
 }
@@ -59,6 +59,25 @@ inline std::vector<Vec2d> random_places(std::size_t count, double side, double a
     if (free) places.push_back(p);
   }
   return places;
+}
+
+/// Frames A and B of moving dots.
+struct MovedDots {
+  Image<double> a, b;
+};
+
+/// Frames of dots at `places` in frame A that move by field(place) [px], with noise of 1 % of their height.
+template <class Field>
+MovedDots moved_dots(int side, std::vector<Vec2d> const& places, Field const& field, KeyedEngine& random) {
+  std::vector<SyntheticDot> a, b;
+  for (Vec2d const p : places) {
+    a.push_back({p, 40000});
+    b.push_back({p + field(p), 40000});
+  }
+  MovedDots frames;
+  frames.a = dot_image(side, a, 2500, 400, random);
+  frames.b = dot_image(side, b, 2500, 400, random);
+  return frames;
 }
 
 }  // namespace gladstone::test

@@ -4,6 +4,7 @@
 
 #include <cstdio>
 
+#include "analysis/tracking/dot_tracking.h"
 #include "tests/analysis/synthetic_dots.h"
 
 namespace gladstone::tracking {
@@ -14,13 +15,15 @@ constexpr int frame_px = 256;
 /// Front of 6 px displacement over 12 px at the middle of the frame: the gradient there is -0.5 px/px.
 Vec2d front(Vec2d p) { return {-3 * std::tanh((p.x - 127.5) / 6), 0.5}; }
 
-/// Root mean square of the errors of both components over the vectors that count, at least 12 px from the edge.
+/// Errors of the valid vectors at least 12 px from the edge.
 struct FieldError {
-  double rms = 0, normalised = 0;
-  int count = 0, gross = 0;
+  double rms = 0;         ///< root mean square per component [px]
+  double normalised = 0;  ///< root mean square of errors over their sigma_px [1]
+  int count = 0;          ///< number of vectors
+  int gross = 0;          ///< number of errors above 0.5 px
 };
 
-FieldError error_of(DisplacementField const& field) {
+FieldError measure_error(DisplacementField const& field) {
   FieldError error;
   double squares = 0, normalised = 0;
   for (std::size_t i = 0; i < field.size(); ++i) {
@@ -39,22 +42,18 @@ FieldError error_of(DisplacementField const& field) {
   return error;
 }
 
-// A front compresses a window of 24 px by a third of its width; a dot moves as a whole.
+// A front compresses a window of 24 px by a third of its width, but does not deform a dot.
 TEST(TrackingCorrelator, ResolvesAFrontBetterThanCorrelation) {
   KeyedEngine random(31, RandomStream::target, 0);
-  std::vector<test::SyntheticDot> a, b;
-  for (Vec2d const p : test::random_places(20 * 64, frame_px, 3, random)) {
-    a.push_back({p, 40000});
-    b.push_back({p + front(p), 40000});
-  }
-  Image<double> const reference = test::dot_image(frame_px, a, 2500, 400, random);
-  Image<double> const flow = test::dot_image(frame_px, b, 2500, 400, random);
+  std::vector<Vec2d> const places = test::random_places(20 * 64, frame_px, 3, random);
+  test::MovedDots const frames = test::moved_dots(frame_px, places, front, random);
   CorrelationSettings settings;
-  DisplacementField const correlated = make_correlator(settings)->correlate(reference, flow);
+  DisplacementField const correlated = make_correlator(settings)->correlate(frames.a, frames.b);
   settings.method = "tracking";
-  DisplacementField const gridded = make_cpu_correlator(settings)->correlate(reference, flow);
-  DisplacementField const dots = track_dots(reference, flow, correlated);
-  FieldError const of_windows = error_of(correlated), of_grid = error_of(gridded), of_dots = error_of(dots);
+  DisplacementField const gridded = make_cpu_correlator(settings)->correlate(frames.a, frames.b);
+  DisplacementField const dots = track_dots(frames.a, frames.b, correlated);
+  FieldError const of_windows = measure_error(correlated), of_grid = measure_error(gridded),
+                   of_dots = measure_error(dots);
   for (auto const& [name, error] : {std::pair{"windows", of_windows}, {"dots on the grid", of_grid}, {"dots", of_dots}})
     std::printf("%-18s %5d vectors  rms %.4f px  over sigma %.2f  gross %d\n", name, error.count, error.rms,
                 error.normalised, error.gross);
@@ -70,7 +69,7 @@ struct Yield {
   double rms_px = 0;
 };
 
-Yield yield_of(DisplacementField const& field, Vec2d displacement, std::size_t dots) {
+Yield measure_yield(DisplacementField const& field, Vec2d displacement, std::size_t dots) {
   double squares = 0, count = 0;
   for (std::size_t i = 0; i < field.size(); ++i) {
     Vec2d const error = field.displacement_px[i] - displacement;
@@ -81,29 +80,24 @@ Yield yield_of(DisplacementField const& field, Vec2d displacement, std::size_t d
   return {count / static_cast<double>(dots), std::sqrt(squares / count)};
 }
 
-// 20 dots of 3 px at random places in 32 x 32 px: half of the images overlap. The known pattern says how many dots an
-// image consists of.
+// 20 dots of 3 px at random places in 32 x 32 px: half of the images overlap. The known pattern determines the number
+// of dots in each group of overlapping images.
 TEST(TrackingCorrelator, ResolvesOverlapsOfAKnownPattern) {
   constexpr int side = 128;
   constexpr Vec2d moved{2.3, -0.7};
   KeyedEngine random(32, RandomStream::target, 0);
-  std::vector<test::SyntheticDot> a, b;
   std::vector<Vec2d> const places = test::random_places(20 * 16, side, 0.75, random);
-  for (Vec2d const p : places) {
-    a.push_back({p, 40000});
-    b.push_back({p + moved, 40000});
-  }
-  Image<double> const reference = test::dot_image(side, a, 2500, 400, random);
-  Image<double> const flow = test::dot_image(side, b, 2500, 400, random);
+  test::MovedDots const frames = test::moved_dots(
+      side, places, [&](Vec2d) { return moved; }, random);
   std::size_t in_view = 0;
   for (Vec2d const p : places) in_view += p.x + moved.x < side - 0.5 && p.y + moved.y > -0.5;
   CorrelationSettings settings;
   settings.method = "tracking";
   settings.tracking.output = "scattered";
-  Yield const found = yield_of(make_cpu_correlator(settings)->correlate(reference, flow), moved, in_view);
+  Yield const found = measure_yield(make_cpu_correlator(settings)->correlate(frames.a, frames.b), moved, in_view);
   settings.known_dots_px = places;
-  DisplacementField const field = make_cpu_correlator(settings)->correlate(reference, flow);
-  Yield const known = yield_of(field, moved, in_view);
+  DisplacementField const field = make_cpu_correlator(settings)->correlate(frames.a, frames.b);
+  Yield const known = measure_yield(field, moved, in_view);
   std::printf("found %.3f of the dots, rms %.4f px; known %.3f, rms %.4f px\n", found.share, found.rms_px, known.share,
               known.rms_px);
   EXPECT_GT(known.share, 0.97);

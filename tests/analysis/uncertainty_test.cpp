@@ -276,7 +276,7 @@ TEST(CorrelationStatistics, HoldsForDotsOfEverySizeAndDensity) {
   }
 }
 
-// The same rates; every vector has a sigma.
+// Coverage rates as in the previous test; every vector has a sigma.
 TEST(ImageMatching, HoldsForDotsUpToItsPatch) {
   for (Dots const& dots : {Dots{1.5, 20, 0.05}, {3.0, 20, 0.05}, {4.5, 20, 0.05}, {4.5, 20, 0.01}, {3.0, 40, 0.05}}) {
     UncertaintyQuality const quality = quality_of_dots("image_matching", dots.diameter_px, dots.per_window, dots.noise);

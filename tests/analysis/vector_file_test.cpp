@@ -431,7 +431,7 @@ TEST_F(VectorFiles, CommasThatSeparateAndMarkDecimalsAreNamed) {
   EXPECT_THAT(problem("x,y,u,v\n11.5,11,-0.9,0.8,7\n"), testing::Not(HasSubstr("commas may")));
 }
 
-// The same text in UTF-8 and in UTF-16 of both byte orders; UTF-16 without a byte order mark is rejected by its name.
+// A text is read in UTF-8 and in UTF-16 of both byte orders; UTF-16 without a byte order mark is rejected by its name.
 TEST_F(VectorFiles, Utf16IsRead) {
   std::string const text = "x,y,u,v\r\n1.5,2,3.25,-4.5\r\n";
   std::string little, big;

@@ -16,9 +16,9 @@ std::vector<std::size_t> near(PointCells const& cells, Vec2d c, double radius) {
   return found;
 }
 
-// However far apart the points are, the number of cells is at most a few times that of the points, and all near points
-// are found.
-TEST(PointCells, FindPointsBesideOnesThatLieBeyondAnyMeasure) {
+// For any distances between the points, the number of cells is at most a few times that of the points, and all points
+// in the query range are found.
+TEST(PointCells, FindPointsNearbyDespiteDistantOnes) {
   double const nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
   std::vector<Vec2d> const points{{1, 1}, {2, 2}, {1e308, 0}, {-1e308, -1e308}, {nan, 0}, {0, infinity}, {1e15, 3}};
   PointCells const cells(points, 8.0);
@@ -28,7 +28,7 @@ TEST(PointCells, FindPointsBesideOnesThatLieBeyondAnyMeasure) {
   for (std::size_t const none : {4u, 5u}) EXPECT_TRUE(std::find(found.begin(), found.end(), none) == found.end());
 }
 
-TEST(PointCells, FindNothingAboutAPlaceThatIsNone) {
+TEST(PointCells, FindNothingAtPlacesThatAreNotFinite) {
   PointCells const cells(std::vector<Vec2d>{{1, 1}, {2, 2}}, 8.0);
   double const nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
   EXPECT_TRUE(near(cells, {nan, 1}, 4.0).empty());

@@ -137,7 +137,7 @@ inline Scene points_scene(Setup setup, double dots_per_window = 1) {
   return scene;
 }
 
-/// Some rays of a scene's dots to the pupil, straight.
+/// Returns straight rays from every `every`-th dot of a scene to the pupil.
 inline std::vector<Ray<double>> rays_of_dots(Scene const& scene, std::size_t every, int rays_a_dot) {
   FocusedSetupView const bench = focused_dots(scene).value().bench();
   BundleView choice;

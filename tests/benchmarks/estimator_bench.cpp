@@ -11,8 +11,8 @@
 namespace gladstone::bench {
 namespace {
 
-/// Errors of vectors at least 32 px from the border: per component rms and bias, share of the displacement that they
-/// follow, those above 1 px, and how well sigma tells them.
+/// Reports the errors of vectors at least 32 px from the border: rms and bias per component, the fraction of the
+/// displacement that they reach, the number above 1 px, and the coverage of sigma.
 void report_errors(benchmark::State& state, DisplacementField const& field, BenchmarkCase const& one) {
   int const columns = one.particles.columns, rows = one.particles.rows;
   std::vector<Vec2d> const truth = truth_at_vectors(field, one.flow);

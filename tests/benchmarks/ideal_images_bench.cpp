@@ -92,7 +92,8 @@ BENCHMARK(ideal_pairs_with_noise)
     ->Iterations(20)
     ->Unit(benchmark::kMillisecond);
 
-/// Droplets of oil about 1 um, each of its own diameter, by as many rays as accuracy takes; choosing them counts, too.
+/// Renders oil droplets of about 1 um, all of different diameters, with as many rays as the accuracy requires; the time
+/// includes the choice of the number.
 void mie_pairs(benchmark::State& state) {
   Setup setup = pair_setup(ParticleScattering::mie);
   setup.piv->particles.diameter.spread = DiameterSpread::lognormal;

@@ -104,7 +104,7 @@ void trace_volume(benchmark::State& state) {
 }
 BENCHMARK(trace_volume);
 
-/// The same, several rays side by side.
+/// Traces several rays at once through a volume.
 template <int N>
 void trace_volume_together(benchmark::State& state) {
   Scene const scene = volume_scene(64, 32, 64);

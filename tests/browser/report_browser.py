@@ -72,12 +72,12 @@ def check_charts(driver, kinds):
         ActionChains(driver).send_keys(Keys.ARROW_RIGHT).perform()
         first = spoken(driver)
         ActionChains(driver).send_keys(Keys.ARROW_RIGHT).perform()
-        expect(first != before and spoken(driver) != first, f"{kind}: arrow keys tell nothing new")
+        expect(first != before and spoken(driver) != first, f"{kind}: arrow keys do not read out another value")
         marks = drawn.find_elements(By.CSS_SELECTOR, "circle, rect.cell, rect.bar")
         for mark in [mark for mark in marks if mark.rect["height"] > 4][:1]:  # a cause may be nothing
             driver.execute_script("arguments[0].scrollIntoView({block: 'center'})", mark)
             ActionChains(driver).move_to_element(mark).perform()
-            expect(driver.find_element(By.CSS_SELECTOR, ".tip").is_displayed(), f"{kind}: nothing is told under the pointer")
+            expect(driver.find_element(By.CSS_SELECTOR, ".tip").is_displayed(), f"{kind}: no value is shown at the pointer")
 
 
 def check_run(driver, page, table):
@@ -130,16 +130,16 @@ def check_run(driver, page, table):
 
 
 def check_maps(driver):
-    """All maps stand side by side, each painted: a reader of the printed page sees them."""
+    """All maps are drawn next to each other, so that the printed page contains them."""
     data = json.loads(driver.execute_script("return document.getElementById('data').textContent"))
     maps = driver.find_elements(By.CSS_SELECTOR, "figure[data-chart=field] .maps canvas")
-    expect(len(maps) == len(data["fields"]) > 3, "not every map stands beside the others")
+    expect(len(maps) == len(data["fields"]) > 3, "the report does not contain a canvas for every map")
     painted = "const c = arguments[0]; return new Set(new Uint32Array(c.getContext('2d').getImageData(0, 0, c.width, c.height).data.buffer)).size"
     expect(driver.execute_script(painted, maps[0]) > 3, "the first map has no colours")
 
 
 def check_folds(driver):
-    """What is folded away on the screen is printed, and folded again."""
+    """Settings that are folded on the screen are unfolded for printing, and folded again afterwards."""
     folded = lambda: len(driver.find_elements(By.CSS_SELECTOR, "details:not([open])"))
     before = folded()
     driver.execute_script("window.dispatchEvent(new Event('beforeprint'))")

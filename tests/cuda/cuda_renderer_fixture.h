@@ -111,6 +111,7 @@ class OnBothDevices : public testing::Test {
     EXPECT_EQ(cpu.left, gpu.left);
     EXPECT_EQ(cpu.statuses, gpu.statuses);
     EXPECT_EQ(cpu.rays, gpu.rays);
+    // A displacement of one pixel is a shift of about 0.3 mm on the lens plane: 1e-12 m corresponds to 4e-9 px.
     EXPECT_NEAR(cpu.pupil_margin, gpu.pupil_margin, 1e-12);
     double const level = grey_level(cpu.light.reference);
     EXPECT_LT(largest_difference(cpu.light.reference, gpu.light.reference), Method::levels * level);

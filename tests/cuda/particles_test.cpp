@@ -68,6 +68,7 @@ class CudaParticlesTest : public OnBothDevices<RaysMethod> {
     EXPECT_EQ(a.rays_planned, b.rays_planned);
     EXPECT_EQ(cpu.statuses, gpu.statuses);
     EXPECT_EQ(cpu.rays, gpu.rays);
+    // A displacement of one pixel is a shift of about 0.3 mm on the lens plane: 1e-12 m corresponds to 4e-9 px.
     EXPECT_NEAR(cpu.pupil_margin, gpu.pupil_margin, 1e-12);
     if (images != RenderImages::no) {
       double const level = grey_level(cpu.light.reference);

@@ -101,7 +101,9 @@ TEST_F(Case, DefocusIsAberrationAndNotRefraction) {
              soft = terms("soft", {"--set", "lens.focus_distance_mm=950.0"}),
              medium = terms("medium", {"--set", "lens.focus=medium"});
   EXPECT_EQ(rms(sharp, "aberration"), 0);
-  EXPECT_LT(rms(named, "aberration"), 1e-9) << "a thin lens equals the ideal lens";
+  // A thin lens that is focused on the dots equals the ideal lens. Both trace the same rays, whose positions of up to
+  // 64 px have rounding errors of 1e-14 px for each of some thousand operations.
+  EXPECT_LT(rms(named, "aberration"), 1e-9);
   EXPECT_GT(rms(sharp, "refraction"), 0.002);
   for (auto const& blurred : {soft, medium}) {
     EXPECT_NEAR(rms(blurred, "refraction") / rms(sharp, "refraction"), 1, 0.05);

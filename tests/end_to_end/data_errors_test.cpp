@@ -175,7 +175,7 @@ TEST_F(DataErrors, DamagedTruth) {
   expect_refused({"compare", "case"}, 2, {"case/truth.h5: has no dataset \"/dots/"});
 }
 
-// The same vectors as a Tecplot zone: complete, and without the last vectors declared by its header.
+// Vectors are written as a Tecplot zone, once completely and once without the last vectors that the header declares.
 TEST_F(DataErrors, VectorsCutShortAreScoredWithAWarning) {
   render("case");
   succeed({"correlate", "case", "-o", "ours.csv"});

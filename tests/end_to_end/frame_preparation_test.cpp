@@ -131,7 +131,9 @@ TEST_F(Ensembles, OfOnePairRepeatedAreThatPair) {
   EXPECT_EQ(three.attribute("flow_3_sha256"), one.attribute("flow_sha256"));
   auto const u = one.read("/u_raw_px"), mean = three.read("/u_raw_px");
   ASSERT_EQ(u.size(), mean.size());
-  for (std::size_t i = 0; i < u.size(); ++i) EXPECT_NEAR(u[i], mean[i], 1e-4);  // rounding of sums and thirds in float
+  // Sums and thirds of correlation planes in float have rounding errors of 1e-7 of the peak. The Gaussian fit divides
+  // them by the curvature of the peak, 0.1 to 1 per square pixel, in every pass: 1e-5 px at most, with a factor of ten.
+  for (std::size_t i = 0; i < u.size(); ++i) EXPECT_NEAR(u[i], mean[i], 1e-4);
   EXPECT_EQ(three.attribute("verdict"), one.attribute("verdict"));
 }
 

@@ -117,9 +117,8 @@ TEST(DocumentedKeys, HaveTheDefaultsOfTheReaders) {
           EXPECT_EQ(found->second, "") << key.path << " has a default";
         }
         if (key.default_value.empty()) continue;
-        std::string const name = key.path.substr(key.path.rfind('.') + 1);
-        if (name == "experiment") continue;
-        std::string const given = setup + name + " = " + key.default_value + '\n';
+        if (key.name() == "experiment") continue;
+        std::string const given = setup + key.name() + " = " + key.default_value + '\n';
         EXPECT_EQ(test::requested_keys(given).values[key.path], found->second) << given;
       }
     }

@@ -4,14 +4,7 @@
 
 #include "render/files/image_file.h"
 #include "tests/end_to_end/support/program_fixture.h"
-
-#if defined(__SANITIZE_ADDRESS__)
-#define GLADSTONE_TEST_SANITIZED 1
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer)
-#define GLADSTONE_TEST_SANITIZED 1
-#endif
-#endif
+#include "tests/support/sanitizer.h"
 
 namespace gladstone::end_to_end {
 namespace {
@@ -35,9 +28,7 @@ class Limits : public ProgramFixture {
 // Images other than plain TIFFs are read by some 250 libraries, which abort or hang if they lack address space when
 // they start. Whatever the limit, the program ends by itself, with vectors or with a message.
 TEST_F(Limits, LittleAddressSpaceIsAMessageAndNoCrash) {
-#ifdef GLADSTONE_TEST_SANITIZED
-  GTEST_SKIP() << "the address sanitizer takes more address space than any limit leaves";
-#endif
+  if (test::address_sanitizer) GTEST_SKIP() << "AddressSanitizer takes more address space than any limit leaves";
   render("case");
   write_png("reference.png", "case/reference.tif");
   write_png("flow.png", "case/flow.tif");

@@ -322,7 +322,7 @@ std::vector<double> displacements_of(std::string const& csv) {
   return u;
 }
 
-// The same steady field measured twice, with different noise: the standard deviation of a mean of two is half of their
+// A steady field is measured twice, with different noise: the standard deviation of a mean of two is half of their
 // difference, with one degree of freedom (JCGM 100:2008, 4.2). One px is 150.9 kg/m^4.
 TEST_F(Reports, OfARepeatedMeasurementTellItsScatter) {
   std::string const setup = R"(schema = 1

@@ -81,7 +81,7 @@ class Sequences : public ProgramFixture {
     all.insert(all.end(), more.begin(), more.end());
     return all;
   }
-  nlohmann::json determine_run_state(std::string const& folder) const {
+  nlohmann::json read_state(std::string const& folder) const {
     return nlohmann::json::parse(read(folder + "/sequence.json"));
   }
   /// Mean displacement of the inner vectors of a file, whose windows are within both frames.
@@ -121,7 +121,7 @@ TEST_F(Sequences, OfPairsAreTheSingleCorrelations) {
     succeed(arguments({"A_" + number + ".tif", "B_" + number + ".tif"}, "single.h5"));
     expect_same_datasets("out/A_" + number + ".h5", "single.h5");
   }
-  auto const state = determine_run_state("out");
+  auto const state = read_state("out");
   EXPECT_EQ(state["complete"], true);
   EXPECT_EQ(state["pairs"][2]["flow"]["file"], "B_10.tif");
   EXPECT_EQ(state["pairs"][0]["reference"]["sha256"],
@@ -176,7 +176,7 @@ TEST_F(Sequences, AreThePagesOfOneFile) {
   expect_shift("reference/stack_p0003.h5", {0.25, 0});
   succeed(arguments({"stack.tif"}, "consecutive/", {"--pairing", "consecutive"}));
   expect_shift("consecutive/stack_p0002.h5", {-0.75, 0});
-  EXPECT_EQ(determine_run_state("consecutive")["pairs"][1]["flow"]["page"], 3);
+  EXPECT_EQ(read_state("consecutive")["pairs"][1]["flow"]["page"], 3);
 }
 
 // A damaged image, one of another size, a missing partner, and frames without signal are named; the other pairs are
@@ -195,7 +195,7 @@ TEST_F(Sequences, NameBadPairsAndDoTheOthers) {
   auto const json = nlohmann::json::parse(outcome.out);
   EXPECT_EQ(json["done"], 1);
   EXPECT_EQ(json["failed"].size(), 4u);
-  auto const pairs = determine_run_state("out")["pairs"];
+  auto const pairs = read_state("out")["pairs"];
   std::vector<std::string> states;
   for (auto const& pair : pairs) states.push_back(pair["state"]);
   EXPECT_THAT(states, ElementsAre("done", "failed", "failed", "failed", "no valid vector"));
@@ -225,7 +225,7 @@ TEST_F(Sequences, ContinueAfterAKill) {
     Program program(command, folder_, stopping_at("pair-finished:2"));
     ASSERT_TRUE(program.wait_until_stopped());
     expect_refused(command, 2, {"is being written by another gladstone correlate"});
-    EXPECT_EQ(determine_run_state("out")["complete"], false);
+    EXPECT_EQ(read_state("out")["complete"], false);
     program.send(SIGKILL);
     EXPECT_EQ(program.finish(hang_limit).signal, SIGKILL);
   }
@@ -353,7 +353,7 @@ TEST_F(Sequences, SubtractTheirOwnBackground) {
   expect_refused(arguments({"A_0.tif", "B_0.tif"}, "v.h5"), 2, {"config.toml", "frame"});
 }
 
-TEST_F(Sequences, RefuseFoldersOfOtherFiles) {
+TEST_F(Sequences, RefuseForeignFoldersAndUnsuitableSettings) {
   write_pairs({{1, 0}, {1, 0}});
   std::filesystem::create_directory(in("mine"));
   write("mine/notes.txt", "important");
@@ -362,6 +362,9 @@ TEST_F(Sequences, RefuseFoldersOfOtherFiles) {
   expect_refused(arguments({"A_*.tif", "B_*.tif"}, "out/", {"--pairing", "all"}), 2, {"--pairing"});
   write("config.toml", "[correlate]\nwindow_px = [128]\n");
   expect_refused(arguments({"A_*.tif", "B_*.tif"}, "out/"), 2, {"A_8.tif", "128"});
+  // Scattered vectors are at other points for each pair, so that there are no statistics.
+  write("config.toml", "[correlate]\nmethod = \"tracking\"\n[correlate.tracking]\noutput = \"scattered\"\n");
+  expect_refused(arguments({"A_*.tif", "B_*.tif"}, "out/"), 2, {"correlate.tracking.output", "grid"});
 }
 
 // docs/file-formats.md names the datasets of statistics.h5 and the keys of sequence.json.
@@ -381,7 +384,7 @@ TEST_F(Sequences, AreDocumented) {
   std::set<std::string> keys;
   for (auto const& cells : test::documented_table("The folder of a sequence", "key"))
     for (std::string const& name : test::names_of(cells[0])) keys.insert(name);
-  auto const state = determine_run_state("out");
+  auto const state = read_state("out");
   for (auto const& item : state.items()) {
     if (item.key() != "pairs") {
       EXPECT_TRUE(keys.contains(item.key())) << item.key();

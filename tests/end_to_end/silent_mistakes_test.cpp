@@ -65,7 +65,7 @@ TEST_F(SilentMistakes, CoordinatesInMetresAreReadAsTheySayThemselves) {
   EXPECT_GT(largest_displacement(), 0.1);
 }
 
-// The same numbers without a unit are assumed to be millimetres: a field 0.008 mm wide in a view of 4 mm.
+// Coordinates without a unit are assumed to be millimetres: a field 0.008 mm wide in a view of 4 mm.
 TEST_F(SilentMistakes, WarnsOfUnitlessCoordinatesAndInvisibleField) {
   write_plane("unnamed.h5", 8e-3, "");
   std::string const field =

@@ -3,7 +3,7 @@
 
 using namespace gladstone;
 
-// A NRRD file, its data behind the header or in the "data.raw" beside it.
+// An NRRD file, with its data after the header or in "data.raw" in the same folder.
 extern "C" int LLVMFuzzerTestOneInput(std::uint8_t const* data, std::size_t size) {
   std::string_view const input = fuzz::text_of(data, size);
   static std::string const beside = fuzz::file_of(std::string(4096, '\x3f'), "data.raw");

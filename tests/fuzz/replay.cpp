@@ -1,5 +1,5 @@
-// The main program of the targets where there is no libFuzzer: gives a target every file named, and every file in the
-// folders named.
+// Main program of the targets in a build without libFuzzer: passes the files and the files of the folders on its
+// command line to the target.
 
 #include <algorithm>
 #include <cstdio>

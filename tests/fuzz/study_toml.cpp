@@ -5,7 +5,7 @@
 
 using namespace gladstone;
 
-// A study file beside an empty "base.toml"; the values of its axes are made as planning makes them.
+// A study file in a folder with an empty "base.toml"; the values of its axes are computed as in planning.
 extern "C" int LLVMFuzzerTestOneInput(std::uint8_t const* data, std::size_t size) {
   std::string_view const input = fuzz::text_of(data, size);
   static std::string const base = fuzz::file_of("schema = 1\nexperiment = \"bos\"\n", "base.toml");

@@ -143,7 +143,7 @@ TEST(NormalShockField, TiltedJumpConvergesToSnell) {
   EXPECT_LT(before, 1e-7) << "tails of 2 exp(-4 * 5 mm / 1 mm) = 4e-9, and the error of the scheme";
 }
 
-// The same jump on a grid of 0.1 mm, with nodal values in float and a spline between them.
+// The jump is sampled on a grid of 0.1 mm, with nodal values in float and a spline between them.
 TEST(NormalShockField, GriddedJumpRefractsLikeSnell) {
   double const tilt = 30 * unit::degree, incidence = pi / 2 - tilt, cell = 1e-4;
   double const n1 = 1 + K * 0.5, n2 = 1 + K * 0.5 * 8 / 3;

@@ -41,7 +41,7 @@ TEST(Prescription, GlassesByIndexAloneAreWarnedOfOnce) {
                                 HasSubstr(") are approximated by n = A + B/lambda^2"))));
 }
 
-// The same lens in three formats: the biconvex singlet f = R / (2 (n - 1) - (n - 1)^2 t / (n R)).
+// One lens is read in three formats: the biconvex singlet f = R / (2 (n - 1) - (n - 1)^2 t / (n R)).
 TEST(Prescription, OneLensInThreeFormatsIsOneLens) {
   double const n = GlassCatalogue::shipped().match("N-BK7", spectral_line::d, "").glass->nd();
   double const f = 50 / (2 * (n - 1) - (n - 1) * (n - 1) * 6 / (n * 50));

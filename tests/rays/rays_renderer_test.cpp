@@ -42,7 +42,7 @@ Scene late_scene(std::uint64_t rays) {
   return scene_with_dots(setup, lattice(48, 2, 17.3), rays);
 }
 
-// The same scene rendered by both methods. The truths agree within three times the stated errors of both, plus the
+// A scene is rendered by both methods. The truths agree within three times the stated errors of both, plus the
 // error of table and rule where their stated errors are far below it. The images agree within half a grey level of 12
 // bits, the scatter of these rays; in the measurement image, a third of a level is added, the error of a deflection
 // table at any number of rays.

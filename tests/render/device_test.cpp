@@ -37,7 +37,7 @@ Scene volume_in_view(std::uint64_t rays) {
   return scene_with_dots(setup, lattice(96, 8, 11), rays);
 }
 
-Rendering render(Scene scene) { return cpu().render(scene, scene.dots, RenderImages::yes, RenderTheory::yes); }
+Rendering render(Scene const& scene) { return cpu().render(scene, scene.dots, RenderImages::yes, RenderTheory::yes); }
 
 // For a source that is not listed, either all straight rays to the pupil cross the volume from face to face, or none
 // does.
@@ -235,13 +235,11 @@ TEST(ParticlesNearView, AreAllThatFramesShow) {
   plume.radius = 4e-3;
   setup.medium.field = plume;
   setup.medium.thickness = 20e-3;
-  Scene scene = build_scene(setup);
-  scene = with_chosen_step(std::move(scene));
-  scene = with_rays(scene, choose_ray_budget(scene));
-  Scene all = scene;
+  Scene const stepped = with_chosen_step(build_scene(setup));
+  Scene const scene = with_rays(stepped, choose_ray_budget(stepped));
   Rendering const near = cpu().render_particles(scene, scene.particles, ParticleLight::scattered, RenderImages::yes);
   Rendering const every =
-      RaysRenderer().render_particles(all, all.particles, ParticleLight::scattered, RenderImages::yes);
+      RaysRenderer().render_particles(scene, scene.particles, ParticleLight::scattered, RenderImages::yes);
   EXPECT_TRUE(std::equal(near.light.reference.begin(), near.light.reference.end(), every.light.reference.begin()));
   EXPECT_TRUE(std::equal(near.light.flow.begin(), near.light.flow.end(), every.light.flow.begin()));
   std::size_t skipped = 0;

@@ -132,7 +132,7 @@ TEST(PivSetup, SeedsByThePixel) {
   EXPECT_NEAR(particle_count(by_volume), 1600, 1e-9);
 }
 
-// The same plane seen from 45 degrees. Columns and rows at slopes of up to t = 32 px / (z_i / pitch) from the axis
+// The plane Z = 0 is seen from 45 degrees. Columns and rows at slopes of up to t = 32 px / (z_i / pitch) from the axis
 // intersect Z = 0 at x = Z sqrt(2) u / (1 - u), measured from the camera's axis, and at heights v Z / (1 - u). The area
 // of this quadrilateral is exactly Z^2 sqrt(2) 4 t^2 / (1 - t^2)^2. With the sensor in the image plane of Z = 0
 // (Scheimpflug), a pixel sees cos(phi) of that, tan(phi) = M, to second order in t = 0.004.

@@ -12,8 +12,8 @@ int shell(std::string const& command) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
-// What everything else here stands on: sbatch --wait gives the largest exit code of an array's tasks, 1 for a task that
-// a signal ended, and 0 once the same array runs again and nothing fails.
+// The other tests rely on this: sbatch --wait returns the largest exit code of an array's tasks, 1 for a task that was
+// ended by a signal, and 0 if the array runs again without a failure.
 TEST(Cluster, ReturnsExitCodeOfFailedTask) {
   std::string const submit = "sbatch --quiet --wait --output=/dev/null --array=0-2 --wrap ";
   EXPECT_EQ(shell(submit + "'test $SLURM_ARRAY_TASK_ID != 1 || exit 7'"), 7);

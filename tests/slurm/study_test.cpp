@@ -11,7 +11,7 @@ namespace {
 using testing::HasSubstr;
 using namespace std::chrono_literals;
 
-/// What a command line prints.
+/// Returns the output of a command line.
 std::string output_of(std::string const& command) {
   std::string text;
   std::FILE* const pipe = ::popen(command.c_str(), "r");
@@ -122,7 +122,7 @@ TEST_F(StudyOnACluster, KilledTasksAreMadeUpForByTheNextSubmission) {
   expect_same_study();
 }
 
-// Preempted, or its node rebooted: Slurm starts the task again, which goes on where it was.
+// If a task is preempted or its node restarts, Slurm starts the task again, which continues with the remaining cases.
 TEST_F(StudyOnACluster, ARequeuedTaskGoesOn) {
   CaseLocks claims(in("cluster").string(), CaseLocks::Use::take);
   ASSERT_TRUE(claims.take(5));

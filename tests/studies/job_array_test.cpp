@@ -69,7 +69,7 @@ TEST(JobArray, GivenOptionsGoToSbatchAsTheyAre) {
 }
 
 // The script itself, run as a task: the program receives the path of the study as one argument, whatever characters it
-// contains, and the cases of its own line.
+// contains, and the cases of the line with its number.
 TEST(JobArray, ScriptGivesEachTaskItsCasesWhateverThePath) {
   namespace fs = std::filesystem;
   fs::path const folder = fs::path(testing::TempDir()) / "gladstone_job_array";

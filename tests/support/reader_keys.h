@@ -37,7 +37,7 @@ inline void append_keys(SetupRecord const& record, std::string const& table,
   }
 }
 
-/// What the readers request from a setup.
+/// Keys that the readers request from a setup.
 struct RequestedKeys {
   std::map<std::string, std::string> values;  ///< TOML text of the value of each key, by dotted path; empty: none
   std::vector<std::string> missing;           ///< paths of required keys that the setup lacks
@@ -57,22 +57,17 @@ inline RequestedKeys requested_keys(std::string const& setup) {
   RequestedKeys found;
   append_keys(state.record, "", found.values);
   for (SetupProblem const& problem : state.problems) {
-    auto const end = problem.message.find(": is missing");
-    if (end == std::string::npos) continue;
-    std::string const named = problem.message.substr(0, end);
-    std::string path;
-    for (std::size_t i = 0; i < named.size() && named[i] != ' '; ++i) {  // without " = 1.0 (default)" and indices "[0]"
-      if (named[i] == '[')
-        i = named.find(']', i);
-      else
-        path += named[i];
+    if (problem.code != ProblemCode::missing_key) continue;
+    std::string path = problem.key;  // with indices: "camera[0].name"
+    for (auto open = path.find('['); open != std::string::npos; open = path.find('[')) {
+      path.erase(open, path.find(']', open) - open + 1);
     }
     found.missing.push_back(path);
   }
   return found;
 }
 
-/// Returns the message of the readers about a value of a key of a setup; empty if they accept it.
+/// Returns the error message of the readers for a key with this value; empty if they accept the value.
 inline std::string objection(std::string const& setup, std::string const& path, std::string const& value) {
   SetupDocument document = SetupDocument::from_text(setup, "setup", "/");
   document.override_key(path + '=' + value);
@@ -125,7 +120,7 @@ inline std::string words_in(std::string message) {
   return words;
 }
 
-/// Returns the limits of a key whose values are compared with the given ones, or a noun if there are none.
+/// Returns the limits of a key, from the messages about a value below and one above them; the noun if there are none.
 inline std::string limits_or(std::string const& noun, std::string const& setup, std::string const& path,
                              std::string const& low, std::string const& high) {
   std::string limits = limits_in(objection(setup, path, high));

@@ -19,7 +19,7 @@ namespace {
 
 struct FieldFormat {
   char const* extension;
-  std::unique_ptr<CheckedSource> (*open)(std::string const& path, FieldSelection const& wish);
+  std::unique_ptr<CheckedSource> (*open)(std::string const& path, FieldSelection const& selection);
 };
 
 /// Table of formats: file name extension and reader.

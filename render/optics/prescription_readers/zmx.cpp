@@ -216,13 +216,13 @@ class ZmxReader {
   /// the object if the file omits it. @throws DataError for any other order
   void check_order() {
     constexpr std::size_t fewest_reversed = 3;  // two exchanged surfaces may be an error
-    auto const in_order = [this](auto const& compare) {
+    auto const find_fault = [this](auto const& compare) {
       return std::adjacent_find(numbers_.begin(), numbers_.end(),
                                 [&](auto const& a, auto const& b) { return !compare(a, b); });
     };
-    auto const fault = in_order(std::less<>{});
+    auto const fault = find_fault(std::less<>{});
     bool const reversed = numbers_.size() >= fewest_reversed && numbers_.back() == SurfaceNumber{1, ""} &&
-                          in_order(std::greater<>{}) == numbers_.end();
+                          find_fault(std::greater<>{}) == numbers_.end();
     std::string const first = surfaces_.front().surface.where;
     if (fault != numbers_.end() && !reversed) {
       auto const i = static_cast<std::size_t>(fault - numbers_.begin());

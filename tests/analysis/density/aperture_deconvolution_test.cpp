@@ -36,9 +36,9 @@ double cone_average(Vec2d p, ApertureCone const& cone) {
   return sum / weights;
 }
 
-// physics.md, cone averaging at Table 1: 0.620565 at a wavelength of 4 mm, 0.894131 at 8 mm (F10), and -3 dB at
-// D_c/wavelength = 0.51450, the first zero at 1.21967 for a thin medium.
-TEST(ApertureTransfer, IsThatOfPhysics) {
+// Set-up of Table 1, formula by quadrature: 0.620565 at a wavelength of 4 mm, 0.894131 at 8 mm. For a thin medium -3 dB
+// at D_c/wavelength = 0.51450 (F10 in docs/design.md), and the first zero at 1.21967.
+TEST(ApertureTransfer, AgreesWithTheFormulaAtTable1) {
   EXPECT_NEAR(compute_aperture_transfer(table_1_cone(), 1.0 / 4e-3), 0.620565, 2e-6);
   EXPECT_NEAR(compute_aperture_transfer(table_1_cone(), 1.0 / 8e-3), 0.894131, 2e-6);
   EXPECT_EQ(compute_aperture_transfer(table_1_cone(), 0.0), 1.0);
@@ -49,9 +49,9 @@ TEST(ApertureTransfer, IsThatOfPhysics) {
   EXPECT_LT(find_resolved_wavelength(thin, 0.01), 0.7 * find_resolved_wavelength(thin, infinity));
 }
 
-// A Gaussian of 2 mm loses 15 % of its peak in a cone of 2.386 mm; the deconvolution restores it to the part of its
-// spectrum beyond the first zero, and to the gain's limit.
-TEST(ApertureDeconvolution, RestoresWhatTheConeAverages) {
+// The averaging over a cone of 2.386 mm lowers the peak of a Gaussian of 2 mm by 15 %. The deconvolution restores it
+// except for waves beyond the first zero and for the limit of the gain.
+TEST(ApertureDeconvolution, RestoresAnAveragedGaussian) {
   PlaneGrid const grid = half_millimetre_grid();
   std::vector<double> averaged;
   for (int row = 0; row < grid.rows; ++row)
@@ -96,9 +96,9 @@ TEST(ApertureDeconvolution, HasTheGivenGain) {
   EXPECT_GT(largest, 2.8);
 }
 
-// The noise it costs: sigma of the deconvolved density is that of errors put through the same filter, and larger than
-// before by more than 1 but less than white noise would be.
-TEST(ApertureDeconvolution, StatesTheNoiseItCosts) {
+// Sigma of the deconvolved density is that of errors after the same filter. The deconvolution enlarges it, but by less
+// than it amplifies white noise.
+TEST(ApertureDeconvolution, AmplifiesTheUncertainty) {
   GradientMap map;
   map.grid = {30, 25, {}, {0.5e-3, 0.5e-3}};
   map.valid.assign(map.grid.size(), 1);

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "analysis/density/abel_operators.h"
-#include "analysis/density/density_uncertainty.h"
 #include "render/base/error.h"
 #include "tests/analysis/density/density_cases.h"
 
@@ -87,7 +86,7 @@ TEST(AbelOperators, GradientInversionIsOfOrderFour) {
   EXPECT_GT(std::log2(e71 / e141), 3.5);
 }
 
-// The projection of the Gaussian is its gradient.
+// The projected gradient of the Gaussian is that of the Abel pair.
 TEST(AbelOperators, ProjectsAGaussian) {
   GaussianPair const coarse(71), fine(141);
   double const a = (make_gradient_projection(71) * coarse.density - coarse.gradient).norm() / coarse.gradient.norm();
@@ -114,17 +113,16 @@ TEST(SymmetryAxis, StatesItsUncertainty) {
   double square = 0.0;
   int const seeds = 100;
   for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
-    GradientMap map = clean;
-    std::vector<Vec2d> const noise = draw_gradient_error(correlation, map.sigma, seed, 0);
-    for (std::size_t i = 0; i < noise.size(); ++i) map.gradient[i] += noise[i];
-    double const error = find_symmetry_axis(map, AxisDirection::vertical).position - 0.47;
+    GradientMap const noisy = with_noise(clean, correlation, seed);
+    double const error = find_symmetry_axis(noisy, AxisDirection::vertical).position - 0.47;
     square += error * error / seeds;
   }
   EXPECT_NEAR(std::sqrt(square) / sigma, 1.0, 0.35);
 }
 
-// Of a clean jet, with the axis found, the density comes back; holes leave the radii inside them undetermined in that
-// row only where both sides are missing.
+// The inversion of a clean jet, with its axis determined, reproduces the density. Where vectors are missing on both
+// sides of the axis, the smaller radii of that row are undetermined; where they are missing on one side, nothing is
+// lost.
 TEST(AxisymmetricInversion, ReconstructsAJet) {
   AxisymmetricSettings settings;
   settings.ambient_density = 1.2;
@@ -169,10 +167,7 @@ TEST(AxisymmetricInversion, PropagatesTheUncertainty) {
     AxisymmetricDensity const expected = invert_axisymmetric(clean, settings);
     double within = 0.0, count = 0.0;
     for (std::uint64_t seed = 1; seed <= 30; ++seed) {
-      GradientMap map = clean;
-      std::vector<Vec2d> const noise = draw_gradient_error(correlation, map.sigma, seed, 0);
-      for (std::size_t i = 0; i < noise.size(); ++i) map.gradient[i] += noise[i];
-      AxisymmetricDensity const result = invert_axisymmetric(map, settings);
+      AxisymmetricDensity const result = invert_axisymmetric(with_noise(clean, correlation, seed), settings);
       for (std::size_t i = 0; i < result.density.size(); ++i) {
         if (!(result.sigma[i] > 1e-12)) continue;  // the last radius of the direct method is ambient by definition
         count += 1.0;
@@ -191,8 +186,7 @@ TEST(AxisymmetricInversion, PropagatesTheUncertainty) {
 TEST(AxisymmetricInversion, ChoosesTheRegularization) {
   GradientMap map = jet_map(161, 4);
   for (Vec2d& sigma : map.sigma) sigma = {0.15, 0.15};
-  std::vector<Vec2d> const noise = draw_gradient_error(WindowCorrelation(161, 4, {}), map.sigma, 3, 0);
-  for (std::size_t i = 0; i < noise.size(); ++i) map.gradient[i] += noise[i];
+  map = with_noise(map, WindowCorrelation(161, 4, {}), 3);
   AxisymmetricSettings settings;
   settings.axis = 0.47;
   double const direct = jet_error(invert_axisymmetric(map, settings), 0.0);

@@ -1,11 +1,14 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
+#include "analysis/density/density_uncertainty.h"
 #include "analysis/density/gradient_map.h"
-#include "render/base/random_variates.h"
+#include "analysis/density/window_correlation.h"
 #include "render/base/units.h"
 
 /// Manufactured density fields with known gradient, for the tests of analysis/density.
@@ -36,6 +39,13 @@ inline double blob_density(Vec2d p, double s = 0.15) {
 }
 inline Vec2d blob_gradient(Vec2d p, double s = 0.15) {
   return (-2.0 / (s * s) * blob_density(p, s)) * Vec2d{p.x - 0.5, p.y - 0.5};
+}
+
+/// Adds one random error with the map's sigma to a gradient.
+inline GradientMap with_noise(GradientMap map, WindowCorrelation const& correlation, std::uint64_t seed) {
+  std::vector<Vec2d> const noise = draw_gradient_error(correlation, map.sigma, seed, 0);
+  for (std::size_t i = 0; i < noise.size(); ++i) map.gradient[i] += noise[i];
+  return map;
 }
 
 /// Largest and root-mean-square difference from density(x, y) over the finite nodes.

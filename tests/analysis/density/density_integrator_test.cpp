@@ -30,7 +30,7 @@ FieldError wave_error(int n, IntegrationSettings const& settings, std::function<
 
 double order_of(double coarse, double fine) { return std::log2(coarse / fine); }
 
-// The trapezoid integrates h^3 g''/12 wrongly per edge, so the density converges with h^2, in the maximum norm and
+// The trapezoid has an error of h^3 g''/12 per edge, so the density converges with h^2, in the maximum norm and
 // hence also at the borders; the four-point rule is of order 4 inside and 3 (local) at the borders.
 TEST(DensityIntegrator, ConvergesWithOrderTwoAtLeastUpToTheBorders) {
   for (IntegrationMethod method : {IntegrationMethod::weighted_least_squares, IntegrationMethod::poisson}) {
@@ -145,7 +145,7 @@ TEST(DensityIntegrator, DemandsAReferenceInEachDisconnectedRegion) {
   EXPECT_LT(compare_with(map.grid, integrate_density(map, both).density, wave_density).largest, 5e-4);
 }
 
-// What the sensitivity says of one node equals the response to a unit gradient at each other node.
+// The sensitivity of one node equals its response to a unit gradient at each node.
 TEST(DensityIntegrator, SensitivityIsTheTransposedIntegration) {
   GradientMap map = make_map(6, wave_gradient);
   for (std::size_t i = 0; i < map.grid.size(); ++i) map.sigma.push_back({0.5 + 0.01 * static_cast<double>(i), 0.7});

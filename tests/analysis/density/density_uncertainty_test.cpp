@@ -7,6 +7,7 @@
 #include <string>
 
 #include "render/base/error.h"
+#include "render/base/random_variates.h"
 #include "tests/analysis/density/density_cases.h"
 
 namespace gladstone::density {
@@ -24,12 +25,6 @@ GradientMap noisy_map(int n) {
     double const sigma = 0.05 + 0.06 * length(map.gradient[i]) / 8.0 + (in_band ? 0.45 : 0.0);
     map.sigma.push_back({sigma, 0.8 * sigma});
   }
-  return map;
-}
-
-GradientMap with_noise(GradientMap map, WindowCorrelation const& correlation, std::uint64_t seed) {
-  std::vector<Vec2d> const noise = draw_gradient_error(correlation, map.sigma, seed, 0);
-  for (std::size_t i = 0; i < map.gradient.size(); ++i) map.gradient[i] += noise[i];
   return map;
 }
 
@@ -88,8 +83,9 @@ TEST(DensityUncertainty, IsTheSumOfVariancesAlongAChain) {
   }
 }
 
-// Of errors with the assumed covariance, 68 % lie within sigma; per field the errors are correlated, so the mean over
-// 30 fields is judged. The same holds if vectors overlap by 75 %. Ignoring the correlation covers too few.
+// 68 % of errors with the assumed covariance are within sigma, also for windows that overlap by 75 %. Within one field
+// the errors are correlated, so the fraction is averaged over at least 30 fields. A sigma that neglects the correlation
+// covers too few errors.
 TEST(DensityUncertainty, CoversTheErrorsOfCorrelatedNoise) {
   int const n = 25;
   GradientMap const clean = noisy_map(n);
@@ -121,7 +117,7 @@ TEST(DensityUncertainty, CoversTheErrorsOfCorrelatedNoise) {
   }
 }
 
-// The same with noise that does not come from WindowCorrelation: each vector's error is the mean of white pixel noise
+// Coverage of noise that is generated without WindowCorrelation: each vector's error is the mean of white pixel noise
 // over its window of 4 x 4 cells, one cell being the distance between vectors (75 % overlap).
 TEST(DensityUncertainty, CoversTheErrorsOfPixelNoiseInTheWindows) {
   int const n = 25, cells = 4;

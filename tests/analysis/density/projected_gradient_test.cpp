@@ -25,8 +25,8 @@ DisplacementField make_field(Vec2d displacement) {
   return field;
 }
 
-// physics.md: a gradient of 10 kg/m^4 over 10 mm shifts the dots by -5.64844e-6 m in their plane, i.e. by
-// -5.64844e-6 M/p = -0.066267 px to the right, and upwards (v < 0) for a gradient that points down.
+// By Eq. 9 a gradient of 10 kg/m^4 over 10 mm shifts the dots by -10 kg/m^4 10 mm Z_D K/n0 = -5.64844e-6 m in their
+// plane, i.e. by -5.64844e-6 m M/p = -0.066267 px to the right, and upwards (v < 0) for a gradient that points down.
 TEST(ProjectedGradient, InvertsEquationNine) {
   ProjectionOptics const optics = table_1();
   double const shift_px = -5.64843623042961e-6 * optics.magnification / optics.pixel_pitch;
@@ -45,8 +45,8 @@ TEST(ProjectedGradient, HasItsRowsUpwards) {
   DisplacementField field = make_field({});
   field.displacement_px[0] = {0.5, 0.25};  // top left vector
   ProjectionOptics const optics = table_1();
-  PlaneGrid const grid = compute_projected_gradient(field, optics).map.grid;
   GradientMap const map = compute_projected_gradient(field, optics).map;
+  PlaneGrid const& grid = map.grid;
   EXPECT_LT(map.gradient[grid.index(0, 3)].x, 0.0);
   EXPECT_GT(map.gradient[grid.index(0, 3)].y, 0.0);
   double const medium_magnification = optics.magnification * 1.0 / 0.75;

@@ -12,8 +12,8 @@
 namespace gladstone::bench {
 namespace {
 
-/// Droplets of about 1 um, each of its own diameter, in a laser sheet 750 mm before the lens at f/11, 1024 x 1024 px of
-/// 6.5 um, which see 41 mm.
+/// Returns the setup of droplets of about 1 um, all of different diameters, in a laser sheet 750 mm before the lens at
+/// f/11, 1024 x 1024 px of 6.5 um, which see 41 mm.
 Setup droplets_setup(Setup setup, double sheet) {
   setup.camera.columns = setup.camera.rows = 1024;
   setup.camera.pixel_pitch = 6.5e-6;

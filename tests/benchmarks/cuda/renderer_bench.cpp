@@ -78,8 +78,8 @@ void case_p(benchmark::State& state) {
 BENCHMARK(case_p)->ArgName("rays")->Arg(16)->Arg(32)->Arg(128)->UseManualTime()->Iterations(7)->Unit(
     benchmark::kMillisecond);
 
-/// The same to accuracy: the step that plan_step chooses of two cells and less, and rays for half a grey level of 12
-/// bits.
+/// Returns the scene with the step of at most two cells that plan_step() chooses, and with rays for an accuracy of half
+/// a grey level of 12 bits.
 Scene scene_to_accuracy(std::uint64_t rays) {
   Scene scene = volume_scene(64, 85, rays);
   scene.setup.medium.step_mm.reset();

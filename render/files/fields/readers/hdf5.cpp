@@ -121,8 +121,8 @@ struct Coordinates {
 
 class Hdf5Source final : public CheckedSource {
  public:
-  Hdf5Source(Hdf5Reader file, std::string const& path, std::string const& dataset, FieldSelection const& wish)
-      : CheckedSource(path, dataset, wish.values), file_(std::move(file)), shape_(file_.shape(name_)) {
+  Hdf5Source(Hdf5Reader file, std::string const& path, std::string const& dataset, FieldSelection const& selection)
+      : CheckedSource(path, dataset, selection.values), file_(std::move(file)), shape_(file_.shape(name_)) {
     auto const found = find_axes(shape_, values_);
     if (!found) refuse_shape();
     array_ = *found;
@@ -142,7 +142,7 @@ class Hdf5Source final : public CheckedSource {
                       "one in space",
                       name_, shape_text(shape_)));
     }
-    std::string const by = place_axes(wish.axes);
+    std::string const by = place_axes(selection.axes);
     describe(nodes, rank(), by);
     if (cells_) reading_.by += "; data of cells, at their centres";
     std::vector<double> first(1);
@@ -468,10 +468,10 @@ class Hdf5Source final : public CheckedSource {
 
 }  // namespace
 
-std::unique_ptr<CheckedSource> open_hdf5(std::string const& path, FieldSelection const& wish) {
+std::unique_ptr<CheckedSource> open_hdf5(std::string const& path, FieldSelection const& selection) {
   Hdf5Reader file(path);
-  std::string const name = wish.dataset.empty() ? only_field(file, path, wish.values) : wish.dataset;
-  return std::make_unique<Hdf5Source>(std::move(file), path, name, wish);
+  std::string const name = selection.dataset.empty() ? only_field(file, path, selection.values) : selection.dataset;
+  return std::make_unique<Hdf5Source>(std::move(file), path, name, selection);
 }
 
 }  // namespace gladstone

@@ -23,6 +23,6 @@ namespace gladstone {
 ///   values become NaN.
 /// @throws DataError for shapes that are not a field, coordinates of the wrong length or of a curved grid, and missing
 /// compression filters
-std::unique_ptr<CheckedSource> open_hdf5(std::string const& path, FieldSelection const& wish);
+std::unique_ptr<CheckedSource> open_hdf5(std::string const& path, FieldSelection const& selection);
 
 }  // namespace gladstone

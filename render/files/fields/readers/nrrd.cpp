@@ -380,20 +380,20 @@ void convert(NrrdHeader::Type type, std::vector<char> const& bytes, bool swap, s
 
 class NrrdSource final : public CheckedSource {
  public:
-  NrrdSource(std::string const& path, NrrdHeader header, FieldSelection const& wish)
+  NrrdSource(std::string const& path, NrrdHeader header, FieldSelection const& selection)
       : CheckedSource(path, header.content.empty() ? std::filesystem::path(path).filename().string() : header.content,
-                      wish.values),
+                      selection.values),
         header_(std::move(header)),
         bytes_(header_) {
     units_ = header_.units;
     notes_ = header_.notes;
     axes_ = header_.axes;
-    name_axes(axes_, wish.axes, header_.dimension, path);
+    name_axes(axes_, selection.axes, header_.dimension, path);
     describe(header_.sizes, header_.dimension,
-             !wish.axes.empty() ? "axes = \"" + wish.axes + '"'
-             : header_.directed ? "by its space directions"
-             : header_.labelled ? "by its labels"
-                                : "the default order");
+             !selection.axes.empty() ? "axes = \"" + selection.axes + '"'
+             : header_.directed      ? "by its space directions"
+             : header_.labelled      ? "by its labels"
+                                     : "the default order");
   }
 
  private:
@@ -418,11 +418,11 @@ class NrrdSource final : public CheckedSource {
 
 }  // namespace
 
-std::unique_ptr<CheckedSource> open_nrrd(std::string const& path, FieldSelection const& wish) {
-  if (!wish.dataset.empty()) {
-    throw DataError(path, "contains one field without a name; leave dataset = \"" + wish.dataset + "\" out");
+std::unique_ptr<CheckedSource> open_nrrd(std::string const& path, FieldSelection const& selection) {
+  if (!selection.dataset.empty()) {
+    throw DataError(path, "contains one field without a name; leave dataset = \"" + selection.dataset + "\" out");
   }
-  return std::make_unique<NrrdSource>(path, read_nrrd_header(path, wish.values), wish);
+  return std::make_unique<NrrdSource>(path, read_nrrd_header(path, selection.values), selection);
 }
 
 }  // namespace gladstone

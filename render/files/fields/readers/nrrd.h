@@ -17,6 +17,6 @@ namespace gladstone {
 ///   other encodings are held in memory.
 /// @throws DataError for unsupported features (several data files, oblique axes), and for data shorter or longer than
 ///         the header declares, with the present and required number of bytes
-std::unique_ptr<CheckedSource> open_nrrd(std::string const& path, FieldSelection const& wish);
+std::unique_ptr<CheckedSource> open_nrrd(std::string const& path, FieldSelection const& selection);
 
 }  // namespace gladstone

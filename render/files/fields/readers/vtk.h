@@ -11,10 +11,10 @@ namespace gladstone {
 /// Point data, or cell data, which are assigned to the cell centres. The axes of an image may be permuted or reversed
 /// (Direction). The format has no unit of length. The array is held in memory.
 /// @throws DataError for unsupported features and for truncated or damaged data
-std::unique_ptr<CheckedSource> open_vtk_xml(std::string const& path, FieldSelection const& wish);
+std::unique_ptr<CheckedSource> open_vtk_xml(std::string const& path, FieldSelection const& selection);
 
 /// Opens a legacy VTK file (.vtk): STRUCTURED_POINTS or RECTILINEAR_GRID, ASCII or BINARY, point or cell data.
 /// @throws DataError as open_vtk_xml()
-std::unique_ptr<CheckedSource> open_vtk_legacy(std::string const& path, FieldSelection const& wish);
+std::unique_ptr<CheckedSource> open_vtk_legacy(std::string const& path, FieldSelection const& selection);
 
 }  // namespace gladstone

@@ -99,8 +99,8 @@ std::string decoded_name(std::string const& name) {
 
 class LegacyReader {
  public:
-  LegacyReader(std::string const& path, FieldSelection const& wish)
-      : file_(std::make_shared<InputFile>(path, "a field file")), cursor_(*file_), wish_(wish) {
+  LegacyReader(std::string const& path, FieldSelection const& selection)
+      : file_(std::make_shared<InputFile>(path, "a field file")), cursor_(*file_), selection_(selection) {
     if (!cursor_.line().starts_with("# vtk DataFile"))
       refuse("is not a legacy VTK file (it does not begin with # vtk)");
     cursor_.line();  // title
@@ -116,17 +116,17 @@ class LegacyReader {
     std::vector<LegacyArray> fitting;
     std::vector<std::string> names;
     for (LegacyArray const& array : arrays_) {
-      if (marks_ghosts(array.name) && array.name != wish_.dataset) continue;
+      if (marks_ghosts(array.name) && array.name != selection_.dataset) continue;
       names.push_back(array.name);
-      bool const fits = array.components == static_cast<std::uint64_t>(wish_.values);
-      if (array.name == wish_.dataset && !fits) {
+      bool const fits = array.components == static_cast<std::uint64_t>(selection_.values);
+      if (array.name == selection_.dataset && !fits) {
         refuse(fmt::format("data array \"{}\" has {} values per point, but {} are needed", excerpt(array.name),
-                           array.components, wish_.values));
+                           array.components, selection_.values));
       }
-      if (fits && (wish_.dataset.empty() || array.name == wish_.dataset)) fitting.push_back(array);
+      if (fits && (selection_.dataset.empty() || array.name == selection_.dataset)) fitting.push_back(array);
     }
-    if (fitting.empty()) refuse(no_such_array(wish_, names));
-    if (fitting.size() > 1 && wish_.dataset.empty()) {
+    if (fitting.empty()) refuse(no_such_array(selection_, names));
+    if (fitting.size() > 1 && selection_.dataset.empty()) {
       refuse("has several such fields; select one with dataset = " + quoted_list(names));
     }
     LegacyArray const& chosen = fitting.front();
@@ -176,7 +176,7 @@ class LegacyReader {
           if (points < 1) refuse("DIMENSIONS must be positive");
           grid_.extent[2 * i + 1] = points - 1;
         }
-        check_grid(grid_, wish_.values, file_->path());
+        check_grid(grid_, selection_.values, file_->path());
       } else if (key == "origin") {
         for (double& value : grid_.origin) value = number<double>("ORIGIN");
       } else if (key == "spacing" || key == "aspect_ratio") {
@@ -192,7 +192,7 @@ class LegacyReader {
         break;
       }
     }
-    check_grid(grid_, wish_.values, file_->path());
+    check_grid(grid_, selection_.values, file_->path());
     if (!image &&
         std::any_of(grid_.coordinates.begin(), grid_.coordinates.end(), [](auto const& x) { return x.empty(); })) {
       refuse("has no coordinates of its RECTILINEAR_GRID; copy it again");
@@ -383,7 +383,7 @@ class LegacyReader {
 
   std::shared_ptr<InputFile> file_;
   Cursor cursor_;
-  FieldSelection const& wish_;
+  FieldSelection const& selection_;
   bool text_ = false;
   VtkGrid grid_;
   std::string next_key_;
@@ -392,8 +392,8 @@ class LegacyReader {
 
 }  // namespace
 
-std::unique_ptr<CheckedSource> open_vtk_legacy(std::string const& path, FieldSelection const& wish) {
-  return make_vtk_source(path, LegacyReader(path, wish).field(), wish);
+std::unique_ptr<CheckedSource> open_vtk_legacy(std::string const& path, FieldSelection const& selection) {
+  return make_vtk_source(path, LegacyReader(path, selection).field(), selection);
 }
 
 }  // namespace gladstone

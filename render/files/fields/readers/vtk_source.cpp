@@ -63,19 +63,19 @@ StoredAxes rectilinear_axes(VtkGrid const& grid, VtkPlace place, std::string con
 
 class VtkSource final : public CheckedSource {
  public:
-  VtkSource(std::string const& path, VtkField field, FieldSelection const& wish)
-      : CheckedSource(path, field.name, wish.values), field_(std::move(field)) {
+  VtkSource(std::string const& path, VtkField field, FieldSelection const& selection)
+      : CheckedSource(path, field.name, selection.values), field_(std::move(field)) {
     VtkGrid const& grid = field_.grid;
     bool const image = grid.coordinates[0].empty();
     axes_ = image ? image_axes(grid, field_.place, path) : rectilinear_axes(grid, field_.place, path);
     std::array<int, 3> nodes{};
     for (std::size_t i = 0; i < 3; ++i) nodes[i] = VtkGrid::count(grid.extent, i, field_.place);
-    name_axes(axes_, wish.axes, 3, path);
+    name_axes(axes_, selection.axes, 3, path);
     bool const turned = grid.direction != VtkGrid{}.direction;
     describe(nodes, 3,
-             !wish.axes.empty() ? "axes = \"" + wish.axes + '"'
-             : turned           ? "by its Direction"
-                                : "as VTK defines it");
+             !selection.axes.empty() ? "axes = \"" + selection.axes + '"'
+             : turned                ? "by its Direction"
+                                     : "as VTK defines it");
     units_.spaced = true;
     notes_ = field_.notes;
     if (field_.place == VtkPlace::cells) reading_.by += "; data of cells, at their centres";
@@ -120,14 +120,16 @@ void check_grid(VtkGrid const& grid, int values, std::string const& path) {
   if (all * sizeof(double) > 1e15) throw DataError(path, "has an implausibly large grid; check its extent");
 }
 
-std::unique_ptr<CheckedSource> make_vtk_source(std::string const& path, VtkField field, FieldSelection const& wish) {
-  return std::make_unique<VtkSource>(path, std::move(field), wish);
+std::unique_ptr<CheckedSource> make_vtk_source(std::string const& path, VtkField field,
+                                               FieldSelection const& selection) {
+  return std::make_unique<VtkSource>(path, std::move(field), selection);
 }
 
-std::string no_such_array(FieldSelection const& wish, std::vector<std::string> const& names) {
-  std::string const wanted = wish.values == 1 ? "scalar field" : fmt::format("field of {} components", wish.values);
+std::string no_such_array(FieldSelection const& selection, std::vector<std::string> const& names) {
+  std::string const wanted =
+      selection.values == 1 ? "scalar field" : fmt::format("field of {} components", selection.values);
   return fmt::format("has no {}{} among its data of points and cells{}", wanted,
-                     wish.dataset.empty() ? "" : " \"" + wish.dataset + '"',
+                     selection.dataset.empty() ? "" : " \"" + selection.dataset + '"',
                      names.empty() ? "" : ", which are " + quoted_list(names));
 }
 

@@ -40,12 +40,13 @@ struct VtkField {
 void check_grid(VtkGrid const& grid, int values, std::string const& path);
 
 /// Creates the field of an array. @throws DataError if its axes (Direction) are not parallel to X, Y and Z
-std::unique_ptr<CheckedSource> make_vtk_source(std::string const& path, VtkField field, FieldSelection const& wish);
+std::unique_ptr<CheckedSource> make_vtk_source(std::string const& path, VtkField field,
+                                               FieldSelection const& selection);
 
 /// Returns true for the arrays in which VTK and ParaView mark ghost points and cells; they are not fields.
 inline bool marks_ghosts(std::string const& name) { return name == "vtkGhostType" || name == "vtkGhostLevels"; }
 
 /// Returns the message that no array fits the selection. @param names  names of the existing arrays
-std::string no_such_array(FieldSelection const& wish, std::vector<std::string> const& names);
+std::string no_such_array(FieldSelection const& selection, std::vector<std::string> const& names);
 
 }  // namespace gladstone

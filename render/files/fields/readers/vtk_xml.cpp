@@ -123,12 +123,12 @@ ValueStore load_pieces(VtkArrays const& arrays) {
 /// Reader of the XML tree of a file.
 class VtkXmlReader {
  public:
-  VtkXmlReader(std::string const& path, FieldSelection const& wish)
+  VtkXmlReader(std::string const& path, FieldSelection const& selection)
       : arrays_(std::make_shared<VtkArrays>(VtkArrays{InputFile(path, "a field file"), {}, {}, {}, {}, {}, {}})),
         path_(path),
-        wish_(wish),
+        selection_(selection),
         head_(read_head(arrays_->file)) {
-    arrays_->values = static_cast<std::size_t>(wish.values);
+    arrays_->values = static_cast<std::size_t>(selection.values);
     pugi::xml_document document;
     auto const result = document.load_buffer_inplace(head_.xml.data(), head_.xml.size());
     pugi::xml_node const root = document.child("VTKFile");
@@ -206,7 +206,7 @@ class VtkXmlReader {
       grid_.spacing = numbers(tag, "Spacing", &usual.spacing);
       grid_.direction = numbers(tag, "Direction", &usual.direction);
     }
-    check_grid(grid_, wish_.values, path_);
+    check_grid(grid_, selection_.values, path_);
     arrays_->whole = grid_.extent;
   }
 
@@ -219,24 +219,24 @@ class VtkXmlReader {
       for (VtkPlace const place : {VtkPlace::points, VtkPlace::cells}) {
         for (pugi::xml_node const array : data_of(piece, place).children("DataArray")) {
           std::string const name = array.attribute("Name").as_string();
-          if (marks_ghosts(name) && name != wish_.dataset) continue;
+          if (marks_ghosts(name) && name != selection_.dataset) continue;
           names.push_back(name);
           int const count = array.attribute("NumberOfComponents").as_int(1);
-          bool const named = wish_.dataset.empty() || name == wish_.dataset;
-          if (named && count != wish_.values) components = std::to_string(count);
-          if (!named || count != wish_.values) continue;
+          bool const named = selection_.dataset.empty() || name == selection_.dataset;
+          if (named && count != selection_.values) components = std::to_string(count);
+          if (!named || count != selection_.values) continue;
           fitting.push_back(name);
           places.push_back(place);
         }
       }
       if (!names.empty()) break;
     }
-    if (fitting.empty() && !wish_.dataset.empty() && !components.empty()) {
-      refuse(fmt::format("data array \"{}\" has {} values per point, but {} are needed", excerpt(wish_.dataset),
-                         components, wish_.values));
+    if (fitting.empty() && !selection_.dataset.empty() && !components.empty()) {
+      refuse(fmt::format("data array \"{}\" has {} values per point, but {} are needed", excerpt(selection_.dataset),
+                         components, selection_.values));
     }
-    if (fitting.empty()) refuse(no_such_array(wish_, names));
-    if (fitting.size() > 1 && wish_.dataset.empty()) {
+    if (fitting.empty()) refuse(no_such_array(selection_, names));
+    if (fitting.size() > 1 && selection_.dataset.empty()) {
       refuse("has several such fields; select one with dataset = " + quoted_list(names));
     }
     if (fitting.size() > 1) {
@@ -338,7 +338,7 @@ class VtkXmlReader {
 
   std::shared_ptr<VtkArrays> arrays_;
   std::string path_;
-  FieldSelection const& wish_;
+  FieldSelection const& selection_;
   Head head_;
   std::string kind_;
   VtkGrid grid_;
@@ -348,8 +348,8 @@ class VtkXmlReader {
 
 }  // namespace
 
-std::unique_ptr<CheckedSource> open_vtk_xml(std::string const& path, FieldSelection const& wish) {
-  return make_vtk_source(path, VtkXmlReader(path, wish).field(), wish);
+std::unique_ptr<CheckedSource> open_vtk_xml(std::string const& path, FieldSelection const& selection) {
+  return make_vtk_source(path, VtkXmlReader(path, selection).field(), selection);
 }
 
 }  // namespace gladstone
