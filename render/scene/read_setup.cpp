@@ -174,7 +174,7 @@ void find_window_glasses(Setup& setup, SetupTable root, GlassCatalogue const& gl
       window.index = glass.index(wavelength);
       if (setup.lens.transmittance == Transmittance::glass) window.absorption = glass.absorption(wavelength);
     } catch (DataError const& error) {
-      tables[i].problem("glass", std::string(error.what()).substr(where.size() + 2));  // message without its location
+      tables[i].problem("glass", error.message());
     }
   }
 }

@@ -207,7 +207,7 @@ SetupDocument SetupDocument::from_file(std::string const& path) {
   try {
     text = read_text_file(path, "a setup file", most_setup_bytes);
   } catch (DataError const& error) {
-    throw SetupError({{path, std::string(error.what()).substr(path.size() + 2), "", ProblemCode::unreadable_file}});
+    throw SetupError({{path, error.message(), "", ProblemCode::unreadable_file}});
   }
   auto const folder = std::filesystem::absolute(path).parent_path();
   SetupDocument document = from_text(text, path, folder.string());

@@ -384,7 +384,7 @@ StudyFile read_study(std::string const& path) {
   try {
     text = read_text_file(path, "a study file", most_setup_bytes);
   } catch (DataError const& error) {
-    throw SetupError({{path, std::string(error.what()).substr(path.size() + 2), "", ProblemCode::unreadable_file}});
+    throw SetupError({{path, error.message(), "", ProblemCode::unreadable_file}});
   }
   return StudyReader(path, std::move(text)).read();
 }

@@ -131,12 +131,10 @@ std::string where(StudyFile const& study, SetupPlace const& place) {
 
 /// Assigns an unknown key to the axis instead of its values, and adds a remedy if a sampled range yields no integers.
 void blame_the_axis(StudyFile const& study, std::vector<AxisValue> const& values, SetupProblem& problem) {
-  bool const unknown = problem.message.starts_with("unknown ");
   for (std::size_t k = 0; k < values.size(); ++k) {
     if (problem.where != where(study, values[k].node.place)) continue;
-    if (unknown) problem.where = where(study, study.axes[k].place);
-    if (study.mode == StudyMode::sobol && study.axes[k].range &&
-        problem.message.find("whole number") != std::string::npos) {
+    if (problem.code == ProblemCode::unknown_key) problem.where = where(study, study.axes[k].place);
+    if (study.mode == StudyMode::sobol && study.axes[k].range && problem.code == ProblemCode::wrong_type) {
       problem.message += "; \"sobol\" draws any numbers between the ends of a range, so write integers as a list";
     }
   }
