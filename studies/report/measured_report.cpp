@@ -11,11 +11,11 @@
 #include "studies/design/sheet.h"
 #include "studies/report/case_view.h"
 #include "studies/report/layout_view.h"
-#include "studies/report/measured_density.h"
 #include "studies/report/measured_files.h"
 #include "studies/report/measured_findings.h"
 #include "studies/report/report.h"
 #include "studies/report/simulated_twin.h"
+#include "studies/report/twin_density.h"
 #include "studies/sweep/job_array.h"
 
 namespace gladstone {
@@ -45,7 +45,7 @@ SimulatedTwin twin_of(CaseSetup const& loaded, DisplacementField const& field, M
   Vec2d const middle = (field.position_px.front() + field.position_px.back()) / 2.0;
   Vec2d const axis{(loaded.setup.camera.columns - 1) / 2.0, (loaded.setup.camera.rows - 1) / 2.0};
   Vec2d const centre = Vec2d{middle.x - axis.x, axis.y - middle.y} * pixel_at_medium;
-  return simulate_twin(loaded, integrated_density(all.gradient, field.columns, field.rows, spacing), spacing, centre,
+  return simulate_twin(loaded, compute_twin_density(all.gradient, field.columns, field.rows, spacing), spacing, centre,
                        open_device(device.name()));
 }
 
@@ -139,7 +139,7 @@ ReportPage measured_report(ReportOptions const& options, Backend const& device) 
   MeasuredGradients const all = compute_gradients(field, bench, common_relative_uncertainty(at, inputs));
   bool const gridded = field.columns > 1 && field.rows > 1;
   std::optional<SimulatedTwin> twin;
-  if (gridded) twin = twin_of(loaded, field, all, bench.pixel_at_medium(), device);
+  if (gridded && all.count > 0) twin = twin_of(loaded, field, all, bench.pixel_at_medium(), device);
   MeasurementKnown const known{all, typical, inputs, mean, twin ? &*twin : nullptr, bench.sensitivity()};
   MeasurementStatements const said = measurement_statements(known);
 
