@@ -35,7 +35,8 @@ std::vector<double> parse_numbers(std::string const& text) {
   return numbers;
 }
 
-/// Parses "left", "top:3" or "X0,Y0,X1,Y1" in mm. @throws SetupError
+}  // namespace
+
 ReferenceRegion parse_reference(std::string const& text) {
   using density::GridSide;
   constexpr char const* expected =
@@ -59,7 +60,6 @@ ReferenceRegion parse_reference(std::string const& text) {
           {1e-3 * std::max(box[0], box[2]), 1e-3 * std::max(box[1], box[3])}};
 }
 
-/// Parses "vertical", "horizontal", "x=1.5" or "y=-2" in mm. @throws SetupError
 AxisOption parse_axis(std::string const& text) {
   using density::AxisDirection;
   if (text.empty() || text == "vertical") return {};
@@ -71,8 +71,6 @@ AxisOption parse_axis(std::string const& text) {
   }
   refuse_value("--axis", "vertical, horizontal, x=MM (vertical axis there) or y=MM (horizontal axis there)", text);
 }
-
-}  // namespace
 
 void DensityArguments::add_to(CLI::App& app, std::string const& group) {
   auto const add = [&](CLI::Option* option) {

@@ -13,6 +13,12 @@ class Option;
 
 namespace gladstone {
 
+/// Parses "left", "top:3" or "X0,Y0,X1,Y1" in mm. @throws SetupError
+ReferenceRegion parse_reference(std::string const& text);
+
+/// Parses "vertical", "horizontal", "x=1.5" or "y=-2" in mm; empty: vertical. @throws SetupError
+AxisOption parse_axis(std::string const& text);
+
 /// Options of a command that reconstructs density, as given on the command line.
 class DensityArguments {
  public:
