@@ -260,7 +260,7 @@ class FrameFit {
     std::vector<ResidualSample> samples;
     for (std::size_t i = 0; i < pixels.size(); ++i) {
       if (!(fit.leverage[i] < most_leverage)) continue;
-      samples.push_back({pixels[i].level - fit.residual[i] - fit.background,
+      samples.push_back({pixels[i].level - fit.residual[i] - fit.background, fit.dots.front().flux,
                          fit.residual[i] * fit.residual[i] / (1 - fit.leverage[i])});
     }
     return samples;
