@@ -26,29 +26,6 @@ void integrate_abel_kernel(GaussLegendre const& rule, double r, double low, doub
 
 }  // namespace
 
-Eigen::MatrixXd make_three_point_inversion(int n) {
-  GLADSTONE_EXPECTS(n >= 3);
-  Eigen::MatrixXd d = Eigen::MatrixXd::Zero(n, n);
-  // Adds the term factor * P_j to row i; P is even about the axis and zero beyond the last radius
-  auto const add = [&](int i, int j, double factor) {
-    if (std::abs(j) < n) d(i, std::abs(j)) += factor;
-  };
-  for (int i = 0; i < n; ++i) {
-    for (int j = i; j <= n; ++j) {
-      // Around node j the projection is a parabola, its slope (P_j+1 - P_j-1)/2 + (x - j)(P_j+1 - 2 P_j + P_j-1)
-      double const low = std::max<double>(i, j - 0.5), high = j + 0.5, r = i;
-      double const s0 = std::sqrt(std::max(0.0, low * low - r * r)), s1 = std::sqrt(high * high - r * r);
-      // On the axis the slope at node 0 is x (P_1 - 2 P_0 + P_-1), and the logarithm has no factor
-      double const logarithm = i == 0 && j == 0 ? 0.0 : std::log((high + s1) / (low + s0));
-      double const slope = -logarithm / pi, curvature = -(s1 - s0 - j * logarithm) / pi;
-      add(i, j + 1, 0.5 * slope + curvature);
-      add(i, j, -2.0 * curvature);
-      add(i, j - 1, -0.5 * slope + curvature);
-    }
-  }
-  return d;
-}
-
 Eigen::MatrixXd make_gradient_inversion(int n) {
   GLADSTONE_EXPECTS(n >= 3);
   GaussLegendre const rule(12);

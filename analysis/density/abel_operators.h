@@ -8,12 +8,6 @@ namespace gladstone::density {
 /// density f(r) over the ambient one is zero beyond the last radius; f is even and the projected gradient odd about the
 /// axis. Operators act on column vectors of n values.
 
-/// Inverse of the projection P(x) = 2 integral f r dr / sqrt(r^2 - x^2): three-point method of Dasch, Appl. Opt. 31
-/// (1992) 1146, with the sign of PyAbel 0.9.1, whose results it reproduces. f = D P / h; second order.
-/// @param n  number of radii, at least 3
-/// @return   D [n, n, 1]
-Eigen::MatrixXd make_three_point_inversion(int n);
-
 /// Inverse of the projected gradient g = dP/dx, which a deflection measures directly:
 ///   f(r) = -(1/pi) integral g dx / sqrt(x^2 - r^2)
 /// with g interpolated by cubics through four nodes. No differentiation of data; fourth order for smooth fields.

@@ -22,9 +22,4 @@ struct ApertureCone {
 /// @return            amplitude relative to infinitely thin rays [1]; negative beyond the first zero (D_c q = 1.22)
 double compute_aperture_transfer(ApertureCone const& cone, double wavenumber);
 
-/// Shortest wavelength that cone and deconvolution together transmit with more than 1/sqrt(2): resolution by the -3 dB
-/// criterion [m].
-/// @param wiener_parameter  nu of ApertureDeconvolution; infinity: no deconvolution
-double find_resolved_wavelength(ApertureCone const& cone, double wiener_parameter);
-
 }  // namespace gladstone::density

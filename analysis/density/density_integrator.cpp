@@ -208,10 +208,4 @@ std::vector<Vec2d> DensityIntegrator::compute_sensitivity(std::size_t node) cons
   return sensitivity;
 }
 
-DensityMap integrate_density(GradientMap const& map, ReferenceDensity const& reference,
-                             IntegrationSettings const& settings) {
-  DensityIntegrator const integrator(map, reference, settings);
-  return {map.grid, integrator.integrate(map.gradient), integrator.regions()};
-}
-
 }  // namespace gladstone::density

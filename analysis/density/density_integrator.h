@@ -32,14 +32,6 @@ struct IntegrationSettings {
   std::size_t direct_limit = 400'000;
 };
 
-/// Density on the grid of the gradient.
-struct DensityMap {
-  PlaneGrid grid;
-  /// Density, unit of the gradient times m: kg/m^2 projected, kg/m^3 averaged [grid.size()]; NaN: not determined.
-  std::vector<double> density;
-  std::vector<Region> regions;  ///< in descending order of size
-};
-
 /// Integration of a gradient map by least squares, prepared once for any number of right-hand sides. The reference
 /// nodes have exactly the given density; all other borders, also of holes, have the natural (Neumann) condition that
 /// the density's normal derivative is that of the measurement. Second order in the spacing with the trapezoid, third at
@@ -77,9 +69,5 @@ class DensityIntegrator {
   struct System;
   std::unique_ptr<System const> system_;
 };
-
-/// Integrates a gradient map to density; see DensityIntegrator for settings and errors.
-DensityMap integrate_density(GradientMap const& map, ReferenceDensity const& reference,
-                             IntegrationSettings const& settings = {});
 
 }  // namespace gladstone::density

@@ -48,8 +48,8 @@ DensityUncertainty propagate_uncertainty(DensityIntegrator const& integrator, st
 std::vector<Vec2d> draw_gradient_error(WindowCorrelation const& correlation, std::span<Vec2d const> sigma,
                                        std::uint64_t seed, std::uint64_t sample);
 
-/// Adds a scale error common to the field in quadrature, relative times |density - reference|; see
-/// combine_scale_uncertainty().
+/// Adds a scale error common to the field in quadrature, relative times |density - reference|. The scale is the product
+/// of the factors of Eq. 9; its relative uncertainty is the root of the sum of their squared relative uncertainties.
 /// @param sigma,density  standard uncertainty and density [n], NaN: not determined
 /// @param reference      density of the ambient medium, unit of `density`
 /// @param relative       relative standard uncertainty of the scale [1]

@@ -124,12 +124,4 @@ GradientMap compute_mean_gradient(GradientMap const& projected, double thickness
   return mean;
 }
 
-double combine_scale_uncertainty(RelativeUncertainties const& relative) {
-  double sum = 0.0;
-  for (double r : {relative.magnification, relative.target_distance, relative.gladstone_dale, relative.pixel_pitch,
-                   relative.thickness})
-    sum += r * r;
-  return std::sqrt(sum);
-}
-
 }  // namespace gladstone::density

@@ -25,15 +25,6 @@ struct ProjectionOptics {
   double medium_magnification() const { return magnification * (lens_distance + target_distance) / lens_distance; }
 };
 
-/// Standard uncertainties of the set-up, relative to the quantities [1].
-struct RelativeUncertainties {
-  double magnification = 0.0;
-  double target_distance = 0.0;
-  double gladstone_dale = 0.0;
-  double pixel_pitch = 0.0;
-  double thickness = 0.0;
-};
-
 /// Projected gradient and the number of vectors that were treated specially.
 struct ProjectedGradient {
   GradientMap map;
@@ -58,9 +49,5 @@ ProjectedGradient compute_projected_gradient(DisplacementField const& field, Pro
 /// @param thickness  L_z [m]
 /// @throws SetupError  if the thickness is not positive and finite
 GradientMap compute_mean_gradient(GradientMap const& projected, double thickness);
-
-/// Combines the relative uncertainties of the factors of Eq. 9, sqrt(sum of squares) [1]. The result is a scale error
-/// common to the whole field: it adds |rho - rho_reference| times this value to the uncertainty of the density.
-double combine_scale_uncertainty(RelativeUncertainties const& relative);
 
 }  // namespace gladstone::density

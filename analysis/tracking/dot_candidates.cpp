@@ -59,11 +59,11 @@ DotFrame prepare_dot_frame(Image<double> const& frame, DotSettings const& settin
   double const middle = upper_median(finite_levels(frame));
   for (double& level : known)
     if (!std::isfinite(level)) level = middle;
-  prepared.background = estimate_background(known);
+  Image<double> const background = estimate_background(known);
   prepared.above = Image<double>(frame.columns(), frame.rows());
   for (std::size_t i = 0; i < frame.size(); ++i) {
     double const level = frame.data()[i];
-    prepared.above.data()[i] = std::isfinite(level) ? level - prepared.background.data()[i] : not_a_number;
+    prepared.above.data()[i] = std::isfinite(level) ? level - background.data()[i] : not_a_number;
   }
   prepared.bright = settings.polarity == DotPolarity::bright;
   if (settings.polarity == DotPolarity::automatic) {

@@ -9,7 +9,6 @@ namespace gladstone::tracking {
 
 /// Frame prepared for the detection of dots: levels above the background, with bright dots.
 struct DotFrame {
-  Image<double> background;  ///< grey levels, with the sign of the frame
   Image<double> above;  ///< contrast of the dots: frame minus background, inverted for dark dots; NaN: ignored pixel
   bool bright = true;
   double noise = 0;  ///< standard deviation of the noise [grey levels]

@@ -160,7 +160,11 @@ DotFit fit_dots(std::span<FitPixel const> pixels, std::span<GaussianDot const> s
   fit.cost = residuals.squaredNorm();
   fit.chi2 = residuals.head(static_cast<Eigen::Index>(pixels.size())).squaredNorm();
   fit.freedom = static_cast<int>(pixels.size()) - 3 * static_cast<int>(start.size()) - 1;
-  for (std::size_t i = 0; i < pixels.size(); ++i) fit.residual.push_back(-residuals[i] / pixels[i].per_sigma);
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    auto const row = jacobian.row(static_cast<Eigen::Index>(i));
+    fit.residual.push_back(-residuals[i] / pixels[i].per_sigma);
+    fit.leverage.push_back(row.dot(row * covariance));
+  }
   return fit;
 }
 

@@ -33,6 +33,8 @@ struct DotFit {
   double chi2 = 0;                 ///< sum of squared residuals over the variance of the noise [1]
   int freedom = 0;                 ///< number of pixels minus that of the parameters without a prior
   std::vector<double> residual;    ///< of every pixel, measured minus fitted [grey levels]
+  /// of every pixel: derivative of its fitted with respect to its measured level, 0 to 1 [1]
+  std::vector<double> leverage;
 };
 
 /// Fits Gaussian dots and a constant background to pixels by weighted least squares (Levenberg-Marquardt). For normal

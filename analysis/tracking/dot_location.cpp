@@ -11,6 +11,7 @@
 #include "analysis/tracking/dot_candidates.h"
 #include "analysis/tracking/dot_groups.h"
 #include "analysis/tracking/overlap_resolution.h"
+#include "analysis/tracking/photon_noise.h"
 #include "render/base/median.h"
 #include "render/base/not_a_number.h"
 #include "render/base/parallel.h"
@@ -57,6 +58,7 @@ class FrameFit {
       merge_coincident();
       if (sweep == 0) update_prior();
       update_background();
+      if (frame_.bright) gain_ = estimate_conversion_gain(samples_, frame_.noise);
     }
     LocatedDots result;
     std::erase_if(located_, [&](LocatedDot const& dot) { return !valid(dot); });
@@ -71,6 +73,7 @@ class FrameFit {
     result.dots = std::move(located_);
     result.bright = frame_.bright;
     result.noise = frame_.noise;
+    result.gain = gain_;
     result.diameter_px = 4 * std::sqrt(model_.prior.mean[0]);
     return result;
   }
@@ -105,15 +108,8 @@ class FrameFit {
   }
 
   /// Returns the standard deviation of the noise of a pixel with the given light of dots [grey levels].
-  double noise_at(int column, int row, double light) const {
-    double noise = frame_.noise;
-    if (settings_.noise) {
-      CameraNoise const& camera = *settings_.noise;
-      double const level = frame_.background(column, row) + (frame_.bright ? light : -light);
-      noise = std::sqrt(camera.read_noise * camera.read_noise +
-                        camera.levels_per_electron * std::max(0.0, level - camera.black_level));
-    }
-    return std::max(noise, 1e-9);
+  double noise_at(double light) const {
+    return std::max(std::sqrt(frame_.noise * frame_.noise + gain_ * std::max(0.0, light)), 1e-9);
   }
 
   /// Returns the pixels within reach of a group's dots, without the light of the dots of other groups.
@@ -139,8 +135,7 @@ class FrameFit {
         if (!near || !std::isfinite(above)) continue;
         double of_group = 0;
         for (DotLight const& dot : own) of_group += dot.at(column, row).value;
-        pixels.push_back(
-            {column, row, above - light(column, row) + of_group, 1 / noise_at(column, row, light(column, row))});
+        pixels.push_back({column, row, above - light(column, row) + of_group, 1 / noise_at(light(column, row))});
       }
     return pixels;
   }
@@ -153,6 +148,7 @@ class FrameFit {
     Image<double> const light = sum_light();
     std::vector<std::vector<LocatedDot>> fitted(groups.size());
     std::vector<double> mismatch(groups.size(), not_a_number);
+    std::vector<std::vector<ResidualSample>> samples(groups.size());
     parallel_for(groups.size(), [&](std::size_t g) {
       std::vector<GaussianDot> start;
       for (std::size_t const i : groups[g]) start.push_back(located_[i].image);
@@ -165,7 +161,10 @@ class FrameFit {
           fitted[g].push_back({dot, {not_a_number, not_a_number}, not_a_number, 1, 0});
         return;
       }
-      if (fit.dots.size() == 1) mismatch[g] = estimate_mismatch(fit, pixels);
+      if (fit.dots.size() == 1) {
+        mismatch[g] = estimate_mismatch(fit, pixels);
+        samples[g] = sample_residuals(fit, pixels);
+      }
       double const reduced = fit.freedom > 0 ? fit.chi2 / fit.freedom : 1.0;
       double const scale = std::sqrt(std::max(1.0, reduced));
       for (std::size_t k = 0; k < fit.dots.size(); ++k)
@@ -175,6 +174,9 @@ class FrameFit {
     for (std::vector<LocatedDot> const& group : fitted)
       for (LocatedDot const& dot : group)
         if (inside(dot.image.centre)) located_.push_back(dot);
+    samples_.clear();
+    for (std::vector<ResidualSample> const& group : samples)
+      samples_.insert(samples_.end(), group.begin(), group.end());
     std::erase_if(mismatch, [](double value) { return !std::isfinite(value); });
     model_.mismatch = std::max(least_mismatch, std::sqrt(std::max(0.0, upper_median(std::move(mismatch)))));
   }
@@ -249,10 +251,19 @@ class FrameFit {
     for (double& level : residual)
       if (!std::isfinite(level)) level = 0;
     Image<double> const correction = estimate_background(residual);
-    for (std::size_t i = 0; i < residual.size(); ++i) {
-      frame_.above.data()[i] -= correction.data()[i];
-      frame_.background.data()[i] += frame_.bright ? correction.data()[i] : -correction.data()[i];
+    for (std::size_t i = 0; i < residual.size(); ++i) frame_.above.data()[i] -= correction.data()[i];
+  }
+
+  /// Returns the residuals of the pixels that do not determine the fit by themselves.
+  static std::vector<ResidualSample> sample_residuals(DotFit const& fit, std::vector<FitPixel> const& pixels) {
+    constexpr double most_leverage = 0.9;
+    std::vector<ResidualSample> samples;
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+      if (!(fit.leverage[i] < most_leverage)) continue;
+      samples.push_back({pixels[i].level - fit.residual[i] - fit.background, fit.dots.front().flux,
+                         fit.residual[i] * fit.residual[i] / (1 - fit.leverage[i])});
     }
+    return samples;
   }
 
   /// Returns the squared residual of a single dot beyond the noise, over the squared level.
@@ -270,6 +281,8 @@ class FrameFit {
   bool places_known_;  // no dots are added to those at the given places
   bool whole_levels_ = false;
   DotModel model_;
+  double gain_ = 0;  // variance of the noise per grey level of light
+  std::vector<ResidualSample> samples_;
   std::vector<LocatedDot> located_;
 };
 

@@ -23,6 +23,7 @@ struct LocatedDots {
   std::vector<LocatedDot> dots;  ///< sorted by row, then column of the nearest pixel
   bool bright = true;            ///< polarity
   double noise = 0;              ///< standard deviation of the noise in the background [grey levels]
+  double gain = 0;               ///< variance of the noise per grey level of light; 0: no shot noise [grey levels/e]
   double diameter_px = 0;        ///< median e^-2 diameter of the isolated dots, four standard deviations [px]
   std::size_t rejected = 0;      ///< number of candidates without a valid fit
 };
@@ -32,10 +33,12 @@ struct LocatedDots {
 /// Candidates are maxima of the filtered frame. Dots whose images overlap are fitted together, and dots are added where
 /// the residual is significant (fit_overlapping_dots()); the light of all other dots is subtracted first, as in DAOPHOT
 /// (Stetson, PASP 99 (1987) 191). Background, noise and the distribution of widths are estimated from the frame and
-/// updated after each of four sweeps. The uncertainty of a centre is the Cramer-Rao bound of its fit (inverse Fisher
-/// information; for BOS dots see Rajendran, Bane & Vlachos, Exp. Fluids 61 (2020) 139) times the square root of the
-/// reduced chi2 where that exceeds one. For uncorrelated noise, the errors of isolated Gaussian dots reach the bound.
-/// The result is bitwise the same for any number of threads.
+/// updated after each of four sweeps. For bright dots, the noise includes the shot noise of their light
+/// (estimate_conversion_gain()): with the noise of the background alone, sigma would be too small wherever a dot is
+/// brighter than the square of that noise over the gain. The uncertainty of a centre is the Cramer-Rao bound of its fit
+/// (inverse Fisher information; for BOS dots see Rajendran, Bane & Vlachos, Exp. Fluids 61 (2020) 139) times the square
+/// root of the reduced chi2 where that exceeds one. For uncorrelated noise, the errors of isolated Gaussian dots reach
+/// the bound. The result is bitwise the same for any number of threads.
 /// @param frame  grey levels; pixels that are not finite are ignored
 /// @return no dots if nothing exceeds the noise or the frame is smaller than 5x5 px
 /// @throws Interrupted

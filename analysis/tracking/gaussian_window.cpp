@@ -110,17 +110,4 @@ DisplacementField interpolate_vectors(DisplacementField const& vectors, std::spa
   return result;
 }
 
-DisplacementField grid_vectors(DisplacementField const& vectors, int columns, int rows, Vec2d first_px, double step_px,
-                               GaussianWindow const& window) {
-  GLADSTONE_EXPECTS(columns > 0 && rows > 0 && step_px > 0);
-  std::vector<Vec2d> nodes;
-  for (int row = 0; row < rows; ++row)
-    for (int column = 0; column < columns; ++column)
-      nodes.push_back(first_px + step_px * Vec2d{1.0 * column, 1.0 * row});
-  DisplacementField result = interpolate_vectors(vectors, nodes, window);
-  result.columns = columns;
-  result.rows = rows;
-  return result;
-}
-
 }  // namespace gladstone::tracking

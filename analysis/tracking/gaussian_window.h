@@ -35,11 +35,4 @@ struct GaussianWindow {
 DisplacementField interpolate_vectors(DisplacementField const& vectors, std::span<Vec2d const> points,
                                       GaussianWindow const& window = {});
 
-/// Interpolates scattered vectors onto a regular grid, stored row by row.
-/// @param first_px  position of the first node [px]
-/// @param step_px   distance of the nodes along both axes [px]
-/// @pre columns > 0, rows > 0, step_px > 0
-DisplacementField grid_vectors(DisplacementField const& vectors, int columns, int rows, Vec2d first_px, double step_px,
-                               GaussianWindow const& window = {});
-
 }  // namespace gladstone::tracking

@@ -16,6 +16,7 @@ from ._benchmark import BenchmarkCase, Scores, benchmark, benchmark_cases, bench
 from ._calibration import Calibration, calibrate
 from ._case import Accuracy, CalibrationCase, Case, Truth
 from ._core import set_threads, threads
+from ._density import Density, reconstruct
 from ._design import Design, design
 from ._errors import (
     DataError,
@@ -43,9 +44,9 @@ def compare(case: Case, field, **options) -> Report:
 
 
 __all__ = [
-    "Accuracy", "BenchmarkCase", "Calibration", "CalibrationCase", "Case", "DataError", "Design", "DeviceError",
-    "Error", "Field", "GladstoneWarning", "Mie", "NoValidVector", "OutOfMemory", "OutputError", "Problem", "Report",
+    "Accuracy", "BenchmarkCase", "Calibration", "CalibrationCase", "Case", "DataError", "Density", "Design",
+    "DeviceError", "Error", "Field", "GladstoneWarning", "Mie", "NoValidVector", "OutOfMemory", "OutputError", "Problem", "Report",
     "Scores", "Setup", "SetupError", "Study", "StudyRun", "TracedRays", "Truth", "__version__", "benchmark",
     "benchmark_cases", "benchmark_estimators", "build", "calibrate", "compare", "correlate", "design", "info", "mie",
-    "render", "set_threads", "threads", "trace",
+    "reconstruct", "render", "set_threads", "threads", "trace",
 ]  # fmt: skip

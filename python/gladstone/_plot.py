@@ -43,3 +43,22 @@ def _budget(axis, report) -> None:
     terms = {name: term["rms_px"] for name, term in report.budget.items() if term["rms_px"] is not None}
     axis.barh(list(terms)[::-1], list(terms.values())[::-1])
     axis.set(title="error budget", xlabel="rms [px]")
+
+
+def plot_density(result):
+    """Draws maps of a density and its uncertainty, and for a rendered case of the true density and the error."""
+    import matplotlib.pyplot as plt
+
+    maps = [("density", result.density, {}), ("standard uncertainty", result.sigma, {"vmin": 0.0})]
+    if result.truth is not None:
+        limits = {"vmin": np.nanmin(result.truth), "vmax": np.nanmax(result.truth)}
+        largest = np.nanmax(np.abs(result.error))
+        maps[0] = ("density", result.density, limits)
+        maps.append(("true density", result.truth, limits))
+        maps.append(("error", result.error, {"cmap": "RdBu_r", "vmin": -largest, "vmax": largest}))
+    figure, axes = plt.subplots(1, len(maps), figsize=(4.5 * len(maps), 3.8), layout="constrained")
+    for axis, (title, values, style) in zip(axes, maps):
+        drawn = axis.pcolormesh(result.x_mm, result.y_mm, values, **style)
+        axis.set(title=f"{title} [kg/m$^3$]", xlabel="x [mm]", ylabel="y [mm]", aspect="equal")
+        figure.colorbar(drawn, ax=axis, shrink=0.8)
+    return figure

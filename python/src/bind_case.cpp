@@ -65,6 +65,7 @@ void bind_case(nb::module_& module) {
           "load", [](std::string const& folder) { return run([&] { return std::make_shared<PairCase>(folder); }); },
           nb::arg("folder"))
       .def_prop_ro("camera", &PairCase::camera)
+      .def_prop_ro("folder", &PairCase::folder)
       .def_prop_ro("is_piv", [](PairCase const& self) { return self.loaded().setup.piv.has_value(); })
       .def("images",
            [](nb::handle_t<PairCase> self) {

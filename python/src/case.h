@@ -22,6 +22,7 @@ class PairCase {
   explicit PairCase(std::string folder);
 
   std::string const& camera() const { return camera_; }
+  std::string const& folder() const { return folder_; }  ///< CASE folder that was loaded; empty: rendered
   CaseSetup const& loaded() const { return loaded_; }
   GroundTruth const& truth() const { return frames_ ? rendered_->rendering->truth : stored_truth_; }
   /// Grey levels [2, rows, columns] of reference and measurement image.

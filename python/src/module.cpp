@@ -11,6 +11,7 @@ NB_MODULE(_core, module) {
   bind_truth(module);
   bind_field(module);
   bind_comparison(module);
+  bind_density(module);
   bind_information(module);
   bind_benchmark(module);
   bind_calibration(module);

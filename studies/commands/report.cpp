@@ -9,6 +9,7 @@
 #include "studies/case/json_text.h"
 #include "studies/commands/arguments.h"
 #include "studies/commands/command.h"
+#include "studies/commands/density_options.h"
 
 namespace gladstone {
 
@@ -16,6 +17,7 @@ CommandBody attach_report(CLI::App& app, GlobalOptions const& options) {
   struct Arguments {
     ReportOptions report;
     std::string format = "html";
+    DensityArguments density;
   };
   auto arguments = std::make_shared<Arguments>();
   arguments->report.figure_format = "png";
@@ -33,8 +35,11 @@ CommandBody attach_report(CLI::App& app, GlobalOptions const& options) {
   app.add_option("--figure-format", arguments->report.figure_format, "png, svg or pdf")
       ->check(one_of({"png", "svg", "pdf"}))
       ->capture_default_str();
+  arguments->density.add_to(app, "Density of a CASE or a measurement, as gladstone reconstruct computes it");
   return [arguments, &options] {
     ReportOptions report = arguments->report;
+    report.density_words = arguments->density.words();
+    if (!report.density_words.empty()) report.density = arguments->density.options();
     report.markdown = arguments->format == "md";
     if (report.output.empty()) {
       report.output = (std::filesystem::path(report.source) / ("report." + arguments->format)).string();

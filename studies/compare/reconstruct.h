@@ -111,7 +111,9 @@ Reconstruction reconstruct_density(DisplacementField const& field, Setup const& 
 /// truth and theory (compare_case()). Writes nothing.
 /// @param place   case folder, with or without truth.h5, or a setup (TOML) together with options.vectors
 /// @param device  for the comparison
+/// @param known   comparison of these vectors, if there is one; null: computed for options.budget
 /// @throws DataError, SetupError  as reconstruct_density(), and for files that are missing, invalid, or of other frames
-Reconstruction reconstruct_case(std::string const& place, ReconstructOptions const& options, Backend const& device);
+Reconstruction reconstruct_case(std::string const& place, ReconstructOptions const& options, Backend const& device,
+                                Comparison const* known = nullptr);
 
 }  // namespace gladstone

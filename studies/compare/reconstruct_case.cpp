@@ -79,7 +79,8 @@ std::vector<double> compute_truth(Reconstruction const& result, DisplacementFiel
 
 }  // namespace
 
-Reconstruction reconstruct_case(std::string const& place, ReconstructOptions const& options, Backend const& device) {
+Reconstruction reconstruct_case(std::string const& place, ReconstructOptions const& options, Backend const& device,
+                                Comparison const* known) {
   ReconstructedFiles files = find_files(place, options.vectors);
   CaseSetup loaded = load_case_setup(files.setup, {});
   if (loaded.setup.piv || loaded.setup.calibration())
@@ -101,8 +102,9 @@ Reconstruction reconstruct_case(std::string const& place, ReconstructOptions con
     CompareOptions comparing = reading;
     comparing.vectors = options.vectors;
     comparing.reuse = true;
-    Comparison const comparison = compare_case(place, device, comparing);
-    result.budget = compute_density_budget(comparison, result, loaded.setup, window_px, options);
+    std::optional<Comparison> computed;
+    if (!known) known = &computed.emplace(compare_case(place, device, comparing));
+    result.budget = compute_density_budget(*known, result, loaded.setup, window_px, options);
   } else if (options.budget) {
     throw DataError(place,
                     "has no truth.h5, without which the causes of the error are unknown; remove --budget, or "

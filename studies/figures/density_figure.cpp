@@ -1,9 +1,13 @@
 #include "studies/figures/density_figure.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
+#include "render/base/not_a_number.h"
+#include "studies/figures/gnuplot.h"
 #include "studies/figures/map_panels.h"
 
 namespace gladstone {
@@ -18,6 +22,59 @@ Image<double> make_map(density::PlaneGrid const& grid, std::vector<double> const
   return map;
 }
 
+bool has_finite(std::vector<double> const& values) {
+  return std::any_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); });
+}
+
+/// Line of nodes through the largest deviation from the reference density.
+struct DensityProfile {
+  bool is_column = false;                           ///< true: over y, false: over x
+  double at_mm = 0.0;                               ///< y of a row, x of a column [mm]
+  std::vector<double> place_mm;                     ///< [mm]
+  std::vector<double> density, low, high, truth;    ///< density, its interval of +- sigma, and truth [kg/m^3]
+  double largest_mm = 0.0, largest = not_a_number;  ///< place and density of the largest deviation
+  double largest_sigma = not_a_number;              ///< standard uncertainty there [kg/m^3]
+};
+
+/// Returns the index of the node with the largest deviation; 0 if no node has a density.
+std::size_t find_largest_deviation(Reconstruction const& reconstruction) {
+  std::size_t largest = 0;
+  double deviation = -1.0;
+  for (std::size_t i = 0; i < reconstruction.density.size(); ++i) {
+    double const here = std::abs(reconstruction.density[i] - reconstruction.reference_density);
+    if (!(here > deviation)) continue;
+    deviation = here;
+    largest = i;
+  }
+  return largest;
+}
+
+DensityProfile extract_profile(Reconstruction const& reconstruction) {
+  density::PlaneGrid const& grid = reconstruction.grid;
+  std::size_t const largest = find_largest_deviation(reconstruction);
+  int const column = static_cast<int>(largest) % grid.columns, row = static_cast<int>(largest) / grid.columns;
+  DensityProfile profile;
+  profile.is_column =
+      reconstruction.axisymmetry && reconstruction.axisymmetry->direction == density::AxisDirection::horizontal;
+  Vec2d const through = grid.position(column, row);
+  profile.at_mm = 1e3 * (profile.is_column ? through.x : through.y);
+  profile.largest_mm = 1e3 * (profile.is_column ? through.y : through.x);
+  profile.largest = reconstruction.density[largest];
+  profile.largest_sigma = reconstruction.sigma[largest];
+  for (int k = 0; k < (profile.is_column ? grid.rows : grid.columns); ++k) {
+    int const i = profile.is_column ? column : k, j = profile.is_column ? k : row;
+    std::size_t const node = grid.index(i, j);
+    Vec2d const place = grid.position(i, j);
+    double const density = reconstruction.density[node], sigma = reconstruction.sigma[node];
+    profile.place_mm.push_back(1e3 * (profile.is_column ? place.y : place.x));
+    profile.density.push_back(density);
+    profile.low.push_back(density - sigma);
+    profile.high.push_back(density + sigma);
+    profile.truth.push_back(reconstruction.truth.empty() ? not_a_number : reconstruction.truth[node]);
+  }
+  return profile;
+}
+
 }  // namespace
 
 void write_density_figure(std::string const& path, Reconstruction const& reconstruction) {
@@ -28,8 +85,7 @@ void write_density_figure(std::string const& path, Reconstruction const& reconst
                                             : "Density, mean over the thickness of the medium";
   figure.axes = {1e3 * top.x, 1e3 * grid.spacing.x, 1e3 * top.y, -1e3 * grid.spacing.y, false, "x [mm]", "y [mm]"};
   bool const has_truth = !reconstruction.truth.empty();
-  bool const has_sigma = std::any_of(reconstruction.sigma.begin(), reconstruction.sigma.end(),
-                                     [](double sigma) { return std::isfinite(sigma); });
+  bool const has_sigma = has_finite(reconstruction.sigma);
   figure.panels.push_back(
       {"ρ [kg/m³]", make_map(grid, reconstruction.density), ColourScale::sequential, has_truth ? "density" : ""});
   if (has_truth)
@@ -45,6 +101,44 @@ void write_density_figure(std::string const& path, Reconstruction const& reconst
   }
   figure.columns = std::min<int>(2, static_cast<int>(figure.panels.size()));
   write_map_figure(path, figure);
+}
+
+void write_density_profile(std::string const& path, Reconstruction const& reconstruction) {
+  DensityProfile const profile = extract_profile(reconstruction);
+  GnuplotFigure plot(820, 460);
+  plot.set_margins(96, 790, 60, plot.height_px() - 60);
+  plot.command("set grid linecolor '#e4e4e4' linewidth 1 linetype 1");
+  plot.command(fmt::format(
+      "set label 1 {} at screen 0.5, screen {:.6f} center font 'DejaVu Sans,14' textcolor '#101010'",
+      GnuplotFigure::quoted(fmt::format("Density at {} = {:.3f} mm", profile.is_column ? "x" : "y", profile.at_mm)),
+      1.0 - 26.0 / plot.height_px()));
+  plot.command(fmt::format("set xlabel '{} [mm]'", profile.is_column ? "y" : "x"));
+  plot.command("set ylabel 'density [kg/m³]' offset -0.5,0");
+  plot.command("set style fill transparent solid 0.25 noborder");
+  std::string const source =
+      plot.add_table({profile.place_mm, profile.density, profile.low, profile.high, profile.truth});
+  std::string lines = "plot ";
+  if (has_finite(profile.high))
+    lines += fmt::format("{} using 1:3:4 with filledcurves linecolor '{}' title 'one standard uncertainty', ", source,
+                         house_colour(0));
+  lines +=
+      fmt::format("{} using 1:2 with lines linewidth 2 linecolor '{}' title 'reconstructed'", source, house_colour(0));
+  if (has_finite(profile.truth))
+    lines += fmt::format(", {} using 1:5 with lines linewidth 2 dashtype 2 linecolor '{}' title 'true'", source,
+                         house_colour(1));
+  plot.command(lines);
+  plot.write(path);
+}
+
+std::string describe_density_profile(Reconstruction const& reconstruction) {
+  DensityProfile const profile = extract_profile(reconstruction);
+  std::string const sigma =
+      std::isfinite(profile.largest_sigma) ? fmt::format(" +- {:.3g}", profile.largest_sigma) : "";
+  return fmt::format(
+      "Density with its standard uncertainty at {} = {:.4g} mm, through the largest deviation from the reference of "
+      "{:.5g} kg/m^3: {:.5g}{} kg/m^3 at {} = {:.4g} mm.",
+      profile.is_column ? "x" : "y", profile.at_mm, reconstruction.reference_density, profile.largest, sigma,
+      profile.is_column ? "y" : "x", profile.largest_mm);
 }
 
 }  // namespace gladstone

@@ -11,4 +11,13 @@ namespace gladstone {
 /// @throws GnuplotMissing, OutputError
 void write_density_figure(std::string const& path, Reconstruction const& reconstruction);
 
+/// Draws a profile of the density with its standard uncertainty as a band, and for a rendered case the true density:
+/// the row of nodes through the largest deviation from the reference density, over x in mm, or for a flow with a
+/// horizontal axis of symmetry the column, over y in mm.
+/// @throws GnuplotMissing, OutputError
+void write_density_profile(std::string const& path, Reconstruction const& reconstruction);
+
+/// Describes the profile in numbers.
+std::string describe_density_profile(Reconstruction const& reconstruction);
+
 }  // namespace gladstone

@@ -13,6 +13,7 @@
 #include "studies/compare/budget_stages.h"
 #include "studies/compare/compare.h"
 #include "studies/report/case_view.h"
+#include "studies/report/density_section.h"
 #include "studies/report/layout_view.h"
 #include "studies/report/report.h"
 #include "studies/sweep/job_array.h"
@@ -124,6 +125,31 @@ SourceFiles case_sources(std::string const& folder, Comparison const& compared) 
   return sources;
 }
 
+/// Returns the commands that reproduce the report, which is the last one.
+std::vector<std::string> commands_of(ReportOptions const& options) {
+  std::string const place = shell_word(options.source);
+  std::string of_vectors = options.vectors.empty() ? "" : " --vectors " + shell_word(options.vectors);
+  if (!options.conventions.empty()) of_vectors += " --conventions " + shell_word(options.conventions);
+  std::vector<std::string> commands{"gladstone render setup.toml -o " + place};
+  if (options.vectors.empty()) commands.push_back("gladstone correlate " + place);
+  for (char const* command : {"compare", "report"}) {
+    commands.push_back(fmt::format("gladstone {} {}{}", command, place, of_vectors));
+  }
+  for (std::string const& word : options.density_words) commands.back() += ' ' + shell_word(word);
+  return commands;
+}
+
+/// Reconstructs the density with its error budget, if options ask for it.
+std::optional<Reconstruction> reconstruct_compared(ReportOptions const& options, Comparison const& compared,
+                                                   Backend const& device) {
+  if (!options.density) return std::nullopt;
+  ReconstructOptions density = *options.density;
+  density.vectors = options.vectors;
+  if (!options.conventions.empty()) density.conventions = options.conventions;
+  density.budget = true;
+  return reconstruct_case(options.source, density, device, &compared);
+}
+
 }  // namespace
 
 nlohmann::json budget_json(ErrorBudget const& budget) {
@@ -227,10 +253,21 @@ ReportPage case_report(ReportOptions const& options, Backend const& device) {
     page.data["reliability"] = std::move(bins);
   }
   page.sections.push_back(std::move(uncertainty));
+  std::vector<std::string> const commands = commands_of(options);
+  std::optional<Reconstruction> const density = reconstruct_compared(options, all, device);
+  if (density) {
+    page.findings.push_back(summarize_density(*density));
+    page.sections.push_back(density_section(page, *density));
+  } else if (!view.piv) {
+    page.sections.push_back(missing_density_section(commands.back()));
+  }
   auto const draw = [&](std::string const& folder, std::string const& format) {
     std::vector<std::string> drawn = draw_comparison(folder, all, format);
-    if (!bench) return drawn;
-    for (std::string& path : draw_layout_and_map(folder, format, *bench)) drawn.push_back(std::move(path));
+    auto const add = [&](std::vector<std::string> paths) {
+      for (std::string& path : paths) drawn.push_back(std::move(path));
+    };
+    if (density) add(draw_density_figures(folder, format, *density));
+    if (bench) add(draw_layout_and_map(folder, format, *bench));
     return drawn;
   };
   if (ReportSection figures = drawn_figures(options, draw); !figures.blocks.empty()) {
@@ -241,14 +278,6 @@ ReportPage case_report(ReportOptions const& options, Backend const& device) {
       {"Settings",
        {Verbatim{"The resolved setup", read_text_file(setup)},
         Verbatim{"Summary of the rendering", read_text_file(in_case(options.source, case_file::summary))}}});
-  std::string const place = shell_word(options.source);
-  std::string of_vectors = options.vectors.empty() ? "" : " --vectors " + shell_word(options.vectors);
-  if (!options.conventions.empty()) of_vectors += " --conventions " + shell_word(options.conventions);
-  std::vector<std::string> commands{"gladstone render setup.toml -o " + place};
-  if (options.vectors.empty()) commands.push_back("gladstone correlate " + place);
-  for (char const* command : {"compare", "report"}) {
-    commands.push_back(fmt::format("gladstone {} {}{}", command, place, of_vectors));
-  }
   page.sections.push_back(provenance_section(case_sources(options.source, all), commands));
   return page;
 }

@@ -1,18 +1,15 @@
 #include "studies/report/layout_view.h"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <cmath>
 
-#include "render/files/text_file.h"
 #include "studies/case/expected_particles.h"
 #include "studies/design/sheet.h"
 #include "studies/figures/design_map.h"
-#include "studies/figures/gnuplot.h"
 #include "studies/figures/layout_figure.h"
 #include "studies/figures/piv_map.h"
-#include "studies/figures/temporary_directory.h"
+#include "studies/report/drawn_block.h"
 
 namespace gladstone {
 namespace {
@@ -57,20 +54,6 @@ bool is_drawn(Setup const& setup) {
     if (!upright || laser.centre.z != 0) return false;
   }
   return std::isfinite(setup.lens.f_number);
-}
-
-/// Returns a figure embedded in the page; without gnuplot, its description.
-template <class Write>
-ReportBlock drawn_block(std::string title, std::string words, Write const& write) {
-  try {
-    TemporaryDirectory const folder;
-    std::string const path = folder.path() + "/figure.png";
-    write(path);
-    return Picture{std::move(title), std::move(words), read_text_file(path)};
-  } catch (GnuplotMissing const& missing) {
-    spdlog::warn("{}", missing.what());
-    return Paragraph{title + ". " + words};
-  }
 }
 
 std::string map_text(DesignPoint<double> const& b) {

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <spdlog/spdlog.h>
 
 #include <cmath>
 #include <filesystem>
@@ -10,12 +11,13 @@
 #include "studies/design/measurement_inputs.h"
 #include "studies/design/sheet.h"
 #include "studies/report/case_view.h"
+#include "studies/report/density_section.h"
 #include "studies/report/layout_view.h"
-#include "studies/report/measured_density.h"
 #include "studies/report/measured_files.h"
 #include "studies/report/measured_findings.h"
 #include "studies/report/report.h"
 #include "studies/report/simulated_twin.h"
+#include "studies/report/twin_density.h"
 #include "studies/sweep/job_array.h"
 
 namespace gladstone {
@@ -45,7 +47,7 @@ SimulatedTwin twin_of(CaseSetup const& loaded, DisplacementField const& field, M
   Vec2d const middle = (field.position_px.front() + field.position_px.back()) / 2.0;
   Vec2d const axis{(loaded.setup.camera.columns - 1) / 2.0, (loaded.setup.camera.rows - 1) / 2.0};
   Vec2d const centre = Vec2d{middle.x - axis.x, axis.y - middle.y} * pixel_at_medium;
-  return simulate_twin(loaded, integrated_density(all.gradient, field.columns, field.rows, spacing), spacing, centre,
+  return simulate_twin(loaded, compute_twin_density(all.gradient, field.columns, field.rows, spacing), spacing, centre,
                        open_device(device.name()));
 }
 
@@ -99,7 +101,21 @@ std::string command_of(ReportOptions const& options) {
   if (!options.conventions.empty()) command += " --conventions " + shell_word(options.conventions);
   if (!options.repeats.empty()) command += " --repeats";
   for (std::string const& file : options.repeats) command += ' ' + shell_word(file);
+  for (std::string const& word : options.density_words) command += ' ' + shell_word(word);
   return command;
+}
+
+/// Reconstructs the density of the vectors as gladstone reconstruct does, or that of the mean of repeats.
+std::optional<Reconstruction> reconstruct_measured(ReportOptions const& options, MeanOfRepeats const& mean,
+                                                   CaseSetup const& loaded, Backend const& device) {
+  if (!options.density) return std::nullopt;
+  ReconstructOptions density = *options.density;
+  density.vectors = options.vectors;
+  if (!options.conventions.empty()) density.conventions = options.conventions;
+  if (mean.count == 1) return reconstruct_case(options.source, density, device);
+  Reconstruction result = reconstruct_density(mean.field, loaded.setup, loaded.correlate.window_px.back(), density);
+  for (std::string const& warning : result.warnings) spdlog::warn("{}", warning);
+  return result;
 }
 
 CaseSetup measured_bench(std::string const& setup_file, std::vector<UncertainInput>& uncertain) {
@@ -130,6 +146,7 @@ ReportPage measured_report(ReportOptions const& options, Backend const& device) 
   if (finite_components(field.displacement_px).empty())
     throw DataError(files.vectors, "has no vector with a displacement; correlate the images again");
 
+  std::optional<Reconstruction> const density = reconstruct_measured(options, mean, loaded, device);
   std::vector<MeasurementInput> inputs{typical_displacement(mean, bench.random_error())};
   for (MeasurementInput& input : measurement_inputs(loaded, uncertain, *device.renderer))
     inputs.push_back(std::move(input));
@@ -139,7 +156,7 @@ ReportPage measured_report(ReportOptions const& options, Backend const& device) 
   MeasuredGradients const all = compute_gradients(field, bench, common_relative_uncertainty(at, inputs));
   bool const gridded = field.columns > 1 && field.rows > 1;
   std::optional<SimulatedTwin> twin;
-  if (gridded) twin = twin_of(loaded, field, all, bench.pixel_at_medium(), device);
+  if (gridded && all.count > 0) twin = twin_of(loaded, field, all, bench.pixel_at_medium(), device);
   MeasurementKnown const known{all, typical, inputs, mean, twin ? &*twin : nullptr, bench.sensitivity()};
   MeasurementStatements const said = measurement_statements(known);
 
@@ -148,6 +165,7 @@ ReportPage measured_report(ReportOptions const& options, Backend const& device) 
   page.question = fmt::format("What is the uncertainty of the density gradients of this measurement? {} vectors of {}.",
                               field.size(), fs::path(files.vectors).filename().string());
   page.findings = {said.measurand, said.expanded, said.bias};
+  if (density) page.findings.push_back(summarize_density(*density));
   page.doubtful = read.incomplete;
   std::optional<LayoutView> const drawn_bench = layout_view(load_case_setup(files.setup, {}));
   if (drawn_bench) page.sections.push_back(layout_section(*drawn_bench, "the measurement"));
@@ -155,11 +173,15 @@ ReportPage measured_report(ReportOptions const& options, Backend const& device) 
   if (gridded) page.sections.push_back(maps_section(page, field, all, camera, said.measurand));
   page.sections.push_back({"Uncertainty", {TextList{said.all()}, inputs_table(known)}});
   page.sections.push_back(causes_section(page, known.twin));
+  page.sections.push_back(density ? density_section(page, *density) : missing_density_section(command_of(options)));
   auto const draw = [&](std::string const& folder, std::string const& format) {
     std::vector<std::string> drawn;
+    auto const add = [&](std::vector<std::string> paths) {
+      for (std::string& path : paths) drawn.push_back(std::move(path));
+    };
     if (gridded) drawn.push_back(draw_measured_maps(folder + "/measured_maps." + format, field, all));
-    if (!drawn_bench) return drawn;
-    for (std::string& path : draw_layout_and_map(folder, format, *drawn_bench)) drawn.push_back(std::move(path));
+    if (density) add(draw_density_figures(folder, format, *density));
+    if (drawn_bench) add(draw_layout_and_map(folder, format, *drawn_bench));
     return drawn;
   };
   if (ReportSection figures = drawn_figures(options, draw); !figures.blocks.empty()) {

@@ -70,6 +70,12 @@ WrittenReport write_report(ReportOptions const& options, Backend const& device) 
                                 "a case",
                                 options.vectors.empty() ? "--conventions" : "--vectors"));
   }
+  if (run && options.density) {
+    throw DataError(options.source,
+                    fmt::format("is a study, whose report contains no density; leave {} out, or give the folder of a "
+                                "case or a measurement",
+                                options.density_words.empty() ? "--reference" : options.density_words.front()));
+  }
   // fails early if the output cannot be written
   OutputFile output(options.output, options.markdown ? "Markdown" : "HTML");
   bool const measured = !run && !fs::exists(fs::path(options.source) / case_file::truth);

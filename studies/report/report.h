@@ -1,11 +1,13 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "render/files/source_files.h"
 #include "studies/case/backend.h"
+#include "studies/compare/reconstruct.h"
 #include "studies/report/report_page.h"
 
 namespace gladstone {
@@ -21,6 +23,9 @@ struct ReportOptions {
   std::vector<std::string> repeats;  ///< for a measurement: vectors of repeated measurements
   /// for vectors of a CASE or a measurement, as parse_conventions() reads them; empty: those of the format
   std::string conventions;
+  /// for a CASE or a measurement: reconstruction of the density, without vectors, conventions and budget; empty: none
+  std::optional<ReconstructOptions> density;
+  std::vector<std::string> density_words;  ///< its options as words of the command line
 };
 
 /// Summary of a report that was written.
@@ -37,11 +42,12 @@ WrittenReport write_report(ReportOptions const& options, Backend const& device);
 /// Creates the report of a RUN from the finished cases, without computations.
 ReportPage run_report(ReportOptions const& options);
 
-/// Creates the report of a CASE, which is compared with truth and theory again.
+/// Creates the report of a CASE, which is compared with truth and theory again; with options.density, of its density.
 ReportPage case_report(ReportOptions const& options, Backend const& device);
 
 /// Creates the uncertainty report of a measurement, a folder without truth that contains the setup, the vectors and,
-/// optionally, the frames. It reports density gradients with uncertainties, and the errors of a simulated twin.
+/// optionally, the frames. It reports density gradients with uncertainties, the errors of a simulated twin, and with
+/// options.density the density.
 /// @throws SetupError, DataError
 ReportPage measured_report(ReportOptions const& options, Backend const& device);
 

@@ -8,8 +8,8 @@
 #include "render/base/error.h"
 #include "render/base/progress.h"
 #include "render/base/units.h"
+#include "render/files/output_file.h"
 #include "studies/figures/temporary_directory.h"
-#include "studies/report/measured_density.h"
 #include "studies/sweep/case_runner.h"
 #include "studies/sweep/plan.h"
 
@@ -19,6 +19,31 @@ namespace {
 constexpr std::size_t twin_repeats = 2;
 /// extrapolated nodes beyond the vectors, seen by light cones and dots at the edge of the view
 constexpr int margin_nodes = 16;
+
+/// Returns the value at a node; beyond the border, linear extrapolation of the last two nodes.
+double continued(Image<double> const& image, int column, int row) {
+  int const i = std::clamp(column, 0, image.columns() - 1), j = std::clamp(row, 0, image.rows() - 1);
+  double value = image(i, j);
+  if (column != i)
+    value += (column < 0 ? image(0, j) - image(1, j) : image(i, j) - image(i - 1, j)) * std::abs(column - i);
+  if (row != j) value += (row < 0 ? image(i, 0) - image(i, 1) : image(i, j) - image(i, j - 1)) * std::abs(row - j);
+  return value;
+}
+
+/// Writes density plus `ambient` as a NRRD plane, y upwards, linearly extrapolated by `margin` nodes beyond its border.
+/// @throws OutputError if the file cannot be written
+void write_density_plane(std::string const& path, Image<double> const& density, int margin, double ambient) {
+  int const columns = density.columns() + 2 * margin, rows = density.rows() + 2 * margin;
+  std::string text = fmt::format(
+      "NRRD0004\ntype: double\ndimension: 3\nsizes: {} {} 1\nencoding: raw\nendian: little\n\n", columns, rows);
+  for (int row = rows - 1; row >= 0; --row) {  // y upwards
+    for (int column = 0; column < columns; ++column) {
+      double const value = ambient + continued(density, column - margin, row - margin);
+      text.append(reinterpret_cast<char const*>(&value), sizeof value);
+    }
+  }
+  OutputFile::write_text(path, text);
+}
 
 SetupNode field_of(std::string const& file, double spacing, Vec2d centre) {
   double const mm = unit::millimetre;

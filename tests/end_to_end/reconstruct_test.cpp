@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include "tests/end_to_end/support/program_fixture.h"
@@ -58,11 +59,16 @@ class ReconstructedDensity : public ProgramFixture {
   }
   /// Writes the vectors of the case as x,y,u,v of an unnamed program.
   void write_foreign(std::string const& name, bool valid = true) const {
+    write_foreign_where(name, [valid](double) { return valid; });
+  }
+  /// Writes them with NaN where `valid` is false for the column in px.
+  void write_foreign_where(std::string const& name, std::function<bool(double)> const& valid) const {
     Hdf5Reader const file(in("case/vectors.h5").string());
     auto const x = file.read("x_px"), y = file.read("y_px"), u = file.read("u_px"), v = file.read("v_px");
     std::string text = "x,y,u,v\n";
     for (std::size_t i = 0; i < x.size(); ++i)
-      text += valid ? fmt::format("{},{},{},{}\n", x[i], y[i], u[i], v[i]) : fmt::format("{},{},nan,nan\n", x[i], y[i]);
+      text += valid(x[i]) ? fmt::format("{},{},{},{}\n", x[i], y[i], u[i], v[i])
+                          : fmt::format("{},{},nan,nan\n", x[i], y[i]);
     write(name, text);
   }
   nlohmann::json reconstruct(std::vector<std::string> const& more, std::string const& place = "case") const {
@@ -190,6 +196,36 @@ TEST_F(ReconstructedDensity, OfMeasuredImagesNeedsTheirSetupAndVectors) {
   write("experiment.toml", with(with(blob_setup, field, ""), "thickness_mm = 14.0\n", ""));
   auto const assumed = reconstruct({"--reference", "left", "--vectors", "v.csv"}, "experiment.toml");
   EXPECT_THAT(assumed["warnings"].dump(), testing::HasSubstr("medium.thickness_mm"));
+}
+
+// A gauge that lies in a mask fixes nothing; a mask that divides the vectors leaves the part without a gauge without a
+// density; a second gauge there determines it again.
+TEST_F(ReconstructedDensity, ReportsAGaugeThatMasksCover) {
+  render("case");
+  succeed({"correlate", "case"});
+  write_foreign_where("covered.csv", [](double x) { return x > 40; });
+  expect_refused({"reconstruct", "case", "--vectors", "covered.csv", "--reference", "left", "-o", "density.h5"}, 2,
+                 {"reference", "masked or invalid", "move the reference region"});
+  EXPECT_FALSE(std::filesystem::exists(in("density.h5")));
+  reconstruct({"--vectors", "covered.csv", "--reference", "right"});
+
+  write_foreign_where("divided.csv", [](double x) { return std::abs(x - 96) > 12; });
+  auto const determined = [&](std::vector<double>& density) {
+    density = Hdf5Reader(in("density.h5").string()).read("/density_kg_m3");
+    return std::count_if(density.begin(), density.end(), [](double value) { return std::isfinite(value); });
+  };
+  std::vector<double> density;
+  auto const half = reconstruct({"--vectors", "divided.csv", "--reference", "left"});
+  EXPECT_THAT(half["warnings"].dump(), testing::HasSubstr("1 of 2 regions of valid vectors contain no reference"));
+  auto const left_nodes = determined(density);
+  EXPECT_EQ(half["determined"], left_nodes);
+  std::size_t const columns = half["columns"];
+  EXPECT_TRUE(std::isfinite(density[0]));
+  EXPECT_TRUE(std::isnan(density[columns - 1]));
+  auto const whole = reconstruct({"--vectors", "divided.csv", "--reference", "left", "--reference", "right"});
+  EXPECT_THAT(whole["warnings"].dump(), testing::Not(testing::HasSubstr("contain no reference")));
+  EXPECT_GT(determined(density), left_nodes);
+  EXPECT_TRUE(std::isfinite(density[columns - 1]));
 }
 
 TEST_F(ReconstructedDensity, RefusesWhatDeterminesNoDensity) {

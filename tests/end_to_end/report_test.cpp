@@ -271,6 +271,56 @@ window_px = [32, 16]
               HasSubstr("| medium.ambient\\_density\\_kg\\_m3 | B | 0 | 0.02 | normal | infinite | 0.00"));
 }
 
+// The reports of a case and of a measurement end in the density of gladstone reconstruct, number by number; that of the
+// case contains its error and the causes of the error.
+TEST_F(Reports, HaveTheDensityOfReconstruct) {
+  render("case");
+  succeed({"correlate", "case", "--quiet", "--set", "correlate.uncertainty=correlation_statistics"});
+  std::filesystem::create_directories(in("measured"));
+  for (char const* const name : {"setup.toml", "reference.tif", "flow.tif", "vectors.h5"})
+    std::filesystem::copy_file(in(std::string("case/") + name), in(std::string("measured/") + name));
+  for (std::string const place : {"case", "measured"}) {
+    std::vector<std::string> const gauge{"--reference",         "left", "--reference",         "top",
+                                         "--reference-density", "1.3",  "--scale-uncertainty", "0.01"};
+    std::vector<std::string> report{"report", place, "--quiet"},
+        reconstruct{"reconstruct", place, "-o", "density.h5", "--no-figures", "--quiet"};
+    report.insert(report.end(), gauge.begin(), gauge.end());
+    reconstruct.insert(reconstruct.end(), gauge.begin(), gauge.end());
+    bool const rendered = place == "case";
+    if (rendered) reconstruct.emplace_back("--budget");
+    nlohmann::json const expected = json_of(reconstruct);
+    succeed(report);
+    std::string const html = read(place + "/report.html");
+    nlohmann::json const density = data_of(place + "/report.html")["density"];
+    for (char const* const key : {"determined", "density_kg_m3", "sigma_kg_m3", "reference_density_kg_m3"})
+      ASSERT_TRUE(density.contains(key)) << key;
+    EXPECT_EQ(density.contains("error_kg_m3"), rendered);
+    EXPECT_EQ(density.contains("budget_kg_m3"), rendered);
+    for (auto const& [key, value] : density.items()) EXPECT_EQ(value, expected[key]) << place << ' ' << key;
+    EXPECT_GT(density["sigma_kg_m3"]["median"].get<double>(), 0.0);
+    EXPECT_THAT(html, HasSubstr("Maps of the density"));
+    EXPECT_THAT(html, HasSubstr("Profile of the density"));
+    EXPECT_THAT(html, HasSubstr("Numbers of the density"));
+    EXPECT_EQ(html.find("Error budget of the density") != std::string::npos, rendered);
+    EXPECT_THAT(html, HasSubstr("--reference left --reference top --reference-density 1.3 --scale-uncertainty 0.01"));
+  }
+}
+
+TEST_F(Reports, RequireAReferenceForADensity) {
+  render("case");
+  succeed({"correlate", "case", "--quiet"});
+  succeed({"report", "case", "--quiet"});
+  EXPECT_THAT(read("case/report.html"), HasSubstr("No density was reconstructed"));
+  EXPECT_FALSE(data_of("case/report.html").contains("density"));
+  expect_refused({"report", "case", "--reference", "900,900,999,999"}, 2, {"reference", "900"});
+  expect_refused({"report", "case", "--deconvolve", "3"}, 2, {"--reference"});
+  succeed({"report", "case", "--reference", "left", "--format", "md", "-o", "text/m.md", "--quiet"});
+  EXPECT_THAT(read("text/m.md"), HasSubstr("density_profile.png"));
+  EXPECT_TRUE(std::filesystem::exists(in("text/m_figures/density.png")));
+  finish_study();
+  expect_refused({"report", "run", "--reference", "left"}, 2, {"is a study", "--reference"});
+}
+
 // The setup of another camera than that of the frames, or other frames than those that were correlated.
 TEST_F(Reports, OfAMeasurementKnowWhoseFramesAndVectorsTheyAre) {
   render("case");

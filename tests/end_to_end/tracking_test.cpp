@@ -87,6 +87,17 @@ TEST_F(TrackedDots, OfAFlowFollowTheTruth) {
   expect_tracked(0.8, 0.03);
 }
 
+// Shot noise of 30000 electrons at full scale exceeds the noise of the dark background many times at the particles. A
+// standard uncertainty covers 68 % of normal errors; about 700 components scatter by 2 %.
+TEST_F(TrackedDots, HaveAnUncertaintyThatContainsShotNoise) {
+  write("setup.toml", particle_setup);
+  render("case", {"--set", "camera.noise.full_well_e=30000"});
+  track("scattered", "noisy.h5");
+  double const coverage = compare("noisy.h5")["uncertainty"]["ray_truth"]["coverage_1"];
+  EXPECT_GT(coverage, 0.58);
+  EXPECT_LT(coverage, 0.78);
+}
+
 // Scattered vectors as text, and as an axis of a study.
 TEST_F(TrackedDots, ServeEveryCommandThatReadsVectors) {
   write("setup.toml",

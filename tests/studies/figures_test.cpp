@@ -12,6 +12,7 @@
 #include "render/base/error.h"
 #include "render/files/image_file.h"
 #include "studies/figures/agreement_figure.h"
+#include "studies/figures/density_figure.h"
 #include "studies/figures/error_figures.h"
 #include "studies/figures/gnuplot.h"
 #include "studies/figures/map_figures.h"
@@ -190,6 +191,24 @@ TEST(LocalGradient, IsTheLargestSingularValue) {
     }
   }
   for (double const gradient : local_gradient(field)) EXPECT_NEAR(gradient, std::sqrt(45e-6), 1e-15);
+}
+
+// A ramp from 1.2 to 1.6 kg/m^3 with a uniform sigma: the largest deviation from 1.2 is at the right end.
+TEST_F(Figures, OfADensityProfileNameItsLargestDeviation) {
+  Reconstruction ramp;
+  ramp.grid = {5, 3, {-2e-3, -1e-3}, {1e-3, 1e-3}};
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column < 5; ++column) ramp.density.push_back(1.2 + 0.1 * column);
+  ramp.sigma.assign(15, 0.01);
+  ramp.reference_density = 1.2;
+  EXPECT_EQ(describe_density_profile(ramp),
+            "Density with its standard uncertainty at y = -1 mm, through the largest deviation from the reference of "
+            "1.2 kg/m^3: 1.6 +- 0.01 kg/m^3 at x = 2 mm.");
+  write_density_profile(path("profile.png"), ramp);
+  EXPECT_TRUE(std::filesystem::exists(path("profile.png")));
+  ramp.sigma.assign(15, std::numeric_limits<double>::quiet_NaN());
+  ramp.density.assign(15, std::numeric_limits<double>::quiet_NaN());
+  write_density_profile(path("empty.png"), ramp);
 }
 
 }  // namespace

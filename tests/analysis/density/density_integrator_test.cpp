@@ -12,6 +12,18 @@
 namespace gladstone::density {
 namespace {
 
+/// Density on the grid of the gradient and its regions.
+struct DensityMap {
+  std::vector<double> density;
+  std::vector<Region> regions;
+};
+
+DensityMap integrate_density(GradientMap const& map, ReferenceDensity const& reference,
+                             IntegrationSettings const& settings = {}) {
+  DensityIntegrator const integrator(map, reference, settings);
+  return {integrator.integrate(map.gradient), integrator.regions()};
+}
+
 ReferenceDensity corner_reference(PlaneGrid const& grid) {
   return make_box_reference(grid, {0.0, 0.0}, {0.0, 0.0}, wave_density({0.0, 0.0}));
 }

@@ -73,11 +73,6 @@ TEST(ProjectedGradient, LeavesHolesAndCountsVectorsWithoutSigma) {
   EXPECT_TRUE(compute_projected_gradient(field, optics).map.sigma.empty());
 }
 
-// (1 %, 2 %, 2 %, 0, 4 %) give 5 %.
-TEST(ProjectedGradient, CombinesTheScaleUncertaintiesInQuadrature) {
-  EXPECT_NEAR(combine_scale_uncertainty({0.01, 0.02, 0.02, 0.0, 0.04}), 0.05, 1e-15);
-}
-
 TEST(ProjectedGradient, RejectsBadInput) {
   DisplacementField const field = make_field({0.1, 0.1});
   ProjectionOptics optics = table_1();

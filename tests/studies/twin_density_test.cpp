@@ -1,8 +1,10 @@
-#include "studies/report/measured_density.h"
+#include "studies/report/twin_density.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
+
+#include "render/base/error.h"
 
 namespace gladstone {
 namespace {
@@ -28,8 +30,8 @@ double quadratic(int column, int row) {
 }
 
 // Between two nodes the mean of both gradients is exact for a quadratic field; the level is the mean over the border.
-TEST(MeasuredDensity, IntegratesAQuadraticFieldExactly) {
-  Image<double> const density = integrated_density(gradients(), columns, rows, spacing);
+TEST(TwinDensity, IntegratesAQuadraticFieldExactly) {
+  Image<double> const density = compute_twin_density(gradients(), columns, rows, spacing);
   double const level = density(4, 3) - quadratic(4, 3);
   double border = 0;
   for (int row = 0; row < rows; ++row) {
@@ -42,11 +44,11 @@ TEST(MeasuredDensity, IntegratesAQuadraticFieldExactly) {
   EXPECT_NEAR(border, 0, 1e-10);
 }
 
-// An unknown vector excludes its four differences: the paths around it give the same result.
-TEST(MeasuredDensity, GoesRoundVectorsThatAreNotKnown) {
+// An unknown vector is a hole: the density around it is the same.
+TEST(TwinDensity, IgnoresUnknownVectors) {
   std::vector<Vec2d> gradient = gradients();
   gradient[3 * columns + 4] = {std::nan(""), std::nan("")};
-  Image<double> const density = integrated_density(gradient, columns, rows, spacing);
+  Image<double> const density = compute_twin_density(gradient, columns, rows, spacing);
   double const level = density(0, 0) - quadratic(0, 0);
   for (int row = 0; row < rows; ++row) {
     for (int column = 0; column < columns; ++column) {
@@ -54,6 +56,20 @@ TEST(MeasuredDensity, GoesRoundVectorsThatAreNotKnown) {
       EXPECT_NEAR(density(column, row), quadratic(column, row) + level, 1e-8);
     }
   }
+}
+
+// A corner cut off by unknown vectors has no known level: it continues its surroundings smoothly, here a constant.
+TEST(TwinDensity, ContinuesTheLargestRegion) {
+  std::vector<Vec2d> gradient(columns * rows);
+  for (int const cut : {1, columns, columns + 1}) gradient[cut] = {std::nan(""), std::nan("")};
+  gradient[0] = {1e3, 1e3};
+  Image<double> const density = compute_twin_density(gradient, columns, rows, spacing);
+  for (double const value : density) EXPECT_NEAR(value, 0, 1e-9);
+}
+
+TEST(TwinDensity, RequiresAKnownVector) {
+  std::vector<Vec2d> const unknown(columns * rows, Vec2d{std::nan(""), std::nan("")});
+  EXPECT_THROW(compute_twin_density(unknown, columns, rows, spacing), DataError);
 }
 
 }  // namespace

@@ -1,0 +1,231 @@
+"""Density of a BOS measurement with its uncertainty."""
+
+from __future__ import annotations
+
+import json
+import os
+import tempfile
+from collections.abc import Sequence
+from typing import Any, Literal
+
+import numpy as np
+
+from . import _core
+from ._case import Case
+from ._errors import check_choice
+from ._field import Field
+from ._progress import Progress, reporting
+from ._setup import Setup
+
+Box = Sequence[float]
+"""Corners x0, y0, x1, y1 of a box in mm from the optical axis, x to the right and y upwards."""
+
+
+class Density:
+    """Density in the mid-plane of the medium, averaged over its thickness, or of an axisymmetric flow in the plane
+    through its axis.
+
+    Arrays are [rows, columns], read-only, with x to the right and y upwards: row 0 is the lowest. NaN: not determined.
+    """
+
+    def __init__(self, core: _core.Reconstruction):
+        self._core = core
+
+    @property
+    def x_mm(self) -> np.ndarray:
+        """[columns] position to the right of the optical axis [mm]."""
+        return self._core.x_mm()
+
+    @property
+    def y_mm(self) -> np.ndarray:
+        """[rows] position above the optical axis [mm]."""
+        return self._core.y_mm()
+
+    @property
+    def density(self) -> np.ndarray:
+        """Density [kg/m^3]."""
+        return self._core.array("density")
+
+    @property
+    def sigma(self) -> np.ndarray:
+        """Standard uncertainty of the density: vectors, reference density and scale [kg/m^3]."""
+        return self._core.array("sigma")
+
+    @property
+    def sigma_random(self) -> np.ndarray:
+        """Part of the uncertainty that is due to the vectors [kg/m^3]."""
+        return self._core.array("sigma_random")
+
+    @property
+    def gradient(self) -> np.ndarray:
+        """[rows, columns, 2] measured gradient (d/dx, d/dy) [kg/m^4]; axisymmetric: differences of the density."""
+        return self._core.array("gradient")
+
+    @property
+    def region(self) -> np.ndarray:
+        """Connected region of valid vectors, 0: the largest; -1: no valid vector."""
+        return self._core.array("region")
+
+    @property
+    def reference(self) -> np.ndarray:
+        """True at nodes with the reference density."""
+        return self._core.array("reference").astype(bool)
+
+    @property
+    def truth(self) -> np.ndarray | None:
+        """True density of a rendered case [kg/m^3]."""
+        return self._core.array("truth")
+
+    @property
+    def error(self) -> np.ndarray | None:
+        """Density minus true density of a rendered case [kg/m^3]."""
+        return None if self.truth is None else self.density - self.truth
+
+    @property
+    def summary(self) -> dict[str, Any]:
+        """Results of `gladstone reconstruct --json`: ranges, errors against the truth, axis of symmetry."""
+        return json.loads(self._core.summary())
+
+    @property
+    def budget(self) -> dict[str, dict[str, float]]:
+        """Causes of the error by name, with bias and rms [kg/m^3]; empty unless requested by `budget=True`."""
+        return self.summary.get("budget_kg_m3", {})
+
+    @property
+    def warnings(self) -> list[str]:
+        """Warnings about the reconstruction."""
+        return list(self._core.warnings)
+
+    def to_xarray(self):
+        """Returns an xarray.Dataset over (y, x) in mm: density, sigma, sigma_random, region, reference, and for a
+        rendered case truth and error."""
+        import xarray
+
+        def variable(values, units: str, long_name: str):
+            return ("y", "x"), np.array(values), {"units": units, "long_name": long_name}
+
+        variables = {
+            "density": variable(self.density, "kg m-3", "density"),
+            "sigma": variable(self.sigma, "kg m-3", "standard uncertainty of the density"),
+            "sigma_random": variable(self.sigma_random, "kg m-3", "standard uncertainty due to the vectors"),
+            "region": variable(self.region, "1", "connected region of valid vectors, -1: none"),
+            "reference": variable(self.reference, "1", "node with the reference density"),
+        }
+        if self.truth is not None:
+            variables["truth"] = variable(self.truth, "kg m-3", "true density")
+            variables["error"] = variable(self.error, "kg m-3", "density minus true density")
+        return xarray.Dataset(
+            variables,
+            coords={
+                "x": ("x", self.x_mm, {"units": "mm", "long_name": "position to the right of the optical axis"}),
+                "y": ("y", self.y_mm, {"units": "mm", "long_name": "position above the optical axis"}),
+            },
+        )
+
+    def plot(self):
+        """Draws maps of density and uncertainty, and for a rendered case of the error. Returns a matplotlib figure."""
+        from ._plot import plot_density
+
+        return plot_density(self)
+
+    def __str__(self) -> str:
+        return self._core.text()
+
+    def __repr__(self) -> str:
+        rows, columns = self.density.shape
+        return f"<gladstone.Density {columns} x {rows} nodes>"
+
+
+def _reference_text(region: str | Box) -> str:
+    return region if isinstance(region, str) else ",".join(repr(float(corner)) for corner in region)
+
+
+def _reference_texts(reference: str | Box | Sequence[str | Box] | None) -> list[str]:
+    """Returns the regions in the notation of the option --reference."""
+    if reference is None:
+        return []
+    single = isinstance(reference, str) or np.ndim(reference[0]) == 0 and not isinstance(reference[0], str)
+    return [_reference_text(region) for region in ([reference] if single else reference)]
+
+
+def _place(folder: str, setup: Setup | Case | str | os.PathLike) -> str:
+    """Returns the case folder or the setup file of a case or a setup, which is written into `folder`."""
+    if isinstance(setup, Case):
+        if setup._core.folder:
+            return setup._core.folder
+        place = os.path.join(folder, "case")
+        setup.save(place)
+        return place
+    if isinstance(setup, Setup):
+        place = os.path.join(folder, "setup.toml")
+        with open(place, "w", encoding="utf-8") as file:
+            file.write(setup.to_toml())
+        return place
+    return os.fspath(setup)
+
+
+def _vectors(folder: str, source) -> str:
+    """Returns the file of the vectors; those in memory are written into `folder`."""
+    if isinstance(source, (str, os.PathLike)):
+        return os.fspath(source)
+    vectors = os.path.join(folder, "vectors.h5")
+    Field.of(source).save(vectors)
+    return vectors
+
+
+def reconstruct(
+    source,
+    setup: Setup | Case | str | os.PathLike | None = None,
+    *,
+    reference: str | Box | Sequence[str | Box] | None = None,
+    reference_density: float | None = None,
+    reference_sigma: float = 0.0,
+    scale_uncertainty: float = 0.0,
+    method: Literal["wls", "poisson"] = "wls",
+    overlap: float | None = None,
+    deconvolve: float | None = None,
+    axis: str | None = None,
+    abel: Literal["direct", "tikhonov"] = "direct",
+    lambda_: float | None = None,
+    samples: int = 400,
+    budget: bool = False,
+    conventions: str | None = None,
+    device: str = "auto",
+    progress: Progress = False,
+) -> Density:
+    """Reconstructs density from BOS vectors, equal bit by bit to `gladstone reconstruct`.
+
+    source: vectors: a `Field`, the path of a file, or anything that `Field.of` accepts [px]. Without `setup`: the path
+        of a CASE folder with its vectors, or a `Case`, which is correlated with its own settings if it was rendered.
+    setup: a `Setup` of the experiment, the `Case` of the vectors, or the path of a setup or a CASE folder.
+    reference: region of known density: "left", "right", "top", "bottom" ("left:3" for three columns), a box
+        (x0, y0, x1, y1) in mm from the optical axis, or a list of these. Required unless `axis` is given.
+    reference_density, reference_sigma: density there, default the ambient density, and its standard uncertainty
+        [kg/m^3].
+    scale_uncertainty: combined relative standard uncertainty of magnification, Z_D, Gladstone-Dale constant, pixel
+        pitch and thickness.
+    method: "wls" (least squares weighted by the uncertainty of the vectors) or "poisson" (no weights).
+    overlap: overlap of the interrogation windows, from 0 to below 1; default: from the settings of the vectors.
+    deconvolve: largest amplification by the compensation of the averaging over the aperture; None: no compensation.
+    axis: Abel inversion of an axisymmetric flow: "vertical" or "horizontal", whose position is determined, or "x=1.5",
+        "y=-2" in mm.
+    abel, lambda_: inversion "direct" or "tikhonov", and its regularisation parameter, default by cross-validation.
+    samples: number of random samples for the uncertainty of large grids.
+    budget: splits the error of a rendered case into its causes.
+    conventions: conventions of a file of vectors of another program.
+
+    Raises `SetupError` for options and setups that determine no density, and `DataError` for vectors.
+    """
+    check_choice("method", method, ("wls", "poisson"))
+    check_choice("abel", abel, ("direct", "tikhonov"))
+    with tempfile.TemporaryDirectory() as folder, reporting(progress) as report:
+        place = _place(folder, source if setup is None else setup)
+        vectors = "" if setup is None else _vectors(folder, source)
+        if isinstance(source, Case) and not source._core.folder:
+            vectors = _vectors(folder, source.correlate(device=device))
+        core = _core.reconstruct(
+            place, vectors, conventions, _reference_texts(reference), reference_density, reference_sigma,
+            scale_uncertainty, method == "wls", overlap, deconvolve, axis, abel == "tikhonov", lambda_, samples, budget,
+            device, report,
+        )  # fmt: skip
+    return Density(core)
