@@ -46,7 +46,7 @@ constexpr std::array commands{
             "gladstone reconstruct out/case --reference left -o out/density.h5", attach_reconstruct},
     Command{"trace", "Trace given rays and report where and why they end",
             "gladstone trace table1.toml --rays rays.csv -o out.csv", attach_trace},
-    Command{"info", "Describe a field, an image, a lens, a sphere or a setup's particles",
+    Command{"info", "Describe a setup, its particles, a field, an image, a lens or a sphere",
             "gladstone info field slice.h5", attach_info},
     Command{"design", "Predict what a set-up measures, or recommend one that meets requirements",
             "gladstone design table1.toml --figures out/design", attach_design},
