@@ -38,6 +38,8 @@ constexpr std::array commands{
             attach_keys},
     Command{"render", "Render the image pair of a setup, or the planes of a calibration, into a case folder",
             "gladstone render table1.toml -o out/case", attach_render},
+    Command{"target", "Write the dot pattern of a setup at true scale, for printing",
+            "gladstone target table1.toml -o pattern.pdf", attach_target},
     Command{"correlate", "Measure the displacement between two frames, or in a sequence of frames",
             "gladstone correlate out/case", attach_correlate},
     Command{"compare", "Compare measured vectors with ray truth and theory", "gladstone compare out/case",
