@@ -24,6 +24,10 @@ StudyView::StudyView(std::string const& run) : table(read_study_table(run)) {
     against = name;
     if (knows(measure)) break;
   }
+  if (!knows(main)) {
+    throw DataError(run, "contains no measured case, only images (sweep run --pairs-only); run gladstone sweep run " +
+                             shell_word(run) + " first");
+  }
   for (std::string const& measure : table.measures) {
     std::string_view constexpr head = "budget.terms.", tail = ".rms_px";
     if (measure.starts_with(head) && measure.ends_with(tail) && knows(measure)) {

@@ -169,6 +169,33 @@ TEST_F(Sweeps, ImagesOfAFinishedCaseAreMadeWhenTheyAreWanted) {
   EXPECT_EQ(json_of({"sweep", "run", "run", "--case", "7", "--keep-images"})["computed"], 0);
 }
 
+// The images are those of a complete run, and a later run measures them; a complete case loses none of its numbers.
+TEST_F(Sweeps, PairsOnlyRendersAndALaterRunMeasures) {
+  plan("run");
+  auto const first = json_of({"sweep", "run", "run", "--case", "7", "--pairs-only"});
+  EXPECT_EQ(first["computed"], 1);
+  EXPECT_EQ(first["pairs_only"], 1);
+  EXPECT_TRUE(std::filesystem::exists(in("run/cases/7/flow.tif")));
+  EXPECT_FALSE(std::filesystem::exists(in("run/cases/7/vectors.h5")));
+  EXPECT_FALSE(std::filesystem::exists(in("run/cases/7/errors.json")));
+  std::string const image = read("run/cases/7/flow.tif");
+  EXPECT_EQ(json_of({"sweep", "run", "run", "--case", "7", "--pairs-only"})["computed"], 0);
+  EXPECT_THAT(succeed({"sweep", "status", "run"}), HasSubstr("have images only"));
+  Outcome const report = gladstone({"report", "run"});
+  EXPECT_EQ(report.exit_code, 2);
+  EXPECT_THAT(report.err, HasSubstr("contains no measured case"));
+  auto const then = json_of({"sweep", "run", "run", "--case", "7", "--keep-images"});
+  EXPECT_EQ(then["computed"], 1);
+  EXPECT_EQ(then["pairs_only"], 0);
+  EXPECT_TRUE(read("run/cases/7/flow.tif") == image);
+  auto const measures = nlohmann::json::parse(read("run/cases/7.json"))["measures"];
+  EXPECT_TRUE(measures.contains("ray_truth.rms_px"));
+  std::filesystem::remove_all(in("run/cases/7"));
+  EXPECT_EQ(json_of({"sweep", "run", "run", "--case", "7", "--pairs-only"})["computed"], 1);
+  EXPECT_EQ(nlohmann::json::parse(read("run/cases/7.json"))["measures"], measures);
+  EXPECT_TRUE(std::filesystem::exists(in("run/cases/7/flow.tif")));
+}
+
 TEST_F(Sweeps, ResultsThatWereRemovedWithTheirFolderAreComputedAgain) {
   plan("run");
   std::filesystem::remove_all(in("run/cases"));
