@@ -9,6 +9,7 @@
 #include <new>
 #include <nlohmann/json.hpp>
 #include <span>
+#include <string_view>
 
 #include "analysis/vectors/vector_file.h"
 #include "render/base/contracts.h"
@@ -23,6 +24,7 @@
 #include "studies/case/log_silencer.h"
 #include "studies/case/version_text.h"
 #include "studies/compare/correlate.h"
+#include "studies/compare/reconstruct.h"
 #include "studies/compare/thinned_vectors.h"
 #include "studies/compare/tracked_dots.h"
 #include "studies/sweep/case_keys.h"
@@ -79,6 +81,24 @@ bool wants_memory(std::exception const& error) {
 bool stops_the_run(std::exception const& error) {
   return dynamic_cast<OutputError const*>(&error) || dynamic_cast<DeviceError const*>(&error) ||
          dynamic_cast<Interrupted const*>(&error);
+}
+
+double find_value(CaseResult const& result, std::string_view name) {
+  for (auto const& [known, value] : result.measures) {
+    if (known == name) return value;
+  }
+  return not_a_number;
+}
+
+/// Adds the error over the signal and, for BOS with a camera on the Z axis, the error of the density gradient averaged
+/// over the thickness, from measures that the result contains.
+void add_relative_errors(Setup const& setup, CaseResult& result) {
+  double const error = find_value(result, setup.piv ? "flow.rms_px" : "eq9.rms_px");
+  double const signal = find_value(result, "signal_px");
+  result.measures.emplace_back("error_over_signal", signal > 0 ? error / signal : not_a_number);
+  bool const on_axis = !setup.piv && !setup.pose && !setup.camera.tilted() && !setup.lenslets;
+  double const sensitivity = on_axis ? make_projection_optics(setup).sensitivity() * setup.medium.thickness : 0;
+  result.measures.emplace_back("gradient_error_kg_m4", sensitivity > 0 ? error / sensitivity : not_a_number);
 }
 
 /// Adds the measures and warnings of a rendering to a result.
@@ -279,6 +299,7 @@ void CaseRunner::compute(ManifestCase const& one, std::string const& keep, CaseO
   std::vector<Vec2d> const still(places.size());
   result.measures.emplace_back("signal_px",
                                summarize_errors(comparison.point.displacement_px, still, comparison.mask).rms_px);
+  add_relative_errors(prepared.scene.setup, result);
   result.measures.emplace_back("blur_px",
                                summarize_errors(comparison.point.displacement_std_px, still, comparison.mask).rms_px);
   add_rendering(prepared, rendered, frames, result);

@@ -119,8 +119,9 @@ TEST_F(Sweeps, FromStudyToTable) {
   for (std::string const name :
        {"ray_truth.rms_px", "eq9.bias_u_px", "eq9_cone.p95_px", "window_truth.gross_fraction",
         "budget.terms.noise.rms_px", "budget.total.rms_px", "budget.peak_locking_px", "magnification", "rays_per_dot",
-        "step_mm", "exposure", "caustic_fraction", "warnings"})
+        "step_mm", "exposure", "caustic_fraction", "warnings", "error_over_signal", "gradient_error_kg_m4"})
     EXPECT_THAT(header, HasSubstr(',' + name + ','));
+  EXPECT_EQ(collected["ranking"].size(), 3u);
   EXPECT_TRUE(first.starts_with("8,\"[32, 16]\",0,3,ok,")) << first;
   std::string const all = read("run/study.csv");
   EXPECT_EQ(std::count(all.begin(), all.end(), '\n'), 13);
@@ -152,6 +153,17 @@ TEST_F(Sweeps, ACaseIsWhatTheSingleCommandsMake) {
   EXPECT_EQ(read("by_hand/errors.json"), read("run/cases/7/errors.json"));
   EXPECT_EQ(nlohmann::json::parse(read("run/cases/7.json"))["measures"]["ray_truth.rms_px"],
             nlohmann::json::parse(read("by_hand/errors.json"))["ray_truth"]["rms_px"]);
+}
+
+// M Z_D K L_z / (n0 p) px per kg/m^4 for M = 105/895, Z_D = 250 mm, K = 2.26e-4 m^3/kg, L_z = 10 mm and p = 10 um.
+TEST_F(Sweeps, ErrorsAreAlsoRelativeToTheSignalAndOfTheGradient) {
+  plan("run");
+  succeed({"sweep", "run", "run", "--quiet", "--case", "7"});
+  auto const measures = nlohmann::json::parse(read("run/cases/7.json"))["measures"];
+  double const error = measures["eq9.rms_px"], signal = measures["signal_px"];
+  double const sensitivity = 105.0 / 895 * 0.25 * 2.26e-4 * 0.01 / (1 + 2.26e-4 * 1.225) / 1e-5;
+  EXPECT_NEAR(measures["error_over_signal"], error / signal, 1e-12 * error / signal);
+  EXPECT_NEAR(measures["gradient_error_kg_m4"], error / sensitivity, 1e-9 * error / sensitivity);
 }
 
 // The result computed with the images is identical to the previous one, except for times.
