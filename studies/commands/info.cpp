@@ -38,7 +38,9 @@ CommandBody attach_info(CLI::App& app, GlobalOptions const& options) {
   app.add_option("--glass", arguments->lens.glasses, "Additional glass catalogue (AGF) for info lens");
   app.add_option("--wavelength-nm", arguments->lens.wavelength_nm, "Wavelength for info lens")
       ->check(CLI::Range(100.0, 20000.0));
-  app.add_option("--figure", arguments->figure, "Figure of info lens, mie or setup (.png, .svg or .pdf); of a setup, its layout");
+  app.add_option(
+      "--figure", arguments->figure,
+      "Figure of info field (planes through its middle), lens, mie or setup (its layout): .png, .svg or .pdf");
   app.add_option("--x", arguments->mie.x, "Size parameter pi d n / lambda of the sphere, for info mie");
   app.add_option("--m", arguments->mie.m,
                  "Refractive index of the sphere relative to its surroundings, for info mie: RE or RE,IM");
@@ -50,6 +52,9 @@ CommandBody attach_info(CLI::App& app, GlobalOptions const& options) {
     }
     if (!arguments->mie.x.empty() || !arguments->mie.m.empty()) {
       throw DataError("info " + arguments->kind, "has no --x and --m (they belong to info mie); remove them");
+    }
+    if (!arguments->figure.empty() && (arguments->kind == "image" || arguments->kind == "particles")) {
+      throw DataError("info " + arguments->kind, "draws no figure; remove --figure");
     }
     if (arguments->file.empty()) throw DataError("info " + arguments->kind, "requires a file; add its name");
     if (arguments->kind == "lens") {
@@ -65,7 +70,8 @@ CommandBody attach_info(CLI::App& app, GlobalOptions const& options) {
       return print(options, describe_setup(setup, arguments->file, arguments->figure));
     }
     if (arguments->kind == "image") return print(options, describe_image(arguments->file));
-    return print(options, describe_field(arguments->file, arguments->dataset, arguments->axes, arguments->setup));
+    return print(options, describe_field(arguments->file, arguments->dataset, arguments->axes, arguments->setup,
+                                         arguments->figure));
   };
 }
 
