@@ -21,22 +21,12 @@ namespace {
 using unit::mm;
 
 /// Rows of the BOS sheet that an overview contains.
-constexpr std::array bos_keys{"magnification",
-                              "magnification_at_medium",
-                              "field_of_view_mm",
-                              "field_of_view_height_mm",
-                              "field_of_view_at_dots_mm",
-                              "cone_diameter_mm",
-                              "diffraction_diameter_px",
-                              "dot_diameter_px",
-                              "depth_of_field_mm",
-                              "sensitivity_px_per_kg_m4",
-                              "displacement_px",
-                              "resolution_mm",
-                              "dots_per_window",
-                              "peak_electrons",
-                              "random_error_px",
-                              "gradient_min_kg_m4"};
+constexpr std::array bos_keys{"magnification",     "gladstone_dale_m3_kg",     "magnification_at_medium",
+                              "field_of_view_mm",  "field_of_view_height_mm",  "field_of_view_at_dots_mm",
+                              "cone_diameter_mm",  "diffraction_diameter_px",  "dot_diameter_px",
+                              "depth_of_field_mm", "sensitivity_px_per_kg_m4", "displacement_px",
+                              "resolution_mm",     "dots_per_window",          "peak_electrons",
+                              "random_error_px",   "gradient_min_kg_m4"};
 /// Rows that depend on a number of dots per window, which only targets of kind "dots" have.
 constexpr std::array pattern_keys{"dots_per_window", "random_error_px", "gradient_min_kg_m4"};
 /// Rows about the image of a dot, which an image target does not have.

@@ -99,6 +99,16 @@ TEST_F(InfoSetup, DrawsTheLayout) {
   }
 }
 
+// Pure carbon dioxide at 532 nm: Bideau-Mehu et al. (1973), 2.281e-4 m^3/kg.
+TEST_F(InfoSetup, HasTheConstantOfAGas) {
+  write("gas.toml", with(small_setup, "[medium.field]", "[medium.gas]\ncarbon_dioxide = 1.0\n\n[medium.field]"));
+  EXPECT_NEAR(overview("gas.toml")["gladstone_dale_m3_kg"], 2.281e-4, 1e-7);
+  render("case", {}, "gas.toml");
+  EXPECT_EQ(nlohmann::json::parse(read("case/summary.json"))["gladstone_dale"],
+            overview("gas.toml")["gladstone_dale_m3_kg"]);
+  EXPECT_EQ(overview("case/setup.toml")["gladstone_dale_m3_kg"], overview("gas.toml")["gladstone_dale_m3_kg"]);
+}
+
 TEST_F(InfoSetup, RefusesBadInput) {
   write("bad.toml", with(small_setup, "f_number = 11.0", "f_number = -1"));
   expect_refused({"info", "setup", "bad.toml"}, 2, {"bad.toml", "f_number"});
