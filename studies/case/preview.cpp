@@ -83,6 +83,14 @@ Image<std::uint16_t> record_part(CasePreview const& preview, Detector const& det
   return part;
 }
 
+/// Returns the exposure of both frames, or of the only frame of a calibration [e].
+double preview_exposure(Scene const& scene, LightPair const& light) {
+  CameraSetup const& camera = scene.setup.camera;
+  if (!scene.setup.calibration()) return choose_exposure(scene, HostLight(light));
+  double const brightest = *std::max_element(light.reference.begin(), light.reference.end());
+  return camera.exposure_e ? *camera.exposure_e : Detector::auto_exposure(camera, brightest);
+}
+
 }  // namespace
 
 CasePreview render_preview(CaseSetup const& loaded, Renderer& renderer) {
@@ -116,7 +124,7 @@ CasePreview render_preview(CaseSetup const& loaded, Renderer& renderer) {
   preview.rays = scene.rays_per_dot;
   Rendering const rendering = render_planned(scene, renderer, RenderImages::yes, RenderTheory::no);
   preview.method = rendering.method;
-  Detector const detector(setup.camera, choose_exposure(scene, HostLight(rendering.light)));
+  Detector const detector(setup.camera, preview_exposure(scene, rendering.light));
   preview.frames.push_back(record_part(preview, detector, rendering.light.reference, RandomStream::noise_reference));
   if (!planes) {
     preview.frames.push_back(record_part(preview, detector, rendering.light.flow, RandomStream::noise_flow));

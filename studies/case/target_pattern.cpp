@@ -167,7 +167,7 @@ std::string target_pdf(TargetPattern const& pattern) {
           "/Dot 5 0 R >> /Font << /Letters 6 0 R >> >> >>",
           size.x * points, size.y * points),
       pdf_stream("", pdf_content(places)),
-      pdf_stream(fmt::format("/Type /XObject /Subtype /Form /BBox [-{0:.6f} -{0:.6f} {0:.6f} {0:.6f}] ", radius),
+      pdf_stream(fmt::format("/Type /XObject /Subtype /Form /BBox [-{0:.6f} -{0:.6f} {0:.6f} {0:.6f}] ", 1.01 * radius),
                  pdf_circle(radius)),
       "<< /Type /Font /Subtype /Type1 /BaseFont /Helvetica >>"};
   std::string file = "%PDF-1.4\n", table;
