@@ -55,6 +55,14 @@ def particles(setup) -> dict[str, Any]:
     return json.loads(_core.info_particles(as_setup(setup)._core))
 
 
+def setup(given, *, figure: str | os.PathLike | None = None) -> dict[str, Any]:
+    """Describes what follows from a setup before rendering: magnification, view, blur, dots in view, time and memory.
+
+    figure: path of a drawing of the layout (.png, .svg, .pdf).
+    """
+    return json.loads(_core.info_setup(as_setup(given)._core, os.fspath(figure or "")))
+
+
 class Mie:
     """Light scattered by a homogeneous sphere in a plane wave; see `mie`."""
 

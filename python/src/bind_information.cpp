@@ -19,6 +19,7 @@
 #include "studies/commands/info_lens.h"
 #include "studies/commands/info_mie.h"
 #include "studies/commands/info_particles.h"
+#include "studies/commands/info_setup.h"
 
 namespace gladstone::python {
 namespace {
@@ -93,6 +94,12 @@ void bind_information(nb::module_& module) {
       "info_particles",
       [](SetupText const& setup) { return run([&] { return describe_particles(setup.document(), setup.name).json; }); },
       nb::arg("setup"));
+  module.def(
+      "info_setup",
+      [](SetupText const& setup, std::string const& figure) {
+        return run([&] { return describe_setup(setup.document(), setup.name, figure).json; });
+      },
+      nb::arg("setup"), nb::arg("figure"));
   module.def(
       "info_mie",
       [](std::string const& x, std::string const& m, std::string const& figure) {

@@ -53,6 +53,15 @@ def test_image_in_memory_is_described_as_its_file(case, program, written_case):
         assert mine[name] == theirs[name], name
 
 
+def test_setup_is_described(bos, program, tmp_path):
+    bos.save(tmp_path / "setup.toml")
+    theirs = program("info", "setup", tmp_path / "setup.toml")
+    mine = gs.info.setup(bos)
+    assert mine["magnification"] == theirs["magnification"]
+    assert mine["dots"] == theirs["dots"]
+    assert mine["render"]["memory"] == theirs["render"]["memory"]
+
+
 def test_particles_are_described(piv, program, tmp_path):
     piv.save(tmp_path / "piv.toml")
     theirs = program("info", "particles", tmp_path / "piv.toml")

@@ -269,7 +269,7 @@ RayBudget determine_ray_budget(FocusedDots const& dots) {
   if (auto const given = configured_ray_budget(dots.scene().setup)) return *given;
   Scene searched = dots.scene();  // copy in which fineness and number of rays are varied
   FocusedDots const here = focused_dots(searched).value();
-  searched.rays_per_dot = 32;
+  searched.rays_per_dot = initial_table_rays;
   searched.fineness = 1;
   RayBudget plan;
   double last = std::numeric_limits<double>::infinity();

@@ -21,6 +21,9 @@ DotPattern measured_places(Scene const& scene);
 /// table does not cover are ignored.
 RayBudget measure_table_error(FocusedDots const& dots);
 
+/// Number of rays per dot with which determine_ray_budget() starts.
+inline constexpr std::uint64_t initial_table_rays = 32;
+
 /// Plans the number of rays per dot that correct the table, and the fineness of table and rules.
 /// A number given in the setup is used unchanged. Otherwise the plan starts with 32 rays. If the errors exceed 1e-3 px
 /// rms in the truth or half a grey level in images, table and rules are refined by a factor of two; then 128 and 512

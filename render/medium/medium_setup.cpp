@@ -70,16 +70,27 @@ FieldSetup read_field(SetupTable table) {
   return field;
 }
 
-}  // namespace
-
-MediumSetup read_medium_setup(SetupTable table) {
-  MediumSetup setup;
-  setup.wavelength = table.quantity("wavelength_nm", setup.wavelength, unit::nanometre, {230.0, 1690.0, false, false});
+/// Reads the Gladstone-Dale constant, or the mixture of gases that it follows from.
+void read_gladstone_dale(SetupTable& table, MediumSetup& setup) {
+  if (table.table("gas").present()) {
+    table.refuse("gladstone_dale", "conflicts with medium.gas (both set the constant); remove one of them");
+    setup.gas = read_gas_mixture(table, setup.wavelength);
+    setup.gladstone_dale = setup.gas->gladstone_dale(setup.wavelength);
+    return;
+  }
   auto const constant =
       table.number_or_word("gladstone_dale", {setup.gladstone_dale, ""}, {"ciddor", "merzkirch"}, Range::positive(1.0));
   if (constant.number) setup.gladstone_dale = *constant.number;
   if (constant.word == "ciddor") setup.gladstone_dale = gladstone_dale_ciddor(setup.wavelength);
   if (constant.word == "merzkirch") setup.gladstone_dale = gladstone_dale_merzkirch(setup.wavelength);
+}
+
+}  // namespace
+
+MediumSetup read_medium_setup(SetupTable table) {
+  MediumSetup setup;
+  setup.wavelength = table.quantity("wavelength_nm", setup.wavelength, unit::nanometre, {230.0, 1690.0, false, false});
+  read_gladstone_dale(table, setup);
   setup.ambient_density = table.number("ambient_density_kg_m3", setup.ambient_density, Range::at_least(0.0, 1e4));
   auto const thickness_mm = table.number_or_auto("thickness_mm", Range::positive(1e6));
   setup.interpolation = table.choice(

@@ -7,6 +7,7 @@
 
 #include "render/base/vec.h"
 #include "render/medium/closed_forms.h"
+#include "render/medium/gas_mixture.h"
 #include "render/medium/trace_medium.h"
 #include "render/setup/setup_table.h"
 
@@ -52,6 +53,7 @@ struct FieldSetup {
 struct MediumSetup {
   double wavelength = 532e-9;       ///< vacuum wavelength [m]
   double gladstone_dale = 2.26e-4;  ///< K [m^3/kg]
+  std::optional<GasMixture> gas;    ///< mixture that gladstone_dale follows from; empty: given directly
   double ambient_density = 1.225;   ///< [kg/m^3]
   double thickness = 0.01;          ///< depth along Z [m]; of a volume from a file, set when the setup is resolved
   bool automatic_thickness = true;  ///< thickness is determined by automatic_thickness_mm()

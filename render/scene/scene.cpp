@@ -59,37 +59,37 @@ void refuse_negative_density(MediumSetup const& setup, BuiltMedium const& medium
                   source->name(), count, grid.size(), first, lowest));
 }
 
-/// Adds the dots of a target to a scene.
-void add_dots(Scene& scene) {
-  Setup const& setup = scene.setup;
+}  // namespace
+
+DotPattern build_target(Setup const& setup) {
+  DotPattern dots;
   double const diameter = setup.target.kind == TargetKind::image ? 0.0 : setup.dot_diameter();
   switch (setup.target.kind) {
     case TargetKind::dots:
       if (setup.target.arrangement == DotArrangement::random) {
-        scene.dots.centre = random_dots(setup.target_extent(), static_cast<std::size_t>(setup.dot_count()), diameter,
+        dots.centre = random_dots(setup.target_extent(), static_cast<std::size_t>(setup.dot_count()), diameter,
                                         setup.target.seed);
       } else {
         Vec2d const extent = setup.target_extent();
-        scene.dots.centre = regular_dots(extent, setup.dot_count() / (extent.x * extent.y), diameter);
+        dots.centre = regular_dots(extent, setup.dot_count() / (extent.x * extent.y), diameter);
       }
       break;
     case TargetKind::lattice:
-      scene.dots.centre = Lattice(setup.target).dots();
+      dots.centre = Lattice(setup.target).dots();
       break;
     case TargetKind::points:
-      scene.dots.centre = dots_from_csv(setup.target.file, setup.max_off_axis_distance());
+      dots.centre = dots_from_csv(setup.target.file, setup.max_off_axis_distance());
       break;
     case TargetKind::image:
-      scene.dots = image_target(setup.target.file, setup.target_extent());
+      dots = image_target(setup.target.file, setup.target_extent());
       break;
   }
-  if (setup.target.kind != TargetKind::image) scene.dots.half_size = diameter / 2;
+  if (setup.target.kind != TargetKind::image) dots.half_size = diameter / 2;
   if (Vec2d const middle = setup.target_centre(); setup.target.kind != TargetKind::points && !(middle == Vec2d{})) {
-    for (Vec2d& centre : scene.dots.centre) centre = centre + middle;
+    for (Vec2d& centre : dots.centre) centre = centre + middle;
   }
+  return dots;
 }
-
-}  // namespace
 
 double Scene::steps_across() const {
   Bounds<double> const box = std::visit([](auto const& seen) { return seen.bounds(); }, medium.view);
@@ -158,7 +158,7 @@ Vec2d Scene::to_target(Vec2d pixel) const {
   return {(pixel.x - 0.5 * (setup.camera.columns - 1)) * scale, (0.5 * (setup.camera.rows - 1) - pixel.y) * scale};
 }
 
-void check_memory(Setup const& setup, FieldMemory field_memory, std::vector<MemoryRequirement> const& more) {
+std::vector<MemoryRequirement> memory_requirements(Setup const& setup, FieldMemory field_memory) {
   double const pixels = static_cast<double>(setup.camera.columns) * setup.camera.rows;
   std::vector<MemoryRequirement> needs{
       {"camera.pixels", "images", pixels * 2 * (sizeof(std::int64_t) + sizeof(double) + sizeof(std::uint16_t))},
@@ -174,6 +174,11 @@ void check_memory(Setup const& setup, FieldMemory field_memory, std::vector<Memo
   if (setup.piv && setup.piv->flow.file) {
     needs.push_back({"flow.file", "velocity", velocity_bytes(*setup.piv->flow.file)});
   }
+  return needs;
+}
+
+void check_memory(Setup const& setup, FieldMemory field_memory, std::vector<MemoryRequirement> const& more) {
+  std::vector<MemoryRequirement> needs = memory_requirements(setup, field_memory);
   needs.insert(needs.end(), more.begin(), more.end());
   double needed = 0;
   std::string sizes;
@@ -211,7 +216,7 @@ Scene build_scene(Setup const& setup, BuiltMedium const* medium) {
   if (setup.piv) {
     add_particles(scene);
   } else {
-    add_dots(scene);
+    scene.dots = build_target(setup);
   }
 
   scene.medium = medium ? *medium : build_checked_medium(setup.medium);

@@ -90,12 +90,21 @@ struct MemoryRequirement {
   double bytes;
 };
 
+/// Returns the memory that a rendering requires, before any of it is allocated. Opens the files of fields and reads
+/// their headers.
+/// @param field  whether the field must still be allocated
+std::vector<MemoryRequirement> memory_requirements(Setup const& setup, FieldMemory field = FieldMemory::needed);
+
 /// Checks that a rendering fits into the available memory, before any of it is allocated.
 /// @param field  whether the field must still be allocated
 /// @param more  requirements of a renderer beyond images, field and dots
 /// @throws DataError with the sizes
 void check_memory(Setup const& setup, FieldMemory field = FieldMemory::needed,
                   std::vector<MemoryRequirement> const& more = {});
+
+/// Returns the dots of a target of BOS or of one plane of a calibration, or the pixels of an image target.
+/// @throws DataError if the dots cannot be placed, or if the target's file is invalid
+DotPattern build_target(Setup const& setup);
 
 /// Builds the scene: camera, dots or particles, and medium. Step, margin and ray numbers must be planned afterwards
 /// (ray_budget.h).

@@ -47,6 +47,7 @@ struct Command {
 CommandBody attach_init(CLI::App& app, GlobalOptions const& options);
 CommandBody attach_keys(CLI::App& app, GlobalOptions const& options);
 CommandBody attach_render(CLI::App& app, GlobalOptions const& options);
+CommandBody attach_target(CLI::App& app, GlobalOptions const& options);
 CommandBody attach_correlate(CLI::App& app, GlobalOptions const& options);
 CommandBody attach_compare(CLI::App& app, GlobalOptions const& options);
 CommandBody attach_reconstruct(CLI::App& app, GlobalOptions const& options);

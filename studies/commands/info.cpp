@@ -8,6 +8,7 @@
 #include "studies/commands/info_lens.h"
 #include "studies/commands/info_mie.h"
 #include "studies/commands/info_particles.h"
+#include "studies/commands/info_setup.h"
 
 namespace gladstone {
 namespace {
@@ -26,10 +27,10 @@ CommandBody attach_info(CLI::App& app, GlobalOptions const& options) {
     MieQuestion mie;
   };
   auto arguments = std::make_shared<Arguments>();
-  app.add_option("kind", arguments->kind, "field, image, lens, mie or particles")
+  app.add_option("kind", arguments->kind, "field, image, lens, mie, particles or setup")
       ->required()
-      ->check(one_of({"field", "image", "lens", "mie", "particles"}));
-  app.add_option("file", arguments->file, "Input file; for particles a setup, for mie none");
+      ->check(one_of({"field", "image", "lens", "mie", "particles", "setup"}));
+  app.add_option("file", arguments->file, "Input file; for particles and setup a setup, for mie none");
   app.add_option("--dataset", arguments->dataset, "Dataset inside the file");
   app.add_option("--axes", arguments->axes,
                  "World axes in the order of the field's file, the slowest first (\"zxy\"), as medium.field.axes");
@@ -37,7 +38,9 @@ CommandBody attach_info(CLI::App& app, GlobalOptions const& options) {
   app.add_option("--glass", arguments->lens.glasses, "Additional glass catalogue (AGF) for info lens");
   app.add_option("--wavelength-nm", arguments->lens.wavelength_nm, "Wavelength for info lens")
       ->check(CLI::Range(100.0, 20000.0));
-  app.add_option("--figure", arguments->figure, "Figure of info lens or info mie (.png or .svg)");
+  app.add_option(
+      "--figure", arguments->figure,
+      "Figure of info field (planes through its middle), lens, mie or setup (its layout): .png, .svg or .pdf");
   app.add_option("--x", arguments->mie.x, "Size parameter pi d n / lambda of the sphere, for info mie");
   app.add_option("--m", arguments->mie.m,
                  "Refractive index of the sphere relative to its surroundings, for info mie: RE or RE,IM");
@@ -50,6 +53,9 @@ CommandBody attach_info(CLI::App& app, GlobalOptions const& options) {
     if (!arguments->mie.x.empty() || !arguments->mie.m.empty()) {
       throw DataError("info " + arguments->kind, "has no --x and --m (they belong to info mie); remove them");
     }
+    if (!arguments->figure.empty() && (arguments->kind == "image" || arguments->kind == "particles")) {
+      throw DataError("info " + arguments->kind, "draws no figure; remove --figure");
+    }
     if (arguments->file.empty()) throw DataError("info " + arguments->kind, "requires a file; add its name");
     if (arguments->kind == "lens") {
       arguments->lens.file = arguments->file;
@@ -59,8 +65,13 @@ CommandBody attach_info(CLI::App& app, GlobalOptions const& options) {
     if (arguments->kind == "particles") {
       return print(options, describe_particles(SetupDocument::from_file(arguments->file), arguments->file));
     }
+    if (arguments->kind == "setup") {
+      SetupDocument const setup = SetupDocument::from_file(arguments->file);
+      return print(options, describe_setup(setup, arguments->file, arguments->figure));
+    }
     if (arguments->kind == "image") return print(options, describe_image(arguments->file));
-    return print(options, describe_field(arguments->file, arguments->dataset, arguments->axes, arguments->setup));
+    return print(options, describe_field(arguments->file, arguments->dataset, arguments->axes, arguments->setup,
+                                         arguments->figure));
   };
 }
 

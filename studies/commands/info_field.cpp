@@ -11,6 +11,8 @@
 #include "studies/case/json_text.h"
 #include "studies/commands/field_place.h"
 #include "studies/commands/field_statistics.h"
+#include "studies/figures/field_figure.h"
+#include "studies/figures/gnuplot.h"
 
 namespace gladstone {
 namespace {
@@ -32,10 +34,23 @@ std::string steepest_text(Vec3d const& steepest, FieldPlace const& place) {
   return "steepest difference between neighbours " + text + (any ? " per unit length" : "") + " along x, y, z";
 }
 
+/// Draws the planes through the middle of a field. @return false without gnuplot
+bool draw_field(std::string const& path, FieldSource& source, FieldPlace const& place) {
+  bool known = true;
+  for (int axis = 0; axis < 3; ++axis) known = known && std::isfinite(place.extent_mm[axis]);
+  try {
+    write_field_figure(path, source, known);
+    return true;
+  } catch (GnuplotMissing const& missing) {
+    spdlog::warn("{}", missing.what());
+    return false;
+  }
+}
+
 }  // namespace
 
 Description describe_field(std::string const& path, std::string const& dataset, std::string const& axes,
-                           std::string const& setup) {
+                           std::string const& setup, std::string const& figure) {
   auto const source = open_field(path, dataset, 1, axes);
   RegularGrid const& grid = source->grid();
   FieldStatistics const seen = field_statistics(*source);
@@ -48,7 +63,7 @@ Description describe_field(std::string const& path, std::string const& dataset, 
   std::vector<std::string> const notes = source->notes();
   for (std::string const& note : notes) spdlog::warn("{}: {}", path, note);
   if (!place.warning.empty()) spdlog::warn("{}: {}", path, place.warning);
-  nlohmann::json const json{
+  nlohmann::json json{
       {"dataset", source->name()},
       {"nodes", {grid.nodes[0], grid.nodes[1], grid.nodes[2]}},
       {"spacing", json_of(place.spacing)},
@@ -61,6 +76,7 @@ Description describe_field(std::string const& path, std::string const& dataset, 
       {"units", place.units},
       {"extent_mm", json_of(place.extent_mm)},
       {"coverage", place.coverage}};
+  if (!figure.empty() && draw_field(figure, *source, place)) json["figure"] = figure;
   return {json_text(json),
           fmt::format("{}: {} x {} x {} nodes, {}, values {:.6g} to {:.6g}, {}; {}; {}", source->name(), grid.nodes[0],
                       grid.nodes[1], grid.nodes[2], place.spacing_text, seen.minimum, seen.maximum,

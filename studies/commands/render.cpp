@@ -1,8 +1,17 @@
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
+#include <nlohmann/json.hpp>
 
+#include "render/base/units.h"
+#include "render/files/image_file.h"
+#include "render/files/output_file.h"
+#include "render/method.h"
+#include "studies/case/cameras.h"
 #include "studies/case/json_text.h"
+#include "studies/case/preview.h"
 #include "studies/case/render_setup.h"
 #include "studies/commands/command.h"
 
@@ -36,26 +45,95 @@ std::string in_words(RenderedCamera const& camera) {
   return text + fmt::format("{:.2f} s on {}", camera.seconds, camera.device);
 }
 
+struct RenderArguments {
+  std::string setup, output;
+  std::vector<std::string> overrides;
+  bool preview = false;
+};
+
+/// Describes a preview and what it leaves out.
+std::string preview_text(CasePreview const& preview, CameraSetup const& camera, std::string const& path) {
+  std::string text =
+      fmt::format("{}: {} x {} of {} x {} px, from column {} and row {} on, {}; {} {} in {:.2f} s\n", path,
+                  preview.columns, preview.rows, camera.columns, camera.rows, preview.first_column, preview.first_row,
+                  preview.at_gradient ? "about the strongest density gradient" : "about the image centre",
+                  preview.sources, "dots or particles", preview.seconds);
+  text += preview.frames.size() == 1
+              ? fmt::format("  the plane Z = {:.6g} mm only\n", preview.plane_z / unit::millimetre)
+              : std::string("  left: reference image or frame A, right: measurement image or frame B\n");
+  text += fmt::format(
+      "  left out: the rest of the image, truth and errors, other files of the case; {} rays per source", preview.rays);
+  if (!camera.exposure_e) text += "; the exposure \"auto\" is that of this part";
+  return text + '\n';
+}
+
+nlohmann::ordered_json preview_json(CasePreview const& preview, std::string const& path) {
+  return {{"output", path},
+          {"first_px", {preview.first_column, preview.first_row}},
+          {"pixels", {preview.columns, preview.rows}},
+          {"at_gradient", preview.at_gradient},
+          {"frames", preview.frames.size()},
+          {"sources", preview.sources},
+          {"rays_per_source", preview.rays},
+          {"method", to_string(preview.method)},
+          {"seconds", preview.seconds}};
+}
+
+/// Implements --preview: renders a part of the images of every camera into a PNG.
+int render_previews(RenderArguments const& arguments, GlobalOptions const& options) {
+  SetupDocument document = SetupDocument::from_file(arguments.setup);
+  for (std::string const& assignment : arguments.overrides) document.override_key(assignment);
+  std::filesystem::path const output = arguments.output.empty() ? "preview.png" : arguments.output;
+  if (output.extension() != ".png") {
+    throw OutputError(output.string(), "is not the name of a PNG, which --preview writes; use .png");
+  }
+  auto const renderer = options.open_device().renderer;
+  std::string text;
+  nlohmann::ordered_json cameras = nlohmann::ordered_json::object(), only;
+  for (CameraCase& camera : camera_cases(document)) {
+    CaseSetup const loaded = load_case_setup(std::move(camera.document));
+    for (std::string const& warning : loaded.warnings) spdlog::warn("{}", warning);
+    std::filesystem::path path = output;
+    if (!camera.name.empty()) path.replace_filename(output.stem().string() + '_' + camera.name + ".png");
+    OutputFile file(path.string(), "PNG");
+    CasePreview const preview = render_preview(loaded, *renderer);
+    std::string const png = encode_png(preview_picture(preview, loaded.setup.camera.bit_depth));
+    file.write(png.data(), png.size());
+    file.commit();
+    only = preview_json(preview, path.string());
+    text += preview_text(preview, loaded.setup.camera, path.string());
+    if (!camera.name.empty()) cameras[camera.name] = only;
+  }
+  print_result(options, json_text(cameras.empty() ? only : nlohmann::ordered_json{{"cameras", cameras}}), text);
+  return ok;
+}
+
 }  // namespace
 
 CommandBody attach_render(CLI::App& app, GlobalOptions const& options) {
   app.footer(app.get_footer() + "\n\n" + example_setup);
-  struct Arguments {
-    std::string setup, folder;
-    std::vector<std::string> overrides;
-  };
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<RenderArguments>();
   app.add_option("setup", arguments->setup, "Setup file (TOML)")->required();
-  app.add_option("-o,--output", arguments->folder, "Case folder to create")->required();
+  CLI::Option* const output =
+      app.add_option("-o,--output", arguments->output, "Case folder to create; with --preview a PNG (preview.png)")
+          ->required();
+  app.add_flag_callback(
+      "--preview",
+      [arguments, output] {
+        arguments->preview = true;
+        output->required(false);
+      },
+      "Render only 128 x 128 px about the strongest density gradient, or the image centre, into a PNG");
   app.add_option("--set", arguments->overrides, "Override a key: --set lens.f_number=16")
       ->take_all()
       ->expected(1)
       ->trigger_on_parse(false);
-  return [arguments, &options] {
+  return [arguments, &options]() -> int {
+    if (arguments->preview) return render_previews(*arguments, options);
     SetupRenderer rendering(arguments->setup, arguments->overrides);
-    rendering.refuse_over_inputs(arguments->folder);
+    rendering.refuse_over_inputs(arguments->output);
     auto const renderer = options.open_device().renderer;
-    RenderedSetup const rendered = rendering.render(*renderer, arguments->folder);
+    RenderedSetup const rendered = rendering.render(*renderer, arguments->output);
     std::string text;
     for (RenderedCamera const& camera : rendered.cameras) text += in_words(camera) + '\n';
     print_result(options, json_text(rendered.summary), text);

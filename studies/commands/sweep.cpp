@@ -14,6 +14,7 @@
 #include "studies/sweep/collect.h"
 #include "studies/sweep/dataset.h"
 #include "studies/sweep/plan.h"
+#include "studies/sweep/ranking.h"
 #include "studies/sweep/state_report.h"
 
 namespace gladstone {
@@ -138,6 +139,8 @@ CommandBody attach_collect(CLI::App& app, GlobalOptions const& options) {
       spdlog::warn("{}: {} of {} cases have warnings, see {}/cases/*.json; case {}: {}", run, warned.size(),
                    table.rows.size(), run, first.index, first.warning);
     }
+    std::vector<StudyRanking> const rankings = rank_points(table);
+    json["ranking"] = ranking_json(table, rankings);
     std::string packed;
     if (!arguments->dataset.empty()) {
       PackedDataset const set = pack_dataset(run, arguments->dataset, *options.open_device().renderer);
@@ -148,7 +151,8 @@ CommandBody attach_collect(CLI::App& app, GlobalOptions const& options) {
     std::string const drawn =
         figures.empty() ? "" : fmt::format("drew {} figures in {}/figures\n", figures.size(), run);
     print_result(options, json_text(json),
-                 state_text(run, cases, state) + fmt::format("wrote {}\n{}{}", fmt::join(files, ", "), drawn, packed));
+                 state_text(run, cases, state) + fmt::format("wrote {}\n{}{}{}", fmt::join(files, ", "), drawn, packed,
+                                                             ranking_text(table, rankings)));
     return table.unfinished().empty() ? ok : incomplete;
   };
 }

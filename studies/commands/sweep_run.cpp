@@ -92,6 +92,7 @@ int run_in_workers(Arguments const& arguments, Manifest const& cases, std::strin
     if (arguments.selection.only) one.insert(one.end(), {"--case", *arguments.selection.only});
     if (!arguments.shard.empty()) one.insert(one.end(), {"--shard", arguments.shard});
     if (arguments.selection.keep_images) one.emplace_back("--keep-images");
+    if (arguments.selection.pairs_only) one.emplace_back("--pairs-only");
     words.push_back(std::move(one));
     environment.push_back(visible_device(device, static_cast<std::size_t>(k)));
   }
@@ -158,6 +159,7 @@ int submit_study(Arguments const& arguments, GlobalOptions const& options, Manif
         "the study was planned for cuda, but no GPU is requested; use --gres gpu:1, unless every node has one anyway");
   if (arguments.jobs > 0) given.run.insert(given.run.end(), {"--jobs", std::to_string(arguments.jobs)});
   if (arguments.selection.keep_images) given.run.emplace_back("--keep-images");
+  if (arguments.selection.pairs_only) given.run.emplace_back("--pairs-only");
   if (arguments.selection.retry_failed) given.run.emplace_back("--retry-failed");
   auto const job = run_on_cluster(arguments.run, cases, selected, arguments.selection, slurm, options);
   if (job && job->job.empty()) return ok;
@@ -218,6 +220,8 @@ CommandBody attach_sweep_run(CLI::App& app, GlobalOptions const& options) {
   app.add_option("--shard", arguments->shard, "I/N: the I-th, from 0, of N equal parts of the study, or of --case");
   app.add_flag("--keep-images", arguments->selection.keep_images,
                "Keep the images and files of each case in RUN/cases/INDEX");
+  app.add_flag("--pairs-only", arguments->selection.pairs_only,
+               "Compute only the images, and keep them like --keep-images: no correlation and no errors");
   app.add_flag("--retry-failed", arguments->selection.retry_failed, "Compute failed cases again");
   add_slurm_options(app, arguments->slurm);
   app.add_option("--worker", arguments->worker)->group("");

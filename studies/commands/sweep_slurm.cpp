@@ -29,7 +29,7 @@ void remove_done(std::string const& run, Manifest const& cases, RunSelection con
   std::erase_if(remaining, [&](std::size_t index) {
     if (!there.contains(fs::path(result_path(run, index)).filename().string())) return false;
     auto const result = read_result(run, index, cases.line_hash(index), ResultPart::head);
-    return result && !needs_recomputation(*result, selection) && !is_missing_images(run, *result, selection);
+    return result && !needs_recomputation(*result, selection) && !is_missing_parts(run, *result, selection);
   });
 }
 

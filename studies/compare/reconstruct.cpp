@@ -9,7 +9,6 @@
 
 #include "analysis/density/aperture_deconvolution.h"
 #include "analysis/density/density_uncertainty.h"
-#include "analysis/density/projected_gradient.h"
 #include "render/base/error.h"
 #include "render/base/not_a_number.h"
 #include "studies/compare/reconstruct_axisymmetric.h"
@@ -51,16 +50,6 @@ void check_reconstructed_setup(Setup const& setup) {
                         "has a pose, a tilt or lenslets: density is reconstructed for a camera on the Z axis "
                         "with its sensor perpendicular to it; dewarp the vectors to such a view first"});
   if (!problems.empty()) throw SetupError(std::move(problems));
-}
-
-density::ProjectionOptics make_projection_optics(Setup const& setup) {
-  return {setup.imaging().magnification,
-          setup.z_a,
-          setup.z_d,
-          setup.camera.pixel_pitch,
-          setup.medium.gladstone_dale,
-          setup.ambient_index(),
-          {0.5 * (setup.camera.columns - 1), 0.5 * (setup.camera.rows - 1)}};
 }
 
 /// Returns the size of the windows in units of the distance between vectors, at most that of the grid.
@@ -184,6 +173,16 @@ Reconstruction integrate_plane(Reconstruction result, density::GradientMap const
 }
 
 }  // namespace
+
+density::ProjectionOptics make_projection_optics(Setup const& setup) {
+  return {setup.imaging().magnification,
+          setup.z_a,
+          setup.z_d,
+          setup.camera.pixel_pitch,
+          setup.medium.gladstone_dale,
+          setup.ambient_index(),
+          {0.5 * (setup.camera.columns - 1), 0.5 * (setup.camera.rows - 1)}};
+}
 
 Reconstruction reconstruct_density(DisplacementField const& field, Setup const& setup, double window_px,
                                    ReconstructOptions const& options) {

@@ -7,6 +7,7 @@
 
 #include "analysis/density/axisymmetric_inversion.h"
 #include "analysis/density/density_integrator.h"
+#include "analysis/density/projected_gradient.h"
 #include "render/files/source_files.h"
 #include "render/scene/setup.h"
 #include "studies/compare/compare.h"
@@ -95,6 +96,9 @@ struct DensityErrors {
   double coverage = 0.0;  ///< fraction of errors within sigma [1]; NaN without sigma
 };
 DensityErrors compute_density_errors(Reconstruction const& reconstruction);
+
+/// Returns the optics of a BOS setup that convert displacement to density gradient, for a camera on the Z axis.
+density::ProjectionOptics make_projection_optics(Setup const& setup);
 
 /// Reconstructs density from BOS vectors of a camera on the Z axis, in memory: displacement to projected gradient (Eq.
 /// 9 of Rajendran, Bane & Vlachos 2019), then integration, optional deconvolution, or Abel inversion. Valid for small

@@ -6,6 +6,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "studies/design/recommendation_text.h"
 #include "studies/design/sheet.h"
 #include "studies/design/verification_text.h"
 
@@ -56,36 +57,14 @@ double required_value(AnsweredQuestion const& answered, Bound bound) {
   return NAN;
 }
 
-char const* objective_word(AnsweredQuestion const& answered) {
-  return objective_words[static_cast<std::size_t>(answered.question.requirements.objective)];
-}
-
-/// Converts an objective from SI to the unit of its key.
-double written_objective(AnsweredQuestion const& answered, double objective) {
-  return objective / objective_scales[static_cast<std::size_t>(answered.question.requirements.objective)];
-}
-
 std::string outcome_text(AnsweredQuestion const& answered, BranchOutcome const& outcome) {
-  std::string const name = branch_name(outcome.branch, answered.variants, answered.question);
-  if (outcome.skipped)
-    return fmt::format("    {}: skipped, {} excludes it\n", name, bound_name(outcome.solution.worst));
-  if (outcome.solution.worst == Bound::resolution && !outcome.solution.feasible()) {
-    return fmt::format("    {}: violates {}: the chain transmits {:.3f} of that wavelength instead of {:.3f}\n", name,
-                       bound_name(Bound::resolution), transfer_at_resolution - outcome.solution.violation,
-                       transfer_at_resolution);
-  }
-  if (!outcome.solution.feasible()) {
-    return fmt::format("    {}: violates {} by {:.3g} %\n", name, bound_name(outcome.solution.worst),
-                       100 * std::expm1(outcome.solution.violation));
-  }
-  return fmt::format("    {}: {} {:.5g} {}\n", name, objective_word(answered),
-                     written_objective(answered, outcome.solution.objective),
-                     objective_units[static_cast<std::size_t>(answered.question.requirements.objective)]);
+  return fmt::format("    {}: {}\n", branch_name(outcome.branch, answered.variants, answered.question),
+                     outcome_verdict(answered, outcome));
 }
 
 std::string feasible_text(AnsweredQuestion const& answered) {
   DesignPoint<double> const best = answered.best();
-  std::string text = "recommended\n";
+  std::string text = recommendation_text(answered) + "values of the free keys\n";
   for (auto const& [key, value] : recommended(answered.question, best)) {
     text += fmt::format("  {:<28}{:.6g}\n", key, value);
   }

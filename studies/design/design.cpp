@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 #include <optional>
+#include <utility>
 
 #include "render/base/error.h"
 #include "render/files/output_file.h"
@@ -167,7 +168,11 @@ DesignReport design(SetupDocument document, DesignRequest const& request) {
     applied.emplace(request.apply, "TOML");
   }
   add_sheet(request, loaded, uncertain, !request.figures.empty() && !question, report);
-  if (question) add_answer(request, written, std::move(*question), loaded, applied, report);
+  if (question) {  // the answer first, then the sheet of the setup as written
+    std::string const sheet = std::exchange(report.text, "");
+    add_answer(request, written, std::move(*question), loaded, applied, report);
+    report.text += "design sheet of the setup as written\n" + sheet;
+  }
   return report;
 }
 

@@ -79,11 +79,14 @@ MeasurementInput of_setup(UncertainInput const& input, CaseSetup const& loaded) 
   }
   if (!bench) return one;
   SetupNode const* const constant = loaded.document.find({"medium", "gladstone_dale"});
-  if (input.key == "medium.wavelength_nm" && constant && constant->kind == SetupNode::Kind::text) {
+  std::optional<GasMixture> const& gas = loaded.setup.medium.gas;
+  bool const by_wavelength = gas || (constant && constant->kind == SetupNode::Kind::text);
+  if (input.key == "medium.wavelength_nm" && by_wavelength) {
     one.enters = GradientInput::gladstone_dale;
     one.unit = unit::nanometre;
     double const lambda = loaded.setup.medium.wavelength, step = 1e-4 * lambda;
     auto const k = [&](double at) {
+      if (gas) return gas->gladstone_dale(at);
       return constant->text == "ciddor" ? gladstone_dale_ciddor(at) : gladstone_dale_merzkirch(at);
     };
     one.chain = (k(lambda + step) - k(lambda - step)) / (2 * step) * lambda / k(lambda);

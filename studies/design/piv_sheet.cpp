@@ -39,10 +39,11 @@ void add_imaging(DesignSheet& sheet, Setup const& setup, ExpectedParticles const
   rows.push_back({"F1", "magnification", "magnification M at the sheet", expected.magnification, "", "f / (Z - f)",
                   "Raffel et al. 2018", Margin::none, ""});
   double const ciddor = gladstone_dale_ciddor(setup.medium.wavelength);
-  rows.push_back({"F3", "gladstone_dale_m3_kg", "Gladstone-Dale constant K", setup.medium.gladstone_dale, "m^3/kg",
-                  "(n_s - 1) / rho_s", "Ciddor 1996, Appl. Opt. 35:1566",
-                  at_most(std::abs(setup.medium.gladstone_dale / ciddor - 1), 0.01, 0.05),
-                  fmt::format("of the setup; air at this wavelength has {:.5g}", ciddor)});
+  rows.push_back(
+      {"F3", "gladstone_dale_m3_kg", "Gladstone-Dale constant K", setup.medium.gladstone_dale, "m^3/kg",
+       "(n_s - 1) / rho_s", "Ciddor 1996, Appl. Opt. 35:1566",
+       setup.medium.gas ? Margin::none : at_most(std::abs(setup.medium.gladstone_dale / ciddor - 1), 0.01, 0.05),
+       fmt::format("of the setup; air at this wavelength has {:.5g}", ciddor)});
   rows.push_back({"F16", "field_of_view_mm", "field of view in the sheet, width", setup.camera.columns * pixel / mm,
                   "mm", "w / M", "Raffel et al. 2018", Margin::none, ""});
   rows.push_back({"F16", "field_of_view_height_mm", "field of view in the sheet, height",

@@ -21,17 +21,7 @@ Vec2d half_view_at_medium(Setup const& setup) {
 
 /// Returns the largest density gradient in the view, averaged over the thickness [kg/m^4].
 double largest_gradient(Setup const& setup) {
-  if (setup.medium.field.kind == FieldKind::none) return 0;
-  if (setup.medium.field.kind == FieldKind::closed_form) {
-    Vec2d const half = half_view_at_medium(setup);
-    auto const known = std::visit(
-        [half](auto const& form) -> std::optional<double> {
-          if constexpr (requires { form.steepest_mean_density(half); }) return form.steepest_mean_density(half);
-          return std::nullopt;
-        },
-        make_closed_form(setup.medium));
-    if (known) return *known;
-  }
+  if (auto const known = closed_form_gradient(setup)) return *known;
   double largest = 0;
   constexpr int lattice_px = 4;
   Scene const scene = with_chosen_step(build_scene(setup));
@@ -42,6 +32,18 @@ double largest_gradient(Setup const& setup) {
 }
 
 }  // namespace
+
+std::optional<double> closed_form_gradient(Setup const& setup) {
+  if (setup.medium.field.kind == FieldKind::none) return 0;
+  if (setup.medium.field.kind != FieldKind::closed_form) return std::nullopt;
+  Vec2d const half = half_view_at_medium(setup);
+  return std::visit(
+      [half](auto const& form) -> std::optional<double> {
+        if constexpr (requires { form.steepest_mean_density(half); }) return form.steepest_mean_density(half);
+        return std::nullopt;
+      },
+      make_closed_form(setup.medium));
+}
 
 char const* margin_word(Margin margin) {
   constexpr char const* words[] = {"", "green", "marginal", "violated"};

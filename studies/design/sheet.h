@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -48,6 +49,10 @@ struct DesignSheet {
   SheetRow const& row(std::string const& key) const;
   double operator[](std::string const& key) const { return row(key).value; }
 };
+
+/// Returns the largest density gradient in the view by a formula, averaged over the thickness [kg/m^4]; 0 without a
+/// field, nullopt if the field has to be mapped.
+std::optional<double> closed_form_gradient(Setup const& setup);
 
 /// Collects the given properties of a BOS setup, including its largest density gradient.
 /// @throws DataError if the field cannot be read

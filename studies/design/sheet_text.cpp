@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <vector>
 
 namespace gladstone {
 namespace {
@@ -20,8 +22,15 @@ std::string value_text(SheetRow const& row) {
 }  // namespace
 
 std::string sheet_text(DesignSheet const& sheet) {
+  std::vector<SheetRow> rows = sheet.rows;
+  // First the rows that miss the usual recommendation, the worst first.
+  auto const urgency = [](SheetRow const& row) {
+    return row.margin == Margin::violated ? 0 : row.margin == Margin::marginal ? 1 : 2;
+  };
+  std::stable_sort(rows.begin(), rows.end(),
+                   [&](SheetRow const& a, SheetRow const& b) { return urgency(a) < urgency(b); });
   std::string text;
-  for (SheetRow const& row : sheet.rows) {
+  for (SheetRow const& row : rows) {
     text += fmt::format("  {:<4}{:<50}{:<28}{}\n", row.id, row.name, value_text(row), margin_word(row.margin));
     text += fmt::format("      = {}   [{}]{}{}\n", row.formula, row.source, row.note.empty() ? "" : "; ", row.note);
   }

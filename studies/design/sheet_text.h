@@ -7,7 +7,8 @@
 
 namespace gladstone {
 
-/// Formats the sheet as a table: number, quantity, value, margin, formula, source, note.
+/// Formats the sheet as a table: number, quantity, value, margin, formula, source, note. Violated rows come first, then
+/// marginal ones, then the others in the order of their numbers.
 std::string sheet_text(DesignSheet const& sheet);
 
 /// Returns every value by its key, fields of view as [width, height], and all rows in "rows"; null: unknown.

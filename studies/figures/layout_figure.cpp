@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "render/base/error.h"
 #include "render/base/not_a_number.h"
 #include "render/base/units.h"
 #include "studies/figures/gnuplot.h"
@@ -43,9 +44,10 @@ Drawing drawing_of(OpticalLayout const& l) {
   } else {
     d.planes.add({{l.dots_z, -1.15 * l.dots_half}, {l.dots_z, 1.15 * l.dots_half}});
   }
+  for (double const z : l.planes) d.planes.add({{z, -1.15 * l.dots_half}, {z, 1.15 * l.dots_half}});
   d.planes.add({{l.sensor_z, -l.sensor_half}, {l.sensor_z, l.sensor_half}});
   double const h = 1.1 * std::max(l.medium_half, l.cone_radius), t = l.medium_half_thickness;
-  d.medium.add({{-t, -h}, {t, -h}, {t, h}, {-t, h}, {-t, -h}});
+  if (t > 0) d.medium.add({{-t, -h}, {t, -h}, {t, h}, {-t, h}, {-t, -h}});
   double const rim = 1.35 * std::max(l.pupil_radius, l.sensor_half), tip = 0.012 * (l.sensor_z - l.dots_z);
   for (double const side : {-1.0, 1.0}) {
     d.lens.add({{l.lens_z, side * l.pupil_radius}, {l.lens_z, side * rim}});
@@ -89,7 +91,7 @@ void draw(GnuplotFigure& plot, Drawing const& d) {
   std::string command =
       "plot " + lines(d.view, house_colour(5), 1, "field of view") + ", " +
       lines(d.cone, house_colour(1), 2, dots ? "light of the dot on the axis" : "light of a particle") + ", " +
-      lines(d.medium, house_colour(2), 2, "medium") + ", " + lines(d.lens, house_colour(0), 3, "stop") + ", " +
+      (d.medium.z.empty() ? "" : lines(d.medium, house_colour(2), 2, "medium") + ", ") + lines(d.lens, house_colour(0), 3, "stop") + ", " +
       lines(d.planes, "#202020", 3, dots ? "dots and sensor" : "sensor");
   if (!dots) command += ", " + lines(d.sheet, house_colour(3), 2, "laser sheet");
   plot.command(command);
@@ -106,7 +108,9 @@ void write_layout(std::string const& path, OpticalLayout const& l, LayoutWords c
   Drawing const drawing = drawing_of(l);
   bool const dots = l.sheet_half_height == 0;
   double const length = l.sensor_z - l.dots_z, z_high = l.sensor_z + 0.06 * length;
-  double const z_low = std::min(l.dots_z, -l.medium_half_thickness) - 0.06 * length;
+  double lowest = std::min(l.dots_z, -l.medium_half_thickness);
+  for (double const z : l.planes) lowest = std::min(lowest, z);
+  double const z_low = lowest - 0.06 * length;
   double const tallest =
       1.3 * std::max({l.dots_half, l.medium_half, l.pupil_radius, l.sensor_half, l.sheet_half_height});
   double const mm_a_px = (z_high - z_low) / mm / ((right - left) * layout_width);
@@ -131,7 +135,7 @@ void write_layout(std::string const& path, OpticalLayout const& l, LayoutWords c
                            GnuplotFigure::quoted(fmt::format("heights enlarged {:.2g} times", stretched))));
   plot.command("set key at graph 0.995,1.06 right top horizontal samplen 2");
   distance(plot, 0, l.lens_z, 0.14, "Z_A");
-  if (dots) {
+  if (dots && l.dots_z < 0) {
     distance(plot, l.dots_z, 0, 0.14, "Z_D");
     distance(plot, l.dots_z, l.lens_z, 0.06, "Z_B");
   }
@@ -170,6 +174,33 @@ void write_layout_figure(std::string const& path, DesignPoint<double> const& ben
                             bench.magnification()),
                 fmt::format("sees {:.4g} mm", 2 * l.dots_half / mm),
                 fmt::format("medium: view {:.4g} mm, cone {:.3g} mm", 2 * l.medium_half / mm, 2 * l.cone_radius / mm)});
+}
+
+OpticalLayout make_camera_layout(Setup const& setup) {
+  ImagingGeometry const imaging = setup.imaging();
+  double const half = setup.camera.rows / 2.0 * setup.camera.pixel_pitch, seen = half / imaging.magnification;
+  double const z_b = setup.z_b(), behind = z_b - setup.z_a;  // distance from the mid-plane to the dots on the axis
+  return {.dots_z = -behind,
+          .lens_z = setup.z_a,
+          .sensor_z = setup.z_a + imaging.image_distance,
+          .medium_half_thickness = setup.calibration() ? 0 : setup.medium.thickness / 2,
+          .pupil_radius = imaging.entrance_pupil / 2,
+          .sensor_half = half,
+          .medium_half = seen * setup.z_a / z_b,
+          .dots_half = seen,
+          .cone_radius = imaging.entrance_pupil / 2 * behind / z_b,
+          .planes = setup.planes};
+}
+
+void write_camera_layout(std::string const& path, Setup const& setup) {
+  OpticalLayout const l = make_camera_layout(setup);
+  if (!std::isfinite(l.sensor_z) || !std::isfinite(l.dots_half)) {
+    throw DataError(path, "cannot be drawn (the image distance or the view of the camera is infinite); omit --figure");
+  }
+  write_layout(path, l,
+               {fmt::format("Layout along the camera's axis: f/{:.4g}, M = {:.4g}", setup.lens.f_number,
+                            setup.imaging().magnification),
+                fmt::format("sees {:.4g} mm", 2 * l.dots_half / mm), ""});
 }
 
 OpticalLayout piv_layout(Setup const& setup) {

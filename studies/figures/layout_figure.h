@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "render/scene/setup.h"
 #include "studies/design/design_point.h"
@@ -17,6 +18,7 @@ struct OpticalLayout {
   double sensor_half, medium_half, dots_half;
   double cone_radius;                                      ///< in the medium's mid-plane, for the dot on the axis
   double sheet_half_thickness = 0, sheet_half_height = 0;  ///< of a laser sheet; 0 for BOS
+  std::vector<double> planes = {};                         ///< Z of the planes of a calibration
 };
 
 OpticalLayout make_optical_layout(DesignPoint<double> const& bench);
@@ -25,6 +27,14 @@ OpticalLayout make_optical_layout(DesignPoint<double> const& bench);
 /// distances; above to scale, below with stretched heights.
 /// @throws GnuplotMissing, OutputError
 void write_layout_figure(std::string const& path, DesignPoint<double> const& bench);
+
+/// Returns the paraxial geometry of any camera, with Z along its axis: from the medium's mid-plane (PIV, calibration: the
+/// point of the axis at the distance Z_A) towards the camera.
+OpticalLayout make_camera_layout(Setup const& setup);
+
+/// Draws make_camera_layout(), for cameras with a pose, prescription, windows or lenslets, and for calibrations.
+/// @throws DataError if the image distance or the view is infinite; GnuplotMissing, OutputError
+void write_camera_layout(std::string const& path, Setup const& setup);
 
 /// Returns the geometry of a PIV setup, with the laser sheet in the plane Z = 0.
 /// @pre setup.piv

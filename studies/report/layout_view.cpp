@@ -63,17 +63,17 @@ std::string map_text(DesignPoint<double> const& b) {
       b.sensitivity(), resolved_wavelength(b) / mm);
 }
 
-void write_layout(std::string const& path, LayoutView const& view) {
-  if (view.piv) return write_piv_layout(path, *view.piv);
-  write_layout_figure(path, view.bench);
-}
-
 void write_map(std::string const& path, LayoutView const& view) {
   if (view.piv) return write_piv_map(path, *view.piv);
   write_design_map(path, view.bench, std::nullopt);
 }
 
 }  // namespace
+
+void write_layout_view(std::string const& path, LayoutView const& view) {
+  if (view.piv) return write_piv_layout(path, *view.piv);
+  write_layout_figure(path, view.bench);
+}
 
 std::optional<LayoutView> layout_view(CaseSetup loaded) {
   if (!is_drawn(loaded.setup) || loaded.correlate.window_px.empty()) return std::nullopt;
@@ -90,7 +90,7 @@ std::string layout_text(LayoutView const& view) {
 
 ReportBlock layout_block(LayoutView const& view, std::string const& whose) {
   return drawn_block("Layout of " + whose, layout_text(view),
-                     [&view](std::string const& path) { write_layout(path, view); });
+                     [&view](std::string const& path) { write_layout_view(path, view); });
 }
 
 ReportSection layout_section(LayoutView const& view, std::string const& whose) {
@@ -102,7 +102,7 @@ ReportSection layout_section(LayoutView const& view, std::string const& whose) {
 std::vector<std::string> draw_layout_and_map(std::string const& folder, std::string const& format,
                                              LayoutView const& view) {
   std::vector<std::string> const drawn{folder + "/layout." + format, folder + "/design_map." + format};
-  write_layout(drawn.front(), view);
+  write_layout_view(drawn.front(), view);
   write_map(drawn.back(), view);
   return drawn;
 }

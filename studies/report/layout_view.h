@@ -24,6 +24,9 @@ struct LayoutView {
 /// sheet outside the plane Z = 0. The medium's field is not read.
 std::optional<LayoutView> layout_view(CaseSetup loaded);
 
+/// Draws the layout into a file. @throws GnuplotMissing, OutputError
+void write_layout_view(std::string const& path, LayoutView const& view);
+
 /// Describes the contents of the layout in numbers.
 std::string layout_text(LayoutView const& view);
 

@@ -107,7 +107,8 @@ ReportPage run_report(ReportOptions const& options) {
   page.title = "Study " + study.table.name;
   page.question = describe_question(study);
   page.findings = {extremes(study, best, *worst)};
-  for (std::string const& finding : {largest_cause(study), strongest_axis(study), uncertainty_finding(study)}) {
+  for (std::string const& finding :
+       {other_rankings(study), largest_cause(study), strongest_axis(study), uncertainty_finding(study)}) {
     if (!finding.empty()) page.findings.push_back(finding);
   }
   page.data = study_data(study);

@@ -60,7 +60,7 @@ TextTable cases_table(StudyView const& study) {
   for (char const* name :
        {"ray_truth.rms_px", "eq9.rms_px", "flow.rms_px", "ray_truth.bias_u_px", "ray_truth.bias_v_px",
         "ray_truth.random_u_px", "ray_truth.random_v_px", "ray_truth.gross_fraction", "ray_truth.valid_fraction",
-        "uncertainty.window_truth.coverage_1", "signal_px"}) {
+        "uncertainty.window_truth.coverage_1", "signal_px", "error_over_signal", "gradient_error_kg_m4"}) {
     if (study.knows(name)) measures.emplace_back(name);
   }
   bool const repeated = study.table.repeats() > 1;

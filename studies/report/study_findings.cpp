@@ -7,6 +7,8 @@
 #include "studies/figures/study_axes.h"
 #include "studies/report/study_view.h"
 #include "studies/sweep/job_array.h"
+#include "studies/sweep/ranking.h"
+#include "studies/sweep/study_columns.h"
 
 namespace gladstone {
 
@@ -17,12 +19,13 @@ StudyView::StudyView(std::string const& run) : table(read_study_table(run)) {
   if (finished.empty()) {
     throw DataError(run, "contains no finished case; run gladstone sweep run " + shell_word(run) + " first");
   }
-  for (auto const& [measure, name] :
-       {std::pair{"eq9.rms_px", "Eq. 9 (the displacement by the density gradient)"},
-        std::pair{"flow.rms_px", "the displacement of the flow"}, std::pair{"ray_truth.rms_px", "ray truth"}}) {
-    main = measure;
-    against = name;
-    if (knows(measure)) break;
+  main = main_error_measure(table);
+  against = main == "eq9.rms_px"    ? "Eq. 9 (the displacement by the density gradient)"
+            : main == "flow.rms_px" ? "the displacement of the flow"
+                                    : "ray truth";
+  if (!knows(main)) {
+    throw DataError(run, "contains no measured case, only images (sweep run --pairs-only); run gladstone sweep run " +
+                             shell_word(run) + " first");
   }
   for (std::string const& measure : table.measures) {
     std::string_view constexpr head = "budget.terms.", tail = ".rms_px";
@@ -66,6 +69,19 @@ std::string extremes(StudyView const& study, StudyRow const& best, StudyRow cons
       "The rms error against {} lies between {:.3g} px ({}) and {:.3g} px ({}); its median is {:.3g} px.",
       study.against, study.of(best, study.main), study.title(best), study.of(worst, study.main), study.title(worst),
       quantile(study.values(study.main), 0.5));
+}
+
+std::string other_rankings(StudyView const& study) {
+  std::string text;
+  for (StudyRanking const& ranking : rank_points(study.table)) {
+    if (ranking.measure == study.main) continue;
+    StudyRow const& best = study.table.rows[ranking.points.front().row];
+    std::string const unit = unit_of_column(ranking.measure);
+    text +=
+        fmt::format("{}{} {} is smallest for {}: {:.3g}{}", text.empty() ? "" : "; ", text.empty() ? "The" : "the",
+                    ranking.meaning, study.title(best), ranking.points.front().value, unit == "1" ? "" : " " + unit);
+  }
+  return text.empty() ? text : text + '.';
 }
 
 std::string largest_cause(StudyView const& study) {

@@ -9,8 +9,10 @@
 #include <new>
 #include <nlohmann/json.hpp>
 #include <span>
+#include <string_view>
 
 #include "analysis/vectors/vector_file.h"
+#include "render/base/contracts.h"
 #include "render/base/not_a_number.h"
 #include "render/files/content_hash.h"
 #include "render/files/output_file.h"
@@ -22,6 +24,7 @@
 #include "studies/case/log_silencer.h"
 #include "studies/case/version_text.h"
 #include "studies/compare/correlate.h"
+#include "studies/compare/reconstruct.h"
 #include "studies/compare/thinned_vectors.h"
 #include "studies/compare/tracked_dots.h"
 #include "studies/sweep/case_keys.h"
@@ -78,6 +81,40 @@ bool wants_memory(std::exception const& error) {
 bool stops_the_run(std::exception const& error) {
   return dynamic_cast<OutputError const*>(&error) || dynamic_cast<DeviceError const*>(&error) ||
          dynamic_cast<Interrupted const*>(&error);
+}
+
+double find_value(CaseResult const& result, std::string_view name) {
+  for (auto const& [known, value] : result.measures) {
+    if (known == name) return value;
+  }
+  return not_a_number;
+}
+
+/// Adds the error over the signal and, for BOS with a camera on the Z axis, the error of the density gradient averaged
+/// over the thickness, from measures that the result contains.
+void add_relative_errors(Setup const& setup, CaseResult& result) {
+  double const error = find_value(result, setup.piv ? "flow.rms_px" : "eq9.rms_px");
+  double const signal = find_value(result, "signal_px");
+  result.measures.emplace_back("error_over_signal", signal > 0 ? error / signal : not_a_number);
+  bool const on_axis = !setup.piv && !setup.pose && !setup.camera.tilted() && !setup.lenslets;
+  double const sensitivity = on_axis ? make_projection_optics(setup).sensitivity() * setup.medium.thickness : 0;
+  result.measures.emplace_back("gradient_error_kg_m4", sensitivity > 0 ? error / sensitivity : not_a_number);
+}
+
+/// Adds the measures and warnings of a rendering to a result.
+void add_rendering(PreparedCase const& prepared, RenderedCase const& rendered, RecordedFrames const& frames,
+                   CaseResult& result) {
+  auto const add = [&result](char const* name, double value) { result.measures.emplace_back(name, value); };
+  add("strain_max", prepared.strain.strain.empty() ? not_a_number : largest(prepared.strain.strain));
+  add("magnification", prepared.scene.imaging.magnification);
+  add("step_mm", prepared.step.step_mm);
+  add("rays_per_dot", static_cast<double>(prepared.rays.rays));
+  add("exposure", rendered.exposure_e);
+  add("dots", static_cast<double>(prepared.scene.source_count()));
+  add("caustic_fraction", prepared.strain.caustic_fraction);
+  add("saturated", static_cast<double>(frames.saturated_reference + frames.saturated_flow));
+  result.warnings = prepared.warnings;
+  warn_of_rendering(result.warnings, prepared, rendered, frames);
 }
 
 /// Writes vectors and errors of a case into a folder that already contains its other files.
@@ -146,7 +183,9 @@ void CaseRunner::check_inputs(ManifestCase const& one) {
   }
 }
 
-CaseResult CaseRunner::run(ManifestCase const& one, std::string const& keep, CaseObserver const& observe) {
+CaseResult CaseRunner::run(ManifestCase const& one, std::string const& keep, CaseObserver const& observe,
+                           CaseParts parts) {
+  GLADSTONE_EXPECTS(parts == CaseParts::all || !keep.empty());
   check_inputs(one);
   CaseResult result;
   result.index = one.index;
@@ -157,12 +196,12 @@ CaseResult CaseRunner::run(ManifestCase const& one, std::string const& keep, Cas
   LogSilencer const quiet;
   try {
     try {
-      compute(one, keep, observe, result);
+      compute(one, keep, observe, parts, result);
     } catch (std::exception const& error) {
       if (!wants_memory(error)) throw;
       shared_ = std::make_unique<Shared>();  // repeat without the cached results of other cases
       result = fresh;
-      compute(one, keep, observe, result);
+      compute(one, keep, observe, parts, result);
     }
   } catch (std::exception const& error) {
     bool const no_memory = wants_memory(error);
@@ -173,7 +212,7 @@ CaseResult CaseRunner::run(ManifestCase const& one, std::string const& keep, Cas
   return result;
 }
 
-void CaseRunner::compute(ManifestCase const& one, std::string const& keep, CaseObserver const& observe,
+void CaseRunner::compute(ManifestCase const& one, std::string const& keep, CaseObserver const& observe, CaseParts parts,
                          CaseResult& result) {
   auto start = std::chrono::steady_clock::now();
   Shared& shared = *shared_;
@@ -227,6 +266,14 @@ void CaseRunner::compute(ManifestCase const& one, std::string const& keep, CaseO
     folder->fill(
         [&](std::string const& place) { write_case(loaded, prepared, rendered, frames, *device_.renderer, place); });
   }
+  if (parts == CaseParts::images) {
+    result.pairs_only = true;
+    result.seconds_correlate = result.seconds_compare = not_a_number;
+    add_rendering(prepared, rendered, frames, result);
+    result.measures.emplace_back("warnings", static_cast<double>(result.warnings.size()));
+    folder->commit();
+    return;
+  }
 
   std::string const name = fmt::format("case {}", one.index);
   Measurement measured = correlate_frames(
@@ -252,19 +299,10 @@ void CaseRunner::compute(ManifestCase const& one, std::string const& keep, CaseO
   std::vector<Vec2d> const still(places.size());
   result.measures.emplace_back("signal_px",
                                summarize_errors(comparison.point.displacement_px, still, comparison.mask).rms_px);
+  add_relative_errors(prepared.scene.setup, result);
   result.measures.emplace_back("blur_px",
                                summarize_errors(comparison.point.displacement_std_px, still, comparison.mask).rms_px);
-  result.measures.emplace_back("strain_max",
-                               prepared.strain.strain.empty() ? not_a_number : largest(prepared.strain.strain));
-  result.measures.emplace_back("magnification", prepared.scene.imaging.magnification);
-  result.measures.emplace_back("step_mm", prepared.step.step_mm);
-  result.measures.emplace_back("rays_per_dot", static_cast<double>(prepared.rays.rays));
-  result.measures.emplace_back("exposure", rendered.exposure_e);
-  result.measures.emplace_back("dots", static_cast<double>(prepared.scene.source_count()));
-  result.measures.emplace_back("caustic_fraction", prepared.strain.caustic_fraction);
-  result.measures.emplace_back("saturated", static_cast<double>(frames.saturated_reference + frames.saturated_flow));
-  result.warnings = prepared.warnings;
-  warn_of_rendering(result.warnings, prepared, rendered, frames);
+  add_rendering(prepared, rendered, frames, result);
   result.warnings.insert(result.warnings.end(), measured.field.warnings.begin(), measured.field.warnings.end());
   result.measures.emplace_back("warnings", static_cast<double>(result.warnings.size()));
   result.vectors = vector_errors(comparison);

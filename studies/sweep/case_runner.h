@@ -19,6 +19,9 @@ namespace gladstone {
 /// tolerances of the ray budget.
 enum class Sharing { identical, over_repeats };
 
+/// Parts of a case that are computed: rendering, correlation and comparison, or the rendering alone.
+enum class CaseParts { all, images };
+
 /// Results of a case, passed to an observer before they are discarded.
 struct ObservedCase {
   PreparedCase const& prepared;
@@ -44,15 +47,18 @@ class CaseRunner {
   /// @param keep     folder in which all files of the case are written, as by render, correlate and compare but without
   ///                 figures; empty: none
   /// @param observe  called after the comparison; may be empty
+  /// @param parts    `images` requires the folder `keep`
   /// @throws DataError if an input has changed since the study was planned; Interrupted; OutputError; DeviceError
   ///         (insufficient device memory only fails the case)
-  CaseResult run(ManifestCase const& one, std::string const& keep = "", CaseObserver const& observe = {});
+  CaseResult run(ManifestCase const& one, std::string const& keep = "", CaseObserver const& observe = {},
+                 CaseParts parts = CaseParts::all);
 
  private:
   struct Shared;
 
   void check_inputs(ManifestCase const& one);
-  void compute(ManifestCase const& one, std::string const& keep, CaseObserver const& observe, CaseResult& result);
+  void compute(ManifestCase const& one, std::string const& keep, CaseObserver const& observe, CaseParts parts,
+               CaseResult& result);
 
   Backend device_;
   Sharing sharing_;

@@ -98,6 +98,7 @@ CaseResult result_of(Json const& json, ResultPart part) {
   result.status = json.at("status").get<std::string>() == "ok" ? CaseStatus::ok : CaseStatus::failed;
   result.error = json.at("error").get<std::string>();
   result.again = json.value("again", false);
+  result.pairs_only = json.value("pairs_only", false);
   result.warnings = json.at("warnings").get<std::vector<std::string>>();
   result.seconds_render = number_of(json.at("seconds_render"));
   result.seconds_correlate = number_of(json.at("seconds_correlate"));
@@ -155,6 +156,7 @@ std::string result_text(CaseResult const& result) {
   json["status"] = to_string(result.status);
   json["error"] = result.error;
   if (result.again) json["again"] = true;
+  if (result.pairs_only) json["pairs_only"] = true;
   json["device"] = result.device;
   json["build"] = result.build;
   json["seconds_render"] = number(result.seconds_render);

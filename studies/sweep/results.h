@@ -22,6 +22,8 @@ struct CaseResult {
   std::string error;                   ///< error message of a failed case
   /// Failed because of insufficient memory; the next run repeats it.
   bool again = false;
+  /// Only the images were computed (CaseParts::images): no vectors and no measures of errors.
+  bool pairs_only = false;
   /// Numbers of errors.json by dotted path, and others; NaN: unknown.
   std::vector<std::pair<std::string, double>> measures;
   /// In the order of vector_error_names(); used to compare repeats.

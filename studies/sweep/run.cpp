@@ -36,6 +36,17 @@ class Claim {
   bool taken_;
 };
 
+/// Computes the requested parts of a case. If its vectors and errors were computed before, they are computed again with
+/// the images, so that none of its numbers is lost.
+CaseResult compute_case(std::string const& run, Manifest const& cases, std::size_t index, RunSelection const& selection,
+                        CaseRunner& runner) {
+  auto const known = read_result(run, index, cases.line_hash(index), ResultPart::head);
+  bool const measured = known && known->status == CaseStatus::ok && !known->pairs_only;
+  CaseParts const parts = selection.pairs_only && !measured ? CaseParts::images : CaseParts::all;
+  bool const kept = selection.keep_images || selection.pairs_only;
+  return runner.run(cases[index], kept ? images_folder(run, index) : "", {}, parts);
+}
+
 }  // namespace
 
 std::string images_folder(std::string const& run, std::size_t index) {
@@ -66,6 +77,7 @@ RunState determine_run_state(std::string const& run, Manifest const& cases, std:
       if (claims.held(index)) state.running.push_back(index);
     } else if (result->status == CaseStatus::ok) {
       ++state.ok;
+      if (result->pairs_only) state.pairs_only.push_back(index);
     } else {
       state.failed.push_back(std::move(*result));
     }
@@ -77,17 +89,19 @@ bool needs_recomputation(CaseResult const& result, RunSelection const& selection
   return result.status == CaseStatus::failed && (result.again || selection.retry_failed);
 }
 
-bool is_missing_images(std::string const& run, CaseResult const& result, RunSelection const& selection) {
-  return selection.keep_images && result.status == CaseStatus::ok && !fs::exists(images_folder(run, result.index));
+bool is_missing_parts(std::string const& run, CaseResult const& result, RunSelection const& selection) {
+  if (result.status != CaseStatus::ok) return false;
+  if (result.pairs_only && !selection.pairs_only) return true;
+  return (selection.keep_images || selection.pairs_only) && !fs::exists(images_folder(run, result.index));
 }
 
 RunState remove_failed_results(std::string const& run, Manifest const& cases, std::vector<std::size_t> const& selected,
                                RunSelection const& selection) {
   RunState state = determine_run_state(run, cases, selected);
-  if (selection.keep_images) {
+  if (selection.keep_images || !state.pairs_only.empty()) {
     for (std::size_t const index : selected) {
       auto const result = read_result(run, index, cases.line_hash(index), ResultPart::head);
-      if (!result || !is_missing_images(run, *result, selection)) continue;
+      if (!result || !is_missing_parts(run, *result, selection)) continue;
       state.missing.push_back(index);
       --state.ok;
     }
@@ -128,7 +142,7 @@ void run_cases(std::string const& run, Manifest const& cases, std::vector<std::s
   CaseLocks claims(run, CaseLocks::Use::take);
   auto const is_done = [&](std::size_t index) {
     auto const result = read_result(run, index, cases.line_hash(index), ResultPart::head);
-    return result && !is_missing_images(run, *result, selection);
+    return result && !is_missing_parts(run, *result, selection);
   };
   std::vector<std::size_t> waiting = selected;
   if (!waiting.empty()) std::rotate(waiting.begin(), waiting.begin() + (first % waiting.size()), waiting.end());
@@ -147,7 +161,7 @@ void run_cases(std::string const& run, Manifest const& cases, std::vector<std::s
         if (!is_done(index)) {
           tell(index, CaseEvent::begun);
           stop_point("case-begun");
-          CaseResult const result = runner.run(cases[index], selection.keep_images ? images_folder(run, index) : "");
+          CaseResult const result = compute_case(run, cases, index, selection, runner);
           stop_point("case-computed");
           write_result(run, result);
           tell(index, CaseEvent::finished);

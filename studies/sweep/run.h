@@ -16,6 +16,7 @@ struct RunSelection {
   /// Repeat all failed cases, not only those that failed because of insufficient memory.
   bool retry_failed = false;
   bool keep_images = false;  ///< write all files of a case to RUN/cases/INDEX/
+  bool pairs_only = false;   ///< compute only the images of a case, which are kept; implies keep_images
 };
 
 /// Returns the selected cases of a study with `count` cases, in the manifest's order.
@@ -25,9 +26,10 @@ std::vector<std::size_t> selected_cases(std::size_t count, RunSelection const& s
 /// State of the selected cases.
 struct RunState {
   std::size_t ok = 0;
-  std::vector<CaseResult> failed;    ///< without measures
-  std::vector<std::size_t> missing;  ///< cases without an intact result
-  std::vector<std::size_t> running;  ///< subset of `missing` that a process has claimed
+  std::vector<CaseResult> failed;       ///< without measures
+  std::vector<std::size_t> missing;     ///< cases without an intact result
+  std::vector<std::size_t> running;     ///< subset of `missing` that a process has claimed
+  std::vector<std::size_t> pairs_only;  ///< finished cases of which only the images were computed
   bool complete() const { return failed.empty() && missing.empty(); }
 };
 
@@ -41,12 +43,13 @@ bool needs_recomputation(CaseResult const& result, RunSelection const& selection
 /// Returns the folder in which a run with keep_images stores the files of a case: RUN/cases/INDEX.
 std::string images_folder(std::string const& run, std::size_t index);
 
-/// Returns true if images are requested, the case is finished and they do not exist, so that it must be recomputed.
-bool is_missing_images(std::string const& run, CaseResult const& result, RunSelection const& selection);
+/// Returns true if the case is finished without parts that are requested, so that it must be recomputed: images that do
+/// not exist, or vectors and errors of a case of which only the images were computed.
+bool is_missing_parts(std::string const& run, CaseResult const& result, RunSelection const& selection);
 
 /// Removes the results of the failed cases that a run will repeat. They are removed before the workers start, so that
 /// each is recomputed once, regardless of the number of workers. Cases claimed by other processes are skipped.
-/// @return state afterwards; cases without requested images count as missing
+/// @return state afterwards; cases without requested parts count as missing
 /// @throws OutputError
 RunState remove_failed_results(std::string const& run, Manifest const& cases, std::vector<std::size_t> const& selected,
                                RunSelection const& selection);
@@ -59,7 +62,7 @@ bool record_failure(std::string const& run, Manifest const& cases, std::size_t i
 
 enum class CaseEvent { begun, finished };
 
-/// Computes the cases of a selection that have no result or no requested images, one after the other. Each case is
+/// Computes the cases of a selection that have no result or lack requested parts, one after the other. Each case is
 /// claimed during its computation, and its result is checked again after claiming. Cases claimed by other processes are
 /// waited for, and computed here if the other process dies.
 /// @param first  position in `selected` at which to start, so that concurrent processes start at different cases

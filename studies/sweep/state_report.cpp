@@ -22,7 +22,8 @@ nlohmann::ordered_json state_json(std::string const& run, Manifest const& cases,
                               {"done", state.ok},
                               {"failed", state.failed.size()},
                               {"missing", state.missing.size()},
-                              {"running", state.running.size()}};
+                              {"running", state.running.size()},
+                              {"pairs_only", state.pairs_only.size()}};
   json["failures"] = nlohmann::ordered_json::array();
   for (CaseResult const& failed : state.failed) {
     json["failures"].push_back({{"case", failed.index},
@@ -40,6 +41,10 @@ std::string state_text(std::string const& run, Manifest const& cases, RunState c
                                  state.ok + state.failed.size() + state.missing.size(), state.ok, state.failed.size(),
                                  state.missing.size());
   text += state.running.empty() ? "\n" : fmt::format(" ({} of them being computed)\n", state.running.size());
+  if (!state.pairs_only.empty()) {
+    text += fmt::format("{} of the finished cases have images only; sweep run without --pairs-only measures them\n",
+                        state.pairs_only.size());
+  }
   for (std::size_t i = 0; i < std::min(most_named, state.failed.size()); ++i) {
     CaseResult const& failed = state.failed[i];
     text += fmt::format("failed: {}: {}{}\n", cases[failed.index].title(), failed.error,

@@ -11,6 +11,9 @@ namespace {
 std::string description_of(std::string const& measure) {
   static std::map<std::string, std::string> const known{
       {"signal_px", "rms of the ray truth at the vectors that count, per component"},
+      {"error_over_signal", "rms error against Eq. 9 (PIV: the flow) over signal_px"},
+      {"gradient_error_kg_m4",
+       "rms error against Eq. 9 as a density gradient averaged over the thickness: eq9.rms_px over the sensitivity"},
       {"blur_px",
        "rms over these vectors of the standard deviation of a virtual dot's rays on the sensor in the measurement "
        "image, per component"},

@@ -1,3 +1,6 @@
+#include <cmath>
+#include <cstring>
+
 #include "tests/end_to_end/support/program_fixture.h"
 
 namespace gladstone::end_to_end {
@@ -50,6 +53,39 @@ TEST_F(Design, PrintsTheSheetOfASetup) {
   std::string const text = succeed({"design", "setup.toml"});
   EXPECT_THAT(text, HasSubstr("M Z_D K L_z / (n0 p)"));
   EXPECT_THAT(text, HasSubstr("green"));
+}
+
+// The tunnel has two stops, of which one is recommended; the answer says what the other one would do.
+TEST_F(Design, RecommendationComesFirstAndJudgesTheNextStop) {
+  write("tunnel.toml", tunnel);
+  std::string const text = succeed({"design", "tunnel.toml", "--verify", "0"});
+  EXPECT_TRUE(text.starts_with("recommended set-up\n  lens ")) << text.substr(0, 80);
+  double const stop = json_of({"design", "tunnel.toml", "--verify", "0"})["recommended"]["lens.f_number"];
+  EXPECT_THAT(text, HasSubstr(stop == 8 ? "  next larger stop  f/16: " : "  next smaller stop f/8: "));
+  EXPECT_THAT(text, testing::Not(HasSubstr(stop == 8 ? "next smaller stop" : "next larger stop")));
+  auto const at = [&text](char const* piece) { return text.find(piece); };
+  for (char const* line : {"\n  stop ", "\n  target distance ", "\n  dots ", "\n  measures "}) {
+    EXPECT_LT(at(line), at("values of the free keys")) << line;
+  }
+  EXPECT_LT(at("binding constraints"), at("design sheet of the setup as written"));
+}
+
+// A free stop without a list: the neighbours are a full stop away, a factor sqrt(2).
+TEST_F(Design, JudgesAFullStopIfTheStopIsContinuous) {
+  std::string text = with(tunnel, "f_numbers = [8, 16]\n", "");
+  write("tunnel.toml", with(text, "dot_diameter_mm = [0.1, 3.0]", "dot_diameter_mm = [0.1, 3.0]\nf_number = [4, 32]"));
+  double const stop = json_of({"design", "tunnel.toml", "--verify", "0"})["recommended"]["lens.f_number"];
+  std::string const answer = succeed({"design", "tunnel.toml", "--verify", "0"});
+  auto const line = answer.find("next smaller stop f/");
+  ASSERT_NE(line, std::string::npos) << answer;
+  EXPECT_NEAR(std::stod(answer.substr(line + std::strlen("next smaller stop f/"))), stop / std::sqrt(2.0), 1e-3 * stop);
+}
+
+TEST_F(Design, SheetBeginsWithWhatIsNotGreen) {
+  std::string const text = succeed({"design", "setup.toml"});
+  auto const last = std::max(text.rfind(" violated\n") + 1, text.rfind(" marginal\n") + 1);
+  ASSERT_GT(last, 0u) << text;
+  EXPECT_GT(text.find(" green\n"), last - 1);
 }
 
 // A lens of 2 m has no field of view of 40 mm within 1.5 m.

@@ -119,8 +119,9 @@ TEST_F(Sweeps, FromStudyToTable) {
   for (std::string const name :
        {"ray_truth.rms_px", "eq9.bias_u_px", "eq9_cone.p95_px", "window_truth.gross_fraction",
         "budget.terms.noise.rms_px", "budget.total.rms_px", "budget.peak_locking_px", "magnification", "rays_per_dot",
-        "step_mm", "exposure", "caustic_fraction", "warnings"})
+        "step_mm", "exposure", "caustic_fraction", "warnings", "error_over_signal", "gradient_error_kg_m4"})
     EXPECT_THAT(header, HasSubstr(',' + name + ','));
+  EXPECT_EQ(collected["ranking"].size(), 3u);
   EXPECT_TRUE(first.starts_with("8,\"[32, 16]\",0,3,ok,")) << first;
   std::string const all = read("run/study.csv");
   EXPECT_EQ(std::count(all.begin(), all.end(), '\n'), 13);
@@ -154,6 +155,17 @@ TEST_F(Sweeps, ACaseIsWhatTheSingleCommandsMake) {
             nlohmann::json::parse(read("by_hand/errors.json"))["ray_truth"]["rms_px"]);
 }
 
+// M Z_D K L_z / (n0 p) px per kg/m^4 for M = 105/895, Z_D = 250 mm, K = 2.26e-4 m^3/kg, L_z = 10 mm and p = 10 um.
+TEST_F(Sweeps, ErrorsAreAlsoRelativeToTheSignalAndOfTheGradient) {
+  plan("run");
+  succeed({"sweep", "run", "run", "--quiet", "--case", "7"});
+  auto const measures = nlohmann::json::parse(read("run/cases/7.json"))["measures"];
+  double const error = measures["eq9.rms_px"], signal = measures["signal_px"];
+  double const sensitivity = 105.0 / 895 * 0.25 * 2.26e-4 * 0.01 / (1 + 2.26e-4 * 1.225) / 1e-5;
+  EXPECT_NEAR(measures["error_over_signal"], error / signal, 1e-12 * error / signal);
+  EXPECT_NEAR(measures["gradient_error_kg_m4"], error / sensitivity, 1e-9 * error / sensitivity);
+}
+
 // The result computed with the images is identical to the previous one, except for times.
 TEST_F(Sweeps, ImagesOfAFinishedCaseAreMadeWhenTheyAreWanted) {
   plan("run");
@@ -167,6 +179,33 @@ TEST_F(Sweeps, ImagesOfAFinishedCaseAreMadeWhenTheyAreWanted) {
   EXPECT_TRUE(std::filesystem::exists(in("run/cases/7/flow.tif")));
   EXPECT_EQ(numbers(), before);
   EXPECT_EQ(json_of({"sweep", "run", "run", "--case", "7", "--keep-images"})["computed"], 0);
+}
+
+// The images are those of a complete run, and a later run measures them; a complete case loses none of its numbers.
+TEST_F(Sweeps, PairsOnlyRendersAndALaterRunMeasures) {
+  plan("run");
+  auto const first = json_of({"sweep", "run", "run", "--case", "7", "--pairs-only"});
+  EXPECT_EQ(first["computed"], 1);
+  EXPECT_EQ(first["pairs_only"], 1);
+  EXPECT_TRUE(std::filesystem::exists(in("run/cases/7/flow.tif")));
+  EXPECT_FALSE(std::filesystem::exists(in("run/cases/7/vectors.h5")));
+  EXPECT_FALSE(std::filesystem::exists(in("run/cases/7/errors.json")));
+  std::string const image = read("run/cases/7/flow.tif");
+  EXPECT_EQ(json_of({"sweep", "run", "run", "--case", "7", "--pairs-only"})["computed"], 0);
+  EXPECT_THAT(succeed({"sweep", "status", "run"}), HasSubstr("have images only"));
+  Outcome const report = gladstone({"report", "run"});
+  EXPECT_EQ(report.exit_code, 2);
+  EXPECT_THAT(report.err, HasSubstr("contains no measured case"));
+  auto const then = json_of({"sweep", "run", "run", "--case", "7", "--keep-images"});
+  EXPECT_EQ(then["computed"], 1);
+  EXPECT_EQ(then["pairs_only"], 0);
+  EXPECT_TRUE(read("run/cases/7/flow.tif") == image);
+  auto const measures = nlohmann::json::parse(read("run/cases/7.json"))["measures"];
+  EXPECT_TRUE(measures.contains("ray_truth.rms_px"));
+  std::filesystem::remove_all(in("run/cases/7"));
+  EXPECT_EQ(json_of({"sweep", "run", "run", "--case", "7", "--pairs-only"})["computed"], 1);
+  EXPECT_EQ(nlohmann::json::parse(read("run/cases/7.json"))["measures"], measures);
+  EXPECT_TRUE(std::filesystem::exists(in("run/cases/7/flow.tif")));
 }
 
 TEST_F(Sweeps, ResultsThatWereRemovedWithTheirFolderAreComputedAgain) {

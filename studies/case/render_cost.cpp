@@ -1,0 +1,93 @@
+#include "studies/case/render_cost.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "render/base/parallel.h"
+#include "render/base/units.h"
+#include "render/focused_dots/focused_dots.h"
+#include "render/focused_dots/table_error.h"
+#include "render/method.h"
+#include "render/planning.h"
+#include "render/scene/build_camera.h"
+#include "render/scene/calibration_planes.h"
+#include "render/scene/ray_budget.h"
+#include "studies/case/expected_particles.h"
+
+namespace gladstone {
+namespace {
+
+/// Returns a medium in which rays need as many steps as in that of a setup, without reading a field.
+BuiltMedium stand_in_medium(MediumSetup setup) {
+  if (setup.field.kind != FieldKind::file) return build_medium(setup);
+  Bounds<double> const box = file_bounds(setup);
+  double const steps = steps_across(setup), finest = finest_length(setup);
+  setup.thickness = box.high.z - box.low.z;
+  setup.field = FieldSetup(UniformGradient<double>{});
+  BuiltMedium medium = build_medium(setup);
+  medium.finest = finest;
+  medium.coarsest_step = setup.thickness / steps;
+  return medium;
+}
+
+/// Builds a scene with the coarsest step and, except for PIV, with its dots.
+Scene cost_scene(Setup const& setup) {
+  Scene scene;
+  scene.setup = setup;
+  scene.imaging = setup.imaging();
+  scene.camera = build_camera(setup);
+  if (!setup.piv) scene.dots = build_target(setup);
+  scene.medium = stand_in_medium(setup.medium);
+  if (setup.medium.second_field) scene.second_medium = stand_in_medium(select_second_pulse(setup.medium));
+  scene.step = setup.medium.step_mm ? *setup.medium.step_mm * unit::millimetre : scene.medium.coarsest_step;
+  return scene;
+}
+
+/// Returns the number of particles that are lit and in view; NaN: unknown before their file is read.
+double lit_particles(Setup const& setup) {
+  return expected_particles(setup).per_pixel * setup.camera.columns * setup.camera.rows;
+}
+
+}  // namespace
+
+double RenderCost::seconds() const { return processor_seconds / thread_count(); }
+
+double RenderCost::bytes() const {
+  double sum = 0;
+  for (MemoryRequirement const& part : memory) sum += part.bytes;
+  return sum;
+}
+
+RenderCost estimate_render_cost(Setup const& setup) {
+  bool const planes = setup.calibration();
+  RenderCost cost;
+  cost.memory = memory_requirements(setup);
+  Scene scene = cost_scene(planes ? plane_setup(setup, setup.planes.front()) : setup);
+  if (planes) scene.setup.render.method = RenderMethod::rays;
+  cost.method = resolve_render_method(scene);
+  double const images = planes ? static_cast<double>(setup.planes.size()) : 1;
+  cost.sources = setup.piv ? lit_particles(setup) : images * static_cast<double>(scene.dots.centre.size());
+  if (cost.method == RenderMethod::formula) return cost;
+  bool const by_table = cost.method == RenderMethod::focused_dots, chief = scene.chief_rays_only();
+  if (by_table) {
+    std::vector<MemoryRequirement> const table = focused_dots_memory(setup);
+    cost.memory.insert(cost.memory.end(), table.begin(), table.end());
+  }
+  cost.rays_are_largest = !setup.render.rays_per_dot && !by_table && !chief;
+  std::uint64_t const automatic = chief ? 1 : by_table ? initial_table_rays : max_rays_per_source(scene);
+  scene.rays_per_dot = setup.render.rays_per_dot.value_or(automatic);
+  cost.rays_per_source = static_cast<double>(scene.rays_per_dot);
+  RayBudget plan;
+  plan.rays = scene.rays_per_dot;
+  if (setup.piv) {
+    double const media = scene.second_medium ? 2 : 1;
+    cost.processor_seconds = media * cost.sources * cost.rays_per_source * ray_seconds(scene);
+  } else if (by_table && !focused_dots(scene)) {  // refused by render, with the reason
+    cost.processor_seconds = not_measured;
+  } else {
+    cost.processor_seconds = images * render_seconds(scene, plan, planes ? RenderTheory::no : RenderTheory::yes);
+  }
+  return cost;
+}
+
+}  // namespace gladstone

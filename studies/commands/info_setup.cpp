@@ -1,0 +1,71 @@
+#include "studies/commands/info_setup.h"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "studies/case/cameras.h"
+#include "studies/case/case.h"
+#include "studies/case/json_text.h"
+#include "studies/design/setup_overview.h"
+#include "studies/figures/gnuplot.h"
+#include "studies/figures/layout_figure.h"
+#include "studies/report/layout_view.h"
+
+namespace gladstone {
+namespace {
+
+/// Returns the figure's name for one of several cameras.
+std::string figure_of_camera(std::string const& figure, std::string const& camera) {
+  if (camera.empty()) return figure;
+  std::filesystem::path path = figure;
+  path.replace_filename(path.stem().string() + '_' + camera + path.extension().string());
+  return path.string();
+}
+
+/// Draws the layout of a camera. @return false without gnuplot
+bool draw_setup(std::string const& path, CaseSetup loaded) {
+  Setup const setup = loaded.setup;
+  try {
+    if (auto const view = layout_view(std::move(loaded))) {
+      write_layout_view(path, *view);
+    } else {
+      write_camera_layout(path, setup);
+    }
+    return true;
+  } catch (GnuplotMissing const& missing) {
+    spdlog::warn("{}", missing.what());
+    return false;
+  }
+}
+
+}  // namespace
+
+Description describe_setup(SetupDocument const& setup, std::string const& name, std::string const& figure) {
+  std::string text;
+  nlohmann::ordered_json cameras = nlohmann::ordered_json::object(), only;
+  for (CameraCase& camera : camera_cases(setup)) {
+    std::string const path = figure_of_camera(figure, camera.name);
+    SetupDocument const document = camera.document.copy();
+    CaseSetup loaded = load_case_setup(std::move(camera.document));
+    for (std::string const& warning : loaded.warnings) spdlog::warn("{}", warning);
+    for (std::string const& warning : list_neglected_effects(loaded.setup)) {
+      if (!loaded.setup.calibration()) spdlog::warn("{}", warning);
+    }
+    SetupOverview const overview = make_setup_overview(std::move(loaded));
+    only = overview_json(overview);
+    text += fmt::format("{}{}: {}\n{}", name, camera.name.empty() ? "" : ", camera " + camera.name, overview.experiment,
+                        overview_text(overview));
+    if (!figure.empty() && draw_setup(path, load_case_setup(document.copy()))) {
+      only["figure"] = path;
+      text += fmt::format("  figure: {}\n", path);
+    }
+    if (!camera.name.empty()) cameras[camera.name] = only;
+  }
+  nlohmann::ordered_json const json = cameras.empty() ? only : nlohmann::ordered_json{{"cameras", cameras}};
+  return {json_text(json), text};
+}
+
+}  // namespace gladstone

@@ -1,0 +1,69 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "render/base/error.h"
+#include "render/base/units.h"
+#include "render/files/output_file.h"
+#include "studies/case/cameras.h"
+#include "studies/case/case.h"
+#include "studies/case/json_text.h"
+#include "studies/case/target_pattern.h"
+#include "studies/commands/command.h"
+
+namespace gladstone {
+namespace {
+
+/// Formats a pattern by the ending of the output's name.
+std::string formatted_target(TargetPattern const& pattern, std::string const& path) {
+  std::string const ending = std::filesystem::path(path).extension().string();
+  if (ending == ".pdf") return target_pdf(pattern);
+  if (ending == ".svg") return target_svg(pattern);
+  if (ending == ".csv") return target_csv(pattern);
+  throw OutputError(path, "has no ending of a pattern's file; use .pdf, .svg or .csv");
+}
+
+}  // namespace
+
+CommandBody attach_target(CLI::App& app, GlobalOptions const& options) {
+  struct Arguments {
+    std::string setup, output;
+    std::vector<std::string> overrides;
+  };
+  auto arguments = std::make_shared<Arguments>();
+  app.add_option("setup", arguments->setup, "Setup of a BOS experiment or a calibration (TOML)")->required();
+  app.add_option("-o,--output", arguments->output,
+                 "Pattern to create: .pdf or .svg at true scale with a scale bar, or .csv (x_mm,y_mm)")
+      ->required();
+  app.add_option("--set", arguments->overrides, "Override a key: --set target.dot_diameter_mm=0.5")
+      ->take_all()
+      ->expected(1)
+      ->trigger_on_parse(false);
+  return [arguments, &options] {
+    SetupDocument document = SetupDocument::from_file(arguments->setup);
+    for (std::string const& assignment : arguments->overrides) document.override_key(assignment);
+    // All cameras of a setup see the same target.
+    CaseSetup const loaded = load_case_setup(std::move(camera_cases(document).front().document));
+    TargetPattern const pattern = make_target_pattern(loaded.setup, arguments->setup);
+    OutputFile::write_text(arguments->output, formatted_target(pattern, arguments->output));
+    TargetPage const page = make_target_page(pattern);
+    double const diameter_mm = pattern.diameter / unit::millimetre;
+    Vec2d const extent = pattern.extent / unit::millimetre;
+    nlohmann::ordered_json const json{{"output", arguments->output},
+                                      {"dots", pattern.centre.size()},
+                                      {"dot_diameter_mm", diameter_mm},
+                                      {"extent_mm", {extent.x, extent.y}},
+                                      {"page_mm", {page.size_mm.x, page.size_mm.y}},
+                                      {"scale_bar_mm", page.scale_bar_mm}};
+    print_result(options, json_text(json),
+                 fmt::format("{}: {} dots of {:.6g} mm on {:.6g} x {:.6g} mm, page {:.6g} x {:.6g} mm, scale bar {:g} "
+                             "mm\n",
+                             arguments->output, pattern.centre.size(), diameter_mm, extent.x, extent.y, page.size_mm.x,
+                             page.size_mm.y, page.scale_bar_mm));
+    return ok;
+  };
+}
+
+}  // namespace gladstone

@@ -1,0 +1,249 @@
+#include "studies/design/setup_overview.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <tuple>
+
+#include "render/base/parallel.h"
+#include "render/base/units.h"
+#include "render/method.h"
+#include "render/scene/build_camera.h"
+#include "render/scene/calibration_planes.h"
+#include "studies/case/json_text.h"
+
+namespace gladstone {
+namespace {
+
+using unit::mm;
+
+/// Rows of the BOS sheet that an overview contains.
+constexpr std::array bos_keys{"magnification",     "gladstone_dale_m3_kg",     "magnification_at_medium",
+                              "field_of_view_mm",  "field_of_view_height_mm",  "field_of_view_at_dots_mm",
+                              "cone_diameter_mm",  "diffraction_diameter_px",  "dot_diameter_px",
+                              "depth_of_field_mm", "sensitivity_px_per_kg_m4", "displacement_px",
+                              "resolution_mm",     "dots_per_window",          "peak_electrons",
+                              "random_error_px",   "gradient_min_kg_m4"};
+/// Rows that depend on a number of dots per window, which only targets of kind "dots" have.
+constexpr std::array pattern_keys{"dots_per_window", "random_error_px", "gradient_min_kg_m4"};
+/// Rows about the image of a dot, which an image target does not have.
+constexpr std::array dot_keys{"dot_diameter_px", "peak_electrons"};
+/// Rows that a camera beyond the sheet replaces by those of add_camera_rows().
+constexpr std::array thin_lens_keys{"magnification",           "magnification_at_medium",  "field_of_view_mm",
+                                    "field_of_view_height_mm", "field_of_view_at_dots_mm", "diffraction_diameter_px",
+                                    "dot_diameter_px",         "depth_of_field_mm"};
+/// Rows of the PIV sheet that depend on the flow.
+constexpr std::array flow_keys{"displacement_px", "in_plane_max_m_s", "out_of_plane_max_m_s"};
+
+template <class Keys>
+bool holds(Keys const& keys, std::string const& key) {
+  return std::find(keys.begin(), keys.end(), key) != keys.end();
+}
+
+SheetRow plain_row(char const* key, char const* name, double value, char const* unit_name, std::string note = "") {
+  return {"", key, name, value, unit_name, "", "", Margin::none, std::move(note)};
+}
+
+/// Adds paraxial values of any camera, for the plane of the dots or particles.
+void add_camera_rows(std::vector<SheetRow>& rows, Setup const& setup) {
+  double const pixel = setup.pixel_size();
+  rows.push_back(plain_row("magnification", "magnification", setup.imaging().magnification, "", "near the axis"));
+  rows.push_back(plain_row("field_of_view_mm", "field of view in the plane of the dots, width",
+                           setup.camera.columns * pixel / mm, "mm", "by the scale at the centre"));
+  rows.push_back(plain_row("field_of_view_height_mm", "field of view in the plane of the dots, height",
+                           setup.camera.rows * pixel / mm, "mm"));
+  rows.push_back(plain_row("entrance_pupil_mm", "diameter of the entrance pupil", setup.imaging().entrance_pupil / mm,
+                           "mm", setup.imaging().entrance_pupil == 0 ? "chief rays only" : ""));
+  rows.push_back(
+      plain_row("spot_diameter_px", "point spread function, e^-2 diameter", setup.spot_e2_diameter_px(), "px"));
+}
+
+/// Adds the size of the dots in the image.
+void add_dot_image(std::vector<SheetRow>& rows, Setup const& setup) {
+  rows.push_back(plain_row("geometric_dot_px", "geometric image of a dot, diameter", setup.geometric_dot_px(), "px"));
+  rows.push_back(plain_row("defocus_diameter_px", "circle of confusion of the dots", setup.defocus_diameter_px(), "px",
+                           "0 in focus"));
+}
+
+void add_lenslets(std::vector<SheetRow>& rows, Setup const& setup) {
+  if (!setup.lenslets) return;
+  double const pixels = setup.lenslets->pitch / setup.camera.pixel_pitch;
+  rows.push_back(
+      plain_row("pixels_per_lenslet", "pixels across a lenslet", pixels, "px", "views along each direction"));
+  rows.push_back(plain_row("lenslets_across", "lenslets across the sensor", setup.camera.columns / pixels, ""));
+}
+
+/// Returns the number of dots that the sensor sees; NaN if that would take long, for tracing a ray of each.
+double count_dots_in_view(Setup const& setup, DotPattern const& dots) {
+  constexpr std::size_t most_traced = 20000;
+  if (!setup.has_closed_form_layout() && dots.centre.size() > most_traced) return NAN;
+  Scene scene;
+  scene.setup = setup;
+  scene.imaging = setup.imaging();
+  scene.camera = build_camera(setup);
+  return static_cast<double>(
+      std::count_if(dots.centre.begin(), dots.centre.end(), [&scene](Vec2d centre) { return scene.in_view(centre); }));
+}
+
+void add_dot_numbers(std::vector<SheetRow>& rows, Setup const& setup) {
+  bool const image = setup.target.kind == TargetKind::image;
+  DotPattern const dots = build_target(setup);
+  rows.push_back(plain_row("dots", image ? "lit pixels of the target's image" : "dots on the target",
+                           static_cast<double>(dots.centre.size()), ""));
+  if (double const seen = count_dots_in_view(setup, dots); std::isfinite(seen)) {
+    rows.push_back(plain_row("dots_in_view", image ? "those in view" : "dots in view", seen, ""));
+  }
+}
+
+bool has_sheet(Setup const& setup) {
+  return std::isfinite(setup.lens.f_number) && std::isfinite(setup.lens.focal_length) && !setup.lenslets;
+}
+
+void add_bos(SetupOverview& overview, CaseSetup& loaded) {
+  Setup& setup = loaded.setup;
+  bool const thin = setup.has_closed_form_layout(), dots = setup.target.kind == TargetKind::dots;
+  bool const image = setup.target.kind == TargetKind::image, sheet = has_sheet(setup);
+  if (!closed_form_gradient(setup)) {
+    setup.medium.field.kind = FieldKind::none;
+    overview.notes.emplace_back("the density field is not read: the displacement is that of a usual gradient");
+  }
+  if (!thin || !sheet) {
+    add_camera_rows(overview.rows, setup);
+    if (!image) add_dot_image(overview.rows, setup);
+  }
+  if (sheet) {
+    FixedDesignParameters const given = collect_fixed_parameters(loaded);
+    for (SheetRow const& row : bos_sheet(setup, make_design_point(setup, given)).rows) {
+      bool const wanted = holds(bos_keys, row.key) && (dots || !holds(pattern_keys, row.key)) &&
+                          (!image || !holds(dot_keys, row.key)) && (thin || !holds(thin_lens_keys, row.key));
+      if (wanted) overview.rows.push_back(row);
+    }
+  } else {
+    overview.notes.emplace_back(
+        "sensitivity and blur by the aperture are not given: the design sheet requires a stop, a finite focal length "
+        "and no lenslets");
+  }
+  add_dot_numbers(overview.rows, setup);
+}
+
+void add_piv(SetupOverview& overview, CaseSetup const& loaded) {
+  Setup const& setup = loaded.setup;
+  if (!std::isfinite(setup.lens.f_number)) {
+    add_camera_rows(overview.rows, setup);
+    overview.notes.emplace_back("particle images are not given: the camera has no aperture stop");
+    return;
+  }
+  bool const flow_read = !setup.piv->flow.file;
+  if (!flow_read) overview.notes.emplace_back("the velocity file is not read: displacements are not given");
+  for (SheetRow const& row : piv_sheet(loaded).rows) {
+    if (flow_read || !holds(flow_keys, row.key)) overview.rows.push_back(row);
+  }
+  if (std::isfinite(overview.cost.sources)) {
+    overview.rows.push_back(
+        plain_row("particles_in_view", "particles in view", overview.cost.sources, "", "within the laser sheet"));
+  } else {
+    overview.notes.emplace_back("the file of particles is not read: their number is not given");
+  }
+}
+
+void add_calibration(SetupOverview& overview, Setup const& setup) {
+  auto& rows = overview.rows;
+  add_camera_rows(rows, setup);
+  auto const [first, last] = std::minmax_element(setup.planes.begin(), setup.planes.end());
+  rows.push_back(plain_row("planes", "planes", static_cast<double>(setup.planes.size()), ""));
+  for (auto const& [z, key, blur_key] : {std::tuple{*first, "first_plane_mm", "first_plane_defocus_px"},
+                                         std::tuple{*last, "last_plane_mm", "last_plane_defocus_px"}}) {
+    Setup const there = plane_setup(setup, z);
+    rows.push_back(
+        plain_row(key, "plane at Z", z / mm, "mm", fmt::format("magnification {:.5g}", there.imaging().magnification)));
+    rows.push_back(plain_row(blur_key, "circle of confusion of its dots", there.defocus_diameter_px(), "px"));
+  }
+  rows.push_back(plain_row("geometric_dot_px", "geometric image of a dot, diameter", setup.geometric_dot_px(), "px"));
+  rows.push_back(plain_row("dot_spacing_px", "distance between dots in the image",
+                           setup.target.spacing / setup.pixel_size(), "px"));
+  add_dot_numbers(rows, plane_setup(setup, 0));
+}
+
+std::string cost_text(RenderCost const& cost) {
+  std::string memory;
+  for (MemoryRequirement const& part : cost.memory) {
+    if (part.bytes > 0)
+      memory += fmt::format("{}{} {:.3g} MB", memory.empty() ? "" : ", ", part.what, part.bytes / 1e6);
+  }
+  std::string text = "render\n";
+  std::string const rays =
+      cost.method == RenderMethod::formula
+          ? "no rays"
+          : fmt::format("{}{:.6g} rays per source", cost.rays_are_largest ? "up to " : "", cost.rays_per_source);
+  text += fmt::format("  {:<46}{}, {}\n", "method", to_string(cost.method), rays);
+  if (std::isfinite(cost.processor_seconds)) {
+    text += fmt::format("  {:<46}{}{:.2g} s on {} threads of a CPU, without the choice of step and rays\n", "time",
+                        cost.rays_are_largest ? "up to " : "about ", cost.seconds(), thread_count());
+  } else {
+    text += fmt::format("  {:<46}unknown\n", "time");
+  }
+  return text + fmt::format("  {:<46}{:.3g} MB ({})\n", "memory", cost.bytes() / 1e6, memory);
+}
+
+nlohmann::ordered_json cost_json(RenderCost const& cost) {
+  nlohmann::ordered_json memory = nlohmann::ordered_json::object();
+  for (MemoryRequirement const& part : cost.memory) memory[part.what] = part.bytes;
+  return {{"method", to_string(cost.method)},
+          {"sources", number_or_null(cost.sources)},
+          {"rays_per_source", cost.rays_per_source},
+          {"rays_are_largest", cost.rays_are_largest},
+          {"processor_seconds", number_or_null(cost.processor_seconds)},
+          {"threads", thread_count()},
+          {"seconds", number_or_null(cost.seconds())},
+          {"memory_bytes", cost.bytes()},
+          {"memory", memory}};
+}
+
+}  // namespace
+
+SetupOverview make_setup_overview(CaseSetup loaded) {
+  SetupOverview overview;
+  overview.cost = estimate_render_cost(loaded.setup);
+  if (loaded.setup.calibration()) {
+    overview.experiment = "calibration";
+    add_calibration(overview, loaded.setup);
+  } else if (loaded.setup.piv) {
+    overview.experiment = "piv";
+    add_piv(overview, loaded);
+  } else {
+    overview.experiment = "bos";
+    add_bos(overview, loaded);
+  }
+  add_lenslets(overview.rows, loaded.setup);
+  return overview;
+}
+
+std::string overview_text(SetupOverview const& overview) {
+  std::string text;
+  for (SheetRow const& row : overview.rows) {
+    std::string const value = fmt::format("{:.6g}{}{}", row.value, row.unit.empty() ? "" : " ", row.unit);
+    text += fmt::format("  {:<46}{}", row.name, value);
+    if (row.margin != Margin::none) text += fmt::format("  [{}]", margin_word(row.margin));
+    text += (row.note.empty() ? "" : "  (" + row.note + ')') + '\n';
+  }
+  text += cost_text(overview.cost);
+  for (std::string const& note : overview.notes) text += "  note: " + note + '\n';
+  return text;
+}
+
+nlohmann::ordered_json overview_json(SetupOverview const& overview) {
+  nlohmann::ordered_json json{{"experiment", overview.experiment}};
+  for (SheetRow const& row : overview.rows) json[row.key] = number_or_null(row.value);
+  if (json.contains("field_of_view_height_mm")) {
+    json["field_of_view_mm"] = {json["field_of_view_mm"], json["field_of_view_height_mm"]};
+    json.erase("field_of_view_height_mm");
+  }
+  json["notes"] = overview.notes;
+  json["render"] = cost_json(overview.cost);
+  return json;
+}
+
+}  // namespace gladstone

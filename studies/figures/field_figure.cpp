@@ -1,0 +1,129 @@
+#include "studies/figures/field_figure.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "render/base/available_memory.h"
+#include "render/base/error.h"
+#include "render/base/image.h"
+#include "render/base/interrupt.h"
+#include "render/base/progress.h"
+#include "render/base/units.h"
+#include "studies/figures/gnuplot.h"
+#include "studies/figures/map_panels.h"
+
+namespace gladstone {
+namespace {
+
+// dimensions of the figure [px]
+constexpr int plane_width = 330, least_height = 60, most_height = 495, to_left = 66, to_right = 24, above_plane = 64,
+              below_plane = 56, bar_space = 90;
+
+/// Values in one plane; columns along the axis `across`, rows along `up`, both ascending.
+struct FieldPlane {
+  int across, up, normal;  ///< axes of the world: 0, 1, 2
+  Image<double> map;
+};
+
+/// Reads the three planes through the middle nodes in one pass over the field.
+std::vector<FieldPlane> read_middle_planes(FieldSource& source) {
+  std::array<int, 3> const& nodes = source.grid().nodes;
+  std::vector<FieldPlane> planes;
+  for (auto const& [across, up, normal] :
+       {std::array<int, 3>{0, 1, 2}, std::array<int, 3>{0, 2, 1}, std::array<int, 3>{2, 1, 0}}) {
+    planes.push_back({across, up, normal,
+                      Image<double>(nodes[static_cast<std::size_t>(across)], nodes[static_cast<std::size_t>(up)])});
+  }
+  std::size_t const count = static_cast<std::size_t>(nodes[0]) * static_cast<std::size_t>(nodes[1]);
+  require_memory(source.name(), "a plane of " + std::to_string(count) + " values",
+                 sizeof(double) * static_cast<double>(count));
+  std::vector<double> values(count);
+  auto const at = [&](int i, int j) {
+    return values[static_cast<std::size_t>(j) * static_cast<std::size_t>(nodes[0]) + static_cast<std::size_t>(i)];
+  };
+  Progress progress("drawing " + source.name(), static_cast<std::size_t>(nodes[2]));
+  for (int k = 0; k < nodes[2]; ++k) {
+    throw_if_interrupted();
+    source.read_planes(k, 1, values);
+    for (int j = 0; j < nodes[1]; ++j) {
+      for (int i = 0; k == nodes[2] / 2 && i < nodes[0]; ++i) planes[0].map(i, j) = at(i, j);
+      planes[2].map(k, j) = at(nodes[0] / 2, j);
+    }
+    for (int i = 0; i < nodes[0]; ++i) planes[1].map(i, k) = at(i, nodes[1] / 2);
+    progress.advance();
+  }
+  std::erase_if(planes, [](FieldPlane const& plane) { return plane.map.columns() < 2 || plane.map.rows() < 2; });
+  return planes;
+}
+
+/// Coordinates of the nodes along an axis, in mm or numbers of nodes.
+struct NodeAxis {
+  NodeAxis(FieldSource const& source, int axis, bool lengths_known)
+      : nodes(source.grid().nodes[static_cast<std::size_t>(axis)]) {
+    char const name = "xyz"[axis];
+    if (lengths_known) {
+      double const unit_mm = source.units().metres() / unit::millimetre;
+      first = source.grid().origin[axis] * unit_mm;
+      step = source.grid().spacing[axis] * unit_mm;
+    }
+    label = fmt::format("{} [{}]", name, lengths_known ? "mm" : "nodes");
+    middle = lengths_known ? fmt::format("{} = {:.4g} mm", name, first + step * (nodes / 2))
+                           : fmt::format("{} = node {}", name, nodes / 2);
+  }
+  double length() const { return step * nodes; }
+  std::string range() const { return fmt::format("[{:.10g}:{:.10g}]", first - step / 2, first + step * (nodes - 0.5)); }
+
+  int nodes;
+  double first = 0, step = 1;
+  std::string label;
+  std::string middle;  ///< position of the middle node
+};
+
+}  // namespace
+
+void write_field_figure(std::string const& path, FieldSource& source, bool lengths_known) {
+  std::vector<FieldPlane> const planes = read_middle_planes(source);
+  if (planes.empty()) throw DataError(path, "cannot be drawn (the field has two nodes along fewer than two axes)");
+  std::vector<NodeAxis> axes;
+  for (int axis = 0; axis < 3; ++axis) axes.emplace_back(source, axis, lengths_known);
+  auto const axis_of = [&axes](int axis) -> NodeAxis const& { return axes[static_cast<std::size_t>(axis)]; };
+  std::vector<int> heights;
+  ColourRange range = colour_range(planes.front().map, ColourScale::sequential);
+  for (FieldPlane const& plane : planes) {
+    double const ratio = axis_of(plane.up).length() / axis_of(plane.across).length();
+    heights.push_back(std::clamp(static_cast<int>(std::lround(plane_width * ratio)), least_height, most_height));
+    ColourRange const own = colour_range(plane.map, ColourScale::sequential);
+    range = {std::min(range.lower, own.lower), std::max(range.upper, own.upper)};
+  }
+  int const cell = to_left + plane_width + to_right, tallest = *std::max_element(heights.begin(), heights.end());
+  int const drawn = static_cast<int>(planes.size());
+  GnuplotFigure plot(drawn * cell + bar_space, above_plane + tallest + below_plane);
+  std::string const unit_name = source.units().values.empty() ? "" : " [" + source.units().values + ']';
+  plot.command("set multiplot; unset key; set tics out nomirror font 'DejaVu Sans,9'");
+  plot.command(fmt::format("set label 1 {} at screen 0.5, screen 0.97 center font 'DejaVu Sans,13'",
+                           GnuplotFigure::quoted(source.name() + unit_name)));
+  plot.command(sequential_palette());
+  plot.command(fmt::format("set cbrange [{:.10g}:{:.10g}]", range.lower, range.upper));
+  for (int i = 0; i < drawn; ++i) {
+    FieldPlane const& plane = planes[static_cast<std::size_t>(i)];
+    NodeAxis const &across = axis_of(plane.across), &up = axis_of(plane.up);
+    int const left = i * cell + to_left;
+    plot.set_margins(left, left + plane_width, above_plane, above_plane + heights[static_cast<std::size_t>(i)]);
+    bool const last = i == drawn - 1;
+    plot.command(last ? "set colorbox" : "unset colorbox");
+    plot.command(fmt::format("set title {}; set xlabel {}; set ylabel {}",
+                             GnuplotFigure::quoted(axis_of(plane.normal).middle), GnuplotFigure::quoted(across.label),
+                             GnuplotFigure::quoted(up.label)));
+    plot.command(fmt::format("set xrange {}; set yrange {}", across.range(), up.range()));
+    plot.command(
+        fmt::format("plot {} with image", plot.add_map(plane.map, across.first, across.step, up.first, up.step)));
+    if (i == 0) plot.command("unset label 1");
+  }
+  plot.command("unset multiplot");
+  plot.write(path);
+}
+
+}  // namespace gladstone
