@@ -17,4 +17,5 @@ NB_MODULE(_core, module) {
   bind_calibration(module);
   bind_design(module);
   bind_study(module);
+  bind_sequence(module);
 }

@@ -2,6 +2,7 @@
 
 import pathlib
 import re
+import shutil
 
 import pytest
 
@@ -25,7 +26,12 @@ def test_code_of_the_page_runs(bos, tmp_path, monkeypatch):
     small.save(tmp_path / "setup.toml")
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr("gladstone._benchmark.benchmark_cases", lambda: ["vortex"])
-    names = {"my_network": lambda a, b: gs.correlate(a, b, window=32).to_xarray()}
+    small.render(device="cpu").save(tmp_path / "case")
+    for k in range(2):
+        shutil.copy(tmp_path / "case" / "reference.tif", tmp_path / f"A_{k}.tif")
+        shutil.copy(tmp_path / "case" / "flow.tif", tmp_path / f"B_{k}.tif")
+    names = {"first_images": "A_*.tif", "second_images": "B_*.tif"}
+    names |= {"my_network": lambda a, b: gs.correlate(a, b, window=32).to_xarray()}
     blocks = code_blocks()
     assert len(blocks) >= 5
     for block in blocks:

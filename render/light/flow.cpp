@@ -28,7 +28,7 @@ void read_kind(FlowKinds<Kinds...>, std::string const& word, SetupTable& table, 
 
 }  // namespace
 
-FlowSetup read_flow_setup(SetupTable table, std::optional<ShockPlane> const& shock) {
+FlowSetup read_flow_setup(SetupTable table, std::optional<ShockPlane> const& shock, std::optional<double> dt) {
   FlowSetup setup;
   setup.shock = shock;
   std::string const word = table.kind_word("kind", UniformFlow::kind, kind_words(AllFlows{}));
@@ -43,7 +43,12 @@ FlowSetup read_flow_setup(SetupTable table, std::optional<ShockPlane> const& sho
                     "medium.field.mach); give a velocity parallel to the front");
     }
   }
-  setup.dt = table.quantity("dt_us", setup.dt, unit::microsecond, Range::positive(1e12));
+  if (dt) {
+    table.refuse("dt_us", "conflicts with sequence.dt_us (both set the time between the frames); remove it");
+    setup.dt = *dt;
+  } else {
+    setup.dt = table.quantity("dt_us", setup.dt, unit::microsecond, Range::positive(1e12));
+  }
   return setup;
 }
 

@@ -62,8 +62,11 @@ struct FlowSetup {
   std::shared_ptr<std::vector<float> const> owner;  ///< memory of the coefficients; null before load_flow()
 };
 
-/// Reads table [flow]. @param shock  shock front of a medium of kind normal_shock
-FlowSetup read_flow_setup(SetupTable table, std::optional<ShockPlane> const& shock = std::nullopt);
+/// Reads table [flow].
+/// @param shock  shock front of a medium of kind normal_shock
+/// @param dt     time between the frames of a sequence [s], in place of the key dt_us, which is then refused
+FlowSetup read_flow_setup(SetupTable table, std::optional<ShockPlane> const& shock = std::nullopt,
+                          std::optional<double> dt = std::nullopt);
 
 /// Loads the velocity file of a field of kind "file", which has zero velocity until then. Does nothing for other kinds.
 /// @return warning about assumptions made in reading the file; empty: none

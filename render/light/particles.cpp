@@ -12,67 +12,10 @@
 #include "render/base/units.h"
 #include "render/files/text_file.h"
 #include "render/light/number_table.h"
+#include "render/light/particle_motion.h"
 
 namespace gladstone {
 namespace {
-
-// number of particles from which the number of steps is chosen
-constexpr std::size_t planned_paths = 1024;
-constexpr int most_steps_of_path = 1 << 12;
-constexpr double share_for_derivatives = 0.01;  // time step of derivatives, relative to dt
-
-ParticleVelocity velocity_of(ParticleSetup const& setup, FlowSetup const& flow, double diameter) {
-  return {flow.flow, setup.response_time(diameter), share_for_derivatives * flow.dt};
-}
-
-/// Chooses the number of integration steps for all particles from a sample of them, spread evenly over the list.
-PathPlan plan_paths(ParticleSetup const& setup, FlowSetup const& flow, std::vector<Vec3d> const& start,
-                    std::vector<double> const& diameter, double time, double tolerance) {
-  std::size_t const count = std::min(start.size(), planned_paths);
-  PathPlan plan;
-  if (velocity_of(setup, flow, 0).exact()) return plan;
-  auto const particle = [&](std::size_t k) { return k * start.size() / count; };
-  auto const ends = [&](int steps) {
-    std::vector<Vec3d> found(count);
-    parallel_for(count, [&](std::size_t k) {
-      std::size_t const i = particle(k);
-      found[k] = moved(velocity_of(setup, flow, diameter[i]), start[i], time, steps);
-    });
-    return found;
-  };
-  std::vector<Vec3d> coarse = ends(1);
-  for (plan.steps = 2;; plan.steps *= 2) {
-    std::vector<Vec3d> fine = ends(plan.steps);
-    plan.error = 0;
-    for (std::size_t k = 0; k < count; ++k) plan.error = std::max(plan.error, length(fine[k] - coarse[k]));
-    if (plan.error <= tolerance || plan.steps >= most_steps_of_path) break;
-    coarse = std::move(fine);
-  }
-  for (std::size_t k = 0; setup.density && k < count; ++k) {
-    std::size_t const i = particle(k);
-    plan.lag_error =
-        std::max(plan.lag_error, flow.dt * length(velocity_of(setup, flow, diameter[i]).neglected(start[i])));
-  }
-  return plan;
-}
-
-/// Computes the photons per area incident on every particle at both pulses.
-void light_particles(ParticleSetup const& setup, LaserSheet<double> const& sheet, Particles& particles) {
-  auto const inside = [&setup](Vec3d p) {
-    if (!setup.volume) return true;
-    Vec3d const from = p - setup.center, size = *setup.volume;
-    return 2 * std::abs(from.x) <= size.x && 2 * std::abs(from.y) <= size.y && 2 * std::abs(from.z) <= size.z;
-  };
-  for (int pulse = 0; pulse < 2; ++pulse) {
-    particles.photons[pulse].resize(particles.size());
-    parallel_chunks(particles.size(), 4096, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        Vec3d const p = particles.place[pulse][i];
-        particles.photons[pulse][i] = inside(p) ? sheet.photons(p, pulse) : 0.0;
-      }
-    });
-  }
-}
 
 /// Diameters of a table, with their cumulative weights.
 struct DiameterTable {
@@ -98,37 +41,6 @@ struct DiameterTable {
 /// Returns the random engine for a particle's diameter, independent of the engine for its position.
 KeyedEngine size_engine(std::uint64_t seed, std::size_t particle) {
   return {mix64(seed + 1), RandomStream::particles, particle};
-}
-
-/// Returns the number of candidate positions per particle for rejection sampling of a non-uniform number density.
-double draws_per_particle(ParticleSetup const& setup, FlowSetup const& flow) {
-  return flow.flow.kind.visit([&](auto const& held) {
-    if constexpr (requires { held.most_crowding(); }) {
-      double const tau = setup.response_time(setup.diameter.middle);
-      return held.most_crowding() / held.mean_crowding(*setup.volume, setup.center, tau);
-    }
-    return 1.0;
-  });
-}
-
-/// Returns true if a candidate particle is accepted by rejection sampling.
-bool crowds_here(Flow const& flow, Vec3d place, double tau, KeyedEngine& engine) {
-  return flow.kind.visit([&](auto const& held) {
-    if constexpr (requires { held.most_crowding(); }) {
-      return to_unit(engine()) * held.most_crowding() < held.crowding(place, tau);
-    }
-    return true;
-  });
-}
-
-/// Counts the particles that are outside the velocity field of a file at either pulse.
-std::size_t count_outside(FlowSetup const& flow, Particles const& particles) {
-  std::size_t count = 0;
-  for (std::size_t i = 0; flow.file && i < particles.size(); ++i) {
-    bool const inside = velocity_known(flow, particles.place[0][i]) && velocity_known(flow, particles.place[1][i]);
-    count += inside ? 0 : 1;
-  }
-  return count;
 }
 
 }  // namespace
@@ -218,7 +130,7 @@ Particles seed_particles(ParticleSetup const& setup, double count, FlowSetup con
   Progress progress("moving particles", seeded);
   parallel_chunks(seeded, 256, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      ParticleVelocity const velocity = velocity_of(setup, flow, particles.diameter[i]);
+      ParticleVelocity const velocity = particle_velocity(setup, flow, particles.diameter[i]);
       particles.place[1][i] = moved(velocity, middle[i], flow.dt / 2, particles.path.steps);
       middle[i] = moved(velocity, middle[i], -flow.dt / 2, particles.path.steps);
     }
@@ -258,7 +170,7 @@ Particles read_particles(ParticleSetup const& setup, FlowSetup const& flow, Lase
   parallel_chunks(particles.size(), 256, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       particles.place[1][i] =
-          moved(velocity_of(setup, flow, particles.diameter[i]), start[i], flow.dt, particles.path.steps);
+          moved(particle_velocity(setup, flow, particles.diameter[i]), start[i], flow.dt, particles.path.steps);
     }
   });
   light_particles(setup, sheet, particles);

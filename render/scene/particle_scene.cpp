@@ -173,6 +173,60 @@ std::string warning_of_small_displacements(Scene const& scene, ParticleCensus co
       8 / census.largest_px * scene.setup.piv->flow.dt / unit::microsecond);
 }
 
+/// @throws DataError if no particle is illuminated at either pulse
+void require_light(Particles const& particles) {
+  auto const lit = [&particles](int pulse) {
+    return std::any_of(particles.photons[pulse].begin(), particles.photons[pulse].end(),
+                       [](double p) { return p > 0; });
+  };
+  if (!lit(0) && !lit(1)) {
+    throw DataError("laser",
+                    "illuminates no particle (none lies in the sheet at either pulse); check laser.offset_mm, "
+                    "particles.volume_mm and center_mm, or seed more particles");
+  }
+}
+
+/// Adds the scattering table of the scene's particles.
+void add_scattering(Scene& scene) {
+  PivSetup const& piv = *scene.setup.piv;
+  if (piv.particles.scattering != ParticleScattering::mie) return;
+  MieSetting const setting{piv.particles.index, piv.laser.wavelength, scene.setup.ambient_index()};
+  scene.mie = std::make_shared<MieScattering const>(scene.particles.diameter, setting, seen_angles(scene));
+}
+
+/// Returns the photons of the brightest particle of the scene; 1 if there are none.
+double determine_photon_unit(Scene const& scene) {
+  double const brightest = brightest_photons(scene, scene.particles, ParticleLight::scattered);
+  return brightest > 0 ? brightest : 1;
+}
+
+/// Adds the particles of a pair of a sequence. The unit of light is that of the first pair, so that exposures and grey
+/// levels of all pairs are comparable.
+void add_particles_of_sequence(Scene& scene) {
+  PivSetup& piv = *scene.setup.piv;
+  auto const shared = piv.shared ? piv.shared : std::make_shared<ParticleCache>();
+  if (!shared->sequence) {
+    shared->flow_warning = load_flow(piv.flow);
+    double const count = piv.particles.count == ParticleCount::file ? 0 : particle_count(scene.setup);
+    shared->sequence.emplace(piv.particles, count, piv.flow, laser_sheet(piv.laser),
+                             path_tolerance_px * scene.setup.pixel_size());
+  }
+  piv.flow = shared->sequence->flow();
+  scene.flow_warning = shared->flow_warning;
+  auto const add_pair = [&](std::size_t pair) {
+    scene.particles = shared->sequence->pair(pair);
+    require_light(scene.particles);
+    add_scattering(scene);
+  };
+  if (!(shared->photon_unit > 0)) {
+    add_pair(0);
+    shared->photon_unit = determine_photon_unit(scene);
+  }
+  std::size_t const pair = scene.setup.sequence->pair;
+  if (pair > 0 || scene.particles.size() == 0) add_pair(pair);
+  scene.photon_unit = shared->photon_unit;
+}
+
 }  // namespace
 
 double particle_count(Setup const& setup) {
@@ -200,12 +254,17 @@ MemoryRequirement particle_memory(Setup const& setup) {
   char const* const key = particles.count == ParticleCount::per_mm3     ? "particles.per_mm3"
                           : particles.count == ParticleCount::per_pixel ? "particles.per_pixel"
                                                                         : "particles.number";
-  Vec3d const v = *particles.volume, wider = v + 2.0 * motion_margin(setup.piv->flow, v, particles.center);
+  double const margins = setup.sequence ? 4 : 2;  // pairs of a sequence are seeded at the first pulse, not at mid-time
+  Vec3d const v = *particles.volume, wider = v + margins * motion_margin(setup.piv->flow, v, particles.center);
   double const share = wider.x * wider.y * wider.z / (v.x * v.y * v.z);
   return {key, "particles", particle_count(setup) * share * bytes_per_particle};
 }
 
 void add_particles(Scene& scene) {
+  if (scene.setup.sequence) {
+    add_particles_of_sequence(scene);
+    return;
+  }
   scene.flow_warning = load_flow(scene.setup.piv->flow);
   PivSetup const& piv = *scene.setup.piv;
   LaserSheet<double> const sheet = laser_sheet(piv.laser);
@@ -213,22 +272,9 @@ void add_particles(Scene& scene) {
   scene.particles = piv.particles.count == ParticleCount::file
                         ? read_particles(piv.particles, piv.flow, sheet, tolerance)
                         : seed_particles(piv.particles, particle_count(scene.setup), piv.flow, sheet, tolerance);
-  Particles const& particles = scene.particles;
-  auto const lit = [&particles](int pulse) {
-    return std::any_of(particles.photons[pulse].begin(), particles.photons[pulse].end(),
-                       [](double p) { return p > 0; });
-  };
-  if (!lit(0) && !lit(1)) {
-    throw DataError("laser",
-                    "illuminates no particle (none lies in the sheet at either pulse); check laser.offset_mm, "
-                    "particles.volume_mm and center_mm, or seed more particles");
-  }
-  if (piv.particles.scattering == ParticleScattering::mie) {
-    MieSetting const setting{piv.particles.index, piv.laser.wavelength, scene.setup.ambient_index()};
-    scene.mie = std::make_shared<MieScattering const>(particles.diameter, setting, seen_angles(scene));
-  }
-  double const brightest = brightest_photons(scene, scene.particles, ParticleLight::scattered);
-  scene.photon_unit = brightest > 0 ? brightest : 1;
+  require_light(scene.particles);
+  add_scattering(scene);
+  scene.photon_unit = determine_photon_unit(scene);
 }
 
 ParticleCensus count_particles(Scene const& scene) {

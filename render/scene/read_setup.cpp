@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 #include "render/base/error.h"
@@ -245,7 +247,8 @@ void read_piv(Setup& setup, SetupTable root) {
   PivSetup piv;
   piv.laser = read_laser_setup(root.table("laser"), setup.medium.wavelength);
   piv.particles = read_particle_setup(root.table("particles"), piv.laser.wavelength);
-  piv.flow = read_flow_setup(root.table("flow"), shock_plane(setup.medium.field));
+  std::optional<double> const dt = setup.sequence ? std::optional(setup.sequence->dt) : std::nullopt;
+  piv.flow = read_flow_setup(root.table("flow"), shock_plane(setup.medium.field), dt);
   if (setup.medium.second_field && piv.flow.flow.kind_word() == NormalShockFlow::kind) {
     root.table("medium").problem("second_field",
                                  "conflicts with a flow of kind \"normal_shock\", which is steady; remove one");
@@ -299,6 +302,12 @@ Setup read_setup(SetupTable root) {
                    "\"absolute\" applies to PIV only (where [laser] determines the amount of light); use \"auto\" or a "
                    "number of electrons");
   }
+  if (calibration) {
+    root.refuse("sequence",
+                "does not apply to a calibration (its frames are those of calibration.planes_mm); remove it");
+  } else {
+    setup.sequence = read_sequence_setup(root, piv);
+  }
   if (piv) {
     read_piv(setup, root);
   } else {
@@ -306,6 +315,11 @@ Setup read_setup(SetupTable root) {
     for (char const* other : {"particles", "laser", "flow"}) {
       root.refuse(other, "requires experiment = \"piv\"; remove it, or change experiment");
     }
+  }
+  check_sequence(setup, root);
+  if (setup.sequence) {
+    setup.camera.noise.frames =
+        std::array<std::uint64_t, 2>{setup.sequence->first_frame(piv), setup.sequence->second_frame(piv)};
   }
   setup.render = read_render_setup(root.table("render"));
   return setup;

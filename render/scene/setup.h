@@ -1,10 +1,12 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 
 #include "render/light/flow.h"
 #include "render/light/laser_sheet.h"
+#include "render/light/particle_sequence.h"
 #include "render/light/particle_setup.h"
 #include "render/light/sources.h"
 #include "render/light/target_setup.h"
@@ -12,6 +14,7 @@
 #include "render/optics/lens_setup.h"
 #include "render/optics/lenslet_array.h"
 #include "render/optics/window.h"
+#include "render/scene/sequence_setup.h"
 #include "render/sensor/camera_setup.h"
 #include "render/setup/setup_table.h"
 
@@ -48,6 +51,7 @@ struct PivSetup {
   ParticleSetup particles;
   LaserSetup laser;
   FlowSetup flow;
+  std::shared_ptr<ParticleCache> shared;  ///< parts shared by the pairs of a sequence; null: none
 };
 
 /// Complete description of a BOS pair, a PIV pair or a calibration, in SI.
@@ -56,8 +60,9 @@ struct Setup {
   LensSetup lens;
   MediumSetup medium;
   TargetSetup target;
-  std::vector<double> planes;   ///< Z of the planes of a calibration target [m]; empty: no calibration
-  std::optional<PivSetup> piv;  ///< empty: BOS or calibration; in PIV, the "dots' plane" is Z = 0
+  std::vector<double> planes;             ///< Z of the planes of a calibration target [m]; empty: no calibration
+  std::optional<PivSetup> piv;            ///< empty: BOS or calibration; in PIV, the "dots' plane" is Z = 0
+  std::optional<SequenceSetup> sequence;  ///< pair of a sequence that the setup describes; empty: a single pair
   RenderSetup render;
   double z_a = 0.75;               ///< front principal plane to the medium's mid-plane, along the camera's axis [m]
   std::optional<double> z_sensor;  ///< position of a fixed sensor on the Z axis, from which the lens is placed [m]

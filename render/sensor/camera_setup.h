@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <optional>
@@ -19,6 +20,8 @@ struct NoiseSetup {
   double quantum_efficiency = 0.6;  ///< electrons per photon [1]
   bool shot_noise = true;
   std::uint64_t seed = 1;
+  /// Numbers of both frames in a sequence, which key their noise in addition to `seed`; empty: a single pair.
+  std::optional<std::array<std::uint64_t, 2>> frames;
   // fixed pattern: differs between pixels, equal in all frames (EMVA Standard 1288, 2021, chapter 4)
   double prnu = 0;             ///< photo response non-uniformity: relative standard deviation of the gain [1]
   double dsnu_e = 0;           ///< dark signal non-uniformity: standard deviation of the black level [e]

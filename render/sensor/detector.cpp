@@ -11,6 +11,9 @@
 namespace gladstone {
 namespace {
 
+/// Returns the noise seed of a frame of a sequence, independent of the seeds of repetitions (repeat_seed()).
+std::uint64_t frame_seed(std::uint64_t seed, std::uint64_t frame) { return repeat_seed(mix64(seed), frame + 1); }
+
 double full_scale_of(CameraSetup const& camera) { return std::pow(2.0, camera.bit_depth) - 1; }
 
 /// Reads an image, resamples it bilinearly to `columns` x `rows` pixels, and scales its maximum to `most`.
@@ -51,6 +54,11 @@ Detector::Detector(CameraSetup const& camera, double electrons_fully_lit) {
   pixel_.dark_current_e = noise.dark_current_e;
   pixel_.read_noise_e = noise.read_noise_e;
   pixel_.seed = noise.seed;
+  if (noise.frames) {
+    pixel_.by_frame = true;
+    pixel_.seed = frame_seed(noise.seed, (*noise.frames)[0]);
+    pixel_.flow_seed = frame_seed(noise.seed, (*noise.frames)[1]);
+  }
   pixel_.patterned = noise.patterned();
   pixel_.prnu = noise.prnu;
   pixel_.dsnu_e = noise.dsnu_e;

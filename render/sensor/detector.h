@@ -32,8 +32,9 @@ class Detector {
   Image<double> ideal(Image<double> const& light) const;
 
   /// Records a frame: background, fixed pattern, hot pixels, shot noise (Poisson, of light and dark charge), read noise
-  /// (normal), full well and rounding to the bit depth. Temporal noise is keyed by (seed, stream, pixel), the fixed
-  /// pattern by (pattern seed, pixel). Without [camera.noise]: background, rounding and saturation only.
+  /// (normal), full well and rounding to the bit depth. Temporal noise is keyed by (seed, stream, pixel), in a
+  /// sequence by (seed, number of the frame, pixel), the fixed pattern by (pattern seed, pixel). Without
+  /// [camera.noise]: background, rounding and saturation only.
   Recording record(Image<double> const& light, RandomStream stream) const;
 
   /// Model of one pixel, for recording on another device.

@@ -32,6 +32,8 @@ struct PixelDetector {
   double dark_current_e = 0;
   double read_noise_e = 0;
   std::uint64_t seed = 0;
+  bool by_frame = false;        ///< frames of a sequence: the seeds of both frames differ, their streams do not
+  std::uint64_t flow_seed = 0;  ///< seed of frame B, if by_frame
   // stray light, see BackgroundSetup
   int columns = 0, rows = 0;        ///< size of the sensor [px]; 0: no stray light
   double background_e = 0;          ///< charge at the image centre [e]
@@ -71,12 +73,18 @@ struct PixelDetector {
     return own;
   }
 
+  /// Returns the engine of a pixel's temporal noise.
+  GLADSTONE_HD KeyedEngine noise_engine(RandomStream stream, std::uint64_t pixel) const {
+    if (!by_frame) return {seed, stream, pixel};
+    return {stream == RandomStream::noise_flow ? flow_seed : seed, RandomStream::noise_reference, pixel};
+  }
+
   GLADSTONE_HD PixelLevel record(double light, RandomStream stream, std::uint64_t pixel) const {
     using std::floor;
     double charge = light * electrons + background(pixel);
     bool full = false;
     if (noisy) {
-      KeyedEngine engine(seed, stream, pixel);
+      KeyedEngine engine = noise_engine(stream, pixel);
       PixelPattern const own = patterned ? pattern(pixel) : PixelPattern{};
       charge = charge * own.gain + dark_current_e + own.hot;
       // Every pixel saturates above 1e12 electrons.

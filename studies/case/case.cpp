@@ -17,6 +17,7 @@
 #include "studies/case/case_warnings.h"
 #include "studies/case/light_exposure.h"
 #include "studies/case/peak_locking.h"
+#include "studies/case/sequence_pair.h"
 #include "studies/case/uncertain_inputs.h"
 #include "studies/case/usual_values.h"
 
@@ -145,6 +146,8 @@ CaseSetup load_case_setup(std::string const& path, std::vector<std::string> cons
 
 CaseSetup load_case_setup(SetupDocument document, FieldMemory field) {
   std::vector<UncertainInput> uncertain = extract_uncertain_inputs(document);
+  bool const first_pair_only = describes_sequence(document);
+  select_pair(document);
   CaseSetup loaded{.document = with_own_lens(std::move(document)),
                    .setup = {},
                    .correlate = {},
@@ -171,6 +174,11 @@ CaseSetup load_case_setup(SetupDocument document, FieldMemory field) {
   if (!loaded.document.has_problems()) {
     loaded.warnings = cross_check(loaded.setup, root);
     if (!loaded.setup.calibration()) cross_check_windows(loaded);
+    if (first_pair_only) {
+      loaded.warnings.push_back(
+          fmt::format("sequence: only its first pair, pair = {}, is considered; gladstone render renders all pairs",
+                      loaded.setup.sequence ? loaded.setup.sequence->pair : 0));
+    }
     if (!loaded.setup.calibration() && !loaded.setup.piv) {
       if (std::string advice = locking_advice(loaded.setup); !advice.empty())
         loaded.warnings.push_back(std::move(advice));

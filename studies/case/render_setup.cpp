@@ -12,6 +12,7 @@
 #include "render/setup/setup_node.h"
 #include "studies/case/calibration_case.h"
 #include "studies/case/json_text.h"
+#include "studies/case/sequence_pair.h"
 
 namespace gladstone {
 namespace {
@@ -21,6 +22,7 @@ namespace fs = std::filesystem;
 SetupDocument read_document(std::string const& path, std::vector<std::string> const& overrides) {
   SetupDocument document = SetupDocument::from_file(path);
   for (auto const& assignment : overrides) document.override_key(assignment);
+  if (!describes_sequence(document)) select_pair(document);
   return document;
 }
 
@@ -42,18 +44,22 @@ void SetupRenderer::refuse_over_inputs(std::string const& folder) const {
   }
 }
 
-RenderedSetup SetupRenderer::render(Renderer& renderer, std::string const& folder) {
+RenderedSetup SetupRenderer::render(Renderer& renderer, std::string const& folder, SharedParts const& shared) {
   OutputFolder output(folder, case_content());
-  BuiltMedium medium;
   RenderedSetup all;
+  BuiltMedium& medium = all.medium;
+  if (shared.medium) medium = *shared.medium;
   for (OneCamera& camera : cameras_) {
     bool const first = &camera == &cameras_.front();
     if (!camera.name.empty()) spdlog::info("camera {}", camera.name);
     ReusableParts known;
-    if (!first) known.medium = &medium;
+    if (!first || shared.medium) known.medium = &medium;
     RenderedCamera& entry = all.cameras.emplace_back();
     entry.folder = camera.name.empty() ? folder : (fs::path(folder) / camera.name).string();
-    nlohmann::ordered_json summary = render_one(camera, renderer, known, medium, output, entry);
+    auto const of_camera = shared.cameras.find(camera.name);
+    nlohmann::ordered_json summary =
+        render_one(camera, renderer, known, medium, output, entry,
+                   of_camera == shared.cameras.end() ? SharedParts::OfCamera{} : of_camera->second);
     if (cameras_.size() > 1) {
       all.summary["cameras"][camera.name] = std::move(summary);
     } else {
@@ -71,8 +77,8 @@ RenderedSetup SetupRenderer::render(Renderer& renderer, std::string const& folde
 }
 
 nlohmann::ordered_json SetupRenderer::render_one(OneCamera& camera, Renderer& renderer, ReusableParts const& known,
-                                                 BuiltMedium& medium, OutputFolder const& output,
-                                                 RenderedCamera& entry) const {
+                                                 BuiltMedium& medium, OutputFolder const& output, RenderedCamera& entry,
+                                                 SharedParts::OfCamera const& shared) const {
   nlohmann::ordered_json summary;
   auto const fill = [&](auto const& write) {
     output.fill([&](std::string const& place) {
@@ -92,7 +98,13 @@ nlohmann::ordered_json SetupRenderer::render_one(OneCamera& camera, Renderer& re
     entry.device = rendered.device;
     return summary;
   }
-  RecordedCase const finished = render_case_in_memory(camera.loaded, renderer, known);
+  if (shared.exposure_e) camera.loaded.setup.camera.exposure_e = shared.exposure_e;
+  if (camera.loaded.setup.piv) camera.loaded.setup.piv->shared = shared.particles;
+  RecordedCase finished = render_case_in_memory(camera.loaded, renderer, known);
+  if (!shared.reference.empty()) {
+    finished.frames.levels = std::make_shared<HostFrames const>(Image<double>(shared.reference),
+                                                                Image<double>(finished.frames.levels->flow()));
+  }
   fill([&](std::string const& place) {
     return write_case(camera.loaded, finished.prepared, finished.rendered, finished.frames, renderer, place);
   });
@@ -108,18 +120,42 @@ nlohmann::ordered_json SetupRenderer::render_one(OneCamera& camera, Renderer& re
   }
   entry.step_mm = finished.prepared.step.step_mm;
   entry.magnification = finished.prepared.scene.imaging.magnification;
+  entry.exposure_e = finished.rendered.exposure_e;
   entry.seconds = finished.rendered.seconds;
   entry.device = rendering.device.empty() ? renderer.device() : rendering.device;
   medium = finished.prepared.scene.medium;
   return summary;
 }
 
+std::vector<std::string> SetupRenderer::camera_names() const {
+  std::vector<std::string> names;
+  for (OneCamera const& camera : cameras_) names.push_back(camera.name);
+  return names;
+}
+
+std::vector<std::string> SetupRenderer::rendered_inputs() const {
+  std::vector<std::string> inputs;
+  for (OneCamera const& camera : cameras_) {
+    std::vector<std::string> const files = camera.loaded.document.file_names();
+    std::vector<std::vector<std::string>> const keys = camera.loaded.document.file_keys();
+    for (std::size_t i = 0; i < files.size(); ++i) {
+      if (keys[i].front() != "correlate") inputs.push_back(files[i]);
+    }
+  }
+  return inputs;
+}
+
 std::string SetupRenderer::written() const {
   SetupDocument document = document_.copy();
   SetupNode const* const all = document.find({"camera"});
   std::vector<std::vector<std::string>> keys;
+  if (SetupNode const* const files = document.find({"sequence", "files"})) {
+    for (std::size_t i = 0; i < files->elements.size(); ++i) {
+      keys.push_back({"sequence", "files", '[' + std::to_string(i) + ']'});
+    }
+  }
   for (std::size_t i = 0; i < cameras_.size(); ++i) {
-    bool const own_lens = all->elements[i].find("lens") != nullptr;
+    bool const own_lens = cameras_.size() > 1 && all->elements[i].find("lens") != nullptr;
     for (std::vector<std::string> key : cameras_[i].loaded.document.file_keys()) {
       if (own_lens && key.front() == "lens") key.insert(key.begin(), {"camera", '[' + std::to_string(i) + ']'});
       keys.push_back(std::move(key));

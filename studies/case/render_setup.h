@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -21,12 +23,25 @@ struct RenderedCamera {
   std::uint64_t most_rays = 0;          ///< largest number of rays of a source
   std::optional<double> step_mm;        ///< empty if there was no medium
   std::optional<double> magnification;  ///< empty if it differs between planes [1]
+  double exposure_e = 0;                ///< electrons that a light of 1 generates; 0 for a calibration [e]
   double seconds = 0;
   std::string device;
 };
 
+/// Parts that a pair of a sequence shares with its other pairs.
+struct SharedParts {
+  struct OfCamera {
+    std::optional<double> exposure_e;          ///< exposure of the first pair [e]; empty: chosen by the setup
+    Image<double> reference;                   ///< grey levels of frame A in other pairs; empty: rendered
+    std::shared_ptr<ParticleCache> particles;  ///< null: none
+  };
+  std::map<std::string, OfCamera> cameras;  ///< by name; empty for the only camera
+  BuiltMedium const* medium = nullptr;      ///< medium of another pair, if it is the same; null: built
+};
+
 /// Result of rendering a setup.
 struct RenderedSetup {
+  BuiltMedium medium;              ///< medium of the case; with several cameras that of the last one
   nlohmann::ordered_json summary;  ///< contents of summary.json
   std::vector<RenderedCamera> cameras;
 };
@@ -44,7 +59,17 @@ class SetupRenderer {
   /// Renders into a CASE folder atomically: all files are written, or none. The case of a single camera is written into
   /// the folder itself; those of several cameras into subfolders of their names, next to the common setup and a
   /// summary.json that contains every camera's summary.
-  RenderedSetup render(Renderer& renderer, std::string const& folder);
+  /// @param shared  parts of another pair of the same sequence
+  RenderedSetup render(Renderer& renderer, std::string const& folder, SharedParts const& shared = {});
+
+  /// Setup of the first camera.
+  Setup const& first_setup() const { return cameras_.front().loaded.setup; }
+  /// Returns the names of the cameras, which are their folders; empty for the only camera.
+  std::vector<std::string> camera_names() const;
+  /// Returns the setup as written, with absolute file names.
+  std::string written() const;
+  /// Returns the absolute names of all files that the setup names, except those of [correlate].
+  std::vector<std::string> rendered_inputs() const;
 
  private:
   struct OneCamera {
@@ -54,9 +79,8 @@ class SetupRenderer {
   /// Renders one camera's case into its part of the output folder.
   /// @return the contents of its summary.json
   nlohmann::ordered_json render_one(OneCamera& camera, Renderer& renderer, ReusableParts const& known,
-                                    BuiltMedium& medium, class OutputFolder const& output, RenderedCamera& entry) const;
-  /// Returns the setup as written, with absolute file names.
-  std::string written() const;
+                                    BuiltMedium& medium, class OutputFolder const& output, RenderedCamera& entry,
+                                    SharedParts::OfCamera const& shared) const;
 
   std::string path_;
   SetupDocument document_;

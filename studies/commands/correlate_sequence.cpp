@@ -41,11 +41,6 @@ bool is_case(std::vector<std::string> const& inputs) {
   return inputs.size() == 1 && fs::exists(fs::path(inputs[0]) / case_file::setup, error);
 }
 
-Pairing parse_pairing(std::string const& text) {
-  if (text == "reference") return Pairing::reference;
-  return text == "consecutive" ? Pairing::consecutive : Pairing::pairs;
-}
-
 nlohmann::json describe_failures(SequenceResult const& result) {
   nlohmann::json failed = nlohmann::json::array();
   for (PairRecord const& record : result.pairs)

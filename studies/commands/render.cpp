@@ -12,7 +12,9 @@
 #include "studies/case/cameras.h"
 #include "studies/case/json_text.h"
 #include "studies/case/preview.h"
+#include "studies/case/render_sequence.h"
 #include "studies/case/render_setup.h"
+#include "studies/case/sequence_pair.h"
 #include "studies/commands/command.h"
 
 namespace gladstone {
@@ -31,7 +33,16 @@ constexpr char const* example_setup =
 
   [medium.field]
   kind = "uniform_gradient"
-  gradient_kg_m4 = [20.0, 10.0, 0.0])";
+  gradient_kg_m4 = [20.0, 10.0, 0.0]
+
+A table [sequence] renders a series of frames into DIR/frames, and a case of each pair into DIR/pair_NNNN:
+
+  [sequence]           # PIV: particles that move from frame to frame
+  frames = 100
+  dt_us = 10.0
+
+  [sequence]           # BOS: a reference image, and an image of each density file
+  files = ["rho_*.h5"])";
 
 /// Returns a one-line summary of a camera's rendered case.
 std::string in_words(RenderedCamera const& camera) {
@@ -108,6 +119,25 @@ int render_previews(RenderArguments const& arguments, GlobalOptions const& optio
   return ok;
 }
 
+/// Returns true if the setup has a table [sequence] whose pairs are all to be rendered.
+bool is_whole_sequence(std::string const& setup, std::vector<std::string> const& overrides) {
+  SetupDocument document = SetupDocument::from_file(setup);
+  for (std::string const& assignment : overrides) document.override_key(assignment);
+  return describes_sequence(document);
+}
+
+void render_sequence(std::string const& setup, std::vector<std::string> const& overrides, std::string const& folder,
+                     GlobalOptions const& options) {
+  SequenceRenderer sequence(setup, overrides);
+  sequence.refuse_over_inputs(folder);
+  auto const renderer = options.open_device().renderer;
+  RenderedSequence const rendered = sequence.render(*renderer, folder, !options.quiet);
+  for (std::string const& warning : rendered.warnings) spdlog::warn("{}", warning);
+  print_result(options, json_text(rendered.summary),
+               fmt::format("{}: {} frames, {} pairs ({} by an earlier run), {:.2f} s", folder, rendered.frames,
+                           rendered.pairs, rendered.resumed, rendered.seconds));
+}
+
 }  // namespace
 
 CommandBody attach_render(CLI::App& app, GlobalOptions const& options) {
@@ -115,7 +145,9 @@ CommandBody attach_render(CLI::App& app, GlobalOptions const& options) {
   auto arguments = std::make_shared<RenderArguments>();
   app.add_option("setup", arguments->setup, "Setup file (TOML)")->required();
   CLI::Option* const output =
-      app.add_option("-o,--output", arguments->output, "Case folder to create; with --preview a PNG (preview.png)")
+      app.add_option("-o,--output", arguments->output,
+                     "Case folder to create; of a setup with [sequence], the folder of its frames and pairs; with "
+                     "--preview a PNG (preview.png)")
           ->required();
   app.add_flag_callback(
       "--preview",
@@ -130,6 +162,10 @@ CommandBody attach_render(CLI::App& app, GlobalOptions const& options) {
       ->trigger_on_parse(false);
   return [arguments, &options]() -> int {
     if (arguments->preview) return render_previews(*arguments, options);
+    if (is_whole_sequence(arguments->setup, arguments->overrides)) {
+      render_sequence(arguments->setup, arguments->overrides, arguments->output, options);
+      return ok;
+    }
     SetupRenderer rendering(arguments->setup, arguments->overrides);
     rendering.refuse_over_inputs(arguments->output);
     auto const renderer = options.open_device().renderer;

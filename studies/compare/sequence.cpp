@@ -8,7 +8,6 @@
 #include <chrono>
 #include <exception>
 #include <filesystem>
-#include <map>
 #include <mutex>
 #include <optional>
 #include <sstream>
@@ -20,14 +19,15 @@
 #include "render/base/error.h"
 #include "render/base/interrupt.h"
 #include "render/base/parallel.h"
-#include "render/base/progress.h"
 #include "render/base/version.h"
 #include "render/files/hdf5_file.h"
 #include "render/files/image_pages.h"
 #include "render/files/input_guard.h"
 #include "render/files/sha256.h"
 #include "render/files/stop_point.h"
+#include "studies/case/pair_progress.h"
 #include "studies/case/peak_locking.h"
+#include "studies/case/warning_kinds.h"
 #include "studies/compare/sequence_folder.h"
 
 namespace gladstone {
@@ -90,23 +90,6 @@ Backend share_correlator(Backend device) {
   return device;
 }
 
-/// Shows the progress over the pairs and, meanwhile, disables that of the passes of each pair.
-class PairProgress {
- public:
-  PairProgress(std::string const& label, std::size_t total, bool shown)
-      : shown_(shown), progress_(label, shown ? total : 0) {
-    Progress::enable(false);
-  }
-  ~PairProgress() { Progress::enable(shown_); }
-  PairProgress(PairProgress const&) = delete;
-  PairProgress& operator=(PairProgress const&) = delete;
-  void advance() { progress_.advance(); }
-
- private:
-  bool shown_;
-  Progress progress_;
-};
-
 /// Removes the data that the statistics do not use.
 DisplacementField without_details(DisplacementField field) {
   field.sigma_px = field.raw_px = {};
@@ -123,10 +106,9 @@ std::vector<std::string> split_lines(std::string const& text) {
   return lines;
 }
 
-/// Summarises warnings that differ only in their numbers and names: the first of each kind, with the number of pairs.
+/// Summarises warnings that differ only in their numbers and in the names of the frames.
 std::vector<std::string> summarise_warnings(std::vector<PairRecord> const& pairs) {
-  std::vector<std::pair<std::string, std::size_t>> kinds;
-  std::map<std::string, std::size_t> index;
+  WarningKinds kinds;
   for (PairRecord const& record : pairs) {
     for (std::string const& warning : record.warnings) {
       std::string kind = warning;
@@ -134,16 +116,10 @@ std::vector<std::string> summarise_warnings(std::vector<PairRecord> const& pairs
         auto const at = frame->path.empty() ? std::string::npos : kind.find(frame->name());
         if (at != std::string::npos) kind.erase(at, frame->name().size());
       }
-      std::erase_if(kind, [](char c) { return (c >= '0' && c <= '9') || c == '.'; });
-      auto const [known, is_new] = index.emplace(kind, kinds.size());
-      if (is_new) kinds.emplace_back(record.pair.vectors + ": " + warning, 0);
-      ++kinds[known->second].second;
+      kinds.add(record.pair.vectors, warning, std::move(kind));
     }
   }
-  std::vector<std::string> texts;
-  for (auto const& [text, count] : kinds)
-    texts.push_back(count == 1 ? text : fmt::format("{} (and so on, {} pairs in total)", text, count));
-  return texts;
+  return kinds.summary();
 }
 
 /// Implementation of correlate_sequence().

@@ -1,7 +1,6 @@
 #include "studies/compare/sequence_frames.h"
 
 #include <fmt/format.h>
-#include <glob.h>
 
 #include <algorithm>
 #include <array>
@@ -45,33 +44,9 @@ NumberedName split_numbers(std::string const& text) {
   return name;
 }
 
-/// Compares texts so that numbers in them are ordered by value.
-bool is_before(std::string const& a, std::string const& b) {
-  std::size_t i = 0, j = 0;
-  while (i < a.size() && j < b.size()) {
-    if (!is_digit(a[i]) || !is_digit(b[j])) {
-      if (a[i] != b[j]) return a[i] < b[j];
-      ++i;
-      ++j;
-      continue;
-    }
-    auto const number = [](std::string const& text, std::size_t& at) {
-      while (at + 1 < text.size() && text[at] == '0' && is_digit(text[at + 1])) ++at;
-      std::size_t const begin = at;
-      while (at < text.size() && is_digit(text[at])) ++at;
-      return text.substr(begin, at - begin);
-    };
-    std::string const x = number(a, i), y = number(b, j);
-    if (x.size() != y.size()) return x.size() < y.size();
-    if (x != y) return x < y;
-  }
-  if (a.size() - i != b.size() - j) return a.size() - i < b.size() - j;
-  return a < b;
-}
-
 /// Map whose keys are in natural order (2 before 10).
 template <class Value>
-using NaturalMap = std::map<std::string, Value, decltype(&is_before)>;
+using NaturalMap = std::map<std::string, Value, decltype(&is_naturally_before)>;
 
 /// Returns true if the name has the ending of an image file.
 bool has_image_ending(fs::path const& path) {
@@ -94,20 +69,6 @@ std::vector<std::string> list_folder(std::string const& folder) {
     throw DataError(
         folder, "contains no image (.tif, .png, .jpg, ...); name another folder, or give a pattern such as '" + folder +
                     "/*.dat'");
-  return files;
-}
-
-/// Lists the files that match a pattern, in any order.
-std::vector<std::string> expand_pattern(std::string const& pattern) {
-  glob_t found{};
-  int const result = ::glob(pattern.c_str(), 0, nullptr, &found);
-  std::vector<std::string> files;
-  for (std::size_t i = 0; result == 0 && i < found.gl_pathc; ++i) {
-    std::error_code ignored;
-    if (!fs::is_directory(found.gl_pathv[i], ignored)) files.emplace_back(found.gl_pathv[i]);
-  }
-  ::globfree(&found);
-  if (files.empty()) throw DataError(pattern, "matches no file; check the folder and the pattern");
   return files;
 }
 
@@ -183,7 +144,7 @@ constexpr char const* no_partner = "has no partner";
 std::vector<SequencePair> match_lists(std::vector<std::string> const& a, std::vector<std::string> const& b) {
   std::vector<NumberedName> const names_a = split_names(a), names_b = split_names(b);
   auto const keys_a = find_instants(names_a, names_b), keys_b = find_instants(names_b, names_a);
-  NaturalMap<std::string> partners(is_before);
+  NaturalMap<std::string> partners(is_naturally_before);
   if (keys_a && keys_b)
     for (std::size_t k = 0; k < b.size(); ++k) partners[(*keys_b)[k]] = b[k];
   bool const by_number =
@@ -191,7 +152,7 @@ std::vector<SequencePair> match_lists(std::vector<std::string> const& a, std::ve
       std::any_of(keys_a->begin(), keys_a->end(), [&](std::string const& key) { return partners.contains(key); });
   std::vector<SequencePair> pairs;
   if (by_number) {
-    NaturalMap<SequencePair> matched(is_before);
+    NaturalMap<SequencePair> matched(is_naturally_before);
     for (std::size_t k = 0; k < a.size(); ++k) {
       SequencePair& pair = matched[(*keys_a)[k]];
       pair.reference.path = a[k];
@@ -237,9 +198,11 @@ void name_vectors(std::vector<SequencePair>& pairs, Pairing pairing) {
 
 std::string SequenceFrame::name() const { return pages > 1 ? fmt::format("{} (page {})", path, page + 1) : path; }
 
-bool is_pattern(std::string const& text) {
-  std::error_code error;
-  return text.find_first_of("*?[") != std::string::npos && !fs::exists(text, error);
+Pairing parse_pairing(std::string const& name) {
+  if (name.empty() || name == "pairs") return Pairing::pairs;
+  if (name == "reference") return Pairing::reference;
+  if (name == "consecutive") return Pairing::consecutive;
+  throw DataError("correlate", "\"" + name + "\" is no pairing; choose \"pairs\", \"reference\" or \"consecutive\"");
 }
 
 std::vector<std::vector<std::string>> list_sequence_files(std::vector<std::string> const& inputs, Pairing pairing) {
@@ -260,7 +223,7 @@ std::vector<std::vector<std::string>> list_sequence_files(std::vector<std::strin
   if (names_only && inputs.size() > 2) lists = {inputs};
   bool const keeps_first = pairing == Pairing::reference && names_only;
   for (std::vector<std::string>& list : lists) {
-    if (list.size() > 1) std::sort(list.begin() + (keeps_first ? 1 : 0), list.end(), is_before);
+    if (list.size() > 1) std::sort(list.begin() + (keeps_first ? 1 : 0), list.end(), is_naturally_before);
   }
   if (pairing == Pairing::pairs && lists.size() == 1) lists = split_by_name(lists.front());
   if (pairing == Pairing::pairs && lists.size() > 2)

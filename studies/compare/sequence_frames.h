@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "render/files/file_pattern.h"
+
 namespace gladstone {
 
 /// Selection of the pairs of a sequence.
@@ -12,6 +14,10 @@ enum class Pairing {
   reference,   ///< the first image with each of the others (BOS)
   consecutive  ///< each image with the next one
 };
+
+/// Returns the pairing of the name "pairs", "reference" or "consecutive"; empty: "pairs".
+/// @throws DataError for another name
+Pairing parse_pairing(std::string const& name);
 
 /// Image of a sequence: a file, or one of its pages.
 struct SequenceFrame {
@@ -30,9 +36,6 @@ struct SequencePair {
   std::string vectors;      ///< file name of its vectors, e.g. "A_0001.h5"
   std::string problem;      ///< reason why the pair is incomplete, without a partner; empty: complete
 };
-
-/// Returns true if the text contains a wildcard (* ? [) and is not the name of a file.
-bool is_pattern(std::string const& text);
 
 /// Lists the files of a sequence, in natural order (2 before 10).
 /// @param inputs  patterns, folders and files, as on the command line; names of more than two files that follow two

@@ -3,7 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <vector>
 
 #include "render/base/parallel.h"
 #include "render/sensor/camera_setup.h"
@@ -172,6 +174,29 @@ TEST(CameraSetup, NoiseIsOffUnlessItsTableIsThere) {
   EXPECT_THAT([&] { read("[camera]\npixels = [0, 512]\n"); }, ThrowsMessage<SetupError>(HasSubstr("camera.toml:2")));
   EXPECT_THAT([&] { read("[camera]\npixel_pitch_um = -1\n"); }, ThrowsMessage<SetupError>(HasSubstr("pixel_pitch_um")));
   EXPECT_THAT([&] { read("[camera]\nbit_depth = 17\n"); }, ThrowsMessage<SetupError>(HasSubstr("bit_depth")));
+}
+
+// In a sequence, the noise of a frame depends on its number only: frame 4 is the same as the second frame of a pair and
+// as the first one of the next. Frames of different numbers are independent.
+TEST(Detector, KeysTheNoiseOfASequenceByFrame) {
+  Image<double> const light(64, 64, 0.5);
+  CameraSetup camera = noisy_camera();
+  auto const record = [&](std::uint64_t first, std::uint64_t second, RandomStream stream) {
+    camera.noise.frames = std::array<std::uint64_t, 2>{first, second};
+    auto const image = Detector(camera, 10000).record(light, stream).image;
+    return std::vector<std::uint16_t>(image.begin(), image.end());
+  };
+  auto const frame = record(3, 4, RandomStream::noise_flow);
+  EXPECT_EQ(frame, record(4, 5, RandomStream::noise_reference));
+  EXPECT_EQ(frame, record(0, 4, RandomStream::noise_flow));
+  for (auto const& other : {record(3, 4, RandomStream::noise_reference), record(4, 5, RandomStream::noise_flow)}) {
+    double product = 0;
+    double const mean_level = moments(Detector(camera, 10000).record(light, RandomStream::noise_flow).image).mean;
+    for (std::size_t i = 0; i < frame.size(); ++i) product += (frame[i] - mean_level) * (other[i] - mean_level);
+    // the correlation coefficient of independent noise is below 5 / sqrt(number of pixels)
+    double const variance = moments(Detector(camera, 10000).record(light, RandomStream::noise_flow).image).variance;
+    EXPECT_LT(std::abs(product) / (static_cast<double>(frame.size()) * variance), 5.0 / 64);
+  }
 }
 
 }  // namespace

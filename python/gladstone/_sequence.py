@@ -1,0 +1,115 @@
+"""Sequences of image pairs."""
+
+from __future__ import annotations
+
+import json
+import os
+import tempfile
+from collections.abc import Iterable, Iterator
+from typing import Any, Literal
+
+import numpy as np
+
+from . import _core
+from ._field import Field, _overrides
+from ._progress import Progress, reporting
+
+
+class Sequence:
+    """Displacement fields of a sequence and their statistics, in the folder to which they were written.
+
+    `len(sequence)` is the number of pairs; `sequence[k]` reads the field of pair k, and iteration yields the fields of
+    the pairs that were measured, one at a time.
+    """
+
+    def __init__(self, folder: str, result: dict[str, Any], temporary=None):
+        self._folder, self._result, self._temporary = folder, result, temporary
+
+    @property
+    def folder(self) -> str:
+        """Folder with the vectors of each pair, statistics.h5 and sequence.json."""
+        return self._folder
+
+    @property
+    def pairs(self) -> list[dict[str, Any]]:
+        """For each pair: images `a` and `b`, file of its `vectors` (None: failed), `error`, `warnings`, `resumed`."""
+        return self._result["pairs"]
+
+    @property
+    def failed(self) -> list[int]:
+        """Indices of the pairs without vectors; `pairs[k]["error"]` is the reason."""
+        return [k for k, pair in enumerate(self.pairs) if pair["vectors"] is None]
+
+    @property
+    def statistics(self) -> dict[str, np.ndarray]:
+        """Arrays [rows, columns] of statistics.h5: x_px, y_px, count, u_mean_px, u_rms_px, uu_px2, ... (NaN: unknown).
+
+        Empty if no pair was measured.
+        """
+        path = os.path.join(self._folder, "statistics.h5")
+        return _core.sequence_statistics(path) if len(self.failed) < len(self) else {}
+
+    @property
+    def device(self) -> str:
+        """Device of the correlation: "cpu" or "cuda"."""
+        return self._result["device"]
+
+    @property
+    def seconds(self) -> float:
+        """Wall time of the correlation [s]."""
+        return self._result["seconds"]
+
+    def __len__(self) -> int:
+        return len(self.pairs)
+
+    def __getitem__(self, index: int) -> Field:
+        """Reads the field of a pair. Raises ValueError if the pair failed."""
+        pair = self.pairs[index]
+        if pair["vectors"] is None:
+            raise ValueError(f"pair {index} has no vectors ({pair['error']})")
+        return Field.load(os.path.join(self._folder, pair["vectors"]))
+
+    def __iter__(self) -> Iterator[Field]:
+        return (self[k] for k, pair in enumerate(self.pairs) if pair["vectors"] is not None)
+
+    def __repr__(self) -> str:
+        return f"<gladstone.Sequence {len(self)} pairs, {len(self) - len(self.failed)} measured>"
+
+
+def correlate_sequence(
+    images: str | os.PathLike | Iterable[str | os.PathLike],
+    *,
+    pairing: Literal["pairs", "reference", "consecutive"] = "pairs",
+    output: str | os.PathLike | None = None,
+    config: str | os.PathLike | None = None,
+    device: str = "auto",
+    progress: Progress = False,
+    **settings,
+) -> Sequence:
+    """Measures the displacement of every pair of a sequence of image files, and the statistics over the pairs.
+
+    images: a folder, a pattern "frames/*.tif", two patterns ["A_*.tif", "B_*.tif"], or a list of files.
+    pairing: "pairs" (frame A and frame B of each instant), "reference" (the first image with each other one, for BOS)
+        or "consecutive" (each image with the next one).
+    output: folder for the vectors and statistics. The same call continues an interrupted run in it. Default: a
+        temporary folder, which exists as long as the returned object.
+    config: TOML file with a table [correlate]; default: the defaults of all settings.
+    settings: window, overlap, method, ..., as for `correlate`.
+
+    The files are equal to those of `gladstone correlate IMAGES -o OUTPUT/`. A pair that fails does not affect the
+    others. Raises `DataError` if no frame is readable, and `SetupError` for settings.
+    """
+    given = [images] if isinstance(images, (str, os.PathLike)) else list(images)
+    temporary = tempfile.TemporaryDirectory(prefix="gladstone_") if output is None else None
+    folder = os.path.join(temporary.name, "vectors") if temporary else os.fspath(output)
+    with reporting(progress) as report:
+        text = _core.correlate_sequence(
+            [os.fspath(one) for one in given],
+            pairing,
+            folder,
+            "" if config is None else os.fspath(config),
+            _overrides(settings),
+            device,
+            report,
+        )
+    return Sequence(folder, json.loads(text), temporary)

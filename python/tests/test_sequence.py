@@ -1,0 +1,92 @@
+"""Sequences: the files of the program, and their fields and statistics as arrays."""
+
+import shutil
+
+import numpy as np
+import pytest
+
+import gladstone as gs
+
+SETTINGS = {"window": [32, 16], "overlap": 0.5}
+
+
+@pytest.fixture
+def frames(case, tmp_path):
+    """Two pairs of the same images: A_0.tif, B_0.tif, A_1.tif, B_1.tif."""
+    case.save(tmp_path / "case")
+    folder = tmp_path / "frames"
+    folder.mkdir()
+    for k in range(2):
+        shutil.copy(tmp_path / "case" / "reference.tif", folder / f"A_{k}.tif")
+        shutil.copy(tmp_path / "case" / "flow.tif", folder / f"B_{k}.tif")
+    return folder
+
+
+def test_fields_are_those_of_single_pairs(frames, case):
+    sequence = gs.correlate_sequence([frames / "A_*.tif", frames / "B_*.tif"], device="cpu", **SETTINGS)
+    single = gs.correlate(case.a, case.b, device="cpu", **SETTINGS)
+    assert len(sequence) == 2 and sequence.failed == []
+    fields = list(sequence)
+    assert len(fields) == 2
+    for field in fields:
+        assert np.array_equal(field.u, single.u, equal_nan=True)
+    assert sequence.device == "cpu" and sequence.seconds > 0
+
+
+def test_statistics_are_those_of_the_fields(frames):
+    sequence = gs.correlate_sequence(frames, device="cpu", **SETTINGS)
+    statistics = sequence.statistics
+    field = sequence[0]
+    assert statistics["u_mean_px"].shape == field.shape
+    # both pairs have the same images: the mean is either field, and the scatter is zero
+    measured = statistics["count"] == 2
+    assert measured.any()
+    assert np.allclose(statistics["u_mean_px"][measured], field.u[measured], atol=1e-12)
+    assert np.allclose(statistics["u_rms_px"][measured], 0, atol=1e-12)
+
+
+def test_files_equal_those_of_the_program(frames, program, tmp_path):
+    sequence = gs.correlate_sequence(frames, output=tmp_path / "module", device="cpu", **SETTINGS)
+    program(
+        "correlate", frames, "-o", tmp_path / "program/", "--pairing", "pairs",
+        "--set", "correlate.window_px=[32, 16]", "--set", "correlate.overlap=0.5",
+    )  # fmt: skip
+    for k, pair in enumerate(sequence.pairs):
+        assert np.array_equal(
+            gs.Field.load(tmp_path / "program" / pair["vectors"]).u, sequence[k].u, equal_nan=True
+        )
+
+
+def test_same_call_continues(frames, tmp_path):
+    for resumed in (False, True):
+        sequence = gs.correlate_sequence(frames, output=tmp_path / "out", device="cpu", **SETTINGS)
+        assert [pair["resumed"] for pair in sequence.pairs] == [resumed, resumed]
+
+
+def test_consecutive_images(frames):
+    sequence = gs.correlate_sequence(frames, pairing="consecutive", device="cpu", **SETTINGS)
+    assert len(sequence) == 3
+
+
+def test_bad_pair_is_reported(frames):
+    (frames / "B_1.tif").write_bytes(b"no image")
+    sequence = gs.correlate_sequence(frames, device="cpu", **SETTINGS)
+    assert sequence.failed == [1] and "B_1.tif" in sequence.pairs[1]["error"]
+    assert len(list(sequence)) == 1
+    with pytest.raises(ValueError, match="B_1.tif"):
+        sequence[1]
+
+
+def test_wrong_arguments_are_reported(frames):
+    with pytest.raises(gs.SetupError):
+        gs.correlate_sequence(frames, window=[31])
+    with pytest.raises(gs.DataError, match="pairing"):
+        gs.correlate_sequence(frames, pairing="all")
+    with pytest.raises(gs.DataError, match="matches no file"):
+        gs.correlate_sequence(frames / "C_*.tif")
+
+
+def test_progress_counts_pairs(frames):
+    calls = []
+    gs.correlate_sequence(frames, device="cpu", progress=lambda *call: calls.append(call), **SETTINGS)
+    assert calls[-1][1:] == (2, 2)

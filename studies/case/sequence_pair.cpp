@@ -1,0 +1,89 @@
+#include "studies/case/sequence_pair.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <optional>
+#include <system_error>
+
+#include "render/base/error.h"
+#include "render/files/file_pattern.h"
+#include "render/setup/setup_node.h"
+
+namespace gladstone {
+namespace {
+
+/// Returns the number of the selected pair, from 1; nullopt if the key `pair` is invalid, which its reader reports.
+std::optional<std::size_t> selected_pair(SetupNode const& sequence) {
+  SetupNode const* const pair = sequence.find("pair");
+  if (!pair) return 1;
+  if (pair->kind != SetupNode::Kind::integer || pair->integer < 1) return std::nullopt;
+  return static_cast<std::size_t>(pair->integer);
+}
+
+/// Returns true if the medium is the field of a file. The other cases are reported by check_sequence().
+bool has_field_of_file(SetupDocument const& setup) {
+  SetupNode const* const kind = setup.find({"medium", "field", "kind"});
+  return kind && kind->kind == SetupNode::Kind::text && kind->text == "file";
+}
+
+}  // namespace
+
+bool describes_sequence(SetupDocument const& setup) {
+  return setup.find({"sequence"}) && !setup.find({"sequence", "pair"});
+}
+
+std::vector<std::string> sequence_fields(SetupDocument& setup) {
+  SetupNode const* const given = setup.find({"sequence", "files"});
+  if (!given || given->kind != SetupNode::Kind::array) return {};
+  SetupDocument copy = setup.copy();  // reading records the key, which the setup of a pair does not have
+  std::vector<std::string> files;
+  auto const refuse = [&](std::string const& problem) { setup.root().table("sequence").problem("files", problem); };
+  for (std::string const& name : copy.root().table("sequence").path_list("files")) {
+    if (is_pattern(name)) {
+      try {
+        std::vector<std::string> matches = expand_pattern(name);
+        std::sort(matches.begin(), matches.end(), is_naturally_before);
+        files.insert(files.end(), matches.begin(), matches.end());
+      } catch (DataError const& error) {
+        refuse(error.what());
+      }
+    } else if (std::error_code error; !std::filesystem::exists(name, error)) {
+      refuse("file not found: " + name + "; relative names are resolved against the setup file's folder");
+    } else {
+      files.push_back(name);
+    }
+  }
+  if (given->elements.empty()) refuse("contains no file (one is needed for each frame); add them");
+  return files;
+}
+
+void select_pair(SetupDocument& setup) {
+  SetupNode const* const given = setup.find({"sequence", "files"});
+  SetupNode const* const experiment = setup.find({"experiment"});
+  if (!given || (experiment && experiment->text != "bos") || !has_field_of_file(setup)) return;
+  std::optional<std::size_t> const pair = selected_pair(*setup.find({"sequence"}));
+  std::vector<std::string> const files = sequence_fields(setup);
+  if (!pair || files.empty()) return;
+  SetupTable table = setup.root().table("sequence");
+  if (setup.find({"medium", "field", "file"})) {
+    table.problem("files", "conflicts with medium.field.file (both name the density files); remove medium.field.file");
+    return;
+  }
+  if (*pair > files.size()) {
+    table.problem("pair", fmt::format("exceeds the number of sequence.files, {} (pairs are counted from 1); choose a "
+                                      "smaller one, or add files",
+                                      files.size()));
+    return;
+  }
+  SetupNode file = setup_text(files[*pair - 1]);
+  file.place = given->place;
+  SetupNode sequence = *setup.find({"sequence"});
+  std::erase_if(sequence.members, [](SetupMember const& member) { return member.key == "files"; });
+  if (!sequence.find("pair")) sequence.members.push_back({"pair", setup_integer(1)});
+  setup.set({"medium", "field", "file"}, file);
+  setup.set({"sequence"}, sequence);
+}
+
+}  // namespace gladstone

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "render/setup/setup_table.h"
+
+namespace gladstone {
+
+/// Returns true if a setup describes all pairs of a sequence: it has a table [sequence] without the key `pair`.
+bool describes_sequence(SetupDocument const& setup);
+
+/// Returns the density files of a BOS sequence, one for each frame after the reference: absolute names, in the order of
+/// the setup, with the files of a pattern in natural order (2 before 10). Problems are added to the setup at
+/// sequence.files: files that do not exist, patterns that match none. Empty if the key is absent or invalid.
+std::vector<std::string> sequence_fields(SetupDocument& setup);
+
+/// Replaces sequence.files of a BOS setup by the file of its pair, the first one if there is no key `pair`, as
+/// medium.field.file. Problems are added to the setup. Other setups are not changed.
+void select_pair(SetupDocument& setup);
+
+}  // namespace gladstone
