@@ -38,7 +38,7 @@ TEST_PACKAGES := munge slurmctld slurmd slurm-client chromium chromium-driver py
 
 # `make python` and `make wheel`: packages of PyPI, and the platform of the wheel (glibc 2.36 is that of bookworm).
 VENV := build/python/venv
-PYTHON_PACKAGES := 'nanobind>=2.2' 'numpy>=1.24' 'matplotlib>=3.6' pandas tqdm xarray pytest
+PYTHON_PACKAGES := 'nanobind>=2.2' 'numpy>=1.24' 'matplotlib>=3.6' pandas tqdm xarray h5py pytest
 WHEEL_PLATFORM ?= manylinux_2_36_x86_64
 
 # `make docs`: from PyPI.
@@ -86,7 +86,7 @@ docs: build  ## build the documentation site in build/site, which works offline;
 	@[ -x build/docs/venv/bin/mkdocs ] || { python3 -m venv build/docs/venv && \
 		build/docs/venv/bin/pip install -q $(DOCS_PACKAGES); } || { echo 'docs: mkdocs-material cannot be installed from PyPI;' \
 		'"make docs" needs the network once. The pages are readable as text: README.md, docs/' >&2; exit 1; }
-	NO_MKDOCS_2_WARNING=1 build/docs/venv/bin/python docs/site/build.py --program $(BUILD)/bin/gladstone
+	NO_MKDOCS_2_WARNING=1 build/docs/venv/bin/python -B docs/site/build.py --program $(BUILD)/bin/gladstone
 
 # The package is compiled in $(BUILD), with the libraries of the program, and is tested from build/python/site.
 python: PACKAGES += python3-venv python3-dev

@@ -3,7 +3,7 @@
 
 The pages link to each other as files of the repository. They are copied with the same relative paths, together with
 the files outside docs/ that they link to, so that all links remain valid. The page of the command line is generated
-from the program's --help.
+from the program's --help, that of the Python package from its docstrings.
 """
 
 import argparse
@@ -12,6 +12,8 @@ import re
 import shutil
 import subprocess
 import sys
+
+from python_api import python_api_page
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 LINK = re.compile(r"\]\(([^)#\s]+)[^)]*\)")
@@ -56,7 +58,8 @@ def command_line_page(program: str) -> str:
 
     def add(*words: str) -> None:
         text = help_text(program, *words)
-        page.extend([f"{'###' if len(words) > 1 else '##'} gladstone {' '.join(words)}".rstrip(), "", "```", text, "```", ""])
+        title = f"{'###' if len(words) > 1 else '##'} gladstone {' '.join(words)}".rstrip()
+        page.extend([title, "", "```", text, "```", ""])
         for name in subcommands(text):
             add(*words, name)
 
@@ -71,7 +74,9 @@ def main() -> int:
     parser.add_argument("--site", type=pathlib.Path, default=ROOT / "build/site", help="folder of the site")
     arguments = parser.parse_args()
     copy_pages(arguments.pages)
-    (arguments.pages / "docs/reference/command-line.md").write_text(command_line_page(arguments.program), encoding="utf-8")
+    reference = arguments.pages / "docs/reference"
+    (reference / "command-line.md").write_text(command_line_page(arguments.program), encoding="utf-8")
+    (reference / "python-api.md").write_text(python_api_page(ROOT / "python/gladstone"), encoding="utf-8")
     # mkdocs.yml names no folder: that of the copies depends on the build.
     configuration = arguments.pages.parent / "mkdocs.yml"
     configuration.write_text(f"INHERIT: {ROOT / 'mkdocs.yml'}\ndocs_dir: {arguments.pages.resolve()}\n"

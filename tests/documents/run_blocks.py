@@ -25,14 +25,23 @@ def runnable_blocks(text: str) -> list[tuple[int, str, str]]:
     return blocks
 
 
+def package_environment(source: pathlib.Path) -> tuple[str, dict[str, str]]:
+    """Returns interpreter and environment for Python blocks: those of `make python`, if it was run."""
+    python, site = source / "build/python/venv/bin/python", source / "build/python/site"
+    environment = dict(os.environ, MPLBACKEND="agg")
+    if not python.exists() or not site.exists():
+        return sys.executable, environment
+    return str(python), environment | {"PYTHONPATH": str(site)}
+
+
 def missing_packages(code: str, python: str, folder: str, environment: dict[str, str]) -> list[str]:
     packages = sorted(set(re.findall(r"^\s*(?:import|from) (\w+)", code, re.MULTILINE)))
     return [package for package in packages if subprocess.run(
         [python, "-c", f"import {package}"], cwd=folder, env=environment, capture_output=True, check=False).returncode]
 
 
-def run_page(page: pathlib.Path, source: pathlib.Path, program: str, python: str) -> int:
-    environment = dict(os.environ, MPLBACKEND="agg")
+def run_page(page: pathlib.Path, source: pathlib.Path, program: str) -> int:
+    python, environment = package_environment(source)
     environment["PATH"] = os.pathsep.join([os.path.dirname(os.path.abspath(program)), environment["PATH"]])
     with tempfile.TemporaryDirectory(prefix="page_", dir=os.environ.get("TEST_TMPDIR")) as folder:
         for name in ("studies", "data"):
@@ -41,7 +50,8 @@ def run_page(page: pathlib.Path, source: pathlib.Path, program: str, python: str
             if language == "python" and (missing := missing_packages(code, python, folder, environment)):
                 print(f"{page}:{line}: skipped, Python packages are missing: {', '.join(missing)}")
                 return SKIPPED
-            command = [python, "-c", code] if language == "python" else ["bash", "-e", "-u", "-o", "pipefail", "-c", code]
+            shell = ["bash", "-e", "-u", "-o", "pipefail"]
+            command = [*([python] if language == "python" else shell), "-c", code]
             result = subprocess.run(command, cwd=folder, env=environment, stdout=subprocess.PIPE,
                                     stderr=subprocess.STDOUT, text=True, check=False)
             if result.returncode:
@@ -55,9 +65,8 @@ def main() -> int:
     parser.add_argument("page", type=pathlib.Path)
     parser.add_argument("--source", type=pathlib.Path, required=True, help="root of the repository")
     parser.add_argument("--program", required=True, help="gladstone")
-    parser.add_argument("--python", default=sys.executable, help="interpreter of the Python blocks")
     arguments = parser.parse_args()
-    return run_page(arguments.page, arguments.source.resolve(), arguments.program, arguments.python)
+    return run_page(arguments.page, arguments.source.resolve(), arguments.program)
 
 
 if __name__ == "__main__":
