@@ -5,12 +5,17 @@ import contextlib
 import io
 import pathlib
 import re
+import sys
 import tempfile
 import unittest
 
 import run_blocks
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "docs/site"))
+
+import build  # noqa: E402
+import python_api  # noqa: E402
 
 
 def run(text: str) -> tuple[int, str]:
@@ -52,6 +57,26 @@ class Site(unittest.TestCase):
         pages = {str(path.relative_to(ROOT)) for path in (ROOT / "docs").rglob("*.md")}
         self.assertEqual(pages - set(listed), set())
         self.assertEqual([page for page in listed if not (ROOT / page).is_file() and page not in self.GENERATED], [])
+
+    def test_pages_are_copied_with_the_files_that_they_link_to(self):
+        with tempfile.TemporaryDirectory() as folder:
+            build.copy_pages(pathlib.Path(folder))
+            copied = {str(path.relative_to(folder)) for path in pathlib.Path(folder).rglob("*") if path.is_file()}
+        self.assertLessEqual({"README.md", "CONTRIBUTING.md", "data/README.md", "docs/figure4.png"}, copied)
+        self.assertFalse([name for name in copied if name.startswith(("render/", "build/"))])
+
+    def test_help_names_the_subcommands(self):
+        text = ("Usage\n\nOptions:\n  -h   Help\n\nSubcommands:\n  plan    Write\n          more\n  run     Compute\n"
+                "\nExample:\n  run x")
+        self.assertEqual(build.subcommands(text), ["plan", "run"])
+
+    def test_python_page_has_every_documented_name(self):
+        package = ROOT / "python/gladstone"
+        page = python_api.python_api_page(package)
+        compiled = {"info", "set_threads", "threads"}       # a module, and functions of the compiled part
+        for name in set(python_api.public_names(package)) - compiled:
+            self.assertIn(f"\n## {name}\n", page)
+        self.assertIn("## torch.RenderedPairs", page)
 
     def test_start_and_how_to_have_runnable_examples(self):
         for page in [ROOT / "README.md", *(ROOT / "docs/start").glob("*.md"), *(ROOT / "docs/how-to").glob("*.md")]:
