@@ -34,12 +34,15 @@ CLANG_TIDY := clang-tidy==23.1.4
 DEV_PACKAGES := clang libclang-rt-dev llvm
 PACKAGES += $(if $(filter dev,$(PRESET)),$(DEV_PACKAGES))
 # Programs that only tests call; those tests are skipped if the programs are missing.
-TEST_PACKAGES := munge slurmctld slurmd slurm-client chromium chromium-driver python3-selenium tidy
+TEST_PACKAGES := munge slurmctld slurmd slurm-client chromium chromium-driver python3-selenium python3-numpy python3-h5py tidy
 
 # `make python` and `make wheel`: packages of PyPI, and the platform of the wheel (glibc 2.36 is that of bookworm).
 VENV := build/python/venv
-PYTHON_PACKAGES := 'nanobind>=2.2' 'numpy>=1.24' 'matplotlib>=3.6' pandas tqdm xarray pytest
+PYTHON_PACKAGES := 'nanobind>=2.2' 'numpy>=1.24' 'matplotlib>=3.6' pandas tqdm xarray h5py pytest
 WHEEL_PLATFORM ?= manylinux_2_36_x86_64
+
+# `make docs`: from PyPI.
+DOCS_PACKAGES := 'mkdocs-material>=9.5,<10'
 
 ROOMS := render analysis cuda studies python
 space := $(subst ,, )
@@ -48,7 +51,7 @@ SOURCES = $(shell find $(ROOMS) tests -name '*.h' -o -name '*.cpp' -o -name '*.c
 TIDY_SOURCES = sed -n 's|^ *"file": "\(.*\.c[px][px]\)".*|\1|p' $(BUILD)/compile_commands.json | \
 	grep -E '^$(CURDIR)/($(subst $(space),|,$(strip $(ROOMS))))/|/Unity/unity_($(subst $(space),|,$(strip $(ROOMS))))_'
 
-.PHONY: build test demo gallery studies python wheel bench fuzz soak check-long lint format install clean help packages configure
+.PHONY: build test demo gallery studies docs python wheel bench fuzz soak check-long lint format install clean help packages configure
 .DEFAULT_GOAL := build
 
 build: configure  ## install missing Debian packages and build build/bin/gladstone
@@ -61,10 +64,10 @@ test: configure  ## build and run all tests; of some rooms: TESTED='base medium'
 		$(if $(TESTED),--label-regex '^($(subst $(space),|,$(strip $(TESTED))))$$') \
 		$(if $(LEFT_OUT),--exclude-regex '$(LEFT_OUT)')
 
-demo: build  ## run the experiment of Rajendran et al. (2019) into out/demo; DOCS=1 also updates docs/demo.md and its figures
+demo: build  ## run the experiment of Rajendran et al. (2019) into out/demo; DOCS=1 also updates docs/demo.md and figures of docs
 	$(BUILD)/bin/gladstone demo -o out/demo
 	@[ -z "$(DOCS)" ] || { cp out/demo/figure4.png out/demo/agreement.png docs && \
-		sed '/^## /,$$d' out/demo/summary.md > docs/demo.md; }
+		sed '/^## /,$$d' out/demo/summary.md > docs/demo.md && docs/site/figures.sh $(BUILD)/bin/gladstone out/demo; }
 
 gallery: build  ## render degraded particle images (Figure 1 of the paper) into out/gallery; DOCS=1 also updates docs/gallery.png
 	$(BUILD)/bin/gladstone gallery -o out/gallery --device $(DEVICE)
@@ -77,6 +80,13 @@ studies: build  ## compute the shipped studies into out/studies; some: STUDIES='
 		[ -z "$(DOCS)" ] || for figure in $$(grep -o "$$study/[a-z0-9_]*[.]png" docs/studies/$$study.md); do \
 			mkdir -p docs/studies/$$study && cp $$run/figures/$${figure##*/} docs/studies/$$figure || exit; done; \
 	done
+
+docs: PACKAGES += python3-venv
+docs: build  ## build the documentation site in build/site, which works offline; needs PyPI the first time
+	@[ -x build/docs/venv/bin/mkdocs ] || { python3 -m venv build/docs/venv && \
+		build/docs/venv/bin/pip install -q $(DOCS_PACKAGES); } || { echo 'docs: mkdocs-material cannot be installed from PyPI;' \
+		'"make docs" needs the network once. The pages are readable as text: README.md, docs/' >&2; exit 1; }
+	NO_MKDOCS_2_WARNING=1 build/docs/venv/bin/python -B docs/site/build.py --program $(BUILD)/bin/gladstone
 
 # The package is compiled in $(BUILD), with the libraries of the program, and is tested from build/python/site.
 python: PACKAGES += python3-venv python3-dev

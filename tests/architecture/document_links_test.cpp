@@ -79,7 +79,7 @@ TEST(DocumentLinks, LeadSomewhere) {
   std::vector<fs::path> documents;
   for (fs::directory_entry const& entry : fs::directory_iterator(root))
     if (entry.path().extension() == ".md") documents.push_back(entry.path());
-  for (char const* folder : {"docs", "data", "render", "analysis", "cuda", "studies"})
+  for (char const* folder : {"docs", "data", "render", "analysis", "cuda", "studies", "python", "paper"})
     for (fs::directory_entry const& entry : fs::recursive_directory_iterator(root / folder))
       if (entry.path().extension() == ".md") documents.push_back(entry.path());
   ASSERT_GT(documents.size(), 3U);

@@ -1,0 +1,14 @@
+#!/bin/sh
+# figures.sh GLADSTONE FOLDER: draws the figures of Start and Explained that neither the demo nor a study draws.
+set -eu
+program=$1
+folder=$2
+docs=$(dirname "$0")/..
+"$program" design "$docs/../studies/cases/table1.toml" --verify 0 --figures "$folder/design" > "$folder/design.txt"
+cp "$folder/design/layout.png" "$docs/explained/layout.png"
+rm -f "$folder/bos.toml"
+"$program" init bos -o "$folder/bos.toml"
+"$program" render "$folder/bos.toml" -o "$folder/bos"
+"$program" correlate "$folder/bos"
+"$program" compare "$folder/bos"
+cp "$folder/bos/displacement_maps.png" "$docs/start/bos.png"
