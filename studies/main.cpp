@@ -44,6 +44,8 @@ constexpr std::array commands{
             "gladstone correlate out/case", attach_correlate},
     Command{"compare", "Compare measured vectors with ray truth and theory", "gladstone compare out/case",
             attach_compare},
+    Command{"convert", "Write vectors or true displacements in another format: NetCDF, MATLAB, Tecplot, VTK, CSV, HDF5",
+            "gladstone convert out/case/vectors.h5 -o out/vectors.nc", attach_convert},
     Command{"reconstruct", "Convert the displacement of a BOS measurement to density and its uncertainty",
             "gladstone reconstruct out/case --reference left -o out/density.h5", attach_reconstruct},
     Command{"trace", "Trace given rays and report where and why they end",

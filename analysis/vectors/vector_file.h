@@ -84,12 +84,17 @@ VectorFile convert_to_pixels(VectorFile file, std::string const& path);
 /// @param image_rows  number of rows of the image, for Mirror::image
 DisplacementField apply_conventions(DisplacementField field, VectorConventions const& conventions, int image_rows);
 
-/// Writes vectors.h5 (path ends in .h5) or vectors.csv with x_px, y_px, u_px, v_px, sigma_u_px, sigma_v_px, peak_ratio,
-/// status, u_raw_px, v_raw_px, correlation, reason, ambiguous; quantities that were not estimated are NaN. CSV has one
-/// header line and 17 significant digits. A .h5 file also contains failed_test, the result of the decorrelation test,
-/// the warnings and the hashes of the sources.
-/// @throws OutputError; DataError if a source has changed since it was read; std::invalid_argument for another file
-///         extension
+/// Returns the extensions of the formats that write_vectors() writes: ".h5", ".csv", ".nc", ...
+std::vector<std::string> vector_extensions();
+/// Returns true if a path ends in one of vector_extensions().
+bool has_vector_extension(std::string const& path);
+
+/// Writes vectors in the format of the extension: vectors.h5 (.h5), vectors.csv (.csv), netCDF-4 in the schema of PIVPy
+/// (.nc), MATLAB level 5 (.mat), Tecplot ASCII (.dat), VTK image (.vti) or VTK points (.vtp); contents in
+/// docs/file-formats.md. Quantities that were not estimated are NaN (Tecplot: 0).
+/// @throws OutputError, also for scattered vectors in .nc and .vti; DataError if a source has changed since it was
+/// read;
+///         std::invalid_argument for another file extension
 void write_vectors(std::string const& path, DisplacementField const& field, FileOrigin const& origin);
 
 /// Selects vectors by index, in the given order; the result is scattered (columns = rows = 0).

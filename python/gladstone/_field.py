@@ -119,7 +119,10 @@ class Field:
         return cls._of(_core.load_field(os.fspath(path), conventions, image_rows))
 
     def save(self, path: str | os.PathLike) -> None:
-        """Writes vectors as .h5 or .csv, as `gladstone correlate -o` does."""
+        """Writes vectors in the format of the ending, as `gladstone convert` does: .h5, .csv, .nc, .mat, .dat, .vti, .vtp.
+
+        .nc (NetCDF in pivpy's schema, as `to_xarray`) and .vti require vectors on a grid.
+        """
         self._core.save(os.fspath(path))
 
     def _array(self, name: str, component: int | None = None) -> np.ndarray:

@@ -117,8 +117,9 @@ void save(MeasuredField const& self, std::string const& path) {
     sources.add_known("reference", self.reference_sha256);
     sources.add_known("flow", self.flow_sha256);
   }
-  if (!path.ends_with(".h5") && !path.ends_with(".csv")) {
-    throw OutputError(path, "has an ending that is neither .h5 nor .csv; choose one of them");
+  if (!has_vector_extension(path)) {
+    throw OutputError(path, fmt::format("has an ending that selects no format; choose one of {}",
+                                        fmt::join(vector_extensions(), ", ")));
   }
   write_vectors(path, self.field, {"gladstone vectors", 1, self.resolved, 0, self.device, std::move(sources)});
 }

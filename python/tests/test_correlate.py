@@ -79,11 +79,29 @@ def test_images_are_checked(case):
 
 
 def test_files_round_trip(field, tmp_path):
-    for name in ("vectors.h5", "vectors.csv"):
+    for name in ("vectors.h5", "vectors.csv", "vectors.dat"):
         field.save(tmp_path / name)
         assert same(gs.Field.load(tmp_path / name).u, field.u), name
     with pytest.raises(gs.OutputError):
         field.save(tmp_path / "vectors.txt")
+
+
+def test_netcdf_file_is_the_xarray_data_set(field, tmp_path):
+    xarray = pytest.importorskip("xarray")
+    pytest.importorskip("h5netcdf")
+    field.save(tmp_path / "vectors.nc")
+    with xarray.open_dataset(tmp_path / "vectors.nc", engine="h5netcdf") as written:
+        expected = field.to_xarray()
+        assert set(written.data_vars) == set(expected.data_vars)
+        for name in [*expected.data_vars, "x", "y", "t"]:
+            assert written[name].dims == expected[name].dims, name
+            assert same(written[name].values.astype(float), expected[name].values.astype(float)), name
+
+
+def test_matlab_file_is_read_by_scipy(field, tmp_path):
+    scipy_io = pytest.importorskip("scipy.io")
+    field.save(tmp_path / "vectors.mat")
+    assert same(scipy_io.loadmat(tmp_path / "vectors.mat")["u_px"], field.u)
 
 
 def test_field_of_arrays_is_sorted_as_a_grid():

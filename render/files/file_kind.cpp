@@ -82,13 +82,22 @@ std::string kind_of_table(std::string_view text) {
 }  // namespace
 
 std::string file_kind(std::string const& path, std::string const& name) {
-  constexpr std::array signatures{std::pair{"II*\0"sv, "TIFF"},          std::pair{"MM\0*"sv, "TIFF"},
-                                  std::pair{"II+\0"sv, "TIFF"},          std::pair{"MM\0+"sv, "TIFF"},
-                                  std::pair{"\x89PNG"sv, "PNG"},         std::pair{"%PDF"sv, "PDF"},
-                                  std::pair{"<html"sv, "HTML"},          std::pair{"<!DOCTYPE html"sv, "HTML"},
-                                  std::pair{"<!doctype html"sv, "HTML"}, std::pair{"<svg"sv, "SVG"},
-                                  std::pair{"<VTKFile"sv, "VTK"},        std::pair{"# vtk DataFile"sv, "VTK"},
-                                  std::pair{"NRRD000"sv, "NRRD"},        std::pair{"{"sv, "JSON"}};
+  constexpr std::array signatures{std::pair{"II*\0"sv, "TIFF"},
+                                  std::pair{"MM\0*"sv, "TIFF"},
+                                  std::pair{"II+\0"sv, "TIFF"},
+                                  std::pair{"MM\0+"sv, "TIFF"},
+                                  std::pair{"\x89PNG"sv, "PNG"},
+                                  std::pair{"%PDF"sv, "PDF"},
+                                  std::pair{"<html"sv, "HTML"},
+                                  std::pair{"<!DOCTYPE html"sv, "HTML"},
+                                  std::pair{"<!doctype html"sv, "HTML"},
+                                  std::pair{"<svg"sv, "SVG"},
+                                  std::pair{"<VTKFile"sv, "VTK"},
+                                  std::pair{"# vtk DataFile"sv, "VTK"},
+                                  std::pair{"NRRD000"sv, "NRRD"},
+                                  std::pair{"{"sv, "JSON"},
+                                  std::pair{"MATLAB 5.0 MAT-file"sv, "MATLAB"},
+                                  std::pair{"\x93NUMPY"sv, "NumPy"}};
   std::string const bytes = first_bytes(path);
   if (bytes.starts_with("\x89HDF\r\n\x1a\n")) return kind_of_hdf5(path);
   if (bytes.starts_with("<?xml")) return kind_of_xml(bytes);

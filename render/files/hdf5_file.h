@@ -74,6 +74,12 @@ class Hdf5Reader {
   std::unique_ptr<Handle> handle_;
 };
 
+/// Dataset and the dimension scale of each of its axes, as absolute paths.
+struct ScaledDataset {
+  std::string dataset;
+  std::vector<std::string> scales;
+};
+
 /// Storage of a file until it is closed.
 enum class Hdf5Growth {
   in_memory,  ///< held in memory and written to disk by close()
@@ -109,6 +115,9 @@ class Hdf5Writer {
   void attribute(std::string const& object, std::string const& name, std::string const& value);
   void attribute(std::string const& object, std::string const& name, double value);
   void attribute(std::string const& object, std::string const& name, std::int64_t value);
+  /// Makes datasets the dimension scales of the axes of others (HDF5 Dimension Scale Specification), so that netCDF-4
+  /// and xarray name the axes and their coordinates. To be called once per file, with all datasets that have scales.
+  void attach_scales(std::vector<ScaledDataset> const& datasets);
   /// Flushes the file to disk, checks for write errors and that no source has changed, and renames it to its final
   /// name.
   void close();

@@ -10,8 +10,10 @@
 #include <utility>
 #include <vector>
 
-/// Helpers shared by the two files that call the HDF5 C library, hdf5_reader.cpp and hdf5_writer.cpp; not for other
-/// files.
+#include "render/files/hdf5_file.h"
+
+/// Helpers shared by the files that call the HDF5 C library, hdf5_reader.cpp, hdf5_writer.cpp and hdf5_scales.cpp; not
+/// for other files.
 namespace gladstone::hdf5 {
 
 /// Global lock around all HDF5 calls, since Debian's HDF5 library is not thread-safe.
@@ -58,5 +60,8 @@ inline std::vector<std::string> steps(std::string const& path) {
   }
   return parts;
 }
+
+/// Writes the attributes of Hdf5Writer::attach_scales() to an open file. @return false if HDF5 fails
+bool attach_scales(std::int64_t file, std::vector<ScaledDataset> const& datasets);
 
 }  // namespace gladstone::hdf5

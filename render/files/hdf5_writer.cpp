@@ -266,6 +266,12 @@ void Hdf5Writer::attribute(std::string const& object, std::string const& name, s
   write_attribute(opened, path_, name, H5T_NATIVE_INT64, &value);
 }
 
+void Hdf5Writer::attach_scales(std::vector<ScaledDataset> const& datasets) {
+  Lock const lock(library_lock());
+  GLADSTONE_EXPECTS(handle_ != nullptr);
+  check(hdf5::attach_scales(handle_->file, datasets), path_, "the dimension scales");
+}
+
 void Hdf5Writer::close() {
   Lock const lock(library_lock());
   GLADSTONE_EXPECTS(handle_ != nullptr);

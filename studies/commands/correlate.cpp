@@ -71,7 +71,9 @@ CommandBody attach_correlate(CLI::App& app, GlobalOptions const& options) {
     Backend const device = options.open_device();
     std::string const& output = arguments->output;
     if (!output.empty() && !output.ends_with(".h5") && !output.ends_with(".csv")) {
-      throw OutputError(output, "has an ending that is neither .h5 nor .csv; choose one of them");
+      throw OutputError(
+          output,
+          "has an ending that is neither .h5 nor .csv; choose one of them, and gladstone convert for other formats");
     }
     bool const configured = !arguments->config.empty() || !arguments->overrides.empty();
     std::string config = arguments->config;

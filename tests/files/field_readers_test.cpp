@@ -571,9 +571,11 @@ TEST_F(JhtdbField, SeveralFieldsAskForAName) {
 
 TEST_F(FieldFiles, UnknownFormatsAndMissingFilesAreNamed) {
   EXPECT_THAT([&] { open_field(in_folder("absent.h5"), ""); }, refused("absent.h5", "does not exist"));
-  std::ofstream(in_folder("field.npy")) << "x";
-  EXPECT_THAT([&] { open_field(in_folder("field.npy"), ""); },
-              refused("field.npy", "supported are .h5, .hdf5, .he5, .nc, .mat, .vti, .vtr, .vtk, .nrrd, .nhdr"));
+  std::ofstream(in_folder("field.xyz")) << "x";
+  EXPECT_THAT([&] { open_field(in_folder("field.xyz"), ""); },
+              refused("field.xyz",
+                      "supported are .h5, .hdf5, .he5, .nc, .mat, .vti, .vtr, .vtk, .nrrd, .nhdr, .npy, "
+                      ".npz, .csv, .txt, .dat"));
   std::ofstream(in_folder("field.vtk")) << "x";
   EXPECT_THAT([&] { open_field(in_folder("field.vtk"), ""); }, refused("field.vtk", "is not a legacy VTK file"));
   std::ofstream(in_folder("text.H5")) << "x";

@@ -5,6 +5,7 @@
 
 #include "analysis/vectors/vector_readers/vector_readers.h"
 #include "render/base/error.h"
+#include "render/base/not_a_number.h"
 
 namespace gladstone::detail {
 namespace {
@@ -107,6 +108,26 @@ VectorFile read_gladstone_csv(TextTable const& table) {
         });
   }
   return {std::move(field), "gladstone", {}, false};
+}
+
+bool is_gladstone_tecplot(TextTable const& table) {
+  return table.tecplot && table.find({"x_px"}) && table.find({"y_px"}) && table.find({"u_px"}) &&
+         table.find({"v_px"}) && table.find({"status"});
+}
+
+VectorFile read_gladstone_tecplot(TextTable const& table) {
+  VectorFile file = read_named_columns(table);
+  DisplacementField& field = file.field;
+  auto const known = [](double value) { return value > 0.0 ? value : not_a_number; };
+  for (std::size_t i = 0; i < field.size(); ++i) {
+    if (!field.counts(i)) field.displacement_px[i] = {not_a_number, not_a_number};
+    if (!field.sigma_px.empty()) field.sigma_px[i] = {known(field.sigma_px[i].x), known(field.sigma_px[i].y)};
+    if (!field.peak_ratio.empty()) field.peak_ratio[i] = known(field.peak_ratio[i]);
+  }
+  file.format = "gladstone";
+  file.foreign = false;
+  file.notes.clear();
+  return file;
 }
 
 }  // namespace gladstone::detail

@@ -16,6 +16,11 @@ VectorFile read_gladstone_hdf5(std::string const& path);
 bool is_gladstone_csv(TextTable const& table);
 VectorFile read_gladstone_csv(TextTable const& table);
 
+/// Tecplot ASCII as gladstone writes it, with VARIABLES x_px, y_px, u_px, v_px and status; y and v downwards. 0 marks
+/// values that are not known.
+bool is_gladstone_tecplot(TextTable const& table);
+VectorFile read_gladstone_tecplot(TextTable const& table);
+
 /// PIVlab (Thielicke & Sonntag 2021): "x [px],y [px],u [px/frame],v [px/frame],Vector type [-]", column by column;
 /// vector type 0 is masked, 1 measured, any other interpolated. x is 1-based and ws/2 from the first pixel of the
 /// window (ws: window size).

@@ -47,7 +47,11 @@ class FieldSource {
   int values_;
 };
 
-/// Opens a field file by the format of its extension: HDF5, VTK or NRRD (table in field_file.cpp).
+/// Returns the extensions of the formats that open_field() reads: ".h5", ".vti", ".npy", ...
+std::vector<std::string> field_extensions();
+
+/// Opens a field file by the format of its extension: HDF5, VTK, NRRD, MATLAB, NumPy, or a table of points (table in
+/// field_file.cpp).
 /// @param dataset  name of the array in the file; empty: the only suitable one
 /// @param values   number of values per node: 1, or 3 for a velocity
 /// @param axes     world axes in the order of the file, slowest first ("zxy"); empty: determined from the file

@@ -18,7 +18,7 @@ void Packing::unpack(std::span<double> values) const {
   }
 }
 
-Packing read_packing(Hdf5Reader const& file, std::string const& dataset) {
+Packing read_packing(ArrayFile const& file, std::string const& dataset) {
   Packing packing;
   auto const scale = file.number_attribute(dataset, "scale_factor");
   auto const offset = file.number_attribute(dataset, "add_offset");

@@ -1,0 +1,81 @@
+#include <array>
+#include <span>
+
+#include "analysis/vectors/vector_writers/vector_columns.h"
+#include "analysis/vectors/vector_writers/vector_writers.h"
+#include "render/base/version.h"
+
+namespace gladstone::detail {
+namespace {
+
+/// Variable of the file: its name, the column that it stores, and its attributes.
+struct NetcdfVariable {
+  char const* name;
+  char const* column;
+  char const* units;
+  char const* long_name;
+  char const* standard_name;  ///< empty: none
+};
+
+constexpr std::array netcdf_variables{
+    NetcdfVariable{"u", "u_px", "pix", "displacement to the right", "u_velocity"},
+    NetcdfVariable{"v", "v_px", "pix", "displacement downwards", "v_velocity"},
+    NetcdfVariable{"sigma_u", "sigma_u_px", "pix", "standard uncertainty of u", ""},
+    NetcdfVariable{"sigma_v", "sigma_v_px", "pix", "standard uncertainty of v", ""},
+    NetcdfVariable{"peak_ratio", "peak_ratio", "1", "highest over second correlation peak", ""},
+    NetcdfVariable{"status", "status", "1", "0 valid, 1 replaced, 2 masked, 3 invalid", ""},
+};
+
+/// Writes variables over (y, x, t), with one frame.
+class NetcdfFile {
+ public:
+  NetcdfFile(std::string const& path, FileOrigin const& origin, VectorGrid const& grid)
+      : file_(path, origin), shape_{grid.y.size(), grid.x.size(), 1} {
+    write_axis("x", grid.x, "pix", "column, pixel centres at integers from 0");
+    write_axis("y", grid.y, "pix", "row, downwards");
+    write_axis("t", {0.0}, "frame", "number of the frame");
+  }
+
+  void write(NetcdfVariable const& variable, std::vector<double> const& values) {
+    std::string const dataset = std::string("/") + variable.name;
+    file_.write(dataset, std::span<double const>(values), shape_, variable.units, variable.long_name, "y, x, t");
+    file_.attribute(dataset, "long_name", std::string(variable.long_name));
+    if (*variable.standard_name != '\0') file_.attribute(dataset, "standard_name", std::string(variable.standard_name));
+    scaled_.push_back({dataset, {"/y", "/x", "/t"}});
+  }
+
+  void close(std::string const& path) {
+    file_.attach_scales(scaled_);
+    file_.attribute("/", "delta_t", 1.0);
+    file_.attribute("/", "files", path);
+    file_.attribute("/", "pivpy_schema_version", std::string("1"));
+    file_.attribute("/", "software", "gladstone " + std::string(version));
+    file_.close();
+  }
+
+ private:
+  void write_axis(std::string const& name, std::vector<double> const& places, std::string const& units,
+                  std::string const& description) {
+    file_.write('/' + name, std::span<double const>(places), {places.size()}, units, description, name);
+  }
+
+  Hdf5Writer file_;
+  std::vector<std::size_t> shape_;
+  std::vector<ScaledDataset> scaled_;
+};
+
+}  // namespace
+
+void write_vector_netcdf(std::string const& path, DisplacementField const& field, FileOrigin const& origin) {
+  std::vector<VectorColumn> const columns = vector_columns(field);
+  NetcdfFile file(path, origin, require_vector_grid(field, path, "PIVPy's schema"));
+  for (NetcdfVariable const& variable : netcdf_variables) {
+    file.write(variable, column_named(columns, variable.column).values);
+  }
+  std::vector<double> counts(field.size());
+  for (std::size_t i = 0; i < counts.size(); ++i) counts[i] = field.counts(i) ? 1.0 : 0.0;
+  file.write({"chc", "", "1", "1: valid or replaced, 0: masked or invalid", "validity_flag"}, counts);
+  file.close(path);
+}
+
+}  // namespace gladstone::detail

@@ -1,0 +1,61 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <iterator>
+
+#include "analysis/vectors/vector_writers/vector_columns.h"
+#include "analysis/vectors/vector_writers/vector_writers.h"
+#include "render/files/output_file.h"
+
+namespace gladstone::detail {
+namespace {
+
+/// Appends one row per vector, codes as integers and other numbers with 17 significant digits.
+void append_rows(std::string& text, std::vector<VectorColumn> const& columns, std::size_t rows, char separator) {
+  for (std::size_t i = 0; i < rows; ++i) {
+    for (VectorColumn const& column : columns) {
+      if (&column != columns.data()) text += separator;
+      if (column.is_code) {
+        fmt::format_to(std::back_inserter(text), "{}", static_cast<int>(column.values[i]));
+      } else {
+        fmt::format_to(std::back_inserter(text), "{:.17g}", column.values[i]);
+      }
+    }
+    text += '\n';
+  }
+}
+
+}  // namespace
+
+void write_vector_bytes(std::string const& path, std::string const& bytes, FileOrigin const& origin) {
+  OutputFile file(path);
+  file.write(bytes.data(), bytes.size());
+  origin.sources.check();
+  file.commit();
+}
+
+void write_vector_csv(std::string const& path, DisplacementField const& field, FileOrigin const& origin) {
+  std::vector<VectorColumn> const columns = vector_columns(field);
+  std::string text;
+  for (VectorColumn const& column : columns) text += (text.empty() ? "" : ",") + column.name;
+  text += '\n';
+  append_rows(text, columns, field.size(), ',');
+  write_vector_bytes(path, text, origin);
+}
+
+void write_vector_tecplot(std::string const& path, DisplacementField const& field, FileOrigin const& origin) {
+  std::vector<VectorColumn> columns = vector_columns(field);
+  std::erase_if(columns, [](VectorColumn const& column) { return !column.is_known(); });
+  std::string text = "TITLE = \"gladstone vectors, y and v downwards, 0: not known\"\nVARIABLES =";
+  for (VectorColumn& column : columns) {
+    text += " \"" + column.name + '"';
+    for (double& value : column.values) value = std::isfinite(value) ? value : 0.0;
+  }
+  bool const grid = field.columns > 0;
+  text += fmt::format("\nZONE T=\"vectors\", I={}, J={}, DATAPACKING=POINT\n",
+                      grid ? static_cast<std::size_t>(field.columns) : field.size(), grid ? field.rows : 1);
+  append_rows(text, columns, field.size(), ' ');
+  write_vector_bytes(path, text, origin);
+}
+
+}  // namespace gladstone::detail

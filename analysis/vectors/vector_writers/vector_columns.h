@@ -1,0 +1,43 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "analysis/vectors/displacement_field.h"
+
+namespace gladstone::detail {
+
+/// Quantity of all vectors, as files store it.
+struct VectorColumn {
+  std::string name;         ///< with its unit: "u_px"
+  std::string units;        ///< "px" or "1"
+  std::string description;  ///< meaning of the numbers
+  bool is_code = false;     ///< integers, such as the status
+  std::vector<double> values;
+
+  /// Returns true if at least one vector has a finite value.
+  bool is_known() const;
+};
+
+/// Returns the quantities of vectors.csv in their order: x_px, y_px, u_px, v_px, sigma_u_px, sigma_v_px, peak_ratio,
+/// status, u_raw_px, v_raw_px, correlation, reason, ambiguous. Values that were not estimated are NaN. Vectors without
+/// raw displacements are their own raw displacements, with reason 0 (as measured).
+std::vector<VectorColumn> vector_columns(DisplacementField const& field);
+
+/// Returns the validation tests that the vectors failed, which only vectors.h5 contains.
+VectorColumn failed_test_column(DisplacementField const& field);
+
+/// Coordinates of the columns and rows of a grid of vectors [px].
+struct VectorGrid {
+  std::vector<double> x, y;
+};
+
+/// Returns the coordinates of the grid: those of its first row and of its first column.
+/// @param kind  of the output file, for the message: "NetCDF"
+/// @throws OutputError if the vectors are scattered
+VectorGrid require_vector_grid(DisplacementField const& field, std::string const& path, std::string const& kind);
+
+/// Returns the column of this name. @pre it exists
+VectorColumn const& column_named(std::vector<VectorColumn> const& columns, std::string const& name);
+
+}  // namespace gladstone::detail

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <memory>
+
+#include "render/files/fields/readers/checked_source.h"
+
+namespace gladstone {
+
+/// Opens an array in a MAT-file of MATLAB: level 5 (versions 5 to 7, also compressed; MathWorks, "MAT-File Format") or
+/// version 7.3 (HDF5). MATLAB's first index varies fastest, so that the shape [nx, ny, nz] of ndgrid is read as [nz,
+/// ny, nx], and [ny, nx, nz] of meshgrid as [nz, nx, ny]. Arrays x, y, z are coordinates, see open_array_field().
+/// Compressed arrays are held in memory.
+/// @throws DataError as open_array_field(), and for truncated or damaged files
+std::unique_ptr<CheckedSource> open_matlab(std::string const& path, FieldSelection const& selection);
+
+}  // namespace gladstone

@@ -1,0 +1,298 @@
+#include "render/files/fields/readers/numpy.h"
+
+#include <fmt/format.h>
+#include <zlib.h>
+
+#include <algorithm>
+#include <bit>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "render/base/error.h"
+#include "render/files/fields/readers/listed_arrays.h"
+#include "render/files/fields/readers/vtk_numbers.h"
+#include "render/files/fields/readers/zip_archive.h"
+#include "render/files/text_file.h"
+
+namespace gladstone {
+namespace {
+
+/// Converts a number of half precision (IEEE 754 binary16).
+double read_half(char const* bytes, bool swap) {
+  auto const bits = static_cast<unsigned>(read_number<std::uint16_t>(bytes, swap));
+  int const exponent = static_cast<int>(bits >> 10 & 31);
+  double const fraction = bits & 1023;
+  double const size = exponent == 31  ? (fraction == 0 ? std::numeric_limits<double>::infinity()
+                                                       : std::numeric_limits<double>::quiet_NaN())
+                      : exponent == 0 ? std::ldexp(fraction, -24)
+                                      : std::ldexp(1024 + fraction, exponent - 25);
+  return (bits >> 15) != 0 ? -size : size;
+}
+
+/// Numeric type of an array: kind and number of bytes, as in its header.
+struct NumpyType {
+  std::string_view code;
+  std::size_t bytes;
+  int significant_bits;
+  double (*read)(char const* bytes, bool swap);
+};
+
+template <class Stored>
+constexpr NumpyType numpy_type(std::string_view code) {
+  return {code, sizeof(Stored), std::numeric_limits<Stored>::digits, read_number<Stored>};
+}
+
+constexpr std::array numpy_types{
+    NumpyType{"f2", 2, 11, read_half}, numpy_type<float>("f4"),         numpy_type<double>("f8"),
+    numpy_type<std::int8_t>("i1"),     numpy_type<std::int16_t>("i2"),  numpy_type<std::int32_t>("i4"),
+    numpy_type<std::int64_t>("i8"),    numpy_type<std::uint8_t>("u1"),  numpy_type<std::uint16_t>("u2"),
+    numpy_type<std::uint32_t>("u4"),   numpy_type<std::uint64_t>("u8"), numpy_type<std::uint8_t>("b1"),
+};
+
+/// Describes the content of an array that holds no real numbers, by its dtype.
+std::string describe_dtype(std::string const& dtype) {
+  char const kind = dtype.size() > 1 ? dtype[1] : ' ';
+  if (dtype.starts_with('[') || kind == 'V') return "records (a structured dtype)";
+  if (kind == 'O') return "Python objects (dtype object)";
+  if (kind == 'c') return "complex numbers";
+  if (kind == 'S' || kind == 'U' || kind == 'a') return "text";
+  if (kind == 'M' || kind == 'm') return "dates or durations";
+  return fmt::format("numbers of dtype \"{}\"", excerpt(dtype));
+}
+
+/// Header of an array.
+struct NpyHeader {
+  std::string dtype;  ///< "<f4"; records: "[..."
+  bool fortran = false;
+  std::vector<std::size_t> shape;
+  std::uint64_t data = 0;           ///< offset of the first value
+  std::optional<NumpyType> type{};  ///< nullopt: no real numbers
+  bool swap = false;
+};
+
+/// Parser of the dictionary in a header: {'descr': '<f4', 'fortran_order': False, 'shape': (2, 3), }.
+class NpyDictionary {
+ public:
+  NpyDictionary(std::string text, ByteRange const& range) : text_(std::move(text)), range_(range) {}
+
+  std::string dtype() const {
+    std::string_view const value = after("descr");
+    if (value.starts_with('[')) return "[";
+    if (!value.starts_with('\'') && !value.starts_with('"')) refuse();
+    std::size_t const end = value.find(value.front(), 1);
+    if (end == std::string_view::npos) refuse();
+    return std::string(value.substr(1, end - 1));
+  }
+
+  bool fortran_order() const {
+    std::string_view const value = after("fortran_order");
+    if (!value.starts_with("True") && !value.starts_with("False")) refuse();
+    return value.starts_with("True");
+  }
+
+  std::vector<std::size_t> shape() const {
+    std::string_view value = after("shape");
+    std::size_t const end = value.find(')');
+    if (!value.starts_with('(') || end == std::string_view::npos) refuse();
+    value = value.substr(1, end - 1);
+    std::vector<std::size_t> sizes;
+    constexpr std::size_t most_axes = 64;  // NumPy 2
+    while ((value = value.substr(std::min(value.find_first_not_of(" ,L"), value.size()))), !value.empty()) {
+      std::size_t size = 0;
+      auto const [rest, error] = std::from_chars(value.data(), value.data() + value.size(), size);
+      if (error != std::errc() || sizes.size() == most_axes) refuse();
+      sizes.push_back(size);
+      value.remove_prefix(static_cast<std::size_t>(rest - value.data()));
+    }
+    return sizes;
+  }
+
+ private:
+  /// Returns the text that begins with the value of a key.
+  std::string_view after(std::string const& key) const {
+    for (char const quote : {'\'', '"'}) {
+      std::size_t const at = text_.find(quote + key + quote);
+      std::size_t const colon = at == std::string::npos ? at : text_.find(':', at + key.size() + 2);
+      if (colon == std::string::npos) continue;
+      std::string_view const value = std::string_view(text_).substr(colon + 1);
+      return value.substr(std::min(value.find_first_not_of(" \t\n"), value.size()));
+    }
+    refuse();
+  }
+
+  [[noreturn]] void refuse() const {
+    throw DataError(range_.file->path(), fmt::format("array \"{}\" has a damaged NumPy header \"{}\"; save it again",
+                                                     excerpt(range_.name), excerpt(text_, 100)));
+  }
+
+  std::string text_;
+  ByteRange const& range_;
+};
+
+NpyHeader read_npy_header(ByteRange const& range) {
+  constexpr std::size_t magic = 8, longest = std::size_t{1} << 20;
+  std::vector<char> start = read_up_to(range, magic + 4);
+  std::string_view const text(start.data(), start.size());
+  if (!text.starts_with("\x93NUMPY")) {
+    throw DataError(range.file->path(),
+                    fmt::format("array \"{}\" is not in NumPy's format (no magic string); save it by numpy.save",
+                                excerpt(range.name)));
+  }
+  if (start.size() < magic + 4) refuse_truncated(range, start.size(), magic + 4);
+  int const version = start[6];
+  if (version < 1 || version > 3) {
+    throw DataError(range.file->path(),
+                    fmt::format("array \"{}\" is of NumPy format {} (1 to 3 are read); save it again",
+                                excerpt(range.name), version));
+  }
+  std::size_t const length_bytes = version == 1 ? 2 : 4;
+  std::uint64_t length = 0;
+  for (std::size_t i = length_bytes; i-- > 0;) length = length << 8 | static_cast<unsigned char>(start[magic + i]);
+  NpyHeader header;
+  header.data = magic + length_bytes + length;
+  if (length > longest) {
+    throw DataError(range.file->path(), fmt::format("array \"{}\" has an implausible header of {} bytes; it is damaged",
+                                                    excerpt(range.name), length));
+  }
+  start = read_up_to(range, header.data);
+  if (start.size() < header.data) refuse_truncated(range, start.size(), header.data);
+  NpyDictionary const entries(
+      std::string(start.begin() + static_cast<std::ptrdiff_t>(magic + length_bytes), start.end()), range);
+  header.dtype = entries.dtype();
+  header.fortran = entries.fortran_order();
+  header.shape = entries.shape();
+  std::string const code = header.dtype.empty() ? "" : header.dtype.substr(1);
+  for (NumpyType const& type : numpy_types) {
+    if (type.code == code) header.type = type;
+  }
+  char const order = header.dtype.empty() ? ' ' : header.dtype.front();
+  if (std::string_view("<>|=").find(order) == std::string_view::npos) header.type.reset();
+  header.swap = (order == '>' && std::endian::native == std::endian::little) ||
+                (order == '<' && std::endian::native == std::endian::big);
+  return header;
+}
+
+/// Reads values of an array in C order from the file.
+void read_stored(ByteRange const& range, NpyHeader const& header, std::size_t first, std::span<double> out) {
+  std::size_t const width = header.type->bytes;
+  std::vector<char> bytes(std::min<std::size_t>(out.size(), 1 << 18) * width);
+  for (std::size_t done = 0; done < out.size();) {
+    std::size_t const count = std::min(out.size() - done, bytes.size() / width);
+    std::size_t const got =
+        range.file->read(range.offset + header.data + (first + done) * width, bytes.data(), count * width);
+    if (got < count * width) refuse_truncated(range, got, count * width);
+    for (std::size_t i = 0; i < count; ++i) out[done + i] = header.type->read(bytes.data() + i * width, header.swap);
+    done += count;
+  }
+}
+
+/// Returns the place in C order of each value of an array in Fortran order, one after the other.
+class FortranOrder {
+ public:
+  explicit FortranOrder(std::vector<std::size_t> const& shape)
+      : shape_(shape), index_(shape.size()), strides_(shape.size()) {
+    for (std::size_t axis = shape.size(), stride = 1; axis-- > 0; stride *= shape[axis]) strides_[axis] = stride;
+  }
+  std::size_t next() {
+    std::size_t const place = place_;
+    for (std::size_t axis = 0; axis < shape_.size(); ++axis) {
+      place_ += strides_[axis];
+      if (++index_[axis] < shape_[axis]) break;
+      place_ -= strides_[axis] * shape_[axis];
+      index_[axis] = 0;
+    }
+    return place;
+  }
+
+ private:
+  std::vector<std::size_t> const& shape_;
+  std::vector<std::size_t> index_, strides_;
+  std::size_t place_ = 0;
+};
+
+/// Loads all values of an array that is compressed or in Fortran order.
+/// @param crc  checksum of all bytes of the array's file
+ValueStore load_npy(ByteRange const& range, NpyHeader const& header, std::optional<std::uint32_t> crc) {
+  std::size_t const size = checked_bytes(header.shape, header.type->bytes, range.file->path(), range.name);
+  std::vector<char> const bytes = read_up_to(range, header.data + size);
+  if (bytes.size() < header.data + size) refuse_truncated(range, bytes.size() - header.data, size);
+  if (crc && crc32_z(0, reinterpret_cast<unsigned char const*>(bytes.data()), bytes.size()) != *crc) {
+    throw DataError(range.file->path(),
+                    fmt::format("array \"{}\" is damaged (wrong checksum); copy it again", excerpt(range.name)));
+  }
+  std::size_t const count = size / header.type->bytes;
+  ValueStore values;
+  values.allocate(count, header.type->significant_bits, range.file->path(), "array \"" + excerpt(range.name) + '"');
+  FortranOrder order(header.shape);
+  for (std::size_t i = 0; i < count; ++i) {
+    char const* const value = bytes.data() + header.data + i * header.type->bytes;
+    values.set(header.fortran ? order.next() : i, header.type->read(value, header.swap));
+  }
+  return values;
+}
+
+/// Checks the size of an array's data, and returns the array.
+/// @param size  number of decompressed bytes of header and data
+ListedArray npy_array(ByteRange const& range, NpyHeader const& header, std::uint64_t size,
+                      std::optional<std::uint32_t> crc) {
+  std::size_t const required = checked_bytes(header.shape, header.type->bytes, range.file->path(), range.name);
+  size = std::min(size, most_bytes(range));  // the directory of a damaged archive can declare any size
+  std::uint64_t const present = size > header.data ? size - header.data : 0;
+  if (present < required) refuse_truncated(range, present, required);
+  if (present > required) {
+    throw DataError(
+        range.file->path(),
+        fmt::format("array \"{}\" has {} bytes of data, but its header requires {}; save one array per file",
+                    excerpt(range.name), present, required));
+  }
+  ListedArray array{range.name, header.shape, header.type->significant_bits, {}};
+  bool const direct = range.coding == ByteRange::Coding::stored && !header.fortran;
+  if (direct) {
+    array.read = [range, header](std::size_t first, std::span<double> out) { read_stored(range, header, first, out); };
+  } else {
+    array.read = load_once([range, header, crc] { return load_npy(range, header, crc); });
+  }
+  return array;
+}
+
+}  // namespace
+
+std::unique_ptr<CheckedSource> open_npy(std::string const& path, FieldSelection const& selection) {
+  if (!selection.dataset.empty()) {
+    throw DataError(path, "contains one array without a name; leave dataset = \"" + selection.dataset + "\" out");
+  }
+  auto const file = std::make_shared<InputFile const>(path, "a field file");
+  ByteRange const range{file, "array", 0, file->size()};
+  NpyHeader const header = read_npy_header(range);
+  if (!header.type) {
+    throw DataError(path, "holds " + describe_dtype(header.dtype) +
+                              ", not real numbers; save an array of float64, float32 or integers");
+  }
+  return open_array_field(
+      std::make_unique<ListedArrays>(path, std::vector{npy_array(range, header, file->size(), std::nullopt)}), path,
+      selection);
+}
+
+std::unique_ptr<CheckedSource> open_npz(std::string const& path, FieldSelection const& selection) {
+  auto const file = std::make_shared<InputFile const>(path, "a field file");
+  std::vector<ListedArray> arrays;
+  std::vector<OtherEntry> others;
+  for (ZipEntry entry : zip_entries(file)) {
+    std::string& name = entry.range.name;
+    if (!name.ends_with(".npy")) continue;
+    name.resize(name.size() - std::string_view(".npy").size());
+    NpyHeader const header = read_npy_header(entry.range);
+    if (!header.type) {
+      others.push_back({name, describe_dtype(header.dtype)});
+      continue;
+    }
+    bool const compressed = entry.range.coding != ByteRange::Coding::stored;
+    arrays.push_back(
+        npy_array(entry.range, header, entry.size, compressed ? std::optional(entry.crc32) : std::nullopt));
+  }
+  return open_array_field(std::make_unique<ListedArrays>(path, std::move(arrays), std::move(others)), path, selection);
+}
+
+}  // namespace gladstone

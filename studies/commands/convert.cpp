@@ -1,0 +1,60 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "analysis/vectors/vector_file.h"
+#include "render/base/error.h"
+#include "render/files/input_file.h"
+#include "render/files/output_file.h"
+#include "studies/case/json_text.h"
+#include "studies/commands/arguments.h"
+#include "studies/commands/command.h"
+#include "studies/compare/exported_vectors.h"
+
+namespace gladstone {
+
+CommandBody attach_convert(CLI::App& app, GlobalOptions const& options) {
+  struct Arguments {
+    std::string input, output, conventions;
+    int image_rows = 0;
+  };
+  auto arguments = std::make_shared<Arguments>();
+  app.add_option("input", arguments->input,
+                 "Vectors of gladstone, OpenPIV, PIVlab, DaVis, Insight, Dantec, JPIV or any x,y,u,v; or truth.h5 of a "
+                 "case, for the true displacements of its dots or particles")
+      ->required();
+  app.add_option(
+         "-o,--output", arguments->output,
+         fmt::format("File to write, whose ending selects the format: {}", fmt::join(vector_extensions(), ", ")))
+      ->required();
+  app.add_option("--conventions", arguments->conventions,
+                 "Conventions of a file of another program, instead of those of its format, as for gladstone compare");
+  app.add_option("--image-rows", arguments->image_rows,
+                 "Rows of the image, for files that count y upwards from its last row")
+      ->check(whole_number(1, 1'000'000));
+  return [arguments, &options]() -> int {
+    std::string const& output = arguments->output;
+    if (!has_vector_extension(output)) {
+      throw OutputError(output, fmt::format("has an ending that selects no format; choose one of {}",
+                                            fmt::join(vector_extensions(), ", ")));
+    }
+    require_input_file(arguments->input, "a file of vectors");
+    refuse_inputs_as_outputs({output}, {arguments->input});
+    OutputFile const tried(output);
+    ExportedVectors const vectors = load_for_export(arguments->input, arguments->conventions, arguments->image_rows);
+    write_vectors(output, vectors.field, vectors.origin);
+    std::size_t counted = 0;
+    for (std::size_t i = 0; i < vectors.field.size(); ++i) counted += vectors.field.counts(i) ? 1 : 0;
+    nlohmann::json json{{"file", output},   {"format", vectors.format},         {"vectors", vectors.field.size()},
+                        {"valid", counted}, {"columns", vectors.field.columns}, {"rows", vectors.field.rows}};
+    if (vectors.foreign) json["conventions"] = vectors.conventions;
+    print_result(options, json_text(json),
+                 fmt::format("{}: {} vectors of {}{}, {} valid", output, vectors.field.size(), vectors.format,
+                             vectors.foreign ? " read as " + vectors.conventions : "", counted));
+    return vectors.complete ? ok : check_missed;
+  };
+}
+
+}  // namespace gladstone

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <string>
+
+#include "analysis/vectors/vector_file.h"
+
+namespace gladstone {
+
+/// Vectors of a file in our conventions, with the provenance that a converted file stores.
+struct ExportedVectors {
+  DisplacementField field;
+  FileOrigin origin;
+  std::string format;       ///< "gladstone", "gladstone truth", "OpenPIV", ...
+  std::string conventions;  ///< conventions by which a foreign file was read, as parse_conventions() reads them
+  bool foreign = false;     ///< written by another program
+  bool complete = true;     ///< false: the file's header declares another number of vectors
+};
+
+/// Reads vectors of gladstone or another program, or the dots or particles of truth.h5, for a file in another format.
+/// Dots have the position of their centroid in the reference image, the standard error of their displacement as
+/// uncertainty, and status invalid if no ray of one of the images reached the sensor.
+/// @param conventions  conventions of a foreign file, see parse_conventions(); empty: those of its format
+/// @param image_rows   number of rows of the image, for files that count y upwards from its last row; 0: unknown
+/// @throws DataError if the file cannot be read, or requires `image_rows` and it is 0
+ExportedVectors load_for_export(std::string const& path, std::string const& conventions, int image_rows);
+
+}  // namespace gladstone

@@ -1,0 +1,85 @@
+// gladstone convert: vectors and true displacements in other formats.
+#include <cmath>
+
+#include "analysis/vectors/vector_file.h"
+#include "tests/end_to_end/support/program_fixture.h"
+
+namespace gladstone::end_to_end {
+namespace {
+
+class Convert : public ProgramFixture {
+ protected:
+  std::string path(std::string const& name) const { return in(name).string(); }
+};
+
+TEST_F(Convert, VectorsOfACaseAreWrittenInEveryFormat) {
+  write("setup.toml", small_setup);
+  render("case");
+  succeed({"correlate", "case"});
+  DisplacementField const ours = read_vectors(path("case/vectors.h5")).field;
+  for (std::string const& ending : vector_extensions()) {
+    auto const json = json_of({"convert", "case/vectors.h5", "-o", "v" + ending});
+    EXPECT_EQ(json["vectors"], ours.size()) << ending;
+    EXPECT_EQ(json["columns"], ours.columns) << ending;
+    EXPECT_TRUE(std::filesystem::exists(in("v" + ending))) << ending;
+  }
+  for (std::string const name : {"v.csv", "v.dat", "v.h5"}) {
+    VectorFile const back = read_vectors(path(name));
+    EXPECT_FALSE(back.foreign) << name;
+    EXPECT_EQ(back.field.position_px, ours.position_px) << name;
+    EXPECT_EQ(back.field.status, ours.status) << name;
+  }
+  Hdf5Reader const original(path("case/vectors.h5")), copy(path("v.h5"));
+  for (char const* const attribute : {"setup", "reference_sha256", "flow_sha256", "verdict", "device"})
+    EXPECT_EQ(copy.attribute(attribute), original.attribute(attribute)) << attribute;
+}
+
+TEST_F(Convert, TruthIsWrittenAsVectors) {
+  write("setup.toml", small_setup);
+  render("case");
+  auto const json = json_of({"convert", "case/truth.h5", "-o", "truth.csv"});
+  EXPECT_EQ(json["format"], "gladstone truth");
+  Hdf5Reader const truth(path("case/truth.h5"));
+  auto const place = truth.read("/dots/reference_px"), shift = truth.read("/dots/displacement_px");
+  DisplacementField const back = read_vectors(path("truth.csv")).field;
+  ASSERT_EQ(2 * back.size(), place.size());
+  for (std::size_t i = 0; i < back.size(); ++i) {
+    bool const seen = std::isfinite(shift[2 * i]) && std::isfinite(shift[2 * i + 1]);
+    EXPECT_EQ(back.status[i], seen ? VectorStatus::valid : VectorStatus::invalid);
+    if (!seen) continue;
+    EXPECT_EQ(back.position_px[i], (Vec2d{place[2 * i], place[2 * i + 1]}));
+    EXPECT_EQ(back.displacement_px[i], (Vec2d{shift[2 * i], shift[2 * i + 1]}));
+  }
+}
+
+TEST_F(Convert, ForeignVectorsAreReadByTheirConventions) {
+  write("up.dat",
+        "VARIABLES = \"x [px]\", \"y [px]\", \"Vx [px]\", \"Vy [px]\", \"isValid\"\nZONE I=2, J=1\n"
+        "3 10 1 0.5 1\n7 10 1 0.5 1\n");
+  expect_refused({"convert", "up.dat", "-o", "v.csv"}, 2, {"up.dat", "--image-rows"});
+  auto const json = json_of({"convert", "up.dat", "-o", "v.csv", "--image-rows", "64"});
+  EXPECT_EQ(json["format"], "DaVis");
+  EXPECT_THAT(json["conventions"].get<std::string>(), testing::HasSubstr("y-up-image"));
+  DisplacementField const back = read_vectors(path("v.csv")).field;
+  EXPECT_EQ(back.position_px[0], (Vec2d{3.0, 53.0})) << "63 - 10";
+  EXPECT_EQ(back.displacement_px[0], (Vec2d{1.0, -0.5}));
+  json_of({"convert", "up.dat", "-o", "w.csv", "--conventions", "y-down,v-down"});
+  EXPECT_EQ(read_vectors(path("w.csv")).field.position_px[0], (Vec2d{3.0, 10.0}));
+}
+
+TEST_F(Convert, OtherOutputsAreRefused) {
+  write("v.csv", "x,y,u,v\n1,2,3,4\n");
+  expect_refused({"convert", "v.csv", "-o", "v.xyz"}, 2, {"v.xyz", ".vtp"});
+  expect_refused({"convert", "v.csv", "-o", "v.csv"}, 2, {"v.csv"});
+  expect_refused({"convert", "absent.csv", "-o", "v.vtp"}, 2, {"absent.csv"});
+  expect_refused({"convert", "v.csv", "-o", "v.nc", "--image-rows", "0"}, 2, {"--image-rows"});
+}
+
+TEST_F(Convert, ScatteredVectorsAreRefusedByFormatsOfGrids) {
+  write("v.csv", "x,y,u,v\n1,2,3,4\n5,7,3,4\n9,1,3,4\n");
+  expect_refused({"convert", "v.csv", "-o", "v.nc"}, 2, {"v.nc", ".vtp"});
+  expect_refused({"convert", "v.csv", "-o", "v.vti"}, 2, {"v.vti", ".vtp"});
+}
+
+}  // namespace
+}  // namespace gladstone::end_to_end

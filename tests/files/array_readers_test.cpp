@@ -1,0 +1,467 @@
+// Fields in the formats of NumPy and MATLAB and in tables of points. The files are built byte by byte from the formats'
+// specifications.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <zlib.h>
+
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <set>
+
+#include "render/base/error.h"
+#include "render/files/fields/field_file.h"
+#include "render/files/hdf5_file.h"
+#include "tests/support/documented_tables.h"
+
+namespace gladstone::array_readers_test {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+class ArrayReaders : public testing::Test {
+ protected:
+  void SetUp() override {
+    auto const* const info = testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = fs::path(testing::TempDir()) / (std::string("array_") + info->test_suite_name() + info->name());
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  std::string write(std::string const& name, std::string const& content) const {
+    std::ofstream(folder_ / name, std::ios::binary) << content;
+    return (folder_ / name).string();
+  }
+  static std::vector<double> values_of(std::string const& path, std::string const& dataset = "", int values = 1) {
+    auto const source = open_field(path, dataset, values);
+    std::vector<double> read(source->grid().size() * static_cast<std::size_t>(values));
+    source->read_planes(0, source->grid().nodes[2], read);
+    return read;
+  }
+  /// Returns the message with which opening a file, or reading it, is refused.
+  static std::string refusal(std::string const& path, std::string const& dataset = "", int values = 1) {
+    try {
+      values_of(path, dataset, values);
+    } catch (DataError const& error) {
+      return error.what();
+    }
+    return "not refused";
+  }
+
+ private:
+  fs::path folder_;
+};
+
+/// Returns 100 z + 10 y + x at each node of 4 x 3 x 2 nodes, x fastest.
+std::vector<double> numbered() {
+  std::vector<double> values;
+  for (int z = 0; z < 2; ++z) {
+    for (int y = 0; y < 3; ++y) {
+      for (int x = 0; x < 4; ++x) values.push_back(100.0 * z + 10.0 * y + x);
+    }
+  }
+  return values;
+}
+
+template <class Stored>
+std::string bytes(std::vector<double> const& values, bool big_endian = false) {
+  std::string text;
+  for (double const value : values) {
+    auto const stored = static_cast<Stored>(value);
+    char raw[sizeof(Stored)];
+    std::memcpy(raw, &stored, sizeof(Stored));
+    if (big_endian == (std::endian::native == std::endian::little)) std::reverse(raw, raw + sizeof(Stored));
+    text.append(raw, sizeof(Stored));
+  }
+  return text;
+}
+
+template <class Stored>
+std::string number(std::uint64_t value, bool big_endian = false) {
+  return bytes<Stored>({static_cast<double>(value)}, big_endian);
+}
+
+/// Returns a file of numpy.save(). Format: NumPy, numpy.lib.format.
+std::string npy(std::string const& descr, std::string const& shape, std::string const& data, bool fortran = false,
+                int version = 1) {
+  std::string const header =
+      "{'descr': " + descr + ", 'fortran_order': " + (fortran ? "True" : "False") + ", 'shape': " + shape + ", }\n";
+  std::string const length = version == 1 ? number<std::uint16_t>(header.size()) : number<std::uint32_t>(header.size());
+  return "\x93NUMPY" + std::string(1, static_cast<char>(version)) + std::string(1, '\0') + length + header + data;
+}
+
+using NpyField = ArrayReaders;
+
+TEST_F(NpyField, TypesAndByteOrdersAreRead) {
+  auto const values = numbered();
+  std::string const shape = "(2, 3, 4)";
+  EXPECT_EQ(values_of(write("a.npy", npy("'<f4'", shape, bytes<float>(values)))), values);
+  EXPECT_EQ(values_of(write("b.npy", npy("'>f4'", shape, bytes<float>(values, true)))), values);
+  EXPECT_EQ(values_of(write("c.npy", npy("'<f8'", shape, bytes<double>(values)))), values);
+  EXPECT_EQ(values_of(write("d.npy", npy("'>i2'", shape, bytes<std::int16_t>(values, true)))), values);
+  EXPECT_EQ(values_of(write("e.npy", npy("'|u1'", shape, bytes<std::uint8_t>(values)))), values);
+  EXPECT_EQ(values_of(write("f.npy", npy("'<u8'", shape, bytes<std::uint64_t>(values)))), values);
+}
+
+// binary16: 0x3C00 = 1, 0xC100 = -2.5, 0x0001 = 2^-24, 0x7BFF = 65504
+TEST_F(NpyField, HalfPrecisionIsRead) {
+  std::string const data = number<std::uint16_t>(0x3C00) + number<std::uint16_t>(0xC100) +
+                           number<std::uint16_t>(0x0001) + number<std::uint16_t>(0x7BFF);
+  EXPECT_THAT(values_of(write("h.npy", npy("'<f2'", "(2, 2)", data))), ElementsAre(1, -2.5, 0x1p-24, 65504));
+}
+
+TEST_F(NpyField, EveryVersionIsRead) {
+  for (int const version : {1, 2, 3})
+    EXPECT_EQ(values_of(write("v.npy", npy("'<f8'", "(2, 3, 4)", bytes<double>(numbered()), false, version))),
+              numbered());
+}
+
+// In Fortran order the first index of [z, y, x] varies fastest.
+TEST_F(NpyField, FortranOrderHasTheSameIndices) {
+  std::vector<double> stored;
+  for (int x = 0; x < 4; ++x) {
+    for (int y = 0; y < 3; ++y) {
+      for (int z = 0; z < 2; ++z) stored.push_back(100.0 * z + 10.0 * y + x);
+    }
+  }
+  auto const path = write("f.npy", npy("'<f4'", "(2, 3, 4)", bytes<float>(stored), true));
+  EXPECT_THAT(open_field(path, "")->grid().nodes, ElementsAre(4, 3, 2));
+  EXPECT_EQ(values_of(path), numbered());
+}
+
+TEST_F(NpyField, PlanesAndRowsAreReadAlone) {
+  auto const source = open_field(write("a.npy", npy("'<f4'", "(2, 3, 4)", bytes<float>(numbered()))), "");
+  std::vector<double> plane(12), row(4);
+  source->read_planes(1, 1, plane);
+  EXPECT_THAT(plane, ElementsAre(100, 101, 102, 103, 110, 111, 112, 113, 120, 121, 122, 123));
+  source->read_rows(1, 2, 1, row);
+  EXPECT_THAT(row, ElementsAre(120, 121, 122, 123));
+}
+
+TEST_F(NpyField, UnknownSpacingIsReported) {
+  auto const source = open_field(write("a.npy", npy("'<f4'", "(2, 3, 4)", bytes<float>(numbered()))), "");
+  EXPECT_FALSE(source->units().spaced);
+  EXPECT_NE(source->units().assumed(), "");
+  EXPECT_EQ(source->significant_bits(), 24);
+}
+
+TEST_F(NpyField, VelocitiesHaveThreeComponents) {
+  std::vector<double> values(72);
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<double>(i);
+  EXPECT_EQ(values_of(write("v.npy", npy("'<f8'", "(2, 3, 4, 3)", bytes<double>(values))), "", 3), values);
+}
+
+TEST_F(NpyField, OtherContentIsNamed) {
+  std::string const data = bytes<double>(numbered());
+  EXPECT_THAT(refusal(write("o.npy", npy("'|O'", "(2, 3, 4)", data))), HasSubstr("Python objects (dtype object)"));
+  EXPECT_THAT(refusal(write("c.npy", npy("'<c16'", "(2, 2, 3)", data))), HasSubstr("complex numbers"));
+  EXPECT_THAT(refusal(write("r.npy", npy("[('x', '<f8')]", "(2, 3, 4)", data))), HasSubstr("records"));
+  EXPECT_THAT(refusal(write("s.npy", npy("'<U2'", "(2, 3, 4)", data))), HasSubstr("text"));
+  EXPECT_THAT(refusal(write("g.npy", npy("'<f16'", "(2, 2, 3)", data))), HasSubstr("f16"));
+  EXPECT_THAT(refusal(write("n.npy", npy("'<f8'", "(2, 3, 4)", data)), "rho"), HasSubstr("leave dataset"));
+  EXPECT_THAT(refusal(write("l.npy", npy("'<f8'", "(24,)", data))), HasSubstr("has no scalar field"));
+}
+
+TEST_F(NpyField, DamagedFilesAreRefused) {
+  std::string const good = npy("'<f8'", "(2, 3, 4)", bytes<double>(numbered()));
+  EXPECT_THAT(refusal(write("m.npy", "NUMPY" + good)), HasSubstr("magic"));
+  EXPECT_THAT(refusal(write("e.npy", "")), HasSubstr("magic"));
+  EXPECT_THAT(refusal(write("t.npy", good.substr(0, good.size() - 8))), HasSubstr("has 184 bytes of data"));
+  EXPECT_THAT(refusal(write("x.npy", good + "12345678")), HasSubstr("has 200 bytes of data"));
+  EXPECT_THAT(refusal(write("h.npy", good.substr(0, 30))), HasSubstr("cut short"));
+  EXPECT_THAT(refusal(write("v.npy", npy("'<f8'", "(2, 3, 4)", "", false, 9))), HasSubstr("format 9"));
+  EXPECT_THAT(refusal(write("d.npy", npy("<f8", "(2, 3, 4)", ""))), HasSubstr("damaged NumPy header"));
+  EXPECT_THAT(refusal(write("s.npy", npy("'<f8'", "(2, -3)", ""))), HasSubstr("damaged NumPy header"));
+  // sizes beyond the file and beyond any memory
+  EXPECT_THAT(refusal(write("l.npy", npy("'<f8'", "(4000000, 4000000, 4000000)", ""))), HasSubstr("implausible shape"));
+  EXPECT_THAT(refusal(write("g.npy", npy("'<f8'", "(10000, 10000, 1000)", ""))), HasSubstr("has 0 bytes of data"));
+  EXPECT_THAT(refusal(write("k.npy", "\x93NUMPY\x02" + std::string(1, '\0') + "\xff\xff\xff\x7f{'descr'")),
+              HasSubstr("implausible header"));
+}
+
+/// Builder of zip archives (PKWARE APPNOTE.TXT): local headers with their data, the directory, and its end.
+class Zip {
+ public:
+  void add(std::string const& name, std::string const& content, bool deflated, bool good_checksum = true) {
+    std::string const data = deflated ? deflate_raw(content) : content;
+    auto crc = static_cast<std::uint32_t>(
+        crc32(0, reinterpret_cast<Bytef const*>(content.data()), static_cast<uInt>(content.size())));
+    if (!good_checksum) ++crc;
+    std::string const common = number<std::uint16_t>(deflated ? 8 : 0) + number<std::uint32_t>(0) +
+                               number<std::uint32_t>(crc) + number<std::uint32_t>(data.size()) +
+                               number<std::uint32_t>(content.size()) + number<std::uint16_t>(name.size()) +
+                               number<std::uint16_t>(0);
+    directory_ += "PK\x01\x02" + number<std::uint16_t>(20) + number<std::uint16_t>(20) + number<std::uint16_t>(0) +
+                  common + std::string(10, '\0') + number<std::uint32_t>(content_.size()) + name;
+    content_ += "PK\x03\x04" + number<std::uint16_t>(20) + number<std::uint16_t>(0) + common + name + data;
+    ++entries_;
+  }
+  std::string archive() const {
+    return content_ + directory_ + "PK\x05\x06" + number<std::uint32_t>(0) + number<std::uint16_t>(entries_) +
+           number<std::uint16_t>(entries_) + number<std::uint32_t>(directory_.size()) +
+           number<std::uint32_t>(content_.size()) + number<std::uint16_t>(0);
+  }
+
+ private:
+  static std::string deflate_raw(std::string const& content) {
+    z_stream stream{};
+    deflateInit2(&stream, 6, Z_DEFLATED, -15, 8, Z_DEFAULT_STRATEGY);
+    std::string out(deflateBound(&stream, static_cast<uLong>(content.size())), '\0');
+    stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(content.data()));
+    stream.avail_in = static_cast<uInt>(content.size());
+    stream.next_out = reinterpret_cast<Bytef*>(out.data());
+    stream.avail_out = static_cast<uInt>(out.size());
+    deflate(&stream, Z_FINISH);
+    out.resize(stream.total_out);
+    deflateEnd(&stream);
+    return out;
+  }
+
+  std::string content_, directory_;
+  std::uint64_t entries_ = 0;
+};
+
+using NpzField = ArrayReaders;
+
+TEST_F(NpzField, StoredAndDeflatedArraysHaveTheirCoordinates) {
+  for (bool const deflated : {false, true}) {
+    Zip zip;
+    zip.add("rho.npy", npy("'<f4'", "(2, 3, 4)", bytes<float>(numbered())), deflated);
+    zip.add("x_mm.npy", npy("'<f8'", "(4,)", bytes<double>({1, 1.5, 2, 2.5})), deflated);
+    zip.add("y_mm.npy", npy("'<f8'", "(3,)", bytes<double>({0, 2, 4})), deflated);
+    zip.add("z_mm.npy", npy("'<f8'", "(2,)", bytes<double>({-1, 1})), deflated);
+    zip.add("names.npy", npy("'|O'", "(1,)", "pickle"), deflated);
+    auto const path = write(deflated ? "c.npz" : "s.npz", zip.archive());
+    auto const source = open_field(path, "");
+    EXPECT_EQ(source->name(), "rho");
+    EXPECT_EQ(source->units().length, "mm");
+    EXPECT_EQ(source->grid().spacing.x, 0.5);
+    EXPECT_EQ(source->grid().spacing.y, 2.0);
+    EXPECT_EQ(source->grid().origin.z, -1.0);
+    EXPECT_EQ(values_of(path), numbered());
+    EXPECT_THAT(refusal(path, "names"), HasSubstr("Python objects (dtype object)"));
+    EXPECT_THAT(refusal(path, "rh"), HasSubstr("did you mean \"rho\""));
+  }
+}
+
+TEST_F(NpzField, DamagedArchivesAreRefused) {
+  Zip zip, wrong;
+  std::string const array = npy("'<f8'", "(2, 3, 4)", bytes<double>(numbered()));
+  zip.add("rho.npy", array, true);
+  std::string const good = zip.archive();
+  EXPECT_THAT(refusal(write("m.npz", "not a zip archive")), HasSubstr("is not a zip archive"));
+  EXPECT_THAT(refusal(write("t.npz", good.substr(0, good.size() - 30))), HasSubstr("cut short or damaged"));
+  wrong.add("rho.npy", array, true, false);
+  EXPECT_THAT(refusal(write("c.npz", wrong.archive())), HasSubstr("wrong checksum"));
+  std::string crossed = good;
+  crossed.replace(crossed.rfind("PK\x05\x06") + 16, 4, "\xff\xff\xff\x7f");  // the directory beyond the file
+  EXPECT_THAT(refusal(write("o.npz", crossed)), HasSubstr("cut short or damaged"));
+  Zip large;
+  large.add("rho.npy", npy("'<f8'", "(10000, 10000, 1000)", "12345678"), true);
+  EXPECT_THAT(refusal(write("l.npz", large.archive())), HasSubstr("has 8 bytes of data"));
+}
+
+/// Data element of a MAT-file (MathWorks, MAT-File Format): tag, data, padding to 8 bytes.
+std::string element(std::uint32_t type, std::string const& data, bool big = false) {
+  return number<std::uint32_t>(type, big) + number<std::uint32_t>(data.size(), big) + data +
+         std::string((8 - data.size() % 8) % 8, '\0');
+}
+
+/// Matrix of a class with its numbers stored as a type.
+std::string matrix(std::string const& name, std::vector<double> const& sizes, std::uint32_t type,
+                   std::string const& data, bool big = false, std::uint32_t flags = 6) {
+  return element(14,
+                 element(6, number<std::uint32_t>(flags, big) + number<std::uint32_t>(0, big), big) +
+                     element(5, bytes<std::int32_t>(sizes, big), big) + element(1, name, big) +
+                     element(type, data, big),
+                 big);
+}
+
+std::string mat(std::string const& elements, bool big = false) {
+  std::string header = "MATLAB 5.0 MAT-file, test";
+  header.resize(124, ' ');
+  return header + number<std::uint16_t>(0x0100, big) + (big ? "MI" : "IM") + elements;
+}
+
+std::string zlib_element(std::string const& content) {
+  std::string out(compressBound(static_cast<uLong>(content.size())), '\0');
+  auto size = static_cast<uLongf>(out.size());
+  compress(reinterpret_cast<Bytef*>(out.data()), &size, reinterpret_cast<Bytef const*>(content.data()),
+           static_cast<uLong>(content.size()));
+  out.resize(size);
+  return number<std::uint32_t>(15) + number<std::uint32_t>(out.size()) + out;
+}
+
+using MatField = ArrayReaders;
+
+// ndgrid: [nx, ny, nz], the first index varies fastest
+TEST_F(MatField, ArraysOfEitherByteOrderAreRead) {
+  for (bool const big : {false, true}) {
+    auto const path =
+        write(big ? "b.mat" : "l.mat", mat(matrix("rho", {4, 3, 2}, 9, bytes<double>(numbered(), big), big), big));
+    EXPECT_THAT(open_field(path, "")->grid().nodes, ElementsAre(4, 3, 2));
+    EXPECT_EQ(values_of(path), numbered());
+  }
+}
+
+TEST_F(MatField, CompressedArraysHaveTheirCoordinates) {
+  std::string const path = write("c.mat", mat(zlib_element(matrix("rho", {4, 3, 2}, 9, bytes<double>(numbered()))) +
+                                              zlib_element(matrix("x_mm", {1, 4}, 9, bytes<double>({1, 1.5, 2, 2.5}))) +
+                                              zlib_element(matrix("y_mm", {3, 1}, 9, bytes<double>({0, 2, 4}))) +
+                                              zlib_element(matrix("z_mm", {1, 2}, 9, bytes<double>({-1, 1})))));
+  auto const source = open_field(path, "");
+  EXPECT_EQ(source->name(), "rho");
+  EXPECT_EQ(source->grid().spacing.x, 0.5);
+  EXPECT_EQ(source->grid().spacing.y, 2.0);
+  EXPECT_EQ(source->grid().origin.z, -1.0);
+  EXPECT_TRUE(source->notes().empty());
+  EXPECT_EQ(values_of(path), numbered());
+}
+
+// MATLAB stores doubles that are small integers as integers; single precision is type 7 of class 7.
+TEST_F(MatField, NumbersOfOtherTypesAreRead) {
+  EXPECT_EQ(values_of(write("i.mat", mat(matrix("rho", {4, 3, 2}, 2, bytes<std::uint8_t>(numbered()))))), numbered());
+  auto const path = write("s.mat", mat(matrix("rho", {4, 3, 2}, 7, bytes<float>(numbered()), false, 7)));
+  EXPECT_EQ(open_field(path, "")->significant_bits(), 24);
+  EXPECT_EQ(values_of(path), numbered());
+}
+
+// Without coordinates ndgrid and meshgrid cannot be distinguished.
+TEST_F(MatField, OrderOfTheAxesIsReported) {
+  auto const source = open_field(write("n.mat", mat(matrix("rho", {4, 3, 2}, 9, bytes<double>(numbered())))), "");
+  ASSERT_FALSE(source->notes().empty());
+  EXPECT_THAT(source->notes()[0], HasSubstr("meshgrid"));
+}
+
+TEST_F(MatField, OtherVariablesAreNamed) {
+  std::string const rho = matrix("rho", {4, 3, 2}, 9, bytes<double>(numbered()));
+  auto const path = write("o.mat", mat(matrix("title", {1, 2}, 4, "a\0b\0", false, 4) + rho +
+                                       matrix("wave", {1, 1}, 9, bytes<double>({1}), false, 6 | 0x0800)));
+  EXPECT_EQ(values_of(path), numbered());
+  EXPECT_THAT(refusal(path, "title"), HasSubstr("holds text"));
+  EXPECT_THAT(refusal(path, "wave"), HasSubstr("complex numbers"));
+  EXPECT_THAT(refusal(path, "density"), HasSubstr("it has \"rho\""));
+}
+
+TEST_F(MatField, DamagedFilesAreRefused) {
+  std::string const good = mat(matrix("rho", {4, 3, 2}, 9, bytes<double>(numbered())));
+  EXPECT_THAT(refusal(write("t.mat", good.substr(0, good.size() - 8))), HasSubstr("cut short"));
+  EXPECT_THAT(refusal(write("h.mat", good.substr(0, 100))), HasSubstr("cut short"));
+  EXPECT_THAT(refusal(write("g.mat", good.substr(0, 132))), HasSubstr("cut short"));
+  EXPECT_THAT(refusal(write("w.mat", "MATLAB" + good)), HasSubstr("is not an HDF5 file"));
+  // sizes beyond the data, also in compressed data
+  std::string const large = matrix("rho", {40000, 30000, 200}, 9, bytes<double>(numbered()));
+  EXPECT_THAT(refusal(write("s.mat", mat(large))), HasSubstr("cut short"));
+  EXPECT_THAT(refusal(write("z.mat", mat(zlib_element(large)))), HasSubstr("cut short"));
+  std::string broken = mat(zlib_element(matrix("rho", {4, 3, 2}, 9, bytes<double>(numbered()))));
+  broken[128 + 8] = '\xff';  // first byte of zlib's header
+  EXPECT_THAT(refusal(write("b.mat", broken)), HasSubstr("damaged"));
+}
+
+// MATLAB 7.3 is HDF5.
+TEST_F(MatField, Hdf5IsRead) {
+  std::string const path = write("h.mat", "");
+  fs::remove(path);
+  Hdf5Writer writer(path, {"test", 1, "", 0, "cpu"});
+  writer.write("rho", std::span<double const>(numbered()), {2, 3, 4}, "kg/m^3", "density", "z, y, x");
+  writer.close();
+  EXPECT_EQ(values_of(path), numbered());
+}
+
+/// Returns lines "x,y,z,100 z + 10 y + x" of 4 x 3 x 2 points, from the last to the first.
+std::string reversed_points(std::string const& separator) {
+  std::string text;
+  auto const values = numbered();
+  for (std::size_t i = values.size(); i-- > 0;) {
+    text += std::to_string(0.5 * static_cast<double>(i % 4)) + separator + std::to_string(2 * (i / 4 % 3)) + separator +
+            std::to_string(i / 12) + separator + std::to_string(values[i]) + '\n';
+  }
+  return text;
+}
+
+using PointTableField = ArrayReaders;
+
+TEST_F(PointTableField, PointsInAnyOrderAreAGrid) {
+  for (std::string const separator : {",", ";", "\t", " "}) {
+    std::string const header = "x_mm" + separator + "y_mm" + separator + "z_mm" + separator + "rho\n";
+    auto const path = write("p.csv", header + reversed_points(separator));
+    auto const source = open_field(path, "");
+    EXPECT_EQ(source->name(), "rho");
+    EXPECT_THAT(source->grid().nodes, ElementsAre(4, 3, 2));
+    EXPECT_EQ(source->grid().spacing.x, 0.5);
+    EXPECT_EQ(source->grid().spacing.y, 2.0);
+    EXPECT_EQ(source->units().length, "mm");
+    EXPECT_EQ(values_of(path), numbered()) << separator;
+  }
+}
+
+TEST_F(PointTableField, UnitsAreInBrackets) {
+  auto const source =
+      open_field(write("p.txt", "# x [cm], y [cm], z [cm], rho [g/cm^3]\n" + reversed_points(",")), "rho");
+  EXPECT_EQ(source->units().length, "cm");
+  EXPECT_EQ(source->units().values, "g/cm^3");
+}
+
+TEST_F(PointTableField, TecplotPointZonesAreRead) {
+  std::string const header =
+      "TITLE = \"density, plane\"\nVARIABLES = \"X [mm]\", \"Y [mm]\"\n\"Z [mm]\"\n\"rho\"\n"
+      "ZONE T=\"a\", I=4, J=3, K=2, DATAPACKING=POINT\n";
+  auto const path = write("p.dat", header + reversed_points(" "));
+  EXPECT_EQ(values_of(path), numbered());
+  EXPECT_EQ(open_field(path, "")->units().length, "mm");
+  auto const two = write("two.dat", header + reversed_points(" ") + "ZONE T=\"b\"\n1 2 3 4\n");
+  EXPECT_THAT(open_field(two, "")->notes(), testing::Contains(HasSubstr("another zone")));
+  EXPECT_THAT(refusal(write("b.dat", "VARIABLES = x, y, rho\nZONE I=2, J=2, F=BLOCK\n0 1 0 1\n0 0 1 1\n1 2 3 4\n")),
+              HasSubstr("BLOCK packing"));
+}
+
+TEST_F(PointTableField, PlanesHaveTwoCoordinates) {
+  auto const path = write("p.csv", "y,x,rho\n1,10,3\n0,10,1\n0,12,2\n1,12,4\n");
+  EXPECT_THAT(open_field(path, "")->grid().nodes, ElementsAre(2, 2, 1));
+  EXPECT_THAT(values_of(path), ElementsAre(1, 2, 3, 4));
+}
+
+TEST_F(PointTableField, ThreeColumnsAreAVelocity) {
+  auto const path = write("p.csv", "x,y,u,v,w\n0,0,1,2,3\n1,0,4,5,6\n0,1,7,8,9\n1,1,10,11,12\n");
+  EXPECT_THAT(values_of(path, "", 3), ElementsAre(1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12));
+  EXPECT_EQ(open_field(path, "", 3)->name(), "velocity");
+  EXPECT_THAT(values_of(path, "v"), ElementsAre(2, 5, 8, 11));
+}
+
+TEST_F(PointTableField, MissingAndRepeatedPointsAreNamed) {
+  EXPECT_THAT(refusal(write("m.csv", "x,y,rho\n0,0,1\n2,0,2\n0,3,4\n")), HasSubstr("lacks the point x = 2, y = 3"));
+  EXPECT_THAT(refusal(write("g.csv", "x,y,rho\n0,0,1\n0,3,4\n2,3,2\n")), HasSubstr("lacks the point x = 2, y = 0"));
+  EXPECT_THAT(refusal(write("d.csv", "x,y,rho\n0,0,1\n2,0,2\n0,3,4\n2,3,5\n2,0,2\n")),
+              testing::AllOf(HasSubstr("d.csv:6"), HasSubstr("x = 2, y = 0"), HasSubstr("line 3")));
+  std::string scattered = "x,y,z,rho\n";
+  for (int i = 0; i < 1000; ++i)
+    scattered += std::to_string(i * 1.37) + ',' + std::to_string(i * i * 0.11) + ',' + std::to_string(i * 0.7) + ",1\n";
+  EXPECT_THAT(refusal(write("s.csv", scattered)), HasSubstr("1000 points do not fill the grid"));
+}
+
+TEST_F(PointTableField, OtherTablesAreRefused) {
+  EXPECT_THAT(refusal(write("e.csv", "")), HasSubstr("no row of numbers"));
+  EXPECT_THAT(refusal(write("h.csv", "x,y,rho\n")), HasSubstr("no row of numbers"));
+  EXPECT_THAT(refusal(write("n.csv", "1,2,3\n")), HasSubstr("no header line"));
+  EXPECT_THAT(refusal(write("c.csv", "a,b,rho\n1,2,3\n")), HasSubstr("names no coordinates"));
+  EXPECT_THAT(refusal(write("f.csv", "x,y,rho\n0,0,1\n1,0\n")),
+              testing::AllOf(HasSubstr("f.csv:3"), HasSubstr("2 fields")));
+  EXPECT_THAT(refusal(write("w.csv", "x,y,rho\n0,0,1\n1,0,word\n")),
+              testing::AllOf(HasSubstr("w.csv:3"), HasSubstr("word")));
+  EXPECT_THAT(refusal(write("i.csv", "x,y,rho\n0,0,1\nnan,0,1\n")), HasSubstr("i.csv:3"));
+}
+
+TEST_F(ArrayReaders, DocumentationListsEveryFormat) {
+  std::vector<std::string> const endings = field_extensions();
+  EXPECT_EQ(test::names_of_first_column(test::documented_table("Fields that are read", "ending")),
+            std::set<std::string>(endings.begin(), endings.end()));
+}
+
+}  // namespace
+}  // namespace gladstone::array_readers_test
