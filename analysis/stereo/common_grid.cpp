@@ -43,20 +43,9 @@ NodeGrid find_common_grid(CalibratedCamera const& camera_a, DisplacementField co
                           double spacing) {
   Footprint const a = find_footprint(camera_a.camera, field_a, plane);
   Footprint const b = find_footprint(camera_b.camera, field_b, plane);
-  NodeGrid grid;
-  grid.spacing = spacing > 0.0 ? spacing : 0.5 * (a.spacing + b.spacing);
-  if (!(grid.spacing > 0.0)) return {};
-  // Indices of the first and last nodes; node 0 is at the origin.
-  double const left = std::ceil(std::max(a.low.x, b.low.x) / grid.spacing);
-  double const right = std::floor(std::min(a.high.x, b.high.x) / grid.spacing);
-  double const bottom = std::ceil(std::max(a.low.y, b.low.y) / grid.spacing);
-  double const top = std::floor(std::min(a.high.y, b.high.y) / grid.spacing);
-  constexpr double max_nodes = 1e5;  // along an axis
-  if (!(left <= right && bottom <= top && right - left < max_nodes && top - bottom < max_nodes)) return {};
-  grid.first = grid.spacing * Vec2d{left, bottom};
-  grid.columns = static_cast<int>(right - left) + 1;
-  grid.rows = static_cast<int>(top - bottom) + 1;
-  return grid;
+  double const distance = spacing > 0.0 ? spacing : 0.5 * (a.spacing + b.spacing);
+  return NodeGrid::between({std::max(a.low.x, b.low.x), std::max(a.low.y, b.low.y)},
+                           {std::min(a.high.x, b.high.x), std::min(a.high.y, b.high.y)}, distance);
 }
 
 }  // namespace gladstone::stereo

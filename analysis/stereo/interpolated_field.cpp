@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "analysis/stereo/cubic_convolution.h"
 #include "render/base/contracts.h"
 #include "render/base/not_a_number.h"
 
@@ -13,12 +14,6 @@ namespace {
 Vec2d find_spacing(DisplacementField const& field) {
   Vec2d const extent = field.position_px.back() - field.position_px.front();
   return {extent.x / (field.columns - 1), extent.y / (field.rows - 1)};
-}
-
-/// Weights of the nodes at -1, 0, 1, 2 for a point at `t` between nodes 0 and 1.
-std::array<double, 4> cubic_weights(double t) {
-  return {t * (-0.5 + t * (1.0 - 0.5 * t)), 1.0 + t * t * (-2.5 + 1.5 * t), t * (0.5 + t * (2.0 - 1.5 * t)),
-          t * t * (-0.5 + 0.5 * t)};
 }
 
 std::array<double, 4> linear_weights(double t) { return {0.0, 1.0 - t, t, 0.0}; }

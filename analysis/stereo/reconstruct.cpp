@@ -171,7 +171,7 @@ StereoField reconstruct(CalibratedCamera const& camera_a, DisplacementField cons
                     camera_a.covariance.size() == PinholeCamera::count * PinholeCamera::count);
   GLADSTONE_EXPECTS(camera_b.covariance.empty() ||
                     camera_b.covariance.size() == PinholeCamera::count * PinholeCamera::count);
-  View const a{&camera_a, {field_a, settings.window_px}}, b{&camera_b, {field_b, settings.window_px}};
+  View const a{&camera_a, {field_a, settings.window_a_px}}, b{&camera_b, {field_b, settings.window_b_px}};
   StereoField result;
   result.plane = plane;
   result.grid = find_common_grid(camera_a, field_a, camera_b, field_b, plane, settings.spacing);

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "analysis/stereo/node_grid.h"
 #include "analysis/stereo/stereo_camera.h"
 #include "analysis/vectors/displacement_field.h"
 #include "render/base/vec.h"
@@ -11,21 +12,9 @@
 namespace gladstone::stereo {
 
 struct StereoSettings {
-  double spacing = 0.0;    ///< distance between nodes [m]; 0: mean distance of both cameras' vectors on the plane
-  double window_px = 0.0;  ///< size of the interrogation windows, see InterpolatedField [px]; 0: independent errors
-};
-
-/// Regular grid of nodes with z on the object plane, row by row from the smallest y.
-struct NodeGrid {
-  int columns = 0, rows = 0;
-  Vec2d first{};         ///< x and y of the first node [m]
-  double spacing = 0.0;  ///< distance between nodes along x and y [m]
-
-  std::size_t size() const { return static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows); }
-  Vec2d position(std::size_t node) const {
-    auto const width = static_cast<std::size_t>(columns);
-    return first + spacing * Vec2d{static_cast<double>(node % width), static_cast<double>(node / width)};
-  }
+  double spacing = 0.0;  ///< distance between nodes [m]; 0: mean distance of both cameras' vectors on the plane
+  /// sizes of both cameras' interrogation windows, see InterpolatedField [px]; 0: independent errors
+  double window_a_px = 0.0, window_b_px = 0.0;
 };
 
 /// Covariance matrix of (u, v, w): uu, vv, ww, uv, uw, vw [m^2].

@@ -15,12 +15,6 @@ Eigen::Matrix3d find_rotation(PinholeCamera const& camera) {
   return Eigen::AngleAxisd(angle, axis / angle).toRotationMatrix();
 }
 
-Vec3d find_pinhole(PinholeCamera const& camera) {
-  Eigen::Vector3d const t(camera.value[11], camera.value[12], camera.value[13]);
-  Eigen::Vector3d const centre = -(find_rotation(camera).transpose() * t);
-  return {centre.x(), centre.y(), centre.z()};
-}
-
 /// Finds (x, y) whose distorted image is the pixel. The camera without pose projects (x, y, 1) to that pixel.
 std::optional<Vec2d> undistort(PinholeCamera camera, Vec2d pixel) {
   constexpr int max_iterations = 50;
@@ -59,6 +53,20 @@ std::optional<Vec2d> intersect_plane(PinholeCamera const& camera, Vec2d pixel, O
   if (!(distance > 0.0 && std::isfinite(distance))) return std::nullopt;
   Vec3d const point = line->origin + distance * line->direction;
   return Vec2d{point.x, point.y};
+}
+
+Vec3d find_pinhole(PinholeCamera const& camera) {
+  Eigen::Vector3d const t(camera.value[11], camera.value[12], camera.value[13]);
+  Eigen::Vector3d const centre = -(find_rotation(camera).transpose() * t);
+  return {centre.x(), centre.y(), centre.z()};
+}
+
+double find_pixel_size(PinholeCamera const& camera, ObjectPlane const& plane) {
+  constexpr double step = 1e-4;  // [m]
+  Vec2d const middle = camera.project(plane.point({}));
+  Vec2d const right = (camera.project(plane.point({step, 0})) - middle) / step;
+  Vec2d const up = (camera.project(plane.point({0, step})) - middle) / step;
+  return 1.0 / std::sqrt(std::abs(right.x * up.y - right.y * up.x));
 }
 
 double find_view_angle(PinholeCamera const& a, PinholeCamera const& b, Vec3d point) {

@@ -37,6 +37,12 @@ std::optional<SightLine> find_sight_line(PinholeCamera const& camera, Vec2d pixe
 /// @return x and y of the point [m]; nullopt if the line does not meet the plane in front of the camera
 std::optional<Vec2d> intersect_plane(PinholeCamera const& camera, Vec2d pixel, ObjectPlane const& plane);
 
+/// Computes the position of the pinhole in the world [m].
+Vec3d find_pinhole(PinholeCamera const& camera);
+
+/// Computes the size of a pixel on a plane at x = y = 0: the root of its area [m].
+double find_pixel_size(PinholeCamera const& camera, ObjectPlane const& plane);
+
 /// Computes the angle between the directions from a point to both pinholes [rad].
 double find_view_angle(PinholeCamera const& a, PinholeCamera const& b, Vec3d point);
 
