@@ -48,6 +48,8 @@ constexpr std::array commands{
             "gladstone convert out/case/vectors.h5 -o out/vectors.nc", attach_convert},
     Command{"reconstruct", "Convert the displacement of a BOS measurement to density and its uncertainty",
             "gladstone reconstruct out/case --reference left -o out/density.h5", attach_reconstruct},
+    Command{"stereo", "Combine the vectors of two calibrated cameras to three components and their uncertainty",
+            "gladstone stereo out/stereo/left out/stereo/right -o out/uvw.h5", attach_stereo},
     Command{"trace", "Trace given rays and report where and why they end",
             "gladstone trace table1.toml --rays rays.csv -o out.csv", attach_trace},
     Command{"info", "Describe a setup, its particles, a field, an image, a lens or a sphere",

@@ -21,8 +21,9 @@ struct Room {
 Names const render = {"render/base",   "render/setup",  "render/files",  "render/light",
                       "render/medium", "render/optics", "render/sensor", "render/scene"};
 Names const renderers = {"render/rays", "render/focused_dots", "render/ideal_images"};
-Names const analysis = {"analysis/vectors",     "analysis/correlation", "analysis/errors",   "analysis/calibration",
-                        "analysis/uncertainty", "analysis/preparation", "analysis/tracking", "analysis/density"};
+Names const analysis = {"analysis/vectors",     "analysis/correlation", "analysis/errors",
+                        "analysis/calibration", "analysis/uncertainty", "analysis/preparation",
+                        "analysis/tracking",    "analysis/density",     "analysis/stereo"};
 Names const cuda = {"cuda/device", "cuda/rays", "cuda/focused_dots", "cuda/correlation"};
 
 Names const studies = {"studies/case",   "studies/compare",   "studies/sweep",   "studies/design",  "studies/figures",
@@ -79,6 +80,10 @@ std::vector<Room> const& table() {
        {"Eigen"},
        {"OpenCV", "Ceres", "fmt"}},
       {"analysis/density", {"render/base", "analysis/vectors"}, {"Eigen"}, {"fmt"}},
+      {"analysis/stereo",
+       {"render/base", "analysis/vectors", "analysis/correlation", "analysis/calibration"},
+       {"Eigen"},
+       {"fmt"}},
       {"cuda/device", render, {"Eigen", "CUDA"}, {"fmt"}},
       {"cuda/rays", render + Names{"render/rays", "cuda/device"}, {"Eigen", "CUDA"}, {"fmt"}},
       {"cuda/focused_dots",

@@ -64,7 +64,7 @@ TEST_F(CommandLine, InfoSaysWhatItsKindsTake) {
 
 TEST_F(CommandLine, EveryHelpHasAnExample) {
   for (std::string const command :
-       {"render", "target", "correlate", "compare", "reconstruct", "trace", "info", "validate", "demo"}) {
+       {"render", "target", "correlate", "compare", "reconstruct", "stereo", "trace", "info", "validate", "demo"}) {
     EXPECT_THAT(succeed({"--help"}), HasSubstr(command));
     EXPECT_THAT(succeed({command, "--help"}), HasSubstr("Example:\n  gladstone " + command));
   }

@@ -124,6 +124,27 @@ TEST_F(DocumentedFiles, OfADensityHoldWhatTheirTablesName) {
     EXPECT_TRUE(has_path(summary, key)) << key;
 }
 
+TEST_F(DocumentedFiles, OfAStereoMeasurementHoldWhatTheirTablesName) {
+  succeed({"init", "stereo", "-o", "stereo.toml"});
+  render("case", {"--set", "particles.per_pixel=0.02"}, "stereo.toml");
+  for (char const* camera : {"case/left", "case/right"}) succeed({"correlate", camera});
+  auto const summary = json_of({"stereo", "case/left", "case/right", "-o", "uvw.h5", "--no-figures"});
+  auto const tables = documented_tables("Files of gladstone stereo", "dataset");
+  ASSERT_EQ(tables.size(), 2u) << "one table for every file, one for rendered cases";
+  std::set<std::string> documented = names_of_first_column(tables[0]);
+  documented.merge(names_of_first_column(tables[1]));
+  expect_datasets("uvw.h5", documented);
+  Hdf5Reader const file(in("uvw.h5").string());
+  for (char const* attribute : {"sheet_z_mm", "sheet_slope_x", "sheet_slope_y", "pixel_size_mm", "view_angle_deg",
+                                "window_a_px", "window_b_px", "vectors_a_sha256", "truth_b_sha256"})
+    EXPECT_NE(file.attribute(attribute), "") << attribute;
+  for (char const* key :
+       {"vectors", "calibrations", "columns", "rows", "determined", "spacing_mm", "pixel_size_mm", "view_angle_deg",
+        "residual_px", "residual_ratio", "u.mean_mm", "v.deviation_mm", "w.sigma_mm", "error.u.count",
+        "error.v.bias_px", "error.w.rms_px", "error.w.rms_mm", "error.w.coverage", "file"})
+    EXPECT_TRUE(has_path(summary, key)) << key;
+}
+
 TEST_F(DocumentedFiles, OfACaseOfPivHoldWhatTheirTablesName) {
   write("setup.toml", R"(experiment = "piv"
 [camera]

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <array>
+
+#include "analysis/stereo/node_grid.h"
+#include "analysis/stereo/stereo_camera.h"
+#include "render/base/image.h"
+
+namespace gladstone::stereo {
+
+/// Returns the grid of pixels that covers the part of a plane which both images show.
+/// @param size        columns and rows of the images [px]
+/// @param pixel_size  distance between pixels on the plane [m]
+/// @return empty if the views do not overlap
+NodeGrid find_common_view(std::array<PinholeCamera const*, 2> const& cameras,
+                          std::array<std::array<int, 2>, 2> const& size, ObjectPlane const& plane, double pixel_size);
+
+/// Dewarps an image: its grey levels at the images of the nodes, by cubic convolution. Row 0 is the row of nodes with
+/// the largest y, so that the image is upright.
+/// @return NaN for nodes whose image is less than two pixels inside the border
+Image<double> dewarp_image(Image<double> const& image, PinholeCamera const& camera, ObjectPlane const& plane,
+                           NodeGrid const& grid);
+
+}  // namespace gladstone::stereo

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstddef>
+
+#include "render/base/vec.h"
+
+namespace gladstone::stereo {
+
+/// Regular grid of nodes with z on the object plane, row by row from the smallest y.
+struct NodeGrid {
+  int columns = 0, rows = 0;
+  Vec2d first{};         ///< x and y of the first node [m]
+  double spacing = 0.0;  ///< distance between nodes along x and y [m]
+
+  /// Returns the grid of all multiples of the spacing between two corners; empty without any, or with more than 1e5
+  /// along an axis.
+  static NodeGrid between(Vec2d low, Vec2d high, double spacing);
+
+  std::size_t size() const { return static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows); }
+  Vec2d position(std::size_t node) const {
+    auto const width = static_cast<std::size_t>(columns);
+    return first + spacing * Vec2d{static_cast<double>(node % width), static_cast<double>(node / width)};
+  }
+};
+
+}  // namespace gladstone::stereo

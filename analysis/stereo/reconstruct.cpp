@@ -1,0 +1,187 @@
+#include "analysis/stereo/reconstruct.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Dense>
+#include <cmath>
+
+#include "analysis/stereo/interpolated_field.h"
+#include "render/base/contracts.h"
+#include "render/base/not_a_number.h"
+#include "render/base/parallel.h"
+
+namespace gladstone::stereo {
+namespace {
+
+constexpr int parameter_count = static_cast<int>(PinholeCamera::count);
+using Equations = Eigen::Matrix<double, 4, 3>;
+using Residuals = Eigen::Vector4d;
+
+/// A camera with its vectors.
+struct View {
+  CalibratedCamera const* calibration;
+  InterpolatedField field;
+};
+
+/// Computes the displacement of the image of a particle that moves from `at` - `moved` / 2 to `at` + `moved` / 2 [px].
+Vec2d project_motion(PinholeCamera const& camera, Vec3d at, Vec3d moved) {
+  return camera.project(at + 0.5 * moved) - camera.project(at - 0.5 * moved);
+}
+
+/// Computes the derivatives of a projected point with respect to its position by central differences [px/m].
+Eigen::Matrix<double, 2, 3> differentiate_projection(PinholeCamera const& camera, Vec3d at) {
+  constexpr double step = 1e-5;  // [m]; its square is negligible against the squared distance of the camera
+  Eigen::Matrix<double, 2, 3> derivative;
+  for (int axis = 0; axis < 3; ++axis) {
+    Vec3d moved{};
+    moved[axis] = 2.0 * step;
+    Vec2d const change = project_motion(camera, at, moved) / (2.0 * step);
+    derivative.col(axis) << change.x, change.y;
+  }
+  return derivative;
+}
+
+Covariance pack(Eigen::Matrix3d const& matrix) {
+  return {matrix(0, 0), matrix(1, 1), matrix(2, 2), matrix(0, 1), matrix(0, 2), matrix(1, 2)};
+}
+
+/// Derivatives of a camera's two residuals, measured minus projected, with respect to its parameters.
+Eigen::Matrix<double, 2, parameter_count> differentiate_residual(View const& view, Vec3d at, Vec3d moved) {
+  constexpr double step_fraction = 1e-3;  // of the standard error, so that the response is linear
+  Eigen::Matrix<double, 2, parameter_count> derivative = Eigen::Matrix<double, 2, parameter_count>::Zero();
+  PinholeCamera const& nominal = view.calibration->camera;
+  std::vector<double> const& covariance = view.calibration->covariance;
+  for (std::size_t i = 0; i < PinholeCamera::count; ++i) {
+    double const step = step_fraction * std::sqrt(covariance[i * (PinholeCamera::count + 1)]);
+    if (!(step > 0.0)) continue;
+    PinholeCamera above = nominal, below = nominal;
+    above.value[i] += step;
+    below.value[i] -= step;
+    Vec2d change = project_motion(below, at, moved) - project_motion(above, at, moved);
+    auto const high = view.field.displacement(above.project(at)), low = view.field.displacement(below.project(at));
+    if (high && low) change += *high - *low;  // not at the border of the vectors
+    derivative.col(static_cast<Eigen::Index>(i)) << change.x / (2.0 * step), change.y / (2.0 * step);
+  }
+  return derivative;
+}
+
+/// Covariance of the four residuals due to the errors of both calibrations [px^2].
+Eigen::Matrix4d propagate_calibrations(View const& a, View const& b, Vec3d at, Vec3d moved) {
+  Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();
+  int first = 0;
+  for (View const* view : {&a, &b}) {
+    if (!view->calibration->covariance.empty()) {
+      using Matrix = Eigen::Matrix<double, parameter_count, parameter_count, Eigen::RowMajor>;
+      auto const derivative = differentiate_residual(*view, at, moved);
+      Eigen::Map<Matrix const> const parameters(view->calibration->covariance.data());
+      covariance.block<2, 2>(first, first) = derivative * parameters * derivative.transpose();
+    }
+    first += 2;
+  }
+  return covariance;
+}
+
+/// Solves the four equations at a node.
+class NodeSolver {
+ public:
+  NodeSolver(View const& a, View const& b, Vec3d at) : a_(a), b_(b), at_(at) {}
+
+  std::optional<StereoVector> solve() {
+    auto const in_a = a_.field.vector(camera_a().project(at_)), in_b = b_.field.vector(camera_b().project(at_));
+    if (!in_a || !in_b) return std::nullopt;
+    measured_ << in_a->displacement_px.x, in_a->displacement_px.y, in_b->displacement_px.x, in_b->displacement_px.y;
+    sigma_ << in_a->sigma_px.x, in_a->sigma_px.y, in_b->sigma_px.x, in_b->sigma_px.y;
+    weighted_ = sigma_.allFinite() && sigma_.minCoeff() > 0.0;
+    StereoVector result;
+    result.image_a_px = in_a->displacement_px;
+    result.image_b_px = in_b->displacement_px;
+    if (!find_displacement()) return std::nullopt;
+    result.displacement = moved_;
+    add_uncertainty(result);
+    return result;
+  }
+
+ private:
+  PinholeCamera const& camera_a() const { return a_.calibration->camera; }
+  PinholeCamera const& camera_b() const { return b_.calibration->camera; }
+
+  Residuals find_residuals() const {
+    Vec2d const a = project_motion(camera_a(), at_, moved_), b = project_motion(camera_b(), at_, moved_);
+    return measured_ - Residuals(a.x, a.y, b.x, b.y);
+  }
+
+  /// Iterates with the derivatives at the node: the projection of a symmetric motion is linear up to third order.
+  bool find_displacement() {
+    constexpr int max_iterations = 20;
+    constexpr double tolerance = 1e-12;  // [m]
+    Equations equations;
+    equations << differentiate_projection(camera_a(), at_), differentiate_projection(camera_b(), at_);
+    Residuals const weight = weighted_ ? Residuals(sigma_.cwiseInverse()) : Residuals::Ones().eval();
+    whitened_ = weight.asDiagonal() * equations;
+    inverse_ = (whitened_.transpose() * whitened_).inverse();
+    gain_ = inverse_ * whitened_.transpose() * weight.asDiagonal();
+    for (int i = 0; i < max_iterations; ++i) {
+      Eigen::Vector3d const change = gain_ * find_residuals();
+      if (!change.allFinite()) return false;
+      moved_ += Vec3d{change.x(), change.y(), change.z()};
+      if (change.norm() <= tolerance) return true;
+    }
+    return false;
+  }
+
+  void add_uncertainty(StereoVector& result) const {
+    Residuals const residuals = find_residuals();
+    result.residual_px = residuals.norm();
+    Eigen::Matrix4d const calibration = propagate_calibrations(a_, b_, at_, moved_);
+    Eigen::Matrix3d const from_calibration = gain_ * calibration * gain_.transpose();
+    result.from_calibration = pack(from_calibration);
+    if (!weighted_) {
+      result.covariance.fill(not_a_number);
+      result.residual_ratio = not_a_number;
+      return;
+    }
+    result.covariance = pack(inverse_ + from_calibration);
+    // The weighted residual has one degree of freedom: its component perpendicular to the three columns.
+    Residuals const direction = (sigma_.cwiseInverse().asDiagonal() * residuals).normalized();
+    Residuals const scaled = sigma_.cwiseInverse().asDiagonal() * direction;
+    double const variance = 1.0 + scaled.dot(calibration * scaled);
+    result.residual_ratio = (sigma_.cwiseInverse().asDiagonal() * residuals).norm() / std::sqrt(variance);
+  }
+
+  View const& a_;
+  View const& b_;
+  Vec3d at_;
+  Vec3d moved_{};
+  Residuals measured_, sigma_;
+  bool weighted_ = false;
+  Equations whitened_;
+  Eigen::Matrix3d inverse_;
+  Eigen::Matrix<double, 3, 4> gain_;
+};
+
+}  // namespace
+
+Vec3d StereoVector::sigma() const {
+  return {std::sqrt(covariance[0]), std::sqrt(covariance[1]), std::sqrt(covariance[2])};
+}
+
+StereoField reconstruct(CalibratedCamera const& camera_a, DisplacementField const& field_a,
+                        CalibratedCamera const& camera_b, DisplacementField const& field_b, ObjectPlane const& plane,
+                        StereoSettings const& settings) {
+  GLADSTONE_EXPECTS(camera_a.covariance.empty() ||
+                    camera_a.covariance.size() == PinholeCamera::count * PinholeCamera::count);
+  GLADSTONE_EXPECTS(camera_b.covariance.empty() ||
+                    camera_b.covariance.size() == PinholeCamera::count * PinholeCamera::count);
+  View const a{&camera_a, {field_a, settings.window_a_px}}, b{&camera_b, {field_b, settings.window_b_px}};
+  StereoField result;
+  result.plane = plane;
+  result.grid = find_common_grid(camera_a, field_a, camera_b, field_b, plane, settings.spacing);
+  result.nodes.resize(result.grid.size());
+  constexpr std::size_t nodes_per_chunk = 64;
+  parallel_chunks(result.nodes.size(), nodes_per_chunk, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t node = begin; node < end; ++node)
+      result.nodes[node] = NodeSolver(a, b, plane.point(result.grid.position(node))).solve();
+  });
+  return result;
+}
+
+}  // namespace gladstone::stereo

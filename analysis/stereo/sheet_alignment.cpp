@@ -1,0 +1,172 @@
+#include "analysis/stereo/sheet_alignment.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "analysis/correlation/ensemble.h"
+#include "render/base/contracts.h"
+#include "render/base/error.h"
+
+namespace gladstone::stereo {
+namespace {
+
+/// Least-squares plane through the selected points; nullopt if they do not determine it.
+std::optional<ObjectPlane> solve_plane(std::vector<Vec3d> const& points, std::vector<char> const& selected) {
+  Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d right = Eigen::Vector3d::Zero();
+  double scale = 0.0;  // largest coordinate, which makes the columns comparable
+  for (Vec3d const& p : points) scale = std::max({scale, std::abs(p.x), std::abs(p.y)});
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!selected[i]) continue;
+    Eigen::Vector3d const row(1.0, points[i].x / scale, points[i].y / scale);
+    normal += row * row.transpose();
+    right += row * points[i].z;
+  }
+  Eigen::FullPivLU<Eigen::Matrix3d> solver(normal);
+  solver.setThreshold(1e-9);
+  if (!solver.isInvertible()) return std::nullopt;
+  Eigen::Vector3d const solution = solver.solve(right);
+  return ObjectPlane{solution(0), {solution(1) / scale, solution(2) / scale}};
+}
+
+double height_above(ObjectPlane const& plane, Vec3d const& point) {
+  return point.z - plane.point({point.x, point.y}).z;
+}
+
+/// Intersection of the line from a pinhole through a point with a plane.
+Vec2d project_onto_plane(Vec3d const& pinhole, Vec3d const& point, ObjectPlane const& plane) {
+  double const from = height_above(plane, pinhole), to = height_above(plane, point);
+  Vec3d const at = pinhole + (from / (from - to)) * (point - pinhole);
+  return {at.x, at.y};
+}
+
+double find_mean_pixel_size(std::array<PinholeCamera const*, 2> const& cameras, ObjectPlane const& plane) {
+  return 0.5 * (find_pixel_size(*cameras[0], plane) + find_pixel_size(*cameras[1], plane));
+}
+
+/// Disparities measured between images dewarped onto a plane.
+struct Disparities {
+  std::vector<Vec2d> node_px;   ///< positions in the dewarped images, midway between both images of the particles
+  std::vector<Vec2d> value_px;  ///< position in the image of the second camera minus that in the first
+  NodeGrid grid;
+};
+
+Disparities measure_disparities(std::array<PinholeCamera const*, 2> const& cameras,
+                                std::vector<SimultaneousImages> const& images, ObjectPlane const& plane,
+                                double pixel_size, CorrelationSettings const& settings) {
+  SimultaneousImages const& first = images.front();
+  Disparities result;
+  result.grid = find_common_view(
+      cameras, {{{first[0].columns(), first[0].rows()}, {first[1].columns(), first[1].rows()}}}, plane, pixel_size);
+  if (result.grid.size() == 0) throw DataError("images", "of the two cameras show no common part of the plane");
+  PairSequence const pairs{images.size(), [&](std::size_t pair) {
+                             return HostFrames(dewarp_image(images[pair][0], *cameras[0], plane, result.grid),
+                                               dewarp_image(images[pair][1], *cameras[1], plane, result.grid));
+                           }};
+  DisplacementField const field = correlate_ensemble(pairs, settings);
+  for (std::size_t i = 0; i < field.size(); ++i) {
+    bool const valid = field.status.empty() || field.status[i] == VectorStatus::valid;
+    if (!valid || !is_finite(field.displacement_px[i])) continue;
+    result.node_px.push_back(field.position_px[i]);
+    result.value_px.push_back(field.displacement_px[i]);
+  }
+  return result;
+}
+
+/// Converts a position in a dewarped image to x and y [m].
+Vec2d plane_position(NodeGrid const& grid, Vec2d pixel) {
+  return grid.first + grid.spacing * Vec2d{pixel.x, grid.rows - 1 - pixel.y};
+}
+
+/// Disparity of a point of another plane, in an image dewarped onto `plane` [px].
+Vec2d predict_disparity(std::array<PinholeCamera const*, 2> const& cameras, Vec3d const& point,
+                        ObjectPlane const& plane, double pixel_size) {
+  Vec2d const apart = project_onto_plane(find_pinhole(*cameras[1]), point, plane) -
+                      project_onto_plane(find_pinhole(*cameras[0]), point, plane);
+  return Vec2d{apart.x, -apart.y} / pixel_size;
+}
+
+}  // namespace
+
+std::optional<FittedPlane> fit_object_plane(std::vector<Vec3d> const& points) {
+  constexpr int max_rounds = 10;
+  constexpr double limit = 3.0, per_median = 1.4826;  // standard deviation of a normal distribution over its median
+  if (points.size() < 4) return std::nullopt;
+  std::vector<char> selected(points.size(), 1);
+  FittedPlane fit;
+  for (int round = 0; round < max_rounds; ++round) {
+    auto const plane = solve_plane(points, selected);
+    if (!plane) return std::nullopt;
+    std::vector<double> distance(points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) distance[i] = std::abs(height_above(*plane, points[i]));
+    std::vector<double> sorted = distance;
+    auto const middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+    std::nth_element(sorted.begin(), middle, sorted.end());
+    double const largest = limit * per_median * *middle, rounding = 1e-12;  // [m]
+    fit = {*plane, 0.0, 0, 0};
+    std::vector<char> next(points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      next[i] = distance[i] <= largest + rounding ? 1 : 0;
+      fit.points += next[i] ? 1 : 0;
+      fit.scatter += next[i] ? distance[i] * distance[i] : 0.0;
+    }
+    fit.outliers = points.size() - fit.points;
+    fit.scatter = std::sqrt(fit.scatter / static_cast<double>(fit.points));
+    if (next == selected) break;
+    selected = std::move(next);
+  }
+  return fit;
+}
+
+Vec3d triangulate(PinholeCamera const& a, Vec2d in_a, PinholeCamera const& b, Vec2d in_b, ObjectPlane const& plane) {
+  Vec3d const from_a = find_pinhole(a), from_b = find_pinhole(b);
+  Vec3d const along_a = normalized(plane.point(in_a) - from_a), along_b = normalized(plane.point(in_b) - from_b);
+  double const cosine = dot(along_a, along_b), sine2 = 1.0 - cosine * cosine;
+  Vec3d const base = from_b - from_a;
+  double const way_a = (dot(base, along_a) - cosine * dot(base, along_b)) / sine2;
+  double const way_b = (cosine * dot(base, along_a) - dot(base, along_b)) / sine2;
+  return 0.5 * (from_a + way_a * along_a + from_b + way_b * along_b);
+}
+
+SheetAlignment align_sheet(std::array<PinholeCamera const*, 2> const& cameras,
+                           std::vector<SimultaneousImages> const& images, ObjectPlane plane,
+                           CorrelationSettings const& settings) {
+  GLADSTONE_EXPECTS(!images.empty());
+  constexpr int max_iterations = 8;
+  constexpr double goal_px = 0.005;
+  SheetAlignment result;
+  for (int iteration = 0; iteration < max_iterations; ++iteration) {
+    result.pixel_size = find_mean_pixel_size(cameras, plane);
+    Disparities const measured = measure_disparities(cameras, images, plane, result.pixel_size, settings);
+    std::vector<Vec3d> points;
+    for (std::size_t i = 0; i < measured.node_px.size(); ++i) {
+      Vec2d const half = 0.5 * measured.value_px[i];
+      points.push_back(triangulate(*cameras[0], plane_position(measured.grid, measured.node_px[i] - half), *cameras[1],
+                                   plane_position(measured.grid, measured.node_px[i] + half), plane));
+    }
+    auto const fit = fit_object_plane(points);
+    if (!fit)
+      throw DataError("images",
+                      "of the two cameras have too few valid disparities to determine the laser sheet; use "
+                      "larger windows or more images");
+    double squares = 0.0, scatter = 0.0, inside = 0.0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      Vec2d const predicted =
+          predict_disparity(cameras, fit->plane.point({points[i].x, points[i].y}), plane, result.pixel_size);
+      Vec2d const off = measured.value_px[i] - predicted;
+      if (std::abs(height_above(fit->plane, points[i])) > 5.0 * fit->scatter + 1e-12) continue;  // outlier of the fit
+      squares += dot(predicted, predicted);
+      scatter += dot(off, off);
+      inside += 1.0;
+    }
+    result.fit = *fit;
+    result.disparity_px.push_back(std::sqrt(squares / inside));
+    result.scatter_px = std::sqrt(scatter / inside);
+    plane = fit->plane;
+    if (result.disparity_px.back() < goal_px) break;
+  }
+  return result;
+}
+
+}  // namespace gladstone::stereo

@@ -1,0 +1,254 @@
+#include "studies/compare/stereo.h"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <utility>
+
+#include "analysis/stereo/interpolated_field.h"
+#include "render/base/error.h"
+#include "render/base/not_a_number.h"
+#include "render/base/units.h"
+#include "render/files/hdf5_file.h"
+#include "render/files/input_file.h"
+#include "render/files/stop_point.h"
+#include "studies/case/case.h"
+#include "studies/case/truth_file.h"
+#include "studies/compare/compared_files.h"
+#include "studies/compare/compared_vectors.h"
+#include "studies/compare/stereo_alignment.h"
+#include "studies/compare/stereo_cameras.h"
+#include "studies/compare/stereo_truth.h"
+
+namespace gladstone {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Vectors, camera and truth of one input.
+struct StereoInput {
+  std::optional<CaseSetup> loaded;
+  MeasuredVectors vectors;
+  stereo::CalibratedCamera camera;
+  std::optional<GroundTruth> truth;
+  std::string path;         ///< of the vectors
+  std::string calibration;  ///< path; empty: the setup's exact camera
+  double window_px = 0.0;
+};
+
+void check_stereo_options(StereoOptions const& options) {
+  std::vector<SetupProblem> problems;
+  if (!options.calibrations.empty() && options.calibrations.size() != 2)
+    problems.push_back(
+        {"--calibration", fmt::format("expected two files, one for each camera, got {}", options.calibrations.size())});
+  stereo::ObjectPlane const& plane = options.plane;
+  if (!std::isfinite(plane.height)) problems.push_back({"--sheet-z", "expected a finite number"});
+  if (!is_finite(plane.slope)) problems.push_back({"--sheet-slope", "expected two finite numbers"});
+  if (!(options.spacing >= 0.0 && std::isfinite(options.spacing)))
+    problems.push_back({"--spacing", "expected a positive distance in mm"});
+  if (options.window_px && !(*options.window_px >= 0.0 && std::isfinite(*options.window_px)))
+    problems.push_back({"--window", "expected a size in px, 0 for independent errors"});
+  if (options.images.size() % 2 != 0)
+    problems.push_back({"--images", fmt::format("expected images of the first and of the second camera in turn, got an "
+                                                "odd number ({})",
+                                                options.images.size())});
+  if (!options.images.empty() && !options.align)
+    problems.push_back({"--images", "has no effect without --align; add that option"});
+  if (!problems.empty()) throw SetupError(std::move(problems));
+}
+
+/// Returns the images from which the sheet is determined.
+std::vector<std::string> find_alignment_images(StereoOptions const& options) {
+  if (!options.images.empty()) return options.images;
+  std::vector<std::string> images;
+  for (char const* frame : {case_file::reference, case_file::flow})
+    for (std::string const& place : options.inputs) {
+      std::error_code error;
+      if (!fs::is_directory(place, error))
+        throw DataError(place,
+                        "is a file of vectors, which contains no images; give those of both cameras with --images");
+      images.push_back(in_case(place, frame));
+    }
+  return images;
+}
+
+void add_stereo_source(SourceFiles& sources, std::string const& name, std::string const& path) {
+  bool const is_hdf5 = path.ends_with(".h5") || path.ends_with(".hdf5");
+  sources.add(name, path, is_hdf5 ? SourceFiles::Holds::datasets : SourceFiles::Holds::bytes);
+}
+
+/// Reads the setup that a calibration stores, for the size of the images and the defaults of [correlate].
+CaseSetup load_calibrated_setup(std::string const& calibration) {
+  std::string const text = Hdf5Reader(calibration).attribute("setup");
+  if (text.empty()) throw DataError(calibration, "contains no setup; run gladstone calibrate again");
+  return load_case_setup(SetupDocument::from_text(text, calibration));
+}
+
+/// Locates the files of an input, adds them to the sources, and reads them.
+StereoInput read_stereo_input(StereoOptions const& options, std::size_t index, SourceFiles& sources) {
+  std::string const& place = options.inputs[index];
+  std::string const suffix = index == 0 ? "_a" : "_b";
+  StereoInput input;
+  if (!options.calibrations.empty()) {
+    input.calibration = options.calibrations[index];
+    require_input_file(input.calibration, "a calibration");
+    add_stereo_source(sources, "calibration" + suffix, input.calibration);
+    input.camera = read_calibrated_camera(input.calibration);
+  }
+  std::error_code error;
+  std::string truth;
+  if (fs::is_directory(place, error)) {
+    require_case(place);
+    std::string setup = in_case(place, case_file::setup);
+    input.path = in_case(place, case_file::vectors);
+    if (fs::exists(fs::path(place) / case_file::truth, error)) {
+      ComparedFiles const files = compared_files(place, "");
+      truth = files.truth;
+      add_stereo_source(sources, "truth" + suffix, truth);
+    } else if (!fs::exists(input.path, error)) {
+      throw DataError(input.path, "does not exist; create it with: gladstone correlate " + place);
+    }
+    sources.add("", setup, SourceFiles::Holds::bytes);
+    input.loaded = load_case_setup(setup, {});
+  } else {
+    require_input_file(place, "a case folder or a file of vectors");
+    if (input.calibration.empty())
+      throw DataError(place,
+                      "is a file of vectors, which contains no camera; give the calibration.h5 of both cameras "
+                      "with --calibration");
+    input.path = place;
+    input.loaded = load_calibrated_setup(input.calibration);
+  }
+  add_stereo_source(sources, "vectors" + suffix, input.path);
+  Setup const& setup = input.loaded->setup;
+  if (input.calibration.empty()) input.camera = find_exact_camera(setup, place);
+  if (!truth.empty() && setup.piv) input.truth = read_truth(truth);
+  CompareOptions reading;
+  reading.conventions = options.conventions;
+  input.vectors = load_vectors(input.path, *input.loaded, input.truth ? &*input.truth : nullptr, reading);
+  if (!input.vectors.report.empty()) spdlog::info("{}: {}", input.path, input.vectors.report);
+  input.window_px = options.window_px.value_or(input.vectors.settings.window_px.back());
+  if (!stereo::is_regular_grid(input.vectors.field))
+    throw DataError(input.path,
+                    "has no complete grid of vectors, in which invalid ones are marked or NaN; measure with a grid "
+                    "(for tracking, correlate.tracking.output = \"grid\")");
+  return input;
+}
+
+/// Throws for two cases whose particles differ.
+void require_same_particles(StereoInput const& a, StereoInput const& b, StereoOptions const& options) {
+  if (a.truth->position_m == b.truth->position_m && a.truth->particles.second_m == b.truth->particles.second_m) return;
+  throw DataError(options.inputs[1],
+                  fmt::format("shows other particles than {}; give two cameras of one rendering", options.inputs[0]));
+}
+
+void warn_of_stereo_result(StereoMeasurement& result) {
+  constexpr double least_angle = 20 * unit::degree, largest_ratio = 2.0;
+  if (result.view_angle < least_angle)
+    result.warnings.push_back(
+        fmt::format("the angle between the views is {:.1f} degrees: the third component is {:.1f} times less certain "
+                    "than the others; 60 to 90 degrees are best",
+                    result.view_angle / unit::degree, 1.0 / std::tan(0.5 * result.view_angle)));
+  constexpr double largest_disparity_px = 0.05;
+  if (result.alignment && result.alignment->disparity_px.back() > largest_disparity_px)
+    result.warnings.push_back(
+        fmt::format("the position of the laser sheet has not converged: the residual disparity is {:.2f} px; use more "
+                    "images, or start closer to the sheet with --sheet-z and --sheet-slope",
+                    result.alignment->disparity_px.back()));
+  double const ratio = compute_residual_ratio(result.field);
+  if (ratio > largest_ratio)
+    result.warnings.push_back(fmt::format(
+        "the vectors of the two cameras disagree {:.1f} times more than their uncertainty explains: the "
+        "laser sheet is not in the assumed plane (try --align), the calibration has changed, or vectors are "
+        "wrong",
+        ratio));
+}
+
+}  // namespace
+
+std::array<ComponentErrors, 3> compute_stereo_errors(StereoMeasurement const& measurement) {
+  std::array<ComponentErrors, 3> errors;
+  for (int axis = 0; axis < 3; ++axis) {
+    ComponentErrors& component = errors[static_cast<std::size_t>(axis)];
+    double sum = 0.0, squares = 0.0, within = 0.0, with_sigma = 0.0;
+    for (std::size_t node = 0; node < measurement.field.nodes.size(); ++node) {
+      auto const& vector = measurement.field.nodes[node];
+      if (!vector || !std::isfinite(measurement.truth[node][axis])) continue;
+      double const error = vector->displacement[axis] - measurement.truth[node][axis], sigma = vector->sigma()[axis];
+      ++component.count;
+      sum += error;
+      squares += error * error;
+      with_sigma += std::isfinite(sigma) ? 1.0 : 0.0;
+      within += std::abs(error) <= sigma ? 1.0 : 0.0;
+    }
+    auto const count = static_cast<double>(component.count);
+    component.bias = component.count > 0 ? sum / count : not_a_number;
+    component.rms = component.count > 0 ? std::sqrt(squares / count) : not_a_number;
+    component.coverage = with_sigma > 0 ? within / with_sigma : not_a_number;
+  }
+  return errors;
+}
+
+double compute_residual_ratio(stereo::StereoField const& field) {
+  double squares = 0.0, count = 0.0;
+  for (auto const& node : field.nodes) {
+    if (!node || !std::isfinite(node->residual_ratio)) continue;
+    squares += node->residual_ratio * node->residual_ratio;
+    count += 1.0;
+  }
+  return count > 0 ? std::sqrt(squares / count) : not_a_number;
+}
+
+StereoMeasurement measure_stereo(StereoOptions const& options) {
+  check_stereo_options(options);
+  StereoMeasurement result;
+  result.sources.on_change("run gladstone stereo again");
+  StereoInput a = read_stereo_input(options, 0, result.sources), b = read_stereo_input(options, 1, result.sources);
+  if (a.truth && b.truth) require_same_particles(a, b, options);
+  result.view_angle = stereo::find_view_angle(a.camera.camera, b.camera.camera, options.plane.point({}));
+  constexpr double least_angle = 1 * unit::degree;
+  if (!(result.view_angle > least_angle))
+    throw DataError(options.inputs[1],
+                    fmt::format("looks from the same direction as {} ({:.2f} degrees apart), so that the third "
+                                "component is undetermined; give two cameras with different views",
+                                options.inputs[0], result.view_angle / unit::degree));
+  stop_point("reconstructing");
+  stereo::ObjectPlane plane = options.plane;
+  if (options.align) {
+    result.alignment = align_sheet_of_files(find_alignment_images(options), {&a.camera.camera, &b.camera.camera}, plane,
+                                            result.sources);
+    plane = result.alignment->fit.plane;
+  }
+  stereo::StereoSettings settings;
+  settings.spacing = options.spacing;
+  settings.window_a_px = a.window_px;
+  settings.window_b_px = b.window_px;
+  result.field = stereo::reconstruct(a.camera, a.vectors.field, b.camera, b.vectors.field, plane, settings);
+  if (result.field.grid.size() == 0)
+    throw DataError(options.inputs[1], fmt::format("and {} have no vectors in common on the plane; check that the "
+                                                   "calibrations belong to these cameras, and --spacing",
+                                                   options.inputs[0]));
+  bool const any = std::any_of(result.field.nodes.begin(), result.field.nodes.end(),
+                               [](auto const& node) { return node.has_value(); });
+  if (!any)
+    throw NoValidVector(options.inputs[1],
+                        fmt::format("and {} have no valid vectors at the same place", options.inputs[0]));
+  result.pixel_size =
+      0.5 * (stereo::find_pixel_size(a.camera.camera, plane) + stereo::find_pixel_size(b.camera.camera, plane));
+  if (a.truth && b.truth)
+    result.truth = compute_stereo_truth({&*a.truth, &*b.truth}, {&a.camera.camera, &b.camera.camera}, result.field.grid,
+                                        plane, a.vectors.settings);
+  result.vectors = {a.path, b.path};
+  result.calibrations = {a.calibration, b.calibration};
+  result.window_px = {a.window_px, b.window_px};
+  result.setup = a.loaded->document.resolved();
+  result.seed = a.loaded->setup.render.seed;
+  warn_of_stereo_result(result);
+  for (std::string const& warning : result.warnings) spdlog::warn("{}", warning);
+  return result;
+}
+
+}  // namespace gladstone

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analysis/stereo/reconstruct.h"
+#include "analysis/stereo/sheet_alignment.h"
+#include "render/files/source_files.h"
+
+namespace gladstone {
+
+/// Options of a stereoscopic measurement.
+struct StereoOptions {
+  std::array<std::string, 2> inputs;       ///< case folder or file of vectors, for each camera
+  std::vector<std::string> calibrations;   ///< calibration.h5 of each camera; empty: exact cameras of rendered cases
+  std::optional<std::string> conventions;  ///< of the vectors, as given by the user; empty: those of the file's format
+  stereo::ObjectPlane plane;               ///< middle of the laser sheet, with `align` the first assumption
+  bool align = false;                      ///< determine the sheet from images
+  /// images of the first and of the second camera in turn, two for each time; empty: both frames of the cases
+  std::vector<std::string> images;
+  double spacing = 0.0;             ///< distance between nodes [m]; 0: mean distance of the vectors
+  std::optional<double> window_px;  ///< size of the interrogation windows [px]; empty: [correlate]
+};
+
+/// Displacement in three components, measured by two cameras.
+struct StereoMeasurement {
+  stereo::StereoField field;
+  double pixel_size = 0.0;                  ///< mean size of a pixel on the plane at x = y = 0 [m]
+  double view_angle = 0.0;                  ///< angle between the views at x = y = 0 [rad]
+  std::array<std::string, 2> vectors;       ///< paths
+  std::array<std::string, 2> calibrations;  ///< paths; empty: exact camera of the setup
+  std::array<double, 2> window_px{};        ///< size of the interrogation windows [px]
+  /// True displacement, mean over the particles in the window, of cases of one rendering [m, field.grid.size()]; NaN:
+  /// fewer than three particles; empty: unknown.
+  std::vector<Vec3d> truth;
+  std::optional<stereo::SheetAlignment> alignment;  ///< empty: the sheet was given
+  std::vector<std::string> warnings;
+  std::string setup;         ///< resolved setup of the first camera
+  std::uint64_t seed = 0;    ///< of the rendering
+  SourceFiles sources = {};  ///< vectors, calibrations, and truth
+};
+
+/// Errors of one component against the truth.
+struct ComponentErrors {
+  std::size_t count = 0;
+  double bias = 0.0, rms = 0.0;  ///< mean and root mean square [m]; NaN: no node counts
+  double coverage = 0.0;         ///< fraction of errors within sigma [1]; NaN: vectors without uncertainty
+};
+
+/// Computes the errors of u, v and w over all nodes with a displacement and a truth.
+/// @pre measurement.truth is not empty
+std::array<ComponentErrors, 3> compute_stereo_errors(StereoMeasurement const& measurement);
+
+/// Computes the root mean square of StereoVector::residual_ratio; NaN: vectors without uncertainty.
+double compute_residual_ratio(stereo::StereoField const& field);
+
+/// Reads vectors and cameras, and reconstructs three components. If both inputs are cases of one PIV setup, also
+/// determines the true displacement of their particles. Writes nothing.
+/// @throws SetupError  for invalid options
+/// @throws DataError   for files that are missing or do not fit together; NoValidVector
+StereoMeasurement measure_stereo(StereoOptions const& options);
+
+}  // namespace gladstone

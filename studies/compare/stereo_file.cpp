@@ -1,0 +1,242 @@
+#include "studies/compare/stereo_file.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <span>
+
+#include "analysis/errors/error_summary.h"
+#include "render/base/not_a_number.h"
+#include "render/base/units.h"
+#include "render/files/hdf5_file.h"
+#include "studies/case/json_text.h"
+
+namespace gladstone {
+namespace {
+
+using StereoNode = std::optional<stereo::StereoVector>;
+constexpr std::array<char const*, 3> component_names{"u", "v", "w"};
+
+/// Writes datasets with the nodes of the grid as first axes.
+class NodeWriter {
+ public:
+  NodeWriter(Hdf5Writer& file, stereo::StereoField const& field) : file_(file), field_(field) {}
+
+  /// @param width  number of values of each node; 1: no third axis
+  /// @param value  of a determined node; NaN elsewhere
+  void write(char const* dataset, std::size_t width, char const* units, char const* description,
+             std::string const& third_axis,
+             std::function<double(stereo::StereoVector const&, std::size_t)> const& value) {
+    std::vector<double> values;
+    values.reserve(width * field_.nodes.size());
+    for (StereoNode const& node : field_.nodes)
+      for (std::size_t k = 0; k < width; ++k) values.push_back(node ? value(*node, k) : not_a_number);
+    write_values(dataset, values, width, units, description, third_axis);
+  }
+
+  void write_values(char const* dataset, std::vector<double> const& values, std::size_t width, char const* units,
+                    char const* description, std::string const& third_axis) {
+    std::vector<std::size_t> shape{static_cast<std::size_t>(field_.grid.rows),
+                                   static_cast<std::size_t>(field_.grid.columns)};
+    if (width > 1) shape.push_back(width);
+    std::string const axes = "row (y upwards), column (x)";
+    file_.write(dataset, std::span<double const>(values), shape, units, description,
+                width > 1 ? axes + ", " + third_axis : axes);
+  }
+
+ private:
+  Hdf5Writer& file_;
+  stereo::StereoField const& field_;
+};
+
+constexpr char const* component_axis = "component (u, v, w)";
+
+double pick_component(Vec3d const& vector, std::size_t k) { return vector[static_cast<int>(k)]; }
+
+void write_node_positions(Hdf5Writer& file, stereo::NodeGrid const& grid) {
+  std::vector<double> x_mm, y_mm;
+  for (int i = 0; i < grid.columns; ++i) x_mm.push_back((grid.first.x + i * grid.spacing) / unit::mm);
+  for (int j = 0; j < grid.rows; ++j) y_mm.push_back((grid.first.y + j * grid.spacing) / unit::mm);
+  file.write("/x_mm", std::span<double const>(x_mm), {x_mm.size()}, "mm", "X of the nodes in the world frame",
+             "column");
+  file.write("/y_mm", std::span<double const>(y_mm), {y_mm.size()}, "mm", "Y of the nodes in the world frame", "row");
+}
+
+void write_stereo_truth(NodeWriter& nodes, StereoMeasurement const& measurement) {
+  std::vector<double> truth, error;
+  for (std::size_t i = 0; i < measurement.truth.size(); ++i) {
+    StereoNode const& node = measurement.field.nodes[i];
+    for (std::size_t k = 0; k < 3; ++k) {
+      double const value = pick_component(measurement.truth[i], k);
+      truth.push_back(value / unit::mm);
+      error.push_back(node ? (pick_component(node->displacement, k) - value) / unit::mm : not_a_number);
+    }
+  }
+  nodes.write_values("/truth_mm", truth, 3, "mm", "true displacement, mean over the particles in the window",
+                     component_axis);
+  nodes.write_values("/error_mm", error, 3, "mm", "displacement minus true displacement", component_axis);
+}
+
+/// @param alignment  of the laser sheet
+nlohmann::ordered_json summarize_alignment(stereo::SheetAlignment const& alignment) {
+  stereo::ObjectPlane const& plane = alignment.fit.plane;
+  return {{"z_mm", plane.height / unit::mm},
+          {"slope", {plane.slope.x, plane.slope.y}},
+          {"disparity_px", number_or_null(alignment.disparity_px.front())},
+          {"residual_px", number_or_null(alignment.disparity_px.back())},
+          {"scatter_px", number_or_null(alignment.scatter_px)},
+          {"iterations", alignment.disparity_px.size()},
+          {"vectors", alignment.fit.points},
+          {"outliers", alignment.fit.outliers}};
+}
+
+void write_stereo_attributes(Hdf5Writer& file, StereoMeasurement const& measurement) {
+  file.attribute("/", "sheet_z_mm", measurement.field.plane.height / unit::mm);
+  file.attribute("/", "sheet_slope_x", measurement.field.plane.slope.x);
+  file.attribute("/", "sheet_slope_y", measurement.field.plane.slope.y);
+  file.attribute("/", "pixel_size_mm", measurement.pixel_size / unit::mm);
+  file.attribute("/", "view_angle_deg", measurement.view_angle / unit::degree);
+  file.attribute("/", "window_a_px", measurement.window_px[0]);
+  file.attribute("/", "window_b_px", measurement.window_px[1]);
+  if (!measurement.alignment) return;
+  file.attribute("/", "disparity_px", measurement.alignment->disparity_px.front());
+  file.attribute("/", "residual_disparity_px", measurement.alignment->disparity_px.back());
+}
+
+/// Statistics of one component over the determined nodes [m].
+struct ComponentStatistics {
+  std::size_t count = 0;
+  double mean = not_a_number, deviation = not_a_number;
+  double sigma = not_a_number;  ///< median standard uncertainty; NaN: vectors without uncertainty
+};
+
+ComponentStatistics find_component_statistics(stereo::StereoField const& field, std::size_t k) {
+  ComponentStatistics statistics;
+  double sum = 0.0, squares = 0.0;
+  std::vector<double> sigma;
+  for (StereoNode const& node : field.nodes) {
+    if (!node) continue;
+    ++statistics.count;
+    sum += pick_component(node->displacement, k);
+    if (double const one = pick_component(node->sigma(), k); std::isfinite(one)) sigma.push_back(one);
+  }
+  if (statistics.count == 0) return statistics;
+  auto const count = static_cast<double>(statistics.count);
+  statistics.mean = sum / count;
+  for (StereoNode const& node : field.nodes)
+    if (node) squares += std::pow(pick_component(node->displacement, k) - statistics.mean, 2);
+  statistics.deviation = std::sqrt(squares / count);
+  if (!sigma.empty()) statistics.sigma = quantile(sigma, 0.5);
+  return statistics;
+}
+
+double find_median_residual(stereo::StereoField const& field) {
+  std::vector<double> residuals;
+  for (StereoNode const& node : field.nodes)
+    if (node) residuals.push_back(node->residual_px);
+  return quantile(residuals, 0.5);
+}
+
+}  // namespace
+
+void write_stereo(std::string const& path, StereoMeasurement const& measurement) {
+  Hdf5Writer file(path, {"gladstone stereo", 1, measurement.setup, measurement.seed, "cpu", measurement.sources});
+  using stereo::StereoVector;
+  NodeWriter nodes(file, measurement.field);
+  write_node_positions(file, measurement.field.grid);
+  nodes.write("/displacement_mm", 3, "mm",
+              "displacement from frame A to frame B along X, Y, Z of the world; NaN: not determined", component_axis,
+              [](StereoVector const& v, std::size_t k) { return pick_component(v.displacement, k) / unit::mm; });
+  nodes.write("/sigma_mm", 3, "mm", "standard uncertainty: vectors and calibrations; NaN: vectors without uncertainty",
+              component_axis,
+              [](StereoVector const& v, std::size_t k) { return pick_component(v.sigma(), k) / unit::mm; });
+  nodes.write("/sigma_calibration_mm", 3, "mm", "the part of the uncertainty that is due to the calibrations",
+              component_axis,
+              [](StereoVector const& v, std::size_t k) { return std::sqrt(v.from_calibration[k]) / unit::mm; });
+  nodes.write("/covariance_mm2", 6, "mm^2", "covariance of the displacement", "uu, vv, ww, uv, uw, vw",
+              [](StereoVector const& v, std::size_t k) { return v.covariance[k] / (unit::mm * unit::mm); });
+  nodes.write("/residual_px", 1, "px", "root of the sum of squares of the residuals of the four equations", "",
+              [](StereoVector const& v, std::size_t) { return v.residual_px; });
+  nodes.write("/residual_ratio", 1, "1", "residual divided by its standard uncertainty; NaN: vectors without it", "",
+              [](StereoVector const& v, std::size_t) { return v.residual_ratio; });
+  nodes.write("/image_displacement_px", 4, "px", "vectors of both cameras, interpolated at the node",
+              "u of camera A, v of camera A, u of camera B, v of camera B", [](StereoVector const& v, std::size_t k) {
+                return std::array{v.image_a_px.x, v.image_a_px.y, v.image_b_px.x, v.image_b_px.y}[k];
+              });
+  if (!measurement.truth.empty()) write_stereo_truth(nodes, measurement);
+  write_stereo_attributes(file, measurement);
+  file.close();
+}
+
+nlohmann::ordered_json summarize_stereo(StereoMeasurement const& measurement) {
+  using nlohmann::ordered_json;
+  stereo::StereoField const& field = measurement.field;
+  ordered_json json{{"vectors", measurement.vectors},
+                    {"calibrations", measurement.calibrations},
+                    {"columns", field.grid.columns},
+                    {"rows", field.grid.rows},
+                    {"determined", find_component_statistics(field, 0).count},
+                    {"spacing_mm", field.grid.spacing / unit::mm},
+                    {"pixel_size_mm", measurement.pixel_size / unit::mm},
+                    {"view_angle_deg", measurement.view_angle / unit::degree},
+                    {"residual_px", number_or_null(find_median_residual(field))},
+                    {"residual_ratio", number_or_null(compute_residual_ratio(field))}};
+  for (std::size_t k = 0; k < 3; ++k) {
+    ComponentStatistics const statistics = find_component_statistics(field, k);
+    json[component_names[k]] = {{"mean_mm", number_or_null(statistics.mean / unit::mm)},
+                                {"deviation_mm", number_or_null(statistics.deviation / unit::mm)},
+                                {"sigma_mm", number_or_null(statistics.sigma / unit::mm)}};
+  }
+  if (measurement.alignment) json["sheet"] = summarize_alignment(*measurement.alignment);
+  if (measurement.truth.empty()) return json;
+  auto const errors = compute_stereo_errors(measurement);
+  for (std::size_t k = 0; k < 3; ++k)
+    json["error"][component_names[k]] = {{"count", errors[k].count},
+                                         {"bias_px", number_or_null(errors[k].bias / measurement.pixel_size)},
+                                         {"rms_px", number_or_null(errors[k].rms / measurement.pixel_size)},
+                                         {"rms_mm", number_or_null(errors[k].rms / unit::mm)},
+                                         {"coverage", number_or_null(errors[k].coverage)}};
+  return json;
+}
+
+std::string stereo_report(StereoMeasurement const& measurement) {
+  stereo::StereoField const& field = measurement.field;
+  std::string text =
+      fmt::format("Displacement at {} of {} x {} nodes, {:.4g} mm apart; {:.1f} degrees between the views\n",
+                  find_component_statistics(field, 0).count, field.grid.columns, field.grid.rows,
+                  field.grid.spacing / unit::mm, measurement.view_angle / unit::degree);
+  text += fmt::format("  {:<16} {:>12} {:>12} {:>12}\n", "[mm]", "mean", "deviation", "sigma");
+  for (std::size_t k = 0; k < 3; ++k) {
+    ComponentStatistics const statistics = find_component_statistics(field, k);
+    text += fmt::format("  {:<16} {:>12.5g} {:>12.3g} {:>12.3g}\n", component_names[k], statistics.mean / unit::mm,
+                        statistics.deviation / unit::mm, statistics.sigma / unit::mm);
+  }
+  text += fmt::format("  residual of the four equations: median {:.3g} px", find_median_residual(field));
+  if (double const ratio = compute_residual_ratio(field); std::isfinite(ratio))
+    text += fmt::format(", rms {:.2f} times its standard uncertainty", ratio);
+  text += '\n';
+  if (measurement.alignment) {
+    stereo::SheetAlignment const& alignment = *measurement.alignment;
+    text += fmt::format(
+        "  laser sheet: Z = {:.4f} mm + {:.5f} X + {:.5f} Y; disparity {:.3g} px, residual {:.3g} px (scatter of the "
+        "vectors {:.3g} px)\n",
+        alignment.fit.plane.height / unit::mm, alignment.fit.plane.slope.x, alignment.fit.plane.slope.y,
+        alignment.disparity_px.front(), alignment.disparity_px.back(), alignment.scatter_px);
+  }
+  if (measurement.truth.empty()) return text;
+  text += fmt::format("  {:<16} {:>12} {:>12} {:>12}\n", "error [px]", "bias", "rms", "coverage");
+  auto const errors = compute_stereo_errors(measurement);
+  for (std::size_t k = 0; k < 3; ++k)
+    text += fmt::format("  {:<16} {:>12.3g} {:>12.3g} {:>10.1f} %\n", component_names[k],
+                        errors[k].bias / measurement.pixel_size, errors[k].rms / measurement.pixel_size,
+                        100.0 * errors[k].coverage);
+  return text +
+         fmt::format(
+             "  (px of {:.4g} mm on the sheet; coverage: errors within one sigma, normal distribution: 68.3 %)\n",
+             measurement.pixel_size / unit::mm);
+}
+
+}  // namespace gladstone

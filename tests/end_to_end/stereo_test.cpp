@@ -1,0 +1,166 @@
+#include <cmath>
+#include <numbers>
+
+#include "studies/case/case.h"
+#include "studies/compare/stereo_cameras.h"
+#include "tests/end_to_end/support/program_fixture.h"
+
+namespace gladstone::end_to_end {
+namespace {
+
+/// Two cameras at 750 mm from a sheet, at an angle to either side of its normal: 16.28 px/mm.
+std::string stereo_setup(double degrees, std::string const& velocity) {
+  double const angle = degrees * std::numbers::pi / 180;
+  auto const camera = [&](char const* name, double side) {
+    return std::string("[[camera]]\nname = \"") + name + "\"\npixels = [128, 128]\npixel_pitch_um = 10.0\n" +
+           "pose.position_mm = [" + std::to_string(side * 750 * std::sin(angle)) + ", 0.0, " +
+           std::to_string(750 * std::cos(angle)) + "]\nsensor.scheimpflug = \"auto\"\n";
+  };
+  return "schema = 1\nexperiment = \"piv\"\n" + camera("left", -1) + camera("right", 1) + R"(
+[lens]
+focal_length_mm = 105.0
+f_number = 22.0
+[particles]
+per_pixel = 0.05
+volume_mm = [16.0, 12.0, 1.0]
+scattering = "lambert"
+[laser]
+thickness_mm = 0.5
+[flow]
+velocity_m_s = )" +
+         velocity +
+         R"(
+dt_us = 10.0
+[correlate]
+window_px = [32, 32]
+overlap = 0.5
+uncertainty = "correlation_statistics"
+)";
+}
+
+class Stereo : public ProgramFixture {
+ protected:
+  void measure(double degrees, std::string const& velocity) const {
+    write("setup.toml", stereo_setup(degrees, velocity));
+    render("case");
+    for (char const* camera : {"case/left", "case/right"}) succeed({"correlate", camera, "--quiet"});
+  }
+  nlohmann::json combine(std::vector<std::string> const& more = {}) const {
+    std::vector<std::string> arguments{"stereo", "case/left", "case/right", "-o", "uvw.h5", "--quiet", "--no-figures"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return json_of(arguments);
+  }
+  std::vector<double> dataset(std::string const& name) const { return Hdf5Reader(in("uvw.h5").string()).read(name); }
+  /// Writes a calibration file with the exact camera of a case.
+  void write_calibration(std::string const& name, std::string const& folder, double standard_error) const {
+    std::string const setup = in(folder + "/setup.toml").string();
+    auto const p = find_exact_camera(load_case_setup(setup, {}).setup, folder).camera.value;
+    Hdf5Writer file(in(name).string(), {"gladstone calibration", 1, content(setup), 0, "cpu"});
+    auto const put = [&](char const* dataset, std::vector<double> const& values) {
+      file.write(dataset, std::span<double const>(values), {values.size()}, "1", "of a test", "value");
+    };
+    put("/pinhole/camera_matrix", {p[0], 0, p[2], 0, p[1], p[3], 0, 0, 1});
+    put("/pinhole/distortion", {p[4], p[5], p[6], p[7]});
+    put("/pinhole/rvec", {p[8], p[9], p[10]});
+    put("/pinhole/tvec", {p[11], p[12], p[13]});
+    std::vector<double> covariance(p.size() * p.size());
+    for (std::size_t i = 8; i < 11; ++i) covariance[i * (p.size() + 1)] = standard_error * standard_error;
+    put("/pinhole/covariance", covariance);
+    file.close();
+  }
+};
+
+// Uniform motion of 2 to 3 px along each axis at 30 and 45 degrees. Every component agrees with the motion of the
+// particles to 0.02 px, beyond three standard errors of the mean (a quarter of the overlapping vectors is independent).
+TEST_F(Stereo, MeasuresUniformMotionInThreeComponents) {
+  for (double const degrees : {30.0, 45.0}) {
+    measure(degrees, "[15.0, -12.0, 10.0]");
+    auto const result = combine();
+    EXPECT_NEAR(result["view_angle_deg"].get<double>(), 2 * degrees, 1e-6);
+    EXPECT_GT(result["determined"].get<int>(), 12) << result;
+    double const expected_mm[] = {0.15, -0.12, 0.1};
+    int axis = 0;
+    for (char const* component : {"u", "v", "w"}) {
+      auto const& error = result["error"][component];
+      double const count = error["count"], rms = error["rms_px"], allowance = 0.02 + 3 * rms / std::sqrt(count / 4);
+      EXPECT_LT(std::abs(error["bias_px"].get<double>()), allowance) << degrees << component << error;
+      EXPECT_LT(rms, 0.3) << component;
+      EXPECT_NEAR(result[component]["mean_mm"].get<double>(), expected_mm[axis++],
+                  allowance * result["pixel_size_mm"].get<double>())
+          << component;
+      EXPECT_GT(result[component]["sigma_mm"].get<double>(), 0) << component;
+    }
+  }
+  for (double const value : dataset("/sigma_calibration_mm"))
+    EXPECT_TRUE(std::isnan(value) || value == 0) << "exact cameras";
+}
+
+// Files with the same cameras as calibrations give the same displacements, and a larger uncertainty.
+TEST_F(Stereo, ReadsVectorsAndCalibrations) {
+  measure(40, "[15.0, -12.0, 10.0]");
+  auto const exact = combine();
+  auto const displacement = dataset("/displacement_mm"), sigma = dataset("/sigma_mm");
+  write_calibration("a.h5", "case/left", 1e-3);
+  write_calibration("b.h5", "case/right", 1e-3);
+  auto const result = json_of({"stereo", "case/left/vectors.h5", "case/right/vectors.h5", "--calibration", "a.h5",
+                               "b.h5", "-o", "uvw.h5", "--quiet", "--no-figures"});
+  EXPECT_FALSE(result.contains("error")) << "no truth without cases";
+  EXPECT_EQ(result["calibrations"], (std::vector<std::string>{"a.h5", "b.h5"}));
+  auto const again = dataset("/displacement_mm"), larger = dataset("/sigma_mm"),
+             part = dataset("/sigma_calibration_mm");
+  ASSERT_EQ(again.size(), displacement.size());
+  for (std::size_t i = 0; i < again.size(); ++i) {
+    if (!std::isfinite(displacement[i])) continue;
+    EXPECT_NEAR(again[i], displacement[i], 1e-9);
+    EXPECT_GT(part[i], 0);
+    EXPECT_NEAR(larger[i], std::hypot(sigma[i], part[i]), 1e-6 * larger[i]);
+  }
+  Hdf5Reader const file(in("uvw.h5").string());
+  for (char const* attribute : {"vectors_a_sha256", "vectors_b_sha256", "calibration_a_sha256", "calibration_b_sha256"})
+    EXPECT_NE(file.attribute(attribute), "") << attribute;
+}
+
+// A thin sheet 0.5 mm off the plane of the calibration and inclined by one degree: its normal is (0, -tan 1, 1), so
+// that dZ/dY is tan 1. The residual disparity is below 0.05 px.
+TEST_F(Stereo, FindsAMisalignedSheet) {
+  std::string text = stereo_setup(40, "[5.0, -4.0, 1.0]");
+  text = with(text, "thickness_mm = 0.5",
+              "thickness_mm = 0.1\ncenter_mm = [0.0, 0.0, 0.5]\nnormal = [0.0, -0.0174551, 1.0]");
+  text = with(text, "volume_mm = [16.0, 12.0, 1.0]", "volume_mm = [16.0, 12.0, 0.4]\ncenter_mm = [0.0, 0.0, 0.5]");
+  text = with(text, "per_pixel = 0.05", "per_pixel = 0.1");
+  write("setup.toml", text);
+  render("case");
+  for (char const* camera : {"case/left", "case/right"}) succeed({"correlate", camera, "--quiet"});
+  auto const result = combine({"--align"});
+  auto const& sheet = result["sheet"];
+  EXPECT_GT(sheet["disparity_px"].get<double>(), 5) << sheet;
+  EXPECT_LT(sheet["residual_px"].get<double>(), 0.05) << sheet;
+  EXPECT_NEAR(sheet["z_mm"].get<double>(), 0.5, 0.02);
+  EXPECT_NEAR(sheet["slope"][0].get<double>(), 0.0, 0.006);
+  EXPECT_NEAR(sheet["slope"][1].get<double>(), 0.01746, 0.006);
+  expect_refused({"stereo", "case/left", "case/right", "-o", "x.h5", "--align", "--images", "case/left/flow.tif"}, 2,
+                 {"--images"});
+}
+
+TEST_F(Stereo, RefusesWhatItCannotCombine) {
+  measure(40, "[15.0, -12.0, 10.0]");
+  auto const refused = [&](std::vector<std::string> arguments, std::vector<std::string> const& pieces) {
+    arguments.insert(arguments.begin(), "stereo");
+    expect_refused(arguments, 2, pieces);
+  };
+  refused({"case/left", "case/right", "-o", "uvw.txt"}, {".h5"});
+  refused({"case/left", "case/right", "-o", "case/left/vectors.h5"}, {"vectors.h5"});
+  refused({"case/left", "case/left", "-o", "uvw.h5"}, {"same direction"});
+  refused({"case/left/vectors.h5", "case/right/vectors.h5", "-o", "uvw.h5"}, {"--calibration"});
+  refused({"case/left", "case/right", "--calibration", "case/left/truth.h5", "case/right/truth.h5", "-o", "uvw.h5"},
+          {"truth.h5: is not a calibration"});
+  refused({"case/left", "none", "-o", "uvw.h5"}, {"none"});
+  refused({"case/left", "case/right", "--spacing", "-1", "-o", "uvw.h5"}, {"--spacing"});
+  refused({"case/left", "case/right", "--sheet-z", "nan", "-o", "uvw.h5"}, {"--sheet-z"});
+  render("other", {"--set", "particles.seed=2"});
+  succeed({"correlate", "other/right", "--quiet"});
+  refused({"case/left", "other/right", "-o", "uvw.h5"}, {"other particles"});
+}
+
+}  // namespace
+}  // namespace gladstone::end_to_end
