@@ -15,8 +15,8 @@ std::vector<ResidualSample> sample(double n0, double gain, double mismatch, std:
   KeyedEngine random(3, RandomStream::sensor, 0);
   std::vector<ResidualSample> samples;
   for (std::size_t i = 0; i < count; ++i) {
-    double const flux = std::pow(10.0, 1 + 3 * to_unit(random));
-    double const light = flux * 0.02 * std::pow(25.0, to_unit(random));
+    double const flux = std::pow(10.0, 1 + 3 * to_unit(random()));
+    double const light = flux * 0.02 * std::pow(25.0, to_unit(random()));
     double const variance = n0 * n0 + gain * light + std::pow(mismatch * flux, 2);
     samples.push_back({light, flux, variance * std::pow(normal_variate(random), 2)});
   }
