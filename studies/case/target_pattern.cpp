@@ -13,8 +13,6 @@
 namespace gladstone {
 namespace {
 
-using unit::mm;
-
 constexpr double side_margin_mm = 10, bottom_margin_mm = 20, least_width_mm = 110;
 constexpr double bar_thickness_mm = 1, letter_height_mm = 3.5;
 
@@ -40,7 +38,7 @@ struct PagePlaces {
   }
 
   Vec2d dot(std::size_t i) const {
-    Vec2d const from_middle = (pattern.centre[i] - pattern.middle) / mm, half = pattern.extent / mm / 2;
+    Vec2d const from_middle = (pattern.centre[i] - pattern.middle) / unit::mm, half = pattern.extent / unit::mm / 2;
     return {page.corner_mm.x + half.x + from_middle.x, page.corner_mm.y + half.y - from_middle.y};
   }
   std::string text() const {
@@ -74,7 +72,7 @@ std::string pdf_circle(double radius) {
 /// Returns the drawing of a page in mm, y upwards from its lower left corner.
 std::string pdf_content(PagePlaces const& places) {
   TargetPage const& page = places.page;
-  Vec2d const extent = places.pattern.extent / mm;
+  Vec2d const extent = places.pattern.extent / unit::mm;
   double const height = page.size_mm.y, points = 72 / 25.4;
   std::string text = fmt::format("{0:.9f} 0 0 {0:.9f} 0 0 cm\n0 g\n", points);
   if (places.pattern.polarity == Polarity::bright) {
@@ -97,7 +95,7 @@ TargetPattern make_target_pattern(Setup const& setup, std::string const& name) {
   if (setup.piv)
     throw DataError(name, "has particles and no target; give the setup of a BOS experiment or calibration");
   if (setup.target.kind == TargetKind::image) {
-    Vec2d const extent = setup.target_extent() / mm;
+    Vec2d const extent = setup.target_extent() / unit::mm;
     throw DataError(name, fmt::format("has the image {} as target, without dots; print the image itself, {:.6g} x "
                                       "{:.6g} mm large",
                                       setup.target.file, extent.x, extent.y));
@@ -113,7 +111,7 @@ TargetPattern make_target_pattern(Setup const& setup, std::string const& name) {
 }
 
 TargetPage make_target_page(TargetPattern const& pattern) {
-  Vec2d const extent = pattern.extent / mm;
+  Vec2d const extent = pattern.extent / unit::mm;
   double const width = std::max(least_width_mm, extent.x + 2 * side_margin_mm);
   return {{width, extent.y + side_margin_mm + bottom_margin_mm},
           {(width - extent.x) / 2, side_margin_mm},
@@ -124,7 +122,7 @@ std::string target_svg(TargetPattern const& pattern) {
   require_size(pattern);
   PagePlaces const places(pattern);
   TargetPage const& page = places.page;
-  Vec2d const extent = pattern.extent / mm;
+  Vec2d const extent = pattern.extent / unit::mm;
   bool const bright = pattern.polarity == Polarity::bright;
   std::string text = fmt::format(
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
@@ -139,7 +137,7 @@ std::string target_svg(TargetPattern const& pattern) {
   for (std::size_t i = 0; i < pattern.centre.size(); ++i) {
     Vec2d const at = places.dot(i);
     fmt::format_to(std::back_inserter(text), "<circle cx=\"{:.5f}\" cy=\"{:.5f}\" r=\"{:.6f}\"/>\n", at.x, at.y,
-                   pattern.diameter / mm / 2);
+                   pattern.diameter / unit::mm / 2);
   }
   text += fmt::format("</g>\n<rect x=\"{:g}\" y=\"{:.5f}\" width=\"{:g}\" height=\"{:g}\" fill=\"black\"/>\n",
                       side_margin_mm, places.bar_top, page.scale_bar_mm, bar_thickness_mm);
@@ -158,7 +156,7 @@ std::string target_pdf(TargetPattern const& pattern) {
     throw DataError("target", fmt::format("needs a page of {:.6g} x {:.6g} mm (PDF has at most {:.0f} mm); write .svg",
                                           size.x, size.y, most_mm));
   }
-  double const radius = pattern.diameter / mm / 2, points = 72 / 25.4;
+  double const radius = pattern.diameter / unit::mm / 2, points = 72 / 25.4;
   std::vector<std::string> const objects{
       "<< /Type /Catalog /Pages 2 0 R >>",
       "<< /Type /Pages /Kids [3 0 R] /Count 1 >>",
@@ -183,7 +181,8 @@ std::string target_pdf(TargetPattern const& pattern) {
 
 std::string target_csv(TargetPattern const& pattern) {
   std::string text = "x_mm,y_mm\n";
-  for (Vec2d const at : pattern.centre) fmt::format_to(std::back_inserter(text), "{},{}\n", at.x / mm, at.y / mm);
+  for (Vec2d const at : pattern.centre)
+    fmt::format_to(std::back_inserter(text), "{},{}\n", at.x / unit::mm, at.y / unit::mm);
   return text;
 }
 
