@@ -18,7 +18,7 @@ struct ResidualSample {
 /// fitted too and not part of the result. g and m are such that in each half of the pixels, those with large and those
 /// with small L / F^2, the median of square / variance is that of chi2 with one degree of freedom, 0.4549. Undetected
 /// dots hardly affect medians. The gain is zero if it is not significant (four standard errors of the median) or if
-/// shot noise is less than a sixth of the variance in the half with large L / F^2.
+/// shot noise is less than a third of the variance in the half with large L / F^2.
 /// @param background_noise  n0 [grey levels]; pixels with less light than that are ignored
 /// @return  0 without shot noise, or with fewer than 200 pixels; of more than 20000 pixels, equidistant ones are used
 double estimate_conversion_gain(std::vector<ResidualSample> const& samples, double background_noise);

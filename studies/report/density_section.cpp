@@ -86,7 +86,7 @@ ReportSection missing_density_section(std::string const& command) {
 }
 
 std::vector<std::string> draw_density_figures(std::string const& folder, std::string const& format,
-                                      Reconstruction const& reconstruction) {
+                                              Reconstruction const& reconstruction) {
   std::vector<std::string> const drawn{folder + "/density." + format, folder + "/density_profile." + format};
   write_density_figure(drawn.front(), reconstruction);
   write_density_profile(drawn.back(), reconstruction);

@@ -24,6 +24,6 @@ ReportSection missing_density_section(std::string const& command);
 /// @return paths of the files
 /// @throws GnuplotMissing, OutputError
 std::vector<std::string> draw_density_figures(std::string const& folder, std::string const& format,
-                                      Reconstruction const& reconstruction);
+                                              Reconstruction const& reconstruction);
 
 }  // namespace gladstone
