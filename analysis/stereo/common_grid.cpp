@@ -15,11 +15,13 @@ struct Footprint {
   double spacing = 0.0;  ///< [m]; NaN: no neighbouring vectors meet the plane
 };
 
-Footprint find_footprint(PinholeCamera const& camera, DisplacementField const& field, ObjectPlane const& plane) {
+Footprint find_footprint(PinholeCamera const& camera, DisplacementField const& field, ObjectPlane const& plane,
+                         std::optional<Dewarping> const& dewarping) {
   Footprint footprint;
   std::vector<std::optional<Vec2d>> at(field.size());
   for (std::size_t i = 0; i < field.size(); ++i) {
-    at[i] = intersect_plane(camera, field.position_px[i], plane);
+    at[i] = dewarping ? dewarping->grid.position_of_pixel(field.position_px[i])
+                      : intersect_plane(camera, field.position_px[i], plane);
     if (!at[i] || !field.counts(i)) continue;
     footprint.low = {std::min(footprint.low.x, at[i]->x), std::min(footprint.low.y, at[i]->y)};
     footprint.high = {std::max(footprint.high.x, at[i]->x), std::max(footprint.high.y, at[i]->y)};
@@ -40,9 +42,9 @@ Footprint find_footprint(PinholeCamera const& camera, DisplacementField const& f
 
 NodeGrid find_common_grid(CalibratedCamera const& camera_a, DisplacementField const& field_a,
                           CalibratedCamera const& camera_b, DisplacementField const& field_b, ObjectPlane const& plane,
-                          double spacing) {
-  Footprint const a = find_footprint(camera_a.camera, field_a, plane);
-  Footprint const b = find_footprint(camera_b.camera, field_b, plane);
+                          double spacing, std::optional<Dewarping> const& dewarping) {
+  Footprint const a = find_footprint(camera_a.camera, field_a, plane, dewarping);
+  Footprint const b = find_footprint(camera_b.camera, field_b, plane, dewarping);
   double const distance = spacing > 0.0 ? spacing : 0.5 * (a.spacing + b.spacing);
   return NodeGrid::between({std::max(a.low.x, b.low.x), std::max(a.low.y, b.low.y)},
                            {std::min(a.high.x, b.high.x), std::min(a.high.y, b.high.y)}, distance);

@@ -8,6 +8,12 @@
 
 namespace gladstone::stereo {
 
+/// Plane onto which images are dewarped, and the pixels of the dewarped images.
+struct Dewarping {
+  ObjectPlane plane;
+  NodeGrid grid;
+};
+
 /// Returns the grid of pixels that covers the part of a plane which both images show.
 /// @param size        columns and rows of the images [px]
 /// @param pixel_size  distance between pixels on the plane [m]

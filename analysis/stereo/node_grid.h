@@ -21,6 +21,9 @@ struct NodeGrid {
     auto const width = static_cast<std::size_t>(columns);
     return first + spacing * Vec2d{static_cast<double>(node % width), static_cast<double>(node / width)};
   }
+  /// Converts x and y [m] to the position in an image of the nodes, whose row 0 shows the largest y [px], and back.
+  Vec2d pixel(Vec2d at) const { return {(at.x - first.x) / spacing, rows - 1 - (at.y - first.y) / spacing}; }
+  Vec2d position_of_pixel(Vec2d pixel) const { return first + spacing * Vec2d{pixel.x, rows - 1 - pixel.y}; }
 };
 
 }  // namespace gladstone::stereo

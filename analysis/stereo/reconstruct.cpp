@@ -20,21 +20,35 @@ using Residuals = Eigen::Vector4d;
 struct View {
   CalibratedCamera const* calibration;
   InterpolatedField field;
+  std::optional<Dewarping> const& dewarping;
+
+  /// Projects a point into the image on which the vectors were measured. An image is dewarped with the calibrated
+  /// camera, whichever camera recorded it.
+  /// @param camera  that recorded the image
+  Vec2d project(PinholeCamera const& camera, Vec3d at) const {
+    Vec2d const pixel = camera.project(at);
+    if (!dewarping) return pixel;
+    std::optional<Vec2d> const on_plane = intersect_plane(calibration->camera, pixel, dewarping->plane);
+    return on_plane ? dewarping->grid.pixel(*on_plane) : Vec2d{not_a_number, not_a_number};
+  }
+  Vec2d project(Vec3d at) const { return project(calibration->camera, at); }
+
+  /// Computes the displacement of the image of a particle that moves from `at` - `moved` / 2 to `at` + `moved` / 2
+  /// [px].
+  Vec2d project_motion(PinholeCamera const& camera, Vec3d at, Vec3d moved) const {
+    return project(camera, at + 0.5 * moved) - project(camera, at - 0.5 * moved);
+  }
+  Vec2d project_motion(Vec3d at, Vec3d moved) const { return project_motion(calibration->camera, at, moved); }
 };
 
-/// Computes the displacement of the image of a particle that moves from `at` - `moved` / 2 to `at` + `moved` / 2 [px].
-Vec2d project_motion(PinholeCamera const& camera, Vec3d at, Vec3d moved) {
-  return camera.project(at + 0.5 * moved) - camera.project(at - 0.5 * moved);
-}
-
 /// Computes the derivatives of a projected point with respect to its position by central differences [px/m].
-Eigen::Matrix<double, 2, 3> differentiate_projection(PinholeCamera const& camera, Vec3d at) {
+Eigen::Matrix<double, 2, 3> differentiate_projection(View const& view, Vec3d at) {
   constexpr double step = 1e-5;  // [m]; its square is negligible against the squared distance of the camera
   Eigen::Matrix<double, 2, 3> derivative;
   for (int axis = 0; axis < 3; ++axis) {
     Vec3d moved{};
     moved[axis] = 2.0 * step;
-    Vec2d const change = project_motion(camera, at, moved) / (2.0 * step);
+    Vec2d const change = view.project_motion(at, moved) / (2.0 * step);
     derivative.col(axis) << change.x, change.y;
   }
   return derivative;
@@ -56,8 +70,9 @@ Eigen::Matrix<double, 2, parameter_count> differentiate_residual(View const& vie
     PinholeCamera above = nominal, below = nominal;
     above.value[i] += step;
     below.value[i] -= step;
-    Vec2d change = project_motion(below, at, moved) - project_motion(above, at, moved);
-    auto const high = view.field.displacement(above.project(at)), low = view.field.displacement(below.project(at));
+    Vec2d change = view.project_motion(below, at, moved) - view.project_motion(above, at, moved);
+    auto const high = view.field.displacement(view.project(above, at)),
+               low = view.field.displacement(view.project(below, at));
     if (high && low) change += *high - *low;  // not at the border of the vectors
     derivative.col(static_cast<Eigen::Index>(i)) << change.x / (2.0 * step), change.y / (2.0 * step);
   }
@@ -86,7 +101,7 @@ class NodeSolver {
   NodeSolver(View const& a, View const& b, Vec3d at) : a_(a), b_(b), at_(at) {}
 
   std::optional<StereoVector> solve() {
-    auto const in_a = a_.field.vector(camera_a().project(at_)), in_b = b_.field.vector(camera_b().project(at_));
+    auto const in_a = a_.field.vector(a_.project(at_)), in_b = b_.field.vector(b_.project(at_));
     if (!in_a || !in_b) return std::nullopt;
     measured_ << in_a->displacement_px.x, in_a->displacement_px.y, in_b->displacement_px.x, in_b->displacement_px.y;
     sigma_ << in_a->sigma_px.x, in_a->sigma_px.y, in_b->sigma_px.x, in_b->sigma_px.y;
@@ -101,20 +116,17 @@ class NodeSolver {
   }
 
  private:
-  PinholeCamera const& camera_a() const { return a_.calibration->camera; }
-  PinholeCamera const& camera_b() const { return b_.calibration->camera; }
-
   Residuals find_residuals() const {
-    Vec2d const a = project_motion(camera_a(), at_, moved_), b = project_motion(camera_b(), at_, moved_);
+    Vec2d const a = a_.project_motion(at_, moved_), b = b_.project_motion(at_, moved_);
     return measured_ - Residuals(a.x, a.y, b.x, b.y);
   }
 
   /// Iterates with the derivatives at the node: the projection of a symmetric motion is linear up to third order.
   bool find_displacement() {
     constexpr int max_iterations = 20;
-    constexpr double tolerance = 1e-12;  // [m]
+    constexpr double tolerance = 1e-11;  // [m]
     Equations equations;
-    equations << differentiate_projection(camera_a(), at_), differentiate_projection(camera_b(), at_);
+    equations << differentiate_projection(a_, at_), differentiate_projection(b_, at_);
     Residuals const weight = weighted_ ? Residuals(sigma_.cwiseInverse()) : Residuals::Ones().eval();
     whitened_ = weight.asDiagonal() * equations;
     inverse_ = (whitened_.transpose() * whitened_).inverse();
@@ -171,10 +183,11 @@ StereoField reconstruct(CalibratedCamera const& camera_a, DisplacementField cons
                     camera_a.covariance.size() == PinholeCamera::count * PinholeCamera::count);
   GLADSTONE_EXPECTS(camera_b.covariance.empty() ||
                     camera_b.covariance.size() == PinholeCamera::count * PinholeCamera::count);
-  View const a{&camera_a, {field_a, settings.window_a_px}}, b{&camera_b, {field_b, settings.window_b_px}};
+  View const a{&camera_a, {field_a, settings.window_a_px}, settings.dewarping};
+  View const b{&camera_b, {field_b, settings.window_b_px}, settings.dewarping};
   StereoField result;
   result.plane = plane;
-  result.grid = find_common_grid(camera_a, field_a, camera_b, field_b, plane, settings.spacing);
+  result.grid = find_common_grid(camera_a, field_a, camera_b, field_b, plane, settings.spacing, settings.dewarping);
   result.nodes.resize(result.grid.size());
   constexpr std::size_t nodes_per_chunk = 64;
   parallel_chunks(result.nodes.size(), nodes_per_chunk, [&](std::size_t begin, std::size_t end) {

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "analysis/stereo/dewarping.h"
 #include "analysis/stereo/node_grid.h"
 #include "analysis/stereo/stereo_camera.h"
 #include "analysis/vectors/displacement_field.h"
@@ -15,6 +16,9 @@ struct StereoSettings {
   double spacing = 0.0;  ///< distance between nodes [m]; 0: mean distance of both cameras' vectors on the plane
   /// sizes of both cameras' interrogation windows, see InterpolatedField [px]; 0: independent errors
   double window_a_px = 0.0, window_b_px = 0.0;
+  /// The vectors were measured on images that dewarp_image() dewarped with the same cameras; empty: on the original
+  /// images.
+  std::optional<Dewarping> dewarping = {};
 };
 
 /// Covariance matrix of (u, v, w): uu, vv, ww, uv, uw, vw [m^2].
@@ -59,6 +63,6 @@ StereoField reconstruct(CalibratedCamera const& camera_a, DisplacementField cons
 /// Returns the grid that reconstruct() uses; empty if the views do not overlap on the plane.
 NodeGrid find_common_grid(CalibratedCamera const& camera_a, DisplacementField const& field_a,
                           CalibratedCamera const& camera_b, DisplacementField const& field_b, ObjectPlane const& plane,
-                          double spacing);
+                          double spacing, std::optional<Dewarping> const& dewarping = {});
 
 }  // namespace gladstone::stereo

@@ -74,11 +74,6 @@ Disparities measure_disparities(std::array<PinholeCamera const*, 2> const& camer
   return result;
 }
 
-/// Converts a position in a dewarped image to x and y [m].
-Vec2d plane_position(NodeGrid const& grid, Vec2d pixel) {
-  return grid.first + grid.spacing * Vec2d{pixel.x, grid.rows - 1 - pixel.y};
-}
-
 /// Disparity of a point of another plane, in an image dewarped onto `plane` [px].
 Vec2d predict_disparity(std::array<PinholeCamera const*, 2> const& cameras, Vec3d const& point,
                         ObjectPlane const& plane, double pixel_size) {
@@ -142,8 +137,8 @@ SheetAlignment align_sheet(std::array<PinholeCamera const*, 2> const& cameras,
     std::vector<Vec3d> points;
     for (std::size_t i = 0; i < measured.node_px.size(); ++i) {
       Vec2d const half = 0.5 * measured.value_px[i];
-      points.push_back(triangulate(*cameras[0], plane_position(measured.grid, measured.node_px[i] - half), *cameras[1],
-                                   plane_position(measured.grid, measured.node_px[i] + half), plane));
+      points.push_back(triangulate(*cameras[0], measured.grid.position_of_pixel(measured.node_px[i] - half),
+                                   *cameras[1], measured.grid.position_of_pixel(measured.node_px[i] + half), plane));
     }
     auto const fit = fit_object_plane(points);
     if (!fit)

@@ -11,6 +11,7 @@
 #include "render/files/output_file.h"
 #include "studies/case/case_files.h"
 #include "studies/case/json_text.h"
+#include "studies/commands/arguments.h"
 #include "studies/commands/command.h"
 #include "studies/compare/stereo_file.h"
 #include "studies/figures/gnuplot.h"
@@ -46,7 +47,7 @@ void draw_stereo(std::string const& path, StereoMeasurement const& measurement) 
 CommandBody attach_stereo(CLI::App& app, GlobalOptions const& options) {
   struct Arguments {
     StereoOptions stereo;
-    std::string output, conventions;
+    std::string output, conventions, dewarp = "vectors";
     double sheet_z_mm = 0.0;
     std::optional<double> spacing_mm;
     std::vector<double> slope;
@@ -80,6 +81,11 @@ CommandBody attach_stereo(CLI::App& app, GlobalOptions const& options) {
                  "Images for --align, of the first and of the second camera in turn, two for each time; default: the "
                  "frames of the cases")
       ->expected(-1);
+  app.add_option(
+         "--dewarp", arguments->dewarp,
+         "vectors: combine vectors of the original images; images: dewarp the frames of the cases onto the sheet "
+         "and correlate those")
+      ->check(one_of({"vectors", "images"}));
   app.add_option("--spacing", arguments->spacing_mm,
                  "Distance between the nodes of the result [mm], default: mean distance of the vectors")
       ->check(CLI::PositiveNumber);
@@ -89,7 +95,9 @@ CommandBody attach_stereo(CLI::App& app, GlobalOptions const& options) {
       ->check(CLI::NonNegativeNumber);
   app.add_flag("--no-figures", arguments->no_figures, "Draw no figure");
   return [arguments, &options] {
+    Backend const device = options.open_device();
     StereoOptions stereo = arguments->stereo;
+    stereo.dewarp_images = arguments->dewarp == "images";
     if (!arguments->conventions.empty()) stereo.conventions = arguments->conventions;
     stereo.plane.height = arguments->sheet_z_mm * unit::mm;
     if (arguments->slope.size() == 2) stereo.plane.slope = {arguments->slope[0], arguments->slope[1]};
@@ -99,7 +107,7 @@ CommandBody attach_stereo(CLI::App& app, GlobalOptions const& options) {
     std::string const figure = std::filesystem::path(output).replace_extension(".png").string();
     refuse_inputs_as_outputs({output, figure}, list_stereo_inputs(stereo));
     OutputFile const tried(output, "gladstone stereo");
-    StereoMeasurement const measurement = measure_stereo(stereo);
+    StereoMeasurement const measurement = measure_stereo(stereo, device);
     write_stereo(output, measurement);
     if (!arguments->no_figures) draw_stereo(figure, measurement);
     nlohmann::ordered_json json = summarize_stereo(measurement);

@@ -10,15 +10,18 @@
 
 #include "analysis/stereo/interpolated_field.h"
 #include "render/base/error.h"
+#include "render/base/frame_pair.h"
 #include "render/base/not_a_number.h"
 #include "render/base/units.h"
 #include "render/files/hdf5_file.h"
+#include "render/files/image_file.h"
 #include "render/files/input_file.h"
 #include "render/files/stop_point.h"
 #include "studies/case/case.h"
 #include "studies/case/truth_file.h"
 #include "studies/compare/compared_files.h"
 #include "studies/compare/compared_vectors.h"
+#include "studies/compare/correlate.h"
 #include "studies/compare/stereo_alignment.h"
 #include "studies/compare/stereo_cameras.h"
 #include "studies/compare/stereo_truth.h"
@@ -105,16 +108,19 @@ StereoInput read_stereo_input(StereoOptions const& options, std::size_t index, S
     std::string setup = in_case(place, case_file::setup);
     input.path = in_case(place, case_file::vectors);
     if (fs::exists(fs::path(place) / case_file::truth, error)) {
-      ComparedFiles const files = compared_files(place, "");
-      truth = files.truth;
+      truth = options.dewarp_images ? in_case(place, case_file::truth) : compared_files(place, "").truth;
       add_stereo_source(sources, "truth" + suffix, truth);
-    } else if (!fs::exists(input.path, error)) {
+    } else if (!options.dewarp_images && !fs::exists(input.path, error)) {
       throw DataError(input.path, "does not exist; create it with: gladstone correlate " + place);
     }
     sources.add("", setup, SourceFiles::Holds::bytes);
     input.loaded = load_case_setup(setup, {});
   } else {
     require_input_file(place, "a case folder or a file of vectors");
+    if (options.dewarp_images)
+      throw DataError(place,
+                      "is a file of vectors, but --dewarp images requires the frames of cases; give case folders, "
+                      "or remove the option");
     if (input.calibration.empty())
       throw DataError(place,
                       "is a file of vectors, which contains no camera; give the calibration.h5 of both cameras "
@@ -122,10 +128,16 @@ StereoInput read_stereo_input(StereoOptions const& options, std::size_t index, S
     input.path = place;
     input.loaded = load_calibrated_setup(input.calibration);
   }
-  add_stereo_source(sources, "vectors" + suffix, input.path);
   Setup const& setup = input.loaded->setup;
   if (input.calibration.empty()) input.camera = find_exact_camera(setup, place);
   if (!truth.empty() && setup.piv) input.truth = read_truth(truth);
+  if (options.dewarp_images) {
+    input.path = place;
+    input.vectors.settings = input.loaded->correlate;
+    input.window_px = options.window_px.value_or(input.vectors.settings.window_px.back());
+    return input;
+  }
+  add_stereo_source(sources, "vectors" + suffix, input.path);
   CompareOptions reading;
   reading.conventions = options.conventions;
   input.vectors = load_vectors(input.path, *input.loaded, input.truth ? &*input.truth : nullptr, reading);
@@ -136,6 +148,55 @@ StereoInput read_stereo_input(StereoOptions const& options, std::size_t index, S
                     "has no complete grid of vectors, in which invalid ones are marked or NaN; measure with a grid "
                     "(for tracking, correlate.tracking.output = \"grid\")");
   return input;
+}
+
+/// Correlates the frames of a case, dewarped onto a plane.
+DisplacementField correlate_dewarped(StereoInput const& input, std::string const& place,
+                                     std::array<Image<double>, 2> const& frames, stereo::Dewarping const& dewarping,
+                                     Backend const& device) {
+  CorrelationSettings const& settings = input.vectors.settings;
+  if (!settings.preparation.files.empty())
+    throw DataError(place,
+                    "masks or subtracts images in [correlate], which do not fit dewarped frames; use --dewarp "
+                    "vectors");
+  std::string const problem = window_problem(settings, dewarping.grid.columns, dewarping.grid.rows);
+  if (!problem.empty()) throw DataError(place, "dewarped: " + problem);
+  auto const dewarp = [&](Image<double> const& frame) {
+    return stereo::dewarp_image(frame, input.camera.camera, dewarping.plane, dewarping.grid);
+  };
+  HostFrames const dewarped(dewarp(frames[0]), dewarp(frames[1]));
+  DisplacementField field = correlate_frames(dewarped, settings, device).field;
+  if (!stereo::is_regular_grid(field))
+    throw DataError(place, "has no complete grid of vectors; set correlate.tracking.output = \"grid\"");
+  return field;
+}
+
+/// Dewarps the frames of both cases onto the part of the plane that they have in common, and correlates them.
+stereo::Dewarping measure_dewarped(std::array<StereoInput*, 2> const& inputs, StereoOptions const& options,
+                                   stereo::ObjectPlane const& plane, double pixel_size, SourceFiles& sources,
+                                   Backend const& device) {
+  std::array<std::array<Image<double>, 2>, 2> frames;
+  std::array<std::array<int, 2>, 2> size{};
+  for (std::size_t i = 0; i < 2; ++i) {
+    char const* names[] = {case_file::reference, case_file::flow};
+    for (std::size_t k = 0; k < 2; ++k) {
+      std::string const file = in_case(options.inputs[i], names[k]);
+      sources.add(fmt::format("{}_{}", k == 0 ? "reference" : "flow", i == 0 ? "a" : "b"), file,
+                  SourceFiles::Holds::pixels);
+      frames[i][k] = read_image(file);
+    }
+    size[i] = {frames[i][0].columns(), frames[i][0].rows()};
+  }
+  stereo::Dewarping dewarping{
+      plane, stereo::find_common_view({&inputs[0]->camera.camera, &inputs[1]->camera.camera}, size, plane, pixel_size)};
+  if (dewarping.grid.size() == 0)
+    throw DataError(options.inputs[1],
+                    fmt::format("and {} show no common part of the plane; check that the calibrations belong to these "
+                                "cameras",
+                                options.inputs[0]));
+  for (std::size_t i = 0; i < 2; ++i)
+    inputs[i]->vectors.field = correlate_dewarped(*inputs[i], options.inputs[i], frames[i], dewarping, device);
+  return dewarping;
 }
 
 /// Throws for two cases whose particles differ.
@@ -202,7 +263,7 @@ double compute_residual_ratio(stereo::StereoField const& field) {
   return count > 0 ? std::sqrt(squares / count) : not_a_number;
 }
 
-StereoMeasurement measure_stereo(StereoOptions const& options) {
+StereoMeasurement measure_stereo(StereoOptions const& options, Backend const& device) {
   check_stereo_options(options);
   StereoMeasurement result;
   result.sources.on_change("run gladstone stereo again");
@@ -222,7 +283,11 @@ StereoMeasurement measure_stereo(StereoOptions const& options) {
                                             result.sources);
     plane = result.alignment->fit.plane;
   }
+  result.pixel_size =
+      0.5 * (stereo::find_pixel_size(a.camera.camera, plane) + stereo::find_pixel_size(b.camera.camera, plane));
   stereo::StereoSettings settings;
+  if (options.dewarp_images)
+    settings.dewarping = measure_dewarped({&a, &b}, options, plane, result.pixel_size, result.sources, device);
   settings.spacing = options.spacing;
   settings.window_a_px = a.window_px;
   settings.window_b_px = b.window_px;
@@ -236,11 +301,12 @@ StereoMeasurement measure_stereo(StereoOptions const& options) {
   if (!any)
     throw NoValidVector(options.inputs[1],
                         fmt::format("and {} have no valid vectors at the same place", options.inputs[0]));
-  result.pixel_size =
-      0.5 * (stereo::find_pixel_size(a.camera.camera, plane) + stereo::find_pixel_size(b.camera.camera, plane));
-  if (a.truth && b.truth)
-    result.truth = compute_stereo_truth({&*a.truth, &*b.truth}, {&a.camera.camera, &b.camera.camera}, result.field.grid,
-                                        plane, a.vectors.settings);
+  if (a.truth && b.truth) {
+    double const per_metre = 1.0 / result.pixel_size;
+    Vec2d const scale = options.dewarp_images ? Vec2d{per_metre, per_metre}
+                                              : find_plane_scale({&a.camera.camera, &b.camera.camera}, plane);
+    result.truth = compute_stereo_truth({&*a.truth, &*b.truth}, scale, result.field.grid, a.vectors.settings);
+  }
   result.vectors = {a.path, b.path};
   result.calibrations = {a.calibration, b.calibration};
   result.window_px = {a.window_px, b.window_px};

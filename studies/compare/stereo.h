@@ -9,6 +9,7 @@
 #include "analysis/stereo/reconstruct.h"
 #include "analysis/stereo/sheet_alignment.h"
 #include "render/files/source_files.h"
+#include "studies/case/backend.h"
 
 namespace gladstone {
 
@@ -18,6 +19,7 @@ struct StereoOptions {
   std::vector<std::string> calibrations;   ///< calibration.h5 of each camera; empty: exact cameras of rendered cases
   std::optional<std::string> conventions;  ///< of the vectors, as given by the user; empty: those of the file's format
   stereo::ObjectPlane plane;               ///< middle of the laser sheet, with `align` the first assumption
+  bool dewarp_images = false;              ///< correlate the dewarped frames of the cases, instead of reading vectors
   bool align = false;                      ///< determine the sheet from images
   /// images of the first and of the second camera in turn, two for each time; empty: both frames of the cases
   std::vector<std::string> images;
@@ -59,8 +61,9 @@ double compute_residual_ratio(stereo::StereoField const& field);
 
 /// Reads vectors and cameras, and reconstructs three components. If both inputs are cases of one PIV setup, also
 /// determines the true displacement of their particles. Writes nothing.
+/// @param device  for the correlation of dewarped images
 /// @throws SetupError  for invalid options
 /// @throws DataError   for files that are missing or do not fit together; NoValidVector
-StereoMeasurement measure_stereo(StereoOptions const& options);
+StereoMeasurement measure_stereo(StereoOptions const& options, Backend const& device);
 
 }  // namespace gladstone

@@ -7,9 +7,7 @@
 #include "analysis/errors/window_truth.h"
 
 namespace gladstone {
-namespace {
 
-/// Pixels per metre along x and y of the plane, mean of the cameras.
 Vec2d find_plane_scale(std::array<PinholeCamera const*, 2> const& cameras, stereo::ObjectPlane const& plane) {
   constexpr double step = 1e-4;  // [m]
   Vec2d scale{};                 // half of each camera's
@@ -22,13 +20,8 @@ Vec2d find_plane_scale(std::array<PinholeCamera const*, 2> const& cameras, stere
   return scale;
 }
 
-}  // namespace
-
-std::vector<Vec3d> compute_stereo_truth(std::array<GroundTruth const*, 2> const& dots,
-                                        std::array<PinholeCamera const*, 2> const& cameras,
-                                        stereo::NodeGrid const& grid, stereo::ObjectPlane const& plane,
-                                        CorrelationSettings const& settings) {
-  Vec2d const scale = find_plane_scale(cameras, plane);
+std::vector<Vec3d> compute_stereo_truth(std::array<GroundTruth const*, 2> const& dots, Vec2d scale,
+                                        stereo::NodeGrid const& grid, CorrelationSettings const& settings) {
   auto const scaled = [&](Vec2d at) { return Vec2d{scale.x * at.x, scale.y * at.y}; };
   GroundTruth const& first = *dots[0];
   std::vector<Vec2d> middle, in_plane, across, nodes;

@@ -9,14 +9,15 @@
 
 namespace gladstone {
 
+/// Computes the number of pixels per metre along x and y of a plane, mean of the cameras [px/m].
+Vec2d find_plane_scale(std::array<PinholeCamera const*, 2> const& cameras, stereo::ObjectPlane const& plane);
+
 /// Computes the true displacement at the nodes: the mean over the particles in the interrogation window, which is
 /// projected onto the plane, with the weights of window_truth() and the light that both cameras receive.
-/// @param dots     truth of the two cameras, with the same particles
-/// @param cameras  whose mean pixel sizes along x and y are those of the window
-/// @return         [m, grid.size()]; NaN: fewer than three particles
-std::vector<Vec3d> compute_stereo_truth(std::array<GroundTruth const*, 2> const& dots,
-                                        std::array<PinholeCamera const*, 2> const& cameras,
-                                        stereo::NodeGrid const& grid, stereo::ObjectPlane const& plane,
-                                        CorrelationSettings const& settings);
+/// @param dots   truth of the two cameras, with the same particles
+/// @param scale  pixels per metre along x and y, which determine the size of the window on the plane [px/m]
+/// @return       [m, grid.size()]; NaN: fewer than three particles
+std::vector<Vec3d> compute_stereo_truth(std::array<GroundTruth const*, 2> const& dots, Vec2d scale,
+                                        stereo::NodeGrid const& grid, CorrelationSettings const& settings);
 
 }  // namespace gladstone

@@ -50,6 +50,23 @@ class Stereo : public ProgramFixture {
     arguments.insert(arguments.end(), more.begin(), more.end());
     return json_of(arguments);
   }
+  /// Expects the displacement (0.15, -0.12, 0.10) mm.
+  static void expect_motion(nlohmann::json const& result, double degrees) {
+    EXPECT_NEAR(result["view_angle_deg"].get<double>(), 2 * degrees, 1e-6);
+    EXPECT_GT(result["determined"].get<int>(), 12) << result;
+    double const expected_mm[] = {0.15, -0.12, 0.1};
+    int axis = 0;
+    for (char const* component : {"u", "v", "w"}) {
+      auto const& error = result["error"][component];
+      double const count = error["count"], rms = error["rms_px"], allowance = 0.02 + 3 * rms / std::sqrt(count / 4);
+      EXPECT_LT(std::abs(error["bias_px"].get<double>()), allowance) << degrees << component << error;
+      EXPECT_LT(rms, 0.1) << component;
+      EXPECT_NEAR(result[component]["mean_mm"].get<double>(), expected_mm[axis++],
+                  allowance * result["pixel_size_mm"].get<double>())
+          << component;
+      EXPECT_GT(result[component]["sigma_mm"].get<double>(), 0) << component;
+    }
+  }
   std::vector<double> dataset(std::string const& name) const { return Hdf5Reader(in("uvw.h5").string()).read(name); }
   /// Writes a calibration file with the exact camera of a case.
   void write_calibration(std::string const& name, std::string const& folder, double standard_error) const {
@@ -75,21 +92,8 @@ class Stereo : public ProgramFixture {
 TEST_F(Stereo, MeasuresUniformMotionInThreeComponents) {
   for (double const degrees : {30.0, 45.0}) {
     measure(degrees, "[15.0, -12.0, 10.0]");
-    auto const result = combine();
-    EXPECT_NEAR(result["view_angle_deg"].get<double>(), 2 * degrees, 1e-6);
-    EXPECT_GT(result["determined"].get<int>(), 12) << result;
-    double const expected_mm[] = {0.15, -0.12, 0.1};
-    int axis = 0;
-    for (char const* component : {"u", "v", "w"}) {
-      auto const& error = result["error"][component];
-      double const count = error["count"], rms = error["rms_px"], allowance = 0.02 + 3 * rms / std::sqrt(count / 4);
-      EXPECT_LT(std::abs(error["bias_px"].get<double>()), allowance) << degrees << component << error;
-      EXPECT_LT(rms, 0.3) << component;
-      EXPECT_NEAR(result[component]["mean_mm"].get<double>(), expected_mm[axis++],
-                  allowance * result["pixel_size_mm"].get<double>())
-          << component;
-      EXPECT_GT(result[component]["sigma_mm"].get<double>(), 0) << component;
-    }
+    expect_motion(combine(), degrees);
+    expect_motion(combine({"--dewarp", "images"}), degrees);
   }
   for (double const value : dataset("/sigma_calibration_mm"))
     EXPECT_TRUE(std::isnan(value) || value == 0) << "exact cameras";
@@ -144,6 +148,8 @@ TEST_F(Stereo, FindsAMisalignedSheet) {
 
 TEST_F(Stereo, RefusesWhatItCannotCombine) {
   measure(40, "[15.0, -12.0, 10.0]");
+  write_calibration("a.h5", "case/left", 1e-3);
+  write_calibration("b.h5", "case/right", 1e-3);
   auto const refused = [&](std::vector<std::string> arguments, std::vector<std::string> const& pieces) {
     arguments.insert(arguments.begin(), "stereo");
     expect_refused(arguments, 2, pieces);
@@ -154,6 +160,9 @@ TEST_F(Stereo, RefusesWhatItCannotCombine) {
   refused({"case/left/vectors.h5", "case/right/vectors.h5", "-o", "uvw.h5"}, {"--calibration"});
   refused({"case/left", "case/right", "--calibration", "case/left/truth.h5", "case/right/truth.h5", "-o", "uvw.h5"},
           {"truth.h5: is not a calibration"});
+  refused({"case/left/vectors.h5", "case/right/vectors.h5", "--calibration", "a.h5", "b.h5", "--dewarp", "images", "-o",
+           "uvw.h5"},
+          {"--dewarp"});
   refused({"case/left", "none", "-o", "uvw.h5"}, {"none"});
   refused({"case/left", "case/right", "--spacing", "-1", "-o", "uvw.h5"}, {"--spacing"});
   refused({"case/left", "case/right", "--sheet-z", "nan", "-o", "uvw.h5"}, {"--sheet-z"});

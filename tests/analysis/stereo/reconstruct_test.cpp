@@ -89,6 +89,32 @@ TEST(StereoReconstruction, RecoversUniformMotionAlongEveryAxis) {
   }
 }
 
+// Vectors of dewarped images: intersections of the lines of sight of P + D/2 and P - D/2 with the plane, in its pixels.
+TEST(StereoReconstruction, AcceptsVectorsOfDewarpedImages) {
+  PinholeCamera const left = inclined_camera(-45), right = inclined_camera(45);
+  Vec3d const motion{1e-4, -2e-4, 1.5e-4};
+  Dewarping const dewarping{{2e-4, {0.01, 0}}, NodeGrid::between({-0.02, -0.02}, {0.02, 0.02}, 1e-4)};
+  auto const seen = [&](PinholeCamera const& camera) {
+    DisplacementField field = image_motion(
+        camera, [](Vec3d) { return Vec3d{}; }, 10);
+    for (std::size_t i = 0; i < field.size(); ++i) {
+      field.position_px[i] = field.position_px[i] - Vec2d{56, 56};  // about the middle of 401 x 401 px
+      Vec3d const at = dewarping.plane.point(dewarping.grid.position_of_pixel(field.position_px[i]));
+      auto const image = [&](Vec3d point) {
+        return dewarping.grid.pixel(intersect_plane(camera, camera.project(point), dewarping.plane).value());
+      };
+      field.displacement_px[i] = image(at + 0.5 * motion) - image(at - 0.5 * motion);
+    }
+    return field;
+  };
+  StereoSettings settings;
+  settings.dewarping = dewarping;
+  StereoField const field = reconstruct({left, {}}, seen(left), {right, {}}, seen(right), dewarping.plane, settings);
+  EXPECT_NEAR(field.grid.spacing, 1.6e-3, 1e-9) << "the distance of 16 dewarped pixels";
+  EXPECT_LT(length(vector_at_origin(field).displacement - motion), 1e-8);
+  EXPECT_GT(field.nodes.size(), 300u);
+}
+
 // Cameras at different angles, and a plane that is inclined: the displacement refers to the axes of the world.
 TEST(StereoReconstruction, AcceptsAnyPlaneAndAngles) {
   PinholeCamera const a = inclined_camera(-50), b = inclined_camera(10);
