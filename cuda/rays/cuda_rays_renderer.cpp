@@ -352,7 +352,7 @@ Rendering CudaRaysRenderer::render(Scene const& scene, DotPattern const& sources
                                    RenderTheory theory) {
   bool const lit = images != RenderImages::no;
   std::optional<AiryTable> airy;
-  RaysLaunch const launch(scene, lit ? make_spot(scene, airy) : SpotView{});
+  RaysLaunch const launch(scene, lit ? make_spot(scene, airy) : SpotView{}, StopRim::smooth, RayOrder::neighbours);
   DeviceMedium const mirrored = uploads_->medium_of(scene);
   CameraSetup const& camera = scene.setup.camera;
   std::optional<ImagePairOnDevice> frames;

@@ -74,16 +74,24 @@ GLADSTONE_HD inline void sobol_point(std::uint32_t index, std::uint32_t (&x)[sob
   }
 }
 
-/// Scrambles a coordinate by hash-based Owen scrambling (Laine & Karras 2011 with Vegdahl's constants; Burley, JCGT
-/// 9(4) (2020)): each bit is flipped depending on a hash of the higher bits. Equal seeds give equal scramblings.
-GLADSTONE_HD inline std::uint32_t owen_scramble(std::uint32_t x, std::uint32_t seed) {
-  x = detail::reverse_bits(x);
+namespace detail {
+
+/// owen_scramble() of a coordinate whose bits are reversed: the first digit is in bit 0.
+GLADSTONE_HD inline std::uint32_t scramble_digits(std::uint32_t x, std::uint32_t seed) {
   x ^= x * 0x3d20adeau;
   x += seed;
   x *= (seed >> 16) | 1u;
   x ^= x * 0x05526c56u;
   x ^= x * 0x53a22864u;
-  return detail::reverse_bits(x);
+  return x;
+}
+
+}  // namespace detail
+
+/// Scrambles a coordinate by hash-based Owen scrambling (Laine & Karras 2011 with Vegdahl's constants; Burley, JCGT
+/// 9(4) (2020)): each bit is flipped depending on a hash of the higher bits. Equal seeds give equal scramblings.
+GLADSTONE_HD inline std::uint32_t owen_scramble(std::uint32_t x, std::uint32_t seed) {
+  return detail::reverse_bits(detail::scramble_digits(detail::reverse_bits(x), seed));
 }
 
 }  // namespace gladstone

@@ -6,6 +6,7 @@
 #include "render/base/host_device.h"
 #include "render/base/random.h"
 #include "render/base/sobol.h"
+#include "render/base/sobol_order.h"
 #include "render/base/vec.h"
 
 namespace gladstone {
@@ -54,11 +55,17 @@ GLADSTONE_HD constexpr int scrambling_bits(std::uint64_t rays) {
   return rays >= 4 ? 2 : (rays >= 2 ? 1 : 0);
 }
 
+/// Returns the number of points per scrambling of which both rays of a pair are traced.
+GLADSTONE_HD constexpr std::uint32_t complete_points(std::uint64_t rays, int scrambling_bits) {
+  return static_cast<std::uint32_t>(rays >> (scrambling_bits + 1));
+}
+
 /// Sampling of the rays of a source. Both frames use the same sample points.
 struct BundleView {
   std::uint64_t seed = 0;
   PupilSampling sampling = PupilSampling::sobol;
-  int scrambling_bits = 0;  ///< ray j is point j >> bits of scrambling j mod 2^bits
+  int scrambling_bits = 0;           ///< ray j is point j >> bits of scrambling j mod 2^bits
+  std::uint32_t ordered_points = 0;  ///< number of points per scrambling, the first ones, that ordered_point() permutes
 };
 
 /// Computes the sample coordinates of a ray, each in [0, 1): pupil radius^2 and angle, source radius^2 and angle.
@@ -79,8 +86,10 @@ GLADSTONE_HD void sample_coordinates(BundleView const& bundle, std::uint64_t sou
   std::uint32_t const seeds[sobol_dimensions] = {static_cast<std::uint32_t>(low), static_cast<std::uint32_t>(low >> 32),
                                                  static_cast<std::uint32_t>(high),
                                                  static_cast<std::uint32_t>(high >> 32)};
+  std::uint32_t const index = ordered_point(static_cast<std::uint32_t>(ray >> bundle.scrambling_bits),
+                                            bundle.ordered_points, seeds[0], seeds[1]);
   std::uint32_t point[sobol_dimensions];
-  sobol_point(static_cast<std::uint32_t>(ray >> bundle.scrambling_bits), point);
+  sobol_point(index, point);
   for (int dimension = 0; dimension < sobol_dimensions; ++dimension) {
     std::uint32_t const x = owen_scramble(point[dimension], seeds[dimension]);
     u[dimension] = T((static_cast<double>(x) + 0.5) * 0x1p-32);

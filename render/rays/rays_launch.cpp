@@ -48,16 +48,16 @@ std::optional<AimShift> difference_shift(Camera const& camera, WorldApparentPupi
 
 }  // namespace
 
-RaysLaunch::RaysLaunch(Scene const& scene, SpotView const& shown, StopRim rim)
+RaysLaunch::RaysLaunch(Scene const& scene, SpotView const& shown, StopRim rim, RayOrder order)
     : camera(scene.camera),
       tracing{scene.step, scene.setup.medium.ambient_refractivity(), scene.setup.medium.integrator,
               scene.setup.medium.faces},
       spot(shown),
-      rays(scene.rays_per_dot),
-      z_b(scene.setup.z_b()) {
+      z_b(scene.setup.z_b()),
+      ordered(order == RayOrder::neighbours && scene.medium.grid.nodes[0] > 1) {
   choice.seed = scene.setup.render.seed;
   choice.sampling = scene.setup.render.sampling;
-  choice.scrambling_bits = scrambling_bits(rays);
+  set_rays(scene.rays_per_dot);
   if (rim == StopRim::smooth && !camera.chief_rays_only()) camera.smooth_stop(scene.stop_edge());
   // Light of a pixel on the axis: the area that it sees times the cosine and the solid angle of its light cone.
   auto const seen = camera.unproject(camera.sensor.axis_pixel(), scene.target_plane());
@@ -76,10 +76,15 @@ RaysLaunch::RaysLaunch(Scene const& scene, SpotView const& shown, StopRim rim)
 
 RaysLaunch RaysLaunch::with_rays(std::uint64_t number) const {
   RaysLaunch other = *this;
-  other.rays = number;
-  other.choice.scrambling_bits = scrambling_bits(number);
+  other.set_rays(number);
   if (soft()) other.camera.smooth_stop(Scene::stop_edge(static_cast<double>(number)));
   return other;
+}
+
+void RaysLaunch::set_rays(std::uint64_t number) {
+  rays = number;
+  choice.scrambling_bits = scrambling_bits(rays);
+  choice.ordered_points = ordered ? complete_points(rays, choice.scrambling_bits) : 0;
 }
 
 bool RaysLaunch::soft() const {

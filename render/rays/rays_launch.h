@@ -16,6 +16,13 @@ enum class StopRim {
   sharp,   ///< sharp, for rays that fill the stop exactly
 };
 
+/// Order of a source's rays in a launch. It has no effect on results, except on their rounding.
+enum class RayOrder {
+  sequence,    ///< order of the Sobol sequence, the cheapest
+  neighbours,  ///< order of ordered_point() if the medium is on a grid, for devices where parallel rays that read the
+               ///< same cells are faster
+};
+
 /// Shift of the entrance pupil on the aim plane, as seen from the points of one source instead of from its middle.
 struct AimShift {
   Vec3d by_x{}, by_y{};  ///< shift per offset of the point in x and y [1]
@@ -33,8 +40,10 @@ struct RaysLaunch {
   double light_unit = 1;  ///< weight times source area of a fully lit pixel on the axis [m^2]
   double point_area = 0;  ///< area attributed to a point source: that seen by a pixel on the axis [m^2]
   StopRule rule;          ///< rule for rays that fill the stop; without rings: points by `choice`
+  bool ordered = false;   ///< points are in the order of ordered_point()
 
-  RaysLaunch(Scene const& scene, SpotView const& spot, StopRim rim = StopRim::smooth);
+  RaysLaunch(Scene const& scene, SpotView const& spot, StopRim rim = StopRim::smooth,
+             RayOrder order = RayOrder::sequence);
   /// Returns the same launch with another number of rays.
   RaysLaunch with_rays(std::uint64_t number) const;
 
@@ -61,6 +70,8 @@ struct RaysLaunch {
   double wider_margin(double shift) const;
 
  private:
+  /// Sets the number of rays and its division among scramblings.
+  void set_rays(std::uint64_t number);
   /// Returns true if the edge of the stop is smoothed.
   bool soft() const;
 };

@@ -3,10 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <map>
 #include <utility>
+#include <vector>
 
 #include "render/base/units.h"
 
@@ -60,6 +62,53 @@ TEST(AimedSources, SobolPointsFillCellsOfEqualAreaEqually) {
   ASSERT_EQ(disc.size(), 64u);
   for (auto const& [cell, count] : pupil) EXPECT_EQ(count, 64) << cell;
   for (auto const& [cell, count] : disc) EXPECT_EQ(count, 64) << cell;
+}
+
+// The order of the points changes the order of the rays only: each scrambling has the same rays, to the bit, as in the
+// order of the sequence. With 77 rays in 8 scramblings some points have one ray, and some scramblings one point more.
+TEST(AimedSources, OrderedRaysAreThoseOfTheSequence) {
+  Vec2d const centre{1e-3, -2e-3};
+  LambertSources<double> const source = source_at(centre, 1e-4);
+  for (std::uint64_t const rays : {5u, 77u, 1000u, 10000u}) {
+    AimedBundle<double> bundle = towards_pupil(PupilSampling::sobol);
+    bundle.choice.scrambling_bits = scrambling_bits(rays);
+    auto const sorted_rays = [&] {
+      std::vector<std::array<double, 6>> sorted;
+      for (std::uint64_t j = 0; j < rays; ++j) {
+        AimedRay<double> const aimed = aim_ray(source, bundle, 0, j);
+        double const scrambling = static_cast<double>(j % (1u << bundle.choice.scrambling_bits));
+        sorted.push_back({scrambling, aimed.ray.position.x, aimed.ray.position.y, aimed.ray.direction.x,
+                          aimed.ray.direction.y, aimed.weight});
+      }
+      std::sort(sorted.begin(), sorted.end());
+      return sorted;
+    };
+    auto const in_sequence = sorted_rays();
+    bundle.choice.ordered_points = complete_points(rays, bundle.choice.scrambling_bits);
+    EXPECT_EQ(sorted_rays(), in_sequence) << rays;
+  }
+}
+
+// The rays of one place of the order, two of each of four scramblings, run to points within a sector of 1/1024 of the
+// pupil's area: 1/64 of a turn by 1/16 of the squared radius.
+TEST(AimedSources, OrderedRaysStayTogether) {
+  Vec2d const centre{1e-3, -2e-3};
+  LambertSources<double> const source = source_at(centre, 1e-4);
+  AimedBundle<double> bundle = towards_pupil(PupilSampling::sobol);
+  bundle.choice.scrambling_bits = 2;
+  bundle.choice.ordered_points = 1024;
+  for (std::uint64_t first = 0; first < 8192; first += 8) {
+    double least2 = 1, most2 = 0;
+    Vec2d const p = at_pupil(aim_ray(source, bundle, 0, first).ray) / pupil_radius;
+    for (std::uint64_t j = first; j < first + 8; ++j) {
+      Vec2d const q = at_pupil(aim_ray(source, bundle, 0, j).ray) / pupil_radius;
+      least2 = std::min(least2, dot(q, q));
+      most2 = std::max(most2, dot(q, q));
+      double const turn = std::atan2(p.x * q.y - p.y * q.x, dot(p, q)) / (2 * pi);
+      ASSERT_LE(std::abs(turn), 1.0 / 64 + 1e-9) << j;
+    }
+    ASSERT_LE(most2 - least2, 1.0 / 16 + 1e-9) << first;
+  }
 }
 
 // For a uniform disc of radius R: <x> = <y> = <x y> = 0, <x^2> = <y^2> = R^2/4, <x^4> = R^4/8. The variances of these
