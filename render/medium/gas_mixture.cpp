@@ -63,7 +63,11 @@ double cauchy(double a, double b, double wavelength) { return a * (1 + b * squar
 
 double methane(double wavelength) { return constant_of(cauchy(42.6e-5, 14.41e-3, wavelength), methane_mass, -53.4e-6); }
 
-double oxygen(double wavelength) { return constant_of(cauchy(26.63e-5, 5.07e-3, wavelength), oxygen_mass, -22e-6); }
+double oxygen(double wavelength) {
+  // Zhang's refractivity holds at 20 C, where the gas is thinner.
+  double const at_20_degrees = 1.181494e-4 + 9.708931e-3 / (75.4 - squared_wavenumber(wavelength));
+  return constant_of(at_20_degrees * (293.15 / 273.15), oxygen_mass, -17e-6);
+}
 
 double water(double wavelength) {
   double const s2 = squared_wavenumber(wavelength);

@@ -26,9 +26,10 @@ inline constexpr double shortest_gas_wavelength = 400e-9, longest_gas_wavelength
 /// - helium: Mansfield & Peck, J. Opt. Soc. Am. 59 (1969) 199
 /// - nitrogen: Peck & Khanna, J. Opt. Soc. Am. 56 (1966) 1059
 /// - argon: Peck & Fisher, J. Opt. Soc. Am. 54 (1964) 1362
-/// - hydrogen: Peck & Huang, J. Opt. Soc. Am. 67 (1977) 1550
+/// - hydrogen: Peck & Hung, J. Opt. Soc. Am. 67 (1977) 1550
 /// - carbon dioxide: Bideau-Mehu, Guern, Abjean & Johannin-Gilles, Opt. Commun. 9 (1973) 432
-/// - oxygen and methane: Cauchy's formula, Born & Wolf, Principles of Optics, 7th ed. (1999), section 2.3.4
+/// - methane: Loria, Ann. Phys. 334, 605 (1909)
+/// - oxygen: Zhang, Lu & Wang, Appl. Opt. 47, 3143 (2008), at 20 C
 /// - air (gladstone_dale_ciddor()) and water vapour (20 C, 1333 Pa, 9.85938e-3 kg/m^3): Ciddor, Appl. Opt. 35 (1996)
 ///   1566
 std::span<Gas const> gases();

@@ -29,9 +29,9 @@ namespace {
 CorrelationFile read_document(SetupDocument document, std::vector<std::string> const& overrides) {
   SetupTable root = document.root();
   // The file may be a complete setup, including the tables of a design question.
-  for (char const* other :
-       {"schema", "experiment", "camera", "lens", "geometry", "window", "medium", "target", "light", "particles",
-        "laser", "flow", "calibration", "render", "requirements", "limits", "inventory", "free", "correlations"}) {
+  for (char const* other : {"schema", "experiment",   "camera",    "lens",      "geometry", "window",      "medium",
+                            "target", "light",        "particles", "laser",     "flow",     "calibration", "sequence",
+                            "render", "requirements", "limits",    "inventory", "free",     "correlations"}) {
     if (root.has(other)) root.mark_as_read(other);
   }
   for (auto const& assignment : overrides) {

@@ -115,6 +115,11 @@ void write_density_profile(std::string const& path, Reconstruction const& recons
   plot.command(fmt::format("set xlabel '{} [mm]'", profile.is_column ? "y" : "x"));
   plot.command("set ylabel 'density [kg/m³]' offset -0.5,0");
   plot.command("set style fill transparent solid 0.25 noborder");
+  if (!has_finite(profile.density)) {
+    plot.command("plot [0:1] [0:1] NaN title 'no density is known'");
+    plot.write(path);
+    return;
+  }
   std::string const source =
       plot.add_table({profile.place_mm, profile.density, profile.low, profile.high, profile.truth});
   std::string lines = "plot ";

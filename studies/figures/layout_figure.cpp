@@ -91,7 +91,8 @@ void draw(GnuplotFigure& plot, Drawing const& d) {
   std::string command =
       "plot " + lines(d.view, house_colour(5), 1, "field of view") + ", " +
       lines(d.cone, house_colour(1), 2, dots ? "light of the dot on the axis" : "light of a particle") + ", " +
-      (d.medium.z.empty() ? "" : lines(d.medium, house_colour(2), 2, "medium") + ", ") + lines(d.lens, house_colour(0), 3, "stop") + ", " +
+      (d.medium.z.empty() ? "" : lines(d.medium, house_colour(2), 2, "medium") + ", ") +
+      lines(d.lens, house_colour(0), 3, "stop") + ", " +
       lines(d.planes, "#202020", 3, dots ? "dots and sensor" : "sensor");
   if (!dots) command += ", " + lines(d.sheet, house_colour(3), 2, "laser sheet");
   plot.command(command);

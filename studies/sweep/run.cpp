@@ -98,7 +98,7 @@ bool is_missing_parts(std::string const& run, CaseResult const& result, RunSelec
 RunState remove_failed_results(std::string const& run, Manifest const& cases, std::vector<std::size_t> const& selected,
                                RunSelection const& selection) {
   RunState state = determine_run_state(run, cases, selected);
-  if (selection.keep_images || !state.pairs_only.empty()) {
+  if (selection.keep_images || selection.pairs_only || !state.pairs_only.empty()) {
     for (std::size_t const index : selected) {
       auto const result = read_result(run, index, cases.line_hash(index), ResultPart::head);
       if (!result || !is_missing_parts(run, *result, selection)) continue;
