@@ -16,7 +16,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 /// Renders again and again, scene in memory to image in memory; a ray goes through both frames.
-void report(benchmark::State& state, Scene const& scene, std::unique_ptr<Renderer> (*make)() = cuda::make_renderer) {
+void report(benchmark::State& state, Scene scene, std::unique_ptr<Renderer> (*make)() = cuda::make_renderer) {
   Progress::enable(false);
   if (!cuda::device_state().usable) {
     state.SkipWithError(cuda::device_state().text.c_str());
