@@ -9,6 +9,7 @@
 #include "render/files/output_file.h"
 #include "render/setup/setup_node.h"
 #include "studies/case/cameras.h"
+#include "studies/case/rendered_sequence_folder.h"
 
 namespace gladstone {
 namespace {
@@ -72,6 +73,15 @@ void refuse_case_over_inputs(std::string const& folder, std::vector<std::string>
 void require_case(std::string const& folder) {
   complete_parent_replacement(folder, case_content());
   if (!is_complete(folder, case_content())) {
+    std::error_code error;
+    for (std::size_t const first : {0, 1}) {
+      std::string const pair = rendered_sequence_file::pair(first);
+      if (fs::exists(fs::path(folder) / rendered_sequence_file::setup, error) &&
+          fs::exists(fs::path(folder) / pair, error)) {
+        throw DataError(folder, fmt::format("is a rendered sequence; name one of its cases, such as {}",
+                                            (fs::path(folder) / pair).string()));
+      }
+    }
     throw DataError(
         folder, "is not a case (it contains no setup.toml); create one with: gladstone render SETUP.toml -o " + folder);
   }

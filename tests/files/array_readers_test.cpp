@@ -259,6 +259,9 @@ TEST_F(NpzField, DamagedArchivesAreRefused) {
   EXPECT_THAT(refusal(write("t.npz", good.substr(0, good.size() - 30))), HasSubstr("cut short or damaged"));
   wrong.add("rho.npy", array, true, false);
   EXPECT_THAT(refusal(write("c.npz", wrong.archive())), HasSubstr("wrong checksum"));
+  Zip stored;
+  stored.add("rho.npy", array, false, false);
+  EXPECT_THAT(refusal(write("stored.npz", stored.archive())), HasSubstr("wrong checksum"));
   std::string crossed = good;
   crossed.replace(crossed.rfind("PK\x05\x06") + 16, 4, "\xff\xff\xff\x7f");  // the directory beyond the file
   EXPECT_THAT(refusal(write("o.npz", crossed)), HasSubstr("cut short or damaged"));

@@ -49,6 +49,12 @@ VectorFile read_gladstone_hdf5(std::string const& path) {
   std::size_t count = 0;
   auto const read = [&](std::string const& dataset) {
     if (!file.has(dataset)) {
+      std::string const type = file.attribute("filetype");
+      if (!type.empty() && type != "gladstone vectors") {
+        throw DataError(path, fmt::format("is a file of \"{}\", which contains no vectors of an image pair; use "
+                                          "vectors.h5 of gladstone correlate",
+                                          type));
+      }
       throw DataError(path, fmt::format("no dataset {} (the file contains {}); use vectors.h5 of gladstone correlate",
                                         dataset, fmt::join(file.dataset_names(), ", ")));
     }

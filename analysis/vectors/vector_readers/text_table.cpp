@@ -100,6 +100,9 @@ TextTable read_text_table(std::string const& path) {
   while (auto const line = file.next()) {
     std::size_t const at = file.number();
     std::string_view text = *line;
+    if (text.find('\0') != std::string_view::npos)
+      fail(at,
+           "contains NUL bytes, as binary files do; vectors are read from text files and from vectors.h5 of gladstone");
     text = trim(text);
     if (text.empty()) continue;
 

@@ -8,9 +8,11 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <optional>
 
 #include "render/base/error.h"
+#include "render/base/interrupt.h"
 #include "render/files/fields/readers/listed_arrays.h"
 #include "render/files/fields/readers/vtk_numbers.h"
 #include "render/files/fields/readers/zip_archive.h"
@@ -212,16 +214,19 @@ class FortranOrder {
   std::size_t place_ = 0;
 };
 
+[[noreturn]] void refuse_checksum(ByteRange const& range) {
+  throw DataError(range.file->path(),
+                  fmt::format("array \"{}\" is damaged (wrong checksum); copy it again", excerpt(range.name)));
+}
+
 /// Loads all values of an array that is compressed or in Fortran order.
 /// @param crc  checksum of all bytes of the array's file
 ValueStore load_npy(ByteRange const& range, NpyHeader const& header, std::optional<std::uint32_t> crc) {
   std::size_t const size = checked_bytes(header.shape, header.type->bytes, range.file->path(), range.name);
   std::vector<char> const bytes = read_up_to(range, header.data + size);
   if (bytes.size() < header.data + size) refuse_truncated(range, bytes.size() - header.data, size);
-  if (crc && crc32_z(0, reinterpret_cast<unsigned char const*>(bytes.data()), bytes.size()) != *crc) {
-    throw DataError(range.file->path(),
-                    fmt::format("array \"{}\" is damaged (wrong checksum); copy it again", excerpt(range.name)));
-  }
+  if (crc && crc32_z(0, reinterpret_cast<unsigned char const*>(bytes.data()), bytes.size()) != *crc)
+    refuse_checksum(range);
   std::size_t const count = size / header.type->bytes;
   ValueStore values;
   values.allocate(count, header.type->significant_bits, range.file->path(), "array \"" + excerpt(range.name) + '"');
@@ -233,8 +238,24 @@ ValueStore load_npy(ByteRange const& range, NpyHeader const& header, std::option
   return values;
 }
 
+/// Compares the checksum of the bytes of an uncompressed array with that of the archive.
+void verify_stored(ByteRange const& range, std::uint32_t crc) {
+  std::vector<unsigned char> bytes(1 << 20);
+  uLong found = 0;
+  for (std::uint64_t done = 0; done < range.size;) {
+    throw_if_interrupted();
+    std::size_t const wanted = std::min<std::uint64_t>(bytes.size(), range.size - done);
+    std::size_t const got = range.file->read(range.offset + done, bytes.data(), wanted);
+    if (got == 0) refuse_truncated(range, done, range.size);
+    found = crc32_z(found, bytes.data(), got);
+    done += got;
+  }
+  if (found != crc) refuse_checksum(range);
+}
+
 /// Checks the size of an array's data, and returns the array.
 /// @param size  number of decompressed bytes of header and data
+/// @param crc   checksum of these bytes, verified before the first value is read; nullopt: the file has none
 ListedArray npy_array(ByteRange const& range, NpyHeader const& header, std::uint64_t size,
                       std::optional<std::uint32_t> crc) {
   std::size_t const required = checked_bytes(header.shape, header.type->bytes, range.file->path(), range.name);
@@ -250,7 +271,12 @@ ListedArray npy_array(ByteRange const& range, NpyHeader const& header, std::uint
   ListedArray array{range.name, header.shape, header.type->significant_bits, {}};
   bool const direct = range.coding == ByteRange::Coding::stored && !header.fortran;
   if (direct) {
-    array.read = [range, header](std::size_t first, std::span<double> out) { read_stored(range, header, first, out); };
+    auto const verified = std::make_shared<bool>(!crc);
+    array.read = [range, header, crc, verified](std::size_t first, std::span<double> out) {
+      if (!*verified) verify_stored(range, *crc);
+      *verified = true;
+      read_stored(range, header, first, out);
+    };
   } else {
     array.read = load_once([range, header, crc] { return load_npy(range, header, crc); });
   }
@@ -288,9 +314,7 @@ std::unique_ptr<CheckedSource> open_npz(std::string const& path, FieldSelection 
       others.push_back({name, describe_dtype(header.dtype)});
       continue;
     }
-    bool const compressed = entry.range.coding != ByteRange::Coding::stored;
-    arrays.push_back(
-        npy_array(entry.range, header, entry.size, compressed ? std::optional(entry.crc32) : std::nullopt));
+    arrays.push_back(npy_array(entry.range, header, entry.size, entry.crc32));
   }
   return open_array_field(std::make_unique<ListedArrays>(path, std::move(arrays), std::move(others)), path, selection);
 }
