@@ -129,7 +129,7 @@ std::string recommendation_text(AnsweredQuestion const& answered) {
   DesignVariant const& variant = answered.variants[answered.chosen().branch.variant];
   std::string text = "recommended set-up\n";
   auto const line = [&text](char const* name, std::string const& value) {
-    text += fmt::format("  {:<18}{}\n", name, value);
+    text += fmt::format("  {:<23}{}\n", name, value);
   };
   std::string parts = variant.lens.empty() ? "" : ", " + variant.lens;
   if (!variant.camera.empty()) parts += ", camera " + variant.camera;
@@ -144,10 +144,10 @@ std::string recommendation_text(AnsweredQuestion const& answered) {
                                best.smallest_gradient(), best.random_error(),
                                simulated ? fmt::format(", {:.3g} px simulated", *simulated) : ""));
   if (std::string const larger = stop_text(answered, Direction::larger); !larger.empty()) {
-    line("next larger stop", larger);
+    line("next larger f-number", larger);
   }
   if (std::string const smaller = stop_text(answered, Direction::smaller); !smaller.empty()) {
-    line("next smaller stop", smaller);
+    line("next smaller f-number", smaller);
   }
   return text;
 }

@@ -167,6 +167,13 @@ void add_calibration(SetupOverview& overview, Setup const& setup) {
   add_dot_numbers(rows, plane_setup(setup, 0));
 }
 
+/// Rounds a time to two significant digits, without an exponent from 10 s on.
+std::string time_text(double seconds) {
+  if (seconds < 10) return fmt::format("{:.2g}", seconds);
+  double const step = std::pow(10.0, std::floor(std::log10(seconds)) - 1);
+  return fmt::format("{:.0f}", std::round(seconds / step) * step);
+}
+
 std::string cost_text(RenderCost const& cost) {
   std::string memory;
   for (MemoryRequirement const& part : cost.memory) {
@@ -178,14 +185,15 @@ std::string cost_text(RenderCost const& cost) {
       cost.method == RenderMethod::formula
           ? "no rays"
           : fmt::format("{}{:.6g} rays per source", cost.rays_are_largest ? "up to " : "", cost.rays_per_source);
-  text += fmt::format("  {:<46}{}, {}\n", "method", to_string(cost.method), rays);
+  text += fmt::format("  {:<50}{}, {}\n", "method", to_string(cost.method), rays);
   if (std::isfinite(cost.processor_seconds)) {
-    text += fmt::format("  {:<46}{}{:.2g} s on {} threads of a CPU, without the choice of step and rays\n", "time",
-                        cost.rays_are_largest ? "up to " : "about ", cost.seconds(), thread_count());
+    std::string const threads = thread_count() == 1 ? "1 thread" : fmt::format("{} threads", thread_count());
+    text += fmt::format("  {:<50}{}{} s on {} of a CPU, without the choice of step and rays\n", "time",
+                        cost.rays_are_largest ? "up to " : "about ", time_text(cost.seconds()), threads);
   } else {
-    text += fmt::format("  {:<46}unknown\n", "time");
+    text += fmt::format("  {:<50}unknown\n", "time");
   }
-  return text + fmt::format("  {:<46}{:.3g} MB ({})\n", "memory", cost.bytes() / 1e6, memory);
+  return text + fmt::format("  {:<50}{:.3g} MB ({})\n", "memory", cost.bytes() / 1e6, memory);
 }
 
 nlohmann::ordered_json cost_json(RenderCost const& cost) {
@@ -225,7 +233,7 @@ std::string overview_text(SetupOverview const& overview) {
   std::string text;
   for (SheetRow const& row : overview.rows) {
     std::string const value = fmt::format("{:.6g}{}{}", row.value, row.unit.empty() ? "" : " ", row.unit);
-    text += fmt::format("  {:<46}{}", row.name, value);
+    text += fmt::format("  {:<50}{}", row.name, value);
     if (row.margin != Margin::none) text += fmt::format("  [{}]", margin_word(row.margin));
     text += (row.note.empty() ? "" : "  (" + row.note + ')') + '\n';
   }

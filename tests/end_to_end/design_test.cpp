@@ -61,8 +61,8 @@ TEST_F(Design, RecommendationComesFirstAndJudgesTheNextStop) {
   std::string const text = succeed({"design", "tunnel.toml", "--verify", "0"});
   EXPECT_TRUE(text.starts_with("recommended set-up\n  lens ")) << text.substr(0, 80);
   double const stop = json_of({"design", "tunnel.toml", "--verify", "0"})["recommended"]["lens.f_number"];
-  EXPECT_THAT(text, HasSubstr(stop == 8 ? "  next larger stop  f/16: " : "  next smaller stop f/8: "));
-  EXPECT_THAT(text, testing::Not(HasSubstr(stop == 8 ? "next smaller stop" : "next larger stop")));
+  EXPECT_THAT(text, HasSubstr(stop == 8 ? "  next larger f-number   f/16: " : "  next smaller f-number  f/8: "));
+  EXPECT_THAT(text, testing::Not(HasSubstr(stop == 8 ? "next smaller f-number" : "next larger f-number")));
   auto const at = [&text](char const* piece) { return text.find(piece); };
   for (char const* line : {"\n  stop ", "\n  target distance ", "\n  dots ", "\n  measures "}) {
     EXPECT_LT(at(line), at("values of the free keys")) << line;
@@ -76,9 +76,10 @@ TEST_F(Design, JudgesAFullStopIfTheStopIsContinuous) {
   write("tunnel.toml", with(text, "dot_diameter_mm = [0.1, 3.0]", "dot_diameter_mm = [0.1, 3.0]\nf_number = [4, 32]"));
   double const stop = json_of({"design", "tunnel.toml", "--verify", "0"})["recommended"]["lens.f_number"];
   std::string const answer = succeed({"design", "tunnel.toml", "--verify", "0"});
-  auto const line = answer.find("next smaller stop f/");
+  auto const line = answer.find("next smaller f-number  f/");
   ASSERT_NE(line, std::string::npos) << answer;
-  EXPECT_NEAR(std::stod(answer.substr(line + std::strlen("next smaller stop f/"))), stop / std::sqrt(2.0), 1e-3 * stop);
+  EXPECT_NEAR(std::stod(answer.substr(line + std::strlen("next smaller f-number  f/"))), stop / std::sqrt(2.0),
+              1e-3 * stop);
 }
 
 TEST_F(Design, SheetBeginsWithWhatIsNotGreen) {
