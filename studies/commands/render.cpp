@@ -64,11 +64,11 @@ struct RenderArguments {
 
 /// Describes a preview and what it leaves out.
 std::string preview_text(CasePreview const& preview, CameraSetup const& camera, std::string const& path) {
-  std::string text =
-      fmt::format("{}: {} x {} of {} x {} px, from column {} and row {} on, {}; {} {} in {:.2f} s\n", path,
-                  preview.columns, preview.rows, camera.columns, camera.rows, preview.first_column, preview.first_row,
-                  preview.at_gradient ? "about the strongest density gradient" : "about the image centre",
-                  preview.sources, "dots or particles", preview.seconds);
+  std::string text = fmt::format(
+      "{}: {} x {} of {} x {} px, from column {} and row {} on, {}; {} light sources traced in {:.2f} s\n", path,
+      preview.columns, preview.rows, camera.columns, camera.rows, preview.first_column, preview.first_row,
+      preview.at_gradient ? "about the strongest density gradient" : "about the image centre", preview.sources,
+      preview.seconds);
   text += preview.frames.size() == 1
               ? fmt::format("  the plane Z = {:.6g} mm only\n", preview.plane_z / unit::millimetre)
               : std::string("  left: reference image or frame A, right: measurement image or frame B\n");
