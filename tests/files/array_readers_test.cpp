@@ -357,7 +357,7 @@ TEST_F(MatField, DamagedFilesAreRefused) {
   EXPECT_THAT(refusal(write("t.mat", good.substr(0, good.size() - 8))), HasSubstr("cut short"));
   EXPECT_THAT(refusal(write("h.mat", good.substr(0, 100))), HasSubstr("cut short"));
   EXPECT_THAT(refusal(write("g.mat", good.substr(0, 132))), HasSubstr("cut short"));
-  EXPECT_THAT(refusal(write("w.mat", "MATLAB" + good)), HasSubstr("is not an HDF5 file"));
+  EXPECT_THAT(refusal(write("w.mat", "MATLAB" + good)), HasSubstr("is not a MATLAB file of level 5 or 7.3"));
   // sizes beyond the data, also in compressed data
   std::string const large = matrix("rho", {40000, 30000, 200}, 9, bytes<double>(numbered()));
   EXPECT_THAT(refusal(write("s.mat", mat(large))), HasSubstr("cut short"));

@@ -211,7 +211,10 @@ std::unique_ptr<CheckedSource> open_matlab(std::string const& path, FieldSelecti
   constexpr std::string_view level_5 = "MATLAB 5.0";
   std::string start(level_5.size(), '\0');
   start.resize(InputFile(path, "a field file").read(0, start.data(), start.size()));
-  if (start != level_5) return open_hdf5(path, selection);
+  if (start == "MATLAB 7.3" || start.starts_with("\x89HDF")) return open_hdf5(path, selection);
+  if (start != level_5) {
+    throw DataError(path, "is not a MATLAB file of level 5 or 7.3; save it with the option -v7 or -v7.3 of save");
+  }
   MatlabFile file(path);
   return open_array_field(std::make_unique<ListedArrays>(path, std::move(file.arrays), std::move(file.others)), path,
                           selection);
