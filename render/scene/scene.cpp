@@ -68,7 +68,7 @@ DotPattern build_target(Setup const& setup) {
     case TargetKind::dots:
       if (setup.target.arrangement == DotArrangement::random) {
         dots.centre = random_dots(setup.target_extent(), static_cast<std::size_t>(setup.dot_count()), diameter,
-                                        setup.target.seed);
+                                  setup.target.seed);
       } else {
         Vec2d const extent = setup.target_extent();
         dots.centre = regular_dots(extent, setup.dot_count() / (extent.x * extent.y), diameter);

@@ -28,8 +28,8 @@ OpticalLayout make_optical_layout(DesignPoint<double> const& bench);
 /// @throws GnuplotMissing, OutputError
 void write_layout_figure(std::string const& path, DesignPoint<double> const& bench);
 
-/// Returns the paraxial geometry of any camera, with Z along its axis: from the medium's mid-plane (PIV, calibration: the
-/// point of the axis at the distance Z_A) towards the camera.
+/// Returns the paraxial geometry of any camera, with Z along its axis: from the medium's mid-plane (PIV, calibration:
+/// the point of the axis at the distance Z_A) towards the camera.
 OpticalLayout make_camera_layout(Setup const& setup);
 
 /// Draws make_camera_layout(), for cameras with a pose, prescription, windows or lenslets, and for calibrations.
