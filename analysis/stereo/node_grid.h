@@ -19,7 +19,8 @@ struct NodeGrid {
   std::size_t size() const { return static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows); }
   Vec2d position(std::size_t node) const {
     auto const width = static_cast<std::size_t>(columns);
-    return first + spacing * Vec2d{static_cast<double>(node % width), static_cast<double>(node / width)};
+    std::size_t const column = node % width, row = node / width;
+    return first + spacing * Vec2d{static_cast<double>(column), static_cast<double>(row)};
   }
   /// Converts x and y [m] to the position in an image of the nodes, whose row 0 shows the largest y [px], and back.
   Vec2d pixel(Vec2d at) const { return {(at.x - first.x) / spacing, rows - 1 - (at.y - first.y) / spacing}; }

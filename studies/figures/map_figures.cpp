@@ -19,6 +19,17 @@ Image<double> difference(Image<double> const& a, Image<double> const& b) {
   return result;
 }
 
+/// Returns the colour range of a component of the displacement: that of the first source, whose truth is free of noise
+/// and without the large values of Eq. 9, and at least a fiftieth of the range of the other component. Otherwise noise
+/// would saturate the map of a component that is nearly zero.
+ColourRange component_range(Image<double> const& component, Image<double> const& other) {
+  ColourRange range = colour_range(component, ColourScale::diverging);
+  double const least = colour_range(other, ColourScale::diverging).upper / 50;
+  range.upper = std::max(range.upper, least);
+  range.lower = -range.upper;
+  return range;
+}
+
 }  // namespace
 
 void write_displacement_maps(std::string const& path, std::string const& title, MapAxes const& axes,
@@ -28,9 +39,8 @@ void write_displacement_maps(std::string const& path, std::string const& title, 
   figure.title = title;
   figure.axes = axes;
   figure.columns = static_cast<int>(sources.size());
-  auto const add_row = [&](char const* component, Image<double> NamedMaps::*map) {
-    // If the range included Eq. 9, whose values are by far the largest, the other maps would appear white.
-    ColourRange const range = colour_range(sources.front().*map, ColourScale::diverging);
+  auto const add_row = [&](char const* component, Image<double> NamedMaps::*map, Image<double> NamedMaps::*other) {
+    ColourRange const range = component_range(sources.front().*map, sources.front().*other);
     for (NamedMaps const& source : sources) {
       figure.panels.push_back({fmt::format("{}, {} [px]", component, source.name), source.*map, ColourScale::diverging,
                                "", range.lower, range.upper});
@@ -45,8 +55,8 @@ void write_displacement_maps(std::string const& path, std::string const& title, 
                                "difference of " + sources[i].name});
     }
   };
-  add_row("u", &NamedMaps::u_px);
-  add_row("v", &NamedMaps::v_px);
+  add_row("u", &NamedMaps::u_px, &NamedMaps::v_px);
+  add_row("v", &NamedMaps::v_px, &NamedMaps::u_px);
   if (sources.size() > 1) {
     add_differences("u", &NamedMaps::u_px);
     add_differences("v", &NamedMaps::v_px);

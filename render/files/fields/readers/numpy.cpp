@@ -143,7 +143,7 @@ NpyHeader read_npy_header(ByteRange const& range) {
                                 excerpt(range.name)));
   }
   if (start.size() < magic + 4) refuse_truncated(range, start.size(), magic + 4);
-  int const version = start[6];
+  int const version = static_cast<unsigned char>(start[6]);
   if (version < 1 || version > 3) {
     throw DataError(range.file->path(),
                     fmt::format("array \"{}\" is of NumPy format {} (1 to 3 are read); save it again",
