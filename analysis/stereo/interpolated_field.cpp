@@ -50,8 +50,7 @@ bool is_regular_grid(DisplacementField const& field) {
   for (std::size_t i = 0; i < field.size(); ++i) {
     auto const columns = static_cast<std::size_t>(field.columns);
     std::size_t const column = i % columns, row = i / columns;
-    Vec2d const node{first.x + spacing.x * static_cast<double>(column),
-                     first.y + spacing.y * static_cast<double>(row)};
+    Vec2d const node{first.x + spacing.x * static_cast<double>(column), first.y + spacing.y * static_cast<double>(row)};
     Vec2d const off = field.position_px[i] - node;
     if (!(std::abs(off.x) <= tolerance_px && std::abs(off.y) <= tolerance_px)) return false;
   }
