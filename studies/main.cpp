@@ -92,7 +92,7 @@ int refuse_arguments(std::vector<std::string> const& unknown, CLI::App const* co
     }
     chooses = !known.empty();
   }
-  bool const is_option = name.starts_with("-");
+  bool const is_option = name.starts_with('-');
   std::string message = "no command is given";
   if (!unknown.empty())
     message = fmt::format("unknown {} \"{}\"", is_option ? "option" : chooses ? "command" : "argument", name);
@@ -173,7 +173,13 @@ int guarded(int argc, char** argv) {
   GlobalOptions options;
   auto const fail = [&](std::exception const& error, std::string const& message, int code) {
     print_error(message);
-    if (options.json) fmt::print("{}\n", json_text(error_json(error, code)));
+    if (options.json) {
+      try {
+        std::cout << json_text(error_json(error, code)) << '\n';
+      } catch (std::exception const&) {
+        // The message is on stderr already; main() reports output that is lost.
+      }
+    }
     return code;
   };
   try {

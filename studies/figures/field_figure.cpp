@@ -70,8 +70,9 @@ struct NodeAxis {
       step = source.grid().spacing[axis] * unit_mm;
     }
     label = fmt::format("{} [{}]", name, lengths_known ? "mm" : "nodes");
-    middle = lengths_known ? fmt::format("{} = {:.4g} mm", name, first + step * (nodes / 2))
-                           : fmt::format("{} = node {}", name, nodes / 2);
+    int const node = nodes / 2;
+    middle = lengths_known ? fmt::format("{} = {:.4g} mm", name, first + step * node)
+                           : fmt::format("{} = node {}", name, node);
   }
   double length() const { return step * nodes; }
   std::string range() const { return fmt::format("[{:.10g}:{:.10g}]", first - step / 2, first + step * (nodes - 0.5)); }

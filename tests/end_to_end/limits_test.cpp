@@ -89,6 +89,7 @@ TEST_F(Limits, AFullStandardOutputIsAnError) {
                                              {"info", "mie", "--x", "500", "--m", "1.5", "--json"},
                                              {"--help"},
                                              {"render", "--help"},
+                                             {"render", "none.toml", "-o", "x", "--json"},
                                              {"--version"}}) {
     Outcome const outcome = run(command, folder_, full);
     EXPECT_EQ(outcome.exit_code, 2) << testing::PrintToString(command);
