@@ -97,8 +97,8 @@ TEST_F(DataErrors, TruncatedNrrd) {
 }
 
 TEST_F(DataErrors, FieldOfUnknownFormat) {
-  write("field.npy", "NUMPY");
-  expect_setup_refused(file_setup("field.npy"), {"field.npy: ", "supported are .h5"});
+  write("field.xyz", "1 2 3");
+  expect_setup_refused(file_setup("field.xyz"), {"field.xyz: ", "supported are .h5"});
   write("field.vtk", "# vtk DataFile");
   expect_setup_refused(file_setup("field.vtk"), {"field.vtk: ", "neither as ASCII nor as BINARY"});
 }
