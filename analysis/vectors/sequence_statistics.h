@@ -37,7 +37,7 @@ struct SequenceMoments {
 /// Accumulates the statistics of a sequence of displacement fields on one grid. Memory is bounded: sums of the first
 /// four powers and products of (u, v), and for the autocorrelation the last `lags` fields and the products with them.
 ///
-/// Only measured vectors are included: valid ones, and those replaced by a secondary peak of their own window. Vectors
+/// Includes measured vectors: valid ones, and those replaced by a secondary peak of their own window. Vectors
 /// replaced by the median of their neighbours are interpolated and would reduce the stresses.
 ///
 /// With the autocorrelation rho_k at lag k and n vectors, the effective number of independent samples is

@@ -13,7 +13,7 @@ namespace gladstone {
 /// - The particles of the first frame fill the volume, as those of seed_particles() do. Particles that leave it are
 ///   dropped. Before every step, further particles are drawn around the volume, and those that enter it are added, so
 ///   that the number density remains that of the seeding.
-/// - Particles of a file are not replaced. Without a volume none of them is dropped.
+/// - Particles of a file are not replaced. Without a volume all of them stay.
 /// - A particle depends on the seed, the frame in which it was drawn and its index only, so that a frame is the same in
 ///   both pairs to which it belongs, for any number of threads.
 class ParticleSequence {

@@ -194,7 +194,7 @@ void add_scattering(Scene& scene) {
   scene.mie = std::make_shared<MieScattering const>(scene.particles.diameter, setting, seen_angles(scene));
 }
 
-/// Returns the photons of the brightest particle of the scene; 1 if there are none.
+/// Returns the photons of the brightest particle of the scene; 1 without particles.
 double determine_photon_unit(Scene const& scene) {
   double const brightest = brightest_photons(scene, scene.particles, ParticleLight::scattered);
   return brightest > 0 ? brightest : 1;

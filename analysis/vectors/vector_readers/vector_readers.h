@@ -17,7 +17,7 @@ bool is_gladstone_csv(TextTable const& table);
 VectorFile read_gladstone_csv(TextTable const& table);
 
 /// Tecplot ASCII as gladstone writes it, with VARIABLES x_px, y_px, u_px, v_px and status; y and v downwards. 0 marks
-/// values that are not known.
+/// unknown values.
 bool is_gladstone_tecplot(TextTable const& table);
 VectorFile read_gladstone_tecplot(TextTable const& table);
 

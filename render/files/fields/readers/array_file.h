@@ -22,7 +22,7 @@ class ArrayFile {
   /// Returns the entries that hold no real numbers, with what they hold, for messages.
   virtual std::vector<std::string> describe_others() const = 0;
   virtual bool has(std::string const& array) const = 0;
-  /// @throws DataError that lists the arrays if there is none of this name
+  /// @throws DataError that lists the arrays if no array has this name
   virtual std::vector<std::size_t> shape(std::string const& array) const = 0;
   /// Number of significant bits of the stored numbers: 24 for float, 53 for double, the width of an integer.
   virtual int significant_bits(std::string const& array) const = 0;

@@ -11,23 +11,20 @@
 #include "render/files/fields/readers/byte_range.h"
 #include "render/files/fields/readers/hdf5.h"
 #include "render/files/fields/readers/listed_arrays.h"
-#include "render/files/fields/readers/vtk_numbers.h"
+#include "render/files/fields/readers/stored_number.h"
 #include "render/files/text_file.h"
 
 namespace gladstone {
 namespace {
 
 /// Data type of the numbers of an element (MAT-File Format, table 1-1).
-struct MatlabNumber {
+struct MatlabNumber : StoredNumber {
   std::uint32_t type;
-  std::size_t bytes;
-  int significant_bits;
-  double (*read)(char const* bytes, bool swap);
 };
 
 template <class Stored>
 constexpr MatlabNumber matlab_number(std::uint32_t type) {
-  return {type, sizeof(Stored), std::numeric_limits<Stored>::digits, read_number<Stored>};
+  return {stored_number<Stored>(), type};
 }
 
 constexpr std::array matlab_numbers{matlab_number<std::int8_t>(1),   matlab_number<std::uint8_t>(2),

@@ -14,7 +14,7 @@
 #include "render/base/error.h"
 #include "render/base/interrupt.h"
 #include "render/files/fields/readers/listed_arrays.h"
-#include "render/files/fields/readers/vtk_numbers.h"
+#include "render/files/fields/readers/stored_number.h"
 #include "render/files/fields/readers/zip_archive.h"
 #include "render/files/text_file.h"
 
@@ -34,23 +34,20 @@ double read_half(char const* bytes, bool swap) {
 }
 
 /// Numeric type of an array: kind and number of bytes, as in its header.
-struct NumpyType {
+struct NumpyType : StoredNumber {
   std::string_view code;
-  std::size_t bytes;
-  int significant_bits;
-  double (*read)(char const* bytes, bool swap);
 };
 
 template <class Stored>
 constexpr NumpyType numpy_type(std::string_view code) {
-  return {code, sizeof(Stored), std::numeric_limits<Stored>::digits, read_number<Stored>};
+  return {stored_number<Stored>(), code};
 }
 
 constexpr std::array numpy_types{
-    NumpyType{"f2", 2, 11, read_half}, numpy_type<float>("f4"),         numpy_type<double>("f8"),
-    numpy_type<std::int8_t>("i1"),     numpy_type<std::int16_t>("i2"),  numpy_type<std::int32_t>("i4"),
-    numpy_type<std::int64_t>("i8"),    numpy_type<std::uint8_t>("u1"),  numpy_type<std::uint16_t>("u2"),
-    numpy_type<std::uint32_t>("u4"),   numpy_type<std::uint64_t>("u8"), numpy_type<std::uint8_t>("b1"),
+    NumpyType{{2, 11, read_half}, "f2"}, numpy_type<float>("f4"),         numpy_type<double>("f8"),
+    numpy_type<std::int8_t>("i1"),       numpy_type<std::int16_t>("i2"),  numpy_type<std::int32_t>("i4"),
+    numpy_type<std::int64_t>("i8"),      numpy_type<std::uint8_t>("u1"),  numpy_type<std::uint16_t>("u2"),
+    numpy_type<std::uint32_t>("u4"),     numpy_type<std::uint64_t>("u8"), numpy_type<std::uint8_t>("b1"),
 };
 
 /// Describes the content of an array that holds no real numbers, by its dtype.

@@ -1,37 +1,22 @@
 #pragma once
 
-#include <algorithm>
 #include <array>
-#include <bit>
-#include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <string_view>
+
+#include "render/files/fields/readers/stored_number.h"
 
 namespace gladstone {
 
 /// Numeric type in VTK files.
-struct VtkNumber {
+struct VtkNumber : StoredNumber {
   std::string_view xml;     ///< name in XML files
   std::string_view legacy;  ///< name in legacy files
-  std::size_t bytes;
-  int significant_bits;
-  double (*read)(char const* bytes, bool swap);
 };
-
-/// Reads a number from memory.
-/// @param swap  true if its byte order is not that of the machine
-template <class Stored>
-double read_number(char const* bytes, bool swap) {
-  std::array<char, sizeof(Stored)> value;
-  std::copy_n(bytes, sizeof(Stored), value.data());
-  if (swap) std::reverse(value.begin(), value.end());
-  return static_cast<double>(std::bit_cast<Stored>(value));
-}
 
 template <class Stored>
 constexpr VtkNumber vtk_number(std::string_view xml, std::string_view legacy) {
-  return {xml, legacy, sizeof(Stored), std::numeric_limits<Stored>::digits, read_number<Stored>};
+  return {stored_number<Stored>(), xml, legacy};
 }
 
 inline constexpr std::array vtk_numbers{
