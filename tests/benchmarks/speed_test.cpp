@@ -85,7 +85,7 @@ TEST(Speed, OfTheCorrelationOfWindows) {
 }
 
 TEST(Speed, OfParticleImagesByFormula) {
-  Setup const setup = pair_setup(ParticleScattering::gaussian, 512);
+  auto const setup = pair_setup(ParticleScattering::gaussian, 512);
   Scene const scene = build_scene(setup);
   auto const ideal = ideal_images(scene);
   ASSERT_TRUE(ideal);
