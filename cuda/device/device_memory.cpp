@@ -47,7 +47,7 @@ std::string shortage(std::string const& what_for, std::size_t bytes) {
 }  // namespace
 
 OutOfDeviceMemory::OutOfDeviceMemory(std::string const& what_for, std::size_t bytes)
-    : DeviceError(shortage(what_for, bytes)) {}
+    : DeviceMemoryError(shortage(what_for, bytes)) {}
 
 DeviceMemoryInfo query_device_memory() {
   check(cudaStreamSynchronize(nullptr), "cudaStreamSynchronize");  // memory is released in stream order

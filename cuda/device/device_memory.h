@@ -35,7 +35,7 @@ DeviceMemoryInfo query_device_memory();
 
 /// Thrown if an allocation fails for lack of device memory: callers may retry with a smaller one. what() reports the
 /// sizes.
-class OutOfDeviceMemory : public DeviceError {
+class OutOfDeviceMemory : public DeviceMemoryError {
  public:
   OutOfDeviceMemory(std::string const& what_for, std::size_t bytes);
 };

@@ -48,7 +48,7 @@ SetupError::SetupError(std::vector<SetupProblem> problems, std::size_t more)
 
 bool is_out_of_memory(std::exception const& error) {
   return dynamic_cast<std::bad_alloc const*>(&error) || dynamic_cast<std::length_error const*>(&error) ||
-         dynamic_cast<MemoryError const*>(&error) ||
+         dynamic_cast<MemoryError const*>(&error) || dynamic_cast<DeviceMemoryError const*>(&error) ||
          std::string_view(error.what()).find("(-4:Insufficient memory)") != std::string_view::npos;
 }
 

@@ -73,7 +73,7 @@ class NoValidVector : public DataError {
   using DataError::DataError;
 };
 
-/// A file that needs more memory than is available, now or on this machine. Exit code 2.
+/// A file or a key of a setup that needs more memory than is available, now or on this machine. Exit code 2.
 class MemoryError : public DataError {
  public:
   using DataError::DataError;
@@ -97,6 +97,12 @@ class DeviceError : public Error {
   using Error::Error;
 };
 
+/// Work that needs more memory of the accelerator than is free. Exit code 5.
+class DeviceMemoryError : public DeviceError {
+ public:
+  using DeviceError::DeviceError;
+};
+
 /// The user pressed Ctrl-C. Exit code 130.
 class Interrupted : public Error {
  public:
@@ -104,7 +110,7 @@ class Interrupted : public Error {
 };
 
 /// Returns true if an error means that memory is exhausted: std::bad_alloc, std::length_error (a size refused before
-/// its allocation), MemoryError, or an OpenCV error of code -4.
+/// its allocation), MemoryError, DeviceMemoryError, or an OpenCV error of code -4.
 bool is_out_of_memory(std::exception const& error);
 
 /// Returns the text that is shown to the user for an error. The text of an Error is returned as it is; errors of

@@ -85,7 +85,8 @@ Rendering FocusedDotsRenderer::render(Scene const& scene, DotPattern const& sour
 
 Rendering render_within_table(Scene const& scene,
                               std::function<TracingPass(double largest_aim_distance)> const& trace) {
-  double room = DeflectionTableLayout::default_aim_distance * scene.imaging.entrance_pupil / 2;
+  double room =
+      std::max(DeflectionTableLayout::default_aim_distance * scene.imaging.entrance_pupil / 2, scene.pupil_margin);
   while (true) {
     TracingPass pass = trace(room);
     if (pass.largest_aim_distance <= room) return pass.finish();

@@ -191,8 +191,8 @@ void check_memory(Setup const& setup, FieldMemory field_memory, std::vector<Memo
   auto const most =
       std::max_element(needs.begin(), needs.end(),
                        [](MemoryRequirement const& a, MemoryRequirement const& b) { return a.bytes < b.bytes; });
-  throw DataError(most->key, fmt::format("needs {:.3g} GB of memory ({}), but {:.3g} GB are available; reduce {}",
-                                         gigabytes(needed), sizes, gigabytes(available), most->key));
+  throw MemoryError(most->key, fmt::format("needs {:.3g} GB of memory ({}), but {:.3g} GB are available; reduce {}",
+                                           gigabytes(needed), sizes, gigabytes(available), most->key));
 }
 
 BuiltMedium build_checked_medium(MediumSetup const& setup) {

@@ -69,14 +69,6 @@ std::string hash_of_input(std::string const& path, ManifestCase const& one) {
   }
 }
 
-/// Returns true if an error was caused by insufficient memory, which is not a property of the case: a later run or
-/// another machine may have more.
-bool wants_memory(std::exception const& error) {
-  std::string_view const text = error.what();
-  return is_out_of_memory(error) || text.starts_with("out of device memory") ||
-         text.find("GB of memory (") != text.npos;  // wording of check_memory(), which throws before allocating
-}
-
 /// Returns true if the error would also affect the next case.
 bool stops_the_run(std::exception const& error) {
   return dynamic_cast<OutputError const*>(&error) || dynamic_cast<DeviceError const*>(&error) ||
@@ -198,13 +190,14 @@ CaseResult CaseRunner::run(ManifestCase const& one, std::string const& keep, Cas
     try {
       compute(one, keep, observe, parts, result);
     } catch (std::exception const& error) {
-      if (!wants_memory(error)) throw;
+      if (!is_out_of_memory(error)) throw;
       shared_ = std::make_unique<Shared>();  // repeat without the cached results of other cases
       result = fresh;
       compute(one, keep, observe, parts, result);
     }
   } catch (std::exception const& error) {
-    bool const no_memory = wants_memory(error);
+    // Insufficient memory is not a property of the case: a later run or another machine may have more.
+    bool const no_memory = is_out_of_memory(error);
     if (!no_memory && stops_the_run(error)) throw;
     return failed_case(one.index, one.line_hash, device_.name(), format_user_message(error), no_memory);
   }

@@ -154,6 +154,15 @@ inline std::vector<Ray<double>> rays_of_dots(Scene const& scene, std::size_t eve
   return rays;
 }
 
+/// The rays of a scene where they enter the volume.
+inline std::vector<Ray<double>> entering_rays(Scene const& scene, SplineVolume<double> const& volume) {
+  std::vector<Ray<double>> rays = rays_of_dots(scene, 1, static_cast<int>(scene.rays_per_dot));
+  for (Ray<double>& start : rays) {
+    start.position += start.direction * ((volume.box.low.z - start.position.z) / start.direction.z);
+  }
+  return rays;
+}
+
 /// Rays of a rendering in one frame.
 inline double rays_of(Scene const& scene) {
   return static_cast<double>(scene.dots.centre.size()) * static_cast<double>(scene.rays_per_dot);

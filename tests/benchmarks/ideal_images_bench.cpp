@@ -9,26 +9,10 @@
 #include "render/rays/ray_planning.h"
 #include "render/rays/rays_renderer.h"
 #include "render/sensor/detector.h"
+#include "tests/benchmarks/ideal_pairs.h"
 
 namespace gladstone::bench {
 namespace {
-
-/// 1 Mpx with 0.05 particles a pixel, images 3.3 px wide (e^-2), no field.
-Setup pair_setup(ParticleScattering scattering) {
-  Setup setup;
-  setup.camera.columns = setup.camera.rows = 1024;
-  setup.camera.pixel_pitch = 5e-6;
-  setup.lens.f_number = 16;
-  setup.z_d = 0;
-  setup.medium.field = {};
-  PivSetup piv;
-  piv.particles.scattering = scattering;
-  piv.particles.count = ParticleCount::per_pixel;
-  piv.particles.amount = 0.05;
-  piv.particles.volume = Vec3d{34e-3, 34e-3, 1e-3};
-  setup.piv = piv;
-  return setup;
-}
 
 enum class Record { no, yes };
 
@@ -71,7 +55,7 @@ void pairs(benchmark::State& state, Setup setup, Record record) {
   state.counters["rays"] = rays;
 }
 
-void ideal_pairs(benchmark::State& state) { pairs(state, pair_setup(ParticleScattering::gaussian), Record::no); }
+void ideal_pairs(benchmark::State& state) { pairs(state, pair_setup(ParticleScattering::gaussian, 1024), Record::no); }
 BENCHMARK(ideal_pairs)
     ->ArgName("threads")
     ->Arg(1)
@@ -82,7 +66,7 @@ BENCHMARK(ideal_pairs)
     ->Unit(benchmark::kMillisecond);
 
 void ideal_pairs_with_noise(benchmark::State& state) {
-  pairs(state, pair_setup(ParticleScattering::gaussian), Record::yes);
+  pairs(state, pair_setup(ParticleScattering::gaussian, 1024), Record::yes);
 }
 BENCHMARK(ideal_pairs_with_noise)
     ->ArgName("threads")
@@ -95,7 +79,7 @@ BENCHMARK(ideal_pairs_with_noise)
 /// Renders oil droplets of about 1 um, all of different diameters, with as many rays as the accuracy requires; the time
 /// includes the choice of the number.
 void mie_pairs(benchmark::State& state) {
-  Setup setup = pair_setup(ParticleScattering::mie);
+  Setup setup = pair_setup(ParticleScattering::mie, 1024);
   setup.piv->particles.diameter.spread = DiameterSpread::lognormal;
   setup.piv->particles.diameter.width = 0.2;
   pairs(state, setup, Record::no);

@@ -8,7 +8,7 @@
 #include "render/scene/light_patch.h"
 #include "render/sensor/diffraction_spot.h"
 #include "tests/benchmarks/bench_scenes.h"
-#include "tests/benchmarks/plain_loop.h"
+#include "tests/benchmarks/plain_loops.h"
 
 namespace gladstone::bench {
 namespace {

@@ -6,7 +6,7 @@
 #include "render/base/progress.h"
 #include "render/rays/rays_renderer.h"
 #include "tests/benchmarks/bench_scenes.h"
-#include "tests/benchmarks/plain_loop.h"
+#include "tests/benchmarks/plain_loops.h"
 
 namespace gladstone::bench {
 namespace {
@@ -91,15 +91,6 @@ void render_empty(benchmark::State& state) {
   report_rendering(state, scene, 1);
 }
 BENCHMARK(render_empty)->Apply(four_renderings);
-
-/// The rays of a scene where they enter the volume.
-std::vector<Ray<double>> entering_rays(Scene const& scene, SplineVolume<double> const& volume) {
-  std::vector<Ray<double>> rays = rays_of_dots(scene, 1, static_cast<int>(scene.rays_per_dot));
-  for (Ray<double>& start : rays) {
-    start.position += start.direction * ((volume.box.low.z - start.position.z) / start.direction.z);
-  }
-  return rays;
-}
 
 /// Renderer and plain loop in turn, one thread each, the same rays: `ratio` is of their steps per second.
 void renderer_against_plain_loop(benchmark::State& state) {
