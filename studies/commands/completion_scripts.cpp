@@ -271,7 +271,8 @@ end
 # True if the words before the cursor, without options, begin with these.
 function __gladstone_begins
     set -l given (string match -v -- '-*' (commandline -opc)[2..-1])
-    test "$given[1..(count $argv)]" = "$argv"
+    set -l start $given[1..(count $argv)]
+    test "$start" = "$argv"
 end
 
 {})",

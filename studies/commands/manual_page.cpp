@@ -33,7 +33,9 @@ std::string option_entry(ArgumentDescription const& option) {
     text += (i > 0 ? ", " : "") + fmt::format("\\fB{}\\fR", roff_text(option.names[i]));
   bool const positional = !option.names.front().starts_with('-');
   if (!option.choices.empty()) {
-    text += fmt::format(" {}", roff_text(fmt::format("{}", fmt::join(option.choices, "|"))));
+    std::vector<std::string> words;
+    for (std::string const& word : option.choices) words.push_back(roff_text(word));
+    text += fmt::format(" {}", fmt::join(words, "|\\:"));  // a line may end after a bar
   } else if (option.takes_value && !positional) {
     text += " \\fIVALUE\\fR";
   }
@@ -60,6 +62,7 @@ std::string command_section(CommandDescription const& command) {
 std::string manual_page(CommandDescription const& program) {
   std::string text = fmt::format(
       R"(.TH GLADSTONE 1 "{}" "gladstone {}" "User Commands"
+.ad l
 .SH NAME
 gladstone \- synthetic BOS and PIV images by ray tracing, and their analysis
 .SH SYNOPSIS
