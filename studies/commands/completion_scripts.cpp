@@ -67,7 +67,7 @@ std::string bash_command(CommandDescription const& command, std::vector<std::str
   if (!command.path.empty()) options.insert(options.end(), global_options.begin(), global_options.end());
   bool const lists_keys = !command.arguments.empty() && takes_setup_key(command, command.arguments.front());
   return fmt::format("    {}) words={} options='{}' ;;\n", quoted(command.path),
-                     lists_keys ? "$(_gladstone_keys)" : fmt::format("'{}'", fmt::join(words, " ")),
+                     lists_keys ? "$(_gladstone_setup_keys)" : fmt::format("'{}'", fmt::join(words, " ")),
                      fmt::join(options, " "));
 }
 
@@ -78,7 +78,7 @@ std::string bash_values(CommandDescription const& command) {
     if (!option.takes_value) continue;
     bool const is_key = takes_setup_key(command, option);
     text += fmt::format("    {}) {}words={} ;;\n", case_patterns(command, option.names), is_key ? "key=yes " : "",
-                        is_key ? "$(_gladstone_keys)" : fmt::format("'{}'", fmt::join(option.choices, " ")));
+                        is_key ? "$(_gladstone_setup_keys)" : fmt::format("'{}'", fmt::join(option.choices, " ")));
   }
   return text;
 }
@@ -104,7 +104,7 @@ std::string function_name(CommandDescription const& command) {
 
 /// Returns the part of a specification that completes a value: ":value:(auto cpu cuda)".
 std::string zsh_value(CommandDescription const& command, ArgumentDescription const& argument) {
-  if (takes_setup_key(command, argument)) return ":key:_gladstone_keys";
+  if (takes_setup_key(command, argument)) return ":key:_gladstone_setup_keys";
   if (!argument.choices.empty()) return fmt::format(":value:({})", fmt::join(argument.choices, " "));
   return ":file:_files";
 }
@@ -114,7 +114,8 @@ std::string zsh_options(CommandDescription const& command) {
   for (ArgumentDescription const& option : command.options) {
     for (std::string const& name : option.names) {
       std::string const value = option.takes_value ? zsh_value(command, option) : "";
-      text += " \\\n    " + quoted('*' + name + '[' + zsh_text(option.text) + ']' + value);
+      bool const joined = option.takes_value && name.starts_with("--");  // --device cpu or --device=cpu
+      text += " \\\n    " + quoted('*' + name + (joined ? "=" : "") + '[' + zsh_text(option.text) + ']' + value);
     }
   }
   return text;
@@ -198,7 +199,7 @@ std::string bash_completion(CommandDescription const& program) {
   }
   return fmt::format(R"(# Completion of gladstone in bash, printed by: gladstone completion bash
 
-_gladstone_keys() {{
+_gladstone_setup_keys() {{
   echo '{}'
 }}
 
@@ -236,7 +237,7 @@ std::string zsh_completion(CommandDescription const& program) {
   return fmt::format(R"(#compdef gladstone
 # Completion of gladstone in zsh, printed by: gladstone completion zsh
 
-_gladstone_keys() {{
+_gladstone_setup_keys() {{
   local -a keys
   keys=({})
   if [[ $words[1] == keys ]]; then

@@ -113,7 +113,8 @@ TEST_F(Completion, OfZshDefinesAFunctionForEachCommand) {
   if (!is_installed("zsh")) GTEST_SKIP() << "zsh is not installed";
   write("complete", "compdef() { }\nsource '" + in("zsh").string() + "'\nprint -l ${(k)functions}\n");
   std::vector<std::string> const functions = lines_of(output_of("zsh -f '" + in("complete").string() + '\''));
-  EXPECT_THAT(functions, IsSupersetOf({"_gladstone", "_gladstone_keys", "_gladstone_render", "_gladstone_sweep_run"}));
+  EXPECT_THAT(functions,
+              IsSupersetOf({"_gladstone", "_gladstone_setup_keys", "_gladstone_render", "_gladstone_sweep_run"}));
 }
 
 TEST_F(Completion, ManualPageListsEveryCommandAndPassesTheCheck) {
