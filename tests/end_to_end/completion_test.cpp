@@ -93,7 +93,9 @@ TEST_F(Completion, OfBashProposesEveryKey) {
   EXPECT_GT(proposals.size(), 300u);
   for (SetupKeyTable const& table : setup_key_tables()) {
     for (SetupKey const& key : table.keys)
-      if (key.path.find_first_of("\"<*") == std::string::npos) EXPECT_THAT(proposals, Contains(key.path + '='));
+      if (key.path.find_first_of("\"<*") == std::string::npos) {
+        EXPECT_THAT(proposals, Contains(key.path + '='));
+      }
   }
 }
 
@@ -122,11 +124,14 @@ TEST_F(Completion, ManualPageListsEveryCommandAndPassesTheCheck) {
   for (char const* part :
        {".SS gladstone init\n", ".SS gladstone sweep run\n", "\\fB\\-\\-pairing\\fR", ".SH EXIT STATUS"})
     EXPECT_THAT(page, HasSubstr(part));
-  if (is_installed("mandoc")) EXPECT_EQ(output_of("mandoc -T lint -W warning '" + in("man").string() + '\''), "");
-  if (is_installed("man"))
+  if (is_installed("mandoc")) {
+    EXPECT_EQ(output_of("mandoc -T lint -W warning '" + in("man").string() + '\''), "");
+  }
+  if (is_installed("man")) {
     EXPECT_EQ(output_of("LC_ALL=C.UTF-8 MANWIDTH=100 man --warnings -E UTF-8 -l -Tutf8 -Z '" + in("man").string() +
                         "' > /dev/null"),
               "");
+  }
 }
 
 TEST_F(Completion, RefusesAnotherShell) { expect_refused({"completion", "bsh"}, 2, {"bsh", "did you mean \"bash\"?"}); }
