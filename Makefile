@@ -26,7 +26,8 @@ JOBS ?= $(shell cores=$$(nproc 2>/dev/null || echo 2); \
 # Packages of Debian bookworm. Three small OpenCV packages replace libopencv-dev, which depends on two hundred others.
 PACKAGES := g++ cmake ninja-build pkg-config libeigen3-dev libtbb-dev libfmt-dev libspdlog-dev nlohmann-json3-dev \
 	libcli11-dev libtomlplusplus-dev libhdf5-dev libtiff-dev libopenimageio-dev libopencv-core-dev libopencv-imgproc-dev \
-	libopencv-video-dev libceres-dev libnlopt-cxx-dev zlib1g-dev libbz2-dev libpugixml-dev liblz4-dev liblzma-dev libssl-dev gnuplot-nox fonts-dejavu-core node-d3 libgtest-dev libgmock-dev libbenchmark-dev
+	libopencv-video-dev libceres-dev libnlopt-cxx-dev zlib1g-dev libbz2-dev libpugixml-dev liblz4-dev liblzma-dev libssl-dev \
+	libxxhash-dev gnuplot-nox fonts-dejavu-core node-d3 libgtest-dev libgmock-dev libbenchmark-dev
 LINT_PACKAGES := clang-format python3-venv
 # From PyPI: unlike Debian's clang-tidy 14 it skips system headers, which takes a third of the time.
 CLANG_TIDY := clang-tidy==23.1.4
@@ -51,7 +52,7 @@ SOURCES = $(shell find $(ROOMS) tests -name '*.h' -o -name '*.cpp' -o -name '*.c
 TIDY_SOURCES = sed -n 's|^ *"file": "\(.*\.c[px][px]\)".*|\1|p' $(BUILD)/compile_commands.json | \
 	grep -E '^$(CURDIR)/($(subst $(space),|,$(strip $(ROOMS))))/|/Unity/unity_($(subst $(space),|,$(strip $(ROOMS))))_'
 
-.PHONY: build test demo gallery studies docs python wheel bench fuzz soak check-long lint format install clean help packages configure
+.PHONY: build test demo gallery studies docs python wheel bench fuzz soak check-long lint format install package clean help packages configure
 .DEFAULT_GOAL := build
 
 build: configure  ## install missing Debian packages and build build/bin/gladstone
@@ -144,6 +145,12 @@ format:  ## format the sources with clang-format
 install: configure  ## install programs, libraries, headers, cases and CMake package into PREFIX=/usr/local
 	cmake --build $(BUILD) --parallel $(JOBS)
 	cmake --install $(BUILD) --prefix $(PREFIX)
+
+package: PACKAGES += dpkg-dev
+package: configure  ## build a Debian package of the program, build/gladstone_VERSION_amd64.deb
+	cmake --build $(BUILD) --parallel $(JOBS) --target gladstone gladstone_completion
+	cd $(BUILD) && cpack -G DEB
+	rm -rf $(BUILD)/_CPack_Packages
 
 clean:  ## delete the build folder
 	rm -rf $(BUILD)

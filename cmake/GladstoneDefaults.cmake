@@ -12,8 +12,7 @@ if(EXISTS ${CMAKE_SOURCE_DIR}/.git/logs/HEAD)
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/.git/logs/HEAD)
 endif()
 
-# Libraries that a program does not call are not loaded. Only the image codecs call OpenImageIO, which depends on 250
-# libraries; all other code uses only its hash functions.
+# Libraries that a program does not call are not loaded.
 add_link_options($<$<PLATFORM_ID:Linux>:LINKER:--as-needed>)
 
 # Flags that change results or the layout of Eigen's types: equal for the libraries and for all users of their headers.

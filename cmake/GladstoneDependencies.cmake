@@ -20,5 +20,7 @@ find_package(BZip2 REQUIRED)
 pkg_check_modules(PugiXml REQUIRED IMPORTED_TARGET pugixml)
 pkg_check_modules(Lz4 REQUIRED IMPORTED_TARGET liblz4)
 pkg_check_modules(Lzma REQUIRED IMPORTED_TARGET liblzma)
+# only its header, whose functions are inlined
+pkg_check_modules(XxHash REQUIRED IMPORTED_TARGET libxxhash)
 # only the hash functions of OpenSSL
 pkg_check_modules(OpenSSLCrypto REQUIRED IMPORTED_TARGET libcrypto)

@@ -8,10 +8,11 @@ target_compile_options(gladstone_base INTERFACE
   $<INSTALL_INTERFACE:$<$<COMPILE_LANGUAGE:CXX>:${GLADSTONE_USAGE_FLAGS}>>)
 install(TARGETS ${rooms} EXPORT gladstoneTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 # loaded when an image is first read or written that is not a plain TIFF
-install(TARGETS gladstone_image_codecs LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(TARGETS gladstone_image_codecs LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT program)
 if(TARGET gladstone)
   set_target_properties(gladstone PROPERTIES INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL_LIBDIR}")
-  install(TARGETS gladstone RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+  install(TARGETS gladstone RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
+  include(GladstoneCompletion)
 endif()
 
 # headers are installed with their paths: #include "render/base/vec.h"
@@ -20,9 +21,9 @@ install(DIRECTORY render analysis cuda studies DESTINATION include/gladstone
 install(DIRECTORY ${CMAKE_BINARY_DIR}/generated/ DESTINATION include/gladstone FILES_MATCHING PATTERN "*.h")
 
 # cases and data are installed with their paths, too, since cases refer to their data by relative paths
-install(DIRECTORY studies/cases DESTINATION share/gladstone/studies OPTIONAL)
-install(DIRECTORY data DESTINATION share/gladstone)
-install(FILES LICENSE DESTINATION share/gladstone)
+install(DIRECTORY studies/cases DESTINATION share/gladstone/studies COMPONENT program OPTIONAL)
+install(DIRECTORY data DESTINATION share/gladstone COMPONENT program)
+install(FILES LICENSE DESTINATION share/gladstone COMPONENT program)
 
 set(package ${CMAKE_INSTALL_LIBDIR}/cmake/gladstone)
 configure_package_config_file(cmake/gladstoneConfig.cmake.in ${CMAKE_BINARY_DIR}/gladstoneConfig.cmake
@@ -32,3 +33,5 @@ install(FILES ${CMAKE_BINARY_DIR}/gladstoneConfig.cmake ${CMAKE_BINARY_DIR}/glad
               cmake/GladstoneDependencies.cmake cmake/FindOpenCVModules.cmake
         DESTINATION ${package})
 install(EXPORT gladstoneTargets NAMESPACE gladstone:: DESTINATION ${package})
+
+include(GladstonePackage)

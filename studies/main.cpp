@@ -72,6 +72,8 @@ constexpr std::array commands{
             "gladstone demo -o out/demo", attach_demo},
     Command{"gallery", "Render normal and degraded particle images", "gladstone gallery -o out/gallery",
             attach_gallery},
+    Command{"completion", "Print a script that completes command lines in bash, zsh or fish, or the manual page",
+            "source <(gladstone completion bash)", attach_completion},
 };
 
 /// Reports a command line that names no command or contains unknown arguments.
@@ -120,7 +122,7 @@ bool wants_json(int argc, char** argv) {
 
 /// Parses the arguments into `options` and runs the command. @return exit code
 int run(int argc, char** argv, GlobalOptions& options) {
-  CLI::App app{"gladstone: ray-traced synthetic BOS images, correlation and error analysis"};
+  CLI::App app{"gladstone: ray-traced synthetic BOS and PIV images, correlation and error analysis"};
   app.set_version_flag("--version", version_text(), "Print the version and the backends compiled in");
   app.fallthrough();
   app.require_subcommand(0, 1);

@@ -1,25 +1,23 @@
 #include "render/files/content_hash.h"
 
-#include <OpenImageIO/hash.h>
 #include <fmt/format.h>
 
 #include <vector>
+
+#define XXH_INLINE_ALL  // the functions are compiled here, so that no library is loaded for them
+#include <xxhash.h>
 
 #include "render/files/input_file.h"
 
 namespace gladstone {
 namespace {
 
-std::uint64_t xxh64(void const* bytes, std::size_t size, std::uint64_t seed) {
-  return OIIO::xxhash::XXH64(bytes, size, seed);
-}
-
 /// Formats a hash as 16 hexadecimal digits.
 std::string hexadecimal(std::uint64_t value) { return fmt::format("{:016x}", value); }
 
 }  // namespace
 
-std::string content_hash(std::string_view bytes) { return hexadecimal(xxh64(bytes.data(), bytes.size(), 0)); }
+std::string content_hash(std::string_view bytes) { return hexadecimal(XXH64(bytes.data(), bytes.size(), 0)); }
 
 std::string file_hash(std::string const& path) {
   InputFile const file(path);
@@ -27,7 +25,7 @@ std::string file_hash(std::string const& path) {
   std::uint64_t hash = 0;
   for (std::uint64_t offset = 0;;) {
     std::size_t const size = file.read(offset, piece.data(), piece.size());
-    if (size > 0 || offset == 0) hash = xxh64(piece.data(), size, hash);
+    if (size > 0 || offset == 0) hash = XXH64(piece.data(), size, hash);
     offset += size;
     if (size < piece.size()) return hexadecimal(hash);
   }

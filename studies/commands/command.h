@@ -64,6 +64,7 @@ CommandBody attach_demo(CLI::App& app, GlobalOptions const& options);
 CommandBody attach_gallery(CLI::App& app, GlobalOptions const& options);
 CommandBody attach_benchmark(CLI::App& app, GlobalOptions const& options);
 CommandBody attach_report(CLI::App& app, GlobalOptions const& options);
+CommandBody attach_completion(CLI::App& app, GlobalOptions const& options);
 
 /// Sub-command of `gladstone sweep`.
 CommandBody attach_sweep_run(CLI::App& app, GlobalOptions const& options);

@@ -4,7 +4,9 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <nlohmann/json.hpp>
 
 #include "render/base/error.h"
@@ -12,6 +14,21 @@
 #include "studies/case/json_text.h"
 
 namespace gladstone {
+namespace {
+
+/// Returns the number of lowest bits that are zero in all pixels. Cameras of 12 bits store their grey levels in 16 bits
+/// either as they are, which gives 0, or multiplied by 16, which gives 4.
+int count_unused_bits(Image<double> const& image) {
+  constexpr double largest = 65535;
+  std::uint32_t used = 0;
+  for (double const value : image) {
+    if (!(value >= 0 && value <= largest) || value != std::floor(value)) return 0;
+    used |= static_cast<std::uint32_t>(value);
+  }
+  return used == 0 ? 0 : std::countr_zero(used);
+}
+
+}  // namespace
 
 Description describe_image(std::string const& path) {
   ImageMetadata metadata;
@@ -33,10 +50,12 @@ Description describe_image(std::string const& name, Image<double> const& image, 
     least = std::min(least, value);
     most = std::max(most, value);
   }
+  int const unused_bits = count_unused_bits(image);
   ImageStatistics const seen = image_statistics(image);
   nlohmann::json const json{{"columns", image.columns()},
                             {"rows", image.rows()},
                             {"bit_depth", metadata.bit_depth},
+                            {"unused_bits", unused_bits},
                             {"pixel_pitch_um", metadata.pixel_pitch_m * 1e6},
                             {"minimum", least},
                             {"maximum", most},
@@ -51,8 +70,9 @@ Description describe_image(std::string const& name, Image<double> const& image, 
                             {"snr", number_or_null(seen.snr())}};
   return {json_text(json),
           fmt::format(
-              "{}: {} x {} px, {} bits{}{}, grey levels {:.6g} to {:.6g}, mean {:.6g}, dots {:.2f} px (e^-2), {}", name,
-              image.columns(), image.rows(), metadata.bit_depth,
+              "{}: {} x {} px, {} bits{}{}{}, grey levels {:.6g} to {:.6g}, mean {:.6g}, dots {:.2f} px (e^-2), {}",
+              name, image.columns(), image.rows(), metadata.bit_depth,
+              unused_bits > 0 ? fmt::format(" (all levels are multiples of {})", 1 << unused_bits) : "",
               metadata.channels >= 3 ? ", colour converted to luminance" : "",
               metadata.orientation == 1 ? "" : fmt::format(", Orientation {} rotated upright", metadata.orientation),
               least, most, seen.mean, seen.dot_diameter_px,

@@ -81,10 +81,19 @@ std::string with_file_name(std::string text, std::string const& kind, std::strin
   return text;
 }
 
-/// Returns the first command of a template's comment; empty if it has none.
-std::string first_command(std::string const& text) {
-  auto const start = text.find("gladstone ", text.find("\n#   "));
-  return start == std::string::npos ? "" : text.substr(start, text.find('\n', start) - start);
+/// Returns the first command of a template's comment that remains to be done; empty if it has none. A command that
+/// writes another template is done if the file exists.
+std::string next_command(std::string const& text) {
+  std::string const other_template = "gladstone init ";
+  for (auto start = text.find("\n#   gladstone "); start != std::string::npos;
+       start = text.find("\n#   gladstone ", start + 1)) {
+    auto const begin = text.find("gladstone ", start);
+    std::string const command = text.substr(begin, text.find('\n', begin) - begin);
+    std::error_code error;
+    if (!command.starts_with(other_template) || !std::filesystem::exists(command.substr(command.rfind(' ') + 1), error))
+      return command;
+  }
+  return "";
 }
 
 void write_new_file(std::string const& path, std::string const& text) {
@@ -120,7 +129,7 @@ CommandBody attach_init(CLI::App& app, GlobalOptions const& options) {
     }
     if (!arguments->all) text = with_file_name(std::move(text), one->kind, file);
     write_new_file(file, text);
-    std::string const next = arguments->all ? "" : first_command(text);
+    std::string const next = arguments->all ? "" : next_command(text);
     print_result(options, json_text(nlohmann::ordered_json{{"kind", one->kind}, {"file", file}, {"next", next}}),
                  file + (next.empty() ? "" : "\nnext: " + next));
     return ok;

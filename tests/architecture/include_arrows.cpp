@@ -46,7 +46,7 @@ std::vector<Room> const& table() {
       {"render/files",
        {"render/base"},
        {},
-       {"HDF5", "libtiff", "OpenImageIO", "OpenSSL", "zlib", "bzip2", "lz4", "lzma", "pugixml", "fmt"}},
+       {"HDF5", "libtiff", "OpenSSL", "zlib", "bzip2", "lz4", "lzma", "pugixml", "xxHash", "fmt"}},
       {"render/image_codecs", {"render/base", "render/files"}, {}, {"OpenImageIO"}},
       {"render/light", {"render/base", "render/setup", "render/files"}, {"Eigen"}, {"fmt"}},
       {"render/medium", {"render/base", "render/setup", "render/files"}, {"Eigen"}, {"fmt"}},
@@ -171,6 +171,7 @@ std::vector<LibraryPattern> const& known_libraries() {
       {"lz4", "lz4\\.h"},
       {"lzma", "lzma\\.h"},
       {"pugixml", "pugixml\\.hpp"},
+      {"xxHash", "xxhash\\.h"},
       {"CUDA",
        "cu(da|fft|rand|blas|solver|sparse)[^/]*|cuda/.*|cub/.*|thrust/.*|cooperative_groups.*|mma\\.h|nv[^/]*/.*|"
        "nv(ml|rtc|Toolsext)\\w*\\.h|device_(launch_parameters|functions|types)\\.h|driver_types\\.h|"

@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <array>
+#include <cstdio>
 
 #include "tests/end_to_end/support/program_fixture.h"
 
@@ -35,6 +37,17 @@ TEST_F(CommandLine, AGpuThatCannotBeHadIsADeviceError) {
     expect_refused(arguments, 5, {"device error: ", "use --device cpu or auto"});
   }
   unsetenv("CUDA_VISIBLE_DEVICES");
+}
+
+// OpenImageIO and its string table take longer to load than all other libraries together.
+TEST_F(CommandLine, StartsWithoutOpenImageIo) {
+  FILE* const pipe = ::popen("ldd '" GLADSTONE_PROGRAM "'", "r");
+  std::string libraries;
+  std::array<char, 4096> part{};
+  while (std::size_t const size = std::fread(part.data(), 1, part.size(), pipe)) libraries.append(part.data(), size);
+  ASSERT_EQ(::pclose(pipe), 0);
+  EXPECT_THAT(libraries, HasSubstr("libhdf5"));
+  EXPECT_THAT(libraries, testing::Not(HasSubstr("OpenImageIO")));
 }
 
 TEST_F(CommandLine, VersionTellsTheBackends) {

@@ -59,8 +59,12 @@ TEST_F(Init, CalibrationTemplateIsRenderedAndFitted) {
   EXPECT_TRUE(std::filesystem::exists(in("case/calibration.h5")));
 }
 
+// The next command is the one that writes the setup to be varied, unless that exists.
 TEST_F(Init, StudyTemplateIsPlannedFromTheBosTemplate) {
+  EXPECT_EQ(json_of({"init", "study", "-o", "first.toml"}).at("next"), "gladstone init bos -o bos.toml");
   write_template("bos");
+  EXPECT_EQ(json_of({"init", "study", "-o", "second.toml"}).at("next"),
+            "gladstone sweep plan second.toml -o out/study");
   write_template("study");
   run_well({"sweep", "plan", "study.toml", "-o", "run"});
   EXPECT_EQ(json_of({"sweep", "status", "run"}).at("missing"), 18) << "3 f-numbers, 3 distances, 2 repeats";

@@ -31,13 +31,15 @@ struct PageLayout {
   int photometric = PHOTOMETRIC_MINISBLACK;
   int compression = COMPRESSION_NONE, predictor = PREDICTOR_NONE;
   bool tiled = false, separate = false, big_endian = false, big_tiff = false;
+  int fill_order = FILLORDER_MSB2LSB;
 };
 
 std::ostream& operator<<(std::ostream& out, PageLayout const& page) {
   return out << page.bits << " bits, format " << page.format << ", channels " << page.channels << ", photometric "
              << page.photometric << ", compression " << page.compression << ", predictor " << page.predictor
              << (page.tiled ? ", tiles" : ", strips") << (page.separate ? ", separate" : ", interleaved")
-             << (page.big_endian ? ", big endian" : "") << (page.big_tiff ? ", BigTIFF" : "");
+             << (page.big_endian ? ", big endian" : "") << (page.big_tiff ? ", BigTIFF" : "")
+             << (page.fill_order == FILLORDER_LSB2MSB ? ", least significant bit first" : "");
 }
 
 constexpr int page_columns = 37, page_rows = 21;  // neither a multiple of the tile size nor of the rows per strip
@@ -114,6 +116,7 @@ void write_layout(std::string const& path, PageLayout const& page) {
   TIFFSetField(file.get(), TIFFTAG_PHOTOMETRIC, page.photometric);
   TIFFSetField(file.get(), TIFFTAG_PLANARCONFIG, page.separate ? PLANARCONFIG_SEPARATE : PLANARCONFIG_CONTIG);
   TIFFSetField(file.get(), TIFFTAG_COMPRESSION, page.compression);
+  TIFFSetField(file.get(), TIFFTAG_FILLORDER, page.fill_order);
   if (page.predictor != PREDICTOR_NONE) TIFFSetField(file.get(), TIFFTAG_PREDICTOR, page.predictor);
   TIFFSetField(file.get(), TIFFTAG_ORIENTATION, ORIENTATION_BOTLEFT);
   TIFFSetField(file.get(), TIFFTAG_IMAGEDESCRIPTION, "an image");
@@ -240,6 +243,54 @@ TEST_F(TiffFile, SamplesOfEveryTypeAndByteOrderAreReadFromStripsTilesAndPlanes) 
         expect_read_as_by_openimageio(page);
       }
     }
+  }
+}
+
+// FillOrder = 2 (TIFF 6.0, section 8): the bits of each byte are stored in reverse order, after compression.
+TEST_F(TiffFile, PackedSamplesAreReadInBothOrdersOfBits) {
+  for (int const compression : {COMPRESSION_NONE, COMPRESSION_LZW, COMPRESSION_ADOBE_DEFLATE, COMPRESSION_PACKBITS}) {
+    for (int const bits : {1, 4, 8, 10, 12, 14, 16}) {
+      for (int const variant : {0, 1, 2, 3}) {
+        PageLayout page{bits};
+        page.compression = compression;
+        page.fill_order = FILLORDER_LSB2MSB;
+        page.tiled = (variant & 1) != 0;
+        page.big_endian = (variant & 2) != 0;
+        expect_read(page);
+      }
+    }
+  }
+}
+
+/// Returns a TIFF of one strip with 3 x 2 packed samples, written byte by byte according to TIFF 6.0.
+std::string packed_by_hand(int bits, int fill_order, std::string const& samples) {
+  auto const number = [](std::uint32_t value, int bytes) {
+    std::string text;
+    for (int i = 0; i < bytes; ++i) text.push_back(static_cast<char>(value >> 8 * i & 0xff));
+    return text;
+  };
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> const entries{{256, 3}, {257, 2}, {258, bits},
+                                                                     {259, 1}, {262, 1}, {266, fill_order},
+                                                                     {273, 8}, {278, 2}, {279, samples.size()}};
+  std::string text = "II" + number(42, 2) + number(8 + static_cast<std::uint32_t>(samples.size()), 4) + samples +
+                     number(static_cast<std::uint32_t>(entries.size()), 2);
+  for (auto const& [tag, value] : entries) text += number(tag, 2) + number(4, 2) + number(1, 4) + number(value, 4);
+  return text + number(0, 4);
+}
+
+// Samples are packed from the most significant bit on, and each row begins at a byte: 0x123 0x456 0x789 are the bytes
+// 12 34 56 78 90, reversed bit by bit 48 2c 6a 1e 09.
+TEST_F(TiffFile, TwelveBitsPackedByHandAreRead) {
+  std::string const path = in_folder("hand.tif");
+  for (auto const& [fill_order, samples] :
+       {std::pair{1, std::string("\x12\x34\x56\x78\x90\xab\xcd\xef\x00\x10", 10)},
+        std::pair{2, std::string("\x48\x2c\x6a\x1e\x09\xd5\xb3\xf7\x00\x08", 10)}}) {
+    std::ofstream(path, std::ios::binary) << packed_by_hand(12, fill_order, samples);
+    ImageMetadata metadata;
+    Image<double> const image = read_image(path, &metadata);
+    EXPECT_EQ(metadata.bit_depth, 12);
+    EXPECT_THAT(std::vector<double>(image.begin(), image.end()),
+                testing::ElementsAre(0x123, 0x456, 0x789, 0xabc, 0xdef, 0x001));
   }
 }
 

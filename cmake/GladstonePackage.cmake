@@ -1,0 +1,27 @@
+# cpack -G DEB (make package): a Debian package of the program, its image codecs, cases and data, shell completion and
+# manual page, without libraries and headers for development.
+install(FILES LICENSE DESTINATION share/doc/gladstone RENAME copyright COMPONENT debian EXCLUDE_FROM_ALL)
+install(FILES CHANGELOG.md DESTINATION share/doc/gladstone COMPONENT debian EXCLUDE_FROM_ALL)
+
+set(CMAKE_SKIP_INSTALL_ALL_DEPENDENCY ON)  # cpack packs what is built, without building tests
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME gladstone)
+set(CPACK_PACKAGE_CONTACT "The gladstone authors <authors@gladstone.invalid>")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "synthetic BOS and PIV images by ray tracing, and their analysis")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE
+                                                WORLD_READ WORLD_EXECUTE)
+
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_COMPONENTS_ALL program debian)
+set(CPACK_COMPONENTS_GROUPING ALL_COMPONENTS_IN_ONE)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "gnuplot-nox, fonts-dejavu-core")  # without them commands draw no figures
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PACKAGE_DESCRIPTION "gladstone renders synthetic images for background-oriented schlieren (BOS) and
+particle image velocimetry (PIV), measures the displacement on them, quantifies
+the error of every vector, and converts BOS vectors to density.
+The processor must support AVX2 and FMA.")
+include(CPack)
