@@ -129,7 +129,9 @@ RefinementPlan plan_refinement(std::span<GridVector const> vectors, Interrogatio
   for (std::size_t i = 0; i < size; ++i) {
     correlation[i] = counts(vectors[i]) && is_valid_or_replaced(vectors[i].status) ? vectors[i].correlation : 0.0;
     visit_around(static_cast<int>(i), grid, 1, [&](int dx, int dy, int k) {
-      if (std::abs(dx) + std::abs(dy) == 1 && is_steep(plan.nodes[i], plan.nodes[static_cast<std::size_t>(k)], grid))
+      std::size_t const beside = static_cast<std::size_t>(k);
+      if (std::abs(dx) + std::abs(dy) == 1 &&
+          is_steep(plan.nodes[i], plan.nodes[beside], vectors[i].correlation, vectors[beside].correlation, grid))
         steep[i] = 1.0;
     });
   }

@@ -35,9 +35,16 @@ constexpr double min_fraction_of_earlier_correlation = 0.98;
 /// Refinement ends if no vector changes by more than this [px]; the change decreases by at least half in each pass.
 constexpr double negligible_refinement_px = 0.02;
 
-/// Returns whether the displacements of two neighbouring nodes differ by a steep gradient.
-GLADSTONE_HD inline bool is_steep(Vec2d a, Vec2d b, InterrogationGrid const& grid) {
-  return length(b - a) > steep_gradient * grid.spacing_px;
+/// A difference between neighbours counts as a gradient only if one of them has at least this correlation. In frames
+/// with much noise or many lost pairs, where no window has, differences are errors; beside a window on a wrong peak,
+/// the nearest correct ones have.
+constexpr double min_correlation_of_match = 0.8;
+
+/// Returns whether the displacements a and b of two neighbours differ by a steep gradient.
+GLADSTONE_HD inline bool is_steep(Vec2d a, Vec2d b, double correlation_a, double correlation_b,
+                                  InterrogationGrid const& grid) {
+  return (correlation_a >= min_correlation_of_match || correlation_b >= min_correlation_of_match) &&
+         length(b - a) > steep_gradient * grid.spacing_px;
 }
 
 /// Returns whether the gradient from vector i to its right or lower neighbour is steep; vectors that are neither valid
@@ -45,7 +52,8 @@ GLADSTONE_HD inline bool is_steep(Vec2d a, Vec2d b, InterrogationGrid const& gri
 GLADSTONE_HD inline bool is_steep(GridVector const* vectors, int i, InterrogationGrid const& grid) {
   auto const differs = [&](bool exists, int k) {
     return exists && is_valid_or_replaced(vectors[k].status) &&
-           is_steep(vectors[i].displacement, vectors[k].displacement, grid);
+           is_steep(vectors[i].displacement, vectors[k].displacement, vectors[i].correlation, vectors[k].correlation,
+                    grid);
   };
   return is_valid_or_replaced(vectors[i].status) && (differs(i % grid.columns + 1 < grid.columns, i + 1) ||
                                                      differs(i / grid.columns + 1 < grid.rows, i + grid.columns));
