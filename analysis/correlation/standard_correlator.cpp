@@ -121,7 +121,8 @@ class StandardCorrelator final : public Correlator {
   void refine(RefinedPass& last, InterrogationGrid const& grid, int columns, int rows, Measure const& measure) const {
     if (schedule_.steep_passes() == 0 || !has_steep_gradient(last.vectors, grid)) return;
     int const pass = schedule_.passes() - 1;
-    refine_steep_vectors(last, grid, schedule_.steep_passes(), [&](RefinementPlan const& plan) {
+    ValidationRule const rule = schedule_.rule(pass);
+    refine_steep_vectors(last, grid, schedule_.steep_passes(), rule, [&](RefinementPlan const& plan) {
       DensePredictor const predictor(grid, smoothed_displacement(plan.nodes, grid.columns, schedule_.steep_smoothing()),
                                      columns, rows);
       RefinedPass refined;
@@ -129,7 +130,7 @@ class StandardCorrelator final : public Correlator {
       for (std::size_t i = 0; i < grid.size(); ++i)
         refined.vectors.push_back(grid_vector(refined.windows[i], predictor.at(grid.centre(i)), schedule_.limit_px(),
                                               plan.ambiguous[i] != 0));
-      validate_vectors(refined.vectors, grid.columns, schedule_.rule(pass));
+      validate_vectors(refined.vectors, grid.columns, rule);
       return refined;
     });
   }

@@ -148,14 +148,20 @@ RefinementPlan plan_refinement(std::span<GridVector const> vectors, Interrogatio
   return plan;
 }
 
-double take_refined(RefinedPass& pass, RefinedPass const& refined, RefinementPlan const& plan) {
+double take_refined(RefinedPass& pass, RefinedPass const& refined, RefinementPlan const& plan,
+                    ValidationRule const& rule) {
   GLADSTONE_EXPECTS(pass.vectors.size() == refined.vectors.size() && pass.windows.size() == refined.windows.size() &&
                     pass.vectors.size() == pass.windows.size() && plan.wanted.size() == pass.vectors.size());
   double largest = 0.0;
   for (std::size_t i = 0; i < pass.vectors.size(); ++i) {
     GridVector& before = pass.vectors[i];
     GridVector const& now = refined.vectors[i];
-    if (!plan.wanted[i] || !is_valid_or_replaced(now.status)) continue;
+    if (!plan.wanted[i]) continue;
+    if (plan.mismatched[i] && now.status == VectorStatus::masked) {
+      reject_vector(before, FailedTest::displacement);
+      if (rule.replaces) replace(before, {plan.nodes[i], VectorReason::neighbours}, rule);
+    }
+    if (!is_valid_or_replaced(now.status)) continue;
     bool const was_sound = is_valid_or_replaced(before.status);
     if (was_sound && now.correlation < min_fraction_of_earlier_correlation * before.correlation) continue;
     // A replaced vector is that of its neighbours: better than a mismatched one, but not than a measured one.

@@ -82,17 +82,22 @@ struct RefinedPass {
 /// @param min_fraction  one of min_fractions_of_best_correlation
 RefinementPlan plan_refinement(std::span<GridVector const> vectors, InterrogationGrid const& grid, double min_fraction);
 
-/// Replaces the wanted vectors by those of the additional pass that correlate about as well as before, or better.
-/// @param pass  in: vectors and windows before; out: after @return largest change of a displacement [px]
-double take_refined(RefinedPass& pass, RefinedPass const& refined, RefinementPlan const& plan);
+/// Replaces the wanted vectors by those of the additional pass that correlate about as well as before, or better. A
+/// mismatched vector whose extrapolated displacement leads out of the frames cannot be measured: it is rejected, and
+/// replaced by that displacement if the rule allows it.
+/// @param pass  in: vectors and windows before; out: after @return largest change of a measured displacement [px]
+double take_refined(RefinedPass& pass, RefinedPass const& refined, RefinementPlan const& plan,
+                    ValidationRule const& rule);
 
 /// Refines the vectors of the last pass by up to `most_passes` additional ones. @pre some gradient is steep
+/// @param rule  validation rule of the last pass
 /// @param measure  measure(plan) deforms the original frames by the smoothed nodes of a plan and returns a RefinedPass
 template <class Measure>
-void refine_steep_vectors(RefinedPass& pass, InterrogationGrid const& grid, int most_passes, Measure const& measure) {
+void refine_steep_vectors(RefinedPass& pass, InterrogationGrid const& grid, int most_passes, ValidationRule const& rule,
+                          Measure const& measure) {
   for (int k = 0; k < most_passes; ++k) {
     RefinementPlan const plan = plan_refinement(pass.vectors, grid, min_fractions_of_best_correlation[k % 2]);
-    if (take_refined(pass, measure(plan), plan) <= negligible_refinement_px) return;
+    if (take_refined(pass, measure(plan), plan, rule) <= negligible_refinement_px) return;
   }
 }
 

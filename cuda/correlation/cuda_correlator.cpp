@@ -258,7 +258,8 @@ class CorrelationPlan {
     PredictorView view = last.predictor;
     DeviceArray<Vec2d> extended(static_cast<std::size_t>(view.columns) * view.rows, purpose), nodes(size, purpose);
     view.nodes = extended.data();
-    refine_steep_vectors(pass, last.grid, schedule_.steep_passes(), [&](RefinementPlan const& plan) {
+    ValidationRule const rule = schedule_.rule(schedule_.passes() - 1);
+    refine_steep_vectors(pass, last.grid, schedule_.steep_passes(), rule, [&](RefinementPlan const& plan) {
       throw_if_interrupted();
       nodes.upload(plan.nodes.data());
       DeviceArray<char> const before = on_device(plan.ambiguous);
@@ -267,7 +268,7 @@ class CorrelationPlan {
       correlate_windows(last, deformed);
       take_vectors(windows_.data(), vectors_.data(), last.grid, {view, true}, schedule_.limit_px(),
                    {last.grid, before.data()}, ambiguous_[0].data());
-      validate(vectors_.data(), last.grid, schedule_.rule(schedule_.passes() - 1), list_.data(), list_size_.data());
+      validate(vectors_.data(), last.grid, rule, list_.data(), list_size_.data());
       return download_pass(size);
     });
     copy_to_device(vectors_.data(), pass.vectors.data(), size * sizeof(GridVector));
