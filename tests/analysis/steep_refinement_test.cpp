@@ -129,7 +129,7 @@ TEST(SteepRefinement, RejectsMismatchedVectorsThatLeadOutOfTheFrames) {
     EXPECT_EQ(take_refined(pass, refined, plan, {.replaces = replaces}), 0.0);
     EXPECT_EQ(pass.vectors[6].status, replaces ? VectorStatus::replaced : VectorStatus::invalid);
     EXPECT_EQ(pass.vectors[6].failed, FailedTest::displacement);
-    if (replaces) EXPECT_EQ(pass.vectors[6].displacement, (Vec2d{30.0, -8.0}));
+    EXPECT_EQ(pass.vectors[6].displacement.x == 30.0, replaces);
     EXPECT_EQ(pass.vectors[7].status, VectorStatus::valid) << "matched before";
   }
 }
