@@ -10,8 +10,8 @@ namespace {
 /// Table of all correlation methods.
 constexpr std::array rows{
     CorrelationMethod{.name = "scc", .correlate = correlate_scc, .on_gpu = true},
-    CorrelationMethod{.name = "rpc", .correlate = correlate_rpc, .on_gpu = true},
-    CorrelationMethod{.name = "spc", .correlate = correlate_spc},
+    CorrelationMethod{.name = "rpc", .correlate = correlate_rpc, .on_gpu = true, .by_phase = true},
+    CorrelationMethod{.name = "spc", .correlate = correlate_spc, .by_phase = true},
     CorrelationMethod{.name = "zncc", .correlate = correlate_zncc},
     CorrelationMethod{.name = "mqd", .correlate = correlate_mqd},
     CorrelationMethod{.name = "opencv", .correlate = correlate_by_opencv, .in_ensembles = false},

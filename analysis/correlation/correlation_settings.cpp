@@ -44,6 +44,7 @@ CorrelationSettings read_correlation_settings(SetupTable table) {
   settings.weighting = table.word("weighting", settings.weighting, {"gaussian", "uniform"});
   settings.deformation = table.word("deformation", settings.deformation, {"cubic", "quintic", "sinc"});
   settings.final_passes = static_cast<int>(table.integer("final_passes", settings.final_passes, 1, 5));
+  settings.steep_passes = static_cast<int>(table.integer("steep_passes", settings.steep_passes, 0, 20));
   settings.max_displacement_px =
       table.number_or_word("max_displacement_px", {{}, "none"}, {"none", "off"}, Range::positive(512.0)).number;
   settings.median_threshold =

@@ -32,6 +32,8 @@ struct CorrelationSettings {
   std::string deformation =
       "quintic";         ///< interpolation of the deformed images: B-spline, "cubic" or "quintic", or windowed "sinc"
   int final_passes = 1;  ///< number of times that the last pass is run, 1 .. 5; more sharpen both detail and noise
+  /// Largest number of additional runs of the last of several passes where displacement gradients are steep, 0 .. 20.
+  int steep_passes = 8;
   std::optional<double> max_displacement_px;     ///< largest displacement along either axis, (0, 512]; none: limited by
                                                  ///< the window sizes only
   std::optional<double> median_threshold = 2.0;  ///< median residual above which a vector is spurious; none: no test

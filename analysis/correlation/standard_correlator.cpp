@@ -12,6 +12,7 @@
 #include "analysis/correlation/correlation_methods.h"
 #include "analysis/correlation/ensemble.h"
 #include "analysis/correlation/plane_sums.h"
+#include "analysis/correlation/steep_refinement.h"
 #include "analysis/correlation/window_deformation.h"
 #include "render/base/contracts.h"
 #include "render/base/error.h"
@@ -87,7 +88,7 @@ class StandardCorrelator final : public Correlator {
     InterrogationGrid grid_before;
     for (int pass = 0;; ++pass) {
       InterrogationGrid const grid = schedule_.grid(pass, columns, rows);
-      std::vector<WindowCorrelation> const windows = measure(pass, grid, predictor ? &*predictor : nullptr);
+      std::vector<WindowCorrelation> windows = measure(pass, grid, predictor ? &*predictor : nullptr);
       std::vector<GridVector> vectors(windows.size());
       auto const predicted = [&](std::size_t i) { return predictor ? predictor->at(grid.centre(i)) : Vec2d{}; };
       AmbiguousPlaces const before{grid_before, pass > 0 ? ambiguous.data() : nullptr};
@@ -102,14 +103,36 @@ class StandardCorrelator final : public Correlator {
       grid_before = grid;
       validate_vectors(vectors, grid.columns, schedule_.rule(pass));
       if (schedule_.is_last(pass)) {
-        std::vector<MeasuredVector> measured(windows.size());
-        std::transform(vectors.begin(), vectors.end(), windows.begin(), measured.begin(), measured_vector);
+        RefinedPass last{std::move(vectors), std::move(windows)};
+        refine(last, grid, columns, rows, measure);
+        std::vector<MeasuredVector> measured(grid.size());
+        std::transform(last.vectors.begin(), last.vectors.end(), last.windows.begin(), measured.begin(),
+                       measured_vector);
         return displacement_field(grid, measured);
       }
       std::vector<Vec2d> const nodes =
           smoothed_displacement(filled_displacement(vectors, grid.columns), grid.columns, schedule_.smoothing(pass));
       predictor.emplace(grid, nodes, columns, rows);
     }
+  }
+
+  /// Repeats the last pass where displacement gradients are steep.
+  template <class Measure>
+  void refine(RefinedPass& last, InterrogationGrid const& grid, int columns, int rows, Measure const& measure) const {
+    if (schedule_.steep_passes() == 0 || !has_steep_gradient(last.vectors, grid)) return;
+    int const pass = schedule_.passes() - 1;
+    ValidationRule const rule = schedule_.rule(pass);
+    refine_steep_vectors(last, grid, schedule_.steep_passes(), rule, [&](RefinementPlan const& plan) {
+      DensePredictor const predictor(grid, smoothed_displacement(plan.nodes, grid.columns, schedule_.steep_smoothing()),
+                                     columns, rows);
+      RefinedPass refined;
+      refined.windows = measure(pass, grid, &predictor);
+      for (std::size_t i = 0; i < grid.size(); ++i)
+        refined.vectors.push_back(grid_vector(refined.windows[i], predictor.at(grid.centre(i)), schedule_.limit_px(),
+                                              plan.ambiguous[i] != 0));
+      validate_vectors(refined.vectors, grid.columns, rule);
+      return refined;
+    });
   }
 
   CorrelationSettings settings_;
@@ -137,6 +160,7 @@ CorrelationSchedule::CorrelationSchedule(CorrelationSettings const& settings)
                                                        : 5) {
   GLADSTONE_EXPECTS(!windows_.empty() && settings.final_passes >= 1);
   windows_.insert(windows_.end(), static_cast<std::size_t>(settings.final_passes - 1), settings.window_px.back());
+  steep_passes_ = passes() > 1 && !correlation_method(settings.method).by_phase ? settings.steep_passes : 0;
 }
 
 int CorrelationSchedule::search_radius_px(int pass) const {

@@ -16,7 +16,7 @@ namespace gladstone {
 /// Creates a multi-pass cross-correlator for the CPU. Each pass deforms both images by the validated and smoothed
 /// result of the previous pass, correlates smaller windows, and adds the residual displacement. The first pass searches
 /// shifts up to half a window, the later ones up to a quarter. Smoothing applies to the predictors only, not to the
-/// result.
+/// result. Where displacement gradients are steep, the last pass is repeated, see steep_refinement.h.
 std::unique_ptr<Correlator> make_standard_correlator(CorrelationSettings const& settings);
 
 /// Sequence of passes and their parameters, common to the CPU and the CUDA correlator.
@@ -39,6 +39,13 @@ class CorrelationSchedule {
   /// half a pixel is harmless, the loss of a steep gradient is not. Only in the first pass can a high peak ratio
   /// outweigh the neighbours: later passes search a few pixels only, where a random peak rarely has competitors.
   ValidationRule rule(int pass) const;
+  /// Returns the largest number of additional runs of the last pass where displacement gradients are steep, see
+  /// refine_steep_vectors(); 0 for a single pass, which deforms nothing, and for phase correlations, whose peak heights
+  /// do not measure how well the frames match.
+  int steep_passes() const { return steep_passes_; }
+  /// Returns the smoothing() of the predictors of these passes: half of that of the last predictor, so that waves
+  /// hardly longer than the window converge.
+  double steep_smoothing() const { return 0.5 * smoothing(passes() - 1); }
   /// Returns the weight that smoothed() gives to a node's two neighbours along an axis when a pass's vectors become a
   /// predictor: 1/4 for the last predictor and for the deformation of the frames by the result itself, and less on
   /// wider grids, in inverse proportion to their spacing.
@@ -57,6 +64,7 @@ class CorrelationSchedule {
   ValidationRule last_rule_;
   WindowWeighting weighting_;
   int spline_degree_;
+  int steep_passes_;
 };
 
 /// Checks the sizes of an image pair against each other and the windows. @throws DataError

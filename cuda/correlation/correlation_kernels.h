@@ -135,6 +135,8 @@ void take_vectors(WindowCorrelation const* windows, GridVector* vectors, Interro
 /// Validates the vectors of a pass. @param list, count  scratch: `list` has one element per vector
 void validate(GridVector* vectors, InterrogationGrid const& grid, ValidationRule const& rule, Replacement* list,
               int* count);
+/// Counts the vectors beside a steep gradient, see is_steep(). @param count  output: one number in device memory
+void count_steep(GridVector const* vectors, InterrogationGrid const& grid, int* count);
 /// Writes the final result of every vector after the last pass.
 void finish(WindowCorrelation const* windows, GridVector const* vectors, InterrogationGrid const& grid,
             MeasuredVector* measured);
@@ -144,6 +146,10 @@ void finish(WindowCorrelation const* windows, GridVector const* vectors, Interro
 /// @param extended  output: predictor.columns * predictor.rows nodes, the memory of predictor.nodes
 void make_predictor(GridVector const* vectors, Vec2d* nodes, char* known, Replacement* list, int* count,
                     double smoothing, PredictorView const& predictor, Vec2d* extended);
+/// Smooths nodes without gaps and extrapolates them beyond the image.
+/// @param nodes  one element per vector
+/// @param extended  output: predictor.columns * predictor.rows nodes, the memory of predictor.nodes
+void extend_predictor(Vec2d const* nodes, double smoothing, PredictorView const& predictor, Vec2d* extended);
 /// Deforms the original pair by the predictor.
 void deform_pair(BsplineView<float> const& reference, BsplineView<float> const& flow, int degree,
                  DevicePair const& original, PredictorView const& predictor, DevicePair const& deformed);

@@ -6,6 +6,7 @@
 #include "analysis/correlation/lane_correlation.h"
 #include "analysis/correlation/methods/robust_phase.h"
 #include "analysis/correlation/standard_correlator.h"
+#include "analysis/correlation/steep_refinement.h"
 #include "analysis/uncertainty/pass_amplification.h"
 #include "cuda/correlation/correlation_kernels.h"
 #include "cuda/correlation/correlation_statistics.h"
@@ -127,7 +128,8 @@ class CorrelationPlan {
     return download();
   }
 
-  /// Queues all work up to the vectors, which remain on the device.
+  /// Queues all work up to the vectors, which remain on the device. With several passes, it waits for the last one to
+  /// find out whether gradients are steep.
   void enqueue(DeviceImage const& reference, DeviceImage const& flow) {
     if (!has_scratch_) make_scratch();  // last, because it uses the remaining memory
     DevicePair const original = original_.view(columns_, rows_), deformed = deformed_.view(columns_, rows_);
@@ -148,6 +150,7 @@ class CorrelationPlan {
       if (schedule_.is_last(pass)) break;
       make_predictor_of(pass);
     }
+    if (schedule_.steep_passes() > 0 && has_steep_gradient()) refine(spline, original, deformed);
     if (with_sigma_) {
       int const last = schedule_.passes() - 1;
       make_predictor_of(last);
@@ -230,6 +233,46 @@ class CorrelationPlan {
   void make_predictor_of(int pass) {
     make_predictor(vectors_.data(), nodes_.data(), known_.data(), list_.data(), list_size_.data(),
                    schedule_.smoothing(pass), predictor(pass), extended_.data());
+  }
+
+  bool has_steep_gradient() {
+    int count = 0;
+    count_steep(vectors_.data(), passes_.back().grid, list_size_.data());
+    list_size_.download(&count, 1);
+    return count > 0;
+  }
+
+  RefinedPass download_pass(std::size_t size) const {
+    RefinedPass pass{std::vector<GridVector>(size), std::vector<WindowCorrelation>(size)};
+    vectors_.download(pass.vectors.data(), size);
+    windows_.download(pass.windows.data(), size);
+    return pass;
+  }
+
+  /// Repeats the last pass where gradients are steep. Predictors are made and vectors are chosen by the host, with the
+  /// functions that the CPU uses.
+  void refine(BsplineView<float> const (&spline)[2], DevicePair const& original, DevicePair const& deformed) {
+    Pass const& last = passes_.back();
+    std::size_t const size = last.grid.size();
+    RefinedPass pass = download_pass(size);
+    PredictorView view = last.predictor;
+    DeviceArray<Vec2d> extended(static_cast<std::size_t>(view.columns) * view.rows, purpose), nodes(size, purpose);
+    view.nodes = extended.data();
+    ValidationRule const rule = schedule_.rule(schedule_.passes() - 1);
+    refine_steep_vectors(pass, last.grid, schedule_.steep_passes(), rule, [&](RefinementPlan const& plan) {
+      throw_if_interrupted();
+      nodes.upload(plan.nodes.data());
+      DeviceArray<char> const before = on_device(plan.ambiguous);
+      extend_predictor(nodes.data(), schedule_.steep_smoothing(), view, extended.data());
+      deform_pair(spline[0], spline[1], schedule_.spline_degree(), original, view, deformed);
+      correlate_windows(last, deformed);
+      take_vectors(windows_.data(), vectors_.data(), last.grid, {view, true}, schedule_.limit_px(),
+                   {last.grid, before.data()}, ambiguous_[0].data());
+      validate(vectors_.data(), last.grid, rule, list_.data(), list_size_.data());
+      return download_pass(size);
+    });
+    copy_to_device(vectors_.data(), pass.vectors.data(), size * sizeof(GridVector));
+    copy_to_device(windows_.data(), pass.windows.data(), size * sizeof(WindowCorrelation));
   }
 
   void estimate_sigma_of(Pass const& pass, DevicePair const& matched) {

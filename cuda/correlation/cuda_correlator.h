@@ -8,7 +8,8 @@
 namespace gladstone::cuda {
 
 /// StandardCorrelator on the device: shares the functions per pixel, window and vector, but not the Fourier transforms.
-/// No data are transferred between passes. Device memory is retained for later pairs of the same size; concurrent calls
+/// No data are transferred between passes, except for the additional passes where displacement gradients are steep,
+/// which the host plans. Device memory is retained for later pairs of the same size; concurrent calls
 /// are serialised. With uncertainty = "correlation_statistics", the result includes sigma_px as by
 /// estimate_uncertainty(); with other methods sigma_px is empty.
 class CudaCorrelator final : public Correlator {
@@ -22,7 +23,8 @@ class CudaCorrelator final : public Correlator {
   DisplacementField correlate_pair(FramePair const& frames) const override;
   /// Correlates images in device memory; the work that produces them must be queued on the default stream.
   DisplacementField correlate(DeviceImage const& reference, DeviceImage const& flow) const;
-  /// Queues the correlation without waiting; the vectors remain on the device until the next pair.
+  /// Queues the correlation; the vectors remain on the device until the next pair. With several passes, it waits for
+  /// the last one to find out whether gradients are steep, unless steep_passes is 0.
   void enqueue(DeviceImage const& reference, DeviceImage const& flow) const;
 
  private:

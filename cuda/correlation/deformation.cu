@@ -101,7 +101,12 @@ void make_predictor(GridVector const* vectors, Vec2d* nodes, char* known, Replac
   check_launch("gather_nodes");
   fill_nodes<<<1, threads_of_rounds>>>(nodes, known, grid.columns, grid.rows, list, count);
   check_launch("fill_nodes");
-  extend_nodes<<<blocks(predictor.columns * predictor.rows), threads>>>(grid, nodes, smoothing, predictor, extended);
+  extend_predictor(nodes, smoothing, predictor, extended);
+}
+
+void extend_predictor(Vec2d const* nodes, double smoothing, PredictorView const& predictor, Vec2d* extended) {
+  extend_nodes<<<blocks(predictor.columns * predictor.rows), threads>>>(predictor.grid, nodes, smoothing, predictor,
+                                                                        extended);
   check_launch("extend_nodes");
 }
 

@@ -1,3 +1,4 @@
+#include "analysis/correlation/steep_refinement.h"
 #include "cuda/correlation/correlation_kernels.h"
 #include "cuda/device/cuda_error.h"
 
@@ -53,6 +54,12 @@ __global__ void __launch_bounds__(threads_of_rounds)
   }
 }
 
+__global__ void count_steep_vectors(GridVector const* vectors, InterrogationGrid grid, int* count) {
+  int const i = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
+  int const steep = __syncthreads_count(i < static_cast<int>(grid.size()) && is_steep(vectors, i, grid));
+  if (threadIdx.x == 0 && steep > 0) atomicAdd(count, steep);
+}
+
 __global__ void take_measured(WindowCorrelation const* windows, GridVector const* vectors, int size,
                               MeasuredVector* measured) {
   int const i = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
@@ -79,6 +86,12 @@ void validate(GridVector* vectors, InterrogationGrid const& grid, ValidationRule
     replace_spurious<<<1, threads_of_rounds>>>(vectors, grid.columns, grid.rows, rule, list, count);
     check_launch("replace_spurious");
   }
+}
+
+void count_steep(GridVector const* vectors, InterrogationGrid const& grid, int* count) {
+  check(cudaMemsetAsync(count, 0, sizeof(int)), "cudaMemsetAsync");
+  count_steep_vectors<<<blocks(grid), threads>>>(vectors, grid, count);
+  check_launch("count_steep_vectors");
 }
 
 void finish(WindowCorrelation const* windows, GridVector const* vectors, InterrogationGrid const& grid,

@@ -47,8 +47,7 @@ nb::object truth_at(MadePair const& pair, NumberArray const& x, NumberArray cons
 
 nb::dict score(MadePair const& pair, MeasuredField const& field) {
   BenchmarkScore const scored = run([&] {
-    return score_vectors(field.field, truth_at_vectors(field.field, pair.made.truth), pair.made.columns(),
-                         pair.made.rows());
+    return score_case(pair.made.record.of.name, field.field, pair.made.truth, pair.made.columns(), pair.made.rows());
   });
   nb::dict measures;
   for (auto const& [name, value] : score_measures(scored)) measures[nb::str(name.data(), name.size())] = value;

@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <memory>
+#include <random>
 
 #include "render/base/contracts.h"
 #include "render/base/units.h"
@@ -19,6 +22,24 @@ std::uint64_t seed_of(std::string const& name) {
   std::uint64_t seed = 500000;
   for (std::size_t i = 0; i < name.size(); ++i) seed += (i + 1) * static_cast<unsigned char>(name[i]);
   return seed;
+}
+
+/// Adds six random fields with gradients from weak to steep, alternately with few and many particles.
+template <class Add>
+void add_random_flows(Add const& add) {
+  struct Row {
+    double size_px, peak_gradient;
+  };
+  constexpr Row rows[] = {{60.0, 0.1}, {40.0, 0.2}, {25.0, 0.3}, {20.0, 0.45}, {15.0, 0.6}, {12.0, 0.85}};
+  for (int k = 0; k < 6; ++k) {
+    std::string const name = fmt::format("kinematic_{}", k + 1);
+    double const density = k % 2 == 0 ? 0.075 : 0.035;
+    add(name,
+        fmt::format("random waves with features of {} px, gradients up to {} px/px, {} particles per px",
+                    rows[k].size_px, rows[k].peak_gradient, density),
+        random_flow({rows[k].size_px, rows[k].peak_gradient, seed_of(name)}, case_pixels),
+        {.particles_per_px = density});
+  }
 }
 
 std::vector<BenchmarkCase> make_cases() {
@@ -60,6 +81,9 @@ std::vector<BenchmarkCase> make_cases() {
       {.noise = 0.01, .flow_light = 0.5, .light_slope = 0.6});
   add("regular", "a square lattice of equal dots 8 px apart, displacement (1.3, -0.7) px, noise of 1 %",
       uniform_flow({1.3, -0.7}), {.noise = 0.01, .pitch_px = 8.0});
+  add(step_case, fmt::format("displacement step of {} px along an oblique edge, for resolution", step_case_height_px),
+      step_flow(step_case_height_px, case_pixels));
+  add_random_flows(add);
   add("turbulence", "a BOS target seen through turbulence, ray-traced, noise of 1 %", {}, {.noise = 0.01});
   return cases;
 }
@@ -88,6 +112,93 @@ DisplacementAt vortex_flow(double radius_px, int size) {
 
 DisplacementAt sine_flow(double length_px) {
   return [=](Vec2d p) { return Vec2d{std::sin(2.0 * pi * p.y / length_px), std::sin(2.0 * pi * p.x / length_px)}; };
+}
+
+DisplacementAt random_flow(RandomWaves const& waves, int pixels) {
+  struct Wave {
+    Vec2d number, amplitude;  ///< [rad/px], [px]
+    double phase;             ///< [rad]
+  };
+  constexpr int count = 6, lattice_px = 2;
+  std::mt19937_64 bits(waves.seed);
+  auto const uniform = [&] { return static_cast<double>(bits() >> 11) * 0x1p-53; };
+  std::vector<Wave> all;
+  for (int k = 0; k < count; ++k) {
+    double const number = 1.0 / (waves.size_px * (1.0 + uniform()));
+    double const along = 2.0 * pi * uniform(), across = 2.0 * pi * uniform();
+    all.push_back({{number * std::cos(along), number * std::sin(along)},
+                   {std::cos(across), std::sin(across)},
+                   2.0 * pi * uniform()});
+  }
+  auto const norm_at = [&](Vec2d p) {
+    Vec2d by_x, by_y;
+    for (Wave const& wave : all) {
+      double const slope = std::cos(dot(wave.number, p) + wave.phase);
+      by_x += (slope * wave.number.x) * wave.amplitude;
+      by_y += (slope * wave.number.y) * wave.amplitude;
+    }
+    // largest singular value of a 2 x 2 matrix
+    double const half = 0.5 * (dot(by_x, by_x) + dot(by_y, by_y)), determinant = by_x.x * by_y.y - by_x.y * by_y.x;
+    return std::sqrt(half + std::sqrt(std::max(0.0, half * half - determinant * determinant)));
+  };
+  double steepest = 0.0;
+  for (int y = 0; y < pixels; y += lattice_px)
+    for (int x = 0; x < pixels; x += lattice_px)
+      steepest = std::max(steepest, norm_at({static_cast<double>(x), static_cast<double>(y)}));
+  for (Wave& wave : all) wave.amplitude = (waves.peak_gradient / steepest) * wave.amplitude;
+  return [all](Vec2d p) {
+    Vec2d sum;
+    for (Wave const& wave : all) sum += std::sin(dot(wave.number, p) + wave.phase) * wave.amplitude;
+    return sum;
+  };
+}
+
+namespace {
+
+/// Edge of step_flow().
+struct StepEdge {
+  Vec2d along{0.1 / std::sqrt(1.01), 1.0 / std::sqrt(1.01)};
+  Vec2d centre;
+
+  explicit StepEdge(int pixels) : centre{0.5 * (pixels - 1), 0.5 * (pixels - 1)} {}
+  double distance(Vec2d p) const { return (p.x - centre.x) * along.y - (p.y - centre.y) * along.x; }
+};
+
+}  // namespace
+
+DisplacementAt step_flow(double height_px, int pixels) {
+  StepEdge const edge(pixels);
+  return [=](Vec2d p) { return std::copysign(0.5 * height_px, edge.distance(p)) * edge.along; };
+}
+
+double step_width_px(DisplacementField const& field, double height_px, int pixels) {
+  constexpr int reach = 64;
+  StepEdge const edge(pixels);
+  std::vector<double> sum(2 * reach), count(2 * reach);
+  for (std::size_t i = 0; i < field.size(); ++i) {
+    double const cell = std::floor(edge.distance(field.position_px[i])) + reach;
+    if (!field.counts(i) || !(cell >= 0.0 && cell < 2 * reach)) continue;
+    sum[static_cast<std::size_t>(cell)] += 0.5 + dot(field.displacement_px[i], edge.along) / height_px;
+    count[static_cast<std::size_t>(cell)] += 1.0;
+  }
+  // Mean positions and levels of the intervals that contain vectors, from left to right.
+  std::vector<Vec2d> response;
+  for (std::size_t k = 0; k < sum.size(); ++k)
+    if (count[k] > 0.0) response.push_back({static_cast<double>(k) + 0.5 - reach, sum[k] / count[k]});
+  auto const middle = std::find_if(response.begin(), response.end(), [](Vec2d r) { return r.y >= 0.5; });
+  // Returns where the response crosses a level on one side of the middle.
+  auto const crossing = [](auto begin, auto end, auto const& beyond, double level) {
+    auto const found = std::find_if(begin, end, beyond);
+    if (found == end || found == begin) return std::nan("");
+    Vec2d const a = *(found - 1), b = *found;
+    return a.x + (b.x - a.x) * (level - a.y) / (b.y - a.y);
+  };
+  if (middle == response.begin() || middle == response.end()) return std::nan("");
+  double const low = crossing(
+      std::make_reverse_iterator(middle + 1), response.rend(), [](Vec2d r) { return r.y <= 0.1; }, 0.1);
+  double const high = crossing(
+      middle - 1, response.end(), [](Vec2d r) { return r.y >= 0.9; }, 0.9);
+  return high - low;
 }
 
 std::vector<BenchmarkCase> const& benchmark_cases() {

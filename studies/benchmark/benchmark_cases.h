@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/vectors/displacement_field.h"
 #include "render/base/image.h"
 #include "studies/benchmark/particle_pair.h"
 #include "studies/case/case.h"
@@ -24,6 +25,26 @@ DisplacementAt vortex_flow(double radius_px, int pixels);
 /// Returns u = sin(2 pi y/length), v = sin(2 pi x/length) [px].
 DisplacementAt sine_flow(double length_px);
 
+/// Random smooth displacement: six plane waves with random phases, random directions of propagation and of
+/// displacement, and wavelengths of 1 to 2 times 2 pi size_px. Their amplitudes are equal and scaled to the peak
+/// gradient. A single wave of wavelength 2 pi size_px with this gradient has an amplitude of size_px times the
+/// gradient.
+struct RandomWaves {
+  double size_px = 20.0;        ///< size of the features: 1 over the largest wavenumber [px]
+  double peak_gradient = 0.25;  ///< spectral norm of the displacement gradient at its maximum on the image [px/px]
+  std::uint64_t seed = 1;
+};
+DisplacementAt random_flow(RandomWaves const& waves, int pixels);
+
+/// Displacement step: the two sides of an edge through the image's centre slide along it, by half of `height_px` each
+/// in opposite directions. The edge is inclined by 0.1 against the columns, so that vectors on any grid sample the
+/// response at all distances from it (as the slanted edge of ISO 12233 does for cameras).
+DisplacementAt step_flow(double height_px, int pixels);
+/// Width of the response of vectors to step_flow(): distance across the edge in which their mean component along it
+/// rises from 10 to 90 % of the step [px]. Means are formed in intervals of 1 px. NaN if the response does not reach
+/// these levels within 64 px of the edge.
+double step_width_px(DisplacementField const& field, double height_px, int pixels);
+
 /// Published benchmark case: two 8-bit frames with a displacement that is known everywhere.
 struct BenchmarkCase {
   std::string name;
@@ -32,6 +53,11 @@ struct BenchmarkCase {
   DisplacementAt flow = {};    ///< empty: images ray-traced through turbulence
   bool refracted() const { return !flow; }
 };
+
+/// Case of step_flow() and height of its step [px]: below the particle diameter, so that windows on the edge have one
+/// correlation peak.
+inline constexpr char const* step_case = "step";
+inline constexpr double step_case_height_px = 2.0;
 
 /// Returns all cases in their order, of 1024 x 1024 px except turbulence. The seed of a case is derived from its name,
 /// so that cases share no particles and are independent of each other.

@@ -97,6 +97,10 @@ ReportSection error_section(BenchmarkResult const& result) {
   section.blocks.emplace_back(table_of(
       result, "gain", [](BenchmarkScore const& s) { return fixed(s.gain, 4); },
       [](CaseRecord const& one) { return one.of.name.starts_with("sine") || one.of.refracted(); }));
+  section.blocks.emplace_back(table_of(
+      result, "width of the response to a step, from 10 to 90 % [px]",
+      [](BenchmarkScore const& s) { return fixed(s.step_width_px, 1); },
+      [](CaseRecord const& one) { return one.of.name == step_case; }));
   section.blocks.emplace_back(
       table_of(result, "bias of u / of v, gross errors included [px]", [](BenchmarkScore const& s) {
         double const largest = std::max(std::abs(s.errors.bias_u_px), std::abs(s.errors.bias_v_px));

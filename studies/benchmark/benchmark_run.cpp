@@ -150,9 +150,8 @@ BenchmarkResult run_benchmark(BenchmarkOptions const& options, Backend const& de
     write_case_folder(made, (fs::path(options.folder) / one.name).string());
     result.cases.push_back(made.record);
     auto const score = [&](std::string const& name, DisplacementField const& field, std::optional<double> seconds) {
-      result.rows.push_back({name, one.name,
-                             score_vectors(field, truth_at_vectors(field, made.truth), made.columns(), made.rows()),
-                             seconds});
+      result.rows.push_back(
+          {name, one.name, score_case(one.name, field, made.truth, made.columns(), made.rows()), seconds});
     };
     for (BenchmarkEstimator const& estimator : benchmark_estimators()) {
       if (!is_wanted(options.estimators, estimator.name) || !runs_on(estimator, one.name)) continue;

@@ -51,6 +51,13 @@ BenchmarkScore score_vectors(DisplacementField const& field, std::vector<Vec2d> 
   return score;
 }
 
+BenchmarkScore score_case(std::string const& of_case, DisplacementField const& field, DisplacementAt const& truth,
+                          int columns, int rows) {
+  BenchmarkScore score = score_vectors(field, truth_at_vectors(field, truth), columns, rows);
+  if (of_case == step_case) score.step_width_px = step_width_px(field, step_case_height_px, columns);
+  return score;
+}
+
 double median_relative_error(DisplacementField const& field, std::vector<Vec2d> const& truth) {
   std::vector<double> errors, displacements;
   for (std::size_t i = 0; i < field.size(); ++i) {
@@ -73,7 +80,8 @@ std::vector<std::pair<std::string_view, double>> score_measures(BenchmarkScore c
           {"rms_px", errors.rms_px},
           {"rms_without_gross_px", errors.rms_without_gross_px},
           {"p95_px", errors.p95_px},
-          {"gain", score.gain}};
+          {"gain", score.gain},
+          {"step_width_px", score.step_width_px}};
 }
 
 }  // namespace gladstone

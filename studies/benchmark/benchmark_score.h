@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -21,6 +23,8 @@ struct BenchmarkScore {
   std::size_t gross = 0;    ///< number of errors above gross_error_px
   /// Regression slope of the vectors on the truth, sum m t / sum t^2 over the vectors without gross error [1].
   double gain = 0.0;
+  /// Width of the response to a displacement step [px], see step_width_px(); NaN for all cases but step_case.
+  double step_width_px = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// Selects the vectors outside of the border that are valid or replaced and finite.
@@ -28,6 +32,10 @@ VectorMask benchmark_mask(DisplacementField const& field, int columns, int rows)
 
 /// @param truth  displacement at every vector [px]
 BenchmarkScore score_vectors(DisplacementField const& field, std::vector<Vec2d> const& truth, int columns, int rows);
+
+/// Scores vectors on a case: score_vectors(), and for step_case the width of the response.
+BenchmarkScore score_case(std::string const& of_case, DisplacementField const& field, DisplacementAt const& truth,
+                          int columns, int rows);
 
 /// Returns the median difference of the counted vectors from the truth, relative to the median displacement or, if that
 /// is less, half a pixel. NaN without a counted vector.

@@ -131,7 +131,7 @@ std::vector<BenchmarkRow> ForeignCode::score() {
     if (std::string const refusal = reason_to_reject_gaps(field, one.columns, vectors.image_rows); !refusal.empty())
       throw DataError(one.path, refusal);
     std::vector<Vec2d> const truth = truth_at_vectors(field, vectors.truth);
-    rows.push_back({name_, one.name, score_vectors(field, truth, one.columns, vectors.image_rows), {}});
+    rows.push_back({name_, one.name, score_case(one.name, field, vectors.truth, one.columns, vectors.image_rows), {}});
     bool const follows = median_relative_error(field, truth) < most_wrong;
     wrong += follows || is_too_fine_for_windows(field, vectors.truth) ? 0 : 1;
   }

@@ -485,7 +485,7 @@ TEST(CorrelationSettings, DefaultsAreThoseOfTheTypeAndAreWrittenOut) {
 TEST(CorrelationSettings, ReadsEveryKey) {
   SetupDocument document = SetupDocument::from_text(
       "[correlate]\nwindow_px = [48, 24]\noverlap = 0.75\nmethod = \"scc\"\nsubpixel = \"gauss3\"\n"
-      "weighting = \"uniform\"\ndeformation = \"cubic\"\nfinal_passes = 2\nmedian_threshold = 3\n"
+      "weighting = \"uniform\"\ndeformation = \"cubic\"\nfinal_passes = 2\nsteep_passes = 3\nmedian_threshold = 3\n"
       "median_epsilon_px = 0.3\ndisplacement_threshold = 2.5\nmax_displacement_px = 7.5\ntrusted_peak_ratio = 3\n"
       "least_peak_ratio = 1.2\nleast_correlation = 0.4\nuncertainty = \"image_matching\"\nreplace = false\n",
       "case.toml");
@@ -496,6 +496,7 @@ TEST(CorrelationSettings, ReadsEveryKey) {
   EXPECT_EQ(read.weighting, "uniform");
   EXPECT_EQ(read.deformation, "cubic");
   EXPECT_EQ(read.final_passes, 2);
+  EXPECT_EQ(read.steep_passes, 3);
   EXPECT_EQ(read.median_threshold, 3.0);
   EXPECT_EQ(read.median_epsilon_px, 0.3);
   EXPECT_EQ(read.displacement_threshold, 2.5);

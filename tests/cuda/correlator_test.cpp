@@ -77,6 +77,17 @@ void expect_same(CorrelationSettings const& settings, ParticlePair const& pair) 
 
 TEST_F(CudaCorrelation, OfTheDefaultPassesIsThatOfTheCpu) { expect_same({}, smooth_pair(512, 512)); }
 
+// A sine of 8 px with gradients up to 0.5 px/px, which needs additional passes.
+TEST_F(CudaCorrelation, OfSteepGradientsIsThatOfTheCpu) {
+  ParticleSettings particles;
+  particles.columns = particles.rows = 256;
+  particles.particles_per_px = 0.06;
+  ParticlePair const pair = render_particle_pair(particles, [](Vec2d p) {
+    return Vec2d{8.0 * std::sin(p.y / 16.0), 4.0 * std::cos(p.x / 20.0)};
+  });
+  expect_same({}, pair);
+}
+
 TEST_F(CudaCorrelation, OfNoisyImagesIsThatOfTheCpu) { expect_same({}, smooth_pair(500, 390, 0.1)); }
 
 // Noise that makes vectors fail each of the tests; they are first replaced, then not.

@@ -50,6 +50,50 @@ TEST(BenchmarkScore, IsThatOfKnownErrors) {
   EXPECT_GT(spoilt.errors.rms_px, spoilt.errors.rms_without_gross_px);
 }
 
+// Gaussian windows of standard deviation s respond to a step by the error function, which rises from 10 to 90 % within
+// 2 * 1.2816 s. Vectors of an interval of 1 px are on average up to half a pixel from its centre, at either level.
+TEST(BenchmarkCases, StepWidthIsThatOfAnErrorFunction) {
+  constexpr double sigma = 8.0, height = 2.0;
+  constexpr int pixels = 512;
+  DisplacementAt const step = step_flow(height, pixels);
+  Vec2d const along = step({500.0, 255.5}) / (0.5 * height), normal{along.y, -along.x};
+  EXPECT_NEAR(length(along), 1.0, 1e-12);
+  DisplacementField field;
+  for (int y = 4; y < pixels; y += 8)
+    for (int x = 4; x < pixels; x += 8) {
+      Vec2d const p{static_cast<double>(x), static_cast<double>(y)};
+      double const distance = dot(p - Vec2d{255.5, 255.5}, normal);
+      EXPECT_GE(dot(step(p), along) * distance, 0.0);
+      field.position_px.push_back(p);
+      field.displacement_px.push_back(0.5 * height * std::erf(distance / (std::sqrt(2.0) * sigma)) * along);
+      field.status.push_back(VectorStatus::valid);
+    }
+  EXPECT_NEAR(step_width_px(field, height, pixels), 2.0 * 1.2816 * sigma, 1.0);
+  EXPECT_TRUE(std::isfinite(score_case(step_case, field, step, pixels, pixels).step_width_px));
+  EXPECT_TRUE(std::isnan(score_case("uniform", field, step, pixels, pixels).step_width_px));
+  for (Vec2d& d : field.displacement_px) d = {};
+  EXPECT_TRUE(std::isnan(step_width_px(field, height, pixels))) << "no response";
+}
+
+// Displacements of neighbouring pixels differ by at most the peak gradient; somewhere by nearly as much: the direction
+// of the largest gradient is at most 45 degrees from a row or a column.
+TEST(BenchmarkCases, RandomFlowHasItsPeakGradient) {
+  constexpr int pixels = 256;
+  constexpr double gradient = 0.4;
+  DisplacementAt const flow = random_flow({20.0, gradient, 7}, pixels);
+  double steepest = 0.0;
+  for (int y = 0; y + 1 < pixels; ++y)
+    for (int x = 0; x + 1 < pixels; ++x) {
+      Vec2d const p{static_cast<double>(x), static_cast<double>(y)}, here = flow(p);
+      for (Vec2d const step : {Vec2d{1.0, 0.0}, Vec2d{0.0, 1.0}})
+        steepest = std::max(steepest, length(flow(p + step) - here));
+    }
+  EXPECT_LT(steepest, 1.01 * gradient);  // the peak may be between the pixels at which it was scaled
+  EXPECT_GT(steepest, gradient / std::sqrt(2.0));
+  EXPECT_EQ(flow({3.0, 4.0}), random_flow({20.0, gradient, 7}, pixels)({3.0, 4.0}));
+  EXPECT_NE(flow({3.0, 4.0}), random_flow({20.0, gradient, 8}, pixels)({3.0, 4.0}));
+}
+
 TEST(BenchmarkCases, AreOneListOfSeedsOfTheirOwn) {
   std::set<std::string> names;
   std::set<std::uint64_t> seeds;
@@ -88,7 +132,7 @@ TEST(BenchmarkResults, HaveTheDocumentedColumnsKeysAndFigures) {
   std::string const csv = benchmark_csv(result);
   EXPECT_EQ(csv.substr(0, csv.find('\n')),
             "estimator,case,vectors,count,valid_fraction,gross,bias_u_px,bias_v_px,rms_px,rms_without_gross_px,p95_px,"
-            "gain,seconds");
+            "gain,step_width_px,seconds");
   auto const json = nlohmann::json::parse(benchmark_json(result));
   for (char const* const key : {"cases", "scores", "uncertainty", "coverage", "conventions", "likely_mistakes"})
     EXPECT_TRUE(json.contains(key)) << key;

@@ -23,6 +23,7 @@ std::string unheeded(CorrelationSettings const& settings) {
   note("weighting", settings.weighting == usual.weighting);
   note("deformation", settings.deformation == usual.deformation);
   note("final_passes", settings.final_passes == usual.final_passes);
+  note("steep_passes", settings.steep_passes == usual.steep_passes);
   note("median_threshold", settings.median_threshold == usual.median_threshold);
   note("median_epsilon_px", settings.median_epsilon_px == usual.median_epsilon_px);
   note("displacement_threshold", settings.displacement_threshold == usual.displacement_threshold);

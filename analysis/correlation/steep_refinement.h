@@ -1,0 +1,104 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "analysis/correlation/interrogation_grid.h"
+#include "analysis/correlation/vector_validation.h"
+#include "analysis/correlation/window_measurement.h"
+#include "render/base/host_device.h"
+
+/// Additional passes for steep displacement gradients. A window in which the displacement varies by more than a
+/// particle diameter has no single correlation peak. Next to it are windows in a weaker gradient, which were measured.
+/// Extrapolating them to the window removes most of its gradient, and its peak appears (iterative image deformation,
+/// Scarano, Meas. Sci. Technol. 13 (2002) R1; Schrijer & Scarano, Exp. Fluids 45 (2008) 927, for the stability of the
+/// iterations with filtered predictors). Each pass repeats this one ring of windows further into the gradient. It also
+/// reduces the damping of waves that are hardly longer than the window.
+namespace gladstone {
+
+/// Displacement gradient from which vectors are refined [px/px]: a Gaussian window of 20 px (standard deviation 8 px)
+/// then contains displacements that differ by half a particle diameter. The fields for which the default passes are
+/// made (vortices, refraction) have weaker gradients.
+constexpr double steep_gradient = 0.1;
+
+/// A vector is mismatched if its correlation is below this fraction of the highest correlation within two windows:
+/// alternately the first and the second value. Windows on a wrong peak have coefficients of 0.2 to 0.4, or up to 0.6 at
+/// the border, where a few particles agree by chance; correct ones within a gradient start at 0.5, beside others above
+/// 0.9. No fraction separates them. The higher one finds more wrong vectors, the lower one extrapolates from more
+/// correct ones; neither does harm, because no vector is replaced by one that correlates worse.
+constexpr double min_fractions_of_best_correlation[] = {0.7, 0.5};
+
+/// A refined vector is accepted if its correlation is at least this fraction of that before: it may decrease a little
+/// where the predictor was too smooth by chance.
+constexpr double min_fraction_of_earlier_correlation = 0.98;
+
+/// Refinement ends if no vector changes by more than this [px]; the change decreases by at least half in each pass.
+constexpr double negligible_refinement_px = 0.02;
+
+/// A difference between neighbours counts as a gradient only if one of them has at least this correlation. In frames
+/// with much noise or many lost pairs, where no window has, differences are errors; beside a window on a wrong peak,
+/// the nearest correct ones have.
+constexpr double min_correlation_of_match = 0.8;
+
+/// Returns whether the displacements a and b of two neighbours differ by a steep gradient.
+GLADSTONE_HD inline bool is_steep(Vec2d a, Vec2d b, double correlation_a, double correlation_b,
+                                  InterrogationGrid const& grid) {
+  return (correlation_a >= min_correlation_of_match || correlation_b >= min_correlation_of_match) &&
+         length(b - a) > steep_gradient * grid.spacing_px;
+}
+
+/// Returns whether the gradient from vector i to its right or lower neighbour is steep; vectors that are neither valid
+/// nor replaced do not count.
+GLADSTONE_HD inline bool is_steep(GridVector const* vectors, int i, InterrogationGrid const& grid) {
+  auto const differs = [&](bool exists, int k) {
+    return exists && is_valid_or_replaced(vectors[k].status) &&
+           is_steep(vectors[i].displacement, vectors[k].displacement, vectors[i].correlation, vectors[k].correlation,
+                    grid);
+  };
+  return is_valid_or_replaced(vectors[i].status) && (differs(i % grid.columns + 1 < grid.columns, i + 1) ||
+                                                     differs(i / grid.columns + 1 < grid.rows, i + grid.columns));
+}
+
+/// Returns whether any gradient between neighbouring vectors of a grid is steep.
+bool has_steep_gradient(std::span<GridVector const> vectors, InterrogationGrid const& grid);
+
+/// Predictor of an additional pass and the vectors that it may change.
+struct RefinementPlan {
+  std::vector<Vec2d> nodes;      ///< displacement at every window before smoothing [px]
+  std::vector<char> wanted;      ///< vectors within a window of a steep gradient
+  std::vector<char> mismatched;  ///< vectors whose node was extrapolated from others
+  std::vector<char> ambiguous;   ///< ambiguous vectors, which remain so; mismatched ones begin anew
+};
+
+/// Vectors of a pass after validation, with the windows they result from.
+struct RefinedPass {
+  std::vector<GridVector> vectors;
+  std::vector<WindowCorrelation> windows;
+};
+
+/// Finds mismatched vectors and replaces their nodes by extrapolation: from the border of each group inwards, each node
+/// is the value of the least-squares plane through the known nodes up to two steps away, weighted by the inverse square
+/// of their distance.
+/// @param min_fraction  one of min_fractions_of_best_correlation
+RefinementPlan plan_refinement(std::span<GridVector const> vectors, InterrogationGrid const& grid, double min_fraction);
+
+/// Replaces the wanted vectors by those of the additional pass that correlate about as well as before, or better. A
+/// mismatched vector whose extrapolated displacement leads out of the frames cannot be measured: it is rejected, and
+/// replaced by that displacement if the rule allows it.
+/// @param pass  in: vectors and windows before; out: after @return largest change of a measured displacement [px]
+double take_refined(RefinedPass& pass, RefinedPass const& refined, RefinementPlan const& plan,
+                    ValidationRule const& rule);
+
+/// Refines the vectors of the last pass by up to `most_passes` additional ones. @pre some gradient is steep
+/// @param rule  validation rule of the last pass
+/// @param measure  measure(plan) deforms the original frames by the smoothed nodes of a plan and returns a RefinedPass
+template <class Measure>
+void refine_steep_vectors(RefinedPass& pass, InterrogationGrid const& grid, int most_passes, ValidationRule const& rule,
+                          Measure const& measure) {
+  for (int k = 0; k < most_passes; ++k) {
+    RefinementPlan const plan = plan_refinement(pass.vectors, grid, min_fractions_of_best_correlation[k % 2]);
+    if (take_refined(pass, measure(plan), plan, rule) <= negligible_refinement_px) return;
+  }
+}
+
+}  // namespace gladstone
