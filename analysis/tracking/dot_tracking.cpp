@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/tracking/pair_misfit.h"
 #include "render/base/contracts.h"
 #include "render/base/error.h"
 #include "render/base/not_a_number.h"
@@ -31,7 +32,7 @@ DisplacementField matched_vectors(LocatedDots const& a, LocatedDots const& b, st
     if (found) {
       LocatedDot const& there = b.dots[match.partner];
       displacement = there.image.centre - here.image.centre;
-      sigma = {std::hypot(here.sigma_px.x, there.sigma_px.x), std::hypot(here.sigma_px.y, there.sigma_px.y)};
+      sigma = displacement_sigma(a, b, i, match.partner);
     }
     field.position_px.push_back(valid ? here.image.centre + 0.5 * displacement : here.image.centre);
     field.displacement_px.push_back(valid ? displacement : unknown);
