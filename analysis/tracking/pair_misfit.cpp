@@ -2,11 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "render/base/contracts.h"
+#include "render/base/median.h"
 #include "render/base/not_a_number.h"
 
 namespace gladstone::tracking {
 namespace {
+
+constexpr double pooled_freedom = 20;  // weight of the median misfit of all dots, in degrees of freedom
 
 /// Mean square of the odd part of the difference of the residuals of a dot in both frames.
 struct PairMisfit {
@@ -66,18 +71,38 @@ PairMisfit measure_pair_misfit(LocatedDots const& a, LocatedDots const& b, Locat
   return freedom >= 1 ? PairMisfit{sum / freedom, freedom} : PairMisfit{};
 }
 
+/// Draws the misfits of all dots towards their median, since each is estimated from a few pixels.
+void pool_misfits(std::vector<PairMisfit>& misfits) {
+  std::vector<double> means;
+  for (PairMisfit const& one : misfits)
+    if (one.freedom > 0) means.push_back(one.mean / std::pow(1 - 2 / (9 * one.freedom), 3));  // median to mean of chi2
+  if (means.empty()) return;
+  double const typical = upper_median(std::move(means));
+  for (PairMisfit& one : misfits)
+    if (one.freedom > 0)
+      one.mean = (one.freedom * one.mean + pooled_freedom * typical) / (one.freedom + pooled_freedom);
+}
+
 }  // namespace
 
-Vec2d displacement_sigma(LocatedDots const& a, LocatedDots const& b, std::size_t i, std::size_t k) {
-  LocatedDot const &in_a = a.dots[i], &in_b = b.dots[k];
-  PairMisfit const misfit = measure_pair_misfit(a, b, in_a, in_b);
-  double factor_a = 1, factor_b = 1;
-  if (misfit.freedom > 0) {
-    factor_a = std::sqrt(misfit.mean) / misfit_factor(in_a);
-    factor_b = std::sqrt(misfit.mean) / misfit_factor(in_b);
+std::vector<Vec2d> displacement_sigmas(LocatedDots const& a, LocatedDots const& b, std::span<DotMatch const> matches) {
+  GLADSTONE_EXPECTS(matches.size() == a.dots.size());
+  std::vector<PairMisfit> misfits(matches.size());
+  for (std::size_t i = 0; i < matches.size(); ++i)
+    if (matches[i].status != MatchStatus::unmatched)
+      misfits[i] = measure_pair_misfit(a, b, a.dots[i], b.dots[matches[i].partner]);
+  pool_misfits(misfits);
+  std::vector<Vec2d> sigmas(matches.size(), {not_a_number, not_a_number});
+  for (std::size_t i = 0; i < matches.size(); ++i) {
+    if (matches[i].status == MatchStatus::unmatched) continue;
+    LocatedDot const &in_a = a.dots[i], &in_b = b.dots[matches[i].partner];
+    bool const measured = misfits[i].freedom > 0;
+    double const factor_a = measured ? std::sqrt(misfits[i].mean) / misfit_factor(in_a) : 1;
+    double const factor_b = measured ? std::sqrt(misfits[i].mean) / misfit_factor(in_b) : 1;
+    sigmas[i] = {std::hypot(factor_a * in_a.sigma_px.x, factor_b * in_b.sigma_px.x),
+                 std::hypot(factor_a * in_a.sigma_px.y, factor_b * in_b.sigma_px.y)};
   }
-  return {std::hypot(factor_a * in_a.sigma_px.x, factor_b * in_b.sigma_px.x),
-          std::hypot(factor_a * in_a.sigma_px.y, factor_b * in_b.sigma_px.y)};
+  return sigmas;
 }
 
 }  // namespace gladstone::tracking
