@@ -92,7 +92,7 @@ class JointDotCost {
         std::fill_n(residuals, rows, forbidden);
         return false;
       }
-      DotLight const light(one, shape_);
+      DotLight const light(one, shape_, prior_.profile);
       std::size_t const first = k * per_dot();
       for (std::size_t i = 0; i < pixels_.size(); ++i) {
         FitPixel const& pixel = pixels_[i];
@@ -123,7 +123,7 @@ class JointDotCost {
   std::span<FitPixel const> pixels_;
   std::size_t count_;
   DotShape shape_;
-  DotPrior prior_;
+  DotPrior const& prior_;
   Vec2d origin_{};
   double scale_ = std::numeric_limits<double>::min();
 };

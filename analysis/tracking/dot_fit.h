@@ -15,12 +15,13 @@ struct FitPixel {
   double per_sigma = 1;  ///< reciprocal of the noise's standard deviation [1/grey level]
 };
 
-/// Distribution of shape and flux over the dots of a frame.
+/// Distribution of shape and flux over the dots of a frame, and their common profile.
 struct DotPrior {
   std::array<double, 3> mean{1, 0, 1};   ///< of the shape parameters xx, or xx, xy and yy [px^2]
   std::array<double, 3> sigma{1, 1, 1};  ///< standard deviations of the shape parameters [px^2]
   double flux_mean = 0;                  ///< [grey levels]
   double flux_sigma = 0;                 ///< standard deviation of the flux [grey levels]; 0: no prior
+  DotProfile profile;
 };
 
 /// Dots fitted together.
@@ -37,11 +38,11 @@ struct DotFit {
   std::vector<double> leverage;
 };
 
-/// Fits Gaussian dots and a constant background to pixels by weighted least squares (Levenberg-Marquardt). For normal
-/// noise this is the maximum-likelihood estimate, whose covariance is the inverse of the Fisher information (Cramer-Rao
-/// bound). Shape and flux are constrained by their distribution over the frame, which hardly affects the centres of
-/// isolated dots and separates overlapping ones: the shape by a normal prior, the flux by Student's t distribution with
-/// four degrees of freedom, so that a dot of another brightness is not distorted.
+/// Fits dots of the prior's profile and a constant background to pixels by weighted least squares
+/// (Levenberg-Marquardt). For normal noise this is the maximum-likelihood estimate, whose covariance is the inverse of
+/// the Fisher information (Cramer-Rao bound). Shape and flux are constrained by their distribution over the frame,
+/// which hardly affects the centres of isolated dots and separates overlapping ones: the shape by a normal prior, the
+/// flux by Student's t distribution with four degrees of freedom, so that a dot of another brightness is not distorted.
 /// @param start  first estimates; their number is that of the fitted dots
 /// @return dots in the order of start; infinite cost and no uncertainties if the pixels do not determine them
 /// @pre there are pixels and dots; start values have positive definite second moments

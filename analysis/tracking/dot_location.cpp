@@ -44,10 +44,10 @@ class FrameFit {
     model_.detection_threshold = settings.detection_threshold;
     double const variance = sigma * sigma;
     double const loose = settings.diameter_px > 0 ? 0.5 * variance : variance;
-    model_.prior = {{variance, 0, variance}, {loose, loose, loose}, 0, 0};
+    model_.prior = {{variance, 0, variance}, {loose, loose, loose}, 0, 0, {}};
     std::vector<GaussianDot> const start =
         places ? dots_at(*places, variance) : find_dot_candidates(frame_, sigma, settings.detection_threshold);
-    for (GaussianDot const& dot : start) located_.push_back({dot, {}, 0, 0, 1});
+    for (GaussianDot const& dot : start) located_.push_back({.image = dot});
   }
 
   LocatedDots run() {
@@ -57,10 +57,13 @@ class FrameFit {
       if (sweep + 1 == additions_per_sweep.size()) break;
       merge_coincident();
       if (sweep == 0) update_prior();
+      update_profile();
       update_background();
       if (frame_.bright) gain_ = estimate_conversion_gain(samples_, frame_.noise);
     }
     LocatedDots result;
+    result.light = sum_light();
+    result.residual = residual_of(result.light);
     std::erase_if(located_, [&](LocatedDot const& dot) { return !valid(dot); });
     std::sort(located_.begin(), located_.end(), [](LocatedDot const& a, LocatedDot const& b) {
       auto const key = [](LocatedDot const& dot) {
@@ -94,11 +97,14 @@ class FrameFit {
 
   double typical_sigma() const { return std::sqrt(model_.prior.mean[0] + 1.0 / 12); }
 
+  /// Returns the largest distance of the pixels of a fit from the nearest of its dots [px].
+  double fit_reach() const { return std::max(2.5, 3.2 * typical_sigma() + 0.5); }
+
   /// Returns the light of all dots on every pixel.
   Image<double> sum_light() const {
     Image<double> light(frame_.above.columns(), frame_.above.rows());
     for (LocatedDot const& one : located_) {
-      DotLight const dot(one.image, settings_.shape);
+      DotLight const dot(one.image, settings_.shape, model_.prior.profile);
       for (int row = std::max(0, dot.first_row()); row < std::min(light.rows(), dot.first_row() + dot.width()); ++row)
         for (int column = std::max(0, dot.first_column());
              column < std::min(light.columns(), dot.first_column() + dot.width()); ++column)
@@ -107,19 +113,23 @@ class FrameFit {
     return light;
   }
 
-  /// Returns the standard deviation of the noise of a pixel with the given light of dots [grey levels].
-  double noise_at(double light) const {
-    return std::max(std::sqrt(frame_.noise * frame_.noise + gain_ * std::max(0.0, light)), 1e-9);
+  /// Returns the levels above the background minus the given light.
+  Image<double> residual_of(Image<double> const& light) const {
+    Image<double> residual = frame_.above;
+    for (std::size_t i = 0; i < residual.size(); ++i) residual.data()[i] -= light.data()[i];
+    return residual;
   }
+
+  double noise_at(double light) const { return noise_with_light(frame_.noise, gain_, light); }
 
   /// Returns the pixels within reach of a group's dots, without the light of the dots of other groups.
   std::vector<FitPixel> collect_pixels(std::vector<GaussianDot> const& group, Image<double> const& light) const {
-    double const reach = std::max(2.5, 3.2 * typical_sigma() + 0.5);
+    double const reach = fit_reach();
     std::vector<DotLight> own;
     int const columns = frame_.above.columns(), rows = frame_.above.rows();
     double left = columns, right = -1, top = rows, low = -1;
     for (GaussianDot const& dot : group) {
-      own.emplace_back(dot, settings_.shape);
+      own.emplace_back(dot, settings_.shape, model_.prior.profile);
       left = std::min(left, dot.centre.x - reach);
       right = std::max(right, dot.centre.x + reach);
       top = std::min(top, dot.centre.y - reach);
@@ -149,6 +159,7 @@ class FrameFit {
     std::vector<std::vector<LocatedDot>> fitted(groups.size());
     std::vector<double> mismatch(groups.size(), not_a_number);
     std::vector<std::vector<ResidualSample>> samples(groups.size());
+    std::vector<std::vector<ProfileSample>> profile_samples(groups.size());
     parallel_for(groups.size(), [&](std::size_t g) {
       std::vector<GaussianDot> start;
       for (std::size_t const i : groups[g]) start.push_back(located_[i].image);
@@ -158,17 +169,28 @@ class FrameFit {
       if (!std::isfinite(fit.cost)) {
         // Keep the dots: a later sweep has better starts and a narrower prior.
         for (GaussianDot const& dot : start)
-          fitted[g].push_back({dot, {not_a_number, not_a_number}, not_a_number, 1, 0});
+          fitted[g].push_back({.image = dot,
+                               .sigma_px = {not_a_number, not_a_number},
+                               .flux_sigma = not_a_number,
+                               .reduced_chi2 = 1,
+                               .group_size = 0});
         return;
       }
       if (fit.dots.size() == 1) {
         mismatch[g] = estimate_mismatch(fit, pixels);
         samples[g] = sample_residuals(fit, pixels);
+        profile_samples[g] = sample_profile(fit, pixels);
       }
-      double const reduced = fit.freedom > 0 ? fit.chi2 / fit.freedom : 1.0;
-      double const scale = std::sqrt(std::max(1.0, reduced));
-      for (std::size_t k = 0; k < fit.dots.size(); ++k)
-        fitted[g].push_back({fit.dots[k], scale * fit.sigma[k], scale * fit.flux_sigma[k], reduced, fit.dots.size()});
+      for (std::size_t k = 0; k < fit.dots.size(); ++k) {
+        LocatedDot dot{.image = fit.dots[k],
+                       .reduced_chi2 = fit.freedom > 0 ? fit.chi2 / fit.freedom : 1.0,
+                       .background = fit.background,
+                       .freedom_share = std::max(0, fit.freedom) / static_cast<double>(pixels.size()),
+                       .group_size = fit.dots.size()};
+        dot.sigma_px = misfit_factor(dot) * fit.sigma[k];
+        dot.flux_sigma = misfit_factor(dot) * fit.flux_sigma[k];
+        fitted[g].push_back(dot);
+      }
     });
     located_.clear();
     for (std::vector<LocatedDot> const& group : fitted)
@@ -177,6 +199,8 @@ class FrameFit {
     samples_.clear();
     for (std::vector<ResidualSample> const& group : samples)
       samples_.insert(samples_.end(), group.begin(), group.end());
+    std::erase_if(profile_samples, [](std::vector<ProfileSample> const& dot) { return dot.empty(); });
+    profile_samples_ = std::move(profile_samples);
     std::erase_if(mismatch, [](double value) { return !std::isfinite(value); });
     model_.mismatch = std::max(least_mismatch, std::sqrt(std::max(0.0, upper_median(std::move(mismatch)))));
   }
@@ -240,10 +264,19 @@ class FrameFit {
         std::max(sigma_per_median_deviation * upper_median(fluxes), least_spread * model_.prior.flux_mean);
   }
 
+  /// Determines the profile of round dots from those that were fitted alone.
+  void update_profile() {
+    if (settings_.shape != DotShape::round || profile_samples_.size() < enough_isolated) return;
+    FittedProfile const fitted = fit_dot_profile(profile_samples_);
+    model_.prior.profile = fitted.profile;
+    model_.prior.flux_mean *= fitted.flux_factor;
+    model_.prior.flux_sigma *= fitted.flux_factor;
+    for (LocatedDot& dot : located_) dot.image.flux *= fitted.flux_factor;
+  }
+
   /// Updates background and noise from the residual of the frame.
   void update_background() {
-    Image<double> residual = sum_light();
-    for (std::size_t i = 0; i < residual.size(); ++i) residual.data()[i] = frame_.above.data()[i] - residual.data()[i];
+    Image<double> residual = residual_of(sum_light());
     // Fitted parameters absorb a part of the noise.
     double const pixels = static_cast<double>(residual.size()), parameters = 4.0 * static_cast<double>(located_.size());
     frame_.noise =
@@ -266,6 +299,27 @@ class FrameFit {
     return samples;
   }
 
+  /// Returns the pixels of a dot that was fitted alone.
+  std::vector<ProfileSample> sample_profile(DotFit const& fit, std::vector<FitPixel> const& pixels) const {
+    GaussianDot const& dot = fit.dots.front();
+    std::vector<DotLight> parts;
+    for (double const scale : DotProfile::scale)
+      parts.emplace_back(GaussianDot{dot.centre, 1, scale * dot.xx, 0, scale * dot.yy}, settings_.shape, DotProfile{});
+    DotLight const light(dot, settings_.shape, model_.prior.profile);
+    std::vector<ProfileSample> samples;
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+      DotLevel const level = light.at(pixels[i].column, pixels[i].row);
+      ProfileSample sample{(level.value + fit.residual[i]) / dot.flux,
+                           std::pow(dot.flux * pixels[i].per_sigma, 2),
+                           {},
+                           {level.by_x / dot.flux, level.by_y / dot.flux}};
+      for (std::size_t k = 0; k < parts.size(); ++k)
+        sample.gaussian[k] = parts[k].at(pixels[i].column, pixels[i].row).value;
+      samples.push_back(sample);
+    }
+    return samples;
+  }
+
   /// Returns the squared residual of a single dot beyond the noise, over the squared level.
   static double estimate_mismatch(DotFit const& fit, std::vector<FitPixel> const& pixels) {
     double excess = 0, power = 0;
@@ -283,10 +337,17 @@ class FrameFit {
   DotModel model_;
   double gain_ = 0;  // variance of the noise per grey level of light
   std::vector<ResidualSample> samples_;
+  std::vector<std::vector<ProfileSample>> profile_samples_;  // of the dots that were fitted alone
   std::vector<LocatedDot> located_;
 };
 
 }  // namespace
+
+double misfit_factor(LocatedDot const& dot) { return std::sqrt(std::max(1.0, dot.reduced_chi2)); }
+
+double noise_with_light(double background_noise, double gain, double light) {
+  return std::max(std::sqrt(background_noise * background_noise + gain * std::max(0.0, light)), 1e-9);
+}
 
 LocatedDots locate_dots(Image<double> const& frame, DotSettings const& settings) {
   if (frame.columns() < 5 || frame.rows() < 5) return {};

@@ -15,6 +15,8 @@ struct LocatedDot {
   Vec2d sigma_px{};            ///< standard uncertainty of the centre [px]
   double flux_sigma = 0;       ///< standard uncertainty of the flux [grey levels]
   double reduced_chi2 = 0;     ///< chi2 of the joint fit over its degrees of freedom [1]
+  double background = 0;       ///< constant of the joint fit, in addition to the estimated background [grey levels]
+  double freedom_share = 0;    ///< degrees of freedom of the joint fit over its number of pixels [1]
   std::size_t group_size = 1;  ///< number of dots that were fitted together
 };
 
@@ -26,7 +28,15 @@ struct LocatedDots {
   double gain = 0;               ///< variance of the noise per grey level of light; 0: no shot noise [grey levels/e]
   double diameter_px = 0;        ///< median e^-2 diameter of the isolated dots, four standard deviations [px]
   std::size_t rejected = 0;      ///< number of candidates without a valid fit
+  Image<double> light;           ///< fitted light of all dots [grey levels]
+  Image<double> residual;        ///< levels above the estimated background minus the light of all dots [grey levels]
 };
+
+/// Returns the factor by which the misfit of a dot increases its sigma_px: the root of the reduced chi2, at least one.
+double misfit_factor(LocatedDot const& dot);
+
+/// Returns the standard deviation of the noise of a pixel with the given light of dots, at least 1e-9 [grey levels].
+double noise_with_light(double background_noise, double gain, double light);
 
 /// Locates the dots (BOS) or particles (PIV) of a frame by least-squares fits of Gaussians.
 ///

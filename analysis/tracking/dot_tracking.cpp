@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/tracking/pair_misfit.h"
 #include "render/base/contracts.h"
 #include "render/base/error.h"
 #include "render/base/not_a_number.h"
@@ -21,6 +22,7 @@ std::vector<Vec2d> dot_centres(LocatedDots const& located) {
 DisplacementField matched_vectors(LocatedDots const& a, LocatedDots const& b, std::span<DotMatch const> matches) {
   GLADSTONE_EXPECTS(matches.size() == a.dots.size());
   Vec2d const unknown{not_a_number, not_a_number};
+  std::vector<Vec2d> const sigmas = displacement_sigmas(a, b, matches);
   DisplacementField field;
   std::size_t ambiguous = 0;
   for (std::size_t i = 0; i < matches.size(); ++i) {
@@ -31,7 +33,7 @@ DisplacementField matched_vectors(LocatedDots const& a, LocatedDots const& b, st
     if (found) {
       LocatedDot const& there = b.dots[match.partner];
       displacement = there.image.centre - here.image.centre;
-      sigma = {std::hypot(here.sigma_px.x, there.sigma_px.x), std::hypot(here.sigma_px.y, there.sigma_px.y)};
+      sigma = sigmas[i];
     }
     field.position_px.push_back(valid ? here.image.centre + 0.5 * displacement : here.image.centre);
     field.displacement_px.push_back(valid ? displacement : unknown);

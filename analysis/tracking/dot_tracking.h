@@ -31,7 +31,7 @@ DisplacementField track_dots(Image<double> const& a, Image<double> const& b, Dis
 /// Converts matches to a displacement field.
 ///
 /// Vectors are at the mid-positions of the dots, as those of a correlation; dots without a valid match are at their
-/// place in frame A with NaN. sigma_px is the root of the sum of both centres' variances. Status and reason:
+/// place in frame A with NaN. sigma_px is that of displacement_sigmas(). Status and reason:
 /// - matched: valid, measured;
 /// - unmatched: invalid, beyond_limit;
 /// - ambiguous: invalid, not_replaced, Ambiguity::here; raw_px is the displacement of the best candidate;

@@ -6,12 +6,14 @@
 #include <numbers>
 #include <vector>
 
+#include "analysis/tracking/dot_profile.h"
 #include "analysis/tracking/dot_settings.h"
 #include "render/base/vec.h"
 
 namespace gladstone::tracking {
 
-/// Gaussian image of a dot. The second moments are those of the irradiance, before the integration over pixels.
+/// Image of a dot: a Gaussian, or a round DotProfile. The second moments are those of the irradiance of the widest
+/// Gaussian, before the integration over pixels.
 struct GaussianDot {
   Vec2d centre{};                 ///< [px]
   double flux = 0;                ///< sum of the levels above the background [grey levels]
@@ -28,23 +30,26 @@ struct DotLevel {
   std::array<double, 3> by_shape{};  ///< with respect to xx (round: of both axes), xy, yy [1/px^2]
 };
 
-/// Light of a Gaussian dot, integrated over each pixel around it. The levels of a round dot are products of one factor
+/// Light of a dot, integrated over each pixel around it. The levels of a round dot are products of one factor
 /// per column and one per row, computed by the error function (as in GaussianSpot of the renderers). Those of an
 /// elliptic dot are means over 3x3 Gauss-Legendre points; their error is below 1e-4 of the height for widths of 0.6 px
 /// and more.
 class DotLight {
  public:
+  /// @param profile  of round dots; elliptic ones are Gaussian
   /// @pre the second moments are positive definite
-  DotLight(GaussianDot const& dot, DotShape shape) : dot_(dot), shape_(shape) {
+  DotLight(GaussianDot const& dot, DotShape shape, DotProfile const& profile) : dot_(dot), shape_(shape) {
     double const sigma = std::sqrt(std::max(dot.xx, dot.yy));
     reach_ = static_cast<int>(std::ceil(5 * sigma + 1));
     first_column_ = static_cast<int>(std::lround(dot.centre.x)) - reach_;
     first_row_ = static_cast<int>(std::lround(dot.centre.y)) - reach_;
     if (shape != DotShape::round) return;
-    factors_.resize(2 * static_cast<std::size_t>(width()));
-    for (int i = 0; i < width(); ++i) {
-      factors_[i] = factor(first_column_ + i - dot.centre.x);
-      factors_[width() + i] = factor(first_row_ + i - dot.centre.y);
+    for (std::size_t k = 0; k < DotProfile::count; ++k) {
+      if (profile.share[k] == 0) continue;
+      parts_.push_back({profile.share[k], DotProfile::scale[k], factors_.size()});
+      double const part_sigma = std::sqrt(DotProfile::scale[k] * dot.xx);
+      for (int i = 0; i < width(); ++i) factors_.push_back(factor(first_column_ + i - dot.centre.x, part_sigma));
+      for (int i = 0; i < width(); ++i) factors_.push_back(factor(first_row_ + i - dot.centre.y, part_sigma));
     }
   }
 
@@ -56,13 +61,18 @@ class DotLight {
     int const i = column - first_column_, j = row - first_row_;
     if (i < 0 || j < 0 || i >= width() || j >= width()) return {};
     if (shape_ == DotShape::elliptic) return elliptic_level(column - dot_.centre.x, row - dot_.centre.y);
-    Factor const &u = factors_[i], &v = factors_[width() + j];
     DotLevel level;
-    level.by_flux = u.value * v.value;
+    for (Part const& part : parts_) {
+      Factor const &u = factors_[part.first + i], &v = factors_[part.first + width() + j];
+      level.by_flux += part.share * u.value * v.value;
+      level.by_x += part.share * u.by_centre * v.value;
+      level.by_y += part.share * u.value * v.by_centre;
+      level.by_shape[0] += part.share * part.scale * (u.by_variance * v.value + u.value * v.by_variance);
+    }
     level.value = dot_.flux * level.by_flux;
-    level.by_x = dot_.flux * u.by_centre * v.value;
-    level.by_y = dot_.flux * u.value * v.by_centre;
-    level.by_shape[0] = dot_.flux * (u.by_variance * v.value + u.value * v.by_variance);
+    level.by_x *= dot_.flux;
+    level.by_y *= dot_.flux;
+    level.by_shape[0] *= dot_.flux;
     return level;
   }
 
@@ -72,10 +82,15 @@ class DotLight {
     double value, by_centre, by_variance;
   };
 
+  /// Gaussian of the profile.
+  struct Part {
+    double share, scale;
+    std::size_t first;  ///< of its factors
+  };
+
   /// @param t  pixel minus centre [px]
-  Factor factor(double t) const {
+  static Factor factor(double t, double sigma) {
     constexpr double root_half = 0.5 * std::numbers::sqrt2, per_root_two_pi = std::numbers::inv_sqrtpi * root_half;
-    double const sigma = std::sqrt(dot_.xx);
     auto const normal = [&](double s) { return per_root_two_pi * std::exp(-0.5 * s * s) / sigma; };
     double const low = (t - 0.5) / sigma, high = (t + 0.5) / sigma;
     double const at_low = normal(low), at_high = normal(high);
@@ -112,7 +127,8 @@ class DotLight {
   GaussianDot dot_;
   DotShape shape_;
   int reach_ = 0, first_column_ = 0, first_row_ = 0;
-  std::vector<Factor> factors_;  // of the columns, then of the rows
+  std::vector<Part> parts_;
+  std::vector<Factor> factors_;  // of each part: of the columns, then of the rows
 };
 
 }  // namespace gladstone::tracking

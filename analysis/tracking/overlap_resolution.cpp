@@ -16,12 +16,16 @@ DotFit plain_fit(std::span<FitPixel const> pixels, std::span<GaussianDot const> 
   return fit_dots(pixels, start, model.shape, model.prior);
 }
 
-/// Returns the pixels with the mismatch of the model added to their noise.
+/// Returns the pixels with the mismatch of the model added to their noise, in proportion to the largest level of the
+/// pixel and its neighbours: at the edge of a dot, the level changes more from pixel to pixel than it is high.
 std::vector<FitPixel> with_mismatch(std::span<FitPixel const> pixels, DotFit const& fit, double mismatch) {
   std::vector<FitPixel> changed(pixels.begin(), pixels.end());
   for (std::size_t i = 0; i < changed.size(); ++i) {
-    double const light = mismatch * std::max(0.0, pixels[i].level - fit.residual[i] - fit.background);
-    changed[i].per_sigma = 1 / std::hypot(1 / pixels[i].per_sigma, light);
+    double light = 0;
+    for (std::size_t k = 0; k < changed.size(); ++k)
+      if (std::abs(pixels[k].column - pixels[i].column) <= 1 && std::abs(pixels[k].row - pixels[i].row) <= 1)
+        light = std::max(light, pixels[k].level - fit.residual[k] - fit.background);
+    changed[i].per_sigma = 1 / std::hypot(1 / pixels[i].per_sigma, mismatch * light);
   }
   return changed;
 }

@@ -134,6 +134,29 @@ void warn_of_reference_gradient(Reconstruction& result) {
                   100 * ratio));
 }
 
+/// Warns if the averaging over the aperture, which sigma does not contain, is larger than sigma. Its effect is
+/// estimated from the change of the density by a deconvolution with a gain of 2, which at most doubles any wave: the
+/// change contains no more noise than the density does.
+void warn_of_aperture(Reconstruction& result, density::DensityIntegrator const& integrator, Setup const& setup) {
+  constexpr double gain = 2, largest_ratio = 2;
+  if (!(setup.imaging().entrance_pupil > 0) || setup.medium.thickness > 2 * setup.z_d) return;
+  std::vector<double> const deconvolved = make_deconvolution(integrator, setup, gain).apply(result.density);
+  double changes = 0, variances = 0, count = 0;
+  for (std::size_t i = 0; i < deconvolved.size(); ++i) {
+    double const change = deconvolved[i] - result.density[i], sigma = result.sigma_random[i];
+    if (!std::isfinite(change) || !(sigma > 0)) continue;
+    changes += change * change;
+    variances += sigma * sigma;
+    ++count;
+  }
+  if (!(changes > largest_ratio * largest_ratio * variances) || count == 0) return;
+  result.warnings.push_back(fmt::format(
+      "the aperture cone dominates the error of the density (averaging over it changes the density by about {:.2g} "
+      "kg/m^3 rms, {:.2g} times the standard uncertainty, which does not contain it); use --deconvolve {:g}, or a "
+      "larger f-number",
+      std::sqrt(changes / count), std::sqrt(changes / variances), gain));
+}
+
 /// Integrates a mean gradient with the reference density, and propagates the uncertainty of the vectors.
 /// @param result  with overlap and reference_density
 Reconstruction integrate_plane(Reconstruction result, density::GradientMap const& map, Setup const& setup,
@@ -169,6 +192,7 @@ Reconstruction integrate_plane(Reconstruction result, density::GradientMap const
       propagate_uncertainty(integrator, map.sigma, result.overlap, 0.0, propagation, filter);
   result.sigma_random = uncertainty.sigma;
   result.samples = uncertainty.samples;
+  if (!deconvolution) warn_of_aperture(result, integrator, setup);
   return result;
 }
 
