@@ -8,7 +8,9 @@
 #include <filesystem>
 #include <utility>
 
+#include "analysis/correlation/correlation_methods.h"
 #include "analysis/stereo/interpolated_field.h"
+#include "analysis/stereo/residual_validation.h"
 #include "render/base/error.h"
 #include "render/base/frame_pair.h"
 #include "render/base/not_a_number.h"
@@ -24,6 +26,7 @@
 #include "studies/compare/correlate.h"
 #include "studies/compare/stereo_alignment.h"
 #include "studies/compare/stereo_cameras.h"
+#include "studies/compare/stereo_scores.h"
 #include "studies/compare/stereo_truth.h"
 
 namespace gladstone {
@@ -58,18 +61,19 @@ void check_stereo_options(StereoOptions const& options) {
     problems.push_back({"--images", fmt::format("expected images of the first and of the second camera in turn, got an "
                                                 "odd number ({})",
                                                 options.images.size())});
-  if (!options.images.empty() && !options.align)
-    problems.push_back({"--images", "has no effect without --align; add that option"});
+  if (!(options.residual_limit >= 0.0 && std::isfinite(options.residual_limit)))
+    problems.push_back({"--residual-limit", "expected a positive number of standard uncertainties, or 0"});
   if (!problems.empty()) throw SetupError(std::move(problems));
 }
 
-/// Returns the images from which the sheet is determined.
-std::vector<std::string> find_alignment_images(StereoOptions const& options) {
+/// Returns the images from which the sheet is determined; empty without --align if the cases do not contain them.
+std::vector<std::string> find_sheet_images(StereoOptions const& options) {
   if (!options.images.empty()) return options.images;
   std::vector<std::string> images;
   for (char const* frame : {case_file::reference, case_file::flow})
     for (std::string const& place : options.inputs) {
       std::error_code error;
+      if (!options.align && !fs::exists(fs::path(place) / frame, error)) return {};
       if (!fs::is_directory(place, error))
         throw DataError(place,
                         "is a file of vectors, which contains no images; give those of both cameras with --images");
@@ -88,6 +92,14 @@ CaseSetup load_calibrated_setup(std::string const& calibration) {
   std::string const text = Hdf5Reader(calibration).attribute("setup");
   if (text.empty()) throw DataError(calibration, "contains no setup; run gladstone calibrate again");
   return load_case_setup(SetupDocument::from_text(text, calibration));
+}
+
+/// Adds an uncertainty to the settings for dewarped images if they have none and the method has none of its own: the
+/// weights of the four equations and the uncertainty of the components depend on it.
+CorrelationSettings choose_dewarped_settings(CorrelationSettings settings) {
+  if (settings.uncertainty == "none" && !correlation_method(settings.method).tracks_dots)
+    settings.uncertainty = "correlation_statistics";
+  return settings;
 }
 
 /// Locates the files of an input, adds them to the sources, and reads them.
@@ -133,7 +145,7 @@ StereoInput read_stereo_input(StereoOptions const& options, std::size_t index, S
   if (!truth.empty() && setup.piv) input.truth = read_truth(truth);
   if (options.dewarp_images) {
     input.path = place;
-    input.vectors.settings = input.loaded->correlate;
+    input.vectors.settings = choose_dewarped_settings(input.loaded->correlate);
     input.window_px = options.window_px.value_or(input.vectors.settings.window_px.back());
     return input;
   }
@@ -206,6 +218,37 @@ void require_same_particles(StereoInput const& a, StereoInput const& b, StereoOp
                   fmt::format("shows other particles than {}; give two cameras of one rendering", options.inputs[0]));
 }
 
+void warn_of_displaced_sheet(StereoMeasurement& result) {
+  constexpr double least_px = 0.5;
+  stereo::SheetAlignment const& sheet = *result.given_sheet;
+  double const disparity_px = sheet.disparity_px.front();
+  if (!(disparity_px > least_px && stereo::is_significant(sheet))) return;
+  result.warnings.push_back(fmt::format(
+      "disparity of {:.2f} px between the images of the two cameras: the laser sheet is displaced by {:.3f} "
+      "mm at X = Y = 0 from the assumed plane, so that the cameras measure at different places; use --align",
+      disparity_px, (sheet.fit.plane.height - result.field.plane.height) / unit::mm));
+}
+
+void warn_of_rejected_vectors(StereoMeasurement& result) {
+  constexpr double least_fraction = 0.01;
+  auto const determined = std::count_if(result.field.nodes.begin(), result.field.nodes.end(),
+                                        [](auto const& node) { return node.has_value(); });
+  double const fraction = static_cast<double>(stereo::count_rejected(result.field)) / static_cast<double>(determined);
+  if (fraction > least_fraction)
+    result.warnings.push_back(fmt::format(
+        "{:.1f} % of the vectors are rejected, because the two cameras disagree by more than the limit of the residual "
+        "(--residual-limit): vectors of a camera are wrong (noise, too few particles), the laser sheet is not in the "
+        "assumed plane (try --align), or the calibration has changed. Errors along the lines of sight's plane remain "
+        "undetected: expect about as many further wrong vectors of u and w",
+        100.0 * fraction));
+  bool const any_sigma = std::any_of(result.field.nodes.begin(), result.field.nodes.end(),
+                                     [](auto const& node) { return node && std::isfinite(node->covariance[0]); });
+  if (!any_sigma)
+    result.warnings.push_back(
+        "the vectors have no uncertainty, so that the three components have none; correlate both cameras with an "
+        "uncertainty method, e.g. --set correlate.uncertainty=correlation_statistics");
+}
+
 void warn_of_stereo_result(StereoMeasurement& result) {
   constexpr double least_angle = 20 * unit::degree, largest_ratio = 2.0;
   if (result.view_angle < least_angle)
@@ -219,6 +262,8 @@ void warn_of_stereo_result(StereoMeasurement& result) {
         fmt::format("the position of the laser sheet has not converged: the residual disparity is {:.2f} px; use more "
                     "images, or start closer to the sheet with --sheet-z and --sheet-slope",
                     result.alignment->disparity_px.back()));
+  if (result.given_sheet) warn_of_displaced_sheet(result);
+  warn_of_rejected_vectors(result);
   double const ratio = compute_residual_ratio(result.field);
   if (ratio > largest_ratio)
     result.warnings.push_back(fmt::format(
@@ -231,32 +276,22 @@ void warn_of_stereo_result(StereoMeasurement& result) {
 }  // namespace
 
 std::array<ComponentErrors, 3> compute_stereo_errors(StereoMeasurement const& measurement) {
-  std::array<ComponentErrors, 3> errors;
-  for (int axis = 0; axis < 3; ++axis) {
-    ComponentErrors& component = errors[static_cast<std::size_t>(axis)];
-    double sum = 0.0, squares = 0.0, within = 0.0, with_sigma = 0.0;
-    for (std::size_t node = 0; node < measurement.field.nodes.size(); ++node) {
-      auto const& vector = measurement.field.nodes[node];
-      if (!vector || !std::isfinite(measurement.truth[node][axis])) continue;
-      double const error = vector->displacement[axis] - measurement.truth[node][axis], sigma = vector->sigma()[axis];
-      ++component.count;
-      sum += error;
-      squares += error * error;
-      with_sigma += std::isfinite(sigma) ? 1.0 : 0.0;
-      within += std::abs(error) <= sigma ? 1.0 : 0.0;
-    }
-    auto const count = static_cast<double>(component.count);
-    component.bias = component.count > 0 ? sum / count : not_a_number;
-    component.rms = component.count > 0 ? std::sqrt(squares / count) : not_a_number;
-    component.coverage = with_sigma > 0 ? within / with_sigma : not_a_number;
+  constexpr Vec3d unknown{not_a_number, not_a_number, not_a_number};
+  std::vector<Vec3d> error, sigma;
+  std::vector<VectorStatus> status;
+  for (std::size_t node = 0; node < measurement.field.nodes.size(); ++node) {
+    auto const& vector = measurement.field.nodes[node];
+    error.push_back(vector ? vector->displacement - measurement.truth[node] : unknown);
+    sigma.push_back(vector ? vector->sigma() : unknown);
+    status.push_back(vector ? vector->status : VectorStatus::invalid);
   }
-  return errors;
+  return compute_component_errors(error, sigma, status);
 }
 
 double compute_residual_ratio(stereo::StereoField const& field) {
   double squares = 0.0, count = 0.0;
   for (auto const& node : field.nodes) {
-    if (!node || !std::isfinite(node->residual_ratio)) continue;
+    if (!node || node->status != VectorStatus::valid || !std::isfinite(node->residual_ratio)) continue;
     squares += node->residual_ratio * node->residual_ratio;
     count += 1.0;
   }
@@ -278,10 +313,13 @@ StereoMeasurement measure_stereo(StereoOptions const& options, Backend const& de
                                 options.inputs[0], result.view_angle / unit::degree));
   stop_point("reconstructing");
   stereo::ObjectPlane plane = options.plane;
+  std::vector<std::string> const images = find_sheet_images(options);
+  std::array<PinholeCamera const*, 2> const cameras{&a.camera.camera, &b.camera.camera};
   if (options.align) {
-    result.alignment = align_sheet_of_files(find_alignment_images(options), {&a.camera.camera, &b.camera.camera}, plane,
-                                            result.sources);
+    result.alignment = align_sheet_of_files(images, cameras, plane, result.sources);
     plane = result.alignment->fit.plane;
+  } else if (!images.empty()) {
+    result.given_sheet = measure_disparity(images, cameras, plane, result.sources);
   }
   result.pixel_size =
       0.5 * (stereo::find_pixel_size(a.camera.camera, plane) + stereo::find_pixel_size(b.camera.camera, plane));
@@ -301,6 +339,7 @@ StereoMeasurement measure_stereo(StereoOptions const& options, Backend const& de
   if (!any)
     throw NoValidVector(options.inputs[1],
                         fmt::format("and {} have no valid vectors at the same place", options.inputs[0]));
+  result.field = stereo::reject_large_residuals(std::move(result.field), options.residual_limit);
   if (a.truth && b.truth) {
     double const per_metre = 1.0 / result.pixel_size;
     Vec2d const scale = options.dewarp_images ? Vec2d{per_metre, per_metre}
