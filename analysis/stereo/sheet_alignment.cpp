@@ -164,9 +164,8 @@ SheetAlignment align_sheet(std::array<PinholeCamera const*, 2> const& cameras,
 }
 
 bool is_significant(SheetAlignment const& alignment) {
-  constexpr double standard_errors = 4.0, independent_fraction = 0.25;
-  double const independent = independent_fraction * static_cast<double>(alignment.fit.points);
-  return alignment.disparity_px.front() > standard_errors * alignment.scatter_px / std::sqrt(independent);
+  constexpr double scatters = 3.0;
+  return alignment.disparity_px.front() > scatters * alignment.scatter_px;
 }
 
 }  // namespace gladstone::stereo

@@ -54,9 +54,9 @@ SheetAlignment align_sheet(std::array<PinholeCamera const*, 2> const& cameras,
                            std::vector<SimultaneousImages> const& images, ObjectPlane plane,
                            CorrelationSettings const& settings, int max_iterations = 8);
 
-/// Returns whether the disparity of the first iteration is more than the scatter of the measured disparities explains:
-/// more than four standard errors of its mean, for which a quarter of the vectors, whose windows overlap by one half,
-/// are independent.
+/// Returns whether the disparity of the first iteration exceeds three times the scatter of the measured disparities
+/// about those of the fitted plane. Below that, a single window does not determine the displacement of the sheet, and
+/// in thick sheets or with noise the fitted plane follows the few particles that dominate the correlation.
 bool is_significant(SheetAlignment const& alignment);
 
 }  // namespace gladstone::stereo

@@ -102,6 +102,20 @@ CorrelationSettings choose_dewarped_settings(CorrelationSettings settings) {
   return settings;
 }
 
+/// Throws if a case was rendered through optical windows and its calibration without them, or the reverse: the lines of
+/// sight of the calibration are not those of the images.
+void require_same_windows(CaseSetup const& of_case, std::string const& place, std::string const& calibration) {
+  if (Hdf5Reader(calibration).attribute("setup").empty()) return;
+  std::size_t const own = of_case.setup.windows.size(),
+                    calibrated = load_calibrated_setup(calibration).setup.windows.size();
+  if (own == calibrated) return;
+  throw DataError(
+      calibration,
+      fmt::format("was made through {} optical windows, but {} looks through {}, which displaces its lines of "
+                  "sight; calibrate through the same windows",
+                  calibrated, place, own));
+}
+
 /// Locates the files of an input, adds them to the sources, and reads them.
 StereoInput read_stereo_input(StereoOptions const& options, std::size_t index, SourceFiles& sources) {
   std::string const& place = options.inputs[index];
@@ -127,6 +141,7 @@ StereoInput read_stereo_input(StereoOptions const& options, std::size_t index, S
     }
     sources.add("", setup, SourceFiles::Holds::bytes);
     input.loaded = load_case_setup(setup, {});
+    if (!input.calibration.empty()) require_same_windows(*input.loaded, place, input.calibration);
   } else {
     require_input_file(place, "a case folder or a file of vectors");
     if (options.dewarp_images)
