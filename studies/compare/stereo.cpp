@@ -8,42 +8,25 @@
 #include <filesystem>
 #include <utility>
 
-#include "analysis/correlation/correlation_methods.h"
 #include "analysis/stereo/interpolated_field.h"
 #include "analysis/stereo/residual_validation.h"
 #include "render/base/error.h"
 #include "render/base/frame_pair.h"
 #include "render/base/not_a_number.h"
 #include "render/base/units.h"
-#include "render/files/hdf5_file.h"
 #include "render/files/image_file.h"
-#include "render/files/input_file.h"
 #include "render/files/stop_point.h"
-#include "studies/case/case.h"
-#include "studies/case/truth_file.h"
-#include "studies/compare/compared_files.h"
-#include "studies/compare/compared_vectors.h"
 #include "studies/compare/correlate.h"
 #include "studies/compare/stereo_alignment.h"
-#include "studies/compare/stereo_cameras.h"
+#include "studies/compare/stereo_input.h"
 #include "studies/compare/stereo_scores.h"
 #include "studies/compare/stereo_truth.h"
+#include "studies/compare/stereo_warnings.h"
 
 namespace gladstone {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Vectors, camera and truth of one input.
-struct StereoInput {
-  std::optional<CaseSetup> loaded;
-  MeasuredVectors vectors;
-  stereo::CalibratedCamera camera;
-  std::optional<GroundTruth> truth;
-  std::string path;         ///< of the vectors
-  std::string calibration;  ///< path; empty: the setup's exact camera
-  double window_px = 0.0;
-};
 
 void check_stereo_options(StereoOptions const& options) {
   std::vector<SetupProblem> problems;
@@ -80,101 +63,6 @@ std::vector<std::string> find_sheet_images(StereoOptions const& options) {
       images.push_back(in_case(place, frame));
     }
   return images;
-}
-
-void add_stereo_source(SourceFiles& sources, std::string const& name, std::string const& path) {
-  bool const is_hdf5 = path.ends_with(".h5") || path.ends_with(".hdf5");
-  sources.add(name, path, is_hdf5 ? SourceFiles::Holds::datasets : SourceFiles::Holds::bytes);
-}
-
-/// Reads the setup that a calibration stores, for the size of the images and the defaults of [correlate].
-CaseSetup load_calibrated_setup(std::string const& calibration) {
-  std::string const text = Hdf5Reader(calibration).attribute("setup");
-  if (text.empty()) throw DataError(calibration, "contains no setup; run gladstone calibrate again");
-  return load_case_setup(SetupDocument::from_text(text, calibration));
-}
-
-/// Adds an uncertainty to the settings for dewarped images if they have none and the method has none of its own: the
-/// weights of the four equations and the uncertainty of the components depend on it.
-CorrelationSettings choose_dewarped_settings(CorrelationSettings settings) {
-  if (settings.uncertainty == "none" && !correlation_method(settings.method).tracks_dots)
-    settings.uncertainty = "correlation_statistics";
-  return settings;
-}
-
-/// Throws if a case was rendered through optical windows and its calibration without them, or the reverse: the lines of
-/// sight of the calibration are not those of the images.
-void require_same_windows(CaseSetup const& of_case, std::string const& place, std::string const& calibration) {
-  if (Hdf5Reader(calibration).attribute("setup").empty()) return;
-  std::size_t const own = of_case.setup.windows.size(),
-                    calibrated = load_calibrated_setup(calibration).setup.windows.size();
-  if (own == calibrated) return;
-  throw DataError(
-      calibration,
-      fmt::format("was made through {} optical windows, but {} looks through {}, which displaces its lines of "
-                  "sight; calibrate through the same windows",
-                  calibrated, place, own));
-}
-
-/// Locates the files of an input, adds them to the sources, and reads them.
-StereoInput read_stereo_input(StereoOptions const& options, std::size_t index, SourceFiles& sources) {
-  std::string const& place = options.inputs[index];
-  std::string const suffix = index == 0 ? "_a" : "_b";
-  StereoInput input;
-  if (!options.calibrations.empty()) {
-    input.calibration = options.calibrations[index];
-    require_input_file(input.calibration, "a calibration");
-    add_stereo_source(sources, "calibration" + suffix, input.calibration);
-    input.camera = read_calibrated_camera(input.calibration);
-  }
-  std::error_code error;
-  std::string truth;
-  if (fs::is_directory(place, error)) {
-    require_case(place);
-    std::string setup = in_case(place, case_file::setup);
-    input.path = in_case(place, case_file::vectors);
-    if (fs::exists(fs::path(place) / case_file::truth, error)) {
-      truth = options.dewarp_images ? in_case(place, case_file::truth) : compared_files(place, "").truth;
-      add_stereo_source(sources, "truth" + suffix, truth);
-    } else if (!options.dewarp_images && !fs::exists(input.path, error)) {
-      throw DataError(input.path, "does not exist; create it with: gladstone correlate " + place);
-    }
-    sources.add("", setup, SourceFiles::Holds::bytes);
-    input.loaded = load_case_setup(setup, {});
-    if (!input.calibration.empty()) require_same_windows(*input.loaded, place, input.calibration);
-  } else {
-    require_input_file(place, "a case folder or a file of vectors");
-    if (options.dewarp_images)
-      throw DataError(place,
-                      "is a file of vectors, but --dewarp images requires the frames of cases; give case folders, "
-                      "or remove the option");
-    if (input.calibration.empty())
-      throw DataError(place,
-                      "is a file of vectors, which contains no camera; give the calibration.h5 of both cameras "
-                      "with --calibration");
-    input.path = place;
-    input.loaded = load_calibrated_setup(input.calibration);
-  }
-  Setup const& setup = input.loaded->setup;
-  if (input.calibration.empty()) input.camera = find_exact_camera(setup, place);
-  if (!truth.empty() && setup.piv) input.truth = read_truth(truth);
-  if (options.dewarp_images) {
-    input.path = place;
-    input.vectors.settings = choose_dewarped_settings(input.loaded->correlate);
-    input.window_px = options.window_px.value_or(input.vectors.settings.window_px.back());
-    return input;
-  }
-  add_stereo_source(sources, "vectors" + suffix, input.path);
-  CompareOptions reading;
-  reading.conventions = options.conventions;
-  input.vectors = load_vectors(input.path, *input.loaded, input.truth ? &*input.truth : nullptr, reading);
-  if (!input.vectors.report.empty()) spdlog::info("{}: {}", input.path, input.vectors.report);
-  input.window_px = options.window_px.value_or(input.vectors.settings.window_px.back());
-  if (!stereo::is_regular_grid(input.vectors.field))
-    throw DataError(input.path,
-                    "has no complete grid of vectors, in which invalid ones are marked or NaN; measure with a grid "
-                    "(for tracking, correlate.tracking.output = \"grid\")");
-  return input;
 }
 
 /// Correlates the frames of a case, dewarped onto a plane.
@@ -231,61 +119,6 @@ void require_same_particles(StereoInput const& a, StereoInput const& b, StereoOp
   if (a.truth->position_m == b.truth->position_m && a.truth->particles.second_m == b.truth->particles.second_m) return;
   throw DataError(options.inputs[1],
                   fmt::format("shows other particles than {}; give two cameras of one rendering", options.inputs[0]));
-}
-
-void warn_of_displaced_sheet(StereoMeasurement& result) {
-  constexpr double least_px = 0.5;
-  stereo::SheetAlignment const& sheet = *result.given_sheet;
-  double const disparity_px = sheet.disparity_px.front();
-  if (!(disparity_px > least_px && stereo::is_significant(sheet))) return;
-  result.warnings.push_back(fmt::format(
-      "disparity of {:.2f} px between the images of the two cameras: the laser sheet is displaced by {:.3f} "
-      "mm at X = Y = 0 from the assumed plane, so that the cameras measure at different places; use --align",
-      disparity_px, (sheet.fit.plane.height - result.field.plane.height) / unit::mm));
-}
-
-void warn_of_rejected_vectors(StereoMeasurement& result) {
-  constexpr double least_fraction = 0.01;
-  auto const determined = std::count_if(result.field.nodes.begin(), result.field.nodes.end(),
-                                        [](auto const& node) { return node.has_value(); });
-  double const fraction = static_cast<double>(stereo::count_rejected(result.field)) / static_cast<double>(determined);
-  if (fraction > least_fraction)
-    result.warnings.push_back(fmt::format(
-        "{:.1f} % of the vectors are rejected, because the two cameras disagree by more than the limit of the residual "
-        "(--residual-limit): vectors of a camera are wrong (noise, too few particles), the laser sheet is not in the "
-        "assumed plane (try --align), or the calibration has changed. Errors along the lines of sight's plane remain "
-        "undetected: expect about as many further wrong vectors of u and w",
-        100.0 * fraction));
-  bool const any_sigma = std::any_of(result.field.nodes.begin(), result.field.nodes.end(),
-                                     [](auto const& node) { return node && std::isfinite(node->covariance[0]); });
-  if (!any_sigma)
-    result.warnings.push_back(
-        "the vectors have no uncertainty, so that the three components have none; correlate both cameras with an "
-        "uncertainty method, e.g. --set correlate.uncertainty=correlation_statistics");
-}
-
-void warn_of_stereo_result(StereoMeasurement& result) {
-  constexpr double least_angle = 20 * unit::degree, largest_ratio = 2.0;
-  if (result.view_angle < least_angle)
-    result.warnings.push_back(
-        fmt::format("the angle between the views is {:.1f} degrees: the third component is {:.1f} times less certain "
-                    "than the others; 60 to 90 degrees are best",
-                    result.view_angle / unit::degree, 1.0 / std::tan(0.5 * result.view_angle)));
-  constexpr double largest_disparity_px = 0.05;
-  if (result.alignment && result.alignment->disparity_px.back() > largest_disparity_px)
-    result.warnings.push_back(
-        fmt::format("the position of the laser sheet has not converged: the residual disparity is {:.2f} px; use more "
-                    "images, or start closer to the sheet with --sheet-z and --sheet-slope",
-                    result.alignment->disparity_px.back()));
-  if (result.given_sheet) warn_of_displaced_sheet(result);
-  warn_of_rejected_vectors(result);
-  double const ratio = compute_residual_ratio(result.field);
-  if (ratio > largest_ratio)
-    result.warnings.push_back(fmt::format(
-        "the vectors of the two cameras disagree {:.1f} times more than their uncertainty explains: the "
-        "laser sheet is not in the assumed plane (try --align), the calibration has changed, or vectors are "
-        "wrong",
-        ratio));
 }
 
 }  // namespace
@@ -366,7 +199,7 @@ StereoMeasurement measure_stereo(StereoOptions const& options, Backend const& de
   result.window_px = {a.window_px, b.window_px};
   result.setup = a.loaded->document.resolved();
   result.seed = a.loaded->setup.render.seed;
-  warn_of_stereo_result(result);
+  result.warnings = find_stereo_warnings(result);
   for (std::string const& warning : result.warnings) spdlog::warn("{}", warning);
   return result;
 }
