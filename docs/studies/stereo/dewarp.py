@@ -1,8 +1,8 @@
-"""dewarp.py GLADSTONE [--seeds 4] [--folder FOLDER]: which of `--dewarp vectors` and `--dewarp images` is more accurate?
+"""dewarp.py GLADSTONE [--seeds 3] [--folder FOLDER]: which of `--dewarp vectors` and `--dewarp images` is more accurate?
 
 Renders a laser sheet seen by two cameras at 30 and at 45 degrees from its normal, with uniform motion and with waves of
 u, v and w (largest gradient 0.04 px per px), with and without noise. Both ways of dewarping reconstruct the same
-images. Prints a table, and draws its figure to dewarp.png beside this file, or in FOLDER, which also keeps the images.
+images. Prints a table, and draws its figure to dewarp.png beside this file, or in FOLDER, if given.
 
 Needs: pip install numpy h5py matplotlib
 """
@@ -111,7 +111,7 @@ def summarize(results):
 
 
 def draw(table, path):
-    cases = [(angle, flow, noise) for angle in ANGLES for flow in FLOWS for noise in NOISE]
+    cases = list(table)
     figure, axes = plt.subplots(2, 1, figsize=(9, 6.4), sharex=True, layout="constrained")
     colours, width = ("#1f77b4", "#2ca02c", "#d62728"), 0.13
     for place, case in enumerate(cases):
@@ -135,8 +135,9 @@ def draw(table, path):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("program")
-    parser.add_argument("--seeds", type=int, default=4)
+    parser.add_argument("--seeds", type=int, default=3)
     parser.add_argument("--folder", type=pathlib.Path)
+    parser.add_argument("--angles", type=int, nargs="+", default=ANGLES, help="[deg]")
     arguments = parser.parse_args()
     program = str(pathlib.Path(arguments.program).resolve())
     out = arguments.folder or pathlib.Path(__file__).parent
@@ -146,7 +147,7 @@ def main():
     with tempfile.TemporaryDirectory() as temporary:
         folder = pathlib.Path(temporary)
         write_wave(folder / "wave.npy")
-        for degrees in ANGLES:
+        for degrees in arguments.angles:
             for flow in FLOWS:
                 for noise in NOISE:
                     runs = [measure(program, folder, degrees, flow, noise, seed)
