@@ -32,6 +32,7 @@ struct StereoVector {
   double residual_px = 0.0;      ///< root of the sum of squares of the four equations' residuals [px]
   double residual_ratio = 0.0;   ///< residual divided by its standard uncertainty [1]; NaN: vectors without uncertainty
   Vec2d image_a_px, image_b_px;  ///< the vectors of both cameras, interpolated at the node [px]
+  VectorStatus status = VectorStatus::valid;  ///< invalid: see reject_large_residuals()
 
   /// Standard uncertainties of u, v, w [m].
   Vec3d sigma() const;

@@ -126,9 +126,8 @@ Vec3d triangulate(PinholeCamera const& a, Vec2d in_a, PinholeCamera const& b, Ve
 
 SheetAlignment align_sheet(std::array<PinholeCamera const*, 2> const& cameras,
                            std::vector<SimultaneousImages> const& images, ObjectPlane plane,
-                           CorrelationSettings const& settings) {
-  GLADSTONE_EXPECTS(!images.empty());
-  constexpr int max_iterations = 8;
+                           CorrelationSettings const& settings, int max_iterations) {
+  GLADSTONE_EXPECTS(!images.empty() && max_iterations > 0);
   constexpr double goal_px = 0.005;
   SheetAlignment result;
   for (int iteration = 0; iteration < max_iterations; ++iteration) {
@@ -162,6 +161,11 @@ SheetAlignment align_sheet(std::array<PinholeCamera const*, 2> const& cameras,
     if (result.disparity_px.back() < goal_px) break;
   }
   return result;
+}
+
+bool is_significant(SheetAlignment const& alignment) {
+  constexpr double scatters = 3.0;
+  return alignment.disparity_px.front() > scatters * alignment.scatter_px;
 }
 
 }  // namespace gladstone::stereo

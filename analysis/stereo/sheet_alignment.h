@@ -45,12 +45,18 @@ struct SheetAlignment {
 /// (2005) 267). Images of the same time are dewarped onto the assumed plane and correlated, over all pairs together
 /// (ensemble). If the sheet lies elsewhere, both cameras see a particle at different places of the assumed plane; the
 /// intersections of the lines of sight are points of the sheet, through which a new plane is fitted. This is repeated
-/// until the disparity falls below 0.005 px, at most eight times.
+/// until the disparity falls below 0.005 px.
 /// @param plane     first assumption; disparities up to a quarter of the first window can be measured
 /// @param settings  of the correlation of dewarped images; uncertainty "none"
+/// @param max_iterations  1: only measures the disparity of the assumed plane
 /// @throws DataError if the views do not overlap, a window does not fit, or too few vectors are valid
 SheetAlignment align_sheet(std::array<PinholeCamera const*, 2> const& cameras,
                            std::vector<SimultaneousImages> const& images, ObjectPlane plane,
-                           CorrelationSettings const& settings);
+                           CorrelationSettings const& settings, int max_iterations = 8);
+
+/// Returns whether the disparity of the first iteration exceeds three times the scatter of the measured disparities
+/// about those of the fitted plane. Below that, a single window does not determine the displacement of the sheet, and
+/// in thick sheets or with noise the fitted plane follows the few particles that dominate the correlation.
+bool is_significant(SheetAlignment const& alignment);
 
 }  // namespace gladstone::stereo

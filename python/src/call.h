@@ -44,6 +44,7 @@ void bind_truth(nb::module_& module);
 void bind_field(nb::module_& module);
 void bind_comparison(nb::module_& module);
 void bind_density(nb::module_& module);
+void bind_stereo(nb::module_& module);
 void bind_information(nb::module_& module);
 void bind_benchmark(nb::module_& module);
 void bind_calibration(nb::module_& module);

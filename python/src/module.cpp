@@ -12,6 +12,7 @@ NB_MODULE(_core, module) {
   bind_field(module);
   bind_comparison(module);
   bind_density(module);
+  bind_stereo(module);
   bind_information(module);
   bind_benchmark(module);
   bind_calibration(module);

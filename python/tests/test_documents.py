@@ -24,6 +24,8 @@ def test_code_of_the_page_runs(bos, tmp_path, monkeypatch):
     (tmp_path / "studies" / "cases").mkdir(parents=True)
     small.save(tmp_path / "studies" / "cases" / "table1.toml")
     small.save(tmp_path / "setup.toml")
+    template = PAGE.parents[1] / "studies" / "commands" / "templates" / "stereo.toml"
+    (tmp_path / "stereo.toml").write_text(template.read_text().replace("[192, 192]", "[128, 128]"))
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr("gladstone._benchmark.benchmark_cases", lambda: ["vortex"])
     small.render(device="cpu").save(tmp_path / "case")

@@ -6,14 +6,19 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <optional>
 
+#include "analysis/vectors/three_components.h"
+#include "render/base/error.h"
 #include "render/files/output_file.h"
 #include "render/files/output_folder.h"
 #include "render/files/partial.h"
+#include "studies/case/json_text.h"
 #include "studies/commands/arguments.h"
 #include "studies/commands/command.h"
 #include "studies/compare/error_report.h"
+#include "studies/compare/stereo_scores.h"
 #include "studies/compare/stored_comparison.h"
 #include "studies/figures/gnuplot.h"
 
@@ -106,6 +111,21 @@ std::vector<std::string> results_of_comparison(std::string const& folder) {
   return paths;
 }
 
+bool is_existing_file(std::string const& path) {
+  std::error_code error;
+  return fs::is_regular_file(path, error);
+}
+
+/// Throws if options are given that do not apply to three components.
+void refuse_options_of_cases(CompareOptions const& compare, std::string const& output) {
+  std::vector<SetupProblem> problems;
+  char const* const reason = "has no effect on a file of three components; remove it";
+  if (!compare.vectors.empty()) problems.push_back({"--vectors", reason});
+  if (!output.empty()) problems.push_back({"--output", reason});
+  if (compare.conventions) problems.push_back({"--conventions", reason});
+  if (!problems.empty()) throw SetupError(std::move(problems));
+}
+
 }  // namespace
 
 CommandBody attach_compare(CLI::App& app, GlobalOptions const& options) {
@@ -115,7 +135,9 @@ CommandBody attach_compare(CLI::App& app, GlobalOptions const& options) {
     bool no_figures = false;
   };
   auto arguments = std::make_shared<Arguments>();
-  app.add_option("case", arguments->folder, "Case folder")->required();
+  app.add_option("case", arguments->folder,
+                 "Case folder; or a file of gladstone stereo, whose three components are compared with its truth")
+      ->required();
   app.add_option("--vectors", arguments->compare.vectors,
                  "Vectors of gladstone, OpenPIV, PIVlab, DaVis, Insight, Dantec, JPIV or any x,y,u,v, default "
                  "CASE/vectors.h5; vectors outside the image or longer than it are excluded");
@@ -135,6 +157,12 @@ CommandBody attach_compare(CLI::App& app, GlobalOptions const& options) {
     if (arguments->truth_at == "reference") compare.truth_at = TruthAt::reference;
     if (!arguments->conventions.empty()) compare.conventions = arguments->conventions;
     std::string const& folder = arguments->folder;
+    if (is_existing_file(folder) && is_three_component_file(folder)) {
+      refuse_options_of_cases(compare, arguments->output);
+      StereoScores const scores = score_stereo_file(folder);
+      print_result(options, json_text(summarize_scores(scores)), scores_report(scores));
+      return ok;
+    }
     std::vector<std::string> inputs = rendered_files(folder);
     inputs.push_back(compare.vectors.empty() ? in_case(folder, case_file::vectors) : compare.vectors);
     std::error_code missing;

@@ -2,8 +2,11 @@
 #include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <nlohmann/json.hpp>
+#include <utility>
 
+#include "analysis/vectors/three_components.h"
 #include "analysis/vectors/vector_file.h"
 #include "render/base/error.h"
 #include "render/files/input_file.h"
@@ -14,6 +17,31 @@
 #include "studies/compare/exported_vectors.h"
 
 namespace gladstone {
+namespace {
+
+/// Converts a file of three components.
+/// @return JSON and text of the result
+std::pair<nlohmann::json, std::string> convert_three_components(std::string const& input, std::string const& output) {
+  std::vector<std::string> const endings = three_component_extensions();
+  bool const known =
+      std::any_of(endings.begin(), endings.end(), [&](auto const& ending) { return output.ends_with(ending); });
+  if (!known)
+    throw OutputError(output, fmt::format("has an ending that selects no format of three components; choose one of {}",
+                                          fmt::join(endings, ", ")));
+  ExportedComponents const exported = load_components_for_export(input);
+  ThreeComponentField const& field = exported.field;
+  write_three_components(output, field, exported.origin);
+  auto const valid = std::count(field.status.begin(), field.status.end(), VectorStatus::valid);
+  return {{{"file", output},
+           {"format", "gladstone stereo"},
+           {"vectors", field.size()},
+           {"valid", valid},
+           {"columns", field.x_mm.size()},
+           {"rows", field.y_mm.size()}},
+          fmt::format("{}: {} vectors of three components, {} valid", output, field.size(), valid)};
+}
+
+}  // namespace
 
 CommandBody attach_convert(CLI::App& app, GlobalOptions const& options) {
   struct Arguments {
@@ -22,8 +50,8 @@ CommandBody attach_convert(CLI::App& app, GlobalOptions const& options) {
   };
   auto arguments = std::make_shared<Arguments>();
   app.add_option("input", arguments->input,
-                 "Vectors of gladstone, OpenPIV, PIVlab, DaVis, Insight, Dantec, JPIV or any x,y,u,v; or truth.h5 of a "
-                 "case, for the true displacements of its dots or particles")
+                 "Vectors of gladstone, OpenPIV, PIVlab, DaVis, Insight, Dantec, JPIV or any x,y,u,v; truth.h5 of a "
+                 "case, for the true displacements of its dots or particles; or three components of gladstone stereo")
       ->required();
   app.add_option(
          "-o,--output", arguments->output,
@@ -43,6 +71,11 @@ CommandBody attach_convert(CLI::App& app, GlobalOptions const& options) {
     require_input_file(arguments->input, "a file of vectors");
     refuse_inputs_as_outputs({output}, {arguments->input});
     OutputFile const tried(output);
+    if (is_three_component_file(arguments->input)) {
+      auto const [json, text] = convert_three_components(arguments->input, output);
+      print_result(options, json_text(json), text);
+      return ok;
+    }
     ExportedVectors const vectors = load_for_export(arguments->input, arguments->conventions, arguments->image_rows);
     write_vectors(output, vectors.field, vectors.origin);
     std::size_t counted = 0;

@@ -78,8 +78,8 @@ CommandBody attach_stereo(CLI::App& app, GlobalOptions const& options) {
       "Determine the laser sheet from the disparity between the images of both cameras (Wieneke 2005), starting "
       "from --sheet-z and --sheet-slope");
   app.add_option("--images", given.images,
-                 "Images for --align, of the first and of the second camera in turn, two for each time; default: the "
-                 "frames of the cases")
+                 "Images for the disparity, of the first and of the second camera in turn, two for each time; default: "
+                 "the frames of the cases")
       ->expected(-1);
   app.add_option(
          "--dewarp", arguments->dewarp,
@@ -92,6 +92,10 @@ CommandBody attach_stereo(CLI::App& app, GlobalOptions const& options) {
   app.add_option("--window", given.window_px,
                  "Size of the interrogation windows, which correlates the errors of neighbouring vectors [px]; 0: "
                  "independent errors; default: the last window of [correlate]")
+      ->check(CLI::NonNegativeNumber);
+  app.add_option("--residual-limit", given.residual_limit,
+                 "Largest residual of the four equations, in standard uncertainties: vectors of larger ones are "
+                 "rejected, default 4; 0: accept all")
       ->check(CLI::NonNegativeNumber);
   app.add_flag("--no-figures", arguments->no_figures, "Draw no figure");
   return [arguments, &options] {

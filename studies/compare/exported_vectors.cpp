@@ -33,6 +33,15 @@ DisplacementField vectors_of_truth(GroundTruth const& truth) {
 
 }  // namespace
 
+ExportedComponents load_components_for_export(std::string const& path) {
+  ExportedComponents exported;
+  exported.origin.filetype = "gladstone three components";
+  exported.origin.sources.add("stereo", path, SourceFiles::Holds::datasets);
+  copy_provenance(Hdf5Reader(path), exported.origin);
+  exported.field = read_three_components(path);
+  return exported;
+}
+
 ExportedVectors load_for_export(std::string const& path, std::string const& conventions, int image_rows) {
   ExportedVectors vectors;
   vectors.origin.filetype = "gladstone vectors";

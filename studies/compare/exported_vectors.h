@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "analysis/vectors/three_components.h"
 #include "analysis/vectors/vector_file.h"
 
 namespace gladstone {
@@ -23,5 +24,14 @@ struct ExportedVectors {
 /// @param image_rows   number of rows of the image, for files that count y upwards from its last row; 0: unknown
 /// @throws DataError if the file cannot be read, or requires `image_rows` and it is 0
 ExportedVectors load_for_export(std::string const& path, std::string const& conventions, int image_rows);
+
+/// Three components of a file of gladstone stereo, with the provenance that a converted file stores.
+struct ExportedComponents {
+  ThreeComponentField field;
+  FileOrigin origin;
+};
+
+/// Reads three components for a file in another format. @throws DataError if the file cannot be read
+ExportedComponents load_components_for_export(std::string const& path);
 
 }  // namespace gladstone

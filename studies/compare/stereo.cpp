@@ -9,38 +9,24 @@
 #include <utility>
 
 #include "analysis/stereo/interpolated_field.h"
+#include "analysis/stereo/residual_validation.h"
 #include "render/base/error.h"
 #include "render/base/frame_pair.h"
 #include "render/base/not_a_number.h"
 #include "render/base/units.h"
-#include "render/files/hdf5_file.h"
 #include "render/files/image_file.h"
-#include "render/files/input_file.h"
 #include "render/files/stop_point.h"
-#include "studies/case/case.h"
-#include "studies/case/truth_file.h"
-#include "studies/compare/compared_files.h"
-#include "studies/compare/compared_vectors.h"
 #include "studies/compare/correlate.h"
 #include "studies/compare/stereo_alignment.h"
-#include "studies/compare/stereo_cameras.h"
+#include "studies/compare/stereo_input.h"
+#include "studies/compare/stereo_scores.h"
 #include "studies/compare/stereo_truth.h"
+#include "studies/compare/stereo_warnings.h"
 
 namespace gladstone {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Vectors, camera and truth of one input.
-struct StereoInput {
-  std::optional<CaseSetup> loaded;
-  MeasuredVectors vectors;
-  stereo::CalibratedCamera camera;
-  std::optional<GroundTruth> truth;
-  std::string path;         ///< of the vectors
-  std::string calibration;  ///< path; empty: the setup's exact camera
-  double window_px = 0.0;
-};
 
 void check_stereo_options(StereoOptions const& options) {
   std::vector<SetupProblem> problems;
@@ -58,96 +44,25 @@ void check_stereo_options(StereoOptions const& options) {
     problems.push_back({"--images", fmt::format("expected images of the first and of the second camera in turn, got an "
                                                 "odd number ({})",
                                                 options.images.size())});
-  if (!options.images.empty() && !options.align)
-    problems.push_back({"--images", "has no effect without --align; add that option"});
+  if (!(options.residual_limit >= 0.0 && std::isfinite(options.residual_limit)))
+    problems.push_back({"--residual-limit", "expected a positive number of standard uncertainties, or 0"});
   if (!problems.empty()) throw SetupError(std::move(problems));
 }
 
-/// Returns the images from which the sheet is determined.
-std::vector<std::string> find_alignment_images(StereoOptions const& options) {
+/// Returns the images from which the sheet is determined; empty without --align if the cases do not contain them.
+std::vector<std::string> find_sheet_images(StereoOptions const& options) {
   if (!options.images.empty()) return options.images;
   std::vector<std::string> images;
   for (char const* frame : {case_file::reference, case_file::flow})
     for (std::string const& place : options.inputs) {
       std::error_code error;
+      if (!options.align && !fs::exists(fs::path(place) / frame, error)) return {};
       if (!fs::is_directory(place, error))
         throw DataError(place,
                         "is a file of vectors, which contains no images; give those of both cameras with --images");
       images.push_back(in_case(place, frame));
     }
   return images;
-}
-
-void add_stereo_source(SourceFiles& sources, std::string const& name, std::string const& path) {
-  bool const is_hdf5 = path.ends_with(".h5") || path.ends_with(".hdf5");
-  sources.add(name, path, is_hdf5 ? SourceFiles::Holds::datasets : SourceFiles::Holds::bytes);
-}
-
-/// Reads the setup that a calibration stores, for the size of the images and the defaults of [correlate].
-CaseSetup load_calibrated_setup(std::string const& calibration) {
-  std::string const text = Hdf5Reader(calibration).attribute("setup");
-  if (text.empty()) throw DataError(calibration, "contains no setup; run gladstone calibrate again");
-  return load_case_setup(SetupDocument::from_text(text, calibration));
-}
-
-/// Locates the files of an input, adds them to the sources, and reads them.
-StereoInput read_stereo_input(StereoOptions const& options, std::size_t index, SourceFiles& sources) {
-  std::string const& place = options.inputs[index];
-  std::string const suffix = index == 0 ? "_a" : "_b";
-  StereoInput input;
-  if (!options.calibrations.empty()) {
-    input.calibration = options.calibrations[index];
-    require_input_file(input.calibration, "a calibration");
-    add_stereo_source(sources, "calibration" + suffix, input.calibration);
-    input.camera = read_calibrated_camera(input.calibration);
-  }
-  std::error_code error;
-  std::string truth;
-  if (fs::is_directory(place, error)) {
-    require_case(place);
-    std::string setup = in_case(place, case_file::setup);
-    input.path = in_case(place, case_file::vectors);
-    if (fs::exists(fs::path(place) / case_file::truth, error)) {
-      truth = options.dewarp_images ? in_case(place, case_file::truth) : compared_files(place, "").truth;
-      add_stereo_source(sources, "truth" + suffix, truth);
-    } else if (!options.dewarp_images && !fs::exists(input.path, error)) {
-      throw DataError(input.path, "does not exist; create it with: gladstone correlate " + place);
-    }
-    sources.add("", setup, SourceFiles::Holds::bytes);
-    input.loaded = load_case_setup(setup, {});
-  } else {
-    require_input_file(place, "a case folder or a file of vectors");
-    if (options.dewarp_images)
-      throw DataError(place,
-                      "is a file of vectors, but --dewarp images requires the frames of cases; give case folders, "
-                      "or remove the option");
-    if (input.calibration.empty())
-      throw DataError(place,
-                      "is a file of vectors, which contains no camera; give the calibration.h5 of both cameras "
-                      "with --calibration");
-    input.path = place;
-    input.loaded = load_calibrated_setup(input.calibration);
-  }
-  Setup const& setup = input.loaded->setup;
-  if (input.calibration.empty()) input.camera = find_exact_camera(setup, place);
-  if (!truth.empty() && setup.piv) input.truth = read_truth(truth);
-  if (options.dewarp_images) {
-    input.path = place;
-    input.vectors.settings = input.loaded->correlate;
-    input.window_px = options.window_px.value_or(input.vectors.settings.window_px.back());
-    return input;
-  }
-  add_stereo_source(sources, "vectors" + suffix, input.path);
-  CompareOptions reading;
-  reading.conventions = options.conventions;
-  input.vectors = load_vectors(input.path, *input.loaded, input.truth ? &*input.truth : nullptr, reading);
-  if (!input.vectors.report.empty()) spdlog::info("{}: {}", input.path, input.vectors.report);
-  input.window_px = options.window_px.value_or(input.vectors.settings.window_px.back());
-  if (!stereo::is_regular_grid(input.vectors.field))
-    throw DataError(input.path,
-                    "has no complete grid of vectors, in which invalid ones are marked or NaN; measure with a grid "
-                    "(for tracking, correlate.tracking.output = \"grid\")");
-  return input;
 }
 
 /// Correlates the frames of a case, dewarped onto a plane.
@@ -206,57 +121,25 @@ void require_same_particles(StereoInput const& a, StereoInput const& b, StereoOp
                   fmt::format("shows other particles than {}; give two cameras of one rendering", options.inputs[0]));
 }
 
-void warn_of_stereo_result(StereoMeasurement& result) {
-  constexpr double least_angle = 20 * unit::degree, largest_ratio = 2.0;
-  if (result.view_angle < least_angle)
-    result.warnings.push_back(
-        fmt::format("the angle between the views is {:.1f} degrees: the third component is {:.1f} times less certain "
-                    "than the others; 60 to 90 degrees are best",
-                    result.view_angle / unit::degree, 1.0 / std::tan(0.5 * result.view_angle)));
-  constexpr double largest_disparity_px = 0.05;
-  if (result.alignment && result.alignment->disparity_px.back() > largest_disparity_px)
-    result.warnings.push_back(
-        fmt::format("the position of the laser sheet has not converged: the residual disparity is {:.2f} px; use more "
-                    "images, or start closer to the sheet with --sheet-z and --sheet-slope",
-                    result.alignment->disparity_px.back()));
-  double const ratio = compute_residual_ratio(result.field);
-  if (ratio > largest_ratio)
-    result.warnings.push_back(fmt::format(
-        "the vectors of the two cameras disagree {:.1f} times more than their uncertainty explains: the "
-        "laser sheet is not in the assumed plane (try --align), the calibration has changed, or vectors are "
-        "wrong",
-        ratio));
-}
-
 }  // namespace
 
 std::array<ComponentErrors, 3> compute_stereo_errors(StereoMeasurement const& measurement) {
-  std::array<ComponentErrors, 3> errors;
-  for (int axis = 0; axis < 3; ++axis) {
-    ComponentErrors& component = errors[static_cast<std::size_t>(axis)];
-    double sum = 0.0, squares = 0.0, within = 0.0, with_sigma = 0.0;
-    for (std::size_t node = 0; node < measurement.field.nodes.size(); ++node) {
-      auto const& vector = measurement.field.nodes[node];
-      if (!vector || !std::isfinite(measurement.truth[node][axis])) continue;
-      double const error = vector->displacement[axis] - measurement.truth[node][axis], sigma = vector->sigma()[axis];
-      ++component.count;
-      sum += error;
-      squares += error * error;
-      with_sigma += std::isfinite(sigma) ? 1.0 : 0.0;
-      within += std::abs(error) <= sigma ? 1.0 : 0.0;
-    }
-    auto const count = static_cast<double>(component.count);
-    component.bias = component.count > 0 ? sum / count : not_a_number;
-    component.rms = component.count > 0 ? std::sqrt(squares / count) : not_a_number;
-    component.coverage = with_sigma > 0 ? within / with_sigma : not_a_number;
+  constexpr Vec3d unknown{not_a_number, not_a_number, not_a_number};
+  std::vector<Vec3d> error, sigma;
+  std::vector<VectorStatus> status;
+  for (std::size_t node = 0; node < measurement.field.nodes.size(); ++node) {
+    auto const& vector = measurement.field.nodes[node];
+    error.push_back(vector ? vector->displacement - measurement.truth[node] : unknown);
+    sigma.push_back(vector ? vector->sigma() : unknown);
+    status.push_back(vector ? vector->status : VectorStatus::invalid);
   }
-  return errors;
+  return compute_component_errors(error, sigma, status);
 }
 
 double compute_residual_ratio(stereo::StereoField const& field) {
   double squares = 0.0, count = 0.0;
   for (auto const& node : field.nodes) {
-    if (!node || !std::isfinite(node->residual_ratio)) continue;
+    if (!node || node->status != VectorStatus::valid || !std::isfinite(node->residual_ratio)) continue;
     squares += node->residual_ratio * node->residual_ratio;
     count += 1.0;
   }
@@ -278,10 +161,13 @@ StereoMeasurement measure_stereo(StereoOptions const& options, Backend const& de
                                 options.inputs[0], result.view_angle / unit::degree));
   stop_point("reconstructing");
   stereo::ObjectPlane plane = options.plane;
+  std::vector<std::string> const images = find_sheet_images(options);
+  std::array<PinholeCamera const*, 2> const cameras{&a.camera.camera, &b.camera.camera};
   if (options.align) {
-    result.alignment = align_sheet_of_files(find_alignment_images(options), {&a.camera.camera, &b.camera.camera}, plane,
-                                            result.sources);
+    result.alignment = align_sheet_of_files(images, cameras, plane, result.sources);
     plane = result.alignment->fit.plane;
+  } else if (!images.empty()) {
+    result.given_sheet = measure_disparity(images, cameras, plane, result.sources);
   }
   result.pixel_size =
       0.5 * (stereo::find_pixel_size(a.camera.camera, plane) + stereo::find_pixel_size(b.camera.camera, plane));
@@ -301,6 +187,7 @@ StereoMeasurement measure_stereo(StereoOptions const& options, Backend const& de
   if (!any)
     throw NoValidVector(options.inputs[1],
                         fmt::format("and {} have no valid vectors at the same place", options.inputs[0]));
+  result.field = stereo::reject_large_residuals(std::move(result.field), options.residual_limit);
   if (a.truth && b.truth) {
     double const per_metre = 1.0 / result.pixel_size;
     Vec2d const scale = options.dewarp_images ? Vec2d{per_metre, per_metre}
@@ -312,7 +199,7 @@ StereoMeasurement measure_stereo(StereoOptions const& options, Backend const& de
   result.window_px = {a.window_px, b.window_px};
   result.setup = a.loaded->document.resolved();
   result.seed = a.loaded->setup.render.seed;
-  warn_of_stereo_result(result);
+  result.warnings = find_stereo_warnings(result);
   for (std::string const& warning : result.warnings) spdlog::warn("{}", warning);
   return result;
 }

@@ -20,10 +20,11 @@ struct StereoOptions {
   std::optional<std::string> conventions;  ///< of the vectors, as given by the user; empty: those of the file's format
   stereo::ObjectPlane plane;               ///< middle of the laser sheet, with `align` the first assumption
   bool dewarp_images = false;              ///< correlate the dewarped frames of the cases, instead of reading vectors
-  bool align = false;                      ///< determine the sheet from images
-  /// images of the first and of the second camera in turn, two for each time; empty: both frames of the cases
+  bool align = false;                      ///< determine the sheet from images; false: only measure the disparity
+  /// images of the first and of the second camera in turn, two for each time; empty: both frames of the cases, if any
   std::vector<std::string> images;
   double spacing = 0.0;             ///< distance between nodes [m]; 0: mean distance of the vectors
+  double residual_limit = 4.0;      ///< see stereo::reject_large_residuals() [1]; 0: accept all vectors
   std::optional<double> window_px;  ///< size of the interrogation windows [px]; empty: [correlate]
 };
 
@@ -39,6 +40,8 @@ struct StereoMeasurement {
   /// fewer than three particles; empty: unknown.
   std::vector<Vec3d> truth;
   std::optional<stereo::SheetAlignment> alignment;  ///< empty: the sheet was given
+  /// disparity of the given sheet between the images of both cameras; empty: with `alignment`, or without images
+  std::optional<stereo::SheetAlignment> given_sheet;
   std::vector<std::string> warnings;
   std::string setup;         ///< resolved setup of the first camera
   std::uint64_t seed = 0;    ///< of the rendering
@@ -52,11 +55,11 @@ struct ComponentErrors {
   double coverage = 0.0;         ///< fraction of errors within sigma [1]; NaN: vectors without uncertainty
 };
 
-/// Computes the errors of u, v and w over all nodes with a displacement and a truth.
+/// Computes the errors of u, v and w over all nodes with a valid displacement and a truth.
 /// @pre measurement.truth is not empty
 std::array<ComponentErrors, 3> compute_stereo_errors(StereoMeasurement const& measurement);
 
-/// Computes the root mean square of StereoVector::residual_ratio; NaN: vectors without uncertainty.
+/// Computes the root mean square of StereoVector::residual_ratio of valid vectors; NaN: vectors without uncertainty.
 double compute_residual_ratio(stereo::StereoField const& field);
 
 /// Reads vectors and cameras, and reconstructs three components. If both inputs are cases of one PIV setup, also

@@ -63,4 +63,16 @@ stereo::SheetAlignment align_sheet_of_files(std::vector<std::string> const& imag
   return alignment;
 }
 
+std::optional<stereo::SheetAlignment> measure_disparity(std::vector<std::string> const& images,
+                                                        std::array<PinholeCamera const*, 2> const& cameras,
+                                                        stereo::ObjectPlane const& plane, SourceFiles& sources) {
+  std::vector<stereo::SimultaneousImages> const read = read_simultaneous_images(images, sources);
+  try {
+    return stereo::align_sheet(cameras, read, plane, choose_disparity_settings(read.front()), 1);
+  } catch (DataError const& error) {
+    spdlog::info("the disparity between the cameras is unknown: {}", error.what());
+    return std::nullopt;
+  }
+}
+
 }  // namespace gladstone

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,5 +18,13 @@ namespace gladstone {
 stereo::SheetAlignment align_sheet_of_files(std::vector<std::string> const& images,
                                             std::array<PinholeCamera const*, 2> const& cameras,
                                             stereo::ObjectPlane const& plane, SourceFiles& sources);
+
+/// Measures the disparity of the assumed plane between images of both cameras, without aligning it.
+/// @param images, sources  as for align_sheet_of_files()
+/// @return nullopt if the images do not determine the disparity
+/// @throws DataError if an image is missing or unreadable, or the images of a camera differ in size
+std::optional<stereo::SheetAlignment> measure_disparity(std::vector<std::string> const& images,
+                                                        std::array<PinholeCamera const*, 2> const& cameras,
+                                                        stereo::ObjectPlane const& plane, SourceFiles& sources);
 
 }  // namespace gladstone

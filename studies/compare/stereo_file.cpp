@@ -9,6 +9,7 @@
 #include <span>
 
 #include "analysis/errors/error_summary.h"
+#include "analysis/stereo/residual_validation.h"
 #include "render/base/not_a_number.h"
 #include "render/base/units.h"
 #include "render/files/hdf5_file.h"
@@ -65,6 +66,16 @@ void write_node_positions(Hdf5Writer& file, stereo::NodeGrid const& grid) {
   file.write("/y_mm", std::span<double const>(y_mm), {y_mm.size()}, "mm", "Y of the nodes in the world frame", "row");
 }
 
+void write_stereo_status(Hdf5Writer& file, stereo::StereoField const& field) {
+  std::vector<std::int64_t> status;
+  for (StereoNode const& node : field.nodes)
+    status.push_back(static_cast<std::int64_t>(node ? node->status : VectorStatus::invalid));
+  file.write("/status", std::span<std::int64_t const>(status),
+             {static_cast<std::size_t>(field.grid.rows), static_cast<std::size_t>(field.grid.columns)}, "1",
+             "0 valid, 3 invalid: not determined (displacement NaN), or the residual exceeds its limit",
+             "row (y upwards), column (x)");
+}
+
 void write_stereo_truth(NodeWriter& nodes, StereoMeasurement const& measurement) {
   std::vector<double> truth, error;
   for (std::size_t i = 0; i < measurement.truth.size(); ++i) {
@@ -101,24 +112,27 @@ void write_stereo_attributes(Hdf5Writer& file, StereoMeasurement const& measurem
   file.attribute("/", "view_angle_deg", measurement.view_angle / unit::degree);
   file.attribute("/", "window_a_px", measurement.window_px[0]);
   file.attribute("/", "window_b_px", measurement.window_px[1]);
+  if (measurement.given_sheet) file.attribute("/", "disparity_px", measurement.given_sheet->disparity_px.front());
   if (!measurement.alignment) return;
   file.attribute("/", "disparity_px", measurement.alignment->disparity_px.front());
   file.attribute("/", "residual_disparity_px", measurement.alignment->disparity_px.back());
 }
 
-/// Statistics of one component over the determined nodes [m].
+/// Statistics of one component over the valid nodes [m].
 struct ComponentStatistics {
   std::size_t count = 0;
   double mean = not_a_number, deviation = not_a_number;
   double sigma = not_a_number;  ///< median standard uncertainty; NaN: vectors without uncertainty
 };
 
+bool is_valid(StereoNode const& node) { return node && node->status == VectorStatus::valid; }
+
 ComponentStatistics find_component_statistics(stereo::StereoField const& field, std::size_t k) {
   ComponentStatistics statistics;
   double sum = 0.0, squares = 0.0;
   std::vector<double> sigma;
   for (StereoNode const& node : field.nodes) {
-    if (!node) continue;
+    if (!is_valid(node)) continue;
     ++statistics.count;
     sum += pick_component(node->displacement, k);
     if (double const one = pick_component(node->sigma(), k); std::isfinite(one)) sigma.push_back(one);
@@ -127,7 +141,7 @@ ComponentStatistics find_component_statistics(stereo::StereoField const& field, 
   auto const count = static_cast<double>(statistics.count);
   statistics.mean = sum / count;
   for (StereoNode const& node : field.nodes)
-    if (node) squares += std::pow(pick_component(node->displacement, k) - statistics.mean, 2);
+    if (is_valid(node)) squares += std::pow(pick_component(node->displacement, k) - statistics.mean, 2);
   statistics.deviation = std::sqrt(squares / count);
   if (!sigma.empty()) statistics.sigma = quantile(sigma, 0.5);
   return statistics;
@@ -166,6 +180,7 @@ void write_stereo(std::string const& path, StereoMeasurement const& measurement)
               "u of camera A, v of camera A, u of camera B, v of camera B", [](StereoVector const& v, std::size_t k) {
                 return std::array{v.image_a_px.x, v.image_a_px.y, v.image_b_px.x, v.image_b_px.y}[k];
               });
+  write_stereo_status(file, measurement.field);
   if (!measurement.truth.empty()) write_stereo_truth(nodes, measurement);
   write_stereo_attributes(file, measurement);
   file.close();
@@ -179,6 +194,7 @@ nlohmann::ordered_json summarize_stereo(StereoMeasurement const& measurement) {
                     {"columns", field.grid.columns},
                     {"rows", field.grid.rows},
                     {"determined", find_component_statistics(field, 0).count},
+                    {"rejected", stereo::count_rejected(field)},
                     {"spacing_mm", field.grid.spacing / unit::mm},
                     {"pixel_size_mm", measurement.pixel_size / unit::mm},
                     {"view_angle_deg", measurement.view_angle / unit::degree},
@@ -191,6 +207,9 @@ nlohmann::ordered_json summarize_stereo(StereoMeasurement const& measurement) {
                                 {"sigma_mm", number_or_null(statistics.sigma / unit::mm)}};
   }
   if (measurement.alignment) json["sheet"] = summarize_alignment(*measurement.alignment);
+  if (measurement.given_sheet)
+    json["given_sheet"] = {{"disparity_px", number_or_null(measurement.given_sheet->disparity_px.front())},
+                           {"scatter_px", number_or_null(measurement.given_sheet->scatter_px)}};
   if (measurement.truth.empty()) return json;
   auto const errors = compute_stereo_errors(measurement);
   for (std::size_t k = 0; k < 3; ++k)
@@ -217,6 +236,7 @@ std::string stereo_report(StereoMeasurement const& measurement) {
   text += fmt::format("  residual of the four equations: median {:.3g} px", find_median_residual(field));
   if (double const ratio = compute_residual_ratio(field); std::isfinite(ratio))
     text += fmt::format(", rms {:.2f} times its standard uncertainty", ratio);
+  text += fmt::format("; {} vectors rejected", stereo::count_rejected(field));
   text += '\n';
   if (measurement.alignment) {
     stereo::SheetAlignment const& alignment = *measurement.alignment;

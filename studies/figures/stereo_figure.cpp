@@ -19,6 +19,8 @@ Image<double> make_node_map(stereo::NodeGrid const& grid, std::function<double(s
   return map;
 }
 
+bool is_valid(std::optional<stereo::StereoVector> const& node) { return node && node->status == VectorStatus::valid; }
+
 }  // namespace
 
 void write_stereo_figure(std::string const& path, StereoMeasurement const& measurement) {
@@ -34,7 +36,8 @@ void write_stereo_figure(std::string const& path, StereoMeasurement const& measu
                              make_node_map(grid,
                                            [&](std::size_t node) {
                                              auto const& vector = field.nodes[node];
-                                             return vector ? vector->displacement[axis] / unit::mm : not_a_number;
+                                             return is_valid(vector) ? vector->displacement[axis] / unit::mm
+                                                                     : not_a_number;
                                            }),
                              ColourScale::sequential});
   if (!measurement.truth.empty())
@@ -43,10 +46,10 @@ void write_stereo_figure(std::string const& path, StereoMeasurement const& measu
                                make_node_map(grid,
                                              [&](std::size_t node) {
                                                auto const& vector = field.nodes[node];
-                                               return vector ? (vector->displacement[axis] -
-                                                                measurement.truth[node][axis]) /
-                                                                   measurement.pixel_size
-                                                             : not_a_number;
+                                               return is_valid(vector) ? (vector->displacement[axis] -
+                                                                          measurement.truth[node][axis]) /
+                                                                             measurement.pixel_size
+                                                                       : not_a_number;
                                              }),
                                ColourScale::diverging, "error"});
   figure.panels.push_back({"residual of the four equations [px]",

@@ -96,7 +96,7 @@ std::string vtk_base64(std::vector<double> const& values) {
 
 TEST_F(VectorWriters, TecplotHasOneRowPerVectorAndZerosForUnknownValues) {
   EXPECT_EQ(content(write("v.dat", scattered_pair())),
-            "TITLE = \"gladstone vectors, y and v downwards, 0: not known\"\n"
+            "TITLE = \"gladstone vectors, px, y and v downwards, 0: not known\"\n"
             "VARIABLES = \"x_px\" \"y_px\" \"u_px\" \"v_px\" \"status\" \"u_raw_px\" \"v_raw_px\" \"reason\" "
             "\"ambiguous\"\n"
             "ZONE T=\"vectors\", I=2, J=1, DATAPACKING=POINT\n"
@@ -126,6 +126,28 @@ TEST_F(VectorWriters, TecplotComesBack) {
   }
   EXPECT_TRUE(std::isnan(back.field.displacement_px[4].x));
   EXPECT_TRUE(std::isnan(back.field.sigma_px[4].y));
+}
+
+// Numbers with 17 significant digits come back to the bit: also the origin of the vectors.
+TEST_F(VectorWriters, TecplotComesBackWithTheOriginOfTheVectors) {
+  DisplacementField field = numbered_grid();
+  for (std::size_t i = 0; i < field.size(); ++i) {
+    field.correlation.push_back(1.0 / (3.0 + static_cast<double>(i)));
+    field.raw_px.push_back({0.1 * static_cast<double>(i), 1.0 / 7.0});
+    field.reason.push_back(VectorReason::measured);
+    field.ambiguous.push_back(i == 2 ? Ambiguity::here : Ambiguity::none);
+  }
+  field.status[3] = VectorStatus::replaced;
+  field.reason[3] = VectorReason::neighbours;
+  field.correlation[5] = nan;
+  DisplacementField const back = read_vectors(write("v.dat", field)).field;
+  ASSERT_EQ(back.correlation.size(), field.size());
+  for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(back.correlation[i], field.correlation[i]);
+  EXPECT_TRUE(std::isnan(back.correlation[5]));
+  EXPECT_EQ(back.raw_px, field.raw_px);
+  EXPECT_EQ(back.reason, field.reason);
+  EXPECT_EQ(back.ambiguous, field.ambiguous);
+  EXPECT_EQ(back.status, field.status);
 }
 
 TEST_F(VectorWriters, Hdf5NamesTheAxesOfItsGrids) {

@@ -138,10 +138,28 @@ TEST_F(DocumentedFiles, OfAStereoMeasurementHoldWhatTheirTablesName) {
   for (char const* attribute : {"sheet_z_mm", "sheet_slope_x", "sheet_slope_y", "pixel_size_mm", "view_angle_deg",
                                 "window_a_px", "window_b_px", "vectors_a_sha256", "truth_b_sha256"})
     EXPECT_NE(file.attribute(attribute), "") << attribute;
-  for (char const* key :
-       {"vectors", "calibrations", "columns", "rows", "determined", "spacing_mm", "pixel_size_mm", "view_angle_deg",
-        "residual_px", "residual_ratio", "u.mean_mm", "v.deviation_mm", "w.sigma_mm", "error.u.count",
-        "error.v.bias_px", "error.w.rms_px", "error.w.rms_mm", "error.w.coverage", "file"})
+  for (char const* key : {"vectors",
+                          "calibrations",
+                          "columns",
+                          "rows",
+                          "determined",
+                          "rejected",
+                          "given_sheet.disparity_px",
+                          "given_sheet.scatter_px",
+                          "spacing_mm",
+                          "pixel_size_mm",
+                          "view_angle_deg",
+                          "residual_px",
+                          "residual_ratio",
+                          "u.mean_mm",
+                          "v.deviation_mm",
+                          "w.sigma_mm",
+                          "error.u.count",
+                          "error.v.bias_px",
+                          "error.w.rms_px",
+                          "error.w.rms_mm",
+                          "error.w.coverage",
+                          "file"})
     EXPECT_TRUE(has_path(summary, key)) << key;
 }
 

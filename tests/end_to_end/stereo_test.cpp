@@ -1,6 +1,8 @@
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include "analysis/vectors/three_components.h"
 #include "studies/case/case.h"
 #include "studies/compare/stereo_cameras.h"
 #include "tests/end_to_end/support/program_fixture.h"
@@ -9,12 +11,12 @@ namespace gladstone::end_to_end {
 namespace {
 
 /// Two cameras at 750 mm from a sheet, at an angle to either side of its normal: 16.28 px/mm.
-std::string stereo_setup(double degrees, std::string const& velocity) {
+std::string stereo_setup(double degrees, std::string const& velocity, std::string const& camera_keys = "") {
   double const angle = degrees * std::numbers::pi / 180;
   auto const camera = [&](char const* name, double side) {
     return std::string("[[camera]]\nname = \"") + name + "\"\npixels = [128, 128]\npixel_pitch_um = 10.0\n" +
            "pose.position_mm = [" + std::to_string(side * 750 * std::sin(angle)) + ", 0.0, " +
-           std::to_string(750 * std::cos(angle)) + "]\nsensor.scheimpflug = \"auto\"\n";
+           std::to_string(750 * std::cos(angle)) + "]\nsensor.scheimpflug = \"auto\"\n" + camera_keys;
   };
   return "schema = 1\nexperiment = \"piv\"\n" + camera("left", -1) + camera("right", 1) + R"(
 [lens]
@@ -40,8 +42,9 @@ uncertainty = "correlation_statistics"
 
 class Stereo : public ProgramFixture {
  protected:
-  void measure(double degrees, std::string const& velocity) const {
-    write("setup.toml", stereo_setup(degrees, velocity));
+  /// @param camera_keys  additional keys of both cameras
+  void measure(double degrees, std::string const& velocity, std::string const& camera_keys = "") const {
+    write("setup.toml", stereo_setup(degrees, velocity, camera_keys));
     render("case");
     for (char const* camera : {"case/left", "case/right"}) succeed({"correlate", camera, "--quiet"});
   }
@@ -146,6 +149,97 @@ TEST_F(Stereo, FindsAMisalignedSheet) {
                  {"--images"});
 }
 
+/// Returns whether a warning contains a piece of text.
+bool warns_of(nlohmann::json const& result, std::string const& piece) {
+  for (auto const& warning : result.value("warnings", nlohmann::json::array()))
+    if (warning.get<std::string>().find(piece) != std::string::npos) return true;
+  return false;
+}
+
+// A plane assumed 0.5 mm off the sheet: the disparity is 0.5 mm times 2 tan 40 over the size of a pixel, 0.0614 mm /
+// sqrt(cos 40): 12 px.
+TEST_F(Stereo, WarnsOfADisplacedSheet) {
+  measure(40, "[15.0, -12.0, 10.0]");
+  auto const placed = combine();
+  EXPECT_FALSE(warns_of(placed, "--align")) << placed["warnings"];
+  auto const displaced = combine({"--sheet-z", "0.5"});
+  EXPECT_TRUE(warns_of(displaced, "use --align"));
+  EXPECT_NEAR(displaced["given_sheet"]["disparity_px"].get<double>(), 12.0, 1.0);
+}
+
+// At 45 degrees and with few electrons a part of the vectors belongs to wrong correlation peaks. Most of them differ
+// between the cameras, so that the residual detects them.
+TEST_F(Stereo, RejectsVectorsOnWhichTheCamerasDisagree) {
+  measure(45, "[15.0, -12.0, 10.0]", "noise.full_well_e = 40\nnoise.read_noise_e = 8.0\n");
+  combine({"--residual-limit", "0"});
+  auto const all = json_of({"compare", "uvw.h5", "--quiet"});
+  auto const checked = combine();
+  auto const score = json_of({"compare", "uvw.h5", "--quiet"});
+  EXPECT_EQ(all["rejected"], 0);
+  EXPECT_GT(all["gross"].get<int>(), 10) << all;
+  EXPECT_LT(score["gross"].get<int>(), all["gross"].get<int>() / 2) << score;
+  EXPECT_EQ(score["gross"].get<int>() + score["gross_rejected"].get<int>(), all["gross"].get<int>());
+  EXPECT_EQ(score["rejected"], checked["rejected"]);
+  EXPECT_EQ(score["error"], checked["error"]);
+  EXPECT_TRUE(warns_of(checked, "are rejected")) << checked;
+  std::vector<double> const status = dataset("/status");
+  EXPECT_EQ(std::count(status.begin(), status.end(), 0.0), score["valid"].get<int>());
+}
+
+TEST_F(Stereo, DewarpedImagesHaveAnUncertaintyWithoutSetting) {
+  std::string const text = with(stereo_setup(30, "[5.0, -4.0, 1.0]"), "uncertainty = \"correlation_statistics\"\n", "");
+  write("setup.toml", text);
+  render("case");
+  for (char const* camera : {"case/left", "case/right"}) succeed({"correlate", camera, "--quiet"});
+  auto const vectors = combine();
+  EXPECT_TRUE(vectors["w"]["sigma_mm"].is_null());
+  EXPECT_TRUE(warns_of(vectors, "correlate.uncertainty"));
+  auto const images = combine({"--dewarp", "images"});
+  EXPECT_GT(images["w"]["sigma_mm"].get<double>(), 0);
+  EXPECT_FALSE(warns_of(images, "correlate.uncertainty"));
+}
+
+// A pane of 3 mm moves the images by some 20 px. Cameras that were calibrated through it measure as without it: within
+// 0.02 px, beyond three standard errors of the mean.
+TEST_F(Stereo, CalibrationsThroughAWindowAccountForIt) {
+  std::string const window = "[[window]]\nposition_mm = [0.0, 0.0, 100.0]\nthickness_mm = 3.0\n";
+  std::string const text = stereo_setup(45, "[15.0, -12.0, 10.0]") + window;
+  write("setup.toml", text);
+  render("case", {"--set", "render.rays_per_dot=8"});
+  for (char const* camera : {"case/left", "case/right"}) succeed({"correlate", camera, "--quiet"});
+  std::string const cameras = text.substr(0, text.find("[particles]"));
+  write("plates.toml", with(cameras, "\"piv\"", "\"calibration\"") + window +
+                           "[calibration]\nplanes_mm = [-2.0, 0.0, 2.0]\nspacing_mm = 0.8\ndot_diameter_mm = 0.4\n"
+                           "extent_mm = [16.0, 12.0]\n[render]\nrays_per_dot = 512\n");
+  succeed({"render", "plates.toml", "-o", "plates", "--quiet"});
+  for (char const* camera : {"plates/left", "plates/right"}) succeed({"calibrate", camera, "--no-figures", "--quiet"});
+  auto const result = combine({"--calibration", "plates/left/calibration.h5", "plates/right/calibration.h5"});
+  EXPECT_GT(result["determined"].get<int>(), 12) << result;
+  for (char const* component : {"u", "v", "w"}) {
+    auto const& error = result["error"][component];
+    double const count = error["count"], rms = error["rms_px"];
+    EXPECT_LT(std::abs(error["bias_px"].get<double>()), 0.02 + 3 * rms / std::sqrt(count / 4)) << component << error;
+  }
+}
+
+TEST_F(Stereo, ThreeComponentsAreConvertedAndScored) {
+  measure(30, "[5.0, -4.0, 1.0]");
+  auto const result = combine();
+  auto const score = json_of({"compare", "uvw.h5", "--quiet"});
+  EXPECT_EQ(score["error"], result["error"]);
+  EXPECT_EQ(score["valid"], result["determined"]);
+  for (std::string const& ending : three_component_extensions()) {
+    auto const json = json_of({"convert", "uvw.h5", "-o", "uvw" + ending, "--quiet"});
+    EXPECT_EQ(json["columns"], result["columns"]) << ending;
+    EXPECT_EQ(json["valid"], result["determined"]) << ending;
+  }
+  std::vector<double> displacement = dataset("/displacement_mm");
+  std::vector<double> const w = Hdf5Reader(in("uvw.nc").string()).read("/w");
+  for (std::size_t i = 0; i < w.size(); ++i) EXPECT_TRUE(w[i] == displacement[3 * i + 2] || std::isnan(w[i]));
+  expect_refused({"convert", "uvw.h5", "-o", "other.h5"}, 2, {"other.h5", ".vtp"});
+  expect_refused({"compare", "uvw.h5", "--vectors", "v.csv"}, 2, {"--vectors"});
+}
+
 TEST_F(Stereo, RefusesWhatItCannotCombine) {
   measure(40, "[15.0, -12.0, 10.0]");
   write_calibration("a.h5", "case/left", 1e-3);
@@ -166,6 +260,13 @@ TEST_F(Stereo, RefusesWhatItCannotCombine) {
   refused({"case/left", "none", "-o", "uvw.h5"}, {"none"});
   refused({"case/left", "case/right", "--spacing", "-1", "-o", "uvw.h5"}, {"--spacing"});
   refused({"case/left", "case/right", "--sheet-z", "nan", "-o", "uvw.h5"}, {"--sheet-z"});
+  refused({"case/left", "case/right", "--residual-limit", "-1", "-o", "uvw.h5"}, {"--residual-limit"});
+  write("behind.toml", stereo_setup(40, "[15.0, -12.0, 10.0]") + "[[window]]\nposition_mm = [0.0, 0.0, 100.0]\n");
+  succeed({"render", "behind.toml", "-o", "behind", "--set", "render.rays_per_dot=4", "--quiet"});
+  succeed({"correlate", "behind/left", "--quiet"});
+  refused({"behind/left", "behind/right", "-o", "uvw.h5"}, {"windows", "--calibration"});
+  refused({"behind/left", "behind/right", "--calibration", "a.h5", "b.h5", "-o", "uvw.h5"},
+          {"a.h5", "calibrate through the same windows"});
   render("other", {"--set", "particles.seed=2"});
   succeed({"correlate", "other/right", "--quiet"});
   refused({"case/left", "other/right", "-o", "uvw.h5"}, {"other particles"});

@@ -130,6 +130,17 @@ VectorFile read_gladstone_tecplot(TextTable const& table) {
     if (!field.sigma_px.empty()) field.sigma_px[i] = {known(field.sigma_px[i].x), known(field.sigma_px[i].y)};
     if (!field.peak_ratio.empty()) field.peak_ratio[i] = known(field.peak_ratio[i]);
   }
+  if (table.find({"u_raw_px"}) && table.find({"v_raw_px"}) && table.find({"reason"})) {
+    std::vector<double> const unknown(field.size(), 0.0);
+    add_origin(
+        field, [&](std::string const& name) { return table.find({name}) ? table.column({name}) : unknown; },
+        [&](std::size_t i) {
+          return std::pair(fmt::format("{}:{}", table.path, table.line[i]), std::string("reason"));
+        });
+    for (double& correlation : field.correlation) correlation = correlation != 0.0 ? correlation : not_a_number;
+    for (std::size_t i = 0; i < field.size(); ++i)
+      if (!field.counts(i) && field.raw_px[i] == Vec2d{}) field.raw_px[i] = {not_a_number, not_a_number};
+  }
   file.format = "gladstone";
   file.foreign = false;
   file.notes.clear();

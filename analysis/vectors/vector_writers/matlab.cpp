@@ -55,24 +55,28 @@ std::string matrix_element(VectorColumn const& column, std::size_t rows, std::si
 
 }  // namespace
 
-void write_vector_matlab(std::string const& path, DisplacementField const& field, FileOrigin const& origin) {
+void write_matlab_table(std::string const& path, VectorTable const& table, FileOrigin const& origin) {
   constexpr std::size_t most = std::numeric_limits<std::int32_t>::max() / sizeof(double) - 64;
-  if (field.size() > most) {
+  if (table.rows() > most) {
     throw OutputError(path, fmt::format("cannot store {} vectors (MATLAB's level 5 format is limited to 2 GiB per "
                                         "matrix); write .h5",
-                                        field.size()));
+                                        table.rows()));
   }
-  bool const grid = field.columns > 0;
-  std::size_t const rows = grid ? static_cast<std::size_t>(field.rows) : field.size();
-  std::size_t const columns = grid ? static_cast<std::size_t>(field.columns) : 1;
-  std::string bytes = fmt::format("MATLAB 5.0 MAT-file, gladstone {} vectors, px, y and v downwards", version);
+  bool const grid = table.grid_columns > 0;
+  std::size_t const rows = grid ? static_cast<std::size_t>(table.grid_rows) : table.rows();
+  std::size_t const columns = grid ? static_cast<std::size_t>(table.grid_columns) : 1;
+  std::string bytes = fmt::format("MATLAB 5.0 MAT-file, gladstone {} vectors, {}", version, table.remark);
   constexpr std::size_t text_bytes = 116, subsystem_bytes = 8;
   bytes.resize(text_bytes, ' ');
   bytes.append(subsystem_bytes, '\0');
   append_value(bytes, std::uint16_t{0x0100});
   append_value(bytes, std::uint16_t{'M' << 8 | 'I'});
-  for (VectorColumn const& column : vector_columns(field)) bytes += matrix_element(column, rows, columns);
+  for (VectorColumn const& column : table.columns) bytes += matrix_element(column, rows, columns);
   write_vector_bytes(path, bytes, origin);
+}
+
+void write_vector_matlab(std::string const& path, DisplacementField const& field, FileOrigin const& origin) {
+  write_matlab_table(path, vector_table(field), origin);
 }
 
 }  // namespace gladstone::detail

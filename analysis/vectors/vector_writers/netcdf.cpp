@@ -8,15 +8,6 @@
 namespace gladstone::detail {
 namespace {
 
-/// Variable of the file: its name, the column that it stores, and its attributes.
-struct NetcdfVariable {
-  char const* name;
-  char const* column;
-  char const* units;
-  char const* long_name;
-  char const* standard_name;  ///< empty: none
-};
-
 constexpr std::array netcdf_variables{
     NetcdfVariable{"u", "u_px", "pix", "displacement to the right", "u_velocity"},
     NetcdfVariable{"v", "v_px", "pix", "displacement downwards", "v_velocity"},
@@ -29,10 +20,10 @@ constexpr std::array netcdf_variables{
 /// Writes variables over (y, x, t), with one frame.
 class NetcdfFile {
  public:
-  NetcdfFile(std::string const& path, FileOrigin const& origin, VectorGrid const& grid)
-      : file_(path, origin), shape_{grid.y.size(), grid.x.size(), 1} {
-    write_axis("x", grid.x, "pix", "column, pixel centres at integers from 0");
-    write_axis("y", grid.y, "pix", "row, downwards");
+  NetcdfFile(std::string const& path, FileOrigin const& origin, NetcdfAxes const& axes)
+      : file_(path, origin), shape_{axes.grid.y.size(), axes.grid.x.size(), 1} {
+    write_axis("x", axes.grid.x, axes.units, axes.x_description);
+    write_axis("y", axes.grid.y, axes.units, axes.y_description);
     write_axis("t", {0.0}, "frame", "number of the frame");
   }
 
@@ -66,16 +57,22 @@ class NetcdfFile {
 
 }  // namespace
 
-void write_vector_netcdf(std::string const& path, DisplacementField const& field, FileOrigin const& origin) {
-  std::vector<VectorColumn> const columns = vector_columns(field);
-  NetcdfFile file(path, origin, require_vector_grid(field, path, "PIVPy's schema"));
-  for (NetcdfVariable const& variable : netcdf_variables) {
-    file.write(variable, column_named(columns, variable.column).values);
+void write_netcdf_table(std::string const& path, VectorTable const& table, NetcdfAxes const& axes,
+                        std::span<NetcdfVariable const> variables, FileOrigin const& origin) {
+  NetcdfFile file(path, origin, axes);
+  for (NetcdfVariable const& variable : variables) {
+    file.write(variable, column_named(table.columns, variable.column).values);
   }
-  std::vector<double> counts(field.size());
-  for (std::size_t i = 0; i < counts.size(); ++i) counts[i] = field.counts(i) ? 1.0 : 0.0;
+  std::vector<double> counts = column_named(table.columns, "status").values;
+  for (double& code : counts) code = code <= static_cast<double>(VectorStatus::replaced) ? 1.0 : 0.0;
   file.write({"chc", "", "1", "1: valid or replaced, 0: masked or invalid", "validity_flag"}, counts);
   file.close(path);
+}
+
+void write_vector_netcdf(std::string const& path, DisplacementField const& field, FileOrigin const& origin) {
+  NetcdfAxes const axes{require_vector_grid(field, path, "PIVPy's schema"), "pix",
+                        "column, pixel centres at integers from 0", "row, downwards"};
+  write_netcdf_table(path, vector_table(field), axes, netcdf_variables, origin);
 }
 
 }  // namespace gladstone::detail

@@ -34,28 +34,35 @@ void write_vector_bytes(std::string const& path, std::string const& bytes, FileO
   file.commit();
 }
 
-void write_vector_csv(std::string const& path, DisplacementField const& field, FileOrigin const& origin) {
-  std::vector<VectorColumn> const columns = vector_columns(field);
+void write_csv_table(std::string const& path, VectorTable const& table, FileOrigin const& origin) {
   std::string text;
-  for (VectorColumn const& column : columns) text += (text.empty() ? "" : ",") + column.name;
+  for (VectorColumn const& column : table.columns) text += (text.empty() ? "" : ",") + column.name;
   text += '\n';
-  append_rows(text, columns, field.size(), ',');
+  append_rows(text, table.columns, table.rows(), ',');
   write_vector_bytes(path, text, origin);
 }
 
-void write_vector_tecplot(std::string const& path, DisplacementField const& field, FileOrigin const& origin) {
-  std::vector<VectorColumn> columns = vector_columns(field);
+void write_tecplot_table(std::string const& path, VectorTable const& table, FileOrigin const& origin) {
+  std::vector<VectorColumn> columns = table.columns;
   std::erase_if(columns, [](VectorColumn const& column) { return !column.is_known(); });
-  std::string text = "TITLE = \"gladstone vectors, y and v downwards, 0: not known\"\nVARIABLES =";
+  std::string text = fmt::format("TITLE = \"gladstone vectors, {}, 0: not known\"\nVARIABLES =", table.remark);
   for (VectorColumn& column : columns) {
     text += " \"" + column.name + '"';
     for (double& value : column.values) value = std::isfinite(value) ? value : 0.0;
   }
-  bool const grid = field.columns > 0;
+  bool const grid = table.grid_columns > 0;
   text += fmt::format("\nZONE T=\"vectors\", I={}, J={}, DATAPACKING=POINT\n",
-                      grid ? static_cast<std::size_t>(field.columns) : field.size(), grid ? field.rows : 1);
-  append_rows(text, columns, field.size(), ' ');
+                      grid ? static_cast<std::size_t>(table.grid_columns) : table.rows(), grid ? table.grid_rows : 1);
+  append_rows(text, columns, table.rows(), ' ');
   write_vector_bytes(path, text, origin);
+}
+
+void write_vector_csv(std::string const& path, DisplacementField const& field, FileOrigin const& origin) {
+  write_csv_table(path, vector_table(field), origin);
+}
+
+void write_vector_tecplot(std::string const& path, DisplacementField const& field, FileOrigin const& origin) {
+  write_tecplot_table(path, vector_table(field), origin);
 }
 
 }  // namespace gladstone::detail

@@ -60,7 +60,7 @@ std::vector<VectorColumn> vector_columns(DisplacementField const& field) {
              [&](std::size_t i) { return sigma.empty() ? not_a_number : sigma[i].y; }),
       number("peak_ratio", "1", "height of the highest correlation peak over that of the second highest",
              [&](std::size_t i) { return field.peak_ratio.empty() ? not_a_number : field.peak_ratio[i]; }),
-      make_codes("status", "0 valid, 1 replaced, 2 masked, 3 invalid", count, field.status),
+      status_column(field.status, count),
       number("u_raw_px", "px", "displacement to the right before replacement", [&](std::size_t i) { return raw[i].x; }),
       number("v_raw_px", "px", "displacement downwards before replacement", [&](std::size_t i) { return raw[i].y; }),
       number("correlation", "1", "correlation coefficient of the peak at u_raw_px, v_raw_px",
@@ -71,6 +71,18 @@ std::vector<VectorColumn> vector_columns(DisplacementField const& field) {
                  count, field.reason),
       make_codes("ambiguous", "1 if another displacement has (nearly) the same correlation", count, ambiguous),
   };
+}
+
+VectorTable vector_table(DisplacementField const& field) {
+  return {vector_columns(field), field.columns, field.rows, "px, y and v downwards"};
+}
+
+VectorColumn number_column(std::string name, std::string units, std::string description, std::vector<double> values) {
+  return {std::move(name), std::move(units), std::move(description), false, std::move(values)};
+}
+
+VectorColumn status_column(std::vector<VectorStatus> const& status, std::size_t count) {
+  return make_codes("status", "0 valid, 1 replaced, 2 masked, 3 invalid", count, status);
 }
 
 VectorColumn failed_test_column(DisplacementField const& field) {

@@ -19,10 +19,27 @@ struct VectorColumn {
   bool is_known() const;
 };
 
+/// Vectors as the writers store them.
+struct VectorTable {
+  std::vector<VectorColumn> columns;
+  int grid_columns = 0, grid_rows = 0;  ///< 0: scattered
+  std::string remark;                   ///< units and directions of the axes, for headers
+
+  std::size_t rows() const { return columns.empty() ? 0 : columns.front().values.size(); }
+};
+
 /// Returns the quantities of vectors.csv in their order: x_px, y_px, u_px, v_px, sigma_u_px, sigma_v_px, peak_ratio,
 /// status, u_raw_px, v_raw_px, correlation, reason, ambiguous. Values that were not estimated are NaN. Vectors without
 /// raw displacements are their own raw displacements, with reason 0 (as measured).
 std::vector<VectorColumn> vector_columns(DisplacementField const& field);
+
+/// Returns the same with the grid and the remark for headers.
+VectorTable vector_table(DisplacementField const& field);
+
+/// Returns a column of numbers.
+VectorColumn number_column(std::string name, std::string units, std::string description, std::vector<double> values);
+/// Returns the column "status" of VectorStatus; vectors without status are valid.
+VectorColumn status_column(std::vector<VectorStatus> const& status, std::size_t count);
 
 /// Returns the validation tests that the vectors failed, which only vectors.h5 contains.
 VectorColumn failed_test_column(DisplacementField const& field);

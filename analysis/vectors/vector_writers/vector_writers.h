@@ -1,8 +1,12 @@
 #pragma once
 
+#include <array>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "analysis/vectors/displacement_field.h"
+#include "analysis/vectors/vector_writers/vector_columns.h"
 #include "render/files/hdf5_file.h"
 
 namespace gladstone::detail {
@@ -33,6 +37,43 @@ void write_vector_vti(std::string const& path, DisplacementField const& field, F
 
 /// VTK XML polygonal data (.vtp) of one vertex per vector.
 void write_vector_vtp(std::string const& path, DisplacementField const& field, FileOrigin const& origin);
+
+/// Writers of tables, for two and three components alike.
+void write_csv_table(std::string const& path, VectorTable const& table, FileOrigin const& origin);
+void write_tecplot_table(std::string const& path, VectorTable const& table, FileOrigin const& origin);
+void write_matlab_table(std::string const& path, VectorTable const& table, FileOrigin const& origin);
+
+/// Axes of a netCDF file.
+struct NetcdfAxes {
+  VectorGrid grid;
+  std::string units;  ///< of x and y
+  std::string x_description, y_description;
+};
+/// Variable of a netCDF file: its name, the column that it stores, and its attributes.
+struct NetcdfVariable {
+  char const* name;
+  char const* column;
+  char const* units;
+  char const* long_name;
+  char const* standard_name;  ///< empty: none
+};
+/// Writes the variables and `chc`, the validity according to the column "status".
+void write_netcdf_table(std::string const& path, VectorTable const& table, NetcdfAxes const& axes,
+                        std::span<NetcdfVariable const> variables, FileOrigin const& origin);
+
+/// Columns that are the components of a vector of a VTK file.
+struct VtkVectors {
+  std::string name;
+  std::array<std::string, 3> components;  ///< names of columns; empty: 0
+};
+struct VtkLayout {
+  VtkVectors position;              ///< of the points in .vtp; the other columns are arrays of their own
+  std::vector<VtkVectors> vectors;  ///< first the displacement
+};
+void write_vti_table(std::string const& path, VectorTable const& table, VectorGrid const& grid, VtkLayout const& layout,
+                     FileOrigin const& origin);
+void write_vtp_table(std::string const& path, VectorTable const& table, VtkLayout const& layout,
+                     FileOrigin const& origin);
 
 /// Writes the bytes of a file at once, if no source has changed.
 void write_vector_bytes(std::string const& path, std::string const& bytes, FileOrigin const& origin);

@@ -1,8 +1,10 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <set>
 
 #include "analysis/vectors/vector_writers/vector_columns.h"
 #include "analysis/vectors/vector_writers/vector_writers.h"
@@ -24,26 +26,32 @@ std::string data_array(std::string const& type, std::string const& name, std::si
       components, base64(bytes));
 }
 
-/// Joins two columns to vectors in the plane z = 0, which VTK requires to draw arrows.
-std::string plane_vectors(std::string const& name, VectorColumn const& x, VectorColumn const& y) {
+/// Joins columns to vectors of three components, which VTK requires to draw arrows; a missing third one is 0.
+std::string join_columns(std::vector<VectorColumn> const& columns, VtkVectors const& vectors) {
   std::vector<double> values;
-  for (std::size_t i = 0; i < x.values.size(); ++i) values.insert(values.end(), {x.values[i], y.values[i], 0.0});
-  return data_array("Float64", name, 3, values);
+  std::size_t const count = column_named(columns, vectors.components[0]).values.size();
+  for (std::size_t i = 0; i < count; ++i)
+    for (std::string const& name : vectors.components)
+      values.push_back(name.empty() ? 0.0 : column_named(columns, name).values[i]);
+  return data_array("Float64", vectors.name, 3, values);
 }
 
-/// Returns the arrays at the points: vectors with their uncertainty, and the other quantities that are known.
-std::string point_data(std::vector<VectorColumn> const& columns) {
-  auto const vectors = [&](std::string const& name, std::string const& x, std::string const& y) {
-    VectorColumn const& of_x = column_named(columns, x);
-    VectorColumn const& of_y = column_named(columns, y);
-    return of_x.is_known() || of_y.is_known() ? plane_vectors(name, of_x, of_y) : std::string();
-  };
-  std::string text = "<PointData Vectors=\"displacement_px\">\n";
-  text += plane_vectors("displacement_px", column_named(columns, "u_px"), column_named(columns, "v_px"));
-  text += vectors("sigma_px", "sigma_u_px", "sigma_v_px");
-  text += vectors("raw_displacement_px", "u_raw_px", "v_raw_px");
+bool is_known(std::vector<VectorColumn> const& columns, VtkVectors const& vectors) {
+  return std::any_of(vectors.components.begin(), vectors.components.end(),
+                     [&](std::string const& name) { return !name.empty() && column_named(columns, name).is_known(); });
+}
+
+/// Returns the arrays at the points: displacements, other known vectors, and the other quantities that are known.
+std::string point_data(std::vector<VectorColumn> const& columns, VtkLayout const& layout) {
+  std::string text = fmt::format("<PointData Vectors=\"{}\">\n", layout.vectors.front().name);
+  std::set<std::string> joined(layout.position.components.begin(), layout.position.components.end());
+  for (VtkVectors const& vectors : layout.vectors) {
+    joined.insert(vectors.components.begin(), vectors.components.end());
+    bool const displacement = &vectors == &layout.vectors.front();
+    if (displacement || is_known(columns, vectors)) text += join_columns(columns, vectors);
+  }
   for (VectorColumn const& column : columns) {
-    if (column.units == "px" || !column.is_known()) continue;
+    if (joined.contains(column.name) || !column.is_known()) continue;
     if (column.is_code) {
       text +=
           data_array("Int32", column.name, 1, std::vector<std::int32_t>(column.values.begin(), column.values.end()));
@@ -57,13 +65,15 @@ std::string point_data(std::vector<VectorColumn> const& columns) {
 /// Returns the file of one data set.
 /// @param type     type of the data set, which is also the name of its element
 /// @param element  attributes of that element, with a leading blank, or nothing
-std::string vtk_file(std::string const& type, std::string const& element, std::string const& content) {
+/// @param remark   units and directions of the axes
+std::string vtk_file(std::string const& type, std::string const& element, std::string const& content,
+                     std::string const& remark) {
   constexpr char const* order = std::endian::native == std::endian::little ? "LittleEndian" : "BigEndian";
   return fmt::format(
       "<?xml version=\"1.0\"?>\n<VTKFile type=\"{0}\" version=\"1.0\" byte_order=\"{1}\" header_type=\"UInt64\">\n"
-      "<!-- gladstone vectors: positions and displacements in px, y and v downwards -->\n"
+      "<!-- gladstone vectors: positions and displacements in {4} -->\n"
       "<{0}{2}>\n{3}</{0}>\n</VTKFile>\n",
-      type, order, element, content);
+      type, order, element, content, remark);
 }
 
 /// Returns the spacing of coordinates.
@@ -78,32 +88,49 @@ double uniform_spacing(std::vector<double> const& places, std::string const& pat
   return spacing;
 }
 
+/// Layout of two components.
+VtkLayout plane_layout() {
+  return {{"position_px", {"x_px", "y_px", ""}},
+          {{"displacement_px", {"u_px", "v_px", ""}},
+           {"sigma_px", {"sigma_u_px", "sigma_v_px", ""}},
+           {"raw_displacement_px", {"u_raw_px", "v_raw_px", ""}}}};
+}
+
 }  // namespace
 
-void write_vector_vti(std::string const& path, DisplacementField const& field, FileOrigin const& origin) {
-  VectorGrid const grid = require_vector_grid(field, path, "a VTK image");
+void write_vti_table(std::string const& path, VectorTable const& table, VectorGrid const& grid, VtkLayout const& layout,
+                     FileOrigin const& origin) {
   std::string const extent = fmt::format("0 {} 0 {} 0 0", grid.x.size() - 1, grid.y.size() - 1);
   std::string const element =
       fmt::format(" WholeExtent=\"{}\" Origin=\"{:.17g} {:.17g} 0\" Spacing=\"{:.17g} {:.17g} 1\"", extent,
                   grid.x.front(), grid.y.front(), uniform_spacing(grid.x, path), uniform_spacing(grid.y, path));
   std::string const piece =
-      fmt::format("<Piece Extent=\"{}\">\n{}</Piece>\n", extent, point_data(vector_columns(field)));
-  write_vector_bytes(path, vtk_file("ImageData", element, piece), origin);
+      fmt::format("<Piece Extent=\"{}\">\n{}</Piece>\n", extent, point_data(table.columns, layout));
+  write_vector_bytes(path, vtk_file("ImageData", element, piece, table.remark), origin);
 }
 
-void write_vector_vtp(std::string const& path, DisplacementField const& field, FileOrigin const& origin) {
-  std::vector<VectorColumn> const columns = vector_columns(field);
-  std::vector<std::int64_t> points(field.size()), ends(field.size());
-  for (std::size_t i = 0; i < field.size(); ++i) {
+void write_vtp_table(std::string const& path, VectorTable const& table, VtkLayout const& layout,
+                     FileOrigin const& origin) {
+  std::vector<std::int64_t> points(table.rows()), ends(table.rows());
+  for (std::size_t i = 0; i < points.size(); ++i) {
     points[i] = static_cast<std::int64_t>(i);
     ends[i] = points[i] + 1;
   }
-  std::string piece = fmt::format("<Piece NumberOfPoints=\"{0}\" NumberOfVerts=\"{0}\">\n", field.size());
-  piece += point_data(columns);
-  piece += "<Points>\n" + plane_vectors("position_px", column_named(columns, "x_px"), column_named(columns, "y_px")) +
-           "</Points>\n<Verts>\n" + data_array("Int64", "connectivity", 1, points) +
-           data_array("Int64", "offsets", 1, ends) + "</Verts>\n</Piece>\n";
-  write_vector_bytes(path, vtk_file("PolyData", "", piece), origin);
+  std::string piece = fmt::format("<Piece NumberOfPoints=\"{0}\" NumberOfVerts=\"{0}\">\n", table.rows());
+  piece += point_data(table.columns, layout);
+  piece += "<Points>\n" + join_columns(table.columns, layout.position) + "</Points>\n<Verts>\n" +
+           data_array("Int64", "connectivity", 1, points) + data_array("Int64", "offsets", 1, ends) +
+           "</Verts>\n</Piece>\n";
+  write_vector_bytes(path, vtk_file("PolyData", "", piece, table.remark), origin);
+}
+
+void write_vector_vti(std::string const& path, DisplacementField const& field, FileOrigin const& origin) {
+  VectorGrid const grid = require_vector_grid(field, path, "a VTK image");
+  write_vti_table(path, vector_table(field), grid, plane_layout(), origin);
+}
+
+void write_vector_vtp(std::string const& path, DisplacementField const& field, FileOrigin const& origin) {
+  write_vtp_table(path, vector_table(field), plane_layout(), origin);
 }
 
 }  // namespace gladstone::detail

@@ -120,6 +120,12 @@ TEST(SheetAlignment, FindsAMisalignedSheet) {
   EXPECT_NEAR(found.fit.plane.slope.x, sheet.slope.x, 5e-4);
   EXPECT_NEAR(found.fit.plane.slope.y, sheet.slope.y, 5e-4);
   EXPECT_LT(found.scatter_px, 0.1);
+  // One iteration measures the disparity of the assumed plane, here of the true one and of the one 0.5 mm off.
+  EXPECT_FALSE(is_significant(align_sheet({&left, &right}, images, sheet, settings, 1)));
+  SheetAlignment const assumed = align_sheet({&left, &right}, images, {}, settings, 1);
+  EXPECT_EQ(assumed.disparity_px.size(), 1u);
+  EXPECT_EQ(assumed.disparity_px.front(), found.disparity_px.front());
+  EXPECT_TRUE(is_significant(assumed));
 }
 
 }  // namespace

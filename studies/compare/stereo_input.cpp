@@ -1,0 +1,118 @@
+#include "studies/compare/stereo_input.h"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <filesystem>
+
+#include "analysis/correlation/correlation_methods.h"
+#include "analysis/stereo/interpolated_field.h"
+#include "render/base/error.h"
+#include "render/files/hdf5_file.h"
+#include "render/files/input_file.h"
+#include "studies/case/truth_file.h"
+#include "studies/compare/compared_files.h"
+#include "studies/compare/stereo_cameras.h"
+
+namespace gladstone {
+namespace {
+
+namespace fs = std::filesystem;
+
+void add_stereo_source(SourceFiles& sources, std::string const& name, std::string const& path) {
+  bool const is_hdf5 = path.ends_with(".h5") || path.ends_with(".hdf5");
+  sources.add(name, path, is_hdf5 ? SourceFiles::Holds::datasets : SourceFiles::Holds::bytes);
+}
+
+/// Reads the setup that a calibration stores, for the size of the images and the defaults of [correlate].
+CaseSetup load_calibrated_setup(std::string const& calibration) {
+  std::string const text = Hdf5Reader(calibration).attribute("setup");
+  if (text.empty()) throw DataError(calibration, "contains no setup; run gladstone calibrate again");
+  return load_case_setup(SetupDocument::from_text(text, calibration));
+}
+
+/// Adds an uncertainty to the settings for dewarped images if they have none and the method has none of its own: the
+/// weights of the four equations and the uncertainty of the components depend on it.
+CorrelationSettings choose_dewarped_settings(CorrelationSettings settings) {
+  if (settings.uncertainty == "none" && !correlation_method(settings.method).tracks_dots)
+    settings.uncertainty = "correlation_statistics";
+  return settings;
+}
+
+/// Throws if a case was rendered through optical windows and its calibration without them, or the reverse: the lines of
+/// sight of the calibration are not those of the images.
+void require_same_windows(CaseSetup const& of_case, std::string const& place, std::string const& calibration) {
+  if (Hdf5Reader(calibration).attribute("setup").empty()) return;
+  std::size_t const own = of_case.setup.windows.size(),
+                    calibrated = load_calibrated_setup(calibration).setup.windows.size();
+  if (own == calibrated) return;
+  throw DataError(
+      calibration,
+      fmt::format("was made through {} optical windows, but {} looks through {}, which displaces its lines of "
+                  "sight; calibrate through the same windows",
+                  calibrated, place, own));
+}
+
+}  // namespace
+
+StereoInput read_stereo_input(StereoOptions const& options, std::size_t index, SourceFiles& sources) {
+  std::string const& place = options.inputs[index];
+  std::string const suffix = index == 0 ? "_a" : "_b";
+  StereoInput input;
+  if (!options.calibrations.empty()) {
+    input.calibration = options.calibrations[index];
+    require_input_file(input.calibration, "a calibration");
+    add_stereo_source(sources, "calibration" + suffix, input.calibration);
+    input.camera = read_calibrated_camera(input.calibration);
+  }
+  std::error_code error;
+  std::string truth;
+  if (fs::is_directory(place, error)) {
+    require_case(place);
+    std::string setup = in_case(place, case_file::setup);
+    input.path = in_case(place, case_file::vectors);
+    if (fs::exists(fs::path(place) / case_file::truth, error)) {
+      truth = options.dewarp_images ? in_case(place, case_file::truth) : compared_files(place, "").truth;
+      add_stereo_source(sources, "truth" + suffix, truth);
+    } else if (!options.dewarp_images && !fs::exists(input.path, error)) {
+      throw DataError(input.path, "does not exist; create it with: gladstone correlate " + place);
+    }
+    sources.add("", setup, SourceFiles::Holds::bytes);
+    input.loaded = load_case_setup(setup, {});
+    if (!input.calibration.empty()) require_same_windows(*input.loaded, place, input.calibration);
+  } else {
+    require_input_file(place, "a case folder or a file of vectors");
+    if (options.dewarp_images)
+      throw DataError(place,
+                      "is a file of vectors, but --dewarp images requires the frames of cases; give case folders, "
+                      "or remove the option");
+    if (input.calibration.empty())
+      throw DataError(place,
+                      "is a file of vectors, which contains no camera; give the calibration.h5 of both cameras "
+                      "with --calibration");
+    input.path = place;
+    input.loaded = load_calibrated_setup(input.calibration);
+  }
+  Setup const& setup = input.loaded->setup;
+  if (input.calibration.empty()) input.camera = find_exact_camera(setup, place);
+  if (!truth.empty() && setup.piv) input.truth = read_truth(truth);
+  if (options.dewarp_images) {
+    input.path = place;
+    input.vectors.settings = choose_dewarped_settings(input.loaded->correlate);
+    input.window_px = options.window_px.value_or(input.vectors.settings.window_px.back());
+    return input;
+  }
+  add_stereo_source(sources, "vectors" + suffix, input.path);
+  CompareOptions reading;
+  reading.conventions = options.conventions;
+  input.vectors = load_vectors(input.path, *input.loaded, input.truth ? &*input.truth : nullptr, reading);
+  if (!input.vectors.report.empty()) spdlog::info("{}: {}", input.path, input.vectors.report);
+  input.window_px = options.window_px.value_or(input.vectors.settings.window_px.back());
+  if (!stereo::is_regular_grid(input.vectors.field))
+    throw DataError(input.path,
+                    "has no complete grid of vectors, in which invalid ones are marked or NaN; measure with a grid "
+                    "(for tracking, correlate.tracking.output = \"grid\")");
+  return input;
+}
+
+}  // namespace gladstone
