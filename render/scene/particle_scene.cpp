@@ -14,7 +14,6 @@
 namespace gladstone {
 namespace {
 
-constexpr double path_tolerance_px = 1e-5;
 constexpr double bending_margin = 0.02;       // maximum deflection by media on the way to the lens [rad]
 constexpr double scattering_contrast = 1e-3;  // minimum index difference; seeding particles in gas have 0.3 or more
 constexpr double lit_share = 0.5;             // illuminated fraction of the volume below which a warning is issued
