@@ -9,6 +9,7 @@
 #include "render/base/parallel.h"
 #include "render/base/units.h"
 #include "render/scene/build_camera.h"
+#include "render/scene/ideal_projection.h"
 #include "render/scene/setup_checks.h"
 
 namespace gladstone {
@@ -25,6 +26,9 @@ double seen_share(Setup const& setup) {
   constexpr int places = 1 << 14;
   constexpr double root = 1.32471795724474602596, along_z = 0.41421356237309504880;
   Camera const camera = build_camera(setup);
+  bool const closed_form = setup.has_closed_form_layout();
+  IdealProjection const ideal{setup.imaging().image_distance, setup.z_a, setup.camera.pixel_pitch, setup.camera.columns,
+                              setup.camera.rows};
   ParticleSetup const& particles = setup.piv->particles;
   std::vector<char> seen(places);
   parallel_chunks(places, 256, [&](std::size_t begin, std::size_t end) {
@@ -35,7 +39,8 @@ double seen_share(Setup const& setup) {
       };
       Vec3d const at{part(1 / root) * particles.volume->x, part(1 / (root * root)) * particles.volume->y,
                      part(along_z) * particles.volume->z};
-      auto const pixel = camera.project(particles.center + at);
+      Vec3d const place = particles.center + at;
+      auto const pixel = closed_form && place.z < setup.z_a ? std::optional(ideal(place)) : camera.project(place);
       seen[i] = pixel && camera.sensor.covers(*pixel) ? 1 : 0;
     }
   });
