@@ -46,89 +46,35 @@ class Bands {
   std::vector<std::uint32_t> listed_;
 };
 
-constexpr int most_fast_width = 15;  // width of footprints that are computed in SIMD registers [px]
-
-/// Computes the shares of a footprint along one axis, like GaussianSpot::shares() but 16 edges at a time, and sets
-/// those behind its end to zero. @param out  16 numbers  @pre width <= most_fast_width
-void compute_shares(GaussianSpot<double> const& shape, double p, int first, int width, double* out) {
-  constexpr double offset[8] = {-0.5, 0.5, 1.5, 2.5, 3.5, 4.5, 5.5, 6.5};
-  using Four = Lanes<double, 4>;
-  Four const scale = Four::all(1 / shape.sigma), left = Four::all(first - p), right = Four::all(first + 8 - p);
-  Four value[4] = {(left + Four::load(offset)) * scale, (left + Four::load(offset + 4)) * scale,
-                   (right + Four::load(offset)) * scale, (right + Four::load(offset + 4)) * scale};
-  GaussianSpot<double>::edge_values(value);
-  double edges[17];
-  for (int i = 0; i < 16; ++i) edges[i] = value[i / 4].lane(i % 4);
-  edges[16] = edges[15];
-  for (int i = 0; i < 16; ++i) out[i] = i < width ? edges[i + 1] - edges[i] : 0.0;
-}
-
-/// Adds shares times light to the pixels of one row. @tparam count  number of pixels
-template <int count>
-void add_row(double light, double const* from, double* to) {
-  for (int i = 0; i < count; ++i) to[i] += light * from[i];
-}
-
-/// Adds particle images to the rows of a band.
-class BandDrawing {
- public:
-  BandDrawing(GaussianSpot<double> const& shape, std::size_t band, Image<double>& image)
-      : shape_(shape),
-        width_(2 * shape.half_width() + 1),
-        top_(static_cast<int>(band) * band_rows),
-        bottom_(std::min(top_ + band_rows, image.rows())),
-        image_(image),
-        across_(static_cast<std::size_t>(std::max(width_, 16))),
-        down_(across_.size()) {}
-
-  void add(ParticleImage const& one) {
-    if (!(std::abs(one.at.x) < 1e8)) return;
-    Footprint const print = shape_.footprint(one.at);
-    int const left = std::max(0, print.column), right = std::min(image_.columns(), print.column + width_);
-    if (left >= right) return;
-    if (width_ <= most_fast_width) {
-      compute_shares(shape_, one.at.x, print.column, width_, across_.data());
-      compute_shares(shape_, one.at.y, print.row, width_, down_.data());
-    } else {
-      shape_.shares(one.at.x, print.column, width_, across_.data());
-      shape_.shares(one.at.y, print.row, width_, down_.data());
-    }
-    // Shares of zero behind the footprint do not change a pixel.
-    if (width_ <= 12 && print.column >= 0 && print.column + 12 <= image_.columns()) {
-      add_rows(one.light, print, left, [this](double light, double* to) { add_row<12>(light, across_.data(), to); });
-    } else if (width_ <= 16 && print.column >= 0 && print.column + 16 <= image_.columns()) {
-      add_rows(one.light, print, left, [this](double light, double* to) { add_row<16>(light, across_.data(), to); });
-    } else {
-      double const* const from = across_.data() + (left - print.column);
-      add_rows(one.light, print, left, [from, count = right - left](double light, double* to) {
-        for (int i = 0; i < count; ++i) to[i] += light * from[i];
-      });
+/// Adds the particle images of a band to its rows.
+void draw_band(std::vector<ParticleImage> const& spots, Bands const& bands, std::size_t band,
+               GaussianSpot<double> const& shape, Image<double>& image) {
+  int const half = shape.half_width(), width = 2 * half + 1;
+  int const top = static_cast<int>(band) * band_rows, bottom = std::min(top + band_rows, image.rows());
+  std::vector<double> across(static_cast<std::size_t>(width)), down(across.size());
+  for (std::uint32_t const* spot = bands.begin(band); spot != bands.end(band); ++spot) {
+    ParticleImage const& one = spots[*spot];
+    if (!(std::abs(one.at.x) < 1e8)) continue;
+    Footprint const print = shape.footprint(one.at);
+    int const left = std::max(0, print.column), right = std::min(image.columns(), print.column + width);
+    if (left >= right) continue;
+    shape.shares(one.at.x, print.column, width, across.data());
+    shape.shares(one.at.y, print.row, width, down.data());
+    double const* const from = across.data() + (left - print.column);
+    for (int row = std::max(top, print.row); row < std::min(bottom, print.row + width); ++row) {
+      double const light = one.light * down[static_cast<std::size_t>(row - print.row)];
+      double* const to = &image(left, row);
+      for (int i = 0; i < right - left; ++i) to[i] += light * from[i];
     }
   }
-
- private:
-  template <class Row>
-  void add_rows(double light, Footprint print, int left, Row const& add) {
-    for (int row = std::max(top_, print.row); row < std::min(bottom_, print.row + width_); ++row) {
-      add(light * down_[static_cast<std::size_t>(row - print.row)], &image_(left, row));
-    }
-  }
-
-  GaussianSpot<double> shape_;
-  int width_, top_, bottom_;
-  Image<double>& image_;
-  std::vector<double> across_, down_;
-};
+}
 
 Image<double> draw(std::vector<ParticleImage> const& spots, Scene const& scene) {
   CameraSetup const& camera = scene.setup.camera;
   GaussianSpot<double> const shape{scene.spot_sigma_px()};
   Image<double> image(camera.columns, camera.rows);
   Bands const bands(spots, camera.rows, shape.half_width());
-  parallel_for(bands.count(), [&](std::size_t band) {
-    BandDrawing drawing(shape, band, image);
-    for (std::uint32_t const* spot = bands.begin(band); spot != bands.end(band); ++spot) drawing.add(spots[*spot]);
-  });
+  parallel_for(bands.count(), [&](std::size_t band) { draw_band(spots, bands, band, shape, image); });
   return image;
 }
 
