@@ -8,7 +8,7 @@
 namespace gladstone::cuda {
 namespace {
 
-constexpr int threads = 256;
+constexpr int threads = 128;               // three blocks per multiprocessor, whose registers the flows fill
 constexpr unsigned int most_rows = 65535;  // maximum extent of a grid along y
 
 __device__ double value_of(unsigned long long bits) { return __longlong_as_double(static_cast<long long>(bits)); }
@@ -42,7 +42,8 @@ __global__ void record_kernel(PairsOnDevice const pairs, double const* light, st
     PairModel const& model = pairs.model(pair);
     PixelDetector detector = model.detector;
     detector.seed = pairs.seeds[pair].noise;
-    detector.electrons = model.exposure.electrons(value_of(brightest[pair]), value_of(unit[pair]));
+    double const photons = value_of(unit[pair]);  // 0: no particle is illuminated
+    detector.electrons = model.exposure.electrons(value_of(brightest[pair]), photons > 0 ? photons : 1);
     PixelLevel const recorded =
         detector.record(light[frame * pixels + pixel],
                         frame % 2 == 0 ? RandomStream::noise_reference : RandomStream::noise_flow, pixel);

@@ -1,6 +1,7 @@
 #include "render/ideal_images/pair_model.h"
 
 #include <limits>
+#include <type_traits>
 
 #include "render/base/error.h"
 #include "render/ideal_images/ideal_images.h"
@@ -9,6 +10,9 @@
 #include "render/scene/particle_scene.h"
 
 namespace gladstone {
+
+static_assert(std::is_trivially_copyable_v<PairModel>);
+
 namespace {
 
 constexpr std::size_t planned_paths = 1024;  // particles from which the number of integration steps is chosen
