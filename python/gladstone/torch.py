@@ -1,4 +1,4 @@
-"""Data set for PyTorch whose images are rendered on the fly. Needs torch."""
+"""Data sets for PyTorch whose images are rendered on the fly. Needs torch."""
 
 from __future__ import annotations
 
