@@ -9,6 +9,8 @@
 #include "cuda/device/cuda_error.h"
 #include "cuda/device/runnable_code.h"
 #include "cuda/focused_dots/cuda_renderer.h"
+#include "cuda/ideal_images/cuda_image_drawer.h"
+#include "cuda/ideal_images/cuda_pair_batches.h"
 #include "cuda/rays/cuda_rays_renderer.h"
 
 namespace gladstone::cuda {
@@ -62,6 +64,16 @@ std::unique_ptr<Renderer> make_renderer() {
 std::unique_ptr<Renderer> make_rays_renderer() {
   require_device();
   return std::make_unique<CudaRaysRenderer>();
+}
+
+std::unique_ptr<ImageDrawer> make_image_drawer() {
+  require_device();
+  return std::make_unique<CudaImageDrawer>();
+}
+
+std::unique_ptr<PairBatchRenderer> make_pair_batches(std::vector<OwnedPairModel> const& models) {
+  require_device();
+  return std::make_unique<CudaPairBatches>(models);
 }
 
 std::unique_ptr<Correlator> make_correlator(CorrelationSettings const& settings) {

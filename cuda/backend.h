@@ -4,6 +4,8 @@
 #include <string>
 
 #include "analysis/correlation/correlator.h"
+#include "render/ideal_images/ideal_images.h"
+#include "render/ideal_images/pair_batch.h"
 #include "render/scene/renderer.h"
 
 /// Interface to the GPU for the rest of gladstone: independent of CUDA headers, and identical whether CUDA is compiled
@@ -33,6 +35,13 @@ std::unique_ptr<Renderer> make_renderer();
 
 /// Creates the general ray-tracing renderer on the GPU. @throws DeviceError if no device is usable
 std::unique_ptr<Renderer> make_rays_renderer();
+
+/// Creates the drawer of ideal particle images on the GPU. @throws DeviceError if no device is usable
+std::unique_ptr<ImageDrawer> make_image_drawer();
+
+/// Creates a renderer of batches of pairs on the GPU. @param models  one or several, with frames of equal size
+/// @throws DeviceError if no device is usable, DataError if the models cannot be rendered together
+std::unique_ptr<PairBatchRenderer> make_pair_batches(std::vector<OwnedPairModel> const& models);
 
 /// Creates the correlator on the GPU, for settings that gladstone::missing_on_gpu() does not list.
 /// @throws DeviceError if no device is usable or a setting is not supported

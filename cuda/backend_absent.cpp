@@ -17,6 +17,12 @@ std::unique_ptr<Renderer> make_renderer() { throw DeviceError(device_state().tex
 
 std::unique_ptr<Renderer> make_rays_renderer() { throw DeviceError(device_state().text); }
 
+std::unique_ptr<ImageDrawer> make_image_drawer() { throw DeviceError(device_state().text); }
+
+std::unique_ptr<PairBatchRenderer> make_pair_batches(std::vector<OwnedPairModel> const&) {
+  throw DeviceError(device_state().text);
+}
+
 std::unique_ptr<Correlator> make_correlator(CorrelationSettings const&) { throw DeviceError(device_state().text); }
 
 }  // namespace gladstone::cuda

@@ -35,8 +35,9 @@ void merge(Rendering& all, Rendering const& some, Polarity polarity) {
 
 }  // namespace
 
-Device::Device(std::unique_ptr<Renderer> focused_dots, std::unique_ptr<Renderer> rays)
-    : focused_dots_(std::move(focused_dots)), rays_(std::move(rays)) {}
+Device::Device(std::unique_ptr<Renderer> focused_dots, std::unique_ptr<Renderer> rays,
+               std::unique_ptr<ImageDrawer> drawer)
+    : focused_dots_(std::move(focused_dots)), rays_(std::move(rays)), drawer_(std::move(drawer)) {}
 
 Rendering Device::render_particles(Scene const& scene, Particles const& particles, ParticleLight light,
                                    RenderImages images) {
@@ -44,8 +45,8 @@ Rendering Device::render_particles(Scene const& scene, Particles const& particle
   if (resolve_render_method(scene) == RenderMethod::formula) {
     auto const ideal = ideal_images(scene);
     GLADSTONE_EXPECTS(ideal);
-    Rendering rendering = render_ideal_images(*ideal, particles, light, images);
-    rendering.device = "cpu";
+    Rendering rendering = render_ideal_images(*ideal, particles, light, images, drawer_.get());
+    rendering.device = drawer_ ? drawer_->device() : "cpu";
     return rendering;
   }
   bool const as_lit = light == ParticleLight::scattered && images != RenderImages::no;

@@ -3,6 +3,7 @@
 #include <memory>
 #include <string>
 
+#include "render/ideal_images/ideal_images.h"
 #include "render/scene/renderer.h"
 
 /// Rendering of a scene: light on the sensor and true displacements.
@@ -14,7 +15,9 @@ class Device : public Renderer {
  public:
   /// @param focused_dots  fast renderer of this device
   /// @param rays          general renderer of this device
-  Device(std::unique_ptr<Renderer> focused_dots, std::unique_ptr<Renderer> rays);
+  /// @param drawer        drawer of ideal particle images; null: the CPU
+  Device(std::unique_ptr<Renderer> focused_dots, std::unique_ptr<Renderer> rays,
+         std::unique_ptr<ImageDrawer> drawer = nullptr);
 
   std::string device() const override { return rays_->device(); }
   Rendering render(Scene const& scene, DotPattern const& sources, RenderImages images, RenderTheory theory) override;
@@ -27,6 +30,7 @@ class Device : public Renderer {
   Rendering render_focused(Scene const& scene, DotPattern const& sources, RenderImages images, RenderTheory theory);
 
   std::unique_ptr<Renderer> focused_dots_, rays_;
+  std::unique_ptr<ImageDrawer> drawer_;
 };
 
 /// Returns a device that renders on all cores of the CPU.

@@ -103,6 +103,8 @@ void copy_to_host(void* to, void const* from, std::size_t bytes) {
 
 void zero_on_device(void* memory, std::size_t bytes) { check(cudaMemset(memory, 0, bytes), "cudaMemset"); }
 
+void wait_for_device() { check(cudaDeviceSynchronize(), "cudaDeviceSynchronize"); }
+
 void* allocate_pinned(std::size_t bytes) {
   void* memory = nullptr;
   check(cudaMallocHost(&memory, bytes), "cudaMallocHost");

@@ -58,6 +58,8 @@ void copy_to_device(void* to, void const* from, std::size_t bytes);
 void copy_pinned_to_device(void* to, void const* from, std::size_t bytes);
 void copy_to_host(void* to, void const* from, std::size_t bytes);
 void zero_on_device(void* memory, std::size_t bytes);
+/// Waits for all work on the device. @throws DeviceError
+void wait_for_device();
 
 /// Allocates page-locked host memory, to and from which a device transfers at full speed. @throws DeviceError
 void* allocate_pinned(std::size_t bytes);

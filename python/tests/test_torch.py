@@ -19,3 +19,22 @@ def test_items_depend_on_their_index_alone(bos):
     assert len(pairs) == 3
     with pytest.raises(IndexError):
         pairs[3]
+
+
+def test_batches_stay_on_the_gpu(piv):
+    import gladstone as gs
+    from gladstone.torch import RenderedBatches
+
+    setup = piv.replace({"particles.scattering": "gaussian", "camera.pixels": [64, 48], "render.rays_per_dot": "auto"})
+    if not torch.cuda.is_available():
+        with pytest.raises(gs.DeviceError):
+            RenderedBatches(setup, 2, 3)[0]
+        return
+    batches = RenderedBatches(setup, 2, 3)
+    images, flow = batches[0]
+    assert images.is_cuda and flow.is_cuda
+    assert images.shape == flow.shape == (3, 2, 48, 64)
+    assert torch.equal(images, batches[0][0]) and not torch.equal(images, batches[1][0])
+    case = setup.render()
+    truth = torch.from_numpy(case.truth.flow("a").copy()).movedim(-1, 0)
+    assert torch.allclose(flow[0].cpu().double(), truth.double(), atol=1e-5)

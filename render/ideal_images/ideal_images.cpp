@@ -5,10 +5,9 @@
 
 namespace gladstone {
 
-Vec2d IdealImages::project(Vec3d place) const {
+IdealProjection IdealImages::projection() const {
   CameraSetup const& camera = scene_->setup.camera;
-  double const scale = scene_->imaging.image_distance / (scene_->setup.z_a - place.z) / camera.pixel_pitch;
-  return {0.5 * (camera.columns - 1) + scale * place.x, 0.5 * (camera.rows - 1) - scale * place.y};
+  return {scene_->imaging.image_distance, scene_->setup.z_a, camera.pixel_pitch, camera.columns, camera.rows};
 }
 
 // Circle of confusion of a point at distance Z - z from the lens, z in front of the plane in focus at Z: a disc of

@@ -1,8 +1,12 @@
 #pragma once
 
+#include <array>
+#include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "render/ideal_images/particle_image.h"
 #include "render/scene/renderer.h"
 
 namespace gladstone {
@@ -16,8 +20,10 @@ namespace gladstone {
 class IdealImages {
  public:
   Scene const& scene() const { return *scene_; }
+  /// Returns the projection of points to the sensor.
+  IdealProjection projection() const;
   /// Returns the image position of a point [px].
-  Vec2d project(Vec3d place) const;
+  Vec2d project(Vec3d place) const { return projection()(place); }
   /// Returns the diameter of the circle of confusion of the illuminated particle that is farthest out of focus [px].
   double largest_blur_px(Particles const& particles) const;
 
@@ -34,10 +40,22 @@ std::string reason_against_ideal_images(Setup const& setup);
 /// Returns the scene for ideal images; nullopt if its particles do not have ideal images.
 std::optional<IdealImages> ideal_images(Scene const& scene);
 
+/// Draws the images of particles on one device.
+class ImageDrawer {
+ public:
+  virtual ~ImageDrawer() = default;
+  virtual std::string device() const = 0;
+  /// Returns the light of both frames: each image is a PSF times its light, and a pixel adds up its contributions in
+  /// the order of the images. Images without light are ignored.
+  virtual std::shared_ptr<RenderedLight const> draw(std::array<std::vector<ParticleImage>, 2> const& images,
+                                                    GaussianSpot<double> const& shape, int columns, int rows) = 0;
+};
+
 /// Renders images and truth of particles (the scene's own or virtual ones) by formula.
 /// Light is in units of photon_unit(); that of a particle follows from its intensity towards the lens' centre. The
 /// truth has no error. The result is bitwise identical for any number of threads.
+/// @param drawer  device that draws the images, with the same result on every device; null: the CPU
 Rendering render_ideal_images(IdealImages const& ideal, Particles const& particles, ParticleLight light,
-                              RenderImages images);
+                              RenderImages images, ImageDrawer* drawer = nullptr);
 
 }  // namespace gladstone

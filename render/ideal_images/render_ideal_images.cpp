@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "render/base/freed_memory.h"
 #include "render/base/not_a_number.h"
@@ -14,17 +15,11 @@ namespace {
 constexpr int frames = 2;
 constexpr int band_rows = 64;  // rows of an image that one thread renders at a time
 
-/// Position and light of a particle's image.
-struct Spot {
-  Vec2d at;          ///< position on the sensor [px]
-  double light = 0;  ///< in units of photon_unit()
-};
-
 /// Indices of the particle images that overlap each band of image rows, in ascending order. Sums within a band
 /// therefore have a fixed order, independent of the thread that renders it.
 class Bands {
  public:
-  Bands(std::vector<Spot> const& spots, int rows, int half)
+  Bands(std::vector<ParticleImage> const& spots, int rows, int half)
       : begin_(static_cast<std::size_t>((rows + band_rows - 1) / band_rows) + 1) {
     auto const each = [&](auto const& enter) {
       for (std::size_t i = 0; i < spots.size(); ++i) {
@@ -52,13 +47,13 @@ class Bands {
 };
 
 /// Adds the particle images of a band to its rows.
-void draw_band(std::vector<Spot> const& spots, Bands const& bands, std::size_t band, GaussianSpot<double> const& shape,
-               Image<double>& image) {
+void draw_band(std::vector<ParticleImage> const& spots, Bands const& bands, std::size_t band,
+               GaussianSpot<double> const& shape, Image<double>& image) {
   int const half = shape.half_width(), width = 2 * half + 1;
   int const top = static_cast<int>(band) * band_rows, bottom = std::min(top + band_rows, image.rows());
   std::vector<double> across(static_cast<std::size_t>(width)), down(across.size());
   for (std::uint32_t const* spot = bands.begin(band); spot != bands.end(band); ++spot) {
-    Spot const& one = spots[*spot];
+    ParticleImage const& one = spots[*spot];
     if (!(std::abs(one.at.x) < 1e8)) continue;
     Footprint const print = shape.footprint(one.at);
     int const left = std::max(0, print.column), right = std::min(image.columns(), print.column + width);
@@ -74,7 +69,7 @@ void draw_band(std::vector<Spot> const& spots, Bands const& bands, std::size_t b
   }
 }
 
-Image<double> draw(std::vector<Spot> const& spots, Scene const& scene) {
+Image<double> draw(std::vector<ParticleImage> const& spots, Scene const& scene) {
   CameraSetup const& camera = scene.setup.camera;
   GaussianSpot<double> const shape{scene.spot_sigma_px()};
   Image<double> image(camera.columns, camera.rows);
@@ -84,7 +79,7 @@ Image<double> draw(std::vector<Spot> const& spots, Scene const& scene) {
 }
 
 /// Returns the truth of particles with given image positions, and light in photons.
-GroundTruth truth_of(Particles const& particles, std::array<std::vector<Spot>, frames> const& spots) {
+GroundTruth truth_of(Particles const& particles, std::array<std::vector<ParticleImage>, frames> const& spots) {
   GroundTruth truth;
   truth.resize(particles.size());
   truth.position_m = particles.place[0];
@@ -94,7 +89,7 @@ GroundTruth truth_of(Particles const& particles, std::array<std::vector<Spot>, f
     theory->assign(truth.size(), {not_a_number, not_a_number});
   parallel_chunks(truth.size(), 4096, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      Spot const &first = spots[0][i], &second = spots[1][i];
+      ParticleImage const &first = spots[0][i], &second = spots[1][i];
       bool const both = first.light > 0 && second.light > 0;
       truth.reference_px[i] = first.light > 0 ? first.at : Vec2d{not_a_number, not_a_number};
       truth.displacement_px[i] = both ? second.at - first.at : Vec2d{not_a_number, not_a_number};
@@ -111,11 +106,12 @@ GroundTruth truth_of(Particles const& particles, std::array<std::vector<Spot>, f
 }  // namespace
 
 Rendering render_ideal_images(IdealImages const& ideal, Particles const& particles, ParticleLight light,
-                              RenderImages images) {
+                              RenderImages images, ImageDrawer* drawer) {
   keep_freed_memory();  // Retain freed memory: for successive pairs, page faults took a third of the time.
   Scene const& scene = ideal.scene();
   LightThroughLens const through_lens(scene, light);
-  std::array<std::vector<Spot>, frames> spots;
+  IdealProjection const project = ideal.projection();
+  std::array<std::vector<ParticleImage>, frames> spots;
   for (std::size_t pulse = 0; pulse < frames; ++pulse) {
     spots[pulse].resize(particles.size());
     parallel_chunks(particles.size(), 4096, [&](std::size_t begin, std::size_t end) {
@@ -123,7 +119,7 @@ Rendering render_ideal_images(IdealImages const& ideal, Particles const& particl
         double const photons = particles.photons[pulse][i];
         if (!(photons > 0)) continue;
         Vec3d const place = particles.place[pulse][i];
-        spots[pulse][i] = {ideal.project(place), photons * through_lens(place, i, static_cast<int>(pulse))};
+        spots[pulse][i] = {project(place), photons * through_lens(place, i, static_cast<int>(pulse))};
       }
     });
   }
@@ -134,7 +130,13 @@ Rendering render_ideal_images(IdealImages const& ideal, Particles const& particl
   if (images == RenderImages::no) return rendering;
   double const unit = photon_unit(scene, particles, light);
   for (auto& frame : spots) {
-    for (Spot& spot : frame) spot.light /= unit;
+    for (ParticleImage& spot : frame) spot.light /= unit;
+  }
+  if (drawer) {
+    CameraSetup const& camera = scene.setup.camera;
+    rendering.in_place = drawer->draw(spots, {scene.spot_sigma_px()}, camera.columns, camera.rows);
+    if (images == RenderImages::yes) rendering.light = std::exchange(rendering.in_place, nullptr)->to_host();
+    return rendering;
   }
   rendering.light = {draw(spots[0], scene), draw(spots[1], scene)};
   if (images == RenderImages::in_place) rendering.store_light_in_place();

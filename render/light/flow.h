@@ -19,6 +19,13 @@
 #include "render/light/flows/uniform.h"
 #include "render/light/velocity_file.h"
 
+/// Keeps nvcc from inlining all flows wherever a kernel evaluates one, which takes a minute to compile.
+#if defined(__CUDACC__)
+#define GLADSTONE_FLOW_CALL __noinline__
+#else
+#define GLADSTONE_FLOW_CALL
+#endif
+
 namespace gladstone {
 
 template <class... Kinds>
@@ -47,7 +54,7 @@ struct Flow {
   }
   /// Returns the fluid velocity [m/s] at a point p [m].
   template <class T>
-  GLADSTONE_HD Vec3<T> operator()(Vec3<T> const& p) const {
+  GLADSTONE_HD GLADSTONE_FLOW_CALL Vec3<T> operator()(Vec3<T> const& p) const {
     Vec3<T> const own = kind.visit([&p](auto const& held) { return held(p); });
     return {own.x + T(uniform.x), own.y + T(uniform.y), own.z + T(uniform.z)};
   }

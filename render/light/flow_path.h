@@ -19,12 +19,12 @@ struct ParticleVelocity {
   }
 
   /// Returns the particle velocity [m/s] at a point [m].
-  Vec3d operator()(Vec3d p) const {
+  GLADSTONE_HD Vec3d operator()(Vec3d p) const {
     Vec3d const u = flow(p);
     return tau > 0 ? u - tau * acceleration(p) : u;
   }
   /// Returns the material acceleration Du/Dt = (u . grad) u [m/s^2], by central differences along the flow.
-  Vec3d acceleration(Vec3d p) const {
+  GLADSTONE_HD Vec3d acceleration(Vec3d p) const {
     Vec3d const way = interval * flow(p);
     return (flow(p + way) - flow(p - way)) / (2 * interval);
   }
@@ -45,7 +45,7 @@ struct ParticleVelocity {
 /// @param steps     number of steps of equal length
 /// @return final position [m]
 template <class Velocity>
-Vec3d moved(Velocity const& velocity, Vec3d p, double time, int steps) {
+GLADSTONE_HD Vec3d moved(Velocity const& velocity, Vec3d p, double time, int steps) {
   double const h = time / steps;
   for (int i = 0; i < steps; ++i) {
     Vec3d const a = velocity(p), b = velocity(p + 0.5 * h * a), c = velocity(p + 0.5 * h * b), d = velocity(p + h * c);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "render/base/parallel.h"
+#include "render/light/particle_draw.h"
 
 namespace gladstone {
 namespace {
@@ -50,9 +51,7 @@ PathPlan plan_paths(ParticleSetup const& setup, FlowSetup const& flow, std::vect
 }
 
 bool is_inside_volume(ParticleSetup const& setup, Vec3d place) {
-  if (!setup.volume) return true;
-  Vec3d const from = place - setup.center, size = *setup.volume;
-  return 2 * std::abs(from.x) <= size.x && 2 * std::abs(from.y) <= size.y && 2 * std::abs(from.z) <= size.z;
+  return !setup.volume || is_inside_box(place, setup.center, *setup.volume);
 }
 
 void light_particles(ParticleSetup const& setup, LaserSheet<double> const& sheet, Particles& particles) {

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "render/base/host_device.h"
 #include "render/base/vec.h"
 #include "render/setup/setup_table.h"
 
@@ -30,6 +31,11 @@ struct DiameterSetup {
   std::string file;      ///< CSV diameter_um,weight of a table
 };
 
+/// Returns the Stokes response time of a sphere in a gas, rho_p d^2 / (18 mu) [s].
+GLADSTONE_HD constexpr double stokes_response_time(double density, double diameter_m, double viscosity) {
+  return density * diameter_m * diameter_m / (18 * viscosity);
+}
+
 /// Table [particles] of a setup, in SI.
 struct ParticleSetup {
   ParticleCount count = ParticleCount::number;
@@ -44,9 +50,9 @@ struct ParticleSetup {
   double viscosity = 1.8e-5;      ///< dynamic viscosity of the gas [Pa s]
   std::uint64_t seed = 1;
 
-  /// Returns the Stokes response time of a particle, rho_p d^2 / (18 mu) [s]; 0: no lag.
+  /// Returns the Stokes response time of a particle [s]; 0: no lag.
   double response_time(double diameter_m) const {
-    return density ? *density * diameter_m * diameter_m / (18 * viscosity) : 0;
+    return density ? stokes_response_time(*density, diameter_m, viscosity) : 0;
   }
 };
 

@@ -8,10 +8,10 @@
 #include "render/base/error.h"
 #include "render/base/parallel.h"
 #include "render/base/progress.h"
-#include "render/base/random_variates.h"
 #include "render/base/units.h"
 #include "render/files/text_file.h"
 #include "render/light/number_table.h"
+#include "render/light/particle_draw.h"
 #include "render/light/particle_motion.h"
 
 namespace gladstone {
@@ -37,11 +37,6 @@ struct DiameterTable {
     return diameter[std::min(static_cast<std::size_t>(found - up_to.begin()), diameter.size() - 1)];
   }
 };
-
-/// Returns the random engine for a particle's diameter, independent of the engine for its position.
-KeyedEngine size_engine(std::uint64_t seed, std::size_t particle) {
-  return {mix64(seed + 1), RandomStream::particles, particle};
-}
 
 }  // namespace
 
@@ -87,42 +82,33 @@ std::vector<double> draw_diameters(DiameterSetup const& setup, std::uint64_t see
   parallel_chunks(count, 4096, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       KeyedEngine engine = size_engine(seed, i);
-      switch (setup.spread) {
-        case DiameterSpread::lognormal:
-          diameters[i] = setup.middle * std::exp(setup.width * normal_variate(engine));
-          break;
-        case DiameterSpread::normal:
-          do {
-            diameters[i] = setup.middle + setup.width * normal_variate(engine);
-          } while (!(diameters[i] > 0));
-          break;
-        case DiameterSpread::table:
-          diameters[i] = table->at(to_unit(engine()));
-          break;
-        case DiameterSpread::one:
-          break;
-      }
+      diameters[i] =
+          table ? table->at(to_unit(engine())) : draw_diameter(setup.spread, setup.middle, setup.width, engine);
     }
   });
   return diameters;
 }
 
-Particles seed_particles(ParticleSetup const& setup, double count, FlowSetup const& flow,
-                         LaserSheet<double> const& sheet, double tolerance) {
+SeedingPlan plan_seeding(ParticleSetup const& setup, double count, FlowSetup const& flow) {
   Vec3d const volume = *setup.volume;
   Vec3d const wider = volume + 2.0 * motion_margin(flow, volume, setup.center);
   double const share = wider.x * wider.y * wider.z / (volume.x * volume.y * volume.z);
-  auto const seeded = static_cast<std::size_t>(std::llround(count * share * draws_per_particle(setup, flow)));
+  return {wider, static_cast<std::size_t>(std::llround(count * share * draws_per_particle(setup, flow)))};
+}
+
+Particles seed_particles(ParticleSetup const& setup, double count, FlowSetup const& flow,
+                         LaserSheet<double> const& sheet, double tolerance) {
+  auto const [wider, seeded] = plan_seeding(setup, count, flow);
   Particles particles;
   particles.resize(seeded);
   particles.diameter = draw_diameters(setup.diameter, setup.seed, seeded);
   std::vector<Vec3d>& middle = particles.place[0];
+  Vec3d const box = wider;
   std::vector<char> wanted(seeded);
   parallel_chunks(seeded, 4096, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       KeyedEngine engine(setup.seed, RandomStream::particles, i);
-      double const x = to_unit(engine()) - 0.5, y = to_unit(engine()) - 0.5, z = to_unit(engine()) - 0.5;
-      middle[i] = setup.center + Vec3d{x * wider.x, y * wider.y, z * wider.z};
+      middle[i] = draw_place(engine, setup.center, box);
       wanted[i] = crowds_here(flow.flow, middle[i], setup.response_time(particles.diameter[i]), engine) ? 1 : 0;
     }
   });

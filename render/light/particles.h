@@ -31,6 +31,14 @@ inline constexpr double bytes_per_particle = 450;
 /// times the largest displacement on a lattice of 33^3 points over the volume.
 Vec3d motion_margin(FlowSetup const& flow, Vec3d volume, Vec3d center);
 
+/// Box in which particles are placed at mid-time, and their number.
+struct SeedingPlan {
+  Vec3d size{};  ///< size of the box about the volume's centre: the volume enlarged by motion_margin() [m]
+  std::size_t count = 0;
+};
+/// @param count  mean number of particles in the volume
+SeedingPlan plan_seeding(ParticleSetup const& setup, double count, FlowSetup const& flow);
+
 /// Generates randomly placed particles in a volume, with `count` of them at each pulse on average. They are placed at
 /// mid-time in the volume enlarged by motion_margin() and moved by -dt/2 and +dt/2 along the flow. The number density
 /// is uniform, except behind a shock, where it follows continuity. Particles that receive no light at either pulse are

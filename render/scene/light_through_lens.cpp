@@ -4,22 +4,23 @@
 #include <mutex>
 
 #include "render/base/parallel.h"
-#include "render/base/units.h"
 #include "render/light/lambert_sphere.h"
 #include "render/scene/particle_scene.h"
 
 namespace gladstone {
 
 LightThroughLens::LightThroughLens(Scene const& scene, ParticleLight light)
-    : scene_(scene), light_(light), sheet_(laser_sheet(scene.setup.piv->laser)) {
+    : scene_(scene),
+      light_(light),
+      sheet_(laser_sheet(scene.setup.piv->laser)),
+      lens_{scene.camera.aim_plane.origin, scene.camera.aim_plane.z, LensLight::area(scene.imaging.entrance_pupil)} {
   if (scene.mie) mie_ = scene.mie->view();
 }
 
 double LightThroughLens::cross_section(Vec3d place, Vec3d direction, std::size_t particle, int pulse) const {
   if (light_ == ParticleLight::equal) return 1;
   if (scene_.setup.piv->particles.scattering == ParticleScattering::gaussian) {
-    double const d = scene_.particles.diameter[particle];
-    return d * d / 16;  // geometric cross-section over the full solid angle [m^2/sr]
+    return isotropic_cross_section(scene_.particles.diameter[particle]);
   }
   LightWave<double> const wave = sheet_.wave(place, pulse);
   if (scene_.mie) return mie_.cross_section(particle, direction, wave);
@@ -27,11 +28,9 @@ double LightThroughLens::cross_section(Vec3d place, Vec3d direction, std::size_t
 }
 
 double LightThroughLens::operator()(Vec3d place, std::size_t particle, int pulse) const {
-  Vec3d const way = scene_.camera.aim_plane.origin - place;
-  double const far = length(way), pupil = scene_.imaging.entrance_pupil;
-  double const area = pupil > 0 ? pi / 4 * pupil * pupil : 1.0;  // for chief rays, an area of one square metre
-  double const facing = std::abs(dot(scene_.camera.aim_plane.z, way)) / far;
-  return cross_section(place, way / far, particle, pulse) * area * facing / (far * far);
+  Vec3d const way = lens_.centre - place;
+  double const far = length(way);
+  return lens_(cross_section(place, way / far, particle, pulse), way, far);
 }
 
 double photons_through_lens(Scene const& scene, std::size_t particle, int pulse) {

@@ -9,12 +9,12 @@
 #include "render/base/parallel.h"
 #include "render/base/units.h"
 #include "render/scene/build_camera.h"
+#include "render/scene/ideal_projection.h"
 #include "render/scene/setup_checks.h"
 
 namespace gladstone {
 namespace {
 
-constexpr double path_tolerance_px = 1e-5;
 constexpr double bending_margin = 0.02;       // maximum deflection by media on the way to the lens [rad]
 constexpr double scattering_contrast = 1e-3;  // minimum index difference; seeding particles in gas have 0.3 or more
 constexpr double lit_share = 0.5;             // illuminated fraction of the volume below which a warning is issued
@@ -26,6 +26,9 @@ double seen_share(Setup const& setup) {
   constexpr int places = 1 << 14;
   constexpr double root = 1.32471795724474602596, along_z = 0.41421356237309504880;
   Camera const camera = build_camera(setup);
+  bool const closed_form = setup.has_closed_form_layout();
+  IdealProjection const ideal{setup.imaging().image_distance, setup.z_a, setup.camera.pixel_pitch, setup.camera.columns,
+                              setup.camera.rows};
   ParticleSetup const& particles = setup.piv->particles;
   std::vector<char> seen(places);
   parallel_chunks(places, 256, [&](std::size_t begin, std::size_t end) {
@@ -36,7 +39,8 @@ double seen_share(Setup const& setup) {
       };
       Vec3d const at{part(1 / root) * particles.volume->x, part(1 / (root * root)) * particles.volume->y,
                      part(along_z) * particles.volume->z};
-      auto const pixel = camera.project(particles.center + at);
+      Vec3d const place = particles.center + at;
+      auto const pixel = closed_form && place.z < setup.z_a ? std::optional(ideal(place)) : camera.project(place);
       seen[i] = pixel && camera.sensor.covers(*pixel) ? 1 : 0;
     }
   });

@@ -4,9 +4,13 @@
 #include <vector>
 
 #include "render/light/mie_scattering.h"
+#include "render/scene/lens_light.h"
 #include "render/scene/renderer.h"
 
 namespace gladstone {
+
+/// Largest change of a particle's final position when the integration step is halved [px].
+inline constexpr double path_tolerance_px = 1e-5;
 
 /// Returns the mean number of particles in the volume of a PIV setup.
 /// For per_pixel, the fraction of the volume that the camera sees is estimated from the chief rays of 16384 points, to
@@ -37,6 +41,7 @@ class LightThroughLens {
   Scene const& scene_;
   ParticleLight light_;
   LaserSheet<double> sheet_;
+  LensLight lens_;
   MieScatteringView<double> mie_;
 };
 

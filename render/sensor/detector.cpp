@@ -1,6 +1,7 @@
 #include "render/sensor/detector.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 
@@ -38,6 +39,113 @@ Image<double> stretched(std::string const& path, int columns, int rows, double m
     }
   }
   return image;
+}
+
+/// Pixels that are recorded together, in loops that the compiler vectorises: the same operations as
+/// PixelDetector::record(), in another order. @tparam patterned  whether pixels differ in gain, offset and dark charge
+template <bool patterned>
+class PixelBlock {
+ public:
+  static constexpr std::size_t size = 512;
+
+  PixelBlock(PixelDetector const& detector, RandomStream stream, std::size_t first, std::size_t count)
+      : detector_(detector), first_(first), count_(count) {
+    FrameNoise const noise = detector.frame_noise(stream);
+    for (std::size_t i = 0; i < count; ++i) {
+      shot_[i] = to_open_unit(noise.shot(first + i));
+      read_[i] = to_open_unit(noise.read(first + i));
+    }
+    for (std::size_t i = 0; patterned && i < count; ++i) pattern_[i] = detector.pattern(first + i);
+  }
+
+  /// Records the pixels. @return number of saturated pixels
+  std::size_t record(double const* light, std::uint16_t* levels) {
+    PixelDetector const detector = detector_;
+    if (detector.columns > 0) {
+      for (std::size_t i = 0; i < count_; ++i) charge_[i] = detector.mean_charge(light[i], first_ + i, pattern(i));
+    } else {  // the same without the background
+      for (std::size_t i = 0; i < count_; ++i) charge_[i] = detector.with_dark_charge(light[i], 0, pattern(i));
+    }
+    if (detector.shot_noise) draw_electrons();
+    find_quantiles(read_);
+    double saturated = 0;
+    for (std::size_t i = 0; i < count_; ++i) {
+      PixelLevel const here = detector.read_out(charge_[i], pattern(i), quantile_[i]);
+      expanded_[i] = here.level;
+      saturated += here.saturated ? 1.0 : 0.0;
+    }
+    for (std::size_t i = 0; i < count_; ++i) levels[i] = static_cast<std::uint16_t>(static_cast<int>(expanded_[i]));
+    return static_cast<std::size_t>(saturated);
+  }
+
+ private:
+  using Numbers = std::array<double, size>;
+
+  PixelPattern pattern(std::size_t i) const {
+    if constexpr (patterned) return pattern_[i];
+    return {};
+  }
+  /// Computes the normal quantiles of uniform numbers: first as if all were central, then those in the tails.
+  void find_quantiles(Numbers const& uniform) {
+    for (std::size_t i = 0; i < count_; ++i) quantile_[i] = NormalQuantile::central(uniform[i]);
+    std::size_t const tails = select([&](std::size_t i) { return !NormalQuantile::is_central(uniform[i]); });
+    for (std::size_t k = 0; k < tails; ++k) quantile_[selected_[k]] = NormalQuantile::tail(uniform[selected_[k]]);
+  }
+  /// Lists the pixels that meet a condition, without branches that a processor would mispredict. @return their number
+  template <class Condition>
+  std::size_t select(Condition const& condition) {
+    std::size_t selected = 0;
+    for (std::size_t i = 0; i < count_; ++i) {
+      selected_[selected] = static_cast<std::uint16_t>(i);
+      selected += condition(i) ? 1 : 0;
+    }
+    return selected;
+  }
+  /// Replaces mean charges by numbers of electrons: first as if all were large, then the small ones.
+  void draw_electrons() {
+    constexpr double least = PoissonQuantile::least_expanded;
+    find_quantiles(shot_);
+    for (std::size_t i = 0; i < count_; ++i) {
+      double const charge = charge_[i];
+      expanded_[i] = PoissonQuantile::expanded(charge > least ? charge : least, quantile_[i]);
+    }
+    std::size_t const others = select([&](std::size_t i) { return !(charge_[i] >= least && charge_[i] < 1e12); });
+    for (std::size_t k = 0; k < others; ++k) {
+      std::size_t const i = selected_[k];
+      expanded_[i] = gladstone::draw_electrons(charge_[i], shot_[i]);
+    }
+    charge_ = expanded_;
+  }
+
+  PixelDetector const& detector_;
+  std::size_t first_, count_;
+  Numbers shot_, read_, charge_, quantile_, expanded_;
+  std::array<std::uint16_t, size> selected_;
+  std::array<PixelPattern, patterned ? size : 1> pattern_;
+};
+
+/// Records pixels `begin` to `end`. @return number of saturated pixels
+template <bool patterned>
+std::size_t record_blocks(PixelDetector const& detector, RandomStream stream, double const* light, std::size_t begin,
+                          std::size_t end, std::uint16_t* levels) {
+  using Block = PixelBlock<patterned>;
+  std::size_t saturated = 0;
+  for (std::size_t i = begin; i < end; i += Block::size) {
+    saturated += Block(detector, stream, i, std::min(Block::size, end - i)).record(light + i, levels + i);
+  }
+  return saturated;
+}
+
+/// Records pixels `begin` to `end` of a camera without noise. @return number of saturated pixels
+std::size_t record_without_noise(PixelDetector const& detector, double const* light, std::size_t begin, std::size_t end,
+                                 std::uint16_t* levels) {
+  std::size_t saturated = 0;
+  for (std::size_t i = begin; i < end; ++i) {
+    PixelLevel const here = detector.record(light[i], RandomStream::noise_reference, i);
+    levels[i] = static_cast<std::uint16_t>(here.level);
+    saturated += here.saturated ? 1 : 0;
+  }
+  return saturated;
 }
 
 }  // namespace
@@ -98,13 +206,11 @@ Recording Detector::record(Image<double> const& light, RandomStream stream) cons
   GLADSTONE_EXPECTS(!glare_ || glare_->size() == light.size());
   std::atomic<std::size_t> saturated{0};
   parallel_chunks(light.size(), 4096, [&](std::size_t begin, std::size_t end) {
-    std::size_t clipped = 0;
-    for (std::size_t i = begin; i < end; ++i) {
-      PixelLevel const here = pixel_.record(light.data()[i], stream, i);
-      recording.image.data()[i] = static_cast<std::uint16_t>(here.level);
-      clipped += here.saturated ? 1 : 0;
-    }
-    saturated += clipped;
+    double const* const from = light.data();
+    std::uint16_t* const to = recording.image.data();
+    saturated += !pixel_.noisy      ? record_without_noise(pixel_, from, begin, end, to)
+                 : pixel_.patterned ? record_blocks<true>(pixel_, stream, from, begin, end, to)
+                                    : record_blocks<false>(pixel_, stream, from, begin, end, to);
   });
   recording.saturated = saturated;
   return recording;

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "render/base/random_variates.h"
+#include "render/sensor/pixel_noise.h"
 
 namespace gladstone {
 
@@ -73,28 +74,41 @@ struct PixelDetector {
     return own;
   }
 
-  /// Returns the engine of a pixel's temporal noise.
-  GLADSTONE_HD KeyedEngine noise_engine(RandomStream stream, std::uint64_t pixel) const {
-    if (!by_frame) return {seed, stream, pixel};
-    return {stream == RandomStream::noise_flow ? flow_seed : seed, RandomStream::noise_reference, pixel};
+  /// Returns the random numbers of the temporal noise of a frame.
+  GLADSTONE_HD FrameNoise frame_noise(RandomStream stream) const {
+    if (!by_frame) return {seed, stream};
+    return {stream == RandomStream::noise_flow ? flow_seed : seed, RandomStream::noise_reference};
   }
 
-  GLADSTONE_HD PixelLevel record(double light, RandomStream stream, std::uint64_t pixel) const {
+  /// Returns the mean charge of a pixel with a given fixed pattern [e].
+  GLADSTONE_HD double mean_charge(double light, std::uint64_t pixel, PixelPattern const& own) const {
+    return with_dark_charge(light, background(pixel), own);
+  }
+  GLADSTONE_HD double with_dark_charge(double light, double stray_e, PixelPattern const& own) const {
+    double const charge = light * electrons + stray_e;
+    return noisy ? charge * own.gain + dark_current_e + own.hot : charge;
+  }
+  /// Reads out a charge [e]. @param read_noise  normal variate
+  GLADSTONE_HD PixelLevel read_out(double charge, PixelPattern const& own, double read_noise) const {
     using std::floor;
-    double charge = light * electrons + background(pixel);
     bool full = false;
     if (noisy) {
-      KeyedEngine engine = noise_engine(stream, pixel);
-      PixelPattern const own = patterned ? pattern(pixel) : PixelPattern{};
-      charge = charge * own.gain + dark_current_e + own.hot;
-      // Every pixel saturates above 1e12 electrons.
-      if (shot_noise && charge > 0 && charge < 1e12) charge = poisson_variate(engine, charge);
       full = charge >= full_well_e;
-      charge = (full ? full_well_e : charge) + own.offset;
-      if (read_noise_e > 0) charge += read_noise_e * normal_variate(engine);
+      charge = (full ? full_well_e : charge) + own.offset + read_noise_e * read_noise;
     }
     double const level = floor(offset + charge * levels_per_electron + 0.5);
-    return {level < 0 ? 0 : (level > full_scale ? full_scale : level), full || level >= full_scale};
+    double const most = level > full_scale ? full_scale : level;
+    return {most > 0 ? most : 0, full || level >= full_scale};
+  }
+
+  /// Records a pixel.
+  GLADSTONE_HD PixelLevel record(double light, RandomStream stream, std::uint64_t pixel) const {
+    PixelPattern const own = noisy && patterned ? pattern(pixel) : PixelPattern{};
+    double charge = mean_charge(light, pixel, own);
+    if (!noisy) return read_out(charge, own, 0);
+    FrameNoise const noise = frame_noise(stream);
+    if (shot_noise) charge = draw_electrons(charge, to_open_unit(noise.shot(pixel)));
+    return read_out(charge, own, NormalQuantile{}(to_open_unit(noise.read(pixel))));
   }
 };
 

@@ -46,7 +46,7 @@ Backend open_device(std::string const& wanted) {
     cuda::DeviceState const state = cuda::device_state();
     if (state.usable) {
       spdlog::info("device: cuda, {}", state.text);
-      return {std::make_unique<Device>(cuda::make_renderer(), cuda::make_rays_renderer()),
+      return {std::make_unique<Device>(cuda::make_renderer(), cuda::make_rays_renderer(), cuda::make_image_drawer()),
               [wanted](CorrelationSettings const& settings) { return correlator_on_gpu(settings, wanted == "cuda"); }};
     }
     if (wanted == "cuda") throw DeviceError("--device cuda: " + state.text + "; use --device cpu or auto");
@@ -54,6 +54,10 @@ Backend open_device(std::string const& wanted) {
   }
   spdlog::info("device: cpu, {} threads{}", thread_count(), instead);
   return {std::make_unique<Device>(cpu()), tracking::make_cpu_correlator};
+}
+
+std::unique_ptr<PairBatchRenderer> open_pair_batches(std::vector<OwnedPairModel> const& models) {
+  return cuda::make_pair_batches(models);
 }
 
 int gpu_count() { return cuda::device_count(); }

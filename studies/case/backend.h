@@ -3,8 +3,10 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "analysis/correlation/correlator.h"
+#include "render/ideal_images/pair_batch.h"
 #include "render/scene/renderer.h"
 
 namespace gladstone {
@@ -28,6 +30,11 @@ std::string settings_requiring_cpu(CorrelationSettings const& settings);
 /// @param wanted  "cpu", "cuda", or "auto": the GPU if one is usable
 /// @throws DeviceError if "cuda" is not available, with the reason
 Backend open_device(std::string const& wanted);
+
+/// Opens the GPU for batches of pairs of ideal particle images. @param models  one or several, with frames of equal
+/// size
+/// @throws DeviceError if no GPU is usable, DataError if the models cannot be rendered together
+std::unique_ptr<PairBatchRenderer> open_pair_batches(std::vector<OwnedPairModel> const& models);
 
 /// Returns the number of usable GPUs.
 int gpu_count();

@@ -24,7 +24,7 @@ Names const renderers = {"render/rays", "render/focused_dots", "render/ideal_ima
 Names const analysis = {"analysis/vectors",     "analysis/correlation", "analysis/errors",
                         "analysis/calibration", "analysis/uncertainty", "analysis/preparation",
                         "analysis/tracking",    "analysis/density",     "analysis/stereo"};
-Names const cuda = {"cuda/device", "cuda/rays", "cuda/focused_dots", "cuda/correlation"};
+Names const cuda = {"cuda/device", "cuda/rays", "cuda/focused_dots", "cuda/ideal_images", "cuda/correlation"};
 
 Names const studies = {"studies/case",   "studies/compare",   "studies/sweep",   "studies/design",  "studies/figures",
                        "studies/report", "studies/benchmark", "studies/oracles", "studies/examples"};
@@ -90,6 +90,7 @@ std::vector<Room> const& table() {
        render + Names{"render/focused_dots", "cuda/device", "cuda/rays"},
        {"Eigen", "CUDA"},
        {"fmt"}},
+      {"cuda/ideal_images", render + Names{"render/ideal_images", "cuda/device"}, {"Eigen", "CUDA"}, {"fmt"}},
       {"cuda/correlation",
        render + Names{"analysis/correlation", "analysis/uncertainty", "cuda/device"},
        {"Eigen", "CUDA"},

@@ -1,0 +1,80 @@
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <chrono>
+#include <vector>
+
+#include "cuda/backend.h"
+
+namespace gladstone::bench {
+namespace {
+
+/// PIV pairs with 0.05 particles a pixel, images 3.3 px wide (e^-2), no field, 12 bits.
+Setup square_pair(int side) {
+  Setup setup;
+  setup.camera.columns = setup.camera.rows = side;
+  setup.camera.pixel_pitch = 5e-6;
+  setup.camera.bit_depth = 12;
+  setup.lens.f_number = 16;
+  setup.z_d = 0;
+  setup.medium.field = {};
+  PivSetup piv;
+  piv.particles.scattering = ParticleScattering::gaussian;
+  piv.particles.count = ParticleCount::per_pixel;
+  piv.particles.amount = 0.05;
+  double const view = 34e-3 * side / 1024;
+  piv.particles.volume = Vec3d{view, view, 1e-3};
+  piv.flow.flow.kind = TaylorGreenFlow{10, 2 * 3.14159265358979 / 10e-3, {}};
+  setup.piv = piv;
+  return setup;
+}
+
+/// Renders batches of new pairs that remain on the device, as float32.
+/// @param state  side of the frames [px], pairs of a batch, whether frames are noisy, whether every pair has its own
+///               setup, with the displacement of every pixel
+void pair_batches(benchmark::State& state) {
+  cuda::DeviceState const device = cuda::device_state();
+  if (!device.usable) {
+    state.SkipWithError(device.text.c_str());
+    return;
+  }
+  Setup setup = square_pair(static_cast<int>(state.range(0)));
+  auto const pairs = static_cast<std::size_t>(state.range(1));
+  setup.camera.noise.enabled = state.range(2) != 0;
+  bool const own_setup = state.range(3) != 0;
+  std::vector<OwnedPairModel> const models(own_setup ? pairs : 1, build_pair_model(setup));
+  auto const batches = cuda::make_pair_batches(models);
+  std::vector<PairSeeds> seeds(pairs);
+  std::vector<double> seconds;
+  std::uint64_t next = 1;
+  auto const render_batch = [&] {
+    for (PairSeeds& seed : seeds) {
+      seed = {next, next};
+      ++next;
+    }
+    DeviceBuffer const frames = batches->render(seeds, LevelType::float32);
+    benchmark::DoNotOptimize(frames.data);
+    if (own_setup) benchmark::DoNotOptimize(batches->displacement().data);
+  };
+  for (int i = 0; i < 3; ++i) render_batch();
+  for (auto _ : state) {
+    auto const start = std::chrono::steady_clock::now();
+    render_batch();
+    seconds.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+    state.SetIterationTime(seconds.back());
+  }
+  auto const middle = seconds.begin() + static_cast<std::ptrdiff_t>(seconds.size() / 2);
+  std::nth_element(seconds.begin(), middle, seconds.end());
+  state.counters["pairs/s"] = static_cast<double>(pairs) / *middle;
+}
+BENCHMARK(pair_batches)
+    ->ArgNames({"side", "pairs", "noise", "own_setup"})
+    ->ArgsProduct({{256}, {64, 1024}, {0, 1}, {0}})
+    ->ArgsProduct({{512}, {16, 256}, {0, 1}, {0}})
+    ->ArgsProduct({{1024}, {8, 64}, {0, 1}, {0, 1}})
+    ->UseManualTime()
+    ->Iterations(30)
+    ->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace gladstone::bench
