@@ -80,7 +80,7 @@ def test_report_of_a_case_folder(written_case, tmp_path):
 
 
 def test_sequence_is_rendered_as_by_the_program(piv, program, tmp_path):
-    setup = gs.Setup.from_dict({**piv.to_dict(), "sequence": {"frames": 3, "dt_us": 10.0}})
+    setup = gs.Setup.from_dict({**piv.to_dict(), "sequence": {"frames": 3}})
     setup.save(tmp_path / "sequence.toml")
     program("render", tmp_path / "sequence.toml", "-o", tmp_path / "theirs")
     summary = gs.render_sequence(setup, tmp_path / "mine", device="cpu")
