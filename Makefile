@@ -39,7 +39,8 @@ TEST_PACKAGES := munge slurmctld slurmd slurm-client chromium chromium-driver py
 
 # `make python` and `make wheel`: packages of PyPI, and the platform of the wheel (glibc 2.36 is that of bookworm).
 VENV := build/python/venv
-PYTHON_PACKAGES := 'nanobind>=2.2' 'numpy>=1.24' 'matplotlib>=3.6' pandas tqdm xarray h5py pytest
+PYTHON_PACKAGES := 'nanobind>=2.2' 'numpy>=1.24' 'matplotlib>=3.6' pandas tqdm xarray h5py h5netcdf scipy pytest
+NOTEBOOK_PACKAGES := nbclient nbformat ipykernel ipywidgets openpiv opencv-python-headless
 WHEEL_PLATFORM ?= manylinux_2_36_x86_64
 
 # `make docs`: from PyPI.
@@ -52,7 +53,7 @@ SOURCES = $(shell find $(ROOMS) tests -name '*.h' -o -name '*.cpp' -o -name '*.c
 TIDY_SOURCES = sed -n 's|^ *"file": "\(.*\.c[px][px]\)".*|\1|p' $(BUILD)/compile_commands.json | \
 	grep -E '^$(CURDIR)/($(subst $(space),|,$(strip $(ROOMS))))/|/Unity/unity_($(subst $(space),|,$(strip $(ROOMS))))_'
 
-.PHONY: build test demo gallery studies docs python wheel bench fuzz soak check-long lint format install package clean help packages configure
+.PHONY: build test demo gallery studies docs python python-packages wheel bench fuzz soak check-long lint format install package clean help packages configure
 .DEFAULT_GOAL := build
 
 build: configure  ## install missing Debian packages and build build/bin/gladstone
@@ -90,10 +91,12 @@ docs: build  ## build the documentation site in build/site, which works offline;
 	NO_MKDOCS_2_WARNING=1 build/docs/venv/bin/python -B docs/site/build.py --program $(BUILD)/bin/gladstone
 
 # The package is compiled in $(BUILD), with the libraries of the program, and is tested from build/python/site.
-python: PACKAGES += python3-venv python3-dev
-python: packages  ## build the Python package and run its tests; some of them: PYTEST='-k truth'
+python-packages: PACKAGES += python3-venv python3-dev
+python-packages: packages
 	@[ -x $(VENV)/bin/pip ] || python3 -m venv $(VENV)
 	$(VENV)/bin/pip install -q $(PYTHON_PACKAGES)
+
+python: python-packages  ## build the Python package and run its tests; some of them: PYTEST='-k truth'
 	@cmake --preset $(PRESET) -DGLADSTONE_WARNINGS_AS_ERRORS=$(WARNINGS_AS_ERRORS) -DGLADSTONE_PYTHON=ON \
 		-DPython_EXECUTABLE=$(CURDIR)/$(VENV)/bin/python $(CMAKE_OPTIONS)
 	cmake --build $(BUILD) --parallel $(JOBS) --target gladstone gladstone_python
@@ -128,8 +131,11 @@ fuzz:  ## run all file readers on generated files under sanitizers, into out/fuz
 soak: build  ## disturb the program (kill, full disk, replaced inputs) and check the results: SOAK_RUNS=300, SOAK_SEED=1
 	python3 -B tests/soak/soak.py --program $(BUILD)/bin/gladstone --seed $(SOAK_SEED) --runs $(SOAK_RUNS)
 
-check-long: build  ## simulate ten recommended designs with eight new seeds each, a minute each: SETS=10 SEEDS=8
+check-long: build  ## simulate ten recommended designs with eight new seeds each, a minute each: SETS=10 SEEDS=8; run the notebooks
 	python3 -B tests/long/designs.py --program $(BUILD)/bin/gladstone --sets $(or $(SETS),10) --seeds $(or $(SEEDS),8)
+	@[ -d build/python/site ] || { echo 'check-long: the notebooks were left out; they require "make python"' >&2; exit 1; }
+	$(VENV)/bin/pip install -q $(NOTEBOOK_PACKAGES)
+	PYTHONPATH=$(CURDIR)/build/python/site $(VENV)/bin/python -B tests/long/notebooks.py docs/notebooks/*.ipynb
 
 lint: PACKAGES += $(LINT_PACKAGES)
 lint: configure  ## check the format (clang-format) and the code (clang-tidy)

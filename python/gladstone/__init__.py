@@ -15,6 +15,7 @@ from . import info
 from ._benchmark import BenchmarkCase, Scores, benchmark, benchmark_cases, benchmark_estimators
 from ._calibration import Calibration, calibrate
 from ._case import Accuracy, CalibrationCase, Case, Truth
+from ._commands import Oracle, convert, demo, gallery, render_sequence, report, validate, views
 from ._core import set_threads, threads
 from ._density import Density, reconstruct
 from ._design import Design, design
@@ -29,12 +30,14 @@ from ._errors import (
     Problem,
     SetupError,
 )
-from ._field import Field, correlate
+from ._field import Field, correlate, correlate_ensemble
+from ._preview import Preview, preview, target
 from ._report import Report
 from ._sequence import Sequence, correlate_sequence
 from ._setup import Setup, render
 from ._stereo import ThreeComponents, stereo
 from ._study import Study, StudyRun
+from ._templates import SetupKey, init, keys
 from ._trace import TracedRays, trace
 from ._version import __version__, build
 from .info import Mie, mie
@@ -47,9 +50,10 @@ def compare(case: Case, field, **options) -> Report:
 
 __all__ = [
     "Accuracy", "BenchmarkCase", "Calibration", "CalibrationCase", "Case", "DataError", "Density", "Design",
-    "DeviceError", "Error", "Field", "GladstoneWarning", "Mie", "NoValidVector", "OutOfMemory", "OutputError",
-    "Problem", "Report", "Scores", "Sequence", "Setup", "SetupError", "Study", "StudyRun", "ThreeComponents",
-    "TracedRays", "Truth", "__version__", "benchmark", "benchmark_cases", "benchmark_estimators", "build",
-    "calibrate", "compare", "correlate", "correlate_sequence", "design", "info", "mie", "reconstruct", "render",
-    "set_threads", "stereo", "threads", "trace",
+    "DeviceError", "Error", "Field", "GladstoneWarning", "Mie", "NoValidVector", "Oracle", "OutOfMemory", "OutputError",
+    "Preview", "Problem", "Report", "Scores", "Sequence", "Setup", "SetupError", "SetupKey", "Study", "StudyRun",
+    "ThreeComponents", "TracedRays", "Truth", "__version__", "benchmark", "benchmark_cases", "benchmark_estimators",
+    "build", "calibrate", "compare", "convert", "correlate", "correlate_ensemble", "correlate_sequence", "demo",
+    "design", "gallery", "info", "init", "keys", "mie", "preview", "reconstruct", "render", "render_sequence", "report",
+    "set_threads", "stereo", "target", "threads", "trace", "validate", "views",
 ]  # fmt: skip

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
 
@@ -20,6 +20,9 @@ class GladstoneWarning(UserWarning):
 
 class Error(Exception):
     """Base class of the exceptions of gladstone."""
+
+    code: str = "data"
+    """Kind of the error, as `gladstone --json` reports it; each problem of a `SetupError` has its own."""
 
 
 class Problem(NamedTuple):
@@ -61,9 +64,13 @@ def _problem(where: str, text: str, key: str, code: str) -> Problem:
 class SetupError(Error, ValueError):
     """A setup with problems; `problems` lists them, `more` is the number of further ones."""
 
+    code = "setup"
     problems: tuple[Problem, ...]
+    """Problems of the setup, each with file, line, column, key, text and code."""
+    more: int
+    """Number of further problems, which are not listed."""
 
-    def __init__(self, problems=(), more: int = 0):
+    def __init__(self, problems: Iterable[Problem | tuple[str, str, str, str]] = (), more: int = 0):
         self.problems = tuple(one if isinstance(one, Problem) else _problem(*one) for one in problems)
         self.more = more
         text = "\n".join(str(problem) for problem in self.problems)
@@ -94,14 +101,22 @@ class DataError(_FileError, ValueError):
 class NoValidVector(DataError):
     """A displacement field without a single valid vector."""
 
+    code = "no_valid_vector"
+
 
 class OutOfMemory(DataError, MemoryError):
     """A computation that needs more memory than is available."""
+
+    code = "memory"
 
 
 class OutputError(_FileError):
     """A file that cannot be written."""
 
+    code = "output"
+
 
 class DeviceError(Error, RuntimeError):
     """An accelerator that is absent, out of memory or failing."""
+
+    code = "device"

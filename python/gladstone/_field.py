@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import tomllib
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -60,6 +61,25 @@ def correlate(a, b, *, device: str = "auto", progress: Progress = False, **setti
             "check that both frames show one scene, with dots in every window"
         ]
     deliver([(True, warning) for warning in warnings])
+    return field
+
+
+def correlate_ensemble(
+    images: Iterable[str | os.PathLike], *, progress: Progress = False, **settings
+) -> Field:
+    """Measures one displacement field from many pairs, by the mean of their correlation planes, on the CPU.
+
+    images: image files, frames a and b of each pair in turn, all of one size.
+    settings: window, overlap, method, ..., as for `correlate`.
+
+    The vectors are equal bit by bit to those of `gladstone correlate --ensemble`.
+    """
+    files = [os.fspath(one) for one in images]
+    if not files or len(files) % 2:
+        raise ValueError(f"got {len(files)} images; give frames a and b of each pair")
+    with reporting(progress) as report:
+        field = Field._of(_core.correlate_ensemble(files, _overrides(settings), report))
+    deliver([(True, warning) for warning in field.warnings])
     return field
 
 

@@ -122,7 +122,7 @@ class Report:
         """Draws the figures of `gladstone compare` into an existing folder by gnuplot. Returns their paths."""
         return self._core.draw(os.fspath(folder), format)
 
-    def to_html(self, path: str | os.PathLike, *, device: str = "auto") -> str:
+    def to_html(self, path: str | os.PathLike = "report.html", *, device: str = "auto") -> str:
         """Writes the report of `gladstone report`, one HTML file that works offline. Returns its findings.
 
         The comparison is computed again for this report.
@@ -131,7 +131,8 @@ class Report:
             place = os.path.join(folder, "case")
             self._case.save(place)
             self._field.save(os.path.join(place, "vectors.h5"))
-            return _core.report(place, os.path.abspath(os.fspath(path)), device)
+            output = os.path.abspath(os.fspath(path))
+            return _core.report(place, output, "", [], "", "", "png", device, None)
 
     def __str__(self) -> str:
         return self._core.text()

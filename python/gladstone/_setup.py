@@ -43,6 +43,16 @@ class Setup:
         """Makes a setup of a dictionary of tables: `{"lens": {"f_number": 11}, ...}`."""
         return cls(_toml.document(tables), folder=folder)
 
+    @property
+    def _from_file(self) -> bool:
+        """Whether the setup was read from a file, whose text is unchanged."""
+        core = self._core
+        try:
+            with open(os.path.join(core.folder, os.path.basename(core.name)), encoding="utf-8") as file:
+                return file.read() == core.text
+        except (OSError, UnicodeDecodeError):
+            return False
+
     def replace(self, values: Mapping[str, Any]) -> Setup:
         """Returns a setup with other values: `setup.replace({"lens.f_number": 16})`."""
         core = self._core

@@ -76,12 +76,15 @@ class Study:
         *,
         device: str = "auto",
         keep_images: bool = False,
+        pairs_only: bool = False,
         retry_failed: bool = False,
         progress: Progress = False,
     ) -> StudyRun:
-        """Plans the study and computes the missing cases. Returns the results."""
+        """Plans the study and computes the missing cases. Returns the results; for the options see `StudyRun.compute`."""
         run = self.plan(folder, device=device)
-        run.compute(keep_images=keep_images, retry_failed=retry_failed, progress=progress)
+        run.compute(
+            keep_images=keep_images, pairs_only=pairs_only, retry_failed=retry_failed, progress=progress
+        )
         return run
 
 
@@ -91,14 +94,24 @@ class StudyRun:
     def __init__(self, folder: str | os.PathLike):
         self.folder = os.fspath(folder)
 
-    def compute(self, *, keep_images: bool = False, retry_failed: bool = False, progress: Progress = False) -> None:
-        """Computes the missing cases.
+    def compute(
+        self,
+        *,
+        keep_images: bool = False,
+        pairs_only: bool = False,
+        retry_failed: bool = False,
+        cases: str | None = None,
+        progress: Progress = False,
+    ) -> None:
+        """Computes the missing cases, as `gladstone sweep run`.
 
         keep_images: also write the images and all other files of each case.
+        pairs_only: compute only the images, which are kept: no correlation and no errors.
         retry_failed: compute failed cases again.
+        cases: only these cases, by index: "17", or "0-3,7"; default: all.
         """
         with reporting(progress) as report:
-            _core.study_run(self.folder, keep_images, retry_failed, report)
+            _core.study_run(self.folder, keep_images, pairs_only, retry_failed, cases, report)
 
     @property
     def state(self) -> dict[str, Any]:
@@ -121,6 +134,17 @@ class StudyRun:
         import pandas
 
         return pandas.DataFrame(self.table)
+
+    @property
+    def ranking(self) -> list[dict[str, Any]]:
+        """Points in ascending order of each measure of the error: `measure`, `meaning`, and `points` with the index of
+        the first `case` and the mean `value` over its repeats."""
+        return json.loads(_core.study_ranking(self.folder))
+
+    def draw(self, folder: str | os.PathLike | None = None, formats: Sequence[str] = ("png", "svg")) -> list[str]:
+        """Draws the figures of `gladstone sweep collect` by gnuplot; default: into RUN/figures. Returns their paths."""
+        place = os.path.join(self.folder, "figures") if folder is None else os.fspath(folder)
+        return _core.study_draw(self.folder, place, list(formats))
 
     def pack(self, path: str | os.PathLike, *, device: str = "auto", progress: Progress = False) -> int:
         """Packs images and true displacements of all cases into one HDF5 file for training and tests.

@@ -32,15 +32,23 @@ def lens(
 
 
 def field(
-    file: str | os.PathLike, *, dataset: str = "", axes: str = "", setup: str | os.PathLike | None = None
+    file: str | os.PathLike,
+    *,
+    dataset: str = "",
+    axes: str = "",
+    setup: str | os.PathLike | None = None,
+    figure: str | os.PathLike | None = None,
 ) -> dict[str, Any]:
     """Describes a density or refractive-index field: nodes, spacing, extent [mm], extremes, steepest gradient.
 
     dataset: name within the file.
     axes: world axes in the order of the file, the slowest first, such as "zyx".
     setup: setup file whose view the field should cover.
+    figure: path of a drawing of the three planes through its middle (.png, .svg, .pdf).
     """
-    return json.loads(_core.info_field(os.fspath(file), dataset, axes, os.fspath(setup or "")))
+    return json.loads(
+        _core.info_field(os.fspath(file), dataset, axes, os.fspath(setup or ""), os.fspath(figure or ""))
+    )
 
 
 def image(given, *, bit_depth: int = 0) -> dict[str, Any]:

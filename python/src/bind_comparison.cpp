@@ -87,13 +87,16 @@ nb::object comparison_array(nb::handle_t<Comparison> self, std::string const& na
   return nb::none();
 }
 
-/// Writes the report of a CASE folder with its vectors. @return the findings, one per line
-std::string report(std::string const& folder, std::string const& output, std::string const& device) {
-  ReportOptions options;
-  options.source = folder;
-  options.output = output;
-  options.figure_format = "png";
-  return write_report(options, open_device(device)).findings;
+/// Writes the report of a study, a case or a measurement. @return the findings, one per line
+std::string report(ReportOptions const& options, std::string const& device) {
+  WrittenReport const written = write_report(options, open_device(device));
+  for (std::string const& file : written.doubtful) {
+    spdlog::warn(
+        "{}: the report rests on vectors that are cut short or likely read otherwise than they were written; export "
+        "them again, or give conventions",
+        file);
+  }
+  return written.findings;
 }
 
 }  // namespace
@@ -120,10 +123,22 @@ void bind_comparison(nb::module_& module) {
       nb::arg("case"), nb::arg("field"), nb::arg("at_reference"), nb::arg("device"), nb::arg("progress").none());
   module.def(
       "report",
-      [](std::string const& folder, std::string const& output, std::string const& device) {
-        return run([&] { return report(folder, output, device); });
+      [](std::string const& folder, std::string const& output, std::string const& vectors,
+         std::vector<std::string> const& repeats, std::string const& conventions, std::string const& figures,
+         std::string const& figure_format, std::string const& device, nb::handle progress) {
+        ReportOptions options;
+        options.source = folder;
+        options.output = output;
+        options.markdown = output.ends_with(".md");
+        options.vectors = vectors;
+        options.repeats = repeats;
+        options.conventions = conventions;
+        options.figures = figures;
+        options.figure_format = figure_format;
+        return run([&] { return report(options, device); }, progress);
       },
-      nb::arg("folder"), nb::arg("output"), nb::arg("device"));
+      nb::arg("folder"), nb::arg("output"), nb::arg("vectors"), nb::arg("repeats"), nb::arg("conventions"),
+      nb::arg("figures"), nb::arg("figure_format"), nb::arg("device"), nb::arg("progress").none());
 }
 
 }  // namespace gladstone::python

@@ -48,6 +48,21 @@ Field correlate(ImageArray const& a, ImageArray const& b, std::vector<std::strin
       progress);
 }
 
+/// Measures the displacement field common to many pairs. @param files  frames A and B of each pair in turn
+Field correlate_ensemble(std::vector<std::string> const& files, std::vector<std::string> const& overrides) {
+  CorrelationFile const given = default_correlation(overrides);
+  SourceFiles sources;
+  Measurement measured = correlate_ensemble_files(files, given.settings, sources);
+  auto field = std::make_shared<MeasuredField>();
+  field->field = std::move(measured.field);
+  field->foreign = false;
+  field->settings = given.settings;
+  field->resolved = given.resolved;
+  field->device = measured.device;
+  field->seconds = measured.seconds;
+  return field;
+}
+
 /// Reads a file of vectors and converts it to our conventions.
 /// @param conventions  as read by parse_conventions(); empty: those of the format
 /// @param image_rows   number of rows of the image, for conventions with "y-up-image"
@@ -160,6 +175,12 @@ void bind_field(nb::module_& module) {
           nb::arg("path"));
   module.def("correlate", &correlate, nb::arg("a"), nb::arg("b"), nb::arg("overrides"), nb::arg("device"),
              nb::arg("progress").none());
+  module.def(
+      "correlate_ensemble",
+      [](std::vector<std::string> const& files, std::vector<std::string> const& overrides, nb::handle progress) {
+        return run([&] { return correlate_ensemble(files, overrides); }, progress);
+      },
+      nb::arg("files"), nb::arg("overrides"), nb::arg("progress").none());
   module.def(
       "load_field",
       [](std::string const& path, std::string const& conventions, int image_rows) {

@@ -74,10 +74,11 @@ void bind_information(nb::module_& module) {
       nb::arg("file"), nb::arg("glasses"), nb::arg("wavelength_nm"), nb::arg("figure"));
   module.def(
       "info_field",
-      [](std::string const& file, std::string const& dataset, std::string const& axes, std::string const& setup) {
-        return run([&] { return describe_field(file, dataset, axes, setup).json; });
+      [](std::string const& file, std::string const& dataset, std::string const& axes, std::string const& setup,
+         std::string const& figure) {
+        return run([&] { return describe_field(file, dataset, axes, setup, figure).json; });
       },
-      nb::arg("file"), nb::arg("dataset"), nb::arg("axes"), nb::arg("setup"));
+      nb::arg("file"), nb::arg("dataset"), nb::arg("axes"), nb::arg("setup"), nb::arg("figure"));
   module.def(
       "info_image_file", [](std::string const& file) { return run([&] { return describe_image(file).json; }); },
       nb::arg("file"));

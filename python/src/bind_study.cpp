@@ -1,3 +1,4 @@
+#include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
@@ -8,9 +9,11 @@
 #include "python/src/call.h"
 #include "render/base/progress.h"
 #include "studies/case/json_text.h"
+#include "studies/figures/study_figures.h"
 #include "studies/sweep/collect.h"
 #include "studies/sweep/dataset.h"
 #include "studies/sweep/plan.h"
+#include "studies/sweep/ranking.h"
 #include "studies/sweep/run.h"
 #include "studies/sweep/state_report.h"
 #include "studies/sweep/study_columns.h"
@@ -71,18 +74,37 @@ void bind_study(nb::module_& module) {
       nb::arg("study"), nb::arg("folder"), nb::arg("device"), nb::arg("progress").none());
   module.def(
       "study_run",
-      [](std::string const& folder, bool keep_images, bool retry_failed, nb::handle progress) {
+      [](std::string const& folder, bool keep_images, bool pairs_only, bool retry_failed,
+         std::optional<std::string> const& cases, nb::handle progress) {
         RunSelection selection;
+        selection.only = cases;
+        selection.pairs_only = pairs_only;
         selection.keep_images = keep_images;
         selection.retry_failed = retry_failed;
         run([&] { compute(folder, selection); }, progress);
       },
-      nb::arg("folder"), nb::arg("keep_images"), nb::arg("retry_failed"), nb::arg("progress").none());
+      nb::arg("folder"), nb::arg("keep_images"), nb::arg("pairs_only"), nb::arg("retry_failed"),
+      nb::arg("cases").none(), nb::arg("progress").none());
   module.def(
       "study_state", [](std::string const& folder) { return run([&] { return state(folder); }); }, nb::arg("folder"));
   module.def(
       "study_collect", [](std::string const& folder) { return columns_of(run([&] { return collect_study(folder); })); },
       nb::arg("folder"));
+  module.def(
+      "study_ranking",
+      [](std::string const& folder) {
+        return run([&] {
+          StudyTable const table = collect_study(folder);
+          return json_text(ranking_json(table, rank_points(table)));
+        });
+      },
+      nb::arg("folder"));
+  module.def(
+      "study_draw",
+      [](std::string const& folder, std::string const& figures, std::vector<std::string> const& formats) {
+        return run([&] { return draw_study(figures, collect_study(folder), formats); });
+      },
+      nb::arg("folder"), nb::arg("figures"), nb::arg("formats"));
   module.def(
       "study_dataset",
       [](std::string const& folder, std::string const& path, std::string const& device, nb::handle progress) {

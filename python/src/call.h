@@ -52,5 +52,6 @@ void bind_design(nb::module_& module);
 void bind_study(nb::module_& module);
 void bind_sequence(nb::module_& module);
 void bind_batches(nb::module_& module);
+void bind_commands(nb::module_& module);
 
 }  // namespace gladstone::python

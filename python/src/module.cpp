@@ -20,4 +20,5 @@ NB_MODULE(_core, module) {
   bind_study(module);
   bind_sequence(module);
   bind_batches(module);
+  bind_commands(module);
 }

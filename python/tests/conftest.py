@@ -59,6 +59,7 @@ def program():
         assert done.returncode in codes, done.stderr.decode()
         return json.loads(done.stdout)
 
+    run.path = path
     return run
 
 

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "render/base/contracts.h"
+#include "render/base/not_a_number.h"
 #include "render/base/units.h"
 #include "render/medium/gladstone_dale.h"
 #include "render/setup/setup_table.h"
@@ -127,14 +128,17 @@ GasMixture read_gas_mixture(SetupTable& medium, double wavelength) {
   SetupTable table = medium.table("gas");
   bool const by_mass = table.word("fractions", "mole", {"mole", "mass"}) == "mass";
   std::array<double, all_gases.size()> fractions{};
-  double sum = 0;
+  double sum = 0;  // NaN if a fraction is wrong, which is reported already
   for (std::size_t i = 0; i < fractions.size(); ++i) {
-    fractions[i] = table.number(std::string(all_gases[i].name), 0.0, Range::at_least(0.0, 1.0));
+    std::string const name(all_gases[i].name);
+    fractions[i] = table.number(name, table.has(name) ? not_a_number : 0.0, Range::at_least(0.0, 1.0));
     sum += fractions[i];
   }
   if (std::abs(sum - 1) > tolerance) {
     medium.problem("gas",
                    fmt::format("has fractions that add up to {:.7g} (they must add up to 1); correct them", sum));
+  }
+  if (!(std::abs(sum - 1) <= tolerance)) {
     fractions = {};
     fractions.front() = 1;  // air, so that reading continues
   }

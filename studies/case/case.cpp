@@ -136,6 +136,16 @@ void warn_of_blur(Scene const& scene, std::vector<std::string>& warnings) {
            blur, spot));
 }
 
+/// Throws SetupError for the file of a study, in place of one problem for each of its keys.
+void refuse_study(SetupDocument& document) {
+  SetupTable root = document.root();
+  if (!root.has("axes")) return;
+  throw SetupError({{root.where("axes"),
+                     "axes: belongs to a study, which varies a setup (this command requires a setup); give the setup "
+                     "that its key base names, or compute the study with gladstone sweep plan",
+                     "axes", ProblemCode::unknown_key}});
+}
+
 }  // namespace
 
 CaseSetup load_case_setup(std::string const& path, std::vector<std::string> const& overrides) {
@@ -145,6 +155,7 @@ CaseSetup load_case_setup(std::string const& path, std::vector<std::string> cons
 }
 
 CaseSetup load_case_setup(SetupDocument document, FieldMemory field) {
+  refuse_study(document);
   std::vector<UncertainInput> uncertain = extract_uncertain_inputs(document);
   bool const first_pair_only = describes_sequence(document);
   select_pair(document);

@@ -1,4 +1,7 @@
+#include "studies/commands/init.h"
+
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -33,10 +36,15 @@ constexpr std::array templates{
     Template{"design", &embedded::template_design, "schema = 1\nexperiment = \"bos\"\n"},
 };
 
-std::vector<std::string> template_kinds() {
-  std::vector<std::string> kinds;
-  for (Template const& one : templates) kinds.emplace_back(one.kind);
-  return kinds;
+/// @throws DataError if there is no such kind
+Template const& find_template(std::string const& kind) {
+  auto const found =
+      std::find_if(templates.begin(), templates.end(), [&](Template const& one) { return kind == one.kind; });
+  if (found == templates.end()) {
+    throw DataError(
+        "init", fmt::format("\"{}\" is not a kind of file; choose one of {}", kind, fmt::join(template_kinds(), ", ")));
+  }
+  return *found;
 }
 
 /// Returns a line of the complete list: the commented key with its default, unit, values and meaning. Keys without a
@@ -106,6 +114,24 @@ void write_new_file(std::string const& path, std::string const& text) {
 
 }  // namespace
 
+std::vector<std::string> template_kinds() {
+  std::vector<std::string> kinds;
+  for (Template const& one : templates) kinds.emplace_back(one.kind);
+  return kinds;
+}
+
+std::string template_text(std::string const& kind, TemplateKeys keys) {
+  Template const& one = find_template(kind);
+  return keys == TemplateKeys::all ? complete_list(one) : std::string(*one.text);
+}
+
+std::string write_template(std::string const& path, std::string const& kind, TemplateKeys keys) {
+  std::string text = template_text(kind, keys);
+  if (keys == TemplateKeys::important) text = with_file_name(std::move(text), kind, path);
+  write_new_file(path, text);
+  return text;
+}
+
 CommandBody attach_init(CLI::App& app, GlobalOptions const& options) {
   struct Arguments {
     std::string kind, output;
@@ -119,18 +145,16 @@ CommandBody attach_init(CLI::App& app, GlobalOptions const& options) {
   app.add_flag("--all", arguments->all,
                "Write every key with its default, commented out, instead of the most important keys");
   return [arguments, &options] {
-    auto const one = std::find_if(templates.begin(), templates.end(),
-                                  [&](Template const& other) { return arguments->kind == other.kind; });
-    std::string text = arguments->all ? complete_list(*one) : std::string(*one->text);
-    std::string const& file = arguments->output;
+    TemplateKeys const keys = arguments->all ? TemplateKeys::all : TemplateKeys::important;
+    std::string const &kind = arguments->kind, &file = arguments->output;
     if (file.empty()) {
-      print_result(options, json_text(nlohmann::ordered_json{{"kind", one->kind}, {"text", text}}), text);
+      std::string const text = template_text(kind, keys);
+      print_result(options, json_text(nlohmann::ordered_json{{"kind", kind}, {"text", text}}), text);
       return ok;
     }
-    if (!arguments->all) text = with_file_name(std::move(text), one->kind, file);
-    write_new_file(file, text);
+    std::string const text = write_template(file, kind, keys);
     std::string const next = arguments->all ? "" : next_command(text);
-    print_result(options, json_text(nlohmann::ordered_json{{"kind", one->kind}, {"file", file}, {"next", next}}),
+    print_result(options, json_text(nlohmann::ordered_json{{"kind", kind}, {"file", file}, {"next", next}}),
                  file + (next.empty() ? "" : "\nnext: " + next));
     return ok;
   };

@@ -1,9 +1,10 @@
+#include "studies/commands/keys.h"
+
 #include <fmt/format.h>
 #include <fnmatch.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
 #include "render/base/nearest_name.h"
 #include "studies/case/json_text.h"
@@ -76,26 +77,32 @@ std::string to_text(SetupKey const& key, SetupKeyTable const& table) {
 
 }  // namespace
 
+FoundKeys find_keys(std::string const& pattern) {
+  FoundKeys found;
+  found.keys = nlohmann::ordered_json::array();
+  for (SetupKeyTable const& table : setup_key_tables()) {
+    for (SetupKey const& key : table.keys) {
+      if (!matches(key.path, pattern)) continue;
+      found.keys.push_back(to_json(key, table));
+      found.text += to_text(key, table);
+    }
+  }
+  if (found.keys.empty()) found.similar = similar_keys(pattern);
+  return found;
+}
+
 CommandBody attach_keys(CLI::App& app, GlobalOptions const& options) {
   auto pattern = std::make_shared<std::string>();
   app.add_option("pattern", *pattern,
                  "Part of a key's path (f_number, medium.field), or a whole path with wildcards: 'camera.*_um'");
   return [pattern, &options] {
-    nlohmann::ordered_json keys = nlohmann::ordered_json::array();
-    std::string text;
-    for (SetupKeyTable const& table : setup_key_tables()) {
-      for (SetupKey const& key : table.keys) {
-        if (!matches(key.path, *pattern)) continue;
-        keys.push_back(to_json(key, table));
-        text += to_text(key, table);
-      }
-    }
-    nlohmann::ordered_json result{{"keys", keys}};
-    if (!keys.empty()) {
-      print_result(options, json_text(result), text);
+    FoundKeys const found = find_keys(*pattern);
+    nlohmann::ordered_json result{{"keys", found.keys}};
+    if (!found.keys.empty()) {
+      print_result(options, json_text(result), found.text);
       return ok;
     }
-    std::vector<std::string> const similar = similar_keys(*pattern);
+    std::vector<std::string> const& similar = found.similar;
     result["similar"] = similar;
     if (options.json) print_result(options, json_text(result), "");
     print_error(

@@ -1,3 +1,5 @@
+#include "studies/commands/target.h"
+
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -27,6 +29,26 @@ std::string formatted_target(TargetPattern const& pattern, std::string const& pa
 
 }  // namespace
 
+Description write_target(SetupDocument const& setup, std::string const& name, std::string const& output) {
+  // All cameras of a setup see the same target.
+  CaseSetup const loaded = load_case_setup(std::move(camera_cases(setup).front().document));
+  TargetPattern const pattern = make_target_pattern(loaded.setup, name);
+  OutputFile::write_text(output, formatted_target(pattern, output));
+  TargetPage const page = make_target_page(pattern);
+  double const diameter_mm = pattern.diameter / unit::millimetre;
+  Vec2d const extent = pattern.extent / unit::millimetre;
+  nlohmann::ordered_json const json{{"output", output},
+                                    {"dots", pattern.centre.size()},
+                                    {"dot_diameter_mm", diameter_mm},
+                                    {"extent_mm", {extent.x, extent.y}},
+                                    {"page_mm", {page.size_mm.x, page.size_mm.y}},
+                                    {"scale_bar_mm", page.scale_bar_mm}};
+  return {json_text(json),
+          fmt::format("{}: {} dots of {:.6g} mm on {:.6g} x {:.6g} mm, page {:.6g} x {:.6g} mm, scale bar {:g} mm\n",
+                      output, pattern.centre.size(), diameter_mm, extent.x, extent.y, page.size_mm.x, page.size_mm.y,
+                      page.scale_bar_mm)};
+}
+
 CommandBody attach_target(CLI::App& app, GlobalOptions const& options) {
   struct Arguments {
     std::string setup, output;
@@ -44,24 +66,8 @@ CommandBody attach_target(CLI::App& app, GlobalOptions const& options) {
   return [arguments, &options] {
     SetupDocument document = SetupDocument::from_file(arguments->setup);
     for (std::string const& assignment : arguments->overrides) document.override_key(assignment);
-    // All cameras of a setup see the same target.
-    CaseSetup const loaded = load_case_setup(std::move(camera_cases(document).front().document));
-    TargetPattern const pattern = make_target_pattern(loaded.setup, arguments->setup);
-    OutputFile::write_text(arguments->output, formatted_target(pattern, arguments->output));
-    TargetPage const page = make_target_page(pattern);
-    double const diameter_mm = pattern.diameter / unit::millimetre;
-    Vec2d const extent = pattern.extent / unit::millimetre;
-    nlohmann::ordered_json const json{{"output", arguments->output},
-                                      {"dots", pattern.centre.size()},
-                                      {"dot_diameter_mm", diameter_mm},
-                                      {"extent_mm", {extent.x, extent.y}},
-                                      {"page_mm", {page.size_mm.x, page.size_mm.y}},
-                                      {"scale_bar_mm", page.scale_bar_mm}};
-    print_result(options, json_text(json),
-                 fmt::format("{}: {} dots of {:.6g} mm on {:.6g} x {:.6g} mm, page {:.6g} x {:.6g} mm, scale bar {:g} "
-                             "mm\n",
-                             arguments->output, pattern.centre.size(), diameter_mm, extent.x, extent.y, page.size_mm.x,
-                             page.size_mm.y, page.scale_bar_mm));
+    Description const written = write_target(document, arguments->setup, arguments->output);
+    print_result(options, written.json, written.text);
     return ok;
   };
 }

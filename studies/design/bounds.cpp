@@ -33,13 +33,13 @@ std::string bound_name(Bound bound) {
     case Bound::lens_clear:
       return "lens outside the medium";
     case Bound::dot_least:
-      return "dot images large enough for the study of the random error";
+      return "smallest dot images for which the random error is known";
     case Bound::dot_most:
-      return "dot images small enough for the study of the random error";
+      return "largest dot images for which the random error is known";
     case Bound::coverage:
       return "space between the dots";
     case Bound::noise_most:
-      return "enough light for the study of the random error";
+      return "largest image noise for which the random error is known";
     case Bound::full_well:
       return "peaks below the full well";
     default:

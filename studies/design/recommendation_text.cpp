@@ -24,13 +24,42 @@ std::string objective_text(AnsweredQuestion const& answered, double objective) {
                      objective_units[objective_index(answered)]);
 }
 
-/// Describes a violated constraint. @param violation  as BranchSolution::violation
+/// Describes why a set-up does not meet a constraint. @param violation  as BranchSolution::violation
 std::string violation_text(Bound bound, double violation) {
-  if (bound == Bound::resolution) {
-    return fmt::format("violates {}: the chain transmits {:.3f} of that wavelength instead of {:.3f}",
-                       bound_name(bound), transfer_at_resolution - violation, transfer_at_resolution);
+  double const percent = 100 * std::expm1(violation);
+  RandomErrorRange const& known = random_error_range;
+  switch (bound) {
+    case Bound::resolution:
+      return fmt::format("does not meet {}: the chain transmits {:.3f} of that wavelength instead of {:.3f}",
+                         bound_name(bound), transfer_at_resolution - violation, transfer_at_resolution);
+    case Bound::focus:
+      return "the dots are too close to the lens to be focused";
+    case Bound::dots_clear:
+      return "the dots are inside the medium";
+    case Bound::lens_clear:
+      return "the lens is inside the medium";
+    case Bound::dot_least:
+      return fmt::format("the dot images are too small: the random error is known from {:.3g} px on, {:.3g} % more",
+                         known.least_dot, percent);
+    case Bound::dot_most:
+      return fmt::format("the dot images are {:.3g} % larger than {:.3g} px, up to which the random error is known",
+                         percent, known.most_image);
+    case Bound::coverage:
+      return fmt::format(
+          "the dots are too close to each other: they cover {:.3g} % more than the possible {:.3g} % of "
+          "the target",
+          percent, 100 * most_coverage);
+    case Bound::noise_most:
+      return fmt::format(
+          "too little light: the image noise is {:.3g} % above {:.3g} % of the peak, up to which the "
+          "random error is known",
+          percent, 100 * known.most_noise);
+    case Bound::full_well:
+      return fmt::format("too much light: the peaks exceed the full well by {:.3g} %", percent);
+    default:
+      return fmt::format("does not meet {}: {:.3g} % too {}", bound_name(bound), percent,
+                         from_below(bound) ? "small" : "large");
   }
-  return fmt::format("violates {} by {:.3g} %", bound_name(bound), 100 * std::expm1(violation));
 }
 
 /// Returns the change of the objective relative to the recommended one, " (+3.1 %)".

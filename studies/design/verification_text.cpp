@@ -33,7 +33,7 @@ std::string bench_text(VerifiedDesign const& one, DesignQuestion const& question
   for (VerifiedRequirement const& requirement : one.requirements) {
     if (requirement.kept()) continue;
     double const unit = bound_key(requirement.bound).unit;
-    text += fmt::format("    violates {} = {:.6g}: {:.5g} in simulation\n", bound_name(requirement.bound),
+    text += fmt::format("    does not meet {} = {:.6g}: {:.5g} in simulation\n", bound_name(requirement.bound),
                         requirement.required / unit, requirement.simulated.value / unit);
   }
   if (one.kept()) text += "    meets the requirements\n";

@@ -77,9 +77,11 @@ void distance(GnuplotFigure& plot, double from, double to, double at, std::strin
                            0.5 * (from + to) / mm, at));
 }
 
-void name_part(GnuplotFigure& plot, std::string const& name, double z, double at) {
-  plot.command(fmt::format("set label {} at first {:.6g},graph {:.3f} center front boxed textcolor '#202020'",
-                           GnuplotFigure::quoted(name), z / mm, at));
+/// @param alignment  of the text at z: "center" or "right"
+void name_part(GnuplotFigure& plot, std::string const& name, double z, double at,
+               std::string_view alignment = "center") {
+  plot.command(fmt::format("set label {} at first {:.6g},graph {:.3f} {} front boxed textcolor '#202020'",
+                           GnuplotFigure::quoted(name), z / mm, at, alignment));
 }
 
 void draw(GnuplotFigure& plot, Drawing const& d) {
@@ -146,7 +148,8 @@ void write_layout(std::string const& path, OpticalLayout const& l, LayoutWords c
                            GnuplotFigure::quoted(fmt::format("z_i = {:.5g} mm", (l.sensor_z - l.lens_z) / mm))));
   name_part(plot, words.seen, l.dots_z + (dots ? 0.03 : 0.08) * length, dots ? 0.95 : 0.82);
   if (!words.medium.empty()) name_part(plot, words.medium, dots ? 0 : 0.08 * length, 0.89);
-  name_part(plot, fmt::format("pupil {:.4g} mm", 2 * l.pupil_radius / mm), l.lens_z, 0.83);
+  // beside the stop, whose bars reach up to the label's height if the pupil is the tallest part
+  name_part(plot, fmt::format("pupil {:.4g} mm", 2 * l.pupil_radius / mm), l.lens_z - 0.02 * length, 0.83, "right");
   name_part(plot, fmt::format("sensor {:.4g} mm", 2 * l.sensor_half / mm), l.sensor_z, 0.20);
   draw(plot, drawing);
   plot.command("unset multiplot");

@@ -188,8 +188,10 @@ TEST_F(NpyField, DamagedFilesAreRefused) {
 /// Builder of zip archives (PKWARE APPNOTE.TXT): local headers with their data, the directory, and its end.
 class Zip {
  public:
-  void add(std::string const& name, std::string const& content, bool deflated, bool good_checksum = true) {
-    std::string const data = deflated ? deflate_raw(content) : content;
+  /// @param kept  number of bytes of the content that the compressed data contain; the headers declare all
+  void add(std::string const& name, std::string const& content, bool deflated, bool good_checksum = true,
+           std::size_t kept = std::string::npos) {
+    std::string const data = deflated ? deflate_raw(content.substr(0, kept)) : content;
     auto crc = static_cast<std::uint32_t>(
         crc32(0, reinterpret_cast<Bytef const*>(content.data()), static_cast<uInt>(content.size())));
     if (!good_checksum) ++crc;
@@ -262,6 +264,10 @@ TEST_F(NpzField, DamagedArchivesAreRefused) {
   Zip stored;
   stored.add("rho.npy", array, false, false);
   EXPECT_THAT(refusal(write("stored.npz", stored.archive())), HasSubstr("wrong checksum"));
+  Zip early;  // compressed data that end before the array does, in an archive of full length
+  early.add("rho.npy", array, true, true, array.size() - 16);
+  EXPECT_THAT(refusal(write("early.npz", early.archive())),
+              HasSubstr("is damaged: array \"rho\" has 176 bytes of data after decompression"));
   std::string crossed = good;
   crossed.replace(crossed.rfind("PK\x05\x06") + 16, 4, "\xff\xff\xff\x7f");  // the directory beyond the file
   EXPECT_THAT(refusal(write("o.npz", crossed)), HasSubstr("cut short or damaged"));

@@ -158,7 +158,7 @@ TEST(Verification, ReportsRequirementsMissedByAllDesigns) {
   compare_with_formulas(verification.benches[0], {{Bound::resolution, 1e-3}});
   EXPECT_TRUE(verification.any());
   std::string const text = verification_text(verification, {});
-  EXPECT_THAT(text, HasSubstr("violates requirements.resolution_mm = 1: "));
+  EXPECT_THAT(text, HasSubstr("does not meet requirements.resolution_mm = 1: "));
   EXPECT_THAT(text, HasSubstr("infeasible in simulation"));
   EXPECT_FALSE(verification_json(verification).contains("simulated"));
   EXPECT_FALSE(verification_json(verification)["verification"][0]["kept"]);

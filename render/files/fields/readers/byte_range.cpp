@@ -69,10 +69,13 @@ std::vector<char> read_up_to(ByteRange const& range, std::uint64_t count) {
 }
 
 void refuse_truncated(ByteRange const& range, std::uint64_t present, std::uint64_t required) {
-  throw DataError(
-      range.file->path(),
-      fmt::format("is cut short: array \"{}\" has {} bytes of data, and its header requires {}; copy it again",
-                  excerpt(range.name), present, required));
+  std::uint64_t const file_size = range.file->size();
+  bool const compressed = range.coding != ByteRange::Coding::stored;
+  bool const whole = range.offset <= file_size && range.size <= file_size - range.offset;
+  throw DataError(range.file->path(),
+                  fmt::format("is {}: array \"{}\" has {} bytes of data{}, and its header requires {}; copy it again",
+                              compressed && whole ? "damaged" : "cut short", excerpt(range.name), present,
+                              compressed ? " after decompression" : "", required));
 }
 
 }  // namespace gladstone

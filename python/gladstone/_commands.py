@@ -1,0 +1,137 @@
+"""Commands that read and write files and folders: sequences, conversions, views, reports, examples, oracles."""
+
+from __future__ import annotations
+
+import json
+import os
+import tempfile
+from collections.abc import Iterable, Mapping
+from typing import Any, NamedTuple
+
+from . import _core
+from ._progress import Progress, reporting
+from ._setup import Setup, as_setup
+
+
+def render_sequence(
+    setup: Setup | Mapping[str, Any] | str | os.PathLike,
+    folder: str | os.PathLike,
+    *,
+    device: str = "auto",
+    progress: Progress = False,
+) -> dict[str, Any]:
+    """Renders a setup with a table [sequence] into a folder, as `gladstone render`: the frames, and a CASE of each pair.
+
+    setup: a `Setup`, a dictionary of tables, or a setup file.
+    folder: the frames are in `frames`, the cases in `pair_0000`, ...; `Case.load` reads them. The same call continues
+        an interrupted run.
+
+    Returns the contents of summary.json.
+    """
+    given = as_setup(setup)
+    with tempfile.TemporaryDirectory() as temporary, reporting(progress) as report:
+        path, overrides = os.path.join(given._core.folder, os.path.basename(given._core.name)), given._core.overrides
+        if not given._from_file:
+            path, overrides = os.path.join(temporary, "setup.toml"), []
+            given.save(path)
+        return json.loads(_core.render_sequence(path, overrides, os.fspath(folder), device, report))
+
+
+def convert(
+    source: str | os.PathLike, path: str | os.PathLike, *, conventions: str = "", image_rows: int = 0
+) -> dict[str, Any]:
+    """Converts a file of vectors to the format of an ending, as `gladstone convert`.
+
+    source: vectors of gladstone, OpenPIV, PIVlab, DaVis, Insight, Dantec, JPIV or any x, y, u, v; or truth.h5 of a case,
+        for the true displacements of its dots or particles.
+    path: .h5, .csv, .nc, .mat, .dat (Tecplot), .vti or .vtp.
+    conventions: conventions of a file of another program; default: those of its format.
+    image_rows: number of rows of the image, required for files that count y upwards from its lower edge.
+
+    Returns the `format` of the source and the numbers of `vectors`, of `valid` ones, and of grid `columns` and `rows`.
+    """
+    return json.loads(_core.convert(os.fspath(source), os.fspath(path), conventions, image_rows))
+
+
+def views(
+    case: str | os.PathLike, folder: str | os.PathLike | None = None, *, across: int = 5, refocus_mm: float | None = None
+) -> dict[str, Any]:
+    """Extracts the views of a plenoptic camera from a CASE folder, as `gladstone views`.
+
+    folder: for FRAME/view_ROW_COLUMN.tif and views.json; default: CASE/views.
+    across: number of views across the diameter of the stop.
+    refocus_mm: also writes FRAME_refocused.tif, in focus on the plane of this Z [mm].
+
+    Returns the contents of views.json.
+    """
+    place = os.path.join(os.fspath(case), "views") if folder is None else os.fspath(folder)
+    return json.loads(_core.views(os.fspath(case), place, across, refocus_mm))
+
+
+def report(
+    folder: str | os.PathLike,
+    path: str | os.PathLike | None = None,
+    *,
+    vectors: str | os.PathLike = "",
+    repeats: Iterable[str | os.PathLike] = (),
+    conventions: str = "",
+    figures: str | os.PathLike = "",
+    figure_format: str = "png",
+    device: str = "auto",
+    progress: Progress = False,
+) -> str:
+    """Writes the report of a study, a case or a measurement, as `gladstone report`. Returns its findings.
+
+    folder: RUN folder of a study, CASE folder, or folder of a measurement (setup and vectors without truth).
+    path: .html (one file that works offline) or .md; default: report.html in the folder.
+    vectors: for a CASE: file of vectors; default: those of the CASE.
+    repeats: for a measurement: vectors of repeated measurements of the same field.
+    conventions: conventions of vectors of another program; default: those of their format.
+    figures: folder for the figures as separate files, in `figure_format` ("png", "svg" or "pdf").
+    """
+    place = os.path.join(os.fspath(folder), "report.html") if path is None else os.fspath(path)
+    drawn = os.fspath(figures)
+    if place.endswith(".md") and not drawn:
+        drawn = os.path.splitext(place)[0] + "_figures"
+    with reporting(progress) as report_progress:
+        return _core.report(
+            os.fspath(folder), place, os.fspath(vectors), [os.fspath(one) for one in repeats], conventions, drawn,
+            figure_format, device, report_progress,
+        )  # fmt: skip
+
+
+def demo(folder: str | os.PathLike = "out/demo", *, device: str = "auto", progress: Progress = False) -> str:
+    """Computes the experiment of Rajendran et al. (2019) into a folder, as `gladstone demo`. Returns its summary."""
+    with reporting(progress) as report_progress:
+        return _core.demo(os.fspath(folder), device, report_progress)
+
+
+def gallery(folder: str | os.PathLike = "out/gallery", *, device: str = "auto", progress: Progress = False) -> str:
+    """Renders degraded particle images into a folder, as `gladstone gallery`. Returns their descriptions."""
+    with reporting(progress) as report_progress:
+        return _core.gallery(os.fspath(folder), device, report_progress)
+
+
+class Oracle(NamedTuple):
+    """Quantity with a known exact value, and its value by gladstone; see `validate`."""
+
+    name: str
+    """Quantity, with its unit if it has one."""
+    source: str
+    """Source of the exact value: author, year, equation."""
+    measured: float
+    """Value by gladstone."""
+    exact: float
+    """Exact value."""
+    tolerance: float
+    """Allowed difference."""
+    relative: bool
+    """Whether the tolerance is relative to the exact value."""
+    passed: bool
+    """Whether the difference is within the tolerance."""
+
+
+def validate(*, device: str = "auto", progress: Progress = False) -> list[Oracle]:
+    """Compares results of gladstone with exact solutions, as `gladstone validate`. Returns one `Oracle` for each."""
+    with reporting(progress) as report_progress:
+        return [Oracle(*row) for row in _core.oracles(device, report_progress)]
