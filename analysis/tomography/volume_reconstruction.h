@@ -22,10 +22,10 @@ struct ProjectedView {
 
 /// Settings of SART with total variation.
 struct SartSettings {
-  int iterations = 20;       ///< sweeps over all views
-  double relaxation = 0.5;   ///< fraction of the correction that is applied after each view, above 0 and below 2 [1]
-  double tv_weight = 0.002;  ///< strength of the total variation, relative to the largest difference [1]; 0: none
-  int tv_iterations = 10;    ///< dual iterations of the denoising after each sweep
+  int iterations = 20;      ///< sweeps over all views
+  double relaxation = 0.5;  ///< fraction of the correction that is applied after each view, above 0 and below 2 [1]
+  double tv_weight = 0.01;  ///< strength of the total variation, relative to the largest difference [1]; 0: none
+  int tv_iterations = 10;   ///< dual iterations of the denoising after each sweep
   double lowest = -std::numeric_limits<double>::infinity();  ///< smallest density difference [kg/m^3]
   double highest = std::numeric_limits<double>::infinity();  ///< largest density difference [kg/m^3]
   std::vector<std::uint8_t> support;  ///< 1: the difference may differ from zero [grid.size()]; empty: everywhere

@@ -34,6 +34,7 @@ from ._report import Report
 from ._sequence import Sequence, correlate_sequence
 from ._setup import Setup, render
 from ._study import Study, StudyRun
+from ._tomography import Tomography, reconstruct_lines, tomography
 from ._trace import TracedRays, trace
 from ._version import __version__, build
 from .info import Mie, mie
@@ -47,8 +48,8 @@ def compare(case: Case, field, **options) -> Report:
 __all__ = [
     "Accuracy", "BenchmarkCase", "Calibration", "CalibrationCase", "Case", "DataError", "Density", "Design",
     "DeviceError", "Error", "Field", "GladstoneWarning", "Mie", "NoValidVector", "OutOfMemory", "OutputError",
-    "Problem", "Report", "Scores", "Sequence", "Setup", "SetupError", "Study", "StudyRun", "TracedRays", "Truth",
+    "Problem", "Report", "Scores", "Sequence", "Setup", "SetupError", "Study", "StudyRun", "Tomography", "TracedRays", "Truth",
     "__version__", "benchmark", "benchmark_cases", "benchmark_estimators", "build", "calibrate", "compare",
-    "correlate", "correlate_sequence", "design", "info", "mie", "reconstruct", "render", "set_threads", "threads",
-    "trace",
+    "correlate", "correlate_sequence", "design", "info", "mie", "reconstruct", "reconstruct_lines", "render", "set_threads",
+    "threads", "tomography", "trace",
 ]  # fmt: skip

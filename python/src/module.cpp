@@ -18,4 +18,5 @@ NB_MODULE(_core, module) {
   bind_design(module);
   bind_study(module);
   bind_sequence(module);
+  bind_tomography(module);
 }
