@@ -50,6 +50,8 @@ constexpr std::array commands{
             "gladstone reconstruct out/case --reference left -o out/density.h5", attach_reconstruct},
     Command{"stereo", "Combine the vectors of two calibrated cameras to three components and their uncertainty",
             "gladstone stereo out/stereo/left out/stereo/right -o out/uvw.h5", attach_stereo},
+    Command{"tomography", "Reconstruct the density of a volume from the displacement of 3 to 16 views",
+            "gladstone tomography out/view_* --reference left -o out/volume.h5", attach_tomography},
     Command{"trace", "Trace given rays and report where and why they end",
             "gladstone trace table1.toml --rays rays.csv -o out.csv", attach_trace},
     Command{"info", "Describe a setup, its particles, a field, an image, a lens or a sphere",

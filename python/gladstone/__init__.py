@@ -38,6 +38,7 @@ from ._setup import Setup, render
 from ._stereo import ThreeComponents, stereo
 from ._study import Study, StudyRun
 from ._templates import SetupKey, init, keys
+from ._tomography import Tomography, reconstruct_lines, tomography
 from ._trace import TracedRays, trace
 from ._version import __version__, build
 from .info import Mie, mie
@@ -52,8 +53,9 @@ __all__ = [
     "Accuracy", "BenchmarkCase", "Calibration", "CalibrationCase", "Case", "DataError", "Density", "Design",
     "DeviceError", "Error", "Field", "GladstoneWarning", "Mie", "NoValidVector", "Oracle", "OutOfMemory", "OutputError",
     "Preview", "Problem", "Report", "Scores", "Sequence", "Setup", "SetupError", "SetupKey", "Study", "StudyRun",
-    "ThreeComponents", "TracedRays", "Truth", "__version__", "benchmark", "benchmark_cases", "benchmark_estimators",
-    "build", "calibrate", "compare", "convert", "correlate", "correlate_ensemble", "correlate_sequence", "demo",
-    "design", "gallery", "info", "init", "keys", "mie", "preview", "reconstruct", "render", "render_sequence", "report",
-    "set_threads", "stereo", "target", "threads", "trace", "validate", "views",
+    "ThreeComponents", "Tomography", "TracedRays", "Truth", "__version__", "benchmark", "benchmark_cases",
+    "benchmark_estimators", "build", "calibrate", "compare", "convert", "correlate", "correlate_ensemble",
+    "correlate_sequence", "demo", "design", "gallery", "info", "init", "keys", "mie", "preview", "reconstruct",
+    "reconstruct_lines", "render", "render_sequence", "report", "set_threads", "stereo", "target", "threads",
+    "tomography", "trace", "validate", "views",
 ]  # fmt: skip

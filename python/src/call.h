@@ -50,6 +50,7 @@ void bind_benchmark(nb::module_& module);
 void bind_calibration(nb::module_& module);
 void bind_design(nb::module_& module);
 void bind_study(nb::module_& module);
+void bind_tomography(nb::module_& module);
 void bind_sequence(nb::module_& module);
 void bind_batches(nb::module_& module);
 void bind_commands(nb::module_& module);

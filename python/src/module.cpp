@@ -21,4 +21,5 @@ NB_MODULE(_core, module) {
   bind_sequence(module);
   bind_batches(module);
   bind_commands(module);
+  bind_tomography(module);
 }

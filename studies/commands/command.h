@@ -53,6 +53,7 @@ CommandBody attach_compare(CLI::App& app, GlobalOptions const& options);
 CommandBody attach_convert(CLI::App& app, GlobalOptions const& options);
 CommandBody attach_reconstruct(CLI::App& app, GlobalOptions const& options);
 CommandBody attach_stereo(CLI::App& app, GlobalOptions const& options);
+CommandBody attach_tomography(CLI::App& app, GlobalOptions const& options);
 CommandBody attach_trace(CLI::App& app, GlobalOptions const& options);
 CommandBody attach_info(CLI::App& app, GlobalOptions const& options);
 CommandBody attach_validate(CLI::App& app, GlobalOptions const& options);

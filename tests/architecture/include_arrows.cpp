@@ -23,7 +23,8 @@ Names const render = {"render/base",   "render/setup",  "render/files",  "render
 Names const renderers = {"render/rays", "render/focused_dots", "render/ideal_images"};
 Names const analysis = {"analysis/vectors",     "analysis/correlation", "analysis/errors",
                         "analysis/calibration", "analysis/uncertainty", "analysis/preparation",
-                        "analysis/tracking",    "analysis/density",     "analysis/stereo"};
+                        "analysis/tracking",    "analysis/density",     "analysis/stereo",
+                        "analysis/tomography"};
 Names const cuda = {"cuda/device", "cuda/rays", "cuda/focused_dots", "cuda/ideal_images", "cuda/correlation"};
 
 Names const studies = {"studies/case",   "studies/compare",   "studies/sweep",   "studies/design",  "studies/figures",
@@ -84,6 +85,7 @@ std::vector<Room> const& table() {
        {"render/base", "analysis/vectors", "analysis/correlation", "analysis/calibration"},
        {"Eigen"},
        {"fmt"}},
+      {"analysis/tomography", {"render/base", "analysis/vectors", "analysis/density"}, {"Eigen"}, {"fmt"}},
       {"cuda/device", render, {"Eigen", "CUDA"}, {"fmt"}},
       {"cuda/rays", render + Names{"render/rays", "cuda/device"}, {"Eigen", "CUDA"}, {"fmt"}},
       {"cuda/focused_dots",

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "analysis/tomography/line_samples.h"
+#include "render/base/regular_grid.h"
+
+namespace gladstone::tomography {
+
+/// Sum of the contributions to a node and of their weights.
+struct NodeSum {
+  double value = 0.0;
+  double weight = 0.0;
+};
+
+/// Line integrals of a volume along the sight lines of one view, A, and their adjoint. Nothing of A is stored. Every
+/// sum has a fixed order, so that results do not depend on the number of threads.
+class LineProjector {
+ public:
+  /// @param lines  must outlive the projector
+  LineProjector(RegularGrid const& grid, std::span<SightLine const> lines);
+
+  /// Projects a volume, A x.
+  /// @param volume  [grid.size()]
+  /// @return        line integrals, in the unit of the volume times m [lines]
+  std::vector<double> project(std::span<double const> volume) const;
+  /// Computes the adjoint A' y, and the sum of the weights of each node, A' 1, over the lines with a finite value.
+  /// @param values  [lines]; NaN: the line is ignored
+  void back_project(std::span<double const> values, std::vector<NodeSum>& sums) const;
+  /// Sums of the weights of each line, A 1 [m, lines]; 0: the line misses the volume.
+  std::vector<double> const& row_sums() const { return row_sums_; }
+
+ private:
+  VolumeShape shape_;
+  std::span<SightLine const> lines_;
+  std::vector<double> row_sums_;
+  int slab_axis_;  ///< axis along which the volume is divided between threads: the one that the lines cross least
+};
+
+}  // namespace gladstone::tomography

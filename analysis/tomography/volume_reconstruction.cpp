@@ -1,0 +1,191 @@
+#include "analysis/tomography/volume_reconstruction.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "analysis/tomography/line_projector.h"
+#include "analysis/tomography/total_variation.h"
+#include "render/base/available_memory.h"
+#include "render/base/contracts.h"
+#include "render/base/error.h"
+#include "render/base/interrupt.h"
+#include "render/base/not_a_number.h"
+#include "render/base/progress.h"
+
+namespace gladstone::tomography {
+namespace {
+
+constexpr double bytes_per_node = 8.0 + 8.0 + 16.0 + 24.0;  // volume, number of views, sums, dual variable
+
+void check_settings(RegularGrid const& grid, SartSettings const& settings) {
+  std::vector<SetupProblem> problems;
+  auto const require = [&](bool holds, char const* name, std::string const& expected) {
+    if (!holds) problems.push_back({name, "expected " + expected});
+  };
+  for (int axis = 0; axis < 3; ++axis) {
+    int const nodes = grid.nodes[static_cast<std::size_t>(axis)];
+    require(nodes >= 2 && nodes <= 100'000, "grid", fmt::format("2 to 100000 nodes along each axis, got {}", nodes));
+    require(grid.spacing[axis] > 0.0 && std::isfinite(grid.spacing[axis]) && std::isfinite(grid.origin[axis]), "grid",
+            "a positive spacing and finite bounds");
+  }
+  require(settings.iterations >= 1, "iterations", "1 or more");
+  require(settings.relaxation > 0.0 && settings.relaxation < 2.0, "relaxation", "a number above 0 and below 2");
+  require(settings.tv_weight >= 0.0 && std::isfinite(settings.tv_weight), "tv-weight", "a number of 0 or more");
+  require(settings.tv_iterations >= 1, "tv-iterations", "1 or more");
+  require(settings.lowest <= 0.0 && settings.highest >= 0.0, "bounds", "an interval that contains the reference");
+  if (!problems.empty()) throw SetupError(std::move(problems));
+  GLADSTONE_EXPECTS(settings.support.empty() || settings.support.size() == grid.size());
+}
+
+void check_views(std::vector<ProjectedView> const& views) {
+  if (views.size() < least_views)
+    throw DataError("tomography",
+                    fmt::format("{} views do not determine a volume; give at least {}", views.size(), least_views));
+  for (ProjectedView const& view : views) {
+    if (view.lines.size() != view.value.size())
+      throw DataError(view.name, fmt::format("has {} lines of sight but {} line integrals; give one value per line",
+                                             view.lines.size(), view.value.size()));
+    if (std::none_of(view.value.begin(), view.value.end(), [](double value) { return std::isfinite(value); }))
+      throw NoValidVector(view.name, "has no line integral; check its vectors and its reference");
+  }
+}
+
+/// Returns the order of the views: indices sorted by the fractional part of their multiples of the golden ratio, so
+/// that consecutive views differ much.
+std::vector<std::size_t> order_views(std::size_t count) {
+  std::vector<std::size_t> order(count);
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  auto const key = [](std::size_t i) { return std::fmod(0.6180339887498949 * static_cast<double>(i), 1.0); };
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return key(a) < key(b); });
+  return order;
+}
+
+/// View prepared for the iteration: lines that cross less than one cell are ignored, since the division by their sum of
+/// weights amplifies noise.
+struct PreparedView {
+  LineProjector projector;
+  std::vector<double> value;  ///< NaN: ignored
+};
+
+PreparedView prepare_view(ProjectedView const& view, RegularGrid const& grid, double& outside, double& total) {
+  PreparedView prepared{LineProjector(grid, view.lines), view.value};
+  double const least = std::min({grid.spacing.x, grid.spacing.y, grid.spacing.z});
+  for (std::size_t i = 0; i < view.value.size(); ++i) {
+    double const row_sum = prepared.projector.row_sums()[i];
+    if (!std::isfinite(view.value[i])) continue;
+    total += view.value[i] * view.value[i];
+    if (row_sum == 0.0) outside += view.value[i] * view.value[i];
+    if (row_sum < least) prepared.value[i] = not_a_number;
+  }
+  return prepared;
+}
+
+/// Applies bounds and support.
+void constrain(std::vector<double>& volume, SartSettings const& settings) {
+  for (std::size_t i = 0; i < volume.size(); ++i) {
+    bool const inside = settings.support.empty() || settings.support[i] != 0;
+    volume[i] = inside ? std::clamp(volume[i], settings.lowest, settings.highest) : 0.0;
+  }
+}
+
+/// Iteration of SART with its memory.
+class Sart {
+ public:
+  Sart(VolumeReconstruction& result, SartSettings const& settings)
+      : result_(result), settings_(settings), denoiser_(result.grid) {}
+
+  /// Corrects the volume by one view.
+  /// @return sums of the squares of residuals and values of the view
+  std::array<double, 2> correct(PreparedView const& view, bool count_views) {
+    std::vector<double> residual = view.projector.project(result_.value);
+    std::array<double, 2> squares{};
+    for (std::size_t i = 0; i < residual.size(); ++i) {
+      double const difference = view.value[i] - residual[i];
+      residual[i] = difference / view.projector.row_sums()[i];
+      if (!std::isfinite(view.value[i])) continue;
+      squares[0] += difference * difference;
+      squares[1] += view.value[i] * view.value[i];
+    }
+    view.projector.back_project(residual, sums_);
+    for (std::size_t i = 0; i < sums_.size(); ++i) {
+      if (!(sums_[i].weight > 0.0)) continue;
+      result_.value[i] += settings_.relaxation * sums_[i].value / sums_[i].weight;
+      if (count_views) ++result_.views[i];
+    }
+    return squares;
+  }
+
+  /// Applies total variation, bounds and support after a sweep.
+  void regularize() {
+    double largest = 0.0;
+    for (double const value : result_.value) largest = std::max(largest, std::abs(value));
+    denoiser_.denoise(result_.value, settings_.tv_weight * largest, settings_.tv_iterations);
+    constrain(result_.value, settings_);
+  }
+
+ private:
+  VolumeReconstruction& result_;
+  SartSettings const& settings_;
+  TotalVariation denoiser_;
+  std::vector<NodeSum> sums_;
+};
+
+void require_common_part(VolumeReconstruction const& result) {
+  auto const most = *std::max_element(result.views.begin(), result.views.end());
+  if (most >= static_cast<std::int64_t>(least_views)) return;
+  throw DataError("tomography",
+                  fmt::format("no part of the volume is seen by more than {} views; check the poses of the cameras, "
+                              "medium.rotation_deg, and the bounds of the volume",
+                              most));
+}
+
+}  // namespace
+
+VolumeReconstruction reconstruct_volume(std::vector<ProjectedView> const& views, RegularGrid const& grid,
+                                        SartSettings const& settings) {
+  check_settings(grid, settings);
+  check_views(views);
+  require_memory("tomography",
+                 fmt::format("a volume of {} x {} x {} nodes", grid.nodes[0], grid.nodes[1], grid.nodes[2]),
+                 bytes_per_node * static_cast<double>(grid.size()));
+  VolumeReconstruction result;
+  result.grid = grid;
+  result.value.assign(grid.size(), 0.0);
+  result.views.assign(grid.size(), 0);
+  std::vector<PreparedView> prepared;
+  double outside = 0.0, total = 0.0;
+  for (std::size_t const i : order_views(views.size()))
+    prepared.push_back(prepare_view(views[i], grid, outside, total));
+  result.outside = total > 0.0 ? outside / total : 0.0;
+
+  Sart sart(result, settings);
+  Progress progress("reconstructing", static_cast<std::size_t>(settings.iterations) * views.size());
+  for (int sweep = 0; sweep < settings.iterations; ++sweep) {
+    std::array<double, 2> squares{};
+    for (PreparedView const& view : prepared) {
+      throw_if_interrupted();
+      auto const of_view = sart.correct(view, sweep == 0);
+      squares = {squares[0] + of_view[0], squares[1] + of_view[1]};
+      progress.advance();
+    }
+    if (sweep == 0) require_common_part(result);
+    sart.regularize();
+    result.residual.push_back(squares[1] > 0.0 ? std::sqrt(squares[0] / squares[1]) : 0.0);
+  }
+  return result;
+}
+
+double compute_relative_error(std::vector<double> const& value, std::vector<double> const& truth) {
+  GLADSTONE_EXPECTS(value.size() == truth.size());
+  double squares = 0.0, norm = 0.0;
+  for (std::size_t i = 0; i < value.size(); ++i) {
+    squares += (value[i] - truth[i]) * (value[i] - truth[i]);
+    norm += truth[i] * truth[i];
+  }
+  return std::sqrt(squares / norm);
+}
+
+}  // namespace gladstone::tomography

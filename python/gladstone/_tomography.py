@@ -1,0 +1,160 @@
+"""Density of a volume from the displacement of a few views."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from . import _core
+from ._density import Box, _reference_texts
+from ._progress import Progress, reporting
+
+
+class Tomography:
+    """Density of a volume. Arrays are [z, y, x], read-only, with ascending coordinates in the frame of the volume."""
+
+    def __init__(self, core: _core.Tomography):
+        self._core = core
+
+    @property
+    def x_mm(self) -> np.ndarray:
+        """[nx] positions of the nodes along X [mm]."""
+        return self._core.axis_mm(0)
+
+    @property
+    def y_mm(self) -> np.ndarray:
+        """[ny] positions of the nodes along Y [mm]."""
+        return self._core.axis_mm(1)
+
+    @property
+    def z_mm(self) -> np.ndarray:
+        """[nz] positions of the nodes along Z [mm]."""
+        return self._core.axis_mm(2)
+
+    @property
+    def density(self) -> np.ndarray:
+        """Reconstructed density [kg/m^3]; the reference density where no view sees the node."""
+        return self._core.array("density")
+
+    @property
+    def views(self) -> np.ndarray:
+        """Number of views with a line of sight through the cells of each node."""
+        return self._core.array("views")
+
+    @property
+    def truth(self) -> np.ndarray | None:
+        """True density of rendered cases [kg/m^3]."""
+        return self._core.array("truth")
+
+    @property
+    def summary(self) -> dict[str, Any]:
+        """Results of `gladstone tomography --json`, with `relative_error` for rendered cases."""
+        return json.loads(self._core.summary())
+
+    @property
+    def warnings(self) -> list[str]:
+        """Warnings about the reconstruction."""
+        return list(self._core.warnings)
+
+    def save(self, path: str | os.PathLike) -> None:
+        """Writes the HDF5 file of `gladstone tomography`, which can be the field of a setup."""
+        self._core.save(os.fspath(path))
+
+    def __str__(self) -> str:
+        return self._core.text()
+
+    def __repr__(self) -> str:
+        nz, ny, nx = self.density.shape
+        return f"<gladstone.Tomography {nx} x {ny} x {nz} nodes>"
+
+
+def tomography(
+    cases: Sequence[str | os.PathLike],
+    vectors: Sequence[str | os.PathLike] = (),
+    *,
+    reference: str | Box | Sequence[str | Box] | None = None,
+    angles_deg: Sequence[float] = (),
+    arc_deg: float = 180.0,
+    reference_density: float | None = None,
+    bounds_mm: Sequence[float] | None = None,
+    spacing_mm: float | None = None,
+    support: str | None = None,
+    least_density: float = 0.0,
+    largest_density: float | None = None,
+    iterations: int = 20,
+    relaxation: float = 0.5,
+    tv_weight: float = 0.01,
+    ray_truth: bool = False,
+    conventions: str | None = None,
+    progress: Progress = False,
+) -> Tomography:
+    """Reconstructs the density of a volume from BOS vectors of 3 to 16 views, equal bit by bit to `gladstone
+    tomography`.
+
+    cases: CASE folder of each view, or with `vectors` its setup.
+    vectors: file of the vectors of each view; empty: those of the CASE folders.
+    reference: region of the views whose lines of sight meet the reference density only: "left", "right", "top",
+        "bottom" ("left:3" for three columns), a box (x0, y0, x1, y1) in mm, or a list of these. Required.
+    angles_deg: angle of the volume about Y in each view; empty: i / views of `arc_deg`.
+    reference_density: density there and outside of the volume [kg/m^3], default the ambient density.
+    bounds_mm: corners (x0, y0, z0, x1, y1, z1) of the volume; None: the part that all views see.
+    spacing_mm: distance between the nodes; None: that of the vectors.
+    support: "sphere:MM" or "cylinder:MM", outside of which the density is the reference density.
+    least_density, largest_density: bounds of the density [kg/m^3].
+    iterations, relaxation, tv_weight: sweeps over all views, fraction of each correction that is applied, and strength
+        of the total variation relative to the largest density difference.
+    ray_truth: uses the true displacement of the dots of rendered cases.
+    conventions: conventions of files of vectors of another program.
+
+    Raises `SetupError` for options, and `DataError` for views that determine no volume.
+    """
+    if bounds_mm is not None and len(bounds_mm) != 6:
+        raise ValueError(f"bounds_mm must be six numbers, got {len(bounds_mm)}")
+    with reporting(progress) as report:
+        core = _core.tomography(
+            [os.fspath(case) for case in cases], [os.fspath(file) for file in vectors], conventions, ray_truth,
+            [float(angle) for angle in angles_deg], arc_deg, _reference_texts(reference), reference_density,
+            [] if bounds_mm is None else [float(bound) for bound in bounds_mm], spacing_mm, support, least_density,
+            largest_density, iterations, relaxation, tv_weight, report,
+        )  # fmt: skip
+    return Tomography(core)
+
+
+def reconstruct_lines(
+    origin_mm,
+    direction,
+    value,
+    view,
+    *,
+    nodes: tuple[int, int, int],
+    spacing_mm: float,
+    center_mm: tuple[float, float, float] = (0.0, 0.0, 0.0),
+    bounds: tuple[float, float] = (-np.inf, np.inf),
+    iterations: int = 20,
+    relaxation: float = 0.5,
+    tv_weight: float = 0.01,
+    progress: Progress = False,
+) -> np.ndarray:
+    """Reconstructs a volume from line integrals along parallel lines of sight, by the algorithm of `tomography`.
+
+    origin_mm, direction: [lines, 3] a point of each line [mm], and its direction of any length.
+    value: [lines] line integral of a quantity [its unit times m]; NaN: not measured.
+    view: [lines] index of the view, ascending from 0.
+    nodes, spacing_mm, center_mm: number of nodes along x, y and z, their distance, and the centre of the volume.
+    bounds: smallest and largest value, an interval that contains 0.
+
+    Returns [nz, ny, nx] values. Raises `SetupError` for settings, and `DataError` for lines.
+    """
+    def number_array(values, columns: int):
+        array = np.ascontiguousarray(values, dtype=np.float64)
+        return array.reshape(-1, columns) if columns > 1 else array.ravel()
+
+    with reporting(progress) as report:
+        return _core.reconstruct_lines(
+            number_array(origin_mm, 3), number_array(direction, 3), number_array(value, 1), number_array(view, 1),
+            tuple(nodes), spacing_mm, tuple(center_mm), *bounds, iterations, relaxation, tv_weight, report,
+        )  # fmt: skip

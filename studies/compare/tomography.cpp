@@ -1,0 +1,233 @@
+#include "studies/compare/tomography.h"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "render/base/error.h"
+#include "render/base/units.h"
+#include "render/files/stop_point.h"
+#include "render/medium/field_volume.h"
+#include "studies/compare/tomography_view.h"
+
+namespace gladstone {
+namespace {
+
+constexpr std::size_t most_views = 16;
+
+void check_tomography_options(TomographyOptions const& options) {
+  std::vector<SetupProblem> problems;
+  std::size_t const count = options.views.size();
+  if (count < tomography::least_views || count > most_views)
+    problems.push_back(
+        {"views", fmt::format("expected {} to {} views, got {}", tomography::least_views, most_views, count)});
+  if (!options.vectors.empty() && options.vectors.size() != count)
+    problems.push_back({"--vectors", fmt::format("expected one file for each of the {} views, got {}", count,
+                                                 options.vectors.size())});
+  if (!options.vectors.empty() && options.ray_truth)
+    problems.push_back({"--ray-truth", "conflicts with --vectors; remove one of them"});
+  if (!options.angles.empty() && options.angles.size() != count)
+    problems.push_back(
+        {"--angles", fmt::format("expected one angle for each of the {} views, got {}", count, options.angles.size())});
+  if (std::set<std::string>(options.views.begin(), options.views.end()).size() != count && options.vectors.empty())
+    problems.push_back({"views", "contain the same case twice; give each view once"});
+  if (options.reference.empty())
+    problems.push_back({"--reference",
+                        "is required (displacement determines each projection only up to a constant); give a side of "
+                        "the images (left, right, top or bottom) or a box X0,Y0,X1,Y1 in mm that the flow does not "
+                        "reach in any view"});
+  if (options.spacing && !(*options.spacing > 0.0 && std::isfinite(*options.spacing)))
+    problems.push_back({"--spacing", "expected a positive distance in mm"});
+  if (options.bounds)
+    for (int axis = 0; axis < 3; ++axis)
+      if (!((*options.bounds)[0][axis] < (*options.bounds)[1][axis]))
+        problems.push_back(
+            {"--bounds", fmt::format("expected {0} of the first corner below {0} of the second one", "XYZ"[axis])});
+  if (options.support && !(options.support->radius > 0.0))
+    problems.push_back({"--support", "expected a positive radius"});
+  if (!(options.least_density < options.largest_density))
+    problems.push_back({"--least-density", "expected a density below --largest-density"});
+  if (!problems.empty()) throw SetupError(std::move(problems));
+}
+
+std::vector<double> choose_angles(TomographyOptions const& options) {
+  if (!options.angles.empty()) return options.angles;
+  std::vector<double> angles;
+  for (std::size_t i = 0; i < options.views.size(); ++i)
+    angles.push_back(options.arc * static_cast<double>(i) / static_cast<double>(options.views.size()));
+  return angles;
+}
+
+void require_equal_media(std::vector<TomographyView> const& views) {
+  MediumSetup const& first = views.front().loaded.setup.medium;
+  for (TomographyView const& view : views) {
+    MediumSetup const& medium = view.loaded.setup.medium;
+    if (std::abs(medium.ambient_density - first.ambient_density) <= 1e-9 * first.ambient_density &&
+        std::abs(medium.gladstone_dale - first.gladstone_dale) <= 1e-9 * first.gladstone_dale)
+      continue;
+    throw DataError(view.projected.name,
+                    fmt::format("has another ambient density or Gladstone-Dale constant than {}; give views of one "
+                                "experiment",
+                                views.front().projected.name));
+  }
+}
+
+/// Returns the part of the axis that all views across it see: the common part of their ranges.
+std::array<double, 2> find_common_range(std::vector<TomographyView> const& views, int axis, double default_half) {
+  double low = -HUGE_VAL, high = HUGE_VAL;
+  for (TomographyView const& view : views) {
+    double const along = view.view_direction[axis], across2 = 1.0 - along * along;
+    if (across2 < 0.75) continue;  // more than 30 degrees oblique
+    double least = HUGE_VAL, most = -HUGE_VAL;
+    for (Vec3d const& point : view.middle_points) {
+      least = std::min(least, point[axis] / across2);
+      most = std::max(most, point[axis] / across2);
+    }
+    low = std::max(low, least);
+    high = std::min(high, most);
+  }
+  if (!std::isfinite(low)) return {-default_half, default_half};
+  if (!(low < high))
+    throw DataError("tomography", "the views have no common part; check their cameras, or give --bounds");
+  return {low, high};
+}
+
+RegularGrid make_grid(std::vector<TomographyView> const& views, TomographyOptions const& options) {
+  double spacing = HUGE_VAL;
+  for (TomographyView const& view : views)
+    if (view.spacing > 0.0) spacing = std::min(spacing, view.spacing);
+  if (options.spacing) spacing = *options.spacing;
+  double const half = 0.5 * views.front().loaded.setup.medium.thickness;
+  RegularGrid grid;
+  grid.spacing = {spacing, spacing, spacing};
+  for (int axis = 0; axis < 3; ++axis) {
+    std::array<double, 2> const range = options.bounds
+                                            ? std::array{(*options.bounds)[0][axis], (*options.bounds)[1][axis]}
+                                            : find_common_range(views, axis, half);
+    double const cells = std::floor((range[1] - range[0]) / spacing * (1.0 + 1e-9));
+    if (!(cells >= 1.0 && cells < 1e5))
+      throw SetupError({SetupProblem{
+          "--spacing", fmt::format("{:.4g} mm does not divide the range of {:.4g} mm along {} into 1 to 100000 cells",
+                                   spacing / unit::mm, (range[1] - range[0]) / unit::mm, "XYZ"[axis])}});
+    grid.nodes[static_cast<std::size_t>(axis)] = static_cast<int>(cells) + 1;
+    grid.origin[axis] = 0.5 * (range[0] + range[1] - cells * spacing);
+  }
+  return grid;
+}
+
+/// Calls body(node index, position [m]) for every node of a grid.
+template <class Body>
+void visit_nodes(RegularGrid const& grid, Body const& body) {
+  std::size_t node = 0;
+  for (int k = 0; k < grid.nodes[2]; ++k)
+    for (int j = 0; j < grid.nodes[1]; ++j)
+      for (int i = 0; i < grid.nodes[0]; ++i)
+        body(node++, grid.origin + Vec3d{i * grid.spacing.x, j * grid.spacing.y, k * grid.spacing.z});
+}
+
+std::vector<std::uint8_t> make_support(RegularGrid const& grid, VolumeSupport const& support) {
+  std::vector<std::uint8_t> inside(grid.size());
+  visit_nodes(grid, [&](std::size_t node, Vec3d p) {
+    if (support.shape == VolumeSupport::Shape::cylinder) p.y = 0.0;
+    inside[node] = length(p) <= support.radius ? 1 : 0;
+  });
+  return inside;
+}
+
+/// Evaluates the true density in the frame of the volume: that of the medium of a view, ambient outside.
+std::vector<double> sample_truth(MediumSetup const& setup, double angle, RegularGrid const& grid) {
+  std::vector<double> density(grid.size(), setup.ambient_density);
+  Pose<double> const volume = turned_volume(angle);
+  BuiltMedium const built = build_medium(setup);
+  std::visit(
+      [&](auto const& medium) {
+        Bounds<double> const box = medium.bounds();
+        visit_nodes(grid, [&](std::size_t node, Vec3d p) {
+          Vec3d const q = volume.point_to_outer(p);
+          bool const inside = q.x >= box.low.x && q.x <= box.high.x && q.y >= box.low.y && q.y <= box.high.y &&
+                              q.z >= box.low.z && q.z <= box.high.z;
+          if (inside) density[node] = medium.sample(q).refractivity / setup.gladstone_dale;
+        });
+      },
+      built.view);
+  return density;
+}
+
+void add_tomography_warnings(Tomography& result, std::vector<TomographyView> const& views) {
+  for (TomographyView const& view : views)
+    if (!view.loaded.setup.windows.empty())
+      result.warnings.push_back(view.projected.name +
+                                ": the optical windows are neglected: lines of sight are straight");
+  if (result.outside > 0.01)
+    result.warnings.push_back(
+        fmt::format("{:.0f} % of the squared line integrals are on lines that miss the volume; "
+                    "enlarge it with --bounds, or check --reference",
+                    100.0 * result.outside));
+  auto const unseen = std::count_if(result.seen.begin(), result.seen.end(), [](std::int64_t views_of_node) {
+    return views_of_node < static_cast<std::int64_t>(tomography::least_views);
+  });
+  double const fraction = static_cast<double>(unseen) / static_cast<double>(result.seen.size());
+  if (fraction > 0.01)
+    result.warnings.push_back(
+        fmt::format("{:.0f} % of the volume are seen by fewer than {} views, where the density is "
+                    "not determined; reduce the volume with --bounds",
+                    100.0 * fraction, tomography::least_views));
+}
+
+}  // namespace
+
+double compute_relative_error(Tomography const& result) {
+  std::vector<double> value = result.density, truth = result.truth;
+  for (double& v : value) v -= result.reference_density;
+  for (double& v : truth) v -= result.reference_density;
+  return tomography::compute_relative_error(value, truth);
+}
+
+Pose<double> turned_volume(double angle) { return Pose<double>{}.turned({0.0, angle, 0.0}); }
+
+Tomography reconstruct_views(TomographyOptions const& options) {
+  check_tomography_options(options);
+  Tomography result;
+  result.angles = choose_angles(options);
+  result.views = options.views;
+  std::vector<TomographyView> views;
+  for (std::size_t i = 0; i < options.views.size(); ++i) {
+    views.push_back(read_tomography_view(options, i, result.angles[i], result.sources));
+    auto const& values = views.back().projected.value;
+    result.vectors.push_back(static_cast<std::size_t>(
+        std::count_if(values.begin(), values.end(), [](double value) { return std::isfinite(value); })));
+  }
+  stop_point("reconstructing");
+  require_equal_media(views);
+  MediumSetup const& medium = views.front().loaded.setup.medium;
+  result.reference_density = options.reference_density.value_or(medium.ambient_density);
+  result.settings = options.sart;
+  result.settings.lowest = std::min(0.0, options.least_density - result.reference_density);
+  result.settings.highest = std::max(0.0, options.largest_density - result.reference_density);
+  RegularGrid const grid = make_grid(views, options);
+  if (options.support) result.settings.support = make_support(grid, *options.support);
+
+  std::vector<tomography::ProjectedView> projections;
+  for (TomographyView& view : views) projections.push_back(std::move(view.projected));
+  tomography::VolumeReconstruction volume = reconstruct_volume(projections, grid, result.settings);
+  for (std::size_t i = 0; i < views.size(); ++i) views[i].projected.name = projections[i].name;
+  result.grid = grid;
+  result.density = std::move(volume.value);
+  for (double& density : result.density) density += result.reference_density;
+  result.seen = std::move(volume.views);
+  result.residual = std::move(volume.residual);
+  result.outside = volume.outside;
+  bool const is_known = views.front().rendered && medium.field.kind != FieldKind::none;
+  if (is_known) result.truth = sample_truth(medium, result.angles.front(), grid);
+  result.setup = views.front().loaded.document.resolved();
+  result.seed = views.front().loaded.setup.render.seed;
+  result.sources.on_change("run gladstone tomography again");
+  add_tomography_warnings(result, views);
+  for (std::string const& warning : result.warnings) spdlog::warn("{}", warning);
+  return result;
+}
+
+}  // namespace gladstone

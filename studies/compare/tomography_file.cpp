@@ -1,0 +1,133 @@
+#include "studies/compare/tomography_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <span>
+
+#include "render/base/units.h"
+#include "render/files/hdf5_file.h"
+#include "studies/case/json_text.h"
+
+namespace gladstone {
+namespace {
+
+constexpr char const* volume_axes = "z, y, x (ascending)";
+
+std::vector<std::size_t> volume_shape(RegularGrid const& grid) {
+  return {static_cast<std::size_t>(grid.nodes[2]), static_cast<std::size_t>(grid.nodes[1]),
+          static_cast<std::size_t>(grid.nodes[0])};
+}
+
+void write_volume_axes(Hdf5Writer& file, RegularGrid const& grid) {
+  for (int axis = 0; axis < 3; ++axis) {
+    std::vector<double> mm;
+    for (int i = 0; i < grid.nodes[static_cast<std::size_t>(axis)]; ++i)
+      mm.push_back((grid.origin[axis] + i * grid.spacing[axis]) / unit::mm);
+    std::string const name(1, "xyz"[axis]);
+    file.write("/" + name + "_mm", std::span<double const>(mm), {mm.size()}, "mm",
+               "position of the nodes in the frame of the volume", name);
+  }
+}
+
+void attach_volume_scales(Hdf5Writer& file, std::vector<std::string> const& datasets) {
+  std::vector<ScaledDataset> scaled;
+  for (std::string const& dataset : datasets) scaled.push_back({dataset, {"/z_mm", "/y_mm", "/x_mm"}});
+  file.attach_scales(scaled);
+}
+
+void write_tomography_attributes(Hdf5Writer& file, Tomography const& result) {
+  Vec3d const centre = find_grid_centre(result.grid);
+  file.attribute("/", "reference_density_kg_m3", result.reference_density);
+  for (int axis = 0; axis < 3; ++axis)
+    file.attribute("/", std::string("center_") + "xyz"[axis] + "_mm", centre[axis] / unit::mm);
+  file.attribute("/", "iterations", std::int64_t{result.settings.iterations});
+  file.attribute("/", "relaxation", result.settings.relaxation);
+  file.attribute("/", "tv_weight", result.settings.tv_weight);
+  file.attribute("/", "residual", result.residual.back());
+  if (!result.truth.empty()) file.attribute("/", "relative_error", compute_relative_error(result));
+}
+
+}  // namespace
+
+Vec3d find_grid_centre(RegularGrid const& grid) {
+  Vec3d centre = grid.origin;
+  for (int axis = 0; axis < 3; ++axis)
+    centre[axis] += 0.5 * (grid.nodes[static_cast<std::size_t>(axis)] - 1) * grid.spacing[axis];
+  return centre;
+}
+
+void write_density_volume(std::string const& path, RegularGrid const& grid, std::vector<double> const& density,
+                          std::string const& setup) {
+  Hdf5Writer file(path, {"gladstone volume", 1, setup});
+  write_volume_axes(file, grid);
+  file.write("/density_kg_m3", std::span<double const>(density), volume_shape(grid), "kg/m^3", "density", volume_axes);
+  attach_volume_scales(file, {"/density_kg_m3"});
+  file.close();
+}
+
+void write_tomography(std::string const& path, Tomography const& result) {
+  Hdf5Writer file(path, {"gladstone tomography", 1, result.setup, result.seed, "cpu", result.sources});
+  write_volume_axes(file, result.grid);
+  std::vector<std::string> scaled{"/density_kg_m3", "/views"};
+  auto const write = [&](std::string const& dataset, std::vector<double> const& values, char const* description) {
+    file.write(dataset, std::span<double const>(values), volume_shape(result.grid), "kg/m^3", description, volume_axes);
+  };
+  write("/density_kg_m3", result.density, "reconstructed density; the reference density where no view sees the node");
+  file.write("/views", std::span<std::int64_t const>(result.seen), volume_shape(result.grid), "1",
+             "number of views with a line of sight through the cells of the node", volume_axes);
+  if (!result.truth.empty()) {
+    std::vector<double> error = result.density;
+    for (std::size_t i = 0; i < error.size(); ++i) error[i] -= result.truth[i];
+    write("/truth_kg_m3", result.truth, "true density of the rendered cases");
+    write("/error_kg_m3", error, "density minus true density");
+    scaled.insert(scaled.end(), {"/truth_kg_m3", "/error_kg_m3"});
+  }
+  std::vector<double> angles = result.angles;
+  for (double& angle : angles) angle /= unit::degree;
+  file.write("/angle_deg", std::span<double const>(angles), {angles.size()}, "deg",
+             "right-handed angle of the volume about Y in each view", "view");
+  file.write("/residual", std::span<double const>(result.residual), {result.residual.size()}, "1",
+             "norm of the residual line integrals over that of the measured ones", "iteration");
+  write_tomography_attributes(file, result);
+  attach_volume_scales(file, scaled);
+  file.close();
+}
+
+nlohmann::ordered_json summarize_tomography(Tomography const& result) {
+  auto const [least, largest] = std::minmax_element(result.density.begin(), result.density.end());
+  Vec3d const centre = find_grid_centre(result.grid);
+  std::vector<double> angles = result.angles;
+  for (double& angle : angles) angle /= unit::degree;
+  nlohmann::ordered_json json{{"views", result.views},
+                              {"angles_deg", angles},
+                              {"vectors", result.vectors},
+                              {"nodes", result.grid.nodes},
+                              {"spacing_mm", result.grid.spacing.x / unit::mm},
+                              {"center_mm", {centre.x / unit::mm, centre.y / unit::mm, centre.z / unit::mm}},
+                              {"reference_density_kg_m3", result.reference_density},
+                              {"density_kg_m3", {{"least", *least}, {"largest", *largest}}},
+                              {"iterations", result.settings.iterations},
+                              {"residual", result.residual.back()},
+                              {"outside", result.outside}};
+  if (!result.truth.empty()) json["relative_error"] = number_or_null(compute_relative_error(result));
+  return json;
+}
+
+std::string tomography_report(Tomography const& result) {
+  auto const [least, largest] = std::minmax_element(result.density.begin(), result.density.end());
+  Vec3d const centre = find_grid_centre(result.grid);
+  std::string text = fmt::format(
+      "Density at {} x {} x {} nodes, {:.4g} mm apart, from {} views: {:.5g} to {:.5g} kg/m^3\n"
+      "  centre of the volume ({:.6g}, {:.6g}, {:.6g}) mm; residual of the line integrals {:.2f} % after {} "
+      "iterations\n",
+      result.grid.nodes[0], result.grid.nodes[1], result.grid.nodes[2], result.grid.spacing.x / unit::mm,
+      result.views.size(), *least, *largest, centre.x / unit::mm, centre.y / unit::mm, centre.z / unit::mm,
+      100.0 * result.residual.back(), result.settings.iterations);
+  if (!result.truth.empty())
+    text += fmt::format("  relative L2 error of the density difference: {:.4f}\n", compute_relative_error(result));
+  return text;
+}
+
+}  // namespace gladstone

@@ -1,0 +1,137 @@
+#include "analysis/tomography/volume_reconstruction.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "render/base/error.h"
+#include "render/base/not_a_number.h"
+#include "render/base/parallel.h"
+#include "tests/analysis/tomography/phantom_views.h"
+
+namespace gladstone::tomography {
+namespace {
+
+constexpr double width = 20e-3, radius = 4e-3;
+constexpr int nodes = 21;
+
+SartSettings quick_settings() {
+  SartSettings settings;
+  settings.iterations = 10;
+  return settings;
+}
+
+VolumeReconstruction reconstruct_blob(int views, Vec3d centre = {}, SartSettings const& settings = quick_settings()) {
+  return reconstruct_volume(view_blob(views, nodes, width, radius, centre), make_cube(nodes, width), settings);
+}
+
+// A blob is smooth and much larger than a cell (1 mm): the trilinear interpolation of its line integrals errs by
+// (h / R)^2 / 4 = 1.6 % at most, which bounds what eight consistent views can recover; three views recover less.
+TEST(VolumeReconstruction, BlobIsRecoveredBetterByMoreViews) {
+  std::vector<double> const truth = sample_blob(make_cube(nodes, width), radius);
+  double const three = compute_relative_error(reconstruct_blob(3).value, truth);
+  double const eight = compute_relative_error(reconstruct_blob(8).value, truth);
+  EXPECT_LT(eight, 0.032);  // twice the interpolation error, in both projection and comparison
+  EXPECT_LT(eight, three);
+}
+
+// Line integrals determine the centroid exactly (first moments of the Radon transform). A mirrored or exchanged axis
+// would move it by millimetres.
+TEST(VolumeReconstruction, BlobIsWhereItIs) {
+  Vec3d const centre{2.3e-3, 1.2e-3, -2.6e-3};
+  VolumeReconstruction const result = reconstruct_blob(6, centre);
+  Vec3d sum{};
+  double mass = 0.0;
+  std::size_t i = 0;
+  visit_cube(result.grid, [&](Vec3d p) {
+    sum += result.value[i] * p;
+    mass += result.value[i++];
+  });
+  EXPECT_LT(length(sum / mass - centre), 0.1e-3);  // a tenth of a cell: artefacts at the border of the cube
+}
+
+// Every step is homogeneous of degree one, and a factor of two is exact in floating point.
+TEST(VolumeReconstruction, TwiceTheLineIntegralsGiveTwiceTheDensity) {
+  auto views = view_blob(3, nodes, width, radius);
+  RegularGrid const grid = make_cube(nodes, width);
+  std::vector<double> once = reconstruct_volume(views, grid, quick_settings()).value;
+  for (ProjectedView& view : views)
+    for (double& value : view.value) value *= 2.0;
+  std::vector<double> const twice = reconstruct_volume(views, grid, quick_settings()).value;
+  for (double& value : once) value *= 2.0;
+  EXPECT_EQ(once, twice);
+}
+
+TEST(VolumeReconstruction, ResultDoesNotDependOnTheNumberOfThreads) {
+  set_thread_count(1);
+  std::vector<double> const one = reconstruct_blob(3).value;
+  set_thread_count(3);
+  std::vector<double> const three = reconstruct_blob(3).value;
+  set_thread_count(0);
+  EXPECT_EQ(one, three);
+}
+
+TEST(VolumeReconstruction, BoundsAndSupportHoldAtEveryNode) {
+  SartSettings settings = quick_settings();
+  settings.lowest = 0.0;
+  settings.highest = 0.5;
+  std::vector<double> const support = sample_blob(make_cube(nodes, width), radius);
+  for (double const value : support) settings.support.push_back(value > 0.1 ? 1 : 0);
+  VolumeReconstruction const result = reconstruct_blob(4, {}, settings);
+  for (std::size_t i = 0; i < result.value.size(); ++i) {
+    EXPECT_GE(result.value[i], 0.0);
+    EXPECT_LE(result.value[i], settings.support[i] != 0 ? 0.5 : 0.0);
+  }
+  EXPECT_GT(*std::max_element(result.value.begin(), result.value.end()), 0.45);
+}
+
+TEST(VolumeReconstruction, WithoutDensityDifferenceThereIsNone) {
+  auto views = view_blob(3, nodes, width, radius);
+  for (ProjectedView& view : views) std::fill(view.value.begin(), view.value.end(), 0.0);
+  VolumeReconstruction const result = reconstruct_volume(views, make_cube(nodes, width), quick_settings());
+  for (double const value : result.value) EXPECT_EQ(value, 0.0);
+  EXPECT_EQ(result.residual.back(), 0.0);
+}
+
+TEST(VolumeReconstruction, LinesBesideTheVolumeAreReported) {
+  auto const views = view_blob(3, nodes, width, radius, {0.0, 7e-3, 0.0});
+  RegularGrid half = make_cube(nodes, width);  // y from -10 to 0 mm: most of the blob is outside
+  half.nodes[1] = 11;
+  EXPECT_GT(reconstruct_volume(views, half, quick_settings()).outside, 0.5);
+}
+
+TEST(VolumeReconstruction, UnusableViewsAreRefused) {
+  RegularGrid const grid = make_cube(nodes, width);
+  auto const views = view_blob(3, nodes, width, radius);
+  EXPECT_THROW(reconstruct_volume({views[0], views[1]}, grid, quick_settings()), DataError);
+
+  auto different = views;
+  different[1].value.pop_back();
+  EXPECT_THROW(reconstruct_volume(different, grid, quick_settings()), DataError);
+
+  auto unmeasured = views;
+  std::fill(unmeasured[2].value.begin(), unmeasured[2].value.end(), not_a_number);
+  EXPECT_THROW(reconstruct_volume(unmeasured, grid, quick_settings()), NoValidVector);
+
+  auto apart = views;  // the third camera looks past the volume
+  for (SightLine& line : apart[2].lines) line.origin.y += 1.0;
+  EXPECT_THROW(reconstruct_volume(apart, grid, quick_settings()), DataError);
+}
+
+TEST(VolumeReconstruction, SettingsOutOfRangeAreReportedTogether) {
+  SartSettings settings;
+  settings.iterations = 0;
+  settings.relaxation = 2.0;
+  settings.tv_weight = -1.0;
+  settings.lowest = 0.1;
+  try {
+    reconstruct_blob(3, {}, settings);
+    FAIL();
+  } catch (SetupError const& error) {
+    EXPECT_EQ(error.problems().size(), 4u);
+  }
+}
+
+}  // namespace
+}  // namespace gladstone::tomography
