@@ -38,7 +38,8 @@ double misfit_factor(LocatedDot const& dot);
 /// Returns the standard deviation of the noise of a pixel with the given light of dots, at least 1e-9 [grey levels].
 double noise_with_light(double background_noise, double gain, double light);
 
-/// Locates the dots (BOS) or particles (PIV) of a frame by least-squares fits of Gaussians.
+/// Locates the dots (BOS) or particles (PIV) of a frame by least-squares fits of Gaussians, or of the common profile of
+/// round dots (fit_dot_profile()).
 ///
 /// Candidates are maxima of the filtered frame. Dots whose images overlap are fitted together, and dots are added where
 /// the residual is significant (fit_overlapping_dots()); the light of all other dots is subtracted first, as in DAOPHOT

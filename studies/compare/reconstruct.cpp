@@ -151,7 +151,7 @@ void warn_of_aperture(Reconstruction& result, density::DensityIntegrator const& 
   }
   if (!(changes > largest_ratio * largest_ratio * variances) || count == 0) return;
   result.warnings.push_back(fmt::format(
-      "the aperture cone dominates the error of the density (averaging over it changes the density by about {:.2g} "
+      "the aperture cone dominates the error of the density (averaging over it changes the density by at least {:.2g} "
       "kg/m^3 rms, {:.2g} times the standard uncertainty, which does not contain it); use --deconvolve {:g}, or a "
       "larger f-number",
       std::sqrt(changes / count), std::sqrt(changes / variances), gain));

@@ -143,7 +143,7 @@ TEST(DotProfile, MakesTheUncertaintyOfDiscsValid) {
 }
 
 // Without noise the error is that of the profile, 0.1 % of the peak, and of rounding to 8 bits; with Gaussians it was
-// 0.03 px. Sigma is then on the safe side, since not all of the misfit shifts a centre.
+// 0.011 px. Sigma is then on the safe side, since not all of the misfit shifts a centre.
 TEST(DotProfile, LocatesDiscsAccurately) {
   for (auto const& [height, most_px] : {std::pair{40000.0, 0.002}, {150.0, 0.003}}) {
     Errors const errors = track_discs(height, 0);
