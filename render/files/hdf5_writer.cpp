@@ -8,6 +8,7 @@
 #include "render/base/contracts.h"
 #include "render/base/error.h"
 #include "render/base/version.h"
+#include "render/files/hdf5_chunks.h"
 #include "render/files/hdf5_file.h"
 #include "render/files/hdf5_handle.h"
 #include "render/files/output_file.h"
@@ -23,6 +24,7 @@ struct Hdf5Writer::Handle {
   Id file;
   SourceFiles sources;
   Hdf5Growth growth;
+  ChunkDeflater deflater;
 };
 
 namespace {
@@ -34,25 +36,8 @@ void check(bool good, std::string const& path, std::string const& what) {
 /// Size above which a dataset is compressed [bytes]; for smaller ones the chunk tables cost more than compression
 /// saves.
 constexpr std::size_t compressed_from_bytes = 64 * 1024;
-constexpr std::size_t chunk_bytes = 1024 * 1024;
-
-/// Enables chunking, byte shuffling and deflate of level 4. Chunks are halved along the leading axes to at most 1 MiB.
-void compress(hid_t properties, std::vector<hsize_t> const& sizes, std::size_t value_bytes) {
-  std::vector<hsize_t> chunk = sizes;
-  auto const bytes = [&] {
-    return std::accumulate(chunk.begin(), chunk.end(), value_bytes, std::multiplies<std::size_t>());
-  };
-  for (std::size_t axis = 0; axis < chunk.size() && bytes() > chunk_bytes;) {
-    if (chunk[axis] == 1) {
-      ++axis;
-    } else {
-      chunk[axis] = (chunk[axis] + 1) / 2;
-    }
-  }
-  H5Pset_chunk(properties, static_cast<int>(chunk.size()), chunk.data());
-  H5Pset_shuffle(properties);
-  H5Pset_deflate(properties, 4);
-}
+/// Level of deflate of datasets that are written row by row, such as volumes, which may compress well.
+constexpr int row_deflate_level = 4;
 
 void write_attribute(hid_t object, std::string const& path, std::string const& name, hid_t type, void const* value) {
   if (H5Aexists(object, name.c_str()) > 0) H5Adelete(object, name.c_str());
@@ -84,27 +69,61 @@ void make_groups(hid_t file, std::string const& path, std::string const& dataset
   }
 }
 
-void write_dataset(hid_t file, std::string const& path, std::string const& dataset, hid_t type, void const* data,
-                   std::size_t value_bytes, std::vector<std::size_t> const& shape, std::string const& units,
-                   std::string const& description, std::string const& axes) {
+/// Enables chunks with byte shuffling and deflate.
+void set_deflated(hid_t properties, std::vector<std::size_t> const& chunk, int level) {
+  std::vector<hsize_t> const sizes(chunk.begin(), chunk.end());
+  H5Pset_chunk(properties, static_cast<int>(sizes.size()), sizes.data());
+  H5Pset_shuffle(properties);
+  H5Pset_deflate(properties, level);
+}
+
+void write_chunks(hid_t dataset, std::vector<DeflatedChunk> const& chunks, std::string const& path,
+                  std::string const& name) {
+  for (DeflatedChunk const& chunk : chunks) {
+    std::vector<hsize_t> const start(chunk.start.begin(), chunk.start.end());
+    check(H5Dwrite_chunk(dataset, H5P_DEFAULT, 0, start.data(), chunk.bytes.size(), chunk.bytes.data()) >= 0, path,
+          "dataset \"" + name + '"');
+  }
+}
+
+template <class Value>
+hid_t hdf5_type() {
+  if (std::is_same_v<Value, double>) return H5T_NATIVE_DOUBLE;
+  return std::is_same_v<Value, std::int64_t> ? H5T_NATIVE_INT64 : H5T_NATIVE_UINT16;
+}
+
+/// Text attributes of a dataset.
+struct DatasetTexts {
+  std::string const &units, &description, &axes;
+};
+
+template <class Value>
+void write_dataset(hid_t file, ChunkDeflater& deflater, std::string const& path, std::string const& dataset,
+                   std::span<Value const> values, std::vector<std::size_t> const& shape, DatasetTexts const& texts) {
+  bool const compressed = values.size_bytes() > compressed_from_bytes;
+  std::vector<std::size_t> chunk;
+  std::vector<DeflatedChunk> chunks;
+  if (compressed) {  // before locking, so that several threads compress at the same time
+    chunk = chunk_shape(shape, sizeof(Value));
+    chunks = deflater.deflate(values.data(), shape, chunk, sizeof(Value));
+  }
+  Lock const lock(library_lock());
   make_groups(file, path, dataset);
   std::vector<hsize_t> const sizes(shape.begin(), shape.end());
   Id const space(H5Screate_simple(static_cast<int>(sizes.size()), sizes.data(), nullptr), H5Sclose);
   Id const properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
   H5Pset_obj_track_times(properties, false);
-  if (product(shape) * value_bytes > compressed_from_bytes) compress(properties, sizes, value_bytes);
-  Id const created(H5Dcreate2(file, dataset.c_str(), type, space, H5P_DEFAULT, properties, H5P_DEFAULT), H5Dclose);
+  if (compressed) set_deflated(properties, chunk, deflate_level);
+  Id const created(H5Dcreate2(file, dataset.c_str(), hdf5_type<Value>(), space, H5P_DEFAULT, properties, H5P_DEFAULT),
+                   H5Dclose);
   bool good = created.valid();
-  if (good && product(shape) > 0) good = H5Dwrite(created, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) >= 0;
+  if (good && !compressed && product(shape) > 0)
+    good = H5Dwrite(created, hdf5_type<Value>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) >= 0;
   check(good, path, "dataset \"" + dataset + '"');
-  write_attribute(created, path, "units", units);
-  write_attribute(created, path, "description", description);
-  write_attribute(created, path, "axes", axes);
-}
-
-template <class Value>
-hid_t hdf5_type() {
-  return std::is_same_v<Value, double> ? H5T_NATIVE_DOUBLE : H5T_NATIVE_UINT16;
+  write_chunks(created, chunks, path, dataset);
+  write_attribute(created, path, "units", texts.units);
+  write_attribute(created, path, "description", texts.description);
+  write_attribute(created, path, "axes", texts.axes);
 }
 
 /// Free space required in addition to the data, for HDF5's tables [bytes].
@@ -116,6 +135,15 @@ void require_space(std::string const& path, std::string const& temporary, std::s
   if (error || space.available >= bytes + spare_bytes) return;
   throw OutputError(path, "cannot be written (" + std::to_string(space.available / (1024 * 1024)) +
                               " MiB are left on the disk); make room, or write to another disk");
+}
+
+/// Returns the bytes of an in-memory file.
+std::vector<char> file_image(hid_t file, std::string const& path) {
+  ssize_t const size = H5Fget_file_image(file, nullptr, 0);
+  check(size > 0, path, "the HDF5 structure");
+  std::vector<char> image(static_cast<std::size_t>(size));
+  check(H5Fget_file_image(file, image.data(), image.size()) == size, path, "the HDF5 structure");
+  return image;
 }
 
 /// Returns the current time in UTC as ISO 8601 text.
@@ -133,11 +161,12 @@ std::string date_and_time() {
 Hdf5Writer::Hdf5Writer(std::string const& path, FileOrigin const& origin, Hdf5Growth growth) : path_(path) {
   Lock const lock(library_lock());
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-  handle_.reset(new Handle{OutputFile(path, origin.filetype), Id(H5I_INVALID_HID, H5Fclose), origin.sources, growth});
+  handle_.reset(
+      new Handle{OutputFile(path, origin.filetype), Id(H5I_INVALID_HID, H5Fclose), origin.sources, growth, {}});
   std::string const temporary = handle_->output.temporary_path();
   Id const access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   if (growth == Hdf5Growth::in_memory) {
-    H5Pset_fapl_core(access, chunk_bytes, false);
+    H5Pset_fapl_core(access, max_chunk_bytes, false);
   } else {
     require_space(path, temporary, 0);
 #if H5_VERSION_GE(1, 10, 7)
@@ -171,19 +200,15 @@ Hdf5Writer::~Hdf5Writer() {
 
 void Hdf5Writer::write(std::string const& dataset, std::span<double const> data, std::vector<std::size_t> const& shape,
                        std::string const& units, std::string const& description, std::string const& axes) {
-  Lock const lock(library_lock());
   GLADSTONE_EXPECTS(handle_ && product(shape) == data.size());
-  write_dataset(handle_->file, path_, dataset, H5T_NATIVE_DOUBLE, data.data(), sizeof(double), shape, units,
-                description, axes);
+  write_dataset(handle_->file, handle_->deflater, path_, dataset, data, shape, {units, description, axes});
 }
 
 void Hdf5Writer::write(std::string const& dataset, std::span<std::int64_t const> data,
                        std::vector<std::size_t> const& shape, std::string const& units, std::string const& description,
                        std::string const& axes) {
-  Lock const lock(library_lock());
   GLADSTONE_EXPECTS(handle_ && product(shape) == data.size());
-  write_dataset(handle_->file, path_, dataset, H5T_NATIVE_INT64, data.data(), sizeof(std::int64_t), shape, units,
-                description, axes);
+  write_dataset(handle_->file, handle_->deflater, path_, dataset, data, shape, {units, description, axes});
 }
 
 template <class Value>
@@ -193,15 +218,11 @@ void Hdf5Writer::make_rows(std::string const& dataset, std::vector<std::size_t> 
   Lock const lock(library_lock());
   GLADSTONE_EXPECTS(handle_ && chunk.size() == shape.size());
   make_groups(handle_->file, path_, dataset);
-  std::vector<hsize_t> const sizes(shape.begin(), shape.end()), chunks(chunk.begin(), chunk.end());
+  std::vector<hsize_t> const sizes(shape.begin(), shape.end());
   Id const space(H5Screate_simple(static_cast<int>(sizes.size()), sizes.data(), nullptr), H5Sclose);
   Id const properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
   H5Pset_obj_track_times(properties, false);
-  if (product(shape) > 0) {
-    H5Pset_chunk(properties, static_cast<int>(chunks.size()), chunks.data());
-    H5Pset_shuffle(properties);
-    H5Pset_deflate(properties, 4);
-  }
+  if (product(shape) > 0) set_deflated(properties, chunk, row_deflate_level);
   Id const created(
       H5Dcreate2(handle_->file, dataset.c_str(), hdf5_type<Value>(), space, H5P_DEFAULT, properties, H5P_DEFAULT),
       H5Dclose);
@@ -273,19 +294,16 @@ void Hdf5Writer::attach_scales(std::vector<ScaledDataset> const& datasets) {
 }
 
 void Hdf5Writer::close() {
-  Lock const lock(library_lock());
   GLADSTONE_EXPECTS(handle_ != nullptr);
-  check(H5Fflush(handle_->file, H5F_SCOPE_GLOBAL) >= 0, path_, "the HDF5 structure");
-  if (handle_->growth == Hdf5Growth::on_disk) {
+  std::vector<char> image;
+  {
+    Lock const lock(library_lock());
+    check(H5Fflush(handle_->file, H5F_SCOPE_GLOBAL) >= 0, path_, "the HDF5 structure");
+    if (handle_->growth == Hdf5Growth::in_memory) image = file_image(handle_->file, path_);
     handle_->file.reset();
-  } else {
-    ssize_t const size = H5Fget_file_image(handle_->file, nullptr, 0);
-    check(size > 0, path_, "the HDF5 structure");
-    std::vector<char> image(static_cast<std::size_t>(size));
-    check(H5Fget_file_image(handle_->file, image.data(), image.size()) == size, path_, "the HDF5 structure");
-    handle_->file.reset();
-    handle_->output.write(image.data(), image.size());
   }
+  // Several threads write to the disk at the same time.
+  if (!image.empty()) handle_->output.write(image.data(), image.size());
   handle_->sources.check();
   handle_->output.commit();
   handle_.reset();
