@@ -101,53 +101,6 @@ void check_size(PageHeader const& spec, std::string const& path, std::uint64_t f
   require_memory(path, "an image of " + sizes, tile_bytes + samples * sample_bytes + pixels * sizeof(double));
 }
 
-/// Reads all samples with their stored values. Readers scale 10, 12 and other bit depths up to 8 or 16 bits; `shift`
-/// [bits] undoes this.
-template <class Stored>
-std::vector<double> read_samples(PageReader& input, std::string const& path, int shift) {
-  PageHeader const spec = input.header();
-  std::vector<Stored> samples(static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height) *
-                              static_cast<std::size_t>(spec.channels));
-  if (std::string const why = input.read(samples.data()); !why.empty()) {
-    throw DataError(path, fmt::format("cannot be read to its end (it is damaged, cut short or compressed by an unknown "
-                                      "method: {}); copy it again, or write it anew without compression",
-                                      why));
-  }
-  throw_if_interrupted();
-  std::vector<double> values(samples.size());
-  double const scale = shift > 0 ? 1.0 / static_cast<double>(1 << shift) : 1.0;
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    values[i] = shift > 0 ? std::floor(static_cast<double>(samples[i]) * scale) : static_cast<double>(samples[i]);
-  }
-  return values;
-}
-
-std::vector<double> read_samples(PageReader& input, std::string const& path) {
-  PageHeader const spec = input.header();
-  int const held = static_cast<int>(8 * spec.sample_bytes);
-  int const shift = spec.bits > 0 && spec.bits < held ? held - spec.bits : 0;
-  switch (spec.type) {
-    case SampleType::uint8:
-      return read_samples<std::uint8_t>(input, path, shift);
-    case SampleType::uint16:
-      return read_samples<std::uint16_t>(input, path, shift);
-    case SampleType::int16:
-      return read_samples<std::int16_t>(input, path, 0);
-    case SampleType::uint32:
-      return read_samples<std::uint32_t>(input, path, 0);
-    case SampleType::int32:
-      return read_samples<std::int32_t>(input, path, 0);
-    case SampleType::float32:
-      return read_samples<float>(input, path, 0);
-    case SampleType::float64:
-      return read_samples<double>(input, path, 0);
-    case SampleType::other:
-      break;
-  }
-  throw DataError(path, "has samples of type " + spec.type_name +
-                            ", which is not supported; write it with unsigned integers of 8 or 16 bits, or floats");
-}
-
 constexpr std::size_t ink_count = 4;
 
 /// Weights of red, green and blue in the luminance (Rec. ITU-R BT.709, section 3.2).
@@ -188,11 +141,59 @@ double grey_level(PageHeader const& spec, double const* sample) {
   return level;
 }
 
-Image<double> grey_image(PageHeader const& spec, std::vector<double> const& samples) {
+/// Reads the grey levels of a page, in its orientation. Readers scale 10, 12 and other bit depths up to 8 or 16 bits;
+/// `shift` [bits] undoes this.
+template <class Stored>
+Image<double> read_levels(PageReader& input, PageHeader const& spec, std::string const& path, int shift) {
   auto const channels = static_cast<std::size_t>(spec.channels);
   Image<double> image(spec.width, spec.height);
-  for (std::size_t i = 0; i < image.size(); ++i) image.data()[i] = grey_level(spec, samples.data() + i * channels);
+  auto const samples = std::make_unique_for_overwrite<Stored[]>(image.size() * channels);
+  if (std::string const why = input.read(samples.get()); !why.empty()) {
+    throw DataError(path, fmt::format("cannot be read to its end (it is damaged, cut short or compressed by an unknown "
+                                      "method: {}); copy it again, or write it anew without compression",
+                                      why));
+  }
+  throw_if_interrupted();
+  double const scale = shift > 0 ? 1.0 / static_cast<double>(1 << shift) : 1.0;
+  auto const value_of = [&](Stored sample) {
+    return shift > 0 ? std::floor(static_cast<double>(sample) * scale) : static_cast<double>(sample);
+  };
+  if (channels == 1) {
+    std::transform(samples.get(), samples.get() + image.size(), image.data(), value_of);
+    return image;
+  }
+  std::vector<double> pixel(channels);
+  for (std::size_t i = 0; i < image.size(); ++i) {
+    std::transform(samples.get() + i * channels, samples.get() + (i + 1) * channels, pixel.begin(), value_of);
+    image.data()[i] = grey_level(spec, pixel.data());
+  }
   return image;
+}
+
+Image<double> read_levels(PageReader& input, std::string const& path) {
+  PageHeader const spec = input.header();
+  int const held = static_cast<int>(8 * spec.sample_bytes);
+  int const shift = spec.bits > 0 && spec.bits < held ? held - spec.bits : 0;
+  switch (spec.type) {
+    case SampleType::uint8:
+      return read_levels<std::uint8_t>(input, spec, path, shift);
+    case SampleType::uint16:
+      return read_levels<std::uint16_t>(input, spec, path, shift);
+    case SampleType::int16:
+      return read_levels<std::int16_t>(input, spec, path, 0);
+    case SampleType::uint32:
+      return read_levels<std::uint32_t>(input, spec, path, 0);
+    case SampleType::int32:
+      return read_levels<std::int32_t>(input, spec, path, 0);
+    case SampleType::float32:
+      return read_levels<float>(input, spec, path, 0);
+    case SampleType::float64:
+      return read_levels<double>(input, spec, path, 0);
+    case SampleType::other:
+      break;
+  }
+  throw DataError(path, "has samples of type " + spec.type_name +
+                            ", which is not supported; write it with unsigned integers of 8 or 16 bits, or floats");
 }
 
 /// Corrects the orientation of an image. TIFF 6.0, section 8: stored row 0 is the visual top (1, 2), bottom (3, 4),
@@ -243,7 +244,7 @@ class Picture {
     PageHeader const spec = input_->header();
     check_size(spec, path_, file_.size());
     check_channels(spec, path_);
-    Image<double> image = turn_upright(grey_image(spec, read_samples(*input_, path_)), spec.orientation);
+    Image<double> image = turn_upright(read_levels(*input_, path_), spec.orientation);
     if (metadata) {
       *metadata = metadata_of(spec);
       metadata->channels = spec.colours == Colours::inks ? spec.channels - 1 : spec.channels;

@@ -29,5 +29,7 @@ struct ImageStatistics {
 /// - Dots: local maxima that exceed a third of the largest height. Neighbourhoods with a pixel that is NaN or infinite
 ///   are skipped.
 ImageStatistics image_statistics(Image<double> const& image);
+/// Measures ImageStatistics::dot_diameter_px only.
+double measure_dot_diameter_px(Image<double> const& image);
 
 }  // namespace gladstone

@@ -119,7 +119,7 @@ std::string locking_advice(Setup const& setup) {
 }
 
 std::string locking_advice(Image<double> const& frame) {
-  double const seen = image_statistics(middle_of(frame)).dot_diameter_px;
+  double const seen = measure_dot_diameter_px(middle_of(frame));
   double const diameter = std::sqrt(square(seen) - 16.0 / 12);
   if (!(diameter > smallest_seen && diameter < warned_image_px)) return {};
   ImageDiameters const images{0, diameter, 0}, wide{0, min_image_px, 0};
