@@ -11,7 +11,8 @@ namespace gladstone {
 namespace {
 
 constexpr std::size_t most_lag_bytes = std::size_t{512} << 20;  // memory of the autocorrelation
-constexpr std::size_t points_per_chunk = 1024;
+constexpr std::size_t blocks_per_chunk = 4;
+constexpr std::size_t fields_per_update = 8;  // fields whose products are added at once
 
 bool is_measured(DisplacementField const& field, std::size_t i) {
   VectorStatus const status = field.status.empty() ? VectorStatus::valid : field.status[i];
@@ -35,66 +36,92 @@ SequenceStatistics::SequenceStatistics(std::size_t lags) : lags_(std::max<std::s
 
 void SequenceStatistics::start(DisplacementField const& field) {
   size_ = field.size();
+  blocks_ = (size_ + block_points - 1) / block_points;
   position_px_ = field.position_px;
   columns_ = field.columns;
   rows_ = field.rows;
-  std::size_t const lag_bytes = std::max<std::size_t>(1, size_ * (sizeof(Products) + sizeof(Deviation)));
-  lags_ = std::clamp<std::size_t>(most_lag_bytes / lag_bytes, std::min<std::size_t>(4, lags_), lags_);
+  std::size_t const lag_bytes = std::max<std::size_t>(1, blocks_ * (sizeof(Products) + sizeof(Deviations)));
+  std::size_t const latest_bytes = std::min(most_lag_bytes, blocks_ * fields_per_update * sizeof(Deviations));
+  lags_ = std::clamp<std::size_t>((most_lag_bytes - latest_bytes) / lag_bytes, std::min<std::size_t>(4, lags_), lags_);
+  slots_ = lags_ + fields_per_update;
   first_.assign(size_, Vec2d{not_a_number, not_a_number});
   powers_.assign(size_, {});
-  products_.assign(size_ * lags_, {});
-  history_.assign(size_ * lags_, {});
+  products_.assign(blocks_ * lags_, {});
+  history_.assign(blocks_ * slots_, {});
+  with_products_ = samples_;
 }
 
 void SequenceStatistics::skip() {
-  if (size_ > 0) std::fill_n(slot(samples_), size_, Deviation{});
-  ++samples_;
+  for (std::size_t block = 0; block < blocks_; ++block) deviations(block, samples_) = {};
+  finish_sample();
 }
 
 void SequenceStatistics::add(DisplacementField const& field) {
   if (size_ == 0) start(field);
   GLADSTONE_EXPECTS(field.size() == size_);
-  // The oldest field occupies the slot of the new one; its products come first.
-  std::size_t const lags = std::min(lags_, samples_);
-  parallel_chunks(size_, points_per_chunk, [&](std::size_t begin, std::size_t end) {
-    std::vector<Deviation> now(end - begin);
-    for (std::size_t i = begin; i < end; ++i) {
-      if (!is_measured(field, i)) continue;
-      if (!is_finite(first_[i])) first_[i] = field.displacement_px[i];
-      Vec2d const d = field.displacement_px[i] - first_[i];
-      now[i - begin] = {d, 1.0};
-      double const a = d.x, b = d.y, aa = a * a, bb = b * b;
-      Powers& sum = powers_[i];
-      sum.n += 1;
-      sum.a += a;
-      sum.b += b;
-      sum.aa += aa;
-      sum.ab += a * b;
-      sum.bb += bb;
-      sum.aaa += aa * a;
-      sum.aab += aa * b;
-      sum.abb += a * bb;
-      sum.bbb += bb * b;
-      sum.aaaa += aa * aa;
-      sum.aabb += aa * bb;
-      sum.bbbb += bb * bb;
-    }
-    for (std::size_t lag = 1; lag <= lags; ++lag) {
-      Deviation const* const before = slot(samples_ - lag);
-      Products* const sums = products_.data() + (lag - 1) * size_;
-      for (std::size_t i = begin; i < end; ++i) {
-        Deviation const &x = now[i - begin], &y = before[i];
-        double const both = x.known * y.known;
-        Products& sum = sums[i];
-        sum.n += both;
-        sum.now = sum.now + both * x.value;
-        sum.before = sum.before + both * y.value;
-        sum.product = sum.product + Vec2d{x.value.x * y.value.x, x.value.y * y.value.y};
+  parallel_chunks(blocks_, blocks_per_chunk, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t block = begin; block < end; ++block) add_block(field, block);
+  });
+  finish_sample();
+}
+
+void SequenceStatistics::add_block(DisplacementField const& field, std::size_t block) {
+  Deviations& now = deviations(block, samples_);
+  now = {};
+  std::size_t const begin = block * block_points, end = std::min(size_, begin + block_points);
+  for (std::size_t i = begin; i < end; ++i) {
+    if (!is_measured(field, i)) continue;
+    if (!is_finite(first_[i])) first_[i] = field.displacement_px[i];
+    Vec2d const d = field.displacement_px[i] - first_[i];
+    now.u[i - begin] = d.x;
+    now.v[i - begin] = d.y;
+    now.known[i - begin] = 1.0;
+    double const a = d.x, b = d.y, aa = a * a, bb = b * b;
+    Powers& sum = powers_[i];
+    sum.n += 1;
+    sum.a += a;
+    sum.b += b;
+    sum.aa += aa;
+    sum.ab += a * b;
+    sum.bb += bb;
+    sum.aaa += aa * a;
+    sum.aab += aa * b;
+    sum.abb += a * bb;
+    sum.bbb += bb * b;
+    sum.aaaa += aa * aa;
+    sum.aabb += aa * bb;
+    sum.bbbb += bb * bb;
+  }
+}
+
+void SequenceStatistics::finish_sample() {
+  ++samples_;
+  if (size_ > 0 && samples_ - with_products_ == fields_per_update) add_products();
+}
+
+void SequenceStatistics::add_products() {
+  parallel_chunks(blocks_, blocks_per_chunk, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t block = begin; block < end; ++block) {
+      for (std::size_t sample = with_products_; sample < samples_; ++sample) {
+        Deviations const& now = deviations(block, sample);
+        for (std::size_t lag = 1; lag <= std::min(lags_, sample); ++lag) {
+          Deviations const& before = deviations(block, sample - lag);
+          Products& sums = products_[block * lags_ + lag - 1];
+          for (std::size_t i = 0; i < block_points; ++i) {
+            double const both = now.known[i] * before.known[i];
+            sums.n[i] += both;
+            sums.now_u[i] += both * now.u[i];
+            sums.now_v[i] += both * now.v[i];
+            sums.before_u[i] += both * before.u[i];
+            sums.before_v[i] += both * before.v[i];
+            sums.uu[i] += now.u[i] * before.u[i];
+            sums.vv[i] += now.v[i] * before.v[i];
+          }
+        }
       }
     }
-    std::copy(now.begin(), now.end(), slot(samples_) + begin);
   });
-  ++samples_;
+  with_products_ = samples_;
 }
 
 SequenceStatistics::CentralMoments SequenceStatistics::central_moments(std::size_t point) const {
@@ -118,19 +145,21 @@ SequenceStatistics::IndependentSamples SequenceStatistics::count_independent(std
   Vec2d sum;
   double uu = 0, vv = 0, uv = 0;
   bool u_positive = m.m20 > 0, v_positive = m.m02 > 0;
+  std::size_t const block = point / block_points, i = point % block_points;
   for (std::size_t lag = 1; lag <= lags_ && (u_positive || v_positive); ++lag) {
-    Products const& p = products_[(lag - 1) * size_ + point];
-    if (p.n == 0) {
+    Products const& p = products_[block * lags_ + lag - 1];
+    double const pairs = p.n[i];
+    if (pairs == 0) {
       u_positive = v_positive = false;
       break;
     }
     // Mean of (x - mean)(y - mean) over the pairs of vectors that are both known.
-    auto const covariance = [&p](double product, double now, double before, double mean) {
-      return (product - mean * (now + before)) / p.n + mean * mean;
+    auto const covariance = [pairs](double product, double now, double before, double mean) {
+      return (product - mean * (now + before)) / pairs + mean * mean;
     };
     double const weight = std::max(0.0, 1 - static_cast<double>(lag) / n);
-    double const rho_u = u_positive ? covariance(p.product.x, p.now.x, p.before.x, m.mean.x) / m.m20 : 0;
-    double const rho_v = v_positive ? covariance(p.product.y, p.now.y, p.before.y, m.mean.y) / m.m02 : 0;
+    double const rho_u = u_positive ? covariance(p.uu[i], p.now_u[i], p.before_u[i], m.mean.x) / m.m20 : 0;
+    double const rho_v = v_positive ? covariance(p.vv[i], p.now_v[i], p.before_v[i], m.mean.y) / m.m02 : 0;
     u_positive = rho_u > 0;
     v_positive = rho_v > 0;
     sum += weight * Vec2d{std::max(0.0, rho_u), std::max(0.0, rho_v)};
@@ -142,7 +171,8 @@ SequenceStatistics::IndependentSamples SequenceStatistics::count_independent(std
   return {{number(sum.x), number(sum.y)}, number(uu), number(vv), number(uv), u_positive || v_positive};
 }
 
-SequenceMoments SequenceStatistics::moments() const {
+SequenceMoments SequenceStatistics::moments() {
+  add_products();
   SequenceMoments result;
   result.position_px = position_px_;
   result.columns = columns_;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -60,7 +61,7 @@ class SequenceStatistics {
   void skip();
 
   std::size_t samples() const { return samples_; }
-  SequenceMoments moments() const;
+  SequenceMoments moments();
 
  private:
   /// Sums over the vectors of a point: of a^i b^j, with the deviations a and b from its first vector.
@@ -68,14 +69,17 @@ class SequenceStatistics {
     double n = 0, a = 0, b = 0, aa = 0, ab = 0, bb = 0, aaa = 0, aab = 0, abb = 0, bbb = 0, aaaa = 0, aabb = 0,
            bbbb = 0;
   };
-  /// Sums at one lag over the pairs of vectors at time t and t - lag.
+  /// Points whose values are stored together, so that loops over them use SIMD instructions.
+  static constexpr std::size_t block_points = 64;
+  using Values = std::array<double, block_points>;
+  /// Sums at one lag over the pairs of vectors at time t and t - lag, for the points of a block.
   struct Products {
-    double n = 0;
-    Vec2d now, before, product;
+    Values n{}, now_u{}, now_v{}, before_u{}, before_v{}, uu{}, vv{};
   };
-  struct Deviation {
-    Vec2d value;
-    double known = 0;  ///< 1 if measured, else 0 with value 0
+  /// Deviations from the first vectors, for the points of a block.
+  struct Deviations {
+    Values u{}, v{};
+    Values known{};  ///< 1 if measured, else 0 with u = v = 0
   };
 
   /// Central moments of a point, sums divided by n [px, px^2, px^4].
@@ -91,16 +95,23 @@ class SequenceStatistics {
   };
 
   void start(DisplacementField const& field);
+  void add_block(DisplacementField const& field, std::size_t block);
+  /// Counts a field, and adds the products of the latest fields after several of them.
+  void finish_sample();
+  /// Adds the products of the latest fields with those before them. Several fields at once access the sums only once.
+  void add_products();
   CentralMoments central_moments(std::size_t point) const;
   IndependentSamples count_independent(std::size_t point, CentralMoments const& m) const;
-  Deviation* slot(std::size_t sample) { return history_.data() + (sample % lags_) * size_; }
+  Deviations& deviations(std::size_t block, std::size_t sample) { return history_[block * slots_ + sample % slots_]; }
 
-  std::size_t lags_, size_ = 0, samples_ = 0;
+  std::size_t lags_, size_ = 0, blocks_ = 0, samples_ = 0;
+  std::size_t slots_ = 0;          ///< number of fields in the history: the lags and the latest fields
+  std::size_t with_products_ = 0;  ///< number of fields whose products have been added
   std::vector<Vec2d> position_px_, first_;
   int columns_ = 0, rows_ = 0;
   std::vector<Powers> powers_;
-  std::vector<Products> products_;  ///< lag - 1, point
-  std::vector<Deviation> history_;  ///< sample modulo lags, point
+  std::vector<Products> products_;   ///< block, lag - 1
+  std::vector<Deviations> history_;  ///< block, sample modulo slots
 };
 
 /// Writes statistics.h5. @throws OutputError
