@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <mutex>
+#include <utility>
+#include <vector>
 
 #include "analysis/correlation/lane_correlation.h"
 #include "analysis/correlation/methods/robust_phase.h"
@@ -11,6 +13,7 @@
 #include "cuda/correlation/correlation_statistics.h"
 #include "cuda/device/device_array.h"
 #include "cuda/device/device_frames.h"
+#include "cuda/device/staging_pool.h"
 #include "render/base/interrupt.h"
 
 namespace gladstone::cuda {
@@ -60,6 +63,19 @@ struct WindowScratch {
       } catch (OutOfDeviceMemory const&) {
         if (wanted == 1) throw;
       }
+  }
+};
+
+/// Vectors of a pair, copied from the device.
+struct DownloadedVectors {
+  InterrogationGrid grid;
+  std::vector<MeasuredVector> measured;
+  std::vector<Vec2d> sigma_px;
+
+  DisplacementField field() && {
+    DisplacementField field = displacement_field(grid, measured);
+    field.sigma_px = std::move(sigma_px);
+    return field;
   }
 };
 
@@ -113,16 +129,19 @@ class CorrelationPlan {
 
   bool suits(int columns, int rows) const { return columns == columns_ && rows == rows_; }
 
-  /// Copies images to the device.
-  void upload(Image<double> const& reference, Image<double> const& flow) {
-    if (uploaded_[1].size() == 0)
-      for (DeviceArray<double>& image : uploaded_) image = DeviceArray<double>(reference.size(), purpose);
-    uploaded_[0].upload(reference.data());
-    uploaded_[1].upload(flow.data());
+  /// Copies both images of a pair to the device. @param staged  pixels of one after the other, in page-locked memory,
+  /// which must remain unchanged until the vectors have been downloaded
+  void upload(double const* staged) {
+    std::size_t const pixels = static_cast<std::size_t>(columns_) * rows_;
+    for (DeviceArray<double>& image : uploaded_) {
+      if (image.size() == 0) image = DeviceArray<double>(pixels, purpose);
+      copy_pinned_to_device(image.data(), staged, pixels * sizeof(double));
+      staged += pixels;
+    }
   }
   DeviceImage uploaded(int which) const { return {uploaded_[which].data(), columns_, rows_}; }
 
-  DisplacementField correlate(DeviceImage const& reference, DeviceImage const& flow) {
+  DownloadedVectors correlate(DeviceImage const& reference, DeviceImage const& flow) {
     enqueue(reference, flow);
     return download();
   }
@@ -265,14 +284,12 @@ class CorrelationPlan {
     measure_peaks(job, peaks_.data(), nine_points_, windows_.data());
   }
 
-  DisplacementField download() {
-    InterrogationGrid const& grid = passes_.back().grid;
-    std::vector<MeasuredVector> measured(grid.size());
-    measured_.download(measured.data(), measured.size());
-    DisplacementField field = displacement_field(grid, measured);
-    field.sigma_px.resize(sigma_.size());
-    sigma_.download(field.sigma_px.data(), sigma_.size());
-    return field;
+  DownloadedVectors download() {
+    DownloadedVectors vectors{passes_.back().grid, std::vector<MeasuredVector>(measured_.size()),
+                              std::vector<Vec2d>(sigma_.size())};
+    measured_.download(vectors.measured.data(), vectors.measured.size());
+    sigma_.download(vectors.sigma_px.data(), vectors.sigma_px.size());
+    return vectors;
   }
 
   /// Returns whether the frames are deformed at all.
@@ -318,6 +335,7 @@ struct CudaCorrelator::State {
   }
 
   CorrelationSettings settings;
+  StagingPool staging;
   std::mutex busy;
   std::unique_ptr<CorrelationPlan> plan;
 };
@@ -328,10 +346,17 @@ CudaCorrelator::~CudaCorrelator() = default;
 
 DisplacementField CudaCorrelator::correlate(Image<double> const& reference, Image<double> const& flow) const {
   check_image_sizes(state_->settings, reference.columns(), reference.rows(), flow.columns(), flow.rows());
-  std::lock_guard const lock(state_->busy);
-  CorrelationPlan& plan = state_->plan_for(reference.columns(), reference.rows());
-  plan.upload(reference, flow);
-  return plan.correlate(plan.uploaded(0), plan.uploaded(1));
+  DownloadedVectors vectors;
+  {  // While the device works on one pair, other threads fill their buffers, and convert the vectors of earlier pairs.
+    StagingPool::Buffer const staging = state_->staging.acquire();
+    auto* const staged = static_cast<double*>(staging->reserve(2 * reference.size() * sizeof(double)));
+    std::copy(flow.begin(), flow.end(), std::copy(reference.begin(), reference.end(), staged));
+    std::lock_guard const lock(state_->busy);
+    CorrelationPlan& plan = state_->plan_for(reference.columns(), reference.rows());
+    plan.upload(staged);
+    vectors = plan.correlate(plan.uploaded(0), plan.uploaded(1));
+  }
+  return std::move(vectors).field();
 }
 
 DisplacementField CudaCorrelator::correlate_pair(FramePair const& frames) const {
@@ -341,8 +366,12 @@ DisplacementField CudaCorrelator::correlate_pair(FramePair const& frames) const 
 
 DisplacementField CudaCorrelator::correlate(DeviceImage const& reference, DeviceImage const& flow) const {
   check_image_sizes(state_->settings, reference.columns, reference.rows, flow.columns, flow.rows);
-  std::lock_guard const lock(state_->busy);
-  return state_->plan_for(reference.columns, reference.rows).correlate(reference, flow);
+  DownloadedVectors vectors;
+  {
+    std::lock_guard const lock(state_->busy);
+    vectors = state_->plan_for(reference.columns, reference.rows).correlate(reference, flow);
+  }
+  return std::move(vectors).field();
 }
 
 void CudaCorrelator::enqueue(DeviceImage const& reference, DeviceImage const& flow) const {

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <thread>
+#include <vector>
 
 #include "cuda/backend.h"
 #include "render/base/error.h"
@@ -211,6 +213,29 @@ TEST_F(CudaCorrelation, GivesTheSameBitsEveryTime) {
     EXPECT_TRUE(same(first.displacement_px, again.displacement_px));
     EXPECT_TRUE(same(first.peak_ratio, again.peak_ratio));
     EXPECT_TRUE(same(first.status, again.status));
+  }
+}
+
+// Sequences share one correlator between threads, more than it has buffers for.
+TEST_F(CudaCorrelation, OfSeveralThreadsIsThatOfOne) {
+  constexpr std::size_t count = 12;
+  auto const correlator = cuda::make_correlator({});
+  std::vector<ParticlePair> pairs;
+  std::vector<DisplacementField> expected, fields(count);
+  for (std::size_t k = 0; k < count; ++k) {
+    pairs.push_back(smooth_pair(256, 256, 0.1, k + 1));
+    expected.push_back(correlator->correlate(pairs[k].reference, pairs[k].flow));
+  }
+  std::vector<std::thread> threads;
+  for (std::size_t k = 0; k < count; ++k)
+    threads.emplace_back([&, k] { fields[k] = correlator->correlate(pairs[k].reference, pairs[k].flow); });
+  for (std::thread& thread : threads) thread.join();
+  for (std::size_t k = 0; k < count; ++k) {
+    ASSERT_EQ(fields[k].size(), expected[k].size()) << k;
+    EXPECT_EQ(std::memcmp(fields[k].displacement_px.data(), expected[k].displacement_px.data(),
+                          expected[k].size() * sizeof(Vec2d)),
+              0)
+        << k;
   }
 }
 
