@@ -34,7 +34,7 @@ SequenceSetup read_field_sequence(SetupTable table) {
     table.problem("files", "is missing (density files, one for each frame); add it, files = [\"rho_*.h5\"]",
                   ProblemCode::missing_key);
   }
-  table.path_list("files");
+  table.path_list("files", 1);
   for (char const* const key : {"frames", "dt_us"}) {
     table.refuse(key, "applies to PIV only (a BOS sequence has one frame for each of sequence.files); remove it");
   }

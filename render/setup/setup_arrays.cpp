@@ -64,12 +64,12 @@ Vec3d SetupTable::quantities(std::string const& key, Vec3d fallback, double unit
   return v.size() == 3 ? Vec3d{v[0] * unit, v[1] * unit, v[2] * unit} : fallback;
 }
 
-std::vector<std::string> SetupTable::path_list(std::string const& key) {
+std::vector<std::string> SetupTable::path_list(std::string const& key, std::size_t at_least) {
   auto const objection = [](SetupNode const& element) -> std::string {
     if (element.kind != Kind::text) return wrong_kind("a file name in quotes", element);
     return element.text.empty() ? "must not be empty; give a file name" : "";
   };
-  auto const* const array = read_array(*this, read(*state_, path_, key), key, "file names in quotes", 0,
+  auto const* const array = read_array(*this, read(*state_, path_, key), key, "file names in quotes", at_least,
                                        std::numeric_limits<std::size_t>::max(), objection);
   if (!array) return {};
   std::vector<std::string> paths;

@@ -28,6 +28,23 @@ bool has_field_of_file(SetupDocument const& setup) {
   return kind && kind->kind == SetupNode::Kind::text && kind->text == "file";
 }
 
+/// Returns the density file of the selected pair; nullopt, with a problem of the setup, if it cannot be determined.
+std::optional<std::string> selected_field(SetupDocument& setup) {
+  bool const had_problems = setup.has_problems();
+  std::vector<std::string> const files = sequence_fields(setup);
+  if (!had_problems && setup.has_problems()) return std::nullopt;
+  std::optional<std::size_t> const pair = selected_pair(*setup.find({"sequence"}));
+  if (!pair || files.empty()) return std::nullopt;
+  if (*pair <= files.size()) return files[*pair - 1];
+  setup.root()
+      .table("sequence")
+      .problem("pair",
+               fmt::format("exceeds the number of sequence.files, {} (pairs are counted from 1); choose a smaller one, "
+                           "or add files",
+                           files.size()));
+  return std::nullopt;
+}
+
 }  // namespace
 
 bool describes_sequence(SetupDocument const& setup) {
@@ -55,7 +72,6 @@ std::vector<std::string> sequence_fields(SetupDocument& setup) {
       files.push_back(name);
     }
   }
-  if (given->elements.empty()) refuse("contains no file (one is needed for each frame); add them");
   return files;
 }
 
@@ -63,26 +79,21 @@ void select_pair(SetupDocument& setup) {
   SetupNode const* const given = setup.find({"sequence", "files"});
   SetupNode const* const experiment = setup.find({"experiment"});
   if (!given || (experiment && experiment->text != "bos") || !has_field_of_file(setup)) return;
-  std::optional<std::size_t> const pair = selected_pair(*setup.find({"sequence"}));
-  std::vector<std::string> const files = sequence_fields(setup);
-  if (!pair || files.empty()) return;
-  SetupTable table = setup.root().table("sequence");
   if (setup.find({"medium", "field", "file"})) {
-    table.problem("files", "conflicts with medium.field.file (both name the density files); remove medium.field.file");
+    setup.root()
+        .table("sequence")
+        .problem("files", "conflicts with medium.field.file (both name the density files); remove medium.field.file");
     return;
   }
-  if (*pair > files.size()) {
-    table.problem("pair", fmt::format("exceeds the number of sequence.files, {} (pairs are counted from 1); choose a "
-                                      "smaller one, or add files",
-                                      files.size()));
-    return;
-  }
-  SetupNode file = setup_text(files[*pair - 1]);
+  std::optional<std::string> const selected = selected_field(setup);
+  // An existing stand-in avoids a second problem about medium.field.file.
+  SetupNode file = setup_text(selected.value_or(std::filesystem::current_path().string()));
   file.place = given->place;
+  setup.set({"medium", "field", "file"}, file);
+  if (!selected) return;
   SetupNode sequence = *setup.find({"sequence"});
   std::erase_if(sequence.members, [](SetupMember const& member) { return member.key == "files"; });
   if (!sequence.find("pair")) sequence.members.push_back({"pair", setup_integer(1)});
-  setup.set({"medium", "field", "file"}, file);
   setup.set({"sequence"}, sequence);
 }
 
