@@ -14,6 +14,7 @@
 #include "render/base/interrupt.h"
 #include "render/base/version.h"
 #include "render/files/fields/field_file.h"
+#include "render/files/hdf5_file.h"
 #include "render/files/image_file.h"
 #include "render/files/input_guard.h"
 #include "render/files/output_destination.h"
@@ -88,10 +89,11 @@ class SequenceRendering {
     }
   }
 
-  /// Retains a pair of an earlier run of the same setup, input files and version. @return false if there is none
+  /// Retains a pair of an earlier run of the same setup, input files and version, unless its frames have been changed.
+  /// @return false if there is none
   bool retain(std::size_t number, bool first, SetupRenderer const& setup) {
     auto const known = finished_.find(number);
-    bool const same = known != finished_.end() && is_complete(number) &&
+    bool const same = known != finished_.end() && is_intact(number) &&
                       known->second.value("fingerprint", "") == hash_pair(setup, inputs_);
     if (same) add_pair(number, first, known->second, false);
     return same;
@@ -136,14 +138,21 @@ class SequenceRendering {
   fs::path case_of(std::size_t number, std::string const& camera) const {
     return folder_ / rendered_sequence_file::pair(number) / camera;
   }
-  bool is_complete(std::size_t number) const {
+  /// Returns whether the case of a pair has all its files, and its frames are those to which its truth belongs.
+  bool is_intact(std::size_t number) const {
+    UnrecordedReading const of_own_files;
     return std::all_of(cameras_.begin(), cameras_.end(), [&](std::string const& camera) {
-      auto const has = [&](char const* name) {
-        std::error_code error;
-        return fs::exists(case_of(number, camera) / name, error);
-      };
-      return has(case_file::setup) && has(case_file::summary) && has(case_file::reference) && has(case_file::flow) &&
-             has(case_file::truth);
+      fs::path const folder = case_of(number, camera);
+      std::error_code error;
+      if (!fs::exists(folder / case_file::setup, error) || !fs::exists(folder / case_file::summary, error))
+        return false;
+      try {
+        Hdf5Reader const truth((folder / case_file::truth).string());
+        return truth.attribute("reference_sha256") == pixel_sha256((folder / case_file::reference).string()) &&
+               truth.attribute("flow_sha256") == pixel_sha256((folder / case_file::flow).string());
+      } catch (DataError const&) {  // missing or damaged
+        return false;
+      }
     });
   }
 
@@ -207,7 +216,9 @@ class SequenceRendering {
     auto const add = [&](char const* image, std::string const& name) {
       std::error_code error;
       fs::path const frame = frames_of(camera) / name;
-      if (replace || !fs::exists(frame, error)) give_second_name(case_of(number, camera) / image, frame);
+      fs::path const original = case_of(number, camera) / image;
+      // A frame that is no second name of its image may have been replaced.
+      if (replace || !fs::equivalent(original, frame, error)) give_second_name(original, frame);
     };
     if (first) add(case_file::reference, first_frame(number));
     add(case_file::flow, second_frame(number));
