@@ -1,6 +1,7 @@
 #include "render/files/file_lock.h"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -31,6 +32,13 @@ int control(int file, int command, struct flock& range) {
 int lock_bytes(int file, std::size_t first, std::size_t count) {
   struct flock range = range_of(first, count, F_WRLCK);
   return control(file, F_OFD_SETLK, range);
+}
+
+bool leads_to(std::string const& path, int file) {
+  struct stat mine {};
+  struct stat there {};
+  return ::fstat(file, &mine) == 0 && ::stat(path.c_str(), &there) == 0 && mine.st_dev == there.st_dev &&
+         mine.st_ino == there.st_ino;
 }
 
 void unlock_bytes(int file, std::size_t first, std::size_t count) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
 
 namespace gladstone {
 
@@ -11,6 +12,10 @@ namespace gladstone {
 /// @param count  number of bytes; 0: to the end of the file, also if it grows
 /// @return 0; EAGAIN if another open file holds a lock in the range; another errno if the file system has no locks
 int lock_bytes(int file, std::size_t first, std::size_t count);
+
+/// Returns whether a path still leads to this open file. A process that locks a file by its name must test this
+/// afterwards: others may have removed or replaced the file before it was locked.
+bool leads_to(std::string const& path, int file);
 
 /// Releases a lock of lock_bytes().
 void unlock_bytes(int file, std::size_t first, std::size_t count);

@@ -98,14 +98,6 @@ std::string new_writer(dev_t disk, bool locked) {
          std::to_string(::getpid()) + '-' + fmt::format("{:x}", number);
 }
 
-/// Returns true if a path still refers to this open file.
-bool leads_to(std::string const& path, int file) {
-  struct stat there {};
-  struct stat mine {};
-  return ::lstat(path.c_str(), &there) == 0 && ::fstat(file, &mine) == 0 && there.st_dev == mine.st_dev &&
-         there.st_ino == mine.st_ino;
-}
-
 /// Returns the writer part of a partial output's name, or of the name of the lock file in a directory.
 std::string writer_text(fs::path const& path) {
   std::error_code error;

@@ -1,7 +1,6 @@
 #include "studies/compare/sequence_folder.h"
 
 #include <fcntl.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -27,14 +26,6 @@ bool contains_files(std::string const& folder) {
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
     if (!entry->path().filename().string().starts_with('.')) return true;
   return false;
-}
-
-/// Returns true if a path still refers to this open file.
-bool is_same_file(int file, std::string const& path) {
-  struct stat open {};
-  struct stat there {};
-  return ::fstat(file, &open) == 0 && ::stat(path.c_str(), &there) == 0 && open.st_dev == there.st_dev &&
-         open.st_ino == there.st_ino;
 }
 
 /// Returns the name of a state in sequence.json.
@@ -104,7 +95,7 @@ void SequenceFolder::lock() {
       ::close(lock_);
       throw OutputError(path_, "is being written by another gladstone correlate; wait until it ends");
     }
-    if (is_same_file(lock_, lock_path_)) return;
+    if (leads_to(lock_path_, lock_)) return;
     ::close(lock_);
   }
   throw OutputError(path_, "cannot be locked (other processes replace its file .lock); name another folder");

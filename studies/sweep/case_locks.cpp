@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -52,7 +51,7 @@ CaseLocks::~CaseLocks() {
 bool CaseLocks::take(std::size_t index) {
   bool taken = lock(index);
   // Limit the attempts: on some file systems the inode number changes with every call.
-  for (int attempt = 0; attempt < 5 && is_replaced(); ++attempt) {
+  for (int attempt = 0; attempt < 5 && !leads_to(path_, file_); ++attempt) {
     int const fresh = open_claims(path_, Use::take);
     if (fresh < 0) not_opened(path_, Use::take, errno);
     ::close(std::exchange(file_, fresh));
@@ -65,13 +64,6 @@ bool CaseLocks::lock(std::size_t index) {
   int const error = lock_bytes(file_, index, 1);
   if (error != 0 && error != EAGAIN) no_locks(path_, error);
   return error == 0;
-}
-
-bool CaseLocks::is_replaced() const {
-  struct stat mine {};
-  struct stat there {};
-  if (::fstat(file_, &mine) != 0 || ::stat(path_.c_str(), &there) != 0) return true;
-  return mine.st_dev != there.st_dev || mine.st_ino != there.st_ino;
 }
 
 void CaseLocks::release(std::size_t index) { unlock_bytes(file_, index, 1); }

@@ -34,7 +34,6 @@ class CaseLocks {
 
  private:
   bool lock(std::size_t index);
-  bool is_replaced() const;  ///< RUN/claims is not the file that was opened
   bool held_from(std::size_t first, std::size_t count) const;
 
   std::string path_;
