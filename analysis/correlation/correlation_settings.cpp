@@ -25,7 +25,7 @@ TrackingTable read_tracking_table(SetupTable table) {
 
 }  // namespace
 
-CorrelationSettings read_correlation_settings(SetupTable table) {
+CorrelationSettings read_correlation_settings(SetupTable table, PreparedSet set) {
   CorrelationSettings settings;
   std::vector<long long> const fallback(settings.window_px.begin(), settings.window_px.end());
   std::vector<long long> const windows = table.integers("window_px", fallback, 1, 10, 4, 512);
@@ -71,7 +71,7 @@ CorrelationSettings read_correlation_settings(SetupTable table) {
         "conflicts with method = \"tracking\" (which estimates the uncertainty from the fit of each dot); use "
         "\"none\"");
   if (tracks_dots || table.has("tracking")) settings.tracking = read_tracking_table(table.table("tracking"));
-  settings.preparation = read_frame_preparation(table);
+  settings.preparation = read_frame_preparation(table, set);
   return settings;
 }
 

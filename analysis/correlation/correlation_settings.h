@@ -57,7 +57,8 @@ struct CorrelationSettings {
 };
 
 /// Reads the table [correlate]; problems are collected in its document.
-CorrelationSettings read_correlation_settings(SetupTable table);
+/// @param set  frames to which the masks and preprocessing steps apply
+CorrelationSettings read_correlation_settings(SetupTable table, PreparedSet set = PreparedSet::pair);
 
 /// Checks that the windows fit into an image of the given size. Returns the problem as "problem (reason); suggestion";
 /// empty if there is none.

@@ -15,7 +15,7 @@ FrameChange read_intensity_mask(SetupTable& table, FramePreparation& preparation
 
 /// Subtracts a background from each frame: "minimum", "mean" or "median" (`subtract`) of a sequence of frames, computed
 /// per pixel and only once. `frame`: tables with the files of `reference` and `flow`; if it is missing, the background
-/// is that of the sequence being correlated (SequencePreparation). Grey levels may become negative.
+/// is that of the sequence, in a preparation of PreparedSet::sequence. Grey levels may become negative.
 FrameChange read_background(SetupTable& table, FramePreparation& preparation);
 /// Subtracts a Gaussian average of standard deviation `sigma_px`.
 FrameChange read_high_pass(SetupTable& table, FramePreparation& preparation);

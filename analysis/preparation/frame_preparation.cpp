@@ -74,8 +74,9 @@ void fill_unknown(PreparedFrames& frames) {
 
 }  // namespace
 
-FramePreparation read_frame_preparation(SetupTable& correlate) {
+FramePreparation read_frame_preparation(SetupTable& correlate, PreparedSet set) {
   FramePreparation preparation;
+  preparation.set = set;
   read_changes(correlate, "mask", masks, preparation.masks, preparation);
   read_changes(correlate, "preprocess", steps, preparation.steps, preparation);
   return preparation;

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "analysis/preparation/sequence_background.h"
 #include "render/base/frame_pair.h"
 #include "render/setup/setup_table.h"
 
@@ -20,17 +22,26 @@ struct PreparedFrames {
 /// Operation of one mask or step with its settings. @throws DataError if its files do not match the frames
 using FrameChange = std::function<void(PreparedFrames& frames)>;
 
+/// Frames that are prepared together.
+enum class PreparedSet {
+  pair,     ///< two frames: "background" steps require `frame`
+  sequence  ///< many pairs: "background" steps without `frame` subtract the background of the sequence
+};
+
 /// Contents of the arrays [[correlate.mask]] and [[correlate.preprocess]] of a setup, in their order.
 struct FramePreparation {
+  PreparedSet set = PreparedSet::pair;
   std::vector<FrameChange> masks;
   std::vector<FrameChange> steps;
   std::vector<std::string> files;  ///< images that the masks and steps read
+  /// Backgrounds of the sequence that the steps subtract; their images are empty until they have been computed.
+  std::vector<std::shared_ptr<SequenceBackground>> backgrounds;
 
   bool empty() const { return masks.empty() && steps.empty(); }
 };
 
 /// @param correlate  table [correlate]; problems are collected in its document
-FramePreparation read_frame_preparation(SetupTable& correlate);
+FramePreparation read_frame_preparation(SetupTable& correlate, PreparedSet set = PreparedSet::pair);
 
 /// Applies masks and preprocessing steps. Pixels that are masked or not finite in either frame become NaN in both, and
 /// correlators ignore them. Masks are evaluated on the original frames and applied after the steps. During the steps,

@@ -9,8 +9,6 @@ namespace {
 
 using ReadImage = std::function<std::optional<Image<double>>(std::size_t k)>;
 
-thread_local SequencePreparation* current_preparation = nullptr;
-
 constexpr std::size_t most_median_bytes = std::size_t{256} << 20;  // memory of compute_median()
 
 Image<double> compute_mean(std::size_t count, ReadImage const& read) {
@@ -74,18 +72,6 @@ Image<double> compute_median(std::size_t count, ReadImage const& read) {
 }
 
 }  // namespace
-
-SequencePreparation::SequencePreparation() : outer_(current_preparation) { current_preparation = this; }
-
-SequencePreparation::~SequencePreparation() { current_preparation = outer_; }
-
-SequencePreparation* SequencePreparation::current() { return current_preparation; }
-
-std::shared_ptr<SequenceBackground> SequencePreparation::add(std::string const& statistic) {
-  backgrounds_.push_back(std::make_shared<SequenceBackground>());
-  backgrounds_.back()->statistic = statistic;
-  return backgrounds_.back();
-}
 
 std::vector<std::string> background_statistics() { return {"minimum", "mean", "median"}; }
 

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <functional>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,27 +16,6 @@ struct SequenceBackground {
   std::string statistic;    ///< "minimum", "mean" or "median"
   Image<double> reference;  ///< subtracted from frames A
   Image<double> flow;       ///< subtracted from frames B
-};
-
-/// RAII guard: this thread reads the preparation of a sequence. While it exists, "background" steps may omit `frame`,
-/// and each of them adds its background to backgrounds().
-class SequencePreparation {
- public:
-  SequencePreparation();
-  ~SequencePreparation();
-  SequencePreparation(SequencePreparation const&) = delete;
-  SequencePreparation& operator=(SequencePreparation const&) = delete;
-
-  std::vector<std::shared_ptr<SequenceBackground>> const& backgrounds() const { return backgrounds_; }
-
-  /// Returns the guard of this thread; null if there is none.
-  static SequencePreparation* current();
-  /// Adds a background whose images are still empty.
-  std::shared_ptr<SequenceBackground> add(std::string const& statistic);
-
- private:
-  SequencePreparation* outer_;  ///< guard that existed before, and is current again afterwards
-  std::vector<std::shared_ptr<SequenceBackground>> backgrounds_;
 };
 
 /// Names accepted as the statistic of a background.

@@ -162,9 +162,7 @@ CaseSetup load_case_setup(SetupDocument document, FieldMemory field) {
   }
   std::optional<PaperLight> const light = read_light(root);
   if (loaded.setup.piv) root.refuse("light", "applies to BOS only (in PIV, [laser] defines the light); remove it");
-  // A setup may contain the tables of a design question, which rendering ignores.
-  for (char const* const table : {"requirements", "limits", "inventory", "free", "correlations"})
-    root.mark_as_read(table);
+  for (char const* const table : design_tables) root.mark_as_read(table);
   if (!loaded.correlate.window_px.empty()) loaded.setup.view_margin_px = loaded.correlate.window_px.front();
   for (std::string const& name : loaded.document.file_names()) {
     if (is_utf8(name)) continue;

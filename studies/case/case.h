@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <map>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
@@ -18,6 +19,9 @@
 #include "studies/case/uncertain_inputs.h"
 
 namespace gladstone {
+
+/// Tables of a design question, which a setup may contain. Rendering and correlation ignore them.
+inline constexpr std::array design_tables{"requirements", "limits", "inventory", "free", "correlations"};
 
 /// A setup file read and cross-checked completely.
 struct CaseSetup {

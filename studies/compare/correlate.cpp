@@ -26,14 +26,13 @@
 namespace gladstone {
 namespace {
 
-CorrelationFile read_document(SetupDocument document, std::vector<std::string> const& overrides) {
+CorrelationFile read_document(SetupDocument document, std::vector<std::string> const& overrides, PreparedSet set) {
   SetupTable root = document.root();
   // The file may be a complete setup, including the tables of a design question.
-  for (char const* other : {"schema", "experiment",   "camera",    "lens",      "geometry", "window",      "medium",
-                            "target", "light",        "particles", "laser",     "flow",     "calibration", "sequence",
-                            "render", "requirements", "limits",    "inventory", "free",     "correlations"}) {
-    if (root.has(other)) root.mark_as_read(other);
-  }
+  for (char const* other : {"schema", "experiment", "camera", "lens", "geometry", "window", "medium", "target", "light",
+                            "particles", "laser", "flow", "calibration", "sequence", "render"})
+    root.mark_as_read(other);
+  for (char const* other : design_tables) root.mark_as_read(other);
   for (auto const& assignment : overrides) {
     if (assignment.starts_with("correlate.") || assignment.starts_with("correlate=")) {
       document.override_key(assignment);
@@ -43,7 +42,7 @@ CorrelationFile read_document(SetupDocument document, std::vector<std::string> c
     }
   }
   CorrelationFile file;
-  file.settings = read_correlation_settings(document.root().table("correlate"));
+  file.settings = read_correlation_settings(document.root().table("correlate"), set);
   document.finish();
   file.resolved = document.resolved();
   return file;
@@ -152,12 +151,13 @@ Measurement correlate_frames(FramePair const& frames, CorrelationSettings const&
   return measurement;
 }
 
-CorrelationFile read_correlation_file(std::string const& path, std::vector<std::string> const& overrides) {
-  return read_document(SetupDocument::from_file(path), overrides);
+CorrelationFile read_correlation_file(std::string const& path, std::vector<std::string> const& overrides,
+                                      PreparedSet set) {
+  return read_document(SetupDocument::from_file(path), overrides, set);
 }
 
-CorrelationFile default_correlation(std::vector<std::string> const& overrides) {
-  return read_document(SetupDocument::from_text("", "defaults"), overrides);
+CorrelationFile default_correlation(std::vector<std::string> const& overrides, PreparedSet set) {
+  return read_document(SetupDocument::from_text("", "defaults"), overrides, set);
 }
 
 Image<double> read_frame(std::string const& path, std::string const& name, SourceFiles& sources) {

@@ -33,10 +33,12 @@ struct CorrelationFile {
   std::string resolved;  ///< the table as text with all defaults
 };
 /// Reads the [correlate] table of a complete setup, whose other tables are ignored, or of a file with nothing else.
+/// @param set  frames to which the settings apply
 /// @throws SetupError if the table is invalid
-CorrelationFile read_correlation_file(std::string const& path, std::vector<std::string> const& overrides);
+CorrelationFile read_correlation_file(std::string const& path, std::vector<std::string> const& overrides,
+                                      PreparedSet set = PreparedSet::pair);
 /// Returns the default settings, changed by `overrides` ("correlate.key=value").
-CorrelationFile default_correlation(std::vector<std::string> const& overrides);
+CorrelationFile default_correlation(std::vector<std::string> const& overrides, PreparedSet set = PreparedSet::pair);
 
 /// Reads a frame and adds the hash of its pixels to `sources`. Warns if the image is in colour.
 /// @param name  "reference" or "flow"

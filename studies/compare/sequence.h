@@ -1,11 +1,9 @@
 #pragma once
 
 #include <cstddef>
-#include <memory>
 #include <string>
 #include <vector>
 
-#include "analysis/preparation/sequence_background.h"
 #include "studies/case/backend.h"
 #include "studies/compare/correlate.h"
 #include "studies/compare/sequence_frames.h"
@@ -21,9 +19,7 @@ inline constexpr char const* statistics = "statistics.h5";
 /// Settings of a sequence.
 struct SequenceSettings {
   Pairing pairing = Pairing::pairs;
-  CorrelationFile correlation;
-  /// Backgrounds that `correlation.settings` subtracts; their images are computed by correlate_sequence().
-  std::vector<std::shared_ptr<SequenceBackground>> backgrounds;
+  CorrelationFile correlation;  ///< for PreparedSet::sequence; correlate_sequence() computes its backgrounds
 };
 /// Reads the settings of a sequence: as read_correlation_file(), or default_correlation() if `path` is empty, but
 /// "background" steps may omit `frame`, and then subtract the background of the sequence.
@@ -65,7 +61,8 @@ struct SequenceResult {
 /// - All frames must have the size of the first readable one.
 /// - Vectors in the folder with the hashes of these frames and settings are read instead of computed again, so that the
 ///   same call continues an interrupted run.
-/// - At most thread_count() pairs of frames are in memory, besides a background and the sums of the statistics.
+/// - At most thread_count() pairs of frames are in memory, besides backgrounds, the sums of the statistics and a few
+///   fields that wait to be added to them.
 /// @param show_progress  report the progress on stderr
 /// @throws DataError if no frame is readable, or the frames are smaller than a window; OutputError; DeviceError;
 ///         Interrupted, with the finished pairs stored

@@ -34,19 +34,18 @@ TEST(Background, IsTheStatisticOfEachPixel) {
 
 // Only the preparation of a sequence may omit the frames of a background. Its images are set afterwards.
 TEST(Background, OfASequenceIsComputedByTheSequence) {
-  auto const read = [] {
+  auto const read = [](PreparedSet set) {
     SetupDocument document = SetupDocument::from_text(
         "[[correlate.preprocess]]\nkind = \"background\"\nsubtract = \"median\"\n", "case.toml");
     SetupTable correlate = document.root().table("correlate");
-    FramePreparation preparation = read_frame_preparation(correlate);
+    FramePreparation preparation = read_frame_preparation(correlate, set);
     document.finish();
     return preparation;
   };
-  EXPECT_THROW(read(), SetupError);
-  SequencePreparation const sequence;
-  FramePreparation const preparation = read();
-  ASSERT_EQ(sequence.backgrounds().size(), 1u);
-  SequenceBackground& background = *sequence.backgrounds().front();
+  EXPECT_THROW(read(PreparedSet::pair), SetupError);
+  FramePreparation const preparation = read(PreparedSet::sequence);
+  ASSERT_EQ(preparation.backgrounds.size(), 1u);
+  SequenceBackground& background = *preparation.backgrounds.front();
   EXPECT_EQ(background.statistic, "median");
   HostFrames const frames(Image<double>(4, 4, 9.0), Image<double>(4, 4, 7.0));
   EXPECT_THROW(prepare_frames(frames, preparation), DataError) << "without its images";

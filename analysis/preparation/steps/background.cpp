@@ -55,9 +55,10 @@ class ListedBackground {
 FrameChange read_background(SetupTable& table, FramePreparation& preparation) {
   std::string const statistic = table.word("subtract", "minimum", background_statistics());
   std::vector<SetupTable> frames = table.tables("frame");
-  SequencePreparation* const sequence = SequencePreparation::current();
-  if (frames.empty() && sequence != nullptr) {
-    std::shared_ptr<SequenceBackground> const own = sequence->add(statistic);
+  if (frames.empty() && preparation.set == PreparedSet::sequence) {
+    auto const own = std::make_shared<SequenceBackground>();
+    own->statistic = statistic;
+    preparation.backgrounds.push_back(own);
     return [own](PreparedFrames& prepared) {
       subtract_background(own->reference, prepared.reference);
       subtract_background(own->flow, prepared.flow);

@@ -1,0 +1,156 @@
+#include "studies/compare/pair_correlation.h"
+
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <sstream>
+#include <utility>
+#include <vector>
+
+#include "analysis/correlation/correlator.h"
+#include "analysis/correlation/pair_assessment.h"
+#include "analysis/vectors/vector_file.h"
+#include "render/base/error.h"
+#include "render/base/interrupt.h"
+#include "render/files/hdf5_file.h"
+#include "render/files/input_guard.h"
+#include "render/files/stop_point.h"
+#include "studies/case/peak_locking.h"
+
+namespace gladstone {
+namespace {
+
+/// Correlator that several owners share.
+class SharedCorrelator final : public Correlator {
+ public:
+  explicit SharedCorrelator(std::shared_ptr<Correlator const> shared) : shared_(std::move(shared)) {}
+  DisplacementField correlate(Image<double> const& reference, Image<double> const& flow) const override {
+    return shared_->correlate(reference, flow);
+  }
+  DisplacementField correlate_pair(FramePair const& frames) const override { return shared_->correlate_pair(frames); }
+
+ private:
+  std::shared_ptr<Correlator const> shared_;
+};
+
+/// Returns the device with one correlator for all pairs, so that a GPU allocates its memory once. Correlators may be
+/// used by several threads; that of a GPU serves them in turn.
+Backend share_correlator(Backend device) {
+  struct Made {
+    std::once_flag once;
+    std::shared_ptr<Correlator const> correlator;
+  };
+  auto const made = std::make_shared<Made>();
+  auto const make = device.correlator;
+  device.correlator = [made, make](CorrelationSettings const& settings) {
+    std::call_once(made->once, [&] { made->correlator = make(settings); });
+    return std::make_unique<SharedCorrelator>(made->correlator);
+  };
+  return device;
+}
+
+/// Removes the data that the statistics do not use.
+DisplacementField without_details(DisplacementField field) {
+  field.sigma_px = field.raw_px = {};
+  field.peak_ratio = field.correlation = {};
+  field.failed = {};
+  field.ambiguous = {};
+  return field;
+}
+
+bool has_any_vector(DisplacementField const& field) {
+  for (std::size_t i = 0; i < field.size(); ++i)
+    if (field.counts(i)) return true;
+  return false;
+}
+
+std::vector<std::string> split_lines(std::string const& text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
+}  // namespace
+
+PairCorrelation::PairCorrelation(CorrelationFile const& settings, SequenceSize size,
+                                 std::optional<SequenceImage> common_reference, SourceFiles sources, Backend device)
+    : settings_(settings),
+      size_(std::move(size)),
+      common_reference_(std::move(common_reference)),
+      sources_(std::move(sources)),
+      device_(share_correlator(std::move(device))) {}
+
+DisplacementField PairCorrelation::run(PairRecord& record, std::string const& path) const {
+  if (record.state == PairState::failed) return {};
+  try {
+    throw_if_interrupted();
+    DisplacementField field = measure(record, path);
+    bool const any = has_any_vector(field);
+    record.state = any ? PairState::done : PairState::no_valid_vector;
+    if (!any) record.error = "none of its vectors is valid; check that both frames show one scene";
+    return without_details(std::move(field));
+  } catch (Interrupted const&) {
+    throw;
+  } catch (OutputError const&) {
+    throw;
+  } catch (DeviceError const&) {
+    throw;
+  } catch (std::exception const& error) {
+    record.state = PairState::failed;
+    record.error = format_user_message(error);
+    return {};
+  }
+}
+
+DisplacementField PairCorrelation::measure(PairRecord& record, std::string const& path) const {
+  SequenceImage reference = common_reference_ ? *common_reference_ : read_sequence_image(record.pair.reference);
+  SequenceImage flow = read_sequence_image(record.pair.flow);
+  size_.require(reference.levels, record.pair.reference.name());
+  size_.require(flow.levels, record.pair.flow.name());
+  record.reference_sha256 = reference.sha256;
+  record.flow_sha256 = flow.sha256;
+  if (std::optional<DisplacementField> finished = read_finished(path, record)) return std::move(*finished);
+  return correlate(std::move(reference), std::move(flow), record, path);
+}
+
+DisplacementField PairCorrelation::correlate(SequenceImage reference, SequenceImage flow, PairRecord& record,
+                                             std::string const& path) const {
+  HostFrames const frames(std::move(reference.levels), std::move(flow.levels));
+  Measurement measurement = correlate_frames(frames, settings_.settings, device_);
+  throw_if_interrupted();  // the measurement may be incomplete
+  DisplacementField& field = measurement.field;
+  field.warnings.insert(field.warnings.begin(), flow.warnings.begin(), flow.warnings.end());
+  field.warnings.insert(field.warnings.begin(), reference.warnings.begin(), reference.warnings.end());
+  if (std::string advice = locking_advice(frames.reference()); frames_correlate(field) && !advice.empty())
+    field.warnings.push_back(std::move(advice));
+  record.warnings = field.warnings;
+  SourceFiles sources = sources_;
+  sources.add_known("reference", record.reference_sha256);
+  sources.add_known("flow", record.flow_sha256);
+  write_vectors(path, field, {"gladstone vectors", 1, settings_.resolved, 0, measurement.device, std::move(sources)});
+  stop_point("pair-finished");
+  return std::move(field);
+}
+
+std::optional<DisplacementField> PairCorrelation::read_finished(std::string const& path, PairRecord& record) const {
+  std::error_code error;
+  if (!std::filesystem::exists(path, error)) return std::nullopt;
+  UnrecordedReading const to_be_replaced;
+  try {
+    Hdf5Reader const file(path);
+    if (file.attribute("settings_sha256") != sources_.sha256("settings") ||
+        file.attribute("reference_sha256") != record.reference_sha256 ||
+        file.attribute("flow_sha256") != record.flow_sha256)
+      return std::nullopt;
+    DisplacementField field = read_vectors(path).field;
+    if (field.size() != final_grid(settings_.settings, size_.columns, size_.rows).size()) return std::nullopt;
+    record.warnings = split_lines(file.attribute("warnings"));
+    record.resumed = true;
+    return field;
+  } catch (DataError const&) {  // damaged: it is computed again
+    return std::nullopt;
+  }
+}
+
+}  // namespace gladstone

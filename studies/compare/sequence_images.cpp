@@ -1,0 +1,80 @@
+#include "studies/compare/sequence_images.h"
+
+#include <fmt/format.h>
+
+#include <optional>
+
+#include "render/base/error.h"
+#include "render/base/interrupt.h"
+#include "render/files/image_pages.h"
+#include "render/files/source_files.h"
+#include "studies/case/pair_progress.h"
+
+namespace gladstone {
+namespace {
+
+Image<double> compute_background_image(std::string const& statistic, std::vector<SequenceFrame> const& frames,
+                                       SequenceSize const& size, bool show_progress) {
+  PairProgress progress("background", frames.size(), show_progress);
+  return compute_background(statistic, frames.size(), [&](std::size_t k) -> std::optional<Image<double>> {
+    throw_if_interrupted();
+    progress.advance();
+    try {
+      SequenceImage image = read_sequence_image(frames[k]);
+      size.require(image.levels, frames[k].name());
+      if (count_not_finite(image.levels) > 0) return std::nullopt;
+      return std::move(image.levels);
+    } catch (DataError const&) {  // its pair reports the problem
+      return std::nullopt;
+    }
+  });
+}
+
+}  // namespace
+
+SequenceImage read_sequence_image(SequenceFrame const& frame) {
+  ImageMetadata metadata;
+  SequenceImage image;
+  image.levels = frame.pages > 1 ? read_page(frame.path, frame.page, &metadata) : read_image(frame.path, &metadata);
+  image.sha256 = pixel_sha256(image.levels, metadata.sample_bits);
+  if (metadata.channels >= 3)
+    image.warnings.push_back(frame.name() + " is a colour image: its luminance (Rec. 709) is correlated");
+  if (metadata.orientation != 1)
+    image.warnings.push_back(fmt::format("{} is stored rotated or mirrored (Orientation {}), and was rotated upright",
+                                         frame.name(), metadata.orientation));
+  if (std::size_t const bad = count_not_finite(image.levels); bad == image.levels.size()) {
+    throw DataError(frame.name(), "all of its pixels are nan or infinite; export it again");
+  } else if (bad > 0) {
+    image.warnings.push_back(
+        fmt::format("{}: {} pixels are nan or infinite, and are excluded from their windows", frame.name(), bad));
+  }
+  return image;
+}
+
+void SequenceSize::require(Image<double> const& levels, std::string const& name) const {
+  if (levels.columns() == columns && levels.rows() == rows) return;
+  throw DataError(name, fmt::format("is {} x {} px but {} is {} x {} px (all frames must have one size)",
+                                    levels.columns(), levels.rows(), frame, columns, rows));
+}
+
+void compute_background_images(SequenceBackground& background, std::vector<SequencePair> const& pairs, Pairing pairing,
+                               SequenceSize const& size, bool show_progress) {
+  std::vector<SequenceFrame> first, second;
+  for (SequencePair const& pair : pairs) {
+    first.push_back(pair.reference);
+    second.push_back(pair.flow);
+  }
+  bool const separate = pairing == Pairing::pairs;
+  if (pairing == Pairing::reference) first = {first.front()};
+  if (pairing == Pairing::consecutive) second = {second.back()};
+  if (!separate) first.insert(first.end(), second.begin(), second.end());
+  auto const compute = [&](std::vector<SequenceFrame> const& frames) {
+    return compute_background_image(background.statistic, frames, size, show_progress);
+  };
+  background.reference = compute(first);
+  background.flow = separate ? compute(second) : background.reference;
+  if (background.reference.empty() || background.flow.empty())
+    throw DataError("correlate.preprocess", "no frame is suitable for the background; check that they are readable");
+}
+
+}  // namespace gladstone

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "analysis/preparation/sequence_background.h"
+#include "render/base/image.h"
+#include "studies/compare/sequence_frames.h"
+
+namespace gladstone {
+
+/// Frame of a sequence, read from its file.
+struct SequenceImage {
+  Image<double> levels;
+  std::string sha256;  ///< pixel_sha256()
+  std::vector<std::string> warnings;
+};
+/// Reads a frame. @throws DataError, also if none of its pixels is finite
+SequenceImage read_sequence_image(SequenceFrame const& frame);
+
+/// Size of the frames of a sequence: that of the first readable one.
+struct SequenceSize {
+  int columns = 0, rows = 0;  ///< [px]
+  std::string frame;          ///< name of that frame
+
+  /// @throws DataError if a frame has another size, with the names of both
+  void require(Image<double> const& levels, std::string const& name) const;
+};
+
+/// Computes the background of all frames A and that of all frames B, without those that are unreadable, of another size
+/// or not finite. With another pairing than Pairing::pairs they are images of one series, and the background is that
+/// of all frames.
+/// @param pairs  pairs without problem
+/// @throws DataError if no frame is suitable; Interrupted
+void compute_background_images(SequenceBackground& background, std::vector<SequencePair> const& pairs, Pairing pairing,
+                               SequenceSize const& size, bool show_progress);
+
+}  // namespace gladstone
