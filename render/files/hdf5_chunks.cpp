@@ -6,6 +6,7 @@
 #include <functional>
 #include <new>
 #include <numeric>
+#include <span>
 
 namespace gladstone {
 namespace {
@@ -24,28 +25,15 @@ std::vector<unsigned char> deflate_values(unsigned char const* values, std::size
   return deflated;
 }
 
+constexpr std::size_t most_known = 32;  // datasets that are retained for comparison, at most 1 MiB each
+
 std::size_t count_values(std::vector<std::size_t> const& shape) {
   return std::accumulate(shape.begin(), shape.end(), std::size_t{1}, std::multiplies<>());
 }
 
-}  // namespace
-
-std::vector<std::size_t> chunk_shape(std::vector<std::size_t> const& shape, std::size_t value_bytes) {
-  std::vector<std::size_t> chunk = shape;
-  for (std::size_t axis = 0; axis < chunk.size() && count_values(chunk) * value_bytes > max_chunk_bytes;) {
-    if (chunk[axis] == 1) {
-      ++axis;
-    } else {
-      chunk[axis] = (chunk[axis] + 1) / 2;
-    }
-  }
-  return chunk;
-}
-
-std::vector<DeflatedChunk> deflate_chunks(void const* data, std::vector<std::size_t> const& shape,
-                                          std::vector<std::size_t> const& chunk, std::size_t value_bytes) {
+std::vector<DeflatedChunk> deflate_all(unsigned char const* bytes, std::vector<std::size_t> const& shape,
+                                       std::vector<std::size_t> const& chunk, std::size_t value_bytes) {
   std::vector<DeflatedChunk> chunks;
-  auto const* const bytes = static_cast<unsigned char const*>(data);
   std::size_t const chunk_values = count_values(chunk);
   std::vector<std::size_t> start(shape.size(), 0);
   while (start[0] < shape[0]) {
@@ -63,6 +51,35 @@ std::vector<DeflatedChunk> deflate_chunks(void const* data, std::vector<std::siz
       start[axis] = 0;
     }
   }
+  return chunks;
+}
+
+}  // namespace
+
+std::vector<std::size_t> chunk_shape(std::vector<std::size_t> const& shape, std::size_t value_bytes) {
+  std::vector<std::size_t> chunk = shape;
+  for (std::size_t axis = 0; axis < chunk.size() && count_values(chunk) * value_bytes > max_chunk_bytes;) {
+    if (chunk[axis] == 1) {
+      ++axis;
+    } else {
+      chunk[axis] = (chunk[axis] + 1) / 2;
+    }
+  }
+  return chunk;
+}
+
+std::vector<DeflatedChunk> ChunkDeflater::deflate(void const* data, std::vector<std::size_t> const& shape,
+                                                  std::vector<std::size_t> const& chunk, std::size_t value_bytes) {
+  auto const* const bytes = static_cast<unsigned char const*>(data);
+  if (chunk != shape) return deflate_all(bytes, shape, chunk, value_bytes);
+  std::span<unsigned char const> const values(bytes, count_values(shape) * value_bytes);
+  std::vector<std::size_t> const start(shape.size(), 0);
+  for (Known const& known : known_)
+    if (std::equal(values.begin(), values.end(), known.values.begin(), known.values.end()))
+      return {{start, known.deflated}};
+  std::vector<DeflatedChunk> chunks = deflate_all(bytes, shape, chunk, value_bytes);
+  if (known_.size() < most_known)
+    known_.push_back({std::vector<unsigned char>(values.begin(), values.end()), chunks.front().bytes});
   return chunks;
 }
 

@@ -23,10 +23,21 @@ struct DeflatedChunk {
   std::vector<unsigned char> bytes;
 };
 
-/// Compresses a dataset chunk by chunk. Chunks that exceed the dataset are filled with zeros.
-/// @param data   values in the order of memory, the last axis varies fastest
-/// @param chunk  chunk_shape()
-std::vector<DeflatedChunk> deflate_chunks(void const* data, std::vector<std::size_t> const& shape,
-                                          std::vector<std::size_t> const& chunk, std::size_t value_bytes);
+/// Compresses the datasets of a file. Those of one chunk with the same values, such as a column and its copy on a grid,
+/// are compressed once.
+class ChunkDeflater {
+ public:
+  /// Compresses a dataset chunk by chunk. Chunks that exceed the dataset are filled with zeros.
+  /// @param data   values in the order of memory, the last axis varies fastest
+  /// @param chunk  chunk_shape()
+  std::vector<DeflatedChunk> deflate(void const* data, std::vector<std::size_t> const& shape,
+                                     std::vector<std::size_t> const& chunk, std::size_t value_bytes);
+
+ private:
+  struct Known {
+    std::vector<unsigned char> values, deflated;
+  };
+  std::vector<Known> known_;  ///< datasets of one chunk
+};
 
 }  // namespace gladstone

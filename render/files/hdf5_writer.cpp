@@ -24,6 +24,7 @@ struct Hdf5Writer::Handle {
   Id file;
   SourceFiles sources;
   Hdf5Growth growth;
+  ChunkDeflater deflater;
 };
 
 namespace {
@@ -35,6 +36,8 @@ void check(bool good, std::string const& path, std::string const& what) {
 /// Size above which a dataset is compressed [bytes]; for smaller ones the chunk tables cost more than compression
 /// saves.
 constexpr std::size_t compressed_from_bytes = 64 * 1024;
+/// Level of deflate of datasets that are written row by row, such as volumes, which may compress well.
+constexpr int row_deflate_level = 4;
 
 void write_attribute(hid_t object, std::string const& path, std::string const& name, hid_t type, void const* value) {
   if (H5Aexists(object, name.c_str()) > 0) H5Adelete(object, name.c_str());
@@ -67,11 +70,11 @@ void make_groups(hid_t file, std::string const& path, std::string const& dataset
 }
 
 /// Enables chunks with byte shuffling and deflate.
-void set_deflated(hid_t properties, std::vector<std::size_t> const& chunk) {
+void set_deflated(hid_t properties, std::vector<std::size_t> const& chunk, int level) {
   std::vector<hsize_t> const sizes(chunk.begin(), chunk.end());
   H5Pset_chunk(properties, static_cast<int>(sizes.size()), sizes.data());
   H5Pset_shuffle(properties);
-  H5Pset_deflate(properties, deflate_level);
+  H5Pset_deflate(properties, level);
 }
 
 void write_chunks(hid_t dataset, std::vector<DeflatedChunk> const& chunks, std::string const& path,
@@ -95,14 +98,14 @@ struct DatasetTexts {
 };
 
 template <class Value>
-void write_dataset(hid_t file, std::string const& path, std::string const& dataset, std::span<Value const> values,
-                   std::vector<std::size_t> const& shape, DatasetTexts const& texts) {
+void write_dataset(hid_t file, ChunkDeflater& deflater, std::string const& path, std::string const& dataset,
+                   std::span<Value const> values, std::vector<std::size_t> const& shape, DatasetTexts const& texts) {
   bool const compressed = values.size_bytes() > compressed_from_bytes;
   std::vector<std::size_t> chunk;
   std::vector<DeflatedChunk> chunks;
   if (compressed) {  // before locking, so that several threads compress at the same time
     chunk = chunk_shape(shape, sizeof(Value));
-    chunks = deflate_chunks(values.data(), shape, chunk, sizeof(Value));
+    chunks = deflater.deflate(values.data(), shape, chunk, sizeof(Value));
   }
   Lock const lock(library_lock());
   make_groups(file, path, dataset);
@@ -110,9 +113,7 @@ void write_dataset(hid_t file, std::string const& path, std::string const& datas
   Id const space(H5Screate_simple(static_cast<int>(sizes.size()), sizes.data(), nullptr), H5Sclose);
   Id const properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
   H5Pset_obj_track_times(properties, false);
-  if (compressed) {
-    set_deflated(properties, chunk);
-  }
+  if (compressed) set_deflated(properties, chunk, deflate_level);
   Id const created(H5Dcreate2(file, dataset.c_str(), hdf5_type<Value>(), space, H5P_DEFAULT, properties, H5P_DEFAULT),
                    H5Dclose);
   bool good = created.valid();
@@ -160,7 +161,8 @@ std::string date_and_time() {
 Hdf5Writer::Hdf5Writer(std::string const& path, FileOrigin const& origin, Hdf5Growth growth) : path_(path) {
   Lock const lock(library_lock());
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-  handle_.reset(new Handle{OutputFile(path, origin.filetype), Id(H5I_INVALID_HID, H5Fclose), origin.sources, growth});
+  handle_.reset(
+      new Handle{OutputFile(path, origin.filetype), Id(H5I_INVALID_HID, H5Fclose), origin.sources, growth, {}});
   std::string const temporary = handle_->output.temporary_path();
   Id const access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   if (growth == Hdf5Growth::in_memory) {
@@ -199,14 +201,14 @@ Hdf5Writer::~Hdf5Writer() {
 void Hdf5Writer::write(std::string const& dataset, std::span<double const> data, std::vector<std::size_t> const& shape,
                        std::string const& units, std::string const& description, std::string const& axes) {
   GLADSTONE_EXPECTS(handle_ && product(shape) == data.size());
-  write_dataset(handle_->file, path_, dataset, data, shape, {units, description, axes});
+  write_dataset(handle_->file, handle_->deflater, path_, dataset, data, shape, {units, description, axes});
 }
 
 void Hdf5Writer::write(std::string const& dataset, std::span<std::int64_t const> data,
                        std::vector<std::size_t> const& shape, std::string const& units, std::string const& description,
                        std::string const& axes) {
   GLADSTONE_EXPECTS(handle_ && product(shape) == data.size());
-  write_dataset(handle_->file, path_, dataset, data, shape, {units, description, axes});
+  write_dataset(handle_->file, handle_->deflater, path_, dataset, data, shape, {units, description, axes});
 }
 
 template <class Value>
@@ -220,7 +222,7 @@ void Hdf5Writer::make_rows(std::string const& dataset, std::vector<std::size_t> 
   Id const space(H5Screate_simple(static_cast<int>(sizes.size()), sizes.data(), nullptr), H5Sclose);
   Id const properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
   H5Pset_obj_track_times(properties, false);
-  if (product(shape) > 0) set_deflated(properties, chunk);
+  if (product(shape) > 0) set_deflated(properties, chunk, row_deflate_level);
   Id const created(
       H5Dcreate2(handle_->file, dataset.c_str(), hdf5_type<Value>(), space, H5P_DEFAULT, properties, H5P_DEFAULT),
       H5Dclose);

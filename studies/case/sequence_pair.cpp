@@ -14,6 +14,10 @@
 namespace gladstone {
 namespace {
 
+/// Value of medium.field.file if the file of the pair cannot be determined: it exists, so that the problem of
+/// [sequence] is not followed by another one.
+constexpr char const* stand_in = "/";
+
 /// Returns the number of the selected pair, from 1; nullopt if the key `pair` is invalid, which its reader reports.
 std::optional<std::size_t> selected_pair(SetupNode const& sequence) {
   SetupNode const* const pair = sequence.find("pair");
@@ -79,15 +83,15 @@ void select_pair(SetupDocument& setup) {
   SetupNode const* const given = setup.find({"sequence", "files"});
   SetupNode const* const experiment = setup.find({"experiment"});
   if (!given || (experiment && experiment->text != "bos") || !has_field_of_file(setup)) return;
-  if (setup.find({"medium", "field", "file"})) {
+  if (SetupNode const* const file = setup.find({"medium", "field", "file"})) {
+    if (file->text == stand_in) return;  // an earlier call has reported the problem
     setup.root()
         .table("sequence")
         .problem("files", "conflicts with medium.field.file (both name the density files); remove medium.field.file");
     return;
   }
   std::optional<std::string> const selected = selected_field(setup);
-  // An existing stand-in avoids a second problem about medium.field.file.
-  SetupNode file = setup_text(selected.value_or(std::filesystem::current_path().string()));
+  SetupNode file = setup_text(selected.value_or(stand_in));
   file.place = given->place;
   setup.set({"medium", "field", "file"}, file);
   if (!selected) return;

@@ -172,6 +172,23 @@ TEST_F(RenderedSequences, ContinueAfterAKill) {
     expect_same_pixels(fmt::format("out/frames/frame_{:04}.tif", k), fmt::format("whole/frames/frame_{:04}.tif", k));
 }
 
+// A changed frame does not belong to the truth of its pair: the pair is rendered again. A changed file among the frames
+// is replaced by the image of its pair.
+TEST_F(RenderedSequences, RestoreChangedFrames) {
+  write("setup.toml", piv_sequence);
+  render("whole");
+  render("out");
+  Image<std::uint16_t> const grey(96, 96, 7);
+  write_tiff(in("out/pair_0001/flow.tif").string(), grey, {});
+  EXPECT_THAT(succeed({"render", "setup.toml", "-o", "out"}), HasSubstr("3 pairs (2 by an earlier run)"));
+  write_tiff(in("out/frames/frame_0001.tif").string(), grey, {});
+  write("out/pair_0002/truth.h5", "damaged");
+  EXPECT_THAT(succeed({"render", "setup.toml", "-o", "out"}), HasSubstr("3 pairs (2 by an earlier run)"));
+  for (int k = 0; k < 4; ++k)
+    expect_same_pixels(fmt::format("out/frames/frame_{:04}.tif", k), fmt::format("whole/frames/frame_{:04}.tif", k));
+  expect_same_pixels("out/pair_0001/flow.tif", "whole/pair_0001/flow.tif");
+}
+
 // BOS: one reference, and a frame for each density file in natural order. The displacements are proportional to the
 // gradients 25, 50 and 75 kg/m^4.
 TEST_F(RenderedSequences, OfBosHaveOneReference) {
@@ -204,6 +221,23 @@ TEST_F(RenderedSequences, OfBosRequireFilesOfOneSize) {
   expect_refused({"render", "setup.toml", "-o", "out"}, 2, {place, "file not found", "rho_7.nrrd"});
   write("setup.toml", with(bos_sequence(), "rho_*.nrrd", "density_*.nrrd"));
   expect_refused({"render", "setup.toml", "-o", "out"}, 2, {place, "density_*.nrrd", "matches no file"});
+}
+
+// One mistake in [sequence] is one problem: medium.field.file, which follows from it, is not reported as missing.
+TEST_F(RenderedSequences, OfBosReportAMistakeOnce) {
+  write_fields();
+  std::vector<std::string> const texts{
+      with(bos_sequence(), "[\"rho_*.nrrd\"]", "[]"), with(bos_sequence(), "[\"rho_*.nrrd\"]", "[\"none_*.nrrd\"]"),
+      with(bos_sequence(), "[\"rho_*.nrrd\"]", "[\"rho_8.nrrd\", \"rho_7.nrrd\"]\npair = 2"),
+      with(bos_sequence(), "[\"rho_*.nrrd\"]", "[\"rho_*.nrrd\"]\npair = 4"),
+      with(bos_sequence(), "[\"rho_*.nrrd\"]", "[\"rho_*.nrrd\"]\npair = 0")};
+  for (std::string const& text : texts) {
+    write("setup.toml", text);
+    Outcome const outcome = gladstone({"render", "setup.toml", "-o", "out", "--json"});
+    EXPECT_EQ(outcome.exit_code, 2) << text;
+    EXPECT_THAT(outcome.err, HasSubstr("sequence.")) << text;
+    EXPECT_THAT(outcome.err, testing::Not(HasSubstr("medium.field.file"))) << text;
+  }
 }
 
 TEST_F(RenderedSequences, OfPivReportWrongKeys) {

@@ -1,6 +1,10 @@
 // Sequences of image pairs: gladstone correlate 'A_*.tif' 'B_*.tif' -o DIR/.
 #include <fmt/format.h>
+#include <sched.h>
+#include <sys/mount.h>
+#include <sys/wait.h>
 #include <tiffio.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <cstdint>
@@ -275,6 +279,40 @@ TEST_F(Sequences, EndOnInterrupt) {
   EXPECT_EQ(outcome.exit_code, 130);
   EXPECT_THAT(outcome.err, HasSubstr("1 of 3 pairs are done"));
   EXPECT_EQ(json_of(command)["resumed"], 1);
+}
+
+// On a full disk the run ends with the file that could not be written. Once there is room, the same command continues
+// with the pairs that are missing.
+TEST_F(Sequences, ContinueAfterAFullDisk) {
+  write_pairs({{1.5, 0.5}, {-0.75, 1}, {1, 1}, {0.5, 0}});
+  succeed(arguments({"A_*.tif", "B_*.tif"}, "whole/"));
+  auto const bytes = static_cast<std::size_t>(std::filesystem::file_size(in("whole/A_8.h5")));
+  pid_t const child = ::fork();
+  if (child == 0) {
+    std::filesystem::create_directory(in("disk"));
+    bool const mounted = ::unshare(CLONE_NEWNS) == 0 &&
+                         ::mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) == 0 &&
+                         ::mount("none", in("disk").c_str(), "tmpfs", 0, "size=4m") == 0;
+    if (!mounted) ::_exit(77);
+    std::error_code error;
+    // Room for two files of vectors, twice sequence.json (as it is replaced) and a part of the third file.
+    write("disk/filler",
+          std::string(std::filesystem::space(in("disk"), error).available - 2 * bytes - bytes / 2 - 32768, 'x'));
+    std::filesystem::create_directory(in("disk/out"));
+    auto const command = arguments({"A_*.tif", "B_*.tif"}, "disk/out/", {"--threads", "1"});
+    Outcome const full = gladstone(command);
+    write("full", full.err);
+    std::filesystem::remove(in("disk/filler"));
+    write("again", succeed(command));
+    ::_exit(full.exit_code == 2 ? 0 : 1);
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  ASSERT_TRUE(WIFEXITED(status));
+  if (WEXITSTATUS(status) == 77) GTEST_SKIP() << "no mount namespace here";
+  EXPECT_EQ(WEXITSTATUS(status), 0);
+  EXPECT_THAT(read("full"), AllOf(HasSubstr("disk/out/A_"), HasSubstr("No space left on device")));
+  EXPECT_THAT(read("again"), testing::ContainsRegex(R"(4 of 4 pairs correlated \([1-3] by an earlier run\))"));
 }
 
 // Statistics of the stored vectors, computed here by their definitions; and their truth: uniform shifts, whose mean and

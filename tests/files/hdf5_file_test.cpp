@@ -174,6 +174,35 @@ TEST_F(Hdf5, WhatAHeaderPromisesIsHeldAgainstTheFile) {
   }
 }
 
+// Datasets of more than 64 KiB are compressed in chunks of at most 1 MiB, whose last ones exceed the dataset along the
+// divided axis: 200001 values in chunks of 100001; 301 rows of 4 kB in chunks of 151; 3 x 5 planes of 1.4 MB in chunks of half a
+// plane.
+TEST_F(Hdf5, ChunksAreReadBack) {
+  std::string const path = in_folder("chunks.h5");
+  std::vector<std::vector<std::size_t>> const shapes{{8193}, {200001}, {301, 512}, {3, 5, 425, 425}, {2, 1, 131073}};
+  Hdf5Writer writer(path, origin());
+  for (std::size_t k = 0; k < shapes.size(); ++k) {
+    std::size_t count = 1;
+    for (std::size_t const size : shapes[k]) count *= size;
+    std::vector<double> values = ramp(count);
+    std::vector<std::int64_t> integers(count);
+    for (std::size_t i = 0; i < count; ++i) integers[i] = static_cast<std::int64_t>(i * i);
+    writer.write("/numbers_" + std::to_string(k), values, shapes[k], "1", "numbers", "");
+    writer.write("/integers_" + std::to_string(k), integers, shapes[k], "1", "integers", "");
+  }
+  writer.close();
+  Hdf5Reader const reader(path);
+  for (std::size_t k = 0; k < shapes.size(); ++k) {
+    EXPECT_EQ(reader.shape("/numbers_" + std::to_string(k)), shapes[k]);
+    std::vector<double> const values = reader.read("/numbers_" + std::to_string(k));
+    EXPECT_TRUE(values == ramp(values.size())) << k;
+    std::vector<std::int64_t> const integers = reader.read_integers("/integers_" + std::to_string(k));
+    std::size_t wrong = integers.size() == values.size() ? 0 : 1;
+    for (std::size_t i = 0; i < integers.size(); ++i) wrong += integers[i] != static_cast<std::int64_t>(i * i);
+    EXPECT_EQ(wrong, 0u) << k;
+  }
+}
+
 // Zeros are compressed to less than a thousandth of their size; 160 MB of them must still be read.
 TEST_F(Hdf5, WhatCompressesWellIsNoDamage) {
   std::string const path = in_folder("zeros.h5");
