@@ -124,7 +124,7 @@ def draw(table, path):
                 axes[1].bar(at, 100 * table[case][way]["coverage"][k], width, **style)
     axes[0].set_yscale("log")
     axes[0].set_ylabel("rms error [px]")
-    axes[0].legend(ncols=3, fontsize=8)
+    figure.legend(*axes[0].get_legend_handles_labels(), loc="outside upper center", ncols=3, fontsize=8)
     axes[1].axhline(68.3, color="black", linewidth=1)
     axes[1].set_ylim(0, 100)
     axes[1].set_ylabel("errors within one sigma [%]")

@@ -2,10 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <utility>
 #include <vector>
+
+#include "tests/analysis/stereo/inclined_camera.h"
 
 namespace gladstone::stereo {
 namespace {
@@ -53,6 +56,47 @@ TEST(ResidualValidation, EstimatesTheUncertaintyOfVectorsWithoutIt) {
   EXPECT_EQ(accepted(reject_large_residuals(noisy, 4.0)), (std::vector{true, true, true, true, true, false}));
   StereoField const clean = field_of({{1e-3, nan}, {1e-3, nan}, {1e-3, nan}, {0.39, nan}, {0.41, nan}});
   EXPECT_EQ(accepted(reject_large_residuals(clean, 4.0)), (std::vector{true, true, true, true, false}));
+}
+
+/// Vectors of particles at rest on 21 x 21 nodes 16 px apart, with a standard uncertainty of 0.1 px.
+DisplacementField vectors_at_rest() {
+  DisplacementField field;
+  field.columns = field.rows = 21;
+  for (int j = -10; j <= 10; ++j)
+    for (int i = -10; i <= 10; ++i) field.position_px.push_back({256.0 + 16 * i, 256.0 + 16 * j});
+  field.displacement_px.assign(field.size(), {});
+  field.sigma_px.assign(field.size(), {0.1, 0.1});
+  return field;
+}
+
+/// Vectors of two cameras at 45 degrees, that of the first in the middle of the image wrong by this displacement [px].
+StereoField measure_with_outlier(Vec2d outlier_px) {
+  DisplacementField a = vectors_at_rest();
+  DisplacementField const b = a;
+  a.displacement_px[a.size() / 2] = outlier_px;
+  return reject_large_residuals(
+      reconstruct({inclined_camera(-45), {}}, a, {inclined_camera(45), {}}, b, {}, {.spacing = 2e-3}), 4.0);
+}
+
+// A wrong v of one camera leaves a residual of 3 px / sqrt(2), 21 standard uncertainties. Interpolation spreads it over
+// two distances of the vectors, 3.2 mm along Y and 4.5 mm along X: 5.6 mm at most. A wrong u changes w, but leaves no
+// residual.
+TEST(ResidualValidation, RejectsNodesNextToAnOutlierOfV) {
+  StereoField const wrong_v = measure_with_outlier({0, 3}), wrong_u = measure_with_outlier({3, 0});
+  EXPECT_EQ(count_rejected(wrong_u), 0u);
+  std::size_t far = 0;
+  for (std::size_t i = 0; i < wrong_v.nodes.size(); ++i) {
+    if (!wrong_v.nodes[i]) continue;
+    double const distance = length(wrong_v.grid.position(i));
+    if (distance < 1e-9) {
+      EXPECT_EQ(wrong_v.nodes[i]->status, VectorStatus::invalid);
+      EXPECT_GT(std::abs(wrong_u.nodes[i]->displacement.z), 1e-4) << "above 1 px";
+    }
+    if (distance < 6e-3) continue;
+    ++far;
+    EXPECT_EQ(wrong_v.nodes[i]->status, VectorStatus::valid);
+  }
+  EXPECT_GT(far, 50u);
 }
 
 }  // namespace
