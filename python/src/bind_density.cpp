@@ -87,7 +87,7 @@ void bind_density(nb::module_& module) {
       nb::arg("place"), nb::arg("vectors"), nb::arg("conventions").none(), nb::arg("reference"),
       nb::arg("reference_density").none(), nb::arg("reference_sigma"), nb::arg("scale_uncertainty"),
       nb::arg("weighted"), nb::arg("overlap").none(), nb::arg("deconvolve").none(), nb::arg("axis").none(),
-      nb::arg("regularized"), nb::arg("lambda").none(), nb::arg("samples"), nb::arg("budget"), nb::arg("device"),
+      nb::arg("regularized"), nb::arg("lambda_").none(), nb::arg("samples"), nb::arg("budget"), nb::arg("device"),
       nb::arg("progress").none());
 }
 

@@ -1,5 +1,6 @@
 """The code of docs/python.md, run as it is written there."""
 
+import ast
 import pathlib
 import re
 import shutil
@@ -50,6 +51,12 @@ def test_code_of_the_page_runs(bos, tmp_path, monkeypatch):
     assert names["data"]["u"].dims == ("y", "x", "t")
     assert {row["estimator"] for row in names["scores"]} == {"default", "mine"}
     assert len(names["table"]) == 9
+
+
+def test_type_stub_of_the_compiled_part_is_valid():
+    stub = pathlib.Path(gs.__file__).with_name("_core.pyi")
+    functions = {node.name for node in ast.parse(stub.read_text()).body if isinstance(node, ast.FunctionDef)}
+    assert {"render", "correlate", "reconstruct"} <= functions
 
 
 def test_every_public_name_has_a_docstring():

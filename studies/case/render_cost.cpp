@@ -9,6 +9,7 @@
 #include "render/focused_dots/table_error.h"
 #include "render/method.h"
 #include "render/planning.h"
+#include "render/rays/ray_requirement.h"
 #include "render/scene/build_camera.h"
 #include "render/scene/calibration_planes.h"
 #include "render/scene/ray_budget.h"
@@ -48,9 +49,25 @@ double lit_particles(Setup const& setup) {
   return expected_particles(setup).per_pixel * setup.camera.columns * setup.camera.rows;
 }
 
+/// Estimates the number of rays that "auto" chooses for most particles, without aberrations and refraction: that of
+/// cubature_rule_suffices() for the brightest particle at the edge of the laser sheet, at least the second rule.
+/// @param largest  largest number that may be chosen
+double expected_rays(Setup const& setup, double largest) {
+  constexpr double second_rule = 16, exposure = 0.9;  // level of the brightest pixel, relative to full scale
+  if (setup.lenslets) return largest;
+  ExpectedParticles const images = expected_particles(setup);
+  double const spot2 = images.diffraction_px * images.diffraction_px;
+  double const blur2 = images.sheet_edge_diameter_px * images.sheet_edge_diameter_px - spot2;
+  double const allowed = image_tolerance_levels / (exposure * std::exp2(setup.camera.bit_depth));
+  double n = second_rule;
+  while (n < largest && !cubature_rule_suffices(n, std::max(blur2, 0.0) / spot2, allowed)) n *= 4;
+  return std::min(n, largest);
+}
+
 }  // namespace
 
-double RenderCost::seconds() const { return processor_seconds / thread_count(); }
+double RenderCost::seconds() const { return expected_seconds / thread_count(); }
+double RenderCost::longest_seconds() const { return processor_seconds / thread_count(); }
 
 double RenderCost::bytes() const {
   double sum = 0;
@@ -76,17 +93,19 @@ RenderCost estimate_render_cost(Setup const& setup) {
   cost.rays_are_largest = !setup.render.rays_per_dot && !by_table && !chief;
   std::uint64_t const automatic = chief ? 1 : by_table ? initial_table_rays : max_rays_per_source(scene);
   scene.rays_per_dot = setup.render.rays_per_dot.value_or(automatic);
-  cost.rays_per_source = static_cast<double>(scene.rays_per_dot);
+  cost.rays_per_source = cost.expected_rays = static_cast<double>(scene.rays_per_dot);
   RayBudget plan;
   plan.rays = scene.rays_per_dot;
   if (setup.piv) {
     double const media = scene.second_medium ? 2 : 1;
     cost.processor_seconds = media * cost.sources * cost.rays_per_source * ray_seconds(scene);
+    if (cost.rays_are_largest) cost.expected_rays = expected_rays(setup, cost.rays_per_source);
   } else if (by_table && !focused_dots(scene)) {  // refused by render, with the reason
     cost.processor_seconds = not_measured;
   } else {
     cost.processor_seconds = images * render_seconds(scene, plan, planes ? RenderTheory::no : RenderTheory::yes);
   }
+  cost.expected_seconds = cost.processor_seconds * cost.expected_rays / cost.rays_per_source;
   return cost;
 }
 

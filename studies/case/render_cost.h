@@ -13,16 +13,20 @@ struct RenderCost {
   double sources = 0;             ///< number of dots (of all planes) or particles in the sheet; NaN: unknown
   double rays_per_source = 0;     ///< configured, or the largest number that "auto" may choose
   bool rays_are_largest = false;  ///< the number of rays is an upper limit
+  double expected_rays = 0;       ///< of PIV with "auto": number that most particles require; otherwise rays_per_source
   double processor_seconds = 0;   ///< time on one core of the processor of docs/benchmarks.md [s]; NaN: unknown
+  double expected_seconds = 0;    ///< the same for the expected number of rays
   std::vector<MemoryRequirement> memory;
 
-  double seconds() const;  ///< wall time on the threads of this process, without preparation [s]
-  double bytes() const;    ///< sum of `memory` [bytes]
+  double seconds() const;          ///< expected wall time on the threads of this process, without preparation [s]
+  double longest_seconds() const;  ///< the same for the largest number of rays [s]
+  double bytes() const;            ///< sum of `memory` [bytes]
 };
 
 /// Estimates the cost. The time is that of render_seconds() for the coarsest integration step and the rays of the
-/// setup; for "auto", the largest number of rays that may be chosen (focused_dots: the smallest). The field of a file
-/// is replaced by a medium of the same depth, length scale and number of steps, which are read from the file's header.
+/// setup; for "auto", the largest number of rays that may be chosen (focused_dots: the smallest), and for PIV also the
+/// number that the blur of the particle images at the edge of the laser sheet requires. The field of a file is replaced
+/// by a medium of the same depth, length scale and number of steps, which are read from the file's header.
 /// @throws DataError if a file cannot be read
 RenderCost estimate_render_cost(Setup const& setup);
 

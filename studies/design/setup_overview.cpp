@@ -182,14 +182,17 @@ std::string cost_text(RenderCost const& cost) {
   }
   std::string text = "render\n";
   std::string const rays =
-      cost.method == RenderMethod::formula
-          ? "no rays"
+      cost.method == RenderMethod::formula ? "no rays"
+      : cost.expected_rays < cost.rays_per_source
+          ? fmt::format("about {:.6g} rays per source, up to {:.6g}", cost.expected_rays, cost.rays_per_source)
           : fmt::format("{}{:.6g} rays per source", cost.rays_are_largest ? "up to " : "", cost.rays_per_source);
   text += fmt::format("  {:<50}{}, {}\n", "method", to_string(cost.method), rays);
   if (std::isfinite(cost.processor_seconds)) {
     std::string const threads = thread_count() == 1 ? "1 thread" : fmt::format("{} threads", thread_count());
-    text += fmt::format("  {:<50}{}{} s on {} of a CPU, without the choice of step and rays\n", "time",
-                        cost.rays_are_largest ? "up to " : "about ", time_text(cost.seconds()), threads);
+    bool const expected = cost.expected_rays < cost.rays_per_source;
+    text += fmt::format("  {:<50}{}{} s{} on {} of a CPU, without the choice of step and rays\n", "time",
+                        cost.rays_are_largest && !expected ? "up to " : "about ", time_text(cost.seconds()),
+                        expected ? ", up to " + time_text(cost.longest_seconds()) + " s" : "", threads);
   } else {
     text += fmt::format("  {:<50}unknown\n", "time");
   }
@@ -203,9 +206,11 @@ nlohmann::ordered_json cost_json(RenderCost const& cost) {
           {"sources", number_or_null(cost.sources)},
           {"rays_per_source", cost.rays_per_source},
           {"rays_are_largest", cost.rays_are_largest},
-          {"processor_seconds", number_or_null(cost.processor_seconds)},
+          {"expected_rays", cost.expected_rays},
+          {"processor_seconds", number_or_null(cost.expected_seconds)},
           {"threads", thread_count()},
           {"seconds", number_or_null(cost.seconds())},
+          {"longest_seconds", number_or_null(cost.longest_seconds())},
           {"memory_bytes", cost.bytes()},
           {"memory", memory}};
 }

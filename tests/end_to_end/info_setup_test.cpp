@@ -52,6 +52,31 @@ TEST_F(InfoSetup, EstimatesTheCostOfRendering) {
   EXPECT_LE(more, 4 * once * (1 + 1e-9));
 }
 
+// "auto" chooses the rays of particles by the blur of their images: at f/22 in a sheet of 1 mm no particle requires
+// more than the 16 of the second rule; at f/2.8 in a sheet of 4 mm, with eight times the aperture and four times the
+// distance from focus, all of them do.
+TEST_F(InfoSetup, ExpectsTheRaysOfPivByTheirBlur) {
+  succeed({"init", "piv", "-o", "piv.toml"});
+  std::string const small = with(read("piv.toml"), "pixels = [256, 256]", "pixels = [64, 64]");
+  write("sharp.toml", small);
+  write("blurred.toml",
+        with(with(small, "f_number = 22.0", "f_number = 2.8"), "thickness_mm = 1.0", "thickness_mm = 4.0"));
+  for (auto const& [setup, sharp] : {std::pair{"sharp.toml", true}, {"blurred.toml", false}}) {
+    auto const cost = overview(setup)["render"];
+    double const expected = cost["expected_rays"];
+    EXPECT_EQ(expected == 16, sharp) << expected;
+    EXPECT_LT(expected, cost["rays_per_source"]);
+    double const share = expected / cost["rays_per_source"].get<double>();
+    EXPECT_NEAR(cost["seconds"], share * cost["longest_seconds"].get<double>(), 1e-9);
+    render("case", {}, setup);
+    std::vector<double> rays = Hdf5Reader(in("case/truth.h5").string()).read("/particles/rays_planned");
+    std::nth_element(rays.begin(), rays.begin() + static_cast<std::ptrdiff_t>(rays.size() / 2), rays.end());
+    double const median = rays[rays.size() / 2];
+    EXPECT_LE(median, expected) << setup;
+    EXPECT_GE(median, expected / 16) << setup << ": at most two rules fewer, for particles close to the focus";
+  }
+}
+
 TEST_F(InfoSetup, DescribesEveryTemplate) {
   for (std::string const kind : {"bos", "piv", "calibration"}) {
     succeed({"init", kind, "-o", kind + ".toml"});

@@ -35,6 +35,21 @@ TEST_F(SetupErrors, MisspeltTableNamesTheNearest) {
   refused("[lens]", "[lense]", "lense", {"unknown table [lense]", "did you mean [lens]?"});
 }
 
+// One problem instead of one for each key of the study.
+TEST_F(SetupErrors, StudyInPlaceOfASetupIsNamed) {
+  write("study.toml", "base = \"setup.toml\"\n\n[axes]\n\"lens.f_number\" = [8, 16]\n\n[study]\nrepeats = 2\n");
+  for (std::vector<std::string> const& command :
+       {std::vector<std::string>{"info", "setup", "study.toml"}, {"render", "study.toml", "-o", "case"}}) {
+    std::vector<std::string> words = command;
+    words.emplace_back("--json");
+    auto const errors = nlohmann::json::parse(gladstone(words).out)["errors"];
+    ASSERT_EQ(errors.size(), 1u) << errors;
+    EXPECT_EQ(errors[0]["key"], "axes");
+    EXPECT_EQ(errors[0]["line"], 3);
+    EXPECT_THAT(errors[0]["message"].get<std::string>(), testing::HasSubstr("gladstone sweep plan"));
+  }
+}
+
 TEST_F(SetupErrors, WrongTypeSaysWhatItIsAndWhatItMustBe) {
   refused("f_number = 11.0", "f_number = \"11\"", "f_number", {"must be a number (it is a text)", "without quotes"});
   refused("[64, 64]", "[64.5, 64]", "pixels", {"value 1, 64.5, must be a whole number"});
