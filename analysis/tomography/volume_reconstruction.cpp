@@ -136,10 +136,9 @@ class Sart {
 void require_common_part(VolumeReconstruction const& result) {
   auto const most = *std::max_element(result.views.begin(), result.views.end());
   if (most >= static_cast<std::int64_t>(least_views)) return;
-  throw DataError("tomography",
-                  fmt::format("no part of the volume is seen by more than {} views; check the poses of the cameras, "
-                              "medium.rotation_deg, and the bounds of the volume",
-                              most));
+  throw DataError("tomography", fmt::format("no part of the volume is seen by more than {} views; check the cameras, "
+                                            "--angles and --bounds",
+                                            most));
 }
 
 }  // namespace

@@ -2,9 +2,9 @@
 variation and of the SART of scikit-image on the same line integrals.
 
 Two volumes in a cube of 32 nodes: a Gaussian blob with a radius of a quarter of the half width, and a turbulent cube (200
-random waves with the -5/3 spectrum between 1.5 and 10 wavelengths of the window that tapers it to zero). Their line
-integrals are computed by scikit-image's own radon() slice by slice, in parallel views over 180 degrees, and get normal
-noise with the given fraction of the largest line integral. Both codes get these numbers.
+random waves with the -5/3 spectrum under a window that tapers them to zero). Their line integrals are computed from these
+formulae along parallel lines, in views over 180 degrees, and get normal noise with the given fraction of the largest one.
+Both codes get these numbers.
 
 scikit-image reconstructs slice by slice (iradon_sart): every number of iterations from 1 to 10 is tried, and the result
 with the smallest error against the truth is printed, which no user could choose. gladstone runs with its defaults, and
@@ -18,40 +18,54 @@ import argparse
 from importlib.metadata import version
 
 import numpy as np
-from skimage.transform import iradon_sart, radon
+from skimage.transform import iradon_sart
 
 import gladstone as gs
 
 
-def make_blob(nodes):
-    x = np.linspace(-1.0, 1.0, nodes)
-    z, y, x = np.meshgrid(x, x, x, indexing="ij")
+def blob(x, y, z):
     return np.exp(-(x**2 + y**2 + z**2) / 0.25**2)
 
 
-def make_turbulence(nodes):
+def draw_waves():
     random = np.random.default_rng(1)
-    x = np.linspace(-1.0, 1.0, nodes)
-    z, y, x = np.meshgrid(x, x, x, indexing="ij")
-    volume = np.zeros_like(x)
-    count = 0
-    while count < 200:
+    waves = []
+    while len(waves) < 200:
         wave = 4.0 * random.normal(size=3)
-        number = np.linalg.norm(wave)
-        if not 1.5 <= number <= 10.0:
-            continue
-        phase = random.uniform(0.0, 2.0 * np.pi)
-        # energy E(k) ~ k^-5/3 on shells of area k^2: amplitude k^(-5/6 - 1)
-        volume += number ** (-11.0 / 6.0) * np.cos(np.pi * (wave[0] * x + wave[1] * y + wave[2] * z) / 2.0 + phase)
-        count += 1
-    radius = np.maximum(np.hypot(x, z), np.abs(y))
-    taper = np.clip((0.95 - radius) / 0.45, 0.0, 1.0)
-    return volume * (0.5 - 0.5 * np.cos(np.pi * taper))
+        if 1.5 <= np.linalg.norm(wave) <= 10.0:
+            waves.append((wave, random.uniform(0.0, 2.0 * np.pi)))
+    return waves
 
 
-def project(volume, angles):
-    """Line integrals [view, y, across] in nodes."""
-    return np.stack([radon(volume[:, j, :], angles, circle=True).T for j in range(volume.shape[1])], axis=1)
+WAVES = draw_waves()
+
+
+def turbulence(x, y, z):
+    values = np.zeros(np.broadcast(x, y, z).shape)
+    for wave, phase in WAVES:  # energy E(k) ~ k^-5/3 on shells of area k^2: amplitude k^(-5/6 - 1)
+        amplitude = np.linalg.norm(wave) ** (-11.0 / 6.0)
+        values += amplitude * np.cos(np.pi * (wave[0] * x + wave[1] * y + wave[2] * z) / 2.0 + phase)
+    taper = np.clip((0.95 - np.maximum(np.hypot(x, z), np.abs(y))) / 0.45, 0.0, 1.0)
+    return values * (0.5 - 0.5 * np.cos(np.pi * taper))
+
+
+def sample(function, nodes):
+    """Values [z, y, x] at the nodes; the axis of rotation is at node nodes // 2."""
+    across, y = np.arange(nodes) - nodes // 2, np.arange(nodes) - 0.5 * (nodes - 1)
+    half = nodes / 2.0
+    return function(across[None, None, :] / half, y[None, :, None] / half, across[:, None, None] / half)
+
+
+def project(function, nodes, angles):
+    """Line integrals [view, y, across] in units of the spacing, by the midpoint rule with a quarter of it."""
+    step, half = 0.25, nodes / 2.0
+    along = (np.arange(round(nodes / step)) + 0.5) * step - half
+    across, y = (np.arange(nodes) - nodes // 2)[None, :, None], (np.arange(nodes) - 0.5 * (nodes - 1))[:, None, None]
+    views = []
+    for angle in np.deg2rad(angles):
+        x, z = np.cos(angle) * across + np.sin(angle) * along, -np.sin(angle) * across + np.cos(angle) * along
+        views.append(step * function(x / half, y / half, z / half).sum(axis=2))
+    return np.stack(views)
 
 
 def reconstruct_peer(data, angles, truth, inside):
@@ -66,12 +80,10 @@ def reconstruct_peer(data, angles, truth, inside):
 
 
 def reconstruct_ours(data, angles, nodes, tv_weight):
-    """The lines of radon(): through the middle of the image, which is node nodes // 2."""
     middle = nodes // 2
     across, y = np.arange(nodes) - middle, np.arange(nodes) - 0.5 * (nodes - 1)
     origin, direction = [], []
     for angle in np.deg2rad(angles):
-        # rows of the image are z downwards in radon()'s frame: its columns are x
         right, along = np.array([np.cos(angle), 0.0, -np.sin(angle)]), np.array([np.sin(angle), 0.0, np.cos(angle)])
         grid = across[None, :, None] * right + y[:, None, None] * np.array([0.0, 1.0, 0.0])
         origin.append(grid.reshape(-1, 3))
@@ -101,12 +113,12 @@ def main():
     inside = np.broadcast_to(circle[:, None, :], (nodes,) * 3)
     print(f"gladstone {gs.__version__}, scikit-image {version('scikit-image')}; {nodes}^3 nodes")
     print("volume      noise  views  gladstone  best (tv_weight)   scikit-image (iterations)")
-    for name, make in (("blob", make_blob), ("turbulence", make_turbulence)):
-        truth = np.where(inside, make(nodes), 0.0)
+    for name, function in (("blob", blob), ("turbulence", turbulence)):
+        truth = sample(function, nodes)
         for noise in map(float, arguments.noise.split(",")):
             for views in map(int, arguments.views.split(",")):
                 angles = 180.0 * np.arange(views) / views
-                data = project(truth, angles)
+                data = project(function, nodes, angles)
                 data += noise * np.abs(data).max() * np.random.default_rng(7).normal(size=data.shape)
                 ours = {weight: relative_error(reconstruct_ours(data, angles, nodes, weight), truth, inside)
                         for weight in (0.0, 0.002, 0.01, 0.03)}
