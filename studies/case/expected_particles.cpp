@@ -110,10 +110,10 @@ double smallest_visible(Scene const& scene, Vec3d place, double electrons_per_ph
 /// @param diameter  of the particle [m]
 /// @param distance  from the lens to the sheet, along the camera's axis [m]
 /// @param beyond    distance of the particle behind the sheet [m]
-ParticleImage image_of(Setup const& setup, double diameter, double distance, double beyond) {
+ExpectedParticleImage image_of(Setup const& setup, double diameter, double distance, double beyond) {
   ImagingGeometry const imaging = setup.imaging();
   double const pitch = setup.camera.pixel_pitch, focus = setup.focus_distance();
-  ParticleImage image;
+  ExpectedParticleImage image;
   image.distance = distance;
   image.magnification = imaging.magnification * setup.z_b() / distance;
   image.geometric_px = image.magnification * diameter / pitch;
@@ -133,9 +133,9 @@ double distance_of_sheet(Setup const& setup) {
 
 }  // namespace
 
-double ParticleImage::diameter_px() const { return std::hypot(geometric_px, diffraction_px, blur_px); }
+double ExpectedParticleImage::diameter_px() const { return std::hypot(geometric_px, diffraction_px, blur_px); }
 
-ParticleImage particle_image(Setup const& setup) {
+ExpectedParticleImage particle_image(Setup const& setup) {
   ParticleSetup const& particles = setup.piv->particles;
   double const median = spread_of(draw_diameters(particles.diameter, particles.seed, drawn)).median;
   return image_of(setup, median, distance_of_sheet(setup), 0);

@@ -33,7 +33,7 @@ struct ExpectedParticles {
 };
 
 /// Image of the median particle in the middle of the sheet, where the camera's axis meets it.
-struct ParticleImage {
+struct ExpectedParticleImage {
   double distance = 0;        ///< distance from the front principal plane, along the camera's axis [m]
   double magnification = 0;   ///< magnification at this distance [1]
   double geometric_px = 0;    ///< diameter of the geometric image [px]
@@ -44,7 +44,7 @@ struct ParticleImage {
 };
 /// @pre setup.piv
 /// @throws DataError for an invalid file of diameters
-ParticleImage particle_image(Setup const& setup);
+ExpectedParticleImage particle_image(Setup const& setup);
 
 /// Computes the expected particle images.
 /// - Diameter d^2 = (M d_p)^2 + d_diff^2 + d_blur^2 in e^-2 diameters, with d_diff = 1.682 N (1 + M) lambda for the

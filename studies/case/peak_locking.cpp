@@ -75,7 +75,7 @@ double ImageDiameters::f_number_factor(double diameter_px) const {
 
 ImageDiameters expected_images(Setup const& setup) {
   if (!setup.piv) return {setup.geometric_dot_px(), setup.spot_e2_diameter_px(), setup.defocus_diameter_px()};
-  ParticleImage const image = particle_image(setup);
+  ExpectedParticleImage const image = particle_image(setup);
   return {image.geometric_px, image.diffraction_px, image.blur_px};
 }
 
