@@ -56,7 +56,7 @@ std::vector<std::string> names_of(std::vector<ArgumentDescription> const& option
 std::string case_patterns(CommandDescription const& command, std::vector<std::string> const& names) {
   std::vector<std::string> patterns;
   for (std::string const& name : names)
-    patterns.push_back((command.path.empty() ? "*" : "") + quoted(command.path + ' ' + name));
+    patterns.push_back(fmt::format("{}{}", command.path.empty() ? "*" : "", quoted(command.path + ' ' + name)));
   return fmt::format("{}", fmt::join(patterns, "|"));
 }
 
