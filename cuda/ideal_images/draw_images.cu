@@ -65,21 +65,28 @@ __device__ void load_images(Chunk& held, DeviceParticleImages const& images, Gau
   }
 }
 
-/// Computes the integrals of the PSF up to pixel edges. @param edges  number of edges per image and axis
+/// Computes the integrals of the PSF up to pixel edges. A group of 16 or 32 threads takes one axis of one image.
+/// @param edges  number of edges per image and axis
 __device__ void integrate_edges(Chunk& held, GaussianSpot<double> const& shape, int count, int edges,
                                 int const (&corner)[2]) {
-  for (int item = threadIdx.x; item < 2 * count * edges; item += threads) {
-    int const axis = item / (count * edges), i = item / edges % count, k = item % edges;
-    int const edge = held.edge[axis][i] + k, pixel = held.first[axis][i] + edge - corner[axis];
-    if (pixel < 0 || pixel > tile_size) continue;  // not an edge of a pixel in the tile
-    held.integral[axis][i][k] = shape.edge_integral(held.at[axis][i], held.first[axis][i], edge);
+  int const group = edges <= warp / 2 ? warp / 2 : warp;
+  int const member = static_cast<int>(threadIdx.x) & (group - 1);
+  for (int item = static_cast<int>(threadIdx.x) / group; item < 2 * count; item += threads / group) {
+    int const axis = item & 1, i = item >> 1;
+    for (int k = member; k < edges; k += group) {
+      int const edge = held.edge[axis][i] + k, pixel = held.first[axis][i] + edge - corner[axis];
+      if (pixel < 0 || pixel > tile_size) continue;  // not an edge of a pixel in the tile
+      held.integral[axis][i][k] = shape.edge_integral(held.at[axis][i], held.first[axis][i], edge);
+    }
   }
 }
 
-/// Computes the fractions of light in the columns and rows of the tile, and which warps have some.
+/// Computes the fractions of light in the columns and rows of the tile, and which warps have some. A warp takes one
+/// axis of one image.
 __device__ void find_shares(Chunk& held, int count, int edges, int width, int const (&corner)[2]) {
-  for (int item = threadIdx.x; item < 2 * count * tile_size; item += threads) {
-    int const axis = item / (count * tile_size), i = item / tile_size % count, pixel = item % tile_size;
+  int const pixel = static_cast<int>(threadIdx.x) % tile_size;
+  for (int item = static_cast<int>(threadIdx.x) / tile_size; item < 2 * count; item += threads / tile_size) {
+    int const axis = item & 1, i = item >> 1;
     int const within = corner[axis] + pixel - held.first[axis][i], k = within - held.edge[axis][i];
     double share = 0;
     if (within >= 0 && within < width && k >= 0 && k + 1 < edges) {

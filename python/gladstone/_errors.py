@@ -40,7 +40,7 @@ class Problem(NamedTuple):
     """Description of the problem, with its remedy."""
     code: str
     """Kind of the problem: "invalid_value", "unknown_key", "missing_key", "wrong_type", "out_of_range",
-    "unknown_choice", "syntax" or "unreadable_file"."""
+    "unknown_choice", "syntax", "unreadable_file" or "memory"."""
 
     def __str__(self) -> str:
         place = f"replace({self.key!r})" if self.file is None else self.file

@@ -37,6 +37,8 @@ std::string problem_code_name(ProblemCode code) {
       return "unknown_choice";
     case ProblemCode::syntax:
       return "syntax";
+    case ProblemCode::memory:
+      return "memory";
     case ProblemCode::unreadable_file:
       return "unreadable_file";
   }
@@ -47,6 +49,10 @@ SetupError::SetupError(std::vector<SetupProblem> problems, std::size_t more)
     : Error(joined(problems, more)), problems_(std::move(problems)), more_(more) {}
 
 bool is_out_of_memory(std::exception const& error) {
+  if (auto const* const setup = dynamic_cast<SetupError const*>(&error)) {
+    return std::any_of(setup->problems().begin(), setup->problems().end(),
+                       [](SetupProblem const& problem) { return problem.code == ProblemCode::memory; });
+  }
   return dynamic_cast<std::bad_alloc const*>(&error) || dynamic_cast<std::length_error const*>(&error) ||
          dynamic_cast<MemoryError const*>(&error) || dynamic_cast<DeviceMemoryError const*>(&error) ||
          std::string_view(error.what()).find("(-4:Insufficient memory)") != std::string_view::npos;

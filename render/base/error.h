@@ -17,6 +17,7 @@ enum class ProblemCode {
   unknown_choice,   ///< a word that is not one of the choices
   syntax,           ///< a file or an assignment that is not TOML
   unreadable_file,  ///< a setup file that is missing or cannot be read
+  memory,           ///< a value for which the available memory does not suffice
 };
 
 /// Returns the name of a code: "out_of_range".
@@ -110,7 +111,8 @@ class Interrupted : public Error {
 };
 
 /// Returns true if an error means that memory is exhausted: std::bad_alloc, std::length_error (a size refused before
-/// its allocation), MemoryError, DeviceMemoryError, or an OpenCV error of code -4.
+/// its allocation), MemoryError, DeviceMemoryError, a SetupError with a problem of code `memory`, or an OpenCV error of
+/// code -4.
 bool is_out_of_memory(std::exception const& error);
 
 /// Returns the text that is shown to the user for an error. The text of an Error is returned as it is; errors of

