@@ -21,10 +21,9 @@ struct Room {
 Names const render = {"render/base",   "render/setup",  "render/files",  "render/light",
                       "render/medium", "render/optics", "render/sensor", "render/scene"};
 Names const renderers = {"render/rays", "render/focused_dots", "render/ideal_images"};
-Names const analysis = {"analysis/vectors",     "analysis/correlation", "analysis/errors",
-                        "analysis/calibration", "analysis/uncertainty", "analysis/preparation",
-                        "analysis/tracking",    "analysis/density",     "analysis/stereo",
-                        "analysis/tomography"};
+Names const analysis = {"analysis/vectors",     "analysis/correlation", "analysis/errors",   "analysis/calibration",
+                        "analysis/uncertainty", "analysis/preparation", "analysis/tracking", "analysis/density",
+                        "analysis/stereo",      "analysis/tomography"};
 Names const cuda = {"cuda/device", "cuda/rays", "cuda/focused_dots", "cuda/ideal_images", "cuda/correlation"};
 
 Names const studies = {"studies/case",   "studies/compare",   "studies/sweep",   "studies/design",  "studies/figures",

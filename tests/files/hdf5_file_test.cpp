@@ -175,8 +175,8 @@ TEST_F(Hdf5, WhatAHeaderPromisesIsHeldAgainstTheFile) {
 }
 
 // Datasets of more than 64 KiB are compressed in chunks of at most 1 MiB, whose last ones exceed the dataset along the
-// divided axis: 200001 values in chunks of 100001; 301 rows of 4 kB in chunks of 151; 3 x 5 planes of 1.4 MB in chunks of half a
-// plane.
+// divided axis: 200001 values in chunks of 100001; 301 rows of 4 kB in chunks of 151; 3 x 5 planes of 1.4 MB in chunks
+// of half a plane.
 TEST_F(Hdf5, ChunksAreReadBack) {
   std::string const path = in_folder("chunks.h5");
   std::vector<std::vector<std::size_t>> const shapes{{8193}, {200001}, {301, 512}, {3, 5, 425, 425}, {2, 1, 131073}};
