@@ -19,7 +19,7 @@ constexpr int nodes = 21;
 
 SartSettings quick_settings() {
   SartSettings settings;
-  settings.iterations = 10;
+  settings.iterations = 30;
   return settings;
 }
 
@@ -125,7 +125,7 @@ TEST(VolumeReconstruction, StrengthOfTheTotalVariationFollowsTheNoise) {
         compute_relative_error(reconstruct_volume(views, make_cube(nodes, width), settings).value, truth);
     EXPECT_LT(error[step], 0.5 * unsmoothed);
   }
-  EXPECT_LT(weight[0], 0.25 * weight[1]);  // interpolation error: 1.6 % of the blob, but smooth
+  EXPECT_LT(weight[0], 0.5 * weight[1]);  // interpolation error: 1.6 % of the blob, but smooth
   EXPECT_LT(weight[1], weight[2]);
   EXPECT_LT(error[0], error[1]);
   EXPECT_LT(error[1], error[2]);
@@ -135,9 +135,9 @@ TEST(VolumeReconstruction, EndsWhenTheVolumeNoLongerChanges) {
   SartSettings settings = quick_settings();
   settings.tolerance = 0.05;
   std::size_t const sweeps = reconstruct_blob(6, {}, settings).residual.size();
-  EXPECT_LT(sweeps, 10u);
+  EXPECT_LT(sweeps, 30u);
   settings.tolerance = 0.0;
-  EXPECT_EQ(reconstruct_blob(6, {}, settings).residual.size(), 10u);
+  EXPECT_EQ(reconstruct_blob(6, {}, settings).residual.size(), 30u);
 }
 
 TEST(VolumeReconstruction, LinesBesideTheVolumeAreReported) {
