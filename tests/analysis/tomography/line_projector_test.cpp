@@ -158,8 +158,8 @@ TEST(LineProjector, GatheringAtANodeEqualsTheBackProjection) {
         for (std::size_t line = 0; line < lines.size(); ++line)
           visit_node(shape, lines[line], LineSamples::of(shape, lines[line]), at,
                      [&](double weight) { gathered.add(weight, values[line]); });
-        // The same products in the same order, up to the rounding of fused operations: fewer than 40 contributions, each
-        // with 1e-16 of the sum
+        // The same products in the same order, up to the rounding of fused operations: fewer than 40 contributions,
+        // each with 1e-16 of the sum
         ASSERT_NEAR(gathered.value, scattered[node].value, 5e-15 * scattered[node].weight) << node;
         ASSERT_NEAR(gathered.weight, scattered[node].weight, 5e-15 * scattered[node].weight) << node;
         seen += gathered.weight > 0.0 ? 1 : 0;
