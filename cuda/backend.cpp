@@ -12,6 +12,7 @@
 #include "cuda/ideal_images/cuda_image_drawer.h"
 #include "cuda/ideal_images/cuda_pair_batches.h"
 #include "cuda/rays/cuda_rays_renderer.h"
+#include "cuda/tomography/cuda_volume.h"
 
 namespace gladstone::cuda {
 namespace {
@@ -81,6 +82,11 @@ std::unique_ptr<Correlator> make_correlator(CorrelationSettings const& settings)
     throw DeviceError("correlate." + missing + " is computed on the CPU only");
   require_device();
   return std::make_unique<CudaCorrelator>(settings);
+}
+
+std::unique_ptr<tomography::SartVolume> make_volume(tomography::SartProblem const& problem) {
+  require_device();
+  return make_cuda_volume(problem);
 }
 
 }  // namespace gladstone::cuda

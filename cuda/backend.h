@@ -4,6 +4,7 @@
 #include <string>
 
 #include "analysis/correlation/correlator.h"
+#include "analysis/tomography/sart_volume.h"
 #include "render/ideal_images/ideal_images.h"
 #include "render/ideal_images/pair_batch.h"
 #include "render/scene/renderer.h"
@@ -46,5 +47,8 @@ std::unique_ptr<PairBatchRenderer> make_pair_batches(std::vector<OwnedPairModel>
 /// Creates the correlator on the GPU, for settings that gladstone::missing_on_gpu() does not list.
 /// @throws DeviceError if no device is usable or a setting is not supported
 std::unique_ptr<Correlator> make_correlator(CorrelationSettings const& settings);
+
+/// Creates the volume of a tomographic reconstruction on the GPU. @throws DeviceError if no device is usable
+std::unique_ptr<tomography::SartVolume> make_volume(tomography::SartProblem const& problem);
 
 }  // namespace gladstone::cuda

@@ -53,11 +53,8 @@ void LineProjector::back_project(std::span<double const> values, std::vector<Nod
     for (std::size_t i = 0; i < lines_.size(); ++i) {
       double const value = values[i];
       if (!std::isfinite(value)) continue;
-      visit_slab(shape_, lines_[i], slab_axis_, low, high, [&](std::ptrdiff_t node, double weight) {
-        NodeSum& sum = sums[static_cast<std::size_t>(node)];
-        sum.value += weight * value;
-        sum.weight += weight;
-      });
+      visit_slab(shape_, lines_[i], slab_axis_, low, high,
+                 [&](std::ptrdiff_t node, double weight) { sums[static_cast<std::size_t>(node)].add(weight, value); });
     }
   });
 }

@@ -8,12 +8,6 @@
 
 namespace gladstone::tomography {
 
-/// Sum of the contributions to a node and of their weights.
-struct NodeSum {
-  double value = 0.0;
-  double weight = 0.0;
-};
-
 /// Line integrals of a volume along the sight lines of one view, A, and their adjoint. Nothing of A is stored. Every
 /// sum has a fixed order, so that results do not depend on the number of threads.
 class LineProjector {
@@ -30,6 +24,7 @@ class LineProjector {
   void back_project(std::span<double const> values, std::vector<NodeSum>& sums) const;
   /// Sums of the weights of each line, A 1 [m, lines]; 0: the line misses the volume.
   std::vector<double> const& row_sums() const { return row_sums_; }
+  std::span<SightLine const> lines() const { return lines_; }
 
  private:
   VolumeShape shape_;

@@ -91,6 +91,16 @@ struct LineSamples {
   }
 };
 
+/// Sum of the contributions of lines to a node, and of their weights.
+struct NodeSum {
+  double value = 0.0;
+  double weight = 0.0;
+  GLADSTONE_HD void add(double line_weight, double line_value) {
+    value += line_weight * line_value;
+    weight += line_weight;
+  }
+};
+
 /// Integrates a volume along a sight line: one row of the projection A.
 struct LineProjection {
   VolumeShape shape;
@@ -123,24 +133,30 @@ struct LineProjection {
   }
 };
 
+/// Restricts a range of samples [begin, end) to those that may lie between two positions along an axis [nodes], with a
+/// margin for rounding.
+GLADSTONE_HD inline void limit_samples(LineSamples const& samples, int axis, double low, double high, int& begin,
+                                       int& end) {
+  double const start = samples.node[axis], advance = samples.advance[axis];
+  if (std::fabs(advance) <= 1e-12) {
+    double const stop = start + advance * samples.count;
+    if (std::fmax(start, stop) < low - 1e-6 || std::fmin(start, stop) > high + 1e-6) end = begin;
+    return;
+  }
+  double const a = (low - start) / advance, b = (high - start) / advance;
+  double const first = std::floor(std::fmin(a, b)) - 1.0, last = std::ceil(std::fmax(a, b)) + 2.0;
+  if (first > begin) begin = first < end ? static_cast<int>(first) : end;
+  if (last < end) end = last > begin ? static_cast<int>(last) : begin;
+}
+
 /// Visits the samples of a sight line that touch the nodes [low, high) along one axis, in the order of the line.
 /// @param add  add(node index, weight), for those nodes of each sample's cell that are within [low, high)
 template <class Add>
 GLADSTONE_HD void visit_slab(VolumeShape const& shape, SightLine const& line, int axis, int low, int high, Add&& add) {
   LineSamples const samples = LineSamples::of(shape, line);
   std::ptrdiff_t const row = shape.nodes[0], plane = row * shape.nodes[1];
-  // Samples with a cell from low - 1 to high - 1, with a margin for rounding
   int begin = 0, end = samples.count;
-  double const advance = samples.advance[axis], start = samples.node[axis];
-  double const stop = start + advance * samples.count;
-  if (std::fmax(start, stop) < low - 1 - 1e-6 || std::fmin(start, stop) > high + 1e-6) return;
-  if (std::fabs(advance) > 1e-12) {
-    double const a = (low - 1 - start) / advance, b = (high - start) / advance;
-    double const first = std::floor(std::fmin(a, b)) - 1.0, last = std::ceil(std::fmax(a, b)) + 2.0;
-    if (last <= 0.0 || first >= samples.count) return;
-    if (first > 0.0) begin = static_cast<int>(first);
-    if (last < samples.count) end = static_cast<int>(last);
-  }
+  limit_samples(samples, axis, low - 1.0, high, begin, end);
   for (int i = begin; i < end; ++i) {
     CellWeights const at = samples.cell(shape, i);
     if (at.cell[axis] + 1 < low || at.cell[axis] >= high) continue;
@@ -153,6 +169,21 @@ GLADSTONE_HD void visit_slab(VolumeShape const& shape, SightLine const& line, in
           if (on_axis < low || on_axis >= high) continue;
           add(at.cell[0] + n + row * (at.cell[1] + j) + plane * (at.cell[2] + k), weight * at.weight(n, j, k));
         }
+  }
+}
+
+/// Visits the samples of a sight line that touch one node, in the order of the line: the contributions of visit_slab()
+/// to this node. @param add  add(weight)
+template <class Add>
+GLADSTONE_HD void visit_node(VolumeShape const& shape, SightLine const& line, LineSamples const& samples,
+                             int const (&node)[3], Add&& add) {
+  int begin = 0, end = samples.count;
+  for (int axis = 0; axis < 3; ++axis) limit_samples(samples, axis, node[axis] - 1.0, node[axis] + 1.0, begin, end);
+  for (int i = begin; i < end; ++i) {
+    CellWeights const at = samples.cell(shape, i);
+    int const n[3] = {node[0] - at.cell[0], node[1] - at.cell[1], node[2] - at.cell[2]};
+    if ((n[0] | n[1] | n[2]) & ~1) continue;  // a corner is 0 or 1
+    add(samples.weight(line, i) * at.weight(n[0], n[1], n[2]));
   }
 }
 

@@ -1,8 +1,8 @@
 #pragma once
 
-#include <array>
 #include <vector>
 
+#include "analysis/tomography/total_variation_stencil.h"
 #include "render/base/regular_grid.h"
 
 namespace gladstone::tomography {
@@ -23,13 +23,10 @@ class TotalVariation {
   double compute(std::vector<double> const& volume) const;
 
  private:
-  double diverge(std::size_t node, int i, int j, int k) const;
-  Vec3d differentiate(std::vector<double> const& volume, std::size_t node, int i, int j, int k) const;
   template <class Body>
   void for_each_node(Body const& body) const;
 
-  std::array<int, 3> nodes_;
-  Vec3d ratio_;  ///< shortest spacing over the spacing along each axis [1]
+  TotalVariationStencil stencil_;
   std::vector<Vec3d> dual_;
 };
 

@@ -6,8 +6,6 @@
 #include <cmath>
 #include <numeric>
 
-#include "analysis/tomography/line_projector.h"
-#include "analysis/tomography/total_variation.h"
 #include "render/base/available_memory.h"
 #include "render/base/contracts.h"
 #include "render/base/error.h"
@@ -18,7 +16,8 @@
 namespace gladstone::tomography {
 namespace {
 
-constexpr double bytes_per_node = 8.0 + 8.0 + 16.0 + 24.0;  // volume, number of views, sums, dual variable
+// Volume before and after a sweep, denoised volume, number of views, sums, dual variable
+constexpr double bytes_per_node = 8.0 + 8.0 + 8.0 + 8.0 + 16.0 + 24.0;
 
 void check_settings(RegularGrid const& grid, SartSettings const& settings) {
   std::vector<SetupProblem> problems;
@@ -33,7 +32,9 @@ void check_settings(RegularGrid const& grid, SartSettings const& settings) {
   }
   require(settings.iterations >= 1, "iterations", "1 or more");
   require(settings.relaxation > 0.0 && settings.relaxation < 2.0, "relaxation", "a number above 0 and below 2");
-  require(settings.tv_weight >= 0.0 && std::isfinite(settings.tv_weight), "tv-weight", "a number of 0 or more");
+  double const tv_weight = settings.tv_weight.value_or(0.0);
+  require(tv_weight >= 0.0 && std::isfinite(tv_weight), "tv-weight", "a number of 0 or more");
+  require(settings.tolerance >= 0.0, "tolerance", "a number of 0 or more");
   require(settings.tv_iterations >= 1, "tv-iterations", "1 or more");
   require(settings.lowest <= 0.0 && settings.highest >= 0.0, "bounds", "an interval that contains the reference");
   if (!problems.empty()) throw SetupError(std::move(problems));
@@ -63,15 +64,10 @@ std::vector<std::size_t> order_views(std::size_t count) {
   return order;
 }
 
-/// View prepared for the iteration: lines that cross less than one cell are ignored, since the division by their sum of
-/// weights amplifies noise.
-struct PreparedView {
-  LineProjector projector;
-  std::vector<double> value;  ///< NaN: ignored
-};
-
-PreparedView prepare_view(ProjectedView const& view, RegularGrid const& grid, double& outside, double& total) {
-  PreparedView prepared{LineProjector(grid, view.lines), view.value};
+/// Prepares a view for the iteration: lines that cross less than one cell are ignored, since the division by their sum
+/// of weights amplifies noise.
+SartView prepare_view(ProjectedView const& view, RegularGrid const& grid, double& outside, double& total) {
+  SartView prepared{LineProjector(grid, view.lines), view.value};
   double const least = std::min({grid.spacing.x, grid.spacing.y, grid.spacing.z});
   for (std::size_t i = 0; i < view.value.size(); ++i) {
     double const row_sum = prepared.projector.row_sums()[i];
@@ -83,56 +79,6 @@ PreparedView prepare_view(ProjectedView const& view, RegularGrid const& grid, do
   return prepared;
 }
 
-/// Applies bounds and support.
-void constrain(std::vector<double>& volume, SartSettings const& settings) {
-  for (std::size_t i = 0; i < volume.size(); ++i) {
-    bool const inside = settings.support.empty() || settings.support[i] != 0;
-    volume[i] = inside ? std::clamp(volume[i], settings.lowest, settings.highest) : 0.0;
-  }
-}
-
-/// Iteration of SART with its memory.
-class Sart {
- public:
-  Sart(VolumeReconstruction& result, SartSettings const& settings)
-      : result_(result), settings_(settings), denoiser_(result.grid) {}
-
-  /// Corrects the volume by one view.
-  /// @return sums of the squares of residuals and values of the view
-  std::array<double, 2> correct(PreparedView const& view, bool count_views) {
-    std::vector<double> residual = view.projector.project(result_.value);
-    std::array<double, 2> squares{};
-    for (std::size_t i = 0; i < residual.size(); ++i) {
-      double const difference = view.value[i] - residual[i];
-      residual[i] = difference / view.projector.row_sums()[i];
-      if (!std::isfinite(view.value[i])) continue;
-      squares[0] += difference * difference;
-      squares[1] += view.value[i] * view.value[i];
-    }
-    view.projector.back_project(residual, sums_);
-    for (std::size_t i = 0; i < sums_.size(); ++i) {
-      if (!(sums_[i].weight > 0.0)) continue;
-      result_.value[i] += settings_.relaxation * sums_[i].value / sums_[i].weight;
-      if (count_views) ++result_.views[i];
-    }
-    return squares;
-  }
-
-  /// Applies total variation, bounds and support after a sweep.
-  void regularize() {
-    double largest = 0.0;
-    for (double const value : result_.value) largest = std::max(largest, std::abs(value));
-    denoiser_.denoise(result_.value, settings_.tv_weight * largest, settings_.tv_iterations);
-    constrain(result_.value, settings_);
-  }
-
- private:
-  VolumeReconstruction& result_;
-  SartSettings const& settings_;
-  TotalVariation denoiser_;
-  std::vector<NodeSum> sums_;
-};
-
 void require_common_part(VolumeReconstruction const& result) {
   auto const most = *std::max_element(result.views.begin(), result.views.end());
   if (most >= static_cast<std::int64_t>(least_views)) return;
@@ -141,10 +87,24 @@ void require_common_part(VolumeReconstruction const& result) {
                                             most));
 }
 
+/// Counts the nodes that a view sees and that may differ from zero.
+std::size_t count_changed_nodes(VolumeReconstruction const& result, SartSettings const& settings) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < result.views.size(); ++i)
+    if (result.views[i] > 0 && (settings.support.empty() || settings.support[i] != 0)) ++count;
+  return count;
+}
+
 }  // namespace
 
+double choose_tv_strength(double change, std::size_t nodes, double previous) {
+  constexpr double slowest = 0.9;
+  double const rms = nodes > 0 ? std::sqrt(change / static_cast<double>(nodes)) : 0.0;
+  return std::max(rms, slowest * previous);
+}
+
 VolumeReconstruction reconstruct_volume(std::vector<ProjectedView> const& views, RegularGrid const& grid,
-                                        SartSettings const& settings) {
+                                        SartSettings const& settings, SartVolumeMaker const& make_volume) {
   check_settings(grid, settings);
   check_views(views);
   require_memory("tomography",
@@ -152,28 +112,38 @@ VolumeReconstruction reconstruct_volume(std::vector<ProjectedView> const& views,
                  bytes_per_node * static_cast<double>(grid.size()));
   VolumeReconstruction result;
   result.grid = grid;
-  result.value.assign(grid.size(), 0.0);
-  result.views.assign(grid.size(), 0);
-  std::vector<PreparedView> prepared;
+  std::vector<SartView> prepared;
   double outside = 0.0, total = 0.0;
   for (std::size_t const i : order_views(views.size()))
     prepared.push_back(prepare_view(views[i], grid, outside, total));
   result.outside = total > 0.0 ? outside / total : 0.0;
 
-  Sart sart(result, settings);
+  std::unique_ptr<SartVolume> const volume =
+      make_volume({grid, prepared, settings.relaxation, settings.lowest, settings.highest, settings.support});
+  result.device = volume->device();
+  std::size_t changed_nodes = 0;
+  double lambda = 0.0;
   Progress progress("reconstructing", static_cast<std::size_t>(settings.iterations) * views.size());
   for (int sweep = 0; sweep < settings.iterations; ++sweep) {
-    std::array<double, 2> squares{};
-    for (PreparedView const& view : prepared) {
+    for (std::size_t view = 0; view < prepared.size(); ++view) {
       throw_if_interrupted();
-      auto const of_view = sart.correct(view, sweep == 0);
-      squares = {squares[0] + of_view[0], squares[1] + of_view[1]};
+      volume->correct(view, sweep == 0);
       progress.advance();
     }
-    if (sweep == 0) require_common_part(result);
-    sart.regularize();
-    result.residual.push_back(squares[1] > 0.0 ? std::sqrt(squares[0] / squares[1]) : 0.0);
+    if (sweep == 0) {
+      volume->download(result.value, result.views);
+      require_common_part(result);
+      changed_nodes = count_changed_nodes(result, settings);
+    }
+    SweepSums const sums = volume->sum_sweep();
+    lambda = settings.tv_weight ? *settings.tv_weight * sums.largest
+                                : choose_tv_strength(sums.change, changed_nodes, lambda);
+    SweepNorms const norms = volume->regularize(lambda, settings.tv_iterations);
+    result.residual.push_back(sums.value > 0.0 ? std::sqrt(sums.residual / sums.value) : 0.0);
+    result.tv_weight = sums.largest > 0.0 ? lambda / sums.largest : 0.0;
+    if (std::sqrt(norms.change) <= settings.tolerance * std::sqrt(norms.volume)) break;
   }
+  volume->download(result.value, result.views);
   return result;
 }
 

@@ -85,11 +85,13 @@ def tomography(
     support: str | None = None,
     least_density: float = 0.0,
     largest_density: float | None = None,
-    iterations: int = 20,
+    iterations: int = 100,
+    tolerance: float = 0.001,
     relaxation: float = 0.5,
-    tv_weight: float = 0.01,
+    tv_weight: float | None = None,
     ray_truth: bool = False,
     conventions: str | None = None,
+    device: str = "auto",
     progress: Progress = False,
 ) -> Tomography:
     """Reconstructs the density of a volume from BOS vectors of 3 to 16 views, equal bit by bit to `gladstone
@@ -105,10 +107,13 @@ def tomography(
     spacing_mm: distance between the nodes; None: that of the vectors.
     support: "sphere:MM" or "cylinder:MM", outside of which the density is the reference density.
     least_density, largest_density: bounds of the density [kg/m^3].
-    iterations, relaxation, tv_weight: sweeps over all views, fraction of each correction that is applied, and strength
-        of the total variation relative to the largest density difference.
+    iterations, tolerance: largest number of sweeps over all views; the last one changes the volume by less than this
+        fraction of its norm.
+    relaxation, tv_weight: fraction of each correction that is applied, and strength of the total variation relative to
+        the largest density difference; None: the rms change of a node by the views in each sweep.
     ray_truth: uses the true displacement of the dots of rendered cases.
     conventions: conventions of files of vectors of another program.
+    device: "cpu", "cuda", or "auto": the GPU if one is usable.
 
     Raises `SetupError` for options, and `DataError` for views that determine no volume.
     """
@@ -119,7 +124,7 @@ def tomography(
             [os.fspath(case) for case in cases], [os.fspath(file) for file in vectors], conventions, ray_truth,
             [float(angle) for angle in angles_deg], arc_deg, _reference_texts(reference), reference_density,
             [] if bounds_mm is None else [float(bound) for bound in bounds_mm], spacing_mm, support, least_density,
-            largest_density, iterations, relaxation, tv_weight, report,
+            largest_density, iterations, tolerance, relaxation, tv_weight, device, report,
         )  # fmt: skip
     return Tomography(core)
 
@@ -134,9 +139,11 @@ def reconstruct_lines(
     spacing_mm: float,
     center_mm: tuple[float, float, float] = (0.0, 0.0, 0.0),
     bounds: tuple[float, float] = (-np.inf, np.inf),
-    iterations: int = 20,
+    iterations: int = 100,
+    tolerance: float = 0.001,
     relaxation: float = 0.5,
-    tv_weight: float = 0.01,
+    tv_weight: float | None = None,
+    device: str = "auto",
     progress: Progress = False,
 ) -> np.ndarray:
     """Reconstructs a volume from line integrals along parallel lines of sight, by the algorithm of `tomography`.
@@ -156,5 +163,6 @@ def reconstruct_lines(
     with reporting(progress) as report:
         return _core.reconstruct_lines(
             number_array(origin_mm, 3), number_array(direction, 3), number_array(value, 1), number_array(view, 1),
-            tuple(nodes), spacing_mm, tuple(center_mm), *bounds, iterations, relaxation, tv_weight, report,
+            tuple(nodes), spacing_mm, tuple(center_mm), *bounds, iterations, tolerance,
+            relaxation, tv_weight, device, report,
         )  # fmt: skip

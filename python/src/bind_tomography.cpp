@@ -12,6 +12,7 @@
 #include "render/base/error.h"
 #include "render/base/units.h"
 #include "studies/case/json_text.h"
+#include "studies/case/volume_device.h"
 #include "studies/commands/density_options.h"
 #include "studies/commands/volume_options.h"
 #include "studies/compare/tomography.h"
@@ -48,9 +49,11 @@ nb::object volume_array(nb::handle_t<Tomography> self, std::string const& name) 
   return nb::none();
 }
 
-tomography::SartSettings sart_settings(int iterations, double relaxation, double tv_weight) {
+tomography::SartSettings sart_settings(int iterations, double tolerance, double relaxation,
+                                       std::optional<double> tv_weight) {
   tomography::SartSettings settings;
   settings.iterations = iterations;
+  settings.tolerance = tolerance;
   settings.relaxation = relaxation;
   settings.tv_weight = tv_weight;
   return settings;
@@ -102,7 +105,8 @@ void bind_tomography(nb::module_& module) {
          double arc_deg, std::vector<std::string> const& reference, std::optional<double> reference_density,
          std::vector<double> const& bounds_mm, std::optional<double> spacing_mm,
          std::optional<std::string> const& support, double least_density, std::optional<double> largest_density,
-         int iterations, double relaxation, double tv_weight, nb::handle progress) {
+         int iterations, double tolerance, double relaxation, std::optional<double> tv_weight,
+         std::string const& device, nb::handle progress) {
         return run(
             [&] {
               TomographyOptions options;
@@ -121,21 +125,22 @@ void bind_tomography(nb::module_& module) {
               if (support) options.support = parse_support(*support);
               options.least_density = least_density;
               if (largest_density) options.largest_density = *largest_density;
-              options.sart = sart_settings(iterations, relaxation, tv_weight);
-              return std::make_shared<Tomography>(reconstruct_views(options));
+              options.sart = sart_settings(iterations, tolerance, relaxation, tv_weight);
+              return std::make_shared<Tomography>(reconstruct_views(options, open_volume_device(device)));
             },
             progress);
       },
       nb::arg("cases"), nb::arg("vectors"), nb::arg("conventions").none(), nb::arg("ray_truth"), nb::arg("angles_deg"),
       nb::arg("arc_deg"), nb::arg("reference"), nb::arg("reference_density").none(), nb::arg("bounds_mm"),
       nb::arg("spacing_mm").none(), nb::arg("support").none(), nb::arg("least_density"),
-      nb::arg("largest_density").none(), nb::arg("iterations"), nb::arg("relaxation"), nb::arg("tv_weight"),
-      nb::arg("progress").none());
+      nb::arg("largest_density").none(), nb::arg("iterations"), nb::arg("tolerance"), nb::arg("relaxation"),
+      nb::arg("tv_weight").none(), nb::arg("device"), nb::arg("progress").none());
   module.def(
       "reconstruct_lines",
       [](PointArray const& origin_mm, PointArray const& direction, NumberArray const& value, NumberArray const& view,
          std::array<int, 3> const& nodes, double spacing_mm, std::array<double, 3> const& center_mm, double lowest,
-         double highest, int iterations, double relaxation, double tv_weight, nb::handle progress) {
+         double highest, int iterations, double tolerance, double relaxation, std::optional<double> tv_weight,
+         std::string const& device, nb::handle progress) {
         std::vector<tomography::ProjectedView> const views = split_lines(origin_mm, direction, value, view);
         RegularGrid grid;
         grid.nodes = nodes;
@@ -147,10 +152,10 @@ void bind_tomography(nb::module_& module) {
         }
         std::vector<double> volume = run(
             [&] {
-              tomography::SartSettings settings = sart_settings(iterations, relaxation, tv_weight);
+              tomography::SartSettings settings = sart_settings(iterations, tolerance, relaxation, tv_weight);
               settings.lowest = lowest;
               settings.highest = highest;
-              return reconstruct_volume(views, grid, settings).value;
+              return reconstruct_volume(views, grid, settings, open_volume_device(device)).value;
             },
             progress);
         return array_of(std::move(volume), {static_cast<std::size_t>(nodes[2]), static_cast<std::size_t>(nodes[1]),
@@ -158,7 +163,8 @@ void bind_tomography(nb::module_& module) {
       },
       nb::arg("origin_mm"), nb::arg("direction"), nb::arg("value"), nb::arg("view"), nb::arg("nodes"),
       nb::arg("spacing_mm"), nb::arg("center_mm"), nb::arg("lowest"), nb::arg("highest"), nb::arg("iterations"),
-      nb::arg("relaxation"), nb::arg("tv_weight"), nb::arg("progress").none());
+      nb::arg("tolerance"), nb::arg("relaxation"), nb::arg("tv_weight").none(), nb::arg("device"),
+      nb::arg("progress").none());
 }
 
 }  // namespace gladstone::python

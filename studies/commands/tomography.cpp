@@ -13,6 +13,7 @@
 #include "render/files/output_file.h"
 #include "studies/case/case_files.h"
 #include "studies/case/json_text.h"
+#include "studies/case/volume_device.h"
 #include "studies/commands/arguments.h"
 #include "studies/commands/command.h"
 #include "studies/commands/density_options.h"
@@ -81,14 +82,20 @@ void add_volume_options(CLI::App& app, TomographyArguments& given) {
   app.add_option("--largest-density", given.tomography.largest_density,
                  "Upper bound of the density [kg/m^3], default: none");
   tomography::SartSettings& sart = given.tomography.sart;
-  app.add_option("--iterations", sart.iterations, "Number of sweeps over all views")
+  app.add_option("--iterations", sart.iterations,
+                 "Largest number of sweeps over all views, fewer if the volume no longer changes (--tolerance)")
       ->capture_default_str()
       ->check(whole_number(1, 10'000));
+  app.add_option("--tolerance", sart.tolerance,
+                 "End after a sweep that changes the volume by less than this fraction of its norm")
+      ->capture_default_str()
+      ->check(CLI::NonNegativeNumber);
   app.add_option("--relaxation", sart.relaxation, "Fraction of the correction that is applied after each view, 0 to 2")
       ->capture_default_str();
-  app.add_option("--tv-weight", sart.tv_weight,
-                 "Strength of the total variation, relative to the largest density difference; 0: none")
-      ->capture_default_str()
+  app.add_option(
+         "--tv-weight", sart.tv_weight,
+         "Strength of the total variation, relative to the largest density difference; 0: none; default: the rms "
+         "change of a node by the views in each sweep")
       ->check(CLI::NonNegativeNumber);
   app.add_flag("--no-figures", given.no_figures, "Draw no figure");
 }
@@ -157,8 +164,9 @@ CommandBody attach_tomography(CLI::App& app, GlobalOptions const& options) {
     if (!output.ends_with(".h5")) throw OutputError(output, "does not end in .h5; choose such a name");
     std::string const figure = fs::path(output).replace_extension(".png").string();
     refuse_inputs_as_outputs({output, figure}, list_tomography_inputs(tomography));
+    auto const make_volume = open_volume_device(options.device);
     OutputFile const tried(output, "gladstone tomography");
-    Tomography const result = reconstruct_views(tomography);
+    Tomography const result = reconstruct_views(tomography, make_volume);
     write_tomography(output, result);
     if (!arguments->no_figures) draw_tomography(figure, result);
     nlohmann::ordered_json json = summarize_tomography(result);

@@ -188,7 +188,7 @@ double compute_relative_error(Tomography const& result) {
 
 Pose<double> turned_volume(double angle) { return Pose<double>{}.turned({0.0, angle, 0.0}); }
 
-Tomography reconstruct_views(TomographyOptions const& options) {
+Tomography reconstruct_views(TomographyOptions const& options, tomography::SartVolumeMaker const& make_volume) {
   check_tomography_options(options);
   Tomography result;
   result.angles = choose_angles(options);
@@ -212,7 +212,7 @@ Tomography reconstruct_views(TomographyOptions const& options) {
 
   std::vector<tomography::ProjectedView> projections;
   for (TomographyView& view : views) projections.push_back(std::move(view.projected));
-  tomography::VolumeReconstruction volume = reconstruct_volume(projections, grid, result.settings);
+  tomography::VolumeReconstruction volume = reconstruct_volume(projections, grid, result.settings, make_volume);
   for (std::size_t i = 0; i < views.size(); ++i) views[i].projected.name = projections[i].name;
   result.grid = grid;
   result.density = std::move(volume.value);
@@ -220,6 +220,8 @@ Tomography reconstruct_views(TomographyOptions const& options) {
   result.seen = std::move(volume.views);
   result.residual = std::move(volume.residual);
   result.outside = volume.outside;
+  result.tv_weight = volume.tv_weight;
+  result.device = volume.device;
   bool const is_known = views.front().rendered && medium.field.kind != FieldKind::none;
   if (is_known) result.truth = sample_truth(medium, result.angles.front(), grid);
   result.setup = views.front().loaded.document.resolved();

@@ -46,6 +46,8 @@ struct Tomography {
   std::vector<double> truth;         ///< true density of rendered cases [kg/m^3, grid.size()]; empty: unknown
   std::vector<double> residual;      ///< see tomography::VolumeReconstruction [1]
   double reference_density = 0.0;    ///< [kg/m^3]
+  double tv_weight = 0.0;            ///< strength of the total variation in the last sweep, see SartSettings [1]
+  std::string device = "cpu";        ///< device of the reconstruction
   double outside = 0.0;              ///< fraction of the squared line integrals on lines that miss the grid [1]
   std::vector<std::string> views;    ///< names of the inputs
   std::vector<double> angles;        ///< angle of the volume in each view [rad]
@@ -68,7 +70,9 @@ Pose<double> turned_volume(double angle);
 /// Reads the vectors and the camera of each view, converts the displacement to line integrals of the density, and
 /// reconstructs the volume. Lines of sight are the straight chief rays of the cameras; optical windows are neglected,
 /// with a warning. Writes nothing.
-/// @throws SetupError, DataError  for options, setups and vectors that do not determine a volume; NoValidVector
-Tomography reconstruct_views(TomographyOptions const& options);
+/// @param make_volume  creates the volume on the device of the iteration, see open_volume_device()
+/// @throws SetupError, DataError  for options, setups and vectors that do not determine a volume; NoValidVector,
+///                                DeviceError
+Tomography reconstruct_views(TomographyOptions const& options, tomography::SartVolumeMaker const& make_volume);
 
 }  // namespace gladstone

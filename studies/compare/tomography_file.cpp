@@ -42,9 +42,9 @@ void write_tomography_attributes(Hdf5Writer& file, Tomography const& result) {
   file.attribute("/", "reference_density_kg_m3", result.reference_density);
   for (int axis = 0; axis < 3; ++axis)
     file.attribute("/", std::string("center_") + "xyz"[axis] + "_mm", centre[axis] / unit::mm);
-  file.attribute("/", "iterations", std::int64_t{result.settings.iterations});
+  file.attribute("/", "iterations", static_cast<std::int64_t>(result.residual.size()));
   file.attribute("/", "relaxation", result.settings.relaxation);
-  file.attribute("/", "tv_weight", result.settings.tv_weight);
+  file.attribute("/", "tv_weight", result.tv_weight);
   file.attribute("/", "residual", result.residual.back());
   if (!result.truth.empty()) file.attribute("/", "relative_error", compute_relative_error(result));
 }
@@ -68,7 +68,7 @@ void write_density_volume(std::string const& path, RegularGrid const& grid, std:
 }
 
 void write_tomography(std::string const& path, Tomography const& result) {
-  Hdf5Writer file(path, {"gladstone tomography", 1, result.setup, result.seed, "cpu", result.sources});
+  Hdf5Writer file(path, {"gladstone tomography", 1, result.setup, result.seed, result.device, result.sources});
   write_volume_axes(file, result.grid);
   std::vector<std::string> scaled{"/density_kg_m3", "/views"};
   auto const write = [&](std::string const& dataset, std::vector<double> const& values, char const* description) {
@@ -108,7 +108,9 @@ nlohmann::ordered_json summarize_tomography(Tomography const& result) {
                               {"center_mm", {centre.x / unit::mm, centre.y / unit::mm, centre.z / unit::mm}},
                               {"reference_density_kg_m3", result.reference_density},
                               {"density_kg_m3", {{"least", *least}, {"largest", *largest}}},
-                              {"iterations", result.settings.iterations},
+                              {"iterations", result.residual.size()},
+                              {"tv_weight", result.tv_weight},
+                              {"device", result.device},
                               {"residual", result.residual.back()},
                               {"outside", result.outside}};
   if (!result.truth.empty()) json["relative_error"] = number_or_null(compute_relative_error(result));
@@ -124,7 +126,7 @@ std::string tomography_report(Tomography const& result) {
       "iterations\n",
       result.grid.nodes[0], result.grid.nodes[1], result.grid.nodes[2], result.grid.spacing.x / unit::mm,
       result.views.size(), *least, *largest, centre.x / unit::mm, centre.y / unit::mm, centre.z / unit::mm,
-      100.0 * result.residual.back(), result.settings.iterations);
+      100.0 * result.residual.back(), result.residual.size());
   if (!result.truth.empty())
     text += fmt::format("  relative L2 error of the density difference: {:.4f}\n", compute_relative_error(result));
   return text;

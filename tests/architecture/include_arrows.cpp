@@ -24,7 +24,8 @@ Names const renderers = {"render/rays", "render/focused_dots", "render/ideal_ima
 Names const analysis = {"analysis/vectors",     "analysis/correlation", "analysis/errors",   "analysis/calibration",
                         "analysis/uncertainty", "analysis/preparation", "analysis/tracking", "analysis/density",
                         "analysis/stereo",      "analysis/tomography"};
-Names const cuda = {"cuda/device", "cuda/rays", "cuda/focused_dots", "cuda/ideal_images", "cuda/correlation"};
+Names const cuda = {"cuda/device",       "cuda/rays",        "cuda/focused_dots",
+                    "cuda/ideal_images", "cuda/correlation", "cuda/tomography"};
 
 Names const studies = {"studies/case",   "studies/compare",   "studies/sweep",   "studies/design",  "studies/figures",
                        "studies/report", "studies/benchmark", "studies/oracles", "studies/examples"};
@@ -94,6 +95,10 @@ std::vector<Room> const& table() {
       {"cuda/ideal_images", render + Names{"render/ideal_images", "cuda/device"}, {"Eigen", "CUDA"}, {"fmt"}},
       {"cuda/correlation",
        render + Names{"analysis/correlation", "analysis/uncertainty", "cuda/device"},
+       {"Eigen", "CUDA"},
+       {"fmt"}},
+      {"cuda/tomography",
+       render + Names{"analysis/vectors", "analysis/density", "analysis/tomography", "cuda/device"},
        {"Eigen", "CUDA"},
        {"fmt"}},
       {"cuda", render + renderers + analysis + cuda, {"Eigen", "CUDA"}, {"fmt"}},

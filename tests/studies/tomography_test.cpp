@@ -86,7 +86,7 @@ TEST(Tomography, OptionsThatDetermineNoVolumeAreReportedTogether) {
   options.angles = {0.0};
   options.spacing = -1.0;
   try {
-    reconstruct_views(options);
+    reconstruct_views(options, tomography::make_host_volume);
     FAIL();
   } catch (SetupError const& error) {
     EXPECT_EQ(error.problems().size(), 4u);  // views, --angles, --reference, --spacing
@@ -98,7 +98,7 @@ TEST(Tomography, MissingViewIsRefused) {
   options.views = {testing::TempDir() + "nowhere_a", testing::TempDir() + "nowhere_b",
                    testing::TempDir() + "nowhere_c"};
   options.reference.push_back({density::GridSide::left});
-  EXPECT_THROW(reconstruct_views(options), DataError);
+  EXPECT_THROW(reconstruct_views(options, tomography::make_host_volume), DataError);
 }
 
 }  // namespace
