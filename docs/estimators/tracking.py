@@ -34,7 +34,7 @@ RENDERED = {"piv.toml, no noise": ("piv.toml", ["--set", f"camera.pixels=[{SIDE}
 
 
 def image(places, bits, noise, random):
-    """Gaussian particles integrated over the pixels, of 40 % of full scale, so that overlapping ones rarely saturate."""
+    """Gaussian particles integrated over the pixels, of 40 % of full scale, so that few overlaps saturate."""
     pixel = np.arange(SIDE)
     def share(at):
         scale = np.sqrt(0.5) / SIGMA_PX

@@ -1,4 +1,4 @@
-"""coverage.py GLADSTONE [--seeds 2]: which fraction of the errors of u, v and w does their standard uncertainty contain?
+"""coverage.py GLADSTONE [--seeds 2]: which fraction of the errors of u, v and w is within one standard uncertainty?
 
 Renders the laser sheet of dewarp.py with uniform motion, seen at 30 and at 45 degrees from its normal: without noise
 (12 bits), and with the noise of an ordinary camera (full well of 30000 electrons, read noise of 3, a black level of 16)
