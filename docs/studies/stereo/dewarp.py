@@ -1,4 +1,4 @@
-"""dewarp.py GLADSTONE [--seeds 3] [--folder FOLDER]: which of `--dewarp vectors` and `--dewarp images` is more accurate?
+"""dewarp.py GLADSTONE [--help]: which of `--dewarp vectors` and `--dewarp images` is more accurate?
 
 Renders a laser sheet seen by two cameras at 30 and at 45 degrees from its normal, with uniform motion and with waves of
 u, v and w (largest gradient 0.04 px per px), with and without noise. Both ways of dewarping reconstruct the same
@@ -8,7 +8,6 @@ Needs: pip install numpy h5py matplotlib
 """
 
 import argparse
-import json
 import math
 import pathlib
 import subprocess
@@ -23,19 +22,21 @@ import numpy as np
 
 ANGLES = (30, 45)  # [deg] of either camera from the normal of the sheet
 DISTANCE_MM, PIXEL_MM, DT_S = 750.0, 10e-3 * (750.0 - 105.0) / 105.0, 10e-6  # of an object of one pixel on the axis
+F_NUMBER = 22.0  # the diameter of particle images is proportional to it
 GROSS_PX = 1.0  # a vector with a larger error is a gross error
 WAVE_PX, WAVELENGTH_PX = 1.5, 256.0
-NOISE = {"no noise": "", "noise": "noise.full_well_e = 120\nnoise.read_noise_e = 10.0\n"}
+NOISE = {"no noise": "bit_depth = 12\n",
+         "noise": "bit_depth = 12\nnoise.full_well_e = 120\nnoise.read_noise_e = 10.0\n"}
 FLOWS = ("uniform", "gradients")
 WAYS = ("vectors", "images")
 
 
-def setup_text(degrees, flow, noise, seed):
+def setup_text(degrees, flow, noise, seed, f_number=F_NUMBER):
     angle = math.radians(degrees)
     text = 'schema = 1\nexperiment = "piv"\n'
     for name, side in (("left", -1), ("right", 1)):
         place = [side * DISTANCE_MM * math.sin(angle), 0.0, DISTANCE_MM * math.cos(angle)]
-        text += f'[[camera]]\nname = "{name}"\npixels = [256, 256]\npixel_pitch_um = 10.0\nbit_depth = 12\n'
+        text += f'[[camera]]\nname = "{name}"\npixels = [256, 256]\npixel_pitch_um = 10.0\n'
         text += f'pose.position_mm = {place}\nsensor.scheimpflug = "auto"\n{NOISE[noise]}'
     velocity = [1e-3 * px * PIXEL_MM / DT_S for px in (2.3, -1.7, 1.9)]
     flow_text = f"velocity_m_s = {velocity}\ndt_us = {1e6 * DT_S}\n"
@@ -46,7 +47,7 @@ def setup_text(degrees, flow, noise, seed):
     return text + f"""
 [lens]
 focal_length_mm = 105.0
-f_number = 22.0
+f_number = {f_number}
 [particles]
 per_pixel = 0.04
 scattering = "lambert"
@@ -70,13 +71,13 @@ def write_wave(path):
     np.save(path, amplitude * np.stack([np.sin(y), np.sin(x), np.sin(x + y)], axis=-1))
 
 
-def measure(program, folder, degrees, flow, noise, seed):
+def measure(program, folder, degrees, flow, noise, seed, f_number=F_NUMBER):
     """Returns the errors [px] and sigma [px] of u, v, w at the nodes that were accepted, for either way."""
     def run(*words):
         subprocess.run([program, *map(str, words), "--quiet", "--threads", "1"], cwd=folder, check=True,
                        capture_output=True)
 
-    (folder / "setup.toml").write_text(setup_text(degrees, flow, noise, seed))
+    (folder / "setup.toml").write_text(setup_text(degrees, flow, noise, seed, f_number))
     run("render", "setup.toml", "-o", "case")
     for camera in ("left", "right"):
         run("correlate", f"case/{camera}")
@@ -138,6 +139,7 @@ def main():
     parser.add_argument("--seeds", type=int, default=3)
     parser.add_argument("--folder", type=pathlib.Path)
     parser.add_argument("--angles", type=int, nargs="+", default=ANGLES, help="[deg]")
+    parser.add_argument("--f-number", type=float, default=F_NUMBER)
     arguments = parser.parse_args()
     program = str(pathlib.Path(arguments.program).resolve())
     out = arguments.folder or pathlib.Path(__file__).parent
@@ -150,7 +152,7 @@ def main():
         for degrees in arguments.angles:
             for flow in FLOWS:
                 for noise in NOISE:
-                    runs = [measure(program, folder, degrees, flow, noise, seed)
+                    runs = [measure(program, folder, degrees, flow, noise, seed, arguments.f_number)
                             for seed in range(1, arguments.seeds + 1)]
                     row = {way: summarize([run[way] for run in runs]) for way in WAYS}
                     table[degrees, flow, noise] = row

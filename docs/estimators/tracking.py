@@ -1,0 +1,121 @@
+"""tracking.py GLADSTONE [--rows NAME ..] [--threads N]: is the uncertainty of tracked dots valid?
+
+Tracks equal Gaussian particles of 3 px (20 per 32 x 32 px, 256 x 256 px) displaced by (2.3, -1.7) px, and the dots and
+particles of two rendered cases. Prints, for each row of the table in docs/estimators.md, the fraction of dots that are
+missed or have errors above 1 px (5 px at the border excluded), the fractions of errors within one and two standard
+uncertainties, rms(sigma) over rms(error), and the rms error.
+
+Needs: pip install numpy scipy h5py imageio
+"""
+
+import argparse
+import pathlib
+import subprocess
+import tempfile
+
+import h5py
+import imageio.v3
+import numpy as np
+from scipy.spatial import cKDTree
+from scipy.special import erf
+
+SIDE, COUNT, SIGMA_PX = 256, 1280, 0.75  # [px], dots, standard deviation of a dot of 3 px (e^-2)
+MOVED_PX = np.array([2.3, -1.7])
+BORDER_PX, GROSS_PX = 5, 1.0
+CASES = pathlib.Path(__file__).resolve().parents[2] / "studies" / "cases"
+TRACKING = '[correlate]\nmethod = "tracking"\n[correlate.tracking]\noutput = "scattered"\n'
+NOISE = ["--set", "camera.noise.full_well_e=30000"]
+SYNTHETIC = {"8 bit, no noise": (8, 0.0), "8 bit, 1 % noise": (8, 0.01), "8 bit, 5 % noise": (8, 0.05),
+             "16 bit, no noise": (16, 0.0)}
+RENDERED = {"piv.toml, no noise": ("piv.toml", ["--set", f"camera.pixels=[{SIDE}, {SIDE}]"]),
+            "piv.toml, noise": ("piv.toml", ["--set", f"camera.pixels=[{SIDE}, {SIDE}]", *NOISE]),
+            "bench.toml, no noise": ("bench.toml", []),
+            "bench.toml, 5 dots, noise": ("bench.toml", ["--set", "target.dots_per_32px_window=5", *NOISE])}
+
+
+def image(places, bits, noise, random):
+    """Gaussian particles integrated over the pixels, of 40 % of full scale, so that few overlaps saturate."""
+    pixel = np.arange(SIDE)
+    def share(at):
+        scale = np.sqrt(0.5) / SIGMA_PX
+        t = pixel - at[:, None]
+        return SIGMA_PX * np.sqrt(np.pi / 2) * (erf((t + 0.5) * scale) - erf((t - 0.5) * scale))
+    full = 2**bits - 1
+    peak = 0.4 * full
+    level = peak * (share(places[:, 1]).T @ share(places[:, 0]) + 0.06 + 5 * noise)
+    level += noise * peak * random.standard_normal(level.shape)
+    return np.clip(np.rint(level), 0, full).astype(np.uint8 if bits == 8 else np.uint16)
+
+
+def make_pair(folder, bits, noise, seed):
+    """Writes a.tif and b.tif. @return positions midway between both frames, and displacements [px]"""
+    random = np.random.default_rng(seed)
+    middle = random.random((COUNT, 2)) * SIDE - 0.5
+    imageio.v3.imwrite(folder / "a.tif", image(middle - MOVED_PX / 2, bits, noise, random))
+    imageio.v3.imwrite(folder / "b.tif", image(middle + MOVED_PX / 2, bits, noise, random))
+    return middle, np.broadcast_to(MOVED_PX, middle.shape)
+
+
+def read_truth(case):
+    with h5py.File(case / "truth.h5") as file:
+        group = file["dots" if "dots" in file else "particles"]
+        displacement = group["displacement_px"][...]
+        middle = group["reference_px"][...] + displacement / 2
+    known = np.isfinite(middle).all(axis=1)
+    return middle[known], displacement[known]
+
+
+def evaluate(vectors, middle, displacement):
+    """Statistics of the vectors, each assigned to the nearest dot within 1 px."""
+    with h5py.File(vectors) as file:
+        at, measured, sigma = (np.stack([file[a][...], file[b][...]], axis=-1) for a, b in
+                               (("x_px", "y_px"), ("u_px", "v_px"), ("sigma_u_px", "sigma_v_px")))
+    valid = np.isfinite(measured).all(axis=1) & np.isfinite(sigma).all(axis=1)
+    distance, own = cKDTree(middle).query(at[valid])
+    error = measured[valid] - displacement[own]
+    good = (distance < 1) & (np.abs(error).max(axis=1) < GROSS_PX)
+    inside = (np.abs(middle - (SIDE - 1) / 2) < SIDE / 2 - BORDER_PX).all(axis=1)
+    found = np.zeros(len(middle), dtype=bool)
+    found[own[good]] = True
+    error, sigma = error[good], sigma[valid][good]
+    ratio = np.abs(error / sigma)
+    return {"missed": 1 - found[inside].mean(), "one": (ratio <= 1).mean(), "two": (ratio <= 2).mean(),
+            "sigma": np.sqrt((sigma**2).mean() / (error**2).mean()), "rms": np.sqrt((error**2).mean()),
+            "count": error.size}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("program")
+    parser.add_argument("--rows", nargs="+", choices=[*SYNTHETIC, *RENDERED], default=[*SYNTHETIC, *RENDERED])
+    parser.add_argument("--threads", type=int, default=1)
+    parser.add_argument("--seed", type=int, default=1, help="of the synthetic images")
+    arguments = parser.parse_args()
+    program = str(pathlib.Path(arguments.program).resolve())
+
+    def run(*words):
+        subprocess.run([program, *map(str, words), "--quiet", "--threads", str(arguments.threads)], check=True,
+                       capture_output=True)
+
+    print("| images | missed | within one | within two | rms(sigma) / rms(error) | rms error [px] | components |\n"
+          "|---|---|---|---|---|---|---|")
+    for row in arguments.rows:
+        with tempfile.TemporaryDirectory() as temporary:
+            folder = pathlib.Path(temporary)
+            (folder / "tracking.toml").write_text(TRACKING)
+            if row in SYNTHETIC:
+                truth = make_pair(folder, *SYNTHETIC[row], arguments.seed)
+                inputs = [folder / "a.tif", folder / "b.tif"]
+            else:
+                setup, words = RENDERED[row]
+                run("render", CASES / setup, "-o", folder / "case", *words)
+                truth = read_truth(folder / "case")
+                inputs = [folder / "case"]
+            run("correlate", *inputs, "-o", folder / "v.h5", "--config", folder / "tracking.toml")
+            s = evaluate(folder / "v.h5", *truth)
+        print(f"| {row} | {100 * s['missed']:.1f} % | {s['one']:.2f} | {s['two']:.2f} | {s['sigma']:.2f} | "
+              f"{s['rms']:.4f} | {s['count']} |", flush=True)
+
+
+if __name__ == "__main__":
+    main()
