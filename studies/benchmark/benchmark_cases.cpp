@@ -187,7 +187,7 @@ double step_width_px(DisplacementField const& field, double height_px, int pixel
     if (count[k] > 0.0) response.push_back({static_cast<double>(k) + 0.5 - reach, sum[k] / count[k]});
   auto const middle = std::find_if(response.begin(), response.end(), [](Vec2d r) { return r.y >= 0.5; });
   // Returns where the response crosses a level on one side of the middle.
-  auto const crossing = [](auto begin, auto end, auto const& beyond, double level) {
+  auto const crossing = [](auto const& begin, auto const& end, auto const& beyond, double level) {
     auto const found = std::find_if(begin, end, beyond);
     if (found == end || found == begin) return std::nan("");
     Vec2d const a = *(found - 1), b = *found;

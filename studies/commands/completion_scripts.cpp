@@ -115,7 +115,8 @@ std::string zsh_options(CommandDescription const& command) {
     for (std::string const& name : option.names) {
       std::string const value = option.takes_value ? zsh_value(command, option) : "";
       bool const joined = option.takes_value && name.starts_with("--");  // --device cpu or --device=cpu
-      text += " \\\n    " + quoted('*' + name + (joined ? "=" : "") + '[' + zsh_text(option.text) + ']' + value);
+      text += fmt::format(" \\\n    {}",
+                          quoted(fmt::format("*{}{}[{}]{}", name, joined ? "=" : "", zsh_text(option.text), value)));
     }
   }
   return text;
