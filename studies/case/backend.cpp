@@ -32,6 +32,23 @@ std::unique_ptr<Correlator> correlator_on_gpu(CorrelationSettings const& setting
   return cuda::make_correlator(settings);
 }
 
+/// Returns whether to use the GPU, and logs which device is used.
+/// @throws DeviceError if "cuda" is wanted and not available
+bool choose_gpu(std::string const& wanted) {
+  std::string instead;
+  if (wanted != "cpu") {
+    cuda::DeviceState const state = cuda::device_state();
+    if (state.usable) {
+      spdlog::info("device: cuda, {}", state.text);
+      return true;
+    }
+    if (wanted == "cuda") throw DeviceError("--device cuda: " + state.text + "; use --device cpu or auto");
+    instead = " (" + state.text + ")";
+  }
+  spdlog::info("device: cpu, {} threads{}", thread_count(), instead);
+  return false;
+}
+
 }  // namespace
 
 std::string settings_requiring_cpu(CorrelationSettings const& settings) {
@@ -41,19 +58,16 @@ std::string settings_requiring_cpu(CorrelationSettings const& settings) {
 }
 
 Backend open_device(std::string const& wanted) {
-  std::string instead;
-  if (wanted != "cpu") {
-    cuda::DeviceState const state = cuda::device_state();
-    if (state.usable) {
-      spdlog::info("device: cuda, {}", state.text);
-      return {std::make_unique<Device>(cuda::make_renderer(), cuda::make_rays_renderer(), cuda::make_image_drawer()),
-              [wanted](CorrelationSettings const& settings) { return correlator_on_gpu(settings, wanted == "cuda"); }};
-    }
-    if (wanted == "cuda") throw DeviceError("--device cuda: " + state.text + "; use --device cpu or auto");
-    instead = " (" + state.text + ")";
+  if (choose_gpu(wanted)) {
+    return {std::make_unique<Device>(cuda::make_renderer(), cuda::make_rays_renderer(), cuda::make_image_drawer()),
+            [wanted](CorrelationSettings const& settings) { return correlator_on_gpu(settings, wanted == "cuda"); }};
   }
-  spdlog::info("device: cpu, {} threads{}", thread_count(), instead);
   return {std::make_unique<Device>(cpu()), tracking::make_cpu_correlator};
+}
+
+tomography::SartVolumeMaker open_volume_device(std::string const& wanted) {
+  if (choose_gpu(wanted)) return cuda::make_volume;
+  return tomography::make_host_volume;
 }
 
 std::unique_ptr<PairBatchRenderer> open_pair_batches(std::vector<OwnedPairModel> const& models) {

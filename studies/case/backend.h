@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "analysis/correlation/correlator.h"
+#include "analysis/tomography/sart_volume.h"
 #include "render/ideal_images/pair_batch.h"
 #include "render/scene/renderer.h"
 
@@ -35,6 +36,9 @@ Backend open_device(std::string const& wanted);
 /// size
 /// @throws DeviceError if no GPU is usable, DataError if the models cannot be rendered together
 std::unique_ptr<PairBatchRenderer> open_pair_batches(std::vector<OwnedPairModel> const& models);
+
+/// Opens a device for tomographic reconstructions, like open_device().
+tomography::SartVolumeMaker open_volume_device(std::string const& wanted);
 
 /// Returns the number of usable GPUs.
 int gpu_count();

@@ -61,8 +61,9 @@ std::vector<double> turn_field(MediumSetup const& setup, BuiltMedium const& medi
         double const slack = 1e-6 * grid.spacing.x;  // rounding of the turned position on a face
         parallel_for(static_cast<std::size_t>(grid.nodes[2]), [&](std::size_t k) {
           for (std::size_t n = 0; n < plane; ++n) {
-            Vec3d const at = grid.origin + Vec3d{static_cast<double>(n % row) * grid.spacing.x,
-                                                 static_cast<double>(n / row) * grid.spacing.y,
+            std::size_t const column = n % row, line = n / row;
+            Vec3d const at = grid.origin + Vec3d{static_cast<double>(column) * grid.spacing.x,
+                                                 static_cast<double>(line) * grid.spacing.y,
                                                  static_cast<double>(k) * grid.spacing.z};
             Vec3d p = volume.point_to_local(at);
             bool inside = true;
