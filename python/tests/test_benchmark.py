@@ -10,7 +10,7 @@ def test_our_estimator_as_a_function_scores_as_itself():
     ours, again = scores
     assert ours["estimator"] == "default" and again["estimator"] == "again"
     for name in set(ours) - {"estimator", "seconds"}:
-        assert ours[name] == again[name], name
+        assert ours[name] == again[name] or (np.isnan(ours[name]) and np.isnan(again[name])), name
     assert "vortex" in str(scores)
 
 

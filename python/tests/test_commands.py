@@ -11,7 +11,7 @@ import gladstone as gs
 
 def test_every_command_has_a_function(program):
     """Commands of `gladstone --help`; a command of another name or place is listed with its Python name."""
-    elsewhere, program_only = {"sweep": "Study"}, {"stereo"}
+    elsewhere, program_only = {"sweep": "Study"}, {"completion"}
     listed = subprocess.run([program.path, "--help"], capture_output=True, text=True, check=True).stdout
     names = [line.split()[0] for line in listed.split("Subcommands:")[1].splitlines() if line.startswith("  ")]
     assert len(names) >= 18

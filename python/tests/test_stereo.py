@@ -40,14 +40,14 @@ def result(cases):
     return gs.stereo(cases["left"], cases["right"], device="cpu")
 
 
-# The mean of about 100 vectors with errors of 0.05 px of 0.068 mm has a standard error of 0.4 um.
+# Of 49 nodes 35 are determined. The mean of 35 vectors with errors of 0.05 px of 0.068 mm has a standard error of 0.6 um.
 def test_measures_three_components(result):
     rows, columns = result.u.shape
     assert result.x_mm.shape == (columns,) and result.y_mm.shape == (rows,)
     assert np.all(np.diff(result.x_mm) > 0) and np.all(np.diff(result.y_mm) > 0)
     for component, expected_mm in ((result.u, 0.10), (result.v, -0.08), (result.w, 0.06)):
         assert np.nanmean(component) == pytest.approx(expected_mm, abs=2e-3)
-    assert result.valid.sum() > 50 and np.all(result.sigma_mm[result.valid] > 0)
+    assert result.valid.sum() > 30 and np.all(result.sigma_mm[result.valid] > 0)
     assert np.array_equal(result.error_mm, result.displacement_mm - result.truth_mm, equal_nan=True)
     assert np.allclose(result.covariance_mm2[..., 2], result.sigma_mm[..., 2] ** 2, rtol=1e-12, equal_nan=True)
     assert "nodes" in repr(result) and "residual" in str(result)
