@@ -73,8 +73,8 @@ void visit_around(int i, InterrogationGrid const& grid, int steps, Visit const& 
       if (dx != 0 || dy != 0) visit(dx, dy, i + dy * grid.columns + dx);
 }
 
-/// Replaces the nodes that are not known, in rounds from the border of each group inwards; within a round, only nodes
-/// known before it are used. Nodes remain unchanged if none is known.
+/// Extrapolates the unknown nodes in rounds, from the border of each group of unknown nodes inwards. A round uses the
+/// nodes that were known before it. Without any known node, all nodes remain unchanged.
 void extrapolate(std::vector<Vec2d>& nodes, std::vector<char> known, InterrogationGrid const& grid) {
   std::vector<int> holes;
   for (int i = 0; i < static_cast<int>(nodes.size()); ++i)

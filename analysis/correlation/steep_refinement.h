@@ -22,10 +22,11 @@ namespace gladstone {
 constexpr double steep_gradient = 0.1;
 
 /// A vector is mismatched if its correlation is below this fraction of the highest correlation within two windows:
-/// alternately the first and the second value. Windows on a wrong peak have coefficients of 0.2 to 0.4, or up to 0.6 at
-/// the border, where a few particles agree by chance; correct ones within a gradient start at 0.5, beside others above
-/// 0.9. No fraction separates them. The higher one finds more wrong vectors, the lower one extrapolates from more
-/// correct ones; neither does harm, because no vector is replaced by one that correlates worse.
+/// alternately the first and the second value. Wrong vectors correlate with 0.2 to 0.4, or up to 0.6 near the border of
+/// the image, where a few particles agree by chance. Correct vectors within a gradient correlate with 0.5 or more,
+/// their neighbours with more than 0.9. No fraction separates both kinds: the higher one finds more wrong vectors, the
+/// lower one retains more correct vectors for the extrapolation. Vectors that correlate worse afterwards are not
+/// replaced.
 constexpr double min_fractions_of_best_correlation[] = {0.7, 0.5};
 
 /// A refined vector is accepted if its correlation is at least this fraction of that before: it may decrease a little
@@ -35,9 +36,9 @@ constexpr double min_fraction_of_earlier_correlation = 0.98;
 /// Refinement ends if no vector changes by more than this [px]; the change decreases by at least half in each pass.
 constexpr double negligible_refinement_px = 0.02;
 
-/// A difference between neighbours counts as a gradient only if one of them has at least this correlation. In frames
-/// with much noise or many lost pairs, where no window has, differences are errors; beside a window on a wrong peak,
-/// the nearest correct ones have.
+/// A difference between neighbours counts as a gradient only if one of them has at least this correlation. Frames with
+/// strong noise or many lost pairs have no such vectors, and differences between neighbours are errors. Next to a wrong
+/// vector in frames of good quality, the nearest correct vectors reach this correlation.
 constexpr double min_correlation_of_match = 0.8;
 
 /// Returns whether the displacements a and b of two neighbours differ by a steep gradient.

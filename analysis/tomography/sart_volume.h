@@ -75,7 +75,7 @@ class SartVolume {
   virtual void download(std::vector<double>& value, std::vector<std::int64_t>& views) const = 0;
 };
 
-/// What a SartVolume is made of; views, support and the lines of the views must outlive it.
+/// Inputs of a SartVolume. Views, support and the lines of the views must outlive it.
 struct SartProblem {
   RegularGrid grid;
   std::span<SartView const> views;

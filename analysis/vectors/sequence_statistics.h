@@ -38,8 +38,8 @@ struct SequenceMoments {
 /// Accumulates the statistics of a sequence of displacement fields on one grid. Memory is bounded: sums of the first
 /// four powers and products of (u, v), and for the autocorrelation the last `lags` fields and the products with them.
 ///
-/// Includes measured vectors: valid ones, and those replaced by a secondary peak of their own window. Vectors
-/// replaced by the median of their neighbours are interpolated and would reduce the stresses.
+/// Includes vectors that were measured: valid vectors, and vectors replaced by a secondary peak of the same window.
+/// Vectors replaced by the median of their neighbours are interpolated and would reduce the stresses.
 ///
 /// With the autocorrelation rho_k at lag k and n vectors, the effective number of independent samples is
 /// N = n/(1 + 2 sum_k (1 - k/n) rho_k); the sum ends before the first rho_k <= 0 (Smith, Neal, Feero & Richards,

@@ -135,7 +135,7 @@ void take_vectors(WindowCorrelation const* windows, GridVector* vectors, Interro
 /// Validates the vectors of a pass. @param list, count  scratch: `list` has one element per vector
 void validate(GridVector* vectors, InterrogationGrid const& grid, ValidationRule const& rule, Replacement* list,
               int* count);
-/// Counts the vectors beside a steep gradient, see is_steep(). @param count  output: one number in device memory
+/// Counts the vectors at a steep gradient, see is_steep(). @param count  output: one number in device memory
 void count_steep(GridVector const* vectors, InterrogationGrid const& grid, int* count);
 /// Writes the final result of every vector after the last pass.
 void finish(WindowCorrelation const* windows, GridVector const* vectors, InterrogationGrid const& grid,

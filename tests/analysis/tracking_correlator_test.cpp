@@ -48,6 +48,7 @@ TEST(TrackingCorrelator, ResolvesAFrontBetterThanCorrelation) {
   std::vector<Vec2d> const places = test::random_places(20 * 64, frame_px, 3, random);
   test::MovedDots const frames = test::moved_dots(frame_px, places, front, random);
   CorrelationSettings settings;
+  settings.steep_passes = 0;  // repeated passes extrapolate into the front, so that windows resolve it better
   DisplacementField const correlated = make_correlator(settings)->correlate(frames.a, frames.b);
   settings.method = "tracking";
   DisplacementField const gridded = make_cpu_correlator(settings)->correlate(frames.a, frames.b);
@@ -60,8 +61,7 @@ TEST(TrackingCorrelator, ResolvesAFrontBetterThanCorrelation) {
   ASSERT_EQ(gridded.size(), correlated.size());
   EXPECT_GE(of_dots.count, 0.96 * 1280 * 232 * 232 / (256.0 * 256));
   EXPECT_LT(of_dots.rms, 0.25 * of_windows.rms);
-  // On the grid the dots are averaged over about a window, so that both smooth the front alike.
-  EXPECT_LT(of_grid.rms, 1.25 * of_windows.rms);
+  EXPECT_LT(of_grid.rms, of_windows.rms);
 }
 
 /// Errors and yield of tracked dots in a uniform displacement.

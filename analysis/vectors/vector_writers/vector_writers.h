@@ -67,7 +67,7 @@ struct VtkVectors {
   std::array<std::string, 3> components;  ///< names of columns; empty: 0
 };
 struct VtkLayout {
-  VtkVectors position;              ///< of the points in .vtp; the other columns are arrays of their own
+  VtkVectors position;              ///< positions of the points in .vtp; each other column is a separate array
   std::vector<VtkVectors> vectors;  ///< first the displacement
 };
 void write_vti_table(std::string const& path, VectorTable const& table, VectorGrid const& grid, VtkLayout const& layout,
