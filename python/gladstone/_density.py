@@ -15,6 +15,7 @@ from ._case import Case
 from ._errors import check_choice
 from ._field import Field
 from ._progress import Progress, reporting
+from ._xarray import grid_variable
 from ._setup import Setup
 
 Box = Sequence[float]
@@ -101,19 +102,16 @@ class Density:
         rendered case truth and error."""
         import xarray
 
-        def variable(values, units: str, long_name: str):
-            return ("y", "x"), np.array(values), {"units": units, "long_name": long_name}
-
         variables = {
-            "density": variable(self.density, "kg m-3", "density"),
-            "sigma": variable(self.sigma, "kg m-3", "standard uncertainty of the density"),
-            "sigma_random": variable(self.sigma_random, "kg m-3", "standard uncertainty due to the vectors"),
-            "region": variable(self.region, "1", "connected region of valid vectors, -1: none"),
-            "reference": variable(self.reference, "1", "node with the reference density"),
+            "density": grid_variable(self.density, "kg m-3", "density"),
+            "sigma": grid_variable(self.sigma, "kg m-3", "standard uncertainty of the density"),
+            "sigma_random": grid_variable(self.sigma_random, "kg m-3", "standard uncertainty due to the vectors"),
+            "region": grid_variable(self.region, "1", "connected region of valid vectors, -1: none"),
+            "reference": grid_variable(self.reference, "1", "node with the reference density"),
         }
         if self.truth is not None:
-            variables["truth"] = variable(self.truth, "kg m-3", "true density")
-            variables["error"] = variable(self.error, "kg m-3", "density minus true density")
+            variables["truth"] = grid_variable(self.truth, "kg m-3", "true density")
+            variables["error"] = grid_variable(self.error, "kg m-3", "density minus true density")
         return xarray.Dataset(
             variables,
             coords={

@@ -15,6 +15,7 @@ from ._case import Case
 from ._errors import check_choice
 from ._field import Field
 from ._progress import Progress, reporting
+from ._xarray import grid_variable
 
 
 class ThreeComponents:
@@ -110,18 +111,15 @@ class ThreeComponents:
         valid, and for two cameras of one rendering truth_u, truth_v, truth_w."""
         import xarray
 
-        def variable(values, units: str, long_name: str):
-            return ("y", "x"), np.array(values), {"units": units, "long_name": long_name}
-
         variables = {}
         for k, name in enumerate("uvw"):
-            variables[name] = variable(self.displacement_mm[..., k], "mm", f"displacement along {'xyz'[k]}")
-            variables[f"sigma_{name}"] = variable(self.sigma_mm[..., k], "mm", f"standard uncertainty of {name}")
+            variables[name] = grid_variable(self.displacement_mm[..., k], "mm", f"displacement along {'xyz'[k]}")
+            variables[f"sigma_{name}"] = grid_variable(self.sigma_mm[..., k], "mm", f"standard uncertainty of {name}")
             if self.truth_mm is not None:
-                variables[f"truth_{name}"] = variable(self.truth_mm[..., k], "mm", f"true {name}")
-        variables["residual"] = variable(self.residual_px, "px", "residual of the four equations")
-        variables["residual_ratio"] = variable(self.residual_ratio, "1", "residual over its standard uncertainty")
-        variables["valid"] = variable(self.valid, "1", "residual within its limit")
+                variables[f"truth_{name}"] = grid_variable(self.truth_mm[..., k], "mm", f"true {name}")
+        variables["residual"] = grid_variable(self.residual_px, "px", "residual of the four equations")
+        variables["residual_ratio"] = grid_variable(self.residual_ratio, "1", "residual over its standard uncertainty")
+        variables["valid"] = grid_variable(self.valid, "1", "residual within its limit")
         return xarray.Dataset(
             variables,
             coords={

@@ -9,7 +9,7 @@
 #include "render/rays/ray_planning.h"
 #include "render/rays/rays_renderer.h"
 #include "render/sensor/detector.h"
-#include "tests/benchmarks/ideal_pairs.h"
+#include "tests/support/ideal_pairs.h"
 
 namespace gladstone::bench {
 namespace {
@@ -32,7 +32,6 @@ Rendering render_pair(Setup const& setup) {
 void pairs(benchmark::State& state, Setup setup, Record record) {
   Progress::enable(false);
   set_thread_count(static_cast<int>(state.range(0)));
-  setup.camera.bit_depth = 12;
   setup.camera.noise.enabled = record == Record::yes;
   double fastest = 1e300, rays = 0;
   for (auto _ : state) {
@@ -55,7 +54,9 @@ void pairs(benchmark::State& state, Setup setup, Record record) {
   state.counters["rays"] = rays;
 }
 
-void ideal_pairs(benchmark::State& state) { pairs(state, pair_setup(ParticleScattering::gaussian, 1024), Record::no); }
+void ideal_pairs(benchmark::State& state) {
+  pairs(state, test::pair_setup(ParticleScattering::gaussian, 1024, 1024), Record::no);
+}
 BENCHMARK(ideal_pairs)
     ->ArgName("threads")
     ->Arg(1)
@@ -66,7 +67,7 @@ BENCHMARK(ideal_pairs)
     ->Unit(benchmark::kMillisecond);
 
 void ideal_pairs_with_noise(benchmark::State& state) {
-  pairs(state, pair_setup(ParticleScattering::gaussian, 1024), Record::yes);
+  pairs(state, test::pair_setup(ParticleScattering::gaussian, 1024, 1024), Record::yes);
 }
 BENCHMARK(ideal_pairs_with_noise)
     ->ArgName("threads")
@@ -79,7 +80,7 @@ BENCHMARK(ideal_pairs_with_noise)
 /// Renders oil droplets of about 1 um, all of different diameters, with as many rays as the accuracy requires; the time
 /// includes the choice of the number.
 void mie_pairs(benchmark::State& state) {
-  Setup setup = pair_setup(ParticleScattering::mie, 1024);
+  Setup setup = test::pair_setup(ParticleScattering::mie, 1024, 1024);
   setup.piv->particles.diameter.spread = DiameterSpread::lognormal;
   setup.piv->particles.diameter.width = 0.2;
   pairs(state, setup, Record::no);

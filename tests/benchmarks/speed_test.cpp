@@ -11,8 +11,8 @@
 #include "render/rays/rays_renderer.h"
 #include "studies/benchmark/particle_pair.h"
 #include "tests/benchmarks/bench_scenes.h"
-#include "tests/benchmarks/ideal_pairs.h"
 #include "tests/benchmarks/plain_loops.h"
+#include "tests/support/ideal_pairs.h"
 
 /// Speed of the paths that take most of the time of a run, relative to a plain loop that does the same work in the same
 /// process. A ratio hardly depends on the speed of the machine or on its other load, unlike a time.
@@ -87,7 +87,7 @@ TEST(Speed, OfTheCorrelationOfWindows) {
 }
 
 TEST(Speed, OfParticleImagesByFormula) {
-  auto const setup = pair_setup(ParticleScattering::gaussian, 512);
+  auto const setup = test::pair_setup(ParticleScattering::gaussian, 512, 512);
   Scene const scene = build_scene(setup);
   auto const ideal = ideal_images(scene);
   ASSERT_TRUE(ideal);

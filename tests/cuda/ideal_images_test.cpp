@@ -6,27 +6,17 @@
 
 #include "render/render.h"
 #include "tests/cuda/cuda_renderer_fixture.h"
+#include "tests/support/ideal_pairs.h"
 
 namespace gladstone {
 namespace {
 
-/// Particles of a sheet of 1 mm, imaged by a lens of 105 mm at f/16 from 750 mm to 150 x 100 px of the given pitch.
+/// Pairs of 150 x 100 px of the given pitch with a uniform flow.
 BosSetup pair_setup(double pitch = 5e-6) {
-  BosSetup setup;
-  setup.camera.columns = 150;
-  setup.camera.rows = 100;
+  BosSetup setup = test::pair_setup(ParticleScattering::gaussian, 150, 100);
   setup.camera.pixel_pitch = pitch;
-  setup.camera.bit_depth = 12;
-  setup.lens.f_number = 16;
-  setup.z_d = 0;
-  setup.medium.field = {};
-  PivSetup piv;
-  piv.particles.scattering = ParticleScattering::gaussian;
-  piv.particles.count = ParticleCount::per_pixel;
-  piv.particles.amount = 0.05;
-  piv.particles.volume = Vec3d{6e-3, 5e-3, 1e-3};
-  piv.flow.flow.uniform = {10, -4, 1};
-  setup.piv = piv;
+  setup.piv->particles.volume = Vec3d{6e-3, 5e-3, 1e-3};
+  setup.piv->flow.flow.uniform = {10, -4, 1};
   return setup;
 }
 

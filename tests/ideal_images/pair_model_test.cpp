@@ -8,28 +8,20 @@
 #include "render/base/error.h"
 #include "render/ideal_images/ideal_images.h"
 #include "render/scene/particle_scene.h"
+#include "tests/support/ideal_pairs.h"
 
 namespace gladstone {
 namespace {
 
 using PivScene = Scene;
 
-/// Sheet of 1 mm, imaged by a lens of 105 mm at f/16 from 750 mm to 96 x 80 px of 5 um.
+/// Pairs of 96 x 80 px of 500 particles with a uniform flow.
 gladstone::Setup small_pair() {
-  gladstone::Setup setup;
-  setup.camera.columns = 96;
-  setup.camera.rows = 80;
-  setup.camera.pixel_pitch = 5e-6;
-  setup.camera.bit_depth = 12;
-  setup.lens.f_number = 16;
-  setup.z_d = 0;
-  setup.medium.field = {};
-  PivSetup piv;
-  piv.particles.scattering = ParticleScattering::gaussian;
-  piv.particles.amount = 500;
-  piv.particles.volume = Vec3d{4e-3, 3e-3, 1e-3};
-  piv.flow.flow.uniform = {10, -4, 1};
-  setup.piv = piv;
+  gladstone::Setup setup = test::pair_setup(ParticleScattering::gaussian, 96, 80);
+  setup.piv->particles.count = ParticleCount::number;
+  setup.piv->particles.amount = 500;
+  setup.piv->particles.volume = Vec3d{4e-3, 3e-3, 1e-3};
+  setup.piv->flow.flow.uniform = {10, -4, 1};
   return setup;
 }
 

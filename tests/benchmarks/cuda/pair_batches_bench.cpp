@@ -5,27 +5,15 @@
 #include <vector>
 
 #include "cuda/backend.h"
+#include "tests/support/ideal_pairs.h"
 
 namespace gladstone::bench {
 namespace {
 
-/// PIV pairs with 0.05 particles a pixel, images 3.3 px wide (e^-2), no field, 12 bits.
+/// Square pairs with a flow that differs between the particles.
 Setup square_pair(int side) {
-  Setup setup;
-  setup.camera.columns = setup.camera.rows = side;
-  setup.camera.pixel_pitch = 5e-6;
-  setup.camera.bit_depth = 12;
-  setup.lens.f_number = 16;
-  setup.z_d = 0;
-  setup.medium.field = {};
-  PivSetup piv;
-  piv.particles.scattering = ParticleScattering::gaussian;
-  piv.particles.count = ParticleCount::per_pixel;
-  piv.particles.amount = 0.05;
-  double const view = 34e-3 * side / 1024;
-  piv.particles.volume = Vec3d{view, view, 1e-3};
-  piv.flow.flow.kind = TaylorGreenFlow{10, 2 * 3.14159265358979 / 10e-3, {}};
-  setup.piv = piv;
+  Setup setup = test::pair_setup(ParticleScattering::gaussian, side, side);
+  setup.piv->flow.flow.kind = TaylorGreenFlow{10, 2 * 3.14159265358979 / 10e-3, {}};
   return setup;
 }
 
