@@ -35,7 +35,7 @@ CLANG_TIDY := clang-tidy==23.1.4
 DEV_PACKAGES := clang libclang-rt-dev llvm
 PACKAGES += $(if $(filter dev,$(PRESET)),$(DEV_PACKAGES))
 # Programs that only tests call; those tests are skipped if the programs are missing.
-TEST_PACKAGES := munge slurmctld slurmd slurm-client chromium chromium-driver python3-selenium python3-numpy python3-h5py tidy
+TEST_PACKAGES := zsh fish munge slurmctld slurmd slurm-client chromium chromium-driver python3-selenium python3-numpy python3-h5py tidy
 
 # `make python` and `make wheel`: packages of PyPI, and the platform of the wheel (glibc 2.36 is that of bookworm).
 VENV := build/python/venv
