@@ -17,7 +17,7 @@ struct DotProfile {
   static constexpr std::size_t count = 5;
   /// Variances of the Gaussians over that of the dot [1].
   static constexpr std::array<double, count> scale{0.25, 0.35, 0.5, 0.7, 1.0};
-  std::array<double, count> share{0, 0, 0, 0, 1};  ///< light of the Gaussians over that of the dot [1]; their sum is 1
+  std::array<double, count> share{0, 0, 0, 0, 1};  ///< fraction of the dot's light in each Gaussian [1]
 
   bool gaussian() const { return share == DotProfile{}.share; }
 };

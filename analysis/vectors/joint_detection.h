@@ -28,7 +28,7 @@ struct CommonConventions {
   std::size_t decisive = 0;  ///< index of the file with the strongest evidence: for `mistake`, else for `conventions`
   /// Other axes or signs fit all files about as well as `conventions`; with a mistake, another mistake does.
   bool ambiguous = false;
-  ConventionFit fit;  ///< fit of `conventions` to the decisive file
+  ConventionFit fit;  ///< agreement of `conventions` with the decisive file
 };
 
 /// Determines the conventions that several files of one program have in common, and detects a mistake that they have in

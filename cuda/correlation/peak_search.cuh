@@ -42,7 +42,7 @@ __device__ int list_maxima(Plane const& plane, int radius, int begin, int end, P
   return count;
 }
 
-/// Inserts the listed maxima into the list of the highest. Called by one thread.
+/// Inserts candidate maxima into the sorted list of the highest peaks. Called by one thread.
 __device__ inline void insert_listed(PeakList<float>& found, PlanePeak<float> const* list, int count) {
   for (int k = 0; k < count; ++k)
     if (can_enter(found, list[k].height)) insert_peak(found, list[k]);

@@ -100,7 +100,7 @@ RecordedCase render_case_in_memory(CaseSetup& loaded, Renderer& renderer, Reusab
 /// Renders a setup into a CASE folder: reference.tif, flow.tif, truth.h5, setup.toml and summary.json.
 RecordedCase render_to_folder(CaseSetup& loaded, Renderer& renderer, std::string const& folder);
 
-/// Results of judge_case() that the files of a case contain besides those of the rendering.
+/// Accuracy, hashes of the images and number of unseen sources of a rendered case, as written to its files.
 struct CaseOutcome {
   TruthAccuracy accuracy;
   std::size_t unseen = 0;                ///< number of dots or particles without truth in one of the frames

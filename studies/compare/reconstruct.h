@@ -16,7 +16,7 @@ namespace gladstone {
 
 /// Region of known density in the mid-plane of the medium: the vectors along one side of the image, or within a box.
 struct ReferenceRegion {
-  std::optional<density::GridSide> side;  ///< empty: a box
+  std::optional<density::GridSide> side;  ///< side of the image; empty: the box `low` to `high`
   int depth = 1;                          ///< number of columns or rows of vectors, counted from the side
   Vec2d low{}, high{};                    ///< corners of the box, x to the right and y up from the optical axis [m]
 };

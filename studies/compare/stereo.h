@@ -44,7 +44,7 @@ struct StereoMeasurement {
   std::optional<stereo::SheetAlignment> given_sheet;
   std::vector<std::string> warnings;
   std::string setup;         ///< resolved setup of the first camera
-  std::uint64_t seed = 0;    ///< of the rendering
+  std::uint64_t seed = 0;    ///< random seed of the rendering
   SourceFiles sources = {};  ///< vectors, calibrations, and truth
 };
 

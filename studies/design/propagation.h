@@ -86,7 +86,7 @@ struct PropagatedResult {
   std::string key;  ///< name with the unit as suffix
   double value = 0;
   double standard = 0;  ///< combined standard uncertainty, to first order
-  /// effective, by Welch and Satterthwaite; infinite if those of all inputs are
+  /// effective degrees of freedom (Welch-Satterthwaite formula); infinite if every input has infinitely many
   double degrees_of_freedom = 0;
   double coverage_factor = 2;               ///< coverage factor for 95.45 %
   std::vector<Contribution> contributions;  ///< one per input, in their order

@@ -39,7 +39,8 @@ struct Recommendation {
   // if a design is feasible
   std::vector<std::string> binding;  ///< active limits of the best design, including ends of intervals
   std::vector<RequirementCost> costs;
-  /// objective against the limit of `front_bound`; empty: no requirement conflicts with the objective
+  /// trade-off: the best objective for each limit of the requirement `front_bound`; empty if no requirement restricts
+  /// the objective
   std::vector<FrontPoint> front;
   Bound front_bound = Bound::focus;
   // if no design is feasible
