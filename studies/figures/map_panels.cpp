@@ -221,8 +221,7 @@ class MapDrawing {
 
   /// Sets the margins of panel i and the place of its colour bar.
   void place_panel(GnuplotFigure& plot, int i) const {
-    int const row = i / figure_.columns;
-    int const column = i % figure_.columns;
+    int const row = i / figure_.columns, column = i % figure_.columns;
     int const left = Layout::edge + layout_.axis_label + column * cell_width_ + layout_.left;
     int const upper = top_[static_cast<std::size_t>(row)] + Layout::above;
     plot.command(fmt::format("set lmargin at screen {:.6f}; set rmargin at screen {:.6f}", screen_x(left),
@@ -248,8 +247,7 @@ class MapDrawing {
   void set_axes(GnuplotFigure& plot, MapPanel const& panel, int i) const {
     MapAxes const& axes = figure_.axes;
     int const column = i % figure_.columns;
-    double const half_x = 0.5 * std::abs(axes.x_step);
-    double const half_y = 0.5 * std::abs(axes.y_step);
+    double const half_x = 0.5 * std::abs(axes.x_step), half_y = 0.5 * std::abs(axes.y_step);
     double const x_end = axes.x_first + axes.x_step * (panel.map.columns() - 1);
     double const y_end = axes.y_first + axes.y_step * (panel.map.rows() - 1);
     plot.command(fmt::format("set xrange [{:.10g}:{:.10g}]", std::min(axes.x_first, x_end) - half_x,
