@@ -8,6 +8,8 @@
 #include <string>
 #include <utility>
 
+#include "analysis/vectors/position_mistakes.h"
+
 namespace gladstone::detail {
 namespace {
 
@@ -114,144 +116,6 @@ ProbableMistake find_offset(Search const& search) {
   ConventionFit const corrected_fit = search.fit(search.few, correction);
   if (!search.is_improved(corrected_fit)) return {};
   return {text, {}, corrected_fit, search.own, correction};
-}
-
-VectorCorrection shift_by(Vec2d shift_px) {
-  VectorCorrection correction;
-  correction.shift_px = shift_px;
-  return correction;
-}
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double vague_px = 2.0;  ///< a component with a greater uncertainty is not determined [px]
-
-/// Shift of the positions, and its uncertainty.
-struct FittedShift {
-  Vec2d shift_px{};
-  Vec2d uncertainty_px{};  ///< three standard errors
-};
-
-/// Refines a shift by least squares: Newton's method on the mean square difference from the truth, whose derivatives
-/// are finite differences. The standard errors assume that neighbouring windows overlap by half, as
-/// log_likelihood_statistic().
-FittedShift refine_shift(Search const& search, FittedShift fitted) {
-  constexpr double h = 0.5, farthest = 1.0;  // step of the differences, and distance from the first estimate [px]
-  double components = 1.0;
-  auto const mean_square = [&](double dx, double dy) {
-    ConventionFit const fit = search.fit(search.few, shift_by(fitted.shift_px + Vec2d{dx, dy}));
-    components = static_cast<double>(std::max<std::size_t>(1, fit.components));
-    return fit.spread_px * fit.spread_px;
-  };
-  Vec2d const first = fitted.shift_px;
-  for (int iteration = 0; iteration < 4; ++iteration) {
-    double const middle = mean_square(0, 0), right = mean_square(h, 0), left = mean_square(-h, 0),
-                 below = mean_square(0, h), above = mean_square(0, -h);
-    double const xx = (right - 2.0 * middle + left) / (h * h), yy = (below - 2.0 * middle + above) / (h * h);
-    double const xy =
-        (mean_square(h, h) - mean_square(h, -h) - mean_square(-h, h) + mean_square(-h, -h)) / (4.0 * h * h);
-    double const gx = (right - left) / (2.0 * h), gy = (below - above) / (2.0 * h), determinant = xx * yy - xy * xy;
-    // covariance 2 s^2 / n times the inverse Hessian, with a quarter of the components as independent
-    double const variance = 8.0 * middle / components;
-    auto const three_errors = [&](double curvature) { return 3.0 * std::sqrt(variance / std::max(curvature, 0.0)); };
-    FittedShift next;
-    if (xx > 0.0 && determinant > 0.0 && three_errors(determinant / std::max(xx, yy)) < vague_px) {
-      next.shift_px = fitted.shift_px - Vec2d{(yy * gx - xy * gy) / determinant, (xx * gy - xy * gx) / determinant};
-      next.uncertainty_px = {three_errors(determinant / yy), three_errors(determinant / xx)};
-    } else if (xx > yy) {  // as in a shear, whose displacement is the same all along its layers
-      next.shift_px = fitted.shift_px - Vec2d{gx / xx, 0.0};
-      next.uncertainty_px = {three_errors(xx), infinity};
-    } else {
-      next.shift_px = fitted.shift_px - Vec2d{0.0, gy / yy};
-      next.uncertainty_px = {infinity, three_errors(yy)};
-    }
-    if (!(length(next.shift_px - first) < farthest)) break;
-    fitted = next;
-  }
-  return fitted;
-}
-
-/// Describes the shift of the positions that `fitted` undoes, as far as the displacement determines it.
-std::string describe_shift(FittedShift const& fitted) {
-  auto const digit = [](double uncertainty) { return uncertainty < 0.1 ? 0.01 : 0.1; };  // last digit [px]
-  auto const rounded = [&](double value, double uncertainty) {
-    return 0.0 - digit(uncertainty) * std::round(value / digit(uncertainty));
-  };
-  auto const along = [&](char axis, double value, double uncertainty, char other) {
-    return fmt::format(
-        "positions are shifted by {:.4g} px in {}, to within {:.2g} px (in {} this displacement does not determine a "
-        "shift)",
-        rounded(value, uncertainty), axis, std::max(digit(uncertainty), uncertainty), other);
-  };
-  auto const [shift, uncertainty] = fitted;
-  if (!(uncertainty.y < vague_px) && uncertainty.x < vague_px) return along('x', shift.x, uncertainty.x, 'y');
-  if (!(uncertainty.x < vague_px) && uncertainty.y < vague_px) return along('y', shift.y, uncertainty.y, 'x');
-  double const larger = std::max(uncertainty.x, uncertainty.y);
-  return fmt::format("positions are shifted by ({:.4g}, {:.4g}) px, each to within {:.2g} px", rounded(shift.x, larger),
-                     rounded(shift.y, larger), std::max(digit(larger), larger));
-}
-
-/// Searches for positions with another origin: the shift that fits best, on a lattice of 4 px up to 64 px, refined by
-/// least squares.
-ProbableMistake find_shift(Search const& search) {
-  constexpr double farthest = 64.0;
-  DisplacementField const fewer = sample(search.few, 400);
-  auto const fit = [&](Vec2d shift) { return search.fit(fewer, shift_by(shift)).spread_px; };
-  Vec2d best{};
-  double least = fit(best);
-  auto const look_around = [&](Vec2d middle, double reach, double step) {
-    for (double dy = -reach; dy <= reach; dy += step) {
-      for (double dx = -reach; dx <= reach; dx += step) {
-        double const rms = fit(middle + Vec2d{dx, dy});
-        if (!(rms < least)) continue;
-        least = rms;
-        best = middle + Vec2d{dx, dy};
-      }
-    }
-  };
-  look_around({}, farthest, 4.0);
-  constexpr double finest = 0.25;
-  for (double const step : {2.0, 1.0, 0.5, finest}) look_around(best, step, step);
-  // Set a component to 0 if this displacement does not determine it.
-  for (auto const component : {&Vec2d::x, &Vec2d::y}) {
-    Vec2d other = best;
-    other.*component = 0.0;
-    if (log_likelihood_statistic(search.fit(fewer, shift_by(best)), search.fit(fewer, shift_by(other))) < 9.0)
-      best = other;
-  }
-  constexpr double counting = 2.0;  // conventions of pixel counting differ by less
-  if (!(std::max(std::abs(best.x), std::abs(best.y)) > counting)) return {};
-  FittedShift const fitted = refine_shift(search, {best, {finest, finest}});
-  ConventionFit const corrected_fit = search.fit(search.few, shift_by(fitted.shift_px));
-  if (!search.is_improved(corrected_fit)) return {};
-  return {describe_shift(fitted), {}, corrected_fit, search.own, shift_by(fitted.shift_px)};
-}
-
-/// Searches for positions that are a multiple of the true ones.
-ProbableMistake find_place_factor(Search const& search) {
-  auto const scaled = [](double factor) {
-    VectorCorrection correction;
-    correction.place_factor = factor;
-    return correction;
-  };
-  DisplacementField const fewer = sample(search.few, 400);
-  double best = 1.0, least = std::numeric_limits<double>::infinity();
-  auto const look_around = [&](double middle, double reach, double step) {
-    for (double e = -reach; e <= reach; e += step) {
-      double const factor = middle * std::exp(e), spread = search.fit(fewer, scaled(factor)).spread_px;
-      if (!(spread < least)) continue;
-      least = spread;
-      best = factor;
-    }
-  };
-  look_around(1.0, 1.4, 0.01);  // from a quarter to four times
-  look_around(best, 0.01, 0.001);
-  if (std::abs(best - 1.0) < 0.01) return {};
-  ConventionFit const corrected_fit = search.fit(search.few, scaled(best));
-  if (!search.is_improved(corrected_fit)) return {};
-  VectorConventions words = search.own.conventions;
-  words.px = std::stod(fmt::format("{:.3g}", words.px.value_or(1.0) * best));
-  return {fmt::format("positions are {:.3g} times the true ones, as if in another unit than px", best), describe(words),
-          corrected_fit, search.own, scaled(best)};
 }
 
 }  // namespace

@@ -11,16 +11,12 @@ from typing import Any
 import numpy as np
 
 from . import _core
-from ._case import CalibrationCase
+from ._measurement import Measurement, place_of
 from ._progress import Progress, reporting
-from ._setup import Setup
 
 
-class Calibration:
+class Calibration(Measurement):
     """Pinhole camera with distortion and polynomial, fitted to the dots of several planes."""
-
-    def __init__(self, core: _core.Calibration):
-        self._core = core
 
     @property
     def camera_matrix(self) -> np.ndarray:
@@ -73,11 +69,6 @@ class Calibration:
         """All results, as `gladstone calibrate --json` prints them."""
         return json.loads(self._core.json())
 
-    @property
-    def warnings(self) -> list[str]:
-        """Warnings about the calibration."""
-        return list(self._core.warnings)
-
     def save(self, path: str | os.PathLike) -> None:
         """Writes calibration.h5."""
         self._core.save(os.fspath(path))
@@ -85,9 +76,6 @@ class Calibration:
     def draw(self, path: str | os.PathLike) -> None:
         """Draws the residuals by gnuplot (.png, .svg)."""
         self._core.draw(os.fspath(path))
-
-    def __str__(self) -> str:
-        return self._core.text()
 
     def __repr__(self) -> str:
         rms = float(np.sqrt(np.mean(self.residual_px**2)))
@@ -102,12 +90,4 @@ def calibrate(given, images: Iterable[str | os.PathLike] = (), *, progress: Prog
     """
     files = [os.fspath(one) for one in images]
     with reporting(progress) as report, tempfile.TemporaryDirectory() as folder:
-        if isinstance(given, CalibrationCase):
-            place = os.path.join(folder, "case")
-            given.save(place)
-        elif isinstance(given, Setup):
-            place = os.path.join(folder, "setup.toml")
-            given.save(place)
-        else:
-            place = os.fspath(given)
-        return Calibration(_core.calibrate(place, files, report))
+        return Calibration(_core.calibrate(place_of(folder, given), files, report))

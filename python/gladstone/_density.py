@@ -13,24 +13,18 @@ import numpy as np
 from . import _core
 from ._case import Case
 from ._errors import check_choice
-from ._field import Field
+from ._measurement import Box, Measurement, place_of, reference_texts, vectors_place
 from ._progress import Progress, reporting
 from ._xarray import grid_variable
 from ._setup import Setup
 
-Box = Sequence[float]
-"""Corners x0, y0, x1, y1 of a box in mm from the optical axis, x to the right and y upwards."""
 
-
-class Density:
+class Density(Measurement):
     """Density in the mid-plane of the medium, averaged over its thickness, or of an axisymmetric flow in the plane
     through its axis.
 
     Arrays are [rows, columns], read-only, with x to the right and y upwards: row 0 is the lowest. NaN: not determined.
     """
-
-    def __init__(self, core: _core.Reconstruction):
-        self._core = core
 
     @property
     def x_mm(self) -> np.ndarray:
@@ -92,11 +86,6 @@ class Density:
         """Causes of the error by name, with bias and rms [kg/m^3]; empty unless requested by `budget=True`."""
         return self.summary.get("budget_kg_m3", {})
 
-    @property
-    def warnings(self) -> list[str]:
-        """Warnings about the reconstruction."""
-        return list(self._core.warnings)
-
     def to_xarray(self):
         """Returns an xarray.Dataset over (y, x) in mm: density, sigma, sigma_random, region, reference, and for a
         rendered case truth and error."""
@@ -126,49 +115,9 @@ class Density:
 
         return plot_density(self)
 
-    def __str__(self) -> str:
-        return self._core.text()
-
     def __repr__(self) -> str:
         rows, columns = self.density.shape
         return f"<gladstone.Density {columns} x {rows} nodes>"
-
-
-def _reference_text(region: str | Box) -> str:
-    return region if isinstance(region, str) else ",".join(repr(float(corner)) for corner in region)
-
-
-def _reference_texts(reference: str | Box | Sequence[str | Box] | None) -> list[str]:
-    """Returns the regions in the notation of the option --reference."""
-    if reference is None:
-        return []
-    single = isinstance(reference, str) or np.ndim(reference[0]) == 0 and not isinstance(reference[0], str)
-    return [_reference_text(region) for region in ([reference] if single else reference)]
-
-
-def _place(folder: str, setup: Setup | Case | str | os.PathLike) -> str:
-    """Returns the case folder or the setup file of a case or a setup, which is written into `folder`."""
-    if isinstance(setup, Case):
-        if setup._core.folder:
-            return setup._core.folder
-        place = os.path.join(folder, "case")
-        setup.save(place)
-        return place
-    if isinstance(setup, Setup):
-        place = os.path.join(folder, "setup.toml")
-        with open(place, "w", encoding="utf-8") as file:
-            file.write(setup.to_toml())
-        return place
-    return os.fspath(setup)
-
-
-def _vectors(folder: str, source) -> str:
-    """Returns the file of the vectors; those in memory are written into `folder`."""
-    if isinstance(source, (str, os.PathLike)):
-        return os.fspath(source)
-    vectors = os.path.join(folder, "vectors.h5")
-    Field.of(source).save(vectors)
-    return vectors
 
 
 def reconstruct(
@@ -217,12 +166,12 @@ def reconstruct(
     check_choice("method", method, ("wls", "poisson"))
     check_choice("abel", abel, ("direct", "tikhonov"))
     with tempfile.TemporaryDirectory() as folder, reporting(progress) as report:
-        place = _place(folder, source if setup is None else setup)
-        vectors = "" if setup is None else _vectors(folder, source)
+        place = place_of(folder, source if setup is None else setup)
+        vectors = "" if setup is None else vectors_place(folder, source)
         if isinstance(source, Case) and not source._core.folder:
-            vectors = _vectors(folder, source.correlate(device=device))
+            vectors = vectors_place(folder, source.correlate(device=device))
         core = _core.reconstruct(
-            place, vectors, conventions, _reference_texts(reference), reference_density, reference_sigma,
+            place, vectors, conventions, reference_texts(reference), reference_density, reference_sigma,
             scale_uncertainty, method == "wls", overlap, deconvolve, axis, abel == "tikhonov", lambda_, samples, budget,
             device, report,
         )  # fmt: skip

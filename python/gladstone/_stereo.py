@@ -13,19 +13,20 @@ import numpy as np
 from . import _core
 from ._case import Case
 from ._errors import check_choice
-from ._field import Field
+from ._measurement import Measurement, case_place, vectors_place
 from ._progress import Progress, reporting
 from ._xarray import grid_variable
 
 
-class ThreeComponents:
+class ThreeComponents(Measurement):
     """Displacement along X, Y, Z of the world at the nodes of a grid on the laser sheet.
 
     Arrays are [rows, columns], with x to the right and y upwards: row 0 is the lowest. NaN: not determined.
     """
 
     def __init__(self, core: _core.StereoMeasurement, temporary=None):
-        self._core, self._temporary = core, temporary
+        super().__init__(core)
+        self._temporary = temporary
 
     @property
     def x_mm(self) -> np.ndarray:
@@ -97,11 +98,6 @@ class ThreeComponents:
         """Results of `gladstone stereo --json`: means, uncertainties, errors against the truth, laser sheet."""
         return json.loads(self._core.summary())
 
-    @property
-    def warnings(self) -> list[str]:
-        """Warnings about the measurement."""
-        return list(self._core.warnings)
-
     def save(self, path: str | os.PathLike) -> None:
         """Writes the file of `gladstone stereo`, which `gladstone convert` converts to other formats."""
         self._core.save(os.fspath(path))
@@ -128,9 +124,6 @@ class ThreeComponents:
             },
         )
 
-    def __str__(self) -> str:
-        return self._core.text()
-
     def __repr__(self) -> str:
         rows, columns = self.valid.shape
         return f"<gladstone.ThreeComponents {columns} x {rows} nodes, {int(self.valid.sum())} valid>"
@@ -139,18 +132,11 @@ class ThreeComponents:
 def _input(folder: str, name: str, source, dewarp: str, device: str) -> str:
     """Returns the CASE folder or the file of vectors of one camera; what is in memory is written into `folder`."""
     if isinstance(source, Case):
-        if source._core.folder:
-            return source._core.folder
-        place = os.path.join(folder, name)
-        source.save(place)
-        if dewarp == "vectors":
+        place = case_place(folder, source, name)
+        if dewarp == "vectors" and not source._core.folder:
             source.correlate(device=device).save(os.path.join(place, "vectors.h5"))
         return place
-    if isinstance(source, (str, os.PathLike)):
-        return os.fspath(source)
-    vectors = os.path.join(folder, name + ".h5")
-    Field.of(source).save(vectors)
-    return vectors
+    return vectors_place(folder, source, name)
 
 
 def stereo(

@@ -10,15 +10,12 @@ from typing import Any
 import numpy as np
 
 from . import _core
-from ._density import Box, _reference_texts
+from ._measurement import Box, Measurement, reference_texts
 from ._progress import Progress, reporting
 
 
-class Tomography:
+class Tomography(Measurement):
     """Density of a volume. Arrays are [z, y, x], read-only, with ascending coordinates in the frame of the volume."""
-
-    def __init__(self, core: _core.Tomography):
-        self._core = core
 
     @property
     def x_mm(self) -> np.ndarray:
@@ -55,17 +52,9 @@ class Tomography:
         """Results of `gladstone tomography --json`, with `relative_error` for rendered cases."""
         return json.loads(self._core.summary())
 
-    @property
-    def warnings(self) -> list[str]:
-        """Warnings about the reconstruction."""
-        return list(self._core.warnings)
-
     def save(self, path: str | os.PathLike) -> None:
         """Writes the HDF5 file of `gladstone tomography`, which can be the field of a setup."""
         self._core.save(os.fspath(path))
-
-    def __str__(self) -> str:
-        return self._core.text()
 
     def __repr__(self) -> str:
         nz, ny, nx = self.density.shape
@@ -122,7 +111,7 @@ def tomography(
     with reporting(progress) as report:
         core = _core.tomography(
             [os.fspath(case) for case in cases], [os.fspath(file) for file in vectors], conventions, ray_truth,
-            [float(angle) for angle in angles_deg], arc_deg, _reference_texts(reference), reference_density,
+            [float(angle) for angle in angles_deg], arc_deg, reference_texts(reference), reference_density,
             [] if bounds_mm is None else [float(bound) for bound in bounds_mm], spacing_mm, support, least_density,
             largest_density, iterations, tolerance, relaxation, tv_weight, device, report,
         )  # fmt: skip

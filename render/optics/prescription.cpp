@@ -127,6 +127,65 @@ std::string find_short_surface(PrescribedSurface const& surface) {
       surface.where, 1 / surface.curvature / unit::millimetre, surface.semi_diameter / unit::millimetre);
 }
 
+/// Checks the lengths of a surface.
+/// @param last  the surface is the last one, whose thickness may be infinite
+/// @throws DataError for lengths that no lens has
+void check_dimensions(PrescribedSurface const& surface, bool last) {
+  if (!(std::abs(surface.thickness) <= longest) && !last) {
+    throw DataError(surface.where, fmt::format("a thickness of {:.4g} mm is too long for a lens (at most a kilometre)",
+                                               surface.thickness / unit::millimetre));
+  }
+  if (!(std::abs(advance(surface)) <= longest)) {
+    throw DataError(
+        surface.where,
+        fmt::format(
+            "the coordinate breaks ahead move it by {:.4g} mm, which is too long for a lens (at most a kilometre)",
+            advance(surface) / unit::millimetre));
+  }
+  if (!(surface.semi_diameter > 0)) {
+    throw DataError(surface.where, "the semi-diameter is not positive; give the radius within which light passes");
+  }
+  double const edge = surface.semi_diameter_vignettes ? surface.semi_diameter : HUGE_VAL;
+  if (!(surface.obscured >= 0 && surface.obscured < edge)) {
+    throw DataError(surface.where,
+                    fmt::format("an obscuration of radius {:.4g} mm covers the surface's semi-diameter of {:.4g} mm; "
+                                "make it smaller",
+                                surface.obscured / unit::millimetre, surface.semi_diameter / unit::millimetre));
+  }
+}
+
+/// Checks that glass behind a surface extends along the light.
+/// @param forwards  sign of the light's direction behind the surface
+/// @return true if the glass is directed against the light, by no more than the tolerance of surfaces in contact
+/// @throws DataError if it is so by more
+bool check_direction(PrescribedSurface const& surface, double forwards, bool last) {
+  bool const against =
+      !surface.after.is_mirror() && !surface.after.is_air() && forwards * surface.thickness < 0 && !last;
+  if (against && std::abs(surface.thickness) > contact_tolerance) {
+    throw DataError(surface.where,
+                    fmt::format("a thickness of {:.4g} mm of glass is directed against the light, which travels {} "
+                                "here; change its sign (behind an odd number of mirrors thicknesses are negative)",
+                                surface.thickness / unit::millimetre, forwards > 0 ? "forwards" : "back"));
+  }
+  return against;
+}
+
+/// Checks the aperture of a lens that has a stop.
+/// @return warning that the aperture is not defined for this object; empty: it is
+/// @throws DataError if it is not positive
+std::string check_aperture(Prescription const& lens) {
+  auto const& aperture = lens.aperture;
+  if (aperture.kind != PrescribedAperture::Kind::stop && !(aperture.value > 0)) {
+    throw DataError(aperture.where.empty() ? lens.file : aperture.where, "the aperture is not positive; correct it");
+  }
+  if (aperture.kind != PrescribedAperture::Kind::object_na || std::isfinite(lens.object_distance)) return "";
+  auto const at = std::find_if(lens.surfaces.begin(), lens.surfaces.end(), [](auto const& s) { return s.stop; });
+  return fmt::format(
+      "{}: a numerical aperture on the object's side does not define the aperture for an object at "
+      "infinity; the semi-diameter of the stop is used",
+      aperture.where.empty() ? at->where : aperture.where);
+}
+
 }  // namespace
 
 double advance(PrescribedSurface const& surface) {
@@ -204,37 +263,9 @@ std::vector<std::string> check_prescription(Prescription const& lens) {
       if (!stop.empty()) throw DataError(surface.where, "a second stop (the first one is at " + stop + "); remove one");
       stop = surface.where;
     }
-    if (!(std::abs(surface.thickness) <= longest) && !last) {
-      throw DataError(surface.where,
-                      fmt::format("a thickness of {:.4g} mm is too long for a lens (at most a kilometre)",
-                                  surface.thickness / unit::millimetre));
-    }
-    if (!(std::abs(advance(surface)) <= longest)) {
-      throw DataError(
-          surface.where,
-          fmt::format(
-              "the coordinate breaks ahead move it by {:.4g} mm, which is too long for a lens (at most a kilometre)",
-              advance(surface) / unit::millimetre));
-    }
-    if (!(surface.semi_diameter > 0)) {
-      throw DataError(surface.where, "the semi-diameter is not positive; give the radius within which light passes");
-    }
-    double const edge = surface.semi_diameter_vignettes ? surface.semi_diameter : HUGE_VAL;
-    if (!(surface.obscured >= 0 && surface.obscured < edge)) {
-      throw DataError(surface.where,
-                      fmt::format("an obscuration of radius {:.4g} mm covers the surface's semi-diameter of {:.4g} mm; "
-                                  "make it smaller",
-                                  surface.obscured / unit::millimetre, surface.semi_diameter / unit::millimetre));
-    }
+    check_dimensions(surface, last);
     if (surface.after.is_mirror()) forwards = -forwards;
-    bool const against =
-        !surface.after.is_mirror() && !surface.after.is_air() && forwards * surface.thickness < 0 && !last;
-    if (against && std::abs(surface.thickness) > contact_tolerance) {
-      throw DataError(surface.where,
-                      fmt::format("a thickness of {:.4g} mm of glass is directed against the light, which travels {} "
-                                  "here; change its sign (behind an odd number of mirrors thicknesses are negative)",
-                                  surface.thickness / unit::millimetre, forwards > 0 ? "forwards" : "back"));
-    }
+    bool const against = check_direction(surface, forwards, last);
     warn(find_short_surface(surface));
     if (surface.shape == PrescribedSurface::Shape::ideal_lens && surface.focal_length == 0) {
       throw DataError(surface.where, "an ideal thin lens has a focal length of 0; give it another one");
@@ -252,17 +283,7 @@ std::vector<std::string> check_prescription(Prescription const& lens) {
   if (!any_real) throw DataError(lens.file, "has no surface that refracts or reflects (every medium is air)");
   if (stop.empty())
     throw DataError(lens.file, "has no stop; mark the surface that limits the light (stop = true, STOP, STO)");
-  auto const& aperture = lens.aperture;
-  if (aperture.kind != PrescribedAperture::Kind::stop && !(aperture.value > 0)) {
-    throw DataError(aperture.where.empty() ? lens.file : aperture.where, "the aperture is not positive; correct it");
-  }
-  auto const at = std::find_if(lens.surfaces.begin(), lens.surfaces.end(), [](auto const& s) { return s.stop; });
-  if (aperture.kind == PrescribedAperture::Kind::object_na && !std::isfinite(lens.object_distance)) {
-    warn(
-        fmt::format("{}: a numerical aperture on the object's side does not define the aperture for an object at "
-                    "infinity; the semi-diameter of the stop is used",
-                    aperture.where.empty() ? at->where : aperture.where));
-  }
+  warn(check_aperture(lens));
   return warnings;
 }
 

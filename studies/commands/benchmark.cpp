@@ -142,13 +142,7 @@ CommandBody attach_benchmark(CLI::App& app, GlobalOptions const& options) {
     OutputFile html(in_place("benchmark.html"));  // checks that the page can be written
     BenchmarkResult const result = run_benchmark(benchmark, device);
     std::vector<std::string> figures;
-    if (!arguments->no_figures) {
-      try {
-        figures = draw_benchmark(result, benchmark.folder);
-      } catch (GnuplotMissing const& missing) {
-        spdlog::warn("{}", missing.what());
-      }
-    }
+    if (!arguments->no_figures) draw_or_warn([&] { figures = draw_benchmark(result, benchmark.folder); });
     ReportPage const page = benchmark_page(result, benchmark.folder);
     std::string const json = benchmark_json(result), text = page_text(page, figures, false);
     OutputFile::write_text(in_place("benchmark.json"), json);

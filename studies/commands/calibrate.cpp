@@ -35,12 +35,8 @@ void write_results(std::string const& folder, Calibration const& calibration, bo
   write_calibration_file((fs::path(folder) / case_file::calibration).string(), calibration);
   if (!figures) return;
   std::string const figure = (fs::path(folder) / case_file::calibration_figure).string();
-  try {
-    draw_calibration(figure, calibration);
+  if (draw_or_warn([&] { draw_calibration(figure, calibration); }))
     spdlog::info("drew {}", (fs::path(shown) / case_file::calibration_figure).string());
-  } catch (GnuplotMissing const& missing) {
-    spdlog::warn("{}", missing.what());
-  }
 }
 
 void log_warnings(Calibration const& calibration) {

@@ -31,11 +31,8 @@ namespace fs = std::filesystem;
 /// Draws the figures into a temporary folder; without gnuplot, only warns.
 /// @param place  final folder, for messages
 void draw_if_possible(fs::path const& folder, std::string const& place, Comparison const& comparison) {
-  try {
-    report_final_path(folder.string(), place, [&] { draw_comparison(folder.string(), comparison); });
-  } catch (GnuplotMissing const& missing) {
-    spdlog::warn("{}", missing.what());
-  }
+  draw_or_warn(
+      [&] { report_final_path(folder.string(), place, [&] { draw_comparison(folder.string(), comparison); }); });
 }
 
 std::vector<fs::path> figures_in(fs::path const& folder) {

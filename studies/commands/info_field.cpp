@@ -38,13 +38,7 @@ std::string steepest_text(Vec3d const& steepest, FieldPlace const& place) {
 bool draw_field(std::string const& path, FieldSource& source, FieldPlace const& place) {
   bool known = true;
   for (int axis = 0; axis < 3; ++axis) known = known && std::isfinite(place.extent_mm[axis]);
-  try {
-    write_field_figure(path, source, known);
-    return true;
-  } catch (GnuplotMissing const& missing) {
-    spdlog::warn("{}", missing.what());
-    return false;
-  }
+  return draw_or_warn([&] { write_field_figure(path, source, known); });
 }
 
 }  // namespace

@@ -121,14 +121,8 @@ Description describe_lens(LensQuestion const& question) {
   ParaxialLens const paraxial = paraxial_lens(lens);
   FieldAnalysis const field = analyse_field(lens, paraxial, spot_rays);
   nlohmann::json json = lens_json(lens, paraxial, field);
-  if (!question.figure.empty()) {
-    try {
-      write_lens_figure(question.figure, lens, paraxial, field);
-      json["figure"] = question.figure;
-    } catch (GnuplotMissing const& missing) {
-      spdlog::warn("{}", missing.what());
-    }
-  }
+  auto const draw = [&] { write_lens_figure(question.figure, lens, paraxial, field); };
+  if (!question.figure.empty() && draw_or_warn(draw)) json["figure"] = question.figure;
   return {json_text(json), lens_text(question, lens, paraxial, field)};
 }
 

@@ -1,7 +1,6 @@
 #include "studies/commands/info_mie.h"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <charconv>
@@ -120,14 +119,8 @@ Description describe_mie(MieQuestion const& question) {
     text += fmt::format("  {:>11.4g}  {:>11.6g}   {:>11.6g}   {:>11.6g}  {:>12.5f}\n", diagram.angle_deg[i],
                         diagram.s1_squared[i], diagram.s2_squared[i], s11[i], polarization[i]);
   }
-  if (!question.figure.empty()) {
-    try {
-      write_mie_figure(question.figure, diagram);
-      json["figure"] = question.figure;
-    } catch (GnuplotMissing const& missing) {
-      spdlog::warn("{}", missing.what());
-    }
-  }
+  auto const draw = [&] { write_mie_figure(question.figure, diagram); };
+  if (!question.figure.empty() && draw_or_warn(draw)) json["figure"] = question.figure;
   return {json_text(json), text};
 }
 

@@ -28,17 +28,13 @@ std::string figure_of_camera(std::string const& figure, std::string const& camer
 /// Draws the layout of a camera. @return false without gnuplot
 bool draw_setup(std::string const& path, CaseSetup loaded) {
   Setup const setup = loaded.setup;
-  try {
+  return draw_or_warn([&] {
     if (auto const view = layout_view(std::move(loaded))) {
       write_layout_view(path, *view);
     } else {
       write_camera_layout(path, setup);
     }
-    return true;
-  } catch (GnuplotMissing const& missing) {
-    spdlog::warn("{}", missing.what());
-    return false;
-  }
+  });
 }
 
 }  // namespace

@@ -23,12 +23,7 @@ namespace {
 
 /// Draws the figure, or warns if gnuplot is not installed.
 void draw_density(std::string const& path, Reconstruction const& reconstruction) {
-  try {
-    write_density_figure(path, reconstruction);
-    spdlog::info("drew {}", path);
-  } catch (GnuplotMissing const& missing) {
-    spdlog::warn("{}", missing.what());
-  }
+  if (draw_or_warn([&] { write_density_figure(path, reconstruction); })) spdlog::info("drew {}", path);
 }
 
 }  // namespace

@@ -34,12 +34,7 @@ std::vector<std::string> list_stereo_inputs(StereoOptions const& options) {
 
 /// Draws the figure, or warns if gnuplot is not installed.
 void draw_stereo(std::string const& path, StereoMeasurement const& measurement) {
-  try {
-    write_stereo_figure(path, measurement);
-    spdlog::info("drew {}", path);
-  } catch (GnuplotMissing const& missing) {
-    spdlog::warn("{}", missing.what());
-  }
+  if (draw_or_warn([&] { write_stereo_figure(path, measurement); })) spdlog::info("drew {}", path);
 }
 
 }  // namespace

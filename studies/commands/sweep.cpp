@@ -95,12 +95,9 @@ CommandBody attach_status(CLI::App& app, GlobalOptions const& options) {
 
 /// Draws the figures of RUN/figures/. @return their paths; empty without gnuplot
 std::vector<std::string> draw_figures(std::string const& run, StudyTable const& table) {
-  try {
-    return draw_study((std::filesystem::path(run) / "figures").string(), table);
-  } catch (GnuplotMissing const& missing) {
-    spdlog::warn("{}", missing.what());
-    return {};
-  }
+  std::vector<std::string> drawn;
+  draw_or_warn([&] { drawn = draw_study((std::filesystem::path(run) / "figures").string(), table); });
+  return drawn;
 }
 
 CommandBody attach_collect(CLI::App& app, GlobalOptions const& options) {

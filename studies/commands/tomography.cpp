@@ -117,12 +117,7 @@ TomographyOptions convert_arguments(TomographyArguments const& given) {
 
 /// Draws the figure, or warns if gnuplot is not installed.
 void draw_tomography(std::string const& path, Tomography const& result) {
-  try {
-    write_tomography_figure(path, result);
-    spdlog::info("drew {}", path);
-  } catch (GnuplotMissing const& missing) {
-    spdlog::warn("{}", missing.what());
-  }
+  if (draw_or_warn([&] { write_tomography_figure(path, result); })) spdlog::info("drew {}", path);
 }
 
 /// Writes the setups of --views.

@@ -166,11 +166,7 @@ std::string run_demo(std::string const& folder, Backend const& device) {
     name_sources(comparison, compared_files(place, ""));
     OutputFile::write_text(in_case(place, case_file::errors), errors_json(comparison));
     result.paper = paper_numbers(comparison);
-    try {
-      draw_comparison(place, comparison);
-    } catch (GnuplotMissing const& missing) {
-      spdlog::warn("{}", missing.what());
-    }
+    draw_or_warn([&] { draw_comparison(place, comparison); });
     std::string const truth_path = in_case(place, case_file::truth);
     FieldMap const field = read_field_map(truth_path);
     axes = axes_of(field);
@@ -182,15 +178,13 @@ std::string run_demo(std::string const& folder, Backend const& device) {
     result.planes = trace_planes(plane, spectrum, *device.renderer);
     series.push_back(agreement_series(plane, spectrum, result));
   }
-  try {
+  draw_or_warn([&] {
     write_seed_figure4((fs::path(folder) / "figure4.png").string(), axes, panels);
     std::vector<double> single_wave;
     for (double const size : agreement_sizes())
       single_wave.push_back(std::abs(cone_transfer(paper, size * cone_width(paper))));
     write_agreement_figure((fs::path(folder) / "agreement.png").string(), series, single_wave);
-  } catch (GnuplotMissing const& missing) {
-    spdlog::warn("{}", missing.what());
-  }
+  });
   double const seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   std::string const text = "# The demo\n\n" + demo_story(paper, found) + "\n" + demo_details(found) +
                            fmt::format(

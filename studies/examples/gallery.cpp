@@ -82,15 +82,13 @@ std::string run_gallery(std::string const& folder, Backend const& device) {
   std::string text = fmt::format("Images in {}: level 0 is black, levels from {:.0f} on are white.\n\n", folder, white);
   for (GalleryPicture const& picture : all)
     text += fmt::format("{:<13} {}: {}\n", picture.name, picture.title, picture.look);
-  try {
+  draw_or_warn([&] {
     for (std::size_t i = 1; i < all.size(); ++i) {
       write_map_figure((fs::path(folder) / all[i].name / "beside.png").string(),
                        grey_figure(2, {all[0], all[i]}, {images[0], images[i]}, white));
     }
     write_map_figure((fs::path(folder) / "gallery.png").string(), grey_figure(4, all, images, white));
-  } catch (GnuplotMissing const& missing) {
-    spdlog::warn("{}", missing.what());
-  }
+  });
   return text;
 }
 

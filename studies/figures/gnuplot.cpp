@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <spawn.h>
+#include <spdlog/spdlog.h>
 #include <sys/wait.h>
 
 #include <array>
@@ -100,6 +101,16 @@ bool is_full(std::string const& folder) {
 }
 
 }  // namespace
+
+bool draw_or_warn(std::function<void()> const& draw) {
+  try {
+    draw();
+    return true;
+  } catch (GnuplotMissing const& missing) {
+    spdlog::warn("{}", missing.what());
+    return false;
+  }
+}
 
 GnuplotFigure::GnuplotFigure(int width_px, int height_px)
     : width_px_(width_px), height_px_(height_px), folder_(temporary_.path()) {

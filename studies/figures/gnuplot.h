@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -19,6 +20,10 @@ class GnuplotMissing : public Error {
             "figures are not drawn: program gnuplot not found (Debian package gnuplot-nox); the numbers are written "
             "nevertheless") {}
 };
+
+/// Calls a function that draws figures; without gnuplot, warns that they are not drawn.
+/// @return false without gnuplot
+bool draw_or_warn(std::function<void()> const& draw);
 
 /// Builder of a figure: commands and data for one run of gnuplot, in a common style (DejaVu Sans, UTF-8 text taken
 /// literally). Data are stored in a temporary directory that is removed on destruction.

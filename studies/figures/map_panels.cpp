@@ -149,79 +149,105 @@ std::pair<Image<double>, int> reduced(Image<double> const& map, int width_px) {
   return {std::move(small), factor};
 }
 
-}  // namespace
+/// Draws the panels of a map figure.
+class MapDrawing {
+ public:
+  /// @pre a panel has a map
+  explicit MapDrawing(MapFigure const& figure)
+      : figure_(figure),
+        layout_(layout_of(figure, first_map(figure))),
+        count_(static_cast<int>(figure.panels.size())),
+        rows_((count_ + figure.columns - 1) / figure.columns),
+        ranges_(ranges_of(figure.panels)),
+        cell_width_(layout_.left + layout_.map_width + layout_.right),
+        width_(2 * Layout::edge + layout_.axis_label + figure.columns * cell_width_) {
+    int y = Layout::edge + (figure_.title.empty() ? 0 : Layout::title);
+    for (int row = 0; row < rows_; ++row) {
+      if (!heading_of(row).empty()) y += Layout::heading;
+      top_.push_back(y);
+      y += Layout::above + layout_.map_height + Layout::below;
+    }
+    height_ = y + layout_.axis_label + Layout::edge;
+  }
 
-char const* sequential_palette() { return viridis; }
+  void write(std::string const& path) const {
+    GnuplotFigure plot(width_, height_);
+    plot.command("set multiplot");
+    set_headings(plot);
+    for (int i = 0; i < count_; ++i) {
+      MapPanel const& panel = figure_.panels[static_cast<std::size_t>(i)];
+      if (panel.map.empty()) continue;
+      place_panel(plot, i);
+      set_colours(plot, panel, ranges_[static_cast<std::size_t>(i)]);
+      set_axes(plot, panel, i);
+      draw_map(plot, panel);
+      for (int label = 1; label <= rows_ + 1; ++label) plot.command(fmt::format("unset label {}", label));
+    }
+    plot.command("unset multiplot");
+    plot.write(path);
+  }
 
-ColourRange colour_range(Image<double> const& map, ColourScale scale) { return range_of(finite_values(map), scale); }
+ private:
+  static Image<double> const& first_map(MapFigure const& figure) {
+    GLADSTONE_EXPECTS(figure.columns > 0);
+    auto const first = std::find_if(figure.panels.begin(), figure.panels.end(),
+                                    [](MapPanel const& panel) { return !panel.map.empty(); });
+    GLADSTONE_EXPECTS(first != figure.panels.end());
+    return first->map;
+  }
 
-void write_map_figure(std::string const& path, MapFigure const& figure) {
-  GLADSTONE_EXPECTS(figure.columns > 0);
-  auto const first = std::find_if(figure.panels.begin(), figure.panels.end(),
-                                  [](MapPanel const& panel) { return !panel.map.empty(); });
-  GLADSTONE_EXPECTS(first != figure.panels.end());
-  Layout const layout = layout_of(figure, first->map);
-  MapAxes const& axes = figure.axes;
-  auto const count = static_cast<int>(figure.panels.size());
-  int const rows = (count + figure.columns - 1) / figure.columns;
-  auto const heading_of = [&](int row) {
+  std::string heading_of(int row) const {
     auto const i = static_cast<std::size_t>(row);
-    return i < figure.row_headings.size() ? figure.row_headings[i] : std::string{};
-  };
-
-  // vertical positions of the rows [px]
-  int const cell_width = layout.left + layout.map_width + layout.right;
-  int const cell_height = Layout::above + layout.map_height + Layout::below;
-  std::vector<int> top(static_cast<std::size_t>(rows));
-  int y = Layout::edge + (figure.title.empty() ? 0 : Layout::title);
-  for (int row = 0; row < rows; ++row) {
-    if (!heading_of(row).empty()) y += Layout::heading;
-    top[static_cast<std::size_t>(row)] = y;
-    y += cell_height;
-  }
-  int const width = 2 * Layout::edge + layout.axis_label + figure.columns * cell_width;
-  int const height = y + layout.axis_label + Layout::edge;
-
-  GnuplotFigure plot(width, height);
-  auto const screen_x = [&](double x_px) { return x_px / width; };
-  auto const screen_y = [&](double y_px) { return 1.0 - y_px / height; };
-  plot.command("set multiplot");
-  if (!figure.title.empty()) {
-    plot.command(fmt::format("set label 1 {} at screen 0.5, {:.6f} center font 'DejaVu Sans,15' textcolor '#101010'",
-                             GnuplotFigure::quoted(figure.title), screen_y(Layout::edge + 0.4 * Layout::title)));
-  }
-  for (int row = 0; row < rows; ++row) {
-    if (heading_of(row).empty()) continue;
-    plot.command(fmt::format(
-        "set label {} {} at screen {:.6f}, {:.6f} left font 'DejaVu Sans Bold,13' textcolor '#101010'", row + 2,
-        GnuplotFigure::quoted(heading_of(row)), screen_x(Layout::edge + layout.axis_label + layout.left),
-        screen_y(top[static_cast<std::size_t>(row)] - 0.5 * Layout::heading)));
+    return i < figure_.row_headings.size() ? figure_.row_headings[i] : std::string{};
   }
 
-  double const half_x = 0.5 * std::abs(axes.x_step);
-  double const half_y = 0.5 * std::abs(axes.y_step);
-  std::vector<ColourRange> const ranges = ranges_of(figure.panels);
-  for (int i = 0; i < count; ++i) {
-    MapPanel const& panel = figure.panels[static_cast<std::size_t>(i)];
-    if (panel.map.empty()) continue;
-    int const row = i / figure.columns;
-    int const column = i % figure.columns;
-    int const left = Layout::edge + layout.axis_label + column * cell_width + layout.left;
-    int const upper = top[static_cast<std::size_t>(row)] + Layout::above;
+  double screen_x(double x_px) const { return x_px / width_; }
+  double screen_y(double y_px) const { return 1.0 - y_px / height_; }
+
+  /// Sets the title of the figure and the headings of its rows.
+  void set_headings(GnuplotFigure& plot) const {
+    if (!figure_.title.empty()) {
+      plot.command(fmt::format("set label 1 {} at screen 0.5, {:.6f} center font 'DejaVu Sans,15' textcolor '#101010'",
+                               GnuplotFigure::quoted(figure_.title), screen_y(Layout::edge + 0.4 * Layout::title)));
+    }
+    for (int row = 0; row < rows_; ++row) {
+      if (heading_of(row).empty()) continue;
+      plot.command(fmt::format(
+          "set label {} {} at screen {:.6f}, {:.6f} left font 'DejaVu Sans Bold,13' textcolor '#101010'", row + 2,
+          GnuplotFigure::quoted(heading_of(row)), screen_x(Layout::edge + layout_.axis_label + layout_.left),
+          screen_y(top_[static_cast<std::size_t>(row)] - 0.5 * Layout::heading)));
+    }
+  }
+
+  /// Sets the margins of panel i and the place of its colour bar.
+  void place_panel(GnuplotFigure& plot, int i) const {
+    int const row = i / figure_.columns, column = i % figure_.columns;
+    int const left = Layout::edge + layout_.axis_label + column * cell_width_ + layout_.left;
+    int const upper = top_[static_cast<std::size_t>(row)] + Layout::above;
     plot.command(fmt::format("set lmargin at screen {:.6f}; set rmargin at screen {:.6f}", screen_x(left),
-                             screen_x(left + layout.map_width)));
+                             screen_x(left + layout_.map_width)));
     plot.command(fmt::format("set tmargin at screen {:.6f}; set bmargin at screen {:.6f}", screen_y(upper),
-                             screen_y(upper + layout.map_height)));
+                             screen_y(upper + layout_.map_height)));
     plot.command(fmt::format("set colorbox user origin screen {:.6f}, screen {:.6f} size screen {:.6f}, screen {:.6f}",
-                             screen_x(left + layout.map_width + Layout::bar_gap), screen_y(upper + layout.map_height),
-                             screen_x(Layout::bar), layout.map_height / static_cast<double>(height)));
+                             screen_x(left + layout_.map_width + Layout::bar_gap), screen_y(upper + layout_.map_height),
+                             screen_x(Layout::bar), layout_.map_height / static_cast<double>(height_)));
+  }
+
+  /// Sets title, palette and colour bar of a panel.
+  void set_colours(GnuplotFigure& plot, MapPanel const& panel, ColourRange range) const {
     plot.command(fmt::format("set title {} font 'DejaVu Sans,12' offset 0,-0.5 textcolor '#101010'",
                              GnuplotFigure::quoted(panel.title)));
     plot.command(palette_of(panel.scale));
-    ColourRange const range = ranges[static_cast<std::size_t>(i)];
     plot.command(
         fmt::format("set cbrange [{:.10g}:{:.10g}]; set cbtics ({}) font 'DejaVu Sans,9' scale 0.3 offset -0.8,0",
                     range.lower, range.upper, colour_tics(range)));
+  }
+
+  /// Sets ranges, tics and labels of the axes of panel i.
+  void set_axes(GnuplotFigure& plot, MapPanel const& panel, int i) const {
+    MapAxes const& axes = figure_.axes;
+    int const column = i % figure_.columns;
+    double const half_x = 0.5 * std::abs(axes.x_step), half_y = 0.5 * std::abs(axes.y_step);
     double const x_end = axes.x_first + axes.x_step * (panel.map.columns() - 1);
     double const y_end = axes.y_first + axes.y_step * (panel.map.rows() - 1);
     plot.command(fmt::format("set xrange [{:.10g}:{:.10g}]", std::min(axes.x_first, x_end) - half_x,
@@ -233,24 +259,41 @@ void write_map_figure(std::string const& path, MapFigure const& figure) {
     double const x_span = std::abs(axes.x_step) * panel.map.columns();
     plot.command(fmt::format(
         "set xtics {:.10g} font 'DejaVu Sans,9' offset 0,0.4; set ytics {:.10g} font 'DejaVu Sans,9' offset 0.6,0",
-        tic_step(x_span, layout.map_width / 42.0), tic_step(y_high - y_low, layout.map_height / 36.0)));
-    bool const lowest = i + figure.columns >= count;
-    plot.command(fmt::format("set format x '{}'; set format y '{}'", layout.inner_tics || lowest ? "% h" : "",
-                             layout.inner_tics || column == 0 ? "% h" : ""));
+        tic_step(x_span, layout_.map_width / 42.0), tic_step(y_high - y_low, layout_.map_height / 36.0)));
+    bool const lowest = i + figure_.columns >= count_;
+    plot.command(fmt::format("set format x '{}'; set format y '{}'", layout_.inner_tics || lowest ? "% h" : "",
+                             layout_.inner_tics || column == 0 ? "% h" : ""));
     plot.command(lowest ? fmt::format("set xlabel {} offset 0,0.8", GnuplotFigure::quoted(axes.x_label))
                         : std::string("unset xlabel"));
     plot.command(column == 0 ? fmt::format("set ylabel {} offset 1.6,0", GnuplotFigure::quoted(axes.y_label))
                              : std::string("unset ylabel"));
+  }
+
+  /// Draws the map of a panel, on grey for missing values.
+  void draw_map(GnuplotFigure& plot, MapPanel const& panel) const {
+    MapAxes const& axes = figure_.axes;
     plot.command(
         "set object 1 rectangle from graph 0,0 to graph 1,1 fillcolor '#b8b8b8' fillstyle solid noborder behind");
-    auto const [map, factor] = reduced(panel.map, layout.map_width);
+    auto const [map, factor] = reduced(panel.map, layout_.map_width);
     std::string const source = plot.add_map(map, axes.x_first + 0.5 * (factor - 1) * axes.x_step, factor * axes.x_step,
                                             axes.y_first + 0.5 * (factor - 1) * axes.y_step, factor * axes.y_step);
     plot.command(fmt::format("plot {} with image", source));
-    for (int label = 1; label <= rows + 1; ++label) plot.command(fmt::format("unset label {}", label));
   }
-  plot.command("unset multiplot");
-  plot.write(path);
-}
+
+  MapFigure const& figure_;
+  Layout layout_;
+  int count_, rows_;  ///< number of panels, and of their rows
+  std::vector<ColourRange> ranges_;
+  int cell_width_, width_, height_ = 0;  ///< width of a panel with its margins, and size of the figure [px]
+  std::vector<int> top_;                 ///< upper end of each row [px]
+};
+
+}  // namespace
+
+char const* sequential_palette() { return viridis; }
+
+ColourRange colour_range(Image<double> const& map, ColourScale scale) { return range_of(finite_values(map), scale); }
+
+void write_map_figure(std::string const& path, MapFigure const& figure) { MapDrawing(figure).write(path); }
 
 }  // namespace gladstone

@@ -150,6 +150,51 @@ std::optional<Reconstruction> reconstruct_compared(ReportOptions const& options,
   return reconstruct_case(options.source, density, device, &compared);
 }
 
+/// Adds the maps of displacements and errors, if the vectors are on a grid.
+void add_map_section(ReportPage& page, CaseView const& view) {
+  DisplacementField const& measured = view.comparison.measured;
+  if (measured.columns <= 1 || measured.rows <= 1) return;
+  page.data["fields"] = view.fields;
+  page.data["grid"] = {{"columns", measured.columns},
+                       {"rows", measured.rows},
+                       {"x", component_json(measured.position_px, &Vec2d::x)},
+                       {"y", component_json(measured.position_px, &Vec2d::y)}};
+  page.sections.push_back(
+      {"Maps", {Chart{"field", "Displacement, errors, and the contribution of each cause", page.findings.front()}}});
+}
+
+/// Adds the errors, their causes and the estimated uncertainty.
+void add_error_sections(ReportPage& page, CaseView const& view) {
+  Comparison const& all = view.comparison;
+  page.sections.push_back(
+      {"Errors", {Chart{"histogram", "Distribution of the error", page.findings.front()}, errors_table(view)}});
+  page.sections.push_back(
+      {"Causes of error",
+       {Chart{"budget", "rms of every cause", largest_term(all.shown_budget())},
+        budget_table("The error budget [px]; the terms correlate, so that their squares do not add up",
+                     all.shown_budget()),
+        Paragraph{explain_budget(all)}}});
+  ReportSection uncertainty{"Uncertainty", {TextList{uncertainty_statements(view)}}};
+  if (nlohmann::json bins = reliability_of(all); !bins.empty()) {
+    uncertainty.blocks.emplace_back(Chart{
+        "reliability", "Does the estimated uncertainty describe the error?",
+        fmt::format(
+            "In {} bins of equal count the estimated uncertainty grows from {:.3g} to {:.3g} px, and the rms error "
+            "against {} is {:.3g} px in the first and {:.3g} px in the last. On the dashed line they are equal.",
+            bins.size(), bins.front()["sigma"].get<double>(), bins.back()["sigma"].get<double>(), all.recorded_name(),
+            bins.front()["error"].get<double>(), bins.back()["error"].get<double>())});
+    page.data["reliability"] = std::move(bins);
+  }
+  page.sections.push_back(std::move(uncertainty));
+}
+
+/// Returns the name of a CASE folder without the folders above it.
+std::string case_name(std::string const& folder) {
+  std::string const name = fs::path(folder).lexically_normal().filename().string();
+  if (!name.empty()) return name;
+  return fs::absolute(folder).lexically_normal().parent_path().filename().string();
+}
+
 }  // namespace
 
 nlohmann::json budget_json(ErrorBudget const& budget) {
@@ -208,9 +253,7 @@ ReportPage case_report(ReportOptions const& options, Backend const& device) {
   Comparison const& all = view.comparison;
   add_maps(view);
   ReportPage page;
-  page.title = "Case " + fs::path(options.source).lexically_normal().filename().string();
-  if (page.title == "Case ")
-    page.title = "Case " + fs::absolute(options.source).lexically_normal().parent_path().filename().string();
+  page.title = "Case " + case_name(options.source);
   page.question = fmt::format(
       "How large is the error of this {} measurement, and what causes it? {} vectors, compared with the light rays.",
       view.piv ? "PIV" : "BOS", all.vectors_in_file());
@@ -219,40 +262,12 @@ ReportPage case_report(ReportOptions const& options, Backend const& device) {
   if (mistaken || !all.complete) {
     page.doubtful.push_back(options.vectors.empty() ? in_case(options.source, case_file::vectors) : options.vectors);
   }
-  bool const gridded = all.measured.columns > 1 && all.measured.rows > 1;
   page.data = {{"errors", view.errors}, {"budget", budget_json(all.shown_budget())}};
   std::optional<LayoutView> const bench = layout_view(load_case_setup(in_case(options.source, case_file::setup), {}));
   if (bench) page.sections.push_back(layout_section(*bench, "the case"));
   page.sections.push_back({"Images", {frame_pictures(options.source, "The two frames")}});
-  if (gridded) {
-    page.data["fields"] = view.fields;
-    page.data["grid"] = {{"columns", all.measured.columns},
-                         {"rows", all.measured.rows},
-                         {"x", component_json(all.measured.position_px, &Vec2d::x)},
-                         {"y", component_json(all.measured.position_px, &Vec2d::y)}};
-    page.sections.push_back(
-        {"Maps", {Chart{"field", "Displacement, errors, and the contribution of each cause", page.findings.front()}}});
-  }
-  page.sections.push_back(
-      {"Errors", {Chart{"histogram", "Distribution of the error", page.findings.front()}, errors_table(view)}});
-  page.sections.push_back(
-      {"Causes of error",
-       {Chart{"budget", "rms of every cause", largest_term(all.shown_budget())},
-        budget_table("The error budget [px]; the terms correlate, so that their squares do not add up",
-                     all.shown_budget()),
-        Paragraph{explain_budget(all)}}});
-  ReportSection uncertainty{"Uncertainty", {TextList{uncertainty_statements(view)}}};
-  if (nlohmann::json bins = reliability_of(all); !bins.empty()) {
-    uncertainty.blocks.emplace_back(Chart{
-        "reliability", "Does the estimated uncertainty describe the error?",
-        fmt::format(
-            "In {} bins of equal count the estimated uncertainty grows from {:.3g} to {:.3g} px, and the rms error "
-            "against {} is {:.3g} px in the first and {:.3g} px in the last. On the dashed line they are equal.",
-            bins.size(), bins.front()["sigma"].get<double>(), bins.back()["sigma"].get<double>(), all.recorded_name(),
-            bins.front()["error"].get<double>(), bins.back()["error"].get<double>())});
-    page.data["reliability"] = std::move(bins);
-  }
-  page.sections.push_back(std::move(uncertainty));
+  add_map_section(page, view);
+  add_error_sections(page, view);
   std::vector<std::string> const commands = commands_of(options);
   std::optional<Reconstruction> const density = reconstruct_compared(options, all, device);
   if (density) {

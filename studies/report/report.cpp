@@ -1,7 +1,6 @@
 #include "studies/report/report.h"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <filesystem>
 
@@ -29,15 +28,13 @@ ReportSection drawn_figures(
     std::function<std::vector<std::string>(std::string const& folder, std::string const& format)> const& draw) {
   ReportSection section{"Figures", {}};
   if (options.figures.empty()) return section;
-  try {
+  draw_or_warn([&] {
     fs::path const beside = fs::absolute(options.output).parent_path();
     for (std::string const& path : draw(options.figures, options.figure_format)) {
       section.blocks.emplace_back(
           FigureFile{fs::absolute(path).lexically_proximate(beside).string(), fs::path(path).stem().string()});
     }
-  } catch (GnuplotMissing const& missing) {
-    spdlog::warn("{}", missing.what());
-  }
+  });
   return section;
 }
 

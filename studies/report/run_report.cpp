@@ -89,42 +89,34 @@ SourceFiles run_sources(std::string const& run, std::vector<StudyRow const*> con
   return sources;
 }
 
-}  // namespace
+/// Best and worst finished case by the main measure of a study.
+struct Extremes {
+  StudyRow const* best;
+  StudyRow const* worst;
+};
 
-ReportPage run_report(ReportOptions const& options) {
-  std::string const& run = options.source;
-  StudyView const study(run);
+Extremes extremes_of(StudyView const& study) {
   auto const worse = [&](StudyRow const* a, StudyRow const* b) {
     double const of_a = study.of(*a, study.main), of_b = study.of(*b, study.main);
     return std::isfinite(of_a) && (!std::isfinite(of_b) || of_a < of_b);  // unknown values are excluded
   };
-  StudyRow const& best = **std::min_element(study.finished.begin(), study.finished.end(), worse);
-  StudyRow const* worst = &best;
+  StudyRow const* const best = *std::min_element(study.finished.begin(), study.finished.end(), worse);
+  StudyRow const* worst = best;
   for (StudyRow const* row : study.finished) {
     if (study.of(*row, study.main) > study.of(*worst, study.main)) worst = row;
   }
-  ReportPage page;
-  page.title = "Study " + study.table.name;
-  page.question = describe_question(study);
-  page.findings = {extremes(study, best, *worst)};
-  for (std::string const& finding :
-       {other_rankings(study), largest_cause(study), strongest_axis(study), uncertainty_finding(study)}) {
-    if (!finding.empty()) page.findings.push_back(finding);
-  }
-  page.data = study_data(study);
+  return {best, worst};
+}
+
+/// Adds the charts of errors, their causes and their uncertainty.
+/// @pre the first finding is that about the best and the worst case
+void add_charts(ReportPage& page, StudyView const& study) {
   auto const free = std::count_if(study.table.axes.begin(), study.table.axes.end(),
                                   [](StudyAxis const& axis) { return axis.labels.size() > 1; });
-  auto const manifest_entries = read_manifest(run);
-  std::string const base_text = text_in_run(run, run_file::base), best_text = manifest_entries[best.index].setup;
-  std::string const whose_best = fmt::format("case {}, the best", best.index);
-  std::optional<LayoutView> const base = bench_of_text(base_text, run_file::base),
-                                  bench = bench_of_text(best_text, "the setup of " + whose_best);
-  page.sections.push_back(setup_section(study, base ? &*base : nullptr));
   ReportSection errors{"Error over the axes", {}};
   if (free > 0) errors.blocks.emplace_back(Chart{"curves", "A measure over an axis", page.findings.front()});
   if (free > 1) errors.blocks.emplace_back(Chart{"cells", "A measure over two axes", strongest_axis(study)});
-  errors.blocks.emplace_back(
-      Chart{"scatter", "A measure against another, one point per case", extremes(study, best, *worst)});
+  errors.blocks.emplace_back(Chart{"scatter", "A measure against another, one point per case", page.findings.front()});
   page.sections.push_back(std::move(errors));
   if (!study.terms.empty()) {
     page.sections.push_back({"Causes of error",
@@ -137,22 +129,13 @@ ReportPage run_report(ReportOptions const& options) {
     page.sections.push_back(
         {"Uncertainty", {Chart{"coverage", "Fraction of the errors that the estimated uncertainty covers", finding}}});
   }
-  ReportSection extreme{"Best and worst case",
-                        {frames_of(run, study, best, "Best"), frames_of(run, study, *worst, "Worst")}};
-  if (bench && (!base || layout_text(*base) != layout_text(*bench))) {
-    extreme.blocks.push_back(layout_block(*bench, whose_best));
-  }
-  page.sections.push_back(std::move(extreme));
-  auto const draw = [&](std::string const& folder, std::string const& format) {
-    std::vector<std::string> drawn = draw_study(folder, study.table, {format});
-    if (!base) return drawn;
-    for (std::string& path : draw_layout_and_map(folder, format, *base)) drawn.push_back(std::move(path));
-    return drawn;
-  };
-  if (ReportSection figures = drawn_figures(options, draw); !figures.blocks.empty()) {
-    page.sections.push_back(std::move(figures));
-  }
-  page.sections.push_back({"All cases", {cases_table(study)}});
+}
+
+/// Returns study, setups, seeds and builds.
+/// @param best_text,whose_best  setup of the best case, and its name
+ReportSection settings_section(std::string const& run, StudyView const& study, StudyRow const& best,
+                               std::string const& base_text, std::string const& best_text,
+                               std::string const& whose_best) {
   ReportSection settings{"Settings", {}};
   if (std::string text = text_in_run(run, run_file::study); !text.empty()) {
     settings.blocks.emplace_back(Verbatim{"The study", std::move(text)});
@@ -171,13 +154,60 @@ ReportPage run_report(ReportOptions const& options) {
   for (std::string const& build : study.table.builds()) builds += (builds.empty() ? "" : ", ") + build;
   settings.blocks.emplace_back(
       Paragraph{fmt::format("Seeds of the repeats: {}. Computed by gladstone {} on {}.", seeds, builds, best.device)});
-  page.sections.push_back(std::move(settings));
+  return settings;
+}
+
+/// Returns the inputs of the report and the commands that reproduce it.
+ReportSection origin_section(std::string const& run, Extremes const& extreme) {
+  std::vector<StudyRow const*> shown{extreme.best};
+  if (extreme.worst != extreme.best) shown.push_back(extreme.worst);
   std::string const place = shell_word(run);
-  std::vector<StudyRow const*> shown{&best};
-  if (worst != &best) shown.push_back(worst);
-  page.sections.push_back(provenance_section(
-      run_sources(run, shown), {"gladstone sweep plan study.toml -o " + place, "gladstone sweep run " + place,
-                                "gladstone sweep collect " + place, "gladstone report " + place}));
+  return provenance_section(run_sources(run, shown),
+                            {"gladstone sweep plan study.toml -o " + place, "gladstone sweep run " + place,
+                             "gladstone sweep collect " + place, "gladstone report " + place});
+}
+
+}  // namespace
+
+ReportPage run_report(ReportOptions const& options) {
+  std::string const& run = options.source;
+  StudyView const study(run);
+  Extremes const extreme = extremes_of(study);
+  StudyRow const &best = *extreme.best, &worst = *extreme.worst;
+  ReportPage page;
+  page.title = "Study " + study.table.name;
+  page.question = describe_question(study);
+  page.findings = {extremes(study, best, worst)};
+  for (std::string const& finding :
+       {other_rankings(study), largest_cause(study), strongest_axis(study), uncertainty_finding(study)}) {
+    if (!finding.empty()) page.findings.push_back(finding);
+  }
+  page.data = study_data(study);
+  auto const manifest_entries = read_manifest(run);
+  std::string const base_text = text_in_run(run, run_file::base), best_text = manifest_entries[best.index].setup;
+  std::string const whose_best = fmt::format("case {}, the best", best.index);
+  std::optional<LayoutView> const base = bench_of_text(base_text, run_file::base),
+                                  bench = bench_of_text(best_text, "the setup of " + whose_best);
+  page.sections.push_back(setup_section(study, base ? &*base : nullptr));
+  add_charts(page, study);
+  ReportSection frames{"Best and worst case",
+                       {frames_of(run, study, best, "Best"), frames_of(run, study, worst, "Worst")}};
+  if (bench && (!base || layout_text(*base) != layout_text(*bench))) {
+    frames.blocks.push_back(layout_block(*bench, whose_best));
+  }
+  page.sections.push_back(std::move(frames));
+  auto const draw = [&](std::string const& folder, std::string const& format) {
+    std::vector<std::string> drawn = draw_study(folder, study.table, {format});
+    if (!base) return drawn;
+    for (std::string& path : draw_layout_and_map(folder, format, *base)) drawn.push_back(std::move(path));
+    return drawn;
+  };
+  if (ReportSection figures = drawn_figures(options, draw); !figures.blocks.empty()) {
+    page.sections.push_back(std::move(figures));
+  }
+  page.sections.push_back({"All cases", {cases_table(study)}});
+  page.sections.push_back(settings_section(run, study, best, base_text, best_text, whose_best));
+  page.sections.push_back(origin_section(run, extreme));
   return page;
 }
 

@@ -110,6 +110,112 @@ std::vector<double> numbers_of(Image<Vec2d> const& map) {
   return numbers;
 }
 
+/// Cases of a study whose images were kept.
+struct KeptCases {
+  std::vector<CaseWithImages> cases;
+  StudyTable table;         ///< table of the study with the rows of these cases only
+  std::size_t without = 0;  ///< number of the other cases
+
+  std::string const& sources() const { return cases.front().sources; }
+};
+
+/// Finds the finished cases of a study whose images were kept. @throws DataError if there are none
+KeptCases find_kept(std::string const& run) {
+  KeptCases kept{{}, read_study_table(run)};
+  std::vector<StudyRow> rows;
+  for (StudyRow const& row : kept.table.rows) {
+    if (row.status != CaseStatus::ok) continue;
+    if (std::optional<CaseWithImages> one = case_with_images(images_folder(run, row.index))) {
+      kept.cases.push_back(std::move(*one));
+      rows.push_back(row);
+    }
+  }
+  kept.without = kept.table.rows.size() - kept.cases.size();
+  if (kept.cases.empty()) {
+    throw DataError(run, "contains no images of cases; compute them with gladstone sweep run --keep-images");
+  }
+  kept.table.rows = std::move(rows);
+  return kept;
+}
+
+/// Sizes of the arrays of a data set.
+struct DatasetSizes {
+  std::vector<std::size_t> pixels;  ///< rows and columns of an image
+  std::size_t spacing = 1;          ///< distance between the nodes of the displacement maps [px]
+  std::vector<std::int64_t> begin;  ///< first source of each case, and the number of all sources
+
+  std::size_t cases() const { return begin.size() - 1; }
+  /// Rows and columns of a displacement map.
+  std::vector<std::size_t> nodes() const {
+    return {(pixels[0] + spacing - 1) / spacing, (pixels[1] + spacing - 1) / spacing};
+  }
+};
+
+/// @throws DataError if the truth of the cases differs in kind
+DatasetSizes sizes_of(KeptCases const& kept, std::string const& run) {
+  DatasetSizes sizes;
+  sizes.begin = {0};
+  for (CaseWithImages const& one : kept.cases) {
+    sizes.begin.push_back(sizes.begin.back() + static_cast<std::int64_t>(one.count));
+  }
+  Image<double> const sample = read_image(in_case(kept.cases.front().folder, case_file::reference));
+  sizes.pixels = {static_cast<std::size_t>(sample.rows()), static_cast<std::size_t>(sample.columns())};
+  for (CaseWithImages const& one : kept.cases) {
+    if (one.sources == kept.sources()) continue;
+    throw DataError(run, "has cases of BOS and of PIV, whose truth differs in kind; pack studies of one experiment");
+  }
+  sizes.spacing = static_cast<std::size_t>(kept.sources() == "/particles" ? piv_spacing_px : bos_spacing_px);
+  return sizes;
+}
+
+/// Creates the arrays of images and truth, which write_packed_case() fills.
+void make_arrays(Hdf5Writer& file, DatasetSizes const& sizes) {
+  std::vector<std::size_t> const& size = sizes.pixels;
+  std::vector<std::size_t> const nodes = sizes.nodes();
+  std::size_t const cases = sizes.cases();
+  auto const all = static_cast<std::size_t>(sizes.begin.back());
+  file.make_rows<std::uint16_t>("/images", {cases, 2, size[0], size[1]}, {1, 1, size[0], size[1]}, "1",
+                                "grey levels as in reference.tif and flow.tif", "case, frame, row, column");
+  for (DisplacementMapName const& map : maps) {
+    file.make_rows<double>(map.name, {cases, nodes[0], nodes[1], 2}, {1, nodes[0], nodes[1], 2}, "px",
+                           "true displacement from flow, medium and camera, on a lattice of pixels",
+                           "case, row, column, component (u right, v down)");
+    file.attribute(map.name, "spacing_px", static_cast<double>(sizes.spacing));
+    file.attribute(map.name, "place", map.place);
+  }
+  std::size_t const chunk = std::clamp<std::size_t>(all, 1, list_chunk);
+  for (char const* name : {"/truth/reference_px", "/truth/displacement_px"}) {
+    file.make_rows<double>(name, {all, 2}, {chunk, 2}, "px", "of every dot or particle, case by case",
+                           "source, component (x right, y down)");
+  }
+  file.make_rows<double>("/truth/flux", {all, 2}, {chunk, 2}, "fully lit px; for particles photons",
+                         "light of every dot or particle, case by case", "source, frame");
+  file.write("/truth/begin", sizes.begin, {sizes.begin.size()}, "1",
+             "sources of case i are rows begin[i] to begin[i + 1] - 1", "case");
+}
+
+/// Writes images and truth of case i. @throws DataError if its files have changed meanwhile
+void write_packed_case(Hdf5Writer& file, std::size_t i, CaseWithImages const& one, DatasetSizes const& sizes,
+                       Renderer& renderer) {
+  file.write_rows<std::uint16_t>("/images", i, read_frames(one, sizes.pixels));
+  Hdf5Reader const truth(in_case(one.folder, case_file::truth));
+  std::vector<double> const place = truth.read(one.sources + "/reference_px");
+  std::vector<double> const displacement = truth.read(one.sources + "/displacement_px");
+  std::vector<double> const flux = truth.read(one.sources + "/flux");
+  if (place.size() != 2 * one.count || displacement.size() != place.size() || flux.size() != place.size()) {
+    throw DataError(in_case(one.folder, case_file::truth), "was replaced while it was read; pack the study again");
+  }
+  auto const row = static_cast<std::size_t>(sizes.begin[i]);
+  file.write_rows<double>("/truth/reference_px", row, place);
+  file.write_rows<double>("/truth/displacement_px", row, displacement);
+  file.write_rows<double>("/truth/flux", row, flux);
+  PreparedCase const prepared = prepare_again(one);
+  for (DisplacementMapName const& map : maps) {
+    file.write_rows<double>(
+        map.name, i, numbers_of(displacement_truth(prepared.scene, renderer, map.at, static_cast<int>(sizes.spacing))));
+  }
+}
+
 }  // namespace
 
 void refuse_files_of_study(std::string const& run, std::string const& path) {
@@ -122,89 +228,26 @@ void refuse_files_of_study(std::string const& run, std::string const& path) {
 
 PackedDataset pack_dataset(std::string const& run, std::string const& path, Renderer& renderer) {
   refuse_files_of_study(run, path);
+  KeptCases const kept = find_kept(run);
+  DatasetSizes const sizes = sizes_of(kept, run);
   std::string const study = (fs::path(run) / run_file::study).string();
-  std::string const manifest = (fs::path(run) / run_file::manifest).string();
-  StudyTable table = read_study_table(run);
-  std::vector<CaseWithImages> kept;
-  std::vector<StudyRow> rows;
-  for (StudyRow const& row : table.rows) {
-    if (row.status != CaseStatus::ok) continue;
-    if (std::optional<CaseWithImages> one = case_with_images(images_folder(run, row.index))) {
-      kept.push_back(std::move(*one));
-      rows.push_back(row);
-    }
-  }
-  PackedDataset const packed{kept.size(), table.rows.size() - kept.size()};
-  if (kept.empty()) {
-    throw DataError(run, "contains no images of cases; compute them with gladstone sweep run --keep-images");
-  }
-  table.rows = std::move(rows);
-
-  std::vector<std::int64_t> begin{0};
-  for (CaseWithImages const& one : kept) begin.push_back(begin.back() + static_cast<std::int64_t>(one.count));
-  Image<double> const sample = read_image(in_case(kept.front().folder, case_file::reference));
-  std::vector<std::size_t> const size{static_cast<std::size_t>(sample.rows()),
-                                      static_cast<std::size_t>(sample.columns())};
-  for (CaseWithImages const& one : kept) {
-    if (one.sources == kept.front().sources) continue;
-    throw DataError(run, "has cases of BOS and of PIV, whose truth differs in kind; pack studies of one experiment");
-  }
-  auto const spacing = static_cast<std::size_t>(kept.front().sources == "/particles" ? piv_spacing_px : bos_spacing_px);
-  std::vector<std::size_t> const nodes{(size[0] + spacing - 1) / spacing, (size[1] + spacing - 1) / spacing};
-  std::size_t const cases = kept.size();
-  auto const all = static_cast<std::size_t>(begin.back());
-
   std::error_code error;
   SourceFiles sources;
-  sources.add("manifest", manifest, SourceFiles::Holds::bytes);
+  sources.add("manifest", (fs::path(run) / run_file::manifest).string(), SourceFiles::Holds::bytes);
+  StudyRow const& first = kept.table.rows.front();
   Hdf5Writer file(path,
-                  {"gladstone dataset", 2, fs::exists(study, error) ? read_text_file(study) : "",
-                   table.rows.front().seed, table.rows.front().device, sources},
+                  {"gladstone dataset", 2, fs::exists(study, error) ? read_text_file(study) : "", first.seed,
+                   first.device, sources},
                   Hdf5Growth::on_disk);
-  write_columns(file, "/parameters/", "case", table, axis_columns(table));
-  file.make_rows<std::uint16_t>("/images", {cases, 2, size[0], size[1]}, {1, 1, size[0], size[1]}, "1",
-                                "grey levels as in reference.tif and flow.tif", "case, frame, row, column");
-  for (DisplacementMapName const& map : maps) {
-    file.make_rows<double>(map.name, {cases, nodes[0], nodes[1], 2}, {1, nodes[0], nodes[1], 2}, "px",
-                           "true displacement from flow, medium and camera, on a lattice of pixels",
-                           "case, row, column, component (u right, v down)");
-    file.attribute(map.name, "spacing_px", static_cast<double>(spacing));
-    file.attribute(map.name, "place", map.place);
-  }
-  std::size_t const chunk = std::clamp<std::size_t>(all, 1, list_chunk);
-  for (char const* name : {"/truth/reference_px", "/truth/displacement_px"}) {
-    file.make_rows<double>(name, {all, 2}, {chunk, 2}, "px", "of every dot or particle, case by case",
-                           "source, component (x right, y down)");
-  }
-  file.make_rows<double>("/truth/flux", {all, 2}, {chunk, 2}, "fully lit px; for particles photons",
-                         "light of every dot or particle, case by case", "source, frame");
-  file.write("/truth/begin", begin, {begin.size()}, "1", "sources of case i are rows begin[i] to begin[i + 1] - 1",
-             "case");
-
-  Progress progress("packing", cases);
-  for (std::size_t i = 0; i < cases; ++i) {
-    CaseWithImages const& one = kept[i];
-    file.write_rows<std::uint16_t>("/images", i, read_frames(one, size));
-    Hdf5Reader const truth(in_case(one.folder, case_file::truth));
-    std::vector<double> const place = truth.read(one.sources + "/reference_px");
-    std::vector<double> const displacement = truth.read(one.sources + "/displacement_px");
-    std::vector<double> const flux = truth.read(one.sources + "/flux");
-    if (place.size() != 2 * one.count || displacement.size() != place.size() || flux.size() != place.size()) {
-      throw DataError(in_case(one.folder, case_file::truth), "was replaced while it was read; pack the study again");
-    }
-    auto const row = static_cast<std::size_t>(begin[i]);
-    file.write_rows<double>("/truth/reference_px", row, place);
-    file.write_rows<double>("/truth/displacement_px", row, displacement);
-    file.write_rows<double>("/truth/flux", row, flux);
-    PreparedCase const prepared = prepare_again(one);
-    for (DisplacementMapName const& map : maps) {
-      file.write_rows<double>(
-          map.name, i, numbers_of(displacement_truth(prepared.scene, renderer, map.at, static_cast<int>(spacing))));
-    }
+  write_columns(file, "/parameters/", "case", kept.table, axis_columns(kept.table));
+  make_arrays(file, sizes);
+  Progress progress("packing", sizes.cases());
+  for (std::size_t i = 0; i < sizes.cases(); ++i) {
+    write_packed_case(file, i, kept.cases[i], sizes, renderer);
     progress.advance(1);
   }
   file.close();
-  return packed;
+  return {kept.cases.size(), kept.without};
 }
 
 }  // namespace gladstone

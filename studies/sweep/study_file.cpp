@@ -3,56 +3,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <filesystem>
 #include <limits>
-#include <map>
-#include <set>
 #include <unordered_map>
 
 #include "render/base/error.h"
-#include "render/base/nearest_name.h"
 #include "render/base/sobol.h"
 #include "render/files/text_file.h"
 #include "render/setup/setup_table.h"
+#include "studies/sweep/study_axis_reader.h"
 
 namespace gladstone {
 namespace {
-
-using Kind = SetupNode::Kind;
-
-/// Rounds to twelve digits, so that values of a range are short decimals: 0.1 instead of 0.30000000000000004 - 0.2.
-double rounded_setting(double value) {
-  std::string const text = fmt::format("{:.12g}", value);
-  double result = value;
-  std::from_chars(text.data(), text.data() + text.size(), result);
-  return result;
-}
-
-AxisValue number_value(double number, bool whole, SetupPlace const& place) {
-  AxisValue value;
-  value.node.place = place;
-  bool const integer = whole && number == std::floor(number) && std::abs(number) < 0x1p53;
-  value.node.kind = integer ? Kind::integer : Kind::number;
-  value.node.integer = integer ? static_cast<long long>(number) : 0;
-  value.node.number = number;
-  value.parameter = {number_label(number), number};
-  return value;
-}
-
-double along(AxisPlan::Range const& range, double t) {
-  if (!range.logarithmic) return rounded_setting(range.first + t * (range.last - range.first));
-  return rounded_setting(range.first * std::pow(range.last / range.first, t));
-}
-
-/// Returns true if adjacent values of the range certainly differ after rounding to twelve digits, a relative error of
-/// at most 1e-11.
-bool surely_tells_values_apart(AxisPlan::Range const& range) {
-  double const steps = static_cast<double>(range.count - 1);
-  if (range.logarithmic) return std::abs(std::log(range.last / range.first)) > 2e-11 * steps;
-  return std::abs(range.last - range.first) > 2e-11 * steps * std::max(std::abs(range.first), std::abs(range.last));
-}
 
 /// Reads a study file and collects its problems with their positions.
 class StudyReader {
@@ -110,7 +72,7 @@ class StudyReader {
     SetupNode const* const axes = document_.find({"axes"});
     if (!axes) return;
     study_.place = placed(axes->place);
-    if (axes->kind != Kind::table) {
+    if (axes->kind != SetupNode::Kind::table) {
       problem(axes->place, "axes must be a table; write [axes] and below it \"key.path\" = [values]");
       return;
     }
@@ -120,140 +82,15 @@ class StudyReader {
                                        axes->members.size(), most_axes));
       return;
     }
-    for (auto const& [key, node] : axes->members) study_.axes.push_back(read_axis(key, node));
+    ReportProblem const report = [this](SetupPlace const& place, std::string message) {
+      problem(place, std::move(message));
+    };
+    for (auto const& [key, node] : axes->members) {
+      study_.axes.push_back(read_study_axis(key, node, source_, study_.mode, report));
+    }
     std::stable_sort(study_.axes.begin(), study_.axes.end(), [](AxisPlan const& a, AxisPlan const& b) {
       return std::pair(a.place.line, a.place.column) < std::pair(b.place.line, b.place.column);
     });
-  }
-
-  AxisPlan read_axis(std::string const& key, SetupNode const& node) {
-    AxisPlan axis;
-    axis.key = key;
-    axis.place = placed(node.place);
-    axis.path.emplace_back();
-    for (char const c : key) {
-      if (c == '.') {
-        axis.path.emplace_back();
-      } else {
-        axis.path.back().push_back(c);
-      }
-    }
-    if (std::find(axis.path.begin(), axis.path.end(), "") != axis.path.end()) {
-      problem(node.place, fmt::format("\"{}\" is not a key path; write it as \"table.key\"", excerpt(key)));
-    }
-    if (axis.path.size() > most_setup_depth) {
-      problem(node.place, fmt::format("\"{}\" has {} parts (no key of a setup has so many); correct it", excerpt(key),
-                                      axis.path.size()));
-    }
-    if (node.kind == Kind::array) {
-      read_list(node, axis);
-    } else if (node.kind == Kind::table) {
-      read_range(node, axis);
-    } else {
-      problem(node.place, fmt::format("\"{0}\" must be a list of values (it is {1}); write [{2}]", key, kind_name(node),
-                                      toml_text(node)));
-    }
-    return axis;
-  }
-
-  void read_list(SetupNode const& array, AxisPlan& axis) {
-    if (array.elements.empty()) {
-      problem(array.place,
-              fmt::format("\"{}\" is empty (the study would have no case); give at least one value", axis.key));
-    }
-    std::map<std::string, std::string> label_of;  // label of each distinct value
-    std::set<std::string> labels;
-    for (SetupNode const& element : array.elements) {
-      AxisValue value = read_value(element, axis.key);
-      ParameterValue const& shown = value.parameter;
-      std::string const what = shown.number ? number_label(*shown.number) : toml_text(value.node);
-      auto const [known, fresh] = label_of.try_emplace(what, shown.label);
-      bool const renamed = known->second != shown.label;
-      // In a zip, values of one axis may repeat, but points may not; see refuse_points_twice().
-      if (!fresh && (renamed || study_.mode != StudyMode::zip)) {
-        std::string const names = !renamed ? "" : fmt::format(" (as \"{}\" and as \"{}\")", known->second, shown.label);
-        problem(element.place, fmt::format("\"{}\" has the value {} twice{}; remove one (repeats = N gives every case "
-                                           "N times, with other dots)",
-                                           axis.key, what, names));
-      } else if (fresh && !labels.insert(shown.label).second) {
-        problem(element.place, fmt::format("\"{}\" has two values with the label {}; give one of them another label",
-                                           axis.key, shown.label));
-      }
-      axis.list.push_back(std::move(value));
-    }
-  }
-
-  AxisValue read_value(SetupNode const& element, std::string const& key) {
-    AxisValue value;
-    value.node = element;
-    set_source(value.node, source_);
-    if (element.is_number()) {
-      value.parameter = {number_label(element.as_double()), element.as_double()};
-    } else if (element.kind == Kind::text) {
-      value.parameter.label = element.text;
-    } else if (element.kind != Kind::table) {
-      value.parameter.label = toml_text(element);
-    } else {
-      auto& members = value.node.members;
-      SetupNode const* const label = element.find("label");
-      if (!label || label->kind != Kind::text || label->text.empty()) {
-        problem(label ? label->place : element.place,
-                fmt::format("a table as a value of \"{}\" needs a label for tables and figures; write {{ label = "
-                            "\"name\", ... }}",
-                            key));
-      } else {
-        value.parameter.label = label->text;
-      }
-      std::erase_if(members, [](SetupMember const& member) { return member.key == "label"; });
-      if (members.size() == 1 && members.front().key == "value") {  // a label for a value that is not a table
-        SetupNode const inner = members.front().value;
-        value.node = inner;
-        if (inner.is_number()) value.parameter.number = inner.as_double();
-      }
-    }
-    return value;
-  }
-
-  void read_range(SetupNode const& table, AxisPlan& axis) {
-    std::string const forms = "must be a list, { linear = [first, last, count] } or { log = [first, last, count] }";
-    if (table.members.size() != 1 || (table.members[0].key != "linear" && table.members[0].key != "log")) {
-      std::string const found = table.members.empty() ? "nothing" : '"' + table.members[0].key + '"';
-      std::string hint;
-      if (!table.members.empty()) {
-        std::string const& key = table.members[0].key;
-        auto nearest = nearest_name(key, {"linear", "log"});
-        if (key.starts_with("lin")) nearest = "linear";
-        if (key.starts_with("log")) nearest = "log";
-        if (nearest) {
-          hint = fmt::format("; did you mean \"{}\"?", *nearest);
-        } else if (axis.path.size() == 1) {  // lens.f_number = ...: "lens" was read as the axis
-          hint = fmt::format("; write a key path in quotes: \"{}.{}\" = ...", axis.key, key);
-        }
-      }
-      problem(table.place, fmt::format("\"{}\" {} (it is a table with {}){}", axis.key, forms, found, hint));
-      return;
-    }
-    std::string const& form = table.members.front().key;
-    SetupNode const& values = table.members.front().value;
-    auto const refuse = [&](std::string const& message) {
-      problem(values.place, fmt::format("\"{}\": {} {}", axis.key, form, message));
-    };
-    auto const& e = values.elements;
-    bool const numbers = values.kind == Kind::array && e.size() == 3 &&
-                         std::all_of(e.begin(), e.end(), [](SetupNode const& one) { return one.is_number(); });
-    if (!numbers) return refuse("must be [first, last, count], three numbers");
-    AxisPlan::Range range;
-    range.first = e[0].as_double();
-    range.last = e[1].as_double();
-    range.logarithmic = form == "log";
-    range.whole = e[0].kind == Kind::integer && e[1].kind == Kind::integer;
-    if (!std::isfinite(range.first) || !std::isfinite(range.last)) return refuse("requires finite ends");
-    if (range.logarithmic && !(range.first > 0 && range.last > 0)) return refuse("requires ends above 0");
-    if (e[2].kind != Kind::integer || e[2].integer < 1)
-      return refuse("requires an integer count of at least 1 as the third number");
-    range.count = static_cast<std::size_t>(e[2].integer);
-    if (range.count > 1 && range.first == range.last) return refuse("has equal ends; write this value once, in a list");
-    axis.range = range;
   }
 
   void read_settings(SetupTable table) {
@@ -358,18 +195,6 @@ class StudyReader {
 };
 
 }  // namespace
-
-AxisValue AxisPlan::value(std::size_t i) const {
-  if (!range) return list[i];
-  double number = range->first;
-  if (i > 0) number = i + 1 == range->count ? range->last : along(*range, static_cast<double>(i) / (range->count - 1));
-  return number_value(number, range->whole, place);
-}
-
-AxisValue AxisPlan::value_at(double u) const {
-  if (range) return number_value(along(*range, u), false, place);
-  return list[std::min(list.size() - 1, static_cast<std::size_t>(u * static_cast<double>(list.size())))];
-}
 
 std::size_t StudyFile::points() const {
   if (mode == StudyMode::sobol) return samples;

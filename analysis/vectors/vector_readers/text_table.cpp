@@ -14,6 +14,127 @@ namespace {
 
 constexpr std::size_t most_lines_before_numbers = 1000;
 
+/// Reads a table line by line: lines of the header, then rows of numbers.
+class TableReader {
+ public:
+  explicit TableReader(std::string const& path) : file_(path, "a file of vectors") { table_.path = path; }
+
+  TextTable read() && {
+    while (auto const line = file_.next()) {
+      if (line->find('\0') != std::string_view::npos)
+        fail(file_.number(),
+             "contains NUL bytes, as binary files do; vectors are read from text files and from vectors.h5 of "
+             "gladstone");
+      std::string_view const text = trim(*line);
+      if (text.empty() || read_header_line(text)) continue;
+      if (format_.separator == 0) name_columns(text);
+      if (text.front() == '#') continue;
+      if (table_.tecplot && lower_case(text.substr(0, 4)) == "zone") {
+        table_.warnings.push_back(file_.place() + ": another zone begins here; only the first one is read");
+        break;
+      }
+      add_row(text);
+    }
+    check_rows();
+    return std::move(table_);
+  }
+
+ private:
+  [[noreturn]] void fail(std::size_t line, std::string const& message) const {
+    throw DataError(fmt::format("{}:{}", table_.path, line), message);
+  }
+
+  /// Takes a line before the first row of numbers; the last of them is the header. @return false for other lines
+  bool read_header_line(std::string_view text) {
+    if (format_.separator != 0 || number(split(text, detect_separator(text)).front(), ',')) return false;
+    std::size_t const at = file_.number();
+    if (at > most_lines_before_numbers) {
+      fail(at, fmt::format("no row of numbers in {} lines; is this a table of vectors?", most_lines_before_numbers));
+    }
+    if (table_.header_line != 0) table_.preamble.push_back(header_);
+    header_ = text;
+    declared_.add(text, at);
+    table_.header_line = at;
+    return true;
+  }
+
+  /// Determines the names of the columns and the format of the rows. @param row  first row of numbers
+  void name_columns(std::string_view row) {
+    std::string whole;
+    for (std::string const& line : table_.preamble) whole += line + ' ';
+    whole += header_;
+    table_.names = tecplot_variables(whole);
+    table_.tecplot = !table_.names.empty();
+    if (table_.tecplot && is_block_packed(whole))
+      fail(table_.header_line, "is Tecplot's BLOCK packing (values variable by variable); export it in POINT packing");
+    std::optional<DavisHeader> const davis = parse_davis_header(header_);
+    table_.davis = davis.has_value();
+    if (davis && !davis->planar)
+      fail(
+          table_.header_line,
+          "is DaVis' text export of other data than 2D-vector (columns x, y, u, v); export two components, or as .dat");
+    if (table_.header_line == 0) {
+      name_columns_of_jvc(row);
+    } else if (davis) {
+      table_.names = davis->names;
+    } else if (!table_.tecplot) {
+      table_.names = column_names(header_);
+    }
+    table_.values.resize(table_.names.size());
+    format_ = row_format(row, table_.names.size());
+  }
+
+  /// Names the columns of a file without header, which must be one of JPIV (.jvc). @param row  its first row
+  void name_columns_of_jvc(std::string_view row) {
+    table_.has_header = false;
+    if (!lower_case(table_.path).ends_with(".jvc"))
+      fail(file_.number(),
+           "no header line (numbers from the start); put the names of the columns first, such as x,y,u,v");
+    table_.names = {"x", "y", "u", "v"};
+    if (split(row, row_format(row, 5).separator).size() > 4) table_.names.emplace_back("quality");
+  }
+
+  void add_row(std::string_view text) {
+    std::size_t const at = file_.number();
+    std::vector<std::string_view> const fields = fields_of(text, format_, table_.names.size());
+    if (fields.size() != table_.names.size()) refuse_fields(text, fields.size());
+    for (std::size_t i = 0; i < fields.size(); ++i) {
+      std::optional<double> const value = number(fields[i], format_.decimal);
+      if (!value) fail(at, fmt::format("{} = \"{}\" is not a number", excerpt(table_.names[i]), excerpt(fields[i])));
+      table_.values[i].push_back(*value);
+    }
+    require_room(table_.line, table_.path, "vectors");
+    table_.line.push_back(at);
+  }
+
+  [[noreturn]] void refuse_fields(std::string_view text, std::size_t count) const {
+    std::string const commas = has_ambiguous_commas(text, table_.names.size())
+                                   ? "; commas may both separate the fields and mark decimals: export decimal points, "
+                                     "or semicolons between the fields"
+                                   : "";
+    fail(file_.number(), fmt::format("{} fields, but the header names {} columns ({}){}", count, table_.names.size(),
+                                     excerpt(fmt::format("{}", fmt::join(table_.names, ", ")), 200), commas));
+  }
+
+  /// Checks that there are rows, and warns if they are not as many as the header declares.
+  void check_rows() {
+    if (table_.header_line == 0 && table_.has_header) throw DataError(table_.path + ":1", "the file is empty");
+    if (table_.line.empty()) fail(table_.header_line, "no row of numbers follows the header");
+    if (!declared_.count() || *declared_.count() == static_cast<double>(table_.rows())) return;
+    table_.complete = false;
+    table_.warnings.push_back(
+        fmt::format("{}:{}: the header declares {} vectors, but the file contains {} (truncated, or written with "
+                    "another header); export it again",
+                    table_.path, declared_.line(), *declared_.count(), table_.rows()));
+  }
+
+  LineReader file_;
+  TextTable table_;
+  std::string header_;  ///< last line before the rows
+  DeclaredVectors declared_;
+  RowFormat format_;  ///< without separator until the first row of numbers
+};
+
 }  // namespace
 
 std::optional<std::size_t> TextTable::find_quantity(std::initializer_list<std::string_view> any_of) const {
@@ -58,100 +179,6 @@ std::vector<double> const& TextTable::column(std::initializer_list<std::string_v
   refuse_missing(*any_of.begin());
 }
 
-TextTable read_text_table(std::string const& path) {
-  LineReader file(path, "a file of vectors");
-  TextTable table;
-  table.path = path;
-  auto const fail = [&](std::size_t at, std::string const& message) {
-    throw DataError(fmt::format("{}:{}", path, at), message);
-  };
-
-  std::string header;
-  DeclaredVectors declared;
-  RowFormat format;
-  auto const name_columns = [&](std::size_t at, std::string_view row) {
-    std::string whole;
-    for (std::string const& line : table.preamble) whole += line + ' ';
-    whole += header;
-    table.names = tecplot_variables(whole);
-    table.tecplot = !table.names.empty();
-    if (table.tecplot && is_block_packed(whole))
-      fail(table.header_line, "is Tecplot's BLOCK packing (values variable by variable); export it in POINT packing");
-    std::optional<DavisHeader> const davis = parse_davis_header(header);
-    table.davis = davis.has_value();
-    if (davis && !davis->planar)
-      fail(
-          table.header_line,
-          "is DaVis' text export of other data than 2D-vector (columns x, y, u, v); export two components, or as .dat");
-    if (table.header_line == 0) {
-      table.has_header = false;
-      if (!lower_case(path).ends_with(".jvc"))
-        fail(at, "no header line (numbers from the start); put the names of the columns first, such as x,y,u,v");
-      table.names = {"x", "y", "u", "v"};
-      if (split(row, row_format(row, 5).separator).size() > 4) table.names.emplace_back("quality");
-    } else if (davis) {
-      table.names = davis->names;
-    } else if (!table.tecplot) {
-      table.names = column_names(header);
-    }
-    table.values.resize(table.names.size());
-    format = row_format(row, table.names.size());
-  };
-  while (auto const line = file.next()) {
-    std::size_t const at = file.number();
-    std::string_view text = *line;
-    if (text.find('\0') != std::string_view::npos)
-      fail(at,
-           "contains NUL bytes, as binary files do; vectors are read from text files and from vectors.h5 of gladstone");
-    text = trim(text);
-    if (text.empty()) continue;
-
-    // Skip the lines before the first row of numbers; the last of them is the header.
-    if (format.separator == 0 && !number(split(text, detect_separator(text)).front(), ',')) {
-      if (at > most_lines_before_numbers) {
-        fail(at, fmt::format("no row of numbers in {} lines; is this a table of vectors?", most_lines_before_numbers));
-      }
-      if (table.header_line != 0) table.preamble.push_back(header);
-      header = text;
-      declared.add(text, at);
-      table.header_line = at;
-      continue;
-    }
-    if (format.separator == 0) name_columns(at, text);
-    if (text.front() == '#') continue;
-    if (table.tecplot && lower_case(text.substr(0, 4)) == "zone") {
-      table.warnings.push_back(fmt::format("{}:{}: another zone begins here; only the first one is read", path, at));
-      break;
-    }
-
-    std::vector<std::string_view> const fields = fields_of(text, format, table.names.size());
-    if (fields.size() != table.names.size()) {
-      std::string const commas =
-          has_ambiguous_commas(text, table.names.size())
-              ? "; commas may both separate the fields and mark decimals: export decimal points, "
-                "or semicolons between the fields"
-              : "";
-      fail(at, fmt::format("{} fields, but the header names {} columns ({}){}", fields.size(), table.names.size(),
-                           excerpt(fmt::format("{}", fmt::join(table.names, ", ")), 200), commas));
-    }
-    for (std::size_t i = 0; i < fields.size(); ++i) {
-      std::optional<double> const value = number(fields[i], format.decimal);
-      if (!value) fail(at, fmt::format("{} = \"{}\" is not a number", excerpt(table.names[i]), excerpt(fields[i])));
-      table.values[i].push_back(*value);
-    }
-    require_room(table.line, path, "vectors");
-    table.line.push_back(at);
-  }
-  if (table.header_line == 0 && table.has_header) throw DataError(path + ":1", "the file is empty");
-  if (table.line.empty()) fail(table.header_line, "no row of numbers follows the header");
-  if (declared.count() && *declared.count() != static_cast<double>(table.rows())) {
-    table.complete = false;
-    table.warnings.push_back(
-        fmt::format("{}:{}: the header declares {} vectors, but the file contains {} (truncated, or written with "
-                    "another header); export it again",
-                    path, declared.line(), *declared.count(), table.rows()));
-  }
-  return table;
-}
+TextTable read_text_table(std::string const& path) { return TableReader(path).read(); }
 
 }  // namespace gladstone::detail

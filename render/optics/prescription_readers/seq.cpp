@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <map>
 #include <set>
 #include <utility>
 
@@ -16,6 +15,7 @@
 #include "render/optics/prescription_readers/readers.h"
 #include "render/optics/prescription_readers/seq_commands.h"
 #include "render/optics/prescription_readers/seq_surface.h"
+#include "render/optics/prescription_readers/seq_system.h"
 
 namespace gladstone {
 namespace {
@@ -27,16 +27,16 @@ class SeqReader {
   void read_command(PrescriptionLine const& line) {
     if (line.words.empty()) return;
     std::string const command = upper_case(line[0]);
-    if (!private_glasses_where_.empty()) {
+    if (!system_.private_glasses_where.empty()) {
       if (command == "SO" || command == "S" || command == "SI") refuse_missing_end();
       if (command == "END") {
-        private_glasses_where_.clear();
+        system_.private_glasses_where.clear();
       } else {
         private_glasses_.read(line);
       }
     } else if (command == "SO" || command == "S" || command == "SI" || is_numbered_surface(command)) {
       begin_surface(command, line);
-    } else if (read_system(command, line) || read_fields(command, line)) {
+    } else if (read_seq_system(command, line, system_, result_)) {
       return;
     } else if (is_unsupported_command(command)) {
       throw DataError(line.where,
@@ -50,7 +50,7 @@ class SeqReader {
   }
 
   Prescription finish() {
-    if (!private_glasses_where_.empty()) refuse_missing_end();
+    if (!system_.private_glasses_where.empty()) refuse_missing_end();
     if (surfaces_.size() < 2) {
       throw DataError(result_.file,
                       "describes no lens (a .seq file has lines SO, S ..., SI: the object, the lens' "
@@ -61,8 +61,9 @@ class SeqReader {
            ": the file has no image surface SI behind this one, whose thickness is taken as the distance to the image; "
            "if the file was cut short, copy it again");
     }
-    if (!radii_said_) judge_curvatures();
-    if (result_.aperture.kind == PrescribedAperture::Kind::entrance_pupil) result_.aperture.value = pupil_ * unit_;
+    if (!system_.radii_said) judge_curvatures();
+    if (result_.aperture.kind == PrescribedAperture::Kind::entrance_pupil)
+      result_.aperture.value = system_.pupil * system_.unit;
     PrescribedSurface const& object = surfaces_.front().surface;
     if (object.after.is_mirror())
       throw DataError(object.where, "the object is a mirror (REFL); name the medium ahead of the lens");
@@ -70,8 +71,8 @@ class SeqReader {
     result_.object_medium = resolved(object.after);
     take_surfaces();
     solve_paraxial_image();
-    set_primary_wavelength(result_, primary_wavelength(), unit::nanometre, "nm", surfaces_.front().surface.where,
-                           "WL, REF");
+    set_primary_wavelength(result_, system_.primary_wavelength(), unit::nanometre, "nm",
+                           surfaces_.front().surface.where, "WL, REF");
     assume_stop(result_);
     assume_aperture(result_, "EPD, FNO, NAO");
     if (!unknown_.empty()) {
@@ -90,24 +91,16 @@ class SeqReader {
   }
 
   [[noreturn]] void refuse_missing_end() const {
-    throw DataError(private_glasses_where_,
+    throw DataError(system_.private_glasses_where,
                     "PRV: the list of private glasses that begins here has no END; put END behind the last glass");
-  }
-
-  /// Returns the primary wavelength: that of REF, or the middle one without REF, as in CODE V; null if none is listed.
-  ListedWavelength const* primary_wavelength() const {
-    if (wavelengths_.empty()) return nullptr;
-    auto const count = static_cast<int>(wavelengths_.size());
-    int const at = reference_ >= 1 && reference_ <= count ? reference_ - 1 : count / 2;
-    return &wavelengths_[static_cast<std::size_t>(at)];
   }
 
   /// Applies PIM: the image is at the paraxial image plus the defocus of SI, whatever the last thickness is. Behind a
   /// coordinate break, the thickness of the file is used.
   void solve_paraxial_image() {
-    if (paraxial_image_where_.empty()) return;
+    if (system_.paraxial_image_where.empty()) return;
     if (result_.ends_at_image) {
-      warn(paraxial_image_where_ +
+      warn(system_.paraxial_image_where +
            ": PIM: the image is behind a decentre or tilt; the last thickness of the file is used");
       return;
     }
@@ -117,70 +110,6 @@ class SeqReader {
 
   void warn(std::string const& text) { result_.warnings.push_back(text); }
 
-  void note_unless_zero(PrescriptionLine const& line, char const* what) {
-    if (line.has_nonzero_number()) warn(fmt::format("{}: {}: {}", line.where, upper_case(line[0]), what));
-  }
-
-  /// Reads a command that applies to the whole lens. @return false if it is not such a command
-  bool read_system(std::string const& command, PrescriptionLine const& line) {
-    using Kind = PrescribedAperture::Kind;
-    if (command == "RDM") {
-      radii_ = line.size() < 2 || upper_case(line[1]) != "N";
-      radii_said_ = true;
-    } else if (command == "TITLE" || command == "TIT") {
-      if (line.size() > 1) result_.title = line[1];
-    } else if (command == "DIM") {
-      static std::map<std::string, double> const units{{"M", 1e-3}, {"C", 1e-2}, {"I", 25.4e-3}};
-      auto const found = line.size() > 1 ? units.find(upper_case(line[1]).substr(0, 1)) : units.end();
-      if (found == units.end()) throw DataError(line.where, "DIM names no known unit (M: mm, C: cm, I: inches)");
-      unit_ = found->second;
-    } else if (command == "EPD") {
-      pupil_ = line.number(1);
-      result_.aperture = {Kind::entrance_pupil, 0, line.where};
-    } else if (command == "FNO") {
-      result_.aperture = {Kind::f_number, line.number(1), line.where};
-    } else if (command == "NAO") {
-      result_.aperture = {Kind::object_na, line.number(1), line.where};
-    } else if (command == "WL") {
-      for (std::size_t i = 1; i < line.size(); ++i) wavelengths_.push_back({line.number(i), line.where});
-    } else if (command == "REF") {
-      reference_ = line.integer(1);
-    } else if (command == "PRV") {
-      private_glasses_where_ = line.where;
-    } else if (command == "PIM") {
-      paraxial_image_where_ = line.where;
-    } else if (command == "TEM" || command == "PRE") {
-      double const standard = command == "TEM" ? 20 : 760;  // [degC], [mmHg]
-      if (line.size() > 1 && line.number(1) != standard) {
-        warn(
-            fmt::format("{}: {}: indices are not adjusted to the temperature or pressure; the catalogue's indices, at "
-                        "20 degrees C and 760 mmHg, are used",
-                        line.where, command));
-      }
-    } else if (command == "ZOO") {
-      warn(line.where + ": ZOO: only the zoom position stored in the surfaces is read");
-    } else {
-      return false;
-    }
-    return true;
-  }
-
-  /// Reads field angles in the y-z plane; other fields cause a warning. @return false if it is not a field command
-  bool read_fields(std::string const& command, PrescriptionLine const& line) {
-    static std::set<std::string> const others{"XAN", "XOB", "YOB", "XIM", "YIM", "XRI", "YRI"};
-    static std::set<std::string> const vignetting{"VUX", "VLX", "VUY", "VLY"};
-    if (command == "YAN") {
-      for (std::size_t i = 1; i < line.size(); ++i) result_.field_angles.push_back(line.number(i) * unit::degree);
-    } else if (others.contains(command)) {
-      note_unless_zero(line, "only field angles in the y-z plane (YAN) are supported; these fields are ignored");
-    } else if (vignetting.contains(command)) {
-      note_unless_zero(line, "vignetting factors are not used; the edges of the surfaces vignette");
-    } else {
-      return false;
-    }
-    return true;
-  }
-
   /// Reads "S radius thickness [glass]".
   void begin_surface(std::string const& command, PrescriptionLine const& line) {
     if (image_) throw DataError(line.where, "a surface comes after the image SI; the file is damaged");
@@ -189,7 +118,7 @@ class SeqReader {
                                                   : "the lens begins without its object surface SO");
     }
     double const first = line.number_or_infinity(1);
-    double const thickness = line.size() > 2 ? line.number_or_infinity(2) * unit_ : 0.0;
+    double const thickness = line.size() > 2 ? line.number_or_infinity(2) * system_.unit : 0.0;
     if (command == "SI") {
       image_ = true;
       image_surface_.surface.where = line.where;
@@ -199,8 +128,8 @@ class SeqReader {
     }
     SeqSurface seq;
     seq.surface.where = line.where;
-    seq.surface.curvature = curvature_of(first, radii_);
-    bool const endless = std::abs(thickness) > 1e10 * unit_;
+    seq.surface.curvature = curvature_of(first, system_.radii);
+    bool const endless = std::abs(thickness) > 1e10 * system_.unit;
     seq.surface.thickness = endless ? std::copysign(HUGE_VAL, thickness) : thickness;
     if (line.size() > 3) seq.surface.after = medium(line, 3);
     surfaces_.push_back(std::move(seq));
@@ -208,7 +137,7 @@ class SeqReader {
 
   double curvature_of(double value, bool is_radius) const {
     if (std::isinf(value) || value == 0) return 0;
-    return (is_radius ? 1 / value : value) / unit_;
+    return (is_radius ? 1 / value : value) / system_.unit;
   }
 
   /// Parses word i of a line as a medium.
@@ -261,7 +190,7 @@ class SeqReader {
       change_surface(command, line, seq.surface);
       return true;
     }
-    return read_seq_surface(command, line, unit_, &seq == &image_surface_, seq, result_.warnings);
+    return read_seq_surface(command, line, system_.unit, &seq == &image_surface_, seq, result_.warnings);
   }
 
   static bool is_surface_command(std::string const& command) {
@@ -281,7 +210,7 @@ class SeqReader {
     } else if (std::isalpha(static_cast<unsigned char>(line[1][0])) != 0 && upper_case(line[1]) != "INF") {
       return;
     } else if (command == "THI") {
-      surface.thickness = line.number_or_infinity(1) * unit_;
+      surface.thickness = line.number_or_infinity(1) * system_.unit;
     } else {
       surface.curvature = curvature_of(line.number_or_infinity(1), command == "RDY");
     }
@@ -291,7 +220,8 @@ class SeqReader {
   /// more than half of the curvatures are implausible: the radius of curvature would be smaller than the pupil radius,
   /// or than a quarter of the adjacent glass thickness (half of it for a ball lens).
   void judge_curvatures() {
-    double const pupil = result_.aperture.kind == PrescribedAperture::Kind::entrance_pupil ? pupil_ * unit_ / 2 : 0;
+    double const pupil =
+        result_.aperture.kind == PrescribedAperture::Kind::entrance_pupil ? system_.pupil * system_.unit / 2 : 0;
     int curved = 0, impossible = 0;
     for (std::size_t i = 1; i < surfaces_.size(); ++i) {
       PrescribedSurface const& surface = surfaces_[i].surface;
@@ -307,7 +237,7 @@ class SeqReader {
     if (2 * impossible <= curved) return;
     for (std::size_t i = 1; i < surfaces_.size(); ++i) {
       PrescribedSurface& surface = surfaces_[i].surface;
-      surface.curvature = curvature_of(surface.curvature * unit_, true);
+      surface.curvature = curvature_of(surface.curvature * system_.unit, true);
     }
     warn(
         fmt::format("{}: the file has no RDM, so that its numbers would be curvatures, CODE V's default; surfaces with "
@@ -327,7 +257,7 @@ class SeqReader {
     };
     for (std::size_t i = 1; i < surfaces_.size(); ++i) {
       SeqSurface& seq = surfaces_[i];
-      finish_seq_surface(seq, unit_, result_.warnings);
+      finish_seq_surface(seq, system_.unit, result_.warnings);
       PrescribedSurface surface = seq.surface;
       surface.after = resolved(surface.after);
       surface.before = breaks_ahead(seq);
@@ -339,17 +269,14 @@ class SeqReader {
   }
 
   Prescription result_;
+  SeqSystem system_;
   std::vector<SeqSurface> surfaces_;  // surfaces of the file; the first one is the object
   SeqSurface image_surface_;          // only its coordinate frame is used
   PrivateGlasses private_glasses_;
-  std::vector<ListedWavelength> wavelengths_;
   std::vector<std::string> unknown_;  // unknown commands
   std::string unknown_where_;
-  std::string private_glasses_where_;  // line of PRV while its block is read
-  std::string paraxial_image_where_;   // line of PIM
-  double unit_ = 1e-3, pupil_ = 0, image_defocus_ = 0;
-  int reference_ = 0;
-  bool radii_ = false, radii_said_ = false, image_ = false;
+  double image_defocus_ = 0;
+  bool image_ = false;
 };
 
 }  // namespace

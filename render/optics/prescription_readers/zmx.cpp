@@ -5,7 +5,6 @@
 #include <charconv>
 #include <cmath>
 #include <functional>
-#include <map>
 #include <set>
 #include <utility>
 
@@ -17,6 +16,7 @@
 #include "render/optics/prescription_readers/readers.h"
 #include "render/optics/prescription_readers/zmx_apertures.h"
 #include "render/optics/prescription_readers/zmx_surface.h"
+#include "render/optics/prescription_readers/zmx_system.h"
 
 namespace gladstone {
 namespace {
@@ -63,10 +63,10 @@ class ZmxReader {
       surfaces_.back().label = line[1].substr(0, 40);
       surfaces_.back().surface.where = line.where;
     } else if (surfaces_.empty()) {
-      read_system(line);
+      read_zmx_system(line, system_, result_);
       notes_.read(line);
-    } else if (!read_zmx_aperture(line, unit_, surfaces_.back().apertures, result_.warnings)) {
-      read_zmx_surface(line, unit_, surfaces_.back(), result_.warnings);
+    } else if (!read_zmx_aperture(line, system_.unit, surfaces_.back().apertures, result_.warnings)) {
+      read_zmx_surface(line, system_.unit, surfaces_.back(), result_.warnings);
       notes_.read(line);
     }
   }
@@ -96,10 +96,11 @@ class ZmxReader {
       throw DataError(object.where, "the object is a mirror (GLAS); name the medium ahead of the lens");
     result_.object_distance = object.thickness;
     result_.object_medium = object.after;
-    bool const is_listed = primary_ >= 1 && primary_ <= static_cast<int>(wavelengths_.size());
-    set_primary_wavelength(result_, is_listed ? &wavelengths_[static_cast<std::size_t>(primary_ - 1)] : nullptr,
+    bool const is_listed = system_.primary >= 1 && system_.primary <= static_cast<int>(system_.wavelengths.size());
+    set_primary_wavelength(result_,
+                           is_listed ? &system_.wavelengths[static_cast<std::size_t>(system_.primary - 1)] : nullptr,
                            unit::micrometre, "um", surfaces_.front().surface.where, "WAVM, PWAV");
-    take_fields();
+    take_zmx_fields(system_, result_);
     take_surfaces();
     assume_stop(result_);
     assume_aperture(result_, "ENPD, FNUM, OBNA");
@@ -109,53 +110,6 @@ class ZmxReader {
   }
 
  private:
-  void read_system(PrescriptionLine const& line) {
-    std::string const& key = line[0];
-    if (key == "MODE" && line.size() > 1 && line[1] != "SEQ") {
-      throw DataError(line.where, fmt::format("mode {} is not supported (sequential lenses, SEQ, are)", line[1]));
-    }
-    if (key == "NAME") {
-      for (std::size_t i = 1; i < line.size(); ++i) result_.title += (i > 1 ? " " : "") + line[i];
-    }
-    if (key == "UNIT") {
-      static std::map<std::string, double> const lengths{
-          {"MM", 1e-3}, {"CM", 1e-2}, {"IN", 25.4e-3}, {"METER", 1.0}, {"M", 1.0}};
-      auto const found = line.size() > 1 ? lengths.find(upper_case(line[1])) : lengths.end();
-      if (found == lengths.end()) throw DataError(line.where, "UNIT names no known unit (MM, CM, IN or METER)");
-      unit_ = found->second;
-    }
-    using Kind = PrescribedAperture::Kind;
-    if (key == "ENPD") result_.aperture = {Kind::entrance_pupil, line.number(1) * unit_};
-    // the second value selects the meaning of the first
-    bool const other_meaning = line.size() > 2 && line[2] == "1";
-    if (key == "FNUM") result_.aperture = {other_meaning ? Kind::working_f_number : Kind::f_number, line.number(1)};
-    if (key == "OBNA") {
-      double const value = line.number(1);
-      result_.aperture = {Kind::object_na, other_meaning ? std::sin(value * unit::degree) : value};
-    }
-    if (key == "FLOA") result_.aperture = {};
-    if (key == "FTYP" && line.integer(1) != 0) heights_at_ = line.where;
-    if (key == "XFLN" || key == "XFLD") {
-      if (line.has_nonzero_number()) across_at_ = line.where;
-    }
-    if (key == "YFLN" || key == "YFLD") {
-      for (std::size_t i = 1; i < line.size(); ++i) {
-        double const angle = line.number(i) * unit::degree;
-        if (angle != 0 || fields_.empty()) fields_.push_back(angle);
-      }
-    }
-    if (key == "WAVL") {
-      for (std::size_t i = 1; i < line.size(); ++i) wavelengths_.push_back({line.number(i), line.where});
-    }
-    if (key == "WAVM") {
-      line.integer(1);
-      wavelengths_.push_back({line.number(2), line.where});
-    }
-    if (key == "PWAV") primary_ = line.integer(1);
-    if (key == "GCAT") result_.catalogues.assign(line.words.begin() + 1, line.words.end());
-    if (key == "ENPD" || key == "FNUM" || key == "OBNA" || key == "FLOA") result_.aperture.where = line.where;
-  }
-
   /// Converts the blocks between object and image to the surfaces of the lens.
   void take_surfaces() {
     std::vector<CoordinateBreak> breaks;
@@ -163,14 +117,14 @@ class ZmxReader {
       ZmxSurface const& zmx = surfaces_[i];
       PrescribedSurface surface;
       if (zmx.type == "COORDBRK") {
-        breaks.push_back(break_of(zmx, unit_));
+        breaks.push_back(break_of(zmx, system_.unit));
         if (!zmx.surface.stop) continue;
         surface.where = zmx.surface.where;  // a stop surface may be in the transformed frame
         surface.stop = true;
         surface.semi_diameter = zmx.surface.semi_diameter;
         surface.thickness = std::exchange(breaks.back().advance, 0);
       } else {
-        surface = shaped_surface(zmx, unit_, result_.warnings);
+        surface = shaped_surface(zmx, system_.unit, result_.warnings);
       }
       surface.before = std::exchange(breaks, {});
       result_.surfaces.push_back(std::move(surface));
@@ -180,20 +134,6 @@ class ZmxReader {
       result_.warnings.push_back(image.where + ": the image is curved; the lens is evaluated on a plane");
     }
     break_before_image(result_, std::move(breaks), image.where);
-  }
-
-  /// Uses field angles in the y-z plane; other fields cause a warning.
-  void take_fields() {
-    bool const any_along = std::any_of(fields_.begin(), fields_.end(), [](double angle) { return angle != 0; });
-    if (heights_at_.empty()) result_.field_angles = fields_;
-    if (!heights_at_.empty() && (any_along || !across_at_.empty())) {
-      result_.warnings.push_back(heights_at_ +
-                                 ": FTYP: field heights are not supported, the lens is evaluated on its axis only; "
-                                 "give field angles (FTYP 0)");
-    } else if (!across_at_.empty()) {
-      result_.warnings.push_back(across_at_ +
-                                 ": XFLN: fields outside the y-z plane are ignored; give them along y (YFLN)");
-    }
   }
 
   void replace_commas(PrescriptionLine& line) {
@@ -293,17 +233,13 @@ class ZmxReader {
 
   std::string path_;
   Prescription result_;
+  ZmxSystem system_;
   std::vector<ZmxSurface> surfaces_;
   std::vector<SurfaceNumber> numbers_;  // of the surfaces in the file
   std::vector<std::string> comma_lines_;
   std::string first_comma_;  // first number with a decimal comma
   ZmxNotes notes_;
-  std::vector<ListedWavelength> wavelengths_;
-  std::vector<double> fields_;
-  double unit_ = 1e-3;
-  int primary_ = 1;
   bool object_assumed_ = false;
-  std::string heights_at_, across_at_;  // locations of field heights, and of fields outside the y-z plane
 };
 
 }  // namespace

@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <memory>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -39,15 +38,6 @@ class ArrayFile {
   /// Returns warnings about parts of the file that are ignored.
   virtual std::vector<std::string> notes() const { return {}; }
 };
-
-/// World axis and unit of an array of coordinates, as its name states them: "x_mm".
-struct NamedCoordinate {
-  char axis = 'x';
-  std::string unit;  ///< empty: not stated by the name
-};
-/// Returns the axis and unit of an array of coordinates (x, xcoor, x_coor, x_mm, x_m, x_um, x_cm, with any of x, y and
-/// z in upper or lower case); nullopt for other names.
-std::optional<NamedCoordinate> coordinate_name(std::string const& path);
 
 /// Opens an array of a file as a field.
 ///

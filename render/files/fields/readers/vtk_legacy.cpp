@@ -1,88 +1,23 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <charconv>
 #include <memory>
 #include <optional>
 
 #include "render/base/error.h"
-#include "render/base/interrupt.h"
 #include "render/base/nearest_name.h"
 #include "render/base/text.h"
 #include "render/files/fields/readers/vtk.h"
+#include "render/files/fields/readers/vtk_legacy_array.h"
 #include "render/files/fields/readers/vtk_numbers.h"
 #include "render/files/fields/readers/vtk_source.h"
+#include "render/files/fields/readers/word_cursor.h"
 #include "render/files/input_file.h"
 #include "render/files/text_file.h"
 
 namespace gladstone {
 namespace {
-
-/// Sequential reader of words, lines and bytes of a file.
-class Cursor {
- public:
-  explicit Cursor(InputFile const& file) : file_(file) {}
-
-  std::uint64_t place() const { return begin_ + at_; }
-  void go_to(std::uint64_t place) {
-    begin_ = place;
-    at_ = 0;
-    buffer_.clear();
-  }
-  int peek() {
-    if (at_ == buffer_.size()) {
-      throw_if_interrupted();
-      begin_ += buffer_.size();
-      at_ = 0;
-      buffer_.resize(std::size_t{1} << 16);
-      buffer_.resize(file_.read(begin_, buffer_.data(), buffer_.size()));
-      if (buffer_.empty()) return -1;
-    }
-    return static_cast<unsigned char>(buffer_[at_]);
-  }
-  int take() {
-    int const c = peek();
-    if (c >= 0) ++at_;
-    return c;
-  }
-  /// Returns the next word; empty at the end of the file. @throws DataError for a word longer than 4096 bytes
-  std::string word() {
-    while (peek() >= 0 && std::isspace(peek()) != 0) take();
-    std::string text;
-    constexpr std::size_t most = 4096;
-    while (peek() >= 0 && std::isspace(peek()) == 0) {
-      text += static_cast<char>(take());
-      if (text.size() > most) throw DataError(file_.path(), "has a word too long for a legacy VTK file");
-    }
-    return text;
-  }
-  /// Returns the rest of the line without its end. @throws DataError for a line longer than 64 KiB
-  std::string line() {
-    std::string text;
-    constexpr std::size_t most = 65536;
-    for (int c = take(); c >= 0 && c != '\n'; c = take()) {
-      text += static_cast<char>(c);
-      if (text.size() > most) throw DataError(file_.path(), "has a line too long for a legacy VTK file");
-    }
-    if (!text.empty() && text.back() == '\r') text.pop_back();
-    return text;
-  }
-
- private:
-  InputFile const& file_;
-  std::uint64_t begin_ = 0;
-  std::string buffer_;
-  std::size_t at_ = 0;
-};
-
-/// Array of a legacy file, with the offset of its numbers in the file [bytes].
-struct LegacyArray {
-  std::string name;
-  VtkPlace place = VtkPlace::points;
-  VtkNumber number{};
-  std::uint64_t components = 1, tuples = 0, begin = 0;
-};
 
 /// Decodes a name, in which blanks and other characters are written as %20.
 std::string decoded_name(std::string const& name) {
@@ -113,9 +48,9 @@ class LegacyReader {
   }
 
   VtkField field() && {
-    std::vector<LegacyArray> fitting;
+    std::vector<VtkLegacyArray> fitting;
     std::vector<std::string> names;
-    for (LegacyArray const& array : arrays_) {
+    for (VtkLegacyArray const& array : arrays_) {
       if (marks_ghosts(array.name) && array.name != selection_.dataset) continue;
       names.push_back(array.name);
       bool const fits = array.components == static_cast<std::uint64_t>(selection_.values);
@@ -129,11 +64,11 @@ class LegacyReader {
     if (fitting.size() > 1 && selection_.dataset.empty()) {
       refuse("has several such fields; select one with dataset = " + quoted_list(names));
     }
-    LegacyArray const& chosen = fitting.front();
+    VtkLegacyArray const& chosen = fitting.front();
     VtkField field{chosen.name, chosen.place, chosen.number.significant_bits, grid_, {}, {}};
     if (fitting.size() > 1)
       field.notes.push_back(fmt::format("\"{}\" occurs twice; the first one is used", chosen.name));
-    field.load = [file = file_, chosen, text = text_] { return load(*file, chosen, text); };
+    field.load = [file = file_, chosen, text = text_] { return load_legacy_array(*file, chosen, text); };
     return field;
   }
 
@@ -200,12 +135,12 @@ class LegacyReader {
   }
 
   void read_coordinates(std::size_t axis) {
-    LegacyArray array;
+    VtkLegacyArray array;
     array.name = fmt::format("{}_COORDINATES", "XYZ"[axis]);
     array.tuples = number<std::uint64_t>(array.name);
     array.number = number_type(cursor_.word());
     begin_data(array);
-    ValueStore const values = load(*file_, array, text_);
+    ValueStore const values = load_legacy_array(*file_, array, text_);
     grid_.coordinates[axis].clear();
     for (std::size_t i = 0; i < values.size(); ++i) grid_.coordinates[axis].push_back(values[i]);
     skip_data(array);
@@ -238,13 +173,30 @@ class LegacyReader {
     }
   }
 
+  /// Reads type and number of components of SCALARS, and skips a LOOKUP_TABLE that follows.
+  void read_scalars(VtkLegacyArray& array) {
+    array.number = number_type(cursor_.word());
+    std::string const rest = trimmed(cursor_.line());
+    if (!rest.empty() && std::from_chars(rest.data(), rest.data() + rest.size(), array.components).ec != std::errc()) {
+      refuse(fmt::format("SCALARS {}: \"{}\" is not a number of components", excerpt(array.name), excerpt(rest)));
+    }
+    std::string next(12, ' ');
+    next.resize(file_->read(cursor_.place(), next.data(), next.size()));
+    if (lower_case(next) == "lookup_table") {
+      cursor_.word();
+      cursor_.word();
+    } else {
+      cursor_.go_to(cursor_.place() - 1);  // go back to the preceding line end
+    }
+  }
+
   /// Reads one attribute. @return false if it is unknown, so that the next one cannot be found
   bool read_attribute(std::string const& key, VtkPlace place) {
     if (key == "field") {
       read_field(place, true);
       return true;
     }
-    LegacyArray array;
+    VtkLegacyArray array;
     array.place = place;
     array.tuples = nodes(place);
     if (key == "lookup_table") {  // RGBA colours: four bytes each, or numbers in text
@@ -258,20 +210,7 @@ class LegacyReader {
     }
     array.name = decoded_name(cursor_.word());
     if (key == "scalars") {
-      array.number = number_type(cursor_.word());
-      std::string const rest = trimmed(cursor_.line());
-      if (!rest.empty() &&
-          std::from_chars(rest.data(), rest.data() + rest.size(), array.components).ec != std::errc()) {
-        refuse(fmt::format("SCALARS {}: \"{}\" is not a number of components", excerpt(array.name), excerpt(rest)));
-      }
-      std::string next(12, ' ');
-      next.resize(file_->read(cursor_.place(), next.data(), next.size()));
-      if (lower_case(next) == "lookup_table") {
-        cursor_.word();
-        cursor_.word();
-      } else {
-        cursor_.go_to(cursor_.place() - 1);  // go back to the preceding line end
-      }
+      read_scalars(array);
     } else if (key == "vectors" || key == "normals") {
       array.number = number_type(cursor_.word());
       array.components = 3;
@@ -297,7 +236,7 @@ class LegacyReader {
     cursor_.word();  // skip the name of the FIELD
     std::uint64_t const count = number<std::uint64_t>("FIELD");
     for (std::uint64_t i = 0; i < count; ++i) {
-      LegacyArray array;
+      VtkLegacyArray array;
       array.place = place;
       std::string const name = cursor_.word();
       if (lower_case(name) == "metadata") {
@@ -323,71 +262,32 @@ class LegacyReader {
     }
   }
 
-  void begin_data(LegacyArray& array) {
+  void begin_data(VtkLegacyArray& array) {
     if (!text_) cursor_.line();
     array.begin = cursor_.place();
     double const values = static_cast<double>(array.components) * static_cast<double>(array.tuples);
     double const least = text_ ? 2 * values - 1 : values * static_cast<double>(array.number.bytes);
-    if (least > static_cast<double>(file_->size() - std::min(file_->size(), array.begin))) cut_short(*file_, array);
+    if (least > static_cast<double>(file_->size() - std::min(file_->size(), array.begin)))
+      refuse_incomplete(*file_, array);
   }
 
-  void skip_data(LegacyArray const& array) {
+  void skip_data(VtkLegacyArray const& array) {
     if (!text_) {
-      cursor_.go_to(array.begin + array.components * array.tuples * array.number.bytes);
+      cursor_.go_to(array.begin + array.values() * array.number.bytes);
       return;
     }
-    for (std::uint64_t i = 0; i < array.components * array.tuples; ++i) {
-      if (cursor_.word().empty()) cut_short(*file_, array);
+    for (std::uint64_t i = 0; i < array.values(); ++i) {
+      if (cursor_.word().empty()) refuse_incomplete(*file_, array);
     }
-  }
-
-  [[noreturn]] static void cut_short(InputFile const& file, LegacyArray const& array) {
-    throw DataError(file.path(),
-                    fmt::format("is cut short: data array \"{}\" is incomplete; copy it again", excerpt(array.name)));
-  }
-
-  static ValueStore load(InputFile const& file, LegacyArray const& array, bool text) {
-    std::size_t const count = array.components * array.tuples;
-    ValueStore values;
-    values.allocate(count, array.number.significant_bits, file.path(), "data array \"" + excerpt(array.name) + '"');
-    if (text) {
-      Cursor cursor(file);
-      cursor.go_to(array.begin);
-      for (std::size_t i = 0; i < count; ++i) {
-        std::string const word = cursor.word();
-        double value = 0;
-        std::size_t const sign = word.starts_with('+') ? 1 : 0;
-        if (std::from_chars(word.data() + sign, word.data() + word.size(), value).ec == std::errc::invalid_argument) {
-          throw DataError(file.path(),
-                          fmt::format("data array \"{}\" is damaged ({} of {} numbers are present); copy it again",
-                                      excerpt(array.name), i, count));
-        }
-        values.set(i, value);
-      }
-      return values;
-    }
-    bool const swap = std::endian::native == std::endian::little;  // legacy files are big-endian
-    std::vector<char> bytes(std::min<std::size_t>(count, 1 << 16) * array.number.bytes);
-    for (std::size_t done = 0; done < count;) {
-      throw_if_interrupted();
-      std::size_t const part = std::min(count - done, bytes.size() / array.number.bytes);
-      std::size_t const size = part * array.number.bytes;
-      if (file.read(array.begin + done * array.number.bytes, bytes.data(), size) < size) cut_short(file, array);
-      for (std::size_t i = 0; i < part; ++i) {
-        values.set(done + i, array.number.read(bytes.data() + i * array.number.bytes, swap));
-      }
-      done += part;
-    }
-    return values;
   }
 
   std::shared_ptr<InputFile> file_;
-  Cursor cursor_;
+  WordCursor cursor_;
   FieldSelection const& selection_;
   bool text_ = false;
   VtkGrid grid_;
   std::string next_key_;
-  std::vector<LegacyArray> arrays_;
+  std::vector<VtkLegacyArray> arrays_;
 };
 
 }  // namespace

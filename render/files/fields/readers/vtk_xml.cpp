@@ -12,6 +12,7 @@
 #include "render/files/fields/readers/vtk.h"
 #include "render/files/fields/readers/vtk_numbers.h"
 #include "render/files/fields/readers/vtk_payload.h"
+#include "render/files/fields/readers/vtk_pieces.h"
 #include "render/files/fields/readers/vtk_source.h"
 #include "render/files/text_file.h"
 
@@ -49,77 +50,6 @@ Head read_head(InputFile const& file) {
   }
 }
 
-/// One <Piece> of a grid, with the selected array.
-struct Piece {
-  std::array<int, 6> extent{};
-  VtkPayload payload;
-  VtkNumber number{};
-};
-
-/// State needed to load an array later, shared with the loader function of its VtkField.
-struct VtkArrays {
-  InputFile file;
-  std::string name;
-  VtkEncoding encoding;
-  VtkPlace place = VtkPlace::points;
-  std::array<int, 6> whole{};
-  std::size_t values = 1;
-  std::vector<Piece> pieces;
-};
-
-std::size_t offset_in(std::array<int, 6> const& part, std::array<int, 6> const& whole, std::size_t axis) {
-  return static_cast<std::size_t>(part[2 * axis] - whole[2 * axis]);
-}
-
-/// Loads the values of all pieces and assembles them on the whole grid.
-/// @throws DataError if the pieces do not cover the grid
-ValueStore load_pieces(VtkArrays const& arrays) {
-  std::array<std::size_t, 3> all{};
-  for (std::size_t i = 0; i < 3; ++i) all[i] = static_cast<std::size_t>(VtkGrid::count(arrays.whole, i, arrays.place));
-  int bits = 0;
-  for (Piece const& piece : arrays.pieces) bits = std::max(bits, piece.number.significant_bits);
-  ValueStore store;
-  std::size_t const nodes = all[0] * all[1] * all[2];
-  store.allocate(nodes * arrays.values, bits, arrays.file.path(), "data array \"" + excerpt(arrays.name) + '"');
-  std::vector<bool> filled(nodes);
-  std::size_t missing = nodes;
-  for (Piece const& piece : arrays.pieces) {
-    std::array<std::size_t, 3> size{}, from{};
-    for (std::size_t i = 0; i < 3; ++i) {
-      size[i] = static_cast<std::size_t>(VtkGrid::count(piece.extent, i, arrays.place));
-      from[i] = offset_in(piece.extent, arrays.whole, i);
-    }
-    std::uint64_t const count = std::uint64_t{size[0]} * size[1] * size[2] * arrays.values;
-    bool const text = piece.payload.format == VtkPayload::Format::ascii;
-    bool const swap = arrays.encoding.big_endian != (std::endian::native == std::endian::big);
-    auto const numbers = text ? decode_text(piece.payload, arrays.file, arrays.name, count) : std::vector<double>{};
-    auto const bytes =
-        text ? std::vector<char>{}
-             : decode_bytes(piece.payload, arrays.encoding, arrays.file, arrays.name, count * piece.number.bytes);
-    std::size_t next = 0;
-    for (std::size_t z = 0; z < size[2]; ++z) {
-      for (std::size_t y = 0; y < size[1]; ++y) {
-        std::size_t const row = (from[2] + z) * all[1] * all[0] + (from[1] + y) * all[0] + from[0];
-        for (std::size_t x = 0; x < size[0]; ++x) {
-          if (!filled[row + x]) --missing;
-          filled[row + x] = true;
-          for (std::size_t k = 0; k < arrays.values; ++k, ++next) {
-            double const value =
-                text ? numbers[next] : piece.number.read(bytes.data() + next * piece.number.bytes, swap);
-            store.set((row + x) * arrays.values + k, value);
-          }
-        }
-      }
-    }
-  }
-  if (missing > 0) {
-    throw DataError(arrays.file.path(), fmt::format("lacks {} of {} values of \"{}\": its pieces do not fill its "
-                                                    "WholeExtent; write it as one piece",
-                                                    missing, nodes, excerpt(arrays.name)));
-  }
-  return store;
-}
-
 /// Reader of the XML tree of a file.
 class VtkXmlReader {
  public:
@@ -149,7 +79,7 @@ class VtkXmlReader {
 
   VtkField field() && {
     int bits = 0;
-    for (Piece const& piece : arrays_->pieces) bits = std::max(bits, piece.number.significant_bits);
+    for (VtkPiece const& piece : arrays_->pieces) bits = std::max(bits, piece.number.significant_bits);
     return {arrays_->name, arrays_->place, bits, grid_, notes_, [arrays = arrays_] { return load_pieces(*arrays); }};
   }
 
@@ -260,7 +190,7 @@ class VtkXmlReader {
       }
     }
     for (pugi::xml_node const tag : grid.children("Piece")) {
-      Piece piece;
+      VtkPiece piece;
       piece.extent = numbers(tag, "Extent", &grid_.extent);
       bool empty = false;
       for (std::size_t i = 0; i < 3; ++i) {
@@ -279,7 +209,7 @@ class VtkXmlReader {
       if (rectilinear) read_coordinates(tag.child("Coordinates"), piece.extent);
     }
     if (arrays_->pieces.empty()) refuse("has no piece with data; write it anew");
-    bool const ascii = std::all_of(arrays_->pieces.begin(), arrays_->pieces.end(), [](Piece const& piece) {
+    bool const ascii = std::all_of(arrays_->pieces.begin(), arrays_->pieces.end(), [](VtkPiece const& piece) {
       return piece.payload.format == VtkPayload::Format::ascii;
     });
     if (!ascii && !grid.parent().attribute("byte_order")) {
@@ -287,7 +217,7 @@ class VtkXmlReader {
     }
   }
 
-  void read_array(pugi::xml_node tag, Piece& piece) {
+  void read_array(pugi::xml_node tag, VtkPiece& piece) {
     std::string_view const type = tag.attribute("type").as_string();
     std::string const name = tag.attribute("Name").as_string();
     auto const* const number =
@@ -316,21 +246,14 @@ class VtkXmlReader {
     std::size_t axis = 0;
     for (pugi::xml_node const array : tag.children("DataArray")) {
       if (axis == 3) break;
-      Piece one;
+      VtkPiece one;
       read_array(array, one);
       std::size_t const count = static_cast<std::size_t>(VtkGrid::count(extent, axis, VtkPlace::points));
       std::string const name = fmt::format("coordinates along {}", "xyz"[axis]);
-      bool const text = one.payload.format == VtkPayload::Format::ascii;
-      bool const swap = arrays_->encoding.big_endian != (std::endian::native == std::endian::big);
-      std::vector<double> places;
-      if (text) {
-        places = decode_text(one.payload, arrays_->file, name, count);
-      } else {
-        auto const bytes = decode_bytes(one.payload, arrays_->encoding, arrays_->file, name, count * one.number.bytes);
-        for (std::size_t i = 0; i < count; ++i) places.push_back(one.number.read(&bytes[i * one.number.bytes], swap));
-      }
-      std::copy(places.begin(), places.end(),
-                grid_.coordinates[axis].begin() + static_cast<std::ptrdiff_t>(offset_in(extent, grid_.extent, axis)));
+      VtkPieceNumbers const numbers(one, arrays_->encoding, arrays_->file, name, count);
+      auto const from = static_cast<std::ptrdiff_t>(offset_in(extent, grid_.extent, axis));
+      auto place = grid_.coordinates[axis].begin() + from;
+      for (std::size_t i = 0; i < count; ++i) *place++ = numbers[i];
       ++axis;
     }
     if (axis < 3) refuse("does not have three arrays in <Coordinates>; write it anew");

@@ -1,0 +1,72 @@
+"""What the measurements of density, displacement and camera have in common: their text and warnings, and the files of
+their inputs."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+
+import numpy as np
+
+from ._case import CalibrationCase, Case
+from ._field import Field
+from ._setup import Setup
+
+Box = Sequence[float]
+"""Corners x0, y0, x1, y1 of a box in mm from the optical axis, x to the right and y upwards."""
+
+
+class Measurement:
+    """Measurement that was computed by the libraries of gladstone."""
+
+    def __init__(self, core):
+        self._core = core
+
+    @property
+    def warnings(self) -> list[str]:
+        """Warnings about the measurement."""
+        return list(self._core.warnings)
+
+    def __str__(self) -> str:
+        return self._core.text()
+
+
+def _reference_text(region: str | Box) -> str:
+    return region if isinstance(region, str) else ",".join(repr(float(corner)) for corner in region)
+
+
+def reference_texts(reference: str | Box | Sequence[str | Box] | None) -> list[str]:
+    """Returns the regions in the notation of the option --reference."""
+    if reference is None:
+        return []
+    single = isinstance(reference, str) or np.ndim(reference[0]) == 0 and not isinstance(reference[0], str)
+    return [_reference_text(region) for region in ([reference] if single else reference)]
+
+
+def case_place(folder: str, case: Case | CalibrationCase, name: str = "case") -> str:
+    """Returns the CASE folder of a case; one in memory is written into `folder`."""
+    if isinstance(case, Case) and case._core.folder:
+        return case._core.folder
+    place = os.path.join(folder, name)
+    case.save(place)
+    return place
+
+
+def place_of(folder: str, setup: Setup | Case | CalibrationCase | str | os.PathLike) -> str:
+    """Returns the CASE folder or the setup file of a case or a setup; what is in memory is written into `folder`."""
+    if isinstance(setup, (Case, CalibrationCase)):
+        return case_place(folder, setup)
+    if isinstance(setup, Setup):
+        place = os.path.join(folder, "setup.toml")
+        setup.save(place)
+        return place
+    return os.fspath(setup)
+
+
+def vectors_place(folder: str, source, name: str = "vectors") -> str:
+    """Returns the file of vectors; those in memory are written into `folder`."""
+    if isinstance(source, (str, os.PathLike)):
+        return os.fspath(source)
+    vectors = os.path.join(folder, name + ".h5")
+    Field.of(source).save(vectors)
+    return vectors

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <string>
+
+#include "render/files/image_codecs.h"
+#include "render/files/image_file.h"
+
+namespace gladstone {
+
+/// Returns the text of the entry ImageDescription of an image: a first line that holds bit depth and pixel pitch, and
+/// below it the description.
+std::string image_description(ImageMetadata const& metadata);
+
+/// Returns the metadata of a page: those that gladstone wrote, else bits and resolution as its header states them.
+ImageMetadata metadata_of(PageHeader const& header);
+
+}  // namespace gladstone

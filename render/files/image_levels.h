@@ -1,0 +1,17 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "render/base/image.h"
+#include "render/files/image_codecs.h"
+
+namespace gladstone {
+
+/// Reads the current page of an image file as grey levels, upright.
+/// @param path        for errors
+/// @param file_bytes  size of the file [bytes], with which that of the page must agree
+/// @throws DataError for a damaged page, and for channels that are neither grey levels nor colours; MemoryError
+Image<double> read_grey_levels(PageReader& input, std::string const& path, std::uint64_t file_bytes);
+
+}  // namespace gladstone

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "render/optics/prescription.h"
+#include "render/optics/prescription_readers/lines.h"
+
+namespace gladstone {
+
+/// What the commands of a CODE V file say of the whole lens, as far as it is needed to read the surfaces.
+struct SeqSystem {
+  double unit = 1e-3;       ///< unit of length [m]
+  double pupil = 0;         ///< diameter of the entrance pupil [unit]
+  bool radii = false;       ///< surfaces have radii (RDM), not curvatures
+  bool radii_said = false;  ///< the file says which of the two
+  std::vector<ListedWavelength> wavelengths;
+  int reference = 0;                  ///< number of the reference wavelength, from 1; 0: not set
+  std::string private_glasses_where;  ///< line of PRV while its block is read
+  std::string paraxial_image_where;   ///< line of PIM
+
+  /// Returns the primary wavelength: that of REF, or the middle one without REF, as in CODE V; null if none is listed.
+  ListedWavelength const* primary_wavelength() const;
+};
+
+/// Reads a command that applies to the whole lens: aperture, wavelengths, fields, units, title.
+/// @param command  in upper case
+/// @param result   receives aperture, title, field angles and warnings
+/// @return false if it is not such a command
+/// @throws DataError
+bool read_seq_system(std::string const& command, PrescriptionLine const& line, SeqSystem& system, Prescription& result);
+
+}  // namespace gladstone

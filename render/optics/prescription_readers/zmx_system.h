@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "render/optics/prescription.h"
+#include "render/optics/prescription_readers/lines.h"
+
+namespace gladstone {
+
+/// What the lines of a .zmx file ahead of its first surface say of the whole lens, as far as it is needed later.
+struct ZmxSystem {
+  double unit = 1e-3;  ///< unit of length [m]
+  std::vector<ListedWavelength> wavelengths;
+  int primary = 1;                    ///< number of the primary wavelength, from 1
+  std::vector<double> fields;         ///< field angles in the y-z plane [rad]
+  std::string heights_at, across_at;  ///< locations of field heights, and of fields outside the y-z plane
+};
+
+/// Reads a line ahead of the first surface; lines of other operands have no effect.
+/// @param result  receives aperture, title and catalogues
+/// @throws DataError
+void read_zmx_system(PrescriptionLine const& line, ZmxSystem& system, Prescription& result);
+
+/// Uses field angles in the y-z plane; other fields cause a warning.
+void take_zmx_fields(ZmxSystem const& system, Prescription& result);
+
+}  // namespace gladstone
