@@ -288,6 +288,12 @@ class Field:
         x, y = np.meshgrid(data["x"].values, data["y"].values)
         return cls(x, y, u, v)
 
+    def plot(self):
+        """Draws maps of u and v. Returns a matplotlib figure."""
+        from ._plot import plot_field
+
+        return plot_field(self)
+
     def __repr__(self) -> str:
         size = " x ".join(str(one) for one in reversed(self.shape))
-        return f"<gladstone.Field {size} vectors, {int(np.sum(self.valid))} count>"
+        return f"<gladstone.Field {size} vectors, {int(np.sum(self.valid))} valid or replaced>"
