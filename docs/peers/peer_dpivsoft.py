@@ -1,7 +1,7 @@
 """python3 docs/peers/peer_dpivsoft.py build/bin/gladstone: DPIVSoft on the CPU beside gladstone.
 
 Two passes of 64 and 32 px at overlap 0.5 with deformed windows, median test, and its other defaults. Its loop over the
-windows is Python; an OpenCL device, which was not available, is said to be faster.
+windows is Python; its implementation for OpenCL is not measured.
 
 Needs: pip install dpivsoft==0.16.0 numpy==2.4.6 tifffile==2026.3.3
 """

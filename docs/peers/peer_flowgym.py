@@ -1,8 +1,8 @@
 """python3 docs/peers/peer_flowgym.py build/bin/gladstone: an estimator of Flow Gym, on JAX, beside gladstone.
 
 "openpiv_jax" correlates windows of 32 px once at overlap 0.5, and interpolates the displacement to every pixel, of which
-every 16th along x and y is scored. Other estimators of the package were left out: "dis_jax" takes 0.4, 5 and more than
-60 s for images of 256, 512 and 1024 px on two cores, and the networks need weights that it does not contain.
+every 16th along x and y is scored. Other estimators of the package were left out: "dis_jax" takes 0.4, 5 and 91 s
+for images of 256, 512 and 1024 px on two busy cores, and the networks need weights that it does not contain.
 
 Needs: pip install flow-gym-suite==0.1.0 jax==0.10.2 numpy==2.4.6 tifffile==2026.3.3
 """
