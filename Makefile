@@ -115,7 +115,9 @@ wheel: packages  ## build a wheel in build/python/wheels that contains the C++ l
 	rm -rf build/python/unrepaired
 	CMAKE_BUILD_PARALLEL_LEVEL=$(JOBS) $(VENV)/bin/pip wheel -q --no-deps -Cinstall.components=python \
 		-w build/python/unrepaired .
-	PATH=$(CURDIR)/$(VENV)/bin:$$PATH auditwheel repair --plat $(WHEEL_PLATFORM) -w build/python/wheels \
+	mkdir -p build/python/stubs
+	$(CC) -shared -fPIC -Wl,-soname,libGLX.so.0 -o build/python/stubs/libGLX.so.0 python/wheel/no_glx.c
+	LD_LIBRARY_PATH=$(CURDIR)/build/python/stubs PATH=$(CURDIR)/$(VENV)/bin:$$PATH auditwheel repair --plat $(WHEEL_PLATFORM) -w build/python/wheels \
 		build/python/unrepaired/*.whl
 
 bench: configure  ## run the benchmarks (rays/s, steps/s, vectors/s); options: BENCH='--benchmark_filter=...'

@@ -3,10 +3,21 @@
 install(FILES LICENSE DESTINATION share/doc/gladstone RENAME copyright COMPONENT debian EXCLUDE_FROM_ALL)
 install(FILES CHANGELOG.md DESTINATION share/doc/gladstone COMPONENT debian EXCLUDE_FROM_ALL)
 
+# Maintainer of the package: DEBFULLNAME and DEBEMAIL, as for Debian's own tools, or else the author of the last commit.
+if(DEFINED ENV{DEBFULLNAME} AND DEFINED ENV{DEBEMAIL})
+  set(package_contact "$ENV{DEBFULLNAME} <$ENV{DEBEMAIL}>")
+else()
+  execute_process(COMMAND git log -1 "--format=%an <%ae>" WORKING_DIRECTORY ${CMAKE_SOURCE_DIR}
+                  OUTPUT_VARIABLE package_contact OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+endif()
+if(NOT package_contact)
+  set(package_contact "The gladstone authors <authors@gladstone.invalid>")  # a copy without history
+endif()
+
 set(CMAKE_SKIP_INSTALL_ALL_DEPENDENCY ON)  # cpack packs what is built, without building tests
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME gladstone)
-set(CPACK_PACKAGE_CONTACT "The gladstone authors <authors@gladstone.invalid>")
+set(CPACK_PACKAGE_CONTACT "${package_contact}")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "synthetic BOS and PIV images by ray tracing, and their analysis")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)

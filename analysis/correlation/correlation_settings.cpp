@@ -57,20 +57,20 @@ CorrelationSettings read_correlation_settings(SetupTable table, PreparedSet set)
                                     .number_or_word("trusted_peak_ratio", {settings.trusted_peak_ratio, {}},
                                                     {"none", "off"}, Range::at_least(1.0))
                                     .number;
-  settings.uncertainty = table.word(
-      "uncertainty", settings.uncertainty,
-      {"none", "correlation_statistics", "image_matching", "peak_ratio", "moment_of_correlation", "combination"});
+  settings.uncertainty = table.word("uncertainty", "auto",
+                                    {"auto", "none", "correlation_statistics", "image_matching", "peak_ratio",
+                                     "moment_of_correlation", "combination"});
   settings.least_peak_ratio =
       table.number_or_word("least_peak_ratio", {{}, "off"}, {"off"}, Range::at_least(1.0)).number;
   settings.least_correlation =
       table.number_or_word("least_correlation", {{}, "off"}, {"off"}, Range::at_least(0.0, 1.0)).number;
   settings.replace = table.boolean("replace", settings.replace);
   bool const tracks_dots = correlation_method(settings.method).tracks_dots;
-  if (tracks_dots && settings.uncertainty != "none")
+  if (tracks_dots && settings.estimates_uncertainty())
     table.problem(
         "uncertainty",
         "conflicts with method = \"tracking\" (which estimates the uncertainty from the fit of each dot); use "
-        "\"none\"");
+        "\"auto\"");
   if (tracks_dots || table.has("tracking")) settings.tracking = read_tracking_table(table.table("tracking"));
   settings.preparation = read_frame_preparation(table, set);
   return settings;

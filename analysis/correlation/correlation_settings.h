@@ -44,7 +44,8 @@ struct CorrelationSettings {
   std::optional<double> least_peak_ratio;   ///< lowest peak ratio of a vector of the last pass, >= 1; none: no test
   std::optional<double> least_correlation;  ///< lowest correlation coefficient of its peak, [0, 1]; none: no test
   bool replace = true;  ///< true: spurious vectors of the last pass are replaced; false: they are invalid
-  /// Estimator of sigma_px: one of uncertainty_methods(), or "none".
+  /// Estimator of sigma_px: one of uncertainty_methods(), "none", or "auto" (in a setup the default), which estimates
+  /// none until choose_uncertainty() has replaced it.
   std::string uncertainty = "none";
   /// Peak ratio from which a vector of the first pass may deviate from its neighbours, see has_reliable_correlation();
   /// none: no vector may.
@@ -56,6 +57,8 @@ struct CorrelationSettings {
 
   /// Returns true if vectors are at the dots instead of the grid of the last pass.
   bool gives_scattered_vectors() const { return method == "tracking" && tracking.output == "scattered"; }
+  /// Returns true if `uncertainty` names a method.
+  bool estimates_uncertainty() const { return uncertainty != "none" && uncertainty != "auto"; }
 };
 
 /// Reads the table [correlate]; problems are collected in its document.

@@ -229,7 +229,7 @@ DisplacementField correlate_ensemble(PairSequence const& pairs, CorrelationSetti
       throw DataError("ensemble", fmt::format("correlate.method = \"{}\" does not support ensembles (it has no "
                                               "correlation planes to average); use another one, such as \"scc\"",
                                               settings.method));
-  if (settings.uncertainty != "none")
+  if (settings.estimates_uncertainty())
     throw DataError("ensemble", fmt::format("correlate.uncertainty = \"{}\" does not support ensembles (it compares "
                                             "the matched frames of one pair); use \"none\"",
                                             settings.uncertainty));

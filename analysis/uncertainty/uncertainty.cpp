@@ -66,7 +66,7 @@ std::vector<Vec2d> combined_uncertainty(UncertaintyInput const& input) {
 }
 
 std::string uncertainty_caveat(CorrelationSettings const& settings) {
-  if (settings.uncertainty == "none") return "";
+  if (!settings.estimates_uncertainty()) return "";
   std::string const method = "uncertainty by " + settings.uncertainty + " is too small ";
   if (settings.method == "rpc" || settings.method == "spc") {
     return method + "for correlate.method = \"" + settings.method +
@@ -95,8 +95,16 @@ bool uncertainty_on_gpu(std::string const& method) {
   return true;
 }
 
+CorrelationSettings choose_uncertainty(CorrelationSettings settings, bool on_cpu) {
+  if (settings.uncertainty != "auto") return settings;
+  settings.uncertainty = "correlation_statistics";
+  bool const estimated = !correlation_method(settings.method).tracks_dots && uncertainty_caveat(settings).empty();
+  if (!on_cpu || !estimated) settings.uncertainty = "none";
+  return settings;
+}
+
 void estimate_uncertainty(DisplacementField& field, FramePair const& frames, CorrelationSettings const& settings) {
-  if (settings.uncertainty == "none" || correlation_method(settings.method).tracks_dots) return;
+  if (!settings.estimates_uncertainty() || correlation_method(settings.method).tracks_dots) return;
   InterrogationGrid const grid = final_grid(settings, frames.reference().columns(), frames.reference().rows());
   GLADSTONE_EXPECTS(grid.size() == field.size());
   ImagePair const matched = matched_frames(field, grid, frames, CorrelationSchedule(settings));

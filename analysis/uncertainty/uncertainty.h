@@ -55,13 +55,19 @@ std::vector<std::string> uncertainty_methods();
 /// @param method  one of uncertainty_methods(), or "none"
 bool uncertainty_on_gpu(std::string const& method);
 
+/// Returns the settings with uncertainty = "auto" replaced: by correlation statistics if they cost less than half of
+/// the correlation (on a CPU) and do not underestimate the uncertainty with these settings (uncertainty_caveat()), else
+/// by "none". Other settings remain.
+/// @param on_cpu  whether the vectors are correlated on a CPU
+CorrelationSettings choose_uncertainty(CorrelationSettings settings, bool on_cpu);
+
 /// Returns a warning if the uncertainty is underestimated with these settings: the methods describe the effect of noise
 /// on peaks of a linear correlation between frames that were matched in several passes (docs/estimators.md). Empty: no
 /// warning.
 std::string uncertainty_caveat(CorrelationSettings const& settings);
 
-/// Estimates field.sigma_px by settings.uncertainty; does nothing for "none" and for tracked dots. Vectors whose status
-/// is not valid get NaN: replaced vectors were not measured in their own window.
+/// Estimates field.sigma_px by settings.uncertainty; does nothing without a method and for tracked dots. Vectors whose
+/// status is not valid get NaN: replaced vectors were not measured in their own window.
 /// @param field  result of a correlator for these frames and settings
 void estimate_uncertainty(DisplacementField& field, FramePair const& frames, CorrelationSettings const& settings);
 

@@ -216,6 +216,12 @@ class Case:
         """Writes the CASE folder: reference.tif, flow.tif, truth.h5, setup.toml, summary.json."""
         self._core.save(os.fspath(folder))
 
+    def plot(self):
+        """Draws both images. Returns a matplotlib figure."""
+        from ._plot import plot_images
+
+        return plot_images(self)
+
     def __repr__(self) -> str:
         _, rows, columns = self.images.shape
         return f"<gladstone.Case {'PIV' if self.is_piv else 'BOS'}, {columns} x {rows} px, {len(self.truth)} sources>"

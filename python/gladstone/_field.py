@@ -46,7 +46,8 @@ def correlate(a, b, *, device: str = "auto", progress: Progress = False, **setti
         of integers or floats. BOS: the reference image first.
     window: size of the interrogation window in each pass [px], for example [64, 32, 24, 20].
     overlap: fraction of the window that neighbouring windows share.
-    Further settings are the keys of the table [correlate]: method, subpixel, weighting, uncertainty, mask, ...
+    uncertainty: method that estimates sigma_u and sigma_v; default: correlation statistics on a CPU, none on a GPU.
+    Further settings are the keys of the table [correlate]: method, subpixel, weighting, mask, ...
 
     The vectors are equal bit by bit to those of `gladstone correlate`.
     Raises `SetupError` for settings and `DataError` for images that cannot be correlated.
@@ -288,6 +289,12 @@ class Field:
         x, y = np.meshgrid(data["x"].values, data["y"].values)
         return cls(x, y, u, v)
 
+    def plot(self):
+        """Draws maps of u and v. Returns a matplotlib figure."""
+        from ._plot import plot_field
+
+        return plot_field(self)
+
     def __repr__(self) -> str:
         size = " x ".join(str(one) for one in reversed(self.shape))
-        return f"<gladstone.Field {size} vectors, {int(np.sum(self.valid))} count>"
+        return f"<gladstone.Field {size} vectors, {int(np.sum(self.valid))} valid or replaced>"

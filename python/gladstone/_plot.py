@@ -12,18 +12,50 @@ def plot_report(report):
     figure, axes = plt.subplots(2, 4, figsize=(15, 6.5), layout="constrained")
     maps = (("true", report.truth_px), ("measured", report.measured_px), ("measured - true", report.error_px))
     for row, component in enumerate("uv"):
-        largest = np.nanmax(np.abs(report.truth_px[..., row])) if report.truth_px.size else 1.0
+        largest = max(_largest(report.truth_px[..., row]), _largest(report.measured_px[..., row], 99))
         for column, (title, values) in enumerate(maps):
-            limit = np.nanpercentile(np.abs(values[..., row]), 99) if column == 2 else largest
-            _map(figure, axes[row, column], report, values[..., row], f"{title} {component} [px]", limit)
+            limit = _largest(values[..., row], 99) if column == 2 else largest
+            _map(figure, axes[row, column], report.position_px, values[..., row], f"{title} {component} [px]", limit)
     _histogram(axes[0, 3], report)
     _budget(axes[1, 3], report)
     return figure
 
 
-def _map(figure, axis, report, values, title: str, limit: float) -> None:
-    limit = limit if np.isfinite(limit) and limit > 0 else 1.0
-    x, y = report.position_px[..., 0], report.position_px[..., 1]
+def plot_field(field):
+    """Draws maps of both components of a displacement field, without the vectors that do not count."""
+    import matplotlib.pyplot as plt
+
+    figure, axes = plt.subplots(1, 2, figsize=(9.5, 4), layout="constrained")
+    position = np.stack([field.x, field.y], axis=-1)
+    for axis, name, direction in zip(axes, "uv", ("to the right", "downwards")):
+        values = np.where(field.valid, getattr(field, name), np.nan)
+        _map(figure, axis, position, values, f"{name}, {direction} [px]", _largest(values))
+    return figure
+
+
+def plot_images(case):
+    """Draws both frames of a case on one grey scale."""
+    import matplotlib.pyplot as plt
+
+    figure, axes = plt.subplots(1, 2, figsize=(9.5, 4.5), layout="constrained")
+    names = ("frame A", "frame B") if case.is_piv else ("reference image", "measurement image")
+    for axis, name, image in zip(axes, names, case.images):
+        drawn = axis.imshow(image, cmap="gray", vmin=0, vmax=np.max(case.images))
+        axis.set(title=name, xlabel="column [px]", ylabel="row [px]")
+    figure.colorbar(drawn, ax=axes, shrink=0.8, label="grey level [DN]")
+    return figure
+
+
+def _largest(values, percentile: float = 100.0) -> float:
+    """Returns a percentile of the magnitudes; 0 if there are no numbers."""
+    finite = np.abs(values[np.isfinite(values)])
+    return float(np.percentile(finite, percentile)) if finite.size else 0.0
+
+
+def _map(figure, axis, position, values, title: str, limit: float) -> None:
+    """Draws values on a grid as cells, scattered ones as points; colours are symmetric about 0."""
+    limit = limit if limit > 0 else 1.0
+    x, y = position[..., 0], position[..., 1]
     style = {"cmap": "RdBu_r", "vmin": -limit, "vmax": limit}
     drawn = axis.pcolormesh(x, y, values, **style) if values.ndim == 2 else axis.scatter(x, y, c=values, s=4, **style)
     axis.set(title=title, xlabel="column [px]", ylabel="row [px]", aspect="equal")

@@ -63,6 +63,18 @@ def test_report_is_drawn(report):
     assert "<table>" in report._repr_html_() and "Error budget" in str(report)
 
 
+def test_images_and_vectors_are_drawn(case, field):
+    matplotlib = pytest.importorskip("matplotlib")
+    matplotlib.use("agg")
+    images = [axis.images[0].get_array() for axis in case.plot().axes if axis.images]
+    assert [np.array_equal(drawn, image) for drawn, image in zip(images, case.images)] == [True, True]
+    maps = [axis.collections[0].get_array() for axis in field.plot().axes[:2]]
+    for drawn, values in zip(maps, (field.u, field.v)):
+        assert np.array_equal(drawn.filled(np.nan), np.where(field.valid, values, np.nan), equal_nan=True)
+    scattered = gs.Field(*(values.ravel()[1:] for values in (field.x, field.y, field.u, field.v)))
+    assert len(scattered.plot().axes[0].collections[0].get_offsets()) == len(field) - 1
+
+
 def test_html_report(report, tmp_path):
     findings = report.to_html(tmp_path / "report.html", device="cpu")
     assert findings and (tmp_path / "report.html").read_text().startswith("<!")

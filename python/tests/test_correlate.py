@@ -24,6 +24,7 @@ def test_vectors_equal_those_of_the_program(field, case, written_case):
         assert same(getattr(field, name), getattr(written, name)), name
     assert field.shape == written.shape and len(field.shape) == 2
     assert same(case.correlate(device="cpu").u, field.u)
+    assert np.isfinite(field.sigma_u[field.status == 0]).mean() > 0.5  # the default on a CPU
 
 
 @pytest.mark.parametrize("dtype", [np.float32, np.float64, np.int32, np.uint32, np.int64])

@@ -4,9 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <iterator>
 #include <memory>
+#include <mutex>
 #include <random>
+#include <utility>
 
 #include "render/base/contracts.h"
 #include "render/base/units.h"
@@ -24,6 +27,20 @@ std::uint64_t seed_of(std::string const& name) {
   return seed;
 }
 
+/// Returns a flow that is made when it is first evaluated. Every command lists the cases, and normalising the random
+/// flows takes 0.1 s.
+DisplacementAt make_at_first_use(std::function<DisplacementAt()> make) {
+  struct Made {
+    std::once_flag once;
+    DisplacementAt flow;
+  };
+  auto const made = std::make_shared<Made>();
+  return [made, make = std::move(make)](Vec2d p) {
+    std::call_once(made->once, [&] { made->flow = make(); });
+    return made->flow(p);
+  };
+}
+
 /// Adds six random fields with gradients from weak to steep, alternately with few and many particles.
 template <class Add>
 void add_random_flows(Add const& add) {
@@ -33,12 +50,12 @@ void add_random_flows(Add const& add) {
   constexpr Row rows[] = {{60.0, 0.1}, {40.0, 0.2}, {25.0, 0.3}, {20.0, 0.45}, {15.0, 0.6}, {12.0, 0.85}};
   for (int k = 0; k < 6; ++k) {
     std::string const name = fmt::format("kinematic_{}", k + 1);
+    RandomWaves const waves{rows[k].size_px, rows[k].peak_gradient, seed_of(name)};
     double const density = k % 2 == 0 ? 0.075 : 0.035;
     add(name,
         fmt::format("random waves with features of {} px, gradients up to {} px/px, {} particles per px",
                     rows[k].size_px, rows[k].peak_gradient, density),
-        random_flow({rows[k].size_px, rows[k].peak_gradient, seed_of(name)}, case_pixels),
-        {.particles_per_px = density});
+        make_at_first_use([waves] { return random_flow(waves, case_pixels); }), {.particles_per_px = density});
   }
 }
 

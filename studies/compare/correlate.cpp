@@ -133,7 +133,8 @@ Measurement correlate_frames(std::string const& reference_name, Image<double> co
   }
   check_finite(reference_name, reference, flow_name, flow);
   stop_point("correlating");
-  return correlate_frames(FramesView(reference, flow), settings, device);
+  return correlate_frames(FramesView(reference, flow),
+                          choose_uncertainty(settings, device.correlates_on(settings) == "cpu"), device);
 }
 
 Measurement correlate_frames(FramePair const& frames, CorrelationSettings const& settings, Backend const& device) {

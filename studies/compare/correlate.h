@@ -18,12 +18,12 @@ struct Measurement {
   std::string device;       ///< device of the correlation: "cpu" or "cuda"
 };
 
-/// Correlates two frames.
+/// Correlates two images, and estimates the uncertainty of the vectors by the method of choose_uncertainty().
 /// @throws DataError if they differ in size or are smaller than an interrogation window
 Measurement correlate_frames(std::string const& reference_name, Image<double> const& reference,
                              std::string const& flow_name, Image<double> const& flow,
                              CorrelationSettings const& settings, Backend const& device);
-/// Correlates two frames that may be stored on a device.
+/// Correlates two frames that may be stored on a device; estimates no uncertainty if its method is "auto".
 /// @pre the frames are at least as large as the largest interrogation window
 Measurement correlate_frames(FramePair const& frames, CorrelationSettings const& settings, Backend const& device);
 

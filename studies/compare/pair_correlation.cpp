@@ -9,6 +9,7 @@
 
 #include "analysis/correlation/correlator.h"
 #include "analysis/correlation/pair_assessment.h"
+#include "analysis/uncertainty/uncertainty.h"
 #include "analysis/vectors/vector_file.h"
 #include "render/base/error.h"
 #include "render/base/interrupt.h"
@@ -117,7 +118,8 @@ DisplacementField PairCorrelation::measure(PairRecord& record, std::string const
 DisplacementField PairCorrelation::correlate(SequenceImage reference, SequenceImage flow, PairRecord& record,
                                              std::string const& path) const {
   HostFrames const frames(std::move(reference.levels), std::move(flow.levels));
-  Measurement measurement = correlate_frames(frames, settings_.settings, device_);
+  bool const on_cpu = device_.correlates_on(settings_.settings) == "cpu";
+  Measurement measurement = correlate_frames(frames, choose_uncertainty(settings_.settings, on_cpu), device_);
   throw_if_interrupted();  // the measurement may be incomplete
   DisplacementField& field = measurement.field;
   field.warnings.insert(field.warnings.begin(), flow.warnings.begin(), flow.warnings.end());

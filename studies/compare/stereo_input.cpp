@@ -34,7 +34,7 @@ CaseSetup load_calibrated_setup(std::string const& calibration) {
 /// Adds an uncertainty to the settings for dewarped images if they have none and the method has none of its own: the
 /// weights of the four equations and the uncertainty of the components depend on it.
 CorrelationSettings choose_dewarped_settings(CorrelationSettings settings) {
-  if (settings.uncertainty == "none" && !correlation_method(settings.method).tracks_dots)
+  if (!settings.estimates_uncertainty() && !correlation_method(settings.method).tracks_dots)
     settings.uncertainty = "correlation_statistics";
   return settings;
 }

@@ -135,16 +135,16 @@ void write_layout(std::string const& path, OpticalLayout const& l, LayoutWords c
   set_heights(plot, stretched_bottom, stretched_top);
   double const stretched = mm_a_px * (stretched_top - stretched_bottom) / (2.95 * tallest / mm);
   plot.command(fmt::format("set label 3 {} at graph 0,1.01 left textcolor '#606060'",
-                           GnuplotFigure::quoted(fmt::format("heights enlarged {:.2g} times", stretched))));
+                           GnuplotFigure::quoted(fmt::format("heights times {:.2g}", stretched))));
   plot.command("set key at graph 0.995,1.06 right top horizontal samplen 2");
   distance(plot, 0, l.lens_z, 0.14, "Z_A");
   if (dots && l.dots_z < 0) {
     distance(plot, l.dots_z, 0, 0.14, "Z_D");
     distance(plot, l.dots_z, l.lens_z, 0.06, "Z_B");
   }
-  // the arrow of the image distance is too short for its label
+  // the arrow of the image distance is too short for its label, which is between the lines of Z_A and Z_B
   arrow(plot, l.lens_z, l.sensor_z, 0.14);
-  plot.command(fmt::format("set label {} at graph 1,0.06 right front textcolor '#202020'",
+  plot.command(fmt::format("set label {} at graph 1,0.10 right front textcolor '#202020'",
                            GnuplotFigure::quoted(fmt::format("z_i = {:.5g} mm", (l.sensor_z - l.lens_z) / mm))));
   name_part(plot, words.seen, l.dots_z + (dots ? 0.03 : 0.08) * length, dots ? 0.95 : 0.82);
   if (!words.medium.empty()) name_part(plot, words.medium, dots ? 0 : 0.08 * length, 0.89);

@@ -339,6 +339,26 @@ TEST(EveryUncertainty, IsNotKnownWhereNothingWasMeasured) {
   }
 }
 
+// "auto" selects correlation statistics on a CPU, except where uncertainty_caveat() calls them too small.
+TEST(UncertaintySettings, AutoSelectsAMethodThatIsCheapAndValid) {
+  auto const chosen = [](std::string const& method, bool on_cpu, std::vector<int> windows = {32, 16}) {
+    CorrelationSettings settings;
+    settings.method = method;
+    settings.window_px = std::move(windows);
+    settings.uncertainty = "auto";
+    EXPECT_FALSE(settings.estimates_uncertainty());
+    return choose_uncertainty(settings, on_cpu).uncertainty;
+  };
+  EXPECT_EQ(chosen("scc", true), "correlation_statistics");
+  EXPECT_EQ(chosen("zncc", true), "correlation_statistics");
+  EXPECT_EQ(chosen("scc", false), "none");
+  EXPECT_EQ(chosen("scc", true, {32}), "none");
+  for (char const* method : {"rpc", "spc", "dis", "tracking"}) EXPECT_EQ(chosen(method, true), "none") << method;
+  CorrelationSettings given;
+  given.uncertainty = "image_matching";
+  EXPECT_EQ(choose_uncertainty(given, false).uncertainty, "image_matching");
+}
+
 TEST(UncertaintySettings, KnowTheMethodsOfTheTable) {
   for (std::string const& method : uncertainty_methods()) {
     SetupDocument document = SetupDocument::from_text("[correlate]\nuncertainty = \"" + method + "\"\n", "case.toml");

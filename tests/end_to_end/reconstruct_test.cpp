@@ -181,7 +181,7 @@ TEST_F(ReconstructedDensity, IsDeconvolvedFromTheAperture) {
 // Measured images have a setup and vectors, but no truth: the density is that of the case.
 TEST_F(ReconstructedDensity, OfMeasuredImagesNeedsTheirSetupAndVectors) {
   render("case");
-  succeed({"correlate", "case"});
+  succeed({"correlate", "case", "--set", "correlate.uncertainty=none"});  // as v.csv
   write_foreign("v.csv");
   std::string const field = "[medium.field]\nkind = \"gaussian_blob\"\namplitude_kg_m3 = 0.5\nradius_mm = 2.0\n";
   write("experiment.toml", with(blob_setup, field, ""));

@@ -212,7 +212,7 @@ window_px = [32, 16]
   without_field.erase(without_field.find("[medium.field]"), setup.find("[correlate]") - setup.find("[medium.field]"));
   write("measured/setup.toml", without_field);
   succeed({"correlate", "measured/reference.tif", "measured/flow.tif", "-o", "measured/vectors.h5", "--config",
-           "measured/setup.toml", "--quiet"});
+           "measured/setup.toml", "--set", "correlate.uncertainty=none", "--quiet"});
   std::string const findings = json_of({"report", "measured", "--device", "cpu"})["findings"];
   EXPECT_THAT(findings, HasSubstr("combined standard uncertainty"));
   EXPECT_THAT(findings, HasSubstr("coverage factor k = 2.00"));

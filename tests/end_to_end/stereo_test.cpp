@@ -166,7 +166,7 @@ TEST_F(Stereo, WarnsOfADisplacedSheet) {
 }
 
 TEST_F(Stereo, DewarpedImagesHaveAnUncertaintyWithoutSetting) {
-  std::string const text = with(stereo_setup(30, "[5.0, -4.0, 1.0]"), "uncertainty = \"correlation_statistics\"\n", "");
+  std::string const text = with(stereo_setup(30, "[5.0, -4.0, 1.0]"), "\"correlation_statistics\"", "\"none\"");
   write("setup.toml", text);
   render("case");
   for (char const* camera : {"case/left", "case/right"}) succeed({"correlate", camera, "--quiet"});

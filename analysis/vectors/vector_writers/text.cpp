@@ -45,11 +45,18 @@ void write_csv_table(std::string const& path, VectorTable const& table, FileOrig
 void write_tecplot_table(std::string const& path, VectorTable const& table, FileOrigin const& origin) {
   std::vector<VectorColumn> columns = table.columns;
   std::erase_if(columns, [](VectorColumn const& column) { return !column.is_known(); });
-  std::string text = fmt::format("TITLE = \"gladstone vectors, {}, 0: not known\"\nVARIABLES =", table.remark);
+  std::string names;
+  bool any_unknown = false;
   for (VectorColumn& column : columns) {
-    text += " \"" + column.name + '"';
-    for (double& value : column.values) value = std::isfinite(value) ? value : 0.0;
+    names += " \"" + column.name + '"';
+    for (double& value : column.values) {
+      if (std::isfinite(value)) continue;
+      value = 0.0;
+      any_unknown = true;
+    }
   }
+  std::string text = fmt::format("TITLE = \"gladstone vectors, {}{}\"\nVARIABLES ={}", table.remark,
+                                 any_unknown ? "; unknown values are 0" : "", names);
   bool const grid = table.grid_columns > 0;
   text += fmt::format("\nZONE T=\"vectors\", I={}, J={}, DATAPACKING=POINT\n",
                       grid ? static_cast<std::size_t>(table.grid_columns) : table.rows(), grid ? table.grid_rows : 1);
