@@ -24,12 +24,11 @@ import h5py
 import matplotlib
 
 matplotlib.use("Agg")
+import gladstone as gs
 import matplotlib.pyplot as plt
 import numpy as np
 from scipy.ndimage import gaussian_filter, map_coordinates, spline_filter
 from skimage.transform import iradon, iradon_sart
-
-import gladstone as gs
 
 
 def blob(x, y, z):
