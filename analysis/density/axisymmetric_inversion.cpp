@@ -153,6 +153,11 @@ AxisymmetricDensity invert_axisymmetric(GradientMap const& projected, Axisymmetr
       result.sigma[result.grid.index(i, row)] = sigma[i];
     }
   });
+  if (std::none_of(result.density.begin(), result.density.end(), [](double value) { return std::isfinite(value); }))
+    throw DataError("density gradient",
+                    "the vectors at the largest distance from the axis are masked or invalid in all rows (the direct "
+                    "inversion proceeds from there to the axis); crop the vectors on that side, move the axis, or "
+                    "choose the regularised inversion (tikhonov)");
   return result;
 }
 

@@ -51,8 +51,8 @@ struct AxisymmetricDensity {
 /// @param projected  from compute_projected_gradient() [kg/m^3]
 /// @throws SetupError  if the axis is outside the grid, lambda is not positive (choice `given`), the ambient density is
 ///                     not finite, or the overlap does not fit the grid
-/// @throws DataError   if the discrepancy principle is chosen for a gradient without sigma; see also
-///                     check_gradient_map() and find_symmetry_axis()
+/// @throws DataError   if the discrepancy principle is chosen for a gradient without sigma, or no density can be
+///                     determined; see also check_gradient_map() and find_symmetry_axis()
 AxisymmetricDensity invert_axisymmetric(GradientMap const& projected, AxisymmetricSettings const& settings);
 
 }  // namespace gladstone::density

@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <cmath>
 #include <filesystem>
 
 #include "analysis/correlation/correlation_methods.h"
 #include "analysis/stereo/interpolated_field.h"
 #include "render/base/error.h"
+#include "render/base/units.h"
 #include "render/files/hdf5_file.h"
 #include "render/files/input_file.h"
 #include "studies/case/truth_file.h"
@@ -53,6 +55,22 @@ void require_same_windows(CaseSetup const& of_case, std::string const& place, st
                   calibrated, place, own));
 }
 
+/// Throws if the camera of a calibration is elsewhere than that of the rendered case. Exchanged calibrations of two
+/// symmetric cameras would give a third component of the wrong sign without any residual.
+void require_same_view(CaseSetup const& of_case, std::string const& place, PinholeCamera const& camera,
+                       std::string const& calibration) {
+  constexpr double largest_angle = 10 * unit::degree;  // an alignment of the sheet changes the view by a few degrees
+  Vec3d const own = of_case.setup.camera_pose().origin, calibrated = stereo::find_pinhole(camera);
+  double const angle = std::atan2(length(cross(own, calibrated)), dot(own, calibrated));
+  if (angle <= largest_angle) return;
+  throw DataError(
+      calibration,
+      fmt::format("describes a camera at ({:.4g}, {:.4g}, {:.4g}) mm, but that of {} is at ({:.4g}, {:.4g}, "
+                  "{:.4g}) mm; give the calibrations in the order of the cases",
+                  1e3 * calibrated.x, 1e3 * calibrated.y, 1e3 * calibrated.z, place, 1e3 * own.x, 1e3 * own.y,
+                  1e3 * own.z));
+}
+
 }  // namespace
 
 StereoInput read_stereo_input(StereoOptions const& options, std::size_t index, SourceFiles& sources) {
@@ -79,7 +97,14 @@ StereoInput read_stereo_input(StereoOptions const& options, std::size_t index, S
     }
     sources.add("", setup, SourceFiles::Holds::bytes);
     input.loaded = load_case_setup(setup, {});
-    if (!input.calibration.empty()) require_same_windows(*input.loaded, place, input.calibration);
+    if (!input.loaded->setup.piv)
+      throw DataError(place,
+                      "is no PIV case, and its vectors are no motion of particles; give two cameras of a PIV "
+                      "rendering");
+    if (!input.calibration.empty()) {
+      require_same_windows(*input.loaded, place, input.calibration);
+      require_same_view(*input.loaded, place, input.camera.camera, input.calibration);
+    }
   } else {
     require_input_file(place, "a case folder or a file of vectors");
     if (options.dewarp_images)

@@ -173,7 +173,8 @@ void add_tomography_warnings(Tomography& result, std::vector<TomographyView> con
   if (fraction > 0.01)
     result.warnings.push_back(
         fmt::format("{:.0f} % of the volume are seen by fewer than {} views, where the density is "
-                    "not determined; reduce the volume with --bounds",
+                    "not determined; reduce the volume with --bounds, or, if its nodes are closer than the "
+                    "vectors, increase --spacing",
                     100.0 * fraction, tomography::least_views));
 }
 

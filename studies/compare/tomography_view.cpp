@@ -151,10 +151,11 @@ density::ReferenceDensity make_view_reference(density::PlaneGrid const& grid, Se
   density::ProjectionOptics const optics = make_projection_optics(setup);
   double const px_per_m = optics.medium_magnification() / optics.pixel_pitch;
   Vec2d const axis{optics.axis_px.x, -optics.axis_px.y};  // y = -row
+  density::PlaneGrid const in_medium{grid.columns, grid.rows, (grid.origin - axis) / px_per_m,
+                                     grid.spacing / px_per_m};  // [m], as the boxes
   for (ReferenceRegion const& region : regions) {
-    density::ReferenceDensity one =
-        region.side ? make_side_reference(grid, *region.side, 0.0, region.depth)
-                    : make_box_reference(grid, axis + px_per_m * region.low, axis + px_per_m * region.high, 0.0);
+    density::ReferenceDensity one = region.side ? make_side_reference(grid, *region.side, 0.0, region.depth)
+                                                : make_box_reference(in_medium, region.low, region.high, 0.0);
     reference = reference ? combine_references(std::move(*reference), one) : std::move(one);
   }
   return *reference;

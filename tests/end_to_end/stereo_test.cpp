@@ -232,6 +232,8 @@ TEST_F(Stereo, RefusesWhatItCannotCombine) {
   refused({"case/left", "case/right", "-o", "uvw.txt"}, {".h5"});
   refused({"case/left", "case/right", "-o", "case/left/vectors.h5"}, {"vectors.h5"});
   refused({"case/left", "case/left", "-o", "uvw.h5"}, {"same direction"});
+  refused({"case/left", "case/right", "--calibration", "b.h5", "a.h5", "-o", "uvw.h5"},
+          {"b.h5", "case/left", "order of the cases"});
   refused({"case/left/vectors.h5", "case/right/vectors.h5", "-o", "uvw.h5"}, {"--calibration"});
   refused({"case/left", "case/right", "--calibration", "case/left/truth.h5", "case/right/truth.h5", "-o", "uvw.h5"},
           {"truth.h5: is not a calibration"});
@@ -251,6 +253,11 @@ TEST_F(Stereo, RefusesWhatItCannotCombine) {
   render("other", {"--set", "particles.seed=2"});
   succeed({"correlate", "other/right", "--quiet"});
   refused({"case/left", "other/right", "-o", "uvw.h5"}, {"other particles"});
+  succeed({"init", "bos", "-o", "bos.toml"});
+  succeed({"render", "bos.toml", "-o", "bos", "--set", "camera.pixels=[128, 128]", "--set", "render.rays_per_dot=4",
+           "--quiet"});
+  succeed({"correlate", "bos", "--quiet"});
+  refused({"case/left", "bos", "-o", "uvw.h5"}, {"bos", "PIV"});
 }
 
 }  // namespace

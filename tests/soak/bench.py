@@ -75,7 +75,7 @@ class Bench:
 
     def __init__(self, program, folder):
         self.program, self.folder = os.path.abspath(program), folder
-        self.seconds = {}
+        self.seconds, self.results = {}, {}
         os.makedirs(folder)
         for kind, slope in (("a", 1.0), ("b", -2.0)):
             write(self.at(f"{kind}.nrrd"), field(slope))

@@ -101,5 +101,30 @@ TEST(Tomography, MissingViewIsRefused) {
   EXPECT_THROW(reconstruct_views(options, tomography::make_host_volume), DataError);
 }
 
+// A box in mm is compared with the vectors in mm, and the message names both.
+TEST(Tomography, ReferenceOutsideTheVectorsIsReportedInMillimetres) {
+  TomographyOptions options;
+  std::string vectors = "x_px,y_px,u_px,v_px\n";
+  for (int y = 8; y <= 56; y += 8)
+    for (int x = 8; x <= 56; x += 8) vectors += std::to_string(x) + "," + std::to_string(y) + ",0.01,0.02\n";
+  for (char const* name : {"one", "two", "three"}) {
+    options.views.push_back(write_blob_setup(std::string(name) + ".toml"));
+    options.vectors.push_back(testing::TempDir() + name + ".csv");
+    std::ofstream(options.vectors.back()) << vectors;
+  }
+  ReferenceRegion far;
+  far.low = {0.1, 0.1};
+  far.high = {0.11, 0.11};
+  options.reference = {far};
+  try {
+    reconstruct_views(options, tomography::make_host_volume);
+    FAIL();
+  } catch (SetupError const& error) {
+    std::string const text = error.problems().front().message;
+    EXPECT_NE(text.find("x 100 to 110 mm"), std::string::npos) << text;
+    EXPECT_EQ(text.find("e+"), std::string::npos) << text;
+  }
+}
+
 }  // namespace
 }  // namespace gladstone

@@ -207,5 +207,24 @@ TEST(AxisymmetricInversion, RejectsBadInput) {
   EXPECT_THROW(invert_axisymmetric(flat, {}), DataError);  // no axis
 }
 
+// The direct inversion of a row starts at its largest radius, which only the columns right of 0.94 measure. The
+// regularised one uses all measured radii.
+TEST(AxisymmetricInversion, RejectsAMaskOverTheLargestRadii) {
+  GradientMap map = jet_map(101, 4);
+  for (int row = 0; row < 4; ++row)
+    for (int column = 95; column < 101; ++column) map.valid[map.grid.index(column, row)] = 0;
+  AxisymmetricSettings settings;
+  settings.axis = 0.47;
+  EXPECT_THROW(invert_axisymmetric(map, settings), DataError);
+  settings.method = AbelMethod::tikhonov;
+  AxisymmetricDensity const regularized = invert_axisymmetric(map, settings);
+  EXPECT_TRUE(std::isfinite(regularized.density[regularized.grid.index(0, 0)]));
+  for (int column = 95; column < 101; ++column) map.valid[map.grid.index(column, 1)] = 1;
+  settings.method = AbelMethod::direct;
+  AxisymmetricDensity const one_row = invert_axisymmetric(map, settings);
+  EXPECT_TRUE(std::isfinite(one_row.density[one_row.grid.index(0, 1)]));
+  EXPECT_TRUE(std::isnan(one_row.density[one_row.grid.index(0, 0)]));
+}
+
 }  // namespace
 }  // namespace gladstone::density
