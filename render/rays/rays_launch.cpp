@@ -115,6 +115,10 @@ AimedBundle<double> RaysLaunch::bundle(WorldApparentPupil const& disc, AimShift 
   return bundle;
 }
 
+double RaysLaunch::first_margin(WorldApparentPupil const& disc, double shift) const {
+  return shift > 0 ? 2 * shift + 0.01 * smaller_semi_axis(disc) : 0;
+}
+
 double RaysLaunch::wider_margin(double shift) const {
   double const margin = 1.02 * shift;
   check_deflection_limit(margin, z_b);

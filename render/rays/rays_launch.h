@@ -65,6 +65,12 @@ struct RaysLaunch {
   /// @param disc  entrance pupil as seen from the source's middle
   /// @param margin  upper limit of the deflection by the medium on the aim plane [m]
   AimedBundle<double> bundle(WorldApparentPupil const& disc, AimShift const& shift, double margin) const;
+  /// Returns the margin for a source before its rays are traced: twice the largest deflection of its chief and edge
+  /// rays plus 1 % of the entrance pupil's radius, or 0 if these are not deflected. Other rays may be deflected more:
+  /// through a smooth volume up to 1.6, through a turbulent plane up to 5 times as much. A source whose margin is too
+  /// small is traced again, which costs more than the 2 % of rays that 1 % of the radius takes.
+  /// @param shift  largest deflection of these rays on the aim plane [m]
+  double first_margin(WorldApparentPupil const& disc, double shift) const;
   /// Returns the margin for a source of which a ray was deflected by `shift` on the aim plane [m].
   /// @throws DataError if no real set-up has such a deflection
   double wider_margin(double shift) const;

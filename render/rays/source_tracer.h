@@ -45,8 +45,8 @@ struct SourceAim {
   Vec2d low[frame_count], high[frame_count];  ///< approximate bounding box of the hits in each image [px]
 };
 
-/// Aims at the entrance pupil as seen from a source, with a margin of 1.25 times the deflection of its chief and edge
-/// rays by the medium on the aim plane.
+/// Aims at the entrance pupil as seen from a source, with a margin for the deflection of its rays by the medium on the
+/// aim plane, estimated from its chief and edge rays (RaysLaunch::first_margin).
 /// @param reach  maximum distance of a point of the source from its middle [m]
 template <class View, class Medium>
 SourceAim aim_at_stop(RaysLaunch const& launch, View const& view, Medium const& medium, Vec3d middle, double reach) {
@@ -56,22 +56,30 @@ SourceAim aim_at_stop(RaysLaunch const& launch, View const& view, Medium const& 
   aim.shift = launch.aim_shift(*aim.disc, middle, reach);
   if (auto const pixel = launch.camera.project(middle)) aim.origin = {std::round(pixel->x), std::round(pixel->y)};
   for (int frame = 0; frame < frame_count; ++frame) aim.low[frame] = aim.high[frame] = aim.origin;
-  auto const landed = [&aim](int frame, RayHit<double> const& hit) {
-    if (!reaches_sensor_plane(hit.status)) return;
-    aim.low[frame] = {std::min(aim.low[frame].x, hit.pixel.x), std::min(aim.low[frame].y, hit.pixel.y)};
-    aim.high[frame] = {std::max(aim.high[frame].x, hit.pixel.x), std::max(aim.high[frame].y, hit.pixel.y)};
-  };
-  double shift = 0;
-  for (Vec3d const off : {Vec3d{}, aim.disc->a, aim.disc->b, -aim.disc->a, -aim.disc->b}) {
-    Ray<double> const start{middle, normalized(aim.disc->centre + off - middle)};
-    RayHit<double> const reference = trace_ray(view, NoMedium<double>{}, launch.tracing, start, 1.0);
-    RayHit<double> const flow = trace_ray(view, medium, launch.tracing, start, 1.0);
-    landed(0, reference);
-    landed(1, flow);
-    bool const known = std::max(reference.status, flow.status) <= RayStatus::vignetted;
-    if (known) shift = std::max(shift, length(flow.at_lens - reference.at_lens));
+  Vec3d const a = aim.disc->a, b = aim.disc->b;
+  constexpr int count = 5;
+  Vec3d const offset[count] = {{}, a, b, -a, -b};
+  Ray<double> start[count];
+  double weight[count];
+  for (int i = 0; i < count; ++i) {
+    start[i] = {middle, normalized(aim.disc->centre + offset[i] - middle)};
+    weight[i] = 1;
   }
-  aim.margin = 1.25 * shift;
+  RayHit<double> hit[frame_count][count];
+  trace_rays(view, NoMedium<double>{}, launch.tracing, start, weight, hit[0]);
+  trace_rays(view, medium, launch.tracing, start, weight, hit[1]);
+  double shift = 0;
+  for (int i = 0; i < count; ++i) {
+    for (int frame = 0; frame < frame_count; ++frame) {
+      RayHit<double> const& here = hit[frame][i];
+      if (!reaches_sensor_plane(here.status)) continue;
+      aim.low[frame] = {std::min(aim.low[frame].x, here.pixel.x), std::min(aim.low[frame].y, here.pixel.y)};
+      aim.high[frame] = {std::max(aim.high[frame].x, here.pixel.x), std::max(aim.high[frame].y, here.pixel.y)};
+    }
+    bool const known = std::max(hit[0][i].status, hit[1][i].status) <= RayStatus::vignetted;
+    if (known) shift = std::max(shift, length(hit[1][i].at_lens - hit[0][i].at_lens));
+  }
+  aim.margin = launch.first_margin(*aim.disc, shift);
   return aim;
 }
 
