@@ -6,12 +6,27 @@
 #include <string_view>
 #include <tuple>
 
+#include "render/base/nearest_name.h"
 #include "render/files/text_file.h"
 #include "render/setup/setup_state.h"
-#include "render/setup/unread_keys.h"
 
 namespace gladstone {
 namespace {
+
+constexpr std::size_t longest_assignment = 200;  // characters of a --set shown in messages
+
+bool is_index(std::string const& step) { return step.size() > 2 && step.front() == '[' && step.back() == ']'; }
+
+std::size_t index_of(std::string const& step) {
+  std::size_t index = 0;
+  std::from_chars(step.data() + 1, step.data() + step.size() - 1, index);
+  return index;
+}
+
+/// Name of a table for messages: "[lens]", or "the setup" for the root.
+std::string table_name(std::vector<std::string> const& path) {
+  return path.empty() ? "the setup" : '[' + dotted_path(path) + ']';
+}
 
 /// Sort key of a location "file:line:column"; --set locations come after all lines.
 std::tuple<int, int, int> sort_key(std::string const& where) {
@@ -24,6 +39,86 @@ std::tuple<int, int, int> sort_key(std::string const& where) {
   bool const placed = std::from_chars(text + first + 1, text + last, line).ptr == text + last &&
                       std::from_chars(text + last + 1, text + where.size(), column).ptr == text + where.size();
   return placed ? std::tuple{0, line, column} : std::tuple{1, 0, 0};
+}
+
+/// Message about a key that was not read.
+std::string unread_message(SetupDocument::State const& state, std::vector<std::string> const& table,
+                           SetupRecord const& record, std::string const& key, SetupNode const& node) {
+  bool const is_table = node.kind == SetupNode::Kind::table;
+  auto const named = [&](std::string const& name) {
+    auto path = table;
+    path.push_back(name);
+    return is_table ? '[' + excerpt(dotted_path(path)) + ']' : '"' + excerpt(name) + '"';
+  };
+  std::string const place = is_table ? "" : " in " + table_name(table);
+  if (record.find(key)) return named(key) + place + " has no effect with the other settings; remove it";
+
+  std::string const message = "unknown " + std::string(is_table ? "table " : "key ") + named(key) + place;
+  auto const known = record.keys();
+  if (auto const nearest = nearest_name(key, known)) return message + "; did you mean " + named(*nearest) + '?';
+  std::string const elsewhere = state.record.table_with(key);
+  if (elsewhere != "?") {
+    return message + "; it belongs " + (elsewhere.empty() ? "before the first table" : "in [" + elsewhere + ']');
+  }
+  if (known.empty()) return message + "; remove it (no keys are read here)";
+  return message + "; known are " + quoted_list(known);
+}
+
+/// Key of a setup that was not read.
+struct UnreadKey {
+  std::shared_ptr<std::vector<std::string> const> table;
+  SetupRecord const* record;
+  SetupMember const* member;
+};
+
+/// Collects the keys below a table that were not read, except those of excused tables.
+void collect_unread(SetupNode const& node, SetupRecord const& record, std::vector<std::string>& path,
+                    std::vector<UnreadKey>& unread) {
+  if (record.excused) return;
+  std::shared_ptr<std::vector<std::string> const> table;
+  for (auto const& member : node.members) {
+    auto const& [key, value] = member;
+    auto const* const entry = record.find(key);
+    if (!entry || !entry->read) {
+      if (!table) table = std::make_shared<std::vector<std::string> const>(path);
+      unread.push_back({table, &record, &member});
+      continue;
+    }
+    path.push_back(key);
+    if (value.kind == SetupNode::Kind::table && !entry->tables.empty()) {
+      collect_unread(value, entry->tables.front(), path, unread);
+    } else if (value.kind == SetupNode::Kind::array) {
+      for (std::size_t i = 0; i < std::min(value.elements.size(), entry->tables.size()); ++i) {
+        path.push_back('[' + std::to_string(i) + ']');
+        collect_unread(value.elements[i], entry->tables[i], path, unread);
+        path.pop_back();
+      }
+    }
+    path.pop_back();
+  }
+}
+
+/// Adds problems for the keys that were not read, at most max_reported_problems.
+/// @return number of such keys
+std::size_t add_unread(SetupDocument::State& state) {
+  std::vector<std::string> path;
+  std::vector<UnreadKey> unread;
+  collect_unread(state.root, state.record, path, unread);
+  auto const place = [](UnreadKey const& one) {
+    SetupPlace const& at = one.member->value.place;
+    return std::tuple{!at.assignment.empty(), at.line, at.column};
+  };
+  std::stable_sort(unread.begin(), unread.end(),
+                   [&](UnreadKey const& a, UnreadKey const& b) { return place(a) < place(b); });
+  for (std::size_t i = 0; i < std::min(unread.size(), max_reported_problems); ++i) {
+    auto const& [table, record, member] = unread[i];
+    std::vector<std::string> path = *table;
+    path.push_back(member->key);
+    state.problems.push_back({state.where(member->value.place),
+                              unread_message(state, *table, *record, member->key, member->value), dotted_path(path),
+                              ProblemCode::unknown_key});
+  }
+  return unread.size();
 }
 
 void set_place(SetupNode& node, SetupPlace const& place) {
@@ -44,20 +139,63 @@ std::vector<std::string> split_path(std::string const& text) {
   return steps;
 }
 
-/// Returns the value of an assignment of --set: TOML, or a text without quotes.
-SetupNode assigned_value(std::string const& text, std::string const& assignment) {
-  SetupNode value;
-  if (auto parsed = parse_toml_value(text)) {
-    value = std::move(*parsed);
-  } else {
-    value.kind = SetupNode::Kind::text;
-    value.text = text;
+}  // namespace
+
+SetupNode const* SetupDocument::State::find(std::vector<std::string> const& path) const {
+  SetupNode const* node = &root;
+  for (auto const& step : path) {
+    if (is_index(step) && node->kind == SetupNode::Kind::array) {
+      std::size_t const index = index_of(step);
+      node = index < node->elements.size() ? &node->elements[index] : nullptr;
+    } else {
+      node = node->find(step);
+    }
+    if (!node) return nullptr;
   }
-  set_place(value, {0, 0, assignment});
-  return value;
+  return node;
 }
 
-}  // namespace
+SetupRecord& SetupDocument::State::find_or_create_record(std::vector<std::string> const& path) {
+  SetupRecord* table = &record;
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    auto& entry = table->entry(path[i]);
+    entry.read = true;
+    bool const element = i + 1 < path.size() && is_index(path[i + 1]);
+    std::size_t const index = element ? index_of(path[++i]) : 0;
+    if (element) entry.array = true;
+    while (entry.tables.size() <= index) entry.tables.emplace_back();
+    table = &entry.tables[index];
+  }
+  return *table;
+}
+
+std::string SetupDocument::State::where(SetupPlace const& place) const {
+  if (!place.assignment.empty()) return "--set " + excerpt(place.assignment, longest_assignment);
+  std::string const& file = place.source ? place.source->name : name;
+  return file + ':' + std::to_string(std::max(place.line, 1)) + ':' + std::to_string(std::max(place.column, 1));
+}
+
+std::string SetupDocument::State::where(std::vector<std::string> const& path) const {
+  for (auto above = path;; above.pop_back()) {
+    auto const* const node = find(above);
+    if (node && (node->place.known() || above.empty())) return where(node->place);
+  }
+}
+
+std::string SetupDocument::State::absolute_name(SetupNode const& text) const {
+  namespace fs = std::filesystem;
+  fs::path const place = text.place.source ? text.place.source->folder : folder;
+  return fs::absolute(place / text.text).lexically_normal().string();
+}
+
+std::string dotted_path(std::vector<std::string> const& path) {
+  std::string text;
+  for (auto const& step : path) {
+    if (!text.empty() && !is_index(step)) text += '.';
+    text += is_index(step) ? step : toml_key(step);
+  }
+  return text;
+}
 
 SetupDocument::SetupDocument(std::unique_ptr<State> state) : state_(std::move(state)) {}
 SetupDocument::SetupDocument(SetupDocument&&) noexcept = default;
@@ -90,7 +228,7 @@ SetupDocument SetupDocument::from_text(std::string_view text, std::string const&
 }
 
 void SetupDocument::override_key(std::string const& assignment) {
-  std::string const where = assignment_place(assignment);
+  std::string const where = "--set " + excerpt(assignment, longest_assignment);
   auto const equals = assignment.find('=');
   if (equals == std::string::npos) {
     add_problem({where, "has no \"=\"; write --set key.path=value", "", ProblemCode::syntax});
@@ -111,7 +249,14 @@ void SetupDocument::override_key(std::string const& assignment) {
     add_problem({where, "has no value; write --set key.path=value", dotted_path(path), ProblemCode::syntax});
     return;
   }
-  SetupNode value = assigned_value(text, assignment);
+  SetupNode value;
+  if (auto parsed = parse_toml_value(text)) {
+    value = std::move(*parsed);
+  } else {
+    value.kind = SetupNode::Kind::text;
+    value.text = text;
+  }
+  set_place(value, {0, 0, assignment});
 
   // Find the table, creating missing ones.
   SetupNode* table = &state_->root;

@@ -42,7 +42,4 @@ struct SetupDocument::State {
 /// Formats a path: "medium.field[0].kind".
 std::string dotted_path(std::vector<std::string> const& path);
 
-/// Returns the place of an assignment of --set for messages, "--set lens.f_number=4", shortened if it is long.
-std::string assignment_place(std::string const& assignment);
-
 }  // namespace gladstone

@@ -1,6 +1,7 @@
 #include "render/files/fields/readers/nrrd_bytes.h"
 
 #include <unistd.h>
+#include <zlib.h>
 
 #include <algorithm>
 #include <array>

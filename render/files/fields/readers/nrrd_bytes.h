@@ -1,13 +1,13 @@
 #pragma once
 
-#include <zlib.h>
-
 #include <cstddef>
 #include <string>
 #include <vector>
 
 #include "render/files/fields/readers/nrrd_header.h"
 #include "render/files/input_file.h"
+
+struct gzFile_s;  // of zlib
 
 namespace gladstone {
 
@@ -54,7 +54,7 @@ class NrrdBytes {
 
   NrrdHeader const& header_;
   InputFile file_;
-  gzFile stream_ = nullptr;
+  gzFile_s* stream_ = nullptr;
   std::size_t offset_ = 0;     ///< offset of the first value in the stored file [bytes]
   std::size_t skipped_ = 0;    ///< decompressed bytes before the first value
   std::size_t position_ = 0;   ///< position of the gzip stream after the first value [decompressed bytes]

@@ -1,5 +1,10 @@
 #include "render/files/fields/readers/nrrd_fields.h"
 
+#include <fmt/format.h>
+
+#include <charconv>
+#include <sstream>
+
 #include "render/base/error.h"
 #include "render/base/text.h"
 
@@ -59,6 +64,41 @@ std::string const& NrrdFields::required(std::string const& key) const {
   if (!has(key)) refuse(key, "is missing");
   return values_.at(key);
 }
+
+template <class Number>
+std::optional<Number> NrrdFields::parsed(std::string const& word) {
+  Number value{};
+  auto const [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  if (error != std::errc{} || end != word.data() + word.size()) return std::nullopt;
+  return value;
+}
+
+template <class Number>
+Number NrrdFields::number(std::string const& key, Number fallback, Number low) const {
+  if (!has(key)) return fallback;
+  auto const value = parsed<Number>(values_.at(key));
+  if (!value || *value < low) refuse(key, "must be a whole number of at least " + std::to_string(low));
+  return *value;
+}
+
+template <class Number>
+std::vector<Number> NrrdFields::numbers(std::string const& key, std::size_t count) const {
+  std::istringstream words(required(key));
+  std::vector<Number> values;
+  for (std::string word; words >> word;) {
+    auto const value = parsed<Number>(word);
+    if (!value) refuse(key, parsed<double>(word) ? "must be whole numbers, of 18 digits at most" : "must be numbers");
+    values.push_back(*value);
+  }
+  if (values.size() != count) refuse(key, fmt::format("must be {} numbers", count));
+  return values;
+}
+
+template int NrrdFields::number(std::string const&, int, int) const;
+template long NrrdFields::number(std::string const&, long, long) const;
+template long long NrrdFields::number(std::string const&, long long, long long) const;
+template std::vector<long long> NrrdFields::numbers(std::string const&, std::size_t) const;
+template std::vector<double> NrrdFields::numbers(std::string const&, std::size_t) const;
 
 std::vector<std::vector<double>> NrrdFields::vectors(std::string const& key) const {
   std::vector<std::vector<double>> result;

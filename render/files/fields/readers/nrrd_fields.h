@@ -1,12 +1,8 @@
 #pragma once
 
-#include <fmt/format.h>
-
-#include <charconv>
 #include <cstddef>
 #include <map>
 #include <optional>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -65,34 +61,5 @@ class NrrdFields {
   std::map<std::string, std::size_t> lines_;  ///< number of the line of each field
   std::vector<std::string> listed_files_;
 };
-
-template <class Number>
-std::optional<Number> NrrdFields::parsed(std::string const& word) {
-  Number value{};
-  auto const [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (error != std::errc{} || end != word.data() + word.size()) return std::nullopt;
-  return value;
-}
-
-template <class Number>
-Number NrrdFields::number(std::string const& key, Number fallback, Number low) const {
-  if (!has(key)) return fallback;
-  auto const value = parsed<Number>(values_.at(key));
-  if (!value || *value < low) refuse(key, "must be a whole number of at least " + std::to_string(low));
-  return *value;
-}
-
-template <class Number>
-std::vector<Number> NrrdFields::numbers(std::string const& key, std::size_t count) const {
-  std::istringstream words(required(key));
-  std::vector<Number> values;
-  for (std::string word; words >> word;) {
-    auto const value = parsed<Number>(word);
-    if (!value) refuse(key, parsed<double>(word) ? "must be whole numbers, of 18 digits at most" : "must be numbers");
-    values.push_back(*value);
-  }
-  if (values.size() != count) refuse(key, fmt::format("must be {} numbers", count));
-  return values;
-}
 
 }  // namespace gladstone
