@@ -4,9 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <iterator>
 #include <memory>
+#include <mutex>
 #include <random>
+#include <utility>
 
 #include "render/base/contracts.h"
 #include "render/base/units.h"
@@ -24,6 +27,19 @@ std::uint64_t seed_of(std::string const& name) {
   return seed;
 }
 
+/// Returns a displacement that is made on its first use: the scaling of random waves takes time, and every start of the
+/// program lists the cases.
+DisplacementAt deferred(std::function<DisplacementAt()> make) {
+  struct Made {
+    std::once_flag once;
+    DisplacementAt flow;
+  };
+  return [make = std::move(make), made = std::make_shared<Made>()](Vec2d p) {
+    std::call_once(made->once, [&] { made->flow = make(); });
+    return made->flow(p);
+  };
+}
+
 /// Adds six random fields with gradients from weak to steep, alternately with few and many particles.
 template <class Add>
 void add_random_flows(Add const& add) {
@@ -37,7 +53,9 @@ void add_random_flows(Add const& add) {
     add(name,
         fmt::format("random waves with features of {} px, gradients up to {} px/px, {} particles per px",
                     rows[k].size_px, rows[k].peak_gradient, density),
-        random_flow({rows[k].size_px, rows[k].peak_gradient, seed_of(name)}, case_pixels),
+        deferred([waves = RandomWaves{rows[k].size_px, rows[k].peak_gradient, seed_of(name)}] {
+          return random_flow(waves, case_pixels);
+        }),
         {.particles_per_px = density});
   }
 }
