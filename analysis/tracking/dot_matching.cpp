@@ -16,7 +16,9 @@ namespace {
 constexpr std::size_t supporters = 12;       // neighbours that support a displacement
 constexpr std::size_t least_supporters = 3;  // fewer neighbours do not identify a displacement
 constexpr int most_rounds = 5;               // largest number of rounds that predict from certain matches
-constexpr double alias_range = 1.5;          // range of alternatives beyond the search radius [spacings]
+constexpr double track_weight = 0.4;   // weight of the evidence of a track: in coherent flows, the neighbours decide
+constexpr double certain_track = 0.5;  // evidence of a track from which the neighbours do not refute a match
+constexpr double alias_range = 1.5;    // range of alternatives beyond the search radius [spacings]
 
 /// Parameters of a round of the matching.
 struct Round {
@@ -28,8 +30,17 @@ struct Round {
 
 class DotMatcher {
  public:
-  DotMatcher(std::span<Vec2d const> a, std::span<Vec2d const> b, MatchSettings const& settings)
-      : a_(a), b_(b), settings_(settings), cells_a_(a), cells_b_(b), around_(a.size()) {
+  DotMatcher(std::span<Vec2d const> a, std::span<Vec2d const> b, MatchSettings const& settings,
+             TrackNeighbours const& neighbours)
+      : a_(a),
+        b_(b),
+        settings_(settings),
+        cells_a_(a),
+        cells_b_(b),
+        radius_(settings.search_radius_px > 0 ? settings.search_radius_px : 0.75 * cells_a_.spacing()),
+        tolerance_(settings.tolerance_px > 0 ? settings.tolerance_px : 0.15 * cells_a_.spacing()),
+        tracks_(neighbours, radius_, tolerance_),
+        around_(a.size()) {
     parallel_chunks(a.size(), 256, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         around_[i] = cells_a_.nearest(a_[i], supporters + 1, 8 * cells_a_.spacing());
@@ -44,9 +55,7 @@ class DotMatcher {
     std::vector<Vec2d> given(a_.size());
     for (std::size_t i = 0; i < prediction.size(); ++i)
       if (is_finite(prediction[i])) given[i] = prediction[i];
-    double const radius = settings_.search_radius_px > 0 ? settings_.search_radius_px : 0.75 * spacing;
-    double const tolerance = settings_.tolerance_px > 0 ? settings_.tolerance_px : 0.15 * spacing;
-    Round round{given, std::min(radius, bound), std::min(radius + alias_range * spacing, bound), tolerance};
+    Round round{given, std::min(radius_, bound), std::min(radius_ + alias_range * spacing, bound), tolerance_};
     std::vector<DotMatch> matches = match(round);
 
     // Predict again from the certain matches: their number grows around the regions of good prediction.
@@ -56,7 +65,7 @@ class DotMatcher {
       std::vector<char> const outliers =
           find_outliers(a_, deviations(matches, refine_prediction(given, matches, {})), settings_.outliers);
       round.prediction = refine_prediction(given, matches, outliers);
-      round.tolerance = 0.5 * tolerance;
+      round.tolerance = 0.5 * tolerance_;
       matches = match(round);
       for (std::size_t i = 0; i < a_.size(); ++i)  // the search radius refers to the given prediction
         if (matches[i].status == MatchStatus::matched &&
@@ -67,7 +76,7 @@ class DotMatcher {
     resolve_close_pairs(matches, round);
     std::vector<char> const outliers = find_outliers(a_, deviations(matches, round.prediction), settings_.outliers);
     for (std::size_t i = 0; i < a_.size(); ++i)
-      if (outliers[i]) matches[i].status = MatchStatus::outlier;
+      if (outliers[i] && matches[i].track < certain_track) matches[i].status = MatchStatus::outlier;
     return matches;
   }
 
@@ -152,10 +161,13 @@ class DotMatcher {
     bool any = false;
     for (std::size_t const k : candidates) {
       Vec2d const deviation = b_[k] - place;
-      double const own = support(i, deviation, round);
-      if (length(deviation) <= round.radius && (!any || own > match.support)) {
+      bool const near = length(deviation) <= round.radius;
+      double const track = near ? tracks_.evaluate(a_[i], b_[k] - a_[i]) : 0.0;
+      double const shared = support(i, deviation, round), own = shared + (1 - shared) * track_weight * track;
+      if (near && (!any || own > match.support)) {
         if (any) match.other_support = std::max(match.other_support, match.support);
         match.support = own;
+        match.track = track;
         match.partner = k;
         any = true;
       } else {
@@ -193,16 +205,18 @@ class DotMatcher {
   std::span<Vec2d const> a_, b_;
   MatchSettings settings_;
   NearestPoints cells_a_, cells_b_;
+  double radius_, tolerance_;  // of the search [px]
+  TrackEvidence tracks_;
   std::vector<std::vector<std::size_t>> around_;  // nearest dots of each dot of frame A
 };
 
 }  // namespace
 
 std::vector<DotMatch> match_dots(std::span<Vec2d const> a, std::span<Vec2d const> b, std::span<Vec2d const> prediction,
-                                 MatchSettings const& settings) {
+                                 MatchSettings const& settings, TrackNeighbours const& neighbours) {
   GLADSTONE_EXPECTS(prediction.empty() || prediction.size() == a.size());
   if (a.empty() || b.empty()) return std::vector<DotMatch>(a.size());
-  return DotMatcher(a, b, settings).run(prediction);
+  return DotMatcher(a, b, settings, neighbours).run(prediction);
 }
 
 }  // namespace gladstone::tracking

@@ -7,6 +7,7 @@
 
 #include "analysis/tracking/gaussian_window.h"
 #include "analysis/tracking/outlier_test.h"
+#include "analysis/tracking/track_evidence.h"
 
 namespace gladstone::tracking {
 
@@ -22,8 +23,10 @@ enum class MatchStatus {
 struct DotMatch {
   std::size_t partner = 0;  ///< index in frame B; meaningless if unmatched
   MatchStatus status = MatchStatus::unmatched;
-  double support = 0;        ///< share of the neighbours that have a partner at the same displacement, 0 to 1
+  /// share of the neighbours that have a partner at the same displacement, raised by the evidence of a track, 0 to 1
+  double support = 0;
   double other_support = 0;  ///< highest support of another displacement, 0 to 1
+  double track = 0;          ///< evidence of a track through the frames before and after, 0 to 1
 };
 
 /// Settings of match_dots(). Lengths of 0 are derived from the mean spacing of the dots of frame A.
@@ -52,13 +55,18 @@ struct MatchSettings {
 /// Further rounds, with half the tolerance, predict from the certain matches by an adaptive Gaussian window, until no
 /// more matches are found. Finally, deviations from this prediction are tested against the neighbours
 /// (find_outliers()). Without a prediction, gradients up to 0.1 px/px are resolved.
+///
+/// In a sequence, the frames before and after resolve displacements that neighbours do not share: the evidence t of a
+/// track (TrackEvidence) raises the support s of a candidate to s + 0.4 t (1 - s), and matches with t of at least
+/// 0.5 are not tested against their neighbours.
 /// @param a, b        centres of the dots of frames A and B [px]; for BOS, a may be the known pattern
 /// @param prediction  displacement of each dot of a [px], for example of a correlation (interpolate_vectors()); empty:
 ///                    zero; NaN: zero for this dot
+/// @param neighbours  dots of the frames before and after
 /// @return one match per dot of a; no partner is used twice among matches with status `matched`
 /// @pre prediction is empty or as long as a
 /// @throws Interrupted
 std::vector<DotMatch> match_dots(std::span<Vec2d const> a, std::span<Vec2d const> b, std::span<Vec2d const> prediction,
-                                 MatchSettings const& settings = {});
+                                 MatchSettings const& settings = {}, TrackNeighbours const& neighbours = {});
 
 }  // namespace gladstone::tracking

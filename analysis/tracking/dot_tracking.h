@@ -2,6 +2,7 @@
 
 #include "analysis/tracking/dot_location.h"
 #include "analysis/tracking/dot_matching.h"
+#include "analysis/tracking/track_frames.h"
 #include "analysis/vectors/displacement_field.h"
 
 namespace gladstone::tracking {
@@ -26,6 +27,10 @@ struct TrackingSettings {
 /// @return one vector per dot of frame A (see matched_vectors()), with warnings on dots without a valid vector
 /// @throws DataError if the sizes of the frames differ; Interrupted
 DisplacementField track_dots(Image<double> const& a, Image<double> const& b, DisplacementField const& predictor,
+                             TrackingSettings const& settings = {});
+
+/// Likewise in a sequence, with tracks through the frames before and after the pair where they exist (match_dots()).
+DisplacementField track_dots(TrackFrames const& frames, DisplacementField const& predictor,
                              TrackingSettings const& settings = {});
 
 /// Converts matches to a displacement field.

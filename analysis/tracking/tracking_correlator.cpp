@@ -72,7 +72,7 @@ class TrackingCorrelator final : public Correlator {
   DisplacementField correlate_pair(FramePair const& frames) const override {
     DisplacementField predictor = predictor_->correlate_pair(frames);
     assess_pair(predictor, frames, *predictor_, predictor_settings_);
-    DisplacementField const dots = track_dots(frames.reference(), frames.flow(), certain_vectors(predictor), tracking_);
+    DisplacementField const dots = track(frames, certain_vectors(predictor));
     DisplacementField field = on_grid_ ? interpolate_to_grid(predictor, dots) : dots;
     field.verdict = predictor.verdict;
     field.warnings.clear();
@@ -84,6 +84,12 @@ class TrackingCorrelator final : public Correlator {
   }
 
  private:
+  DisplacementField track(FramePair const& frames, DisplacementField const& predictor) const {
+    auto const* const of_sequence = dynamic_cast<TrackFrames const*>(&frames);
+    return of_sequence ? track_dots(*of_sequence, predictor, tracking_)
+                       : track_dots(frames.reference(), frames.flow(), predictor, tracking_);
+  }
+
   /// Interpolates the vectors of the dots to the grid of the predictor.
   static DisplacementField interpolate_to_grid(DisplacementField const& predictor, DisplacementField const& dots) {
     DisplacementField field = interpolate_vectors(dots, predictor.position_px);

@@ -8,6 +8,7 @@ namespace gladstone::tracking {
 
 /// Creates a correlator whose vectors are those of tracked dots.
 ///
+/// - Frames: a pair, or TrackFrames for tracks over up to four frames of a sequence.
 /// - Prediction: the standard cross-correlation with the given settings, without its ambiguous vectors.
 /// - Decorrelation test: that of the prediction (assess_pair()). All vectors of frames that do not correlate are
 ///   invalid, with reason `uncorrelated`.

@@ -90,7 +90,7 @@ def correlate_sequence(
 
     images: a folder, a pattern "frames/*.tif", two patterns ["A_*.tif", "B_*.tif"], or a list of files.
     pairing: "pairs" (frame A and frame B of each instant), "reference" (the first image with each other one, for BOS)
-        or "consecutive" (each image with the next one).
+        or "consecutive" (each image with the next one; method="tracking" then follows particles over four frames).
     output: folder for the vectors and statistics. The same call continues an interrupted run in it. Default: a
         temporary folder, which exists as long as the returned object.
     config: TOML file with a table [correlate]; default: the defaults of all settings.

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cstring>
 #include <ctime>
+#include <span>
 #include <type_traits>
 
 #include "render/base/contracts.h"
@@ -39,19 +40,43 @@ constexpr std::size_t compressed_from_bytes = 64 * 1024;
 /// Level of deflate of datasets that are written row by row, such as volumes, which may compress well.
 constexpr int row_deflate_level = 4;
 
+/// Returns a dataspace of one value, which is created once.
+/// @pre the library is locked
+hid_t scalar_space() {
+  static hid_t const space = H5Screate(H5S_SCALAR);
+  return space;
+}
+
+/// Returns the type of texts, which is created once. Texts are stored outside the object header, which is limited to
+/// 64 KiB.
+/// @pre the library is locked
+hid_t text_type() {
+  static hid_t const text = [] {
+    hid_t const type = H5Tcopy(H5T_C_S1);
+    H5Tset_size(type, H5T_VARIABLE);
+    H5Tset_cset(type, H5T_CSET_UTF8);
+    return type;
+  }();
+  return text;
+}
+
+/// Writes an attribute that does not exist yet.
 void write_attribute(hid_t object, std::string const& path, std::string const& name, hid_t type, void const* value) {
-  if (H5Aexists(object, name.c_str()) > 0) H5Adelete(object, name.c_str());
-  Id const space(H5Screate(H5S_SCALAR), H5Sclose);
-  Id const created(H5Acreate2(object, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+  Id const created(H5Acreate2(object, name.c_str(), type, scalar_space(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
   check(created.valid() && H5Awrite(created, type, value) >= 0, path, "attribute \"" + name + '"');
 }
 
 void write_attribute(hid_t object, std::string const& path, std::string const& name, std::string const& value) {
-  Id const type(H5Tcopy(H5T_C_S1), H5Tclose);
-  H5Tset_size(type, H5T_VARIABLE);  // stored outside the object header, which is limited to 64 KiB
-  H5Tset_cset(type, H5T_CSET_UTF8);
   char const* const text = value.c_str();
-  write_attribute(object, path, name, type, &text);
+  write_attribute(object, path, name, text_type(), &text);
+}
+
+/// Opens a group or dataset for an attribute, after removal of an earlier one of the same name.
+Id open_object(hid_t file, std::string const& path, std::string const& object, std::string const& attribute) {
+  Id opened(H5Oopen(file, object.c_str(), H5P_DEFAULT), H5Oclose);
+  check(opened.valid(), path, "attribute \"" + attribute + "\" of \"" + object + '"');
+  if (H5Aexists(opened, attribute.c_str()) > 0) H5Adelete(opened, attribute.c_str());
+  return opened;
 }
 
 /// Creates the groups above a dataset, without modification times, so that equal input gives equal files.
@@ -137,15 +162,6 @@ void require_space(std::string const& path, std::string const& temporary, std::s
                               " MiB are left on the disk); make room, or write to another disk");
 }
 
-/// Returns the bytes of an in-memory file.
-std::vector<char> file_image(hid_t file, std::string const& path) {
-  ssize_t const size = H5Fget_file_image(file, nullptr, 0);
-  check(size > 0, path, "the HDF5 structure");
-  std::vector<char> image(static_cast<std::size_t>(size));
-  check(H5Fget_file_image(file, image.data(), image.size()) == size, path, "the HDF5 structure");
-  return image;
-}
-
 /// Returns the current time in UTC as ISO 8601 text.
 std::string date_and_time() {
   std::time_t const now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
@@ -159,10 +175,11 @@ std::string date_and_time() {
 }  // namespace
 
 Hdf5Writer::Hdf5Writer(std::string const& path, FileOrigin const& origin, Hdf5Growth growth) : path_(path) {
-  Lock const lock(library_lock());
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  // Before locking, since it accesses the disk.
   handle_.reset(
       new Handle{OutputFile(path, origin.filetype), Id(H5I_INVALID_HID, H5Fclose), origin.sources, growth, {}});
+  Lock const lock(library_lock());
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   std::string const temporary = handle_->output.temporary_path();
   Id const access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   if (growth == Hdf5Growth::in_memory) {
@@ -189,7 +206,7 @@ Hdf5Writer::Hdf5Writer(std::string const& path, FileOrigin const& origin, Hdf5Gr
   write_attribute(root, path, "seed", H5T_NATIVE_UINT64, &origin.seed);
   write_attribute(root, path, "device", origin.device);
   for (SourceFiles::Source const& source : origin.sources.all()) {
-    if (!source.name.empty()) write_attribute(root, path, source.name + "_sha256", source.sha256);
+    if (!source.name.empty()) attribute("/", source.name + "_sha256", source.sha256);
   }
 }
 
@@ -266,25 +283,19 @@ template void Hdf5Writer::write_rows<double>(std::string const&, std::size_t, st
 void Hdf5Writer::attribute(std::string const& object, std::string const& name, std::string const& value) {
   Lock const lock(library_lock());
   GLADSTONE_EXPECTS(handle_ != nullptr);
-  Id const opened(H5Oopen(handle_->file, object.c_str(), H5P_DEFAULT), H5Oclose);
-  check(opened.valid(), path_, "attribute \"" + name + "\" of \"" + object + '"');
-  write_attribute(opened, path_, name, value);
+  write_attribute(open_object(handle_->file, path_, object, name), path_, name, value);
 }
 
 void Hdf5Writer::attribute(std::string const& object, std::string const& name, double value) {
   Lock const lock(library_lock());
   GLADSTONE_EXPECTS(handle_ != nullptr);
-  Id const opened(H5Oopen(handle_->file, object.c_str(), H5P_DEFAULT), H5Oclose);
-  check(opened.valid(), path_, "attribute \"" + name + "\" of \"" + object + '"');
-  write_attribute(opened, path_, name, H5T_NATIVE_DOUBLE, &value);
+  write_attribute(open_object(handle_->file, path_, object, name), path_, name, H5T_NATIVE_DOUBLE, &value);
 }
 
 void Hdf5Writer::attribute(std::string const& object, std::string const& name, std::int64_t value) {
   Lock const lock(library_lock());
   GLADSTONE_EXPECTS(handle_ != nullptr);
-  Id const opened(H5Oopen(handle_->file, object.c_str(), H5P_DEFAULT), H5Oclose);
-  check(opened.valid(), path_, "attribute \"" + name + "\" of \"" + object + '"');
-  write_attribute(opened, path_, name, H5T_NATIVE_INT64, &value);
+  write_attribute(open_object(handle_->file, path_, object, name), path_, name, H5T_NATIVE_INT64, &value);
 }
 
 void Hdf5Writer::attach_scales(std::vector<ScaledDataset> const& datasets) {
@@ -295,15 +306,23 @@ void Hdf5Writer::attach_scales(std::vector<ScaledDataset> const& datasets) {
 
 void Hdf5Writer::close() {
   GLADSTONE_EXPECTS(handle_ != nullptr);
-  std::vector<char> image;
+  bool const in_memory = handle_->growth == Hdf5Growth::in_memory;
+  ssize_t size = 0;
   {
     Lock const lock(library_lock());
     check(H5Fflush(handle_->file, H5F_SCOPE_GLOBAL) >= 0, path_, "the HDF5 structure");
-    if (handle_->growth == Hdf5Growth::in_memory) image = file_image(handle_->file, path_);
+    if (in_memory) size = H5Fget_file_image(handle_->file, nullptr, 0);
+    check(size > 0 || !in_memory, path_, "the HDF5 structure");
+  }
+  std::vector<char> image(static_cast<std::size_t>(size));  // without lock, since fresh memory takes time
+  {
+    Lock const lock(library_lock());
+    check(!in_memory || H5Fget_file_image(handle_->file, image.data(), image.size()) == size, path_,
+          "the HDF5 structure");
     handle_->file.reset();
   }
   // Several threads write to the disk at the same time.
-  if (!image.empty()) handle_->output.write(image.data(), image.size());
+  if (in_memory) handle_->output.write(image.data(), image.size());
   handle_->sources.check();
   handle_->output.commit();
   handle_.reset();

@@ -6,11 +6,15 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <memory>
+#include <optional>
+#include <utility>
 
 #include "analysis/correlation/correlation_methods.h"
 #include "analysis/correlation/correlator.h"
 #include "analysis/correlation/ensemble.h"
 #include "analysis/correlation/pair_assessment.h"
+#include "analysis/tracking/track_frames.h"
 #include "analysis/uncertainty/uncertainty.h"
 #include "analysis/vectors/vector_file.h"
 #include "render/base/contracts.h"
@@ -86,13 +90,26 @@ void warn_of_reading(std::string const& path, ImageMetadata const& metadata) {
   }
 }
 
+/// Applies masks and preprocessing steps to a pair. The frames before and after it are prepared as in the pairs that
+/// they form with it.
+std::unique_ptr<FramePair> prepare_pair(FramePair const& frames, FramePreparation const& preparation) {
+  HostFrames pair = prepare_frames(frames, preparation);
+  auto const* const tracks = dynamic_cast<tracking::TrackFrames const*>(&frames);
+  if (!tracks) return std::make_unique<HostFrames>(std::move(pair));
+  std::optional<Image<double>> before, after;
+  if (tracks->before())
+    before = prepare_frames(HostFrames(*tracks->before(), frames.reference()), preparation).reference();
+  if (tracks->after()) after = prepare_frames(HostFrames(frames.flow(), *tracks->after()), preparation).flow();
+  return std::make_unique<tracking::TrackFrames>(std::move(pair), std::move(before), std::move(after));
+}
+
 /// Applies masks and preprocessing steps to the frames and correlates the result.
 Measurement correlate_prepared(FramePair const& frames, CorrelationSettings settings, Backend const& device) {
   auto const start = std::chrono::steady_clock::now();
-  HostFrames const prepared = prepare_frames(frames, settings.preparation);
+  std::unique_ptr<FramePair> const prepared = prepare_pair(frames, settings.preparation);
   settings.preparation = {};
-  Measurement measurement = correlate_frames(prepared, settings, device);
-  if (valid_pixel_fraction(prepared) == 0.0)
+  Measurement measurement = correlate_frames(*prepared, settings, device);
+  if (valid_pixel_fraction(*prepared) == 0.0)
     measurement.field.warnings.emplace_back(
         "the masks cover every pixel of the frames (so that every vector is masked); reduce correlate.mask");
   measurement.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -9,6 +9,7 @@
 
 #include "analysis/correlation/correlator.h"
 #include "analysis/correlation/pair_assessment.h"
+#include "analysis/tracking/track_frames.h"
 #include "analysis/uncertainty/uncertainty.h"
 #include "analysis/vectors/vector_file.h"
 #include "render/base/error.h"
@@ -82,11 +83,12 @@ PairCorrelation::PairCorrelation(CorrelationFile const& settings, SequenceSize s
       sources_(std::move(sources)),
       device_(share_correlator(std::move(device))) {}
 
-DisplacementField PairCorrelation::run(PairRecord& record, std::string const& path) const {
+DisplacementField PairCorrelation::run(PairRecord& record, std::string const& path,
+                                       PairNeighbours const& neighbours) const {
   if (record.state == PairState::failed) return {};
   try {
     throw_if_interrupted();
-    DisplacementField field = measure(record, path);
+    DisplacementField field = measure(record, path, neighbours);
     bool const any = has_any_vector(field);
     record.state = any ? PairState::done : PairState::no_valid_vector;
     if (!any) record.error = "none of its vectors is valid; check that both frames show one scene";
@@ -104,47 +106,80 @@ DisplacementField PairCorrelation::run(PairRecord& record, std::string const& pa
   }
 }
 
-DisplacementField PairCorrelation::measure(PairRecord& record, std::string const& path) const {
-  SequenceImage reference = common_reference_ ? *common_reference_ : read_sequence_image(record.pair.reference);
-  SequenceImage flow = read_sequence_image(record.pair.flow);
-  size_.require(reference.levels, record.pair.reference.name());
-  size_.require(flow.levels, record.pair.flow.name());
-  record.reference_sha256 = reference.sha256;
-  record.flow_sha256 = flow.sha256;
-  if (std::optional<DisplacementField> finished = read_finished(path, record)) return std::move(*finished);
-  return correlate(std::move(reference), std::move(flow), record, path);
+DisplacementField PairCorrelation::measure(PairRecord& record, std::string const& path,
+                                           PairNeighbours const& neighbours) const {
+  Frames frames = read_frames(record, neighbours);
+  record.reference_sha256 = frames.reference.sha256;
+  record.flow_sha256 = frames.flow.sha256;
+  if (std::optional<DisplacementField> finished = read_finished(path, hashes(frames), record))
+    return std::move(*finished);
+  return correlate(std::move(frames), record, path);
 }
 
-DisplacementField PairCorrelation::correlate(SequenceImage reference, SequenceImage flow, PairRecord& record,
-                                             std::string const& path) const {
-  HostFrames const frames(std::move(reference.levels), std::move(flow.levels));
+PairCorrelation::Frames PairCorrelation::read_frames(PairRecord const& record, PairNeighbours const& neighbours) const {
+  Frames frames;
+  frames.reference = common_reference_ ? *common_reference_ : read_sequence_image(record.pair.reference);
+  frames.flow = read_sequence_image(record.pair.flow);
+  size_.require(frames.reference.levels, record.pair.reference.name());
+  size_.require(frames.flow.levels, record.pair.flow.name());
+  frames.warnings = frames.reference.warnings;
+  frames.warnings.insert(frames.warnings.end(), frames.flow.warnings.begin(), frames.flow.warnings.end());
+  frames.before = read_neighbour(neighbours.before, frames.warnings);
+  frames.after = read_neighbour(neighbours.after, frames.warnings);
+  return frames;
+}
+
+std::optional<SequenceImage> PairCorrelation::read_neighbour(SequenceFrame const* frame,
+                                                             std::vector<std::string>& warnings) const {
+  if (!frame) return std::nullopt;
+  try {
+    SequenceImage image = read_sequence_image(*frame);
+    size_.require(image.levels, frame->name());
+    return image;
+  } catch (DataError const& error) {
+    warnings.push_back("tracks extend over fewer frames: " + format_user_message(error));
+    return std::nullopt;
+  }
+}
+
+SourceFiles PairCorrelation::hashes(Frames const& frames) const {
+  SourceFiles sources = sources_;
+  sources.add_known("reference", frames.reference.sha256);
+  sources.add_known("flow", frames.flow.sha256);
+  if (frames.before) sources.add_known("before", frames.before->sha256);
+  if (frames.after) sources.add_known("after", frames.after->sha256);
+  return sources;
+}
+
+DisplacementField PairCorrelation::correlate(Frames frames, PairRecord& record, std::string const& path) const {
+  SourceFiles sources = hashes(frames);
+  auto const levels = [](std::optional<SequenceImage>& image) {
+    return image ? std::optional(std::move(image->levels)) : std::nullopt;
+  };
+  tracking::TrackFrames const pair({std::move(frames.reference.levels), std::move(frames.flow.levels)},
+                                   levels(frames.before), levels(frames.after));
   bool const on_cpu = device_.correlates_on(settings_.settings) == "cpu";
-  Measurement measurement = correlate_frames(frames, choose_uncertainty(settings_.settings, on_cpu), device_);
+  Measurement measurement = correlate_frames(pair, choose_uncertainty(settings_.settings, on_cpu), device_);
   throw_if_interrupted();  // the measurement may be incomplete
   DisplacementField& field = measurement.field;
-  field.warnings.insert(field.warnings.begin(), flow.warnings.begin(), flow.warnings.end());
-  field.warnings.insert(field.warnings.begin(), reference.warnings.begin(), reference.warnings.end());
-  if (std::string advice = locking_advice(frames.reference()); frames_correlate(field) && !advice.empty())
+  field.warnings.insert(field.warnings.begin(), frames.warnings.begin(), frames.warnings.end());
+  if (std::string advice = locking_advice(pair.reference()); frames_correlate(field) && !advice.empty())
     field.warnings.push_back(std::move(advice));
   record.warnings = field.warnings;
-  SourceFiles sources = sources_;
-  sources.add_known("reference", record.reference_sha256);
-  sources.add_known("flow", record.flow_sha256);
   write_vectors(path, field, {"gladstone vectors", 1, settings_.resolved, 0, measurement.device, std::move(sources)});
   stop_point("pair-finished");
   return std::move(field);
 }
 
-std::optional<DisplacementField> PairCorrelation::read_finished(std::string const& path, PairRecord& record) const {
+std::optional<DisplacementField> PairCorrelation::read_finished(std::string const& path, SourceFiles const& hashes,
+                                                                PairRecord& record) const {
   std::error_code error;
   if (!std::filesystem::exists(path, error)) return std::nullopt;
   UnrecordedReading const to_be_replaced;
   try {
     Hdf5Reader const file(path);
-    if (file.attribute("settings_sha256") != sources_.sha256("settings") ||
-        file.attribute("reference_sha256") != record.reference_sha256 ||
-        file.attribute("flow_sha256") != record.flow_sha256)
-      return std::nullopt;
+    for (char const* const name : {"settings", "reference", "flow", "before", "after"})
+      if (file.attribute(std::string(name) + "_sha256") != hashes.sha256(name)) return std::nullopt;
     DisplacementField field = read_vectors(path).field;
     if (field.size() != final_grid(settings_.settings, size_.columns, size_.rows).size()) return std::nullopt;
     record.warnings = split_lines(file.attribute("warnings"));

@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "analysis/vectors/displacement_field.h"
 #include "render/files/source_files.h"
@@ -10,6 +11,12 @@
 #include "studies/compare/sequence_images.h"
 
 namespace gladstone {
+
+/// Frames next to a pair of consecutive frames, for particle tracks; null: none.
+struct PairNeighbours {
+  SequenceFrame const* before = nullptr;
+  SequenceFrame const* after = nullptr;
+};
 
 /// Correlates single pairs of a sequence and stores their vectors. One object serves several threads: while one pair is
 /// on a GPU, others are read, assessed and written.
@@ -24,18 +31,33 @@ class PairCorrelation {
 
   /// Correlates a pair, unless the file contains the vectors of the same frames and settings, and sets its record. A
   /// pair that fails has a record with the reason.
-  /// @param path  file of its vectors
+  /// @param path        file of its vectors
+  /// @param neighbours  frames over which the tracks of its particles extend. One that is unreadable or of another size
+  ///                    is not used, and the record contains a warning
   /// @return its vectors without the data that the statistics do not use; empty if it failed
   /// @throws Interrupted, OutputError, DeviceError, which concern all pairs
-  DisplacementField run(PairRecord& record, std::string const& path) const;
+  DisplacementField run(PairRecord& record, std::string const& path, PairNeighbours const& neighbours = {}) const;
 
  private:
-  DisplacementField measure(PairRecord& record, std::string const& path) const;
-  DisplacementField correlate(SequenceImage reference, SequenceImage flow, PairRecord& record,
-                              std::string const& path) const;
+  /// Frames of a pair and, for tracks, those before and after it.
+  struct Frames {
+    SequenceImage reference, flow;
+    std::optional<SequenceImage> before, after;
+    std::vector<std::string> warnings;
+  };
+
+  DisplacementField measure(PairRecord& record, std::string const& path, PairNeighbours const& neighbours) const;
+  Frames read_frames(PairRecord const& record, PairNeighbours const& neighbours) const;
+  /// @return nullopt with a warning if the frame is not suitable
+  std::optional<SequenceImage> read_neighbour(SequenceFrame const* frame, std::vector<std::string>& warnings) const;
+  DisplacementField correlate(Frames frames, PairRecord& record, std::string const& path) const;
+  /// Returns the hashes that a file of vectors records: those in common, and those of the frames.
+  SourceFiles hashes(Frames const& frames) const;
   /// Reads the vectors of an earlier run.
+  /// @param hashes  of this pair and its settings
   /// @return nullopt if they are missing or damaged, or if they belong to other frames or settings
-  std::optional<DisplacementField> read_finished(std::string const& path, PairRecord& record) const;
+  std::optional<DisplacementField> read_finished(std::string const& path, SourceFiles const& hashes,
+                                                 PairRecord& record) const;
 
   CorrelationFile const& settings_;
   SequenceSize size_;

@@ -8,6 +8,7 @@
 #include <exception>
 #include <optional>
 
+#include "analysis/correlation/correlation_methods.h"
 #include "analysis/vectors/sequence_statistics.h"
 #include "render/base/error.h"
 #include "render/base/interrupt.h"
@@ -160,7 +161,7 @@ class SequenceRun {
       for (std::size_t k = next++; k < result_.pairs.size() && fields.wait_for(k); k = next++) {
         PairRecord& record = result_.pairs[k];
         try {
-          fields.add(k, correlation.run(record, folder.file(record.pair.vectors)));
+          fields.add(k, correlation.run(record, folder.file(record.pair.vectors), neighbours(k)));
         } catch (...) {
           fields.stop(std::current_exception());
         }
@@ -168,6 +169,14 @@ class SequenceRun {
       }
     });
     fields.throw_if_stopped();
+  }
+
+  /// Returns the frames next to a pair over which particles are tracked: with consecutive frames, whose intervals are
+  /// equal.
+  PairNeighbours neighbours(std::size_t k) const {
+    if (settings_.pairing != Pairing::consecutive || !correlation_method(correlation().method).tracks_dots) return {};
+    std::vector<PairRecord> const& pairs = result_.pairs;
+    return {k > 0 ? &pairs[k - 1].pair.reference : nullptr, k + 1 < pairs.size() ? &pairs[k + 1].pair.flow : nullptr};
   }
 
   void finish(SequenceFolder const& folder) {

@@ -61,8 +61,9 @@ struct SequenceResult {
 /// - All frames must have the size of the first readable one.
 /// - Vectors in the folder with the hashes of these frames and settings are read instead of computed again, so that the
 ///   same call continues an interrupted run.
-/// - At most thread_count() pairs of frames are in memory, besides backgrounds, the sums of the statistics and a few
-///   fields that wait to be added to them.
+/// - With Pairing::consecutive, tracking uses the frames before and after a pair as well.
+/// - At most thread_count() pairs of frames, with their neighbours for tracking, are in memory, besides backgrounds,
+///   the sums of the statistics and a few fields that wait to be added to them.
 /// @param show_progress  report the progress on stderr
 /// @throws DataError if no frame is readable, or the frames are smaller than a window; OutputError; DeviceError;
 ///         Interrupted, with the finished pairs stored

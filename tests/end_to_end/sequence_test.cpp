@@ -183,6 +183,46 @@ TEST_F(Sequences, AreThePagesOfOneFile) {
   EXPECT_EQ(read_state("consecutive")["pairs"][1]["flow"]["page"], 3);
 }
 
+// Tracking of consecutive images also uses the frames before and after a pair: its file records their hashes, so that
+// it is computed anew if one of them changes. The first and the last pair have three frames. The order in which threads
+// serve the pairs does not matter.
+TEST_F(Sequences, OfTracksUseFourFrames) {
+  for (int k = 1; k <= 5; ++k) write_image(fmt::format("img_{}.tif", k), dots_at(k * Vec2d{2.5, 1}));
+  std::vector<std::string> const more{"--pairing", "consecutive", "--set", "correlate.method=tracking", "--threads"};
+  auto const command = [&](std::string const& folder, char const* threads) {
+    auto all = arguments({"img_*.tif"}, folder, more);
+    all.emplace_back(threads);
+    return all;
+  };
+  EXPECT_EQ(json_of(command("out/", "3"))["done"], 4);
+  auto const hash = [&](int pair, char const* frame) {
+    return Hdf5Reader(in(fmt::format("out/img_{}.h5", pair)).string()).attribute(frame + std::string("_sha256"));
+  };
+  EXPECT_EQ(hash(1, "before"), "");
+  EXPECT_EQ(hash(1, "after"), hash(3, "reference"));
+  EXPECT_EQ(hash(2, "before"), hash(1, "reference"));
+  EXPECT_EQ(hash(4, "before"), hash(3, "reference"));
+  EXPECT_EQ(hash(4, "after"), "");
+  succeed(command("other/", "1"));
+  for (int k = 1; k <= 4; ++k) {
+    expect_shift(fmt::format("out/img_{}.h5", k), {2.5, 1});
+    expect_same_datasets(fmt::format("out/img_{}.h5", k), fmt::format("other/img_{}.h5", k));
+  }
+  EXPECT_EQ(json_of(command("out/", "1"))["resumed"], 4);
+  write_image("img_5.tif", dots_at(5 * Vec2d{2.5, 1}, 1, side, 1100));
+  EXPECT_EQ(json_of(command("out/", "1"))["resumed"], 2);  // not 3-4, whose frame after it is, and 4-5
+
+  // A frame that cannot be used fails its own pairs alone.
+  write_image("img_5.tif", dots_at({}, 1, 80));
+  Outcome const outcome = gladstone(command("out/", "1"));
+  EXPECT_EQ(outcome.exit_code, 1) << outcome.err;
+  auto const pairs = read_state("out")["pairs"];
+  EXPECT_EQ(pairs[2]["state"], "done");
+  EXPECT_EQ(pairs[3]["state"], "failed");
+  EXPECT_EQ(hash(3, "after"), "");
+  EXPECT_THAT(Hdf5Reader(in("out/img_3.h5").string()).attribute("warnings"), HasSubstr("img_5.tif"));
+}
+
 // A damaged image, one of another size, a missing partner, and frames without signal are named; the other pairs are
 // correlated. Exit code 2 remains for sequences of which nothing could be done.
 TEST_F(Sequences, NameBadPairsAndDoTheOthers) {
