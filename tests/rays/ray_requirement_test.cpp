@@ -192,23 +192,6 @@ TEST(RayNeed, IsEnough) {
   }
 }
 
-// Rotating a cubature rule does not reveal its error due to aberrations. The plan still measures it, since every other
-// sample uses the next finer rule: the scatter of two samples of each rule is 1/sqrt(3) of the error.
-TEST(RayNeed, PlanTellsWhatARuleLeavesOfAberrations) {
-  gladstone::Setup setup = exposed_setup();
-  setup.lens = real_lens_setup("achromat", 128, 8).lens;
-  std::vector<Place> places;
-  for (int i = 0; i < 20; ++i) places.push_back({{(0.5 * i - 5) * mm, (i % 5 - 2) * 2 * mm, (i % 3 - 1) * mm}});
-  Scene scene = scene_with(setup, places);
-  RayBudget const plan = determine_ray_budget_by_tracing(scene);
-  scene = with_rays(scene, plan);
-  Rendering const found = render(scene), exact = render(of_most_rays(scene));
-  double const off = image_error(scene, found.light, exact.light);
-  EXPECT_GT(off, 0.01);
-  EXPECT_LT(off, 3 * plan.image_error_levels) << plan.image_error_levels;
-  EXPECT_GT(off, plan.image_error_levels / 3) << plan.image_error_levels;
-}
-
 // Results are bitwise identical for any number of threads, also if light is subtracted and traced again.
 TEST(RayNeed, IsTheSameOnAnyNumberOfThreads) {
   gladstone::Setup setup = exposed_setup();
