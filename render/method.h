@@ -1,9 +1,5 @@
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
-#include <vector>
-
 #include "render/focused_dots/focused_dots.h"
 #include "render/scene/scene.h"
 
@@ -18,12 +14,5 @@ char const* to_string(RenderMethod method);
 /// Returns the scene as the fast renderer requires it.
 /// @throws DataError if the scene does not meet the conditions of "focused_dots"
 FocusedDots require_focused_dots(Scene const& scene);
-
-/// Returns the dots of a pattern that have the given indices.
-DotPattern select_dots(DotPattern const& all, std::vector<std::size_t> const& indices);
-
-/// Returns a copy of a scene with other, bright dots and the given number of rays per dot (maximum if it is chosen per
-/// dot).
-Scene with_bright_dots(Scene const& scene, DotPattern dots, std::uint64_t rays);
 
 }  // namespace gladstone

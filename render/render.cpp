@@ -12,18 +12,29 @@
 #include "render/rays/ray_planning.h"
 #include "render/rays/rays_renderer.h"
 #include "render/rays/trace_particles.h"
+#include "render/scene/side_faces.h"
+#include "render/scene/source_sample.h"
 #include "render/scene/two_media.h"
 
 namespace gladstone {
 namespace {
 
-/// Merges the rendering of the fallback dots `all.left`, rendered as bright dots, into that of all dots.
-void merge(Rendering& all, Rendering const& some, Polarity polarity) {
-  for (std::size_t i = 0; i < all.left.size(); ++i) all.truth.copy(some.truth, i, all.left[i]);
+/// Returns the indices from 0 to count - 1 that are not in a sorted list.
+std::vector<std::size_t> indices_without(std::size_t count, std::vector<std::size_t> const& some) {
+  std::vector<std::size_t> others;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!std::binary_search(some.begin(), some.end(), i)) others.push_back(i);
+  }
+  return others;
+}
+
+/// Adds the rendering of the dots with the given indices to that of all dots.
+/// @param sign  of their light: dark dots are subtracted from white paper
+void merge(Rendering& all, Rendering const& some, std::vector<std::size_t> const& indices, double sign) {
+  for (std::size_t i = 0; i < indices.size(); ++i) all.truth.copy(some.truth, i, indices[i]);
   all.rays += some.rays;
   add_counts(all.statuses, some.statuses);
-  // the light of dark dots is subtracted from the light of white paper
-  double const sign = polarity == Polarity::dark ? -1 : 1;
+  all.pupil_margin = std::max(all.pupil_margin, some.pupil_margin);
   auto const add = [sign](Image<double>& to, Image<double> const& from) {
     std::transform(to.begin(), to.end(), from.begin(), to.begin(),
                    [sign](double there, double light) { return there + sign * light; });
@@ -31,6 +42,15 @@ void merge(Rendering& all, Rendering const& some, Polarity polarity) {
   if (some.light.reference.empty()) return;
   add(all.light.reference, some.light.reference);
   add(all.light.flow, some.light.flow);
+}
+
+/// Changes a rendering of the dots with the given indices to one of `count` dots. The others have no truth.
+void widen(Rendering& rendering, std::vector<std::size_t> const& indices, std::size_t count) {
+  GroundTruth all;
+  all.resize(count);
+  for (std::size_t i = 0; i < indices.size(); ++i) all.copy(rendering.truth, i, indices[i]);
+  rendering.truth = std::move(all);
+  for (std::size_t& dot : rendering.left) dot = indices[dot];
 }
 
 }  // namespace
@@ -86,21 +106,40 @@ Rendering Device::render(Scene const& scene, DotPattern const& sources, RenderIm
 Rendering Device::render_focused(Scene const& scene, DotPattern const& sources, RenderImages images,
                                  RenderTheory theory) {
   require_focused_dots(scene);
-  Rendering all = focused_dots_->render(scene, sources, images, theory);
-  if (all.left.empty()) return all;
-  RenderImages const lit = images == RenderImages::no ? RenderImages::no : RenderImages::yes;
-  if (auto const light = std::exchange(all.in_place, nullptr)) all.light = light->to_host();
-  Scene by_rays =
-      with_bright_dots(scene, select_dots(sources, all.left), std::max(scene.rays_per_dot, scene.rays_at_side_faces));
-  if (!scene.adaptive_criteria && !scene.setup.render.rays_per_dot) {  // the ray budget did not include these dots
-    by_rays.adaptive_criteria = determine_adaptive_criteria(scene);
-    by_rays.rays_per_dot = max_rays_per_source(by_rays);
+  std::size_t const count = sources.centre.size();
+  std::vector<std::size_t> const at_faces = sources_at_side_faces(scene, sources);
+  bool const some = !at_faces.empty() && at_faces.size() < count;
+  Rendering all;
+  if (some) {
+    std::vector<std::size_t> const supported = indices_without(count, at_faces);
+    all = focused_dots_->render(scene, select_dots(sources, supported), images, theory);
+    widen(all, supported, count);
+    all.left.insert(all.left.end(), at_faces.begin(), at_faces.end());
+    std::sort(all.left.begin(), all.left.end());
+  } else {
+    all = focused_dots_->render(scene, sources, images, theory);
   }
-  Rendering const rest = rays_->render(by_rays, by_rays.dots, lit, theory);
-  merge(all, rest, scene.setup.target.polarity);
-  all.pupil_margin = std::max(all.pupil_margin, rest.pupil_margin);
+  if (all.left.empty()) return all;
+  if (auto const light = std::exchange(all.in_place, nullptr)) all.light = light->to_host();
+  double const sign = scene.setup.target.polarity == Polarity::dark ? -1 : 1;
+  merge(all, render_others(scene, select_dots(sources, all.left), images, theory), all.left, sign);
   if (images == RenderImages::in_place) all.store_light_in_place();
   return all;
+}
+
+Rendering Device::render_others(Scene const& scene, DotPattern dots, RenderImages images, RenderTheory theory) {
+  Scene by_rays = scene;
+  by_rays.dots = std::move(dots);
+  by_rays.setup.target.polarity = Polarity::bright;
+  if (!scene.setup.render.rays_per_dot) {
+    if (images == RenderImages::no) {
+      by_rays.adaptive_criteria = AdaptiveRayCriteria{};  // of the truth alone
+    } else if (!scene.adaptive_criteria) {
+      by_rays.adaptive_criteria = determine_adaptive_criteria(scene);
+    }
+    by_rays.rays_per_dot = max_rays_per_source(by_rays);
+  }
+  return rays_->render(by_rays, by_rays.dots, images == RenderImages::no ? images : RenderImages::yes, theory);
 }
 
 Device cpu() { return {std::make_unique<FocusedDotsRenderer>(), std::make_unique<RaysRenderer>()}; }

@@ -9,8 +9,9 @@
 /// Rendering of a scene: light on the sensor and true displacements.
 namespace gladstone {
 
-/// Device that renders each scene by the method of its setup. Dots that the fast renderer rejects, at a side face of
-/// the medium or with lost rays, are rendered by individual rays, with a separate number of rays.
+/// Device that renders each scene by the method of its setup. Dots at side faces of the medium, which the fast renderer
+/// does not support, are rendered by individual rays, and so are dots that it rejects since their rays are lost. If the
+/// setup gives no number of rays, theirs is adaptive.
 class Device : public Renderer {
  public:
   /// @param focused_dots  fast renderer of this device
@@ -28,6 +29,8 @@ class Device : public Renderer {
   /// Renders the particles whose light can reach the sensor; the others have no truth and zero planned rays.
   Rendering render_near_view(Scene const& scene, Particles const& particles, RenderImages images);
   Rendering render_focused(Scene const& scene, DotPattern const& sources, RenderImages images, RenderTheory theory);
+  /// Renders dots that the fast renderer does not support, as bright dots.
+  Rendering render_others(Scene const& scene, DotPattern dots, RenderImages images, RenderTheory theory);
 
   std::unique_ptr<Renderer> focused_dots_, rays_;
   std::unique_ptr<ImageDrawer> drawer_;

@@ -17,7 +17,7 @@ from ._setup import Setup
 
 
 class Accuracy(NamedTuple):
-    """Standard error of the true displacements, from the scatter of the rays."""
+    """Standard errors of the true displacements and of the images, from the scatter of the rays."""
 
     rms_px: float
     """Rms over dots and components [px]; NaN: unknown."""
@@ -29,6 +29,9 @@ class Accuracy(NamedTuple):
     """Number of dots with an error above 0.001 px."""
     unknown: int
     """Number of visible dots whose error is unknown, since too few rays reached the sensor."""
+    image_error_levels: float
+    """Error of lit pixels, rms [grey levels of 12 bits, or of the camera if it has fewer]; NaN: not measured
+    (``render.rays_per_dot`` is a number, or the deflection table was used)."""
 
 
 class Truth:

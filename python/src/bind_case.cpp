@@ -51,6 +51,7 @@ nb::dict accuracy_of(PairCase const& self) {
   all["worst"] = accuracy.worst;
   all["above"] = accuracy.above;
   all["unknown"] = accuracy.unknown;
+  all["image_error_levels"] = self.image_error_levels();
   return all;
 }
 

@@ -46,6 +46,9 @@ PairCase::PairCase(std::string folder)
   outcome_.accuracy = truth_accuracy(stored_truth_, truth_tolerance_px);
   store_images(reference, flow);
   summary_ = read_text_file(in_case(folder_, case_file::summary));
+  auto const levels = nlohmann::json::json_pointer("/image_error/levels");
+  nlohmann::json const stored = nlohmann::json::parse(summary_).value(levels, nlohmann::json());
+  if (stored.is_number()) outcome_.image_error_levels = stored.get<double>();
 }
 
 void PairCase::store_images(Image<std::uint16_t> const& reference, Image<std::uint16_t> const& flow) {

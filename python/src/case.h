@@ -28,6 +28,7 @@ class PairCase {
   /// Grey levels [2, rows, columns] of reference and measurement image.
   std::vector<std::uint16_t> const& images() const { return images_; }
   TruthAccuracy const& accuracy() const { return outcome_.accuracy; }
+  double image_error_levels() const { return outcome_.image_error_levels; }
   std::string const& reference_sha256() const { return outcome_.reference_sha256; }
   std::string const& flow_sha256() const { return outcome_.flow_sha256; }
 
@@ -50,7 +51,7 @@ class PairCase {
   std::optional<PreparedCase> prepared_;
   std::optional<RenderedCase> rendered_;  ///< of a loaded case: rendered on demand, without theory
   std::optional<RecordedFrames> frames_;  ///< nullopt: the case was loaded
-  CaseOutcome outcome_;                   ///< of a loaded case: accuracy and hashes only
+  CaseOutcome outcome_;                   ///< of a loaded case: accuracy, image error and hashes only
   GroundTruth stored_truth_;              ///< truth of a loaded case
   std::vector<std::uint16_t> images_;
   std::string folder_, summary_;

@@ -8,27 +8,23 @@
 /// not changed.
 namespace gladstone {
 
-/// Returns white dots at 16 positions spread over the view, independent of the scene's dots. No two are in the same
-/// sixteenth of the view's width or height.
-DotPattern measured_places(Scene const& scene);
-
-/// Measures the errors of truth and images at the scene's current number of rays.
-/// Each of the dots of measured_places() is rendered with its own deflection table, identical to the scene's where they
-/// overlap, and compared with four independent samples of 16,384 rays. The table predicts where these land, and an
-/// eighth of them is traced to correct the prediction (control variate). The scatter of the samples is subtracted. The
-/// samples are doubled, up to 65,536 rays, until errors and detection limits are within 75 % of the tolerances.
-/// Grey levels refer to the image of a single dot or, for an image target, of adjacent squares. Positions that the
-/// table does not cover are ignored.
-RayBudget measure_table_error(FocusedDots const& dots);
+/// Measures the errors of truth and images at the scene's current number of rays and fineness.
+/// White dots at 16 positions spread over the view, independent of the scene's dots, are rendered with their own
+/// deflection tables, identical to the scene's where they overlap, and compared with four independent samples of 16,384
+/// rays. The table predicts where these land, and an eighth of them is traced to correct the prediction (control
+/// variate). The scatter of the samples is subtracted. The samples are doubled, up to 65,536 rays, until errors and
+/// detection limits are within 75 % of the tolerances. Grey levels refer to the image of a single dot or, for an image
+/// target, of adjacent squares. Positions that the table does not cover are ignored.
+TableError measure_table_error(FocusedDots const& dots);
 
 /// Number of rays per dot with which determine_ray_budget() starts.
 inline constexpr std::uint64_t initial_table_rays = 32;
 
-/// Plans the number of rays per dot that correct the table, and the fineness of table and rules.
-/// A number given in the setup is used unchanged. Otherwise the plan starts with 32 rays. If the errors exceed 1e-3 px
+/// Determines the number of rays per dot that correct the table, and the fineness of table and rules.
+/// A number given in the setup is used unchanged. Otherwise it starts at 32 rays. If the errors exceed 1e-3 px
 /// rms in the truth or half a grey level in images, table and rules are refined by a factor of two; then 128 and 512
 /// rays are tried, as long as each step reduces the error by at least 30 %. Dots with large scatter use up to 256 rays
-/// (DotModel). The plan states the remaining errors and whether they meet the tolerances (`converged`).
+/// (DotModel). The budget contains the remaining error of the table.
 RayBudget determine_ray_budget(FocusedDots const& dots);
 
 /// Estimates the processor time of a scene's deflection table and of the measurement of its error by ray_seconds() [s].

@@ -9,7 +9,7 @@
 #include "render/base/interrupt.h"
 #include "render/base/parallel.h"
 #include "render/optics/ray_bundle.h"
-#include "render/scene/ray_scatter.h"
+#include "render/scene/source_sample.h"
 
 namespace gladstone {
 namespace {
@@ -84,7 +84,7 @@ std::vector<std::string> names_of(Scene const& scene) {
 
 RayLosses sample_ray_losses(Scene const& scene) {
   std::vector<std::size_t> const sources =
-      scene.source_count() > 0 ? choose_sample(dots_in_view(scene), sampled_sources) : std::vector<std::size_t>{};
+      scene.source_count() > 0 ? choose_sample(sources_in_view(scene), sampled_sources) : std::vector<std::size_t>{};
   CameraView<double> const camera = scene.camera.view();
   TracingOptions<double> const options{scene.step, scene.setup.medium.ambient_refractivity(),
                                        scene.setup.medium.integrator, scene.setup.medium.faces};

@@ -36,7 +36,6 @@ struct Scene {
   double pupil_margin = 0;         ///< margin by which the pupil is enlarged so that no deflected ray is lost [m]
   std::uint64_t rays_per_dot = 1;  ///< rays of every source; maximum number if adaptive
   std::optional<AdaptiveRayCriteria> adaptive_criteria;  ///< criteria of the adaptive ray number; empty: not adaptive
-  std::uint64_t rays_at_side_faces = 0;  ///< like rays_per_dot, for dots at side faces (side_faces.h); 0: as others
   int fineness = 1;  ///< refinement of the fast renderer's table and rules: 1, or 2 for steep fronts
 
   /// Number of dots or particles.

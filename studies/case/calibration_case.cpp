@@ -65,13 +65,20 @@ DotPositionError place_error(Scene scene, Renderer& renderer) {
   return error;
 }
 
+/// Returns the largest number of rays that the images of some dots require.
+std::uint64_t rays_of_images(Scene const& scene, Renderer& renderer) {
+  Scene const adaptive = with_rays(scene, choose_ray_budget(scene));
+  Rendering const rendering = renderer.render(adaptive, some_dots(scene), RenderImages::yes, RenderTheory::no);
+  std::vector<std::int64_t> const& rays = rendering.truth.rays_planned;
+  return rays.empty() ? 1 : static_cast<std::uint64_t>(*std::max_element(rays.begin(), rays.end()));
+}
+
 /// Determines the rays per dot for all planes: the number required by the plane farthest out of focus.
 std::uint64_t rays_for(Setup const& setup, Renderer& renderer) {
   if (setup.render.rays_per_dot) return *setup.render.rays_per_dot;
   auto const nearer = [](double a, double b) { return std::abs(a) < std::abs(b); };
   Scene scene = plane_scene(setup, *std::max_element(setup.planes.begin(), setup.planes.end(), nearer));
-  scene.rays_per_dot = std::max(least_rays, choose_ray_budget(scene).rays);
-  scene.adaptive_criteria.reset();  // use the same number of rays for all dots
+  scene.rays_per_dot = std::max(least_rays, rays_of_images(scene, renderer));
   while (scene.rays_per_dot < most_rays && place_error(scene, renderer).rms_px > place_tolerance_px) {
     scene.rays_per_dot *= 2;
   }

@@ -229,11 +229,6 @@ PreparedCase prepare_case(CaseSetup& loaded, ReusableParts const& known) {
   prepared.rays = known.rays ? *known.rays : choose_ray_budget(scene);
   scene = with_rays(std::move(scene), prepared.rays);
   bool const by_table = resolve_render_method(scene) == RenderMethod::focused_dots;
-  if (by_table) {
-    warn_of_side_faces(prepared.warnings, scene, prepared.rays);
-  } else {
-    warn_of_few_rays(prepared.warnings, scene, prepared.rays);
-  }
   if (loaded.setup.medium.field.kind != FieldKind::none && !loaded.setup.piv) {
     prepared.strain = known.strain ? *known.strain : strain_in_view(scene);
     if (prepared.strain.largest_px < least_displacement_px) {

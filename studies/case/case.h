@@ -71,7 +71,7 @@ struct RenderedCase {
 
 /// Returns the announcement of a long rendering: its sources, the expected time and how to shorten it. Empty if it
 /// takes at most 20 s.
-/// @param expected_s  estimate of the wall time [s]
+/// @param expected_s  estimate of the wall time [s]; for adaptive ray numbers of dots, of the largest number
 std::string rendering_announcement(Scene const& scene, double expected_s);
 
 RenderedCase render_case(PreparedCase const& prepared, Renderer& renderer, RenderTheory theory);
@@ -100,11 +100,21 @@ RecordedCase render_case_in_memory(CaseSetup& loaded, Renderer& renderer, Reusab
 /// Renders a setup into a CASE folder: reference.tif, flow.tif, truth.h5, setup.toml and summary.json.
 RecordedCase render_to_folder(CaseSetup& loaded, Renderer& renderer, std::string const& folder);
 
+/// Truth of dots at side faces of the medium (side_faces.h) in a rendering by the fast renderer.
+struct SideFaceAccuracy {
+  std::size_t dots = 0;                  ///< number of such dots
+  std::int64_t most_rays = 0;            ///< largest number of rays of one of them
+  double truth_error_px = not_measured;  ///< rms of their standard errors [px]
+};
+
 /// Accuracy, hashes of the images and number of unseen sources of a rendered case, as written to its files.
 struct CaseOutcome {
   TruthAccuracy accuracy;
-  std::size_t unseen = 0;                ///< number of dots or particles without truth in one of the frames
-  std::optional<RayBudget> table_error;  ///< error of the deflection table, if the truth was computed with one
+  std::optional<SideFaceAccuracy> side_faces;  ///< dots at side faces, traced ray by ray beside a deflection table
+  double image_error_levels = not_measured;    ///< standard error of the images by adaptive rays [levels at
+                                               ///< error_bit_depth()]; NaN: not measured, or no pixel is lit
+  std::size_t unseen = 0;                      ///< number of dots or particles without truth in one of the frames
+  std::optional<TableError> table_error;       ///< error of the deflection table, if the truth was computed with one
   std::string device, reference_sha256, flow_sha256;
   std::vector<std::string> warnings;     ///< all warnings of the case, those of its preparation first
   Image<std::uint16_t> reference, flow;  ///< grey levels of the frames

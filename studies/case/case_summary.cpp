@@ -54,36 +54,25 @@ nlohmann::json resolved(double error, double resolution) {
   return error < resolution ? nlohmann::json(nullptr) : number_or_null(error);
 }
 
-nlohmann::json table_error_json(RayBudget const& error) {
+nlohmann::json table_error_json(TableError const& error) {
   return {{"fineness", error.fineness},
-          {"truth_px", resolved(error.truth_error_px, error.truth_resolution_px)},
-          {"image_levels", resolved(error.image_error_levels, error.image_resolution_levels)},
+          {"truth_px", resolved(error.truth_px, error.truth_resolution_px)},
+          {"image_levels", resolved(error.image_levels, error.image_resolution_levels)},
           {"truth_resolution_px", number_or_null(error.truth_resolution_px)},
           {"image_resolution_levels", number_or_null(error.image_resolution_levels)},
           {"bits", error.bits}};
 }
 
-nlohmann::json side_faces_json(SideFaceErrors const& there, int bits) {
-  return {{"dots", there.dots},
-          {"rays", there.rays},
-          {"truth_error_px", number_or_null(there.truth_error_px)},
-          {"image_error_levels", number_or_null(there.image_error_levels)},
-          {"bits", bits},
-          {"rays_wanted", number_or_null(there.rays_wanted)}};
+nlohmann::json side_faces_json(SideFaceAccuracy const& there) {
+  return {{"dots", there.dots}, {"rays", there.most_rays}, {"truth_error_px", number_or_null(there.truth_error_px)}};
 }
 
-nlohmann::json plan_json(RayBudget const& plan, std::size_t sources) {
-  return {{"truth_error_px", resolved(plan.truth_error_px, plan.truth_resolution_px)},
-          {"image_error_levels", resolved(plan.image_error_levels, plan.image_resolution_levels)},
-          {"truth_resolution_px", number_or_null(plan.truth_resolution_px)},
-          {"image_resolution_levels", number_or_null(plan.image_resolution_levels)},
-          {"bits", plan.bits},
-          {"extrapolated", plan.extrapolated},
-          {"truth_asked_px", truth_tolerance_px},
-          {"image_asked_levels", image_tolerance_levels},
-          {"rays_wanted", number_or_null(plan.rays_wanted)},
-          {"processor_seconds", number_or_null(plan.seconds)},
-          {"processor_seconds_allowed", source_budget_s * static_cast<double>(sources)}};
+/// Returns the number of rays of every source; if it is adaptive, the largest.
+nlohmann::json rays_per_source(PreparedCase const& prepared, Rendering const& rendering) {
+  if (rendering.method == RenderMethod::formula) return nullptr;
+  std::vector<std::int64_t> const& rays = rendering.truth.rays_planned;
+  bool const adaptive = rendering.method == RenderMethod::rays && prepared.rays.adaptive_criteria && !rays.empty();
+  return adaptive ? nlohmann::json(*std::max_element(rays.begin(), rays.end())) : nlohmann::json(prepared.rays.rays);
 }
 
 }  // namespace
@@ -93,13 +82,12 @@ nlohmann::json case_summary(CaseSetup& loaded, PreparedCase const& prepared, Ren
   Scene const& scene = prepared.scene;
   Rendering const& rendering = *rendered.rendering;
   TruthAccuracy const& accuracy = outcome.accuracy;
-  RayBudget const& plan = prepared.rays;
   bool const piv = scene.setup.piv.has_value(), formula = rendering.method == RenderMethod::formula;
   nlohmann::json summary{
       {"magnification", scene.imaging.magnification},
       {"step_mm", prepared.step.step_mm},
       {"step", {{"change_px", prepared.step.change_px}, {"limiting_dot", prepared.step.limiting_dot}}},
-      {"rays_per_dot", formula ? nlohmann::json(nullptr) : nlohmann::json(plan.rays)},
+      {"rays_per_dot", rays_per_source(prepared, rendering)},
       {"rays_planned", spread_of(traced_only(rendering.truth.rays_planned))},
       {"exposure", rendered.exposure_e},
       {"gladstone_dale", scene.setup.medium.gladstone_dale},
@@ -122,7 +110,9 @@ nlohmann::json case_summary(CaseSetup& loaded, PreparedCase const& prepared, Ren
         {"dots_by_formula", formula ? rendering.truth.size() : 0},
         {"no_table_since", to_string(rendering.table)},
         {"table_error", outcome.table_error ? table_error_json(*outcome.table_error) : nlohmann::json(nullptr)},
-        {"side_faces", plan.side_faces ? side_faces_json(*plan.side_faces, plan.bits) : nlohmann::json(nullptr)}}},
+        {"side_faces", outcome.side_faces ? side_faces_json(*outcome.side_faces) : nlohmann::json(nullptr)}}},
+      {"image_error",
+       {{"levels", number_or_null(outcome.image_error_levels)}, {"bits", error_bit_depth(scene.setup.camera)}}},
       {"method", to_string(rendering.method)},
       {"device", outcome.device},
       {"precision", "double"},
@@ -141,7 +131,6 @@ nlohmann::json case_summary(CaseSetup& loaded, PreparedCase const& prepared, Ren
       {"seconds_render", rendered.seconds},
   };
   if (piv) summary.update(particle_summary(scene, rendering.truth, rendered.exposure_e));
-  if (!scene.setup.render.rays_per_dot && !formula) summary["rays_plan"] = plan_json(plan, rendering.truth.size());
   return summary;
 }
 

@@ -9,9 +9,20 @@
 
 #include "render/base/units.h"
 #include "render/scene/particle_scene.h"
+#include "render/scene/side_faces.h"
 #include "render/sensor/detector.h"
 
 namespace gladstone {
+namespace {
+
+std::string levels_unit(int bits) { return fmt::format("grey levels of {} bits", bits); }
+
+/// Returns the largest number of rays of a source.
+std::int64_t largest_ray_number(GroundTruth const& truth) {
+  return truth.size() == 0 ? 0 : *std::max_element(truth.rays_planned.begin(), truth.rays_planned.end());
+}
+
+}  // namespace
 
 void warn(std::vector<std::string>& warnings, std::string text) {
   spdlog::warn("{}", text);
@@ -24,57 +35,68 @@ std::string describe_error(double error, double resolution, std::string_view uni
   return error < 99.5 ? fmt::format("{:.2g} {}", error, unit) : fmt::format("{:.0f} {}", error, unit);
 }
 
-std::string describe_image_error(RayBudget const& plan) {
-  return describe_error(plan.image_error_levels, plan.image_resolution_levels,
-                        fmt::format("grey levels of {} bits", plan.bits));
-}
-
-std::string describe_truth_error(RayBudget const& plan) {
-  return describe_error(plan.truth_error_px, plan.truth_resolution_px, "px");
-}
-
-void warn_of_few_rays(std::vector<std::string>& warnings, Scene const& scene, RayBudget const& plan) {
-  if (plan.converged) return;
+void warn_of_ray_limit(std::vector<std::string>& warnings, PreparedCase const& prepared, Rendering const& rendering) {
+  if (!prepared.rays.adaptive_criteria || rendering.method != RenderMethod::rays || prepared.rays.rays == 1) return;
+  std::vector<std::int64_t> const& rays = rendering.truth.rays_planned;
+  auto const limit = static_cast<std::int64_t>(prepared.rays.rays);
+  auto const at_limit = std::count(rays.begin(), rays.end(), limit);
+  if (at_limit == 0) return;
   warn(warnings,
        fmt::format(
-           "rays_per_dot = \"auto\" is limited to {} rays per source: the errors of image and truth are {} and {}, and "
-           "their goals are {} and {} (the worst sources would require some {:.0f} rays, {:.2g} s of processor time "
-           "for each source; \"auto\" permits {:.2g} s or 1024 rays); increase render.rays_per_dot if this matters",
-           plan.rays, describe_image_error(plan), describe_truth_error(plan), image_tolerance_levels,
-           truth_tolerance_px, plan.rays_wanted, ray_seconds(scene) * plan.rays_wanted, source_budget_s));
+           "rays_per_dot = \"auto\": {} of {} sources use the limit of {} rays ({:.2g} s of processor time each, or "
+           "1024 rays) and may miss the goals of {} px and {} grey levels; increase render.rays_per_dot if this "
+           "matters",
+           at_limit, rays.size(), limit, source_budget_s, truth_tolerance_px, image_tolerance_levels));
 }
 
-void warn_of_side_faces(std::vector<std::string>& warnings, Scene const& scene, RayBudget const& plan) {
-  if (!plan.side_faces || !(plan.side_faces->excess() > 1)) return;
-  SideFaceErrors const& there = *plan.side_faces;
-  bool const given = scene.setup.render.rays_per_dot.has_value(),
-             by_brightest = !scene.setup.camera.exposure_e && !scene.setup.camera.absolute_exposure;
-  std::string const cure =
-      given ? "set render.rays_per_dot = \"auto\", which chooses a sufficient number for these dots"
-            : fmt::format("some {:.2g} would be sufficient; set render.rays_per_dot accordingly if this matters",
-                          there.rays_wanted);
+void warn_of_images(std::vector<std::string>& warnings, CameraSetup const& camera, double error_levels) {
+  if (!(error_levels > image_tolerance_levels)) return;
+  warn(warnings,
+       fmt::format("images: the standard error of lit pixels due to the number of rays is {} (the goal is "
+                   "{}); increase render.rays_per_dot if this matters",
+                   describe_error(error_levels, 0, levels_unit(error_bit_depth(camera))), image_tolerance_levels));
+}
+
+std::optional<SideFaceAccuracy> side_face_accuracy(Scene const& scene, Rendering const& rendering) {
+  if (rendering.method != RenderMethod::focused_dots) return std::nullopt;
+  SideFaceAccuracy there;
+  bool seen = false;
+  double squares = 0, components = 0;
+  for (std::size_t const dot : sources_at_side_faces(scene, scene.dots)) {
+    ++there.dots;
+    there.most_rays = std::max(there.most_rays, rendering.truth.rays_planned[dot]);
+    seen = seen || scene.in_view(scene.dots.centre[dot]);
+    Vec2d const error = rendering.truth.displacement_error_px[dot];
+    if (!is_finite(error)) continue;
+    squares += error.x * error.x + error.y * error.y;
+    components += 2;
+  }
+  if (!seen) return std::nullopt;
+  there.truth_error_px = std::sqrt(squares / components);
+  return there;
+}
+
+void warn_of_side_faces(std::vector<std::string>& warnings, Scene const& scene, SideFaceAccuracy const& there) {
+  if (!(there.truth_error_px > truth_tolerance_px)) return;
+  bool const given = scene.setup.render.rays_per_dot.has_value(), by_brightest = !scene.setup.camera.exposure_e;
   warn(warnings,
        fmt::format(
            "render.rays_per_dot: {} dots lie at side faces of the medium, which cut their light cones, and are traced "
-           "ray by ray, with {} rays each. The rms errors of their truth and images are {} and {} (the goals are {} "
-           "and {}){}; {}",
-           there.dots, there.rays, describe_error(there.truth_error_px, 0, "px"),
-           describe_error(there.image_error_levels, 0, fmt::format("grey levels of {} bits", plan.bits)),
-           truth_tolerance_px, image_tolerance_levels,
+           "ray by ray, with {} rays each. The standard error of their truth is {} rms (the goal is {}){}; {}",
+           there.dots, there.most_rays, describe_error(there.truth_error_px, 0, "px"), truth_tolerance_px,
            by_brightest ? ", and camera.exposure = \"auto\" is chosen from the brightest pixel of such images" : "",
-           cure));
+           given ? "set render.rays_per_dot = \"auto\", which chooses a sufficient number for these dots"
+                 : "increase render.rays_per_dot if this matters"));
 }
 
 void warn_of_truth(std::vector<std::string>& warnings, Rendering const& rendering, TruthAccuracy const& accuracy,
-                   RayBudget const& plan, std::string_view sources) {
+                   std::string_view sources) {
   if (accuracy.unknown > 0) {
     warn(warnings, fmt::format("truth: the standard error of the displacements of {} of {} {} is unknown (a single ray "
                                "has no scatter); increase render.rays_per_dot to 8 or more",
                                accuracy.unknown, rendering.truth.size(), sources));
   }
   if (!(accuracy.rms_px > truth_tolerance_px)) return;
-  bool const all_by_rays = accuracy.above_by_rays == accuracy.above;
-  if (plan.side_faces && plan.side_faces->excess() > 1 && all_by_rays) return;  // a warning was given before
   std::string why;
   if (rendering.table == TableState::by_rays) {
     // rays were requested or chosen for all dots; no reason to add
@@ -90,16 +112,17 @@ void warn_of_truth(std::vector<std::string>& warnings, Rendering const& renderin
        fmt::format("truth: the standard error of the displacements is {:.2g} px rms; for {} of {} {} it exceeds {} px, "
                    "and number {} has the largest, {:.2g} px{}; increase render.rays_per_dot, now {}, if this matters",
                    accuracy.rms_px, accuracy.above, rendering.truth.size(), sources, truth_tolerance_px, accuracy.worst,
-                   accuracy.largest_px, why, plan.rays));
+                   accuracy.largest_px, why, largest_ray_number(rendering.truth)));
 }
 
-void warn_of_table(std::vector<std::string>& warnings, RayBudget const& error) {
+void warn_of_table(std::vector<std::string>& warnings, TableError const& error) {
   if (!(error.excess() > 1)) return;
   warn(warnings,
        fmt::format(
            "residual error of the deflection table: {} in the images, {} in the truth, and the goals are {} and {}; "
            "{}render.method = \"rays\" has no such error, but requires many render.rays_per_dot for less scatter",
-           describe_image_error(error), describe_truth_error(error), image_tolerance_levels, truth_tolerance_px,
+           describe_error(error.image_levels, error.image_resolution_levels, levels_unit(error.bits)),
+           describe_error(error.truth_px, error.truth_resolution_px, "px"), image_tolerance_levels, truth_tolerance_px,
            error.fineness == 1 ? "render.rays_per_dot = \"auto\" selects a finer table; " : ""));
 }
 
@@ -232,7 +255,10 @@ RenderedOutcome warn_of_rendering(std::vector<std::string>& warnings, PreparedCa
   RenderedOutcome outcome;
   outcome.unseen = warn_of_unseen(warnings, prepared.scene, rendering.truth, rendering.pupil_margin);
   outcome.accuracy = truth_accuracy(rendering.truth, truth_tolerance_px);
-  warn_of_truth(warnings, rendering, outcome.accuracy, prepared.rays, setup.piv ? "particles" : "dots");
+  warn_of_ray_limit(warnings, prepared, rendering);
+  outcome.side_faces = side_face_accuracy(prepared.scene, rendering);
+  if (outcome.side_faces) warn_of_side_faces(warnings, prepared.scene, *outcome.side_faces);
+  warn_of_truth(warnings, rendering, outcome.accuracy, setup.piv ? "particles" : "dots");
   return outcome;
 }
 

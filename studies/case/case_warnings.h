@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,24 +20,26 @@ void warn(std::vector<std::string>& warnings, std::string text);
 /// @param error       error, in `unit`; NaN: unknown
 /// @param resolution  smallest error that the estimate resolves, in `unit`
 std::string describe_error(double error, double resolution, std::string_view unit);
-/// Formats the image error of a ray budget in grey levels.
-std::string describe_image_error(RayBudget const& plan);
-/// Formats the truth error of a ray budget in px.
-std::string describe_truth_error(RayBudget const& plan);
+/// Warns if sources use the largest number of rays of rays_per_dot = "auto", since they may need more.
+void warn_of_ray_limit(std::vector<std::string>& warnings, PreparedCase const& prepared, Rendering const& rendering);
 
-/// Warns if rays_per_dot = "auto" is limited to fewer rays than the accuracy goals require.
-void warn_of_few_rays(std::vector<std::string>& warnings, Scene const& scene, RayBudget const& plan);
+/// Warns if the standard error of the images exceeds the goal of rays_per_dot = "auto".
+/// @param error_levels  as CaseOutcome::image_error_levels
+void warn_of_images(std::vector<std::string>& warnings, CameraSetup const& camera, double error_levels);
 
-/// Warns of dots at side faces of a volume that have too few rays for the requested accuracy of truth or images.
-void warn_of_side_faces(std::vector<std::string>& warnings, Scene const& scene, RayBudget const& plan);
+/// Returns the accuracy of the truth of dots at side faces; nullopt if none is in view or all dots are traced by rays.
+std::optional<SideFaceAccuracy> side_face_accuracy(Scene const& scene, Rendering const& rendering);
+
+/// Warns of dots at side faces of a volume that have too few rays for the requested accuracy of the truth.
+void warn_of_side_faces(std::vector<std::string>& warnings, Scene const& scene, SideFaceAccuracy const& there);
 
 /// Warns if the truth is less accurate than requested or its accuracy is unknown.
 /// @param sources  "dots" or "particles"
 void warn_of_truth(std::vector<std::string>& warnings, Rendering const& rendering, TruthAccuracy const& accuracy,
-                   RayBudget const& plan, std::string_view sources);
+                   std::string_view sources);
 
 /// Warns if the interpolation error of the deflection table exceeds the requested accuracy of truth or images.
-void warn_of_table(std::vector<std::string>& warnings, RayBudget const& error);
+void warn_of_table(std::vector<std::string>& warnings, TableError const& error);
 
 /// Warns of dots that are not seen in one of the frames, and names the cause: the lens, the flow or too few rays.
 /// @param pupil_margin  pupil enlargement used by the rendering [m]; 0: no ray is deflected
@@ -59,6 +62,7 @@ void warn_of_exposure(std::vector<std::string>& warnings, Scene const& scene, do
 struct RenderedOutcome {
   std::size_t unseen = 0;  ///< number of sources without truth in one of the frames
   TruthAccuracy accuracy;
+  std::optional<SideFaceAccuracy> side_faces;
 };
 
 /// Warns of saturation, insufficient light, unseen dots and inaccurate truth of a rendered case.

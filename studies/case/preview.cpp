@@ -5,10 +5,10 @@
 #include <cmath>
 
 #include "render/base/error.h"
-#include "render/method.h"
 #include "render/planning.h"
 #include "render/render.h"
 #include "render/scene/calibration_planes.h"
+#include "render/scene/source_sample.h"
 
 namespace gladstone {
 namespace {

@@ -94,8 +94,6 @@ RenderCost estimate_render_cost(Setup const& setup) {
   std::uint64_t const automatic = chief ? 1 : by_table ? initial_table_rays : max_rays_per_source(scene);
   scene.rays_per_dot = setup.render.rays_per_dot.value_or(automatic);
   cost.rays_per_source = cost.expected_rays = static_cast<double>(scene.rays_per_dot);
-  RayBudget plan;
-  plan.rays = scene.rays_per_dot;
   if (setup.piv) {
     double const media = scene.second_medium ? 2 : 1;
     cost.processor_seconds = media * cost.sources * cost.rays_per_source * ray_seconds(scene);
@@ -103,10 +101,17 @@ RenderCost estimate_render_cost(Setup const& setup) {
   } else if (by_table && !focused_dots(scene)) {  // refused by render, with the reason
     cost.processor_seconds = not_measured;
   } else {
-    cost.processor_seconds = images * render_seconds(scene, plan, planes ? RenderTheory::no : RenderTheory::yes);
+    cost.processor_seconds = images * render_seconds(scene, planes ? RenderTheory::no : RenderTheory::yes);
   }
   cost.expected_seconds = cost.processor_seconds * cost.expected_rays / cost.rays_per_source;
   return cost;
+}
+
+double expected_render_seconds(Scene const& scene, RenderTheory theory) {
+  double const longest = render_seconds(scene, theory);
+  if (!scene.setup.piv || !scene.adaptive_criteria) return longest;
+  auto const most = static_cast<double>(scene.rays_per_dot);
+  return longest * expected_rays(scene.setup, most) / most;
 }
 
 }  // namespace gladstone

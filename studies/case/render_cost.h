@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "render/scene/renderer.h"
 #include "render/scene/scene.h"
 #include "render/scene/setup.h"
 
@@ -29,5 +30,9 @@ struct RenderCost {
 /// by a medium of the same depth, length scale and number of steps, which are read from the file's header.
 /// @throws DataError if a file cannot be read
 RenderCost estimate_render_cost(Setup const& setup);
+
+/// Estimates the processor time for rendering a prepared scene [s]: that of render_seconds(), for adaptive ray numbers
+/// of particles with the number of rays that estimate_render_cost() expects.
+double expected_render_seconds(Scene const& scene, RenderTheory theory);
 
 }  // namespace gladstone

@@ -42,7 +42,7 @@ constexpr std::array<PairDataset, 8> pair_datasets{{
 }  // namespace
 
 void write_truth(std::string const& path, Scene const& scene, GroundTruth const& truth, StatusCounts const& statuses,
-                 FieldMap const& field, RenderMethod method, RayBudget const* table, FileOrigin const& origin) {
+                 FieldMap const& field, RenderMethod method, TableError const* table, FileOrigin const& origin) {
   Hdf5Writer file(path, origin);
   std::size_t const count = truth.size();
   std::vector<double> position;
@@ -93,9 +93,8 @@ void write_truth(std::string const& path, Scene const& scene, GroundTruth const&
       "appear displaced against grad n");
   file.attribute("/", "method", to_string(method));
   if (table) {
-    file.attribute("/dots", "table_truth_error_px", std::max(table->truth_error_px, table->truth_resolution_px));
-    file.attribute("/dots", "table_image_error_levels",
-                   std::max(table->image_error_levels, table->image_resolution_levels));
+    file.attribute("/dots", "table_truth_error_px", std::max(table->truth_px, table->truth_resolution_px));
+    file.attribute("/dots", "table_image_error_levels", std::max(table->image_levels, table->image_resolution_levels));
   }
   file.attribute("/dots", "step_mm", scene.step * 1e3);
   file.attribute("/dots", "magnification", scene.imaging.magnification);

@@ -13,7 +13,7 @@ namespace gladstone {
 /// Writes truth.h5: /dots, /rays, /field (docs/file-formats.md).
 /// @param table  measured errors of the deflection table; null: no table was used
 void write_truth(std::string const& path, Scene const& scene, GroundTruth const& truth, StatusCounts const& statuses,
-                 FieldMap const& field, RenderMethod method, RayBudget const* table, FileOrigin const& origin);
+                 FieldMap const& field, RenderMethod method, TableError const* table, FileOrigin const& origin);
 
 /// Reads the dots, or the particles, of a truth.h5.
 /// @throws DataError if the file is invalid

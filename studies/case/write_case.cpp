@@ -15,6 +15,7 @@
 #include "render/focused_dots/table_error.h"
 #include "render/method.h"
 #include "render/planning.h"
+#include "render/rays/sample_images.h"
 #include "render/render.h"
 #include "render/scene/particle_scene.h"
 #include "render/sensor/detector.h"
@@ -23,6 +24,7 @@
 #include "studies/case/case_warnings.h"
 #include "studies/case/json_text.h"
 #include "studies/case/particle_case.h"
+#include "studies/case/render_cost.h"
 #include "studies/case/truth_file.h"
 
 namespace gladstone {
@@ -30,12 +32,14 @@ namespace {
 
 constexpr int map_spacing_px = 2;  // spacing of the maps in truth.h5; turbulent fronts are a few pixels wide
 
-/// Returns the errors of truth and images caused by the deflection table; measures them unless the ray budget has.
-RayBudget error_of_table(Scene const& scene, RayBudget const& plan) {
-  // With dots at side faces, the errors in an "auto" budget include those of their rays.
-  bool const measured =
-      plan.rays_at_side_faces == 0 && (std::isfinite(plan.truth_error_px) || std::isfinite(plan.image_error_levels));
-  return measured ? plan : measure_table_error(focused_dots(scene).value());
+/// Measures the standard error of the images if the number of rays was adaptive.
+/// @return error [levels at error_bit_depth()]; NaN: not measured
+double adaptive_image_error(Scene const& scene, Rendering const& rendering, double exposure_e) {
+  bool const one_path = scene.rays_per_dot == 1;
+  if (rendering.method != RenderMethod::rays || !scene.adaptive_criteria || one_path) return not_measured;
+  CameraSetup const& camera = scene.setup.camera;
+  double const full_scale = std::exp2(error_bit_depth(camera)) - 1;
+  return measure_image_error(scene, camera.noise.full_well_e / exposure_e / full_scale);
 }
 
 }  // namespace
@@ -59,14 +63,15 @@ std::string rendering_announcement(Scene const& scene, double expected_s) {
   constexpr double least_announced_s = 20;
   if (!(expected_s > least_announced_s)) return {};
   return fmt::format(
-      "rendering {0} {1} will take some {2:.0f} s on {3} threads; fewer {1}, a smaller render.rays_per_dot or a larger "
+      "rendering {0} {1} will take {4} {2:.0f} s on {3} threads; fewer {1}, a smaller render.rays_per_dot or a larger "
       "medium.step_mm takes less time",
-      scene.source_count(), scene.setup.piv ? "particles" : "dots", expected_s, thread_count());
+      scene.source_count(), scene.setup.piv ? "particles" : "dots", expected_s, thread_count(),
+      scene.adaptive_criteria && !scene.setup.piv ? "up to" : "some");
 }
 
 RenderedCase render_case(PreparedCase const& prepared, Renderer& renderer, RenderTheory theory) {
   bool const on_cpu = renderer.device() == "cpu";  // the estimate is valid for this device only
-  double const expected_s = on_cpu ? render_seconds(prepared.scene, prepared.rays, theory) / thread_count() : 0;
+  double const expected_s = on_cpu ? expected_render_seconds(prepared.scene, theory) / thread_count() : 0;
   if (std::string const text = rendering_announcement(prepared.scene, expected_s); !text.empty()) {
     spdlog::info("{}", text);
   }
@@ -123,7 +128,8 @@ CaseOutcome judge_case(CaseSetup& loaded, PreparedCase const& prepared, Rendered
   if (by_table) {
     Scene scene = prepared.scene;
     scene.pupil_margin = rendering.pupil_margin;
-    outcome.table_error = error_of_table(scene, prepared.rays);
+    outcome.table_error =
+        prepared.rays.table_error ? *prepared.rays.table_error : measure_table_error(focused_dots(scene).value());
     warn_of_table(warnings, *outcome.table_error);
   }
   outcome.device = rendering.device.empty() ? renderer.device() : rendering.device;
@@ -147,6 +153,9 @@ CaseOutcome judge_case(CaseSetup& loaded, PreparedCase const& prepared, Rendered
   RenderedOutcome const seen = warn_of_rendering(warnings, prepared, rendered, frames);
   outcome.unseen = seen.unseen;
   outcome.accuracy = seen.accuracy;
+  outcome.side_faces = seen.side_faces;
+  outcome.image_error_levels = adaptive_image_error(prepared.scene, rendering, rendered.exposure_e);
+  warn_of_images(warnings, camera, outcome.image_error_levels);
   return outcome;
 }
 

@@ -100,7 +100,7 @@ GroundTruth truth_at_points(Scene const& scene, Renderer& renderer, std::vector<
   // Both corrections use few rays, the first with point dots, the second with dots of the target's size.
   Scene rough = scene;
   rough.rays_per_dot = std::min<std::uint64_t>(scene.rays_per_dot, 128);
-  rough.rays_at_side_faces = std::min<std::uint64_t>(scene.rays_at_side_faces, 1024);
+  rough.setup.render.rays_per_dot = rough.rays_per_dot;
   for (double const half_size : {0.0, scene.dots.half_size}) {
     virtual_dots.half_size = half_size;
     correct(renderer.render(rough, virtual_dots, RenderImages::no, RenderTheory::no).truth);

@@ -241,9 +241,8 @@ void CaseRunner::compute(ManifestCase const& one, std::string const& keep, CaseO
   if (!known.rays) shared.rays.keep(plans.rays, prepared.rays);
 
   RenderTheory const theory = keep.empty() ? RenderTheory::no : RenderTheory::yes;  // theory at the dots, for truth.h5
-  std::string const traced = fmt::format("\n{}, rays {}, at side faces {}, for a level {}, fineness {}{}",
+  std::string const traced = fmt::format("\n{}, rays {}, for a level {}, fineness {}{}",
                                          to_string(resolve_render_method(prepared.scene)), prepared.scene.rays_per_dot,
-                                         prepared.scene.rays_at_side_faces,
                                          prepared.rays.adaptive_criteria ? prepared.rays.adaptive_criteria->level : 0.0,
                                          prepared.rays.fineness, keep.empty() ? "" : ", theory");
   std::string const frames_key = keys.scene + traced;

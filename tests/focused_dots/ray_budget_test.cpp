@@ -3,30 +3,21 @@
 #include <algorithm>
 #include <cmath>
 
-#include "render/base/random.h"
 #include "render/focused_dots/table_error.h"
-#include "render/scene/ray_scatter.h"
+#include "render/scene/source_sample.h"
 #include "tests/focused_dots/picture_error.h"
 #include "tests/scene/small_scenes.h"
 
 namespace gladstone {
 namespace {
 
-/// Returns the automatic plan, by the fast renderer if it supports the scene.
-RayBudget determine_ray_budget(Scene& scene) {
-  auto const dots = focused_dots(scene);
-  if (dots) {
-    RayBudget const plan = determine_ray_budget(*dots);
-    scene.rays_per_dot = plan.rays;
-    return plan;
-  }
-  RayBudget const plan = determine_ray_budget_by_tracing(scene);
-  scene = with_rays(std::move(scene), plan);
-  return plan;
-}
+/// Returns the ray budget of a scene with rays_per_dot = "auto", by the fast renderer if it supports the scene.
 RayBudget plan_rays_anew(Scene& scene) {
   scene.setup.render.rays_per_dot.reset();
-  return determine_ray_budget(scene);
+  auto const dots = focused_dots(scene);
+  RayBudget const budget = dots ? determine_ray_budget(*dots) : determine_ray_budget_by_tracing(scene);
+  scene = with_rays(std::move(scene), budget);
+  return budget;
 }
 
 /// Returns the truth of a scene with another step and the same rays.
@@ -89,15 +80,13 @@ TEST(PlanStep, KeepsAGivenStepAndMeasuresIt) {
 
 TEST(PlanRays, KeepsAGivenNumber) {
   auto setup = table1_setup(64);
-  Scene scene = scene_with_dots(setup, {{30, 30}}, 77);
-  scene.rays_per_dot = 1;
-  RayBudget const plan = determine_ray_budget(scene);
-  EXPECT_EQ(plan.rays, 77u);
-  EXPECT_TRUE(std::isnan(plan.truth_error_px)) << "nothing was measured";
-  EXPECT_TRUE(std::isnan(plan.image_error_levels));
-  EXPECT_TRUE(std::isnan(plan.rays_wanted));
-  EXPECT_EQ(plan.excess(), 0);
-  EXPECT_EQ(scene.rays_per_dot, 77u);
+  Scene const scene = scene_with_dots(setup, {{30, 30}}, 77);
+  for (RayBudget const& budget :
+       {determine_ray_budget(focused_dots(scene).value()), determine_ray_budget_by_tracing(scene)}) {
+    EXPECT_EQ(budget.rays, 77u);
+    EXPECT_FALSE(budget.adaptive_criteria);
+    EXPECT_FALSE(budget.table_error) << "nothing was measured";
+  }
 }
 
 // The chief ray of a point needs no average.
@@ -108,7 +97,6 @@ TEST(PlanRays, OneChiefRayOfAPointIsEnough) {
   Scene scene = scene_with_dots(setup, {{30, 30}, {12, 40}}, 1);
   RayBudget const plan = plan_rays_anew(scene);
   EXPECT_EQ(plan.rays, 1u);
-  EXPECT_TRUE(plan.converged);
 }
 
 // Fronts as narrow as a cell, with a light cone of 38 cells: the error of table and rules in images does not decrease
@@ -118,14 +106,14 @@ TEST(PlanRays, MakesTableAndRulesFinerWhereFrontsAskForIt) {
   auto setup = table1_setup(64);
   setup.medium.field = dns_plane("kepeak");
   Scene scene = scene_with_dots(setup, lattice(64, 4, 14), 512);
-  RayBudget const usual = measure_table_error(focused_dots(scene).value());
+  TableError const usual = measure_table_error(focused_dots(scene).value());
   EXPECT_EQ(usual.fineness, 1);
   RayBudget const plan = plan_rays_anew(scene);
   EXPECT_EQ(plan.fineness, 2);
-  EXPECT_LT(plan.rays, usual.rays);
-  EXPECT_LT(plan.image_error_levels, usual.image_error_levels / 2) << "of " << usual.image_error_levels;
-  EXPECT_FALSE(plan.converged);
-  EXPECT_GT(plan.image_error_levels, 0.5);
+  EXPECT_LT(plan.rays, 512u);
+  TableError const error = plan.table_error.value();
+  EXPECT_LT(error.image_levels, usual.image_levels / 2) << "of " << usual.image_levels;
+  EXPECT_GT(error.image_levels, 0.5);
 }
 
 // The plan of the table depends on the view and the field, not on the dots of the scene: the truth of a dot is
@@ -137,9 +125,9 @@ TEST(PlanRays, IsIndependentOfDots) {
   RayBudget const one = plan_rays_anew(few), other = plan_rays_anew(many);
   EXPECT_EQ(one.fineness, other.fineness);
   EXPECT_EQ(one.rays, other.rays);
-  EXPECT_EQ(one.truth_error_px, other.truth_error_px);
-  EXPECT_EQ(one.image_error_levels, other.image_error_levels);
-  EXPECT_GT(one.truth_error_px, 0);
+  EXPECT_EQ(one.table_error.value().truth_px, other.table_error.value().truth_px);
+  EXPECT_EQ(one.table_error->image_levels, other.table_error->image_levels);
+  EXPECT_GT(one.table_error->truth_px, 0);
 }
 
 // With a light cone of 105 cells, at f/4, the plan reports that the required accuracy cannot be reached.
@@ -149,30 +137,27 @@ TEST(PlanRays, ReportsUnreachableTolerance) {
   setup.lens.f_number = 4;
   Scene scene = scene_with_dots(setup, lattice(64, 4, 14), 1);
   RayBudget const plan = plan_rays_anew(scene);
-  EXPECT_FALSE(plan.converged);
   EXPECT_EQ(plan.fineness, 2);
-  EXPECT_GT(plan.image_error_levels, 0.5);
-  EXPECT_TRUE(std::isnan(plan.rays_wanted)) << "no number of rays is sufficient";
+  EXPECT_GT(plan.table_error.value().image_levels, 0.5);
+  EXPECT_GT(plan.table_error->excess(), 1);
 }
 
-// Out of focus, the light of every ray stays where it lands, and half a grey level with twenty overlapping discs would
-// need too many rays. The number is limited by a budget of processor time per dot, which is estimated, not measured.
-// The plan reports the requirement, the achieved accuracy, and the number of rays that would be needed. The budget
+// The number of rays of a source is limited by a budget of processor time, which is estimated, not measured. The budget
 // applies per source, 12 ms, so that the number of rays of a dot does not depend on the others: 60 s for the 5000 dots
-// of 512 x 512 px.
+// of 512 x 512 px. Out of focus, half a grey level with twenty overlapping discs would need more.
 TEST(PlanRays, StaysWithinItsBudget) {
   auto setup = table1_setup(512);
   setup.lens.focus = Focus::medium;
   Scene scene = build_scene(setup);
   plan_step(scene);
   RayBudget const plan = plan_rays_anew(scene);
-  EXPECT_FALSE(plan.converged);
-  EXPECT_GT(plan.image_error_levels, image_tolerance_levels);
-  double const seconds = ray_seconds(scene) * static_cast<double>(plan.most);
+  double const seconds = ray_seconds(scene) * static_cast<double>(plan.rays);
   EXPECT_LE(seconds, source_budget_s);
   EXPECT_GT(2 * seconds, source_budget_s) << "twice as many would exceed the budget";
-  EXPECT_EQ(plan.rays, plan.most);
-  EXPECT_GT(plan.rays_wanted, static_cast<double>(plan.rays));
+  scene.dots = select_dots(scene.dots, {0, 100, 200});
+  for (std::int64_t const rays : render_all(scene).truth.rays_planned) {
+    EXPECT_EQ(rays, static_cast<std::int64_t>(plan.rays));
+  }
 }
 
 // The time of a ray is estimated from the numbers of steps and lit pixels; up to 1024 rays are always allowed.
@@ -195,11 +180,10 @@ TEST(PlanRays, EstimatedErrorMatchesReferenceWithManyRays) {
   setup.medium.field = sinusoid(0.015, 5e-3);
   Scene scene = scene_with_dots(setup, lattice(64, 3, 18), 1);
   RayBudget const plan = plan_rays_anew(scene);
-  ASSERT_TRUE(plan.converged) << plan.rays << " rays, " << plan.truth_error_px << " px, " << plan.image_error_levels
-                              << " levels";
-  EXPECT_EQ(plan.bits, 12);
-  EXPECT_LE(plan.truth_error_px, 1e-3);
-  EXPECT_LE(plan.image_error_levels, 0.5);
+  TableError const stated = plan.table_error.value();
+  ASSERT_LE(stated.excess(), 1) << plan.rays << " rays, " << stated.truth_px << " px, " << stated.image_levels
+                                << " levels";
+  EXPECT_EQ(stated.bits, 12);
   Rendering const chosen = render_all(scene);
   Scene many = scene;
   many.rays_per_dot = 65536;
@@ -213,49 +197,6 @@ TEST(PlanRays, EstimatedErrorMatchesReferenceWithManyRays) {
   PictureError const error = picture_error(chosen.light.flow, reference.light.flow);
   ASSERT_GT(error.lit, 100);
   EXPECT_LT(error.rms_levels, std::hypot(0.5, 0.4));
-}
-
-/// Returns the scatter of an image in the worse frame, from two images with different seeds: rms over lit pixels, in
-/// grey levels of 12 bits with the brightest pixel of both frames at 90 % of full scale.
-double scatter_of_pictures(Scene scene) {
-  LightPair const one = RaysRenderer().render(scene, scene.dots, RenderImages::yes, RenderTheory::no).light;
-  scene.setup.render.seed = repeat_seed(scene.setup.render.seed, 5);
-  LightPair const other = RaysRenderer().render(scene, scene.dots, RenderImages::yes, RenderTheory::no).light;
-  double const level = std::max(*std::max_element(one.reference.begin(), one.reference.end()),
-                                *std::max_element(one.flow.begin(), one.flow.end())) /
-                       (0.9 * 4095);
-  double worse = 0;
-  for (auto frame : {&LightPair::reference, &LightPair::flow}) {
-    double square = 0;
-    int lit = 0;
-    for (std::size_t i = 0; i < (one.*frame).size(); ++i) {
-      double const a = (one.*frame).data()[i], b = (other.*frame).data()[i];
-      if (a + b < 2 * level) continue;
-      square += (a - b) * (a - b) / (2 * level * level);
-      ++lit;
-    }
-    worse = std::max(worse, std::sqrt(square / std::max(lit, 1)));
-  }
-  return worse;
-}
-
-// The image error estimated from single dots applies to images of all dots, also out of focus, where discs of 39 px
-// overlap twenty-fold and every ray's light stays where it lands. The estimate of the scatter itself is accurate to a
-// few per cent; that of the brightest pixel, to which it refers, is three standard deviations above the mean where dots
-// overlap: 25 %.
-TEST(MeasureRays, FindsTheScatterOfWholePictures) {
-  for (Focus const focus : {Focus::target, Focus::medium}) {
-    auto setup = table1_setup(64);
-    setup.lens.focus = focus;
-    setup.medium.field = sinusoid(0.1, 5e-3);
-    setup.view_margin_px = 32;
-    setup.render.method = RenderMethod::rays;
-    Scene scene = build_scene(setup);
-    plan_step(scene);
-    scene.rays_per_dot = focus == Focus::target ? 256 : 2048;
-    double const estimated = measure_errors_by_tracing(scene).image_error_levels, found = scatter_of_pictures(scene);
-    EXPECT_NEAR(estimated / found, 1, 0.25) << estimated << " levels for " << found;
-  }
 }
 
 /// Returns the error of the measurement image by the fast renderer, compared with 65,536 rays alone, whose scatter is a
@@ -276,10 +217,10 @@ TEST(MeasureTableError, TellsHowFarImagesAreOff) {
     auto setup = table1_setup(64);
     setup.medium.field = dns_plane(instant);
     Scene const scene = scene_with_dots(setup, lattice(64, 3, 20), 128);
-    RayBudget const told = measure_table_error(focused_dots(scene).value());
+    TableError const told = measure_table_error(focused_dots(scene).value());
     double const found = table_is_off(scene);
-    EXPECT_LT(told.image_error_levels, 2 * found) << instant << " found " << found;
-    EXPECT_GT(std::hypot(told.image_error_levels, 0.4), found / 2) << instant << " found " << found;
+    EXPECT_LT(told.image_levels, 2 * found) << instant << " found " << found;
+    EXPECT_GT(std::hypot(told.image_levels, 0.4), found / 2) << instant << " found " << found;
   }
 }
 
@@ -289,11 +230,11 @@ TEST(MeasureTableError, TellsWhatItCanResolve) {
   auto setup = table1_setup(64);
   setup.medium.field = uniform_gradient(20, 10);
   Scene const scene = scene_with_dots(setup, lattice(64, 3, 20), 32);
-  RayBudget const told = measure_table_error(focused_dots(scene).value());
+  TableError const told = measure_table_error(focused_dots(scene).value());
   EXPECT_GT(told.truth_resolution_px, 0);
   EXPECT_LT(told.truth_resolution_px, 1e-4);
   EXPECT_GT(told.image_resolution_levels, 0);
-  EXPECT_LT(told.truth_error_px, 2 * told.truth_resolution_px);
+  EXPECT_LT(told.truth_px, 2 * told.truth_resolution_px);
 }
 
 // A uniform gradient displaces all dots equally, by 2.6 px or by 60 px: the detection limit of the image error is about
@@ -308,20 +249,6 @@ TEST(MeasureTableError, FollowsDotsThatMoveFar) {
   }
   EXPECT_GT(told[0], 0);
   EXPECT_GT(told[1], told[0] / 2);
-}
-
-// A dot that is invisible in all scramblings is ignored; one that is visible in some of them counts as displaced from
-// its position to zero, which increases the scatter.
-TEST(RayScatter, InvisibleDotsDoNotCount) {
-  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-  MeanDisplacement const unseen = MeanDisplacement::of({{nan, nan}, {nan, nan}, {nan, nan}, {nan, nan}});
-  MeanDisplacement const twice = MeanDisplacement::of({{1, 0}, {nan, nan}, {1, 0}, {nan, nan}});
-  MeanDisplacement const still = MeanDisplacement::of({{1, 0}, {1, 0}, {1, 0}, {1, 0}});
-  EXPECT_TRUE(std::isnan(unseen.variance));
-  EXPECT_DOUBLE_EQ(twice.variance, 1.0 / 6);  // (4 x 0.25)/3 along x, 0 along y
-  EXPECT_EQ(still.variance, 0);
-  EXPECT_DOUBLE_EQ(mean_variance({unseen, twice, still}), 1.0 / 12);
-  EXPECT_TRUE(std::isnan(mean_variance({unseen})));
 }
 
 }  // namespace

@@ -234,13 +234,10 @@ TEST(RaysRenderer, PlansStepAndRaysByTracing) {
   IntegrationStep const step = determine_step_by_tracing(scene);
   EXPECT_LT(step.change_px, 1e-4);
   scene = with_step(std::move(scene), step);
-  RayBudget const rays = determine_ray_budget_by_tracing(scene);
-  scene = with_rays(scene, rays);
-  EXPECT_TRUE(rays.converged);
-  EXPECT_LE(rays.truth_error_px, truth_tolerance_px);
-  EXPECT_LE(rays.image_error_levels, image_tolerance_levels);
-  // the stated errors are true: another seed with as many rays has the same result within them
+  scene = with_rays(scene, determine_ray_budget_by_tracing(scene));
+  // the goal is reached: another seed has the same result within it
   Rendering const one = by_rays(scene, RenderImages::no);
+  EXPECT_LE(truth_accuracy(one.truth, truth_tolerance_px).rms_px, truth_tolerance_px);
   scene.setup.render.seed = 99;
   Rendering const two = by_rays(scene, RenderImages::no);
   for (std::size_t dot = 0; dot < one.truth.size(); ++dot) {

@@ -22,10 +22,10 @@ TEST(Table1, IsAsGoodAsItSays) {
   RayBudget const plan = choose_ray_budget(scene);
   ASSERT_EQ(plan.rays, 1024u);
   scene = with_rays(std::move(scene), plan);
-  RayBudget const error = measure_table_error(focused_dots(scene).value());
-  EXPECT_LT(error.truth_error_px, 1e-4);
+  TableError const error = measure_table_error(focused_dots(scene).value());
+  EXPECT_LT(error.truth_px, 1e-4);
   EXPECT_LT(error.truth_resolution_px, 1e-4);
-  EXPECT_LT(error.image_error_levels, 0.5);
+  EXPECT_LT(error.image_levels, 0.5);
   EXPECT_LT(error.image_resolution_levels, 0.5);
 }
 

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "render/focused_dots/deflection_map.h"
+#include "render/focused_dots/dot_integrator.h"
+#include "render/focused_dots/owned_dot_model.h"
+#include "render/scene/light_image.h"
+
+namespace gladstone {
+
+/// Difference of a sample of rays from the rendering of a lone dot: displacement [px] and light of a pixel window in
+/// both images, the reference image first.
+struct Difference {
+  Vec2d displacement{};
+  std::vector<double> light;
+};
+
+/// Sums over one sample of a lone dot's rays, in the order of a quasi-random sequence.
+struct RaySample {
+  struct Sum {
+    Vec2d first{};
+    double count = 0;
+    Vec2d mean() const { return first / count; }
+  };
+  int rays = 0;                           ///< number of rays whose landing the table has predicted
+  Sum predicted, also_predicted, traced;  ///< all predicted rays; those that are also traced, both ways
+  LightImage light, difference;           ///< sums over the predicted rays; sums of traced minus predicted rays
+
+  explicit RaySample(int side) : light(side, side), difference(side, side) {}
+};
+
+/// Rendering of a single white dot in pixel windows around its image in each frame, and the differences of independent
+/// samples of traced rays.
+class LoneDot {
+ public:
+  static constexpr int sample_count = 4;        ///< number of independent samples of rays
+  static constexpr int largest_sample = 65536;  ///< maximum number of rays per sample whose landing the table predicts
+  static constexpr int predicted_per_traced = 8;  ///< of these rays, one in so many is also traced
+
+  /// @param place  position on the target [m]
+  /// @param side   side of the windows [px]
+  LoneDot(Scene const& scene, Vec2d place, int side);
+
+  /// Returns true if the table does not cover the dot.
+  bool left() const { return seen_.kind == DotKind::left; }
+  /// Adds rays to the samples until each has the given number, and updates their differences.
+  void compare_with_rays(int rays);
+  /// Light of the window in both images, the reference image first.
+  std::vector<double> const& light() const { return light_; }
+  /// Difference of sample k.
+  Difference const& difference(int k) const { return off_[k]; }
+
+ private:
+  /// Renders the dot again in a window centred at the given distance from its undisplaced image, with pixels counted
+  /// from the window's corner, and stores one frame.
+  void take_frame(std::size_t frame, Vec2d moved);
+  /// Adds rays to a sample. Many rays land as the table predicts, and some of them are also traced to correct the
+  /// prediction (control variate).
+  template <class Medium>
+  void add_rays(Medium const& medium, std::size_t scrambling, int rays, RaySample& sample);
+
+  Scene scene_;
+  int side_;                        ///< of the pixel windows [px]
+  std::vector<RaySample> samples_;  ///< none for a dot that the medium does not move
+  std::unique_ptr<DeflectionMap> table_;
+  std::unique_ptr<OwnedDotModel> owned_;
+  std::unique_ptr<DotIntegrator> integrator_;
+  DotAim aim_;
+  RenderedDot seen_;
+  std::vector<double> light_;
+  Difference off_[sample_count];
+};
+
+}  // namespace gladstone

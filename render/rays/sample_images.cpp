@@ -1,0 +1,113 @@
+#include "render/rays/sample_images.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "render/base/parallel.h"
+#include "render/base/random.h"
+#include "render/rays/particle_tracer.h"
+#include "render/rays/rays_renderer.h"
+#include "render/rays/trace_particles.h"
+#include "render/scene/source_sample.h"
+#include "render/scene/spot.h"
+#include "render/scene/two_media.h"
+
+namespace gladstone {
+namespace {
+
+constexpr std::size_t sample_sources = 96;
+
+/// Renders some particles of a PIV scene.
+/// @return whether the next finer rule was used
+bool render_particles(Scene const& scene, std::vector<std::size_t> const& some, SampleRays rays, LightPair& light) {
+  std::optional<AiryTable> airy;
+  ParticleLaunches const launches(scene, make_spot(scene, airy), RenderImages::yes);
+  bool const next_rule = rays == SampleRays::next_rule && launches.ladder[0].rule.view();
+  int const columns = scene.setup.camera.columns, rows = scene.setup.camera.rows;
+  LightImage reference(columns, rows), flow(columns, rows);
+  LightImage* const images[frame_count] = {&reference, &flow};
+  LightImage* const none[frame_count] = {};
+  double const light_per_photon = 1 / scene.photon_unit;
+  with_particles(scene, scene.particles, ParticleLight::scattered, [&](auto const& pulses, auto const& medium) {
+    parallel_chunks(some.size(), 4, [&](std::size_t begin, std::size_t end) {
+      ParticleTracer tracer(launches, pulses, medium, true);
+      for (std::size_t i = begin; i < end; ++i) {
+        tracer.trace(some[i], next_rule ? none : images, light_per_photon);
+        if (next_rule) tracer.trace(some[i], images, light_per_photon, tracer.step() + 1);
+      }
+    });
+  });
+  light = {reference.to_light(), flow.to_light()};
+  return next_rule;
+}
+
+/// Returns the mean squared difference of two images of a sample over the lit pixels of the image of all sources.
+/// With a pixels of the sample lit among A, the image of n times as many sources has A (1 - exp(-n a / A)) lit pixels
+/// if they are placed at random, and the squares add up.
+double mean_square(Image<double> const& one, Image<double> const& other, double level, double share) {
+  double square = 0, lit = 0;
+  for (std::size_t i = 0; i < one.size(); ++i) {
+    double const a = one.data()[i], b = other.data()[i];
+    if (a + b < 2 * level) continue;
+    square += (a - b) * (a - b);
+    ++lit;
+  }
+  auto const area = static_cast<double>(one.size());
+  return share * square / (-std::expm1(-share * lit / area) * area);
+}
+
+}  // namespace
+
+SampleImages render_sample(Scene scene, SampleRays rays) {
+  std::vector<std::size_t> const in_view = sources_in_view(scene), some = choose_sample(in_view, sample_sources);
+  SampleImages sample;
+  if (some.empty()) return {{Image<double>(1, 1), Image<double>(1, 1)}};
+  sample.share = static_cast<double>(in_view.size()) / static_cast<double>(some.size());
+  if (scene.setup.piv) {
+    sample.next_rule = render_particles(scene, some, rays, sample.light);
+    return sample;
+  }
+  scene.dots = select_dots(scene.dots, some);
+  scene.setup.target.polarity = Polarity::bright;
+  sample.light = RaysRenderer().render(scene, scene.dots, RenderImages::yes, RenderTheory::no).light;
+  return sample;
+}
+
+double brightest_pixel(SampleImages const& sample) {
+  double brightest = 0;
+  for (Image<double> const* image : {&sample.light.reference, &sample.light.flow}) {
+    double sum = 0, squares = 0;
+    for (double const light : *image) {
+      brightest = std::max(brightest, light);
+      sum += light;
+      squares += light * light;
+    }
+    auto const area = static_cast<double>(image->size());
+    double const mean = sum / area, variance = squares / area - mean * mean;
+    brightest = std::max(brightest, sample.share * mean + 3 * std::sqrt(sample.share * variance));
+  }
+  return brightest;
+}
+
+double measure_image_error(Scene const& scene, double level) {
+  if (scene.second_medium) {
+    return std::fmax(measure_image_error(select_first_pulse(scene), level),
+                     measure_image_error(select_second_pulse(scene), level));
+  }
+  Scene one = scene, other = scene;
+  one.setup.render.seed = repeat_seed(scene.setup.render.seed, 1000003u);
+  other.setup.render.seed = repeat_seed(scene.setup.render.seed, 1000004u);
+  SampleImages const a = render_sample(std::move(one)), b = render_sample(std::move(other), SampleRays::next_rule);
+  double worse = std::numeric_limits<double>::quiet_NaN();
+  for (auto const frame : {&LightPair::reference, &LightPair::flow}) {
+    worse = std::fmax(worse, mean_square(a.light.*frame, b.light.*frame, level, a.share));
+  }
+  return std::sqrt(b.next_rule ? worse : worse / 2) / level;
+}
+
+}  // namespace gladstone

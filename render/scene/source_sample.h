@@ -1,0 +1,19 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "render/scene/scene.h"
+
+namespace gladstone {
+
+/// Returns the indices of the scene's sources in view; if none is in view, that of the first source.
+std::vector<std::size_t> sources_in_view(Scene const& scene);
+
+/// Selects `count` sources spread evenly over the list. Random dots are in random order, regular ones row by row.
+std::vector<std::size_t> choose_sample(std::vector<std::size_t> const& sources, std::size_t count);
+
+/// Returns the dots of a pattern that have the given indices.
+DotPattern select_dots(DotPattern const& all, std::vector<std::size_t> const& indices);
+
+}  // namespace gladstone
