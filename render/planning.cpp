@@ -25,6 +25,20 @@ Scene with_chosen_step(Scene scene) {
   return with_step(std::move(scene), plan);
 }
 
+namespace {
+
+/// Returns true if "auto" traces a given number of rays because this is estimated to take far less time than the
+/// deflection table alone, whose cost does not depend on the number of dots.
+bool rays_take_far_less_time(Scene const& scene) {
+  constexpr double long_s = 5, far_less = 60;
+  auto const rays = scene.setup.render.rays_per_dot;
+  if (scene.setup.render.method != RenderMethod::automatic || !rays) return false;
+  double const by_table = table_seconds(require_focused_dots(scene));
+  return by_table >= long_s && far_less * static_cast<double>(*rays) * rays_seconds(scene) < by_table;
+}
+
+}  // namespace
+
 RayBudget choose_ray_budget(Scene const& scene) {
   if (scene.second_medium) {  // use the larger number of rays of both media
     RayBudget const a = choose_ray_budget(select_first_pulse(scene)), b = choose_ray_budget(select_second_pulse(scene));
@@ -32,7 +46,11 @@ RayBudget choose_ray_budget(Scene const& scene) {
   }
   RenderMethod const method = resolve_render_method(scene);
   if (method == RenderMethod::formula) return {};  // no rays are traced; the recorded number is one
-  if (method == RenderMethod::rays) return determine_ray_budget_by_tracing(scene);
+  if (method == RenderMethod::rays || rays_take_far_less_time(scene)) {
+    RayBudget budget = determine_ray_budget_by_tracing(scene);
+    budget.method = RenderMethod::rays;
+    return budget;
+  }
   RayBudget budget = determine_ray_budget(require_focused_dots(scene));
   budget.method = RenderMethod::focused_dots;
   if (!scene.setup.render.rays_per_dot && !sources_at_side_faces(scene, scene.dots).empty()) {

@@ -55,9 +55,9 @@ std::vector<std::string> uncertainty_methods();
 /// @param method  one of uncertainty_methods(), or "none"
 bool uncertainty_on_gpu(std::string const& method);
 
-/// Returns the settings with uncertainty = "auto" replaced: by correlation statistics if they cost less than half of
-/// the correlation (on a CPU) and do not underestimate the uncertainty with these settings (uncertainty_caveat()), else
-/// by "none". Other settings remain.
+/// Returns the settings with uncertainty = "auto" replaced: by correlation statistics on a CPU, where they cost about
+/// half as much as the correlation, if they do not underestimate the uncertainty with these settings
+/// (uncertainty_caveat()), else by "none". Other settings remain.
 /// @param on_cpu  whether the vectors are correlated on a CPU
 CorrelationSettings choose_uncertainty(CorrelationSettings settings, bool on_cpu);
 

@@ -1,4 +1,4 @@
-"""tracking.py GLADSTONE [--rows NAME ..] [--threads N] [--frames]: is the uncertainty of tracked dots valid?
+"""tracking.py GLADSTONE [--rows NAME ..] [--threads N] [--frames | --flows]: is the uncertainty of tracked dots valid?
 
 Tracks equal Gaussian particles of 3 px (20 per 32 x 32 px, 256 x 256 px) displaced by (2.3, -1.7) px, and the dots and
 particles of two rendered cases. Prints, for each row of the table in docs/estimators.md, the fraction of dots that are
@@ -9,6 +9,10 @@ With --frames: what do the frames before and after a pair contribute? Tracks par
 velocity differs by up to 30 % through the depth of the light sheet, in a pair and in a sequence of four frames. Prints,
 over the ratio of the largest displacement and the spacing, the fraction of the vectors on the grid that are valid, and
 the rms error of these against the mean over the depth.
+
+With --flows: which errors do correlation and tracking have? Prints the rms error per component of the default
+correlation and of tracking, on the grid and scattered, at the vectors; vectors that are missing or have errors above
+1 px are counted apart. Particles of a flow move by half of the displacement before and after their place.
 
 Needs: pip install numpy scipy h5py imageio
 """
@@ -130,12 +134,50 @@ def compare_frames(run, seed):
         print(f"| {ratio} | {two[0]:.2f} | {two[1]:.2f} | {four[0]:.2f} | {four[1]:.2f} |", flush=True)
 
 
+FLOWS = {  # displacement [px] at places [n, 2], and relative noise
+    "uniform": (lambda p: np.broadcast_to(MOVED_PX, p.shape), 0.0),
+    "uniform, 1 % noise": (lambda p: np.broadcast_to(MOVED_PX, p.shape), 0.01),
+    "uniform, 5 % noise": (lambda p: np.broadcast_to(MOVED_PX, p.shape), 0.05),
+    "u = 2 sin(2 pi y / 64 px)": (lambda p: np.stack([2 * np.sin(2 * np.pi * p[:, 1] / 64), 0 * p[:, 0]], 1), 0.0),
+    "u = 2 sin(2 pi y / 32 px)": (lambda p: np.stack([2 * np.sin(2 * np.pi * p[:, 1] / 32), 0 * p[:, 0]], 1), 0.0),
+    "u = -3 tanh(x / 6 px)": (lambda p: np.stack([-3 * np.tanh((p[:, 0] - SIDE / 2) / 6), 0 * p[:, 0]], 1), 0.0)}
+
+
+def compare_flows(run, seed):
+    """Prints the table of --flows."""
+    ways = {"default correlation": [], "tracking, grid": ["correlate.method=tracking"],
+            "tracking, scattered": ["correlate.method=tracking", "correlate.tracking.output=scattered"]}
+    print("| flow |" + "".join(f" {way} |" for way in ways) + "\n|---|" + "---|" * len(ways))
+    for flow, (displacement, noise) in FLOWS.items():
+        random = np.random.default_rng(seed)
+        middle = random.random((COUNT, 2)) * SIDE - 0.5
+        half = displacement(middle) / 2
+        cells = []
+        with tempfile.TemporaryDirectory() as temporary:
+            folder = pathlib.Path(temporary)
+            for name, places in (("a.tif", middle - half), ("b.tif", middle + half)):
+                imageio.v3.imwrite(folder / name, image(places, 8, noise, random))
+            for words in ways.values():
+                settings = [word for setting in words for word in ("--set", setting)]
+                run("correlate", folder / "a.tif", folder / "b.tif", "-o", folder / "v.h5", *settings)
+                with h5py.File(folder / "v.h5") as file:
+                    at, measured = (np.stack([file[a][...], file[b][...]], axis=-1) for a, b in
+                                    (("x_px", "y_px"), ("u_px", "v_px")))
+                inside = ((at > 2 * BORDER_PX) & (at < SIDE - 2 * BORDER_PX)).all(axis=1)
+                error = (measured - displacement(at))[inside]
+                good = (np.abs(error) < GROSS_PX).all(axis=1)
+                cells.append(f" {np.sqrt((error[good]**2).mean()):.4f}" +
+                             (f", {100 * (1 - good.mean()):.1f} %" if good.mean() < 0.9995 else "") + " |")
+        print(f"| {flow} |" + "".join(cells), flush=True)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("program")
     parser.add_argument("--rows", nargs="+", choices=[*SYNTHETIC, *RENDERED], default=[*SYNTHETIC, *RENDERED])
     parser.add_argument("--threads", type=int, default=1)
     parser.add_argument("--seed", type=int, default=1, help="of the synthetic images")
+    parser.add_argument("--flows", action="store_true", help="compare correlation and tracking instead")
     parser.add_argument("--frames", action="store_true", help="compare two with four frames instead")
     arguments = parser.parse_args()
     program = str(pathlib.Path(arguments.program).resolve())
@@ -146,6 +188,9 @@ def main():
 
     if arguments.frames:
         compare_frames(run, arguments.seed)
+        return
+    if arguments.flows:
+        compare_flows(run, arguments.seed)
         return
     print("| images | missed | within one | within two | rms(sigma) / rms(error) | rms error [px] | components |\n"
           "|---|---|---|---|---|---|---|")

@@ -25,7 +25,7 @@ import tifffile
 CASES = ["uniform", "vortex", "sine_64", "noise_5"]
 OWN = {
     "one pass, 32 px": ["correlate.window_px=[32]", "correlate.overlap=0.5", 'correlate.weighting="uniform"'],
-    "default passes": [],
+    "default passes": ['correlate.uncertainty="none"'],
 }
 
 

@@ -5,7 +5,7 @@ SynthPix draws pairs of Gaussian particle images of 256, 512 and 1024 px from on
 same size, as illuminated by a Gaussian sheet and seen through a lens (tests/benchmarks/cuda/pair_batches_bench.cpp). Both
 leave the images on the GPU. Batches are warmed up twice; the median of the rounds counts. In SynthPix 0.3.1
 (generate.py), diameters are standard deviations times 2, hence 1.65 here, and a particle is drawn on 5 x 5 px, sampled at
-their centres; gladstone integrates over 13 x 13 px.
+their centres; gladstone integrates over 11 x 11 px.
 
 Needs a GPU, pip install synthpix==0.3.1 'jax[cuda12]', and for gladstone BENCH = build/cuda/bin/gladstone_cuda_bench.
 """

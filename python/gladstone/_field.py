@@ -16,13 +16,14 @@ from ._progress import Progress, reporting
 
 def _host_image(image):
     """Returns an image in host memory: arrays of a GPU are copied, others are not."""
+    if getattr(image, "requires_grad", False):
+        image = image.detach()
     device = getattr(image, "__dlpack_device__", None)
     if device is not None and int(device()[0]) not in (1, 3):  # kDLCPU, kDLCUDAHost
         for method in ("get", "cpu"):  # CuPy, torch
             if hasattr(image, method):
                 return getattr(image, method)()
-    if getattr(image, "requires_grad", False):
-        image = image.detach()
+        return np.asarray(image)  # JAX
     if isinstance(image, (list, tuple)):
         image = np.asarray(image)
     if getattr(image, "dtype", None) == bool:

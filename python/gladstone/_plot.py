@@ -59,7 +59,8 @@ def _map(figure, axis, position, values, title: str, limit: float) -> None:
     style = {"cmap": "RdBu_r", "vmin": -limit, "vmax": limit}
     drawn = axis.pcolormesh(x, y, values, **style) if values.ndim == 2 else axis.scatter(x, y, c=values, s=4, **style)
     axis.set(title=title, xlabel="column [px]", ylabel="row [px]", aspect="equal")
-    axis.set_ylim(np.max(y), np.min(y))
+    if np.size(y):
+        axis.set_ylim(np.max(y), np.min(y))
     figure.colorbar(drawn, ax=axis, shrink=0.8)
 
 

@@ -12,7 +12,9 @@
 #include "render/base/parallel.h"
 #include "render/base/progress.h"
 #include "render/base/units.h"
+#include "render/rays/particle_tracer.h"
 #include "render/rays/sample_images.h"
+#include "render/scene/spot.h"
 #include "render/scene/trace_ray.h"
 
 namespace gladstone {
@@ -167,6 +169,13 @@ RayBudget determine_ray_budget_by_tracing(Scene const& scene) {
   budget.rays = one_path ? 1 : max_rays_per_source(scene);
   budget.adaptive_criteria = determine_adaptive_criteria(scene);
   return budget;
+}
+
+std::uint64_t largest_ray_number(Scene const& scene) {
+  if (!scene.setup.piv) return scene.rays_per_dot;
+  std::optional<AiryTable> airy;
+  return static_cast<std::uint64_t>(
+      ParticleLaunches(scene, make_spot(scene, airy), RenderImages::yes).ladder.goal().most);
 }
 
 }  // namespace gladstone

@@ -21,4 +21,8 @@ AdaptiveRayCriteria determine_adaptive_criteria(Scene const& scene);
 /// max_rays_per_source(). Apart from the common exposure, it is independent of other sources.
 RayBudget determine_ray_budget_by_tracing(Scene const& scene);
 
+/// Returns the largest number of rays that a source of the general renderer can take: Scene::rays_per_dot, or the nodes
+/// of the finest cubature rule of particles.
+std::uint64_t largest_ray_number(Scene const& scene);
+
 }  // namespace gladstone

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "render/base/units.h"
+#include "render/rays/ray_planning.h"
 #include "render/scene/particle_scene.h"
 #include "render/scene/side_faces.h"
 #include "render/sensor/detector.h"
@@ -18,7 +19,7 @@ namespace {
 std::string levels_unit(int bits) { return fmt::format("grey levels of {} bits", bits); }
 
 /// Returns the largest number of rays of a source.
-std::int64_t largest_ray_number(GroundTruth const& truth) {
+std::int64_t most_rays_of_a_source(GroundTruth const& truth) {
   return truth.size() == 0 ? 0 : *std::max_element(truth.rays_planned.begin(), truth.rays_planned.end());
 }
 
@@ -36,16 +37,22 @@ std::string describe_error(double error, double resolution, std::string_view uni
 }
 
 void warn_of_ray_limit(std::vector<std::string>& warnings, PreparedCase const& prepared, Rendering const& rendering) {
-  if (!prepared.rays.adaptive_criteria || rendering.method != RenderMethod::rays || prepared.rays.rays == 1) return;
+  if (!prepared.rays.adaptive_criteria || prepared.rays.rays == 1) return;
+  bool const by_table = rendering.method == RenderMethod::focused_dots;  // only the others take as many as required
+  auto const limit =
+      static_cast<std::int64_t>(by_table ? max_rays_per_source(prepared.scene) : largest_ray_number(prepared.scene));
   std::vector<std::int64_t> const& rays = rendering.truth.rays_planned;
-  auto const limit = static_cast<std::int64_t>(prepared.rays.rays);
-  auto const at_limit = std::count(rays.begin(), rays.end(), limit);
+  std::size_t at_limit = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    bool const adaptive = !by_table || rendering.truth.path[i] == TruthPath::rays;
+    if (adaptive && rays[i] >= limit) ++at_limit;
+  }
   if (at_limit == 0) return;
   warn(warnings,
        fmt::format(
            "rays_per_dot = \"auto\": {} of {} sources use the limit of {} rays ({:.2g} s of processor time each, or "
-           "1024 rays) and may miss the goals of {} px and {} grey levels; increase render.rays_per_dot if this "
-           "matters",
+           "1024 rays) and may miss the goals of {} px and {} grey levels; set a larger render.rays_per_dot if "
+           "this matters",
            at_limit, rays.size(), limit, source_budget_s, truth_tolerance_px, image_tolerance_levels));
 }
 
@@ -53,7 +60,7 @@ void warn_of_images(std::vector<std::string>& warnings, CameraSetup const& camer
   if (!(error_levels > image_tolerance_levels)) return;
   warn(warnings,
        fmt::format("images: the standard error of lit pixels due to the number of rays is {} (the goal is "
-                   "{}); increase render.rays_per_dot if this matters",
+                   "{}); set a larger render.rays_per_dot if this matters",
                    describe_error(error_levels, 0, levels_unit(error_bit_depth(camera))), image_tolerance_levels));
 }
 
@@ -112,7 +119,7 @@ void warn_of_truth(std::vector<std::string>& warnings, Rendering const& renderin
        fmt::format("truth: the standard error of the displacements is {:.2g} px rms; for {} of {} {} it exceeds {} px, "
                    "and number {} has the largest, {:.2g} px{}; increase render.rays_per_dot, now {}, if this matters",
                    accuracy.rms_px, accuracy.above, rendering.truth.size(), sources, truth_tolerance_px, accuracy.worst,
-                   accuracy.largest_px, why, largest_ray_number(rendering.truth)));
+                   accuracy.largest_px, why, most_rays_of_a_source(rendering.truth)));
 }
 
 void warn_of_table(std::vector<std::string>& warnings, TableError const& error) {

@@ -18,6 +18,8 @@
 #include "render/rays/sample_images.h"
 #include "render/render.h"
 #include "render/scene/particle_scene.h"
+#include "render/scene/side_faces.h"
+#include "render/scene/source_sample.h"
 #include "render/sensor/detector.h"
 #include "studies/case/case.h"
 #include "studies/case/case_summary.h"
@@ -32,14 +34,23 @@ namespace {
 
 constexpr int map_spacing_px = 2;  // spacing of the maps in truth.h5; turbulent fronts are a few pixels wide
 
-/// Measures the standard error of the images if the number of rays was adaptive.
+/// Measures the standard error of the images due to rays: of a general rendering if the number of rays was adaptive, of
+/// a rendering by the deflection table in the images of the dots at side faces.
 /// @return error [levels at error_bit_depth()]; NaN: not measured
-double adaptive_image_error(Scene const& scene, Rendering const& rendering, double exposure_e) {
+double image_error_by_rays(Scene const& scene, Rendering const& rendering, double exposure_e) {
+  CameraSetup const& camera = scene.setup.camera;
+  double const level = camera.noise.full_well_e / exposure_e / (std::exp2(error_bit_depth(camera)) - 1);
+  if (rendering.method == RenderMethod::focused_dots) {
+    std::vector<std::size_t> const at_faces = sources_at_side_faces(scene, scene.dots);
+    if (at_faces.empty()) return not_measured;
+    Scene by_rays = scene;
+    by_rays.dots = select_dots(scene.dots, at_faces);
+    by_rays.rays_per_dot = scene.setup.render.rays_per_dot.value_or(max_rays_per_source(scene));
+    return measure_image_error(by_rays, level);
+  }
   bool const one_path = scene.rays_per_dot == 1;
   if (rendering.method != RenderMethod::rays || !scene.adaptive_criteria || one_path) return not_measured;
-  CameraSetup const& camera = scene.setup.camera;
-  double const full_scale = std::exp2(error_bit_depth(camera)) - 1;
-  return measure_image_error(scene, camera.noise.full_well_e / exposure_e / full_scale);
+  return measure_image_error(scene, level);
 }
 
 }  // namespace
@@ -142,7 +153,7 @@ CaseOutcome judge_case(CaseSetup& loaded, PreparedCase const& prepared, Rendered
   } else {
     loaded.document.root().table("camera").resolve("exposure", rendered.exposure_e);
   }
-  // The method that "auto" selects for other scenes depends on the device and on what is compared; record it.
+  // comparison renders further points of this case by the same method
   if (by_table || prepared.rays.method != RenderMethod::automatic) {
     loaded.document.root().table("render").resolve("method", std::string(to_string(rendering.method)));
   }
@@ -154,7 +165,7 @@ CaseOutcome judge_case(CaseSetup& loaded, PreparedCase const& prepared, Rendered
   outcome.unseen = seen.unseen;
   outcome.accuracy = seen.accuracy;
   outcome.side_faces = seen.side_faces;
-  outcome.image_error_levels = adaptive_image_error(prepared.scene, rendering, rendered.exposure_e);
+  outcome.image_error_levels = image_error_by_rays(prepared.scene, rendering, rendered.exposure_e);
   warn_of_images(warnings, camera, outcome.image_error_levels);
   return outcome;
 }

@@ -10,7 +10,6 @@
 #include "analysis/correlation/correlator.h"
 #include "analysis/correlation/pair_assessment.h"
 #include "analysis/tracking/track_frames.h"
-#include "analysis/uncertainty/uncertainty.h"
 #include "analysis/vectors/vector_file.h"
 #include "render/base/error.h"
 #include "render/base/interrupt.h"
@@ -158,8 +157,7 @@ DisplacementField PairCorrelation::correlate(Frames frames, PairRecord& record, 
   };
   tracking::TrackFrames const pair({std::move(frames.reference.levels), std::move(frames.flow.levels)},
                                    levels(frames.before), levels(frames.after));
-  bool const on_cpu = device_.correlates_on(settings_.settings) == "cpu";
-  Measurement measurement = correlate_frames(pair, choose_uncertainty(settings_.settings, on_cpu), device_);
+  Measurement measurement = correlate_frames(pair, settings_.settings, device_);
   throw_if_interrupted();  // the measurement may be incomplete
   DisplacementField& field = measurement.field;
   field.warnings.insert(field.warnings.begin(), frames.warnings.begin(), frames.warnings.end());

@@ -35,6 +35,9 @@ void check_reconstruct_options(ReconstructOptions const& options) {
   if (!(options.scale_uncertainty >= 0.0 && options.scale_uncertainty < 1.0))
     problems.push_back(
         {"--scale-uncertainty", fmt::format("expected 0 to below 1, got {}", options.scale_uncertainty)});
+  if (options.reference_density && !(*options.reference_density >= 0.0 && std::isfinite(*options.reference_density)))
+    problems.push_back(
+        {"--reference-density", fmt::format("expected a density of 0 or more, got {}", *options.reference_density)});
   if (options.deconvolution_gain && !(*options.deconvolution_gain > 1.0 && std::isfinite(*options.deconvolution_gain)))
     problems.push_back({"--deconvolve", fmt::format("expected a gain above 1, got {}", *options.deconvolution_gain)});
   if (!problems.empty()) throw SetupError(std::move(problems));

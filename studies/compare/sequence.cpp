@@ -176,7 +176,9 @@ class SequenceRun {
   PairNeighbours neighbours(std::size_t k) const {
     if (settings_.pairing != Pairing::consecutive || !correlation_method(correlation().method).tracks_dots) return {};
     std::vector<PairRecord> const& pairs = result_.pairs;
-    return {k > 0 ? &pairs[k - 1].pair.reference : nullptr, k + 1 < pairs.size() ? &pairs[k + 1].pair.flow : nullptr};
+    auto const complete = [&pairs](std::size_t i) { return i < pairs.size() && pairs[i].pair.problem.empty(); };
+    return {k > 0 && complete(k - 1) ? &pairs[k - 1].pair.reference : nullptr,
+            complete(k + 1) ? &pairs[k + 1].pair.flow : nullptr};
   }
 
   void finish(SequenceFolder const& folder) {

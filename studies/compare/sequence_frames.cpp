@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -13,36 +12,12 @@
 #include "render/base/error.h"
 #include "render/base/text.h"
 #include "render/files/image_pages.h"
+#include "studies/compare/frame_numbers.h"
 
 namespace gladstone {
 namespace {
 
 namespace fs = std::filesystem;
-
-bool is_digit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
-
-/// File name divided into its numbers and the text around them: "A_{}_{}" and {"12", "3"}, without leading zeros.
-struct NumberedName {
-  std::string pattern;
-  std::vector<std::string> numbers;
-};
-
-NumberedName split_numbers(std::string const& text) {
-  NumberedName name;
-  for (std::size_t i = 0; i < text.size();) {
-    if (!is_digit(text[i])) {
-      name.pattern += text[i++];
-      continue;
-    }
-    std::size_t end = i;
-    while (end < text.size() && is_digit(text[end])) ++end;
-    while (i + 1 < end && text[i] == '0') ++i;
-    name.numbers.push_back(text.substr(i, end - i));
-    name.pattern += "{}";
-    i = end;
-  }
-  return name;
-}
 
 /// Map whose keys are in natural order (2 before 10).
 template <class Value>
@@ -89,18 +64,6 @@ std::vector<std::vector<std::string>> split_by_name(std::vector<std::string> con
     lists[list].push_back(file);
   }
   return lists;
-}
-
-std::vector<NumberedName> split_names(std::vector<std::string> const& files) {
-  std::vector<NumberedName> names;
-  for (std::string const& file : files) names.push_back(split_numbers(fs::path(file).stem().string()));
-  return names;
-}
-
-/// Returns true if the names follow one pattern.
-bool have_one_pattern(std::vector<NumberedName> const& names) {
-  return std::all_of(names.begin(), names.end(),
-                     [&](NumberedName const& name) { return name.pattern == names.front().pattern; });
 }
 
 /// Returns for each name those of its numbers that differ within one of the two lists: the number of the instant,
@@ -177,6 +140,39 @@ std::vector<SequencePair> match_lists(std::vector<std::string> const& a, std::ve
   return pairs;
 }
 
+/// Returns a pair of an image whose next one is missing.
+SequencePair without_partner(SequenceFrame const& frame, std::string const& why) {
+  return {frame, {}, {}, fmt::format("{}: {} ({})", frame.name(), no_partner, why)};
+}
+
+/// Pairs every two images of a list. If their numbers tell that one is missing, its partner stays alone.
+std::vector<SequencePair> pair_by_twos(std::vector<SequenceFrame> const& frames, FrameIntervals const& intervals) {
+  std::vector<SequencePair> pairs;
+  for (std::size_t k = 0; k < frames.size(); ++k) {
+    if (k + 1 == frames.size()) {
+      pairs.push_back(without_partner(frames[k], "the number of images is odd"));
+    } else if (intervals.misses_next(k)) {
+      pairs.push_back(without_partner(frames[k], fmt::format("no image has the number {}", intervals.next(k))));
+    } else {
+      pairs.push_back({frames[k], frames[k + 1], {}, {}});
+      ++k;
+    }
+  }
+  return pairs;
+}
+
+/// Pairs every image with the next one. A pair whose numbers tell that an image between them is missing has a problem.
+std::vector<SequencePair> pair_consecutive(std::vector<SequenceFrame> const& frames, FrameIntervals const& intervals) {
+  std::vector<SequencePair> pairs;
+  for (std::size_t k = 0; k + 1 < frames.size(); ++k) {
+    SequencePair& pair = pairs.emplace_back(SequencePair{frames[k], frames[k + 1], {}, {}});
+    if (intervals.misses_next(k))
+      pair.problem = fmt::format("{}: the next image is missing (no image has the number {}); add it", frames[k].name(),
+                                 intervals.next(k));
+  }
+  return pairs;
+}
+
 /// Gives every pair a distinct file name, from its frame A, or with one reference from its frame B.
 void name_vectors(std::vector<SequencePair>& pairs, Pairing pairing) {
   std::map<std::string, int> uses{{"statistics", 1}};
@@ -245,20 +241,16 @@ std::vector<SequencePair> form_pairs(std::vector<std::vector<std::string>> const
   std::vector<SequenceFrame> const frames = list_frames(files);
   if (frames.size() < 2)
     throw DataError(files.front(), "is a single image (a sequence has at least two); give a pattern or a folder");
+  bool const one_each = frames.size() == files.size();  // no file of several pages
   switch (pairing) {
     case Pairing::pairs:
-      for (std::size_t k = 0; k + 1 < frames.size(); k += 2) pairs.push_back({frames[k], frames[k + 1], {}, {}});
-      if (frames.size() % 2 == 1) {
-        SequencePair& last = pairs.emplace_back();
-        last.reference = frames.back();
-        last.problem = fmt::format("{}: {} (the number of images is odd)", frames.back().name(), no_partner);
-      }
+      pairs = pair_by_twos(frames, FrameIntervals(one_each ? files : std::vector<std::string>{}, 2));
       break;
     case Pairing::reference:
       for (std::size_t k = 1; k < frames.size(); ++k) pairs.push_back({frames[0], frames[k], {}, {}});
       break;
     case Pairing::consecutive:
-      for (std::size_t k = 0; k + 1 < frames.size(); ++k) pairs.push_back({frames[k], frames[k + 1], {}, {}});
+      pairs = pair_consecutive(frames, FrameIntervals(one_each ? files : std::vector<std::string>{}, 1));
       break;
   }
   name_vectors(pairs, pairing);

@@ -32,6 +32,9 @@ void check_tomography_options(TomographyOptions const& options) {
   if (!options.angles.empty() && options.angles.size() != count)
     problems.push_back(
         {"--angles", fmt::format("expected one angle for each of the {} views, got {}", count, options.angles.size())});
+  auto const finite = [](double angle) { return std::isfinite(angle); };
+  if (!finite(options.arc) || !std::all_of(options.angles.begin(), options.angles.end(), finite))
+    problems.push_back({options.angles.empty() ? "--arc" : "--angles", "expected finite angles in degrees"});
   if (std::set<std::string>(options.views.begin(), options.views.end()).size() != count && options.vectors.empty())
     problems.push_back({"views", "contain the same case twice; give each view once"});
   if (options.reference.empty())
@@ -51,6 +54,22 @@ void check_tomography_options(TomographyOptions const& options) {
   if (!(options.least_density < options.largest_density))
     problems.push_back({"--least-density", "expected a density below --largest-density"});
   if (!problems.empty()) throw SetupError(std::move(problems));
+}
+
+/// Throws if the views look along fewer lines than a volume requires; two opposite views look along one line.
+void require_distinct_lines(std::vector<TomographyView> const& views) {
+  double const nearly_parallel = std::cos(0.5 * unit::degree);
+  std::vector<Vec3d> lines;
+  for (TomographyView const& view : views) {
+    bool const known = std::any_of(lines.begin(), lines.end(), [&](Vec3d line) {
+      return std::abs(dot(line, view.view_direction)) > nearly_parallel * length(line) * length(view.view_direction);
+    });
+    if (!known) lines.push_back(view.view_direction);
+  }
+  if (lines.size() < tomography::least_views)
+    throw DataError("tomography", fmt::format("the views look along {} different lines only, and a volume requires {}; "
+                                              "check --angles, --arc and the poses of the cameras",
+                                              lines.size(), tomography::least_views));
 }
 
 std::vector<double> choose_angles(TomographyOptions const& options) {
@@ -203,8 +222,13 @@ Tomography reconstruct_views(TomographyOptions const& options, tomography::SartV
   }
   stop_point("reconstructing");
   require_equal_media(views);
+  require_distinct_lines(views);
   MediumSetup const& medium = views.front().loaded.setup.medium;
   result.reference_density = options.reference_density.value_or(medium.ambient_density);
+  if (!(result.reference_density >= options.least_density && result.reference_density <= options.largest_density))
+    throw SetupError({SetupProblem{
+        "--reference-density", fmt::format("is {} kg/m^3, outside --least-density and --largest-density ({} to {})",
+                                           result.reference_density, options.least_density, options.largest_density)}});
   result.settings = options.sart;
   result.settings.lowest = std::min(0.0, options.least_density - result.reference_density);
   result.settings.highest = std::max(0.0, options.largest_density - result.reference_density);

@@ -241,10 +241,12 @@ void CaseRunner::compute(ManifestCase const& one, std::string const& keep, CaseO
   if (!known.rays) shared.rays.keep(plans.rays, prepared.rays);
 
   RenderTheory const theory = keep.empty() ? RenderTheory::no : RenderTheory::yes;  // theory at the dots, for truth.h5
-  std::string const traced = fmt::format("\n{}, rays {}, for a level {}, fineness {}{}",
-                                         to_string(resolve_render_method(prepared.scene)), prepared.scene.rays_per_dot,
-                                         prepared.rays.adaptive_criteria ? prepared.rays.adaptive_criteria->level : 0.0,
-                                         prepared.rays.fineness, keep.empty() ? "" : ", theory");
+  bool const given = loaded.setup.render.rays_per_dot.has_value();
+  std::string const traced =
+      fmt::format("\n{}, {} rays {}, for a level {}, fineness {}{}", to_string(resolve_render_method(prepared.scene)),
+                  given ? "given" : "auto", prepared.scene.rays_per_dot,
+                  prepared.rays.adaptive_criteria ? prepared.rays.adaptive_criteria->level : 0.0,
+                  prepared.rays.fineness, keep.empty() ? "" : ", theory");
   std::string const frames_key = keys.scene + traced;
   RenderedCase* const made = shared.renderings.find(frames_key);
   RenderedCase rendered = made ? *made : render_case(prepared, *device_.renderer, theory);

@@ -96,7 +96,7 @@ std::vector<Row> const& rows() {
   return table;
 }
 
-std::string content(fs::path const& path) {
+std::string source_without_comments(fs::path const& path) {
   std::ifstream in(path);
   std::string const text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
   return std::regex_replace(text, std::regex("//[^\n]*"), "");
@@ -112,7 +112,7 @@ std::map<std::string, std::string> const& sources() {
         std::string const path = entry.path().lexically_relative(root).string();
         if (entry.is_regular_file() && path.rfind("studies/oracles/", 0) != 0) {
           if (std::set<std::string>{".h", ".cpp", ".cu", ".cuh"}.count(entry.path().extension().string()) > 0)
-            texts[path] = content(entry.path());
+            texts[path] = source_without_comments(entry.path());
         }
       }
     }

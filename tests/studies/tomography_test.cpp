@@ -101,8 +101,8 @@ TEST(Tomography, MissingViewIsRefused) {
   EXPECT_THROW(reconstruct_views(options, tomography::make_host_volume), DataError);
 }
 
-// A box in mm is compared with the vectors in mm, and the message names both.
-TEST(Tomography, ReferenceOutsideTheVectorsIsReportedInMillimetres) {
+/// Three views of a uniform displacement, with the left side of the images as reference.
+TomographyOptions three_views() {
   TomographyOptions options;
   std::string vectors = "x_px,y_px,u_px,v_px\n";
   for (int y = 8; y <= 56; y += 8)
@@ -112,6 +112,43 @@ TEST(Tomography, ReferenceOutsideTheVectorsIsReportedInMillimetres) {
     options.vectors.push_back(testing::TempDir() + name + ".csv");
     std::ofstream(options.vectors.back()) << vectors;
   }
+  options.reference.push_back({density::GridSide::left});
+  return options;
+}
+
+/// Returns the problem with which a reconstruction is refused.
+std::string problem_of(TomographyOptions const& options) {
+  try {
+    reconstruct_views(options, tomography::make_host_volume);
+  } catch (SetupError const& error) {
+    return error.problems().front().where + " " + error.problems().front().message;
+  } catch (DataError const& error) {
+    return error.what();
+  }
+  return "";
+}
+
+// Views from one side, or from two opposite ones, do not determine a volume.
+TEST(Tomography, ViewsAlongOneLineAreRefused) {
+  TomographyOptions options = three_views();
+  options.angles = {0.0, M_PI, 2 * M_PI};
+  EXPECT_NE(problem_of(options).find("along 1 different lines only"), std::string::npos) << problem_of(options);
+  options.angles = {0.0, NAN, 2.0};
+  EXPECT_NE(problem_of(options).find("--angles expected finite angles"), std::string::npos) << problem_of(options);
+}
+
+TEST(Tomography, AReferenceOutsideTheLimitsOfDensityIsRefused) {
+  TomographyOptions options = three_views();
+  options.largest_density = 0.1;  // the ambient density is 1.225
+  EXPECT_NE(problem_of(options).find("--reference-density is 1.225"), std::string::npos) << problem_of(options);
+  options.largest_density = 2.0;
+  options.reference_density = -1.0;
+  EXPECT_NE(problem_of(options).find("--reference-density is -1"), std::string::npos) << problem_of(options);
+}
+
+// A box in mm is compared with the vectors in mm, and the message names both.
+TEST(Tomography, ReferenceOutsideTheVectorsIsReportedInMillimetres) {
+  TomographyOptions options = three_views();
   ReferenceRegion far;
   far.low = {0.1, 0.1};
   far.high = {0.11, 0.11};

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace gladstone {
+
+/// File name divided into its numbers and the text around them: "A_{}_{}" and {"12", "3"}, without leading zeros.
+struct NumberedName {
+  std::string pattern;
+  std::vector<std::string> numbers;
+};
+
+/// Divides a text into its numbers and the text around them.
+NumberedName split_numbers(std::string const& text);
+/// Divides the names of files, without folder and ending.
+std::vector<NumberedName> split_names(std::vector<std::string> const& files);
+/// Returns true if the names follow one pattern.
+bool have_one_pattern(std::vector<NumberedName> const& names);
+
+/// Intervals between the numbers of images in their names, from which a missing image is known.
+class FrameIntervals {
+ public:
+  /// @param files   names of the images in their order; unless they differ in one number that increases, nothing is
+  /// known
+  /// @param stride  1: the intervals between all images are equal; 2: those between the first and second of every pair
+  FrameIntervals(std::vector<std::string> const& files, std::size_t stride);
+
+  /// Returns true if the interval from an image to the following one differs from the usual interval. Always false if
+  /// the numbers count no frames: if less than half of the intervals are the smallest one.
+  bool misses_next(std::size_t image) const { return usual_ > 0 && numbers_[image + 1] - numbers_[image] != usual_; }
+  /// Returns the number that the image after this one should have.
+  long long next(std::size_t image) const { return numbers_[image] + usual_; }
+
+ private:
+  std::vector<long long> numbers_;
+  long long usual_ = 0;  ///< 0: unknown
+};
+
+}  // namespace gladstone
