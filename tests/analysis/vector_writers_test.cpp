@@ -96,7 +96,7 @@ std::string vtk_base64(std::vector<double> const& values) {
 
 TEST_F(VectorWriters, TecplotHasOneRowPerVectorAndZerosForUnknownValues) {
   EXPECT_EQ(content(write("v.dat", scattered_pair())),
-            "TITLE = \"gladstone vectors, px, y and v downwards, 0: not known\"\n"
+            "TITLE = \"gladstone vectors, px, y and v downwards; unknown values are 0\"\n"
             "VARIABLES = \"x_px\" \"y_px\" \"u_px\" \"v_px\" \"status\" \"u_raw_px\" \"v_raw_px\" \"reason\" "
             "\"ambiguous\"\n"
             "ZONE T=\"vectors\", I=2, J=1, DATAPACKING=POINT\n"
