@@ -15,14 +15,14 @@ namespace gladstone {
 IntegrationStep choose_step(Scene const& scene) {
   if (!scene.second_medium) return determine_step_by_tracing(scene);
   IntegrationStep const a = choose_step(select_first_pulse(scene)), b = choose_step(select_second_pulse(scene));
-  IntegrationStep plan = b.step_mm < a.step_mm ? b : a;
-  plan.largest_shift = std::max(a.largest_shift, b.largest_shift);
-  return plan;
+  IntegrationStep finer = b.step_mm < a.step_mm ? b : a;
+  finer.largest_shift = std::max(a.largest_shift, b.largest_shift);
+  return finer;
 }
 
 Scene with_chosen_step(Scene scene) {
-  IntegrationStep const plan = choose_step(scene);
-  return with_step(std::move(scene), plan);
+  IntegrationStep const step = choose_step(scene);
+  return with_step(std::move(scene), step);
 }
 
 namespace {
@@ -46,7 +46,8 @@ RayBudget choose_ray_budget(Scene const& scene) {
   }
   RenderMethod const method = resolve_render_method(scene);
   if (method == RenderMethod::formula) return {};  // no rays are traced; the recorded number is one
-  if (method == RenderMethod::rays || rays_take_far_less_time(scene)) {
+  if (method == RenderMethod::rays) return determine_ray_budget_by_tracing(scene);
+  if (rays_take_far_less_time(scene)) {
     RayBudget budget = determine_ray_budget_by_tracing(scene);
     budget.method = RenderMethod::rays;
     return budget;

@@ -29,12 +29,12 @@ LoneDot::LoneDot(Scene const& scene, Vec2d place, int side) : scene_(alone(scene
     aim_ = aim_dot(owned_->model, centre);
     room *= 2;
   } while (aim_.kind == DotKind::left && 2 * aim_.farthest > room && room < scene_.setup.z_b());
-  take_frame(0, {});
-  if (left()) return;
+  render_frame(0, {});
+  if (is_uncovered()) return;
   Vec2d const moved = seen_.truth.hits[1].mean() - seen_.truth.hits[0].mean();
-  take_frame(1, std::isfinite(moved.x) ? moved : Vec2d{});
+  render_frame(1, std::isfinite(moved.x) ? moved : Vec2d{});
   // no difference in the reference image, whose light is known in closed form
-  for (Difference& off : off_) off.light.resize(light_.size());
+  for (Difference& difference : difference_) difference.light.resize(light_.size());
   if (seen_.kind == DotKind::still) return;
   for (int scrambling = 0; scrambling < sample_count; ++scrambling) samples_.emplace_back(side);
 }
@@ -43,25 +43,25 @@ void LoneDot::compare_with_rays(int rays) {
   for (std::size_t scrambling = 0; scrambling < samples_.size(); ++scrambling) {
     RaySample& sample = samples_[scrambling];
     std::visit([&](auto const& medium) { add_rays(medium, scrambling, rays, sample); }, scene_.medium.view);
-    Difference& off = off_[scrambling];
-    Vec2d const told = seen_.truth.hits[1].mean() - seen_.truth.hits[0].mean();
-    off.displacement = sample.predicted.mean() + sample.traced.mean() - sample.also_predicted.mean() - told;
-    Image<double> const light = sample.light.to_light(), difference = sample.difference.to_light();
+    Difference& difference = difference_[scrambling];
+    Vec2d const rendered = seen_.truth.hits[1].mean() - seen_.truth.hits[0].mean();
+    difference.displacement = sample.predicted.mean() + sample.traced.mean() - sample.also_predicted.mean() - rendered;
+    Image<double> const light = sample.light.to_light(), correction = sample.difference.to_light();
     double const unit = static_cast<double>(largest_sample) / rays;
     for (std::size_t i = 0; i < light.size(); ++i) {
-      double const found = unit * (light.data()[i] + predicted_per_traced * difference.data()[i]);
-      off.light[light.size() + i] = found - light_[light.size() + i];
+      double const found = unit * (light.data()[i] + predicted_per_traced * correction.data()[i]);
+      difference.light[light.size() + i] = found - light_[light.size() + i];
     }
   }
 }
 
-void LoneDot::take_frame(std::size_t frame, Vec2d moved) {
+void LoneDot::render_frame(std::size_t frame, Vec2d moved) {
   Vec2d const centre = scene_.dots.centre[0], at = owned_->model.to_pixel(centre) + moved;
   int const half = side_ / 2;
   owned_->model.axis_px = owned_->model.axis_px - Vec2d{std::floor(at.x) - half, std::floor(at.y) - half};
   integrator_ = std::make_unique<DotIntegrator>(owned_->model);
   std::visit([&](auto const& medium) { seen_ = integrator_->see(medium, centre, 1); }, scene_.medium.view);
-  if (left()) return;
+  if (is_uncovered()) return;
   LightImage frames[frame_count] = {{side_, side_}, {side_, side_}};
   LightImage* const images[frame_count] = {&frames[0], &frames[1]};
   integrator_->accumulate_light(images);

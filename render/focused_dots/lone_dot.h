@@ -44,25 +44,25 @@ class LoneDot {
   LoneDot(Scene const& scene, Vec2d place, int side);
 
   /// Returns true if the table does not cover the dot.
-  bool left() const { return seen_.kind == DotKind::left; }
+  bool is_uncovered() const { return seen_.kind == DotKind::left; }
   /// Adds rays to the samples until each has the given number, and updates their differences.
   void compare_with_rays(int rays);
   /// Light of the window in both images, the reference image first.
   std::vector<double> const& light() const { return light_; }
   /// Difference of sample k.
-  Difference const& difference(int k) const { return off_[k]; }
+  Difference const& difference(int k) const { return difference_[k]; }
 
  private:
   /// Renders the dot again in a window centred at the given distance from its undisplaced image, with pixels counted
-  /// from the window's corner, and stores one frame.
-  void take_frame(std::size_t frame, Vec2d moved);
+  /// from the window's corner, and stores the light of one frame.
+  void render_frame(std::size_t frame, Vec2d moved);
   /// Adds rays to a sample. Many rays land as the table predicts, and some of them are also traced to correct the
   /// prediction (control variate).
   template <class Medium>
   void add_rays(Medium const& medium, std::size_t scrambling, int rays, RaySample& sample);
 
   Scene scene_;
-  int side_;                        ///< of the pixel windows [px]
+  int side_;                        ///< side of the pixel windows [px]
   std::vector<RaySample> samples_;  ///< none for a dot that the medium does not move
   std::unique_ptr<DeflectionMap> table_;
   std::unique_ptr<OwnedDotModel> owned_;
@@ -70,7 +70,7 @@ class LoneDot {
   DotAim aim_;
   RenderedDot seen_;
   std::vector<double> light_;
-  Difference off_[sample_count];
+  Difference difference_[sample_count];
 };
 
 }  // namespace gladstone

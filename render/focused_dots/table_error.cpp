@@ -78,11 +78,11 @@ LitPixels sum_lit_pixels(LoneDots const& lone, std::size_t frame, double thresho
   return lit;
 }
 
-/// Returns the light of one grey level at `bits`. For "auto" exposure, the brightest pixel is at 90 % of full scale.
+/// Returns the light of one grey level at error_bit_depth(). For "auto" exposure, the brightest pixel is at 90 % of
+/// full scale.
 /// @param density  number of overlapping dots per pixel, the squares of an image target [1/px^2]; 0: lone dots
-double light_per_level(LoneDots const& lone, CameraSetup const& camera, int bits, double density) {
-  double const full_scale = std::exp2(bits) - 1;
-  if (camera.exposure_e) return camera.noise.full_well_e / *camera.exposure_e / full_scale;
+double light_of_a_level(LoneDots const& lone, CameraSetup const& camera, double density) {
+  if (camera.exposure_e) return light_per_level(camera, *camera.exposure_e);
   double brightest = 0;
   for (std::size_t frame = 0; frame < frame_count; ++frame) {
     double sum = 0, squares = 0;  // per dot
@@ -98,7 +98,7 @@ double light_per_level(LoneDots const& lone, CameraSetup const& camera, int bits
     // mean plus three standard deviations of the light of overlapping dots (Campbell's theorem)
     brightest = std::max(brightest, density * sum + 3 * std::sqrt(density * squares));
   }
-  return brightest / (0.9 * full_scale);
+  return brightest / (0.9 * (std::exp2(error_bit_depth(camera)) - 1));
 }
 
 /// Computes errors and detection limits from lone dots that were compared with rays.
@@ -116,7 +116,7 @@ void compute_errors(TableError& error, LoneDots const& lone, CameraSetup const& 
   }
   error.truth_px = displacement.rms(components);
   error.truth_resolution_px = displacement.detection_limit(components, components);
-  double const level = light_per_level(lone, camera, error.bits, density);
+  double const level = light_of_a_level(lone, camera, density);
   error.image_levels = not_measured;
   error.image_resolution_levels = 0;
   for (std::size_t frame = 0; frame < frame_count; ++frame) {
@@ -163,7 +163,7 @@ TableError measure_table_error(FocusedDots const& dots) {
     lone[i] = std::make_unique<LoneDot>(scene, places[i], side);
     progress.advance();
   });
-  std::erase_if(lone, [](auto const& dot) { return dot->left(); });
+  std::erase_if(lone, [](auto const& dot) { return dot->is_uncovered(); });
   if (lone.empty()) return error;
   for (int const rays : {LoneDot::largest_sample / 4, LoneDot::largest_sample / 2, LoneDot::largest_sample}) {
     parallel_for(lone.size(), [&](std::size_t i) { lone[i]->compare_with_rays(rays); });

@@ -100,21 +100,21 @@ std::vector<std::size_t> largest_of(std::vector<double> const& value) {
 
 IntegrationStep determine_step_by_tracing(Scene const& scene) {
   // The step is stored in mm, so that a setup file contains exactly the number used.
-  IntegrationStep plan;
+  IntegrationStep step;
   std::optional<double> const given = scene.setup.medium.step_mm;
   bool const empty = std::holds_alternative<NoMedium<double>>(scene.medium.view);
   double const coarsest = empty ? scene.setup.medium.thickness : scene.medium.coarsest_step;
-  plan.step_mm = given.value_or(coarsest / unit::millimetre);
-  if (empty) return plan;
+  step.step_mm = given.value_or(coarsest / unit::millimetre);
+  if (empty) return step;
   // Select the dots whose chief rays change most.
   double shift_of_others = 0;
   std::vector<std::size_t> dots(scene.source_count());
   std::iota(dots.begin(), dots.end(), std::size_t{0});
   if (dots.size() > probed_dots) {
-    double const step = plan.step_mm * unit::millimetre;
-    Probe const coarse = probe_dots(scene, dots, chief_ray, step);
+    double const length = step.step_mm * unit::millimetre;
+    Probe const coarse = probe_dots(scene, dots, chief_ray, length);
     shift_of_others = coarse.largest_shift();
-    dots = largest_of(changes(coarse, probe_dots(scene, dots, chief_ray, step / 2)));
+    dots = largest_of(changes(coarse, probe_dots(scene, dots, chief_ray, length / 2)));
   }
   // Halve the step until the displacements no longer change.
   auto const probe = [&](double step_mm) {
@@ -123,19 +123,19 @@ IntegrationStep determine_step_by_tracing(Scene const& scene) {
   };
   Bounds<double> const box = std::visit([](auto const& medium) { return medium.bounds(); }, scene.medium.view);
   double const depth_mm = (box.high.z - box.low.z) / unit::millimetre;
-  Probe coarse = probe(plan.step_mm);
+  Probe coarse = probe(step.step_mm);
   for (int halvings = 0;; ++halvings) {
-    Probe fine = probe(plan.step_mm / 2);
-    plan.largest_shift = std::max({shift_of_others, coarse.largest_shift(), fine.largest_shift()});
+    Probe fine = probe(step.step_mm / 2);
+    step.largest_shift = std::max({shift_of_others, coarse.largest_shift(), fine.largest_shift()});
     std::vector<double> const change = changes(coarse, fine);
     if (!change.empty()) {
       auto const most = std::max_element(change.begin(), change.end());
-      plan.change_px = *most;
-      plan.limiting_dot = dots[static_cast<std::size_t>(most - change.begin())];
+      step.change_px = *most;
+      step.limiting_dot = dots[static_cast<std::size_t>(most - change.begin())];
     }
-    bool const finest = halvings == 12 || depth_mm > 0.5 * max_step_count * plan.step_mm;
-    if (given || plan.change_px < step_tolerance_px || finest) return plan;
-    plan.step_mm /= 2;
+    bool const finest = halvings == 12 || depth_mm > 0.5 * max_step_count * step.step_mm;
+    if (given || step.change_px < step_tolerance_px || finest) return step;
+    step.step_mm /= 2;
     coarse = std::move(fine);
   }
 }
@@ -149,7 +149,7 @@ AdaptiveRayCriteria determine_adaptive_criteria(Scene const& scene) {
   if (camera.absolute_exposure || camera.exposure_e) {
     double const electrons =
         camera.absolute_exposure ? scene.photon_unit * camera.noise.quantum_efficiency : *camera.exposure_e;
-    criteria.level = camera.noise.full_well_e / electrons / full_scale;
+    criteria.level = light_per_level(camera, electrons);
     return criteria;
   }
   Scene metered = scene;

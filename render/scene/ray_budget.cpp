@@ -49,6 +49,10 @@ std::uint64_t max_rays_per_source(Scene const& scene) {
 
 int error_bit_depth(CameraSetup const& camera) { return std::min(camera.bit_depth, 12); }
 
+double light_per_level(CameraSetup const& camera, double exposure_e) {
+  return camera.noise.full_well_e / exposure_e / (std::exp2(error_bit_depth(camera)) - 1);
+}
+
 Scene with_rays(Scene scene, RayBudget const& budget) {
   scene.rays_per_dot = budget.rays;
   scene.adaptive_criteria = budget.adaptive_criteria;

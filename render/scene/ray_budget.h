@@ -49,16 +49,19 @@ struct TableError {
 /// Renderer and number of rays per source.
 struct RayBudget {
   RenderMethod method = RenderMethod::automatic;  ///< renderer chosen by "auto", or the configured one
-  std::uint64_t rays =
-      1;  ///< rays per source; general renderer with "auto": maximum, each source takes what it requires
-  std::optional<AdaptiveRayCriteria> adaptive_criteria;  ///< criteria of adaptive ray numbers (fast renderer: of dots
-                                                         ///< at side faces); empty: all sources have `rays`
-  int fineness = 1;                                      ///< refinement of table and rules, as Scene::fineness
-  std::optional<TableError> table_error;                 ///< error of the table by which `fineness` was chosen
+  /// Rays per source; general renderer with "auto": maximum, each source takes what it requires.
+  std::uint64_t rays = 1;
+  /// Criteria of adaptive ray numbers (fast renderer: of dots at side faces); empty: all sources have `rays`.
+  std::optional<AdaptiveRayCriteria> adaptive_criteria;
+  int fineness = 1;                       ///< refinement of table and rules, as Scene::fineness
+  std::optional<TableError> table_error;  ///< error of the table by which `fineness` was chosen
 };
 
 /// Returns the bit depth in which image errors are stated: the camera's, 12 at most.
 int error_bit_depth(CameraSetup const& camera);
+/// Returns the light of one grey level at error_bit_depth().
+/// @param exposure_e  electrons per unit of light
+double light_per_level(CameraSetup const& camera, double exposure_e);
 
 /// Estimates the processor time per ray of one source, traced in both images [s].
 /// Integration steps, lit pixels and lens surfaces are counted and multiplied by times measured on the processor of

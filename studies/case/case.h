@@ -107,14 +107,19 @@ struct SideFaceAccuracy {
   double truth_error_px = not_measured;  ///< rms of their standard errors [px]
 };
 
-/// Accuracy, hashes of the images and number of unseen sources of a rendered case, as written to its files.
-struct CaseOutcome {
+/// Accuracy of the truth of a rendered case.
+struct RenderedOutcome {
+  std::size_t unseen = 0;  ///< number of dots or particles without truth in one of the frames
   TruthAccuracy accuracy;
-  std::optional<SideFaceAccuracy> side_faces;  ///< dots at side faces, traced ray by ray beside a deflection table
-  double image_error_levels = not_measured;    ///< standard error of the images by adaptive rays [levels at
-                                               ///< error_bit_depth()]; NaN: not measured, or no pixel is lit
-  std::size_t unseen = 0;                      ///< number of dots or particles without truth in one of the frames
-  std::optional<TableError> table_error;       ///< error of the deflection table, if the truth was computed with one
+  /// Dots at side faces, which the fast renderer leaves to the general one; nullopt: none in view.
+  std::optional<SideFaceAccuracy> side_faces;
+};
+
+/// Accuracy, warnings and grey levels of a rendered case, as written to its files.
+struct CaseOutcome : RenderedOutcome {
+  /// Standard error of the images due to rays [levels at error_bit_depth()]; NaN: not measured, or no pixel is lit.
+  double image_error_levels = not_measured;
+  std::optional<TableError> table_error;  ///< error of the deflection table, if the truth was computed with one
   std::string device, reference_sha256, flow_sha256;
   std::vector<std::string> warnings;     ///< all warnings of the case, those of its preparation first
   Image<std::uint16_t> reference, flow;  ///< grey levels of the frames

@@ -58,13 +58,6 @@ void warn_of_saturation(std::vector<std::string>& warnings, CameraSetup const& c
 /// @param brightest  light of the brightest pixel of both frames, in units of the scene's photon_unit
 void warn_of_exposure(std::vector<std::string>& warnings, Scene const& scene, double exposure_e, double brightest);
 
-/// Quality of a rendered case.
-struct RenderedOutcome {
-  std::size_t unseen = 0;  ///< number of sources without truth in one of the frames
-  TruthAccuracy accuracy;
-  std::optional<SideFaceAccuracy> side_faces;
-};
-
 /// Warns of saturation, insufficient light, unseen dots and inaccurate truth of a rendered case.
 RenderedOutcome warn_of_rendering(std::vector<std::string>& warnings, PreparedCase const& prepared,
                                   RenderedCase const& rendered, RecordedFrames const& frames);

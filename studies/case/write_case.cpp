@@ -38,8 +38,7 @@ constexpr int map_spacing_px = 2;  // spacing of the maps in truth.h5; turbulent
 /// a rendering by the deflection table in the images of the dots at side faces.
 /// @return error [levels at error_bit_depth()]; NaN: not measured
 double image_error_by_rays(Scene const& scene, Rendering const& rendering, double exposure_e) {
-  CameraSetup const& camera = scene.setup.camera;
-  double const level = camera.noise.full_well_e / exposure_e / (std::exp2(error_bit_depth(camera)) - 1);
+  double const level = light_per_level(scene.setup.camera, exposure_e);
   if (rendering.method == RenderMethod::focused_dots) {
     std::vector<std::size_t> const at_faces = sources_at_side_faces(scene, scene.dots);
     if (at_faces.empty()) return not_measured;
@@ -161,10 +160,7 @@ CaseOutcome judge_case(CaseSetup& loaded, PreparedCase const& prepared, Rendered
   outcome.flow = grey_levels(frames.levels->flow());
   outcome.reference_sha256 = pixel_sha256(outcome.reference);
   outcome.flow_sha256 = pixel_sha256(outcome.flow);
-  RenderedOutcome const seen = warn_of_rendering(warnings, prepared, rendered, frames);
-  outcome.unseen = seen.unseen;
-  outcome.accuracy = seen.accuracy;
-  outcome.side_faces = seen.side_faces;
+  static_cast<RenderedOutcome&>(outcome) = warn_of_rendering(warnings, prepared, rendered, frames);
   outcome.image_error_levels = image_error_by_rays(prepared.scene, rendering, rendered.exposure_e);
   warn_of_images(warnings, camera, outcome.image_error_levels);
   return outcome;

@@ -62,10 +62,10 @@ bool have_one_pattern(std::vector<NumberedName> const& names) {
                      [&](NumberedName const& name) { return name.pattern == names.front().pattern; });
 }
 
-FrameIntervals::FrameIntervals(std::vector<std::string> const& files, std::size_t stride)
+FrameIntervals::FrameIntervals(std::vector<std::string> const& files)
     : numbers_(increasing_numbers(split_names(files))) {
   std::vector<long long> intervals;
-  for (std::size_t k = 0; k + 1 < numbers_.size(); k += stride) intervals.push_back(numbers_[k + 1] - numbers_[k]);
+  for (std::size_t k = 0; k + 1 < numbers_.size(); ++k) intervals.push_back(numbers_[k + 1] - numbers_[k]);
   if (intervals.empty()) return;
   long long const least = *std::min_element(intervals.begin(), intervals.end());
   auto const equal = static_cast<std::size_t>(std::count(intervals.begin(), intervals.end(), least));

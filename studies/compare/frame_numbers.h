@@ -22,20 +22,19 @@ bool have_one_pattern(std::vector<NumberedName> const& names);
 /// Intervals between the numbers of images in their names, from which a missing image is known.
 class FrameIntervals {
  public:
-  /// @param files   names of the images in their order; unless they differ in one number that increases, nothing is
+  /// @param files  names of the images in their order; unless they differ in one number that increases, nothing is
   /// known
-  /// @param stride  1: the intervals between all images are equal; 2: those between the first and second of every pair
-  FrameIntervals(std::vector<std::string> const& files, std::size_t stride);
+  explicit FrameIntervals(std::vector<std::string> const& files);
 
-  /// Returns true if the interval from an image to the following one differs from the usual interval. Always false if
-  /// the numbers count no frames: if less than half of the intervals are the smallest one.
+  /// Returns true if the interval from an image to the following one is longer than the smallest one. Always false if
+  /// less than half of the intervals are the smallest one, since the numbers then do not count images.
   bool misses_next(std::size_t image) const { return usual_ > 0 && numbers_[image + 1] - numbers_[image] != usual_; }
   /// Returns the number that the image after this one should have.
   long long next(std::size_t image) const { return numbers_[image] + usual_; }
 
  private:
   std::vector<long long> numbers_;
-  long long usual_ = 0;  ///< 0: unknown
+  long long usual_ = 0;  ///< smallest interval; 0: unknown
 };
 
 }  // namespace gladstone

@@ -145,7 +145,7 @@ SequencePair without_partner(SequenceFrame const& frame, std::string const& why)
   return {frame, {}, {}, fmt::format("{}: {} ({})", frame.name(), no_partner, why)};
 }
 
-/// Pairs every two images of a list. If their numbers tell that one is missing, its partner stays alone.
+/// Pairs image 1 with 2, 3 with 4, and so on. An image before a gap in the numbers has no partner.
 std::vector<SequencePair> pair_by_twos(std::vector<SequenceFrame> const& frames, FrameIntervals const& intervals) {
   std::vector<SequencePair> pairs;
   for (std::size_t k = 0; k < frames.size(); ++k) {
@@ -161,7 +161,7 @@ std::vector<SequencePair> pair_by_twos(std::vector<SequenceFrame> const& frames,
   return pairs;
 }
 
-/// Pairs every image with the next one. A pair whose numbers tell that an image between them is missing has a problem.
+/// Pairs every image with the next one. A pair across a gap in the numbers has a `problem`.
 std::vector<SequencePair> pair_consecutive(std::vector<SequenceFrame> const& frames, FrameIntervals const& intervals) {
   std::vector<SequencePair> pairs;
   for (std::size_t k = 0; k + 1 < frames.size(); ++k) {
@@ -242,15 +242,16 @@ std::vector<SequencePair> form_pairs(std::vector<std::vector<std::string>> const
   if (frames.size() < 2)
     throw DataError(files.front(), "is a single image (a sequence has at least two); give a pattern or a folder");
   bool const one_each = frames.size() == files.size();  // no file of several pages
+  FrameIntervals const intervals(one_each ? files : std::vector<std::string>{});
   switch (pairing) {
     case Pairing::pairs:
-      pairs = pair_by_twos(frames, FrameIntervals(one_each ? files : std::vector<std::string>{}, 2));
+      pairs = pair_by_twos(frames, intervals);
       break;
     case Pairing::reference:
       for (std::size_t k = 1; k < frames.size(); ++k) pairs.push_back({frames[0], frames[k], {}, {}});
       break;
     case Pairing::consecutive:
-      pairs = pair_consecutive(frames, FrameIntervals(one_each ? files : std::vector<std::string>{}, 1));
+      pairs = pair_consecutive(frames, intervals);
       break;
   }
   name_vectors(pairs, pairing);

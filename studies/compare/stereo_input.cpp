@@ -98,9 +98,10 @@ StereoInput read_stereo_input(StereoOptions const& options, std::size_t index, S
     sources.add("", setup, SourceFiles::Holds::bytes);
     input.loaded = load_case_setup(setup, {});
     if (!input.loaded->setup.piv)
-      throw DataError(place,
-                      "is no PIV case, and its vectors are no motion of particles; give two cameras of a PIV "
-                      "rendering");
+      throw DataError(
+          place,
+          "is not a PIV case (its vectors are not the displacement of particles); give two cameras of a PIV "
+          "rendering");
     if (!input.calibration.empty()) {
       require_same_windows(*input.loaded, place, input.calibration);
       require_same_view(*input.loaded, place, input.camera.camera, input.calibration);

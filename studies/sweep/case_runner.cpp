@@ -20,14 +20,13 @@
 #include "render/focused_dots/focused_dots.h"
 #include "render/method.h"
 #include "render/setup/setup_node.h"
-#include "studies/case/case_warnings.h"
 #include "studies/case/log_silencer.h"
 #include "studies/case/version_text.h"
 #include "studies/compare/correlate.h"
-#include "studies/compare/reconstruct.h"
 #include "studies/compare/thinned_vectors.h"
 #include "studies/compare/tracked_dots.h"
 #include "studies/sweep/case_keys.h"
+#include "studies/sweep/case_measures.h"
 #include "studies/sweep/lru_cache.h"
 
 namespace gladstone {
@@ -40,23 +39,6 @@ constexpr std::size_t kept_media_bytes = std::size_t{1} << 30;
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-void flatten(nlohmann::ordered_json const& json, std::string const& path,
-             std::vector<std::pair<std::string, double>>& measures) {
-  if (json.is_object()) {
-    std::string const start = path.empty() ? "" : path + '.';
-    for (auto const& [key, value] : json.items()) flatten(value, start + key, measures);
-  } else if (json.is_number() || json.is_null()) {
-    measures.emplace_back(path, json.is_null() ? not_a_number : json.get<double>());
-  }
-}
-
-/// Returns the largest value of a map, at least 0, ignoring NaN.
-double largest(Image<double> const& map) {
-  double most = 0;
-  for (double const value : map) most = std::max(most, std::isnan(value) ? 0 : value);
-  return most;
 }
 
 std::string hash_of_input(std::string const& path, ManifestCase const& one) {
@@ -73,40 +55,6 @@ std::string hash_of_input(std::string const& path, ManifestCase const& one) {
 bool stops_the_run(std::exception const& error) {
   return dynamic_cast<OutputError const*>(&error) || dynamic_cast<DeviceError const*>(&error) ||
          dynamic_cast<Interrupted const*>(&error);
-}
-
-double find_value(CaseResult const& result, std::string_view name) {
-  for (auto const& [known, value] : result.measures) {
-    if (known == name) return value;
-  }
-  return not_a_number;
-}
-
-/// Adds the error over the signal and, for BOS with a camera on the Z axis, the error of the density gradient averaged
-/// over the thickness, from measures that the result contains.
-void add_relative_errors(Setup const& setup, CaseResult& result) {
-  double const error = find_value(result, setup.piv ? "flow.rms_px" : "eq9.rms_px");
-  double const signal = find_value(result, "signal_px");
-  result.measures.emplace_back("error_over_signal", signal > 0 ? error / signal : not_a_number);
-  bool const on_axis = !setup.piv && !setup.pose && !setup.camera.tilted() && !setup.lenslets;
-  double const sensitivity = on_axis ? make_projection_optics(setup).sensitivity() * setup.medium.thickness : 0;
-  result.measures.emplace_back("gradient_error_kg_m4", sensitivity > 0 ? error / sensitivity : not_a_number);
-}
-
-/// Adds the measures and warnings of a rendering to a result.
-void add_rendering(PreparedCase const& prepared, RenderedCase const& rendered, RecordedFrames const& frames,
-                   CaseResult& result) {
-  auto const add = [&result](char const* name, double value) { result.measures.emplace_back(name, value); };
-  add("strain_max", prepared.strain.strain.empty() ? not_a_number : largest(prepared.strain.strain));
-  add("magnification", prepared.scene.imaging.magnification);
-  add("step_mm", prepared.step.step_mm);
-  add("rays_per_dot", static_cast<double>(prepared.rays.rays));
-  add("exposure", rendered.exposure_e);
-  add("dots", static_cast<double>(prepared.scene.source_count()));
-  add("caustic_fraction", prepared.strain.caustic_fraction);
-  add("saturated", static_cast<double>(frames.saturated_reference + frames.saturated_flow));
-  result.warnings = prepared.warnings;
-  warn_of_rendering(result.warnings, prepared, rendered, frames);
 }
 
 /// Writes vectors and errors of a case into a folder that already contains its other files.
@@ -141,12 +89,6 @@ struct CaseRunner::Shared {
   LruCache<RenderedCase> renderings{2};
   LruCache<PointTruth> truths{4};
 };
-
-std::vector<std::pair<std::string, double>> flat_measures(nlohmann::ordered_json const& errors) {
-  std::vector<std::pair<std::string, double>> measures;
-  flatten(errors, "", measures);
-  return measures;
-}
 
 CaseRunner::CaseRunner(Backend device, Sharing sharing, int least_apart_px)
     : device_(std::move(device)),

@@ -66,8 +66,4 @@ class CaseRunner {
   std::unique_ptr<Shared> shared_;
 };
 
-/// Returns the numbers of errors.json by path ("budget.terms.cone.rms_px"), in its order. Null becomes NaN; arrays and
-/// texts are omitted.
-std::vector<std::pair<std::string, double>> flat_measures(nlohmann::ordered_json const& errors);
-
 }  // namespace gladstone

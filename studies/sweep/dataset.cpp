@@ -119,7 +119,8 @@ struct KeptCases {
   std::string const& sources() const { return cases.front().sources; }
 };
 
-/// Finds the finished cases of a study whose images were kept. @throws DataError if there are none
+/// Finds the finished cases of a study whose images are on disk (`sweep run --keep-images`).
+/// @throws DataError if no case has images
 KeptCases find_kept(std::string const& run) {
   KeptCases kept{{}, read_study_table(run)};
   std::vector<StudyRow> rows;

@@ -130,8 +130,9 @@ TEST(TrackEvidence, FindsPartnersWhoseNeighboursMoveDifferently) {
   }
 }
 
-// Where neighbours move alike, their support decides: a wrong candidate with a track by chance has a support of about
-// 0.1 + 0.4 (1 - 0.1), below that of the right one, so that further frames change at most two percent.
+// If neighbours have the same displacement, they decide: a wrong candidate that is by chance part of a track has a
+// support of about 0.1 + 0.4 (1 - 0.1) = 0.46. The right one has more, since 0.9 of its neighbours have a partner in
+// frame B. Further frames therefore change at most two percent.
 TEST(TrackEvidence, ChangesLittleInACoherentFlow) {
   for (double const ratio : {0.2, 1.0, 2.0}) {
     auto const [two, three, four] = measure_shares({ratio * spacing, 0});
@@ -144,7 +145,7 @@ TEST(TrackEvidence, ChangesLittleInACoherentFlow) {
   }
 }
 
-// The same from images of the four frames.
+// From images of the four frames, more than twice as many displacements are right as from two.
 TEST(TrackEvidence, ServesImagesOfASequence) {
   Vortex const vortex{1.5 * spacing};
   FourFrames const frames = make_frames(vortex, 1);

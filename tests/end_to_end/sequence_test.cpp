@@ -185,7 +185,17 @@ TEST_F(Sequences, AMissingImageIsNamed) {
   for (int const k : {1, 5}) expect_shift(fmt::format("pairs/t{}.h5", k), {0.5, 0});
 }
 
-// Numbers that count no frames, such as times, do not tell that an image is missing.
+// Pairs with numbers 0 and 1, 10 and 11, ...: the first image of the second pair is missing.
+TEST_F(Sequences, AMissingImageOfSpacedPairsIsNamed) {
+  std::filesystem::create_directory(in("images"));
+  for (int const k : {0, 1, 11, 20, 21, 30, 31})
+    write_image(fmt::format("images/t{}.tif", k), dots_at({0.5 * (k % 2), 0}, static_cast<unsigned>(k / 10 + 1)));
+  Outcome const pairs = gladstone(arguments({"images"}, "out/", {"--pairing", "pairs"}));
+  EXPECT_THAT(pairs.err, HasSubstr("t11.tif: has no partner"));
+  for (int const k : {0, 20, 30}) expect_shift(fmt::format("out/t{}.h5", k), {0.5, 0});
+}
+
+// If the numbers are times with irregular intervals, a longer interval is not a missing image.
 TEST_F(Sequences, IrregularNumbersAreNoGaps) {
   std::filesystem::create_directory(in("images"));
   for (int const k : {100, 107, 113, 121, 130}) write_image(fmt::format("images/t{}.tif", k), dots_at({0.1 * k, 0}));

@@ -235,7 +235,8 @@ TEST_F(FieldFiles, FacesInViewAreWarnedOfWithWhatRaysLeave) {
   EXPECT_GT(faces["dots"], 4);
   EXPECT_EQ(faces["rays"], 32);
   EXPECT_GT(faces["truth_error_px"], 1e-3);
-  EXPECT_GT(summary["image_error"]["levels"], 0.5);  // 32 rays scatter by more than the goal
+  // The goal is half a level. The images of these dots have the only light that is traced ray by ray.
+  EXPECT_GT(summary["image_error"]["levels"], 0.5);
   EXPECT_THAT(summary["warnings"].dump(), testing::HasSubstr("standard error of lit pixels due to the number of rays"));
   EXPECT_THAT(of_faces(rendered({"--set", "camera.exposure=20000"})),
               testing::AllOf(testing::HasSubstr("side faces"), testing::Not(testing::HasSubstr("camera.exposure"))));

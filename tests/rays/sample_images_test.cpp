@@ -11,7 +11,7 @@
 namespace gladstone {
 namespace {
 
-/// The set-up of Table 1 with a wave, and 240 dots in and beside the view.
+/// Returns the set-up of Table 1 with a sinusoidal density; its dots extend 32 px beyond the view.
 Scene wave_scene(Focus focus) {
   auto setup = table1_setup(64);
   setup.lens.focus = focus;
@@ -70,7 +70,7 @@ TEST(ImageError, IsTheScatterOfImagesOfAllDots) {
   }
 }
 
-// The same holds for adaptive numbers of rays.
+// With adaptive numbers of rays, the stated standard error is the scatter, too.
 TEST(ImageError, IsTheScatterOfAdaptiveRays) {
   Scene scene = wave_scene(Focus::target);
   scene.setup.camera.bit_depth = 8;

@@ -8,8 +8,10 @@
 #include "render/base/random.h"
 #include "render/planning.h"
 #include "render/rays/rays_renderer.h"
+#include "render/rays/sample_images.h"
 #include "render/render.h"
 #include "render/scene/side_faces.h"
+#include "render/scene/source_sample.h"
 #include "tests/scene/piv_setups.h"
 #include "tests/scene/small_scenes.h"
 
@@ -83,7 +85,9 @@ TEST(SideFaces, DotsThereAreRightWithRaysOfTheirOwn) {
   scene.setup.render.rays_per_dot.reset();
   scene.adaptive_criteria = AdaptiveRayCriteria{1e-7, 3685};  // as many rays as are allowed
   auto const most = static_cast<std::int64_t>(max_rays_per_source(scene));
-  double const fewer = std::max(1.0, 8192.0 / static_cast<double>(most));  // bounds below: of 8192 rays, times this
+  // The bounds below are those of 8192 rays. Errors of a cone that is cut in two decrease between 1/sqrt(rays) and
+  // 1/rays, so that with fewer rays they are larger by at most the ratio of the numbers.
+  double const fewer = std::max(1.0, 8192.0 / static_cast<double>(most));
   std::vector<std::size_t> const listed = sources_at_side_faces(scene, scene.dots);
   std::vector<std::size_t> const left =
       FocusedDotsRenderer().render(scene, scene.dots, RenderImages::no, RenderTheory::no).left;
@@ -182,6 +186,54 @@ TEST(SideFaces, AutoTakesTheRaysThatDotsThereRequire) {
     }
   }
   EXPECT_GE(most, 4 * static_cast<std::int64_t>(budget.rays));
+}
+
+/// The dots at side faces alone, as the general renderer traces them with a given number of rays.
+Scene dots_at_faces(std::uint64_t rays) {
+  Scene scene = volume_in_view(rays);
+  scene.dots = select_dots(scene.dots, sources_at_side_faces(scene, scene.dots));
+  return scene;
+}
+
+double largest(Image<double> const& image) { return *std::max_element(image.begin(), image.end()); }
+
+// With a given number of rays the errors of these dots are measured in truth and images: 32 rays of a cone that is cut
+// in two scatter by more than the goals, and 2048 rays by a factor of sqrt(64) = 8 less, or more. Scatter from so few
+// dots is accurate to about a tenth; half of the factor is required.
+TEST(SideFaces, AreMeasuredWithAGivenNumber) {
+  auto const measured = [](std::uint64_t rays) {
+    Scene const scene = dots_at_faces(rays);
+    Rendering const found = RaysRenderer().render(scene, scene.dots, RenderImages::yes, RenderTheory::no);
+    double const level = largest(found.light.flow) / (0.9 * 4095);
+    return std::pair{truth_accuracy(found.truth, truth_tolerance_px).rms_px, measure_image_error(scene, level)};
+  };
+  auto const few = measured(32), many = measured(2048);
+  EXPECT_GT(few.first, truth_tolerance_px);
+  EXPECT_GT(few.second, 10 * image_tolerance_levels);
+  EXPECT_LT(many.first, few.first / 4);
+  EXPECT_LT(many.second, few.second / 4);
+}
+
+// The stated errors of the images apply: images of these dots with 32 rays are compared with those of other random
+// rays, which scatter equally. A factor of two is allowed for the choice of illuminated pixels.
+TEST(SideFaces, ImagesAreOffByTheStatedError) {
+  Scene const scene = dots_at_faces(32);
+  Scene other = scene;
+  other.setup.render.seed = 99;
+  RaysRenderer renderer;
+  Image<double> const one = renderer.render(scene, scene.dots, RenderImages::yes, RenderTheory::no).light.flow,
+                      two = renderer.render(other, other.dots, RenderImages::yes, RenderTheory::no).light.flow;
+  double const level = largest(two) / (0.9 * 4095);
+  double square = 0, lit = 0;
+  for (std::size_t i = 0; i < one.size(); ++i) {
+    double const a = one.data()[i], b = two.data()[i];
+    if (a + b < 2 * level) continue;
+    square += (a - b) * (a - b) / (2 * level * level);
+    ++lit;
+  }
+  double const found = std::sqrt(square / lit), stated = measure_image_error(scene, level);
+  EXPECT_GT(stated, found / 2);
+  EXPECT_LT(stated, found * 2);
 }
 
 // Particles far outside the view are not traced: images and the truth of all others are identical, bit by bit. A plume

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "studies/sweep/case_locks.h"
+#include "studies/sweep/case_measures.h"
 #include "studies/sweep/collect.h"
 #include "studies/sweep/lru_cache.h"
 #include "studies/sweep/run.h"

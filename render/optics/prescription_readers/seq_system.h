@@ -8,7 +8,7 @@
 
 namespace gladstone {
 
-/// What the commands of a CODE V file say of the whole lens, as far as it is needed to read the surfaces.
+/// Properties of the whole lens in a CODE V file: units, aperture, wavelengths, and how curvatures are given.
 struct SeqSystem {
   double unit = 1e-3;       ///< unit of length [m]
   double pupil = 0;         ///< diameter of the entrance pupil [unit]

@@ -8,7 +8,7 @@
 
 namespace gladstone {
 
-/// What the lines of a .zmx file ahead of its first surface say of the whole lens, as far as it is needed later.
+/// Properties of the whole lens in a .zmx file, from the lines ahead of its first surface: units, wavelengths, fields.
 struct ZmxSystem {
   double unit = 1e-3;  ///< unit of length [m]
   std::vector<ListedWavelength> wavelengths;
