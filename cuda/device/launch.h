@@ -14,17 +14,22 @@ namespace gladstone::cuda {
 /// so Ctrl-C has to wait for it.
 inline constexpr double max_steps_per_launch = 4e10;
 
+/// Returns the number of blocks of a kernel that the device runs at the same time, at least 1.
+template <class Kernel>
+std::uint64_t resident_blocks(Kernel kernel, int threads, std::size_t shared_bytes) {
+  int device = 0, processors = 0, of_processor = 0;
+  check(cudaGetDevice(&device), "cudaGetDevice");
+  check(cudaDeviceGetAttribute(&processors, cudaDevAttrMultiProcessorCount, device), "cudaDeviceGetAttribute");
+  check(cudaOccupancyMaxActiveBlocksPerMultiprocessor(&of_processor, kernel, threads, shared_bytes),
+        "cudaOccupancyMaxActiveBlocksPerMultiprocessor");
+  return static_cast<std::uint64_t>(processors) * static_cast<std::uint64_t>(std::max(1, of_processor));
+}
+
 /// Returns the number of blocks that fills the device, at most `wanted`.
 template <class Kernel>
 int blocks_for(Kernel kernel, int threads, std::size_t shared_bytes, std::uint64_t wanted) {
-  int device = 0, processors = 0, resident = 0;
-  check(cudaGetDevice(&device), "cudaGetDevice");
-  check(cudaDeviceGetAttribute(&processors, cudaDevAttrMultiProcessorCount, device), "cudaDeviceGetAttribute");
-  check(cudaOccupancyMaxActiveBlocksPerMultiprocessor(&resident, kernel, threads, shared_bytes),
-        "cudaOccupancyMaxActiveBlocksPerMultiprocessor");
   // Several waves, so that blocks with little work do not leave multiprocessors idle.
-  std::uint64_t const most =
-      8 * static_cast<std::uint64_t>(processors) * static_cast<std::uint64_t>(std::max(1, resident));
+  std::uint64_t const most = 8 * resident_blocks(kernel, threads, shared_bytes);
   return static_cast<int>(std::max<std::uint64_t>(1, std::min(wanted, most)));
 }
 

@@ -8,8 +8,7 @@ namespace gladstone::cuda {
 namespace {
 
 using Squares = SquareSums<4>;
-constexpr std::uint64_t most_blocks = 1024;  // each has a buffer for the points of a wide cone
-constexpr int room = 512;                    // capacity of the numbers of the points that a warp processes together
+constexpr int room = 512;  // capacity of the numbers of the points that a warp processes together
 
 /// Accumulates the light of a source disc. @tparam orders  1: without moments
 template <int orders>
@@ -47,21 +46,28 @@ __global__ void __launch_bounds__(dot_threads, 6)
   }
 }
 
-__global__ void __launch_bounds__(dot_threads, 4)
+/// Accumulates the light of wide cones. Their work differs much, so each block takes the next dot when it is done.
+/// @param next  number of dots that have been taken, in device memory
+/// @param room, order  buffers of `points_a_block` points for each block
+__global__ void __launch_bounds__(dot_threads, 3)
     expose_wide_kernel(DotModel const __grid_constant__ model, std::uint64_t const count, DotCone const* const cones,
-                       DeviceImages const images, int const side, ConeLight* const room, unsigned short* const order,
-                       std::size_t const points_a_block) {
+                       DeviceImages const images, int const side, unsigned long long* const next, ConeLight* const room,
+                       unsigned short* const order, std::size_t const points_a_block) {
   extern __shared__ double dynamic[];
   __shared__ __align__(16) unsigned char integral_storage[sizeof(ConeIntegral)];
   __shared__ __align__(16) unsigned char cone_storage[sizeof(CorrectedCone)];
   __shared__ __align__(16) unsigned char square_storage[sizeof(Squares)];
+  __shared__ unsigned long long taken;
   ConeIntegral& whole = *reinterpret_cast<ConeIntegral*>(integral_storage);
   CorrectedCone& cone = *reinterpret_cast<CorrectedCone*>(cone_storage);
   if (threadIdx.x == 0) whole.rims = dynamic + dot_warps * side * side;
-  for (std::uint64_t i = blockIdx.x; i < count; i += gridDim.x) {
-    DotCone const& dot = cones[i];
-    if (dot.kind != DotKind::wide) continue;
+  while (true) {
     __syncthreads();
+    if (threadIdx.x == 0) taken = atomicAdd(next, 1ull);
+    __syncthreads();
+    if (taken >= count) return;
+    DotCone const& dot = cones[taken];
+    if (dot.kind != DotKind::wide) continue;
     if (threadIdx.x == 0) cone = make_corrected_cone(model, dot);
     __syncthreads();
     ConeLight* const points = room + blockIdx.x * points_a_block;
@@ -75,31 +81,46 @@ __global__ void __launch_bounds__(dot_threads, 4)
   }
 }
 
-/// Launches a kernel with the largest stamp that fits into shared memory.
+/// Side of a kernel's stamp [px], and the shared memory of a block [bytes].
+struct Stamp {
+  int side;
+  std::size_t shared;
+};
+
+/// Returns the largest stamp that fits into shared memory, and permits launches with it.
 /// @param beside  additional shared memory after the stamp [bytes]
-/// @param more  arguments after the images and the side of the stamp
-template <class Kernel, class... More>
-void launch(Kernel* kernel, DotModel const& model, std::uint64_t count, DotCone const* cones,
-            DeviceImages const& images, std::uint64_t blocks, std::size_t beside, More... more) {
+template <class Kernel>
+Stamp largest_stamp(Kernel* kernel, DotModel const& model, std::size_t beside) {
   int const side = patch_side(model, most_shared_bytes(kernel) - beside);
-  std::size_t const shared = patch_bytes(side) + beside;
-  allow_shared_bytes(kernel, shared);
-  kernel<<<blocks_for(kernel, dot_threads, shared, blocks), dot_threads, shared>>>(model, count, cones, images, side,
-                                                                                   more...);
-  check_launch("expose_dots");
+  Stamp const stamp{side, patch_bytes(side) + beside};
+  allow_shared_bytes(kernel, stamp.shared);
+  return stamp;
+}
+
+void expose_wide_cones(DotModel const& model, std::uint64_t count, DotCone const* cones, DeviceImages const& images) {
+  auto* const kernel = expose_wide_kernel;
+  Stamp const stamp = largest_stamp(kernel, model, sizeof(double) * static_cast<std::size_t>(model.rim_count()));
+  std::uint64_t const blocks = std::min(count, resident_blocks(kernel, dot_threads, stamp.shared));
+  auto const points_a_block = static_cast<std::size_t>(model.most_points());
+  DeviceArray<ConeLight> light(blocks * points_a_block, "the points of wide cones");
+  DeviceArray<unsigned short> order(light.size(), "the points of wide cones");
+  DeviceArray<unsigned long long> next(1, "the number of exposed dots");
+  next.zero();
+  kernel<<<static_cast<unsigned int>(blocks), dot_threads, stamp.shared>>>(
+      model, count, cones, images, stamp.side, next.data(), light.data(), order.data(), points_a_block);
+  check_launch("expose_wide_dots");
 }
 
 }  // namespace
 
 void expose_dots(DotModel const& model, std::uint64_t count, DotCone const* cones, DeviceImages const& images) {
-  launch(expose_kernel, model, count, cones, images, count, 0);
-  if (!model.moment_images.exist()) return;
-  std::uint64_t const blocks = std::min(count, most_blocks);
-  auto const points_a_block = static_cast<std::size_t>(model.most_points());
-  DeviceArray<ConeLight> light(blocks * points_a_block, "the points of wide cones");
-  DeviceArray<unsigned short> order(light.size(), "the points of wide cones");
-  std::size_t const rims = sizeof(double) * static_cast<std::size_t>(model.rim_count());
-  launch(expose_wide_kernel, model, count, cones, images, blocks, rims, light.data(), order.data(), points_a_block);
+  if (count == 0) return;
+  auto* const kernel = expose_kernel;
+  Stamp const stamp = largest_stamp(kernel, model, 0);
+  kernel<<<blocks_for(kernel, dot_threads, stamp.shared, count), dot_threads, stamp.shared>>>(model, count, cones,
+                                                                                              images, stamp.side);
+  check_launch("expose_dots");
+  if (model.moment_images.exist()) expose_wide_cones(model, count, cones, images);
 }
 
 }  // namespace gladstone::cuda

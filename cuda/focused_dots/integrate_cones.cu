@@ -5,7 +5,7 @@
 namespace gladstone::cuda {
 namespace {
 
-__global__ void __launch_bounds__(dot_threads, 5)
+__global__ void __launch_bounds__(dot_threads, 3)
     integrate_cones_kernel(DotModel const __grid_constant__ model, std::uint64_t const count, DotCone* const cones,
                            DotFound* const found) {
   extern __shared__ double rims[];
