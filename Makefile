@@ -61,7 +61,7 @@ build: configure  ## install missing Debian packages and build build/bin/gladsto
 
 test: OPTIONAL_PACKAGES = $(TEST_PACKAGES)
 test: configure  ## build and run all tests; of some rooms: TESTED='base medium'; to repeat: ctest --test-dir build -R medium/
-	cmake --build $(BUILD) --parallel $(JOBS) $(if $(TESTED),--target $(TESTED:%=%_tests))
+	cmake --build $(BUILD) --parallel $(JOBS) $(if $(TESTED),--target $(subst /,_,$(TESTED:%=%_tests)))
 	ctest --test-dir $(BUILD) --output-on-failure --parallel $(JOBS) \
 		$(if $(TESTED),--label-regex '^($(subst $(space),|,$(strip $(TESTED))))$$') \
 		$(if $(LEFT_OUT),--exclude-regex '$(LEFT_OUT)')
@@ -127,7 +127,7 @@ bench: configure  ## run the benchmarks (rays/s, steps/s, vectors/s); options: B
 fuzz:  ## run all file readers on generated files under sanitizers, into out/fuzz; total time: FUZZ_SECONDS=600
 	@$(MAKE) --no-print-directory PRESET=dev configure
 	cmake --build build/dev --parallel $(JOBS) --target fuzz_targets
-	ctest --test-dir build/dev --output-on-failure --label-regex '^fuzz$$'
+	ctest --test-dir build/dev --output-on-failure --parallel $(JOBS) --label-regex '^fuzz$$'
 	tests/fuzz/fuzz.sh build/dev out/fuzz $(FUZZ_SECONDS)
 
 soak: build  ## disturb the program (kill, full disk, replaced inputs) and check the results: SOAK_RUNS=300, SOAK_SEED=1

@@ -25,6 +25,7 @@ wavelength_mm = 6
 [target]
 dot_diameter_px = 3.0
 [render]
+method = "rays"
 rays_per_dot = 64
 [correlate]
 window_px = [32, 16]

@@ -19,6 +19,7 @@ std::vector<std::string> keys(nlohmann::json const& object) {
 }
 
 TEST_F(Case, RenderCorrelateCompareMakeTheFilesOfTheContract) {
+  write("setup.toml", automatic_setup());
   render("case");
   EXPECT_THAT(names("case"),
               UnorderedElementsAre("reference.tif", "flow.tif", "truth.h5", "setup.toml", "summary.json"));
@@ -31,6 +32,7 @@ TEST_F(Case, RenderCorrelateCompareMakeTheFilesOfTheContract) {
 }
 
 TEST_F(Case, SummaryHasItsKeysAndTheMagnificationOfTheThinLens) {
+  write("setup.toml", automatic_setup());
   render("case");
   auto const summary = nlohmann::json::parse(read("case/summary.json"));
   for (char const* key : {"magnification", "step_mm", "rays_per_dot", "exposure", "gladstone_dale", "device", "rays",
@@ -59,6 +61,7 @@ TEST_F(Case, MapsOfTheFieldAreOneNodeEveryTwoPixels) {
 }
 
 TEST_F(Case, ErrorsHaveTheirKeysAndTheBudgetAddsUp) {
+  write("setup.toml", automatic_setup());
   render("case");
   succeed({"correlate", "case"});
   succeed({"compare", "case", "--no-figures"});
@@ -85,9 +88,10 @@ TEST_F(Case, ErrorsHaveTheirKeysAndTheBudgetAddsUp) {
 // refraction seen by an ideal lens in focus, times the magnification: 0.6 % larger with the focus at 950 mm instead of
 // 1000 mm, 4 % at 750 mm.
 TEST_F(Case, DefocusIsAberrationAndNotRefraction) {
-  write("wave.toml", with(with(small_setup, "kind = \"uniform_gradient\"\ngradient_kg_m4 = [20.0, 10.0, 0.0]",
-                               "kind = \"sinusoid\"\namplitude_kg_m3 = 0.05\nwavelength_mm = 4.0"),
-                          "rays_per_dot = 32", "rays_per_dot = 4096"));
+  std::string const few = with(with(automatic_setup(), "rays_per_dot = 32", "rays_per_dot = 4096"),
+                               "dots_per_32px_window = 10.0", "dots_per_32px_window = 4.0");
+  write("wave.toml", with(few, "kind = \"uniform_gradient\"\ngradient_kg_m4 = [20.0, 10.0, 0.0]",
+                          "kind = \"sinusoid\"\namplitude_kg_m3 = 0.05\nwavelength_mm = 4.0"));
   auto const terms = [&](std::string const& folder, std::vector<std::string> const& options) {
     render(folder, options, "wave.toml");
     succeed({"correlate", folder});
@@ -231,7 +235,7 @@ TEST_F(Case, SetOnTheCommandLineEqualsTheSameInTheFile) {
 }
 
 TEST_F(Case, TheResolvedSetupRendersTheSameBitsAgain) {
-  write("auto.toml", with(with(small_setup, "rays_per_dot = 32", "rays_per_dot = \"auto\""), "[camera]",
+  write("auto.toml", with(with(automatic_setup(), "rays_per_dot = 32", "rays_per_dot = \"auto\""), "[camera]",
                           "[camera]\nexposure = \"auto\"\nnoise = { read_noise_e = 5.0 }"));
   render("first", {}, "auto.toml");
   std::string const resolved = read("first/setup.toml");
@@ -264,6 +268,7 @@ TEST_F(Case, SummaryTellsTheSpotThatWasDrawn) {
 }
 
 TEST_F(Case, OneTwoAndSevenThreadsGiveTheSameBits) {
+  write("setup.toml", automatic_setup());
   for (std::string const threads : {"1", "2", "7"}) {
     render("case" + threads, {"--threads", threads});
     succeed({"correlate", "case" + threads, "--threads", threads});
@@ -276,6 +281,7 @@ TEST_F(Case, OneTwoAndSevenThreadsGiveTheSameBits) {
 }
 
 TEST_F(Case, RenderingTwiceGivesTheSame) {
+  write("setup.toml", automatic_setup());
   render("a");
   render("b");
   expect_same_case("a", "b");

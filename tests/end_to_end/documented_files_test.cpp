@@ -62,7 +62,7 @@ TEST_F(DocumentedFiles, TablesAreReadRowByRow) {
 }
 
 TEST_F(DocumentedFiles, OfACaseHoldWhatTheirTablesName) {
-  write("setup.toml", with(small_setup, "rays_per_dot = 32", "rays_per_dot = \"auto\""));
+  write("setup.toml", with(automatic_setup(), "rays_per_dot = 32", "rays_per_dot = \"auto\""));
   render("case");
   expect_datasets("case/truth.h5", names_of_first_column(documented_table("truth.h5", "dataset")));
   Hdf5Reader const truth(in("case/truth.h5").string());

@@ -23,7 +23,7 @@ class ForeignVectors : public ProgramFixture {
     std::string const wave = with(
         with(small_setup, "[64, 64]", "[128, 128]"), "kind = \"uniform_gradient\"\ngradient_kg_m4 = [20.0, 10.0, 0.0]",
         "kind = \"sinusoid\"\namplitude_kg_m3 = 0.15\nwavelength_mm = 8.0\ndirection = [1, 0.3]");
-    write("setup.toml", wave);
+    write("setup.toml", with(wave, "rays_per_dot = 32", "rays_per_dot = 512"));
     render("case", {"--set", "target.dots_per_32px_window=25"});
     succeed({"correlate", "case"});
     ours_ = compare({});

@@ -11,6 +11,10 @@ using testing::HasSubstr;
 /// gladstone info setup: what follows from a setup before it is rendered.
 class InfoSetup : public ProgramFixture {
  protected:
+  void SetUp() override {
+    ProgramFixture::SetUp();
+    write("setup.toml", automatic_setup());
+  }
   nlohmann::json overview(std::string const& setup = "setup.toml") const { return json_of({"info", "setup", setup}); }
 };
 
@@ -44,8 +48,8 @@ TEST_F(InfoSetup, EstimatesTheCostOfRendering) {
   // two images of 64-bit light, 64-bit levels and 16-bit grey levels
   EXPECT_EQ(cost["memory"]["images"], 64 * 64 * 2 * 18);
   // rays one by one: the time is proportional to their number
-  write("rays.toml", with(small_setup, "rays_per_dot = 32", "rays_per_dot = 1000\nmethod = \"rays\""));
-  write("more.toml", with(small_setup, "rays_per_dot = 32", "rays_per_dot = 4000\nmethod = \"rays\""));
+  write("rays.toml", with(small_setup, "rays_per_dot = 32", "rays_per_dot = 1000"));
+  write("more.toml", with(small_setup, "rays_per_dot = 32", "rays_per_dot = 4000"));
   double const once = overview("rays.toml")["render"]["processor_seconds"];
   double const more = overview("more.toml")["render"]["processor_seconds"];
   EXPECT_GT(more, 3 * once);

@@ -33,7 +33,7 @@ TEST_F(Limits, LittleAddressSpaceIsAMessageAndNoCrash) {
   write_png("reference.png", "case/reference.tif");
   write_png("flow.png", "case/flow.tif");
   int refused = 0;
-  for (rlim_t megabytes = 440; megabytes <= 900; megabytes += 20) {
+  for (rlim_t megabytes = 440; megabytes <= 900; megabytes += 40) {
     std::filesystem::remove(in("v.h5"));
     auto const limited = [megabytes] {
       rlimit const limit{megabytes << 20, megabytes << 20}, no_core{0, 0};

@@ -255,8 +255,9 @@ TEST_F(Piv, MovesParticlesThroughAShock) {
 TEST_F(Piv, SeesParticlesBehindAShockWhereElsingaSaysTheyAre) {
   for (double const tau_deg : {30.0, 50.0}) {
     std::string const front =
-        with(with(with(piv_setup, "[12.0, 12.0, 1.5]", "[12.0, 12.0, 20.0]"), "thickness_mm = 1.0",
-                  "thickness_mm = 20.0\nprofile = \"top_hat\""),
+        with(with(with(with(piv_setup, "[12.0, 12.0, 1.5]", "[12.0, 12.0, 20.0]"), "thickness_mm = 1.0",
+                       "thickness_mm = 20.0\nprofile = \"top_hat\""),
+                  "per_pixel = 0.05", "per_pixel = 0.02"),
              "[particles]",
              "[medium]\nthickness_mm = 60.0\nambient_density_kg_m3 = 1.862068966\n[medium.field]\nkind = "
              "\"normal_shock\"\nmach = 1.5\nupstream_density_kg_m3 = 1.0\nshock_thickness_mm = 0.2\ntilt_deg = " +
@@ -384,7 +385,7 @@ TEST_F(Piv, ExtractsViewsOfAPlenopticPicture) {
       with(with(with(piv_setup, "pixel_pitch_um = 10.0\n",
                      "pixel_pitch_um = 5.0\n[camera.lenslets]\npitch_um = 65\nfocal_length_um = 280\n"),
                 "f_number = 22.0", "f_number = 4.0"),
-           "[correlate]", "[render]\nrays_per_dot = 256\n[correlate]");
+           "[correlate]", "[render]\nrays_per_dot = 32\n[correlate]");
   write("setup.toml", plenoptic);
   render("case");
   auto const json = json_of({"views", "case", "--refocus", "3", "--quiet"});
@@ -409,12 +410,12 @@ TEST_F(Piv, ExtractsViewsOfAPlenopticPicture) {
   std::filesystem::create_hard_link(in("case/flow.tif"), in("three/flow_refocused.tif"));
   expect_refused({"views", "case", "--views", "3", "-o", "three", "--quiet"}, 2,
                  {"would be overwritten, but is an input of this command"});
-  // The stop is 12.04 px wide: 13 views across contain all information, 30 give 707 files per frame and a warning
+  // The stop is 12.04 px wide: 13 views across contain all information, more than twice as many give a warning
   Outcome const enough = gladstone({"views", "case", "--views", "13", "-o", "enough"});
   EXPECT_THAT(enough.err, testing::Not(testing::HasSubstr("--views 13")));
-  Outcome const many = gladstone({"views", "case", "--views", "30", "-o", "many", "--quiet"});
+  Outcome const many = gladstone({"views", "case", "--views", "25", "-o", "many", "--quiet"});
   EXPECT_EQ(many.exit_code, 0) << many.err;
-  EXPECT_THAT(many.err, testing::AllOf(testing::HasSubstr("warning: --views 30: "), testing::HasSubstr("12 px wide"),
+  EXPECT_THAT(many.err, testing::AllOf(testing::HasSubstr("warning: --views 25: "), testing::HasSubstr("12 px wide"),
                                        testing::HasSubstr("--views 13 gives one view per pixel")));
   write("plain.toml", piv_setup);
   render("plain", {}, "plain.toml");

@@ -11,7 +11,7 @@ using testing::HasSubstr;
 class Preview : public ProgramFixture {
  protected:
   static std::string larger_setup() {
-    return with(small_setup, "pixels = [64, 64]", "pixels = [160, 144]\nexposure = 20000.0");
+    return with(automatic_setup(), "pixels = [64, 64]", "pixels = [160, 144]\nexposure = 20000.0");
   }
 };
 
@@ -75,7 +75,8 @@ TEST_F(Preview, SaysWhatItLeavesOut) {
 TEST_F(Preview, RefusesBadOutputs) {
   expect_refused({"render", "setup.toml", "--preview", "-o", "setup.toml"}, 2, {"setup.toml", "use .png"});
   write("dots.png", "x_mm,y_mm\n0,0\n1,1\n-1,1\n");
-  write("points.toml", with(small_setup, "dots_per_32px_window = 10.0", "kind = \"points\"\nfile = \"dots.png\""));
+  write("points.toml",
+        with(automatic_setup(), "dots_per_32px_window = 10.0", "kind = \"points\"\nfile = \"dots.png\""));
   expect_refused({"render", "points.toml", "--preview", "-o", "dots.png"}, 2, {"dots.png"});
   expect_refused({"render", "setup.toml"}, 2, {"--output is required"});
 }

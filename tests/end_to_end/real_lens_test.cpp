@@ -27,7 +27,7 @@ class RealLens : public ProgramFixture {
 };
 
 std::string double_gauss_setup() {
-  return with(small_setup, "focal_length_mm = 105.0\nf_number = 11.0",
+  return with(automatic_setup(), "focal_length_mm = 105.0\nf_number = 11.0",
               "model = \"prescription\"\nfile = \"" + std::string(GLADSTONE_DATA_DIR) +
                   "/lenses/double_gauss.toml\"\nf_number = 8.0");
 }
@@ -56,7 +56,7 @@ TEST_F(RealLens, RunsThroughTheWholeChain) {
 TEST_F(RealLens, TelecentricOneRunsThroughTheWholeChain) {
   std::string const lens = "model = \"prescription\"\nfile = \"" + std::string(GLADSTONE_DATA_DIR) +
                            "/lenses/telecentric.toml\"\nf_number = 11.0";
-  write("lens.toml", with(with(with(small_setup, "focal_length_mm = 105.0\nf_number = 11.0", lens),
+  write("lens.toml", with(with(with(automatic_setup(), "focal_length_mm = 105.0\nf_number = 11.0", lens),
                                "z_a_mm = 750.0\nz_d_mm = 250.0", "z_front_mm = 960.0\nz_d_mm = 200.0"),
                           "rays_per_dot = 32", "rays_per_dot = 256"));
   auto const errors = compared("case", "lens.toml");
@@ -82,7 +82,7 @@ TEST_F(RealLens, TelecentricOneRunsThroughTheWholeChain) {
 // A plenoptic camera: the image consists of lenslet images, each showing the stop; its total light is that collected by
 // the lens alone.
 TEST_F(RealLens, LensletsSortTheLightOfTheWholePicture) {
-  std::string const plain = with(small_setup, "[lens]", "[camera.sensor]\ntilt_deg = [0.0, 0.0]\n[lens]");
+  std::string const plain = with(automatic_setup(), "[lens]", "[camera.sensor]\ntilt_deg = [0.0, 0.0]\n[lens]");
   std::string const exposed =
       with(with(plain, "pixel_pitch_um = 10.0", "pixel_pitch_um = 10.0\nexposure = 20000.0"),
            "dots_per_32px_window = 10.0", "kind = \"points\"\nfile = \"points.csv\"\ndot_diameter_mm = 0.2");
@@ -135,6 +135,7 @@ TEST_F(RealLens, TracesGivenRays) {
 
 // Both methods give the same case to within the accuracy of their rays; the setup may select either.
 TEST_F(RealLens, MethodsAgreeOnTheBench) {
+  write("setup.toml", automatic_setup());
   auto const fast = compared("fast", "setup.toml"),
              rays =
                  compared("rays", "setup.toml", {"--set", "render.method=rays", "--set", "render.rays_per_dot=2048"});
@@ -158,7 +159,7 @@ TEST_F(RealLens, MethodThatDoesNotHoldIsRefused) {
 // A camera with an oblique view of the dots, its sensor tilted so that they are in focus, through an optical window:
 // every vector is correct, and the effects of the window and the tilted lens count as aberration.
 TEST_F(RealLens, LooksFromTheSideThroughAWindow) {
-  std::string const posed = with(with(small_setup, "z_a_mm = 750.0\n", ""), "[lens]",
+  std::string const posed = with(with(automatic_setup(), "z_a_mm = 750.0\n", ""), "[lens]",
                                  "[camera.pose]\nposition_mm = [250.0, 0.0, 700.0]\nlook_at_mm = [0.0, 0.0, 0.0]\n"
                                  "[camera.sensor]\nscheimpflug = \"auto\"\n"
                                  "[[window]]\nthickness_mm = 10.0\nposition_mm = [0.0, 0.0, 50.0]\n[lens]");

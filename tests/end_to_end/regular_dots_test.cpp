@@ -12,7 +12,8 @@ class RegularDots : public ProgramFixture {
   /// @param gradient [kg/m^4]; -0.006627 px each with the set-up of Table 1
   nlohmann::json errors_for(double gradient_x, double gradient_y) const {
     write("regular.toml",
-          with(with(with(small_setup, "pixels = [64, 64]", "pixels = [128, 128]"), "gradient_kg_m4 = [20.0, 10.0, 0.0]",
+          with(with(with(automatic_setup(), "pixels = [64, 64]", "pixels = [128, 128]"),
+                    "gradient_kg_m4 = [20.0, 10.0, 0.0]",
                     "gradient_kg_m4 = [" + std::to_string(gradient_x) + ", " + std::to_string(gradient_y) + ", 0.0]"),
                "dots_per_32px_window = 10.0", "dots_per_32px_window = 20.0\narrangement = \"regular\""));
     std::filesystem::remove_all(in("case"));

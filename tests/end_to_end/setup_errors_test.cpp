@@ -206,7 +206,7 @@ TEST_F(SetupErrors, SeveralProblemsComeTogetherInTheOrderOfTheFile) {
 
 TEST_F(SetupErrors, WhatIsOfOthersOrDueLaterIsRefusedByName) {
   refused("\"bos\"", "\"piv\"", "target]", {"applies to BOS only", "[particles]", "geometry.z_d_mm"});
-  refused("[correlate]", "[correlate]\nmethod = \"rcp\"", "method", {"\"scc\"", "did you mean \"rpc\"?"});
+  refused("[correlate]", "[correlate]\nmethod = \"rcp\"", "method = \"rcp\"", {"\"scc\"", "did you mean \"rpc\"?"});
   std::string const two = with(with(small_setup, "[camera]", "[[camera]]"), "[lens]", "[[camera]]\n[lens]");
   expect_setup_refused(two, {"camera.name", "is missing"});
   expect_setup_refused(std::string(small_setup) + "[flow]\nkind = \"uniform\"\n",

@@ -15,7 +15,7 @@ using testing::Not;
 class SilentMistakes : public ProgramFixture {
  protected:
   std::string with_field(std::string const& field) const {
-    return with(small_setup, "kind = \"uniform_gradient\"\ngradient_kg_m4 = [20.0, 10.0, 0.0]", field);
+    return with(automatic_setup(), "kind = \"uniform_gradient\"\ngradient_kg_m4 = [20.0, 10.0, 0.0]", field);
   }
   std::vector<std::string> warnings(std::string const& setup, std::vector<std::string> const& more = {}) const {
     write("setup.toml", setup);

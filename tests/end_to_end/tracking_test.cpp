@@ -77,6 +77,7 @@ class TrackedDots : public ProgramFixture {
 
 // The displacement is nearly uniform: the errors are those of dots.
 TEST_F(TrackedDots, OfATargetFollowTheTruth) {
+  write("setup.toml", automatic_setup());
   render("case", {"--set", "camera.pixels=[128, 128]"});
   expect_tracked(0.9, 0.02);
 }

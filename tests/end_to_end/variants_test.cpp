@@ -8,6 +8,10 @@ namespace {
 /// Other targets, sensors, apertures and media than in the small setup.
 class Variants : public ProgramFixture {
  protected:
+  void SetUp() override {
+    ProgramFixture::SetUp();
+    write("setup.toml", automatic_setup());
+  }
   std::vector<double> dataset(std::string const& name, std::string const& of = "case") const {
     return Hdf5Reader(in(of + "/truth.h5").string()).read(name);
   }
@@ -30,7 +34,8 @@ TEST_F(Variants, ChiefRaysOfAPinholeMoveByEq9InAUniformGradient) {
 
 TEST_F(Variants, PointsOfATableStandWhereItSays) {
   write("dots.csv", "x_mm,y_mm\n0,0\n1.5,-0.5\r\n");
-  write("points.toml", with(small_setup, "dots_per_32px_window = 10.0", "kind = \"points\"\nfile = \"dots.csv\""));
+  write("points.toml",
+        with(automatic_setup(), "dots_per_32px_window = 10.0", "kind = \"points\"\nfile = \"dots.csv\""));
   render("case", {}, "points.toml");
   auto const position = dataset("/dots/position_m"), reference = dataset("/dots/reference_px");
   ASSERT_EQ(position.size(), 6u);
@@ -45,7 +50,8 @@ TEST_F(Variants, PointsOfATableStandWhereItSays) {
 
 TEST_F(Variants, DotsOutsideTheViewAreWarnedOf) {
   write("dots.csv", "x_mm,y_mm\n500,0\n0,-400\n");
-  write("points.toml", with(small_setup, "dots_per_32px_window = 10.0", "kind = \"points\"\nfile = \"dots.csv\""));
+  write("points.toml",
+        with(automatic_setup(), "dots_per_32px_window = 10.0", "kind = \"points\"\nfile = \"dots.csv\""));
   Outcome const outcome = gladstone({"render", "points.toml", "-o", "case"});
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(outcome.err, testing::HasSubstr("none of the 2 dots lies in the view, 5.455 x 5.455 mm about the axis"));
@@ -73,8 +79,8 @@ TEST_F(Variants, APictureAsTarget) {
   Image<std::uint16_t> picture(16, 16, 0);
   for (int i = 4; i < 12; ++i) picture(i, 8) = 65535;  // a horizontal bar
   write_tiff(in("bar.tif").string(), picture, {});
-  write("picture.toml",
-        with(small_setup, "dots_per_32px_window = 10.0", "kind = \"image\"\nfile = \"bar.tif\"\nextent_mm = [8, 8]"));
+  write("picture.toml", with(automatic_setup(), "dots_per_32px_window = 10.0",
+                             "kind = \"image\"\nfile = \"bar.tif\"\nextent_mm = [8, 8]"));
   render("case", {}, "picture.toml");
   Image<double> const seen = image("case/reference.tif");
   // 8 mm are 93.9 px: the bar, 4 mm by 0.5 mm just below the middle, extends from column 8 to 55 around row 34
@@ -142,6 +148,7 @@ TEST_F(Variants, NoiseRepeatsWithItsSeedAndDiffersBetweenFrames) {
 }
 
 TEST_F(Variants, EightAndTwelveBitsAreStoredUnshifted) {
+  write("setup.toml", small_setup);
   for (int const bits : {8, 12, 16}) {
     render("case", {"--set", "camera.bit_depth=" + std::to_string(bits)});
     ImageMetadata metadata;
@@ -161,7 +168,7 @@ class FieldFiles : public Variants {
   static constexpr int side = 17, depth = 5;  // nodes, 0.5 and 2.5 mm apart: 8 mm by 10 mm
   static float ramp(int i) { return 1.225f + 20.0f * 0.5e-3f * static_cast<float>(i - side / 2); }
   std::string setup(std::string const& file, std::string const& more) const {
-    return with(small_setup, "kind = \"uniform_gradient\"\ngradient_kg_m4 = [20.0, 10.0, 0.0]",
+    return with(automatic_setup(), "kind = \"uniform_gradient\"\ngradient_kg_m4 = [20.0, 10.0, 0.0]",
                 "kind = \"file\"\nfile = \"" + file + "\"\n" + more);
   }
   /// The ramp as a volume, ramp.nrrd, of 8 mm across.

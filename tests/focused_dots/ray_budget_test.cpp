@@ -102,8 +102,8 @@ TEST(PlanRays, OneChiefRayOfAPointIsEnough) {
 
 // Fronts as narrow as a cell, with a light cone of 38 cells: the error of table and rules in images does not decrease
 // with the number of rays. The plan refines both by a factor of two, which reduces the error by more than half, and
-// reports the remaining error.
-TEST(PlanRays, MakesTableAndRulesFinerWhereFrontsAskForIt) {
+// reports that the goal is not reached.
+TEST(PlanRays, MakesTableAndRulesFinerWhereFrontsAskForItAndReportsAnUnreachableGoal) {
   auto setup = table1_setup(64);
   setup.medium.field = dns_plane("kepeak");
   Scene scene = scene_with_dots(setup, lattice(64, 4, 14), 512);
@@ -114,33 +114,25 @@ TEST(PlanRays, MakesTableAndRulesFinerWhereFrontsAskForIt) {
   EXPECT_LT(plan.rays, 512u);  // those of the usual table
   TableError const error = plan.table_error.value();
   EXPECT_LT(error.image_levels, usual.image_levels / 2) << "of " << usual.image_levels;
-  EXPECT_GT(error.image_levels, 0.5);  // the goal is not reached
+  EXPECT_GT(error.image_levels, 0.5);  // the goal
+  EXPECT_GT(error.excess(), 1);
 }
 
 // The plan of the table depends on the view and the field, not on the dots of the scene: the truth of a dot is
 // independent of the others.
 TEST(PlanRays, IsIndependentOfDots) {
   auto setup = table1_setup(64);
-  setup.medium.field = dns_plane("kepeak");
+  setup.medium.field = sinusoid(0.015, 5e-3);
   Scene few = scene_with_dots(setup, {{21, 40}}, 1), many = scene_with_dots(setup, lattice(64, 4, 14), 1);
   RayBudget const one = plan_rays_anew(few), other = plan_rays_anew(many);
   EXPECT_EQ(one.fineness, other.fineness);
   EXPECT_EQ(one.rays, other.rays);
-  EXPECT_EQ(one.table_error.value().truth_px, other.table_error.value().truth_px);
-  EXPECT_EQ(one.table_error->image_levels, other.table_error->image_levels);
-  EXPECT_GT(one.table_error->truth_px, 0);
-}
-
-// With a light cone of 105 cells, at f/4, the plan reports that the required accuracy cannot be reached.
-TEST(PlanRays, ReportsUnreachableTolerance) {
-  auto setup = table1_setup(64);
-  setup.medium.field = dns_plane("kepeak");
-  setup.lens.f_number = 4;
-  Scene scene = scene_with_dots(setup, lattice(64, 4, 14), 1);
-  RayBudget const plan = plan_rays_anew(scene);
-  EXPECT_EQ(plan.fineness, 2);
-  EXPECT_GT(plan.table_error.value().image_levels, 0.5);  // the goal of images
-  EXPECT_GT(plan.table_error->excess(), 1);
+  TableError const &a = one.table_error.value(), &b = other.table_error.value();
+  EXPECT_EQ(a.truth_px, b.truth_px);
+  EXPECT_EQ(a.image_levels, b.image_levels);
+  EXPECT_EQ(a.truth_resolution_px, b.truth_resolution_px);
+  EXPECT_EQ(a.image_resolution_levels, b.image_resolution_levels);
+  EXPECT_GT(a.image_resolution_levels, 0);
 }
 
 // The number of rays of a source is limited by a budget of processor time, which is estimated, not measured. The budget

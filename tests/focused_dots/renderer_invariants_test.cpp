@@ -126,12 +126,12 @@ TEST(FocusedDotsRenderer, AimsAgainAtStronglyDeflectedDot) {
 // the same rays.
 TEST(FocusedDotsRenderer, ADotIsTheSameBitsAloneAndAmongManyOthers) {
   for (FieldSetup const& field : {dns_plane("late"), sinusoid(0.1, 4e-3)}) {
-    auto setup = table1_setup(256);
+    auto setup = table1_setup(128);
     setup.medium.field = field;
-    Scene many = scene_with_dots(setup, lattice(256, 70, 3.6), 32);
+    Scene many = scene_with_dots(setup, lattice(128, 35, 3.6), 32);
     Rendering const all = FocusedDotsRenderer().render(many, many.dots, RenderImages::no, RenderTheory::yes);
     ASSERT_TRUE(all.left.empty());
-    for (std::size_t const dot : {0u, 4899u, 70u * 35u + 33u, 70u * 12u + 69u}) {
+    for (std::size_t const dot : {0u, 1224u, 35u * 17u + 16u, 35u * 6u + 34u}) {
       Scene alone = many;
       alone.dots.centre = {many.dots.centre[dot]};
       Rendering const one = FocusedDotsRenderer().render(alone, alone.dots, RenderImages::yes, RenderTheory::yes);

@@ -14,7 +14,7 @@
 
 namespace gladstone::end_to_end {
 
-/// A small experiment that is rendered in a tenth of a second: 64 x 64 px with a uniform gradient.
+/// A small experiment that is rendered in a tenth of a second: 64 x 64 px with a uniform gradient, ray by ray.
 inline constexpr char const* small_setup = R"(schema = 1
 experiment = "bos"
 
@@ -38,6 +38,7 @@ gradient_kg_m4 = [20.0, 10.0, 0.0]
 dots_per_32px_window = 10.0
 
 [render]
+method = "rays"
 rays_per_dot = 32
 
 [correlate]
@@ -51,6 +52,10 @@ inline std::string with(std::string text, std::string const& old, std::string co
   EXPECT_NE(at, std::string::npos) << old;
   return at == std::string::npos ? text : text.replace(at, old.size(), replacement);
 }
+
+/// Returns the small experiment with the renderer of "auto", the fast one. It measures the error of its table with a
+/// million rays, which takes a second.
+inline std::string automatic_setup() { return with(small_setup, "method = \"rays\"\n", ""); }
 
 /// Returns "line:column" of a piece of text, counted like in the program.
 inline std::string place_of(std::string const& text, std::string const& piece) {

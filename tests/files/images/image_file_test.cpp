@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "render/base/error.h"
+#include "render/files/source_files.h"
 #include "tests/files/support/output.h"
 
 namespace gladstone {
@@ -71,6 +72,13 @@ TEST(ImageFile, OtherProgramsFindResolutionAndSoftware) {
   EXPECT_THAT(std::string(input->spec().get_string_attribute("Software")), HasSubstr("gladstone"));
   EXPECT_THAT(std::string(input->spec().get_string_attribute("ImageDescription")), HasSubstr("\ntext"));
   EXPECT_EQ(input->spec().find_attribute("DateTime"), nullptr);
+}
+
+// The hash of an image is that of its pixels, in any format.
+TEST(ImageFile, EqualPixelsOfAnotherProgramHaveTheSameHash) {
+  auto const image = all_values();
+  std::vector<std::uint16_t> const samples(image.begin(), image.end());
+  EXPECT_EQ(pixel_sha256(write_picture("hash.png", samples, 256, 1)), pixel_sha256(image));
 }
 
 TEST(ImageFile, SingleRowAndEmptyDescriptionWork) {
