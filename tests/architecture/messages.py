@@ -34,9 +34,15 @@ TOKEN = re.compile(
     r'|R"(?P<mark>[^(\s]*)\((?P<raw>.*?)\)(?P=mark)"'
     r'|"(?P<text>(?:[^"\\\n]|\\.)*)"'
     r"|'(?:[^'\\\n]|\\.)+'"
-    r"|(?P<open>[({\[])|(?P<close>[)}\]])",
+    r"|(?P<open>[({\[])|(?P<close>[)}\]])|(?P<end>;)",
     re.DOTALL,
 )
+# Functions that return a problem as a text, which others report.
+TEXT_FUNCTIONS = re.compile(
+    r"std::string (?:\w+::)?(?:\w*(?:problem|reason|fault|refusal|warning|caveat|mistake|shortage)\w*"
+    r"|broken_\w+|wrong_\w+)\("
+)
+RETURN = re.compile(r"\breturn\b")
 ESCAPES = {r"\"": '"', r"\n": " ", r"\\": "\\"}
 
 
@@ -45,16 +51,16 @@ def without_comments(source: str) -> str:
     return TOKEN.sub(lambda token: " " if token[0].startswith(("//", "/*")) else token[0], source)
 
 
-def read_call(source: str, begin: int) -> tuple[str, str]:
-    """Reads the arguments of a call. `begin` is the index behind its bracket.
+def read_until(source: str, begin: int, *, statement: bool = False) -> tuple[str, str]:
+    """Reads from behind an opening bracket to its closing one, or from a word to the end of its statement.
 
-    Returns the arguments, and the text of their string literals: literals that follow each other are joined, and "..."
+    Returns the code, and the text of its string literals: literals that follow each other are joined, and "..."
     represents the code between others.
     """
-    depth, at, text = 1, begin, ""
+    depth, at, text = 0 if statement else 1, begin, ""
     for token in TOKEN.finditer(source, begin):
         depth += bool(token["open"]) - bool(token["close"])
-        if depth == 0:
+        if depth < 0 or (token["end"] if statement else token["close"]) and depth == 0:
             return source[begin : token.start()], text
         literal = token["raw"] if token["raw"] is not None else token["text"]
         if literal is None:
@@ -66,12 +72,24 @@ def read_call(source: str, begin: int) -> tuple[str, str]:
     return source[begin:], text
 
 
+def returned_texts(source: str) -> list[str]:
+    """Returns the texts that functions return as problems."""
+    texts = []
+    for function in TEXT_FUNCTIONS.finditer(source):
+        parameters, _ = read_until(source, function.end())
+        body = re.compile(r"\)[\w\s]*\{").match(source, function.end() + len(parameters))
+        if body:
+            code, _ = read_until(source, body.end())
+            texts += [read_until(code, statement.end(), statement=True)[1] for statement in RETURN.finditer(code)]
+    return texts
+
+
 def messages(source: str) -> list[str]:
     """Returns the messages of a source, "code: text", sorted."""
     source = without_comments(source)
-    found = set()
+    found = {f"-: {' '.join(text.split())}" for text in returned_texts(source) if " " in text.strip()}
     for call in CALLS.finditer(source):
-        arguments, text = read_call(source, call.end())
+        arguments, text = read_until(source, call.end())
         if " " not in text.strip():
             continue  # the text is made elsewhere, or the call is a declaration
         code = re.search(r"ErrorCode::(\w+)", arguments)
@@ -114,6 +132,8 @@ def self_test() -> None:
     assert messages('DataError(ErrorCode code, std::string const& file) {}; OutputError(p, "is a file");') == [
         "output: is a file"
     ]
+    returned = 'std::string window_problem(int n) {\n  if (n > 1) return f("{} is; " "too large", n);\n  return "";\n}'
+    assert messages(returned) == ["-: {} is; too large"], messages(returned)
 
 
 def main() -> int:
