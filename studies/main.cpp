@@ -155,7 +155,7 @@ int run(int argc, char** argv, GlobalOptions& options) {
     return ok;
   } catch (CLI::ParseError const& error) {
     if (app.exit(error) == 0) return ok;
-    if (wants_json(argc, argv)) fmt::print("{}\n", json_text(argument_error_json(error.what(), bad_input)));
+    if (wants_json(argc, argv)) fmt::print("{}\n", json_text(argument_error_json(describe_problem(error), bad_input)));
     return bad_input;
   }
   auto const parsed_one =

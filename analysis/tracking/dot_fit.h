@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -14,6 +15,9 @@ struct FitPixel {
   double level = 0;      ///< level above the estimated background, positive for light of dots [grey levels]
   double per_sigma = 1;  ///< reciprocal of the noise's standard deviation [1/grey level]
 };
+
+/// Returns the smallest rectangle that contains all pixels. @pre there are pixels
+PixelBox bounding_box(std::span<FitPixel const> pixels);
 
 /// Distribution of shape and flux over the dots of a frame, and their common profile.
 struct DotPrior {
@@ -34,7 +38,7 @@ struct DotFit {
   double chi2 = 0;                 ///< sum of squared residuals over the variance of the noise [1]
   int freedom = 0;                 ///< number of pixels minus that of the parameters without a prior
   std::vector<double> residual;    ///< of every pixel, measured minus fitted [grey levels]
-  /// of every pixel: derivative of its fitted with respect to its measured level, 0 to 1 [1]
+  /// of every pixel: derivative of its fitted with respect to its measured level, 0 to 1 [1]; empty for several dots
   std::vector<double> leverage;
 };
 
@@ -43,10 +47,12 @@ struct DotFit {
 /// the Fisher information (Cramer-Rao bound). Shape and flux are constrained by their distribution over the frame,
 /// which hardly affects the centres of isolated dots and separates overlapping ones: the shape by a normal prior, the
 /// flux by Student's t distribution with four degrees of freedom, so that a dot of another brightness is not distorted.
-/// @param start  first estimates; their number is that of the fitted dots
-/// @return dots in the order of start; infinite cost and no uncertainties if the pixels do not determine them
+/// @param start      first estimates; their number is that of the fitted dots
+/// @param most_cost  a fit whose cost will not get below it is of no use, and is not completed
+/// @return dots in the order of start; infinite cost and no uncertainties if the pixels do not determine them or the
+///         cost is above most_cost
 /// @pre there are pixels and dots; start values have positive definite second moments
 DotFit fit_dots(std::span<FitPixel const> pixels, std::span<GaussianDot const> start, DotShape shape,
-                DotPrior const& prior);
+                DotPrior const& prior, double most_cost = std::numeric_limits<double>::infinity());
 
 }  // namespace gladstone::tracking

@@ -105,9 +105,9 @@ class FrameFit {
     Image<double> light(frame_.above.columns(), frame_.above.rows());
     for (LocatedDot const& one : located_) {
       DotLight const dot(one.image, settings_.shape, model_.prior.profile);
-      for (int row = std::max(0, dot.first_row()); row < std::min(light.rows(), dot.first_row() + dot.width()); ++row)
+      for (int row = std::max(0, dot.first_row()); row < std::min(light.rows(), dot.first_row() + dot.rows()); ++row)
         for (int column = std::max(0, dot.first_column());
-             column < std::min(light.columns(), dot.first_column() + dot.width()); ++column)
+             column < std::min(light.columns(), dot.first_column() + dot.columns()); ++column)
           light(column, row) += dot.at(column, row).value;
     }
     return light;
@@ -125,19 +125,22 @@ class FrameFit {
   /// Returns the pixels within reach of a group's dots, without the light of the dots of other groups.
   std::vector<FitPixel> collect_pixels(std::vector<GaussianDot> const& group, Image<double> const& light) const {
     double const reach = fit_reach();
-    std::vector<DotLight> own;
     int const columns = frame_.above.columns(), rows = frame_.above.rows();
     double left = columns, right = -1, top = rows, low = -1;
     for (GaussianDot const& dot : group) {
-      own.emplace_back(dot, settings_.shape, model_.prior.profile);
       left = std::min(left, dot.centre.x - reach);
       right = std::max(right, dot.centre.x + reach);
       top = std::min(top, dot.centre.y - reach);
       low = std::max(low, dot.centre.y + reach);
     }
+    PixelBox const box{
+        std::max(0, static_cast<int>(std::ceil(left))), std::min(columns - 1, static_cast<int>(std::floor(right))),
+        std::max(0, static_cast<int>(std::ceil(top))), std::min(rows - 1, static_cast<int>(std::floor(low)))};
+    std::vector<DotLight> own;
+    for (GaussianDot const& dot : group) own.emplace_back(dot, settings_.shape, model_.prior.profile, box);
     std::vector<FitPixel> pixels;
-    for (int row = std::max(0, static_cast<int>(std::ceil(top))); row <= low && row < rows; ++row)
-      for (int column = std::max(0, static_cast<int>(std::ceil(left))); column <= right && column < columns; ++column) {
+    for (int row = box.top; row <= box.bottom; ++row)
+      for (int column = box.left; column <= box.right; ++column) {
         bool const near = std::any_of(group.begin(), group.end(), [&](GaussianDot const& one) {
           return length(one.centre - Vec2d{1.0 * column, 1.0 * row}) < reach;
         });
@@ -302,10 +305,12 @@ class FrameFit {
   /// Returns the pixels of a dot that was fitted alone.
   std::vector<ProfileSample> sample_profile(DotFit const& fit, std::vector<FitPixel> const& pixels) const {
     GaussianDot const& dot = fit.dots.front();
+    PixelBox const box = bounding_box(pixels);
     std::vector<DotLight> parts;
     for (double const scale : DotProfile::scale)
-      parts.emplace_back(GaussianDot{dot.centre, 1, scale * dot.xx, 0, scale * dot.yy}, settings_.shape, DotProfile{});
-    DotLight const light(dot, settings_.shape, model_.prior.profile);
+      parts.emplace_back(GaussianDot{dot.centre, 1, scale * dot.xx, 0, scale * dot.yy}, settings_.shape, DotProfile{},
+                         box);
+    DotLight const light(dot, settings_.shape, model_.prior.profile, box);
     std::vector<ProfileSample> samples;
     for (std::size_t i = 0; i < pixels.size(); ++i) {
       DotLevel const level = light.at(pixels[i].column, pixels[i].row);

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <memory>
 #include <optional>
 
 #include "analysis/tracking/pair_misfit.h"
@@ -91,49 +93,50 @@ std::vector<Vec2d> expected_places(LocatedDots const& a, LocatedDots const& b, s
   return places;
 }
 
-/// Returns the centres of the dots of a frame before or after the pair; none without a frame.
-std::vector<Vec2d> locate_centres(Image<double> const* frame, DotSettings const& settings) {
-  return frame ? dot_centres(locate_dots(*frame, settings)) : std::vector<Vec2d>{};
-}
-
 /// @param before, after  frames before a and after b; null: none
 DisplacementField track(Image<double> const* before, Image<double> const& a, Image<double> const& b,
                         Image<double> const* after, DisplacementField const& predictor,
-                        TrackingSettings const& settings) {
+                        TrackingSettings const& settings, LocatedFrames const& located) {
   if (a.columns() != b.columns() || a.rows() != b.rows())
     throw DataError(ErrorCode::wrong_shape, "frame B",
                     fmt::format("has {}x{} px, but frame A has {}x{} px; give frames of one size", b.columns(),
                                 b.rows(), a.columns(), a.rows()));
   bool const known = !settings.known_places_px.empty();
-  LocatedDots const dots_a =
-      known ? locate_dots_near(a, settings.dots, settings.known_places_px) : locate_dots(a, settings.dots);
-  LocatedDots dots_b = locate_dots(b, settings.dots);
-  std::vector<Vec2d> const earlier = locate_centres(before, settings.dots);
-  std::vector<Vec2d> const later = locate_centres(after, settings.dots);
-  std::vector<Vec2d> const centres_a = dot_centres(dots_a), prediction = predict(predictor, centres_a);
+  std::array<Image<double> const*, 4> const frames{known ? nullptr : &a, &b, before, after};
+  std::vector<LocatedFrames::Located> const found = located.locate(frames);
+  auto const dots_a =
+      known ? std::make_shared<LocatedDots const>(locate_dots_near(a, settings.dots, settings.known_places_px))
+            : found[0];
+  LocatedFrames::Located dots_b = found[1];
+  auto const centres_of = [](LocatedFrames::Located const& dots) {
+    return dots ? dot_centres(*dots) : std::vector<Vec2d>{};
+  };
+  std::vector<Vec2d> const earlier = centres_of(found[2]), later = centres_of(found[3]);
+  std::vector<Vec2d> const centres_a = dot_centres(*dots_a), prediction = predict(predictor, centres_a);
   auto const match = [&] {
-    return match_dots(centres_a, dot_centres(dots_b), prediction, settings.matching, {earlier, later});
+    return match_dots(centres_a, dot_centres(*dots_b), prediction, settings.matching, {earlier, later});
   };
   std::vector<DotMatch> matches = match();
   if (known) {
-    dots_b = locate_dots_near(b, settings.dots, expected_places(dots_a, dots_b, matches));
+    dots_b = std::make_shared<LocatedDots const>(
+        locate_dots_near(b, settings.dots, expected_places(*dots_a, *dots_b, matches)));
     matches = match();
   }
-  return matched_vectors(dots_a, dots_b, matches);
+  return matched_vectors(*dots_a, *dots_b, matches);
 }
 
 }  // namespace
 
 DisplacementField track_dots(Image<double> const& a, Image<double> const& b, DisplacementField const& predictor,
                              TrackingSettings const& settings) {
-  return track(nullptr, a, b, nullptr, predictor, settings);
+  return track(nullptr, a, b, nullptr, predictor, settings, LocatedFrames(settings.dots, 1));
 }
 
 DisplacementField track_dots(TrackFrames const& frames, DisplacementField const& predictor,
-                             TrackingSettings const& settings) {
+                             TrackingSettings const& settings, LocatedFrames const& located) {
   auto const pointer = [](std::optional<Image<double>> const& frame) { return frame ? &*frame : nullptr; };
   return track(pointer(frames.before()), frames.reference(), frames.flow(), pointer(frames.after()), predictor,
-               settings);
+               settings, located);
 }
 
 }  // namespace gladstone::tracking

@@ -2,6 +2,7 @@
 
 #include "analysis/tracking/dot_location.h"
 #include "analysis/tracking/dot_matching.h"
+#include "analysis/tracking/located_frames.h"
 #include "analysis/tracking/track_frames.h"
 #include "analysis/vectors/displacement_field.h"
 
@@ -30,8 +31,9 @@ DisplacementField track_dots(Image<double> const& a, Image<double> const& b, Dis
                              TrackingSettings const& settings = {});
 
 /// Likewise in a sequence, with tracks through the frames before and after the pair where they exist (match_dots()).
+/// @param located  locates the dots of the frames, with settings.dots
 DisplacementField track_dots(TrackFrames const& frames, DisplacementField const& predictor,
-                             TrackingSettings const& settings = {});
+                             TrackingSettings const& settings, LocatedFrames const& located);
 
 /// Converts matches to a displacement field.
 ///

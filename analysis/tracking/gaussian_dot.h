@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <limits>
 #include <numbers>
+#include <span>
 #include <vector>
 
 #include "analysis/tracking/dot_profile.h"
@@ -30,6 +33,12 @@ struct DotLevel {
   std::array<double, 3> by_shape{};  ///< with respect to xx (round: of both axes), xy, yy [1/px^2]
 };
 
+/// Rectangle of pixels, whose last column and row belong to it.
+struct PixelBox {
+  int left = std::numeric_limits<int>::min(), right = std::numeric_limits<int>::max();
+  int top = std::numeric_limits<int>::min(), bottom = std::numeric_limits<int>::max();
+};
+
 /// Light of a dot, integrated over each pixel around it. The levels of a round dot are products of one factor
 /// per column and one per row, computed by the error function (as in GaussianSpot of the renderers). Those of an
 /// elliptic dot are means over 3x3 Gauss-Legendre points; their error is below 1e-4 of the height for widths of 0.6 px
@@ -37,33 +46,39 @@ struct DotLevel {
 class DotLight {
  public:
   /// @param profile  of round dots; elliptic ones are Gaussian
+  /// @param box      pixels that are evaluated; those outside of it have no light
   /// @pre the second moments are positive definite
-  DotLight(GaussianDot const& dot, DotShape shape, DotProfile const& profile) : dot_(dot), shape_(shape) {
-    double const sigma = std::sqrt(std::max(dot.xx, dot.yy));
-    reach_ = static_cast<int>(std::ceil(5 * sigma + 1));
-    first_column_ = static_cast<int>(std::lround(dot.centre.x)) - reach_;
-    first_row_ = static_cast<int>(std::lround(dot.centre.y)) - reach_;
+  DotLight(GaussianDot const& dot, DotShape shape, DotProfile const& profile, PixelBox const& box = {})
+      : dot_(dot), shape_(shape) {
+    int const reach = static_cast<int>(std::ceil(5 * std::sqrt(std::max(dot.xx, dot.yy)) + 1));
+    int const column = static_cast<int>(std::lround(dot.centre.x)), row = static_cast<int>(std::lround(dot.centre.y));
+    first_column_ = std::max(column - reach, box.left);
+    first_row_ = std::max(row - reach, box.top);
+    columns_ = std::max(0, std::min(column + reach, box.right) - first_column_ + 1);
+    rows_ = std::max(0, std::min(row + reach, box.bottom) - first_row_ + 1);
     if (shape != DotShape::round) return;
+    factors_.reserve(static_cast<std::size_t>(columns_ + rows_) * (profile.gaussian() ? 1 : DotProfile::count));
     for (std::size_t k = 0; k < DotProfile::count; ++k) {
       if (profile.share[k] == 0) continue;
-      parts_.push_back({profile.share[k], DotProfile::scale[k], factors_.size()});
+      parts_[part_count_++] = {profile.share[k], DotProfile::scale[k], factors_.size()};
       double const part_sigma = std::sqrt(DotProfile::scale[k] * dot.xx);
-      for (int i = 0; i < width(); ++i) factors_.push_back(factor(first_column_ + i - dot.centre.x, part_sigma));
-      for (int i = 0; i < width(); ++i) factors_.push_back(factor(first_row_ + i - dot.centre.y, part_sigma));
+      add_factors(first_column_ - dot.centre.x, columns_, part_sigma);
+      add_factors(first_row_ - dot.centre.y, rows_, part_sigma);
     }
   }
 
   int first_column() const { return first_column_; }
   int first_row() const { return first_row_; }
-  int width() const { return 2 * reach_ + 1; }  ///< number of columns and of rows with light [px]
+  int columns() const { return columns_; }  ///< number of columns with light
+  int rows() const { return rows_; }        ///< number of rows with light
 
   DotLevel at(int column, int row) const {
     int const i = column - first_column_, j = row - first_row_;
-    if (i < 0 || j < 0 || i >= width() || j >= width()) return {};
+    if (i < 0 || j < 0 || i >= columns_ || j >= rows_) return {};
     if (shape_ == DotShape::elliptic) return elliptic_level(column - dot_.centre.x, row - dot_.centre.y);
     DotLevel level;
-    for (Part const& part : parts_) {
-      Factor const &u = factors_[part.first + i], &v = factors_[part.first + width() + j];
+    for (Part const& part : std::span(parts_).first(part_count_)) {
+      Factor const &u = factors_[part.first + i], &v = factors_[part.first + columns_ + j];
       level.by_flux += part.share * u.value * v.value;
       level.by_x += part.share * u.by_centre * v.value;
       level.by_y += part.share * u.value * v.by_centre;
@@ -88,14 +103,30 @@ class DotLight {
     std::size_t first;  ///< of its factors
   };
 
-  /// @param t  pixel minus centre [px]
-  static Factor factor(double t, double sigma) {
+  /// Edge between two columns or rows.
+  struct Edge {
+    double place;   ///< minus the centre, over sigma [1]
+    double erf;     ///< error function of place / sqrt(2)
+    double normal;  ///< normal density [1/px]
+  };
+
+  /// @param t  place minus centre [px]
+  static Edge edge(double t, double sigma) {
     constexpr double root_half = 0.5 * std::numbers::sqrt2, per_root_two_pi = std::numbers::inv_sqrtpi * root_half;
-    auto const normal = [&](double s) { return per_root_two_pi * std::exp(-0.5 * s * s) / sigma; };
-    double const low = (t - 0.5) / sigma, high = (t + 0.5) / sigma;
-    double const at_low = normal(low), at_high = normal(high);
-    return {0.5 * (std::erf(high * root_half) - std::erf(low * root_half)), at_low - at_high,
-            0.5 * (low * at_low - high * at_high) / sigma};
+    double const place = t / sigma;
+    return {place, std::erf(place * root_half), per_root_two_pi * std::exp(-0.5 * place * place) / sigma};
+  }
+
+  /// Appends the factors of adjacent columns or rows.
+  /// @param first  centre of the first one, minus that of the dot [px]
+  void add_factors(double first, int count, double sigma) {
+    Edge low = edge(first - 0.5, sigma);
+    for (int i = 0; i < count; ++i) {
+      Edge const high = edge(first + i + 0.5, sigma);
+      factors_.push_back({0.5 * (high.erf - low.erf), low.normal - high.normal,
+                          0.5 * (low.place * low.normal - high.place * high.normal) / sigma});
+      low = high;
+    }
   }
 
   DotLevel elliptic_level(double x, double y) const {
@@ -126,8 +157,9 @@ class DotLight {
 
   GaussianDot dot_;
   DotShape shape_;
-  int reach_ = 0, first_column_ = 0, first_row_ = 0;
-  std::vector<Part> parts_;
+  int first_column_ = 0, first_row_ = 0, columns_ = 0, rows_ = 0;
+  std::array<Part, DotProfile::count> parts_{};
+  std::size_t part_count_ = 0;
   std::vector<Factor> factors_;  // of each part: of the columns, then of the rows
 };
 

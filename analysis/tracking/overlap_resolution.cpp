@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
+#include "render/base/image.h"
 #include "render/base/units.h"
 
 namespace gladstone::tracking {
@@ -12,22 +14,39 @@ namespace {
 constexpr double least_decrease = 25;   // smallest decrease of the sum of squares for which a dot is added
 constexpr std::size_t most_splits = 3;  // number of dots whose division is tried per added dot
 
-DotFit plain_fit(std::span<FitPixel const> pixels, std::span<GaussianDot const> start, DotModel const& model) {
-  return fit_dots(pixels, start, model.shape, model.prior);
+DotFit plain_fit(std::span<FitPixel const> pixels, std::span<GaussianDot const> start, DotModel const& model,
+                 double most_cost = std::numeric_limits<double>::infinity()) {
+  return fit_dots(pixels, start, model.shape, model.prior, most_cost);
 }
+
+/// Returns whether the residual of a fit may be more than noise.
+/// @param cost  of the fit, or an upper bound of it: false is certain then
+bool has_significant_residual(double cost, int freedom) { return cost > freedom - std::sqrt(2.0 * freedom); }
 
 /// Returns the pixels with the mismatch of the model added to their noise, in proportion to the largest level of the
 /// pixel and its neighbours: at the edge of a dot, the level changes more from pixel to pixel than it is high.
 std::vector<FitPixel> with_mismatch(std::span<FitPixel const> pixels, DotFit const& fit, double mismatch) {
+  PixelBox const box = bounding_box(pixels);
+  Image<double> light(box.right - box.left + 3, box.bottom - box.top + 3);  // with a border of one pixel
+  for (std::size_t i = 0; i < pixels.size(); ++i)
+    light(pixels[i].column - box.left + 1, pixels[i].row - box.top + 1) =
+        pixels[i].level - fit.residual[i] - fit.background;
   std::vector<FitPixel> changed(pixels.begin(), pixels.end());
-  for (std::size_t i = 0; i < changed.size(); ++i) {
-    double light = 0;
-    for (std::size_t k = 0; k < changed.size(); ++k)
-      if (std::abs(pixels[k].column - pixels[i].column) <= 1 && std::abs(pixels[k].row - pixels[i].row) <= 1)
-        light = std::max(light, pixels[k].level - fit.residual[k] - fit.background);
-    changed[i].per_sigma = 1 / std::hypot(1 / pixels[i].per_sigma, mismatch * light);
+  for (FitPixel& pixel : changed) {
+    double most = 0;
+    for (int row = pixel.row - box.top; row < pixel.row - box.top + 3; ++row)
+      for (int column = pixel.column - box.left; column < pixel.column - box.left + 3; ++column)
+        most = std::max(most, light(column, row));
+    pixel.per_sigma = 1 / std::hypot(1 / pixel.per_sigma, mismatch * most);
   }
   return changed;
+}
+
+/// Returns the cost of a fit with other noise of its pixels.
+double cost_with(std::span<FitPixel const> pixels, DotFit const& fit) {
+  double cost = fit.cost - fit.chi2;
+  for (std::size_t i = 0; i < pixels.size(); ++i) cost += std::pow(fit.residual[i] * pixels[i].per_sigma, 2);
+  return cost;
 }
 
 /// Returns the indices of the dots in the order of decreasing chi2 within two standard deviations of their centres.
@@ -74,14 +93,16 @@ std::vector<GaussianDot> split_dot(std::span<FitPixel const> pixels, DotFit cons
 std::vector<GaussianDot> add_at_residual(std::span<FitPixel const> pixels, DotFit const& fit, DotModel const& model) {
   double const variance = model.prior.mean[0];
   GaussianDot added{{}, 0, variance, 0, variance};
+  std::vector<double> shapes;  // by the squared distance in pixels
+  for (int r2 = 0; r2 <= 9 * variance + 1; ++r2) shapes.push_back(std::exp(-0.5 * r2 / variance));
   double most = 0;
   for (FitPixel const& centre : pixels) {
     double product = 0, square = 0;
     for (std::size_t i = 0; i < pixels.size(); ++i) {
-      double const x = pixels[i].column - centre.column, y = pixels[i].row - centre.row;
-      double const r2 = x * x + y * y;
-      if (r2 > 9 * variance + 1) continue;
-      double const shape = std::exp(-0.5 * r2 / variance), weight = pixels[i].per_sigma * pixels[i].per_sigma;
+      int const x = pixels[i].column - centre.column, y = pixels[i].row - centre.row;
+      auto const r2 = static_cast<std::size_t>(x * x + y * y);
+      if (r2 >= shapes.size()) continue;
+      double const shape = shapes[r2], weight = pixels[i].per_sigma * pixels[i].per_sigma;
       product += weight * shape * fit.residual[i];
       square += weight * shape * shape;
     }
@@ -118,12 +139,13 @@ DotFit fit_overlapping_dots(std::span<FitPixel const> pixels, std::span<Gaussian
   DotFit const first = plain_fit(pixels, start, model);
   if (most_additions == 0 || !std::isfinite(first.cost)) return first;
   std::vector<FitPixel> const tolerant = with_mismatch(pixels, first, model.mismatch);
+  // The fit with this noise has at most the cost of the first one.
+  if (!has_significant_residual(cost_with(tolerant, first), first.freedom)) return first;
   DotFit best = model.mismatch > 0 ? plain_fit(tolerant, first.dots, model) : first;
   if (!std::isfinite(best.cost)) return first;  // a fit that failed has no residuals
   int added = 0;
   for (; added < most_additions; ++added) {
-    // Without a significant residual there is nothing to add.
-    if (!(best.cost > best.freedom - std::sqrt(2.0 * best.freedom))) break;
+    if (!has_significant_residual(best.cost, best.freedom)) break;
     DotFit better;
     better.cost = best.cost - least_decrease;
     bool found = false;
@@ -133,7 +155,7 @@ DotFit fit_overlapping_dots(std::span<FitPixel const> pixels, std::span<Gaussian
       trials.push_back(split_dot(tolerant, best, worst[k]));
     for (std::vector<GaussianDot> const& dots : trials) {
       if (dots.size() == best.dots.size()) continue;
-      DotFit fit = plain_fit(tolerant, dots, model);
+      DotFit fit = plain_fit(tolerant, dots, model, better.cost);
       if (!(fit.cost < better.cost) || !plausible(tolerant, fit, model)) continue;
       better = std::move(fit);
       found = true;

@@ -1,15 +1,21 @@
 #include "analysis/tracking/tracking_correlator.h"
 
+#include <cstddef>
+#include <utility>
+
 #include "analysis/correlation/correlation_methods.h"
 #include "analysis/correlation/pair_assessment.h"
 #include "analysis/tracking/dot_tracking.h"
+#include "analysis/tracking/located_frames.h"
 #include "render/base/contracts.h"
 #include "render/base/not_a_number.h"
+#include "render/base/parallel.h"
 
 namespace gladstone::tracking {
 namespace {
 
 constexpr Vec2d unknown{not_a_number, not_a_number};
+constexpr std::size_t frames_per_pair = 4;  // with those before and after the pair
 
 /// Converts the table [correlate.tracking] and the known dots to settings of track_dots().
 /// @pre the words of the table are valid
@@ -46,10 +52,11 @@ DisplacementField certain_vectors(DisplacementField field) {
   return field;
 }
 
-/// Invalidates the vectors of frames that do not correlate.
+/// Invalidates the vectors of frames that do not correlate. Those of dots move to the place of the dot in frame A.
 void invalidate(DisplacementField& field) {
   for (std::size_t i = 0; i < field.size(); ++i) {
     if (field.status[i] == VectorStatus::masked) continue;
+    if (field.columns == 0 && field.counts(i)) field.position_px[i] -= 0.5 * field.displacement_px[i];
     field.displacement_px[i] = field.sigma_px[i] = unknown;
     field.status[i] = VectorStatus::invalid;
     field.reason[i] = VectorReason::uncorrelated;
@@ -63,6 +70,7 @@ class TrackingCorrelator final : public Correlator {
       : predictor_settings_(predictor_settings(settings)),
         predictor_(make_correlator(predictor_settings_)),
         tracking_(tracking_settings(settings)),
+        located_(tracking_.dots, static_cast<std::size_t>(thread_count()) + frames_per_pair),
         on_grid_(settings.tracking.output == "grid") {}
 
   DisplacementField correlate(Image<double> const& reference, Image<double> const& flow) const override {
@@ -72,21 +80,26 @@ class TrackingCorrelator final : public Correlator {
   DisplacementField correlate_pair(FramePair const& frames) const override {
     DisplacementField predictor = predictor_->correlate_pair(frames);
     assess_pair(predictor, frames, *predictor_, predictor_settings_);
-    DisplacementField const dots = track(frames, certain_vectors(predictor));
+    DisplacementField dots = track(frames, certain_vectors(predictor));
     DisplacementField field = on_grid_ ? interpolate_to_grid(predictor, dots) : dots;
     field.verdict = predictor.verdict;
     field.warnings.clear();
     for (std::string const& warning : predictor.warnings)
       field.warnings.push_back("correlation that predicts the displacements of dots: " + warning);
     field.warnings.insert(field.warnings.end(), dots.warnings.begin(), dots.warnings.end());
-    if (!frames_correlate(predictor)) invalidate(field);
+    if (!frames_correlate(predictor)) {
+      invalidate(field);
+      invalidate(dots);
+    }
+    auto const* const of_sequence = dynamic_cast<TrackFrames const*>(&frames);
+    if (of_sequence && of_sequence->dots()) *of_sequence->dots() = std::move(dots);
     return field;
   }
 
  private:
   DisplacementField track(FramePair const& frames, DisplacementField const& predictor) const {
     auto const* const of_sequence = dynamic_cast<TrackFrames const*>(&frames);
-    return of_sequence ? track_dots(*of_sequence, predictor, tracking_)
+    return of_sequence ? track_dots(*of_sequence, predictor, tracking_, located_)
                        : track_dots(frames.reference(), frames.flow(), predictor, tracking_);
   }
 
@@ -112,6 +125,7 @@ class TrackingCorrelator final : public Correlator {
   CorrelationSettings predictor_settings_;
   std::unique_ptr<Correlator> predictor_;
   TrackingSettings tracking_;
+  LocatedFrames located_;
   bool on_grid_;
 };
 

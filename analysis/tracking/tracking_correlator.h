@@ -8,7 +8,8 @@ namespace gladstone::tracking {
 
 /// Creates a correlator whose vectors are those of tracked dots.
 ///
-/// - Frames: a pair, or TrackFrames for tracks over up to four frames of a sequence.
+/// - Frames: a pair, or TrackFrames for tracks over up to four frames of a sequence. The dots of the last frames of a
+///   sequence are remembered, so that each frame is located once. TrackFrames::dots() receives the scattered vectors.
 /// - Prediction: the standard cross-correlation with the given settings, without its ambiguous vectors.
 /// - Decorrelation test: that of the prediction (assess_pair()). All vectors of frames that do not correlate are
 ///   invalid, with reason `uncorrelated`.

@@ -33,6 +33,19 @@ def plot_field(field):
     return figure
 
 
+def plot_statistics(statistics):
+    """Draws maps of mean and standard deviation over a sequence, u above v."""
+    import matplotlib.pyplot as plt
+
+    figure, axes = plt.subplots(2, 2, figsize=(9.5, 8), layout="constrained")
+    position = np.stack([statistics["x_px"], statistics["y_px"]], axis=-1)
+    for row, name in zip(axes, "uv"):
+        for axis, (key, title) in zip(row, (("mean", "mean"), ("rms", "standard deviation"))):
+            values = statistics[f"{name}_{key}_px"]
+            _map(figure, axis, position, values, f"{title} of {name} [px]", _largest(values))
+    return figure
+
+
 def plot_images(case):
     """Draws both frames of a case on one grey scale."""
     import matplotlib.pyplot as plt

@@ -49,6 +49,25 @@ class Sequence:
         path = os.path.join(self._folder, "statistics.h5")
         return _core.sequence_statistics(path) if len(self.failed) < len(self) else {}
 
+    def dots(self, index: int) -> dict[str, np.ndarray]:
+        """Reads the scattered vectors of the dots or particles of a pair, for method="tracking".
+
+        Arrays with one value per dot of frame A: x_px, y_px, u_px, v_px, sigma_u_px, sigma_v_px, status (0: valid), and
+        unless pairing="pairs" `track`, the number of its track: consecutive images have one number per particle, and
+        images with a common reference one number per dot. Raises ValueError if the pair failed or was not tracked.
+        """
+        pair = self.pairs[index]
+        path = os.path.join(self._folder, "dots", pair["vectors"] or "")
+        if pair["vectors"] is None or not os.path.exists(path):
+            raise ValueError(f"pair {index} has no dots ({pair['error'] or 'its method is not tracking'})")
+        return _core.sequence_statistics(path)
+
+    def plot(self):
+        """Draws maps of the mean and of the standard deviation of both components; needs matplotlib."""
+        from ._plot import plot_statistics
+
+        return plot_statistics(self.statistics)
+
     @property
     def device(self) -> str:
         """Device of the correlation: "cpu" or "cuda"."""

@@ -90,3 +90,39 @@ def test_progress_counts_pairs(frames):
     calls = []
     gs.correlate_sequence(frames, device="cpu", progress=lambda *call: calls.append(call), **SETTINGS)
     assert calls[-1][1:] == (2, 2)
+
+
+def test_tracks_continue_through_consecutive_images(tmp_path):
+    # Gaussian particles that move by (2, 1) px from image to image
+    random = np.random.default_rng(1)
+    start = random.random((150, 2)) * 80 - 8
+    row, column = np.mgrid[0:64, 0:64]
+    for k in range(4):
+        image = np.full((64, 64), 1000.0)
+        for x, y in start + np.array([2.0, 1.0]) * k:
+            image += 20000 * np.exp(-((column - x) ** 2 + (row - y) ** 2) / (2 * 0.75**2))
+        (tmp_path / f"img_{k}.pgm").write_bytes(b"P5 64 64 65535\n" + np.rint(image.clip(0, 65535)).astype(">u2").tobytes())
+    sequence = gs.correlate_sequence(
+        tmp_path / "img_*.pgm", pairing="consecutive", device="cpu", method="tracking", **SETTINGS
+    )
+    ends = {}
+    continued = 0
+    for k in range(len(sequence)):
+        dots = sequence.dots(k)
+        valid = dots["status"] == 0
+        at = np.stack([dots["x_px"], dots["y_px"]], axis=-1)[valid]
+        half = np.stack([dots["u_px"], dots["v_px"]], axis=-1)[valid] / 2
+        for track, a, b in zip(dots["track"][valid], at - half, at + half):
+            if track in ends:
+                assert np.allclose(a, ends[track], atol=1e-6)
+                continued += 1
+            ends[track] = b
+    assert continued > 50
+    with pytest.raises(ValueError):
+        gs.correlate_sequence(tmp_path / "img_*.pgm", pairing="consecutive", device="cpu", **SETTINGS).dots(0)
+
+
+def test_statistics_are_drawn(frames):
+    pytest.importorskip("matplotlib").use("agg")
+    figure = gs.correlate_sequence(frames, device="cpu", **SETTINGS).plot()
+    assert len([axis for axis in figure.axes if axis.get_title()]) == 4

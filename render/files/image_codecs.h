@@ -49,6 +49,8 @@ class PageReader {
   virtual ~PageReader() = default;
   /// Moves to a page, counted from 0. @return false if it does not exist
   virtual bool seek(int page) = 0;
+  /// Returns true if the last seek() failed for a page that the file declares, for example because it is cut short.
+  virtual bool is_cut_short() const { return false; }
   virtual PageHeader header() const = 0;
   /// Reads all samples of the page as an array of rows x columns x channels of the header's sample type. Unsigned
   /// samples of fewer bits than their type are scaled to its range, so that their upper bits are the stored value. If

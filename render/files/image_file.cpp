@@ -41,6 +41,8 @@ class Picture {
 
   /// Number of pages, without the previews of the first one, which are smaller in both directions.
   std::size_t pages() const { return pages_.size(); }
+  /// True if the file declares a further page that cannot be read.
+  bool is_cut_short() const { return is_cut_short_; }
   /// True if the file has more than max_pages pages.
   bool has_more_pages() const { return has_more_pages_; }
 
@@ -74,6 +76,7 @@ class Picture {
       if (spec.width < first.width && spec.height < first.height) continue;
       pages_.push_back(page);
     }
+    is_cut_short_ = input_->is_cut_short();
     input_->clear_errors();
     input_->seek(0);
   }
@@ -82,7 +85,7 @@ class Picture {
   InputFile file_;
   std::unique_ptr<PageReader> input_;
   std::vector<int> pages_{0};
-  bool has_more_pages_ = false;
+  bool has_more_pages_ = false, is_cut_short_ = false;
 };
 
 /// Calls `read`, and converts a failed allocation into a MemoryError that names the file.
@@ -139,7 +142,7 @@ std::size_t count_pages(std::string const& path) {
           ErrorCode::out_of_range, path,
           fmt::format("has more than {} pages (which is the limit); write its pages to several files", max_pages));
     }
-    return picture.pages();
+    return picture.pages() + (picture.is_cut_short() ? 1 : 0);
   });
 }
 

@@ -9,6 +9,7 @@
 namespace gladstone {
 
 /// Counts the pages of an image file. Pages smaller than the first in both directions are previews and do not count.
+/// A page that the file declares, but that cannot be read since the file is cut short, counts.
 /// @throws DataError, also if there are more than max_pages pages
 std::size_t count_pages(std::string const& path);
 

@@ -94,13 +94,17 @@ class TiffReader final : public PageReader {
 
   bool seek(int page) override {
     if (page == page_) return true;
+    bool const declared = page == page_ + 1 && TIFFLastDirectory(handle_.get()) == 0;
     int const found = page == page_ + 1 ? TIFFReadDirectory(handle_.get())
                                         : TIFFSetDirectory(handle_.get(), static_cast<tdir_t>(page));
     stream_.check_error();
     page_ = found == 1 ? page : no_page;
+    cut_short_ = declared && found != 1;
     if (found == 1) layout_ = read_tiff_layout(handle_.get());
     return found == 1;
   }
+
+  bool is_cut_short() const override { return cut_short_; }
 
   PageHeader header() const override { return read_tiff_header(handle_.get(), layout_); }
 
@@ -179,7 +183,8 @@ class TiffReader final : public PageReader {
   FileStream stream_;
   TiffHandle handle_;
   int page_ = no_page;
-  TiffLayout layout_;  ///< layout of the current page
+  bool cut_short_ = false;  // the page of the last seek() is declared, but cannot be read
+  TiffLayout layout_;       ///< layout of the current page
 };
 
 }  // namespace

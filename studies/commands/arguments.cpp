@@ -4,6 +4,10 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
+#include <functional>
+#include <iterator>
+#include <sstream>
 #include <string_view>
 
 #include "render/base/nearest_name.h"
@@ -22,21 +26,42 @@ std::string command_path(CLI::App const* app) {
   return path;
 }
 
+std::vector<std::string> split_words(std::string const& text) {
+  std::istringstream stream(text);
+  return {std::istream_iterator<std::string>(stream), {}};
+}
+
+/// Returns a validator of numbers that satisfy a condition.
+/// @param wanted  description for the message: "a number above 0"
+CLI::Validator number_that(std::function<bool(double)> const& accepts, std::string const& wanted,
+                           std::string const& help) {
+  auto const check = [accepts, wanted](std::string const& given) {
+    double value = 0;
+    bool const good = CLI::detail::lexical_cast(given, value) && std::isfinite(value) && accepts(value);
+    return good ? std::string() : fmt::format("expected {}, got \"{}\"", wanted, excerpt(given));
+  };
+  return CLI::Validator(check, help);
+}
+
 /// Rewords an error message of CLI11. The kind of error can only be inferred from its name and text.
 std::string in_our_words(std::string const& kind, std::string const& text) {
   if (kind == "ConversionError") {  // "Could not convert: --threads = many"
     std::string_view const start = "Could not convert: ", given = " = ";
     auto const equals = text.find(given);
     if (text.starts_with(start) && equals != std::string::npos) {
-      return fmt::format("{}: \"{}\" is not a valid number", text.substr(start.size(), equals - start.size()),
+      return fmt::format("{}: expected a number, got \"{}\"", text.substr(start.size(), equals - start.size()),
                          excerpt(text.substr(equals + given.size())));
     }
   }
   std::string const option = text.substr(0, text.find_first_of(": "));
   if (kind == "ArgumentMismatch") {
     if (text.find("flag override") != std::string::npos) return option + " takes no value";
-    if (text.find("At Most") != std::string::npos) return "too many values for \"" + option + '"';
-    return option + " needs a value";
+    // "--sheet-slope: At least 2 required but received 1"
+    std::vector<std::string> words = split_words(text);
+    if (words.size() < 5 || words[4] != "required" || words.back() == "0") return option + " needs a value";
+    bool const too_many = text.find("At Most") != std::string::npos;
+    return fmt::format("{} needs {}{} value{}, got {}", option, too_many ? "at most " : "", words[3],
+                       words[3] == "1" ? "" : "s", words.back());
   }
   return text;
 }
@@ -64,8 +89,23 @@ CLI::Validator whole_number(long long low, long long high) {
   return CLI::Validator(check, fmt::format("[{} - {}]", low, high));
 }
 
+CLI::Validator number(double low, double high) {
+  return number_that([low, high](double value) { return value >= low && value <= high; },
+                     fmt::format("a number from {:g} to {:g}", low, high), fmt::format("[{:g} - {:g}]", low, high));
+}
+
+CLI::Validator positive_number() {
+  return number_that([](double value) { return value > 0; }, "a number above 0", "POSITIVE");
+}
+
+CLI::Validator non_negative_number() {
+  return number_that([](double value) { return value >= 0; }, "a number of at least 0", "NONNEGATIVE");
+}
+
+std::string describe_problem(CLI::Error const& error) { return in_our_words(error.get_name(), error.what()); }
+
 std::string refusal(CLI::App const* app, CLI::Error const& error) {
-  std::string const message = in_our_words(error.get_name(), error.what());
+  std::string const message = describe_problem(error);
   return fmt::format("gladstone: {}{} See gladstone {}--help\n", message, message.ends_with('?') ? "" : ".",
                      command_path(app));
 }

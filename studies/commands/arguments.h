@@ -9,8 +9,15 @@ namespace gladstone {
 /// Validators of option values; refusal() formats their messages.
 CLI::Validator one_of(std::vector<std::string> words);
 CLI::Validator whole_number(long long low, long long high);
+/// Accepts numbers from `low` to `high`.
+CLI::Validator number(double low, double high);
+CLI::Validator positive_number();
+CLI::Validator non_negative_number();
 
-/// Formats the error message for an invalid command line: one line with the option, the problem and the help command.
+/// Returns what is wrong with a command line: the option and the problem.
+std::string describe_problem(CLI::Error const& error);
+
+/// Formats the error message for an invalid command line: one line with describe_problem() and the help command.
 std::string refusal(CLI::App const* app, CLI::Error const& error);
 
 }  // namespace gladstone

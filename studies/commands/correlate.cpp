@@ -42,6 +42,7 @@ CommandBody attach_correlate(CLI::App& app, GlobalOptions const& options) {
                  "Pairs of a sequence: pairs (frame A and frame B of each instant; the default), reference (the first "
                  "image with each other one), consecutive (each image with the next one)")
       ->check(one_of({"pairs", "reference", "consecutive"}));
+  app.add_flag("--no-figures", arguments->no_figures, "Draw no figure of the statistics of a sequence");
   app.add_option("--config", arguments->config,
                  "TOML file with a table [correlate], for example a setup; default: the table of the case");
   app.add_option("--set", arguments->overrides, "Override a key: --set correlate.overlap=0.75")

@@ -13,6 +13,8 @@
 #include "studies/case/json_text.h"
 #include "studies/compare/sequence.h"
 #include "studies/compare/sequence_frames.h"
+#include "studies/figures/gnuplot.h"
+#include "studies/figures/sequence_figure.h"
 
 namespace gladstone {
 namespace {
@@ -59,6 +61,11 @@ void report_failures(SequenceResult const& result) {
     spdlog::warn("{} further pairs failed; sequence.json lists them", failed - most_named_failures);
 }
 
+/// Draws the statistics, or warns if gnuplot is not installed.
+void draw_statistics(std::string const& path, SequenceMoments const& moments) {
+  if (draw_or_warn([&] { write_sequence_figure(path, moments); })) spdlog::info("drew {}", path);
+}
+
 }  // namespace
 
 std::vector<std::string> expand_single_pair(SequenceArguments const& arguments) {
@@ -96,11 +103,12 @@ int run_sequence(SequenceArguments const& arguments, GlobalOptions const& option
                     fmt::format("none of the {} pairs could be correlated; the first: {}", pairs.size(),
                                 result.pairs.front().error));
   for (std::string const& warning : result.warnings) spdlog::warn("{}", warning);
+  if (!arguments.no_figures) draw_statistics((fs::path(folder) / sequence_file::figure).string(), result.statistics);
   nlohmann::json const json{{"pairs", pairs.size()},
                             {"done", done},
                             {"resumed", result.count_resumed()},
                             {"failed", describe_failures(result)},
-                            {"vectors", result.vectors},
+                            {"vectors", result.vectors()},
                             {"folder", folder},
                             {"statistics", (fs::path(folder) / sequence_file::statistics).string()},
                             {"sequence", (fs::path(folder) / sequence_file::state).string()},
@@ -108,7 +116,7 @@ int run_sequence(SequenceArguments const& arguments, GlobalOptions const& option
                             {"seconds_correlate", result.seconds}};
   print_result(options, json_text(json),
                fmt::format("{}: {} of {} pairs correlated ({} by an earlier run), {} vectors each, {:.2f} s", folder,
-                           done, pairs.size(), result.count_resumed(), result.vectors, result.seconds));
+                           done, pairs.size(), result.count_resumed(), result.vectors(), result.seconds));
   return done == pairs.size() ? ok : check_missed;
 }
 

@@ -12,6 +12,7 @@ struct SequenceArguments {
   std::vector<std::string> inputs, overrides;
   std::string output, config;
   std::string pairing;  ///< text of --pairing; empty: not given
+  bool no_figures = false;
 };
 
 /// Returns the two images if the inputs are patterns that match exactly one pair and the output is a file: such a pair

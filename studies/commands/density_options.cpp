@@ -88,7 +88,7 @@ void DensityArguments::add_to(CLI::App& app, std::string const& group) {
                      "medium.ambient_density_kg_m3"));
   add(app.add_option("--reference-sigma", parsed_.reference_sigma,
                      "Standard uncertainty of the reference density [kg/m^3]")
-          ->check(CLI::NonNegativeNumber));
+          ->check(non_negative_number()));
   add(app.add_option(
       "--scale-uncertainty", parsed_.scale_uncertainty,
       "Combined relative standard uncertainty of magnification, Z_D, Gladstone-Dale constant, pixel pitch "

@@ -26,14 +26,14 @@ CommandBody attach_design(CLI::App& app, GlobalOptions const& options) {
   app.add_option(
          "--verify", request->verification.benches,
          "Number of best combinations to verify by rendering and correlation (some minutes); 0: use the formulas only")
-      ->check(CLI::Range(0, 100))
+      ->check(whole_number(0, 100))
       ->capture_default_str();
   app.add_option("--repeats", request->verification.repeats,
                  "Number of simulations of each combination, with different dots and noise")
-      ->check(CLI::Range(2, 1000))
+      ->check(whole_number(2, 1000))
       ->capture_default_str();
   app.add_option("--seed", request->verification.seed, "Seed of these dots and of the noise")
-      ->check(CLI::Range(std::int64_t{0}, std::int64_t{1} << 62))
+      ->check(whole_number(0, std::int64_t{1} << 62))
       ->capture_default_str();
   return [request, &options] {
     request->open_device = [&options] { return options.open_device(); };

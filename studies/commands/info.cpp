@@ -37,7 +37,7 @@ CommandBody attach_info(CLI::App& app, GlobalOptions const& options) {
   app.add_option("--setup", arguments->setup, "Setup (TOML) for which the filled fraction of the view is reported");
   app.add_option("--glass", arguments->lens.glasses, "Additional glass catalogue (AGF) for info lens");
   app.add_option("--wavelength-nm", arguments->lens.wavelength_nm, "Wavelength for info lens")
-      ->check(CLI::Range(100.0, 20000.0));
+      ->check(number(100, 20'000));
   app.add_option(
       "--figure", arguments->figure,
       "Figure of info field (planes through its middle), lens, mie or setup (its layout): .png, .svg or .pdf");

@@ -83,15 +83,15 @@ CommandBody attach_stereo(CLI::App& app, GlobalOptions const& options) {
       ->check(one_of({"vectors", "images"}));
   app.add_option("--spacing", arguments->spacing_mm,
                  "Distance between the nodes of the result [mm], default: mean distance of the vectors")
-      ->check(CLI::PositiveNumber);
+      ->check(positive_number());
   app.add_option("--window", given.window_px,
                  "Size of the interrogation windows, which correlates the errors of neighbouring vectors [px]; 0: "
                  "independent errors; default: the last window of [correlate]")
-      ->check(CLI::NonNegativeNumber);
+      ->check(non_negative_number());
   app.add_option("--residual-limit", given.residual_limit,
                  "Largest residual of the four equations, in standard uncertainties: vectors of larger ones are "
                  "rejected, default 4; 0: accept all")
-      ->check(CLI::NonNegativeNumber);
+      ->check(non_negative_number());
   app.add_flag("--no-figures", arguments->no_figures, "Draw no figure");
   return [arguments, &options] {
     Backend const device = options.open_device();

@@ -73,7 +73,7 @@ void add_volume_options(CLI::App& app, TomographyArguments& given) {
       ->delimiter(',')
       ->expected(6);
   app.add_option("--spacing", given.spacing_mm, "Distance between the nodes [mm], default: that of the vectors")
-      ->check(CLI::PositiveNumber);
+      ->check(positive_number());
   app.add_option("--support", given.support,
                  "Part of the volume outside of which the density is the reference density: sphere:MM about its origin "
                  "or cylinder:MM about its Y axis, with the radius");
@@ -89,14 +89,14 @@ void add_volume_options(CLI::App& app, TomographyArguments& given) {
   app.add_option("--tolerance", sart.tolerance,
                  "End after a sweep that changes the volume by less than this fraction of its norm")
       ->capture_default_str()
-      ->check(CLI::NonNegativeNumber);
+      ->check(non_negative_number());
   app.add_option("--relaxation", sart.relaxation, "Fraction of the correction that is applied after each view, 0 to 2")
       ->capture_default_str();
   app.add_option(
          "--tv-weight", sart.tv_weight,
          "Strength of the total variation, relative to the largest density difference; 0: none; default: the rms "
          "change of a node by the views in each sweep")
-      ->check(CLI::NonNegativeNumber);
+      ->check(non_negative_number());
   app.add_flag("--no-figures", given.no_figures, "Draw no figure");
 }
 

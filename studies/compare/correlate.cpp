@@ -100,7 +100,7 @@ std::unique_ptr<FramePair> prepare_pair(FramePair const& frames, FramePreparatio
   if (tracks->before())
     before = prepare_frames(HostFrames(*tracks->before(), frames.reference()), preparation).reference();
   if (tracks->after()) after = prepare_frames(HostFrames(frames.flow(), *tracks->after()), preparation).flow();
-  return std::make_unique<tracking::TrackFrames>(std::move(pair), std::move(before), std::move(after));
+  return std::make_unique<tracking::TrackFrames>(std::move(pair), std::move(before), std::move(after), tracks->dots());
 }
 
 /// Applies masks and preprocessing steps to the frames and correlates the result.

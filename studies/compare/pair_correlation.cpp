@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "analysis/correlation/correlation_methods.h"
 #include "analysis/correlation/correlator.h"
 #include "analysis/correlation/pair_assessment.h"
 #include "analysis/tracking/track_frames.h"
@@ -82,16 +83,21 @@ PairCorrelation::PairCorrelation(CorrelationFile const& settings, SequenceSize s
       sources_(std::move(sources)),
       device_(share_correlator(std::move(device))) {}
 
-DisplacementField PairCorrelation::run(PairRecord& record, std::string const& path,
-                                       PairNeighbours const& neighbours) const {
+PairVectors PairCorrelation::run(PairRecord& record, std::string const& path, std::string const& dots_path,
+                                 PairNeighbours const& neighbours) const {
   if (record.state == PairState::failed) return {};
   try {
     throw_if_interrupted();
-    DisplacementField field = measure(record, path, neighbours);
-    bool const any = has_any_vector(field);
+    Frames frames = read_frames(record, neighbours);
+    record.reference_sha256 = frames.reference.sha256;
+    record.flow_sha256 = frames.flow.sha256;
+    std::optional<PairVectors> finished = read_finished(path, dots_path, hashes(frames), record);
+    PairVectors vectors = finished ? std::move(*finished) : correlate(std::move(frames), record, path);
+    bool const any = has_any_vector(vectors.field);
     record.state = any ? PairState::done : PairState::no_valid_vector;
     if (!any) record.error = "none of its vectors is valid; check that both frames show one scene";
-    return without_details(std::move(field));
+    vectors.field = without_details(std::move(vectors.field));
+    return vectors;
   } catch (Interrupted const&) {
     throw;
   } catch (OutputError const&) {
@@ -105,14 +111,10 @@ DisplacementField PairCorrelation::run(PairRecord& record, std::string const& pa
   }
 }
 
-DisplacementField PairCorrelation::measure(PairRecord& record, std::string const& path,
-                                           PairNeighbours const& neighbours) const {
-  Frames frames = read_frames(record, neighbours);
-  record.reference_sha256 = frames.reference.sha256;
-  record.flow_sha256 = frames.flow.sha256;
-  if (std::optional<DisplacementField> finished = read_finished(path, hashes(frames), record))
-    return std::move(*finished);
-  return correlate(std::move(frames), record, path);
+bool PairCorrelation::tracks_dots() const { return correlation_method(settings_.settings.method).tracks_dots; }
+
+FileOrigin PairCorrelation::origin(SourceFiles sources, std::string const& device) const {
+  return {"gladstone vectors", 1, settings_.resolved, 0, device, std::move(sources)};
 }
 
 PairCorrelation::Frames PairCorrelation::read_frames(PairRecord const& record, PairNeighbours const& neighbours) const {
@@ -150,13 +152,14 @@ SourceFiles PairCorrelation::hashes(Frames const& frames) const {
   return sources;
 }
 
-DisplacementField PairCorrelation::correlate(Frames frames, PairRecord& record, std::string const& path) const {
+PairVectors PairCorrelation::correlate(Frames frames, PairRecord& record, std::string const& path) const {
   SourceFiles sources = hashes(frames);
   auto const levels = [](std::optional<SequenceImage>& image) {
     return image ? std::optional(std::move(image->levels)) : std::nullopt;
   };
+  PairVectors vectors;
   tracking::TrackFrames const pair({std::move(frames.reference.levels), std::move(frames.flow.levels)},
-                                   levels(frames.before), levels(frames.after));
+                                   levels(frames.before), levels(frames.after), &vectors.dots.vectors);
   Measurement measurement = correlate_frames(pair, settings_.settings, device_);
   throw_if_interrupted();  // the measurement may be incomplete
   DisplacementField& field = measurement.field;
@@ -164,25 +167,35 @@ DisplacementField PairCorrelation::correlate(Frames frames, PairRecord& record, 
   if (std::string advice = locking_advice(pair.reference()); frames_correlate(field) && !advice.empty())
     field.warnings.push_back(std::move(advice));
   record.warnings = field.warnings;
-  write_vectors(path, field, {"gladstone vectors", 1, settings_.resolved, 0, measurement.device, std::move(sources)});
+  if (tracks_dots()) vectors.dots.origin = origin(sources, measurement.device);
+  write_vectors(path, field, origin(std::move(sources), measurement.device));
   stop_point("pair-finished");
-  return std::move(field);
+  vectors.field = std::move(field);
+  return vectors;
 }
 
-std::optional<DisplacementField> PairCorrelation::read_finished(std::string const& path, SourceFiles const& hashes,
-                                                                PairRecord& record) const {
-  std::error_code error;
-  if (!std::filesystem::exists(path, error)) return std::nullopt;
+std::optional<PairVectors> PairCorrelation::read_finished(std::string const& path, std::string const& dots_path,
+                                                          SourceFiles const& hashes, PairRecord& record) const {
+  std::vector<std::string> files{path};
+  if (tracks_dots()) files.push_back(dots_path);
   UnrecordedReading const to_be_replaced;
   try {
-    Hdf5Reader const file(path);
-    for (char const* const name : {"settings", "reference", "flow", "before", "after"})
-      if (file.attribute(std::string(name) + "_sha256") != hashes.sha256(name)) return std::nullopt;
-    DisplacementField field = read_vectors(path).field;
-    if (field.size() != final_grid(settings_.settings, size_.columns, size_.rows).size()) return std::nullopt;
-    record.warnings = split_lines(file.attribute("warnings"));
+    PairVectors vectors;
+    for (std::string const& name : files) {
+      if (std::error_code error; !std::filesystem::exists(name, error)) return std::nullopt;
+      Hdf5Reader const file(name);
+      for (char const* const frame : {"settings", "reference", "flow", "before", "after"})
+        if (file.attribute(std::string(frame) + "_sha256") != hashes.sha256(frame)) return std::nullopt;
+      if (name == path) record.warnings = split_lines(file.attribute("warnings"));
+    }
+    vectors.field = read_vectors(path).field;
+    if (vectors.field.size() != final_grid(settings_.settings, size_.columns, size_.rows).size()) return std::nullopt;
+    if (tracks_dots()) {
+      TrackVectors dots = read_track_vectors(dots_path);
+      vectors.dots = {std::move(dots.field), std::move(dots.tracks), origin(hashes, "cpu")};
+    }
     record.resumed = true;
-    return field;
+    return vectors;
   } catch (DataError const&) {  // damaged: it is computed again
     return std::nullopt;
   }

@@ -1,10 +1,13 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "analysis/vectors/displacement_field.h"
+#include "analysis/vectors/track_vectors.h"
+#include "render/files/hdf5_file.h"
 #include "render/files/source_files.h"
 #include "studies/case/backend.h"
 #include "studies/compare/sequence.h"
@@ -18,6 +21,19 @@ struct PairNeighbours {
   SequenceFrame const* after = nullptr;
 };
 
+/// Dots or particles of a pair; none unless the method tracks them.
+struct PairDots {
+  DisplacementField vectors;
+  std::optional<std::vector<std::int64_t>> stored_tracks;  ///< of the file of an earlier run; nullopt: not yet stored
+  FileOrigin origin;
+};
+
+/// Vectors of a pair.
+struct PairVectors {
+  DisplacementField field;  ///< without the data that the statistics do not use; empty if the pair failed
+  PairDots dots;
+};
+
 /// Correlates single pairs of a sequence and stores their vectors. One object serves several threads: while one pair is
 /// on a GPU, others are read, assessed and written.
 class PairCorrelation {
@@ -29,14 +45,15 @@ class PairCorrelation {
   PairCorrelation(CorrelationFile const& settings, SequenceSize size, std::optional<SequenceImage> common_reference,
                   SourceFiles sources, Backend device);
 
-  /// Correlates a pair, unless the file contains the vectors of the same frames and settings, and sets its record. A
+  /// Correlates a pair, unless the files contain the vectors of the same frames and settings, and sets its record. A
   /// pair that fails has a record with the reason.
   /// @param path        file of its vectors
+  /// @param dots_path   file of its dots, which the caller writes
   /// @param neighbours  frames over which the tracks of its particles extend. One that is unreadable or of another size
   ///                    is not used, and the record contains a warning
-  /// @return its vectors without the data that the statistics do not use; empty if it failed
   /// @throws Interrupted, OutputError, DeviceError, which concern all pairs
-  DisplacementField run(PairRecord& record, std::string const& path, PairNeighbours const& neighbours = {}) const;
+  PairVectors run(PairRecord& record, std::string const& path, std::string const& dots_path,
+                  PairNeighbours const& neighbours = {}) const;
 
  private:
   /// Frames of a pair and, for tracks, those before and after it.
@@ -46,18 +63,19 @@ class PairCorrelation {
     std::vector<std::string> warnings;
   };
 
-  DisplacementField measure(PairRecord& record, std::string const& path, PairNeighbours const& neighbours) const;
+  bool tracks_dots() const;
+  FileOrigin origin(SourceFiles sources, std::string const& device) const;
   Frames read_frames(PairRecord const& record, PairNeighbours const& neighbours) const;
   /// @return nullopt with a warning if the frame is not suitable
   std::optional<SequenceImage> read_neighbour(SequenceFrame const* frame, std::vector<std::string>& warnings) const;
-  DisplacementField correlate(Frames frames, PairRecord& record, std::string const& path) const;
+  PairVectors correlate(Frames frames, PairRecord& record, std::string const& path) const;
   /// Returns the hashes that a file of vectors records: those in common, and those of the frames.
   SourceFiles hashes(Frames const& frames) const;
   /// Reads the vectors of an earlier run.
   /// @param hashes  of this pair and its settings
   /// @return nullopt if they are missing or damaged, or if they belong to other frames or settings
-  std::optional<DisplacementField> read_finished(std::string const& path, SourceFiles const& hashes,
-                                                 PairRecord& record) const;
+  std::optional<PairVectors> read_finished(std::string const& path, std::string const& dots_path,
+                                           SourceFiles const& hashes, PairRecord& record) const;
 
   CorrelationFile const& settings_;
   SequenceSize size_;

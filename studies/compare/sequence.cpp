@@ -7,9 +7,12 @@
 #include <chrono>
 #include <exception>
 #include <optional>
+#include <utility>
 
 #include "analysis/correlation/correlation_methods.h"
+#include "analysis/tracking/track_numbers.h"
 #include "analysis/vectors/sequence_statistics.h"
+#include "analysis/vectors/track_vectors.h"
 #include "render/base/error.h"
 #include "render/base/interrupt.h"
 #include "render/base/parallel.h"
@@ -47,11 +50,17 @@ std::vector<std::string> summarise_warnings(std::vector<PairRecord> const& pairs
   return kinds.summary();
 }
 
+/// Returns in which frame the tracks of a pair continue in the next one.
+tracking::TrackNumbers::Continues continuation(Pairing pairing) {
+  using Continues = tracking::TrackNumbers::Continues;
+  return pairing == Pairing::reference ? Continues::in_frame_a : Continues::in_frame_b;
+}
+
 /// Implementation of correlate_sequence().
 class SequenceRun {
  public:
   SequenceRun(std::vector<SequencePair> const& pairs, SequenceSettings const& settings, bool shown)
-      : settings_(settings), shown_(shown) {
+      : settings_(settings), shown_(shown), track_numbers_(continuation(settings.pairing)) {
     for (SequencePair const& pair : pairs) {
       PairRecord record;
       record.pair = pair;
@@ -68,6 +77,7 @@ class SequenceRun {
     result_.device = device.correlates_on(correlation());
     std::optional<SequenceImage> first = find_size();
     SequenceFolder const folder(path);
+    if (tracks_dots()) folder.make_folder(sequence_file::dots);
     hash_settings();
     write_state(folder, false);
     stop_point("correlating");
@@ -91,6 +101,9 @@ class SequenceRun {
 
  private:
   CorrelationSettings const& correlation() const { return settings_.correlation.settings; }
+  bool tracks_dots() const { return correlation_method(correlation().method).tracks_dots; }
+
+  static std::string dots_file(PairRecord const& record) { return sequence_file::dots + ('/' + record.pair.vectors); }
 
   std::size_t count_with_vectors() const {
     return static_cast<std::size_t>(std::count_if(result_.pairs.begin(), result_.pairs.end(),
@@ -152,8 +165,10 @@ class SequenceRun {
   void correlate_all(PairCorrelation const& correlation, SequenceFolder const& folder) {
     PairProgress progress("correlate pairs", result_.pairs.size(), shown_);
     auto const threads = static_cast<std::size_t>(thread_count());
+    std::vector<PairDots> dots(result_.pairs.size());  // of the pairs whose fields wait for an earlier one
     OrderedFields fields(waiting_per_thread * threads, [&](std::size_t k, DisplacementField const& field) {
       result_.pairs[k].has_vectors() ? statistics_.add(field) : statistics_.skip();
+      if (tracks_dots()) store_dots(folder, result_.pairs[k], std::exchange(dots[k], {}));
     });
     std::atomic<std::size_t> next{0};
     // Bodies do not throw: an exception would cancel the parallel loops within the other bodies.
@@ -161,7 +176,10 @@ class SequenceRun {
       for (std::size_t k = next++; k < result_.pairs.size() && fields.wait_for(k); k = next++) {
         PairRecord& record = result_.pairs[k];
         try {
-          fields.add(k, correlation.run(record, folder.file(record.pair.vectors), neighbours(k)));
+          PairVectors vectors =
+              correlation.run(record, folder.file(record.pair.vectors), folder.file(dots_file(record)), neighbours(k));
+          dots[k] = std::move(vectors.dots);
+          fields.add(k, std::move(vectors.field));
         } catch (...) {
           fields.stop(std::current_exception());
         }
@@ -171,10 +189,22 @@ class SequenceRun {
     fields.throw_if_stopped();
   }
 
+  /// Numbers the tracks of a pair's dots and stores its scattered vectors.
+  void store_dots(SequenceFolder const& folder, PairRecord const& record, PairDots const& dots) {
+    if (!record.has_vectors()) {
+      track_numbers_.end_tracks();
+      return;
+    }
+    std::vector<std::int64_t> tracks;
+    if (settings_.pairing != Pairing::pairs) tracks = track_numbers_.number(dots.vectors);
+    if (dots.stored_tracks != tracks)
+      write_track_vectors(folder.file(dots_file(record)), dots.vectors, tracks, dots.origin);
+  }
+
   /// Returns the frames next to a pair over which particles are tracked: with consecutive frames, whose intervals are
   /// equal.
   PairNeighbours neighbours(std::size_t k) const {
-    if (settings_.pairing != Pairing::consecutive || !correlation_method(correlation().method).tracks_dots) return {};
+    if (settings_.pairing != Pairing::consecutive || !tracks_dots()) return {};
     std::vector<PairRecord> const& pairs = result_.pairs;
     auto const complete = [&pairs](std::size_t i) { return i < pairs.size() && pairs[i].pair.problem.empty(); };
     return {k > 0 && complete(k - 1) ? &pairs[k - 1].pair.reference : nullptr,
@@ -184,13 +214,12 @@ class SequenceRun {
   void finish(SequenceFolder const& folder) {
     result_.warnings = summarise_warnings(result_.pairs);
     if (count_with_vectors() > 0) {
-      SequenceMoments const moments = statistics_.moments();
-      result_.vectors = moments.position_px.size();
-      if (moments.unresolved * 10 > result_.vectors)
+      SequenceMoments const& moments = result_.statistics = statistics_.moments();
+      if (moments.unresolved * 10 > result_.vectors())
         result_.warnings.push_back(fmt::format(
             "{} of {} points remain correlated over all {} recorded lags (so that standard errors are too small); "
             "record a longer sequence at a lower rate",
-            moments.unresolved, result_.vectors, moments.lags));
+            moments.unresolved, result_.vectors(), moments.lags));
       SourceFiles sources;
       sources.add_known("settings", sources_.sha256("settings"));
       sources.add_known("sequence", hash_pairs());
@@ -222,6 +251,7 @@ class SequenceRun {
   SequenceSize size_;
   SourceFiles sources_;  ///< hashes that all pairs have in common
   SequenceStatistics statistics_;
+  tracking::TrackNumbers track_numbers_;
 };
 
 }  // namespace
@@ -246,7 +276,7 @@ SequenceSettings read_sequence_settings(Pairing pairing, std::string const& path
     throw DataError(
         ErrorCode::unsupported, KeyPath{"correlate.tracking.output"},
         "\"scattered\" gives vectors at other points for each pair (the statistics of a sequence require one "
-        "grid); choose \"grid\"");
+        "grid); choose \"grid\", which stores the scattered vectors as well");
   return settings;
 }
 

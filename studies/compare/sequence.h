@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/vectors/sequence_statistics.h"
 #include "studies/case/backend.h"
 #include "studies/compare/correlate.h"
 #include "studies/compare/sequence_frames.h"
@@ -14,6 +15,9 @@ namespace gladstone {
 namespace sequence_file {
 inline constexpr char const* state = "sequence.json";
 inline constexpr char const* statistics = "statistics.h5";
+inline constexpr char const* figure = "statistics.png";
+/// Folder of the scattered vectors of tracked dots, one file per pair with the name of its vectors.
+inline constexpr char const* dots = "dots";
 }  // namespace sequence_file
 
 /// Settings of a sequence.
@@ -47,9 +51,10 @@ struct SequenceResult {
   std::vector<PairRecord> pairs;
   std::string device;
   double seconds = 0;                 ///< wall time [s]
-  std::size_t vectors = 0;            ///< vectors per field; 0: no field
+  SequenceMoments statistics;         ///< without points if no pair has vectors
   std::vector<std::string> warnings;  ///< about several pairs at once, or about the statistics
 
+  std::size_t vectors() const { return statistics.position_px.size(); }  ///< vectors per field; 0: no field
   /// Counts the pairs of a state, and those with vectors of an earlier run.
   std::size_t count(PairState state) const;
   std::size_t count_resumed() const;
@@ -62,6 +67,8 @@ struct SequenceResult {
 /// - Vectors in the folder with the hashes of these frames and settings are read instead of computed again, so that the
 ///   same call continues an interrupted run.
 /// - With Pairing::consecutive, tracking uses the frames before and after a pair as well.
+/// - The scattered vectors of tracked dots are stored in the folder `dots`, with the numbers of their tracks if the
+///   pairs have frames in common (tracking::TrackNumbers).
 /// - At most thread_count() pairs of frames, with their neighbours for tracking, are in memory, besides backgrounds,
 ///   the sums of the statistics and a few fields that wait to be added to them.
 /// @param show_progress  report the progress on stderr

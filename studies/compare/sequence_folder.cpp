@@ -103,6 +103,12 @@ void SequenceFolder::lock() {
 
 std::string SequenceFolder::file(std::string const& name) const { return (fs::path(path_) / name).string(); }
 
+void SequenceFolder::make_folder(std::string const& name) const {
+  std::error_code error;
+  fs::create_directories(file(name), error);
+  if (error) OutputDestination(file(name)).fail("cannot be created", error.value());
+}
+
 void write_sequence_state(std::string const& path, SequenceState const& state, std::vector<PairRecord> const& pairs) {
   nlohmann::json list = nlohmann::json::array();
   for (PairRecord const& record : pairs) {

@@ -19,6 +19,8 @@ class SequenceFolder {
 
   /// Returns the path of a file in the folder.
   std::string file(std::string const& name) const;
+  /// Creates a folder in the folder if it is missing. @throws OutputError
+  void make_folder(std::string const& name) const;
 
  private:
   void lock();

@@ -173,9 +173,33 @@ TEST(TrackEvidence, ServesImagesOfASequence) {
   };
   int const two = count_right(track_dots(images[1], images[2], predictor));
   TrackFrames const alone({images[1], images[2]}, std::nullopt, std::nullopt);
-  EXPECT_EQ(count_right(track_dots(alone, predictor)), two);
+  LocatedFrames const located({}, 4);
+  EXPECT_EQ(count_right(track_dots(alone, predictor, {}, located)), two);
   TrackFrames const sequence({images[1], images[2]}, images[0], images[3]);
-  EXPECT_GT(count_right(track_dots(sequence, predictor)), 2 * two);
+  EXPECT_GT(count_right(track_dots(sequence, predictor, {}, located)), 2 * two);
+}
+
+// A frame is located once: the second call returns the same object, and with room for two frames the third frame
+// replaces the one that was used first. A frame that differs by one grey level is another one.
+TEST(LocatedFrames, RemembersTheLastFrames) {
+  KeyedEngine random(3, RandomStream::target, 0);
+  Image<double> const first = test::dot_image(32, {{{12.3, 15.8}, 20000}}, 2500, 200, random);
+  Image<double> second = first, third = first;
+  second(5, 5) += 1;
+  third(6, 6) += 1;
+  LocatedFrames const located({}, 2);
+  auto const locate = [&](Image<double> const* a, Image<double> const* b) {
+    return located.locate(std::array<Image<double> const*, 2>{a, b});
+  };
+  auto const once = locate(&first, &second), again = locate(&second, &first);
+  EXPECT_EQ(once[0], again[1]);
+  EXPECT_EQ(once[1], again[0]);
+  EXPECT_NE(once[0], once[1]);
+  ASSERT_EQ(once[0]->dots.size(), 1u);
+  EXPECT_NEAR(once[0]->dots[0].image.centre.x, 12.3, 0.1);
+  EXPECT_EQ(locate(&third, nullptr)[1], nullptr);
+  EXPECT_EQ(locate(&first, nullptr)[0], once[0]);
+  EXPECT_NE(locate(&second, nullptr)[0], once[1]);
 }
 
 }  // namespace

@@ -139,6 +139,12 @@ TEST_F(Inputs, RejectsNamesThatFileSystemsCannotStore) {
 TEST_F(Inputs, CommandLinesAreRefusedInOurWords) {
   expect_told({"render"}, "is required. See gladstone render --help");
   expect_told({"render", "setup.toml", "-o"}, "--output needs a value. See gladstone render --help");
+  expect_told({"stereo", "a", "b", "--sheet-slope", "1"}, "--sheet-slope needs 2 values, got 1");
+  expect_told({"stereo", "a", "b", "--sheet-z", "abc"}, "--sheet-z: expected a number, got \"abc\"");
+  expect_told({"stereo", "a", "b", "--spacing", "-1"}, "--spacing: expected a number above 0, got \"-1\"");
+  expect_told({"stereo", "a", "b", "--window", "nan"}, "--window: expected a number of at least 0, got \"nan\"");
+  expect_told({"info", "lens", "a", "--wavelength-nm", "1"}, "expected a number from 100 to 20000, got \"1\"");
+  expect_told({"design", "a", "--verify", "-1"}, "--verify: expected an integer from 0 to 100, got \"-1\"");
   expect_told({"render", "setup.toml", "-o", "case", "--threads", "many"},
               "--threads: expected an integer from 0 to 4096, got \"many\"");
   expect_told({"render", "setup.toml", "-o", "case", "--threads", "-1"},

@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <map>
 #include <random>
 #include <set>
 
@@ -57,6 +58,33 @@ class Sequences : public ProgramFixture {
       write_image("A_" + std::to_string(8 + k) + ".tif", dots_at({}, seed));
       write_image("B_" + std::to_string(8 + k) + ".tif", dots_at(shifts[k], seed));
     }
+  }
+  /// Expects that valid vectors in out/dots/img_1.h5 to img_4.h5 with one track are those of one particle: each starts
+  /// where the previous one ends, and nearly all particles in the middle have a track through all pairs.
+  void expect_tracks(Vec2d shift) const {
+    std::map<std::int64_t, Vec2d> ends;
+    std::size_t complete = 0;
+    for (int k = 1; k <= 4; ++k) {
+      Hdf5Reader const file(in(fmt::format("out/dots/img_{}.h5", k)).string());
+      auto const tracks = file.read_integers("/track"), status = file.read_integers("/status");
+      auto const x = file.read("/x_px"), y = file.read("/y_px"), u = file.read("/u_px"), v = file.read("/v_px");
+      std::map<std::int64_t, Vec2d> next;
+      complete = 0;
+      for (std::size_t i = 0; i < tracks.size(); ++i) {
+        if (status[i] != 0) continue;
+        Vec2d const middle{x[i], y[i]}, half{0.5 * u[i], 0.5 * v[i]};
+        EXPECT_TRUE(next.emplace(tracks[i], middle + half).second) << "two vectors of one track";
+        EXPECT_LT(length(2 * half - shift), 1) << k;
+        auto const before = ends.find(tracks[i]);
+        if (k > 1 && before != ends.end()) {
+          EXPECT_LT(length(before->second - (middle - half)), 1e-6);
+          ++complete;
+        }
+      }
+      EXPECT_GT(next.size(), 60u);
+      ends = std::move(next);
+    }
+    EXPECT_GT(complete, 50u);
   }
   /// Writes a TIFF of several pages.
   void write_stack(std::string const& name, std::vector<Image<std::uint16_t>> const& pages) const {
@@ -118,7 +146,8 @@ TEST_F(Sequences, OfPairsAreTheSingleCorrelations) {
   EXPECT_EQ(json["done"], 3);
   EXPECT_EQ(json["resumed"], 0);
   EXPECT_THAT(json["failed"], testing::IsEmpty());
-  EXPECT_THAT(names("out"), ElementsAre("A_10.h5", "A_8.h5", "A_9.h5", "sequence.json", "statistics.h5"));
+  EXPECT_THAT(names("out"),
+              ElementsAre("A_10.h5", "A_8.h5", "A_9.h5", "sequence.json", "statistics.h5", "statistics.png"));
   for (std::size_t k = 0; k < 3; ++k) {
     std::string const number = std::to_string(8 + k);
     expect_shift("out/A_" + number + ".h5", shifts[k]);
@@ -209,7 +238,8 @@ TEST_F(Sequences, AreThePagesOfOneFile) {
   for (double const u : at) pages.push_back(dots_at({u, 0}));
   write_stack("stack.tif", pages);
   succeed(arguments({"stack.tif"}, "pairs/"));
-  EXPECT_THAT(names("pairs"), ElementsAre("sequence.json", "stack_p0001.h5", "stack_p0003.h5", "statistics.h5"));
+  EXPECT_THAT(names("pairs"),
+              ElementsAre("sequence.json", "stack_p0001.h5", "stack_p0003.h5", "statistics.h5", "statistics.png"));
   expect_shift("pairs/stack_p0001.h5", {1, 0});
   expect_shift("pairs/stack_p0003.h5", {1.5, 0});
   succeed(arguments({"stack.tif"}, "reference/", {"--pairing", "reference"}));
@@ -217,6 +247,35 @@ TEST_F(Sequences, AreThePagesOfOneFile) {
   succeed(arguments({"stack.tif"}, "consecutive/", {"--pairing", "consecutive"}));
   expect_shift("consecutive/stack_p0002.h5", {-0.75, 0});
   EXPECT_EQ(read_state("consecutive")["pairs"][1]["flow"]["page"], 3);
+}
+
+// A stack that was not copied to its end declares a page that cannot be read: its pair is named, the others are done.
+TEST_F(Sequences, NameTheMissingPageOfAStackThatIsCutShort) {
+  write_stack("stack.tif", {dots_at({}), dots_at({1, 0}), dots_at({2, 0})});
+  std::filesystem::resize_file(in("stack.tif"), std::filesystem::file_size(in("stack.tif")) - 60);
+  Outcome const outcome = gladstone(arguments({"stack.tif"}, "out/", {"--pairing", "consecutive"}));
+  EXPECT_EQ(outcome.exit_code, 1) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("stack.tif"));
+  EXPECT_EQ(read_state("out")["pairs"][0]["state"], "done");
+  EXPECT_EQ(read_state("out")["pairs"][1]["state"], "failed");
+}
+
+// With one reference, the dots retain their numbers; pairs without common frames have scattered vectors without tracks.
+TEST_F(Sequences, StoreTheDotsOfEveryPair) {
+  write_pairs({{1, 0}, {1, 0.5}});
+  std::vector<std::string> const more{"--set", "correlate.method=tracking"};
+  succeed(arguments({"A_*.tif", "B_*.tif"}, "pairs/", more));
+  EXPECT_FALSE(Hdf5Reader(in("pairs/dots/A_8.h5").string()).has("/track"));
+  EXPECT_TRUE(std::filesystem::exists(in("pairs/statistics.png")));
+  for (int k = 0; k < 3; ++k) write_image(fmt::format("flow_{}.tif", k), dots_at({0.5 * k, 0.25}));
+  succeed(arguments({"flow_0.tif", "flow_1.tif", "flow_2.tif"}, "bos/",
+                    {"--pairing", "reference", "--no-figures", "--set", "correlate.method=tracking"}));
+  EXPECT_FALSE(std::filesystem::exists(in("bos/statistics.png")));
+  Hdf5Reader const first(in("bos/dots/flow_1.h5").string()), second(in("bos/dots/flow_2.h5").string());
+  auto const tracks = first.read_integers("/track");
+  EXPECT_GT(tracks.size(), 50u);
+  EXPECT_EQ(tracks, second.read_integers("/track"));
+  EXPECT_EQ(tracks.back(), static_cast<std::int64_t>(tracks.size()) - 1);
 }
 
 // Tracking of consecutive images also uses the frames before and after a pair: its file records their hashes, so that
@@ -243,10 +302,14 @@ TEST_F(Sequences, OfTracksUseFourFrames) {
   for (int k = 1; k <= 4; ++k) {
     expect_shift(fmt::format("out/img_{}.h5", k), {2.5, 1});
     expect_same_datasets(fmt::format("out/img_{}.h5", k), fmt::format("other/img_{}.h5", k));
+    expect_same_datasets(fmt::format("out/dots/img_{}.h5", k), fmt::format("other/dots/img_{}.h5", k));
   }
+  expect_tracks({2.5, 1});
   EXPECT_EQ(json_of(command("out/", "1"))["resumed"], 4);
   write_image("img_5.tif", dots_at(5 * Vec2d{2.5, 1}, 1, side, 1100));
   EXPECT_EQ(json_of(command("out/", "1"))["resumed"], 2);  // not 3-4, whose frame after it is, and 4-5
+  std::filesystem::remove(in("out/dots/img_2.h5"));
+  EXPECT_EQ(json_of(command("out/", "1"))["resumed"], 3);
 
   // A frame that cannot be used fails its own pairs alone.
   write_image("img_5.tif", dots_at({}, 1, 80));
@@ -340,7 +403,7 @@ TEST_F(Sequences, NeverStoreIncompleteVectors) {
   }
   EXPECT_THAT(names("out"), testing::Not(testing::Contains("A_8.h5")));
   EXPECT_EQ(json_of(command)["resumed"], 0);
-  EXPECT_THAT(names("out"), ElementsAre("A_8.h5", "A_9.h5", "sequence.json", "statistics.h5"));
+  EXPECT_THAT(names("out"), ElementsAre("A_8.h5", "A_9.h5", "sequence.json", "statistics.h5", "statistics.png"));
 }
 
 // Ctrl-C ends the run with exit code 130 and retains the finished pairs.

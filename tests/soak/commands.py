@@ -20,7 +20,7 @@ COMMANDS = {
     "target": ("pattern.pdf", ["target", "a.toml"], ["--set", "target.seed=8"]),
     "tracking": ("vectors.csv", ["correlate", "known_a", "--set", 'correlate.method="tracking"'],
                  ["--set", 'correlate.tracking.output="scattered"']),
-    "sequence": ("run", ["correlate", "frames/a*.tif", "frames/b*.tif"], None),
+    "sequence": ("run", ["correlate", "frames/a*.tif", "frames/b*.tif", "--no-figures"], None),
 }
 
 

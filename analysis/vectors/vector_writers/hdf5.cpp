@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
+#include <iterator>
 #include <span>
+#include <utility>
 
 #include "analysis/vectors/vector_writers/vector_columns.h"
 #include "analysis/vectors/vector_writers/vector_writers.h"
@@ -39,9 +41,15 @@ void write_grid(Hdf5Writer& file, std::string const& path, DisplacementField con
 }  // namespace
 
 void write_vector_hdf5(std::string const& path, DisplacementField const& field, FileOrigin const& origin) {
+  write_vector_columns(path, field, {}, origin);
+}
+
+void write_vector_columns(std::string const& path, DisplacementField const& field, std::vector<VectorColumn> more,
+                          FileOrigin const& origin) {
   Hdf5Writer file(path, origin);
   std::vector<VectorColumn> columns = vector_columns(field);
   columns.push_back(failed_test_column(field));
+  columns.insert(columns.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
   std::vector<std::int64_t> numbers(field.size());
   for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = static_cast<std::int64_t>(i);
   file.write("/vector", std::span<std::int64_t const>(numbers), {numbers.size()}, "1", "number of the vector, from 0",
