@@ -26,8 +26,6 @@ def _host_image(image):
         return np.asarray(image)  # JAX
     if isinstance(image, (list, tuple)):
         image = np.asarray(image)
-    if getattr(image, "dtype", None) == bool:
-        image = np.asarray(image, dtype=np.uint8)
     return image
 
 
@@ -44,7 +42,7 @@ def correlate(a, b, *, device: str = "auto", progress: Progress = False, **setti
     """Measures the displacement from frame a to frame b by cross-correlation.
 
     a, b: images [rows, columns] of any array library with the buffer or the DLPack protocol (NumPy, torch, CuPy, JAX),
-        of integers or floats. BOS: the reference image first.
+        of integers or floats, in any memory layout. BOS: the reference image first. Each is copied once, to float64.
     window: size of the interrogation window in each pass [px], for example [64, 32, 24, 20].
     overlap: fraction of the window that neighbouring windows share.
     uncertainty: method that estimates sigma_u and sigma_v; default: correlation statistics on a CPU, none on a GPU.
@@ -223,6 +221,17 @@ class Field:
     def verdict(self) -> str:
         """Result of the decorrelation test: "correlates", "does not correlate" or "not judged: REASON"."""
         return self._core.verdict
+
+    @property
+    def uncertainty_method(self) -> str:
+        """Method that estimated sigma_u and sigma_v: a value of correlate.uncertainty, or "dot_fit" of tracked dots;
+        "none": not estimated, "": unknown."""
+        return self._core.uncertainty_method
+
+    @property
+    def uncertainty_key(self) -> str:
+        """Key that selected this method, for example 'correlate.uncertainty = "auto"'; "": unknown."""
+        return self._core.uncertainty_key
 
     @property
     def warnings(self) -> list[str]:

@@ -10,6 +10,7 @@
 #include "analysis/correlation/correlator.h"
 #include "analysis/correlation/pair_assessment.h"
 #include "analysis/tracking/track_frames.h"
+#include "analysis/uncertainty/uncertainty.h"
 #include "analysis/vectors/vector_file.h"
 #include "render/base/error.h"
 #include "render/base/interrupt.h"
@@ -164,6 +165,7 @@ DisplacementField PairCorrelation::correlate(Frames frames, PairRecord& record, 
   if (std::string advice = locking_advice(pair.reference()); frames_correlate(field) && !advice.empty())
     field.warnings.push_back(std::move(advice));
   record.warnings = field.warnings;
+  record_uncertainty(field, settings_.settings, CorrelatedFrames::sequence);
   write_vectors(path, field, {"gladstone vectors", 1, settings_.resolved, 0, measurement.device, std::move(sources)});
   stop_point("pair-finished");
   return std::move(field);
