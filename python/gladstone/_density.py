@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import os
-import tempfile
 from collections.abc import Sequence
 from typing import Any, Literal
 
@@ -13,7 +12,7 @@ import numpy as np
 from . import _core
 from ._case import Case
 from ._errors import check_choice
-from ._measurement import Box, Measurement, place_of, reference_texts, vectors_place
+from ._measurement import Box, InputFolder, Measurement, place_of, reference_texts, vectors_place
 from ._progress import Progress, reporting
 from ._xarray import grid_variable
 from ._setup import Setup
@@ -169,7 +168,7 @@ def reconstruct(
     """
     check_choice("method", method, ("wls", "poisson"))
     check_choice("abel", abel, ("direct", "tikhonov"))
-    inputs = tempfile.TemporaryDirectory()
+    inputs = InputFolder()
     folder = inputs.name
     with reporting(progress) as report:
         place = place_of(folder, source if setup is None else setup)

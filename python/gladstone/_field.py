@@ -29,6 +29,17 @@ def _host_image(image):
     return image
 
 
+def _check_image(image, name: str) -> None:
+    """Raises a TypeError, or ValueError, for what is no image [rows, columns]."""
+    if image is None or isinstance(image, (str, os.PathLike)):
+        raise TypeError(
+            f"{name} is {image!r}, not an image [rows, columns]; read files first, for example by tifffile.imread"
+        )
+    shape = getattr(image, "shape", None)
+    if shape is not None and len(shape) != 2:
+        raise ValueError(f"{name} has the shape {tuple(shape)}; give a grey image [rows, columns]")
+
+
 def _overrides(settings: dict[str, Any]) -> list[str]:
     """Returns settings of the correlation as assignments of setup keys, "correlate.overlap=0.5"."""
     given = {name: value for name, value in settings.items() if value is not None}
@@ -51,6 +62,8 @@ def correlate(a, b, *, device: str = "auto", progress: Progress = False, **setti
     The vectors are equal bit by bit to those of `gladstone correlate`.
     Raises `SetupError` for settings and `DataError` for images that cannot be correlated.
     """
+    _check_image(a, "a")
+    _check_image(b, "b")
     with reporting(progress) as report:
         core = _core.correlate(_host_image(a), _host_image(b), _overrides(settings), device, report)
     field = Field._of(core)
@@ -107,10 +120,14 @@ class Field:
 
     @classmethod
     def of(cls, given) -> Field:
-        """Returns a field: of a `Field`, of arrays (x, y, u, v), of an xarray data set, or of dense displacements
-        [rows, columns, 2] at every pixel."""
+        """Returns a field: of a `Field`, of arrays (x, y, u, v), of an xarray data set, of dense displacements
+        [rows, columns, 2] at every pixel, or of the path of a file for `load`."""
         if isinstance(given, Field):
             return given
+        if given is None:
+            raise TypeError("expected vectors, got None; does the function that measured them return them?")
+        if isinstance(given, (str, os.PathLike)):
+            return cls.load(given)
         if hasattr(given, "data_vars"):
             return cls.from_xarray(given)
         if isinstance(given, (tuple, list)):

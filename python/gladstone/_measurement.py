@@ -4,7 +4,9 @@ their inputs."""
 from __future__ import annotations
 
 import os
+import shutil
 import tempfile
+import weakref
 from collections.abc import Sequence
 
 import numpy as np
@@ -17,10 +19,18 @@ Box = Sequence[float]
 """Corners x0, y0, x1, y1 of a box in mm from the optical axis, x to the right and y upwards."""
 
 
+class InputFolder:
+    """Temporary folder for the input files of a measurement, deleted with its last owner."""
+
+    def __init__(self):
+        self.name = tempfile.mkdtemp(prefix="gladstone_")
+        weakref.finalize(self, shutil.rmtree, self.name, ignore_errors=True)
+
+
 class Measurement:
     """Measurement that was computed by the libraries of gladstone."""
 
-    def __init__(self, core, inputs: tempfile.TemporaryDirectory | None = None):
+    def __init__(self, core, inputs: InputFolder | None = None):
         """inputs: folder of files that the measurement was computed from; `save` checks and records their hashes."""
         self._core = core
         self._inputs = inputs

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import os
-import tempfile
 from collections.abc import Sequence
 from typing import Any, Literal
 
@@ -13,7 +12,7 @@ import numpy as np
 from . import _core
 from ._case import Case
 from ._errors import check_choice
-from ._measurement import Measurement, case_place, measured_case_place, vectors_place
+from ._measurement import InputFolder, Measurement, case_place, measured_case_place, vectors_place
 from ._progress import Progress, reporting
 from ._xarray import grid_variable
 
@@ -173,7 +172,7 @@ def stereo(
     Raises `SetupError` for invalid options, and `DataError` for files that are missing or do not fit together.
     """
     check_choice("dewarp", dewarp, ("vectors", "images"))
-    inputs = tempfile.TemporaryDirectory()
+    inputs = InputFolder()
     with reporting(progress) as report:
         places = [_input(inputs.name, name, source, dewarp, device)
                   for name, source in (("first", first), ("second", second))]  # fmt: skip

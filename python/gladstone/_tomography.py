@@ -12,7 +12,7 @@ import numpy as np
 
 from . import _core
 from ._case import Case
-from ._measurement import Box, Measurement, measured_case_place, place_of, reference_texts, vectors_place
+from ._measurement import Box, InputFolder, Measurement, measured_case_place, place_of, reference_texts, vectors_place
 from ._progress import Progress, reporting
 from ._setup import Setup
 from ._xarray import volume_variable
@@ -145,7 +145,7 @@ def tomography(
     """
     if bounds_mm is not None and len(bounds_mm) != 6:
         raise ValueError(f"bounds_mm must be six numbers, got {len(bounds_mm)}")
-    inputs = tempfile.TemporaryDirectory()
+    inputs = InputFolder()
 
     def place(i: int, case: Case | Setup | str | os.PathLike) -> str:
         measured = isinstance(case, Case) and not vectors and not ray_truth

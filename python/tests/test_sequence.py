@@ -90,3 +90,10 @@ def test_progress_counts_pairs(frames):
     calls = []
     gs.correlate_sequence(frames, device="cpu", progress=lambda *call: calls.append(call), **SETTINGS)
     assert calls[-1][1:] == (2, 2)
+
+
+def test_setup_without_a_sequence_is_refused(piv, tmp_path):
+    with pytest.raises(gs.SetupError, match=r"\[sequence\]") as caught:
+        gs.render_sequence(piv, tmp_path / "frames")
+    assert caught.value.problems[0].key == "sequence"
+    assert not (tmp_path / "frames").exists()
