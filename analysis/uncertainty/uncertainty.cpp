@@ -1,5 +1,7 @@
 #include "analysis/uncertainty/uncertainty.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -43,6 +45,22 @@ ImagePair matched_frames(DisplacementField const& field, InterrogationGrid const
   Image<double> const& reference = frames.reference();
   DensePredictor const predictor(grid, nodes, reference.columns(), reference.rows());
   return PairDeformer(reference, frames.flow(), schedule.spline_degree()).deform(predictor);
+}
+
+/// Returns why uncertainty = "auto" selects no method.
+std::string obstacle_of_auto(CorrelationSettings const& settings, CorrelatedFrames frames) {
+  switch (frames) {
+    case CorrelatedFrames::pair_on_gpu:
+      return "on a GPU";
+    case CorrelatedFrames::sequence:
+      return "sequence";
+    case CorrelatedFrames::ensemble:
+      return "ensemble";
+    case CorrelatedFrames::pair_on_cpu:
+      break;
+  }
+  bool const matched = settings.window_px.size() > 1 || settings.final_passes > 1;
+  return matched ? fmt::format("correlate.method = \"{}\"", settings.method) : "correlate.window_px has a single pass";
 }
 
 }  // namespace
@@ -101,6 +119,21 @@ CorrelationSettings choose_uncertainty(CorrelationSettings settings, bool on_cpu
   bool const estimated = !correlation_method(settings.method).tracks_dots && uncertainty_caveat(settings).empty();
   if (!on_cpu || !estimated) settings.uncertainty = "none";
   return settings;
+}
+
+void record_uncertainty(DisplacementField& field, CorrelationSettings const& given, CorrelatedFrames frames) {
+  if (correlation_method(given.method).tracks_dots) {
+    field.uncertainty_method = "dot_fit";
+    field.uncertainty_key = fmt::format("correlate.method = \"{}\"", given.method);
+    return;
+  }
+  field.uncertainty_key = fmt::format("correlate.uncertainty = \"{}\"", given.uncertainty);
+  field.uncertainty_method = given.uncertainty;
+  if (given.uncertainty != "auto") return;
+  bool const pair_on_cpu = frames == CorrelatedFrames::pair_on_cpu;
+  field.uncertainty_method = pair_on_cpu ? choose_uncertainty(given, true).uncertainty : "none";
+  if (field.uncertainty_method == "none")
+    field.uncertainty_key += fmt::format(" ({})", obstacle_of_auto(given, frames));
 }
 
 void estimate_uncertainty(DisplacementField& field, FramePair const& frames, CorrelationSettings const& settings) {

@@ -61,6 +61,14 @@ bool uncertainty_on_gpu(std::string const& method);
 /// @param on_cpu  whether the vectors are correlated on a CPU
 CorrelationSettings choose_uncertainty(CorrelationSettings settings, bool on_cpu);
 
+/// What was correlated, on which "auto" depends.
+enum class CorrelatedFrames { pair_on_cpu, pair_on_gpu, sequence, ensemble };
+
+/// Records in the field which method estimated its uncertainty, and which key selected it. For "auto" that estimated
+/// none, the reason follows the key, e.g. `correlate.uncertainty = "auto" (on a GPU)`.
+/// @param given  settings before choose_uncertainty()
+void record_uncertainty(DisplacementField& field, CorrelationSettings const& given, CorrelatedFrames frames);
+
 /// Returns a warning if the uncertainty is underestimated with these settings: the methods describe the effect of noise
 /// on peaks of a linear correlation between frames that were matched in several passes (docs/estimators.md). Empty: no
 /// warning.

@@ -61,6 +61,10 @@ struct DisplacementField {
   std::vector<std::string> warnings;  ///< warnings about the measurement as a whole
   /// Result of the decorrelation test: "correlates", "does not correlate" or "not judged: REASON"; empty: not tested.
   std::string verdict;
+  /// Method that estimated sigma_px: a value of correlate.uncertainty, or "dot_fit" of tracked dots; empty: unknown.
+  std::string uncertainty_method;
+  /// Key that selected the method, e.g. `correlate.uncertainty = "auto"`, see record_uncertainty(); empty: unknown.
+  std::string uncertainty_key;
 
   std::size_t size() const { return position_px.size(); }
   /// Returns true if the vector is included in statistics (valid or replaced).

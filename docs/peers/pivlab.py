@@ -1,4 +1,4 @@
-"""PIVlab under GNU Octave, imported by steep_gradients.py: three passes of 64, 32 and 16 px (piv_FFTmulti, three-point
+"""PIVlab under GNU Octave, imported by peer_pivlab.py and steep_gradients.py: three passes of 64, 32 and 16 px (piv_FFTmulti, three-point
 fit, deformation by splines), then the validation of PIVlab's example for the command line: standard deviation 7, median
 3, removed vectors filled.
 
@@ -50,13 +50,16 @@ addpath(pwd)
 lines = fopen('pairs.txt');
 while ischar(folder = fgetl(lines))
   a = imread(fullfile(folder, 'a.tif')); b = imread(fullfile(folder, 'b.tif'));
+  start = tic;
   [x, y, u, v] = piv.piv_FFTmulti('image1', a, 'image2', b, 'interrogationarea', 64, 'step', 32, 'passes', 3, ...
     'int2', 32, 'int3', 16, 'imdeform', '*spline');
   [u, v] = postproc.PIVlab_postproc('u', u, 'v', v, 'valid_vel', [-50; 50; -50; 50], 'do_stdev_check', 1, ...
     'stdthresh', 7, 'do_local_median', 1, 'neigh_thresh', 3);
   removed = isnan(u) | isnan(v);
   u = misc.inpaint_nans(double(u), 4); v = misc.inpaint_nans(double(v), 4);
+  seconds = toc(start);
   vectors = double([x(:), y(:), u(:), v(:), removed(:)]);
+  save('-text', fullfile(folder, 'seconds.txt'), 'seconds');
   save('-text', fullfile(folder, 'pivlab.txt'), 'vectors');
 end
 """
@@ -83,6 +86,12 @@ def convert(text):
 
 def measure(repository, folders):
     """Yields x, y, u, v [px] of the pair a.tif, b.tif of each folder; x and y from 0 at the first pixel's centre."""
+    for _, vectors in measure_with_times(repository, folders):
+        yield vectors
+
+
+def measure_with_times(repository, folders):
+    """Yields the time without start and reading [s], and the vectors of measure()."""
     with tempfile.TemporaryDirectory() as temporary:
         work = pathlib.Path(temporary)
         for name in FILES:
@@ -97,4 +106,5 @@ def measure(repository, folders):
             raise RuntimeError(done.stdout + done.stderr)
         for folder in folders:
             x, y, u, v, _ = np.loadtxt(folder / "pivlab.txt").T
-            yield x - 1.0, y - 1.0, u, v  # from 1 to 0; uniform gradients are then measured without bias
+            seconds = float(np.loadtxt(folder / "seconds.txt"))
+            yield seconds, (x - 1.0, y - 1.0, u, v)  # from 1 to 0; uniform gradients are then measured without bias

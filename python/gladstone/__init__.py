@@ -38,7 +38,7 @@ from ._setup import Setup, render
 from ._stereo import ThreeComponents, stereo
 from ._study import Study, StudyRun
 from ._templates import SetupKey, init, keys
-from ._tomography import Tomography, reconstruct_lines, tomography
+from ._tomography import Tomography, reconstruct_lines, tomography, tomography_setups
 from ._trace import TracedRays, trace
 from ._version import __version__, build
 from .info import Mie, mie
@@ -57,5 +57,5 @@ __all__ = [
     "benchmark_estimators", "build", "calibrate", "compare", "convert", "correlate", "correlate_ensemble",
     "correlate_sequence", "demo", "design", "gallery", "info", "init", "keys", "mie", "preview", "reconstruct",
     "reconstruct_lines", "render", "render_sequence", "report", "set_threads", "stereo", "target", "threads",
-    "tomography", "trace", "validate", "views",
+    "tomography", "tomography_setups", "trace", "validate", "views",
 ]  # fmt: skip

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import time
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any, Literal
@@ -112,6 +113,8 @@ def benchmark(
     Returns the scores, a row for each estimator and case; `print` shows the rms errors in px.
     """
     check_choice("at", at, ("mid", "a"))
+    if estimators is not None and not isinstance(estimators, Mapping):
+        raise TypeError('estimators must be functions by name: {"mine": my_function}')
     scores = Scores()
     names = list(cases) if cases is not None else benchmark_cases()
     with reporting(progress) as report:
@@ -133,7 +136,7 @@ def benchmark(
 
 def _at_mid_positions(given, at: str) -> Field:
     """Returns the field of an estimator; moves dense displacements of frame a to their mid-positions."""
-    dense = not isinstance(given, (Field, tuple, list)) and not hasattr(given, "data_vars")
+    dense = not isinstance(given, (Field, tuple, list, str, os.PathLike)) and not hasattr(given, "data_vars")
     field = Field.of(given)
     if at == "mid" or not dense:
         return field

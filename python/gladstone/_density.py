@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import os
-import tempfile
 from collections.abc import Sequence
 from typing import Any, Literal
 
@@ -13,7 +12,7 @@ import numpy as np
 from . import _core
 from ._case import Case
 from ._errors import check_choice
-from ._measurement import Box, Measurement, place_of, reference_texts, vectors_place
+from ._measurement import Box, InputFolder, Measurement, place_of, reference_texts, vectors_place
 from ._progress import Progress, reporting
 from ._xarray import grid_variable
 from ._setup import Setup
@@ -85,6 +84,10 @@ class Density(Measurement):
     def budget(self) -> dict[str, dict[str, float]]:
         """Causes of the error by name, with bias and rms [kg/m^3]; empty unless requested by `budget=True`."""
         return self.summary.get("budget_kg_m3", {})
+
+    def save(self, path: str | os.PathLike) -> None:
+        """Writes density.h5 of `gladstone reconstruct`: density, uncertainty and gradient with their axes [mm]."""
+        self._core.save(os.fspath(path))
 
     def to_xarray(self):
         """Returns an xarray.Dataset over (y, x) in mm: density, sigma, sigma_random, region, reference, and for a
@@ -165,7 +168,9 @@ def reconstruct(
     """
     check_choice("method", method, ("wls", "poisson"))
     check_choice("abel", abel, ("direct", "tikhonov"))
-    with tempfile.TemporaryDirectory() as folder, reporting(progress) as report:
+    inputs = InputFolder()
+    folder = inputs.name
+    with reporting(progress) as report:
         place = place_of(folder, source if setup is None else setup)
         vectors = "" if setup is None else vectors_place(folder, source)
         if isinstance(source, Case) and not source._core.folder:
@@ -175,4 +180,4 @@ def reconstruct(
             scale_uncertainty, method == "wls", overlap, deconvolve, axis, abel == "tikhonov", lambda_, samples, budget,
             device, report,
         )  # fmt: skip
-    return Density(core)
+    return Density(core, inputs)

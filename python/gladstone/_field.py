@@ -26,9 +26,18 @@ def _host_image(image):
         return np.asarray(image)  # JAX
     if isinstance(image, (list, tuple)):
         image = np.asarray(image)
-    if getattr(image, "dtype", None) == bool:
-        image = np.asarray(image, dtype=np.uint8)
     return image
+
+
+def _check_image(image, name: str) -> None:
+    """Raises a TypeError, or ValueError, for what is no image [rows, columns]."""
+    if image is None or isinstance(image, (str, os.PathLike)):
+        raise TypeError(
+            f"{name} is {image!r}, not an image [rows, columns]; read files first, for example by tifffile.imread"
+        )
+    shape = getattr(image, "shape", None)
+    if shape is not None and len(shape) != 2:
+        raise ValueError(f"{name} has the shape {tuple(shape)}; give a grey image [rows, columns]")
 
 
 def _overrides(settings: dict[str, Any]) -> list[str]:
@@ -44,7 +53,7 @@ def correlate(a, b, *, device: str = "auto", progress: Progress = False, **setti
     """Measures the displacement from frame a to frame b by cross-correlation.
 
     a, b: images [rows, columns] of any array library with the buffer or the DLPack protocol (NumPy, torch, CuPy, JAX),
-        of integers or floats. BOS: the reference image first.
+        of integers or floats, in any memory layout. BOS: the reference image first. Each is copied once, to float64.
     window: size of the interrogation window in each pass [px], for example [64, 32, 24, 20].
     overlap: fraction of the window that neighbouring windows share.
     uncertainty: method that estimates sigma_u and sigma_v; default: correlation statistics on a CPU, none on a GPU.
@@ -53,6 +62,8 @@ def correlate(a, b, *, device: str = "auto", progress: Progress = False, **setti
     The vectors are equal bit by bit to those of `gladstone correlate`.
     Raises `SetupError` for settings and `DataError` for images that cannot be correlated.
     """
+    _check_image(a, "a")
+    _check_image(b, "b")
     with reporting(progress) as report:
         core = _core.correlate(_host_image(a), _host_image(b), _overrides(settings), device, report)
     field = Field._of(core)
@@ -109,10 +120,14 @@ class Field:
 
     @classmethod
     def of(cls, given) -> Field:
-        """Returns a field: of a `Field`, of arrays (x, y, u, v), of an xarray data set, or of dense displacements
-        [rows, columns, 2] at every pixel."""
+        """Returns a field: of a `Field`, of arrays (x, y, u, v), of an xarray data set, of dense displacements
+        [rows, columns, 2] at every pixel, or of the path of a file for `load`."""
         if isinstance(given, Field):
             return given
+        if given is None:
+            raise TypeError("expected vectors, got None; does the function that measured them return them?")
+        if isinstance(given, (str, os.PathLike)):
+            return cls.load(given)
         if hasattr(given, "data_vars"):
             return cls.from_xarray(given)
         if isinstance(given, (tuple, list)):
@@ -223,6 +238,17 @@ class Field:
     def verdict(self) -> str:
         """Result of the decorrelation test: "correlates", "does not correlate" or "not judged: REASON"."""
         return self._core.verdict
+
+    @property
+    def uncertainty_method(self) -> str:
+        """Method that estimated sigma_u and sigma_v: a value of correlate.uncertainty, or "dot_fit" of tracked dots;
+        "none": not estimated, "": unknown."""
+        return self._core.uncertainty_method
+
+    @property
+    def uncertainty_key(self) -> str:
+        """Key that selected this method, for example 'correlate.uncertainty = "auto"'; "": unknown."""
+        return self._core.uncertainty_key
 
     @property
     def warnings(self) -> list[str]:

@@ -4,6 +4,9 @@ their inputs."""
 from __future__ import annotations
 
 import os
+import shutil
+import tempfile
+import weakref
 from collections.abc import Sequence
 
 import numpy as np
@@ -16,11 +19,21 @@ Box = Sequence[float]
 """Corners x0, y0, x1, y1 of a box in mm from the optical axis, x to the right and y upwards."""
 
 
+class InputFolder:
+    """Temporary folder for the input files of a measurement, deleted with its last owner."""
+
+    def __init__(self):
+        self.name = tempfile.mkdtemp(prefix="gladstone_")
+        weakref.finalize(self, shutil.rmtree, self.name, ignore_errors=True)
+
+
 class Measurement:
     """Measurement that was computed by the libraries of gladstone."""
 
-    def __init__(self, core):
+    def __init__(self, core, inputs: InputFolder | None = None):
+        """inputs: folder of files that the measurement was computed from; `save` checks and records their hashes."""
         self._core = core
+        self._inputs = inputs
 
     @property
     def warnings(self) -> list[str]:
@@ -52,12 +65,20 @@ def case_place(folder: str, case: Case | CalibrationCase, name: str = "case") ->
     return place
 
 
-def place_of(folder: str, setup: Setup | Case | CalibrationCase | str | os.PathLike) -> str:
+def measured_case_place(folder: str, case: Case, name: str, device: str) -> str:
+    """Returns the CASE folder of a case with its vectors; a case in memory is correlated and written into `folder`."""
+    place = case_place(folder, case, name)
+    if not case._core.folder:
+        case.correlate(device=device).save(os.path.join(place, "vectors.h5"))
+    return place
+
+
+def place_of(folder: str, setup: Setup | Case | CalibrationCase | str | os.PathLike, name: str = "setup") -> str:
     """Returns the CASE folder or the setup file of a case or a setup; what is in memory is written into `folder`."""
     if isinstance(setup, (Case, CalibrationCase)):
-        return case_place(folder, setup)
+        return case_place(folder, setup, name)
     if isinstance(setup, Setup):
-        place = os.path.join(folder, "setup.toml")
+        place = os.path.join(folder, name + ".toml")
         setup.save(place)
         return place
     return os.fspath(setup)

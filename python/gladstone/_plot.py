@@ -91,6 +91,48 @@ def _budget(axis, report) -> None:
     axis.set(title="error budget", xlabel="rms [px]")
 
 
+def plot_three_components(result):
+    """Draws maps of three displacement components without invalid nodes, and of the residual."""
+    import matplotlib.pyplot as plt
+
+    figure, axes = plt.subplots(1, 4, figsize=(17, 3.8), layout="constrained")
+    for k, name in enumerate(("u, along X", "v, along Y", "w, along Z")):
+        values = np.where(result.valid, result.displacement_mm[..., k], np.nan)
+        limit = _largest(values) or 1.0
+        _plane(figure, axes[k], result.x_mm, result.y_mm, values, f"{name} [mm]",
+               {"cmap": "RdBu_r", "vmin": -limit, "vmax": limit})  # fmt: skip
+    _plane(figure, axes[3], result.x_mm, result.y_mm, result.residual_px, "residual [px]", {"vmin": 0.0})
+    return figure
+
+
+def plot_volume(result):
+    """Draws the density in the three mid-planes of a volume, and for rendered cases the error below."""
+    import matplotlib.pyplot as plt
+
+    rows = [("density", result.density, {"vmin": np.nanmin(result.density), "vmax": np.nanmax(result.density)})]
+    if result.truth is not None:
+        largest = _largest(result.error) or 1.0
+        rows.append(("error", result.error, {"cmap": "RdBu_r", "vmin": -largest, "vmax": largest}))
+    figure, axes = plt.subplots(len(rows), 3, figsize=(13.5, 3.8 * len(rows)), layout="constrained", squeeze=False)
+    axis = {"x": result.x_mm, "y": result.y_mm, "z": result.z_mm}
+    for line, (title, values, style) in zip(axes, rows):
+        middle = [size // 2 for size in values.shape]
+        planes = (("x", "y", "z", values[middle[0]]), ("z", "y", "x", values[:, :, middle[2]].T),
+                  ("x", "z", "y", values[:, middle[1]]))  # fmt: skip
+        for cell, (across, up, normal, plane) in zip(line, planes):
+            place = axis[normal][len(axis[normal]) // 2]
+            text = f"{title} at {normal} = {place:.4g} mm [kg/m$^3$]"
+            _plane(figure, cell, axis[across], axis[up], plane, text, style, (across, up))
+    return figure
+
+
+def _plane(figure, axis, x_mm, y_mm, values, title: str, style: dict, names=("x", "y")) -> None:
+    """Draws [rows, columns] values over two axes in mm."""
+    drawn = axis.pcolormesh(x_mm, y_mm, values, **style)
+    axis.set(title=title, xlabel=f"{names[0]} [mm]", ylabel=f"{names[1]} [mm]", aspect="equal")
+    figure.colorbar(drawn, ax=axis, shrink=0.8)
+
+
 def plot_density(result):
     """Draws maps of a density and its uncertainty, and for a rendered case of the true density and the error."""
     import matplotlib.pyplot as plt
@@ -104,7 +146,5 @@ def plot_density(result):
         maps.append(("error", result.error, {"cmap": "RdBu_r", "vmin": -largest, "vmax": largest}))
     figure, axes = plt.subplots(1, len(maps), figsize=(4.5 * len(maps), 3.8), layout="constrained")
     for axis, (title, values, style) in zip(axes, maps):
-        drawn = axis.pcolormesh(result.x_mm, result.y_mm, values, **style)
-        axis.set(title=f"{title} [kg/m$^3$]", xlabel="x [mm]", ylabel="y [mm]", aspect="equal")
-        figure.colorbar(drawn, ax=axis, shrink=0.8)
+        _plane(figure, axis, result.x_mm, result.y_mm, values, f"{title} [kg/m$^3$]", style)
     return figure

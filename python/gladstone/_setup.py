@@ -24,6 +24,8 @@ class Setup:
         name: shown in messages.
         folder: directory to which relative file names in the text refer; default: the working directory.
         """
+        if "\n" not in text and text.endswith(".toml"):
+            raise ValueError(f"{text!r} is the name of a file, not TOML text; use Setup.from_file")
         place = os.path.abspath(os.fspath(folder) if folder is not None else os.getcwd())
         self._core = _core.SetupText(text, name, place, [])
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import os
-import tempfile
 from collections.abc import Sequence
 from typing import Any, Literal
 
@@ -13,7 +12,7 @@ import numpy as np
 from . import _core
 from ._case import Case
 from ._errors import check_choice
-from ._measurement import Measurement, case_place, vectors_place
+from ._measurement import InputFolder, Measurement, case_place, measured_case_place, vectors_place
 from ._progress import Progress, reporting
 from ._xarray import grid_variable
 
@@ -23,10 +22,6 @@ class ThreeComponents(Measurement):
 
     Arrays are [rows, columns], with x to the right and y upwards: row 0 is the lowest. NaN: not determined.
     """
-
-    def __init__(self, core: _core.StereoMeasurement, temporary=None):
-        super().__init__(core)
-        self._temporary = temporary
 
     @property
     def x_mm(self) -> np.ndarray:
@@ -124,6 +119,12 @@ class ThreeComponents(Measurement):
             },
         )
 
+    def plot(self):
+        """Draws maps of u, v and w [mm] at valid nodes, and of the residual [px]. Returns a matplotlib figure."""
+        from ._plot import plot_three_components
+
+        return plot_three_components(self)
+
     def __repr__(self) -> str:
         rows, columns = self.valid.shape
         return f"<gladstone.ThreeComponents {columns} x {rows} nodes, {int(self.valid.sum())} valid>"
@@ -131,12 +132,9 @@ class ThreeComponents(Measurement):
 
 def _input(folder: str, name: str, source, dewarp: str, device: str) -> str:
     """Returns the CASE folder or the file of vectors of one camera; what is in memory is written into `folder`."""
-    if isinstance(source, Case):
-        place = case_place(folder, source, name)
-        if dewarp == "vectors" and not source._core.folder:
-            source.correlate(device=device).save(os.path.join(place, "vectors.h5"))
-        return place
-    return vectors_place(folder, source, name)
+    if not isinstance(source, Case):
+        return vectors_place(folder, source, name)
+    return measured_case_place(folder, source, name, device) if dewarp == "vectors" else case_place(folder, source, name)
 
 
 def stereo(
@@ -174,13 +172,13 @@ def stereo(
     Raises `SetupError` for invalid options, and `DataError` for files that are missing or do not fit together.
     """
     check_choice("dewarp", dewarp, ("vectors", "images"))
-    temporary = tempfile.TemporaryDirectory()
+    inputs = InputFolder()
     with reporting(progress) as report:
-        places = [_input(temporary.name, name, source, dewarp, device)
+        places = [_input(inputs.name, name, source, dewarp, device)
                   for name, source in (("first", first), ("second", second))]  # fmt: skip
         core = _core.stereo(
             *places, [os.fspath(path) for path in calibrations or ()], conventions, sheet_z_mm,
             (float(sheet_slope[0]), float(sheet_slope[1])), align, [os.fspath(path) for path in images],
             dewarp == "images", spacing_mm or 0.0, window_px, residual_limit, device, report,
         )  # fmt: skip
-    return ThreeComponents(core, temporary)
+    return ThreeComponents(core, inputs)

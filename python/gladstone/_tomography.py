@@ -4,14 +4,18 @@ from __future__ import annotations
 
 import json
 import os
+import tempfile
 from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
 from . import _core
-from ._measurement import Box, Measurement, reference_texts
+from ._case import Case
+from ._measurement import Box, InputFolder, Measurement, measured_case_place, place_of, reference_texts, vectors_place
 from ._progress import Progress, reporting
+from ._setup import Setup
+from ._xarray import volume_variable
 
 
 class Tomography(Measurement):
@@ -48,6 +52,11 @@ class Tomography(Measurement):
         return self._core.array("truth")
 
     @property
+    def error(self) -> np.ndarray | None:
+        """Density minus true density of rendered cases [kg/m^3]."""
+        return None if self.truth is None else self.density - self.truth
+
+    @property
     def summary(self) -> dict[str, Any]:
         """Results of `gladstone tomography --json`, with `relative_error` for rendered cases."""
         return json.loads(self._core.summary())
@@ -56,14 +65,40 @@ class Tomography(Measurement):
         """Writes the HDF5 file of `gladstone tomography`, which can be the field of a setup."""
         self._core.save(os.fspath(path))
 
+    def to_xarray(self):
+        """Returns an xarray.Dataset over (z, y, x) in mm: density and views, and for rendered cases truth and error."""
+        import xarray
+
+        variables = {
+            "density": volume_variable(self.density, "kg m-3", "density"),
+            "views": volume_variable(self.views, "1", "number of views with a line of sight through the node"),
+        }
+        if self.truth is not None:
+            variables["truth"] = volume_variable(self.truth, "kg m-3", "true density")
+            variables["error"] = volume_variable(self.error, "kg m-3", "density minus true density")
+        coordinates = {
+            name: (name, values, {"units": "mm", "long_name": f"{name.upper()} of the volume"})
+            for name, values in (("x", self.x_mm), ("y", self.y_mm), ("z", self.z_mm))
+        }
+        return xarray.Dataset(variables, coords=coordinates)
+
+    def plot(self):
+        """Draws the density in the three mid-planes [kg/m^3], and for rendered cases its error below.
+
+        Returns a matplotlib figure.
+        """
+        from ._plot import plot_volume
+
+        return plot_volume(self)
+
     def __repr__(self) -> str:
         nz, ny, nx = self.density.shape
         return f"<gladstone.Tomography {nx} x {ny} x {nz} nodes>"
 
 
 def tomography(
-    cases: Sequence[str | os.PathLike],
-    vectors: Sequence[str | os.PathLike] = (),
+    cases: Sequence[Case | Setup | str | os.PathLike],
+    vectors: Sequence = (),
     *,
     reference: str | Box | Sequence[str | Box] | None = None,
     angles_deg: Sequence[float] = (),
@@ -86,8 +121,10 @@ def tomography(
     """Reconstructs the density of a volume from BOS vectors of 3 to 16 views, equal bit by bit to `gladstone
     tomography`.
 
-    cases: CASE folder of each view, or with `vectors` its setup.
-    vectors: file of the vectors of each view; empty: those of the CASE folders.
+    cases: for each view a `Case` (rendered: correlated with its own settings) or the path of a CASE folder with its
+        vectors; with `vectors` also a `Setup` or its path.
+    vectors: for each view a `Field`, the path of a file, or anything that `Field.of` accepts [px]; empty: those of the
+        cases.
     reference: region of the views whose lines of sight meet the reference density only: "left", "right", "top",
         "bottom" ("left:3" for three columns), a box (x0, y0, x1, y1) in mm, or a list of these. Required.
     angles_deg: angle of the volume about Y in each view; empty: i / views of `arc_deg`.
@@ -108,14 +145,40 @@ def tomography(
     """
     if bounds_mm is not None and len(bounds_mm) != 6:
         raise ValueError(f"bounds_mm must be six numbers, got {len(bounds_mm)}")
+    inputs = InputFolder()
+
+    def place(i: int, case: Case | Setup | str | os.PathLike) -> str:
+        measured = isinstance(case, Case) and not vectors and not ray_truth
+        name = f"case_{i}"
+        return measured_case_place(inputs.name, case, name, device) if measured else place_of(inputs.name, case, name)
+
     with reporting(progress) as report:
+        places = [place(i, case) for i, case in enumerate(cases)]
+        files = [vectors_place(inputs.name, one, f"vectors_{i}") for i, one in enumerate(vectors)]
         core = _core.tomography(
-            [os.fspath(case) for case in cases], [os.fspath(file) for file in vectors], conventions, ray_truth,
+            places, files, conventions, ray_truth,
             [float(angle) for angle in angles_deg], arc_deg, reference_texts(reference), reference_density,
             [] if bounds_mm is None else [float(bound) for bound in bounds_mm], spacing_mm, support, least_density,
             largest_density, iterations, tolerance, relaxation, tv_weight, device, report,
         )  # fmt: skip
-    return Tomography(core)
+    return Tomography(core, inputs)
+
+
+def tomography_setups(
+    setup: Setup | str | os.PathLike, folder: str | os.PathLike, *, views: int = 8, arc_deg: float = 180.0
+) -> list[str]:
+    """Writes setups of several views of one field, turned about Y, equal to those of `gladstone tomography --views`.
+
+    setup: a `Setup` or its path, with a field of finite extent.
+    folder: for view_00.toml, view_01.toml, ... and the turned fields view_00.h5, ...
+    views, arc_deg: number of views, at the angles i / views of `arc_deg`.
+
+    Returns the paths of the setups. Render each of them, and give the cases to `tomography`.
+    Raises `SetupError` for invalid options, and setups without a field of finite extent.
+    """
+    os.makedirs(folder, exist_ok=True)
+    with tempfile.TemporaryDirectory() as temporary:
+        return _core.tomography_setups(place_of(temporary, setup), views, arc_deg, os.fspath(folder))
 
 
 def reconstruct_lines(

@@ -31,9 +31,12 @@ GivenImage read_array(ImageArray const& array, std::string const& name) {
   }
   nb::dlpack::dtype const type = array.dtype();
   int const bits = type.bits;
+  if (type == nb::dtype<bool>()) return {copied<bool>(array), bits};
   if (type == nb::dtype<std::uint8_t>()) return {copied<std::uint8_t>(array), bits};
   if (type == nb::dtype<std::uint16_t>()) return {copied<std::uint16_t>(array), bits};
   if (type == nb::dtype<std::uint32_t>()) return {copied<std::uint32_t>(array), bits};
+  if (type == nb::dtype<std::uint64_t>()) return {copied<std::uint64_t>(array), bits};
+  if (type == nb::dtype<std::int8_t>()) return {copied<std::int8_t>(array), bits};
   if (type == nb::dtype<std::int16_t>()) return {copied<std::int16_t>(array), bits};
   if (type == nb::dtype<std::int32_t>()) return {copied<std::int32_t>(array), bits};
   if (type == nb::dtype<std::int64_t>()) return {copied<std::int64_t>(array), bits};

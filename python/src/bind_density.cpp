@@ -54,6 +54,9 @@ void bind_density(nb::module_& module) {
       .def("x_mm", [](Reconstruction const& self) { return axis_mm(self, true); })
       .def("y_mm", [](Reconstruction const& self) { return axis_mm(self, false); })
       .def("array", &density_array, nb::arg("name"))
+      .def(
+          "save", [](Reconstruction const& self, std::string const& path) { run([&] { write_density(path, self); }); },
+          nb::arg("path"))
       .def("summary", [](Reconstruction const& self) { return json_text(summarize_reconstruction(self)); })
       .def("text", [](Reconstruction const& self) { return reconstruction_report(self); });
   module.def(

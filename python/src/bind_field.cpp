@@ -26,9 +26,9 @@ using Field = std::shared_ptr<MeasuredField>;
 
 Field correlate(ImageArray const& a, ImageArray const& b, std::vector<std::string> const& overrides,
                 std::string const& device_name, nb::handle progress) {
-  GivenImage const reference = read_array(a, "a"), flow = read_array(b, "b");
   return run(
       [&] {
+        GivenImage const reference = read_array(a, "a"), flow = read_array(b, "b");
         CorrelationFile const given = default_correlation(overrides);
         Backend const device = open_device(device_name);
         auto field = std::make_shared<MeasuredField>();
@@ -167,6 +167,8 @@ void bind_field(nb::module_& module) {
       .def_prop_ro("rows", [](MeasuredField const& self) { return self.field.rows; })
       .def_prop_ro("warnings", [](MeasuredField const& self) { return self.field.warnings; })
       .def_prop_ro("verdict", [](MeasuredField const& self) { return self.field.verdict; })
+      .def_prop_ro("uncertainty_method", [](MeasuredField const& self) { return self.field.uncertainty_method; })
+      .def_prop_ro("uncertainty_key", [](MeasuredField const& self) { return self.field.uncertainty_key; })
       .def_ro("name", &MeasuredField::name)
       .def_ro("settings", &MeasuredField::resolved)
       .def_ro("device", &MeasuredField::device)

@@ -17,6 +17,7 @@
 #include "studies/commands/volume_options.h"
 #include "studies/compare/tomography.h"
 #include "studies/compare/tomography_file.h"
+#include "studies/compare/tomography_plan.h"
 
 namespace gladstone::python {
 namespace {
@@ -94,7 +95,7 @@ void bind_tomography(nb::module_& module) {
       .def("axis_mm", &volume_axis_mm, nb::arg("axis"))
       .def("array", &volume_array, nb::arg("name"))
       .def(
-          "save", [](Tomography const& self, std::string const& path) { write_tomography(path, self); },
+          "save", [](Tomography const& self, std::string const& path) { run([&] { write_tomography(path, self); }); },
           nb::arg("path"))
       .def("summary", [](Tomography const& self) { return json_text(summarize_tomography(self)); })
       .def("text", [](Tomography const& self) { return tomography_report(self); });
@@ -135,6 +136,12 @@ void bind_tomography(nb::module_& module) {
       nb::arg("spacing_mm").none(), nb::arg("support").none(), nb::arg("least_density"),
       nb::arg("largest_density").none(), nb::arg("iterations"), nb::arg("tolerance"), nb::arg("relaxation"),
       nb::arg("tv_weight").none(), nb::arg("device"), nb::arg("progress").none());
+  module.def(
+      "tomography_setups",
+      [](std::string const& setup, int views, double arc_deg, std::string const& folder) {
+        return run([&] { return write_tomography_setups({setup, views, arc_deg * unit::degree}, folder); });
+      },
+      nb::arg("setup"), nb::arg("views"), nb::arg("arc_deg"), nb::arg("folder"));
   module.def(
       "reconstruct_lines",
       [](PointArray const& origin_mm, PointArray const& direction, NumberArray const& value, NumberArray const& view,

@@ -1,3 +1,4 @@
+import os
 import subprocess
 import sys
 
@@ -25,11 +26,43 @@ def test_vectors_equal_those_of_the_program(field, case, written_case):
     assert field.shape == written.shape and len(field.shape) == 2
     assert same(case.correlate(device="cpu").u, field.u)
     assert np.isfinite(field.sigma_u[field.status == 0]).mean() > 0.5  # the default on a CPU
+    assert field.uncertainty_method == written.uncertainty_method == "correlation_statistics"
+    assert field.uncertainty_key == written.uncertainty_key == 'correlate.uncertainty = "auto"'
+    assert field.verdict == written.verdict == "correlates"
 
 
-@pytest.mark.parametrize("dtype", [np.float32, np.float64, np.int32, np.uint32, np.int64])
+@pytest.mark.parametrize("dtype", [np.float32, np.float64, np.int32, np.uint32, np.int64, np.uint64])
 def test_images_of_any_type(field, case, dtype):
     assert same(gs.correlate(case.a.astype(dtype), case.b.astype(dtype), device="cpu", **SETTINGS).u, field.u)
+
+
+@pytest.mark.parametrize("dtype", [bool, np.uint8, np.int8])
+def test_images_of_one_byte(case, dtype):
+    bright = [image > np.median(image) for image in (case.a, case.b)]
+    field = gs.correlate(*[image.astype(np.float64) for image in bright], device="cpu", **SETTINGS)
+    assert same(gs.correlate(*[image.astype(dtype) for image in bright], device="cpu", **SETTINGS).u, field.u)
+
+
+# Frames in float64 take 16 bytes per pixel of the pair, the deformed frames and their spline coefficients 32, windows
+# less than 4: another copy of the pair in float64 would exceed the limit.
+@pytest.mark.skipif(not os.path.exists("/proc/self/clear_refs"), reason="the peak of the memory is that of Linux")
+@pytest.mark.parametrize("dtype", ["uint8", "uint16", "float32"])
+def test_images_are_copied_once(dtype):
+    code = f"""
+import numpy as np, gladstone as gs
+gs.set_threads(1)
+a = np.random.default_rng(1).integers(0, 200, (1536, 1536)).astype("{dtype}")
+b = np.roll(a, 1, 1)
+def memory(name):
+    return 1024 * next(int(line.split()[1]) for line in open("/proc/self/status") if line.startswith(name))
+gs.correlate(a[:64, :64], b[:64, :64], window=[32, 16], device="cpu")
+before = memory("VmRSS")
+open("/proc/self/clear_refs", "w").write("5")
+gs.correlate(a, b, device="cpu")
+print((memory("VmHWM") - before) / a.size)
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert float(done.stdout) < 60
 
 
 def test_images_of_any_layout(field, case):
@@ -44,6 +77,19 @@ def test_images_of_torch(field, case):
     torch = pytest.importorskip("torch")
     a, b = (torch.from_numpy(image.astype(np.float32)) for image in (case.a, case.b))
     assert same(gs.correlate(a, b, device="cpu", **SETTINGS).u, field.u)
+
+
+def test_images_of_cupy(field, case):
+    cupy = pytest.importorskip("cupy")
+    try:
+        a, b = (cupy.asarray(image) for image in (case.a, case.b))
+    except cupy.cuda.runtime.CUDARuntimeError as error:
+        pytest.skip(f"no usable GPU: {error}")
+    assert same(gs.correlate(a, b, device="cpu", **SETTINGS).u, field.u)
+    back = cupy.from_dlpack(cupy.asarray(field.u))
+    assert same(cupy.asnumpy(back), field.u)
+    dense = gs.Field.from_dense(cupy.stack([a.astype(float), b.astype(float)], axis=-1))
+    assert same(dense.u, case.a) and same(dense.v, case.b)
 
 
 class OnlyDLPack:
@@ -62,6 +108,18 @@ class OnlyDLPack:
 def test_images_by_dlpack(field, case):
     a, b = (OnlyDLPack(image.copy()) for image in (case.a, case.b))
     assert same(gs.correlate(a, b, device="cpu", **SETTINGS).u, field.u)
+
+
+@pytest.mark.parametrize("settings, method, reason", [
+    ({"window": [32]}, "none", 'correlate.uncertainty = "auto" (correlate.window_px has a single pass)'),
+    ({"uncertainty": "image_matching"}, "image_matching", 'correlate.uncertainty = "image_matching"'),
+])  # fmt: skip
+def test_method_of_the_uncertainty_is_recorded(case, tmp_path, settings, method, reason):
+    field = gs.correlate(case.a, case.b, device="cpu", **{**SETTINGS, **settings})
+    field.save(tmp_path / "vectors.h5")
+    for one in (field, gs.Field.load(tmp_path / "vectors.h5")):
+        assert (one.uncertainty_method, one.uncertainty_key) == (method, reason)
+    assert np.isfinite(field.sigma_u).any() == (method != "none")
 
 
 def test_settings_are_checked(case):

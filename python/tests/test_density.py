@@ -91,6 +91,22 @@ def test_xarray(result):
     assert set(data) >= {"density", "sigma", "truth", "error", "region", "reference"}
 
 
+def test_file_is_that_of_the_command(result, program, case, field, tmp_path):
+    h5py = pytest.importorskip("h5py")
+    place = tmp_path / "case"
+    case.save(place)
+    field.save(place / "vectors.h5")
+    program("reconstruct", place, "-o", tmp_path / "density.h5", "--no-figures", "--budget", *OPTIONS)
+    result.save(tmp_path / "saved.h5")
+    with h5py.File(tmp_path / "density.h5") as file, h5py.File(tmp_path / "saved.h5") as saved:
+        assert set(file) == set(saved)
+        for name in file:
+            assert np.array_equal(file[name][...], saved[name][...], equal_nan=True), name
+            assert file[name].attrs["units"] == saved[name].attrs["units"], name
+    with pytest.raises(gs.OutputError):
+        result.save("/proc/density.h5")
+
+
 def test_plot(result):
     matplotlib = pytest.importorskip("matplotlib")
     matplotlib.use("agg")

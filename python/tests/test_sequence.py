@@ -126,3 +126,10 @@ def test_statistics_are_drawn(frames):
     pytest.importorskip("matplotlib").use("agg")
     figure = gs.correlate_sequence(frames, device="cpu", **SETTINGS).plot()
     assert len([axis for axis in figure.axes if axis.get_title()]) == 4
+
+
+def test_setup_without_a_sequence_is_refused(piv, tmp_path):
+    with pytest.raises(gs.SetupError, match=r"\[sequence\]") as caught:
+        gs.render_sequence(piv, tmp_path / "frames")
+    assert caught.value.problems[0].key == "sequence"
+    assert not (tmp_path / "frames").exists()

@@ -116,3 +116,9 @@ def test_xarray(result):
     assert data["w"].dims == ("y", "x") and data["x"].attrs["units"] == "mm"
     assert np.array_equal(data["sigma_w"].values, result.sigma_mm[..., 2], equal_nan=True)
     assert set(data) >= {"u", "v", "w", "sigma_u", "truth_w", "residual", "valid"}
+
+
+def test_plot(result):
+    pytest.importorskip("matplotlib").use("agg")
+    titles = [axis.get_title() for axis in result.plot().axes if axis.get_title()]
+    assert titles == ["u, along X [mm]", "v, along Y [mm]", "w, along Z [mm]", "residual [px]"]

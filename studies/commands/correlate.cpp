@@ -147,6 +147,8 @@ CommandBody attach_correlate(CLI::App& app, GlobalOptions const& options) {
                               {"invalid", counts[3]},
                               {"ambiguous", ambiguous},
                               {"verdict", field.verdict},
+                              {"uncertainty_method", field.uncertainty_method},
+                              {"uncertainty_key", field.uncertainty_key},
                               {"warnings", field.warnings},
                               {"device", measurement.device},
                               {"seconds_correlate", measurement.seconds}};

@@ -1,4 +1,5 @@
 #include <CLI/CLI.hpp>
+#include <filesystem>
 
 #include "render/base/error.h"
 #include "studies/commands/arguments.h"
@@ -16,6 +17,16 @@ namespace {
 int print(GlobalOptions const& options, Description const& description) {
   print_result(options, description.json, description.text);
   return ok;
+}
+
+/// Rejects the name of a new file without the ending of a figure. Whether an existing file may be replaced is checked
+/// when it is opened.
+void check_figure_ending(std::string const& figure) {
+  std::error_code error;
+  if (figure.empty() || figure.ends_with(".png") || figure.ends_with(".svg") || figure.ends_with(".pdf") ||
+      std::filesystem::exists(figure, error))
+    return;
+  throw OutputError(figure, "has no ending of a figure; use .png, .svg or .pdf");
 }
 
 }  // namespace
@@ -45,6 +56,7 @@ CommandBody attach_info(CLI::App& app, GlobalOptions const& options) {
   app.add_option("--m", arguments->mie.m,
                  "Refractive index of the sphere relative to its surroundings, for info mie: RE or RE,IM");
   return [arguments, &options] {
+    check_figure_ending(arguments->figure);
     if (arguments->kind == "mie") {
       if (!arguments->file.empty())
         throw DataError(ErrorCode::arguments, "info mie", "reads no file; give only --x and --m");

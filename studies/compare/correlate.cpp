@@ -151,8 +151,11 @@ Measurement correlate_frames(std::string const& reference_name, Image<double> co
   }
   check_finite(reference_name, reference, flow_name, flow);
   stop_point("correlating");
-  return correlate_frames(FramesView(reference, flow),
-                          choose_uncertainty(settings, device.correlates_on(settings) == "cpu"), device);
+  bool const on_cpu = device.correlates_on(settings) == "cpu";
+  Measurement measurement = correlate_frames(FramesView(reference, flow), choose_uncertainty(settings, on_cpu), device);
+  record_uncertainty(measurement.field, settings,
+                     on_cpu ? CorrelatedFrames::pair_on_cpu : CorrelatedFrames::pair_on_gpu);
+  return measurement;
 }
 
 Measurement correlate_frames(FramePair const& frames, CorrelationSettings const& settings, Backend const& device) {
@@ -233,6 +236,7 @@ Measurement correlate_ensemble_files(std::vector<std::string> const& files, Corr
                            }};
   Measurement measurement{correlate_ensemble(pairs, settings), 0, "cpu"};
   assess_ensemble(measurement.field, pairs, settings);
+  record_uncertainty(measurement.field, settings, CorrelatedFrames::ensemble);
   if (!twice.empty() && twice.size() < pairs.size)
     measurement.field.warnings.push_back(
         fmt::format("{} of {} pairs consist of two identical images (which biases the displacement towards 0), the "

@@ -72,7 +72,6 @@ ExportedVectors load_for_export(std::string const& path, std::string const& conv
   vectors.field = apply_conventions(std::move(file.field), file.conventions, image_rows);
   if (hdf5 && !file.foreign) {
     Hdf5Reader const own(path);
-    vectors.field.verdict = own.attribute("verdict");
     std::string const warnings = own.attribute("warnings");
     if (!warnings.empty()) vectors.field.warnings = {warnings};
   }

@@ -11,6 +11,7 @@
 #include "analysis/correlation/correlator.h"
 #include "analysis/correlation/pair_assessment.h"
 #include "analysis/tracking/track_frames.h"
+#include "analysis/uncertainty/uncertainty.h"
 #include "analysis/vectors/vector_file.h"
 #include "render/base/error.h"
 #include "render/base/interrupt.h"
@@ -167,6 +168,7 @@ PairVectors PairCorrelation::correlate(Frames frames, PairRecord& record, std::s
   if (std::string advice = locking_advice(pair.reference()); frames_correlate(field) && !advice.empty())
     field.warnings.push_back(std::move(advice));
   record.warnings = field.warnings;
+  record_uncertainty(field, settings_.settings, CorrelatedFrames::sequence);
   if (tracks_dots()) vectors.dots.origin = origin(sources, measurement.device);
   write_vectors(path, field, origin(std::move(sources), measurement.device));
   stop_point("pair-finished");

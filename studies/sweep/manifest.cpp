@@ -212,7 +212,13 @@ std::string Manifest::line_hash(std::size_t index) const { return hash_of_line(l
 
 Manifest read_manifest(std::string const& run) {
   std::string const path = (std::filesystem::path(run) / run_file::manifest).string();
-  if (std::error_code error; !std::filesystem::exists(path, error)) {
+  std::error_code error;
+  if (std::filesystem::is_regular_file(run, error)) {
+    throw DataError(run, fmt::format("is a file, not the folder of a planned study; create one with: gladstone sweep "
+                                     "plan {} -o FOLDER, and name FOLDER here",
+                                     run));
+  }
+  if (!std::filesystem::exists(path, error)) {
     throw DataError(
         ErrorCode::wrong_format, run,
         fmt::format(

@@ -31,6 +31,11 @@ class StudyReader {
 
   StudyFile read() {
     SetupTable root = document_.root();
+    if (!root.has("base") && (root.has("experiment") || root.has("camera"))) {
+      throw SetupError({{study_.path,
+                         "is a setup, not a study; write a study that names it as its key base: gladstone "
+                         "init study -o study.toml"}});
+    }
     study_.base_path = root.required_path("base");
     if (!study_.base_path.empty()) {
       try {

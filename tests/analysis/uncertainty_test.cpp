@@ -359,6 +359,31 @@ TEST(UncertaintySettings, AutoSelectsAMethodThatIsCheapAndValid) {
   EXPECT_EQ(choose_uncertainty(given, false).uncertainty, "image_matching");
 }
 
+// A reader of the vectors sees which method was used although the setup says "auto", and why it was none.
+TEST(UncertaintySettings, AreRecordedWithTheKeyThatSelectedTheMethod) {
+  using enum CorrelatedFrames;
+  auto const recorded = [](CorrelationSettings const& settings, CorrelatedFrames frames) {
+    DisplacementField field;
+    record_uncertainty(field, settings, frames);
+    return field.uncertainty_method + " by " + field.uncertainty_key;
+  };
+  CorrelationSettings settings;
+  settings.uncertainty = "auto";
+  EXPECT_EQ(recorded(settings, pair_on_cpu), "correlation_statistics by correlate.uncertainty = \"auto\"");
+  EXPECT_EQ(recorded(settings, pair_on_gpu), "none by correlate.uncertainty = \"auto\" (on a GPU)");
+  EXPECT_EQ(recorded(settings, sequence), "none by correlate.uncertainty = \"auto\" (sequence)");
+  settings.method = "rpc";
+  EXPECT_EQ(recorded(settings, pair_on_cpu), "none by correlate.uncertainty = \"auto\" (correlate.method = \"rpc\")");
+  settings.method = "tracking";
+  EXPECT_EQ(recorded(settings, sequence), "dot_fit by correlate.method = \"tracking\"");
+  settings.method = "scc";
+  settings.window_px = {32};
+  EXPECT_EQ(recorded(settings, pair_on_cpu),
+            "none by correlate.uncertainty = \"auto\" (correlate.window_px has a single pass)");
+  settings.uncertainty = "image_matching";
+  EXPECT_EQ(recorded(settings, sequence), "image_matching by correlate.uncertainty = \"image_matching\"");
+}
+
 TEST(UncertaintySettings, KnowTheMethodsOfTheTable) {
   for (std::string const& method : uncertainty_methods()) {
     SetupDocument document = SetupDocument::from_text("[correlate]\nuncertainty = \"" + method + "\"\n", "case.toml");

@@ -106,7 +106,11 @@ TEST_F(PairOfFrames, OfASmallRealDisplacementIsBelieved) {
   EXPECT_GT(json["vectors"], 90);
   EXPECT_EQ(json["valid"], json["vectors"]);
   EXPECT_EQ(json["verdict"], "correlates");
-  EXPECT_EQ(Hdf5Reader(in("v.h5").string()).attribute("verdict"), "correlates");
+  Hdf5Reader const file(in("v.h5").string());
+  EXPECT_EQ(file.attribute("verdict"), "correlates");
+  EXPECT_EQ(file.attribute("uncertainty_method"), "correlation_statistics");
+  EXPECT_EQ(file.attribute("uncertainty_key"), "correlate.uncertainty = \"auto\"");
+  for (char const* key : {"uncertainty_method", "uncertainty_key"}) EXPECT_EQ(json[key], file.attribute(key)) << key;
 }
 
 TEST_F(PairOfFrames, GivenTwiceIsWarnedOf) {

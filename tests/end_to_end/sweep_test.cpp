@@ -593,7 +593,10 @@ TEST_F(Sweeps, BadCommandLinesAreRefused) {
   expect_refused({"sweep", "run", "run", "--case", ""}, 2, {"--case: \"\" is not a list of cases; write 17, or 0-3,7"});
   expect_refused({"sweep", "run", "run", "--retry-faild"}, 2, {"--retry-failed"});
   expect_refused({"sweep", "status", "."}, 2, {"is not a planned study", "gladstone sweep plan"});
+  expect_refused({"sweep", "run", "setup.toml"}, 2,
+                 {"setup.toml: is a file", "gladstone sweep plan setup.toml -o FOLDER"});
   expect_refused({"sweep", "plan", "nothing.toml", "-o", "other"}, 2, {"nothing.toml: does not exist"});
+  expect_refused({"sweep", "plan", "setup.toml", "-o", "other"}, 2, {"setup.toml: is a setup, not a study"});
   write("other.toml", with(small_study, "[8, 16, 32]", "[8, 16, 64]"));
   succeed({"sweep", "run", "run", "--quiet"});
   expect_refused({"sweep", "plan", "other.toml", "-o", "run", "--device", "cpu"}, 2,

@@ -94,6 +94,9 @@ VectorFile read_gladstone_hdf5(std::string const& path) {
       field.failed.push_back(static_cast<FailedTest>(static_cast<int>(failed[i])));
     }
   }
+  field.verdict = file.attribute("verdict");
+  field.uncertainty_method = file.attribute("uncertainty_method");
+  field.uncertainty_key = file.attribute("uncertainty_key");
   return {std::move(field), "gladstone", {}, false};
 }
 

@@ -62,6 +62,10 @@ void write_vector_columns(std::string const& path, DisplacementField const& fiel
   if (field.columns > 0) write_grid(file, path, field, columns, scaled);
   file.attach_scales(scaled);
   if (!field.verdict.empty()) file.attribute("/", "verdict", field.verdict);
+  if (!field.uncertainty_method.empty()) {
+    file.attribute("/", "uncertainty_method", field.uncertainty_method);
+    file.attribute("/", "uncertainty_key", field.uncertainty_key);
+  }
   file.attribute("/", "warnings", fmt::format("{}", fmt::join(field.warnings, "\n")));
   if (field.columns > 0) {
     file.attribute("/", "grid_columns", std::int64_t{field.columns});
