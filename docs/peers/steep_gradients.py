@@ -1,16 +1,18 @@
-"""steep_gradients.py GLADSTONE [--steep] [--pivlab FOLDER] [--synimagegen FOLDER]: errors in random smooth fields, on
-images of the generators of SynthPix and OpenPIV.
+"""steep_gradients.py GLADSTONE [--steep] [--images own SynthPix OpenPIV] [--pivlab FOLDER] [--synimagegen FOLDER]:
+errors in random smooth fields, on images like those of gladstone benchmark, and of the generators of SynthPix and
+OpenPIV.
 
 Fields: sums of six sines of 256 x 256 px with features of 5 to 100 px and peaks of 0 to 16 px, both drawn uniformly;
 with --steep, features of 8 to 40 px, drawn logarithmically, and peaks of 4 to 16 px. Where the gradient would exceed
 0.9 px/px, the peak is reduced. Alternately 0.035 and 0.075 particles per px, images of 3 px (e^-2), 8 bit. A particle
 at p at mid-time is drawn at p - d(p)/2 and p + d(p)/2 by the peer's own function for one image, so that d(p) is its
-exact displacement at mid-time. Pixel centres are at whole numbers in both generators:
+exact displacement at mid-time. Pixel centres are at whole numbers in all generators:
+    own (default): Gaussian particles integrated over the pixels, with the light of gladstone benchmark; no noise.
     SynthPix: img_gen_from_data, peaks of 100 to 250 grey levels, on 5 x 5 px each as it draws them, on a canvas 16 px
         wider at each side, as particles near its edge are moved onto it; no noise.
     OpenPIV: generate_particle_image of synimage/synimagegen.py, which the package does not contain (a clone of
         OpenPIV/openpiv-python); peaks of 40 to 100 % of its scale, integrated over the pixels; adds noise of 1.3 grey
-        levels. It turns images upside down, which is undone, and omits particles at the border.
+        levels. It turns images upside down, which is undone, and omits particles at the border. Needs --synimagegen.
 Programs: gladstone with its defaults and with steep_passes = 0; OpenPIV windef with 64, 32, 16 px, symmetric
 deformation by splines of third order (0.26.1 has no option for affine windows); and PIVlab, see pivlab.py.
 
@@ -19,7 +21,8 @@ all vectors, replaced ones and those at the border included; the last column is 
 border. The truth is the displacement at mid-time, except for PIVlab, which deforms the second image only: that of the
 particle that is at the vector in the first image.
 
-Needs: pip install openpiv==0.26.1 synthpix==0.3.1 jax scipy tifffile; for PIVlab GNU Octave with its package image.
+Needs: pip install openpiv==0.26.1 scipy tifffile; for SynthPix also synthpix==0.3.1 jax; for PIVlab GNU Octave with its
+package image.
 """
 
 import argparse
@@ -33,14 +36,9 @@ from importlib.metadata import version
 import numpy as np
 import tifffile
 
-FOLDER = str(pathlib.Path(__file__).parent.resolve())
-sys.path.remove(FOLDER)  # where synthpix.py would be taken for the package
-import jax.numpy as jnp
-from openpiv import windef
-from synthpix.generate import img_gen_from_data
-
-sys.path.append(FOLDER)
 import pivlab
+from openpiv import windef
+from scipy.special import erf
 
 SIZE, MARGIN = 256, 16
 
@@ -82,7 +80,36 @@ class Field:
         return u, v
 
 
-def draw_synthpix(x, y, light):
+def draw_own(x, y, light, sigma=0.75, half=5):
+    """Background of 25.5 and peaks of 76.5 to 153 grey levels, as gladstone benchmark (particle_pair.h)."""
+    image = np.zeros((SIZE + 4 * half,) * 2)
+    near = np.maximum(np.abs(x - 0.5 * (SIZE - 1)), np.abs(y - 0.5 * (SIZE - 1))) < 0.5 * SIZE + half - 0.5
+    x, y, peak = x[near], y[near], 153.0 * (0.5 + 0.5 * light[near])
+    steps = np.arange(-half, half + 1)
+
+    def integrate(place):
+        pixel = np.floor(place + 0.5).astype(int)[:, None] + steps
+        edges = [erf((pixel + side - place[:, None]) / (np.sqrt(2.0) * sigma)) for side in (-0.5, 0.5)]
+        return pixel + 2 * half, np.sqrt(0.5 * np.pi) * sigma * (edges[1] - edges[0])
+
+    (column, across), (row, along) = integrate(x), integrate(y)
+    light = peak[:, None, None] * along[:, :, None] * across[:, None, :]
+    np.add.at(image, (row[:, :, None], column[:, None, :]), light)
+    return 25.5 + image[2 * half:-2 * half, 2 * half:-2 * half]
+
+
+def load_synthpix():
+    """Returns the generator of SynthPix and its version."""
+    folder = str(pathlib.Path(__file__).parent.resolve())
+    sys.path.remove(folder)  # where synthpix.py would be taken for the package
+    import jax.numpy as jnp
+    from synthpix.generate import img_gen_from_data
+
+    sys.path.append(folder)
+    return lambda *particles: draw_synthpix(jnp, img_gen_from_data, *particles)
+
+
+def draw_synthpix(jnp, img_gen_from_data, x, y, light):
     positions = jnp.stack([jnp.array(y + MARGIN), jnp.array(x + MARGIN)], axis=1)
     diameters = jnp.full(len(x), 1.5)  # of SynthPix: two standard deviations
     image = img_gen_from_data(positions, (SIZE + 2 * MARGIN,) * 2, 1.5, diameters, diameters,
@@ -144,12 +171,19 @@ def main():
     parser.add_argument("gladstone")
     parser.add_argument("--pivlab", help="clone of Shrediquette/PIVlab")
     parser.add_argument("--synimagegen", help="clone of OpenPIV/openpiv-python")
+    parser.add_argument("--images", nargs="+", choices=("own", "SynthPix", "OpenPIV"), default=["own"])
     parser.add_argument("--fields", type=int, default=24)
     parser.add_argument("--steep", action="store_true")
     arguments = parser.parse_args()
     program = os.path.abspath(arguments.gladstone)
-    generators = {"SynthPix": draw_synthpix}
-    if arguments.synimagegen:
+    generators = {}
+    if "own" in arguments.images:
+        generators["own"] = draw_own
+    if "SynthPix" in arguments.images:
+        generators["SynthPix"] = load_synthpix()
+    if "OpenPIV" in arguments.images:
+        if not arguments.synimagegen:
+            parser.error("images of OpenPIV require --synimagegen")
         sys.path.append(os.path.join(arguments.synimagegen, "synimage"))
         import synimagegen
         generators["OpenPIV"] = lambda *particles: draw_openpiv(synimagegen, *particles)
@@ -175,7 +209,9 @@ def main():
                 for field, vectors in zip(fields, pivlab.measure(arguments.pivlab, pairs)):
                     errors.setdefault((name, "PIVlab, Octave"), []).append(mean_error(field.in_first_frame, vectors))
     print(f"gradients {min(f.gradient for f in fields):.2f} to {max(f.gradient for f in fields):.2f} px/px, OpenPIV "
-          f"{version('openpiv')}, SynthPix {version('synthpix')}, JAX {version('jax')}, numpy {np.__version__}\n")
+          f"{version('openpiv')}, "
+          + "".join(f"{name} {version(name)}, " for name in ("synthpix", "jax") if "SynthPix" in generators)
+          + f"numpy {np.__version__}\n")
     print("| generator | program | median field | 90 % of the fields below | worst field | fields below 0.05 px | "
           "without a value | median away from the border |\n|---|---|---|---|---|---|---|---|")
     for (name, code), values in errors.items():
