@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include "render/base/freed_memory.h"
@@ -15,8 +16,8 @@ namespace {
 constexpr int frames = 2;
 constexpr int band_rows = 64;  // rows of an image that one thread renders at a time
 
-/// Indices of the particle images that overlap each band of image rows, in ascending order. Sums within a band
-/// therefore have a fixed order, independent of the thread that renders it.
+/// Copies of the particle images that overlap each band of image rows, in their order. Sums within a band therefore
+/// have a fixed order, independent of the thread that renders it.
 class Bands {
  public:
   Bands(std::vector<ParticleImage> const& spots, int rows, int half)
@@ -35,38 +36,60 @@ class Bands {
     for (std::size_t band = 1; band < begin_.size(); ++band) begin_[band] += begin_[band - 1];
     listed_.resize(begin_.back());
     std::vector<std::size_t> next(begin_.begin(), begin_.end() - 1);
-    each([&](std::size_t band, std::size_t spot) { listed_[next[band]++] = static_cast<std::uint32_t>(spot); });
+    each([&](std::size_t band, std::size_t spot) { listed_[next[band]++] = spots[spot]; });
   }
   std::size_t count() const { return begin_.size() - 1; }
-  std::uint32_t const* begin(std::size_t band) const { return listed_.data() + begin_[band]; }
-  std::uint32_t const* end(std::size_t band) const { return listed_.data() + begin_[band + 1]; }
+  std::span<ParticleImage const> operator[](std::size_t band) const {
+    return {listed_.data() + begin_[band], listed_.data() + begin_[band + 1]};
+  }
 
  private:
   std::vector<std::size_t> begin_;
-  std::vector<std::uint32_t> listed_;
+  std::vector<ParticleImage> listed_;
+};
+
+/// Light of the rows of one band, with a margin on both sides, so that particle images are not clipped. A row is an odd
+/// number of cache lines long: the rows of an image of 2^n columns would compete for the same few lines of the cache.
+class BandLight {
+ public:
+  BandLight(int columns, int rows, int margin)
+      : margin_(margin),
+        stride_(8 * static_cast<std::size_t>(((columns + 2 * margin) / 8 + 1) | 1)),
+        light_(stride_ * static_cast<std::size_t>(rows)) {}
+  /// Returns the pixel of a row whose column is from -margin to columns + margin - 1.
+  double* pixel(int column, int row) {
+    return light_.data() + stride_ * static_cast<std::size_t>(row) + (column + margin_);
+  }
+
+ private:
+  int margin_;
+  std::size_t stride_;
+  std::vector<double> light_;
 };
 
 /// Adds the particle images of a band to its rows.
-void draw_band(std::vector<ParticleImage> const& spots, Bands const& bands, std::size_t band,
-               GaussianSpot<double> const& shape, Image<double>& image) {
-  int const half = shape.half_width(), width = 2 * half + 1;
-  int const top = static_cast<int>(band) * band_rows, bottom = std::min(top + band_rows, image.rows());
-  std::vector<double> across(static_cast<std::size_t>(width)), down(across.size());
-  for (std::uint32_t const* spot = bands.begin(band); spot != bands.end(band); ++spot) {
-    ParticleImage const& one = spots[*spot];
-    if (!(std::abs(one.at.x) < 1e8)) continue;
-    Footprint const print = shape.footprint(one.at);
-    int const left = std::max(0, print.column), right = std::min(image.columns(), print.column + width);
-    if (left >= right) continue;
-    shape.shares(one.at.x, print.column, width, across.data());
-    shape.shares(one.at.y, print.row, width, down.data());
-    double const* const from = across.data() + (left - print.column);
-    for (int row = std::max(top, print.row); row < std::min(bottom, print.row + width); ++row) {
-      double const light = one.light * down[static_cast<std::size_t>(row - print.row)];
-      double* const to = &image(left, row);
-      for (int i = 0; i < right - left; ++i) to[i] += light * from[i];
+void draw_band(std::span<ParticleImage const> spots, std::size_t band, GaussianSpot<double> const& shape,
+               Image<double>& image) {
+  int const width = 2 * shape.half_width() + 1, filled = (width + 3) / 4 * 4;
+  int const top = static_cast<int>(band) * band_rows, rows = std::min(band_rows, image.rows() - top);
+  BandLight light(image.columns(), rows, filled);
+  std::vector<double> across(static_cast<std::size_t>(filled)), down(across.size());  // zero beyond `width`
+  for (ParticleImage const& spot : spots) {
+    if (!(std::abs(spot.at.x) < 1e8)) continue;
+    Footprint const print = shape.footprint(spot.at);
+    if (print.column + width <= 0 || print.column >= image.columns()) continue;
+    shape.shares(spot.at.x, print.column, width, across.data());
+    shape.shares(spot.at.y, print.row, width, down.data());
+    int const above = std::max(0, top - print.row), end = std::min(width, top + rows - print.row);
+    for (int i = above; i < end; ++i) {
+      double const brightness = spot.light * down[static_cast<std::size_t>(i)];
+      double* const row = light.pixel(print.column, print.row + i - top);
+      for (int k = 0; k < filled; k += 4) {
+        for (int j = k; j < k + 4; ++j) row[j] += brightness * across[static_cast<std::size_t>(j)];
+      }
     }
   }
+  for (int row = 0; row < rows; ++row) std::copy_n(light.pixel(0, row), image.columns(), &image(0, top + row));
 }
 
 Image<double> draw(std::vector<ParticleImage> const& spots, Scene const& scene) {
@@ -74,7 +97,7 @@ Image<double> draw(std::vector<ParticleImage> const& spots, Scene const& scene) 
   GaussianSpot<double> const shape{scene.spot_sigma_px()};
   Image<double> image(camera.columns, camera.rows);
   Bands const bands(spots, camera.rows, shape.half_width());
-  parallel_for(bands.count(), [&](std::size_t band) { draw_band(spots, bands, band, shape, image); });
+  parallel_for(bands.count(), [&](std::size_t band) { draw_band(bands[band], band, shape, image); });
   return image;
 }
 

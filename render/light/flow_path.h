@@ -54,13 +54,16 @@ GLADSTONE_HD Vec3d moved(Velocity const& velocity, Vec3d p, double time, int ste
   return p;
 }
 
-/// Like moved() above, but uses the closed form of the flow if it has one; the uniform velocity is added to it.
+/// Like moved() above, but uses the closed form of the flow if it has one; the uniform velocity is added to it. For
+/// tracers the kind of flow is determined once, not for every velocity.
 inline Vec3d moved(ParticleVelocity const& velocity, Vec3d p, double time, int steps) {
   return velocity.flow.kind.visit([&](auto const& held) {
     if constexpr (requires { held.moved(p, time, velocity.tau); }) {
       return held.moved(p, time, velocity.tau) + time * velocity.flow.uniform;
-    } else {
+    } else if (velocity.tau > 0) {
       return moved<ParticleVelocity>(velocity, p, time, steps);
+    } else {
+      return moved([&](Vec3d at) { return held(at) + velocity.flow.uniform; }, p, time, steps);
     }
   });
 }

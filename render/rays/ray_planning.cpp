@@ -36,14 +36,19 @@ struct Probe {
   double largest_shift() const { return shift.empty() ? 0.0 : *std::max_element(shift.begin(), shift.end()); }
 };
 
-/// Traces rays of some dots with a given step [m].
-Probe probe_dots(Scene const& scene, std::vector<std::size_t> const& dots, std::span<Vec2d const> rays, double step) {
-  Probe probe;
-  probe.displacement_px.resize(dots.size());
-  probe.shift.resize(dots.size());
+/// Traces rays of some dots with given steps [m]. What does not depend on the step is computed once.
+/// @return one probe per step
+template <std::size_t Count>
+std::array<Probe, Count> probe_dots(Scene const& scene, std::vector<std::size_t> const& dots,
+                                    std::span<Vec2d const> rays, std::array<double, Count> const& steps) {
+  std::array<Probe, Count> probes;
+  for (Probe& probe : probes) {
+    probe.displacement_px.resize(dots.size());
+    probe.shift.resize(dots.size());
+  }
   CameraView<double> const camera = scene.camera.view();
-  TracingOptions<double> options{step, scene.setup.medium.ambient_refractivity(), scene.setup.medium.integrator,
-                                 scene.setup.medium.faces};
+  TracingOptions<double> const options{steps[0], scene.setup.medium.ambient_refractivity(),
+                                       scene.setup.medium.integrator, scene.setup.medium.faces};
   Progress progress("choosing the step", dots.size());
   std::visit(
       [&](auto const& medium) {
@@ -51,28 +56,34 @@ Probe probe_dots(Scene const& scene, std::vector<std::size_t> const& dots, std::
           for (std::size_t i = begin; i < end; ++i) {
             Vec3d const start = scene.source_place(dots[i]);
             auto const disc = scene.camera.apparent_pupil(start);
-            Vec2d sum{};
-            int seen = 0;
+            std::array<Vec2d, Count> sum{};
+            std::array<int, Count> seen{};
             for (std::size_t k = 0; disc && k < rays.size(); ++k) {
               throw_if_interrupted();
               Vec3d const aim = disc->centre + rays[k].x * disc->a + rays[k].y * disc->b;
               Ray<double> const ray{start, normalized(aim - start)};
               RayHit<double> const reference = trace_ray(camera, NoMedium<double>{}, options, ray, 1.0);
-              RayHit<double> const flow = trace_ray(camera, medium, options, ray, 1.0);
-              if (std::max(reference.status, flow.status) <= RayStatus::vignetted) {
-                probe.shift[i] = std::max(probe.shift[i], length(flow.at_lens - reference.at_lens));
+              for (std::size_t s = 0; s < Count; ++s) {
+                TracingOptions<double> stepped = options;
+                stepped.step = steps[s];
+                RayHit<double> const flow = trace_ray(camera, medium, stepped, ray, 1.0);
+                if (std::max(reference.status, flow.status) <= RayStatus::vignetted) {
+                  probes[s].shift[i] = std::max(probes[s].shift[i], length(flow.at_lens - reference.at_lens));
+                }
+                if (!reaches_sensor_plane(reference.status) || !reaches_sensor_plane(flow.status)) continue;
+                sum[s] += flow.pixel - reference.pixel;
+                ++seen[s];
               }
-              if (!reaches_sensor_plane(reference.status) || !reaches_sensor_plane(flow.status)) continue;
-              sum += flow.pixel - reference.pixel;
-              ++seen;
             }
-            probe.displacement_px[i] = seen > 0 ? sum / static_cast<double>(seen) : Vec2d{};
+            for (std::size_t s = 0; s < Count; ++s) {
+              probes[s].displacement_px[i] = seen[s] > 0 ? sum[s] / static_cast<double>(seen[s]) : Vec2d{};
+            }
             progress.advance();
           }
         });
       },
       scene.medium.view);
-  return probe;
+  return probes;
 }
 
 /// Returns the difference of each dot's displacement between two probes [px].
@@ -112,20 +123,17 @@ IntegrationStep determine_step_by_tracing(Scene const& scene) {
   std::iota(dots.begin(), dots.end(), std::size_t{0});
   if (dots.size() > probed_dots) {
     double const length = step.step_mm * unit::millimetre;
-    Probe const coarse = probe_dots(scene, dots, chief_ray, length);
+    auto const [coarse, fine] = probe_dots(scene, dots, chief_ray, std::array{length, length / 2});
     shift_of_others = coarse.largest_shift();
-    dots = largest_of(changes(coarse, probe_dots(scene, dots, chief_ray, length / 2)));
+    dots = largest_of(changes(coarse, fine));
   }
   // Halve the step until the displacements no longer change.
-  auto const probe = [&](double step_mm) {
-    return probe_dots(scene, dots, scene.chief_rays_only() ? std::span<Vec2d const>(chief_ray) : cone,
-                      step_mm * unit::millimetre);
-  };
+  std::span<Vec2d const> const rays = scene.chief_rays_only() ? std::span<Vec2d const>(chief_ray) : cone;
   Bounds<double> const box = std::visit([](auto const& medium) { return medium.bounds(); }, scene.medium.view);
   double const depth_mm = (box.high.z - box.low.z) / unit::millimetre;
-  Probe coarse = probe(step.step_mm);
+  auto const metres = [](double step_mm) { return step_mm * unit::millimetre; };
+  auto [coarse, fine] = probe_dots(scene, dots, rays, std::array{metres(step.step_mm), metres(step.step_mm / 2)});
   for (int halvings = 0;; ++halvings) {
-    Probe fine = probe(step.step_mm / 2);
     step.largest_shift = std::max({shift_of_others, coarse.largest_shift(), fine.largest_shift()});
     std::vector<double> const change = changes(coarse, fine);
     if (!change.empty()) {
@@ -137,6 +145,7 @@ IntegrationStep determine_step_by_tracing(Scene const& scene) {
     if (given || step.change_px < step_tolerance_px || finest) return step;
     step.step_mm /= 2;
     coarse = std::move(fine);
+    fine = std::move(probe_dots(scene, dots, rays, std::array{metres(step.step_mm / 2)})[0]);
   }
 }
 

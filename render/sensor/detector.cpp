@@ -4,6 +4,7 @@
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <cstring>
 
 #include "render/base/error.h"
 #include "render/base/parallel.h"
@@ -51,10 +52,11 @@ class PixelBlock {
 
   PixelBlock(PixelDetector const& detector, RandomStream stream, std::size_t first, std::size_t count)
       : detector_(detector), first_(first), count_(count) {
-    FrameNoise const noise = detector.frame_noise(stream);
+    std::uint64_t state = detector.frame_noise(stream).state(first);
     for (std::size_t i = 0; i < count; ++i) {
-      shot_[i] = to_open_unit(noise.shot(first + i));
-      read_[i] = to_open_unit(noise.read(first + i));
+      shot_[i] = to_open_unit(mix64(state));
+      read_[i] = to_open_unit(mix64(state + FrameNoise::increment));
+      state += 2 * FrameNoise::increment;
     }
     for (std::size_t i = 0; patterned && i < count; ++i) pattern_[i] = detector.pattern(first + i);
   }
@@ -69,38 +71,32 @@ class PixelBlock {
     }
     if (detector.shot_noise) draw_electrons();
     find_quantiles(read_);
-    double saturated = 0;
+    std::size_t saturated = 0;
     for (std::size_t i = 0; i < count_; ++i) {
       PixelLevel const here = detector.read_out(charge_[i], pattern(i), quantile_[i]);
       expanded_[i] = here.level;
-      saturated += here.saturated ? 1.0 : 0.0;
+      saturated += here.saturated ? 1 : 0;
     }
     for (std::size_t i = 0; i < count_; ++i) levels[i] = static_cast<std::uint16_t>(static_cast<int>(expanded_[i]));
-    return static_cast<std::size_t>(saturated);
+    return saturated;
   }
 
  private:
   using Numbers = std::array<double, size>;
+  using Four = double __attribute__((vector_size(4 * sizeof(double))));  ///< vector type of GCC and clang
+  static constexpr std::size_t fours = 2, group = 4 * fours;             ///< pixels whose sums grow together
+  static_assert(size % group == 0);
 
   PixelPattern pattern(std::size_t i) const {
     if constexpr (patterned) return pattern_[i];
     return {};
   }
-  /// Computes the normal quantiles of uniform numbers: first as if all were central, then those in the tails.
+  /// Computes the normal quantiles of uniform numbers: first as if all were central, then the few in the tails.
   void find_quantiles(Numbers const& uniform) {
     for (std::size_t i = 0; i < count_; ++i) quantile_[i] = NormalQuantile::central(uniform[i]);
-    std::size_t const tails = select([&](std::size_t i) { return !NormalQuantile::is_central(uniform[i]); });
-    for (std::size_t k = 0; k < tails; ++k) quantile_[selected_[k]] = NormalQuantile::tail(uniform[selected_[k]]);
-  }
-  /// Lists the pixels that meet a condition, without branches that a processor would mispredict. @return their number
-  template <class Condition>
-  std::size_t select(Condition const& condition) {
-    std::size_t selected = 0;
     for (std::size_t i = 0; i < count_; ++i) {
-      selected_[selected] = static_cast<std::uint16_t>(i);
-      selected += condition(i) ? 1 : 0;
+      if (!NormalQuantile::is_central(uniform[i])) quantile_[i] = NormalQuantile::tail(uniform[i]);
     }
-    return selected;
   }
   /// Replaces mean charges by numbers of electrons: first as if all were large, then the small ones.
   void draw_electrons() {
@@ -110,17 +106,65 @@ class PixelBlock {
       double const charge = charge_[i];
       expanded_[i] = PoissonQuantile::expanded(charge > least ? charge : least, quantile_[i]);
     }
-    std::size_t const others = select([&](std::size_t i) { return !(charge_[i] >= least && charge_[i] < 1e12); });
-    for (std::size_t k = 0; k < others; ++k) {
-      std::size_t const i = selected_[k];
-      expanded_[i] = gladstone::draw_electrons(charge_[i], shot_[i]);
-    }
+    draw_few_electrons();
     charge_ = expanded_;
+  }
+  /// Draws the numbers of electrons of all pixels but those for which the expansion is valid.
+  void draw_few_electrons() {
+    auto const is_expanded = [&](std::size_t i) {
+      return charge_[i] >= PoissonQuantile::least_expanded && charge_[i] < 1e12;
+    };
+    // List the pixels without branches, which a processor would mispredict.
+    std::size_t few = 0;
+    for (std::size_t i = 0; i < count_; ++i) {
+      selected_[few] = static_cast<std::uint16_t>(i);
+      few += is_expanded(i) ? 0 : 1;
+    }
+    for (std::size_t k = 0; k < few; ++k) {
+      double const charge = charge_[selected_[k]];
+      mean_[k] = charge > 0 && charge < PoissonQuantile::least_expanded ? charge : 0;
+      quantile_[k] = shot_[selected_[k]];
+    }
+    // Fill the last group with pixels of which none has an electron.
+    for (std::size_t k = few; k % group != 0; ++k) mean_[k] = quantile_[k] = 0;
+    for (std::size_t k = 0; k < few; ++k) share_[k] = PoissonQuantile::probability_of_none(mean_[k]);
+    for (std::size_t k = few; k % group != 0; ++k) share_[k] = 1;
+    for (std::size_t k = 0; k < few; k += group) count_electrons(k);
+    for (std::size_t k = 0; k < few; ++k) {
+      std::size_t const pixel = selected_[k];
+      expanded_[pixel] = mean_[k] > 0 ? share_[k] : charge_[pixel];
+    }
+  }
+  /// Replaces share_, the probability of no electrons, of a group of listed pixels by the number of cumulative
+  /// probabilities that do not exceed the random number, like PoissonQuantile::summed().
+  void count_electrons(std::size_t from) {
+    Four mean[fours], uniform[fours], share[fours], sum[fours], electrons[fours] = {};
+    for (std::size_t i = 0; i < fours; ++i) {
+      std::memcpy(&mean[i], &mean_[from + 4 * i], sizeof(Four));
+      std::memcpy(&uniform[i], &quantile_[from + 4 * i], sizeof(Four));
+      std::memcpy(&share[i], &share_[from + 4 * i], sizeof(Four));
+      sum[i] = share[i];
+    }
+    Four const none = {}, one = none + 1.0;
+    for (int k = 1; k <= PoissonQuantile::most_terms; ++k) {
+      double const per_k = 1.0 / k;
+      auto any = none > one;
+      for (std::size_t i = 0; i < fours; ++i) {
+        auto const more = uniform[i] >= sum[i];
+        any |= more;
+        electrons[i] += more ? one : none;
+        share[i] *= mean[i] * per_k;
+        sum[i] += share[i];
+      }
+      if (k % 4 == 1 && (any[0] | any[1] | any[2] | any[3]) == 0) break;
+    }
+    for (std::size_t i = 0; i < fours; ++i) std::memcpy(&share_[from + 4 * i], &electrons[i], sizeof(Four));
   }
 
   PixelDetector const& detector_;
   std::size_t first_, count_;
   Numbers shot_, read_, charge_, quantile_, expanded_;
+  Numbers mean_, share_;  // of pixels with few electrons, in the order of selected_
   std::array<std::uint16_t, size> selected_;
   std::array<PixelPattern, patterned ? size : 1> pattern_;
 };

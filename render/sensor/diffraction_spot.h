@@ -48,19 +48,22 @@ struct GaussianSpot {
   /// at p [px].
   GLADSTONE_HD void shares(T p, int first, int width, T* out) const {
     constexpr T offset[8] = {T(-0.5), T(0.5), T(1.5), T(2.5), T(3.5), T(4.5), T(5.5), T(6.5)};
+    constexpr int rows = 3, edges = 4 * rows;
     using Four = Lanes<T, 4>;
     Four const scale = Four::all(T(1) / sigma);
-    T before{};
-    // Evaluate eight pixel edges at a time; pixel i is bounded by edges i and i + 1.
-    for (int edge = 0; edge <= width; edge += 8) {
-      Four const left = Four::all(T(first + edge) - p);
-      Four value[2] = {(left + Four::load(offset)) * scale, (left + Four::load(offset + 4)) * scale};
-      edge_values(value);
-      for (int i = 0; i < 8 && edge + i <= width; ++i) {
-        T const here = value[i / 4].v[i % 4];
-        if (edge + i > 0) out[edge + i - 1] = here - before;
-        before = here;
+    T integral[edges + 1];  // preceded by that of the edge before
+    // Evaluate twelve pixel edges at a time; pixel i is bounded by edges i and i + 1.
+    for (int edge = 0; edge <= width; edge += edges) {
+      Four value[rows];
+      for (int row = 0; row < rows; ++row) {
+        int const here = edge + 4 * row, group = here - here % 8;
+        value[row] = (Four::all(T(first + group) - p) + Four::load(offset + here % 8)) * scale;
       }
+      edge_values(value);
+      if (edge > 0) integral[0] = integral[edges];
+      for (int i = 0; i < edges; ++i) integral[i + 1] = value[i / 4].lane(i % 4);
+      int const begin = edge > 0 ? 0 : 1, end = width - edge < edges ? width - edge : edges - 1;
+      for (int i = begin; i <= end; ++i) out[edge + i - 1] = integral[i + 1] - integral[i];
     }
   }
   /// Returns the integral of the PSF from its centre to edge `edge` of a footprint that begins at pixel `first`, with
