@@ -30,7 +30,7 @@ class Picture {
     if (!input_) input_ = image_codecs().open(path);
     if (!input_) {
       std::string const samples = describe_tiff_samples(file_);
-      throw DataError(ErrorCode::wrong_format, path,
+      throw DataError(samples.empty() ? ErrorCode::wrong_format : ErrorCode::unsupported, path,
                       "cannot be read as an image (it is of another format, " +
                           (samples.empty() ? "" : "a TIFF with " + samples + ", ") +
                           "damaged or cut short); give TIFF, PNG, JPEG or EXR, if necessary written again without "

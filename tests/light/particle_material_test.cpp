@@ -45,9 +45,9 @@ TEST(ParticleMaterial, RefusesWhatItDoesNotKnow) {
   EXPECT_THAT([] { read_index("material = \"tio2\"", 355e-9); },
               ThrowsSetupError(ErrorCode::invalid_value, "case.toml:2:1"));
   EXPECT_THAT([] { read_index("material = \"water\"\nindex = [1.3, 0.0]"); },
-              ThrowsSetupError(ErrorCode::invalid_value, "case.toml:2:1"));
+              ThrowsSetupError(ErrorCode::invalid_value, "case.toml:3:1"));
   EXPECT_THAT([] { read_index("index = [0.0, 1.0]"); }, ThrowsSetupError(ErrorCode::invalid_value, "case.toml:2:1"));
-  EXPECT_THAT([] { read_index("index = [1.5, -0.1]"); }, ThrowsSetupError(ErrorCode::invalid_value, "case.toml:2:1"));
+  EXPECT_THAT([] { read_index("index = [1.5, -0.1]"); }, ThrowsSetupError(ErrorCode::out_of_range, "case.toml:2:1"));
 }
 
 }  // namespace

@@ -153,11 +153,12 @@ TEST(Setup, DotsThatCannotFindRoomAreRefused) {
 
 TEST(Setup, WhatIsOfOthersOrDueLaterIsRefusedByName) {
   EXPECT_THAT([] { read_setup_text("[[camera]]\n[[camera]]\n"); }, refused(ErrorCode::invalid_value, "1"));
-  for (std::string const table : {"particles", "laser", "flow", "calibration", "requirements"}) {
+  for (std::string const table : {"particles", "laser", "flow", "calibration"}) {
     EXPECT_THAT([&] { read_setup_text(std::string("[").append(table).append("]\n")); },
                 refused(ErrorCode::invalid_value, "1"))
         << table;
   }
+  EXPECT_THAT([] { read_setup_text("[requirements]\n"); }, refused(ErrorCode::unknown_key, "1"));
   EXPECT_THAT([] { read_setup_text("schema = 2\n"); }, refused(ErrorCode::invalid_value, "1:1"));
 }
 

@@ -74,7 +74,7 @@ TEST(Background, StretchesAGlareOverTheSensor) {
   write_tiff(path, ramp, {});
   CameraSetup camera = counting_camera(8, 2);
   camera.background.glare_file = path;
-  camera.background.glare_e = 8000;
+  background.glare_e = 8000;
   Image<std::uint16_t> const image = recorded(camera, 0);
   for (int row = 0; row < 2; ++row) {
     for (int column = 0; column < 8; ++column) {
@@ -163,12 +163,12 @@ TEST(CameraSetup, RefusesABackgroundThatHidesAll) {
   EXPECT_DOUBLE_EQ(good.noise.prnu, 0.015);
   EXPECT_THAT([&] { read("background.level_e = 29000"); }, ThrowsMessage<SetupError>(HasSubstr("the limit is 24000")));
   EXPECT_THAT([&] { read("background.glare_e = 5"); },
-              ThrowsSetupError(ErrorCode::missing_key, "camera.background.glare_file"));
+              ThrowsSetupError(ErrorCode::invalid_value, "background.glare_e"));
   EXPECT_THAT([&] { read("background.glare_file = \"absent.png\""); },
-              ThrowsSetupError(ErrorCode::missing_file, "camera.background.glare_file"));
+              ThrowsSetupError(ErrorCode::missing_file, "background.glare_file"));
   EXPECT_THAT([&] { read("noise.hot_pixel_share = 2"); },
-              ThrowsSetupError(ErrorCode::out_of_range, "camera.noise.hot_pixel_share"));
-  EXPECT_THAT([&] { read("bit_depth = 18"); }, ThrowsSetupError(ErrorCode::out_of_range, "camera.bit_depth"));
+              ThrowsSetupError(ErrorCode::out_of_range, "noise.hot_pixel_share"));
+  EXPECT_THAT([&] { read("bit_depth = 18"); }, ThrowsSetupError(ErrorCode::out_of_range, "bit_depth"));
 }
 
 }  // namespace

@@ -149,7 +149,7 @@ TEST(ImageFile, UnreadablePicturesAreNamed) {
   write_tiff(temporary("cut.tif"), all_values(), {});
   std::string const whole = content(temporary("cut.tif"));
   std::ofstream(temporary("cut.tif"), std::ios::binary) << whole.substr(0, whole.size() / 2);
-  EXPECT_THAT([] { read_image(temporary("cut.tif")); }, ThrowsDataError(ErrorCode::damaged, "cut.tif"));
+  EXPECT_THAT([] { read_image(temporary("cut.tif")); }, ThrowsDataError(ErrorCode::wrong_format, "cut.tif"));
 }
 
 /// Writes a TIFF with several pages; the value of all pixels of a page is its number.
