@@ -33,8 +33,9 @@ char const* to_string(RenderMethod method) {
 FocusedDots require_focused_dots(Scene const& scene) {
   std::optional<FocusedDots> const dots = focused_dots(scene);
   if (dots) return *dots;
-  throw DataError("render.method", "\"focused_dots\" is not valid here, since " +
-                                       std::string(to_string(table_state(scene))) + "; use \"auto\" or \"rays\"");
+  throw DataError(ErrorCode::invalid_value, KeyPath{"render.method"},
+                  "\"focused_dots\" is not valid here, since " + std::string(to_string(table_state(scene))) +
+                      "; use \"auto\" or \"rays\"");
 }
 
 }  // namespace gladstone

@@ -172,6 +172,12 @@ int run(int argc, char** argv, GlobalOptions& options) {
   return bad_input;
 }
 
+/// Returns the exit code of an error other than those of devices and interruptions.
+int exit_code(std::exception const& error) {
+  auto const* const own = dynamic_cast<Error const*>(&error);
+  return own && own->code() == ErrorCode::no_valid_vector ? check_missed : bad_input;
+}
+
 /// Runs the program and reports exceptions. @return exit code
 int guarded(int argc, char** argv) {
   GlobalOptions options;
@@ -192,12 +198,10 @@ int guarded(int argc, char** argv) {
     return fail(error, error.what(), bad_input);
   } catch (Interrupted const& error) {
     return fail(error, fmt::format("gladstone: {}", error.what()), interrupted_by_user);
-  } catch (NoValidVector const& error) {
-    return fail(error, fmt::format("gladstone: {}", error.what()), check_missed);
   } catch (DeviceError const& error) {
     return fail(error, fmt::format("gladstone: device error: {}", error.what()), device_error);
   } catch (std::exception const& error) {
-    return fail(error, fmt::format("gladstone: {}", format_user_message(error)), bad_input);
+    return fail(error, fmt::format("gladstone: {}", format_user_message(error)), exit_code(error));
   }
 }
 

@@ -193,10 +193,11 @@ double CorrelationSchedule::smoothing(int pass) const {
 void check_image_sizes(CorrelationSettings const& settings, int reference_columns, int reference_rows, int flow_columns,
                        int flow_rows) {
   if (flow_columns != reference_columns || flow_rows != reference_rows)
-    throw DataError("image pair", fmt::format("images of different size ({} x {} and {} x {} px)", reference_columns,
-                                              reference_rows, flow_columns, flow_rows));
+    throw DataError(ErrorCode::wrong_shape, "image pair",
+                    fmt::format("images of different size ({} x {} and {} x {} px)", reference_columns, reference_rows,
+                                flow_columns, flow_rows));
   if (std::string const problem = window_problem(settings, reference_columns, reference_rows); !problem.empty())
-    throw DataError("image pair", problem);
+    throw DataError(ErrorCode::wrong_shape, "image pair", problem);
 }
 
 DisplacementField displacement_field(InterrogationGrid const& grid, std::span<MeasuredVector const> vectors) {
@@ -226,13 +227,15 @@ DisplacementField correlate_ensemble(PairSequence const& pairs, CorrelationSetti
   GLADSTONE_EXPECTS(pairs.size > 0);
   for (CorrelationMethod const& method : all_correlation_methods())
     if (settings.method == method.name && !method.in_ensembles)
-      throw DataError("ensemble", fmt::format("correlate.method = \"{}\" does not support ensembles (it has no "
-                                              "correlation planes to average); use another one, such as \"scc\"",
-                                              settings.method));
+      throw DataError(ErrorCode::unsupported, "ensemble",
+                      fmt::format("correlate.method = \"{}\" does not support ensembles (it has no "
+                                  "correlation planes to average); use another one, such as \"scc\"",
+                                  settings.method));
   if (settings.estimates_uncertainty())
-    throw DataError("ensemble", fmt::format("correlate.uncertainty = \"{}\" does not support ensembles (it compares "
-                                            "the matched frames of one pair); use \"none\"",
-                                            settings.uncertainty));
+    throw DataError(ErrorCode::unsupported, "ensemble",
+                    fmt::format("correlate.uncertainty = \"{}\" does not support ensembles (it compares "
+                                "the matched frames of one pair); use \"none\"",
+                                settings.uncertainty));
   return StandardCorrelator(settings).correlate_all(pairs);
 }
 

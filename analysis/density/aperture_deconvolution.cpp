@@ -62,7 +62,9 @@ ApertureDeconvolution::ApertureDeconvolution(PlaneGrid const& grid, std::span<st
   GLADSTONE_EXPECTS(determined.size() == grid.size());
   check_deconvolution(cone, maximum_gain);
   if (std::none_of(determined.begin(), determined.end(), [](std::uint8_t d) { return d != 0; }))
-    throw DataError("density", "no node has a density; nothing can be deconvolved");
+    throw DataError(
+        ErrorCode::undetermined, "density",
+        "no node has a density, so that nothing can be deconvolved; check the mask and the validation of the vectors");
 
   auto filter = std::make_unique<Filter>(grid, determined);
   double const root = maximum_gain - std::sqrt(maximum_gain * maximum_gain - 1.0);

@@ -32,7 +32,7 @@ void check_axisymmetric_settings(GradientMap const& map, AxisymmetricSettings co
   if (!problems.empty()) throw SetupError(problems);
   if (settings.method == AbelMethod::tikhonov && settings.choice == RegularizationChoice::discrepancy &&
       map.sigma.empty())
-    throw DataError("density gradient",
+    throw DataError(ErrorCode::missing_content, "density gradient",
                     "the discrepancy principle needs the uncertainty of the vectors (none is "
                     "given); use cross-validation, or give lambda");
 }
@@ -48,7 +48,8 @@ double determine_lambda(Eigen::MatrixXd const& projection, std::vector<RadialPro
     if (profile.is_measured()) chosen.push_back(profile);
   }
   if (chosen.empty())
-    throw DataError("density gradient", "no row has valid vectors; check the mask and the axis of symmetry");
+    throw DataError(ErrorCode::undetermined, "density gradient",
+                    "no row has valid vectors; check the mask and the axis of symmetry");
   return choose_regularization(projection, chosen, settings.choice);
 }
 
@@ -120,9 +121,10 @@ AxisymmetricDensity invert_axisymmetric(GradientMap const& projected, Axisymmetr
                               : find_symmetry_axis(projected, AxisDirection::vertical, settings.overlap);
   int const radii = count_radii(projected.grid, result.axis.position), rows = projected.grid.rows;
   if (radii < 4)
-    throw DataError("density gradient", fmt::format("{} radii from the axis to the border are too few for an Abel "
-                                                    "inversion (at least 4); use smaller windows or more overlap",
-                                                    radii));
+    throw DataError(ErrorCode::undetermined, "density gradient",
+                    fmt::format("{} radii from the axis to the border are too few for an Abel "
+                                "inversion (at least 4); use smaller windows or more overlap",
+                                radii));
   std::vector<RadialProfile> profiles(static_cast<std::size_t>(rows));
   parallel_for(profiles.size(), [&](std::size_t row) {
     profiles[row] = fold_row(projected, static_cast<int>(row), result.axis.position);
@@ -154,7 +156,7 @@ AxisymmetricDensity invert_axisymmetric(GradientMap const& projected, Axisymmetr
     }
   });
   if (std::none_of(result.density.begin(), result.density.end(), [](double value) { return std::isfinite(value); }))
-    throw DataError("density gradient",
+    throw DataError(ErrorCode::undetermined, "density gradient",
                     "the vectors at the largest distance from the axis are masked or invalid in all rows (the direct "
                     "inversion proceeds from there to the axis); crop the vectors on that side, move the axis, or "
                     "choose the regularised inversion (tikhonov)");

@@ -40,7 +40,7 @@ RegionMap count_references(GradientMap const& map, ReferenceDensity const& refer
                                    "no reference density is given (the gradient determines the density up to a "
                                    "constant); name a region of known density"}});
   if (used == 0)
-    throw DataError("reference",
+    throw DataError(ErrorCode::undetermined, "reference",
                     fmt::format("all {} nodes of the reference region are masked or invalid (no node fixes "
                                 "the density); move the reference region or the mask",
                                 given));
@@ -55,9 +55,10 @@ void reject_unreferenced(RegionMap const& regions) {
     if (count++ < 5) list += (list.empty() ? "" : "; ") + describe_region(region);
   }
   if (count == 0) return;
-  throw DataError("reference", fmt::format("{} of {} disconnected regions have no reference density ({}{}); name a "
-                                           "reference region in each, or leave these regions out",
-                                           count, regions.regions.size(), list, count > 5 ? "; ..." : ""));
+  throw DataError(ErrorCode::undetermined, "reference",
+                  fmt::format("{} of {} disconnected regions have no reference density ({}{}); name a "
+                              "reference region in each, or leave these regions out",
+                              count, regions.regions.size(), list, count > 5 ? "; ..." : ""));
 }
 
 }  // namespace

@@ -74,7 +74,7 @@ DensityUncertainty propagate_uncertainty(DensityIntegrator const& integrator, st
                                          PropagationSettings const& settings, DensityFilter const& filter) {
   std::size_t const size = integrator.grid().size();
   if (sigma.empty())
-    throw DataError("density gradient",
+    throw DataError(ErrorCode::missing_content, "density gradient",
                     "the vectors have no uncertainty (the density's cannot be propagated); correlate "
                     "with an uncertainty method, or give sigma for every vector");
   GLADSTONE_EXPECTS(sigma.size() == size);

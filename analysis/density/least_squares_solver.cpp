@@ -12,7 +12,7 @@ NormalEquations::NormalEquations(Matrix const& matrix, std::size_t direct_limit)
   if (static_cast<std::size_t>(matrix_.rows()) <= direct_limit) {
     direct_ = std::make_unique<Direct>(matrix_);
     if (direct_->info() == Eigen::Success) return;
-    throw DataError("density gradient",
+    throw DataError(ErrorCode::undetermined, "density gradient",
                     "the equations of the density are singular (weights differ too much); check the uncertainties");
   }
   preconditioner_ = std::make_unique<Preconditioner>(matrix_);
@@ -36,9 +36,10 @@ Eigen::VectorXd NormalEquations::solve(Eigen::VectorXd const& right_side) const 
     direction = preconditioned + (next / product) * direction;
     product = next;
   }
-  throw DataError("density gradient", fmt::format("the integration did not converge (relative residual {:.1e}); check "
-                                                  "the uncertainties, or use fewer vectors",
-                                                  residual.norm() / right_side.norm()));
+  throw DataError(ErrorCode::undetermined, "density gradient",
+                  fmt::format("the integration did not converge (relative residual {:.1e}); check "
+                              "the uncertainties, or use fewer vectors",
+                              residual.norm() / right_side.norm()));
 }
 
 }  // namespace gladstone::density

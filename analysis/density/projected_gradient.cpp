@@ -37,21 +37,23 @@ PixelGrid find_pixel_grid(DisplacementField const& field) {
   auto const columns = static_cast<std::size_t>(std::max(field.columns, 0));
   auto const rows = static_cast<std::size_t>(std::max(field.rows, 0));
   if (columns < 2 || rows < 2 || field.size() != columns * rows || field.displacement_px.size() != field.size())
-    throw DataError("vectors", fmt::format("{} vectors are not a grid of at least 2 x 2 (columns: {}, rows: {}); "
-                                           "interpolate scattered vectors onto a regular grid first",
-                                           field.size(), field.columns, field.rows));
+    throw DataError(ErrorCode::wrong_shape, "vectors",
+                    fmt::format("{} vectors are not a grid of at least 2 x 2 (columns: {}, rows: {}); "
+                                "interpolate scattered vectors onto a regular grid first",
+                                field.size(), field.columns, field.rows));
   Vec2d const first = field.position_px.front(), last = field.position_px.back();
   PixelGrid const grid{
       first,
       {(last.x - first.x) / static_cast<double>(columns - 1), (last.y - first.y) / static_cast<double>(rows - 1)}};
   if (!(grid.step_px.x > 0.0 && grid.step_px.y > 0.0))
-    throw DataError("vectors", "the columns must run to the right and the rows downwards; reorder the vectors");
+    throw DataError(ErrorCode::invalid_value, "vectors",
+                    "the columns must run to the right and the rows downwards; reorder the vectors");
   for (std::size_t i = 0; i < field.size(); ++i) {
     std::size_t const row = i / columns, column = i % columns;
     Vec2d const expected{first.x + static_cast<double>(column) * grid.step_px.x,
                          first.y + static_cast<double>(row) * grid.step_px.y};
     if (!(length(field.position_px[i] - expected) <= 1e-3 * std::min(grid.step_px.x, grid.step_px.y)))
-      throw DataError("vectors",
+      throw DataError(ErrorCode::invalid_value, "vectors",
                       fmt::format("vector {} at ({:.4f}, {:.4f}) px is not on the regular grid, expected "
                                   "({:.4f}, {:.4f}) px; interpolate the vectors onto a regular grid first",
                                   i, field.position_px[i].x, field.position_px[i].y, expected.x, expected.y));

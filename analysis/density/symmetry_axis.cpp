@@ -125,13 +125,14 @@ SymmetryAxis find_symmetry_axis(GradientMap const& map, AxisDirection direction,
     best_symmetry = symmetry;
   }
   if (best_symmetry <= 0.0)
-    throw DataError("axis",
+    throw DataError(ErrorCode::undetermined, "axis",
                     "no axis of symmetry can be found (the gradient across it vanishes or is not odd); give "
                     "the axis, or integrate without axial symmetry");
   if (best < 2.0 || best > columns - 3.0)
-    throw DataError("axis", fmt::format("the axis of symmetry was found at the border of the image ({:.4g} mm); give "
-                                        "the axis, or enlarge the field of view",
-                                        1e3 * (map.grid.origin.x + best * map.grid.spacing.x)));
+    throw DataError(ErrorCode::undetermined, "axis",
+                    fmt::format("the axis of symmetry was found at the border of the image ({:.4g} mm); give "
+                                "the axis, or enlarge the field of view",
+                                1e3 * (map.grid.origin.x + best * map.grid.spacing.x)));
   double const centre = refine_centre(gradient, best);
   return {map.grid.origin.x + centre * map.grid.spacing.x,
           map.grid.spacing.x * std::sqrt(compute_centre_variance(map, gradient, overlap))};

@@ -49,7 +49,7 @@ void read_changes(SetupTable& correlate, std::string const& key, Rows const& row
   for (SetupTable& table : correlate.tables(key)) {
     std::string const kind = table.kind_word("kind", "", names_of(rows));  // "" if the value was rejected
     if (!table.has("kind")) {
-      table.problem("kind", "is missing; give " + quoted(names_of(rows)), ProblemCode::missing_key);
+      table.problem("kind", "is missing; give " + quoted(names_of(rows)), ErrorCode::missing_key);
       table.suppress_unread_keys();
     }
     for (NamedChange const& row : rows)

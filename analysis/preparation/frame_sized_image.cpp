@@ -10,11 +10,12 @@ namespace gladstone {
 Image<double> read_frame_sized_image(std::string const& file, Image<double> const& frame) {
   Image<double> picture = read_image(file);
   if (picture.columns() != frame.columns() || picture.rows() != frame.rows())
-    throw DataError(file, fmt::format("is {} x {} px, but the frames are {} x {} px (they are combined pixel by "
-                                      "pixel); give an image of that size",
-                                      picture.columns(), picture.rows(), frame.columns(), frame.rows()));
+    throw DataError(ErrorCode::wrong_shape, file,
+                    fmt::format("is {} x {} px, but the frames are {} x {} px (they are combined pixel by "
+                                "pixel); give an image of that size",
+                                picture.columns(), picture.rows(), frame.columns(), frame.rows()));
   if (std::size_t const bad = count_not_finite(picture); bad > 0)
-    throw DataError(file,
+    throw DataError(ErrorCode::invalid_value, file,
                     fmt::format("{} of {} pixels are nan or infinite (which is neither a mask value nor a grey level); "
                                 "replace them by numbers, in a mask by 0 where the frames are to be masked",
                                 bad, picture.size()));

@@ -59,7 +59,9 @@ Disparities measure_disparities(std::array<PinholeCamera const*, 2> const& camer
   Disparities result;
   result.grid = find_common_view(
       cameras, {{{first[0].columns(), first[0].rows()}, {first[1].columns(), first[1].rows()}}}, plane, pixel_size);
-  if (result.grid.size() == 0) throw DataError("images", "of the two cameras show no common part of the plane");
+  if (result.grid.size() == 0)
+    throw DataError(ErrorCode::undetermined, "images",
+                    "the two cameras show no common part of the plane; check the calibrations");
   PairSequence const pairs{images.size(), [&](std::size_t pair) {
                              return HostFrames(dewarp_image(images[pair][0], *cameras[0], plane, result.grid),
                                                dewarp_image(images[pair][1], *cameras[1], plane, result.grid));
@@ -141,8 +143,8 @@ SheetAlignment align_sheet(std::array<PinholeCamera const*, 2> const& cameras,
     }
     auto const fit = fit_object_plane(points);
     if (!fit)
-      throw DataError("images",
-                      "of the two cameras have too few valid disparities to determine the laser sheet; use "
+      throw DataError(ErrorCode::undetermined, "images",
+                      "the two cameras have too few valid disparities to determine the laser sheet; use "
                       "larger windows or more images");
     double squares = 0.0, scatter = 0.0, inside = 0.0;
     for (std::size_t i = 0; i < points.size(); ++i) {

@@ -43,14 +43,16 @@ void check_settings(RegularGrid const& grid, SartSettings const& settings) {
 
 void check_views(std::vector<ProjectedView> const& views) {
   if (views.size() < least_views)
-    throw DataError("tomography",
+    throw DataError(ErrorCode::undetermined, "tomography",
                     fmt::format("{} views do not determine a volume; give at least {}", views.size(), least_views));
   for (ProjectedView const& view : views) {
     if (view.lines.size() != view.value.size())
-      throw DataError(view.name, fmt::format("has {} lines of sight but {} line integrals; give one value per line",
-                                             view.lines.size(), view.value.size()));
+      throw DataError(ErrorCode::wrong_shape, view.name,
+                      fmt::format("has {} lines of sight but {} line integrals; give one value per line",
+                                  view.lines.size(), view.value.size()));
     if (std::none_of(view.value.begin(), view.value.end(), [](double value) { return std::isfinite(value); }))
-      throw NoValidVector(view.name, "has no line integral; check its vectors and its reference");
+      throw DataError(ErrorCode::no_valid_vector, view.name,
+                      "has no line integral; check its vectors and its reference");
   }
 }
 
@@ -82,9 +84,10 @@ SartView prepare_view(ProjectedView const& view, RegularGrid const& grid, double
 void require_common_part(VolumeReconstruction const& result) {
   auto const most = *std::max_element(result.views.begin(), result.views.end());
   if (most >= static_cast<std::int64_t>(least_views)) return;
-  throw DataError("tomography", fmt::format("no part of the volume is seen by more than {} views; check the cameras, "
-                                            "--angles and --bounds",
-                                            most));
+  throw DataError(ErrorCode::undetermined, "tomography",
+                  fmt::format("no part of the volume is seen by more than {} views; check the cameras, "
+                              "--angles and --bounds",
+                              most));
 }
 
 /// Counts the nodes that a view sees and that may differ from zero.

@@ -101,8 +101,9 @@ DisplacementField track(Image<double> const* before, Image<double> const& a, Ima
                         Image<double> const* after, DisplacementField const& predictor,
                         TrackingSettings const& settings) {
   if (a.columns() != b.columns() || a.rows() != b.rows())
-    throw DataError("frame B", fmt::format("has {}x{} px, but frame A has {}x{} px; give frames of one size",
-                                           b.columns(), b.rows(), a.columns(), a.rows()));
+    throw DataError(ErrorCode::wrong_shape, "frame B",
+                    fmt::format("has {}x{} px, but frame A has {}x{} px; give frames of one size", b.columns(),
+                                b.rows(), a.columns(), a.rows()));
   bool const known = !settings.known_places_px.empty();
   LocatedDots const dots_a =
       known ? locate_dots_near(a, settings.dots, settings.known_places_px) : locate_dots(a, settings.dots);

@@ -16,15 +16,18 @@ class NodeReader {
  public:
   explicit NodeReader(std::string const& path) : path_(path), file_(path) {
     if (file_.attribute("filetype") != stereo_filetype)
-      throw DataError(path, "is not a file of three components; give the file that gladstone stereo writes");
+      throw DataError(ErrorCode::wrong_format, path,
+                      "is not a file of three components; give the file that gladstone stereo writes");
   }
 
   std::vector<double> read(std::string const& dataset, std::size_t count) const {
     if (!file_.has(dataset))
-      throw DataError(path_, fmt::format("has no dataset {}; run gladstone stereo again", dataset));
+      throw DataError(ErrorCode::missing_content, path_,
+                      fmt::format("has no dataset {}; run gladstone stereo again", dataset));
     std::vector<double> values = file_.read(dataset);
     if (values.size() != count && count > 0)
-      throw DataError(path_, fmt::format("{}: {} values where the grid requires {}", dataset, values.size(), count));
+      throw DataError(ErrorCode::wrong_shape, path_,
+                      fmt::format("{}: {} values where the grid requires {}", dataset, values.size(), count));
     return values;
   }
   std::vector<double> read_axis(std::string const& dataset) const { return read(dataset, 0); }
@@ -54,7 +57,7 @@ ThreeComponentField read_three_components(std::string const& path) {
   field.x_mm = file.read_axis("/x_mm");
   field.y_mm = file.read_axis("/y_mm");
   std::size_t const nodes = field.x_mm.size() * field.y_mm.size();
-  if (nodes == 0) throw DataError(path, "contains no nodes");
+  if (nodes == 0) throw DataError(ErrorCode::missing_content, path, "contains no nodes");
   field.displacement_mm = file.read_vectors("/displacement_mm", nodes);
   field.sigma_mm = file.read_vectors("/sigma_mm", nodes);
   field.residual_px = file.read("/residual_px", nodes);

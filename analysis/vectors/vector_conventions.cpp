@@ -131,10 +131,11 @@ VectorFile convert_to_pixels(VectorFile file, std::string const& path) {
     std::string const what = (places ? "places in " + file.place_unit : std::string()) +
                              (places && displacements ? " and " : "") +
                              (displacements ? "displacements in " + file.displacement_unit : std::string());
-    throw DataError(path, fmt::format("has {} (vectors are compared in px); give the size of a pixel in these units "
-                                      "with --conventions {}{}{}, or export px",
-                                      what, places ? "px=NUMBER" : "", places && displacements ? "," : "",
-                                      displacements ? "px/frame=NUMBER" : ""));
+    throw DataError(ErrorCode::undetermined, path,
+                    fmt::format("has {} (vectors are compared in px); give the size of a pixel in these units "
+                                "with --conventions {}{}{}, or export px",
+                                what, places ? "px=NUMBER" : "", places && displacements ? "," : "",
+                                displacements ? "px/frame=NUMBER" : ""));
   }
   double const px = file.conventions.px.value_or(1.0), px_per_frame = file.conventions.px_per_frame.value_or(1.0);
   for (Vec2d& p : file.field.position_px) p = p / px;

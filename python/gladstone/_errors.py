@@ -21,8 +21,9 @@ class GladstoneWarning(UserWarning):
 class Error(Exception):
     """Base class of the exceptions of gladstone."""
 
-    code: str = "data"
-    """Kind of the error, as `gladstone --json` reports it; each problem of a `SetupError` has its own."""
+    code: str = "internal"
+    """Kind of the error, as `gladstone --json` reports it (docs/reference/errors.md); each problem of a `SetupError` has
+    its own."""
 
 
 class Problem(NamedTuple):
@@ -39,26 +40,25 @@ class Problem(NamedTuple):
     text: str
     """Description of the problem, with its remedy."""
     code: str
-    """Kind of the problem: "invalid_value", "unknown_key", "missing_key", "wrong_type", "out_of_range",
-    "unknown_choice", "syntax", "unreadable_file" or "memory"."""
+    """Kind of the problem, such as "unknown_key"; docs/reference/errors.md lists all."""
 
     def __str__(self) -> str:
         place = f"replace({self.key!r})" if self.file is None else self.file
         if self.line is not None:
-            place += f":{self.line}:{self.column}"
+            place += f":{self.line}" + (f":{self.column}" if self.column else "")
         return f"{place}: {self.text}"
 
 
-_PLACE = re.compile(r"(?P<file>.*?):(?P<line>\d+):(?P<column>\d+)\Z", re.DOTALL)
+_PLACE = re.compile(r"(?P<file>.*?)(?::(?P<line>\d+)(?::(?P<column>\d+))?)?\Z", re.DOTALL)
 
 
 def _problem(where: str, text: str, key: str, code: str) -> Problem:
     """Makes a problem; `where` is its location, "file:line:column" or "--set key=value"."""
     if where.startswith("--set "):
         return Problem(None, None, None, key or None, text, code)
-    if match := _PLACE.match(where):
-        return Problem(match["file"], int(match["line"]), int(match["column"]), key or None, text, code)
-    return Problem(where, None, None, key or None, text, code)
+    match = _PLACE.match(where)
+    line, column = (int(match[name]) if match[name] else None for name in ("line", "column"))
+    return Problem(match["file"], line, column, key or None, text, code)
 
 
 class SetupError(Error, ValueError):
@@ -80,22 +80,36 @@ class SetupError(Error, ValueError):
         return type(self), (self.problems, self.more)
 
 
-class _FileError(Error):
-    file: str
-    """File or input in which the problem is."""
+class _PlacedError(Error):
+    file: str | None
+    """File or name of the input with the problem; None if a key of the setup is wrong."""
+    line: int | None
+    """Line in the file, from 1."""
+    column: int | None
+    """Column in the line, from 1."""
+    key: str | None
+    """Key path of the setup, such as "lens.f_number"."""
     text: str
     """Description of the problem, with its remedy."""
 
-    def __init__(self, file: str, text: str):
-        self.file, self.text = file, text
-        super().__init__(f"{file}: {text}")
+    def __init__(self, place: str, text: str, code: str | None = None, key: str = ""):
+        self.place, self.text = place, text
+        self.code = code or type(self).code
+        self.key = key or None
+        match = _PLACE.match(place)
+        self.file = None if key else match["file"]
+        self.line = int(match["line"]) if match["line"] else None
+        self.column = int(match["column"]) if match["column"] else None
+        super().__init__(f"{place}: {text}")
 
     def __reduce__(self):
-        return type(self), (self.file, self.text)
+        return type(self), (self.place, self.text, self.code, self.key or "")
 
 
-class DataError(_FileError, ValueError):
+class DataError(_PlacedError, ValueError):
     """A file or an array that is missing, damaged or of unexpected content."""
+
+    code = "invalid_value"
 
 
 class NoValidVector(DataError):
@@ -110,7 +124,7 @@ class OutOfMemory(DataError, MemoryError):
     code = "memory"
 
 
-class OutputError(_FileError):
+class OutputError(_PlacedError):
     """A file that cannot be written."""
 
     code = "output"

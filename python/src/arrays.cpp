@@ -25,8 +25,9 @@ Image<double> copied(ImageArray const& array) {
 GivenImage read_array(ImageArray const& array, std::string const& name) {
   constexpr std::size_t largest = 1u << 20;
   if (array.shape(0) == 0 || array.shape(1) == 0 || array.shape(0) > largest || array.shape(1) > largest) {
-    throw DataError(name, "has " + std::to_string(array.shape(0)) + " x " + std::to_string(array.shape(1)) +
-                              " pixels; give an image [rows, columns]");
+    throw DataError(ErrorCode::wrong_shape, name,
+                    "has " + std::to_string(array.shape(0)) + " x " + std::to_string(array.shape(1)) +
+                        " pixels; give an image [rows, columns]");
   }
   nb::dlpack::dtype const type = array.dtype();
   int const bits = type.bits;
@@ -38,7 +39,7 @@ GivenImage read_array(ImageArray const& array, std::string const& name) {
   if (type == nb::dtype<std::int64_t>()) return {copied<std::int64_t>(array), bits};
   if (type == nb::dtype<float>()) return {copied<float>(array), bits};
   if (type == nb::dtype<double>()) return {copied<double>(array), bits};
-  throw DataError(name,
+  throw DataError(ErrorCode::wrong_type, name,
                   "has samples of a type that is neither an integer of 8 to 64 bits nor a 32- or 64-bit float; "
                   "convert it, for example with image.astype(numpy.float32)");
 }

@@ -21,10 +21,12 @@ class PairBatches {
     std::vector<OwnedPairModel> models;
     for (SetupText const& text : setups) {
       std::vector<CameraCase> cameras = camera_cases(text.document());
-      if (cameras.size() != 1) throw DataError(text.name, "has several cameras; a batch needs a setup with one camera");
+      if (cameras.size() != 1)
+        throw DataError(ErrorCode::unsupported, text.name,
+                        "has several cameras; a batch needs a setup with one camera");
       models.push_back(build_pair_model(load_case_setup(std::move(cameras.front().document)).setup));
     }
-    if (models.empty()) throw DataError("batch", "has no setup; give at least one");
+    if (models.empty()) throw DataError(ErrorCode::missing_content, "batch", "has no setup; give at least one");
     rows_ = static_cast<std::size_t>(models.front().model.projection.rows);
     columns_ = static_cast<std::size_t>(models.front().model.projection.columns);
     renderer_ = open_pair_batches(models);
@@ -48,7 +50,8 @@ class PairBatches {
     if (name == "float32") return LevelType::float32;
     if (name == "uint8") return LevelType::uint8;
     if (name == "uint16") return LevelType::uint16;
-    throw DataError("dtype", "is \"" + name + "\"; use \"float32\", \"uint8\" or \"uint16\"");
+    throw DataError(ErrorCode::unknown_choice, "dtype",
+                    "is \"" + name + "\"; use \"float32\", \"uint8\" or \"uint16\"");
   }
   nb::object array(DeviceBuffer const& buffer, std::size_t first, LevelType type) const {
     auto* const kept = new std::shared_ptr<void>(buffer.owner);

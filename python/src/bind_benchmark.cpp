@@ -24,7 +24,8 @@ std::shared_ptr<MadePair> render_published_case(std::string const& name, std::st
   auto const& cases = benchmark_cases();
   auto const found =
       std::find_if(cases.begin(), cases.end(), [&](BenchmarkCase const& one) { return one.name == name; });
-  if (found == cases.end()) throw DataError(name, "is not a case of the benchmark; see gladstone.benchmark_cases()");
+  if (found == cases.end())
+    throw DataError(ErrorCode::unknown_choice, name, "is not a case of the benchmark; see gladstone.benchmark_cases()");
   Backend const device = open_device(device_name);
   auto const pair = std::make_shared<MadePair>(MadePair{make_case(*found, device), {}});
   for (Image<double> const* frame : {&pair->made.frames.reference(), &pair->made.frames.flow()}) {
@@ -59,7 +60,8 @@ std::shared_ptr<MeasuredField> estimate(MadePair const& pair, std::string const&
   auto const& all = benchmark_estimators();
   auto const found = std::find_if(all.begin(), all.end(), [&](auto const& one) { return one.name == name; });
   if (found == all.end())
-    throw DataError(name, "is not an estimator of the benchmark; see gladstone.benchmark_estimators()");
+    throw DataError(ErrorCode::unknown_choice, name,
+                    "is not an estimator of the benchmark; see gladstone.benchmark_estimators()");
   Backend const device = open_device(device_name);
   Measurement measured = correlate_frames(pair.made.frames, found->settings, device);
   auto field = std::make_shared<MeasuredField>();

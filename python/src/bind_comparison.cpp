@@ -26,7 +26,7 @@ bool is_own(PairCase const& one, MeasuredField const& field) {
   bool const named = !field.reference_sha256.empty();
   if (named && field.reference_sha256 == one.reference_sha256() && field.flow_sha256 == one.flow_sha256()) return true;
   if (named && field.reference_sha256 == one.flow_sha256() && field.flow_sha256 == one.reference_sha256()) {
-    throw DataError(field.name,
+    throw DataError(ErrorCode::inconsistent, field.name,
                     "was measured from the case's frame b to its frame a, so that every displacement has "
                     "the opposite sign; correlate case.a with case.b");
   }

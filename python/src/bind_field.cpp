@@ -72,7 +72,8 @@ Field load_field(std::string const& path, std::string const& conventions, int im
   if (!conventions.empty()) override_conventions(file, conventions);
   file = convert_to_pixels(std::move(file), path);
   if (file.conventions.y_up && file.conventions.mirror == VectorConventions::Mirror::image && image_rows <= 0) {
-    throw DataError(path, "counts y upwards from the image's lower edge; give image_rows, its number of rows");
+    throw DataError(ErrorCode::undetermined, path,
+                    "counts y upwards from the image's lower edge; give image_rows, its number of rows");
   }
   auto field = std::make_shared<MeasuredField>();
   field->name = path;
@@ -104,7 +105,8 @@ Field field_of_arrays(NumberArray const& x, NumberArray const& y, NumberArray co
   auto const check = [count](NumberArray const& array, char const* name) {
     if (array.shape(0) == count) return;
     throw DataError(
-        "field", fmt::format("{} has {} values where x has {}; give one for each vector", name, array.shape(0), count));
+        ErrorCode::wrong_shape, "field",
+        fmt::format("{} has {} values where x has {}; give one for each vector", name, array.shape(0), count));
   };
   check(y, "y");
   check(u, "u");

@@ -27,7 +27,9 @@ namespace {
 /// Computes S1 and S2 at scattering angles [rad]. @return [count, 2], complex
 nb::object mie_amplitudes(double x, std::complex<double> m, NumberArray const& angles) {
   bool const valid = x >= least_size_parameter && x <= largest_size_parameter && m.real() > 0 && m.imag() >= 0;
-  if (!valid) throw DataError("mie", "x must be from 1e-6 to 1e5, and m = n + i k with n > 0 and k >= 0");
+  if (!valid)
+    throw DataError(ErrorCode::out_of_range, "mie",
+                    "x must be from 1e-6 to 1e5, and m = n + i k with n > 0 and k >= 0");
   std::size_t const count = angles.shape(0);
   std::vector<MieAmplitudes> amplitudes(count);
   MieCoefficients(x, m).amplitudes(angles.data(), count, amplitudes.data());

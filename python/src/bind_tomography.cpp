@@ -66,7 +66,7 @@ std::vector<tomography::ProjectedView> split_lines(PointArray const& origin_mm, 
   std::size_t const count = value.shape(0);
   if (origin_mm.shape(0) != count || direction.shape(0) != count || view.shape(0) != count || origin_mm.shape(1) != 3 ||
       direction.shape(1) != 3)
-    throw DataError("lines", "origin and direction must be [lines, 3], value and view [lines]");
+    throw DataError(ErrorCode::wrong_shape, "lines", "origin and direction must be [lines, 3], value and view [lines]");
   std::vector<tomography::ProjectedView> views;
   for (std::size_t i = 0; i < count; ++i) {
     double const index = view.data()[i];
@@ -75,7 +75,7 @@ std::vector<tomography::ProjectedView> split_lines(PointArray const& origin_mm, 
       views.back().name = "view " + std::to_string(views.size() - 1);
     }
     if (index != static_cast<double>(views.size() - 1))
-      throw DataError("lines", "the indices of the views must ascend from 0 in steps of 1");
+      throw DataError(ErrorCode::invalid_value, "lines", "the indices of the views must ascend from 0 in steps of 1");
     tomography::SightLine line;
     double const *o = origin_mm.data() + 3 * i, *d = direction.data() + 3 * i;
     line.origin = unit::mm * Vec3d{o[0], o[1], o[2]};

@@ -63,7 +63,7 @@ std::string PairCase::summary() {
 }
 
 void PairCase::save(std::string const& folder) {
-  if (!frames_) throw DataError(folder_, "was loaded from this folder; copy its files instead");
+  if (!frames_) throw DataError(ErrorCode::arguments, folder_, "was loaded from this folder; copy its files instead");
   std::lock_guard const lock(mutex_);
   write_folder(folder, loaded_, [&](std::string const& place) {
     write_case(loaded_, *prepared_, *rendered_, *frames_, outcome_, place);

@@ -19,9 +19,15 @@ void set_error(char const* name, Arguments&&... arguments) {
 void set_setup_error(SetupError const& error) {
   nb::list problems;
   for (SetupProblem const& problem : error.problems()) {
-    problems.append(nb::make_tuple(problem.where, problem.message, problem.key, problem_code_name(problem.code)));
+    problems.append(nb::make_tuple(problem.where, problem.message, problem.key, error_code_name(problem.code)));
   }
   set_error("SetupError", problems, error.more());
+}
+
+/// Returns the name of the Python class for a DataError; two codes have their own classes.
+char const* data_error_name(ErrorCode code) {
+  if (code == ErrorCode::no_valid_vector) return "NoValidVector";
+  return code == ErrorCode::memory ? "OutOfMemory" : "DataError";
 }
 
 /// The exceptions of gladstone are translated here, those of other libraries by nanobind.
@@ -32,14 +38,11 @@ void translate(std::exception_ptr const& thrown, void* /*payload*/) {
     set_setup_error(error);
   } catch (Interrupted const& error) {
     PyErr_SetString(PyExc_KeyboardInterrupt, error.what());
-  } catch (NoValidVector const& error) {
-    set_error("NoValidVector", error.file(), error.message());
-  } catch (MemoryError const& error) {
-    set_error("OutOfMemory", error.file(), error.message());
   } catch (DataError const& error) {
-    set_error("DataError", error.file(), error.message());
+    set_error(data_error_name(error.code()), error.place(), error.message(), error_code_name(error.code()),
+              error.key());
   } catch (OutputError const& error) {
-    set_error("OutputError", error.path(), error.message());
+    set_error("OutputError", error.place(), error.message());
   } catch (DeviceError const& error) {
     set_error("DeviceError", std::string(error.what()));
   }

@@ -1,6 +1,6 @@
 """Functions for the commands that work on files and folders, against the program."""
 
-import json
+import pickle
 import subprocess
 
 import numpy as np
@@ -140,5 +140,12 @@ def test_errors_have_the_code_of_the_program(program, tmp_path):
     theirs = program("convert", tmp_path / "none.h5", "-o", tmp_path / "v.csv", codes=(2,))["errors"][0]
     with pytest.raises(gs.DataError) as missing:
         gs.convert(tmp_path / "none.h5", tmp_path / "v.csv")
-    assert missing.value.code == theirs["code"] == "data"
-    assert json.dumps(missing.value.file) in json.dumps(theirs["file"])
+    assert missing.value.code == theirs["code"] == "missing_file"
+    assert missing.value.file == theirs["file"] == str(tmp_path / "none.h5")
+    (tmp_path / "bad.csv").write_text("x,y,u,v\n1,2,3,4\n1,2,3,4x\n")
+    theirs = program("convert", tmp_path / "bad.csv", "-o", tmp_path / "v.h5", codes=(2,))["errors"][0]
+    with pytest.raises(gs.DataError) as row:
+        gs.convert(tmp_path / "bad.csv", tmp_path / "v.h5")
+    assert (row.value.code, row.value.file, row.value.line) == ("syntax", str(tmp_path / "bad.csv"), 3)
+    assert (theirs["code"], theirs["file"], theirs["line"]) == ("syntax", str(tmp_path / "bad.csv"), 3)
+    assert pickle.loads(pickle.dumps(row.value)).line == 3

@@ -30,9 +30,10 @@ void require_memory(std::string const& path, std::string const& what, double byt
   if (bytes <= always_there) return;
   double const available = available_memory();
   if (bytes <= available) return;
-  throw MemoryError(path, fmt::format("{} needs {:.3g} GB of memory ({:.3g} GB are available); give a smaller file, or "
-                                      "use a machine with more",
-                                      what, bytes / 1e9, available / 1e9));
+  throw DataError(ErrorCode::memory, path,
+                  fmt::format("{} needs {:.3g} GB of memory ({:.3g} GB are available); give a smaller file, or "
+                              "use a machine with more",
+                              what, bytes / 1e9, available / 1e9));
 }
 
 }  // namespace gladstone

@@ -21,40 +21,73 @@ std::string joined(std::vector<SetupProblem> const& problems, std::size_t more) 
 
 }  // namespace
 
-std::string problem_code_name(ProblemCode code) {
+std::string error_code_name(ErrorCode code) {
   switch (code) {
-    case ProblemCode::invalid_value:
+    case ErrorCode::invalid_value:
       return "invalid_value";
-    case ProblemCode::unknown_key:
+    case ErrorCode::unknown_key:
       return "unknown_key";
-    case ProblemCode::missing_key:
+    case ErrorCode::missing_key:
       return "missing_key";
-    case ProblemCode::wrong_type:
+    case ErrorCode::wrong_type:
       return "wrong_type";
-    case ProblemCode::out_of_range:
+    case ErrorCode::out_of_range:
       return "out_of_range";
-    case ProblemCode::unknown_choice:
+    case ErrorCode::unknown_choice:
       return "unknown_choice";
-    case ProblemCode::syntax:
+    case ErrorCode::syntax:
       return "syntax";
-    case ProblemCode::memory:
-      return "memory";
-    case ProblemCode::unreadable_file:
+    case ErrorCode::missing_file:
+      return "missing_file";
+    case ErrorCode::unreadable_file:
       return "unreadable_file";
+    case ErrorCode::wrong_format:
+      return "wrong_format";
+    case ErrorCode::damaged:
+      return "damaged";
+    case ErrorCode::unsupported:
+      return "unsupported";
+    case ErrorCode::missing_content:
+      return "missing_content";
+    case ErrorCode::wrong_shape:
+      return "wrong_shape";
+    case ErrorCode::inconsistent:
+      return "inconsistent";
+    case ErrorCode::changed:
+      return "changed";
+    case ErrorCode::undetermined:
+      return "undetermined";
+    case ErrorCode::no_valid_vector:
+      return "no_valid_vector";
+    case ErrorCode::memory:
+      return "memory";
+    case ErrorCode::output:
+      return "output";
+    case ErrorCode::device:
+      return "device";
+    case ErrorCode::arguments:
+      return "arguments";
+    case ErrorCode::interrupted:
+      return "interrupted";
+    case ErrorCode::internal:
+      return "internal";
   }
-  return "invalid_value";
+  return "internal";
 }
 
 SetupError::SetupError(std::vector<SetupProblem> problems, std::size_t more)
-    : Error(joined(problems, more)), problems_(std::move(problems)), more_(more) {}
+    : Error(problems.empty() ? ErrorCode::invalid_value : problems.front().code, joined(problems, more)),
+      problems_(std::move(problems)),
+      more_(more) {}
 
 bool is_out_of_memory(std::exception const& error) {
   if (auto const* const setup = dynamic_cast<SetupError const*>(&error)) {
     return std::any_of(setup->problems().begin(), setup->problems().end(),
-                       [](SetupProblem const& problem) { return problem.code == ProblemCode::memory; });
+                       [](SetupProblem const& problem) { return problem.code == ErrorCode::memory; });
   }
+  auto const* const own = dynamic_cast<Error const*>(&error);
   return dynamic_cast<std::bad_alloc const*>(&error) || dynamic_cast<std::length_error const*>(&error) ||
-         dynamic_cast<MemoryError const*>(&error) || dynamic_cast<DeviceMemoryError const*>(&error) ||
+         (own && own->code() == ErrorCode::memory) || dynamic_cast<DeviceMemoryError const*>(&error) ||
          std::string_view(error.what()).find("(-4:Insufficient memory)") != std::string_view::npos;
 }
 

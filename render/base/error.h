@@ -7,34 +7,77 @@
 
 namespace gladstone {
 
-/// Kinds of problems in a setup, for programs that handle problems by kind.
-enum class ProblemCode {
-  invalid_value,    ///< a value that does not fit the others, or any other problem
-  unknown_key,      ///< a key or table that is not read
-  missing_key,      ///< a required key without a value
-  wrong_type,       ///< a text instead of a number, or an array of another length
-  out_of_range,     ///< a number outside its limits
-  unknown_choice,   ///< a word that is not one of the choices
-  syntax,           ///< a file or an assignment that is not TOML
-  unreadable_file,  ///< a setup file that is missing or cannot be read
-  memory,           ///< a value for which the available memory does not suffice
+/// Kinds of errors, for programs that handle errors by kind. The same names stand in the JSON of --json and in `code`
+/// of the Python exceptions; docs/reference/errors.md lists them.
+enum class ErrorCode {
+  // A setup or another text with keys
+  invalid_value,   ///< a value that is not finite, or contradicts another value of the same input
+  unknown_key,     ///< a key or table that is not read
+  missing_key,     ///< a required key without a value
+  wrong_type,      ///< a text instead of a number, or an array of another length
+  out_of_range,    ///< a number outside its limits
+  unknown_choice,  ///< a word that is not one of the choices
+  syntax,          ///< a text that cannot be parsed: not TOML, or a table with a line that is not one of its rows
+  // An input file
+  missing_file,     ///< a file or folder that does not exist
+  unreadable_file,  ///< a file or folder that cannot be opened or read, such as one without permission
+  wrong_format,     ///< an input of another format or kind than required, such as a text in place of an image
+  damaged,          ///< a file that is cut short, damaged or contradicts itself
+  unsupported,      ///< a valid input that gladstone does not support, such as a compression method or a curved grid
+  missing_content,  ///< a file without a required dataset, column, page, row or attribute
+  wrong_shape,      ///< an image or array of another size than required
+  inconsistent,     ///< an input that contradicts another one, such as vectors of other frames
+  changed,          ///< a file that has changed since its content was used
+  // A computation
+  undetermined,     ///< inputs that are too few, too similar or ambiguous to determine the result
+  no_valid_vector,  ///< a vector field without a single valid vector
+  memory,           ///< a computation that needs more memory than is available
+  // The surroundings
+  output,       ///< an output that cannot be written or would overwrite other data
+  device,       ///< an accelerator that is absent, out of memory or failing
+  arguments,    ///< a command line or call whose arguments are incomplete or contradictory
+  interrupted,  ///< a run that the user stopped by Ctrl-C
+  internal,     ///< an unexpected error of gladstone or of a library
 };
 
 /// Returns the name of a code: "out_of_range".
-std::string problem_code_name(ProblemCode code);
+std::string error_code_name(ErrorCode code);
 
 /// One problem in a setup: its location and how to correct it.
 struct SetupProblem {
   std::string where;     ///< "file:line:column", or "--set key=value"
   std::string message;   ///< "key = value: problem (why); suggestion"
   std::string key = {};  ///< path of the key or table, "lens.f_number"; empty: not a problem of one key
-  ProblemCode code = ProblemCode::invalid_value;
+  ErrorCode code = ErrorCode::invalid_value;
 };
 
-/// Base class of errors whose text was written for the user; see format_user_message().
+/// Key path of a setup, "lens.f_number", as the place of an error.
+struct KeyPath {
+  std::string path;
+};
+
+/// Base class of errors whose text was written for the user; see format_user_message(). An error is a record of place,
+/// code and message, "PLACE: MESSAGE" in what(); programs inspect the code and the place, never the message.
 class Error : public std::runtime_error {
  public:
-  using std::runtime_error::runtime_error;
+  /// An error without a place.
+  Error(ErrorCode code, std::string const& message) : runtime_error(message), code_(code), message_(message) {}
+  Error(ErrorCode code, std::string const& place, std::string const& message)
+      : runtime_error(place + ": " + message), code_(code), place_(place), message_(message) {}
+  Error(ErrorCode code, KeyPath const& key, std::string const& message) : Error(code, key.path, message) {
+    at_key_ = true;
+  }
+  ErrorCode code() const { return code_; }
+  /// "file", "file:line", "file:line:column", key path of a setup, or name of another input; may be empty
+  std::string const& place() const { return place_; }
+  /// path of the setup's key that causes the error; empty if the place is not a key
+  std::string key() const { return at_key_ ? place_ : ""; }
+  std::string const& message() const { return message_; }
+
+ private:
+  ErrorCode code_;
+  std::string place_, message_;
+  bool at_key_ = false;
 };
 
 /// Maximum number of problems that a SetupError describes; further ones are only counted.
@@ -54,48 +97,25 @@ class SetupError : public Error {
   std::size_t more_;
 };
 
-/// A data file that is missing, damaged or of unexpected content; the message contains the file and the dataset. Exit
-/// code 2.
+/// An input that is missing, damaged or of unexpected content, or one that needs too much memory. Exit code 2, or 1 for
+/// ErrorCode::no_valid_vector.
 class DataError : public Error {
  public:
-  DataError(std::string const& file, std::string const& message)
-      : Error(file + ": " + message), file_(file), message_(message) {}
-  /// file, or key of a setup, that contains the problem
-  std::string const& file() const { return file_; }
-  std::string const& message() const { return message_; }
-
- private:
-  std::string file_, message_;
-};
-
-/// A vector field without a single valid vector. Exit code 1.
-class NoValidVector : public DataError {
- public:
-  using DataError::DataError;
-};
-
-/// A file or a key of a setup that needs more memory than is available, now or on this machine. Exit code 2.
-class MemoryError : public DataError {
- public:
-  using DataError::DataError;
+  /// @param file  file with the problem, "file:line", or name of another input
+  DataError(ErrorCode code, std::string const& file, std::string const& message) : Error(code, file, message) {}
+  DataError(ErrorCode code, KeyPath const& key, std::string const& message) : Error(code, key, message) {}
 };
 
 /// An output that cannot be written (read-only directory, full disk). Exit code 2.
 class OutputError : public Error {
  public:
-  OutputError(std::string const& path, std::string const& message)
-      : Error(path + ": " + message), path_(path), message_(message) {}
-  std::string const& path() const { return path_; }
-  std::string const& message() const { return message_; }
-
- private:
-  std::string path_, message_;
+  OutputError(std::string const& path, std::string const& message) : Error(ErrorCode::output, path, message) {}
 };
 
 /// An accelerator that is absent, out of memory or failing. Exit code 5.
 class DeviceError : public Error {
  public:
-  using Error::Error;
+  explicit DeviceError(std::string const& message) : Error(ErrorCode::device, message) {}
 };
 
 /// Work that needs more memory of the accelerator than is free. Exit code 5.
@@ -107,12 +127,13 @@ class DeviceMemoryError : public DeviceError {
 /// The user pressed Ctrl-C. Exit code 130.
 class Interrupted : public Error {
  public:
-  explicit Interrupted(std::string const& message = "interrupted; nothing was left behind") : Error(message) {}
+  explicit Interrupted(std::string const& message = "interrupted; nothing was left behind")
+      : Error(ErrorCode::interrupted, message) {}
 };
 
 /// Returns true if an error means that memory is exhausted: std::bad_alloc, std::length_error (a size refused before
-/// its allocation), MemoryError, DeviceMemoryError, a SetupError with a problem of code `memory`, or an OpenCV error of
-/// code -4.
+/// its allocation), an Error of code `memory`, DeviceMemoryError, a SetupError with a problem of code `memory`, or an
+/// OpenCV error of code -4.
 bool is_out_of_memory(std::exception const& error);
 
 /// Returns the text that is shown to the user for an error. The text of an Error is returned as it is; errors of

@@ -29,7 +29,8 @@ std::vector<std::string> expand_pattern(std::string const& pattern) {
     if (!std::filesystem::is_directory(found.gl_pathv[i], ignored)) files.emplace_back(found.gl_pathv[i]);
   }
   ::globfree(&found);
-  if (files.empty()) throw DataError(pattern, "matches no file; check the folder and the pattern");
+  if (files.empty())
+    throw DataError(ErrorCode::missing_file, pattern, "matches no file; check the folder and the pattern");
   return files;
 }
 

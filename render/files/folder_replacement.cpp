@@ -111,7 +111,8 @@ void go_back(fs::path const& folder, FolderContent const& content, std::vector<f
     }
   } catch (MoveError const& stuck) {
     throw OutputError(stuck.path.string(), std::string("cannot be moved back (") + std::strerror(stuck.error) +
-                                               "); the old files are in " + work.string() + ", save them");
+                                               "); the old files are in " + work.string() +
+                                               "; copy them to a safe place");
   }
 }
 

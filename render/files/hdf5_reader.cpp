@@ -103,11 +103,13 @@ std::string filter_name(H5Z_filter_t filter, std::string const& written) {
     missing += (missing.empty() ? "" : ", ") + filter_name(filter, written.data());
   }
   if (missing.empty()) {
-    throw DataError(path, "dataset \"" + name + "\" cannot be read (the file is damaged or cut short)");
+    throw DataError(ErrorCode::damaged, path,
+                    "dataset \"" + name + "\" cannot be read (the file is damaged or cut short)");
   }
-  throw DataError(path, "dataset \"" + name + "\" is compressed by a filter that is not installed here: " + missing +
-                            "; rewrite it where the filter is, h5repack -f GZIP=4 " + path +
-                            " repacked.h5, or name the folder of the filter's plugin in HDF5_PLUGIN_PATH");
+  throw DataError(ErrorCode::unsupported, path,
+                  "dataset \"" + name + "\" is compressed by a filter that is not installed here: " + missing +
+                      "; rewrite it where the filter is, h5repack -f GZIP=4 " + path +
+                      " repacked.h5, or name the folder of the filter's plugin in HDF5_PLUGIN_PATH");
 }
 
 }  // namespace
@@ -173,10 +175,11 @@ void require_stored(hid_t dataset, double file_bytes, std::string const& path, s
   bool const elsewhere = H5Pget_external_count(created) > 0 || H5Pget_layout(created) == H5D_VIRTUAL;
   double const most = std::max(believed_dataset_bytes, file_bytes * largest_packing(created));
   if (elsewhere || std::max(stored, chunk_bytes) <= most) return;
-  throw DataError(path, "dataset \"" + name + "\" of " + sizes_text(shape) + " values cannot be read (the file of " +
-                            std::to_string(static_cast<long long>(file_bytes)) +
-                            " bytes is too short to hold them: it is damaged or cut short, or most of them were never "
-                            "written); copy it again, or write it anew");
+  throw DataError(ErrorCode::damaged, path,
+                  "dataset \"" + name + "\" of " + sizes_text(shape) + " values cannot be read (the file of " +
+                      std::to_string(static_cast<long long>(file_bytes)) +
+                      " bytes is too short to hold them: it is damaged or cut short, or most of them were never "
+                      "written); copy it again, or write it anew");
 }
 
 template <class Value>
@@ -199,20 +202,22 @@ Id Hdf5Reader::Handle::open(std::string const& path, std::string const& dataset,
   if (!opened.valid()) {
     auto names = all_datasets(file);
     std::string message = "has no dataset \"" + dataset + '"';
-    if (names.empty()) throw DataError(path, message + "; it has no datasets");
+    if (names.empty()) throw DataError(ErrorCode::missing_content, path, message + "; it has no datasets");
     if (auto const nearest = nearest_name(dataset, names)) message += "; did you mean \"" + *nearest + "\"?";
     constexpr std::size_t most = 20;
     bool const cut = names.size() > most;
     if (cut) names.resize(most);
-    throw DataError(path, message + (message.ends_with('?') ? " It has " : "; it has ") + quoted_list(names) +
-                              (cut ? " and more" : ""));
+    throw DataError(
+        ErrorCode::missing_content, path,
+        message + (message.ends_with('?') ? " It has " : "; it has ") + quoted_list(names) + (cut ? " and more" : ""));
   }
   require_stored(opened, static_cast<double>(bytes), path, dataset);
   Id const type(H5Dget_type(opened), H5Tclose);
   H5T_class_t const kind = H5Tget_class(type);
   if (kind != H5T_INTEGER && (kind != H5T_FLOAT || integers_only)) {
-    throw DataError(path, "dataset \"" + dataset + "\" holds " + type_name(type) + "; " +
-                              (integers_only ? "whole " : "") + "numbers are needed");
+    throw DataError(ErrorCode::wrong_type, path,
+                    "dataset \"" + dataset + "\" holds " + type_name(type) + "; " + (integers_only ? "whole " : "") +
+                        "numbers are needed");
   }
   return opened;
 }
@@ -259,13 +264,14 @@ Hdf5Reader::Hdf5Reader(std::string const& path) : path_(path) {
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   std::uint64_t const bytes = InputFile(path, "an HDF5 file").size();
   if (H5Fis_hdf5(path.c_str()) <= 0)
-    throw DataError(path, "is not an HDF5 file; check the name, or make or fetch it again");
+    throw DataError(ErrorCode::wrong_format, path, "is not an HDF5 file; check the name, or make or fetch it again");
   Id const access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
 #if H5_VERSION_GE(1, 10, 7)
   H5Pset_file_locking(access, false, true);  // read-only access needs no lock, and some file systems have none
 #endif
   Id file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access), H5Fclose);
-  if (!file.valid()) throw DataError(path, "cannot be opened as HDF5 (it is damaged or cut short); copy it again");
+  if (!file.valid())
+    throw DataError(ErrorCode::damaged, path, "cannot be opened as HDF5 (it is damaged or cut short); copy it again");
   handle_ = std::unique_ptr<Handle>(new Handle{.file = std::move(file), .bytes = bytes, .rows_name = {}});
 }
 
@@ -298,7 +304,8 @@ std::vector<std::string> Hdf5Reader::number_datasets() const {
   std::vector<std::string> names;
   for (std::string const& name : all_datasets(handle_->file)) {
     Id const opened(H5Dopen2(handle_->file, name.c_str(), H5P_DEFAULT), H5Dclose);
-    if (!opened.valid()) throw DataError(path_, "dataset \"" + name + "\" cannot be opened (the file is damaged)");
+    if (!opened.valid())
+      throw DataError(ErrorCode::damaged, path_, "dataset \"" + name + "\" cannot be opened (the file is damaged)");
     Id const type(H5Dget_type(opened), H5Tclose);
     H5T_class_t const kind = H5Tget_class(type);
     if (kind == H5T_INTEGER || kind == H5T_FLOAT) names.push_back('/' + name);

@@ -102,7 +102,7 @@ void require_space(std::string const& path, std::string const& temporary, std::s
   auto const space = std::filesystem::space(std::filesystem::path(temporary).parent_path(), error);
   if (error || space.available >= bytes + spare_bytes) return;
   throw OutputError(path, "cannot be written (" + std::to_string(space.available / (1024 * 1024)) +
-                              " MiB are left on the disk); make room, or write to another disk");
+                              " MiB are free on the disk); free more space, or write to another disk");
 }
 
 /// Returns the current time in UTC as ISO 8601 text.

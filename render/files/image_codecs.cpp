@@ -40,10 +40,11 @@ void require_address_space(std::string const& path) {
     ::munmap(probe, needed);
     return;
   }
-  throw MemoryError(
-      path, fmt::format("cannot be loaded, and no image can be read or written without it (not enough memory: it needs "
-                        "{} MB of address space); raise the limit (ulimit -v), or use a machine with more memory",
-                        needed >> 20));
+  throw DataError(
+      ErrorCode::memory, path,
+      fmt::format("cannot be loaded, and no image can be read or written without it (not enough memory: it needs "
+                  "{} MB of address space); raise the limit (ulimit -v), or use a machine with more memory",
+                  needed >> 20));
 }
 
 ImageCodecs const& load_image_codecs() {
@@ -56,10 +57,11 @@ ImageCodecs const& load_image_codecs() {
   auto const entry =
       library != nullptr ? reinterpret_cast<ImageCodecsEntry>(dlsym(library, "gladstone_image_codecs")) : nullptr;
   if (entry == nullptr) {
-    throw DataError(path, fmt::format("cannot be loaded, and no image can be read or written without it ({}); it "
-                                      "belongs in the folder of gladstone's libraries (bin/../lib of an installation): "
-                                      "install gladstone again, or set GLADSTONE_IMAGE_CODECS to its folder",
-                                      why != nullptr ? why : "it is another library"));
+    throw DataError(ErrorCode::unreadable_file, path,
+                    fmt::format("cannot be loaded, and no image can be read or written without it ({}); it "
+                                "belongs in the folder of gladstone's libraries (bin/../lib of an installation): "
+                                "install gladstone again, or set GLADSTONE_IMAGE_CODECS to its folder",
+                                why != nullptr ? why : "it is another library"));
   }
   return *entry();
 }

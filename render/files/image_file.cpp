@@ -30,7 +30,7 @@ class Picture {
     if (!input_) input_ = image_codecs().open(path);
     if (!input_) {
       std::string const samples = describe_tiff_samples(file_);
-      throw DataError(path,
+      throw DataError(samples.empty() ? ErrorCode::wrong_format : ErrorCode::unsupported, path,
                       "cannot be read as an image (it is of another format, " +
                           (samples.empty() ? "" : "a TIFF with " + samples + ", ") +
                           "damaged or cut short); give TIFF, PNG, JPEG or EXR, if necessary written again without "
@@ -46,7 +46,8 @@ class Picture {
 
   Image<double> read(std::size_t page, ImageMetadata* metadata) {
     if (!input_->seek(pages_[page])) {
-      throw DataError(path_, fmt::format("page {} cannot be read (the file is damaged); copy it again", page + 1));
+      throw DataError(ErrorCode::damaged, path_,
+                      fmt::format("page {} cannot be read (the file is damaged); copy it again", page + 1));
     }
     PageHeader const spec = input_->header();
     Image<double> image = read_grey_levels(*input_, path_, file_.size());
@@ -90,9 +91,11 @@ auto named(std::string const& path, Read const& read) {
   try {
     return read();
   } catch (std::bad_alloc const&) {
-    throw MemoryError(path, "does not fit into memory; give a smaller image, or use a machine with more");
+    throw DataError(ErrorCode::memory, path,
+                    "does not fit into memory; give a smaller image, or use a machine with more");
   } catch (std::length_error const&) {
-    throw MemoryError(path, "does not fit into memory; give a smaller image, or use a machine with more");
+    throw DataError(ErrorCode::memory, path,
+                    "does not fit into memory; give a smaller image, or use a machine with more");
   }
 }
 
@@ -103,7 +106,7 @@ Image<double> read_image(std::string const& path, ImageMetadata* metadata) {
     Picture picture(path);
     if (picture.pages() > 1) {
       throw DataError(
-          path,
+          ErrorCode::wrong_shape, path,
           fmt::format(
               "has {} pages, but a single image is needed; write the intended page to a separate file (a file of two "
               "frames, reference and flow, is passed as the only input: gladstone correlate PAIR.tif -o vectors.csv)",
@@ -118,7 +121,7 @@ std::array<Image<double>, 2> read_frame_pair(std::string const& path, ImageMetad
     Picture picture(path);
     if (picture.pages() != 2) {
       throw DataError(
-          path,
+          ErrorCode::wrong_shape, path,
           fmt::format(
               "has {} {}, but a single input file needs two: reference and flow; give two images, or a case folder",
               picture.pages(), picture.pages() == 1 ? "page" : "pages"));
@@ -132,8 +135,9 @@ std::size_t count_pages(std::string const& path) {
   return named(path, [&] {
     Picture const picture(path);
     if (picture.has_more_pages()) {
-      throw DataError(path, fmt::format("has more than {} pages (which is the limit); write its pages to several files",
-                                        max_pages));
+      throw DataError(
+          ErrorCode::out_of_range, path,
+          fmt::format("has more than {} pages (which is the limit); write its pages to several files", max_pages));
     }
     return picture.pages();
   });
@@ -143,8 +147,9 @@ Image<double> read_page(std::string const& path, std::size_t page, ImageMetadata
   return named(path, [&] {
     Picture picture(path);
     if (page >= picture.pages()) {
-      throw DataError(path, fmt::format("has {} {}, and no page {}; copy it again", picture.pages(),
-                                        picture.pages() == 1 ? "page" : "pages", page + 1));
+      throw DataError(ErrorCode::missing_content, path,
+                      fmt::format("has {} {}, and no page {}; copy it again", picture.pages(),
+                                  picture.pages() == 1 ? "page" : "pages", page + 1));
     }
     return picture.read(page, metadata);
   });
@@ -170,7 +175,7 @@ void write_tiff(std::string const& path, Image<std::uint16_t> const& image, Imag
 std::string encode_png(Image<std::uint8_t> const& image) {
   std::vector<unsigned char> bytes;
   std::string const why = image_codecs().encode_png(image.columns(), image.rows(), image.data(), bytes);
-  if (!why.empty()) throw DataError("an image in memory", "cannot be encoded as PNG: " + why);
+  if (!why.empty()) throw DataError(ErrorCode::internal, "an image in memory", "cannot be encoded as PNG: " + why);
   return {bytes.begin(), bytes.end()};
 }
 

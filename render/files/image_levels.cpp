@@ -33,17 +33,20 @@ void check_size(PageHeader const& spec, std::string const& path, std::uint64_t f
   double const most = static_cast<double>(file_bytes) * (packed ? most_packed : 1.0);
   if (stored > std::max(most, packed ? believed_image_bytes : 0.0) || spec.width <= 0 || spec.height <= 0) {
     throw DataError(
-        path,
+        ErrorCode::damaged, path,
         fmt::format(
             "is damaged or cut short: its header declares {}, {:.3g} MB, but the file has {:.3g} MB; copy it again",
             sizes, stored / 1e6, static_cast<double>(file_bytes) / 1e6));
   }
-  if (spec.depth > 1) throw DataError(path, fmt::format("is a volume of {} slices; give a single image", spec.depth));
+  if (spec.depth > 1)
+    throw DataError(ErrorCode::wrong_shape, path,
+                    fmt::format("is a volume of {} slices; give a single image", spec.depth));
   double const tile = spec.tile_px[0] * spec.tile_px[1] * std::max(spec.tile_px[2], 1.0);
   if (tile * spec.pixel_bits / 8 > std::max(most, believed_image_bytes)) {
-    throw DataError(path, fmt::format("is damaged or cut short: its header declares tiles of {:.0f} x {:.0f} px, but "
-                                      "the file has {:.3g} MB; copy it again",
-                                      spec.tile_px[0], spec.tile_px[1], static_cast<double>(file_bytes) / 1e6));
+    throw DataError(ErrorCode::damaged, path,
+                    fmt::format("is damaged or cut short: its header declares tiles of {:.0f} x {:.0f} px, but "
+                                "the file has {:.3g} MB; copy it again",
+                                spec.tile_px[0], spec.tile_px[1], static_cast<double>(file_bytes) / 1e6));
   }
   // Memory: tile or strip of the codec library, samples as stored, samples as double, and the image.
   double const tile_bytes = tile * spec.channels * static_cast<double>(spec.sample_bytes);
@@ -59,14 +62,16 @@ constexpr std::array<double, 3> luminance_weights{0.2126, 0.7152, 0.0722};
 /// Throws DataError if the channels are neither grey levels nor colours.
 void check_channels(PageHeader const& spec, std::string const& path) {
   if (spec.colours == Colours::grey && spec.channels > 2) {
-    throw DataError(path, fmt::format("has {} values per pixel that are not colours (its header declares them as "
-                                      "grey); write the intended channel to a separate file",
-                                      spec.channels));
+    throw DataError(ErrorCode::unsupported, path,
+                    fmt::format("has {} values per pixel that are not colours (its header declares them as "
+                                "grey); write the intended channel to a separate file",
+                                spec.channels));
   }
   if (spec.colours == Colours::inks && static_cast<std::size_t>(spec.channels) != ink_count) {
-    throw DataError(path, fmt::format("has {} printing inks, but only cyan, magenta, yellow and black are supported; "
-                                      "write it as grey levels or RGB",
-                                      spec.channels));
+    throw DataError(ErrorCode::unsupported, path,
+                    fmt::format("has {} printing inks, but only cyan, magenta, yellow and black are supported; "
+                                "write it as grey levels or RGB",
+                                spec.channels));
   }
 }
 
@@ -99,9 +104,10 @@ Image<double> read_levels(PageReader& input, PageHeader const& spec, std::string
   Image<double> image(spec.width, spec.height);
   auto const samples = std::make_unique_for_overwrite<Stored[]>(image.size() * channels);
   if (std::string const why = input.read(samples.get()); !why.empty()) {
-    throw DataError(path, fmt::format("cannot be read to its end (it is damaged, cut short or compressed by an unknown "
-                                      "method: {}); copy it again, or write it anew without compression",
-                                      why));
+    throw DataError(ErrorCode::damaged, path,
+                    fmt::format("cannot be read to its end (it is damaged, cut short or compressed by an unknown "
+                                "method: {}); copy it again, or write it anew without compression",
+                                why));
   }
   throw_if_interrupted();
   double const scale = shift > 0 ? 1.0 / static_cast<double>(1 << shift) : 1.0;
@@ -142,8 +148,9 @@ Image<double> read_levels(PageReader& input, std::string const& path) {
     case SampleType::other:
       break;
   }
-  throw DataError(path, "has samples of type " + spec.type_name +
-                            ", which is not supported; write it with unsigned integers of 8 or 16 bits, or floats");
+  throw DataError(ErrorCode::unsupported, path,
+                  "has samples of type " + spec.type_name +
+                      ", which is not supported; write it with unsigned integers of 8 or 16 bits, or floats");
 }
 
 /// Corrects the orientation of an image. TIFF 6.0, section 8: stored row 0 is the visual top (1, 2), bottom (3, 4),

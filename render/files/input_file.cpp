@@ -17,19 +17,21 @@ namespace gladstone {
 namespace {
 
 [[noreturn]] void not_opened(std::string const& path, int error) {
-  if (error == ENOENT || error == ENOTDIR) throw DataError(path, "does not exist; check the name");
-  throw DataError(path,
+  if (error == ENOENT || error == ENOTDIR)
+    throw DataError(ErrorCode::missing_file, path, "does not exist; check the name");
+  throw DataError(ErrorCode::unreadable_file, path,
                   std::string("cannot be opened (") + std::strerror(error) + "); check the name and the permissions");
 }
 
 void refuse_what_is_no_file(std::string const& path, mode_t mode, std::string const& wanted) {
   if (S_ISREG(mode)) return;
-  if (S_ISDIR(mode)) throw DataError(path, "is a folder; name " + wanted);
+  if (S_ISDIR(mode)) throw DataError(ErrorCode::unreadable_file, path, "is a folder; name " + wanted);
   char const* const kind = S_ISFIFO(mode) ? "a pipe" : S_ISSOCK(mode) ? "a socket" : "a device";
-  throw DataError(path, std::string("is ") + kind +
-                            " (inputs must be regular files, which have an end and can be read more than once); save "
-                            "its content to a file, and name " +
-                            wanted);
+  throw DataError(ErrorCode::unreadable_file, path,
+                  std::string("is ") + kind +
+                      " (inputs must be regular files, which have an end and can be read more than once); save "
+                      "its content to a file, and name " +
+                      wanted);
 }
 
 }  // namespace
@@ -74,7 +76,8 @@ std::size_t InputFile::read(std::uint64_t offset, void* to, std::size_t size) co
     ssize_t const got = ::pread(descriptor_, static_cast<char*>(to) + done, std::min(size - done, piece),
                                 static_cast<off_t>(offset + done));
     if (got < 0 && errno == EINTR) continue;
-    if (got < 0) throw DataError(path_, std::string("cannot be read (") + std::strerror(errno) + ')');
+    if (got < 0)
+      throw DataError(ErrorCode::unreadable_file, path_, std::string("cannot be read (") + std::strerror(errno) + ')');
     if (got == 0) break;
     done += static_cast<std::size_t>(got);
   }

@@ -240,8 +240,8 @@ bool is_partial(std::string const& name, std::string const& stem) {
 void report_final_path(std::string const& staged, std::string const& place, std::function<void()> const& write) try {
   write();
 } catch (OutputError const& error) {
-  if (!error.path().starts_with(staged)) throw;
-  throw OutputError(place + error.path().substr(staged.size()), error.message());
+  if (!error.place().starts_with(staged)) throw;
+  throw OutputError(place + error.place().substr(staged.size()), error.message());
 }
 
 }  // namespace gladstone

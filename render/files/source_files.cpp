@@ -141,12 +141,12 @@ void SourceFiles::check() const {
     std::string what = "another SHA-256 of what it holds";
     try {
       if (hash_of(source.path, source.holds) == source.sha256) continue;
-    } catch (MemoryError const&) {
-      throw;
     } catch (DataError const& error) {  // the file was removed, or partly overwritten
+      if (error.code() == ErrorCode::memory) throw;
       what = "it cannot be read any more: " + error.message();
     }
-    throw DataError(source.path, "has changed since it was read (" + what + "), and nothing was written; " + advice_);
+    throw DataError(ErrorCode::changed, source.path,
+                    "has changed since it was read (" + what + "), and nothing was written; " + advice_);
   }
 }
 

@@ -27,7 +27,8 @@ void append_utf8(std::string& text, std::uint32_t point) {
 }
 
 std::string from_utf16(std::string_view bytes, bool little, std::string const& name) {
-  if (bytes.size() % 2 != 0) throw DataError(name, "is cut short (UTF-16 text of an odd number of bytes)");
+  if (bytes.size() % 2 != 0)
+    throw DataError(ErrorCode::damaged, name, "is cut short (UTF-16 text of an odd number of bytes)");
   auto const unit_at = [&](std::size_t i) {
     auto const low = static_cast<unsigned char>(bytes[i + (little ? 0 : 1)]);
     auto const high = static_cast<unsigned char>(bytes[i + (little ? 1 : 0)]);
@@ -39,7 +40,7 @@ std::string from_utf16(std::string_view bytes, bool little, std::string const& n
     std::uint32_t point = unit_at(i);
     if (point >= 0xd800 && point < 0xe000) {
       bool const pair = point < 0xdc00 && i + 2 < bytes.size() && unit_at(i + 2) >= 0xdc00 && unit_at(i + 2) < 0xe000;
-      if (!pair) throw DataError(name, "is not text (invalid UTF-16); save it again as UTF-8");
+      if (!pair) throw DataError(ErrorCode::wrong_format, name, "is not text (invalid UTF-16); save it again as UTF-8");
       point = 0x10000 + ((point - 0xd800) << 10) + (unit_at(i + 2) - 0xdc00);
       i += 2;
     }
@@ -100,7 +101,8 @@ std::string decoded_text(std::string_view bytes, std::string const& name) {
     }
   }
   if (text.find('\0') != std::string::npos) {
-    throw DataError(name, "is not text (it contains zero bytes); UTF-16 needs its byte order mark");
+    throw DataError(ErrorCode::wrong_format, name,
+                    "is not text (it contains zero bytes); UTF-16 needs its byte order mark");
   }
   return with_plain_line_ends(text);
 }

@@ -23,7 +23,8 @@ std::string read_text_file(std::string const& path, std::string const& wanted, s
     while (true) {
       std::size_t const done = text.size();
       if (done > most_bytes || file.size() > most_bytes) {
-        throw DataError(path, "is longer than " + mebibytes(most_bytes) + ", the maximum size; name " + wanted);
+        throw DataError(ErrorCode::out_of_range, path,
+                        "is longer than " + mebibytes(most_bytes) + ", the maximum size; name " + wanted);
       }
       text.resize(done + std::max<std::size_t>(piece, done < file.size() ? file.size() - done + 1 : 0));
       std::size_t const got = file.read(done, text.data() + done, text.size() - done);
@@ -32,7 +33,7 @@ std::string read_text_file(std::string const& path, std::string const& wanted, s
       if (ended) return text;
     }
   } catch (std::bad_alloc const&) {
-    throw MemoryError(path, "does not fit into memory (" + mebibytes(file.size()) + " of text)");
+    throw DataError(ErrorCode::memory, path, "does not fit into memory (" + mebibytes(file.size()) + " of text)");
   }
 }
 
@@ -70,7 +71,7 @@ std::optional<std::string_view> LineReader::next() {
     end_ = searched;
     if (end_ > most_line_bytes) {
       throw DataError(
-          file_.path() + ':' + std::to_string(number_ + 1),
+          ErrorCode::out_of_range, file_.path() + ':' + std::to_string(number_ + 1),
           "is longer than " + mebibytes(most_line_bytes) + ", too long for a line of a table; check the file");
     }
     buffer_.resize(std::max<std::size_t>(2 * end_, std::size_t{64} << 10));

@@ -57,7 +57,8 @@ template <class Row>
 void require_room(std::vector<Row> const& rows, std::string const& path, std::string const& what) {
   if (rows.size() < rows.capacity()) return;
   if (rows.size() >= most_table_rows) {
-    throw DataError(path, "holds more than " + std::to_string(most_table_rows) + ' ' + what + "; take fewer");
+    throw DataError(ErrorCode::out_of_range, path,
+                    "holds more than " + std::to_string(most_table_rows) + ' ' + what + "; reduce their number");
   }
   // While a vector doubles its capacity, the old and the new storage take three times its size.
   require_memory(path, "a table of more than " + std::to_string(rows.size()) + ' ' + what,

@@ -84,7 +84,7 @@ class TiffReader final : public PageReader {
       if (layout_.columns < first.columns && layout_.rows < first.rows) continue;
       decodable = layout_.decodable;
       if (!decodable && !layout_.bits_are_stored) {
-        throw DataError(file.path(),
+        throw DataError(ErrorCode::unsupported, file.path(),
                         "has one bit per pixel by default (its entry BitsPerSample is missing), which is read as grey "
                         "levels only; write it with 8 bits per pixel");
       }

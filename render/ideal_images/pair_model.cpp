@@ -55,7 +55,8 @@ std::string reason_against_pair_model(Setup const& setup) {
 
 OwnedPairModel build_pair_model(Setup const& setup) {
   if (std::string const reason = reason_against_pair_model(setup); !reason.empty())
-    throw DataError("particles.scattering", "pairs cannot be rendered in batches (" + reason + ")");
+    throw DataError(ErrorCode::unsupported, KeyPath{"particles.scattering"},
+                    "pairs cannot be rendered in batches (" + reason + ")");
   Scene scene;  // without particles, which differ between pairs
   scene.setup = setup;
   scene.imaging = setup.imaging();

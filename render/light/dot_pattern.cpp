@@ -68,7 +68,7 @@ class OccupiedCells {
 std::vector<Vec2d> random_dots(Vec2d extent, std::size_t count, double diameter, std::uint64_t seed) {
   double const coverage = static_cast<double>(count) * pi / 4 * diameter * diameter / (extent.x * extent.y);
   if (coverage > 0.5) {
-    throw DataError("target",
+    throw DataError(ErrorCode::invalid_value, KeyPath{"target"},
                     fmt::format("{} dots of {:.4g} mm would cover {:.0f} % of the target (random discs without "
                                 "overlap reach about 50 %); use fewer or smaller dots, or arrangement = \"regular\"",
                                 count, diameter / unit::millimetre, 100 * coverage));
@@ -93,7 +93,7 @@ std::vector<Vec2d> random_dots(Vec2d extent, std::size_t count, double diameter,
       misses = 0;
     } else if (++misses > 100000) {
       throw DataError(
-          "target",
+          ErrorCode::invalid_value, KeyPath{"target"},
           fmt::format("only {} of {} dots of {:.4g} mm could be placed without overlap; use fewer or smaller dots",
                       centres.size(), count, diameter / unit::millimetre));
     }
@@ -105,7 +105,7 @@ std::vector<Vec2d> random_dots(Vec2d extent, std::size_t count, double diameter,
 std::vector<Vec2d> regular_dots(Vec2d extent, double per_area, double diameter) {
   double const pitch = 1 / std::sqrt(per_area);
   if (pitch < diameter) {
-    throw DataError("target",
+    throw DataError(ErrorCode::invalid_value, KeyPath{"target"},
                     fmt::format("dots of {:.4g} mm overlap on a lattice of {:.4g} mm; use fewer or smaller dots",
                                 diameter / unit::millimetre, pitch / unit::millimetre));
   }
@@ -144,7 +144,7 @@ void refuse_coincident(std::string const& path, std::vector<Vec2d> const& centre
     if (dot < second) first = before, second = dot;
   }
   if (repeated == 0) return;
-  throw DataError(fmt::format("{}:{}", path, lines[second]),
+  throw DataError(ErrorCode::invalid_value, fmt::format("{}:{}", path, lines[second]),
                   fmt::format("the dot at {:.6g}, {:.6g} mm repeats line {} ({} of {} dots coincide with an earlier "
                               "one and would be counted twice in light and truth); remove the repeated lines",
                               centres[second].x / unit::millimetre, centres[second].y / unit::millimetre, lines[first],
@@ -157,7 +157,7 @@ std::vector<Vec2d> dots_from_csv(std::string const& path, double farthest) {
   LineReader file(path, "a table of points");
   auto const header = file.next();
   if (header != "x_mm,y_mm") {
-    throw DataError(path + ":1",
+    throw DataError(ErrorCode::wrong_format, path + ":1",
                     fmt::format("the header line is \"{}\" (it must be x_mm,y_mm)", excerpt(header.value_or(""))));
   }
   std::vector<Vec2d> centres;
@@ -174,11 +174,12 @@ std::vector<Vec2d> dots_from_csv(std::string const& path, double farthest) {
       at = rest + 1;
     }
     if (!good) {
-      throw DataError(file.place(), fmt::format("\"{}\" is not two finite numbers x_mm,y_mm", excerpt(*line)));
+      throw DataError(ErrorCode::syntax, file.place(),
+                      fmt::format("\"{}\" is not two finite numbers x_mm,y_mm", excerpt(*line)));
     }
     Vec2d const centre{value[0] * unit::millimetre, value[1] * unit::millimetre};
     if (std::max(std::abs(centre.x), std::abs(centre.y)) > farthest) {
-      throw DataError(file.place(),
+      throw DataError(ErrorCode::out_of_range, file.place(),
                       fmt::format("the dot at {:.6g}, {:.6g} mm is too far from the axis to be imaged ({:.6g} mm at "
                                   "most, ten times the distance to the lens); positions are in mm",
                                   value[0], value[1], farthest / unit::millimetre));
@@ -187,7 +188,8 @@ std::vector<Vec2d> dots_from_csv(std::string const& path, double farthest) {
     centres.push_back(centre);
     lines.push_back(file.number());
   }
-  if (centres.empty()) throw DataError(path, "contains no dots (one line x_mm,y_mm is needed for each)");
+  if (centres.empty())
+    throw DataError(ErrorCode::missing_content, path, "contains no dots (one line x_mm,y_mm is needed for each)");
   refuse_coincident(path, centres, lines);
   return centres;
 }
@@ -195,18 +197,19 @@ std::vector<Vec2d> dots_from_csv(std::string const& path, double farthest) {
 DotPattern image_target(std::string const& path, Vec2d extent) {
   Image<double> const picture = read_image(path);
   if (std::size_t const bad = count_not_finite(picture); bad > 0) {
-    throw DataError(path,
+    throw DataError(ErrorCode::invalid_value, path,
                     fmt::format("{} of {} pixels are nan or infinite (grey values are the radiance); correct them", bad,
                                 picture.size()));
   }
   double const white = picture.empty() ? 0.0 : *std::max_element(picture.begin(), picture.end());
-  if (!(white > 0)) throw DataError(path, "is entirely black (no pixel emits light)");
+  if (!(white > 0)) throw DataError(ErrorCode::invalid_value, path, "is entirely black (no pixel emits light)");
   double const side = extent.x / picture.columns();
   if (std::abs(side * picture.rows() - extent.y) > 0.5 * side) {
     throw DataError(
-        path, fmt::format("is {} x {} pixels but the target is {:.4g} x {:.4g} mm (pixels must be square); give "
-                          "target.extent_mm the aspect ratio of the image",
-                          picture.columns(), picture.rows(), extent.x / unit::millimetre, extent.y / unit::millimetre));
+        ErrorCode::inconsistent, path,
+        fmt::format("is {} x {} pixels but the target is {:.4g} x {:.4g} mm (pixels must be square); give "
+                    "target.extent_mm the aspect ratio of the image",
+                    picture.columns(), picture.rows(), extent.x / unit::millimetre, extent.y / unit::millimetre));
   }
   DotPattern pattern;
   pattern.shape = SourceShape::square;

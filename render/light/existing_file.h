@@ -11,7 +11,8 @@ namespace gladstone {
 inline std::string existing_file(SetupTable& table) {
   std::string const file = table.required_path("file");
   if (std::error_code error; !file.empty() && !std::filesystem::exists(file, error)) {
-    table.problem("file", "file not found: " + file + "; relative names are resolved against the setup file's folder");
+    table.problem("file", "file not found: " + file + "; relative names are resolved against the setup file's folder",
+                  ErrorCode::missing_file);
   }
   return file;
 }

@@ -130,8 +130,8 @@ MieScattering::MieScattering(std::vector<double> const& diameters, MieSetting co
   double const bytes = bytes_of(sizes, diameters.size(), setting, angles);
   double const available = available_memory();
   if (bytes > always_there && bytes > available) {
-    throw MemoryError(
-        "particles",
+    throw DataError(
+        ErrorCode::memory, KeyPath{"particles"},
         fmt::format(
             "the light scattered by {} different diameters of up to {:.4g} um needs a table of {:.3g} GB of memory "
             "({:.3g} GB are available); use fewer particles, fewer or smaller diameters, or scattering = \"lambert\"",

@@ -14,7 +14,7 @@ NumberTable::NumberTable(std::string const& path, std::string const& wanted, std
   for (std::string const& column : columns) header_ += (header_.empty() ? "" : ",") + column;
   auto const found = lines_.next();
   if (found != header_) {
-    throw DataError(path + ":1",
+    throw DataError(ErrorCode::wrong_format, path + ":1",
                     fmt::format("the header line is \"{}\" (it must be {})", excerpt(found.value_or("")), header_));
   }
 }
@@ -34,7 +34,7 @@ std::optional<std::vector<double>> NumberTable::next() {
     at = last ? rest : rest + 1;
   }
   if (!good) {
-    throw DataError(lines_.place(),
+    throw DataError(ErrorCode::syntax, lines_.place(),
                     fmt::format("\"{}\" is not {} finite numbers {}", excerpt(*line), columns_, header_));
   }
   return row;

@@ -24,13 +24,17 @@ struct DiameterTable {
   explicit DiameterTable(std::string const& path) {
     double sum = 0;
     for (NumberTable file(path, "a table of diameters", {"diameter_um", "weight"}); auto const row = file.next();) {
-      if (!((*row)[0] > 0)) throw DataError(file.place(), "the diameter is not positive; remove the line");
-      if (!((*row)[1] >= 0)) throw DataError(file.place(), "the weight is negative; give shares of the particles");
+      if (!((*row)[0] > 0))
+        throw DataError(ErrorCode::out_of_range, file.place(), "the diameter is not positive; remove the line");
+      if (!((*row)[1] >= 0))
+        throw DataError(ErrorCode::out_of_range, file.place(),
+                        "the weight is negative (weights are shares of the particles); give 0 or more");
       diameter.push_back((*row)[0] * unit::micrometre);
       up_to.push_back(sum += (*row)[1]);
     }
     if (!(sum > 0))
-      throw DataError(path, "contains no diameter with a weight (one line diameter_um,weight is needed for each)");
+      throw DataError(ErrorCode::missing_content, path,
+                      "contains no diameter with a weight (one line diameter_um,weight is needed for each)");
   }
   double at(double share) const {
     auto const found = std::upper_bound(up_to.begin(), up_to.end(), share * up_to.back());
@@ -139,7 +143,7 @@ Particles read_particles(ParticleSetup const& setup, FlowSetup const& flow, Lase
   NumberTable file(setup.file, "a table of particles", {"x_mm", "y_mm", "z_mm", "diameter_um"});
   while (auto const row = file.next()) {
     if (!((*row)[3] > 0)) {
-      throw DataError(file.place(),
+      throw DataError(ErrorCode::out_of_range, file.place(),
                       fmt::format("the diameter is {:.6g} um (it must be positive); correct it, or remove the particle",
                                   (*row)[3]));
     }
@@ -148,7 +152,8 @@ Particles read_particles(ParticleSetup const& setup, FlowSetup const& flow, Lase
     particles.diameter.push_back((*row)[3] * unit::micrometre);
   }
   if (particles.diameter.empty()) {
-    throw DataError(setup.file, "contains no particles (one line x_mm,y_mm,z_mm,diameter_um is needed for each)");
+    throw DataError(ErrorCode::missing_content, setup.file,
+                    "contains no particles (one line x_mm,y_mm,z_mm,diameter_um is needed for each)");
   }
   std::vector<Vec3d> const& start = particles.place[0];
   particles.path = plan_paths(setup, flow, start, particles.diameter, flow.dt, tolerance);

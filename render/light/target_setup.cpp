@@ -25,7 +25,8 @@ TargetSetup read_target_setup(SetupTable table) {
     setup.file = table.required_path("file");
     if (std::error_code error; !setup.file.empty() && !std::filesystem::exists(setup.file, error)) {
       table.problem("file",
-                    "file not found: " + setup.file + "; relative names are resolved against the setup file's folder");
+                    "file not found: " + setup.file + "; relative names are resolved against the setup file's folder",
+                    ErrorCode::missing_file);
     }
   }
   if (setup.kind != TargetKind::image) {

@@ -99,7 +99,9 @@ FileFlow FileFlow::read(SetupTable& table, FlowSetup& setup) {
 RegularGrid velocity_grid(VelocityFile const& setup) {
   auto const source = open_field(setup.file, setup.dataset, components, setup.axes);
   RegularGrid grid = source->grid();
-  auto const refuse = [&](std::string const& why) { throw DataError(setup.file, source->name() + ' ' + why); };
+  auto const refuse = [&](std::string const& why) {
+    throw DataError(ErrorCode::wrong_shape, setup.file, source->name() + ' ' + why);
+  };
   if (setup.extrude && grid.nodes[2] != 1) {
     refuse(fmt::format("has {} planes along z (extrude = true needs a single plane); set flow.extrude = false",
                        grid.nodes[2]));
@@ -111,7 +113,8 @@ RegularGrid velocity_grid(VelocityFile const& setup) {
     refuse(fmt::format("has {} x {} nodes (at least 2 x 2 are needed)", grid.nodes[0], grid.nodes[1]));
   }
   std::string const undefined = source->units().undefined();
-  if (!setup.spacing && !undefined.empty()) throw DataError(setup.file, undefined + "; give flow.spacing_mm");
+  if (!setup.spacing && !undefined.empty())
+    throw DataError(ErrorCode::undetermined, setup.file, undefined + "; give flow.spacing_mm");
   grid.spacing = setup.spacing ? *setup.spacing : grid.spacing * source->units().metres();
   grid.periodic = setup.periodic;
   if (setup.extrude) grid.periodic[2] = false;

@@ -22,18 +22,19 @@ RegularGrid world_grid(FieldSetup const& field, FieldSource const& source) {
   RegularGrid grid = source.grid();
   if (field.extrude && grid.nodes[2] != 1) {
     throw DataError(
-        field.file,
+        ErrorCode::wrong_shape, field.file,
         fmt::format("{} has {} planes along z (extrude = true needs a single plane); set medium.field.extrude = false",
                     source.name(), grid.nodes[2]));
   }
   if (!field.extrude && grid.nodes[2] < 2) {
-    throw DataError(field.file, fmt::format("{} is a single plane (a volume needs at least two); set "
-                                            "medium.field.extrude = true to stack it over thickness_mm",
-                                            source.name()));
+    throw DataError(ErrorCode::wrong_shape, field.file,
+                    fmt::format("{} is a single plane (a volume needs at least two); set "
+                                "medium.field.extrude = true to stack it over thickness_mm",
+                                source.name()));
   }
   if (grid.nodes[0] < 2 || grid.nodes[1] < 2) {
     bool const plane = std::count(grid.nodes.begin(), grid.nodes.end(), 1) == 1;
-    throw DataError(field.file,
+    throw DataError(ErrorCode::wrong_shape, field.file,
                     fmt::format("{} has {} x {} nodes across x and y (at least 2 x 2 are needed){}", source.name(),
                                 grid.nodes[0], grid.nodes[1],
                                 plane && field.axes.empty() ? "; name the axes of the plane in the order of "
@@ -42,7 +43,7 @@ RegularGrid world_grid(FieldSetup const& field, FieldSource const& source) {
   }
   std::string const undefined = source.units().undefined();
   if (!field.spacing && !undefined.empty()) {
-    throw DataError(field.file, undefined + "; give medium.field.spacing_mm");
+    throw DataError(ErrorCode::undetermined, field.file, undefined + "; give medium.field.spacing_mm");
   }
   grid.spacing = field.spacing ? *field.spacing : grid.spacing * source.units().metres();
   grid.periodic = field.periodic;
@@ -169,9 +170,10 @@ BuiltMedium build_grid(MediumSetup const& setup, RegularGrid const& grid, FieldS
       grid, spline ? Volume::Interpolation::cubic_bspline : Volume::Interpolation::trilinear, scale, shift,
       [&](int first, int count, std::span<double> out) { source.read_planes(first, count, out); });
   if (!is_plausible_refractivity(volume->lowest()) || !is_plausible_refractivity(volume->highest())) {
-    throw DataError(field.file, fmt::format("{} gives refractive indices from {:.6g} to {:.6g} (no medium has such "
-                                            "indices); check medium.field.quantity and scale",
-                                            source.name(), 1 + volume->lowest(), 1 + volume->highest()));
+    throw DataError(ErrorCode::out_of_range, field.file,
+                    fmt::format("{} gives refractive indices from {:.6g} to {:.6g} (no medium has such "
+                                "indices); check medium.field.quantity and scale",
+                                source.name(), 1 + volume->lowest(), 1 + volume->highest()));
   }
   BuiltMedium built;
   for (std::string const& note : source.notes()) {

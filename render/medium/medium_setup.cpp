@@ -34,7 +34,8 @@ void read_file_field(SetupTable& table, FieldSetup& field) {
   field.where = table.where("file");
   if (std::error_code error; !field.file.empty() && !std::filesystem::exists(field.file, error)) {
     table.problem("file",
-                  "file not found: " + field.file + "; relative names are resolved against the setup file's folder");
+                  "file not found: " + field.file + "; relative names are resolved against the setup file's folder",
+                  ErrorCode::missing_file);
   }
   field.dataset = table.text("dataset", "");
   field.axes = table.text("axes", "");

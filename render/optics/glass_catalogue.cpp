@@ -43,10 +43,11 @@ bool covers(Glass const& glass, double wavelength) {
 void require_range(std::vector<Glass const*> const& found, double wavelength, std::string const& where) {
   if (std::any_of(found.begin(), found.end(), [=](Glass const* glass) { return covers(*glass, wavelength); })) return;
   Glass const& glass = *found.front();
-  throw DataError(where, fmt::format("glass {} is described from {:.4g} to {:.4g} nm, not at {:.4g} nm; choose another "
-                                     "wavelength or glass",
-                                     glass.name, glass.shortest / unit::nanometre, glass.longest / unit::nanometre,
-                                     wavelength / unit::nanometre));
+  throw DataError(ErrorCode::out_of_range, where,
+                  fmt::format("glass {} is described from {:.4g} to {:.4g} nm, not at {:.4g} nm; choose another "
+                              "wavelength or glass",
+                              glass.name, glass.shortest / unit::nanometre, glass.longest / unit::nanometre,
+                              wavelength / unit::nanometre));
 }
 
 /// Choice among the glasses that a name can refer to.
@@ -96,11 +97,12 @@ void GlassCatalogue::add(std::string_view text, std::string const& catalogue, st
   AgfContent content = read_agf(text, catalogue);
   std::vector<AgfContent::LeftOut> const& out = content.left_out;
   if (content.glasses.empty() && !out.empty()) {
-    throw DataError(fmt::format("{}:{}", file, out[0].fault.line),
+    throw DataError(ErrorCode::missing_content, fmt::format("{}:{}", file, out[0].fault.line),
                     fmt::format("the catalogue has no usable glass: {}", list_left_out(out)));
   }
   if (content.glasses.empty()) {
-    throw DataError(file, "contains no glass (a catalogue in the AGF format has lines NM, CD and LD)");
+    throw DataError(ErrorCode::missing_content, file,
+                    "contains no glass (a catalogue in the AGF format has lines NM, CD and LD)");
   }
   if (!out.empty()) {
     warnings_.push_back(fmt::format("{}:{}: {} of {} glasses cannot be used and {} ignored: {}", file,
@@ -213,15 +215,16 @@ void GlassCatalogue::refuse_unknown(std::string_view name, std::string const& wh
   auto const out = std::find_if(left_out_.begin(), left_out_.end(),
                                 [&](LeftOut const& one) { return glass_key(one.name) == glass_key(name); });
   if (out != left_out_.end()) {
-    throw DataError(
-        where, fmt::format("glass \"{}\" cannot be used ({}); correct the catalogue, or give the lens an index", name,
-                           out->reason));
+    throw DataError(ErrorCode::invalid_value, where,
+                    fmt::format("glass \"{}\" cannot be used ({}); correct the catalogue, or give the lens an index",
+                                name, out->reason));
   }
   std::string_view const own = name.substr(std::min(name.find(':') + 1, name.size()));
   throw DataError(
-      where, fmt::format("glass \"{}\" is in no catalogue ({} glasses are known){}; add its catalogue (AGF) to the "
-                         "setup's lens.glasses = [\"FILE.agf\"] (for info lens: --glass), or give the lens an index",
-                         name, names().size(), suggest_glasses(own.substr(0, own.rfind('_')))));
+      ErrorCode::unknown_choice, where,
+      fmt::format("glass \"{}\" is in no catalogue ({} glasses are known){}; add its catalogue (AGF) to the "
+                  "setup's lens.glasses = [\"FILE.agf\"] (for info lens: --glass), or give the lens an index",
+                  name, names().size(), suggest_glasses(own.substr(0, own.rfind('_')))));
 }
 
 std::vector<Glass const*> GlassCatalogue::successors(std::string_view name) const {

@@ -69,7 +69,7 @@ class LensBuilder {
               "and the glass before it"
             : "the ray along the axis does not meet this surface; check its radius, its tilt and "
               "decentre, and the thickness before it";
-    throw DataError(surface.where, fmt::format("surface {}: {}", failed_at + 1, why));
+    throw DataError(ErrorCode::invalid_value, surface.where, fmt::format("surface {}: {}", failed_at + 1, why));
   }
 
  private:

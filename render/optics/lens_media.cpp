@@ -22,15 +22,16 @@ LensMedium LensMedia::find(PrescribedMedium const& medium, std::string const& su
     }
     if (auto const* const own = std::get_if<PrescribedMedium::Private>(&medium.is)) {
       if (wavelength_ < own->glass.shortest || wavelength_ > own->glass.longest) {
-        throw DataError(where, fmt::format("glass {} is given from {:.4g} to {:.4g} nm, not at {:.4g} nm; choose "
-                                           "another wavelength",
-                                           own->glass.name, own->glass.shortest / unit::nanometre,
-                                           own->glass.longest / unit::nanometre, wavelength_ / unit::nanometre));
+        throw DataError(ErrorCode::out_of_range, where,
+                        fmt::format("glass {} is given from {:.4g} to {:.4g} nm, not at {:.4g} nm; choose "
+                                    "another wavelength",
+                                    own->glass.name, own->glass.shortest / unit::nanometre,
+                                    own->glass.longest / unit::nanometre, wavelength_ / unit::nanometre));
       }
       return of_glass(own->glass);
     }
   } catch (DataError const& error) {
-    not_found_.push_back({error.file(), error.message()});
+    not_found_.push_back({error.place(), error.message(), "", error.code()});
     return {};
   }
   if (auto const* const index = std::get_if<PrescribedMedium::Index>(&medium.is)) return {index->n, 0};
@@ -90,7 +91,8 @@ void LensMedia::note_once(std::string const& key, std::string const& text) {
 
 void LensMedia::refuse_glasses() const {
   if (not_found_.empty()) return;
-  if (not_found_.size() == 1) throw DataError(not_found_.front().where, not_found_.front().message);
+  SetupProblem const& first = not_found_.front();
+  if (not_found_.size() == 1) throw DataError(first.code, first.where, first.message);
   throw SetupError(not_found_);
 }
 

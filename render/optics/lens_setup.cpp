@@ -53,7 +53,7 @@ GlassCatalogue read_glasses(LensSetup const& setup, SetupTable table) {
     try {
       glasses.add_file(file);
     } catch (DataError const& error) {
-      table.problem("glasses", error.what());
+      table.problem("glasses", error.what(), error.code());
     }
   }
   return glasses;
@@ -84,9 +84,9 @@ void build_prescription(LensSetup& setup, SetupTable table, GlassCatalogue const
     warnings.insert(warnings.end(), lens->warnings.begin(), lens->warnings.end());
     setup.prescription = lens;
   } catch (SetupError const& error) {
-    table.problem("file", error.what());
+    table.problem("file", error.what(), error.code());
   } catch (DataError const& error) {
-    table.problem("file", error.what());
+    table.problem("file", error.what(), error.code());
   }
 }
 

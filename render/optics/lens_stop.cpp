@@ -34,7 +34,7 @@ std::optional<double> height_at_stop(Lens const& lens, Ray<double> ray) {
 void open_by_pupil(Lens& lens, double diameter) {
   double const radius = std::abs(diameter) / 2;
   if (!std::isfinite(radius)) {
-    throw DataError(lens.prescription.file,
+    throw DataError(ErrorCode::undetermined, lens.prescription.file,
                     "an f-number does not define the aperture of an afocal lens; give the entrance pupil or the "
                     "stop's semi-diameter");
   }
@@ -56,7 +56,7 @@ void open_by_cone(Lens& lens, double f_number, double distance) {
   RayTransfer const all = ray_transfer(lens, 0, static_cast<int>(lens.paraxial.size()));
   double const slope = 1 / (2 * f_number * std::abs(all.c * distance + all.d * lens.object_index));
   if (!std::isfinite(distance) || !std::isfinite(slope)) {
-    throw DataError(lens.prescription.file,
+    throw DataError(ErrorCode::undetermined, lens.prescription.file,
                     "an f-number does not define the aperture of a telecentric lens without an object distance; give "
                     "the file's object distance, or the stop's semi-diameter");
   }
@@ -87,7 +87,7 @@ void determine_stop_radius(Lens& lens, LensOptions const& options) {
   } else if (std::isfinite(stop.semi_diameter)) {
     lens.stop_radius = lens.paraxial_stop_radius = stop.semi_diameter;
   } else {
-    throw DataError(stop.where,
+    throw DataError(ErrorCode::missing_content, stop.where,
                     "the stop has no semi-diameter, and the file sets no aperture from which it follows; add its "
                     "semi-diameter (.zmx: DIAM, .seq: CIR, .toml: semi_diameter_mm), an entrance pupil or an f-number "
                     "(ENPD, FNUM; EPD, FNO; entrance_pupil_mm, f_number), or lens.f_number to the setup");
@@ -114,7 +114,7 @@ void open_stop(Lens& lens, LensOptions const& options) {
   limit_by_own_aperture(lens, options);
   PrescribedSurface const& stop = lens.prescription.surfaces[static_cast<std::size_t>(lens.stop)];
   if (!(lens.stop_radius > 0) || !std::isfinite(lens.stop_radius)) {
-    throw DataError(stop.where,
+    throw DataError(ErrorCode::invalid_value, stop.where,
                     "no light passes the stop (its radius is zero or infinite); correct the entrance pupil, the "
                     "f-number or the stop's semi-diameter");
   }

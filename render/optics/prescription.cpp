@@ -91,7 +91,7 @@ std::string find_overlap(Prescription const& lens, std::size_t i, double forward
         fmt::format("this surface and the one before it ({}) overlap by {:.4g} mm at a height of {:.4g} mm", one.where,
                     -gap / unit::millimetre, r / unit::millimetre);
     if (gap < -contact_tolerance && k == 0)
-      throw DataError(next.where, what + " (check radius, thickness and semi-diameter)");
+      throw DataError(ErrorCode::invalid_value, next.where, what + " (check radius, thickness and semi-diameter)");
     return fmt::format(
         "{}: {}, within their semi-diameters; rays are traced from surface to surface all the same (check "
         "radius, thickness and semi-diameter)",
@@ -106,14 +106,15 @@ void check_medium(PrescribedMedium const& medium, std::string const& surface_whe
   auto const* const index = std::get_if<PrescribedMedium::Index>(&medium.is);
   if (index && !is_index_relative_to_air(index->n)) {
     throw DataError(
-        where,
+        ErrorCode::out_of_range, where,
         fmt::format("an index of {:.4g} is not that of a glass (between 1 and 5) or a gas; correct it", index->n));
   }
   auto const* const described = std::get_if<PrescribedMedium::Described>(&medium.is);
   if (described && !(described->nd > 1 && described->nd < 5 && described->vd > 0)) {
-    throw DataError(where, fmt::format("nd = {:.4g}, Vd = {:.4g} are not those of a glass (nd between 1 and 5, Vd "
-                                       "above 0); correct them or name a glass",
-                                       described->nd, described->vd));
+    throw DataError(ErrorCode::out_of_range, where,
+                    fmt::format("nd = {:.4g}, Vd = {:.4g} are not those of a glass (nd between 1 and 5, Vd "
+                                "above 0); correct them or name a glass",
+                                described->nd, described->vd));
   }
 }
 
@@ -132,22 +133,24 @@ std::string find_short_surface(PrescribedSurface const& surface) {
 /// @throws DataError for lengths that no lens has
 void check_dimensions(PrescribedSurface const& surface, bool last) {
   if (!(std::abs(surface.thickness) <= longest) && !last) {
-    throw DataError(surface.where, fmt::format("a thickness of {:.4g} mm is too long for a lens (at most a kilometre)",
-                                               surface.thickness / unit::millimetre));
+    throw DataError(ErrorCode::out_of_range, surface.where,
+                    fmt::format("a thickness of {:.4g} mm is too long for a lens (at most a kilometre)",
+                                surface.thickness / unit::millimetre));
   }
   if (!(std::abs(advance(surface)) <= longest)) {
     throw DataError(
-        surface.where,
+        ErrorCode::out_of_range, surface.where,
         fmt::format(
             "the coordinate breaks ahead move it by {:.4g} mm, which is too long for a lens (at most a kilometre)",
             advance(surface) / unit::millimetre));
   }
   if (!(surface.semi_diameter > 0)) {
-    throw DataError(surface.where, "the semi-diameter is not positive; give the radius within which light passes");
+    throw DataError(ErrorCode::out_of_range, surface.where,
+                    "the semi-diameter is not positive; give the radius within which light passes");
   }
   double const edge = surface.semi_diameter_vignettes ? surface.semi_diameter : HUGE_VAL;
   if (!(surface.obscured >= 0 && surface.obscured < edge)) {
-    throw DataError(surface.where,
+    throw DataError(ErrorCode::invalid_value, surface.where,
                     fmt::format("an obscuration of radius {:.4g} mm covers the surface's semi-diameter of {:.4g} mm; "
                                 "make it smaller",
                                 surface.obscured / unit::millimetre, surface.semi_diameter / unit::millimetre));
@@ -162,7 +165,7 @@ bool check_direction(PrescribedSurface const& surface, double forwards, bool las
   bool const against =
       !surface.after.is_mirror() && !surface.after.is_air() && forwards * surface.thickness < 0 && !last;
   if (against && std::abs(surface.thickness) > contact_tolerance) {
-    throw DataError(surface.where,
+    throw DataError(ErrorCode::invalid_value, surface.where,
                     fmt::format("a thickness of {:.4g} mm of glass is directed against the light, which travels {} "
                                 "here; change its sign (behind an odd number of mirrors thicknesses are negative)",
                                 surface.thickness / unit::millimetre, forwards > 0 ? "forwards" : "back"));
@@ -176,7 +179,8 @@ bool check_direction(PrescribedSurface const& surface, double forwards, bool las
 std::string check_aperture(Prescription const& lens) {
   auto const& aperture = lens.aperture;
   if (aperture.kind != PrescribedAperture::Kind::stop && !(aperture.value > 0)) {
-    throw DataError(aperture.where.empty() ? lens.file : aperture.where, "the aperture is not positive; correct it");
+    throw DataError(ErrorCode::out_of_range, aperture.where.empty() ? lens.file : aperture.where,
+                    "the aperture is not positive; correct it");
   }
   if (aperture.kind != PrescribedAperture::Kind::object_na || std::isfinite(lens.object_distance)) return "";
   auto const at = std::find_if(lens.surfaces.begin(), lens.surfaces.end(), [](auto const& s) { return s.stop; });
@@ -219,7 +223,8 @@ Prescription read_prescription(std::string const& path) {
     }
     known += (known.empty() ? "" : ", ") + std::string(format.extension);
   }
-  throw DataError(path, "has no supported format of lens prescriptions; supported are " + known);
+  throw DataError(ErrorCode::unsupported, path,
+                  "has no supported format of lens prescriptions; supported are " + known);
 }
 
 void assume_stop(Prescription& lens) {
@@ -245,10 +250,11 @@ std::vector<std::string> check_prescription(Prescription const& lens) {
   auto const warn = [&warnings](std::string const& text) {
     if (!text.empty()) warnings.push_back(text);
   };
-  if (lens.surfaces.empty()) throw DataError(lens.file, "has no surface; a lens needs at least one");
+  if (lens.surfaces.empty())
+    throw DataError(ErrorCode::missing_content, lens.file, "has no surface; a lens needs at least one");
   constexpr std::size_t most_surfaces = 1000;
   if (lens.surfaces.size() > most_surfaces) {
-    throw DataError(lens.file,
+    throw DataError(ErrorCode::out_of_range, lens.file,
                     fmt::format("has {} surfaces (at most {} are read)", lens.surfaces.size(), most_surfaces));
   }
   check_medium(lens.object_medium, lens.file);
@@ -260,7 +266,9 @@ std::vector<std::string> check_prescription(Prescription const& lens) {
     bool const last = i + 1 == lens.surfaces.size();
     any_real = any_real || is_real(lens, i);
     if (surface.stop) {
-      if (!stop.empty()) throw DataError(surface.where, "a second stop (the first one is at " + stop + "); remove one");
+      if (!stop.empty())
+        throw DataError(ErrorCode::invalid_value, surface.where,
+                        "a second stop (the first one is at " + stop + "); remove one");
       stop = surface.where;
     }
     check_dimensions(surface, last);
@@ -268,7 +276,8 @@ std::vector<std::string> check_prescription(Prescription const& lens) {
     bool const against = check_direction(surface, forwards, last);
     warn(find_short_surface(surface));
     if (surface.shape == PrescribedSurface::Shape::ideal_lens && surface.focal_length == 0) {
-      throw DataError(surface.where, "an ideal thin lens has a focal length of 0; give it another one");
+      throw DataError(ErrorCode::out_of_range, surface.where,
+                      "an ideal thin lens has a focal length of 0; give it another one");
     }
     check_medium(surface.after, surface.where);
     std::string const overlap = is_real(lens, i) ? find_overlap(lens, i, forwards) : "";
@@ -280,9 +289,12 @@ std::vector<std::string> check_prescription(Prescription const& lens) {
                       surface.where, surface.thickness / unit::millimetre, contact_tolerance / unit::millimetre));
     }
   }
-  if (!any_real) throw DataError(lens.file, "has no surface that refracts or reflects (every medium is air)");
+  if (!any_real)
+    throw DataError(ErrorCode::missing_content, lens.file,
+                    "has no surface that refracts or reflects (every medium is air)");
   if (stop.empty())
-    throw DataError(lens.file, "has no stop; mark the surface that limits the light (stop = true, STOP, STO)");
+    throw DataError(ErrorCode::missing_content, lens.file,
+                    "has no stop; mark the surface that limits the light (stop = true, STOP, STO)");
   warn(check_aperture(lens));
   return warnings;
 }

@@ -61,7 +61,9 @@ RaysLaunch::RaysLaunch(Scene const& scene, SpotView const& shown, StopRim rim, R
   if (rim == StopRim::smooth && !camera.chief_rays_only()) camera.smooth_stop(scene.stop_edge());
   // Light of a pixel on the axis: the area that it sees times the cosine and the solid angle of its light cone.
   auto const seen = camera.unproject(camera.sensor.axis_pixel(), scene.target_plane());
-  if (!seen) throw DataError("lens", "the camera's axis meets no place of the dots' plane; check the geometry");
+  if (!seen)
+    throw DataError(ErrorCode::invalid_value, KeyPath{"lens"},
+                    "the camera's axis meets no place of the dots' plane; check the geometry");
   point_area = 1 / std::abs(seen->by_x.x * seen->by_y.y - seen->by_x.y * seen->by_y.x);
   Vec3d const from = scene.target_plane().point_to_outer({seen->place.x, seen->place.y, 0});
   double const cosine = std::abs(seen->chief.direction.z);

@@ -29,7 +29,7 @@ std::vector<Vec3d> aims_of_bundle(Camera const& camera, Vec3d point) {
     if (carry(view, 0, view.count, ray, account) == RayStatus::alive) aims.push_back(aim - camera.aim_plane.origin);
   }
   if (aims.size() < 10) {
-    throw DataError("lens",
+    throw DataError(ErrorCode::invalid_value, KeyPath{"lens"},
                     "no light from the plane in focus passes it (too few axial rays reach the sensor); check "
                     "lens.focus, geometry and lens.f_number");
   }
@@ -109,7 +109,7 @@ double paraxial_place(Setup const& setup) {
   double const sum = z_sensor + (setup.lens.focus == Focus::target ? setup.z_d : 0.0) - apart - shift;
   double const square = sum * sum - 4 * sum * f;
   if (!(square > 0)) {
-    throw DataError("geometry.z_sensor_mm",
+    throw DataError(ErrorCode::invalid_value, KeyPath{"geometry.z_sensor_mm"},
                     "is too close to the plane in focus (an image requires a distance of at least four focal lengths); "
                     "move the sensor away, or use a shorter focal length");
   }
@@ -125,7 +125,7 @@ double best_focus(Camera const& camera, Vec3d point) {
 void position_lens_from_sensor(Setup& setup) {
   setup.z_a = paraxial_place(setup);
   if (!(setup.z_a > 0) || !std::isfinite(setup.z_a)) {
-    throw DataError("geometry.z_sensor_mm",
+    throw DataError(ErrorCode::invalid_value, KeyPath{"geometry.z_sensor_mm"},
                     "leaves no room for the lens in front of the medium's mid-plane; move the sensor away from it");
   }
   bool const chief = std::isinf(setup.lens.f_number);
@@ -147,7 +147,7 @@ void position_lens_from_sensor(Setup& setup) {
     auto const& summary = solver.Solve(Function(miss), &moved);
     constexpr double near_enough = 1e-7;  // [mm]
     if (!(std::sqrt(2 * summary.final_cost) < near_enough)) {
-      throw DataError("geometry.z_sensor_mm",
+      throw DataError(ErrorCode::invalid_value, KeyPath{"geometry.z_sensor_mm"},
                       "receives no sharp image of the plane in focus at any position of the lens; check lens.focus");
     }
     setup.z_a += moved[0] * unit::millimetre;

@@ -78,7 +78,9 @@ Vec2d scheimpflug_tilt(Vec3d normal, double magnification) {
 /// Returns the point of the dots' plane that a pixel sees [m].
 Vec2d seen_place(Camera const& camera, Setup const& setup, Vec2d pixel) {
   auto const seen = camera.unproject(pixel, Pose<double>{{0, 0, -setup.z_d}});
-  if (!seen) throw DataError("camera.pose", "its field of view extends beyond the dots' plane; rotate the camera less");
+  if (!seen)
+    throw DataError(ErrorCode::invalid_value, KeyPath{"camera.pose"},
+                    "its field of view extends beyond the dots' plane; rotate the camera less");
   return seen->place;
 }
 
@@ -158,7 +160,9 @@ Vec2d posed_extent(Setup const& setup) {
 double posed_pixel_size(Setup const& setup) {
   auto const seen = build_camera(setup).see(setup.target_centre(), Pose<double>{{0, 0, -setup.z_d}});
   double const area = seen ? std::abs(seen->by_x.x * seen->by_y.y - seen->by_x.y * seen->by_y.x) : 0;  // [px^2/m^2]
-  if (!(area > 0)) throw DataError("camera.pose", "does not see the centre of the target; turn the camera towards it");
+  if (!(area > 0))
+    throw DataError(ErrorCode::invalid_value, KeyPath{"camera.pose"},
+                    "does not see the centre of the target; turn the camera towards it");
   return 1 / std::sqrt(area);
 }
 
@@ -203,7 +207,8 @@ Camera build_camera(Setup const& setup) {
   double image = -(m.a * focus + m.b) / (m.c * focus + m.d);
   if (thin && setup.windows.empty()) image = setup.imaging().image_distance;
   if (!(image > 0) || !std::isfinite(image)) {  // reduced distance t/n: mirrors reverse both signs
-    throw DataError("lens", "the plane in focus has no real image behind it; check lens.focus and the geometry");
+    throw DataError(ErrorCode::invalid_value, KeyPath{"lens"},
+                    "the plane in focus has no real image behind it; check lens.focus and the geometry");
   }
   Pose<double> behind = paraxial.behind;
   if (paraxial.forwards < 0) behind = {behind.origin, -1.0 * behind.x, behind.y, -1.0 * behind.z};

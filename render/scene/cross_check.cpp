@@ -26,10 +26,10 @@ bool cross_check_camera(Setup const& setup, SetupTable root) {
     setup.target_extent();
     return true;
   } catch (DataError const& error) {
-    if (error.file() == "lens") {
-      root.table("lens").problem(setup.lens.prescription ? "file" : "focus", error.message());
+    if (error.key() == "lens") {
+      root.table("lens").problem(setup.lens.prescription ? "file" : "focus", error.message(), error.code());
     } else {
-      camera_table(root).problem("pose", error.message());
+      camera_table(root).problem("pose", error.message(), error.code());
     }
   }
   return false;

@@ -184,7 +184,7 @@ void require_light(Particles const& particles) {
                        [](double p) { return p > 0; });
   };
   if (!lit(0) && !lit(1)) {
-    throw DataError("laser",
+    throw DataError(ErrorCode::invalid_value, KeyPath{"laser"},
                     "illuminates no particle (none lies in the sheet at either pulse); check laser.offset_mm, "
                     "particles.volume_mm and center_mm, or seed more particles");
   }
@@ -242,7 +242,8 @@ double particle_count(Setup const& setup) {
     case ParticleCount::per_pixel: {
       double const pixels = static_cast<double>(setup.camera.columns) * setup.camera.rows, share = seen_share(setup);
       if (!(share > 0))
-        throw DataError("particles.volume_mm", "lies entirely outside the camera's view; check center_mm");
+        throw DataError(ErrorCode::invalid_value, KeyPath{"particles.volume_mm"},
+                        "lies entirely outside the camera's view; check center_mm");
       return particles.amount * pixels / share;
     }
     case ParticleCount::number:

@@ -100,7 +100,7 @@ std::optional<Pose<double>> read_pose(SetupTable table) {
   if (!table.present()) return std::nullopt;
   Range const place{-1e9, 1e9};
   if (!table.has("position_mm"))
-    table.problem("position_mm", "is missing (position of the camera); add it", ProblemCode::missing_key);
+    table.problem("position_mm", "is missing (position of the camera); add it", ErrorCode::missing_key);
   Pose<double> pose;
   pose.origin = table.quantities("position_mm", {0, 0, 0.75}, unit::millimetre, place);
   if (table.has("rotation_deg")) {
@@ -176,7 +176,7 @@ void find_window_glasses(Setup& setup, SetupTable root, GlassCatalogue const& gl
       window.index = glass.index(wavelength);
       if (setup.lens.transmittance == Transmittance::glass) window.absorption = glass.absorption(wavelength);
     } catch (DataError const& error) {
-      tables[i].problem("glass", error.message());
+      tables[i].problem("glass", error.message(), error.code());
     }
   }
 }
@@ -219,7 +219,7 @@ void focus_on_sensor(Setup& setup, SetupTable geometry) {
     try {
       position_lens_from_sensor(setup);
     } catch (DataError const& error) {
-      geometry.problem("z_sensor_mm", error.what());
+      geometry.problem("z_sensor_mm", error.what(), error.code());
     }
   }
 }

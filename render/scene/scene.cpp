@@ -53,7 +53,7 @@ void refuse_negative_density(MediumSetup const& setup, BuiltMedium const& medium
     }
   }
   throw DataError(
-      field.file,
+      ErrorCode::out_of_range, field.file,
       fmt::format("dataset \"{}\": {} of {} points are negative densities (the first at node x, y, z = {}; the lowest "
                   "is {:.6g} kg/m^3); correct the field, or check medium.field.quantity and scale",
                   source->name(), count, grid.size(), first, lowest));
@@ -100,7 +100,7 @@ double Scene::stop_edge(double rays) { return 1.2 / std::pow(rays, 0.25); }
 
 void check_deflection_limit(double shift, double z_b) {
   if (shift <= z_b) return;
-  throw DataError("medium.field",
+  throw DataError(ErrorCode::out_of_range, KeyPath{"medium.field"},
                   fmt::format("deflects rays by more than {:.3g} mm before they reach the lens, {:.6g} mm away, which "
                               "no real set-up does; reduce its gradients, or check their unit",
                               shift / unit::millimetre, z_b / unit::millimetre));
@@ -191,8 +191,9 @@ void check_memory(Setup const& setup, FieldMemory field_memory, std::vector<Memo
   auto const most =
       std::max_element(needs.begin(), needs.end(),
                        [](MemoryRequirement const& a, MemoryRequirement const& b) { return a.bytes < b.bytes; });
-  throw MemoryError(most->key, fmt::format("needs {:.3g} GB of memory ({}), but {:.3g} GB are available; reduce {}",
-                                           gigabytes(needed), sizes, gigabytes(available), most->key));
+  throw DataError(ErrorCode::memory, KeyPath{most->key},
+                  fmt::format("needs {:.3g} GB of memory ({}), but {:.3g} GB are available; reduce {}",
+                              gigabytes(needed), sizes, gigabytes(available), most->key));
 }
 
 BuiltMedium build_checked_medium(MediumSetup const& setup) {
@@ -226,7 +227,7 @@ Scene build_scene(Setup const& setup, BuiltMedium const* medium) {
     bool const dots_inside = !setup.piv && -setup.z_d > box.low.z;
     if (dots_inside || setup.camera_pose().origin.z < box.high.z) {
       throw DataError(
-          setup.medium.field.where,
+          ErrorCode::invalid_value, setup.medium.field.where,
           fmt::format("medium.field.file: the dots or the lens lie inside the volume, which reaches from z = {:.6g} to "
                       "{:.6g} mm about the mid-plane; change geometry.z_a_mm, z_d_mm or medium.field.center_mm",
                       box.low.z / unit::millimetre, box.high.z / unit::millimetre));

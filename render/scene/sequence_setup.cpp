@@ -32,7 +32,7 @@ SequenceSetup read_field_sequence(SetupTable table) {
   // The files were replaced by the one of the pair if the case was selected by select_pair().
   if (!table.has("files") && !table.has("pair")) {
     table.problem("files", "is missing (density files, one for each frame); add it, files = [\"rho_*.h5\"]",
-                  ProblemCode::missing_key);
+                  ErrorCode::missing_key);
   }
   table.path_list("files", 1);
   for (char const* const key : {"frames", "dt_us"}) {

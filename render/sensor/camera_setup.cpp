@@ -30,8 +30,10 @@ BackgroundSetup read_background(SetupTable table, double full_well_e) {
   if (table.has("glare_file")) {
     setup.glare_file = table.required_path("glare_file");
     if (std::error_code error; !setup.glare_file.empty() && !std::filesystem::exists(setup.glare_file, error)) {
-      table.problem("glare_file", "file not found: " + setup.glare_file +
-                                      "; relative names are resolved against the setup file's folder");
+      table.problem(
+          "glare_file",
+          "file not found: " + setup.glare_file + "; relative names are resolved against the setup file's folder",
+          ErrorCode::missing_file);
     }
     setup.glare_e = table.number("glare_e", 0.1 * full_well_e, Range::positive(1e9));
   } else {

@@ -23,7 +23,8 @@ Image<double> stretched(std::string const& path, int columns, int rows, double m
   double const brightest = *std::max_element(picture.begin(), picture.end());
   if (count_not_finite(picture) > 0 || *std::min_element(picture.begin(), picture.end()) < 0 || !(brightest > 0)) {
     throw DataError(
-        path, "cannot be used as glare (it is black, or has negative or non-finite pixels); choose another image");
+        ErrorCode::invalid_value, path,
+        "cannot be used as glare (it is black, or has negative or non-finite pixels); choose another image");
   }
   Image<double> image(columns, rows);
   auto const place = [](int at, int count, int of) { return std::clamp((at + 0.5) * of / count - 0.5, 0.0, of - 1.0); };

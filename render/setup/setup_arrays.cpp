@@ -23,29 +23,36 @@ std::string array_text(std::vector<Value> const& values, Text const& text) {
   return '[' + list + ']';
 }
 
+/// What is wrong with an element of an array; an empty text: nothing.
+struct Objection {
+  std::string text;
+  ErrorCode code = ErrorCode::wrong_type;
+};
+
 /// Returns an array if its number of elements is allowed and `objection` returns an empty text for each of them; else
 /// adds a problem and returns null.
-template <class Objection>
+template <class Check>
 SetupNode const* read_array(SetupTable& table, SetupNode const* node, std::string const& key, std::string const& wanted,
-                            std::size_t at_least, std::size_t at_most, Objection const& objection) {
+                            std::size_t at_least, std::size_t at_most, Check const& objection) {
   if (!node) return nullptr;
   std::string const form = "an array of " + counted(at_least, at_most) + ' ' + wanted;
   if (node->kind != Kind::array) {
     std::string const bracketed = node->kind == Kind::text ? '[' + node->text + ']' : std::string();
     bool const brackets_are_missing = !bracketed.empty() && parse_toml_value(bracketed);
     table.problem(key, wrong_kind(form, *node) + (brackets_are_missing ? "; write " + bracketed : ""),
-                  ProblemCode::wrong_type);
+                  ErrorCode::wrong_type);
     return nullptr;
   }
   std::size_t const count = node->elements.size();
   if (count < at_least || count > at_most) {
-    table.problem(key, "must be " + form + " (it has " + std::to_string(count) + ')', ProblemCode::wrong_type);
+    table.problem(key, "must be " + form + " (it has " + std::to_string(count) + ')', ErrorCode::wrong_type);
     return nullptr;
   }
   for (std::size_t i = 0; i < count; ++i) {
-    std::string const broken = objection(node->elements[i]);
-    if (broken.empty()) continue;
-    table.problem(key, "value " + std::to_string(i + 1) + ", " + toml_text(node->elements[i]) + ", " + broken);
+    Objection const broken = objection(node->elements[i]);
+    if (broken.text.empty()) continue;
+    table.problem(key, "value " + std::to_string(i + 1) + ", " + toml_text(node->elements[i]) + ", " + broken.text,
+                  broken.code);
     return nullptr;
   }
   return node;
@@ -65,9 +72,9 @@ Vec3d SetupTable::quantities(std::string const& key, Vec3d fallback, double unit
 }
 
 std::vector<std::string> SetupTable::path_list(std::string const& key, std::size_t at_least) {
-  auto const objection = [](SetupNode const& element) -> std::string {
-    if (element.kind != Kind::text) return wrong_kind("a file name in quotes", element);
-    return element.text.empty() ? "must not be empty; give a file name" : "";
+  auto const objection = [](SetupNode const& element) -> Objection {
+    if (element.kind != Kind::text) return {wrong_kind("a file name in quotes", element)};
+    return {element.text.empty() ? "must not be empty; give a file name" : "", ErrorCode::invalid_value};
   };
   auto const* const array = read_array(*this, read(*state_, path_, key), key, "file names in quotes", at_least,
                                        std::numeric_limits<std::size_t>::max(), objection);
@@ -89,8 +96,9 @@ std::vector<double> SetupTable::numbers(std::string const& key, std::vector<doub
 
 std::vector<double> SetupTable::number_list(std::string const& key, std::vector<double> const& fallback,
                                             std::size_t at_least, std::size_t at_most, Range range) {
-  auto const objection = [&](SetupNode const& element) {
-    return element.is_number() ? broken_rule(element.as_double(), range) : wrong_kind("a number", element);
+  auto const objection = [&](SetupNode const& element) -> Objection {
+    if (!element.is_number()) return {wrong_kind("a number", element)};
+    return {broken_rule(element.as_double(), range), ErrorCode::out_of_range};
   };
   auto const* const array = read_array(*this, read(*state_, path_, key), key, "numbers", at_least, at_most, objection);
   std::vector<double> values = array ? std::vector<double>{} : fallback;
@@ -103,9 +111,10 @@ std::vector<double> SetupTable::number_list(std::string const& key, std::vector<
 
 std::vector<long long> SetupTable::integers(std::string const& key, std::vector<long long> const& fallback,
                                             std::size_t at_least, std::size_t at_most, long long low, long long high) {
-  auto const objection = [&](SetupNode const& element) {
-    if (element.kind != Kind::integer) return wrong_integer(element);
-    return element.integer < low || element.integer > high ? between(low, high) : std::string();
+  auto const objection = [&](SetupNode const& element) -> Objection {
+    if (element.kind != Kind::integer) return {wrong_integer(element)};
+    if (element.integer < low || element.integer > high) return {between(low, high), ErrorCode::out_of_range};
+    return {};
   };
   auto const* const array =
       read_array(*this, read(*state_, path_, key), key, "whole numbers", at_least, at_most, objection);
@@ -118,8 +127,8 @@ std::vector<long long> SetupTable::integers(std::string const& key, std::vector<
 }
 
 std::vector<bool> SetupTable::booleans(std::string const& key, std::vector<bool> const& fallback, std::size_t count) {
-  auto const objection = [](SetupNode const& element) {
-    return element.kind == Kind::boolean ? std::string() : wrong_kind("true or false", element);
+  auto const objection = [](SetupNode const& element) -> Objection {
+    return {element.kind == Kind::boolean ? std::string() : wrong_kind("true or false", element)};
   };
   auto const* const array =
       read_array(*this, read(*state_, path_, key), key, "times true or false", count, count, objection);

@@ -116,7 +116,7 @@ std::size_t add_unread(SetupDocument::State& state) {
     path.push_back(member->key);
     state.problems.push_back({state.where(member->value.place),
                               unread_message(state, *table, *record, member->key, member->value), dotted_path(path),
-                              ProblemCode::unknown_key});
+                              ErrorCode::unknown_key});
   }
   return unread.size();
 }
@@ -207,13 +207,13 @@ SetupDocument SetupDocument::from_file(std::string const& path) {
   try {
     text = read_text_file(path, "a setup file", most_setup_bytes);
   } catch (DataError const& error) {
-    throw SetupError({{path, error.message(), "", ProblemCode::unreadable_file}});
+    throw SetupError({{path, error.message(), "", error.code()}});
   }
   auto const folder = std::filesystem::absolute(path).parent_path();
   SetupDocument document = from_text(text, path, folder.string());
   if (document.empty()) {
     throw SetupError({{path, "is empty (no key is set); gladstone render --help shows a setup to begin with", "",
-                       ProblemCode::syntax}});
+                       ErrorCode::syntax}});
   }
   return document;
 }
@@ -231,12 +231,12 @@ void SetupDocument::override_key(std::string const& assignment) {
   std::string const where = "--set " + excerpt(assignment, longest_assignment);
   auto const equals = assignment.find('=');
   if (equals == std::string::npos) {
-    add_problem({where, "has no \"=\"; write --set key.path=value", "", ProblemCode::syntax});
+    add_problem({where, "has no \"=\"; write --set key.path=value", "", ErrorCode::syntax});
     return;
   }
   auto const path = split_path(assignment.substr(0, equals));
   if (std::find(path.begin(), path.end(), "") != path.end()) {
-    add_problem({where, "has an empty key; write --set key.path=value", "", ProblemCode::syntax});
+    add_problem({where, "has an empty key; write --set key.path=value", "", ErrorCode::syntax});
     return;
   }
   if (path.size() > most_setup_depth) {
@@ -246,7 +246,7 @@ void SetupDocument::override_key(std::string const& assignment) {
   }
   std::string const text = assignment.substr(equals + 1);
   if (text.find_first_not_of(" \t") == std::string::npos) {
-    add_problem({where, "has no value; write --set key.path=value", dotted_path(path), ProblemCode::syntax});
+    add_problem({where, "has no value; write --set key.path=value", dotted_path(path), ErrorCode::syntax});
     return;
   }
   SetupNode value;
@@ -272,7 +272,7 @@ void SetupDocument::override_key(std::string const& assignment) {
       add_problem({where,
                    dotted_path(here) + " is " + kind_name(*next) + ", not a table" +
                        (array ? "; change its elements in the file" : "; set a key of a table"),
-                   dotted_path(path), ProblemCode::wrong_type});
+                   dotted_path(path), ErrorCode::wrong_type});
       return;
     }
     table = next;
@@ -298,7 +298,7 @@ void SetupDocument::set(std::vector<std::string> const& path, SetupNode const& v
       std::vector<std::string> const here(path.begin(), path.begin() + static_cast<std::ptrdiff_t>(i) + 1);
       add_problem({state_->where(value.place),
                    dotted_path(path) + ": " + dotted_path(here) + " is " + kind_name(*next) + ", not a table",
-                   dotted_path(path), ProblemCode::wrong_type});
+                   dotted_path(path), ErrorCode::wrong_type});
       return;
     }
     table = next;

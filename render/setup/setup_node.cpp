@@ -142,7 +142,7 @@ SetupNode parse_toml(std::string_view text, std::string const& name) {
     throw SetupError({{name + ':' + std::to_string(deep->line) + ':' + std::to_string(deep->column),
                        "tables or arrays are nested more than " + std::to_string(most_setup_depth) +
                            " levels deep, which is more than any setup needs; write the intended key",
-                       "", ProblemCode::syntax}});
+                       "", ErrorCode::syntax}});
   }
   try {
     SetupNode root = converted(toml::parse(text));
@@ -152,7 +152,7 @@ SetupNode parse_toml(std::string_view text, std::string const& name) {
     auto const begin = error.source().begin;
     throw SetupError(
         {{name + ':' + std::to_string(begin.line) + ':' + std::to_string(begin.column),
-          "is not TOML: " + std::string(error.description()) + cure(error.description()), "", ProblemCode::syntax}});
+          "is not TOML: " + std::string(error.description()) + cure(error.description()), "", ErrorCode::syntax}});
   }
 }
 

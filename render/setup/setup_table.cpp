@@ -22,10 +22,10 @@ SetupTable SetupTable::table(std::string const& key) {
   auto const* const node = read(*state_, path_, key);
   if (node && node->kind == Kind::array) {
     problem(key, "must be one table; write [" + dotted_path(below(path_, key)) + "] once, in single brackets",
-            ProblemCode::wrong_type);
+            ErrorCode::wrong_type);
   } else if (node && node->kind != Kind::table) {
     problem(key, wrong_kind("a table", *node) + "; write [" + dotted_path(below(path_, key)) + "] and its keys below",
-            ProblemCode::wrong_type);
+            ErrorCode::wrong_type);
   }
   return SetupTable(state_, below(path_, key));
 }
@@ -43,7 +43,7 @@ std::vector<SetupTable> SetupTable::tables(std::string const& key) {
   if (node->kind != Kind::array || !std::all_of(node->elements.begin(), node->elements.end(), is_table)) {
     problem(key,
             "must be a table or an array of tables; write [" + dotted_path(path) + "] or [[" + dotted_path(path) + "]]",
-            ProblemCode::wrong_type);
+            ErrorCode::wrong_type);
     return found;
   }
   for (std::size_t i = 0; i < node->elements.size(); ++i) {
@@ -79,7 +79,7 @@ std::optional<double> SetupTable::optional_number(std::string const& key, Range 
   if (!node) return std::nullopt;
   std::string const broken = node->is_number() ? broken_rule(node->as_double(), range) : wrong_kind("a number", *node);
   if (!broken.empty()) {
-    problem(key, broken, node->is_number() ? ProblemCode::out_of_range : ProblemCode::wrong_type);
+    problem(key, broken, node->is_number() ? ErrorCode::out_of_range : ErrorCode::wrong_type);
     return std::nullopt;
   }
   use(*state_, path_, key, toml_text(node->as_double()));
@@ -97,7 +97,7 @@ double SetupTable::quantity(std::string const& key, double fallback, double unit
 }
 
 double SetupTable::required_number(std::string const& key, Range range) {
-  if (!has(key)) problem(key, "is missing; give a number", ProblemCode::missing_key);
+  if (!has(key)) problem(key, "is missing; give a number", ErrorCode::missing_key);
   return optional_number(key, range).value_or(harmless(range));
 }
 
@@ -114,7 +114,7 @@ SetupTable::NumberOrWord SetupTable::number_or_word(std::string const& key, Numb
   } else if (node && node->is_number() && broken_rule(node->as_double(), range).empty()) {
     value = {node->as_double(), {}};
   } else if (node && node->is_number()) {
-    problem(key, broken_rule(node->as_double(), range), ProblemCode::out_of_range);
+    problem(key, broken_rule(node->as_double(), range), ErrorCode::out_of_range);
   } else if (node) {
     std::string message = "must be a number or " + quoted_list(words);
     if (node->kind == Kind::text) {
@@ -122,7 +122,7 @@ SetupTable::NumberOrWord SetupTable::number_or_word(std::string const& key, Numb
     } else {
       message += " (it is " + kind_name(*node) + ')';
     }
-    problem(key, message, node->kind == Kind::text ? ProblemCode::unknown_choice : ProblemCode::wrong_type);
+    problem(key, message, node->kind == Kind::text ? ErrorCode::unknown_choice : ErrorCode::wrong_type);
   }
   use(*state_, path_, key, value.number ? toml_text(*value.number) : toml_text(std::string_view(value.word)));
   return value;
@@ -132,9 +132,9 @@ long long SetupTable::integer(std::string const& key, long long fallback, long l
   auto const* const node = read(*state_, path_, key);
   long long value = fallback;
   if (node && node->kind != Kind::integer) {
-    problem(key, wrong_integer(*node), ProblemCode::wrong_type);
+    problem(key, wrong_integer(*node), ErrorCode::wrong_type);
   } else if (node && (node->integer < low || node->integer > high)) {
-    problem(key, between(low, high), ProblemCode::out_of_range);
+    problem(key, between(low, high), ErrorCode::out_of_range);
   } else if (node) {
     value = node->integer;
   }
@@ -143,13 +143,13 @@ long long SetupTable::integer(std::string const& key, long long fallback, long l
 }
 
 long long SetupTable::required_integer(std::string const& key, long long low, long long high) {
-  if (!has(key)) problem(key, "is missing; give a whole number", ProblemCode::missing_key);
+  if (!has(key)) problem(key, "is missing; give a whole number", ErrorCode::missing_key);
   return integer(key, std::clamp(1LL, low, high), low, high);
 }
 
 bool SetupTable::boolean(std::string const& key, bool fallback) {
   auto const* const node = read(*state_, path_, key);
-  if (node && node->kind != Kind::boolean) problem(key, wrong_kind("true or false", *node), ProblemCode::wrong_type);
+  if (node && node->kind != Kind::boolean) problem(key, wrong_kind("true or false", *node), ErrorCode::wrong_type);
   bool const value = node && node->kind == Kind::boolean ? node->boolean : fallback;
   use(*state_, path_, key, boolean_text(value));
   return value;
@@ -158,7 +158,7 @@ bool SetupTable::boolean(std::string const& key, bool fallback) {
 std::string SetupTable::text(std::string const& key, std::string const& fallback) {
   auto const* const node = read(*state_, path_, key);
   if (node && node->kind != Kind::text)
-    problem(key, wrong_kind("a text", *node) + "; put it in quotes", ProblemCode::wrong_type);
+    problem(key, wrong_kind("a text", *node) + "; put it in quotes", ErrorCode::wrong_type);
   std::string const value = node && node->kind == Kind::text ? node->text : fallback;
   use(*state_, path_, key, toml_text(std::string_view(value)));
   return value;
@@ -169,9 +169,9 @@ std::string SetupTable::word(std::string const& key, std::string const& fallback
   auto const* const node = read(*state_, path_, key);
   std::string value = fallback;
   if (node && node->kind != Kind::text) {
-    problem(key, "must be " + quoted_list(words) + " (it is " + kind_name(*node) + ')', ProblemCode::wrong_type);
+    problem(key, "must be " + quoted_list(words) + " (it is " + kind_name(*node) + ')', ErrorCode::wrong_type);
   } else if (node && std::find(words.begin(), words.end(), node->text) == words.end()) {
-    problem(key, wrong_word(node->text, words), ProblemCode::unknown_choice);
+    problem(key, wrong_word(node->text, words), ErrorCode::unknown_choice);
   } else if (node) {
     value = node->text;
   }
@@ -190,13 +190,13 @@ std::string SetupTable::kind_word(std::string const& key, std::string const& fal
 void SetupTable::suppress_unread_keys() { state_->find_or_create_record(path_).excused = true; }
 
 std::string SetupTable::required_word(std::string const& key, std::vector<std::string> const& words) {
-  if (!has(key)) problem(key, "is missing; give " + quoted_list(words), ProblemCode::missing_key);
+  if (!has(key)) problem(key, "is missing; give " + quoted_list(words), ErrorCode::missing_key);
   return word(key, words.empty() ? "" : words.front(), words);
 }
 
 std::string SetupTable::required_path(std::string const& key) {
   bool const present_here = has(key);
-  if (!present_here) problem(key, "is missing; give a file name in quotes", ProblemCode::missing_key);
+  if (!present_here) problem(key, "is missing; give a file name in quotes", ErrorCode::missing_key);
   std::string const written = text(key, "");
   if (written.empty()) {
     if (present_here && is_string(key)) problem(key, "must not be empty; give a file name");
@@ -226,7 +226,7 @@ void SetupTable::refuse(std::string const& key, std::string const& reason) {
   problem(key, reason);
 }
 
-void SetupTable::problem(std::string const& key, std::string const& message, ProblemCode code) {
+void SetupTable::problem(std::string const& key, std::string const& message, ErrorCode code) {
   auto const path = key.empty() ? path_ : below(path_, key);
   auto const* const node = state_->find(path);
   std::string text = key.empty() ? (path_.empty() ? "setup" : '[' + dotted_path(path_) + ']') : dotted_path(path);

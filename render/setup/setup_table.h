@@ -197,7 +197,7 @@ class SetupTable {
   void refuse(std::string const& key, std::string const& reason);
 
   /// Adds a problem at this key, or at the table if the key is empty or absent.
-  void problem(std::string const& key, std::string const& message, ProblemCode code = ProblemCode::invalid_value);
+  void problem(std::string const& key, std::string const& message, ErrorCode code = ErrorCode::invalid_value);
   /// Location of the key, or of the table if it is absent: "file:line:column" or "--set ...".
   std::string where(std::string const& key) const;
 

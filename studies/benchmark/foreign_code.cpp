@@ -63,9 +63,10 @@ std::map<std::string, std::string> find_vectors(ForeignVectors const& given, std
       if (path.filename() == one.name + ending && fs::exists(path, error)) files.emplace(one.name, path.string());
     }
   if (files.empty())
-    throw DataError(given.path, fmt::format("contains no vectors of the selected cases (files must be named after the "
-                                            "cases, for example {0}.csv, {0}.txt or {0}.h5); rename them",
-                                            cases.front().name));
+    throw DataError(ErrorCode::missing_content, given.path,
+                    fmt::format("contains no vectors of the selected cases (files must be named after the "
+                                "cases, for example {0}.csv, {0}.txt or {0}.h5); rename them",
+                                cases.front().name));
   return files;
 }
 
@@ -86,9 +87,10 @@ void ForeignCode::read(std::string const& of_case, DisplacementAt const& truth, 
   RejectedVectors const left_out =
       screen_vectors(file.field, file.conventions.offset_px, turned ? rows : columns, turned ? columns : rows);
   if (std::string const refusal = reason_to_reject_positions(file.field, left_out, columns, rows); !refusal.empty())
-    throw DataError(path, refusal);
+    throw DataError(ErrorCode::inconsistent, path, refusal);
   if (std::none_of(file.field.displacement_px.begin(), file.field.displacement_px.end(), is_finite))
-    throw DataError(path, "contains no finite displacement; export the vectors with their values");
+    throw DataError(ErrorCode::missing_content, path,
+                    "contains no finite displacement; export the vectors with their values");
   cases_.push_back({of_case, path, columns});
   vectors_.push_back({std::move(file), truth, rows});
 }
@@ -110,7 +112,8 @@ std::vector<BenchmarkRow> ForeignCode::score() {
                                        [&](auto const& one) { return no_convention_fits(one) || !can_tell(one); });
     if (any_tells && none_fits && !common.mistake.found()) {
       auto const worst = std::find_if(common.detected.begin(), common.detected.end(), no_convention_fits);
-      throw DataError(cases_[static_cast<std::size_t>(worst - common.detected.begin())].path, worst->report);
+      throw DataError(ErrorCode::inconsistent, cases_[static_cast<std::size_t>(worst - common.detected.begin())].path,
+                      worst->report);
     }
     conventions = common.conventions;
     reading_ = fmt::format(
@@ -129,7 +132,7 @@ std::vector<BenchmarkRow> ForeignCode::score() {
     VectorsWithTruth& vectors = vectors_[i];
     DisplacementField const field = apply_conventions(std::move(vectors.file.field), conventions, vectors.image_rows);
     if (std::string const refusal = reason_to_reject_gaps(field, one.columns, vectors.image_rows); !refusal.empty())
-      throw DataError(one.path, refusal);
+      throw DataError(ErrorCode::inconsistent, one.path, refusal);
     std::vector<Vec2d> const truth = truth_at_vectors(field, vectors.truth);
     rows.push_back({name_, one.name, score_case(one.name, field, vectors.truth, one.columns, vectors.image_rows), {}});
     bool const follows = median_relative_error(field, truth) < most_wrong;

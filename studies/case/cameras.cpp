@@ -86,7 +86,7 @@ void keep_camera(SetupDocument& document, SetupNode camera, std::vector<std::str
 void check_name(SetupTable camera, std::string const& name, std::set<std::string>& others) {
   if (name.empty()) {
     camera.problem("name", "is missing (it names the folder of the camera); give each of several cameras a name",
-                   ProblemCode::missing_key);
+                   ErrorCode::missing_key);
     return;
   }
   bool const plain = std::all_of(name.begin(), name.end(),

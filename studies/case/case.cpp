@@ -43,12 +43,13 @@ void cross_check_memory(CaseSetup& loaded, FieldMemory field) {
   try {
     check_memory(loaded.setup, field,
                  loaded.setup.piv ? std::vector<MemoryRequirement>{} : focused_dots_memory(loaded.setup));
-  } catch (MemoryError const& error) {
+  } catch (DataError const& error) {
+    if (error.code() != ErrorCode::memory) return;  // a file that cannot be read is reported by its reader
     SetupTable root = loaded.document.root();
     auto const place = [&](std::string const& path, std::vector<SetupTable> tables) {
-      if (error.file() != path) return;
+      if (error.key() != path) return;
       SetupTable table = tables.empty() ? root.table(path.substr(0, path.find('.'))) : tables.front();
-      table.problem(path.substr(path.rfind('.') + 1), error.message(), ProblemCode::memory);
+      table.problem(path.substr(path.rfind('.') + 1), error.message(), error.code());
     };
     place("camera.pixels", root.tables("camera"));
     place("medium.field.file", root.table("medium").tables("field"));
@@ -59,7 +60,6 @@ void cross_check_memory(CaseSetup& loaded, FieldMemory field) {
     for (char const* const key : {"number", "per_mm3", "per_pixel", "volume_mm"}) {
       place(std::string("particles.") + key, {});
     }
-  } catch (DataError const&) {  // NOLINT(bugprone-empty-catch): a file that cannot be read is reported by its reader
   }
 }
 
@@ -141,7 +141,7 @@ void refuse_study(SetupDocument& document) {
   throw SetupError({{root.where("axes"),
                      "axes: belongs to a study, which varies a setup (this command requires a setup); give the setup "
                      "that its key base names, or compute the study with gladstone sweep plan",
-                     "axes", ProblemCode::unknown_key}});
+                     "axes", ErrorCode::unknown_key}});
 }
 
 }  // namespace

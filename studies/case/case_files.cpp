@@ -29,13 +29,15 @@ void require_pair(std::string const& folder) {
   if (fs::exists(fs::path(folder) / case_file::reference, error)) return;
   SetupDocument const setup = SetupDocument::from_file((fs::path(folder) / case_file::setup).string());
   if (std::vector<std::string> const names = camera_names(setup); !names.empty()) {
-    throw DataError(folder, fmt::format("contains one case for each of its cameras, {}; name one of them: {}",
-                                        quoted_list(names), (fs::path(folder) / names.front()).string()));
+    throw DataError(ErrorCode::undetermined, folder,
+                    fmt::format("contains one case for each of its cameras, {}; name one of them: {}",
+                                quoted_list(names), (fs::path(folder) / names.front()).string()));
   }
   SetupNode const* const experiment = setup.find({"experiment"});
   if (experiment && experiment->text == "calibration") {
     throw DataError(
-        folder, "is a calibration (it has planes of dots and no pair of frames); use gladstone calibrate " + folder);
+        ErrorCode::wrong_format, folder,
+        "is a calibration (it has planes of dots and no pair of frames); use gladstone calibrate " + folder);
   }
 }
 
@@ -78,12 +80,14 @@ void require_case(std::string const& folder) {
       std::string const pair = rendered_sequence_file::pair(first);
       if (fs::exists(fs::path(folder) / rendered_sequence_file::setup, error) &&
           fs::exists(fs::path(folder) / pair, error)) {
-        throw DataError(folder, fmt::format("is a rendered sequence; name one of its cases, such as {}",
-                                            (fs::path(folder) / pair).string()));
+        throw DataError(ErrorCode::wrong_format, folder,
+                        fmt::format("is a rendered sequence; name one of its cases, such as {}",
+                                    (fs::path(folder) / pair).string()));
       }
     }
     throw DataError(
-        folder, "is not a case (it contains no setup.toml); create one with: gladstone render SETUP.toml -o " + folder);
+        ErrorCode::wrong_format, folder,
+        "is not a case (it contains no setup.toml); create one with: gladstone render SETUP.toml -o " + folder);
   }
 }
 

@@ -55,8 +55,9 @@ constexpr std::array<ParticlePairs, 7> particle_pairs{{
 /// @throws DataError if a dataset's length does not match the others
 void require_count(std::string const& path, std::string const& dataset, std::size_t there, std::size_t needed) {
   if (there == needed) return;
-  throw DataError(path, dataset + " has " + std::to_string(there) + " values, but " + std::to_string(needed) +
-                            " are required; render the case again");
+  throw DataError(ErrorCode::wrong_shape, path,
+                  dataset + " has " + std::to_string(there) + " values, but " + std::to_string(needed) +
+                      " are required; render the case again");
 }
 
 /// Minimum, median and maximum of positive numbers.

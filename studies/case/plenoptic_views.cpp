@@ -11,7 +11,7 @@
 namespace gladstone {
 
 PlenopticCamera PlenopticCamera::of(Setup const& setup, std::string const& where) {
-  auto const refuse = [&where](std::string const& why) { throw DataError(where, why); };
+  auto const refuse = [&where](std::string const& why) { throw DataError(ErrorCode::unsupported, where, why); };
   if (!setup.lenslets) refuse("its camera has no [camera.lenslets], so that each image is a single view");
   if (setup.lens.prescription) refuse("its lens is a prescription; views require an ideal thin lens");
   ImagingGeometry const imaging = setup.imaging();

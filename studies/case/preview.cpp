@@ -115,8 +115,8 @@ CasePreview render_preview(CaseSetup const& loaded, Renderer& renderer) {
   }
   preview.sources = keep_near(scene, preview);
   if (preview.sources == 0) {
-    throw DataError("preview",
-                    "shows no dot or particle (none is near the part of the image that it shows); render the "
+    throw DataError(ErrorCode::undetermined, "preview",
+                    "contains no dot or particle (none is near this part of the image); render the "
                     "complete images, or check the target or the particles");
   }
   scene = with_chosen_step(std::move(scene));

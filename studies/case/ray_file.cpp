@@ -86,7 +86,7 @@ TracedRay trace_one(Scene const& scene, TracingOptions<double> const& options, M
 Ray<double> ray_of(double const* v, std::string const& place, double farthest) {
   Vec3d const start = Vec3d{v[0], v[1], v[2]} * unit::millimetre;
   if (std::max({std::abs(start.x), std::abs(start.y), std::abs(start.z)}) > farthest) {
-    throw DataError(place,
+    throw DataError(ErrorCode::out_of_range, place,
                     fmt::format("the ray starts at {:.6g}, {:.6g}, {:.6g} mm, far outside the set-up ({:.6g} mm at "
                                 "most, ten times the distance from the dots to the lens); positions are in mm",
                                 v[0], v[1], v[2], farthest / unit::millimetre));
@@ -103,7 +103,7 @@ std::vector<Ray<double>> rays_of(std::vector<double> const& rows, std::string co
     std::string const place = fmt::format("{}:{}", name, i / 6);
     bool const finite = std::all_of(v, v + 6, [](double value) { return std::isfinite(value); });
     if (!finite || Vec3d{v[3], v[4], v[5]} == Vec3d{}) {
-      throw DataError(place, "is not six finite numbers with a direction that is not zero");
+      throw DataError(ErrorCode::syntax, place, "is not six finite numbers with a direction that is not zero");
     }
     rays.push_back(ray_of(v, place, farthest));
   }
@@ -114,8 +114,9 @@ std::vector<Ray<double>> read_rays(std::string const& path, double farthest) {
   LineReader file(path, "a table of rays with --rays");
   auto const header = file.next();
   if (header != "x_mm,y_mm,z_mm,dx,dy,dz") {
-    throw DataError(path + ":1", fmt::format("the header line is \"{}\" (it must be x_mm,y_mm,z_mm,dx,dy,dz)",
-                                             excerpt(header.value_or(""))));
+    throw DataError(
+        ErrorCode::wrong_format, path + ":1",
+        fmt::format("the header line is \"{}\" (it must be x_mm,y_mm,z_mm,dx,dy,dz)", excerpt(header.value_or(""))));
   }
   std::vector<Ray<double>> rays;
   while (auto const line = file.next()) {
@@ -131,8 +132,9 @@ std::vector<Ray<double>> read_rays(std::string const& path, double farthest) {
     }
     Vec3d const direction{v[3], v[4], v[5]};
     if (!good || direction == Vec3d{}) {
-      throw DataError(file.place(), fmt::format("\"{}\" is not six finite numbers with a direction that is not zero",
-                                                excerpt(*line)));
+      throw DataError(
+          ErrorCode::syntax, file.place(),
+          fmt::format("\"{}\" is not six finite numbers with a direction that is not zero", excerpt(*line)));
     }
     Ray<double> const ray = ray_of(v, file.place(), farthest);
     require_room(rays, path, "rays");

@@ -255,6 +255,7 @@ void SequenceRenderer::check_fields(SetupDocument& document) const {
   std::vector<SetupProblem> problems;
   for (std::string const& file : sequence_fields(document)) {
     std::string problem;
+    ErrorCode code = ErrorCode::inconsistent;
     try {
       auto const source = open_field(file, field.dataset, 1, field.axes);
       auto const& nodes = source->grid().nodes;
@@ -270,8 +271,9 @@ void SequenceRenderer::check_fields(SetupDocument& document) const {
       }
     } catch (DataError const& error) {
       problem = error.what();
+      code = error.code();
     }
-    if (!problem.empty()) problems.push_back({where, "sequence.files: " + problem, "sequence.files"});
+    if (!problem.empty()) problems.push_back({where, "sequence.files: " + problem, "sequence.files", code});
   }
   if (problems.empty()) return;
   std::size_t const more = problems.size() - std::min(problems.size(), max_reported_problems);

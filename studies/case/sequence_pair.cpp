@@ -60,7 +60,9 @@ std::vector<std::string> sequence_fields(SetupDocument& setup) {
   if (!given || given->kind != SetupNode::Kind::array) return {};
   SetupDocument copy = setup.copy();  // reading records the key, which the setup of a pair does not have
   std::vector<std::string> files;
-  auto const refuse = [&](std::string const& problem) { setup.root().table("sequence").problem("files", problem); };
+  auto const refuse = [&](ErrorCode code, std::string const& problem) {
+    setup.root().table("sequence").problem("files", problem, code);
+  };
   for (std::string const& name : copy.root().table("sequence").path_list("files")) {
     if (is_pattern(name)) {
       try {
@@ -68,10 +70,11 @@ std::vector<std::string> sequence_fields(SetupDocument& setup) {
         std::sort(matches.begin(), matches.end(), is_naturally_before);
         files.insert(files.end(), matches.begin(), matches.end());
       } catch (DataError const& error) {
-        refuse(error.what());
+        refuse(error.code(), error.what());
       }
     } else if (std::error_code error; !std::filesystem::exists(name, error)) {
-      refuse("file not found: " + name + "; relative names are resolved against the setup file's folder");
+      refuse(ErrorCode::missing_file,
+             "file not found: " + name + "; relative names are resolved against the setup file's folder");
     } else {
       files.push_back(name);
     }

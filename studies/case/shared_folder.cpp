@@ -22,7 +22,7 @@ std::string shared_folder() {
   for (fs::path const& folder : {installed, packaged, fs::path(GLADSTONE_SOURCE_DIR)}) {
     if (fs::exists(folder / "studies" / "cases" / "table1.toml")) return folder.string();
   }
-  throw DataError(installed.string(),
+  throw DataError(ErrorCode::missing_file, installed.string(),
                   "studies/cases/table1.toml does not exist (incomplete installation); install gladstone again");
 }
 

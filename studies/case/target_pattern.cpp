@@ -27,7 +27,8 @@ double round_length(double most) {
 
 void require_size(TargetPattern const& pattern) {
   if (pattern.diameter > 0) return;
-  throw DataError("target.dot_diameter_mm", "is 0 (points cannot be printed); give the dots a size, or write .csv");
+  throw DataError(ErrorCode::out_of_range, KeyPath{"target.dot_diameter_mm"},
+                  "is 0 (points cannot be printed); give the dots a size, or write .csv");
 }
 
 /// Places of the parts of a page [mm], from its upper left corner, y downwards.
@@ -93,12 +94,14 @@ std::string pdf_content(PagePlaces const& places) {
 
 TargetPattern make_target_pattern(Setup const& setup, std::string const& name) {
   if (setup.piv)
-    throw DataError(name, "has particles and no target; give the setup of a BOS experiment or calibration");
+    throw DataError(ErrorCode::wrong_format, name,
+                    "has particles and no target; give the setup of a BOS experiment or calibration");
   if (setup.target.kind == TargetKind::image) {
     Vec2d const extent = setup.target_extent() / unit::mm;
-    throw DataError(name, fmt::format("has the image {} as target, without dots; print the image itself, {:.6g} x "
-                                      "{:.6g} mm large",
-                                      setup.target.file, extent.x, extent.y));
+    throw DataError(ErrorCode::unsupported, name,
+                    fmt::format("has the image {} as target, without dots; print the image itself, {:.6g} x "
+                                "{:.6g} mm large",
+                                setup.target.file, extent.x, extent.y));
   }
   DotPattern const dots = build_target(setup);
   Vec2d low = dots.centre.front(), high = low;
@@ -153,8 +156,9 @@ std::string target_pdf(TargetPattern const& pattern) {
   constexpr double most_mm = 14400 / 72.0 * 25.4;  // PDF 1.4, appendix C.1: 14400 units
   Vec2d const size = places.page.size_mm;
   if (std::max(size.x, size.y) > most_mm) {
-    throw DataError("target", fmt::format("needs a page of {:.6g} x {:.6g} mm (PDF has at most {:.0f} mm); write .svg",
-                                          size.x, size.y, most_mm));
+    throw DataError(ErrorCode::out_of_range, KeyPath{"target"},
+                    fmt::format("needs a page of {:.6g} x {:.6g} mm (PDF has at most {:.0f} mm); write .svg", size.x,
+                                size.y, most_mm));
   }
   double const radius = pattern.diameter / unit::mm / 2, points = 72 / 25.4;
   std::vector<std::string> const objects{

@@ -106,8 +106,9 @@ namespace {
 /// @throws DataError if a dataset's length does not match the others
 void require_length(std::string const& path, std::string const& dataset, std::size_t there, std::size_t needed) {
   if (there == needed) return;
-  throw DataError(path, dataset + " has " + std::to_string(there) + " values, but " + std::to_string(needed) +
-                            " are required; render the case again");
+  throw DataError(ErrorCode::wrong_shape, path,
+                  dataset + " has " + std::to_string(there) + " values, but " + std::to_string(needed) +
+                      " are required; render the case again");
 }
 
 }  // namespace
@@ -157,7 +158,8 @@ FieldMap read_field_map(std::string const& path) {
   constexpr std::size_t largest = 1'000'000;  // pixels of a camera along an axis, sanity limit
   if (shape.size() != 2 || shape[0] > largest || shape[1] > largest || !(spacing[0] >= 1 && spacing[0] <= largest)) {
     throw DataError(
-        path, "/field contains no map (spacing_px, and density_kg_m3 in rows and columns); render the case again");
+        ErrorCode::missing_content, path,
+        "/field contains no map (spacing_px, and density_kg_m3 in rows and columns); render the case again");
   }
   map.spacing_px = static_cast<int>(spacing[0]);
   std::vector<double> const density = file.read("/field/density_kg_m3");

@@ -41,9 +41,10 @@ double distance_of(Setup const& setup, double z) {
   Pose<double> const pose = setup.camera_pose();
   double const distance = (pose.origin.z - z) / pose.z.z;
   if (distance > setup.lens.focal_length) return distance;
-  throw DataError("--refocus", fmt::format("Z = {:.6g} mm is less than a focal length in front of the lens, or behind "
-                                           "it (it has no real image); use a plane farther away",
-                                           z / unit::millimetre));
+  throw DataError(ErrorCode::out_of_range, "--refocus",
+                  fmt::format("Z = {:.6g} mm is less than a focal length in front of the lens, or behind "
+                              "it (it has no real image); use a plane farther away",
+                              z / unit::millimetre));
 }
 
 }  // namespace

@@ -27,18 +27,20 @@ ForeignVectors parse_vectors(std::string const& given) {
   auto const equals = given.find('=');
   ForeignVectors vectors{given.substr(0, equals), equals == std::string::npos ? "" : given.substr(equals + 1)};
   if (vectors.name.empty() || vectors.path.empty())
-    throw DataError("--vectors " + given,
+    throw DataError(ErrorCode::arguments, "--vectors " + given,
                     "is not of the form NAME=F (a name for the code, and its folder of vectors); "
                     "write --vectors mine=FOLDER");
   if (vectors.name.find_first_of(",\n\"") != std::string::npos)
     throw DataError(
-        "--vectors " + given,
+        ErrorCode::arguments, "--vectors " + given,
         "has a comma, a quotation mark or a line break in its name, which would break benchmark.csv; use another name");
   std::error_code error;
-  if (!fs::exists(vectors.path, error)) throw DataError(vectors.path, "does not exist; give the folder of vectors");
+  if (!fs::exists(vectors.path, error))
+    throw DataError(ErrorCode::missing_file, vectors.path, "does not exist; give the folder of vectors");
   for (BenchmarkEstimator const& ours : benchmark_estimators())
     if (ours.name == vectors.name)
-      throw DataError("--vectors " + given, "has the name of one of our estimators; use another name");
+      throw DataError(ErrorCode::arguments, "--vectors " + given,
+                      "has the name of one of our estimators; use another name");
   return vectors;
 }
 
@@ -54,7 +56,8 @@ void assign_conventions(std::vector<ForeignVectors>& vectors, std::string const&
     used = true;
   }
   if (!used)
-    throw DataError("--conventions " + given, "applies to vectors of another code, but none are given; add --vectors");
+    throw DataError(ErrorCode::arguments, "--conventions " + given,
+                    "applies to vectors of another code, but none are given; add --vectors");
 }
 
 std::vector<std::string> names_of_cases() {

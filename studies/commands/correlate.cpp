@@ -55,19 +55,20 @@ CommandBody attach_correlate(CLI::App& app, GlobalOptions const& options) {
       if (expanded == arguments->inputs && is_sequence(*arguments)) return run_sequence(*arguments, options);
       arguments->inputs = expanded;
     } else if (!arguments->pairing.empty()) {
-      throw DataError("correlate",
+      throw DataError(ErrorCode::arguments, "correlate",
                       "--pairing conflicts with --ensemble (which has one result for all pairs); omit one");
     }
     std::size_t const given = arguments->inputs.size();
     if (arguments->ensemble && given % 2 != 0)
       throw DataError(
-          "correlate",
+          ErrorCode::arguments, "correlate",
           fmt::format("--ensemble got {} images (pairs of reference and flow require an even number); give pairs",
                       given));
     if (!arguments->ensemble && given > 2)
-      throw DataError("correlate", fmt::format("got {} images (a measurement requires a reference and a flow frame); "
-                                               "give two, or --ensemble for pairs of one displacement",
-                                               given));
+      throw DataError(ErrorCode::arguments, "correlate",
+                      fmt::format("got {} images (a measurement requires a reference and a flow frame); "
+                                  "give two, or --ensemble for pairs of one displacement",
+                                  given));
     Backend const device = options.open_device();
     std::string const& output = arguments->output;
     if (!output.empty() && !output.ends_with(".h5") && !output.ends_with(".csv")) {

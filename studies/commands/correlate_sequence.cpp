@@ -92,8 +92,9 @@ int run_sequence(SequenceArguments const& arguments, GlobalOptions const& option
   std::size_t const done = result.count(PairState::done), no_vector = result.count(PairState::no_valid_vector);
   report_failures(result);
   if (done + no_vector == 0)
-    throw DataError(folder, fmt::format("none of the {} pairs could be correlated; the first: {}", pairs.size(),
-                                        result.pairs.front().error));
+    throw DataError(ErrorCode::undetermined, folder,
+                    fmt::format("none of the {} pairs could be correlated; the first: {}", pairs.size(),
+                                result.pairs.front().error));
   for (std::string const& warning : result.warnings) spdlog::warn("{}", warning);
   nlohmann::json const json{{"pairs", pairs.size()},
                             {"done", done},

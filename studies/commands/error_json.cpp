@@ -2,6 +2,7 @@
 
 #include <charconv>
 #include <nlohmann/json.hpp>
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -25,49 +26,32 @@ int remove_number(std::string_view& location) {
   return number;
 }
 
-Json problem_json(SetupProblem const& problem) {
-  Json json{{"code", problem_code_name(problem.code)}, {"message", problem.message}};
-  std::string_view location = problem.where;
-  int const column = remove_number(location), line = column > 0 ? remove_number(location) : 0;
-  json["file"] = std::string(line > 0 ? location : std::string_view(problem.where));
-  if (line > 0) {
-    json["line"] = line;
-    json["column"] = column;
-  }
-  if (!problem.key.empty()) json["key"] = problem.key;
+/// Describes one problem; a location "file:line:column" or "file:line" is divided into its parts.
+Json problem_json(ErrorCode code, std::string const& message, std::string_view place, std::string const& key) {
+  Json json{{"code", error_code_name(code)}, {"message", message}};
+  bool const is_option = place.starts_with("--");  // a value such as 10:20 is not a line
+  int const last = is_option ? 0 : remove_number(place), before = last > 0 ? remove_number(place) : 0;
+  if (!place.empty()) json["file"] = place;
+  if (last > 0) json["line"] = before > 0 ? before : last;
+  if (before > 0) json["column"] = last;
+  if (!key.empty()) json["key"] = key;
   return json;
 }
 
-/// Returns the code of an error other than SetupError.
-char const* error_code(std::exception const& error) {
-  if (dynamic_cast<NoValidVector const*>(&error)) return "no_valid_vector";
-  if (dynamic_cast<MemoryError const*>(&error)) return "memory";
-  if (dynamic_cast<DataError const*>(&error)) return "data";
-  if (dynamic_cast<OutputError const*>(&error)) return "output";
-  if (dynamic_cast<DeviceError const*>(&error)) return "device";
-  if (dynamic_cast<Interrupted const*>(&error)) return "interrupted";
-  if (is_out_of_memory(error)) return "memory";
-  return dynamic_cast<Error const*>(&error) ? "data" : "internal";
-}
-
 Json list_problems(std::exception const& error) {
-  Json errors = Json::array();
   if (auto const* const setup = dynamic_cast<SetupError const*>(&error)) {
-    for (SetupProblem const& problem : setup->problems()) errors.push_back(problem_json(problem));
+    Json errors = Json::array();
+    for (SetupProblem const& problem : setup->problems()) {
+      errors.push_back(problem_json(problem.code, problem.message, problem.where, problem.key));
+    }
     return errors;
   }
-  Json json{{"code", error_code(error)}};
-  if (auto const* const data = dynamic_cast<DataError const*>(&error)) {
-    json["message"] = data->message();
-    json["file"] = data->file();
-  } else if (auto const* const output = dynamic_cast<OutputError const*>(&error)) {
-    json["message"] = output->message();
-    json["file"] = output->path();
-  } else {
-    json["message"] = format_user_message(error);
+  if (auto const* const own = dynamic_cast<Error const*>(&error)) {
+    std::string const key = own->key();
+    return Json::array({problem_json(own->code(), own->message(), key.empty() ? own->place() : "", key)});
   }
-  errors.push_back(std::move(json));
-  return errors;
+  ErrorCode const code = is_out_of_memory(error) ? ErrorCode::memory : ErrorCode::internal;
+  return Json::array({problem_json(code, format_user_message(error), "", "")});
 }
 
 Json with_errors(Json errors, int exit_code) {
@@ -79,7 +63,7 @@ Json with_errors(Json errors, int exit_code) {
 Json error_json(std::exception const& error, int exit_code) { return with_errors(list_problems(error), exit_code); }
 
 Json argument_error_json(std::string const& message, int exit_code) {
-  return with_errors(Json::array({Json{{"code", "arguments"}, {"message", message}}}), exit_code);
+  return with_errors(Json::array({problem_json(ErrorCode::arguments, message, "", "")}), exit_code);
 }
 
 }  // namespace gladstone

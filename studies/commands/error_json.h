@@ -8,8 +8,7 @@ namespace gladstone {
 
 /// Describes an error as a JSON object, for --json: `exit_code`, `warnings`, and `errors` with one object per problem:
 /// `code`, `message` and, if known, `file`, `line`, `column` and `key`.
-/// The codes are those of ProblemCode for problems of a setup, else "arguments", "data", "device", "interrupted",
-/// "memory", "no_valid_vector", "output" and "internal".
+/// The codes are those of ErrorCode.
 nlohmann::ordered_json error_json(std::exception const& error, int exit_code);
 
 /// Describes the error of a command line that cannot be parsed, in the same form.

@@ -46,17 +46,20 @@ CommandBody attach_info(CLI::App& app, GlobalOptions const& options) {
                  "Refractive index of the sphere relative to its surroundings, for info mie: RE or RE,IM");
   return [arguments, &options] {
     if (arguments->kind == "mie") {
-      if (!arguments->file.empty()) throw DataError("info mie", "reads no file; give only --x and --m");
+      if (!arguments->file.empty())
+        throw DataError(ErrorCode::arguments, "info mie", "reads no file; give only --x and --m");
       arguments->mie.figure = arguments->figure;
       return print(options, describe_mie(arguments->mie));
     }
     if (!arguments->mie.x.empty() || !arguments->mie.m.empty()) {
-      throw DataError("info " + arguments->kind, "has no --x and --m (they belong to info mie); remove them");
+      throw DataError(ErrorCode::arguments, "info " + arguments->kind,
+                      "has no --x and --m (they belong to info mie); remove them");
     }
     if (!arguments->figure.empty() && (arguments->kind == "image" || arguments->kind == "particles")) {
-      throw DataError("info " + arguments->kind, "draws no figure; remove --figure");
+      throw DataError(ErrorCode::arguments, "info " + arguments->kind, "draws no figure; remove --figure");
     }
-    if (arguments->file.empty()) throw DataError("info " + arguments->kind, "requires a file; add its name");
+    if (arguments->file.empty())
+      throw DataError(ErrorCode::arguments, "info " + arguments->kind, "requires a file; add its name");
     if (arguments->kind == "lens") {
       arguments->lens.file = arguments->file;
       arguments->lens.figure = arguments->figure;

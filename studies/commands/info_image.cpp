@@ -39,7 +39,8 @@ Description describe_image(std::string const& path) {
 Description describe_image(std::string const& name, Image<double> const& image, ImageMetadata const& metadata) {
   std::size_t const not_finite = count_not_finite(image);
   if (not_finite == image.size()) {
-    throw DataError(name, fmt::format("all of its {} pixels are nan or infinite; export it again", not_finite));
+    throw DataError(ErrorCode::invalid_value, name,
+                    fmt::format("all of its {} pixels are nan or infinite; export it again", not_finite));
   }
   if (not_finite > 0) {
     spdlog::warn("{}: {} of {} pixels are nan or infinite, and are excluded", name, not_finite, image.size());

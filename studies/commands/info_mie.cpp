@@ -30,12 +30,13 @@ std::optional<double> as_number(std::string_view text) {
 
 double size_parameter(MieQuestion const& question) {
   if (question.x.empty()) {
-    throw DataError(command_name, "requires --x (the size parameter pi d n / lambda), such as --x 5.9 --m 1.45");
+    throw DataError(ErrorCode::arguments, command_name,
+                    "requires --x (the size parameter pi d n / lambda), such as --x 5.9 --m 1.45");
   }
   auto const x = as_number(question.x);
   if (!x || *x < least_size_parameter || *x > largest_size_parameter) {
     throw DataError(
-        command_name,
+        ErrorCode::arguments, command_name,
         fmt::format(
             "--x {} is not a valid size parameter (pi d n / lambda, from {:g} to {:g}); use a value such as --x 5.9",
             question.x, least_size_parameter, largest_size_parameter));
@@ -46,7 +47,7 @@ double size_parameter(MieQuestion const& question) {
 std::complex<double> relative_index(MieQuestion const& question) {
   if (question.m.empty()) {
     throw DataError(
-        command_name,
+        ErrorCode::arguments, command_name,
         "requires --m (refractive index of the sphere relative to its surroundings, RE or RE,IM), such as --m 1.45");
   }
   std::string_view const text = question.m;
@@ -54,7 +55,7 @@ std::complex<double> relative_index(MieQuestion const& question) {
   auto const real = as_number(text.substr(0, comma));
   auto const imaginary = comma == std::string_view::npos ? 0.0 : as_number(text.substr(comma + 1));
   if (!real || !imaginary || *real < least_relative_index || *imaginary < 0 || *real > 100 || *imaginary > 100) {
-    throw DataError(command_name,
+    throw DataError(ErrorCode::arguments, command_name,
                     fmt::format("--m {} is not a valid refractive index (RE or RE,IM for n + i k; {} <= n <= 100, 0 <= "
                                 "k <= 100, k > 0 absorbs); use a value such as --m 1.5,0.01",
                                 question.m, least_relative_index));
@@ -85,9 +86,10 @@ Description describe_mie(MieQuestion const& question) {
   MieCoefficients const sphere(x, m);
   MieEfficiencies const q = sphere.efficiencies();
   if (!std::isfinite(q.q_ext + q.q_sca + q.q_back + q.g)) {
-    throw DataError(command_name, fmt::format("--m {} at --x {}: the series overflows (no material has an index so far "
-                                              "from 1); give a refractive index between 0.01 and 100",
-                                              question.m, question.x));
+    throw DataError(ErrorCode::arguments, command_name,
+                    fmt::format("--m {} at --x {}: the series overflows (no material has an index so far "
+                                "from 1); give a refractive index between 0.01 and 100",
+                                question.m, question.x));
   }
   ScatteringDiagram diagram{x, m, q, drawn_angles(x), {}, {}};
   std::vector<double> s11, polarization;

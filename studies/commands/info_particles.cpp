@@ -87,7 +87,8 @@ Description describe_particles(SetupDocument const& setup, std::string const& na
   for (CameraCase& camera : camera_cases(setup)) {
     CaseSetup const loaded = load_case_setup(std::move(camera.document));
     if (!loaded.setup.piv) {
-      throw DataError(name, "has no particles (experiment is not \"piv\"); give the setup of a PIV experiment");
+      throw DataError(ErrorCode::wrong_format, name,
+                      "has no particles (experiment is not \"piv\"); give the setup of a PIV experiment");
     }
     for (std::string const& warning : loaded.warnings) spdlog::warn("{}", warning);
     ExpectedParticles const expected = expected_particles(loaded.setup);

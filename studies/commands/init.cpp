@@ -42,7 +42,8 @@ Template const& find_template(std::string const& kind) {
       std::find_if(templates.begin(), templates.end(), [&](Template const& one) { return kind == one.kind; });
   if (found == templates.end()) {
     throw DataError(
-        "init", fmt::format("\"{}\" is not a kind of file; choose one of {}", kind, fmt::join(template_kinds(), ", ")));
+        ErrorCode::arguments, "init",
+        fmt::format("\"{}\" is not a kind of file; choose one of {}", kind, fmt::join(template_kinds(), ", ")));
   }
   return *found;
 }

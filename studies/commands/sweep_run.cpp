@@ -43,8 +43,9 @@ void read_shard(Arguments& arguments) {
   long long shard = -1, shards = 0;
   if (!(text >> shard >> slash >> shards) || slash != '/' || !text.eof() || shards < 1 || shard < 0 ||
       shard >= shards) {
-    throw DataError("--shard", fmt::format("{} is not I/N with I from 0 to N - 1; write 0/3 for the first of three",
-                                           arguments.shard));
+    throw DataError(
+        ErrorCode::arguments, "--shard",
+        fmt::format("{} is not I/N with I from 0 to N - 1; write 0/3 for the first of three", arguments.shard));
   }
   arguments.selection.shard = static_cast<std::size_t>(shard);
   arguments.selection.shards = static_cast<std::size_t>(shards);

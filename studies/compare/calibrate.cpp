@@ -27,9 +27,10 @@ ExpectedView expected_view(Setup const& setup, double z, std::string const& name
   auto const middle = camera.project({0, 0, z});
   auto const seen = camera.see({}, Pose<double>{{0, 0, z}});
   if (!middle || !seen) {
-    throw DataError(name, fmt::format("the camera of its setup does not see the middle of the grid at Z = {:.6g} mm, "
-                                      "which is required to identify the dots; check camera.pose and lens",
-                                      z / unit::millimetre));
+    throw DataError(ErrorCode::invalid_value, name,
+                    fmt::format("the camera of its setup does not see the middle of the grid at Z = {:.6g} mm, "
+                                "which is required to identify the dots; check camera.pose and lens",
+                                z / unit::millimetre));
   }
   return {*middle, setup.target.spacing * seen->by_x, setup.target.spacing * seen->by_y};
 }
@@ -78,23 +79,26 @@ Image<double> read_plane(Calibration& calibration, Setup const& setup, std::stri
   for (std::size_t before = 0; before < calibration.planes.size(); ++before) {
     CalibratedPlane const& other = calibration.planes[before];
     if (hash != other.sha256) continue;
-    throw DataError(file, fmt::format("is the same image as {}, pixel by pixel, although it should show Z = {:.6g} mm "
-                                      "and that one {:.6g} mm; give the image of its plane",
-                                      other.file, setup.planes[plane] / unit::millimetre, other.z / unit::millimetre));
+    throw DataError(ErrorCode::inconsistent, file,
+                    fmt::format("is the same image as {}, pixel by pixel, although it should show Z = {:.6g} mm "
+                                "and that one {:.6g} mm; give the image of its plane",
+                                other.file, setup.planes[plane] / unit::millimetre, other.z / unit::millimetre));
   }
   calibration.sources.add(name, file, SourceFiles::Holds::pixels, hash);
   bool const first = calibration.planes.empty();
   if (!first && (picture.columns() != calibration.columns || picture.rows() != calibration.rows)) {
     throw DataError(
-        file, fmt::format("is {} x {} px, but the images of the previous planes are {} x {}; use images of one camera",
-                          picture.columns(), picture.rows(), calibration.columns, calibration.rows));
+        ErrorCode::wrong_shape, file,
+        fmt::format("is {} x {} px, but the images of the previous planes are {} x {}; use images of one camera",
+                    picture.columns(), picture.rows(), calibration.columns, calibration.rows));
   }
   if (picture.columns() != setup.camera.columns || picture.rows() != setup.camera.rows) {
-    throw DataError(file,
+    throw DataError(ErrorCode::wrong_shape, file,
                     fmt::format("is {} x {} px, but camera.pixels of the setup is [{}, {}]; correct camera.pixels",
                                 picture.columns(), picture.rows(), setup.camera.columns, setup.camera.rows));
   }
-  if (count_not_finite(picture) > 0) throw DataError(file, "has pixels that are nan or infinite; export it again");
+  if (count_not_finite(picture) > 0)
+    throw DataError(ErrorCode::invalid_value, file, "has pixels that are nan or infinite; export it again");
   if (metadata.orientation != 1) {
     calibration.warnings.push_back(
         fmt::format("{} is stored rotated or mirrored (Orientation {}), and was rotated upright; if that entry is "
@@ -144,9 +148,10 @@ void add_plane(Calibration& calibration, PlateDots& all, Setup const& setup, std
   added.smoothness_px = assigned.smoothness_px;
   if (added.used < least_dots) {
     throw DataError(
-        file, fmt::format("shows {} dots of the grid, but {} are required ({} detected spots look like dots, {} differ "
-                          "in size or shape); check focus, light and contrast, and [calibration] in setup.toml",
-                          added.used, least_dots, added.found, added.not_dots));
+        ErrorCode::undetermined, file,
+        fmt::format("shows {} dots of the grid, but {} are required ({} detected spots look like dots, {} differ "
+                    "in size or shape); check focus, light and contrast, and [calibration] in setup.toml",
+                    added.used, least_dots, added.found, added.not_dots));
   }
   warn_of_assignment(calibration, assigned, grid, file);
   for (GridDot const& dot : assigned.dots) {
@@ -164,7 +169,8 @@ std::optional<PinholeCamera> rendered_camera(std::string const& path, PinholeCam
   if (!file.has("/pinhole/camera_matrix")) return std::nullopt;
   auto const read = [&](char const* name, std::size_t count) {
     std::vector<double> values = file.read(name);
-    if (values.size() != count) throw DataError(path, std::string(name) + " has a wrong shape; render the case again");
+    if (values.size() != count)
+      throw DataError(ErrorCode::wrong_shape, path, std::string(name) + " has a wrong shape; render the case again");
     return values;
   };
   std::vector<double> const matrix = read("/pinhole/camera_matrix", 9), brown = read("/pinhole/distortion", 4),
@@ -195,7 +201,7 @@ Calibration calibrate(CaseSetup const& loaded, std::string const& setup_path, st
   calibration.sources.on_change("run gladstone calibrate " + name + " again");
   calibration.sources.add("", setup_path, SourceFiles::Holds::bytes);
   if (setup.planes.size() < 2) {
-    throw DataError(setup_path,
+    throw DataError(ErrorCode::undetermined, setup_path,
                     "calibration.planes_mm has one plane (which does not determine both the distance and the focal "
                     "length of a camera); give two planes or more, three for the polynomial's terms with Z^2");
   }
@@ -220,7 +226,7 @@ Calibration calibrate_case(std::string const& folder) {
   auto const in_folder = [&folder](std::string const& name) { return (std::filesystem::path(folder) / name).string(); };
   CaseSetup const loaded = load_case_setup(in_folder(case_file::setup), {});
   if (!loaded.setup.calibration()) {
-    throw DataError(folder,
+    throw DataError(ErrorCode::wrong_format, folder,
                     "is a BOS case, which cannot calibrate a camera; render a setup with experiment = \"calibration\" "
                     "and a table [calibration]");
   }
@@ -236,20 +242,22 @@ Calibration calibrate_case(std::string const& folder) {
 Calibration calibrate_images(std::string const& setup, std::vector<std::string> const& pictures) {
   SetupDocument document = SetupDocument::from_file(setup);
   if (std::vector<std::string> const cameras = camera_names(document); !cameras.empty()) {
-    throw DataError(setup, fmt::format("has {} cameras ({}), but the images belong to one; keep only its [[camera]], "
-                                       "and calibrate the others in the same way",
-                                       cameras.size(), fmt::join(cameras, ", ")));
+    throw DataError(ErrorCode::wrong_format, setup,
+                    fmt::format("has {} cameras ({}), but the images belong to one; keep only its [[camera]], "
+                                "and calibrate the others in the same way",
+                                cameras.size(), fmt::join(cameras, ", ")));
   }
   CaseSetup const loaded = load_case_setup(std::move(document));
   if (!loaded.setup.calibration()) {
-    throw DataError(setup,
+    throw DataError(ErrorCode::wrong_format, setup,
                     "is not the setup of a calibration; set experiment = \"calibration\" and describe in [calibration] "
                     "what the images show");
   }
   if (pictures.size() != loaded.setup.planes.size()) {
-    throw DataError(setup, fmt::format("calibration.planes_mm has {} planes, but {} images are given; give one image "
-                                       "for each plane, in that order",
-                                       loaded.setup.planes.size(), pictures.size()));
+    throw DataError(ErrorCode::inconsistent, setup,
+                    fmt::format("calibration.planes_mm has {} planes, but {} images are given; give one image "
+                                "for each plane, in that order",
+                                loaded.setup.planes.size(), pictures.size()));
   }
   return calibrate(loaded, setup, pictures, setup);
 }

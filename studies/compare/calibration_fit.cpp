@@ -81,7 +81,7 @@ class CalibrationFit {
         }
         if (count == 0 || squares > std::pow(same_place * scatter_, 2) * count) continue;
         throw DataError(
-            file(b),
+            ErrorCode::inconsistent, file(b),
             fmt::format("shows the dots at the same pixels as {}, to within {:.2g} px rms, although it should show Z = "
                         "{:.6g} mm and that one {:.6g} mm (the same image twice, a plate that was not moved, or a "
                         "telecentric lens, which is not a pinhole camera); give the image of its plane",
@@ -98,14 +98,15 @@ class CalibrationFit {
     }
     // Planes in reverse order fit a camera on the other side of the plate equally well.
     if (pinhole().camera.value.back() <= 0) {
-      throw DataError(name_,
+      throw DataError(ErrorCode::inconsistent, name_,
                       "only fits a camera with the dots behind it; give the images in the order of "
                       "calibration.planes_mm, with Z towards the camera");
     }
   }
 
   [[noreturn]] void refuse_open(std::string const& why) const {
-    throw DataError(name_, fmt::format("cannot be fitted ({}); show more rows, columns and planes of dots", why));
+    throw DataError(ErrorCode::undetermined, name_,
+                    fmt::format("cannot be fitted ({}); show more rows, columns and planes of dots", why));
   }
 
   bool has_suspicious_residuals() { return !(pinhole().rms_px <= suspicious * scatter_); }
@@ -127,7 +128,7 @@ class CalibrationFit {
     if (auto const order = find_image_order(dots_)) {
       std::vector<std::string> names(order->size());
       for (std::size_t k = 0; k < order->size(); ++k) names[(*order)[k]] = file(k);
-      throw DataError(name_,
+      throw DataError(ErrorCode::inconsistent, name_,
                       fmt::format("has a residual of {:.3g} px rms, but fits in another order of the images: {}; give "
                                   "the images in the order of calibration.planes_mm, or correct planes_mm",
                                   pinhole().rms_px, fmt::join(names, ", ")));
@@ -222,7 +223,7 @@ class CalibrationFit {
         rms, scatter_, z_mm(worst_plane()));
     if (rms > least_refused_px && rms > refused * scatter_) {
       throw DataError(
-          file(worst_plane()),
+          ErrorCode::inconsistent, file(worst_plane()),
           text +
               " (inconsistent planes: another Z than in calibration.planes_mm, a plate that was rotated or tilted "
               "between images, a camera or lens that was moved); check these, and record the images again");
@@ -239,10 +240,11 @@ class CalibrationFit {
     bool const finite = std::all_of(fit.standard_error.begin(), fit.standard_error.end(),
                                     [](double error) { return std::isfinite(error); });
     if (!finite || !(f_error < least_known * f)) {
-      throw DataError(name_, fmt::format("does not determine the camera: fx = {:.6g} px with a standard error of "
-                                         "{:.2g} px, which is {} (planes that hardly differ, few dots, or an image "
-                                         "given twice); show planes farther apart, and more rows and columns of dots",
-                                         fit.camera.fx(), f_error, finite ? "too large" : "not finite"));
+      throw DataError(ErrorCode::undetermined, name_,
+                      fmt::format("does not determine the camera: fx = {:.6g} px with a standard error of "
+                                  "{:.2g} px, which is {} (planes that hardly differ, few dots, or an image "
+                                  "given twice); show planes farther apart, and more rows and columns of dots",
+                                  fit.camera.fx(), f_error, finite ? "too large" : "not finite"));
     }
     if (!fit.converged)
       warn("the fit of the pinhole camera has not converged; show more planes, rows and columns of dots");
@@ -275,11 +277,12 @@ class CalibrationFit {
     if (guessed.empty()) return;
     PinholeCamera const& camera = calibration_.pinhole.camera;
     throw DataError(
-        name_, fmt::format("only fits a camera with unequal fx = {:.6g} and fy = {:.6g} px, with the plate moved at "
-                           "{:.3g} degrees to its normal (the middle dots of {} are guesses, since their images show "
-                           "only a part of the grid, and are probably wrong); show the whole grid in every image, or "
-                           "give the position of the camera and the direction of the plate's motion more accurately",
-                           camera.fx(), camera.fy(), degrees(length(placement_.drift)), fmt::join(guessed, ", ")));
+        ErrorCode::inconsistent, name_,
+        fmt::format("only fits a camera with unequal fx = {:.6g} and fy = {:.6g} px, with the plate moved at "
+                    "{:.3g} degrees to its normal (the middle dots of {} are guesses, since their images show "
+                    "only a part of the grid, and are probably wrong); show the whole grid in every image, or "
+                    "give the position of the camera and the direction of the plate's motion more accurately",
+                    camera.fx(), camera.fy(), degrees(length(placement_.drift)), fmt::join(guessed, ", ")));
   }
 
   void fit_polynomial() {

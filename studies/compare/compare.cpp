@@ -65,7 +65,7 @@ void judge_chain(Comparison& comparison, std::string const& name) {
   if (!comparison.noise_free.empty()) references.emplace_back(comparison.noise_free);
   comparison.mask = common_mask(measured, references);
   if (std::none_of(comparison.mask.begin(), comparison.mask.end(), [](auto counts) { return counts != 0; })) {
-    throw DataError(name,
+    throw DataError(ErrorCode::undetermined, name,
                     "has no vector that can be compared: no vector is valid, in view and has three dots with a truth "
                     "in its window; check the vectors and --conventions");
   }

@@ -19,7 +19,8 @@ namespace {
 std::string made_file(std::string const& folder, char const* name, std::string const& command) {
   std::string path = in_case(folder, name);
   std::error_code error;
-  if (!std::filesystem::exists(path, error)) throw DataError(path, "does not exist; create it with: " + command);
+  if (!std::filesystem::exists(path, error))
+    throw DataError(ErrorCode::missing_file, path, "does not exist; create it with: " + command);
   return path;
 }
 
@@ -28,7 +29,8 @@ std::string made_file(std::string const& folder, char const* name, std::string c
 std::string vectors_path(std::string const& folder, std::string const& given) {
   if (given.empty()) return made_file(folder, case_file::vectors, "gladstone correlate " + folder);
   std::error_code error;
-  if (!std::filesystem::exists(given, error)) throw DataError(given, "does not exist; check --vectors");
+  if (!std::filesystem::exists(given, error))
+    throw DataError(ErrorCode::missing_file, given, "does not exist; check --vectors");
   require_input_file(given, "a file of vectors");
   return given;
 }
@@ -42,9 +44,10 @@ void add_inputs(SourceFiles& sources, std::string const& truth, std::string cons
     if (!std::filesystem::exists(path)) continue;  // reported by its reader
     sources.add("", path, SourceFiles::Holds::bytes);
     if (hash == sources.all().back().sha256) continue;
-    throw DataError(path, fmt::format("has changed since {} was rendered from it (another SHA-256 of its bytes); "
-                                      "restore the old file, or render the case again",
-                                      folder));
+    throw DataError(ErrorCode::changed, path,
+                    fmt::format("has changed since {} was rendered from it (another SHA-256 of its bytes); "
+                                "restore the old file, or render the case again",
+                                folder));
   }
 }
 
@@ -74,7 +77,7 @@ ComparedFiles compared_files(std::string const& folder, std::string const& vecto
   bool const exchanged = !first.empty() && first != second && measured.attribute("reference_sha256") == second &&
                          measured.attribute("flow_sha256") == first;
   if (exchanged) {
-    throw DataError(files.vectors,
+    throw DataError(ErrorCode::inconsistent, files.vectors,
                     fmt::format("was measured from flow.tif to reference.tif of {0} (the frames were exchanged, and "
                                 "every displacement has the opposite sign); run gladstone correlate {0} again",
                                 folder));
@@ -84,7 +87,7 @@ ComparedFiles compared_files(std::string const& folder, std::string const& vecto
     if (mine.empty() || theirs.empty()) {
       files.unverified = theirs.empty() ? files.vectors : files.truth;
     } else if (mine != theirs) {
-      throw DataError(files.vectors,
+      throw DataError(ErrorCode::inconsistent, files.vectors,
                       fmt::format("was measured on other frames than those of {} (the SHA-256 of the pixels of its {} "
                                   "frame is {:.12}..., not {:.12}...); run gladstone correlate {} again, or give "
                                   "vectors of deliberately changed frames as .csv",

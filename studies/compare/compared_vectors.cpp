@@ -63,7 +63,7 @@ RejectedVectors screen(VectorFile& file, std::string const& path, CameraSetup co
   int const columns = turned ? camera.rows : camera.columns, rows = turned ? camera.columns : camera.rows;
   RejectedVectors const left_out = screen_vectors(file.field, file.conventions.offset_px, columns, rows);
   std::string const refusal = reason_to_reject_positions(file.field, left_out, columns, rows);
-  if (!refusal.empty()) throw DataError(path, refusal);
+  if (!refusal.empty()) throw DataError(ErrorCode::inconsistent, path, refusal);
   if (left_out.all() > 0) {
     spdlog::warn("{}: {} of {} vectors are excluded: {}", path, left_out.all(),
                  file.field.size() + left_out.without_place(), left_out.text());
@@ -79,9 +79,10 @@ void check_preparation(Hdf5Reader const& measured, std::string const& path, Corr
   for (std::string const& file : settings.preparation.files) {
     std::string const hash = measured.attribute(fmt::format("preparation_{}_sha256", ++number));
     if (hash.empty() || hash == pixel_sha256(file)) continue;
-    throw DataError(file, fmt::format("has changed since {} was measured with it (another SHA-256 of its pixels); "
-                                      "restore the old file, or run gladstone correlate again",
-                                      path));
+    throw DataError(ErrorCode::changed, file,
+                    fmt::format("has changed since {} was measured with it (another SHA-256 of its pixels); "
+                                "restore the old file, or run gladstone correlate again",
+                                path));
   }
 }
 
@@ -105,7 +106,7 @@ DetectedConventions detect(VectorFile const& file, std::string const& path, Grou
   DetectedConventions detected = detect_conventions(
       file, [&map](Vec2d c) { return map.at(c); }, camera.rows);
   if (detected.verdict == Verdict::no_convention_fits) {
-    throw DataError(path,
+    throw DataError(ErrorCode::inconsistent, path,
                     detected.report + ", or specify its reading with --conventions if the file cannot be corrected");
   }
   if (detected.mistake.found()) {
@@ -133,9 +134,10 @@ MeasuredVectors accept_vectors(VectorFile file, std::string const& name, CaseSet
   bool any_valid = left_out.all() > left_out.displacement_not_finite;
   for (std::size_t i = 0; i < file.field.size() && !any_valid; ++i) any_valid = file.field.counts(i);
   if (!any_valid)
-    throw NoValidVector(name, fmt::format("none of its {} vectors is valid; check the frames and how they were "
-                                          "correlated",
-                                          file.field.size()));
+    throw DataError(ErrorCode::no_valid_vector, name,
+                    fmt::format("none of its {} vectors is valid; check the frames and how they were "
+                                "correlated",
+                                file.field.size()));
   MeasuredVectors vectors{{}, loaded.correlate, file.foreign, {}, name, left_out, {}};
   if (options.conventions && specifies_reading(*options.conventions)) {
     vectors.report = file.format + " vectors, as specified: " + describe(file.conventions);

@@ -42,7 +42,7 @@ CorrelationFile read_document(SetupDocument document, std::vector<std::string> c
       document.override_key(assignment);
     } else {
       document.add_problem({"--set " + assignment, "is not a key of [correlate], the only table used here; remove it",
-                            assignment.substr(0, assignment.find('=')), ProblemCode::unknown_key});
+                            assignment.substr(0, assignment.find('=')), ErrorCode::unknown_key});
     }
   }
   CorrelationFile file;
@@ -123,7 +123,8 @@ void check_finite(std::string const& reference_name, Image<double> const& refere
   for (auto const& [name, image] : {std::pair(reference_name, &reference), std::pair(flow_name, &flow)}) {
     std::size_t const bad = count_not_finite(*image);
     if (bad == image->size()) {
-      throw DataError(name, fmt::format("all of its {} pixels are nan or infinite; export it again", bad));
+      throw DataError(ErrorCode::invalid_value, name,
+                      fmt::format("all of its {} pixels are nan or infinite; export it again", bad));
     }
     if (bad > 0) {
       spdlog::warn("{}: {} of {} pixels are nan or infinite, and are excluded from their windows", name, bad,
@@ -138,13 +139,13 @@ Measurement correlate_frames(std::string const& reference_name, Image<double> co
                              std::string const& flow_name, Image<double> const& flow,
                              CorrelationSettings const& settings, Backend const& device) {
   if (reference.columns() != flow.columns() || reference.rows() != flow.rows()) {
-    throw DataError(flow_name,
+    throw DataError(ErrorCode::wrong_shape, flow_name,
                     fmt::format("is {} x {} px but {} is {} x {} (both frames must have one size)", flow.columns(),
                                 flow.rows(), reference_name, reference.columns(), reference.rows()));
   }
   int const largest = *std::max_element(settings.window_px.begin(), settings.window_px.end());
   if (largest > std::min(reference.columns(), reference.rows())) {
-    throw DataError(reference_name,
+    throw DataError(ErrorCode::wrong_shape, reference_name,
                     fmt::format("is {} x {} px, smaller than a window of {} px; set correlate.window_px smaller",
                                 reference.columns(), reference.rows(), largest));
   }
@@ -219,12 +220,13 @@ Measurement correlate_ensemble_files(std::vector<std::string> const& files, Corr
       rows = frame.rows();
     }
     if (frame.columns() != columns || frame.rows() != rows)
-      throw DataError(files[k], fmt::format("is {} x {} px but {} is {} x {} (all frames must have one size)",
-                                            frame.columns(), frame.rows(), files[0], columns, rows));
+      throw DataError(ErrorCode::wrong_shape, files[k],
+                      fmt::format("is {} x {} px but {} is {} x {} (all frames must have one size)", frame.columns(),
+                                  frame.rows(), files[0], columns, rows));
     if (!is_flow) reference = std::move(frame);
   }
   if (std::string const problem = window_problem(settings, columns, rows); !problem.empty())
-    throw DataError(files[0], problem);
+    throw DataError(ErrorCode::wrong_shape, files[0], problem);
   PairSequence const pairs{files.size() / 2, [&](std::size_t k) {
                              HostFrames const frames(read_image(files[2 * k]), read_image(files[2 * k + 1]));
                              return prepare_frames(frames, settings.preparation);

@@ -61,7 +61,7 @@ ExportedVectors load_for_export(std::string const& path, std::string const& conv
   if (!conventions.empty()) override_conventions(file, conventions);
   file = convert_to_pixels(std::move(file), path);
   if (file.conventions.y_up && file.conventions.mirror == VectorConventions::Mirror::image && image_rows <= 0) {
-    throw DataError(path,
+    throw DataError(ErrorCode::undetermined, path,
                     "counts y upwards from the last row of the image, whose number of rows is unknown; specify it with "
                     "--image-rows");
   }

@@ -39,12 +39,14 @@ ReconstructedFiles find_measured_files(std::string const& place, std::string con
   files.setup = is_folder ? in_case(place, case_file::setup) : place;
   if (!is_folder) require_input_file(place, "a case folder or a setup");
   if (!is_folder && vectors.empty())
-    throw DataError(place, "is a setup, which contains no vectors; give their file with --vectors");
+    throw DataError(ErrorCode::wrong_format, place,
+                    "is a setup, which contains no vectors; give their file with --vectors");
   files.vectors = vectors.empty() ? in_case(place, case_file::vectors) : vectors;
   if (!fs::exists(files.vectors, error))
-    throw DataError(files.vectors, vectors.empty() ? "does not exist; create it with gladstone correlate, or give "
-                                                     "another file with --vectors"
-                                                   : "does not exist; check --vectors");
+    throw DataError(ErrorCode::missing_file, files.vectors,
+                    vectors.empty() ? "does not exist; create it with gladstone correlate, or give "
+                                      "another file with --vectors"
+                                    : "does not exist; check --vectors");
   require_input_file(files.vectors, "a file of vectors");
   bool const is_hdf5 = files.vectors.ends_with(".h5") || files.vectors.ends_with(".hdf5");
   files.sources.add("", files.setup, SourceFiles::Holds::bytes);
@@ -84,7 +86,7 @@ Reconstruction reconstruct_case(std::string const& place, ReconstructOptions con
   ReconstructedFiles files = find_files(place, options.vectors);
   CaseSetup loaded = load_case_setup(files.setup, {});
   if (loaded.setup.piv || loaded.setup.calibration())
-    throw DataError(files.setup,
+    throw DataError(ErrorCode::wrong_format, files.setup,
                     "is not a BOS setup (density follows from the displacement of a background); use a "
                     "setup with experiment = \"bos\"");
   std::optional<GroundTruth> dots;
@@ -106,7 +108,7 @@ Reconstruction reconstruct_case(std::string const& place, ReconstructOptions con
     if (!known) known = &computed.emplace(compare_case(place, device, comparing));
     result.budget = compute_density_budget(*known, result, loaded.setup, window_px, options);
   } else if (options.budget) {
-    throw DataError(place,
+    throw DataError(ErrorCode::missing_file, place,
                     "has no truth.h5, without which the causes of the error are unknown; remove --budget, or "
                     "render the case");
   }

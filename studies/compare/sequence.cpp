@@ -112,11 +112,11 @@ class SequenceRun {
       }
       size_ = {image->levels.columns(), image->levels.rows(), record.pair.reference.name()};
       if (std::string const problem = window_problem(correlation(), size_.columns, size_.rows); !problem.empty())
-        throw DataError(size_.frame, problem);
+        throw DataError(ErrorCode::wrong_shape, size_.frame, problem);
       return std::move(*image);
     }
     if (first_error) std::rethrow_exception(first_error);
-    throw DataError("correlate", "no pair is complete (" + result_.pairs.front().error + ")");
+    throw DataError(ErrorCode::undetermined, "correlate", "no pair is complete (" + result_.pairs.front().error + ")");
   }
 
   /// Computes the backgrounds of the sequence, and the hash of everything that affects the vectors besides the frames.
@@ -244,7 +244,7 @@ SequenceSettings read_sequence_settings(Pairing pairing, std::string const& path
                                       : read_correlation_file(path, overrides, PreparedSet::sequence);
   if (settings.correlation.settings.gives_scattered_vectors())
     throw DataError(
-        "correlate.tracking.output",
+        ErrorCode::unsupported, KeyPath{"correlate.tracking.output"},
         "\"scattered\" gives vectors at other points for each pair (the statistics of a sequence require one "
         "grid); choose \"grid\"");
   return settings;

@@ -39,11 +39,13 @@ std::vector<std::string> list_folder(std::string const& folder) {
         !entry->path().filename().string().starts_with('.'))
       files.push_back(entry->path().string());
   }
-  if (error) throw DataError(folder, "cannot be listed (" + error.message() + "); check its permissions");
+  if (error)
+    throw DataError(ErrorCode::unreadable_file, folder,
+                    "cannot be listed (" + error.message() + "); check its permissions");
   if (files.empty())
-    throw DataError(
-        folder, "contains no image (.tif, .png, .jpg, ...); name another folder, or give a pattern such as '" + folder +
-                    "/*.dat'");
+    throw DataError(ErrorCode::missing_file, folder,
+                    "contains no image (.tif, .png, .jpg, ...); name another folder, or give a pattern such as '" +
+                        folder + "/*.dat'");
   return files;
 }
 
@@ -133,9 +135,10 @@ std::vector<SequencePair> match_lists(std::vector<std::string> const& a, std::ve
   }
   std::vector<SequenceFrame> const first = list_frames(a), second = list_frames(b);
   if (first.size() != second.size())
-    throw DataError(a.front(), fmt::format("the first list has {} images and the second {} (their numbers differ, so "
-                                           "that they are matched in their order); give equally many",
-                                           first.size(), second.size()));
+    throw DataError(ErrorCode::inconsistent, a.front(),
+                    fmt::format("the first list has {} images and the second {} (their numbers differ, so "
+                                "that they are matched in their order); give equally many",
+                                first.size(), second.size()));
   for (std::size_t k = 0; k < first.size(); ++k) pairs.push_back({first[k], second[k], {}, {}});
   return pairs;
 }
@@ -198,7 +201,8 @@ Pairing parse_pairing(std::string const& name) {
   if (name.empty() || name == "pairs") return Pairing::pairs;
   if (name == "reference") return Pairing::reference;
   if (name == "consecutive") return Pairing::consecutive;
-  throw DataError("correlate", "\"" + name + "\" is no pairing; choose \"pairs\", \"reference\" or \"consecutive\"");
+  throw DataError(ErrorCode::arguments, "correlate",
+                  "\"" + name + "\" is not a pairing; choose \"pairs\", \"reference\" or \"consecutive\"");
 }
 
 std::vector<std::vector<std::string>> list_sequence_files(std::vector<std::string> const& inputs, Pairing pairing) {
@@ -223,9 +227,10 @@ std::vector<std::vector<std::string>> list_sequence_files(std::vector<std::strin
   }
   if (pairing == Pairing::pairs && lists.size() == 1) lists = split_by_name(lists.front());
   if (pairing == Pairing::pairs && lists.size() > 2)
-    throw DataError("correlate", fmt::format("got {} lists of images (pairs have a first and a second image); give two "
-                                             "patterns, or one folder or file with all images",
-                                             lists.size()));
+    throw DataError(ErrorCode::arguments, "correlate",
+                    fmt::format("got {} lists of images (pairs have a first and a second image); give two "
+                                "patterns, or one folder or file with all images",
+                                lists.size()));
   return lists;
 }
 
@@ -240,7 +245,8 @@ std::vector<SequencePair> form_pairs(std::vector<std::vector<std::string>> const
   for (std::vector<std::string> const& list : lists) files.insert(files.end(), list.begin(), list.end());
   std::vector<SequenceFrame> const frames = list_frames(files);
   if (frames.size() < 2)
-    throw DataError(files.front(), "is a single image (a sequence has at least two); give a pattern or a folder");
+    throw DataError(ErrorCode::arguments, files.front(),
+                    "is a single image (a sequence has at least two); give a pattern or a folder");
   bool const one_each = frames.size() == files.size();  // no file of several pages
   FrameIntervals const intervals(one_each ? files : std::vector<std::string>{});
   switch (pairing) {

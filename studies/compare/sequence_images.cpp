@@ -43,7 +43,7 @@ SequenceImage read_sequence_image(SequenceFrame const& frame) {
     image.warnings.push_back(fmt::format("{} is stored rotated or mirrored (Orientation {}), and was rotated upright",
                                          frame.name(), metadata.orientation));
   if (std::size_t const bad = count_not_finite(image.levels); bad == image.levels.size()) {
-    throw DataError(frame.name(), "all of its pixels are nan or infinite; export it again");
+    throw DataError(ErrorCode::invalid_value, frame.name(), "all of its pixels are nan or infinite; export it again");
   } else if (bad > 0) {
     image.warnings.push_back(
         fmt::format("{}: {} pixels are nan or infinite, and are excluded from their windows", frame.name(), bad));
@@ -53,8 +53,9 @@ SequenceImage read_sequence_image(SequenceFrame const& frame) {
 
 void SequenceSize::require(Image<double> const& levels, std::string const& name) const {
   if (levels.columns() == columns && levels.rows() == rows) return;
-  throw DataError(name, fmt::format("is {} x {} px but {} is {} x {} px (all frames must have one size)",
-                                    levels.columns(), levels.rows(), frame, columns, rows));
+  throw DataError(ErrorCode::wrong_shape, name,
+                  fmt::format("is {} x {} px but {} is {} x {} px (all frames must have one size)", levels.columns(),
+                              levels.rows(), frame, columns, rows));
 }
 
 void compute_background_images(SequenceBackground& background, std::vector<SequencePair> const& pairs, Pairing pairing,
@@ -74,7 +75,8 @@ void compute_background_images(SequenceBackground& background, std::vector<Seque
   background.reference = compute(first);
   background.flow = separate ? compute(second) : background.reference;
   if (background.reference.empty() || background.flow.empty())
-    throw DataError("correlate.preprocess", "no frame is suitable for the background; check that they are readable");
+    throw DataError(ErrorCode::undetermined, KeyPath{"correlate.preprocess"},
+                    "no frame is suitable for the background; check that they are readable");
 }
 
 }  // namespace gladstone

@@ -58,7 +58,7 @@ std::vector<std::string> find_sheet_images(StereoOptions const& options) {
       std::error_code error;
       if (!options.align && !fs::exists(fs::path(place) / frame, error)) return {};
       if (!fs::is_directory(place, error))
-        throw DataError(place,
+        throw DataError(ErrorCode::wrong_format, place,
                         "is a file of vectors, which contains no images; give those of both cameras with --images");
       images.push_back(in_case(place, frame));
     }
@@ -71,18 +71,19 @@ DisplacementField correlate_dewarped(StereoInput const& input, std::string const
                                      Backend const& device) {
   CorrelationSettings const& settings = input.vectors.settings;
   if (!settings.preparation.files.empty())
-    throw DataError(place,
+    throw DataError(ErrorCode::unsupported, place,
                     "masks or subtracts images in [correlate], which do not fit dewarped frames; use --dewarp "
                     "vectors");
   std::string const problem = window_problem(settings, dewarping.grid.columns, dewarping.grid.rows);
-  if (!problem.empty()) throw DataError(place, "dewarped: " + problem);
+  if (!problem.empty()) throw DataError(ErrorCode::wrong_shape, place, "dewarped: " + problem);
   auto const dewarp = [&](Image<double> const& frame) {
     return stereo::dewarp_image(frame, input.camera.camera, dewarping.plane, dewarping.grid);
   };
   HostFrames const dewarped(dewarp(frames[0]), dewarp(frames[1]));
   DisplacementField field = correlate_frames(dewarped, settings, device).field;
   if (!stereo::is_regular_grid(field))
-    throw DataError(place, "has no complete grid of vectors; set correlate.tracking.output = \"grid\"");
+    throw DataError(ErrorCode::wrong_shape, place,
+                    "has no complete grid of vectors; set correlate.tracking.output = \"grid\"");
   return field;
 }
 
@@ -105,8 +106,8 @@ stereo::Dewarping measure_dewarped(std::array<StereoInput*, 2> const& inputs, St
   stereo::Dewarping dewarping{
       plane, stereo::find_common_view({&inputs[0]->camera.camera, &inputs[1]->camera.camera}, size, plane, pixel_size)};
   if (dewarping.grid.size() == 0)
-    throw DataError(options.inputs[1],
-                    fmt::format("and {} show no common part of the plane; check that the calibrations belong to these "
+    throw DataError(ErrorCode::inconsistent, options.inputs[1],
+                    fmt::format("shows no part of the plane that {} shows; check that the calibrations belong to these "
                                 "cameras",
                                 options.inputs[0]));
   for (std::size_t i = 0; i < 2; ++i)
@@ -117,7 +118,7 @@ stereo::Dewarping measure_dewarped(std::array<StereoInput*, 2> const& inputs, St
 /// Throws for two cases whose particles differ.
 void require_same_particles(StereoInput const& a, StereoInput const& b, StereoOptions const& options) {
   if (a.truth->position_m == b.truth->position_m && a.truth->particles.second_m == b.truth->particles.second_m) return;
-  throw DataError(options.inputs[1],
+  throw DataError(ErrorCode::inconsistent, options.inputs[1],
                   fmt::format("shows other particles than {}; give two cameras of one rendering", options.inputs[0]));
 }
 
@@ -155,7 +156,7 @@ StereoMeasurement measure_stereo(StereoOptions const& options, Backend const& de
   result.view_angle = stereo::find_view_angle(a.camera.camera, b.camera.camera, options.plane.point({}));
   constexpr double least_angle = 1 * unit::degree;
   if (!(result.view_angle > least_angle))
-    throw DataError(options.inputs[1],
+    throw DataError(ErrorCode::undetermined, options.inputs[1],
                     fmt::format("looks from the same direction as {} ({:.2f} degrees apart), so that the third "
                                 "component is undetermined; give two cameras with different views",
                                 options.inputs[0], result.view_angle / unit::degree));
@@ -179,14 +180,17 @@ StereoMeasurement measure_stereo(StereoOptions const& options, Backend const& de
   settings.window_b_px = b.window_px;
   result.field = stereo::reconstruct(a.camera, a.vectors.field, b.camera, b.vectors.field, plane, settings);
   if (result.field.grid.size() == 0)
-    throw DataError(options.inputs[1], fmt::format("and {} have no vectors in common on the plane; check that the "
-                                                   "calibrations belong to these cameras, and --spacing",
-                                                   options.inputs[0]));
+    throw DataError(ErrorCode::undetermined, options.inputs[1],
+                    fmt::format("has no vectors on the part of the plane where {} has vectors; check that the "
+                                "calibrations belong to these cameras, and --spacing",
+                                options.inputs[0]));
   bool const any = std::any_of(result.field.nodes.begin(), result.field.nodes.end(),
                                [](auto const& node) { return node.has_value(); });
   if (!any)
-    throw NoValidVector(options.inputs[1],
-                        fmt::format("and {} have no valid vectors at the same place", options.inputs[0]));
+    throw DataError(
+        ErrorCode::no_valid_vector, options.inputs[1],
+        fmt::format("has no valid vector at a place where {} has one; check the frames and the calibrations",
+                    options.inputs[0]));
   result.field = stereo::reject_large_residuals(std::move(result.field), options.residual_limit);
   if (a.truth && b.truth) {
     double const per_metre = 1.0 / result.pixel_size;

@@ -38,9 +38,10 @@ std::vector<stereo::SimultaneousImages> read_simultaneous_images(std::vector<std
       Image<double> const& first = images.front()[camera];
       if (first.columns() == both[camera].columns() && first.rows() == both[camera].rows()) continue;
       throw DataError(
-          file, fmt::format("is {} x {} px, but {} is {} x {}; give the images of the first and of the "
-                            "second camera in turn",
-                            both[camera].columns(), both[camera].rows(), files[camera], first.columns(), first.rows()));
+          ErrorCode::wrong_shape, file,
+          fmt::format("is {} x {} px, but {} is {} x {}; give the images of the first and of the "
+                      "second camera in turn",
+                      both[camera].columns(), both[camera].rows(), files[camera], first.columns(), first.rows()));
     }
     images.push_back(std::move(both));
   }

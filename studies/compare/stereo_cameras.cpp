@@ -22,8 +22,9 @@ std::vector<double> read_parameters(Hdf5Reader const& file, std::string const& p
   bool const complete = values.size() == count &&
                         std::all_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); });
   if (!complete)
-    throw DataError(path, fmt::format("has no {} of {} finite numbers; give a calibration.h5 of gladstone calibrate",
-                                      dataset, count));
+    throw DataError(
+        ErrorCode::missing_content, path,
+        fmt::format("has no {} of {} finite numbers; give a calibration.h5 of gladstone calibrate", dataset, count));
   return values;
 }
 
@@ -51,7 +52,8 @@ void warn_of_other_optics(Hdf5Reader const& file, std::string const& path) {
 stereo::CalibratedCamera read_calibrated_camera(std::string const& path) {
   Hdf5Reader const file(path);
   if (file.attribute("filetype") != "gladstone calibration")
-    throw DataError(path, "is not a calibration; give the calibration.h5 that gladstone calibrate writes");
+    throw DataError(ErrorCode::wrong_format, path,
+                    "is not a calibration; give the calibration.h5 that gladstone calibrate writes");
   std::vector<double> const matrix = read_parameters(file, path, "/pinhole/camera_matrix", 9),
                             brown = read_parameters(file, path, "/pinhole/distortion", 4),
                             r = read_parameters(file, path, "/pinhole/rvec", 3),
@@ -69,7 +71,7 @@ stereo::CalibratedCamera find_exact_camera(Setup const& setup, std::string const
   std::optional<Pinhole> const pinhole = equivalent_pinhole(setup, build_camera(setup));
   if (!pinhole)
     throw DataError(
-        name,
+        ErrorCode::unsupported, name,
         "has a camera that is not an exact pinhole camera (a prescription, windows, lenslets, or distortion "
         "on a tilted sensor); calibrate both cameras and give their calibration.h5 with --calibration");
   Eigen::Matrix3d rotation;

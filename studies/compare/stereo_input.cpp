@@ -29,7 +29,8 @@ void add_stereo_source(SourceFiles& sources, std::string const& name, std::strin
 /// Reads the setup that a calibration stores, for the size of the images and the defaults of [correlate].
 CaseSetup load_calibrated_setup(std::string const& calibration) {
   std::string const text = Hdf5Reader(calibration).attribute("setup");
-  if (text.empty()) throw DataError(calibration, "contains no setup; run gladstone calibrate again");
+  if (text.empty())
+    throw DataError(ErrorCode::missing_content, calibration, "contains no setup; run gladstone calibrate again");
   return load_case_setup(SetupDocument::from_text(text, calibration));
 }
 
@@ -49,7 +50,7 @@ void require_same_windows(CaseSetup const& of_case, std::string const& place, st
                     calibrated = load_calibrated_setup(calibration).setup.windows.size();
   if (own == calibrated) return;
   throw DataError(
-      calibration,
+      ErrorCode::inconsistent, calibration,
       fmt::format("was made through {} optical windows, but {} looks through {}, which displaces its lines of "
                   "sight; calibrate through the same windows",
                   calibrated, place, own));
@@ -64,7 +65,7 @@ void require_same_view(CaseSetup const& of_case, std::string const& place, Pinho
   double const angle = std::atan2(length(cross(own, calibrated)), dot(own, calibrated));
   if (angle <= largest_angle) return;
   throw DataError(
-      calibration,
+      ErrorCode::inconsistent, calibration,
       fmt::format("describes a camera at ({:.4g}, {:.4g}, {:.4g}) mm, but that of {} is at ({:.4g}, {:.4g}, "
                   "{:.4g}) mm; give the calibrations in the order of the cases",
                   1e3 * calibrated.x, 1e3 * calibrated.y, 1e3 * calibrated.z, place, 1e3 * own.x, 1e3 * own.y,
@@ -93,13 +94,14 @@ StereoInput read_stereo_input(StereoOptions const& options, std::size_t index, S
       truth = options.dewarp_images ? in_case(place, case_file::truth) : compared_files(place, "").truth;
       add_stereo_source(sources, "truth" + suffix, truth);
     } else if (!options.dewarp_images && !fs::exists(input.path, error)) {
-      throw DataError(input.path, "does not exist; create it with: gladstone correlate " + place);
+      throw DataError(ErrorCode::missing_file, input.path,
+                      "does not exist; create it with: gladstone correlate " + place);
     }
     sources.add("", setup, SourceFiles::Holds::bytes);
     input.loaded = load_case_setup(setup, {});
     if (!input.loaded->setup.piv)
       throw DataError(
-          place,
+          ErrorCode::wrong_format, place,
           "is not a PIV case (its vectors are not the displacement of particles); give two cameras of a PIV "
           "rendering");
     if (!input.calibration.empty()) {
@@ -109,11 +111,11 @@ StereoInput read_stereo_input(StereoOptions const& options, std::size_t index, S
   } else {
     require_input_file(place, "a case folder or a file of vectors");
     if (options.dewarp_images)
-      throw DataError(place,
+      throw DataError(ErrorCode::wrong_format, place,
                       "is a file of vectors, but --dewarp images requires the frames of cases; give case folders, "
                       "or remove the option");
     if (input.calibration.empty())
-      throw DataError(place,
+      throw DataError(ErrorCode::wrong_format, place,
                       "is a file of vectors, which contains no camera; give the calibration.h5 of both cameras "
                       "with --calibration");
     input.path = place;
@@ -135,7 +137,7 @@ StereoInput read_stereo_input(StereoOptions const& options, std::size_t index, S
   if (!input.vectors.report.empty()) spdlog::info("{}: {}", input.path, input.vectors.report);
   input.window_px = options.window_px.value_or(input.vectors.settings.window_px.back());
   if (!stereo::is_regular_grid(input.vectors.field))
-    throw DataError(input.path,
+    throw DataError(ErrorCode::wrong_shape, input.path,
                     "has no complete grid of vectors, in which invalid ones are marked or NaN; measure with a grid "
                     "(for tracking, correlate.tracking.output = \"grid\")");
   return input;

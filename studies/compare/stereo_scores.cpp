@@ -53,9 +53,11 @@ StereoScores score_stereo_file(std::string const& path) {
   ThreeComponentField const field = read_three_components(path);
   Hdf5Reader const file(path);
   if (!file.has("/error_mm"))
-    throw DataError(path, "contains no true displacement; give gladstone stereo two cameras of one rendered case");
+    throw DataError(ErrorCode::missing_content, path,
+                    "contains no true displacement; give gladstone stereo two cameras of one rendered case");
   std::vector<double> const values = file.read("/error_mm");
-  if (values.size() != 3 * field.size()) throw DataError(path, "/error_mm does not have the shape of the grid");
+  if (values.size() != 3 * field.size())
+    throw DataError(ErrorCode::wrong_shape, path, "/error_mm does not have the shape of the grid");
   StereoScores scores;
   scores.path = path;
   scores.pixel_size = std::strtod(file.attribute("pixel_size_mm").c_str(), nullptr) * unit::mm;

@@ -67,9 +67,10 @@ void require_distinct_lines(std::vector<TomographyView> const& views) {
     if (!known) lines.push_back(view.view_direction);
   }
   if (lines.size() < tomography::least_views)
-    throw DataError("tomography", fmt::format("the views look along {} different lines only, and a volume requires {}; "
-                                              "check --angles, --arc and the poses of the cameras",
-                                              lines.size(), tomography::least_views));
+    throw DataError(ErrorCode::undetermined, "tomography",
+                    fmt::format("the views look along {} different lines only, and a volume requires {}; "
+                                "check --angles, --arc and the poses of the cameras",
+                                lines.size(), tomography::least_views));
 }
 
 std::vector<double> choose_angles(TomographyOptions const& options) {
@@ -87,7 +88,7 @@ void require_equal_media(std::vector<TomographyView> const& views) {
     if (std::abs(medium.ambient_density - first.ambient_density) <= 1e-9 * first.ambient_density &&
         std::abs(medium.gladstone_dale - first.gladstone_dale) <= 1e-9 * first.gladstone_dale)
       continue;
-    throw DataError(view.projected.name,
+    throw DataError(ErrorCode::inconsistent, view.projected.name,
                     fmt::format("has another ambient density or Gladstone-Dale constant than {}; give views of one "
                                 "experiment",
                                 views.front().projected.name));
@@ -110,7 +111,8 @@ std::array<double, 2> find_common_range(std::vector<TomographyView> const& views
   }
   if (!std::isfinite(low)) return {-default_half, default_half};
   if (!(low < high))
-    throw DataError("tomography", "the views have no common part; check their cameras, or give --bounds");
+    throw DataError(ErrorCode::undetermined, "tomography",
+                    "the views have no common part; check their cameras, or give --bounds");
   return {low, high};
 }
 

@@ -37,7 +37,8 @@ ViewFiles find_view_files(TomographyOptions const& options, std::size_t index) {
   files.setup = is_folder ? in_case(place, case_file::setup) : place;
   if (!is_folder) require_input_file(place, "a case folder or a setup");
   if (!is_folder && options.vectors.empty())
-    throw DataError(place, "is a setup, which contains no vectors; give one file for each view with --vectors");
+    throw DataError(ErrorCode::wrong_format, place,
+                    "is a setup, which contains no vectors; give one file for each view with --vectors");
   files.rendered = is_folder && fs::exists(fs::path(place) / case_file::truth, error);
   if (options.ray_truth) {
     files.vectors = in_case(place, case_file::truth);
@@ -46,20 +47,20 @@ ViewFiles find_view_files(TomographyOptions const& options, std::size_t index) {
   }
   files.vectors = options.vectors.empty() ? in_case(place, case_file::vectors) : options.vectors[index];
   if (!fs::exists(files.vectors, error))
-    throw DataError(files.vectors, options.vectors.empty()
-                                       ? "does not exist; create it with: gladstone correlate " + place
-                                       : "does not exist; check --vectors");
+    throw DataError(ErrorCode::missing_file, files.vectors,
+                    options.vectors.empty() ? "does not exist; create it with: gladstone correlate " + place
+                                            : "does not exist; check --vectors");
   require_input_file(files.vectors, "a file of vectors");
   return files;
 }
 
 void check_view_setup(Setup const& setup, std::string const& name) {
   if (setup.piv || setup.calibration())
-    throw DataError(name,
+    throw DataError(ErrorCode::wrong_format, name,
                     "is not a BOS setup (density follows from the displacement of a background); use a setup with "
                     "experiment = \"bos\"");
   if (setup.lenslets)
-    throw DataError(name,
+    throw DataError(ErrorCode::unsupported, name,
                     "has a plenoptic camera, whose lines of sight do not meet in one pupil; use one setup for each "
                     "view");
 }
@@ -72,7 +73,7 @@ DisplacementField grid_ray_truth(std::string const& path, Setup const& setup) {
   auto const in_view = std::count_if(dots.position_px.begin(), dots.position_px.end(), [&](Vec2d p) {
     return p.x >= 0 && p.y >= 0 && p.x <= columns - 1 && p.y <= rows - 1;
   });
-  if (in_view == 0) throw NoValidVector(path, "has no dot within the image");
+  if (in_view == 0) throw DataError(ErrorCode::no_valid_vector, path, "has no dot within the image");
   double const spacing =
       std::clamp(std::sqrt(pixels / static_cast<double>(in_view)), 1.0, 0.25 * std::min(columns, rows));
   DisplacementField grid;
@@ -208,7 +209,8 @@ tomography::ViewOptics trace_sight_lines(Setup const& setup, std::vector<Vec2d> 
     optics.sights[i] = sight;
   });
   if (std::none_of(optics.sights.begin(), optics.sights.end(), [](auto const& sight) { return sight.has_value(); }))
-    throw DataError("camera", "no chief ray of a vector reaches the dots; check the setup of the view");
+    throw DataError(ErrorCode::undetermined, "camera",
+                    "no chief ray of a vector reaches the dots; check the setup of the view");
   complete_lines(optics, volume.point_to_local({}));
   return optics;
 }
@@ -232,10 +234,8 @@ TomographyView read_tomography_view(TomographyOptions const& options, std::size_
     view.projected =
         tomography::integrate_view(gradient, optics, make_view_reference(gradient.grid, setup, options.reference));
     find_extent(view, optics, field.columns);
-  } catch (NoValidVector const& error) {
-    throw NoValidVector(files.vectors, error.message());
   } catch (DataError const& error) {
-    throw DataError(files.vectors, error.message());
+    throw DataError(error.code(), files.vectors, error.message());
   }
   view.projected.name = options.views[index];
   return view;

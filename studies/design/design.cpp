@@ -78,7 +78,7 @@ AnsweredQuestion answered(DesignRequest const& request, SetupDocument const& doc
 void add_sheet(DesignRequest const& request, CaseSetup const& loaded, std::vector<UncertainInput> const& uncertain,
                bool draws, DesignReport& report) {
   if (!std::isfinite(loaded.setup.lens.f_number)) {
-    throw DataError(request.setup,
+    throw DataError(ErrorCode::missing_key, request.setup,
                     "has no aperture stop (lens.f_number); a design requires the light cone, so give a number");
   }
   report.warnings = loaded.warnings;
@@ -155,10 +155,12 @@ DesignReport design(SetupDocument document, DesignRequest const& request) {
   std::optional<DesignQuestion> question = read_design_question(document);
   CaseSetup const loaded = load_case_setup(std::move(document));  // reports problems of setup and question together
   if (loaded.setup.calibration()) {
-    throw DataError(request.setup, "is a calibration (the formulas describe BOS and PIV); use a setup of one of these");
+    throw DataError(ErrorCode::wrong_format, request.setup,
+                    "is a calibration (the formulas describe BOS and PIV); use a setup of one of these");
   }
   if (!question && !request.apply.empty()) {
-    throw DataError(request.setup, "has no [requirements], so that --apply has nothing to write; add them");
+    throw DataError(ErrorCode::missing_key, request.setup,
+                    "has no [requirements], so that --apply has nothing to write; add them");
   }
   DesignReport report;
   if (!request.figures.empty()) report.json["figures"] = nlohmann::ordered_json::array();

@@ -87,7 +87,10 @@ struct NodeAxis {
 
 void write_field_figure(std::string const& path, FieldSource& source, bool lengths_known) {
   std::vector<FieldPlane> const planes = read_middle_planes(source);
-  if (planes.empty()) throw DataError(path, "cannot be drawn (the field has two nodes along fewer than two axes)");
+  if (planes.empty())
+    throw DataError(
+        ErrorCode::wrong_shape, path,
+        "cannot be drawn (a figure requires at least two nodes along two axes of the field); omit --figure");
   std::vector<NodeAxis> axes;
   for (int axis = 0; axis < 3; ++axis) axes.emplace_back(source, axis, lengths_known);
   auto const axis_of = [&axes](int axis) -> NodeAxis const& { return axes[static_cast<std::size_t>(axis)]; };

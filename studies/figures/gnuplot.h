@@ -16,9 +16,9 @@ namespace gladstone {
 class GnuplotMissing : public Error {
  public:
   GnuplotMissing()
-      : Error(
-            "figures are not drawn: program gnuplot not found (Debian package gnuplot-nox); the numbers are written "
-            "nevertheless") {}
+      : Error(ErrorCode::output,
+              "figures are not drawn: program gnuplot not found (Debian package gnuplot-nox); the numbers are written "
+              "nevertheless") {}
 };
 
 /// Calls a function that draws figures; without gnuplot, warns that they are not drawn.

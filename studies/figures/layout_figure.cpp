@@ -199,7 +199,8 @@ OpticalLayout make_camera_layout(Setup const& setup) {
 void write_camera_layout(std::string const& path, Setup const& setup) {
   OpticalLayout const l = make_camera_layout(setup);
   if (!std::isfinite(l.sensor_z) || !std::isfinite(l.dots_half)) {
-    throw DataError(path, "cannot be drawn (the image distance or the view of the camera is infinite); omit --figure");
+    throw DataError(ErrorCode::unsupported, path,
+                    "cannot be drawn (the image distance or the view of the camera is infinite); omit --figure");
   }
   write_layout(path, l,
                {fmt::format("Layout along the camera's axis: f/{:.4g}, M = {:.4g}", setup.lens.f_number,

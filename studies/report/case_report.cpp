@@ -113,7 +113,7 @@ SourceFiles case_sources(std::string const& folder, Comparison const& compared) 
     std::string const path = in_case(folder, file), told = compared.sources.sha256(name);
     sources.add(name, path, SourceFiles::Holds::pixels);
     if (told.empty() || told == sources.sha256(name)) continue;
-    throw DataError(path,
+    throw DataError(ErrorCode::changed, path,
                     fmt::format("is another frame than the vectors were measured on (the SHA-256 of its pixels is "
                                 "{:.12}..., not {:.12}...); restore the old one, or render and correlate {} again",
                                 sources.sha256(name), told, folder));

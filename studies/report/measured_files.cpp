@@ -34,14 +34,15 @@ void screen(VectorFile& file, std::string const& path, std::string const& setup,
   RejectedVectors const left_out = screen_vectors(file.field, file.conventions.offset_px, camera.columns, camera.rows);
   if (left_out.outside_image > 0) {
     throw DataError(
-        path, fmt::format("has {} of {} vectors outside the {} of the camera of {} (their x from {:.6g} to {:.6g}, y "
-                          "from {:.6g} to {:.6g}); set camera.pixels = [columns, rows] there to the size of the "
-                          "correlated frames, or, if positions have another origin, use --conventions offset=NUMBER",
-                          left_out.outside_image, left_out.all() + file.field.size(), pixels_of(camera), setup,
-                          left_out.low_px.x, left_out.high_px.x, left_out.low_px.y, left_out.high_px.y));
+        ErrorCode::inconsistent, path,
+        fmt::format("has {} of {} vectors outside the {} of the camera of {} (their x from {:.6g} to {:.6g}, y "
+                    "from {:.6g} to {:.6g}); set camera.pixels = [columns, rows] there to the size of the "
+                    "correlated frames, or, if positions have another origin, use --conventions offset=NUMBER",
+                    left_out.outside_image, left_out.all() + file.field.size(), pixels_of(camera), setup,
+                    left_out.low_px.x, left_out.high_px.x, left_out.low_px.y, left_out.high_px.y));
   }
   std::string const refusal = reason_to_reject_positions(file.field, left_out, camera.columns, camera.rows);
-  if (!refusal.empty()) throw DataError(path, refusal);
+  if (!refusal.empty()) throw DataError(ErrorCode::inconsistent, path, refusal);
   if (left_out.without_place() + left_out.displacement_beyond_image > 0) {
     spdlog::warn("{}: vectors are excluded: {}", path, left_out.text());
   }
@@ -85,7 +86,7 @@ MeasuredFiles measured_files(ReportOptions const& options) {
   files.vectors = options.vectors.empty() ? in_case(options.source, case_file::vectors) : options.vectors;
   files.repeats = options.repeats;
   if (!fs::exists(files.vectors)) {
-    throw DataError(files.vectors,
+    throw DataError(ErrorCode::missing_file, files.vectors,
                     options.vectors.empty()
                         ? "does not exist; measure the displacement with gladstone correlate REFERENCE FLOW -o " +
                               files.vectors + ", or name a file with --vectors"
@@ -112,16 +113,17 @@ void check_frames_match_camera(MeasuredFiles const& files, ReportOptions const& 
     std::string const path = (fs::path(options.source) / file).string();
     Image<double> const frame = read_image(path);
     if (frame.columns() != camera.columns || frame.rows() != camera.rows) {
-      throw DataError(path, fmt::format("has {} x {} px, the camera of {} has {}; set camera.pixels = [{}, {}] there, "
-                                        "or use frames of this camera",
-                                        frame.columns(), frame.rows(), files.setup, pixels_of(camera), frame.columns(),
-                                        frame.rows()));
+      throw DataError(
+          ErrorCode::wrong_shape, path,
+          fmt::format("has {} x {} px, the camera of {} has {}; set camera.pixels = [{}, {}] there, "
+                      "or use frames of this camera",
+                      frame.columns(), frame.rows(), files.setup, pixels_of(camera), frame.columns(), frame.rows()));
     }
     std::string const told =
         is_hdf5(files.vectors) ? Hdf5Reader(files.vectors).attribute(std::string(name) + "_sha256") : std::string();
     if (told.empty() || told == files.sources.sha256(name)) continue;
     throw DataError(
-        files.vectors,
+        ErrorCode::changed, files.vectors,
         fmt::format("was measured on another {} frame than {} (the SHA-256 of its pixels is {:.12}..., not {:.12}...); "
                     "correlate the frames of the folder again, or restore the frames of the vectors",
                     name, path, told, files.sources.sha256(name)));
@@ -145,14 +147,15 @@ RepeatedVectors read_repeats(MeasuredFiles const& files, ReportOptions const& op
     }
     if (!same) {
       throw DataError(
-          file,
+          ErrorCode::inconsistent, file,
           "has its vectors at other positions than " + files.vectors +
               " (the scatter of repeats is determined at every vector); correlate all of them with one configuration");
     }
     for (std::size_t k = 0; k < all.size(); ++k) {
       if (!same_vectors(all[k], one)) continue;
-      throw DataError(file, "has the same vectors as " + (k == 0 ? files.vectors : files.repeats[k - 1]) +
-                                " (a repeat must be another measurement); remove it");
+      throw DataError(ErrorCode::inconsistent, file,
+                      "has the same vectors as " + (k == 0 ? files.vectors : files.repeats[k - 1]) +
+                          " (a repeat must be another measurement); remove it");
     }
     all.push_back(std::move(one));
   }

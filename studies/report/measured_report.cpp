@@ -123,7 +123,7 @@ CaseSetup measured_bench(std::string const& setup_file, std::vector<UncertainInp
   uncertain = extract_uncertain_inputs(document);
   CaseSetup loaded = load_case_setup(std::move(document));
   if (loaded.setup.piv || loaded.setup.calibration() || !loaded.setup.has_closed_form_layout()) {
-    throw DataError(setup_file,
+    throw DataError(ErrorCode::unsupported, setup_file,
                     "does not describe a BOS set-up with a thin lens on the axis, perpendicular to the target (the "
                     "uncertainty of a measurement requires one); describe the measurement by such a set-up");
   }
@@ -144,7 +144,8 @@ ReportPage measured_report(ReportOptions const& options, Backend const& device) 
   MeanOfRepeats const mean = mean_of_repeats(read.fields, bench.random_error());
   DisplacementField const& field = mean.field;
   if (finite_components(field.displacement_px).empty())
-    throw DataError(files.vectors, "has no vector with a displacement; correlate the images again");
+    throw DataError(ErrorCode::undetermined, files.vectors,
+                    "has no vector with a displacement; correlate the images again");
 
   std::optional<Reconstruction> const density = reconstruct_measured(options, mean, loaded, device);
   std::vector<MeasurementInput> inputs{typical_displacement(mean, bench.random_error())};

@@ -56,19 +56,20 @@ ReportSection provenance_section(SourceFiles const& sources, std::vector<std::st
 WrittenReport write_report(ReportOptions const& options, Backend const& device) {
   bool const run = fs::exists(fs::path(options.source) / run_file::manifest);
   if (!run && !fs::exists(fs::path(options.source) / case_file::setup)) {
-    throw DataError(options.source, fmt::format("is neither a study (no {} in it) nor a case (no {}); give the folder "
-                                                "of a planned and computed study, of a rendered case, or of a "
-                                                "measurement with its setup and vectors",
-                                                run_file::manifest, case_file::setup));
+    throw DataError(ErrorCode::wrong_format, options.source,
+                    fmt::format("is neither a study (no {} in it) nor a case (no {}); give the folder "
+                                "of a planned and computed study, of a rendered case, or of a "
+                                "measurement with its setup and vectors",
+                                run_file::manifest, case_file::setup));
   }
   if (run && (!options.vectors.empty() || !options.conventions.empty())) {
-    throw DataError(options.source,
+    throw DataError(ErrorCode::arguments, options.source,
                     fmt::format("is a study, each of whose cases has its vectors; leave {} out, or give the folder of "
                                 "a case",
                                 options.vectors.empty() ? "--conventions" : "--vectors"));
   }
   if (run && options.density) {
-    throw DataError(options.source,
+    throw DataError(ErrorCode::arguments, options.source,
                     fmt::format("is a study, whose report contains no density; leave {} out, or give the folder of a "
                                 "case or a measurement",
                                 options.density_words.empty() ? "--reference" : options.density_words.front()));
@@ -77,7 +78,7 @@ WrittenReport write_report(ReportOptions const& options, Backend const& device) 
   OutputFile output(options.output, options.markdown ? "Markdown" : "HTML");
   bool const measured = !run && !fs::exists(fs::path(options.source) / case_file::truth);
   if (!measured && !options.repeats.empty()) {
-    throw DataError(options.source,
+    throw DataError(ErrorCode::arguments, options.source,
                     "is not a measurement (repeats determine the uncertainty of a measured mean, whose truth is "
                     "unknown); omit --repeats, or give the folder of a measurement");
   }

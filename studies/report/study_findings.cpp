@@ -17,15 +17,17 @@ StudyView::StudyView(std::string const& run) : table(read_study_table(run)) {
     if (row.status == CaseStatus::ok) finished.push_back(&row);
   }
   if (finished.empty()) {
-    throw DataError(run, "contains no finished case; run gladstone sweep run " + shell_word(run) + " first");
+    throw DataError(ErrorCode::missing_content, run,
+                    "contains no finished case; run gladstone sweep run " + shell_word(run) + " first");
   }
   main = main_error_measure(table);
   against = main == "eq9.rms_px"    ? "Eq. 9 (the displacement by the density gradient)"
             : main == "flow.rms_px" ? "the displacement of the flow"
                                     : "ray truth";
   if (!knows(main)) {
-    throw DataError(run, "contains no measured case, only images (sweep run --pairs-only); run gladstone sweep run " +
-                             shell_word(run) + " first");
+    throw DataError(ErrorCode::missing_content, run,
+                    "contains no measured case, only images (sweep run --pairs-only); run gladstone sweep run " +
+                        shell_word(run) + " first");
   }
   for (std::string const& measure : table.measures) {
     std::string_view constexpr head = "budget.terms.", tail = ".rms_px";

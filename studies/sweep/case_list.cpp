@@ -41,9 +41,11 @@ std::vector<std::size_t> parse_case_list(std::string const& text, std::size_t co
     auto const first = whole_number(part.substr(0, dash));
     auto const last = dash == std::string_view::npos ? first : whole_number(part.substr(dash + 1));
     if (!first || !last || *first > *last)
-      throw DataError("--case", fmt::format("\"{}\" is not a list of cases; write 17, or 0-3,7", text));
+      throw DataError(ErrorCode::arguments, "--case",
+                      fmt::format("\"{}\" is not a list of cases; write 17, or 0-3,7", text));
     if (*last >= count)
-      throw DataError("--case", fmt::format("{} is not in the study, which has cases 0 to {}", *last, count - 1));
+      throw DataError(ErrorCode::arguments, "--case",
+                      fmt::format("{} is not in the study, which has cases 0 to {}", *last, count - 1));
     for (std::size_t i = *first; i <= *last; ++i) cases.push_back(i);
     begin = end + 1;
   }

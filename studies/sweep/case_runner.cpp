@@ -45,9 +45,10 @@ std::string hash_of_input(std::string const& path, ManifestCase const& one) {
   try {
     return file_hash(path);
   } catch (DataError const&) {
-    throw DataError(path, fmt::format("can no longer be read, as it was when the study was planned ({}); restore it, "
-                                      "or plan the study again into another folder",
-                                      one.title()));
+    throw DataError(ErrorCode::changed, path,
+                    fmt::format("can no longer be read, as it was when the study was planned ({}); restore it, "
+                                "or plan the study again into another folder",
+                                one.title()));
   }
 }
 
@@ -111,9 +112,10 @@ void CaseRunner::check_inputs(ManifestCase const& one) {
       known = {time, size, hash_of_input(path, one)};
     }
     if (known.hash == hash) continue;
-    throw DataError(path, fmt::format("has changed since the study was planned ({}); restore the old file, or plan the "
-                                      "study again into another folder",
-                                      one.title()));
+    throw DataError(ErrorCode::changed, path,
+                    fmt::format("has changed since the study was planned ({}); restore the old file, or plan the "
+                                "study again into another folder",
+                                one.title()));
   }
 }
 

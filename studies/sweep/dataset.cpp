@@ -49,7 +49,7 @@ std::optional<CaseWithImages> case_with_images(std::string const& folder) {
     std::string const name = std::string(sources) + "/displacement_px";
     if (truth.has(name)) return CaseWithImages{folder, sources, truth.shape(name)[0]};
   }
-  throw DataError((fs::path(folder) / case_file::truth).string(),
+  throw DataError(ErrorCode::missing_content, (fs::path(folder) / case_file::truth).string(),
                   "contains neither the truth of dots nor that of particles");
 }
 
@@ -67,7 +67,7 @@ std::vector<std::uint16_t> read_frames(CaseWithImages const& one, std::vector<st
     std::string const path = in_case(one.folder, name);
     Image<double> const image = read_image(path);
     if (static_cast<std::size_t>(image.rows()) != size[0] || static_cast<std::size_t>(image.columns()) != size[1]) {
-      throw DataError(path,
+      throw DataError(ErrorCode::wrong_shape, path,
                       fmt::format("has {} x {} px, but the first case's images {} x {}; a data set contains images of "
                                   "one size: pack a study whose camera.pixels are the same in all cases",
                                   image.columns(), image.rows(), size[1], size[0]));
@@ -133,7 +133,8 @@ KeptCases find_kept(std::string const& run) {
   }
   kept.without = kept.table.rows.size() - kept.cases.size();
   if (kept.cases.empty()) {
-    throw DataError(run, "contains no images of cases; compute them with gladstone sweep run --keep-images");
+    throw DataError(ErrorCode::missing_content, run,
+                    "contains no images of cases; compute them with gladstone sweep run --keep-images");
   }
   kept.table.rows = std::move(rows);
   return kept;
@@ -163,7 +164,8 @@ DatasetSizes sizes_of(KeptCases const& kept, std::string const& run) {
   sizes.pixels = {static_cast<std::size_t>(sample.rows()), static_cast<std::size_t>(sample.columns())};
   for (CaseWithImages const& one : kept.cases) {
     if (one.sources == kept.sources()) continue;
-    throw DataError(run, "has cases of BOS and of PIV, whose truth differs in kind; pack studies of one experiment");
+    throw DataError(ErrorCode::inconsistent, run,
+                    "has cases of BOS and of PIV, whose truth differs in kind; pack studies of one experiment");
   }
   sizes.spacing = static_cast<std::size_t>(kept.sources() == "/particles" ? piv_spacing_px : bos_spacing_px);
   return sizes;
@@ -204,7 +206,8 @@ void write_packed_case(Hdf5Writer& file, std::size_t i, CaseWithImages const& on
   std::vector<double> const displacement = truth.read(one.sources + "/displacement_px");
   std::vector<double> const flux = truth.read(one.sources + "/flux");
   if (place.size() != 2 * one.count || displacement.size() != place.size() || flux.size() != place.size()) {
-    throw DataError(in_case(one.folder, case_file::truth), "was replaced while it was read; pack the study again");
+    throw DataError(ErrorCode::changed, in_case(one.folder, case_file::truth),
+                    "was replaced while it was read; pack the study again");
   }
   auto const row = static_cast<std::size_t>(sizes.begin[i]);
   file.write_rows<double>("/truth/reference_px", row, place);

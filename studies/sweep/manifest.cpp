@@ -71,7 +71,8 @@ std::string line_start(std::size_t index) {
 std::string place_of(std::string const& path, std::size_t index) { return fmt::format("{}:{}", path, index + 1); }
 
 [[noreturn]] void damaged(std::string const& place) {
-  throw DataError(place, "is damaged or truncated (every line is one JSON object); plan the study again");
+  throw DataError(ErrorCode::damaged, place,
+                  "is damaged or truncated (every line is one JSON object); plan the study again");
 }
 
 /// @param place  file and line, for messages
@@ -80,36 +81,38 @@ ManifestCase parse_line(std::string_view line, std::size_t index, std::string co
   if (!json.is_object()) damaged(place);
   std::optional<int> const version = version_of(json);
   if (!version) {
-    throw DataError(place,
+    throw DataError(ErrorCode::wrong_format, place,
                     "is not a line of a gladstone manifest (it has no \"manifest\" version and \"index\"); give the "
                     "folder of a planned study");
   }
   if (version != manifest_version) {
-    throw DataError(place, fmt::format("is of manifest version {} (this gladstone reads version {}); plan the study "
-                                       "again or use the gladstone that planned it",
-                                       *version, manifest_version));
+    throw DataError(ErrorCode::unsupported, place,
+                    fmt::format("is of manifest version {} (this gladstone reads version {}); plan the study "
+                                "again or use the gladstone that planned it",
+                                *version, manifest_version));
   }
   ManifestCase one;
   try {
     one = case_of(json, line);
   } catch (nlohmann::json::exception const&) {
-    throw DataError(place,
+    throw DataError(ErrorCode::damaged, place,
                     "is damaged (a member that every line has is missing, or of another kind); plan the study "
                     "again");
   }
   if (!has_hash(line)) {
-    throw DataError(place,
+    throw DataError(ErrorCode::unsupported, place,
                     "contains no hash of itself (it was planned by an older gladstone); plan the study again: results "
                     "that still belong to it are kept");
   }
   if (std::string_view const hash = line.substr(line.size() - 18, 16); hash != one.line_hash) {
-    throw DataError(place, fmt::format("was changed after planning (its hash is {}, not {}); plan the study again, and "
-                                       "change values in the study file",
-                                       one.line_hash, hash));
+    throw DataError(ErrorCode::changed, place,
+                    fmt::format("was changed after planning (its hash is {}, not {}); plan the study again, and "
+                                "change values in the study file",
+                                one.line_hash, hash));
   }
   if (one.index != index) {
     throw DataError(
-        place,
+        ErrorCode::damaged, place,
         fmt::format("contains case {} in place of case {} (lines are missing or out of order); plan the study again",
                     one.index, index));
   }
@@ -191,7 +194,7 @@ Manifest::Manifest(std::string const& path) : file_(path, "the folder of a plann
     if (held == buffer.size()) buffer.resize(2 * buffer.size());
   }
   if (held > 0) damaged(place_of(path, ends_.size()));
-  if (ends_.empty()) throw DataError(path, "is empty; plan the study again");
+  if (ends_.empty()) throw DataError(ErrorCode::missing_content, path, "is empty; plan the study again");
 }
 
 std::string Manifest::line(std::size_t index) const {
@@ -211,9 +214,10 @@ Manifest read_manifest(std::string const& run) {
   std::string const path = (std::filesystem::path(run) / run_file::manifest).string();
   if (std::error_code error; !std::filesystem::exists(path, error)) {
     throw DataError(
-        run, fmt::format(
-                 "is not a planned study (it contains no {}); create one with: gladstone sweep plan STUDY.toml -o {}",
-                 run_file::manifest, run));
+        ErrorCode::wrong_format, run,
+        fmt::format(
+            "is not a planned study (it contains no {}); create one with: gladstone sweep plan STUDY.toml -o {}",
+            run_file::manifest, run));
   }
   return Manifest(path);
 }

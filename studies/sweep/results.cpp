@@ -182,9 +182,10 @@ std::optional<CaseResult> parse_result(std::string const& text, std::string cons
   try {
     if (auto const version = json.at("result").get_ref<std::uint64_t const&>(); version != result_version) {
       throw DataError(
-          path, fmt::format("is a result of version {} (this gladstone reads version {}); use the gladstone that made "
-                            "it, plan the study into another folder, or delete {}/*.json to compute every case again",
-                            version, result_version, std::filesystem::path(path).parent_path().string()));
+          ErrorCode::unsupported, path,
+          fmt::format("is a result of version {} (this gladstone reads version {}); use the gladstone that made "
+                      "it, plan the study into another folder, or delete {}/*.json to compute every case again",
+                      version, result_version, std::filesystem::path(path).parent_path().string()));
     }
     return result_of(json, part);
   } catch (nlohmann::json::exception const&) {
@@ -198,15 +199,16 @@ std::optional<CaseResult> read_result(std::string const& run, std::size_t index,
   struct stat status {};
   if (::stat(path.c_str(), &status) != 0) return std::nullopt;
   if (!S_ISREG(status.st_mode)) {
-    throw DataError(path, fmt::format("is {}, in the place of a case's result; delete it or move it elsewhere",
-                                      S_ISDIR(status.st_mode) ? "a folder" : "not a regular file"));
+    throw DataError(
+        ErrorCode::unreadable_file, path,
+        fmt::format("is {}, but the result of a case is stored under this name; delete it or move it elsewhere",
+                    S_ISDIR(status.st_mode) ? "a folder" : "not a regular file"));
   }
   std::string text;
   try {
     text = read_text_file(path);
-  } catch (MemoryError const&) {
-    throw;
-  } catch (DataError const&) {
+  } catch (DataError const& error) {
+    if (error.code() == ErrorCode::memory) throw;
     return std::nullopt;  // an unreadable file is not an intact result and is overwritten by the next run
   }
   std::optional<CaseResult> const result = parse_result(text, path, part);

@@ -36,12 +36,14 @@ class StudyReader {
       try {
         study_.base_text = read_text_file(study_.base_path, "a setup file", most_setup_bytes);
         if (SetupDocument::from_text(study_.base_text, study_.base_path).empty()) {
-          throw DataError(study_.base_path, "is empty (no key is set)");
+          throw DataError(ErrorCode::missing_content, study_.base_path, "is empty (no key is set)");
         }
       } catch (DataError const& error) {
-        root.problem("base", fmt::format("{} (the setup that every case starts from; relative names start at the "
-                                         "study's folder)",
-                                         error.what()));
+        root.problem("base",
+                     fmt::format("{} (the setup that every case starts from; relative names start at the "
+                                 "study's folder)",
+                                 error.what()),
+                     error.code());
       }
     }
     read_settings(root.table("study"));  // first, since the mode determines which lists are allowed
@@ -67,7 +69,7 @@ class StudyReader {
 
   void read_axes(SetupTable& root) {
     if (!root.has("axes"))
-      root.problem("axes", "is missing; write [axes] and below it \"key.path\" = [values]", ProblemCode::missing_key);
+      root.problem("axes", "is missing; write [axes] and below it \"key.path\" = [values]", ErrorCode::missing_key);
     root.mark_as_read("axes");
     SetupNode const* const axes = document_.find({"axes"});
     if (!axes) return;
@@ -209,7 +211,7 @@ StudyFile read_study(std::string const& path) {
   try {
     text = read_text_file(path, "a study file", most_setup_bytes);
   } catch (DataError const& error) {
-    throw SetupError({{path, error.message(), "", ProblemCode::unreadable_file}});
+    throw SetupError({{path, error.message(), "", error.code()}});
   }
   return StudyReader(path, std::move(text)).read();
 }

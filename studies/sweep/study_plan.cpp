@@ -133,8 +133,8 @@ std::string where(StudyFile const& study, SetupPlace const& place) {
 void blame_the_axis(StudyFile const& study, std::vector<AxisValue> const& values, SetupProblem& problem) {
   for (std::size_t k = 0; k < values.size(); ++k) {
     if (problem.where != where(study, values[k].node.place)) continue;
-    if (problem.code == ProblemCode::unknown_key) problem.where = where(study, study.axes[k].place);
-    if (study.mode == StudyMode::sobol && study.axes[k].range && problem.code == ProblemCode::wrong_type) {
+    if (problem.code == ErrorCode::unknown_key) problem.where = where(study, study.axes[k].place);
+    if (study.mode == StudyMode::sobol && study.axes[k].range && problem.code == ErrorCode::wrong_type) {
       problem.message += "; \"sobol\" draws any numbers between the ends of a range, so write integers as a list";
     }
   }

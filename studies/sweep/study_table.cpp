@@ -90,7 +90,7 @@ void add_rows(Manifest const& cases, std::string const& manifest, StudyTable& ta
     row.seed = one.seed;
     row.device = one.device;
     if (one.parameters.size() != axes.size()) {
-      throw DataError(manifest + ':' + std::to_string(one.index + 1),
+      throw DataError(ErrorCode::inconsistent, manifest + ':' + std::to_string(one.index + 1),
                       "has other axes than the first line; plan the study again");
     }
     for (std::size_t k = 0; k < axes.size(); ++k) row.value.push_back(axes[k].place_of(one.parameters[k].second));

@@ -45,8 +45,9 @@ DenseFlow one_way(cv::Mat const& from, cv::Mat const& to) {
     OneThread const one_thread;
     cv::DISOpticalFlow::create(cv::DISOpticalFlow::PRESET_MEDIUM)->calc(from, to, found);
   } catch (cv::Exception const& error) {
-    throw DataError("image pair", fmt::format("OpenCV cannot compute the optical flow of frames of {} x {} px ({})",
-                                              from.cols, from.rows, error.err));
+    throw DataError(ErrorCode::unsupported, "image pair",
+                    fmt::format("OpenCV cannot compute the optical flow of frames of {} x {} px ({})", from.cols,
+                                from.rows, error.err));
   }
   DenseFlow d(from.cols, from.rows);
   for (int j = 0; j < d.rows; ++j)

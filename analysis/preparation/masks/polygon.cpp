@@ -28,8 +28,7 @@ FrameChange read_polygon_mask(SetupTable& table, FramePreparation&) {
   std::vector<double> const y = table.number_list("y_px", {}, fewest, most);
   for (char const* key : {"x_px", "y_px"})
     if (!table.has(key))
-      table.problem(key, "is missing (a polygon requires corners); give three or more numbers",
-                    ProblemCode::missing_key);
+      table.problem(key, "is missing (a polygon requires corners); give three or more numbers", ErrorCode::missing_key);
   if (!x.empty() && !y.empty() && x.size() != y.size())
     table.problem("y_px", "has another number of values than x_px (each corner has both coordinates); give as many");
   std::vector<Vec2d> corners;
@@ -45,7 +44,7 @@ FrameChange read_polygon_mask(SetupTable& table, FramePreparation&) {
       }
     if (!any)
       throw DataError(
-          "correlate.mask",
+          ErrorCode::invalid_value, KeyPath{"correlate.mask"},
           fmt::format("the polygon from ({:g}, {:g}) contains no pixel centre of the frames ({} x {} px); give its "
                       "corners in px, from 0 at the centre of the first pixel, y downwards",
                       corners.empty() ? 0.0 : corners[0].x, corners.empty() ? 0.0 : corners[0].y, columns, rows));

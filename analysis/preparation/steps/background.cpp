@@ -13,7 +13,7 @@ namespace {
 
 void subtract_background(Image<double> const& background, Image<double>& frame) {
   if (background.columns() != frame.columns() || background.rows() != frame.rows())
-    throw DataError("correlate.preprocess",
+    throw DataError(ErrorCode::wrong_shape, KeyPath{"correlate.preprocess"},
                     fmt::format("the background is {} x {} px, but the frames are {} x {} px (it is subtracted pixel "
                                 "by pixel); correlate frames of one size",
                                 background.columns(), background.rows(), frame.columns(), frame.rows()));
@@ -68,7 +68,7 @@ FrameChange read_background(SetupTable& table, FramePreparation& preparation) {
     table.problem("frame",
                   "is missing (a background requires a sequence); give frame = [{ reference = \"a.tif\", flow = "
                   "\"b.tif\" }, ...]",
-                  ProblemCode::missing_key);
+                  ErrorCode::missing_key);
   std::vector<std::string> reference, flow;
   for (SetupTable& pair : frames) {
     reference.push_back(pair.required_path("reference"));

@@ -34,7 +34,8 @@ void add_origin(DisplacementField& field, Column const& column, Place const& pla
     constexpr int most = static_cast<int>(VectorReason::outside);
     if (!is_code(reason[i], most)) {
       auto const [where, name] = place(i);
-      throw DataError(where, fmt::format("{} = {} is not a whole number from 0 to {}", name, reason[i], most));
+      throw DataError(ErrorCode::out_of_range, where,
+                      fmt::format("{} = {} is not a whole number from 0 to {}", name, reason[i], most));
     }
     field.raw_px.push_back({u[i], v[i]});
     field.reason.push_back(static_cast<VectorReason>(static_cast<int>(reason[i])));
@@ -51,17 +52,20 @@ VectorFile read_gladstone_hdf5(std::string const& path) {
     if (!file.has(dataset)) {
       std::string const type = file.attribute("filetype");
       if (!type.empty() && type != "gladstone vectors") {
-        throw DataError(path, fmt::format("is a file of \"{}\", which contains no vectors of an image pair; use "
-                                          "vectors.h5 of gladstone correlate",
-                                          type));
+        throw DataError(ErrorCode::wrong_format, path,
+                        fmt::format("is a file of \"{}\", which contains no vectors of an image pair; use "
+                                    "vectors.h5 of gladstone correlate",
+                                    type));
       }
-      throw DataError(path, fmt::format("no dataset {} (the file contains {}); use vectors.h5 of gladstone correlate",
-                                        dataset, fmt::join(file.dataset_names(), ", ")));
+      throw DataError(ErrorCode::missing_content, path,
+                      fmt::format("no dataset {} (the file contains {}); use vectors.h5 of gladstone correlate",
+                                  dataset, fmt::join(file.dataset_names(), ", ")));
     }
     std::vector<double> values = file.read(dataset);
     if (dataset == "/x_px") count = values.size();
     if (values.size() != count) {
-      throw DataError(path, fmt::format("{}: {} values where /x_px has {}", dataset, values.size(), count));
+      throw DataError(ErrorCode::wrong_shape, path,
+                      fmt::format("{}: {} values where /x_px has {}", dataset, values.size(), count));
     }
     return values;
   };
@@ -71,7 +75,7 @@ VectorFile read_gladstone_hdf5(std::string const& path) {
   std::vector<double> const status = read("/status");
   for (std::size_t i = 0; i < count; ++i) {
     if (!(status[i] == 0.0 || status[i] == 1.0 || status[i] == 2.0 || status[i] == 3.0)) {
-      throw DataError(path, fmt::format("/status[{}] = {} is not 0, 1, 2 or 3", i, status[i]));
+      throw DataError(ErrorCode::out_of_range, path, fmt::format("/status[{}] = {} is not 0, 1, 2 or 3", i, status[i]));
     }
     field.status[i] = static_cast<VectorStatus>(static_cast<int>(status[i]));
   }
@@ -85,7 +89,7 @@ VectorFile read_gladstone_hdf5(std::string const& path) {
     constexpr int most = static_cast<int>(FailedTest::correlation);
     for (std::size_t i = 0; i < count; ++i) {
       if (!is_code(failed[i], most))
-        throw DataError(path,
+        throw DataError(ErrorCode::out_of_range, path,
                         fmt::format("/failed_test[{}] = {} is not a whole number from 0 to {}", i, failed[i], most));
       field.failed.push_back(static_cast<FailedTest>(static_cast<int>(failed[i])));
     }

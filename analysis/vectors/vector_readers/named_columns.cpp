@@ -29,7 +29,7 @@ void read_status(TextTable const& table, std::size_t column, DisplacementField& 
   for (std::size_t i = 0; i < field.size(); ++i) {
     double const value = table.values[column][i];
     if (!(value == 0.0 || value == 1.0 || value == 2.0 || value == 3.0)) {
-      throw DataError(fmt::format("{}:{}", table.path, table.line[i]),
+      throw DataError(ErrorCode::out_of_range, fmt::format("{}:{}", table.path, table.line[i]),
                       fmt::format("status = {} is not 0 (valid), 1 (replaced), 2 (masked) or 3 (invalid)", value));
     }
     field.status[i] = static_cast<VectorStatus>(static_cast<int>(value));
@@ -63,7 +63,7 @@ VectorFile read_quantities(TextTable const& table, std::string const& format,
   }
   auto const require_one_unit = [&](std::size_t a, std::size_t b) {
     if (units[a] == units[b]) return;
-    throw DataError(fmt::format("{}:{}", table.path, table.header_line),
+    throw DataError(ErrorCode::inconsistent, fmt::format("{}:{}", table.path, table.header_line),
                     fmt::format("columns {} and {} are in different units; export both in px", table.names[columns[a]],
                                 table.names[columns[b]]));
   };

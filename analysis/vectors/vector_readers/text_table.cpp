@@ -22,7 +22,7 @@ class TableReader {
   TextTable read() && {
     while (auto const line = file_.next()) {
       if (line->find('\0') != std::string_view::npos)
-        fail(file_.number(),
+        fail(ErrorCode::wrong_format, file_.number(),
              "contains NUL bytes, as binary files do; vectors are read from text files and from vectors.h5 of "
              "gladstone");
       std::string_view const text = trim(*line);
@@ -40,8 +40,8 @@ class TableReader {
   }
 
  private:
-  [[noreturn]] void fail(std::size_t line, std::string const& message) const {
-    throw DataError(fmt::format("{}:{}", table_.path, line), message);
+  [[noreturn]] void fail(ErrorCode code, std::size_t line, std::string const& message) const {
+    throw DataError(code, fmt::format("{}:{}", table_.path, line), message);
   }
 
   /// Takes a line before the first row of numbers; the last of them is the header. @return false for other lines
@@ -49,7 +49,8 @@ class TableReader {
     if (format_.separator != 0 || number(split(text, detect_separator(text)).front(), ',')) return false;
     std::size_t const at = file_.number();
     if (at > most_lines_before_numbers) {
-      fail(at, fmt::format("no row of numbers in {} lines; is this a table of vectors?", most_lines_before_numbers));
+      fail(ErrorCode::wrong_format, at,
+           fmt::format("no row of numbers in {} lines; is this a table of vectors?", most_lines_before_numbers));
     }
     if (table_.header_line != 0) table_.preamble.push_back(header_);
     header_ = text;
@@ -66,12 +67,13 @@ class TableReader {
     table_.names = tecplot_variables(whole);
     table_.tecplot = !table_.names.empty();
     if (table_.tecplot && is_block_packed(whole))
-      fail(table_.header_line, "is Tecplot's BLOCK packing (values variable by variable); export it in POINT packing");
+      fail(ErrorCode::unsupported, table_.header_line,
+           "is Tecplot's BLOCK packing (values variable by variable); export it in POINT packing");
     std::optional<DavisHeader> const davis = parse_davis_header(header_);
     table_.davis = davis.has_value();
     if (davis && !davis->planar)
       fail(
-          table_.header_line,
+          ErrorCode::unsupported, table_.header_line,
           "is DaVis' text export of other data than 2D-vector (columns x, y, u, v); export two components, or as .dat");
     if (table_.header_line == 0) {
       name_columns_of_jvc(row);
@@ -88,7 +90,7 @@ class TableReader {
   void name_columns_of_jvc(std::string_view row) {
     table_.has_header = false;
     if (!lower_case(table_.path).ends_with(".jvc"))
-      fail(file_.number(),
+      fail(ErrorCode::missing_content, file_.number(),
            "no header line (numbers from the start); put the names of the columns first, such as x,y,u,v");
     table_.names = {"x", "y", "u", "v"};
     if (split(row, row_format(row, 5).separator).size() > 4) table_.names.emplace_back("quality");
@@ -100,7 +102,9 @@ class TableReader {
     if (fields.size() != table_.names.size()) refuse_fields(text, fields.size());
     for (std::size_t i = 0; i < fields.size(); ++i) {
       std::optional<double> const value = number(fields[i], format_.decimal);
-      if (!value) fail(at, fmt::format("{} = \"{}\" is not a number", excerpt(table_.names[i]), excerpt(fields[i])));
+      if (!value)
+        fail(ErrorCode::syntax, at,
+             fmt::format("{} = \"{}\" is not a number", excerpt(table_.names[i]), excerpt(fields[i])));
       table_.values[i].push_back(*value);
     }
     require_room(table_.line, table_.path, "vectors");
@@ -112,14 +116,17 @@ class TableReader {
                                    ? "; commas may both separate the fields and mark decimals: export decimal points, "
                                      "or semicolons between the fields"
                                    : "";
-    fail(file_.number(), fmt::format("{} fields, but the header names {} columns ({}){}", count, table_.names.size(),
-                                     excerpt(fmt::format("{}", fmt::join(table_.names, ", ")), 200), commas));
+    fail(ErrorCode::syntax, file_.number(),
+         fmt::format("{} fields, but the header names {} columns ({}){}", count, table_.names.size(),
+                     excerpt(fmt::format("{}", fmt::join(table_.names, ", ")), 200), commas));
   }
 
   /// Checks that there are rows, and warns if they are not as many as the header declares.
   void check_rows() {
-    if (table_.header_line == 0 && table_.has_header) throw DataError(table_.path + ":1", "the file is empty");
-    if (table_.line.empty()) fail(table_.header_line, "no row of numbers follows the header");
+    if (table_.header_line == 0 && table_.has_header)
+      throw DataError(ErrorCode::missing_content, table_.path + ":1", "the file is empty");
+    if (table_.line.empty())
+      fail(ErrorCode::missing_content, table_.header_line, "no row of numbers follows the header");
     if (!declared_.count() || *declared_.count() == static_cast<double>(table_.rows())) return;
     table_.complete = false;
     table_.warnings.push_back(
@@ -169,7 +176,7 @@ std::optional<std::size_t> TextTable::find(std::initializer_list<std::string_vie
 }
 
 void TextTable::refuse_missing(std::string_view wanted) const {
-  throw DataError(fmt::format("{}:{}", path, header_line),
+  throw DataError(ErrorCode::missing_content, fmt::format("{}:{}", path, header_line),
                   fmt::format("no column {} (the columns are {}); name it in the header line", wanted,
                               excerpt(fmt::format("{}", fmt::join(names, ", ")), 200)));
 }

@@ -41,13 +41,15 @@ bool is_axis_order(std::string_view axes) {
 void name_axes(StoredAxes& stored, std::string const& axes, std::size_t rank, std::string const& path) {
   if (axes.empty()) return;
   if (!is_axis_order(axes)) {
-    throw DataError(path, fmt::format("axes = \"{}\" is not an order of axes; list the axes of the file, slowest "
-                                      "first, such as \"zyx\", or \"yx\" for a plane",
-                                      axes));
+    throw DataError(ErrorCode::invalid_value, path,
+                    fmt::format("axes = \"{}\" is not an order of axes; list the axes of the file, slowest "
+                                "first, such as \"zyx\", or \"yx\" for a plane",
+                                axes));
   }
   if (axes.size() != rank) {
-    throw DataError(path, fmt::format("axes = \"{}\" names {} axes of an array that has {}; name each of them", axes,
-                                      axes.size(), rank));
+    throw DataError(
+        ErrorCode::inconsistent, path,
+        fmt::format("axes = \"{}\" names {} axes of an array that has {}; name each of them", axes, axes.size(), rank));
   }
   std::string rest = "xyz";
   for (std::size_t i = 0; i < rank; ++i) {
@@ -58,7 +60,9 @@ void name_axes(StoredAxes& stored, std::string const& axes, std::size_t rank, st
 }
 
 StoredAxis axis_from_coordinates(std::vector<double> x, std::string const& path, std::string const& what) {
-  auto const refuse = [&](std::string const& why) { throw DataError(path, what + ": " + why); };
+  auto const refuse = [&](std::string const& why) {
+    throw DataError(ErrorCode::invalid_value, path, what + ": " + why);
+  };
   if (!std::all_of(x.begin(), x.end(), [](double value) { return std::isfinite(value); })) {
     refuse("coordinates are not finite; correct them");
   }

@@ -55,7 +55,7 @@ std::unique_ptr<FieldSource> open_field(std::string const& path, std::string con
     }
     known += (known.empty() ? "" : ", ") + std::string(format.extension);
   }
-  throw DataError(path, "has an unsupported format; supported are " + known);
+  throw DataError(ErrorCode::unsupported, path, "has an unsupported format; supported are " + known);
 }
 
 }  // namespace gladstone

@@ -118,9 +118,10 @@ ResampledField::ResampledField(std::unique_ptr<OrientedField> source)
     if (x.empty()) continue;
     double const span = x.back() - x.front(), cells = std::ceil(span / finest_spacing(x) * (1 - 1e-6));
     if (!(cells < std::numeric_limits<int>::max())) {
-      throw DataError(source_->path(), fmt::format("\"{}\" cannot be resampled along {}: its finest spacing is {:.3g} "
-                                                   "of its length; resample it to a coarser uniform grid",
-                                                   name(), "xyz"[axis], finest_spacing(x) / span));
+      throw DataError(ErrorCode::unsupported, source_->path(),
+                      fmt::format("\"{}\" cannot be resampled along {}: its finest spacing is {:.3g} "
+                                  "of its length; resample it to a coarser uniform grid",
+                                  name(), "xyz"[axis], finest_spacing(x) / span));
     }
     grid_.nodes[axis] = static_cast<int>(cells) + 1;
     grid_.spacing[static_cast<int>(axis)] = span / cells;

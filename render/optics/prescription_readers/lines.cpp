@@ -30,9 +30,11 @@ bool are_digits(std::string_view text) {
 }  // namespace
 
 double PrescriptionLine::number(std::size_t i) const {
-  if (i >= words.size()) throw DataError(where, fmt::format("{} needs {} values; the line is cut short", words[0], i));
+  if (i >= words.size())
+    throw DataError(ErrorCode::syntax, where, fmt::format("{} needs {} values; the line is cut short", words[0], i));
   if (auto const value = finite_number(words[i])) return *value;
-  throw DataError(where, fmt::format("{}: \"{}\" is not a finite number", words[0], words[i].substr(0, 40)));
+  throw DataError(ErrorCode::syntax, where,
+                  fmt::format("{}: \"{}\" is not a finite number", words[0], words[i].substr(0, 40)));
 }
 
 double PrescriptionLine::number_or_infinity(std::size_t i) const {
@@ -73,7 +75,8 @@ void set_primary_wavelength(Prescription& lens, ListedWavelength const* primary,
   if (primary && primary->value != 0) {
     std::string const fault = describe_wavelength_fault(primary->value, unit, unit_name);
     if (!fault.empty()) {
-      throw DataError(primary->where, fmt::format("a wavelength of {:.6g} {} {}", primary->value, unit_name, fault));
+      throw DataError(ErrorCode::out_of_range, primary->where,
+                      fmt::format("a wavelength of {:.6g} {} {}", primary->value, unit_name, fault));
     }
     lens.primary_wavelength = primary->value * unit;
     return;
@@ -127,7 +130,7 @@ std::optional<PrescribedMedium> read_glass_code(std::string_view word) {
 int PrescriptionLine::integer(std::size_t i) const {
   double const value = number(i);
   if (value != std::floor(value) || std::abs(value) > 1e6) {
-    throw DataError(where, fmt::format("{}: \"{}\" is not a whole number", words[0], words[i]));
+    throw DataError(ErrorCode::syntax, where, fmt::format("{}: \"{}\" is not a whole number", words[0], words[i]));
   }
   return static_cast<int>(value);
 }

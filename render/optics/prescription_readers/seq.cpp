@@ -39,7 +39,7 @@ class SeqReader {
     } else if (read_seq_system(command, line, system_, result_)) {
       return;
     } else if (is_unsupported_command(command)) {
-      throw DataError(line.where,
+      throw DataError(ErrorCode::unsupported, line.where,
                       fmt::format("command {} is not supported; remove it if it does not change the lens", line[0]));
     } else if (!read_of_surface(command, line) && !is_ignored_command(command)) {
       if (unknown_.empty()) unknown_where_ = line.where;
@@ -52,7 +52,7 @@ class SeqReader {
   Prescription finish() {
     if (!system_.private_glasses_where.empty()) refuse_missing_end();
     if (surfaces_.size() < 2) {
-      throw DataError(result_.file,
+      throw DataError(ErrorCode::missing_content, result_.file,
                       "describes no lens (a .seq file has lines SO, S ..., SI: the object, the lens' "
                       "surfaces, the image)");
     }
@@ -66,7 +66,8 @@ class SeqReader {
       result_.aperture.value = system_.pupil * system_.unit;
     PrescribedSurface const& object = surfaces_.front().surface;
     if (object.after.is_mirror())
-      throw DataError(object.where, "the object is a mirror (REFL); name the medium ahead of the lens");
+      throw DataError(ErrorCode::invalid_value, object.where,
+                      "the object is a mirror (REFL); name the medium ahead of the lens");
     result_.object_distance = object.thickness;
     result_.object_medium = resolved(object.after);
     take_surfaces();
@@ -91,7 +92,7 @@ class SeqReader {
   }
 
   [[noreturn]] void refuse_missing_end() const {
-    throw DataError(system_.private_glasses_where,
+    throw DataError(ErrorCode::syntax, system_.private_glasses_where,
                     "PRV: the list of private glasses that begins here has no END; put END behind the last glass");
   }
 
@@ -112,10 +113,13 @@ class SeqReader {
 
   /// Reads "S radius thickness [glass]".
   void begin_surface(std::string const& command, PrescriptionLine const& line) {
-    if (image_) throw DataError(line.where, "a surface comes after the image SI; the file is damaged");
+    if (image_)
+      throw DataError(ErrorCode::damaged, line.where,
+                      "a surface follows the image SI; the file is damaged, copy it again");
     if ((command == "SO") != surfaces_.empty()) {
-      throw DataError(line.where, command == "SO" ? "a second object surface SO; the file is damaged"
-                                                  : "the lens begins without its object surface SO");
+      throw DataError(ErrorCode::damaged, line.where,
+                      command == "SO" ? "a second object surface SO; the file is damaged, copy it again"
+                                      : "the lens begins without its object surface SO");
     }
     double const first = line.number_or_infinity(1);
     double const thickness = line.size() > 2 ? line.number_or_infinity(2) * system_.unit : 0.0;
@@ -163,9 +167,10 @@ class SeqReader {
       PrescriptionLine const digits{line.where, {line[0], line[1].substr(1)}};
       auto const number = static_cast<std::size_t>(digits.integer(1));
       if (number == 0 || number >= surfaces_.size()) {
-        throw DataError(line.where, fmt::format("{} {}: this surface does not precede this line (S1 to S{} do); "
-                                                "correct the number, or put the command below its surface",
-                                                line[0], line[1], surfaces_.size() - 1));
+        throw DataError(ErrorCode::invalid_value, line.where,
+                        fmt::format("{} {}: this surface does not precede this line (S1 to S{} do); "
+                                    "correct the number, or put the command below its surface",
+                                    line[0], line[1], surfaces_.size() - 1));
       }
       line.words.erase(line.words.begin() + 1);
       return surfaces_[number];
@@ -176,7 +181,8 @@ class SeqReader {
         line.words[1] = number[1];
         return named_surface(line);
       }
-      throw DataError(line.where, fmt::format("STO {}: names no surface; give its number (STO S6)", line[1]));
+      throw DataError(ErrorCode::syntax, line.where,
+                      fmt::format("STO {}: names no surface; give its number (STO S6)", line[1]));
     }
     return image_ ? image_surface_ : surfaces_.back();
   }
@@ -184,7 +190,8 @@ class SeqReader {
   /// Reads a command for the surface it names, by default the latest one. @return false if it is not such a command
   bool read_of_surface(std::string const& command, PrescriptionLine line) {
     if (!is_surface_command(command)) return false;
-    if (surfaces_.empty()) throw DataError(line.where, fmt::format("{} comes before any surface", command));
+    if (surfaces_.empty())
+      throw DataError(ErrorCode::syntax, line.where, fmt::format("{} comes before any surface", command));
     SeqSurface& seq = named_surface(line);
     if (command == "THI" || command == "RDY" || command == "CUY" || command == "GLA") {
       change_surface(command, line, seq.surface);

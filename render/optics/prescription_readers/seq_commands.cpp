@@ -70,9 +70,12 @@ void PrivateGlasses::read(PrescriptionLine const& line) {
     for (std::size_t i = 1; i < line.size(); ++i) {
       double const wavelength = line.number(i) * unit::nanometre;
       std::string const fault = describe_wavelength_fault(line.number(i), unit::nanometre, "nm");
-      if (!fault.empty()) throw DataError(line.where, fmt::format("PWL: a wavelength of {} nm {}", line[i], fault));
+      if (!fault.empty())
+        throw DataError(ErrorCode::out_of_range, line.where,
+                        fmt::format("PWL: a wavelength of {} nm {}", line[i], fault));
       if (std::find(wavelengths_.begin(), wavelengths_.end(), wavelength) != wavelengths_.end()) {
-        throw DataError(line.where, fmt::format("PWL: {} nm is given twice; remove one", line[i]));
+        throw DataError(ErrorCode::invalid_value, line.where,
+                        fmt::format("PWL: {} nm is given twice; remove one", line[i]));
       }
       wavelengths_.push_back(wavelength);
     }
@@ -83,7 +86,7 @@ void PrivateGlasses::read(PrescriptionLine const& line) {
   if (formula) {
     if (upper_case(line[1]) != "LAU") {
       throw DataError(
-          line.where,
+          ErrorCode::unsupported, line.where,
           fmt::format("glass {}: formula {} is not supported (LAU, and indices at the wavelengths of PWL, are)",
                       line[0], line[1]));
     }
@@ -98,7 +101,7 @@ void PrivateGlasses::read(PrescriptionLine const& line) {
   }
   std::vector<Glass::Sample> samples;
   if (line.size() > 1 && line.size() != wavelengths_.size() + 1) {
-    throw DataError(line.where,
+    throw DataError(ErrorCode::wrong_shape, line.where,
                     fmt::format("glass {} has {} indices for {} wavelengths of PWL; give one for each wavelength, and "
                                 "end the glasses by END",
                                 line[0], line.size() - 1, wavelengths_.size()));
@@ -107,14 +110,15 @@ void PrivateGlasses::read(PrescriptionLine const& line) {
     samples.push_back({wavelengths_[i - 1], line.number(i)});
   }
   if (samples.empty()) {
-    throw DataError(line.where,
+    throw DataError(ErrorCode::missing_content, line.where,
                     fmt::format("glass {} has no index (PRV has a line PWL of wavelengths, and for each glass "
                                 "as many indices)",
                                 line[0]));
   }
   for (Glass::Sample const& sample : samples) {
     if (sample.index > 0.99 && sample.index < 7) continue;
-    throw DataError(line.where, fmt::format("glass {} has an index of {:.6g}; correct it", line[0], sample.index));
+    throw DataError(ErrorCode::out_of_range, line.where,
+                    fmt::format("glass {} has an index of {:.6g}; correct it", line[0], sample.index));
   }
   glasses_[name] = Glass::from_samples(line[0], std::move(samples));
 }

@@ -26,7 +26,8 @@ void read_aperture(std::string const& command, PrescriptionLine const& line, dou
     std::string const word = upper_case(line[i]);
     if (word == "OBS" || word == "HOL" || word == "EDG" || word == "CLR") kind = word;
   }
-  if (line.size() < 2) throw DataError(line.where, fmt::format("{} has no value; the line is cut short", command));
+  if (line.size() < 2)
+    throw DataError(ErrorCode::syntax, line.where, fmt::format("{} has no value; the line is cut short", command));
   if (kind == "EDG") return;  // edges are for drawings only
   double const value = line.number_or_infinity(line.size() - 1) * unit;
   if (kind == "HOL") {
@@ -35,7 +36,8 @@ void read_aperture(std::string const& command, PrescriptionLine const& line, dou
   }
   bool const blocks = kind == "OBS" || kind == "HOL";
   if (value == 0 && blocks) return;
-  if (!(value > 0)) throw DataError(line.where, command + ": the size of an aperture is positive; correct it");
+  if (!(value > 0))
+    throw DataError(ErrorCode::out_of_range, line.where, command + ": the size of an aperture is positive; correct it");
   if (command == "CIR") {
     (blocks ? seq.surface.obscured : seq.surface.semi_diameter) = value;
     if (!blocks) seq.surface.has_aperture = true;
@@ -83,14 +85,15 @@ bool read_seq_surface(std::string const& command, PrescriptionLine const& line, 
   static std::set<std::string> const decentres{"XDE", "YDE", "ZDE", "ADE", "BDE", "CDE"};
   PrescribedSurface& surface = seq.surface;
   if (command == "STO" || command == "STOP") {
-    if (is_image) throw DataError(line.where, "the image SI cannot be the stop; mark another one");
+    if (is_image)
+      throw DataError(ErrorCode::invalid_value, line.where, "the image SI cannot be the stop; mark another one");
     surface.stop = true;
   } else if (command == "RMD") {
     std::string const mode = line.size() > 1 ? upper_case(line[1]) : "";
     if (mode == "REFL") {
       surface.after = {PrescribedMedium::Mirror{}, line.where};
     } else if (mode != "REFR") {
-      throw DataError(line.where,
+      throw DataError(ErrorCode::unsupported, line.where,
                       fmt::format("RMD {}: this refraction mode is not supported (REFL and REFR are)", mode));
     }
   } else if (command == "K") {
@@ -113,7 +116,8 @@ bool read_seq_surface(std::string const& command, PrescriptionLine const& line, 
     seq.kind = SeqSurface::Decentre::reverse;
   } else if (command == "CUF") {
     if (line.number(1) != 0) {
-      throw DataError(line.where, "a Fresnel surface on a curved base (CUF) is not supported; write the lens as TOML");
+      throw DataError(ErrorCode::unsupported, line.where,
+                      "a Fresnel surface on a curved base (CUF) is not supported; write the lens as TOML");
     }
   } else if (command.size() == 1 && command[0] >= 'A' && command[0] <= 'J' && command[0] != 'I') {
     std::size_t const term = aspheric_term(command[0]);

@@ -45,7 +45,9 @@ bool read_seq_commands(std::string const& command, PrescriptionLine const& line,
   } else if (command == "DIM") {
     static std::map<std::string, double> const units{{"M", 1e-3}, {"C", 1e-2}, {"I", 25.4e-3}};
     auto const found = line.size() > 1 ? units.find(upper_case(line[1]).substr(0, 1)) : units.end();
-    if (found == units.end()) throw DataError(line.where, "DIM names no known unit (M: mm, C: cm, I: inches)");
+    if (found == units.end())
+      throw DataError(ErrorCode::unknown_choice, line.where,
+                      "DIM: the unit is missing or unknown; write M (mm), C (cm) or I (inches)");
     system.unit = found->second;
   } else if (command == "EPD") {
     system.pupil = line.number(1);

@@ -82,7 +82,7 @@ class ZmxReader {
     note_commas();
     if (!surfaces_.empty()) check_order();
     if (surfaces_.size() < 3) {
-      throw DataError(path_,
+      throw DataError(ErrorCode::missing_content, path_,
                       "describes no lens (a .zmx file has blocks SURF: the object, the lens' surfaces, the image)");
     }
     if (object_assumed_ && why_no_image(surfaces_.back())) {
@@ -93,7 +93,8 @@ class ZmxReader {
     }
     PrescribedSurface const& object = surfaces_.front().surface;
     if (object.after.is_mirror())
-      throw DataError(object.where, "the object is a mirror (GLAS); name the medium ahead of the lens");
+      throw DataError(ErrorCode::invalid_value, object.where,
+                      "the object is a mirror (GLAS); name the medium ahead of the lens");
     result_.object_distance = object.thickness;
     result_.object_medium = object.after;
     bool const is_listed = system_.primary >= 1 && system_.primary <= static_cast<int>(system_.wavelengths.size());
@@ -166,8 +167,9 @@ class ZmxReader {
     std::string const first = surfaces_.front().surface.where;
     if (fault != numbers_.end() && !reversed) {
       auto const i = static_cast<std::size_t>(fault - numbers_.begin());
-      throw DataError(surfaces_[i + 1].surface.where, fmt::format("surface {} comes after {}; the file is damaged",
-                                                                  surfaces_[i + 1].label, surfaces_[i].label));
+      throw DataError(
+          ErrorCode::damaged, surfaces_[i + 1].surface.where,
+          fmt::format("surface {} comes after {}; the file is damaged", surfaces_[i + 1].label, surfaces_[i].label));
     }
     if (reversed) {
       result_.warnings.push_back(
@@ -175,8 +177,9 @@ class ZmxReader {
                       first, surfaces_.front().label));
     } else {
       if (numbers_.front().number != 0 && numbers_.front().number != 1) {
-        throw DataError(first, fmt::format("the first surface is {}, not the object 0; the file is damaged",
-                                           surfaces_.front().label));
+        throw DataError(
+            ErrorCode::damaged, first,
+            fmt::format("the first surface is {}, not the object 0; the file is damaged", surfaces_.front().label));
       }
       note_gaps();
     }
@@ -225,7 +228,7 @@ class ZmxReader {
   static void check_image(ZmxSurface const& last) {
     char const* const why = why_no_image(last);
     if (why == nullptr) return;
-    throw DataError(last.surface.where,
+    throw DataError(ErrorCode::damaged, last.surface.where,
                     fmt::format("the last surface {}, so it is not the image surface with which a .zmx file ends: the "
                                 "file is cut short; copy it again, or add the image (SURF, TYPE STANDARD, DISZ 0)",
                                 why));

@@ -30,8 +30,9 @@ bool is_harmless(std::string const& key) {
 Outline outline_of(PrescriptionLine const& line, double unit, Outline::Kind kind, bool blocks) {
   Vec2d const half{line.number_or_infinity(1) * unit, line.number_or_infinity(2) * unit};
   if (half.x > 0 && half.y > 0) return {kind, blocks, half, {}};
-  throw DataError(line.where, fmt::format("{}: half widths of {} and {} enclose no area; give positive ones", line[0],
-                                          line[1], line[2]));
+  throw DataError(
+      ErrorCode::out_of_range, line.where,
+      fmt::format("{}: half widths of {} and {} enclose no area; give positive ones", line[0], line[1], line[2]));
 }
 
 }  // namespace
@@ -53,8 +54,9 @@ bool read_zmx_aperture(PrescriptionLine const& line, double unit, ZmxApertures& 
   } else if (key == "CLAP" || key == "FLAP" || key == "OBSC") {
     double const least = line.number(1) * unit, largest = line.number_or_infinity(2) * unit;
     if (!(least >= 0 && largest >= least)) {
-      throw DataError(line.where, fmt::format("{}: the least radius {} is negative or exceeds the largest, {}", key,
-                                              line[1], line[2]));
+      throw DataError(
+          ErrorCode::invalid_value, line.where,
+          fmt::format("{}: the least radius {} is negative or exceeds the largest, {}", key, line[1], line[2]));
     }
     if (key != "OBSC") {
       apertures.aperture = {least, largest};

@@ -26,10 +26,11 @@ PrescribedMedium model_glass(PrescriptionLine const& line, std::vector<std::stri
     return {PrescribedMedium::Mirror{}};
   }
   if (!is_glass(nd, vd)) {
-    throw DataError(line.where, fmt::format("GLAS: nd = {:.6g}, Vd = {:.6g} of the model glass are impossible (nd must "
-                                            "lie between 1 and 5, or be that of a gas, Vd above 0); correct them or "
-                                            "name a glass",
-                                            nd, vd));
+    throw DataError(ErrorCode::out_of_range, line.where,
+                    fmt::format("GLAS: nd = {:.6g}, Vd = {:.6g} of the model glass are impossible (nd must "
+                                "lie between 1 and 5, or be that of a gas, Vd above 0); correct them or "
+                                "name a glass",
+                                nd, vd));
   }
   if (line.size() > 5 && !line.optional_number(5)) {
     warnings.push_back(
@@ -76,7 +77,7 @@ PrescribedMedium named_glass(PrescriptionLine const& line, std::vector<std::stri
 }
 
 PrescribedMedium medium_of(PrescriptionLine const& line, std::vector<std::string>& warnings) {
-  if (line.size() < 2) throw DataError(line.where, "GLAS names no glass; the line is cut short");
+  if (line.size() < 2) throw DataError(ErrorCode::syntax, line.where, "GLAS names no glass; the line is cut short");
   if (line[1] == "MIRROR") return {PrescribedMedium::Mirror{}};
   bool const blank = line[1] == "___BLANK";
   if (blank || (line.size() > 4 && line[2] == "1")) return model_glass(line, warnings);
@@ -97,8 +98,9 @@ PrescribedSurface::RadialTerms extended_terms(ZmxSurface const& zmx, double unit
     int const term = i - first;
     if (term < 0 || term >= datum(1) || value == 0) continue;
     if (term >= RadialAsphere<double>::terms) {
-      throw DataError(zmx.extra_where, fmt::format("{} has a term {} (XDAT {}; {} terms are traced)", zmx.type,
-                                                   term + 1, i, RadialAsphere<double>::terms));
+      throw DataError(ErrorCode::unsupported, zmx.extra_where,
+                      fmt::format("{} has a term {} (XDAT {}; {} terms are traced)", zmx.type, term + 1, i,
+                                  RadialAsphere<double>::terms));
     }
     radial.a.resize(static_cast<std::size_t>(term) + 1);
     radial.a.back() = value * unit;
@@ -106,8 +108,9 @@ PrescribedSurface::RadialTerms extended_terms(ZmxSurface const& zmx, double unit
   if (radial.a.empty()) return radial;
   radial.scale = datum(2) * unit;
   if (!(radial.scale > 0)) {
-    throw DataError(zmx.extra_where, fmt::format("{} has a normalising radius of {:.6g} (XDAT 2); give a positive one",
-                                                 zmx.type, datum(2)));
+    throw DataError(
+        ErrorCode::out_of_range, zmx.extra_where,
+        fmt::format("{} has a normalising radius of {:.6g} (XDAT 2); give a positive one", zmx.type, datum(2)));
   }
   return radial;
 }
@@ -210,9 +213,10 @@ PrescribedSurface shaped_surface(ZmxSurface const& zmx, double unit, std::vector
     surface.slope = {zmx.parameter(1), zmx.parameter(2)};
     surface.curvature = surface.conic = 0;
   } else {
-    throw DataError(zmx.type_where, fmt::format("surface {}: type {} is not supported (STANDARD, EVENASPH, ODDASPHE, "
-                                                "XASPHERE, XOSPHERE, PARAXIAL, TILTSURF and COORDBRK are)",
-                                                zmx.label, zmx.type));
+    throw DataError(ErrorCode::unsupported, zmx.type_where,
+                    fmt::format("surface {}: type {} is not supported (STANDARD, EVENASPH, ODDASPHE, "
+                                "XASPHERE, XOSPHERE, PARAXIAL, TILTSURF and COORDBRK are)",
+                                zmx.label, zmx.type));
   }
   put_apertures(zmx.apertures, surface, warnings);
   return surface;
@@ -220,7 +224,8 @@ PrescribedSurface shaped_surface(ZmxSurface const& zmx, double unit, std::vector
 
 CoordinateBreak break_of(ZmxSurface const& zmx, double unit) {
   if (!std::isfinite(zmx.surface.thickness)) {
-    throw DataError(zmx.surface.where, "the thickness of a coordinate break (DISZ) is infinite; give it a length");
+    throw DataError(ErrorCode::out_of_range, zmx.surface.where,
+                    "the thickness of a coordinate break (DISZ) is infinite; give it a length");
   }
   return {{zmx.parameter(1) * unit, zmx.parameter(2) * unit},
           Vec3d{zmx.parameter(3), zmx.parameter(4), zmx.parameter(5)} * unit::degree,

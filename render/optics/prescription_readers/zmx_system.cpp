@@ -56,7 +56,8 @@ void read_fields_and_wavelengths(PrescriptionLine const& line, ZmxSystem& system
 void read_zmx_system(PrescriptionLine const& line, ZmxSystem& system, Prescription& result) {
   std::string const& key = line[0];
   if (key == "MODE" && line.size() > 1 && line[1] != "SEQ") {
-    throw DataError(line.where, fmt::format("mode {} is not supported (sequential lenses, SEQ, are)", line[1]));
+    throw DataError(ErrorCode::unsupported, line.where,
+                    fmt::format("mode {} is not supported (sequential lenses, SEQ, are)", line[1]));
   }
   if (key == "NAME") {
     for (std::size_t i = 1; i < line.size(); ++i) result.title += (i > 1 ? " " : "") + line[i];
@@ -65,7 +66,9 @@ void read_zmx_system(PrescriptionLine const& line, ZmxSystem& system, Prescripti
     static std::map<std::string, double> const lengths{
         {"MM", 1e-3}, {"CM", 1e-2}, {"IN", 25.4e-3}, {"METER", 1.0}, {"M", 1.0}};
     auto const found = line.size() > 1 ? lengths.find(upper_case(line[1])) : lengths.end();
-    if (found == lengths.end()) throw DataError(line.where, "UNIT names no known unit (MM, CM, IN or METER)");
+    if (found == lengths.end())
+      throw DataError(ErrorCode::unknown_choice, line.where,
+                      "UNIT: the unit is missing or unknown; write MM, CM, IN or METER");
     system.unit = found->second;
   }
   read_zmx_system_aperture(line, system.unit, result);

@@ -53,9 +53,8 @@ std::optional<ArrayCoordinates> CoordinateReader::read(std::string const& datase
     read_packing(file_, dataset).unpack(found.places);
     if (unit.empty()) found.unit = trimmed(file_.attribute(dataset, "units"));
     if (wide <= 1) return found;
-  } catch (MemoryError const&) {
-    throw;
-  } catch (DataError const&) {  // the dataset is not numeric
+  } catch (DataError const& error) {  // the dataset is not numeric
+    if (error.code() == ErrorCode::memory) throw;
     return std::nullopt;
   }
   reduce_mesh(found, shape);
@@ -92,9 +91,10 @@ void CoordinateReader::reduce_mesh(ArrayCoordinates& mesh, ArrayShape const& sha
   for (std::size_t node = 0; node < all.size(); ++node) {
     std::size_t const k = mesh.axis ? node / strides[*mesh.axis] % axes_.length(*mesh.axis) : 0;
     if (std::abs(all[node] - mesh.places[k]) <= tolerance || !std::isfinite(mesh.places[k])) continue;
-    throw DataError(path_, fmt::format("dataset \"{}\" of shape {} varies along several axes of \"{}\" (the grid is "
-                                       "curved, oblique or rotated); resample the field to a grid along x, y and z",
-                                       mesh.dataset, shape_text(shape), name_));
+    throw DataError(ErrorCode::unsupported, path_,
+                    fmt::format("dataset \"{}\" of shape {} varies along several axes of \"{}\" (the grid is "
+                                "curved, oblique or rotated); resample the field to a grid along x, y and z",
+                                mesh.dataset, shape_text(shape), name_));
   }
 }
 

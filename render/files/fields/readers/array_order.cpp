@@ -57,9 +57,10 @@ ArrayOrder order_by_lengths(std::array<std::optional<ArrayCoordinates>, 3> const
     return {usual, by, fitting.size() > 1};
   }
   if (fitting.size() > 1) {
-    throw DataError(path, fmt::format("the coordinates of \"{}\" of shape {} allow several orders of its axes; name "
-                                      "the right one: axes = {}",
-                                      name, shape_text(axes.shape), quoted_list(fitting)));
+    throw DataError(ErrorCode::undetermined, path,
+                    fmt::format("the coordinates of \"{}\" of shape {} allow several orders of its axes; name "
+                                "the right one: axes = {}",
+                                name, shape_text(axes.shape), quoted_list(fitting)));
   }
   return {fitting.front(), by};
 }

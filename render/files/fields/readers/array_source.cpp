@@ -39,12 +39,14 @@ std::string only_field(ArrayFile const& file, std::string const& path, int value
   if (fields.size() == 1) return fields.front();
   if (fields.empty()) {
     for (auto const& other : file.describe_others()) others += (others.empty() ? "" : ", ") + other;
-    throw DataError(path, fmt::format("has no {}; it has {}",
-                                      values == 1 ? "scalar field, [nz, ny, nx], [nz, ny, nx, 1] or [ny, nx]"
-                                                  : fmt::format("velocity, [nz, ny, nx, {}]", values),
-                                      others.empty() ? "no numbers at all" : others));
+    throw DataError(ErrorCode::missing_content, path,
+                    fmt::format("has no {}; it has {}",
+                                values == 1 ? "scalar field, [nz, ny, nx], [nz, ny, nx, 1] or [ny, nx]"
+                                            : fmt::format("velocity, [nz, ny, nx, {}]", values),
+                                others.empty() ? "no numbers at all" : others));
   }
-  throw DataError(path, "has several fields; select one with dataset = " + quoted_list(fields));
+  throw DataError(ErrorCode::undetermined, path,
+                  "has several fields; select one with dataset = " + quoted_list(fields));
 }
 
 class ArraySource final : public CheckedSource {
@@ -59,7 +61,8 @@ class ArraySource final : public CheckedSource {
     for (std::size_t i = 0; i < rank(); ++i) {
       std::size_t const size = length(i);
       if (size == 0 || size > static_cast<std::size_t>(std::numeric_limits<int>::max())) {
-        throw DataError(path_, fmt::format("dataset \"{}\" has no usable size: {}", name_, shape_text(shape_)));
+        throw DataError(ErrorCode::wrong_shape, path_,
+                        fmt::format("dataset \"{}\" has no usable size: {}", name_, shape_text(shape_)));
       }
       nodes[i] = static_cast<int>(size);
     }
@@ -92,7 +95,8 @@ class ArraySource final : public CheckedSource {
                                 : fmt::format("has rank {}", shape_.size());
     std::string const wanted = values_ == 1 ? "a scalar field has shape [nz, ny, nx], [nz, ny, nx, 1] or [ny, nx]"
                                             : fmt::format("a velocity has shape [nz, ny, nx, {}]", values_);
-    throw DataError(path_, fmt::format("dataset \"{}\" of shape {} {}; {}", name_, shape_text(shape_), why, wanted));
+    throw DataError(ErrorCode::wrong_shape, path_,
+                    fmt::format("dataset \"{}\" of shape {} {}; {}", name_, shape_text(shape_), why, wanted));
   }
 
   /// Assigns world axes and coordinates to the stored axes. @return source of the assignment
@@ -166,15 +170,16 @@ class ArraySource final : public CheckedSource {
   void place(std::size_t i, ArrayCoordinates const& own) {
     std::string const what = "dataset \"" + own.dataset + '"';
     if (own.axis && *own.axis != i) {
-      throw DataError(path_,
+      throw DataError(ErrorCode::inconsistent, path_,
                       fmt::format("{} varies along axis {} of \"{}\" (from the slowest), where {} is axis {}; name "
                                   "the axes in the order of the file: axes = \"zxy\"",
                                   what, rank() - *own.axis, name_, axes_[i].world, rank() - i));
     }
     if (own.places.size() != length(i)) {
-      throw DataError(path_, fmt::format("{} has {} coordinates for the {} nodes of \"{}\"; if its axes are in another "
-                                         "order, name it: axes = \"zxy\"",
-                                         what, own.places.size(), length(i), name_));
+      throw DataError(ErrorCode::wrong_shape, path_,
+                      fmt::format("{} has {} coordinates for the {} nodes of \"{}\"; if its axes are in another "
+                                  "order, name it: axes = \"zxy\"",
+                                  what, own.places.size(), length(i), name_));
     }
     char const world = axes_[i].world;
     axes_[i] = axis_from_coordinates(own.places, path_, what);

@@ -21,7 +21,8 @@ std::size_t inflate_range(ByteRange const& range, std::vector<char>& out) {
   z_stream stream{};
   constexpr int window_bits = 15;  // negative: deflate without the header of zlib
   if (inflateInit2(&stream, range.coding == ByteRange::Coding::zlib ? window_bits : -window_bits) != Z_OK) {
-    throw MemoryError(range.file->path(), "cannot be decompressed (out of memory)");
+    throw DataError(ErrorCode::memory, range.file->path(),
+                    "cannot be decompressed (out of memory); use a machine with more memory");
   }
   auto const close = [](z_stream* opened) { inflateEnd(opened); };
   std::unique_ptr<z_stream, decltype(close)> const guard(&stream, close);
@@ -44,7 +45,7 @@ std::size_t inflate_range(ByteRange const& range, std::vector<char>& out) {
     done += room - stream.avail_out;
     if (result == Z_STREAM_END) return done;
     if (result != Z_OK && result != Z_BUF_ERROR) {
-      throw DataError(range.file->path(),
+      throw DataError(ErrorCode::damaged, range.file->path(),
                       fmt::format("array \"{}\" is damaged ({}); copy it again", excerpt(range.name),
                                   stream.msg ? stream.msg : "it cannot be decompressed"));
     }
@@ -72,7 +73,7 @@ void refuse_truncated(ByteRange const& range, std::uint64_t present, std::uint64
   std::uint64_t const file_size = range.file->size();
   bool const compressed = range.coding != ByteRange::Coding::stored;
   bool const whole = range.offset <= file_size && range.size <= file_size - range.offset;
-  throw DataError(range.file->path(),
+  throw DataError(ErrorCode::damaged, range.file->path(),
                   fmt::format("is {}: array \"{}\" has {} bytes of data{}, and its header requires {}; copy it again",
                               compressed && whole ? "damaged" : "cut short", excerpt(range.name), present,
                               compressed ? " after decompression" : "", required));

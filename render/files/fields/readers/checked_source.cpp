@@ -75,7 +75,7 @@ void CheckedSource::refuse_bad_values(std::span<double const> read) {
   std::string message = "dataset \"" + name_ + "\": ";
   if (holes > 0) message += share(holes, all) + "holes (-999.9, the database's mark for missing data)";
   if (not_finite > 0) message += (holes > 0 ? ", " : "") + share(not_finite, all) + "nan or infinite";
-  throw DataError(path_, message + "; fetch the field again or cut the region out");
+  throw DataError(ErrorCode::invalid_value, path_, message + "; fetch the field again or cut the region out");
 }
 
 }  // namespace gladstone

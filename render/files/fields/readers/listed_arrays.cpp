@@ -38,15 +38,17 @@ ListedArray const& ListedArrays::find(std::string const& array) const {
   }
   for (OtherEntry const& other : others_) {
     if (other.name != array) continue;
-    throw DataError(path_, fmt::format("\"{}\" holds {}, not real numbers; store it as an array of numbers",
-                                       excerpt(array), other.content));
+    throw DataError(ErrorCode::wrong_type, path_,
+                    fmt::format("\"{}\" holds {}, not real numbers; store it as an array of numbers", excerpt(array),
+                                other.content));
   }
   std::vector<std::string> const known = names();
   auto const nearest = nearest_name(array, known);
-  throw DataError(path_, fmt::format("has no dataset \"{}\"{}", excerpt(array),
-                                     nearest         ? fmt::format("; did you mean \"{}\"?", *nearest)
-                                     : known.empty() ? "; it has no numbers at all"
-                                                     : "; it has " + quoted_list(known)));
+  throw DataError(ErrorCode::missing_content, path_,
+                  fmt::format("has no dataset \"{}\"{}", excerpt(array),
+                              nearest         ? fmt::format("; did you mean \"{}\"?", *nearest)
+                              : known.empty() ? "; it has no numbers at all"
+                                              : "; it has " + quoted_list(known)));
 }
 
 std::vector<double> ListedArrays::read(std::string const& array) const {
@@ -103,8 +105,9 @@ std::size_t checked_bytes(std::vector<std::size_t> const& shape, std::size_t val
       std::accumulate(shape.begin(), shape.end(), static_cast<double>(value_bytes),
                       [](double product, std::size_t size) { return product * static_cast<double>(size); });
   if (bytes > 1e15) {
-    throw DataError(path, fmt::format("array \"{}\" has an implausible shape [{}]; it is damaged", excerpt(name),
-                                      fmt::join(shape, ", ")));
+    throw DataError(ErrorCode::damaged, path,
+                    fmt::format("array \"{}\" has an implausible shape [{}]; it is damaged", excerpt(name),
+                                fmt::join(shape, ", ")));
   }
   return static_cast<std::size_t>(bytes);
 }

@@ -85,7 +85,7 @@ class MatrixHead {
   }
 
   [[noreturn]] void refuse() const {
-    throw DataError(range_.file->path(),
+    throw DataError(ErrorCode::damaged, range_.file->path(),
                     "is cut short or damaged: the header of an array is incomplete; copy it again, or save it anew");
   }
 
@@ -195,7 +195,7 @@ class MatlabFile {
   }
 
   [[noreturn]] void cut_short() const {
-    throw DataError(file_->path(), "is cut short: its last array is incomplete; copy it again");
+    throw DataError(ErrorCode::damaged, file_->path(), "is cut short: its last array is incomplete; copy it again");
   }
 
   std::shared_ptr<InputFile const> file_;
@@ -210,7 +210,8 @@ std::unique_ptr<CheckedSource> open_matlab(std::string const& path, FieldSelecti
   start.resize(InputFile(path, "a field file").read(0, start.data(), start.size()));
   if (start == "MATLAB 7.3" || start.starts_with("\x89HDF")) return open_hdf5(path, selection);
   if (start != level_5) {
-    throw DataError(path, "is not a MATLAB file of level 5 or 7.3; save it with the option -v7 or -v7.3 of save");
+    throw DataError(ErrorCode::wrong_format, path,
+                    "is not a MATLAB file of level 5 or 7.3; save it with the option -v7 or -v7.3 of save");
   }
   MatlabFile file(path);
   return open_array_field(std::make_unique<ListedArrays>(path, std::move(file.arrays), std::move(file.others)), path,

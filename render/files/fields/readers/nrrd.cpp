@@ -91,7 +91,8 @@ class NrrdSource final : public CheckedSource {
 
 std::unique_ptr<CheckedSource> open_nrrd(std::string const& path, FieldSelection const& selection) {
   if (!selection.dataset.empty()) {
-    throw DataError(path, "contains one field without a name; leave dataset = \"" + selection.dataset + "\" out");
+    throw DataError(ErrorCode::missing_content, path,
+                    "contains a single unnamed field; remove dataset = \"" + selection.dataset + "\"");
   }
   return std::make_unique<NrrdSource>(path, read_nrrd_header(path, selection.values), selection);
 }

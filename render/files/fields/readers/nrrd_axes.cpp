@@ -23,7 +23,8 @@ class NrrdAxes {
     read_sizes();
     if (fields_.has("space directions")) {
       directions_ = fields_.vectors("space directions");
-      if (directions_.size() != sizes_.size()) fields_.refuse("space directions", "must be one vector for each axis");
+      if (directions_.size() != sizes_.size())
+        fields_.refuse(ErrorCode::wrong_shape, "space directions", "must be one vector for each axis");
     }
     choose(values);
     for (std::size_t i = 0; i < kept_.size(); ++i) header_.sizes[i] = static_cast<int>(sizes_[kept_[i]]);
@@ -44,15 +45,16 @@ class NrrdAxes {
  private:
   void read_sizes() {
     int const dimension = fields_.number<int>("dimension", 0, 1);
-    if (dimension > 16) fields_.refuse("dimension", "exceeds 16, the maximum of NRRD");
+    if (dimension > 16) fields_.refuse(ErrorCode::unsupported, "dimension", "exceeds 16, the maximum of NRRD");
     sizes_ = fields_.numbers<long long>("sizes", static_cast<std::size_t>(dimension));
     double all = 1;
     for (long long const size : sizes_) {
-      if (size < 1) fields_.refuse("sizes", "must be positive");
-      if (size > std::numeric_limits<int>::max()) fields_.refuse("sizes", "is larger than any field");
+      if (size < 1) fields_.refuse(ErrorCode::invalid_value, "sizes", "must be positive");
+      if (size > std::numeric_limits<int>::max())
+        fields_.refuse(ErrorCode::out_of_range, "sizes", "is larger than any field");
       all *= static_cast<double>(size);
     }
-    if (all > 1e15) fields_.refuse("sizes", "is larger than any field");
+    if (all > 1e15) fields_.refuse(ErrorCode::out_of_range, "sizes", "is larger than any field");
   }
 
   /// Selects the spatial axes: drops the axis of components, axes of length one without a direction ("none") and, while
@@ -61,7 +63,8 @@ class NrrdAxes {
     for (std::size_t axis = 0; axis < sizes_.size(); ++axis) kept_.push_back(axis);
     if (values > 1) {
       if (sizes_.size() < 3 || sizes_.front() != values) {
-        fields_.refuse("sizes", fmt::format("has no first axis of {} components, which a velocity needs", values));
+        fields_.refuse(ErrorCode::wrong_shape, "sizes",
+                       fmt::format("has no first axis of {} components, which a velocity needs", values));
       }
       kept_.erase(kept_.begin());
     }
@@ -75,8 +78,9 @@ class NrrdAxes {
       kept_.erase(last.base() - 1);
     }
     if (kept_.size() == 2 || kept_.size() == 3) return;
-    fields_.refuse("dimension", fmt::format("must be 2 or 3 ({} at every point), not counting axes of length one",
-                                            values == 1 ? "one number" : fmt::format("{} numbers", values)));
+    fields_.refuse(ErrorCode::wrong_shape, "dimension",
+                   fmt::format("must be 2 or 3 ({} at every point), not counting axes of length one",
+                               values == 1 ? "one number" : fmt::format("{} numbers", values)));
   }
 
   /// Names the world axes by "labels", if they are x, y and z.
@@ -117,12 +121,13 @@ class NrrdAxes {
         assumed_cells = assumed_cells || centre == Centre::unknown;
       } else if (header_.units.spaced && sizes_[axis] > 1) {
         bool const infinite = !spacings.empty() && std::isinf(spacings[axis]);
-        if (infinite) fields_.refuse("spacings", "must be finite");
+        if (infinite) fields_.refuse(ErrorCode::invalid_value, "spacings", "must be finite");
         header_.units.unknown = fmt::format("the spacing of axis {} ({} nodes, taken as {}) is unknown in the header",
                                             axis + 1, sizes_[axis], placed.world);
       }
       if (placed.step == 0 || !std::isfinite(placed.step)) {
-        fields_.refuse(spacings.empty() ? "axis maxs" : "spacings", "gives an axis zero length; it must not be 0");
+        fields_.refuse(ErrorCode::invalid_value, spacings.empty() ? "axis maxs" : "spacings",
+                       "gives an axis zero length; it must not be 0");
       }
       if (!lows.empty() && std::isfinite(lows[axis])) {
         placed.first = lows[axis] + (centre == Centre::node ? 0.0 : placed.step / 2);
@@ -152,29 +157,31 @@ class NrrdAxes {
     auto const origins = fields_.has("space origin") && lower_case(fields_.text("space origin")) != "none"
                              ? fields_.vectors("space origin")
                              : std::vector<std::vector<double>>{};
-    if (origins.size() > 1) fields_.refuse("space origin", "must be one vector");
+    if (origins.size() > 1) fields_.refuse(ErrorCode::wrong_shape, "space origin", "must be one vector");
     header_.units.spaced = header_.directed = true;
     std::string taken;
     for (std::size_t i = 0; i < kept_.size(); ++i) {
       auto const& direction = directions_[kept_[i]];
       if (direction.size() < 2 || direction.size() > 3) {
-        fields_.refuse(key, "must give each axis in space a vector of two or three numbers");
+        fields_.refuse(ErrorCode::wrong_shape, key, "must give each axis in space a vector of two or three numbers");
       }
       std::size_t along = 0;
       for (std::size_t k = 0; k < direction.size(); ++k) {
-        if (!std::isfinite(direction[k])) fields_.refuse(key, "must be vectors of finite numbers");
+        if (!std::isfinite(direction[k]))
+          fields_.refuse(ErrorCode::invalid_value, key, "must be vectors of finite numbers");
         if (std::abs(direction[k]) > std::abs(direction[along])) along = k;
       }
       double const step = direction[along];
-      if (step == 0) fields_.refuse(key, "gives an axis zero length");
+      if (step == 0) fields_.refuse(ErrorCode::invalid_value, key, "gives an axis zero length");
       for (std::size_t k = 0; k < direction.size(); ++k) {
         constexpr double rounding = 1e-6;  // tolerance of angles [rad]: a millionth of the width of the field
         if (k != along && std::abs(direction[k]) > rounding * std::abs(step)) {
-          fields_.refuse(key, "is oblique; resample the field along x, y, z");
+          fields_.refuse(ErrorCode::unsupported, key, "is oblique; resample the field along x, y, z");
         }
       }
       char const world = "xyz"[along];
-      if (taken.find(world) != std::string::npos) fields_.refuse(key, "gives two axes the same direction");
+      if (taken.find(world) != std::string::npos)
+        fields_.refuse(ErrorCode::invalid_value, key, "gives two axes the same direction; correct it");
       taken += world;
       header_.axes[i].world = world;
       header_.axes[i].step = step;
@@ -182,8 +189,8 @@ class NrrdAxes {
       if (sizes_[kept_[i]] > 1) unit_of_[i] = along < units.size() ? units[along] : "";
       if (origins.empty()) continue;
       if (origins[0].size() != direction.size())
-        fields_.refuse("space origin", "must have as many numbers as a direction");
-      if (!std::isfinite(origins[0][along])) fields_.refuse("space origin", "must be finite");
+        fields_.refuse(ErrorCode::wrong_shape, "space origin", "must have as many numbers as a direction");
+      if (!std::isfinite(origins[0][along])) fields_.refuse(ErrorCode::invalid_value, "space origin", "must be finite");
       header_.axes[i].first = origins[0][along];
     }
     if (kept_.size() < 3) {

@@ -57,7 +57,10 @@ void NrrdBytes::skip_lines() {
   std::vector<char> block(64 * 1024);
   for (long lines = header_.line_skip; lines > 0;) {
     std::size_t const got = file_.read(offset_, block.data(), block.size());
-    if (got == 0) throw DataError(header_.data_path, "ends within the lines to be skipped by \"line skip\"");
+    if (got == 0)
+      throw DataError(ErrorCode::damaged, header_.data_path,
+                      "is cut short: it ends within the lines that \"line skip\" excludes; copy it again, or correct "
+                      "\"line skip\"");
     std::size_t used = 0;
     while (used < got && lines > 0) lines -= block[used++] == '\n';
     offset_ += used;
@@ -101,7 +104,8 @@ void NrrdBytes::prepare_gzip() {
   stream_ = gzdopen(descriptor, "rb");
   if (!stream_) {
     ::close(descriptor);
-    throw MemoryError(header_.data_path, "cannot be decompressed (out of memory)");
+    throw DataError(ErrorCode::memory, header_.data_path,
+                    "cannot be decompressed (out of memory); use a machine with more memory");
   }
   gzbuffer(stream_, 256 * 1024);
   skipped_ = static_cast<std::size_t>(header_.byte_skip);
@@ -109,7 +113,9 @@ void NrrdBytes::prepare_gzip() {
   int const got = gzread(stream_, &first, 1);
   if (got < 0) damaged();
   if (got == 0) refuse_cut_short(header_, 0);
-  if (gzdirect(stream_)) throw DataError(header_.data_path, "is declared as gzip, but is not compressed by gzip");
+  if (gzdirect(stream_))
+    throw DataError(ErrorCode::damaged, header_.data_path,
+                    "is not compressed by gzip, although its header says so; correct the field \"encoding\"");
   if (gzrewind(stream_) != 0) damaged();
   discard(skipped_);
   position_ = 0;
@@ -155,7 +161,7 @@ void NrrdBytes::check_end() {
 void NrrdBytes::damaged() const {
   int problem = Z_OK;
   std::string const why = stream_ ? gzerror(stream_, &problem) : "";
-  throw DataError(header_.data_path, "is damaged (" + why + "); copy it again");
+  throw DataError(ErrorCode::damaged, header_.data_path, "is damaged (" + why + "); copy it again");
 }
 
 }  // namespace gladstone

@@ -35,7 +35,7 @@ char const* encoding_name(NrrdHeader const& header) {
 }
 
 [[noreturn]] void refuse_too_few_numbers(NrrdHeader const& header, std::size_t there) {
-  throw DataError(header.data_path,
+  throw DataError(ErrorCode::damaged, header.data_path,
                   fmt::format("is cut short: {} numbers are present and {} are needed (sizes {}); copy it again", there,
                               values_of(header), header.sizes_text()));
 }
@@ -56,16 +56,18 @@ std::vector<char> decode_numbers(NrrdHeader const& header, std::string const& te
     auto const [rest, error] = std::from_chars(at, end, value);
     if (at == end) refuse_too_few_numbers(header, i);
     if (error == std::errc::invalid_argument) {
-      throw DataError(header.data_path, fmt::format("is damaged: number {} of its text is \"{}\"; copy it again", i + 1,
-                                                    excerpt(std::string(at, std::find_if(at, end, is_blank)))));
+      throw DataError(ErrorCode::damaged, header.data_path,
+                      fmt::format("is damaged: number {} of its text is \"{}\"; copy it again", i + 1,
+                                  excerpt(std::string(at, std::find_if(at, end, is_blank)))));
     }
     std::memcpy(decoded.data() + i * sizeof value, &value, sizeof value);
     at = rest;
   }
   skip();
   if (at != end) {
-    throw DataError(header.data_path, fmt::format("holds more than the {} numbers of its sizes {}; correct the sizes",
-                                                  count, header.sizes_text()));
+    throw DataError(
+        ErrorCode::damaged, header.data_path,
+        fmt::format("holds more than the {} numbers of its sizes {}; correct the sizes", count, header.sizes_text()));
   }
   return decoded;
 }
@@ -79,7 +81,7 @@ std::vector<char> decode_hex(NrrdHeader const& header, std::string const& text) 
     int const digit = hex_digit(c);
     if (digit < 0) {
       throw DataError(
-          header.data_path,
+          ErrorCode::damaged, header.data_path,
           fmt::format("is damaged: digit {} of its hex data is not a hexadecimal digit; copy it again", digits + 1));
     }
     if (digits / 2 < decoded.size()) {
@@ -98,7 +100,8 @@ std::vector<char> decode_bzip2(NrrdHeader const& header, std::string const& pack
   std::vector<char> decoded(nrrd_decoded_bytes(header));
   bz_stream stream{};
   if (BZ2_bzDecompressInit(&stream, 0, 0) != BZ_OK) {
-    throw MemoryError(header.data_path, "cannot be decompressed (out of memory)");
+    throw DataError(ErrorCode::memory, header.data_path,
+                    "cannot be decompressed (out of memory); use a machine with more memory");
   }
   auto const close = [](bz_stream* opened) { BZ2_bzDecompressEnd(opened); };
   std::unique_ptr<bz_stream, decltype(close)> const guard(&stream, close);
@@ -125,7 +128,7 @@ std::vector<char> decode_bzip2(NrrdHeader const& header, std::string const& pack
     unsigned const had = stream.avail_in;
     int const result = BZ2_bzDecompress(&stream);
     if (result != BZ_OK && result != BZ_STREAM_END) {
-      throw DataError(header.data_path, "is damaged (bzip2 cannot decompress it); copy it again");
+      throw DataError(ErrorCode::damaged, header.data_path, "is damaged (bzip2 cannot decompress it); copy it again");
     }
     std::size_t const got = room - stream.avail_out;
     if (skipping) to_skip -= got;
@@ -149,7 +152,7 @@ std::vector<char> decode_nrrd(NrrdHeader const& header, std::string const& store
   // Limits of a plausible header: at most 8 values per byte of text or hex data, 8e6 per byte of bzip2 data.
   double const most = header.encoding == Encoding::bzip2 ? 1e6 : 1;
   if (static_cast<double>(values_of(header)) > most * 8 * static_cast<double>(stored.size())) {
-    throw DataError(header.data_path,
+    throw DataError(ErrorCode::damaged, header.data_path,
                     fmt::format("is cut short: its {} bytes of {} cannot hold {} values (sizes {}); copy it again, or "
                                 "correct the sizes",
                                 stored.size(), encoding_name(header), values_of(header), header.sizes_text()));
@@ -159,14 +162,14 @@ std::vector<char> decode_nrrd(NrrdHeader const& header, std::string const& store
 }
 
 void refuse_cut_short(NrrdHeader const& header, std::size_t there) {
-  throw DataError(header.data_path,
+  throw DataError(ErrorCode::damaged, header.data_path,
                   fmt::format("is cut short: {} bytes of data are present and {} are needed (sizes {}, {} bytes per "
                               "value); copy it again",
                               there, header.data_bytes(), header.sizes_text(), header.value_bytes()));
 }
 
 void refuse_too_long(NrrdHeader const& header, std::size_t there) {
-  throw DataError(header.data_path,
+  throw DataError(ErrorCode::damaged, header.data_path,
                   fmt::format("holds more data than its header says: {} bytes or more are present and {} are needed "
                               "(sizes {}, {} bytes per value), so that the position of the field is unknown; correct "
                               "the sizes, or give \"byte skip\" if other data precede the field",

@@ -24,13 +24,14 @@ std::string canonical(std::string const& key) {
 bool NrrdFields::read(LineReader& file) {
   constexpr std::uint64_t most_bytes = std::uint64_t{16} << 20;
   while (auto const text = file.next()) {
-    if (file.offset() > most_bytes) throw DataError(path_, "has a header of more than 16 MiB, which no NRRD file has");
+    if (file.offset() > most_bytes)
+      throw DataError(ErrorCode::wrong_format, path_, "has a header of more than 16 MiB, which no NRRD file has");
     std::string const line = trimmed(*text);
     if (line.empty()) return true;
     if (line.front() == '#' || line.find(":=") != std::string::npos) continue;
     auto const colon = line.find(':');
     if (colon == std::string::npos) {
-      throw DataError(path_, "header line \"" + excerpt(line) + "\" is not an NRRD field");
+      throw DataError(ErrorCode::syntax, path_, "header line \"" + excerpt(line) + "\" is not an NRRD field");
     }
     std::string const key = canonical(trimmed(lower_case(line.substr(0, colon))));
     std::string const value = trimmed(line.substr(colon + 1));
@@ -48,20 +49,20 @@ void NrrdFields::store(LineReader const& file, std::string const& key, std::stri
   if (first) {
     lines_[key] = file.number();
   } else if (given->second != value) {
-    throw DataError(file.place(),
+    throw DataError(ErrorCode::invalid_value, file.place(),
                     fmt::format("repeats the NRRD field \"{}\" as \"{}\" (line {} says \"{}\"); remove one of them",
                                 excerpt(key), excerpt(value), lines_[key], excerpt(given->second)));
   }
 }
 
-void NrrdFields::refuse(std::string const& key, std::string const& why) const {
+void NrrdFields::refuse(ErrorCode code, std::string const& key, std::string const& why) const {
   auto const found = values_.find(key);
   std::string const value = found == values_.end() ? "" : ": " + excerpt(found->second);
-  throw DataError(path_, "NRRD field \"" + key + value + "\" " + why);
+  throw DataError(code, path_, "NRRD field \"" + key + value + "\" " + why);
 }
 
 std::string const& NrrdFields::required(std::string const& key) const {
-  if (!has(key)) refuse(key, "is missing");
+  if (!has(key)) refuse(ErrorCode::missing_content, key, "is missing");
   return values_.at(key);
 }
 
@@ -77,7 +78,8 @@ template <class Number>
 Number NrrdFields::number(std::string const& key, Number fallback, Number low) const {
   if (!has(key)) return fallback;
   auto const value = parsed<Number>(values_.at(key));
-  if (!value || *value < low) refuse(key, "must be a whole number of at least " + std::to_string(low));
+  if (!value || *value < low)
+    refuse(ErrorCode::syntax, key, "must be a whole number of at least " + std::to_string(low));
   return *value;
 }
 
@@ -87,10 +89,12 @@ std::vector<Number> NrrdFields::numbers(std::string const& key, std::size_t coun
   std::vector<Number> values;
   for (std::string word; words >> word;) {
     auto const value = parsed<Number>(word);
-    if (!value) refuse(key, parsed<double>(word) ? "must be whole numbers, of 18 digits at most" : "must be numbers");
+    if (!value)
+      refuse(ErrorCode::syntax, key,
+             parsed<double>(word) ? "must be whole numbers, of 18 digits at most" : "must be numbers");
     values.push_back(*value);
   }
-  if (values.size() != count) refuse(key, fmt::format("must be {} numbers", count));
+  if (values.size() != count) refuse(ErrorCode::wrong_shape, key, fmt::format("must be {} numbers", count));
   return values;
 }
 
@@ -114,12 +118,12 @@ std::vector<std::vector<double>> NrrdFields::vectors(std::string const& key) con
       continue;
     }
     auto const close = text.find(')', at);
-    if (text[at] != '(' || close == std::string::npos) refuse(key, "must be vectors like (1,0,0)");
+    if (text[at] != '(' || close == std::string::npos) refuse(ErrorCode::syntax, key, "must be vectors like (1,0,0)");
     std::istringstream parts(text.substr(at + 1, close - at - 1));
     auto& vector = result.emplace_back();
     for (std::string part; std::getline(parts, part, ',');) {
       auto const value = parsed<double>(trimmed(part));
-      if (!value) refuse(key, "must be vectors of numbers");
+      if (!value) refuse(ErrorCode::syntax, key, "must be vectors of numbers");
       vector.push_back(*value);
     }
     at = close + 1;

@@ -27,7 +27,7 @@ class NrrdFields {
   static bool is_list(std::string const& value) { return value == "LIST" || value.starts_with("LIST "); }
 
   /// Throws a DataError that quotes the field.
-  [[noreturn]] void refuse(std::string const& key, std::string const& why) const;
+  [[noreturn]] void refuse(ErrorCode code, std::string const& key, std::string const& why) const;
 
   bool has(std::string const& key) const { return values_.count(key) > 0; }
   /// Returns the text of a field. @throws DataError if it is missing

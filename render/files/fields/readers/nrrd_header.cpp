@@ -49,7 +49,8 @@ void read_type(NrrdFields const& fields, NrrdHeader& header) {
   auto const found = std::find_if(all.begin(), all.end(), [&](TypeName const& type) {
     return std::find(type.names.begin(), type.names.end(), name) != type.names.end();
   });
-  if (found == all.end()) fields.refuse("type", "is not a numeric type; write float, double, or an integer type");
+  if (found == all.end())
+    fields.refuse(ErrorCode::wrong_type, "type", "is not a numeric type; write float, double, or an integer type");
   header.type = found->type;
 }
 
@@ -62,12 +63,14 @@ void read_encoding(NrrdFields const& fields, NrrdHeader& header) {
       {"text", Encoding::ascii},  {"txt", Encoding::ascii}, {"hex", Encoding::hex}};
   auto const found = known.find(name);
   if (found == known.end()) {
-    fields.refuse("encoding", "is not supported; write the field in encoding raw, gzip, bzip2, ascii or hex");
+    fields.refuse(ErrorCode::unsupported, "encoding",
+                  "is not supported; write the field in encoding raw, gzip, bzip2, ascii or hex");
   }
   header.encoding = found->second;
   std::string const endian = lower_case(fields.text("endian"));
   bool const matters = header.value_bytes() > 1 && header.encoding != Encoding::ascii;
-  if (matters && endian != "little" && endian != "big") fields.refuse("endian", "must be little or big");
+  if (matters && endian != "little" && endian != "big")
+    fields.refuse(ErrorCode::syntax, "endian", "must be little or big");
   header.big_endian = endian == "big";
 }
 
@@ -100,7 +103,7 @@ NrrdHeader read_nrrd_header(std::string const& path, int values) {
   char magic[7] = {};
   bool const nrrd = InputFile(path).read(0, magic, sizeof magic) == sizeof magic &&
                     std::string_view(magic, sizeof magic) == "NRRD000";
-  if (!nrrd) throw DataError(path, "is not a NRRD file (it does not begin with NRRD000)");
+  if (!nrrd) throw DataError(ErrorCode::wrong_format, path, "is not a NRRD file (it does not begin with NRRD000)");
   file.next();
   NrrdFields fields(path);
   bool const attached = fields.read(file);
@@ -113,11 +116,12 @@ NrrdHeader read_nrrd_header(std::string const& path, int values) {
   header.line_skip = fields.number<long>("line skip", 0, 0);
   header.byte_skip = fields.number<long long>("byte skip", 0, -1);
   if (header.byte_skip == -1 && header.encoding != NrrdHeader::Encoding::raw) {
-    fields.refuse("byte skip", "requires encoding raw");
+    fields.refuse(ErrorCode::unsupported, "byte skip", "requires encoding raw");
   }
   if (!fields.has("data file")) {
     if (!attached)
-      throw DataError(path, "has no data: an empty line after the header, or a field \"data file\", is missing");
+      throw DataError(ErrorCode::missing_content, path,
+                      "has no data: an empty line after the header, or a field \"data file\", is missing");
     header.data_path = path;
     header.data_offset = static_cast<std::size_t>(file.offset());
     return header;
@@ -127,11 +131,12 @@ NrrdHeader read_nrrd_header(std::string const& path, int values) {
   if (NrrdFields::is_list(data) && listed.size() == 1) data = listed.front();
   if (NrrdFields::is_list(data) || data.find('%') != std::string::npos) {
     std::string const which = NrrdFields::is_list(data) ? fmt::format(" ({})", listed.size()) : " by a pattern";
-    fields.refuse("data file", "names several files" + which +
-                                   "; data in several files are not supported: join them into one file, in the order "
-                                   "of the field, and name that");
+    fields.refuse(ErrorCode::unsupported, "data file",
+                  "names several files" + which +
+                      "; data in several files are not supported: join them into one file, in the order "
+                      "of the field, and name that");
   }
-  if (data.empty()) fields.refuse("data file", "must be a file name");
+  if (data.empty()) fields.refuse(ErrorCode::syntax, "data file", "must be a file name");
   header.data_path = (std::filesystem::path(path).parent_path() / data).string();
   return header;
 }

@@ -122,8 +122,9 @@ class NpyDictionary {
   }
 
   [[noreturn]] void refuse() const {
-    throw DataError(range_.file->path(), fmt::format("array \"{}\" has a damaged NumPy header \"{}\"; save it again",
-                                                     excerpt(range_.name), excerpt(text_, 100)));
+    throw DataError(ErrorCode::damaged, range_.file->path(),
+                    fmt::format("array \"{}\" has a damaged NumPy header \"{}\"; save it again", excerpt(range_.name),
+                                excerpt(text_, 100)));
   }
 
   std::string text_;
@@ -135,14 +136,14 @@ NpyHeader read_npy_header(ByteRange const& range) {
   std::vector<char> start = read_up_to(range, magic + 4);
   std::string_view const text(start.data(), start.size());
   if (!text.starts_with("\x93NUMPY")) {
-    throw DataError(range.file->path(),
+    throw DataError(ErrorCode::wrong_format, range.file->path(),
                     fmt::format("array \"{}\" is not in NumPy's format (no magic string); save it by numpy.save",
                                 excerpt(range.name)));
   }
   if (start.size() < magic + 4) refuse_truncated(range, start.size(), magic + 4);
   int const version = static_cast<unsigned char>(start[6]);
   if (version < 1 || version > 3) {
-    throw DataError(range.file->path(),
+    throw DataError(ErrorCode::unsupported, range.file->path(),
                     fmt::format("array \"{}\" is of NumPy format {} (1 to 3 are read); save it again",
                                 excerpt(range.name), version));
   }
@@ -152,8 +153,9 @@ NpyHeader read_npy_header(ByteRange const& range) {
   NpyHeader header;
   header.data = magic + length_bytes + length;
   if (length > longest) {
-    throw DataError(range.file->path(), fmt::format("array \"{}\" has an implausible header of {} bytes; it is damaged",
-                                                    excerpt(range.name), length));
+    throw DataError(
+        ErrorCode::damaged, range.file->path(),
+        fmt::format("array \"{}\" has an implausible header of {} bytes; it is damaged", excerpt(range.name), length));
   }
   start = read_up_to(range, header.data);
   if (start.size() < header.data) refuse_truncated(range, start.size(), header.data);
@@ -212,7 +214,7 @@ class FortranOrder {
 };
 
 [[noreturn]] void refuse_checksum(ByteRange const& range) {
-  throw DataError(range.file->path(),
+  throw DataError(ErrorCode::damaged, range.file->path(),
                   fmt::format("array \"{}\" is damaged (wrong checksum); copy it again", excerpt(range.name)));
 }
 
@@ -261,7 +263,7 @@ ListedArray npy_array(ByteRange const& range, NpyHeader const& header, std::uint
   if (present < required) refuse_truncated(range, present, required);
   if (present > required) {
     throw DataError(
-        range.file->path(),
+        ErrorCode::damaged, range.file->path(),
         fmt::format("array \"{}\" has {} bytes of data, but its header requires {}; save one array per file",
                     excerpt(range.name), present, required));
   }
@@ -284,14 +286,16 @@ ListedArray npy_array(ByteRange const& range, NpyHeader const& header, std::uint
 
 std::unique_ptr<CheckedSource> open_npy(std::string const& path, FieldSelection const& selection) {
   if (!selection.dataset.empty()) {
-    throw DataError(path, "contains one array without a name; leave dataset = \"" + selection.dataset + "\" out");
+    throw DataError(ErrorCode::missing_content, path,
+                    "contains a single unnamed array; remove dataset = \"" + selection.dataset + "\"");
   }
   auto const file = std::make_shared<InputFile const>(path, "a field file");
   ByteRange const range{file, "array", 0, file->size()};
   NpyHeader const header = read_npy_header(range);
   if (!header.type) {
-    throw DataError(path, "holds " + describe_dtype(header.dtype) +
-                              ", not real numbers; save an array of float64, float32 or integers");
+    throw DataError(
+        ErrorCode::wrong_type, path,
+        "holds " + describe_dtype(header.dtype) + ", not real numbers; save an array of float64, float32 or integers");
   }
   return open_array_field(
       std::make_unique<ListedArrays>(path, std::vector{npy_array(range, header, file->size(), std::nullopt)}), path,

@@ -55,7 +55,7 @@ std::vector<PointAxis> axes_of_table(PointTable const& table, std::string const&
       if (!named || named->axis != letter) continue;
       for (std::size_t i = 0; i < column.values.size(); ++i) {
         if (std::isfinite(column.values[i])) continue;
-        throw DataError(fmt::format("{}:{}", path, table.line[i]),
+        throw DataError(ErrorCode::invalid_value, fmt::format("{}:{}", path, table.line[i]),
                         fmt::format("{} is not finite; correct the coordinate", excerpt(column.name)));
       }
       axes.push_back({&column, letter, distinct_levels(column.values)});
@@ -65,9 +65,10 @@ std::vector<PointAxis> axes_of_table(PointTable const& table, std::string const&
   if (axes.size() >= 2) return axes;
   std::vector<std::string> names;
   for (PointColumn const& column : table.columns) names.push_back(column.name);
-  throw DataError(path, fmt::format("names no coordinates of points (columns x, y and z, or x_mm ...; the columns are "
-                                    "{}); name them in the header",
-                                    excerpt(fmt::format("{}", fmt::join(names, ", ")), 200)));
+  throw DataError(ErrorCode::missing_content, path,
+                  fmt::format("names no coordinates of points (columns x, y and z, or x_mm ...; the columns are "
+                              "{}); name them in the header",
+                              excerpt(fmt::format("{}", fmt::join(names, ", ")), 200)));
 }
 
 /// Describes the node of a grid: "x = 1, y = 2, z = 0".
@@ -86,7 +87,9 @@ std::vector<std::size_t> rows_of_nodes(PointTable const& table, std::vector<Poin
                                        std::string const& path) {
   double nodes = 1;
   for (PointAxis const& axis : axes) nodes *= static_cast<double>(axis.levels.size());
-  if (nodes > 1e18) throw DataError(path, "holds points that do not lie on a regular grid; resample them to one");
+  if (nodes > 1e18)
+    throw DataError(ErrorCode::unsupported, path,
+                    "contains points that do not form a regular grid; resample them to such a grid");
   std::vector<std::pair<std::uint64_t, std::size_t>> places(table.line.size());
   for (std::size_t point = 0; point < places.size(); ++point) {
     std::uint64_t node = 0;
@@ -100,17 +103,17 @@ std::vector<std::size_t> rows_of_nodes(PointTable const& table, std::vector<Poin
     rows[i] = places[i].second;
     if (places[i].first == i) continue;
     if (places[i].first < i) {
-      throw DataError(fmt::format("{}:{}", path, table.line[places[i].second]),
+      throw DataError(ErrorCode::invalid_value, fmt::format("{}:{}", path, table.line[places[i].second]),
                       fmt::format("the point {} is also in line {}; keep one of them", node_text(axes, places[i].first),
                                   table.line[places[i - 1].second]));
     }
-    throw DataError(path,
+    throw DataError(ErrorCode::missing_content, path,
                     fmt::format("lacks the point {}: {} points do not fill the grid of {:.0f}; add it, or resample "
                                 "the points to a regular grid",
                                 node_text(axes, i), places.size(), nodes));
   }
   if (static_cast<double>(places.size()) < nodes) {
-    throw DataError(path,
+    throw DataError(ErrorCode::missing_content, path,
                     fmt::format("lacks the point {}: {} points do not fill the grid of {:.0f}; add it, or resample "
                                 "the points to a regular grid",
                                 node_text(axes, places.size()), places.size(), nodes));

@@ -111,7 +111,9 @@ class PointTableReader {
       if (text.empty()) continue;
       if (!read_line(text)) break;
     }
-    if (table_.line.empty()) throw DataError(path, "holds no row of numbers below a header that names the columns");
+    if (table_.line.empty())
+      throw DataError(ErrorCode::missing_content, path,
+                      "holds no row of numbers below a header that names the columns");
   }
   PointTable take() { return std::move(table_); }
 
@@ -123,7 +125,8 @@ class PointTableReader {
     if (!numbers && table_.line.empty()) {
       constexpr std::size_t most_header_lines = 200;
       if (header_.size() == most_header_lines)
-        refuse(fmt::format("no row of numbers in {} lines; is this a table of points?", most_header_lines));
+        refuse(ErrorCode::wrong_format,
+               fmt::format("no row of numbers in {} lines; is this a table of points?", most_header_lines));
       header_.emplace_back(text);
       return true;
     }
@@ -138,27 +141,31 @@ class PointTableReader {
   }
 
   void read_header() {
-    if (is_block_zone(header_)) refuse("the zone is in BLOCK packing; export it in POINT packing");
+    if (is_block_zone(header_))
+      refuse(ErrorCode::unsupported, "the zone is in BLOCK packing; export it in POINT packing");
     table_.columns = columns_of_header(header_);
     if (table_.columns.empty())
-      refuse("no header line names the columns; put their names first, such as x_mm,y_mm,z_mm,rho");
+      refuse(ErrorCode::missing_content,
+             "no header line names the columns; put their names first, such as x_mm,y_mm,z_mm,rho");
   }
 
   void add_row(std::vector<std::string> const& fields) {
     if (fields.size() != table_.columns.size()) {
-      refuse(fmt::format("{} fields, but the header names {} columns", fields.size(), table_.columns.size()));
+      refuse(ErrorCode::syntax,
+             fmt::format("{} fields, but the header names {} columns", fields.size(), table_.columns.size()));
     }
     for (std::size_t i = 0; i < fields.size(); ++i) {
       PointColumn& column = table_.columns[i];
       auto const value = parse_number(fields[i]);
-      if (!value) refuse(fmt::format("{} = \"{}\" is not a number", excerpt(column.name), excerpt(fields[i])));
+      if (!value)
+        refuse(ErrorCode::syntax, fmt::format("{} = \"{}\" is not a number", excerpt(column.name), excerpt(fields[i])));
       require_room(column.values, path_, "points");
       column.values.push_back(*value);
     }
     table_.line.push_back(file_.number());
   }
 
-  [[noreturn]] void refuse(std::string const& why) const { throw DataError(file_.place(), why); }
+  [[noreturn]] void refuse(ErrorCode code, std::string const& why) const { throw DataError(code, file_.place(), why); }
 
   std::string path_;
   LineReader file_;

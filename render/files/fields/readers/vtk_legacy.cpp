@@ -37,11 +37,11 @@ class LegacyReader {
   LegacyReader(std::string const& path, FieldSelection const& selection)
       : file_(std::make_shared<InputFile>(path, "a field file")), cursor_(*file_), selection_(selection) {
     if (!cursor_.line().starts_with("# vtk DataFile"))
-      refuse("is not a legacy VTK file (it does not begin with # vtk)");
+      refuse(ErrorCode::wrong_format, "is not a legacy VTK file (it does not begin with # vtk)");
     cursor_.line();  // title
     std::string const encoding = lower_case(cursor_.word());
     if (encoding != "ascii" && encoding != "binary")
-      refuse("is declared neither as ASCII nor as BINARY; copy it again");
+      refuse(ErrorCode::damaged, "is declared neither as ASCII nor as BINARY; copy it again");
     text_ = encoding == "ascii";
     read_grid();
     read_arrays();
@@ -55,14 +55,14 @@ class LegacyReader {
       names.push_back(array.name);
       bool const fits = array.components == static_cast<std::uint64_t>(selection_.values);
       if (array.name == selection_.dataset && !fits) {
-        refuse(fmt::format("data array \"{}\" has {} values per point, but {} are needed", excerpt(array.name),
-                           array.components, selection_.values));
+        refuse(ErrorCode::wrong_shape, fmt::format("data array \"{}\" has {} values per point, but {} are needed",
+                                                   excerpt(array.name), array.components, selection_.values));
       }
       if (fits && (selection_.dataset.empty() || array.name == selection_.dataset)) fitting.push_back(array);
     }
-    if (fitting.empty()) refuse(no_such_array(selection_, names));
+    if (fitting.empty()) refuse(ErrorCode::missing_content, no_such_array(selection_, names));
     if (fitting.size() > 1 && selection_.dataset.empty()) {
-      refuse("has several such fields; select one with dataset = " + quoted_list(names));
+      refuse(ErrorCode::undetermined, "has several such fields; select one with dataset = " + quoted_list(names));
     }
     VtkLegacyArray const& chosen = fitting.front();
     VtkField field{chosen.name, chosen.place, chosen.number.significant_bits, grid_, {}, {}};
@@ -73,7 +73,7 @@ class LegacyReader {
   }
 
  private:
-  [[noreturn]] void refuse(std::string const& why) const { throw DataError(file_->path(), why); }
+  [[noreturn]] void refuse(ErrorCode code, std::string const& why) const { throw DataError(code, file_->path(), why); }
 
   template <class Number>
   Number number(std::string const& what) {
@@ -81,7 +81,7 @@ class LegacyReader {
     Number value{};
     auto const [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
     if (error != std::errc() || end != word.data() + word.size()) {
-      refuse(fmt::format("{}: \"{}\" is not a number; copy it again", what, excerpt(word)));
+      refuse(ErrorCode::syntax, fmt::format("{}: \"{}\" is not a number; copy it again", what, excerpt(word)));
     }
     return value;
   }
@@ -90,25 +90,26 @@ class LegacyReader {
     std::string const type = lower_case(name);
     auto const* const found = std::find_if(vtk_numbers.begin(), vtk_numbers.end(),
                                            [&type](VtkNumber const& one) { return lower_case(one.legacy) == type; });
-    if (found == vtk_numbers.end()) refuse(fmt::format("has data of type \"{}\", which is not numeric", excerpt(name)));
+    if (found == vtk_numbers.end())
+      refuse(ErrorCode::wrong_type, fmt::format("has data of type \"{}\", which is not numeric", excerpt(name)));
     return *found;
   }
 
   void read_grid() {
-    if (lower_case(cursor_.word()) != "dataset") refuse("has no line DATASET; copy it again");
+    if (lower_case(cursor_.word()) != "dataset") refuse(ErrorCode::damaged, "has no line DATASET; copy it again");
     std::string const kind = lower_case(cursor_.word());
     bool const image = kind == "structured_points";
     if (!image && kind != "rectilinear_grid") {
-      refuse(
-          fmt::format("holds VTK's \"{}\" (fields on a regular grid are read, STRUCTURED_POINTS and "
-                      "RECTILINEAR_GRID); resample it to an image",
-                      excerpt(kind)));
+      refuse(ErrorCode::unsupported,
+             fmt::format("holds VTK's \"{}\" (fields on a regular grid are read, STRUCTURED_POINTS and "
+                         "RECTILINEAR_GRID); resample it to an image",
+                         excerpt(kind)));
     }
     for (std::string key = lower_case(cursor_.word());; key = lower_case(cursor_.word())) {
       if (key == "dimensions") {
         for (std::size_t i = 0; i < 3; ++i) {
           int const points = number<int>("DIMENSIONS");
-          if (points < 1) refuse("DIMENSIONS must be positive");
+          if (points < 1) refuse(ErrorCode::out_of_range, "DIMENSIONS must be positive");
           grid_.extent[2 * i + 1] = points - 1;
         }
         check_grid(grid_, selection_.values, file_->path());
@@ -130,7 +131,7 @@ class LegacyReader {
     check_grid(grid_, selection_.values, file_->path());
     if (!image &&
         std::any_of(grid_.coordinates.begin(), grid_.coordinates.end(), [](auto const& x) { return x.empty(); })) {
-      refuse("has no coordinates of its RECTILINEAR_GRID; copy it again");
+      refuse(ErrorCode::damaged, "has no coordinates of its RECTILINEAR_GRID; copy it again");
     }
   }
 
@@ -160,13 +161,15 @@ class LegacyReader {
         place = key == "point_data" ? VtkPlace::points : VtkPlace::cells;
         std::uint64_t const there = number<std::uint64_t>(key);
         if (there != nodes(*place)) {
-          refuse(fmt::format("has {} values in its {}, but its grid has {} {}; copy it again", there, key,
+          refuse(ErrorCode::damaged,
+                 fmt::format("has {} values in its {}, but its grid has {} {}; copy it again", there, key,
                              nodes(*place), *place == VtkPlace::points ? "points" : "cells"));
         }
       } else if (key == "metadata") {
         skip_metadata();
       } else if (!place) {
-        refuse(fmt::format("has \"{}\" instead of POINT_DATA or CELL_DATA; copy it again", excerpt(key)));
+        refuse(ErrorCode::damaged,
+               fmt::format("has \"{}\" instead of POINT_DATA or CELL_DATA; copy it again", excerpt(key)));
       } else if (!read_attribute(key, *place)) {
         return;  // the length of an unknown attribute is not defined, so that reading must stop here
       }
@@ -178,7 +181,8 @@ class LegacyReader {
     array.number = number_type(cursor_.word());
     std::string const rest = trimmed(cursor_.line());
     if (!rest.empty() && std::from_chars(rest.data(), rest.data() + rest.size(), array.components).ec != std::errc()) {
-      refuse(fmt::format("SCALARS {}: \"{}\" is not a number of components", excerpt(array.name), excerpt(rest)));
+      refuse(ErrorCode::syntax,
+             fmt::format("SCALARS {}: \"{}\" is not a number of components", excerpt(array.name), excerpt(rest)));
     }
     std::string next(12, ' ');
     next.resize(file_->read(cursor_.place(), next.data(), next.size()));
@@ -244,7 +248,8 @@ class LegacyReader {
         --i;
         continue;
       }
-      if (name.empty()) refuse("is cut short: a FIELD has fewer arrays than it declares; copy it again");
+      if (name.empty())
+        refuse(ErrorCode::damaged, "is cut short: a FIELD has fewer arrays than it declares; copy it again");
       array.name = decoded_name(name);
       array.components = number<std::uint64_t>("FIELD");
       array.tuples = number<std::uint64_t>("FIELD");

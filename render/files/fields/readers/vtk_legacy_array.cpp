@@ -23,7 +23,7 @@ void load_text(InputFile const& file, VtkLegacyArray const& array, ValueStore& v
     double value = 0;
     std::size_t const sign = word.starts_with('+') ? 1 : 0;
     if (std::from_chars(word.data() + sign, word.data() + word.size(), value).ec == std::errc::invalid_argument) {
-      throw DataError(file.path(),
+      throw DataError(ErrorCode::damaged, file.path(),
                       fmt::format("data array \"{}\" is damaged ({} of {} numbers are present); copy it again",
                                   excerpt(array.name), i, values.size()));
     }
@@ -62,7 +62,7 @@ ValueStore load_legacy_array(InputFile const& file, VtkLegacyArray const& array,
 }
 
 void refuse_incomplete(InputFile const& file, VtkLegacyArray const& array) {
-  throw DataError(file.path(),
+  throw DataError(ErrorCode::damaged, file.path(),
                   fmt::format("is cut short: data array \"{}\" is incomplete; copy it again", excerpt(array.name)));
 }
 

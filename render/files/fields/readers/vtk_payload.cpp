@@ -22,7 +22,8 @@ namespace gladstone {
 namespace {
 
 [[noreturn]] void refuse_damaged(InputFile const& file, std::string const& name, std::string const& why) {
-  throw DataError(file.path(), fmt::format("data array \"{}\" is damaged ({}); copy it again", excerpt(name), why));
+  throw DataError(ErrorCode::damaged, file.path(),
+                  fmt::format("data array \"{}\" is damaged ({}); copy it again", excerpt(name), why));
 }
 
 /// Sequential reader of the stored bytes of an array, decoding base64.
@@ -55,7 +56,7 @@ class ByteStream {
 
  private:
   [[noreturn]] void cut_short() const {
-    throw DataError(file_.path(),
+    throw DataError(ErrorCode::damaged, file_.path(),
                     fmt::format("is cut short: data array \"{}\" is incomplete; copy it again", excerpt(name_)));
   }
 

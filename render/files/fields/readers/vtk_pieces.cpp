@@ -59,9 +59,10 @@ ValueStore load_pieces(VtkArrays const& arrays) {
     }
   }
   if (missing > 0) {
-    throw DataError(arrays.file.path(), fmt::format("lacks {} of {} values of \"{}\": its pieces do not fill its "
-                                                    "WholeExtent; write it as one piece",
-                                                    missing, nodes, excerpt(arrays.name)));
+    throw DataError(ErrorCode::missing_content, arrays.file.path(),
+                    fmt::format("lacks {} of {} values of \"{}\": its pieces do not fill its "
+                                "WholeExtent; write it as one piece",
+                                missing, nodes, excerpt(arrays.name)));
   }
   return store;
 }

@@ -24,11 +24,12 @@ StoredAxes image_axes(VtkGrid const& grid, VtkPlace place, std::string const& pa
     for (std::size_t row = 0; row < 3; ++row) {
       constexpr double rounding = 1e-6;  // tolerance of angles [rad]: a millionth of the width of the field
       if (std::isfinite(along(row)) && (row == largest || std::abs(along(row)) <= rounding)) continue;
-      throw DataError(path, "has rotated axes (Direction) that are not along X, Y and Z; resample it along them");
+      throw DataError(ErrorCode::unsupported, path,
+                      "has rotated axes (Direction) that are not along X, Y and Z; resample it along them");
     }
     char const world = "xyz"[largest];
     if (taken.find(world) != std::string::npos || std::abs(std::abs(along(largest)) - 1) > 1e-6) {
-      throw DataError(path,
+      throw DataError(ErrorCode::invalid_value, path,
                       "has a Direction that is neither a rotation nor a reflection; resample it along X, Y and Z");
     }
     taken += world;
@@ -48,8 +49,9 @@ StoredAxes rectilinear_axes(VtkGrid const& grid, VtkPlace place, std::string con
   for (std::size_t i = 0; i < 3; ++i) {
     std::vector<double> places = grid.coordinates[i];
     if (places.size() != static_cast<std::size_t>(VtkGrid::count(grid.extent, i, VtkPlace::points))) {
-      throw DataError(path, fmt::format("has {} coordinates along {} for {} points; write it anew", places.size(),
-                                        "xyz"[i], VtkGrid::count(grid.extent, i, VtkPlace::points)));
+      throw DataError(ErrorCode::wrong_shape, path,
+                      fmt::format("has {} coordinates along {} for {} points; write it anew", places.size(), "xyz"[i],
+                                  VtkGrid::count(grid.extent, i, VtkPlace::points)));
     }
     if (place == VtkPlace::cells && places.size() > 1) {
       for (std::size_t k = 0; k + 1 < places.size(); ++k) places[k] = 0.5 * (places[k] + places[k + 1]);
@@ -111,13 +113,14 @@ void check_grid(VtkGrid const& grid, int values, std::string const& path) {
     bool const usable = points >= 1 && points <= std::numeric_limits<int>::max() && std::isfinite(grid.origin[axis]) &&
                         std::isfinite(spacing) && (spacing != 0 || points == 1);
     if (!usable) {
-      throw DataError(path,
+      throw DataError(ErrorCode::invalid_value, path,
                       "has no usable grid (its extent must ascend, Origin and Spacing must be finite, and Spacing "
                       "other than 0); write it anew");
     }
     all *= points;
   }
-  if (all * sizeof(double) > 1e15) throw DataError(path, "has an implausibly large grid; check its extent");
+  if (all * sizeof(double) > 1e15)
+    throw DataError(ErrorCode::out_of_range, path, "has an implausibly large grid; check its extent");
 }
 
 std::unique_ptr<CheckedSource> make_vtk_source(std::string const& path, VtkField field,

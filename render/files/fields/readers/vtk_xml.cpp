@@ -62,13 +62,14 @@ class VtkXmlReader {
     pugi::xml_document document;
     auto const result = document.load_buffer_inplace(head_.xml.data(), head_.xml.size());
     pugi::xml_node const root = document.child("VTKFile");
-    if (!root) refuse("is not a VTK file (XML, with a tag <VTKFile>)");
+    if (!root) refuse(ErrorCode::wrong_format, "is not a VTK file (XML, with a tag <VTKFile>)");
     if (!result) {
-      refuse(fmt::format("is not complete XML ({} at byte {}); copy it again", result.description(), result.offset));
+      refuse(ErrorCode::damaged,
+             fmt::format("is not complete XML ({} at byte {}); copy it again", result.description(), result.offset));
     }
     read_kind(root);
     pugi::xml_node const grid = root.child(kind_.c_str());
-    if (!grid) refuse("has no tag <" + kind_ + ">; copy it again");
+    if (!grid) refuse(ErrorCode::damaged, "has no tag <" + kind_ + ">; copy it again");
     read_grid(grid);
     appended_format_ = root.child("AppendedData").attribute("encoding").as_string("base64") == std::string_view("raw")
                            ? VtkPayload::Format::raw
@@ -84,7 +85,7 @@ class VtkXmlReader {
   }
 
  private:
-  [[noreturn]] void refuse(std::string const& why) const { throw DataError(path_, why); }
+  [[noreturn]] void refuse(ErrorCode code, std::string const& why) const { throw DataError(code, path_, why); }
 
   template <class Number, std::size_t Count>
   std::array<Number, Count> numbers(pugi::xml_node tag, char const* key, std::array<Number, Count> const* fallback) {
@@ -103,7 +104,8 @@ class VtkXmlReader {
       found[count] = number;
       at = text.find_first_not_of(blanks, static_cast<std::size_t>(rest - text.data()));
     }
-    if (count != Count) refuse(fmt::format("{} {} = \"{}\" is not {} numbers", tag.name(), key, excerpt(text), Count));
+    if (count != Count)
+      refuse(ErrorCode::syntax, fmt::format("{} {} = \"{}\" is not {} numbers", tag.name(), key, excerpt(text), Count));
     return found;
   }
 
@@ -111,6 +113,7 @@ class VtkXmlReader {
     kind_ = root.attribute("type").as_string();
     if (kind_ != "ImageData" && kind_ != "RectilinearGrid") {
       refuse(
+          ErrorCode::unsupported,
           fmt::format("holds VTK's \"{}\" (fields on a regular grid are read, \"ImageData\" and \"RectilinearGrid\"); "
                       "resample it to an image",
                       excerpt(kind_)));
@@ -123,7 +126,8 @@ class VtkXmlReader {
     if (compressor == "vtkLZ4DataCompressor") encoding.compressor = VtkEncoding::Compressor::lz4;
     if (compressor == "vtkLZMADataCompressor") encoding.compressor = VtkEncoding::Compressor::lzma;
     if (!compressor.empty() && encoding.compressor == VtkEncoding::Compressor::none) {
-      refuse(fmt::format("is compressed by \"{}\", which is not supported; use zlib, LZ4, LZMA or none",
+      refuse(ErrorCode::unsupported,
+             fmt::format("is compressed by \"{}\", which is not supported; use zlib, LZ4, LZMA or none",
                          excerpt(compressor)));
     }
   }
@@ -162,12 +166,12 @@ class VtkXmlReader {
       if (!names.empty()) break;
     }
     if (fitting.empty() && !selection_.dataset.empty() && !components.empty()) {
-      refuse(fmt::format("data array \"{}\" has {} values per point, but {} are needed", excerpt(selection_.dataset),
-                         components, selection_.values));
+      refuse(ErrorCode::wrong_shape, fmt::format("data array \"{}\" has {} values per point, but {} are needed",
+                                                 excerpt(selection_.dataset), components, selection_.values));
     }
-    if (fitting.empty()) refuse(no_such_array(selection_, names));
+    if (fitting.empty()) refuse(ErrorCode::missing_content, no_such_array(selection_, names));
     if (fitting.size() > 1 && selection_.dataset.empty()) {
-      refuse("has several such fields; select one with dataset = " + quoted_list(names));
+      refuse(ErrorCode::undetermined, "has several such fields; select one with dataset = " + quoted_list(names));
     }
     if (fitting.size() > 1) {
       notes_.push_back(fmt::format("\"{}\" exists for points and for cells; that of {} is used", fitting.front(),
@@ -199,16 +203,18 @@ class VtkXmlReader {
       if (empty) continue;
       for (std::size_t i = 0; i < 3; ++i) {
         if (piece.extent[2 * i] >= grid_.extent[2 * i] && piece.extent[2 * i + 1] <= grid_.extent[2 * i + 1]) continue;
-        refuse("has a piece that reaches beyond its WholeExtent; write it as one piece");
+        refuse(ErrorCode::damaged, "has a piece that reaches beyond its WholeExtent; write it as one piece");
       }
       pugi::xml_node const array =
           data_of(tag, arrays_->place).find_child_by_attribute("DataArray", "Name", arrays_->name.c_str());
-      if (!array) refuse(fmt::format("lacks \"{}\" in one of its pieces; write it anew", excerpt(arrays_->name)));
+      if (!array)
+        refuse(ErrorCode::missing_content,
+               fmt::format("lacks \"{}\" in one of its pieces; write it anew", excerpt(arrays_->name)));
       read_array(array, piece);
       arrays_->pieces.push_back(piece);
       if (rectilinear) read_coordinates(tag.child("Coordinates"), piece.extent);
     }
-    if (arrays_->pieces.empty()) refuse("has no piece with data; write it anew");
+    if (arrays_->pieces.empty()) refuse(ErrorCode::missing_content, "has no piece with data; write it anew");
     bool const ascii = std::all_of(arrays_->pieces.begin(), arrays_->pieces.end(), [](VtkPiece const& piece) {
       return piece.payload.format == VtkPayload::Format::ascii;
     });
@@ -223,17 +229,19 @@ class VtkXmlReader {
     auto const* const number =
         std::find_if(vtk_numbers.begin(), vtk_numbers.end(), [type](VtkNumber const& one) { return one.xml == type; });
     if (number == vtk_numbers.end()) {
-      refuse(fmt::format("data array \"{}\" is of type \"{}\", which is not numeric", excerpt(name), excerpt(type)));
+      refuse(ErrorCode::wrong_type,
+             fmt::format("data array \"{}\" is of type \"{}\", which is not numeric", excerpt(name), excerpt(type)));
     }
     piece.number = *number;
     VtkPayload& payload = piece.payload;
     std::string_view const format = tag.attribute("format").as_string("ascii");
     payload.appended = format == "appended";
     if (payload.appended) {
-      if (!head_.data) refuse(fmt::format("data array \"{}\" has no data; copy it again", excerpt(name)));
+      if (!head_.data)
+        refuse(ErrorCode::damaged, fmt::format("data array \"{}\" has no data; copy it again", excerpt(name)));
       payload.format = appended_format_;
       payload.offset = *head_.data + numbers<std::uint64_t, 1>(tag, "offset", nullptr)[0];
-      if (payload.offset < *head_.data) refuse("has an impossible offset; copy it again");
+      if (payload.offset < *head_.data) refuse(ErrorCode::damaged, "has an impossible offset; copy it again");
       return;
     }
     payload.format = format == "ascii" ? VtkPayload::Format::ascii : VtkPayload::Format::base64;
@@ -256,7 +264,7 @@ class VtkXmlReader {
       for (std::size_t i = 0; i < count; ++i) *place++ = numbers[i];
       ++axis;
     }
-    if (axis < 3) refuse("does not have three arrays in <Coordinates>; write it anew");
+    if (axis < 3) refuse(ErrorCode::wrong_shape, "does not have three arrays in <Coordinates>; write it anew");
   }
 
   std::shared_ptr<VtkArrays> arrays_;

@@ -37,7 +37,9 @@ std::string WordCursor::word() {
   constexpr std::size_t most = 4096;
   while (peek() >= 0 && std::isspace(peek()) == 0) {
     text += static_cast<char>(take());
-    if (text.size() > most) throw DataError(file_.path(), "has a word too long for a legacy VTK file");
+    if (text.size() > most)
+      throw DataError(ErrorCode::damaged, file_.path(),
+                      "is damaged: it contains a word that is too long for a legacy VTK file; copy it again");
   }
   return text;
 }
@@ -47,7 +49,9 @@ std::string WordCursor::line() {
   constexpr std::size_t most = 65536;
   for (int c = take(); c >= 0 && c != '\n'; c = take()) {
     text += static_cast<char>(c);
-    if (text.size() > most) throw DataError(file_.path(), "has a line too long for a legacy VTK file");
+    if (text.size() > most)
+      throw DataError(ErrorCode::damaged, file_.path(),
+                      "is damaged: it contains a line that is too long for a legacy VTK file; copy it again");
   }
   if (!text.empty() && text.back() == '\r') text.pop_back();
   return text;

@@ -39,7 +39,8 @@ class ZipFields {
   std::string const& bytes() const { return bytes_; }
 
   [[noreturn]] void refuse() const {
-    throw DataError(file_.path(), "is cut short or damaged: the directory of its archive is incomplete; copy it again");
+    throw DataError(ErrorCode::damaged, file_.path(),
+                    "is cut short or damaged: the directory of its archive is incomplete; copy it again");
   }
 
  private:
@@ -90,7 +91,8 @@ std::vector<ZipEntry> zip_entries(std::shared_ptr<InputFile const> const& file) 
   std::string start(4, '\0');
   start.resize(file->read(0, start.data(), start.size()));
   if (!start.starts_with("PK\x03\x04") && !start.starts_with("PK\x05\x06"))
-    throw DataError(file->path(), "is not a zip archive; copy it again, or name it by its format");
+    throw DataError(ErrorCode::wrong_format, file->path(),
+                    "is not a zip archive; copy it again, or name it by its format");
   ZipDirectory const directory = find_directory(*file);
   ZipFields const fields(*file, directory.offset, directory.size);
   std::vector<ZipEntry> entries;
@@ -108,8 +110,9 @@ std::vector<ZipEntry> zip_entries(std::shared_ptr<InputFile const> const& file) 
     entry.size = size;
     entry.crc32 = static_cast<std::uint32_t>(fields.number(at + 16, 4));
     if ((flags & 1) != 0 || (method != 0 && method != 8)) {
-      throw DataError(file->path(),
-                      fmt::format("entry \"{}\" is {}; save the archive anew without that", excerpt(entry.range.name),
+      throw DataError(ErrorCode::unsupported, file->path(),
+                      fmt::format("entry \"{}\" is {}, which is not supported; save the archive by numpy.savez",
+                                  excerpt(entry.range.name),
                                   (flags & 1) != 0 ? "encrypted" : fmt::format("compressed by method {}", method)));
     }
     ZipFields const local(*file, offset, 30);
