@@ -1,0 +1,161 @@
+"""Lists what the program may tell a user: tests/architecture/messages.txt holds the text of every error and warning of
+the sources, and docs/reference/errors.md the error codes. Both are generated, so that a change of a message is seen in
+review as a change of one line. Without arguments, compares; with --renew, writes both files.
+"""
+
+from __future__ import annotations
+
+import argparse
+import difflib
+import re
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+LIST = "tests/architecture/messages.txt"
+CODES = "docs/reference/errors.md"
+ROOMS = ("render", "analysis", "studies", "cuda", "python/src")
+TABLE_HEAD = "| code | meaning |\n|---|---|\n"
+
+# Calls that report to the user, and their codes if the call names none; "-" means that the code is chosen elsewhere.
+CALLS = re.compile(
+    r"\b(?:(?P<data>DataError)|(?P<output>OutputError)|(?P<device>DeviceError|OutOfDeviceMemory)"
+    r"|(?P<interrupted>Interrupted)|(?P<other>refuse|fail|add_problem)"
+    r"|(?P<problem>(?<=\.)problem|(?<=problems\.)push_back|(?<=problems_\.)push_back)"
+    r"|(?P<warning>warn|note_once|(?<=warnings\.)push_back|(?<=warnings_\.)push_back|(?<=notes\.)push_back"
+    r"|(?<=notes_\.)push_back))\s*[({]"
+)
+DEFAULT_CODE = {
+    "data": "-", "output": "output", "device": "device", "interrupted": "interrupted", "other": "-",
+    "problem": "invalid_value", "warning": "warning",
+}  # fmt: skip
+TOKEN = re.compile(
+    r"//[^\n]*|/\*.*?\*/"
+    r'|R"(?P<mark>[^(\s]*)\((?P<raw>.*?)\)(?P=mark)"'
+    r'|"(?P<text>(?:[^"\\\n]|\\.)*)"'
+    r"|(?<!\w)'(?:[^'\\\n]|\\.)+'"
+    r"|(?P<open>[({\[])|(?P<close>[)}\]])|(?P<end>;)",
+    re.DOTALL,
+)
+# Functions that return a problem as a text, which others report.
+TEXT_FUNCTIONS = re.compile(
+    r"std::string (?:\w+::)?(?:\w*(?:problem|reason|fault|refusal|warning|caveat|mistake|shortage)\w*"
+    r"|broken_\w+|wrong_\w+)\("
+)
+RETURN = re.compile(r"\breturn\b")
+ESCAPES = {r"\"": '"', r"\n": " ", r"\\": "\\"}
+
+
+def without_comments(source: str) -> str:
+    """Replaces comments by blanks."""
+    return TOKEN.sub(lambda token: " " if token[0].startswith(("//", "/*")) else token[0], source)
+
+
+def read_until(source: str, begin: int, *, statement: bool = False) -> tuple[str, str]:
+    """Reads from behind an opening bracket to its closing one, or from a word to the end of its statement.
+
+    Returns the code, and the text of its string literals: literals that follow each other are joined, and "..."
+    represents the code between others.
+    """
+    depth, at, text = 0 if statement else 1, begin, ""
+    for token in TOKEN.finditer(source, begin):
+        depth += bool(token["open"]) - bool(token["close"])
+        if depth < 0 or (token["end"] if statement else token["close"]) and depth == 0:
+            return source[begin : token.start()], text
+        literal = token["raw"] if token["raw"] is not None else token["text"]
+        if literal is None:
+            continue
+        between = source[at : token.start()].strip()
+        literal = re.sub(r'\\["n\\]', lambda escape: ESCAPES[escape[0]], literal)
+        text += ("..." if between and text else "") + literal
+        at = token.end()
+    return source[begin:], text
+
+
+def returned_texts(source: str) -> list[str]:
+    """Returns the texts that functions return as problems."""
+    texts = []
+    for function in TEXT_FUNCTIONS.finditer(source):
+        parameters, _ = read_until(source, function.end())
+        body = re.compile(r"\)[\w\s]*\{").match(source, function.end() + len(parameters))
+        if body:
+            code, _ = read_until(source, body.end())
+            texts += [read_until(code, statement.end(), statement=True)[1] for statement in RETURN.finditer(code)]
+    return texts
+
+
+def messages(source: str) -> list[str]:
+    """Returns the messages of a source, "code: text", sorted."""
+    source = without_comments(source)
+    found = {f"-: {' '.join(text.split())}" for text in returned_texts(source) if " " in text.strip()}
+    for call in CALLS.finditer(source):
+        arguments, text = read_until(source, call.end())
+        if " " not in text.strip():
+            continue  # the text is made elsewhere, or the call is a declaration
+        code = re.search(r"ErrorCode::(\w+)", arguments)
+        found.add(f"{code[1] if code else DEFAULT_CODE[call.lastgroup]}: {' '.join(text.split())}")
+    return sorted(found)
+
+
+def all_messages() -> str:
+    """Returns the content of the list: the messages of each file, below its name."""
+    parts = []
+    for room in ROOMS:
+        for path in sorted((ROOT / room).rglob("*")):
+            if path.suffix in {".h", ".cpp", ".cu", ".cuh"} and (lines := messages(path.read_text())):
+                parts.append("\n".join([path.relative_to(ROOT).as_posix(), *(f"  {line}" for line in lines)]))
+    return "\n\n".join(parts) + "\n"
+
+
+def code_table() -> str:
+    """Returns the table of error codes, from the comments of the enumeration."""
+    header = (ROOT / "render/base/error.h").read_text()
+    enumeration = header[header.index("enum class ErrorCode") :]
+    enumeration = enumeration[: enumeration.index("};")]
+    rows = re.findall(r"^\s*(\w+),\s*///< (.*)$", enumeration, re.MULTILINE)
+    return TABLE_HEAD + "".join(f"| `{name}` | {meaning} |\n" for name, meaning in rows)
+
+
+def with_table(page: str) -> str:
+    """Returns a page with its table of codes replaced by the present one."""
+    start = page.index(TABLE_HEAD)
+    return page[:start] + code_table() + page[page.index("\n\n", start) + 1 :]
+
+
+def self_test() -> None:
+    """Checks that the list does not depend on the layout of the source."""
+    one_line = 'throw DataError(ErrorCode::damaged, path, "is \\"cut\\" short; copy it");  // warn("not a call")'
+    wrapped = 'throw DataError(\n  ErrorCode::damaged, path,\n  "is \\"cut\\" "\n  "short; copy it");'
+    assert messages(one_line) == messages(wrapped) == ['damaged: is "cut" short; copy it'], messages(wrapped)
+    joined = 'table.problem("key", "is " + f(")", 1) + " m long", ErrorCode::out_of_range); warn("a {}" " b", c);'
+    assert messages(joined) == ["out_of_range: key...is ...)... m long", "warning: a {} b"], messages(joined)
+    assert messages('DataError(ErrorCode code, std::string const& file) {}; OutputError(p, "is a file");') == [
+        "output: is a file"
+    ]
+    returned = 'std::string window_problem(int n) {\n  if (n > 1) return f("{} is; " "too large", n);\n  return "";\n}'
+    assert messages(returned) == ["-: {} is; too large"], messages(returned)
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--renew", action="store_true", help="write both files instead of comparing them")
+    renew = parser.parse_args().renew
+    self_test()
+    outdated = 0
+    page = (ROOT / CODES).read_text()
+    for name, content in ((LIST, all_messages()), (CODES, with_table(page))):
+        path = ROOT / name
+        stored = path.read_text() if path.exists() else ""
+        if renew:
+            path.write_text(content)
+        elif stored != content:
+            outdated += 1
+            sys.stdout.writelines(difflib.unified_diff(
+                stored.splitlines(True), content.splitlines(True), name, "sources", n=0))  # fmt: skip
+    if outdated:
+        print("Read the changed texts as a user would; then run: python3 tests/architecture/messages.py --renew")
+    return 1 if outdated else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
