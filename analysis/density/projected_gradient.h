@@ -42,7 +42,7 @@ struct ProjectedGradient {
 /// @return projected gradient and its sigma [kg/m^3]; sigma is empty if no vector has one
 /// @throws SetupError  if a number of the optics is not positive and finite
 /// @throws DataError   if the vectors are not on a regular grid, or a displacement is not finite at a valid vector
-/// @throws NoValidVector  if no vector is valid
+/// @throws DataError (code `no_valid_vector`)  if no vector is valid
 ProjectedGradient compute_projected_gradient(DisplacementField const& field, ProjectionOptics const& optics);
 
 /// Divides a projected gradient by the thickness of the medium: mean density gradient along the line of sight [kg/m^4].

@@ -75,7 +75,7 @@ double choose_tv_strength(double change, std::size_t nodes, double previous);
 /// @throws SetupError   for settings or grids that are out of range
 /// @throws DataError    for fewer than three views, lines and values that differ in number, or views without a common
 ///                      part of the volume
-/// @throws MemoryError, DeviceError, Interrupted
+/// @throws DataError, DeviceError, Interrupted
 VolumeReconstruction reconstruct_volume(std::vector<ProjectedView> const& views, RegularGrid const& grid,
                                         SartSettings const& settings,
                                         SartVolumeMaker const& make_volume = make_host_volume);

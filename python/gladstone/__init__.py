@@ -17,6 +17,7 @@ from ._calibration import Calibration, calibrate
 from ._case import Accuracy, CalibrationCase, Case, Truth
 from ._commands import Oracle, convert, demo, gallery, render_sequence, report, validate, views
 from ._core import set_threads, threads
+from ._correlate import correlate, correlate_ensemble
 from ._density import Density, reconstruct
 from ._design import Design, design
 from ._errors import (
@@ -30,7 +31,7 @@ from ._errors import (
     Problem,
     SetupError,
 )
-from ._field import Field, correlate, correlate_ensemble
+from ._field import Field
 from ._preview import Preview, preview, target
 from ._report import Report
 from ._sequence import Sequence, correlate_sequence

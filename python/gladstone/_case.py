@@ -10,7 +10,8 @@ import numpy as np
 
 from . import _core
 from ._errors import check_choice
-from ._field import Field, correlate
+from ._correlate import correlate
+from ._field import Field
 from ._progress import Progress, reporting
 from ._report import Report
 from ._setup import Setup

@@ -1,99 +1,15 @@
-"""Displacement fields: measurement, files and exchange."""
+"""Displacement fields: files and exchange."""
 
 from __future__ import annotations
 
 import os
 import tomllib
-from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
 
-from . import _core, _toml
-from ._messages import deliver
-from ._progress import Progress, reporting
-
-
-def _host_image(image):
-    """Returns an image in host memory: arrays of a GPU are copied, others are not."""
-    if getattr(image, "requires_grad", False):
-        image = image.detach()
-    device = getattr(image, "__dlpack_device__", None)
-    if device is not None and int(device()[0]) not in (1, 3):  # kDLCPU, kDLCUDAHost
-        for method in ("get", "cpu"):  # CuPy, torch
-            if hasattr(image, method):
-                return getattr(image, method)()
-        return np.asarray(image)  # JAX
-    if isinstance(image, (list, tuple)):
-        image = np.asarray(image)
-    return image
-
-
-def _check_image(image, name: str) -> None:
-    """Raises a TypeError, or ValueError, for what is no image [rows, columns]."""
-    if image is None or isinstance(image, (str, os.PathLike)):
-        raise TypeError(
-            f"{name} is {image!r}, not an image [rows, columns]; read files first, for example by tifffile.imread"
-        )
-    shape = getattr(image, "shape", None)
-    if shape is not None and len(shape) != 2:
-        raise ValueError(f"{name} has the shape {tuple(shape)}; give a grey image [rows, columns]")
-
-
-def _overrides(settings: dict[str, Any]) -> list[str]:
-    """Returns settings of the correlation as assignments of setup keys, "correlate.overlap=0.5"."""
-    given = {name: value for name, value in settings.items() if value is not None}
-    if "window" in given:
-        window = given.pop("window")
-        given["window_px"] = [window] if np.ndim(window) == 0 else list(window)
-    return [f"correlate.{name}={_toml.value(value)}" for name, value in given.items()]
-
-
-def correlate(a, b, *, device: str = "auto", progress: Progress = False, **settings) -> Field:
-    """Measures the displacement from frame a to frame b by cross-correlation.
-
-    a, b: images [rows, columns] of any array library with the buffer or the DLPack protocol (NumPy, torch, CuPy, JAX),
-        of integers or floats, in any memory layout. BOS: the reference image first. Each is copied once, to float64.
-    window: size of the interrogation window in each pass [px], for example [64, 32, 24, 20].
-    overlap: fraction of the window that neighbouring windows share.
-    uncertainty: method that estimates sigma_u and sigma_v; default: correlation statistics on a CPU, none on a GPU.
-    Further settings are the keys of the table [correlate]: method, subpixel, weighting, mask, ...
-
-    The vectors are equal bit by bit to those of `gladstone correlate`.
-    Raises `SetupError` for settings and `DataError` for images that cannot be correlated.
-    """
-    _check_image(a, "a")
-    _check_image(b, "b")
-    with reporting(progress) as report:
-        core = _core.correlate(_host_image(a), _host_image(b), _overrides(settings), device, report)
-    field = Field._of(core)
-    warnings = field.warnings
-    if not warnings and not field.valid.any():
-        warnings = [
-            f"none of the {len(field)} vectors is valid; "
-            "check that both frames show one scene, with dots in every window"
-        ]
-    deliver([(True, warning) for warning in warnings])
-    return field
-
-
-def correlate_ensemble(
-    images: Iterable[str | os.PathLike], *, progress: Progress = False, **settings
-) -> Field:
-    """Measures one displacement field from many pairs, by the mean of their correlation planes, on the CPU.
-
-    images: image files, frames a and b of each pair in turn, all of one size.
-    settings: window, overlap, method, ..., as for `correlate`.
-
-    The vectors are equal bit by bit to those of `gladstone correlate --ensemble`.
-    """
-    files = [os.fspath(one) for one in images]
-    if not files or len(files) % 2:
-        raise ValueError(f"got {len(files)} images; give frames a and b of each pair")
-    with reporting(progress) as report:
-        field = Field._of(_core.correlate_ensemble(files, _overrides(settings), report))
-    deliver([(True, warning) for warning in field.warnings])
-    return field
+from . import _core
+from ._images import host_image
 
 
 class Field:
@@ -137,7 +53,7 @@ class Field:
     @classmethod
     def from_dense(cls, displacement, spacing_px: int = 1) -> Field:
         """Makes a field of displacements [rows, columns, 2] or [2, rows, columns] at the pixels of an image [px]."""
-        dense = np.asarray(_host_image(displacement), float)
+        dense = np.asarray(host_image(displacement), float)
         if dense.ndim == 3 and dense.shape[-1] != 2 and dense.shape[0] == 2:
             dense = np.moveaxis(dense, 0, -1)
         if dense.ndim != 3 or dense.shape[-1] != 2:

@@ -11,7 +11,8 @@ from typing import Any, Literal
 import numpy as np
 
 from . import _core
-from ._field import Field, _overrides
+from ._correlate import overrides
+from ._field import Field
 from ._progress import Progress, reporting
 
 
@@ -127,7 +128,7 @@ def correlate_sequence(
             pairing,
             folder,
             "" if config is None else os.fspath(config),
-            _overrides(settings),
+            overrides(settings),
             device,
             report,
         )

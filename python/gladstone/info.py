@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from . import _core
-from ._field import _host_image
+from ._images import host_image
 from ._setup import as_setup
 
 
@@ -55,7 +55,7 @@ def image(given, *, bit_depth: int = 0) -> dict[str, Any]:
     """Describes an image file or an array [rows, columns]: grey levels, dot diameter [px], noise, SNR."""
     if isinstance(given, (str, os.PathLike)):
         return json.loads(_core.info_image_file(os.fspath(given)))
-    return json.loads(_core.info_image(_host_image(given), bit_depth))
+    return json.loads(_core.info_image(host_image(given), bit_depth))
 
 
 def particles(setup) -> dict[str, Any]:

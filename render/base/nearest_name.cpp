@@ -1,6 +1,7 @@
 #include "render/base/nearest_name.h"
 
 #include <algorithm>
+#include <cctype>
 #include <utility>
 
 namespace gladstone {
@@ -31,6 +32,9 @@ std::optional<std::size_t> edits_to(std::string_view word, std::string const& ca
   bool const without_unit =
       !word.empty() && candidate.size() > word.size() && candidate.starts_with(word) && candidate[word.size()] == '_';
   if (without_unit) return 1;
+  // Words that differ in upper and lower case only have distance 1.
+  auto const lower = [](unsigned char c) { return std::tolower(c); };
+  if (std::ranges::equal(word, candidate, {}, lower, lower)) return word == candidate ? 0U : 1U;
   std::size_t const allowed = std::max<std::size_t>(1, std::max(word.size(), candidate.size()) / share);
   // The difference in length is a lower bound of the distance; it avoids the comparison of very long words.
   std::size_t const least = std::max(word.size(), candidate.size()) - std::min(word.size(), candidate.size());

@@ -31,7 +31,7 @@ std::size_t thread_space() {
   return std::thread::hardware_concurrency() * (stack + (std::size_t{1} << 20));
 }
 
-/// Throws MemoryError if the limit on address space (ulimit -v) is too low: libraries that reach it during their
+/// Throws an error of code `memory` if the limit on address space (ulimit -v) is too low: libraries that reach it during their
 /// initialisation abort or hang.
 void require_address_space(std::string const& path) {
   std::size_t const needed = library_space + thread_space();

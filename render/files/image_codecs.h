@@ -73,7 +73,7 @@ class ImageCodecs {
 
 /// Returns the image codecs; the first call loads libgladstone_image_codecs.so from the directory in the environment
 /// variable GLADSTONE_IMAGE_CODECS, or else along the program's run path.
-/// @throws DataError if the library cannot be loaded, MemoryError if too little address space is available
+/// @throws DataError if the library cannot be loaded, or (code `memory`) if too little address space is available
 ImageCodecs const& image_codecs();
 
 /// Type of the function that the library exports as gladstone_image_codecs.

@@ -88,7 +88,7 @@ class Picture {
   bool has_more_pages_ = false, is_cut_short_ = false;
 };
 
-/// Calls `read`, and converts a failed allocation into a MemoryError that names the file.
+/// Calls `read`, and converts a failed allocation into an error of code `memory` that names the file.
 template <class Read>
 auto named(std::string const& path, Read const& read) {
   try {

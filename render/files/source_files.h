@@ -52,7 +52,7 @@ class SourceFiles {
   std::string sha256(std::string const& name) const;
 
   /// Hashes every file again.
-  /// @throws DataError naming the first file whose content has changed or that cannot be read; MemoryError
+  /// @throws DataError naming the first file whose content has changed or that cannot be read
   void check() const;
 
  private:

@@ -52,7 +52,7 @@ inline constexpr std::size_t most_table_rows = 100'000'000;
 
 /// Throws if another row would exceed most_table_rows or, when the vector must grow, the available memory.
 /// @param what  name of the rows for the message, "dots"
-/// @throws DataError, MemoryError
+/// @throws DataError
 template <class Row>
 void require_room(std::vector<Row> const& rows, std::string const& path, std::string const& what) {
   if (rows.size() < rows.capacity()) return;

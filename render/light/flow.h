@@ -77,7 +77,7 @@ FlowSetup read_flow_setup(SetupTable table, std::optional<ShockPlane> const& sho
 
 /// Loads the velocity file of a field of kind "file", which has zero velocity until then. Does nothing for other kinds.
 /// @return warning about assumptions made in reading the file; empty: none
-/// @throws DataError, MemoryError
+/// @throws DataError
 std::string load_flow(FlowSetup& setup);
 
 /// Returns false if a point [m] is outside the velocity field of a file, where the velocity is extrapolated.

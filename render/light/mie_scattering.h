@@ -99,7 +99,7 @@ class MieScattering {
   /// Computes the table on all threads, with a progress bar.
   /// @param diameters  diameters of all particles [m]; equal ones are computed once. A diameter of 0 scatters no light.
   /// @param angles     range of scattering angles
-  /// @throws MemoryError if the table exceeds the available memory
+  /// @throws DataError (code `memory`) if the table exceeds the available memory
   /// @pre diameters >= 0, size parameters <= largest_size_parameter; 0 <= angles.least < angles.most <= pi
   MieScattering(std::vector<double> const& diameters, MieSetting const& setting, AngleInterval angles);
 

@@ -40,7 +40,7 @@ struct LoadedVelocity {
 /// Reads a velocity file and computes the coefficients of a cubic B-spline through its nodes. Open axes have not-a-knot
 /// end conditions, as in the medium, so that cubics are reproduced up to the boundary. Coefficients are stored as
 /// float, which limits the relative accuracy to 1e-7 of the largest velocity.
-/// @throws DataError, MemoryError
+/// @throws DataError
 LoadedVelocity load_velocity(VelocityFile const& setup);
 
 }  // namespace gladstone

@@ -35,6 +35,8 @@ std::unique_ptr<Correlator> correlator_on_gpu(CorrelationSettings const& setting
 /// Returns whether to use the GPU, and logs which device is used.
 /// @throws DeviceError if "cuda" is wanted and not available
 bool choose_gpu(std::string const& wanted) {
+  if (wanted != "auto" && wanted != "cpu" && wanted != "cuda")
+    throw DeviceError(fmt::format("device \"{}\" is not \"auto\", \"cpu\" or \"cuda\"", wanted));
   std::string instead;
   if (wanted != "cpu") {
     cuda::DeviceState const state = cuda::device_state();

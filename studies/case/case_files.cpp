@@ -76,6 +76,9 @@ void require_case(std::string const& folder) {
   complete_parent_replacement(folder, case_content());
   if (!is_complete(folder, case_content())) {
     std::error_code error;
+    if (fs::is_regular_file(folder, error))
+      throw DataError(ErrorCode::wrong_format, folder,
+                      "is a file, not the folder of a case; create one with: gladstone render SETUP.toml -o CASE");
     for (std::size_t const first : {0, 1}) {
       std::string const pair = rendered_sequence_file::pair(first);
       if (fs::exists(fs::path(folder) / rendered_sequence_file::setup, error) &&

@@ -238,9 +238,12 @@ class SequenceRendering {
 
 SequenceRenderer::SequenceRenderer(std::string path, std::vector<std::string> overrides)
     : path_(std::move(path)), overrides_(std::move(overrides)), first_(path_, overrides_) {
-  SequenceSetup const& sequence = *first_.first_setup().sequence;
-  first_pair_ = sequence.pair;
-  pair_count_ = sequence.frames - 1;
+  std::optional<SequenceSetup> const sequence = first_.first_setup().sequence;
+  if (!sequence)
+    throw SetupError(
+        {{path_, "has no table [sequence]; add it, or render a single pair", "sequence", ErrorCode::missing_key}});
+  first_pair_ = sequence->pair;
+  pair_count_ = sequence->frames - 1;
   if (is_piv()) return;
   SetupDocument document = read_sequence_document(path_, overrides_);
   check_fields(document);

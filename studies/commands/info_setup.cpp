@@ -5,6 +5,8 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <set>
+#include <string>
 
 #include "studies/case/cameras.h"
 #include "studies/case/case.h"
@@ -42,13 +44,17 @@ bool draw_setup(std::string const& path, CaseSetup loaded) {
 Description describe_setup(SetupDocument const& setup, std::string const& name, std::string const& figure) {
   std::string text;
   nlohmann::ordered_json cameras = nlohmann::ordered_json::object(), only;
+  std::set<std::string> warned;  // several cameras may have the same warnings
+  auto const warn_once = [&warned](std::string const& warning) {
+    if (warned.insert(warning).second) spdlog::warn("{}", warning);
+  };
   for (CameraCase& camera : camera_cases(setup)) {
     std::string const path = figure_of_camera(figure, camera.name);
     SetupDocument const document = camera.document.copy();
     CaseSetup loaded = load_case_setup(std::move(camera.document));
-    for (std::string const& warning : loaded.warnings) spdlog::warn("{}", warning);
+    for (std::string const& warning : loaded.warnings) warn_once(warning);
     for (std::string const& warning : list_neglected_effects(loaded.setup)) {
-      if (!loaded.setup.calibration()) spdlog::warn("{}", warning);
+      if (!loaded.setup.calibration()) warn_once(warning);
     }
     SetupOverview const overview = make_setup_overview(std::move(loaded));
     only = overview_json(overview);

@@ -6,12 +6,25 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "render/base/error.h"
 #include "studies/case/json_text.h"
 #include "studies/commands/arguments.h"
 #include "studies/commands/command.h"
 #include "studies/commands/density_options.h"
 
 namespace gladstone {
+namespace {
+
+/// Rejects the name of a new file without the ending of a report. Whether an existing file may be replaced is checked
+/// when it is opened.
+void check_report_ending(std::string const& output) {
+  std::error_code error;
+  bool const known = output.ends_with(".html") || output.ends_with(".htm") || output.ends_with(".md");
+  if (output.empty() || known || std::filesystem::exists(output, error)) return;
+  throw OutputError(output, "has no ending of a report; use .html or .md");
+}
+
+}  // namespace
 
 CommandBody attach_report(CLI::App& app, GlobalOptions const& options) {
   struct Arguments {
@@ -23,7 +36,8 @@ CommandBody attach_report(CLI::App& app, GlobalOptions const& options) {
   arguments->report.figure_format = "png";
   app.add_option("folder", arguments->report.source, "RUN of a study, or CASE")->required();
   app.add_option("-o,--output", arguments->report.output, "File, default report.html (report.md) in the folder");
-  app.add_option("--format", arguments->format, "html (one file, works offline) or md")
+  app.add_option("--format", arguments->format,
+                 "html (one file, works offline), or md, also by an --output that ends in .md")
       ->check(one_of({"html", "md"}))
       ->capture_default_str();
   app.add_option("--vectors", arguments->report.vectors, "For a CASE: vectors, as for gladstone compare");
@@ -40,7 +54,8 @@ CommandBody attach_report(CLI::App& app, GlobalOptions const& options) {
     ReportOptions report = arguments->report;
     report.density_words = arguments->density.words();
     if (!report.density_words.empty()) report.density = arguments->density.options();
-    report.markdown = arguments->format == "md";
+    check_report_ending(report.output);
+    report.markdown = arguments->format == "md" || report.output.ends_with(".md");
     if (report.output.empty()) {
       report.output = (std::filesystem::path(report.source) / ("report." + arguments->format)).string();
     }

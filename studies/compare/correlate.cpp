@@ -41,7 +41,9 @@ CorrelationFile read_document(SetupDocument document, std::vector<std::string> c
     if (assignment.starts_with("correlate.") || assignment.starts_with("correlate=")) {
       document.override_key(assignment);
     } else {
-      document.add_problem({"--set " + assignment, "is not a key of [correlate], the only table used here; remove it",
+      document.add_problem({"--set " + assignment,
+                            "does not begin with \"correlate.\", the only table used here; write --set "
+                            "correlate.KEY=VALUE, or remove it",
                             assignment.substr(0, assignment.find('=')), ErrorCode::unknown_key});
     }
   }

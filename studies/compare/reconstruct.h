@@ -106,7 +106,7 @@ density::ProjectionOptics make_projection_optics(Setup const& setup);
 /// @param field      displacement on a complete grid [px]
 /// @param window_px  size of the interrogation windows, for the correlation of errors unless options.overlap is set
 /// @throws SetupError  for invalid options (no gauge, axis outside the image, ..) and unsupported setups
-/// @throws DataError   if the vectors do not determine a density; NoValidVector
+/// @throws DataError   if the vectors do not determine a density
 Reconstruction reconstruct_density(DisplacementField const& field, Setup const& setup, double window_px,
                                    ReconstructOptions const& options);
 

@@ -66,7 +66,7 @@ double compute_residual_ratio(stereo::StereoField const& field);
 /// determines the true displacement of their particles. Writes nothing.
 /// @param device  for the correlation of dewarped images
 /// @throws SetupError  for invalid options
-/// @throws DataError   for files that are missing or do not fit together; NoValidVector
+/// @throws DataError   for files that are missing or do not fit together
 StereoMeasurement measure_stereo(StereoOptions const& options, Backend const& device);
 
 }  // namespace gladstone

@@ -71,8 +71,7 @@ Pose<double> turned_volume(double angle);
 /// reconstructs the volume. Lines of sight are the straight chief rays of the cameras; optical windows are neglected,
 /// with a warning. Writes nothing.
 /// @param make_volume  creates the volume on the device of the iteration, see open_volume_device()
-/// @throws SetupError, DataError  for options, setups and vectors that do not determine a volume; NoValidVector,
-///                                DeviceError
+/// @throws SetupError, DataError  for options, setups and vectors that do not determine a volume; DeviceError
 Tomography reconstruct_views(TomographyOptions const& options, tomography::SartVolumeMaker const& make_volume);
 
 }  // namespace gladstone

@@ -20,7 +20,7 @@ struct TomographyPlan {
 /// @param folder  existing folder
 /// @return paths of the setups
 /// @throws SetupError  for invalid options, or setups without a field of finite extent
-/// @throws DataError, MemoryError, OutputError
+/// @throws DataError, OutputError
 std::vector<std::string> write_tomography_setups(TomographyPlan const& plan, std::string const& folder);
 
 }  // namespace gladstone

@@ -10,10 +10,10 @@
 
 namespace gladstone {
 
-/// Error of a Slurm command: not installed, or the job was rejected; contains Slurm's message.
+/// Error of a Slurm command, which --slurm requires: not installed, or the job was rejected; contains Slurm's message.
 class SlurmError : public Error {
  public:
-  using Error::Error;
+  explicit SlurmError(std::string const& message) : Error(ErrorCode::arguments, message) {}
 };
 
 /// Returns the maximum number of tasks of a job array on this cluster (MaxArraySize of `scontrol show config`), or

@@ -19,6 +19,7 @@ TEST(NearestName, IsTheLikelyMeaningOrNothing) {
   EXPECT_EQ(nearest_name("f_nuber", {"focus", "f_number", "file"}), "f_number");
   EXPECT_EQ(nearest_name("focal_length", {"file", "focal_length_mm"}), "focal_length_mm");
   EXPECT_EQ(nearest_name("z_a", {"z_d_mm", "z_a_mm"}), "z_a_mm");  // missing unit suffix
+  EXPECT_EQ(nearest_name("BOS", {"piv", "bos"}), "bos");
   EXPECT_EQ(nearest_name("wavelength", {"file", "kind"}), std::nullopt);
   EXPECT_EQ(nearest_name("x", {}), std::nullopt);
   std::vector<std::string> const glasses{"BK10", "BK7", "SF6", "BK7", "BAK1"};

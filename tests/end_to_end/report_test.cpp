@@ -433,6 +433,9 @@ TEST_F(Reports, AreWrittenAsMarkdownWithFiguresBesideIt) {
   succeed({"report", "case", "--format", "md", "-o", "text/report.md", "--figure-format", "svg", "--quiet"});
   EXPECT_THAT(read("text/report.md"), HasSubstr("![error\\_budget](<report_figures/error_budget.svg>)"));
   EXPECT_THAT(read("text/report_figures/error_budget.svg"), HasSubstr("</svg>"));
+  succeed({"report", "case", "-o", "other/report.md", "--figure-format", "svg", "--quiet"});
+  EXPECT_THAT(read("other/report.md"), HasSubstr("![error\\_budget](<report_figures/error_budget.svg>)"));
+  expect_refused({"report", "case", "-o", "report.pdf"}, 2, {"use .html or .md"});
 }
 
 TEST_F(Reports, DrawFiguresAsPdf) {

@@ -12,7 +12,7 @@ namespace gladstone {
 /// Values of a field in memory, stored as float if that preserves all significant bits, else as double.
 class ValueStore {
  public:
-  /// Allocates `count` values. @throws MemoryError naming the file and `what`
+  /// Allocates `count` values. @throws DataError (code `memory`) naming the file and `what`
   void allocate(std::size_t count, int significant_bits, std::string const& path, std::string const& what) {
     bool const single = significant_bits <= 24;
     require_memory(path, what, static_cast<double>(count) * (single ? sizeof(float) : sizeof(double)));

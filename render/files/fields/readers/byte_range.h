@@ -24,7 +24,7 @@ struct ByteRange {
 std::uint64_t most_bytes(ByteRange const& range);
 
 /// Reads and decompresses the first `count` bytes; fewer if the range ends before.
-/// @throws DataError if the compressed data are damaged; MemoryError
+/// @throws DataError if the compressed data are damaged
 std::vector<char> read_up_to(ByteRange const& range, std::uint64_t count);
 
 /// Throws DataError that an array has fewer bytes of data than its header requires.

@@ -23,7 +23,7 @@ class NrrdBytes {
   NrrdBytes& operator=(NrrdBytes const&) = delete;
 
   /// Reads bytes [first, first + size) of the decoded field.
-  /// @throws DataError for data that are damaged or cut short, MemoryError
+  /// @throws DataError for data that are damaged or cut short
   void read(std::size_t first, void* out, std::size_t size);
 
  private:

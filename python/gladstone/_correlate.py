@@ -1,0 +1,71 @@
+"""Measurement of displacement fields."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+
+from . import _core, _toml
+from ._field import Field
+from ._images import check_image, host_image
+from ._messages import deliver
+from ._progress import Progress, reporting
+
+
+def overrides(settings: dict[str, Any]) -> list[str]:
+    """Returns settings of the correlation as assignments of setup keys, "correlate.overlap=0.5"."""
+    given = {name: value for name, value in settings.items() if value is not None}
+    if "window" in given:
+        window = given.pop("window")
+        given["window_px"] = [window] if np.ndim(window) == 0 else list(window)
+    return [f"correlate.{name}={_toml.value(value)}" for name, value in given.items()]
+
+
+def correlate(a, b, *, device: str = "auto", progress: Progress = False, **settings) -> Field:
+    """Measures the displacement from frame a to frame b by cross-correlation.
+
+    a, b: images [rows, columns] of any array library with the buffer or the DLPack protocol (NumPy, torch, CuPy, JAX),
+        of integers or floats, in any memory layout. BOS: the reference image first. Each is copied once, to float64.
+    window: size of the interrogation window in each pass [px], for example [64, 32, 24, 20].
+    overlap: fraction of the window that neighbouring windows share.
+    uncertainty: method that estimates sigma_u and sigma_v; default: correlation statistics on a CPU, none on a GPU.
+    Further settings are the keys of the table [correlate]: method, subpixel, weighting, mask, ...
+
+    The vectors are equal bit by bit to those of `gladstone correlate`.
+    Raises `SetupError` for settings and `DataError` for images that cannot be correlated.
+    """
+    check_image(a, "a")
+    check_image(b, "b")
+    with reporting(progress) as report:
+        core = _core.correlate(host_image(a), host_image(b), overrides(settings), device, report)
+    field = Field._of(core)
+    warnings = field.warnings
+    if not warnings and not field.valid.any():
+        warnings = [
+            f"none of the {len(field)} vectors is valid; "
+            "check that both frames show one scene, with dots in every window"
+        ]
+    deliver([(True, warning) for warning in warnings])
+    return field
+
+
+def correlate_ensemble(
+    images: Iterable[str | os.PathLike], *, progress: Progress = False, **settings
+) -> Field:
+    """Measures one displacement field from many pairs, by the mean of their correlation planes, on the CPU.
+
+    images: image files, frames a and b of each pair in turn, all of one size.
+    settings: window, overlap, method, ..., as for `correlate`.
+
+    The vectors are equal bit by bit to those of `gladstone correlate --ensemble`.
+    """
+    files = [os.fspath(one) for one in images]
+    if not files or len(files) % 2:
+        raise ValueError(f"got {len(files)} images; give frames a and b of each pair")
+    with reporting(progress) as report:
+        field = Field._of(_core.correlate_ensemble(files, overrides(settings), report))
+    deliver([(True, warning) for warning in field.warnings])
+    return field
