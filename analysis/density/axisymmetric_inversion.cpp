@@ -15,11 +15,13 @@ namespace gladstone::density {
 namespace {
 
 /// Largest number of rows from which the regularisation parameter is determined.
-constexpr int regularization_rows = 8;
+constexpr std::size_t regularization_rows = 8;
 
 void check_axisymmetric_settings(GradientMap const& map, AxisymmetricSettings const& settings) {
   std::vector<SetupProblem> problems;
-  double const first = map.grid.origin.x, last = first + (map.grid.columns - 1) * map.grid.spacing.x;
+  double const first_vector = map.grid.origin.x,
+               last_vector = first_vector + (map.grid.columns - 1) * map.grid.spacing.x;
+  auto const [first, last] = settings.axis_range.value_or(std::array{first_vector, last_vector});
   if (settings.axis && !(*settings.axis >= first && *settings.axis <= last))
     problems.push_back({"axis", fmt::format("the axis at {:.4g} mm is outside the image ({:.4g} to {:.4g} mm); give a "
                                             "position inside, or none to find it",
@@ -41,23 +43,25 @@ void check_axisymmetric_settings(GradientMap const& map, AxisymmetricSettings co
 double determine_lambda(Eigen::MatrixXd const& projection, std::vector<RadialProfile> const& profiles,
                         AxisymmetricSettings const& settings) {
   if (settings.choice == RegularizationChoice::given) return settings.lambda;
+  std::vector<std::size_t> measured;
+  for (std::size_t row = 0; row < profiles.size(); ++row)
+    if (profiles[row].is_measured()) measured.push_back(row);
+  std::size_t const rows = measured.size(), count = std::min(rows, regularization_rows);
   std::vector<RadialProfile> chosen;
-  auto const rows = static_cast<int>(profiles.size()), count = std::min(rows, regularization_rows);
-  for (int k = 0; k < count; ++k) {
-    RadialProfile const& profile = profiles[static_cast<std::size_t>((2 * k + 1) * rows / (2 * count))];
-    if (profile.is_measured()) chosen.push_back(profile);
-  }
-  if (chosen.empty())
-    throw DataError(ErrorCode::undetermined, "density gradient",
-                    "no row has valid vectors; check the mask and the axis of symmetry");
+  for (std::size_t k = 0; k < count; ++k) chosen.push_back(profiles[measured[(2 * k + 1) * rows / (2 * count)]]);
   return choose_regularization(projection, chosen, settings.choice);
 }
 
-/// Smallest radius whose density the direct method determines: all larger radii are measured.
-int find_first_radius(RadialProfile const& profile) {
-  auto radius = static_cast<int>(profile.gradient.size());
-  while (radius > 0 && std::isfinite(profile.gradient[radius - 1])) --radius;
-  return radius;
+/// Returns the smallest radius whose density a row determines, up to RadialProfile::last_measured(): with the direct
+/// method all radii between are measured, with the regularised one the smallest of them is.
+int find_first_radius(RadialProfile const& profile, AbelMethod method) {
+  int const last = profile.last_measured();
+  int first = last;
+  if (method == AbelMethod::direct)
+    while (first > 0 && std::isfinite(profile.gradient[first - 1])) --first;
+  else
+    for (first = 1; first < last && !std::isfinite(profile.gradient[first]);) ++first;
+  return first == 1 ? 0 : first;  // on the axis the gradient is known to be 0
 }
 
 /// Standard uncertainties of linear combinations of one row's vectors, with the correlation of overlapping windows.
@@ -86,20 +90,42 @@ double compute_asymmetry(std::vector<RadialProfile> const& profiles) {
   return odd > 0.0 ? std::sqrt(even / odd) : not_a_number;
 }
 
-/// Returns the rms of the gradient in the outer 5 % of the radii, relative to that of all radii.
-double compute_border_gradient(std::vector<RadialProfile> const& profiles) {
+/// Throws unless the gradients at equal distances from the axis are opposite: the sum of their products is negative
+/// then, by more than three times its scatter for independent gradients.
+void require_opposite_sides(std::vector<RadialProfile> const& profiles, double axis, bool is_given) {
+  double opposite = 0.0, product_squares = 0.0;
+  for (RadialProfile const& profile : profiles) {
+    opposite += profile.odd_square - profile.even_square;
+    product_squares += profile.product_square;
+  }
+  bool const has_both_sides = product_squares > 0.0;
+  if (!has_both_sides || opposite > 3.0 * std::sqrt(product_squares)) return;
+  throw DataError(ErrorCode::inconsistent, "axis",
+                  fmt::format("the flow is not symmetric about the axis at {:.4g} mm, {} (the gradients on its "
+                              "sides are not opposite); {}, or subtract a displacement that all vectors have in "
+                              "common",
+                              1e3 * axis, is_given ? "which was given" : "which was found",
+                              is_given ? "correct the axis" : "give the axis"));
+}
+
+/// Returns the rms of the gradient in the outer 5 % of the measured radii of each row, relative to that of all radii,
+/// without the part that its uncertainty explains; NaN: the gradient is within its uncertainty.
+double compute_border_gradient(std::vector<RadialProfile> const& profiles, bool has_sigma) {
   double all = 0.0, border = 0.0, count_all = 0.0, count_border = 0.0;
-  for (RadialProfile const& profile : profiles)
-    for (Eigen::Index i = 1; i < profile.gradient.size(); ++i) {
-      double const square = profile.gradient[i] * profile.gradient[i];
+  for (RadialProfile const& profile : profiles) {
+    int const last = profile.last_measured();
+    for (int i = 1; i <= last; ++i) {
+      double const noise = has_sigma ? profile.sigma[i] : 0.0;
+      double const square = profile.gradient[i] * profile.gradient[i] - noise * noise;
       if (!std::isfinite(square)) continue;
       all += square;
       count_all += 1.0;
-      if (static_cast<double>(i) < 0.95 * static_cast<double>(profile.gradient.size() - 1)) continue;
+      if (i < 0.95 * last) continue;
       border += square;
       count_border += 1.0;
     }
-  return std::sqrt(border / count_border / (all / count_all));
+  }
+  return all > 0.0 ? std::sqrt(std::max(0.0, border / count_border) / (all / count_all)) : not_a_number;
 }
 
 }  // namespace
@@ -129,8 +155,12 @@ AxisymmetricDensity invert_axisymmetric(GradientMap const& projected, Axisymmetr
   parallel_for(profiles.size(), [&](std::size_t row) {
     profiles[row] = fold_row(projected, static_cast<int>(row), result.axis.position);
   });
+  if (std::none_of(profiles.begin(), profiles.end(), [](RadialProfile const& row) { return row.is_measured(); }))
+    throw DataError(ErrorCode::undetermined, "density gradient",
+                    "no valid vector lies on a radius; check the mask and the axis of symmetry");
+  require_opposite_sides(profiles, result.axis.position, settings.axis.has_value());
   result.asymmetry = compute_asymmetry(profiles);
-  result.border_gradient = compute_border_gradient(profiles);
+  result.border_gradient = compute_border_gradient(profiles, !projected.sigma.empty());
 
   // Invert row by row
   bool const is_direct = settings.method == AbelMethod::direct;
@@ -143,23 +173,18 @@ AxisymmetricDensity invert_axisymmetric(GradientMap const& projected, Axisymmetr
   parallel_for(profiles.size(), [&](std::size_t r) {
     RadialProfile const& profile = profiles[r];
     if (!profile.is_measured()) return;
-    int const row = static_cast<int>(r), first = is_direct ? find_first_radius(profile) : 0;
+    int const row = static_cast<int>(r), first = find_first_radius(profile, settings.method);
     Eigen::MatrixXd const inversion =
         is_direct ? direct : make_regularized_inversion(projection, profile, result.lambda);
     Eigen::VectorXd const excess = inversion * profile.filled_gradient();
     Eigen::VectorXd const sigma = projected.sigma.empty()
                                       ? Eigen::VectorXd::Constant(radii, not_a_number)
                                       : propagate_row(inversion * profile.fold, projected, row, settings.overlap.x);
-    for (int i = first; i < radii; ++i) {
+    for (int i = first; i <= profile.last_measured(); ++i) {
       result.density[result.grid.index(i, row)] = settings.ambient_density + excess[i];
       result.sigma[result.grid.index(i, row)] = sigma[i];
     }
   });
-  if (std::none_of(result.density.begin(), result.density.end(), [](double value) { return std::isfinite(value); }))
-    throw DataError(ErrorCode::undetermined, "density gradient",
-                    "the vectors at the largest distance from the axis are masked or invalid in all rows (the direct "
-                    "inversion proceeds from there to the axis); crop the vectors on that side, move the axis, or "
-                    "choose the regularised inversion (tikhonov)");
   return result;
 }
 

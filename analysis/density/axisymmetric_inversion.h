@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -20,6 +21,8 @@ enum class AbelMethod {
 struct AxisymmetricSettings {
   AxisDirection direction = AxisDirection::vertical;
   std::optional<double> axis;  ///< x of a vertical, y of a horizontal axis [m]; nullopt: find_symmetry_axis()
+  /// Range of a given axis: the borders of the image across it [m]; nullopt: the outermost vectors.
+  std::optional<std::array<double, 2>> axis_range;
   AbelMethod method = AbelMethod::direct;
   RegularizationChoice choice = RegularizationChoice::cross_validation;
   double lambda = 0.0;           ///< regularisation parameter for RegularizationChoice::given [1]
@@ -39,20 +42,21 @@ struct AxisymmetricDensity {
   /// Rms of the even part of the gradient about the axis over that of the odd part [1]: 0 for an axisymmetric flow
   /// without noise.
   double asymmetry = 0.0;
-  /// Rms of the gradient in the outer 5 % of the radii over that of all radii [1]. If it is not small, the flow extends
-  /// beyond the image, and the density is biased.
+  /// Rms of the gradient in the outer 5 % of the measured radii of each row over that of all radii, both without the
+  /// part that sigma explains [1]. If it is not small, the flow extends beyond the vectors, and the density is biased.
   double border_gradient = 0.0;
 };
 
 /// Inverts the projected gradient of an axisymmetric flow to density, row by row across the axis. A deflection is
 /// already the derivative of the projection, so nothing is differentiated. Assumes parallel lines of sight and ambient
-/// density beyond the last radius. With the direct method a hole in the gradient leaves all smaller radii of its row
-/// undetermined.
+/// density beyond the largest measured radius of each row; one side of the axis suffices. With the direct method a hole
+/// in the gradient leaves all smaller radii of its row undetermined.
 /// @param projected  from compute_projected_gradient() [kg/m^3]
-/// @throws SetupError  if the axis is outside the grid, lambda is not positive (choice `given`), the ambient density is
-///                     not finite, or the overlap does not fit the grid
-/// @throws DataError   if the discrepancy principle is chosen for a gradient without sigma, or no density can be
-///                     determined; see also check_gradient_map() and find_symmetry_axis()
+/// @throws SetupError  if the axis is outside its range, lambda is not positive (choice `given`), the ambient density
+///                     is not finite, or the overlap does not fit the grid
+/// @throws DataError   if the gradient is not odd about the axis, the discrepancy principle is chosen for a gradient
+///                     without sigma, or no density can be determined; see also check_gradient_map() and
+///                     find_symmetry_axis()
 AxisymmetricDensity invert_axisymmetric(GradientMap const& projected, AxisymmetricSettings const& settings);
 
 }  // namespace gladstone::density

@@ -48,6 +48,12 @@ SideValue evaluate_side(GradientMap const& map, int row, Weights const& weights)
 
 }  // namespace
 
+int RadialProfile::last_measured() const {
+  auto last = static_cast<int>(gradient.size()) - 1;
+  while (last > 0 && !std::isfinite(gradient[last])) --last;
+  return last;
+}
+
 int count_radii(PlaneGrid const& grid, double axis) {
   double const left = (axis - grid.origin.x) / grid.spacing.x, right = grid.columns - 1 - left;
   return static_cast<int>(std::floor(std::max(left, right) + 1e-9)) + 1;
@@ -79,6 +85,7 @@ RadialProfile fold_row(GradientMap const& map, int row, double axis) {
     if (!right || !left) continue;
     profile.odd_square += 0.25 * (r.value - l.value) * (r.value - l.value);
     profile.even_square += 0.25 * (r.value + l.value) * (r.value + l.value);
+    profile.product_square += r.value * r.value * l.value * l.value;
   }
   return profile;
 }

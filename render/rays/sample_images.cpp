@@ -47,8 +47,9 @@ bool render_particles(Scene const& scene, std::vector<std::size_t> const& some, 
 }
 
 /// Returns the mean squared difference of two images of a sample over the lit pixels of the image of all sources.
-/// With a pixels of the sample lit among A, the image of n times as many sources has A (1 - exp(-n a / A)) lit pixels
-/// if they are placed at random, and the squares add up.
+/// With a pixels of the sample lit among A, the sample leaves a pixel dark with probability 1 - a / A, and n times as
+/// many sources at random places with (1 - a / A)^n: their image has A (1 - (1 - a / A)^n) lit pixels, and the squares
+/// add up.
 double mean_square(Image<double> const& one, Image<double> const& other, double level, double share) {
   double square = 0, lit = 0;
   for (std::size_t i = 0; i < one.size(); ++i) {
@@ -58,7 +59,7 @@ double mean_square(Image<double> const& one, Image<double> const& other, double 
     ++lit;
   }
   auto const area = static_cast<double>(one.size());
-  return share * square / (-std::expm1(-share * lit / area) * area);
+  return share * square / (-std::expm1(share * std::log1p(-lit / area)) * area);
 }
 
 }  // namespace
