@@ -74,7 +74,7 @@ TEST(Background, StretchesAGlareOverTheSensor) {
   write_tiff(path, ramp, {});
   CameraSetup camera = counting_camera(8, 2);
   camera.background.glare_file = path;
-  background.glare_e = 8000;
+  camera.background.glare_e = 8000;
   Image<std::uint16_t> const image = recorded(camera, 0);
   for (int row = 0; row < 2; ++row) {
     for (int column = 0; column < 8; ++column) {
