@@ -12,6 +12,7 @@
 #include "render/base/parallel.h"
 #include "render/base/units.h"
 #include "studies/benchmark/particle_pair.h"
+#include "tests/support/expect_error.h"
 
 namespace gladstone {
 namespace {
@@ -465,8 +466,10 @@ TEST(Correlator, SmallestAndUniformWindowsWork) {
 
 TEST(Correlator, RefusesImagesThatDoNotSuit) {
   auto const correlator = make_correlator({});
-  EXPECT_THROW(correlator->correlate(Image<double>(128, 128), Image<double>(128, 127)), DataError);
-  EXPECT_THROW(correlator->correlate(Image<double>(63, 128), Image<double>(63, 128)), DataError);
+  EXPECT_THAT([&] { correlator->correlate(Image<double>(128, 128), Image<double>(128, 127)); },
+              ThrowsDataError(ErrorCode::wrong_shape, "image pair"));
+  EXPECT_THAT([&] { correlator->correlate(Image<double>(63, 128), Image<double>(63, 128)); },
+              ThrowsDataError(ErrorCode::wrong_shape, "image pair"));
 }
 
 TEST(CorrelationSettings, DefaultsAreThoseOfTheTypeAndAreWrittenOut) {

@@ -9,6 +9,7 @@
 #include "render/base/not_a_number.h"
 #include "render/base/units.h"
 #include "tests/analysis/synthetic_dots.h"
+#include "tests/support/expect_error.h"
 
 namespace gladstone::tracking {
 namespace {
@@ -190,7 +191,8 @@ TEST(DotTracking, GivesNearlyEveryDotAVector) {
 }
 
 TEST(DotTracking, RefusesFramesOfDifferentSize) {
-  EXPECT_THROW(track_dots(Image<double>(32, 32), Image<double>(32, 33), {}), DataError);
+  EXPECT_THAT([&] { track_dots(Image<double>(32, 32), Image<double>(32, 33), {}); },
+              ThrowsDataError(ErrorCode::wrong_shape, "frame B"));
 }
 
 TEST(DotTracking, StatesUncertaintyAndStatusOfEveryMatch) {

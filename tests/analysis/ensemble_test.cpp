@@ -8,6 +8,7 @@
 #include "analysis/correlation/correlator.h"
 #include "render/base/error.h"
 #include "studies/benchmark/particle_pair.h"
+#include "tests/support/expect_error.h"
 
 namespace gladstone {
 namespace {
@@ -110,10 +111,12 @@ TEST(Ensemble, TakesWhatEachPairHas) {
 TEST(Ensemble, RefusesWhatIsOfSinglePairs) {
   CorrelationSettings settings = settings_of({32});
   settings.method = "opencv";
-  EXPECT_THROW(correlate_ensemble(sequence_of(2, {}), settings), DataError);
+  EXPECT_THAT([&] { correlate_ensemble(sequence_of(2, {}), settings); },
+              ThrowsDataError(ErrorCode::unsupported, "ensemble"));
   settings.method = "scc";
   settings.uncertainty = "image_matching";
-  EXPECT_THROW(correlate_ensemble(sequence_of(2, {}), settings), DataError);
+  EXPECT_THAT([&] { correlate_ensemble(sequence_of(2, {}), settings); },
+              ThrowsDataError(ErrorCode::unsupported, "ensemble"));
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include "analysis/preparation/frame_preparation.h"
 #include "render/base/error.h"
+#include "tests/support/expect_error.h"
 
 namespace gladstone {
 namespace {
@@ -48,7 +49,9 @@ TEST(Background, OfASequenceIsComputedByTheSequence) {
   SequenceBackground& background = *preparation.backgrounds.front();
   EXPECT_EQ(background.statistic, "median");
   HostFrames const frames(Image<double>(4, 4, 9.0), Image<double>(4, 4, 7.0));
-  EXPECT_THROW(prepare_frames(frames, preparation), DataError) << "without its images";
+  EXPECT_THAT([&] { prepare_frames(frames, preparation); },
+              ThrowsDataError(ErrorCode::wrong_shape, "correlate.preprocess"))
+      << "without its images";
   background.reference = Image<double>(4, 4, 2.0);
   background.flow = Image<double>(4, 4, 3.0);
   HostFrames const prepared = prepare_frames(frames, preparation);

@@ -46,14 +46,22 @@ TEST_F(JsonErrors, ListAllProblemsOfASetup) {
 TEST_F(JsonErrors, NameTheFile) {
   nlohmann::json const missing = run_with_errors({"render", "none.toml", "-o", "case"}, 2);
   ASSERT_EQ(missing.size(), 1u);
-  EXPECT_EQ(missing[0]["code"], "unreadable_file");
+  EXPECT_EQ(missing[0]["code"], "missing_file");
   EXPECT_THAT(missing[0]["file"], testing::EndsWith("none.toml"));
   EXPECT_FALSE(missing[0].contains("line"));
 
   nlohmann::json const image = run_with_errors({"info", "image", "none.tif"}, 2);
   ASSERT_EQ(image.size(), 1u);
-  EXPECT_EQ(image[0]["code"], "data");
+  EXPECT_EQ(image[0]["code"], "missing_file");
   EXPECT_THAT(image[0]["file"], testing::EndsWith("none.tif"));
+
+  write("bad.csv", "x,y,u,v\n1,2,3,4\n1,2,3,4x\n");
+  nlohmann::json const row = run_with_errors({"convert", "bad.csv", "-o", "good.h5"}, 2);
+  ASSERT_EQ(row.size(), 1u);
+  EXPECT_EQ(row[0]["code"], "syntax");
+  EXPECT_THAT(row[0]["file"], testing::EndsWith("bad.csv"));
+  EXPECT_EQ(row[0]["line"], 3);
+  EXPECT_FALSE(row[0].contains("column"));
 }
 
 TEST_F(JsonErrors, CoverTheCommandLine) {

@@ -16,6 +16,7 @@
 #include "render/files/fields/field_file.h"
 #include "render/files/hdf5_file.h"
 #include "tests/support/documented_tables.h"
+#include "tests/support/expect_error.h"
 
 namespace gladstone::array_readers_test {
 namespace {
@@ -44,14 +45,14 @@ class ArrayReaders : public testing::Test {
     source->read_planes(0, source->grid().nodes[2], read);
     return read;
   }
-  /// Returns the message with which opening a file, or reading it, is refused.
+  /// Returns code and place of the error when a file is opened and read.
   static std::string refusal(std::string const& path, std::string const& dataset = "", int values = 1) {
     try {
       values_of(path, dataset, values);
     } catch (DataError const& error) {
-      return error.what();
+      return code_and_place(error);
     }
-    return "not refused";
+    return "no error";
   }
 
  private:
@@ -159,30 +160,30 @@ TEST_F(NpyField, VelocitiesHaveThreeComponents) {
 
 TEST_F(NpyField, OtherContentIsNamed) {
   std::string const data = bytes<double>(numbered());
-  EXPECT_THAT(refusal(write("o.npy", npy("'|O'", "(2, 3, 4)", data))), HasSubstr("Python objects (dtype object)"));
-  EXPECT_THAT(refusal(write("c.npy", npy("'<c16'", "(2, 2, 3)", data))), HasSubstr("complex numbers"));
-  EXPECT_THAT(refusal(write("r.npy", npy("[('x', '<f8')]", "(2, 3, 4)", data))), HasSubstr("records"));
-  EXPECT_THAT(refusal(write("s.npy", npy("'<U2'", "(2, 3, 4)", data))), HasSubstr("text"));
-  EXPECT_THAT(refusal(write("g.npy", npy("'<f16'", "(2, 2, 3)", data))), HasSubstr("f16"));
-  EXPECT_THAT(refusal(write("n.npy", npy("'<f8'", "(2, 3, 4)", data)), "rho"), HasSubstr("leave dataset"));
-  EXPECT_THAT(refusal(write("l.npy", npy("'<f8'", "(24,)", data))), HasSubstr("has no scalar field"));
+  EXPECT_EQ(refusal(write("o.npy", npy("'|O'", "(2, 3, 4)", data))), "wrong_type at o.npy");
+  EXPECT_EQ(refusal(write("c.npy", npy("'<c16'", "(2, 2, 3)", data))), "wrong_type at c.npy");
+  EXPECT_EQ(refusal(write("r.npy", npy("[('x', '<f8')]", "(2, 3, 4)", data))), "wrong_type at r.npy");
+  EXPECT_EQ(refusal(write("s.npy", npy("'<U2'", "(2, 3, 4)", data))), "wrong_type at s.npy");
+  EXPECT_EQ(refusal(write("g.npy", npy("'<f16'", "(2, 2, 3)", data))), "wrong_type at g.npy");
+  EXPECT_EQ(refusal(write("n.npy", npy("'<f8'", "(2, 3, 4)", data)), "rho"), "missing_content at n.npy");
+  EXPECT_EQ(refusal(write("l.npy", npy("'<f8'", "(24,)", data))), "missing_content at l.npy");
 }
 
 TEST_F(NpyField, DamagedFilesAreRefused) {
   std::string const good = npy("'<f8'", "(2, 3, 4)", bytes<double>(numbered()));
-  EXPECT_THAT(refusal(write("m.npy", "NUMPY" + good)), HasSubstr("magic"));
-  EXPECT_THAT(refusal(write("e.npy", "")), HasSubstr("magic"));
-  EXPECT_THAT(refusal(write("t.npy", good.substr(0, good.size() - 8))), HasSubstr("has 184 bytes of data"));
-  EXPECT_THAT(refusal(write("x.npy", good + "12345678")), HasSubstr("has 200 bytes of data"));
-  EXPECT_THAT(refusal(write("h.npy", good.substr(0, 30))), HasSubstr("cut short"));
-  EXPECT_THAT(refusal(write("v.npy", npy("'<f8'", "(2, 3, 4)", "", false, 9))), HasSubstr("format 9"));
-  EXPECT_THAT(refusal(write("d.npy", npy("<f8", "(2, 3, 4)", ""))), HasSubstr("damaged NumPy header"));
-  EXPECT_THAT(refusal(write("s.npy", npy("'<f8'", "(2, -3)", ""))), HasSubstr("damaged NumPy header"));
+  EXPECT_EQ(refusal(write("m.npy", "NUMPY" + good)), "wrong_format at m.npy");
+  EXPECT_EQ(refusal(write("e.npy", "")), "wrong_format at e.npy");
+  EXPECT_EQ(refusal(write("t.npy", good.substr(0, good.size() - 8))), "damaged at t.npy");
+  EXPECT_EQ(refusal(write("x.npy", good + "12345678")), "damaged at x.npy");
+  EXPECT_EQ(refusal(write("h.npy", good.substr(0, 30))), "damaged at h.npy");
+  EXPECT_EQ(refusal(write("v.npy", npy("'<f8'", "(2, 3, 4)", "", false, 9))), "unsupported at v.npy");
+  EXPECT_EQ(refusal(write("d.npy", npy("<f8", "(2, 3, 4)", ""))), "damaged at d.npy");
+  EXPECT_EQ(refusal(write("s.npy", npy("'<f8'", "(2, -3)", ""))), "damaged at s.npy");
   // sizes beyond the file and beyond any memory
-  EXPECT_THAT(refusal(write("l.npy", npy("'<f8'", "(4000000, 4000000, 4000000)", ""))), HasSubstr("implausible shape"));
-  EXPECT_THAT(refusal(write("g.npy", npy("'<f8'", "(10000, 10000, 1000)", ""))), HasSubstr("has 0 bytes of data"));
-  EXPECT_THAT(refusal(write("k.npy", "\x93NUMPY\x02" + std::string(1, '\0') + "\xff\xff\xff\x7f{'descr'")),
-              HasSubstr("implausible header"));
+  EXPECT_EQ(refusal(write("l.npy", npy("'<f8'", "(4000000, 4000000, 4000000)", ""))), "damaged at l.npy");
+  EXPECT_EQ(refusal(write("g.npy", npy("'<f8'", "(10000, 10000, 1000)", ""))), "damaged at g.npy");
+  EXPECT_EQ(refusal(write("k.npy", "\x93NUMPY\x02" + std::string(1, '\0') + "\xff\xff\xff\x7f{'descr'")),
+            "damaged at k.npy");
 }
 
 /// Builder of zip archives (PKWARE APPNOTE.TXT): local headers with their data, the directory, and its end.
@@ -239,7 +240,7 @@ TEST_F(NpzField, StoredAndDeflatedArraysHaveTheirCoordinates) {
     zip.add("y_mm.npy", npy("'<f8'", "(3,)", bytes<double>({0, 2, 4})), deflated);
     zip.add("z_mm.npy", npy("'<f8'", "(2,)", bytes<double>({-1, 1})), deflated);
     zip.add("names.npy", npy("'|O'", "(1,)", "pickle"), deflated);
-    auto const path = write(deflated ? "c.npz" : "s.npz", zip.archive());
+    std::string const name = deflated ? "c.npz" : "s.npz", path = write(name, zip.archive());
     auto const source = open_field(path, "");
     EXPECT_EQ(source->name(), "rho");
     EXPECT_EQ(source->units().length, "mm");
@@ -247,8 +248,8 @@ TEST_F(NpzField, StoredAndDeflatedArraysHaveTheirCoordinates) {
     EXPECT_EQ(source->grid().spacing.y, 2.0);
     EXPECT_EQ(source->grid().origin.z, -1.0);
     EXPECT_EQ(values_of(path), numbered());
-    EXPECT_THAT(refusal(path, "names"), HasSubstr("Python objects (dtype object)"));
-    EXPECT_THAT(refusal(path, "rh"), HasSubstr("did you mean \"rho\""));
+    EXPECT_EQ(refusal(path, "names"), "wrong_type at " + name);
+    EXPECT_EQ(refusal(path, "rh"), "missing_content at " + name);
   }
 }
 
@@ -257,23 +258,22 @@ TEST_F(NpzField, DamagedArchivesAreRefused) {
   std::string const array = npy("'<f8'", "(2, 3, 4)", bytes<double>(numbered()));
   zip.add("rho.npy", array, true);
   std::string const good = zip.archive();
-  EXPECT_THAT(refusal(write("m.npz", "not a zip archive")), HasSubstr("is not a zip archive"));
-  EXPECT_THAT(refusal(write("t.npz", good.substr(0, good.size() - 30))), HasSubstr("cut short or damaged"));
+  EXPECT_EQ(refusal(write("m.npz", "not a zip archive")), "wrong_format at m.npz");
+  EXPECT_EQ(refusal(write("t.npz", good.substr(0, good.size() - 30))), "damaged at t.npz");
   wrong.add("rho.npy", array, true, false);
-  EXPECT_THAT(refusal(write("c.npz", wrong.archive())), HasSubstr("wrong checksum"));
+  EXPECT_EQ(refusal(write("c.npz", wrong.archive())), "damaged at c.npz");
   Zip stored;
   stored.add("rho.npy", array, false, false);
-  EXPECT_THAT(refusal(write("stored.npz", stored.archive())), HasSubstr("wrong checksum"));
+  EXPECT_EQ(refusal(write("stored.npz", stored.archive())), "damaged at stored.npz");
   Zip early;  // compressed data that end before the array does, in an archive of full length
   early.add("rho.npy", array, true, true, array.size() - 16);
-  EXPECT_THAT(refusal(write("early.npz", early.archive())),
-              HasSubstr("is damaged: array \"rho\" has 176 bytes of data after decompression"));
+  EXPECT_EQ(refusal(write("early.npz", early.archive())), "damaged at early.npz");
   std::string crossed = good;
   crossed.replace(crossed.rfind("PK\x05\x06") + 16, 4, "\xff\xff\xff\x7f");  // the directory beyond the file
-  EXPECT_THAT(refusal(write("o.npz", crossed)), HasSubstr("cut short or damaged"));
+  EXPECT_EQ(refusal(write("o.npz", crossed)), "damaged at o.npz");
   Zip large;
   large.add("rho.npy", npy("'<f8'", "(10000, 10000, 1000)", "12345678"), true);
-  EXPECT_THAT(refusal(write("l.npz", large.archive())), HasSubstr("has 8 bytes of data"));
+  EXPECT_EQ(refusal(write("l.npz", large.archive())), "damaged at l.npz");
 }
 
 /// Data element of a MAT-file (MathWorks, MAT-File Format): tag, data, padding to 8 bytes.
@@ -353,24 +353,24 @@ TEST_F(MatField, OtherVariablesAreNamed) {
   auto const path = write("o.mat", mat(matrix("title", {1, 2}, 4, "a\0b\0", false, 4) + rho +
                                        matrix("wave", {1, 1}, 9, bytes<double>({1}), false, 6 | 0x0800)));
   EXPECT_EQ(values_of(path), numbered());
-  EXPECT_THAT(refusal(path, "title"), HasSubstr("holds text"));
-  EXPECT_THAT(refusal(path, "wave"), HasSubstr("complex numbers"));
-  EXPECT_THAT(refusal(path, "density"), HasSubstr("it has \"rho\""));
+  EXPECT_EQ(refusal(path, "title"), "wrong_type at o.mat");
+  EXPECT_EQ(refusal(path, "wave"), "wrong_type at o.mat");
+  EXPECT_EQ(refusal(path, "density"), "missing_content at o.mat");
 }
 
 TEST_F(MatField, DamagedFilesAreRefused) {
   std::string const good = mat(matrix("rho", {4, 3, 2}, 9, bytes<double>(numbered())));
-  EXPECT_THAT(refusal(write("t.mat", good.substr(0, good.size() - 8))), HasSubstr("cut short"));
-  EXPECT_THAT(refusal(write("h.mat", good.substr(0, 100))), HasSubstr("cut short"));
-  EXPECT_THAT(refusal(write("g.mat", good.substr(0, 132))), HasSubstr("cut short"));
-  EXPECT_THAT(refusal(write("w.mat", "MATLAB" + good)), HasSubstr("is not a MATLAB file of level 5 or 7.3"));
+  EXPECT_EQ(refusal(write("t.mat", good.substr(0, good.size() - 8))), "damaged at t.mat");
+  EXPECT_EQ(refusal(write("h.mat", good.substr(0, 100))), "damaged at h.mat");
+  EXPECT_EQ(refusal(write("g.mat", good.substr(0, 132))), "damaged at g.mat");
+  EXPECT_EQ(refusal(write("w.mat", "MATLAB" + good)), "wrong_format at w.mat");
   // sizes beyond the data, also in compressed data
   std::string const large = matrix("rho", {40000, 30000, 200}, 9, bytes<double>(numbered()));
-  EXPECT_THAT(refusal(write("s.mat", mat(large))), HasSubstr("cut short"));
-  EXPECT_THAT(refusal(write("z.mat", mat(zlib_element(large)))), HasSubstr("is damaged"));
+  EXPECT_EQ(refusal(write("s.mat", mat(large))), "damaged at s.mat");
+  EXPECT_EQ(refusal(write("z.mat", mat(zlib_element(large)))), "damaged at z.mat");
   std::string broken = mat(zlib_element(matrix("rho", {4, 3, 2}, 9, bytes<double>(numbered()))));
   broken[128 + 8] = '\xff';  // first byte of zlib's header
-  EXPECT_THAT(refusal(write("b.mat", broken)), HasSubstr("damaged"));
+  EXPECT_EQ(refusal(write("b.mat", broken)), "damaged at b.mat");
 }
 
 // MATLAB 7.3 is HDF5.
@@ -426,8 +426,8 @@ TEST_F(PointTableField, TecplotPointZonesAreRead) {
   EXPECT_EQ(open_field(path, "")->units().length, "mm");
   auto const two = write("two.dat", header + reversed_points(" ") + "ZONE T=\"b\"\n1 2 3 4\n");
   EXPECT_THAT(open_field(two, "")->notes(), testing::Contains(HasSubstr("another zone")));
-  EXPECT_THAT(refusal(write("b.dat", "VARIABLES = x, y, rho\nZONE I=2, J=2, F=BLOCK\n0 1 0 1\n0 0 1 1\n1 2 3 4\n")),
-              HasSubstr("BLOCK packing"));
+  EXPECT_EQ(refusal(write("b.dat", "VARIABLES = x, y, rho\nZONE I=2, J=2, F=BLOCK\n0 1 0 1\n0 0 1 1\n1 2 3 4\n")),
+            "unsupported at b.dat:3");
 }
 
 TEST_F(PointTableField, PlanesHaveTwoCoordinates) {
@@ -444,26 +444,25 @@ TEST_F(PointTableField, ThreeColumnsAreAVelocity) {
 }
 
 TEST_F(PointTableField, MissingAndRepeatedPointsAreNamed) {
-  EXPECT_THAT(refusal(write("m.csv", "x,y,rho\n0,0,1\n2,0,2\n0,3,4\n")), HasSubstr("lacks the point x = 2, y = 3"));
-  EXPECT_THAT(refusal(write("g.csv", "x,y,rho\n0,0,1\n0,3,4\n2,3,2\n")), HasSubstr("lacks the point x = 2, y = 0"));
-  EXPECT_THAT(refusal(write("d.csv", "x,y,rho\n0,0,1\n2,0,2\n0,3,4\n2,3,5\n2,0,2\n")),
-              testing::AllOf(HasSubstr("d.csv:6"), HasSubstr("x = 2, y = 0"), HasSubstr("line 3")));
+  EXPECT_THAT([&] { values_of(write("m.csv", "x,y,rho\n0,0,1\n2,0,2\n0,3,4\n")); },
+              ThrowsDataError(ErrorCode::missing_content, "m.csv", HasSubstr("x = 2, y = 3")));
+  EXPECT_THAT([&] { values_of(write("g.csv", "x,y,rho\n0,0,1\n0,3,4\n2,3,2\n")); },
+              ThrowsDataError(ErrorCode::missing_content, "g.csv", HasSubstr("x = 2, y = 0")));
+  EXPECT_EQ(refusal(write("d.csv", "x,y,rho\n0,0,1\n2,0,2\n0,3,4\n2,3,5\n2,0,2\n")), "invalid_value at d.csv:6");
   std::string scattered = "x,y,z,rho\n";
   for (int i = 0; i < 1000; ++i)
     scattered += std::to_string(i * 1.37) + ',' + std::to_string(i * i * 0.11) + ',' + std::to_string(i * 0.7) + ",1\n";
-  EXPECT_THAT(refusal(write("s.csv", scattered)), HasSubstr("1000 points do not fill the grid"));
+  EXPECT_EQ(refusal(write("s.csv", scattered)), "missing_content at s.csv");
 }
 
 TEST_F(PointTableField, OtherTablesAreRefused) {
-  EXPECT_THAT(refusal(write("e.csv", "")), HasSubstr("no row of numbers"));
-  EXPECT_THAT(refusal(write("h.csv", "x,y,rho\n")), HasSubstr("no row of numbers"));
-  EXPECT_THAT(refusal(write("n.csv", "1,2,3\n")), HasSubstr("no header line"));
-  EXPECT_THAT(refusal(write("c.csv", "a,b,rho\n1,2,3\n")), HasSubstr("names no coordinates"));
-  EXPECT_THAT(refusal(write("f.csv", "x,y,rho\n0,0,1\n1,0\n")),
-              testing::AllOf(HasSubstr("f.csv:3"), HasSubstr("2 fields")));
-  EXPECT_THAT(refusal(write("w.csv", "x,y,rho\n0,0,1\n1,0,word\n")),
-              testing::AllOf(HasSubstr("w.csv:3"), HasSubstr("word")));
-  EXPECT_THAT(refusal(write("i.csv", "x,y,rho\n0,0,1\nnan,0,1\n")), HasSubstr("i.csv:3"));
+  EXPECT_EQ(refusal(write("e.csv", "")), "missing_content at e.csv");
+  EXPECT_EQ(refusal(write("h.csv", "x,y,rho\n")), "missing_content at h.csv");
+  EXPECT_EQ(refusal(write("n.csv", "1,2,3\n")), "missing_content at n.csv:1");
+  EXPECT_EQ(refusal(write("c.csv", "a,b,rho\n1,2,3\n")), "missing_content at c.csv");
+  EXPECT_EQ(refusal(write("f.csv", "x,y,rho\n0,0,1\n1,0\n")), "syntax at f.csv:3");
+  EXPECT_EQ(refusal(write("w.csv", "x,y,rho\n0,0,1\n1,0,word\n")), "syntax at w.csv:3");
+  EXPECT_EQ(refusal(write("i.csv", "x,y,rho\n0,0,1\nnan,0,1\n")), "invalid_value at i.csv:3");
 }
 
 TEST_F(ArrayReaders, DocumentationListsEveryFormat) {

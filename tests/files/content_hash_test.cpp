@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "render/base/error.h"
+#include "tests/support/expect_error.h"
 
 namespace gladstone {
 namespace {
@@ -33,8 +34,8 @@ TEST(ContentHash, OfAFileIsThatOfItsBytesAndSeesEveryByteOfALongOne) {
     bytes[at] = 'a';
   }
   std::filesystem::remove(path);
-  EXPECT_THROW(file_hash(path), DataError);
-  EXPECT_THROW(file_hash(testing::TempDir()), DataError);
+  EXPECT_THAT([&] { file_hash(path); }, ThrowsDataError(ErrorCode::missing_file, path));
+  EXPECT_THAT([&] { file_hash(testing::TempDir()); }, ThrowsDataError(ErrorCode::unreadable_file, testing::TempDir()));
 }
 
 }  // namespace

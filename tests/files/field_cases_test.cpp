@@ -11,6 +11,7 @@
 #include "render/files/fields/field_file.h"
 #include "render/files/fields/resampled_field.h"
 #include "render/files/hdf5_file.h"
+#include "tests/support/expect_error.h"
 
 namespace gladstone {
 namespace {
@@ -20,7 +21,6 @@ using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
-using testing::ThrowsMessage;
 
 /// Files as written by other programs, each with one special property. All contain the same field, rho = 1.2 + 0.02 x +
 /// 0.05 y + 0.001 z [kg/m^3], with x, y, z in mm from the centre of 24 x 20 x 16 nodes with spacings of 1, 1.2 and 1.5
@@ -132,10 +132,11 @@ TEST(FieldCase, AxesAreThoseThatTheKeyNames) {
   EXPECT_EQ(source->reading().text(), "[16, 20, 24] is read as x, y, z (axes = \"xyz\")");
   EXPECT_LT(largest_error(*source, {0.001, 0.05, 0.02}), rounding);
   EXPECT_LT(largest_error(*open_field(case_file("h_matlab_mesh.h5"), "", 1, "zxy")), rounding);
-  EXPECT_THAT([] { open_field(case_file("h_matlab_mesh.h5"), "", 1, "zyx"); },
-              ThrowsMessage<DataError>(HasSubstr("has 24 coordinates for the 20 nodes of \"rho\"")));
+  EXPECT_THAT(
+      [] { open_field(case_file("h_matlab_mesh.h5"), "", 1, "zyx"); },
+      ThrowsDataError(ErrorCode::wrong_shape, "h_matlab_mesh.h5", HasSubstr("24 coordinates for the 20 nodes")));
   EXPECT_THAT([] { open_field(case_file("n_tabs.nrrd"), "", 1, "yx"); },
-              ThrowsMessage<DataError>(HasSubstr("names 2 axes of an array that has 3")));
+              ThrowsDataError(ErrorCode::inconsistent, "n_tabs.nrrd"));
 }
 
 // The y coordinates of this file are a hyperbolic tangent of the index and the field is linear in the index: along y,
@@ -199,8 +200,7 @@ TEST(FieldCase, UnknownSpacingIsReported) {
 
 TEST(FieldCase, MissingFiltersAreNamed) {
   auto const says = [](std::string const& filter) {
-    return ThrowsMessage<DataError>(AllOf(HasSubstr("\"Density_0001\" is compressed by a filter that is not installed"),
-                                          HasSubstr(filter), HasSubstr("h5repack -f GZIP=4 ")));
+    return ThrowsDataError(ErrorCode::unsupported, ".h5", HasSubstr(filter));
   };
   EXPECT_THAT([] { open_field(case_file("h_lzf.h5"), ""); }, says("lzf (number 32000)"));
   EXPECT_THAT([] { open_field(case_file("h_zstd.h5"), ""); }, says("zstd (number 32015)"));
@@ -217,7 +217,7 @@ TEST(FieldCase, GroupsLinksAndDimensionScalesAreFollowed) {
 
 TEST(FieldCase, DataOfAnotherSizeThanTheHeaderSaysAreRefused) {
   EXPECT_THAT([] { largest_error(*open_field(case_file("w4_longer.nhdr"), "")); },
-              ThrowsMessage<DataError>(HasSubstr("holds more data than its header says: 31072 bytes")));
+              ThrowsDataError(ErrorCode::damaged, "", HasSubstr("31072 bytes")));
 }
 
 TEST(FieldCase, UnitsPaddedByBlanksAreTrimmed) {

@@ -18,6 +18,7 @@
 #include "render/base/error.h"
 #include "render/files/fields/field_file.h"
 #include "render/files/hdf5_file.h"
+#include "tests/support/expect_error.h"
 
 namespace gladstone {
 namespace {
@@ -26,7 +27,6 @@ namespace fs = std::filesystem;
 using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
-using testing::ThrowsMessage;
 
 /// Fixture with a separate directory for each test.
 class FieldFiles : public testing::Test {
@@ -71,10 +71,6 @@ std::string bytes(std::vector<double> const& values, bool big_endian = false) {
     text.append(raw, sizeof(Stored));
   }
   return text;
-}
-
-auto refused(std::string const& file, std::string const& why) {
-  return ThrowsMessage<DataError>(AllOf(HasSubstr(file), HasSubstr(why)));
 }
 
 class JhtdbField : public FieldFiles {
@@ -228,9 +224,13 @@ TEST_F(JhtdbField, CoordinatesThatAreNoPlacesAreRefused) {
       [&] {
         open_field(write({density(), folded}), "");
       },
-      refused("xcoor", "coordinates neither ascend nor descend throughout (1 at node 1 is followed by 0.5)"));
+      ThrowsDataError(ErrorCode::invalid_value, "cutout.h5"));
   folded.values[2] = std::nan("");
-  EXPECT_THAT([&] { open_field(write({density(), folded}), ""); }, refused("xcoor", "coordinates are not finite"));
+  EXPECT_THAT(
+      [&] {
+        open_field(write({density(), folded}), "");
+      },
+      ThrowsDataError(ErrorCode::invalid_value, "cutout.h5"));
 }
 
 TEST_F(JhtdbField, CoordinatesThatDoNotFitAreRefused) {
@@ -238,13 +238,13 @@ TEST_F(JhtdbField, CoordinatesThatDoNotFitAreRefused) {
       [&] {
         open_field(write({density(), axis("zcoor", 5, 0.0, 1.0)}), "");
       },
-      refused("cutout.h5", "dataset \"zcoor\" has 5 coordinates for the 2 nodes of \"Density_0001\""));
+      ThrowsDataError(ErrorCode::wrong_shape, "cutout.h5"));
   // zcoor has 3 values, which fits only the middle axis of [2, 3, 4]: x and y may be either of the others
   EXPECT_THAT(
       [&] {
         open_field(write({density(), axis("zcoor", 3, 0.0, 1.0)}), "");
       },
-      refused("cutout.h5", "allow several orders of its axes; name the right one: axes = \"xzy\" or \"yzx\""));
+      ThrowsDataError(ErrorCode::undetermined, "cutout.h5", HasSubstr("axes = \"xzy\" or \"yzx\"")));
   auto const named = open_field(write({density(), axis("zcoor", 3, 0.0, 1.0)}), "", 1, "xzy");
   EXPECT_THAT(named->grid().nodes, ElementsAre(2, 4, 3));
 }
@@ -276,13 +276,13 @@ TEST_F(JhtdbField, CoordinatesOfAllNodesAreUsed) {
       [&] {
         open_field(write({density(), x, y, z}), "", 1, "zyx");
       },
-      refused("cutout.h5", "dataset \"x\" varies along axis 1 of \"Density_0001\""));
+      ThrowsDataError(ErrorCode::inconsistent, "cutout.h5"));
   y.values[5] += 0.1;
   EXPECT_THAT(
       [&] {
         open_field(write({density(), x, y, z}), "");
       },
-      refused("cutout.h5", "dataset \"y\" of shape [2, 3, 4] varies along several axes of \"Density_0001\""));
+      ThrowsDataError(ErrorCode::unsupported, "cutout.h5"));
 }
 
 // MATLAB's [X, Y, Z] = ndgrid(x, y, z) results in arrays [nx, ny, nz], which HDF5 stores as [nz, ny, nx]; the arrays of
@@ -369,7 +369,7 @@ TEST_F(JhtdbField, CoordinatesOfEdgesMakeCells) {
       [&] {
         open_field(write({density(), axis("x", 5, 0.0, 0.5), axis("y", 3, 0.0, 0.5), axis("z", 2, 0.0, 2.0)}), "");
       },
-      refused("cutout.h5", "has 5 coordinates for the 4 nodes"));
+      ThrowsDataError(ErrorCode::wrong_shape, "cutout.h5"));
 }
 
 // Names of coordinate datasets in a table of docs/file-formats.md, each with its unit.
@@ -402,7 +402,8 @@ TEST_F(JhtdbField, PackedValuesAreUnpackedAndFillValuesRefused) {
   for (std::size_t i = 0; i < read.size(); ++i) EXPECT_EQ(read[i], 10 + 0.5 * values[i]);
   values[5] = -32767;
   values[6] = static_cast<float>(1e20);  // the value has fewer digits than the attribute
-  EXPECT_THAT([&] { read_all(*packed(values)); }, refused("packed.nc", "2 of 24 points are nan or infinite"));
+  EXPECT_THAT([&] { read_all(*packed(values)); },
+              ThrowsDataError(ErrorCode::invalid_value, "packed.nc", HasSubstr("2 of 24 points")));
 }
 
 /// Writes the attribute of the HDF5 Dimension Scale Specification, as H5DSset_label() does.
@@ -443,8 +444,8 @@ TEST_F(JhtdbField, ComplexNumbersAreNamed) {
   H5Sclose(space);
   H5Tclose(type);
   H5Fclose(file);
-  EXPECT_THAT([&] { open_field(path, ""); }, refused("cutout.h5", "it has \"x\" [4], \"rho\" of complex numbers"));
-  EXPECT_THAT([&] { open_field(path, "rho"); }, refused("cutout.h5", "dataset \"rho\" holds complex numbers"));
+  EXPECT_THAT([&] { open_field(path, ""); }, ThrowsDataError(ErrorCode::missing_content, "cutout.h5"));
+  EXPECT_THAT([&] { open_field(path, "rho"); }, ThrowsDataError(ErrorCode::wrong_type, "cutout.h5"));
 }
 
 // Every numeric type in either byte order, through every filter of the HDF5 library, with every file name extension.
@@ -493,7 +494,7 @@ TEST_F(JhtdbField, HolesAreCountedOverTheWholeField) {
   std::vector<double> plane(12);
   EXPECT_NO_THROW(source->read_planes(1, 1, plane));  // nodes 12 to 23 are valid
   EXPECT_THAT([&] { source->read_planes(0, 1, plane); },
-              refused("cutout.h5", "dataset \"Density_0001\": 3 of 60 points are holes (-999.9"));
+              ThrowsDataError(ErrorCode::invalid_value, "cutout.h5", HasSubstr("3 of 60 points")));
 }
 
 TEST_F(JhtdbField, NanAndInfinityAreRefused) {
@@ -502,7 +503,8 @@ TEST_F(JhtdbField, NanAndInfinityAreRefused) {
   field.values[4] = std::numeric_limits<double>::infinity();
   field.values[5] = 1e300;  // infinite as a float
   auto const source = open_field(write({field}), "");
-  EXPECT_THAT([&] { read_all(*source); }, refused("Density_0001", "3 of 24 points are nan or infinite"));
+  EXPECT_THAT([&] { read_all(*source); },
+              ThrowsDataError(ErrorCode::invalid_value, "cutout.h5", HasSubstr("3 of 24 points")));
 }
 
 // The index of air differs from 1 by 2.7e-4: the variations that determine the gradient are beyond the seventh digit,
@@ -533,20 +535,17 @@ TEST_F(JhtdbField, PlainPlaneIsRead) {
 
 TEST_F(JhtdbField, WrongRankNamesTheShape) {
   auto const line = Dataset{"line", {4}, numbered(4, 1, 1)};
-  EXPECT_THAT([&] { open_field(write({line}), "line"); },
-              refused("cutout.h5", "dataset \"line\" of shape [4] has rank 1"));
+  EXPECT_THAT([&] { open_field(write({line}), "line"); }, ThrowsDataError(ErrorCode::wrong_shape, "cutout.h5"));
   auto const velocity = Dataset{"Velocity_0001", {1, 1, 2, 3}, {1, 2, 3, 4, 5, 6}};
   EXPECT_THAT([&] { open_field(write({velocity}), "Velocity_0001"); },
-              refused("cutout.h5", "dataset \"Velocity_0001\" of shape [1, 1, 2, 3] has 3 values per point"));
+              ThrowsDataError(ErrorCode::wrong_shape, "cutout.h5"));
   auto const first = Dataset{"v", {3, 1, 9, 8}, numbered(8, 9, 3)};
-  EXPECT_THAT([&] { open_field(write({first}), "v"); }, refused("cutout.h5", "has 3 values per point"));
+  EXPECT_THAT([&] { open_field(write({first}), "v"); }, ThrowsDataError(ErrorCode::wrong_shape, "cutout.h5"));
   EXPECT_THAT(
       [&] {
         open_field(write({velocity, line}), "");
       },
-      refused("cutout.h5",
-              "has no scalar field, [nz, ny, nx], [nz, ny, nx, 1] or [ny, nx]; it has \"Velocity_0001\" [1, 1, "
-              "2, 3], \"line\" [4]"));
+      ThrowsDataError(ErrorCode::missing_content, "cutout.h5"));
 }
 
 // [64, 32, 3] may be a volume with three nodes along x, or a plane of velocities.
@@ -562,25 +561,21 @@ TEST_F(JhtdbField, SeveralFieldsAskForAName) {
   auto second = density();
   second.name = "Density_0002";
   std::string const path = write({density(), second});
-  EXPECT_THAT(
-      [&] { open_field(path, ""); },
-      refused("cutout.h5", "has several fields; select one with dataset = \"Density_0001\" or \"Density_0002\""));
+  EXPECT_THAT([&] { open_field(path, ""); },
+              ThrowsDataError(ErrorCode::undetermined, "cutout.h5", HasSubstr("\"Density_0001\" or \"Density_0002\"")));
   EXPECT_THAT([&] { open_field(path, "Density_001"); },
-              refused("cutout.h5", "has no dataset \"Density_001\"; did you mean \"Density_0001\"?"));
+              ThrowsDataError(ErrorCode::missing_content, "cutout.h5", HasSubstr("did you mean \"Density_0001\"?")));
 }
 
 TEST_F(FieldFiles, UnknownFormatsAndMissingFilesAreNamed) {
-  EXPECT_THAT([&] { open_field(in_folder("absent.h5"), ""); }, refused("absent.h5", "does not exist"));
+  EXPECT_THAT([&] { open_field(in_folder("absent.h5"), ""); }, ThrowsDataError(ErrorCode::missing_file, "absent.h5"));
   std::ofstream(in_folder("field.xyz")) << "x";
-  EXPECT_THAT([&] { open_field(in_folder("field.xyz"), ""); },
-              refused("field.xyz",
-                      "supported are .h5, .hdf5, .he5, .nc, .mat, .vti, .vtr, .vtk, .nrrd, .nhdr, .npy, "
-                      ".npz, .csv, .txt, .dat"));
+  EXPECT_THAT([&] { open_field(in_folder("field.xyz"), ""); }, ThrowsDataError(ErrorCode::unsupported, "field.xyz"));
   std::ofstream(in_folder("field.vtk")) << "x";
-  EXPECT_THAT([&] { open_field(in_folder("field.vtk"), ""); }, refused("field.vtk", "is not a legacy VTK file"));
+  EXPECT_THAT([&] { open_field(in_folder("field.vtk"), ""); }, ThrowsDataError(ErrorCode::wrong_format, "field.vtk"));
   std::ofstream(in_folder("text.H5")) << "x";
-  EXPECT_THAT([&] { open_field(in_folder("text.H5"), ""); }, refused("text.H5", "is not an HDF5 file"));
-  EXPECT_THAT([&] { open_field(folder_.string(), ""); }, refused("", "is a folder"));
+  EXPECT_THAT([&] { open_field(in_folder("text.H5"), ""); }, ThrowsDataError(ErrorCode::wrong_format, "text.H5"));
+  EXPECT_THAT([&] { open_field(folder_.string(), ""); }, ThrowsDataError(ErrorCode::unreadable_file, ""));
 }
 
 class NrrdField : public FieldFiles {
@@ -735,8 +730,7 @@ TEST_F(NrrdField, FieldsGivenTwiceAreRefusedWithTheirLines) {
   std::string const rest = "type: uint8\nencoding: raw\n\n" + std::string(24, '\1');
   std::string const twice =
       write("a.nrrd", header(std::string(grid_432) + "spacings: 1 1 1\nspacings: 2 2 2\n" + rest));
-  EXPECT_THAT([&] { open_field(twice, ""); },
-              refused("a.nrrd:7", "repeats the NRRD field \"spacings\" as \"2 2 2\" (line 6 says \"1 1 1\")"));
+  EXPECT_THAT([&] { open_field(twice, ""); }, ThrowsDataError(ErrorCode::invalid_value, "a.nrrd:7"));
   std::string const same = write("b.nrrd", header(std::string(grid_432) + "spacings: 2 2 2\nspacings: 2 2 2\n" + rest));
   EXPECT_EQ(open_field(same, "")->grid().spacing, (Vec3d{2, 2, 2}));
 }
@@ -747,9 +741,7 @@ TEST_F(NrrdField, ListOfOneDataFileIsRead) {
       std::string(grid_432) + "type: float\nendian: little\nencoding: raw\ndata file: LIST\na.raw\n";
   expect_numbered(write("a.nhdr", header(fields)));
   std::string const several = write("b.nhdr", header(fields + "b.raw\n"));
-  EXPECT_THAT([&] { open_field(several, ""); }, refused("b.nhdr",
-                                                        "names several files (2); data in several files are not "
-                                                        "supported: join them into one file"));
+  EXPECT_THAT([&] { open_field(several, ""); }, ThrowsDataError(ErrorCode::unsupported, "b.nhdr"));
 }
 
 TEST_F(NrrdField, TwoDimensionsAreOnePlane) {
@@ -777,8 +769,7 @@ TEST_F(NrrdField, VelocityHasItsComponentsFastest) {
     EXPECT_EQ(read, values) << sizes;
   }
   std::string const scalar = write("s.nrrd", header(std::string(grid_432) + rest));
-  EXPECT_THAT([&] { open_field(scalar, "", 3); },
-              refused("s.nrrd", "has no first axis of 3 components, which a velocity needs"));
+  EXPECT_THAT([&] { open_field(scalar, "", 3); }, ThrowsDataError(ErrorCode::wrong_shape, "s.nrrd"));
 }
 
 TEST_F(NrrdField, AxesOfLengthOneAreIgnored) {
@@ -805,20 +796,21 @@ TEST_F(NrrdField, NegativeSpacingsRunBackwards) {
 TEST_F(NrrdField, TruncatedDataSayHowMuchIsThere) {
   std::string const data = bytes<float>(numbered(4, 3, 2));  // 96 bytes
   std::string const type = std::string(grid_432) + "type: float\nendian: little\n";
-  auto const message =
-      "is cut short: 50 bytes of data are present and 96 are needed (sizes 4 x 3 x 2, 4 bytes per value)";
+  char const* const present_of_needed = "50 bytes of data are present and 96 are needed";
   std::string const raw = write("raw.nrrd", header(type + "encoding: raw\n") + "\n" + data.substr(0, 50));
-  EXPECT_THAT([&] { open_field(raw, ""); }, refused("raw.nrrd", message));
+  EXPECT_THAT([&] { open_field(raw, ""); },
+              ThrowsDataError(ErrorCode::damaged, "raw.nrrd", HasSubstr(present_of_needed)));
   // compressed: the stream is complete but too short ...
   std::string const few = write("few.nrrd", header(type + "encoding: gzip\n") + "\n" + gzipped(data.substr(0, 50)));
-  EXPECT_THAT([&] { read_all(*open_field(few, "")); }, refused("few.nrrd", message));
+  EXPECT_THAT([&] { read_all(*open_field(few, "")); },
+              ThrowsDataError(ErrorCode::damaged, "few.nrrd", HasSubstr(present_of_needed)));
   // ... or is itself truncated
   std::string const stream = gzipped(data);
   std::string const cut =
       write("cut.nrrd", header(type + "encoding: gzip\n") + "\n" + stream.substr(0, stream.size() - 20));
-  EXPECT_THAT([&] { read_all(*open_field(cut, "")); }, refused("cut.nrrd", "96 are needed"));
+  EXPECT_THAT([&] { read_all(*open_field(cut, "")); }, ThrowsDataError(ErrorCode::damaged, "cut.nrrd"));
   std::string const none = write("none.nrrd", header(type + "encoding: raw\n"));
-  EXPECT_THAT([&] { open_field(none, ""); }, refused("none.nrrd", "has no data"));
+  EXPECT_THAT([&] { open_field(none, ""); }, ThrowsDataError(ErrorCode::missing_content, "none.nrrd"));
 }
 
 TEST_F(NrrdField, DamagedCompressedDataAreNoticed) {
@@ -826,10 +818,10 @@ TEST_F(NrrdField, DamagedCompressedDataAreNoticed) {
   stream[stream.size() - 6] ^= 0x55;  // in the checksum
   std::string const path = write(
       "bad.nrrd", header(std::string(grid_432) + "type: float\nendian: little\nencoding: gzip\n") + "\n" + stream);
-  EXPECT_THAT([&] { read_all(*open_field(path, "")); }, refused("bad.nrrd", "is damaged"));
+  EXPECT_THAT([&] { read_all(*open_field(path, "")); }, ThrowsDataError(ErrorCode::damaged, "bad.nrrd"));
   std::string const plain = write(
       "plain.nrrd", header(std::string(grid_432) + "type: uint8\nencoding: gzip\n") + "\n" + std::string(24, 'x'));
-  EXPECT_THAT([&] { read_all(*open_field(plain, "")); }, refused("plain.nrrd", "is declared as gzip, but is not"));
+  EXPECT_THAT([&] { read_all(*open_field(plain, "")); }, ThrowsDataError(ErrorCode::damaged, "plain.nrrd"));
 }
 
 TEST_F(NrrdField, NanAndHolesAreRefused) {
@@ -839,45 +831,41 @@ TEST_F(NrrdField, NanAndHolesAreRefused) {
   std::string const path = write("a.nrrd", header(std::string(grid_432) + "type: float\nendian: big\nencoding: raw\n") +
                                                "\n" + bytes<float>(values, true));
   EXPECT_THAT([&] { read_all(*open_field(path, "")); },
-              refused("a.nrrd",
-                      "1 of 24 points are holes (-999.9, the database's mark for missing data), 1 of 24 points are "
-                      "nan or infinite"));
+              ThrowsDataError(ErrorCode::invalid_value, "a.nrrd", HasSubstr("1 of 24 points")));
 }
 
 TEST_F(NrrdField, WhatIsNotReadIsRefusedByName) {
-  auto const refuses = [&](std::string const& fields, std::string const& why) {
+  auto const refuses = [&](std::string const& fields, ErrorCode code) {
     std::string const path = write("a.nrrd", header(fields) + "\n" + std::string(24, '\1'));
-    EXPECT_THAT([&] { read_all(*open_field(path, "")); }, refused("a.nrrd", why)) << fields;
+    EXPECT_THAT([&] { read_all(*open_field(path, "")); }, ThrowsDataError(code, "a.nrrd")) << fields;
   };
   std::string const type = "type: uint8\n", raw = "encoding: raw\n", grid = grid_432;
-  refuses(grid + type + "encoding: zrl\n", "\"encoding: zrl\" is not supported");
-  refuses(grid + type + "encoding: ascii\n", "number 1 of its text is ");
-  refuses("dimension: 3\nsizes: 400 300 2\n" + type + "encoding: ascii\n",
-          "its 24 bytes of text cannot hold 240000 values");
-  refuses(grid + type + "encoding: hex\n", "digit 1 of its hex data is not a hexadecimal digit");
-  refuses(grid + type + "encoding: bzip2\n", "bzip2 cannot decompress it");
-  refuses(grid + type + raw + "data file: LIST\n", "names several files");
-  refuses(grid + type + raw + "data file: slice%03d.raw 1 9 1\n", "names several files");
-  refuses(grid + type + raw + "space directions: (1,0.1,0) (0,1,0) (0,0,1)\n", "is oblique");
-  refuses(grid + type + raw + "space directions: (1,0,0) (2,0,0) (0,0,1)\n", "gives two axes the same direction");
-  refuses(grid + type + raw + "space directions: none (0,1,0) (0,0,1)\n", "must give each axis in space a vector");
-  refuses(grid + type + raw + "spacings: 1 1\n", "must be 3 numbers");
-  refuses(grid + type + raw + "spacings: 1 0 1\n", "gives an axis zero length");
-  refuses(grid + "type: block\n" + raw, "is not a numeric type");
-  refuses(grid + "type: float\n" + raw, "\"endian\" must be little or big");
-  refuses("dimension: 4\nsizes: 3 4 3 2\n" + type + raw, "\"dimension: 4\" must be 2 or 3");
-  refuses("dimension: 3\nsizes: 4 -3 2\n" + type + raw, "must be positive");
-  refuses("dimension: 3\nsizes: 3000000000 3 2\n" + type + raw, "is larger than any field");
-  refuses("dimension: 3\nsizes: 99999999999999999999 3 2\n" + type + raw,
-          "must be whole numbers, of 18 digits at most");
-  refuses(type + raw + "dimension: 3\n", "\"sizes\" is missing");
-  refuses(grid + type, "\"encoding\" is missing");
-  refuses("no colon here\n", "is not an NRRD field");
+  refuses(grid + type + "encoding: zrl\n", ErrorCode::unsupported);
+  refuses(grid + type + "encoding: ascii\n", ErrorCode::damaged);
+  refuses("dimension: 3\nsizes: 400 300 2\n" + type + "encoding: ascii\n", ErrorCode::damaged);
+  refuses(grid + type + "encoding: hex\n", ErrorCode::damaged);
+  refuses(grid + type + "encoding: bzip2\n", ErrorCode::damaged);
+  refuses(grid + type + raw + "data file: LIST\n", ErrorCode::unsupported);
+  refuses(grid + type + raw + "data file: slice%03d.raw 1 9 1\n", ErrorCode::unsupported);
+  refuses(grid + type + raw + "space directions: (1,0.1,0) (0,1,0) (0,0,1)\n", ErrorCode::unsupported);
+  refuses(grid + type + raw + "space directions: (1,0,0) (2,0,0) (0,0,1)\n", ErrorCode::invalid_value);
+  refuses(grid + type + raw + "space directions: none (0,1,0) (0,0,1)\n", ErrorCode::wrong_shape);
+  refuses(grid + type + raw + "spacings: 1 1\n", ErrorCode::wrong_shape);
+  refuses(grid + type + raw + "spacings: 1 0 1\n", ErrorCode::invalid_value);
+  refuses(grid + "type: block\n" + raw, ErrorCode::wrong_type);
+  refuses(grid + "type: float\n" + raw, ErrorCode::syntax);
+  refuses("dimension: 4\nsizes: 3 4 3 2\n" + type + raw, ErrorCode::wrong_shape);
+  refuses("dimension: 3\nsizes: 4 -3 2\n" + type + raw, ErrorCode::invalid_value);
+  refuses("dimension: 3\nsizes: 3000000000 3 2\n" + type + raw, ErrorCode::out_of_range);
+  refuses("dimension: 3\nsizes: 99999999999999999999 3 2\n" + type + raw, ErrorCode::syntax);
+  refuses(type + raw + "dimension: 3\n", ErrorCode::missing_content);
+  refuses(grid + type, ErrorCode::missing_content);
+  refuses("no colon here\n", ErrorCode::syntax);
   std::string const foreign = write("b.nrrd", "PNG\n");
-  EXPECT_THAT([&] { open_field(foreign, ""); }, refused("b.nrrd", "is not a NRRD file"));
+  EXPECT_THAT([&] { open_field(foreign, ""); }, ThrowsDataError(ErrorCode::wrong_format, "b.nrrd"));
   std::string const absent = write("c.nhdr", header(grid + type + raw + "data file: absent.raw\n"));
-  EXPECT_THAT([&] { open_field(absent, ""); }, refused("absent.raw", "does not exist"));
-  EXPECT_THAT([&] { open_field(absent, "Density_0001"); }, refused("c.nhdr", "leave dataset = \"Density_0001\" out"));
+  EXPECT_THAT([&] { open_field(absent, ""); }, ThrowsDataError(ErrorCode::missing_file, "absent.raw"));
+  EXPECT_THAT([&] { open_field(absent, "Density_0001"); }, ThrowsDataError(ErrorCode::missing_content, "c.nhdr"));
 }
 
 // In cut-outs of the older client, the three components of a velocity are adjacent.
@@ -891,9 +879,8 @@ TEST_F(JhtdbField, VelocityHasThreeValuesAPoint) {
   std::vector<double> plane(36);
   source->read_planes(1, 1, plane);
   EXPECT_TRUE(std::equal(plane.begin(), plane.end(), values.begin() + 36));
-  EXPECT_THAT([&] { open_field(path, "Density_0001", 3); },
-              refused("cutout.h5", "has 1 values per point; a velocity has shape [nz, ny, nx, 3]"));
-  EXPECT_THAT([&] { open_field(write({density()}), "", 3); }, refused("cutout.h5", "has no velocity, [nz, ny, nx, 3]"));
+  EXPECT_THAT([&] { open_field(path, "Density_0001", 3); }, ThrowsDataError(ErrorCode::wrong_shape, "cutout.h5"));
+  EXPECT_THAT([&] { open_field(write({density()}), "", 3); }, ThrowsDataError(ErrorCode::missing_content, "cutout.h5"));
 }
 
 // Other programs store the components of a velocity one after the other, [3, nz, ny, nx] or, for a plane, [3, ny, nx].
@@ -1064,7 +1051,7 @@ TEST_F(VtiFiles, CompressedDataHaveLengthsOfFourOrEightBytes) {
       std::string wrong = vtk_image(keys, at_four, appended("raw", header + blocks));
       wrong.replace(wrong.find("header_type") + 13, 6, other);
       std::ofstream(path, std::ios::binary) << wrong;
-      EXPECT_THAT([&] { read_all(*open_field(path, "")); }, refused("packed.vti", "data array \"rho\""));
+      EXPECT_THAT([&] { read_all(*open_field(path, "")); }, ThrowsDataError(ErrorCode::damaged, "packed.vti"));
     }
   }
 }
@@ -1093,7 +1080,7 @@ TEST_F(VtiFiles, EveryTypeOfNumberIsRead) {
   expect_read("Int64", bytes<std::int64_t>(values), 63);
   expect_read("UInt64", bytes<std::uint64_t>(values), 64);
   std::ofstream(path) << vtk_image("", "<DataArray type=\"String\" Name=\"rho\" format=\"ascii\">1</DataArray>");
-  EXPECT_THAT([&] { open_field(path, ""); }, refused("types.vti", "of type \"String\", which is not numeric"));
+  EXPECT_THAT([&] { open_field(path, ""); }, ThrowsDataError(ErrorCode::wrong_type, "types.vti"));
 }
 
 /// A legacy file of 4 x 3 x 2 points. @param data  content from POINT_DATA or CELL_DATA on
@@ -1250,31 +1237,29 @@ TEST_F(VtiFiles, RectilinearGridsMayDescendStretchAndHaveCells) {
 }
 
 TEST_F(VtiFiles, RefusesWhatItCannotRead) {
-  auto const refuses = [this](std::string const& text, std::string const& why, std::string const& dataset = "") {
-    EXPECT_THAT(([&] { read(text, dataset); }), refused("field.vti", why)) << text;
+  auto const refuses = [this](std::string const& text, ErrorCode code, std::string const& dataset = "") {
+    EXPECT_THAT(([&] { read(text, dataset); }), ThrowsDataError(code, "field.vti")) << text;
   };
   std::string const good = array("Name=\"a\" format=\"ascii\"", "1 2 3 4");
   EXPECT_NO_THROW(read(image(good)));
-  refuses("", "is not a VTK file");
-  refuses("<VTKFile type=\"ImageData\">", "is not complete XML");
-  refuses("<VTKFile type=\"UnstructuredGrid\"></VTKFile>", "holds VTK's \"UnstructuredGrid\"");
-  refuses(image(""), "has no scalar field among its data of points and cells");
-  refuses(image(good), "has no scalar field \"b\" among its data of points and cells, which are \"a\"", "b");
-  refuses(image(good + array("Name=\"b\"", "1 2 3 4")), "select one with dataset = \"a\" or \"b\"");
-  refuses(image(array("Name=\"a\" NumberOfComponents=\"2\"", "1 2")), "has 2 values per point, but 1 are", "a");
-  refuses(image(good, "WholeExtent=\"0 2 0 1 0 0\""), "its pieces do not fill its WholeExtent");
-  refuses(image(good, "WholeExtent=\"0 1 0 1\""), "is not 6 numbers");
-  refuses(image(good, "WholeExtent=\"0 1 0 1 0 0\" Spacing=\"1 0 1\""), "has no usable grid");
-  refuses(image(good, "WholeExtent=\"0 1 0 1 0 0\" Direction=\"0.6 0.8 0 -0.8 0.6 0 0 0 1\""), "has rotated axes");
-  refuses(image(array("Name=\"a\" format=\"ascii\"", "1 2 3")), "3 of 4 numbers are present");
-  refuses(image(array("Name=\"a\" format=\"ascii\"", "1 2 nan 3")), "1 of 4 points are nan");
-  refuses(image(array("Name=\"a\" format=\"binary\"", "AAAA")), "is cut short");
-  refuses(image(array("Name=\"a\" format=\"binary\"", "EAAAAAAAAAAAAAAA?AAAAAAAAAA=")), "contains invalid characters");
-  refuses(image(array("Name=\"a\" format=\"binary\"", "DAAAAAAAAAAAAAAAAAAAAAAAAAA=")),
-          "its length is 12, but its grid needs 16");
-  refuses(image(array("Name=\"a\" format=\"appended\" offset=\"0\"", "")), "has no data");
-  refuses("<VTKFile type=\"ImageData\" compressor=\"vtkOtherCompressor\"></VTKFile>",
-          "compressed by \"vtkOtherCompressor\"");
+  refuses("", ErrorCode::wrong_format);
+  refuses("<VTKFile type=\"ImageData\">", ErrorCode::damaged);
+  refuses("<VTKFile type=\"UnstructuredGrid\"></VTKFile>", ErrorCode::unsupported);
+  refuses(image(""), ErrorCode::missing_content);
+  refuses(image(good), ErrorCode::missing_content, "b");
+  refuses(image(good + array("Name=\"b\"", "1 2 3 4")), ErrorCode::undetermined);
+  refuses(image(array("Name=\"a\" NumberOfComponents=\"2\"", "1 2")), ErrorCode::wrong_shape, "a");
+  refuses(image(good, "WholeExtent=\"0 2 0 1 0 0\""), ErrorCode::missing_content);
+  refuses(image(good, "WholeExtent=\"0 1 0 1\""), ErrorCode::syntax);
+  refuses(image(good, "WholeExtent=\"0 1 0 1 0 0\" Spacing=\"1 0 1\""), ErrorCode::invalid_value);
+  refuses(image(good, "WholeExtent=\"0 1 0 1 0 0\" Direction=\"0.6 0.8 0 -0.8 0.6 0 0 0 1\""), ErrorCode::unsupported);
+  refuses(image(array("Name=\"a\" format=\"ascii\"", "1 2 3")), ErrorCode::damaged);
+  refuses(image(array("Name=\"a\" format=\"ascii\"", "1 2 nan 3")), ErrorCode::invalid_value);
+  refuses(image(array("Name=\"a\" format=\"binary\"", "AAAA")), ErrorCode::damaged);
+  refuses(image(array("Name=\"a\" format=\"binary\"", "EAAAAAAAAAAAAAAA?AAAAAAAAAA=")), ErrorCode::damaged);
+  refuses(image(array("Name=\"a\" format=\"binary\"", "DAAAAAAAAAAAAAAAAAAAAAAAAAA=")), ErrorCode::damaged);
+  refuses(image(array("Name=\"a\" format=\"appended\" offset=\"0\"", "")), ErrorCode::damaged);
+  refuses("<VTKFile type=\"ImageData\" compressor=\"vtkOtherCompressor\"></VTKFile>", ErrorCode::unsupported);
 }
 
 }  // namespace

@@ -13,14 +13,13 @@
 
 #include "render/base/error.h"
 #include "tests/files/support/output.h"
+#include "tests/support/expect_error.h"
 
 namespace gladstone {
 namespace {
 
 namespace fs = std::filesystem;
-using testing::AllOf;
 using testing::HasSubstr;
-using testing::ThrowsMessage;
 
 std::string temporary(std::string const& name) { return (fs::path(testing::TempDir()) / ("image_" + name)).string(); }
 
@@ -136,14 +135,13 @@ TEST(ImageFile, EqualImagesAreEqualFiles) {
 
 TEST(ImageFile, UnreadablePicturesAreNamed) {
   EXPECT_THAT([] { read_image("/no/such/picture.tif"); },
-              ThrowsMessage<DataError>(HasSubstr("/no/such/picture.tif: does not exist")));
+              ThrowsDataError(ErrorCode::missing_file, "/no/such/picture.tif"));
   std::ofstream(temporary("text.tif")) << "not a picture";
-  EXPECT_THAT([] { read_image(temporary("text.tif")); },
-              ThrowsMessage<DataError>(AllOf(HasSubstr("text.tif"), HasSubstr("cannot be read as an image"))));
+  EXPECT_THAT([] { read_image(temporary("text.tif")); }, ThrowsDataError(ErrorCode::wrong_format, "text.tif"));
   write_tiff(temporary("cut.tif"), all_values(), {});
   std::string const whole = content(temporary("cut.tif"));
   std::ofstream(temporary("cut.tif"), std::ios::binary) << whole.substr(0, whole.size() / 2);
-  EXPECT_THAT([] { read_image(temporary("cut.tif")); }, ThrowsMessage<DataError>(HasSubstr("cut.tif")));
+  EXPECT_THAT([] { read_image(temporary("cut.tif")); }, ThrowsDataError(ErrorCode::wrong_format, "cut.tif"));
 }
 
 /// Writes a TIFF with several pages; the value of all pixels of a page is its number.
@@ -163,17 +161,17 @@ std::string write_pages(std::string const& name, std::vector<std::pair<int, int>
 
 TEST(ImageFile, SeveralPagesAreRefusedWithTheirNumberAndTwoAreAPair) {
   std::string const pair = write_pages("pair.tif", {{8, 6}, {8, 6}});
-  EXPECT_THAT([&] { read_image(pair); },
-              ThrowsMessage<DataError>(AllOf(HasSubstr("pair.tif: has 2 pages"), HasSubstr("gladstone correlate"))));
+  EXPECT_THAT([&] { read_image(pair); }, ThrowsDataError(ErrorCode::wrong_shape, "pair.tif", HasSubstr("2 pages")));
   auto const [reference, flow] = read_frame_pair(pair);
   EXPECT_EQ(reference.columns(), 8);
   EXPECT_EQ(reference(7, 5), 1);
   EXPECT_EQ(flow(0, 0), 2);
 
   std::string const film = write_pages("film.tif", {{8, 6}, {8, 6}, {8, 6}});
-  EXPECT_THAT([&] { read_frame_pair(film); }, ThrowsMessage<DataError>(HasSubstr("film.tif: has 3 pages")));
+  EXPECT_THAT([&] { read_frame_pair(film); },
+              ThrowsDataError(ErrorCode::wrong_shape, "film.tif", HasSubstr("3 pages")));
   std::string const one = write_pages("one.tif", {{8, 6}});
-  EXPECT_THAT([&] { read_frame_pair(one); }, ThrowsMessage<DataError>(HasSubstr("one.tif: has 1 page, ")));
+  EXPECT_THAT([&] { read_frame_pair(one); }, ThrowsDataError(ErrorCode::wrong_shape, "one.tif", HasSubstr("1 page,")));
 }
 
 // Cameras and image viewers append small previews to an image.
@@ -340,18 +338,17 @@ TEST(ImageFile, WhatWasDoneToAPictureIsReported) {
 }
 
 TEST(ImageFile, PicturesThatHaveNoGreyLevelsAreRefusedWithTheReason) {
-  for (auto const& [name, reason] : std::initializer_list<std::pair<char const*, char const*>>{
-           {"int_8.tif", "has samples of type int8"},
-           {"uint_64.tif", "unsigned integers of 64 bits"},
-           {"complex.tif", "complex floating-point numbers of 64 bits"},
-           {"compression_jpeg2000.tif", "compressed by an unknown method"},
-           {"inks_five_tiled.tif", "has 5 printing inks"},
-           {"channels_seven.tif", "has 7 values per pixel that are not colours"},
-           {"pages_3.tif", "has 3 pages"},
+  for (auto const& [name, code] : std::initializer_list<std::pair<char const*, ErrorCode>>{
+           {"int_8.tif", ErrorCode::unsupported},
+           {"uint_64.tif", ErrorCode::unsupported},
+           {"complex.tif", ErrorCode::unsupported},
+           {"compression_jpeg2000.tif", ErrorCode::damaged},
+           {"inks_five_tiled.tif", ErrorCode::unsupported},
+           {"channels_seven.tif", ErrorCode::unsupported},
+           {"pages_3.tif", ErrorCode::wrong_shape},
        }) {
     std::string const path = case_path(name);
-    EXPECT_THAT([&path] { read_image(path); }, ThrowsMessage<DataError>(AllOf(HasSubstr(name), HasSubstr(reason))))
-        << name;
+    EXPECT_THAT([&path] { read_image(path); }, ThrowsDataError(code, name)) << name;
   }
 }
 
@@ -402,9 +399,9 @@ TEST(ImageFile, OneBitAPixelIsReadWithoutTheEntryThatSaysSo) {
     }
   }
   std::ofstream(path, std::ios::binary) << bilevel_tiff(none, black_is_zero, plain.substr(0, plain.size() / 2));
-  EXPECT_THAT([&] { read_image(path); }, ThrowsMessage<DataError>(HasSubstr("damaged or cut short")));
+  EXPECT_THAT([&] { read_image(path); }, ThrowsDataError(ErrorCode::damaged, "bits.tif"));
   std::ofstream(path, std::ios::binary) << bilevel_tiff(none, rgb, plain);
-  EXPECT_THAT([&] { read_image(path); }, ThrowsMessage<DataError>(HasSubstr("BitsPerSample is missing")));
+  EXPECT_THAT([&] { read_image(path); }, ThrowsDataError(ErrorCode::unsupported, "bits.tif"));
 }
 
 // 50,000 x 50,000 px of 16 bits are 5 GB, and 0.3 GB at the highest compression ratio, but the file has 128 kB.
@@ -419,7 +416,7 @@ TEST(ImageFile, AHeaderIsHeldAgainstTheSizeOfItsFile) {
     std::string const bytes = with_tag(with_tag(content(path), 256, 50000), 257, 50000);
     std::ofstream(path, std::ios::binary) << bytes;
     EXPECT_THAT([&] { read_image(path); },
-                ThrowsMessage<DataError>(AllOf(HasSubstr("damaged.tif: is damaged"), HasSubstr("50000 x 50000 px"))))
+                ThrowsDataError(ErrorCode::damaged, "damaged.tif", HasSubstr("50000 x 50000 px")))
         << packing;
   }
 }
@@ -431,7 +428,7 @@ TEST(ImageFile, TheTileSizeIsComparedWithTheSizeOfTheFile) {
   std::ofstream(path, std::ios::binary) << with_tag(with_tag(content(case_path("tiled.tif")), tile_width, 50000),
                                                     tile_length, 50000);
   EXPECT_THAT([&] { read_image(path); },
-              ThrowsMessage<DataError>(AllOf(HasSubstr("damaged_tiles.tif: is damaged"), HasSubstr("50000 x 50000"))));
+              ThrowsDataError(ErrorCode::damaged, "damaged_tiles.tif", HasSubstr("50000 x 50000")));
 }
 
 // A uniform grey image has the highest compression ratio of any image, a thousand to one.
@@ -456,19 +453,13 @@ TEST(ImageFile, PixelsThatAreNoNumbersAreCounted) {
 }
 
 TEST(ImageFile, WhatCannotBeWrittenIsSaid) {
-  EXPECT_THAT([] { write_tiff("/dev/full", all_values(), {}); },
-              ThrowsMessage<OutputError>(AllOf(HasSubstr("/dev/full"), HasSubstr("it is a device"))));
-  EXPECT_THAT([] { write_tiff("/proc/no/such/folder/a.tif", all_values(), {}); },
-              ThrowsMessage<OutputError>(HasSubstr("No such file or directory")));
+  EXPECT_THAT([] { write_tiff("/dev/full", all_values(), {}); }, ThrowsOutputError("/dev/full"));
+  EXPECT_THAT([] { write_tiff("/proc/no/such/folder/a.tif", all_values(), {}); }, ThrowsOutputError("/a.tif"));
   std::string const path = temporary("no_room.tif");
   write_tiff(path, all_values(), {});
   std::string const before = content(path);
   FileSizeLimit const limit(1000);
-  EXPECT_THAT(
-      [&] {
-        write_tiff(path, all_values(), {12, 0, "text"});
-      },
-      ThrowsMessage<OutputError>(AllOf(HasSubstr("no_room.tif: cannot be written"), HasSubstr("too large"))));
+  EXPECT_THAT([&] { write_tiff(path, all_values(), {12, 0, "text"}); }, ThrowsOutputError("no_room.tif"));
   EXPECT_EQ(content(path), before);
 }
 

@@ -12,15 +12,14 @@
 #include "render/base/error.h"
 #include "render/files/output_folder.h"
 #include "tests/files/support/output.h"
+#include "tests/support/expect_error.h"
 
 namespace gladstone {
 namespace {
 
 namespace fs = std::filesystem;
 using testing::ElementsAre;
-using testing::HasSubstr;
 using testing::IsEmpty;
-using testing::ThrowsMessage;
 
 using OutputFileTest = Output;
 
@@ -71,8 +70,7 @@ TEST_F(OutputFileTest, ALinkToNothingIsFollowedToWhereItLeads) {
   EXPECT_TRUE(fs::is_symlink(in_folder("link.txt")));
   EXPECT_EQ(content(in_folder("there/real.txt")), "new");
   fs::create_symlink("circle.txt", in_folder("circle.txt"));
-  EXPECT_THAT([&] { OutputFile file(in_folder("circle.txt")); },
-              ThrowsMessage<OutputError>(HasSubstr("form a circle")));
+  EXPECT_THAT([&] { OutputFile file(in_folder("circle.txt")); }, ThrowsOutputError("circle.txt"));
 }
 
 TEST_F(OutputFileTest, TheRightsOfTheOldFileStay) {
@@ -92,17 +90,15 @@ TEST_F(OutputFileTest, TheLongestNamesOfAFileSystemAreWritten) {
 }
 
 TEST_F(OutputFileTest, FolderDeviceAndFileInThePathAreRefused) {
-  EXPECT_THAT([&] { OutputFile file(folder_.string()); }, ThrowsMessage<OutputError>(HasSubstr("is a folder")));
+  EXPECT_THAT([&] { OutputFile file(folder_.string()); }, ThrowsOutputError(folder_.string()));
   for (char const* device : {"/dev/null", "/dev/full"}) {
-    EXPECT_THAT([&] { OutputFile file(device); },
-                ThrowsMessage<OutputError>(testing::AllOf(HasSubstr(device), HasSubstr("it is a device"))));
+    EXPECT_THAT([&] { OutputFile file(device); }, ThrowsOutputError(device));
   }
   ASSERT_EQ(mkfifo(in_folder("pipe").c_str(), 0666), 0);
-  EXPECT_THAT([&] { OutputFile file(in_folder("pipe")); }, ThrowsMessage<OutputError>(HasSubstr("it is a pipe")));
+  EXPECT_THAT([&] { OutputFile file(in_folder("pipe")); }, ThrowsOutputError("pipe"));
   std::ofstream(in_folder("file")) << "x";
-  EXPECT_THAT([&] { OutputFile file(in_folder("file/a.txt")); },
-              ThrowsMessage<OutputError>(HasSubstr("a part of the path is a file")));
-  EXPECT_THAT([] { OutputFile file(""); }, ThrowsMessage<OutputError>(HasSubstr("has an empty name")));
+  EXPECT_THAT([&] { OutputFile file(in_folder("file/a.txt")); }, ThrowsOutputError("file/a.txt"));
+  EXPECT_THAT([] { OutputFile file(""); }, ThrowsOutputError(""));
 }
 
 // /dev/stdout is a link to an open file, here an ordinary one: the process that opened it would not see a file that is
@@ -111,9 +107,8 @@ TEST_F(OutputFileTest, NamesOfOpenFilesAreRefused) {
   int const file = open(in_folder("open").c_str(), O_RDWR | O_CREAT, 0666);
   ASSERT_GE(file, 0);
   std::string const name = "/dev/fd/" + std::to_string(file);
-  EXPECT_THAT([&] { OutputFile output(name); },
-              ThrowsMessage<OutputError>(testing::AllOf(HasSubstr(name), HasSubstr("that a process has open"))));
-  EXPECT_THAT([&] { OutputFolder output(name, {"m", {}}); }, ThrowsMessage<OutputError>(HasSubstr("has open")));
+  EXPECT_THAT([&] { OutputFile output(name); }, ThrowsOutputError(name));
+  EXPECT_THAT([&] { OutputFolder output(name, {"m", {}}); }, ThrowsOutputError(name));
   close(file);
 }
 
@@ -122,13 +117,8 @@ TEST_F(OutputFileTest, ReadOnlyFolderIsRefusedAtTheStart) {
                   fs::perms::owner_read | fs::perms::owner_exec | fs::perms::others_read | fs::perms::others_exec);
   bool const root = geteuid() == 0;
   if (root && seteuid(65534) != 0) GTEST_SKIP() << "the process cannot drop root privileges";
-  EXPECT_THAT([&] { OutputFile file(in_folder("a.txt")); },
-              ThrowsMessage<OutputError>(testing::AllOf(HasSubstr("Permission denied"), HasSubstr("may write to"))));
-  EXPECT_THAT(
-      [&] {
-        OutputFolder made(in_folder("case"), {"m", {}});
-      },
-      ThrowsMessage<OutputError>(HasSubstr("Permission denied")));
+  EXPECT_THAT([&] { OutputFile file(in_folder("a.txt")); }, ThrowsOutputError("a.txt"));
+  EXPECT_THAT([&] { OutputFolder made(in_folder("case"), {"m", {}}); }, ThrowsOutputError("case"));
   if (root) {
     ASSERT_EQ(seteuid(0), 0);
   }
@@ -141,8 +131,7 @@ TEST_F(OutputFileTest, WhatDoesNotFitLeavesTheOldFileAndAMessage) {
   std::ofstream(path) << "old";
   {
     FileSizeLimit const limit(1000);
-    EXPECT_THAT([&] { OutputFile::write_text(path, std::string(5000, 'x')); },
-                ThrowsMessage<OutputError>(testing::AllOf(HasSubstr("a.txt"), HasSubstr("File too large"))));
+    EXPECT_THAT([&] { OutputFile::write_text(path, std::string(5000, 'x')); }, ThrowsOutputError("a.txt"));
   }
   EXPECT_EQ(content(path), "old");
   EXPECT_THAT(names(), ElementsAre("a.txt"));

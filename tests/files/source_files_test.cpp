@@ -12,14 +12,13 @@
 #include "render/files/image_file.h"
 #include "render/files/output_destination.h"
 #include "tests/files/support/output.h"
+#include "tests/support/expect_error.h"
 
 namespace gladstone {
 namespace {
 
 namespace fs = std::filesystem;
-using testing::AllOf;
 using testing::HasSubstr;
-using testing::ThrowsMessage;
 using Holds = SourceFiles::Holds;
 
 class SourceFilesTest : public Output {
@@ -110,13 +109,10 @@ TEST_F(SourceFilesTest, AFileThatHoldsSomethingElseIsNamedWithWhatToDo) {
   write_tiff(in_folder("a.tif"), picture(), {16, 1e-5, "another text"});
   sources.check();
   write("rays.csv", "1,3\n");
-  EXPECT_THAT([&] { sources.check(); },
-              ThrowsMessage<DataError>(AllOf(HasSubstr("rays.csv: has changed since it was read"), HasSubstr("SHA-256"),
-                                             HasSubstr("nothing was written; run it again"))));
+  EXPECT_THAT([&] { sources.check(); }, ThrowsDataError(ErrorCode::changed, "rays.csv", HasSubstr("run it again")));
   write("rays.csv", "1,2\n");
   fs::remove(in_folder("a.tif"));
-  EXPECT_THAT([&] { sources.check(); },
-              ThrowsMessage<DataError>(AllOf(HasSubstr("a.tif: has changed"), HasSubstr("cannot be read any more"))));
+  EXPECT_THAT([&] { sources.check(); }, ThrowsDataError(ErrorCode::changed, "a.tif"));
 }
 
 TEST_F(SourceFilesTest, AnHdf5FileNamesItsSourcesAndIsNotWrittenWhereTheyChange) {
@@ -128,14 +124,14 @@ TEST_F(SourceFilesTest, AnHdf5FileNamesItsSourcesAndIsNotWrittenWhereTheyChange)
   EXPECT_EQ(Hdf5Reader(in_folder("a.h5")).attribute("rays_sha256"), byte_sha256(in_folder("rays.csv")));
   EXPECT_EQ(Hdf5Reader(in_folder("a.h5")).attribute("flow_sha256"), "0123");
   write("rays.csv", "1,3\n");
-  EXPECT_THROW(write_datasets("b.h5", "/x", {1}, {1}, origin), DataError);
+  EXPECT_THAT([&] { write_datasets("b.h5", "/x", {1}, {1}, origin); }, ThrowsDataError(ErrorCode::changed, "rays.csv"));
   EXPECT_THAT(names(), testing::ElementsAre("a.h5", "rays.csv"));
 }
 
 TEST_F(SourceFilesTest, WhatIsNoFileIsNotRead) {
   ASSERT_EQ(mkfifo(in_folder("pipe").c_str(), 0666), 0);
-  EXPECT_THAT([&] { byte_sha256(in_folder("pipe")); }, ThrowsMessage<DataError>(HasSubstr("is a pipe")));
-  EXPECT_THAT([] { byte_sha256("/dev/zero"); }, ThrowsMessage<DataError>(HasSubstr("is a device")));
+  EXPECT_THAT([&] { byte_sha256(in_folder("pipe")); }, ThrowsDataError(ErrorCode::unreadable_file, "pipe"));
+  EXPECT_THAT([] { byte_sha256("/dev/zero"); }, ThrowsDataError(ErrorCode::unreadable_file, "/dev/zero"));
 }
 
 TEST_F(SourceFilesTest, AnOutputIsNoInputUnderAnyName) {
@@ -144,8 +140,7 @@ TEST_F(SourceFilesTest, AnOutputIsNoInputUnderAnyName) {
   fs::create_hard_link(in_folder("rays.csv"), in_folder("hard.csv"));
   fs::create_directory_symlink(".", in_folder("again"));
   for (std::string const name : {"rays.csv", "link.csv", "hard.csv", "again/rays.csv", "./again/again/rays.csv"}) {
-    EXPECT_THAT([&] { refuse_inputs_as_outputs({in_folder(name)}, {in_folder("rays.csv")}); },
-                ThrowsMessage<OutputError>(AllOf(HasSubstr(name), HasSubstr("is an input of this command"))))
+    EXPECT_THAT([&] { refuse_inputs_as_outputs({in_folder(name)}, {in_folder("rays.csv")}); }, ThrowsOutputError(name))
         << name;
   }
   refuse_inputs_as_outputs({in_folder("new.csv"), in_folder("again/new.csv")},

@@ -17,13 +17,10 @@
 #include "render/base/error.h"
 #include "render/files/image_file.h"
 #include "tests/files/support/output.h"
+#include "tests/support/expect_error.h"
 
 namespace gladstone {
 namespace {
-
-using testing::AllOf;
-using testing::HasSubstr;
-using testing::ThrowsMessage;
 
 /// Storage of a page that libtiff writes.
 struct PageLayout {
@@ -464,7 +461,7 @@ TEST_F(TiffFile, WithoutAPixelPitchNoResolutionIsStored) {
 }
 
 TEST_F(TiffFile, AnImageWithoutPixelsCannotBeEncoded) {
-  EXPECT_THAT([] { encode_tiff("empty.tif", {}); }, ThrowsMessage<OutputError>(HasSubstr("empty.tif: ")));
+  EXPECT_THAT([] { encode_tiff("empty.tif", {}); }, ThrowsOutputError("empty.tif"));
 }
 
 // libtiff prints its errors and warnings unless it is told otherwise.
@@ -477,7 +474,9 @@ TEST_F(TiffFile, DamagedFilesAreNamedAndNothingIsPrinted) {
        {whole.size() - 1, whole.size() - 100, whole.size() / 2, std::size_t{300}, std::size_t{8}}) {
     std::string const path = in_folder("cut.tif");
     std::ofstream(path, std::ios::binary) << whole.substr(0, size);
-    EXPECT_THAT([&] { read_image(path); }, ThrowsMessage<DataError>(HasSubstr("cut.tif: "))) << size;
+    EXPECT_THAT([&] { read_image(path); }, testing::AnyOf(ThrowsDataError(ErrorCode::damaged, "cut.tif"),
+                                                          ThrowsDataError(ErrorCode::wrong_format, "cut.tif")))
+        << size;
   }
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 }
@@ -492,9 +491,7 @@ TEST_F(TiffFile, DamagedStripsAreReported) {
     std::string bytes = content(path);
     std::fill(bytes.begin() + 8, bytes.begin() + 600, '\xff');  // the strips follow the header of 8 bytes
     std::ofstream(path, std::ios::binary) << bytes;
-    EXPECT_THAT([&] { read_image(path); },
-                ThrowsMessage<DataError>(AllOf(HasSubstr("damaged.tif: "), HasSubstr("cannot be read to its end"))))
-        << compression;
+    EXPECT_THAT([&] { read_image(path); }, ThrowsDataError(ErrorCode::damaged, "damaged.tif")) << compression;
   }
 }
 

@@ -8,6 +8,7 @@
 #include "render/base/error.h"
 #include "render/focused_dots/deflection_map.h"
 #include "tests/scene/small_scenes.h"
+#include "tests/support/expect_error.h"
 
 namespace gladstone {
 namespace {
@@ -38,7 +39,7 @@ TEST(Memory, OfATableCountsBesideImagesFieldAndDots) {
   auto setup = table1_setup(1000000);
   setup.medium.field = sinusoid(0.1, 4e-3);
   EXPECT_THAT([&] { check_memory(setup, FieldMemory::needed, focused_dots_memory(setup)); },
-              testing::ThrowsMessage<DataError>(testing::HasSubstr("table of deflections 2)")));
+              ThrowsDataError(ErrorCode::memory, "", testing::HasSubstr("table of deflections 2)")));
 }
 
 // The estimated size of a table counts nodes by area; the table itself has integer numbers of rows and columns, up to

@@ -8,6 +8,7 @@
 #include "render/base/error.h"
 #include "render/ideal_images/ideal_images.h"
 #include "render/scene/particle_scene.h"
+#include "tests/support/expect_error.h"
 #include "tests/support/ideal_pairs.h"
 
 namespace gladstone {
@@ -151,7 +152,7 @@ TEST(PairModel, SaysWhyASetupHasNone) {
   EXPECT_EQ(reason_against_pair_model(setup), "");
   setup.piv->particles.scattering = ParticleScattering::mie;
   EXPECT_THAT(reason_against_pair_model(setup), testing::HasSubstr("not \"gaussian\""));
-  EXPECT_THROW(build_pair_model(setup), DataError);
+  EXPECT_THAT([&] { build_pair_model(setup); }, ThrowsDataError(ErrorCode::unsupported, "particles.scattering"));
   setup = small_pair();
   setup.piv->particles.count = ParticleCount::file;
   EXPECT_THAT(reason_against_pair_model(setup), testing::HasSubstr("from a file"));

@@ -12,6 +12,7 @@
 #include "render/base/parallel.h"
 #include "render/base/random.h"
 #include "render/light/mie.h"
+#include "tests/support/expect_error.h"
 
 namespace gladstone {
 namespace {
@@ -224,8 +225,9 @@ TEST(MieScattering, ReportsMemoryBeforeAllocation) {
       [&] {
         MieScattering(marbles, droplets(), {0, pi});
       },
-      ThrowsMessage<MemoryError>(AllOf(HasSubstr("100000 different diameters of up to 1.51e+04 um"),
-                                       HasSubstr("GB of memory"), HasSubstr("use fewer particles"))));
+      ThrowsDataError(ErrorCode::memory, "particles",
+                      AllOf(HasSubstr("100000 different diameters of up to 1.51e+04 um"), HasSubstr("GB of memory"),
+                            HasSubstr("use fewer particles"))));
 }
 
 }  // namespace

@@ -6,13 +6,10 @@
 #include <string>
 
 #include "render/base/error.h"
+#include "tests/support/expect_error.h"
 
 namespace gladstone {
 namespace {
-
-using testing::AllOf;
-using testing::HasSubstr;
-using testing::ThrowsMessage;
 
 std::complex<double> read_index(std::string const& keys, double wavelength = 532e-9) {
   SetupDocument document = SetupDocument::from_text("[particles]\n" + keys, "case.toml");
@@ -44,15 +41,13 @@ TEST(ParticleMaterial, IsNamedOrGivenByItsIndex) {
 }
 
 TEST(ParticleMaterial, RefusesWhatItDoesNotKnow) {
-  EXPECT_THAT([] { read_index("material = \"tio\""); },
-              ThrowsMessage<SetupError>(AllOf(HasSubstr("case.toml:2:1"), HasSubstr("\"dehs\""), HasSubstr("\"tio2\""),
-                                              HasSubstr("\"oil\""))));
+  EXPECT_THAT([] { read_index("material = \"tio\""); }, ThrowsSetupError(ErrorCode::unknown_choice, "case.toml:2:1"));
   EXPECT_THAT([] { read_index("material = \"tio2\"", 355e-9); },
-              ThrowsMessage<SetupError>(AllOf(HasSubstr("DeVore"), HasSubstr("give index = [n, k]"))));
+              ThrowsSetupError(ErrorCode::invalid_value, "case.toml:2:1"));
   EXPECT_THAT([] { read_index("material = \"water\"\nindex = [1.3, 0.0]"); },
-              ThrowsMessage<SetupError>(HasSubstr("remove one of them")));
-  EXPECT_THAT([] { read_index("index = [0.0, 1.0]"); }, ThrowsMessage<SetupError>(HasSubstr("real part of 0")));
-  EXPECT_THAT([] { read_index("index = [1.5, -0.1]"); }, ThrowsMessage<SetupError>(HasSubstr("index")));
+              ThrowsSetupError(ErrorCode::invalid_value, "case.toml:3:1"));
+  EXPECT_THAT([] { read_index("index = [0.0, 1.0]"); }, ThrowsSetupError(ErrorCode::invalid_value, "case.toml:2:1"));
+  EXPECT_THAT([] { read_index("index = [1.5, -0.1]"); }, ThrowsSetupError(ErrorCode::out_of_range, "case.toml:2:1"));
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 
 #include "render/base/error.h"
 #include "render/files/hdf5_file.h"
+#include "tests/support/expect_error.h"
 
 namespace gladstone {
 namespace {
@@ -108,8 +109,7 @@ TEST_F(FieldVolume, UnknownUnitsOfLengthAreRefusedAndKnownOnesConverted) {
   auto setup = file_setup(
       5, 4, 3, [](int, int, int) { return 1.2; }, 1, "furlong");
   EXPECT_THAT([&] { build_medium(setup); },
-              testing::ThrowsMessage<DataError>(testing::HasSubstr(
-                  "lengths are in \"furlong\", which is not a known unit of length; give medium.field.spacing_mm")));
+              ThrowsDataError(ErrorCode::undetermined, setup.field.file, testing::HasSubstr("furlong")));
   setup.field.spacing = Vec3d{1e-3, 1e-3, 1e-3};
   EXPECT_EQ(build_medium(setup).grid.spacing.x, 1e-3);
 }
@@ -262,9 +262,7 @@ TEST_F(FieldVolume, UnknownSpacingIsAskedForAndNotesAreWarnings) {
   MediumSetup setup;
   setup.field.kind = FieldKind::file;
   setup.field.file = folder + "n_nan_spacing.nrrd";
-  EXPECT_THAT([&] { build_medium(setup); },
-              testing::ThrowsMessage<DataError>(testing::HasSubstr("is unknown in the header; give "
-                                                                   "medium.field.spacing_mm")));
+  EXPECT_THAT([&] { build_medium(setup); }, ThrowsDataError(ErrorCode::undetermined, "n_nan_spacing.nrrd"));
   setup.field.spacing = Vec3d{1e-3, 1.2e-3, 1.5e-3};
   BuiltMedium const built = build_medium(setup);
   EXPECT_NEAR(refractivity(built, {2e-3, 3e-3, 4e-3}), 2.26e-4 * (1.2 + 0.04 + 0.15 + 0.004), 1e-10);
@@ -325,20 +323,19 @@ TEST_F(FieldVolume, StepsAcrossAreThoseOfTheCoarsestStep) {
 }
 
 TEST_F(FieldVolume, ShapesThatDoNotFitAreRefused) {
-  auto const message = [](std::string const& text) {
-    return testing::ThrowsMessage<DataError>(testing::HasSubstr(text));
-  };
+  auto const wrong_shape = ThrowsDataError(ErrorCode::wrong_shape, ".h5");
   auto volume = file_setup(4, 4, 3, ramp);
   volume.field.extrude = true;
-  EXPECT_THAT([&] { build_medium(volume); }, message("extrude"));
+  EXPECT_THAT([&] { build_medium(volume); }, wrong_shape);
   auto plane = file_setup(4, 4, 1, ramp);
-  EXPECT_THAT([&] { build_medium(plane); }, message("extrude = true"));
+  EXPECT_THAT([&] { build_medium(plane); }, wrong_shape);
   auto line = file_setup(1, 4, 1, ramp);
   line.field.extrude = true;
-  EXPECT_THAT([&] { build_medium(line); }, message("2 x 2"));
+  EXPECT_THAT([&] { build_medium(line); }, wrong_shape);
   auto wrong_quantity = file_setup(4, 4, 3, ramp);
   wrong_quantity.field.quantity = FieldQuantity::refractive_index;
-  EXPECT_THAT([&] { build_medium(wrong_quantity); }, message("quantity"));
+  EXPECT_THAT([&] { build_medium(wrong_quantity); },
+              ThrowsDataError(ErrorCode::out_of_range, wrong_quantity.field.file));
 }
 
 /// Returns a value of /proc/self/status in bytes; negative if there is none.

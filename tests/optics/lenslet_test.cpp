@@ -8,12 +8,10 @@
 #include "render/optics/camera_element.h"
 #include "render/optics/lenslet_array.h"
 #include "render/optics/ray_bundle.h"
+#include "tests/support/expect_error.h"
 
 namespace gladstone {
 namespace {
-
-using testing::HasSubstr;
-using testing::ThrowsMessage;
 
 constexpr double pitch_m = 125e-6, focal_m = 500e-6;
 
@@ -100,13 +98,13 @@ TEST(LensletSetup, ReadsEveryKey) {
 
 TEST(LensletSetup, ImpossibleOnesAreRefused) {
   EXPECT_THAT([] { lenslets_of("[lenslets]\npitch_um = 125\n"); },
-              ThrowsMessage<SetupError>(HasSubstr("focal_length_um")));
+              ThrowsSetupError(ErrorCode::missing_key, "lenslets.focal_length_um"));
   EXPECT_THAT([] { lenslets_of("[lenslets]\nfocal_length_um = 500\n"); },
-              ThrowsMessage<SetupError>(HasSubstr("pitch_um")));
+              ThrowsSetupError(ErrorCode::missing_key, "lenslets.pitch_um"));
   EXPECT_THAT([] { lenslets_of("[lenslets]\npitch_um = 1\nfocal_length_um = 5\nradius_um = 3\nindex = 1.5\n"); },
-              ThrowsMessage<SetupError>(HasSubstr("case.toml:3:1")));
+              ThrowsSetupError(ErrorCode::invalid_value, "case.toml:3:1"));
   EXPECT_THAT([] { lenslets_of("[lenslets]\npitch_um = 1\nradius_um = 3\n"); },
-              ThrowsMessage<SetupError>(HasSubstr("index")));
+              ThrowsSetupError(ErrorCode::missing_key, "lenslets.index"));
 }
 
 }  // namespace

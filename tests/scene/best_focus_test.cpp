@@ -10,6 +10,7 @@
 #include "render/scene/build_camera.h"
 #include "tests/scene/read_setup_text.h"
 #include "tests/scene/real_lens_setups.h"
+#include "tests/support/expect_error.h"
 
 namespace gladstone {
 namespace {
@@ -70,7 +71,8 @@ TEST(LensPlacedBySensor, OfAThinLensIsBessels) {
   EXPECT_NEAR(setup.z_a, 0.87 - v, 1e-15);
   Camera const camera = build_camera(setup);
   EXPECT_NEAR(camera.sensor.pose.origin.z, 0.87, 1e-15);
-  EXPECT_THROW(with_sensor_at(table1_setup(64), 0.16), DataError);
+  EXPECT_THAT([&] { with_sensor_at(table1_setup(64), 0.16); },
+              ThrowsDataError(ErrorCode::invalid_value, "geometry.z_sensor_mm"));
   // at a fixed distance of the object from the lens, 1/f - 1/u alone determines the position
   gladstone::Setup near = table1_setup(64);
   near.lens.focus = Focus::distance;
@@ -111,8 +113,8 @@ TEST(LensPlacedBySensor, IsReadFromTheSetup) {
   auto const read = [](std::string const& text) { return read_setup_text(text).setup; };
   gladstone::Setup const setup = read("[geometry]\nz_sensor_mm = 870\n");
   EXPECT_NEAR(build_camera(setup).sensor.pose.origin.z, 0.87, 1e-12);
-  EXPECT_THAT([&] { read("[geometry]\nz_sensor_mm = 870\nz_a_mm = 750\n"); }, refused("3:1", "z_sensor_mm"));
-  EXPECT_THAT([&] { read("[geometry]\nz_sensor_mm = 150\n"); }, refused("2:1", "four focal lengths"));
+  EXPECT_THAT([&] { read("[geometry]\nz_sensor_mm = 870\nz_a_mm = 750\n"); }, refused(ErrorCode::invalid_value, "3:1"));
+  EXPECT_THAT([&] { read("[geometry]\nz_sensor_mm = 150\n"); }, refused(ErrorCode::invalid_value, "2:1"));
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "render/scene/setup.h"
+#include "tests/support/expect_error.h"
 
 namespace gladstone {
 
@@ -24,10 +25,18 @@ inline ReadSetup read_setup_text(std::string const& text) {
   return result;
 }
 
-/// Matches a SetupError of case.toml with a problem at `where`, "line:column", whose text contains `why`.
-inline auto refused(std::string const& where, std::string const& why) {
-  return testing::ThrowsMessage<SetupError>(
-      testing::AllOf(testing::HasSubstr("case.toml:" + where), testing::HasSubstr(why)));
+/// Matches a function that throws a SetupError with a problem of case.toml. @param where  begin of "line:column"
+inline auto refused(ErrorCode code, std::string const& where) {
+  auto const is_it = [code, begin = "case.toml:" + where](SetupProblem const& one) {
+    return one.code == code && one.where.starts_with(begin);
+  };
+  return testing::Throws<SetupError>(
+      testing::Property("problems", &SetupError::problems, testing::Contains(testing::Truly(is_it))));
+}
+
+/// The same, where the test is about a number in the message.
+inline auto refused(ErrorCode code, std::string const& where, std::string const& number) {
+  return testing::AllOf(refused(code, where), testing::ThrowsMessage<SetupError>(testing::HasSubstr(number)));
 }
 
 }  // namespace gladstone

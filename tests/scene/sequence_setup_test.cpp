@@ -25,40 +25,44 @@ TEST(SequenceSetup, OfPivHasFramesAndTheTimeBetweenThem) {
 }
 
 TEST(SequenceSetup, OfPivReportsWrongKeys) {
-  EXPECT_THAT(reading_sequence(sequence_of_piv("frames = 1\ndt_us = 10.0\n")), refused("3:1", "frames"));
-  EXPECT_THAT(reading_sequence(sequence_of_piv("frames = 2.5\ndt_us = 10.0\n")), refused("3:1", "whole number"));
-  EXPECT_THAT(reading_sequence(sequence_of_piv("frames = 10\n")), refused("2:", "dt_us"));
-  EXPECT_THAT(reading_sequence(sequence_of_piv("dt_us = 10.0\n")), refused("2:", "frames"));
-  EXPECT_THAT(reading_sequence(sequence_of_piv("frames = 10\ndt_us = 0.0\n")), refused("4:1", "dt_us"));
+  EXPECT_THAT(reading_sequence(sequence_of_piv("frames = 1\ndt_us = 10.0\n")), refused(ErrorCode::out_of_range, "3:1"));
+  EXPECT_THAT(reading_sequence(sequence_of_piv("frames = 2.5\ndt_us = 10.0\n")), refused(ErrorCode::wrong_type, "3:1"));
+  EXPECT_THAT(reading_sequence(sequence_of_piv("frames = 10\n")), refused(ErrorCode::missing_key, "2:"));
+  EXPECT_THAT(reading_sequence(sequence_of_piv("dt_us = 10.0\n")), refused(ErrorCode::missing_key, "2:"));
+  EXPECT_THAT(reading_sequence(sequence_of_piv("frames = 10\ndt_us = 0.0\n")), refused(ErrorCode::out_of_range, "4:1"));
   EXPECT_THAT(reading_sequence(sequence_of_piv("frames = 10\ndt_us = 10.0\npair = 9\n")),
-              refused("5:1", "last pair, 8"));
+              refused(ErrorCode::invalid_value, "5:1", "last pair, 8"));
   EXPECT_THAT(reading_sequence(sequence_of_piv("frames = 10\ndt_us = 10.0\nfiles = [\"a.h5\"]\n")),
-              refused("5:1", "BOS only"));
+              refused(ErrorCode::invalid_value, "5:1"));
 }
 
 // Keys of other tables that contradict a sequence.
 TEST(SequenceSetup, OfPivRefusesPulsesThatDiffer) {
   std::string const keys = "frames = 10\ndt_us = 10.0\n";
-  EXPECT_THAT(reading_sequence(sequence_of_piv(keys, "[flow]\ndt_us = 10.0\n")), refused("6:1", "sequence.dt_us"));
+  EXPECT_THAT(reading_sequence(sequence_of_piv(keys, "[flow]\ndt_us = 10.0\n")),
+              refused(ErrorCode::invalid_value, "6:1"));
   EXPECT_THAT(reading_sequence(sequence_of_piv(keys, "[laser]\noffset_mm = [0.0, 0.1]\n")),
-              refused("6:1", "differs between the pulses"));
+              refused(ErrorCode::invalid_value, "6:1"));
   EXPECT_THAT(reading_sequence(sequence_of_piv(keys, "[laser]\ntilt_deg = [0.5, 0.0]\n")),
-              refused("6:1", "differs between the pulses"));
+              refused(ErrorCode::invalid_value, "6:1"));
   EXPECT_NO_THROW(read_setup_text(sequence_of_piv(keys, "[laser]\noffset_mm = [0.1, 0.1]\n")));
   EXPECT_THAT(reading_sequence(sequence_of_piv(keys, "[medium.second_field]\nkind = \"uniform_gradient\"\n")),
-              refused("5:", "second_field"));
+              refused(ErrorCode::invalid_value, "5:"));
 }
 
 TEST(SequenceSetup, OfBosRequiresFiles) {
-  EXPECT_THAT(reading_sequence("[sequence]\n"), refused("1:", "files"));
-  EXPECT_THAT(reading_sequence("[sequence]\nfiles = \"rho.h5\"\n"), refused("2:1", "array"));
-  EXPECT_THAT(reading_sequence("[sequence]\nfiles = [\"rho.h5\"]\n"), refused("2:1", "kind = \"file\""));
-  EXPECT_THAT(reading_sequence("[sequence]\nfiles = [\"rho.h5\"]\nframes = 3\n"), refused("3:1", "PIV only"));
-  EXPECT_THAT(reading_sequence("[sequence]\nfiles = [\"rho.h5\"]\npair = 0\n"), refused("3:1", "pair"));
+  EXPECT_THAT(reading_sequence("[sequence]\n"), refused(ErrorCode::missing_key, "1:"));
+  EXPECT_THAT(reading_sequence("[sequence]\nfiles = \"rho.h5\"\n"), refused(ErrorCode::wrong_type, "2:1"));
+  EXPECT_THAT(reading_sequence("[sequence]\nfiles = [\"rho.h5\"]\n"), refused(ErrorCode::invalid_value, "2:1"));
+  EXPECT_THAT(reading_sequence("[sequence]\nfiles = [\"rho.h5\"]\nframes = 3\n"),
+              refused(ErrorCode::invalid_value, "3:1"));
+  EXPECT_THAT(reading_sequence("[sequence]\nfiles = [\"rho.h5\"]\npair = 0\n"),
+              refused(ErrorCode::out_of_range, "3:1"));
 }
 
 TEST(SequenceSetup, DoesNotApplyToACalibration) {
-  EXPECT_THAT(reading_sequence("experiment = \"calibration\"\n[sequence]\nframes = 3\n"), refused("2:", "calibration"));
+  EXPECT_THAT(reading_sequence("experiment = \"calibration\"\n[sequence]\nframes = 3\n"),
+              refused(ErrorCode::invalid_value, "2:"));
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "render/scene/scene.h"
 #include "tests/scene/read_setup_text.h"
 #include "tests/scene/small_scenes.h"
+#include "tests/support/expect_error.h"
 
 namespace gladstone {
 namespace {
@@ -33,19 +34,19 @@ TEST(Setup, DefaultsAreTable1WithoutAnyComplaint) {
 }
 
 TEST(Setup, FocusWithinTheFocalLengthIsImpossible) {
-  EXPECT_THAT([] { read_setup_text("[geometry]\nz_a_mm = 60\nz_d_mm = 40\n"); }, refused("2:1", "focus is impossible"));
-  EXPECT_THAT([] { read_setup_text("[lens]\nfocus_distance_mm = 100\n"); }, refused("2:1", "focus is impossible"));
+  EXPECT_THAT([] { read_setup_text("[geometry]\nz_a_mm = 60\nz_d_mm = 40\n"); },
+              refused(ErrorCode::invalid_value, "2:1"));
+  EXPECT_THAT([] { read_setup_text("[lens]\nfocus_distance_mm = 100\n"); }, refused(ErrorCode::invalid_value, "2:1"));
   EXPECT_THAT([] { read_setup_text("[lens]\nfocus = \"medium\"\n[geometry]\nz_a_mm = 100\n"); },
-              refused("4:1", "focus is impossible"));
+              refused(ErrorCode::invalid_value, "4:1"));
 }
 
 TEST(Setup, DotsAndLensMustStandOutsideTheMedium) {
   std::string const field =
       "[medium]\nthickness_mm = 100\n[medium.field]\nkind = \"uniform_gradient\"\ngradient_kg_m4 = [1, 0, 0]\n";
-  EXPECT_THAT([&] { read_setup_text(field + "[geometry]\nz_d_mm = 20\n"); },
-              refused("7:1", "dots lie inside the medium"));
+  EXPECT_THAT([&] { read_setup_text(field + "[geometry]\nz_d_mm = 20\n"); }, refused(ErrorCode::invalid_value, "7:1"));
   EXPECT_THAT([&] { read_setup_text(field + "[lens]\nfocal_length_mm = 10\n[geometry]\nz_a_mm = 30\n"); },
-              refused("9:1", "lens lies inside"));
+              refused(ErrorCode::invalid_value, "9:1"));
   EXPECT_THAT(read_setup_text("[medium]\nthickness_mm = 100\n[geometry]\nz_d_mm = 20\n").warnings,
               IsEmpty());  // without a field there is no medium
 }
@@ -102,7 +103,7 @@ TEST(Setup, AutomaticThicknessStopsShortOfDotsAndLens) {
   ReadPlume const near_lens = read_plume("15", "", "[geometry]\nz_a_mm = 30\n[lens]\nfocal_length_mm = 10\n");
   EXPECT_NEAR(near_lens.seen.setup.medium.thickness, 2 * 0.99 * 0.03, 1e-12);
   EXPECT_THAT([] { read_plume("15", "thickness_mm = 105", "[geometry]\nz_d_mm = 20\n"); },
-              refused("8:1", "dots lie inside the medium"))
+              refused(ErrorCode::invalid_value, "8:1"))
       << "a given thickness is not limited";
 }
 
@@ -110,8 +111,7 @@ TEST(Setup, AutomaticThicknessStopsShortOfDotsAndLens) {
 // quarter of a cell of a trilinear grid. At most 1e6 steps across 10 mm are accepted, however they are requested.
 TEST(Setup, RejectsExcessiveLengthsAtTheirKey) {
   std::string const wave = "[medium.field]\nkind = \"sinusoid\"\namplitude_kg_m3 = 0.1\nwavelength_mm = ";
-  EXPECT_THAT([&] { read_setup_text(wave + "1e-9\n"); },
-              refused("4:1", "would need 4e+10 steps across the medium (1e+06 at most)"));
+  EXPECT_THAT([&] { read_setup_text(wave + "1e-9\n"); }, refused(ErrorCode::invalid_value, "4:1", "4e+10 steps"));
   EXPECT_THAT(read_setup_text(wave + "1e-3\n").warnings, IsEmpty());
   EXPECT_THAT(
       [] {
@@ -119,41 +119,47 @@ TEST(Setup, RejectsExcessiveLengthsAtTheirKey) {
             "[medium.field]\nkind = \"normal_shock\"\nmach = 1.2\nupstream_density_kg_m3 = 1\n"
             "shock_thickness_mm = 1e-7\n");
       },
-      refused("5:1", "would need 4e+08 steps"));
+      refused(ErrorCode::invalid_value, "5:1", "4e+08 steps"));
   for (std::string const kind : {"gaussian_plume", "gaussian_blob"}) {
     EXPECT_THAT(
         [&] { read_setup_text("[medium.field]\nkind = \"" + kind + "\"\namplitude_kg_m3 = 0.1\nradius_mm = 1e-7\n"); },
-        refused("4:1", "would need 2e+08 steps"));
+        refused(ErrorCode::invalid_value, "4:1", "2e+08 steps"));
   }
   std::string const plane =
       "[medium]\ninterpolation = \"trilinear\"\n[medium.field]\nkind = \"file\"\nfile = \"" GLADSTONE_DATA_DIR
       "/fields/hbdt512_late_slice.h5\"\nextrude = true\nspacing_mm = ";
-  EXPECT_THAT([&] { read_setup_text(plane + "[1e-7, 1e-7, 1]\n"); }, refused("7:1", "would need 4e+08 steps"));
+  EXPECT_THAT([&] { read_setup_text(plane + "[1e-7, 1e-7, 1]\n"); },
+              refused(ErrorCode::invalid_value, "7:1", "4e+08 steps"));
   EXPECT_THAT(read_setup_text(plane + "[0.0625, 0.0625, 1]\n").warnings, IsEmpty());
   EXPECT_THAT([&] { read_setup_text("[medium]\nstep_mm = 1e-9\n[medium.field]\nkind = \"uniform_gradient\"\n"); },
-              refused("2:1", "would need 1e+10 steps"));
+              refused(ErrorCode::invalid_value, "2:1", "1e+10 steps"));
 }
 
 TEST(Setup, TheTargetMustFillTheView) {
-  EXPECT_THAT([] { read_setup_text("[target]\nextent_mm = [40, 60]\n"); }, refused("2:1", "larger than the target"));
+  EXPECT_THAT([] { read_setup_text("[target]\nextent_mm = [40, 60]\n"); }, refused(ErrorCode::invalid_value, "2:1"));
   EXPECT_THAT(read_setup_text("[target]\nextent_mm = [44, 60]\n").warnings, IsEmpty());
 }
 
 TEST(Setup, DotsThatCannotFindRoomAreRefused) {
   // 100 dots of 3 px in 1024 px^2 cover 69 %
-  EXPECT_THAT([] { read_setup_text("[target]\ndots_per_32px_window = 100\n"); }, refused("2:1", "69 %"));
+  EXPECT_THAT([] { read_setup_text("[target]\ndots_per_32px_window = 100\n"); },
+              refused(ErrorCode::invalid_value, "2:1", "69 %"));
   EXPECT_THAT(read_setup_text("[target]\ndots_per_32px_window = 100\narrangement = \"regular\"\n").warnings, IsEmpty());
-  EXPECT_THAT([] { read_setup_text("[target]\ndots_per_32px_window = 1e-6\n"); }, refused("2:1", "no dot at all"));
+  EXPECT_THAT([] { read_setup_text("[target]\ndots_per_32px_window = 1e-6\n"); },
+              refused(ErrorCode::invalid_value, "2:1"));
   EXPECT_THAT([] { read_setup_text("[target]\npolarity = \"dark\"\ndot_diameter_px = 0\n"); },
-              refused("2:1", "cannot be seen"));
+              refused(ErrorCode::invalid_value, "2:1"));
 }
 
 TEST(Setup, WhatIsOfOthersOrDueLaterIsRefusedByName) {
-  EXPECT_THAT([] { read_setup_text("[[camera]]\n[[camera]]\n"); }, refused("1", "several cameras"));
-  for (std::string const table : {"particles", "laser", "flow", "calibration", "requirements"}) {
-    EXPECT_THAT([&] { read_setup_text(std::string("[").append(table).append("]\n")); }, refused("1", table)) << table;
+  EXPECT_THAT([] { read_setup_text("[[camera]]\n[[camera]]\n"); }, refused(ErrorCode::invalid_value, "1"));
+  for (std::string const table : {"particles", "laser", "flow", "calibration"}) {
+    EXPECT_THAT([&] { read_setup_text(std::string("[").append(table).append("]\n")); },
+                refused(ErrorCode::invalid_value, "1"))
+        << table;
   }
-  EXPECT_THAT([] { read_setup_text("schema = 2\n"); }, refused("1:1", "schema"));
+  EXPECT_THAT([] { read_setup_text("[requirements]\n"); }, refused(ErrorCode::unknown_key, "1"));
+  EXPECT_THAT([] { read_setup_text("schema = 2\n"); }, refused(ErrorCode::invalid_value, "1:1"));
 }
 
 // If a word that determines the other keys of its table is wrong, no problems of the other keys are reported.
@@ -177,7 +183,7 @@ TEST(Setup, KeysOfARefusedKindAreNotCalledUnknown) {
       only("several fields"));
   // but other tables are checked as usual
   EXPECT_THAT([] { read_setup_text("[medium]\nstep = 1\n[medium.field]\nkind = \"sinusiod\"\n"); },
-              refused("2:1", "unknown key \"step\""));
+              refused(ErrorCode::unknown_key, "2:1"));
 }
 
 TEST(Setup, AllProblemsComeTogether) {
@@ -196,15 +202,14 @@ TEST(Setup, AllProblemsComeTogether) {
 TEST(Memory, ThatTheMachineDoesNotHaveIsRefusedWithItsFigure) {
   gladstone::Setup setup;
   setup.camera.columns = setup.camera.rows = 1000000;
-  EXPECT_THAT(
-      [&] { build_scene(setup); },
-      ThrowsMessage<DataError>(AllOf(HasSubstr("GB of memory"), HasSubstr("images 3.6e+04"), HasSubstr("reduce"))));
+  EXPECT_THAT([&] { build_scene(setup); },
+              ThrowsDataError(ErrorCode::memory, "camera.pixels", HasSubstr("images 3.6e+04")));
   // the same applies to the memory of a renderer in addition to images, field and dots
   EXPECT_THAT(
       [&] {
         check_memory(setup, FieldMemory::needed, {{"lens", "what a renderer keeps", 2e9}});
       },
-      ThrowsMessage<DataError>(HasSubstr("what a renderer keeps 2)")));
+      ThrowsDataError(ErrorCode::memory, "camera.pixels", HasSubstr("what a renderer keeps 2)")));
 }
 
 TEST(BuildScene, MakesTheDotsOfTheTarget) {

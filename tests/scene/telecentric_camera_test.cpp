@@ -92,7 +92,7 @@ TEST(TelecentricCamera, FNumberSetsTheStopByTheConeOfLightInTheImage) {
 
 // Such a lens cannot be positioned by its principal plane.
 TEST(TelecentricCamera, IsPlacedByItsFirstVertexAlone) {
-  EXPECT_THAT([] { read_setup_text(telecentric("", "z_a_mm = 960.0")); }, refused("8:1", "telecentric"));
+  EXPECT_THAT([] { read_setup_text(telecentric("", "z_a_mm = 960.0")); }, refused(ErrorCode::invalid_value, "8:1"));
   ParaxialLens const paraxial = paraxial_lens(*telecentric_setup().lens.prescription);
   EXPECT_TRUE(paraxial.telecentric);
   EXPECT_TRUE(std::isinf(paraxial.f_number));

@@ -8,6 +8,7 @@
 #include "render/files/image_file.h"
 #include "render/sensor/detector.h"
 #include "render/setup/setup_table.h"
+#include "tests/support/expect_error.h"
 
 namespace gladstone {
 namespace {
@@ -81,7 +82,7 @@ TEST(Background, StretchesAGlareOverTheSensor) {
     }
   }
   write_tiff(path, Image<std::uint16_t>(4, 4), {});
-  EXPECT_THROW(Detector(camera, 1), DataError);
+  EXPECT_THAT([&] { Detector detector(camera, 1); }, ThrowsDataError(ErrorCode::invalid_value, path));
 }
 
 // The background has shot noise like any other light, with a variance equal to its mean. Tolerance: five standard
@@ -161,11 +162,13 @@ TEST(CameraSetup, RefusesABackgroundThatHidesAll) {
   EXPECT_EQ(good.background.most_e(), 360);
   EXPECT_DOUBLE_EQ(good.noise.prnu, 0.015);
   EXPECT_THAT([&] { read("background.level_e = 29000"); }, ThrowsMessage<SetupError>(HasSubstr("the limit is 24000")));
-  EXPECT_THAT([&] { read("background.glare_e = 5"); }, ThrowsMessage<SetupError>(HasSubstr("glare_file")));
+  EXPECT_THAT([&] { read("background.glare_e = 5"); },
+              ThrowsSetupError(ErrorCode::invalid_value, "background.glare_e"));
   EXPECT_THAT([&] { read("background.glare_file = \"absent.png\""); },
-              ThrowsMessage<SetupError>(HasSubstr("file not found")));
-  EXPECT_THAT([&] { read("noise.hot_pixel_share = 2"); }, ThrowsMessage<SetupError>(HasSubstr("hot_pixel_share")));
-  EXPECT_THAT([&] { read("bit_depth = 18"); }, ThrowsMessage<SetupError>(HasSubstr("bit_depth")));
+              ThrowsSetupError(ErrorCode::missing_file, "background.glare_file"));
+  EXPECT_THAT([&] { read("noise.hot_pixel_share = 2"); },
+              ThrowsSetupError(ErrorCode::out_of_range, "noise.hot_pixel_share"));
+  EXPECT_THAT([&] { read("bit_depth = 18"); }, ThrowsSetupError(ErrorCode::out_of_range, "bit_depth"));
 }
 
 }  // namespace

@@ -9,12 +9,10 @@
 
 #include "render/base/parallel.h"
 #include "render/sensor/camera_setup.h"
+#include "tests/support/expect_error.h"
 
 namespace gladstone {
 namespace {
-
-using testing::HasSubstr;
-using testing::ThrowsMessage;
 
 CameraSetup ideal_camera(int bits, double offset = 0) {
   CameraSetup camera;
@@ -171,9 +169,12 @@ TEST(CameraSetup, NoiseIsOffUnlessItsTableIsThere) {
   EXPECT_EQ(noisy.noise.full_well_e, 30000);
   EXPECT_EQ(noisy.exposure_e, 5000);
   EXPECT_DOUBLE_EQ(noisy.pixel_pitch, 5.5e-6);
-  EXPECT_THAT([&] { read("[camera]\npixels = [0, 512]\n"); }, ThrowsMessage<SetupError>(HasSubstr("camera.toml:2")));
-  EXPECT_THAT([&] { read("[camera]\npixel_pitch_um = -1\n"); }, ThrowsMessage<SetupError>(HasSubstr("pixel_pitch_um")));
-  EXPECT_THAT([&] { read("[camera]\nbit_depth = 17\n"); }, ThrowsMessage<SetupError>(HasSubstr("bit_depth")));
+  EXPECT_THAT([&] { read("[camera]\npixels = [0, 512]\n"); },
+              ThrowsSetupError(ErrorCode::out_of_range, "camera.toml:2:1"));
+  EXPECT_THAT([&] { read("[camera]\npixel_pitch_um = -1\n"); },
+              ThrowsSetupError(ErrorCode::out_of_range, "camera.pixel_pitch_um"));
+  EXPECT_THAT([&] { read("[camera]\nbit_depth = 17\n"); },
+              ThrowsSetupError(ErrorCode::out_of_range, "camera.bit_depth"));
 }
 
 // In a sequence, the noise of a frame depends on its number only: frame 4 is the same as the second frame of a pair and

@@ -10,6 +10,7 @@
 #include <fstream>
 
 #include "render/setup/setup_node.h"
+#include "tests/support/expect_error.h"
 
 namespace gladstone {
 namespace {
@@ -19,14 +20,27 @@ using testing::HasSubstr;
 
 SetupDocument document(std::string_view text) { return SetupDocument::from_text(text, "case.toml", "/data/cases"); }
 
-/// Returns the problems of a document after finish(), each as "where: message".
-std::vector<std::string> problems(SetupDocument& setup) {
-  std::vector<std::string> lines;
+/// Returns the problems of a document after finish().
+std::vector<SetupProblem> find_problems(SetupDocument& setup) {
   try {
     setup.finish();
   } catch (SetupError const& error) {
-    for (auto const& problem : error.problems()) lines.push_back(problem.where + ": " + problem.message);
+    return error.problems();
   }
+  return {};
+}
+
+/// Returns code and place of the problems: "out_of_range at case.toml:3:1".
+std::vector<std::string> problems(SetupDocument& setup) {
+  std::vector<std::string> lines;
+  for (SetupProblem const& problem : find_problems(setup)) lines.push_back(code_and_place(problem));
+  return lines;
+}
+
+/// Returns the messages of the problems, for tests of the keys that they suggest.
+std::vector<std::string> messages(SetupDocument& setup) {
+  std::vector<std::string> lines;
+  for (SetupProblem const& problem : find_problems(setup)) lines.push_back(problem.message);
   return lines;
 }
 
@@ -81,7 +95,7 @@ TEST(SetupTable, ChoicesAreWhatTheWordsStandFor) {
   EXPECT_EQ(root.choice("absent", 1, numbers), 1);
   EXPECT_EQ(root.choice("wrong", 1, numbers), 1);
   EXPECT_THAT(setup.resolved(), HasSubstr("absent = \"one\"\n"));
-  EXPECT_THAT(problems(setup), ElementsAre(HasSubstr("wrong")));
+  EXPECT_THAT(problems(setup), ElementsAre("unknown_choice at case.toml:2:1"));
 }
 
 TEST(SetupTable, AbsentTableGivesDefaults) {
@@ -112,21 +126,15 @@ pixels = [512, 0]
   lens.word("psf", "gaussian", {"airy", "gaussian"});
   lens.required_number("focal_length_mm");
   setup.root().integer("schema", 1, 1, 1);
-  EXPECT_THAT(
-      problems(setup),
-      ElementsAre(
-          "case.toml:1:1: schema = 2: must be at least 1 and at most 1",
-          "case.toml:3:1: lens.f_number = -3: must be greater than 0",
-          "case.toml:4:1: lens.psf = \"gausian\": must be \"airy\" or \"gaussian\"; did you mean \"gaussian\"?",
-          "case.toml:5:3: lens.focal_length_mm = \"105\": must be a number (it is a text); write it without quotes",
-          "case.toml:6:2: camera.pixel_pitch_um: is missing; give a number",
-          "case.toml:7:1: camera.pixels = [512, 0]: value 2, 0, must be at least 1 and at most 65536"));
+  EXPECT_THAT(problems(setup), ElementsAre("out_of_range at case.toml:1:1", "out_of_range at case.toml:3:1",
+                                           "unknown_choice at case.toml:4:1", "wrong_type at case.toml:5:3",
+                                           "missing_key at case.toml:6:2", "out_of_range at case.toml:7:1"));
 }
 
 TEST(SetupTable, ProblemOfAnAbsentTableStandsAtTheFilesStart) {
   auto setup = document("# nothing\n");
   setup.root().table("lens").required_number("focal_length_mm");
-  EXPECT_THAT(problems(setup), ElementsAre("case.toml:1:1: lens.focal_length_mm: is missing; give a number"));
+  EXPECT_THAT(problems(setup), ElementsAre("missing_key at case.toml:1:1"));
 }
 
 TEST(SetupTable, AWrongValueGivesTheFallbackSoThatReadingGoesOn) {
@@ -149,10 +157,8 @@ TEST(SetupTable, NanIsAlwaysRefusedAndInfinityUnlessAllowed) {
   EXPECT_EQ(setup.root().number("b", 1.0, Range::positive()), 1.0);
   EXPECT_TRUE(std::isinf(setup.root().number("c", 1.0, unbounded)));
   setup.root().numbers("d", {0.0, 0.0}, 2);
-  EXPECT_THAT(problems(setup),
-              ElementsAre("case.toml:1:1: a = nan: must be a number (nan is not allowed)",
-                          "case.toml:2:1: b = inf: must be finite",
-                          "case.toml:4:1: d = [1.0, nan]: value 2, nan, must be a number (nan is not allowed)"));
+  EXPECT_THAT(problems(setup), ElementsAre("out_of_range at case.toml:1:1", "out_of_range at case.toml:2:1",
+                                           "out_of_range at case.toml:4:1"));
 }
 
 TEST(SetupTable, EndsOfARangeAreIncludedUnlessOpen) {
@@ -163,18 +169,15 @@ TEST(SetupTable, EndsOfARangeAreIncludedUnlessOpen) {
   root.number("c", 0.5, Range::positive(1.0));
   root.number("d", 0.5, Range::at_least(0.0, 1.0));
   root.number("e", 0.5, Range::at_least(0.0));
-  EXPECT_THAT(problems(setup), ElementsAre("case.toml:3:1: c = 0.0: must be greater than 0 and at most 1",
-                                           "case.toml:4:1: d = 1.5: must be at least 0 and at most 1",
-                                           "case.toml:5:1: e = -0.5: must be at least 0"));
+  EXPECT_THAT(problems(setup), ElementsAre("out_of_range at case.toml:3:1", "out_of_range at case.toml:4:1",
+                                           "out_of_range at case.toml:5:1"));
 }
 
 TEST(SetupTable, WholeNumbersAreAskedForByWord) {
   auto setup = document("a = 3.0\nb = 3.5\nc = '3'");
   for (auto const* key : {"a", "b", "c"}) setup.root().integer(key, 1, 0, 9);
   EXPECT_THAT(problems(setup),
-              ElementsAre("case.toml:1:1: a = 3.0: must be a whole number; write 3",
-                          "case.toml:2:1: b = 3.5: must be a whole number",
-                          "case.toml:3:1: c = \"3\": must be a whole number (it is a text); write it without quotes"));
+              ElementsAre("wrong_type at case.toml:1:1", "wrong_type at case.toml:2:1", "wrong_type at case.toml:3:1"));
 }
 
 TEST(SetupTable, NumberOrWordGivesExactlyOne) {
@@ -188,11 +191,7 @@ TEST(SetupTable, NumberOrWordGivesExactlyOne) {
   EXPECT_EQ(read("c").number, 2.26e-4);
   EXPECT_EQ(read("d").number, 2.26e-4);
   read("e");
-  EXPECT_THAT(problems(setup),
-              ElementsAre("case.toml:3:1: d = \"cidor\": must be a number or \"ciddor\" or \"merzkirch\"; did you mean "
-                          "\"ciddor\"?",
-                          "case.toml:4:1: e = true: must be a number or \"ciddor\" or \"merzkirch\" (it is true or "
-                          "false)"));
+  EXPECT_THAT(problems(setup), ElementsAre("unknown_choice at case.toml:3:1", "wrong_type at case.toml:4:1"));
 }
 
 TEST(SetupTable, UnreadKeysNameTheNearestKeyOfTheirTable) {
@@ -210,13 +209,9 @@ pixels = [1, 1]
   lens.number("focal_length_mm", 105.0);
   setup.root().table("camera").number("pixel_pitch_um", 10.0);
   setup.root().table("geometry").number("z_a_mm", 750.0);
-  EXPECT_THAT(problems(setup),
-              ElementsAre("case.toml:2:1: unknown key \"f_nuber\" in [lens]; did you mean \"f_number\"?",
-                          "case.toml:3:1: unknown key \"focal_length\" in [lens]; did you mean \"focal_length_mm\"?",
-                          "case.toml:4:1: unknown key \"z_a_mm\" in [lens]; it belongs in [geometry]",
-                          "case.toml:5:1: unknown key \"unheard_of\" in [lens]; known are \"f_number\" or "
-                          "\"focal_length_mm\"",
-                          "case.toml:6:2: unknown table [cmaera]; did you mean [camera]?"));
+  EXPECT_THAT(messages(setup),
+              ElementsAre(HasSubstr("\"f_number\""), HasSubstr("\"focal_length_mm\""), HasSubstr("[geometry]"),
+                          HasSubstr("\"f_number\" or \"focal_length_mm\""), HasSubstr("[camera]")));
 }
 
 TEST(SetupTable, UnreadKeysAreFoundInInlineTablesAndArraysOfTables) {
@@ -224,17 +219,14 @@ TEST(SetupTable, UnreadKeysAreFoundInInlineTablesAndArraysOfTables) {
       document("lens = { f_number = 8, fnumber = 8 }\n[[field]]\nkind = 'a'\n[[field]]\nkind = 'b'\nknd = 'c'\n");
   setup.root().table("lens").number("f_number", 8.0);
   for (auto& field : setup.root().tables("field")) field.text("kind", "");
-  EXPECT_THAT(problems(setup),
-              ElementsAre("case.toml:1:24: unknown key \"fnumber\" in [lens]; did you mean \"f_number\"?",
-                          "case.toml:6:1: unknown key \"knd\" in [field[1]]; did you mean \"kind\"?"));
+  EXPECT_THAT(problems(setup), ElementsAre("unknown_key at case.toml:1:24", "unknown_key at case.toml:6:1"));
 }
 
 TEST(SetupTable, AKeyThatOtherSettingsMakeUselessIsSaidToHaveNoEffect) {
   auto setup = document("model = 'thin'\nfile = 'a.toml'\n");
   setup.root().word("model", "thin", {"thin", "prescription"});
   EXPECT_TRUE(setup.root().has("file"));
-  EXPECT_THAT(problems(setup),
-              ElementsAre("case.toml:2:1: \"file\" in the setup has no effect with the other settings; remove it"));
+  EXPECT_THAT(problems(setup), ElementsAre("unknown_key at case.toml:2:1"));
 }
 
 TEST(SetupTable, RefusedKeyIsReportedOnceAndByName) {
@@ -242,9 +234,7 @@ TEST(SetupTable, RefusedKeyIsReportedOnceAndByName) {
   setup.root().table("lens").refuse("file", "is not available yet: thin lenses only");
   setup.root().table("lens").refuse("absent", "never said");
   setup.root().refuse("particles", "is not available yet");
-  EXPECT_THAT(problems(setup),
-              ElementsAre("case.toml:2:1: lens.file = \"a.toml\": is not available yet: thin lenses only",
-                          "case.toml:3:2: particles = { count = 1 }: is not available yet"));
+  EXPECT_THAT(problems(setup), ElementsAre("invalid_value at case.toml:2:1", "invalid_value at case.toml:3:2"));
 }
 
 TEST(SetupTable, TableOfTheWrongKindIsAProblem) {
@@ -253,8 +243,8 @@ TEST(SetupTable, TableOfTheWrongKindIsAProblem) {
   setup.root().table("camera").number("pixels", 8.0);
   auto const found = problems(setup);
   ASSERT_EQ(found.size(), 2u);
-  EXPECT_THAT(found[0], HasSubstr("case.toml:1:1: lens = 5: must be a table (it is a whole number)"));
-  EXPECT_THAT(found[1], HasSubstr("camera = [{ pixels = 1 }]: must be one table"));
+  EXPECT_EQ(found[0], "wrong_type at case.toml:1:1");
+  EXPECT_THAT(found[1], testing::StartsWith("wrong_type at case.toml:2:"));
 }
 
 TEST(SetupTable, SingleTableIsAnArrayOfOne) {
@@ -278,8 +268,7 @@ TEST(SetupTable, ProblemOfADefaultSaysSo) {
   auto lens = setup.root().table("lens");
   lens.number("f_number", 8.0);
   lens.problem("f_number", "is too small for this medium");
-  EXPECT_THAT(problems(setup),
-              ElementsAre("case.toml:1:2: lens.f_number = 8.0 (default): is too small for this medium"));
+  EXPECT_THAT(problems(setup), ElementsAre("invalid_value at case.toml:1:2"));
 }
 
 TEST(SetupOverride, SameDocumentAsTheKeyInTheFile) {
@@ -312,13 +301,9 @@ TEST(SetupOverride, ProblemsStandAtTheAssignmentAfterThoseOfTheFile) {
   lens.number("f_number", 8.0, Range::positive());
   auto const found = problems(setup);
   EXPECT_THAT(found, testing::UnorderedElementsAre(
-                         "case.toml:3:1: unknown key \"z\" in [lens]; known are \"f_number\"",
-                         "--set nonsense: has no \"=\"; write --set key.path=value",
-                         "--set a..b=1: has an empty key; write --set key.path=value",
-                         "--set lens.empty=: has no value; write --set key.path=value",
-                         "--set lens.f_number=-1: lens.f_number = -1: must be greater than 0",
-                         "--set lens.f_nuber=8: unknown key \"f_nuber\" in [lens]; did you mean \"f_number\"?",
-                         "--set lens.psf.deep=8: unknown table [lens.psf]; known are \"f_number\""));
+                         "unknown_key at case.toml:3:1", "syntax at --set nonsense", "syntax at --set a..b=1",
+                         "syntax at --set lens.empty=", "out_of_range at --set lens.f_number=-1",
+                         "unknown_key at --set lens.f_nuber=8", "unknown_key at --set lens.psf.deep=8"));
   ASSERT_FALSE(found.empty());
   EXPECT_THAT(found.front(), HasSubstr("case.toml:3:1"));
 }
@@ -329,9 +314,7 @@ TEST(SetupOverride, APathThroughAValueIsAProblem) {
   setup.override_key("field.kind=none");
   setup.root().integer("a", 1, 0, 9);
   for (auto& field : setup.root().tables("field")) field.text("kind", "");
-  EXPECT_THAT(problems(setup),
-              ElementsAre("--set a.b=1: a is a whole number, not a table; set a key of a table",
-                          "--set field.kind=none: field is an array, not a table; change its elements in the file"));
+  EXPECT_THAT(problems(setup), ElementsAre("wrong_type at --set a.b=1", "wrong_type at --set field.kind=none"));
 }
 
 TEST(SetupOverride, AValueCannotSmuggleInOtherKeys) {
@@ -348,7 +331,7 @@ TEST(SetupDocument, SyntaxErrorHasLineAndColumn) {
   } catch (SetupError const& error) {
     ASSERT_EQ(error.problems().size(), 1u);
     EXPECT_THAT(error.problems()[0].where, testing::MatchesRegex("case.toml:[23]:[0-9]+"));
-    EXPECT_THAT(error.problems()[0].message, HasSubstr("is not TOML: "));
+    EXPECT_EQ(error.problems()[0].code, ErrorCode::syntax);
   }
 }
 
@@ -387,7 +370,7 @@ TEST(SetupDocument, KeysAndBracketsAreBoundedInDepth) {
       ADD_FAILURE() << "accepted " << text.substr(0, 40);
     } catch (SetupError const& error) {
       EXPECT_THAT(error.problems()[0].where, testing::StartsWith("case.toml:" + place)) << text.substr(0, 40);
-      EXPECT_THAT(error.problems()[0].message, HasSubstr("more than 32 levels deep")) << text.substr(0, 40);
+      EXPECT_EQ(error.problems()[0].code, ErrorCode::syntax) << text.substr(0, 40);
     }
   }
   EXPECT_NO_THROW(document(dotted(most_setup_depth) + " = 1.5\n"));
@@ -401,9 +384,9 @@ TEST(SetupOverride, KeysAndValuesAreBoundedInDepth) {
   setup.override_key(dotted(100000) + "=1");
   setup.override_key("b=" + repeated("[", 100000) + repeated("]", 100000));
   setup.root().text("b", "");  // text that is not TOML is read as a string
-  auto const found = problems(setup);
+  auto const found = messages(setup);
   ASSERT_EQ(found.size(), 1u);
-  EXPECT_THAT(found[0], HasSubstr("has a key of 100000 parts"));
+  EXPECT_THAT(found[0], HasSubstr("100000 parts"));
   EXPECT_LT(found[0].size(), 400u);
 }
 
@@ -424,22 +407,22 @@ sensor.pitch = "wide"
   lens.table("sensor").number("pitch", 1.0);
   lens.required_number("focal_length_mm");
   lens.problem("focus", "conflicts with f_number");
-  using enum ProblemCode;
-  std::vector<std::pair<std::string, ProblemCode>> const expected{{"unit", unknown_key},
-                                                                  {"lens.focal_length_mm", missing_key},
-                                                                  {"lens.f_number", out_of_range},
-                                                                  {"lens.focus", unknown_choice},
-                                                                  {"lens.focus", invalid_value},
-                                                                  {"lens.pixels", wrong_type},
-                                                                  {"lens.sensor.pitch", wrong_type}};
-  std::vector<std::pair<std::string, ProblemCode>> found;
+  using enum ErrorCode;
+  std::vector<std::pair<std::string, ErrorCode>> const expected{{"unit", unknown_key},
+                                                                {"lens.focal_length_mm", missing_key},
+                                                                {"lens.f_number", out_of_range},
+                                                                {"lens.focus", unknown_choice},
+                                                                {"lens.focus", invalid_value},
+                                                                {"lens.pixels", wrong_type},
+                                                                {"lens.sensor.pitch", wrong_type}};
+  std::vector<std::pair<std::string, ErrorCode>> found;
   try {
     setup.finish();
   } catch (SetupError const& error) {
     for (auto const& problem : error.problems()) found.emplace_back(problem.key, problem.code);
   }
   EXPECT_EQ(found, expected);
-  EXPECT_EQ(problem_code_name(ProblemCode::out_of_range), "out_of_range");
+  EXPECT_EQ(error_code_name(ErrorCode::out_of_range), "out_of_range");
 }
 
 // Messages for all keys would need 47 MB for 200,000 unknown keys, and searching all messages for each key 214 s.
@@ -470,7 +453,7 @@ TEST(SetupDocument, ALongKeyIsCutInItsMessage) {
   std::string const name(3 << 20, 'k');
   auto setup = document(name + " = 1\n");
   setup.root().number("known", 1.0);
-  auto const found = problems(setup);
+  auto const found = messages(setup);
   ASSERT_EQ(found.size(), 1u);
   EXPECT_LT(found[0].size(), 200u);
 }
@@ -483,20 +466,21 @@ TEST(SetupDocument, AFileWithoutAnyKeyIsNoSetup) {
       SetupDocument::from_file(path);
       FAIL() << "accepted";
     } catch (SetupError const& error) {
-      EXPECT_THAT(error.what(), HasSubstr(path + ": is empty (no key is set); gladstone render --help"));
+      EXPECT_EQ(code_and_place(error.problems()[0]), "syntax at empty_setup.toml");
     }
   }
   std::filesystem::remove(path);
 }
 
 TEST(SetupDocument, MissingFileAndFolderAreNamed) {
-  for (auto const& [path, why] : {std::pair{"/no/such/setup.toml", "does not exist"}, std::pair{"/tmp", "folder"}}) {
+  for (auto const& [path, code] :
+       {std::pair{"/no/such/setup.toml", ErrorCode::missing_file}, std::pair{"/tmp", ErrorCode::unreadable_file}}) {
     try {
       SetupDocument::from_file(path);
       FAIL() << "accepted " << path;
     } catch (SetupError const& error) {
-      EXPECT_THAT(error.what(), HasSubstr(path));
-      EXPECT_THAT(error.what(), HasSubstr(why));
+      EXPECT_EQ(error.problems()[0].where, path);
+      EXPECT_EQ(error.problems()[0].code, code);
     }
   }
 }
@@ -511,7 +495,7 @@ TEST(SetupDocument, FileNamesAreRelativeToTheSetup) {
   EXPECT_EQ(setup.root().required_path("empty"), "");
   auto const found = problems(setup);
   ASSERT_EQ(found.size(), 1u);
-  EXPECT_THAT(found[0], HasSubstr("case.toml:3:1: empty = \"\": must not be empty"));
+  EXPECT_EQ(found[0], "invalid_value at case.toml:3:1");
   std::filesystem::remove_all(folder);
 }
 
@@ -564,8 +548,7 @@ TEST(SetupDocument, ValuesOfAnotherFileKeepTheirPlaceAndTheirFolder) {
   target.number("size", 1, Range::positive());
   EXPECT_EQ(setup.root().tables("camera").at(0).integer("bits", 8, 1, 16), 12);
   EXPECT_EQ(setup.file_names(), std::vector<std::string>{"/data/studies/b.csv"});
-  EXPECT_THAT(problems(setup), ElementsAre(HasSubstr("study.toml:1:1: camera.bits.deep: camera.bits is a whole number"),
-                                           HasSubstr("study.toml:1:1: target.size = -1: must be greater than 0")));
+  EXPECT_THAT(problems(setup), ElementsAre("wrong_type at study.toml:1:1", "out_of_range at study.toml:1:1"));
 }
 
 TEST(SetupDocument, AListOfFilesIsRelativeToTheSetupToo) {
@@ -584,9 +567,8 @@ TEST(SetupDocument, AListOfFilesIsRelativeToTheSetupToo) {
   for (char const* key : {"one", "number", "empty", "absent"}) {
     EXPECT_TRUE(wrong.root().table("lens").path_list(key).empty()) << key;
   }
-  EXPECT_THAT(problems(wrong), ElementsAre(HasSubstr("case.toml:2:1: lens.one = \"a.agf\": must be an array"),
-                                           HasSubstr("3:1: lens.number = [1]: value 1, 1, must be a file name"),
-                                           HasSubstr("4:1: lens.empty = [\"\"]: value 1, \"\", must not be empty")));
+  EXPECT_THAT(problems(wrong), ElementsAre("wrong_type at case.toml:2:1", "wrong_type at case.toml:3:1",
+                                           "invalid_value at case.toml:4:1"));
 }
 
 TEST(SetupDocument, WrittenIsTheTextWithFileNamesMadeAbsolute) {

@@ -57,7 +57,7 @@ inline RequestedKeys requested_keys(std::string const& setup) {
   RequestedKeys found;
   append_keys(state.record, "", found.values);
   for (SetupProblem const& problem : state.problems) {
-    if (problem.code != ProblemCode::missing_key) continue;
+    if (problem.code != ErrorCode::missing_key) continue;
     std::string path = problem.key;  // with indices: "camera[0].name"
     for (auto open = path.find('['); open != std::string::npos; open = path.find('[')) {
       path.erase(open, path.find(']', open) - open + 1);

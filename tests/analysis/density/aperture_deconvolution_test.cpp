@@ -7,6 +7,7 @@
 #include "analysis/density/density_uncertainty.h"
 #include "render/base/error.h"
 #include "tests/analysis/density/density_cases.h"
+#include "tests/support/expect_error.h"
 
 namespace gladstone::density {
 namespace {
@@ -119,7 +120,8 @@ TEST(ApertureDeconvolution, RejectsBadInput) {
   EXPECT_THROW(ApertureDeconvolution(grid, all, table_1_cone(), std::nan("")), SetupError);
   EXPECT_THROW(ApertureDeconvolution(grid, all, {}, 2.0), SetupError);
   EXPECT_THROW(ApertureDeconvolution(grid, all, table_1_cone(1.0), 2.0), SetupError);
-  EXPECT_THROW(ApertureDeconvolution(grid, none, table_1_cone(), 2.0), DataError);
+  EXPECT_THAT([&] { ApertureDeconvolution(grid, none, table_1_cone(), 2.0); },
+              ThrowsDataError(ErrorCode::undetermined, "density"));
 }
 
 }  // namespace

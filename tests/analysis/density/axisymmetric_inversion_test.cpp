@@ -7,6 +7,7 @@
 #include "analysis/density/abel_operators.h"
 #include "render/base/error.h"
 #include "tests/analysis/density/density_cases.h"
+#include "tests/support/expect_error.h"
 
 namespace gladstone::density {
 namespace {
@@ -198,13 +199,14 @@ TEST(AxisymmetricInversion, RejectsBadInput) {
   lambda.choice = RegularizationChoice::discrepancy;
   GradientMap without_sigma = map;
   without_sigma.sigma.clear();
-  EXPECT_THROW(invert_axisymmetric(without_sigma, lambda), DataError);
+  EXPECT_THAT([&] { invert_axisymmetric(without_sigma, lambda); },
+              ThrowsDataError(ErrorCode::missing_content, "density gradient"));
   AxisymmetricSettings overlap;
   overlap.overlap = {2.0, 100.0};
   EXPECT_THROW(invert_axisymmetric(map, overlap), SetupError);
   GradientMap flat = map;
   flat.gradient.assign(map.grid.size(), {1.0, 0.0});
-  EXPECT_THROW(invert_axisymmetric(flat, {}), DataError);  // no axis
+  EXPECT_THAT([&] { invert_axisymmetric(flat, {}); }, ThrowsDataError(ErrorCode::undetermined, "axis"));  // no axis
 }
 
 // The direct inversion of a row starts at its largest radius, which only the columns right of 0.94 measure. The
@@ -215,7 +217,8 @@ TEST(AxisymmetricInversion, RejectsAMaskOverTheLargestRadii) {
     for (int column = 95; column < 101; ++column) map.valid[map.grid.index(column, row)] = 0;
   AxisymmetricSettings settings;
   settings.axis = 0.47;
-  EXPECT_THROW(invert_axisymmetric(map, settings), DataError);
+  EXPECT_THAT([&] { invert_axisymmetric(map, settings); },
+              ThrowsDataError(ErrorCode::undetermined, "density gradient"));
   settings.method = AbelMethod::tikhonov;
   AxisymmetricDensity const regularized = invert_axisymmetric(map, settings);
   EXPECT_TRUE(std::isfinite(regularized.density[regularized.grid.index(0, 0)]));

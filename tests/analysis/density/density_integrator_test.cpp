@@ -8,6 +8,7 @@
 
 #include "render/base/error.h"
 #include "tests/analysis/density/density_cases.h"
+#include "tests/support/expect_error.h"
 
 namespace gladstone::density {
 namespace {
@@ -138,7 +139,7 @@ TEST(DensityIntegrator, DemandsAReferenceInEachDisconnectedRegion) {
     integrate_density(map, left);
     FAIL();
   } catch (DataError const& error) {
-    EXPECT_EQ(error.file(), "reference");
+    EXPECT_EQ(code_and_place(error), "undetermined at reference");
     EXPECT_NE(error.message().find("66 nodes in columns 5-10"), std::string::npos) << error.what();
   }
   IntegrationSettings settings;
@@ -198,17 +199,20 @@ TEST(DensityIntegrator, RejectsBadInput) {
 
   GradientMap masked = map;
   masked.valid[0] = 0;  // mask over the reference region
-  EXPECT_THROW(integrate_density(masked, corner), DataError);
+  EXPECT_THAT([&] { integrate_density(masked, corner); }, ThrowsDataError(ErrorCode::undetermined, "reference"));
   GradientMap not_finite = map;
   not_finite.gradient[7].y = std::nan("");
-  EXPECT_THROW(integrate_density(not_finite, corner), DataError);
+  EXPECT_THAT([&] { integrate_density(not_finite, corner); },
+              ThrowsDataError(ErrorCode::invalid_value, "density gradient"));
   GradientMap without_sigma = map;
   without_sigma.sigma.assign(map.grid.size(), {0.1, 0.1});
   without_sigma.sigma[3].x = 0.0;
-  EXPECT_THROW(integrate_density(without_sigma, corner), DataError);
+  EXPECT_THAT([&] { integrate_density(without_sigma, corner); },
+              ThrowsDataError(ErrorCode::invalid_value, "density gradient"));
   GradientMap empty = map;
   empty.valid.assign(map.grid.size(), 0);
-  EXPECT_THROW(integrate_density(empty, corner), NoValidVector);
+  EXPECT_THAT([&] { integrate_density(empty, corner); },
+              ThrowsDataError(ErrorCode::no_valid_vector, "density gradient"));
 }
 
 }  // namespace

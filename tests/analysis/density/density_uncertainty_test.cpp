@@ -9,6 +9,7 @@
 #include "render/base/error.h"
 #include "render/base/random_variates.h"
 #include "tests/analysis/density/density_cases.h"
+#include "tests/support/expect_error.h"
 
 namespace gladstone::density {
 namespace {
@@ -203,7 +204,8 @@ TEST(DensityUncertainty, AddsTheScaleInQuadrature) {
 TEST(DensityUncertainty, RejectsBadInput) {
   GradientMap const map = noisy_map(9);
   DensityIntegrator const integrator(map, zero_left_side(map.grid));
-  EXPECT_THROW(propagate_uncertainty(integrator, {}, {}), DataError);
+  EXPECT_THAT([&] { propagate_uncertainty(integrator, {}, {}); },
+              ThrowsDataError(ErrorCode::missing_content, "density gradient"));
   EXPECT_THROW(propagate_uncertainty(integrator, map.sigma, {20.0, 2.0}), SetupError);
   EXPECT_THROW(propagate_uncertainty(integrator, map.sigma, {2.0, std::nan("")}), SetupError);
   EXPECT_THROW(WindowOverlap::from_fraction(1.0), SetupError);

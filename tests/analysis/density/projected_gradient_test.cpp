@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "render/base/error.h"
+#include "tests/support/expect_error.h"
 
 namespace gladstone::density {
 namespace {
@@ -86,16 +87,20 @@ TEST(ProjectedGradient, RejectsBadInput) {
   }
   DisplacementField scattered = field;
   scattered.columns = scattered.rows = 0;
-  EXPECT_THROW(compute_projected_gradient(scattered, table_1()), DataError);
+  EXPECT_THAT([&] { compute_projected_gradient(scattered, table_1()); },
+              ThrowsDataError(ErrorCode::wrong_shape, "vectors"));
   DisplacementField irregular = field;
   irregular.position_px[6].x += 0.5;
-  EXPECT_THROW(compute_projected_gradient(irregular, table_1()), DataError);
+  EXPECT_THAT([&] { compute_projected_gradient(irregular, table_1()); },
+              ThrowsDataError(ErrorCode::invalid_value, "vectors"));
   DisplacementField not_finite = field;
   not_finite.displacement_px[3].x = std::nan("");
-  EXPECT_THROW(compute_projected_gradient(not_finite, table_1()), DataError);
+  EXPECT_THAT([&] { compute_projected_gradient(not_finite, table_1()); },
+              ThrowsDataError(ErrorCode::invalid_value, "density gradient"));
   DisplacementField none = field;
   none.status.assign(field.size(), VectorStatus::invalid);
-  EXPECT_THROW(compute_projected_gradient(none, table_1()), NoValidVector);
+  EXPECT_THAT([&] { compute_projected_gradient(none, table_1()); },
+              ThrowsDataError(ErrorCode::no_valid_vector, "density gradient"));
   EXPECT_THROW(compute_mean_gradient(compute_projected_gradient(field, table_1()).map, 0.0), SetupError);
 }
 

@@ -10,6 +10,7 @@
 #include "render/base/not_a_number.h"
 #include "render/base/parallel.h"
 #include "tests/analysis/tomography/phantom_views.h"
+#include "tests/support/expect_error.h"
 
 namespace gladstone::tomography {
 namespace {
@@ -150,19 +151,26 @@ TEST(VolumeReconstruction, LinesBesideTheVolumeAreReported) {
 TEST(VolumeReconstruction, UnusableViewsAreRefused) {
   RegularGrid const grid = make_cube(nodes, width);
   auto const views = view_blob(3, nodes, width, radius);
-  EXPECT_THROW(reconstruct_volume({views[0], views[1]}, grid, quick_settings()), DataError);
+  EXPECT_THAT(
+      [&] {
+        reconstruct_volume({views[0], views[1]}, grid, quick_settings());
+      },
+      ThrowsDataError(ErrorCode::undetermined, "tomography"));
 
   auto different = views;
   different[1].value.pop_back();
-  EXPECT_THROW(reconstruct_volume(different, grid, quick_settings()), DataError);
+  EXPECT_THAT([&] { reconstruct_volume(different, grid, quick_settings()); },
+              ThrowsDataError(ErrorCode::wrong_shape, different[1].name));
 
   auto unmeasured = views;
   std::fill(unmeasured[2].value.begin(), unmeasured[2].value.end(), not_a_number);
-  EXPECT_THROW(reconstruct_volume(unmeasured, grid, quick_settings()), NoValidVector);
+  EXPECT_THAT([&] { reconstruct_volume(unmeasured, grid, quick_settings()); },
+              ThrowsDataError(ErrorCode::no_valid_vector, unmeasured[2].name));
 
   auto apart = views;  // the third camera looks past the volume
   for (SightLine& line : apart[2].lines) line.origin.y += 1.0;
-  EXPECT_THROW(reconstruct_volume(apart, grid, quick_settings()), DataError);
+  EXPECT_THAT([&] { reconstruct_volume(apart, grid, quick_settings()); },
+              ThrowsDataError(ErrorCode::undetermined, "tomography"));
 }
 
 TEST(VolumeReconstruction, SettingsOutOfRangeAreReportedTogether) {

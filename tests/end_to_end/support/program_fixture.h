@@ -129,6 +129,35 @@ class ProgramFixture : public testing::Test {
     }
     EXPECT_TRUE(everything() == before) << "files changed: " << testing::PrintToString(names());
   }
+  /// Expects the command to fail with this exit code and an error of this code and place, and to change no file.
+  /// @param error  "syntax at v.csv:3": code, and name of the file without its folders, with line and column if known
+  void expect_error(std::vector<std::string> arguments, int exit_code, std::string const& error) const {
+    auto const before = everything();
+    arguments.emplace_back("--json");
+    Outcome const outcome = gladstone(std::move(arguments));
+    EXPECT_EQ(outcome.exit_code, exit_code) << outcome.err << " (signal " << outcome.signal << ')';
+    EXPECT_THAT(errors_in(outcome.out), testing::Contains(error)) << outcome.err;
+    EXPECT_TRUE(everything() == before) << "files changed: " << testing::PrintToString(names());
+  }
+  /// Returns the errors in the output of a command with --json, each as "code at place".
+  static std::vector<std::string> errors_in(std::string const& output) {
+    std::vector<std::string> found;
+    auto const json = nlohmann::json::parse(output, nullptr, false);
+    if (!json.is_object() || !json.contains("errors")) return found;
+    for (nlohmann::json const& error : json["errors"]) {
+      std::string const place = error.value("file", error.value("key", ""));
+      found.push_back(error.value("code", "") + " at " + std::filesystem::path(place).filename().string());
+      for (char const* const part : {"line", "column"}) {
+        if (error.contains(part)) found.back() += ':' + std::to_string(error[part].get<int>());
+      }
+    }
+    return found;
+  }
+  /// Expects the rendering of this setup text to fail with an error of this code and place.
+  void expect_setup_error(std::string const& text, std::string const& error) const {
+    write("setup.toml", text);
+    expect_error({"render", "setup.toml", "-o", "case"}, 2, error);
+  }
   /// Expects the rendering of this setup text to be rejected as invalid input.
   void expect_setup_refused(std::string const& text, std::vector<std::string> const& pieces) const {
     write("setup.toml", text);

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <gmock/gmock.h>
+
+#include <ostream>
+#include <string>
+#include <utility>
+
+#include "render/base/error.h"
+
+/// Matchers of errors by code and place, so that the wording of messages is free:
+/// EXPECT_THAT([&] { read_image(path); }, ThrowsDataError(ErrorCode::damaged, "cut.tif"));
+namespace gladstone {
+
+inline void PrintTo(ErrorCode code, std::ostream* out) { *out << error_code_name(code); }
+
+inline void PrintTo(Error const& error, std::ostream* out) {
+  *out << error_code_name(error.code()) << " at \"" << error.place() << "\": " << error.message();
+}
+
+inline void PrintTo(SetupProblem const& problem, std::ostream* out) {
+  *out << error_code_name(problem.code) << " at \"" << problem.where << "\": " << problem.message;
+}
+
+/// Returns "CODE at PLACE" with the name of the file without its folders: "damaged at cut.tif".
+inline std::string code_and_place(ErrorCode code, std::string const& place) {
+  return error_code_name(code) + " at " + place.substr(place.rfind('/') + 1);
+}
+inline std::string code_and_place(Error const& error) { return code_and_place(error.code(), error.place()); }
+inline std::string code_and_place(SetupProblem const& problem) { return code_and_place(problem.code, problem.where); }
+
+/// Matches a function that throws a DataError. @param place  end of the error's place, such as "bad.csv:2"
+inline auto ThrowsDataError(ErrorCode code, std::string place) {
+  return testing::Throws<DataError>(
+      testing::AllOf(testing::Property("code", &Error::code, code),
+                     testing::Property("place", &Error::place, testing::EndsWith(std::move(place)))));
+}
+
+/// Matches a function that throws a DataError whose message also matches: where the test is about a number or a remedy.
+template <class Message>
+auto ThrowsDataError(ErrorCode code, std::string place, Message const& message) {
+  return testing::AllOf(ThrowsDataError(code, std::move(place)), testing::ThrowsMessage<DataError>(message));
+}
+
+/// Matches a function that throws an OutputError. @param path  end of the path
+inline auto ThrowsOutputError(std::string path) {
+  return testing::Throws<OutputError>(testing::Property("place", &Error::place, testing::EndsWith(std::move(path))));
+}
+
+/// Matches a function that throws a SetupError with a problem of this code at this place.
+/// @param place  key path of the problem, or end of its location, such as "case.toml:3:1"
+inline auto ThrowsSetupError(ErrorCode code, std::string const& place) {
+  auto const is_it = [code, place](SetupProblem const& one) {
+    return one.code == code && (one.key == place || one.where.ends_with(place));
+  };
+  return testing::Throws<SetupError>(
+      testing::Property("problems", &SetupError::problems, testing::Contains(testing::Truly(is_it))));
+}
+
+}  // namespace gladstone
