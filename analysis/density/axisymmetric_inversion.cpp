@@ -90,16 +90,17 @@ double compute_asymmetry(std::vector<RadialProfile> const& profiles) {
   return odd > 0.0 ? std::sqrt(even / odd) : not_a_number;
 }
 
-/// Throws unless the gradients at equal distances from the axis are opposite: the sum of their products is negative
-/// then, by more than three times its scatter for independent gradients.
+/// Throws if the gradients at equal distances from the axis are not opposite: if their odd part does not dominate, and
+/// the sum of their products is not negative by more than three times its scatter for independent gradients.
 void require_opposite_sides(std::vector<RadialProfile> const& profiles, double axis, bool is_given) {
-  double opposite = 0.0, product_squares = 0.0;
+  double odd = 0.0, even = 0.0, product_squares = 0.0;
   for (RadialProfile const& profile : profiles) {
-    opposite += profile.odd_square - profile.even_square;
+    odd += profile.odd_square;
+    even += profile.even_square;
     product_squares += profile.product_square;
   }
   bool const has_both_sides = product_squares > 0.0;
-  if (!has_both_sides || opposite > 3.0 * std::sqrt(product_squares)) return;
+  if (!has_both_sides || odd > 2.0 * even || odd - even > 3.0 * std::sqrt(product_squares)) return;
   throw DataError("axis",
                   fmt::format("the flow is not symmetric about the axis at {:.4g} mm, {} (the gradients on its "
                               "sides are not opposite); {}, or subtract a displacement that all vectors have in "

@@ -267,6 +267,14 @@ TEST(AxisymmetricInversion, RejectsAWrongAxis) {
     settings.axis = axis;
     EXPECT_THROW(invert_axisymmetric(map, settings), DataError) << axis;
   }
+  GradientMap two_rows = map;  // few vectors suffice if they are opposite
+  for (int row = 2; row < 8; ++row)
+    for (int column = 0; column < 81; ++column) two_rows.valid[map.grid.index(column, row)] = 0;
+  for (int row = 0; row < 2; ++row)
+    for (int column = 0; column < 81; ++column)
+      if (std::abs(map.grid.position(column, row).x - 0.47) < 0.2) two_rows.valid[map.grid.index(column, row)] = 0;
+  settings.axis = 0.47;
+  EXPECT_LT(invert_axisymmetric(two_rows, settings).asymmetry, 1e-3);
   GradientMap noisy = map;
   for (Vec2d& sigma : noisy.sigma) sigma = {0.2, 0.2};
   settings.axis = 0.47;
