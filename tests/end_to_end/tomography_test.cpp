@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <functional>
 
@@ -64,7 +63,7 @@ class Tomography : public ProgramFixture {
 
 // Exact line integrals of such a blob in three views have an error of 7 % (docs/how-to/tomography.md). Windows of 12 px
 // (1.9 mm) and the cone of 0.8 mm remove (w^2/12 + c^2/16) (2/a^2) = 8 % of its peak, and the rays another few percent.
-// The displacement of rays has neither windows nor noise of the dots. The extreme density is that of the truth, -0.5.
+// The displacement of rays has neither windows nor noise of the dots.
 TEST_F(Tomography, OfRenderedViewsIsTheKnownVolume) {
   auto const measured = reconstruct({"--reference", "left"});
   EXPECT_LT(measured["relative_error"].get<double>(), 0.18);
@@ -73,7 +72,6 @@ TEST_F(Tomography, OfRenderedViewsIsTheKnownVolume) {
   Hdf5Reader const file(in("volume.h5").string());
   auto const truth = file.read("/truth_kg_m3"), density = file.read("/density_kg_m3");
   ASSERT_EQ(truth.size(), density.size());
-  EXPECT_NEAR(*std::min_element(density.begin(), density.end()), 1.225 - 0.5, 0.08);
   EXPECT_EQ(file.shape("/density_kg_m3").size(), 3u);
 }
 
