@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, Literal
 
 import numpy as np
@@ -139,7 +139,7 @@ def _input(folder: str, name: str, source, dewarp: str, device: str) -> str:
 
 def stereo(
     first,
-    second,
+    second=None,
     *,
     calibrations: Sequence[str | os.PathLike] | None = None,
     sheet_z_mm: float = 0.0,
@@ -157,7 +157,8 @@ def stereo(
     """Combines the vectors of two cameras to three components, equal bit by bit to `gladstone stereo`.
 
     first, second: for each camera a `Case` (rendered: correlated with its own settings), the path of a CASE folder with
-        its vectors or of a file of vectors, a `Field`, or anything that `Field.of` accepts [px].
+        its vectors or of a file of vectors, a `Field`, or anything that `Field.of` accepts [px]. Without `second`: the
+        cases of two cameras by name, as `Setup.render` returns them, or the path of their common folder.
     calibrations: calibration.h5 of both cameras; required for vectors without a case. Default: the exact cameras.
     sheet_z_mm, sheet_slope: Z of the middle of the laser sheet at X = Y = 0 [mm], and its slopes dZ/dX and dZ/dY.
     align: determines the laser sheet from the disparity between the images of both cameras, from that first guess.
@@ -172,10 +173,17 @@ def stereo(
     Raises `SetupError` for invalid options, and `DataError` for files that are missing or do not fit together.
     """
     check_choice("dewarp", dewarp, ("vectors", "images"))
+    if second is None and isinstance(first, Mapping):
+        if len(first) != 2:
+            raise ValueError(f"expected the cases of two cameras, got {len(first)}")
+        first, second = first.values()
     inputs = InputFolder()
     with reporting(progress) as report:
-        places = [_input(inputs.name, name, source, dewarp, device)
-                  for name, source in (("first", first), ("second", second))]  # fmt: skip
+        if second is None:
+            places = [os.fspath(first), ""]
+        else:
+            places = [_input(inputs.name, name, source, dewarp, device)
+                      for name, source in (("first", first), ("second", second))]  # fmt: skip
         core = _core.stereo(
             *places, [os.fspath(path) for path in calibrations or ()], conventions, sheet_z_mm,
             (float(sheet_slope[0]), float(sheet_slope[1])), align, [os.fspath(path) for path in images],

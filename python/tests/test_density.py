@@ -71,6 +71,31 @@ def test_references_and_methods(bos, field):
     assert flow.summary["axis"]["lambda"] > 0
 
 
+def test_parts_of_an_axisymmetric_flow(bos, field):
+    whole = gs.reconstruct(field, bos, axis="x=0", device="cpu")
+    right = np.where(field.x > 47, field.u, np.nan)
+    half = gs.reconstruct((field.x, field.y, right, field.v), bos, axis="x=0", device="cpu")
+    assert half.summary["axis"]["asymmetry"] is None
+    middle = np.nanmin(whole.density)
+    assert np.nanmin(half.density) == pytest.approx(middle, abs=0.1 * (1.225 - middle))
+    with pytest.raises(gs.DataError, match="axis"):
+        gs.reconstruct((field.x, field.y, right, field.v), bos, axis="vertical", device="cpu")
+    with pytest.raises(gs.SetupError, match="outside the image"):
+        gs.reconstruct(field, bos, axis="x=50", device="cpu")
+
+
+def test_masks_and_references(bos, field):
+    masked = np.where(field.x < 30, np.nan, field.u)
+    with pytest.raises(gs.DataError, match="masked or invalid"):
+        gs.reconstruct((field.x, field.y, masked, field.v), bos, reference="left", device="cpu")
+    divided = np.where(np.abs(field.x - 47.5) < 6, np.nan, field.u)
+    with pytest.warns(gs.GladstoneWarning, match="contain no reference density"):
+        half = gs.reconstruct((field.x, field.y, divided, field.v), bos, reference="left", device="cpu")
+    assert np.all(np.isnan(half.density[:, -1])) and np.all(np.isfinite(half.density[:, 0]))
+    with pytest.warns(gs.GladstoneWarning, match="contains all vectors"):
+        gs.reconstruct(field, bos, reference=(-100, -100, 100, 100), device="cpu")
+
+
 def test_problems_are_reported(bos, field):
     with pytest.raises(gs.SetupError, match="reference"):
         gs.reconstruct(field, bos, device="cpu")

@@ -94,6 +94,8 @@ def test_conversion_preserves_every_bit(result, program, tmp_path):
 def test_folders_and_dewarped_images(result, folders, cases):
     again = gs.stereo(*folders, device="cpu")
     assert np.array_equal(again.displacement_mm, result.displacement_mm, equal_nan=True)
+    both = gs.stereo(cases, device="cpu")
+    assert np.array_equal(both.displacement_mm, result.displacement_mm, equal_nan=True)
     images = gs.stereo(cases["left"], cases["right"], dewarp="images", device="cpu")
     assert np.nanmean(images.w) == pytest.approx(0.06, abs=2e-3)
 
@@ -103,6 +105,8 @@ def test_problems_are_reported(cases, folders):
         gs.stereo(*folders, dewarp="other")
     with pytest.raises(gs.DataError, match="--calibration"):
         gs.stereo(folders[0] / "vectors.h5", folders[1] / "vectors.h5", device="cpu")
+    with pytest.raises(gs.DataError, match="two cameras"):
+        gs.stereo(folders[0], device="cpu")
     with pytest.raises(gs.DataError, match="same direction"):
         gs.stereo(folders[0], folders[0], device="cpu")
     with pytest.warns(gs.GladstoneWarning, match="--align"):

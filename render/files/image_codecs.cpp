@@ -31,8 +31,8 @@ std::size_t thread_space() {
   return std::thread::hardware_concurrency() * (stack + (std::size_t{1} << 20));
 }
 
-/// Throws an error of code `memory` if the limit on address space (ulimit -v) is too low: libraries that reach it during their
-/// initialisation abort or hang.
+/// Throws an error of code `memory` if the limit on address space (ulimit -v) is too low: libraries that reach it
+/// during their initialisation abort or hang.
 void require_address_space(std::string const& path) {
   std::size_t const needed = library_space + thread_space();
   void* const probe = ::mmap(nullptr, needed, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);

@@ -89,7 +89,8 @@ void warn_of_side_faces(std::vector<std::string>& warnings, Scene const& scene, 
   warn(warnings,
        fmt::format(
            "render.rays_per_dot: {} dots lie at side faces of the medium, which cut their light cones, and are traced "
-           "ray by ray, with {} rays each. The standard error of their truth is {} rms (the goal is {}){}; {}",
+           "ray by ray, with {} rays each, for truth and images. The standard error of their truth is {} rms (the "
+           "goal is {}){}; {}",
            there.dots, there.most_rays, describe_error(there.truth_error_px, 0, "px"), truth_tolerance_px,
            by_brightest ? ", and camera.exposure = \"auto\" is chosen from the brightest pixel of such images" : "",
            given ? "set render.rays_per_dot = \"auto\", which chooses a sufficient number for these dots"
@@ -265,7 +266,10 @@ RenderedOutcome warn_of_rendering(std::vector<std::string>& warnings, PreparedCa
   warn_of_ray_limit(warnings, prepared, rendering);
   outcome.side_faces = side_face_accuracy(prepared.scene, rendering);
   if (outcome.side_faces) warn_of_side_faces(warnings, prepared.scene, *outcome.side_faces);
-  warn_of_truth(warnings, rendering, outcome.accuracy, setup.piv ? "particles" : "dots");
+  // If all dots above the goal are traced by rays, the warning of dots at side faces suffices
+  bool const only_by_rays = outcome.side_faces && outcome.side_faces->truth_error_px > truth_tolerance_px &&
+                            outcome.accuracy.above == outcome.accuracy.above_by_rays;
+  if (!only_by_rays) warn_of_truth(warnings, rendering, outcome.accuracy, setup.piv ? "particles" : "dots");
   return outcome;
 }
 

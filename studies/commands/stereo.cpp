@@ -52,9 +52,9 @@ CommandBody attach_stereo(CLI::App& app, GlobalOptions const& options) {
   StereoOptions& given = arguments->stereo;
   app.add_option("first", given.inputs[0],
                  "Case folder of the first camera, with vectors.h5, or a file of vectors of gladstone or another "
-                 "program")
+                 "program; without second the folder of a case with two cameras")
       ->required();
-  app.add_option("second", given.inputs[1], "The same of the second camera")->required();
+  app.add_option("second", given.inputs[1], "The same of the second camera");
   app.add_option("-o,--output", arguments->output,
                  "File for the three components, .h5; the figure has the same name with .png")
       ->required();
@@ -104,6 +104,7 @@ CommandBody attach_stereo(CLI::App& app, GlobalOptions const& options) {
     std::string const& output = arguments->output;
     if (!output.ends_with(".h5")) throw OutputError(output, "does not end in .h5; choose such a name");
     std::string const figure = std::filesystem::path(output).replace_extension(".png").string();
+    stereo.inputs = find_stereo_inputs(stereo.inputs);
     refuse_inputs_as_outputs({output, figure}, list_stereo_inputs(stereo));
     OutputFile const tried(output, "gladstone stereo");
     StereoMeasurement const measurement = measure_stereo(stereo, device);

@@ -159,11 +159,12 @@ std::string reconstruction_report(Reconstruction const& reconstruction) {
                         sigma.largest);
   if (reconstruction.axisymmetry) {
     AxisymmetryResult const& flow = *reconstruction.axisymmetry;
-    text += fmt::format("  {} axis at {} = {:.4f} mm{}; asymmetry of the gradient {:.1f} %\n",
-                        direction_name(flow.direction), flow.direction == density::AxisDirection::vertical ? "x" : "y",
-                        1e3 * flow.axis.position,
+    text += fmt::format("  {} axis at {} = {:.4f} mm{}{}\n", direction_name(flow.direction),
+                        flow.direction == density::AxisDirection::vertical ? "x" : "y", 1e3 * flow.axis.position,
                         std::isfinite(flow.axis.sigma) ? fmt::format(" +- {:.2g} mm", 1e3 * flow.axis.sigma) : "",
-                        100.0 * flow.asymmetry);
+                        std::isfinite(flow.asymmetry)
+                            ? fmt::format("; asymmetry of the gradient {:.1f} %", 100.0 * flow.asymmetry)
+                            : ", of which one side is measured");
     if (flow.lambda > 0.0) text += fmt::format("  regularisation parameter {:.3g}\n", flow.lambda);
   }
   if (reconstruction.white_noise_gain != 1.0)

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <span>
 #include <utility>
@@ -11,6 +12,7 @@
 #include "analysis/density/density_uncertainty.h"
 #include "render/base/error.h"
 #include "render/base/not_a_number.h"
+#include "studies/compare/density_warnings.h"
 #include "studies/compare/reconstruct_axisymmetric.h"
 
 namespace gladstone {
@@ -95,48 +97,6 @@ std::vector<double> combine_uncertainties(Reconstruction const& result, Reconstr
                                         options.scale_uncertainty);
 }
 
-/// Warns of regions whose density is undetermined because they contain no reference node.
-void warn_of_regions(Reconstruction& result, std::vector<density::Region> const& regions) {
-  std::size_t without = 0, nodes = 0;
-  density::Region const* largest = nullptr;
-  for (density::Region const& region : regions) {
-    if (region.reference_nodes > 0) continue;
-    if (!largest) largest = &region;
-    ++without;
-    nodes += region.nodes;
-  }
-  if (without == 0) return;
-  result.warnings.push_back(
-      fmt::format("{} of {} regions of valid vectors contain no reference density, so that {} vectors have no density; "
-                  "the largest has {}; add --reference X0,Y0,X1,Y1 within it if its density is known somewhere",
-                  without, regions.size(), nodes, describe_region(*largest)));
-}
-
-/// Warns of a reference region in which the density is not uniform: its mean gradient, in which noise averages out, is
-/// compared with the rms gradient of all nodes.
-void warn_of_reference_gradient(Reconstruction& result) {
-  constexpr double largest_ratio = 0.4;
-  Vec2d sum;
-  double squares = 0;
-  std::size_t inside = 0, valid = 0;
-  for (std::size_t i = 0; i < result.gradient.size(); ++i) {
-    Vec2d const gradient = result.gradient[i];
-    if (!std::isfinite(gradient.x)) continue;
-    squares += dot(gradient, gradient);
-    ++valid;
-    if (result.reference[i] == 0) continue;
-    sum = sum + gradient;
-    ++inside;
-  }
-  if (inside == 0 || !(squares > 0)) return;
-  double const ratio = length(sum) / static_cast<double>(inside) / std::sqrt(squares / static_cast<double>(valid));
-  if (ratio < largest_ratio) return;
-  result.warnings.push_back(
-      fmt::format("the mean gradient in the reference region is {:.0f} % of the rms gradient of all vectors: the flow "
-                  "reaches into the region, so that the density has an offset; choose a side or a box outside the flow",
-                  100 * ratio));
-}
-
 /// Warns if the averaging over the aperture, which sigma does not contain, is larger than sigma. Its effect is
 /// estimated from the change of the density by a deconvolution with a gain of 2, which at most doubles any wave: the
 /// change contains no more noise than the density does.
@@ -158,6 +118,15 @@ void warn_of_aperture(Reconstruction& result, density::DensityIntegrator const& 
       "kg/m^3 rms, {:.2g} times the standard uncertainty, which does not contain it); use --deconvolve {:g}, or a "
       "larger f-number",
       std::sqrt(changes / count), std::sqrt(changes / variances), gain));
+}
+
+/// Returns the borders of the image across an axis, in the mid-plane of the medium [m].
+std::array<double, 2> find_axis_range(Setup const& setup, AxisOption const& axis) {
+  density::ProjectionOptics const optics = make_projection_optics(setup);
+  bool const is_vertical = axis.direction == density::AxisDirection::vertical;
+  double const pixels = is_vertical ? setup.camera.columns : setup.camera.rows;
+  double const half = 0.5 * pixels * optics.pixel_pitch / optics.medium_magnification();
+  return {-half, half};
 }
 
 /// Integrates a mean gradient with the reference density, and propagates the uncertainty of the vectors.
@@ -215,7 +184,8 @@ Reconstruction reconstruct_density(DisplacementField const& field, Setup const& 
                                    ReconstructOptions const& options) {
   check_reconstruct_options(options);
   check_reconstructed_setup(setup);
-  density::ProjectedGradient const projected = compute_projected_gradient(field, make_projection_optics(setup));
+  density::ProjectionOptics const optics = make_projection_optics(setup);
+  density::ProjectedGradient const projected = compute_projected_gradient(field, optics);
   Reconstruction result;
   result.overlap = determine_overlap(field, window_px, options.overlap);
   result.reference_density = options.reference_density.value_or(setup.medium.ambient_density);
@@ -231,7 +201,8 @@ Reconstruction reconstruct_density(DisplacementField const& field, Setup const& 
         "the distortion of the lens is neglected; undistort the images for accurate positions");
   if (options.deconvolution_gain && setup.lens.focus != Focus::target)
     result.warnings.emplace_back("the deconvolution assumes focus on the dots, but lens.focus is another plane");
-  result = options.axis ? invert_flow(std::move(result), projected.map, options)
+  warn_of_displacement_gradient(result, projected.map, optics);
+  result = options.axis ? invert_flow(std::move(result), projected.map, find_axis_range(setup, *options.axis), options)
                         : integrate_plane(std::move(result),
                                           compute_mean_gradient(projected.map, setup.medium.thickness), setup, options);
   result.sigma = combine_uncertainties(result, options);

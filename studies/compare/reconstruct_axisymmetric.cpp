@@ -13,6 +13,9 @@ namespace {
 /// Threshold of AxisymmetryResult::border_gradient above which a warning is issued.
 constexpr double noticeable_border_gradient = 0.1;
 
+/// Threshold of AxisymmetryResult::asymmetry above which a warning is issued.
+constexpr double noticeable_asymmetry = 0.3;
+
 /// Differences of a density between neighbouring nodes, one-sided at borders and holes [kg/m^4].
 std::vector<Vec2d> differentiate_density(density::PlaneGrid const& grid, std::vector<double> const& density) {
   std::vector<Vec2d> gradient;
@@ -64,9 +67,10 @@ void mirror_density(Reconstruction& result, density::AxisymmetricDensity const& 
 }  // namespace
 
 Reconstruction invert_flow(Reconstruction result, density::GradientMap const& projected,
-                           ReconstructOptions const& options) {
+                           std::array<double, 2> axis_range, ReconstructOptions const& options) {
   using namespace density;
   AxisymmetricSettings settings;
+  settings.axis_range = axis_range;
   settings.direction = options.axis->direction;
   settings.axis = options.axis->position;
   settings.method = options.abel;
@@ -85,8 +89,13 @@ Reconstruction invert_flow(Reconstruction result, density::GradientMap const& pr
   if (half.border_gradient > noticeable_border_gradient)
     result.warnings.push_back(fmt::format(
         "the gradient at the largest radii is {:.0f} % of that of all radii, so that the flow extends beyond "
-        "the image and the density is biased; enlarge the field of view",
+        "the vectors and the density is biased; enlarge the field of view",
         100.0 * half.border_gradient));
+  if (half.asymmetry > noticeable_asymmetry)
+    result.warnings.push_back(
+        fmt::format("the even part of the gradient about the axis is {:.0f} % of the odd part: the axis is wrong, the "
+                    "flow is not axisymmetric, or the vectors are noisy; check --axis",
+                    100.0 * half.asymmetry));
   return result;
 }
 

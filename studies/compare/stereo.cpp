@@ -12,10 +12,12 @@
 #include "analysis/stereo/residual_validation.h"
 #include "render/base/error.h"
 #include "render/base/frame_pair.h"
+#include "render/base/nearest_name.h"
 #include "render/base/not_a_number.h"
 #include "render/base/units.h"
 #include "render/files/image_file.h"
 #include "render/files/stop_point.h"
+#include "studies/case/cameras.h"
 #include "studies/compare/correlate.h"
 #include "studies/compare/stereo_alignment.h"
 #include "studies/compare/stereo_input.h"
@@ -81,6 +83,11 @@ DisplacementField correlate_dewarped(StereoInput const& input, std::string const
   };
   HostFrames const dewarped(dewarp(frames[0]), dewarp(frames[1]));
   DisplacementField field = correlate_frames(dewarped, settings, device).field;
+  if (field.columns == 1 || field.rows == 1)
+    throw DataError(ErrorCode::wrong_shape, place,
+                    fmt::format("shows a part of the sheet in common with the other camera that is too small ({} x {} "
+                                "vectors); use smaller windows, or --dewarp vectors",
+                                field.columns, field.rows));
   if (!stereo::is_regular_grid(field))
     throw DataError(ErrorCode::wrong_shape, place,
                     "has no complete grid of vectors; set correlate.tracking.output = \"grid\"");
@@ -107,8 +114,8 @@ stereo::Dewarping measure_dewarped(std::array<StereoInput*, 2> const& inputs, St
       plane, stereo::find_common_view({&inputs[0]->camera.camera, &inputs[1]->camera.camera}, size, plane, pixel_size)};
   if (dewarping.grid.size() == 0)
     throw DataError(ErrorCode::inconsistent, options.inputs[1],
-                    fmt::format("shows no part of the plane that {} shows; check that the calibrations belong to these "
-                                "cameras",
+                    fmt::format("shows no part of the plane that {} shows, too; check that the calibrations belong to "
+                                "these cameras, and --sheet-z",
                                 options.inputs[0]));
   for (std::size_t i = 0; i < 2; ++i)
     inputs[i]->vectors.field = correlate_dewarped(*inputs[i], options.inputs[i], frames[i], dewarping, device);
@@ -123,6 +130,23 @@ void require_same_particles(StereoInput const& a, StereoInput const& b, StereoOp
 }
 
 }  // namespace
+
+std::array<std::string, 2> find_stereo_inputs(std::array<std::string, 2> const& inputs) {
+  std::string const& folder = inputs[0];
+  if (!inputs[1].empty()) return inputs;
+  std::error_code error;
+  std::vector<std::string> names;
+  if (fs::is_directory(folder, error)) {
+    require_case(folder);
+    names = camera_names(SetupDocument::from_file((fs::path(folder) / case_file::setup).string()));
+  }
+  if (names.size() != 2)
+    throw DataError(ErrorCode::wrong_format, folder,
+                    fmt::format("is not the folder of a case with two cameras{}; give the cases or the vectors "
+                                "of two cameras",
+                                names.empty() ? "" : " (it has " + quoted_list(names) + ")"));
+  return {(fs::path(folder) / names[0]).string(), (fs::path(folder) / names[1]).string()};
+}
 
 std::array<ComponentErrors, 3> compute_stereo_errors(StereoMeasurement const& measurement) {
   constexpr Vec3d unknown{not_a_number, not_a_number, not_a_number};
@@ -147,8 +171,9 @@ double compute_residual_ratio(stereo::StereoField const& field) {
   return count > 0 ? std::sqrt(squares / count) : not_a_number;
 }
 
-StereoMeasurement measure_stereo(StereoOptions const& options, Backend const& device) {
+StereoMeasurement measure_stereo(StereoOptions options, Backend const& device) {
   check_stereo_options(options);
+  options.inputs = find_stereo_inputs(options.inputs);
   StereoMeasurement result;
   result.sources.on_change("run gladstone stereo again");
   StereoInput a = read_stereo_input(options, 0, result.sources), b = read_stereo_input(options, 1, result.sources);
@@ -181,16 +206,14 @@ StereoMeasurement measure_stereo(StereoOptions const& options, Backend const& de
   result.field = stereo::reconstruct(a.camera, a.vectors.field, b.camera, b.vectors.field, plane, settings);
   if (result.field.grid.size() == 0)
     throw DataError(ErrorCode::undetermined, options.inputs[1],
-                    fmt::format("has no vectors on the part of the plane where {} has vectors; check that the "
-                                "calibrations belong to these cameras, and --spacing",
+                    fmt::format("has no vectors in common with {} on the plane; check that the "
+                                "calibrations belong to these cameras, --sheet-z and --spacing",
                                 options.inputs[0]));
   bool const any = std::any_of(result.field.nodes.begin(), result.field.nodes.end(),
                                [](auto const& node) { return node.has_value(); });
   if (!any)
-    throw DataError(
-        ErrorCode::no_valid_vector, options.inputs[1],
-        fmt::format("has no valid vector at a place where {} has one; check the frames and the calibrations",
-                    options.inputs[0]));
+    throw DataError(ErrorCode::no_valid_vector, options.inputs[1],
+                    fmt::format("has no valid vectors where {} has some", options.inputs[0]));
   result.field = stereo::reject_large_residuals(std::move(result.field), options.residual_limit);
   if (a.truth && b.truth) {
     double const per_metre = 1.0 / result.pixel_size;

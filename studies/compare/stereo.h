@@ -15,7 +15,7 @@ namespace gladstone {
 
 /// Options of a stereoscopic measurement.
 struct StereoOptions {
-  std::array<std::string, 2> inputs;       ///< case folder or file of vectors, for each camera
+  std::array<std::string, 2> inputs;       ///< see find_stereo_inputs()
   std::vector<std::string> calibrations;   ///< calibration.h5 of each camera; empty: exact cameras of rendered cases
   std::optional<std::string> conventions;  ///< of the vectors, as given by the user; empty: those of the file's format
   stereo::ObjectPlane plane;               ///< middle of the laser sheet, with `align` the first assumption
@@ -62,11 +62,16 @@ std::array<ComponentErrors, 3> compute_stereo_errors(StereoMeasurement const& me
 /// Computes the root mean square of StereoVector::residual_ratio of valid vectors; NaN: vectors without uncertainty.
 double compute_residual_ratio(stereo::StereoField const& field);
 
+/// Returns the case folder or the file of vectors of each camera.
+/// @param inputs  the same; if the second is empty, the first is the folder of a case with two cameras
+/// @throws DataError  if it is not
+std::array<std::string, 2> find_stereo_inputs(std::array<std::string, 2> const& inputs);
+
 /// Reads vectors and cameras, and reconstructs three components. If both inputs are cases of one PIV setup, also
 /// determines the true displacement of their particles. Writes nothing.
 /// @param device  for the correlation of dewarped images
 /// @throws SetupError  for invalid options
 /// @throws DataError   for files that are missing or do not fit together
-StereoMeasurement measure_stereo(StereoOptions const& options, Backend const& device);
+StereoMeasurement measure_stereo(StereoOptions options, Backend const& device);
 
 }  // namespace gladstone

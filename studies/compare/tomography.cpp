@@ -178,10 +178,22 @@ std::vector<double> sample_truth(MediumSetup const& setup, double angle, Regular
 }
 
 void add_tomography_warnings(Tomography& result, std::vector<TomographyView> const& views) {
-  for (TomographyView const& view : views)
+  constexpr double largest_residual = 0.5;  // three quarters of the squared line integrals are explained
+  for (TomographyView const& view : views) {
+    std::string const& name = view.projected.name;
     if (!view.loaded.setup.windows.empty())
-      result.warnings.push_back(view.projected.name +
-                                ": the optical windows are neglected: lines of sight are straight");
+      result.warnings.push_back(name + ": the optical windows are neglected: lines of sight are straight");
+    if (view.unreferenced > 0)
+      result.warnings.push_back(
+          fmt::format("{}: {} vectors are not used, since masks separate them from the reference region; add a "
+                      "--reference on their side if the flow does not reach it",
+                      name, view.unreferenced));
+  }
+  if (result.residual.back() > largest_residual)
+    result.warnings.push_back(
+        fmt::format("the volume does not explain the line integrals (residual of {:.0f} %); check --angles, --support, "
+                    "--bounds, --reference and the limits of the density",
+                    100.0 * result.residual.back()));
   if (result.outside > 0.01)
     result.warnings.push_back(
         fmt::format("{:.0f} % of the squared line integrals are on lines that miss the volume; "

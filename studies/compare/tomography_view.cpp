@@ -233,6 +233,10 @@ TomographyView read_tomography_view(TomographyOptions const& options, std::size_
     density::GradientMap const gradient = tomography::compute_pixel_gradient(field, optics);
     view.projected =
         tomography::integrate_view(gradient, optics, make_view_reference(gradient.grid, setup, options.reference));
+    auto const& values = view.projected.value;
+    auto const integrated = std::count_if(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
+    view.unreferenced =
+        static_cast<std::size_t>(std::count(gradient.valid.begin(), gradient.valid.end(), 1) - integrated);
     find_extent(view, optics, field.columns);
   } catch (DataError const& error) {
     throw DataError(error.code(), files.vectors, error.message());

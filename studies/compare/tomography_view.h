@@ -15,6 +15,7 @@ struct TomographyView {
   Vec3d view_direction{};                 ///< from the volume towards the camera
   std::vector<Vec3d> middle_points = {};  ///< points of the lines of sight that are closest to the volume's origin [m]
   double spacing = 0.0;                   ///< distance between the lines of adjacent vectors there [m]
+  std::size_t unreferenced = 0;           ///< vectors in regions without reference, which have no line integral
   bool rendered = false;                  ///< the field of the setup is that of the measurement
 };
 

@@ -214,9 +214,10 @@ Manifest read_manifest(std::string const& run) {
   std::string const path = (std::filesystem::path(run) / run_file::manifest).string();
   std::error_code error;
   if (std::filesystem::is_regular_file(run, error)) {
-    throw DataError(ErrorCode::wrong_format, run, fmt::format("is a file, not the folder of a planned study; create one with: gladstone sweep "
-                                     "plan {} -o FOLDER, and name FOLDER here",
-                                     run));
+    throw DataError(ErrorCode::wrong_format, run,
+                    fmt::format("is a file, not the folder of a planned study; create one with: gladstone sweep "
+                                "plan {} -o FOLDER, and name FOLDER here",
+                                run));
   }
   if (!std::filesystem::exists(path, error)) {
     throw DataError(

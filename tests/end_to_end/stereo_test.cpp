@@ -101,6 +101,32 @@ TEST_F(Stereo, MeasuresUniformMotionInThreeComponents) {
 }
 
 // Files with the same cameras as calibrations give the same displacements, and a larger uncertainty.
+// The folder of a case with two cameras stands for their cases.
+TEST_F(Stereo, ReadsTheFolderOfBothCameras) {
+  measure(40, "[15.0, -12.0, 10.0]");
+  auto of_folder = json_of({"stereo", "case", "-o", "uvw.h5", "--quiet", "--no-figures"});
+  EXPECT_EQ(of_folder, combine());
+  expect_refused({"stereo", "case/left", "-o", "uvw.h5"}, 2, {"case/left", "two cameras"});
+  expect_refused({"stereo", "case/left/vectors.h5", "-o", "uvw.h5"}, 2, {"two cameras"});
+  expect_refused({"stereo", "none", "-o", "uvw.h5"}, 2, {"none", "two cameras"});
+}
+
+// Cameras that see different parts of the sheet, or a sheet far from the assumed one, have no vectors in common.
+TEST_F(Stereo, RefusesCamerasThatDoNotOverlap) {
+  write("setup.toml", with(with(stereo_setup(40, "[15.0, -12.0, 10.0]"), "sensor.scheimpflug = \"auto\"",
+                                "pose.look_at_mm = [-8.0, 0.0, 0.0]\nsensor.scheimpflug = \"auto\""),
+                           "volume_mm = [16.0, 12.0, 1.0]", "volume_mm = [30.0, 12.0, 1.0]"));
+  std::string const both = read("setup.toml");
+  auto const second = both.rfind("sensor.scheimpflug");
+  write("setup.toml", both.substr(0, second) + "pose.look_at_mm = [8.0, 0.0, 0.0]\n" + both.substr(second));
+  render("case");
+  for (char const* camera : {"case/left", "case/right"}) succeed({"correlate", camera, "--quiet"});
+  for (char const* dewarp : {"vectors", "images"})
+    expect_refused({"stereo", "case", "--dewarp", dewarp, "-o", "uvw.h5"}, 2, {"case/left", "plane", "--sheet-z"});
+  std::filesystem::remove(in("case/right/flow.tif"));
+  expect_refused({"stereo", "case", "--dewarp", "images", "-o", "uvw.h5"}, 2, {"case/right/flow.tif"});
+}
+
 TEST_F(Stereo, ReadsVectorsAndCalibrations) {
   measure(40, "[15.0, -12.0, 10.0]");
   auto const exact = combine();

@@ -16,7 +16,7 @@
 namespace gladstone {
 namespace {
 
-constexpr char const* table1_setup = R"(schema = 1
+constexpr char const* sheet_setup = R"(schema = 1
 [medium.field]
 kind = "uniform_gradient"
 gradient_kg_m4 = [10.0, 0.0, 0.0]
@@ -44,7 +44,7 @@ std::unique_ptr<MadeSheet> sheet_of(std::string const& text) {
 
 // The defaults of a setup are those of Table 1; K = 2.26e-4, 10 kg/m^4 over 10 mm.
 TEST(DesignSheet, HasEveryFormulaOfBosFromF1ToF27) {
-  auto const made = sheet_of(table1_setup);
+  auto const made = sheet_of(sheet_setup);
   std::set<std::string> ids;
   for (SheetRow const& row : made->sheet.rows) {
     ids.insert(row.id);
@@ -56,7 +56,7 @@ TEST(DesignSheet, HasEveryFormulaOfBosFromF1ToF27) {
 }
 
 TEST(DesignSheet, IsTableOneToThePrintedDigits) {
-  DesignSheet const sheet = sheet_of(table1_setup)->sheet;
+  DesignSheet const sheet = sheet_of(sheet_setup)->sheet;
   EXPECT_NEAR(sheet["magnification"], 0.117318436, 5e-10);
   EXPECT_NEAR(sheet["sensitivity_px_per_kg_m4"], 0.006626657, 5e-10);
   EXPECT_NEAR(sheet["cone_diameter_mm"], 2.386364, 5e-7);
@@ -74,7 +74,7 @@ TEST(DesignSheet, IsTableOneToThePrintedDigits) {
 
 // Faces that refract: 3.463e-10 from the exact slab (physics.md 3.1).
 TEST(DesignSheet, SmallAnglesThroughRefractingFacesAreTheSlabs) {
-  std::string text = table1_setup;
+  std::string text = sheet_setup;
   text.replace(text.find("[medium.field]"), 0, "[medium]\nfaces = \"refract\"\n");
   EXPECT_NEAR(sheet_of(text)->sheet["small_angle_on_axis"], 3.463e-10, 5e-14);
 }
@@ -83,7 +83,7 @@ TEST(DesignSheet, SmallAnglesThroughRefractingFacesAreTheSlabs) {
 // wide.
 TEST(DesignSheet, MarginsSayWhatIsViolated) {
   auto const at = [](std::string const& stop) {
-    return sheet_of(std::string(table1_setup) + "[lens]\nf_number = " + stop + "\n")->sheet;
+    return sheet_of(std::string(sheet_setup) + "[lens]\nf_number = " + stop + "\n")->sheet;
   };
   EXPECT_EQ(at("4").row("cone_diameter_mm").margin, Margin::violated);
   EXPECT_EQ(at("4").row("f_number_floor").margin, Margin::violated);
@@ -98,7 +98,7 @@ TEST(DesignSheet, MarginsSayWhatIsViolated) {
 // light required no f-number remains, and the smallest f-number states the missing factor.
 TEST(DesignSheet, LightLimitsTheStop) {
   auto const under = [](double radiance, char const* stop) {
-    return sheet_of(std::string(table1_setup) + "[camera.noise]\n[light]\nradiance_w_m2_sr = " +
+    return sheet_of(std::string(sheet_setup) + "[camera.noise]\n[light]\nradiance_w_m2_sr = " +
                     std::to_string(radiance) + "\nexposure_us = 20\n[lens]\nf_number = " + stop + "\n")
         ->sheet;
   };
@@ -113,7 +113,7 @@ TEST(DesignSheet, LightLimitsTheStop) {
   EXPECT_THAT(dim.row("f_number_floor").note,
               testing::HasSubstr("no f-number satisfies all limits: the largest, f/11, has a cone of 2.386 mm"));
   EXPECT_THAT(dim.row("f_number_floor").note, testing::HasSubstr(fmt::format("{:.3g} times the light", missing)));
-  DesignSheet const automatic = sheet_of(table1_setup)->sheet;
+  DesignSheet const automatic = sheet_of(sheet_setup)->sheet;
   EXPECT_TRUE(std::none_of(automatic.rows.begin(), automatic.rows.end(), [](SheetRow const& row) {
     return row.key == "f_number_light";
   })) << "exposure = \"auto\" takes what light it needs";
@@ -123,7 +123,7 @@ TEST(DesignSheet, LightLimitsTheStop) {
 // green.
 TEST(DesignSheet, SaysWhereTheRandomErrorWasNotMeasured) {
   auto const row = [](std::string const& more) {
-    return sheet_of(std::string(table1_setup) + more)->sheet.row("random_error_px");
+    return sheet_of(std::string(sheet_setup) + more)->sheet.row("random_error_px");
   };
   std::string const noise = "[camera.noise]\nfull_well_e = 10000\n";
   SheetRow const within = row(noise);
@@ -192,11 +192,11 @@ dt_us = 20.0
 window_px = [64, 32]
 )";
 
-CaseSetup droplet_setup() { return load_case_setup(SetupDocument::from_text(droplets, "piv.toml")); }
+CaseSetup load_droplets() { return load_case_setup(SetupDocument::from_text(droplets, "piv.toml")); }
 
 // The droplets of the example in docs/piv.md: the sheet agrees with info particles, and states how far they may move.
 TEST(DesignSheet, OfPivLimitsWhatMovesBetweenThePulses) {
-  CaseSetup const loaded = droplet_setup();
+  CaseSetup const loaded = load_droplets();
   DesignSheet const sheet = piv_sheet(loaded);
   double const pixel = 5e-6 / (105.0 / 645);
   EXPECT_NEAR(sheet["displacement_px"], 5 * 20e-6 / pixel, 1e-9);
@@ -210,7 +210,7 @@ TEST(DesignSheet, OfPivLimitsWhatMovesBetweenThePulses) {
 
 // The edge of the sensor sees the edge of the view in the sheet through the middle of the lens.
 TEST(DesignSheet, LayoutOfPivIsToScale) {
-  CaseSetup const loaded = droplet_setup();
+  CaseSetup const loaded = load_droplets();
   OpticalLayout const l = piv_layout(loaded.setup);
   EXPECT_DOUBLE_EQ(l.lens_z, 0.75);
   EXPECT_NEAR(l.sensor_z - l.lens_z, 1 / (1 / 0.105 - 1 / 0.75), 1e-12);
@@ -224,7 +224,7 @@ TEST(DesignSheet, LayoutOfPivIsToScale) {
 // contains all the light, which decreases with the square of the f-number; from f/16 on the PSF spreads it, by another
 // square.
 TEST(DesignSheet, MapOfPivFollowsTheStop) {
-  CaseSetup const loaded = droplet_setup();
+  CaseSetup const loaded = load_droplets();
   DesignSheet const sheet = piv_sheet(loaded);
   std::vector<PivStop> const stops = piv_stops(loaded.setup);
   auto const at = [&](double f_number) {

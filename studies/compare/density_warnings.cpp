@@ -1,0 +1,91 @@
+#include "studies/compare/density_warnings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "render/base/not_a_number.h"
+
+namespace gladstone {
+
+void warn_of_regions(Reconstruction& result, std::vector<density::Region> const& regions) {
+  std::size_t without = 0, nodes = 0;
+  density::Region const* largest = nullptr;
+  for (density::Region const& region : regions) {
+    if (region.reference_nodes > 0) continue;
+    if (!largest) largest = &region;
+    ++without;
+    nodes += region.nodes;
+  }
+  if (without == 0) return;
+  result.warnings.push_back(
+      fmt::format("{} of {} regions of valid vectors contain no reference density, so that {} vectors have no density; "
+                  "the largest has {}; add --reference X0,Y0,X1,Y1 within it if its density is known somewhere",
+                  without, regions.size(), nodes, describe_region(*largest)));
+}
+
+void warn_of_reference_gradient(Reconstruction& result) {
+  constexpr double largest_ratio = 0.4;
+  Vec2d sum;
+  double squares = 0;
+  std::size_t inside = 0, valid = 0;
+  for (std::size_t i = 0; i < result.gradient.size(); ++i) {
+    Vec2d const gradient = result.gradient[i];
+    if (!std::isfinite(gradient.x)) continue;
+    squares += dot(gradient, gradient);
+    ++valid;
+    if (result.reference[i] == 0) continue;
+    sum = sum + gradient;
+    ++inside;
+  }
+  if (inside == 0 || !(squares > 0)) return;
+  if (inside == valid) {
+    result.warnings.emplace_back(
+        "the reference region contains all vectors, so that the density is the reference density everywhere; choose a "
+        "region outside the flow");
+    return;
+  }
+  double const ratio = length(sum) / static_cast<double>(inside) / std::sqrt(squares / static_cast<double>(valid));
+  if (ratio < largest_ratio) return;
+  result.warnings.push_back(
+      fmt::format("the mean gradient in the reference region is {:.0f} % of the rms gradient of all vectors: the flow "
+                  "reaches into the region, so that the density has an offset; choose a side or a box outside the flow",
+                  100 * ratio));
+}
+
+double compute_displacement_gradient(density::GradientMap const& projected, density::ProjectionOptics const& optics) {
+  density::PlaneGrid const& grid = projected.grid;
+  double sum = 0.0, count = 0.0;
+  for (int row = 1; row + 1 < grid.rows; ++row)
+    for (int column = 1; column + 1 < grid.columns; ++column) {
+      if (!projected.is_valid(column - 1, row) || !projected.is_valid(column + 1, row) ||
+          !projected.is_valid(column, row - 1) || !projected.is_valid(column, row + 1))
+        continue;
+      auto const& gradient = projected.gradient;
+      Vec2d const by_x =
+          (gradient[grid.index(column + 1, row)] - gradient[grid.index(column - 1, row)]) / (2.0 * grid.spacing.x);
+      Vec2d const by_y =
+          (gradient[grid.index(column, row + 1)] - gradient[grid.index(column, row - 1)]) / (2.0 * grid.spacing.y);
+      double const divergence = by_x.x + by_y.y, curl = by_x.y - by_y.x;
+      sum += divergence * divergence - curl * curl;
+      count += 1.0;
+    }
+  double const px_per_m = optics.medium_magnification() / optics.pixel_pitch;
+  return count > 0.0 ? optics.sensitivity() / px_per_m * std::sqrt(std::max(0.0, sum / count)) : not_a_number;
+}
+
+void warn_of_displacement_gradient(Reconstruction& result, density::GradientMap const& projected,
+                                   density::ProjectionOptics const& optics) {
+  // Turbulence at f/11 to f/32 (docs/explained/equation-9.md): error of the density over this gradient
+  constexpr double noticeable = 0.01, least_error = 1.2, largest_error = 8.0;
+  double const gradient = compute_displacement_gradient(projected, optics);
+  if (!(gradient > noticeable)) return;
+  result.warnings.push_back(fmt::format(
+      "the displacement changes by {:.2g} px per px (rms, without noise): the deflection moves rays to other parts of "
+      "the medium than Eq. 9 assumes, which in turbulence causes errors of {:.0f} to {:.0f} % of the density's "
+      "variation, the more the wider the aperture; a smaller Z_D reduces them",
+      gradient, 100.0 * least_error * gradient, std::min(100.0, 100.0 * largest_error * gradient)));
+}
+
+}  // namespace gladstone
