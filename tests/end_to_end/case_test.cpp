@@ -183,7 +183,7 @@ TEST_F(Case, SetOfACorrelationChangesTheCasesOwnSettings) {
   EXPECT_EQ(json_of({"correlate", "case"})["vectors"], 49);  // 16 px windows every 8 px: 7 x 7
   EXPECT_EQ(json_of({"correlate", "case", "--set", "correlate.overlap=0"})["vectors"], 16);  // every 16 px
   expect_refused({"correlate", "case", "--set", "lens.f_number=8"}, 2,
-                 {"--set lens.f_number=8", "not a key of [correlate]"});
+                 {"--set lens.f_number=8", "does not begin with"});
 }
 
 // Each valid vector has a sigma, which the comparison verifies; both components of the vectors count.

@@ -110,7 +110,11 @@ TEST_F(DocumentedFiles, OfADensityHoldWhatTheirTablesName) {
       {"reconstruct", "setup.toml", "--vectors", "v.csv", "--reference", "left", "-o", "density.h5", "--no-figures"});
   expect_datasets("density.h5", documented);
   documented.merge(names_of_first_column(tables[1]));
-  auto const summary = json_of({"reconstruct", "case", "--vectors", "v.csv", "--axisymmetric", "--axis", "x=0", "-o",
+  write("blob.toml", with(small_setup, "kind = \"uniform_gradient\"\ngradient_kg_m4 = [20.0, 10.0, 0.0]",
+                          "kind = \"gaussian_blob\"\namplitude_kg_m3 = -0.2\nradius_mm = 1.0"));
+  succeed({"render", "blob.toml", "-o", "blob"});
+  succeed({"correlate", "blob", "-o", "blob.csv"});
+  auto const summary = json_of({"reconstruct", "blob", "--vectors", "blob.csv", "--axisymmetric", "--axis", "x=0", "-o",
                                 "density.h5", "--no-figures"});
   expect_datasets("density.h5", documented);
   Hdf5Reader const file(in("density.h5").string());
