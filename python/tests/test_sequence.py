@@ -29,8 +29,9 @@ def write_tiff(path, image):
     # width, height, bits, no compression, zero is black, offset of the samples, one channel, rows of the strip, bytes
     entries = [(256, columns), (257, rows), (258, 16), (259, 1), (262, 1), (273, 122), (277, 1), (278, rows)]
     entries.append((279, 2 * image.size))
-    head = b"".join(struct.pack("<HHII", tag, 3, 1, value) for tag, value in entries)
-    path.write_bytes(struct.pack("<2sHIH", b"II", 42, 8, len(entries)) + head + bytes(4) + image.astype("<u2").tobytes())
+    directory = b"".join(struct.pack("<HHII", tag, 3, 1, value) for tag, value in entries)
+    header = struct.pack("<2sHIH", b"II", 42, 8, len(entries))
+    path.write_bytes(header + directory + bytes(4) + image.astype("<u2").tobytes())
 
 
 def test_fields_are_those_of_single_pairs(frames, case):
