@@ -33,6 +33,7 @@ set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "gnuplot-nox, fonts-dejavu-core")  # without
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_DESCRIPTION "gladstone renders synthetic images for background-oriented schlieren (BOS) and
 particle image velocimetry (PIV), measures the displacement on them, quantifies
-the error of every vector, and converts BOS vectors to density.
+the error of every vector, and converts BOS vectors to density. It recommends
+set-ups that meet given requirements.
 The processor must support AVX2 and FMA.")
 include(CPack)

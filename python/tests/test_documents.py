@@ -18,6 +18,8 @@ def code_blocks() -> list[str]:
 
 # One small setup under all names that the page uses. The blocks run in their order, in one namespace.
 def test_code_of_the_page_runs(bos, tmp_path, monkeypatch):
+    if not PAGE.exists():
+        pytest.skip("the tests are not in the source tree, which contains docs/python.md")
     pytest.importorskip("matplotlib").use("agg")
     for name in ("pandas", "xarray"):
         pytest.importorskip(name)
@@ -25,8 +27,7 @@ def test_code_of_the_page_runs(bos, tmp_path, monkeypatch):
     (tmp_path / "studies" / "cases").mkdir(parents=True)
     small.save(tmp_path / "studies" / "cases" / "table1.toml")
     small.save(tmp_path / "setup.toml")
-    template = PAGE.parents[1] / "studies" / "commands" / "templates" / "stereo.toml"
-    (tmp_path / "stereo.toml").write_text(template.read_text().replace("[192, 192]", "[128, 128]"))
+    (tmp_path / "stereo.toml").write_text(gs.init("stereo").replace("[192, 192]", "[128, 128]"))
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr("gladstone._benchmark.benchmark_cases", lambda: ["vortex"])
     small.render(device="cpu").save(tmp_path / "case")

@@ -20,6 +20,15 @@ assert np.array_equal(read.images, case.images), "the images read differ from th
 report = case.compare(read.correlate())
 assert report.rms_px < LARGEST_RMS_PX, f"rms error {report.rms_px} px"
 
+with open("image.png", "wb") as file:  # no image codecs: the message names the image and the remedy
+    file.write(b"\x89PNG\r\n\x1a\n")
+try:
+    gs.info.image("image.png")
+    raise AssertionError("a PNG without content was read")
+except gs.DataError as error:
+    assert error.file == "image.png", error
+    assert error.code != "unreadable_file" or "pass the array" in error.text, error
+
 with open("/proc/self/maps", encoding="utf-8") as maps:
     libraries = sorted(set(re.findall(r"\S+/(?:lib)\S+\.so[.\d]*$", maps.read(), re.MULTILINE)))
 windows = [path for path in libraries if re.search(r"/lib(X|xcb|GL)[^/]*$", path) and not path.startswith(sys.prefix)]

@@ -40,11 +40,11 @@ void require_address_space(std::string const& path) {
     ::munmap(probe, needed);
     return;
   }
-  throw DataError(
-      ErrorCode::memory, path,
-      fmt::format("cannot be loaded, and no image can be read or written without it (not enough memory: it needs "
-                  "{} MB of address space); raise the limit (ulimit -v), or use a machine with more memory",
-                  needed >> 20));
+  throw DataError(ErrorCode::memory, path,
+                  fmt::format("cannot be loaded, and without it only intact TIFF images can be read, and no PNG images "
+                              "written (not enough memory: it needs {} MB of address space); raise the limit (ulimit "
+                              "-v), or use a machine with more memory",
+                              needed >> 20));
 }
 
 ImageCodecs const& load_image_codecs() {
@@ -58,9 +58,12 @@ ImageCodecs const& load_image_codecs() {
       library != nullptr ? reinterpret_cast<ImageCodecsEntry>(dlsym(library, "gladstone_image_codecs")) : nullptr;
   if (entry == nullptr) {
     throw DataError(ErrorCode::unreadable_file, path,
-                    fmt::format("cannot be loaded, and no image can be read or written without it ({}); it "
-                                "belongs in the folder of gladstone's libraries (bin/../lib of an installation): "
-                                "install gladstone again, or set GLADSTONE_IMAGE_CODECS to its folder",
+                    fmt::format("cannot be loaded, and without it only intact TIFF images can be read, and no PNG "
+                                "images (previews, reports) written ({}); wheels of the Python package do not contain "
+                                "it: convert the image to TIFF, read it with another library and pass the array, or "
+                                "install gladstone's Debian package of the same version. In other installations it "
+                                "belongs in bin/../lib: install gladstone again, or set GLADSTONE_IMAGE_CODECS to its "
+                                "folder",
                                 why != nullptr ? why : "it is another library"));
   }
   return *entry();

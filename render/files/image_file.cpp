@@ -23,11 +23,21 @@
 namespace gladstone {
 namespace {
 
+/// Opens an image by the image codecs. An error in loading them names the image that requires them.
+std::unique_ptr<PageReader> open_by_codecs(std::string const& path) {
+  try {
+    return image_codecs().open(path);
+  } catch (DataError const& error) {
+    throw DataError(error.code(), path,
+                    std::string("requires the image codecs, since it is not an intact TIFF: ") + error.what());
+  }
+}
+
 /// Image file opened for reading.
 class Picture {
  public:
   explicit Picture(std::string const& path) : path_(path), file_(path, "an image"), input_(open_tiff(file_)) {
-    if (!input_) input_ = image_codecs().open(path);
+    if (!input_) input_ = open_by_codecs(path);
     if (!input_) {
       std::string const samples = describe_tiff_samples(file_);
       throw DataError(samples.empty() ? ErrorCode::wrong_format : ErrorCode::unsupported, path,

@@ -6,6 +6,8 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
+#include <string>
 
 #include "render/base/error.h"
 #include "render/files/image_file.h"
@@ -28,6 +30,23 @@ TEST(ImageCodecs, AreNamedWithTheCureWhereTheyAreMissing) {
   };
   EXPECT_EXIT(read_without(), testing::ExitedWithCode(3), testing::HasSubstr("/nowhere/libgladstone_image_codecs.so"));
   EXPECT_EXIT(read_without(), testing::ExitedWithCode(3), testing::HasSubstr("set GLADSTONE_IMAGE_CODECS"));
+}
+
+TEST(ImageCodecs, AreNamedWithTheImageThatRequiresThem) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  auto const read_without = [] {
+    setenv("GLADSTONE_IMAGE_CODECS", "/nowhere", 1);
+    std::string const path = std::filesystem::path(testing::TempDir()) / "no_image.tif";
+    std::ofstream(path) << "no image";
+    try {
+      read_image(path);
+    } catch (DataError const& error) {
+      std::fputs(error.what(), stderr);
+      std::exit(error.place() == path && error.code() == ErrorCode::unreadable_file ? 3 : 1);
+    }
+    std::exit(0);
+  };
+  EXPECT_EXIT(read_without(), testing::ExitedWithCode(3), testing::HasSubstr("pass the array"));
 }
 
 TEST(ImageCodecs, AreNotLoadedForTiffs) {

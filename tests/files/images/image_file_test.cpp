@@ -462,7 +462,7 @@ TEST(ImageFile, PixelsThatAreNoNumbersAreCounted) {
 
 TEST(ImageFile, WhatCannotBeWrittenIsSaid) {
   EXPECT_THAT([] { write_tiff("/dev/full", all_values(), {}); }, ThrowsOutputError("/dev/full"));
-  EXPECT_THAT([] { write_tiff("/proc/no/such/folder/a.tif", all_values(), {}); }, ThrowsOutputError("/a.tif"));
+  EXPECT_THAT([] { write_tiff("/proc/no/such/folder/a.tif", all_values(), {}); }, ThrowsOutputError("/proc/no"));
   std::string const path = temporary("no_room.tif");
   write_tiff(path, all_values(), {});
   std::string const before = content(path);
