@@ -22,8 +22,7 @@ class Error(Exception):
     """Base class of the exceptions of gladstone."""
 
     code: str = "internal"
-    """Kind of the error, as `gladstone --json` reports it (docs/reference/errors.md); each problem of a `SetupError` has
-    its own."""
+    """Kind of the error, as `gladstone --json` reports it (docs/reference/errors.md)."""
 
 
 class Problem(NamedTuple):
@@ -62,9 +61,15 @@ def _problem(where: str, text: str, key: str, code: str) -> Problem:
 
 
 class SetupError(Error, ValueError):
-    """A setup with problems; `problems` lists them, `more` is the number of further ones."""
+    """A setup with problems; `problems` lists them, `more` is the number of further ones. `file`, `line`, `column`, `key`,
+    `text` and `code` are those of the first problem."""
 
-    code = "setup"
+    code = "invalid_value"
+    file: str | None = None
+    line: int | None = None
+    column: int | None = None
+    key: str | None = None
+    text: str = ""
     problems: tuple[Problem, ...]
     """Problems of the setup, each with file, line, column, key, text and code."""
     more: int
@@ -73,6 +78,8 @@ class SetupError(Error, ValueError):
     def __init__(self, problems: Iterable[Problem | tuple[str, str, str, str]] = (), more: int = 0):
         self.problems = tuple(one if isinstance(one, Problem) else _problem(*one) for one in problems)
         self.more = more
+        if self.problems:
+            self.file, self.line, self.column, self.key, self.text, self.code = self.problems[0]
         text = "\n".join(str(problem) for problem in self.problems)
         super().__init__(f"{text}\nand {more} problems more" if more else text)
 

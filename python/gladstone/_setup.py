@@ -5,10 +5,13 @@ from __future__ import annotations
 import os
 import tomllib
 from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from . import _core, _toml
 from ._progress import Progress, reporting
+
+if TYPE_CHECKING:
+    from ._case import CalibrationCase, Case
 
 
 class Setup:
@@ -94,7 +97,9 @@ class Setup:
         with open(path, "w", encoding="utf-8") as file:
             file.write(self.to_toml())
 
-    def render(self, *, device: str = "auto", progress: Progress = False):
+    def render(
+        self, *, device: str = "auto", progress: Progress = False
+    ) -> Case | CalibrationCase | dict[str, Case | CalibrationCase]:
         """Traces the rays of the experiment.
 
         device: "auto" (a GPU if there is one), "cpu" or "cuda".
@@ -130,7 +135,9 @@ class Setup:
         return f"<gladstone.Setup {self._core.name}{replaced}>"
 
 
-def render(setup: Setup | Mapping[str, Any] | str | os.PathLike, **options):
+def render(
+    setup: Setup | Mapping[str, Any] | str | os.PathLike, **options
+) -> Case | CalibrationCase | dict[str, Case | CalibrationCase]:
     """Renders a setup, a dictionary of tables or a setup file; see `Setup.render`."""
     return as_setup(setup).render(**options)
 
