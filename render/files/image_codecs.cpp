@@ -55,7 +55,7 @@ ImageCodecs const& load_image_codecs() {
   void* const library = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
   char const* const why = library == nullptr ? dlerror() : nullptr;
   auto const entry =
-      library != nullptr ? reinterpret_cast<ImageCodecsEntry>(dlsym(library, "gladstone_image_codecs")) : nullptr;
+      library != nullptr ? reinterpret_cast<ImageCodecsEntry>(dlsym(library, image_codecs_entry)) : nullptr;
   if (entry == nullptr) {
     throw DataError(ErrorCode::unreadable_file, path,
                     fmt::format("cannot be loaded, and without it only intact TIFF images can be read, and no PNG "

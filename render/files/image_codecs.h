@@ -76,7 +76,10 @@ class ImageCodecs {
 /// @throws DataError if the library cannot be loaded, or (code `memory`) if too little address space is available
 ImageCodecs const& image_codecs();
 
-/// Type of the function that the library exports as gladstone_image_codecs.
+/// Name of the function that the library exports. Its number changes with this interface, so that a library of another
+/// version is refused.
+inline constexpr char const* image_codecs_entry = "gladstone_image_codecs_2";
+/// Type of this function.
 using ImageCodecsEntry = ImageCodecs const* (*)();
 
 }  // namespace gladstone

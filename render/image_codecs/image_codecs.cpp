@@ -182,7 +182,7 @@ class OiioCodecs final : public ImageCodecs {
 }  // namespace
 }  // namespace gladstone
 
-extern "C" gladstone::ImageCodecs const* gladstone_image_codecs() {
+extern "C" gladstone::ImageCodecs const* gladstone_image_codecs_2() {
   static gladstone::OiioCodecs const codecs;
   return &codecs;
 }
