@@ -17,7 +17,7 @@ constexpr double usual_dots = 20;      // dots per window assumed for the expect
 constexpr double smallest_seen = 0.5;  // [px] a narrower autocorrelation peak is noise, not dots
 
 constexpr double warned_image_px = 0.995 * min_image_px;  // the remedies are rounded
-constexpr int most_judged_px = 512;                       // size of the evaluated central part of a frame
+constexpr int most_judged_px = 256;                       // size of the evaluated central part of a frame
 
 double square(double x) { return x * x; }
 
