@@ -48,7 +48,7 @@ ImagePair matched_frames(DisplacementField const& field, InterrogationGrid const
 }
 
 /// Returns why uncertainty = "auto" selects no method.
-std::string obstacle_of_auto(CorrelationSettings const& settings, CorrelatedFrames frames) {
+std::string explain_no_uncertainty(CorrelationSettings const& settings, CorrelatedFrames frames) {
   switch (frames) {
     case CorrelatedFrames::pair_on_gpu:
       return "on a GPU";
@@ -133,7 +133,7 @@ void record_uncertainty(DisplacementField& field, CorrelationSettings const& giv
   bool const pair_on_cpu = frames == CorrelatedFrames::pair_on_cpu;
   field.uncertainty_method = pair_on_cpu ? choose_uncertainty(given, true).uncertainty : "none";
   if (field.uncertainty_method == "none")
-    field.uncertainty_key += fmt::format(" ({})", obstacle_of_auto(given, frames));
+    field.uncertainty_key += fmt::format(" ({})", explain_no_uncertainty(given, frames));
 }
 
 void estimate_uncertainty(DisplacementField& field, FramePair const& frames, CorrelationSettings const& settings) {

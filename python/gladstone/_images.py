@@ -23,7 +23,7 @@ def host_image(image):
 
 
 def check_image(image, name: str) -> None:
-    """Raises a TypeError, or ValueError, for what is no image [rows, columns]."""
+    """Raises TypeError or ValueError unless `image` is an array [rows, columns]."""
     if image is None or isinstance(image, (str, os.PathLike)):
         raise TypeError(
             f"{name} is {image!r}, not an image [rows, columns]; read files first, for example by tifffile.imread"

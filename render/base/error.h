@@ -7,8 +7,8 @@
 
 namespace gladstone {
 
-/// Kinds of errors, for programs that handle errors by kind. The same names stand in the JSON of --json and in `code`
-/// of the Python exceptions; docs/reference/errors.md lists them.
+/// Kind of an error. `code` in the JSON of --json and of the Python exceptions is its name; docs/reference/errors.md
+/// lists them.
 enum class ErrorCode {
   // A setup or another text with keys
   invalid_value,   ///< a value that is not finite, or contradicts another value of the same input

@@ -27,7 +27,7 @@ class LensMedia {
       : prescription_(prescription), catalogue_(catalogue), wavelength_(wavelength), absorption_(absorption) {}
 
   /// Returns the properties of a medium; an unknown glass is noted, and taken as air.
-  /// @param surface_where  file and line of the surface, for messages about a medium that is not on a line of its own
+  /// @param surface_where  file and line of the surface: the place in messages if the medium has no line of its own
   LensMedium find(PrescribedMedium const& medium, std::string const& surface_where);
 
   /// Returns the warnings about the glasses found.

@@ -23,7 +23,7 @@ std::string array_text(std::vector<Value> const& values, Text const& text) {
   return '[' + list + ']';
 }
 
-/// What is wrong with an element of an array; an empty text: nothing.
+/// Problem of an element of an array; the text is empty if the element is valid.
 struct Objection {
   std::string text;
   ErrorCode code = ErrorCode::wrong_type;

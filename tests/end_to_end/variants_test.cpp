@@ -243,7 +243,8 @@ TEST_F(FieldFiles, FacesInViewAreWarnedOfWithWhatRaysLeave) {
   EXPECT_GT(faces["dots"], 4);
   EXPECT_EQ(faces["rays"], 32);
   EXPECT_GT(faces["truth_error_px"], 1e-3);
-  // The goal is half a level. The images of these dots have the only light that is traced ray by ray.
+  // Above the goal of half a level, since 32 rays scatter more than that. Only the light of these dots is traced ray by
+  // ray.
   EXPECT_GT(summary["image_error"]["levels"], 0.5);
   EXPECT_THAT(summary["warnings"].dump(), testing::Not(testing::HasSubstr("standard error of lit pixels")));
   EXPECT_THAT(of_faces(rendered({"--set", "camera.exposure=20000"})),

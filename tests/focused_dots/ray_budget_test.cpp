@@ -103,7 +103,7 @@ TEST(PlanRays, OneChiefRayOfAPointIsEnough) {
 // Fronts as narrow as a cell, with a light cone of 38 cells: the error of table and rules in images does not decrease
 // with the number of rays. The plan refines both by a factor of two, which reduces the error by more than half, and
 // reports that the goal is not reached.
-TEST(PlanRays, MakesTableAndRulesFinerWhereFrontsAskForItAndReportsAnUnreachableGoal) {
+TEST(PlanRays, MakesTableAndRulesFinerWhereFrontsAskForIt) {
   auto setup = table1_setup(64);
   setup.medium.field = dns_plane("kepeak");
   Scene scene = scene_with_dots(setup, lattice(64, 4, 14), 512);
@@ -111,10 +111,10 @@ TEST(PlanRays, MakesTableAndRulesFinerWhereFrontsAskForItAndReportsAnUnreachable
   EXPECT_EQ(usual.fineness, 1);
   RayBudget const plan = plan_rays_anew(scene);
   EXPECT_EQ(plan.fineness, 2);
-  EXPECT_LT(plan.rays, 512u);  // those of the usual table
+  EXPECT_LT(plan.rays, 512u);  // the given number of the scene above, whose table is not finer
   TableError const error = plan.table_error.value();
   EXPECT_LT(error.image_levels, usual.image_levels / 2) << "of " << usual.image_levels;
-  EXPECT_GT(error.image_levels, 0.5);  // the goal
+  EXPECT_GT(error.image_levels, 0.5);  // half a level is the goal
   EXPECT_GT(error.excess(), 1);
 }
 
@@ -132,7 +132,19 @@ TEST(PlanRays, IsIndependentOfDots) {
   EXPECT_EQ(a.image_levels, b.image_levels);
   EXPECT_EQ(a.truth_resolution_px, b.truth_resolution_px);
   EXPECT_EQ(a.image_resolution_levels, b.image_resolution_levels);
-  EXPECT_GT(a.image_resolution_levels, 0);
+  EXPECT_GT(a.image_resolution_levels, 0);  // truth_px may be 0: in this smooth field it is below its resolution
+}
+
+// With a light cone of 105 cells, at f/4, the plan reports that the required accuracy, half a level, is not reached.
+TEST(PlanRays, ReportsUnreachableTolerance) {
+  auto setup = table1_setup(64);
+  setup.medium.field = dns_plane("kepeak");
+  setup.lens.f_number = 4;
+  Scene scene = scene_with_dots(setup, lattice(64, 4, 14), 1);
+  RayBudget const plan = plan_rays_anew(scene);
+  EXPECT_EQ(plan.fineness, 2);
+  EXPECT_GT(plan.table_error.value().image_levels, 0.5);
+  EXPECT_GT(plan.table_error->excess(), 1);
 }
 
 // The number of rays of a source is limited by a budget of processor time, which is estimated, not measured. The budget

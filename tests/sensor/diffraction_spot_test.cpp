@@ -72,8 +72,8 @@ TEST(GaussianSpot, KeepsItsLightAndItsCentroid) {
 }
 
 // Compares pixel shares with a midpoint rule of 2000 points per pixel, whose error is (1/24) (1/2000)^2 max|f''| <
-// 1e-7, and with the integrals at single edges up to rounding. The footprints of 7 to 35 pixels have fewer and more
-// edges than are evaluated at a time.
+// 1e-7 (the bound is twice this), and with the integrals at single edges up to rounding. The footprints of 7 to 35
+// pixels have fewer and more edges than are evaluated at a time.
 TEST(GaussianSpot, SharesAreIntegralsOverPixels) {
   for (double const sigma : {0.4, 0.65, 0.83, 1.5, 3.0}) {
     Footprint at{};
