@@ -88,12 +88,13 @@ struct PairModel {
 
   /// Returns the displacement [px] of the particle in the middle of the sheet at mid-time whose image in frame A is at
   /// a pixel, as particle_displacements() of the comparison does with TruthAt::reference. The particle is found by
-  /// fixed-point iteration, to 1e-9 px. NaN if the pixel sees no point of the sheet.
+  /// fixed-point iteration, to 1e-9 px, from where the flow carries the sheet's point at the pixel in half the time: in
+  /// a flow along the sheet that is the particle. NaN if the pixel sees no point of the sheet.
   GLADSTONE_HD Vec2d displacement(Vec2d pixel) const {
     using std::abs;
     ParticleVelocity const moving = velocity(diameter);
     constexpr int most_rounds = 16;
-    Vec2d seen = pixel, first{};
+    Vec2d seen = projection(moved<ParticleVelocity>(moving, on_sheet(pixel), 0.5 * dt, steps)), first{};
     Vec3d middle{};
     for (int round = 0; round < most_rounds; ++round) {
       middle = on_sheet(seen);
