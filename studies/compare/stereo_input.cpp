@@ -56,7 +56,7 @@ void require_same_elements(CaseSetup const& of_case, std::string const& place, s
   throw DataError(
       ErrorCode::inconsistent, calibration,
       fmt::format("was made through {} optical elements, but {} looks through {}, which displaces its lines of "
-                  "sight; calibrate through the same elements",
+                  "sight; calibrate through the same windows and other elements",
                   calibrated, place, own));
 }
 

@@ -100,6 +100,22 @@ TEST(PlateBehindTheLens, MovesTheImageAway) {
   EXPECT_NEAR(length(camera.ideal_project(point) - *other.project(point)), 0, 1e-4);
 }
 
+// Behind a double Gauss at f/8, the best focus is between that of paraxial rays and that of the rays of the largest
+// slope u, which the plate's spherical aberration moves by t (n^2 - 1) u^2 / (2 n^3).
+TEST(PlateBehindTheLens, MovesTheImageOfAPrescriptionAway) {
+  auto const bare = double_gauss_setup(64, 8);
+  auto setup = bare;
+  setup.elements = with_plate_behind_lens(8, 0).elements;
+  Camera const camera = build_camera(setup), other = build_camera(bare);
+  double const n = 1.5168, moved = camera.sensor.pose.origin.z - other.sensor.pose.origin.z;
+  double const u = other.paraxial.image_slope(1 + other.paraxial.front);
+  EXPECT_GT(moved, 10e-3 * (1 - 1 / n));
+  EXPECT_LT(moved, 10e-3 * ((1 - 1 / n) + (n * n - 1) * u * u / (2 * n * n * n)));
+  ASSERT_EQ(camera.names.back(), "window 1, second face");
+  Pose<double> const face = camera.elements.back().visit([](auto const& held) { return held.pose; });
+  EXPECT_NEAR(face.origin.z - lens_exit(setup).origin.z, 55e-3, 1e-12);
+}
+
 // A tilted plate displaces a ray by t sin(a) (1 - cos(a) / sqrt(n^2 - sin(a)^2)). The chief ray of the axis point
 // passes along the axis, so that its image is displaced by as much.
 TEST(PlateBehindTheLens, DisplacesTheImageIfTilted) {
