@@ -24,10 +24,10 @@ std::string reason_against_focused_dots(Setup const& setup) {
   if (setup.piv) return "particles are not flat dots";
   if (setup.lens.prescription) return "the lens is a prescription";
   if (setup.pose) return "the camera is not on the Z axis (camera.pose)";
-  if (!setup.windows.empty()) return "there are windows";
+  if (!setup.elements.empty())
+    return "there are optical elements besides the lens (" + std::string(setup.elements.front().kind()) + ")";
   if (setup.camera.tilted()) return "the sensor is tilted";
   if (setup.camera.distorted()) return "the lens distorts";
-  if (setup.lenslets) return "there are lenslets in front of the sensor";
   if (!setup.has_closed_form_layout()) return "the camera is not a single ideal thin lens";
   if (std::isinf(setup.lens.f_number)) return "the lens has no stop (f_number = inf)";
   if (!(std::abs(setup.focus_distance() - setup.z_b()) <= 1e-12 * setup.z_b())) return "the dots are out of focus";

@@ -12,7 +12,7 @@
 namespace gladstone {
 
 /// Scene whose particles have ideal images: in focus of an ideal thin lens with a stop, on and perpendicular to the
-/// axis, without windows or medium, with a Gaussian PSF.
+/// axis, without other optical elements or medium, with a Gaussian PSF.
 /// The image of a particle is the PSF centred on its pinhole projection and integrated over pixels, as in other PIV
 /// image generators (Raffel et al. 2018, section 3; Lecordier & Westerweel 2004), without ray tracing. Defocus due to
 /// the particle's depth in the sheet is neglected: see largest_blur_px(). Created by ideal_images() only; refers to the

@@ -6,8 +6,8 @@
 #include "render/base/one_of.h"
 #include "render/base/pose.h"
 #include "render/optics/aperture_stop.h"
+#include "render/optics/element_kinds.h"
 #include "render/optics/lens_surface.h"
-#include "render/optics/lenslet_array.h"
 
 namespace gladstone {
 
@@ -63,18 +63,36 @@ struct PosedThinLens {
   }
 };
 
-/// Closed set of all elements between a source and the sensor. An element contains its pose in the world, accepts rays
-/// of any direction, and has `RayStatus interact(Ray<T>&, RayAccount<T>&) const`. To add one, write its struct and add
-/// its name here.
+/// OneOf over the types of several lists.
+template <class... Lists>
+struct OneOfLists;
+template <class... All>
+struct OneOfLists<SurfaceTypes<All...>> {
+  using Type = OneOf<All...>;
+};
+template <class... First, class... Second, class... Lists>
+struct OneOfLists<SurfaceTypes<First...>, SurfaceTypes<Second...>, Lists...>
+    : OneOfLists<SurfaceTypes<First..., Second...>, Lists...> {};
+
+/// Stop, ideal thin lens, surfaces of lenses, and the surfaces that only one of the optical elements has.
+template <class T, class Kinds>
+struct CameraElements;
+template <class T, class... Kinds>
+struct CameraElements<T, ElementKinds<Kinds...>>
+    : OneOfLists<
+          SurfaceTypes<PosedStop<T>, PosedThinLens<T>, ShapedSurface<T, Quadric<T>>, ShapedSurface<T, EvenAsphere<T>>,
+                       ShapedSurface<T, RadialAsphere<T>>, ShapedSurface<T, TiltedPlane<T>>>,
+          typename Kinds::template OwnSurfaces<T>...> {};
+
+/// Closed set of everything that acts on a ray between a source and the sensor. Each contains its pose in the world,
+/// accepts rays of any direction, and has `RayStatus interact(Ray<T>&, RayAccount<T>&) const`, meet() and in_scalar().
 template <class T>
-using CameraElement =
-    OneOf<PosedStop<T>, PosedThinLens<T>, ShapedSurface<T, Quadric<T>>, ShapedSurface<T, EvenAsphere<T>>,
-          LensletArray<T>, ShapedSurface<T, RadialAsphere<T>>, ShapedSurface<T, TiltedPlane<T>>>;
+using CameraElement = typename CameraElements<T, AllElements>::Type;
 
 /// Converts an element to another scalar type. With ceres::Jet, rays carry derivatives with respect to its pose and
 /// shape.
-template <class U, class T>
-CameraElement<U> in_scalar(CameraElement<T> const& element) {
+template <class U, class... All>
+CameraElement<U> in_scalar(OneOf<All...> const& element) {
   return element.visit([](auto const& held) -> CameraElement<U> { return held.template in_scalar<U>(); });
 }
 

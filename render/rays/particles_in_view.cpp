@@ -59,7 +59,7 @@ bool reaches(Camera const& camera, Vec3d place, double margin_px) {
 
 std::vector<char> particles_near_view(Scene const& scene, Particles const& particles) {
   std::vector<char> near(particles.size(), 1);
-  if (scene.setup.lenslets) return near;
+  if (scene.setup.divides_light()) return near;
   std::optional<AiryTable> airy;
   double const px_per_metre = scene.imaging.magnification / scene.setup.camera.pixel_pitch;
   double const margin_px = scene.setup.view_margin_px + make_spot(scene, airy).half_width() + spare_px +

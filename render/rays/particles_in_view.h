@@ -18,7 +18,7 @@ namespace gladstone {
 ///   the lens, at most 2. A deflection by an angle shifts the image in proportion to the former distance and the ray at
 ///   the lens in proportion to the latter,
 /// - 8 px.
-/// Through lenslets, all particles are included.
+/// If an optical element divides the light cones (lenslets), all particles are included.
 /// @param scene  planned: step and pupil margin are known
 std::vector<char> particles_near_view(Scene const& scene, Particles const& particles);
 

@@ -10,10 +10,8 @@ RayTheory::RayTheory(Scene const& scene, RaysLaunch const& launch, SourceShape s
       step_(std::min(scene.step, scene.medium.coarsest_step)),
       n0_(scene.setup.ambient_index()),
       places_(!extended ? SourceCubature{{{0, 0}}, {1.0}}
-                        : (shape == SourceShape::disc ? SourceCubature::radon() : SourceCubature::square(3))) {
-  for (WindowSetup const& window : scene.setup.windows) {
-    if (window.side == WindowSide::target) near_shift_ += window.shift();
-  }
+                        : (shape == SourceShape::disc ? SourceCubature::radon() : SourceCubature::square(3))),
+      near_shift_(scene.setup.element_shift(ElementSide::target)) {
   pupil_ = {{{0, 0}}, {1.0}};
   if (launch.camera.chief_rays_only()) return;
   // Use enough rings and directions for waves of three times the field's finest length across the cone.

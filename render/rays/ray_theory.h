@@ -67,8 +67,8 @@ class RayTheory {
     if (weight > 0) truth.eq9_cone_px[source] = sum / weight;
   }
 
-  /// Returns the ray in front of the medium, extended back to the dots' plane as it appears through windows; nullopt if
-  /// the ray does not reach the medium.
+  /// Returns the ray in front of the medium, extended back to the dots' plane as it appears through elements ahead;
+  /// nullopt if the ray does not reach the medium.
   std::optional<Ray<double>> before_medium(CameraView<double> const& camera, Ray<double> ray) const;
 
   /// Integrates along the part of a straight ray inside the medium.
@@ -103,7 +103,7 @@ class RayTheory {
   double step_, n0_;
   double stop_share_ = 1;          ///< fraction of a launch's target area that the stop fills, as a ratio of radii [1]
   SourceCubature places_, pupil_;  ///< rules over a source and over the stop
-  double near_shift_ = 0;          ///< apparent shift of the dots by windows in front of the medium [m]
+  double near_shift_ = 0;          ///< apparent shift of the dots by elements in front of the medium [m]
 };
 
 /// Estimates the processor time of small-angle theory for a scene's dots [s], with theory_ray_seconds() per ray.

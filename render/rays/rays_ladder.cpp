@@ -8,8 +8,9 @@
 namespace gladstone {
 namespace {
 
-/// Returns true if the optics have aberrations (prescription or windows), so that rays do not fill a disc evenly.
-bool aberrates(Setup const& setup) { return setup.lens.prescription || !setup.windows.empty(); }
+/// Returns true if the optics have aberrations (prescription or refracting elements), so that rays do not fill a disc
+/// evenly.
+bool aberrates(Setup const& setup) { return setup.lens.prescription || setup.has_refracting_elements(); }
 
 /// Returns the squared radius of an equivalent smooth PSF, with which the errors of a cubature rule decrease as with
 /// the actual PSF [px^2].
@@ -46,7 +47,7 @@ RaysLadder RaysLadder::of_points(Scene const& scene, RaysLaunch const& shared, R
 RaysLadder RaysLadder::of_rules(Scene const& scene, RaysLaunch const& shared, RenderImages images) {
   Setup const& setup = scene.setup;
   std::uint64_t const least = aberrates(setup) ? 64 : 4;
-  bool const smooth = !setup.lenslets && (images == RenderImages::no || shared.spot.model != SpotModel::none);
+  bool const smooth = !setup.divides_light() && (images == RenderImages::no || shared.spot.model != SpotModel::none);
   bool const ruled =
       scene.adaptive_criteria && smooth && shared.choice.sampling == PupilSampling::sobol && !scene.chief_rays_only();
   if (!ruled || scene.rays_per_dot < least) return of_points(scene, shared, images);

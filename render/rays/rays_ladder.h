@@ -16,8 +16,9 @@ class RaysLadder {
   /// @param shared  launch whose parameters, except the number of rays, apply to all steps
   static RaysLadder of_points(Scene const& scene, RaysLaunch const& shared, RenderImages images);
   /// Returns a ladder of cubature rules that fill the stop, with four times as many nodes at each step: from 4 on, or
-  /// from 64 with a prescription or windows. Returns a ladder of points where no rule is suitable: with lenslets, which
-  /// divide the light cone, for images without a PSF, for random sampling, and for non-adaptive ray numbers.
+  /// from 64 with a prescription or refracting elements. Returns a ladder of points where no rule is suitable: with
+  /// elements that divide the light cone, for images without a PSF, for random sampling, and for non-adaptive ray
+  /// numbers.
   static RaysLadder of_rules(Scene const& scene, RaysLaunch const& shared, RenderImages images);
 
   std::size_t size() const { return launches_.size(); }

@@ -57,7 +57,7 @@ Rendering trace_all(Scene const& scene, DotPattern const& sources, Medium const&
 struct IdealView : CameraView<double> {
   Camera const* camera;
   double plane_z;  ///< Z of the target [m]
-  double seen_z;   ///< apparent Z of the target through the windows in front of the medium [m]
+  double seen_z;   ///< apparent Z of the target through the elements in front of the medium [m]
 };
 
 template <int N>
@@ -111,10 +111,8 @@ std::vector<Vec2d> ideal_displacements(Scene const& scene, DotPattern const& sou
   RaysLaunch const launch(scene, SpotView{});
   RaysLadder const ladder = RaysLadder::of_points(scene, launch, RenderImages::no);
   LambertSources<double> const lambert{sources.view(-scene.setup.z_d)};
-  IdealView view{launch.camera.view(), &launch.camera, -scene.setup.z_d, -scene.setup.z_d};
-  for (WindowSetup const& window : scene.setup.windows) {
-    if (window.side == WindowSide::target) view.seen_z += window.shift();
-  }
+  IdealView const view{launch.camera.view(), &launch.camera, -scene.setup.z_d,
+                       -scene.setup.z_d + scene.setup.element_shift(ElementSide::target)};
   std::vector<Vec2d> displacement(sources.centre.size(), Vec2d{not_a_number, not_a_number});
   std::visit(
       [&](auto const& medium) {

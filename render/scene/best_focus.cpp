@@ -37,16 +37,15 @@ std::vector<Vec3d> aims_of_bundle(Camera const& camera, Vec3d point) {
 }
 
 /// Returns the best focus of the rays from a point, for a camera whose lens is moved along its axis [m]. The focus is
-/// measured from the sensor's plane, which moves with the lens.
-/// @param windows  number of leading elements (window faces) that do not move
+/// measured from the sensor's plane, which moves with the lens; elements ahead of the lens do not move.
 /// @param moved  displacement of the lens [m]
 template <class T>
-T narrowest(Camera const& camera, int windows, std::vector<Vec3d> const& aims, Vec3<T> const& point, T const& moved) {
+T narrowest(Camera const& camera, std::vector<Vec3d> const& aims, Vec3<T> const& point, T const& moved) {
   Vec3<T> const by = moved * in_scalar<T>(camera.pose.z);
   std::vector<CameraElement<T>> elements;
   for (auto const& element : camera.elements) {
     elements.push_back(in_scalar<T>(element));
-    if (static_cast<int>(elements.size()) <= windows) continue;
+    if (static_cast<int>(elements.size()) <= camera.before_lens) continue;
     elements.back() = elements.back().visit([&](auto held) -> CameraElement<T> {
       held.pose.origin = held.pose.origin + by;
       return held;
@@ -73,7 +72,6 @@ T narrowest(Camera const& camera, int windows, std::vector<Vec3d> const& aims, V
 /// Residual for the solver: distance of the best focus from the fixed sensor, for a lens moved along its axis.
 struct FocusMiss {
   Camera const& camera;
-  int windows;
   std::vector<Vec3d> const& aims;
   Vec3d point;
   bool point_moves;  ///< true: the point moves with the lens
@@ -84,8 +82,8 @@ struct FocusMiss {
     T const moved = moved_mm[0] * T(unit::millimetre);
     Vec3<T> seen = in_scalar<T>(point);
     if (point_moves) seen = seen + moved * in_scalar<T>(camera.pose.z);
-    T const focus = T(camera.sensor.pose.origin.z) + moved +
-                    T(camera.sensor.pose.z.z) * narrowest(camera, windows, aims, seen, moved);
+    T const focus =
+        T(camera.sensor.pose.origin.z) + moved + T(camera.sensor.pose.z.z) * narrowest(camera, aims, seen, moved);
     miss_mm[0] = (focus - T(z_sensor)) / T(unit::millimetre);
     return true;
   }
@@ -94,13 +92,14 @@ struct FocusMiss {
 /// Returns the position of the lens in the paraxial approximation: Z of the front principal plane [m].
 double paraxial_place(Setup const& setup) {
   double const f = setup.lens.focal_length, z_sensor = *setup.z_sensor;
-  double shift = 0, apart = 0;  // apparent shift by windows; distance from front to rear principal plane
-  for (WindowSetup const& window : setup.windows) shift += window.shift();
+  double const shift = paraxial_camera(setup).window_shift;  // apparent shift of objects
+  double apart = 0;                                          // distance from front to rear principal plane
   if (setup.lens.prescription) {
     Lens const& lens = *setup.lens.prescription;
     ParaxialLens const paraxial = paraxial_lens(lens);
     apart = lens.poses.back().origin.z + paraxial.rear_principal_plane - paraxial.front_principal_plane;
   }
+  apart += setup.element_shift(ElementSide::sensor);  // plates behind the lens shift the image
   if (setup.lens.focus == Focus::distance) {
     double const u = setup.focus_distance() - shift;
     return z_sensor - apart - 1 / (1 / f - 1 / u);
@@ -119,7 +118,7 @@ double paraxial_place(Setup const& setup) {
 }  // namespace
 
 double best_focus(Camera const& camera, Vec3d point) {
-  return narrowest(camera, 0, aims_of_bundle(camera, point), point, 0.0);
+  return narrowest(camera, aims_of_bundle(camera, point), point, 0.0);
 }
 
 void position_lens_from_sensor(Setup& setup) {
@@ -129,14 +128,13 @@ void position_lens_from_sensor(Setup& setup) {
                     "leaves no room for the lens in front of the medium's mid-plane; move the sensor away from it");
   }
   bool const chief = std::isinf(setup.lens.f_number);
-  if (chief || (!setup.lens.prescription && setup.windows.empty())) return;
+  if (chief || (!setup.lens.prescription && !setup.has_refracting_elements())) return;
   // The second pass aims the rays from the final position of the lens.
   for (int pass = 0; pass < 2; ++pass) {
     Camera const camera = build_camera(setup);
     Vec3d const point = camera.pose.origin - setup.focus_distance() * camera.pose.z;
     std::vector<Vec3d> const aims = aims_of_bundle(camera, point);
-    FocusMiss const miss{camera, 2 * static_cast<int>(setup.windows.size()), aims,
-                         point,  setup.lens.focus == Focus::distance,        *setup.z_sensor};
+    FocusMiss const miss{camera, aims, point, setup.lens.focus == Focus::distance, *setup.z_sensor};
     using Function = ceres::TinySolverAutoDiffFunction<FocusMiss, 1, 1>;
     ceres::TinySolver<Function> solver;
     solver.options.max_num_iterations = 30;

@@ -14,7 +14,8 @@ double best_focus(Camera const& camera, Vec3d point);
 /// Positions the lens of a setup whose sensor is fixed at setup.z_sensor on the Z axis: sets z_a such that the best
 /// focus of the plane in focus lies on the sensor.
 /// A thin lens has two such positions (Bessel); the one nearer the sensor is chosen. For prescriptions and cameras
-/// behind windows, Ceres refines the paraxial position with automatic derivatives (Jets) of the traced rays.
+/// with other optical elements, Ceres refines the paraxial position with automatic derivatives (Jets) of the traced
+/// rays.
 /// @throws DataError if no lens position images the plane in focus onto the sensor
 void position_lens_from_sensor(Setup& setup);
 

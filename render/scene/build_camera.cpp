@@ -14,20 +14,19 @@ namespace {
 
 constexpr double sharp = 0;  // width of the smoothed edge of a stop; 0: sharp
 
-/// Appends a window's two faces, in the order of light along +Z.
-void append_window(Camera& camera, WindowSetup const& window, bool fresnel) {
-  Pose<double> const middle = window.pose();
-  ShapedSurface<double, Quadric<double>> face;
-  face.semi_diameter = std::numeric_limits<double>::infinity();
-  face.pose = middle.moved({0, 0, -window.thickness / 2});
-  face.n_after = window.index;
-  face.fresnel = fresnel;
-  camera.elements.emplace_back(face);
-  face.pose = middle.moved({0, 0, window.thickness / 2});
-  face.n_before = window.index;
-  face.n_after = 1;
-  face.absorption = window.absorption;
-  camera.elements.emplace_back(face);
+/// Appends the surfaces of the optical elements on one side.
+/// @param frame  frame of their poses, see ElementSide
+void append_elements(Camera& camera, Setup const& setup, ElementSide side, Pose<double> const& frame) {
+  bool const fresnel = setup.lens.transmittance != Transmittance::ideal;
+  for (std::size_t i = 0; i < setup.elements.size(); ++i) {
+    OpticalElement const& element = setup.elements[i];
+    if (element.side() != side) continue;
+    std::string const name = element_name(setup.elements, i);
+    element.add_surfaces(element.pose().within(frame), fresnel,
+                         [&](CameraElement<double> const& surface, std::string const& part) {
+                           camera.append(surface, part.empty() ? name : name + ", " + part);
+                         });
+  }
 }
 
 void append_thin_lens(Camera& camera, Setup const& setup) {
@@ -35,8 +34,8 @@ void append_thin_lens(Camera& camera, Setup const& setup) {
   double const radius = chief ? std::numeric_limits<double>::infinity() : camera.paraxial.stop_radius;
   camera.stop = static_cast<int>(camera.elements.size());
   camera.stop_radius = camera.paraxial.stop_radius;
-  camera.elements.emplace_back(PosedStop<double>{camera.pose, radius, sharp});
-  camera.elements.emplace_back(PosedThinLens<double>{camera.pose, setup.lens.focal_length});
+  camera.append(PosedStop<double>{camera.pose, radius, sharp}, "stop");
+  camera.append(PosedThinLens<double>{camera.pose, setup.lens.focal_length}, "thin lens");
 }
 
 /// Appends the surfaces of a prescription. A plane stop without glass becomes a PosedStop, whose edge can be smoothed.
@@ -47,7 +46,7 @@ void append_prescription(Camera& camera, Setup const& setup) {
   camera.stop_radius = chief ? 0 : lens.stop_radius;
   for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {
     bool const stop = static_cast<int>(i) == lens.stop;
-    camera.elements.emplace_back(lens.surfaces[i].visit([&](auto surface) -> CameraElement<double> {
+    auto const element = lens.surfaces[i].visit([&](auto surface) -> CameraElement<double> {
       surface.pose = surface.pose.within(camera.aim_plane);
       if (stop && chief) surface.semi_diameter = std::numeric_limits<double>::infinity();
       if constexpr (std::is_same_v<decltype(surface.shape), Quadric<double>>) {
@@ -55,15 +54,17 @@ void append_prescription(Camera& camera, Setup const& setup) {
         if (stop && plane) return PosedStop<double>{surface.pose, surface.semi_diameter, sharp};
       }
       return surface;
-    }));
+    });
+    camera.append(element, "surface " + std::to_string(i + 1));
   }
 }
 
-/// Places lenslets at the position of the sensor, and the sensor behind them.
-void append_lenslets(Camera& camera, LensletSetup const& lenslets) {
-  camera.elements.emplace_back(
-      LensletArray<double>{camera.sensor.pose, lenslets.pitch, lenslets.focal_length, lenslets.layout});
-  camera.sensor.pose = camera.sensor.pose.moved({0, 0, lenslets.to_sensor});
+/// Appends the elements in the image plane, and places the sensor behind them.
+void append_elements_of_image(Camera& camera, Setup const& setup) {
+  append_elements(camera, setup, ElementSide::image_plane, camera.sensor.pose);
+  for (OpticalElement const& element : setup.elements) {
+    if (element.to_sensor() > 0) camera.sensor.pose = camera.sensor.pose.moved({0, 0, element.to_sensor()});
+  }
 }
 
 /// Returns the tilt of the sensor that images a plane sharply everywhere (collinear map): the object plane z = -Z + a .
@@ -73,6 +74,11 @@ Vec2d scheimpflug_tilt(Vec3d normal, double magnification) {
   Vec2d const a{-normal.x / normal.z, -normal.y / normal.z};
   Vec3d const tilted = normalized(Vec3d{magnification * a.x, magnification * a.y, 1});
   return {std::atan2(-tilted.y, tilted.z), std::asin(tilted.x)};
+}
+
+/// Returns a pose whose z axis is along the light. @param forwards  -1: light travels along -z
+Pose<double> along_light(Pose<double> const& pose, double forwards) {
+  return forwards < 0 ? Pose<double>{pose.origin, -1.0 * pose.x, pose.y, -1.0 * pose.z} : pose;
 }
 
 /// Returns the point of the dots' plane that a pixel sees [m].
@@ -93,7 +99,9 @@ Vec2d sensor_tilt(Setup const& setup) {
 
 ParaxialCamera paraxial_camera(Setup const& setup) {
   ParaxialCamera paraxial;
-  for (WindowSetup const& window : setup.windows) paraxial.window_shift += window.shift();
+  for (OpticalElement const& element : setup.elements) {
+    if (element.side() != ElementSide::sensor) paraxial.window_shift += element.shift();
+  }
   if (setup.lens.prescription) {
     Lens const& lens = *setup.lens.prescription;
     int const count = static_cast<int>(lens.paraxial.size());
@@ -109,7 +117,17 @@ ParaxialCamera paraxial_camera(Setup const& setup) {
     paraxial.stop_radius = setup.lens.focal_length / setup.lens.f_number / 2;
   }
   if (std::isinf(setup.lens.f_number)) paraxial.stop_radius = 0;
+  if (double const shift = setup.element_shift(ElementSide::sensor); shift > 0)
+    paraxial.behind = paraxial.behind.moved({0, 0, paraxial.forwards * shift});
   return paraxial;
+}
+
+Pose<double> lens_exit(Setup const& setup) {
+  Pose<double> const camera = setup.camera_pose();
+  if (!setup.lens.prescription) return camera;
+  ParaxialCamera const paraxial = paraxial_camera(setup);
+  Pose<double> const last = setup.lens.prescription->poses.back().within(Pose<double>{{0, 0, paraxial.front}});
+  return along_light(last, paraxial.forwards).within(camera);
 }
 
 ImagingGeometry paraxial_imaging(Setup const& setup, ParaxialCamera const& paraxial) {
@@ -191,13 +209,12 @@ Camera build_camera(Setup const& setup) {
   camera.paraxial = paraxial_camera(setup);
   ParaxialCamera const& paraxial = camera.paraxial;
   camera.aim_plane = camera.pose.moved({0, 0, paraxial.front});
-  for (WindowSide const side : {WindowSide::target, WindowSide::camera}) {
-    for (WindowSetup const& window : setup.windows) {
-      if (window.side == side) append_window(camera, window, setup.lens.transmittance != Transmittance::ideal);
-    }
-    if (side == WindowSide::target) camera.before_medium = static_cast<int>(camera.elements.size());
-  }
+  append_elements(camera, setup, ElementSide::target, {});
+  camera.before_medium = static_cast<int>(camera.elements.size());
+  append_elements(camera, setup, ElementSide::camera, {});
+  camera.before_lens = static_cast<int>(camera.elements.size());
   setup.lens.prescription ? append_prescription(camera, setup) : append_thin_lens(camera, setup);
+  append_elements(camera, setup, ElementSide::sensor, lens_exit(setup));
   double const pupil = paraxial.stop_radius / std::max(std::abs(paraxial.to_stop.a), 0.05);
   camera.aim_step = pupil > 0 ? 1e-4 * pupil : 1e-4 * unit::millimetre;
 
@@ -205,13 +222,12 @@ Camera build_camera(Setup const& setup) {
   double const focus = setup.focus_distance() + paraxial.front - paraxial.window_shift;
   RayTransfer const& m = paraxial.whole;
   double image = -(m.a * focus + m.b) / (m.c * focus + m.d);
-  if (thin && setup.windows.empty()) image = setup.imaging().image_distance;
+  if (thin && !setup.has_refracting_elements()) image = setup.imaging().image_distance;
   if (!(image > 0) || !std::isfinite(image)) {  // reduced distance t/n: mirrors reverse both signs
     throw DataError(ErrorCode::invalid_value, KeyPath{"lens"},
                     "the plane in focus has no real image behind it; check lens.focus and the geometry");
   }
-  Pose<double> behind = paraxial.behind;
-  if (paraxial.forwards < 0) behind = {behind.origin, -1.0 * behind.x, behind.y, -1.0 * behind.z};
+  Pose<double> const behind = along_light(paraxial.behind, paraxial.forwards);
   double const along = image;
   camera.sensor = {behind.moved({0, 0, along}).within(camera.pose),
                    setup.camera.pixel_pitch,
@@ -219,13 +235,13 @@ Camera build_camera(Setup const& setup) {
                    setup.camera.rows,
                    setup.camera.distortion,
                    along};
-  if ((!thin || !setup.windows.empty()) && !camera.chief_rays_only()) {
+  if ((!thin || setup.has_refracting_elements()) && !camera.chief_rays_only()) {
     Vec3d const point = camera.pose.origin - setup.focus_distance() * camera.pose.z;
     camera.sensor.pose = camera.sensor.pose.moved({0, 0, best_focus(camera, point)});
   }
   Vec2d const tilt = sensor_tilt(setup);
   camera.sensor.pose = camera.sensor.pose.turned({tilt.x, tilt.y, 0});
-  if (setup.lenslets) append_lenslets(camera, *setup.lenslets);
+  append_elements_of_image(camera, setup);
   return camera;
 }
 

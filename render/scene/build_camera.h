@@ -5,8 +5,12 @@
 
 namespace gladstone {
 
-/// Returns the paraxial model (ray-transfer matrices) of a setup's lens and windows.
+/// Returns the paraxial model (ray-transfer matrices) of a setup's lens and other optical elements.
 ParaxialCamera paraxial_camera(Setup const& setup);
+
+/// Returns the pose of the last vertex of the lens (an ideal thin lens: of the lens) in the world, with z along the
+/// light that leaves it.
+Pose<double> lens_exit(Setup const& setup);
 
 /// Computes image distance, magnification and entrance pupil from a paraxial model; see Setup::imaging().
 ImagingGeometry paraxial_imaging(Setup const& setup, ParaxialCamera const& paraxial);
@@ -30,8 +34,8 @@ double posed_pixel_size(Setup const& setup);
 double posed_view_area(Setup const& setup);
 
 /// Builds the focused camera of a setup.
-/// An ideal thin lens without windows is focused by the lens formula. Otherwise the sensor is moved along the axis to
-/// the best focus (least squares) of rays traced from the axis point of the plane in focus.
+/// An ideal thin lens without other optical elements is focused by the lens formula. Otherwise the sensor is moved
+/// along the axis to the best focus (least squares) of rays traced from the axis point of the plane in focus.
 /// @throws DataError if the plane in focus has no real image or too few rays reach the sensor
 Camera build_camera(Setup const& setup);
 

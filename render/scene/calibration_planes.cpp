@@ -27,7 +27,7 @@ Setup plane_setup(Setup const& setup, double z) {
 
 std::optional<Pinhole> equivalent_pinhole(Setup const& setup, Camera const& camera) {
   bool const tilted = !(sensor_tilt(setup) == Vec2d{});
-  bool const thin = !setup.lens.prescription && setup.windows.empty() && !setup.lenslets;
+  bool const thin = !setup.lens.prescription && setup.elements.empty();
   if (!thin || (tilted && setup.camera.distorted())) return std::nullopt;
   PosedSensor<double> const& sensor = camera.sensor;
   Vec3d const to_sensor = sensor.pose.origin - camera.pose.origin;
@@ -54,12 +54,15 @@ void cross_check_calibration(Setup const& setup, SetupTable root, std::vector<st
                                     "length, or behind the lens: there is no image); move the planes or the camera",
                                     nearest / mm, way / mm));
   }
-  for (WindowSetup const& window : setup.windows) {
-    if (window.position.z - window.thickness / 2 > nearest) continue;
+  for (std::size_t i = 0; i < setup.elements.size(); ++i) {
+    OpticalElement const& element = setup.elements[i];
+    bool const ahead_of_lens = element.side() == ElementSide::target || element.side() == ElementSide::camera;
+    double const z = element.pose().origin.z;
+    if (!ahead_of_lens || z - element.thickness() / 2 > nearest) continue;
     calibration.problem("planes_mm",
-                        fmt::format("has the plane Z = {:.6g} mm, at the window at Z = {:.6g} mm or on its camera side "
-                                    "(a window must be between all planes and the camera); move one",
-                                    nearest / mm, window.position.z / mm));
+                        fmt::format("has the plane Z = {:.6g} mm, at {} at Z = {:.6g} mm or on its camera side (it "
+                                    "must be between all planes and the camera); move one",
+                                    nearest / mm, element_name(setup.elements, i), z / mm));
   }
   double const px = setup.pixel_size(), diameter_px = setup.dot_diameter() / px;
   if (diameter_px < least_dot_px) {

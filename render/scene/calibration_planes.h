@@ -25,11 +25,11 @@ struct Pinhole {
 
 /// Returns the pinhole camera that is equivalent to a setup's ideal thin lens. For a tilted sensor, its z axis is the
 /// sensor's normal, and (cx, cy) is where the normal through the lens meets the sensor.
-/// @return nullopt without an equivalent: for a prescription, windows or lenslets, and for a tilted sensor with
+/// @return nullopt without an equivalent: for a prescription, other optical elements, and for a tilted sensor with
 /// distortion, whose centre of distortion is not (cx, cy)
 std::optional<Pinhole> equivalent_pinhole(Setup const& setup, Camera const& camera);
 
-/// Checks a calibration setup: object distances that the lens can image, windows in front of all planes, diameter and
+/// Checks a calibration setup: object distances that the lens can image, elements in front of all planes, diameter and
 /// spacing of the dots in the image.
 void cross_check_calibration(Setup const& setup, SetupTable root, std::vector<std::string>& warnings);
 

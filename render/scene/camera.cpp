@@ -22,9 +22,10 @@ bool go_on(CameraElement<double> const& element, Ray<double>& ray) {
 
 /// Returns true for lenslets. They form many small images of the stop; the image position of a point is that of the
 /// main lens.
-bool is_lenslet_array(CameraElement<double> const& element) {
-  return element.visit(
-      [](auto const& held) { return std::is_same_v<std::decay_t<decltype(held)>, LensletArray<double>>; });
+bool divides_light(CameraElement<double> const& element) {
+  return element.visit([](auto const& held) {
+    return requires { held.divides_light; };
+  });
 }
 
 }  // namespace
@@ -69,7 +70,7 @@ std::optional<Camera::Sight> Camera::sight(Vec3d point, Vec2d aim) const {
   Ray<double> ray = towards(point, aim);
   Sight seen;
   for (std::size_t i = 0; i < elements.size(); ++i) {
-    if (is_lenslet_array(elements[i])) continue;
+    if (divides_light(elements[i])) continue;
     bool const met = static_cast<int>(i) != stop ||
                      elements[i].visit([&](auto const& held) { return held.meet(ray, seen.in_stop); });
     if (!met || !go_on(elements[i], ray)) return std::nullopt;

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "render/optics/apparent_pupil.h"
@@ -14,10 +16,11 @@ struct ParaxialCamera {
   double front = 0;         ///< position of the first surface along the camera's z [m]
   RayTransfer to_stop;      ///< ray transfer from the first surface to the stop
   RayTransfer whole;        ///< ray transfer from the first surface to behind the last
-  Pose<double> behind;      ///< pose of the last vertex in the camera's frame; light leaves along its +z or -z
+  Pose<double> behind;      ///< pose of the last vertex in the camera's frame, as it appears from the sensor through
+                            ///< plates; light leaves along its +z or -z
   double forwards = 1;      ///< -1: light leaves along -z, after an odd number of mirrors
   double stop_radius = 0;   ///< radius of the stop [m]; 0: chief rays only
-  double window_shift = 0;  ///< apparent shift of objects towards the lens by windows, sum of t (1 - 1/n) [m]
+  double window_shift = 0;  ///< apparent shift of objects towards the lens by plates, sum of t (1 - 1/n) [m]
 
   /// Returns the slope of the chief ray of a point in object space per unit height of the point [1/m].
   /// @param distance  distance of the point in front of the first surface [m]
@@ -50,7 +53,9 @@ class Camera {
  public:
   Pose<double> pose;  ///< pose of the front principal plane (first vertex if it has none); z along the light
   std::vector<CameraElement<double>> elements;  ///< elements in the world frame, in the order of the light path
+  std::vector<std::string> names;               ///< names of the elements in reports of lost rays
   int before_medium = 0;                        ///< number of elements on the target's side of the medium
+  int before_lens = 0;                          ///< number of elements ahead of the lens
   int stop = 0;                                 ///< index of the stop in `elements`
   double stop_radius = 0;                       ///< radius of the stop [m]; 0: chief rays only
   double aim_step = 0;                          ///< step of finite differences on the aim plane [m]
@@ -61,13 +66,19 @@ class Camera {
   CameraView<double> view() const {
     return {elements.data(), before_medium, static_cast<int>(elements.size()), sensor, aim_plane};
   }
+  /// Appends an element behind the others. @param name  its name in reports of lost rays
+  void append(CameraElement<double> const& element, std::string name) {
+    elements.push_back(element);
+    names.push_back(std::move(name));
+  }
   bool chief_rays_only() const { return stop_radius == 0; }
   /// Smooths the edge of the stop. Has no effect on a stop that is a glass surface or mirror, whose edge remains sharp.
   /// @param edge  width of the smoothed zone as a fraction of the stop's area [1]
   void smooth_stop(double edge);
 
   /// Returns the pixel position of a point's chief ray without medium [px]; nullopt if no chief ray reaches the sensor.
-  /// Lenslets are ignored: the result is the centre of the sub-images that they form of the point.
+  /// Elements that divide the light among many images (lenslets) are ignored: the result is the centre of the images
+  /// that they form of the point.
   std::optional<Vec2d> project(Vec3d point) const;
   /// Finds the point of a plane whose chief ray meets a pixel; nullopt if there is none.
   std::optional<ImagedPoint> unproject(Vec2d pixel, Pose<double> const& plane) const;

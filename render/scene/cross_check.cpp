@@ -65,19 +65,6 @@ void cross_check_noise(Setup const& setup, std::vector<std::string>& warnings) {
   }
 }
 
-/// Warns of lenslets whose images of the stop overlap. To avoid this, their f-number must not exceed that of the lens
-/// (Ng et al., Stanford Tech Report CTSR 2005-02, section 3.1).
-void cross_check_lenslets(Setup const& setup, std::vector<std::string>& warnings) {
-  ImagingGeometry const imaging = setup.imaging();
-  double const picture = setup.lenslets->to_sensor * imaging.entrance_pupil / imaging.image_distance;
-  if (picture <= setup.lenslets->pitch) return;
-  warnings.push_back(fmt::format(
-      "camera.lenslets: each images the stop with a diameter of {:.4g} um, more than their pitch of {:.4g} um, so that "
-      "these images overlap; stop the lens down to f/{:.3g} or use lenslets of a shorter focal length",
-      picture / unit::micrometre, setup.lenslets->pitch / unit::micrometre,
-      setup.lens.f_number * picture / setup.lenslets->pitch));
-}
-
 /// Checks that lens and camera form an image of the dots.
 bool cross_check_lens(Setup const& setup, SetupTable root, std::vector<std::string>& warnings) {
   double const mm = unit::millimetre;
@@ -105,7 +92,10 @@ bool cross_check_lens(Setup const& setup, SetupTable root, std::vector<std::stri
     return false;
   }
   if (!setup.has_closed_form_layout() && !cross_check_camera(setup, root)) return false;
-  if (setup.lenslets) cross_check_lenslets(setup, warnings);
+  for (OpticalElement const& element : setup.elements) {
+    std::string warning = element.imaging_warning(setup.imaging(), setup.lens.f_number);
+    if (!warning.empty()) warnings.push_back(std::move(warning));
+  }
   return true;
 }
 
@@ -130,7 +120,7 @@ void cross_check_target(Setup const& setup, SetupTable root) {
   SetupTable lens = root.table("lens"), target = root.table("target");
   double const px = setup.pixel_size();
   Vec2d view{setup.camera.columns * px, setup.camera.rows * px}, needed = view + setup.target_view_margin();
-  if (setup.pose || setup.camera.tilted()) needed = view = posed_view(setup);
+  if (setup.has_oblique_view()) needed = view = posed_view(setup);
   if (setup.target.extent_m && (setup.target.extent_m->x < needed.x || setup.target.extent_m->y < needed.y)) {
     target.problem("extent_mm", fmt::format("the field of view, {:.4g} x {:.4g} mm at the dots, is larger than the "
                                             "target or partly outside of it ({:.4g} x {:.4g} mm about its centre would "
@@ -144,10 +134,10 @@ void cross_check_target(Setup const& setup, SetupTable root) {
     if (setup.target.polarity == Polarity::dark && diameter_px == 0) {
       target.problem("polarity", "dark dots of zero size cannot be seen; give dot_diameter_px");
     }
-    if (setup.target.polarity == Polarity::dark && setup.lenslets) {
+    if (setup.target.polarity == Polarity::dark && setup.divides_light()) {
       target.problem("polarity",
                      "dark dots on white paper cannot be rendered through lenslets (the light of the paper through "
-                     "each lenslet is unknown); use bright dots");
+                     "each of them is unknown); use bright dots");
     }
   }
 }
@@ -196,7 +186,7 @@ std::vector<std::string> cross_check(Setup const& setup, SetupTable root) {
   }
   SetupTable medium = root.table("medium");
   cross_check_geometry(setup, root.table("geometry"));
-  cross_check_windows(setup, root);
+  cross_check_elements(setup, root);
   cross_check_thickness(setup, warnings);
   cross_check_noise(setup, warnings);
   cross_check_steps(setup, medium);

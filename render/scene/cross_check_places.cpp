@@ -41,9 +41,28 @@ struct CameraAxis {
 /// An object on the light path and its extent along the camera's axis.
 struct OnTheWay {
   std::string name;
-  double enters, leaves;  ///< [m]
-  bool window;
+  double enters, leaves;               ///< [m]
+  std::optional<std::size_t> element;  ///< index of an optical element; empty: another object
 };
+
+/// Reports elements that are not between the lens and its image.
+void check_elements_behind_lens(Setup const& setup, SetupTable root) {
+  for (std::size_t i = 0; i < setup.elements.size(); ++i) {
+    OpticalElement const& element = setup.elements[i];
+    if (element.side() != ElementSide::sensor) continue;
+    Pose<double> const exit = lens_exit(setup);
+    Camera const camera = build_camera(setup);
+    double to_image = dot(camera.sensor.pose.origin - exit.origin, exit.z);
+    for (OpticalElement const& other : setup.elements) to_image -= other.to_sensor();
+    double const z = element.pose().origin.z, half = element.thickness() / 2;
+    if (z - half >= -touching && z + half <= to_image + touching) continue;
+    element_tables(root)[i].table.problem(
+        "position_mm",
+        fmt::format("puts {} at {:.6g} mm behind the lens, but the image is {:.6g} mm behind it (with side = "
+                    "\"sensor\", positions are relative to the last vertex of the lens); move it",
+                    element_name(setup.elements, i), z / unit::millimetre, to_image / unit::millimetre));
+  }
+}
 
 }  // namespace
 
@@ -70,35 +89,36 @@ void cross_check_geometry(Setup const& setup, SetupTable geometry) {
   }
 }
 
-void cross_check_windows(Setup const& setup, SetupTable root) {
-  if (setup.windows.empty()) return;
+void cross_check_elements(Setup const& setup, SetupTable root) {
+  if (setup.elements.empty()) return;
+  check_elements_behind_lens(setup, root);
   CameraAxis const axis{front_of(setup), setup.camera_pose().z};
   double const infinite = std::numeric_limits<double>::infinity();
   std::vector<OnTheWay> way;  // objects in the required order of the light path
-  if (!setup.piv) way.push_back({"the dots", axis.meets_plane(-setup.z_d), axis.meets_plane(-setup.z_d), false});
-  for (WindowSide const side : {WindowSide::target, WindowSide::camera}) {
-    for (std::size_t i = 0; i < setup.windows.size(); ++i) {
-      WindowSetup const& window = setup.windows[i];
-      if (window.side != side) continue;
-      Pose<double> const middle = window.pose();
-      Vec3d const half = 0.5 * window.thickness * middle.z;
-      way.push_back(
-          {fmt::format("window {} (side = \"{}\", Z = {:.6g} mm)", i + 1,
-                       side == WindowSide::target ? "target" : "camera", window.position.z / unit::millimetre),
-           axis.meets(middle.origin - half, middle.z), axis.meets(middle.origin + half, middle.z), true});
+  if (!setup.piv) way.push_back({"the dots", axis.meets_plane(-setup.z_d), axis.meets_plane(-setup.z_d), {}});
+  for (ElementSide const side : {ElementSide::target, ElementSide::camera}) {
+    for (std::size_t i = 0; i < setup.elements.size(); ++i) {
+      OpticalElement const& element = setup.elements[i];
+      if (element.side() != side) continue;
+      Pose<double> const middle = element.pose();
+      Vec3d const half = 0.5 * element.thickness() * middle.z;
+      way.push_back({fmt::format("{} (side = \"{}\", Z = {:.6g} mm)", element_name(setup.elements, i),
+                                 side == ElementSide::target ? "target" : "camera", middle.origin.z / unit::millimetre),
+                     axis.meets(middle.origin - half, middle.z), axis.meets(middle.origin + half, middle.z), i});
     }
-    if (auto const medium = medium_ends(setup); medium && side == WindowSide::target) {
-      way.push_back({"the medium", axis.meets_plane(medium->first), axis.meets_plane(medium->last), false});
+    if (auto const medium = medium_ends(setup); medium && side == ElementSide::target) {
+      way.push_back({"the medium", axis.meets_plane(medium->first), axis.meets_plane(medium->last), {}});
     }
   }
-  way.push_back({"the lens", 0, infinite, false});
+  way.push_back({"the lens", 0, infinite, {}});
   OnTheWay const* last = &way.front();  // object that extends farthest so far
   for (OnTheWay const& next : way) {
-    if (&next != last && next.enters < last->leaves - touching && (next.window || last->window)) {
-      root.problem("window",
-                   fmt::format("light must pass {} and then {}, but along the camera's axis the latter begins {:.6g} "
-                               "mm before the former ends; move one of them, or give the other side",
-                               last->name, next.name, (last->leaves - next.enters) / unit::millimetre));
+    auto const element = next.element ? next.element : last->element;
+    if (&next != last && next.enters < last->leaves - touching && element) {
+      element_tables(root)[*element].table.problem(
+          "side", fmt::format("light must pass {} and then {}, but along the camera's axis the latter begins {:.6g} "
+                              "mm before the former ends; move one of them, or give the other side",
+                              last->name, next.name, (last->leaves - next.enters) / unit::millimetre));
     }
     if (next.leaves > last->leaves) last = &next;
   }

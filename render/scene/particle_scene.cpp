@@ -388,15 +388,19 @@ void cross_check_particles(Setup const& setup, SetupTable root, std::vector<std:
     }
   }
   if (piv.flow.file) cross_check_velocity_file(setup, root.table("flow"));
-  for (WindowSetup const& window : setup.windows) {
-    double const face = window.position.z - window.thickness / 2;
-    if (window.side == WindowSide::target) {
-      root.problem("window",
-                   "has side = \"target\", behind the particles, where none of their light reaches the camera; use "
-                   "side = \"camera\", or remove it");
-    } else if (piv.particles.volume && face < piv.particles.center.z + piv.particles.volume->z / 2) {
-      root.problem("window", fmt::format("at Z = {:.6g} mm is inside the particles' volume, or behind it; move one",
-                                         window.position.z / mm));
+  for (std::size_t i = 0; i < setup.elements.size(); ++i) {
+    OpticalElement const& element = setup.elements[i];
+    double const z = element.pose().origin.z, face = z - element.thickness() / 2;
+    if (element.side() == ElementSide::target) {
+      element_tables(root)[i].table.problem(
+          "side",
+          "is \"target\", behind the particles, where none of their light reaches the camera; use \"camera\", or "
+          "remove the element");
+    } else if (element.side() == ElementSide::camera && piv.particles.volume &&
+               face < piv.particles.center.z + piv.particles.volume->z / 2) {
+      element_tables(root)[i].table.problem(
+          "position_mm",
+          fmt::format("puts it at Z = {:.6g} mm, inside the particles' volume or behind it; move one", z / mm));
     }
   }
   if (setup.camera.absolute_exposure && !setup.camera.noise.enabled) {

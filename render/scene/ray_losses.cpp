@@ -56,26 +56,10 @@ std::optional<End> end_of(CameraView<double> const& camera, Medium const& medium
   return std::nullopt;
 }
 
-/// Returns the names of the elements, in the order of build_camera().
+/// Returns the names of the elements, including the medium, and of the sensor.
 std::vector<std::string> names_of(Scene const& scene) {
-  std::vector<std::string> names;
-  for (WindowSide const side : {WindowSide::target, WindowSide::camera}) {
-    for (std::size_t i = 0; i < scene.setup.windows.size(); ++i) {
-      if (scene.setup.windows[i].side != side) continue;
-      std::string const window = "window " + std::to_string(i + 1);
-      names.push_back(window + ", first face");
-      names.push_back(window + ", second face");
-    }
-    if (side == WindowSide::target) names.emplace_back("medium");
-  }
-  if (scene.setup.lens.prescription) {
-    std::size_t const surfaces = scene.setup.lens.prescription->surfaces.size();
-    for (std::size_t i = 0; i < surfaces; ++i) names.push_back("surface " + std::to_string(i + 1));
-  } else {
-    names.emplace_back("stop");
-    names.emplace_back("thin lens");
-  }
-  if (scene.setup.lenslets) names.emplace_back("lenslets");
+  std::vector<std::string> names = scene.camera.names;
+  names.insert(names.begin() + scene.camera.before_medium, "medium");
   names.emplace_back("sensor");
   return names;
 }

@@ -15,7 +15,7 @@ namespace gladstone {
 /// Fraction of rays lost at one element for one cause.
 struct ElementRayLoss {
   std::string place;  ///< "surface 3" of a prescription (counted from 1, as in `gladstone info lens`), "stop", "thin
-                      ///< lens", "window 1, first face", "lenslets", "medium" or "sensor"
+                      ///< lens", name and part of another element (Camera::names), "medium" or "sensor"
   RayStatus cause;
   std::array<double, frame_count> share;  ///< fraction of all rays sent, for each image [1]
 };

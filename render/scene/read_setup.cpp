@@ -29,6 +29,8 @@ SetupTable camera_table(SetupTable& root) {
   return cameras.empty() ? root.table("camera") : cameras.front();
 }
 
+std::vector<ElementTable> element_tables(SetupTable root) { return element_tables(root, camera_table(root)); }
+
 namespace {
 
 RenderSetup read_render_setup(SetupTable table) {
@@ -161,29 +163,30 @@ void read_place(Setup& setup, SetupTable camera, SetupTable geometry) {
   setup.z_a = geometry.number("z_front_mm", 700.0, Range::positive(1e9)) * unit::millimetre;
 }
 
-/// Looks up the glasses of the windows. Problems are recorded at the keys `glass`.
-void find_window_glasses(Setup& setup, SetupTable root, GlassCatalogue const& glasses,
-                         std::vector<std::string>& warnings) {
-  std::vector<SetupTable> tables = root.tables("window");  // tables from which the windows were read
+/// Looks up the glasses of optical elements. Problems are recorded at the keys `glass`.
+void find_element_glasses(Setup& setup, std::vector<ElementTable> tables, GlassCatalogue const& glasses,
+                          std::vector<std::string>& warnings) {
   double const wavelength = setup.medium.wavelength;
-  for (std::size_t i = 0; i < setup.windows.size(); ++i) {
-    WindowSetup& window = setup.windows[i];
-    std::string const where = tables[i].where("glass");
+  for (std::size_t i = 0; i < setup.elements.size(); ++i) {
+    std::string const* const name = setup.elements[i].glass();
+    if (!name) continue;
+    std::string const where = tables[i].table.where("glass");
     try {
-      GlassMatch const found = glasses.match(window.glass, wavelength, where);
+      GlassMatch const found = glasses.match(*name, wavelength, where);
       warnings.insert(warnings.end(), found.notes.begin(), found.notes.end());
       Glass const& glass = *found.glass;
-      window.index = glass.index(wavelength);
-      if (setup.lens.transmittance == Transmittance::glass) window.absorption = glass.absorption(wavelength);
+      bool const absorbs = setup.lens.transmittance == Transmittance::glass;
+      setup.elements[i].set_glass(glass.index(wavelength), absorbs ? glass.absorption(wavelength) : 0);
     } catch (DataError const& error) {
-      tables[i].problem("glass", error.message(), error.code());
+      tables[i].table.problem("glass", error.message(), error.code());
     }
   }
 }
 
-/// Prepares lens and windows for the setup's wavelength, and determines the principal plane of a lens that is
-/// positioned by its first vertex.
-void build_optics(Setup& setup, SetupTable root, std::vector<std::string>& warnings) {
+/// Prepares lens and other optical elements for the setup's wavelength, and determines the principal plane of a lens
+/// that is positioned by its first vertex.
+void build_optics(Setup& setup, SetupTable root, std::vector<ElementTable> const& elements,
+                  std::vector<std::string>& warnings) {
   SetupTable lens = root.table("lens"), geometry = root.table("geometry");
   GlassCatalogue const glasses = read_glasses(setup.lens, lens);
   warnings.insert(warnings.end(), glasses.warnings().begin(), glasses.warnings().end());
@@ -206,7 +209,7 @@ void build_optics(Setup& setup, SetupTable root, std::vector<std::string>& warni
                       afocal ? "principal planes" : "entrance pupil at a finite distance"));
     }
   }
-  find_window_glasses(setup, root, glasses, warnings);
+  find_element_glasses(setup, elements, glasses, warnings);
 }
 
 /// Positions the lens such that it is focused on a sensor at a given position.
@@ -270,8 +273,8 @@ Setup read_setup(SetupTable root) {
   SetupTable camera = camera_table(root);
   setup.camera = read_camera_setup(camera);
   setup.lens = read_lens_setup(root.table("lens"), piv ? "sheet" : "target");
-  setup.windows = read_windows(root);
-  setup.lenslets = read_lenslets(camera.table("lenslets"));
+  std::vector<ElementTable> const elements = element_tables(root, camera);
+  setup.elements = read_elements(elements);
   if (!setup.lens.file.empty() && setup.camera.distorted()) {
     camera.table("sensor").problem("distortion",
                                    "applies to thin lenses only (a prescription has its own distortion); remove it");
@@ -294,7 +297,7 @@ Setup read_setup(SetupTable root) {
   if (calibration && setup.medium.field.kind != FieldKind::none) {
     root.table("medium").problem("field", "does not apply to a calibration, which is made without a flow; remove it");
   }
-  build_optics(setup, root, setup.warnings);
+  build_optics(setup, root, elements, setup.warnings);
   focus_on_sensor(setup, geometry);
   resolve_thickness(setup, root.table("medium"));
   if (setup.camera.absolute_exposure && !piv) {

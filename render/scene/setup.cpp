@@ -1,5 +1,6 @@
 #include "render/scene/setup.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "render/base/units.h"
@@ -20,8 +21,32 @@ double Setup::focus_distance() const {
   return lens.focus_distance;
 }
 
+bool Setup::has_refracting_elements() const {
+  return std::any_of(elements.begin(), elements.end(),
+                     [](OpticalElement const& element) { return element.side() != ElementSide::image_plane; });
+}
+
+bool Setup::divides_light() const {
+  return std::any_of(elements.begin(), elements.end(),
+                     [](OpticalElement const& element) { return element.divides_light(); });
+}
+
+bool Setup::has_oblique_view() const {
+  return pose || camera.tilted() || std::any_of(elements.begin(), elements.end(), [](OpticalElement const& element) {
+           return element.deflects();
+         });
+}
+
+double Setup::element_shift(ElementSide side) const {
+  double shift = 0;
+  for (OpticalElement const& element : elements) {
+    if (element.side() == side) shift += element.shift();
+  }
+  return shift;
+}
+
 ImagingGeometry Setup::imaging() const {
-  if (!lens.prescription && windows.empty()) {
+  if (!lens.prescription && !has_refracting_elements()) {
     return thin_lens_imaging(lens.focal_length, lens.f_number, focus_distance(), z_b());
   }
   return paraxial_imaging(*this, paraxial_camera(*this));
@@ -37,7 +62,7 @@ Vec2d Setup::axis_on_target() const {
 
 Vec2d Setup::target_extent() const {
   if (target.extent_m) return *target.extent_m;
-  if (pose || camera.tilted()) return posed_extent(*this);
+  if (has_oblique_view()) return posed_extent(*this);
   // Compute in mm, so that the resolved setup, which stores mm, reproduces the dots to the last bit.
   double const px_mm = camera.pixel_pitch / imaging().magnification / unit::millimetre;
   Vec2d const view_mm{(camera.columns + 2.0 * view_margin_px) * px_mm, (camera.rows + 2.0 * view_margin_px) * px_mm};
@@ -52,18 +77,20 @@ Vec2d Setup::target_view_margin() const {
 double Setup::dot_diameter() const {
   if (target.dot_diameter_m) return *target.dot_diameter_m;
   double const diameter_px = target.dot_diameter_px.value_or(0.0);
-  if (pose || camera.tilted()) return diameter_px * pixel_size();
+  if (has_oblique_view()) return diameter_px * pixel_size();
   return diameter_px * camera.pixel_pitch / imaging().magnification;
 }
 
 double Setup::pixel_size() const {
-  return pose || camera.tilted() ? posed_pixel_size(*this) : camera.pixel_pitch / imaging().magnification;
+  return has_oblique_view() ? posed_pixel_size(*this) : camera.pixel_pitch / imaging().magnification;
 }
 
 double Setup::spot_scale_px() const {
   ImagingGeometry const geometry = imaging();
   if (geometry.entrance_pupil == 0) return 0;
-  if (lenslets) return lenslets->to_sensor / lenslets->pitch * medium.wavelength / camera.pixel_pitch;
+  for (OpticalElement const& element : elements) {
+    if (double const own = element.image_f_number(); own > 0) return own * medium.wavelength / camera.pixel_pitch;
+  }
   return geometry.image_distance / geometry.entrance_pupil * medium.wavelength / camera.pixel_pitch;
 }
 
@@ -96,7 +123,7 @@ double Setup::defocus_diameter_px() const {
 }
 
 double Setup::pixel_area() const {
-  if (pose || camera.tilted()) return posed_view_area(*this) / (camera.columns * camera.rows);
+  if (has_oblique_view()) return posed_view_area(*this) / (camera.columns * camera.rows);
   double const px = camera.pixel_pitch / imaging().magnification;
   return px * px;
 }

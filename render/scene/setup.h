@@ -12,8 +12,7 @@
 #include "render/light/target_setup.h"
 #include "render/medium/medium_setup.h"
 #include "render/optics/lens_setup.h"
-#include "render/optics/lenslet_array.h"
-#include "render/optics/window.h"
+#include "render/optics/optical_element.h"
 #include "render/scene/sequence_setup.h"
 #include "render/sensor/camera_setup.h"
 #include "render/setup/setup_table.h"
@@ -68,8 +67,7 @@ struct Setup {
   std::optional<double> z_sensor;  ///< position of a fixed sensor on the Z axis, from which the lens is placed [m]
   double z_d = 0.25;  ///< mid-plane of the medium to the dots, along Z [m]; 0 for PIV and calibration (plane_setup)
   std::optional<Pose<double>> pose;  ///< pose of the camera, see camera_pose(); empty: on the Z axis, looking along -Z
-  std::optional<LensletSetup> lenslets;  ///< lenslets of a plenoptic camera, in the image plane of its lens
-  std::vector<WindowSetup> windows;      ///< windows in the order of the light path
+  std::vector<OpticalElement> elements;  ///< optical elements besides the lens; those of a side in the light's order
   std::vector<std::string> warnings;     ///< warnings from reading the setup
   int view_margin_px = 64;  ///< margin of a target of default extent beyond the view: first-pass window [px]
 
@@ -84,10 +82,27 @@ struct Setup {
   Vec2d target_centre() const;
   /// Returns the amount by which a target must be larger than the view because its centre is off the camera's axis [m].
   Vec2d target_view_margin() const;
-  /// Returns true for the set-up that closed forms describe: an ideal thin lens on the Z axis without windows, lenslets
-  /// or distortion, and a sensor perpendicular to the axis.
+  /// Returns true for the set-up that closed forms describe: an ideal thin lens on the Z axis without other optical
+  /// elements or distortion, and a sensor perpendicular to the axis.
   bool has_closed_form_layout() const {
-    return !lens.prescription && !pose && windows.empty() && !camera.tilted() && !camera.distorted() && !lenslets;
+    return !lens.prescription && !pose && elements.empty() && !camera.tilted() && !camera.distorted();
+  }
+  /// Returns true if an optical element ahead of the image plane adds aberrations to those of the lens.
+  bool has_refracting_elements() const;
+  /// Returns true if an optical element divides the light of a point among many images.
+  bool divides_light() const;
+  /// Returns true if the camera is posed or tilted, or its axis is deflected, so that its view is found by tracing
+  /// rays.
+  bool has_oblique_view() const;
+  /// Returns the apparent displacement of objects along the axis by the elements on one side [m].
+  double element_shift(ElementSide side) const;
+  /// Returns the first optical element of a kind; null if there is none.
+  template <class Kind>
+  Kind const* element() const {
+    for (OpticalElement const& held : elements) {
+      if (auto const* const found = held.get<Kind>()) return found;
+    }
+    return nullptr;
   }
   bool calibration() const { return !planes.empty(); }
   /// Distance from the front principal plane to the plane in focus [m].
@@ -95,7 +110,7 @@ struct Setup {
   /// Maximum distance of objects from the axis in x or y: ten times their distance from the lens, 84 degrees [m].
   double max_off_axis_distance() const { return 10 * z_b(); }
   /// Returns image distance, magnification and entrance pupil near the axis. For prescriptions and cameras behind
-  /// windows, these are paraxial values with the sensor in the paraxial image.
+  /// other optical elements, these are paraxial values with the sensor in the paraxial image.
   ImagingGeometry imaging() const;
   double ambient_index() const { return 1 + medium.ambient_refractivity(); }
   /// Width and height of the target, centred on target_centre() [m].
@@ -103,7 +118,7 @@ struct Setup {
   /// Diameter of a dot on the target, as configured or from dot_diameter_px [m].
   double dot_diameter() const;
   /// Scale of diffraction, N (1 + M) lambda: image distance over pupil diameter times wavelength [px]; 0 for chief
-  /// rays. For a plenoptic camera, that of a lenslet: its distance from the sensor over its pitch, times wavelength.
+  /// rays. If an optical element forms images of its own (lenslets), with their f-number in place of N (1 + M).
   double spot_scale_px() const;
   /// Diameter d_d of the rendered diffraction PSF [px]: diameter of the first Airy zero for "airy" and for the Gaussian
   /// matched to it; four standard deviations for "gaussian_first_zero" (2.44 N (1 + M) lambda) and "seed_eq8" (pi times

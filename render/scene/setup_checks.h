@@ -12,6 +12,9 @@ namespace gladstone {
 /// Returns the table of the camera; records a problem if the setup has several cameras.
 SetupTable camera_table(SetupTable& root);
 
+/// Returns the tables of the setup's optical elements, in the order of Setup::elements.
+std::vector<ElementTable> element_tables(SetupTable root);
+
 /// Returns a hint if a length in mm was probably given in metres (below 2 mm); otherwise an empty text.
 /// @param length  length [m]
 std::string metres_hint(double length);
@@ -19,8 +22,8 @@ std::string metres_hint(double length);
 /// Reports dots or a lens inside the medium.
 void cross_check_geometry(Setup const& setup, SetupTable geometry);
 
-/// Reports windows that overlap another object or violate the order of the light path along the camera's axis.
-void cross_check_windows(Setup const& setup, SetupTable root);
+/// Reports optical elements that overlap another object or violate the order of the light path along the camera's axis.
+void cross_check_elements(Setup const& setup, SetupTable root);
 
 /// Warns if the thickness of the medium truncates a field that is still significant there.
 void cross_check_thickness(Setup const& setup, std::vector<std::string>& warnings);

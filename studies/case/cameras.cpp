@@ -4,6 +4,7 @@
 #include <cctype>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <optional>
 #include <set>
 #include <utility>
@@ -39,25 +40,30 @@ std::optional<SetupNode> take(SetupNode& table, std::string const& key) {
   return taken;
 }
 
-/// Retains only the windows that a camera looks through, and removes their key `cameras`.
+/// Tables of optical elements with the key `cameras`.
+constexpr char const* element_keys[] = {"window", "element"};
+
+/// Retains only the optical elements that a camera looks through, and removes their key `cameras`.
+/// @param key    name of their table
 /// @param names  names of all cameras
-void keep_own_windows(SetupDocument& document, std::string const& camera, std::vector<std::string> const& names) {
-  SetupNode const* const all = document.find({"window"});
+void keep_own_elements(SetupDocument& document, std::string const& key, std::string const& camera,
+                       std::vector<std::string> const& names) {
+  SetupNode const* const all = document.find({key});
   if (!all || (all->kind != Kind::array && all->kind != Kind::table)) return;
-  std::vector<SetupNode> windows = all->kind == Kind::array ? all->elements : std::vector{*all};
+  std::vector<SetupNode> elements = all->kind == Kind::array ? all->elements : std::vector{*all};
   // used to locate errors; querying `document` itself would add keys to its resolved text
   SetupDocument places = document.copy();
   SetupNode kept = *all;
   kept.kind = Kind::array;
   kept.members.clear();
   kept.elements.clear();
-  for (std::size_t i = 0; i < windows.size(); ++i) {
-    std::optional<SetupNode> const seen_by = take(windows[i], "cameras");
+  for (std::size_t i = 0; i < elements.size(); ++i) {
+    std::optional<SetupNode> const seen_by = take(elements[i], "cameras");
     bool seen = !seen_by || (seen_by->kind == Kind::array && seen_by->elements.empty());
     auto const problem = [&](std::string const& message) {
-      std::vector<SetupTable> tables = places.root().tables("window");
-      document.add_problem(i < tables.size() ? tables[i].where("cameras") : "window",
-                           "window[" + std::to_string(i) + "].cameras: " + message);
+      std::vector<SetupTable> tables = places.root().tables(key);
+      document.add_problem(i < tables.size() ? tables[i].where("cameras") : key,
+                           key + '[' + std::to_string(i) + "].cameras: " + message);
     };
     if (seen_by && seen_by->kind != Kind::array) {
       problem("must be an array of camera names; write [\"left\", \"right\"]");
@@ -69,18 +75,18 @@ void keep_own_windows(SetupDocument& document, std::string const& camera, std::v
                 (names.empty() ? "give camera.name" : "cameras are " + quoted_list(names)));
       }
     }
-    if (seen) kept.elements.push_back(windows[i]);
+    if (seen) kept.elements.push_back(elements[i]);
   }
-  document.set({"window"}, kept);
+  document.set({key}, kept);
 }
 
-/// Retains one camera of a setup, with its own lens and windows.
+/// Retains one camera of a setup, with its own lens and optical elements.
 void keep_camera(SetupDocument& document, SetupNode camera, std::vector<std::string> const& names) {
   SetupNode const* const name = camera.find("name");
   std::string const own = name && name->kind == Kind::text ? name->text : "";
   if (std::optional<SetupNode> const lens = take(camera, "lens")) document.set({"lens"}, *lens);
   document.set({"camera"}, camera);
-  keep_own_windows(document, own, names);
+  for (char const* key : element_keys) keep_own_elements(document, key, own, names);
 }
 
 void check_name(SetupTable camera, std::string const& name, std::set<std::string>& others) {
@@ -137,10 +143,11 @@ SetupDocument with_own_lens(SetupDocument setup) {
   if (several_cameras(setup)) return setup;
   if (node && node->kind == Kind::array && node->elements.size() == 1) node = &node->elements.front();
   SetupNode const camera = node ? *node : SetupNode{};
-  SetupNode const* const windows = setup.find({"window"});
-  bool const chosen =
-      windows && (windows->find("cameras") || std::any_of(windows->elements.begin(), windows->elements.end(),
-                                                          [](SetupNode const& one) { return one.find("cameras"); }));
+  bool const chosen = std::any_of(std::begin(element_keys), std::end(element_keys), [&setup](char const* key) {
+    SetupNode const* const found = setup.find({key});
+    return found && (found->find("cameras") || std::any_of(found->elements.begin(), found->elements.end(),
+                                                           [](SetupNode const& one) { return one.find("cameras"); }));
+  });
   if (camera.kind != Kind::table || (!camera.find("lens") && !chosen)) return setup;
   if (camera.find("lens") && setup.find({"lens"})) {
     setup.root().problem("lens", "conflicts with the camera's own lens (camera.lens); remove one of them");

@@ -80,7 +80,7 @@ ImageDiameters expected_images(Setup const& setup) {
 }
 
 double defocus_distance(Setup const& setup, double diameter_px) {
-  if (setup.lens.prescription || setup.lenslets || !setup.windows.empty()) return std::nan("");
+  if (setup.lens.prescription || !setup.elements.empty()) return std::nan("");
   ImageDiameters const images = expected_images(setup);
   double const blur = std::sqrt(square(diameter_px) - square(images.geometric_px) - square(images.spot_px));
   double const pupil = setup.lens.focal_length / setup.lens.f_number;

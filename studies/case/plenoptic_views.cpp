@@ -12,12 +12,12 @@ namespace gladstone {
 
 PlenopticCamera PlenopticCamera::of(Setup const& setup, std::string const& where) {
   auto const refuse = [&where](std::string const& why) { throw DataError(ErrorCode::unsupported, where, why); };
-  if (!setup.lenslets) refuse("its camera has no [camera.lenslets], so that each image is a single view");
+  auto const* const lenslets = setup.element<LensletSetup>();
+  if (!lenslets) refuse("its camera has no [camera.lenslets], so that each image is a single view");
   if (setup.lens.prescription) refuse("its lens is a prescription; views require an ideal thin lens");
   ImagingGeometry const imaging = setup.imaging();
   if (!(imaging.entrance_pupil > 0)) refuse("its lens has no stop (lens.f_number = inf), and therefore a single view");
-  return {setup.lens.focal_length, imaging.entrance_pupil, imaging.image_distance, *setup.lenslets,
-          setup.camera.pixel_pitch};
+  return {setup.lens.focal_length, imaging.entrance_pupil, imaging.image_distance, *lenslets, setup.camera.pixel_pitch};
 }
 
 double PlenopticCamera::parallax(double distance) const {

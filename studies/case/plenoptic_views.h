@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "render/base/image.h"
-#include "render/optics/lenslet_array.h"
+#include "render/optics/elements/lenslets.h"
 #include "render/scene/setup.h"
 
 namespace gladstone {

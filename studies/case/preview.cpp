@@ -63,7 +63,7 @@ std::size_t keep_near(Scene& scene, CasePreview const& preview) {
   Particles& particles = scene.particles;
   for (std::size_t i = 0; i < particles.size(); ++i) {
     auto const pixel = scene.camera.project(particles.place[0][i]);
-    bool const near = scene.setup.lenslets || (pixel && is_near(preview, *pixel, margin));
+    bool const near = scene.setup.divides_light() || (pixel && is_near(preview, *pixel, margin));
     if (!near) particles.photons[0][i] = particles.photons[1][i] = 0;
     if (particles.photons[0][i] > 0 || particles.photons[1][i] > 0) ++lit;
   }

@@ -28,7 +28,8 @@ inline constexpr std::uint64_t preview_rays = 128;  ///< rays per source instead
 /// Renders the part of a setup's images about the strongest density gradient in view, or about the image centre for
 /// PIV, calibrations (plane closest to Z = 0) and setups without a field. The pixels are those of the complete images
 /// if the exposure and the number of rays are given. Only dots and particles whose image without medium is within
-/// Setup::view_margin_px and the blur by defocus of the part are traced; with lenslets, all particles.
+/// Setup::view_margin_px and the blur by defocus of the part are traced; if an optical element divides the light
+/// (lenslets), all particles.
 /// @throws DataError if no dot or particle is there, or if a file cannot be read
 CasePreview render_preview(CaseSetup const& loaded, Renderer& renderer);
 

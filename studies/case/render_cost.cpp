@@ -54,7 +54,7 @@ double lit_particles(Setup const& setup) {
 /// @param largest  largest number that may be chosen
 double expected_rays(Setup const& setup, double largest) {
   constexpr double second_rule = 16, exposure = 0.9;  // level of the brightest pixel, relative to full scale
-  if (setup.lenslets) return largest;
+  if (setup.divides_light()) return largest;
   ExpectedParticles const images = expected_particles(setup);
   double const spot2 = images.diffraction_px * images.diffraction_px;
   double const blur2 = images.sheet_edge_diameter_px * images.sheet_edge_diameter_px - spot2;

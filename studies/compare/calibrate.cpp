@@ -59,7 +59,7 @@ CalibratedLens lens_of(Setup const& setup) {
 /// Returns the camera properties known from the setup, for comparison with the fitted camera.
 ExpectedCamera expected_camera(Setup const& setup) {
   ExpectedCamera expected;
-  expected.is_pinhole = setup.windows.empty();
+  expected.is_pinhole = !setup.has_refracting_elements();
   if (!expected.is_pinhole) return expected;
   if (auto const pinhole = equivalent_pinhole(setup, build_camera(plane_setup(setup, 0)))) {
     expected.principal_point_px = Vec2d{pinhole->cx, pinhole->cy};

@@ -33,8 +33,8 @@ namespace {
 CorrelationFile read_document(SetupDocument document, std::vector<std::string> const& overrides, PreparedSet set) {
   SetupTable root = document.root();
   // The file may be a complete setup, including the tables of a design question.
-  for (char const* other : {"schema", "experiment", "camera", "lens", "geometry", "window", "medium", "target", "light",
-                            "particles", "laser", "flow", "calibration", "sequence", "render"})
+  for (char const* other : {"schema", "experiment", "camera", "lens", "geometry", "window", "element", "medium",
+                            "target", "light", "particles", "laser", "flow", "calibration", "sequence", "render"})
     root.mark_as_read(other);
   for (char const* other : design_tables) root.mark_as_read(other);
   for (auto const& assignment : overrides) {

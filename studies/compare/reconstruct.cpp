@@ -50,7 +50,7 @@ void check_reconstructed_setup(Setup const& setup) {
   std::vector<SetupProblem> problems;
   if (setup.piv || setup.calibration())
     problems.push_back({"experiment", "is not \"bos\": only the displacement of a background contains the density"});
-  if (setup.pose || setup.camera.tilted() || setup.lenslets)
+  if (setup.pose || setup.camera.tilted() || setup.divides_light())
     problems.push_back({"camera",
                         "has a pose, a tilt or lenslets: density is reconstructed for a camera on the Z axis "
                         "with its sensor perpendicular to it; dewarp the vectors to such a view first"});

@@ -72,8 +72,8 @@ stereo::CalibratedCamera find_exact_camera(Setup const& setup, std::string const
   if (!pinhole)
     throw DataError(
         ErrorCode::unsupported, name,
-        "has a camera that is not an exact pinhole camera (a prescription, windows, lenslets, or distortion "
-        "on a tilted sensor); calibrate both cameras and give their calibration.h5 with --calibration");
+        "has a camera that is not an exact pinhole camera (a prescription, windows or other optical elements, or "
+        "distortion on a tilted sensor); calibrate both cameras and give their calibration.h5 with --calibration");
   Eigen::Matrix3d rotation;
   for (int i = 0; i < 3; ++i) {
     Vec3d const row = pinhole->rows[static_cast<std::size_t>(i)];

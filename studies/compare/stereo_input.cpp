@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
@@ -42,17 +43,20 @@ CorrelationSettings choose_dewarped_settings(CorrelationSettings settings) {
   return settings;
 }
 
-/// Throws if a case was rendered through optical windows and its calibration without them, or the reverse: the lines of
-/// sight of the calibration are not those of the images.
-void require_same_windows(CaseSetup const& of_case, std::string const& place, std::string const& calibration) {
+/// Throws if a case was rendered through optical elements and its calibration without them, or the reverse: the lines
+/// of sight of the calibration are not those of the images.
+void require_same_elements(CaseSetup const& of_case, std::string const& place, std::string const& calibration) {
   if (Hdf5Reader(calibration).attribute("setup").empty()) return;
-  std::size_t const own = of_case.setup.windows.size(),
-                    calibrated = load_calibrated_setup(calibration).setup.windows.size();
+  auto const count = [](Setup const& setup) {
+    return std::count_if(setup.elements.begin(), setup.elements.end(),
+                         [](OpticalElement const& element) { return element.side() != ElementSide::image_plane; });
+  };
+  auto const own = count(of_case.setup), calibrated = count(load_calibrated_setup(calibration).setup);
   if (own == calibrated) return;
   throw DataError(
       ErrorCode::inconsistent, calibration,
-      fmt::format("was made through {} optical windows, but {} looks through {}, which displaces its lines of "
-                  "sight; calibrate through the same windows",
+      fmt::format("was made through {} optical elements, but {} looks through {}, which displaces its lines of "
+                  "sight; calibrate through the same windows and other elements",
                   calibrated, place, own));
 }
 
@@ -105,7 +109,7 @@ StereoInput read_stereo_input(StereoOptions const& options, std::size_t index, S
           "is not a PIV case (its vectors are not the displacement of particles); give two cameras of a PIV "
           "rendering");
     if (!input.calibration.empty()) {
-      require_same_windows(*input.loaded, place, input.calibration);
+      require_same_elements(*input.loaded, place, input.calibration);
       require_same_view(*input.loaded, place, input.camera.camera, input.calibration);
     }
   } else {

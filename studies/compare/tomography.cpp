@@ -181,8 +181,9 @@ void add_tomography_warnings(Tomography& result, std::vector<TomographyView> con
   constexpr double largest_residual = 0.5;  // three quarters of the squared line integrals are explained
   for (TomographyView const& view : views) {
     std::string const& name = view.projected.name;
-    if (!view.loaded.setup.windows.empty())
-      result.warnings.push_back(name + ": the optical windows are neglected: lines of sight are straight");
+    if (view.loaded.setup.has_refracting_elements())
+      result.warnings.push_back(name +
+                                ": windows and other optical elements are neglected: lines of sight are straight");
     if (view.unreferenced > 0)
       result.warnings.push_back(
           fmt::format("{}: {} vectors are not used, since masks separate them from the reference region; add a "

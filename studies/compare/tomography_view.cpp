@@ -59,7 +59,7 @@ void check_view_setup(Setup const& setup, std::string const& name) {
     throw DataError(ErrorCode::wrong_format, name,
                     "is not a BOS setup (density follows from the displacement of a background); use a setup with "
                     "experiment = \"bos\"");
-  if (setup.lenslets)
+  if (setup.divides_light())
     throw DataError(ErrorCode::unsupported, name,
                     "has a plenoptic camera, whose lines of sight do not meet in one pupil; use one setup for each "
                     "view");

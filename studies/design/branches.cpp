@@ -30,10 +30,10 @@ std::pair<std::string, std::string> beyond_design(Setup const& setup) {
   if (setup.lens.focus != Focus::target) {
     return {"lens.focus", "is not on the target (the formulas describe dots in focus); use focus = \"target\""};
   }
-  if (setup.pose || setup.lenslets || setup.camera.tilted() || !setup.windows.empty()) {
+  if (setup.pose || setup.camera.tilted() || !setup.elements.empty()) {
     return {"camera",
-            "is posed, tilted, plenoptic or behind windows (requirements assume a camera on the axis, perpendicular to "
-            "the target); remove these from the setup"};
+            "is posed, tilted, or has optical elements besides the lens (requirements assume a camera on the axis, "
+            "perpendicular to the target); remove these from the setup"};
   }
   if (!std::isfinite(setup.lens.f_number)) {
     return {"lens.f_number", "does not define an aperture (a design requires the light cone); give a number"};

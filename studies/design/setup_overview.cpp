@@ -69,8 +69,9 @@ void add_dot_image(std::vector<SheetRow>& rows, Setup const& setup) {
 }
 
 void add_lenslets(std::vector<SheetRow>& rows, Setup const& setup) {
-  if (!setup.lenslets) return;
-  double const pixels = setup.lenslets->pitch / setup.camera.pixel_pitch;
+  auto const* const lenslets = setup.element<LensletSetup>();
+  if (!lenslets) return;
+  double const pixels = lenslets->pitch / setup.camera.pixel_pitch;
   rows.push_back(
       plain_row("pixels_per_lenslet", "pixels across a lenslet", pixels, "px", "views along each direction"));
   rows.push_back(plain_row("lenslets_across", "lenslets across the sensor", setup.camera.columns / pixels, ""));
@@ -99,7 +100,7 @@ void add_dot_numbers(std::vector<SheetRow>& rows, Setup const& setup) {
 }
 
 bool has_sheet(Setup const& setup) {
-  return std::isfinite(setup.lens.f_number) && std::isfinite(setup.lens.focal_length) && !setup.lenslets;
+  return std::isfinite(setup.lens.f_number) && std::isfinite(setup.lens.focal_length) && !setup.divides_light();
 }
 
 void add_bos(SetupOverview& overview, CaseSetup& loaded) {

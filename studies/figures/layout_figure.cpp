@@ -186,7 +186,7 @@ OpticalLayout make_camera_layout(Setup const& setup) {
   double const z_b = setup.z_b(), behind = z_b - setup.z_a;  // distance from the mid-plane to the dots on the axis
   return {.dots_z = -behind,
           .lens_z = setup.z_a,
-          .sensor_z = setup.z_a + imaging.image_distance,
+          .sensor_z = setup.z_a + imaging.image_distance + setup.element_shift(ElementSide::sensor),
           .medium_half_thickness = setup.calibration() ? 0 : setup.medium.thickness / 2,
           .pupil_radius = imaging.entrance_pupil / 2,
           .sensor_half = half,

@@ -32,7 +32,7 @@ void write_layout_figure(std::string const& path, DesignPoint<double> const& ben
 /// the point of the axis at the distance Z_A) towards the camera.
 OpticalLayout make_camera_layout(Setup const& setup);
 
-/// Draws make_camera_layout(), for cameras with a pose, prescription, windows or lenslets, and for calibrations.
+/// Draws make_camera_layout(), for cameras with a pose, prescription or other optical elements, and for calibrations.
 /// @throws DataError if the image distance or the view is infinite; GnuplotMissing, OutputError
 void write_camera_layout(std::string const& path, Setup const& setup);
 

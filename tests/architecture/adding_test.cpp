@@ -51,6 +51,13 @@ std::vector<Row> const& rows() {
         {"FileFlow",
          {"render/light/velocity_file.h", "render/light/velocity_file.cpp",
           "cuda/ideal_images/cuda_pair_batches.cpp"}}}},
+      {"optical element",
+       "render/optics/elements",
+       kind,
+       {"render/optics/element_kinds.h"},
+       // views are those of a plenoptic camera, and so is what an overview says about them
+       {{"LensletSetup",
+         {"studies/case/plenoptic_views.h", "studies/case/plenoptic_views.cpp", "studies/design/setup_overview.cpp"}}}},
       {"reader of fields",
        "render/files/fields/readers",
        std::regex(

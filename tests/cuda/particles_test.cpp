@@ -160,17 +160,17 @@ TEST_F(CudaParticlesTest, ThroughLensesOfManySurfaces) {
 
 TEST_F(CudaParticlesTest, ThroughWindowsAndLensletsOnATiltedSensor) {
   expect_particles_as_on_cpu(droplets(64, [](BosSetup& setup) {
-    WindowSetup window;
-    window.side = WindowSide::camera;
+    OpticalWindow window;
+    window.side = ElementSide::camera;
     window.index = 1.5168;
     window.thickness = 10e-3;
     window.position = {0, 0, 0.1};
     window.tilt = {0.05, -0.02};
-    setup.windows = {window};
+    setup.elements = {window};
     setup.camera.tilt = {0.03, -0.05};
   }));
   expect_particles_as_on_cpu(droplets(300, [](BosSetup& setup) {
-    setup.lenslets = LensletSetup{83e-6, 900e-6, 900e-6, LensletLayout::square};
+    setup.elements = {LensletSetup{83e-6, 900e-6, 900e-6, LensletLayout::square}};
   }));
 }
 

@@ -74,17 +74,17 @@ TEST_F(CudaRaysTest, TakeTheRaysThatEachNeeds) {
 }
 
 TEST_F(CudaRaysTest, WindowsPosesAndTiltedSensors) {
-  auto const window = [](WindowSide side) {
-    WindowSetup setup;
+  auto const window = [](ElementSide side) {
+    OpticalWindow setup;
     setup.side = side;
     setup.index = 1.5168;
     setup.thickness = 10e-3;
-    setup.position = {0, 0, side == WindowSide::camera ? 0.1 : -0.1};
+    setup.position = {0, 0, side == ElementSide::camera ? 0.1 : -0.1};
     setup.tilt = {0.05, -0.02};
     return setup;
   };
   expect_as_on_cpu(seen_through(300, [&](BosSetup& setup) {
-    setup.windows = {window(WindowSide::target), window(WindowSide::camera)};
+    setup.elements = {window(ElementSide::target), window(ElementSide::camera)};
   }));
   expect_as_on_cpu(seen_through(300, [&](BosSetup& setup) {
     setup.camera.tilt = {0.03, -0.05};
@@ -139,7 +139,7 @@ TEST_F(CudaRaysTest, CamerasThatLookFromAside) {
 TEST_F(CudaRaysTest, LensletsBeforeTheSensor) {
   for (LensletLayout const layout : {LensletLayout::square, LensletLayout::hexagonal}) {
     expect_as_on_cpu(seen_through(300, [&](BosSetup& setup) {
-      setup.lenslets = LensletSetup{83e-6, 900e-6, 900e-6, layout};
+      setup.elements = {LensletSetup{83e-6, 900e-6, 900e-6, layout}};
     }));
   }
 }

@@ -172,6 +172,13 @@ TEST_F(Cameras, LookThroughTheWindowsThatNameThem) {
   }
   EXPECT_LT(std::abs(without[nearest] - 47.5), 5);
   EXPECT_NEAR(std::abs(through[nearest] - without[nearest]), 16.1, 0.5);
+  // in the general table, the same window
+  write("setup.toml", text +
+                          "[[element]]\nkind = \"window\"\nposition_mm = [0, 0, 100]\nthickness_mm = 20\n"
+                          "cameras = [\"right\"]\n");
+  render("general");
+  EXPECT_EQ(seen("general/left/truth.h5"), seen("plain/left/truth.h5"));
+  EXPECT_EQ(seen("general/right/truth.h5"), through);
 }
 
 TEST_F(Cameras, OneCameraMayHaveItsOwnLens) {

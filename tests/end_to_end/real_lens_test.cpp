@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "render/base/units.h"
 #include "tests/end_to_end/support/program_fixture.h"
 
 namespace gladstone::end_to_end {
@@ -170,6 +171,44 @@ TEST_F(RealLens, LooksFromTheSideThroughAWindow) {
   EXPECT_LT(errors["budget"]["closure_px"].get<double>(), 1e-9);
   // along the line of sight the medium is thicker, and its gradient is seen at an angle: still within a tenth of Eq. 9
   EXPECT_LT(rms(errors, "small_angle"), 0.05);
+  render("again", {}, "case/setup.toml");
+  expect_same_case("case", "again");
+}
+
+// A thin prism between medium and lens, at the distance b = 850 mm from the dots, displaces all images by the fraction
+// b / Z_B of its deflection (n - 1) a times z_i / p; a tilted plate between lens and sensor displaces them by t sin(a)
+// (1 - cos(a) / sqrt(n^2 - sin(a)^2)) / p. Neither changes the displacement by the medium, M Z_D K L grad rho / (n0 p),
+// which the correlation measures.
+TEST_F(RealLens, PrismAndPlateDisplaceBothImages) {
+  write("setup.toml", with(automatic_setup(), "rays_per_dot = 32", "rays_per_dot = 256") +
+                          "[[element]]\nkind = \"wedge\"\nthickness_mm = 0.5\nposition_mm = [0.0, 0.0, 600.0]\n"
+                          "wedge_deg = [0.0, 0.1]\n[[element]]\nkind = \"window\"\nside = \"sensor\"\n"
+                          "thickness_mm = 1.0\nposition_mm = [0.0, 0.0, 50.0]\ntilt_deg = [20.0, 0.0]\n");
+  auto const errors = compared("case", "setup.toml");
+  EXPECT_LT(errors["ray_truth"]["rms_px"].get<double>(), 0.05);
+  EXPECT_LT(errors["budget"]["closure_px"].get<double>(), 1e-9);
+  EXPECT_LT(rms(errors, "small_angle"), 0.05);
+  Hdf5Reader const truth(in("case/truth.h5").string());
+  auto const position = truth.read("/dots/position_m"), image = truth.read("/dots/reference_px");
+  auto const displacement = truth.read("/dots/displacement_px");
+  double const n = 1.519472583, pitch = 10e-6, M = 0.105 / (1 - 0.105), degree = pi / 180;
+  double right = 0, up = 0, u = 0, v = 0;
+  std::size_t const dots = image.size() / 2;
+  auto const count = static_cast<double>(dots);
+  for (std::size_t k = 0; k < dots; ++k) {
+    right += (image[2 * k] - 31.5 - M * position[3 * k] / pitch) / count;
+    up += (31.5 - image[2 * k + 1] - M * position[3 * k + 1] / pitch) / count;
+    u += displacement[2 * k] / count;
+    v += displacement[2 * k + 1] / count;
+  }
+  // The prism is 0.5 mm thick, which changes b by 2e-4 of it; the plate changes the angle of oblique rays, which is at
+  // most 6e-3 and averages out over the dots to less than a tenth of that.
+  EXPECT_NEAR(right / (0.85 * (n - 1) * 0.1 * degree * M / pitch), 1, 2e-3);
+  double const s = std::sin(20 * degree), c = std::cos(20 * degree);
+  EXPECT_NEAR(std::abs(up) / (1e-3 * s * (1 - c / std::sqrt(n * n - s * s)) / pitch), 1, 5e-3);
+  double const K = 2.26e-4, scale = M * 0.25 * K * 0.01 / (1 + K * 1.225) / pitch;
+  EXPECT_NEAR(u / (-20 * scale), 1, 4e-3);
+  EXPECT_NEAR(v / (10 * scale), 1, 4e-3);
   render("again", {}, "case/setup.toml");
   expect_same_case("case", "again");
 }

@@ -23,7 +23,7 @@ TEST(FocusedDots, AreNothingButFlatDotsInFocusOfAThinLens) {
   };
   EXPECT_TRUE(refused([](auto& s) { s.lens.prescription = std::make_shared<Lens const>(); }));
   EXPECT_TRUE(refused([](auto& s) { s.pose = Pose<double>{{0, 0, 0.75}}; }));
-  EXPECT_TRUE(refused([](auto& s) { s.windows.emplace_back(); }));
+  EXPECT_TRUE(refused([](auto& s) { s.elements.emplace_back(OpticalWindow{}); }));
   EXPECT_TRUE(refused([](auto& s) { s.camera.tilt.x = 1e-3; }));
   EXPECT_TRUE(refused([](auto& s) { s.camera.scheimpflug = true; }));
   EXPECT_TRUE(refused([](auto& s) { s.camera.distortion.k1 = 1e-3; }));

@@ -158,7 +158,8 @@ TEST(IdealImages, HaveOneDoor) {
   EXPECT_THAT(reason([](gladstone::Setup& s) { s.medium.second_field = FieldSetup{}; }),
               HasSubstr("medium deflects rays"));
   EXPECT_THAT(reason([](gladstone::Setup& s) { s.camera.tilt = {0.1, 0}; }), HasSubstr("not an ideal thin lens"));
-  EXPECT_THAT(reason([](gladstone::Setup& s) { s.windows.emplace_back(); }), HasSubstr("not an ideal thin lens"));
+  EXPECT_THAT(reason([](gladstone::Setup& s) { s.elements.emplace_back(OpticalWindow{}); }),
+              HasSubstr("not an ideal thin lens"));
   EXPECT_THAT(reason([](gladstone::Setup& s) { s.lens.focus = Focus::distance; }),
               HasSubstr("not focused on the sheet"));
   EXPECT_THAT(reason([](gladstone::Setup& s) { s.lens.f_number = std::numeric_limits<double>::infinity(); }),

@@ -77,7 +77,7 @@ TEST(PlenopticRendering, SortsAllTheLightOfThePicture) {
   };
   Rendering const plain = picture(setup);
   for (LensletLayout const layout : {LensletLayout::square, LensletLayout::hexagonal}) {
-    setup.lenslets = LensletSetup{80e-6, 900e-6, 900e-6, layout};
+    setup.elements = {LensletSetup{80e-6, 900e-6, 900e-6, layout}};
     Rendering const sorted = picture(setup);
     // Light is in units of fully lit pixels, which see (1 + d / z_i)^2 less of the target without lenslets, with d the
     // distance from the lenslets to the sensor; PSFs cut at 5.5 standard deviations lose 1e-7 of the light.

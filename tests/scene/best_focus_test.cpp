@@ -84,11 +84,11 @@ TEST(LensPlacedBySensor, OfAThinLensIsBessels) {
 // moving the sensor in either direction widens the bundle of the point in focus.
 TEST(LensPlacedBySensor, OfARealLensIsWhereTheSensorSeesTheNarrowestBundle) {
   gladstone::Setup base = double_gauss_setup(64, 2.8);
-  WindowSetup window;
+  OpticalWindow window;
   window.index = 1.5168;
   window.thickness = 10e-3;
   window.position = {0, 0, 0.1};
-  base.windows = {window};
+  base.elements = {window};
   for (Focus const focus : {Focus::target, Focus::distance}) {
     base.lens.focus = focus;
     base.lens.focus_distance = 0.9;

@@ -95,7 +95,7 @@ TEST(CalibrationSetup, MistakesAreNamedWithTheirCure) {
               refused(ErrorCode::invalid_value, "3:1"));
   EXPECT_THAT([&] { read_setup_text(text("planes_mm = [0, 700]")); }, refused(ErrorCode::invalid_value, "3:1"));
   EXPECT_THAT([&] { read_setup_text(text("planes_mm = [0, 50]\n[[window]]\nposition_mm = [0, 0, 40]")); },
-              refused(ErrorCode::invalid_value, "3:1", "window at Z = 40 mm"));
+              refused(ErrorCode::invalid_value, "3:1", "window 1 at Z = 40 mm"));
   EXPECT_THAT([&] { read_setup_text(text("[geometry]\nz_d_mm = 250")); }, refused(ErrorCode::invalid_value, "4:1"));
   EXPECT_THAT([&] { read_setup_text(text("[target]\nseed = 1")); }, refused(ErrorCode::invalid_value, "3:"));
   EXPECT_THAT([&] { read_setup_text(text("[medium.field]\nkind = \"uniform_gradient\"\ngradient_kg_m4 = [1, 0, 0]")); },

@@ -65,11 +65,13 @@ TEST(Windows, AreReadWithTheirGlass) {
   gladstone::Setup const setup = setup_of(
       "[[window]]\nside = \"target\"\nglass = \"N-BK7\"\nthickness_mm = 20\nposition_mm = [0, 0, -100]\n"
       "[[window]]\nposition_mm = [0, 0, 100]\ntilt_deg = [5, 0]\n");
-  ASSERT_EQ(setup.windows.size(), 2u);
-  EXPECT_EQ(setup.windows[0].side, WindowSide::target);
-  EXPECT_NEAR(setup.windows[0].index, 1.519472583, 1e-8);
-  EXPECT_EQ(setup.windows[1].side, WindowSide::camera);
-  EXPECT_NEAR(setup.windows[1].tilt.x, 5 * unit::degree, 1e-15);
+  ASSERT_EQ(setup.elements.size(), 2u);
+  OpticalWindow const &first = *setup.elements[0].get<OpticalWindow>(),
+                      &second = *setup.elements[1].get<OpticalWindow>();
+  EXPECT_EQ(first.side, ElementSide::target);
+  EXPECT_NEAR(first.index, 1.519472583, 1e-8);
+  EXPECT_EQ(second.side, ElementSide::camera);
+  EXPECT_NEAR(second.tilt.x, 5 * unit::degree, 1e-15);
   EXPECT_THAT([] { setup_of("[[window]]\n"); }, ThrowsMessage<SetupError>(HasSubstr("position_mm")));
 }
 
@@ -140,7 +142,7 @@ TEST(Glasses, OfOnesOwnCatalogueMakeLensesAndWindows) {
   std::string const window = "[[window]]\nglass = \"F_SILICA\"\nposition_mm = [0, 0, 100]\n";
   gladstone::Setup const setup = setup_of(model + "glasses = [\"" + own + "\"]\n" + window);
   EXPECT_NEAR(setup.lens.focal_length, 1 / (0.5 * (2 / 0.1 - 0.5 * 2e-3 / (1.5 * 0.01))), 1e-9);
-  EXPECT_NEAR(setup.windows.at(0).index, 1.460706345, 5e-10);
+  EXPECT_NEAR(setup.element<OpticalWindow>()->index, 1.460706345, 5e-10);
   EXPECT_THAT([&] { setup_of(model); }, refused(ErrorCode::unknown_choice, "3:1"));
   EXPECT_THAT([&] { setup_of("[lens]\nglasses = [\"none.agf\"]\n"); }, refused(ErrorCode::missing_file, "2:1"));
   EXPECT_THAT([&] { setup_of("[lens]\nglasses = [\"" + lens + "\"]\n"); }, refused(ErrorCode::missing_content, "2:1"));

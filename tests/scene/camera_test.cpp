@@ -189,15 +189,15 @@ TEST(PosedCamera, DistortsAsBrownSays) {
 // the plate. For rays near its normal, it shifts the dots towards the camera by t (1 - 1/n).
 TEST(Window, ActsAsThePlanePlate) {
   auto setup = table1_setup(512);
-  WindowSetup window;
+  OpticalWindow window;
   window.index = 1.5168;
   window.thickness = 10e-3;
   window.position = {0, 0, 0.1};
-  setup.windows = {window};
+  setup.elements = {window};
   // a small aperture, so that the plate's spherical aberration does not change the best focus
   setup.lens.f_number = 64;
   auto bare = setup;
-  bare.windows.clear();
+  bare.elements.clear();
   bare.z_d -= window.shift();
   EXPECT_NEAR(window.shift(), 3.40717299578059e-3, 1e-12);
   EXPECT_NEAR(setup.imaging().magnification, bare.imaging().magnification, 1e-12);
@@ -207,7 +207,7 @@ TEST(Window, ActsAsThePlanePlate) {
 
   // tilted by 30 degrees: 1.97621122205116 mm perpendicular to the ray along the axis
   window.tilt = {0, 30 * unit::degree};
-  setup.windows = {window};
+  setup.elements = {window};
   Camera const tilted = build_camera(setup);
   Ray<double> ray{{0, 0, 0}, {0, 0, 1}};
   RayAccount<double> account;

@@ -72,7 +72,7 @@ TEST(PivSetup, RejectsSetupsWithoutImage) {
   EXPECT_THAT(refused_piv(piv_text("volume_mm = [10, 10, 2000]\n")),
               ThrowsSetupError(ErrorCode::invalid_value, "particles.volume_mm"));
   EXPECT_THAT(refused_piv(piv_text("", "", "", "[[window]]\nglass = \"N-BK7\"\nposition_mm = [0, 0, 0.5]\n")),
-              ThrowsSetupError(ErrorCode::invalid_value, "window"));
+              ThrowsSetupError(ErrorCode::invalid_value, "window[0].position_mm"));
 }
 
 TEST(PivSetup, RefusesVelocitiesThatEndInsideTheVolume) {

@@ -18,7 +18,7 @@ constexpr double pitch = 130e-6, lenslet_f = 1.5e-3;
 /// Table 1 with lenslets in the image plane.
 gladstone::Setup plenoptic_setup() {
   gladstone::Setup setup = table1_setup(512);
-  setup.lenslets = LensletSetup{pitch, lenslet_f, lenslet_f, LensletLayout::square};
+  setup.elements = {LensletSetup{pitch, lenslet_f, lenslet_f, LensletLayout::square}};
   return setup;
 }
 
@@ -92,7 +92,7 @@ TEST(PlenopticCamera, LosesNoLight) {
   gladstone::Setup setup = plenoptic_setup();
   Vec3d const point{0.01, 0.005, -0.2};
   std::size_t const with = landings(build_camera(setup), point).size();
-  setup.lenslets.reset();
+  setup.elements.clear();
   EXPECT_EQ(with, landings(build_camera(setup), point).size());
 }
 

@@ -62,13 +62,13 @@ TEST(RayLosses, ReportRaysDeflectedPastStop) {
 // of the lens are numbered as without the window. At f/2, the stop transmits almost all light that the edges transmit.
 TEST(RayLosses, NameSurfacesBehindAWindowAsTheLensCountsThem) {
   auto setup = double_gauss_setup(64, 2);
-  WindowSetup window;
-  window.side = WindowSide::camera;
+  OpticalWindow window;
+  window.side = ElementSide::camera;
   window.glass = "N-BK7";
   window.index = 1.5195;
   window.thickness = 10e-3;
   window.position = {0, 0, 100e-3};
-  setup.windows = {window};
+  setup.elements = {window};
   Scene const scene = scene_with_dots(setup, {{2, 2}, {61, 61}}, 32);
   RayLosses const losses = sample_ray_losses(scene);
   EXPECT_FALSE(losses.lost.empty());

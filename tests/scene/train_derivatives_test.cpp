@@ -95,8 +95,8 @@ void expect_exact_derivatives(Camera const& camera, int changed, Values<double> 
   }
 }
 
-WindowSetup tilted_window() {
-  WindowSetup window;
+OpticalWindow tilted_window() {
+  OpticalWindow window;
   window.index = 1.5168;
   window.thickness = 10e-3;
   window.position = {0, 0, 0.1};
@@ -109,7 +109,7 @@ constexpr Values<double> off_axis{0.012, -0.015, -0.25, 0.004, 0.007, 0, 0, 0, 0
 // The chain rule through a window, eleven surfaces and a tilted sensor, as computed by Jets, agrees with differences.
 TEST(TrainDerivatives, ThroughADoubleGaussAreExact) {
   gladstone::Setup setup = double_gauss_setup(512, 4);
-  setup.windows = {tilted_window()};
+  setup.elements = {tilted_window()};
   setup.camera.tilt = {2 * unit::degree, -3 * unit::degree};
   Camera const camera = build_camera(setup);
   expect_exact_derivatives(camera, 6, off_axis);
@@ -118,7 +118,7 @@ TEST(TrainDerivatives, ThroughADoubleGaussAreExact) {
 // Like above, through an ideal lens with distortion of the image position.
 TEST(TrainDerivatives, ThroughAThinLensAreExact) {
   gladstone::Setup setup = table1_setup(512);
-  setup.windows = {tilted_window()};
+  setup.elements = {tilted_window()};
   setup.camera.distortion = {-2.0, 10.0, 0.03, -0.05};
   Camera const camera = build_camera(setup);
   Values<double> at = off_axis;

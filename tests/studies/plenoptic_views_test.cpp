@@ -25,7 +25,7 @@ Setup plenoptic_setup(LensletLayout layout) {
   setup.camera.pixel_pitch = 5 * um;
   setup.lens.f_number = 4;
   setup.z_d = 0;
-  setup.lenslets = LensletSetup{pitch, 280 * um, 280 * um, layout};
+  setup.elements = {LensletSetup{pitch, 280 * um, 280 * um, layout}};
   PivSetup piv;
   piv.laser.profile = SheetProfile::top_hat;
   piv.laser.thickness = 200 * mm;
@@ -143,7 +143,7 @@ TEST(PlenopticCamera, HasLensletsAndAStop) {
   setup.lens.f_number = std::numeric_limits<double>::infinity();
   EXPECT_THROW(PlenopticCamera::of(setup, "test"), DataError);
   setup = plenoptic_setup(LensletLayout::square);
-  setup.lenslets.reset();
+  setup.elements.clear();
   EXPECT_THAT([&] { PlenopticCamera::of(setup, "case/setup.toml"); },
               ThrowsDataError(ErrorCode::unsupported, "case/setup.toml"));
 }

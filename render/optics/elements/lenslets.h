@@ -1,14 +1,17 @@
 #pragma once
 
 #include <cmath>
-#include <optional>
+#include <string>
 
 #include "render/base/in_scalar.h"
 #include "render/base/pose.h"
+#include "render/optics/element_side.h"
 #include "render/optics/lens_surface.h"
 #include "render/setup/setup_table.h"
 
 namespace gladstone {
+
+struct ImagingGeometry;
 
 enum class LensletLayout : int { square, hexagonal };
 
@@ -17,6 +20,8 @@ enum class LensletLayout : int { square, hexagonal };
 /// every other row is shifted by half a pitch. A point belongs to the lenslet with the nearest axis.
 template <class T>
 struct LensletArray {
+  static constexpr bool divides_light = true;  ///< forms many images, each with a part of the light of a point
+
   Pose<T> pose;
   T pitch{};         ///< distance between neighbouring axes [m]
   T focal_length{};  ///< [m]
@@ -60,16 +65,34 @@ struct LensletArray {
   }
 };
 
-/// Table [camera.lenslets]: lenslet array ahead of the sensor, in SI.
+/// Array of lenslets in the image plane of the lens, ahead of the sensor (plenoptic camera), in SI.
 struct LensletSetup {
+  static constexpr char const* kind = "lenslets";
+  static constexpr char const* camera_table = "lenslets";
+  static constexpr ElementSide side = ElementSide::image_plane;
+  static constexpr bool divides_light = true;
+  template <class T>
+  using OwnSurfaces = SurfaceTypes<LensletArray<T>>;
+
   double pitch = 0;         ///< [m]
   double focal_length = 0;  ///< [m]
   double to_sensor = 0;     ///< distance from the array to the sensor [m]
   LensletLayout layout = LensletLayout::square;
-};
 
-/// Reads the table; nullopt if it is absent. The focal length is given directly, or by the radius of the one curved
-/// face and the index at the setup's wavelength, f = R / (n - 1).
-std::optional<LensletSetup> read_lenslets(SetupTable table);
+  /// Reads the keys. The focal length is given directly, or by the radius of the one curved face and the index at the
+  /// setup's wavelength, f = R / (n - 1).
+  static LensletSetup read(SetupTable& table);
+
+  /// f-number of the images that the lenslets form on the sensor, on which their diffraction depends [1].
+  double image_f_number() const { return to_sensor / pitch; }
+  /// Warns if the images of the stop behind the lenslets overlap. To avoid this, the f-number of the lenslets must not
+  /// exceed that of the lens (Ng et al., Stanford Tech Report CTSR 2005-02, section 3.1). @return empty: no warning
+  std::string imaging_warning(ImagingGeometry const& imaging, double f_number) const;
+
+  template <class Add>
+  void add_surfaces(Pose<double> const& at, bool, Add const& add) const {
+    add(LensletArray<double>{at, pitch, focal_length, layout}, "");
+  }
+};
 
 }  // namespace gladstone

@@ -1,11 +1,13 @@
-#include "render/optics/lenslet_array.h"
+#include "render/optics/elements/lenslets.h"
+
+#include <fmt/format.h>
 
 #include "render/base/units.h"
+#include "render/optics/lens_setup.h"
 
 namespace gladstone {
 
-std::optional<LensletSetup> read_lenslets(SetupTable table) {
-  if (!table.present()) return std::nullopt;
+LensletSetup LensletSetup::read(SetupTable& table) {
   LensletSetup setup;
   Range const length = Range::positive(1e6);
   setup.pitch = table.required_number("pitch_um", length) * unit::micrometre;
@@ -21,6 +23,15 @@ std::optional<LensletSetup> read_lenslets(SetupTable table) {
   setup.layout = table.choice("layout", setup.layout,
                               {{"square", LensletLayout::square}, {"hexagonal", LensletLayout::hexagonal}});
   return setup;
+}
+
+std::string LensletSetup::imaging_warning(ImagingGeometry const& imaging, double f_number) const {
+  double const picture = to_sensor * imaging.entrance_pupil / imaging.image_distance;
+  if (picture <= pitch) return {};
+  return fmt::format(
+      "lenslets: each images the stop with a diameter of {:.4g} um, more than their pitch of {:.4g} um, so that these "
+      "images overlap; stop the lens down to f/{:.3g} or use lenslets of a shorter focal length",
+      picture / unit::micrometre, pitch / unit::micrometre, f_number * picture / pitch);
 }
 
 }  // namespace gladstone
