@@ -21,7 +21,7 @@ gladstone completion bash | cmp - /usr/share/bash-completion/completions/gladsto
 gladstone completion zsh | cmp - /usr/share/zsh/vendor-completions/_gladstone
 gladstone completion fish | cmp - /usr/share/fish/vendor_completions.d/gladstone.fish
 # systems without manual pages remove them when they install a package (dpkg's path-exclude)
-grep -qx /usr/share/man/man1/gladstone.1.gz files.txt
+grep -qx /usr/share/man/man1/gladstone.1 files.txt
 
 apt-get purge -y -q gladstone > purge.log
 while read -r path; do
