@@ -1,4 +1,7 @@
-"""Names of arguments in messages: those of the called function in place of command-line options and setup keys."""
+"""Names of arguments in messages: those of the called function in place of command-line options and setup keys.
+
+The library words its messages for the command line. Only names are replaced; nothing depends on the wording.
+"""
 
 from __future__ import annotations
 

@@ -19,6 +19,6 @@ def deliver(messages: list[tuple[bool, str]]) -> None:
             continue
         frame = calling_frames()[-1]
         registry = frame.f_globals.setdefault("__warningregistry__", {})
-        warnings.warn_explicit(
-            CalledFunction().message(text), GladstoneWarning, frame.f_code.co_filename, frame.f_lineno, frame.f_globals.get("__name__"), registry
-        )
+        named = CalledFunction().message(text)
+        module = frame.f_globals.get("__name__")
+        warnings.warn_explicit(named, GladstoneWarning, frame.f_code.co_filename, frame.f_lineno, module, registry)
