@@ -38,7 +38,7 @@ from ._sequence import Sequence, correlate_sequence
 from ._setup import Setup, render
 from ._stereo import ThreeComponents, stereo
 from ._study import Study, StudyRun
-from ._templates import SetupKey, init, keys
+from ._templates import SetupKey, init, keys, shared_folder
 from ._tomography import Tomography, reconstruct_lines, tomography, tomography_setups
 from ._trace import TracedRays, trace
 from ._version import __version__, build
@@ -57,6 +57,6 @@ __all__ = [
     "ThreeComponents", "Tomography", "TracedRays", "Truth", "__version__", "benchmark", "benchmark_cases",
     "benchmark_estimators", "build", "calibrate", "compare", "convert", "correlate", "correlate_ensemble",
     "correlate_sequence", "demo", "design", "gallery", "info", "init", "keys", "mie", "preview", "reconstruct",
-    "reconstruct_lines", "render", "render_sequence", "report", "set_threads", "stereo", "target", "threads",
-    "tomography", "tomography_setups", "trace", "validate", "views",
+    "reconstruct_lines", "render", "render_sequence", "report", "set_threads", "shared_folder", "stereo", "target",
+    "threads", "tomography", "tomography_setups", "trace", "validate", "views",
 ]  # fmt: skip

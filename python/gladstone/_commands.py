@@ -9,6 +9,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any, NamedTuple
 
 from . import _core
+from ._errors import check_choice
 from ._progress import Progress, reporting
 from ._setup import Setup, as_setup
 
@@ -89,6 +90,7 @@ def report(
     conventions: conventions of vectors of another program; default: those of their format.
     figures: folder for the figures as separate files, in `figure_format` ("png", "svg" or "pdf").
     """
+    check_choice("figure_format", figure_format, ("png", "svg", "pdf"))
     place = os.path.join(os.fspath(folder), "report.html") if path is None else os.fspath(path)
     drawn = os.fspath(figures)
     if place.endswith(".md") and not drawn:

@@ -7,6 +7,7 @@ import os
 from typing import Any
 
 from . import _core
+from ._errors import check_choice
 from ._progress import Progress, reporting
 from ._setup import as_setup
 
@@ -61,6 +62,7 @@ def design(
     apply: file (TOML) to write the recommended setup to.
     figures: folder for figures of the layout, the design map and the Pareto front.
     """
+    check_choice("figure_format", figure_format, ("png", "svg", "pdf"))
     with reporting(progress) as report:
         answer, text, feasible = _core.design(
             as_setup(setup)._core,

@@ -6,6 +6,8 @@ import re
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
+from ._arguments import CalledFunction
+
 
 def check_choice(name: str, given: str, choices: Sequence[str]) -> None:
     """Raises ValueError if an argument is not one of its choices."""
@@ -29,20 +31,22 @@ class Problem(NamedTuple):
     """One problem of a setup."""
 
     file: str | None
-    """Name of the setup file; None if the value was given by `Setup.replace`."""
+    """Name of the setup file; None if the value was given to a function, such as `Setup.replace`."""
     line: int | None
     """Line in the file, from 1."""
     column: int | None
     """Column in the line, from 1."""
     key: str | None
-    """Key path, such as "lens.f_number"."""
+    """Key path, such as "lens.f_number", or name of an argument, such as "window"."""
     text: str
     """Description of the problem, with its remedy."""
     code: str
     """Kind of the problem, such as "unknown_key"; docs/reference/errors.md lists all."""
 
     def __str__(self) -> str:
-        place = f"replace({self.key!r})" if self.file is None else self.file
+        if self.file is None:
+            return self.text if not self.key or self.key in self.text else f"{self.key}: {self.text}"
+        place = self.file
         if self.line is not None:
             place += f":{self.line}" + (f":{self.column}" if self.column else "")
         return f"{place}: {self.text}"
@@ -52,9 +56,13 @@ _PLACE = re.compile(r"(?P<file>.*?)(?::(?P<line>\d+)(?::(?P<column>\d+))?)?\Z", 
 
 
 def _problem(where: str, text: str, key: str, code: str) -> Problem:
-    """Makes a problem; `where` is its location, "file:line:column" or "--set key=value"."""
-    if where.startswith("--set "):
-        return Problem(None, None, None, key or None, text, code)
+    """Makes a problem; `where` is its location, "file:line:column", "--set key=value" or another option."""
+    if where.startswith("--"):
+        called = CalledFunction()
+        name = called.setting(key) if where.startswith("--set ") else called.option(where) or where
+        unknown = code == "unknown_key" and name != key and "." not in name
+        text = called.unknown_setting(name) if unknown else called.message(text)
+        return Problem(None, None, None, name or None, text, code)
     match = _PLACE.match(where)
     line, column = (int(match[name]) if match[name] else None for name in ("line", "column"))
     return Problem(match["file"], line, column, key or None, text, code)
@@ -89,25 +97,28 @@ class SetupError(Error, ValueError):
 
 class _PlacedError(Error):
     file: str | None
-    """File or name of the input with the problem; None if a key of the setup is wrong."""
+    """File or name of the input with the problem; None if a key of the setup or an argument is wrong."""
     line: int | None
     """Line in the file, from 1."""
     column: int | None
     """Column in the line, from 1."""
     key: str | None
-    """Key path of the setup, such as "lens.f_number"."""
+    """Key path of the setup, such as "lens.f_number", or name of an argument, such as "spacing_mm"."""
     text: str
     """Description of the problem, with its remedy."""
 
     def __init__(self, place: str, text: str, code: str | None = None, key: str = ""):
-        self.place, self.text = place, text
+        called = CalledFunction()
+        if place.startswith("--"):
+            place = key = called.option(place) or place
+        self.place, self.text = place, called.message(text)
         self.code = code or type(self).code
         self.key = key or None
         match = _PLACE.match(place)
         self.file = None if key else match["file"]
         self.line = int(match["line"]) if match["line"] else None
         self.column = int(match["column"]) if match["column"] else None
-        super().__init__(f"{place}: {text}")
+        super().__init__(f"{place}: {self.text}")
 
     def __reduce__(self):
         return type(self), (self.place, self.text, self.code, self.key or "")
@@ -141,3 +152,6 @@ class DeviceError(Error, RuntimeError):
     """An accelerator that is absent, out of memory or failing."""
 
     code = "device"
+
+    def __init__(self, text: str):
+        super().__init__(CalledFunction().message(text))

@@ -3,22 +3,12 @@
 from __future__ import annotations
 
 import logging
-import os
-import sys
 import warnings
 
+from ._arguments import CalledFunction, calling_frames
 from ._errors import GladstoneWarning
 
 _log = logging.getLogger("gladstone")
-_folder = os.path.dirname(os.path.abspath(__file__)) + os.sep
-
-
-def _caller():
-    """Returns the innermost frame outside this package."""
-    frame = sys._getframe(1)
-    while frame.f_back and os.path.abspath(frame.f_code.co_filename).startswith(_folder):
-        frame = frame.f_back
-    return frame
 
 
 def deliver(messages: list[tuple[bool, str]]) -> None:
@@ -27,8 +17,8 @@ def deliver(messages: list[tuple[bool, str]]) -> None:
         if not is_warning:
             _log.info(text)
             continue
-        frame = _caller()
+        frame = calling_frames()[-1]
         registry = frame.f_globals.setdefault("__warningregistry__", {})
-        warnings.warn_explicit(
-            text, GladstoneWarning, frame.f_code.co_filename, frame.f_lineno, frame.f_globals.get("__name__"), registry
-        )
+        named = CalledFunction().message(text)
+        module = frame.f_globals.get("__name__")
+        warnings.warn_explicit(named, GladstoneWarning, frame.f_code.co_filename, frame.f_lineno, module, registry)

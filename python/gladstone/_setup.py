@@ -18,7 +18,8 @@ class Setup:
     """Setup of a BOS, PIV or calibration experiment; immutable.
 
     Keys and units are those of the setup file: lengths end in `_mm`, `_um` or `_px`, angles in `_deg`.
-    `check` and `render` raise a `SetupError` that lists all problems.
+    Wrong keys and values raise a `SetupError` at once, which lists all of them. What may still be added by `replace`
+    (keys that are required, files) and values that do not fit together are checked by `check` and `render`.
     """
 
     def __init__(self, text: str = "", *, name: str = "setup", folder: str | os.PathLike | None = None):
@@ -59,13 +60,16 @@ class Setup:
             return False
 
     def replace(self, values: Mapping[str, Any]) -> Setup:
-        """Returns a setup with other values: `setup.replace({"lens.f_number": 16})`."""
+        """Returns a setup with other values: `setup.replace({"lens.f_number": 16})`.
+
+        Keys that depend on each other are replaced together, best as a table: `{"medium.field": {"kind": ...}}`.
+        """
         core = self._core
         given = [f"{path}={_toml.value(value)}" for path, value in values.items()]
         return self._of(_core.SetupText(core.text, core.name, core.folder, [*core.overrides, *given]))
 
     def check(self) -> Setup:
-        """Checks the setup and returns it. Raises `SetupError` with all problems."""
+        """Checks the whole setup, with the files that it names, and returns it. Raises `SetupError` with all problems."""
         self._core.resolved()
         return self
 

@@ -59,3 +59,9 @@ def keys(pattern: str = "") -> list[SetupKey]:
         similar = ", ".join(found["similar"])
         raise KeyError(f"no key matches {pattern!r}" + (f"; similar keys: {similar}" if similar else ""))
     return [SetupKey(**one) for one in found["keys"]]
+
+
+def shared_folder() -> str:
+    """Returns the folder of the package that contains shipped setups (`studies/cases`) and data (`data`), among them
+    the experiment of Rajendran et al. (2019): `studies/cases/table1.toml`."""
+    return os.path.join(os.path.dirname(os.path.abspath(__file__)), "share", "gladstone")

@@ -105,10 +105,10 @@ void bind_information(nb::module_& module) {
       nb::arg("setup"), nb::arg("figure"));
   module.def(
       "info_mie",
-      [](std::string const& x, std::string const& m, std::string const& figure) {
-        return run([&] { return describe_mie({x, m, figure}).json; });
+      [](double x, double m_real, double m_imag, std::string const& figure) {
+        return run([&] { return describe_mie({x, {m_real, m_imag}, figure}).json; });
       },
-      nb::arg("x"), nb::arg("m"), nb::arg("figure"));
+      nb::arg("x"), nb::arg("m_real"), nb::arg("m_imag"), nb::arg("figure"));
   module.def(
       "mie_amplitudes",
       [](double x, double m_real, double m_imag, NumberArray const& angles) {

@@ -1,6 +1,7 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "python/src/call.h"
@@ -17,9 +18,39 @@
 namespace gladstone::python {
 namespace {
 
+/// Returns true if a later `replace` can solve a problem of this kind: a key that is still missing, or a file that does
+/// not exist yet. Mistakes in what is written are reported at once.
+bool may_wait(ErrorCode code) {
+  switch (code) {
+    case ErrorCode::invalid_value:
+    case ErrorCode::unknown_key:
+    case ErrorCode::wrong_type:
+    case ErrorCode::out_of_range:
+    case ErrorCode::unknown_choice:
+    case ErrorCode::syntax:
+      return false;
+    default:
+      return true;
+  }
+}
+
+/// Returns the setup if its keys have allowed values.
+/// @throws SetupError with all problems
+SetupText checked(SetupText setup) {
+  try {
+    run([&] {
+      for (CameraCase& camera : camera_cases(setup.document())) check_setup_keys(std::move(camera.document));
+    });
+  } catch (SetupError const& error) {
+    auto const waits = [](SetupProblem const& problem) { return may_wait(problem.code); };
+    if (!std::all_of(error.problems().begin(), error.problems().end(), waits)) throw;
+  }
+  return setup;
+}
+
 SetupText read_setup_file(std::string const& path) {
   SetupDocument::from_file(path);  // reports a file that cannot be read or is not TOML
-  return {read_text_file(path), path, std::filesystem::absolute(path).parent_path().string(), {}};
+  return checked({read_text_file(path), path, std::filesystem::absolute(path).parent_path().string(), {}});
 }
 
 /// Returns the resolved setups of all cameras, whose name is empty if there is one camera only.
@@ -64,11 +95,10 @@ SetupDocument SetupText::document() const {
 }
 
 void bind_setup(nb::module_& module) {
-  nb::class_<SetupText>(module, "SetupText", "Setup as TOML text with replaced keys, not yet read.")
+  nb::class_<SetupText>(module, "SetupText",
+                        "Setup as TOML text with replaced keys, whose names and values are allowed.")
       .def(nb::new_([](std::string text, std::string name, std::string folder, std::vector<std::string> overrides) {
-             SetupText setup{std::move(text), std::move(name), std::move(folder), std::move(overrides)};
-             setup.document();
-             return setup;
+             return checked({std::move(text), std::move(name), std::move(folder), std::move(overrides)});
            }),
            nb::arg("text"), nb::arg("name"), nb::arg("folder"), nb::arg("overrides"))
       .def_static("from_file", &read_setup_file, nb::arg("path"))

@@ -7,7 +7,7 @@
 
 namespace gladstone::python {
 
-/// Setup as given by the user, not yet read: TOML text and assignments that replace some of its keys.
+/// Setup as given by the user: TOML text and assignments that replace some of its keys.
 struct SetupText {
   std::string text;
   std::string name;                    ///< name in messages: the path, or "setup"

@@ -144,10 +144,13 @@ def test_many_small_renders_leak_nothing(bos):
 
     for seed in range(100):
         work(seed)
-    before = resident_mb()
-    for seed in range(count):
+    memory = {0: resident_mb()}
+    for seed in range(1, count + 1):
         work(seed)
-    assert resident_mb() - before < 5
+        if seed in (count // 10, count):
+            memory[seed] = resident_mb()
+    print(", ".join(f"{mb:.1f} MB after {renders} renders" for renders, mb in memory.items()))
+    assert memory[count] - memory[0] < 5
 
 
 def test_number_of_threads_changes_no_bit(bos, case):

@@ -34,6 +34,11 @@ def test_template_is_written_once(tmp_path):
         gs.init("boss")
 
 
+def test_shipped_setups_are_in_the_package():
+    setup = gs.Setup.from_file(f"{gs.shared_folder()}/studies/cases/table1.toml").check()
+    assert setup["lens.f_number"] == 11.0
+
+
 def test_keys_equal_those_of_the_program(program):
     mine, theirs = gs.keys("f_number"), program("keys", "f_number")["keys"]
     assert [one._asdict() for one in mine] == theirs
@@ -132,7 +137,7 @@ def test_errors_have_the_code_of_the_program(program, tmp_path):
     (tmp_path / "bad.toml").write_text("[lens]\nf_numbr = 3\n")
     theirs = program("render", tmp_path / "bad.toml", "-o", tmp_path / "case", codes=(2,))["errors"][0]
     with pytest.raises(gs.SetupError) as caught:
-        gs.Setup.from_file(tmp_path / "bad.toml").check()
+        gs.Setup.from_file(tmp_path / "bad.toml")
     mine = caught.value.problems[0]
     assert (mine.file, mine.line, mine.column, mine.key, mine.code) == tuple(
         theirs[name] for name in ("file", "line", "column", "key", "code")

@@ -125,7 +125,7 @@ def test_method_of_the_uncertainty_is_recorded(case, tmp_path, settings, method,
 def test_settings_are_checked(case):
     with pytest.raises(gs.SetupError) as caught:
         gs.correlate(case.a, case.b, window=[31], method="scd")
-    assert {problem.key for problem in caught.value.problems} == {"correlate.window_px", "correlate.method"}
+    assert {problem.key for problem in caught.value.problems} == {"window", "method"}
 
 
 def test_images_are_checked(case):

@@ -37,3 +37,36 @@ def test_vectors_may_be_a_file_but_not_nothing(case, tmp_path):
 def test_estimators_have_names():
     with pytest.raises(TypeError, match="by name"):
         gs.benchmark(lambda a, b: gs.correlate(a, b, window=32))
+
+
+def test_messages_name_the_arguments_of_the_function(case):
+    with pytest.raises(gs.SetupError) as caught:
+        gs.correlate(case.a, case.b, windw=32, overlap=3, mask={"knid": "none"})
+    problems = {problem.key: problem for problem in caught.value.problems}
+    assert {"windw", "overlap"} <= set(problems)
+    assert problems["windw"].code == "unknown_key" and 'did you mean "window"?' in problems["windw"].text
+    assert problems["overlap"].code == "out_of_range" and problems["overlap"].file is None
+    assert "correlate." not in str(caught.value)
+    with pytest.raises(gs.DataError, match="set window smaller"):
+        case.correlate(window=128)
+
+
+@pytest.mark.parametrize("call, key", [
+    (lambda case: gs.mie(-1, 1.5), "x"),
+    (lambda case: gs.mie(1, 1.5 - 1j), "m"),
+    (lambda case: gs.reconstruct(case, reference="left", overlap=2), "overlap"),
+    (lambda case: gs.tomography([case] * 3, reference="left", spacing_mm=-1), "spacing_mm"),
+    (lambda case: gs.stereo(case, case, sheet_z_mm=float("nan")), "sheet_z_mm"),
+])  # fmt: skip
+def test_options_are_arguments(case, call, key):
+    with pytest.raises((gs.DataError, gs.SetupError)) as caught:
+        call(case)
+    assert (caught.value.key, caught.value.file) == (key, None)
+    assert str(caught.value).startswith(key) and "--" not in str(caught.value)
+
+
+def test_figures_have_known_endings(bos, tmp_path):
+    with pytest.raises(gs.OutputError, match=".svg"):
+        gs.info.setup(bos, figure=tmp_path / "layout.tiff")
+    with pytest.raises(ValueError, match="figure_format"):
+        gs.design(bos, figures=tmp_path, figure_format="tiff")

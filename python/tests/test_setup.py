@@ -37,7 +37,7 @@ def test_all_problems_name_file_line_and_key(tmp_path):
     path = tmp_path / "setup.toml"
     path.write_text('[lens]\nf_numbr = 3\nfocal_length_mm = "a"\n\n[camera]\nbit_depth = 77\n')
     with pytest.raises(gs.SetupError) as caught:
-        gs.Setup.from_file(path).check()
+        gs.Setup.from_file(path)
     problems = {problem.key: problem for problem in caught.value.problems}
     assert set(problems) == {"lens.f_numbr", "lens.focal_length_mm", "camera.bit_depth"}
     assert all(problem.file == str(path) for problem in problems.values())
@@ -48,9 +48,20 @@ def test_all_problems_name_file_line_and_key(tmp_path):
 
 def test_replaced_key_is_named(bos):
     with pytest.raises(gs.SetupError) as caught:
-        bos.replace({"lens.f_number": "wide"}).check()
+        bos.replace({"lens.f_number": "wide"})
     (problem,) = caught.value.problems
     assert problem.key == "lens.f_number" and problem.file is None
+
+
+def test_what_replace_can_add_is_checked_later(tmp_path):
+    (tmp_path / "setup.toml").write_text('[target]\nkind = "points"\nfile = "points.csv"\n')
+    setup = gs.Setup.from_file(tmp_path / "setup.toml").replace({"lens.f_number": 8})
+    with pytest.raises(gs.SetupError) as caught:
+        setup.check()
+    (problem,) = caught.value.problems
+    assert (problem.key, problem.code, problem.line) == ("target.file", "missing_file", 3)
+    (tmp_path / "points.csv").write_text("x_mm,y_mm\n0,0\n1,1\n")
+    assert setup.check() is setup
 
 
 def test_text_that_is_no_toml_is_refused():
@@ -62,7 +73,7 @@ def test_text_that_is_no_toml_is_refused():
 
 def test_errors_survive_pickle(bos):
     with pytest.raises(gs.SetupError) as caught:
-        bos.replace({"lens.f_numbr": 3}).check()
+        bos.replace({"lens.f_numbr": 3})
     again = pickle.loads(pickle.dumps(caught.value))
     assert again.problems == caught.value.problems
 

@@ -103,13 +103,13 @@ def test_folders_and_dewarped_images(result, folders, cases):
 def test_problems_are_reported(cases, folders):
     with pytest.raises(ValueError, match="dewarp"):
         gs.stereo(*folders, dewarp="other")
-    with pytest.raises(gs.DataError, match="--calibration"):
+    with pytest.raises(gs.DataError, match="with calibrations"):
         gs.stereo(folders[0] / "vectors.h5", folders[1] / "vectors.h5", device="cpu")
     with pytest.raises(gs.DataError, match="two cameras"):
         gs.stereo(folders[0], device="cpu")
     with pytest.raises(gs.DataError, match="same direction"):
         gs.stereo(folders[0], folders[0], device="cpu")
-    with pytest.warns(gs.GladstoneWarning, match="--align"):
+    with pytest.warns(gs.GladstoneWarning, match="align"):
         displaced = gs.stereo(*folders, sheet_z_mm=0.5, device="cpu")
     assert displaced.summary["given_sheet"]["disparity_px"] > 5
 

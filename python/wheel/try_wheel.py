@@ -1,4 +1,4 @@
-"""Renders, stores, correlates and compares a small case with the installed package, and prints what it found."""
+"""Renders, stores, correlates, compares and reports a small case with the installed package, and prints what it found."""
 
 import os
 import re
@@ -20,6 +20,10 @@ assert np.array_equal(read.images, case.images), "the images read differ from th
 report = case.compare(read.correlate())
 assert report.rms_px < LARGEST_RMS_PX, f"rms error {report.rms_px} px"
 
+report.to_html("report.html")
+with open("report.html", encoding="utf-8") as file:
+    assert file.read().count("data:image/png;base64,") >= 2, "the report lacks the two frames"
+
 with open("image.png", "wb") as file:  # no image codecs: the message names the image and the remedy
     file.write(b"\x89PNG\r\n\x1a\n")
 try:
@@ -33,5 +37,5 @@ with open("/proc/self/maps", encoding="utf-8") as maps:
     libraries = sorted(set(re.findall(r"\S+/(?:lib)\S+\.so[.\d]*$", maps.read(), re.MULTILINE)))
 windows = [path for path in libraries if re.search(r"/lib(X|xcb|GL)[^/]*$", path) and not path.startswith(sys.prefix)]
 assert not windows, f"libraries of X11 outside of the wheel are loaded: {windows}"
-print(f"gladstone {gs.__version__}: rendered, stored, correlated and compared {case!r} in "
+print(f"gladstone {gs.__version__}: rendered, stored, correlated, compared and reported {case!r} in "
       f"{time.perf_counter() - start:.1f} s, rms error {report.rms_px:.4f} px")

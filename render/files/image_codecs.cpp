@@ -40,11 +40,11 @@ void require_address_space(std::string const& path) {
     ::munmap(probe, needed);
     return;
   }
-  throw DataError(ErrorCode::memory, path,
-                  fmt::format("cannot be loaded, and without it only intact TIFF images can be read, and no PNG images "
-                              "written (not enough memory: it needs {} MB of address space); raise the limit (ulimit "
-                              "-v), or use a machine with more memory",
-                              needed >> 20));
+  throw DataError(
+      ErrorCode::memory, path,
+      fmt::format("cannot be loaded, and without it only intact TIFF images can be read (not enough memory: it needs "
+                  "{} MB of address space); raise the limit (ulimit -v), or use a machine with more memory",
+                  needed >> 20));
 }
 
 ImageCodecs const& load_image_codecs() {
@@ -57,14 +57,14 @@ ImageCodecs const& load_image_codecs() {
   auto const entry =
       library != nullptr ? reinterpret_cast<ImageCodecsEntry>(dlsym(library, image_codecs_entry)) : nullptr;
   if (entry == nullptr) {
-    throw DataError(ErrorCode::unreadable_file, path,
-                    fmt::format("cannot be loaded, and without it only intact TIFF images can be read, and no PNG "
-                                "images (previews, reports) written ({}); wheels of the Python package do not contain "
-                                "it: convert the image to TIFF, read it with another library and pass the array, or "
-                                "install gladstone's Debian package of the same version. In other installations it "
-                                "belongs in bin/../lib: install gladstone again, or set GLADSTONE_IMAGE_CODECS to its "
-                                "folder",
-                                why != nullptr ? why : "it is another library"));
+    throw DataError(
+        ErrorCode::unreadable_file, path,
+        fmt::format("cannot be loaded, and without it only intact TIFF images can be read ({}); wheels of "
+                    "the Python package do not contain it: convert the image to TIFF, read it with another "
+                    "library and pass the array, or install gladstone's Debian package of the same version. "
+                    "In other installations it belongs in bin/../lib: install gladstone again, or set "
+                    "GLADSTONE_IMAGE_CODECS to its folder",
+                    why != nullptr ? why : "it is another library"));
   }
   return *entry();
 }

@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <memory>
 #include <string>
-#include <vector>
 
 /// Interface of image readers, and of the shared library gladstone_image_codecs. OpenImageIO loads about 250 other
 /// libraries; a separate library avoids this in programs that read and write no other images than TIFFs (tiff_file.h).
@@ -66,9 +65,6 @@ class ImageCodecs {
   virtual ~ImageCodecs() = default;
   /// Opens an image file. @return nullptr if no reader accepts the file
   virtual std::unique_ptr<PageReader> open(std::string const& path) const = 0;
-  /// Encodes an 8-bit grey PNG. @return empty on success, else the error message
-  virtual std::string encode_png(int columns, int rows, std::uint8_t const* values,
-                                 std::vector<unsigned char>& bytes) const = 0;
 };
 
 /// Returns the image codecs; the first call loads libgladstone_image_codecs.so from the directory in the environment
@@ -78,7 +74,7 @@ ImageCodecs const& image_codecs();
 
 /// Name of the function that the library exports. Its number changes with this interface, so that a library of another
 /// version is refused.
-inline constexpr char const* image_codecs_entry = "gladstone_image_codecs_2";
+inline constexpr char const* image_codecs_entry = "gladstone_image_codecs_3";
 /// Type of this function.
 using ImageCodecsEntry = ImageCodecs const* (*)();
 

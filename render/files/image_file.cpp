@@ -185,11 +185,4 @@ void write_tiff(std::string const& path, Image<std::uint16_t> const& image, Imag
   file.commit();
 }
 
-std::string encode_png(Image<std::uint8_t> const& image) {
-  std::vector<unsigned char> bytes;
-  std::string const why = image_codecs().encode_png(image.columns(), image.rows(), image.data(), bytes);
-  if (!why.empty()) throw DataError(ErrorCode::internal, "an image in memory", "cannot be encoded as PNG: " + why);
-  return {bytes.begin(), bytes.end()};
-}
-
 }  // namespace gladstone

@@ -39,7 +39,7 @@ std::size_t count_not_finite(Image<double> const& image);
 /// Writes a 16-bit grey TIFF; the file appears under its name when complete. @throws OutputError
 void write_tiff(std::string const& path, Image<std::uint16_t> const& image, ImageMetadata const& metadata);
 
-/// Encodes an image as an 8-bit grey PNG. @throws DataError
+/// Encodes an image as an 8-bit grey PNG.
 std::string encode_png(Image<std::uint8_t> const& image);
 
 }  // namespace gladstone

@@ -166,23 +166,12 @@ class OiioCodecs final : public ImageCodecs {
     auto reader = std::make_unique<OiioReader>(path, std::move(input));
     return reader->seek(0) ? std::move(reader) : nullptr;
   }
-
-  std::string encode_png(int columns, int rows, std::uint8_t const* values,
-                         std::vector<unsigned char>& bytes) const override {
-    OIIO::ImageSpec const spec(columns, rows, 1, OIIO::TypeDesc::UINT8);
-    auto const output = OIIO::ImageOutput::create("png");
-    if (!output) return "no PNG writer is installed";
-    OIIO::Filesystem::IOVecOutput memory(bytes);
-    bool const written = output->set_ioproxy(&memory) && output->open("picture.png", spec) &&
-                         output->write_image(OIIO::TypeDesc::UINT8, values);
-    return !output->close() || !written ? "out of memory?" : "";
-  }
 };
 
 }  // namespace
 }  // namespace gladstone
 
-extern "C" gladstone::ImageCodecs const* gladstone_image_codecs_2() {
+extern "C" gladstone::ImageCodecs const* gladstone_image_codecs_3() {
   static gladstone::OiioCodecs const codecs;
   return &codecs;
 }

@@ -231,12 +231,12 @@ void SetupDocument::override_key(std::string const& assignment) {
   std::string const where = "--set " + excerpt(assignment, longest_assignment);
   auto const equals = assignment.find('=');
   if (equals == std::string::npos) {
-    add_problem({where, "has no \"=\"; write --set key.path=value", "", ErrorCode::syntax});
+    add_problem({where, "has no \"=\"; write key.path=value", "", ErrorCode::syntax});
     return;
   }
   auto const path = split_path(assignment.substr(0, equals));
   if (std::find(path.begin(), path.end(), "") != path.end()) {
-    add_problem({where, "has an empty key; write --set key.path=value", "", ErrorCode::syntax});
+    add_problem({where, "has an empty key; write key.path=value", "", ErrorCode::syntax});
     return;
   }
   if (path.size() > most_setup_depth) {
@@ -246,7 +246,7 @@ void SetupDocument::override_key(std::string const& assignment) {
   }
   std::string const text = assignment.substr(equals + 1);
   if (text.find_first_not_of(" \t") == std::string::npos) {
-    add_problem({where, "has no value; write --set key.path=value", dotted_path(path), ErrorCode::syntax});
+    add_problem({where, "has no value; write key.path=value", dotted_path(path), ErrorCode::syntax});
     return;
   }
   SetupNode value;

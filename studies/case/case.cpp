@@ -144,6 +144,55 @@ void refuse_study(SetupDocument& document) {
                      "axes", ErrorCode::unknown_key}});
 }
 
+/// A setup whose tables have been read, but not compared with each other. Its document contains the problems.
+struct ReadTables {
+  CaseSetup loaded;
+  std::optional<PaperLight> light;
+  bool first_pair_only;
+};
+
+ReadTables read_tables(SetupDocument document) {
+  refuse_study(document);
+  std::vector<UncertainInput> uncertain = extract_uncertain_inputs(document);
+  bool const first_pair_only = describes_sequence(document);
+  select_pair(document);
+  ReadTables read{.loaded = {.document = with_own_lens(std::move(document)),
+                             .setup = {},
+                             .correlate = {},
+                             .warnings = {},
+                             .uncertain = std::move(uncertain)},
+                  .light = {},
+                  .first_pair_only = first_pair_only};
+  CaseSetup& loaded = read.loaded;
+  SetupTable root = loaded.document.root();
+  loaded.setup = read_setup(root);
+  if (loaded.setup.calibration()) {
+    root.mark_as_read("correlate");
+  } else {
+    loaded.correlate = read_correlation_settings(root.table("correlate"));
+  }
+  read.light = read_light(root);
+  if (loaded.setup.piv) root.refuse("light", "applies to BOS only (in PIV, [laser] defines the light); remove it");
+  for (char const* const table : design_tables) root.mark_as_read(table);
+  if (!loaded.correlate.window_px.empty()) loaded.setup.view_margin_px = loaded.correlate.window_px.front();
+  for (std::string const& name : loaded.document.file_names()) {
+    if (is_utf8(name)) continue;
+    loaded.document.add_problem(
+        name, "contains bytes that are not valid UTF-8, which setups require; rename the file or the folder");
+  }
+  return read;
+}
+
+/// Adds unusual values to the warnings of a setup; logs them if it has problems, which a wrong unit may cause.
+void add_unusual_values(CaseSetup& loaded) {
+  std::vector<std::string> const unusual = unusual_values(loaded.document);
+  if (loaded.document.has_problems()) {
+    for (std::string const& text : unusual) spdlog::warn("{}", text);
+  } else {
+    loaded.warnings.insert(loaded.warnings.begin(), unusual.begin(), unusual.end());
+  }
+}
+
 }  // namespace
 
 CaseSetup load_case_setup(std::string const& path, std::vector<std::string> const& overrides) {
@@ -153,31 +202,8 @@ CaseSetup load_case_setup(std::string const& path, std::vector<std::string> cons
 }
 
 CaseSetup load_case_setup(SetupDocument document, FieldMemory field) {
-  refuse_study(document);
-  std::vector<UncertainInput> uncertain = extract_uncertain_inputs(document);
-  bool const first_pair_only = describes_sequence(document);
-  select_pair(document);
-  CaseSetup loaded{.document = with_own_lens(std::move(document)),
-                   .setup = {},
-                   .correlate = {},
-                   .warnings = {},
-                   .uncertain = std::move(uncertain)};
+  auto [loaded, light, first_pair_only] = read_tables(std::move(document));
   SetupTable root = loaded.document.root();
-  loaded.setup = read_setup(root);
-  if (loaded.setup.calibration()) {
-    root.mark_as_read("correlate");
-  } else {
-    loaded.correlate = read_correlation_settings(root.table("correlate"));
-  }
-  std::optional<PaperLight> const light = read_light(root);
-  if (loaded.setup.piv) root.refuse("light", "applies to BOS only (in PIV, [laser] defines the light); remove it");
-  for (char const* const table : design_tables) root.mark_as_read(table);
-  if (!loaded.correlate.window_px.empty()) loaded.setup.view_margin_px = loaded.correlate.window_px.front();
-  for (std::string const& name : loaded.document.file_names()) {
-    if (is_utf8(name)) continue;
-    loaded.document.add_problem(
-        name, "contains bytes that are not valid UTF-8, which setups require; rename the file or the folder");
-  }
   if (!loaded.document.has_problems()) {
     loaded.warnings = cross_check(loaded.setup, root);
     if (!loaded.setup.calibration()) cross_check_windows(loaded);
@@ -196,14 +222,15 @@ CaseSetup load_case_setup(SetupDocument document, FieldMemory field) {
     loaded.setup.camera.exposure_e = exposure_from_light(*light, loaded.setup);
   }
   if (!loaded.document.has_problems()) cross_check_memory(loaded, field);
-  std::vector<std::string> const unusual = unusual_values(loaded.document);
-  if (loaded.document.has_problems()) {  // an error may be caused by a wrong unit
-    for (std::string const& text : unusual) spdlog::warn("{}", text);
-  } else {
-    loaded.warnings.insert(loaded.warnings.begin(), unusual.begin(), unusual.end());
-  }
+  add_unusual_values(loaded);
   loaded.document.finish();
-  return loaded;
+  return std::move(loaded);
+}
+
+void check_setup_keys(SetupDocument document) {
+  CaseSetup loaded = read_tables(std::move(document)).loaded;
+  add_unusual_values(loaded);
+  loaded.document.finish();
 }
 
 PreparedCase prepare_case(CaseSetup& loaded, ReusableParts const& known) {

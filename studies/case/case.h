@@ -40,6 +40,11 @@ CaseSetup load_case_setup(std::string const& path, std::vector<std::string> cons
 /// @param field  whether the medium has yet to be built, for the check of available memory
 CaseSetup load_case_setup(SetupDocument document, FieldMemory field = FieldMemory::needed);
 
+/// Checks names, types and ranges of the keys of a setup with one camera, without comparing them with each other or
+/// opening the files that they name.
+/// @throws SetupError with all problems
+void check_setup_keys(SetupDocument document);
+
 /// A case ready to render: scene, integration step, ray budget and strain map.
 struct PreparedCase {
   Scene scene;

@@ -33,9 +33,8 @@ void check_figure_ending(std::string const& figure) {
 
 CommandBody attach_info(CLI::App& app, GlobalOptions const& options) {
   struct Arguments {
-    std::string kind, file, dataset, axes, setup, figure;
+    std::string kind, file, dataset, axes, setup, figure, x, m;
     LensQuestion lens;
-    MieQuestion mie;
   };
   auto arguments = std::make_shared<Arguments>();
   app.add_option("kind", arguments->kind, "field, image, lens, mie, particles or setup")
@@ -52,18 +51,19 @@ CommandBody attach_info(CLI::App& app, GlobalOptions const& options) {
   app.add_option(
       "--figure", arguments->figure,
       "Figure of info field (planes through its middle), lens, mie or setup (its layout): .png, .svg or .pdf");
-  app.add_option("--x", arguments->mie.x, "Size parameter pi d n / lambda of the sphere, for info mie");
-  app.add_option("--m", arguments->mie.m,
+  app.add_option("--x", arguments->x, "Size parameter pi d n / lambda of the sphere, for info mie");
+  app.add_option("--m", arguments->m,
                  "Refractive index of the sphere relative to its surroundings, for info mie: RE or RE,IM");
   return [arguments, &options] {
     check_figure_ending(arguments->figure);
     if (arguments->kind == "mie") {
       if (!arguments->file.empty())
         throw DataError(ErrorCode::arguments, "info mie", "reads no file; give only --x and --m");
-      arguments->mie.figure = arguments->figure;
-      return print(options, describe_mie(arguments->mie));
+      MieQuestion mie = read_mie_question(arguments->x, arguments->m);
+      mie.figure = arguments->figure;
+      return print(options, describe_mie(mie));
     }
-    if (!arguments->mie.x.empty() || !arguments->mie.m.empty()) {
+    if (!arguments->x.empty() || !arguments->m.empty()) {
       throw DataError(ErrorCode::arguments, "info " + arguments->kind,
                       "has no --x and --m (they belong to info mie); remove them");
     }

@@ -18,8 +18,8 @@
 namespace gladstone {
 namespace {
 
-constexpr char const* command_name = "info mie";
 constexpr double least_relative_index = 0.01;  // metals have at least 0.05
+constexpr double most_relative_index = 100;
 
 std::optional<double> as_number(std::string_view text) {
   double value = 0;
@@ -28,39 +28,25 @@ std::optional<double> as_number(std::string_view text) {
   return value;
 }
 
-double size_parameter(MieQuestion const& question) {
-  if (question.x.empty()) {
-    throw DataError(ErrorCode::arguments, command_name,
-                    "requires --x (the size parameter pi d n / lambda), such as --x 5.9 --m 1.45");
-  }
-  auto const x = as_number(question.x);
-  if (!x || *x < least_size_parameter || *x > largest_size_parameter) {
-    throw DataError(
-        ErrorCode::arguments, command_name,
-        fmt::format(
-            "--x {} is not a valid size parameter (pi d n / lambda, from {:g} to {:g}); use a value such as --x 5.9",
-            question.x, least_size_parameter, largest_size_parameter));
-  }
-  return *x;
+[[noreturn]] void refuse(char const* option, std::string const& message) {
+  throw DataError(ErrorCode::arguments, option, message);
 }
 
-std::complex<double> relative_index(MieQuestion const& question) {
-  if (question.m.empty()) {
-    throw DataError(
-        ErrorCode::arguments, command_name,
-        "requires --m (refractive index of the sphere relative to its surroundings, RE or RE,IM), such as --m 1.45");
+void check_range(MieQuestion const& question) {
+  if (!(question.x >= least_size_parameter && question.x <= largest_size_parameter)) {
+    refuse(
+        "--x",
+        fmt::format("{:g} is not a valid size parameter (pi d n / lambda, from {:g} to {:g}); use a value such as 5.9",
+                    question.x, least_size_parameter, largest_size_parameter));
   }
-  std::string_view const text = question.m;
-  std::size_t const comma = text.find(',');
-  auto const real = as_number(text.substr(0, comma));
-  auto const imaginary = comma == std::string_view::npos ? 0.0 : as_number(text.substr(comma + 1));
-  if (!real || !imaginary || *real < least_relative_index || *imaginary < 0 || *real > 100 || *imaginary > 100) {
-    throw DataError(ErrorCode::arguments, command_name,
-                    fmt::format("--m {} is not a valid refractive index (RE or RE,IM for n + i k; {} <= n <= 100, 0 <= "
-                                "k <= 100, k > 0 absorbs); use a value such as --m 1.5,0.01",
-                                question.m, least_relative_index));
+  double const n = question.m.real(), k = question.m.imag();
+  if (!(n >= least_relative_index && n <= most_relative_index && k >= 0 && k <= most_relative_index)) {
+    refuse("--m",
+           fmt::format("n + i k = {:g} {} {:g} i is not a valid refractive index ({:g} <= n <= {:g}, 0 <= k <= {:g}, "
+                       "k > 0 absorbs); use a value such as n = 1.5, k = 0.01",
+                       n, std::signbit(k) ? '-' : '+', std::abs(k), least_relative_index, most_relative_index,
+                       most_relative_index));
   }
-  return {*real, *imaginary};
 }
 
 /// Returns the angles of the plot in degrees, from forward to backward scattering: eight steps per ripple of about
@@ -80,16 +66,36 @@ nlohmann::json pairs(std::vector<double> const& angles, std::vector<double> cons
 
 }  // namespace
 
+MieQuestion read_mie_question(std::string const& x_text, std::string const& m_text) {
+  if (x_text.empty() || m_text.empty()) {
+    throw DataError(ErrorCode::arguments, "info mie",
+                    "requires --x (size parameter pi d n / lambda) and --m (refractive index of the sphere relative to "
+                    "its surroundings, RE or RE,IM), such as --x 5.9 --m 1.45");
+  }
+  auto const x = as_number(x_text);
+  if (!x) refuse("--x", fmt::format("\"{}\" is not a number; use a value such as --x 5.9", x_text));
+  std::string_view const text = m_text;
+  std::size_t const comma = text.find(',');
+  auto const real = as_number(text.substr(0, comma));
+  auto const imaginary = comma == std::string_view::npos ? 0.0 : as_number(text.substr(comma + 1));
+  if (!real || !imaginary) {
+    refuse("--m", fmt::format("\"{}\" is not a refractive index (RE or RE,IM for n + i k); use a value such as --m "
+                              "1.5,0.01",
+                              m_text));
+  }
+  return {*x, {*real, *imaginary}};
+}
+
 Description describe_mie(MieQuestion const& question) {
-  double const x = size_parameter(question);
-  std::complex<double> const m = relative_index(question);
+  check_range(question);
+  double const x = question.x;
+  std::complex<double> const m = question.m;
   MieCoefficients const sphere(x, m);
   MieEfficiencies const q = sphere.efficiencies();
   if (!std::isfinite(q.q_ext + q.q_sca + q.q_back + q.g)) {
-    throw DataError(ErrorCode::arguments, command_name,
-                    fmt::format("--m {} at --x {}: the series overflows (no material has an index so far "
-                                "from 1); give a refractive index between 0.01 and 100",
-                                question.m, question.x));
+    refuse("--m", fmt::format("the series overflows for {:g} + {:g} i at a size parameter of {:g} (no material has an "
+                              "index so far from 1); use a refractive index closer to 1",
+                              m.real(), m.imag(), x));
   }
   ScatteringDiagram diagram{x, m, q, drawn_angles(x), {}, {}};
   std::vector<double> s11, polarization;

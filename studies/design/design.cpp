@@ -51,9 +51,9 @@ void draw(DesignRequest const& request, DesignReport& report, std::string const&
 }
 
 void draw_layout_and_map(DesignRequest const& request, DesignReport& report, DesignPoint<double> const& bench,
-                         std::optional<Requirements> const& requirements) {
+                         DesignQuestion const* question) {
   draw(request, report, "layout", [&](std::string const& path) { write_layout_figure(path, bench); });
-  draw(request, report, "design_map", [&](std::string const& path) { write_design_map(path, bench, requirements); });
+  draw(request, report, "design_map", [&](std::string const& path) { write_design_map(path, bench, question); });
 }
 
 void draw_piv(DesignRequest const& request, DesignReport& report, Setup const& setup) {
@@ -95,7 +95,7 @@ void add_sheet(DesignRequest const& request, CaseSetup const& loaded, std::vecto
     FixedDesignParameters const given = collect_fixed_parameters(loaded);
     DesignPoint<double> const bench = make_design_point(loaded.setup, given);
     sheet = bos_sheet(loaded.setup, bench);
-    if (draws) draw_layout_and_map(request, report, bench, std::nullopt);
+    if (draws) draw_layout_and_map(request, report, bench, nullptr);
     if (!uncertain.empty()) {
       Backend const device = request.open_device();
       uncertainty = measurement_uncertainty(loaded, uncertain, bench, sheet_gradient(given), *device.renderer);
@@ -120,17 +120,17 @@ void add_answer(DesignRequest const& request, SetupDocument const& document, Des
     // draw the given setup together with the requirements
     FixedDesignParameters const given = collect_fixed_parameters(loaded);
     if (!request.figures.empty()) {
-      draw_layout_and_map(request, report, make_design_point(loaded.setup, given), result.question.requirements);
+      draw_layout_and_map(request, report, make_design_point(loaded.setup, given), &result.question);
     }
     return;
   }
   DesignPoint<double> const best = result.best();
   if (!request.figures.empty()) {
-    Requirements const& requirements = result.question.requirements;
-    draw_layout_and_map(request, report, best, requirements);
+    draw_layout_and_map(request, report, best, &result.question);
     if (!result.answer.front.empty()) {
-      draw(request, report, "front",
-           [&](std::string const& path) { write_design_front(path, result.answer, requirements.objective); });
+      draw(request, report, "front", [&](std::string const& path) {
+        write_design_front(path, result.answer, result.question.requirements.objective);
+      });
     }
   }
   if (applied && report.feasible) {

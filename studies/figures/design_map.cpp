@@ -7,14 +7,14 @@
 #include <limits>
 
 #include "render/base/units.h"
+#include "studies/figures/excluded_designs.h"
 #include "studies/figures/gnuplot.h"
 
 namespace gladstone {
 namespace {
 
 using unit::mm;
-constexpr int map_width = 960, map_height = 700;
-constexpr std::array<double, 8> f_numbers{2.8, 4, 5.6, 8, 11, 16, 22, 32};
+constexpr int map_width = 1180, map_height = 700;
 constexpr std::array<double, 5> marked_z_d{0.1, 0.25, 0.5, 1, 2};  // relative to Z_A
 
 std::vector<double> in_mm(std::vector<double> lengths) {
@@ -56,35 +56,65 @@ std::string colour_of_stop(std::size_t index) {
   return shades[index % shades.size()];
 }
 
+/// Appends the excluded areas, a pale colour for each limit.
+void add_exclusions(GnuplotFigure& plot, std::string& command, std::vector<ExcludedDesigns> const& excluded) {
+  constexpr std::array<char const*, 8> tints{"#f6cfc4", "#fbe6b8", "#d6e9c6", "#dcd3ee",
+                                             "#e6dac6", "#c9e6e2", "#f3d3e4", "#dcdcdc"};
+  constexpr double seam = 1.004;  // adjacent areas overlap: otherwise the edges between them are visible
+  for (std::size_t i = 0; i < excluded.size(); ++i) {
+    std::vector<std::vector<double>> columns(4);
+    for (MapArea const& area : excluded[i].areas) {
+      columns[0].push_back(area.least_sensitivity);
+      columns[1].push_back(area.most_sensitivity * seam);
+      columns[2].push_back(area.least_wavelength / mm);
+      columns[3].push_back(area.most_wavelength / mm);
+    }
+    command +=
+        fmt::format("{}{} using 1:3:1:2:3:4 with boxxyerror fillstyle solid 1.0 noborder linecolor '{}' title {}",
+                    command.empty() ? "plot " : ", ", plot.add_table(columns), tints[i % tints.size()],
+                    GnuplotFigure::quoted("excluded: " + excluded[i].limit));
+  }
+}
+
 }  // namespace
+
+double map_z_d(DesignPoint<double> const& bench, double fraction) {
+  return bench.z_a * 0.05 * std::pow(80.0, fraction);
+}
+
+std::optional<DesignPoint<double>> design_on_map(DesignPoint<double> const& bench, double f_number, double z_d) {
+  DesignPoint<double> other = bench;
+  other.f_number = f_number;
+  other.z_d = z_d;
+  if (other.z_b() < 1.05 * other.focal_length) return std::nullopt;
+  other.dot_diameter = bench.geometric_dot_px() * other.pixel_at_dots();
+  return other;
+}
 
 std::vector<DesignCurve> design_curves(DesignPoint<double> const& bench) {
   constexpr int points = 81;
   std::vector<DesignCurve> curves;
-  for (double const stop : f_numbers) {
+  for (double const stop : map_f_numbers) {
     DesignCurve curve{stop, {}, {}, {}, {}};
     for (int i = 0; i < points; ++i) {
-      DesignPoint<double> b = bench;
-      b.f_number = stop;
-      b.z_d = bench.z_a * 0.05 * std::pow(80.0, i / (points - 1.0));
-      if (b.z_b() < 1.05 * b.focal_length) continue;
-      b.dot_diameter = bench.geometric_dot_px() * b.pixel_at_dots();  // constant image size
-      curve.z_d.push_back(b.z_d);
-      curve.sensitivity.push_back(b.sensitivity());
-      curve.resolution.push_back(resolved_wavelength(b));
-      curve.cone.push_back(b.angular_sensitivity() / (stop * (1 + b.magnification())));
+      auto const one = design_on_map(bench, stop, map_z_d(bench, i / (points - 1.0)));
+      if (!one) continue;
+      curve.z_d.push_back(one->z_d);
+      curve.sensitivity.push_back(one->sensitivity());
+      curve.resolution.push_back(resolved_wavelength(*one));
+      curve.cone.push_back(one->angular_sensitivity() / (stop * (1 + one->magnification())));
     }
     curves.push_back(std::move(curve));
   }
   return curves;
 }
 
-void write_design_map(std::string const& path, DesignPoint<double> const& bench,
-                      std::optional<Requirements> const& requirements) {
+void write_design_map(std::string const& path, DesignPoint<double> const& bench, DesignQuestion const* question) {
   std::vector<DesignCurve> const curves = design_curves(bench);
   GnuplotFigure plot(map_width, map_height);
   Range2 x, y;
   std::string command;
+  add_exclusions(plot, command, excluded_designs(bench, question));
   for (std::size_t i = 0; i < curves.size(); ++i) {
     DesignCurve const& curve = curves[i];
     for (double const value : curve.sensitivity) x.hold(value);
@@ -100,14 +130,11 @@ void write_design_map(std::string const& path, DesignPoint<double> const& bench,
   }
   for (double const share : marked_z_d) {
     std::vector<double> sensitivity, resolution;
-    for (double const stop : f_numbers) {
-      DesignPoint<double> b = bench;
-      b.f_number = stop;
-      b.z_d = share * bench.z_a;
-      if (b.z_b() < 1.05 * b.focal_length) continue;
-      b.dot_diameter = bench.geometric_dot_px() * b.pixel_at_dots();
-      sensitivity.push_back(b.sensitivity());
-      resolution.push_back(resolved_wavelength(b) / mm);
+    for (double const stop : map_f_numbers) {
+      auto const one = design_on_map(bench, stop, share * bench.z_a);
+      if (!one) continue;
+      sensitivity.push_back(one->sensitivity());
+      resolution.push_back(resolved_wavelength(*one) / mm);
     }
     if (sensitivity.empty()) continue;
     add_line(plot, command, sensitivity, resolution, "lines linewidth 1 linecolor '#b0b0b0'", "");
@@ -116,30 +143,15 @@ void write_design_map(std::string const& path, DesignPoint<double> const& bench,
         GnuplotFigure::quoted(fmt::format("Z_D = {:.4g} mm", share * bench.z_a / mm)), sensitivity.front(),
         *std::max_element(resolution.begin(), resolution.end())));
   }
-  // extend the ranges so that the requirements are visible
-  if (requirements && requirements->resolution) y.hold(*requirements->resolution / mm);
-  if (requirements && requirements->gradient_min) x.hold(2 * bench.random_error() / *requirements->gradient_min);
   double const x_low = x.low / 1.1, x_high = x.high * 1.2, y_low = y.low / 1.3, y_high = y.high * 1.3;
-  if (requirements && requirements->resolution) {
-    double const limit = *requirements->resolution / mm;
-    add_line(plot, command, {x_low, x_high}, {limit, limit},
-             fmt::format("lines linewidth 2 dashtype 2 linecolor '{}'", house_colour(1)),
-             fmt::format("resolution {:.4g} mm required", limit));
-  }
-  if (requirements && requirements->gradient_min) {
-    double const limit = 2 * bench.random_error() / *requirements->gradient_min;
-    add_line(plot, command, {limit, limit}, {y_low, y_high},
-             fmt::format("lines linewidth 2 dashtype 2 linecolor '{}'", house_colour(2)),
-             fmt::format("gradient {:.4g} kg/m⁴ at 2 x {:.3g} px", *requirements->gradient_min, bench.random_error()));
-  }
   add_line(plot, command, {bench.sensitivity()}, {resolved_wavelength(bench) / mm},
            fmt::format("points pointtype 7 pointsize 1.8 linecolor '{}'", house_colour(1)), "the setup");
   plot.command(fmt::format("set title {} font 'DejaVu Sans,14'",
                            GnuplotFigure::quoted(fmt::format("Design map: f = {:.5g} mm, Z_A = {:.5g} mm",
                                                              bench.focal_length / mm, bench.z_a / mm))));
   plot.command("set xtics (" + tics(x_low, x_high) + "); set ytics (" + tics(y_low, y_high) + ")");
-  plot.command("set clip two");  // clip lines of requirements at the border
-  plot.command("set logscale xy; set grid linecolor '#e4e4e4'; set key left top Left reverse samplen 2 opaque");
+  plot.command(
+      "set logscale xy; set grid linecolor '#e4e4e4'; set key outside right top Left reverse samplen 2 width -4");
   plot.command("set xlabel 'sensitivity [px per kg/m⁴]'; set ylabel 'wavelength transmitted with 1/√2 [mm]'");
   plot.command(fmt::format("set xrange [{:.6g}:{:.6g}]; set yrange [{:.6g}:{:.6g}]", x_low, x_high, y_low, y_high));
   plot.command(command);

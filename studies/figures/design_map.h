@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,6 +10,16 @@
 #include "studies/design/recommend.h"
 
 namespace gladstone {
+
+/// f-numbers of the curves.
+inline constexpr std::array<double, 8> map_f_numbers{2.8, 4, 5.6, 8, 11, 16, 22, 32};
+
+/// Returns Z_D at a fraction of the map's range, from 0.05 to 4 times Z_A [m].
+double map_z_d(DesignPoint<double> const& bench, double fraction);
+
+/// Returns the set-up with another f-number and Z_D and with dot images of the same size.
+/// @return nullopt if the dots are too close for an image
+std::optional<DesignPoint<double>> design_on_map(DesignPoint<double> const& bench, double f_number, double z_d);
 
 /// Resolution against sensitivity as a function of Z_D for one f-number, with fixed lens and Z_A.
 struct DesignCurve {
@@ -22,11 +33,10 @@ struct DesignCurve {
 /// Returns curves for the standard f-numbers from f/2.8 to f/32, with Z_D from 0.05 to 4 times Z_A.
 std::vector<DesignCurve> design_curves(DesignPoint<double> const& bench);
 
-/// Draws these curves, the setup as a point, the limit by the light cone alone, and the requirements as lines.
-/// @param requirements  empty: no requirements
+/// Draws these curves, the setup as a point, the limit by the light cone alone, and what is excluded as shaded areas.
+/// @param question  requirements and limits; null: only the limits of every set-up
 /// @throws GnuplotMissing, OutputError
-void write_design_map(std::string const& path, DesignPoint<double> const& bench,
-                      std::optional<Requirements> const& requirements);
+void write_design_map(std::string const& path, DesignPoint<double> const& bench, DesignQuestion const* question);
 
 /// Draws the best objective against the limit of a requirement.
 void write_design_front(std::string const& path, Recommendation const& answer, Objective objective);

@@ -64,7 +64,7 @@ std::string map_text(DesignPoint<double> const& b) {
 
 void write_map(std::string const& path, LayoutView const& view) {
   if (view.piv) return write_piv_map(path, *view.piv);
-  write_design_map(path, view.bench, std::nullopt);
+  write_design_map(path, view.bench, nullptr);
 }
 
 }  // namespace

@@ -33,6 +33,9 @@ class Runner(unittest.TestCase):
         text = "# T\n\n```\nmake\n```\n\n```sh\ntrue\n```\n```toml\na = 1\n```\n```python\nx = 1\n```\n"
         self.assertEqual(run_blocks.runnable_blocks(text), [(8, "sh", "true\n"), (14, "python", "x = 1\n")])
 
+    def test_writes_blocks_with_a_title(self):
+        self.assertEqual(run('```toml title="a.toml"\nx = 1\n```\n```sh\ngrep -qx "x = 1" a.toml\n```\n'), (0, ""))
+
     def test_runs_the_blocks_of_a_page_in_one_folder(self):
         self.assertEqual(run("```sh\necho 1 > a\nls data/README.md\n```\n```python\nopen('a').read()\n```\n"), (0, ""))
 

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Runs the examples of a page: every block marked sh or python, in their order, in one temporary folder.
+"""Runs the examples of a page: every block marked sh or python, in their order, in one temporary folder. A block with a
+title, ```toml title="setup.toml", is written to the file of that name instead.
 
 The folder contains links to studies/ and data/, as the root of the repository does. A Python block whose packages are
 missing ends the test as skipped (77), unless an earlier block has failed.
@@ -17,11 +18,14 @@ SKIPPED = 77
 
 
 def runnable_blocks(text: str) -> list[tuple[int, str, str]]:
-    """Returns line number, language and code of the blocks of a page that are marked sh or python."""
+    """Returns line number, language (sh, python, or "file NAME") and content of the blocks of a page that are run or
+    written."""
     blocks = []
-    for match in re.finditer(r"^```(\S*)[^\n]*\n(.*?)^```$", text, re.DOTALL | re.MULTILINE):
-        if match[1] in ("sh", "python"):
-            blocks.append((text.count("\n", 0, match.start()) + 2, match[1], match[2]))
+    for match in re.finditer(r"^```(\S*)([^\n]*)\n(.*?)^```$", text, re.DOTALL | re.MULTILINE):
+        title = re.search(r'title="([^"/]+)"', match[2])
+        language = f"file {title[1]}" if title else match[1]
+        if title or language in ("sh", "python"):
+            blocks.append((text.count("\n", 0, match.start()) + 2, language, match[3]))
     return blocks
 
 
@@ -47,6 +51,9 @@ def run_page(page: pathlib.Path, source: pathlib.Path, program: str) -> int:
         for name in ("studies", "data"):
             os.symlink(source / name, os.path.join(folder, name))
         for line, language, code in runnable_blocks(page.read_text(encoding="utf-8")):
+            if language.startswith("file "):
+                pathlib.Path(folder, language.removeprefix("file ")).write_text(code, encoding="utf-8")
+                continue
             if language == "python" and (missing := missing_packages(code, python, folder, environment)):
                 print(f"{page}:{line}: skipped, Python packages are missing: {', '.join(missing)}")
                 return SKIPPED

@@ -44,6 +44,22 @@ std::string write_picture(std::string const& name, std::vector<Sample> const& sa
   return path;
 }
 
+// OpenImageIO reads what the encoder writes: every grey level, a single pixel, and more bytes than one deflate block.
+TEST(ImageFile, EveryValueOfAnEncodedPngComesBack) {
+  for (auto const& [columns, rows] : {std::pair{256, 3}, {1, 1}, {7, 300}, {400, 400}}) {
+    Image<std::uint8_t> image(columns, rows);
+    for (std::size_t i = 0; i < image.size(); ++i) image.data()[i] = static_cast<std::uint8_t>(i * i / 3 + i);
+    std::string const path = temporary("encoded.png");
+    std::ofstream(path, std::ios::binary) << encode_png(image);
+    ImageMetadata metadata;
+    auto const back = read_image(path, &metadata);
+    ASSERT_EQ(back.columns(), columns);
+    ASSERT_EQ(back.rows(), rows);
+    EXPECT_EQ(metadata.channels, 1);
+    for (std::size_t i = 0; i < image.size(); ++i) ASSERT_EQ(back.data()[i], image.data()[i]) << columns << ' ' << i;
+  }
+}
+
 TEST(ImageFile, EveryValueOfA16BitTiffComesBack) {
   std::string const path = temporary("all.tif");
   auto const image = all_values();
