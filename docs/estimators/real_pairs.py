@@ -53,7 +53,10 @@ def main():
                                check=True, stdout=subprocess.DEVNULL)
             for windows in WINDOWS:
                 name = "windef_" + "_".join(map(str, windows))
-                write_vectors(folder / f"{name}.csv", measure_openpiv(grey(a), grey(b), windows))
+                try:
+                    write_vectors(folder / f"{name}.csv", measure_openpiv(grey(a), grey(b), windows))
+                except ValueError as error:  # all vectors of a pass are rejected
+                    print(f"{name}: {error}")
             print(f"{pathlib.Path(a).name}, {pathlib.Path(b).name}", flush=True)
             vectors = sorted(path.name for path in folder.glob("*.csv"))
             subprocess.run([sys.executable, MATCH, *map(os.path.abspath, (a, b)), *vectors], cwd=folder, check=True)
