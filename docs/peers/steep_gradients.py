@@ -37,8 +37,8 @@ from importlib.metadata import version
 import numpy as np
 import tifffile
 
+import openpiv_windef
 import pivlab
-from openpiv import windef
 from scipy.special import erf
 
 SIZE, MARGIN = 256, 16
@@ -143,18 +143,10 @@ def measure_gladstone(program, folder, *sets):
 
 
 def measure_openpiv(a, b):
-    settings = windef.PIVSettings()
-    settings.windowsizes, settings.overlap, settings.num_iterations = (64, 32, 16), (32, 16, 8), 3
-    settings.backend, settings.show_all_plots, settings.static_mask = "scipy", False, None
-    a, b = a.astype(np.int32), b.astype(np.int32)
-    x, y, u, v, _ = windef.first_pass(a, b, settings)
-    u, v = np.ma.masked_array(u, mask=np.ma.nomask), np.ma.masked_array(v, mask=np.ma.nomask)
-    for i in range(1, settings.num_iterations):
-        try:
-            x, y, u, v, _, _ = windef.multipass_img_deform(a, b, i, x, y, u, v, settings)
-        except ValueError:  # all vectors of a pass are rejected
-            return None
-    return x - 0.5, y - 0.5, np.ma.filled(u, np.nan), np.ma.filled(v, np.nan)
+    try:
+        return openpiv_windef.measure(a, b, (64, 32, 16))
+    except ValueError:  # all vectors of a pass are rejected
+        return None
 
 
 def mean_error(truth, vectors):
