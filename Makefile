@@ -124,9 +124,10 @@ wheel: packages  ## build a wheel in build/python/wheels that contains the C++ l
 		build/python/unrepaired/*.whl
 	python/wheel/test_wheel.sh build/python/wheels/*.whl
 
-bench: configure  ## run the benchmarks (rays/s, steps/s, vectors/s); options: BENCH='--benchmark_filter=...'
-	cmake --build $(BUILD) --parallel $(JOBS) --target gladstone_bench
-	$(BUILD)/bin/gladstone_bench $(BENCH)
+bench: BENCH_PROGRAM = $(if $(filter cuda,$(PRESET)),gladstone_cuda_bench,gladstone_bench)
+bench: configure  ## run the benchmarks (rays/s, steps/s, vectors/s), of a GPU: PRESET=cuda; options: BENCH='--benchmark_filter=...'
+	cmake --build $(BUILD) --parallel $(JOBS) --target $(BENCH_PROGRAM)
+	$(BUILD)/bin/$(BENCH_PROGRAM) $(BENCH)
 
 fuzz:  ## run all file readers on generated files under sanitizers, into out/fuzz; total time: FUZZ_SECONDS=600
 	@$(MAKE) --no-print-directory PRESET=dev configure

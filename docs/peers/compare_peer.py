@@ -8,10 +8,12 @@ pair in memory: for gladstone `seconds_correlate` of --json, whose every run is 
 
 Errors are root mean squares per component against the exact displacement at the position of the vector, without those
 above 1 px, in brackets the gain, and after a comma the fraction of vectors that are gross errors, missing or invalid:
-`gladstone benchmark --vectors` scores all programs, its own included.
+`gladstone benchmark --vectors` scores all programs, its own included. With --keep FOLDER, images and vectors remain in
+FOLDER; those of the first peer are in FOLDER/peer0, for `gladstone benchmark --vectors NAME=FOLDER/peer0`.
 """
 
 import argparse
+import contextlib
 import json
 import os
 import subprocess
@@ -97,12 +99,14 @@ def compare(title, peers, describe):
     parser.add_argument("gladstone", help="the program gladstone")
     parser.add_argument("--cases", nargs="+", default=CASES)
     parser.add_argument("--rounds", type=int, default=15)
+    parser.add_argument("--keep", metavar="FOLDER", help="folder for images and vectors")
     arguments, _ = parser.parse_known_args()
-    with tempfile.TemporaryDirectory() as folder:
+    keep = arguments.keep and os.path.abspath(arguments.keep)
+    with contextlib.nullcontext(keep) if keep else tempfile.TemporaryDirectory() as folder:
         own = Gladstone(os.path.abspath(arguments.gladstone), folder, arguments.cases)
         names = {f"own{i}": name for i, name in enumerate(OWN)} | {f"peer{i}": name for i, name in enumerate(peers)}
         for name in names:
-            os.mkdir(os.path.join(folder, name))
+            os.makedirs(os.path.join(folder, name), exist_ok=True)
         speed = {}
         for turn in range(arguments.rounds + 1):
             case = arguments.cases[0]

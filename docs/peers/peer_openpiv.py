@@ -10,7 +10,9 @@ Needs: pip install 'openpiv[rust]==0.26.1' numpy==2.4.6 tifffile==2026.3.3
 from importlib.metadata import version
 
 import numpy as np
-from openpiv import pyprocess, validation, windef
+from openpiv import pyprocess, validation
+
+import openpiv_windef
 
 from compare_peer import compare, timed
 
@@ -33,18 +35,7 @@ def one_pass(backend, complete):
 
 
 def three_passes(backend):
-    settings = windef.PIVSettings()
-    settings.windowsizes, settings.overlap, settings.num_iterations = (64, 32, 16), (32, 16, 8), 3
-    settings.backend, settings.show_all_plots, settings.static_mask = backend, False, None
-
-    def estimate(a, b):
-        a, b = a.astype(np.int32), b.astype(np.int32)
-        x, y, u, v, _ = windef.first_pass(a, b, settings)
-        u, v = np.ma.masked_array(u, mask=np.ma.nomask), np.ma.masked_array(v, mask=np.ma.nomask)
-        for i in range(1, settings.num_iterations):
-            x, y, u, v, _, _ = windef.multipass_img_deform(a, b, i, x, y, u, v, settings)
-        return x - 0.5, y - 0.5, np.ma.filled(u, np.nan), np.ma.filled(v, np.nan)
-    return timed(estimate)
+    return timed(lambda a, b: openpiv_windef.measure(a, b, (64, 32, 16), backend))
 
 
 peers = {}

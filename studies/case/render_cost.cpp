@@ -49,6 +49,15 @@ double lit_particles(Setup const& setup) {
   return expected_particles(setup).per_pixel * setup.camera.columns * setup.camera.rows;
 }
 
+/// Returns the processor time of `gladstone render` relative to that of render_seconds(), which adds up the times of
+/// single operations: about the geometric mean of six setups with a table of deflections of a file, three of a closed
+/// form, and three ray by ray (docs/performance.md).
+double measured_share(Setup const& setup, RenderMethod method) {
+  constexpr double rays = 1.5, table_of_file = 0.3, table_of_closed_form = 1.3;
+  if (method != RenderMethod::focused_dots) return rays;
+  return setup.medium.field.kind == FieldKind::file ? table_of_file : table_of_closed_form;
+}
+
 /// Estimates the number of rays that "auto" chooses for most particles, without aberrations and refraction: that of
 /// cubature_rule_suffices() for the brightest particle at the edge of the laser sheet, at least the second rule.
 /// @param largest  largest number that may be chosen
@@ -103,12 +112,13 @@ RenderCost estimate_render_cost(Setup const& setup) {
   } else {
     cost.processor_seconds = images * render_seconds(scene, planes ? RenderTheory::no : RenderTheory::yes);
   }
+  cost.processor_seconds *= measured_share(setup, cost.method);
   cost.expected_seconds = cost.processor_seconds * cost.expected_rays / cost.rays_per_source;
   return cost;
 }
 
 double expected_render_seconds(Scene const& scene, RenderTheory theory) {
-  double const longest = render_seconds(scene, theory);
+  double const longest = measured_share(scene.setup, resolve_render_method(scene)) * render_seconds(scene, theory);
   if (!scene.setup.piv || !scene.adaptive_criteria) return longest;
   auto const most = static_cast<double>(scene.rays_per_dot);
   return longest * expected_rays(scene.setup, most) / most;

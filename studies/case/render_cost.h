@@ -15,7 +15,7 @@ struct RenderCost {
   double rays_per_source = 0;     ///< configured, or the largest number that "auto" may choose
   bool rays_are_largest = false;  ///< the number of rays is an upper limit
   double expected_rays = 0;       ///< of PIV with "auto": number that most particles require; otherwise rays_per_source
-  double processor_seconds = 0;   ///< time on one core of the processor of docs/benchmarks.md [s]; NaN: unknown
+  double processor_seconds = 0;   ///< time on one core of the processor of docs/performance.md [s]; NaN: unknown
   double expected_seconds = 0;    ///< the same for the expected number of rays
   std::vector<MemoryRequirement> memory;
 
@@ -24,15 +24,16 @@ struct RenderCost {
   double bytes() const;            ///< sum of `memory` [bytes]
 };
 
-/// Estimates the cost. The time is that of render_seconds() for the coarsest integration step and the rays of the
-/// setup; for "auto", the largest number of rays that may be chosen (focused_dots: the smallest), and for PIV also the
-/// number that the blur of the particle images at the edge of the laser sheet requires. The field of a file is replaced
-/// by a medium of the same depth, length scale and number of steps, which are read from the file's header.
+/// Estimates the cost. The time is proportional to that of render_seconds() for the coarsest integration step and the
+/// rays of the setup, with a factor that was measured for each method; for "auto", the largest number of rays that may
+/// be chosen (focused_dots: the smallest), and for PIV also the number that the blur of the particle images at the edge
+/// of the laser sheet requires. The field of a file is replaced by a medium of the same depth, length scale and number
+/// of steps, which are read from the file's header.
 /// @throws DataError if a file cannot be read
 RenderCost estimate_render_cost(Setup const& setup);
 
-/// Estimates the processor time for rendering a prepared scene [s]: that of render_seconds(), for adaptive ray numbers
-/// of particles with the number of rays that estimate_render_cost() expects.
+/// Estimates the processor time for rendering a prepared scene as estimate_render_cost() does [s]; for adaptive ray
+/// numbers of particles with the number of rays that it expects.
 double expected_render_seconds(Scene const& scene, RenderTheory theory);
 
 }  // namespace gladstone

@@ -191,7 +191,7 @@ std::string cost_text(RenderCost const& cost) {
   if (std::isfinite(cost.processor_seconds)) {
     std::string const threads = thread_count() == 1 ? "1 thread" : fmt::format("{} threads", thread_count());
     bool const expected = cost.expected_rays < cost.rays_per_source;
-    text += fmt::format("  {:<50}{}{} s{} on {} of a CPU, without the choice of step and rays\n", "time",
+    text += fmt::format("  {:<50}{}{} s{} on {} of a CPU\n", "time",
                         cost.rays_are_largest && !expected ? "up to " : "about ", time_text(cost.seconds()),
                         expected ? ", up to " + time_text(cost.longest_seconds()) + " s" : "", threads);
   } else {

@@ -59,9 +59,8 @@ double jet_error(AxisymmetricDensity const& result, double ambient) {
   return largest;
 }
 
-// The inversion of the gradient is of order 4. Three-point inversion of the projection (PyAbel 0.9.1,
-// abel.dasch.three_point_transform) has an rms error of 1.4e-4 with 141 radii and 1.0e-5 with 513. Here: 1.5e-6 with
-// 71 radii, 1.0e-7 with 141; then the gradient that is cut off at 4 s remains, 2.4e-8.
+// The inversion of the gradient is of order 4: 1.5e-6 with 71 radii, 1.0e-7 with 141; then the gradient that is cut off
+// at 4 s remains, 2.4e-8. docs/peers/peer_abel.py compares PyAbel on the same grid.
 TEST(AbelOperators, GradientInversionIsOfOrderFour) {
   GaussianPair const coarse(71), middle(141), finest(513);
   double const e71 = coarse.rms(make_gradient_inversion(71) * coarse.gradient);
