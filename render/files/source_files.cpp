@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cstdint>
-#include <memory>
 
 #include "render/base/available_memory.h"
 #include "render/base/error.h"
@@ -68,20 +66,18 @@ std::string hash_of(std::string const& path, SourceFiles::Holds holds) {
 }  // namespace
 
 std::string pixel_sha256(Image<double> const& picture, int sample_bits) {
-  // Integers of 32 bits, since only these are converted in vector registers.
-  std::unique_ptr<std::uint16_t[]> const whole = std::make_unique_for_overwrite<std::uint16_t[]>(picture.size());
+  std::vector<std::uint16_t> whole(picture.size());
   int others = 0;
-  for (std::size_t i = 0; i < picture.size(); ++i) {
-    double const value = picture.data()[i], within = value >= 0 && value <= 65535 ? value : 0;
-    auto const level = static_cast<std::int32_t>(within);
-    whole[i] = static_cast<std::uint16_t>(level);
-    others |= static_cast<double>(level) != value;
+  for (std::size_t i = 0; i < whole.size(); ++i) {
+    double const value = picture.data()[i];
+    whole[i] = static_cast<std::uint16_t>(value >= 0 && value <= 65535 ? value : 0);
+    others |= static_cast<double>(whole[i]) != value;
   }
   Sha256 hash = started_picture(picture.columns(), picture.rows(), sample_bits, others ? "float64" : "uint16");
   if (others) {
     hash.add(picture.data(), picture.size() * sizeof(double));
   } else {
-    hash.add(whole.get(), picture.size() * sizeof(std::uint16_t));
+    hash.add(whole.data(), whole.size() * sizeof(std::uint16_t));
   }
   return hash.finish();
 }
