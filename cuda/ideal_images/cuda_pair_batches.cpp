@@ -57,13 +57,21 @@ CudaPairBatches::CudaPairBatches(std::vector<OwnedPairModel> const& models)
       velocities_.emplace_back(one.velocity->data(), one.velocity->size(), "the velocity field");
       model.flow = flow_on_device(model.flow, velocities_.back().data());
     }
-    if (model.spot.sigma != spot_.sigma)
-      throw DataError(ErrorCode::inconsistent, KeyPath{"lens"},
-                      "the point spread function differs between the pairs of a batch; render them in several");
+    if (one.mie) {
+      Scattering const& there = scattering_.emplace_back(
+          Scattering{{one.mie->table_of().data(), 1, "the scattering"},
+                     {one.mie->tables().data(), one.mie->tables().size(), "the scattering"},
+                     {one.mie->coefficients().data(), one.mie->coefficients().size(), "the scattering"}});
+      model.mie.table_of = there.table_of.data();
+      model.mie.table = there.table.data();
+      model.mie.coefficient = there.coefficients.data();
+    }
+    spot_.sigma = std::max(spot_.sigma, model.spot.sigma);
     seeded_ = std::max<std::size_t>(seeded_, model.seeded);
     capacity_ = std::max(capacity_, expected_capacity(model));
     held.push_back(model);
   }
+  for (PairModel& model : held) model.spot = spot_;
   models_ = DeviceArray<PairModel>(held.data(), held.size(), "the models of the pairs");
 }
 
@@ -103,7 +111,8 @@ DeviceBuffer CudaPairBatches::render(std::vector<PairSeeds> const& seeds, LevelT
   auto levels = std::make_shared<DeviceArray<unsigned char>>(seeds.size() * 2 * pixels * bytes_per_level(type),
                                                              "the frames of a batch");
   DeviceArray<PairSeeds> const uploaded(seeds.data(), seeds.size(), "the seeds of a batch");
-  double const bytes_per_pair = 16.0 * static_cast<double>(pixels) + 48.0 * static_cast<double>(seeded_);
+  double const bytes_per_pair =
+      16.0 * static_cast<double>(pixels) + 2.0 * sizeof(ParticleImage) * static_cast<double>(seeded_);
   auto const together = std::clamp<std::size_t>(static_cast<std::size_t>(workspace_bytes / bytes_per_pair), 1,
                                                 std::max<std::size_t>(seeds.size(), 1));
   prepare_workspace(together);

@@ -31,10 +31,18 @@ class CudaPairBatches final : public PairBatchRenderer {
   /// Renders pairs `begin` to `begin` + `count` of a batch.
   void render_some(PairSeeds const* seeds, std::size_t begin, std::size_t count, LevelType type, unsigned char* levels);
 
+  /// Table of the scattering of one diameter.
+  struct Scattering {
+    DeviceArray<std::uint32_t> table_of;
+    DeviceArray<MieTable> table;
+    DeviceArray<float> coefficients;
+  };
+
   std::vector<DeviceArray<float>> velocities_;  ///< coefficients of velocity files
+  std::vector<Scattering> scattering_;          ///< of models with Mie scattering
   DeviceArray<PairModel> models_;
   std::size_t model_count_;
-  GaussianSpot<double> spot_;
+  GaussianSpot<double> spot_;  ///< with the footprint of all images
   int columns_, rows_;
   std::size_t seeded_ = 0;  ///< largest number of particles of a model
   std::uint32_t capacity_;

@@ -39,8 +39,9 @@ __global__ void order_kernel(TileLists const lists) {
 struct Chunk {
   double at[2][chunk];  ///< position [px]
   double light[chunk];
-  int first[2][chunk];  ///< first pixel of the footprint
-  int edge[2][chunk];   ///< first edge of the footprint that is computed
+  double per_sigma[chunk];  ///< reciprocal of the standard deviation [1/px]
+  int first[2][chunk];      ///< first pixel of the footprint
+  int edge[2][chunk];       ///< first edge of the footprint that is computed
   double integral[2][chunk][most_edges];
   double share[2][chunk][tile_size];  ///< fractions of light of the tile's columns; those of its rows, times light
   bool reaches[chunk][tile_size / rows_per_thread];  ///< whether the image reaches the rows of a warp
@@ -56,6 +57,7 @@ __device__ void load_images(Chunk& held, DeviceParticleImages const& images, Gau
     held.at[1][i] = image.at.y;
     held.light[i] =
         images.unit ? image.light / __longlong_as_double(static_cast<long long>(images.unit[frame / 2])) : image.light;
+    held.per_sigma[i] = 1.0 / image.sigma;
     held.first[0][i] = print.column;
     held.first[1][i] = print.row;
     for (int axis = 0; axis < 2; ++axis) {
@@ -65,10 +67,17 @@ __device__ void load_images(Chunk& held, DeviceParticleImages const& images, Gau
   }
 }
 
-/// Computes the integrals of the PSF up to pixel edges. A group of 16 or 32 threads takes one axis of one image.
+/// Returns GaussianSpot::edge_integral() of a held image, by the same operations.
+__device__ double edge_integral(Chunk const& held, int axis, int i, int edge) {
+  int const within = edge % 8;
+  double const distance =
+      static_cast<double>(held.first[axis][i] + (edge - within)) - held.at[axis][i] + (within - 0.5);
+  return GaussianSpot<double>::edge_value(distance * held.per_sigma[i]);
+}
+
+/// Computes the integrals of the images up to pixel edges. A group of 16 or 32 threads takes one axis of one image.
 /// @param edges  number of edges per image and axis
-__device__ void integrate_edges(Chunk& held, GaussianSpot<double> const& shape, int count, int edges,
-                                int const (&corner)[2]) {
+__device__ void integrate_edges(Chunk& held, int count, int edges, int const (&corner)[2]) {
   int const group = edges <= warp / 2 ? warp / 2 : warp;
   int const member = static_cast<int>(threadIdx.x) & (group - 1);
   for (int item = static_cast<int>(threadIdx.x) / group; item < 2 * count; item += threads / group) {
@@ -76,7 +85,7 @@ __device__ void integrate_edges(Chunk& held, GaussianSpot<double> const& shape, 
     for (int k = member; k < edges; k += group) {
       int const edge = held.edge[axis][i] + k, pixel = held.first[axis][i] + edge - corner[axis];
       if (pixel < 0 || pixel > tile_size) continue;  // not an edge of a pixel in the tile
-      held.integral[axis][i][k] = shape.edge_integral(held.at[axis][i], held.first[axis][i], edge);
+      held.integral[axis][i][k] = edge_integral(held, axis, i, edge);
     }
   }
 }
@@ -117,7 +126,7 @@ __global__ void __launch_bounds__(threads)
       int const count = static_cast<int>(min(all - begin, std::uint32_t{chunk}));
       load_images(held, images, shape, lists.ordered + list * lists.capacity + begin, count, frame, corner);
       __syncthreads();
-      integrate_edges(held, shape, count, edges, corner);
+      integrate_edges(held, count, edges, corner);
       __syncthreads();
       find_shares(held, count, edges, width, corner);
       __syncthreads();

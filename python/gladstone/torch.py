@@ -108,8 +108,8 @@ class RenderedBatches(torch.utils.data.IterableDataset):
     ):
         """Makes `length` batches of `batch_size` pairs.
 
-        setup: a `Setup`, a dictionary of tables, or a setup file, of PIV with one camera and particles.scattering =
-            "gaussian".
+        setup: a `Setup`, a dictionary of tables, or a setup file, of PIV with one camera whose particles have ideal
+            images; particles.scattering = "gaussian", "lambert", or "mie" with one diameter.
         vary: function of the batch's index and a random generator that returns the keys to replace.
         """
         self.setup, self.length, self.batch_size, self.vary, self.seed = as_setup(setup), length, batch_size, vary, seed

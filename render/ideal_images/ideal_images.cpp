@@ -10,6 +10,28 @@ IdealProjection IdealImages::projection() const {
   return {scene_->imaging.image_distance, scene_->setup.z_a, camera.pixel_pitch, camera.columns, camera.rows};
 }
 
+DefocusBlur IdealImages::blur() const {
+  Setup const& setup = scene_->setup;
+  ImagingGeometry const& imaging = scene_->imaging;
+  bool const neglected = setup.piv->particles.scattering == ParticleScattering::gaussian;
+  double const diameter_px = imaging.magnification * imaging.entrance_pupil / setup.camera.pixel_pitch;
+  return {scene_->spot_sigma_px(), setup.z_a, neglected ? 0 : diameter_px / 2};
+}
+
+double IdealImages::largest_blur_error(Particles const& particles) const {
+  DefocusBlur const spread = blur();
+  double brightest = 0, worst = 0;
+  for (std::size_t i = 0; i < particles.size(); ++i) {
+    for (int pulse = 0; pulse < 2; ++pulse) {
+      double const light = particles.photons[pulse][i] * particles.diameter[i] * particles.diameter[i];
+      if (!(light > 0)) continue;
+      brightest = std::max(brightest, light);
+      worst = std::max(worst, light * spread.error(particles.place[pulse][i].z));
+    }
+  }
+  return brightest > 0 ? worst / brightest : 0;
+}
+
 // Circle of confusion of a point at distance Z - z from the lens, z in front of the plane in focus at Z: a disc of
 // diameter M D |z| / (Z - z) on the sensor (exact for a thin lens; Olsen & Adrian 2000).
 double IdealImages::largest_blur_px(Particles const& particles) const {

@@ -13,10 +13,10 @@ namespace gladstone {
 
 /// Scene whose particles have ideal images: in focus of an ideal thin lens with a stop, on and perpendicular to the
 /// axis, without other optical elements or medium, with a Gaussian PSF.
-/// The image of a particle is the PSF centred on its pinhole projection and integrated over pixels, as in other PIV
-/// image generators (Raffel et al. 2018, section 3; Lecordier & Westerweel 2004), without ray tracing. Defocus due to
-/// the particle's depth in the sheet is neglected: see largest_blur_px(). Created by ideal_images() only; refers to the
-/// scene, which must outlive it.
+/// The image of a particle is a Gaussian centred on its pinhole projection and integrated over pixels, as in other PIV
+/// image generators (Raffel et al. 2018, section 3; Lecordier & Westerweel 2004), without ray tracing. It is widened by
+/// the defocus due to the particle's depth in the sheet (DefocusBlur), which ParticleScattering::gaussian neglects: see
+/// largest_blur_px(). Created by ideal_images() only; refers to the scene, which must outlive it.
 class IdealImages {
  public:
   Scene const& scene() const { return *scene_; }
@@ -24,6 +24,10 @@ class IdealImages {
   IdealProjection projection() const;
   /// Returns the image position of a point [px].
   Vec2d project(Vec3d place) const { return projection()(place); }
+  /// Returns the widening of the images.
+  DefocusBlur blur() const;
+  /// Returns the largest error of the images due to DefocusBlur, relative to the brightest one [1].
+  double largest_blur_error(Particles const& particles) const;
   /// Returns the diameter of the circle of confusion of the illuminated particle that is farthest out of focus [px].
   double largest_blur_px(Particles const& particles) const;
 
@@ -45,8 +49,9 @@ class ImageDrawer {
  public:
   virtual ~ImageDrawer() = default;
   virtual std::string device() const = 0;
-  /// Returns the light of both frames: each image is a PSF times its light, and a pixel adds up its contributions in
-  /// the order of the images. Images without light are ignored.
+  /// Returns the light of both frames. A pixel adds up its contributions in the order of the images. Images without
+  /// light are ignored.
+  /// @param shape  with the footprint of all images
   virtual std::shared_ptr<RenderedLight const> draw(std::array<std::vector<ParticleImage>, 2> const& images,
                                                     GaussianSpot<double> const& shape, int columns, int rows) = 0;
 };

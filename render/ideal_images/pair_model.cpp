@@ -1,13 +1,18 @@
 #include "render/ideal_images/pair_model.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <limits>
 #include <type_traits>
+#include <utility>
 
 #include "render/base/error.h"
 #include "render/ideal_images/ideal_images.h"
 #include "render/light/particle_motion.h"
 #include "render/scene/build_camera.h"
 #include "render/scene/particle_scene.h"
+#include "render/scene/scene.h"
 
 namespace gladstone {
 
@@ -39,28 +44,86 @@ int choose_steps(ParticleSetup const& particles, FlowSetup const& flow, SeedingP
   return plan_paths(particles, flow, middle, diameters, flow.dt / 2, path_tolerance_px * pixel_size).steps;
 }
 
+/// Largest image and error that defocus causes in a volume.
+struct LargestBlur {
+  double sigma = 0;  ///< standard deviation of the widest image that is not faint [px]
+  double error = 0;  ///< DefocusBlur::error() times the light relative to that of the brightest point [1]
+};
+
+/// Determines the largest blur in the volume of the particles, on a lattice of points.
+LargestBlur find_largest_blur(ParticleSetup const& particles, LaserSheet<double> const& sheet,
+                              DefocusBlur const& blur) {
+  constexpr int across = 5, deep = 129;
+  double brightest = 0;
+  LargestBlur largest{blur.sigma, 0};
+  if (!(blur.reach > 0)) return largest;
+  auto const each = [&](auto const& visit) {
+    for (int k = 0; k < across * across * deep; ++k) {
+      Vec3d const part{k % across / (across - 1.0) - 0.5, k / across % across / (across - 1.0) - 0.5,
+                       k / (across * across) / (deep - 1.0) - 0.5};
+      Vec3d const size = *particles.volume;
+      Vec3d const place = particles.center + Vec3d{part.x * size.x, part.y * size.y, part.z * size.z};
+      for (int pulse = 0; pulse < 2; ++pulse) visit(place.z, sheet.photons(place, pulse));
+    }
+  };
+  each([&](double, double light) { brightest = std::max(brightest, light); });
+  each([&](double z, double light) {
+    if (light > faint_image * brightest) largest.sigma = std::max(largest.sigma, blur.width(z));
+    if (light > 0) largest.error = std::max(largest.error, light / brightest * blur.error(z));
+  });
+  return largest;
+}
+
+/// Returns a scene without particles, which differ between pairs.
+Scene empty_scene(Setup const& setup) {
+  Scene scene;
+  scene.setup = setup;
+  scene.imaging = setup.imaging();
+  scene.camera = build_camera(setup);
+  return scene;
+}
+
+/// Tabulates the scattering of a setup whose particles have one diameter, for the angles at which the lens sees them.
+/// These are found from a sample, and the table has a margin.
+std::shared_ptr<MieScattering const> tabulate_scattering(Setup setup) {
+  setup.piv->particles.count = ParticleCount::number;
+  setup.piv->particles.amount = 4096;
+  return build_scene(setup).mie;
+}
+
+/// Returns the reason why images of scattered light cannot be drawn by a formula; empty if they can.
+std::string reason_against_scattering(Setup const& setup) {
+  ParticleSetup const& particles = setup.piv->particles;
+  if (particles.scattering == ParticleScattering::gaussian) return "";
+  if (setup.render.method == RenderMethod::rays) return "render.method = \"rays\" traces rays";
+  if (particles.scattering == ParticleScattering::mie && particles.diameter.spread != DiameterSpread::one)
+    return "the diameters of every pair require another table of Mie scattering";
+  Scene const scene = empty_scene(setup);
+  double const error =
+      find_largest_blur(particles, laser_sheet(setup.piv->laser), ideal_images(scene).value().blur()).error;
+  if (error <= accurate_blur_error) return "";
+  return fmt::format("defocus in the sheet blurs images so far that Gaussians deviate by {:.2g} % of the brightest one",
+                     100 * error);
+}
+
 }  // namespace
 
 std::string reason_against_pair_model(Setup const& setup) {
   if (std::string const reason = reason_against_ideal_images(setup); !reason.empty()) return reason;
   ParticleSetup const& particles = setup.piv->particles;
-  if (particles.scattering != ParticleScattering::gaussian) return "particles.scattering is not \"gaussian\"";
   if (particles.count == ParticleCount::file) return "the particles are read from a file";
   if (particles.diameter.spread == DiameterSpread::table) return "the diameters are read from a file";
   if (setup.sequence) return "the pairs of a sequence share their particles";
   if (!setup.camera.background.glare_file.empty()) return "the camera has a glare image";
   if (ParticleVelocity{setup.piv->flow.flow}.exact()) return "particles cross a shock";
-  return "";
+  return reason_against_scattering(setup);
 }
 
 OwnedPairModel build_pair_model(Setup const& setup) {
   if (std::string const reason = reason_against_pair_model(setup); !reason.empty())
     throw DataError(ErrorCode::unsupported, KeyPath{"particles.scattering"},
                     "pairs cannot be rendered in batches (" + reason + ")");
-  Scene scene;  // without particles, which differ between pairs
-  scene.setup = setup;
-  scene.imaging = setup.imaging();
-  scene.camera = build_camera(setup);
+  Scene scene = empty_scene(setup);
   FlowSetup& flow = scene.setup.piv->flow;
   load_flow(flow);
   ParticleSetup const& particles = setup.piv->particles;
@@ -83,11 +146,19 @@ OwnedPairModel build_pair_model(Setup const& setup) {
   model.sheet = laser_sheet(setup.piv->laser);
   model.sheet_plane = scene.sheet_plane();
   model.lens = {scene.camera.aim_plane.origin, scene.camera.aim_plane.z, LensLight::area(scene.imaging.entrance_pupil)};
-  model.projection = ideal_images(scene).value().projection();
-  model.spot = {scene.spot_sigma_px()};
+  IdealImages const ideal = ideal_images(scene).value();
+  model.projection = ideal.projection();
+  model.blur = ideal.blur();
+  model.spot = {find_largest_blur(particles, model.sheet, model.blur).sigma};
+  model.scattering = particles.scattering;
+  std::shared_ptr<MieScattering const> mie;
+  if (model.scattering == ParticleScattering::mie) {
+    mie = tabulate_scattering(setup);
+    model.mie = mie->view();
+  }
   model.exposure = exposure_rule(camera);
   model.detector = Detector(camera, 0).pixel();
-  return {model, flow.owner};
+  return {model, flow.owner, std::move(mie)};
 }
 
 }  // namespace gladstone

@@ -8,6 +8,8 @@
 
 #include "render/ideal_images/particle_image.h"
 #include "render/light/flow_path.h"
+#include "render/light/lambert_sphere.h"
+#include "render/light/mie_scattering.h"
 #include "render/light/particle_draw.h"
 #include "render/scene/lens_light.h"
 #include "render/scene/setup.h"
@@ -59,14 +61,25 @@ struct PairModel {
   // light and camera
   LaserSheet<double> sheet;
   Pose<double> sheet_plane;  ///< Scene::sheet_plane()
+  ParticleScattering scattering = ParticleScattering::gaussian;
+  MieScatteringView<double> mie;  ///< of the one diameter, index 0; for ParticleScattering::mie
   LensLight lens;
   IdealProjection projection;
-  GaussianSpot<double> spot;
+  DefocusBlur blur;
+  GaussianSpot<double> spot;  ///< with the footprint of all images: the widest one that is not faint
   ExposureRule exposure;
   PixelDetector detector;  ///< without electrons per light and seed, which differ between pairs
 
   GLADSTONE_HD ParticleVelocity velocity(double d) const {
     return {flow, density > 0 ? stokes_response_time(density, d, viscosity) : 0.0, interval};
+  }
+
+  /// Returns the differential cross-section of a particle of diameter d in a direction (unit vector) [m^2/sr].
+  GLADSTONE_HD double cross_section(double d, Vec3d place, Vec3d direction, int pulse) const {
+    if (scattering == ParticleScattering::lambert)
+      return LambertSpheres<double>{&d}.cross_section(0, direction, sheet.wave(place, pulse));
+    if (scattering == ParticleScattering::mie) return mie.cross_section(0, direction, sheet.wave(place, pulse));
+    return isotropic_cross_section(d);
   }
 
   /// Computes the images of a particle at both pulses, with light in photons.
@@ -82,7 +95,9 @@ struct PairModel {
       double const photons = sheet.photons(place, pulse);
       if (!(photons > 0)) continue;
       Vec3d const way = lens.centre - place;
-      image[pulse] = {projection(place), photons * lens(isotropic_cross_section(d), way, length(way))};
+      double const far = length(way);
+      image[pulse] = {projection(place), photons * lens(cross_section(d, place, way / far, pulse), way, far),
+                      blur.width(place.z)};
     }
   }
 
@@ -118,12 +133,14 @@ struct PairModel {
 struct OwnedPairModel {
   PairModel model;
   std::shared_ptr<std::vector<float> const> velocity;  ///< coefficients of a velocity file; null: none
+  std::shared_ptr<MieScattering const> mie;            ///< for ParticleScattering::mie
 };
 
 /// Returns the reason why the pairs of a setup have no PairModel; empty if they have one.
 std::string reason_against_pair_model(Setup const& setup);
 
-/// Builds the model of a setup. The number of integration steps is chosen from the particles of the setup's own seed.
+/// Builds the model of a setup. The number of integration steps and the angles of Mie scattering are chosen from the
+/// particles of the setup's own seed.
 /// @throws DataError if the setup has none, or its velocity file cannot be read
 OwnedPairModel build_pair_model(Setup const& setup);
 

@@ -78,8 +78,9 @@ void draw_band(std::span<ParticleImage const> spots, std::size_t band, GaussianS
     if (!(std::abs(spot.at.x) < 1e8)) continue;
     Footprint const print = shape.footprint(spot.at);
     if (print.column + width <= 0 || print.column >= image.columns()) continue;
-    shape.shares(spot.at.x, print.column, width, across.data());
-    shape.shares(spot.at.y, print.row, width, down.data());
+    GaussianSpot<double> const own{spot.sigma};
+    own.shares(spot.at.x, print.column, width, across.data());
+    own.shares(spot.at.y, print.row, width, down.data());
     int const above = std::max(0, top - print.row), end = std::min(width, top + rows - print.row);
     for (int i = above; i < end; ++i) {
       double const brightness = spot.light * down[static_cast<std::size_t>(i)];
@@ -92,9 +93,19 @@ void draw_band(std::span<ParticleImage const> spots, std::size_t band, GaussianS
   for (int row = 0; row < rows; ++row) std::copy_n(light.pixel(0, row), image.columns(), &image(0, top + row));
 }
 
-Image<double> draw(std::vector<ParticleImage> const& spots, Scene const& scene) {
-  CameraSetup const& camera = scene.setup.camera;
-  GaussianSpot<double> const shape{scene.spot_sigma_px()};
+/// Returns the widest of the images that are not faint, whose footprint all images have.
+GaussianSpot<double> find_widest(std::array<std::vector<ParticleImage>, frames> const& spots, double sigma) {
+  double brightest = 0;
+  for (auto const& frame : spots)
+    for (ParticleImage const& spot : frame) brightest = std::max(brightest, spot.light);
+  for (auto const& frame : spots)
+    for (ParticleImage const& spot : frame)
+      if (spot.light > faint_image * brightest) sigma = std::max(sigma, spot.sigma);
+  return {sigma};
+}
+
+Image<double> draw(std::vector<ParticleImage> const& spots, GaussianSpot<double> const& shape,
+                   CameraSetup const& camera) {
   Image<double> image(camera.columns, camera.rows);
   Bands const bands(spots, camera.rows, shape.half_width());
   parallel_for(bands.count(), [&](std::size_t band) { draw_band(bands[band], band, shape, image); });
@@ -134,6 +145,7 @@ Rendering render_ideal_images(IdealImages const& ideal, Particles const& particl
   Scene const& scene = ideal.scene();
   LightThroughLens const through_lens(scene, light);
   IdealProjection const project = ideal.projection();
+  DefocusBlur const blur = ideal.blur();
   std::array<std::vector<ParticleImage>, frames> spots;
   for (std::size_t pulse = 0; pulse < frames; ++pulse) {
     spots[pulse].resize(particles.size());
@@ -142,7 +154,8 @@ Rendering render_ideal_images(IdealImages const& ideal, Particles const& particl
         double const photons = particles.photons[pulse][i];
         if (!(photons > 0)) continue;
         Vec3d const place = particles.place[pulse][i];
-        spots[pulse][i] = {project(place), photons * through_lens(place, i, static_cast<int>(pulse))};
+        double const light = photons * through_lens(place, i, static_cast<int>(pulse));
+        spots[pulse][i] = {project(place), light, blur.width(place.z)};
       }
     });
   }
@@ -155,13 +168,14 @@ Rendering render_ideal_images(IdealImages const& ideal, Particles const& particl
   for (auto& frame : spots) {
     for (ParticleImage& spot : frame) spot.light /= unit;
   }
+  GaussianSpot<double> const shape = find_widest(spots, blur.sigma);
+  CameraSetup const& camera = scene.setup.camera;
   if (drawer) {
-    CameraSetup const& camera = scene.setup.camera;
-    rendering.in_place = drawer->draw(spots, {scene.spot_sigma_px()}, camera.columns, camera.rows);
+    rendering.in_place = drawer->draw(spots, shape, camera.columns, camera.rows);
     if (images == RenderImages::yes) rendering.light = std::exchange(rendering.in_place, nullptr)->to_host();
     return rendering;
   }
-  rendering.light = {draw(spots[0], scene), draw(spots[1], scene)};
+  rendering.light = {draw(spots[0], shape, camera), draw(spots[1], shape, camera)};
   if (images == RenderImages::in_place) rendering.store_light_in_place();
   return rendering;
 }

@@ -122,16 +122,26 @@ void warn_of_field(Scene const& scene, std::vector<std::string>& warnings) {
   }
 }
 
-/// Warns if ideal images neglect a visible defocus blur.
+/// Warns if the defocus of ideal images is neglected although it is visible, or approximated with a visible error.
 void warn_of_blur(Scene const& scene, std::vector<std::string>& warnings) {
   if (!scene.setup.piv || resolve_render_method(scene) != RenderMethod::formula) return;
-  double const blur = ideal_images(scene)->largest_blur_px(scene.particles), spot = 4 * scene.spot_sigma_px();
-  if (blur < 0.5 * spot) return;
+  IdealImages const ideal = *ideal_images(scene);
+  double const blur = ideal.largest_blur_px(scene.particles), spot = 4 * scene.spot_sigma_px();
+  if (scene.setup.piv->particles.scattering == ParticleScattering::gaussian) {
+    if (blur < 0.5 * spot) return;
+    warn(warnings,
+         fmt::format("render.method: ideal images neglect defocus, but particles of this sheet have a blur of up to "
+                     "{:.3g} px in addition to the diffraction image of {:.3g} px; use a thinner sheet, a larger "
+                     "f-number or rays",
+                     blur, spot));
+    return;
+  }
+  double const error = ideal.largest_blur_error(scene.particles);
+  if (!(error > accurate_blur_error)) return;
   warn(warnings,
-       fmt::format(
-           "render.method: ideal images neglect defocus, but particles of this sheet have a blur of up to {:.3g} px in "
-           "addition to the diffraction image of {:.3g} px; use a thinner sheet, a larger f-number or rays",
-           blur, spot));
+       fmt::format("render.method: ideal images approximate a blur of up to {:.3g} px by Gaussians, with errors "
+                   "of up to {:.2g} % of the brightest image; use a thinner sheet, a larger f-number or rays",
+                   blur, 100 * error));
 }
 
 /// Throws SetupError for the file of a study, in place of one problem for each of its keys.

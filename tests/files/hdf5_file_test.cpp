@@ -5,11 +5,14 @@
 #include <signal.h>
 #include <sys/resource.h>
 
+#include <algorithm>
+#include <bit>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <limits>
+#include <random>
 
 #include "render/base/error.h"
 #include "tests/support/expect_error.h"
@@ -120,6 +123,56 @@ TEST_F(Hdf5, EqualInputGivesEqualFilesButForTheDate) {
     return text.erase(at, date.size());
   };
   EXPECT_TRUE(bytes("a.h5") == bytes("b.h5"));
+}
+
+// Files of the same structure are made from a common skeleton, of which the latest are retained. Here the structures
+// alternate and are more than are retained; names, shapes, texts, scales and the setup belong to a structure, values
+// and other attributes do not.
+TEST_F(Hdf5, FilesOfOneStructureHaveTheirOwnContent) {
+  auto const name = [this](int k) { return in_folder(std::to_string(k) + ".h5"); };
+  constexpr int structures = 6, files = 18;
+  auto const size = [](int k) { return static_cast<std::size_t>(k % 2 == 0 ? 3 : 9000 + k % structures); };
+  for (int k = 0; k < files; ++k) {
+    int const structure = k % structures;
+    FileOrigin from = origin();
+    from.setup = "schema = " + std::to_string(structure);
+    Hdf5Writer writer(name(k), from);
+    writer.write("/group/value", std::vector<double>(size(k), 0.5 + k), {size(k)}, "m",
+                 "of structure " + std::to_string(structure), "row");
+    writer.write("/row", std::vector<std::int64_t>(size(k), k), {size(k)}, "1", "rows", "row");
+    if (structure > 2) writer.attach_scales({{"/group/value", {"/row"}}});
+    writer.attribute("/", "number", std::int64_t{k});
+    writer.close();
+  }
+  for (int k = 0, structure = 0; k < files; ++k, structure = k % structures) {
+    Hdf5Reader const reader(name(k));
+    EXPECT_EQ(reader.read("/group/value"), std::vector<double>(size(k), 0.5 + k)) << k;
+    EXPECT_EQ(reader.read_integers("/row"), std::vector<std::int64_t>(size(k), k)) << k;
+    EXPECT_EQ(reader.attribute("setup"), "schema = " + std::to_string(structure));
+    EXPECT_EQ(reader.attribute("number"), std::to_string(k));
+    EXPECT_EQ(reader.attribute_of("/group/value", "description"), "of structure " + std::to_string(structure));
+    EXPECT_THAT(reader.dimension_scales("/group/value"), ElementsAre(structure > 2 ? "/row" : ""));
+  }
+}
+
+// The mantissas of these numbers in [1, 2) are random: 6.5 of 8 bytes, which are stored, and the others take half a
+// byte. In the second half of the other dataset they are constant.
+TEST_F(Hdf5, NoiseIsStoredAndTheRestIsCompressed) {
+  constexpr std::size_t count = 20000;
+  std::vector<double> noise(count);
+  std::mt19937_64 engine(3);
+  for (double& value : noise) value = std::bit_cast<double>(0x3ff0'0000'0000'0000u | engine() >> 12);
+  std::vector<double> half = noise;
+  std::fill(half.begin() + count / 2, half.end(), 1.25);
+  auto const bytes = [&](std::vector<double> const& values) {
+    Hdf5Writer writer(in_folder("noise.h5"), origin());
+    writer.write("/values", values, {count}, "1", "values", "row");
+    writer.close();
+    EXPECT_TRUE(Hdf5Reader(in_folder("noise.h5")).read("/values") == values);
+    return static_cast<double>(fs::file_size(in_folder("noise.h5")));
+  };
+  EXPECT_LT(bytes(noise), 7.1 * count + 16e3);  // 16 kB for everything but the values
+  EXPECT_LT(bytes(half), 4.6 * count + 16e3);
 }
 
 TEST_F(Hdf5, MissingDatasetIsNamedWithThoseThatExist) {

@@ -10,6 +10,7 @@
 #include <numeric>
 
 #include "render/base/parallel.h"
+#include "render/light/lambert_sphere.h"
 #include "render/rays/ray_planning.h"
 #include "render/rays/rays_renderer.h"
 #include "render/sensor/detector.h"
@@ -142,6 +143,125 @@ TEST(IdealImages, SayWhatBlurTheyLeaveOut) {
   scene.particles.place[0][0].z = 0.5 * mm;
   scene.particles.photons[0][0] = 1;
   EXPECT_NEAR(ideal_images(scene)->largest_blur_px(scene.particles), 105.0 / 645 * 6.5625 * 0.5 / 749.5 / 5e-3, 1e-9);
+}
+
+/// Light of one particle on the axis, in the position z, by the formula and by 4096 rays, in multiples of all its
+/// light.
+struct OneParticle {
+  OneParticle(double f_number, double z, ParticleScattering scattering) {
+    gladstone::Setup setup = piv_setup(scattering);
+    setup.lens.f_number = f_number;
+    setup.camera.columns = setup.camera.rows = 80;
+    setup.camera.pixel_pitch = 1e-6;
+    setup.piv->particles.amount = 1000;
+    setup.piv->laser.thickness = 4 * mm;
+    Scene scene = build_scene(setup);
+    scene.particles.resize(1);
+    for (int pulse = 0; pulse < 2; ++pulse) {
+      scene.particles.place[pulse] = {{2e-6, -3e-6, z}};
+      scene.particles.photons[pulse] = {1e13};
+    }
+    scene.particles.diameter = {1e-6};
+    auto const ideal = ideal_images(scene).value();
+    blur = ideal.blur();
+    stated_error = ideal.largest_blur_error(scene.particles);
+    Rendering const drawn = by_formula(scene);
+    scene = with_step(scene, determine_step_by_tracing(scene));
+    scene.rays_per_dot = 4096;
+    Rendering const traced =
+        RaysRenderer().render_particles(scene, scene.particles, ParticleLight::scattered, RenderImages::yes);
+    formula = shares(drawn.light.reference);
+    rays = shares(traced.light.reference);
+    distance_px = length(drawn.truth.reference_px[0] - traced.truth.reference_px[0]);
+    variation = variation_over_stop(scene);
+    flux_ratio = drawn.truth.flux[0].x / traced.truth.flux[0].x;
+  }
+
+  /// Returns the relative change of the scattered light from the centre to the edge of the stop, along x and y.
+  static Vec2d variation_over_stop(Scene const& scene) {
+    Vec3d const place = scene.particles.place[0][0], lens = scene.camera.aim_plane.origin;
+    LightWave<double> const wave = laser_sheet(scene.setup.piv->laser).wave(place, 0);
+    auto const light = [&](Vec3d at) {
+      Vec3d const way = at - place, direction = way / length(way);
+      if (scene.mie) return scene.mie->view().cross_section(0, direction, wave);
+      return LambertSpheres<double>{scene.particles.diameter.data()}.cross_section(0, direction, wave);
+    };
+    auto const change = [&](Vec3d edge) {
+      double const more = light(lens + edge), less = light(lens - edge);
+      return (more - less) / (more + less);
+    };
+    double const radius = scene.imaging.entrance_pupil / 2;
+    return {change({radius, 0, 0}), change({0, radius, 0})};
+  }
+
+  static std::vector<double> shares(Image<double> const& image) {
+    std::vector<double> shares(image.begin(), image.end());
+    double const sum = std::accumulate(shares.begin(), shares.end(), 0.0);
+    for (double& share : shares) share /= sum;
+    return shares;
+  }
+  /// Largest difference of the two images, relative to the centre of the PSF.
+  double difference() const {
+    double largest = 0;
+    for (std::size_t i = 0; i < rays.size(); ++i) largest = std::max(largest, std::abs(formula[i] - rays[i]));
+    return largest * 2 * std::numbers::pi * blur.sigma * blur.sigma;
+  }
+  /// Variance of the image by formula along its rows [px^2].
+  double variance() const {
+    double first = 0, second = 0;
+    for (std::size_t i = 0; i < formula.size(); ++i) {
+      double const x = static_cast<double>(i % 80) - 39.5;
+      first += formula[i] * x;
+      second += formula[i] * x * x;
+    }
+    return second - first * first;
+  }
+
+  DefocusBlur blur;
+  Vec2d variation;
+  double stated_error = 0, distance_px = 0, flux_ratio = 0;
+  std::vector<double> formula, rays;
+};
+
+// Out of focus, images by formula differ from those of rays by (r / (2 sigma))^4 / 3 of the PSF's centre (DefocusBlur),
+// up to the next term of this series, a share of 2 (r / (2 sigma))^2, and the mean over pixels of up to a standard
+// deviation. If the light changes linearly over the stop by a share g from its centre to its edge, the centroid of the
+// disc is r g / 4 off its centre: the mean of x (1 + g x) over a unit disc. A shift s changes the image by exp(-1/2) s
+// / sigma. The remainder of 7e-4 is the scatter of the rays and the grid on which many rays are collected. The variance
+// of an image is sigma^2 + r^2 / 4 + 1/12.
+TEST(IdealImages, AreBlurredAsThoseOfRays) {
+  for (ParticleScattering const scattering : {ParticleScattering::lambert, ParticleScattering::mie}) {
+    for (double const f_number : {16.0, 8.0, 5.6, 4.0}) {
+      for (double const z : {-0.5 * mm, 0.2 * mm, 0.5 * mm, 1 * mm}) {
+        OneParticle const one(f_number, z, scattering);
+        double const sigma = one.blur.sigma, r = one.blur.radius(z), half = r / (2 * sigma);
+        if (half > 0.7) continue;  // beyond, the series does not converge
+        SCOPED_TRACE(testing::Message() << "f/" << f_number << ", z = " << z << ", r / (2 sigma) = " << half);
+        double const expected = std::pow(half, 4) / 3, shift = r * length(one.variation) / 4;
+        EXPECT_NEAR(one.stated_error, expected, 1e-12);
+        EXPECT_LT(one.difference(), expected + 0.61 * shift / sigma + 7e-4);
+        if (half > 0.3) {
+          EXPECT_GT(one.difference(), 0.3 * expected);
+        }
+        EXPECT_NEAR(one.variance(), sigma * sigma + r * r / 4 + 1.0 / 12, 1e-4);
+        EXPECT_NEAR(one.distance_px, shift, 0.1 * shift + 1e-4);
+        EXPECT_NEAR(one.flux_ratio, 1, scattering == ParticleScattering::lambert ? 1e-3 : 1e-2);
+      }
+    }
+  }
+}
+
+// The circle of confusion in front of and behind the plane in focus: M D |z| / (2 (Z - z)), here with M = 105 / 645.
+TEST(IdealImages, WidenByTheCircleOfConfusion) {
+  Scene const scene = build_scene(piv_setup(ParticleScattering::lambert));
+  DefocusBlur const blur = ideal_images(scene)->blur();
+  for (double const z : {-2 * mm, 0.0, 0.5 * mm}) {
+    double const r = 105.0 / 645 * 6.5625 * mm / 2 * std::abs(z) / (750 * mm - z) / 5e-6;
+    EXPECT_NEAR(blur.radius(z), r, 1e-12);
+    EXPECT_NEAR(blur.width(z), std::sqrt(blur.sigma * blur.sigma + r * r / 4), 1e-12);
+  }
+  Scene const neglected = build_scene(piv_setup());
+  EXPECT_EQ(ideal_images(neglected)->blur().width(2 * mm), neglected.spot_sigma_px());
 }
 
 TEST(IdealImages, HaveOneDoor) {

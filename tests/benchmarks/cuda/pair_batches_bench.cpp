@@ -11,22 +11,23 @@ namespace gladstone::bench {
 namespace {
 
 /// Square pairs with a flow that differs between the particles.
-Setup square_pair(int side) {
-  Setup setup = test::pair_setup(ParticleScattering::gaussian, side, side);
+Setup square_pair(ParticleScattering scattering, int side) {
+  Setup setup = test::pair_setup(scattering, side, side);
   setup.piv->flow.flow.kind = TaylorGreenFlow{10, 2 * 3.14159265358979 / 10e-3, {}};
   return setup;
 }
 
 /// Renders batches of new pairs that remain on the device, as float32.
+/// @param scattering  "gaussian", or scattering whose images are blurred by defocus
 /// @param state  side of the frames [px], pairs of a batch, whether frames are noisy, whether every pair has its own
 ///               setup, with the displacement of every pixel
-void pair_batches(benchmark::State& state) {
+void render_batches(benchmark::State& state, ParticleScattering scattering) {
   cuda::DeviceState const device = cuda::device_state();
   if (!device.usable) {
     state.SkipWithError(device.text.c_str());
     return;
   }
-  Setup setup = square_pair(static_cast<int>(state.range(0)));
+  Setup setup = square_pair(scattering, static_cast<int>(state.range(0)));
   auto const pairs = static_cast<std::size_t>(state.range(1));
   setup.camera.noise.enabled = state.range(2) != 0;
   bool const own_setup = state.range(3) != 0;
@@ -55,6 +56,8 @@ void pair_batches(benchmark::State& state) {
   std::nth_element(seconds.begin(), middle, seconds.end());
   state.counters["pairs/s"] = static_cast<double>(pairs) / *middle;
 }
+
+void pair_batches(benchmark::State& state) { render_batches(state, ParticleScattering::gaussian); }
 BENCHMARK(pair_batches)
     ->ArgNames({"side", "pairs", "noise", "own_setup"})
     ->ArgsProduct({{256}, {64, 1024}, {0, 1}, {0}})
@@ -63,6 +66,18 @@ BENCHMARK(pair_batches)
     ->UseManualTime()
     ->Iterations(30)
     ->Unit(benchmark::kMillisecond);
+
+/// Pairs through an ideal lens, with the light that particles scatter towards it and their defocus in closed form.
+void lens_pair_batches(benchmark::State& state, ParticleScattering scattering) { render_batches(state, scattering); }
+void set_lens_arguments(benchmark::internal::Benchmark* lens_pairs) {
+  lens_pairs->ArgNames({"side", "pairs", "noise", "own_setup"})
+      ->ArgsProduct({{1024}, {64}, {0, 1}, {0, 1}})
+      ->UseManualTime()
+      ->Iterations(30)
+      ->Unit(benchmark::kMillisecond);
+}
+BENCHMARK_CAPTURE(lens_pair_batches, lambert, ParticleScattering::lambert)->Apply(set_lens_arguments);
+BENCHMARK_CAPTURE(lens_pair_batches, mie, ParticleScattering::mie)->Apply(set_lens_arguments);
 
 }  // namespace
 }  // namespace gladstone::bench
