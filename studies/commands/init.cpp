@@ -95,9 +95,10 @@ std::string list_cameras(std::vector<GivenTable> const& given, std::vector<Setup
     for (std::string const& line : camera.lines) text += line + '\n';
     if (!first) text += "# and any of the keys listed with the first camera\n";
     for (SetupKeyTable const* const table : tables) {
+      if (!first || !table->heading.starts_with("[camera")) continue;
       for (SetupKey const& key : table->keys) {
         std::string const path = key.path.substr(std::string_view("camera.").size());
-        if (first && table->heading.starts_with("[camera") && !camera.has(path)) text += commented_key(key, path);
+        if (!camera.has(path)) text += commented_key(key, path);
       }
     }
   }
