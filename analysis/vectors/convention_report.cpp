@@ -123,8 +123,10 @@ std::string ProbableMistake::warning() const {
   std::string const remedy =
       conventions.empty() ? "correct the file" : "correct the file, or accept it with --conventions " + conventions;
   return fmt::format(
-      "{} (without this the rms difference from the truth would be {:.3g} px, as read it is {:.3g} px); {}", text,
-      corrected_fit.rms_px, as_read.rms_px, remedy);
+      "{} (the vectors differ from the truth by {:.3g} px rms as read, but by only {:.3g} px with this mistake "
+      "undone); "
+      "{}",
+      text, as_read.rms_px, corrected_fit.rms_px, remedy);
 }
 
 std::string offset_report(DetectedConventions const& detected) {

@@ -32,6 +32,20 @@ constexpr std::array<TextReader, 8> text_readers{{
     {detail::has_named_columns, detail::read_named_columns},
 }};
 
+/// Reader of a format that is not text, selected by the extension of the file. A new format requires one more row.
+struct BinaryReader {
+  char const* extension;
+  VectorFile (*read)(std::string const& path);
+};
+constexpr std::array<BinaryReader, 6> binary_readers{{
+    {".h5", detail::read_gladstone_hdf5},
+    {".hdf5", detail::read_gladstone_hdf5},
+    {".nc", detail::read_vector_netcdf},
+    {".mat", detail::read_vector_matlab},
+    {".vti", detail::read_vector_vtk},
+    {".vtp", detail::read_vector_vtk},
+}};
+
 /// Writer of a format, selected by the extension of the file. A new format requires one more row.
 struct VectorWriter {
   char const* extension;
@@ -127,8 +141,9 @@ void arrange_as_grid(DisplacementField& field) {
 }
 
 VectorFile read_vectors(std::string const& path) {
-  bool const hdf5 = path.ends_with(".h5") || path.ends_with(".hdf5");
-  VectorFile file = hdf5 ? detail::read_gladstone_hdf5(path) : read_text(path);
+  auto const* const reader = std::find_if(binary_readers.begin(), binary_readers.end(),
+                                          [&](BinaryReader const& one) { return path.ends_with(one.extension); });
+  VectorFile file = reader == binary_readers.end() ? read_text(path) : reader->read(path);
   arrange_as_grid(file.field);
   return file;
 }

@@ -62,10 +62,11 @@ struct VectorFile {
   bool complete = true;                   ///< false: the header declares another number of vectors; see `warnings`
 };
 
-/// Reads vectors.h5 or vectors.csv of gladstone, text files of OpenPIV, PIVlab, DaVis, TSI Insight, Dantec and JPIV, or
-/// any text file with a header line that names columns x, y, u, v (or vx, vy), with or without units. Separators are
-/// comma, semicolon, tab or blanks; the decimal separator may be a comma. Text may be UTF-8 or UTF-16. Vectors on a
-/// complete lattice are sorted row by row from the smallest y, and `columns` and `rows` are set.
+/// Reads every format that write_vectors() writes, data sets of PIVPy (.nc), text files of OpenPIV, PIVlab, DaVis, TSI
+/// Insight, Dantec and JPIV, or any text file with a header line that names columns x, y, u, v (or vx, vy), with or
+/// without units. Separators are comma, semicolon, tab or blanks; the decimal separator may be a comma. Text may be
+/// UTF-8 or UTF-16. Vectors on a complete lattice are sorted row by row from the smallest y, and `columns` and `rows`
+/// are set.
 /// @throws DataError with file:line for content that cannot be read
 VectorFile read_vectors(std::string const& path);
 
@@ -91,7 +92,7 @@ bool has_vector_extension(std::string const& path);
 
 /// Writes vectors in the format of the extension: vectors.h5 (.h5), vectors.csv (.csv), netCDF-4 in the schema of PIVPy
 /// (.nc), MATLAB level 5 (.mat), Tecplot ASCII (.dat), VTK image (.vti) or VTK points (.vtp); contents in
-/// docs/file-formats.md. Quantities that were not estimated are NaN (Tecplot: 0).
+/// docs/file-formats.md. Quantities that were not estimated are NaN (Tecplot: 0, marked by the column `unknown`).
 /// @throws OutputError, also for scattered vectors in .nc and .vti; DataError if a source has changed since it was
 /// read;
 ///         std::invalid_argument for another file extension

@@ -6,7 +6,7 @@ import json
 import os
 import tempfile
 from collections.abc import Iterable, Mapping
-from typing import Any, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 from . import _core
 from ._errors import check_choice
@@ -39,19 +39,34 @@ def render_sequence(
 
 
 def convert(
-    source: str | os.PathLike, path: str | os.PathLike, *, conventions: str = "", image_rows: int = 0
+    source: str | os.PathLike,
+    path: str | os.PathLike,
+    *,
+    conventions: str = "",
+    image_rows: int = 0,
+    spacing_px: int = 0,
+    at: Literal["mid", "a"] = "mid",
+    device: str = "auto",
+    progress: Progress = False,
 ) -> dict[str, Any]:
     """Converts a file of vectors to the format of an ending, as `gladstone convert`.
 
-    source: vectors of gladstone, OpenPIV, PIVlab, DaVis, Insight, Dantec, JPIV or any x, y, u, v; or truth.h5 of a case,
-        for the true displacements of its dots or particles.
+    source: vectors of gladstone in any of these formats, of OpenPIV, PIVlab, DaVis, Insight, Dantec, JPIV, PIVPy or any
+        x, y, u, v; or truth.h5 of a case, for the true displacements of its dots or particles, or of its pixels.
     path: .h5, .csv, .nc, .mat, .dat (Tecplot), .vti or .vtp.
     conventions: conventions of a file of another program; default: those of its format.
     image_rows: number of rows of the image, required for files that count y upwards from its lower edge.
+    spacing_px: of truth.h5, computes the displacement at every such column and row of the image, at the position `at`, as
+        `Truth.flow`. Default: 1 for .nc and .vti, which store grids; otherwise the dots or particles.
 
     Returns the `format` of the source and the numbers of `vectors`, of `valid` ones, and of grid `columns` and `rows`.
     """
-    return json.loads(_core.convert(os.fspath(source), os.fspath(path), conventions, image_rows))
+    check_choice("at", at, ("mid", "a"))
+    with reporting(progress) as report:
+        found = _core.convert(
+            os.fspath(source), os.fspath(path), conventions, image_rows, spacing_px, at == "a", device, report
+        )
+    return json.loads(found)
 
 
 def views(

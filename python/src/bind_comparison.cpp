@@ -92,8 +92,9 @@ std::string report(ReportOptions const& options, std::string const& device) {
   WrittenReport const written = write_report(options, open_device(device));
   for (std::string const& file : written.doubtful) {
     spdlog::warn(
-        "{}: the report rests on vectors that are cut short or likely read otherwise than they were written; export "
-        "them again, or give conventions",
+        "{}: the vectors of this file are incomplete, or their axes and signs were probably misread, so that the "
+        "report "
+        "is doubtful (reasons above); export them again, or state their axes and signs with conventions",
         file);
   }
   return written.findings;

@@ -135,8 +135,8 @@ void save(MeasuredField const& self, std::string const& path) {
     sources.add_known("flow", self.flow_sha256);
   }
   if (!has_vector_extension(path)) {
-    throw OutputError(path, fmt::format("has an ending that selects no format; choose one of {}",
-                                        fmt::join(vector_extensions(), ", ")));
+    throw OutputError(
+        path, fmt::format("must end in one of {}, which selects the format", fmt::join(vector_extensions(), ", ")));
   }
   write_vectors(path, self.field, {"gladstone vectors", 1, self.resolved, 0, self.device, std::move(sources)});
 }

@@ -108,6 +108,44 @@ def test_vtk_file_is_read_by_vtk(field, tmp_path, ending):
     assert same(arrays["peak_ratio"], field.peak_ratio.ravel()) and same(arrays["status"], field.status.ravel())
 
 
+ALL = ["h5", "csv", "nc", "mat", "dat", "vti", "vtp"]
+
+
+@pytest.mark.parametrize("ending", ALL)
+def test_every_format_is_read_again(field, tmp_path, ending):
+    field.save(tmp_path / f"vectors.{ending}")
+    again = gs.Field.load(tmp_path / f"vectors.{ending}")
+    assert again.shape == field.shape
+    for name in NUMBERS.values():
+        assert same(getattr(again, name), getattr(field, name)), name
+
+
+@pytest.mark.parametrize("engine", ["h5netcdf", "netcdf4"])
+def test_data_set_that_xarray_writes_is_read(field, tmp_path, engine):
+    pytest.importorskip("xarray")
+    pytest.importorskip({"netcdf4": "netCDF4"}.get(engine, engine))
+    data = field.to_xarray()
+    data.transpose("t", "x", "y").to_netcdf(tmp_path / "turned.nc", engine=engine)
+    data[["u", "v", "chc"]].to_netcdf(tmp_path / "few.nc", engine=engine)
+    turned, few = (gs.Field.load(tmp_path / name) for name in ("turned.nc", "few.nc"))
+    for name in NUMBERS.values():
+        assert same(getattr(turned, name), getattr(field, name)), name
+    assert same(few.u, field.u) and same(few.valid, field.valid)
+
+
+def test_truth_is_written_at_pixels_or_dots(case, tmp_path):
+    case.truth.save(tmp_path / "truth.nc")
+    dense = gs.Field.load(tmp_path / "truth.nc")
+    assert same(np.stack([dense.u, dense.v], -1), case.truth.flow("mid"))
+    case.truth.save(tmp_path / "dots.vtp")
+    dots = gs.Field.load(tmp_path / "dots.vtp")
+    assert same(dots.u, case.truth.displacement_px[:, 0]) and same(dots.sigma_v, case.truth.error_px[:, 1])
+    case.save(tmp_path / "case")
+    found = gs.convert(tmp_path / "case" / "truth.h5", tmp_path / "coarse.vti", spacing_px=8, at="a")
+    assert (found["columns"], found["rows"]) == (12, 12)
+    assert same(gs.Field.load(tmp_path / "coarse.vti").u, case.truth.flow("a", spacing_px=8)[..., 0])
+
+
 def test_tecplot_file_has_the_numbers(field, tmp_path):
     field.save(tmp_path / "vectors.dat")
     again = gs.Field.load(tmp_path / "vectors.dat")

@@ -111,8 +111,8 @@ void go_back(fs::path const& folder, FolderContent const& content, std::vector<f
     }
   } catch (MoveError const& stuck) {
     throw OutputError(stuck.path.string(), std::string("cannot be moved back (") + std::strerror(stuck.error) +
-                                               "); the old files are in " + work.string() +
-                                               "; copy them to a safe place");
+                                               ") after the new files could not be installed; the old files are in " +
+                                               work.string() + ": move them back by hand");
   }
 }
 
@@ -172,7 +172,9 @@ void replace_files(Partial& partial, std::string const& folder, std::string cons
   std::vector<fs::path> const files = files_below(fs::path(name) / staged_files, content.marker);
   refuse_what_is_in_the_way(fs::path(name) / staged_files, folder, asked, content);
   auto const fail = [&asked](std::string const& what, int error) {
-    throw OutputError(asked, what + " (" + std::strerror(error) + "); the old files are unchanged");
+    throw OutputError(asked, what + " (" + std::strerror(error) +
+                                 "); the old files are unchanged: check the permissions and the free space of the "
+                                 "folder");
   };
   if (::mkdir((fs::path(name) / old_files).c_str(), 0777) != 0) fail("cannot be written", errno);
   // rename() does not replace a directory that is not empty: an existing .replacing is completed first.
@@ -216,8 +218,9 @@ void complete_replacement(std::string const& folder, FolderContent const& conten
       } catch (MoveError const& stuck) {
         throw OutputError(stuck.path.string(),
                           std::string("cannot be moved (") + std::strerror(stuck.error) +
-                              "), and the replacement of the files in " + folder +
-                              " that was interrupted cannot be completed; make sure that the file can be moved");
+                              "); an earlier command was interrupted while it replaced the files in " + folder +
+                              ", which must be completed first: correct the permissions of this file and its folder, "
+                              "and repeat the command");
       }
       std::error_code error;
       if (::rename(work.c_str(), aside.c_str()) == 0) fs::remove_all(aside, error);
@@ -227,8 +230,10 @@ void complete_replacement(std::string const& folder, FolderContent const& conten
     if (::rmdir(work.c_str()) == 0) return;  // empty: its content was lost in a crash of the system
     throw_if_interrupted();
     if (std::chrono::steady_clock::now() > end) {
-      throw OutputError(folder, "is being replaced by " + describe_writer(work.string()) +
-                                    "; try again when it has finished or, if it was interrupted, on that host");
+      throw OutputError(folder,
+                        "another command is replacing the files of this folder: " + describe_writer(work.string()) +
+                            "; repeat the command when that one has finished or, if it was interrupted, repeat "
+                            "it on that host");
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }

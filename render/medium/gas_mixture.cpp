@@ -7,7 +7,9 @@
 #include <string>
 
 #include "render/base/contracts.h"
+#include "render/base/error.h"
 #include "render/base/not_a_number.h"
+#include "render/base/text.h"
 #include "render/base/units.h"
 #include "render/medium/gladstone_dale.h"
 #include "render/setup/setup_table.h"
@@ -86,6 +88,26 @@ constexpr std::array all_gases{Gas{"air", air_mass, &gladstone_dale_ciddor},
                                Gas{"oxygen", oxygen_mass, &oxygen},
                                Gas{"water", water_mass, &water}};
 
+/// Chemical formulas of the gases, in the same order; empty: a mixture.
+constexpr std::array<char const*, all_gases.size()> formulas{"", "Ar", "CO2", "He", "H2", "CH4", "N2", "O2", "H2O"};
+
+/// Reports gases that are named by their formula, in upper or lower case.
+/// @return true if there is one
+bool refuse_formulas(SetupTable& table) {
+  bool any = false;
+  for (std::size_t i = 0; i < formulas.size(); ++i) {
+    for (std::string const& key : {std::string(formulas[i]), lower_case(formulas[i])}) {
+      if (key.empty() || !table.has(key)) continue;
+      table.number(key, 0.0);  // otherwise it is reported as an unknown key, too
+      table.problem(key,
+                    fmt::format("unknown key \"{0}\" in [medium.gas]; did you mean \"{1}\"?", key, all_gases[i].name),
+                    ErrorCode::unknown_key);
+      any = true;
+    }
+  }
+  return any;
+}
+
 }  // namespace
 
 std::span<Gas const> gases() { return all_gases; }
@@ -128,7 +150,8 @@ GasMixture read_gas_mixture(SetupTable& medium, double wavelength) {
   SetupTable table = medium.table("gas");
   bool const by_mass = table.word("fractions", "mole", {"mole", "mass"}) == "mass";
   std::array<double, all_gases.size()> fractions{};
-  double sum = 0;  // NaN if a fraction is wrong, which is reported already
+  // NaN if a fraction is wrong, which is reported already
+  double sum = refuse_formulas(table) ? not_a_number : 0.0;
   for (std::size_t i = 0; i < fractions.size(); ++i) {
     std::string const name(all_gases[i].name);
     fractions[i] = table.number(name, table.has(name) ? not_a_number : 0.0, Range::at_least(0.0, 1.0));

@@ -30,6 +30,11 @@ class LensMedia {
   /// @param surface_where  file and line of the surface: the place in messages if the medium has no line of its own
   LensMedium find(PrescribedMedium const& medium, std::string const& surface_where);
 
+  /// Returns a glass of a catalogue, or the one with nd and Vd of its line if no catalogue contains it or if an assumed
+  /// one contradicts them. Adds one warning about the choice.
+  /// @throws DataError if the glass is unknown or not valid at this wavelength
+  Glass named_glass(PrescribedMedium::Named const& named, std::string const& where);
+
   /// Returns the warnings about the glasses found.
   /// @throws DataError if a glass is unknown or not valid at this wavelength; SetupError that lists several of them
   std::vector<std::string> finish();
@@ -40,10 +45,6 @@ class LensMedia {
     std::string name;
     std::string where;  ///< location of its first use
   };
-
-  /// Returns a glass of a catalogue, or the one with nd and Vd of its line if no catalogue contains it or if an assumed
-  /// one contradicts them. Adds one warning about the choice.
-  Glass named_glass(PrescribedMedium::Named const& named, std::string const& where);
 
   /// Returns the glass of a search and adds its notes, each once for a name.
   Glass found_glass(GlassMatch const& match, std::string const& name, std::string const& where);

@@ -99,9 +99,10 @@ void limit_by_own_aperture(Lens& lens, LensOptions const& options) {
   PrescribedSurface const& stop = lens.prescription.surfaces[static_cast<std::size_t>(lens.stop)];
   if (!stop.has_aperture) return;
   if (options.f_number && lens.paraxial_stop_radius > stop.semi_diameter) {
-    lens.warnings.push_back(fmt::format("{}: the aperture on the stop opens to f/{:.4g} at the widest, not to f/{:.4g}",
-                                        stop.where, *options.f_number * lens.paraxial_stop_radius / stop.semi_diameter,
-                                        *options.f_number));
+    lens.warnings.push_back(
+        fmt::format("{}: the aperture at the stop limits the lens to f/{:.4g}, which is used instead of "
+                    "f/{:.4g}; set lens.f_number to a larger value, or enlarge this aperture",
+                    stop.where, *options.f_number * lens.paraxial_stop_radius / stop.semi_diameter, *options.f_number));
   }
   lens.stop_radius = std::min(lens.stop_radius, stop.semi_diameter);
   lens.paraxial_stop_radius = std::min(lens.paraxial_stop_radius, stop.semi_diameter);
@@ -164,9 +165,10 @@ void open_rings(Lens& lens) {
       opened.obscured = 0;
       return opened;
     });
-    lens.warnings.push_back(
-        fmt::format("{}: an aperture from {:.6g} mm to infinity would block all light of the lens; it is ignored",
-                    prescribed.where, prescribed.obscured / unit::millimetre));
+    lens.warnings.push_back(fmt::format(
+        "{}: this aperture admits light only beyond a radius of {:.6g} mm, which no light of the lens reaches; "
+        "it is ignored (if it should block light within the radius, give it an outer radius)",
+        prescribed.where, prescribed.obscured / unit::millimetre));
   }
 }
 

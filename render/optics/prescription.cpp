@@ -141,7 +141,8 @@ void check_dimensions(PrescribedSurface const& surface, bool last) {
     throw DataError(
         ErrorCode::out_of_range, surface.where,
         fmt::format(
-            "the coordinate breaks ahead move it by {:.4g} mm, which is too long for a lens (at most a kilometre)",
+            "the coordinate breaks before this surface move it along the axis by {:.4g} mm, but at most a kilometre is "
+            "allowed; correct their thicknesses",
             advance(surface) / unit::millimetre));
   }
   if (!(surface.semi_diameter > 0)) {

@@ -63,7 +63,8 @@ RaysLaunch::RaysLaunch(Scene const& scene, SpotView const& shown, StopRim rim, R
   auto const seen = camera.unproject(camera.sensor.axis_pixel(), scene.target_plane());
   if (!seen)
     throw DataError(ErrorCode::invalid_value, KeyPath{"lens"},
-                    "the camera's axis meets no place of the dots' plane; check the geometry");
+                    "the axis of the camera does not meet the plane of the dots in front of it (the camera looks away "
+                    "from it or parallel to it); correct camera.pose or geometry");
   point_area = 1 / std::abs(seen->by_x.x * seen->by_y.y - seen->by_x.y * seen->by_y.x);
   Vec3d const from = scene.target_plane().point_to_outer({seen->place.x, seen->place.y, 0});
   double const cosine = std::abs(seen->chief.direction.z);

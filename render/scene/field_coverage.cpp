@@ -100,9 +100,11 @@ std::string side_face_warning(BuiltMedium const& medium, Setup const& setup) {
   }
   if (faces.empty()) return {};
   return fmt::format(
-      "medium.field: at its faces {} the field differs from the ambient by up to {:.2g} % of its range (rms), and rays "
-      "that miss the field see a jump there; if it should fade into the ambient, check medium.field.axes (gladstone "
-      "info field reports how axes are read) and medium.ambient_density_kg_m3",
+      "medium.field: the field ends within the view at {}, where its density differs from "
+      "medium.ambient_density_kg_m3 by up to {:.2g} % of the field's range (rms), so that the images show an edge "
+      "there; "
+      "set the ambient density to that of the field's border, or, if the field should cover the view, check "
+      "medium.field.axes and spacing_mm (gladstone info field shows how the file is read)",
       faces, 100 * largest);
 }
 

@@ -8,6 +8,7 @@
 #include "render/method.h"
 #include "render/scene/ray_losses.h"
 #include "studies/case/json_text.h"
+#include "studies/case/lens_glasses.h"
 #include "studies/case/particle_case.h"
 
 namespace gladstone {
@@ -75,6 +76,14 @@ nlohmann::json rays_per_source(PreparedCase const& prepared, Rendering const& re
   return adaptive ? nlohmann::json(*std::max_element(rays.begin(), rays.end())) : nlohmann::json(prepared.rays.rays);
 }
 
+/// Returns the glasses of a prescription; empty for an ideal lens.
+nlohmann::json glasses_of_setup(LensSetup const& setup) {
+  if (!setup.prescription) return nlohmann::json::array();
+  GlassCatalogue glasses = GlassCatalogue::shipped();
+  for (std::string const& file : setup.glasses) glasses.add_file(file);
+  return lens_glasses_json(list_lens_glasses(*setup.prescription, glasses));
+}
+
 }  // namespace
 
 nlohmann::json case_summary(CaseSetup& loaded, PreparedCase const& prepared, RenderedCase const& rendered,
@@ -121,6 +130,7 @@ nlohmann::json case_summary(CaseSetup& loaded, PreparedCase const& prepared, Ren
         {"reference", status_counts(rendering.statuses, 0)},
         {"flow", status_counts(rendering.statuses, 1)}}},
       {"rays_lost_by_surface", formula ? nlohmann::json(nullptr) : losses_json(sample_ray_losses(scene))},
+      {"lens_glasses", glasses_of_setup(scene.setup.lens)},
       {"pupil_margin_mm", rendered.rendering->pupil_margin / unit::millimetre},
       {"caustic_fraction", prepared.strain.caustic_fraction},
       {"saturated", {{"reference", frames.saturated_reference}, {"flow", frames.saturated_flow}}},

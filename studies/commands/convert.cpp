@@ -13,6 +13,7 @@
 #include "render/base/error.h"
 #include "render/files/input_file.h"
 #include "render/files/output_file.h"
+#include "studies/case/backend.h"
 #include "studies/case/json_text.h"
 #include "studies/commands/arguments.h"
 #include "studies/commands/command.h"
@@ -28,8 +29,7 @@ Description convert_three_components(std::string const& input, std::string const
   bool const known =
       std::any_of(endings.begin(), endings.end(), [&](auto const& ending) { return output.ends_with(ending); });
   if (!known)
-    throw OutputError(output, fmt::format("has an ending that selects no format of three components; choose one of {}",
-                                          fmt::join(endings, ", ")));
+    throw OutputError(output, fmt::format("must end in one of {}, which selects the format", fmt::join(endings, ", ")));
   ExportedComponents const exported = load_components_for_export(input);
   ThreeComponentField const& field = exported.field;
   write_three_components(output, field, exported.origin);
@@ -43,19 +43,33 @@ Description convert_three_components(std::string const& input, std::string const
           fmt::format("{}: {} vectors of three components, {} valid", output, field.size(), valid)};
 }
 
+/// Loads the vectors to convert; computes them if they are the truth at pixels.
+/// @throws SetupError if a spacing is given for other files than truth.h5
+ExportedVectors load_vectors(VectorConversion const& conversion) {
+  std::string const& input = conversion.input;
+  bool const truth = is_truth_file(input);
+  if (!truth && conversion.spacing_px > 0)
+    throw SetupError(std::vector<SetupProblem>{{"--spacing", "has an effect on truth.h5 of a case only; remove it"}});
+  bool const grid_format = conversion.output.ends_with(".nc") || conversion.output.ends_with(".vti");
+  if (!truth || (conversion.spacing_px == 0 && !grid_format))
+    return load_for_export(input, conversion.conventions, conversion.image_rows);
+  return compute_map_for_export(input, *open_device(conversion.device).renderer, conversion.truth_at,
+                                std::max(conversion.spacing_px, 1));
+}
+
 }  // namespace
 
 ConvertedVectors convert_vectors(VectorConversion const& conversion) {
   std::string const &input = conversion.input, &output = conversion.output;
   if (!has_vector_extension(output)) {
-    throw OutputError(output, fmt::format("has an ending that selects no format; choose one of {}",
-                                          fmt::join(vector_extensions(), ", ")));
+    throw OutputError(
+        output, fmt::format("must end in one of {}, which selects the format", fmt::join(vector_extensions(), ", ")));
   }
   require_input_file(input, "a file of vectors");
   refuse_inputs_as_outputs({output}, {input});
   OutputFile const tried(output);
   if (is_three_component_file(input)) return {convert_three_components(input, output)};
-  ExportedVectors const vectors = load_for_export(input, conversion.conventions, conversion.image_rows);
+  ExportedVectors const vectors = load_vectors(conversion);
   write_vectors(output, vectors.field, vectors.origin);
   std::size_t counted = 0;
   for (std::size_t i = 0; i < vectors.field.size(); ++i) counted += vectors.field.counts(i) ? 1 : 0;
@@ -68,22 +82,39 @@ ConvertedVectors convert_vectors(VectorConversion const& conversion) {
 }
 
 CommandBody attach_convert(CLI::App& app, GlobalOptions const& options) {
-  auto arguments = std::make_shared<VectorConversion>();
-  app.add_option("input", arguments->input,
-                 "Vectors of gladstone, OpenPIV, PIVlab, DaVis, Insight, Dantec, JPIV or any x,y,u,v; truth.h5 of a "
-                 "case, for the true displacements of its dots or particles; or three components of gladstone stereo")
+  struct Arguments {
+    VectorConversion conversion;
+    std::string truth_at = "mid";
+  };
+  auto arguments = std::make_shared<Arguments>();
+  VectorConversion& conversion = arguments->conversion;
+  app.add_option(
+         "input", conversion.input,
+         "Vectors of gladstone in any of these formats, of OpenPIV, PIVlab, DaVis, Insight, Dantec, JPIV, PIVPy "
+         "or any x,y,u,v; truth.h5 of a case, for the true displacements of its dots or particles, or of its "
+         "pixels; or three components of gladstone stereo")
       ->required();
   app.add_option(
-         "-o,--output", arguments->output,
+         "-o,--output", conversion.output,
          fmt::format("File to write, whose ending selects the format: {}", fmt::join(vector_extensions(), ", ")))
       ->required();
-  app.add_option("--conventions", arguments->conventions,
+  app.add_option("--conventions", conversion.conventions,
                  "Conventions of a file of another program, instead of those of its format, as for gladstone compare");
-  app.add_option("--image-rows", arguments->image_rows,
+  app.add_option("--image-rows", conversion.image_rows,
                  "Rows of the image, for files that count y upwards from its last row")
       ->check(whole_number(1, 1'000'000));
+  app.add_option("--spacing", conversion.spacing_px,
+                 "truth.h5: computes the true displacement at every Nth column and row of the image, instead of the "
+                 "dots or particles; .nc and .vti always contain such a grid, by default of every pixel")
+      ->check(whole_number(1, 10'000));
+  app.add_option("--truth-at", arguments->truth_at,
+                 "Position to which the displacement at a pixel belongs: mid (midway between both frames) or reference")
+      ->check(one_of({"mid", "reference"}));
   return [arguments, &options]() -> int {
-    ConvertedVectors const converted = convert_vectors(*arguments);
+    VectorConversion conversion = arguments->conversion;
+    if (arguments->truth_at == "reference") conversion.truth_at = TruthAt::reference;
+    conversion.device = options.device;
+    ConvertedVectors const converted = convert_vectors(conversion);
     print_result(options, converted.description.json, converted.description.text);
     return converted.complete ? ok : check_missed;
   };

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "analysis/errors/window_truth.h"
 #include "studies/commands/description.h"
 
 namespace gladstone {
@@ -12,6 +13,11 @@ struct VectorConversion {
   std::string output;       ///< file to write, whose ending selects the format
   std::string conventions;  ///< conventions of a foreign file, see parse_conventions(); empty: those of its format
   int image_rows = 0;       ///< rows of the image, for files that count y upwards from its last row; 0: unknown
+  /// Distance of the pixels at which the truth of a case is computed [px]; 0: 1 for formats of grids (.nc, .vti), for
+  /// others the truth of the dots or particles.
+  int spacing_px = 0;
+  TruthAt truth_at = TruthAt::mid_position;  ///< position to which the truth at a pixel belongs
+  std::string device = "auto";               ///< computes the truth at pixels
 };
 
 struct ConvertedVectors {
@@ -19,7 +25,7 @@ struct ConvertedVectors {
   bool complete = true;  ///< false: the header of the input declares another number of vectors
 };
 
-/// Converts vectors, see load_for_export(). @throws DataError, OutputError
+/// Converts vectors, see load_for_export() and compute_map_for_export(). @throws DataError, OutputError
 ConvertedVectors convert_vectors(VectorConversion const& conversion);
 
 }  // namespace gladstone

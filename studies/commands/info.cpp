@@ -26,7 +26,7 @@ void check_figure_ending(std::string const& figure) {
   if (figure.empty() || figure.ends_with(".png") || figure.ends_with(".svg") || figure.ends_with(".pdf") ||
       std::filesystem::exists(figure, error))
     return;
-  throw OutputError(figure, "has no ending of a figure; use .png, .svg or .pdf");
+  throw OutputError(figure, "is not the name of a figure: it must end in .png, .svg or .pdf");
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "render/base/units.h"
 #include "render/optics/field_analysis.h"
 #include "studies/case/json_text.h"
+#include "studies/case/lens_glasses.h"
 #include "studies/figures/gnuplot.h"
 #include "studies/figures/lens_figure.h"
 
@@ -36,7 +37,8 @@ std::string length_text(double metres) {
   return fmt::format("{:.6g} mm", std::abs(metres) < rounding ? 0.0 : metres / unit::millimetre);
 }
 
-nlohmann::json lens_json(Lens const& lens, ParaxialLens const& paraxial, FieldAnalysis const& field) {
+nlohmann::json lens_json(Lens const& lens, ParaxialLens const& paraxial, FieldAnalysis const& field,
+                         std::vector<LensGlass> const& glasses) {
   nlohmann::json spots = nlohmann::json::object(), points = nlohmann::json::array();
   for (FieldPoint const& point : field.points) {
     spots[field_name(point.angle)] = point.imaged ? nlohmann::json(point.spot_rms * 1e6) : nlohmann::json(nullptr);
@@ -72,11 +74,12 @@ nlohmann::json lens_json(Lens const& lens, ParaxialLens const& paraxial, FieldAn
           {"image_plane_mm", number_or_null(field.image_plane / unit::millimetre)},
           {"spot_rms_um", spots},
           {"field", points},
+          {"glasses", lens_glasses_json(glasses)},
           {"warnings", lens.warnings}};
 }
 
 std::string lens_text(LensQuestion const& question, Lens const& lens, ParaxialLens const& paraxial,
-                      FieldAnalysis const& field) {
+                      FieldAnalysis const& field, std::vector<LensGlass> const& glasses) {
   std::string text = fmt::format("{}: {}{} surfaces at {:.6g} nm\n", question.file,
                                  lens.prescription.title.empty() ? "" : lens.prescription.title + ", ",
                                  lens.surfaces.size(), lens.wavelength / unit::nanometre);
@@ -96,6 +99,7 @@ std::string lens_text(LensQuestion const& question, Lens const& lens, ParaxialLe
   line("exit pupil", fmt::format("{} wide at {} from the last vertex", length_text(paraxial.exit.diameter),
                                  length_text(paraxial.exit.position)));
   line("image plane", length_text(field.image_plane) + " behind the last vertex");
+  text += lens_glasses_text(glasses);
   text += "  field [deg]  spot rms [um]  narrowest [um]  its focus [mm]  distortion [%]  vignetting [%]\n";
   for (FieldPoint const& point : field.points) {
     text += point.imaged ? fmt::format("  {:>11.4g}  {:>13.4g}  {:>14.4g}  {:>14.4g}  {:>14.3f}  {:>14.1f}\n",
@@ -120,10 +124,11 @@ Description describe_lens(LensQuestion const& question) {
   for (std::string const& warning : lens.warnings) spdlog::warn("{}", warning);
   ParaxialLens const paraxial = paraxial_lens(lens);
   FieldAnalysis const field = analyse_field(lens, paraxial, spot_rays);
-  nlohmann::json json = lens_json(lens, paraxial, field);
+  std::vector<LensGlass> const glasses = list_lens_glasses(lens, catalogue);
+  nlohmann::json json = lens_json(lens, paraxial, field, glasses);
   auto const draw = [&] { write_lens_figure(question.figure, lens, paraxial, field); };
   if (!question.figure.empty() && draw_or_warn(draw)) json["figure"] = question.figure;
-  return {json_text(json), lens_text(question, lens, paraxial, field)};
+  return {json_text(json), lens_text(question, lens, paraxial, field, glasses)};
 }
 
 }  // namespace gladstone

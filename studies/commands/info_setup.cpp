@@ -66,6 +66,7 @@ Description describe_setup(SetupDocument const& setup, std::string const& name, 
     }
     if (!camera.name.empty()) cameras[camera.name] = only;
   }
+  if (figure.empty()) text += fmt::format("to draw the layout: gladstone info setup {} --figure layout.png\n", name);
   nlohmann::ordered_json const json = cameras.empty() ? only : nlohmann::ordered_json{{"cameras", cameras}};
   return {json_text(json), text};
 }

@@ -8,6 +8,8 @@
 #include <array>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
 
 #include "render/base/error.h"
 #include "render/files/output_file.h"
@@ -24,13 +26,13 @@ namespace {
 struct Template {
   char const* kind;
   std::string_view const* text;  ///< short template
-  char const* required;          ///< first lines of the complete list: keys that are not commented out
+  char const* required;          ///< keys of the complete list that are not commented out; null: those of `text`
 };
 
 constexpr std::array templates{
     Template{"bos", &embedded::template_bos, "schema = 1\nexperiment = \"bos\"\n"},
     Template{"piv", &embedded::template_piv, "schema = 1\nexperiment = \"piv\"\n"},
-    Template{"stereo", &embedded::template_stereo, "schema = 1\nexperiment = \"piv\"\n"},
+    Template{"stereo", &embedded::template_stereo, nullptr},
     Template{"calibration", &embedded::template_calibration, "schema = 1\nexperiment = \"calibration\"\n"},
     Template{"study", &embedded::template_study, "base = \"bos.toml\"\n\n[axes]\n\"lens.f_number\" = [5.6, 11, 22]\n"},
     Template{"design", &embedded::template_design, "schema = 1\nexperiment = \"bos\"\n"},
@@ -50,8 +52,9 @@ Template const& find_template(std::string const& kind) {
 
 /// Returns a line of the complete list: the commented key with its default, unit, values and meaning. Keys without a
 /// default in TOML have "..." in place of the value.
-std::string commented_key(SetupKey const& key) {
-  std::string text = fmt::format("# {} = {}  #", key.name(), key.default_value.empty() ? "..." : key.default_value);
+/// @param name  of the key below the heading of its table
+std::string commented_key(SetupKey const& key, std::string const& name) {
+  std::string text = fmt::format("# {} = {}  #", name, key.default_value.empty() ? "..." : key.default_value);
   if (!key.unit.empty()) text += " [" + key.unit + ']';
   text += ' ' + key.meaning;
   if (!key.values.empty()) text += "; values: " + key.values;
@@ -60,23 +63,92 @@ std::string commented_key(SetupKey const& key) {
   return text + '\n';
 }
 
+/// Table of a TOML text without comment lines.
+struct GivenTable {
+  std::string heading;             ///< "[lens]", "[[camera]]"; empty: top level
+  std::vector<std::string> lines;  ///< its keys, with comments
+
+  bool has(std::string const& key) const {
+    return std::any_of(lines.begin(), lines.end(), [&](auto const& line) { return line.starts_with(key + " ="); });
+  }
+};
+
+std::vector<GivenTable> tables_of(std::string_view text) {
+  std::vector<GivenTable> tables{{"", {}}};
+  std::istringstream lines{std::string(text)};
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with('['))
+      tables.push_back({line.substr(0, line.rfind(']', line.find('#')) + 1), {}});
+    else if (!line.empty() && !line.starts_with('#'))
+      tables.back().lines.push_back(line);
+  }
+  return tables;
+}
+
+/// Returns the keys of all cameras of a setup: those that are given, and after the first camera all others.
+std::string list_cameras(std::vector<GivenTable> const& given, std::vector<SetupKeyTable const*> const& tables) {
+  std::string text;
+  for (GivenTable const& camera : given) {
+    if (camera.heading != "[[camera]]") continue;
+    bool const first = text.empty();
+    text += '\n' + camera.heading + '\n';
+    for (std::string const& line : camera.lines) text += line + '\n';
+    if (!first) text += "# and any of the keys listed with the first camera\n";
+    for (SetupKeyTable const* const table : tables) {
+      if (!first || !table->heading.starts_with("[camera")) continue;
+      for (SetupKey const& key : table->keys) {
+        std::string const path = key.path.substr(std::string_view("camera.").size());
+        if (!camera.has(path)) text += commented_key(key, path);
+      }
+    }
+  }
+  return text;
+}
+
+/// Returns the keys of a table: those that are given, and all others commented out.
+std::string list_table(SetupKeyTable const& table, GivenTable const& given) {
+  bool const any_given = !given.lines.empty() && table.condition.empty();
+  std::string text;
+  if (!table.heading.empty()) {
+    text += fmt::format("\n{}{}{}\n", any_given ? "" : "# ", table.heading,
+                        table.condition.empty() ? "" : "  # with " + table.condition);
+  }
+  for (std::size_t i = 0; any_given && i < given.lines.size(); ++i) text += given.lines[i] + '\n';
+  for (SetupKey const& key : table.keys)
+    if (!any_given || !given.has(key.name())) text += commented_key(key, key.name());
+  return text;
+}
+
 /// Returns a file with every key of a kind, commented out except for those that the file requires.
 std::string complete_list(Template const& one) {
   std::string text = fmt::format(
       "# Every key of the kind \"{}\" with its default. To change a key, remove the \"# \" before it and before the "
-      "name of\n# its table.\n{}",
-      one.kind, one.required);
-  std::string const required = std::string("\n") + one.required;
+      "name of\n# its table.\n",
+      one.kind);
+  std::vector<GivenTable> const given = tables_of(one.required ? one.required : *one.text);
+  std::vector<SetupKeyTable const*> tables;
   for (SetupKeyTable const& table : setup_key_tables()) {
-    if (std::find(table.kinds.begin(), table.kinds.end(), one.kind) == table.kinds.end() || table.keys.empty())
+    bool const applies = std::find(table.kinds.begin(), table.kinds.end(), one.kind) != table.kinds.end();
+    if (applies && !table.keys.empty()) tables.push_back(&table);
+  }
+  std::set<std::string> listed{"[[camera]]"};
+  std::string const cameras = list_cameras(given, tables);
+  for (SetupKeyTable const* const table : tables) {
+    bool const of_camera = table->heading.starts_with("[camera");
+    if (of_camera && !cameras.empty()) {
+      if (table->heading == "[camera]") text += cameras;
       continue;
-    if (!table.heading.empty()) {
-      text += fmt::format("\n# {}{}\n", table.heading, table.condition.empty() ? "" : "  # with " + table.condition);
     }
-    for (SetupKey const& key : table.keys) {
-      bool const given = table.heading.empty() && required.find('\n' + key.path + " =") != std::string::npos;
-      if (!given) text += commented_key(key);
-    }
+    auto const found = std::find_if(given.begin(), given.end(), [&](GivenTable const& table_given) {
+      return table_given.heading == table->heading;
+    });
+    text += list_table(*table, found == given.end() ? GivenTable{} : *found);
+    listed.insert(table->heading);
+  }
+  for (GivenTable const& table : given) {  // tables whose keys are the user's choice, such as the axes of a study
+    if (listed.contains(table.heading)) continue;
+    text += '\n' + table.heading + '\n';
+    for (std::string const& line : table.lines) text += line + '\n';
   }
   return text;
 }

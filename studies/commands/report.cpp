@@ -21,7 +21,7 @@ void check_report_ending(std::string const& output) {
   std::error_code error;
   bool const known = output.ends_with(".html") || output.ends_with(".htm") || output.ends_with(".md");
   if (output.empty() || known || std::filesystem::exists(output, error)) return;
-  throw OutputError(output, "has no ending of a report; use .html or .md");
+  throw OutputError(output, "is not the name of a report: it must end in .html or .md");
 }
 
 }  // namespace
@@ -65,8 +65,8 @@ CommandBody attach_report(CLI::App& app, GlobalOptions const& options) {
     WrittenReport const written = write_report(report, options.open_device());
     for (std::string const& file : written.doubtful) {
       spdlog::warn(
-          "{}: the report rests on vectors that are cut short or likely read otherwise than they were written; "
-          "export them again, or give --conventions",
+          "{}: the vectors of this file are incomplete, or their axes and signs were probably misread, so that the "
+          "report is doubtful (reasons above); export them again, or state their axes and signs with --conventions",
           file);
     }
     print_result(options,

@@ -24,7 +24,7 @@ std::string formatted_target(TargetPattern const& pattern, std::string const& pa
   if (ending == ".pdf") return target_pdf(pattern);
   if (ending == ".svg") return target_svg(pattern);
   if (ending == ".csv") return target_csv(pattern);
-  throw OutputError(path, "has no ending of a pattern's file; use .pdf, .svg or .csv");
+  throw OutputError(path, "is not the name of a pattern: it must end in .pdf, .svg or .csv");
 }
 
 }  // namespace

@@ -225,8 +225,9 @@ class CalibrationFit {
       throw DataError(
           ErrorCode::inconsistent, file(worst_plane()),
           text +
-              " (inconsistent planes: another Z than in calibration.planes_mm, a plate that was rotated or tilted "
-              "between images, a camera or lens that was moved); check these, and record the images again");
+              "; so the images do not belong to one camera and parallel planes (a wrong Z in calibration.planes_mm, or "
+              "plate, camera or lens were turned or moved between images); correct planes_mm, or record the images "
+              "again");
     }
     warn(text + (expected_.is_pinhole ? " (a lens or windows that no pinhole camera with distortion describes, or "
                                         "planes at other positions than calibration.planes_mm); prefer the polynomial"
@@ -278,11 +279,12 @@ class CalibrationFit {
     PinholeCamera const& camera = calibration_.pinhole.camera;
     throw DataError(
         ErrorCode::inconsistent, name_,
-        fmt::format("only fits a camera with unequal fx = {:.6g} and fy = {:.6g} px, with the plate moved at "
-                    "{:.3g} degrees to its normal (the middle dots of {} are guesses, since their images show "
-                    "only a part of the grid, and are probably wrong); show the whole grid in every image, or "
-                    "give the position of the camera and the direction of the plate's motion more accurately",
-                    camera.fx(), camera.fy(), degrees(length(placement_.drift)), fmt::join(guessed, ", ")));
+        fmt::format(
+            "cannot be calibrated: the best fit is implausible (fx = {:.6g} and fy = {:.6g} px differ, and the "
+            "plate moves at {:.3g} degrees to its normal), probably since the middle dot was guessed wrongly in "
+            "{}, which shows a part of the grid only; show the whole grid in every image, or set camera.pose "
+            "to the actual position and direction of the camera",
+            camera.fx(), camera.fy(), degrees(length(placement_.drift)), fmt::join(guessed, ", ")));
   }
 
   void fit_polynomial() {

@@ -8,7 +8,7 @@
 #include "render/base/error.h"
 #include "render/files/hdf5_file.h"
 #include "render/files/input_file.h"
-#include "studies/case/case.h"
+#include "studies/case/log_silencer.h"
 
 namespace gladstone {
 namespace {
@@ -96,6 +96,16 @@ ComparedFiles compared_files(std::string const& folder, std::string const& vecto
     if (!theirs.empty()) sources.add_known(frame, theirs);
   }
   return files;
+}
+
+PreparedCase prepare_stored_case(std::string const& folder) {
+  require_unchanged_inputs(folder);
+  LogSilencer const quiet;  // its warnings are already in its summary.json
+  CaseSetup loaded = load_case_setup(in_case(folder, case_file::setup), {});
+  StrainMap const unused{};
+  ReusableParts known;
+  known.strain = &unused;
+  return prepare_case(loaded, known);
 }
 
 }  // namespace gladstone

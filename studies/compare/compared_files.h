@@ -3,6 +3,7 @@
 #include <string>
 
 #include "render/files/source_files.h"
+#include "studies/case/case.h"
 
 namespace gladstone {
 
@@ -21,5 +22,9 @@ ComparedFiles compared_files(std::string const& folder, std::string const& vecto
 /// their readers report them.
 /// @throws DataError for a changed file
 void require_unchanged_inputs(std::string const& folder);
+
+/// Prepares a stored case for ray tracing, without its strain map. @throws DataError if one of its input files has
+/// changed
+PreparedCase prepare_stored_case(std::string const& folder);
 
 }  // namespace gladstone

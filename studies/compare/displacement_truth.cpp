@@ -1,30 +1,45 @@
 #include "studies/compare/displacement_truth.h"
 
-#include <algorithm>
+#include <utility>
 #include <vector>
 
 #include "render/base/contracts.h"
 #include "studies/compare/compare.h"
+#include "studies/compare/map_refinement.h"
 #include "studies/compare/particle_points.h"
 
 namespace gladstone {
+namespace {
+
+/// Largest distance of pixels between which the displacement may be interpolated is half of this [px].
+constexpr int coarsest_spacing_px = 8;
+
+/// Returns the coarsest spacing of nodes to begin with, in distances of nodes.
+int first_spacing(int spacing_px) {
+  int spacing = 1;
+  while (2 * spacing * spacing_px <= coarsest_spacing_px) spacing *= 2;
+  return spacing;
+}
+
+}  // namespace
 
 Image<Vec2d> displacement_truth(Scene const& scene, Renderer& renderer, TruthAt at, int spacing_px) {
   GLADSTONE_EXPECTS(spacing_px >= 1);
   CameraSetup const& camera = scene.setup.camera;
-  Image<Vec2d> map((camera.columns + spacing_px - 1) / spacing_px, (camera.rows + spacing_px - 1) / spacing_px);
-  std::vector<Vec2d> places;
-  places.reserve(map.size());
-  for (int row = 0; row < map.rows(); ++row) {
-    for (int column = 0; column < map.columns(); ++column) {
-      places.push_back({static_cast<double>(column) * spacing_px, static_cast<double>(row) * spacing_px});
-    }
-  }
-  std::vector<Vec2d> const displacements =
-      scene.setup.piv ? particle_displacements(scene, renderer, places, at)
-                      : truth_at_points(scene, renderer, places, at, RenderTheory::no).displacement_px;
-  std::copy(displacements.begin(), displacements.end(), map.begin());
-  return map;
+  int const columns = (camera.columns + spacing_px - 1) / spacing_px,
+            rows = (camera.rows + spacing_px - 1) / spacing_px;
+  auto const sample = [&](std::vector<MapNode> const& nodes) -> MapSamples {
+    std::vector<Vec2d> places;
+    places.reserve(nodes.size());
+    for (MapNode const& node : nodes)
+      places.push_back({static_cast<double>(node.column) * spacing_px, static_cast<double>(node.row) * spacing_px});
+    if (places.empty()) return {};
+    GroundTruth truth = scene.setup.piv ? particle_displacements(scene, renderer, places, at)
+                                        : truth_at_points(scene, renderer, places, at, RenderTheory::no);
+    return {std::move(truth.displacement_px), std::move(truth.displacement_error_px)};
+  };
+  bool const fast = scene.setup.piv && has_projected_displacements(scene);
+  return refine_map(columns, rows, fast ? 1 : first_spacing(spacing_px), sample);
 }
 
 }  // namespace gladstone

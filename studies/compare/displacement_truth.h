@@ -6,8 +6,11 @@
 
 namespace gladstone {
 
-/// Computes true displacements at the pixels of a case's images from its flow or medium and its camera, without
-/// interpolation between dots or particles. Node (column, row) is the centre of pixel (column, row) * spacing_px.
+/// Computes true displacements at the pixels of a case's images from its flow or medium and its camera, independently
+/// of the case's dots or particles. Rays are traced to every fourth column and row, and to all pixels around which the
+/// displacement deviates from its cubic interpolation over 8 px by more than 5e-4 px and four standard errors; see
+/// refine_map() for the others. Without a medium, particles are projected at every pixel. Node (column, row) is the
+/// centre of pixel (column, row) * spacing_px.
 /// - PIV: displacement of a particle in the middle of the laser sheet that follows the flow as the median particle
 ///   does.
 /// - BOS: displacement of a dot of the target's size.

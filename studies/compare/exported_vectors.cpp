@@ -1,10 +1,13 @@
 #include "studies/compare/exported_vectors.h"
 
 #include <cmath>
+#include <filesystem>
 
 #include "render/base/error.h"
 #include "studies/case/truth_file.h"
+#include "studies/compare/compared_files.h"
 #include "studies/compare/compared_vectors.h"
+#include "studies/compare/displacement_truth.h"
 
 namespace gladstone {
 namespace {
@@ -19,19 +22,54 @@ void copy_provenance(Hdf5Reader const& file, FileOrigin& origin) {
   }
 }
 
+/// Marks vectors without a displacement as invalid.
+void judge_visibility(DisplacementField& field) {
+  for (Vec2d const& shift : field.displacement_px) {
+    bool const seen = std::isfinite(shift.x) && std::isfinite(shift.y);
+    field.status.push_back(seen ? VectorStatus::valid : VectorStatus::invalid);
+  }
+}
+
 DisplacementField vectors_of_truth(GroundTruth const& truth) {
   DisplacementField field;
   field.position_px = truth.reference_px;
   field.displacement_px = truth.displacement_px;
   field.sigma_px = truth.displacement_error_px;
-  for (Vec2d const& shift : truth.displacement_px) {
-    bool const seen = std::isfinite(shift.x) && std::isfinite(shift.y);
-    field.status.push_back(seen ? VectorStatus::valid : VectorStatus::invalid);
-  }
+  judge_visibility(field);
   return field;
 }
 
+DisplacementField vectors_of_map(Image<Vec2d> const& map, int spacing_px) {
+  DisplacementField field;
+  field.columns = map.columns();
+  field.rows = map.rows();
+  for (int row = 0; row < map.rows(); ++row)
+    for (int column = 0; column < map.columns(); ++column)
+      field.position_px.push_back({static_cast<double>(column) * spacing_px, static_cast<double>(row) * spacing_px});
+  field.displacement_px.assign(map.begin(), map.end());
+  judge_visibility(field);
+  return field;
+}
+
+bool is_hdf5_name(std::string const& path) { return path.ends_with(".h5") || path.ends_with(".hdf5"); }
+
 }  // namespace
+
+bool is_truth_file(std::string const& path) {
+  return is_hdf5_name(path) && Hdf5Reader(path).attribute("filetype") == "gladstone truth";
+}
+
+ExportedVectors compute_map_for_export(std::string const& path, Renderer& renderer, TruthAt at, int spacing_px) {
+  ExportedVectors vectors;
+  vectors.origin.filetype = "gladstone vectors";
+  vectors.origin.sources.add("", path, SourceFiles::Holds::datasets);
+  copy_provenance(Hdf5Reader(path), vectors.origin);
+  std::string const folder = std::filesystem::path(path).parent_path().string();
+  PreparedCase const prepared = prepare_stored_case(folder.empty() ? "." : folder);
+  vectors.field = vectors_of_map(displacement_truth(prepared.scene, renderer, at, spacing_px), spacing_px);
+  vectors.format = "gladstone truth";
+  return vectors;
+}
 
 ExportedComponents load_components_for_export(std::string const& path) {
   ExportedComponents exported;
@@ -45,7 +83,7 @@ ExportedComponents load_components_for_export(std::string const& path) {
 ExportedVectors load_for_export(std::string const& path, std::string const& conventions, int image_rows) {
   ExportedVectors vectors;
   vectors.origin.filetype = "gladstone vectors";
-  bool const hdf5 = path.ends_with(".h5") || path.ends_with(".hdf5");
+  bool const hdf5 = is_hdf5_name(path);
   vectors.origin.sources.add("", path, hdf5 ? SourceFiles::Holds::datasets : SourceFiles::Holds::bytes);
   if (hdf5) {
     Hdf5Reader const file(path);

@@ -2,8 +2,10 @@
 
 #include <string>
 
+#include "analysis/errors/window_truth.h"
 #include "analysis/vectors/three_components.h"
 #include "analysis/vectors/vector_file.h"
+#include "render/scene/renderer.h"
 
 namespace gladstone {
 
@@ -24,6 +26,14 @@ struct ExportedVectors {
 /// @param image_rows   number of rows of the image, for files that count y upwards from its last row; 0: unknown
 /// @throws DataError if the file cannot be read, or requires `image_rows` and it is 0
 ExportedVectors load_for_export(std::string const& path, std::string const& conventions, int image_rows);
+
+/// Computes the true displacement at the pixels of a case, see displacement_truth(), for a file in another format.
+/// @param path  truth.h5 of the case
+/// @throws DataError if the case lacks a file, or an input of its setup has changed
+ExportedVectors compute_map_for_export(std::string const& path, Renderer& renderer, TruthAt at, int spacing_px);
+
+/// Returns true for truth.h5 of a case.
+bool is_truth_file(std::string const& path);
 
 /// Three components of a file of gladstone stereo, with the provenance that a converted file stores.
 struct ExportedComponents {

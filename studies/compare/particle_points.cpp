@@ -144,11 +144,18 @@ ParticlePoints particle_points(Scene const& scene, Renderer& renderer, std::vect
   return points;
 }
 
-std::vector<Vec2d> particle_displacements(Scene const& scene, Renderer& renderer, std::vector<Vec2d> const& places_px,
-                                          TruthAt at) {
+bool has_projected_displacements(Scene const& scene) {
+  return without_medium(scene) && scene.setup.has_closed_form_layout();
+}
+
+GroundTruth particle_displacements(Scene const& scene, Renderer& renderer, std::vector<Vec2d> const& places_px,
+                                   TruthAt at) {
   SheetPoints start(scene, places_px);
-  if (without_medium(scene) && scene.setup.has_closed_form_layout()) return project_points(scene, std::move(start), at);
-  return trace_points(scene, renderer, std::move(start), at, SeenThrough::medium).displacement_px;
+  if (!has_projected_displacements(scene))
+    return trace_points(scene, renderer, std::move(start), at, SeenThrough::medium);
+  GroundTruth truth;
+  truth.displacement_px = project_points(scene, std::move(start), at);
+  return truth;
 }
 
 }  // namespace gladstone

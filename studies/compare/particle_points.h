@@ -24,9 +24,13 @@ struct ParticlePoints {
 /// @param at         mid_position: a point is the midpoint of both images; reference: the position of the first image
 ParticlePoints particle_points(Scene const& scene, Renderer& renderer, std::vector<Vec2d> const& places_px, TruthAt at);
 
-/// Computes only the displacements with the medium of the particles found by particle_points() [px]. Without a medium
-/// and with an ideal thin lens on the Z axis no rays are traced, since the pinhole projection is exact.
-std::vector<Vec2d> particle_displacements(Scene const& scene, Renderer& renderer, std::vector<Vec2d> const& places_px,
-                                          TruthAt at);
+/// Returns true if the pinhole projection gives the displacements of particles exactly: without a medium, and with an
+/// ideal thin lens on the Z axis.
+bool has_projected_displacements(Scene const& scene);
+
+/// Computes only the displacements with the medium of the particles found by particle_points(), and their standard
+/// errors unless they are projected instead of traced.
+GroundTruth particle_displacements(Scene const& scene, Renderer& renderer, std::vector<Vec2d> const& places_px,
+                                   TruthAt at);
 
 }  // namespace gladstone

@@ -217,8 +217,9 @@ class SequenceRun {
       SequenceMoments const& moments = result_.statistics = statistics_.moments();
       if (moments.unresolved * 10 > result_.vectors())
         result_.warnings.push_back(fmt::format(
-            "{} of {} points remain correlated over all {} recorded lags (so that standard errors are too small); "
-            "record a longer sequence at a lower rate",
+            "at {} of {} vectors the fluctuations are still correlated after {} frames, the longest lag that was "
+            "evaluated, so that the standard errors of the statistics are too small; record a longer sequence, or "
+            "fewer frames per second",
             moments.unresolved, result_.vectors(), moments.lags));
       SourceFiles sources;
       sources.add_known("settings", sources_.sha256("settings"));

@@ -196,10 +196,11 @@ void add_tomography_warnings(Tomography& result, std::vector<TomographyView> con
                     "--bounds, --reference and the limits of the density",
                     100.0 * result.residual.back()));
   if (result.outside > 0.01)
-    result.warnings.push_back(
-        fmt::format("{:.0f} % of the squared line integrals are on lines that miss the volume; "
-                    "enlarge it with --bounds, or check --reference",
-                    100.0 * result.outside));
+    result.warnings.push_back(fmt::format(
+        "the views show density outside of the reconstructed volume: {:.0f} % of the sum of the squared line "
+        "integrals belong to lines of sight that miss it; enlarge the volume with --bounds, or choose "
+        "--reference where the density is that of the ambient",
+        100.0 * result.outside));
   auto const unseen = std::count_if(result.seen.begin(), result.seen.end(), [](std::int64_t views_of_node) {
     return views_of_node < static_cast<std::int64_t>(tomography::least_views);
   });

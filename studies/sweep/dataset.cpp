@@ -17,7 +17,6 @@
 #include "render/files/text_file.h"
 #include "studies/case/case.h"
 #include "studies/case/case_files.h"
-#include "studies/case/log_silencer.h"
 #include "studies/compare/compared_files.h"
 #include "studies/compare/displacement_truth.h"
 #include "studies/sweep/run.h"
@@ -91,17 +90,6 @@ constexpr std::array maps{
         "/displacement_mid_px", TruthAt::mid_position,
         "mid-time: displacement of the point whose images in both frames have this pixel as their midpoint"},
 };
-
-/// Prepares a stored case for ray tracing. @throws DataError if one of its input files has changed
-PreparedCase prepare_again(CaseWithImages const& one) {
-  require_unchanged_inputs(one.folder);
-  LogSilencer const quiet;  // its warnings are already in its summary.json
-  CaseSetup loaded = load_case_setup(in_case(one.folder, case_file::setup), {});
-  StrainMap const unused{};
-  ReusableParts known;
-  known.strain = &unused;
-  return prepare_case(loaded, known);
-}
 
 std::vector<double> numbers_of(Image<Vec2d> const& map) {
   std::vector<double> numbers;
@@ -213,7 +201,7 @@ void write_packed_case(Hdf5Writer& file, std::size_t i, CaseWithImages const& on
   file.write_rows<double>("/truth/reference_px", row, place);
   file.write_rows<double>("/truth/displacement_px", row, displacement);
   file.write_rows<double>("/truth/flux", row, flux);
-  PreparedCase const prepared = prepare_again(one);
+  PreparedCase const prepared = prepare_stored_case(one.folder);
   for (DisplacementMapName const& map : maps) {
     file.write_rows<double>(
         map.name, i, numbers_of(displacement_truth(prepared.scene, renderer, map.at, static_cast<int>(sizes.spacing))));

@@ -109,7 +109,7 @@ class ThreeComponents : public testing::Test {
 TEST_F(ThreeComponents, TablesComeBack) {
   for (std::string const name : {"w.csv", "w.dat"}) {
     detail::TextTable const table = detail::read_text_table(write(name));
-    EXPECT_EQ(table.names.size(), 12u) << name;
+    EXPECT_EQ(table.names.size(), name == "w.dat" ? 13u : 12u) << name << ": Tecplot marks unknown values";
     for (auto const& [column, values] : columns())
       expect_equal(table.column({column}), values, name + ' ' + column, name == "w.dat" ? 0.0 : nan);
     EXPECT_EQ(table.column({"x_mm"}), (std::vector{-1.0 / 3, 1.0 / 6, 2.0 / 3, -1.0 / 3, 1.0 / 6, 2.0 / 3}));

@@ -304,7 +304,7 @@ TEST_F(VectorFiles, CodesOfOtherProgramsAreTheirs) {
   ASSERT_EQ(zeros.warnings.size(), 2u);
   EXPECT_THAT(zeros.warnings[0], HasSubstr("e.dat:5: another zone"));
   EXPECT_THAT(zeros.warnings[1], HasSubstr("1 of 2 vectors are exactly zero"));
-  EXPECT_EQ(problem("VARIABLES = x, y, u, v\nZONE I=2, F=BLOCK\n1 2\n1 1\n"), "unsupported at bad.csv:2");
+  EXPECT_EQ(problem("VARIABLES = x, y, u, v\nZONE I=2, F=BLOCK\n1 2\n1 1\n"), "damaged at bad.csv");
   EXPECT_EQ(problem("x [mm],y [px],u,v\n1,2,3,4\n"), "inconsistent at bad.csv:1");
 }
 
@@ -404,7 +404,20 @@ TEST_F(VectorFiles, OtherTecplotFilesAreReadAsThoseOfDavis) {
   EXPECT_EQ(back.conventions.mirror, VectorConventions::Mirror::image);
   EXPECT_EQ(back.field.status, (std::vector{VectorStatus::valid, VectorStatus::masked}));
   EXPECT_THAT(back.warnings, testing::ElementsAre(HasSubstr("1 of 2 vectors are exactly zero")));
-  EXPECT_EQ(problem("VARIABLES = x, y, u, v\nZONE I=2, DATAPACKING=BLOCK\n1 2\n1 1\n"), "unsupported at bad.csv:2");
+}
+
+// BLOCK packing: all values of a variable, then those of the next one; lines may end anywhere.
+TEST_F(VectorFiles, TecplotBlocksAreReadVariableByVariable) {
+  std::string const header = "VARIABLES = \"x\" \"y\" \"u\" \"v\" \"isValid\"\nZONE I=3, J=1, DATAPACKING=BLOCK\n";
+  DisplacementField const field =
+      read_vectors(file("b.dat", header + "1 2 3 10 10\n10 0.5\n0.25 0.125 4 5 6\n1 1 0\n")).field;
+  EXPECT_EQ(field.position_px, (std::vector<Vec2d>{{1, 10}, {2, 10}, {3, 10}}));
+  EXPECT_EQ(field.displacement_px, (std::vector<Vec2d>{{0.5, 4}, {0.25, 5}, {0.125, 6}}));
+  EXPECT_EQ(field.status, (std::vector{VectorStatus::valid, VectorStatus::valid, VectorStatus::masked}));
+  EXPECT_EQ(problem(header + "1 2 3 10 10 10 1 2 3 4\n"), "damaged at bad.csv") << "values are missing";
+  EXPECT_EQ(problem(header + "1 2 3 10 word 10 1 2 3 4\n"), "syntax at bad.csv:3");
+  EXPECT_EQ(problem("VARIABLES = x, y, u, v\nZONE I=2, F=BLOCK, VARLOCATION=([3]=CELLCENTERED)\n1 2\n"),
+            "unsupported at bad.csv:2");
 }
 
 TEST_F(VectorFiles, UnusedColumnsAreNamed) {

@@ -14,11 +14,13 @@
 #include <set>
 
 #include "analysis/vectors/vector_file.h"
+#include "analysis/vectors/vector_writers/vector_columns.h"
 #include "render/base/error.h"
 #include "render/files/base64.h"
 #include "render/files/fields/field_file.h"
 #include "render/files/file_kind.h"
 #include "tests/support/documented_tables.h"
+#include "tests/support/expect_error.h"
 
 namespace gladstone::vector_writers_test {
 namespace {
@@ -46,6 +48,7 @@ class VectorWriters : public testing::Test {
     write_vectors(path, field, origin);
     return path;
   }
+  std::string place(std::string const& name) const { return (folder_ / name).string(); }
   static std::string content(std::string const& path) {
     std::ifstream file(path, std::ios::binary);
     return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
@@ -95,13 +98,153 @@ std::string vtk_base64(std::vector<double> const& values) {
 }
 
 TEST_F(VectorWriters, TecplotHasOneRowPerVectorAndZerosForUnknownValues) {
-  EXPECT_EQ(content(write("v.dat", scattered_pair())),
-            "TITLE = \"gladstone vectors, px, y and v downwards; unknown values are 0\"\n"
-            "VARIABLES = \"x_px\" \"y_px\" \"u_px\" \"v_px\" \"status\" \"u_raw_px\" \"v_raw_px\" \"reason\" "
-            "\"ambiguous\"\n"
-            "ZONE T=\"vectors\", I=2, J=1, DATAPACKING=POINT\n"
-            "1.5 2 0.5 -0.25 0 0.5 -0.25 0 0\n"
-            "4 3.25 0 0 3 0 0 0 0\n");
+  EXPECT_EQ(
+      content(write("v.dat", scattered_pair())),
+      "TITLE = \"gladstone vectors, px, y and v downwards; values are 0 where unknown contains 2^k, k = number of "
+      "the variable from 0\"\n"
+      "VARIABLES = \"x_px\" \"y_px\" \"u_px\" \"v_px\" \"status\" \"u_raw_px\" \"v_raw_px\" \"reason\" "
+      "\"ambiguous\" \"unknown\"\n"
+      "ZONE T=\"vectors\", I=2, J=1, DATAPACKING=POINT\n"
+      "1.5 2 0.5 -0.25 0 0.5 -0.25 0 0 0\n"
+      "4 3.25 0 0 3 0 0 0 0 108\n")
+      << "u, v and the raw displacement: 2^2 + 2^3 + 2^5 + 2^6";
+}
+
+// Files of older versions mark nothing: 0 is then an unknown value where it is none of a measurement.
+TEST_F(VectorWriters, TecplotOfOlderVersionsIsRead) {
+  std::string const path = place("old.dat");
+  std::ofstream(path) << "TITLE = \"gladstone vectors, px, y and v downwards; unknown values are 0\"\n"
+                         "VARIABLES = \"x_px\" \"y_px\" \"u_px\" \"v_px\" \"sigma_u_px\" \"sigma_v_px\" \"status\"\n"
+                         "ZONE T=\"vectors\", I=2, J=1, DATAPACKING=POINT\n"
+                         "1.5 2 0 -0.25 0.1 0.2 0\n4 3.25 0 0 0 0 3\n";
+  DisplacementField const field = read_vectors(path).field;
+  EXPECT_EQ(field.displacement_px[0], (Vec2d{0, -0.25}));
+  EXPECT_EQ(field.sigma_px[0], (Vec2d{0.1, 0.2}));
+  EXPECT_TRUE(std::isnan(field.displacement_px[1].x) && std::isnan(field.sigma_px[1].y));
+}
+
+TEST_F(VectorWriters, TecplotMarksAreSumsOfPowersOfTwo) {
+  for (std::string const mark : {"64", "0.5", "-1", "1e300"}) {
+    std::string const path = place("bad.dat");
+    std::ofstream(path) << "VARIABLES = x_px y_px u_px v_px status unknown\nZONE I=1\n1 2 3 4 0 " << mark << '\n';
+    EXPECT_THAT([&] { read_vectors(path); }, ThrowsDataError(ErrorCode::out_of_range, "bad.dat:3")) << mark;
+  }
+}
+
+/// Vectors with every quantity, of which some are unknown, and numbers that need all digits.
+DisplacementField complete_grid() {
+  DisplacementField field;
+  for (int i = 0; i < 12; ++i) {
+    bool const known = i != 5;
+    auto const number = [&](double value) { return known ? value : nan; };
+    field.position_px.push_back({0.1 + 1.0 / 3.0 * (i % 4), 0.7 + 1.0 / 7.0 * (i / 4)});
+    field.displacement_px.push_back({number(std::sin(i)), number(-std::exp(i))});
+    field.sigma_px.push_back({number(1.0 / (i + 3)), i == 7 ? 0.0 : number(1e-17 * i)});
+    field.peak_ratio.push_back(i == 2 ? nan : 1 + std::sqrt(i));
+    field.status.push_back(known ? static_cast<VectorStatus>(i % 2) : VectorStatus::invalid);
+    field.raw_px.push_back({i == 9 ? nan : std::cos(i), 0.0});
+    field.correlation.push_back(i == 3 ? 0.0 : number(std::cbrt(i)));
+    field.reason.push_back(known ? VectorReason::measured : VectorReason::uncorrelated);
+    field.ambiguous.push_back(i == 1 ? Ambiguity::here : Ambiguity::none);
+  }
+  field.columns = 4;
+  field.rows = 3;
+  return field;
+}
+
+/// Compares quantities bit by bit; every NaN equals every other one.
+void expect_equal_columns(DisplacementField const& a, DisplacementField const& b, std::size_t count,
+                          std::string const& ending) {
+  auto const expected = detail::vector_columns(a), found = detail::vector_columns(b);
+  for (std::size_t k = 0; k < count; ++k) {
+    ASSERT_EQ(found[k].values.size(), expected[k].values.size()) << ending;
+    for (std::size_t i = 0; i < expected[k].values.size(); ++i) {
+      double const x = expected[k].values[i], y = found[k].values[i];
+      EXPECT_TRUE((std::isnan(x) && std::isnan(y)) ||
+                  std::bit_cast<std::uint64_t>(x) == std::bit_cast<std::uint64_t>(y))
+          << ending << ' ' << expected[k].name << ' ' << i << ": " << x << " became " << y;
+    }
+  }
+}
+
+// Doubles come back as they were; text has 17 significant digits, which determine a double. netCDF stores the first
+// eight columns.
+TEST_F(VectorWriters, EveryFormatComesBackToTheBit) {
+  DisplacementField const grid = complete_grid();
+  for (std::string const& ending : vector_extensions()) {
+    VectorFile const back = read_vectors(write("grid" + ending, grid));
+    EXPECT_EQ(back.format, "gladstone") << ending;
+    EXPECT_FALSE(back.foreign) << ending;
+    EXPECT_EQ(back.field.columns, 4) << ending;
+    EXPECT_EQ(back.field.rows, 3) << ending;
+    expect_equal_columns(grid, back.field, ending == ".nc" ? 8 : 13, ending);
+  }
+  DisplacementField scattered = grid;
+  for (std::size_t i = 0; i < grid.size(); ++i) scattered.position_px[i].y += 0.37 * static_cast<double>(i * i);
+  scattered.columns = scattered.rows = 0;
+  for (std::string const ending : {".h5", ".csv", ".mat", ".dat", ".vtp"}) {
+    VectorFile const back = read_vectors(write("points" + ending, scattered));
+    EXPECT_EQ(back.field.columns, 0) << ending;
+    expect_equal_columns(scattered, back.field, 13, ending);
+  }
+}
+
+/// Writes u = 10 row + column and v = -u over axes of these sizes, two rows and three columns, in PIVPy's schema.
+std::string write_schema(std::string const& path, std::vector<std::string> const& axes, std::size_t frames) {
+  Hdf5Writer file(path, FileOrigin{});
+  std::vector<std::size_t> shape;
+  std::vector<std::string> scales;
+  for (std::string const& axis : axes) {
+    shape.push_back(axis == "y" ? 2 : axis == "x" ? 3 : frames);
+    scales.push_back('/' + axis);
+  }
+  std::vector<double> u, v, chc;
+  std::vector<std::size_t> index(axes.size(), 0);
+  for (bool done = false; !done;) {
+    double number = 0;
+    for (std::size_t i = 0; i < axes.size(); ++i)
+      number += static_cast<double>(index[i]) * (axes[i] == "y" ? 10 : axes[i] == "x" ? 1 : 100);
+    u.push_back(number);
+    v.push_back(-number);
+    chc.push_back(number == 11 ? 0 : 1);
+    std::size_t axis = axes.size();
+    while (axis > 0 && ++index[axis - 1] == shape[axis - 1]) index[--axis] = 0;
+    done = axis == 0;
+  }
+  auto const write = [&](std::string const& name, std::vector<double> const& values, auto const& size,
+                         std::string const& unit) {
+    file.write(name, std::span<double const>(values), size, unit, "", "");
+  };
+  write("/x", {8, 16, 24}, std::vector<std::size_t>{3}, "pix");
+  write("/y", {8, 16}, std::vector<std::size_t>{2}, "pix");
+  write("/t", std::vector<double>(frames), std::vector<std::size_t>{frames}, "frame");
+  write("/u", u, shape, "pix");
+  write("/v", v, shape, "pix");
+  write("/chc", chc, shape, "1");
+  file.attach_scales({{"/u", scales}, {"/v", scales}, {"/chc", scales}});
+  file.close();
+  return path;
+}
+
+TEST_F(VectorWriters, DataSetsOfPivpyAreReadInAnyOrderOfAxes) {
+  for (std::vector<std::string> const& axes :
+       {std::vector<std::string>{"y", "x", "t"}, {"t", "y", "x"}, {"x", "y", "t"}, {"x", "y"}}) {
+    VectorFile const file = read_vectors(write_schema(place("pivpy.nc"), axes, 1));
+    EXPECT_EQ(file.format, "PIVPy");
+    EXPECT_TRUE(file.foreign);
+    ASSERT_EQ(file.field.size(), 6u);
+    EXPECT_EQ(file.field.position_px[5], (Vec2d{24, 16}));
+    for (std::size_t i = 0; i < 6; ++i) EXPECT_EQ(file.field.displacement_px[i].x, 10.0 * (i / 3) + i % 3);
+    EXPECT_EQ(file.field.status[4], VectorStatus::invalid) << "chc is 0";
+    EXPECT_EQ(file.field.status[5], VectorStatus::valid);
+  }
+  EXPECT_THAT(
+      [&] {
+        read_vectors(write_schema(place("two.nc"), {"y", "x", "t"}, 2));
+      },
+      ThrowsDataError(ErrorCode::wrong_shape, "two.nc"));
+  std::ofstream(place("classic.nc"), std::ios::binary) << std::string("CDF\x01\0\0\0\0", 8);
+  EXPECT_THAT([&] { read_vectors(place("classic.nc")); }, ThrowsDataError(ErrorCode::unsupported, "classic.nc"));
 }
 
 TEST_F(VectorWriters, TecplotComesBack) {
@@ -197,6 +340,35 @@ TEST_F(VectorWriters, NetcdfIsInTheSchemaOfPivpy) {
   EXPECT_EQ(file.attribute_of("/t", "units"), "frame");
   EXPECT_EQ(file.attribute_of("/u", "standard_name"), "u_velocity");
   EXPECT_EQ(file.attribute("pivpy_schema_version"), "1");
+}
+
+TEST_F(VectorWriters, ImagesOfEqualSpacingStoreNoPositions) {
+  EXPECT_THAT(content(write("v.vti", numbered_grid())), testing::Not(HasSubstr("position_px")));
+  DisplacementField moved = numbered_grid();
+  moved.position_px[1].x += 1e-3;
+  EXPECT_THAT(content(write("w.vti", moved)), HasSubstr("position_px"));
+  EXPECT_EQ(read_vectors(place("w.vti")).field.position_px, moved.position_px);
+}
+
+TEST_F(VectorWriters, FilesOfOtherContentAreRefused) {
+  auto const vti = [&](std::string const& arrays) {
+    std::ofstream(place("v.vti"))
+        << "<VTKFile type=\"ImageData\"><ImageData WholeExtent=\"0 1 0 0 0 0\"><Piece Extent=\"0 1 0 0 0 "
+           "0\"><PointData>" +
+               arrays + "</PointData></Piece></ImageData></VTKFile>";
+    return place("v.vti");
+  };
+  std::string const two =
+      "<DataArray type=\"Float64\" Name=\"displacement_px\" NumberOfComponents=\"2\">1 2 3 4</DataArray>";
+  EXPECT_EQ(read_vectors(vti(two)).field.displacement_px, (std::vector<Vec2d>{{1, 2}, {3, 4}}));
+  EXPECT_THAT([&] { read_vectors(vti("")); }, ThrowsDataError(ErrorCode::missing_content, "v.vti"));
+  EXPECT_THAT([&] { read_vectors(vti(two + "<DataArray type=\"Int32\" Name=\"status\">0 7</DataArray>")); },
+              ThrowsDataError(ErrorCode::out_of_range, "v.vti"));
+  EXPECT_THAT([&] { read_vectors(vti(two + "<DataArray type=\"Int32\" Name=\"status\">0</DataArray>")); },
+              ThrowsDataError(ErrorCode::damaged, "v.vti"));
+  std::string const mat = write("v.mat", scattered_pair());
+  std::filesystem::resize_file(mat, 140);
+  EXPECT_THAT([&] { read_vectors(mat); }, ThrowsDataError(ErrorCode::damaged, "v.mat"));
 }
 
 TEST_F(VectorWriters, VtkImageComesBackAsAField) {

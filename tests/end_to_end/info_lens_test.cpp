@@ -35,6 +35,36 @@ TEST_F(InfoLens, PrintsTheCardinalPointsOfASinglet) {
   EXPECT_GT(json["spot_rms_um"]["5_deg"], json["spot_rms_um"]["on_axis"]);
 }
 
+// F2 is a glass of SCHOTT and of CDGM: the list names the one that was taken, and the other one.
+TEST_F(InfoLens, ListsTheGlassesWithTheirCatalogues) {
+  write("named.toml", R"(schema = 1
+entrance_pupil_mm = 5.0
+[[surface]]
+radius_mm = 50.0
+thickness_mm = 3.0
+glass = "F2"
+semi_diameter_mm = 10.0
+stop = true
+[[surface]]
+thickness_mm = 2.0
+[[surface]]
+thickness_mm = 2.0
+glass = "N-BK7"
+[[surface]]
+)");
+  auto const glasses = json_of({"info", "lens", "named.toml"})["glasses"];
+  ASSERT_EQ(glasses.size(), 2u);
+  EXPECT_EQ(glasses[0]["name"], "F2");
+  EXPECT_EQ(glasses[0]["catalogue"], "SCHOTT:F2");
+  EXPECT_EQ(glasses[0]["surfaces"], nlohmann::json({1}));
+  EXPECT_NEAR(glasses[0]["index"], 1.62004, 1e-5);  // nd of SCHOTT's data sheet
+  EXPECT_THAT(glasses[0]["also_in"].dump(), HasSubstr("CDGM:F2"));
+  EXPECT_EQ(glasses[1]["catalogue"], "SCHOTT:N-BK7");
+  std::string const text = succeed({"info", "lens", "named.toml"});
+  EXPECT_THAT(text, HasSubstr("glass F2 behind surface 1: SCHOTT:F2"));
+  EXPECT_THAT(text, HasSubstr("also in "));
+}
+
 // Third-order spherical aberration: for a plano-convex lens, curved side first, the rms spot in the narrowest cross
 // section decreases as the cube of the aperture.
 TEST_F(InfoLens, SpotFallsAsTheCubeOfTheAperture) {

@@ -130,6 +130,11 @@ TEST_F(InfoSetup, DrawsTheLayout) {
   }
 }
 
+TEST_F(InfoSetup, NamesTheCommandThatDrawsTheLayout) {
+  EXPECT_THAT(succeed({"info", "setup", "setup.toml"}),
+              HasSubstr("gladstone info setup setup.toml --figure layout.png"));
+}
+
 // Pure carbon dioxide at 532 nm: Bideau-Mehu et al. (1973), 2.281e-4 m^3/kg.
 TEST_F(InfoSetup, HasTheConstantOfAGas) {
   write("gas.toml", with(small_setup, "[medium.field]", "[medium.gas]\ncarbon_dioxide = 1.0\n\n[medium.field]"));

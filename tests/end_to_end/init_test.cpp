@@ -140,5 +140,19 @@ TEST_F(Init, CompleteListsAreAccepted) {
   }
 }
 
+// Both cameras of the stereoscopic template, and every key of a camera with the first one.
+TEST_F(Init, CompleteListOfStereoHasBothCameras) {
+  succeed({"init", "stereo", "-o", "stereo.toml"});
+  succeed({"init", "stereo", "--all", "-o", "all.toml"});
+  auto few = json_of({"info", "setup", "stereo.toml"}), all = json_of({"info", "setup", "all.toml"});
+  EXPECT_EQ(all["cameras"].size(), 2u);
+  EXPECT_EQ(all["cameras"], few["cameras"]) << "the keys that are given are those of the short template";
+  std::string const text = read("all.toml");
+  for (std::string const key : {"\n# noise.read_noise_e = ", "\n# pose.roll_deg = ", "\n# sensor.tilt_deg = ",
+                                "\n[lens]\n", "\n# transmittance = ", "\n# background."})
+    EXPECT_THAT(text, HasSubstr(key));
+  EXPECT_EQ(text.find("# pose.look_at_mm"), std::string::npos) << "is given";
+}
+
 }  // namespace
 }  // namespace gladstone::end_to_end

@@ -155,7 +155,7 @@ TEST_F(SilentMistakes, InfoReportsWhichAxisIsTakenForWhich) {
   EXPECT_THAT(json_of({"info", "field", folder + "n_nan_spacing.nrrd"})["units"]["unknown"].get<std::string>(),
               HasSubstr("the spacing of axis 3 (16 nodes, taken as z) is unknown in the header"));
   EXPECT_THAT(json_of({"info", "field", folder + "h_stretch.h5"})["notes"][0].get<std::string>(),
-              HasSubstr("axes that are not uniform were resampled: y"));
+              HasSubstr("interpolated to a uniform grid: y"));
   EXPECT_THAT(succeed({"info", "field", folder + "h_descx.h5"}),
               HasSubstr("[16, 20, 24] is read as z, y, x (by the lengths of its coordinates); x descends"));
 }

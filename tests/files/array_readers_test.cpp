@@ -417,6 +417,17 @@ TEST_F(PointTableField, UnitsAreInBrackets) {
   EXPECT_EQ(source->units().values, "g/cm^3");
 }
 
+TEST_F(PointTableField, UnitsAreAtTheEndsOfNames) {
+  auto const source = open_field(write("p.csv", "x_mm,y_mm,z_mm,rho_kg_m3\n" + reversed_points(",")), "rho_kg_m3");
+  EXPECT_EQ(source->units().length, "mm");
+  EXPECT_EQ(source->units().values, "kg/m^3");
+  EXPECT_EQ(unit_suffix("Vx_mm_s").unit, "mm/s");
+  EXPECT_EQ(unit_suffix("_m_s").unit, "") << "is a name without a quantity";
+  auto const velocity = open_field(
+      write("v.csv", "x_mm,y_mm,u_m_s,v_m_s,w_m_s\n0,0,1,2,3\n1,0,4,5,6\n0,1,7,8,9\n1,1,10,11,12\n"), "velocity", 3);
+  EXPECT_EQ(velocity->units().values, "m/s");
+}
+
 TEST_F(PointTableField, TecplotPointZonesAreRead) {
   std::string const header =
       "TITLE = \"density, plane\"\nVARIABLES = \"X [mm]\", \"Y [mm]\"\n\"Z [mm]\"\n\"rho\"\n"
@@ -426,8 +437,14 @@ TEST_F(PointTableField, TecplotPointZonesAreRead) {
   EXPECT_EQ(open_field(path, "")->units().length, "mm");
   auto const two = write("two.dat", header + reversed_points(" ") + "ZONE T=\"b\"\n1 2 3 4\n");
   EXPECT_THAT(open_field(two, "")->notes(), testing::Contains(HasSubstr("another zone")));
-  EXPECT_EQ(refusal(write("b.dat", "VARIABLES = x, y, rho\nZONE I=2, J=2, F=BLOCK\n0 1 0 1\n0 0 1 1\n1 2 3 4\n")),
-            "unsupported at b.dat:3");
+}
+
+TEST_F(PointTableField, TecplotBlockZonesAreRead) {
+  std::string const header = "VARIABLES = x, y, rho\nZONE I=2, J=2, F=BLOCK\n";
+  EXPECT_THAT(values_of(write("b.dat", header + "0 1 0 1\n0 0 1\n1 1 2 3 4\n")), ElementsAre(1, 2, 3, 4));
+  EXPECT_EQ(refusal(write("s.dat", header + "0 1 0 1\n0 0 1 1\n1 2 3\n")), "damaged at s.dat");
+  EXPECT_EQ(refusal(write("c.dat", "VARIABLES = x, y, rho\nZONE I=2, F=BLOCK, VARLOCATION=([3]=CELLCENTERED)\n0 1\n")),
+            "unsupported at c.dat:3");
 }
 
 TEST_F(PointTableField, PlanesHaveTwoCoordinates) {

@@ -553,7 +553,7 @@ TEST_F(JhtdbField, AxisThatMayHoldComponentsIsReported) {
   auto const narrow = Dataset{"v", {16, 12, 3}, numbered(3, 12, 16)};
   auto const source = open_field(write({narrow}), "v");
   ASSERT_EQ(source->notes().size(), 1u);
-  EXPECT_THAT(source->notes()[0], HasSubstr("may be the components of a vector"));
+  EXPECT_THAT(source->notes()[0], HasSubstr("is read as the axis x"));
   EXPECT_TRUE(open_field(write({{"v", {16, 12, 9}, numbered(9, 12, 16)}}), "v")->notes().empty());
 }
 
@@ -1224,7 +1224,7 @@ TEST_F(VtiFiles, RectilinearGridsMayDescendStretchAndHaveCells) {
   // Coordinates 0, 1, 3 are resampled to the finest spacing, that is, four nodes; the values 10 j are not linear in y.
   auto const stretched = grid("0 0.5 1 1.5", "0 1 3", points);
   EXPECT_THAT(stretched->grid().nodes, ElementsAre(4, 4, 2));
-  EXPECT_THAT(stretched->notes(), ElementsAre(HasSubstr("axes that are not uniform were resampled: y")));
+  EXPECT_THAT(stretched->notes(), ElementsAre(HasSubstr("interpolated to a uniform grid: y")));
 
   auto const cells = grid("0 0.5 1 1.5", "1 1.25 1.5",
                           "<CellData>" + array("Name=\"rho\" format=\"ascii\"", "0 1 2 10 11 12") + "</CellData>");

@@ -89,7 +89,7 @@ TEST(VelocityFile, PassesOnWhatItsReaderHadToAssume) {
   VelocityFile setup;
   setup.file = path;
   LoadedVelocity const loaded = load_velocity(setup);
-  EXPECT_THAT(loaded.warning, testing::HasSubstr("axes that are not uniform were resampled: y"));
+  EXPECT_THAT(loaded.warning, testing::HasSubstr("interpolated to a uniform grid: y"));
   EXPECT_LT(length(loaded.flow(Vec3d{}) - Vec3d{1.5, 1.5, 1.5}), 1e-6);
 }
 

@@ -85,7 +85,7 @@ TEST(AxialBeam, WarnsOfFNumberBelowLensLimit) {
   Lens const closed =
       build_lens(read_prescription(file_of("closed.zmx", changed(zmx, "  STOP\n", "  STOP\n  CLAP 0 2.0 0\n"))),
                  GlassCatalogue::shipped(), spectral_line::d, options);
-  EXPECT_THAT(closed.warnings, ElementsAre(HasSubstr(fmt::format("opens to f/{:.4g} at the widest", f / 4))));
+  EXPECT_THAT(closed.warnings, ElementsAre(HasSubstr(fmt::format("limits the lens to f/{:.4g}", f / 4))));
 }
 
 // The f/2 double Gauss transmits its axial beam completely, but little more: at f/1.2, light is lost at its edges.

@@ -97,7 +97,7 @@ TEST(ZmxOperands, WhatBlocksLightOtherwiseIsNotedByName) {
                 ElementsAre(AllOf(HasSubstr("block.zmx:24"), HasSubstr(key), HasSubstr("not traced"))));
   }
   EXPECT_THAT(notes_of("on.zmx", with_operand("OBDC 0 0")), IsEmpty());
-  EXPECT_THAT(refusal("turned.zmx", with_operand("CLAP 5 2 0")), HasSubstr("least radius 5"));
+  EXPECT_THAT(refusal("turned.zmx", with_operand("CLAP 5 2 0")), HasSubstr("inner radius 5"));
   EXPECT_THAT(refusal("flat.zmx", with_operand("SQAP 3 0 0")), AllOf(HasSubstr("flat.zmx:24"), HasSubstr("no area")));
 }
 

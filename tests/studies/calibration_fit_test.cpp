@@ -88,7 +88,7 @@ TEST(CalibrationFit, RefusesACameraOfUnequalFocalLengthsFromGuessedMiddleDots) {
     fitted(dots);
     FAIL() << "must be refused";
   } catch (DataError const& error) {
-    EXPECT_THAT(error.what(), testing::HasSubstr("the middle dots of plane0.tif, plane2.tif are guesses"));
+    EXPECT_THAT(error.what(), testing::HasSubstr("the middle dot was guessed wrongly in plane0.tif, plane2.tif"));
   }
   EXPECT_THAT(fitted(dots, CentreDotMethod::whole_grid).warnings,
               testing::Contains(testing::HasSubstr("differ, although")))

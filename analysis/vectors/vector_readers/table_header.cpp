@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 
 #include "analysis/vectors/vector_readers/text_rows.h"
 #include "render/base/text.h"
+#include "render/files/tecplot_zone.h"
 
 namespace gladstone::detail {
 namespace {
@@ -30,28 +30,6 @@ std::vector<std::string_view> quoted_words(std::string_view line) {
     at = line.find_first_not_of(blanks, std::min(quoted ? end + 1 : end, line.size()));
   }
   return words;
-}
-
-/// Returns the number in KEY=NUMBER or KEY = NUMBER outside of quotation marks, ignoring case.
-/// @param key  in lower case; must not be preceded by a letter, digit or underscore
-std::optional<double> assigned_number(std::string_view line, std::string_view key) {
-  std::string const lower = lower_case(line);
-  bool quoted = false;
-  for (std::size_t at = 0; at < lower.size(); ++at) {
-    if (lower[at] == '"') quoted = !quoted;
-    auto const is_word = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; };
-    bool const begins = at == 0 || !is_word(static_cast<unsigned char>(lower[at - 1]));
-    if (quoted || !begins || std::string_view(lower).substr(at, key.size()) != key) continue;
-    std::size_t const equals = lower.find_first_not_of(blanks, at + key.size());
-    if (equals == std::string::npos || lower[equals] != '=') continue;
-    std::size_t const from = lower.find_first_not_of(blanks, equals + 1);
-    if (from == std::string::npos) continue;
-    std::size_t const to = std::min(lower.find_first_not_of("0123456789", from), lower.size());
-    if (std::optional<double> const value = number(std::string_view(lower).substr(from, to - from));
-        value && *value > 0)
-      return value;
-  }
-  return std::nullopt;
 }
 
 }  // namespace
@@ -129,12 +107,6 @@ std::vector<std::string> tecplot_variables(std::string const& text) {
     at = quoted ? end + 1 : end;
   }
   return names;
-}
-
-bool is_block_packed(std::string const& header) {
-  std::string packed = lower_case(header);
-  std::erase_if(packed, [](unsigned char c) { return std::isspace(c) != 0; });
-  return packed.find("f=block") != std::string::npos || packed.find("datapacking=block") != std::string::npos;
 }
 
 std::optional<DavisHeader> parse_davis_header(std::string_view line) {

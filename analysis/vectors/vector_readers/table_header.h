@@ -28,9 +28,6 @@ std::vector<std::string> column_names(std::string_view line);
 /// @return empty if the text has no VARIABLES record
 std::vector<std::string> tecplot_variables(std::string const& text);
 
-/// Returns true if the values of a zone are stored variable by variable.
-bool is_block_packed(std::string const& header);
-
 /// Header of DaVis' text export: #DaVis 8.4.0 2D-vector 16 49 49 "position" "mm" "position" "mm" "velocity" "m/s" are
 /// version, kind, window size, two sizes of the grid, and quantity and unit of x, of y and of both components.
 /// The units are in the places where PIVMat (Moisy, loadpivtxt.m, version 1.32) reads them from the same 12 words.

@@ -7,6 +7,7 @@
 #include "analysis/vectors/vector_readers/text_rows.h"
 #include "render/base/error.h"
 #include "render/base/text.h"
+#include "render/files/tecplot_zone.h"
 #include "render/files/text_file.h"
 
 namespace gladstone::detail {
@@ -17,14 +18,14 @@ constexpr std::size_t most_lines_before_numbers = 1000;
 /// Reads a table line by line: lines of the header, then rows of numbers.
 class TableReader {
  public:
-  explicit TableReader(std::string const& path) : file_(path, "a file of vectors") { table_.path = path; }
+  explicit TableReader(std::string const& path) : file_(path, "a file of vectors"), block_(path) { table_.path = path; }
 
   TextTable read() && {
     while (auto const line = file_.next()) {
       if (line->find('\0') != std::string_view::npos)
         fail(ErrorCode::wrong_format, file_.number(),
-             "contains NUL bytes, as binary files do; vectors are read from text files and from vectors.h5 of "
-             "gladstone");
+             "contains NUL bytes, as binary files do; give a text file, or one of the other formats of gladstone "
+             "convert with its ending (.h5, .nc, .mat, .vti, .vtp)");
       std::string_view const text = trim(*line);
       if (text.empty() || read_header_line(text)) continue;
       if (format_.separator == 0) name_columns(text);
@@ -33,8 +34,9 @@ class TableReader {
         table_.warnings.push_back(file_.place() + ": another zone begins here; only the first one is read");
         break;
       }
-      add_row(text);
+      zone_.block ? add_block_values(text) : add_row(text);
     }
+    if (zone_.block) split_block();
     check_rows();
     return std::move(table_);
   }
@@ -66,9 +68,10 @@ class TableReader {
     whole += header_;
     table_.names = tecplot_variables(whole);
     table_.tecplot = !table_.names.empty();
-    if (table_.tecplot && is_block_packed(whole))
+    if (table_.tecplot) zone_ = parse_tecplot_zone(whole);
+    if (zone_.cell_centered)
       fail(ErrorCode::unsupported, table_.header_line,
-           "is Tecplot's BLOCK packing (values variable by variable); export it in POINT packing");
+           "declares values in cells (CELLCENTERED); export all variables at the nodes");
     std::optional<DavisHeader> const davis = parse_davis_header(header_);
     table_.davis = davis.has_value();
     if (davis && !davis->planar)
@@ -83,7 +86,7 @@ class TableReader {
       table_.names = column_names(header_);
     }
     table_.values.resize(table_.names.size());
-    format_ = row_format(row, table_.names.size());
+    format_ = zone_.block ? RowFormat{detect_separator(row), '.'} : row_format(row, table_.names.size());
   }
 
   /// Names the columns of a file without header, which must be one of JPIV (.jvc). @param row  its first row
@@ -109,6 +112,20 @@ class TableReader {
     }
     require_room(table_.line, table_.path, "vectors");
     table_.line.push_back(at);
+  }
+
+  /// Adds a line of a zone in BLOCK packing.
+  void add_block_values(std::string_view text) {
+    for (std::string_view const field : split(text, format_.separator)) {
+      std::optional<double> const value = number(field);
+      if (!value) fail(ErrorCode::syntax, file_.number(), fmt::format("\"{}\" is not a number", excerpt(field)));
+      block_.add(*value, file_.number());
+    }
+  }
+
+  void split_block() {
+    table_.values = block_.split(table_.names.size(), zone_.points);
+    table_.line = block_.lines(table_.values.front().size());
   }
 
   [[noreturn]] void refuse_fields(std::string_view text, std::size_t count) const {
@@ -140,6 +157,8 @@ class TableReader {
   std::string header_;  ///< last line before the rows
   DeclaredVectors declared_;
   RowFormat format_;  ///< without separator until the first row of numbers
+  TecplotZone zone_;
+  BlockValues block_;  ///< empty without BLOCK packing
 };
 
 }  // namespace

@@ -45,7 +45,7 @@ struct TextTable {
 /// blanks; the decimal separator is a point or, with another field separator or in quotation marks, a comma. A number
 /// of rows other than the header declares is a warning, and `complete` is then false.
 /// @throws DataError with file:line for an empty file, a missing header, a row with a wrong number of fields, a field
-///         that is not a number, Tecplot's BLOCK packing, or 3D vectors of DaVis
+///         that is not a number, values in cells of Tecplot, or 3D vectors of DaVis
 TextTable read_text_table(std::string const& path);
 
 }  // namespace gladstone::detail

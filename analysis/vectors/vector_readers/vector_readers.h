@@ -12,12 +12,23 @@ namespace gladstone::detail {
 /// Reads vectors.h5 of gladstone. @throws DataError that contains the name of the dataset
 VectorFile read_gladstone_hdf5(std::string const& path);
 
+/// netCDF-4 in the schema of PIVPy, of gladstone or of PIVPy itself: u and v over (y, x, t) in any order, of one frame.
+/// Validity from `status`, else from `chc`. Other programs: y and v down, or both up about the grid.
+/// @throws DataError for netCDF-3, several frames or three components
+VectorFile read_vector_netcdf(std::string const& path);
+
+/// MATLAB level 5 or 7.3 with a matrix for each column of vectors.csv. @throws DataError if columns are missing
+VectorFile read_vector_matlab(std::string const& path);
+
+/// VTK image (.vti) or points (.vtp) with the arrays that gladstone writes. @throws DataError if arrays are missing
+VectorFile read_vector_vtk(std::string const& path);
+
 /// Text formats. For each, a function recognises a table of the format and another converts it to vectors.
 bool is_gladstone_csv(TextTable const& table);
 VectorFile read_gladstone_csv(TextTable const& table);
 
-/// Tecplot ASCII as gladstone writes it, with VARIABLES x_px, y_px, u_px, v_px and status; y and v downwards. 0 marks
-/// unknown values.
+/// Tecplot ASCII as gladstone writes it, with VARIABLES x_px, y_px, u_px, v_px and status; y and v downwards. The
+/// variable `unknown` marks unknown values; in files of older versions, which lack it, 0 marks them.
 bool is_gladstone_tecplot(TextTable const& table);
 VectorFile read_gladstone_tecplot(TextTable const& table);
 
@@ -32,7 +43,7 @@ VectorFile read_pivlab(TextTable const& table);
 bool is_openpiv(TextTable const& table);
 VectorFile read_openpiv(TextTable const& table);
 
-/// Tecplot ASCII with VARIABLES x, y, u or Vx, v or Vy, in POINT packing, and DaVis' text export, whose y points
+/// Tecplot ASCII with VARIABLES x, y, u or Vx, v or Vy, and DaVis' text export, whose y points
 /// downwards if it increases from row to row: DaVis (isValid 0: masked; without that column, vectors of exactly zero
 /// count as masked) and TSI Insight .vec (CHC 1: measured; above 1: secondary peak or interpolated; below 1: invalid).
 /// y and v point upwards, y from the last row of the image.

@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <utility>
 
 #include "analysis/vectors/vector_writers/vector_columns.h"
 #include "analysis/vectors/vector_writers/vector_writers.h"
@@ -25,6 +27,23 @@ void append_rows(std::string& text, std::vector<VectorColumn> const& columns, st
   }
 }
 
+/// Replaces values that are not finite by 0.
+/// @return column `unknown`: the sum of 2^k over the columns k, from 0, whose value was replaced
+VectorColumn mark_unknown_values(std::vector<VectorColumn>& columns) {
+  VectorColumn marks{"unknown", "1", "unknown values", true, {}};
+  marks.values.resize(columns.empty() ? 0 : columns.front().values.size());
+  double bit = 1;
+  for (VectorColumn& column : columns) {
+    for (std::size_t i = 0; i < column.values.size(); ++i) {
+      if (std::isfinite(column.values[i])) continue;
+      column.values[i] = 0.0;
+      marks.values[i] += bit;
+    }
+    bit *= 2;
+  }
+  return marks;
+}
+
 }  // namespace
 
 void write_vector_bytes(std::string const& path, std::string const& bytes, FileOrigin const& origin) {
@@ -45,18 +64,14 @@ void write_csv_table(std::string const& path, VectorTable const& table, FileOrig
 void write_tecplot_table(std::string const& path, VectorTable const& table, FileOrigin const& origin) {
   std::vector<VectorColumn> columns = table.columns;
   std::erase_if(columns, [](VectorColumn const& column) { return !column.is_known(); });
+  VectorColumn marks = mark_unknown_values(columns);
+  bool const any_unknown = std::any_of(marks.values.begin(), marks.values.end(), [](double mark) { return mark > 0; });
+  if (any_unknown) columns.push_back(std::move(marks));
   std::string names;
-  bool any_unknown = false;
-  for (VectorColumn& column : columns) {
-    names += " \"" + column.name + '"';
-    for (double& value : column.values) {
-      if (std::isfinite(value)) continue;
-      value = 0.0;
-      any_unknown = true;
-    }
-  }
-  std::string text = fmt::format("TITLE = \"gladstone vectors, {}{}\"\nVARIABLES ={}", table.remark,
-                                 any_unknown ? "; unknown values are 0" : "", names);
+  for (VectorColumn const& column : columns) names += " \"" + column.name + '"';
+  std::string text = fmt::format(
+      "TITLE = \"gladstone vectors, {}{}\"\nVARIABLES ={}", table.remark,
+      any_unknown ? "; values are 0 where unknown contains 2^k, k = number of the variable from 0" : "", names);
   bool const grid = table.grid_columns > 0;
   text += fmt::format("\nZONE T=\"vectors\", I={}, J={}, DATAPACKING=POINT\n",
                       grid ? static_cast<std::size_t>(table.grid_columns) : table.rows(), grid ? table.grid_rows : 1);

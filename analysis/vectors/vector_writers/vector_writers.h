@@ -32,10 +32,12 @@ void write_vector_netcdf(std::string const& path, DisplacementField const& field
 /// of the grid, or one column for scattered vectors.
 void write_vector_matlab(std::string const& path, DisplacementField const& field, FileOrigin const& origin);
 
-/// Tecplot ASCII, an ordered zone in POINT packing. Tecplot has no NaN: unknown values are 0.
+/// Tecplot ASCII, an ordered zone in POINT packing. Tecplot has no NaN: unknown values are 0, and the column `unknown`
+/// marks them, a sum of 2^k over the columns k whose value is unknown.
 void write_vector_tecplot(std::string const& path, DisplacementField const& field, FileOrigin const& origin);
 
-/// VTK XML image (.vti) with arrays at the points, for grids of uniform spacing.
+/// VTK XML image (.vti) with arrays at the points, for grids of uniform spacing; with the positions, if origin and
+/// spacing do not give them to the last bit.
 void write_vector_vti(std::string const& path, DisplacementField const& field, FileOrigin const& origin);
 
 /// VTK XML polygonal data (.vtp) of one vertex per vector.

@@ -88,6 +88,15 @@ double uniform_spacing(std::vector<double> const& places, std::string const& pat
   return spacing;
 }
 
+/// Returns true if the coordinates of all points are exactly those of their column or row in the image.
+template <class Index>
+bool is_exact(VectorTable const& table, std::string const& coordinate, double spacing, Index const& index_of) {
+  std::vector<double> const& places = column_named(table.columns, coordinate).values;
+  for (std::size_t i = 0; i < places.size(); ++i)
+    if (places.front() + static_cast<double>(index_of(i)) * spacing != places[i]) return false;
+  return true;
+}
+
 /// Layout of two components.
 VtkLayout plane_layout() {
   return {{"position_px", {"x_px", "y_px", ""}},
@@ -101,11 +110,17 @@ VtkLayout plane_layout() {
 void write_vti_table(std::string const& path, VectorTable const& table, VectorGrid const& grid, VtkLayout const& layout,
                      FileOrigin const& origin) {
   std::string const extent = fmt::format("0 {} 0 {} 0 0", grid.x.size() - 1, grid.y.size() - 1);
+  double const dx = uniform_spacing(grid.x, path), dy = uniform_spacing(grid.y, path);
   std::string const element =
       fmt::format(" WholeExtent=\"{}\" Origin=\"{:.17g} {:.17g} 0\" Spacing=\"{:.17g} {:.17g} 1\"", extent,
-                  grid.x.front(), grid.y.front(), uniform_spacing(grid.x, path), uniform_spacing(grid.y, path));
+                  grid.x.front(), grid.y.front(), dx, dy);
+  bool const exact =
+      is_exact(table, layout.position.components[0], dx, [&](std::size_t i) { return i % grid.x.size(); }) &&
+      is_exact(table, layout.position.components[1], dy, [&](std::size_t i) { return i / grid.x.size(); });
+  VtkLayout complete = layout;
+  if (!exact) complete.vectors.push_back(layout.position);
   std::string const piece =
-      fmt::format("<Piece Extent=\"{}\">\n{}</Piece>\n", extent, point_data(table.columns, layout));
+      fmt::format("<Piece Extent=\"{}\">\n{}</Piece>\n", extent, point_data(table.columns, complete));
   write_vector_bytes(path, vtk_file("ImageData", element, piece, table.remark), origin);
 }
 

@@ -172,6 +172,17 @@ std::string unknown_length(std::string const& of, std::string const& unit) {
 
 }  // namespace
 
+UnitSuffix unit_suffix(std::string_view name) {
+  constexpr std::array suffixes{UnitSuffix{"_kg_m3", "kg/m^3"}, UnitSuffix{"_g_cm3", "g/cm^3"},
+                                UnitSuffix{"_g_m3", "g/m^3"},   UnitSuffix{"_mm_s", "mm/s"},
+                                UnitSuffix{"_cm_s", "cm/s"},    UnitSuffix{"_m_s", "m/s"}};
+  std::string const lower = lower_case(name);
+  auto const* const found = std::find_if(suffixes.begin(), suffixes.end(), [&](UnitSuffix const& one) {
+    return lower.size() > one.ending.size() && lower.ends_with(one.ending);
+  });
+  return found == suffixes.end() ? UnitSuffix{} : *found;
+}
+
 bool states_unit(std::string_view text) {
   constexpr std::array<std::string_view, 8> absent{
       "", "1", "-", "none", "dimensionless", "unitless", "nondimensional", "n/a"};

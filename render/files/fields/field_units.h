@@ -48,6 +48,14 @@ struct FieldUnits {
 /// Returns false for texts that name no unit: "", "1", "-", "none", "dimensionless" ...
 bool states_unit(std::string_view text);
 
+/// Ending of a name that states a unit, and that unit: "_kg_m3", "kg/m^3".
+struct UnitSuffix {
+  std::string_view ending, unit;
+};
+/// Returns the unit suffix of a name of a density or velocity ("rho_kg_m3", "u_m_s"), in upper or lower case; empty if
+/// there is none.
+UnitSuffix unit_suffix(std::string_view name);
+
 /// Returns the size of a unit in SI units from a product of names with exponents ("mm", "kg m-3", "g/cm^3", "m s**-1",
 /// "[kg/l]"), in upper or lower case; nullopt if it is not recognised or has another dimension.
 std::optional<double> unit_size(std::string_view text, Dimension const& dimension);

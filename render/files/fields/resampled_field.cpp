@@ -118,10 +118,12 @@ ResampledField::ResampledField(std::unique_ptr<OrientedField> source)
     if (x.empty()) continue;
     double const span = x.back() - x.front(), cells = std::ceil(span / finest_spacing(x) * (1 - 1e-6));
     if (!(cells < std::numeric_limits<int>::max())) {
-      throw DataError(ErrorCode::unsupported, source_->path(),
-                      fmt::format("\"{}\" cannot be resampled along {}: its finest spacing is {:.3g} "
-                                  "of its length; resample it to a coarser uniform grid",
-                                  name(), "xyz"[axis], finest_spacing(x) / span));
+      throw DataError(
+          ErrorCode::unsupported, source_->path(),
+          fmt::format("\"{}\": the smallest distance of nodes along {} is {:.3g} of the field's extent, so that a "
+                      "uniform grid of this distance has too many nodes; write the field on a coarser, "
+                      "uniform grid",
+                      name(), "xyz"[axis], finest_spacing(x) / span));
     }
     grid_.nodes[axis] = static_cast<int>(cells) + 1;
     grid_.spacing[static_cast<int>(axis)] = span / cells;
@@ -171,8 +173,8 @@ std::vector<std::string> ResampledField::notes() {
                         grid_.spacing[static_cast<int>(axis)]);
   }
   notes.push_back(
-      fmt::format("axes that are not uniform were resampled: {}; nodes predicted from their neighbours are "
-                  "off by at most {:.2g} ({:.2g} % of the range of values), which bounds the error",
+      fmt::format("the file's nodes are not equidistant and were interpolated to a uniform grid: {}; the error of the "
+                  "interpolation is at most {:.2g} ({:.2g} % of the range of values)",
                   axes, error, range_ > 0 ? 100 * error / range_ : 0.0));
   return notes;
 }

@@ -30,9 +30,9 @@ bool is_harmless(std::string const& key) {
 Outline outline_of(PrescriptionLine const& line, double unit, Outline::Kind kind, bool blocks) {
   Vec2d const half{line.number_or_infinity(1) * unit, line.number_or_infinity(2) * unit};
   if (half.x > 0 && half.y > 0) return {kind, blocks, half, {}};
-  throw DataError(
-      ErrorCode::out_of_range, line.where,
-      fmt::format("{}: half widths of {} and {} enclose no area; give positive ones", line[0], line[1], line[2]));
+  throw DataError(ErrorCode::out_of_range, line.where,
+                  fmt::format("{}: the half widths along x and y, {} and {}, must both be positive; correct them",
+                              line[0], line[1], line[2]));
 }
 
 }  // namespace
@@ -56,7 +56,8 @@ bool read_zmx_aperture(PrescriptionLine const& line, double unit, ZmxApertures& 
     if (!(least >= 0 && largest >= least)) {
       throw DataError(
           ErrorCode::invalid_value, line.where,
-          fmt::format("{}: the least radius {} is negative or exceeds the largest, {}", key, line[1], line[2]));
+          fmt::format("{}: the inner radius {} must be at least 0 and at most the outer radius {}; correct them", key,
+                      line[1], line[2]));
     }
     if (key != "OBSC") {
       apertures.aperture = {least, largest};
@@ -121,10 +122,11 @@ void put_apertures(ZmxApertures const& apertures, PrescribedSurface& surface, st
   double const blocked = off_axis ? 0 : disc;
   if (edge && blocked > 0 && blocked >= surface.semi_diameter) {
     surface.semi_diameter_vignettes = false;
-    warn(
-        fmt::format("the obscuration is as large as the surface's semi-diameter, {:.6g} mm, which is taken as the "
-                    "disc's own: light passes outside",
-                    surface.semi_diameter / unit::millimetre));
+    warn(fmt::format(
+        "the opaque disc is as large as the surface, whose semi-diameter is {:.6g} mm, so that no light would "
+        "pass; the semi-diameter is taken as that of the disc alone, and light outside it passes (to limit that "
+        "light, add an aperture, CLAP)",
+        surface.semi_diameter / unit::millimetre));
   }
 }
 

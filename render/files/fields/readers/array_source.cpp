@@ -68,11 +68,13 @@ class ArraySource final : public CheckedSource {
     }
     notes_ = file_->notes();
     units_.values = trimmed(file_->attribute(name_, "units"));
+    std::string const suffix(unit_suffix(name_).unit);
+    if (!states_unit(units_.values) && !suffix.empty()) units_.values = suffix;
     packing_ = read_packing(*file_, name_);
     if (values_ == 1 && rank() == 3 && may_be_components(length(0)) && length(1) > 3 && length(2) > 3) {
       notes_.push_back(
-          fmt::format("the last axis of \"{}\" of shape {} may be the components of a vector; it is taken as "
-                      "one in space",
+          fmt::format("the last axis of \"{}\" of shape {} is read as the axis x; if it contains the components of a "
+                      "vector instead, write each component as an array of its own",
                       name_, shape_text(shape_)));
     }
     std::string const by = place_axes(selection.axes);

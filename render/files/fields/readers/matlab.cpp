@@ -12,6 +12,7 @@
 #include "render/files/fields/readers/hdf5.h"
 #include "render/files/fields/readers/listed_arrays.h"
 #include "render/files/fields/readers/stored_number.h"
+#include "render/files/hdf5_file.h"
 #include "render/files/text_file.h"
 
 namespace gladstone {
@@ -135,7 +136,8 @@ ValueStore load_compressed(MatlabArray const& array) {
 /// Contents of a file of level 5.
 class MatlabFile {
  public:
-  explicit MatlabFile(std::string const& path) : file_(std::make_shared<InputFile const>(path, "a field file")) {
+  MatlabFile(std::string const& path, std::string const& wanted)
+      : file_(std::make_shared<InputFile const>(path, wanted)) {
     constexpr std::uint64_t header = 128;
     std::string order(2, '\0');
     if (file_->read(header - 2, order.data(), 2) < 2 || (order != "IM" && order != "MI")) cut_short();
@@ -202,20 +204,38 @@ class MatlabFile {
   bool swap_ = false;
 };
 
+/// Returns true for a file of version 7.3, false for one of level 5. @throws DataError for other files
+bool is_version_7_3(std::string const& path, std::string const& wanted) {
+  constexpr std::string_view level_5 = "MATLAB 5.0";
+  std::string start(level_5.size(), '\0');
+  start.resize(InputFile(path, wanted).read(0, start.data(), start.size()));
+  if (start == "MATLAB 7.3" || start.starts_with("\x89HDF")) return true;
+  if (start == level_5) return false;
+  throw DataError(ErrorCode::wrong_format, path,
+                  "is not a MATLAB file of level 5 or 7.3; save it with the option -v7 or -v7.3 of save");
+}
+
 }  // namespace
 
 std::unique_ptr<CheckedSource> open_matlab(std::string const& path, FieldSelection const& selection) {
-  constexpr std::string_view level_5 = "MATLAB 5.0";
-  std::string start(level_5.size(), '\0');
-  start.resize(InputFile(path, "a field file").read(0, start.data(), start.size()));
-  if (start == "MATLAB 7.3" || start.starts_with("\x89HDF")) return open_hdf5(path, selection);
-  if (start != level_5) {
-    throw DataError(ErrorCode::wrong_format, path,
-                    "is not a MATLAB file of level 5 or 7.3; save it with the option -v7 or -v7.3 of save");
-  }
-  MatlabFile file(path);
+  if (is_version_7_3(path, "a field file")) return open_hdf5(path, selection);
+  MatlabFile file(path, "a field file");
   return open_array_field(std::make_unique<ListedArrays>(path, std::move(file.arrays), std::move(file.others)), path,
                           selection);
+}
+
+std::vector<ListedArray> list_matlab_arrays(std::string const& path, std::string const& wanted) {
+  if (!is_version_7_3(path, wanted)) return MatlabFile(path, wanted).arrays;
+  auto const file = std::make_shared<Hdf5Reader>(path);
+  std::vector<ListedArray> arrays;
+  for (std::string const& dataset : file->number_datasets()) {
+    ReadValues const read = [file, dataset](std::size_t first, std::span<double> out) {
+      std::vector<double> const values = file->read(dataset);
+      std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(first), out.size(), out.begin());
+    };
+    arrays.push_back({dataset.substr(1), file->shape(dataset), file->significant_bits(dataset), read});
+  }
+  return arrays;
 }
 
 }  // namespace gladstone

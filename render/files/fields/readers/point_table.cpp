@@ -11,6 +11,7 @@
 #include "render/base/error.h"
 #include "render/base/interrupt.h"
 #include "render/base/text.h"
+#include "render/files/fields/field_units.h"
 #include "render/files/fields/readers/array_coordinates.h"
 #include "render/files/fields/readers/listed_arrays.h"
 #include "render/files/fields/readers/point_table_reader.h"
@@ -151,13 +152,18 @@ using ComponentNames = std::array<std::string_view, 3>;
 constexpr std::array velocity_columns{ComponentNames{"u", "v", "w"}, ComponentNames{"vx", "vy", "vz"},
                                       ComponentNames{"ux", "uy", "uz"}};
 
-/// Returns the columns of these names; empty if one is missing.
+/// Returns the name of a column in lower case without its unit: "vx" of "Vx_m_s".
+std::string quantity_of(std::string const& column) {
+  return lower_case(column.substr(0, column.size() - unit_suffix(column).ending.size()));
+}
+
+/// Returns the columns of these names, with or without units; empty if one is missing.
 std::vector<std::shared_ptr<PointColumn const>> find_columns(
     std::vector<std::shared_ptr<PointColumn const>> const& columns, ComponentNames const& names) {
   std::vector<std::shared_ptr<PointColumn const>> found;
   for (std::string_view const name : names) {
     auto const one = std::find_if(columns.begin(), columns.end(),
-                                  [&](auto const& column) { return lower_case(column->name) == name; });
+                                  [&](auto const& column) { return quantity_of(column->name) == name; });
     if (one == columns.end()) return {};
     found.push_back(*one);
   }

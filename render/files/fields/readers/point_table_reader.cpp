@@ -1,15 +1,18 @@
 #include "render/files/fields/readers/point_table_reader.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cctype>
 #include <charconv>
 #include <optional>
 #include <string_view>
+#include <utility>
 
 #include "render/base/error.h"
 #include "render/base/text.h"
+#include "render/files/fields/field_units.h"
+#include "render/files/tecplot_zone.h"
 #include "render/files/text_file.h"
 
 namespace gladstone {
@@ -56,11 +59,11 @@ std::vector<std::string> split_fields(std::string_view line) {
   return fields;
 }
 
-/// Splits a name of a column and its unit in brackets: "rho [kg/m^3]".
+/// Parses the name of a column and its unit, in brackets or as the ending of the name: "rho [kg/m^3]", "rho_kg_m3".
 PointColumn named_column(std::string_view text) {
   std::size_t const open = text.find_last_of("[(");
   bool const bracketed = open != std::string_view::npos && open > 0 && (text.back() == ']' || text.back() == ')');
-  if (!bracketed) return {trimmed(text), "", {}};
+  if (!bracketed) return {trimmed(text), std::string(unit_suffix(text).unit), {}};
   return {trimmed(text.substr(0, open)), trimmed(text.substr(open + 1, text.size() - open - 2)), {}};
 }
 
@@ -95,22 +98,16 @@ std::vector<PointColumn> columns_of_header(std::vector<std::string> const& heade
   return columns;
 }
 
-bool is_block_zone(std::vector<std::string> const& header) {
-  std::string text;
-  for (std::string const& line : header) text += lower_case(line);
-  std::erase_if(text, [](unsigned char c) { return std::isspace(c) != 0; });
-  return text.find("datapacking=block") != std::string::npos || text.find("f=block") != std::string::npos;
-}
-
 /// Reads the header of a table and its rows.
 class PointTableReader {
  public:
-  explicit PointTableReader(std::string const& path) : path_(path), file_(path, "a field file") {
+  explicit PointTableReader(std::string const& path) : path_(path), file_(path, "a field file"), block_(path) {
     while (auto const line = file_.next()) {
       std::string_view const text = trim(*line);
       if (text.empty()) continue;
       if (!read_line(text)) break;
     }
+    if (zone_.block) split_block();
     if (table_.line.empty())
       throw DataError(ErrorCode::missing_content, path,
                       "holds no row of numbers below a header that names the columns");
@@ -122,7 +119,7 @@ class PointTableReader {
   bool read_line(std::string_view text) {
     std::vector<std::string> const fields = split_fields(text);
     bool const numbers = !fields.empty() && parse_number(fields.front());
-    if (!numbers && table_.line.empty()) {
+    if (!numbers && table_.columns.empty()) {
       constexpr std::size_t most_header_lines = 200;
       if (header_.size() == most_header_lines)
         refuse(ErrorCode::wrong_format,
@@ -135,14 +132,16 @@ class PointTableReader {
       table_.notes.push_back(file_.place() + ": another zone begins here; only the first one is read");
       return false;
     }
-    if (table_.line.empty()) read_header();
-    add_row(fields);
+    if (table_.columns.empty()) read_header();
+    zone_.block ? add_block_values(fields) : add_row(fields);
     return true;
   }
 
   void read_header() {
-    if (is_block_zone(header_))
-      refuse(ErrorCode::unsupported, "the zone is in BLOCK packing; export it in POINT packing");
+    zone_ = parse_tecplot_zone(fmt::format("{}", fmt::join(header_, " ")));
+    if (zone_.cell_centered)
+      refuse(ErrorCode::unsupported,
+             "the zone declares values in cells (CELLCENTERED); export all variables at the nodes");
     table_.columns = columns_of_header(header_);
     if (table_.columns.empty())
       refuse(ErrorCode::missing_content,
@@ -165,11 +164,28 @@ class PointTableReader {
     table_.line.push_back(file_.number());
   }
 
+  /// Adds a line of a zone in BLOCK packing.
+  void add_block_values(std::vector<std::string> const& fields) {
+    for (std::string const& field : fields) {
+      auto const value = parse_number(field);
+      if (!value) refuse(ErrorCode::syntax, fmt::format("\"{}\" is not a number", excerpt(field)));
+      block_.add(*value, file_.number());
+    }
+  }
+
+  void split_block() {
+    std::vector<std::vector<double>> values = block_.split(table_.columns.size(), zone_.points);
+    table_.line = block_.lines(values.front().size());
+    for (std::size_t i = 0; i < values.size(); ++i) table_.columns[i].values = std::move(values[i]);
+  }
+
   [[noreturn]] void refuse(ErrorCode code, std::string const& why) const { throw DataError(code, file_.place(), why); }
 
   std::string path_;
   LineReader file_;
   std::vector<std::string> header_;
+  TecplotZone zone_;
+  BlockValues block_;  ///< empty without BLOCK packing
   PointTable table_;
 };
 

@@ -79,6 +79,7 @@ class VtkSource final : public CheckedSource {
              : turned                ? "by its Direction"
                                      : "as VTK defines it");
     units_.spaced = true;
+    units_.values = unit_suffix(field_.name).unit;
     notes_ = field_.notes;
     if (field_.place == VtkPlace::cells) reading_.by += "; data of cells, at their centres";
   }

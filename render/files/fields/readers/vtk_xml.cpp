@@ -1,16 +1,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
+#include <limits>
 #include <memory>
-#include <optional>
 #include <pugixml.hpp>
 
 #include "render/base/error.h"
-#include "render/base/interrupt.h"
 #include "render/base/nearest_name.h"
 #include "render/files/fields/readers/vtk.h"
-#include "render/files/fields/readers/vtk_numbers.h"
+#include "render/files/fields/readers/vtk_document.h"
 #include "render/files/fields/readers/vtk_payload.h"
 #include "render/files/fields/readers/vtk_pieces.h"
 #include "render/files/fields/readers/vtk_source.h"
@@ -19,37 +17,6 @@
 namespace gladstone {
 namespace {
 
-constexpr std::string_view appended = "<AppendedData";
-constexpr std::size_t read_at_once = std::size_t{1} << 18;
-
-/// XML part of a file, without the binary content of <AppendedData>.
-struct Head {
-  std::string xml;
-  std::optional<std::uint64_t> data;  ///< offset of the appended data in the file [bytes]
-};
-
-Head read_head(InputFile const& file) {
-  std::string text;
-  while (true) {
-    throw_if_interrupted();
-    std::size_t const before = text.size();
-    require_memory(file.path(), "its header", 3.0 * static_cast<double>(before + read_at_once));
-    text.resize(before + read_at_once);
-    text.resize(before + file.read(before, text.data() + before, read_at_once));
-    bool const whole = text.size() < before + read_at_once;
-    std::size_t const from = before > appended.size() ? before - appended.size() : 0;
-    std::size_t const tag = text.find(appended, from);
-    std::size_t const close = tag == std::string::npos ? tag : text.find('>', tag);
-    std::size_t const mark = close == std::string::npos ? close : text.find('_', close);
-    if (mark != std::string::npos) {
-      text.resize(close);
-      if (text.back() == '/') text.pop_back();
-      return {text + "></AppendedData></VTKFile>", mark + 1};
-    }
-    if (whole) return {std::move(text), std::nullopt};
-  }
-}
-
 /// Reader of the XML tree of a file.
 class VtkXmlReader {
  public:
@@ -57,23 +24,19 @@ class VtkXmlReader {
       : arrays_(std::make_shared<VtkArrays>(VtkArrays{InputFile(path, "a field file"), {}, {}, {}, {}, {}, {}})),
         path_(path),
         selection_(selection),
-        head_(read_head(arrays_->file)) {
+        document_(arrays_->file) {
     arrays_->values = static_cast<std::size_t>(selection.values);
-    pugi::xml_document document;
-    auto const result = document.load_buffer_inplace(head_.xml.data(), head_.xml.size());
-    pugi::xml_node const root = document.child("VTKFile");
-    if (!root) refuse(ErrorCode::wrong_format, "is not a VTK file (XML, with a tag <VTKFile>)");
-    if (!result) {
-      refuse(ErrorCode::damaged,
-             fmt::format("is not complete XML ({} at byte {}); copy it again", result.description(), result.offset));
+    std::string const& kind = document_.kind();
+    if (kind != "ImageData" && kind != "RectilinearGrid") {
+      refuse(
+          ErrorCode::unsupported,
+          fmt::format("holds VTK's \"{}\" (fields on a regular grid are read, \"ImageData\" and \"RectilinearGrid\"); "
+                      "resample it to an image",
+                      excerpt(kind)));
     }
-    read_kind(root);
-    pugi::xml_node const grid = root.child(kind_.c_str());
-    if (!grid) refuse(ErrorCode::damaged, "has no tag <" + kind_ + ">; copy it again");
+    arrays_->encoding = document_.encoding();
+    pugi::xml_node const grid = document_.data_set();
     read_grid(grid);
-    appended_format_ = root.child("AppendedData").attribute("encoding").as_string("base64") == std::string_view("raw")
-                           ? VtkPayload::Format::raw
-                           : VtkPayload::Format::base64;
     choose(grid);
     read_pieces(grid);
   }
@@ -89,53 +52,15 @@ class VtkXmlReader {
 
   template <class Number, std::size_t Count>
   std::array<Number, Count> numbers(pugi::xml_node tag, char const* key, std::array<Number, Count> const* fallback) {
-    std::string_view const text = tag.attribute(key).as_string();
     if (!tag.attribute(key) && fallback) return *fallback;
-    std::array<Number, Count> found{};
-    std::size_t count = 0;
-    constexpr std::string_view blanks = " \t\r\n";
-    for (std::size_t at = text.find_first_not_of(blanks); at != std::string_view::npos; ++count) {
-      Number number{};
-      auto const [rest, error] = std::from_chars(text.data() + at, text.data() + text.size(), number);
-      if (error != std::errc() || count >= Count) {
-        count = Count + 1;
-        break;
-      }
-      found[count] = number;
-      at = text.find_first_not_of(blanks, static_cast<std::size_t>(rest - text.data()));
-    }
-    if (count != Count)
-      refuse(ErrorCode::syntax, fmt::format("{} {} = \"{}\" is not {} numbers", tag.name(), key, excerpt(text), Count));
-    return found;
-  }
-
-  void read_kind(pugi::xml_node root) {
-    kind_ = root.attribute("type").as_string();
-    if (kind_ != "ImageData" && kind_ != "RectilinearGrid") {
-      refuse(
-          ErrorCode::unsupported,
-          fmt::format("holds VTK's \"{}\" (fields on a regular grid are read, \"ImageData\" and \"RectilinearGrid\"); "
-                      "resample it to an image",
-                      excerpt(kind_)));
-    }
-    VtkEncoding& encoding = arrays_->encoding;
-    encoding.big_endian = root.attribute("byte_order").as_string() == std::string_view("BigEndian");
-    encoding.length_bytes = root.attribute("header_type").as_string() == std::string_view("UInt64") ? 8 : 4;
-    std::string const compressor = root.attribute("compressor").as_string();
-    if (compressor == "vtkZLibDataCompressor") encoding.compressor = VtkEncoding::Compressor::zlib;
-    if (compressor == "vtkLZ4DataCompressor") encoding.compressor = VtkEncoding::Compressor::lz4;
-    if (compressor == "vtkLZMADataCompressor") encoding.compressor = VtkEncoding::Compressor::lzma;
-    if (!compressor.empty() && encoding.compressor == VtkEncoding::Compressor::none) {
-      refuse(ErrorCode::unsupported,
-             fmt::format("is compressed by \"{}\", which is not supported; use zlib, LZ4, LZMA or none",
-                         excerpt(compressor)));
-    }
+    return parse_vtk_numbers<Number, Count>(tag.attribute(key).as_string(), path_,
+                                            fmt::format("{} {}", tag.name(), key));
   }
 
   void read_grid(pugi::xml_node tag) {
     VtkGrid const usual;
     grid_.extent = numbers<int, 6>(tag, "WholeExtent", nullptr);
-    if (kind_ == "ImageData") {
+    if (document_.kind() == "ImageData") {
       grid_.origin = numbers(tag, "Origin", &usual.origin);
       grid_.spacing = numbers(tag, "Spacing", &usual.spacing);
       grid_.direction = numbers(tag, "Direction", &usual.direction);
@@ -186,7 +111,7 @@ class VtkXmlReader {
   }
 
   void read_pieces(pugi::xml_node grid) {
-    bool const rectilinear = kind_ == "RectilinearGrid";
+    bool const rectilinear = document_.kind() == "RectilinearGrid";
     if (rectilinear) {
       for (std::size_t i = 0; i < 3; ++i) {
         grid_.coordinates[i].resize(static_cast<std::size_t>(VtkGrid::count(grid_.extent, i, VtkPlace::points)),
@@ -210,7 +135,7 @@ class VtkXmlReader {
       if (!array)
         refuse(ErrorCode::missing_content,
                fmt::format("lacks \"{}\" in one of its pieces; write it anew", excerpt(arrays_->name)));
-      read_array(array, piece);
+      document_.read_array(array, piece);
       arrays_->pieces.push_back(piece);
       if (rectilinear) read_coordinates(tag.child("Coordinates"), piece.extent);
     }
@@ -218,35 +143,9 @@ class VtkXmlReader {
     bool const ascii = std::all_of(arrays_->pieces.begin(), arrays_->pieces.end(), [](VtkPiece const& piece) {
       return piece.payload.format == VtkPayload::Format::ascii;
     });
-    if (!ascii && !grid.parent().attribute("byte_order")) {
+    if (!ascii && !document_.states_byte_order()) {
       notes_.emplace_back("the file names no byte_order; its numbers are taken as little endian");
     }
-  }
-
-  void read_array(pugi::xml_node tag, VtkPiece& piece) {
-    std::string_view const type = tag.attribute("type").as_string();
-    std::string const name = tag.attribute("Name").as_string();
-    auto const* const number =
-        std::find_if(vtk_numbers.begin(), vtk_numbers.end(), [type](VtkNumber const& one) { return one.xml == type; });
-    if (number == vtk_numbers.end()) {
-      refuse(ErrorCode::wrong_type,
-             fmt::format("data array \"{}\" is of type \"{}\", which is not numeric", excerpt(name), excerpt(type)));
-    }
-    piece.number = *number;
-    VtkPayload& payload = piece.payload;
-    std::string_view const format = tag.attribute("format").as_string("ascii");
-    payload.appended = format == "appended";
-    if (payload.appended) {
-      if (!head_.data)
-        refuse(ErrorCode::damaged, fmt::format("data array \"{}\" has no data; copy it again", excerpt(name)));
-      payload.format = appended_format_;
-      payload.offset = *head_.data + numbers<std::uint64_t, 1>(tag, "offset", nullptr)[0];
-      if (payload.offset < *head_.data) refuse(ErrorCode::damaged, "has an impossible offset; copy it again");
-      return;
-    }
-    payload.format = format == "ascii" ? VtkPayload::Format::ascii : VtkPayload::Format::base64;
-    // comments divide the text into several nodes
-    for (pugi::xml_node const text : tag.children()) payload.text += text.value();
   }
 
   /// Copies the coordinates of a piece into those of the whole grid.
@@ -255,7 +154,7 @@ class VtkXmlReader {
     for (pugi::xml_node const array : tag.children("DataArray")) {
       if (axis == 3) break;
       VtkPiece one;
-      read_array(array, one);
+      document_.read_array(array, one);
       std::size_t const count = static_cast<std::size_t>(VtkGrid::count(extent, axis, VtkPlace::points));
       std::string const name = fmt::format("coordinates along {}", "xyz"[axis]);
       VtkPieceNumbers const numbers(one, arrays_->encoding, arrays_->file, name, count);
@@ -270,10 +169,8 @@ class VtkXmlReader {
   std::shared_ptr<VtkArrays> arrays_;
   std::string path_;
   FieldSelection const& selection_;
-  Head head_;
-  std::string kind_;
+  VtkDocument document_;
   VtkGrid grid_;
-  VtkPayload::Format appended_format_ = VtkPayload::Format::base64;
   std::vector<std::string> notes_;
 };
 
