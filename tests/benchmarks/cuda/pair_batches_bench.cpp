@@ -57,8 +57,8 @@ void pair_batches(benchmark::State& state) {
 }
 BENCHMARK(pair_batches)
     ->ArgNames({"side", "pairs", "noise", "own_setup"})
-    ->ArgsProduct({{256}, {64, 1024}, {0, 1}, {0}})
-    ->ArgsProduct({{512}, {16, 256}, {0, 1}, {0}})
+    ->ArgsProduct({{256}, {64, 1024}, {0, 1}, {0, 1}})
+    ->ArgsProduct({{512}, {64, 256}, {0, 1}, {0, 1}})
     ->ArgsProduct({{1024}, {8, 64}, {0, 1}, {0, 1}})
     ->UseManualTime()
     ->Iterations(30)
