@@ -7,6 +7,7 @@
 #include "render/base/freed_memory.h"
 #include "render/base/not_a_number.h"
 #include "render/base/parallel.h"
+#include "render/ideal_images/draw_light.h"
 #include "render/ideal_images/ideal_images.h"
 #include "render/scene/particle_scene.h"
 
@@ -92,15 +93,6 @@ void draw_band(std::span<ParticleImage const> spots, std::size_t band, GaussianS
   for (int row = 0; row < rows; ++row) std::copy_n(light.pixel(0, row), image.columns(), &image(0, top + row));
 }
 
-Image<double> draw(std::vector<ParticleImage> const& spots, Scene const& scene) {
-  CameraSetup const& camera = scene.setup.camera;
-  GaussianSpot<double> const shape{scene.spot_sigma_px()};
-  Image<double> image(camera.columns, camera.rows);
-  Bands const bands(spots, camera.rows, shape.half_width());
-  parallel_for(bands.count(), [&](std::size_t band) { draw_band(bands[band], band, shape, image); });
-  return image;
-}
-
 /// Returns the truth of particles with given image positions, and light in photons.
 GroundTruth truth_of(Particles const& particles, std::array<std::vector<ParticleImage>, frames> const& spots) {
   GroundTruth truth;
@@ -127,6 +119,14 @@ GroundTruth truth_of(Particles const& particles, std::array<std::vector<Particle
 }
 
 }  // namespace
+
+Image<double> draw_light(std::vector<ParticleImage> const& images, GaussianSpot<double> const& shape, int columns,
+                         int rows) {
+  Image<double> light(columns, rows);
+  Bands const bands(images, rows, shape.half_width());
+  parallel_for(bands.count(), [&](std::size_t band) { draw_band(bands[band], band, shape, light); });
+  return light;
+}
 
 Rendering render_ideal_images(IdealImages const& ideal, Particles const& particles, ParticleLight light,
                               RenderImages images, ImageDrawer* drawer) {
@@ -155,13 +155,15 @@ Rendering render_ideal_images(IdealImages const& ideal, Particles const& particl
   for (auto& frame : spots) {
     for (ParticleImage& spot : frame) spot.light /= unit;
   }
+  CameraSetup const& camera = scene.setup.camera;
+  GaussianSpot<double> const shape{scene.spot_sigma_px()};
   if (drawer) {
-    CameraSetup const& camera = scene.setup.camera;
-    rendering.in_place = drawer->draw(spots, {scene.spot_sigma_px()}, camera.columns, camera.rows);
+    rendering.in_place = drawer->draw(spots, shape, camera.columns, camera.rows);
     if (images == RenderImages::yes) rendering.light = std::exchange(rendering.in_place, nullptr)->to_host();
     return rendering;
   }
-  rendering.light = {draw(spots[0], scene), draw(spots[1], scene)};
+  rendering.light = {draw_light(spots[0], shape, camera.columns, camera.rows),
+                     draw_light(spots[1], shape, camera.columns, camera.rows)};
   if (images == RenderImages::in_place) rendering.store_light_in_place();
   return rendering;
 }
