@@ -3,6 +3,7 @@
 #include <cuda_runtime_api.h>
 #include <fmt/format.h>
 
+#include <atomic>
 #include <string>
 
 #include "cuda/correlation/cuda_correlator.h"
@@ -17,9 +18,13 @@
 namespace gladstone::cuda {
 namespace {
 
+/// Tests the device until it is usable, and not again: the properties of a device take a millisecond.
 /// @throws DeviceError if no device is usable
 void require_device() {
+  static std::atomic<bool> usable = false;
+  if (usable) return;
   if (DeviceState const state = device_state(); !state.usable) throw DeviceError(state.text);
+  usable = true;
 }
 
 }  // namespace
@@ -55,6 +60,12 @@ int device_count() {
   if (cudaGetDeviceCount(&count) == cudaSuccess) return count;
   cudaGetLastError();
   return 0;
+}
+
+int device_of_memory(void const* address) {
+  cudaPointerAttributes attributes{};
+  check(cudaPointerGetAttributes(&attributes, address), "cudaPointerGetAttributes");
+  return attributes.type == cudaMemoryTypeDevice ? attributes.device : -1;
 }
 
 std::unique_ptr<Renderer> make_renderer() {

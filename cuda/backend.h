@@ -31,6 +31,9 @@ DeviceState device_state();
 /// Returns the number of devices available to this process; 0 without CUDA.
 int device_count();
 
+/// Returns the index of the device whose memory contains an address, as this process counts devices; -1: host memory.
+int device_of_memory(void const* address);
+
 /// Creates the renderer for focused dots on the GPU. @throws DeviceError if no device is usable
 std::unique_ptr<Renderer> make_renderer();
 

@@ -13,6 +13,8 @@ DeviceState device_state() { return {false, "this gladstone was built without CU
 
 int device_count() { return 0; }
 
+int device_of_memory(void const*) { return -1; }
+
 std::unique_ptr<Renderer> make_renderer() { throw DeviceError(device_state().text); }
 
 std::unique_ptr<Renderer> make_rays_renderer() { throw DeviceError(device_state().text); }

@@ -5,7 +5,7 @@
 #include <type_traits>
 
 #include "cuda/ideal_images/pair_kernels.h"
-#include "render/base/error.h"
+#include "render/ideal_images/host_pair_batches.h"
 
 namespace gladstone::cuda {
 namespace {
@@ -46,13 +46,11 @@ CudaPairBatches::CudaPairBatches(std::vector<OwnedPairModel> const& models)
       columns_(models.front().model.projection.columns),
       rows_(models.front().model.projection.rows),
       capacity_(0) {
+  check_same_frames(models);
   keep_freed_device_memory();
   std::vector<PairModel> held;
   for (OwnedPairModel const& one : models) {
     PairModel model = one.model;
-    if (model.projection.columns != columns_ || model.projection.rows != rows_)
-      throw DataError(ErrorCode::inconsistent, KeyPath{"camera.pixels"},
-                      "differs between the pairs of a batch; render them in several batches");
     if (one.velocity) {
       velocities_.emplace_back(one.velocity->data(), one.velocity->size(), "the velocity field");
       model.flow = flow_on_device(model.flow, velocities_.back().data());
@@ -104,9 +102,7 @@ void CudaPairBatches::render_some(PairSeeds const* seeds, std::size_t begin, std
 }
 
 DeviceBuffer CudaPairBatches::render(std::vector<PairSeeds> const& seeds, LevelType type) {
-  if (model_count_ != 1 && model_count_ != seeds.size())
-    throw DataError(ErrorCode::wrong_shape, "batch",
-                    "has another number of seeds than of setups; give one seed per setup");
+  check_seed_count(model_count_, seeds.size());
   std::size_t const pixels = static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_);
   auto levels = std::make_shared<DeviceArray<unsigned char>>(seeds.size() * 2 * pixels * bytes_per_level(type),
                                                              "the frames of a batch");

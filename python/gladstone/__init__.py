@@ -12,6 +12,7 @@ are [rows, columns]; displacements are in px from frame a to frame b, u to the r
 """
 
 from . import info
+from ._batches import Batch, RenderedBatches
 from ._benchmark import BenchmarkCase, Scores, benchmark, benchmark_cases, benchmark_estimators
 from ._calibration import Calibration, calibrate
 from ._case import Accuracy, CalibrationCase, Case, Truth
@@ -51,10 +52,10 @@ def compare(case: Case, field, **options) -> Report:
 
 
 __all__ = [
-    "Accuracy", "BenchmarkCase", "Calibration", "CalibrationCase", "Case", "DataError", "Density", "Design",
+    "Accuracy", "Batch", "BenchmarkCase", "Calibration", "CalibrationCase", "Case", "DataError", "Density", "Design",
     "DeviceError", "Error", "Field", "GladstoneWarning", "Mie", "NoValidVector", "Oracle", "OutOfMemory", "OutputError",
-    "Preview", "Problem", "Report", "Scores", "Sequence", "Setup", "SetupError", "SetupKey", "Study", "StudyRun",
-    "ThreeComponents", "Tomography", "TracedRays", "Truth", "__version__", "benchmark", "benchmark_cases",
+    "Preview", "Problem", "RenderedBatches", "Report", "Scores", "Sequence", "Setup", "SetupError", "SetupKey", "Study",
+    "StudyRun", "ThreeComponents", "Tomography", "TracedRays", "Truth", "__version__", "benchmark", "benchmark_cases",
     "benchmark_estimators", "build", "calibrate", "compare", "convert", "correlate", "correlate_ensemble",
     "correlate_sequence", "demo", "design", "gallery", "info", "init", "keys", "mie", "preview", "reconstruct",
     "reconstruct_lines", "render", "render_sequence", "report", "set_threads", "shared_folder", "stereo", "target",

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Literal
 
 import numpy as np
 import torch
 
-from . import _core
+from . import _batches
 from ._case import Case
 from ._errors import GladstoneWarning
 from ._setup import as_setup
@@ -81,17 +81,16 @@ class RenderedPairs(torch.utils.data.Dataset):
 
 
 class RenderedBatches(torch.utils.data.IterableDataset):
-    """Batches of PIV pairs with ideal particle images and exact displacement at every pixel, rendered on the GPU.
+    """Batches of PIV pairs with ideal particle images and exact displacement at every pixel, as tensors.
 
-    Item k is (images, flow), tensors on the GPU: images [batch, 2, rows, columns], float32 from 0 to 1; flow [batch, 2,
-    rows, columns], float32 in px, at the pixels of frame a, u to the right and v downwards. It depends on k alone.
-    Particles are seeded, moved, drawn and recorded on the GPU, so that thousands of pairs are rendered per second. The
-    pairs of a batch have the same setup and hence the same flow, but other particles and other noise.
+    `gladstone.RenderedBatches` with another order of arguments. Item k is (images, flow), tensors on the device that
+    rendered them: images [batch, 2, rows, columns], float32 from 0 to 1; flow [batch, 2, rows, columns], float32 in px,
+    at the pixels of frame a, u to the right and v downwards. It depends on k alone.
 
-    Example: another vortex in each batch
+    Example: another vortex in each pair
 
         def vary(k, random):
-            return {"flow.circulation_m2_s": float(random.uniform(0.01, 0.1))}
+            return [{"flow.circulation_m2_s": random.uniform(0.01, 0.1)} for _ in range(64)]
 
         for images, flow in RenderedBatches("setup.toml", 1000, 64, vary):
             ...
@@ -102,46 +101,24 @@ class RenderedBatches(torch.utils.data.IterableDataset):
         setup,
         length: int,
         batch_size: int,
-        vary: Callable[[int, np.random.Generator], Mapping[str, Any]] | None = None,
+        vary: Callable[[int, np.random.Generator], Mapping[str, Any] | Sequence[Mapping[str, Any]]] | None = None,
         *,
         seed: int = 0,
+        device: str = "auto",
     ):
-        """Makes `length` batches of `batch_size` pairs.
-
-        setup: a `Setup`, a dictionary of tables, or a setup file, of PIV with one camera whose particles have ideal
-            images; particles.scattering = "gaussian", "lambert", or "mie" with one diameter.
-        vary: function of the batch's index and a random generator that returns the keys to replace.
-        """
-        self.setup, self.length, self.batch_size, self.vary, self.seed = as_setup(setup), length, batch_size, vary, seed
-        self._shared = None
+        """Makes `length` batches of `batch_size` pairs; the other arguments are those of `gladstone.RenderedBatches`."""
+        self.batches = _batches.RenderedBatches(setup, batch_size, vary, length=length, seed=seed, device=device)
 
     def __len__(self) -> int:
-        return self.length
+        return len(self.batches)
 
     def __iter__(self):
-        return (self[index] for index in range(self.length))
+        return (self._tensors(batch) for batch in self.batches)
 
     def __getitem__(self, index: int) -> tuple[torch.Tensor, torch.Tensor]:
         """Renders batch `index`."""
-        if not 0 <= index < self.length:
-            raise IndexError(index)
-        random = np.random.default_rng([self.seed, index])
-        seeds = random.integers(1, 2**31, (self.batch_size, 2)).tolist()
-        batches, flow = self._renderer(index, random)
-        images = torch.from_dlpack(batches.render([tuple(pair) for pair in seeds], "float32"))
-        return images, flow.expand(self.batch_size, -1, -1, -1)
+        return self._tensors(self.batches[index])
 
-    def _renderer(self, index: int, random: np.random.Generator):
-        """Returns the renderer of a batch and its flow, which all batches share unless they vary."""
-        if self.vary is not None:
-            return self._open(self.setup.replace(self.vary(index, random)))
-        if self._shared is None:
-            self._shared = self._open(self.setup)
-        return self._shared
-
-    @staticmethod
-    def _open(setup):
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", GladstoneWarning)
-            batches = _core.PairBatches([setup._core])
-        return batches, torch.from_dlpack(batches.displacement())
+    def _tensors(self, batch: _batches.Batch) -> tuple[torch.Tensor, torch.Tensor]:
+        images, flow = (torch.from_dlpack(one) for one in batch)
+        return images, flow.expand(len(images), -1, -1, -1)

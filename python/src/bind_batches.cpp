@@ -7,42 +7,30 @@
 #include "python/src/call.h"
 #include "python/src/setup_text.h"
 #include "render/base/error.h"
-#include "studies/case/backend.h"
-#include "studies/case/cameras.h"
-#include "studies/case/case.h"
+#include "studies/case/pair_source.h"
 
 namespace gladstone::python {
 namespace {
 
-/// Renders batches of pairs of one or several setups on the GPU.
+/// Renders batches of pairs of one or several models. Results are on the GPU, or NumPy arrays if the CPU renders.
 class PairBatches {
  public:
-  explicit PairBatches(std::vector<SetupText> const& setups) : count_(setups.size()) {
-    std::vector<OwnedPairModel> models;
-    for (SetupText const& text : setups) {
-      std::vector<CameraCase> cameras = camera_cases(text.document());
-      if (cameras.size() != 1)
-        throw DataError(ErrorCode::unsupported, text.name,
-                        "has several cameras; a batch needs a setup with one camera");
-      models.push_back(build_pair_model(load_case_setup(std::move(cameras.front().document)).setup));
-    }
-    if (models.empty()) throw DataError(ErrorCode::missing_content, "batch", "has no setup; give at least one");
-    rows_ = static_cast<std::size_t>(models.front().model.projection.rows);
-    columns_ = static_cast<std::size_t>(models.front().model.projection.columns);
-    renderer_ = open_pair_batches(models);
-  }
+  PairBatches(PairSource const& source, std::vector<OwnedPairModel> const& models)
+      : count_(models.size()),
+        rows_(static_cast<std::size_t>(models.front().model.projection.rows)),
+        columns_(static_cast<std::size_t>(models.front().model.projection.columns)),
+        renderer_(source.open(models)) {}
 
-  /// Renders one pair per element of `seeds` (particles, noise). @return [pairs, 2, rows, columns] on the GPU
+  /// Renders one pair per element of `seeds` (particles, noise). @return [pairs, 2, rows, columns]
   nb::object render(std::vector<std::pair<std::uint64_t, std::uint64_t>> const& seeds, std::string const& type) {
     std::vector<PairSeeds> given;
     for (auto const& [particles, noise] : seeds) given.push_back({particles, noise});
     LevelType const levels = level_type(type);
-    DeviceBuffer const frames = run([&] { return renderer_->render(given, levels); });
-    return array(frames, seeds.size(), levels);
+    return array([&] { return renderer_->render(given, levels); }, seeds.size(), levels);
   }
-  /// @return float32 [setups, 2, rows, columns] on the GPU
+  /// @return float32 [models, 2, rows, columns]
   nb::object displacement() {
-    return array(run([&] { return renderer_->displacement(); }), count_, LevelType::float32);
+    return array([&] { return renderer_->displacement(); }, count_, LevelType::float32);
   }
 
  private:
@@ -53,35 +41,66 @@ class PairBatches {
     throw DataError(ErrorCode::unknown_choice, "dtype",
                     "is \"" + name + "\"; use \"float32\", \"uint8\" or \"uint16\"");
   }
-  nb::object array(DeviceBuffer const& buffer, std::size_t first, LevelType type) const {
+
+  /// Returns the array that `compute` fills, where it is.
+  template <class Compute>
+  nb::object array(Compute const& compute, std::size_t first, LevelType type) const {
+    auto const [buffer, gpu] = run([&] {
+      DeviceBuffer filled = compute();
+      int const place = gpu_of_memory(filled.data);
+      return std::pair(std::move(filled), place);
+    });
+    if (type == LevelType::uint8) return array_of_type<std::uint8_t>(buffer, first, gpu);
+    if (type == LevelType::uint16) return array_of_type<std::uint16_t>(buffer, first, gpu);
+    return array_of_type<float>(buffer, first, gpu);
+  }
+  /// @param gpu  index of the GPU of the buffer; -1: host memory
+  template <class T>
+  nb::object array_of_type(DeviceBuffer const& buffer, std::size_t first, int gpu) const {
     auto* const kept = new std::shared_ptr<void>(buffer.owner);
     nb::capsule const owner(kept, [](void* held) noexcept { delete static_cast<std::shared_ptr<void>*>(held); });
     std::size_t const shape[4] = {first, 2, rows_, columns_};
-    auto const of = [&]<class T>(T* data) {
-      return nb::cast(
-          nb::ndarray<nb::array_api, T>(data, 4, shape, owner, nullptr, nb::dtype<T>(), nb::device::cuda::value, 0));
-    };
-    if (type == LevelType::uint8) return of(static_cast<std::uint8_t*>(buffer.data));
-    if (type == LevelType::uint16) return of(static_cast<std::uint16_t*>(buffer.data));
-    return of(static_cast<float*>(buffer.data));
+    T* const data = static_cast<T*>(buffer.data);
+    if (gpu < 0) return nb::cast(nb::ndarray<nb::numpy, T>(data, 4, shape, owner));
+    return nb::cast(
+        nb::ndarray<nb::array_api, T>(data, 4, shape, owner, nullptr, nb::dtype<T>(), nb::device::cuda::value, gpu));
   }
 
-  std::size_t count_, rows_ = 0, columns_ = 0;
+  std::size_t count_, rows_, columns_;
   std::unique_ptr<PairBatchRenderer> renderer_;
+};
+
+/// Models of the pairs of a batch.
+struct PairModels {
+  std::vector<OwnedPairModel> all;
 };
 
 }  // namespace
 
 void bind_batches(nb::module_& module) {
-  nb::class_<PairBatches>(module, "PairBatches", "Renders batches of PIV pairs on the GPU, where they remain.")
-      .def("__init__",
-           [](PairBatches* self, std::vector<SetupText> const& setups) {
-             new (self) PairBatches(run([&] { return PairBatches(setups); }));
-           })
+  nb::class_<PairModels>(module, "PairModels", "Models of the pairs of a batch.");
+  nb::class_<PairBatches>(module, "PairBatches", "Renders batches of PIV pairs on a device, where they remain.")
       .def("render", &PairBatches::render, nb::arg("seeds"), nb::arg("dtype"),
            "Grey levels [pairs, 2, rows, columns] of pairs with the seeds (particles, noise).")
       .def("displacement", &PairBatches::displacement,
-           "Displacement at every pixel of frame a, float32 [setups, 2, rows, columns].");
+           "Displacement at every pixel of frame a, float32 [models, 2, rows, columns].");
+  nb::class_<PairSource>(module, "PairSource", "Setup of which pairs are rendered with other values of some keys.")
+      .def("__init__",
+           [](PairSource* self, SetupText const& setup, std::string const& device) {
+             new (self) PairSource(run([&] { return PairSource(setup.document(), setup.name, device); }));
+           })
+      .def(
+          "models",
+          [](PairSource const& self, std::vector<PairSource::Changes> const& changes) {
+            return run([&] { return PairModels{self.build_models(changes)}; });
+          },
+          nb::arg("changes"), "Models of pairs: for each pair the replaced keys, as \"key.path=value\".")
+      .def(
+          "open",
+          [](PairSource const& self, PairModels const& models) {
+            return run([&] { return PairBatches(self, models.all); });
+          },
+          nb::arg("models"), "Renderer of pairs with these models.");
 }
 
 }  // namespace gladstone::python

@@ -17,7 +17,7 @@ def code_blocks() -> list[str]:
 
 
 # One small setup under all names that the page uses. The blocks run in their order, in one namespace.
-def test_code_of_the_page_runs(bos, tmp_path, monkeypatch):
+def test_code_of_the_page_runs(bos, piv, tmp_path, monkeypatch):
     if not PAGE.exists():
         pytest.skip("the tests are not in the source tree, which contains docs/python.md")
     pytest.importorskip("matplotlib").use("agg")
@@ -36,11 +36,15 @@ def test_code_of_the_page_runs(bos, tmp_path, monkeypatch):
         shutil.copy(tmp_path / "case" / "flow.tif", tmp_path / f"B_{k}.tif")
     names = {"first_images": "A_*.tif", "second_images": "B_*.tif"}
     names |= {"my_network": lambda a, b: gs.correlate(a, b, window=32).to_xarray()}
+    names["train"] = lambda images, flow: trained.append((images.shape, flow.shape))
+    trained: list = []
+    small_pairs = {"camera.pixels": [32, 24], "correlate.window_px": [16], "particles.scattering": "gaussian"}
+    small_pairs["render.rays_per_dot"] = "auto"
+    vortex = {"kind": "lamb_oseen", "circulation_m2_s": 0.05, "core_radius_mm": 1.0, "dt_us": 10.0}
+    gs.Setup.from_dict(piv.replace(small_pairs).to_dict() | {"flow": vortex}).save(tmp_path / "piv.toml")
     blocks = code_blocks()
     assert len(blocks) >= 5
     for block in blocks:
-        if "RenderedBatches" in block:  # needs a GPU; see test_torch.py
-            continue
         if "gladstone.torch" in block:
             try:
                 import torch  # noqa: F401
@@ -54,6 +58,7 @@ def test_code_of_the_page_runs(bos, tmp_path, monkeypatch):
     assert names["data"]["u"].dims == ("y", "x", "t")
     assert {row["estimator"] for row in names["scores"]} == {"default", "mine"}
     assert len(names["table"]) == 9
+    assert trained == [((64, 2, 24, 32), (64, 2, 24, 32))] * 10
 
 
 def test_type_stub_of_the_compiled_part_is_valid():

@@ -21,20 +21,19 @@ def test_items_depend_on_their_index_alone(bos):
         pairs[3]
 
 
-def test_batches_stay_on_the_gpu(piv):
-    import gladstone as gs
+@pytest.mark.parametrize("device", ["cpu", "cuda"])
+def test_batches_are_tensors_where_they_were_rendered(piv, device):
     from gladstone.torch import RenderedBatches
 
+    if device == "cuda" and not torch.cuda.is_available():
+        pytest.skip("there is no GPU")
     setup = piv.replace({"particles.scattering": "gaussian", "camera.pixels": [64, 48], "render.rays_per_dot": "auto"})
-    if not torch.cuda.is_available():
-        with pytest.raises(gs.DeviceError):
-            RenderedBatches(setup, 2, 3)[0]
-        return
-    batches = RenderedBatches(setup, 2, 3)
+    batches = RenderedBatches(setup, 2, 3, device=device)
     images, flow = batches[0]
-    assert images.is_cuda and flow.is_cuda
+    assert images.device.type == flow.device.type == device
     assert images.shape == flow.shape == (3, 2, 48, 64)
     assert torch.equal(images, batches[0][0]) and not torch.equal(images, batches[1][0])
+    assert len(batches) == len(list(batches)) == 2
     case = setup.render()
     truth = torch.from_numpy(case.truth.flow("a").copy()).movedim(-1, 0)
     assert torch.allclose(flow[0].cpu().double(), truth.double(), atol=1e-5)

@@ -7,6 +7,7 @@
 #include "render/base/freed_memory.h"
 #include "render/base/not_a_number.h"
 #include "render/base/parallel.h"
+#include "render/ideal_images/draw_light.h"
 #include "render/ideal_images/ideal_images.h"
 #include "render/scene/particle_scene.h"
 
@@ -104,14 +105,6 @@ GaussianSpot<double> find_widest(std::array<std::vector<ParticleImage>, frames> 
   return {sigma};
 }
 
-Image<double> draw(std::vector<ParticleImage> const& spots, GaussianSpot<double> const& shape,
-                   CameraSetup const& camera) {
-  Image<double> image(camera.columns, camera.rows);
-  Bands const bands(spots, camera.rows, shape.half_width());
-  parallel_for(bands.count(), [&](std::size_t band) { draw_band(bands[band], band, shape, image); });
-  return image;
-}
-
 /// Returns the truth of particles with given image positions, and light in photons.
 GroundTruth truth_of(Particles const& particles, std::array<std::vector<ParticleImage>, frames> const& spots) {
   GroundTruth truth;
@@ -138,6 +131,14 @@ GroundTruth truth_of(Particles const& particles, std::array<std::vector<Particle
 }
 
 }  // namespace
+
+Image<double> draw_light(std::vector<ParticleImage> const& images, GaussianSpot<double> const& shape, int columns,
+                         int rows) {
+  Image<double> light(columns, rows);
+  Bands const bands(images, rows, shape.half_width());
+  parallel_for(bands.count(), [&](std::size_t band) { draw_band(bands[band], band, shape, light); });
+  return light;
+}
 
 Rendering render_ideal_images(IdealImages const& ideal, Particles const& particles, ParticleLight light,
                               RenderImages images, ImageDrawer* drawer) {
@@ -175,7 +176,8 @@ Rendering render_ideal_images(IdealImages const& ideal, Particles const& particl
     if (images == RenderImages::yes) rendering.light = std::exchange(rendering.in_place, nullptr)->to_host();
     return rendering;
   }
-  rendering.light = {draw(spots[0], shape, camera), draw(spots[1], shape, camera)};
+  rendering.light = {draw_light(spots[0], shape, camera.columns, camera.rows),
+                     draw_light(spots[1], shape, camera.columns, camera.rows)};
   if (images == RenderImages::in_place) rendering.store_light_in_place();
   return rendering;
 }

@@ -28,9 +28,11 @@ PathPlan plan_paths(ParticleSetup const& setup, FlowSetup const& flow, std::vect
   auto const particle = [&](std::size_t k) { return k * start.size() / count; };
   auto const ends = [&](int steps) {
     std::vector<Vec3d> found(count);
-    parallel_for(count, [&](std::size_t k) {
-      std::size_t const i = particle(k);
-      found[k] = moved(particle_velocity(setup, flow, diameter[i]), start[i], time, steps);
+    parallel_chunks(count, 128, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) {
+        std::size_t const i = particle(k);
+        found[k] = moved(particle_velocity(setup, flow, diameter[i]), start[i], time, steps);
+      }
     });
     return found;
   };

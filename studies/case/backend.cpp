@@ -12,6 +12,7 @@
 #include "render/base/parallel.h"
 #include "render/base/version.h"
 #include "render/render.h"
+#include "studies/case/pair_source.h"
 #include "studies/case/version_text.h"
 
 namespace gladstone {
@@ -77,6 +78,8 @@ std::unique_ptr<PairBatchRenderer> open_pair_batches(std::vector<OwnedPairModel>
 }
 
 int gpu_count() { return cuda::device_count(); }
+
+int gpu_of_memory(void const* address) { return cuda::device_of_memory(address); }
 
 std::string build_text() { return fmt::format("{} ({})", version, git_sha1); }
 

@@ -60,8 +60,8 @@ void render_batches(benchmark::State& state, ParticleScattering scattering) {
 void pair_batches(benchmark::State& state) { render_batches(state, ParticleScattering::gaussian); }
 BENCHMARK(pair_batches)
     ->ArgNames({"side", "pairs", "noise", "own_setup"})
-    ->ArgsProduct({{256}, {64, 1024}, {0, 1}, {0}})
-    ->ArgsProduct({{512}, {16, 256}, {0, 1}, {0}})
+    ->ArgsProduct({{256}, {64, 1024}, {0, 1}, {0, 1}})
+    ->ArgsProduct({{512}, {64, 256}, {0, 1}, {0, 1}})
     ->ArgsProduct({{1024}, {8, 64}, {0, 1}, {0, 1}})
     ->UseManualTime()
     ->Iterations(30)
