@@ -97,6 +97,7 @@ void write_dataset(hid_t file, ChunkDeflater& deflater, std::string const& path,
 /// Free space required in addition to the data, for HDF5's tables [bytes].
 constexpr std::uintmax_t spare_bytes = 8 * 1024 * 1024;
 
+/// @throws OutputError if the disk of an on-disk file lacks space for the data
 void require_space(std::string const& path, std::string const& temporary, std::size_t bytes) {
   std::error_code error;
   auto const space = std::filesystem::space(std::filesystem::path(temporary).parent_path(), error);
@@ -119,8 +120,8 @@ std::string date_and_time() {
 
 Hdf5Writer::Hdf5Writer(std::string const& path, FileOrigin const& origin, Hdf5Growth growth) : path_(path) {
   // Before locking, since it accesses the disk.
-  handle_.reset(
-      new Handle{OutputFile(path, origin.filetype), Id(H5I_INVALID_HID, H5Fclose), origin.sources, growth, {}});
+  handle_.reset(new Handle{OutputFile(path, origin.filetype), Id(H5I_INVALID_HID, H5Fclose), origin.sources, growth,
+                           ChunkDeflater(growth == Hdf5Growth::in_memory)});
   Lock const lock(library_lock());
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   std::string const temporary = handle_->output.temporary_path();
@@ -161,6 +162,7 @@ Hdf5Writer::~Hdf5Writer() {
 void Hdf5Writer::write(std::string const& dataset, std::span<double const> data, std::vector<std::size_t> const& shape,
                        std::string const& units, std::string const& description, std::string const& axes) {
   GLADSTONE_EXPECTS(handle_ && product(shape) == data.size());
+  if (handle_->growth == Hdf5Growth::on_disk) require_space(path_, handle_->output.temporary_path(), data.size_bytes());
   write_dataset(handle_->file, handle_->deflater, path_, dataset, data, shape, {units, description, axes});
 }
 
@@ -168,6 +170,7 @@ void Hdf5Writer::write(std::string const& dataset, std::span<std::int64_t const>
                        std::vector<std::size_t> const& shape, std::string const& units, std::string const& description,
                        std::string const& axes) {
   GLADSTONE_EXPECTS(handle_ && product(shape) == data.size());
+  if (handle_->growth == Hdf5Growth::on_disk) require_space(path_, handle_->output.temporary_path(), data.size_bytes());
   write_dataset(handle_->file, handle_->deflater, path_, dataset, data, shape, {units, description, axes});
 }
 
