@@ -38,7 +38,7 @@ void compute(std::string const& folder, RunSelection const& selection) {
   ProgressMonitor of_cases;  // unread: the study reports whole cases
   ProgressMonitor::Scope const scope(of_cases);
   CaseRunner runner(open_device(cases[0].device));
-  run_cases(folder, cases, selected, selection, runner, 0, [&](std::size_t, CaseEvent event) {
+  run_cases(folder, cases, selected, selection, computation_by(runner), 0, [&](std::size_t, CaseEvent event) {
     if (event == CaseEvent::finished) progress.advance();
   });
 }

@@ -133,7 +133,7 @@ std::vector<DeflatedChunk> ChunkDeflater::deflate(void const* data, std::vector<
     if (std::equal(values.begin(), values.end(), known.values.begin(), known.values.end()))
       return {{start, known.deflated}};
   std::vector<DeflatedChunk> chunks = deflate_all(bytes, shape, chunk, value_bytes);
-  if (known_.size() < most_known)
+  if (retains_ && known_.size() < most_known)
     known_.push_back({std::vector<unsigned char>(values.begin(), values.end()), chunks.front().bytes});
   return chunks;
 }

@@ -23,10 +23,13 @@ struct DeflatedChunk {
   std::vector<unsigned char> bytes;
 };
 
-/// Compresses the datasets of a file. Those of one chunk with the same values, such as a column and its copy on a grid,
-/// are compressed once.
+/// Compresses the datasets of a file.
 class ChunkDeflater {
  public:
+  /// @param retains  true: datasets of one chunk with the same values, such as a column and its copy on a grid, are
+  ///                 compressed once; for this, the first ones are held in memory
+  explicit ChunkDeflater(bool retains = true) : retains_(retains) {}
+
   /// Compresses a dataset chunk by chunk. Chunks that exceed the dataset are filled with zeros.
   /// @param data   values in the order of memory, the last axis varies fastest
   /// @param chunk  chunk_shape()
@@ -37,6 +40,7 @@ class ChunkDeflater {
   struct Known {
     std::vector<unsigned char> values, deflated;
   };
+  bool retains_;
   std::vector<Known> known_;  ///< datasets of one chunk
 };
 

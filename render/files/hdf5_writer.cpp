@@ -52,6 +52,7 @@ constexpr ValueType value_type() {
 /// Free space required in addition to the data, for HDF5's tables [bytes].
 constexpr std::uintmax_t spare_bytes = 8 * 1024 * 1024;
 
+/// @throws OutputError if the disk of an on-disk file lacks space for the data
 void require_space(std::string const& path, std::string const& temporary, std::size_t bytes) {
   std::error_code error;
   auto const space = std::filesystem::space(std::filesystem::path(temporary).parent_path(), error);
@@ -102,6 +103,7 @@ void Hdf5Writer::Handle::add(std::string const& path, HeldDataset dataset, std::
     content.datasets.push_back(std::move(dataset));
     return;
   }
+  require_space(path, output.temporary_path(), values.size_bytes());
   Lock const lock(library_lock());
   create_dataset(file, path, dataset, deflate_level);
   fill_dataset(file, path, dataset);
@@ -117,8 +119,11 @@ void Hdf5Writer::Handle::add(std::string const& path, HeldAttribute attribute) {
 }
 
 Hdf5Writer::Hdf5Writer(std::string const& path, FileOrigin const& origin, Hdf5Growth growth) : path_(path) {
-  handle_.reset(
-      new Handle{OutputFile(path, origin.filetype), growth, {origin, {}, {}, {}}, Id(H5I_INVALID_HID, H5Fclose), {}});
+  handle_.reset(new Handle{OutputFile(path, origin.filetype),
+                           growth,
+                           {origin, {}, {}, {}},
+                           Id(H5I_INVALID_HID, H5Fclose),
+                           ChunkDeflater(growth == Hdf5Growth::in_memory)});
   if (!handle_->in_memory()) handle_->create_on_disk(path);
   attribute("/", "date_and_time", date_and_time());
   for (SourceFiles::Source const& source : origin.sources.all()) {

@@ -114,9 +114,9 @@ CommandBody attach_collect(CLI::App& app, GlobalOptions const& options) {
     std::string const& run = arguments->run;
     if (!arguments->dataset.empty()) refuse_files_of_study(run, arguments->dataset);  // before anything is written
     StudyTable const table = collect_study(run);
-    if (std::vector<std::string> const builds = table.builds(); builds.size() > 1) {
+    if (table.builds.size() > 1) {
       spdlog::warn("{}: the cases were computed by {} builds of gladstone ({}), whose numbers may differ", run,
-                   builds.size(), fmt::join(builds, ", "));
+                   table.builds.size(), fmt::join(table.builds, ", "));
     }
     Manifest const cases = read_manifest(run);
     RunState const state = determine_run_state(run, cases, all_of(cases));
@@ -132,12 +132,11 @@ CommandBody attach_collect(CLI::App& app, GlobalOptions const& options) {
     std::vector<std::size_t> const warned = table.warned();
     json["warned"] = warned.size();
     if (!warned.empty()) {
-      StudyRow const& first = table.rows[warned.front()];
       spdlog::warn("{}: {} of {} cases have warnings, see {}/cases/*.json; case {}: {}", run, warned.size(),
-                   table.rows.size(), run, first.index, first.warning);
+                   table.rows.size(), run, table.rows[warned.front()].index, table.first_warning);
     }
     std::vector<StudyRanking> const rankings = rank_points(table);
-    json["ranking"] = ranking_json(table, rankings);
+    if (options.json) json["ranking"] = ranking_json(table, rankings);  // with all points
     std::string packed;
     if (!arguments->dataset.empty()) {
       PackedDataset const set = pack_dataset(run, arguments->dataset, *options.open_device().renderer);

@@ -29,9 +29,10 @@ namespace {
 struct Arguments {
   std::string run, shard;
   RunSelection selection;
-  int jobs = 0;      ///< 0: one process, or one per GPU
-  int worker = -1;   ///< file descriptor to which a worker reports finished cases; -1: not a worker
-  double first = 0;  ///< fraction of the selection at which a worker starts
+  int jobs = 0;         ///< 0: one process, or one per GPU; with --devices two per GPU
+  std::string devices;  ///< "all" or the number of GPUs to use; empty: all, one process each
+  int worker = -1;      ///< file descriptor to which a worker reports finished cases; -1: not a worker
+  double first = 0;     ///< fraction of the selection at which a worker starts
   SlurmArguments slurm;
 };
 
@@ -63,24 +64,56 @@ std::string device_of(Manifest const& cases, std::string const& wanted) {
   return planned;
 }
 
-/// Assigns the GPUs to the workers in turn, as an environment variable; empty on the CPU.
-std::string visible_device(std::string const& device, std::size_t worker) {
-  if (device != "cuda") return "";
+/// Number of processes per GPU with the shortest time of a study: one computes on the host while the other one uses the
+/// GPU (docs/performance.md).
+constexpr int workers_per_gpu = 2;
+
+/// Returns the GPUs of this host as in CUDA_VISIBLE_DEVICES, at most the number given by --devices; empty for the CPU.
+/// @throws DeviceError if --devices asks for more GPUs than there are, or the study was planned for the CPU
+std::vector<std::string> select_gpus(std::string const& devices, std::string const& device) {
+  if (device != "cuda") {
+    if (devices.empty()) return {};
+    throw DeviceError(
+        fmt::format("--devices {}: the study was planned for {} and uses no GPU; omit --devices, or plan the study "
+                    "again with --device cuda",
+                    devices, device));
+  }
   std::vector<std::string> names;
+  auto const usable = static_cast<std::size_t>(std::max(0, gpu_count()));
   if (char const* const given = std::getenv("CUDA_VISIBLE_DEVICES")) {
     std::istringstream list(given);
     for (std::string name; std::getline(list, name, ',');) names.push_back(name);
   } else {
-    for (int gpu = 0; gpu < gpu_count(); ++gpu) names.push_back(std::to_string(gpu));
+    for (std::size_t gpu = 0; gpu < usable; ++gpu) names.push_back(std::to_string(gpu));
   }
-  return names.empty() ? "" : "CUDA_VISIBLE_DEVICES=" + names[worker % names.size()];
+  // CUDA ignores the names after the first one that does not exist.
+  names.resize(std::min(names.size(), usable));
+  if (devices.empty()) return names;
+  std::size_t const wanted = devices == "all" ? std::max<std::size_t>(1, names.size()) : std::stoul(devices);
+  if (wanted > names.size()) {
+    throw DeviceError(fmt::format(
+        "--devices {}: {}; {}", devices,
+        names.empty() ? "no GPU can be used on this host"
+                      : fmt::format("this host has {} usable GPU{}", names.size(), names.size() > 1 ? "s" : ""),
+        names.empty() ? "gladstone --version reports why" : "use --devices all"));
+  }
+  names.resize(wanted);
+  return names;
 }
 
-/// Runs the cases in worker processes. A case whose process was terminated by a signal (crash, insufficient memory) is
-/// repeated once and then recorded as failed.
+/// Returns the number of processes for `due` cases. @param gpus  GPUs to use
+int count_jobs(Arguments const& arguments, std::size_t gpus, std::size_t due) {
+  std::size_t jobs = std::max<std::size_t>(1, gpus);
+  if (!arguments.devices.empty()) jobs *= workers_per_gpu;
+  if (arguments.jobs > 0) jobs = static_cast<std::size_t>(arguments.jobs);
+  return static_cast<int>(std::min(jobs, due));
+}
+
+/// Runs the cases in worker processes, which use the GPUs in turn. A case whose process was terminated by a signal
+/// (crash, insufficient memory) is repeated once and then recorded as failed.
 /// @return ok, or the exit code of a worker whose error affects the whole run
-int run_in_workers(Arguments const& arguments, Manifest const& cases, std::string const& device, int jobs,
-                   std::function<void()> const& finished) {
+int run_in_workers(Arguments const& arguments, Manifest const& cases, std::string const& device,
+                   std::vector<std::string> const& gpus, int jobs, std::function<void()> const& finished) {
   std::vector<std::vector<std::string>> words;
   std::vector<std::string> environment;
   for (int k = 0; k < jobs; ++k) {
@@ -95,7 +128,8 @@ int run_in_workers(Arguments const& arguments, Manifest const& cases, std::strin
     if (arguments.selection.keep_images) one.emplace_back("--keep-images");
     if (arguments.selection.pairs_only) one.emplace_back("--pairs-only");
     words.push_back(std::move(one));
-    environment.push_back(visible_device(device, static_cast<std::size_t>(k)));
+    environment.push_back(gpus.empty() ? ""
+                                       : "CUDA_VISIBLE_DEVICES=" + gpus[static_cast<std::size_t>(k) % gpus.size()]);
   }
   spdlog::info("{} workers on {}, {} threads each", jobs, device, std::max(1, thread_count() / jobs));
   std::map<std::size_t, int> deaths;
@@ -133,7 +167,7 @@ void run_here(Arguments const& arguments, Manifest const& cases, std::vector<std
     if (arguments.worker >= 0 && ::write(arguments.worker, &report, sizeof report) < 0) spdlog::debug("not heard");
     if (event == CaseEvent::finished) finished();
   };
-  run_cases(arguments.run, cases, selected, arguments.selection, runner, first, tell);
+  run_cases(arguments.run, cases, selected, arguments.selection, computation_by(runner), first, tell);
 }
 
 /// Prints the state of the selected cases, with additional JSON members and text. @return ok or incomplete
@@ -159,6 +193,7 @@ int submit_study(Arguments const& arguments, GlobalOptions const& options, Manif
     spdlog::warn(
         "the study was planned for cuda, but no GPU is requested; use --gres gpu:1, unless every node has one anyway");
   if (arguments.jobs > 0) given.run.insert(given.run.end(), {"--jobs", std::to_string(arguments.jobs)});
+  if (!arguments.devices.empty()) given.run.insert(given.run.end(), {"--devices", arguments.devices});
   if (arguments.selection.keep_images) given.run.emplace_back("--keep-images");
   if (arguments.selection.pairs_only) given.run.emplace_back("--pairs-only");
   if (arguments.selection.retry_failed) given.run.emplace_back("--retry-failed");
@@ -174,6 +209,7 @@ int run_study(Arguments const& arguments, GlobalOptions const& options) {
   std::string const device = device_of(cases, options.device);
   std::vector<std::size_t> const selected = selected_cases(cases.size(), arguments.selection);
   if (arguments.slurm.submit) return submit_study(arguments, options, cases, selected, device);
+  std::vector<std::string> const gpus = select_gpus(arguments.devices, device);
   bool const worker = arguments.worker >= 0;
   std::size_t due = selected.size();
   if (!worker) {  // remove failures once here, so that workers do not repeat them several times
@@ -189,11 +225,10 @@ int run_study(Arguments const& arguments, GlobalOptions const& options) {
       progress.advance();
       stop_point("case-finished");
     };
-    int jobs = arguments.jobs > 0 ? arguments.jobs : device == "cuda" ? std::max(1, gpu_count()) : 1;
-    jobs = static_cast<int>(std::min<std::size_t>(static_cast<std::size_t>(jobs), due));
+    int const jobs = count_jobs(arguments, gpus.size(), due);
     // worker processes protect this one from crashes, even if only one case remains
     if (jobs > 1 || arguments.jobs > 1) {
-      code = run_in_workers(arguments, cases, device, jobs, finished);
+      code = run_in_workers(arguments, cases, device, gpus, jobs, finished);
     } else {
       run_here(arguments, cases, selected, device, finished);
     }
@@ -211,9 +246,18 @@ int run_study(Arguments const& arguments, GlobalOptions const& options) {
 CommandBody attach_sweep_run(CLI::App& app, GlobalOptions const& options) {
   auto arguments = std::make_shared<Arguments>();
   app.add_option("run", arguments->run, "RUN folder")->required();
-  app.add_option("--jobs", arguments->jobs,
-                 "Number of parallel processes, which share the cores; default: one, or one per GPU")
+  app.add_option(
+         "--jobs", arguments->jobs,
+         "Number of parallel processes, which share the cores; default: one, or one per GPU; with --devices two "
+         "per GPU")
       ->check(whole_number(1, 4096));
+  app.add_option("--devices", arguments->devices,
+                 "GPUs of this host to use for a study planned for cuda, \"all\" or their number")
+      ->check([](std::string const& text) {
+        std::string problem = text == "all" ? "" : whole_number(1, 4096)(text);
+        if (!problem.empty()) problem.replace(0, std::strlen("expected"), "expected \"all\" or");
+        return problem;
+      });
   // Distinguish an empty list, which is an error, from a missing option, which selects all cases.
   app.add_option_function<std::string>(
       "--case", [arguments](std::string const& list) { arguments->selection.only = list; },

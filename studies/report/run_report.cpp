@@ -151,9 +151,9 @@ ReportSection settings_section(std::string const& run, StudyView const& study, S
     told.push_back(row.seed);
     seeds += fmt::format("{}{}", seeds.empty() ? "" : ", ", row.seed);
   }
-  for (std::string const& build : study.table.builds()) builds += (builds.empty() ? "" : ", ") + build;
-  settings.blocks.emplace_back(
-      Paragraph{fmt::format("Seeds of the repeats: {}. Computed by gladstone {} on {}.", seeds, builds, best.device)});
+  for (std::string const& build : study.table.builds) builds += (builds.empty() ? "" : ", ") + build;
+  settings.blocks.emplace_back(Paragraph{
+      fmt::format("Seeds of the repeats: {}. Computed by gladstone {} on {}.", seeds, builds, best.device())});
   return settings;
 }
 

@@ -229,7 +229,7 @@ PackedDataset pack_dataset(std::string const& run, std::string const& path, Rend
   StudyRow const& first = kept.table.rows.front();
   Hdf5Writer file(path,
                   {"gladstone dataset", 2, fs::exists(study, error) ? read_text_file(study) : "", first.seed,
-                   first.device, sources},
+                   first.device(), sources},
                   Hdf5Growth::on_disk);
   write_columns(file, "/parameters/", "case", kept.table, axis_columns(kept.table));
   make_arrays(file, sizes);

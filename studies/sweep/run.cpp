@@ -39,12 +39,12 @@ class Claim {
 /// Computes the requested parts of a case. If its vectors and errors were computed before, they are computed again with
 /// the images, so that none of its numbers is lost.
 CaseResult compute_case(std::string const& run, Manifest const& cases, std::size_t index, RunSelection const& selection,
-                        CaseRunner& runner) {
+                        CaseComputation const& compute) {
   auto const known = read_result(run, index, cases.line_hash(index), ResultPart::head);
   bool const measured = known && known->status == CaseStatus::ok && !known->pairs_only;
   CaseParts const parts = selection.pairs_only && !measured ? CaseParts::images : CaseParts::all;
   bool const kept = selection.keep_images || selection.pairs_only;
-  return runner.run(cases[index], kept ? images_folder(run, index) : "", {}, parts);
+  return compute(cases[index], kept ? images_folder(run, index) : "", parts);
 }
 
 }  // namespace
@@ -132,7 +132,7 @@ bool record_failure(std::string const& run, Manifest const& cases, std::size_t i
 }
 
 void run_cases(std::string const& run, Manifest const& cases, std::vector<std::size_t> const& selected,
-               RunSelection const& selection, CaseRunner& runner, std::size_t first,
+               RunSelection const& selection, CaseComputation const& compute, std::size_t first,
                std::function<void(std::size_t index, CaseEvent event)> const& tell) {
   fs::path const results = fs::path(run) / run_file::cases;
   std::error_code error;
@@ -161,7 +161,7 @@ void run_cases(std::string const& run, Manifest const& cases, std::vector<std::s
         if (!is_done(index)) {
           tell(index, CaseEvent::begun);
           stop_point("case-begun");
-          CaseResult const result = compute_case(run, cases, index, selection, runner);
+          CaseResult const result = compute_case(run, cases, index, selection, compute);
           stop_point("case-computed");
           write_result(run, result);
           tell(index, CaseEvent::finished);

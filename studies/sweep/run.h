@@ -62,14 +62,23 @@ bool record_failure(std::string const& run, Manifest const& cases, std::size_t i
 
 enum class CaseEvent { begun, finished };
 
+/// Computes a case, as CaseRunner::run.
+/// @param keep  folder for the files of the case; empty: none
+using CaseComputation = std::function<CaseResult(ManifestCase const& one, std::string const& keep, CaseParts parts)>;
+inline CaseComputation computation_by(CaseRunner& runner) {
+  return [&runner](ManifestCase const& one, std::string const& keep, CaseParts parts) {
+    return runner.run(one, keep, {}, parts);
+  };
+}
+
 /// Computes the cases of a selection that have no result or lack requested parts, one after the other. Each case is
 /// claimed during its computation, and its result is checked again after claiming. Cases claimed by other processes are
 /// waited for, and computed here if the other process dies.
 /// @param first  position in `selected` at which to start, so that concurrent processes start at different cases
 /// @param tell   called before and after every case that is computed here
-/// @throws as CaseRunner::run; finished results remain
+/// @throws as `compute`; finished results remain
 void run_cases(std::string const& run, Manifest const& cases, std::vector<std::size_t> const& selected,
-               RunSelection const& selection, CaseRunner& runner, std::size_t first,
+               RunSelection const& selection, CaseComputation const& compute, std::size_t first,
                std::function<void(std::size_t index, CaseEvent event)> const& tell);
 
 }  // namespace gladstone

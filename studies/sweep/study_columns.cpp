@@ -107,7 +107,7 @@ std::vector<StudyColumn> table_columns(StudyTable const& table) {
   columns.push_back(
       {"seconds_correlate", [](StudyRow const& row) { return row.seconds_correlate; }, {}, "time of the correlation"});
   columns.push_back({"device",
-                     [](StudyRow const& row) { return row.device == "cuda" ? 1.0 : 0.0; },
+                     [](StudyRow const& row) { return row.on_gpu ? 1.0 : 0.0; },
                      {"cpu", "cuda"},
                      "device that computed the case",
                      true});

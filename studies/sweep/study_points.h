@@ -16,6 +16,7 @@ namespace gladstone {
 ///   MEASURE.mean, MEASURE.std   mean and sample standard deviation over the repeats, for every measure of the cases
 ///
 /// Statistics that require two repeats are NaN for a single one.
+/// @pre a point of the study has more than one repeat
 StudyTable study_points(StudyTable const& cases);
 
 }  // namespace gladstone

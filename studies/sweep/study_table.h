@@ -20,27 +20,29 @@ struct StudyAxis {
   bool labelled = false;            ///< numeric, and the study file defines labels for some numbers
 };
 
-/// One case of a study.
+/// One case of a study. A table holds all of them: besides its measures, a row should take little memory.
 struct StudyRow {
   std::size_t index = 0;
   std::size_t repeat = 0;
   std::uint64_t seed = 0;
   CaseStatus status = CaseStatus::missing;
+  bool on_gpu = false;             ///< the case was planned for "cuda", not for "cpu"
+  bool warned = false;             ///< the case has warnings
   std::string error;               ///< error message of a failed case
   std::vector<std::size_t> value;  ///< [axes] index of the value of each axis
   std::vector<double> measures;    ///< [StudyTable::measures] NaN if unknown or the case is not finished
   double seconds_render = std::numeric_limits<double>::quiet_NaN();
   double seconds_correlate = std::numeric_limits<double>::quiet_NaN();
   double seconds_compare = std::numeric_limits<double>::quiet_NaN();
-  std::string device;
-  std::string warning;  ///< first warning of the case; empty: none
-  std::string build;    ///< build of gladstone that computed the case; empty: not computed, or unknown
+
+  char const* device() const { return on_gpu ? "cuda" : "cpu"; }
 };
 
 /// All repeats of one point of a study.
 struct StudyPoint {
-  std::vector<std::size_t> rows;    ///< row indices of the repeats, finished or not, in ascending order
-  std::vector<RepeatSplit> splits;  ///< error statistics of the finished repeats, in the order of vector_error_names()
+  std::vector<std::size_t> rows;  ///< row indices of the repeats, finished or not, in ascending order
+  /// Error statistics of the finished repeats, in the order of vector_error_names(); empty in a study without repeats.
+  std::vector<RepeatSplit> splits;
 };
 
 /// Table of a study: source of its figures, study.csv and study.h5.
@@ -50,13 +52,13 @@ struct StudyTable {
   std::vector<std::string> measures;  ///< "ray_truth.rms_px", "budget.terms.cone.rms_px", "magnification", ...
   std::vector<StudyRow> rows;         ///< all cases of the manifest, in its order
   std::vector<StudyPoint> points;     ///< in the order of their first cases
+  std::vector<std::string> builds;    ///< distinct builds of gladstone that computed the cases, sorted
+  std::string first_warning;          ///< first warning of the first case with warnings
 
   /// Returns the index of a measure in every row, or nullopt if no case has it.
   std::optional<std::size_t> find_measure(std::string_view name) const;
   /// Returns the largest number of repeats of a point.
   std::size_t repeats() const;
-  /// Returns the distinct builds of gladstone that computed the rows, sorted.
-  std::vector<std::string> builds() const;
   /// Returns the rows with warnings.
   std::vector<std::size_t> warned() const;
   /// Returns the rows whose status is not ok.

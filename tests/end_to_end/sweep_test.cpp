@@ -537,6 +537,23 @@ TEST_F(Sweeps, AnotherKindOfDeviceIsRefused) {
   }
 }
 
+TEST_F(Sweeps, DevicesAreGpusOfThisHost) {
+  plan("run");
+  expect_refused({"sweep", "run", "run", "--devices", "all"}, 5,
+                 {"--devices all: the study was planned for cpu and uses no GPU"});
+  expect_refused({"sweep", "run", "run", "--devices", "some"}, 2,
+                 {"--devices", "expected \"all\" or an integer from 1 to 4096, got \"some\""});
+  expect_refused({"sweep", "run", "run", "--devices", "0"}, 2, {"expected \"all\" or an integer"});
+  plan_otherwise("run", "\"device\":\"cpu\"", "\"device\":\"cuda\"");
+  auto const without_gpu = [] { return ::setenv("CUDA_VISIBLE_DEVICES", "", 1) == 0; };
+  for (std::string const devices : {"all", "1", "2"}) {
+    Outcome const outcome = run({"sweep", "run", "run", "--devices", devices}, folder_, without_gpu);
+    EXPECT_EQ(outcome.exit_code, 5) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr("--devices " + devices + ": no GPU can be used on this host"));
+  }
+  EXPECT_EQ(status("run")["missing"], 12);
+}
+
 // The file contains the data of the kept cases, bit by bit, one case after the other.
 TEST_F(Sweeps, ADatasetHoldsImagesAndTruthOfTheKeptCases) {
   plan("run");
