@@ -85,9 +85,9 @@ class SequenceRun {
     std::optional<SequenceImage> common_reference;
     if (settings_.pairing == Pairing::reference) common_reference = read_sequence_image(pairs.front().reference);
     SequenceFolder const folder(path);
-    if (tracks_dots()) folder.make_folder(sequence_file::dots);
     hash_settings();
-    write_state(folder, false);
+    write_state(folder, false);  // first, since a folder without it is foreign
+    if (tracks_dots()) folder.make_folder(sequence_file::dots);
     stop_point("correlating");
     PairCorrelation const correlate(settings_.correlation, size_, std::move(common_reference), sources_,
                                     std::move(device));
