@@ -11,8 +11,15 @@
 namespace gladstone::stereo {
 namespace {
 
-/// Least-squares plane through the selected points; nullopt if they do not determine it.
-std::optional<ObjectPlane> solve_plane(std::vector<Vec3d> const& points, std::vector<char> const& selected) {
+/// Least-squares plane, and its standard uncertainties for errors of z with a standard deviation of 1.
+struct SolvedPlane {
+  ObjectPlane plane;
+  double height_sigma;
+  Vec2d slope_sigma;
+};
+
+/// Returns the plane through the selected points; nullopt if they do not determine it.
+std::optional<SolvedPlane> solve_plane(std::vector<Vec3d> const& points, std::vector<char> const& selected) {
   Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
   Eigen::Vector3d right = Eigen::Vector3d::Zero();
   double scale = 0.0;  // largest coordinate, which makes the columns comparable
@@ -27,7 +34,9 @@ std::optional<ObjectPlane> solve_plane(std::vector<Vec3d> const& points, std::ve
   solver.setThreshold(1e-9);
   if (!solver.isInvertible()) return std::nullopt;
   Eigen::Vector3d const solution = solver.solve(right);
-  return ObjectPlane{solution(0), {solution(1) / scale, solution(2) / scale}};
+  Eigen::Vector3d const sigma = solver.inverse().diagonal().cwiseSqrt();
+  return SolvedPlane{
+      {solution(0), {solution(1) / scale, solution(2) / scale}}, sigma(0), {sigma(1) / scale, sigma(2) / scale}};
 }
 
 double height_above(ObjectPlane const& plane, Vec3d const& point) {
@@ -50,6 +59,7 @@ struct Disparities {
   std::vector<Vec2d> node_px;   ///< positions in the dewarped images, midway between both images of the particles
   std::vector<Vec2d> value_px;  ///< position in the image of the second camera minus that in the first
   NodeGrid grid;
+  double redundancy = 1.0;  ///< number of vectors per independent one [1]
 };
 
 Disparities measure_disparities(std::array<PinholeCamera const*, 2> const& cameras,
@@ -67,6 +77,7 @@ Disparities measure_disparities(std::array<PinholeCamera const*, 2> const& camer
                                                dewarp_image(images[pair][1], *cameras[1], plane, result.grid));
                            }};
   DisplacementField const field = correlate_ensemble(pairs, settings);
+  result.redundancy = find_redundancy(field.columns, settings.overlap) * find_redundancy(field.rows, settings.overlap);
   for (std::size_t i = 0; i < field.size(); ++i) {
     bool const valid = field.status.empty() || field.status[i] == VectorStatus::valid;
     if (!valid || !is_finite(field.displacement_px[i])) continue;
@@ -84,24 +95,38 @@ Vec2d predict_disparity(std::array<PinholeCamera const*, 2> const& cameras, Vec3
   return Vec2d{apart.x, -apart.y} / pixel_size;
 }
 
+/// Disparity of a point on the axis per height above a plane [px/m].
+double find_disparity_of_height(std::array<PinholeCamera const*, 2> const& cameras, ObjectPlane const& plane,
+                                double pixel_size) {
+  constexpr double height = 1e-5;  // [m], small compared with the distance of the cameras
+  return length(predict_disparity(cameras, plane.point({}) + Vec3d{0.0, 0.0, height}, plane, pixel_size)) / height;
+}
+
 }  // namespace
 
-std::optional<FittedPlane> fit_object_plane(std::vector<Vec3d> const& points) {
+double find_redundancy(int vectors, double overlap) {
+  double sum = 1.0;
+  for (int apart = 1; apart < vectors; ++apart)
+    sum += 2.0 * (1.0 - static_cast<double>(apart) / vectors) * std::max(0.0, 1.0 - apart * (1.0 - overlap));
+  return sum;
+}
+
+std::optional<FittedPlane> fit_object_plane(std::vector<Vec3d> const& points, double redundancy) {
   constexpr int max_rounds = 10;
   constexpr double limit = 3.0, per_median = 1.4826;  // standard deviation of a normal distribution over its median
   if (points.size() < 4) return std::nullopt;
   std::vector<char> selected(points.size(), 1);
   FittedPlane fit;
   for (int round = 0; round < max_rounds; ++round) {
-    auto const plane = solve_plane(points, selected);
-    if (!plane) return std::nullopt;
+    auto const solved = solve_plane(points, selected);
+    if (!solved) return std::nullopt;
     std::vector<double> distance(points.size());
-    for (std::size_t i = 0; i < points.size(); ++i) distance[i] = std::abs(height_above(*plane, points[i]));
+    for (std::size_t i = 0; i < points.size(); ++i) distance[i] = std::abs(height_above(solved->plane, points[i]));
     std::vector<double> sorted = distance;
     auto const middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
     std::nth_element(sorted.begin(), middle, sorted.end());
     double const largest = limit * per_median * *middle, rounding = 1e-12;  // [m]
-    fit = {*plane, 0.0, 0, 0};
+    fit = {solved->plane};
     std::vector<char> next(points.size());
     for (std::size_t i = 0; i < points.size(); ++i) {
       next[i] = distance[i] <= largest + rounding ? 1 : 0;
@@ -110,6 +135,11 @@ std::optional<FittedPlane> fit_object_plane(std::vector<Vec3d> const& points) {
     }
     fit.outliers = points.size() - fit.points;
     fit.scatter = std::sqrt(fit.scatter / static_cast<double>(fit.points));
+    double const independent = static_cast<double>(fit.points) / redundancy;
+    fit.freedom = std::max(1.0, independent - 3.0);
+    double const sigma = fit.scatter * std::sqrt(independent / fit.freedom * redundancy);
+    fit.height_sigma = sigma * solved->height_sigma;
+    fit.slope_sigma = sigma * solved->slope_sigma;
     if (next == selected) break;
     selected = std::move(next);
   }
@@ -141,7 +171,7 @@ SheetAlignment align_sheet(std::array<PinholeCamera const*, 2> const& cameras,
       points.push_back(triangulate(*cameras[0], measured.grid.position_of_pixel(measured.node_px[i] - half),
                                    *cameras[1], measured.grid.position_of_pixel(measured.node_px[i] + half), plane));
     }
-    auto const fit = fit_object_plane(points);
+    auto const fit = fit_object_plane(points, measured.redundancy);
     if (!fit)
       throw DataError(ErrorCode::undetermined, "images",
                       "the two cameras have too few valid disparities to determine the laser sheet; use "
@@ -159,15 +189,13 @@ SheetAlignment align_sheet(std::array<PinholeCamera const*, 2> const& cameras,
     result.fit = *fit;
     result.disparity_px.push_back(std::sqrt(squares / inside));
     result.scatter_px = std::sqrt(scatter / inside);
+    // Three parameters of the plane share the variance of the independent points.
+    result.disparity_sigma_px =
+        fit->scatter * std::sqrt(3.0 / fit->freedom) * find_disparity_of_height(cameras, fit->plane, result.pixel_size);
     plane = fit->plane;
     if (result.disparity_px.back() < goal_px) break;
   }
   return result;
-}
-
-bool is_significant(SheetAlignment const& alignment) {
-  constexpr double scatters = 3.0;
-  return alignment.disparity_px.front() > scatters * alignment.scatter_px;
 }
 
 }  // namespace gladstone::stereo

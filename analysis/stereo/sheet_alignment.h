@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <optional>
@@ -21,11 +22,20 @@ struct FittedPlane {
   double scatter = 0.0;    ///< rms distance of the points from the plane, along z [m]
   std::size_t points = 0;  ///< number of points without the excluded ones
   std::size_t outliers = 0;
+  double freedom = 0.0;  ///< degrees of freedom of the scatter: independent points minus three parameters, at least 1
+  double height_sigma = 0.0;  ///< standard uncertainty of ObjectPlane::height [m]
+  Vec2d slope_sigma{};        ///< standard uncertainties of ObjectPlane::slope [1]
 };
 
 /// Fits a plane by least squares and excludes points farther from it than three robust standard deviations, repeatedly.
+/// The uncertainties follow from the scatter and the number of independent points.
+/// @param redundancy  number of points per independent one, see find_redundancy() [1]
 /// @return nullopt for fewer than four points or points on one line
-std::optional<FittedPlane> fit_object_plane(std::vector<Vec3d> const& points);
+std::optional<FittedPlane> fit_object_plane(std::vector<Vec3d> const& points, double redundancy = 1.0);
+
+/// Computes the factor by which the variance of a mean over a row of vectors exceeds that of independent ones: errors
+/// of windows that overlap by a fraction o have the correlation o. For an overlap of 0.5 it is 2 - 1/n with n vectors.
+double find_redundancy(int vectors, double overlap);
 
 /// Finds the point that two cameras see at different places of a plane: the middle of the shortest connection of the
 /// lines of sight through the points of the plane at `in_a` and `in_b` [m].
@@ -39,6 +49,15 @@ struct SheetAlignment {
   /// first the misalignment, last the residual.
   std::vector<double> disparity_px;
   double scatter_px = 0.0;  ///< rms of the measured disparities about those of the fitted plane, last iteration [px]
+  /// Standard uncertainty of the disparity of the fitted plane, rms over the vectors, from the scatter of the points
+  /// along z and their number; last iteration [px].
+  double disparity_sigma_px = 0.0;
+
+  /// Returns whether the last iteration changed the plane by less than 0.05 px, or than its uncertainty.
+  bool has_converged() const { return disparity_px.back() <= std::max(0.05, disparity_sigma_px); }
+  /// Returns whether the disparity of the first assumption exceeds three times its standard uncertainty. Otherwise the
+  /// images do not show that the sheet is elsewhere.
+  bool is_significant() const { return disparity_px.front() > 3.0 * disparity_sigma_px; }
 };
 
 /// Determines the plane of the laser sheet from the disparity between images of two cameras (Wieneke, Exp. Fluids 39
@@ -53,10 +72,5 @@ struct SheetAlignment {
 SheetAlignment align_sheet(std::array<PinholeCamera const*, 2> const& cameras,
                            std::vector<SimultaneousImages> const& images, ObjectPlane plane,
                            CorrelationSettings const& settings, int max_iterations = 8);
-
-/// Returns whether the disparity of the first iteration exceeds three times the scatter of the measured disparities
-/// about those of the fitted plane. Below that, a single window does not determine the displacement of the sheet, and
-/// in thick sheets or with noise the fitted plane follows the few particles that dominate the correlation.
-bool is_significant(SheetAlignment const& alignment);
 
 }  // namespace gladstone::stereo

@@ -33,22 +33,20 @@ class Sequence:
 
     @property
     def pairs(self) -> list[dict[str, Any]]:
-        """For each pair: images `a` and `b`, file of its `vectors` (None: failed), `error`, `warnings`, `resumed`."""
+        """For each pair: images `a` and `b`, file of its `vectors` (None: not correlated), `error` (reason, if the pair
+        has no valid vector), `warnings`, `resumed`.
+        """
         return self._result["pairs"]
 
     @property
     def failed(self) -> list[int]:
-        """Indices of the pairs without vectors; `pairs[k]["error"]` is the reason."""
-        return [k for k, pair in enumerate(self.pairs) if pair["vectors"] is None]
+        """Indices of the pairs without valid vectors; `pairs[k]["error"]` is the reason."""
+        return [k for k, pair in enumerate(self.pairs) if pair["error"]]
 
     @property
     def statistics(self) -> dict[str, np.ndarray]:
-        """Arrays [rows, columns] of statistics.h5: x_px, y_px, count, u_mean_px, u_rms_px, uu_px2, ... (NaN: unknown).
-
-        Empty if no pair was measured.
-        """
-        path = os.path.join(self._folder, "statistics.h5")
-        return _core.sequence_statistics(path) if len(self.failed) < len(self) else {}
+        """Arrays [rows, columns] of statistics.h5: x_px, y_px, count, u_mean_px, u_rms_px, uu_px2, ... (NaN: unknown)."""
+        return _core.sequence_statistics(os.path.join(self._folder, "statistics.h5"))
 
     def dots(self, index: int) -> dict[str, np.ndarray]:
         """Reads the scattered vectors of the dots or particles of a pair, for method="tracking".
@@ -83,14 +81,14 @@ class Sequence:
         return len(self.pairs)
 
     def __getitem__(self, index: int) -> Field:
-        """Reads the field of a pair. Raises ValueError if the pair failed."""
+        """Reads the field of a pair. Raises ValueError if the pair could not be correlated."""
         pair = self.pairs[index]
         if pair["vectors"] is None:
             raise ValueError(f"pair {index} has no vectors ({pair['error']})")
         return Field.load(os.path.join(self._folder, pair["vectors"]))
 
     def __iter__(self) -> Iterator[Field]:
-        return (self[k] for k, pair in enumerate(self.pairs) if pair["vectors"] is not None)
+        return (self[k] for k, pair in enumerate(self.pairs) if not pair["error"])
 
     def __repr__(self) -> str:
         return f"<gladstone.Sequence {len(self)} pairs, {len(self) - len(self.failed)} measured>"
@@ -117,7 +115,8 @@ def correlate_sequence(
     settings: window, overlap, method, ..., as for `correlate`.
 
     The files are equal to those of `gladstone correlate IMAGES -o OUTPUT/`. A pair that fails does not affect the
-    others. Raises `DataError` if no frame is readable, and `SetupError` for settings.
+    others: a `GladstoneWarning` names it, and `failed` lists it. Raises `DataError` if no pair has a valid vector, and
+    `SetupError` for settings.
     """
     given = [images] if isinstance(images, (str, os.PathLike)) else list(images)
     temporary = tempfile.TemporaryDirectory(prefix="gladstone_") if output is None else None

@@ -1,6 +1,5 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
-#include <spdlog/spdlog.h>
 
 #include <cstdlib>
 #include <filesystem>
@@ -36,7 +35,7 @@ std::string correlate_pairs(std::vector<std::string> const& inputs, std::string 
                     {"warnings", record.warnings},
                     {"resumed", record.resumed}});
   }
-  for (std::string const& warning : result.warnings) spdlog::warn("{}", warning);
+  report_sequence(result, folder);
   return json_text(nlohmann::json{{"pairs", std::move(list)}, {"device", result.device}, {"seconds", result.seconds}});
 }
 

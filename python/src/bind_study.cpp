@@ -1,6 +1,7 @@
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
+#include <spdlog/spdlog.h>
 
 #include <nlohmann/json.hpp>
 #include <numeric>
@@ -25,7 +26,9 @@ void plan(std::string const& study, std::string const& folder, std::string const
   StudyFile read = read_study(study);
   check_plan_folder(folder, read);
   std::string const planned = device == "auto" ? open_device(device).name() : device;
-  write_plan(folder, plan_study(std::move(read), planned));
+  StudyPlan const plan = plan_study(std::move(read), planned);
+  for (std::string const& warning : plan.warnings()) spdlog::warn("{}", warning);
+  write_plan(folder, plan);
 }
 
 /// Computes the missing cases in this process, one after the other.

@@ -82,11 +82,30 @@ def test_consecutive_images(frames):
 
 def test_bad_pair_is_reported(frames):
     (frames / "B_1.tif").write_bytes(b"no image")
-    sequence = gs.correlate_sequence(frames, device="cpu", **SETTINGS)
+    with pytest.warns(gs.GladstoneWarning, match="B_1.tif"):
+        sequence = gs.correlate_sequence(frames, device="cpu", **SETTINGS)
     assert sequence.failed == [1] and "B_1.tif" in sequence.pairs[1]["error"]
     assert len(list(sequence)) == 1
     with pytest.raises(ValueError, match="B_1.tif"):
         sequence[1]
+
+
+def test_pair_without_valid_vector_has_failed(frames, case):
+    for name in ("A_1.tif", "B_1.tif"):
+        write_tiff(frames / name, np.full(case.a.shape, 7))
+    with pytest.warns(gs.GladstoneWarning):
+        sequence = gs.correlate_sequence(frames, device="cpu", **SETTINGS)
+    assert sequence.failed == [1] and len(list(sequence)) == 1
+
+
+def test_sequence_without_any_vector_is_an_error(frames):
+    for name in ("B_0.tif", "B_1.tif"):
+        (frames / name).write_bytes(b"no image")
+    with pytest.warns(gs.GladstoneWarning), pytest.raises(gs.DataError, match="none of the 2 pairs"):
+        gs.correlate_sequence(frames, device="cpu", **SETTINGS)
+    with pytest.raises(gs.DataError) as missing:
+        gs.correlate_sequence(frames / "nothing.tif", device="cpu", **SETTINGS)
+    assert missing.value.code == "missing_file"
 
 
 def test_wrong_arguments_are_reported(frames):

@@ -33,7 +33,7 @@ std::string kind_of_hdf5(std::string const& path) {
     std::string const filetype = Hdf5Reader(path).attribute("filetype");
     return filetype.empty() ? "HDF5" : filetype;
   } catch (DataError const&) {
-    return "damaged HDF5";  // parts of it may be recoverable
+    return damaged_hdf5;  // parts of it may be recoverable
   }
 }
 

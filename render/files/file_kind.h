@@ -4,6 +4,9 @@
 
 namespace gladstone {
 
+/// Kind of an HDF5 file that cannot be read.
+inline constexpr char const* damaged_hdf5 = "damaged HDF5";
+
 /// Determines the kind of a file from its content: the filetype of a gladstone HDF5 file ("gladstone truth"), "HDF5",
 /// "damaged HDF5", "TIFF", "PNG", "PDF", "HTML", "SVG", "VTK", other "XML", "NRRD", "MATLAB" (level 5), "NumPy" (.npy),
 /// "JSON", "TOML", "Markdown", or for a CSV file of gladstone "gladstone vectors", "gladstone rays" (trace), "gladstone

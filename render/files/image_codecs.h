@@ -39,8 +39,10 @@ struct PageHeader {
   Colours colours = Colours::by_count;
 };
 
-/// Maximum number of pages of a file that are examined.
-inline constexpr int max_pages = 1000;
+/// Maximum number of pages of a TIFF that are examined (libtiff: 1048576).
+inline constexpr int max_pages = 1'000'000;
+/// Maximum number of pages of other files, whose readers count from the first page to find another one.
+inline constexpr int max_codec_pages = 1000;
 
 /// Open image file, positioned at one of its pages.
 class PageReader {

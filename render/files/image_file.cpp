@@ -33,10 +33,31 @@ std::unique_ptr<PageReader> open_by_codecs(std::string const& path) {
   }
 }
 
+/// Reads the current page of a file.
+Image<double> read_current_page(PageReader& input, InputFile const& file, ImageMetadata* metadata) {
+  PageHeader const spec = input.header();
+  Image<double> image = read_grey_levels(input, file.path(), file.size());
+  if (metadata) {
+    *metadata = metadata_of(spec);
+    metadata->channels = spec.colours == Colours::inks ? spec.channels - 1 : spec.channels;
+    metadata->sample_bits = spec.bits;
+    metadata->orientation = spec.orientation;
+  }
+  return image;
+}
+
+[[noreturn]] void report_damaged_page(std::string const& path, std::size_t page) {
+  throw DataError(ErrorCode::damaged, path,
+                  fmt::format("page {} cannot be read (the file is damaged); copy it again", page + 1));
+}
+
 /// Image file opened for reading.
 class Picture {
  public:
-  explicit Picture(std::string const& path) : path_(path), file_(path, "an image"), input_(open_tiff(file_)) {
+  explicit Picture(std::string const& path) : path_(path), file_(path, "an image") {
+    auto tiff = open_tiff(file_);
+    tiff_ = tiff.get();
+    input_ = std::move(tiff);
     if (!input_) input_ = open_by_codecs(path);
     if (!input_) {
       std::string const samples = describe_tiff_samples(file_);
@@ -53,38 +74,33 @@ class Picture {
   std::size_t pages() const { return pages_.size(); }
   /// True if the file declares a further page that cannot be read.
   bool is_cut_short() const { return is_cut_short_; }
-  /// True if the file has more than max_pages pages.
+  /// True if the file has more than most_pages() pages.
   bool has_more_pages() const { return has_more_pages_; }
+  int most_pages() const { return tiff_ ? max_pages : max_codec_pages; }
+  std::uint64_t file_size() const { return file_.size(); }
+  std::vector<PageLocation> const& locations() const { return pages_; }
 
   Image<double> read(std::size_t page, ImageMetadata* metadata) {
-    if (!input_->seek(pages_[page])) {
-      throw DataError(ErrorCode::damaged, path_,
-                      fmt::format("page {} cannot be read (the file is damaged); copy it again", page + 1));
-    }
-    PageHeader const spec = input_->header();
-    Image<double> image = read_grey_levels(*input_, path_, file_.size());
-    if (metadata) {
-      *metadata = metadata_of(spec);
-      metadata->channels = spec.colours == Colours::inks ? spec.channels - 1 : spec.channels;
-      metadata->sample_bits = spec.bits;
-      metadata->orientation = spec.orientation;
-    }
-    return image;
+    if (!input_->seek(pages_[page].index)) report_damaged_page(path_, page);
+    return read_current_page(*input_, file_, metadata);
   }
 
  private:
-  /// Collects the pages that are not previews of the first one, up to max_pages.
+  /// Collects the pages that are not previews of the first one, up to most_pages().
   void count_pages() {
+    constexpr int first_rotated = 5;  // orientations 5 to 8 exchange columns and rows
     PageHeader const first = input_->header();
-    for (int page = 1; input_->seek(page); ++page) {
+    for (int page = 0; input_->seek(page); ++page) {
       throw_if_interrupted();
-      if (page == max_pages) {
+      if (page == most_pages()) {
         has_more_pages_ = true;
         break;
       }
       PageHeader const spec = input_->header();
       if (spec.width < first.width && spec.height < first.height) continue;
-      pages_.push_back(page);
+      std::array<int, 2> size{spec.width, spec.height};
+      if (spec.orientation >= first_rotated) std::swap(size[0], size[1]);
+      pages_.push_back({page, tiff_ ? tiff_->directory() : 0, size});
     }
     is_cut_short_ = input_->is_cut_short();
     input_->clear_errors();
@@ -94,7 +110,8 @@ class Picture {
   std::string path_;
   InputFile file_;
   std::unique_ptr<PageReader> input_;
-  std::vector<int> pages_{0};
+  TiffPageReader const* tiff_ = nullptr;  ///< input_ if it is a TIFF
+  std::vector<PageLocation> pages_;
   bool has_more_pages_ = false, is_cut_short_ = false;
 };
 
@@ -144,27 +161,40 @@ std::array<Image<double>, 2> read_frame_pair(std::string const& path, ImageMetad
   });
 }
 
-std::size_t count_pages(std::string const& path) {
-  return named(path, [&] {
+ImagePages::ImagePages(std::string const& path) : path_(path) {
+  named(path, [&] {
     Picture const picture(path);
     if (picture.has_more_pages()) {
       throw DataError(
           ErrorCode::out_of_range, path,
-          fmt::format("has more than {} pages (which is the limit); write its pages to several files", max_pages));
+          fmt::format("has more than {} pages (which is the limit{}); write its pages to several files",
+                      picture.most_pages(), picture.most_pages() == max_pages ? "" : " of this format or compression"));
     }
-    return picture.pages() + (picture.is_cut_short() ? 1 : 0);
+    file_size_ = picture.file_size();
+    pages_ = picture.locations();
+    is_cut_short_ = picture.is_cut_short();
   });
 }
 
-Image<double> read_page(std::string const& path, std::size_t page, ImageMetadata* metadata) {
-  return named(path, [&] {
-    Picture picture(path);
-    if (page >= picture.pages()) {
-      throw DataError(ErrorCode::missing_content, path,
-                      fmt::format("has {} {}, and no page {}; copy it again", picture.pages(),
-                                  picture.pages() == 1 ? "page" : "pages", page + 1));
-    }
-    return picture.read(page, metadata);
+PageLocation const& ImagePages::locate(std::size_t page) const {
+  if (page < pages_.size()) return pages_[page];
+  throw DataError(ErrorCode::missing_content, path_,
+                  fmt::format("has {} {}, and no page {}; copy it again", pages_.size(),
+                              pages_.size() == 1 ? "page" : "pages", page + 1));
+}
+
+Image<double> ImagePages::read(std::size_t page, ImageMetadata* metadata) const {
+  PageLocation const& location = locate(page);
+  return named(path_, [&] {
+    InputFile const file(path_, "an image");
+    if (file.size() != file_size_)
+      throw DataError(ErrorCode::inconsistent, path_,
+                      "has another size than when its pages were counted; wait until it is complete");
+    bool const is_tiff = location.directory != 0;
+    std::unique_ptr<PageReader> const input =
+        is_tiff ? open_tiff_page(file, location.directory) : open_by_codecs(path_);
+    if (!input || !input->seek(is_tiff ? 0 : location.index)) report_damaged_page(path_, page);
+    return read_current_page(*input, file, metadata);
   });
 }
 

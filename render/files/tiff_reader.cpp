@@ -15,21 +15,39 @@ namespace {
 
 constexpr std::uint32_t bits_in_byte = 8;
 
-/// File open for reading.
+/// File open for reading, which may begin with any of its pages: libtiff then reads a header with the offset of that
+/// page's directory in place of the first one.
 class FileStream final : public TiffStream {
  public:
   explicit FileStream(InputFile const& file) : file_(file) {}
+  FileStream(InputFile const& file, std::uint64_t directory) : file_(file) {
+    constexpr unsigned char big_tiff = 43;
+    header_.resize(16);
+    header_.resize(file.read(0, header_.data(), header_.size()));
+    if (header_.size() < 16) return;
+    bool const little_endian = header_[0] == 'I';
+    bool const big = header_[little_endian ? 2 : 3] == big_tiff;
+    std::size_t const first = big ? 8 : 4, size = first;  // position and size of the offset in the header
+    for (std::size_t i = 0; i < size; ++i)
+      header_[first + (little_endian ? i : size - 1 - i)] = static_cast<unsigned char>(directory >> (bits_in_byte * i));
+  }
   /// Opens the TIFF without mapping it into memory ('m') and without dividing its strips ('c').
   TiffHandle open_file() { return open(file_.path(), "rmc"); }
 
  private:
   std::size_t read(std::uint64_t offset, void* to, std::size_t size) override {
-    return offset < file_.size() ? file_.read(offset, to, size) : 0;
+    if (offset >= file_.size()) return 0;
+    std::size_t const count = file_.read(offset, to, size);
+    auto* const bytes = static_cast<unsigned char*>(to);
+    for (std::uint64_t i = offset; i < std::min<std::uint64_t>(offset + count, header_.size()); ++i)
+      bytes[i - offset] = header_[i];
+    return count;
   }
   void write(std::uint64_t, void const*, std::size_t) override {}
   std::uint64_t size() const override { return file_.size(); }
 
   InputFile const& file_;
+  std::vector<unsigned char> header_;  ///< bytes that replace the first ones of the file
 };
 
 /// Copies `count` packed samples of a row into every `stride`-th sample of `samples`. A sample of fewer bits than its
@@ -66,9 +84,11 @@ void unpack(TiffLayout const& layout, unsigned char const* packed, std::size_t c
   }
 }
 
-class TiffReader final : public PageReader {
+class TiffReader final : public TiffPageReader {
  public:
-  explicit TiffReader(InputFile const& file) : stream_(file), handle_(stream_.open_file()) {
+  /// @param first  arguments of FileStream
+  template <class... First>
+  explicit TiffReader(First const&... first) : stream_(first...), handle_(stream_.open_file()) {
     stream_.check_error();
     if (!handle_) return;
     page_ = 0;
@@ -103,6 +123,11 @@ class TiffReader final : public PageReader {
     if (found == 1) layout_ = read_tiff_layout(handle_.get());
     return found == 1;
   }
+
+  /// Returns true if libtiff decodes the current page.
+  bool decodes_page() const { return page_ != no_page && layout_.decodable; }
+
+  std::uint64_t directory() const override { return TIFFCurrentDirOffset(handle_.get()); }
 
   bool is_cut_short() const override { return cut_short_; }
 
@@ -189,9 +214,14 @@ class TiffReader final : public PageReader {
 
 }  // namespace
 
-std::unique_ptr<PageReader> open_tiff(InputFile const& file) {
+std::unique_ptr<TiffPageReader> open_tiff(InputFile const& file) {
   auto reader = std::make_unique<TiffReader>(file);
   return reader->is_decodable(file) ? std::move(reader) : nullptr;
+}
+
+std::unique_ptr<PageReader> open_tiff_page(InputFile const& file, std::uint64_t directory) {
+  auto reader = std::make_unique<TiffReader>(file, directory);
+  return reader->decodes_page() ? std::move(reader) : nullptr;
 }
 
 std::string describe_tiff_samples(InputFile const& file) {

@@ -8,7 +8,6 @@
 #include <nlohmann/json.hpp>
 
 #include "render/base/error.h"
-#include "render/files/input_file.h"
 #include "studies/case/case_files.h"
 #include "studies/case/json_text.h"
 #include "studies/compare/sequence.h"
@@ -20,8 +19,6 @@ namespace gladstone {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr std::size_t most_named_failures = 20;  // failed pairs that are named on stderr
 
 bool is_vector_file(std::string const& output) {
   std::error_code error;
@@ -48,17 +45,6 @@ nlohmann::json describe_failures(SequenceResult const& result) {
   for (PairRecord const& record : result.pairs)
     if (!record.error.empty()) failed.push_back({{"vectors", record.pair.vectors}, {"error", record.error}});
   return failed;
-}
-
-/// Names the failed pairs in the log.
-void report_failures(SequenceResult const& result) {
-  std::size_t failed = 0;
-  for (PairRecord const& record : result.pairs) {
-    if (record.error.empty() || ++failed > most_named_failures) continue;
-    spdlog::warn("{}: {}", record.pair.vectors, record.error);
-  }
-  if (failed > most_named_failures)
-    spdlog::warn("{} further pairs failed; sequence.json lists them", failed - most_named_failures);
 }
 
 /// Draws the statistics, or warns if gnuplot is not installed.
@@ -91,18 +77,10 @@ int run_sequence(SequenceArguments const& arguments, GlobalOptions const& option
     throw OutputError(folder, "is a file (a sequence has one file of vectors per pair); name a folder: -o DIR/");
   Pairing const pairing = parse_pairing(arguments.pairing);
   SequenceSettings const settings = read_sequence_settings(pairing, arguments.config, arguments.overrides);
-  if (std::string const& input = arguments.inputs.front();
-      arguments.inputs.size() == 1 && !is_pattern(input) && !fs::is_directory(input))
-    require_input_file(input, "an image of several pages");
   std::vector<SequencePair> const pairs = form_pairs(list_sequence_files(arguments.inputs, pairing), pairing);
   SequenceResult const result = correlate_sequence(pairs, settings, folder, options.open_device(), !options.quiet);
-  std::size_t const done = result.count(PairState::done), no_vector = result.count(PairState::no_valid_vector);
-  report_failures(result);
-  if (done + no_vector == 0)
-    throw DataError(ErrorCode::undetermined, folder,
-                    fmt::format("none of the {} pairs could be correlated; the first: {}", pairs.size(),
-                                result.pairs.front().error));
-  for (std::string const& warning : result.warnings) spdlog::warn("{}", warning);
+  std::size_t const done = result.count(PairState::done);
+  report_sequence(result, folder);
   if (!arguments.no_figures) draw_statistics((fs::path(folder) / sequence_file::figure).string(), result.statistics);
   nlohmann::json const json{{"pairs", pairs.size()},
                             {"done", done},

@@ -55,6 +55,7 @@ CommandBody attach_plan(CLI::App& app, GlobalOptions const& options) {
     check_plan_folder(arguments->run, read);
     std::string const device = options.device == "auto" ? options.open_device().name() : options.device;
     StudyPlan const plan = plan_study(std::move(read), device);
+    for (std::string const& warning : plan.warnings()) spdlog::warn("{}", warning);
     StudyFile const& study = plan.study();
     PlanOutcome const planned = write_plan(arguments->run, plan);
     nlohmann::ordered_json json{{"run", arguments->run},

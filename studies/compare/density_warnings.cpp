@@ -54,6 +54,36 @@ void warn_of_reference_gradient(Reconstruction& result) {
                   100 * ratio));
 }
 
+WindowEffect estimate_window_effect(Reconstruction const& result) {
+  density::PlaneGrid const& grid = result.grid;
+  auto const halve = [](double overlap) { return std::max(1, static_cast<int>(std::lround(0.5 * overlap))); };
+  int const step_x = halve(result.overlap.x), step_y = halve(result.overlap.y);
+  double const weight_x = std::pow(result.overlap.x / step_x, 2) / 24.0,
+               weight_y = std::pow(result.overlap.y / step_y, 2) / 24.0;
+  double changes = 0.0, variances = 0.0, count = 0.0;
+  for (int row = step_y; row + step_y < grid.rows; ++row)
+    for (int column = step_x; column + step_x < grid.columns; ++column) {
+      auto const value = [&](int x, int y) { return result.density[grid.index(column + x, row + y)]; };
+      double const twice = 2.0 * value(0, 0), sigma = result.sigma[grid.index(column, row)];
+      double const change = weight_x * (value(step_x, 0) + value(-step_x, 0) - twice) +
+                            weight_y * (value(0, step_y) + value(0, -step_y) - twice);
+      if (!std::isfinite(change) || !(sigma > 0.0)) continue;
+      changes += change * change;
+      variances += sigma * sigma;
+      count += 1.0;
+    }
+  return count > 0.0 ? WindowEffect{std::sqrt(changes / count), std::sqrt(variances / count)} : WindowEffect{};
+}
+
+void warn_of_window(Reconstruction& result) {
+  WindowEffect const effect = estimate_window_effect(result);
+  if (!(effect.change > effect.sigma)) return;
+  result.warnings.push_back(fmt::format(
+      "the averaging over the interrogation windows changes the density by about {:.2g} kg/m^3 rms, {:.2g} times "
+      "the standard uncertainty, which does not contain it; use smaller windows, or a larger magnification",
+      effect.change, effect.change / effect.sigma));
+}
+
 double compute_displacement_gradient(density::GradientMap const& projected, density::ProjectionOptics const& optics) {
   density::PlaneGrid const& grid = projected.grid;
   double sum = 0.0, count = 0.0;

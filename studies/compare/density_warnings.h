@@ -15,6 +15,21 @@ void warn_of_regions(Reconstruction& result, std::vector<density::Region> const&
 /// which noise averages out, is compared with the rms gradient of all nodes.
 void warn_of_reference_gradient(Reconstruction& result);
 
+/// Change of a density by the averaging over the interrogation windows.
+struct WindowEffect {
+  double change = 0.0;  ///< rms change, estimated [kg/m^3]
+  double sigma = 0.0;   ///< rms standard uncertainty of the same nodes [kg/m^3]
+};
+
+/// Estimates the change of a density by the mean over windows of w_x x w_y, (w_x^2 d2/dx2 + w_y^2 d2/dy2) / 24 of the
+/// density. Its derivatives are differences over steps of about w / 2 of the measured density, which the windows have
+/// smoothed already; on the other hand, passes that deform the frames recover a part of the change.
+/// @return zero if no node with an uncertainty has neighbours at these steps
+WindowEffect estimate_window_effect(Reconstruction const& result);
+
+/// Warns if the averaging over the windows, which sigma does not contain, is larger than sigma.
+void warn_of_window(Reconstruction& result);
+
 /// Computes the rms gradient of the displacement [px/px], without the part that is due to noise. The displacement is
 /// the gradient of a potential: |grad u|^2 is div(u)^2 less curl(u)^2 on average over the field, and in these the noise
 /// of u and v cancels.

@@ -19,6 +19,7 @@
 #include "render/files/input_guard.h"
 #include "render/files/stop_point.h"
 #include "studies/case/peak_locking.h"
+#include "studies/compare/sequence_folder.h"
 
 namespace gladstone {
 namespace {
@@ -198,7 +199,8 @@ std::optional<PairVectors> PairCorrelation::read_finished(std::string const& pat
     }
     record.resumed = true;
     return vectors;
-  } catch (DataError const&) {  // damaged: it is computed again
+  } catch (DataError const&) {
+    for (std::string const& name : files) remove_damaged_result(name);
     return std::nullopt;
   }
 }

@@ -57,17 +57,6 @@ void check_reconstructed_setup(Setup const& setup) {
   if (!problems.empty()) throw SetupError(std::move(problems));
 }
 
-/// Returns the size of the windows in units of the distance between vectors, at most that of the grid.
-density::WindowOverlap determine_overlap(DisplacementField const& field, double window_px,
-                                         std::optional<double> const& overlap) {
-  if (overlap) return density::WindowOverlap::from_fraction(*overlap);
-  Vec2d const extent = field.position_px.back() - field.position_px.front();
-  auto const relative = [&](double length, int nodes) {
-    return std::clamp(window_px * (nodes - 1) / length, 1.0, static_cast<double>(nodes));
-  };
-  return {relative(extent.x, field.columns), relative(extent.y, field.rows)};
-}
-
 density::ReferenceDensity make_reference(density::PlaneGrid const& grid, ReconstructOptions const& options,
                                          double value) {
   std::optional<density::ReferenceDensity> reference;
@@ -170,6 +159,14 @@ Reconstruction integrate_plane(Reconstruction result, density::GradientMap const
 
 }  // namespace
 
+density::WindowOverlap determine_overlap(DisplacementField const& field, double window_px) {
+  Vec2d const extent = field.position_px.back() - field.position_px.front();
+  auto const relative = [&](double length, int nodes) {
+    return std::clamp(window_px * (nodes - 1) / length, 1.0, static_cast<double>(nodes));
+  };
+  return {relative(extent.x, field.columns), relative(extent.y, field.rows)};
+}
+
 density::ProjectionOptics make_projection_optics(Setup const& setup) {
   return {setup.imaging().magnification,
           setup.z_a,
@@ -187,7 +184,8 @@ Reconstruction reconstruct_density(DisplacementField const& field, Setup const& 
   density::ProjectionOptics const optics = make_projection_optics(setup);
   density::ProjectedGradient const projected = compute_projected_gradient(field, optics);
   Reconstruction result;
-  result.overlap = determine_overlap(field, window_px, options.overlap);
+  result.overlap =
+      options.overlap ? density::WindowOverlap::from_fraction(*options.overlap) : determine_overlap(field, window_px);
   result.reference_density = options.reference_density.value_or(setup.medium.ambient_density);
   if (projected.map.sigma.empty())
     result.warnings.emplace_back(
@@ -206,6 +204,7 @@ Reconstruction reconstruct_density(DisplacementField const& field, Setup const& 
                         : integrate_plane(std::move(result),
                                           compute_mean_gradient(projected.map, setup.medium.thickness), setup, options);
   result.sigma = combine_uncertainties(result, options);
+  warn_of_window(result);
   return result;
 }
 

@@ -97,6 +97,9 @@ struct DensityErrors {
 };
 DensityErrors compute_density_errors(Reconstruction const& reconstruction);
 
+/// Returns the size of the windows in units of the distance between vectors, at most that of the grid.
+density::WindowOverlap determine_overlap(DisplacementField const& field, double window_px);
+
 /// Returns the optics of a BOS setup that convert displacement to density gradient, for a camera on the Z axis.
 density::ProjectionOptics make_projection_optics(Setup const& setup);
 

@@ -75,14 +75,22 @@ class SequenceRun {
   SequenceResult run(std::string const& path, Backend device) {
     auto const start = std::chrono::steady_clock::now();
     result_.device = device.correlates_on(correlation());
-    std::optional<SequenceImage> first = find_size();
+    std::vector<SequencePair> const pairs = complete_pairs();
+    if (pairs.empty())
+      throw DataError(ErrorCode::undetermined, "correlate",
+                      "no pair is complete (" + result_.pairs.front().error + ")");
+    size_ = find_commonest_size(pairs);
+    if (std::string const problem = window_problem(correlation(), size_.columns, size_.rows); !problem.empty())
+      throw DataError(ErrorCode::wrong_shape, size_.frame, problem);
+    std::optional<SequenceImage> common_reference;
+    if (settings_.pairing == Pairing::reference) common_reference = read_sequence_image(pairs.front().reference);
     SequenceFolder const folder(path);
-    if (tracks_dots()) folder.make_folder(sequence_file::dots);
     hash_settings();
-    write_state(folder, false);
+    write_state(folder, false);  // first, since a folder without it is foreign
+    if (tracks_dots()) folder.make_folder(sequence_file::dots);
     stop_point("correlating");
-    if (settings_.pairing != Pairing::reference) first.reset();
-    PairCorrelation const correlate(settings_.correlation, size_, std::move(first), sources_, std::move(device));
+    PairCorrelation const correlate(settings_.correlation, size_, std::move(common_reference), sources_,
+                                    std::move(device));
     try {
       correlate_all(correlate, folder);
     } catch (Interrupted const&) {
@@ -108,28 +116,6 @@ class SequenceRun {
   std::size_t count_with_vectors() const {
     return static_cast<std::size_t>(std::count_if(result_.pairs.begin(), result_.pairs.end(),
                                                   [](PairRecord const& record) { return record.has_vectors(); }));
-  }
-
-  /// Returns the first readable frame A, whose size all frames must have, after checking that the windows fit into it.
-  SequenceImage find_size() {
-    std::exception_ptr first_error;
-    for (PairRecord const& record : result_.pairs) {
-      if (!record.pair.problem.empty()) continue;
-      std::optional<SequenceImage> image;
-      try {
-        image = read_sequence_image(record.pair.reference);
-      } catch (DataError const&) {
-        if (!first_error) first_error = std::current_exception();
-        if (settings_.pairing == Pairing::reference) break;
-        continue;
-      }
-      size_ = {image->levels.columns(), image->levels.rows(), record.pair.reference.name()};
-      if (std::string const problem = window_problem(correlation(), size_.columns, size_.rows); !problem.empty())
-        throw DataError(ErrorCode::wrong_shape, size_.frame, problem);
-      return std::move(*image);
-    }
-    if (first_error) std::rethrow_exception(first_error);
-    throw DataError(ErrorCode::undetermined, "correlate", "no pair is complete (" + result_.pairs.front().error + ")");
   }
 
   /// Computes the backgrounds of the sequence, and the hash of everything that affects the vectors besides the frames.
@@ -224,6 +210,7 @@ class SequenceRun {
       SourceFiles sources;
       sources.add_known("settings", sources_.sha256("settings"));
       sources.add_known("sequence", hash_pairs());
+      remove_damaged_result(folder.file(sequence_file::statistics));
       write_sequence_statistics(
           folder.file(sequence_file::statistics), moments,
           {"gladstone statistics", 1, settings_.correlation.resolved, 0, result_.device, std::move(sources)});

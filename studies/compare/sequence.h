@@ -63,9 +63,9 @@ struct SequenceResult {
 /// Correlates the pairs of a sequence, thread_count() of them at a time, and writes the folder: the vectors of each
 /// pair as soon as it is done, then statistics.h5 and sequence.json.
 /// - A pair that fails does not affect the others; its record contains the reason.
-/// - All frames must have the size of the first readable one.
+/// - All frames must have the commonest size; pairs with another one fail.
 /// - Vectors in the folder with the hashes of these frames and settings are read instead of computed again, so that the
-///   same call continues an interrupted run.
+///   same call continues an interrupted run. Those of a damaged file are computed again, with a warning.
 /// - With Pairing::consecutive, tracking uses the frames before and after a pair as well.
 /// - The scattered vectors of tracked dots are stored in the folder `dots`, with the numbers of their tracks if the
 ///   pairs have frames in common (tracking::TrackNumbers).
@@ -76,5 +76,11 @@ struct SequenceResult {
 ///         Interrupted, with the finished pairs stored
 SequenceResult correlate_sequence(std::vector<SequencePair> const& pairs, SequenceSettings const& settings,
                                   std::string const& folder, Backend device, bool show_progress);
+
+/// Logs the warnings of a result: each pair without valid vectors (at most 20, and the number of the others), and
+/// SequenceResult::warnings.
+/// @param folder  output folder, for the error
+/// @throws DataError if no pair has a valid vector
+void report_sequence(SequenceResult const& result, std::string const& folder);
 
 }  // namespace gladstone

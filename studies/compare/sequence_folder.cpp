@@ -1,6 +1,7 @@
 #include "studies/compare/sequence_folder.h"
 
 #include <fcntl.h>
+#include <spdlog/spdlog.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -10,6 +11,7 @@
 
 #include "render/base/error.h"
 #include "render/base/version.h"
+#include "render/files/file_kind.h"
 #include "render/files/file_lock.h"
 #include "render/files/output_destination.h"
 #include "render/files/output_file.h"
@@ -107,6 +109,13 @@ void SequenceFolder::make_folder(std::string const& name) const {
   std::error_code error;
   fs::create_directories(file(name), error);
   if (error) OutputDestination(file(name)).fail("cannot be created", error.value());
+}
+
+void remove_damaged_result(std::string const& path) {
+  if (file_kind(path) != damaged_hdf5) return;
+  spdlog::warn("{}: the file is damaged, and is computed again", path);
+  std::error_code ignored;  // the file that replaces it reports the error
+  fs::remove(path, ignored);
 }
 
 void write_sequence_state(std::string const& path, SequenceState const& state, std::vector<PairRecord> const& pairs) {

@@ -29,6 +29,10 @@ class SequenceFolder {
   int lock_ = -1;  ///< descriptor of the locked file .lock
 };
 
+/// Removes a file of the folder if it is a damaged HDF5 file, for example one that is cut short, so that it can be
+/// replaced; logs a warning.
+void remove_damaged_result(std::string const& path);
+
 /// Content of sequence.json besides the pairs.
 struct SequenceState {
   Pairing pairing = Pairing::pairs;

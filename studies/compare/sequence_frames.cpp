@@ -11,7 +11,6 @@
 
 #include "render/base/error.h"
 #include "render/base/text.h"
-#include "render/files/image_pages.h"
 #include "studies/compare/frame_numbers.h"
 
 namespace gladstone {
@@ -90,15 +89,18 @@ std::optional<std::vector<std::string>> find_instants(std::vector<NumberedName> 
 }
 
 /// Returns all pages of the files. An unreadable file counts as one page, so that its pair reports the reason.
+/// @throws DataError if a file has too many pages, or if the only file is unreadable
 std::vector<SequenceFrame> list_frames(std::vector<std::string> const& files) {
   std::vector<SequenceFrame> frames;
   for (std::string const& file : files) {
-    std::size_t pages = 1;
+    std::shared_ptr<ImagePages const> located;
     try {
-      pages = count_pages(file);
-    } catch (DataError const&) {
+      located = std::make_shared<ImagePages>(file);
+    } catch (DataError const& error) {
+      if (error.code() == ErrorCode::out_of_range || files.size() == 1) throw;
     }
-    for (std::size_t page = 0; page < pages; ++page) frames.push_back({file, page, pages});
+    std::size_t const pages = located ? located->count() : 1;
+    for (std::size_t page = 0; page < pages; ++page) frames.push_back({file, page, pages, located});
   }
   return frames;
 }
@@ -246,7 +248,8 @@ std::vector<SequencePair> form_pairs(std::vector<std::vector<std::string>> const
   std::vector<SequenceFrame> const frames = list_frames(files);
   if (frames.size() < 2)
     throw DataError(ErrorCode::arguments, files.front(),
-                    "is a single image (a sequence has at least two); give a pattern or a folder");
+                    "is a single image (a sequence has at least two); give a pattern, a folder, or a file of several "
+                    "pages");
   bool const one_each = frames.size() == files.size();  // no file of several pages
   FrameIntervals const intervals(one_each ? files : std::vector<std::string>{});
   switch (pairing) {

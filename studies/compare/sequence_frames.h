@@ -1,10 +1,12 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "render/files/file_pattern.h"
+#include "render/files/image_pages.h"
 
 namespace gladstone {
 
@@ -24,6 +26,8 @@ struct SequenceFrame {
   std::string path;
   std::size_t page = 0;   ///< index from 0
   std::size_t pages = 1;  ///< pages of the file
+  /// located pages of the file, which its frames share; null if the file has not been opened
+  std::shared_ptr<ImagePages const> located = nullptr;
 
   /// Returns "path", or "path (page 3)" for a file of several pages.
   std::string name() const;
@@ -47,7 +51,7 @@ std::vector<std::vector<std::string>> list_sequence_files(std::vector<std::strin
 /// - two lists are matched by the numbers in their file names; images without a partner become pairs with a `problem`.
 ///   Lists of equal length without common numbers are matched in their order.
 /// - in one list, images 1 and 2, 3 and 4, ... are pairs.
-/// @throws DataError if there are fewer than two images, or two lists cannot be matched
+/// @throws DataError if there are fewer than two images or a file has too many pages, or two lists cannot be matched
 std::vector<SequencePair> form_pairs(std::vector<std::vector<std::string>> const& lists, Pairing pairing);
 
 }  // namespace gladstone

@@ -2,11 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <exception>
 #include <optional>
+#include <set>
 
 #include "render/base/error.h"
 #include "render/base/interrupt.h"
-#include "render/files/image_pages.h"
 #include "render/files/source_files.h"
 #include "studies/case/pair_progress.h"
 
@@ -35,7 +37,7 @@ Image<double> compute_background_image(std::string const& statistic, std::vector
 SequenceImage read_sequence_image(SequenceFrame const& frame) {
   ImageMetadata metadata;
   SequenceImage image;
-  image.levels = frame.pages > 1 ? read_page(frame.path, frame.page, &metadata) : read_image(frame.path, &metadata);
+  image.levels = frame.pages > 1 ? frame.located->read(frame.page, &metadata) : read_image(frame.path, &metadata);
   image.sha256 = pixel_sha256(image.levels, metadata.sample_bits);
   if (metadata.channels >= 3)
     image.warnings.push_back(frame.name() + " is a colour image: its luminance (Rec. 709) is correlated");
@@ -56,6 +58,39 @@ void SequenceSize::require(Image<double> const& levels, std::string const& name)
   throw DataError(ErrorCode::wrong_shape, name,
                   fmt::format("is {} x {} px but {} is {} x {} px (all frames must have one size)", levels.columns(),
                               levels.rows(), frame, columns, rows));
+}
+
+SequenceSize find_commonest_size(std::vector<SequencePair> const& pairs) {
+  struct Candidate {
+    SequenceSize size;
+    std::size_t frames = 0;
+  };
+  std::vector<Candidate> candidates;
+  std::exception_ptr first_error;
+  std::set<std::string> counted;  // a frame may be part of several pairs
+  for (SequencePair const& pair : pairs) {
+    for (SequenceFrame const* frame : {&pair.reference, &pair.flow}) {
+      throw_if_interrupted();
+      if (!counted.insert(frame->name()).second) continue;
+      try {
+        auto const [columns, rows] =
+            frame->located ? frame->located->size(frame->page) : ImagePages(frame->path).size(frame->page);
+        auto const known = std::find_if(candidates.begin(), candidates.end(), [&](Candidate const& candidate) {
+          return candidate.size.columns == columns && candidate.size.rows == rows;
+        });
+        if (known == candidates.end())
+          candidates.push_back({{columns, rows, frame->name()}, 1});
+        else
+          ++known->frames;
+      } catch (DataError const&) {  // its pair reports the problem
+        if (!first_error) first_error = std::current_exception();
+      }
+    }
+  }
+  if (candidates.empty()) std::rethrow_exception(first_error);
+  return std::max_element(candidates.begin(), candidates.end(),
+                          [](Candidate const& a, Candidate const& b) { return a.frames < b.frames; })
+      ->size;
 }
 
 void compute_background_images(SequenceBackground& background, std::vector<SequencePair> const& pairs, Pairing pairing,

@@ -18,14 +18,20 @@ struct SequenceImage {
 /// Reads a frame. @throws DataError, also if none of its pixels is finite
 SequenceImage read_sequence_image(SequenceFrame const& frame);
 
-/// Size of the frames of a sequence: that of the first readable one.
+/// Size of the frames of a sequence.
 struct SequenceSize {
   int columns = 0, rows = 0;  ///< [px]
-  std::string frame;          ///< name of that frame
+  std::string frame;          ///< name of the first frame of this size
 
   /// @throws DataError if a frame has another size, with the names of both
   void require(Image<double> const& levels, std::string const& name) const;
 };
+
+/// Finds the commonest size of the frames of all pairs, and of two equally frequent ones that of the earlier frame.
+/// Reads no pixels; unreadable frames do not count.
+/// @param pairs  pairs without problem
+/// @throws DataError of the first frame if none is readable; Interrupted
+SequenceSize find_commonest_size(std::vector<SequencePair> const& pairs);
 
 /// Computes the background of all frames A and that of all frames B, without those that are unreadable, of another size
 /// or not finite. With another pairing than Pairing::pairs they are images of one series, and the background is that

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "analysis/preparation/frame_preparation.h"
 #include "analysis/stereo/interpolated_field.h"
 #include "analysis/stereo/residual_validation.h"
 #include "render/base/error.h"
@@ -67,21 +68,21 @@ std::vector<std::string> find_sheet_images(StereoOptions const& options) {
   return images;
 }
 
-/// Correlates the frames of a case, dewarped onto a plane.
+/// Correlates the frames of a case, dewarped onto a plane. Masks and preprocessing steps are applied to the frames as
+/// they were recorded: the windows leave out a pixel of the plane if one of the pixels that it is interpolated from is
+/// masked.
 DisplacementField correlate_dewarped(StereoInput const& input, std::string const& place,
                                      std::array<Image<double>, 2> const& frames, stereo::Dewarping const& dewarping,
                                      Backend const& device) {
-  CorrelationSettings const& settings = input.vectors.settings;
-  if (!settings.preparation.files.empty())
-    throw DataError(ErrorCode::unsupported, place,
-                    "masks or subtracts images in [correlate], which do not fit dewarped frames; use --dewarp "
-                    "vectors");
+  CorrelationSettings settings = input.vectors.settings;
+  HostFrames const prepared =
+      prepare_frames(HostFrames(frames[0], frames[1]), std::exchange(settings.preparation, FramePreparation{}));
   std::string const problem = window_problem(settings, dewarping.grid.columns, dewarping.grid.rows);
   if (!problem.empty()) throw DataError(ErrorCode::wrong_shape, place, "dewarped: " + problem);
   auto const dewarp = [&](Image<double> const& frame) {
     return stereo::dewarp_image(frame, input.camera.camera, dewarping.plane, dewarping.grid);
   };
-  HostFrames const dewarped(dewarp(frames[0]), dewarp(frames[1]));
+  HostFrames const dewarped(dewarp(prepared.reference()), dewarp(prepared.flow()));
   DisplacementField field = correlate_frames(dewarped, settings, device).field;
   if (field.columns == 1 || field.rows == 1)
     throw DataError(ErrorCode::wrong_shape, place,
@@ -92,6 +93,14 @@ DisplacementField correlate_dewarped(StereoInput const& input, std::string const
     throw DataError(ErrorCode::wrong_shape, place,
                     "has no complete grid of vectors; set correlate.tracking.output = \"grid\"");
   return field;
+}
+
+/// Throws if the frames of a case differ in size.
+void require_equal_sizes(std::array<Image<double>, 2> const& frames, std::string const& place) {
+  if (frames[0].columns() == frames[1].columns() && frames[0].rows() == frames[1].rows()) return;
+  throw DataError(ErrorCode::wrong_shape, in_case(place, case_file::flow),
+                  fmt::format("is {} x {} px but {} is {} x {} (both frames must have one size)", frames[1].columns(),
+                              frames[1].rows(), case_file::reference, frames[0].columns(), frames[0].rows()));
 }
 
 /// Dewarps the frames of both cases onto the part of the plane that they have in common, and correlates them.
@@ -108,6 +117,10 @@ stereo::Dewarping measure_dewarped(std::array<StereoInput*, 2> const& inputs, St
                   SourceFiles::Holds::pixels);
       frames[i][k] = read_image(file);
     }
+    require_equal_sizes(frames[i], options.inputs[i]);
+    std::size_t number = 0;
+    for (std::string const& file : inputs[i]->vectors.settings.preparation.files)
+      sources.add(fmt::format("preparation_{}_{}", i == 0 ? "a" : "b", ++number), file, SourceFiles::Holds::pixels);
     size[i] = {frames[i][0].columns(), frames[i][0].rows()};
   }
   stereo::Dewarping dewarping{
@@ -191,7 +204,7 @@ StereoMeasurement measure_stereo(StereoOptions options, Backend const& device) {
   std::array<PinholeCamera const*, 2> const cameras{&a.camera.camera, &b.camera.camera};
   if (options.align) {
     result.alignment = align_sheet_of_files(images, cameras, plane, result.sources);
-    plane = result.alignment->fit.plane;
+    if (result.is_aligned()) plane = result.alignment->fit.plane;
   } else if (!images.empty()) {
     result.given_sheet = measure_disparity(images, cameras, plane, result.sources);
   }

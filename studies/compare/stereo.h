@@ -46,6 +46,9 @@ struct StereoMeasurement {
   std::string setup;         ///< resolved setup of the first camera
   std::uint64_t seed = 0;    ///< random seed of the rendering
   SourceFiles sources = {};  ///< vectors, calibrations, and truth
+
+  /// Returns whether the plane of `alignment` is used: it has converged, and differs significantly from the given one.
+  bool is_aligned() const { return alignment && alignment->has_converged() && alignment->is_significant(); }
 };
 
 /// Errors of one component against the truth.

@@ -57,10 +57,10 @@ stereo::SheetAlignment align_sheet_of_files(std::vector<std::string> const& imag
   stereo::SheetAlignment alignment = stereo::align_sheet(cameras, read, plane, choose_disparity_settings(read.front()));
   stereo::ObjectPlane const& found = alignment.fit.plane;
   spdlog::info(
-      "laser sheet: Z = {:.4f} mm + {:.5f} X + {:.5f} Y; disparity {:.3f} px, residual {:.3f} px after {} "
-      "iterations",
+      "laser sheet: Z = {:.4f} mm + {:.5f} X + {:.5f} Y; disparity {:.3f} px with a standard uncertainty of {:.3f} px, "
+      "residual {:.3f} px after {} iterations",
       found.height / unit::mm, found.slope.x, found.slope.y, alignment.disparity_px.front(),
-      alignment.disparity_px.back(), alignment.disparity_px.size());
+      alignment.disparity_sigma_px, alignment.disparity_px.back(), alignment.disparity_px.size());
   return alignment;
 }
 

@@ -91,17 +91,38 @@ void write_stereo_truth(NodeWriter& nodes, StereoMeasurement const& measurement)
   nodes.write_values("/error_mm", error, 3, "mm", "displacement minus true displacement", component_axis);
 }
 
-/// @param alignment  of the laser sheet
-nlohmann::ordered_json summarize_alignment(stereo::SheetAlignment const& alignment) {
+/// @pre the measurement has an alignment
+nlohmann::ordered_json summarize_alignment(StereoMeasurement const& measurement) {
+  stereo::SheetAlignment const& alignment = *measurement.alignment;
   stereo::ObjectPlane const& plane = alignment.fit.plane;
-  return {{"z_mm", plane.height / unit::mm},
+  Vec2d const slope_sigma = alignment.fit.slope_sigma;
+  return {{"used", measurement.is_aligned()},
+          {"z_mm", plane.height / unit::mm},
+          {"z_sigma_mm", number_or_null(alignment.fit.height_sigma / unit::mm)},
           {"slope", {plane.slope.x, plane.slope.y}},
+          {"slope_sigma", {number_or_null(slope_sigma.x), number_or_null(slope_sigma.y)}},
           {"disparity_px", number_or_null(alignment.disparity_px.front())},
+          {"disparity_sigma_px", number_or_null(alignment.disparity_sigma_px)},
           {"residual_px", number_or_null(alignment.disparity_px.back())},
           {"scatter_px", number_or_null(alignment.scatter_px)},
           {"iterations", alignment.disparity_px.size()},
           {"vectors", alignment.fit.points},
           {"outliers", alignment.fit.outliers}};
+}
+
+/// @pre the measurement has an alignment
+std::string describe_alignment(StereoMeasurement const& measurement) {
+  stereo::SheetAlignment const& alignment = *measurement.alignment;
+  stereo::FittedPlane const& fit = alignment.fit;
+  std::string text = fmt::format(
+      "  laser sheet: Z = ({:.4f} +- {:.2g}) mm + ({:.5f} +- {:.2g}) X + ({:.5f} +- {:.2g}) Y\n"
+      "  disparity {:.3g} px (standard uncertainty {:.2g} px), residual {:.3g} px, scatter of the vectors {:.3g} px\n",
+      fit.plane.height / unit::mm, fit.height_sigma / unit::mm, fit.plane.slope.x, fit.slope_sigma.x, fit.plane.slope.y,
+      fit.slope_sigma.y, alignment.disparity_px.front(), alignment.disparity_sigma_px, alignment.disparity_px.back(),
+      alignment.scatter_px);
+  if (measurement.is_aligned()) return text;
+  return text + fmt::format("  the given plane is used: the correction {}\n",
+                            alignment.has_converged() ? "is not significant" : "has not converged");
 }
 
 void write_stereo_attributes(Hdf5Writer& file, StereoMeasurement const& measurement) {
@@ -112,10 +133,15 @@ void write_stereo_attributes(Hdf5Writer& file, StereoMeasurement const& measurem
   file.attribute("/", "view_angle_deg", measurement.view_angle / unit::degree);
   file.attribute("/", "window_a_px", measurement.window_px[0]);
   file.attribute("/", "window_b_px", measurement.window_px[1]);
-  if (measurement.given_sheet) file.attribute("/", "disparity_px", measurement.given_sheet->disparity_px.front());
-  if (!measurement.alignment) return;
-  file.attribute("/", "disparity_px", measurement.alignment->disparity_px.front());
-  file.attribute("/", "residual_disparity_px", measurement.alignment->disparity_px.back());
+  auto const& sheet = measurement.alignment ? measurement.alignment : measurement.given_sheet;
+  if (!sheet) return;
+  file.attribute("/", "disparity_px", sheet->disparity_px.front());
+  file.attribute("/", "disparity_sigma_px", sheet->disparity_sigma_px);
+  if (!measurement.is_aligned()) return;
+  file.attribute("/", "residual_disparity_px", sheet->disparity_px.back());
+  file.attribute("/", "sheet_z_sigma_mm", sheet->fit.height_sigma / unit::mm);
+  file.attribute("/", "sheet_slope_x_sigma", sheet->fit.slope_sigma.x);
+  file.attribute("/", "sheet_slope_y_sigma", sheet->fit.slope_sigma.y);
 }
 
 /// Statistics of one component over the valid nodes [m].
@@ -206,9 +232,10 @@ nlohmann::ordered_json summarize_stereo(StereoMeasurement const& measurement) {
                                 {"deviation_mm", number_or_null(statistics.deviation / unit::mm)},
                                 {"sigma_mm", number_or_null(statistics.sigma / unit::mm)}};
   }
-  if (measurement.alignment) json["sheet"] = summarize_alignment(*measurement.alignment);
+  if (measurement.alignment) json["sheet"] = summarize_alignment(measurement);
   if (measurement.given_sheet)
     json["given_sheet"] = {{"disparity_px", number_or_null(measurement.given_sheet->disparity_px.front())},
+                           {"disparity_sigma_px", number_or_null(measurement.given_sheet->disparity_sigma_px)},
                            {"scatter_px", number_or_null(measurement.given_sheet->scatter_px)}};
   if (measurement.truth.empty()) return json;
   auto const errors = compute_stereo_errors(measurement);
@@ -238,14 +265,7 @@ std::string stereo_report(StereoMeasurement const& measurement) {
     text += fmt::format(", rms {:.2f} times its standard uncertainty", ratio);
   text += fmt::format("; {} vectors rejected", stereo::count_rejected(field));
   text += '\n';
-  if (measurement.alignment) {
-    stereo::SheetAlignment const& alignment = *measurement.alignment;
-    text += fmt::format(
-        "  laser sheet: Z = {:.4f} mm + {:.5f} X + {:.5f} Y; disparity {:.3g} px, residual {:.3g} px (scatter of the "
-        "vectors {:.3g} px)\n",
-        alignment.fit.plane.height / unit::mm, alignment.fit.plane.slope.x, alignment.fit.plane.slope.y,
-        alignment.disparity_px.front(), alignment.disparity_px.back(), alignment.scatter_px);
-  }
+  if (measurement.alignment) text += describe_alignment(measurement);
   if (measurement.truth.empty()) return text;
   text += fmt::format("  {:<16} {:>12} {:>12} {:>12}\n", "error [px]", "bias", "rms", "coverage");
   auto const errors = compute_stereo_errors(measurement);

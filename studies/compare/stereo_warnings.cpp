@@ -23,12 +23,10 @@ std::string describe_small_angle(StereoMeasurement const& measurement) {
 }
 
 std::string describe_unfinished_alignment(StereoMeasurement const& measurement) {
-  constexpr double largest_disparity_px = 0.05;
-  if (!measurement.alignment || measurement.alignment->disparity_px.back() <= largest_disparity_px) return "";
+  if (!measurement.alignment || measurement.alignment->has_converged()) return "";
   return fmt::format(
-      "the position of the laser sheet has not converged: the residual disparity is {:.2f} px; use more images, or "
-      "start "
-      "closer to the sheet with --sheet-z and --sheet-slope",
+      "the position of the laser sheet has not converged (the residual disparity is {:.2f} px), so that the given "
+      "plane is used; use more images, or start closer to the sheet with --sheet-z and --sheet-slope",
       measurement.alignment->disparity_px.back());
 }
 
@@ -37,7 +35,7 @@ std::string describe_displaced_sheet(StereoMeasurement const& measurement) {
   if (!measurement.given_sheet) return "";
   stereo::SheetAlignment const& sheet = *measurement.given_sheet;
   double const disparity_px = sheet.disparity_px.front();
-  if (!(disparity_px > least_px && stereo::is_significant(sheet))) return "";
+  if (!(disparity_px > least_px && sheet.is_significant())) return "";
   return fmt::format(
       "disparity of {:.2f} px between the images of the two cameras: the laser sheet is displaced by {:.3f} mm at X = "
       "Y "

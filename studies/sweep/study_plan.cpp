@@ -18,6 +18,7 @@
 #include "render/base/sobol.h"
 #include "render/files/content_hash.h"
 #include "studies/case/case.h"
+#include "studies/case/sequence_pair.h"
 
 namespace gladstone {
 namespace {
@@ -237,6 +238,13 @@ std::string StudyPlan::base() const {
   SetupDocument document = parts_->base.copy();
   document.name_files(parts_->keys_of_files({}, document));
   return document.written();
+}
+
+std::vector<std::string> StudyPlan::warnings() const {
+  StudyFile const& study = parts_->study;
+  if (!describes_sequence(compose(parts_->base, study, point_to_try(study, 0), study.seed))) return {};
+  return {study.path +
+          ": every case is the first pair of the base's [sequence]; for other pairs add the axis \"sequence.pair\""};
 }
 
 std::size_t StudyPlan::size() const { return parts_->study.points() * parts_->study.repeats; }

@@ -323,7 +323,7 @@ TEST_F(Sequences, OfTracksUseFourFrames) {
 }
 
 // A damaged image, one of another size, a missing partner, and frames without signal are named; the other pairs are
-// correlated. Exit code 2 remains for sequences of which nothing could be done.
+// correlated. Exit code 2 remains for sequences without any valid vector.
 TEST_F(Sequences, NameBadPairsAndDoTheOthers) {
   write_pairs({{1, 0}, {1, 0}, {1, 0}, {1, 0}, {1, 0}});
   write("B_9.tif", "not an image");
@@ -356,6 +356,56 @@ TEST_F(Sequences, NameBadPairsAndDoTheOthers) {
   Outcome const nothing = gladstone(arguments({"A_*.tif", "B_*.tif"}, "none/"));
   EXPECT_EQ(nothing.exit_code, 2) << nothing.err;
   EXPECT_THAT(nothing.err, HasSubstr("none of the 5 pairs"));
+}
+
+// The first image has another size than the others: it alone is named, and its pair fails.
+TEST_F(Sequences, HaveTheCommonestSize) {
+  write_pairs({{1, 0}, {1, 0}, {1, 0}});
+  write_image("A_8.tif", dots_at({}, 1, 80));
+  Outcome const outcome = gladstone(arguments({"A_*.tif", "B_*.tif"}, "out/", {"--json"}));
+  EXPECT_EQ(outcome.exit_code, 1) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("A_8.tif: is 80 x 64 px but B_8.tif is 64 x 64 px"));
+  EXPECT_EQ(nlohmann::json::parse(outcome.out)["done"], 2);
+  EXPECT_EQ(read_state("out")["pixels"], (std::vector<int>{side, side}));
+}
+
+// Without any valid vector the exit code is 2, as without any correlated pair.
+TEST_F(Sequences, FailIfNoPairHasAValidVector) {
+  for (char const* name : {"A_1.tif", "A_2.tif", "B_1.tif", "B_2.tif"})
+    write_image(name, Image<std::uint16_t>(side, side, 7));
+  Outcome const outcome = gladstone(arguments({"A_*.tif", "B_*.tif"}, "out/"));
+  EXPECT_EQ(outcome.exit_code, 2) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("none of the 2 pairs"));
+}
+
+// An input that is missing or no image is named as such, not as a sequence that is too short.
+TEST_F(Sequences, NameAnUnreadableFile) {
+  expect_refused(arguments({"none.tif"}, "out/", {"--pairing", "consecutive"}), 2, {"none.tif", "does not exist"});
+  write("text.tif", "not an image");
+  expect_refused(arguments({"text.tif"}, "out/", {"--pairing", "consecutive"}), 2,
+                 {"text.tif", "cannot be read as an image"});
+  write_stack("one.tif", {dots_at({})});
+  expect_refused(arguments({"one.tif"}, "out/", {"--pairing", "consecutive"}), 2, {"one.tif: is a single image"});
+}
+
+// Files of an earlier run that were cut short are named, and computed again.
+TEST_F(Sequences, ReplaceDamagedResults) {
+  write_pairs({{1.5, 0.5}, {-0.75, 1}, {1, 1}});
+  auto const command = arguments({"A_*.tif", "B_*.tif"}, "out/");
+  succeed(command);
+  for (char const* name : {"out/A_9.h5", "out/statistics.h5"}) std::filesystem::resize_file(in(name), 1000);
+  auto json = command;
+  json.emplace_back("--json");
+  Outcome const outcome = gladstone(json);
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err,
+              AllOf(HasSubstr("out/A_9.h5: the file is damaged"), HasSubstr("out/statistics.h5: the file is damaged")));
+  auto const result = nlohmann::json::parse(outcome.out);
+  EXPECT_EQ(result["done"], 3);
+  EXPECT_EQ(result["resumed"], 2);
+  succeed(arguments({"A_*.tif", "B_*.tif"}, "whole/"));
+  for (char const* name : {"/A_9.h5", "/statistics.h5"})
+    expect_same_datasets(std::string("out") + name, std::string("whole") + name);
 }
 
 // Killed after its second pair, the run continues with the third; the result is that of an uninterrupted run. Other

@@ -152,7 +152,9 @@ TEST_F(Stereo, ReadsVectorsAndCalibrations) {
 }
 
 // A thin sheet 0.5 mm off the plane of the calibration and inclined by one degree: its normal is (0, -tan 1, 1), so
-// that dZ/dY is tan 1. The residual disparity is below 0.05 px.
+// that dZ/dY is tan 1. The correlation weights particles by the square of the light, with a standard deviation of
+// 0.1 mm / sqrt(32) = 18 um along Z: the mean of 1000 particles is known to 0.6 um, and its slope over 8 mm to 0.00025.
+// Limits: 5 times as much.
 TEST_F(Stereo, FindsAMisalignedSheet) {
   std::string text = stereo_setup(40, "[5.0, -4.0, 1.0]");
   text = with(text, "thickness_mm = 0.5",
@@ -166,11 +168,54 @@ TEST_F(Stereo, FindsAMisalignedSheet) {
   auto const& sheet = result["sheet"];
   EXPECT_GT(sheet["disparity_px"].get<double>(), 5) << sheet;
   EXPECT_LT(sheet["residual_px"].get<double>(), 0.05) << sheet;
-  EXPECT_NEAR(sheet["z_mm"].get<double>(), 0.5, 0.02);
-  EXPECT_NEAR(sheet["slope"][0].get<double>(), 0.0, 0.006);
-  EXPECT_NEAR(sheet["slope"][1].get<double>(), 0.01746, 0.006);
+  EXPECT_TRUE(sheet["used"].get<bool>());
+  EXPECT_NEAR(sheet["z_mm"].get<double>(), 0.5, 0.003);
+  EXPECT_NEAR(sheet["slope"][0].get<double>(), 0.0, 0.00125);
+  EXPECT_NEAR(sheet["slope"][1].get<double>(), 0.01746, 0.00125);
+  EXPECT_LT(sheet["z_sigma_mm"].get<double>(), 0.003) << sheet;
+  EXPECT_LT(sheet["disparity_sigma_px"].get<double>(), 0.1) << sheet;
   expect_refused({"stereo", "case/left", "case/right", "-o", "x.h5", "--align", "--images", "case/left/flow.tif"}, 2,
                  {"--images"});
+}
+
+// The sheet is where it is assumed: a correction of less than three standard uncertainties is not used.
+TEST_F(Stereo, KeepsAGivenSheetThatTheImagesConfirm) {
+  measure(40, "[5.0, -4.0, 1.0]");
+  auto const result = combine({"--align"});
+  EXPECT_FALSE(result["sheet"]["used"].get<bool>()) << result["sheet"];
+  Hdf5Reader const file(in("uvw.h5").string());
+  EXPECT_EQ(std::stod(file.attribute("sheet_z_mm")), 0.0);
+  EXPECT_EQ(file.attribute("residual_disparity_px"), "");
+}
+
+// Both cameras mask their columns from 100 on, X = (100 - 63.5) 0.0614 mm / cos 40 = 2.9 mm on the sheet: the vectors
+// end there whether they or the images are dewarped, within two distances of vectors, since windows count of which half
+// is visible. The corners in pixels of the dewarped images would move this border by 1 mm. An image is the same mask.
+TEST_F(Stereo, MasksApplyToTheRecordedImages) {
+  std::string const text = with(stereo_setup(40, "[5.0, -4.0, 1.0]"), "window_px = [32, 32]\noverlap = 0.5",
+                                "window_px = [32, 16]\noverlap = 0.75");
+  Image<std::uint16_t> mask(128, 128, 1);
+  for (int row = 0; row < 128; ++row)
+    for (int column = 100; column < 128; ++column) mask(column, row) = 0;
+  write_tiff(in("mask.tif").string(), mask, {});
+  auto const find_border = [&](std::string const& kind, std::vector<std::string> const& more) {
+    write("setup.toml", text + "[[correlate.mask]]\n" + kind);
+    render("case");
+    for (char const* camera : {"case/left", "case/right"}) succeed({"correlate", camera, "--quiet"});
+    combine(more);
+    std::vector<double> const x = dataset("/x_mm"), displacement = dataset("/displacement_mm");
+    double largest = -100;
+    for (std::size_t i = 0; i < displacement.size() / 3; ++i)
+      if (std::isfinite(displacement[3 * i])) largest = std::max(largest, x[i % x.size()]);
+    return largest;
+  };
+  std::string const polygon = "kind = \"polygon\"\nx_px = [99.5, 130, 130, 99.5]\ny_px = [-1, -1, 130, 130]\n";
+  double const spacing_mm = 4 * 0.07, vectors = find_border(polygon, {}),
+               images = find_border(polygon, {"--dewarp", "images"});
+  EXPECT_NEAR(vectors, 2.9, 2 * spacing_mm);
+  EXPECT_NEAR(images, vectors, 2 * spacing_mm);
+  EXPECT_EQ(find_border("kind = \"image\"\nfile = \"mask.tif\"\n", {"--dewarp", "images"}), images);
+  EXPECT_NE(Hdf5Reader(in("uvw.h5").string()).attribute("preparation_b_1_sha256"), "");
 }
 
 /// Returns whether a warning contains a piece of text.

@@ -95,6 +95,19 @@ TEST_F(Sweeps, CollectTellsThatCasesGaveWarnings) {
   EXPECT_EQ(json_of({"sweep", "collect", "run", "--no-figures"})["warned"], 1);
 }
 
+// A setup with [sequence] is that of its first pair, unless an axis selects others.
+TEST_F(Sweeps, OfASequenceNameItsPair) {
+  succeed({"init", "piv", "-o", "piv.toml"});
+  std::string const piv = with(read("piv.toml"), "\ndt_us", "\n# dt_us");
+  write("piv.toml", with(piv, "[flow]", "[sequence]\nframes = 4\ndt_us = 10.0\n\n[flow]"));
+  write("one.toml", "base = \"piv.toml\"\n[axes]\n\"lens.f_number\" = [8, 16]\n");
+  write("pairs.toml", "base = \"piv.toml\"\n[axes]\n\"sequence.pair\" = { linear = [0, 2, 3] }\n");
+  EXPECT_THAT(gladstone({"sweep", "plan", "one.toml", "-o", "one"}).err, testing::HasSubstr("\"sequence.pair\""));
+  Outcome const pairs = gladstone({"sweep", "plan", "pairs.toml", "-o", "pairs"});
+  EXPECT_EQ(pairs.exit_code, 0) << pairs.err;
+  EXPECT_THAT(pairs.err, testing::Not(testing::HasSubstr("warning")));
+}
+
 TEST_F(Sweeps, FromStudyToTable) {
   auto const planned = json_of({"sweep", "plan", "study.toml", "-o", "run", "--device", "cpu"});
   EXPECT_EQ(planned["cases"], 12);

@@ -1,12 +1,12 @@
 """Faults of the commands that write one result: density, volume, three components, other formats, printed patterns,
-tracked vectors; and of sequences. Results have the same bytes in every run except for their date."""
+tracked vectors; and of sequences, rendered or measured. Results have the same bytes in every run except for dates."""
 
 import os
 import re
 import shutil
 import time
 
-from bench import Wrong, names, read
+from bench import Wrong, names, read, write
 from faults import fault, kill, on_full_disk, sizes
 
 # Name of the output, arguments of the result, and additional ones of an older result at the same place.
@@ -21,11 +21,50 @@ COMMANDS = {
     "tracking": ("vectors.csv", ["correlate", "known_a", "--set", 'correlate.method="tracking"'],
                  ["--set", 'correlate.tracking.output="scattered"']),
     "sequence": ("run", ["correlate", "frames/a*.tif", "frames/b*.tif", "--no-figures"], None),
+    "film": ("film", ["render", "film.toml"], None),
+    "consecutive": ("run", ["correlate", "film/frames", "--pairing", "consecutive", "--no-figures"], None),
+    "tracks": ("run", ["correlate", "film/frames", "--pairing", "consecutive", "--no-figures",
+                       "--set", 'correlate.method="tracking"'], None),
+    "background": ("run", ["correlate", "film/frames", "--pairing", "consecutive", "--no-figures",
+                           "--config", "background.toml"], None),
 }
+
+# Four frames of ideal particle images, which move by 2.3 px.
+FILM = """experiment = "piv"
+[sequence]
+frames = 4
+dt_us = 10.0
+[camera]
+pixels = [96, 96]
+pixel_pitch_um = 10.0
+[lens]
+focal_length_mm = 105.0
+f_number = 22.0
+[geometry]
+z_a_mm = 750.0
+[particles]
+per_pixel = 0.05
+volume_mm = [9.0, 9.0, 1.0]
+scattering = "gaussian"
+[laser]
+thickness_mm = 1.0
+[flow]
+velocity_m_s = [14.12857, 0.0, 0.0]
+"""
+BACKGROUND = """[correlate]
+[[correlate.preprocess]]
+kind = "background"
+subtract = "minimum"
+"""
 
 
 def contents(path):
-    """Bytes of a file, or of each file of a folder, without dates; None if there is none."""
+    """Bytes of a file, or of each file of a folder, without dates; None if there is none.
+
+    summary.json of rendered cases contains times and is left out.
+    """
+    if os.path.basename(path) == "summary.json":
+        return b""
     if os.path.isdir(path):
         return {name: contents(os.path.join(path, name)) for name in names(path)}
     return re.sub(rb"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\dZ", b"", read(path)) if os.path.exists(path) else None
@@ -40,6 +79,9 @@ def known_results(bench):
     for number, kind in enumerate("aba"):
         shutil.copy(bench.at(f"known_{kind}/reference.tif"), bench.at(f"frames/a{number}.tif"))
         shutil.copy(bench.at(f"known_{kind}/flow.tif"), bench.at(f"frames/b{number}.tif"))
+    write(bench.at("film.toml"), FILM)
+    write(bench.at("background.toml"), BACKGROUND)
+    bench.succeed("render", "film.toml", "-o", "film", "--quiet")
     bench.succeed("init", "stereo", "-o", "stereo.toml", "--quiet")
     bench.succeed("render", "stereo.toml", "-o", "stereo", "--quiet")
     for camera in ("left", "right"):
@@ -83,7 +125,7 @@ def repeat(bench, place, name, path, arguments, known):
 
 @fault
 def kill_command(bench, rng, place):
-    """kill -9 of `reconstruct`, `tomography`, `stereo`, `convert`, `target`, tracking or a sequence."""
+    """kill -9 of `reconstruct`, `tomography`, `stereo`, `convert`, `target`, tracking, or sequences of either kind."""
     name, path, arguments, known, has_old = draw_command(bench, rng, place)
     kill(bench, rng, bench.seconds[name], place, *arguments)
     state = contents(path)

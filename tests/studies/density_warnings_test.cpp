@@ -68,6 +68,41 @@ TEST(DisplacementGradient, IsUnknownForIsolatedVectors) {
   EXPECT_TRUE(std::isnan(compute_displacement_gradient(map, optics())));
 }
 
+// The mean over a window of w x w changes a wave sin(k x) sin(k y) by the factor (sin(k w / 2) / (k w / 2))^2 - 1, here
+// with w = 4 mm = 4 nodes and k w / 2 = 0.314: -0.0326. The series of second order with differences over w / 2 gives
+// 2 (cos(k w / 2) - 1) / 3, -0.0326 to 1 %. The rms of the wave is 1/2.
+TEST(WindowEffect, IsThatOfTheMeanOverAWindow) {
+  Reconstruction result;
+  result.grid = waves(0.0).grid;
+  result.overlap = {4.0, 4.0};
+  double const k = 2.0 * M_PI / wave_length, half = 0.5 * k * 4e-3;
+  for (int row = 0; row < 81; ++row)
+    for (int column = 0; column < 81; ++column) {
+      Vec2d const p = result.grid.position(column, row);
+      result.density.push_back(std::sin(k * p.x) * std::sin(k * p.y));
+    }
+  double const expected = (1.0 - std::pow(std::sin(half) / half, 2)) / 2.0;
+  result.sigma.assign(result.grid.size(), 2.0 * expected);
+  // Along each axis 77 of the 80 nodes of two waves count, without those next to a zero: 80 / 77, or 4 %.
+  EXPECT_NEAR(estimate_window_effect(result).change / expected, 80.0 / 77.0, 0.015);
+  warn_of_window(result);
+  EXPECT_TRUE(result.warnings.empty());
+  result.sigma.assign(result.grid.size(), 0.5 * expected);
+  warn_of_window(result);
+  ASSERT_EQ(result.warnings.size(), 1u);
+  EXPECT_NE(result.warnings.front().find("interrogation windows"), std::string::npos);
+}
+
+TEST(WindowEffect, IsUnknownWithoutUncertainty) {
+  Reconstruction result;
+  result.grid = {5, 5, {}, {1e-3, 1e-3}};
+  result.density.assign(25, 1.0);
+  result.density[12] = 2.0;
+  result.sigma.assign(25, NAN);
+  warn_of_window(result);
+  EXPECT_TRUE(result.warnings.empty());
+}
+
 TEST(ReferenceRegion, OfAllVectorsIsWarnedOf) {
   Reconstruction result;
   result.gradient = {{1.0, 0.0}, {-1.0, 0.0}};

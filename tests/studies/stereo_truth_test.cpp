@@ -5,6 +5,8 @@
 #include <cmath>
 #include <random>
 
+#include "studies/compare/stereo_warnings.h"
+
 namespace gladstone {
 namespace {
 
@@ -42,6 +44,30 @@ TEST(StereoTruth, IsTheMeanOverTheThicknessOfTheSheet) {
     EXPECT_NEAR(at.y, -2e-4, 1e-15);
     EXPECT_NEAR(at.z, 1.25e-5, 4 * std::sqrt(2.0) * 1.25e-5 / std::sqrt(800.0));
   }
+}
+
+// A plane is corrected only if its first disparity is significant and its last one small.
+TEST(StereoAlignment, OfAnUnfinishedIterationIsNotUsed) {
+  StereoMeasurement measurement;
+  EXPECT_FALSE(measurement.is_aligned());
+  stereo::SheetAlignment alignment;
+  alignment.disparity_sigma_px = 0.02;
+  auto const is_aligned = [&](std::vector<double> const& disparity_px) {
+    alignment.disparity_px = disparity_px;
+    measurement.alignment = alignment;
+    return measurement.is_aligned();
+  };
+  auto const warns = [&] {
+    for (std::string const& warning : find_stereo_warnings(measurement))
+      if (warning.find("has not converged") != std::string::npos) return true;
+    return false;
+  };
+  EXPECT_TRUE(is_aligned({4.0, 0.3, 0.004}));
+  EXPECT_FALSE(warns());
+  EXPECT_FALSE(is_aligned({4.0, 2.0, 1.5}));
+  EXPECT_TRUE(warns());
+  EXPECT_FALSE(is_aligned({0.05, 0.004})) << "less than three standard uncertainties";
+  EXPECT_FALSE(warns());
 }
 
 }  // namespace

@@ -37,6 +37,38 @@ TEST(ObjectPlanes, AreFittedWithoutOutliers) {
   EXPECT_NEAR(fit->scatter, 5e-6, 1.5e-6);
 }
 
+// Errors of points with the correlation of windows that overlap by half, (1, 0.5, 0, ...) along each axis: moving
+// averages of two independent values. The squares of 200 errors over their sigma have a mean of 1; its standard
+// deviation is sqrt(2 / 200) = 0.1, and the uncertainty of the scatter adds 5 %.
+TEST(ObjectPlanes, HaveTheUncertaintyOfOverlappingWindows) {
+  constexpr int side = 12, repeats = 200;
+  double const redundancy = find_redundancy(side, 0.5);
+  EXPECT_NEAR(redundancy, 2.0 - 1.0 / side, 1e-12);
+  EXPECT_NEAR(find_redundancy(side, 0.0), 1.0, 1e-12);
+  ObjectPlane const plane{4e-4, {0.02, -0.01}};
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal(0, 5e-6);
+  Vec3d squares{};
+  for (int repeat = 0; repeat < repeats; ++repeat) {
+    std::vector<double> noise((side + 1) * (side + 1));
+    for (double& value : noise) value = normal(random);
+    std::vector<Vec3d> points;
+    for (int j = 0; j < side; ++j)
+      for (int i = 0; i < side; ++i) {
+        auto const at = [&](int column, int row) { return noise[static_cast<std::size_t>(row * (side + 1) + column)]; };
+        double const error = 0.5 * (at(i, j) + at(i + 1, j) + at(i, j + 1) + at(i + 1, j + 1));
+        points.push_back(plane.point({1e-3 * i - 4e-3, 1e-3 * j - 5e-3}) + Vec3d{0, 0, error});
+      }
+    auto const fit = fit_object_plane(points, redundancy * redundancy);
+    ASSERT_TRUE(fit);
+    Vec3d const ratio{(fit->plane.height - plane.height) / fit->height_sigma,
+                      (fit->plane.slope.x - plane.slope.x) / fit->slope_sigma.x,
+                      (fit->plane.slope.y - plane.slope.y) / fit->slope_sigma.y};
+    for (int axis = 0; axis < 3; ++axis) squares[axis] += ratio[axis] * ratio[axis] / repeats;
+  }
+  for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(squares[axis], 1.0, 0.3) << axis;
+}
+
 TEST(ObjectPlanes, NeedPointsThatSpanThem) {
   EXPECT_FALSE(fit_object_plane({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}})) << "no redundancy";
   EXPECT_FALSE(fit_object_plane({{0, 0, 0}, {1, 1, 0}, {2, 2, 1}, {3, 3, 0}, {4, 4, 0}})) << "on one line";
@@ -120,12 +152,18 @@ TEST(SheetAlignment, FindsAMisalignedSheet) {
   EXPECT_NEAR(found.fit.plane.slope.x, sheet.slope.x, 5e-4);
   EXPECT_NEAR(found.fit.plane.slope.y, sheet.slope.y, 5e-4);
   EXPECT_LT(found.scatter_px, 0.1);
+  EXPECT_TRUE(found.has_converged() && found.is_significant());
+  // The uncertainty is small, and explains the errors.
+  EXPECT_LT(found.fit.height_sigma, 2e-6);
+  EXPECT_LT(std::abs(found.fit.plane.height - sheet.height), 4 * found.fit.height_sigma);
+  EXPECT_LT(std::abs(found.fit.plane.slope.x - sheet.slope.x), 4 * found.fit.slope_sigma.x);
+  EXPECT_LT(std::abs(found.fit.plane.slope.y - sheet.slope.y), 4 * found.fit.slope_sigma.y);
   // One iteration measures the disparity of the assumed plane, here of the true one and of the one 0.5 mm off.
-  EXPECT_FALSE(is_significant(align_sheet({&left, &right}, images, sheet, settings, 1)));
+  EXPECT_FALSE(align_sheet({&left, &right}, images, sheet, settings, 1).is_significant());
   SheetAlignment const assumed = align_sheet({&left, &right}, images, {}, settings, 1);
   EXPECT_EQ(assumed.disparity_px.size(), 1u);
   EXPECT_EQ(assumed.disparity_px.front(), found.disparity_px.front());
-  EXPECT_TRUE(is_significant(assumed));
+  EXPECT_TRUE(assumed.is_significant());
 }
 
 }  // namespace

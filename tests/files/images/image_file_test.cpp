@@ -5,13 +5,16 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <initializer_list>
 #include <utility>
 
 #include "render/base/error.h"
+#include "render/files/image_pages.h"
 #include "render/files/source_files.h"
 #include "tests/files/support/output.h"
 #include "tests/support/expect_error.h"
@@ -204,6 +207,80 @@ TEST(ImageFile, PreviewsAreNoPages) {
   auto const [reference, flow] = read_frame_pair(write_pages("previews.tif", {{64, 48}, {16, 12}, {64, 48}, {16, 12}}));
   EXPECT_EQ(reference(0, 0), 1);
   EXPECT_EQ(flow(0, 0), 3);
+}
+
+// Pages are read by the offsets of their directories, in any order, whatever previews lie between them.
+TEST(ImagePages, AreReadInAnyOrder) {
+  ImagePages const pages(write_pages("film.tif", {{64, 48}, {16, 12}, {60, 50}, {16, 12}, {64, 48}}));
+  ASSERT_EQ(pages.count(), 3u);
+  EXPECT_EQ(pages.read(2)(0, 0), 5);
+  EXPECT_EQ(pages.read(0)(63, 47), 1);
+  EXPECT_EQ(pages.read(1)(0, 0), 3);
+  EXPECT_EQ(pages.size(1), (std::array<int, 2>{60, 50}));
+  EXPECT_THAT([&] { pages.read(3); }, ThrowsDataError(ErrorCode::missing_content, "film.tif", HasSubstr("no page 4")));
+}
+
+/// Writes a TIFF of pages of 2 x 1 px of 8 bits, which contain the lowest byte of their index.
+/// @param next  index of the page that follows a page; the number of pages: none
+std::string write_small_pages(std::string const& name, std::size_t pages, bool big_endian, bool big_tiff,
+                              std::function<std::size_t(std::size_t)> const& next) {
+  std::string bytes = big_endian ? "MM" : "II";
+  auto const put = [&](std::uint64_t value, std::size_t size) {
+    for (std::size_t i = 0; i < size; ++i) bytes += static_cast<char>(value >> (8 * (big_endian ? size - 1 - i : i)));
+  };
+  std::size_t const word = big_tiff ? 8 : 4, header = big_tiff ? 16 : 8;
+  std::vector<std::array<std::uint64_t, 2>> const entries{{256, 2}, {257, 1}, {258, 8}, {259, 1},
+                                                          {262, 1}, {273, 0}, {278, 1}, {279, 2}};
+  std::size_t const directory = (big_tiff ? 8 : 2) + entries.size() * (big_tiff ? 20 : 12) + word, page = directory + 2;
+  put(big_tiff ? 43 : 42, 2);
+  if (big_tiff) put(8, 2), put(0, 2);
+  put(header, word);
+  for (std::size_t k = 0; k < pages; ++k) {
+    std::size_t const start = header + k * page;
+    put(entries.size(), big_tiff ? 8 : 2);
+    for (auto const& [tag, value] : entries) {
+      put(tag, 2);
+      put(big_tiff ? 16 : 4, 2);  // type: integer of a word
+      put(1, word);
+      put(tag == 273 ? start + directory : value, word);
+    }
+    put(next(k) < pages ? header + next(k) * page : 0, word);
+    put(k & 0xff, 1);
+    put(k & 0xff, 1);
+  }
+  std::string const path = temporary(name);
+  std::ofstream(path, std::ios::binary) << bytes;
+  return path;
+}
+
+// Recordings have thousands of pages. All kinds of TIFF have the offset of their first page at other places.
+TEST(ImagePages, MayBeThousands) {
+  constexpr std::size_t many = 3000;
+  for (bool const big_endian : {false, true})
+    for (bool const big_tiff : {false, true}) {
+      ImagePages const pages(
+          write_small_pages("many.tif", many, big_endian, big_tiff, [](std::size_t k) { return k + 1; }));
+      ASSERT_EQ(pages.count(), many);
+      for (std::size_t const page : {0u, 1u, 255u, 2999u}) EXPECT_EQ(pages.read(page)(1, 0), page & 0xff) << page;
+    }
+}
+
+// A damaged file in which page 3 is followed by page 1 again has three pages.
+TEST(ImagePages, EndWhereTheyRepeat) {
+  for (bool const big_tiff : {false, true}) {
+    ImagePages const pages(
+        write_small_pages("cycle.tif", 5, false, big_tiff, [](std::size_t k) { return k == 2 ? 0 : k + 1; }));
+    EXPECT_GE(pages.count(), 3u);
+    EXPECT_LE(pages.count(), 4u) << "a page that the file declares, but that cannot be read, counts";
+    EXPECT_EQ(pages.read(2)(0, 0), 2);
+  }
+}
+
+TEST(ImagePages, OfAFileThatIsBeingWrittenAreRefused) {
+  std::string const path = write_pages("growing.tif", {{8, 6}, {8, 6}});
+  ImagePages const pages(path);
+  std::ofstream(path, std::ios::app) << 'x';
+  EXPECT_THAT([&] { pages.read(0); }, ThrowsDataError(ErrorCode::inconsistent, "growing.tif"));
 }
 
 /// Replaces a value in the header of a TIFF. @param tag  256: width, 257: height
