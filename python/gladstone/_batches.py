@@ -54,11 +54,11 @@ class RenderedBatches:
     ):
         """Makes batches of `batch` pairs.
 
-        setup: a `Setup`, a dictionary of tables, or a setup file, of PIV with one camera and particles.scattering =
-            "gaussian".
+        setup: a `Setup`, a dictionary of tables, or a setup file, of PIV with one camera whose particles have ideal
+            images; particles.scattering = "gaussian", "lambert", or "mie" with one diameter.
         vary: function of the batch's index and a random generator that returns the keys to replace: a dictionary for
-            all pairs, or a list of one dictionary per pair. Frame size and point spread function must be the same for
-            all pairs of a batch. Other numbers in [flow] cost least, since only this table is read again.
+            all pairs, or a list of one dictionary per pair. The frame size must be the same for all pairs of a
+            batch. Other numbers in [flow] cost least, since only this table is read again.
         length: number of batches; None: unlimited.
         seed: changes the particles, the noise and the random generator of all batches.
         device: "auto" (a GPU if there is one), "cpu" or "cuda".
