@@ -55,12 +55,11 @@ def python_api_page(package: pathlib.Path) -> str:
     known = definitions(package)
     names = [name for name in public_names(package) if name in known]
     names += sorted(name for name in known if name.startswith("info.") and name[5:] not in names)
-    of_torch = sorted(node.name for node in ast.parse((package / "torch.py").read_text(encoding="utf-8")).body
-                      if isinstance(node, ast.ClassDef))
-    names += of_torch
-    for name in names:
-        node = known[name]
-        page += [f"## {'torch.' if name in of_torch else ''}{name}", "", *entry(node, name)]
+    of_torch = {f"torch.{node.name}": node for node in ast.parse((package / "torch.py").read_text(encoding="utf-8")).body
+                if isinstance(node, ast.ClassDef)}
+    for heading in [*names, *sorted(of_torch)]:
+        node, name = of_torch.get(heading) or known[heading], heading.removeprefix("torch.")
+        page += [f"## {heading}", "", *entry(node, name)]
         for inner in members(node) if isinstance(node, ast.ClassDef) else []:
             page += entry(inner, name if inner.name == "__init__" else inner.name)
     return "\n".join(page)

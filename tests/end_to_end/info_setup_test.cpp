@@ -150,7 +150,7 @@ TEST_F(InfoSetup, RefusesBadInput) {
   expect_refused({"info", "setup", "bad.toml"}, 2, {"bad.toml", "f_number"});
   expect_refused({"info", "setup"}, 2, {"info setup: requires a file"});
   expect_refused({"info", "setup", "setup.toml", "--figure", "setup.toml"}, 2, {"setup.toml"});
-  expect_refused({"info", "setup", "setup.toml", "--figure", "layout.gif"}, 2, {"use .png, .svg or .pdf"});
+  expect_refused({"info", "setup", "setup.toml", "--figure", "layout.gif"}, 2, {"must end in .png, .svg or .pdf"});
 }
 
 }  // namespace

@@ -435,7 +435,7 @@ TEST_F(Reports, AreWrittenAsMarkdownWithFiguresBesideIt) {
   EXPECT_THAT(read("text/report_figures/error_budget.svg"), HasSubstr("</svg>"));
   succeed({"report", "case", "-o", "other/report.md", "--figure-format", "svg", "--quiet"});
   EXPECT_THAT(read("other/report.md"), HasSubstr("![error\\_budget](<report_figures/error_budget.svg>)"));
-  expect_refused({"report", "case", "-o", "report.pdf"}, 2, {"use .html or .md"});
+  expect_refused({"report", "case", "-o", "report.pdf"}, 2, {"must end in .html or .md"});
 }
 
 TEST_F(Reports, DrawFiguresAsPdf) {

@@ -32,7 +32,9 @@ inline void append_keys(SetupRecord const& record, std::string const& table,
                         std::map<std::string, std::string>& values) {
   for (SetupRecord::Entry const& entry : record.entries) {
     std::string const path = table.empty() ? entry.key : table + '.' + entry.key;
-    values.emplace(path, entry.value);
+    // the formula of a gas, for example, is looked for only to suggest its name
+    bool const only_looked_for = !entry.read && entry.tables.empty();
+    if (!only_looked_for) values.emplace(path, entry.value);
     for (SetupRecord const& below : entry.tables) append_keys(below, path, values);
   }
 }
