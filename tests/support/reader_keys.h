@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -27,27 +28,26 @@ inline void run_readers(SetupTable root) {
   read_light(root);
 }
 
-/// Appends the dotted paths of a record's keys and their TOML values (empty: none); arrays of tables count as tables.
-inline void append_keys(SetupRecord const& record, std::string const& table,
-                        std::map<std::string, std::string>& values) {
-  for (SetupRecord::Entry const& entry : record.entries) {
-    std::string const path = table.empty() ? entry.key : table + '.' + entry.key;
-    // the formula of a gas, for example, is looked for only to suggest its name
-    bool const only_looked_for = !entry.read && entry.tables.empty();
-    if (!only_looked_for) values.emplace(path, entry.value);
-    for (SetupRecord const& below : entry.tables) append_keys(below, path, values);
-  }
-}
-
 /// Keys that the readers request from a setup.
 struct RequestedKeys {
   std::map<std::string, std::string> values;  ///< TOML text of the value of each key, by dotted path; empty: none
-  std::vector<std::string> missing;           ///< paths of required keys that the setup lacks
+  std::set<std::string> looked_for;  ///< paths whose presence alone is requested, such as that of a gas's formula
+  std::vector<std::string> missing;  ///< paths of required keys that the setup lacks
 
   bool requires_key(std::string const& path) const {
     return std::find(missing.begin(), missing.end(), path) != missing.end();
   }
 };
+
+/// Appends the keys of a record; arrays of tables count as tables.
+inline void append_keys(SetupRecord const& record, std::string const& table, RequestedKeys& found) {
+  for (SetupRecord::Entry const& entry : record.entries) {
+    std::string const path = table.empty() ? entry.key : table + '.' + entry.key;
+    found.values.emplace(path, entry.value);
+    if (!entry.read && entry.tables.empty()) found.looked_for.insert(path);
+    for (SetupRecord const& below : entry.tables) append_keys(below, path, found);
+  }
+}
 
 inline RequestedKeys requested_keys(std::string const& setup) {
   SetupDocument::State state;
@@ -57,7 +57,7 @@ inline RequestedKeys requested_keys(std::string const& setup) {
   state.record.present = true;
   run_readers(SetupTable(&state, {}));
   RequestedKeys found;
-  append_keys(state.record, "", found.values);
+  append_keys(state.record, "", found);
   for (SetupProblem const& problem : state.problems) {
     if (problem.code != ErrorCode::missing_key) continue;
     std::string path = problem.key;  // with indices: "camera[0].name"
