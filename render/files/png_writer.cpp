@@ -49,7 +49,7 @@ std::string encode_png(Image<std::uint8_t> const& image) {
   }
   return std::string(signature) +
          png_chunk("IHDR", big_endian(static_cast<std::uint32_t>(columns)) +
-                           big_endian(static_cast<std::uint32_t>(image.rows())) + std::string(grey_8_bit)) +
+                               big_endian(static_cast<std::uint32_t>(image.rows())) + std::string(grey_8_bit)) +
          png_chunk("IDAT", compressed(rows)) + png_chunk("IEND", "");
 }
 

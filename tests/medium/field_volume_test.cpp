@@ -269,8 +269,7 @@ TEST_F(FieldVolume, UnknownSpacingIsAskedForAndNotesAreWarnings) {
   setup.field = {};
   setup.field.kind = FieldKind::file;
   setup.field.file = folder + "h_stretch.h5";
-  EXPECT_THAT(build_medium(setup).warnings,
-              testing::Contains(testing::HasSubstr("interpolated to a uniform grid: y")));
+  EXPECT_THAT(build_medium(setup).warnings, testing::Contains(testing::HasSubstr("interpolated to a uniform grid: y")));
 }
 
 TEST_F(FieldVolume, ExtrudedPlaneFillsTheThickness) {
