@@ -53,7 +53,8 @@ void BlockValues::add(double value, std::size_t line) {
 }
 
 std::vector<std::vector<double>> BlockValues::split(std::size_t variables, std::optional<double> declared) const {
-  double const points = declared.value_or(static_cast<double>(values_.size() / variables));
+  std::size_t const complete = values_.size() / variables;
+  double const points = declared.value_or(static_cast<double>(complete));
   if (points * static_cast<double>(variables) != static_cast<double>(values_.size())) {
     throw DataError(ErrorCode::damaged, path_,
                     fmt::format("contains {} values in BLOCK packing, but {} variables at {} points need {}; export it "

@@ -50,9 +50,9 @@ class HostPairBatches final : public PairBatchRenderer {
     for (OwnedPairModel const& one : models_) {
       parallel_chunks(pixels_, grain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t pixel = begin; pixel < end; ++pixel) {
-          auto const columns = static_cast<std::size_t>(columns_);
-          Vec2d const moved =
-              one.model.displacement({static_cast<double>(pixel % columns), static_cast<double>(pixel / columns)});
+          std::size_t const column = pixel % static_cast<std::size_t>(columns_);
+          std::size_t const row = pixel / static_cast<std::size_t>(columns_);
+          Vec2d const moved = one.model.displacement({static_cast<double>(column), static_cast<double>(row)});
           out[pixel] = static_cast<float>(moved.x);
           out[pixels_ + pixel] = static_cast<float>(moved.y);
         }

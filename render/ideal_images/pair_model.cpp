@@ -59,8 +59,8 @@ LargestBlur find_largest_blur(ParticleSetup const& particles, LaserSheet<double>
   if (!(blur.reach > 0)) return largest;
   auto const each = [&](auto const& visit) {
     for (int k = 0; k < across * across * deep; ++k) {
-      Vec3d const part{k % across / (across - 1.0) - 0.5, k / across % across / (across - 1.0) - 0.5,
-                       k / (across * across) / (deep - 1.0) - 0.5};
+      int const column = k % across, row = k / across % across, layer = k / (across * across);
+      Vec3d const part{column / (across - 1.0) - 0.5, row / (across - 1.0) - 0.5, layer / (deep - 1.0) - 0.5};
       Vec3d const size = *particles.volume;
       Vec3d const place = particles.center + Vec3d{part.x * size.x, part.y * size.y, part.z * size.z};
       for (int pulse = 0; pulse < 2; ++pulse) visit(place.z, sheet.photons(place, pulse));

@@ -24,7 +24,9 @@ void append_elements(Camera& camera, Setup const& setup, ElementSide side, Pose<
     std::string const name = element_name(setup.elements, i);
     element.add_surfaces(element.pose().within(frame), fresnel,
                          [&](CameraElement<double> const& surface, std::string const& part) {
-                           camera.append(surface, part.empty() ? name : name + ", " + part);
+                           std::string full = name;
+                           if (!part.empty()) full.append(", ").append(part);
+                           camera.append(surface, full);
                          });
   }
 }

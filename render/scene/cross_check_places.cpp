@@ -46,7 +46,7 @@ struct OnTheWay {
 };
 
 /// Reports elements that are not between the lens and its image.
-void check_elements_behind_lens(Setup const& setup, SetupTable root) {
+void check_elements_behind_lens(Setup const& setup, SetupTable const& root) {
   for (std::size_t i = 0; i < setup.elements.size(); ++i) {
     OpticalElement const& element = setup.elements[i];
     if (element.side() != ElementSide::sensor) continue;
@@ -89,7 +89,7 @@ void cross_check_geometry(Setup const& setup, SetupTable geometry) {
   }
 }
 
-void cross_check_elements(Setup const& setup, SetupTable root) {
+void cross_check_elements(Setup const& setup, SetupTable const& root) {
   if (setup.elements.empty()) return;
   check_elements_behind_lens(setup, root);
   CameraAxis const axis{front_of(setup), setup.camera_pose().z};

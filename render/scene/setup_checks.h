@@ -23,7 +23,7 @@ std::string metres_hint(double length);
 void cross_check_geometry(Setup const& setup, SetupTable geometry);
 
 /// Reports optical elements that overlap another object or violate the order of the light path along the camera's axis.
-void cross_check_elements(Setup const& setup, SetupTable root);
+void cross_check_elements(Setup const& setup, SetupTable const& root);
 
 /// Warns if the thickness of the medium truncates a field that is still significant there.
 void cross_check_thickness(Setup const& setup, std::vector<std::string>& warnings);

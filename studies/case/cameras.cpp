@@ -62,8 +62,9 @@ void keep_own_elements(SetupDocument& document, std::string const& key, std::str
     bool seen = !seen_by || (seen_by->kind == Kind::array && seen_by->elements.empty());
     auto const problem = [&](std::string const& message) {
       std::vector<SetupTable> tables = places.root().tables(key);
-      document.add_problem(i < tables.size() ? tables[i].where("cameras") : key,
-                           key + '[' + std::to_string(i) + "].cameras: " + message);
+      document.add_problem(
+          i < tables.size() ? tables[i].where("cameras") : key,
+          std::string(key).append("[").append(std::to_string(i)).append("].cameras: ").append(message));
     };
     if (seen_by && seen_by->kind != Kind::array) {
       problem("must be an array of camera names; write [\"left\", \"right\"]");
