@@ -1,9 +1,7 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <utility>
 
 #include "analysis/vectors/vector_writers/vector_columns.h"
 #include "analysis/vectors/vector_writers/vector_writers.h"
@@ -64,14 +62,13 @@ void write_csv_table(std::string const& path, VectorTable const& table, FileOrig
 void write_tecplot_table(std::string const& path, VectorTable const& table, FileOrigin const& origin) {
   std::vector<VectorColumn> columns = table.columns;
   std::erase_if(columns, [](VectorColumn const& column) { return !column.is_known(); });
-  VectorColumn marks = mark_unknown_values(columns);
-  bool const any_unknown = std::any_of(marks.values.begin(), marks.values.end(), [](double mark) { return mark > 0; });
-  if (any_unknown) columns.push_back(std::move(marks));
+  columns.push_back(mark_unknown_values(columns));
   std::string names;
   for (VectorColumn const& column : columns) names += " \"" + column.name + '"';
   std::string text = fmt::format(
-      "TITLE = \"gladstone vectors, {}{}\"\nVARIABLES ={}", table.remark,
-      any_unknown ? "; values are 0 where unknown contains 2^k, k = number of the variable from 0" : "", names);
+      "TITLE = \"gladstone vectors, {}; values are 0 where unknown contains 2^k, k = number of the variable from 0\"\n"
+      "VARIABLES ={}",
+      table.remark, names);
   bool const grid = table.grid_columns > 0;
   text += fmt::format("\nZONE T=\"vectors\", I={}, J={}, DATAPACKING=POINT\n",
                       grid ? static_cast<std::size_t>(table.grid_columns) : table.rows(), grid ? table.grid_rows : 1);
