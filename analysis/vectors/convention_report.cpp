@@ -124,8 +124,7 @@ std::string ProbableMistake::warning() const {
       conventions.empty() ? "correct the file" : "correct the file, or accept it with --conventions " + conventions;
   return fmt::format(
       "{} (the vectors differ from the truth by {:.3g} px rms as read, but by only {:.3g} px with this mistake "
-      "undone); "
-      "{}",
+      "undone); {}",
       text, as_read.rms_px, corrected_fit.rms_px, remedy);
 }
 

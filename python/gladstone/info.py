@@ -10,16 +10,8 @@ from typing import Any
 import numpy as np
 
 from . import _core
-from ._errors import OutputError
 from ._images import host_image
 from ._setup import as_setup
-
-
-def _figure_path(figure: str | os.PathLike | None) -> str:
-    path = os.fspath(figure or "")
-    if path and not path.endswith((".png", ".svg", ".pdf")):
-        raise OutputError(path, "has no ending of a figure; use .png, .svg or .pdf")
-    return path
 
 
 def lens(
@@ -36,7 +28,7 @@ def lens(
     figure: path of a figure (.png, .svg) to draw.
     """
     catalogues = [os.fspath(one) for one in glasses]
-    return json.loads(_core.info_lens(os.fspath(file), catalogues, wavelength_nm, _figure_path(figure)))
+    return json.loads(_core.info_lens(os.fspath(file), catalogues, wavelength_nm, os.fspath(figure or "")))
 
 
 def field(
@@ -55,7 +47,7 @@ def field(
     figure: path of a drawing of the three planes through its middle (.png, .svg, .pdf).
     """
     return json.loads(
-        _core.info_field(os.fspath(file), dataset, axes, os.fspath(setup or ""), _figure_path(figure))
+        _core.info_field(os.fspath(file), dataset, axes, os.fspath(setup or ""), os.fspath(figure or ""))
     )
 
 
@@ -76,7 +68,7 @@ def setup(given, *, figure: str | os.PathLike | None = None) -> dict[str, Any]:
 
     figure: path of a drawing of the layout (.png, .svg, .pdf).
     """
-    return json.loads(_core.info_setup(as_setup(given)._core, _figure_path(figure)))
+    return json.loads(_core.info_setup(as_setup(given)._core, os.fspath(figure or "")))
 
 
 class Mie:
@@ -117,5 +109,5 @@ def mie(x: float, m: complex, *, figure: str | os.PathLike | None = None) -> Mie
     Returns an object with q_ext, q_sca, q_back, g, and s11 and polarization over angle_deg.
     """
     x, m = float(x), complex(m)
-    text = _core.info_mie(x, m.real, m.imag, _figure_path(figure))
+    text = _core.info_mie(x, m.real, m.imag, os.fspath(figure or ""))
     return Mie(x, m, json.loads(text))

@@ -14,6 +14,7 @@
 #include "render/planning.h"
 #include "studies/case/case.h"
 #include "studies/case/ray_file.h"
+#include "studies/commands/figure_ending.h"
 #include "studies/commands/info_field.h"
 #include "studies/commands/info_image.h"
 #include "studies/commands/info_lens.h"
@@ -71,14 +72,20 @@ void bind_information(nb::module_& module) {
       "info_lens",
       [](std::string const& file, std::vector<std::string> const& glasses, double wavelength_nm,
          std::string const& figure) {
-        return run([&] { return describe_lens({file, glasses, wavelength_nm, figure}).json; });
+        return run([&] {
+          check_figure_ending(figure);
+          return describe_lens({file, glasses, wavelength_nm, figure}).json;
+        });
       },
       nb::arg("file"), nb::arg("glasses"), nb::arg("wavelength_nm"), nb::arg("figure"));
   module.def(
       "info_field",
       [](std::string const& file, std::string const& dataset, std::string const& axes, std::string const& setup,
          std::string const& figure) {
-        return run([&] { return describe_field(file, dataset, axes, setup, figure).json; });
+        return run([&] {
+          check_figure_ending(figure);
+          return describe_field(file, dataset, axes, setup, figure).json;
+        });
       },
       nb::arg("file"), nb::arg("dataset"), nb::arg("axes"), nb::arg("setup"), nb::arg("figure"));
   module.def(
@@ -100,13 +107,19 @@ void bind_information(nb::module_& module) {
   module.def(
       "info_setup",
       [](SetupText const& setup, std::string const& figure) {
-        return run([&] { return describe_setup(setup.document(), setup.name, figure).json; });
+        return run([&] {
+          check_figure_ending(figure);
+          return describe_setup(setup.document(), setup.name, figure).json;
+        });
       },
       nb::arg("setup"), nb::arg("figure"));
   module.def(
       "info_mie",
       [](double x, double m_real, double m_imag, std::string const& figure) {
-        return run([&] { return describe_mie({x, {m_real, m_imag}, figure}).json; });
+        return run([&] {
+          check_figure_ending(figure);
+          return describe_mie({x, {m_real, m_imag}, figure}).json;
+        });
       },
       nb::arg("x"), nb::arg("m_real"), nb::arg("m_imag"), nb::arg("figure"));
   module.def(

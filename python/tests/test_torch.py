@@ -26,7 +26,7 @@ def test_batches_are_tensors_where_they_were_rendered(piv, device):
     from gladstone.torch import RenderedBatches
 
     if device == "cuda" and not torch.cuda.is_available():
-        pytest.skip("there is no GPU")
+        pytest.skip("requires a GPU")
     setup = piv.replace({"particles.scattering": "gaussian", "camera.pixels": [64, 48], "render.rays_per_dot": "auto"})
     batches = RenderedBatches(setup, 2, 3, device=device)
     images, flow = batches[0]

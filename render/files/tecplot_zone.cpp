@@ -55,14 +55,15 @@ void BlockValues::add(double value, std::size_t line) {
 std::vector<std::vector<double>> BlockValues::split(std::size_t variables, std::optional<double> declared) const {
   std::size_t const complete = values_.size() / variables;
   double const points = declared.value_or(static_cast<double>(complete));
-  if (points * static_cast<double>(variables) != static_cast<double>(values_.size())) {
+  double const needed = points * static_cast<double>(variables);
+  if (needed != static_cast<double>(values_.size())) {
     throw DataError(ErrorCode::damaged, path_,
                     fmt::format("contains {} values in BLOCK packing, but {} variables at {} points need {}; export it "
                                 "again",
-                                values_.size(), variables, points, points * static_cast<double>(variables)));
+                                values_.size(), variables, points, needed));
   }
   std::vector<std::vector<double>> columns;
-  auto const count = static_cast<std::ptrdiff_t>(values_.size() / variables);
+  auto const count = static_cast<std::ptrdiff_t>(complete);
   for (auto at = values_.begin(); at != values_.end(); at += count) columns.emplace_back(at, at + count);
   return columns;
 }

@@ -32,7 +32,7 @@ std::unique_ptr<TiffPageReader> open_tiff(InputFile const& file);
 
 /// Opens one page of a TIFF that open_tiff() accepts as page 0, without reading the directories of the pages before it.
 /// @param directory  TiffPageReader::directory() of the page
-/// @return nullptr if there is no such page
+/// @return nullptr if the page cannot be read
 std::unique_ptr<PageReader> open_tiff_page(InputFile const& file, std::uint64_t directory);
 
 /// Describes the samples of the first page of a TIFF, for error messages: "unsigned integers of 64 bits and compression

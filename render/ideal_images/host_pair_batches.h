@@ -7,7 +7,7 @@
 
 namespace gladstone {
 
-/// Checks that models can be rendered in one batch. @throws DataError if their frames or PSFs differ
+/// Checks that models can be rendered in one batch. @throws DataError if their frames differ in size
 void check_same_frames(std::vector<OwnedPairModel> const& models);
 
 /// Checks the number of seeds of a batch: any number for one model, else one per model. @throws DataError

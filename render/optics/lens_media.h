@@ -27,7 +27,7 @@ class LensMedia {
       : prescription_(prescription), catalogue_(catalogue), wavelength_(wavelength), absorption_(absorption) {}
 
   /// Returns the properties of a medium; an unknown glass is noted, and taken as air.
-  /// @param surface_where  file and line of the surface: the place in messages if the medium has no line of its own
+  /// @param surface_where  file and line of the surface, named in messages about media that share the surface's line
   LensMedium find(PrescribedMedium const& medium, std::string const& surface_where);
 
   /// Returns a glass of a catalogue, or the one with nd and Vd of its line if no catalogue contains it or if an assumed

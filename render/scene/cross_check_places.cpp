@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <limits>
 #include <optional>
 #include <string>
@@ -47,13 +48,14 @@ struct OnTheWay {
 
 /// Reports elements that are not between the lens and its image.
 void check_elements_behind_lens(Setup const& setup, SetupTable const& root) {
+  auto const is_behind = [](OpticalElement const& element) { return element.side() == ElementSide::sensor; };
+  if (std::none_of(setup.elements.begin(), setup.elements.end(), is_behind)) return;
+  Pose<double> const exit = lens_exit(setup);
+  double to_image = dot(build_camera(setup).sensor.pose.origin - exit.origin, exit.z);
+  for (OpticalElement const& element : setup.elements) to_image -= element.to_sensor();
   for (std::size_t i = 0; i < setup.elements.size(); ++i) {
     OpticalElement const& element = setup.elements[i];
-    if (element.side() != ElementSide::sensor) continue;
-    Pose<double> const exit = lens_exit(setup);
-    Camera const camera = build_camera(setup);
-    double to_image = dot(camera.sensor.pose.origin - exit.origin, exit.z);
-    for (OpticalElement const& other : setup.elements) to_image -= other.to_sensor();
+    if (!is_behind(element)) continue;
     double const z = element.pose().origin.z, half = element.thickness() / 2;
     if (z - half >= -touching && z + half <= to_image + touching) continue;
     element_tables(root)[i].table.problem(

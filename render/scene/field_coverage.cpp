@@ -102,8 +102,7 @@ std::string side_face_warning(BuiltMedium const& medium, Setup const& setup) {
   return fmt::format(
       "medium.field: the field ends within the view at {}, where its density differs from "
       "medium.ambient_density_kg_m3 by up to {:.2g} % of the field's range (rms), so that the images show an edge "
-      "there; "
-      "set the ambient density to that of the field's border, or, if the field should cover the view, check "
+      "there; set the ambient density to that of the field's border, or, if the field should cover the view, check "
       "medium.field.axes and spacing_mm (gladstone info field shows how the file is read)",
       faces, 100 * largest);
 }

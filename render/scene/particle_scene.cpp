@@ -394,8 +394,8 @@ void cross_check_particles(Setup const& setup, SetupTable root, std::vector<std:
     if (element.side() == ElementSide::target) {
       element_tables(root)[i].table.problem(
           "side",
-          "is \"target\", behind the particles, where none of their light reaches the camera; use \"camera\", or "
-          "remove the element");
+          "is \"target\", behind the particles, so that their light does not pass it on the way to the camera; use "
+          "\"camera\", or remove the element");
     } else if (element.side() == ElementSide::camera && piv.particles.volume &&
                face < piv.particles.center.z + piv.particles.volume->z / 2) {
       element_tables(root)[i].table.problem(

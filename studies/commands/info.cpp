@@ -1,9 +1,9 @@
 #include <CLI/CLI.hpp>
-#include <filesystem>
 
 #include "render/base/error.h"
 #include "studies/commands/arguments.h"
 #include "studies/commands/command.h"
+#include "studies/commands/figure_ending.h"
 #include "studies/commands/info_field.h"
 #include "studies/commands/info_image.h"
 #include "studies/commands/info_lens.h"
@@ -17,16 +17,6 @@ namespace {
 int print(GlobalOptions const& options, Description const& description) {
   print_result(options, description.json, description.text);
   return ok;
-}
-
-/// Rejects the name of a new file without the ending of a figure. Whether an existing file may be replaced is checked
-/// when it is opened.
-void check_figure_ending(std::string const& figure) {
-  std::error_code error;
-  if (figure.empty() || figure.ends_with(".png") || figure.ends_with(".svg") || figure.ends_with(".pdf") ||
-      std::filesystem::exists(figure, error))
-    return;
-  throw OutputError(figure, "is not the name of a figure: it must end in .png, .svg or .pdf");
 }
 
 }  // namespace

@@ -29,7 +29,8 @@ inline constexpr double refinement_tolerance = 5e-4;
 /// their cubic interpolation (Lagrange, of 4 x 4 nodes) from the lattice of twice the spacing. Where both agree to
 /// within the tolerance, nodes in between are interpolated; elsewhere they are computed, and compared likewise. Cubic
 /// interpolation over half the distance is 16 times more accurate where the map is smooth, so that the errors of
-/// interpolated nodes are well below the tolerance. Details between nodes that affect none of them are missed.
+/// interpolated nodes are well below the tolerance. Details between nodes are missed if they change the value
+/// of no node.
 /// @param coarsest  a power of 2; 1: all nodes are computed
 /// @return the map; NaN where the sampler returns NaN
 Image<Vec2d> refine_map(int columns, int rows, int coarsest, MapSampler const& sample);

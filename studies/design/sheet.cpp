@@ -94,8 +94,7 @@ std::vector<std::string> list_neglected_effects(Setup const& setup) {
   if (!setup.has_closed_form_layout()) {
     warnings.emplace_back(
         "the sheet assumes a thin lens on the axis, perpendicular to the target: it neglects poses, tilts, other "
-        "elements, "
-        "distortion and aberrations");
+        "elements, distortion and aberrations");
   }
   return warnings;
 }

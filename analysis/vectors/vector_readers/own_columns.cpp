@@ -33,14 +33,13 @@ class ColumnReader {
     if (auto const* const values = find(name)) return *values;
     std::vector<std::string_view> names;
     for (auto const& column : columns_.values) names.push_back(column.first);
-    throw DataError(
-        ErrorCode::missing_content, columns_.path,
-        fmt::format("contains no column {}, which vectors of gladstone have (found: {}); give a file that "
-                    "gladstone correlate or gladstone convert wrote",
-                    name, names.empty() ? "none of its columns" : fmt::format("{}", fmt::join(names, ", "))));
+    throw DataError(ErrorCode::missing_content, columns_.path,
+                    fmt::format("contains no column {}, which vectors of gladstone have (found: {}); give a file that "
+                                "gladstone correlate or gladstone convert wrote",
+                                name, names.empty() ? "other data only" : fmt::format("{}", fmt::join(names, ", "))));
   }
 
-  /// Returns null if there is no such column.
+  /// Returns a column; null if the file lacks it.
   std::vector<double> const* find(std::string_view name) const {
     auto const found = columns_.values.find(name);
     return found == columns_.values.end() ? nullptr : &found->second;

@@ -74,7 +74,7 @@ class ArraySource final : public CheckedSource {
     if (values_ == 1 && rank() == 3 && may_be_components(length(0)) && length(1) > 3 && length(2) > 3) {
       notes_.push_back(
           fmt::format("the last axis of \"{}\" of shape {} is read as the axis x; if it contains the components of a "
-                      "vector instead, write each component as an array of its own",
+                      "vector, write each component as a separate array",
                       name_, shape_text(shape_)));
     }
     std::string const by = place_axes(selection.axes);
