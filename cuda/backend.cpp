@@ -63,6 +63,7 @@ int device_count() {
 }
 
 int device_of_memory(void const* address) {
+  if (device_count() == 0) return -1;
   cudaPointerAttributes attributes{};
   check(cudaPointerGetAttributes(&attributes, address), "cudaPointerGetAttributes");
   return attributes.type == cudaMemoryTypeDevice ? attributes.device : -1;

@@ -46,10 +46,10 @@ def test_iteration_gives_the_batches_of_their_index_on_any_number_of_threads(ide
 
     batches = gs.RenderedBatches(ideal, 2, vary, length=3, device="cpu")
     before = gs.threads()
-    gs.set_threads(1)
-    alone = [batches[k] for k in range(3)]
-    gs.set_threads(3)
     try:
+        gs.set_threads(1)
+        alone = [batches[k] for k in range(3)]
+        gs.set_threads(3)
         iterated = list(batches)
     finally:
         gs.set_threads(before)

@@ -34,5 +34,11 @@ TEST(CudaBackend, RefusesWithoutADeviceWithItsReason) {
   EXPECT_THROW(make_correlator({}), DeviceError);
 }
 
+/// With and without CUDA, and with CUDA but without a driver.
+TEST(CudaBackend, FindsMemoryOfTheHostOnNoDevice) {
+  std::string const text = "on the host";
+  EXPECT_EQ(device_of_memory(text.data()), -1);
+}
+
 }  // namespace
 }  // namespace gladstone::cuda
