@@ -7,10 +7,11 @@ namespace gladstone::cuda {
 namespace {
 
 constexpr int threads = 256;
+constexpr int blocks = 6;  // per multiprocessor
 constexpr int warp = 32;
-constexpr int chunk = 32;  // particle images whose shares a block holds at a time
+constexpr int chunk = warp;  // particle images that a block holds at a time
 constexpr int rows_per_thread = tile_size * tile_size / threads;
-constexpr int most_edges = tile_size + 1;    // pixel edges of an image that matter to a tile, along one axis
+constexpr int margin = rows_per_thread - 1;  // rows of a thread before or after an image
 constexpr unsigned int most_blocks = 65535;  // maximum extent of a grid along y
 
 __global__ void list_kernel(DeviceParticleImages const images, GaussianSpot<double> const shape,
@@ -35,107 +36,140 @@ __global__ void order_kernel(TileLists const lists) {
   }
 }
 
-/// Particle images in the shared memory of a block, restricted to its tile. Axis 0 is x, axis 1 is y.
+/// Particle images in the shared memory of a block. Axis 0 is x, axis 1 is y.
+/// @tparam most_edges  maximum number of pixel edges of an image along one axis
+template <int most_edges>
 struct Chunk {
-  double at[2][chunk];  ///< position [px]
+  double at[2][chunk];     ///< position [px]
+  double first[2][chunk];  ///< first pixel of the footprint
   double light[chunk];
   double per_sigma[chunk];  ///< reciprocal of the standard deviation [1/px]
-  int first[2][chunk];      ///< first pixel of the footprint
   int edge[2][chunk];       ///< first edge of the footprint that is computed
   double integral[2][chunk][most_edges];
-  double share[2][chunk][tile_size];  ///< fractions of light of the tile's columns; those of its rows, times light
-  bool reaches[chunk][tile_size / rows_per_thread];  ///< whether the image reaches the rows of a warp
+  double share[2][chunk][most_edges - 1 + 2 * margin];  ///< light of columns and rows, between zeros
+  // What the sums need is held twice, for a chunk and the one after it.
+  int start[2][2][chunk];                     ///< [chunk % 2] first pixel whose share is computed, relative to the tile
+  std::uint32_t reaching[2][threads / warp];  ///< [chunk % 2] bits of the images that reach the rows of a warp
 };
 
-/// Loads the images `begin` to `begin` + chunk of a tile's list.
-__device__ void load_images(Chunk& held, DeviceParticleImages const& images, GaussianSpot<double> const& shape,
-                            std::uint32_t const* list, std::uint32_t count, std::size_t frame, int const (&corner)[2]) {
-  for (std::uint32_t i = threadIdx.x; i < count; i += threads) {
+/// Pixels and edges of the images of a frame along one axis, as far as they matter to a tile.
+struct Extent {
+  int width;  ///< pixels of a footprint
+  int edges;  ///< edges that are computed: those of a narrow footprint, or of the part of a wide one in the tile
+};
+
+/// Loads the images `list`[0] to `list`[count - 1], by one warp.
+/// @param turn    number of the chunk modulo 2
+/// @param corner  first column and row of the tile
+template <int most_edges>
+__device__ void load_images(Chunk<most_edges>& held, DeviceParticleImages const& images,
+                            GaussianSpot<double> const& shape, Extent const& extent, std::uint32_t const* list,
+                            int count, std::size_t frame, int turn, int2 corner) {
+  int const i = static_cast<int>(threadIdx.x) % warp;
+  int low = tile_size;  // no row
+  if (i < count) {
     ParticleImage const image = images.images[frame * images.count + list[i]];
     Footprint const print = shape.footprint(image.at);
     held.at[0][i] = image.at.x;
     held.at[1][i] = image.at.y;
+    held.first[0][i] = print.column;
+    held.first[1][i] = print.row;
     held.light[i] =
         images.unit ? image.light / __longlong_as_double(static_cast<long long>(images.unit[frame / 2])) : image.light;
     held.per_sigma[i] = 1.0 / image.sigma;
-    held.first[0][i] = print.column;
-    held.first[1][i] = print.row;
-    for (int axis = 0; axis < 2; ++axis) {
-      // A narrow footprint is computed as a whole, of a wide one the part in the tile.
-      held.edge[axis][i] = print.width < most_edges ? 0 : max(0, corner[axis] - held.first[axis][i]);
-    }
+    bool const whole = extent.edges > extent.width;
+    int const left = print.column - corner.x, top = print.row - corner.y;
+    held.edge[0][i] = whole ? 0 : max(0, -left);
+    held.edge[1][i] = whole ? 0 : max(0, -top);
+    held.start[turn][0][i] = left + held.edge[0][i];
+    held.start[turn][1][i] = low = top + held.edge[1][i];
+  }
+  for (int band = 0; band < threads / warp; ++band) {
+    int const row = band * rows_per_thread - low;
+    unsigned int const bits = __ballot_sync(0xffffffffu, row > -rows_per_thread && row < extent.edges - 1);
+    if (i == band) held.reaching[turn][band] = bits;
   }
 }
 
-/// Returns GaussianSpot::edge_integral() of a held image, by the same operations.
-__device__ double edge_integral(Chunk const& held, int axis, int i, int edge) {
-  int const within = edge % 8;
-  double const distance =
-      static_cast<double>(held.first[axis][i] + (edge - within)) - held.at[axis][i] + (within - 0.5);
-  return GaussianSpot<double>::edge_value(distance * held.per_sigma[i]);
+/// Returns a number of less than 2^32. A conversion takes eight cycles of a warp, this sum two.
+__device__ double to_double(int number) { return __hiloint2double(0x43300000, number) - 0x1p52; }
+
+/// One of the elements of an item, in the order of the items and then of the elements.
+struct Place {
+  int item, element;
+};
+
+__device__ Place place_of(int index, int elements) { return {index / elements, index % elements}; }
+
+/// Returns the place that is `step` further.
+__device__ Place next_place(Place const& from, Place const& step, int elements) {
+  Place const next{from.item + step.item, from.element + step.element};
+  return next.element < elements ? next : Place{next.item + 1, next.element - elements};
 }
 
-/// Computes the integrals of the images up to pixel edges. A group of 16 or 32 threads takes one axis of one image.
-/// @param edges  number of edges per image and axis
-__device__ void integrate_edges(Chunk& held, int count, int edges, int const (&corner)[2]) {
-  int const group = edges <= warp / 2 ? warp / 2 : warp;
-  int const member = static_cast<int>(threadIdx.x) & (group - 1);
-  for (int item = static_cast<int>(threadIdx.x) / group; item < 2 * count; item += threads / group) {
-    int const axis = item & 1, i = item >> 1;
-    for (int k = member; k < edges; k += group) {
-      int const edge = held.edge[axis][i] + k, pixel = held.first[axis][i] + edge - corner[axis];
-      if (pixel < 0 || pixel > tile_size) continue;  // not an edge of a pixel in the tile
-      held.integral[axis][i][k] = edge_integral(held, axis, i, edge);
-    }
+/// Computes the integrals of the loaded images up to pixel edges: GaussianSpot::edge_integral() by the same operations.
+template <int most_edges>
+__device__ void integrate_edges(Chunk<most_edges>& held, int count, int edges) {
+  Place const step = place_of(threads, edges);
+  for (Place place = place_of(threadIdx.x, edges); place.item < 2 * count; place = next_place(place, step, edges)) {
+    int const axis = place.item & 1, i = place.item >> 1;
+    int const edge = held.edge[axis][i] + place.element, within = edge & 7;
+    double const distance =
+        held.first[axis][i] + to_double(edge - within) - held.at[axis][i] + (to_double(within) - 0.5);
+    held.integral[axis][i][place.element] = GaussianSpot<double>::edge_value(distance * held.per_sigma[i]);
   }
 }
 
-/// Computes the fractions of light in the columns and rows of the tile, and which warps have some. A warp takes one
-/// axis of one image.
-__device__ void find_shares(Chunk& held, int count, int edges, int width, int const (&corner)[2]) {
-  int const pixel = static_cast<int>(threadIdx.x) % tile_size;
-  for (int item = static_cast<int>(threadIdx.x) / tile_size; item < 2 * count; item += threads / tile_size) {
-    int const axis = item & 1, i = item >> 1;
-    int const within = corner[axis] + pixel - held.first[axis][i], k = within - held.edge[axis][i];
-    double share = 0;
-    if (within >= 0 && within < width && k >= 0 && k + 1 < edges) {
-      share = held.integral[axis][i][k + 1] - held.integral[axis][i][k];
-    }
-    held.share[axis][i][pixel] = axis == 0 ? share : held.light[i] * share;
-    if (axis == 1 && pixel % rows_per_thread == 0) {
-      held.reaches[i][pixel / rows_per_thread] = within + rows_per_thread > 0 && within < width;
-    }
+/// Computes the fractions of light in columns, and in rows times the light.
+template <int most_edges>
+__device__ void find_shares(Chunk<most_edges>& held, int count, Extent const& extent) {
+  int const pixels = extent.edges - 1;
+  Place const step = place_of(threads, pixels);
+  for (Place place = place_of(threadIdx.x, pixels); place.item < 2 * count; place = next_place(place, step, pixels)) {
+    int const axis = place.item & 1, i = place.item >> 1, k = place.element;
+    double share = held.integral[axis][i][k + 1] - held.integral[axis][i][k];
+    if (held.edge[axis][i] + k >= extent.width) share = 0;
+    held.share[axis][i][margin + k] = axis == 0 ? share : held.light[i] * share;
   }
 }
 
 /// Draws one tile of a frame: every thread sums up some rows of a column.
-__global__ void __launch_bounds__(threads)
-    draw_kernel(DeviceParticleImages const images, GaussianSpot<double> const shape, TileLists const lists,
-                PairLight const light, unsigned long long* brightest) {
-  __shared__ Chunk held;
-  int const tile = static_cast<int>(blockIdx.x), width = 2 * shape.half_width() + 1;
-  int const edges = width < most_edges ? width + 1 : most_edges;
-  int const corner[2] = {tile % lists.across * tile_size, tile / lists.across * tile_size};
-  int const lane = threadIdx.x % warp, band = threadIdx.x / warp, column = corner[0] + lane,
-            row = corner[1] + band * rows_per_thread;
+template <int most_edges>
+__global__ void __launch_bounds__(threads, blocks)
+    draw_kernel(DeviceParticleImages const images, GaussianSpot<double> const shape, Extent const extent,
+                TileLists const lists, PairLight const light, unsigned long long* brightest) {
+  __shared__ Chunk<most_edges> held;
+  int const tile = static_cast<int>(blockIdx.x), lane = threadIdx.x % warp, band = threadIdx.x / warp;
+  int2 const corner{tile % lists.across * tile_size, tile / lists.across * tile_size};
+  int const column = corner.x + lane, row = corner.y + band * rows_per_thread;
+  for (int k = threadIdx.x; k < static_cast<int>(sizeof(held.share) / sizeof(double)); k += threads) {
+    (&held.share[0][0][0])[k] = 0;
+  }
   for (std::size_t frame = blockIdx.y; frame < images.frames; frame += gridDim.y) {
-    std::size_t const list = frame * lists.tiles() + blockIdx.x;
-    std::uint32_t const all = min(lists.count[list], lists.capacity);
+    std::size_t const tile_list = frame * lists.tiles() + blockIdx.x;
+    std::uint32_t const* const list = lists.ordered + tile_list * lists.capacity;
+    int const all = static_cast<int>(min(lists.count[tile_list], lists.capacity));
+    auto const load = [&](int begin) {
+      int const turn = begin / chunk % 2;
+      if (begin < all && band == begin / chunk % (threads / warp))
+        load_images(held, images, shape, extent, list + begin, min(all - begin, chunk), frame, turn, corner);
+    };
     double sum[rows_per_thread] = {};
-    for (std::uint32_t begin = 0; begin < all; begin += chunk) {
-      int const count = static_cast<int>(min(all - begin, std::uint32_t{chunk}));
-      load_images(held, images, shape, lists.ordered + list * lists.capacity + begin, count, frame, corner);
+    load(0);
+    __syncthreads();
+    for (int begin = 0; begin < all; begin += chunk) {
+      int const count = min(all - begin, chunk), turn = begin / chunk % 2;
+      integrate_edges(held, count, extent.edges);
       __syncthreads();
-      integrate_edges(held, count, edges, corner);
+      find_shares(held, count, extent);
       __syncthreads();
-      find_shares(held, count, edges, width, corner);
-      __syncthreads();
-      for (int i = 0; i < count; ++i) {
-        if (!held.reaches[i][band]) continue;
-        double const across = held.share[0][i][lane];
-        for (int k = 0; k < rows_per_thread; ++k) {
-          sum[k] = fma(held.share[1][i][band * rows_per_thread + k], across, sum[k]);
-        }
+      load(begin + chunk);
+      for (std::uint32_t bits = held.reaching[turn][band]; bits != 0; bits &= bits - 1) {
+        int const i = __ffs(static_cast<int>(bits)) - 1;
+        int const k = min(max(lane - held.start[turn][0][i], -1), extent.edges - 1);
+        double const across = held.share[0][i][margin + k];
+        double const* const down = held.share[1][i] + margin + band * rows_per_thread - held.start[turn][1][i];
+        for (int r = 0; r < rows_per_thread; ++r) sum[r] = fma(down[r], across, sum[r]);
       }
       __syncthreads();
     }
@@ -170,7 +204,11 @@ void draw_images(DeviceParticleImages const& images, GaussianSpot<double> const&
   auto const tiles = static_cast<unsigned int>(lists.tiles());
   order_kernel<<<static_cast<unsigned int>(lists.tiles() * images.frames), 64>>>(lists);
   check_launch("order_images");
-  draw_kernel<<<dim3(tiles, grid_rows(images.frames)), threads>>>(images, shape, lists, light, brightest);
+  int const width = 2 * shape.half_width() + 1;
+  Extent const extent{width, std::min(width, tile_size) + 1};
+  // most images are narrow, for which more blocks fit into a multiprocessor
+  auto const kernel = extent.edges <= 16 ? draw_kernel<16> : draw_kernel<tile_size + 1>;
+  kernel<<<dim3(tiles, grid_rows(images.frames)), threads>>>(images, shape, extent, lists, light, brightest);
   check_launch("draw_images");
 }
 

@@ -8,8 +8,9 @@
 namespace gladstone::cuda {
 namespace {
 
-constexpr int threads = 128;               // three blocks per multiprocessor, whose registers the flows fill
-constexpr unsigned int most_rows = 65535;  // maximum extent of a grid along y
+constexpr int threads = 128;                  // three blocks per multiprocessor, whose registers the flows fill
+constexpr std::size_t pixels_per_thread = 8;  // for which a thread loads the detector once
+constexpr unsigned int most_rows = 65535;     // maximum extent of a grid along y
 
 __device__ double value_of(unsigned long long bits) { return __longlong_as_double(static_cast<long long>(bits)); }
 
@@ -35,8 +36,6 @@ __global__ void particle_kernel(PairsOnDevice const pairs, std::size_t count, Pa
 template <class Level>
 __global__ void record_kernel(PairsOnDevice const pairs, double const* light, std::size_t pixels,
                               unsigned long long const* brightest, unsigned long long const* unit, Level* levels) {
-  std::size_t const pixel = blockIdx.x * std::size_t{threads} + threadIdx.x;
-  if (pixel >= pixels) return;
   for (std::size_t frame = blockIdx.y; frame < 2 * pairs.pairs; frame += gridDim.y) {
     std::size_t const pair = frame / 2;
     PairModel const& model = pairs.model(pair);
@@ -44,13 +43,15 @@ __global__ void record_kernel(PairsOnDevice const pairs, double const* light, st
     detector.seed = pairs.seeds[pair].noise;
     double const photons = value_of(unit[pair]);  // 0: no particle is illuminated
     detector.electrons = model.exposure.electrons(value_of(brightest[pair]), photons > 0 ? photons : 1);
-    PixelLevel const recorded =
-        detector.record(light[frame * pixels + pixel],
-                        frame % 2 == 0 ? RandomStream::noise_reference : RandomStream::noise_flow, pixel);
-    if constexpr (std::is_same_v<Level, float>) {
-      levels[frame * pixels + pixel] = static_cast<float>(recorded.level / detector.full_scale);
-    } else {
-      levels[frame * pixels + pixel] = static_cast<Level>(recorded.level);
+    RandomStream const stream = frame % 2 == 0 ? RandomStream::noise_reference : RandomStream::noise_flow;
+    for (std::size_t pixel = blockIdx.x * std::size_t{threads} + threadIdx.x; pixel < pixels;
+         pixel += gridDim.x * std::size_t{threads}) {
+      PixelLevel const recorded = detector.record(light[frame * pixels + pixel], stream, pixel);
+      if constexpr (std::is_same_v<Level, float>) {
+        levels[frame * pixels + pixel] = static_cast<float>(recorded.level / detector.full_scale);
+      } else {
+        levels[frame * pixels + pixel] = static_cast<Level>(recorded.level);
+      }
     }
   }
 }
@@ -84,7 +85,8 @@ void make_particle_images(PairsOnDevice const& pairs, std::size_t count, Particl
 void record_pairs(PairsOnDevice const& pairs, double const* light, std::size_t pixels,
                   unsigned long long const* brightest, unsigned long long const* unit, LevelType type, void* levels) {
   auto const record = [&]<class Level>(Level* out) {
-    record_kernel<<<grid(pixels, 2 * pairs.pairs), threads>>>(pairs, light, pixels, brightest, unit, out);
+    record_kernel<<<grid((pixels + pixels_per_thread - 1) / pixels_per_thread, 2 * pairs.pairs), threads>>>(
+        pairs, light, pixels, brightest, unit, out);
   };
   switch (type) {
     case LevelType::float32:

@@ -43,10 +43,10 @@ class CudaIdealImagesTest : public testing::Test {
   }
 };
 
-// Pixels add up the images in the same order by the same fused operations. PSFs with a standard deviation of 0.8, 3.5
-// and 8 px, hence with footprints of 11, 41 and 91 px: narrower and wider than a tile.
+// Pixels add up the images in the same order by the same fused operations. PSFs with a standard deviation of 0.8, 1.7,
+// 3.5 and 8 px, hence with footprints of 11, 21, 41 and 91 px: narrower and wider than a tile.
 TEST_F(CudaIdealImagesTest, HaveTheBitsOfTheCpu) {
-  for (double const pitch : {5e-6, 1.2e-6, 0.52e-6}) {
+  for (double const pitch : {5e-6, 2.4e-6, 1.2e-6, 0.52e-6}) {
     SCOPED_TRACE(pitch);
     expect_same_bits(pair_setup(pitch));
   }
