@@ -59,8 +59,9 @@ struct StatisticsSums {
   double shares[2]{};   ///< sum of p^2
   double lost[2]{};     ///< sum of p_i^2 p_k^2 over neighbours, see WindowStatistics
   double terms[2]{};    ///< sum of t_i t_k over neighbours, see WindowStatistics
+  double squares[2]{};  ///< sum of t^2
 
-  static constexpr int count = 12;
+  static constexpr int count = 14;
   /// Calls visit(sum) for each sum, in a fixed order.
   template <class Visit>
   GLADSTONE_HD void each(Visit const& visit) {
@@ -72,6 +73,7 @@ struct StatisticsSums {
       visit(shares[axis]);
       visit(lost[axis]);
       visit(terms[axis]);
+      visit(squares[axis]);
     }
   }
 };
@@ -190,7 +192,7 @@ struct WindowStatistics {
     float const *const a_below = weighted(0, row + 1), *const b_below = weighted(1, row + 1);
     float const* const w_below = weighted(2, row + 1);
     float* const out[term_count] = {terms(0, row), terms(1, row), terms(2, row), terms(3, row)};
-    Value centre{}, whole{}, beside[2]{}, overlap[2]{}, shares[2]{};
+    Value centre{}, whole{}, beside[2]{}, overlap[2]{}, shares[2]{}, squares[2]{};
     for (int x = first(); x < side; x += ahead()) {
       Value const a0 = Columns::load(a + x), b0 = Columns::load(b + x), w0 = Columns::load(w + x);
       centre += a0 * b0;
@@ -199,9 +201,11 @@ struct WindowStatistics {
         beside[axis] += 0.5f * (a0 * b_next + a_next * b0);
         overlap[axis] += w0 * w_next;
         Value const slope = 0.5f * (q_before - (a_next + b_next)), share = w0 * slope, square = share * share;
+        Value const term = slope * (b0 - a0);
         shares[axis] += square;
         Columns::store(out[2 * axis] + x, square);
-        Columns::store(out[2 * axis + 1] + x, slope * (b0 - a0));
+        squares[axis] += term * term;
+        Columns::store(out[2 * axis + 1] + x, term);
       };
       along(0, Columns::load(a + x - 1) + Columns::load(b + x - 1), Columns::load(a + x + 1), Columns::load(b + x + 1),
             Columns::load(w + x + 1));
@@ -214,6 +218,7 @@ struct WindowStatistics {
       sums.beside[axis] += Columns::sum(beside[axis]);
       sums.overlap[axis] += Columns::sum(overlap[axis]);
       sums.shares[axis] += Columns::sum(shares[axis]);
+      sums.squares[axis] += Columns::sum(squares[axis]);
     }
   }
 
@@ -243,6 +248,13 @@ struct WindowStatistics {
 /// would give arbitrarily large values.
 constexpr double largest_variance = 1.0 / 3.0;
 
+/// Smallest variance, as a share of that of terms without covariances. Without noise, errors of interpolation remain,
+/// whose sign alternates from pixel to pixel: terms cancel their neighbours, and the sum over neighbours can be zero or
+/// negative. Of N independent terms it has a relative standard error of sqrt(2 (3.5^2 - 1) / N), where 3.5 is the sum
+/// of the squared weights along an axis. That is 0.1 for N = 2250, the pixels of four windows of 24 px, which the mean
+/// over 3 x 3 windows at half overlap contains: a smaller sum cannot be distinguished from zero.
+constexpr double smallest_share = 0.1;
+
 /// Returns the variance of a displacement along an axis (0: x, 1: y) [px^2]; NaN if the peak has no maximum.
 /// - The three-point Gaussian fit u = (ln C- - ln C+)/(2 (ln C+ + ln C- - 2 ln C0)) gives sigma_u = sigma(C+ - C-)/(4
 ///   C1 ln(C0/C1)), with C1 the mean of C+ and C-.
@@ -252,6 +264,7 @@ constexpr double largest_variance = 1.0 / 3.0;
 /// - The frames were matched by the displacement to be assessed, which reduces the sum. If p_i^2/sum p^2 is the share
 ///   of a term in the variance (uniform noise), the relative reduction is the sum of the products of shares over pairs
 ///   of neighbouring terms. The result is corrected for it.
+/// - The variance is at least smallest_share of that of terms without covariances.
 GLADSTONE_HD inline double displacement_variance(StatisticsSums const& sums, int axis) {
   using std::log;
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -260,8 +273,10 @@ GLADSTONE_HD inline double displacement_variance(StatisticsSums const& sums, int
   if (!(beside > 0.0 && sums.centre > beside)) return nan;
   double const slope = 4.0 * beside * log(sums.centre / beside) * shift_attenuation;
   double const lost = sums.lost[axis] / (sums.shares[axis] * sums.shares[axis]);
-  double const variance = sums.terms[axis] / ((1.0 - lost) * slope * slope);
-  return variance < 0.0 ? 0.0 : (variance > largest_variance ? largest_variance : variance);
+  double const least = smallest_share * sums.squares[axis];
+  double const terms = sums.terms[axis] > least ? sums.terms[axis] : least;
+  double const variance = terms / ((1.0 - lost) * slope * slope);
+  return variance > largest_variance ? largest_variance : variance;
 }
 
 }  // namespace gladstone

@@ -129,6 +129,7 @@ struct DefinedSums {
           term[here] = share * (b[here] - a[here]);
           square[here] = share * share;
           add(&StatisticsSums::shares, axis, square[here]);
+          add(&StatisticsSums::squares, axis, term[here] * term[here]);
           if (i + dx >= side || j + dy >= side) continue;
           std::size_t const there = static_cast<std::size_t>(j + dy) * side + (i + dx);
           double const both = w[here] * w[there];
@@ -254,6 +255,24 @@ TEST(WindowStatistics, HaveTheNoiseOfAPixelInOneTerm) {
   EXPECT_NEAR(some.terms[0], 2.0 * 1.0 * 1.0, 1e-5);
   EXPECT_NEAR(some.terms[1], 0.0, 1e-9);
   EXPECT_NEAR(some.shares[0], none.shares[0], 1e-5 * none.shares[0]);
+}
+
+// Frame B differs by 5 % whose sign alternates from pixel to pixel, like errors of interpolation: terms cancel their
+// neighbours. Their sum is below a tenth of the sum of squares, but the variance is not zero.
+TEST(WindowStatistics, GiveNoVarianceOfZeroWhereTermsCancel) {
+  PlainWindow window(32);
+  for (int j = 0; j < 32; ++j)
+    for (int i = 0; i < 32; ++i) {
+      double const x = i % 8 - 3.5, y = j % 8 - 3.5, r2 = x * x + y * y;
+      window.weight[window.at(i, j)] = 1.0f;
+      window.reference[window.at(i, j)] = static_cast<float>(std::exp(-r2 / 3.0));
+      window.flow[window.at(i, j)] = static_cast<float>(((i + j) % 2 == 0 ? 1.05 : 0.95) * std::exp(-r2 / 3.0));
+    }
+  DefinedSums const defined(window);
+  for (int axis = 0; axis < 2; ++axis) {
+    EXPECT_LT(defined.sums.terms[axis], smallest_share * defined.sums.squares[axis]) << axis;
+    EXPECT_GT(displacement_variance(defined.sums, axis), 0.0) << axis;
+  }
 }
 
 TEST(MeanOfNeighbours, LeavesOutWhatIsNotKnown) {
