@@ -11,9 +11,7 @@ namespace gladstone {
 RenderMethod resolve_render_method(Scene const& scene) {
   RenderMethod const wanted = scene.setup.render.method;
   if (wanted != RenderMethod::automatic) return wanted;
-  if (scene.setup.piv && scene.setup.piv->particles.scattering == ParticleScattering::gaussian) {
-    return RenderMethod::formula;
-  }
+  if (scene.setup.has_ideal_particles()) return RenderMethod::formula;
   return focused_dots(scene) ? RenderMethod::focused_dots : RenderMethod::rays;
 }
 

@@ -66,7 +66,7 @@ double render_seconds(Scene const& scene, RenderTheory theory) {
   if (method == RenderMethod::focused_dots) return dots_seconds(require_focused_dots(scene), theory);
   double const media = scene.second_medium ? 2 : 1;
   return media * static_cast<double>(scene.rays_per_dot) * rays_seconds(scene) +
-         (theory == RenderTheory::yes && !scene.setup.piv ? theory_seconds(scene) : 0);
+         (theory == RenderTheory::yes && scene.setup.experiment().sources.on_target ? theory_seconds(scene) : 0);
 }
 
 FieldMap field_in_view(Scene const& scene, int spacing_px) {

@@ -145,8 +145,7 @@ Rendering Device::render_others(Scene const& scene, DotPattern dots, RenderImage
 Device cpu() { return {std::make_unique<FocusedDotsRenderer>(), std::make_unique<RaysRenderer>()}; }
 
 Rendering render_planned(Scene const& scene, Renderer& renderer, RenderImages images, RenderTheory theory) {
-  return scene.setup.piv ? renderer.render_particles(scene, scene.particles, ParticleLight::scattered, images)
-                         : renderer.render(scene, scene.dots, images, theory);
+  return scene.setup.experiment().sources.render(scene, renderer, images, theory);
 }
 
 Rendering render(Scene const& scene, Device& device, RenderImages images, RenderTheory theory) {

@@ -21,7 +21,7 @@ TheoryModel FocusedDots::theory_model() const {
 }
 
 std::string reason_against_focused_dots(Setup const& setup) {
-  if (setup.piv) return "particles are not flat dots";
+  if (std::string reason = setup.experiment().reason_for_rays; !reason.empty()) return reason;
   if (setup.lens.prescription) return "the lens is a prescription";
   if (setup.pose) return "the camera is not on the Z axis (camera.pose)";
   if (!setup.elements.empty())
@@ -46,6 +46,7 @@ std::optional<FocusedDots> focused_dots(Scene const& scene) {
 }
 
 std::vector<MemoryRequirement> focused_dots_memory(Setup const& setup) {
+  if (!setup.experiment().sources.on_target) return {};
   return {{"camera.pixels", "table of deflections", table_bytes_needed(setup)}};
 }
 

@@ -13,7 +13,7 @@ IdealProjection IdealImages::projection() const {
 DefocusBlur IdealImages::blur() const {
   Setup const& setup = scene_->setup;
   ImagingGeometry const& imaging = scene_->imaging;
-  bool const neglected = setup.piv->particles.scattering == ParticleScattering::gaussian;
+  bool const neglected = setup.has_ideal_particles();
   double const diameter_px = imaging.magnification * imaging.entrance_pupil / setup.camera.pixel_pitch;
   return {scene_->spot_sigma_px(), setup.z_a, neglected ? 0 : diameter_px / 2};
 }
@@ -47,7 +47,7 @@ double IdealImages::largest_blur_px(Particles const& particles) const {
 }
 
 std::string reason_against_ideal_images(Setup const& setup) {
-  if (!setup.piv) return "only particles have ideal images";
+  if (setup.experiment().sources.on_target) return "only particles have ideal images";
   if (setup.medium.field.kind != FieldKind::none || setup.medium.second_field) return "the medium deflects rays";
   if (!setup.has_closed_form_layout())
     return "the camera is not an ideal thin lens on the Z axis without other elements";

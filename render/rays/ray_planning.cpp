@@ -174,14 +174,14 @@ RayBudget determine_ray_budget_by_tracing(Scene const& scene) {
     budget.rays = *given;
     return budget;
   }
-  bool const one_path = scene.chief_rays_only() && (scene.setup.piv || scene.dots.half_size == 0);
+  bool const one_path = scene.chief_rays_only() && scene.dots.half_size == 0;
   budget.rays = one_path ? 1 : max_rays_per_source(scene);
   budget.adaptive_criteria = determine_adaptive_criteria(scene);
   return budget;
 }
 
 std::uint64_t largest_ray_number(Scene const& scene) {
-  if (!scene.setup.piv) return scene.rays_per_dot;
+  if (scene.setup.experiment().sources.on_target) return scene.rays_per_dot;
   std::optional<AiryTable> airy;
   return static_cast<std::uint64_t>(
       ParticleLaunches(scene, make_spot(scene, airy), RenderImages::yes).ladder.goal().most);

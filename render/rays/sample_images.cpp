@@ -69,7 +69,7 @@ SampleImages render_sample(Scene scene, SampleRays rays) {
   SampleImages sample;
   if (some.empty()) return {{Image<double>(1, 1), Image<double>(1, 1)}};
   sample.share = static_cast<double>(in_view.size()) / static_cast<double>(some.size());
-  if (scene.setup.piv) {
+  if (!scene.setup.experiment().sources.on_target) {
     sample.next_rule = render_particles(scene, some, rays, sample.light);
     return sample;
   }

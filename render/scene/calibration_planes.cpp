@@ -22,6 +22,7 @@ Setup plane_setup(Setup const& setup, double z) {
   there.lens.focus_distance = setup.focus_distance();
   there.lens.focus = Focus::distance;
   there.z_d = -z;
+  there.render.method = RenderMethod::rays;
   return there;
 }
 

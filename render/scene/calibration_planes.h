@@ -10,7 +10,8 @@
 
 namespace gladstone {
 
-/// Returns the setup of one plane of a calibration. The camera is unchanged: its focus and tilt remain those for Z = 0.
+/// Returns the setup of one plane of a calibration, rendered ray by ray. The camera is unchanged: its focus and tilt
+/// remain those for Z = 0.
 /// @param z  position of the plane [m]
 Setup plane_setup(Setup const& setup, double z);
 

@@ -72,7 +72,7 @@ void cross_check_geometry(Setup const& setup, SetupTable geometry) {
   std::optional<MediumEnds> const medium = medium_ends(setup);
   if (!medium) return;
   double const mm = unit::millimetre;
-  if (!setup.piv && -setup.z_d > medium->first) {
+  if (setup.experiment().sources.on_target && -setup.z_d > medium->first) {
     geometry.problem("z_d_mm",
                      fmt::format("the dots lie {} the medium, which begins {:.6g} mm from its mid-plane; increase "
                                  "z_d_mm beyond {:.6g} or make the medium thinner{}",
@@ -97,7 +97,9 @@ void cross_check_elements(Setup const& setup, SetupTable const& root) {
   CameraAxis const axis{front_of(setup), setup.camera_pose().z};
   double const infinite = std::numeric_limits<double>::infinity();
   std::vector<OnTheWay> way;  // objects in the required order of the light path
-  if (!setup.piv) way.push_back({"the dots", axis.meets_plane(-setup.z_d), axis.meets_plane(-setup.z_d), {}});
+  if (setup.experiment().sources.on_target) {
+    way.push_back({"the dots", axis.meets_plane(-setup.z_d), axis.meets_plane(-setup.z_d), {}});
+  }
   for (ElementSide const side : {ElementSide::target, ElementSide::camera}) {
     for (std::size_t i = 0; i < setup.elements.size(); ++i) {
       OpticalElement const& element = setup.elements[i];

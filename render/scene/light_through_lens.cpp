@@ -19,7 +19,7 @@ LightThroughLens::LightThroughLens(Scene const& scene, ParticleLight light)
 
 double LightThroughLens::cross_section(Vec3d place, Vec3d direction, std::size_t particle, int pulse) const {
   if (light_ == ParticleLight::equal) return 1;
-  if (scene_.setup.piv->particles.scattering == ParticleScattering::gaussian) {
+  if (scene_.setup.has_ideal_particles()) {
     return isotropic_cross_section(scene_.particles.diameter[particle]);
   }
   LightWave<double> const wave = sheet_.wave(place, pulse);
@@ -59,7 +59,7 @@ double brightest_photons(Scene const& scene, Particles const& particles, Particl
 
 double photon_limited_exposure(Scene const& scene) {
   NoiseSetup const& noise = scene.setup.camera.noise;
-  if (!scene.setup.piv || !noise.enabled) return std::numeric_limits<double>::infinity();
+  if (!scene.setup.experiment().sources.in_photons || !noise.enabled) return std::numeric_limits<double>::infinity();
   return scene.photon_unit * noise.quantum_efficiency;
 }
 

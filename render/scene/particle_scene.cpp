@@ -208,7 +208,7 @@ double determine_photon_unit(Scene const& scene) {
 /// levels of all pairs are comparable.
 void add_particles_of_sequence(Scene& scene) {
   PivSetup& piv = *scene.setup.piv;
-  auto const shared = piv.shared ? piv.shared : std::make_shared<ParticleCache>();
+  auto const shared = scene.setup.shared_particles ? scene.setup.shared_particles : std::make_shared<ParticleCache>();
   if (!shared->sequence) {
     shared->flow_warning = load_flow(piv.flow);
     double const count = piv.particles.count == ParticleCount::file ? 0 : particle_count(scene.setup);

@@ -95,10 +95,8 @@ RayLosses sample_ray_losses(Scene const& scene) {
     });
   };
   for (std::size_t frame = 0; frame < frame_count; ++frame) {
-    auto const place_of = [&](std::size_t source) {
-      return scene.setup.piv ? scene.particles.place[frame][source] : scene.source_place(source);
-    };
-    if (frame == 0 && !scene.setup.piv) {
+    auto const place_of = [&](std::size_t source) { return scene.source_place(source, frame); };
+    if (frame == 0 && !scene.setup.experiment().medium_in_first_frame) {
       follow(frame, place_of, NoMedium<double>{});
     } else {
       BuiltMedium const& medium = frame == 1 && scene.second_medium ? *scene.second_medium : scene.medium;

@@ -3,12 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 
 #include "render/base/error.h"
 #include "render/base/units.h"
-#include "render/light/calibration_target.h"
 #include "render/medium/field_volume.h"
 #include "render/optics/glass_catalogue.h"
 #include "render/optics/paraxial.h"
@@ -227,52 +225,29 @@ void focus_on_sensor(Setup& setup, SetupTable geometry) {
   }
 }
 
-void read_target(Setup& setup, SetupTable root) {
-  setup.target = read_target_setup(root.table("target"));
-  root.refuse("calibration", "does not apply to BOS (it requires experiment = \"calibration\"); remove it");
-}
-
-void read_calibration(Setup& setup, SetupTable root) {
-  CalibrationTarget read = read_calibration_target(root.table("calibration"));
-  setup.target = std::move(read.target);
-  setup.planes = std::move(read.planes);
-  root.refuse("target", "applies to BOS only (the dots of a calibration are those of [calibration]); remove it");
-}
-
-/// Returns the shock front of a medium of kind normal_shock, for the flow.
-std::optional<ShockPlane> shock_plane(FieldSetup const& field) {
-  auto const* const shock = field.closed_form<NormalShock<double>>();
-  if (!shock) return std::nullopt;
-  return ShockPlane{shock->mach, shock_density_ratio(shock->mach, constant::gamma_air), shock->position, shock->tilt};
-}
-
-void read_piv(Setup& setup, SetupTable root) {
-  PivSetup piv;
-  piv.laser = read_laser_setup(root.table("laser"), setup.medium.wavelength);
-  piv.particles = read_particle_setup(root.table("particles"), piv.laser.wavelength);
-  std::optional<double> const dt = setup.sequence ? std::optional(setup.sequence->dt) : std::nullopt;
-  piv.flow = read_flow_setup(root.table("flow"), shock_plane(setup.medium.field), dt);
-  if (setup.medium.second_field && piv.flow.flow.kind_word() == NormalShockFlow::kind) {
-    root.table("medium").problem("second_field",
-                                 "conflicts with a flow of kind \"normal_shock\", which is steady; remove one");
-  }
-  setup.piv = piv;
-  root.refuse("target", "applies to BOS only (the sources of PIV are [particles]); remove it");
-  root.refuse("calibration", "does not apply to PIV (it requires experiment = \"calibration\"); remove it");
-}
-
 }  // namespace
+
+void refuse_piv_tables(Setup const& setup, SetupTable root) {
+  if (setup.medium.second_field) {
+    root.table("medium").problem("second_field",
+                                 "applies to PIV only (field at the second pulse); remove it, or change experiment");
+  }
+  for (char const* other : {"particles", "laser", "flow"}) {
+    root.refuse(other, "requires experiment = \"piv\"; remove it, or change experiment");
+  }
+}
 
 Setup read_setup(SetupTable root) {
   if (root.integer("schema", 1, 0, 1000000) != 1) {
     root.problem("schema", "is not 1 (this version reads schema 1 only); use a matching version of gladstone");
   }
-  std::string const experiment = root.word("experiment", "bos", {"bos", "piv", "calibration"});
-  bool const piv = experiment == "piv", calibration = experiment == "calibration";
+  std::vector<std::string> names;
+  for (Experiment const* one : all_experiments) names.emplace_back(one->name);
+  Experiment const& experiment = find_experiment(root.word("experiment", names.front(), names));
   Setup setup;
   SetupTable camera = camera_table(root);
   setup.camera = read_camera_setup(camera);
-  setup.lens = read_lens_setup(root.table("lens"), piv ? "sheet" : "target");
+  setup.lens = read_lens_setup(root.table("lens"), experiment.focus_word);
   std::vector<ElementTable> const elements = element_tables(root, camera);
   setup.elements = read_elements(elements);
   if (!setup.lens.file.empty() && setup.camera.distorted()) {
@@ -281,49 +256,18 @@ Setup read_setup(SetupTable root) {
   }
   SetupTable geometry = root.table("geometry");
   read_place(setup, camera, geometry);
-  if (piv || calibration) {
-    geometry.refuse("z_d_mm", piv ? "applies to BOS only (for PIV, z_a_mm is the distance to the origin, and "
-                                    "laser.center_mm positions the sheet); remove it"
-                                  : "applies to BOS only (calibration.planes_mm positions the dots); remove it");
-    setup.z_d = 0;
-  } else {
-    setup.z_d = geometry.quantity("z_d_mm", setup.z_d, unit::millimetre, Range::positive(1e9));
-  }
+  experiment.read_z_d(setup, geometry);
   setup.medium = read_medium_setup(root.table("medium"));
-  if (!piv && setup.medium.second_field) {
-    root.table("medium").problem("second_field",
-                                 "applies to PIV only (field at the second pulse); remove it, or change experiment");
-  }
-  if (calibration && setup.medium.field.kind != FieldKind::none) {
-    root.table("medium").problem("field", "does not apply to a calibration, which is made without a flow; remove it");
-  }
   build_optics(setup, root, elements, setup.warnings);
   focus_on_sensor(setup, geometry);
   resolve_thickness(setup, root.table("medium"));
-  if (setup.camera.absolute_exposure && !piv) {
+  if (setup.camera.absolute_exposure && !experiment.sources.in_photons) {
     camera.problem("exposure",
                    "\"absolute\" applies to PIV only (where [laser] determines the amount of light); use \"auto\" or a "
                    "number of electrons");
   }
-  if (calibration) {
-    root.refuse("sequence",
-                "does not apply to a calibration (its frames are those of calibration.planes_mm); remove it");
-  } else {
-    setup.sequence = read_sequence_setup(root, piv);
-  }
-  if (piv) {
-    read_piv(setup, root);
-  } else {
-    calibration ? read_calibration(setup, root) : read_target(setup, root);
-    for (char const* other : {"particles", "laser", "flow"}) {
-      root.refuse(other, "requires experiment = \"piv\"; remove it, or change experiment");
-    }
-  }
-  check_sequence(setup, root);
-  if (setup.sequence) {
-    setup.camera.noise.frames =
-        std::array<std::uint64_t, 2>{setup.sequence->first_frame(piv), setup.sequence->second_frame(piv)};
-  }
+  experiment.read(setup, root);
+  if (setup.sequence) setup.camera.noise.frames = setup.sequence->frames_of(setup.sequence->pair);
   setup.render = read_render_setup(root.table("render"));
   return setup;
 }

@@ -11,9 +11,7 @@
 #include "render/base/not_a_number.h"
 #include "render/base/units.h"
 #include "render/files/fields/field_file.h"
-#include "render/light/calibration_target.h"
 #include "render/scene/build_camera.h"
-#include "render/scene/particle_scene.h"
 #include "render/scene/shift_limit.h"
 #include "render/sensor/sensor.h"
 
@@ -61,36 +59,6 @@ void refuse_negative_density(MediumSetup const& setup, BuiltMedium const& medium
 
 }  // namespace
 
-DotPattern build_target(Setup const& setup) {
-  DotPattern dots;
-  double const diameter = setup.target.kind == TargetKind::image ? 0.0 : setup.dot_diameter();
-  switch (setup.target.kind) {
-    case TargetKind::dots:
-      if (setup.target.arrangement == DotArrangement::random) {
-        dots.centre = random_dots(setup.target_extent(), static_cast<std::size_t>(setup.dot_count()), diameter,
-                                  setup.target.seed);
-      } else {
-        Vec2d const extent = setup.target_extent();
-        dots.centre = regular_dots(extent, setup.dot_count() / (extent.x * extent.y), diameter);
-      }
-      break;
-    case TargetKind::lattice:
-      dots.centre = Lattice(setup.target).dots();
-      break;
-    case TargetKind::points:
-      dots.centre = dots_from_csv(setup.target.file, setup.max_off_axis_distance());
-      break;
-    case TargetKind::image:
-      dots = image_target(setup.target.file, setup.target_extent());
-      break;
-  }
-  if (setup.target.kind != TargetKind::image) dots.half_size = diameter / 2;
-  if (Vec2d const middle = setup.target_centre(); setup.target.kind != TargetKind::points && !(middle == Vec2d{})) {
-    for (Vec2d& centre : dots.centre) centre = centre + middle;
-  }
-  return dots;
-}
-
 double Scene::steps_across() const {
   Bounds<double> const box = std::visit([](auto const& seen) { return seen.bounds(); }, medium.view);
   return step > 0 ? (box.high.z - box.low.z) / step : 0;
@@ -126,12 +94,6 @@ bool Scene::in_view(Vec2d on_target) const {
   return setup.has_closed_form_layout() ? square_to_axis.covers(pixel) : camera.sensor.covers(pixel);
 }
 
-bool Scene::source_in_view(std::size_t source) const {
-  if (!setup.piv) return in_view(dots.centre[source]);
-  auto const pixel = camera.project(particles.place[0][source]);
-  return pixel && camera.sensor.covers(*pixel);
-}
-
 Pose<double> Scene::sheet_plane() const {
   LaserSheet<double> const sheet = laser_sheet(setup.piv->laser);
   Pose<double> plane = sheet.pose[0];
@@ -163,17 +125,9 @@ std::vector<MemoryRequirement> memory_requirements(Setup const& setup, FieldMemo
   std::vector<MemoryRequirement> needs{
       {"camera.pixels", "images", pixels * 2 * (sizeof(std::int64_t) + sizeof(double) + sizeof(std::uint16_t))},
       {"medium.field.file", "field",
-       field_memory == FieldMemory::needed ? static_cast<double>(medium_bytes_needed(setup.medium)) : 0},
-      setup.piv ? particle_memory(setup)
-                : MemoryRequirement{"target.dots_per_32px_window", "dots",
-                                    setup.target.kind == TargetKind::dots ? setup.dot_count() * 200 : 0.0}};
-  if (setup.medium.second_field) {
-    double const bytes = static_cast<double>(medium_bytes_needed(select_second_pulse(setup.medium)));
-    needs.push_back({"medium.second_field.file", "second field", bytes});
-  }
-  if (setup.piv && setup.piv->flow.file) {
-    needs.push_back({"flow.file", "velocity", velocity_bytes(*setup.piv->flow.file)});
-  }
+       field_memory == FieldMemory::needed ? static_cast<double>(medium_bytes_needed(setup.medium)) : 0}};
+  std::vector<MemoryRequirement> const of_sources = setup.experiment().sources.memory(setup);
+  needs.insert(needs.end(), of_sources.begin(), of_sources.end());
   return needs;
 }
 
@@ -214,17 +168,12 @@ Scene build_scene(Setup const& setup, BuiltMedium const* medium) {
       scene.imaging.magnification = setup.camera.pixel_pitch * std::sqrt(area);
     }
   }
-  if (setup.piv) {
-    add_particles(scene);
-  } else {
-    scene.dots = build_target(setup);
-  }
-
+  setup.experiment().sources.add(scene);
   scene.medium = medium ? *medium : build_checked_medium(setup.medium);
   if (setup.medium.second_field) scene.second_medium = build_checked_medium(select_second_pulse(setup.medium));
   if (setup.medium.field.kind == FieldKind::file && !setup.medium.field.extrude) {
     Bounds<double> const box = std::visit([](auto const& view) { return view.bounds(); }, scene.medium.view);
-    bool const dots_inside = !setup.piv && -setup.z_d > box.low.z;
+    bool const dots_inside = setup.experiment().sources.on_target && -setup.z_d > box.low.z;
     if (dots_inside || setup.camera_pose().origin.z < box.high.z) {
       throw DataError(
           ErrorCode::invalid_value, setup.medium.field.where,

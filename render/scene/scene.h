@@ -39,14 +39,13 @@ struct Scene {
   int fineness = 1;  ///< refinement of the fast renderer's table and rules: 1, or 2 for steep fronts
 
   /// Number of dots or particles.
-  std::size_t source_count() const { return setup.piv ? particles.size() : dots.centre.size(); }
-  /// Position of a source in the reference image (PIV: frame A) [m].
-  Vec3d source_place(std::size_t source) const {
-    if (setup.piv) return particles.place[0][source];
-    return {dots.centre[source].x, dots.centre[source].y, -setup.z_d};
+  std::size_t source_count() const { return setup.experiment().sources.count(*this); }
+  /// Position of a source in a frame, by default in the reference image (PIV: frame A) [m].
+  Vec3d source_place(std::size_t source, std::size_t frame = 0) const {
+    return setup.experiment().sources.place(*this, source, frame);
   }
   /// Returns true if the sensor sees a source in the reference image (PIV: frame A).
-  bool source_in_view(std::size_t source) const;
+  bool source_in_view(std::size_t source) const { return setup.experiment().sources.in_view(*this, source); }
   /// Returns the mean plane of the laser sheets of both pulses: x along the light, z normal to the sheet.
   /// @pre setup.piv
   Pose<double> sheet_plane() const;

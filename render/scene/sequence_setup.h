@@ -1,29 +1,27 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
-#include <optional>
-
-#include "render/setup/setup_table.h"
+#include <cstdint>
 
 namespace gladstone {
 
+/// Largest number of frames of a sequence.
+inline constexpr long long max_sequence_frames = 1'000'000;
+
 /// Table [sequence] of a setup: the pair of a sequence of frames that the setup describes.
 struct SequenceSetup {
-  /// PIV: frames `pair` and `pair` + 1, from 0. BOS: the reference image and the field number `pair`, from 1.
+  /// The pairs are those of consecutive frames (PIV), from 0. Otherwise (BOS) pair k, from 1, consists of the reference
+  /// image, frame 0, and frame k.
+  bool consecutive = false;
   std::size_t pair = 0;
-  std::size_t frames = 2;  ///< PIV: number of frames
-  double dt = 0;           ///< PIV: time between consecutive frames [s]
+  std::size_t frames = 2;  ///< number of frames, if they are consecutive
+  double dt = 0;           ///< time between consecutive frames [s]
 
-  std::size_t first_frame(bool piv) const { return piv ? pair : 0; }
-  std::size_t second_frame(bool piv) const { return piv ? pair + 1 : pair; }
+  /// Returns the numbers of the frames of a pair.
+  std::array<std::uint64_t, 2> frames_of(std::size_t number) const {
+    return {consecutive ? number : 0, consecutive ? number + 1 : number};
+  }
 };
-
-struct Setup;
-
-/// Reads table [sequence] of a BOS or PIV setup; nullopt if it is absent.
-std::optional<SequenceSetup> read_sequence_setup(SetupTable root, bool piv);
-
-/// Reports properties of a setup that a sequence excludes: other fields than files (BOS), pulses that differ (PIV).
-void check_sequence(Setup const& setup, SetupTable root);
 
 }  // namespace gladstone

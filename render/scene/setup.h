@@ -13,6 +13,7 @@
 #include "render/medium/medium_setup.h"
 #include "render/optics/lens_setup.h"
 #include "render/optics/optical_element.h"
+#include "render/scene/experiment.h"
 #include "render/scene/sequence_setup.h"
 #include "render/sensor/camera_setup.h"
 #include "render/setup/setup_table.h"
@@ -50,7 +51,6 @@ struct PivSetup {
   ParticleSetup particles;
   LaserSetup laser;
   FlowSetup flow;
-  std::shared_ptr<ParticleCache> shared;  ///< parts shared by the pairs of a sequence; null: none
 };
 
 /// Complete description of a BOS pair, a PIV pair or a calibration, in SI.
@@ -62,6 +62,7 @@ struct Setup {
   std::vector<double> planes;             ///< Z of the planes of a calibration target [m]; empty: no calibration
   std::optional<PivSetup> piv;            ///< empty: BOS or calibration; in PIV, the "dots' plane" is Z = 0
   std::optional<SequenceSetup> sequence;  ///< pair of a sequence that the setup describes; empty: a single pair
+  std::shared_ptr<ParticleCache> shared_particles;  ///< those of the pairs of a sequence; null: none
   RenderSetup render;
   double z_a = 0.75;               ///< front principal plane to the medium's mid-plane, along the camera's axis [m]
   std::optional<double> z_sensor;  ///< position of a fixed sensor on the Z axis, from which the lens is placed [m]
@@ -104,7 +105,10 @@ struct Setup {
     }
     return nullptr;
   }
-  bool calibration() const { return !planes.empty(); }
+  /// Returns the kind of experiment: PIV with particles, a calibration with planes, BOS otherwise.
+  Experiment const& experiment() const;
+  /// Returns true for particles without a scattering model, which have ideal images only.
+  bool has_ideal_particles() const;
   /// Distance from the front principal plane to the plane in focus [m].
   double focus_distance() const;
   /// Maximum distance of objects from the axis in x or y: ten times their distance from the lens, 84 degrees [m].

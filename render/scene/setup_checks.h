@@ -15,9 +15,21 @@ SetupTable camera_table(SetupTable& root);
 /// Returns the tables of the setup's optical elements, in the order of Setup::elements.
 std::vector<ElementTable> element_tables(SetupTable root);
 
+/// Refuses particles, laser, flow and a field at the second pulse in a setup that is not PIV.
+void refuse_piv_tables(Setup const& setup, SetupTable root);
+
 /// Returns a hint if a length in mm was probably given in metres (below 2 mm); otherwise an empty text.
 /// @param length  length [m]
 std::string metres_hint(double length);
+
+/// Warns of read noise that is clipped at zero.
+void cross_check_noise(Setup const& setup, std::vector<std::string>& warnings);
+
+/// Reports diffraction PSFs that are too wide to resolve anything.
+void cross_check_spot(Setup const& setup, SetupTable root);
+
+/// Checks the camera's noise, and the media between sources and camera, by the functions below.
+void cross_check_medium(Setup const& setup, SetupTable root, std::vector<std::string>& warnings);
 
 /// Reports dots or a lens inside the medium.
 void cross_check_geometry(Setup const& setup, SetupTable geometry);

@@ -28,11 +28,7 @@ constexpr std::size_t dots_traced_again = 64;
 constexpr int dots_for_a_fit = 12;  // minimum number of dots per plane for a homography and its check
 
 /// Builds the scene of a plane. It has no medium, so the step size is irrelevant.
-Scene plane_scene(Setup const& setup, double z) {
-  Scene scene = build_scene(plane_setup(setup, z));
-  scene.setup.render.method = RenderMethod::rays;
-  return with_chosen_step(std::move(scene));
-}
+Scene plane_scene(Setup const& setup, double z) { return with_chosen_step(build_scene(plane_setup(setup, z))); }
 
 /// Selects up to `dots_traced_again` dots, evenly distributed over the pattern.
 DotPattern some_dots(Scene const& scene) {

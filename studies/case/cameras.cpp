@@ -13,7 +13,7 @@
 #include "render/base/random.h"
 #include "render/setup/setup_node.h"
 #include "studies/case/case.h"
-#include "studies/case/shared_target.h"
+#include "studies/case/case_kind.h"
 
 namespace gladstone {
 namespace {
@@ -201,7 +201,7 @@ std::vector<CameraCase> camera_cases(SetupDocument const& setup) {
     }
   }
   if (!problems.empty()) throw SetupError(problems, more);
-  share_target(cases, read);
+  case_kind(read.front()).share_sources(cases, read);
   return cases;
 }
 

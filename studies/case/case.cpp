@@ -14,9 +14,9 @@
 #include "render/scene/field_coverage.h"
 #include "render/scene/particle_scene.h"
 #include "studies/case/cameras.h"
+#include "studies/case/case_kind.h"
 #include "studies/case/case_warnings.h"
 #include "studies/case/light_exposure.h"
-#include "studies/case/peak_locking.h"
 #include "studies/case/sequence_pair.h"
 #include "studies/case/uncertain_inputs.h"
 #include "studies/case/usual_values.h"
@@ -26,23 +26,10 @@ namespace {
 
 constexpr double least_displacement_px = 1e-6;  // displacements below this value count as zero
 
-void cross_check_windows(CaseSetup& loaded) {
-  CameraSetup const& camera = loaded.setup.camera;
-  for (int window : loaded.correlate.window_px) {
-    if (window <= std::min(camera.columns, camera.rows)) continue;
-    loaded.document.root()
-        .table("correlate")
-        .problem("window_px",
-                 fmt::format("a window of {} px is larger than the image of {} x {} px; use smaller windows", window,
-                             camera.columns, camera.rows));
-  }
-}
-
 /// Reports a refusal by check_memory() at its key of the setup.
 void cross_check_memory(CaseSetup& loaded, FieldMemory field) {
   try {
-    check_memory(loaded.setup, field,
-                 loaded.setup.piv ? std::vector<MemoryRequirement>{} : focused_dots_memory(loaded.setup));
+    check_memory(loaded.setup, field, focused_dots_memory(loaded.setup));
   } catch (DataError const& error) {
     if (error.code() != ErrorCode::memory) return;  // a file that cannot be read is reported by its reader
     SetupTable root = loaded.document.root();
@@ -68,7 +55,7 @@ void cross_check_memory(CaseSetup& loaded, FieldMemory field) {
 void cross_check_formula(CaseSetup& loaded) {
   Setup const& setup = loaded.setup;
   SetupTable root = loaded.document.root();
-  bool const needed = setup.piv && setup.piv->particles.scattering == ParticleScattering::gaussian;
+  bool const needed = setup.has_ideal_particles();
   bool const wanted = setup.render.method == RenderMethod::formula;
   std::string const reason = needed || wanted ? reason_against_ideal_images(setup) : "";
   if (wanted && !reason.empty()) {
@@ -88,33 +75,15 @@ void cross_check_formula(CaseSetup& loaded) {
 void cross_check_method(CaseSetup& loaded) {
   cross_check_formula(loaded);
   if (loaded.setup.render.method != RenderMethod::focused_dots) return;
-  std::string const reason = loaded.setup.calibration() ? "the dots of a calibration are on several planes"
-                                                        : reason_against_focused_dots(loaded.setup);
+  std::string const reason = reason_against_focused_dots(loaded.setup);
   if (reason.empty()) return;
   loaded.document.root().table("render").problem("method",
                                                  "is not valid here (" + reason + "); use \"auto\" or \"rays\"");
 }
 
-/// Warns if no dot or particle is in the camera's view.
-void warn_of_view(Scene const& scene, std::vector<std::string>& warnings) {
-  if (scene.setup.piv) {
-    for (auto const& text : warnings_of_particles(scene)) warn(warnings, text);
-    return;
-  }
-  auto const in_view = [&scene](Vec2d centre) { return scene.in_view(centre); };
-  if (std::none_of(scene.dots.centre.begin(), scene.dots.centre.end(), in_view)) {
-    warn(warnings,
-         fmt::format("none of the {} dots lies in the view, {:.4g} x {:.4g} mm about the axis: the images will be "
-                     "empty; check the target's file (positions are in mm) or increase target.dots_per_32px_window",
-                     scene.dots.centre.size(),
-                     scene.setup.camera.columns * scene.setup.camera.pixel_pitch / scene.imaging.magnification * 1e3,
-                     scene.setup.camera.rows * scene.setup.camera.pixel_pitch / scene.imaging.magnification * 1e3));
-  }
-}
-
 /// Warns of a field whose size or position does not fit the view, or that ends within it without decaying to ambient.
 void warn_of_field(Scene const& scene, std::vector<std::string>& warnings) {
-  if (scene.setup.medium.field.kind == FieldKind::none || scene.setup.piv) return;
+  if (scene.setup.medium.field.kind == FieldKind::none || !scene.setup.experiment().measures_density) return;
   Bounds<double> const box = std::visit([](auto const& view) { return view.bounds(); }, scene.medium.view);
   for (std::string const& text :
        {field_coverage(box, scene.setup).warning(), side_face_warning(scene.medium, scene.setup)}) {
@@ -124,10 +93,10 @@ void warn_of_field(Scene const& scene, std::vector<std::string>& warnings) {
 
 /// Warns if the defocus of ideal images is neglected although it is visible, or approximated with a visible error.
 void warn_of_blur(Scene const& scene, std::vector<std::string>& warnings) {
-  if (!scene.setup.piv || resolve_render_method(scene) != RenderMethod::formula) return;
+  if (resolve_render_method(scene) != RenderMethod::formula) return;
   IdealImages const ideal = *ideal_images(scene);
   double const blur = ideal.largest_blur_px(scene.particles), spot = 4 * scene.spot_sigma_px();
-  if (scene.setup.piv->particles.scattering == ParticleScattering::gaussian) {
+  if (scene.setup.has_ideal_particles()) {
     if (blur < 0.5 * spot) return;
     warn(warnings,
          fmt::format("render.method: ideal images neglect defocus, but particles of this sheet have a blur of up to "
@@ -175,14 +144,13 @@ ReadTables read_tables(SetupDocument document) {
                   .first_pair_only = first_pair_only};
   CaseSetup& loaded = read.loaded;
   SetupTable root = loaded.document.root();
-  loaded.setup = read_setup(root);
-  if (loaded.setup.calibration()) {
-    root.mark_as_read("correlate");
-  } else {
-    loaded.correlate = read_correlation_settings(root.table("correlate"));
-  }
   read.light = read_light(root);
-  if (loaded.setup.piv) root.refuse("light", "applies to BOS only (in PIV, [laser] defines the light); remove it");
+  loaded.setup = read_setup(root);
+  if (loaded.setup.experiment().correlated) {
+    loaded.correlate = read_correlation_settings(root.table("correlate"));
+  } else {
+    root.mark_as_read("correlate");
+  }
   for (char const* const table : design_tables) root.mark_as_read(table);
   if (!loaded.correlate.window_px.empty()) loaded.setup.view_margin_px = loaded.correlate.window_px.front();
   for (std::string const& name : loaded.document.file_names()) {
@@ -216,16 +184,12 @@ CaseSetup load_case_setup(SetupDocument document, FieldMemory field) {
   SetupTable root = loaded.document.root();
   if (!loaded.document.has_problems()) {
     loaded.warnings = cross_check(loaded.setup, root);
-    if (!loaded.setup.calibration()) cross_check_windows(loaded);
     if (first_pair_only) {
       loaded.warnings.push_back(
           fmt::format("sequence: only its first pair, pair = {}, is considered; gladstone render renders all pairs",
                       loaded.setup.sequence ? loaded.setup.sequence->pair : 0));
     }
-    if (!loaded.setup.calibration() && !loaded.setup.piv) {
-      if (std::string advice = locking_advice(loaded.setup); !advice.empty())
-        loaded.warnings.push_back(std::move(advice));
-    }
+    case_kind(loaded.setup).cross_check(loaded);
     cross_check_method(loaded);
   }
   if (light && !loaded.document.has_problems()) {
@@ -261,12 +225,12 @@ PreparedCase prepare_case(CaseSetup& loaded, ReusableParts const& known) {
          fmt::format("step_mm = {:.4g}: halving it would still shift dot {} by {:.2g} px; use a smaller medium.step_mm",
                      prepared.step.step_mm, prepared.step.limiting_dot, prepared.step.change_px));
   }
-  warn_of_view(scene, prepared.warnings);
+  case_kind(scene.setup).warn_of_view(scene, prepared.warnings);
   warn_of_blur(scene, prepared.warnings);
   prepared.rays = known.rays ? *known.rays : choose_ray_budget(scene);
   scene = with_rays(std::move(scene), prepared.rays);
   bool const by_table = resolve_render_method(scene) == RenderMethod::focused_dots;
-  if (loaded.setup.medium.field.kind != FieldKind::none && !loaded.setup.piv) {
+  if (loaded.setup.medium.field.kind != FieldKind::none && loaded.setup.experiment().measures_density) {
     prepared.strain = known.strain ? *known.strain : strain_in_view(scene);
     if (prepared.strain.largest_px < least_displacement_px) {
       warn(prepared.warnings,
@@ -296,7 +260,7 @@ PreparedCase prepare_case(CaseSetup& loaded, ReusableParts const& known) {
   } else {
     root.table("render").resolve("rays_per_dot", static_cast<long long>(prepared.rays.rays));
   }
-  if (!loaded.setup.piv && loaded.setup.target.kind != TargetKind::points) {
+  if (loaded.setup.experiment().sources.on_target && loaded.setup.target.kind != TargetKind::points) {
     Vec2d const extent = loaded.setup.target_extent();
     root.table("target").resolve("extent_mm",
                                  std::vector<double>{extent.x / unit::millimetre, extent.y / unit::millimetre});

@@ -32,6 +32,9 @@ struct CaseSetup {
   std::vector<UncertainInput> uncertain = {};  ///< numbers given with an uncertainty, unless the caller extracted them
   /// SHA-256 of each file that the setup names, computed before the scene is built; empty: not computed yet.
   std::map<std::string, std::string> input_hashes = {};
+
+  /// Returns a copy, for functions that change the setup.
+  CaseSetup copy() const { return {document.copy(), setup, correlate, warnings, uncertain, input_hashes}; }
 };
 
 /// Reads and checks a setup.

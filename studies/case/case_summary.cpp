@@ -7,9 +7,9 @@
 #include "render/base/units.h"
 #include "render/method.h"
 #include "render/scene/ray_losses.h"
+#include "studies/case/case_kind.h"
 #include "studies/case/json_text.h"
 #include "studies/case/lens_glasses.h"
-#include "studies/case/particle_case.h"
 
 namespace gladstone {
 namespace {
@@ -91,7 +91,7 @@ nlohmann::json case_summary(CaseSetup& loaded, PreparedCase const& prepared, Ren
   Scene const& scene = prepared.scene;
   Rendering const& rendering = *rendered.rendering;
   TruthAccuracy const& accuracy = outcome.accuracy;
-  bool const piv = scene.setup.piv.has_value(), formula = rendering.method == RenderMethod::formula;
+  bool const formula = rendering.method == RenderMethod::formula;
   nlohmann::json summary{
       {"magnification", scene.imaging.magnification},
       {"step_mm", prepared.step.step_mm},
@@ -104,7 +104,7 @@ nlohmann::json case_summary(CaseSetup& loaded, PreparedCase const& prepared, Ren
        {{"model", loaded.document.root().table("lens").text("psf", "gaussian")},
         {"first_zero_diameter_px", scene.setup.spot_diameter_px()},
         {"sigma_px", scene.spot_sigma_px() > 0 ? nlohmann::json(scene.spot_sigma_px()) : nlohmann::json(nullptr)}}},
-      {"experiment", piv ? "piv" : "bos"},
+      {"experiment", scene.setup.experiment().name},
       {"dots", rendering.truth.size()},
       {"dots_unseen", outcome.unseen},
       {"truth_error_px",
@@ -140,7 +140,7 @@ nlohmann::json case_summary(CaseSetup& loaded, PreparedCase const& prepared, Ren
       {"warnings", outcome.warnings},
       {"seconds_render", rendered.seconds},
   };
-  if (piv) summary.update(particle_summary(scene, rendering.truth, rendered.exposure_e));
+  summary.update(case_kind(scene.setup).own_summary(scene, rendering.truth, rendered.exposure_e));
   return summary;
 }
 

@@ -144,8 +144,8 @@ std::size_t warn_of_unseen(std::vector<std::string>& warnings, Scene const& scen
     if (std::isnan(truth.reference_px[i].x)) ++in_reference;
     rays = std::min(rays, truth.rays_planned[i]);
   }
-  // for PIV, unseen particles are those outside the light sheet
-  if (unseen == 0 || scene.setup.piv) return static_cast<std::size_t>(unseen);
+  // unseen particles are those outside the light sheet
+  if (unseen == 0 || !scene.setup.experiment().sources.on_target) return static_cast<std::size_t>(unseen);
   double const disc = scene.pupil_radius(), stop = scene.imaging.entrance_pupil / 2;
   double const passing = static_cast<double>(rays) * (stop * stop) / (disc * disc);
   constexpr double few = 16;  // if 16 passing rays are expected, none passes with a probability of e^-16
@@ -215,7 +215,7 @@ double peak_snr(CameraSetup const& camera, double peak_e) {
 }  // namespace
 
 void warn_of_exposure(std::vector<std::string>& warnings, Scene const& scene, double exposure_e, double brightest) {
-  if (!scene.setup.piv) return;
+  if (!scene.setup.experiment().sources.in_photons) return;
   CameraSetup const& camera = scene.setup.camera;
   double const photons = scene.photon_unit, limit_e = photon_limited_exposure(scene);
   std::string const cure =
@@ -269,7 +269,7 @@ RenderedOutcome warn_of_rendering(std::vector<std::string>& warnings, PreparedCa
   // If all dots above the goal are traced by rays, the warning of dots at side faces suffices
   bool const only_by_rays = outcome.side_faces && outcome.side_faces->truth_error_px > truth_tolerance_px &&
                             outcome.accuracy.above == outcome.accuracy.above_by_rays;
-  if (!only_by_rays) warn_of_truth(warnings, rendering, outcome.accuracy, setup.piv ? "particles" : "dots");
+  if (!only_by_rays) warn_of_truth(warnings, rendering, outcome.accuracy, setup.experiment().sources.many);
   return outcome;
 }
 

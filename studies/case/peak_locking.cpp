@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "render/base/units.h"
-#include "studies/case/expected_particles.h"
+#include "studies/case/case_kind.h"
 #include "studies/case/image_statistics.h"
 #include "studies/case/random_error.h"
 
@@ -34,12 +34,11 @@ std::string cures(Setup const& setup, ImageDiameters const& images) {
   if (double const factor = images.f_number_factor(min_image_px); std::isfinite(factor * setup.lens.f_number)) {
     add(fmt::format("lens.f_number = {:.3g}", round_up(factor * setup.lens.f_number)));
   }
-  // Ideal images assume particles in focus.
-  bool const ideal = setup.piv && setup.piv->particles.scattering == ParticleScattering::gaussian;
-  if (double const focus = defocus_distance(setup, min_image_px); !ideal && std::isfinite(focus)) {
+  double const focus = defocus_distance(setup, min_image_px);
+  if (std::isfinite(focus) && !setup.has_ideal_particles()) {  // ideal images assume particles in focus
     add(fmt::format("lens.focus_distance_mm = {:.6g}", focus / unit::millimetre));
   }
-  if (!setup.piv) {
+  if (setup.experiment().sources.on_target) {
     double const needed = std::sqrt(square(min_image_px) - square(images.spot_px) - square(images.blur_px));
     add(fmt::format("target.dot_diameter_mm = {:.4g}", needed * setup.pixel_size() / unit::millimetre));
   }
@@ -73,11 +72,7 @@ double ImageDiameters::f_number_factor(double diameter_px) const {
   return factor > 1 ? factor : std::nan("");
 }
 
-ImageDiameters expected_images(Setup const& setup) {
-  if (!setup.piv) return {setup.geometric_dot_px(), setup.spot_e2_diameter_px(), setup.defocus_diameter_px()};
-  ExpectedParticleImage const image = particle_image(setup);
-  return {image.geometric_px, image.diffraction_px, image.blur_px};
-}
+ImageDiameters expected_images(Setup const& setup) { return case_kind(setup).expected_images(setup); }
 
 double defocus_distance(Setup const& setup, double diameter_px) {
   if (setup.lens.prescription || !setup.elements.empty()) return std::nan("");
@@ -85,8 +80,7 @@ double defocus_distance(Setup const& setup, double diameter_px) {
   double const blur = std::sqrt(square(diameter_px) - square(images.geometric_px) - square(images.spot_px));
   double const pupil = setup.lens.focal_length / setup.lens.f_number;
   if (!(blur > 0) || !(pupil > 0)) return std::nan("");
-  double const distance = setup.piv ? particle_image(setup).distance : setup.z_b();
-  double const sharp = 1 / (1 / setup.lens.focal_length - 1 / distance);
+  double const sharp = 1 / (1 / setup.lens.focal_length - 1 / images.distance);
   Setup focused = setup;
   focused.lens.focus = Focus::distance;
   double wanted = blur;
@@ -102,13 +96,13 @@ double defocus_distance(Setup const& setup, double diameter_px) {
 }
 
 std::string locking_advice(Setup const& setup) {
-  if (!setup.piv && setup.target.kind == TargetKind::image) return {};  // dot sizes of an image target are unknown
+  if (setup.target.kind == TargetKind::image) return {};  // dot sizes of an image target are unknown
   ImageDiameters const images = expected_images(setup);
   double const diameter = images.diameter_px();
   if (!(diameter < warned_image_px)) return {};
   std::string text = fmt::format(
       "{} images are {:.2f} px wide (e^-2 diameter): below {:g} px peak locking occurs, an error of about {:.2g} px",
-      setup.piv ? "particle" : "dot", diameter, min_image_px, images.locking_error_px());
+      setup.experiment().sources.one, diameter, min_image_px, images.locking_error_px());
   std::string const cure = cures(setup, images);
   if (cure.empty()) return text + "; widen them";
   ImageDiameters const wide{images.geometric_px,

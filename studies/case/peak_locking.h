@@ -12,6 +12,7 @@ struct ImageDiameters {
   double geometric_px = 0;  ///< diameter of the geometric image [px]
   double spot_px = 0;       ///< e^-2 diameter of the diffraction-limited PSF [px]
   double blur_px = 0;       ///< diameter of the circle of confusion [px]
+  double distance = 0;      ///< distance from the lens to dots or particle, along the camera's axis [m]
 
   /// Returns the e^-2 diameter of the total image [px].
   double diameter_px() const;

@@ -8,7 +8,6 @@
 #include "render/planning.h"
 #include "render/render.h"
 #include "render/scene/calibration_planes.h"
-#include "render/scene/source_sample.h"
 
 namespace gladstone {
 namespace {
@@ -51,23 +50,7 @@ bool is_near(CasePreview const& preview, Vec2d pixel, double margin) {
 /// @return number of those that remain
 std::size_t keep_near(Scene& scene, CasePreview const& preview) {
   double const margin = scene.setup.view_margin_px + scene.setup.defocus_diameter_px();
-  if (!scene.setup.piv) {
-    std::vector<std::size_t> near;
-    for (std::size_t i = 0; i < scene.dots.centre.size(); ++i) {
-      if (is_near(preview, scene.to_pixel(scene.dots.centre[i]), margin)) near.push_back(i);
-    }
-    scene.dots = select_dots(scene.dots, near);
-    return near.size();
-  }
-  std::size_t lit = 0;
-  Particles& particles = scene.particles;
-  for (std::size_t i = 0; i < particles.size(); ++i) {
-    auto const pixel = scene.camera.project(particles.place[0][i]);
-    bool const near = scene.setup.divides_light() || (pixel && is_near(preview, *pixel, margin));
-    if (!near) particles.photons[0][i] = particles.photons[1][i] = 0;
-    if (particles.photons[0][i] > 0 || particles.photons[1][i] > 0) ++lit;
-  }
-  return lit;
+  return scene.setup.experiment().sources.retain(scene, [&](Vec2d pixel) { return is_near(preview, pixel, margin); });
 }
 
 /// Records the part of a frame.
@@ -86,7 +69,7 @@ Image<std::uint16_t> record_part(CasePreview const& preview, Detector const& det
 /// Returns the exposure of both frames, or of the only frame of a calibration [e].
 double preview_exposure(Scene const& scene, LightPair const& light) {
   CameraSetup const& camera = scene.setup.camera;
-  if (!scene.setup.calibration()) return choose_exposure(scene, HostLight(light));
+  if (scene.setup.experiment().correlated) return choose_exposure(scene, HostLight(light));
   double const brightest = *std::max_element(light.reference.begin(), light.reference.end());
   return camera.exposure_e ? *camera.exposure_e : Detector::auto_exposure(camera, brightest);
 }
@@ -95,18 +78,17 @@ double preview_exposure(Scene const& scene, LightPair const& light) {
 
 CasePreview render_preview(CaseSetup const& loaded, Renderer& renderer) {
   auto const start = std::chrono::steady_clock::now();
-  bool const planes = loaded.setup.calibration();
+  bool const planes = !loaded.setup.planes.empty();
   CasePreview preview;
   Setup setup = loaded.setup;
   if (planes) {
     auto const nearer = [](double a, double b) { return std::abs(a) < std::abs(b); };
     preview.plane_z = *std::min_element(setup.planes.begin(), setup.planes.end(), nearer);
     setup = plane_setup(setup, preview.plane_z);
-    setup.render.method = RenderMethod::rays;
   }
   if (!setup.render.rays_per_dot) setup.render.rays_per_dot = preview_rays;
   Scene scene = build_scene(setup);
-  preview.at_gradient = !setup.piv && setup.medium.field.kind != FieldKind::none;
+  preview.at_gradient = setup.experiment().measures_density && setup.medium.field.kind != FieldKind::none;
   Vec2d const centre = 0.5 * Vec2d{setup.camera.columns - 1.0, setup.camera.rows - 1.0};
   place_preview(preview, setup.camera, centre);
   if (preview.at_gradient) {

@@ -9,11 +9,10 @@
 #include "render/focused_dots/table_error.h"
 #include "render/method.h"
 #include "render/planning.h"
-#include "render/rays/ray_requirement.h"
 #include "render/scene/build_camera.h"
 #include "render/scene/calibration_planes.h"
 #include "render/scene/ray_budget.h"
-#include "studies/case/expected_particles.h"
+#include "studies/case/case_kind.h"
 
 namespace gladstone {
 namespace {
@@ -31,22 +30,17 @@ BuiltMedium stand_in_medium(MediumSetup setup) {
   return medium;
 }
 
-/// Builds a scene with the coarsest step and, except for PIV, with its dots.
+/// Builds a scene with the coarsest step and the dots of a target, but without particles.
 Scene cost_scene(Setup const& setup) {
   Scene scene;
   scene.setup = setup;
   scene.imaging = setup.imaging();
   scene.camera = build_camera(setup);
-  if (!setup.piv) scene.dots = build_target(setup);
+  if (setup.experiment().sources.on_target) scene.dots = build_target(setup);
   scene.medium = stand_in_medium(setup.medium);
   if (setup.medium.second_field) scene.second_medium = stand_in_medium(select_second_pulse(setup.medium));
   scene.step = setup.medium.step_mm ? *setup.medium.step_mm * unit::millimetre : scene.medium.coarsest_step;
   return scene;
-}
-
-/// Returns the number of particles that are lit and in view; NaN: unknown before their file is read.
-double lit_particles(Setup const& setup) {
-  return expected_particles(setup).per_pixel * setup.camera.columns * setup.camera.rows;
 }
 
 /// Returns the processor time of `gladstone render` relative to that of render_seconds(), which adds up the times of
@@ -56,21 +50,6 @@ double measured_share(Setup const& setup, RenderMethod method) {
   constexpr double rays = 1.5, table_of_file = 0.3, table_of_closed_form = 1.3;
   if (method != RenderMethod::focused_dots) return rays;
   return setup.medium.field.kind == FieldKind::file ? table_of_file : table_of_closed_form;
-}
-
-/// Estimates the number of rays that "auto" chooses for most particles, without aberrations and refraction: that of
-/// cubature_rule_suffices() for the brightest particle at the edge of the laser sheet, at least the second rule.
-/// @param largest  largest number that may be chosen
-double expected_rays(Setup const& setup, double largest) {
-  constexpr double second_rule = 16, exposure = 0.9;  // level of the brightest pixel, relative to full scale
-  if (setup.divides_light()) return largest;
-  ExpectedParticles const images = expected_particles(setup);
-  double const spot2 = images.diffraction_px * images.diffraction_px;
-  double const blur2 = images.sheet_edge_diameter_px * images.sheet_edge_diameter_px - spot2;
-  double const allowed = image_tolerance_levels / (exposure * std::exp2(setup.camera.bit_depth));
-  double n = second_rule;
-  while (n < largest && !cubature_rule_suffices(n, std::max(blur2, 0.0) / spot2, allowed)) n *= 4;
-  return std::min(n, largest);
 }
 
 }  // namespace
@@ -85,14 +64,14 @@ double RenderCost::bytes() const {
 }
 
 RenderCost estimate_render_cost(Setup const& setup) {
-  bool const planes = setup.calibration();
+  CaseKind const& kind = case_kind(setup);
+  bool const planes = !setup.planes.empty();
   RenderCost cost;
   cost.memory = memory_requirements(setup);
   Scene scene = cost_scene(planes ? plane_setup(setup, setup.planes.front()) : setup);
-  if (planes) scene.setup.render.method = RenderMethod::rays;
   cost.method = resolve_render_method(scene);
   double const images = planes ? static_cast<double>(setup.planes.size()) : 1;
-  cost.sources = setup.piv ? lit_particles(setup) : images * static_cast<double>(scene.dots.centre.size());
+  cost.sources = images * kind.expected_sources(scene);
   if (cost.method == RenderMethod::formula) return cost;
   bool const by_table = cost.method == RenderMethod::focused_dots, chief = scene.chief_rays_only();
   if (by_table) {
@@ -103,10 +82,10 @@ RenderCost estimate_render_cost(Setup const& setup) {
   std::uint64_t const automatic = chief ? 1 : by_table ? initial_table_rays : max_rays_per_source(scene);
   scene.rays_per_dot = setup.render.rays_per_dot.value_or(automatic);
   cost.rays_per_source = cost.expected_rays = static_cast<double>(scene.rays_per_dot);
-  if (setup.piv) {
+  if (kind.expected_rays) {
     double const media = scene.second_medium ? 2 : 1;
     cost.processor_seconds = media * cost.sources * cost.rays_per_source * ray_seconds(scene);
-    if (cost.rays_are_largest) cost.expected_rays = expected_rays(setup, cost.rays_per_source);
+    if (cost.rays_are_largest) cost.expected_rays = kind.expected_rays(setup, cost.rays_per_source);
   } else if (by_table && !focused_dots(scene)) {  // refused by render, with the reason
     cost.processor_seconds = not_measured;
   } else {
@@ -119,7 +98,8 @@ RenderCost estimate_render_cost(Setup const& setup) {
 
 double expected_render_seconds(Scene const& scene, RenderTheory theory) {
   double const longest = measured_share(scene.setup, resolve_render_method(scene)) * render_seconds(scene, theory);
-  if (!scene.setup.piv || !scene.adaptive_criteria) return longest;
+  auto const expected_rays = case_kind(scene.setup).expected_rays;
+  if (!expected_rays || !scene.adaptive_criteria) return longest;
   auto const most = static_cast<double>(scene.rays_per_dot);
   return longest * expected_rays(scene.setup, most) / most;
 }

@@ -79,10 +79,13 @@ std::vector<std::string> pair_warnings(Json const& summary) {
 /// One run of SequenceRenderer::render().
 class SequenceRendering {
  public:
-  SequenceRendering(fs::path folder, bool piv, std::vector<std::string> cameras)
-      : folder_(std::move(folder)), piv_(piv), cameras_(std::move(cameras)), finished_(read_finished_pairs(folder_)) {
+  SequenceRendering(fs::path folder, SequenceSetup const& sequence, std::vector<std::string> cameras)
+      : folder_(std::move(folder)),
+        sequence_(sequence),
+        cameras_(std::move(cameras)),
+        finished_(read_finished_pairs(folder_)) {
     for (std::string const& camera : cameras_) {
-      shared_.cameras[camera].particles = piv_ ? std::make_shared<ParticleCache>() : nullptr;
+      shared_.cameras[camera].particles = std::make_shared<ParticleCache>();
       std::error_code error;
       fs::create_directories(frames_of(camera), error);
       if (error) OutputDestination(frames_of(camera).string()).fail("cannot be created", error.value());
@@ -109,7 +112,7 @@ class SequenceRendering {
             {"software_version", version},
             {"git_sha1", git_sha1},
             {"complete", complete},
-            {"pairing", piv_ ? "consecutive" : "reference"},
+            {"pairing", sequence_.consecutive ? "consecutive" : "reference"},
             {"cameras", cameras_.size() > 1 ? Json(cameras_) : Json(nullptr)},
             {"frames", pairs_.empty() ? 0 : pairs_.size() + 1},
             {"pairs", pairs_}};
@@ -160,8 +163,8 @@ class SequenceRendering {
   void read_earlier_frames(std::size_t number) {
     UnrecordedReading const of_own_files;
     for (std::string const& camera : cameras_) {
-      fs::path const earlier =
-          piv_ ? case_of(number - 1, camera) / case_file::flow : frames_of(camera) / rendered_sequence_file::frame(0);
+      fs::path const earlier = sequence_.consecutive ? case_of(number - 1, camera) / case_file::flow
+                                                     : frames_of(camera) / rendered_sequence_file::frame(0);
       shared_.cameras[camera].reference = read_image(earlier.string());
     }
   }
@@ -180,7 +183,7 @@ class SequenceRendering {
       exposures.push_back(camera.exposure_e);
       seconds += camera.seconds;
     }
-    if (piv_ && !shared_.medium) {  // the field of BOS differs from pair to pair
+    if (sequence_.consecutive && !shared_.medium) {  // the field of BOS differs from pair to pair
       medium_ = std::move(rendered.medium);
       shared_.medium = &medium_;
     }
@@ -206,9 +209,11 @@ class SequenceRendering {
       shared_.cameras[cameras_[i]].exposure_e = exposures.at(i).get<double>();
   }
 
-  std::string first_frame(std::size_t number) const { return rendered_sequence_file::frame(piv_ ? number : 0); }
+  std::string first_frame(std::size_t number) const {
+    return rendered_sequence_file::frame(sequence_.frames_of(number)[0]);
+  }
   std::string second_frame(std::size_t number) const {
-    return rendered_sequence_file::frame(piv_ ? number + 1 : number);
+    return rendered_sequence_file::frame(sequence_.frames_of(number)[1]);
   }
 
   /// Adds the frames of a pair that no earlier pair contains to the folder of frames.
@@ -225,7 +230,7 @@ class SequenceRendering {
   }
 
   fs::path folder_;
-  bool piv_;
+  SequenceSetup sequence_;
   std::vector<std::string> cameras_;
   std::map<std::size_t, Json> finished_;  ///< pairs of an earlier run
   InputHashes inputs_;
@@ -244,7 +249,7 @@ SequenceRenderer::SequenceRenderer(std::string path, std::vector<std::string> ov
         {{path_, "has no table [sequence]; add it, or render a single pair", "sequence", ErrorCode::missing_key}});
   first_pair_ = sequence->pair;
   pair_count_ = sequence->frames - 1;
-  if (is_piv()) return;
+  if (sequence->consecutive) return;
   SetupDocument document = read_sequence_document(path_, overrides_);
   check_fields(document);
   pair_count_ = sequence_fields(document).size();
@@ -298,7 +303,7 @@ void SequenceRenderer::refuse_over_inputs(std::string const& folder) const {
 RenderedSequence SequenceRenderer::render(Renderer& renderer, std::string const& folder, bool show_progress) {
   auto const start = std::chrono::steady_clock::now();
   prepare_sequence_folder(folder, first_.written());
-  SequenceRendering run(folder, is_piv(), first_.camera_names());
+  SequenceRendering run(folder, *first_.first_setup().sequence, first_.camera_names());
   RenderedSequence result;
   try {
     std::optional<PairProgress> progress;  // of the pairs after those of an earlier run

@@ -44,7 +44,6 @@ class SequenceRenderer {
   RenderedSequence render(Renderer& renderer, std::string const& folder, bool show_progress);
 
  private:
-  bool is_piv() const { return first_.first_setup().piv.has_value(); }
   /// Returns the setup of a pair.
   SetupRenderer pair_setup(std::size_t number) const;
   /// Checks that the density files of a BOS sequence can be read and have one size. @throws SetupError

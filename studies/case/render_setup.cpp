@@ -10,7 +10,7 @@
 #include "render/files/output_file.h"
 #include "render/files/output_folder.h"
 #include "render/setup/setup_node.h"
-#include "studies/case/calibration_case.h"
+#include "studies/case/case_kind.h"
 #include "studies/case/json_text.h"
 #include "studies/case/sequence_pair.h"
 
@@ -79,51 +79,13 @@ RenderedSetup SetupRenderer::render(Renderer& renderer, std::string const& folde
 nlohmann::ordered_json SetupRenderer::render_one(OneCamera& camera, Renderer& renderer, ReusableParts const& known,
                                                  BuiltMedium& medium, OutputFolder const& output, RenderedCamera& entry,
                                                  SharedParts::OfCamera const& shared) const {
+  CaseWriter const write = case_kind(camera.loaded.setup).render(camera.loaded, renderer, known, shared, entry, medium);
   nlohmann::ordered_json summary;
-  auto const fill = [&](auto const& write) {
-    output.fill([&](std::string const& place) {
-      fs::path const own = fs::path(place) / camera.name;
-      fs::create_directories(own);
-      summary = write(own.string());
-    });
-  };
-  if (camera.loaded.setup.calibration()) {
-    hash_inputs(camera.loaded);
-    RenderedCalibration const rendered = render_planes(camera.loaded, renderer);
-    fill([&](std::string const& place) { return write_calibration(camera.loaded, rendered, place); });
-    entry.planes = rendered.planes.size();
-    for (RenderedPlane const& plane : rendered.planes) entry.sources += plane.truth.size();
-    entry.rays = entry.most_rays = rendered.rays;
-    entry.seconds = rendered.seconds;
-    entry.device = rendered.device;
-    return summary;
-  }
-  if (shared.exposure_e) camera.loaded.setup.camera.exposure_e = shared.exposure_e;
-  if (camera.loaded.setup.piv) camera.loaded.setup.piv->shared = shared.particles;
-  RecordedCase finished = render_case_in_memory(camera.loaded, renderer, known);
-  if (!shared.reference.empty()) {
-    finished.frames.levels = std::make_shared<HostFrames const>(Image<double>(shared.reference),
-                                                                Image<double>(finished.frames.levels->flow()));
-  }
-  fill([&](std::string const& place) {
-    return write_case(camera.loaded, finished.prepared, finished.rendered, finished.frames, renderer, place);
+  output.fill([&](std::string const& place) {
+    fs::path const own = fs::path(place) / camera.name;
+    fs::create_directories(own);
+    summary = write(own.string());
   });
-  Rendering const& rendering = *finished.rendered.rendering;
-  entry.sources = rendering.truth.size();
-  entry.particles = camera.loaded.setup.piv.has_value();
-  std::vector<std::int64_t> planned = rendering.truth.rays_planned;
-  std::erase(planned, 0);  // remove particles out of view
-  if (!planned.empty()) {
-    auto const [least, most] = std::minmax_element(planned.begin(), planned.end());
-    entry.rays = static_cast<std::uint64_t>(*least);
-    entry.most_rays = static_cast<std::uint64_t>(*most);
-  }
-  entry.step_mm = finished.prepared.step.step_mm;
-  entry.magnification = finished.prepared.scene.imaging.magnification;
-  entry.exposure_e = finished.rendered.exposure_e;
-  entry.seconds = finished.rendered.seconds;
-  entry.device = rendering.device.empty() ? renderer.device() : rendering.device;
-  medium = finished.prepared.scene.medium;
   return summary;
 }
 

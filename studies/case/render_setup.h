@@ -18,7 +18,7 @@ struct RenderedCamera {
   std::string folder;
   std::size_t planes = 0;   ///< number of planes of a calibration
   std::size_t sources = 0;  ///< number of dots or particles; of a calibration, in all planes together
-  bool particles = false;
+  char const* name_of_sources = "dots";
   std::uint64_t rays = 0;               ///< smallest number of rays per source
   std::uint64_t most_rays = 0;          ///< largest number of rays of a source
   std::optional<double> step_mm;        ///< empty if there was no medium
@@ -33,7 +33,7 @@ struct SharedParts {
   struct OfCamera {
     std::optional<double> exposure_e;          ///< exposure of the first pair [e]; empty: chosen by the setup
     Image<double> reference;                   ///< grey levels of frame A in other pairs; empty: rendered
-    std::shared_ptr<ParticleCache> particles;  ///< null: none
+    std::shared_ptr<ParticleCache> particles;  ///< particles of PIV; null: none
   };
   std::map<std::string, OfCamera> cameras;  ///< by name; empty for the only camera
   BuiltMedium const* medium = nullptr;      ///< medium of another pair, if it is the same; null: built

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "render/base/units.h"
-#include "render/scene/particle_scene.h"
 #include "render/setup/setup_node.h"
 
 namespace gladstone {
@@ -42,26 +41,10 @@ void share_diameter(SetupDocument& document, Setup const& first) {
   document.set({"target", "dot_diameter_mm"}, setup_number(first.dot_diameter() / unit::millimetre));
 }
 
-/// Sets the number of particles of all cameras to that required by the first camera's image.
-void share_particles(std::vector<CameraCase>& cases, Setup const& first) {
-  if (first.piv->particles.count != ParticleCount::per_pixel) return;
-  SetupNode const number = setup_number(std::round(particle_count(first)));
-  for (CameraCase& one : cases) {
-    SetupNode particles = *one.document.find({"particles"});
-    std::erase_if(particles.members, [](SetupMember const& member) { return member.key == "per_pixel"; });
-    one.document.set({"particles"}, particles);
-    one.document.set({"particles", "number"}, number);
-  }
-}
-
 }  // namespace
 
 void share_target(std::vector<CameraCase>& cases, std::vector<Setup> const& read) {
   Setup first = read.front();
-  if (first.piv) {
-    share_particles(cases, first);
-    return;
-  }
   TargetKind const kind = first.target.kind;
   if (kind == TargetKind::lattice) return;  // lattices are defined in metres and so already equal
   if (kind != TargetKind::image) {

@@ -7,8 +7,8 @@
 
 namespace gladstone {
 
-/// Replaces the target of every camera's setup by a common one (for PIV, the number of particles by a common number):
-/// the first camera's dots, on a target at one position that covers all views.
+/// Replaces the target of every camera's setup by a common one: the first camera's dots, on a target at one position
+/// that covers all views.
 /// @param cases  setups to be changed
 /// @param read   the same setups, read
 void share_target(std::vector<CameraCase>& cases, std::vector<Setup> const& read);

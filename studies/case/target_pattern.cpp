@@ -93,7 +93,7 @@ std::string pdf_content(PagePlaces const& places) {
 }  // namespace
 
 TargetPattern make_target_pattern(Setup const& setup, std::string const& name) {
-  if (setup.piv)
+  if (!setup.experiment().sources.on_target)
     throw DataError(ErrorCode::wrong_format, name,
                     "has particles and no target; give the setup of a BOS experiment or calibration");
   if (setup.target.kind == TargetKind::image) {

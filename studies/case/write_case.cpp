@@ -22,17 +22,14 @@
 #include "render/scene/source_sample.h"
 #include "render/sensor/detector.h"
 #include "studies/case/case.h"
+#include "studies/case/case_kind.h"
 #include "studies/case/case_summary.h"
 #include "studies/case/case_warnings.h"
 #include "studies/case/json_text.h"
-#include "studies/case/particle_case.h"
 #include "studies/case/render_cost.h"
-#include "studies/case/truth_file.h"
 
 namespace gladstone {
 namespace {
-
-constexpr int map_spacing_px = 2;  // spacing of the maps in truth.h5; turbulent fronts are a few pixels wide
 
 /// Measures the standard error of the images due to rays: of a general rendering if the number of rays was adaptive, of
 /// a rendering by the deflection table in the images of the dots at side faces.
@@ -75,8 +72,8 @@ std::string rendering_announcement(Scene const& scene, double expected_s) {
   return fmt::format(
       "rendering {0} {1} will take {4} {2:.0f} s on {3} threads; fewer {1}, a smaller render.rays_per_dot or a larger "
       "medium.step_mm takes less time",
-      scene.source_count(), scene.setup.piv ? "particles" : "dots", expected_s, thread_count(),
-      scene.adaptive_criteria && !scene.setup.piv ? "up to" : "some");
+      scene.source_count(), scene.setup.experiment().sources.many, expected_s, thread_count(),
+      scene.adaptive_criteria && !case_kind(scene.setup).expected_rays ? "up to" : "some");
 }
 
 RenderedCase render_case(PreparedCase const& prepared, Renderer& renderer, RenderTheory theory) {
@@ -187,13 +184,7 @@ nlohmann::json write_case(CaseSetup& loaded, PreparedCase const& prepared, Rende
   if (loaded.input_hashes.empty()) hash_inputs(loaded);
   for (auto const& [path, hash] : loaded.input_hashes) origin.sources.add("", path, SourceFiles::Holds::bytes, hash);
   origin.sources.add_known("inputs", nlohmann::json(loaded.input_hashes).dump());
-  if (scene.setup.piv) {
-    write_particle_truth(place(case_file::truth), scene, rendering.truth, rendering.statuses, rendering.method, origin);
-  } else {
-    write_truth(place(case_file::truth), scene, rendering.truth, rendering.statuses,
-                field_in_view(scene, map_spacing_px), rendering.method,
-                outcome.table_error ? &*outcome.table_error : nullptr, origin);
-  }
+  case_kind(scene.setup).write_truth(place(case_file::truth), scene, rendering, outcome, origin);
   OutputFile::write_text(place(case_file::setup), insert_uncertain_inputs(resolved, loaded.uncertain));
   nlohmann::json summary = case_summary(loaded, prepared, rendered, frames, outcome);
   OutputFile::write_text(place(case_file::summary), json_text(summary) + "\n");

@@ -10,6 +10,7 @@
 #include "render/base/units.h"
 #include "studies/case/cameras.h"
 #include "studies/case/case.h"
+#include "studies/case/case_kind.h"
 #include "studies/case/expected_particles.h"
 #include "studies/case/json_text.h"
 
@@ -86,10 +87,8 @@ Description describe_particles(SetupDocument const& setup, std::string const& na
   nlohmann::json cameras = nlohmann::json::object(), only;
   for (CameraCase& camera : camera_cases(setup)) {
     CaseSetup const loaded = load_case_setup(std::move(camera.document));
-    if (!loaded.setup.piv) {
-      throw DataError(ErrorCode::wrong_format, name,
-                      "has no particles (experiment is not \"piv\"); give the setup of a PIV experiment");
-    }
+    require_experiment(loaded.setup, piv_experiment, name,
+                       "has no particles (experiment is not \"piv\"); give the setup of a PIV experiment");
     for (std::string const& warning : loaded.warnings) spdlog::warn("{}", warning);
     ExpectedParticles const expected = expected_particles(loaded.setup);
     text += fmt::format("{}{}\n", name, camera.name.empty() ? "" : ", camera " + camera.name);

@@ -50,17 +50,14 @@ Description describe_setup(SetupDocument const& setup, std::string const& name, 
   };
   for (CameraCase& camera : camera_cases(setup)) {
     std::string const path = figure_of_camera(figure, camera.name);
-    SetupDocument const document = camera.document.copy();
-    CaseSetup loaded = load_case_setup(std::move(camera.document));
+    CaseSetup const loaded = load_case_setup(std::move(camera.document));
     for (std::string const& warning : loaded.warnings) warn_once(warning);
-    for (std::string const& warning : list_neglected_effects(loaded.setup)) {
-      if (!loaded.setup.calibration()) warn_once(warning);
-    }
-    SetupOverview const overview = make_setup_overview(std::move(loaded));
+    for (std::string const& warning : list_neglected_effects(loaded.setup)) warn_once(warning);
+    SetupOverview const overview = make_setup_overview(loaded.copy());
     only = overview_json(overview);
     text += fmt::format("{}{}: {}\n{}", name, camera.name.empty() ? "" : ", camera " + camera.name, overview.experiment,
                         overview_text(overview));
-    if (!figure.empty() && draw_setup(path, load_case_setup(document.copy()))) {
+    if (!figure.empty() && draw_setup(path, loaded.copy())) {
       only["figure"] = path;
       text += fmt::format("  figure: {}\n", path);
     }

@@ -48,7 +48,7 @@ A table [sequence] renders a series of frames into DIR/frames, and a case of eac
 std::string in_words(RenderedCamera const& camera) {
   std::string text = fmt::format("{}: ", camera.folder);
   if (camera.planes > 0) text += fmt::format("{} planes, ", camera.planes);
-  text += fmt::format("{} {}, {}", camera.sources, camera.particles ? "particles" : "dots", camera.rays);
+  text += fmt::format("{} {}, {}", camera.sources, camera.name_of_sources, camera.rays);
   if (camera.most_rays > camera.rays) text += fmt::format(" to {}", camera.most_rays);
   text += fmt::format(" rays each{}, ", camera.planes > 0 ? "" : " in each frame");
   if (camera.step_mm) text += fmt::format("step {:.4g} mm, ", *camera.step_mm);

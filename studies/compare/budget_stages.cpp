@@ -3,23 +3,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "studies/compare/comparison_kind.h"
+
 namespace gladstone {
 
 std::vector<BudgetStage> budget_stages(Comparison const& comparison, WindowTruth const& window) {
   std::vector<BudgetStage> stages{{"window", window.displacement_px},
                                   {"noise_free", comparison.noise_free},
                                   {"measured", comparison.measured.displacement_px}};
-  if (comparison.chain == BudgetChain::piv) {
-    stages.insert(
-        stages.end(),
-        {{"flow", comparison.flow_px}, {"ambient", comparison.ambient_px}, {"seen", comparison.point.displacement_px}});
-  } else {
-    stages.insert(stages.end(), {{"eq9", comparison.point.eq9_px},
-                                 {"straight", comparison.point.chief_px},
-                                 {"eq9_cone", comparison.point.eq9_cone_px},
-                                 {"thin_lens", comparison.thin_lens},
-                                 {"lens", comparison.point.displacement_px}});
-  }
+  std::vector<BudgetStage> const to_truth = comparison_kind(comparison).stages(comparison);
+  stages.insert(stages.end(), to_truth.begin(), to_truth.end());
   return stages;
 }
 

@@ -14,6 +14,7 @@
 #include "render/scene/calibration_planes.h"
 #include "studies/case/cameras.h"
 #include "studies/case/case.h"
+#include "studies/case/case_kind.h"
 #include "studies/compare/calibration_fit.h"
 
 namespace gladstone {
@@ -225,11 +226,9 @@ Calibration calibrate_case(std::string const& folder) {
   require_case(folder);
   auto const in_folder = [&folder](std::string const& name) { return (std::filesystem::path(folder) / name).string(); };
   CaseSetup const loaded = load_case_setup(in_folder(case_file::setup), {});
-  if (!loaded.setup.calibration()) {
-    throw DataError(ErrorCode::wrong_format, folder,
-                    "is a BOS case, which cannot calibrate a camera; render a setup with experiment = \"calibration\" "
-                    "and a table [calibration]");
-  }
+  require_experiment(loaded.setup, calibration_experiment, folder,
+                     "is a BOS case, which cannot calibrate a camera; render a setup with experiment = \"calibration\" "
+                     "and a table [calibration]");
   std::vector<std::string> pictures;
   for (std::size_t plane = 0; plane < loaded.setup.planes.size(); ++plane) {
     pictures.push_back(in_folder(case_file::plane(plane)));
@@ -248,11 +247,10 @@ Calibration calibrate_images(std::string const& setup, std::vector<std::string> 
                                 cameras.size(), fmt::join(cameras, ", ")));
   }
   CaseSetup const loaded = load_case_setup(std::move(document));
-  if (!loaded.setup.calibration()) {
-    throw DataError(ErrorCode::wrong_format, setup,
-                    "is not the setup of a calibration; set experiment = \"calibration\" and describe in [calibration] "
-                    "what the images show");
-  }
+  require_experiment(
+      loaded.setup, calibration_experiment, setup,
+      "is not the setup of a calibration; set experiment = \"calibration\" and describe in [calibration] "
+      "what the images show");
   if (pictures.size() != loaded.setup.planes.size()) {
     throw DataError(ErrorCode::inconsistent, setup,
                     fmt::format("calibration.planes_mm has {} planes, but {} images are given; give one image "

@@ -19,9 +19,9 @@
 #include "studies/case/truth_file.h"
 #include "studies/compare/budget_stages.h"
 #include "studies/compare/compared_vectors.h"
+#include "studies/compare/comparison_kind.h"
 #include "studies/compare/comparison_warnings.h"
 #include "studies/compare/correlate.h"
-#include "studies/compare/particle_points.h"
 #include "studies/compare/stored_comparison.h"
 #include "studies/compare/thinned_vectors.h"
 #include "studies/compare/tracked_dots.h"
@@ -39,7 +39,7 @@ std::vector<double> correlation_flux(GroundTruth const& truth) {
 }
 
 /// Initializes a comparison from its vectors.
-Comparison comparison_of(MeasuredVectors& vectors, bool piv) {
+Comparison comparison_of(MeasuredVectors& vectors, Setup const& setup) {
   Comparison comparison;
   comparison.measured = std::move(vectors.field);
   comparison.report = vectors.report;
@@ -47,7 +47,7 @@ Comparison comparison_of(MeasuredVectors& vectors, bool piv) {
   comparison.left_out = vectors.left_out;
   comparison.detected = vectors.detected;
   comparison.complete = vectors.complete;
-  if (piv) comparison.chain = BudgetChain::piv;
+  comparison.chain = comparison_kind(setup).chain;
   return comparison;
 }
 
@@ -57,12 +57,10 @@ Comparison comparison_of(MeasuredVectors& vectors, bool piv) {
 void judge_chain(Comparison& comparison, std::string const& name) {
   DisplacementField const& measured = comparison.measured;
   std::vector<std::span<Vec2d const>> references{comparison.point.displacement_px, comparison.window.displacement_px};
-  if (comparison.chain == BudgetChain::piv) {
-    references.insert(references.end(), {comparison.flow_px, comparison.ambient_px});
-  } else {
-    references.insert(references.end(), {comparison.point.eq9_px, comparison.point.eq9_cone_px, comparison.thin_lens});
-  }
-  if (!comparison.noise_free.empty()) references.emplace_back(comparison.noise_free);
+  for (ReferenceDisplacement const& one : comparison_kind(comparison).references)
+    references.emplace_back(one.of(comparison));
+  for (std::vector<Vec2d> const* optional : {&comparison.thin_lens, &comparison.noise_free})
+    if (!optional->empty()) references.emplace_back(*optional);
   comparison.mask = common_mask(measured, references);
   if (std::none_of(comparison.mask.begin(), comparison.mask.end(), [](auto counts) { return counts != 0; })) {
     throw DataError(ErrorCode::undetermined, name,
@@ -128,15 +126,7 @@ std::vector<Vec2d> ideal_lens_truth(Scene scene, Renderer& renderer, GroundTruth
 
 PointTruth truth_of_vectors(PreparedCase const& prepared, Renderer& renderer, std::vector<Vec2d> const& position_px,
                             TruthAt at) {
-  Scene const& scene = prepared.scene;
-  PointTruth truth;
-  if (scene.setup.piv) {
-    ParticlePoints points = particle_points(scene, renderer, position_px, at);
-    return {std::move(points.seen), {}, std::move(points.flow_px), std::move(points.ambient_px)};
-  }
-  truth.point = truth_at_points(scene, renderer, position_px, at, RenderTheory::yes);
-  truth.thin_lens = ideal_lens_truth(scene, renderer, truth.point);
-  return truth;
+  return comparison_kind(prepared.scene.setup).truth(prepared.scene, renderer, position_px, at);
 }
 
 Comparison compare_case(std::string const& folder, Backend const& device, CompareOptions const& options) {
@@ -152,7 +142,7 @@ Comparison compare_case(std::string const& folder, Backend const& device, Compar
   stop_point("comparing");
   std::vector<std::string> given;  // warnings already logged
   std::string fingerprint = comparison_fingerprint(files.sources, options);
-  Comparison comparison = comparison_of(vectors, loaded.setup.piv.has_value());
+  Comparison comparison = comparison_of(vectors, loaded.setup);
   if (options.reuse && read_chain(folder, fingerprint, comparison)) {
     spdlog::info("reused the comparison of {}, which was made from the same files", in_case(folder, case_file::errors));
     judge_chain(comparison, vectors.name);
@@ -178,7 +168,7 @@ Comparison compare_case(std::string const& folder, Backend const& device, Compar
 
 Comparison compare_vectors(PreparedCase const& prepared, GroundTruth const& dots, RenderedCase const* rendered,
                            MeasuredVectors vectors, PointTruth truth, Backend const& device, TruthAt at) {
-  Comparison comparison = comparison_of(vectors, prepared.scene.setup.piv.has_value());
+  Comparison comparison = comparison_of(vectors, prepared.scene.setup);
   comparison.point = std::move(truth.point);
   comparison.thin_lens = std::move(truth.thin_lens);
   comparison.flow_px = std::move(truth.flow_px);

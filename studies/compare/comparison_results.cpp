@@ -4,7 +4,7 @@
 
 #include "analysis/errors/uncertainty_quality.h"
 #include "studies/case/json_text.h"
-#include "studies/compare/compare.h"
+#include "studies/compare/comparison_kind.h"
 #include "studies/figures/error_figures.h"
 #include "studies/figures/map_figures.h"
 
@@ -102,14 +102,10 @@ nlohmann::ordered_json compute_error_measures(Comparison const& comparison) {
     return measures;
   };
   json["ray_truth"] = summary(comparison.point.displacement_px);
-  if (comparison.chain == BudgetChain::piv) {
-    json["flow"] = summary(comparison.flow_px);
-    json["ambient_truth"] = summary(comparison.ambient_px);
-    json["eq9"] = json["eq9_cone"] = nullptr;  // defined for BOS only
-  } else {
-    json["eq9"] = summary(comparison.point.eq9_px);
-    json["eq9_cone"] = summary(comparison.point.eq9_cone_px);
-  }
+  for (ReferenceDisplacement const& one : comparison_kind(comparison).references)
+    json[one.measures] = summary(one.of(comparison));
+  for (char const* const of_bos : {"eq9_cone", "eq9"})
+    if (!json.contains(of_bos)) json[of_bos] = nullptr;
   json["window_truth"] = summary(comparison.window.displacement_px);
   if (nlohmann::ordered_json const quality = uncertainty_json(comparison); !quality.empty())
     json["uncertainty"] = quality;
@@ -160,7 +156,7 @@ std::string errors_json(Comparison const& comparison) { return json_text(compute
 std::vector<std::string> draw_comparison(std::string const& folder, Comparison const& comparison,
                                          std::string const& format) {
   DisplacementField const& measured = comparison.measured;
-  bool const piv = comparison.chain == BudgetChain::piv;
+  ComparisonKind const& kind = comparison_kind(comparison);
   std::vector<std::string> drawn;
   auto const next = [&](char const* name) { return drawn.emplace_back(folder + '/' + name + '.' + format); };
   auto const difference = [&](std::vector<Vec2d> const& from) {
@@ -186,24 +182,13 @@ std::vector<std::string> draw_comparison(std::string const& folder, Comparison c
     axes.y_first = measured.position_px.front().y;
     axes.y_step = measured.position_px[static_cast<std::size_t>(measured.columns)].y - axes.y_first;
     std::vector<NamedMaps> drawings{maps("ray truth", comparison.point.displacement_px)};
-    if (piv) {
-      drawings.push_back(maps("flow", comparison.flow_px));
-      drawings.push_back(maps("without medium", comparison.ambient_px));
-    } else {
-      drawings.push_back(maps("Eq. 9", comparison.point.eq9_px));
-      drawings.push_back(maps("aperture-averaged Eq. 9", comparison.point.eq9_cone_px));
-    }
+    for (ReferenceDisplacement const& one : kind.references) drawings.push_back(maps(one.name, one.of(comparison)));
     drawings.push_back(maps("measurement", measured.displacement_px));
     write_displacement_maps(next("displacement_maps"), "Displacement, and differences from ray truth", axes, drawings);
   }
   std::vector<ErrorSeries> series{{"against ray truth", difference(comparison.point.displacement_px)}};
-  if (piv) {
-    series.push_back({"against the flow", difference(comparison.flow_px)});
-    series.push_back({"against truth without medium", difference(comparison.ambient_px)});
-  } else {
-    series.push_back({"against Eq. 9", difference(comparison.point.eq9_px)});
-    series.push_back({"against aperture-averaged Eq. 9", difference(comparison.point.eq9_cone_px)});
-  }
+  for (ReferenceDisplacement const& one : kind.references)
+    series.push_back({one.against, difference(one.of(comparison))});
   write_error_histograms(next("error_histograms"), "Measurement error", series);
   if (measured.columns > 1 && measured.rows > 1) {
     DisplacementField truth = measured;
@@ -211,10 +196,8 @@ std::vector<std::string> draw_comparison(std::string const& folder, Comparison c
     write_error_against_gradient(next("error_against_gradient"), "Measurement error against the local gradient", truth,
                                  series);
   }
-  write_budget_bars(
-      next("error_budget"),
-      piv ? "Error budget, from the flow to the measurement" : "Error budget, from Eq. 9 to the measurement",
-      comparison.shown_budget());
+  write_budget_bars(next("error_budget"), std::string("Error budget, from ") + kind.origin + " to the measurement",
+                    comparison.shown_budget());
   return drawn;
 }
 

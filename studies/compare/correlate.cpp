@@ -59,8 +59,8 @@ CorrelationSettings with_dots_of_case(CorrelationSettings const& settings, Setup
                                       std::string const& folder, SourceFiles& sources) {
   std::string const truth = in_case(folder, case_file::truth);
   std::error_code error;
-  if (!correlation_method(settings.method).tracks_dots || setup.piv || !std::filesystem::exists(truth, error))
-    return settings;
+  bool const known = correlation_method(settings.method).tracks_dots && setup.experiment().sources.on_target;
+  if (!known || !std::filesystem::exists(truth, error)) return settings;
   if (Hdf5Reader(truth).attribute("reference_sha256") != sources.sha256("reference")) return settings;
   sources.add("", truth, SourceFiles::Holds::bytes);
   return with_known_dots(settings, setup, read_truth(truth).reference_px);

@@ -4,9 +4,8 @@
 #include <vector>
 
 #include "render/base/contracts.h"
-#include "studies/compare/compare.h"
+#include "studies/compare/comparison_kind.h"
 #include "studies/compare/map_refinement.h"
-#include "studies/compare/particle_points.h"
 
 namespace gladstone {
 namespace {
@@ -26,6 +25,7 @@ int first_spacing(int spacing_px) {
 Image<Vec2d> displacement_truth(Scene const& scene, Renderer& renderer, TruthAt at, int spacing_px) {
   GLADSTONE_EXPECTS(spacing_px >= 1);
   CameraSetup const& camera = scene.setup.camera;
+  ComparisonKind const& kind = comparison_kind(scene.setup);
   int const columns = (camera.columns + spacing_px - 1) / spacing_px,
             rows = (camera.rows + spacing_px - 1) / spacing_px;
   auto const sample = [&](std::vector<MapNode> const& nodes) -> MapSamples {
@@ -34,12 +34,10 @@ Image<Vec2d> displacement_truth(Scene const& scene, Renderer& renderer, TruthAt 
     for (MapNode const& node : nodes)
       places.push_back({static_cast<double>(node.column) * spacing_px, static_cast<double>(node.row) * spacing_px});
     if (places.empty()) return {};
-    GroundTruth truth = scene.setup.piv ? particle_displacements(scene, renderer, places, at)
-                                        : truth_at_points(scene, renderer, places, at, RenderTheory::no);
+    GroundTruth truth = kind.displacements(scene, renderer, places, at);
     return {std::move(truth.displacement_px), std::move(truth.displacement_error_px)};
   };
-  bool const fast = scene.setup.piv && has_projected_displacements(scene);
-  return refine_map(columns, rows, fast ? 1 : first_spacing(spacing_px), sample);
+  return refine_map(columns, rows, kind.without_rays(scene) ? 1 : first_spacing(spacing_px), sample);
 }
 
 }  // namespace gladstone

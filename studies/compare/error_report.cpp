@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "analysis/errors/uncertainty_quality.h"
+#include "studies/compare/comparison_kind.h"
 
 namespace gladstone {
 namespace {
@@ -46,13 +47,8 @@ std::string error_report(Comparison const& comparison) {
     std::vector<Vec2d> const& truth;
   };
   std::vector<Row> rows{{"ray truth", comparison.point.displacement_px}};
-  if (comparison.chain == BudgetChain::piv) {
-    rows.push_back({"flow", comparison.flow_px});
-    rows.push_back({"ray truth without medium", comparison.ambient_px});
-  } else {
-    rows.push_back({"Eq. 9", comparison.point.eq9_px});
-    rows.push_back({"aperture-averaged Eq. 9", comparison.point.eq9_cone_px});
-  }
+  ComparisonKind const& kind = comparison_kind(comparison);
+  for (ReferenceDisplacement const& one : kind.references) rows.push_back({one.row, one.of(comparison)});
   rows.push_back({"ray truth on the window", comparison.window.displacement_px});
   std::string text = fmt::format("Measurement against   [px]  {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9}\n", "bias u",
                                  "bias v", "random u", "random v", "rms", "p95", "gross");
@@ -64,8 +60,7 @@ std::string error_report(Comparison const& comparison) {
                         100 * last.gross_fraction);
   }
   text += fmt::format("  over {} of {} vectors; {} excluded for fewer than three {}\n", last.count,
-                      comparison.vectors_in_file(), comparison.window.left_out,
-                      comparison.chain == BudgetChain::piv ? "particles" : "dots");
+                      comparison.vectors_in_file(), comparison.window.left_out, kind.experiment.sources.many);
   if (comparison.left_out.all() > 0) text += "  also excluded: " + comparison.left_out.text() + '\n';
   if (!comparison.report.empty()) text += "  " + comparison.report + '\n';
   text += uncertainty_line(comparison);

@@ -48,7 +48,7 @@ void check_reconstruct_options(ReconstructOptions const& options) {
 /// Throws for setups whose displacement is not proportional to the density gradient along the axes of the image.
 void check_reconstructed_setup(Setup const& setup) {
   std::vector<SetupProblem> problems;
-  if (setup.piv || setup.calibration())
+  if (!setup.experiment().measures_density)
     problems.push_back({"experiment", "is not \"bos\": only the displacement of a background contains the density"});
   if (setup.pose || setup.camera.tilted() || setup.divides_light())
     problems.push_back({"camera",

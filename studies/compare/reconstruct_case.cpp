@@ -10,6 +10,7 @@
 #include "render/files/input_file.h"
 #include "render/files/stop_point.h"
 #include "studies/case/case.h"
+#include "studies/case/case_kind.h"
 #include "studies/case/truth_file.h"
 #include "studies/compare/compared_files.h"
 #include "studies/compare/compared_vectors.h"
@@ -85,10 +86,9 @@ Reconstruction reconstruct_case(std::string const& place, ReconstructOptions con
                                 Comparison const* known) {
   ReconstructedFiles files = find_files(place, options.vectors);
   CaseSetup loaded = load_case_setup(files.setup, {});
-  if (loaded.setup.piv || loaded.setup.calibration())
-    throw DataError(ErrorCode::wrong_format, files.setup,
-                    "is not a BOS setup (density follows from the displacement of a background); use a "
-                    "setup with experiment = \"bos\"");
+  require_experiment(loaded.setup, bos_experiment, files.setup,
+                     "is not a BOS setup (density follows from the displacement of a background); use a setup with "
+                     "experiment = \"bos\"");
   std::optional<GroundTruth> dots;
   if (!files.truth.empty()) dots = read_truth(files.truth);
   CompareOptions reading;

@@ -13,6 +13,7 @@
 #include "render/base/units.h"
 #include "render/files/hdf5_file.h"
 #include "render/files/input_file.h"
+#include "studies/case/case_kind.h"
 #include "studies/case/truth_file.h"
 #include "studies/compare/compared_files.h"
 #include "studies/compare/stereo_cameras.h"
@@ -103,11 +104,9 @@ StereoInput read_stereo_input(StereoOptions const& options, std::size_t index, S
     }
     sources.add("", setup, SourceFiles::Holds::bytes);
     input.loaded = load_case_setup(setup, {});
-    if (!input.loaded->setup.piv)
-      throw DataError(
-          ErrorCode::wrong_format, place,
-          "is not a PIV case (its vectors are not the displacement of particles); give two cameras of a PIV "
-          "rendering");
+    require_experiment(input.loaded->setup, piv_experiment, place,
+                       "is not a PIV case (its vectors are not the displacement of particles); give two cameras of a "
+                       "PIV rendering");
     if (!input.calibration.empty()) {
       require_same_elements(*input.loaded, place, input.calibration);
       require_same_view(*input.loaded, place, input.camera.camera, input.calibration);
@@ -127,7 +126,7 @@ StereoInput read_stereo_input(StereoOptions const& options, std::size_t index, S
   }
   Setup const& setup = input.loaded->setup;
   if (input.calibration.empty()) input.camera = find_exact_camera(setup, place);
-  if (!truth.empty() && setup.piv) input.truth = read_truth(truth);
+  if (!truth.empty()) input.truth = read_truth(truth);
   if (options.dewarp_images) {
     input.path = place;
     input.vectors.settings = choose_dewarped_settings(input.loaded->correlate);

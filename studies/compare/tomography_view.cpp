@@ -14,6 +14,7 @@
 #include "render/files/input_file.h"
 #include "render/scene/build_camera.h"
 #include "studies/case/case_files.h"
+#include "studies/case/case_kind.h"
 #include "studies/compare/compared_vectors.h"
 #include "studies/compare/exported_vectors.h"
 
@@ -55,10 +56,9 @@ ViewFiles find_view_files(TomographyOptions const& options, std::size_t index) {
 }
 
 void check_view_setup(Setup const& setup, std::string const& name) {
-  if (setup.piv || setup.calibration())
-    throw DataError(ErrorCode::wrong_format, name,
-                    "is not a BOS setup (density follows from the displacement of a background); use a setup with "
-                    "experiment = \"bos\"");
+  require_experiment(setup, bos_experiment, name,
+                     "is not a BOS setup (density follows from the displacement of a background); use a setup with "
+                     "experiment = \"bos\"");
   if (setup.divides_light())
     throw DataError(ErrorCode::unsupported, name,
                     "has a plenoptic camera, whose lines of sight do not meet in one pupil; use one setup for each "

@@ -24,7 +24,8 @@ double median_of_positive(std::span<double const> values) {
 
 CorrelationSettings with_known_dots(CorrelationSettings settings, Setup const& setup,
                                     std::vector<Vec2d> const& reference_px) {
-  if (correlation_method(settings.method).tracks_dots && !setup.piv) settings.known_dots_px = reference_px;
+  if (correlation_method(settings.method).tracks_dots && setup.experiment().sources.on_target)
+    settings.known_dots_px = reference_px;
   return settings;
 }
 

@@ -4,17 +4,14 @@
 
 namespace gladstone {
 
-std::string describe_uncorrected_bias(BudgetChain chain) {
-  bool const piv = chain == BudgetChain::piv;
-  return std::string("the true displacement averaged over the window minus the displacement ") +
-         (piv ? "of the flow" : "by Eq. 9") + ", rms over the vectors. " +
-         (piv ? "Medium, imaging and window" : "Cone, dot, refraction, aberration and window") +
+std::string describe_uncorrected_bias(ComparisonKind const& kind) {
+  return std::string("the true displacement averaged over the window minus the displacement ") + kind.bias +
+         ", rms over the vectors. " + kind.bias_causes +
          " cause it, equally in every repeat; it is not corrected and not part of any uncertainty.";
 }
 
 double uncorrected_bias_px(Comparison const& comparison) {
-  std::vector<Vec2d> const& theory =
-      comparison.chain == BudgetChain::piv ? comparison.flow_px : comparison.point.eq9_px;
+  std::vector<Vec2d> const& theory = comparison_kind(comparison).references.front().of(comparison);
   double squares = 0, count = 0;
   for (std::size_t i = 0; i < comparison.mask.size(); ++i) {
     if (!comparison.mask[i]) continue;

@@ -26,7 +26,9 @@ SetupNode prescription_node(std::string const& file) {
 
 /// Returns why the closed forms do not apply to a setup, with the key concerned; empty if they do.
 std::pair<std::string, std::string> beyond_design(Setup const& setup) {
-  if (setup.piv || setup.calibration()) return {"experiment", "is not \"bos\" (requirements apply to BOS set-ups)"};
+  if (!setup.experiment().measures_density) {
+    return {"experiment", "is not \"bos\" (requirements apply to BOS set-ups)"};
+  }
   if (setup.lens.focus != Focus::target) {
     return {"lens.focus", "is not on the target (the formulas describe dots in focus); use focus = \"target\""};
   }

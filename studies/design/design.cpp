@@ -154,7 +154,7 @@ DesignReport design(SetupDocument document, DesignRequest const& request) {
   std::vector<UncertainInput> const uncertain = extract_uncertain_inputs(document);
   std::optional<DesignQuestion> question = read_design_question(document);
   CaseSetup const loaded = load_case_setup(std::move(document));  // reports problems of setup and question together
-  if (loaded.setup.calibration()) {
+  if (!loaded.setup.experiment().correlated) {
     throw DataError(ErrorCode::wrong_format, request.setup,
                     "is a calibration (the formulas describe BOS and PIV); use a setup of one of these");
   }

@@ -73,7 +73,7 @@ std::string uncertainty_text(MeasurementUncertainty const& uncertainty) {
   }
   text += fmt::format(
       "  not included: the uncorrected bias, {:.2g} % for a wave of twice the resolved wavelength:\n    {}\n",
-      100 * (1 - uncertainty.share_resolved), describe_uncorrected_bias(BudgetChain::bos));
+      100 * (1 - uncertainty.share_resolved), describe_uncorrected_bias(bos_comparison));
   return text;
 }
 
@@ -124,7 +124,7 @@ nlohmann::ordered_json uncertainty_json(MeasurementUncertainty const& uncertaint
     }
     json["results"].push_back(std::move(row));
   }
-  json["uncorrected_bias"] = {{"is", describe_uncorrected_bias(BudgetChain::bos)},
+  json["uncorrected_bias"] = {{"is", describe_uncorrected_bias(bos_comparison)},
                               {"wave", "twice the resolved wavelength"},
                               {"share_lost", 1 - uncertainty.share_resolved}};
   return json;

@@ -130,7 +130,7 @@ void add_bos(SetupOverview& overview, CaseSetup& loaded) {
   add_dot_numbers(overview.rows, setup);
 }
 
-void add_piv(SetupOverview& overview, CaseSetup const& loaded) {
+void add_piv(SetupOverview& overview, CaseSetup& loaded) {
   Setup const& setup = loaded.setup;
   if (!std::isfinite(setup.lens.f_number)) {
     add_camera_rows(overview.rows, setup);
@@ -150,7 +150,8 @@ void add_piv(SetupOverview& overview, CaseSetup const& loaded) {
   }
 }
 
-void add_calibration(SetupOverview& overview, Setup const& setup) {
+void add_calibration(SetupOverview& overview, CaseSetup& loaded) {
+  Setup const& setup = loaded.setup;
   auto& rows = overview.rows;
   add_camera_rows(rows, setup);
   auto const [first, last] = std::minmax_element(setup.planes.begin(), setup.planes.end());
@@ -216,21 +217,22 @@ nlohmann::ordered_json cost_json(RenderCost const& cost) {
           {"memory", memory}};
 }
 
+/// Rows of the overview of an experiment.
+struct OverviewKind {
+  Experiment const& experiment;
+  void (*add)(SetupOverview& overview, CaseSetup& loaded);
+};
+constexpr std::array overview_kinds{OverviewKind{bos_experiment, add_bos}, OverviewKind{piv_experiment, add_piv},
+                                    OverviewKind{calibration_experiment, add_calibration}};
+
 }  // namespace
 
 SetupOverview make_setup_overview(CaseSetup loaded) {
   SetupOverview overview;
   overview.cost = estimate_render_cost(loaded.setup);
-  if (loaded.setup.calibration()) {
-    overview.experiment = "calibration";
-    add_calibration(overview, loaded.setup);
-  } else if (loaded.setup.piv) {
-    overview.experiment = "piv";
-    add_piv(overview, loaded);
-  } else {
-    overview.experiment = "bos";
-    add_bos(overview, loaded);
-  }
+  overview.experiment = loaded.setup.experiment().name;
+  for (OverviewKind const& kind : overview_kinds)
+    if (&kind.experiment == &loaded.setup.experiment()) kind.add(overview, loaded);
   add_lenslets(overview.rows, loaded.setup);
   return overview;
 }

@@ -88,7 +88,8 @@ DesignPoint<double> make_design_point(Setup const& setup, FixedDesignParameters 
 
 std::vector<std::string> list_neglected_effects(Setup const& setup) {
   std::vector<std::string> warnings;
-  if (setup.lens.focus != Focus::target && !setup.piv) {
+  if (!setup.experiment().correlated) return warnings;  // no sheet describes it
+  if (setup.lens.focus != Focus::target && setup.experiment().sources.on_target) {
     warnings.emplace_back("lens.focus: the sheet assumes dots in focus, but these are out of focus");
   }
   if (!setup.has_closed_form_layout()) {

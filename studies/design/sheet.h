@@ -61,6 +61,7 @@ FixedDesignParameters collect_fixed_parameters(CaseSetup const& loaded);
 DesignPoint<double> make_design_point(Setup const& setup, FixedDesignParameters const& given);
 
 /// Returns warnings for properties of a setup that closed forms neglect: defocused dots, a posed camera, windows.
+/// None for calibrations, which have no sheet.
 std::vector<std::string> list_neglected_effects(Setup const& setup);
 
 /// Returns the gradient for the sheet's displacements: the largest in view, or 10 kg/m^4 if there is none [kg/m^4].

@@ -187,7 +187,7 @@ OpticalLayout make_camera_layout(Setup const& setup) {
   return {.dots_z = -behind,
           .lens_z = setup.z_a,
           .sensor_z = setup.z_a + imaging.image_distance + setup.element_shift(ElementSide::sensor),
-          .medium_half_thickness = setup.calibration() ? 0 : setup.medium.thickness / 2,
+          .medium_half_thickness = setup.planes.empty() ? setup.medium.thickness / 2 : 0,
           .pupil_radius = imaging.entrance_pupil / 2,
           .sensor_half = half,
           .medium_half = seen * setup.z_a / z_b,

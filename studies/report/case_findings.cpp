@@ -72,23 +72,23 @@ std::vector<std::string> uncertainty_statements(CaseView const& view) {
                   "measurement. The expanded uncertainty is {:.3g} and {:.3g} px with a coverage factor of 2.",
                   u, v, truth, all.budget.count, 2 * u, 2 * v));
   statements.push_back(fmt::format("The uncorrected bias is {:.3g} px: {}", uncorrected_bias_px(all),
-                                   describe_uncorrected_bias(all.chain)));
+                                   describe_uncorrected_bias(comparison_kind(all))));
   return statements;
 }
 
 std::vector<std::string> summarize_findings(CaseView const& view) {
   Comparison const& all = view.comparison;
+  ComparisonKind const& kind = comparison_kind(all);
   std::vector<std::string> findings;
   auto const rms = [&](std::vector<Vec2d> const& truth) {
     return summarize_errors(all.measured.displacement_px, truth, all.mask, all.vectors_in_file());
   };
   ErrorSummary const truth = rms(all.point.displacement_px);
-  ErrorSummary const theory = rms(view.piv ? all.flow_px : all.point.eq9_px);
-  findings.push_back(
-      fmt::format("The rms error of the measurement is {:.3g} px against ray truth and {:.3g} px against {}; {} of {} "
-                  "vectors count, {:.2g} % of them with gross errors.",
-                  truth.rms_px, theory.rms_px, view.piv ? "the displacement of the flow" : "Eq. 9", truth.count,
-                  all.vectors_in_file(), 100 * truth.gross_fraction));
+  ErrorSummary const theory = rms(kind.references.front().of(all));
+  findings.push_back(fmt::format(
+      "The rms error of the measurement is {:.3g} px against ray truth and {:.3g} px against {}; {} of {} "
+      "vectors count, {:.2g} % of them with gross errors.",
+      truth.rms_px, theory.rms_px, kind.theory, truth.count, all.vectors_in_file(), 100 * truth.gross_fraction));
   if (std::string const cause = largest_term(all.shown_budget()); !cause.empty()) findings.push_back(cause);
   findings.push_back(uncertainty_statements(view).front());
   for (std::string const& warning : all.warnings) findings.push_back("Warning: " + warning + '.');

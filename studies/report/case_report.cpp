@@ -11,7 +11,7 @@
 #include "render/files/text_file.h"
 #include "studies/case/case_files.h"
 #include "studies/compare/budget_stages.h"
-#include "studies/compare/compare.h"
+#include "studies/compare/comparison_kind.h"
 #include "studies/report/case_view.h"
 #include "studies/report/density_section.h"
 #include "studies/report/layout_view.h"
@@ -32,23 +32,15 @@ void add_maps(CaseView& view) {
   std::vector<Vec2d> const& truth = all.point.displacement_px;
   view.add_field("measured", "measurement", measured);
   view.add_field("truth", "ray truth", truth);
-  if (view.piv) {
-    view.add_field("flow", "flow", all.flow_px);
-    view.add_field("ambient", "without medium", all.ambient_px);
-  } else {
-    view.add_field("eq9", "Eq. 9", all.point.eq9_px);
-    view.add_field("eq9_cone", "aperture-averaged Eq. 9", all.point.eq9_cone_px);
-  }
+  ComparisonKind const& kind = comparison_kind(all);
+  for (ReferenceDisplacement const& one : kind.references) view.add_field(one.key, one.name, one.of(all));
   bool const estimated =
       std::any_of(all.measured.sigma_px.begin(), all.measured.sigma_px.end(),
                   [](Vec2d const& sigma) { return std::isfinite(sigma.x) || std::isfinite(sigma.y); });
   if (estimated) view.add_field("sigma", "estimated uncertainty", all.measured.sigma_px);
   view.add_error("error_truth", "against ray truth", truth);
-  if (view.piv) {
-    view.add_error("error_flow", "against the flow", all.flow_px);
-  } else {
-    view.add_error("error_eq9", "against Eq. 9", all.point.eq9_px);
-  }
+  ReferenceDisplacement const& theory = kind.references.front();
+  view.add_error(std::string("error_") + theory.key, theory.against, theory.of(all));
   view.add_error("error_recorded", std::string("against ") + all.recorded_name(), all.recorded().displacement_px);
   for (BudgetStage const& cause : budget_differences(all)) {
     view.add_field(cause.name, "cause: " + cause.name, cause.displacement_px);
@@ -69,12 +61,8 @@ TextTable errors_table(CaseView const& view) {
   Comparison const& all = view.comparison;
   TextTable table{"Measured minus reference", {"measure"}, {}};
   std::vector<std::pair<std::string, std::vector<Vec2d> const*>> references{{"ray truth", &all.point.displacement_px}};
-  if (view.piv) {
-    references.insert(references.end(), {{"flow", &all.flow_px}, {"without medium", &all.ambient_px}});
-  } else {
-    references.insert(references.end(),
-                      {{"Eq. 9", &all.point.eq9_px}, {"aperture-averaged Eq. 9", &all.point.eq9_cone_px}});
-  }
+  for (ReferenceDisplacement const& one : comparison_kind(all).references)
+    references.emplace_back(one.name, &one.of(all));
   references.emplace_back("truth on the window", &all.window.displacement_px);
   if (all.frames_deformed) references.emplace_back(all.recorded_name(), &all.recorded().displacement_px);
   for (auto const& [name, truth] : references) {
@@ -256,7 +244,7 @@ ReportPage case_report(ReportOptions const& options, Backend const& device) {
   page.title = "Case " + case_name(options.source);
   page.question = fmt::format(
       "How large is the error of this {} measurement, and what causes it? {} vectors, compared with the light rays.",
-      view.piv ? "PIV" : "BOS", all.vectors_in_file());
+      comparison_kind(all).title, all.vectors_in_file());
   page.findings = summarize_findings(view);
   bool const mistaken = all.detected && all.detected->mistake.found();
   if (mistaken || !all.complete) {
@@ -273,7 +261,7 @@ ReportPage case_report(ReportOptions const& options, Backend const& device) {
   if (density) {
     page.findings.push_back(summarize_density(*density));
     page.sections.push_back(density_section(page, *density));
-  } else if (!view.piv) {
+  } else if (comparison_kind(all).experiment.measures_density) {
     page.sections.push_back(missing_density_section(commands.back()));
   }
   auto const draw = [&](std::string const& folder, std::string const& format) {

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "studies/compare/compare.h"
+#include "studies/compare/comparison_kind.h"
 #include "studies/report/report_page.h"
 
 namespace gladstone {
@@ -24,11 +24,10 @@ inline nlohmann::json component_json(std::vector<Vec2d> const& values, double Ve
 /// A comparison with the maps of its report.
 struct CaseView {
   Comparison comparison;
-  bool piv = false;
   nlohmann::json fields = nlohmann::json::array();
   nlohmann::json errors = nlohmann::json::array();
 
-  explicit CaseView(Comparison compared) : comparison(std::move(compared)), piv(comparison.chain == BudgetChain::piv) {}
+  explicit CaseView(Comparison compared) : comparison(std::move(compared)) {}
 
   void add_field(std::string const& name, std::string const& title, std::vector<Vec2d> const& values) {
     if (values.empty()) return;

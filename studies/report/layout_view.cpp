@@ -46,7 +46,7 @@ std::string text_of_stop(Setup const& setup) {
 }
 
 bool is_drawn(Setup const& setup) {
-  if (setup.calibration() || setup.pose || setup.camera.tilted() || !setup.elements.empty()) return false;
+  if (!setup.planes.empty() || setup.pose || setup.camera.tilted() || !setup.elements.empty()) return false;
   if (setup.piv) {
     LaserSetup const& laser = setup.piv->laser;
     bool const upright = std::abs(laser.normal.z) > 1 - 1e-9 && laser.tilt == std::array<double, 2>{};

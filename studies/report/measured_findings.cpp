@@ -66,7 +66,7 @@ std::string about_setup(MeasurementKnown const& known) {
 }
 
 std::string about_bias(MeasurementKnown const& known) {
-  std::string const words = describe_uncorrected_bias(BudgetChain::bos);
+  std::string const words = describe_uncorrected_bias(bos_comparison);
   if (!known.simulated()) return "The uncorrected bias is unknown without a simulated twin: " + words;
   double const bias_px = uncorrected_bias_px(known.twin->comparison);
   return fmt::format(

@@ -122,7 +122,7 @@ CaseSetup measured_bench(std::string const& setup_file, std::vector<UncertainInp
   SetupDocument document = SetupDocument::from_file(setup_file);
   uncertain = extract_uncertain_inputs(document);
   CaseSetup loaded = load_case_setup(std::move(document));
-  if (loaded.setup.piv || loaded.setup.calibration() || !loaded.setup.has_closed_form_layout()) {
+  if (!loaded.setup.experiment().measures_density || !loaded.setup.has_closed_form_layout()) {
     throw DataError(ErrorCode::unsupported, setup_file,
                     "does not describe a BOS set-up with a thin lens on the axis, perpendicular to the target (the "
                     "uncertainty of a measurement requires one); describe the measurement by such a set-up");
@@ -168,7 +168,7 @@ ReportPage measured_report(ReportOptions const& options, Backend const& device) 
   page.findings = {said.measurand, said.expanded, said.bias};
   if (density) page.findings.push_back(summarize_density(*density));
   page.doubtful = read.incomplete;
-  std::optional<LayoutView> const drawn_bench = layout_view(load_case_setup(files.setup, {}));
+  std::optional<LayoutView> const drawn_bench = layout_view(loaded.copy());
   if (drawn_bench) page.sections.push_back(layout_section(*drawn_bench, "the measurement"));
   if (files.frames) page.sections.push_back({"Images", {frame_pictures(options.source, "The two frames")}});
   if (gridded) page.sections.push_back(maps_section(page, field, all, camera, said.measurand));

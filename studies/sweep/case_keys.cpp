@@ -48,7 +48,7 @@ CaseKeys case_keys(CaseSetup const& loaded, std::map<std::string, std::string> c
   if (seeds == RepeatSeeds::left_out) {
     for (char const* const table : {"target", "particles", "render"}) remove(table_of(setup, table), "seed");
   }
-  Vec2d const extent = loaded.setup.piv ? Vec2d{} : loaded.setup.target_extent();
+  Vec2d const extent = loaded.setup.experiment().sources.on_target ? loaded.setup.target_extent() : Vec2d{};
   keys.scene = fmt::format("{}\nextent {} {}{}", toml_text(setup), extent.x, extent.y, files);
   keys.rays = keys.scene + (rays ? fmt::format("\n{} rays", *rays) : "\nrays for " + electronics);
   return keys;

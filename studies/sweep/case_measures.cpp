@@ -7,6 +7,7 @@
 
 #include "render/base/not_a_number.h"
 #include "studies/case/case_warnings.h"
+#include "studies/compare/comparison_kind.h"
 #include "studies/compare/reconstruct.h"
 
 namespace gladstone {
@@ -45,10 +46,11 @@ std::vector<std::pair<std::string, double>> flat_measures(nlohmann::ordered_json
 }
 
 void add_relative_errors(Setup const& setup, CaseResult& result) {
-  double const error = find_value(result, setup.piv ? "flow.rms_px" : "eq9.rms_px");
+  double const error = find_value(result, comparison_kind(setup).references.front().measures + std::string(".rms_px"));
   double const signal = find_value(result, "signal_px");
   result.measures.emplace_back("error_over_signal", signal > 0 ? error / signal : not_a_number);
-  bool const on_axis = !setup.piv && !setup.pose && !setup.camera.tilted() && !setup.divides_light();
+  bool const on_axis =
+      setup.experiment().measures_density && !setup.pose && !setup.camera.tilted() && !setup.divides_light();
   double const sensitivity = on_axis ? make_projection_optics(setup).sensitivity() * setup.medium.thickness : 0;
   result.measures.emplace_back("gradient_error_kg_m4", sensitivity > 0 ? error / sensitivity : not_a_number);
 }

@@ -169,8 +169,7 @@ void CaseRunner::compute(ManifestCase const& one, std::string const& keep, CaseO
   if (!medium) {
     std::size_t const bytes = medium_bytes_needed(loaded.setup.medium);
     shared.media.make_room(bytes, kept_media_bytes);
-    check_memory(loaded.setup, FieldMemory::needed,
-                 loaded.setup.piv ? std::vector<MemoryRequirement>{} : focused_dots_memory(loaded.setup));
+    check_memory(loaded.setup, FieldMemory::needed, focused_dots_memory(loaded.setup));
     medium = &shared.media.keep(keys.medium, build_checked_medium(loaded.setup.medium), bytes);
   }
   known.medium = medium;

@@ -50,9 +50,10 @@ SetupDocument compose(SetupDocument const& base, StudyFile const& study, std::ve
   SetupNode number = setup_integer(static_cast<long long>(seed));
   number.place = study.place;
   SetupNode const* const experiment = document.find({"experiment"});
-  bool const piv = experiment && experiment->kind == SetupNode::Kind::text && experiment->text == "piv";
+  SourceKind const& sources =
+      find_experiment(experiment && experiment->kind == SetupNode::Kind::text ? experiment->text : "").sources;
   std::vector<std::vector<std::string>> const seeds{
-      {piv ? "particles" : "target", "seed"}, {"render", "seed"}, {"camera", "noise", "seed"}};
+      {sources.seed_table, "seed"}, {"render", "seed"}, {"camera", "noise", "seed"}};
   for (std::vector<std::string> const& path : seeds) {
     if (axes_give(study, values, path)) continue;
     SetupNode const* const table = document.find({path.begin(), path.end() - 1});

@@ -40,12 +40,12 @@ std::vector<Row> const& rows() {
        {"render/medium/closed_forms.h"},
        // a moving shock and the density behind it are set by one table; a uniform gradient is the cost of a cheap
        // medium
-       {{"NormalShock", {"render/scene/read_setup.cpp"}}, {"UniformGradient", {"studies/case/render_cost.cpp"}}}},
+       {{"NormalShock", {"render/scene/experiments/piv.cpp"}}, {"UniformGradient", {"studies/case/render_cost.cpp"}}}},
       {"velocity field",
        flows,
        kind,
        {"render/light/flow.h"},
-       {{"NormalShockFlow", {"render/light/flow.cpp", "render/scene/read_setup.cpp"}},
+       {{"NormalShockFlow", {"render/light/flow.cpp", "render/scene/experiments/piv.cpp"}},
         {"UniformFlow", {"render/light/flow.cpp"}},  // the flow of a setup without [flow]
         // it refers to memory that its owner keeps, on the host and on a GPU
         {"FileFlow",
@@ -94,6 +94,23 @@ std::vector<Row> const& rows() {
        function("read"),
        {"analysis/preparation/frame_changes.h", "analysis/preparation/frame_preparation.cpp"},
        {{"read_background", {"render/sensor/camera_setup.cpp"}}}},  // another function, which reads camera.background
+      {"kind of experiment",
+       "render/scene/experiments",
+       std::regex("\\bExperiment const (\\w+_experiment)\\{"),
+       // the list, the experiment of a setup in memory, and the rows of an overview
+       {"render/scene/experiment.h", "render/scene/experiment.cpp", "studies/design/setup_overview.cpp"},
+       // the cases and comparisons of the experiment, and commands for this experiment alone
+       {{"bos_experiment",
+         {"studies/case/kinds/bos.cpp", "studies/compare/kinds/bos.cpp", "studies/compare/reconstruct_case.cpp",
+          "studies/compare/tomography_view.cpp"}},
+        {"piv_experiment",
+         {"studies/case/kinds/piv.cpp", "studies/compare/kinds/piv.cpp", "studies/compare/stereo_input.cpp",
+          "studies/commands/info_particles.cpp"}},
+        {"calibration_experiment", {"studies/case/kinds/calibration.cpp", "studies/compare/calibrate.cpp"}}}},
+      {"kind of case",
+       "studies/case/kinds",
+       std::regex("\\bCaseKind const (\\w+_case_kind)\\{"),
+       {"studies/case/case_kind.h"}},
       {"command",
        "studies/commands",
        function("attach"),

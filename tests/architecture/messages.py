@@ -20,13 +20,14 @@ TABLE_HEAD = "| code | meaning |\n|---|---|\n"
 # Calls that report to the user, and their codes if the call names none; "-" means that the code is chosen elsewhere.
 CALLS = re.compile(
     r"\b(?:(?P<data>DataError)|(?P<output>OutputError)|(?P<device>DeviceError|OutOfDeviceMemory)"
-    r"|(?P<interrupted>Interrupted)|(?P<other>refuse|fail|add_problem)"
+    r"|(?P<interrupted>Interrupted)|(?P<other>refuse|fail|add_problem)|(?P<experiment>require_experiment)"
     r"|(?P<problem>(?<=\.)problem|(?<=problems\.)push_back|(?<=problems_\.)push_back)"
     r"|(?P<warning>warn|note_once|(?<=warnings\.)push_back|(?<=warnings_\.)push_back|(?<=notes\.)push_back"
     r"|(?<=notes_\.)push_back))\s*[({]"
 )
 DEFAULT_CODE = {
     "data": "-", "output": "output", "device": "device", "interrupted": "interrupted", "other": "-",
+    "experiment": "wrong_format",
     "problem": "invalid_value", "warning": "warning",
 }  # fmt: skip
 TOKEN = re.compile(
@@ -43,6 +44,8 @@ TEXT_FUNCTIONS = re.compile(
     r"|broken_\w+|wrong_\w+)\("
 )
 RETURN = re.compile(r"\breturn\b")
+# Members of tables that are reported as problems.
+REASONS = re.compile(r"\.reason_\w+ = \"([^\"]+)\"")
 ESCAPES = {r"\"": '"', r"\n": " ", r"\\": "\\"}
 
 
@@ -88,6 +91,7 @@ def messages(source: str) -> list[str]:
     """Returns the messages of a source, "code: text", sorted."""
     source = without_comments(source)
     found = {f"-: {' '.join(text.split())}" for text in returned_texts(source) if " " in text.strip()}
+    found |= {f"-: {text}" for text in REASONS.findall(source)}
     for call in CALLS.finditer(source):
         arguments, text = read_until(source, call.end())
         if " " not in text.strip():

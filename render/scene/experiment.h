@@ -1,0 +1,41 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "render/scene/source_kind.h"
+#include "render/setup/setup_table.h"
+
+namespace gladstone {
+
+/// Kind of experiment: how its setup is read and checked, and what its scene contains. Setup::experiment() returns that
+/// of a setup.
+struct Experiment {
+  char const* name;             ///< value of the key `experiment`
+  SourceKind const& sources;    ///< light sources
+  char const* focus_word;       ///< value of lens.focus for a lens in focus on the sources
+  bool measures_density;        ///< the medium causes the displacement between the frames (Eq. 9)
+  bool correlated;              ///< two frames, which are correlated; otherwise one frame for each plane
+  bool medium_in_first_frame;   ///< otherwise the first frame is without medium
+  char const* reason_for_rays;  ///< reason against the fast renderer; empty: it may apply
+
+  /// Reads the distance from the medium to the dots; refuses it if there are none behind a medium.
+  void (*read_z_d)(Setup& setup, SetupTable geometry);
+  /// Reads the tables of the experiment, and refuses those of the others.
+  /// @param setup  camera, lens, elements, geometry and medium have been read
+  void (*read)(Setup& setup, SetupTable root);
+  /// Checks a setup whose lens forms an image across tables, see cross_check().
+  void (*cross_check)(Setup const& setup, SetupTable root, std::vector<std::string>& warnings);
+};
+
+extern Experiment const bos_experiment, piv_experiment, calibration_experiment;
+
+/// All kinds of experiment, the default first. To add one, write its file in render/scene/experiments/ and add its name
+/// above and here.
+inline constexpr std::array all_experiments{&bos_experiment, &piv_experiment, &calibration_experiment};
+
+/// Returns the experiment with a name; the default if there is none.
+Experiment const& find_experiment(std::string const& name);
+
+}  // namespace gladstone

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <vector>
+
+#include "render/base/vec.h"
+
+namespace gladstone {
+
+struct Setup;
+struct Scene;
+struct MemoryRequirement;
+struct Rendering;
+class Renderer;
+enum class RenderImages;
+enum class RenderTheory;
+
+/// Kind of light sources of a scene: dots of a target, or particles.
+struct SourceKind {
+  char const* one;         ///< name of a source in messages
+  char const* many;        ///< name of several sources
+  char const* seed_table;  ///< table of a setup that contains the seed of their positions
+  /// Printed on a target, behind the medium and evenly lit, so that each one has an image. Otherwise within the medium,
+  /// in a laser sheet, which lights some of them.
+  bool on_target;
+  bool in_photons;  ///< their light is counted in photons, which limits the exposure
+
+  /// Returns the memory that they require, and what is read with them.
+  std::vector<MemoryRequirement> (*memory)(Setup const& setup);
+  /// Adds them to a scene whose camera has been built. @throws DataError
+  void (*add)(Scene& scene);
+  std::size_t (*count)(Scene const& scene);
+  /// Returns the position of a source in a frame [m].
+  Vec3d (*place)(Scene const& scene, std::size_t source, std::size_t frame);
+  /// Returns true if the sensor sees a source in the first frame.
+  bool (*in_view)(Scene const& scene, std::size_t source);
+  /// Removes the sources, or their light, whose pixel in the first frame without medium does not meet a condition. If
+  /// the light of a point is divided among many images, all particles remain.
+  /// @return number of sources that remain
+  std::size_t (*retain)(Scene& scene, std::function<bool(Vec2d pixel)> const& near);
+  /// Renders them by a renderer that supports the scene.
+  Rendering (*render)(Scene const& scene, Renderer& renderer, RenderImages images, RenderTheory theory);
+};
+
+extern SourceKind const dot_sources, particle_sources;
+
+}  // namespace gladstone

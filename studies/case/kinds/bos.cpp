@@ -1,0 +1,25 @@
+#include "studies/case/kinds/shared_parts.h"
+#include "studies/case/shared_target.h"
+
+namespace gladstone {
+namespace {
+
+void cross_check_bos(CaseSetup& loaded) {
+  cross_check_windows(loaded);
+  if (std::string advice = locking_advice(loaded.setup); !advice.empty()) loaded.warnings.push_back(std::move(advice));
+}
+
+}  // namespace
+
+constinit CaseKind const bos_case_kind{.experiment = bos_experiment,
+                                       .cross_check = cross_check_bos,
+                                       .expected_images = images_of_dots,
+                                       .expected_sources = number_of_dots,
+                                       .expected_rays = nullptr,
+                                       .share_sources = share_target,
+                                       .render = render_pair,
+                                       .warn_of_view = warn_of_dots_out_of_view,
+                                       .write_truth = write_dot_truth,
+                                       .own_summary = no_own_summary};
+
+}  // namespace gladstone

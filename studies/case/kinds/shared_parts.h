@@ -1,0 +1,23 @@
+#pragma once
+
+#include "studies/case/case_kind.h"
+
+/// Parts that several kinds of cases share.
+namespace gladstone {
+
+/// Reports interrogation windows larger than the image.
+void cross_check_windows(CaseSetup& loaded);
+
+/// Renders a case with two frames.
+CaseWriter render_pair(CaseSetup& loaded, Renderer& renderer, ReusableParts const& known,
+                       SharedParts::OfCamera const& shared, RenderedCamera& entry, BuiltMedium& medium);
+
+// Members of CaseKind for dots of a target:
+ImageDiameters images_of_dots(Setup const& setup);
+double number_of_dots(Scene const& scene);
+void warn_of_dots_out_of_view(Scene const& scene, std::vector<std::string>& warnings);
+void write_dot_truth(std::string const& path, Scene const& scene, Rendering const& rendering,
+                     CaseOutcome const& outcome, FileOrigin const& origin);
+nlohmann::json no_own_summary(Scene const& scene, GroundTruth const& truth, double exposure_e);
+
+}  // namespace gladstone

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "render/scene/experiment.h"
+#include "studies/compare/compare.h"
+
+namespace gladstone {
+
+/// Displacement, besides the ray truth, with which vectors are compared.
+struct ReferenceDisplacement {
+  char const* key;       ///< of its maps in a report
+  char const* measures;  ///< key of its error measures
+  char const* name;      ///< in figures and tables
+  char const* row;       ///< name in the report on the terminal
+  char const* against;   ///< name of the difference from it
+  std::vector<Vec2d> const& (*of)(Comparison const& comparison);
+};
+
+/// Kind of comparison: with what the vectors of an experiment are compared.
+struct ComparisonKind {
+  Experiment const& experiment;
+  BudgetChain chain;
+  char const* title;  ///< name of the experiment in sentences
+  /// The first is the theory, with which the error budget begins.
+  std::array<ReferenceDisplacement, 2> references;
+  char const* theory;       ///< the theory as an object: "against ..."
+  char const* origin;       ///< beginning of the budget: "from ..."
+  char const* bias;         ///< "the displacement ..."
+  char const* bias_causes;  ///< causes of the difference between true displacement and theory
+  char const* measured;     ///< what the displacement contains information on
+  char const* remedy;       ///< keys that increase the displacement
+  /// Returns the stages of the budget from the theory to the ray truth.
+  std::vector<BudgetStage> (*stages)(Comparison const& comparison);
+  /// Computes truth and theory at points of the image, see truth_of_vectors().
+  PointTruth (*truth)(Scene const& scene, Renderer& renderer, std::vector<Vec2d> const& position_px, TruthAt at);
+  /// Computes the true displacements alone.
+  GroundTruth (*displacements)(Scene const& scene, Renderer& renderer, std::vector<Vec2d> const& position_px,
+                               TruthAt at);
+  /// Returns true if the true displacements require no rays.
+  bool (*without_rays)(Scene const& scene);
+};
+
+extern ComparisonKind const bos_comparison, piv_comparison;
+
+/// All kinds of comparison, the default first. To add one, write its file in studies/compare/kinds/ and add its name
+/// above and here.
+inline constexpr std::array all_comparison_kinds{&bos_comparison, &piv_comparison};
+
+ComparisonKind const& comparison_kind(Setup const& setup);
+ComparisonKind const& comparison_kind(Comparison const& comparison);
+
+}  // namespace gladstone
