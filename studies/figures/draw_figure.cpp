@@ -189,7 +189,9 @@ class FigureScript {
         place = "bottom right";
         break;
       case LegendPlace::above:
-        place = fmt::format("at graph 0, screen {:.6f} left top", screen_y(legend.top_px));
+        // a panel of equal scales may be lower than its place
+        place = panel.equal_scales ? "at graph 0, graph 1 left bottom"
+                                   : fmt::format("at graph 0, screen {:.6f} left top", screen_y(legend.top_px));
         break;
       case LegendPlace::above_right:
         place = fmt::format("at graph 1, screen {:.6f} right top", screen_y(legend.top_px));
@@ -208,7 +210,7 @@ class FigureScript {
   void add_guides(Layer const& layer) {
     for (double const x : layer.columns.front()) {
       command(
-          "set arrow from first {0:.10g},graph 0 to first {0:.10g},graph 1 nohead linewidth {1} linecolor "
+          "set arrow from first {0:.10g},graph 0 to first {0:.10g},graph 1 nohead front linewidth {1} linecolor "
           "'{2}'{3}",
           x, layer.width, layer.colour, dash_type(layer.dash));
     }

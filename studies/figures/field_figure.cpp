@@ -20,7 +20,7 @@ namespace {
 using namespace figures;
 
 // dimensions of the figure [px]
-constexpr int plane_width = 330, least_height = 60, most_height = 495, to_left = 66, to_right = 24, above_plane = 64,
+constexpr int plane_width = 330, least_height = 60, most_height = 495, to_left = 66, to_right = 24, above_plane = 72,
               below_plane = 74, bar_space = 90;
 
 /// Values in one plane; columns along the axis `across`, rows along `up`, both ascending.

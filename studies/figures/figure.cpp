@@ -25,7 +25,8 @@ std::vector<figures::Tick> linear_ticks(double low, double high, double most) {
   constexpr double rounding = 1e-9;
   std::vector<figures::Tick> ticks;
   for (double k = std::ceil(low / step - rounding); k * step <= high + rounding * step; ++k) {
-    ticks.push_back({k * step, fmt::format("{:.6g}", k * step)});
+    double const at = k * step + 0.0;  // no "-0"
+    ticks.push_back({at, fmt::format("{:.6g}", at)});
   }
   return ticks;
 }

@@ -60,7 +60,7 @@ Drawing drawing_of(OpticalLayout const& l) {
 std::vector<Layer> make_layers(Drawing const& d) {
   std::vector<Layer> layers;
   auto const add = [&layers](Outlines const& lines, std::string const& colour, double width, char const* name) {
-    layers.push_back({Layer::Kind::line, {lines.z, lines.y}, colour, name, width});
+    if (!lines.z.empty()) layers.push_back({Layer::Kind::line, {lines.z, lines.y}, colour, name, width});
   };
   bool const dots = d.sheet.z.empty();
   add(d.view, house_colour(5), 1, "field of view");

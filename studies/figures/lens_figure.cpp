@@ -237,16 +237,16 @@ Figure make_lens_figure(Lens const& lens, ParaxialLens const& paraxial, FieldAna
   double const end = lens_figure_width - 20, top = title_height + layout_height + 10;
   double const bottom = title_height + layout_height + plots_height - 55;
   figure.panels.push_back(make_side_view(lens, paraxial, field, {70, end, title_height + 10, top - 65}));
-  figure.panels.push_back(make_spots(field, {off_axis ? 50.0 : 70.0, off_axis ? 400 : end, top, bottom}));
+  figure.panels.push_back(make_spots(field, {off_axis ? 50.0 : 70.0, off_axis ? 360 : end, top, bottom}));
   if (!off_axis) return figure;
   FieldAnalysis const curves = between_fields(lens, paraxial);
-  figure.panels.push_back(make_field_curves({480, 650, top, bottom}, "distortion [%]", curves,
+  figure.panels.push_back(make_field_curves({480, 640, top, bottom}, "distortion [%]", curves,
                                             {{"", [](FieldPoint const& p) { return 100 * p.distortion; }}}));
   figure.panels.push_back(
-      make_field_curves({740, 910, top, bottom}, "focus from the image plane [mm]", curves,
+      make_field_curves({740, 900, top, bottom}, "focus from the image plane [mm]", curves,
                         {{"tangential", [](FieldPoint const& p) { return p.tangential_focus * 1e3; }},
                          {"sagittal", [](FieldPoint const& p) { return p.sagittal_focus * 1e3; }}}));
-  figure.panels.push_back(make_field_curves({1000, 1180, top, bottom}, "light that is not vignetted [%]", curves,
+  figure.panels.push_back(make_field_curves({1010, 1180, top, bottom}, "light that is not vignetted [%]", curves,
                                             {{"", [](FieldPoint const& p) { return 100 * (1 - p.vignetting); }}}));
   return figure;
 }

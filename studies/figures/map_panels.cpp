@@ -69,7 +69,7 @@ std::vector<ColourRange> ranges_of(std::vector<MapPanel> const& panels) {
 struct MapLayout {
   static constexpr int above = 34, below = 28, edge = 14;
   static constexpr int title = 44, heading = 34;
-  int left = 40, right = 74, axis_label = 26;
+  int left = 40, right = 86, axis_label = 26;
   int map_width = 300;
   int map_height = 300;
   bool inner_ticks = true;  ///< tick texts at every panel, not only at the outer ones
@@ -84,7 +84,7 @@ MapLayout map_layout(MapFigure const& figure, Image<double> const& map) {
     layout.map_width = 200;
     layout.axis_label += layout.left - 12;
     layout.left = 12;
-    layout.right = 72;
+    layout.right = 82;
     layout.inner_ticks = false;
   }
   double const width = map.columns() * std::abs(figure.axes.x_step);

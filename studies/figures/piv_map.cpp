@@ -39,7 +39,7 @@ Figure make_piv_map(Setup const& setup) {
     median.push_back(row.peak_electrons[1]);
     high.push_back(row.peak_electrons[2]);
   }
-  Panel images{.box = {92, 876, 48, 370}, .grid = Grid::both};
+  Panel images{.box = {92, 876, 72, 372}, .grid = Grid::both};
   images.x = {.low = piv_f_numbers.front() / 1.05, .high = piv_f_numbers.back() * 1.05, .logarithmic = true};
   for (double const stop : piv_f_numbers) images.x.ticks.push_back({stop, fmt::format("f/{:g}", stop)});
   std::vector<double> const across{images.x.low, images.x.high};
@@ -53,7 +53,7 @@ Figure make_piv_map(Setup const& setup) {
               std::max(5.0, 1.2 * *std::max_element(edge.begin(), edge.end())), true};
   for (double const at : {0.5, 1., 2., 3., 4., 5., 7., 10., 15., 20., 30., 50.})
     images.y.ticks.push_back({at, fmt::format("{:g}", at)});
-  images.legend.place = LegendPlace::bottom_right;
+  images.legend = {LegendPlace::above, 46, true};
   Layer const suitable{Layer::Kind::band,
                        {across, {min_image_px, min_image_px}, {most_image_px, most_image_px}},
                        "#d8ecd8",
@@ -62,7 +62,7 @@ Figure make_piv_map(Setup const& setup) {
   images.layers[2].dash = Dash::dotted;
 
   double const well = setup.camera.noise.full_well_e;
-  peaks.box = {92, 876, 396, 708};
+  peaks.box = {92, 876, 412, 708};
   peaks.x.label = fmt::format("f-number; the setup has f/{:g}", setup.lens.f_number);
   peaks.y = {.label = "electrons at the peak", .logarithmic = true};
   peaks.legend.place = LegendPlace::bottom_left;
