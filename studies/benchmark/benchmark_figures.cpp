@@ -1,14 +1,14 @@
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <map>
 
 #include "studies/benchmark/benchmark_run.h"
-#include "studies/figures/gnuplot.h"
+#include "studies/figures/draw_figure.h"
 
 namespace gladstone {
 namespace {
+
+using namespace figures;
 
 /// Returns true for the default and the estimators that are only points of the curve of settings.
 bool is_on_curve(std::string const& name) {
@@ -40,42 +40,36 @@ std::vector<Point> points_of(BenchmarkResult const& result) {
   return points;
 }
 
-void draw_noise_against_gain(std::vector<Point> const& points, std::string const& path) {
-  GnuplotFigure plot(900, 620);
-  plot.command("set grid linecolor '#e4e4e4' linewidth 1 linetype 1");
-  plot.command("set xlabel 'gain at sines of 64 px'; set ylabel 'rms error at 5 % noise, uniform displacement [px]'");
-  plot.command("set key top left Left reverse samplen 2; set yrange [0:*]; set xrange [*:1.05]");
-  plot.command("set title 'Noise against gain: better towards the lower right'");
+Figure make_noise_against_gain(std::vector<Point> const& points) {
+  Figure figure{900, 620};
+  figure.add_title("Noise against gain: better towards the lower right");
+  Panel panel{.box = {84, 876, 48, 556}, .grid = Grid::both};
+  panel.x = {.label = "gain at sines of 64 px", .high = 1.05};
+  panel.y = {.label = "rms error at 5 % noise, uniform displacement [px]", .low = 0};
+  panel.legend.place = LegendPlace::top_left;
   std::vector<Point> curve, others;
   for (Point const& point : points) (is_on_curve(point.name) ? curve : others).push_back(point);
   std::sort(curve.begin(), curve.end(), [](Point const& a, Point const& b) { return a.gain < b.gain; });
-  std::string commands = "plot ";
-  auto const columns_of = [](std::vector<Point> const& of) {
-    std::vector<std::vector<double>> columns(2);
-    for (Point const& point : of) {
-      columns[0].push_back(point.gain);
-      columns[1].push_back(point.rms);
-    }
-    return columns;
-  };
-  if (!curve.empty())
-    commands +=
-        fmt::format("{} using 1:2 with linespoints linewidth 2 pointtype 7 pointsize 1.1 linecolor '{}' title {}, ",
-                    plot.add_table(columns_of(curve)), house_colour(0),
-                    GnuplotFigure::quoted("our default with other last windows"));
-  for (std::size_t i = 0; i < others.size(); ++i)
-    commands += fmt::format("{} using 1:2 with points pointtype {} pointsize 1.6 linewidth 2 linecolor '{}' title {}, ",
-                            plot.add_table(columns_of({others[i]})), 4 + i % 10, house_colour(1 + i % 5),
-                            GnuplotFigure::quoted(others[i].name));
-  for (std::size_t i = 0; i < curve.size(); ++i)
-    plot.command(fmt::format("set label {} {} at {:.6g}, {:.6g} offset 0.6,-0.6 font 'DejaVu Sans,9'", i + 1,
-                             GnuplotFigure::quoted(curve[i].name), curve[i].gain, curve[i].rms));
-  commands.resize(commands.size() - 2);
-  plot.command(commands);
-  plot.write(path);
+  Layer line{.columns = {{}, {}}, .colour = house_colour(0), .name = "our default with other last windows"};
+  line.marker = 1;
+  line.size = 1.1;
+  for (Point const& point : curve) {
+    line.columns[0].push_back(point.gain);
+    line.columns[1].push_back(point.rms);
+    panel.labels.push_back({point.name, point.gain, point.rms, TextRole::fine_note, Align::left, 5, 10});
+  }
+  panel.layers.push_back(std::move(line));
+  for (std::size_t i = 0; i < others.size(); ++i) {
+    panel.layers.push_back(
+        {Layer::Kind::points, {{others[i].gain}, {others[i].rms}}, house_colour(1 + i % 5), others[i].name});
+    panel.layers.back().marker = static_cast<int>(2 + i);
+    panel.layers.back().size = 1.6;
+  }
+  figure.panels.push_back(std::move(panel));
+  return figure;
 }
 
-void draw_error_against_uncertainty(BenchmarkResult const& result, std::string const& path) {
+Figure make_error_against_uncertainty(BenchmarkResult const& result) {
   std::map<std::string, std::vector<std::vector<double>>> methods;
   for (UncertaintyRow const& row : result.uncertainties)
     for (UncertaintyBin const& bin : row.bins) {
@@ -85,23 +79,21 @@ void draw_error_against_uncertainty(BenchmarkResult const& result, std::string c
       columns[0].push_back(bin.rms_sigma_px);
       columns[1].push_back(bin.rms_error_px);
     }
-  GnuplotFigure plot(760, 680);
-  plot.command("set grid linecolor '#e4e4e4' linewidth 1 linetype 1");
-  plot.command("set logscale xy; set xrange [0.001:1]; set yrange [0.001:1]; set size square");
-  plot.command(
-      "set xlabel 'estimated uncertainty, rms(sigma) of a bin [px]'; set ylabel 'rms(error) of that bin [px]'");
-  plot.command("set key top left Left reverse samplen 2");
-  plot.command("set title 'Error against uncertainty, one point per tenth of a case: equal on the line'");
-  std::string commands = "plot x with lines linewidth 1 dashtype 2 linecolor '#808080' notitle";
-  std::size_t index = 0;
+  Figure figure{760, 740};
+  figure.add_title("Error against uncertainty, one point per tenth of a case: equal on the line");
+  Panel panel{.box = {92, 720, 48, 676}, .grid = Grid::both};
+  panel.x = {"estimated uncertainty, rms(sigma) of a bin [px]", 0.001, 1, true};
+  panel.y = {"rms(error) of that bin [px]", 0.001, 1, true};
+  panel.legend.place = LegendPlace::top_left;
+  panel.layers.push_back({Layer::Kind::line, {{0.001, 1}, {0.001, 1}}, "#808080", "", 1, Dash::dashed});
   for (auto const& [method, columns] : methods) {
-    commands +=
-        fmt::format(", {} using 1:2 with points pointtype {} pointsize 0.8 linecolor '{}' title {}",
-                    plot.add_table(columns), 5 + 2 * (index % 5), house_colour(index), GnuplotFigure::quoted(method));
-    ++index;
+    std::size_t const index = panel.layers.size() - 1;
+    panel.layers.push_back({Layer::Kind::points, columns, house_colour(index), method});
+    panel.layers.back().marker = static_cast<int>(1 + index);
+    panel.layers.back().size = 0.8;
   }
-  plot.command(commands);
-  plot.write(path);
+  figure.panels.push_back(std::move(panel));
+  return figure;
 }
 
 }  // namespace
@@ -110,11 +102,11 @@ std::vector<std::string> draw_benchmark(BenchmarkResult const& result, std::stri
   std::vector<std::string> drawn;
   if (std::vector<Point> const points = points_of(result); !points.empty()) {
     drawn.emplace_back("noise_against_gain.png");
-    draw_noise_against_gain(points, folder + '/' + drawn.back());
+    draw_figure(make_noise_against_gain(points), folder + '/' + drawn.back());
   }
   if (!result.uncertainties.empty()) {
     drawn.emplace_back("error_against_uncertainty.png");
-    draw_error_against_uncertainty(result, folder + '/' + drawn.back());
+    draw_figure(make_error_against_uncertainty(result), folder + '/' + drawn.back());
   }
   return drawn;
 }

@@ -12,7 +12,7 @@
 #include "studies/case/json_text.h"
 #include "studies/compare/sequence.h"
 #include "studies/compare/sequence_frames.h"
-#include "studies/figures/gnuplot.h"
+#include "studies/figures/draw_figure.h"
 #include "studies/figures/sequence_figure.h"
 
 namespace gladstone {
@@ -49,7 +49,7 @@ nlohmann::json describe_failures(SequenceResult const& result) {
 
 /// Draws the statistics, or warns if gnuplot is not installed.
 void draw_statistics(std::string const& path, SequenceMoments const& moments) {
-  if (draw_or_warn([&] { write_sequence_figure(path, moments); })) spdlog::info("drew {}", path);
+  if (draw_or_warn([&] { draw_figure(make_sequence_figure(moments), path); })) spdlog::info("drew {}", path);
 }
 
 }  // namespace

@@ -11,8 +11,8 @@
 #include "studies/case/json_text.h"
 #include "studies/commands/field_place.h"
 #include "studies/commands/field_statistics.h"
+#include "studies/figures/draw_figure.h"
 #include "studies/figures/field_figure.h"
-#include "studies/figures/gnuplot.h"
 
 namespace gladstone {
 namespace {
@@ -38,7 +38,7 @@ std::string steepest_text(Vec3d const& steepest, FieldPlace const& place) {
 bool draw_field(std::string const& path, FieldSource& source, FieldPlace const& place) {
   bool known = true;
   for (int axis = 0; axis < 3; ++axis) known = known && std::isfinite(place.extent_mm[axis]);
-  return draw_or_warn([&] { write_field_figure(path, source, known); });
+  return draw_or_warn([&] { draw_figure(make_field_figure(source, known), path); });
 }
 
 }  // namespace

@@ -11,7 +11,7 @@
 #include "render/optics/field_analysis.h"
 #include "studies/case/json_text.h"
 #include "studies/case/lens_glasses.h"
-#include "studies/figures/gnuplot.h"
+#include "studies/figures/draw_figure.h"
 #include "studies/figures/lens_figure.h"
 
 namespace gladstone {
@@ -126,7 +126,7 @@ Description describe_lens(LensQuestion const& question) {
   FieldAnalysis const field = analyse_field(lens, paraxial, spot_rays);
   std::vector<LensGlass> const glasses = list_lens_glasses(lens, catalogue);
   nlohmann::json json = lens_json(lens, paraxial, field, glasses);
-  auto const draw = [&] { write_lens_figure(question.figure, lens, paraxial, field); };
+  auto const draw = [&] { draw_figure(make_lens_figure(lens, paraxial, field), question.figure); };
   if (!question.figure.empty() && draw_or_warn(draw)) json["figure"] = question.figure;
   return {json_text(json), lens_text(question, lens, paraxial, field, glasses)};
 }

@@ -12,7 +12,7 @@
 #include "render/base/units.h"
 #include "render/light/mie.h"
 #include "studies/case/json_text.h"
-#include "studies/figures/gnuplot.h"
+#include "studies/figures/draw_figure.h"
 #include "studies/figures/mie_figure.h"
 
 namespace gladstone {
@@ -127,7 +127,7 @@ Description describe_mie(MieQuestion const& question) {
     text += fmt::format("  {:>11.4g}  {:>11.6g}   {:>11.6g}   {:>11.6g}  {:>12.5f}\n", diagram.angle_deg[i],
                         diagram.s1_squared[i], diagram.s2_squared[i], s11[i], polarization[i]);
   }
-  auto const draw = [&] { write_mie_figure(question.figure, diagram); };
+  auto const draw = [&] { draw_figure(make_mie_figure(diagram), question.figure); };
   if (!question.figure.empty() && draw_or_warn(draw)) json["figure"] = question.figure;
   return {json_text(json), text};
 }

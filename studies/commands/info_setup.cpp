@@ -12,7 +12,7 @@
 #include "studies/case/case.h"
 #include "studies/case/json_text.h"
 #include "studies/design/setup_overview.h"
-#include "studies/figures/gnuplot.h"
+#include "studies/figures/draw_figure.h"
 #include "studies/figures/layout_figure.h"
 #include "studies/report/layout_view.h"
 
@@ -31,11 +31,8 @@ std::string figure_of_camera(std::string const& figure, std::string const& camer
 bool draw_setup(std::string const& path, CaseSetup loaded) {
   Setup const setup = loaded.setup;
   return draw_or_warn([&] {
-    if (auto const view = layout_view(std::move(loaded))) {
-      write_layout_view(path, *view);
-    } else {
-      write_camera_layout(path, setup);
-    }
+    auto const view = layout_view(std::move(loaded));
+    draw_figure(view ? make_layout_figure(*view) : make_camera_layout_figure(setup), path);
   });
 }
 

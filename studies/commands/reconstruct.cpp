@@ -16,14 +16,14 @@
 #include "studies/commands/density_options.h"
 #include "studies/compare/density_file.h"
 #include "studies/figures/density_figure.h"
-#include "studies/figures/gnuplot.h"
+#include "studies/figures/draw_figure.h"
 
 namespace gladstone {
 namespace {
 
 /// Draws the figure, or warns if gnuplot is not installed.
 void draw_density(std::string const& path, Reconstruction const& reconstruction) {
-  if (draw_or_warn([&] { write_density_figure(path, reconstruction); })) spdlog::info("drew {}", path);
+  if (draw_or_warn([&] { draw_figure(make_density_figure(reconstruction), path); })) spdlog::info("drew {}", path);
 }
 
 }  // namespace

@@ -14,7 +14,7 @@
 #include "studies/commands/arguments.h"
 #include "studies/commands/command.h"
 #include "studies/compare/stereo_file.h"
-#include "studies/figures/gnuplot.h"
+#include "studies/figures/draw_figure.h"
 #include "studies/figures/stereo_figure.h"
 
 namespace gladstone {
@@ -34,7 +34,7 @@ std::vector<std::string> list_stereo_inputs(StereoOptions const& options) {
 
 /// Draws the figure, or warns if gnuplot is not installed.
 void draw_stereo(std::string const& path, StereoMeasurement const& measurement) {
-  if (draw_or_warn([&] { write_stereo_figure(path, measurement); })) spdlog::info("drew {}", path);
+  if (draw_or_warn([&] { draw_figure(make_stereo_figure(measurement), path); })) spdlog::info("drew {}", path);
 }
 
 }  // namespace

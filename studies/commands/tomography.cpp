@@ -20,7 +20,7 @@
 #include "studies/commands/volume_options.h"
 #include "studies/compare/tomography_file.h"
 #include "studies/compare/tomography_plan.h"
-#include "studies/figures/gnuplot.h"
+#include "studies/figures/draw_figure.h"
 #include "studies/figures/tomography_figure.h"
 
 namespace gladstone {
@@ -117,7 +117,7 @@ TomographyOptions convert_arguments(TomographyArguments const& given) {
 
 /// Draws the figure, or warns if gnuplot is not installed.
 void draw_tomography(std::string const& path, Tomography const& result) {
-  if (draw_or_warn([&] { write_tomography_figure(path, result); })) spdlog::info("drew {}", path);
+  if (draw_or_warn([&] { draw_figure(make_tomography_figure(result), path); })) spdlog::info("drew {}", path);
 }
 
 /// Writes the setups of --views.

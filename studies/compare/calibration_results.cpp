@@ -8,7 +8,7 @@
 #include "render/files/hdf5_file.h"
 #include "studies/case/flat_values.h"
 #include "studies/compare/calibrate.h"
-#include "studies/figures/gnuplot.h"
+#include "studies/figures/draw_figure.h"
 
 namespace gladstone {
 namespace {
@@ -52,28 +52,31 @@ void write_soloff(Hdf5Writer& file, SoloffFit const& fit) {
   file.attribute("/soloff", "rms_px", fit.rms_px);
 }
 
-/// Draws the residuals of one model as arrows.
+/// Returns the residuals of one model as arrows.
 /// @param enlarged  magnification of the arrows [1]
-void draw_panel(GnuplotFigure& plot, Calibration const& calibration, std::vector<Vec2d> const& residuals,
-                std::string const& title, double enlarged) {
-  plot.command(fmt::format("set title {} font 'DejaVu Sans Bold,12'", GnuplotFigure::quoted(title)));
-  std::string commands = "plot ";
+figures::Panel make_residual_panel(Calibration const& calibration, std::vector<Vec2d> const& residuals,
+                                   double enlarged) {
+  figures::Panel panel{.grid = figures::Grid::both, .equal_scales = true};
+  panel.x = {"column [px]", 0, static_cast<double>(calibration.columns)};
+  panel.y = {"row [px]", static_cast<double>(calibration.rows), 0};
+  panel.legend = {figures::LegendPlace::below, 0, true};
   for (std::size_t plane = 0; plane < calibration.planes.size(); ++plane) {
-    std::vector<std::vector<double>> columns(4);
+    figures::Layer arrows{figures::Layer::Kind::arrows,
+                          {{}, {}, {}, {}},
+                          house_colour(plane),
+                          fmt::format("Z = {:.4g} mm", calibration.planes[plane].z / unit::millimetre),
+                          1.2};
     for (std::size_t k = 0; k < residuals.size(); ++k) {
       if (calibration.plane_of[k] != plane) continue;
       Vec2d const at = calibration.points.pixel[k];
-      columns[0].push_back(at.x);
-      columns[1].push_back(at.y);
-      columns[2].push_back(enlarged * residuals[k].x);
-      columns[3].push_back(enlarged * residuals[k].y);
+      arrows.columns[0].push_back(at.x);
+      arrows.columns[1].push_back(at.y);
+      arrows.columns[2].push_back(enlarged * residuals[k].x);
+      arrows.columns[3].push_back(enlarged * residuals[k].y);
     }
-    commands += fmt::format(
-        "{}{} using 1:2:3:4 with vectors head filled size 6,20 linewidth 1.2 linecolor '{}' title {}",
-        plane > 0 ? ", " : "", plot.add_table(columns), house_colour(plane),
-        GnuplotFigure::quoted(fmt::format("Z = {:.4g} mm", calibration.planes[plane].z / unit::millimetre)));
+    panel.layers.push_back(std::move(arrows));
   }
-  plot.command(commands);
+  return panel;
 }
 
 nlohmann::ordered_json strangers_json(CalibratedPlane const& plane) {
@@ -122,23 +125,19 @@ void write_calibration_file(std::string const& path, Calibration const& calibrat
 }
 
 void draw_calibration(std::string const& path, Calibration const& calibration) {
-  constexpr int width = 1180, height = 620;
-  constexpr double longest = 0.06;  // length of the longest arrow, relative to the width of the image
-  GnuplotFigure plot(width, height);
-  auto const panel = [&](std::vector<Vec2d> const& residuals, char const* model, double rms) {
+  constexpr double longest_share = 0.06;  // length of the longest arrow, relative to the width of the image
+  Figure figure{1180, 620};
+  auto const add = [&](std::vector<Vec2d> const& residuals, char const* model, double rms, figures::Box const& box) {
     double const most = largest(residuals);
-    double const enlarged = most > 0 ? std::pow(10, std::floor(std::log10(longest * calibration.columns / most))) : 1;
-    draw_panel(plot, calibration, residuals,
-               fmt::format("{}: {:.3g} px rms, enlarged {:.0f} times", model, rms, enlarged), enlarged);
+    double const enlarged =
+        most > 0 ? std::pow(10, std::floor(std::log10(longest_share * calibration.columns / most))) : 1;
+    figure.panels.push_back(make_residual_panel(calibration, residuals, enlarged));
+    figure.panels.back().box = box;
+    figure.panels.back().title = fmt::format("{}: {:.3g} px rms, enlarged {:.0f} times", model, rms, enlarged);
   };
-  plot.command("set multiplot layout 1,2");
-  plot.command("set size ratio -1; set grid linecolor '#e4e4e4' linewidth 1 linetype 1");
-  plot.command(fmt::format("set xrange [0:{}]; set yrange [{}:0]", calibration.columns, calibration.rows));
-  plot.command("set xlabel 'column [px]'; set ylabel 'row [px]'; set key outside bottom center horizontal");
-  panel(calibration.pinhole.residual_px, "pinhole and distortion", calibration.pinhole.rms_px);
-  panel(calibration.soloff.residual_px, "third-order polynomial", calibration.soloff.rms_px);
-  plot.command("unset multiplot");
-  plot.write(path);
+  add(calibration.pinhole.residual_px, "pinhole and distortion", calibration.pinhole.rms_px, {76, 570, 40, 534});
+  add(calibration.soloff.residual_px, "third-order polynomial", calibration.soloff.rms_px, {666, 1160, 40, 534});
+  draw_figure(figure, path);
 }
 
 nlohmann::ordered_json calibration_json(Calibration const& calibration) {

@@ -4,7 +4,9 @@
 
 #include "analysis/errors/uncertainty_quality.h"
 #include "studies/case/json_text.h"
+#include "studies/compare/compare.h"
 #include "studies/compare/comparison_kind.h"
+#include "studies/figures/draw_figure.h"
 #include "studies/figures/error_figures.h"
 #include "studies/figures/map_figures.h"
 
@@ -184,20 +186,22 @@ std::vector<std::string> draw_comparison(std::string const& folder, Comparison c
     std::vector<NamedMaps> drawings{maps("ray truth", comparison.point.displacement_px)};
     for (ReferenceDisplacement const& one : kind.references) drawings.push_back(maps(one.name, one.of(comparison)));
     drawings.push_back(maps("measurement", measured.displacement_px));
-    write_displacement_maps(next("displacement_maps"), "Displacement, and differences from ray truth", axes, drawings);
+    draw_figure(make_displacement_maps("Displacement, and differences from ray truth", axes, drawings),
+                next("displacement_maps"));
   }
   std::vector<ErrorSeries> series{{"against ray truth", difference(comparison.point.displacement_px)}};
   for (ReferenceDisplacement const& one : kind.references)
     series.push_back({one.against, difference(one.of(comparison))});
-  write_error_histograms(next("error_histograms"), "Measurement error", series);
+  draw_figure(make_error_histograms("Measurement error", series), next("error_histograms"));
   if (measured.columns > 1 && measured.rows > 1) {
     DisplacementField truth = measured;
     truth.displacement_px = comparison.point.displacement_px;
-    write_error_against_gradient(next("error_against_gradient"), "Measurement error against the local gradient", truth,
-                                 series);
+    draw_figure(make_error_against_gradient("Measurement error against the local gradient", truth, series),
+                next("error_against_gradient"));
   }
-  write_budget_bars(next("error_budget"), std::string("Error budget, from ") + kind.origin + " to the measurement",
-                    comparison.shown_budget());
+  draw_figure(make_budget_bars(std::string("Error budget, from ") + kind.origin + " to the measurement",
+                               comparison.shown_budget()),
+              next("error_budget"));
   return drawn;
 }
 

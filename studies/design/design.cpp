@@ -16,7 +16,7 @@
 #include "studies/design/sheet.h"
 #include "studies/design/sheet_text.h"
 #include "studies/figures/design_map.h"
-#include "studies/figures/gnuplot.h"
+#include "studies/figures/draw_figure.h"
 #include "studies/figures/layout_figure.h"
 #include "studies/figures/piv_map.h"
 #include "studies/sweep/manifest.h"
@@ -39,11 +39,10 @@ void refuse_setup_of_results(std::string const& path) {
 }
 
 /// Writes a figure into the folder; adds a warning if gnuplot is not installed.
-template <class Draw>
-void draw(DesignRequest const& request, DesignReport& report, std::string const& name, Draw&& write) {
+void draw(DesignRequest const& request, DesignReport& report, std::string const& name, Figure const& figure) {
   std::filesystem::path const path = std::filesystem::path(request.figures) / (name + '.' + request.figure_format);
   try {
-    write(path.string());
+    draw_figure(figure, path.string());
     report.json["figures"].push_back(path.string());
   } catch (GnuplotMissing const& missing) {
     report.warnings.emplace_back(missing.what());
@@ -52,13 +51,13 @@ void draw(DesignRequest const& request, DesignReport& report, std::string const&
 
 void draw_layout_and_map(DesignRequest const& request, DesignReport& report, DesignPoint<double> const& bench,
                          DesignQuestion const* question) {
-  draw(request, report, "layout", [&](std::string const& path) { write_layout_figure(path, bench); });
-  draw(request, report, "design_map", [&](std::string const& path) { write_design_map(path, bench, question); });
+  draw(request, report, "layout", make_layout_figure(bench));
+  draw(request, report, "design_map", make_design_map(bench, question));
 }
 
 void draw_piv(DesignRequest const& request, DesignReport& report, Setup const& setup) {
-  draw(request, report, "layout", [&](std::string const& path) { write_piv_layout(path, setup); });
-  draw(request, report, "design_map", [&](std::string const& path) { write_piv_map(path, setup); });
+  draw(request, report, "layout", make_piv_layout_figure(setup));
+  draw(request, report, "design_map", make_piv_map(setup));
 }
 
 AnsweredQuestion answered(DesignRequest const& request, SetupDocument const& document, DesignQuestion question) {
@@ -128,9 +127,7 @@ void add_answer(DesignRequest const& request, SetupDocument const& document, Des
   if (!request.figures.empty()) {
     draw_layout_and_map(request, report, best, &result.question);
     if (!result.answer.front.empty()) {
-      draw(request, report, "front", [&](std::string const& path) {
-        write_design_front(path, result.answer, result.question.requirements.objective);
-      });
+      draw(request, report, "front", make_design_front(result.answer, result.question.requirements.objective));
     }
   }
   if (applied && report.feasible) {

@@ -19,7 +19,7 @@
 #include "studies/compare/error_report.h"
 #include "studies/examples/demo_story.h"
 #include "studies/figures/agreement_figure.h"
-#include "studies/figures/gnuplot.h"
+#include "studies/figures/draw_figure.h"
 #include "studies/figures/map_figures.h"
 
 namespace gladstone {
@@ -179,11 +179,11 @@ std::string run_demo(std::string const& folder, Backend const& device) {
     series.push_back(agreement_series(plane, spectrum, result));
   }
   draw_or_warn([&] {
-    write_seed_figure4((fs::path(folder) / "figure4.png").string(), axes, panels);
+    draw_figure(make_seed_figure4(axes, panels), (fs::path(folder) / "figure4.png").string());
     std::vector<double> single_wave;
     for (double const size : agreement_sizes())
       single_wave.push_back(std::abs(cone_transfer(paper, size * cone_width(paper))));
-    write_agreement_figure((fs::path(folder) / "agreement.png").string(), series, single_wave);
+    draw_figure(make_agreement_figure(series, single_wave), (fs::path(folder) / "agreement.png").string());
   });
   double const seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   std::string const text = "# The demo\n\n" + demo_story(paper, found) + "\n" + demo_details(found) +

@@ -13,7 +13,7 @@
 #include "studies/case/case_files.h"
 #include "studies/case/render_setup.h"
 #include "studies/case/shared_folder.h"
-#include "studies/figures/gnuplot.h"
+#include "studies/figures/draw_figure.h"
 #include "studies/figures/map_panels.h"
 
 namespace gladstone {
@@ -84,10 +84,10 @@ std::string run_gallery(std::string const& folder, Backend const& device) {
     text += fmt::format("{:<13} {}: {}\n", picture.name, picture.title, picture.look);
   draw_or_warn([&] {
     for (std::size_t i = 1; i < all.size(); ++i) {
-      write_map_figure((fs::path(folder) / all[i].name / "beside.png").string(),
-                       grey_figure(2, {all[0], all[i]}, {images[0], images[i]}, white));
+      draw_figure(make_map_figure(grey_figure(2, {all[0], all[i]}, {images[0], images[i]}, white)),
+                  (fs::path(folder) / all[i].name / "beside.png").string());
     }
-    write_map_figure((fs::path(folder) / "gallery.png").string(), grey_figure(4, all, images, white));
+    draw_figure(make_map_figure(grey_figure(4, all, images, white)), (fs::path(folder) / "gallery.png").string());
   });
   return text;
 }

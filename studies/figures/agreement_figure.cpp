@@ -1,62 +1,58 @@
 #include "studies/figures/agreement_figure.h"
 
-#include <fmt/format.h>
-
 #include <cmath>
+#include <string>
 
 #include "render/base/contracts.h"
-#include "studies/figures/gnuplot.h"
 
 namespace gladstone {
 namespace {
 
+using namespace figures;
+
 constexpr double smallest = 0.2, largest = 10;
-constexpr int agreement_width = 1080, agreement_height = 470;
 
 struct AgreementPanel {
   char const* title;
   double Agreement::*value;
-  char const* key;
-  int left, right;  ///< [px]
+  LegendPlace legend;
+  double left, right;  ///< [px]
 };
-constexpr AgreementPanel panels[] = {
-    {"correlation of light rays and Eq. 9", &Agreement::correlation, "bottom right", 62, 522},
-    {"rms of light rays / rms of Eq. 9", &Agreement::rms_ratio, "top left", 604, 1064}};
+constexpr AgreementPanel agreement_panels[] = {
+    {"correlation of light rays and Eq. 9", &Agreement::correlation, LegendPlace::bottom_right, 62, 522},
+    {"rms of light rays / rms of Eq. 9", &Agreement::rms_ratio, LegendPlace::top_left, 604, 1064}};
 
-void draw_panel(GnuplotFigure& plot, AgreementPanel const& panel, std::vector<AgreementSeries> const& series,
-                std::vector<double> const& single_wave) {
-  std::string commands = "plot ";
-  if (!single_wave.empty()) {
-    std::vector<std::vector<double>> columns(2);
-    columns[0] = agreement_sizes();
-    columns[1] = single_wave;
-    commands += fmt::format("{} using 1:2 with lines linewidth 1.5 dashtype 2 linecolor '#808080' title {}, ",
-                            plot.add_table(columns), GnuplotFigure::quoted("a single wave of that length"));
-  }
+Panel make_agreement_panel(AgreementPanel const& chosen, std::vector<AgreementSeries> const& series) {
+  Panel panel{.box = {chosen.left, chosen.right, 42, 404}, .title = chosen.title};
+  panel.x = {"size of structures / width of the light cone at the medium", smallest, largest, true};
+  panel.x.ticks = logarithmic_ticks(smallest, largest);
+  panel.y = {.low = 0, .high = 1.05};
+  panel.legend.place = chosen.legend;
+  panel.grid = Grid::both;
   for (std::size_t i = 0; i < series.size(); ++i) {
-    std::vector<std::vector<double>> line(2), points(4);
+    Layer line{.columns = {{}, {}}, .colour = house_colour(i), .name = series[i].name + ": theory"};
+    Layer rays{Layer::Kind::errors, {{}, {}, {}, {}}, line.colour, series[i].name + ": rays", 1.6};
+    rays.marker = static_cast<int>(i) + 1;
+    rays.size = 1.3;
     for (auto const& prediction : series[i].prediction) {
-      line[0].push_back(prediction.size_over_cone);
-      line[1].push_back(prediction.value.*panel.value);
+      line.columns[0].push_back(prediction.size_over_cone);
+      line.columns[1].push_back(prediction.value.*chosen.value);
     }
     for (auto const& point : series[i].points) {
-      points[0].push_back(point.size_over_cone);
-      points[1].push_back(point.value.*panel.value);
-      points[2].push_back(point.error.*panel.value);
-      points[3].push_back(point.nodes);
+      double const x = point.size_over_cone, y = point.value.*chosen.value, error = point.error.*chosen.value;
+      rays.columns[0].push_back(x);
+      rays.columns[1].push_back(y);
+      rays.columns[2].push_back(y - error);
+      rays.columns[3].push_back(y + error);
+      // above one curve and below the other
+      double const side = i == 0 ? -1 : 1;
+      panel.labels.push_back(
+          {std::to_string(point.nodes), x, y, TextRole::note, Align::centre, side * 15, side * 9, false, line.colour});
     }
-    std::string const table = plot.add_table(points);
-    commands += fmt::format("{} using 1:2 with lines linewidth 2 linecolor '{}' title {}, ", plot.add_table(line),
-                            house_colour(i), GnuplotFigure::quoted(series[i].name + ": theory"));
-    commands +=
-        fmt::format("{} using 1:2:3 with yerrorbars linewidth 1.6 pointtype {} pointsize 1.3 linecolor '{}' title {}, ",
-                    table, i == 0 ? 7 : 5, house_colour(i), GnuplotFigure::quoted(series[i].name + ": rays"));
-    // label the points, above one curve and below the other
-    commands +=
-        fmt::format("{} using 1:2:(sprintf('%d', $4)) with labels font 'DejaVu Sans,10' textcolor '{}' offset {}{}",
-                    table, house_colour(i), i == 0 ? "-2.2,0.6" : "2.2,-0.6", i + 1 < series.size() ? ", " : "");
+    panel.layers.push_back(std::move(line));
+    panel.layers.push_back(std::move(rays));
   }
-  plot.command(commands);
+  return panel;
 }
 
 }  // namespace
@@ -68,28 +64,16 @@ std::vector<double> agreement_sizes() {
   return sizes;
 }
 
-void write_agreement_figure(std::string const& path, std::vector<AgreementSeries> const& series,
-                            std::vector<double> const& single_wave) {
+Figure make_agreement_figure(std::vector<AgreementSeries> const& series, std::vector<double> const& single_wave) {
   GLADSTONE_EXPECTS(!series.empty() && single_wave.size() == agreement_sizes().size());
-  GnuplotFigure plot(agreement_width, agreement_height);
-  plot.command("set multiplot");
-  plot.command("set grid linecolor '#e4e4e4' linewidth 1 linetype 1");
-  plot.command(fmt::format("set logscale x; set xrange [{}:{}]; set yrange [0:1.05]", smallest, largest));
-  plot.command("set xtics (0.2, 0.5, 1, 2, 5, 10) font 'DejaVu Sans,11'; set ytics 0.2 font 'DejaVu Sans,11'");
-  plot.command("set xlabel 'size of structures / width of the light cone at the medium' font 'DejaVu Sans,12'");
-  for (AgreementPanel const& panel : panels) {
-    plot.command(fmt::format("set lmargin at screen {:.6f}; set rmargin at screen {:.6f}",
-                             panel.left / static_cast<double>(agreement_width),
-                             panel.right / static_cast<double>(agreement_width)));
-    plot.command("set tmargin at screen 0.91; set bmargin at screen 0.14");
-    plot.command(
-        fmt::format("set title {} font 'DejaVu Sans Bold,12' textcolor '#101010'", GnuplotFigure::quoted(panel.title)));
-    plot.command(fmt::format("set key {} Left reverse samplen 2 spacing 1.15 font 'DejaVu Sans,10'", panel.key));
-    bool const ratio = panel.value == &Agreement::rms_ratio;
-    draw_panel(plot, panel, series, ratio ? single_wave : std::vector<double>{});
-  }
-  plot.command("unset multiplot");
-  plot.write(path);
+  Figure figure{1080, 470};
+  for (AgreementPanel const& panel : agreement_panels) figure.panels.push_back(make_agreement_panel(panel, series));
+  Layer wave{.columns = {agreement_sizes(), single_wave}, .colour = "#808080", .name = "a single wave of that length"};
+  wave.width = 1.5;
+  wave.dash = Dash::dashed;
+  std::vector<Layer>& layers = figure.panels.back().layers;
+  layers.insert(layers.begin(), std::move(wave));
+  return figure;
 }
 
 }  // namespace gladstone

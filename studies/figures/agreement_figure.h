@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "studies/compare/cone_theory.h"
+#include "studies/figures/figure.h"
 
 namespace gladstone {
 
@@ -28,12 +29,10 @@ struct AgreementSeries {
 /// [1].
 std::vector<double> agreement_sizes();
 
-/// Draws two panels against structure size over cone diameter: correlation of rays with Eq. 9, and ratio of their rms.
+/// Two panels against structure size over cone diameter: correlation of rays with Eq. 9, and ratio of their rms.
 /// Ray-traced points have error bars of one standard error; predictions are curves. The grey curve in the right panel
 /// is the amplitude ratio of a single wave of that size.
 /// @param single_wave  amplitude ratio of a single wave at agreement_sizes() [1]
-/// @throws GnuplotMissing, OutputError
-void write_agreement_figure(std::string const& path, std::vector<AgreementSeries> const& series,
-                            std::vector<double> const& single_wave);
+Figure make_agreement_figure(std::vector<AgreementSeries> const& series, std::vector<double> const& single_wave);
 
 }  // namespace gladstone

@@ -7,11 +7,12 @@
 #include <vector>
 
 #include "render/base/not_a_number.h"
-#include "studies/figures/gnuplot.h"
 #include "studies/figures/map_panels.h"
 
 namespace gladstone {
 namespace {
+
+using namespace figures;
 
 /// Converts a field with rows upwards to a map with rows downwards.
 Image<double> make_map(density::PlaneGrid const& grid, std::vector<double> const& values) {
@@ -77,7 +78,7 @@ DensityProfile extract_profile(Reconstruction const& reconstruction) {
 
 }  // namespace
 
-void write_density_figure(std::string const& path, Reconstruction const& reconstruction) {
+Figure make_density_figure(Reconstruction const& reconstruction) {
   density::PlaneGrid const& grid = reconstruction.grid;
   Vec2d const top = grid.position(0, grid.rows - 1);
   MapFigure figure;
@@ -100,39 +101,41 @@ void write_density_figure(std::string const& path, Reconstruction const& reconst
     figure.panels.push_back({"error of ρ [kg/m³]", make_map(grid, error), ColourScale::diverging});
   }
   figure.columns = std::min<int>(2, static_cast<int>(figure.panels.size()));
-  write_map_figure(path, figure);
+  return make_map_figure(figure);
 }
 
-void write_density_profile(std::string const& path, Reconstruction const& reconstruction) {
+Figure make_density_profile(Reconstruction const& reconstruction) {
   DensityProfile const profile = extract_profile(reconstruction);
-  GnuplotFigure plot(820, 460);
-  plot.set_margins(96, 790, 60, plot.height_px() - 60);
-  plot.command("set grid linecolor '#e4e4e4' linewidth 1 linetype 1");
-  plot.command(fmt::format(
-      "set label 1 {} at screen 0.5, screen {:.6f} center font 'DejaVu Sans,14' textcolor '#101010'",
-      GnuplotFigure::quoted(fmt::format("Density at {} = {:.3f} mm", profile.is_column ? "x" : "y", profile.at_mm)),
-      1.0 - 26.0 / plot.height_px()));
-  plot.command(fmt::format("set xlabel '{} [mm]'", profile.is_column ? "y" : "x"));
-  plot.command("set ylabel 'density [kg/m³]' offset -0.5,0");
-  plot.command("set style fill transparent solid 0.25 noborder");
+  Figure figure{820, 460};
+  figure.add_title(fmt::format("Density at {} = {:.3f} mm", profile.is_column ? "x" : "y", profile.at_mm));
+  Panel panel{.box = {96, 790, 60, 400}};
+  panel.x.label = profile.is_column ? "y [mm]" : "x [mm]";
+  panel.y.label = "density [kg/m³]";
+  panel.grid = Grid::both;
+  panel.legend.place = LegendPlace::top_right;
   if (!has_finite(profile.density)) {
-    plot.command("plot [0:1] [0:1] NaN title 'no density is known'");
-    plot.write(path);
-    return;
+    panel.x.low = panel.y.low = 0;
+    panel.x.high = panel.y.high = 1;
+    panel.labels.push_back({"no density is known", 0.5, 0.5});
+  } else if (has_finite(profile.high)) {
+    panel.layers.push_back({Layer::Kind::band,
+                            {profile.place_mm, profile.low, profile.high},
+                            house_colour(0),
+                            "one standard uncertainty"});
+    panel.layers.back().opacity = 0.25;
   }
-  std::string const source =
-      plot.add_table({profile.place_mm, profile.density, profile.low, profile.high, profile.truth});
-  std::string lines = "plot ";
-  if (has_finite(profile.high))
-    lines += fmt::format("{} using 1:3:4 with filledcurves linecolor '{}' title 'one standard uncertainty', ", source,
-                         house_colour(0));
-  lines +=
-      fmt::format("{} using 1:2 with lines linewidth 2 linecolor '{}' title 'reconstructed'", source, house_colour(0));
-  if (has_finite(profile.truth))
-    lines += fmt::format(", {} using 1:5 with lines linewidth 2 dashtype 2 linecolor '{}' title 'true'", source,
-                         house_colour(1));
-  plot.command(lines);
-  plot.write(path);
+  if (has_finite(profile.density)) {
+    panel.layers.push_back(
+        {.columns = {profile.place_mm, profile.density}, .colour = house_colour(0), .name = "reconstructed"});
+  }
+  if (has_finite(profile.truth)) {
+    panel.layers.push_back({.columns = {profile.place_mm, profile.truth},
+                            .colour = house_colour(1),
+                            .name = "true",
+                            .dash = Dash::dashed});
+  }
+  figure.panels.push_back(std::move(panel));
+  return figure;
 }
 
 std::string describe_density_profile(Reconstruction const& reconstruction) {

@@ -8,6 +8,7 @@
 #include "studies/design/design_point.h"
 #include "studies/design/question.h"
 #include "studies/design/recommend.h"
+#include "studies/figures/figure.h"
 
 namespace gladstone {
 
@@ -33,12 +34,11 @@ struct DesignCurve {
 /// Returns curves for the standard f-numbers from f/2.8 to f/32, with Z_D from 0.05 to 4 times Z_A.
 std::vector<DesignCurve> design_curves(DesignPoint<double> const& bench);
 
-/// Draws these curves, the setup as a point, the limit by the light cone alone, and what is excluded as shaded areas.
+/// These curves, the setup as a point, the limit by the light cone alone, and what is excluded as shaded areas.
 /// @param question  requirements and limits; null: only the limits of every set-up
-/// @throws GnuplotMissing, OutputError
-void write_design_map(std::string const& path, DesignPoint<double> const& bench, DesignQuestion const* question);
+Figure make_design_map(DesignPoint<double> const& bench, DesignQuestion const* question);
 
-/// Draws the best objective against the limit of a requirement.
-void write_design_front(std::string const& path, Recommendation const& answer, Objective objective);
+/// The best objective against the limit of a requirement.
+Figure make_design_front(Recommendation const& answer, Objective objective);
 
 }  // namespace gladstone

@@ -9,10 +9,11 @@
 
 #include "render/base/contracts.h"
 #include "render/base/not_a_number.h"
-#include "studies/figures/gnuplot.h"
 
 namespace gladstone {
 namespace {
+
+using namespace figures;
 
 std::vector<double> component(std::vector<Vec2d> const& values, double Vec2d::*part) {
   std::vector<double> result;
@@ -20,12 +21,6 @@ std::vector<double> component(std::vector<Vec2d> const& values, double Vec2d::*p
     if (is_finite(value)) result.push_back(value.*part);
   }
   return result;
-}
-
-void set_title(GnuplotFigure& plot, std::string const& title) {
-  plot.command(
-      fmt::format("set label 1 {} at screen 0.5, screen {:.6f} center font 'DejaVu Sans,14' textcolor '#101010'",
-                  GnuplotFigure::quoted(title), 1.0 - 26.0 / plot.height_px()));
 }
 
 /// Returns the outline of a histogram: probability density [1/px] over bins of equal width on [-reach, reach].
@@ -47,12 +42,9 @@ std::vector<std::vector<double>> density_of(std::vector<double> const& errors, d
   return outline;
 }
 
-constexpr char const* light_grid = "set grid linecolor '#e4e4e4' linewidth 1 linetype 1";
-
-}  // namespace
-
-void write_error_histograms(std::string const& path, std::string const& title, std::vector<ErrorSeries> const& series) {
-  GLADSTONE_EXPECTS(!series.empty());
+/// Returns the largest error of an axis: the 99 % quantile of the widest series, but at most 8 times that of the
+/// narrowest.
+double histogram_reach(std::vector<ErrorSeries> const& series) {
   double widest = 0.0;
   double narrowest = std::numeric_limits<double>::infinity();
   for (ErrorSeries const& one : series) {
@@ -65,103 +57,100 @@ void write_error_histograms(std::string const& path, std::string const& title, s
       narrowest = std::min(narrowest, wide);
     }
   }
-  double const reach = widest > 0.0 ? std::min(widest, 8.0 * narrowest) : 1e-3;
-
-  int const legend = 22 * static_cast<int>(series.size()) + 10;
-  GnuplotFigure plot(1200, 430 + legend);
-  plot.command("set multiplot");
-  set_title(plot, title);
-  plot.command(light_grid);
-  plot.command("set ylabel 'probability density [1/px]' offset 0.5,0");
-  plot.command("set style fill transparent solid 0.12 noborder");
-  int column = 0;
-  for (double Vec2d::*part : {&Vec2d::x, &Vec2d::y}) {
-    plot.set_margins(column == 0 ? 80 : 680, column == 0 ? 570 : 1170, 50 + legend, plot.height_px() - 58);
-    plot.command(fmt::format("set key at graph 0, screen {:.6f} left top Left reverse samplen 2 font 'DejaVu Sans,10'",
-                             1.0 - 46.0 / plot.height_px()));
-    plot.command(
-        fmt::format("set xlabel {}", GnuplotFigure::quoted(column == 0 ? "error of u [px]" : "error of v [px]")));
-    plot.command(fmt::format("set xrange [{:.10g}:{:.10g}]; set yrange [0:*]", -reach, reach));
-    plot.command("set arrow 1 from 0, graph 0 to 0, graph 1 nohead linecolor '#909090' linewidth 1 dashtype 2");
-    std::string fills = "plot ";
-    std::string lines;
-    for (std::size_t i = 0; i < series.size(); ++i) {
-      std::vector<double> const errors = component(series[i].error_px, part);
-      std::vector<Vec2d> const zero(series[i].error_px.size());
-      ErrorSummary const summary = summarize_errors(series[i].error_px, zero, {});
-      double const bias = column == 0 ? summary.bias_u_px : summary.bias_v_px;
-      double const random = column == 0 ? summary.random_u_px : summary.random_v_px;
-      std::string const source = plot.add_table(density_of(errors, reach, 81));
-      std::string const label = errors.empty()
-                                    ? fmt::format("{}: no vectors", series[i].name)
-                                    : fmt::format("{}: bias {:+.4f}, random {:.4f} px", series[i].name, bias, random);
-      if (i > 0) fills += ", ";
-      fills += fmt::format("{} using 1:2 with filledcurves y=0 linecolor '{}'", source, house_colour(i));
-      lines += fmt::format(", {} using 1:2 with lines linewidth 2 linecolor '{}' title {}", source, house_colour(i),
-                           GnuplotFigure::quoted(label));
-    }
-    plot.command(fills + lines);
-    plot.command("unset label 1");
-    ++column;
-  }
-  plot.command("unset multiplot");
-  plot.write(path);
+  return widest > 0.0 ? std::min(widest, 8.0 * narrowest) : 1e-3;
 }
 
-void write_error_against_gradient(std::string const& path, std::string const& title, DisplacementField const& truth,
-                                  std::vector<ErrorSeries> const& series) {
+/// Median and band of the errors in bins of equal count of the gradient.
+struct BinnedErrors {
+  std::vector<double> gradient, median, low, high;
+};
+
+BinnedErrors bin_errors(std::vector<double> const& gradient, std::vector<Vec2d> const& error_px) {
+  GLADSTONE_EXPECTS(error_px.size() == gradient.size());
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < gradient.size(); ++i) {
+    if (std::isfinite(gradient[i]) && is_finite(error_px[i])) order.push_back(i);
+  }
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return gradient[a] < gradient[b]; });
+  // with at least 20 vectors in each bin if there are enough
+  std::size_t const bins = std::clamp<std::size_t>(order.size() / 20, 1, 15);
+  BinnedErrors binned;
+  for (std::size_t bin = 0; bin < bins; ++bin) {
+    std::vector<double> place_of, magnitude;
+    for (std::size_t k = bin * order.size() / bins; k < (bin + 1) * order.size() / bins; ++k) {
+      place_of.push_back(gradient[order[k]]);
+      magnitude.push_back(std::max(length(error_px[order[k]]), 1e-15));  // positive for the logarithmic axis
+    }
+    if (magnitude.empty()) continue;
+    binned.gradient.push_back(quantile(place_of, 0.5));
+    binned.median.push_back(quantile(magnitude, 0.5));
+    binned.low.push_back(quantile(magnitude, 0.1));
+    binned.high.push_back(quantile(magnitude, 0.9));
+  }
+  return binned;
+}
+
+}  // namespace
+
+Figure make_error_histograms(std::string const& title, std::vector<ErrorSeries> const& series) {
+  GLADSTONE_EXPECTS(!series.empty());
+  double const reach = histogram_reach(series);
+  int const legend = 22 * static_cast<int>(series.size()) + 10;
+  Figure figure{1200, 430 + legend};
+  figure.add_title(title);
+  for (bool const is_u : {true, false}) {
+    Panel panel{.box = {is_u ? 80.0 : 680, is_u ? 570.0 : 1170, 50.0 + legend, figure.height_px - 58.0}};
+    panel.x = {is_u ? "error of u [px]" : "error of v [px]", -reach, reach};
+    panel.y = {.label = "probability density [1/px]", .low = 0};
+    panel.grid = Grid::both;
+    panel.legend.place = LegendPlace::above;
+    std::vector<Layer> lines;
+    for (std::size_t i = 0; i < series.size(); ++i) {
+      std::vector<double> const errors = component(series[i].error_px, is_u ? &Vec2d::x : &Vec2d::y);
+      ErrorSummary const summary =
+          summarize_errors(series[i].error_px, std::vector<Vec2d>(series[i].error_px.size()), {});
+      std::string const label = errors.empty() ? fmt::format("{}: no vectors", series[i].name)
+                                               : fmt::format("{}: bias {:+.4f}, random {:.4f} px", series[i].name,
+                                                             is_u ? summary.bias_u_px : summary.bias_v_px,
+                                                             is_u ? summary.random_u_px : summary.random_v_px);
+      std::vector<std::vector<double>> const outline = density_of(errors, reach, 81);
+      std::vector<double> const zero(outline[0].size(), 0.0);
+      panel.layers.push_back({Layer::Kind::band, {outline[0], zero, outline[1]}, house_colour(i)});
+      panel.layers.back().opacity = 0.12;
+      lines.push_back({Layer::Kind::line, outline, house_colour(i), label});
+    }
+    panel.layers.insert(panel.layers.end(), lines.begin(), lines.end());
+    panel.layers.push_back({Layer::Kind::guides, {{0}}, "#909090", "", 1, Dash::dashed});
+    figure.panels.push_back(std::move(panel));
+  }
+  return figure;
+}
+
+Figure make_error_against_gradient(std::string const& title, DisplacementField const& truth,
+                                   std::vector<ErrorSeries> const& series) {
   GLADSTONE_EXPECTS(!series.empty());
   std::vector<double> const gradient = local_gradient(truth);
   int const legend = 22 * static_cast<int>(series.size()) + 6;
-  GnuplotFigure plot(820, 520 + legend);
-  set_title(plot, title);
-  plot.command(light_grid);
-  plot.set_margins(96, 790, 50 + legend, plot.height_px() - 60);
-  plot.command(
-      fmt::format("set key at graph 0, screen {:.6f} left top Left reverse samplen 2", 1.0 - 46.0 / plot.height_px()));
-  plot.command("set xlabel 'local gradient of the true displacement, from vector to vector [px/px]'");
-  plot.command("set ylabel 'magnitude of the error [px]' offset -0.5,0");
-  plot.command("set logscale y; set format y '%g'");
-  plot.command("set style fill transparent solid 0.15 noborder");
-  std::string bands = "plot ";
-  std::string medians;
+  Figure figure{820, 520 + legend};
+  figure.add_title(title);
+  Panel panel{.box = {96, 790, 50.0 + legend, figure.height_px - 60.0}, .grid = Grid::both};
+  panel.x.label = "local gradient of the true displacement, from vector to vector [px/px]";
+  panel.y = {.label = "magnitude of the error [px]", .logarithmic = true};
+  panel.legend.place = LegendPlace::above;
+  std::vector<Layer> medians;
   for (std::size_t s = 0; s < series.size(); ++s) {
-    GLADSTONE_EXPECTS(series[s].error_px.size() == gradient.size());
-    std::vector<std::size_t> order;
-    for (std::size_t i = 0; i < gradient.size(); ++i) {
-      if (std::isfinite(gradient[i]) && is_finite(series[s].error_px[i])) order.push_back(i);
-    }
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::size_t a, std::size_t b) { return gradient[a] < gradient[b]; });
-
-    // Bins of equal count, with at least 20 vectors each if there are enough.
-    std::size_t const bins = std::clamp<std::size_t>(order.size() / 20, 1, 15);
-    std::vector<std::vector<double>> curve(4);
-    for (std::size_t bin = 0; bin < bins && !order.empty(); ++bin) {
-      std::vector<double> place_of, magnitude;
-      for (std::size_t k = bin * order.size() / bins; k < (bin + 1) * order.size() / bins; ++k) {
-        place_of.push_back(gradient[order[k]]);
-        // positive for the logarithmic axis
-        magnitude.push_back(std::max(length(series[s].error_px[order[k]]), 1e-15));
-      }
-      if (magnitude.empty()) continue;
-      curve[0].push_back(quantile(place_of, 0.5));
-      curve[1].push_back(quantile(magnitude, 0.5));
-      curve[2].push_back(quantile(magnitude, 0.1));
-      curve[3].push_back(quantile(magnitude, 0.9));
-    }
-    if (curve[0].empty()) {
-      for (auto& values : curve) values.push_back(not_a_number);
-    }
-    std::string const source = plot.add_table(curve);
-    if (s > 0) bands += ", ";
-    bands += fmt::format("{} using 1:3:4 with filledcurves linecolor '{}'", source, house_colour(s));
-    medians +=
-        fmt::format(", {} using 1:2 with linespoints linewidth 2 pointtype 7 pointsize 0.7 linecolor '{}' title {}",
-                    source, house_colour(s), GnuplotFigure::quoted(series[s].name + ": median, band 10–90 %"));
+    BinnedErrors const binned = bin_errors(gradient, series[s].error_px);
+    panel.layers.push_back({Layer::Kind::band, {binned.gradient, binned.low, binned.high}, house_colour(s)});
+    panel.layers.back().opacity = 0.15;
+    medians.push_back({.columns = {binned.gradient, binned.median},
+                       .colour = house_colour(s),
+                       .name = series[s].name + ": median, band 10–90 %",
+                       .marker = 1,
+                       .size = 0.7});
   }
-  plot.command(bands + medians);
-  plot.write(path);
+  panel.layers.insert(panel.layers.end(), medians.begin(), medians.end());
+  figure.panels.push_back(std::move(panel));
+  return figure;
 }
 
 std::vector<double> local_gradient(DisplacementField const& field) {
@@ -189,51 +178,48 @@ std::vector<double> local_gradient(DisplacementField const& field) {
   return gradient;
 }
 
-void write_budget_bars(std::string const& path, std::string const& title, ErrorBudget const& budget) {
+Figure make_budget_bars(std::string const& title, ErrorBudget const& budget) {
   std::vector<BudgetTerm> terms = budget.terms;
   terms.push_back(budget.total);
-  auto const count = static_cast<int>(terms.size());
-  GnuplotFigure plot(160 + 108 * count, 520);
-  set_title(plot, title);
-  plot.set_margins(100, plot.width_px() - 24, 84, plot.height_px() - 62);
-  plot.command("set grid ytics linecolor '#e4e4e4' linewidth 1 linetype 1");
-  plot.command(fmt::format("set key at graph 0, screen {:.6f} left top Left reverse horizontal samplen 1.5",
-                           1.0 - 46.0 / plot.height_px()));
-  plot.command("set ylabel 'contribution [px]' offset 0.5,0");
-  plot.command(fmt::format("set xrange [-0.6:{:.1f}]; set xtics scale 0 font 'DejaVu Sans,10'", count - 0.4));
-  plot.command("set xzeroaxis linetype 1 linecolor '#404040' linewidth 1");
-  plot.command("set boxwidth 0.18 absolute; set style fill solid 1.0 noborder");
-  plot.command(
-      fmt::format("set arrow 1 from {0}, graph 0 to {0}, graph 1 nohead linecolor '#909090' dashtype 2", count - 1.5));
-  std::string tics = "set xtics (";
-  std::vector<std::vector<double>> columns(6);
-  for (int i = 0; i < count; ++i) {
-    BudgetTerm const& term = terms[static_cast<std::size_t>(i)];
-    std::string name = term.name;
+  std::size_t const count = terms.size();
+  Figure figure{160 + 108 * static_cast<int>(count), 520};
+  figure.add_title(title);
+  Panel panel{.box = {100, figure.width_px - 24.0, 84, 458}, .grid = Grid::horizontal};
+  panel.x = {.low = -0.6, .high = static_cast<double>(count) - 0.4, .marks = Axis::Marks::bare};
+  panel.y.label = "contribution [px]";
+  panel.legend = {LegendPlace::above, 46, true};
+  struct Part {
+    char const *name, *colour;
+    double BudgetTerm::*value;
+  };
+  double shift = -0.3;
+  for (Part const& part : {Part{"bias u", "#56b4e9", &BudgetTerm::bias_u_px},
+                           {"bias v", "#0072b2", &BudgetTerm::bias_v_px},
+                           {"scatter u", "#e69f00", &BudgetTerm::random_u_px},
+                           {"scatter v", "#d55e00", &BudgetTerm::random_v_px}}) {
+    Layer layer{Layer::Kind::bars, {{}, {}, std::vector<double>(count, 0.18)}, part.colour, part.name};
+    for (std::size_t i = 0; i < count; ++i) {
+      layer.columns[0].push_back(static_cast<double>(i) + shift);
+      layer.columns[1].push_back(terms[i].*part.value);
+    }
+    panel.layers.push_back(std::move(layer));
+    shift += 0.2;
+  }
+  Layer rms{Layer::Kind::levels, {{}, {}, std::vector<double>(count, 0.42)}, "#202020", "rms"};
+  for (std::size_t i = 0; i < count; ++i) {
+    std::string name = terms[i].name;
     std::replace(name.begin(), name.end(), '_', ' ');
-    std::string note = term.known() ? "" : "n/a";
-    if (!term.includes.empty()) note = fmt::format("+ {}", fmt::join(term.includes, ", "));
-    tics += fmt::format("{}\"{}\\n{}\" {}", i == 0 ? "" : ", ", name, note, i);
-    columns[0].push_back(i);
-    columns[1].push_back(term.bias_u_px);
-    columns[2].push_back(term.bias_v_px);
-    columns[3].push_back(term.random_u_px);
-    columns[4].push_back(term.random_v_px);
-    columns[5].push_back(term.rms_px);
+    std::string note = terms[i].known() ? "" : "n/a";
+    if (!terms[i].includes.empty()) note = fmt::format("+ {}", fmt::join(terms[i].includes, ", "));
+    panel.x.ticks.push_back({static_cast<double>(i), name + '\n' + note});
+    rms.columns[0].push_back(static_cast<double>(i));
+    rms.columns[1].push_back(terms[i].rms_px);
   }
-  plot.command(tics + ")");
-  std::string const source = plot.add_table(columns);
-  constexpr std::string_view names[] = {"bias u", "bias v", "scatter u", "scatter v"};
-  constexpr std::string_view colours[] = {"#56b4e9", "#0072b2", "#e69f00", "#d55e00"};
-  std::string bars = "plot ";
-  for (int k = 0; k < 4; ++k) {
-    bars += fmt::format("{} using ($1{:+.2f}):{} with boxes linecolor '{}' title '{}', ", source, -0.3 + 0.2 * k, k + 2,
-                        colours[k], names[k]);
-  }
-  bars += fmt::format("{} using 1:6:(0.42) with xerrorbars pointtype 0 linewidth 2 linecolor '#202020' title 'rms'",
-                      source);
-  plot.command(bars);
-  plot.write(path);
+  panel.layers.push_back(std::move(rms));
+  panel.layers.push_back({Layer::Kind::line, {{panel.x.low, panel.x.high}, {0, 0}}, "#404040", "", 1});
+  panel.layers.push_back({Layer::Kind::guides, {{static_cast<double>(count) - 1.5}}, "#909090", "", 1, Dash::dashed});
+  figure.panels.push_back(std::move(panel));
+  return figure;
 }
 
 }  // namespace gladstone

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <span>
 #include <string>
 #include <vector>
 
@@ -8,6 +7,7 @@
 #include "analysis/errors/error_summary.h"
 #include "analysis/vectors/displacement_field.h"
 #include "render/base/vec.h"
+#include "studies/figures/figure.h"
 
 namespace gladstone {
 
@@ -17,23 +17,23 @@ struct ErrorSeries {
   std::vector<Vec2d> error_px;  ///< non-finite values are omitted [px]
 };
 
-/// Draws the probability density of the error, u and v side by side, one curve per series, with bias and random error
+/// Probability density of the error, u and v side by side, one curve per series, with bias and random error
 /// in the legend. The axis extends to the 99 % quantile of the widest series, but at most 8 times that of the
 /// narrowest.
-void write_error_histograms(std::string const& path, std::string const& title, std::vector<ErrorSeries> const& series);
+Figure make_error_histograms(std::string const& title, std::vector<ErrorSeries> const& series);
 
-/// Draws the median magnitude of the error against local_gradient(truth), in up to 15 bins of equal count, with the
+/// Median magnitude of the error against local_gradient(truth), in up to 15 bins of equal count, with the
 /// band from the 10th to the 90th percentile.
 /// @param truth  true displacement at the vectors, common to all series
-void write_error_against_gradient(std::string const& path, std::string const& title, DisplacementField const& truth,
-                                  std::vector<ErrorSeries> const& series);
+Figure make_error_against_gradient(std::string const& title, DisplacementField const& truth,
+                                   std::vector<ErrorSeries> const& series);
 
 /// Returns the largest singular value of grad(displacement) at every vector of a grid [px/px], by central differences,
 /// one-sided at the edges; NaN if a neighbour is missing.
 /// @pre field.columns and rows are set
 std::vector<double> local_gradient(DisplacementField const& field);
 
-/// Draws the error budget: bias and random error of every known term in both components, and its rms.
-void write_budget_bars(std::string const& path, std::string const& title, ErrorBudget const& budget);
+/// Error budget: bias and random error of every known term in both components, and its rms.
+Figure make_budget_bars(std::string const& title, ErrorBudget const& budget);
 
 }  // namespace gladstone

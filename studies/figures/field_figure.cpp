@@ -12,14 +12,15 @@
 #include "render/base/interrupt.h"
 #include "render/base/progress.h"
 #include "render/base/units.h"
-#include "studies/figures/gnuplot.h"
 #include "studies/figures/map_panels.h"
 
 namespace gladstone {
 namespace {
 
+using namespace figures;
+
 // dimensions of the figure [px]
-constexpr int plane_width = 330, least_height = 60, most_height = 495, to_left = 66, to_right = 24, above_plane = 64,
+constexpr int plane_width = 330, least_height = 60, most_height = 495, to_left = 66, to_right = 24, above_plane = 72,
               below_plane = 74, bar_space = 90;
 
 /// Values in one plane; columns along the axis `across`, rows along `up`, both ascending.
@@ -75,7 +76,11 @@ struct NodeAxis {
                            : fmt::format("{} = node {}", name, node);
   }
   double length() const { return step * nodes; }
-  std::string range() const { return fmt::format("[{:.10g}:{:.10g}]", first - step / 2, first + step * (nodes - 0.5)); }
+  /// @param most  maximum number of ticks
+  Axis axis(double most) const {
+    double const low = first - step / 2, high = first + step * (nodes - 0.5);
+    return {label, low, high, false, linear_ticks(low, high, std::max(1.0, most))};
+  }
 
   int nodes;
   double first = 0, step = 1;
@@ -85,11 +90,11 @@ struct NodeAxis {
 
 }  // namespace
 
-void write_field_figure(std::string const& path, FieldSource& source, bool lengths_known) {
-  std::vector<FieldPlane> const planes = read_middle_planes(source);
+Figure make_field_figure(FieldSource& source, bool lengths_known) {
+  std::vector<FieldPlane> planes = read_middle_planes(source);
   if (planes.empty())
     throw DataError(
-        ErrorCode::wrong_shape, path,
+        ErrorCode::wrong_shape, source.name(),
         "cannot be drawn (a figure requires at least two nodes along two axes of the field); omit --figure");
   std::vector<NodeAxis> axes;
   for (int axis = 0; axis < 3; ++axis) axes.emplace_back(source, axis, lengths_known);
@@ -104,30 +109,24 @@ void write_field_figure(std::string const& path, FieldSource& source, bool lengt
   }
   int const cell = to_left + plane_width + to_right, tallest = *std::max_element(heights.begin(), heights.end());
   int const drawn = static_cast<int>(planes.size());
-  GnuplotFigure plot(drawn * cell + bar_space, above_plane + tallest + below_plane);
-  std::string const unit_name = source.units().values.empty() ? "" : " [" + source.units().values + ']';
-  plot.command("set multiplot; unset key; set tics out nomirror font 'DejaVu Sans,9'");
-  plot.command(fmt::format("set label 1 {} at screen 0.5, screen 0.97 center font 'DejaVu Sans,13'",
-                           GnuplotFigure::quoted(source.name() + unit_name)));
-  plot.command(sequential_palette());
-  plot.command(fmt::format("set cbrange [{:.10g}:{:.10g}]", range.lower, range.upper));
+  Figure figure{drawn * cell + bar_space, above_plane + tallest + below_plane, Figure::Kind::map};
+  figure.add_title(source.name() + (source.units().values.empty() ? "" : " [" + source.units().values + ']'));
   for (int i = 0; i < drawn; ++i) {
-    FieldPlane const& plane = planes[static_cast<std::size_t>(i)];
+    FieldPlane& plane = planes[static_cast<std::size_t>(i)];
     NodeAxis const &across = axis_of(plane.across), &up = axis_of(plane.up);
-    int const left = i * cell + to_left;
-    plot.set_margins(left, left + plane_width, above_plane, above_plane + heights[static_cast<std::size_t>(i)]);
-    bool const last = i == drawn - 1;
-    plot.command(last ? "set colorbox" : "unset colorbox");
-    plot.command(fmt::format("set title {}; set xlabel {}; set ylabel {}",
-                             GnuplotFigure::quoted(axis_of(plane.normal).middle), GnuplotFigure::quoted(across.label),
-                             GnuplotFigure::quoted(up.label)));
-    plot.command(fmt::format("set xrange {}; set yrange {}", across.range(), up.range()));
-    plot.command(
-        fmt::format("plot {} with image", plot.add_map(plane.map, across.first, across.step, up.first, up.step)));
-    if (i == 0) plot.command("unset label 1");
+    int const height = heights[static_cast<std::size_t>(i)];
+    double const left = i * cell + to_left;
+    Panel panel{.box = {left, left + plane_width, above_plane, static_cast<double>(above_plane + height)},
+                .title = axis_of(plane.normal).middle,
+                .x = across.axis(plane_width / 42.0),
+                .y = up.axis(height / 36.0)};
+    panel.map = Map{std::move(plane.map), across.first, across.step, up.first, up.step};
+    panel.map->low = range.lower;
+    panel.map->high = range.upper;
+    panel.map->has_bar = i == drawn - 1;
+    figure.panels.push_back(std::move(panel));
   }
-  plot.command("unset multiplot");
-  plot.write(path);
+  return figure;
 }
 
 }  // namespace gladstone

@@ -3,7 +3,6 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <spawn.h>
-#include <spdlog/spdlog.h>
 #include <sys/wait.h>
 
 #include <array>
@@ -21,6 +20,7 @@
 #include "render/base/error.h"
 #include "render/base/interrupt.h"
 #include "render/files/output_file.h"
+#include "studies/figures/draw_figure.h"
 
 extern char** environ;
 
@@ -102,45 +102,26 @@ bool is_full(std::string const& folder) {
 
 }  // namespace
 
-bool draw_or_warn(std::function<void()> const& draw) {
-  try {
-    draw();
-    return true;
-  } catch (GnuplotMissing const& missing) {
-    spdlog::warn("{}", missing.what());
-    return false;
-  }
-}
-
-GnuplotFigure::GnuplotFigure(int width_px, int height_px)
-    : width_px_(width_px), height_px_(height_px), folder_(temporary_.path()) {
-  GLADSTONE_EXPECTS(width_px > 0 && height_px > 0);
-  command("set border linewidth 1 linecolor '#404040'");
-  command("set tics nomirror out scale 0.5 textcolor '#202020'");
-  command("set key noautotitle textcolor '#202020'");
-}
-
-void GnuplotFigure::command(std::string_view line) {
+void GnuplotScript::command(std::string_view line) {
   script_ += line;
   script_ += '\n';
 }
 
-void GnuplotFigure::set_margins(double left, double right, double top, double bottom) {
-  double const w = width_px(), h = height_px();
-  command(fmt::format("set lmargin at screen {:.6f}; set rmargin at screen {:.6f}", left / w, right / w));
-  command(fmt::format("set tmargin at screen {:.6f}; set bmargin at screen {:.6f}", 1 - top / h, 1 - bottom / h));
+void GnuplotScript::add_file(std::string const& name, std::string_view bytes) const {
+  std::string const path = folder_ + '/' + name;
+  errno = 0;
+  std::ofstream file(path, std::ios::binary);
+  file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  if (!file.flush()) throw OutputError(path, why_not(errno));
 }
 
-std::string GnuplotFigure::store(std::span<double const> values) {
+std::string GnuplotScript::store(std::span<double const> values) {
   std::string const name = fmt::format("data{}.bin", files_++);
-  errno = 0;
-  std::ofstream file(folder_ + "/" + name, std::ios::binary);
-  file.write(reinterpret_cast<char const*>(values.data()), static_cast<std::streamsize>(values.size_bytes()));
-  if (!file.flush()) throw OutputError(folder_ + "/" + name, why_not(errno));
+  add_file(name, {reinterpret_cast<char const*>(values.data()), values.size_bytes()});
   return name;
 }
 
-std::string GnuplotFigure::add_map(Image<double> const& map, double x_first, double x_step, double y_first,
+std::string GnuplotScript::add_map(Image<double> const& map, double x_first, double x_step, double y_first,
                                    double y_step) {
   GLADSTONE_EXPECTS(!map.empty() && x_step != 0.0 && y_step != 0.0);
   // gnuplot requires ascending coordinates; mirror the others.
@@ -159,7 +140,7 @@ std::string GnuplotFigure::add_map(Image<double> const& map, double x_first, dou
                      std::abs(x_step), std::abs(y_step));
 }
 
-std::string GnuplotFigure::add_table(std::vector<std::vector<double>> const& columns) {
+std::string GnuplotScript::add_table(std::vector<std::vector<double>> const& columns) {
   GLADSTONE_EXPECTS(!columns.empty());
   std::vector<double> rows;
   for (std::size_t row = 0; row < columns.front().size(); ++row) {
@@ -168,19 +149,14 @@ std::string GnuplotFigure::add_table(std::vector<std::vector<double>> const& col
   return fmt::format("{} binary format='%{}float64'", quoted(store(rows)), columns.size());
 }
 
-void GnuplotFigure::write(std::string const& path) const {
+void GnuplotScript::write(std::string const& path, int width_px, int height_px, std::string_view base_font) const {
   OutputFile output(path);
   PictureFormat const& format = format_of(path);
-  {
-    errno = 0;
-    std::ofstream script(folder_ + "/script.gp", std::ios::binary);
-    script << fmt::format(
-        "set terminal {0} size {1}{3},{2}{3} font 'DejaVu Sans,11' noenhanced background '#ffffff'\nset encoding utf8\n"
-        "set output 'figure'\n",
-        format.terminal, width_px_ * format.units_per_px, height_px_ * format.units_per_px, format.unit);
-    script << script_ << "\nunset output\n";
-    if (!script.flush()) throw OutputError(folder_ + "/script.gp", why_not(errno));
-  }
+  add_file("script.gp", fmt::format("set encoding utf8\n"
+                                    "set terminal {0} size {1}{3},{2}{3} font {4} noenhanced background '#ffffff'\n"
+                                    "set output 'figure'\n{5}\nunset output\n",
+                                    format.terminal, width_px * format.units_per_px, height_px * format.units_per_px,
+                                    format.unit, base_font, script_));
   int const code = run_gnuplot(folder_);
   throw_if_interrupted();  // Ctrl-C also stops gnuplot
   std::string const picture = folder_ + "/figure";
@@ -193,25 +169,23 @@ void GnuplotFigure::write(std::string const& path) const {
   output.commit();
 }
 
-std::string GnuplotFigure::quoted(std::string_view text) {
+std::string GnuplotScript::quoted(std::string_view text) {
   std::string result = "'";
   for (char const c : text) {
-    result += c == '\n' ? ' ' : c;
+    if (c == '\n') {
+      result += "'.\"\\n\".'";  // single quotes have no escapes, double quotes run commands
+      continue;
+    }
+    result += c;
     if (c == '\'') result += '\'';
   }
   return result + "'";
 }
 
-std::string GnuplotFigure::quoted_tic(std::string_view text) {
+std::string GnuplotScript::quoted_tick(std::string_view text) {
   std::string format;
   for (char const c : text) format.append(c == '%' ? 2 : 1, c);
   return quoted(format);
-}
-
-std::string_view house_colour(std::size_t index) {
-  constexpr std::array<std::string_view, 7> colours{"#0072b2", "#d55e00", "#009e73", "#cc79a7",
-                                                    "#e69f00", "#56b4e9", "#404040"};
-  return colours[index % colours.size()];
 }
 
 }  // namespace gladstone

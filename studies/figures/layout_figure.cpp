@@ -8,16 +8,15 @@
 #include "render/base/error.h"
 #include "render/base/not_a_number.h"
 #include "render/base/units.h"
-#include "studies/figures/gnuplot.h"
 
 namespace gladstone {
 namespace {
 
+using namespace figures;
 using unit::mm;
+// sizes [px]: page, horizontal limits of the panels, height of the stretched panel, space above, between and below
 constexpr int layout_width = 1200;
-constexpr double left = 0.04, right = 0.98;  // horizontal limits of the panels, relative to the figure
-// heights from below [px]: bottom and top of the stretched panel, gap between the panels, space above
-constexpr int stretched_bottom = 64, stretched_top = 410, between = 50, above = 84;
+constexpr double left = 48, right = 1176, stretched_px = 346, above = 84, between = 60, below = 64;
 
 /// Polylines in mm, separated by NaN.
 struct Outlines {
@@ -58,46 +57,19 @@ Drawing drawing_of(OpticalLayout const& l) {
   return d;
 }
 
-/// Sets the vertical limits of a panel [px].
-void set_heights(GnuplotFigure& plot, double low, double high) {
-  plot.set_margins(left * layout_width, right * layout_width, plot.height_px() - high, plot.height_px() - low);
-}
-
-void arrow(GnuplotFigure& plot, double from, double to, double at) {
-  plot.command(
-      fmt::format("set arrow from first {:.6g},graph {:.3f} to first {:.6g},graph {:.3f} heads size screen 0.006,20 "
-                  "linecolor '#606060'",
-                  from / mm, at, to / mm, at));
-}
-
-void distance(GnuplotFigure& plot, double from, double to, double at, std::string const& name) {
-  arrow(plot, from, to, at);
-  plot.command(fmt::format("set label {} at first {:.6g},graph {:.3f} center front boxed textcolor '#202020'",
-                           GnuplotFigure::quoted(fmt::format("{} = {:.5g} mm", name, (to - from) / mm)),
-                           0.5 * (from + to) / mm, at));
-}
-
-/// @param alignment  of the text at z: "center" or "right"
-void name_part(GnuplotFigure& plot, std::string const& name, double z, double at,
-               std::string_view alignment = "center") {
-  plot.command(fmt::format("set label {} at first {:.6g},graph {:.3f} {} front boxed textcolor '#202020'",
-                           GnuplotFigure::quoted(name), z / mm, at, alignment));
-}
-
-void draw(GnuplotFigure& plot, Drawing const& d) {
-  bool const dots = d.sheet.z.empty();
-  auto const lines = [&plot](Outlines const& l, std::string_view colour, int thickness, std::string const& title) {
-    return fmt::format("{} using 1:2 with lines linewidth {} linecolor '{}' {}", plot.add_table({l.z, l.y}), thickness,
-                       colour, title.empty() ? "notitle" : "title " + GnuplotFigure::quoted(title));
+std::vector<Layer> make_layers(Drawing const& d) {
+  std::vector<Layer> layers;
+  auto const add = [&layers](Outlines const& lines, std::string const& colour, double width, char const* name) {
+    if (!lines.z.empty()) layers.push_back({Layer::Kind::line, {lines.z, lines.y}, colour, name, width});
   };
-  std::string command =
-      "plot " + lines(d.view, house_colour(5), 1, "field of view") + ", " +
-      lines(d.cone, house_colour(1), 2, dots ? "light of the dot on the axis" : "light of a particle") + ", " +
-      (d.medium.z.empty() ? "" : lines(d.medium, house_colour(2), 2, "medium") + ", ") +
-      lines(d.lens, house_colour(0), 3, "stop") + ", " +
-      lines(d.planes, "#202020", 3, dots ? "dots and sensor" : "sensor");
-  if (!dots) command += ", " + lines(d.sheet, house_colour(3), 2, "laser sheet");
-  plot.command(command);
+  bool const dots = d.sheet.z.empty();
+  add(d.view, house_colour(5), 1, "field of view");
+  add(d.cone, house_colour(1), 2, dots ? "light of the dot on the axis" : "light of a particle");
+  add(d.medium, house_colour(2), 2, "medium");
+  add(d.lens, house_colour(0), 3, "stop");
+  add(d.planes, "#202020", 3, dots ? "dots and sensor" : "sensor");
+  add(d.sheet, house_colour(3), 2, "laser sheet");
+  return layers;
 }
 
 /// Labels of a layout.
@@ -107,8 +79,39 @@ struct LayoutWords {
   std::string medium;  ///< empty: no label
 };
 
-void write_layout(std::string const& path, OpticalLayout const& l, LayoutWords const& words) {
-  Drawing const drawing = drawing_of(l);
+/// Panel with stretched heights, to which distances and names are added.
+class StretchedPanel {
+ public:
+  /// @param tallest  half height of the tallest part [m]
+  StretchedPanel(Panel panel, double tallest) : panel_(std::move(panel)) {
+    panel_.x.label = "Z [mm]";
+    panel_.x.marks = Axis::Marks::texts;
+    panel_.y.low = -1.6 * tallest / mm;
+    panel_.y.high = 1.35 * tallest / mm;
+    panel_.border = Border::bottom;
+  }
+
+  /// Adds a name. @param at  height in the panel, 0 at the lower edge
+  void add_name(std::string name, double z, double at, Align align = Align::centre) {
+    panel_.labels.push_back({std::move(name), z / mm, height(at), TextRole::label, align});
+    panel_.labels.back().boxed = true;
+  }
+
+  /// Adds an arrow between two places; its name, if any, is on it.
+  void add_distance(double from, double to, double at, std::string const& name) {
+    panel_.layers.push_back(
+        {Layer::Kind::spans, {{from / mm}, {height(at)}, {(to - from) / mm}, {0}}, "#606060", "", 1});
+    if (!name.empty()) add_name(fmt::format("{} = {:.5g} mm", name, (to - from) / mm), 0.5 * (from + to), at);
+  }
+
+  Panel panel() && { return std::move(panel_); }
+
+ private:
+  double height(double at) const { return panel_.y.low + at * (panel_.y.high - panel_.y.low); }
+  Panel panel_;
+};
+
+Figure make_layout(OpticalLayout const& l, LayoutWords const& words) {
   bool const dots = l.sheet_half_height == 0;
   double const length = l.sensor_z - l.dots_z, z_high = l.sensor_z + 0.06 * length;
   double lowest = std::min(l.dots_z, -l.medium_half_thickness);
@@ -116,44 +119,40 @@ void write_layout(std::string const& path, OpticalLayout const& l, LayoutWords c
   double const z_low = lowest - 0.06 * length;
   double const tallest =
       1.3 * std::max({l.dots_half, l.medium_half, l.pupil_radius, l.sensor_half, l.sheet_half_height});
-  double const mm_a_px = (z_high - z_low) / mm / ((right - left) * layout_width);
+  double const mm_a_px = (z_high - z_low) / mm / (right - left);
   double const to_scale_px = std::max(40.0, 2 * tallest / mm / mm_a_px);  // height of the panel to scale
-  GnuplotFigure plot(layout_width, stretched_top + between + static_cast<int>(std::ceil(to_scale_px)) + above);
-  plot.command("set style textbox opaque noborder margins 0.4,0.2");
-  plot.command("set multiplot");
-  plot.command(fmt::format("set label 1 {} at screen 0.5,0.965 center font 'DejaVu Sans,14' textcolor '#101010'",
-                           GnuplotFigure::quoted(words.title)));
-  plot.command("unset border; unset ytics; unset key; set format x ''; set xtics scale 0");
-  plot.command(fmt::format("set xrange [{:.6g}:{:.6g}]", z_low / mm, z_high / mm));
-  plot.command(fmt::format("set yrange [{:.6g}:{:.6g}]", -to_scale_px * mm_a_px / 2, to_scale_px * mm_a_px / 2));
-  set_heights(plot, stretched_top + between, stretched_top + between + to_scale_px);
-  plot.command("set label 2 'to scale' at graph 0,1.06 left textcolor '#606060'");
-  draw(plot, drawing);
-  plot.command("unset label 1; unset label 2");
-  plot.command("set border 1; set format x '%g'; set xtics scale 0.5; set xlabel 'Z [mm]' offset 0,0.5");
-  plot.command(fmt::format("set yrange [{:.6g}:{:.6g}]", -1.6 * tallest / mm, 1.35 * tallest / mm));
-  set_heights(plot, stretched_bottom, stretched_top);
-  double const stretched = mm_a_px * (stretched_top - stretched_bottom) / (2.95 * tallest / mm);
-  plot.command(fmt::format("set label 3 {} at graph 0,1.01 left textcolor '#606060'",
-                           GnuplotFigure::quoted(fmt::format("heights times {:.2g}", stretched))));
-  plot.command("set key at graph 0.995,1.06 right top horizontal samplen 2");
-  distance(plot, 0, l.lens_z, 0.14, "Z_A");
+  double const stretched = mm_a_px * stretched_px / (2.95 * tallest / mm);
+
+  Panel scaled{.box = {left, right, above, above + to_scale_px}, .layers = make_layers(drawing_of(l))};
+  scaled.x = {.low = z_low / mm, .high = z_high / mm, .marks = Axis::Marks::none};
+  scaled.y = {.low = -to_scale_px * mm_a_px / 2, .high = to_scale_px * mm_a_px / 2, .marks = Axis::Marks::none};
+  scaled.border = Border::none;
+  double const top = scaled.box.bottom + between;
+  Figure figure{layout_width, static_cast<int>(std::ceil(top + stretched_px + below)), Figure::Kind::drawing};
+  figure.add_title(words.title);
+  figure.labels.push_back({"to scale", left, above - 16, TextRole::note, Align::left});
+  figure.labels.push_back(
+      {fmt::format("heights times {:.2g}", stretched), left, top - 24, TextRole::note, Align::left});
+
+  Panel lower = scaled;
+  lower.box = {left, right, top, top + stretched_px};
+  lower.legend = {LegendPlace::above_right, top - 40, true};
+  StretchedPanel panel(std::move(lower), tallest);
+  panel.add_distance(0, l.lens_z, 0.14, "Z_A");
   if (dots && l.dots_z < 0) {
-    distance(plot, l.dots_z, 0, 0.14, "Z_D");
-    distance(plot, l.dots_z, l.lens_z, 0.06, "Z_B");
+    panel.add_distance(l.dots_z, 0, 0.14, "Z_D");
+    panel.add_distance(l.dots_z, l.lens_z, 0.06, "Z_B");
   }
   // the arrow of the image distance is too short for its label, which is between the lines of Z_A and Z_B
-  arrow(plot, l.lens_z, l.sensor_z, 0.14);
-  plot.command(fmt::format("set label {} at graph 1,0.10 right front textcolor '#202020'",
-                           GnuplotFigure::quoted(fmt::format("z_i = {:.5g} mm", (l.sensor_z - l.lens_z) / mm))));
-  name_part(plot, words.seen, l.dots_z + (dots ? 0.03 : 0.08) * length, dots ? 0.95 : 0.82);
-  if (!words.medium.empty()) name_part(plot, words.medium, dots ? 0 : 0.08 * length, 0.89);
+  panel.add_distance(l.lens_z, l.sensor_z, 0.14, "");
+  panel.add_name(fmt::format("z_i = {:.5g} mm", (l.sensor_z - l.lens_z) / mm), z_high, 0.10, Align::right);
+  panel.add_name(words.seen, l.dots_z + (dots ? 0.03 : 0.08) * length, dots ? 0.95 : 0.82);
+  if (!words.medium.empty()) panel.add_name(words.medium, dots ? 0 : 0.08 * length, 0.89);
   // beside the stop, whose bars reach up to the label's height if the pupil is the tallest part
-  name_part(plot, fmt::format("pupil {:.4g} mm", 2 * l.pupil_radius / mm), l.lens_z - 0.02 * length, 0.83, "right");
-  name_part(plot, fmt::format("sensor {:.4g} mm", 2 * l.sensor_half / mm), l.sensor_z, 0.20);
-  draw(plot, drawing);
-  plot.command("unset multiplot");
-  plot.write(path);
+  panel.add_name(fmt::format("pupil {:.4g} mm", 2 * l.pupil_radius / mm), l.lens_z - 0.02 * length, 0.83, Align::right);
+  panel.add_name(fmt::format("sensor {:.4g} mm", 2 * l.sensor_half / mm), l.sensor_z, 0.20);
+  figure.panels = {std::move(scaled), std::move(panel).panel()};
+  return figure;
 }
 
 }  // namespace
@@ -171,13 +170,13 @@ OpticalLayout make_optical_layout(DesignPoint<double> const& b) {
           b.cone_diameter() / 2};
 }
 
-void write_layout_figure(std::string const& path, DesignPoint<double> const& bench) {
+Figure make_layout_figure(DesignPoint<double> const& bench) {
   OpticalLayout const l = make_optical_layout(bench);
-  write_layout(path, l,
-               {fmt::format("Layout: f = {:.5g} mm, f/{:.4g}, M = {:.4g}", bench.focal_length / mm, bench.f_number,
-                            bench.magnification()),
-                fmt::format("sees {:.4g} mm", 2 * l.dots_half / mm),
-                fmt::format("medium: view {:.4g} mm, cone {:.3g} mm", 2 * l.medium_half / mm, 2 * l.cone_radius / mm)});
+  return make_layout(
+      l, {fmt::format("Layout: f = {:.5g} mm, f/{:.4g}, M = {:.4g}", bench.focal_length / mm, bench.f_number,
+                      bench.magnification()),
+          fmt::format("sees {:.4g} mm", 2 * l.dots_half / mm),
+          fmt::format("medium: view {:.4g} mm, cone {:.3g} mm", 2 * l.medium_half / mm, 2 * l.cone_radius / mm)});
 }
 
 OpticalLayout make_camera_layout(Setup const& setup) {
@@ -196,16 +195,15 @@ OpticalLayout make_camera_layout(Setup const& setup) {
           .planes = setup.planes};
 }
 
-void write_camera_layout(std::string const& path, Setup const& setup) {
+Figure make_camera_layout_figure(Setup const& setup) {
   OpticalLayout const l = make_camera_layout(setup);
   if (!std::isfinite(l.sensor_z) || !std::isfinite(l.dots_half)) {
-    throw DataError(ErrorCode::unsupported, path,
+    throw DataError(ErrorCode::unsupported, "layout",
                     "cannot be drawn (the image distance or the view of the camera is infinite); omit --figure");
   }
-  write_layout(path, l,
-               {fmt::format("Layout along the camera's axis: f/{:.4g}, M = {:.4g}", setup.lens.f_number,
-                            setup.imaging().magnification),
-                fmt::format("sees {:.4g} mm", 2 * l.dots_half / mm), ""});
+  return make_layout(l, {fmt::format("Layout along the camera's axis: f/{:.4g}, M = {:.4g}", setup.lens.f_number,
+                                     setup.imaging().magnification),
+                         fmt::format("sees {:.4g} mm", 2 * l.dots_half / mm), ""});
 }
 
 OpticalLayout piv_layout(Setup const& setup) {
@@ -224,13 +222,12 @@ OpticalLayout piv_layout(Setup const& setup) {
           setup.piv->laser.height / 2};
 }
 
-void write_piv_layout(std::string const& path, Setup const& setup) {
+Figure make_piv_layout_figure(Setup const& setup) {
   OpticalLayout const l = piv_layout(setup);
   LaserSetup const& laser = setup.piv->laser;
-  write_layout(path, l,
-               {fmt::format("Layout: f/{:.4g}, M = {:.4g}, sheet {:.4g} mm thick", setup.lens.f_number,
-                            setup.imaging().magnification, laser.thickness / mm),
-                fmt::format("sees {:.4g} mm", 2 * l.dots_half / mm), ""});
+  return make_layout(l, {fmt::format("Layout: f/{:.4g}, M = {:.4g}, sheet {:.4g} mm thick", setup.lens.f_number,
+                                     setup.imaging().magnification, laser.thickness / mm),
+                         fmt::format("sees {:.4g} mm", 2 * l.dots_half / mm), ""});
 }
 
 }  // namespace gladstone

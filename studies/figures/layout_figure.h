@@ -5,6 +5,7 @@
 
 #include "render/scene/setup.h"
 #include "studies/design/design_point.h"
+#include "studies/figures/figure.h"
 
 namespace gladstone {
 
@@ -23,25 +24,24 @@ struct OpticalLayout {
 
 OpticalLayout make_optical_layout(DesignPoint<double> const& bench);
 
-/// Draws a set-up from the side: target, medium, lens, sensor, light cone of the dot on the axis, field of view and
+/// Set-up from the side: target, medium, lens, sensor, light cone of the dot on the axis, field of view and
 /// distances; above to scale, below with stretched heights.
-/// @throws GnuplotMissing, OutputError
-void write_layout_figure(std::string const& path, DesignPoint<double> const& bench);
+Figure make_layout_figure(DesignPoint<double> const& bench);
 
 /// Returns the paraxial geometry of any camera, with Z along its axis: from the medium's mid-plane (PIV, calibration:
 /// the point of the axis at the distance Z_A) towards the camera.
 OpticalLayout make_camera_layout(Setup const& setup);
 
-/// Draws make_camera_layout(), for cameras with a pose, prescription or other optical elements, and for calibrations.
-/// @throws DataError if the image distance or the view is infinite; GnuplotMissing, OutputError
-void write_camera_layout(std::string const& path, Setup const& setup);
+/// The layout of make_camera_layout(), for cameras with a pose, prescription or other optical elements, and for
+/// calibrations.
+/// @throws DataError if the image distance or the view is infinite
+Figure make_camera_layout_figure(Setup const& setup);
 
 /// Returns the geometry of a PIV setup, with the laser sheet in the plane Z = 0.
 /// @pre setup.piv
 OpticalLayout piv_layout(Setup const& setup);
 
-/// Draws the geometry of a PIV setup with the laser sheet and a particle on the axis.
-/// @throws GnuplotMissing, OutputError
-void write_piv_layout(std::string const& path, Setup const& setup);
+/// Geometry of a PIV setup with the laser sheet and a particle on the axis.
+Figure make_piv_layout_figure(Setup const& setup);
 
 }  // namespace gladstone

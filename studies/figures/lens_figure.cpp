@@ -8,16 +8,13 @@
 #include "render/base/not_a_number.h"
 #include "render/base/units.h"
 #include "render/optics/apparent_pupil.h"
-#include "studies/figures/gnuplot.h"
 
 namespace gladstone {
 namespace {
 
-constexpr int lens_figure_width = 1200, layout_height = 460, plots_height = 330, title_height = 40;
+using namespace figures;
 
-struct PlotPlace {
-  double left, right, top, bottom;  ///< [px] from the upper left
-};
+constexpr int lens_figure_width = 1200, layout_height = 460, plots_height = 330, title_height = 40;
 
 /// Polylines as two columns, separated by NaN.
 struct RayLines {
@@ -139,20 +136,23 @@ std::vector<std::vector<Vec3d>> drawn_rays(Lens const& lens, ParaxialLens const&
   return rays;
 }
 
-void draw_layout(GnuplotFigure& plot, Lens const& lens, ParaxialLens const& paraxial, FieldAnalysis const& field,
-                 PlotPlace const& panel) {
+/// Returns the side view of the lens with its rays, with equal scales in a box.
+Panel make_side_view(Lens const& lens, ParaxialLens const& paraxial, FieldAnalysis const& field, Box const& box) {
+  Panel panel{.box = box, .x = {"z [mm]"}, .y = {"y [mm]"}, .equal_scales = true};
+  auto const add = [&panel](RayLines const& lines, std::string const& colour, double width, Dash dash = Dash::solid) {
+    panel.layers.push_back({Layer::Kind::line, {lines.x, lines.y}, colour, "", width, dash});
+  };
   std::vector<std::vector<Vec3d>> rays;
-  std::vector<RayLines> by_field;
   double total = std::abs(lens.poses.back().origin.z + field.image_plane) + 1e-3;
   for (Pose<double> const& pose : lens.poses) total = std::max(total, std::abs(pose.origin.z));
-  for (FieldPoint const& point : field.points) {
+  for (std::size_t i = 0; i < field.points.size(); ++i) {
     RayLines lines;
-    for (auto const& ray : drawn_rays(lens, paraxial, field, point.angle, total)) {
+    for (auto const& ray : drawn_rays(lens, paraxial, field, field.points[i].angle, total)) {
       rays.push_back(ray);
       for (Vec3d const p : ray) lines.add(p);
       lines.end();
     }
-    by_field.push_back(lines);
+    add(lines, house_colour(i), 1);
   }
   LensDrawing const drawing = drawing_of(lens, drawn_heights(lens, rays));
   RayLines image;
@@ -161,79 +161,53 @@ void draw_layout(GnuplotFigure& plot, Lens const& lens, ParaxialLens const& para
   Pose<double> const plane = lens.poses.back().moved({0, 0, field.image_plane});
   image.add(plane.point_to_outer({0, -tallest, 0}));
   image.add(plane.point_to_outer({0, tallest, 0}));
-
-  plot.set_margins(panel.left, panel.right, panel.top, panel.bottom);
-  plot.command("set size ratio -1; set xrange [*:*]; set yrange [*:*]; set xlabel 'z [mm]'; set ylabel 'y [mm]'");
-  std::string command = "plot ";
-  for (std::size_t i = 0; i < by_field.size(); ++i) {
-    if (by_field[i].x.empty()) continue;
-    command += fmt::format("{} using 1:2 with lines linewidth 1 linecolor '{}', ",
-                           plot.add_table({by_field[i].x, by_field[i].y}), house_colour(i));
-  }
-  auto const add = [&](RayLines const& lines, char const* style) {
-    if (lines.x.empty()) return;
-    command += fmt::format("{} using 1:2 with lines {}, ", plot.add_table({lines.x, lines.y}), style);
-  };
-  add(drawing.glass, "linewidth 2 linecolor '#202020'");
-  add(drawing.mirrors, "linewidth 4 linecolor '#607890'");
-  add(drawing.planes, "linewidth 1 dashtype 2 linecolor '#909090'");
-  add(drawing.stop, "linewidth 4 linecolor '#202020'");
-  add(image, "linewidth 2 linecolor '#808080'");
-  command.resize(command.size() - 2);  // remove the last separator
-  plot.command(command);
-  plot.command("set size noratio");
+  add(drawing.glass, "#202020", 2);
+  add(drawing.mirrors, "#607890", 4);
+  add(drawing.planes, "#909090", 1, Dash::dashed);
+  add(drawing.stop, "#202020", 4);
+  add(image, "#808080", 2);
+  return panel;
 }
 
-void draw_spots(GnuplotFigure& plot, FieldAnalysis const& field, PlotPlace const& panel) {
+Panel make_spots(FieldAnalysis const& field, Box const& box) {
   double reach = 1e-9;
   for (FieldPoint const& point : field.points) {
     for (Vec2d const p : point.spot)
       reach = std::max({reach, std::abs(p.x - point.centroid.x), std::abs(p.y - point.centroid.y)});
   }
-  plot.set_margins(panel.left, panel.right, panel.top, panel.bottom);
   double const apart = 2.4 * reach * 1e6;
-  plot.command("set xlabel 'spot diagrams about their centroids [um]'; set ylabel ''");
-  plot.command(fmt::format("set size ratio -1; set xrange [{0:.6g}:{1:.6g}]; set yrange [-{2:.6g}:{2:.6g}]", -apart / 2,
-                           apart * (static_cast<double>(field.points.size()) - 0.5), apart / 2));
-  std::string command = "plot ";
+  Panel panel{.box = box, .equal_scales = true};
+  panel.x = {"spot diagrams about their centroids [µm]", -apart / 2,
+             apart * (static_cast<double>(field.points.size()) - 0.5)};
+  panel.y = {.low = -apart / 2, .high = apart / 2};
+  panel.legend = {LegendPlace::above, box.top - 18, true};
   for (std::size_t i = 0; i < field.points.size(); ++i) {
     FieldPoint const& point = field.points[i];
-    std::vector<double> x, y;
+    Layer layer{Layer::Kind::points, {{}, {}}, house_colour(i), fmt::format("{:.3g}°", point.angle / unit::degree)};
+    layer.marker = -1;
     for (Vec2d const p : point.spot) {
-      x.push_back((p.x - point.centroid.x) * 1e6 + apart * static_cast<double>(i));
-      y.push_back((p.y - point.centroid.y) * 1e6);
+      layer.columns[0].push_back((p.x - point.centroid.x) * 1e6 + apart * static_cast<double>(i));
+      layer.columns[1].push_back((p.y - point.centroid.y) * 1e6);
     }
-    if (x.empty()) x.push_back(not_a_number), y.push_back(not_a_number);
-    command +=
-        fmt::format("{}{} using 1:2 with dots linecolor '{}' title {}", i > 0 ? ", " : "", plot.add_table({x, y}),
-                    house_colour(i), GnuplotFigure::quoted(fmt::format("{:.3g} deg", point.angle / unit::degree)));
+    panel.layers.push_back(std::move(layer));
   }
-  plot.command("set key at graph 0.99, graph 1.02 right bottom horizontal samplen 1 font 'DejaVu Sans,9'");
-  plot.command(command);
-  plot.command("unset key; set size noratio");
+  return panel;
 }
 
-/// Draws quantities against the field angle, from the axis to the prescription's largest angle.
-void draw_curves(GnuplotFigure& plot, PlotPlace const& panel, std::string const& label, FieldAnalysis const& curves,
-                 std::vector<std::pair<std::string, double (*)(FieldPoint const&)>> const& values) {
-  plot.set_margins(panel.left, panel.right, panel.top, panel.bottom);
-  plot.command("set xlabel 'field angle [deg]'; set autoscale y; set autoscale x");
-  plot.command(fmt::format("set ylabel {} offset 1,0", GnuplotFigure::quoted(label)));
-  std::string command = "plot ";
+/// Returns quantities against the field angle, from the axis to the prescription's largest angle.
+Panel make_field_curves(Box const& box, std::string const& label, FieldAnalysis const& curves,
+                        std::vector<std::pair<std::string, double (*)(FieldPoint const&)>> const& values) {
+  Panel panel{.box = box, .x = {"field angle [°]"}, .y = {label}, .grid = Grid::both};
   for (std::size_t i = 0; i < values.size(); ++i) {
-    std::vector<double> x, y;
+    Layer curve{.columns = {{}, {}}, .colour = house_colour(i), .name = values.size() > 1 ? values[i].first : ""};
     for (FieldPoint const& point : curves.points) {
-      x.push_back(point.angle / unit::degree);
-      y.push_back(point.imaged ? values[i].second(point) : not_a_number);
+      curve.columns[0].push_back(point.angle / unit::degree);
+      curve.columns[1].push_back(point.imaged ? values[i].second(point) : not_a_number);
     }
-    command += fmt::format("{}{} using 1:2 with lines linewidth 2 linecolor '{}' title {}", i > 0 ? ", " : "",
-                           plot.add_table({x, y}), house_colour(i), GnuplotFigure::quoted(values[i].first));
+    panel.layers.push_back(std::move(curve));
   }
-  plot.command(values.size() > 1 ? "set key at graph 0.03, graph 0.03 left bottom Left reverse samplen 2"
-                                 : "unset key");
-  plot.command("set grid linecolor '#e4e4e4' linewidth 1 linetype 1");
-  plot.command(command);
-  plot.command("unset grid; unset key");
+  if (values.size() > 1) panel.legend.place = LegendPlace::bottom_left;
+  return panel;
 }
 
 /// Analyses the lens at many angles from the axis to its largest field angle, for curves.
@@ -249,41 +223,32 @@ FieldAnalysis between_fields(Lens const& lens, ParaxialLens const& paraxial) {
 
 }  // namespace
 
-void write_lens_figure(std::string const& path, Lens const& lens, ParaxialLens const& paraxial,
-                       FieldAnalysis const& field) {
+Figure make_lens_figure(Lens const& lens, ParaxialLens const& paraxial, FieldAnalysis const& field) {
   bool const off_axis =
       std::any_of(field.points.begin(), field.points.end(), [](auto const& p) { return p.angle != 0; });
-  GnuplotFigure plot(lens_figure_width, title_height + layout_height + plots_height);
-  plot.command("set multiplot");
+  Figure figure{lens_figure_width, title_height + layout_height + plots_height, Figure::Kind::drawing};
   std::string const focal =
       std::isfinite(paraxial.effective_focal_length)
           ? fmt::format("f = {:.5g} mm, {}", paraxial.effective_focal_length * 1e3,
                         paraxial.telecentric ? "telecentric" : fmt::format("f/{:.3g}", paraxial.f_number))
           : std::string(paraxial.telecentric ? "afocal, telecentric" : "afocal");
-  plot.command(fmt::format(
-      "set label 1 {} at screen 0.5, screen {:.6f} center font 'DejaVu Sans,14' textcolor '#101010'",
-      GnuplotFigure::quoted(fmt::format("{}{}{}, {:.5g} nm", lens.prescription.title,
-                                        lens.prescription.title.empty() ? "" : ": ", focal, lens.wavelength * 1e9)),
-      1.0 - 24.0 / plot.height_px()));
-  draw_layout(plot, lens, paraxial, field,
-              {70, lens_figure_width - 20.0, title_height + 10, title_height + layout_height - 55.0});
-  plot.command("unset label 1");
-  double const top = title_height + layout_height + 10, bottom = title_height + layout_height + plots_height - 55;
-  if (!off_axis) {
-    draw_spots(plot, field, {70, lens_figure_width - 20.0, top, bottom});
-  } else {
-    draw_spots(plot, field, {50, 400, top, bottom});
-    FieldAnalysis const curves = between_fields(lens, paraxial);
-    draw_curves(plot, {480, 650, top, bottom}, "distortion [%]", curves,
-                {{"distortion", [](FieldPoint const& p) { return 100 * p.distortion; }}});
-    draw_curves(plot, {740, 910, top, bottom}, "focus from the image plane [mm]", curves,
-                {{"tangential", [](FieldPoint const& p) { return p.tangential_focus * 1e3; }},
-                 {"sagittal", [](FieldPoint const& p) { return p.sagittal_focus * 1e3; }}});
-    draw_curves(plot, {1000, 1180, top, bottom}, "light that is not vignetted [%]", curves,
-                {{"light", [](FieldPoint const& p) { return 100 * (1 - p.vignetting); }}});
-  }
-  plot.command("unset multiplot");
-  plot.write(path);
+  std::string const& title = lens.prescription.title;
+  figure.add_title(fmt::format("{}{}{}, {:.5g} nm", title, title.empty() ? "" : ": ", focal, lens.wavelength * 1e9));
+  double const end = lens_figure_width - 20, top = title_height + layout_height + 10;
+  double const bottom = title_height + layout_height + plots_height - 55;
+  figure.panels.push_back(make_side_view(lens, paraxial, field, {70, end, title_height + 10, top - 65}));
+  figure.panels.push_back(make_spots(field, {off_axis ? 50.0 : 70.0, off_axis ? 360 : end, top, bottom}));
+  if (!off_axis) return figure;
+  FieldAnalysis const curves = between_fields(lens, paraxial);
+  figure.panels.push_back(make_field_curves({480, 640, top, bottom}, "distortion [%]", curves,
+                                            {{"", [](FieldPoint const& p) { return 100 * p.distortion; }}}));
+  figure.panels.push_back(
+      make_field_curves({740, 900, top, bottom}, "focus from the image plane [mm]", curves,
+                        {{"tangential", [](FieldPoint const& p) { return p.tangential_focus * 1e3; }},
+                         {"sagittal", [](FieldPoint const& p) { return p.sagittal_focus * 1e3; }}}));
+  figure.panels.push_back(make_field_curves({1010, 1180, top, bottom}, "light that is not vignetted [%]", curves,
+                                            {{"", [](FieldPoint const& p) { return 100 * (1 - p.vignetting); }}}));
+  return figure;
 }
 
 }  // namespace gladstone

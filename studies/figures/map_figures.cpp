@@ -32,8 +32,7 @@ ColourRange component_range(Image<double> const& component, Image<double> const&
 
 }  // namespace
 
-void write_displacement_maps(std::string const& path, std::string const& title, MapAxes const& axes,
-                             std::vector<NamedMaps> const& sources) {
+Figure make_displacement_maps(std::string const& title, MapAxes const& axes, std::vector<NamedMaps> const& sources) {
   GLADSTONE_EXPECTS(!sources.empty());
   MapFigure figure;
   figure.title = title;
@@ -61,10 +60,10 @@ void write_displacement_maps(std::string const& path, std::string const& title, 
     add_differences("u", &NamedMaps::u_px);
     add_differences("v", &NamedMaps::v_px);
   }
-  write_map_figure(path, figure);
+  return make_map_figure(figure);
 }
 
-void write_seed_figure4(std::string const& path, MapAxes const& axes, std::vector<SeedFigure4Instant> const& instants) {
+Figure make_seed_figure4(MapAxes const& axes, std::vector<SeedFigure4Instant> const& instants) {
   GLADSTONE_EXPECTS(!instants.empty());
   MapFigure figure;
   figure.axes = axes;
@@ -89,7 +88,7 @@ void write_seed_figure4(std::string const& path, MapAxes const& axes, std::vecto
     figure.row_headings.push_back(instant.heading + "  (one colour range for its six displacements)");
     figure.row_headings.emplace_back();
   }
-  write_map_figure(path, figure);
+  return make_map_figure(figure);
 }
 
 }  // namespace gladstone

@@ -15,11 +15,10 @@ struct NamedMaps {
   Image<double> v_px;
 };
 
-/// Draws one column per source with u above v, with the colour range of the first source (larger values are clipped),
+/// One column per source with u above v, with the colour range of the first source (larger values are clipped),
 /// then the differences from the first source, with one range per source.
 /// @param sources  maps of equal size; the first is the reference
-void write_displacement_maps(std::string const& path, std::string const& title, MapAxes const& axes,
-                             std::vector<NamedMaps> const& sources);
+Figure make_displacement_maps(std::string const& title, MapAxes const& axes, std::vector<NamedMaps> const& sources);
 
 /// One instant of Figure 4 of Rajendran et al. (2019); maps of equal size, row 0 at the top.
 struct SeedFigure4Instant {
@@ -31,9 +30,9 @@ struct SeedFigure4Instant {
   NamedMaps rays;                        ///< ray displacements interpolated onto the grid
 };
 
-/// Reproduces Figure 4 of Rajendran, Bane & Vlachos (2019): maps of density, density gradient, theoretical and ray
+/// Figure 4 of Rajendran, Bane & Vlachos (2019): maps of density, density gradient, theoretical and ray
 /// displacement, and additionally the aperture-averaged theory. Each instant has two rows; its displacements share one
 /// colour range, as do its gradients. The panel below the density shows the magnitude of the gradient.
-void write_seed_figure4(std::string const& path, MapAxes const& axes, std::vector<SeedFigure4Instant> const& instants);
+Figure make_seed_figure4(MapAxes const& axes, std::vector<SeedFigure4Instant> const& instants);
 
 }  // namespace gladstone

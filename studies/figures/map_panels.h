@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "render/base/image.h"
+#include "studies/figures/figure.h"
 
 namespace gladstone {
 
@@ -45,12 +46,9 @@ struct MapFigure {
   std::vector<std::string> row_headings = {};  ///< above each row of panels; empty: no heading
 };
 
-/// Draws the maps with equal scales on both axes into a PNG.
-/// @throws GnuplotMissing, OutputError
-void write_map_figure(std::string const& path, MapFigure const& figure);
-
-/// Returns the gnuplot command that sets the palette of sequential maps.
-char const* sequential_palette();
+/// Arranges the maps, with equal scales on both axes.
+/// @pre a panel has a map
+Figure make_map_figure(MapFigure const& maps);
 
 /// Limits of a panel's colour scale.
 struct ColourRange {

@@ -7,10 +7,11 @@
 
 #include "render/base/not_a_number.h"
 #include "render/base/units.h"
-#include "studies/figures/gnuplot.h"
 
 namespace gladstone {
 namespace {
+
+using namespace figures;
 
 /// Maximum number of decades; beyond it, ripples of the outer decades would be invisible.
 constexpr int most_decades = 7;
@@ -70,58 +71,45 @@ Polyline paper(Decades const& decades) {
   return lines;
 }
 
-void label(GnuplotFigure& plot, std::string const& text, double x, double y, std::string const& look) {
-  plot.command(fmt::format("set label {} at first {:.6g},{:.6g} {}", GnuplotFigure::quoted(text), x, y, look));
-}
-
 }  // namespace
 
-void write_mie_figure(std::string const& path, ScatteringDiagram const& diagram) {
+Figure make_mie_figure(ScatteringDiagram const& diagram) {
   Decades const decades(diagram);
   double const rim = decades.count();
-  constexpr int width = 760, height = 820;
-  GnuplotFigure plot(width, height);
-  plot.command("set style textbox opaque noborder margins 0.2,0.2");
-  plot.command("unset border; unset tics; unset xlabel; unset ylabel; set size ratio -1");
-  plot.command(
-      "set lmargin at screen 0.03; set rmargin at screen 0.97; set tmargin at screen 0.87; set bmargin at screen 0.05");
-  plot.command(fmt::format("set xrange [{0:.6g}:{1:.6g}]; set yrange [{0:.6g}:{1:.6g}]", -1.17 * rim, 1.17 * rim));
+  Figure figure{760, 820, Figure::Kind::drawing};
   MieEfficiencies const& q = diagram.efficiencies;
   std::string const index = diagram.m.imag() > 0 ? fmt::format("{:.6g} + {:.4g} i", diagram.m.real(), diagram.m.imag())
                                                  : fmt::format("{:.6g}", diagram.m.real());
-  plot.command(fmt::format("set label {} at screen 0.5,0.955 center font 'DejaVu Sans,14' textcolor '#101010'",
-                           GnuplotFigure::quoted(fmt::format("Sphere of x = {:.6g}, m = {}", diagram.x, index))));
-  plot.command(
-      fmt::format("set label {} at screen 0.5,0.92 center textcolor '#404040'",
-                  GnuplotFigure::quoted(fmt::format("Q_ext = {:.5g}, Q_sca = {:.5g}, Q_back = {:.5g}, g = {:.5g}",
-                                                    q.q_ext, q.q_sca, q.q_back, q.g))));
+  figure.add_title(fmt::format("Sphere of x = {:.6g}, m = {}", diagram.x, index));
+  figure.labels.push_back(
+      {fmt::format("Q_ext = {:.5g}, Q_sca = {:.5g}, Q_back = {:.5g}, g = {:.5g}", q.q_ext, q.q_sca, q.q_back, q.g),
+       figure.width_px / 2.0, 62, TextRole::subtitle});
+  Panel panel{.box = {23, 737, 76, 790}, .legend = {LegendPlace::below, 0, true}, .border = Border::none};
+  panel.x = panel.y = {.low = -1.17 * rim, .high = 1.17 * rim, .marks = Axis::Marks::none};
   for (int degrees = 0; degrees < 360; degrees += 30) {
     double const angle = degrees * unit::degree;
-    label(plot, fmt::format("{}°", degrees <= 180 ? degrees : 360 - degrees), 1.07 * rim * std::cos(angle),
-          1.07 * rim * std::sin(angle), "center font 'DejaVu Sans,10' textcolor '#606060'");
+    panel.labels.push_back({fmt::format("{}°", degrees <= 180 ? degrees : 360 - degrees), 1.07 * rim * std::cos(angle),
+                            1.07 * rim * std::sin(angle), TextRole::note});
   }
   // labels of the decades along a spoke, away from the curves
   for (int decade = 1; decade <= decades.count(); ++decade) {
     double const angle = 75 * unit::degree;
-    label(plot, fmt::format("1e{}", decades.inner + decade), decade * std::cos(angle), decade * std::sin(angle),
-          "center front boxed font 'DejaVu Sans,9' textcolor '#606060'");
+    panel.labels.push_back({fmt::format("1e{}", decades.inner + decade), decade * std::cos(angle),
+                            decade * std::sin(angle), TextRole::fine_note});
+    panel.labels.back().boxed = true;
   }
-  plot.command(fmt::format("set arrow from first {0:.6g},0 to first {1:.6g},0 front linewidth 2 linecolor '#202020'",
-                           -0.99 * rim, -0.8 * rim));
-  label(plot, "light", -0.9 * rim, 0.05 * rim, "center front textcolor '#202020'");
-
-  Polyline const grid = paper(decades);
-  Polyline const across = curve(decades, diagram.angle_deg, diagram.s1_squared, 1);
-  Polyline const within = curve(decades, diagram.angle_deg, diagram.s2_squared, -1);
-  plot.command("set key at screen 0.5,0.035 center horizontal Left reverse samplen 2 width -6");
-  plot.command(fmt::format(
-      "plot {} using 1:2 with lines linewidth 1 linecolor '#dcdcdc', {} using 1:2 with lines linewidth 2 linecolor "
-      "'{}' "
-      "title {}, {} using 1:2 with lines linewidth 2 linecolor '{}' title {}",
-      plot.add_table({grid.x, grid.y}), plot.add_table({across.x, across.y}), house_colour(0),
-      GnuplotFigure::quoted("|S1|² (above), field across the plane"), plot.add_table({within.x, within.y}),
-      house_colour(1), GnuplotFigure::quoted("|S2|² (below), field in the plane")));
-  plot.write(path);
+  panel.labels.push_back({"light", -0.9 * rim, 0.05 * rim});
+  auto const add = [&panel](Polyline line, std::string const& colour, double width, char const* name) {
+    panel.layers.push_back({Layer::Kind::line, {std::move(line.x), std::move(line.y)}, colour, name, width});
+  };
+  add(paper(decades), "#dcdcdc", 1, "");
+  add(curve(decades, diagram.angle_deg, diagram.s1_squared, 1), house_colour(0), 2,
+      "|S1|² (above), field across the plane");
+  add(curve(decades, diagram.angle_deg, diagram.s2_squared, -1), house_colour(1), 2,
+      "|S2|² (below), field in the plane");
+  panel.layers.push_back({Layer::Kind::arrows, {{-0.99 * rim}, {0}, {0.19 * rim}, {0}}, "#202020"});
+  figure.panels.push_back(std::move(panel));
+  return figure;
 }
 
 }  // namespace gladstone

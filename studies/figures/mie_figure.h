@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "render/light/mie.h"
+#include "studies/figures/figure.h"
 
 namespace gladstone {
 
@@ -18,10 +19,9 @@ struct ScatteringDiagram {
   std::vector<double> s2_squared;  ///< |S2|^2 [1]
 };
 
-/// Draws |S1|^2 and |S2|^2 in a polar diagram with logarithmic radius, one circle per decade. The upper half shows the
+/// |S1|^2 and |S2|^2 in a polar diagram with logarithmic radius, one circle per decade. The upper half shows the
 /// field perpendicular to the scattering plane, the lower half the field in the plane; light comes from the left.
 /// Values below the innermost decade are drawn at the centre.
-/// @throws GnuplotMissing, OutputError
-void write_mie_figure(std::string const& path, ScatteringDiagram const& diagram);
+Figure make_mie_figure(ScatteringDiagram const& diagram);
 
 }  // namespace gladstone

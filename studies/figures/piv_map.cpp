@@ -6,20 +6,14 @@
 #include <array>
 
 #include "studies/case/expected_particles.h"
-#include "studies/figures/gnuplot.h"
 
 namespace gladstone {
 namespace {
 
+using namespace figures;
+
 constexpr std::array<double, 10> piv_f_numbers{1.4, 2, 2.8, 4, 5.6, 8, 11, 16, 22, 32};
 constexpr double most_image_px = 4;  // F14
-
-std::string own_stop(double f_number) {
-  return fmt::format(
-      "set arrow 1 from first {0:.6g},graph 0 to first {0:.6g},graph 1 nohead dashtype 2 linewidth 2 "
-      "linecolor '{1}'",
-      f_number, house_colour(1));
-}
 
 }  // namespace
 
@@ -35,7 +29,7 @@ std::vector<PivStop> piv_stops(Setup setup) {
   return rows;
 }
 
-void write_piv_map(std::string const& path, Setup const& setup) {
+Figure make_piv_map(Setup const& setup) {
   std::vector<double> f_number, image, edge, low, median, high;
   for (PivStop const& row : piv_stops(setup)) {
     f_number.push_back(row.f_number);
@@ -45,44 +39,44 @@ void write_piv_map(std::string const& path, Setup const& setup) {
     median.push_back(row.peak_electrons[1]);
     high.push_back(row.peak_electrons[2]);
   }
-  GnuplotFigure plot(900, 760);
-  std::string tics;
-  for (double const stop : piv_f_numbers) tics += fmt::format("{}'f/{:g}' {:g}", tics.empty() ? "" : ", ", stop, stop);
-  plot.command("set multiplot layout 2,1");
-  plot.command(fmt::format("set logscale xy; set xrange [{:g}:{:g}]; set xtics ({})", piv_f_numbers.front() / 1.05,
-                           piv_f_numbers.back() * 1.05, tics));
-  plot.command("set grid linecolor '#e4e4e4'; set key right bottom Left reverse samplen 2; set lmargin 12");
-  plot.command(own_stop(setup.lens.f_number));
-  plot.command("set title 'Particle images against the f-number' font 'DejaVu Sans,14'");
-  plot.command("set ylabel 'e⁻² diameter of an image [px]'; set ytics (0.5, 1, 2, 3, 4, 5, 7, 10, 15, 20, 30, 50)");
-  double const most = *std::max_element(edge.begin(), edge.end());
-  plot.command(fmt::format("set yrange [{:.6g}:{:.6g}]",
-                           std::min(1.0, 0.9 * *std::min_element(image.begin(), image.end())),
-                           std::max(5.0, 1.2 * most)));
-  plot.command(
-      fmt::format("set object 1 rectangle from graph 0,first {:g} to graph 1,first {:g} fillcolor '#d8ecd8' "
-                  "fillstyle solid noborder behind",
-                  min_image_px, most_image_px));
-  auto const line = [&](std::vector<double> const& y, std::string const& look, std::string const& title) {
-    return fmt::format("{} using 1:2 with linespoints pointtype 7 {} title {}", plot.add_table({f_number, y}), look,
-                       GnuplotFigure::quoted(title));
+  Panel images{.box = {92, 876, 72, 372}, .grid = Grid::both};
+  images.x = {.low = piv_f_numbers.front() / 1.05, .high = piv_f_numbers.back() * 1.05, .logarithmic = true};
+  for (double const stop : piv_f_numbers) images.x.ticks.push_back({stop, fmt::format("f/{:g}", stop)});
+  std::vector<double> const across{images.x.low, images.x.high};
+  Layer const own_stop{Layer::Kind::guides, {{setup.lens.f_number}}, house_colour(1), "", 2, Dash::dashed};
+  auto const curve = [&](std::vector<double> const& y, std::size_t colour, char const* name) {
+    return Layer{.columns = {f_number, y}, .colour = house_colour(colour), .name = name, .marker = 1};
   };
-  std::string const first = fmt::format("linewidth 2 linecolor '{}'", house_colour(0));
-  plot.command("plot " + line(image, first, "in the middle of the sheet (2 to 4 px are suitable for correlation)") +
-               ", " + line(edge, fmt::format("linewidth 2 dashtype 3 linecolor '{}'", house_colour(2)), "at its edge"));
-  plot.command("unset title; unset object 1; set autoscale y; set ytics autofreq; set format y '%.0f'");
-  plot.command("set key left bottom Left reverse samplen 2");
-  plot.command(fmt::format("set xlabel 'f-number; the setup has f/{:g}'; set ylabel 'electrons at the peak'",
-                           setup.lens.f_number));
+  Panel peaks = images;
+
+  images.y = {"e⁻² diameter of an image [px]", std::min(1.0, 0.9 * *std::min_element(image.begin(), image.end())),
+              std::max(5.0, 1.2 * *std::max_element(edge.begin(), edge.end())), true};
+  for (double const at : {0.5, 1., 2., 3., 4., 5., 7., 10., 15., 20., 30., 50.})
+    images.y.ticks.push_back({at, fmt::format("{:g}", at)});
+  images.legend = {LegendPlace::above, 46, true};
+  Layer const suitable{Layer::Kind::band,
+                       {across, {min_image_px, min_image_px}, {most_image_px, most_image_px}},
+                       "#d8ecd8",
+                       "suitable for correlation, 2 to 4 px"};
+  images.layers = {suitable, curve(image, 0, "in the middle of the sheet"), curve(edge, 2, "at its edge"), own_stop};
+  images.layers[2].dash = Dash::dotted;
+
   double const well = setup.camera.noise.full_well_e;
-  plot.command(
-      fmt::format("plot {} using 1:2:3 with filledcurves fillcolor '{}' fillstyle transparent solid 0.2 title {}, {}, "
-                  "{:.6g} with lines linewidth 2 linecolor '{}' title {}",
-                  plot.add_table({f_number, low, high}), house_colour(0),
-                  GnuplotFigure::quoted("90 % of the particles"), line(median, first, "the median particle"), well,
-                  house_colour(3), GnuplotFigure::quoted(fmt::format("full well, {:.6g}", well))));
-  plot.command("unset multiplot");
-  plot.write(path);
+  peaks.box = {92, 876, 412, 708};
+  peaks.x.label = fmt::format("f-number; the setup has f/{:g}", setup.lens.f_number);
+  peaks.y = {.label = "electrons at the peak", .logarithmic = true};
+  peaks.legend.place = LegendPlace::bottom_left;
+  Layer const most_particles{Layer::Kind::band, {f_number, low, high}, house_colour(0), "90 % of the particles"};
+  peaks.layers = {
+      most_particles,
+      curve(median, 0, "the median particle"),
+      {.columns = {across, {well, well}}, .colour = house_colour(3), .name = fmt::format("full well, {:.6g}", well)},
+      own_stop};
+  peaks.layers.front().opacity = 0.2;
+  Figure figure{900, 760};
+  figure.add_title("Particle images against the f-number");
+  figure.panels = {std::move(images), std::move(peaks)};
+  return figure;
 }
 
 }  // namespace gladstone

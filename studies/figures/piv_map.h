@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "render/scene/setup.h"
+#include "studies/figures/figure.h"
 
 namespace gladstone {
 
@@ -20,9 +21,8 @@ struct PivStop {
 /// @throws DataError as expected_particles()
 std::vector<PivStop> piv_stops(Setup setup);
 
-/// Draws these quantities against the f-number, with the image diameters suitable for correlation, the full well and
+/// These quantities against the f-number, with the image diameters suitable for correlation, the full well and
 /// the setup's f-number.
-/// @throws GnuplotMissing, OutputError
-void write_piv_map(std::string const& path, Setup const& setup);
+Figure make_piv_map(Setup const& setup);
 
 }  // namespace gladstone

@@ -19,7 +19,7 @@ Image<double> make_map(SequenceMoments const& moments, std::vector<Vec2d> const&
 
 }  // namespace
 
-void write_sequence_figure(std::string const& path, SequenceMoments const& moments) {
+Figure make_sequence_figure(SequenceMoments const& moments) {
   GLADSTONE_EXPECTS(moments.columns > 0 && moments.rows > 0);
   auto const columns = static_cast<std::size_t>(moments.columns);
   auto const step = [&](std::size_t next, double Vec2d::*axis) {
@@ -36,7 +36,7 @@ void write_sequence_figure(std::string const& path, SequenceMoments const& momen
                              make_map(moments, moments.rms_px, component), ColourScale::magnitude,
                              "standard deviation"});
   }
-  write_map_figure(path, figure);
+  return make_map_figure(figure);
 }
 
 }  // namespace gladstone

@@ -23,7 +23,7 @@ bool is_valid(std::optional<stereo::StereoVector> const& node) { return node && 
 
 }  // namespace
 
-void write_stereo_figure(std::string const& path, StereoMeasurement const& measurement) {
+Figure make_stereo_figure(StereoMeasurement const& measurement) {
   constexpr char const* names[] = {"u", "v", "w"};
   stereo::StereoField const& field = measurement.field;
   stereo::NodeGrid const& grid = field.grid;
@@ -60,7 +60,7 @@ void write_stereo_figure(std::string const& path, StereoMeasurement const& measu
                                          }),
                            ColourScale::magnitude});
   figure.columns = 3;
-  write_map_figure(path, figure);
+  return make_map_figure(figure);
 }
 
 }  // namespace gladstone

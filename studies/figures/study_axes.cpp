@@ -115,19 +115,4 @@ Scatter compute_scatter(std::vector<double> values, bool only_repeats_differ) {
   return {std::sqrt(squares / static_cast<double>(values.size())), *low, *high};
 }
 
-std::string logarithmic_tics(double low, double high) {
-  GLADSTONE_EXPECTS(low > 0 && high > low);
-  bool const fine = std::log10(high / low) < 3.0;
-  std::string tics;
-  for (double power = std::pow(10.0, std::floor(std::log10(low))); power <= high; power *= 10) {
-    for (double const factor : {1.0, 2.0, 5.0}) {
-      if (factor > 1 && !fine) continue;
-      double const tic = factor * power;
-      if (tic < low * (1 - 1e-9) || tic > high * (1 + 1e-9)) continue;
-      tics += fmt::format("{}'{:.3g}' {:.6g}", tics.empty() ? "" : ", ", tic, tic);
-    }
-  }
-  return '(' + tics + ')';
-}
-
 }  // namespace gladstone

@@ -40,8 +40,4 @@ struct Scatter {
 /// noise, median and the 10 and 90 % quantiles. Non-finite values are ignored; NaN if none remain.
 Scatter compute_scatter(std::vector<double> values, bool only_repeats_differ);
 
-/// Returns gnuplot tics at 1, 2 and 5 times powers of ten, or at powers of ten only if there are many.
-/// @pre 0 < low < high
-std::string logarithmic_tics(double low, double high);
-
 }  // namespace gladstone

@@ -4,11 +4,13 @@
 #include <cmath>
 #include <limits>
 
+#include "render/base/not_a_number.h"
 #include "studies/figures/study_drawings.h"
 
 namespace gladstone {
 namespace {
 
+using namespace figures;
 using namespace study_drawing;
 
 /// A term of the budget with its rms at every position of the axis.
@@ -47,21 +49,20 @@ class BudgetFigure {
     select_shown();
   }
 
-  /// @return null if no term has a value
-  std::unique_ptr<GnuplotFigure> draw() {
-    if (!(high_ > 0)) return nullptr;
+  /// @return nullopt if no term has a value
+  std::optional<Figure> make() const {
+    if (!(high_ > 0)) return std::nullopt;
     auto const count = static_cast<double>(panels_.size());
     double const gap = count > 1 ? 46.0 : 0.0, top = 88.0 + (count > 1 ? 24.0 : 0.0);
     int const below = room_below(axis_, width_) + 44;
-    auto figure = std::make_unique<GnuplotFigure>(static_cast<int>(width_) + 124,
-                                                  static_cast<int>(top + count * height + (count - 1) * gap) + below);
-    GnuplotFigure& plot = *figure;
-    set_texts(plot, "Error budget over " + axis_.title, caption());
-    plot.command("set multiplot");
-    plot.command("set grid ytics linecolor '#e4e4e4' linewidth 1 linetype 1");
-    plot.command("set style fill solid 1.0 noborder");
-    for (std::size_t p = 0; p < panels_.size(); ++p) draw_panel(plot, p, top + static_cast<double>(p) * (height + gap));
-    plot.command("unset multiplot");
+    Figure figure{static_cast<int>(width_) + 124, static_cast<int>(top + count * height + (count - 1) * gap) + below};
+    add_texts(figure, "Error budget over " + axis_.title, caption());
+    for (std::size_t p = 0; p < panels_.size(); ++p) {
+      double const from = top + static_cast<double>(p) * (height + gap);
+      if (!choices_[p].name.empty())
+        figure.labels.push_back({choices_[p].name, 94, from - 14, TextRole::heading, Align::left});
+      figure.panels.push_back(make_panel(p, from));
+    }
     return figure;
   }
 
@@ -131,43 +132,30 @@ class BudgetFigure {
   }
 
   /// @param from  upper end of the panel [px]
-  void draw_panel(GnuplotFigure& plot, std::size_t p, double from) const {
-    FigureAxis rows_of_bars = axis_;
-    rows_of_bars.numeric = false;
-    for (std::size_t i = 0; i < axis_.size(); ++i) rows_of_bars.position[i] = static_cast<double>(i);
-    plot.set_margins(94, 94 + width_, from, from + height);
-    set_x_axis(plot, rows_of_bars, width_);
-    if (p + 1 < panels_.size()) plot.command("unset xlabel; unset xtics");
-    set_y_axis(plot, "rms per component [px]", low_, high_);
-    if (!choices_[p].name.empty()) {
-      plot.command(fmt::format("set label 4 {} at graph 0, screen {:.6f} left font 'DejaVu Sans Bold,11'",
-                               GnuplotFigure::quoted(choices_[p].name), 1.0 - (from - 14.0) / plot.height_px()));
-    }
-    plot.command(p == 0 ? fmt::format("set key at graph 0, screen {:.6f} left top Left reverse horizontal samplen 1 "
-                                      "width 1 maxrows 1 font 'DejaVu Sans,10'",
-                                      1.0 - 46.0 / plot.height_px())
-                        : std::string("unset key"));
-    plot.command(bars_of(plot, panels_[p]));
-    plot.command("unset label 1; unset label 2; unset label 3");
-  }
-
-  /// Adds the bars of a panel to the data. @return the command that plots them
-  std::string bars_of(GnuplotFigure& plot, std::vector<Term> const& terms) const {
+  Panel make_panel(std::size_t p, double from) const {
+    FigureAxis categories = axis_;
+    categories.numeric = false;
+    for (std::size_t i = 0; i < axis_.size(); ++i) categories.position[i] = static_cast<double>(i);
+    Panel panel{.box = {94, 94 + width_, from, from + height}, .grid = Grid::horizontal};
+    panel.x = make_x_axis(categories, width_);
+    if (p + 1 < panels_.size()) panel.x = {.low = panel.x.low, .high = panel.x.high, .marks = Axis::Marks::none};
+    panel.y = make_y_axis("rms per component [px]", low_, high_);
+    if (p == 0) panel.legend = {LegendPlace::above, 46, true};
     double const bars = static_cast<double>(shown_.size());
     double const bar = 0.84 / bars;  // the bars at a position occupy 0.84 of the distance to the next
-    std::string commands;
     for (std::size_t k = 0; k < shown_.size(); ++k) {
-      Term const& term = terms[shown_[k]];
-      std::vector<double> x, rms = term.rms;
+      Term const& term = panels_[p][shown_[k]];
+      Layer layer{Layer::Kind::bars,
+                  {{}, term.rms, std::vector<double>(axis_.size(), 0.9 * bar)},
+                  term.colour,
+                  spaced(term.name)};
       for (std::size_t i = 0; i < axis_.size(); ++i) {
-        x.push_back(static_cast<double>(i) + bar * (static_cast<double>(k) - 0.5 * (bars - 1)));
-        if (!(rms[i] > smallest_share * high_)) rms[i] = std::numeric_limits<double>::quiet_NaN();
+        layer.columns[0].push_back(static_cast<double>(i) + bar * (static_cast<double>(k) - 0.5 * (bars - 1)));
+        if (!(term.rms[i] > smallest_share * high_)) layer.columns[1][i] = not_a_number;
       }
-      commands +=
-          fmt::format("{}{} using 1:2:({:.6f}) with boxes linecolor '{}' title {}", k > 0 ? ", " : "plot ",
-                      plot.add_table({x, rms}), 0.9 * bar, term.colour, GnuplotFigure::quoted(spaced(term.name)));
+      panel.layers.push_back(std::move(layer));
     }
-    return commands;
+    return panel;
   }
 
   /// Returns the name of a term with blanks instead of underscores.
@@ -193,8 +181,8 @@ class BudgetFigure {
 
 }  // namespace
 
-std::unique_ptr<GnuplotFigure> draw_budget(StudyCells const& cells, std::size_t axis_index, StudyCells const* points) {
-  return BudgetFigure(cells, axis_index, points).draw();
+std::optional<Figure> make_budget(StudyCells const& cells, std::size_t axis_index, StudyCells const* points) {
+  return BudgetFigure(cells, axis_index, points).make();
 }
 
 }  // namespace gladstone

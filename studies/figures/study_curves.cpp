@@ -9,6 +9,7 @@
 namespace gladstone {
 namespace {
 
+using namespace figures;
 using namespace study_drawing;
 
 /// One curve of a panel.
@@ -19,7 +20,7 @@ struct Curve {
   std::vector<Scatter> points;  ///< one per position of the axis
 };
 
-struct Panel {
+struct CurvePanel {
   std::string heading;
   std::vector<Curve> curves;
 };
@@ -61,88 +62,82 @@ struct CurveMaker {
   }
 };
 
-void plot_panel(GnuplotFigure& plot, FigureAxis const& axis, Panel const& panel) {
-  std::string commands;
-  auto const add = [&](std::string const& command) { commands += (commands.empty() ? "plot " : ", ") + command; };
-  std::size_t solid = 0, seen = 0;
-  for (Curve const& curve : panel.curves) solid += curve.dashed ? 0 : 1;
+/// Returns the layers of a panel and its legend. For categories, the points of different curves are shifted sideways
+/// instead of being connected.
+std::vector<Layer> make_curve_layers(FigureAxis const& axis, CurvePanel const& panel) {
+  auto const solid =
+      std::count_if(panel.curves.begin(), panel.curves.end(), [](Curve const& one) { return !one.dashed; });
+  std::vector<Layer> layers;
+  double seen = 0;
   for (Curve const& curve : panel.curves) {
-    std::vector<std::vector<double>> columns(4);
-    // For categories, shift the points of different curves sideways instead of connecting them.
-    double const shift = axis.numeric ? 0.0 : 0.09 * (static_cast<double>(seen) - 0.5 * static_cast<double>(solid - 1));
+    double const shift = axis.numeric || curve.dashed ? 0.0 : 0.09 * (seen - 0.5 * static_cast<double>(solid - 1));
+    std::vector<double> x, centre, low, high;
     for (std::size_t i = 0; i < axis.size(); ++i) {
-      columns[0].push_back(axis.position[i] + (curve.dashed && !axis.numeric ? 0.0 : shift));
-      columns[1].push_back(curve.points[i].centre);
-      columns[2].push_back(curve.points[i].low);
-      columns[3].push_back(curve.points[i].high);
+      x.push_back(axis.position[i] + shift);
+      centre.push_back(curve.points[i].centre);
+      low.push_back(curve.points[i].low);
+      high.push_back(curve.points[i].high);
     }
-    std::string const source = plot.add_table(columns);
-    std::string const title =
-        curve.name.empty() ? std::string("notitle") : "title " + GnuplotFigure::quoted(curve.name);
-    if (curve.dashed && axis.numeric) {
-      add(fmt::format("{} using 1:2 with lines linewidth 1.5 dashtype 2 linecolor '{}' {}", source, curve.colour,
-                      title));
-    } else if (curve.dashed) {
-      add(fmt::format("{} using 1:2:(0.4) with xerrorbars pointtype 0 linewidth 1.5 dashtype 2 linecolor '{}' {}",
-                      source, curve.colour, title));
+    Layer layer{.columns = {x, centre}, .colour = curve.colour};
+    if (curve.dashed) {
+      layer.width = 1.5;
+      layer.dash = Dash::dashed;
+      if (!axis.numeric) {
+        layer.kind = Layer::Kind::levels;
+        layer.columns.push_back(std::vector<double>(x.size(), 0.4));
+      }
     } else {
-      if (axis.numeric) add(fmt::format("{} using 1:2 with lines linewidth 2 linecolor '{}'", source, curve.colour));
-      add(fmt::format("{} using 1:2:3:4 with yerrorbars linewidth 1.6 pointtype 7 pointsize 0.8 linecolor '{}' {}",
-                      source, curve.colour, title));
+      if (axis.numeric) layers.push_back(layer);
+      layer = {Layer::Kind::errors, {x, centre, low, high}, curve.colour, "", 1.6};
+      layer.marker = 1;
+      layer.size = 0.8;
       ++seen;
     }
+    layer.name = curve.name;
+    layers.push_back(std::move(layer));
   }
-  plot.command(commands);
+  return layers;
 }
 
 /// Arranges panels side by side with a common title and error scale.
-std::unique_ptr<GnuplotFigure> lay_out(FigureAxis const& axis, std::vector<Panel> const& panels, double low,
-                                       double high, std::string const& title, std::string const& caption) {
+Figure lay_out(FigureAxis const& axis, std::vector<CurvePanel> const& panels, double low, double high,
+               std::string const& title, std::string const& caption) {
   int const count = static_cast<int>(panels.size());
   double const width = count == 1 ? 660.0 : 500.0;
-  std::size_t named = 0;
-  for (Panel const& panel : panels) {
-    auto const with_name = [](Curve const& curve) { return !curve.name.empty(); };
-    named =
-        std::max(named, static_cast<std::size_t>(std::count_if(panel.curves.begin(), panel.curves.end(), with_name)));
+  std::ptrdiff_t named = 0;
+  for (CurvePanel const& panel : panels) {
+    named = std::max(named, std::count_if(panel.curves.begin(), panel.curves.end(),
+                                          [](Curve const& curve) { return !curve.name.empty(); }));
   }
-  int const legend = 20 * static_cast<int>(named) + 8;
-  int const below = room_below(axis, width) + 44;
+  int const legend = 20 * static_cast<int>(named) + 8, below = room_below(axis, width) + 44;
   int const top = 44 + (count > 1 ? 28 : 0) + legend;
-  auto figure = std::make_unique<GnuplotFigure>(static_cast<int>(count * (width + 96.0)) + 20, top + 360 + below);
-  GnuplotFigure& plot = *figure;
-  set_texts(plot, title, caption);
-  plot.command("set multiplot");
-  plot.command("set grid linecolor '#e4e4e4' linewidth 1 linetype 1");
+  Figure figure{static_cast<int>(count * (width + 96.0)) + 20, top + 360 + below};
+  add_texts(figure, title, caption);
   for (int i = 0; i < count; ++i) {
+    CurvePanel const& from = panels[static_cast<std::size_t>(i)];
     double const left = 92.0 + i * (width + 96.0);
-    plot.set_margins(left, left + width, top, plot.height_px() - below);
-    set_x_axis(plot, axis, width);
-    set_y_axis(plot, "rms per component [px]", low, high);
-    if (count > 1) {
-      plot.command(fmt::format("set label 4 {} at graph 0, screen {:.6f} left font 'DejaVu Sans Bold,11'",
-                               GnuplotFigure::quoted(panels[static_cast<std::size_t>(i)].heading),
-                               1.0 - 58.0 / plot.height_px()));
-    }
-    plot.command(fmt::format("set key at graph 0, screen {:.6f} left top Left reverse samplen 2 font 'DejaVu Sans,10'",
-                             1.0 - (top - legend - 2.0) / plot.height_px()));
-    plot_panel(plot, axis, panels[static_cast<std::size_t>(i)]);
-    plot.command("unset label 1; unset label 2; unset label 3");
+    Panel panel{.box = {left, left + width, static_cast<double>(top), static_cast<double>(top + 360)}};
+    panel.x = make_x_axis(axis, width);
+    panel.y = make_y_axis("rms per component [px]", low, high);
+    panel.layers = make_curve_layers(axis, from);
+    panel.grid = Grid::both;
+    panel.legend = {LegendPlace::above, top - legend - 2.0};
+    if (count > 1) figure.labels.push_back({from.heading, left, 58, TextRole::heading, Align::left});
+    figure.panels.push_back(std::move(panel));
   }
-  plot.command("unset multiplot");
   return figure;
 }
 
 }  // namespace
 
-std::unique_ptr<GnuplotFigure> draw_error_curves(StudyCells const& cells, std::size_t axis_index) {
+std::optional<Figure> make_error_curves(StudyCells const& cells, std::size_t axis_index) {
   FigureAxis const& axis = cells.axis(axis_index);
   std::vector<CurveChoice> const choices = curves_over(cells, axis_index, 7);
   CurveMaker make{cells, axis_index};
-  std::vector<Panel> panels;
+  std::vector<CurvePanel> panels;
   std::string dashes;
   if (choices.size() == 1) {
-    Panel panel{choices.front().name, {}};
+    CurvePanel panel{choices.front().name, {}};
     std::size_t colour = 0;
     for (Reference const& reference : references) {
       panel.curves.push_back(make(reference.name, house_colour(colour++), choices.front(), reference.measure));
@@ -151,7 +146,7 @@ std::unique_ptr<GnuplotFigure> draw_error_curves(StudyCells const& cells, std::s
     panels.push_back(std::move(panel));
   } else {
     for (Reference const& reference : {references[0], references[1]}) {
-      Panel panel{reference.name, {}};
+      CurvePanel panel{reference.name, {}};
       for (std::size_t i = 0; i < choices.size(); ++i) {
         panel.curves.push_back(make(choices[i].name, house_colour(i), choices[i], reference.measure));
       }
@@ -162,18 +157,18 @@ std::unique_ptr<GnuplotFigure> draw_error_curves(StudyCells const& cells, std::s
     }
     dashes = "; dashed: signal (rms of the ray truth)";
   }
-  if (!(make.high > 0)) return nullptr;
+  if (!(make.high > 0)) return std::nullopt;
   return lay_out(axis, panels, make.low, make.high, "Error against " + axis.title,
                  fmt::format("{}\n{}{}", study_name(cells), meaning(make.only_repeats_differ, make.repeats), dashes));
 }
 
-std::unique_ptr<GnuplotFigure> draw_repeats(StudyCells const& points, std::size_t axis_index) {
+std::optional<Figure> make_repeats(StudyCells const& points, std::size_t axis_index) {
   FigureAxis const& axis = points.axis(axis_index);
   std::vector<CurveChoice> const choices = curves_over(points, axis_index, 7);
   CurveMaker make{points, axis_index};
-  std::vector<Panel> panels;
+  std::vector<CurvePanel> panels;
   for (auto const& [error, name] : {std::pair{"ray_truth", references[0].name}, std::pair{"eq9", references[1].name}}) {
-    Panel panel{name, {}};
+    CurvePanel panel{name, {}};
     for (std::size_t i = 0; i < choices.size(); ++i) {
       std::string const curve = choices.size() > 1 ? choices[i].name : "the same in every repeat";
       panel.curves.push_back(make(curve, house_colour(i), choices[i], fmt::format("{}.systematic_px", error).c_str()));
@@ -185,7 +180,7 @@ std::unique_ptr<GnuplotFigure> draw_repeats(StudyCells const& points, std::size_
     }
     panels.push_back(std::move(panel));
   }
-  if (!(make.high > 0)) return nullptr;
+  if (!(make.high > 0)) return std::nullopt;
   return lay_out(
       axis, panels, make.low, make.high, "Error over the repeats, against " + axis.title,
       fmt::format("study {}, {} points{}\nsolid: the same in every repeat; dashed: standard deviation between "

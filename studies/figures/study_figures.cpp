@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "render/base/parallel.h"
+#include "studies/figures/draw_figure.h"
+#include "studies/figures/figure_texts.h"
 #include "studies/figures/study_drawings.h"
 #include "studies/sweep/study_points.h"
 
@@ -13,85 +15,88 @@ namespace gladstone {
 namespace study_drawing {
 namespace {
 
-constexpr double letter_px = 7.6;
+using namespace figures;
 
-/// Returns true if the tic labels do not fit side by side.
-bool crowded(FigureAxis const& axis, double width_px) {
-  std::size_t longest = 0;
-  for (std::string const& label : axis.label) longest = std::max(longest, label.size());
-  return letter_px * static_cast<double>(longest + 2) > width_px / static_cast<double>(axis.size());
+constexpr double between = 12;  ///< least distance of tick texts [px]
+constexpr double slant = 0.47;  ///< sine of the angle of slanted texts
+
+double tick_width(std::string const& text) { return text_width(text, font_of(Figure::Kind::chart, "tick")); }
+
+double longest_tick(FigureAxis const& axis) {
+  double longest = 0;
+  for (std::string const& label : axis.label) longest = std::max(longest, tick_width(label));
+  return longest;
 }
 
-/// Returns true if tics at every position would overlap.
+/// Returns true if the texts of categories do not fit side by side.
+bool crowded(FigureAxis const& axis, double width_px) {
+  return longest_tick(axis) + between > width_px / static_cast<double>(axis.size());
+}
+
+/// Returns true if ticks at every number would overlap.
 bool dense(FigureAxis const& axis, double width_px) {
   auto const at = [&](std::size_t i) { return axis.logarithmic ? std::log(axis.position[i]) : axis.position[i]; };
   double const span = at(axis.size() - 1) - at(0);
   for (std::size_t i = 1; i < axis.size(); ++i) {
     double const gap = 0.9 * width_px * (at(i) - at(i - 1)) / span;
-    if (gap < 0.5 * letter_px * static_cast<double>(axis.label[i].size() + axis.label[i - 1].size() + 1)) return true;
+    if (gap < 0.5 * (tick_width(axis.label[i]) + tick_width(axis.label[i - 1])) + between) return true;
   }
   return axis.binned;
 }
 
+/// Returns true if the texts of the ticks are slanted; numbers without names rather have automatic ticks.
+bool slanted(FigureAxis const& axis, double width_px) {
+  return axis.numeric ? axis.labelled && dense(axis, width_px) : crowded(axis, width_px);
+}
+
 }  // namespace
 
-void set_texts(GnuplotFigure& plot, std::string const& title, std::string const& caption) {
-  plot.command(
-      fmt::format("set label 1 {} at screen 0.5, screen {:.6f} center font 'DejaVu Sans,14' textcolor '#101010'",
-                  GnuplotFigure::quoted(title), 1.0 - 26.0 / plot.height_px()));
+void add_texts(Figure& figure, std::string const& title, std::string const& caption) {
+  figure.add_title(title);
   auto const line = caption.find('\n');
-  for (int i = 0; i < 2; ++i) {
-    if (i == 1 && line == std::string::npos) break;
-    std::string const text = i == 0 ? caption.substr(0, line) : caption.substr(line + 1);
-    plot.command(fmt::format(
-        "set label {} {} at screen 0.5, screen {:.6f} center font 'DejaVu Sans,9' textcolor '#505050'", i + 2,
-        GnuplotFigure::quoted(text), (line == std::string::npos ? 14.0 : 28.0 - 16.0 * i) / plot.height_px()));
+  double const middle = figure.width_px / 2.0, bottom = figure.height_px;
+  if (line != std::string::npos) {
+    figure.labels.push_back({caption.substr(0, line), middle, bottom - 28, TextRole::caption});
+    figure.labels.push_back({caption.substr(line + 1), middle, bottom - 12, TextRole::caption});
+  } else {
+    figure.labels.push_back({caption, middle, bottom - 14, TextRole::caption});
   }
 }
 
 int room_below(FigureAxis const& axis, double width_px) {
-  if (axis.numeric ? !axis.labelled || !dense(axis, width_px) : !crowded(axis, width_px)) return 56;
-  std::size_t longest = 0;
-  for (std::string const& label : axis.label) longest = std::max(longest, label.size());
-  return 60 + static_cast<int>(0.5 * letter_px * static_cast<double>(longest));
+  return slanted(axis, width_px) ? 60 + static_cast<int>(slant * longest_tick(axis)) : 56;
 }
 
-void set_x_axis(GnuplotFigure& plot, FigureAxis const& axis, double width_px) {
-  plot.command("unset logscale x; set xtics nomirror out scale 0.5 norotate autofreq font 'DejaVu Sans,10' offset 0,0");
-  plot.command(fmt::format("set xlabel {}", GnuplotFigure::quoted(axis.title)));
+std::vector<Tick> label_ticks(FigureAxis const& axis, std::vector<double> const& position) {
+  std::vector<Tick> ticks;
+  for (std::size_t i = 0; i < axis.size(); ++i) ticks.push_back({position[i], axis.label[i]});
+  return ticks;
+}
+
+Axis make_x_axis(FigureAxis const& axis, double width_px) {
+  Axis made{.label = axis.title, .ticks = label_ticks(axis, axis.position), .slanted = slanted(axis, width_px)};
   double const first = axis.position.front(), last = axis.position.back();
-  if (axis.numeric && axis.logarithmic) {
-    double const margin = std::pow(last / first, 0.06);
-    plot.command(fmt::format("set logscale x; set xrange [{:.10g}:{:.10g}]", first / margin, last * margin));
-    if (dense(axis, width_px) && !axis.labelled) {
-      plot.command("set xtics " + logarithmic_tics(first / margin, last * margin));
-      return;
-    }
-  } else if (axis.numeric) {
-    double const margin = 0.06 * (last - first);
-    plot.command(fmt::format("set xrange [{:.10g}:{:.10g}]", first - margin, last + margin));
-    if (dense(axis, width_px) && !axis.labelled) return;
-  } else {
-    plot.command(fmt::format("set xrange [-0.5:{:.1f}]", last + 0.5));
+  if (!axis.numeric) {
+    made.low = -0.5;
+    made.high = last + 0.5;
+    return made;
   }
-  if (axis.numeric ? dense(axis, width_px) : crowded(axis, width_px)) plot.command("set xtics rotate by 28 right");
-  std::string tics;
-  for (std::size_t i = 0; i < axis.size(); ++i) {
-    tics += fmt::format("{}{} {:.10g}", i > 0 ? ", " : "", GnuplotFigure::quoted_tic(axis.label[i]), axis.position[i]);
+  made.logarithmic = axis.logarithmic;
+  double const margin = axis.logarithmic ? std::pow(last / first, 0.06) : 0.06 * (last - first);
+  made.low = axis.logarithmic ? first / margin : first - margin;
+  made.high = axis.logarithmic ? last * margin : last + margin;
+  if (!axis.labelled && dense(axis, width_px)) {
+    made.ticks = axis.logarithmic ? logarithmic_ticks(made.low, made.high) : std::vector<Tick>{};
   }
-  plot.command("set xtics (" + tics + ')');
+  return made;
 }
 
-void set_y_axis(GnuplotFigure& plot, std::string const& title, double low, double high) {
-  plot.command("unset logscale y; set ytics autofreq font 'DejaVu Sans,10'");
-  plot.command(fmt::format("set ylabel {}", GnuplotFigure::quoted(title)));
+Axis make_y_axis(std::string const& title, double low, double high) {
   if (low > 0 && high > 4 * low) {
     double const margin = std::pow(high / low, 0.06);
-    plot.command(fmt::format("set logscale y; set yrange [{:.10g}:{:.10g}]", low / margin, high * margin));
-    plot.command("set ytics " + logarithmic_tics(low / margin, high * margin));
-  } else {
-    plot.command(fmt::format("set yrange [0:{:.10g}]", high > 0 ? 1.12 * high : 1.0));
+    return {title, low / margin, high * margin, true, logarithmic_ticks(low / margin, high * margin)};
   }
+  return {title, 0, high > 0 ? 1.12 * high : 1.0};
 }
 
 std::string study_name(StudyCells const& cells) {
@@ -123,28 +128,26 @@ std::vector<std::string> draw_study(std::string const& folder, StudyTable const&
   bool const repeated = table.repeats() > 1;
   StudyTable const point_table = repeated ? study_points(table) : StudyTable{};
   StudyCells const points(point_table);
-  std::vector<std::unique_ptr<GnuplotFigure>> figures;
+  std::vector<Figure> figures;
   std::vector<std::string> paths;  // one per figure and format
-  auto const add = [&](std::unique_ptr<GnuplotFigure> figure, std::string const& name) {
+  auto const add = [&](std::optional<Figure> figure, std::string const& name) {
     if (!figure) return;
-    figures.push_back(std::move(figure));
+    figures.push_back(*std::move(figure));
     for (std::string const& format : formats) paths.push_back(fmt::format("{}/{}.{}", folder, name, format));
   };
   std::vector<std::size_t> const& varied = cells.varied();
   for (std::size_t i = 0; i < varied.size(); ++i) {
     std::string const name = file_part(cells.key(varied[i]));
-    add(draw_error_curves(cells, varied[i]), "error_against_" + name);
-    add(draw_budget(cells, varied[i], repeated ? &points : nullptr), "budget_" + name);
-    if (repeated) add(draw_repeats(points, varied[i]), "repeats_" + name);
+    add(make_error_curves(cells, varied[i]), "error_against_" + name);
+    add(make_budget(cells, varied[i], repeated ? &points : nullptr), "budget_" + name);
+    if (repeated) add(make_repeats(points, varied[i]), "repeats_" + name);
     for (std::size_t j = i + 1; j < varied.size(); ++j) {
-      add(draw_error_map(map_cells, varied[j], varied[i]),
+      add(make_error_map(map_cells, varied[j], varied[i]),
           fmt::format("error_map_{}_{}", name, file_part(cells.key(varied[j]))));
     }
   }
-  // gnuplot dominates the run time: run one process per figure, in parallel
-  parallel_for(figures.size(), [&](std::size_t i) {
-    for (std::size_t k = 0; k < formats.size(); ++k) figures[i]->write(paths[i * formats.size() + k]);
-  });
+  // gnuplot dominates the run time: run one process per file, in parallel
+  parallel_for(paths.size(), [&](std::size_t i) { draw_figure(figures[i / formats.size()], paths[i]); });
   return paths;
 }
 

@@ -7,7 +7,7 @@
 
 namespace gladstone {
 
-void write_tomography_figure(std::string const& path, Tomography const& result) {
+Figure make_tomography_figure(Tomography const& result) {
   RegularGrid const& grid = result.grid;
   int const columns = grid.nodes[0], rows = grid.nodes[2], middle = grid.nodes[1] / 2;
   auto const extract = [&](std::vector<double> const& values) {
@@ -36,7 +36,7 @@ void write_tomography_figure(std::string const& path, Tomography const& result) 
     figure.panels.push_back({"reconstructed ρ [kg/m³]", density, ColourScale::sequential});
   }
   figure.columns = static_cast<int>(figure.panels.size());
-  write_map_figure(path, figure);
+  return make_map_figure(figure);
 }
 
 }  // namespace gladstone

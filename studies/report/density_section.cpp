@@ -8,6 +8,7 @@
 #include "render/base/not_a_number.h"
 #include "studies/compare/density_file.h"
 #include "studies/figures/density_figure.h"
+#include "studies/figures/draw_figure.h"
 #include "studies/report/drawn_block.h"
 
 namespace gladstone {
@@ -67,10 +68,9 @@ ReportSection density_section(ReportPage& page, Reconstruction const& reconstruc
   page.data["density"] = summary;
   std::string const words = summarize_density(reconstruction);
   ReportSection section{"Density", {Paragraph{words}}};
-  section.blocks.push_back(drawn_block("Maps of the density", words,
-                                       [&](std::string const& path) { write_density_figure(path, reconstruction); }));
+  section.blocks.push_back(drawn_block("Maps of the density", words, make_density_figure(reconstruction)));
   section.blocks.push_back(drawn_block("Profile of the density", describe_density_profile(reconstruction),
-                                       [&](std::string const& path) { write_density_profile(path, reconstruction); }));
+                                       make_density_profile(reconstruction)));
   section.blocks.emplace_back(numbers_table(summary));
   if (!reconstruction.budget.empty()) section.blocks.emplace_back(density_budget_table(reconstruction.budget));
   if (!reconstruction.warnings.empty()) section.blocks.emplace_back(TextList{reconstruction.warnings});
@@ -88,8 +88,8 @@ ReportSection missing_density_section(std::string const& command) {
 std::vector<std::string> draw_density_figures(std::string const& folder, std::string const& format,
                                               Reconstruction const& reconstruction) {
   std::vector<std::string> const drawn{folder + "/density." + format, folder + "/density_profile." + format};
-  write_density_figure(drawn.front(), reconstruction);
-  write_density_profile(drawn.back(), reconstruction);
+  draw_figure(make_density_figure(reconstruction), drawn.front());
+  draw_figure(make_density_profile(reconstruction), drawn.back());
   return drawn;
 }
 

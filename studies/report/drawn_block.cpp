@@ -3,16 +3,15 @@
 #include <utility>
 
 #include "render/files/text_file.h"
-#include "studies/figures/gnuplot.h"
+#include "studies/figures/draw_figure.h"
 #include "studies/figures/temporary_directory.h"
 
 namespace gladstone {
 
-ReportBlock drawn_block(std::string title, std::string words,
-                        std::function<void(std::string const& path)> const& write) {
+ReportBlock drawn_block(std::string title, std::string words, Figure const& figure) {
   TemporaryDirectory const folder;
   std::string const path = folder.path() + "/figure.png";
-  if (!draw_or_warn([&] { write(path); })) return Paragraph{title + ". " + words};
+  if (!draw_or_warn([&] { draw_figure(figure, path); })) return Paragraph{title + ". " + words};
   return Picture{std::move(title), std::move(words), read_text_file(path)};
 }
 

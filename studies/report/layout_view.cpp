@@ -7,6 +7,7 @@
 #include "studies/case/expected_particles.h"
 #include "studies/design/sheet.h"
 #include "studies/figures/design_map.h"
+#include "studies/figures/draw_figure.h"
 #include "studies/figures/layout_figure.h"
 #include "studies/figures/piv_map.h"
 #include "studies/report/drawn_block.h"
@@ -62,16 +63,14 @@ std::string map_text(DesignPoint<double> const& b) {
       b.sensitivity(), resolved_wavelength(b) / mm);
 }
 
-void write_map(std::string const& path, LayoutView const& view) {
-  if (view.piv) return write_piv_map(path, *view.piv);
-  write_design_map(path, view.bench, nullptr);
+Figure make_map(LayoutView const& view) {
+  return view.piv ? make_piv_map(*view.piv) : make_design_map(view.bench, nullptr);
 }
 
 }  // namespace
 
-void write_layout_view(std::string const& path, LayoutView const& view) {
-  if (view.piv) return write_piv_layout(path, *view.piv);
-  write_layout_figure(path, view.bench);
+Figure make_layout_figure(LayoutView const& view) {
+  return view.piv ? make_piv_layout_figure(*view.piv) : make_layout_figure(view.bench);
 }
 
 std::optional<LayoutView> layout_view(CaseSetup loaded) {
@@ -88,21 +87,20 @@ std::string layout_text(LayoutView const& view) {
 }
 
 ReportBlock layout_block(LayoutView const& view, std::string const& whose) {
-  return drawn_block("Layout of " + whose, layout_text(view),
-                     [&view](std::string const& path) { write_layout_view(path, view); });
+  return drawn_block("Layout of " + whose, layout_text(view), make_layout_figure(view));
 }
 
 ReportSection layout_section(LayoutView const& view, std::string const& whose) {
-  ReportBlock map = drawn_block("Design map of " + whose, view.piv ? text_of_stop(*view.piv) : map_text(view.bench),
-                                [&view](std::string const& path) { write_map(path, view); });
+  ReportBlock map =
+      drawn_block("Design map of " + whose, view.piv ? text_of_stop(*view.piv) : map_text(view.bench), make_map(view));
   return {"Set-up", {layout_block(view, whose), std::move(map)}};
 }
 
 std::vector<std::string> draw_layout_and_map(std::string const& folder, std::string const& format,
                                              LayoutView const& view) {
   std::vector<std::string> const drawn{folder + "/layout." + format, folder + "/design_map." + format};
-  write_layout_view(drawn.front(), view);
-  write_map(drawn.back(), view);
+  draw_figure(make_layout_figure(view), drawn.front());
+  draw_figure(make_map(view), drawn.back());
   return drawn;
 }
 

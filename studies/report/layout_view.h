@@ -8,6 +8,7 @@
 #include "render/scene/setup.h"
 #include "studies/case/case.h"
 #include "studies/design/design_point.h"
+#include "studies/figures/figure.h"
 #include "studies/report/report_page.h"
 
 namespace gladstone {
@@ -24,8 +25,8 @@ struct LayoutView {
 /// sheet outside the plane Z = 0. The medium's field is not read.
 std::optional<LayoutView> layout_view(CaseSetup loaded);
 
-/// Draws the layout into a file. @throws GnuplotMissing, OutputError
-void write_layout_view(std::string const& path, LayoutView const& view);
+/// Returns the layout.
+Figure make_layout_figure(LayoutView const& view);
 
 /// Describes the contents of the layout in numbers.
 std::string layout_text(LayoutView const& view);

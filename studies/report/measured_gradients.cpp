@@ -3,6 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "studies/figures/draw_figure.h"
 #include "studies/figures/map_panels.h"
 #include "studies/report/case_view.h"
 
@@ -94,7 +95,7 @@ std::string draw_measured_maps(std::string const& path, DisplacementField const&
   add("∂ρ/∂y [kg/m⁴]", all.gradient, &Vec2d::y, ColourScale::diverging, "gradient");
   add("u_c of ∂ρ/∂x [kg/m⁴]", all.combined, &Vec2d::x, ColourScale::magnitude, "uncertainty");
   add("u_c of ∂ρ/∂y [kg/m⁴]", all.combined, &Vec2d::y, ColourScale::magnitude, "uncertainty");
-  write_map_figure(path, figure);
+  draw_figure(make_map_figure(figure), path);
   return path;
 }
 

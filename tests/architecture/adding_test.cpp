@@ -201,5 +201,18 @@ INSTANTIATE_TEST_SUITE_P(Rows, Adding, testing::Range(std::size_t{0}, rows().siz
                            return name;
                          });
 
+// A figure is data; what it looks like is said once, by the writer and its templates.
+TEST(Figures, AreDataWithoutCommandsOfGnuplot) {
+  std::set<std::string> const writer{"studies/figures/draw_figure.cpp", "studies/figures/gnuplot.cpp"};
+  std::regex const command("linecolor|linewidth [0-9{]|pointtype|\"set [a-z]+ |with (lines|points|boxes)");
+  std::size_t found = 0;
+  for (auto const& [path, text] : sources()) {
+    bool const is_command = std::regex_search(text, command);
+    if (writer.count(path) > 0) found += is_command ? 1 : 0;
+    if (writer.count(path) == 0) EXPECT_FALSE(is_command) << path << " writes commands of gnuplot";
+  }
+  EXPECT_GE(found, 1U) << "the expression no longer finds commands";
+}
+
 }  // namespace
 }  // namespace gladstone::architecture

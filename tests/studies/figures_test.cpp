@@ -13,6 +13,7 @@
 #include "render/files/image_file.h"
 #include "studies/figures/agreement_figure.h"
 #include "studies/figures/density_figure.h"
+#include "studies/figures/draw_figure.h"
 #include "studies/figures/error_figures.h"
 #include "studies/figures/gnuplot.h"
 #include "studies/figures/map_figures.h"
@@ -78,7 +79,7 @@ TEST_F(Figures, MapsHaveRowZeroAtTheTop) {
     figure.columns = 1;
     figure.axes = axes;
     figure.panels = {half_dark()};
-    write_map_figure(path("map.png"), figure);
+    draw_figure(make_map_figure(figure), path("map.png"));
     DarkPixels const dark = dark_pixels(path("map.png"));
     EXPECT_GT(dark.upper, 49000);
     EXPECT_LT(dark.lower, 8000);
@@ -90,7 +91,7 @@ TEST_F(Figures, ConstantAndMissingMapsAreDrawn) {
   double const nan = std::numeric_limits<double>::quiet_NaN();
   NamedMaps const constant{"truth", Image<double>(8, 4, 0.0), Image<double>(8, 4, 2.0)};
   NamedMaps const missing{"measurement", Image<double>(8, 4, nan), Image<double>(8, 4, nan)};
-  write_displacement_maps(path("maps.png"), "title", {}, {constant, missing});
+  draw_figure(make_displacement_maps("title", {}, {constant, missing}), path("maps.png"));
   Image<double> const picture = read_image(path("maps.png"));
   EXPECT_GT(picture.columns(), 700);
 }
@@ -99,8 +100,8 @@ TEST_F(Figures, SeedFigure4HasFiveColumnsAndTwoRowsAnInstant) {
   Image<double> map(16, 16, 1.0);
   map(3, 3) = -1.0;
   SeedFigure4Instant const instant{"t = 1", map, map, map, {"Eq. 9", map, map}, {"cone", map, map}, {"rays", map, map}};
-  write_seed_figure4(path("one.png"), {}, {instant});
-  write_seed_figure4(path("two.png"), {}, {instant, instant});
+  draw_figure(make_seed_figure4({}, {instant}), path("one.png"));
+  draw_figure(make_seed_figure4({}, {instant, instant}), path("two.png"));
   Image<double> const one = read_image(path("one.png"));
   Image<double> const two = read_image(path("two.png"));
   EXPECT_EQ(one.columns(), two.columns());
@@ -111,7 +112,8 @@ TEST_F(Figures, SeedFigure4HasFiveColumnsAndTwoRowsAnInstant) {
 TEST_F(Figures, AgreementHasAPanelForCorrelationAndOneForTheRatio) {
   AgreementSeries series{"t = 1", {{0.5, 256, {0.5, 0.4}, {0.01, 0.02}}, {2, 64, {0.95, 0.8}, {0.01, 0.02}}}, {}};
   for (double const size : agreement_sizes()) series.prediction.push_back({size, {size / 10, size / 12}});
-  write_agreement_figure(path("agreement.png"), {series, series}, std::vector<double>(agreement_sizes().size(), 0.5));
+  draw_figure(make_agreement_figure({series, series}, std::vector<double>(agreement_sizes().size(), 0.5)),
+              path("agreement.png"));
   EXPECT_GT(read_image(path("agreement.png")).columns(), 1000);
   EXPECT_DOUBLE_EQ(agreement_sizes().front(), 0.2);
   EXPECT_NEAR(agreement_sizes().back(), 10, 1e-12);
@@ -128,10 +130,10 @@ TEST_F(Figures, ErrorFiguresAreDrawnAlsoOfNothing) {
   }
   ErrorSeries const nothing{"against nothing",
                             std::vector<Vec2d>(400, Vec2d{std::numeric_limits<double>::quiet_NaN(), 0.0})};
-  write_error_histograms(path("histogram.png"), "errors", {series, nothing});
-  write_error_against_gradient(path("gradient.png"), "errors", truth, {series, nothing});
+  draw_figure(make_error_histograms("errors", {series, nothing}), path("histogram.png"));
+  draw_figure(make_error_against_gradient("errors", truth, {series, nothing}), path("gradient.png"));
   std::vector<BudgetStage> const stages{{"eq9", std::vector<Vec2d>(400)}, {"measured", series.error_px}};
-  write_budget_bars(path("budget.png"), "budget", error_budget(stages, VectorMask(400, 1)));
+  draw_figure(make_budget_bars("budget", error_budget(stages, VectorMask(400, 1))), path("budget.png"));
   for (char const* name : {"histogram.png", "gradient.png", "budget.png"}) {
     EXPECT_GT(read_image(path(name)).columns(), 700) << name;
   }
@@ -142,9 +144,7 @@ TEST_F(Figures, AbsentGnuplotIsNamedWithItsPackage) {
   std::string const before = ::getenv("PATH") != nullptr ? ::getenv("PATH") : "";
   ::setenv("PATH", path("").c_str(), 1);
   try {
-    GnuplotFigure figure(100, 100);
-    figure.command("plot x");
-    figure.write(path("x.png"));
+    draw_figure({.width_px = 100, .height_px = 100, .panels = {{.box = {10, 90, 10, 90}}}}, path("x.png"));
     ADD_FAILURE() << "no error";
   } catch (GnuplotMissing const& error) {
     EXPECT_THAT(error.what(), HasSubstr("gnuplot-nox"));
@@ -155,10 +155,10 @@ TEST_F(Figures, AbsentGnuplotIsNamedWithItsPackage) {
 
 TEST_F(Figures, FailureLeavesTheOldPicture) {
   std::ofstream(path("x.png")) << "old";
-  GnuplotFigure figure(100, 100);
-  figure.command("plot nonsense(");
+  GnuplotScript script;
+  script.command("plot nonsense(");
   try {
-    figure.write(path("x.png"));
+    script.write(path("x.png"), 100, 100, "'DejaVu Sans,11'");
     ADD_FAILURE() << "no error";
   } catch (OutputError const& error) {
     EXPECT_THAT(error.what(), HasSubstr("x.png"));
@@ -172,9 +172,7 @@ TEST_F(Figures, FailureLeavesTheOldPicture) {
 
 TEST_F(Figures, AFolderThatCannotBeIsAnOutputError) {
   std::ofstream(path("file")) << "no folder";
-  GnuplotFigure figure(100, 100);
-  figure.command("plot x");
-  EXPECT_THROW(figure.write(path("file/x.png")), OutputError);
+  EXPECT_THROW(draw_figure({.width_px = 100, .height_px = 100}, path("file/x.png")), OutputError);
 }
 
 // d = A x with A = [[3, 0], [4, 5]] / 1000: A^T A = [[25, 20], [20, 25]] / 1e6 has eigenvalues 45e-6 and 5e-6.
@@ -204,11 +202,11 @@ TEST_F(Figures, OfADensityProfileNameItsLargestDeviation) {
   EXPECT_EQ(describe_density_profile(ramp),
             "Density with its standard uncertainty at y = -1 mm, through the largest deviation from the reference of "
             "1.2 kg/m^3: 1.6 +- 0.01 kg/m^3 at x = 2 mm.");
-  write_density_profile(path("profile.png"), ramp);
+  draw_figure(make_density_profile(ramp), path("profile.png"));
   EXPECT_TRUE(std::filesystem::exists(path("profile.png")));
   ramp.sigma.assign(15, std::numeric_limits<double>::quiet_NaN());
   ramp.density.assign(15, std::numeric_limits<double>::quiet_NaN());
-  write_density_profile(path("empty.png"), ramp);
+  draw_figure(make_density_profile(ramp), path("empty.png"));
 }
 
 }  // namespace

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "render/base/error.h"
+#include "studies/figures/figure.h"
+
+namespace gladstone {
+
+/// Thrown if the program gnuplot is not installed. Only figures are affected.
+class GnuplotMissing : public Error {
+ public:
+  GnuplotMissing()
+      : Error(ErrorCode::output,
+              "figures are not drawn: program gnuplot not found (Debian package gnuplot-nox); the numbers are written "
+              "nevertheless") {}
+};
+
+/// Calls a function that draws figures; without gnuplot, warns that they are not drawn.
+/// @return false without gnuplot
+bool draw_or_warn(std::function<void()> const& draw);
+
+/// Draws a figure with gnuplot and the templates, as SVG or PDF if the path ends accordingly, else as PNG; the file is
+/// written atomically.
+/// @throws GnuplotMissing if gnuplot is not installed
+/// @throws OutputError if the figure cannot be created or written
+void draw_figure(Figure const& figure, std::string const& path);
+
+}  // namespace gladstone

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "studies/figures/figure.h"
+
+namespace gladstone {
+
+/// Font of a role in the template of a figure.
+struct FigureFont {
+  std::string family;
+  double size;  ///< [pt], 96/72 px each
+};
+
+/// Name of a role in the templates.
+std::string_view to_string(figures::TextRole role);
+
+/// Reads the font NAME_font of a template.
+FigureFont font_of(Figure::Kind kind, std::string_view name);
+
+/// Returns the width of a UTF-8 text of one line in DejaVu Sans [px].
+double text_width(std::string_view text, FigureFont const& font);
+
+/// Text with its place on the page.
+struct PlacedText {
+  figures::Label label;  ///< at x, y [px]; the shifts are applied
+  FigureFont font;
+  figures::Box box;
+};
+
+/// Places texts of the page: those that are longer than the page is wide are made smaller, others moved into it.
+std::vector<PlacedText> place_texts(Figure const& figure);
+
+/// Places the labels of a panel: they are moved into the page, and upwards or downwards until they overlap no other.
+/// Numbers in cells stay.
+/// @return empty if a range of an axis is automatic
+std::vector<PlacedText> place_labels(Figure const& figure, figures::Panel const& panel);
+
+inline constexpr double legend_gap = 14;  ///< from a panel to a legend beside it [px]
+
+/// Returns the width of the legend to the right of a panel, with the gap [px].
+double legend_width(figures::Panel const& panel, Figure::Kind kind);
+
+}  // namespace gladstone
