@@ -61,25 +61,9 @@ template <class Row>
 }
 
 /// Selects a where the mask is set, b elsewhere.
-inline FloatLanes select_lanes(IntLanes mask, FloatLanes a, FloatLanes b) {
-  return reinterpret_cast<FloatLanes>((mask & reinterpret_cast<IntLanes>(a)) | (~mask & reinterpret_cast<IntLanes>(b)));
-}
-
-inline FloatLanes larger_lanes(FloatLanes a, FloatLanes b) {
-#if defined(__AVX__)
-  return __builtin_ia32_maxps256(a, b);
-#else
-  return select_lanes(a > b, a, b);
-#endif
-}
-
-inline FloatLanes smaller_lanes(FloatLanes a, FloatLanes b) {
-#if defined(__AVX__)
-  return __builtin_ia32_minps256(a, b);
-#else
-  return select_lanes(a < b, a, b);
-#endif
-}
+inline FloatLanes select_lanes(IntLanes mask, FloatLanes a, FloatLanes b) { return mask ? a : b; }
+inline FloatLanes larger_lanes(FloatLanes a, FloatLanes b) { return a > b ? a : b; }
+inline FloatLanes smaller_lanes(FloatLanes a, FloatLanes b) { return a < b ? a : b; }
 
 /// Returns an integer whose bit l is set if lane l of the mask is set.
 inline unsigned bits_of_lanes(IntLanes mask) {

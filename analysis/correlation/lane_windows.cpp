@@ -202,7 +202,7 @@ FloatLanes LaneWindows::scale(int size) {
   FloatLanes result{};
   for (int lane = 0; lane < lane_count; ++lane) {
     if (outcome_[lane] != WindowCorrelation::Outcome::measured) continue;
-    WindowEnergy<float> const energy{reference_[lane], flow_[lane], core_reference_[lane], core_flow_[lane]};
+    WindowEnergy const energy{reference_[lane], flow_[lane], core_reference_[lane], core_flow_[lane]};
     result[lane] = static_cast<float>(plane_scale(energy, job_.pair.contrast, job_.grid.window_px, size));
     if (result[lane] == 0.0f) outcome_[lane] = WindowCorrelation::Outcome::no_signal;
   }

@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "analysis/correlation/axis_weights.h"
-#include "analysis/correlation/fourier_plan.h"
+#include "analysis/correlation/fourier_transform.h"
 #include "analysis/correlation/peak_search.h"
 #include "analysis/correlation/standard_correlator.h"
-#include "analysis/correlation/window_deformation.h"
+#include "analysis/correlation/window_pixels.h"
 
 namespace gladstone {
 namespace {
@@ -27,39 +27,28 @@ InterrogationGrid sampling_grid(int columns, int rows, int window_px) {
 class Autocorrelation {
  public:
   explicit Autocorrelation(int size)
-      : size_(size), plan_(make_fourier_plan(size)), values_(count()), spectrum_(count()) {}
+      : size_(size), values_(static_cast<std::size_t>(size) * size), spectrum_(values_.size()) {}
 
   /// Returns the plane of a window of the reference; overwritten by the next call.
   PlaneView<double> of(ImagePair const& pair, AxisWeightsView const& x, int column, AxisWeightsView const& y, int row) {
     double weights = 0.0, sum = 0.0;
-    auto const for_each_pixel = [&](auto const& visit) {
-      for (int j = 0; j < size_; ++j)
-        for (int i = 0; i < size_; ++i) {
-          int const at_x = x.first(column) + i, at_y = y.first(row) + j;
-          bool const inside = at_x >= 0 && at_x < pair.columns && at_y >= 0 && at_y < pair.rows;
-          std::size_t const at = inside ? static_cast<std::size_t>(at_y) * pair.columns + at_x : 0;
-          bool const known = inside && (pair.available.empty() || pair.available[at] > 0.0f);
-          float const weight = known ? x.weight(column)[i] * y.weight(row)[j] : 0.0f;
-          visit(static_cast<std::size_t>(j) * size_ + i, weight, pair.reference[at]);
-        }
-    };
-    for_each_pixel([&](std::size_t, float weight, float value) {
+    visit_window_pixels(pair, x, column, y, row, [&](int, int, float weight, std::size_t at) {
       weights += weight;
-      sum += static_cast<double>(weight) * value;
+      sum += static_cast<double>(weight) * pair.reference[at];
     });
     float const mean = weights > 0.0 ? static_cast<float>(sum / weights) : 0.0f;
-    for_each_pixel([&](std::size_t k, float weight, float value) { values_[k] = weight * (value - mean); });
-    plan_->forward(values_.data(), spectrum_.data());
+    std::fill(values_.begin(), values_.end(), 0.0);
+    visit_window_pixels(pair, x, column, y, row, [&](int i, int j, float weight, std::size_t at) {
+      values_[static_cast<std::size_t>(j) * size_ + i] = weight * (pair.reference[at] - mean);
+    });
+    fourier_transform(values_, spectrum_, size_, FourierDirection::forward);
     for (std::complex<double>& value : spectrum_) value = std::norm(value);
-    plan_->inverse(spectrum_.data(), values_.data());
+    fourier_transform(spectrum_, values_, size_, FourierDirection::inverse);
     return {reinterpret_cast<double const*>(values_.data()), size_, 2};
   }
 
  private:
-  std::size_t count() const { return static_cast<std::size_t>(size_) * size_; }
-
   int size_;
-  std::unique_ptr<FourierPlan> plan_;
   std::vector<std::complex<double>> values_, spectrum_;
 };
 

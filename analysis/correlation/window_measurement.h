@@ -35,7 +35,7 @@ constexpr double min_valid_weight_fraction = 0.5 - 1e-5;
 /// Returns the factor that converts a plane of unnormalised transforms of size^2 values to correlation coefficients; 0
 /// if the nominal window has no signal in one of the images.
 /// @param contrast  grey-level range of the image pair, in the units of the energies
-GLADSTONE_HD inline double plane_scale(WindowEnergy<float> const& energy, float contrast, int window_px, int size) {
+GLADSTONE_HD inline double plane_scale(WindowEnergy const& energy, float contrast, int window_px, int size) {
   using std::sqrt;
   double const least = smallest_contrast * contrast;
   double const faint = least * least * window_px * window_px;

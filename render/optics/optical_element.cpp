@@ -42,6 +42,19 @@ void append_element(std::string const& word, SetupTable& table, std::vector<Opti
   (read(static_cast<Kinds const*>(nullptr)), ...);
 }
 
+/// Returns a property of an element; the fallback if its kind does not have the property.
+template <class T, class Get>
+T property_or(OpticalElement::Held const& element, T const& fallback, Get const& get) {
+  return std::visit(
+      [&](auto const& held) -> T {
+        if constexpr (requires { get(held); })
+          return get(held);
+        else
+          return fallback;
+      },
+      element);
+}
+
 }  // namespace
 
 std::vector<ElementTable> element_tables(SetupTable root, SetupTable camera) {
@@ -71,84 +84,43 @@ ElementSide OpticalElement::side() const {
 }
 
 Pose<double> OpticalElement::pose() const {
-  return std::visit(
-      [](auto const& held) {
-        if constexpr (requires { held.pose(); }) return held.pose();
-        return Pose<double>{};
-      },
-      held_);
+  return property_or(held_, Pose<double>{}, [](auto const& held) -> decltype(held.pose()) { return held.pose(); });
 }
 
 double OpticalElement::thickness() const {
-  return std::visit(
-      [](auto const& held) {
-        if constexpr (requires { held.thickness; }) return held.thickness;
-        return 0.0;
-      },
-      held_);
+  return property_or(held_, 0.0, [](auto const& held) -> decltype(held.thickness) { return held.thickness; });
 }
 
 double OpticalElement::shift() const {
-  return std::visit(
-      [](auto const& held) {
-        if constexpr (requires { held.shift(); }) return held.shift();
-        return 0.0;
-      },
-      held_);
+  return property_or(held_, 0.0, [](auto const& held) -> decltype(held.shift()) { return held.shift(); });
 }
 
 bool OpticalElement::deflects() const {
-  return std::visit(
-      [](auto const& held) {
-        if constexpr (requires { held.deflects(); }) return held.deflects();
-        return false;
-      },
-      held_);
+  return property_or(held_, false, [](auto const& held) -> decltype(held.deflects()) { return held.deflects(); });
 }
 
 bool OpticalElement::divides_light() const {
-  return std::visit(
-      [](auto const& held) {
-        return requires { held.divides_light; };
-      },
-      held_);
+  return property_or(held_, false, [](auto const& held) -> decltype(held.divides_light) { return held.divides_light; });
 }
 
 double OpticalElement::to_sensor() const {
-  return std::visit(
-      [](auto const& held) {
-        if constexpr (requires { held.to_sensor; }) return held.to_sensor;
-        return 0.0;
-      },
-      held_);
+  return property_or(held_, 0.0, [](auto const& held) -> decltype(held.to_sensor) { return held.to_sensor; });
 }
 
 double OpticalElement::image_f_number() const {
-  return std::visit(
-      [](auto const& held) {
-        if constexpr (requires { held.image_f_number(); }) return held.image_f_number();
-        return 0.0;
-      },
-      held_);
+  return property_or(held_, 0.0,
+                     [](auto const& held) -> decltype(held.image_f_number()) { return held.image_f_number(); });
 }
 
 std::string OpticalElement::imaging_warning(ImagingGeometry const& imaging, double f_number) const {
-  return std::visit(
-      [&](auto const& held) {
-        if constexpr (requires { held.imaging_warning(imaging, f_number); })
-          return held.imaging_warning(imaging, f_number);
-        return std::string();
-      },
-      held_);
+  return property_or(held_, std::string(), [&](auto const& held) -> decltype(held.imaging_warning(imaging, f_number)) {
+    return held.imaging_warning(imaging, f_number);
+  });
 }
 
 std::string const* OpticalElement::glass() const {
-  return std::visit(
-      [](auto const& held) -> std::string const* {
-        if constexpr (requires { held.glass; }) return &held.glass;
-        return nullptr;
-      },
-      held_);
+  std::string const* const none = nullptr;
+  return property_or(held_, none, [](auto const& held) -> decltype(&held.glass) { return &held.glass; });
 }
 
 void OpticalElement::set_glass(double index, double absorption) {

@@ -4,10 +4,10 @@
 
 #include "analysis/correlation/axis_weights.h"
 #include "analysis/correlation/correlation_methods.h"
-#include "analysis/correlation/fourier_plan.h"
-#include "analysis/correlation/known_tiles.h"
+#include "analysis/correlation/fourier_transform.h"
 #include "analysis/correlation/lane_fourier.h"
 #include "analysis/correlation/window_peak.h"
+#include "analysis/correlation/window_pixels.h"
 #include "render/base/contracts.h"
 #include "render/base/parallel.h"
 #include "render/base/progress.h"
@@ -20,17 +20,9 @@ constexpr std::size_t windows_per_chunk = 32;  // even, since windows are transf
 /// Correlates windows two at a time, with its own scratch memory.
 class PairwiseCorrelation {
  public:
-  PairwiseCorrelation(InterrogationJob const& job, AxisWeightsView const& x, AxisWeightsView const& y,
-                      KnownTiles const& tiles)
-      : job_(job),
-        pair_(job.pair),
-        grid_(job.grid),
-        x_(x),
-        y_(y),
-        tiles_(tiles),
-        plan_(make_fourier_plan(lane_fourier_size(x.size))) {
-    std::size_t const values = static_cast<std::size_t>(plan_->size()) * plan_->size();
-    pixels_.resize(values);
+  PairwiseCorrelation(InterrogationJob const& job, AxisWeightsView const& x, AxisWeightsView const& y)
+      : job_(job), pair_(job.pair), grid_(job.grid), x_(x), y_(y), size_(lane_fourier_size(x.size)) {
+    std::size_t const values = static_cast<std::size_t>(size_) * size_;
     window_.resize(values);
     spectrum_[0].resize(values);
     spectrum_[1].resize(values);
@@ -42,11 +34,11 @@ class PairwiseCorrelation {
       double scale[2] = {0.0, 0.0};
       for (int k = 0; k < count; ++k) {
         scale[k] = load(i + k, results[i + k]);
-        if (scale[k] > 0.0) plan_->forward(window_.data(), spectrum_[k].data());
+        if (scale[k] > 0.0) fourier_transform(window_, spectrum_[k], size_, FourierDirection::forward);
       }
       if (scale[0] == 0.0 && scale[1] == 0.0) continue;
       join(scale);
-      plan_->inverse(window_.data(), spectrum_[0].data());
+      fourier_transform(window_, spectrum_[0], size_, FourierDirection::inverse);
       for (int k = 0; k < count; ++k)
         if (scale[k] > 0.0) pick(i + k, reinterpret_cast<double const*>(spectrum_[0].data()) + k, results[i + k]);
     }
@@ -56,42 +48,33 @@ class PairwiseCorrelation {
   /// Fills window_ and returns the factor that converts the plane to a correlation coefficient; 0 if there is no signal
   /// or the window is masked.
   double load(std::size_t index, WindowCorrelation& result) {
-    int const size = x_.size, pitch = plan_->size();
     int const column = static_cast<int>(index % static_cast<std::size_t>(grid_.columns));
     int const row = static_cast<int>(index / static_cast<std::size_t>(grid_.columns));
-    WindowView<float> view{};
-    view.reference = pair_.reference.data();
-    view.flow = pair_.flow.data();
-    view.columns = pair_.columns;
-    view.size = size;
-    view.first_x = x_.first(column);
-    view.first_y = y_.first(row);
-    view.begin_x = std::max(0, -view.first_x);
-    view.end_x = std::min(size, pair_.columns - view.first_x);
-    view.begin_y = std::max(0, -view.first_y);
-    view.end_y = std::min(size, pair_.rows - view.first_y);
-    view.core_begin = grid_.window_px / 2;
-    view.core_end = view.core_begin + grid_.window_px;
-    view.weight_x = x_.weight(column);
-    view.weight_y = y_.weight(row);
-    bool const complete = tiles_.all_known(view.first_x + view.begin_x, view.first_y + view.begin_y,
-                                           view.first_x + view.end_x, view.first_y + view.end_y);
-    view.available = complete ? nullptr : pair_.available.data();
-
-    WindowSums<float> sums;
-    for (int j = view.begin_y; j < view.end_y; ++j) sums += sum_row(view, j);
-    if (!complete && sums.weight < min_valid_weight_fraction * x_.sum(column) * y_.sum(row)) {
+    WindowSums<double> sums;
+    visit_window_pixels(pair_, x_, column, y_, row, [&](int, int, double weight, std::size_t at) {
+      sums += {weight, weight * pair_.reference[at], weight * pair_.flow[at]};
+    });
+    if (sums.weight < min_valid_weight_fraction * x_.sum(column) * y_.sum(row)) {
       result.outcome = WindowCorrelation::Outcome::masked;
       return 0.0;
     }
-    float const mean_reference = sums.reference / sums.weight, mean_flow = sums.flow / sums.weight;
-    float* out = reinterpret_cast<float*>(pixels_.data());
-    std::fill(out, out + 2 * pixels_.size(), 0.0f);
-    WindowEnergy<float> energy;
-    for (int j = view.begin_y; j < view.end_y; ++j)
-      energy += load_row(view, j, mean_reference, mean_flow, out + 2 * static_cast<std::size_t>(j) * pitch);
-    std::copy(pixels_.begin(), pixels_.end(), window_.begin());
-    double const scale = plane_scale(energy, pair_.contrast, grid_.window_px, pitch);
+    double const mean_reference = sums.reference / sums.weight, mean_flow = sums.flow / sums.weight;
+    int const core_begin = grid_.window_px / 2, core_end = core_begin + grid_.window_px;
+    double energy[2] = {}, core_energy[2] = {};  // of the reference and of the flow
+    std::fill(window_.begin(), window_.end(), 0.0);
+    visit_window_pixels(pair_, x_, column, y_, row, [&](int i, int j, double weight, std::size_t at) {
+      double const value[2] = {weight * (pair_.reference[at] - mean_reference), weight * (pair_.flow[at] - mean_flow)};
+      window_[static_cast<std::size_t>(j) * size_ + i] = {value[0], value[1]};
+      bool const in_core = std::min(i, j) >= core_begin && std::max(i, j) < core_end;
+      for (int k = 0; k < 2; ++k) {
+        energy[k] += value[k] * value[k];
+        if (in_core) core_energy[k] += value[k] * value[k];
+      }
+    });
+    auto const single = [](double sum) { return static_cast<float>(sum); };
+    double const scale =
+        plane_scale({single(energy[0]), single(energy[1]), single(core_energy[0]), single(core_energy[1])},
+                    pair_.contrast, grid_.window_px, size_);
     if (scale == 0.0) result.outcome = WindowCorrelation::Outcome::no_signal;
     return scale;
   }
@@ -99,7 +82,7 @@ class PairwiseCorrelation {
   /// Writes the cross spectra of both windows, C0 + i C1, to window_. A missing window has scale 0 and a finite
   /// spectrum from an earlier call.
   void join(double const* scale) {
-    int const size = plan_->size();
+    int const size = size_;
     double const scale0 = scale[0], scale1 = scale[1];
     for (int j = 0; j <= size / 2; ++j) {
       // The rows j = 0 and size/2 are their own mirrors: each column is written twice, with equal values.
@@ -127,7 +110,7 @@ class PairwiseCorrelation {
   void pick(std::size_t index, double const* values, WindowCorrelation& result) const {
     int const column = static_cast<int>(index % static_cast<std::size_t>(grid_.columns));
     int const row = static_cast<int>(index / static_cast<std::size_t>(grid_.columns));
-    PlaneView<double> const plane{values, plan_->size(), 2};
+    PlaneView<double> const plane{values, size_, 2};
     PeakList<double> const found = find_peaks(plane, job_.search_radius_px);
     if (found.count == 0) {
       result.outcome = WindowCorrelation::Outcome::no_peak;
@@ -149,9 +132,7 @@ class PairwiseCorrelation {
   InterrogationGrid const& grid_;
   AxisWeightsView x_;
   AxisWeightsView y_;
-  KnownTiles const& tiles_;
-  std::unique_ptr<FourierPlan> plan_;
-  std::vector<std::complex<float>> pixels_;
+  int size_;  ///< length of the transforms
   std::vector<std::complex<double>> window_;
   std::vector<std::complex<double>> spectrum_[2];
 };
@@ -167,11 +148,10 @@ std::vector<WindowCorrelation> correlate_by_opencv(InterrogationJob const& job) 
   GLADSTONE_EXPECTS(radius > 0 && 2 * radius <= grid.window_px && grid.window_px % 2 == 0);
   AxisWeights const x(grid, GridAxis::x, job.pair.columns, job.weighting);
   AxisWeights const y(grid, GridAxis::y, job.pair.rows, job.weighting);
-  KnownTiles const tiles(job.pair);
   std::vector<WindowCorrelation> results(grid.size());
   Progress progress(job.label, grid.size());
   parallel_chunks(grid.size(), windows_per_chunk, [&](std::size_t begin, std::size_t end) {
-    PairwiseCorrelation correlation(job, x.view(), y.view(), tiles);
+    PairwiseCorrelation correlation(job, x.view(), y.view());
     correlation(begin, end, results);
     progress.advance(end - begin);
   });

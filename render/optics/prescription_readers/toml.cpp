@@ -89,7 +89,7 @@ Prescription read_toml_prescription(std::string const& path) {
   result.source = root.text("source", "");
   if (auto const primary = root.optional_number("primary_wavelength_nm", Range::positive(1e5))) {
     std::string const fault = describe_wavelength_fault(*primary, unit::nanometre, "nm");
-    if (!fault.empty()) root.problem("primary_wavelength_nm", fault);
+    if (!fault.empty()) root.problem("primary_wavelength_nm", fault, ErrorCode::out_of_range);
     result.primary_wavelength = *primary * unit::nanometre;
   }
   Range distance = Range::positive();
