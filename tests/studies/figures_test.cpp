@@ -16,6 +16,7 @@
 #include "studies/figures/error_figures.h"
 #include "studies/figures/gnuplot.h"
 #include "studies/figures/map_figures.h"
+#include "tests/support/expect_error.h"
 
 namespace gladstone {
 namespace {
@@ -141,14 +142,13 @@ TEST_F(Figures, ErrorFiguresAreDrawnAlsoOfNothing) {
 TEST_F(Figures, AbsentGnuplotIsNamedWithItsPackage) {
   std::string const before = ::getenv("PATH") != nullptr ? ::getenv("PATH") : "";
   ::setenv("PATH", path("").c_str(), 1);
-  try {
-    GnuplotFigure figure(100, 100);
-    figure.command("plot x");
-    figure.write(path("x.png"));
-    ADD_FAILURE() << "no error";
-  } catch (GnuplotMissing const& error) {
-    EXPECT_THAT(error.what(), HasSubstr("gnuplot-nox"));
-  }
+  EXPECT_THROW(
+      {
+        GnuplotFigure figure(100, 100);
+        figure.command("plot x");
+        figure.write(path("x.png"));
+      },
+      GnuplotMissing);
   ::setenv("PATH", before.c_str(), 1);
   EXPECT_EQ(files(), 0u);
 }
@@ -157,13 +157,7 @@ TEST_F(Figures, FailureLeavesTheOldPicture) {
   std::ofstream(path("x.png")) << "old";
   GnuplotFigure figure(100, 100);
   figure.command("plot nonsense(");
-  try {
-    figure.write(path("x.png"));
-    ADD_FAILURE() << "no error";
-  } catch (OutputError const& error) {
-    EXPECT_THAT(error.what(), HasSubstr("x.png"));
-    EXPECT_THAT(error.what(), HasSubstr("nonsense"));
-  }
+  EXPECT_THAT([&] { figure.write(path("x.png")); }, ThrowsOutputError("x.png"));
   std::string text;
   std::ifstream(path("x.png")) >> text;
   EXPECT_EQ(text, "old");
