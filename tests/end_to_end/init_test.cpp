@@ -97,8 +97,8 @@ TEST_F(Init, TemplatesOfSetupsAreShortAndExplainEachKey) {
 
 TEST_F(Init, DoesNotOverwriteAFile) {
   write("mine.toml", "precious = true\n");
-  expect_refused({"init", "bos", "-o", "mine.toml"}, 2, {"mine.toml", "exists"});
-  expect_refused({"init", "bos", "--all", "-o", "mine.toml"}, 2, {"mine.toml", "exists"});
+  expect_error({"init", "bos", "-o", "mine.toml"}, 2, "output at mine.toml");
+  expect_error({"init", "bos", "--all", "-o", "mine.toml"}, 2, "output at mine.toml");
   std::filesystem::create_symlink("nowhere.toml", in("link.toml"));
   EXPECT_EQ(gladstone({"init", "bos", "-o", "link.toml"}).exit_code, 2);
   EXPECT_FALSE(std::filesystem::exists(in("nowhere.toml")));

@@ -179,7 +179,7 @@ TEST_F(Inputs, AnEmptySetupIsToldAndTheHelpShowsOneToBeginWith) {
   expect_refused({"sweep", "plan", "study.toml", "-o", "run"}, 2,
                  {"study.toml: is empty (no key is set); gladstone sweep plan --help"});
   write("study.toml", "base = \"empty.toml\"\n[axes]\n\"lens.f_number\" = [8]\n");
-  expect_refused({"sweep", "plan", "study.toml", "-o", "run"}, 2, {"empty.toml: is empty (no key is set)"});
+  expect_error({"sweep", "plan", "study.toml", "-o", "run"}, 2, "missing_content at study.toml:1:1");
 
   auto const example = [&](std::vector<std::string> const& command, std::string const& heading) {
     std::istringstream help(succeed(command));
@@ -413,7 +413,7 @@ TEST_F(Inputs, SaturatedPixelsAreToldWithTheirCure) {
   EXPECT_THAT(warning("dark_current_e = 1e5\n"), HasSubstr("lower camera.noise.dark_current_e"));
 
   std::string const text = with(small_setup, "[lens]", "[camera.noise]\nread_noise_e = 1e6\n[lens]");
-  expect_setup_refused(text, {"setup.toml:" + place_of(text, "read_noise_e"), "exceeds the full well of 30000"});
+  expect_setup_error(text, "invalid_value at setup.toml:" + place_of(text, "read_noise_e"));
 }
 
 }  // namespace

@@ -73,11 +73,11 @@ TEST_F(Preview, SaysWhatItLeavesOut) {
 }
 
 TEST_F(Preview, RefusesBadOutputs) {
-  expect_refused({"render", "setup.toml", "--preview", "-o", "setup.toml"}, 2, {"setup.toml", "use .png"});
+  expect_error({"render", "setup.toml", "--preview", "-o", "setup.toml"}, 2, "output at setup.toml");
   write("dots.png", "x_mm,y_mm\n0,0\n1,1\n-1,1\n");
   write("points.toml",
         with(automatic_setup(), "dots_per_32px_window = 10.0", "kind = \"points\"\nfile = \"dots.png\""));
-  expect_refused({"render", "points.toml", "--preview", "-o", "dots.png"}, 2, {"dots.png"});
+  expect_error({"render", "points.toml", "--preview", "-o", "dots.png"}, 2, "output at dots.png");
   expect_refused({"render", "setup.toml"}, 2, {"--output is required"});
 }
 

@@ -151,10 +151,11 @@ TEST_F(RealLens, MethodsAgreeOnTheBench) {
 }
 
 TEST_F(RealLens, MethodThatDoesNotHoldIsRefused) {
-  expect_refused(
+  expect_error(
       {"render", "setup.toml", "-o", "case", "--set", "render.method=focused_dots", "--set", "lens.focus=medium"}, 2,
-      {"--set render.method=focused_dots", "the dots are out of focus"});
-  expect_refused({"render", "setup.toml", "-o", "case", "--set", "render.method=fast"}, 2, {"focused_dots"});
+      "invalid_value at --set render.method=focused_dots");
+  expect_error({"render", "setup.toml", "-o", "case", "--set", "render.method=fast"}, 2,
+               "unknown_choice at --set render.method=fast");
 }
 
 // A camera with an oblique view of the dots, its sensor tilted so that they are in focus, through an optical window:

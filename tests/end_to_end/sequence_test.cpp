@@ -174,7 +174,7 @@ TEST_F(Sequences, OfOnePairMayBeAFile) {
   succeed(arguments({"A_8.tif", "B_8.tif"}, "single.h5"));
   expect_same_datasets("v.h5", "single.h5");
   write_pairs({{1.5, 0.5}, {1, 1}});
-  expect_refused(arguments({"A_*.tif", "B_*.tif"}, "w.h5"), 2, {"w.h5: is a file", "-o DIR/"});
+  expect_error(arguments({"A_*.tif", "B_*.tif"}, "w.h5"), 2, "output at w.h5");
   expect_refused(arguments({"C_*.tif", "B_*.tif"}, "out/"), 2, {"C_*.tif: matches no file"});
 }
 
@@ -380,10 +380,9 @@ TEST_F(Sequences, FailIfNoPairHasAValidVector) {
 
 // An input that is missing or no image is named as such, not as a sequence that is too short.
 TEST_F(Sequences, NameAnUnreadableFile) {
-  expect_refused(arguments({"none.tif"}, "out/", {"--pairing", "consecutive"}), 2, {"none.tif", "does not exist"});
+  expect_error(arguments({"none.tif"}, "out/", {"--pairing", "consecutive"}), 2, "missing_file at none.tif");
   write("text.tif", "not an image");
-  expect_refused(arguments({"text.tif"}, "out/", {"--pairing", "consecutive"}), 2,
-                 {"text.tif", "cannot be read as an image"});
+  expect_error(arguments({"text.tif"}, "out/", {"--pairing", "consecutive"}), 2, "wrong_format at text.tif");
   write_stack("one.tif", {dots_at({})});
   expect_refused(arguments({"one.tif"}, "out/", {"--pairing", "consecutive"}), 2, {"one.tif: is a single image"});
 }
@@ -577,7 +576,7 @@ TEST_F(Sequences, SubtractTheirOwnBackground) {
     EXPECT_NEAR(mean.y, 0, 0.2) << statistic;
     EXPECT_NE(Hdf5Reader(in(statistic + "/A_3.h5").string()).attribute("background_1_flow_sha256"), "");
   }
-  expect_refused(arguments({"A_0.tif", "B_0.tif"}, "v.h5"), 2, {"config.toml", "frame"});
+  expect_error(arguments({"A_0.tif", "B_0.tif"}, "v.h5"), 2, "missing_key at config.toml:4:1");
 }
 
 TEST_F(Sequences, RefuseForeignFoldersAndUnsuitableSettings) {
@@ -588,10 +587,10 @@ TEST_F(Sequences, RefuseForeignFoldersAndUnsuitableSettings) {
   expect_refused(arguments({"A_*.tif", "B_*.tif"}, "."), 2, {"contains other files"});
   expect_refused(arguments({"A_*.tif", "B_*.tif"}, "out/", {"--pairing", "all"}), 2, {"--pairing"});
   write("config.toml", "[correlate]\nwindow_px = [128]\n");
-  expect_refused(arguments({"A_*.tif", "B_*.tif"}, "out/"), 2, {"A_8.tif", "128"});
+  expect_error(arguments({"A_*.tif", "B_*.tif"}, "out/"), 2, "wrong_shape at A_8.tif");
   // Scattered vectors are at other points for each pair, so that there are no statistics.
   write("config.toml", "[correlate]\nmethod = \"tracking\"\n[correlate.tracking]\noutput = \"scattered\"\n");
-  expect_refused(arguments({"A_*.tif", "B_*.tif"}, "out/"), 2, {"correlate.tracking.output", "grid"});
+  expect_error(arguments({"A_*.tif", "B_*.tif"}, "out/"), 2, "unsupported at correlate.tracking.output");
 }
 
 // docs/file-formats.md names the datasets of statistics.h5 and the keys of sequence.json.

@@ -124,8 +124,7 @@ TEST_F(Sources, AnInputThatHasChangedSinceTheCaseWasRenderedIsRefusedByName) {
   render("case", {}, "points.toml");
   succeed({"correlate", "case"});
   write("dots.csv", "x_mm,y_mm\n0,0\n1,0.5\n-1,0.25\n");
-  expect_refused({"compare", "case"}, 2,
-                 {"dots.csv: has changed since case was rendered from it", "render the case again"});
+  expect_error({"compare", "case"}, 2, "changed at dots.csv");
 }
 
 TEST_F(Sources, AnInputThatIsReplacedWhileItIsRenderedGivesNoCase) {

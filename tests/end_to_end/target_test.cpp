@@ -109,11 +109,11 @@ TEST_F(Target, TableIsATargetOfPoints) {
 TEST_F(Target, RefusesWhatHasNoDots) {
   succeed({"init", "piv", "-o", "piv.toml"});
   expect_refused({"target", "piv.toml", "-o", "dots.svg"}, 2, {"piv.toml: has particles and no target"});
-  expect_refused({"target", "setup.toml", "-o", "dots.png"}, 2, {"must end in .pdf, .svg or .csv"});
-  expect_refused({"target", "setup.toml", "-o", "setup.toml"}, 2, {"setup.toml"});
+  expect_error({"target", "setup.toml", "-o", "dots.png"}, 2, "output at dots.png");
+  expect_error({"target", "setup.toml", "-o", "setup.toml"}, 2, "output at setup.toml");
   expect_refused({"target", "setup.toml"}, 2, {"--output is required"});
-  expect_refused({"target", "setup.toml", "-o", "dots.svg", "--set", "target.dot_diameter_mm=0"}, 2,
-                 {"target.dot_diameter_mm"});
+  expect_error({"target", "setup.toml", "-o", "dots.svg", "--set", "target.dot_diameter_mm=0"}, 2,
+               "out_of_range at target.dot_diameter_mm");
 }
 
 TEST_F(Target, NeverReplacesAnInput) {

@@ -140,9 +140,9 @@ TEST_F(TrackedDots, AreMissingFromFlatFrames) {
     EXPECT_EQ(outcome.exit_code, 1) << outcome.err;
     EXPECT_THAT(outcome.err, HasSubstr("no dots in frame A"));
   }
-  expect_refused({"correlate", "--ensemble", "a.tif", "b.tif", "-o", "w.h5", "--set", "correlate.method=tracking",
-                  "--set", "correlate.window_px=[32]"},
-                 2, {"does not support ensembles"});
+  expect_error({"correlate", "--ensemble", "a.tif", "b.tif", "-o", "w.h5", "--set", "correlate.method=tracking",
+                "--set", "correlate.window_px=[32]"},
+               2, "unsupported at ensemble");
 }
 
 }  // namespace

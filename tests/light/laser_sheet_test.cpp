@@ -158,17 +158,15 @@ TEST(LaserSheet, DropletSendsItsPhotonsThroughALens) {
 
 // All errors in a table [laser] are reported together, each with its location and remedy.
 TEST(LaserSheet, RefusesWhatIsNoSheet) {
-  EXPECT_THAT(
-      [] { read_laser("thickness_mm = 0.0\npulse_energy_mj = -5.0\nnormal = [2.0, 0.0, 0.0]\nheight_mm = -1.0"); },
-      ThrowsMessage<SetupError>(
-          AllOf(HasSubstr("case.toml:2:1: laser.thickness_mm = 0.0"),
-                HasSubstr("case.toml:3:1: laser.pulse_energy_mj = -5.0"), HasSubstr("case.toml:4:1: laser.normal"),
-                HasSubstr("makes an angle of 0 deg between the sheet's normal and the laser's direction"),
-                HasSubstr("case.toml:5:1: laser.height_mm"))));
+  EXPECT_EQ(error_of([] {
+              read_laser("thickness_mm = 0.0\npulse_energy_mj = -5.0\nnormal = [2.0, 0.0, 0.0]\nheight_mm = -1.0");
+            }),
+            "out_of_range at case.toml:2:1, out_of_range at case.toml:3:1, invalid_value at case.toml:4:1, "
+            "out_of_range at case.toml:5:1");
   EXPECT_THAT([] { read_laser("direction = [0.0, 0.0, 0.0]"); },
               ThrowsSetupError(ErrorCode::invalid_value, "laser.direction"));
   EXPECT_THAT([] { read_laser("direction = [1.0, 0.0, 1.0]"); },
-              ThrowsMessage<SetupError>(HasSubstr("makes an angle of 45 deg")));
+              ThrowsSetupError(ErrorCode::invalid_value, "laser.direction"));
   EXPECT_THAT([] { read_laser("profile = \"gausian\""); },
               ThrowsSetupError(ErrorCode::unknown_choice, "laser.profile"));
   EXPECT_THAT([] { read_laser("thicknes_mm = 1.0"); }, ThrowsSetupError(ErrorCode::unknown_key, "laser.thicknes_mm"));

@@ -221,13 +221,7 @@ TEST(MieScattering, ReportsMemoryBeforeAllocation) {
 
   std::vector<double> marbles;
   for (int i = 0; i < 100000; ++i) marbles.push_back(15e-3 + 1e-9 * i);
-  EXPECT_THAT(
-      [&] {
-        MieScattering(marbles, droplets(), {0, pi});
-      },
-      ThrowsDataError(ErrorCode::memory, "particles",
-                      AllOf(HasSubstr("100000 different diameters of up to 1.51e+04 um"), HasSubstr("GB of memory"),
-                            HasSubstr("use fewer particles"))));
+  EXPECT_THAT([&] { MieScattering(marbles, droplets(), {0, pi}); }, ThrowsDataError(ErrorCode::memory, "particles"));
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "render/medium/gas_mixture.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <map>
@@ -9,6 +10,7 @@
 
 #include "render/medium/gladstone_dale.h"
 #include "render/medium/medium_setup.h"
+#include "tests/support/expect_error.h"
 
 namespace gladstone {
 namespace {
@@ -76,29 +78,22 @@ TEST(GasMixture, IsReadFromASetup) {
 }
 
 TEST(GasMixture, RefusesWhatIsNoMixture) {
-  auto const problem = [](std::string const& text) -> std::string {
-    try {
-      medium_of(text);
-    } catch (SetupError const& error) {
-      return error.what();
-    }
-    return "";
+  auto const errors = [](std::string const& text) { return error_of([&] { medium_of(text); }); };
+  EXPECT_EQ(errors("[medium]\ngas = { helium = 0.2, air = 0.7 }\n"), "invalid_value at setup.toml:2:1");
+  EXPECT_EQ(errors("[medium]\ngas = {}\n"), "invalid_value at setup.toml:2:1");
+  EXPECT_EQ(errors("[medium]\ngas = { air = 1 }\ngladstone_dale = 2.26e-4\n"), "invalid_value at setup.toml:3:1");
+  EXPECT_EQ(errors("[medium]\nwavelength_nm = 1064\ngas = { air = 1 }\n"), "invalid_value at setup.toml:3:1");
+  EXPECT_EQ(errors("[medium]\ngas = { helium = 1.5 }\n"), "out_of_range at setup.toml:2:9");
+  // The sum of the fractions is unknown if one of them is wrong.
+  EXPECT_EQ(errors("[medium]\ngas = { helium = \"much\", air = 0.7 }\n"), "wrong_type at setup.toml:2:9");
+  EXPECT_EQ(errors("[medium.gas]\nCO2 = 0.2\nair = 0.8\n"), "unknown_key at setup.toml:2:1");
+  // A formula, in upper or lower case, is reported with the name of its gas.
+  auto const suggests = [](std::string const& gas) {
+    return testing::ThrowsMessage<SetupError>(testing::HasSubstr("did you mean \"" + gas + "\"?"));
   };
-  auto const names = [&](std::string const& text, std::string const& piece) {
-    EXPECT_NE(problem(text).find(piece), std::string::npos) << text << problem(text);
-  };
-  names("[medium]\ngas = { helium = 0.2, air = 0.7 }\n", "add up to 0.9");
-  names("[medium]\ngas = {}\n", "add up to 0");
-  names("[medium]\ngas = { air = 1 }\ngladstone_dale = 2.26e-4\n", "conflicts with medium.gas");
-  names("[medium]\ngas = { helum = 1 }\n", "helium");
-  names("[medium]\ngas = { helium = 1.5 }\n", "helium");
-  names("[medium.gas]\nco2 = 0.2\nair = 0.8\n", "did you mean \"carbon_dioxide\"?");
-  names("[medium.gas]\nHe = 1\n", "did you mean \"helium\"?");
-  std::string const formula = problem("[medium.gas]\nCO2 = 0.2\nair = 0.8\n");
-  EXPECT_EQ(formula.find("unknown key"), formula.rfind("unknown key")) << "reported once: " << formula;
-  EXPECT_EQ(problem("[medium]\ngas = { helium = \"much\", air = 0.7 }\n").find("add up"), std::string::npos)
-      << "the sum of the fractions is unknown if one of them is wrong";
-  names("[medium]\nwavelength_nm = 1064\ngas = { air = 1 }\n", "from 400 to 800 nm");
+  EXPECT_THAT([] { medium_of("[medium.gas]\nco2 = 0.2\nair = 0.8\n"); }, suggests("carbon_dioxide"));
+  EXPECT_THAT([] { medium_of("[medium.gas]\nHe = 1\n"); }, suggests("helium"));
+  EXPECT_THAT([] { medium_of("[medium]\ngas = { helum = 1 }\n"); }, suggests("helium"));
 }
 
 // The resolved setup of a case reads back to the same constant.

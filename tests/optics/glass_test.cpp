@@ -21,16 +21,6 @@ double abbe_number(Glass const& glass) {
   return (glass.nd() - 1) / (glass.index(spectral_line::F) - glass.index(spectral_line::C));
 }
 
-template <class Action>
-std::string error_of(Action const& action) {
-  try {
-    action();
-  } catch (DataError const& error) {
-    return error.what();
-  }
-  return "";
-}
-
 // Schott's data sheet of N-BK7: nF, nd, nC, Vd; the values at 532 and 632.8 nm are computed by the same formula to nine
 // digits.
 TEST(Glass, BK7HasItsDataSheetsIndices) {
@@ -59,8 +49,7 @@ TEST(Glass, ABarMayBePartOfTheName) {
   EXPECT_EQ(catalogue.match("f_silica_own", 532e-9, "test:1").glass->name, "F_SILICA");
   EXPECT_EQ(catalogue.match("OWN:F_SILICA", 532e-9, "test:1").glass->name, "F_SILICA");
   EXPECT_EQ(catalogue.match("OTHER_OWN", 532e-9, "test:1").glass->name, "OTHER");
-  EXPECT_THAT(error_of([&] { catalogue.match("OTHER_SCHOTT", 532e-9, "test:1"); }),
-              AllOf(HasSubstr("in no catalogue"), HasSubstr("lens.glasses"), HasSubstr("--glass")));
+  EXPECT_EQ(error_of([&] { catalogue.match("OTHER_SCHOTT", 532e-9, "test:1"); }), "unknown_choice at test:1");
 }
 
 // 1628 glasses: 156 of SCHOTT, 410 OHARA, 190 HOYA, 375 HIKARI, 314 CDGM, 176 SUMITA and 7 others. The extremes in
@@ -105,13 +94,14 @@ TEST(GlassCatalogue, FindsNamesAsProgramsWriteThem) {
 }
 
 TEST(GlassCatalogue, NamesTheNearestGlassAndTheRange) {
-  EXPECT_THAT(error_of([] { glass("N-BK77"); }),
-              AllOf(HasSubstr("test:1"), HasSubstr("did you mean \"SCHOTT:N-BK7\"")));
+  auto const suggests = [](auto const&... names) {
+    return ThrowsDataError(ErrorCode::unknown_choice, "test:1", AllOf(HasSubstr(names)...));
+  };
+  EXPECT_THAT([] { glass("N-BK77"); }, suggests("\"SCHOTT:N-BK7\""));
   // several names are equally similar; the successor of a glass with lead is named first
-  EXPECT_THAT(error_of([] { glass("N-BK8"); }), AllOf(HasSubstr("\"SCHOTT:N-BK7\""), HasSubstr(" or \"SCHOTT:")));
-  EXPECT_THAT(error_of([] { glass("BAF10X"); }), HasSubstr("\"SCHOTT:N-BAF10\""));
-  EXPECT_THAT(error_of([] { GlassCatalogue::shipped().match("N-BK7", 12e-6, "test:1"); }),
-              HasSubstr("300 to 2500 nm, not at 1.2e+04 nm"));
+  EXPECT_THAT([] { glass("N-BK8"); }, suggests("\"SCHOTT:N-BK7\"", " or \"SCHOTT:"));
+  EXPECT_THAT([] { glass("BAF10X"); }, suggests("\"SCHOTT:N-BAF10\""));
+  EXPECT_EQ(error_of([] { GlassCatalogue::shipped().match("N-BK7", 12e-6, "test:1"); }), "out_of_range at test:1");
 }
 
 // Compares each dispersion formula with its definition at one micrometre, where every power of the wavelength is one.
@@ -146,12 +136,12 @@ TEST(GlassCatalogue, KnowsAllFormulasOfTheFormat) {
 // A damaged catalogue is refused, with the line of the error.
 TEST(GlassCatalogue, RefusesWhatIsNoGlassAtItsLine) {
   auto const refusal = [](char const* text) { return error_of([&] { GlassCatalogue().add(text, "TEST", "x.agf"); }); };
-  EXPECT_THAT(refusal("NM X 2 0\nCD 1 nan\nLD 0.4 0.7\n"), AllOf(HasSubstr("x.agf:2"), HasSubstr("finite number")));
-  EXPECT_THAT(refusal("\nNM X 99\nCD 1\nLD 0.4 0.7\n"), AllOf(HasSubstr("x.agf:2"), HasSubstr("formula 99")));
-  EXPECT_THAT(refusal("NM X 2\nLD 0.4 0.7\n"), HasSubstr("no coefficients"));
-  EXPECT_THAT(refusal("NM X 2\nCD 1 .01\n"), HasSubstr("no range"));
-  EXPECT_THAT(refusal("NM X 1\nCD 90\nLD 0.4 0.7\n"), HasSubstr("which no glass has"));
-  EXPECT_THAT(refusal("CC nothing here\n"), HasSubstr("contains no glass"));
+  EXPECT_EQ(refusal("NM X 2 0\nCD 1 nan\nLD 0.4 0.7\n"), "missing_content at x.agf:2");
+  EXPECT_EQ(refusal("\nNM X 99\nCD 1\nLD 0.4 0.7\n"), "missing_content at x.agf:2");
+  EXPECT_EQ(refusal("NM X 2\nLD 0.4 0.7\n"), "missing_content at x.agf:1");
+  EXPECT_EQ(refusal("NM X 2\nCD 1 .01\n"), "missing_content at x.agf:1");
+  EXPECT_EQ(refusal("NM X 1\nCD 90\nLD 0.4 0.7\n"), "missing_content at x.agf:1");
+  EXPECT_EQ(refusal("CC nothing here\n"), "missing_content at x.agf");
 }
 
 // The first one of two added catalogues is used, unless one of them is preferred; a note reports the choice if the
@@ -184,7 +174,7 @@ TEST(GlassCatalogue, PassesOverACatalogueWhoseRangeEndsBeforeTheWavelength) {
   EXPECT_EQ(catalogue.match("X", 5e-7, "here").glass->catalogue, "ONE");
   EXPECT_EQ(catalogue.match("X", 1.5e-6, "here").glass->catalogue, "TWO");
   EXPECT_EQ(catalogue.match("X", 1.5e-6, "here", {"ONE"}).glass->catalogue, "TWO") << "although the lens lists ONE";
-  EXPECT_THAT(error_of([&] { catalogue.match("X", 3e-6, "here"); }), HasSubstr("not at 3000 nm"));
+  EXPECT_EQ(error_of([&] { catalogue.match("X", 3e-6, "here"); }), "out_of_range at here");
 }
 
 }  // namespace

@@ -91,7 +91,7 @@ TEST(LensFiles, TheDoubletIsThatOfThePublishedFocalLength) { EXPECT_NEAR(doublet
 TEST(LensFiles, TheLastLineNeedsNoEnd) {
   Lens const lens = lens_of_case("no_final_newline.zmx");
   EXPECT_NEAR(focal_length_mm(lens), doublet_focal_length(), 1e-10);
-  EXPECT_THAT(lens.warnings, Contains(HasSubstr("no_final_newline.zmx:33: the file ends within its line DISZ")));
+  EXPECT_THAT(lens.warnings, Contains(HasSubstr("no_final_newline.zmx:33")));
 }
 
 // An aperture from 7.5 mm to infinity around a pupil of 6 mm would block all light and is ignored; one from 2 mm on
@@ -99,7 +99,7 @@ TEST(LensFiles, TheLastLineNeedsNoEnd) {
 TEST(LensFiles, AnApertureMayHaveNoUpperLimit) {
   Lens const lens = lens_of_case("clap_inf.zmx");
   EXPECT_NEAR(focal_length_mm(lens), doublet_focal_length(), 1e-10);
-  EXPECT_THAT(lens.warnings, Contains(AllOf(HasSubstr("clap_inf.zmx:12"), HasSubstr("beyond a radius of"))));
+  EXPECT_THAT(lens.warnings, Contains(HasSubstr("clap_inf.zmx:12")));
   EXPECT_EQ(fate(lens, {0, 3}), RayStatus::alive);
   Lens const ring = lens_of_text("ring.zmx", changed(zmx, "  STOP\n", "  STOP\n  CLAP 2 INF 0\n"));
   EXPECT_EQ(fate(ring, {0, 1}), RayStatus::vignetted);
@@ -116,7 +116,7 @@ TEST(LensFiles, AnUnknownGlassHasNdAndVdInItsLine) {
 // The warning lists every glass specified by nd and Vd with its line: GLAS, S, SO or GLA.
 TEST(LensFiles, WarningsOfGlassesNameTheLineOfEachGlass) {
   EXPECT_THAT(lens_of_case("object_in_water.zmx").warnings,
-              Contains(HasSubstr("object_in_water.zmx:16: glass nd 1.33300, Vd 55.80 is approximated")));
+              Contains(HasSubstr("object_in_water.zmx:16: glass nd 1.33300, Vd 55.80")));
   std::string const water = changed(changed(seq, "SO 0.0 1e13", "SO 0.0 1e13 1.333:55.8"), "NBK7_SCHOTT", "517642");
   EXPECT_THAT(lens_of_text("water.seq", changed(water, "STO;", "STO;\n GLA 1.62:60.3;")).warnings,
               Contains(AllOf(HasSubstr(
@@ -125,8 +125,8 @@ TEST(LensFiles, WarningsOfGlassesNameTheLineOfEachGlass) {
 
 // 1.5 and 40 are Zemax's default values for unknown nd and Vd; they do not describe a glass.
 TEST(LensFiles, FilledInIndicesDescribeNoGlass) {
-  EXPECT_THAT(refusal("filled.zmx", changed(zmx, "N-BK7 0 0 1.5 40", "NOGLASS 0 0 1.5 40")),
-              HasSubstr("\"NOGLASS\" is in no catalogue"));
+  EXPECT_EQ(refusal("filled.zmx", changed(zmx, "N-BK7 0 0 1.5 40", "NOGLASS 0 0 1.5 40")),
+            "unknown_choice at filled.zmx:20");
 }
 
 // A six-digit code: nd - 1 in thousandths, ten times Vd.
@@ -184,7 +184,7 @@ TEST(LensFiles, AnObscurationMayFillItsSurface) {
   Lens const lens = lens_of_case("obscuration_fills_its_surface.zmx");
   EXPECT_EQ(fate(lens, {0, 1.9}), RayStatus::vignetted);
   EXPECT_EQ(fate(lens, {0, 2.1}), RayStatus::alive);
-  EXPECT_THAT(lens.warnings, Contains(AllOf(HasSubstr("zmx:20"), HasSubstr("light outside it passes"))));
+  EXPECT_THAT(lens.warnings, Contains(HasSubstr("zmx:20")));
   EXPECT_NEAR(focal_length_mm(lens), traced_focal_length({0.02, -0.02}, {1, bk7(), 1}, {5}), 1e-7);
 }
 
@@ -194,12 +194,12 @@ TEST(LensFiles, DrawnEdgesMayOverlapOutsideTheLight) {
   Lens const lens = lens_of_case("drawn_edges_overlap.zmx");
   EXPECT_NEAR(focal_length_mm(lens), traced_focal_length({1 / 30.0, -1 / 30.0}, {1, 1.62041, 1}, {1.5}), 1e-10);
   EXPECT_NEAR(focal_length_mm(lens), 24.411219, 5e-7);
-  EXPECT_THAT(lens.warnings, Contains(AllOf(HasSubstr("zmx:19"), HasSubstr("overlap"))));
+  EXPECT_THAT(lens.warnings, Contains(HasSubstr("zmx:19")));
 }
 
 TEST(LensFiles, ASurfaceMayEndWithinItsSemiDiameter) {
   Lens const lens = lens_of_text("short.zmx", changed(zmx, "CURV 0.02", "CURV 0.2"));
-  EXPECT_THAT(lens.warnings, Contains(HasSubstr("does not reach its semi-diameter")));
+  EXPECT_THAT(lens.warnings, Contains(HasSubstr("short.zmx:15")));
   EXPECT_EQ(fate(lens, {0, 5.5}), RayStatus::missed_lens);
 }
 
@@ -247,8 +247,8 @@ TEST(LensFiles, AnIdealLensHasNoAberration) {
     ASSERT_EQ(carry(lens, ray), RayStatus::alive);
     EXPECT_NEAR(height_behind(lens, ray, 100), 0, 1e-13);
   }
-  EXPECT_THAT(refusal("flat.zmx", changed(zmx, "TYPE STANDARD\n  CURV 0.02", "TYPE PARAXIAL\n  PARM 1 0\n  CURV 0.02")),
-              HasSubstr("focal length of 0"));
+  EXPECT_EQ(refusal("flat.zmx", changed(zmx, "TYPE STANDARD\n  CURV 0.02", "TYPE PARAXIAL\n  PARM 1 0\n  CURV 0.02")),
+            "out_of_range at flat.zmx:15");
 }
 
 // Light that travels back from a mirror is focused as well: an ideal lens of 100 mm, 30 mm behind a flat mirror.
@@ -311,16 +311,16 @@ TEST(LensFiles, WithoutAStopTheFirstSurfaceIsIt) {
   Lens const codev = lens_of_case("no_stop_named.seq");
   EXPECT_NEAR(focal_length_mm(codev), doublet_focal_length(), 1e-10);
   EXPECT_EQ(codev.stop, 0);
-  EXPECT_THAT(codev.warnings, Contains(AllOf(HasSubstr("no_stop_named.seq:8"), HasSubstr("names no stop"))));
+  EXPECT_THAT(codev.warnings, Contains(HasSubstr("no_stop_named.seq:8")));
   Lens const zemax = lens_of_text("no_stop.zmx", changed(zmx, "  STOP\n", ""));
   EXPECT_EQ(zemax.stop, 0);
-  EXPECT_THAT(zemax.warnings, Contains(AllOf(HasSubstr("no_stop.zmx:15"), HasSubstr("names no stop"))));
+  EXPECT_THAT(zemax.warnings, Contains(HasSubstr("no_stop.zmx:15")));
 }
 
 TEST(LensFiles, WithoutAnApertureTheStopsSemiDiameterIsIt) {
   Lens const lens = lens_of_text("open.zmx", changed(zmx, "ENPD 6.0\n", ""));
   EXPECT_NEAR(paraxial_lens(lens).entrance.diameter, 16e-3, 1e-15);
-  EXPECT_THAT(lens.warnings, Contains(HasSubstr("sets no aperture")));
+  EXPECT_THAT(lens.warnings, Contains(HasSubstr("open.zmx:14")));
 }
 
 TEST(LensFiles, CodeVMayBeWrittenInLowerCase) {
@@ -344,9 +344,9 @@ TEST(LensFiles, PrivateGlassesAreInterpolated) {
                           1.62041 * (at - a) * (at - c) / ((b - a) * (b - c)) +
                           1.62757 * (at - a) * (at - b) / ((c - a) * (c - b));
   EXPECT_NEAR(glass.index(550e-9), expected, 1e-14);
-  EXPECT_THAT(refusal("far.seq", changed(changed(seq, "SO 0.0", "PRV\nPWL 700 600\n'own' 1.5 1.51\nEND\nSO 0.0"),
-                                         "NBK7_SCHOTT", "'own'")),
-              AllOf(HasSubstr("given from 600 to 700 nm, not at 587.6 nm")));
+  EXPECT_EQ(refusal("far.seq", changed(changed(seq, "SO 0.0", "PRV\nPWL 700 600\n'own' 1.5 1.51\nEND\nSO 0.0"),
+                                       "NBK7_SCHOTT", "'own'")),
+            "out_of_range at far.seq:12");
   // Laurent's series is identical to Schott's formula: n^2 = 2.25 at all wavelengths
   Lens const laurent = lens_of_text(
       "laurent.seq", changed(changed(seq, "SO 0.0", "prv\n'own' LAU 2.25 0 0\nend\nSO 0.0"), "NBK7_SCHOTT", "'own'"));
@@ -366,8 +366,7 @@ TEST(LensFiles, CodeVsAsphericTermsGoToJ) {
   }
   Lens const high = lens_of_text("high.seq", changed(seq, "STO;", "STO; J 1e-20; A 1e-7;"));
   EXPECT_NEAR(sag_of_first_surface(high, 5), sphere_sag(0.02, 5) + 1e-7 * 625 + 1e-20 * std::pow(5, 20), 1e-15);
-  EXPECT_THAT(refusal("cuf.seq", changed(seq, "STO;", "STO; CUF 0.1;")),
-              AllOf(HasSubstr("cuf.seq:9"), HasSubstr("CUF")));
+  EXPECT_EQ(refusal("cuf.seq", changed(seq, "STO;", "STO; CUF 0.1;")), "unsupported at cuf.seq:9");
 }
 
 // DAR: the surface at 12 mm is decentred by 1 mm and tilted by 30 degrees, and the next one is on the axis at 32 mm.
@@ -463,7 +462,7 @@ TEST(LensFiles, CodeVsShiftAlongTheAxisIsADistance) {
 // of 10 mm, and are therefore taken as radii. A program that reads radii computes 50.33 mm.
 TEST(LensFiles, WithoutRdmNumbersAreCurvaturesUnlessTheyCannotBe) {
   Lens const lens = lens_of_case("without_rdm.seq");
-  EXPECT_THAT(lens.warnings, Contains(AllOf(HasSubstr("without_rdm.seq:7"), HasSubstr("no RDM"))));
+  EXPECT_THAT(lens.warnings, Contains(HasSubstr("without_rdm.seq:7")));
   auto const index = [](char const* name) {
     return GlassCatalogue::shipped().match(name, 587.6e-9, "").glass->index(587.6e-9);
   };
@@ -482,9 +481,8 @@ TEST(LensFiles, WithoutRdmNumbersAreCurvaturesUnlessTheyCannotBe) {
 
 TEST(LensFiles, CodeVCommandsThatChangeTheSurfaceAreRefusedAndOthersNoted) {
   for (char const* const command : {"GRT", "DIF DOE", "HOE", "SPS XYP", "YTO", "RET S1", "NSS"}) {
-    EXPECT_THAT(
-        refusal("refused.seq", changed(seq, "STO;", std::string("STO; ") + command + ";")),
-        AllOf(HasSubstr("refused.seq:9"), HasSubstr(std::string(command).substr(0, 3)), HasSubstr("is not supported")))
+    EXPECT_EQ(refusal("refused.seq", changed(seq, "STO;", std::string("STO; ") + command + ";")),
+              "unsupported at refused.seq:9")
         << command;
   }
   Lens const lens = lens_of_text("noted.seq", changed(seq, "STO;", "STO; QQQ 1; WWW; QQQ 2;"));
@@ -524,8 +522,7 @@ TEST(LensFiles, CodeVsRefractionModeMakesAMirror) {
             f);
   EXPECT_EQ(focal_length_mm(lens_of_text("refr.seq", changed(seq, "STO;", "STO; RMD REFR;"))),
             focal_length_mm(lens_of_text("plain.seq", seq)));
-  EXPECT_THAT(refusal("tir.seq", changed(seq, "STO;", "STO; RMD TIR;")),
-              AllOf(HasSubstr("tir.seq:9"), HasSubstr("RMD TIR")));
+  EXPECT_EQ(refusal("tir.seq", changed(seq, "STO;", "STO; RMD TIR;")), "unsupported at tir.seq:9");
 }
 
 // PIM puts the image at its paraxial position, whatever the last thickness is; the thickness of SI is its defocus.
@@ -554,8 +551,7 @@ TEST(LensFiles, VignettingFactorsAreNotUsed) {
   for (std::string const key : {"VDXN", "VDYN", "VCXN", "VCYN", "VANN", "VDXD", "VDYD", "VCXD", "VCYD"}) {
     Lens const lens = of_zemax(key + " 0 0.2 0 0");
     EXPECT_EQ(focal_length_mm(lens), f) << key;
-    EXPECT_THAT(lens.warnings,
-                ElementsAre(AllOf(HasSubstr("factors.zmx:11: " + key), HasSubstr("vignetting factors are not used"))));
+    EXPECT_THAT(lens.warnings, ElementsAre(HasSubstr("factors.zmx:11: " + key)));
     EXPECT_THAT(of_zemax(key + " 0 0 0 0").warnings, IsEmpty()) << key;
   }
   EXPECT_THAT(of_zemax("VDXN 0 0.1\nVDYN 0 0.1\nVCXN 0 0.2\nVCYN 0 0.2\nVANN 0 0").warnings,
@@ -564,8 +560,7 @@ TEST(LensFiles, VignettingFactorsAreNotUsed) {
     auto const of_codev = [&](std::string const& factors) {
       return lens_of_text("factors.seq", changed(seq, "REF 2", "REF 2\n" + key + factors)).warnings;
     };
-    EXPECT_THAT(of_codev(" 0 0.2"),
-                ElementsAre(AllOf(HasSubstr("factors.seq:7: " + key), HasSubstr("vignetting factors are not used"))));
+    EXPECT_THAT(of_codev(" 0 0.2"), ElementsAre(HasSubstr("factors.seq:7: " + key)));
     EXPECT_THAT(of_codev(" 0 0"), IsEmpty()) << key;
   }
 }
@@ -583,7 +578,7 @@ TEST(LensFiles, CodeVsOtherFieldsAreNamed) {
 
 TEST(LensFiles, WithoutAnImageTheLastThicknessLeadsToIt) {
   Lens const lens = lens_of_text("open.seq", changed(seq, "SI 0.0 0.0\n", ""));
-  EXPECT_THAT(lens.warnings, ElementsAre(AllOf(HasSubstr("open.seq:10"), HasSubstr("no image surface SI"))));
+  EXPECT_THAT(lens.warnings, ElementsAre(HasSubstr("open.seq:10")));
   EXPECT_NEAR(analyse_field(lens, paraxial_lens(lens), 16).image_plane / unit::millimetre, 47, 1e-12);
 }
 
@@ -598,13 +593,10 @@ TEST(LensFiles, PrivateGlassesNeedAnIndexForEveryWavelengthAndAnEnd) {
   auto const with = [](std::string const& glasses) {
     return changed(changed(seq, "SO 0.0", glasses + "SO 0.0"), "NBK7_SCHOTT", "'own'");
   };
-  EXPECT_THAT(refusal("few.seq", with("PRV\nPWL 656.3 587.6 486.1\n'own' 1.5 1.51\nEND\n")),
-              AllOf(HasSubstr("few.seq:9"), HasSubstr("2 indices for 3 wavelengths")));
-  EXPECT_THAT(refusal("many.seq", with("PRV\nPWL 587.6\n'own' 1.5 1.51\nEND\n")),
-              AllOf(HasSubstr("many.seq:9"), HasSubstr("2 indices for 1 wavelengths")));
-  EXPECT_THAT(refusal("endless.seq", with("PRV\nPWL 656.3 486.1\n'own' 1.5 1.51\n")),
-              AllOf(HasSubstr("endless.seq:7"), HasSubstr("END")));
-  EXPECT_THAT(refusal("cut.seq", "RDM\nPRV\nPWL 656.3 486.1\n"), AllOf(HasSubstr("cut.seq:2"), HasSubstr("END")));
+  EXPECT_EQ(refusal("few.seq", with("PRV\nPWL 656.3 587.6 486.1\n'own' 1.5 1.51\nEND\n")), "wrong_shape at few.seq:9");
+  EXPECT_EQ(refusal("many.seq", with("PRV\nPWL 587.6\n'own' 1.5 1.51\nEND\n")), "wrong_shape at many.seq:9");
+  EXPECT_EQ(refusal("endless.seq", with("PRV\nPWL 656.3 486.1\n'own' 1.5 1.51\n")), "syntax at endless.seq:7");
+  EXPECT_EQ(refusal("cut.seq", "RDM\nPRV\nPWL 656.3 486.1\n"), "syntax at cut.seq:2");
 }
 
 // The unit of length may be in lower case.
@@ -737,9 +729,9 @@ TEST(LensFiles, TheDocumentedZemaxCommandsAreObeyed) {
 
 TEST(LensFiles, GratingsAndOtherSurfacesAreRefusedByName) {
   for (char const* const type : {"DGRATING", "GRINSUR1", "BIREFRIN", "NONSEQCO", "BINARY_2", "TOROIDAL", "FZERNSAG"}) {
-    EXPECT_THAT(refusal("type.zmx",
-                        changed(zmx, "TYPE STANDARD\n  CURV -0.02", std::string("TYPE ") + type + "\n  CURV -0.02")),
-                AllOf(HasSubstr("type.zmx:23"), HasSubstr(type), HasSubstr("is not supported")))
+    EXPECT_EQ(refusal("type.zmx",
+                      changed(zmx, "TYPE STANDARD\n  CURV -0.02", std::string("TYPE ") + type + "\n  CURV -0.02")),
+              "unsupported at type.zmx:23")
         << type;
   }
 }
@@ -761,7 +753,7 @@ TEST(LensFiles, TheFilesCatalogueIsThatOfAGlassOfSeveral) {
   other.catalogues.clear();
   Lens const assumed = build_lens(other, glasses, spectral_line::d);
   EXPECT_NEAR(focal_length_mm(assumed), schott, 1e-10);
-  EXPECT_THAT(assumed.warnings, ElementsAre(AllOf(HasSubstr("zmx:18"), HasSubstr("OHARA:SF1"), HasSubstr("is taken"))));
+  EXPECT_THAT(assumed.warnings, ElementsAre(AllOf(HasSubstr("zmx:18"), HasSubstr("OHARA:SF1"))));
 }
 
 // A usable glass, one with an index below 1, and one without a range of wavelengths.
@@ -772,16 +764,7 @@ TEST(LensFiles, AnOddGlassLeavesItsCatalogueUsable) {
   EXPECT_NEAR(glasses.match("GOODCROWN", spectral_line::d, "").glass->nd(), std::sqrt(2.5571), 1e-15);
   EXPECT_THAT(glasses.warnings(), ElementsAre(AllOf(HasSubstr("good_and_odd_glass.agf:5: 2 of 3 glasses"),
                                                     HasSubstr("ODDGLASS (line 5"), HasSubstr("NORANGE (line 8"))));
-  EXPECT_THAT(
-      [&] {
-        try {
-          glasses.match("NORANGE", spectral_line::d, "lens:1");
-        } catch (DataError const& error) {
-          return std::string(error.what());
-        }
-        return std::string();
-      }(),
-      AllOf(HasSubstr("cannot be used"), HasSubstr("good_and_odd_glass.agf:8")));
+  EXPECT_EQ(error_of([&] { glasses.match("NORANGE", spectral_line::d, "lens:1"); }), "invalid_value at lens:1");
 }
 
 // Coefficients that continue on the next line define the same glass, nd 2.00069, and hence the same lens.
@@ -851,19 +834,20 @@ TEST(LensFiles, OtherProgramsLeaveOutTheObjectOrWriteMirrorsAsIndices) {
                                  "MODE SEQ\nUNIT MM\nSURF 1\n  CURV 0.02\n  DISZ 6\n  DIAM 8\n  GLAS ___BLANK 1 0 1.5\n"
                                  "SURF 2\n  CURV -0.02\n  DISZ 47\n  DIAM 8\n");
   EXPECT_NEAR(focal_length_mm(bare), traced_focal_length({0.02, -0.02}, {1, 1.5, 1}, {6}), 1e-10);
-  EXPECT_THAT(bare.warnings, Contains(AllOf(HasSubstr("bare.zmx:3"), HasSubstr("taken at infinity"))));
+  EXPECT_THAT(bare.warnings, Contains(HasSubstr("bare.zmx:3")));
   std::string const reflecting =
       changed(changed(zmx, "DISZ 6.0", "DISZ -6.0"), "GLAS N-BK7 0 0 1.5 40", "GLAS ___BLANK 1 0 -1 0");
   Lens const mirror = lens_of_text("mirror.zmx", changed(reflecting, "CURV -0.02", "CURV 0"));
   EXPECT_NEAR(std::abs(focal_length_mm(mirror)), 25, 1e-12);
-  EXPECT_THAT(mirror.warnings, Contains(AllOf(HasSubstr("mirror.zmx:20"), HasSubstr("taken as a mirror"))));
+  EXPECT_THAT(mirror.warnings, Contains(HasSubstr("mirror.zmx:20")));
 }
 
 TEST(LensFiles, ConfigurationsEnvironmentAndCurvedImagesAreNotedOnce) {
   std::string const text =
       changed(changed(zmx, "PWAV 2", "PWAV 2\nMNUM 3 1\nENVD 40 1 1"), "SURF 3\n", "SURF 3\n  CURV 0.01\n");
   EXPECT_THAT(lens_of_text("noted.zmx", text).warnings,
-              IsSupersetOf({HasSubstr("3 configurations"), HasSubstr("ENVD"), HasSubstr("image is curved")}));
+              UnorderedElementsAre(HasSubstr("noted.zmx:11: MNUM"), HasSubstr("noted.zmx:12: ENVD"),
+                                   HasSubstr("noted.zmx:29")));
 }
 
 }  // namespace

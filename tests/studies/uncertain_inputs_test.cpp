@@ -1,16 +1,14 @@
 #include "studies/case/uncertain_inputs.h"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <regex>
 
 #include "studies/case/case.h"
+#include "tests/support/expect_error.h"
 
 namespace gladstone {
 namespace {
-
-using testing::HasSubstr;
 
 constexpr char const* uncertain = R"(schema = 1
 [camera]
@@ -26,12 +24,9 @@ window_px = [32, 16]
 )";
 
 std::string complaint(std::string const& number) {
-  try {
+  return error_of([&] {
     load_case_setup(SetupDocument::from_text("schema = 1\n[geometry]\nz_d_mm = " + number + "\n", "setup.toml"));
-  } catch (SetupError const& error) {
-    return error.what();
-  }
-  return "nothing";
+  });
 }
 
 TEST(UncertainInputs, AreNumbersToAllThatReadThem) {
@@ -71,15 +66,14 @@ TEST(UncertainInputs, StayInTheResolvedSetup) {
 }
 
 TEST(UncertainInputs, AreRefusedAtTheirPlaceWithTheCure) {
-  EXPECT_THAT(complaint("{ value = 250.0 }"), testing::AllOf(HasSubstr("setup.toml:3:1: geometry.z_d_mm = "),
-                                                             HasSubstr("has a value without an uncertainty; write")));
-  EXPECT_THAT(complaint("{ value = 250.0, sigma = -1 }"), HasSubstr("write a number of 0 or more"));
-  EXPECT_THAT(complaint("{ value = 250.0, sigma = 1, distribution = \"flat\" }"),
-              HasSubstr("use \"normal\" or \"rectangular\""));
-  EXPECT_THAT(complaint("{ value = 250.0, sigma = 1, degrees_of_freedom = 0 }"), HasSubstr("a number of 1 or more"));
-  EXPECT_THAT(complaint("{ value = 250.0, sigme = 1 }"), HasSubstr("did you mean sigma?"));
-  EXPECT_THAT(complaint("{ value = -250.0, sigma = 1 }"), HasSubstr("setup.toml:3:1: "));
-  EXPECT_EQ(complaint("{ value = 250.0, sigma = 1 }"), "nothing");
+  EXPECT_EQ(complaint("{ value = 250.0 }"), "invalid_value at setup.toml:3:1");
+  EXPECT_EQ(complaint("{ value = 250.0, sigma = -1 }"), "invalid_value at setup.toml:3:1");
+  EXPECT_EQ(complaint("{ value = 250.0, sigma = 1, distribution = \"flat\" }"), "invalid_value at setup.toml:3:1");
+  EXPECT_EQ(complaint("{ value = 250.0, sigma = 1, degrees_of_freedom = 0 }"), "invalid_value at setup.toml:3:1");
+  EXPECT_EQ(complaint("{ value = 250.0, sigme = 1 }"),
+            "invalid_value at setup.toml:3:1, invalid_value at setup.toml:3:1");
+  EXPECT_EQ(complaint("{ value = -250.0, sigma = 1 }"), "out_of_range at setup.toml:3:1");
+  EXPECT_EQ(complaint("{ value = 250.0, sigma = 1 }"), "");
 }
 
 constexpr char const* correlated = R"(schema = 1
@@ -97,12 +91,7 @@ window_px = [32, 16]
 )";
 
 std::string correlation_complaint(std::string const& tables) {
-  try {
-    load_case_setup(SetupDocument::from_text(std::string(correlated) + tables, "setup.toml"));
-  } catch (SetupError const& error) {
-    return error.what();
-  }
-  return "nothing";
+  return error_of([&] { load_case_setup(SetupDocument::from_text(std::string(correlated) + tables, "setup.toml")); });
 }
 
 std::string pair_of(std::string const& keys, std::string const& coefficient) {
@@ -131,46 +120,40 @@ TEST(UncertainInputs, AreCorrelatedInPairsAndStaySo) {
     EXPECT_EQ(again.correlations.size(), again.key.starts_with("geometry.") ? 1u : 0u) << again.key;
   }
   load_case_setup(std::move(written));
-  EXPECT_EQ(correlation_complaint(pair_of(both_distances, "-0.8")), "nothing");
+  EXPECT_EQ(correlation_complaint(pair_of(both_distances, "-0.8")), "");
 }
 
 TEST(UncertainInputs, AreCorrelatedAsNumbersCanBe) {
-  EXPECT_THAT(correlation_complaint(pair_of(both_distances, "1.2")),
-              testing::AllOf(HasSubstr("setup.toml:15:1: correlations"), HasSubstr("write a number from -1 to 1")));
-  EXPECT_THAT(correlation_complaint("[[correlations]]\nkeys = " + std::string(both_distances) + '\n'),
-              HasSubstr("write a number from -1 to 1"));
-  EXPECT_THAT(correlation_complaint(pair_of(R"(["geometry.z_a_mm"])", "0.5")), HasSubstr("must name two inputs"));
-  EXPECT_THAT(correlation_complaint(pair_of(R"(["geometry.z_a_mm", "geometry.z_a_mm"])", "0.5")),
-              HasSubstr("must name two inputs"));
-  EXPECT_THAT(correlation_complaint(pair_of(R"(["geometry.z_a_mm", "geometry.z_c_mm"])", "0.5")),
-              testing::AllOf(HasSubstr("setup.toml:14:1: correlations"), HasSubstr("did you mean geometry.z_")));
-  EXPECT_THAT(correlation_complaint(pair_of(R"(["geometry.z_a_mm", "medium.thickness_mm"])", "0.5")),
-              HasSubstr("remove its distribution, or the correlation"));
-  EXPECT_THAT(correlation_complaint(pair_of(both_distances, "0.5\nsigma = 1")),
-              HasSubstr("is not a key of correlations"));
-  EXPECT_THAT(correlation_complaint(pair_of(both_distances, "0.5") + pair_of(both_distances, "0.5")),
-              HasSubstr("setup.toml:17:1: correlations"));
+  EXPECT_EQ(correlation_complaint(pair_of(both_distances, "1.2")), "invalid_value at setup.toml:15:1");
+  EXPECT_EQ(correlation_complaint("[[correlations]]\nkeys = " + std::string(both_distances) + '\n'),
+            "invalid_value at setup.toml:13:1");
+  EXPECT_EQ(correlation_complaint(pair_of(R"(["geometry.z_a_mm"])", "0.5")), "invalid_value at setup.toml:14:1");
+  EXPECT_EQ(correlation_complaint(pair_of(R"(["geometry.z_a_mm", "geometry.z_a_mm"])", "0.5")),
+            "invalid_value at setup.toml:14:1");
+  EXPECT_EQ(correlation_complaint(pair_of(R"(["geometry.z_a_mm", "geometry.z_c_mm"])", "0.5")),
+            "invalid_value at setup.toml:14:1");
+  EXPECT_EQ(correlation_complaint(pair_of(R"(["geometry.z_a_mm", "medium.thickness_mm"])", "0.5")),
+            "invalid_value at setup.toml:14:1");
+  EXPECT_EQ(correlation_complaint(pair_of(both_distances, "0.5\nsigma = 1")), "invalid_value at setup.toml:16:1");
+  EXPECT_EQ(correlation_complaint(pair_of(both_distances, "0.5") + pair_of(both_distances, "0.5")),
+            "invalid_value at setup.toml:17:1");
   // a value that is not a number is reported once, at its place
   std::string const bad = std::regex_replace(std::string(correlated), std::regex("z_d_mm = \\{ value = [0-9.]+"),
                                              "z_d_mm = { value = \"far\"");
   ASSERT_NE(bad, correlated);
-  try {
-    load_case_setup(SetupDocument::from_text(bad + pair_of(both_distances, "0.5"), "setup.toml"));
-    FAIL() << "a value of \"far\" passed";
-  } catch (SetupError const& error) {
-    EXPECT_THAT(error.what(), testing::AllOf(HasSubstr("geometry.z_d_mm"), testing::Not(HasSubstr("correlations"))));
-  }
+  EXPECT_EQ(
+      error_of([&] { load_case_setup(SetupDocument::from_text(bad + pair_of(both_distances, "0.5"), "setup.toml")); }),
+      "wrong_type at setup.toml:8:1");
   // two inputs correlated with a third one cannot be anticorrelated: the determinant is 1 - 3 (0.9)^2 - 2 (0.9)^3 < 0
   std::string const with_lens = pair_of(R"(["lens.focal_length_mm", "geometry.z_a_mm"])", "0.9") +
                                 pair_of(R"(["lens.focal_length_mm", "geometry.z_d_mm"])", "0.9");
-  EXPECT_THAT(correlation_complaint(with_lens + pair_of(both_distances, "-0.9")),
-              testing::AllOf(HasSubstr("setup.toml:21:1: correlations"), HasSubstr("negative eigenvalue")));
-  EXPECT_EQ(correlation_complaint(with_lens + pair_of(both_distances, "0.9")), "nothing");
+  EXPECT_EQ(correlation_complaint(with_lens + pair_of(both_distances, "-0.9")), "invalid_value at setup.toml:21:1");
+  EXPECT_EQ(correlation_complaint(with_lens + pair_of(both_distances, "0.9")), "");
   // coefficients may be impossible as long as some pairs are missing: 1, 1 and none
   std::string const all_one = pair_of(R"(["lens.focal_length_mm", "geometry.z_a_mm"])", "1") +
                               pair_of(R"(["lens.focal_length_mm", "geometry.z_d_mm"])", "1");
-  EXPECT_THAT(correlation_complaint(all_one), HasSubstr("negative eigenvalue"));
-  EXPECT_EQ(correlation_complaint(all_one + pair_of(both_distances, "1")), "nothing");
+  EXPECT_EQ(correlation_complaint(all_one), "invalid_value at setup.toml:18:1");
+  EXPECT_EQ(correlation_complaint(all_one + pair_of(both_distances, "1")), "");
 }
 
 }  // namespace

@@ -29,6 +29,21 @@ inline std::string code_and_place(ErrorCode code, std::string const& place) {
 inline std::string code_and_place(Error const& error) { return code_and_place(error.code(), error.place()); }
 inline std::string code_and_place(SetupProblem const& problem) { return code_and_place(problem.code, problem.where); }
 
+/// Returns "CODE at PLACE" of the error that an action throws, one for each problem of a setup; empty if it succeeds.
+template <class Action>
+std::string error_of(Action const& action) {
+  try {
+    action();
+  } catch (SetupError const& error) {
+    std::string found;
+    for (SetupProblem const& one : error.problems()) found += (found.empty() ? "" : ", ") + code_and_place(one);
+    return found;
+  } catch (Error const& error) {
+    return code_and_place(error);
+  }
+  return "";
+}
+
 /// Matches a function that throws a DataError. @param place  end of the error's place, such as "bad.csv:2"
 inline auto ThrowsDataError(ErrorCode code, std::string place) {
   return testing::Throws<DataError>(

@@ -7,8 +7,8 @@
 #include <fstream>
 #include <string>
 
-#include "render/base/error.h"
 #include "studies/sweep/plan.h"
+#include "tests/support/expect_error.h"
 
 namespace gladstone {
 
@@ -59,21 +59,9 @@ class StudyFolder : public testing::Test {
   }
   std::vector<ManifestCase> plan(std::string const& text) const { return all_cases(plan_study(study(text), "cpu")); }
 
-  /// Returns the error message of planning the study.
+  /// Returns "CODE at PLACE" of each error of planning the study; empty if it is planned.
   std::string complaint(std::string const& text) const {
-    try {
-      plan(text);
-    } catch (SetupError const& error) {
-      return error.what();
-    }
-    return "nothing";
-  }
-  /// Expects planning to report an error at exactly this place, "line:column" of the study, with all these texts.
-  void expect_refused(std::string const& text, std::string const& place, std::vector<std::string> const& pieces) const {
-    std::string const what = complaint(text);
-    EXPECT_TRUE(what.starts_with(in("study.toml") + ':' + place + ": ")) << what;
-    for (std::string const& piece : pieces) EXPECT_THAT(what, testing::HasSubstr(piece));
-    EXPECT_EQ(what.find('\n'), std::string::npos) << what;
+    return error_of([&] { plan(text); });
   }
 
   std::filesystem::path folder_;
