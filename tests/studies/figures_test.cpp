@@ -22,7 +22,6 @@
 namespace gladstone {
 namespace {
 
-using ::testing::HasSubstr;
 
 class Figures : public ::testing::Test {
  protected:
