@@ -23,7 +23,8 @@ int first_spacing(int spacing_px) {
 
 }  // namespace
 
-Image<Vec2d> displacement_truth(Scene const& scene, Renderer& renderer, TruthAt at, int spacing_px) {
+Image<Vec2d> displacement_truth(Scene const& scene, Renderer& renderer, TruthAt at, int spacing_px,
+                                TracedPixels traced) {
   GLADSTONE_EXPECTS(spacing_px >= 1);
   CameraSetup const& camera = scene.setup.camera;
   int const columns = (camera.columns + spacing_px - 1) / spacing_px,
@@ -38,8 +39,8 @@ Image<Vec2d> displacement_truth(Scene const& scene, Renderer& renderer, TruthAt 
                                         : truth_at_points(scene, renderer, places, at, RenderTheory::no);
     return {std::move(truth.displacement_px), std::move(truth.displacement_error_px)};
   };
-  bool const fast = scene.setup.piv && has_projected_displacements(scene);
-  return refine_map(columns, rows, fast ? 1 : first_spacing(spacing_px), sample);
+  bool const all = traced == TracedPixels::all || (scene.setup.piv && has_projected_displacements(scene));
+  return refine_map(columns, rows, all ? 1 : first_spacing(spacing_px), sample);
 }
 
 }  // namespace gladstone
