@@ -32,12 +32,14 @@ nb::object truth_array(nb::handle_t<PairCase> self, std::string const& name) {
 }
 
 /// Computes the displacement at the pixels. @return [rows, columns, 2], in px
-nb::object flow(PairCase& self, bool at_frame_a, int spacing_px, std::string const& device_name, nb::handle progress) {
+nb::object flow(PairCase& self, bool at_frame_a, int spacing_px, bool exact, std::string const& device_name,
+                nb::handle progress) {
   Image<Vec2d> const map = run(
       [&] {
         Backend const device = open_device(device_name);
         return displacement_truth(self.prepared().scene, *device.renderer,
-                                  at_frame_a ? TruthAt::reference : TruthAt::mid_position, spacing_px);
+                                  at_frame_a ? TruthAt::reference : TruthAt::mid_position, spacing_px,
+                                  exact ? TracedPixels::all : TracedPixels::adaptive);
       },
       progress);
   std::vector<double> numbers;
@@ -51,8 +53,8 @@ nb::object flow(PairCase& self, bool at_frame_a, int spacing_px, std::string con
 
 void bind_truth(nb::module_& module) {
   module.def("truth_array", &truth_array, nb::arg("case"), nb::arg("name"));
-  module.def("flow", &flow, nb::arg("case"), nb::arg("at_frame_a"), nb::arg("spacing_px"), nb::arg("device"),
-             nb::arg("progress").none());
+  module.def("flow", &flow, nb::arg("case"), nb::arg("at_frame_a"), nb::arg("spacing_px"), nb::arg("exact"),
+             nb::arg("device"), nb::arg("progress").none());
 }
 
 }  // namespace gladstone::python

@@ -4,6 +4,7 @@
 
 #include "analysis/errors/window_truth.h"
 #include "studies/commands/description.h"
+#include "studies/compare/displacement_truth.h"
 
 namespace gladstone {
 
@@ -16,8 +17,9 @@ struct VectorConversion {
   /// Distance of the pixels at which the truth of a case is computed [px]; 0: 1 for formats of grids (.nc, .vti), for
   /// others the truth of the dots or particles.
   int spacing_px = 0;
-  TruthAt truth_at = TruthAt::mid_position;  ///< position to which the truth at a pixel belongs
-  std::string device = "auto";               ///< computes the truth at pixels
+  TruthAt truth_at = TruthAt::mid_position;      ///< position to which the truth at a pixel belongs
+  TracedPixels traced = TracedPixels::adaptive;  ///< pixels to which rays are traced
+  std::string device = "auto";                   ///< computes the truth at pixels
 };
 
 struct ConvertedVectors {

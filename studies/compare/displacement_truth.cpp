@@ -22,7 +22,8 @@ int first_spacing(int spacing_px) {
 
 }  // namespace
 
-Image<Vec2d> displacement_truth(Scene const& scene, Renderer& renderer, TruthAt at, int spacing_px) {
+Image<Vec2d> displacement_truth(Scene const& scene, Renderer& renderer, TruthAt at, int spacing_px,
+                                TracedPixels traced) {
   GLADSTONE_EXPECTS(spacing_px >= 1);
   CameraSetup const& camera = scene.setup.camera;
   ComparisonKind const& kind = comparison_kind(scene.setup);
@@ -37,7 +38,8 @@ Image<Vec2d> displacement_truth(Scene const& scene, Renderer& renderer, TruthAt 
     GroundTruth truth = kind.displacements(scene, renderer, places, at);
     return {std::move(truth.displacement_px), std::move(truth.displacement_error_px)};
   };
-  return refine_map(columns, rows, kind.without_rays(scene) ? 1 : first_spacing(spacing_px), sample);
+  bool const all = traced == TracedPixels::all || kind.without_rays(scene);
+  return refine_map(columns, rows, all ? 1 : first_spacing(spacing_px), sample);
 }
 
 }  // namespace gladstone

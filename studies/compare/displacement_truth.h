@@ -6,11 +6,17 @@
 
 namespace gladstone {
 
+/// Pixels to which rays are traced.
+enum class TracedPixels {
+  adaptive,  ///< every fourth column and row, and where the displacement is not smooth
+  all,
+};
+
 /// Computes true displacements at the pixels of a case's images from its flow or medium and its camera, independently
-/// of the case's dots or particles. Rays are traced to every fourth column and row, and to all pixels around which the
-/// displacement deviates from its cubic interpolation over 8 px by more than 5e-4 px and four standard errors; see
-/// refine_map() for the others. Without a medium, particles are projected at every pixel. Node (column, row) is the
-/// centre of pixel (column, row) * spacing_px.
+/// of the case's dots or particles. TracedPixels::adaptive: rays are traced to every fourth column and row, and to all
+/// pixels around which the displacement deviates from its cubic interpolation over 8 px by more than 5e-4 px and four
+/// standard errors; see refine_map() for the others. Features below 4 px can be missed. Without a medium, particles are
+/// projected at every pixel. Node (column, row) is the centre of pixel (column, row) * spacing_px.
 /// - PIV: displacement of a particle in the middle of the laser sheet that follows the flow as the median particle
 ///   does.
 /// - BOS: displacement of a dot of the target's size.
@@ -20,6 +26,7 @@ namespace gladstone {
 ///                    its path)
 /// @param spacing_px  distance between nodes [px]
 /// @return [px], u right, v down; NaN: no light reaches the pixel from there
-Image<Vec2d> displacement_truth(Scene const& scene, Renderer& renderer, TruthAt at, int spacing_px);
+Image<Vec2d> displacement_truth(Scene const& scene, Renderer& renderer, TruthAt at, int spacing_px,
+                                TracedPixels traced = TracedPixels::adaptive);
 
 }  // namespace gladstone

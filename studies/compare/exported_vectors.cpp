@@ -59,14 +59,15 @@ bool is_truth_file(std::string const& path) {
   return is_hdf5_name(path) && Hdf5Reader(path).attribute("filetype") == "gladstone truth";
 }
 
-ExportedVectors compute_map_for_export(std::string const& path, Renderer& renderer, TruthAt at, int spacing_px) {
+ExportedVectors compute_map_for_export(std::string const& path, Renderer& renderer, TruthAt at, int spacing_px,
+                                       TracedPixels traced) {
   ExportedVectors vectors;
   vectors.origin.filetype = "gladstone vectors";
   vectors.origin.sources.add("", path, SourceFiles::Holds::datasets);
   copy_provenance(Hdf5Reader(path), vectors.origin);
   std::string const folder = std::filesystem::path(path).parent_path().string();
   PreparedCase const prepared = prepare_stored_case(folder.empty() ? "." : folder);
-  vectors.field = vectors_of_map(displacement_truth(prepared.scene, renderer, at, spacing_px), spacing_px);
+  vectors.field = vectors_of_map(displacement_truth(prepared.scene, renderer, at, spacing_px, traced), spacing_px);
   vectors.format = "gladstone truth";
   return vectors;
 }

@@ -6,6 +6,7 @@
 #include "analysis/vectors/three_components.h"
 #include "analysis/vectors/vector_file.h"
 #include "render/scene/renderer.h"
+#include "studies/compare/displacement_truth.h"
 
 namespace gladstone {
 
@@ -30,7 +31,8 @@ ExportedVectors load_for_export(std::string const& path, std::string const& conv
 /// Computes the true displacement at the pixels of a case, see displacement_truth(), for a file in another format.
 /// @param path  truth.h5 of the case
 /// @throws DataError if the case lacks a file, or an input of its setup has changed
-ExportedVectors compute_map_for_export(std::string const& path, Renderer& renderer, TruthAt at, int spacing_px);
+ExportedVectors compute_map_for_export(std::string const& path, Renderer& renderer, TruthAt at, int spacing_px,
+                                       TracedPixels traced);
 
 /// Returns true for truth.h5 of a case.
 bool is_truth_file(std::string const& path);

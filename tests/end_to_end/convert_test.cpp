@@ -73,8 +73,10 @@ TEST_F(Convert, TruthIsWrittenAtPixels) {
     EXPECT_NEAR(map.displacement_px[100].x, dots[0], 0.02) << name;
     EXPECT_NEAR(map.displacement_px[100].y, dots[1], 0.02) << name;
   }
+  EXPECT_EQ(json_of({"convert", "case/truth.h5", "-o", "truth.csv", "--exact"})["columns"], 64);
   write("v.csv", "x,y,u,v\n1,2,3,4\n");
   expect_refused({"convert", "v.csv", "-o", "w.csv", "--spacing", "4"}, 2, {"--spacing"});
+  expect_refused({"convert", "v.csv", "-o", "w.csv", "--exact"}, 2, {"--exact"});
 }
 
 TEST_F(Convert, ForeignVectorsAreReadByTheirConventions) {
