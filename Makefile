@@ -42,7 +42,7 @@ TEST_PACKAGES := zsh fish munge slurmctld slurmd slurm-client chromium chromium-
 # skipped without them: build/python/venv/bin/pip install torch
 VENV := build/python/venv
 PYTHON_PACKAGES := 'nanobind>=2.2' 'numpy>=1.24' 'matplotlib>=3.6' pandas tqdm xarray h5py h5netcdf scipy pytest \
-	pivpy netCDF4 vtk
+	pivpy netCDF4 vtk mypy
 NOTEBOOK_PACKAGES := nbclient nbformat ipykernel ipywidgets openpiv opencv-python-headless
 WHEEL_PLATFORM ?= manylinux_2_36_x86_64
 

@@ -15,9 +15,9 @@ from . import info
 from ._batches import Batch, RenderedBatches
 from ._benchmark import BenchmarkCase, Scores, benchmark, benchmark_cases, benchmark_estimators
 from ._calibration import Calibration, calibrate
-from ._case import Accuracy, CalibrationCase, Case, Truth
+from ._calibration_case import CalibrationCase
+from ._case import Accuracy, Case, Truth
 from ._commands import Oracle, convert, demo, gallery, render_sequence, report, validate, views
-from ._core import set_threads, threads
 from ._correlate import correlate, correlate_ensemble
 from ._density import Density, reconstruct
 from ._design import Design, design
@@ -40,6 +40,7 @@ from ._setup import Setup, render
 from ._stereo import ThreeComponents, stereo
 from ._study import Study, StudyRun
 from ._templates import SetupKey, init, keys, shared_folder
+from ._threads import set_threads, threads
 from ._tomography import Tomography, reconstruct_lines, tomography, tomography_setups
 from ._trace import TracedRays, trace
 from ._version import __version__, build

@@ -66,7 +66,8 @@ def benchmark_estimators() -> list[str]:
 
 
 class Scores(list):
-    """Rows of scores, dictionaries with the keys estimator, case, seconds and the error measures."""
+    """Rows of scores, dictionaries with the keys estimator, case, seconds and the error measures: `rms_px` of all valid
+    vectors, `rms_without_gross_px` of those with errors of at most 1 px, the number `gross` of the others, ..."""
 
     def to_pandas(self):
         """Returns a pandas.DataFrame with a row for each estimator and case."""
@@ -89,7 +90,10 @@ class Scores(list):
         return "\n".join(lines)
 
     def __str__(self) -> str:
-        return self.table()
+        return "\n".join([
+            "rms error without gross errors (above 1 px), as in gladstone's published table [px]",
+            self.table("rms_without_gross_px"), "", "rms error of all valid vectors [px]", self.table(),
+        ])  # fmt: skip
 
 
 def benchmark(
@@ -110,11 +114,15 @@ def benchmark(
     at: position to which dense displacements refer: "mid" (midpoint of both images of a particle) or "a" (position in
         frame a, as for most optical-flow networks).
 
-    Returns the scores, a row for each estimator and case; `print` shows the rms errors in px.
+    Returns the scores, a row for each estimator and case; `print` shows the rms errors in px, without gross errors and of
+    all vectors.
     """
     check_choice("at", at, ("mid", "a"))
     if estimators is not None and not isinstance(estimators, Mapping):
         raise TypeError('estimators must be functions by name: {"mine": my_function}')
+    own = list(own)
+    for name in {*own} & {*(estimators or {})}:
+        raise ValueError(f'"{name}" is an estimator of gladstone that is scored, too; choose another name')
     scores = Scores()
     names = list(cases) if cases is not None else benchmark_cases()
     with reporting(progress) as report:

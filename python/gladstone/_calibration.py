@@ -5,14 +5,16 @@ from __future__ import annotations
 import json
 import os
 import tempfile
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 import numpy as np
 
 from . import _core
+from ._errors import hidden_folder
 from ._measurement import Measurement, place_of
 from ._progress import Progress, reporting
+from ._setup import Setup
 
 
 class Calibration(Measurement):
@@ -89,5 +91,7 @@ def calibrate(given, images: Iterable[str | os.PathLike] = (), *, progress: Prog
     images: your own image files, one for each plane of calibration.planes_mm in that order.
     """
     files = [os.fspath(one) for one in images]
-    with reporting(progress) as report, tempfile.TemporaryDirectory() as folder:
+    if isinstance(given, (Setup, Mapping)) and not files:
+        raise ValueError("a setup has no images; give images, one for each plane, or render it and give its case")
+    with reporting(progress) as report, tempfile.TemporaryDirectory() as folder, hidden_folder(folder):
         return Calibration(_core.calibrate(place_of(folder, given), files, report))

@@ -1,4 +1,4 @@
-"""Rendered cases: images with known displacement."""
+"""Rendered image pairs with known displacement."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 
 from . import _core
-from ._errors import check_choice
+from ._errors import check_choice, check_whole
 from ._correlate import correlate
 from ._field import Field
 from ._progress import Progress, reporting
@@ -146,6 +146,7 @@ class Truth:
         can be missed. Computed once for each choice.
         """
         check_choice("at", at, ("mid", "a"))
+        check_whole("spacing_px", spacing_px, 1, 10_000)
         choice = (at, spacing_px, exact)
         if choice not in self._flows:
             with reporting(progress) as report:
@@ -180,6 +181,9 @@ class Truth:
             )
         field.save(path)
 
+    def __repr__(self) -> str:
+        return f"<gladstone.Truth of {len(self)} sources>"
+
 
 class Case:
     """Image pair of one camera with its truth."""
@@ -192,6 +196,11 @@ class Case:
     def load(cls, folder: str | os.PathLike) -> Case:
         """Loads a CASE folder, as written by `save` or `gladstone render`."""
         return cls(_core.PairCase.load(os.fspath(folder)))
+
+    def __reduce__(self):
+        if not self._core.folder:
+            raise TypeError("a rendered case cannot be pickled; save it, and pickle Case.load(folder), or its arrays")
+        return Case.load, (os.path.abspath(self._core.folder),)
 
     @property
     def images(self) -> np.ndarray:
@@ -268,38 +277,3 @@ class Case:
     def __repr__(self) -> str:
         _, rows, columns = self.images.shape
         return f"<gladstone.Case {'PIV' if self.is_piv else 'BOS'}, {columns} x {rows} px, {len(self.truth)} sources>"
-
-
-class CalibrationCase:
-    """Images of a dot grid in several planes, taken by one camera."""
-
-    def __init__(self, core: _core.PlanesCase):
-        self._core = core
-
-    @property
-    def images(self) -> np.ndarray:
-        """[planes, rows, columns] grey levels, uint16."""
-        return self._core.images()
-
-    @property
-    def planes_m(self) -> np.ndarray:
-        """[planes] Z of each plane [m]."""
-        return np.asarray(self._core.planes_m)
-
-    @property
-    def setup(self) -> Setup:
-        """Setup with every default, and the value used in place of every "auto"."""
-        return Setup(self._core.resolved())
-
-    def save(self, folder: str | os.PathLike) -> None:
-        """Writes the CASE folder: plane_000.tif, ..., truth.h5, setup.toml, summary.json."""
-        self._core.save(os.fspath(folder))
-
-    def __repr__(self) -> str:
-        planes, rows, columns = self.images.shape
-        return f"<gladstone.CalibrationCase {planes} planes, {columns} x {rows} px>"
-
-
-def wrap(core):
-    """Returns the Python object of a rendered camera."""
-    return Case(core) if isinstance(core, _core.PairCase) else CalibrationCase(core)

@@ -9,8 +9,9 @@ from collections.abc import Iterable, Mapping
 from typing import Any, Literal, NamedTuple
 
 from . import _core
-from ._errors import check_choice
+from ._errors import check_choice, check_whole, hidden_folder
 from ._progress import Progress, reporting
+from ._report import check_report_ending
 from ._setup import Setup, as_setup
 
 
@@ -30,7 +31,7 @@ def render_sequence(
     Returns the contents of summary.json.
     """
     given = as_setup(setup)
-    with tempfile.TemporaryDirectory() as temporary, reporting(progress) as report:
+    with tempfile.TemporaryDirectory() as temporary, hidden_folder(temporary), reporting(progress) as report:
         path, overrides = os.path.join(given._core.folder, os.path.basename(given._core.name)), given._core.overrides
         if not given._from_file:
             path, overrides = os.path.join(temporary, "setup.toml"), []
@@ -62,6 +63,8 @@ def convert(
     Returns the `format` of the source and the numbers of `vectors`, of `valid` ones, and of grid `columns` and `rows`.
     """
     check_choice("at", at, ("mid", "a"))
+    check_whole("image_rows", image_rows, 0, 1_000_000)
+    check_whole("spacing_px", spacing_px, 0, 10_000)
     with reporting(progress) as report:
         found = _core.convert(
             os.fspath(source), os.fspath(path), conventions, image_rows, spacing_px, at == "a", device, report
@@ -80,6 +83,7 @@ def views(
 
     Returns the contents of views.json.
     """
+    check_whole("across", across, 1, 99)
     place = os.path.join(os.fspath(case), "views") if folder is None else os.fspath(folder)
     return json.loads(_core.views(os.fspath(case), place, across, refocus_mm))
 
@@ -107,6 +111,7 @@ def report(
     """
     check_choice("figure_format", figure_format, ("png", "svg", "pdf"))
     place = os.path.join(os.fspath(folder), "report.html") if path is None else os.fspath(path)
+    check_report_ending(place)
     drawn = os.fspath(figures)
     if place.endswith(".md") and not drawn:
         drawn = os.path.splitext(place)[0] + "_figures"

@@ -10,7 +10,7 @@ import numpy as np
 
 from . import _core, _toml
 from ._field import Field
-from ._images import check_image, host_image
+from ._images import image_array, mask_images
 from ._messages import deliver
 from ._progress import Progress, reporting
 
@@ -24,23 +24,35 @@ def overrides(settings: dict[str, Any]) -> list[str]:
     return [f"correlate.{name}={_toml.value(value)}" for name, value in given.items()]
 
 
+def image_files(images: Iterable[str | os.PathLike]) -> list[str]:
+    """Returns the names of image files. Raises TypeError for arrays."""
+    given = list(images)
+    for one in given:
+        if not isinstance(one, (str, os.PathLike)):
+            raise TypeError(f"images must be names of image files, got {type(one).__name__}; write arrays to files first")
+    return [os.fspath(one) for one in given]
+
+
 def correlate(a, b, *, device: str = "auto", progress: Progress = False, **settings) -> Field:
     """Measures the displacement from frame a to frame b by cross-correlation.
 
-    a, b: images [rows, columns] of any array library with the buffer or the DLPack protocol (NumPy, torch, CuPy, JAX),
-        of integers or floats, in any memory layout. BOS: the reference image first. Each is copied once, to float64.
+    a, b: images [rows, columns] of any array library (NumPy, xarray, torch, CuPy, JAX, ...), of integers or of 32- or
+        64-bit floats, in any memory layout. BOS: the reference image first. Each is copied once, to float64. Pixels
+        that are NaN, or masked by numpy.ma, are excluded from the windows.
     window: size of the interrogation window in each pass [px], for example [64, 32, 24, 20].
     overlap: fraction of the window that neighbouring windows share.
     uncertainty: method that estimates sigma_u and sigma_v; default: correlation statistics on a CPU, none on a GPU.
-    Further settings are the keys of the table [correlate]: method, subpixel, weighting, mask, ...
+    mask: array of bool [rows, columns] that is True at the pixels to exclude, as in numpy.ma; or tables [correlate.mask].
+    Further settings are the keys of the table [correlate]: method, subpixel, weighting, ...
 
     The vectors are equal bit by bit to those of `gladstone correlate`.
     Raises `SetupError` for settings and `DataError` for images that cannot be correlated.
     """
-    check_image(a, "a")
-    check_image(b, "b")
+    a, b = image_array(a, "a"), image_array(b, "b")
+    if getattr(settings.get("mask"), "dtype", None) == bool:
+        a, b = mask_images(settings.pop("mask"), a, b)
     with reporting(progress) as report:
-        core = _core.correlate(host_image(a), host_image(b), overrides(settings), device, report)
+        core = _core.correlate(a, b, overrides(settings), device, report)
     field = Field._of(core)
     warnings = field.warnings
     if not warnings and not field.valid.any():
@@ -58,11 +70,11 @@ def correlate_ensemble(
     """Measures one displacement field from many pairs, by the mean of their correlation planes, on the CPU.
 
     images: image files, frames a and b of each pair in turn, all of one size.
-    settings: window, overlap, method, ..., as for `correlate`.
+    settings: window, overlap, method, ..., as for `correlate`; `mask` must be tables.
 
     The vectors are equal bit by bit to those of `gladstone correlate --ensemble`.
     """
-    files = [os.fspath(one) for one in images]
+    files = image_files(images)
     if not files or len(files) % 2:
         raise ValueError(f"got {len(files)} images; give frames a and b of each pair")
     with reporting(progress) as report:

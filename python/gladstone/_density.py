@@ -11,7 +11,7 @@ import numpy as np
 
 from . import _core
 from ._case import Case
-from ._errors import check_choice
+from ._errors import check_choice, check_whole, hidden_folder
 from ._measurement import Box, InputFolder, Measurement, place_of, reference_texts, vectors_place
 from ._progress import Progress, reporting
 from ._xarray import grid_variable
@@ -160,7 +160,7 @@ def reconstruct(
     axis: Abel inversion of an axisymmetric flow: "vertical" or "horizontal", whose position is determined, or "x=1.5",
         "y=-2" in mm.
     abel, lambda_: inversion "direct" or "tikhonov", and its regularisation parameter, default by cross-validation.
-    samples: number of random samples for the uncertainty of large grids.
+    samples: number of random samples, 10 to 100000, for the uncertainty of large grids.
     budget: splits the error of a rendered case into its causes.
     conventions: conventions of a file of vectors of another program.
 
@@ -168,9 +168,10 @@ def reconstruct(
     """
     check_choice("method", method, ("wls", "poisson"))
     check_choice("abel", abel, ("direct", "tikhonov"))
+    check_whole("samples", samples, 10, 100_000)
     inputs = InputFolder()
     folder = inputs.name
-    with reporting(progress) as report:
+    with reporting(progress) as report, hidden_folder(folder):
         place = place_of(folder, source if setup is None else setup)
         vectors = "" if setup is None else vectors_place(folder, source)
         if isinstance(source, Case) and not source._core.folder:

@@ -7,7 +7,7 @@ import os
 from typing import Any
 
 from . import _core
-from ._errors import check_choice
+from ._errors import check_choice, check_whole
 from ._progress import Progress, reporting
 from ._setup import as_setup
 
@@ -63,6 +63,9 @@ def design(
     figures: folder for figures of the layout, the design map and the Pareto front.
     """
     check_choice("figure_format", figure_format, ("png", "svg", "pdf"))
+    for name, given, least, most in (("verify", verify, 0, 100), ("repeats", repeats, 2, 1000), ("seed", seed, 0, 2**62)):
+        if given is not None:
+            check_whole(name, given, least, most)
     with reporting(progress) as report:
         answer, text, feasible = _core.design(
             as_setup(setup)._core,

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import os
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from numbers import Integral
 from typing import NamedTuple
 
 from ._arguments import CalledFunction
@@ -14,6 +17,12 @@ def check_choice(name: str, given: str, choices: Sequence[str]) -> None:
     if given not in choices:
         listed = ", ".join(f'"{one}"' for one in choices[:-1]) + f' or "{choices[-1]}"'
         raise ValueError(f"{name} must be {listed}, got {given!r}")
+
+
+def check_whole(name: str, given: int, least: int, most: int) -> None:
+    """Raises ValueError if an argument is not a whole number from `least` to `most`."""
+    if not isinstance(given, Integral) or not least <= given <= most:
+        raise ValueError(f"{name} must be a whole number from {least} to {most}, got {given!r}")
 
 
 class GladstoneWarning(UserWarning):
@@ -152,6 +161,35 @@ class DeviceError(Error, RuntimeError):
     """An accelerator that is absent, out of memory or failing."""
 
     code = "device"
+    file = line = column = key = None
 
     def __init__(self, text: str):
-        super().__init__(CalledFunction().message(text))
+        self.text = CalledFunction().message(text)
+        super().__init__(self.text)
+
+
+@contextmanager
+def hidden_folder(folder: str) -> Iterator[None]:
+    """Context manager that raises exceptions about files of a temporary folder without the folder. A setup in it, which
+    the user gave as an object, has no file, line and column."""
+
+    def inside(file: str | None) -> bool:
+        return file is not None and file.startswith(folder + os.sep)
+
+    def without_folder(text: str) -> str:
+        return text.replace(folder + os.sep, "")
+
+    def shown(problem: Problem) -> Problem:
+        where = {"file": None, "line": None, "column": None} if inside(problem.file) else {}
+        return problem._replace(text=without_folder(problem.text), **where)
+
+    try:
+        yield
+    except SetupError as error:
+        if not any(inside(problem.file) for problem in error.problems):
+            raise
+        raise SetupError(map(shown, error.problems), error.more) from None
+    except (DataError, OutputError) as error:
+        if not inside(error.file):
+            raise
+        raise type(error)(without_folder(error.place), without_folder(error.text), error.code) from None

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import os
 import tomllib
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
 from . import _core
-from ._images import host_image
+from ._errors import check_whole
+from ._images import filled, host_image
 
 
 class Field:
@@ -22,10 +24,10 @@ class Field:
     def __init__(self, x, y, u, v, sigma_u=None, sigma_v=None):
         """Makes a field of arrays of equal size: positions and displacements [px], standard uncertainties [px].
 
-        A displacement of NaN marks an invalid vector.
+        A displacement that is NaN, or masked by numpy.ma, marks an invalid vector.
         """
         arrays = (x, y, u, v, sigma_u, sigma_v)
-        flat = [None if one is None else np.ascontiguousarray(one, float).ravel() for one in arrays]
+        flat = [None if one is None else np.ascontiguousarray(filled(one)).ravel() for one in arrays]
         self._core = _core.field_of_arrays(*flat)
 
     @classmethod
@@ -36,8 +38,9 @@ class Field:
 
     @classmethod
     def of(cls, given) -> Field:
-        """Returns a field: of a `Field`, of arrays (x, y, u, v), of an xarray data set, of dense displacements
-        [rows, columns, 2] at every pixel, or of the path of a file for `load`."""
+        """Returns a field: of a `Field`, of arrays (x, y, u, v), of a table (pandas, or a dictionary) with columns x, y, u
+        and v or x_px, y_px, u_px and v_px, of an xarray data set, of dense displacements [rows, columns, 2] at every
+        pixel, or of the path of a file for `load`."""
         if isinstance(given, Field):
             return given
         if given is None:
@@ -48,7 +51,17 @@ class Field:
             return cls.from_xarray(given)
         if isinstance(given, (tuple, list)):
             return cls(*given)
+        if isinstance(given, Mapping) or hasattr(given, "columns"):
+            return cls._from_table(given)
         return cls.from_dense(given)
+
+    @classmethod
+    def _from_table(cls, table) -> Field:
+        for ending in ("", "_px"):
+            names = [name + ending for name in "xyuv"]
+            if all(name in table for name in names):
+                return cls(*(table[name] for name in names))
+        raise ValueError(f"expected columns x, y, u and v, got {', '.join(map(str, table.keys()))}")
 
     @classmethod
     def from_dense(cls, displacement, spacing_px: int = 1) -> Field:
@@ -69,6 +82,7 @@ class Field:
         conventions: conventions of the file, as for `gladstone compare --conventions`; default: those of its format.
         image_rows: number of rows of the image, required for files that count y upwards from its lower edge.
         """
+        check_whole("image_rows", image_rows, 0, 1_000_000)
         return cls._of(_core.load_field(os.fspath(path), conventions, image_rows))
 
     def save(self, path: str | os.PathLike) -> None:

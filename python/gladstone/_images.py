@@ -1,4 +1,4 @@
-"""Images of any array library."""
+"""Images and numbers of any array library."""
 
 from __future__ import annotations
 
@@ -6,9 +6,19 @@ import os
 
 import numpy as np
 
+from ._errors import DataError
+
+
+def filled(values) -> np.ndarray:
+    """Returns numbers as float64, with NaN in place of masked ones."""
+    return np.ma.filled(np.ma.asarray(values, float), np.nan)
+
 
 def host_image(image):
-    """Returns an image in host memory: arrays of a GPU are copied, others are not."""
+    """Returns an image in host memory and native byte order, with NaN in place of masked pixels.
+
+    Arrays of a GPU are copied, others only where they are masked or have foreign bytes.
+    """
     if getattr(image, "requires_grad", False):
         image = image.detach()
     device = getattr(image, "__dlpack_device__", None)
@@ -17,17 +27,39 @@ def host_image(image):
             if hasattr(image, method):
                 return getattr(image, method)()
         return np.asarray(image)  # JAX
-    if isinstance(image, (list, tuple)):
+    if np.ma.is_masked(image):
+        return filled(image)
+    if device is None or isinstance(image, np.ndarray):
         image = np.asarray(image)
+        image = image.astype(image.dtype.newbyteorder("="), copy=False)
     return image
 
 
-def check_image(image, name: str) -> None:
-    """Raises TypeError or ValueError unless `image` is an array [rows, columns]."""
+def image_array(image, name: str):
+    """Returns an image [rows, columns] as `host_image`. Raises TypeError, ValueError or DataError if it is
+    none."""
     if image is None or isinstance(image, (str, os.PathLike)):
         raise TypeError(
             f"{name} is {image!r}, not an image [rows, columns]; read files first, for example by tifffile.imread"
         )
-    shape = getattr(image, "shape", None)
+    array = host_image(image)
+    if isinstance(array, np.ndarray) and not (array.dtype.kind in "biuf" and array.dtype.itemsize <= 8):
+        raise DataError(
+            name,
+            f"is of type {type(image).__name__} with samples of {array.dtype}, not an image of integers or of 32- or "
+            "64-bit floats; give an image of these, such as case.a, or convert it by image.astype(numpy.float32)",
+            "wrong_type",
+        )
+    shape = getattr(array, "shape", None)
     if shape is not None and len(shape) != 2:
         raise ValueError(f"{name} has the shape {tuple(shape)}; give a grey image [rows, columns]")
+    return array
+
+
+def mask_images(mask, *images) -> list[np.ndarray]:
+    """Returns images of float64 whose pixels are NaN where `mask` [rows, columns] is True."""
+    excluded = np.asarray(mask)
+    for image in images:
+        if excluded.shape != tuple(image.shape):
+            raise ValueError(f"mask has the shape {excluded.shape}, but the images have {tuple(image.shape)}")
+    return [np.where(excluded, np.nan, filled(image)) for image in images]

@@ -7,13 +7,14 @@ import os
 import shutil
 import tempfile
 import weakref
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from ._case import CalibrationCase, Case
+from ._calibration_case import CalibrationCase
+from ._case import Case
 from ._field import Field
-from ._setup import Setup
+from ._setup import Setup, as_setup
 
 Box = Sequence[float]
 """Corners x0, y0, x1, y1 of a box in mm from the optical axis, x to the right and y upwards."""
@@ -73,13 +74,15 @@ def measured_case_place(folder: str, case: Case, name: str, device: str) -> str:
     return place
 
 
-def place_of(folder: str, setup: Setup | Case | CalibrationCase | str | os.PathLike, name: str = "setup") -> str:
+def place_of(
+    folder: str, setup: Setup | Mapping | Case | CalibrationCase | str | os.PathLike, name: str = "setup"
+) -> str:
     """Returns the CASE folder or the setup file of a case or a setup; what is in memory is written into `folder`."""
     if isinstance(setup, (Case, CalibrationCase)):
         return case_place(folder, setup, name)
-    if isinstance(setup, Setup):
+    if isinstance(setup, (Setup, Mapping)):
         place = os.path.join(folder, name + ".toml")
-        setup.save(place)
+        as_setup(setup).save(place)
         return place
     return os.fspath(setup)
 

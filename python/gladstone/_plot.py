@@ -22,7 +22,7 @@ def plot_report(report):
 
 
 def plot_field(field):
-    """Draws maps of both components of a displacement field, without the vectors that do not count."""
+    """Draws maps of both components of a displacement field with arrows, without the vectors that do not count."""
     import matplotlib.pyplot as plt
 
     figure, axes = plt.subplots(1, 2, figsize=(9.5, 4), layout="constrained")
@@ -30,7 +30,19 @@ def plot_field(field):
     for axis, name, direction in zip(axes, "uv", ("to the right", "downwards")):
         values = np.where(field.valid, getattr(field, name), np.nan)
         _map(figure, axis, position, values, f"{name}, {direction} [px]", _largest(values))
+        _arrows(axis, field)
     return figure
+
+
+def _arrows(axis, field, most: int = 20) -> None:
+    """Draws arrows of valid vectors, at most about `most` along each direction, whose length is relative to the largest."""
+    if len(field.shape) == 2:
+        every = tuple(slice(None, None, -(-size // most)) for size in field.shape)
+    else:
+        every = (slice(None, None, -(-len(field) // most**2) or 1),)
+    shown = field.valid[every]
+    x, y, u, v = (values[every][shown] for values in (field.x, field.y, field.u, field.v))
+    axis.quiver(x, y, u, v, angles="xy", width=0.004)
 
 
 def plot_statistics(statistics):
@@ -89,6 +101,7 @@ def _budget(axis, report) -> None:
     terms = {name: term["rms_px"] for name, term in report.budget.items() if term["rms_px"] is not None}
     axis.barh(list(terms)[::-1], list(terms.values())[::-1])
     axis.set(title="error budget", xlabel="rms [px]")
+    axis.locator_params(axis="x", nbins=4)
 
 
 def plot_three_components(result):

@@ -36,7 +36,7 @@ class Preview:
 
 def preview(
     setup: Setup | Mapping[str, Any] | str | os.PathLike, *, device: str = "auto", progress: Progress = False
-) -> Preview | dict[str, Preview]:
+) -> Any:
     """Renders 128 x 128 px about the strongest density gradient, or about the image centre, within seconds.
 
     The pixels are those of the complete images to within the scatter of the rays, except for `camera.exposure =

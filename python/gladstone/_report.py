@@ -10,6 +10,13 @@ from typing import Any
 import numpy as np
 
 from . import _core
+from ._errors import OutputError, hidden_folder
+
+
+def check_report_ending(path: str) -> None:
+    """Raises OutputError unless a report can have this name."""
+    if not path.endswith((".html", ".htm", ".md")):
+        raise OutputError(path, "is not the name of a report: it must end in .html or .md")
 
 
 class Report:
@@ -127,12 +134,16 @@ class Report:
 
         The comparison is computed again for this report.
         """
-        with tempfile.TemporaryDirectory() as folder:
+        check_report_ending(os.fspath(path))
+        with tempfile.TemporaryDirectory() as folder, hidden_folder(folder):
             place = os.path.join(folder, "case")
             self._case.save(place)
             self._field.save(os.path.join(place, "vectors.h5"))
             output = os.path.abspath(os.fspath(path))
             return _core.report(place, output, "", [], "", "", "png", device, None)
+
+    def __reduce__(self):
+        raise TypeError("a Report cannot be pickled; pickle its errors (a dictionary) or its arrays")
 
     def __str__(self) -> str:
         return self._core.text()

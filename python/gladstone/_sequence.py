@@ -11,7 +11,8 @@ from typing import Any, Literal
 import numpy as np
 
 from . import _core
-from ._correlate import overrides
+from ._correlate import image_files, overrides
+from ._errors import DataError
 from ._field import Field
 from ._progress import Progress, reporting
 
@@ -118,12 +119,14 @@ def correlate_sequence(
     others: a `GladstoneWarning` names it, and `failed` lists it. Raises `DataError` if no pair has a valid vector, and
     `SetupError` for settings.
     """
-    given = [images] if isinstance(images, (str, os.PathLike)) else list(images)
+    files = image_files([images] if isinstance(images, (str, os.PathLike)) else images)
+    if not files:
+        raise DataError("images", "no image is given; give a pattern, a folder, or a list of files", "arguments")
     temporary = tempfile.TemporaryDirectory(prefix="gladstone_") if output is None else None
     folder = os.path.join(temporary.name, "vectors") if temporary else os.fspath(output)
     with reporting(progress) as report:
         text = _core.correlate_sequence(
-            [os.fspath(one) for one in given],
+            files,
             pairing,
             folder,
             "" if config is None else os.fspath(config),

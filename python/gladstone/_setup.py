@@ -5,13 +5,10 @@ from __future__ import annotations
 import os
 import tomllib
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from . import _core, _toml
 from ._progress import Progress, reporting
-
-if TYPE_CHECKING:
-    from ._case import CalibrationCase, Case
 
 
 class Setup:
@@ -28,6 +25,9 @@ class Setup:
         name: shown in messages.
         folder: directory to which relative file names in the text refer; default: the working directory.
         """
+        if not isinstance(text, str):
+            source = "from_dict" if isinstance(text, Mapping) else "from_file"
+            raise TypeError(f"expected TOML text, got {type(text).__name__}; use Setup.{source}")
         if "\n" not in text and text.endswith(".toml"):
             raise ValueError(f"{text!r} is the name of a file, not TOML text; use Setup.from_file")
         place = os.path.abspath(os.fspath(folder) if folder is not None else os.getcwd())
@@ -62,7 +62,8 @@ class Setup:
     def replace(self, values: Mapping[str, Any]) -> Setup:
         """Returns a setup with other values: `setup.replace({"lens.f_number": 16})`.
 
-        Keys that depend on each other are replaced together, best as a table: `{"medium.field": {"kind": ...}}`.
+        Keys that depend on each other are replaced together, best as a table: `{"medium.field": {"kind": ...}}`. A table
+        replaces the whole table, so that its other keys have their defaults.
         """
         core = self._core
         given = [f"{path}={_toml.value(value)}" for path, value in values.items()]
@@ -101,23 +102,23 @@ class Setup:
         with open(path, "w", encoding="utf-8") as file:
             file.write(self.to_toml())
 
-    def render(
-        self, *, device: str = "auto", progress: Progress = False
-    ) -> Case | CalibrationCase | dict[str, Case | CalibrationCase]:
+    def render(self, *, device: str = "auto", progress: Progress = False) -> Any:
         """Traces the rays of the experiment.
 
         device: "auto" (a GPU if there is one), "cpu" or "cuda".
         progress: True: a progress bar; or a function (label, done, total).
 
         Returns a `Case` (BOS and PIV) or a `CalibrationCase`; for a setup with several cameras a dictionary of them
-        by name of the camera. The images are equal bit by bit to those of `gladstone render`.
+        by name of the camera. Annotate the result for type checkers: `case: gs.Case = setup.render()`.
+        The images are equal bit by bit to those of `gladstone render`.
         Raises `SetupError`, `DataError`, `DeviceError`.
         """
-        from ._case import wrap
+        from ._calibration_case import CalibrationCase
+        from ._case import Case
 
         with reporting(progress) as report:
             rendered = _core.render(self._core, device, report)
-        cases = {one.camera: wrap(one) for one in rendered}
+        cases = {one.camera: (Case if isinstance(one, _core.PairCase) else CalibrationCase)(one) for one in rendered}
         return cases.get("", cases)  # the name of a single camera is empty
 
     def __eq__(self, other: object) -> bool:
@@ -139,9 +140,7 @@ class Setup:
         return f"<gladstone.Setup {self._core.name}{replaced}>"
 
 
-def render(
-    setup: Setup | Mapping[str, Any] | str | os.PathLike, **options
-) -> Case | CalibrationCase | dict[str, Case | CalibrationCase]:
+def render(setup: Setup | Mapping[str, Any] | str | os.PathLike, **options) -> Any:
     """Renders a setup, a dictionary of tables or a setup file; see `Setup.render`."""
     return as_setup(setup).render(**options)
 
@@ -150,4 +149,6 @@ def as_setup(given: Setup | Mapping[str, Any] | str | os.PathLike) -> Setup:
     """Returns a setup, made of a dictionary or a file if necessary."""
     if isinstance(given, Setup):
         return given
+    if isinstance(given, str) and "\n" in given:
+        raise ValueError("expected a setup or the name of its file, got TOML text; use gladstone.Setup(text)")
     return Setup.from_dict(given) if isinstance(given, Mapping) else Setup.from_file(given)

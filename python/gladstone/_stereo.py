@@ -11,7 +11,7 @@ import numpy as np
 
 from . import _core
 from ._case import Case
-from ._errors import check_choice
+from ._errors import check_choice, hidden_folder
 from ._measurement import InputFolder, Measurement, case_place, measured_case_place, vectors_place
 from ._progress import Progress, reporting
 from ._xarray import grid_variable
@@ -178,7 +178,7 @@ def stereo(
             raise ValueError(f"expected the cases of two cameras, got {len(first)}")
         first, second = first.values()
     inputs = InputFolder()
-    with reporting(progress) as report:
+    with reporting(progress) as report, hidden_folder(inputs.name):
         if second is None:
             places = [os.fspath(first), ""]
         else:

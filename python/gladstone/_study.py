@@ -11,6 +11,7 @@ from typing import Any, Literal
 import numpy as np
 
 from . import _core, _toml
+from ._errors import hidden_folder
 from ._progress import Progress, reporting
 from ._setup import as_setup
 
@@ -39,6 +40,7 @@ class Study:
         samples: number of samples with "sobol".
         """
         self._path: str | None = None
+        self._axes = list(axes)
         self._base = as_setup(base)
         settings: dict[str, Any] = {"mode": mode, "repeats": repeats, "seed": seed}
         if samples is not None:
@@ -55,6 +57,9 @@ class Study:
         study._path = os.fspath(path)
         return study
 
+    def __repr__(self) -> str:
+        return f"<gladstone.Study {self._path or 'of ' + ', '.join(self._axes)}>"
+
     def plan(self, folder: str | os.PathLike, *, device: str = "auto", progress: Progress = False) -> StudyRun:
         """Checks all cases and writes the plan into a folder, unless the folder already contains an equal plan."""
         place = os.fspath(folder)
@@ -62,7 +67,7 @@ class Study:
             if self._path is not None:
                 _core.study_plan(self._path, place, device, report)
             else:
-                with tempfile.TemporaryDirectory() as temporary:
+                with tempfile.TemporaryDirectory() as temporary, hidden_folder(temporary):
                     self._base.save(os.path.join(temporary, "base.toml"))
                     path = os.path.join(temporary, "study.toml")
                     with open(path, "w", encoding="utf-8") as file:

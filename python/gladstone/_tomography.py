@@ -12,6 +12,7 @@ import numpy as np
 
 from . import _core
 from ._case import Case
+from ._errors import check_whole, hidden_folder
 from ._measurement import Box, InputFolder, Measurement, measured_case_place, place_of, reference_texts, vectors_place
 from ._progress import Progress, reporting
 from ._setup import Setup
@@ -152,7 +153,7 @@ def tomography(
         name = f"case_{i}"
         return measured_case_place(inputs.name, case, name, device) if measured else place_of(inputs.name, case, name)
 
-    with reporting(progress) as report:
+    with reporting(progress) as report, hidden_folder(inputs.name):
         places = [place(i, case) for i, case in enumerate(cases)]
         files = [vectors_place(inputs.name, one, f"vectors_{i}") for i, one in enumerate(vectors)]
         core = _core.tomography(
@@ -171,13 +172,14 @@ def tomography_setups(
 
     setup: a `Setup` or its path, with a field of finite extent.
     folder: for view_00.toml, view_01.toml, ... and the turned fields view_00.h5, ...
-    views, arc_deg: number of views, at the angles i / views of `arc_deg`.
+    views, arc_deg: number of views, 3 to 16, at the angles i / views of `arc_deg`.
 
     Returns the paths of the setups. Render each of them, and give the cases to `tomography`.
     Raises `SetupError` for invalid options, and setups without a field of finite extent.
     """
+    check_whole("views", views, 3, 16)
     os.makedirs(folder, exist_ok=True)
-    with tempfile.TemporaryDirectory() as temporary:
+    with tempfile.TemporaryDirectory() as temporary, hidden_folder(temporary):
         return _core.tomography_setups(place_of(temporary, setup), views, arc_deg, os.fspath(folder))
 
 

@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 
 from . import _core
-from ._images import host_image
+from ._errors import check_whole
+from ._images import image_array
 from ._setup import as_setup
 
 
@@ -55,7 +56,8 @@ def image(given, *, bit_depth: int = 0) -> dict[str, Any]:
     """Describes an image file or an array [rows, columns]: grey levels, dot diameter [px], noise, SNR."""
     if isinstance(given, (str, os.PathLike)):
         return json.loads(_core.info_image_file(os.fspath(given)))
-    return json.loads(_core.info_image(host_image(given), bit_depth))
+    check_whole("bit_depth", bit_depth, 0, 64)
+    return json.loads(_core.info_image(image_array(given, "image"), bit_depth))
 
 
 def particles(setup) -> dict[str, Any]:

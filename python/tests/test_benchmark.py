@@ -11,7 +11,9 @@ def test_our_estimator_as_a_function_scores_as_itself():
     assert ours["estimator"] == "default" and again["estimator"] == "again"
     for name in set(ours) - {"estimator", "seconds"}:
         assert ours[name] == again[name] or (np.isnan(ours[name]) and np.isnan(again[name])), name
-    assert "vortex" in str(scores)
+    first, second = str(scores).split("\n\n")
+    assert f"{ours['rms_without_gross_px']:.5f}" in first and "vortex" in first
+    assert f"{ours['rms_px']:.5f}" in second and "vortex" in second
 
 
 # The truth itself, given at every pixel, has no error; given in frame a, it is moved to the middle.

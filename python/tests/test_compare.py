@@ -1,4 +1,5 @@
 import json
+import pickle
 
 import numpy as np
 import pytest
@@ -47,6 +48,32 @@ def test_vectors_of_another_code(case, field):
     assert report.rms_px == pytest.approx(case.compare(field, device="cpu").rms_px, rel=0.2)
 
 
+def test_tables_of_vectors_are_compared(case, field):
+    pandas = pytest.importorskip("pandas")
+    columns = {name: getattr(field, name).ravel() for name in "xyuv"}
+    expected = case.compare(tuple(columns.values()), device="cpu").rms_px
+    assert case.compare(columns, device="cpu").rms_px == expected
+    table = pandas.DataFrame({name + "_px": values for name, values in columns.items()})
+    assert case.compare(table, device="cpu").rms_px == expected
+    with pytest.raises(ValueError, match="expected columns x, y, u and v"):
+        case.compare(table[["x_px"]])
+
+
+def test_loaded_cases_survive_pickle(case, field, tmp_path):
+    with pytest.raises(TypeError, match="save it"):
+        pickle.dumps(case)
+    with pytest.raises(TypeError, match="cannot be pickled"):
+        pickle.dumps(case.compare(field, device="cpu"))
+    case.save(tmp_path / "case")
+    loaded = pickle.loads(pickle.dumps(gs.Case.load(tmp_path / "case")))
+    assert np.array_equal(loaded.images, case.images)
+
+
+def test_objects_describe_themselves(case, bos):
+    assert repr(case.truth) == f"<gladstone.Truth of {len(case.truth)} sources>"
+    assert repr(gs.Study(bos, {"lens.f_number": [8]})) == "<gladstone.Study of lens.f_number>"
+
+
 def test_frames_of_another_case_are_noticed(case, field, bos):
     other = bos.replace({"target.seed": 99}).render(device="cpu")
     with pytest.warns(gs.GladstoneWarning, match="not measured on the frames"):
@@ -60,6 +87,8 @@ def test_report_is_drawn(report):
     matplotlib.use("agg")
     figure = report.plot()
     assert len(figure.axes) >= 8
+    budget = next(axis for axis in figure.axes if axis.get_title() == "error budget")
+    assert len(budget.get_xticks()) <= 6  # their labels do not overlap
     assert "<table>" in report._repr_html_() and "Error budget" in str(report)
 
 
@@ -71,6 +100,10 @@ def test_images_and_vectors_are_drawn(case, field):
     maps = [axis.collections[0].get_array() for axis in field.plot().axes[:2]]
     for drawn, values in zip(maps, (field.u, field.v)):
         assert np.array_equal(drawn.filled(np.nan), np.where(field.valid, values, np.nan), equal_nan=True)
+    arrows = field.plot().axes[0].collections[1]
+    shown = len(arrows.U)
+    assert 0 < shown <= np.sum(field.valid) and set(arrows.U) <= set(field.u[field.valid])
+    assert len(gs.Field(*np.zeros((4, 0))).plot().axes[0].collections[1].U) == 0
     scattered = gs.Field(*(values.ravel()[1:] for values in (field.x, field.y, field.u, field.v)))
     assert len(scattered.plot().axes[0].collections[0].get_offsets()) == len(field) - 1
 

@@ -73,6 +73,32 @@ def test_images_of_any_layout(field, case):
     assert same(gs.correlate(fortran, case.b, device="cpu", **SETTINGS).u, field.u)
 
 
+def test_images_of_foreign_bytes_and_of_xarray(field, case):
+    xarray = pytest.importorskip("xarray")
+    assert same(gs.correlate(case.a.astype(">u2"), case.b.astype(">f4"), device="cpu", **SETTINGS).u, field.u)
+    labelled = [xarray.DataArray(image, dims=("y", "x")) for image in (case.a, case.b)]
+    assert same(gs.correlate(*labelled, device="cpu", **SETTINGS).u, field.u)
+
+
+# All ways to exclude the pixels of the left half: NaN, numpy.ma, and an array of bool.
+@pytest.mark.filterwarnings("ignore::gladstone.GladstoneWarning")
+def test_masked_pixels_are_excluded(case):
+    mask = np.zeros(case.a.shape, bool)
+    mask[:, :48] = True
+    expected = gs.correlate(*(np.where(mask, np.nan, image) for image in (case.a, case.b)), device="cpu", **SETTINGS)
+    assert (expected.status == 2).any() and expected.valid.any()
+    masked = gs.correlate(*(np.ma.array(image, mask=mask) for image in (case.a, case.b)), device="cpu", **SETTINGS)
+    assert same(masked.status, expected.status) and same(masked.u, expected.u)
+    given = gs.correlate(case.a, case.b, mask=mask, device="cpu", **SETTINGS)
+    assert same(given.status, expected.status) and same(given.u, expected.u)
+
+
+def test_masked_vectors_are_invalid():
+    x, y = np.meshgrid([0.0, 8.0], [0.0, 8.0])
+    u = np.ma.array(np.ones((2, 2)), mask=[[True, False], [False, False]])
+    assert gs.Field(x, y, u, np.zeros((2, 2))).valid.tolist() == [[False, True], [True, True]]
+
+
 def test_images_of_torch(field, case):
     torch = pytest.importorskip("torch")
     a, b = (torch.from_numpy(image.astype(np.float32)) for image in (case.a, case.b))

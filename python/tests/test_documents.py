@@ -61,6 +61,30 @@ def test_code_of_the_page_runs(bos, piv, tmp_path, monkeypatch):
     assert trained == [((64, 2, 24, 32), (64, 2, 24, 32))] * 10
 
 
+# The example of the package, several cameras, and a preview, for type checkers.
+TYPED = """
+import gladstone as gs
+
+setup = gs.Setup.from_file("table1.toml").replace({"lens.f_number": 16})
+case = setup.render(progress=True)
+field = gs.correlate(case.a, case.b, window=[64, 32, 24, 20])
+print(case.compare(field))
+known: gs.Case = setup.render()
+print(known.compare(field).rms_px)
+cases = gs.render("stereo.toml")
+print(gs.stereo(cases["left"], cases["right"]), gs.preview(setup).images)
+"""
+
+
+def test_type_checkers_accept_the_example(tmp_path, monkeypatch):
+    check = pytest.importorskip("mypy.api")
+    (tmp_path / "example.py").write_text(TYPED)
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("MYPYPATH", str(pathlib.Path(gs.__file__).parents[1]))
+    text, errors, code = check.run(["--follow-imports=silent", "--no-incremental", "example.py"])
+    assert code == 0, text + errors
+
+
 def test_type_stub_of_the_compiled_part_is_valid():
     stub = pathlib.Path(gs.__file__).with_name("_core.pyi")
     functions = {node.name for node in ast.parse(stub.read_text()).body if isinstance(node, ast.FunctionDef)}

@@ -1,5 +1,7 @@
 """Mistakes that new users make: each message says what to do instead."""
 
+import pathlib
+
 import numpy as np
 import pytest
 
@@ -14,6 +16,70 @@ def test_images_are_arrays(case):
     colours = np.stack([case.a] * 3, axis=-1)
     with pytest.raises(ValueError, match="grey image"):
         gs.correlate(colours, colours)
+
+
+@pytest.mark.parametrize("image", [np.zeros((8, 8), object), np.zeros((8, 8), complex), np.zeros((8, 8), "m8[s]")])
+def test_pixels_are_numbers(case, image):
+    with pytest.raises(gs.DataError, match="integers or of 32- or 64-bit floats") as caught:
+        gs.correlate(image, image)
+    assert caught.value.code == "wrong_type"
+    with pytest.raises(gs.DataError, match="type Case"):
+        gs.correlate(case, case)
+
+
+def test_masks_have_the_size_of_the_images(case):
+    with pytest.raises(ValueError, match="mask has the shape"):
+        gs.correlate(case.a, case.b, mask=np.zeros((3, 4), bool))
+
+
+def test_files_are_not_arrays(case):
+    for call in (gs.correlate_ensemble, gs.correlate_sequence):
+        with pytest.raises(TypeError, match="write arrays to files"):
+            call([case.a, case.b])
+
+
+def test_setups_are_text(bos):
+    with pytest.raises(TypeError, match="use Setup.from_dict"):
+        gs.Setup(bos.to_dict())
+    with pytest.raises(TypeError, match="use Setup.from_file"):
+        gs.Setup(pathlib.Path("table1.toml"))
+    with pytest.raises(ValueError, match=r"use gladstone.Setup\(text\)"):
+        gs.trace(gs.init("bos"), [0, 0, 0], [0, 0, 1])
+
+
+# What a function writes into a temporary folder is not named: it no longer exists when the user reads the message.
+def test_temporary_files_are_not_named(bos, tmp_path):
+    with pytest.raises(gs.SetupError) as caught:
+        gs.Study(bos, {"lens.f_number": [8]}, repeats=0).plan(tmp_path / "run")
+    assert (caught.value.file, caught.value.line, caught.value.key) == (None, None, "study.repeats")
+    with pytest.raises(gs.DataError) as caught:
+        gs.calibrate(bos, ["plane.tif"])
+    assert caught.value.file == "setup.toml" and "/" not in str(caught.value).split(":")[0]
+    with pytest.raises(gs.SetupError) as caught:
+        gs.render_sequence(bos, tmp_path / "sequence")
+    assert caught.value.file is None and caught.value.text.startswith("has no table [sequence]")
+
+
+def test_a_setup_has_no_images(bos):
+    with pytest.raises(ValueError, match="give images, one for each plane"):
+        gs.calibrate(bos)
+
+
+def test_reports_have_known_endings(case, tmp_path):
+    for call in (lambda path: gs.report(tmp_path, path), case.compare(case.correlate(device="cpu")).to_html):
+        with pytest.raises(gs.OutputError, match=".html or .md"):
+            call(tmp_path / "report.xyz")
+
+
+def test_names_of_estimators_are_not_ours():
+    with pytest.raises(ValueError, match="choose another name"):
+        gs.benchmark({"default": gs.correlate}, cases=["vortex"])
+
+
+def test_errors_of_devices_have_a_text(bos):
+    with pytest.raises(gs.DeviceError) as caught:
+        bos.render(device="gpu")
+    assert caught.value.text == str(caught.value) and caught.value.key is None
 
 
 def test_text_of_a_setup_is_no_file_name():
@@ -70,3 +136,32 @@ def test_figures_have_known_endings(bos, tmp_path):
         gs.info.setup(bos, figure=tmp_path / "layout.tiff")
     with pytest.raises(ValueError, match="figure_format"):
         gs.design(bos, figures=tmp_path, figure_format="tiff")
+
+
+# The limits are those of the command line. Without them the calls end the interpreter, write files without end, or
+# compute something else.
+@pytest.mark.parametrize("call, name", [
+    (lambda case, folder: case.truth.flow(spacing_px=0), "spacing_px"),
+    (lambda case, folder: case.truth.flow(spacing_px=10_001), "spacing_px"),
+    (lambda case, folder: case.truth.flow(spacing_px=1.5), "spacing_px"),
+    (lambda case, folder: case.truth.save(folder / "truth.nc", spacing_px=-3), "spacing_px"),
+    (lambda case, folder: gs.convert(folder / "truth.h5", folder / "truth.nc", spacing_px=-1), "spacing_px"),
+    (lambda case, folder: gs.convert(folder / "a.txt", folder / "a.nc", image_rows=-1), "image_rows"),
+    (lambda case, folder: gs.Field.load(folder / "a.txt", image_rows=-5), "image_rows"),
+    (lambda case, folder: gs.views(folder, across=0), "across"),
+    (lambda case, folder: gs.tomography_setups(case.setup, folder, views=2), "views"),
+    (lambda case, folder: gs.tomography_setups(case.setup, folder, views=17), "views"),
+    (lambda case, folder: gs.info.image(case.a, bit_depth=-3), "bit_depth"),
+    (lambda case, folder: gs.info.image(case.a, bit_depth=99), "bit_depth"),
+    (lambda case, folder: gs.reconstruct(case, reference="left", samples=-1), "samples"),
+    (lambda case, folder: gs.design(case.setup, verify=-1), "verify"),
+    (lambda case, folder: gs.set_threads(-3), "threads"),
+])  # fmt: skip
+def test_whole_numbers_have_limits(case, tmp_path, call, name):
+    with pytest.raises(ValueError, match=f"^{name} must be a whole number from .* to "):
+        call(case, tmp_path)
+
+
+def test_a_sequence_has_images(tmp_path):
+    with pytest.raises(gs.DataError, match="give a pattern, a folder"):
+        gs.correlate_sequence([], output=tmp_path / "vectors")
