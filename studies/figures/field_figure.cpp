@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
 #include "render/base/available_memory.h"
 #include "render/base/error.h"
@@ -37,12 +38,16 @@ std::vector<FieldPlane> read_middle_planes(FieldSource& source) {
     planes.push_back({across, up, normal,
                       Image<double>(nodes[static_cast<std::size_t>(across)], nodes[static_cast<std::size_t>(up)])});
   }
-  std::size_t const count = static_cast<std::size_t>(nodes[0]) * static_cast<std::size_t>(nodes[1]);
+  auto const components = static_cast<std::size_t>(source.values());
+  std::size_t const count = static_cast<std::size_t>(nodes[0]) * static_cast<std::size_t>(nodes[1]) * components;
   require_memory(source.name(), "a plane of " + std::to_string(count) + " values",
                  sizeof(double) * static_cast<double>(count));
   std::vector<double> values(count);
   auto const at = [&](int i, int j) {
-    return values[static_cast<std::size_t>(j) * static_cast<std::size_t>(nodes[0]) + static_cast<std::size_t>(i)];
+    std::size_t const node =
+        static_cast<std::size_t>(j) * static_cast<std::size_t>(nodes[0]) + static_cast<std::size_t>(i);
+    double const* const value = values.data() + node * components;
+    return components == 1 ? *value : std::sqrt(std::inner_product(value, value + components, value, 0.0));
   };
   Progress progress("drawing " + source.name(), static_cast<std::size_t>(nodes[2]));
   for (int k = 0; k < nodes[2]; ++k) {
@@ -107,8 +112,9 @@ void write_field_figure(std::string const& path, FieldSource& source, bool lengt
   GnuplotFigure plot(drawn * cell + bar_space, above_plane + tallest + below_plane);
   std::string const unit_name = source.units().values.empty() ? "" : " [" + source.units().values + ']';
   plot.command("set multiplot; unset key; set tics out nomirror font 'DejaVu Sans,9'");
-  plot.command(fmt::format("set label 1 {} at screen 0.5, screen 0.97 center font 'DejaVu Sans,13'",
-                           GnuplotFigure::quoted(source.name() + unit_name)));
+  plot.command(
+      fmt::format("set label 1 {} at screen 0.5, screen 0.97 center font 'DejaVu Sans,13'",
+                  GnuplotFigure::quoted(source.name() + (source.values() > 1 ? ", magnitude" : "") + unit_name)));
   plot.command(sequential_palette());
   plot.command(fmt::format("set cbrange [{:.10g}:{:.10g}]", range.lower, range.upper));
   for (int i = 0; i < drawn; ++i) {
