@@ -1,4 +1,5 @@
-# The program in a container: docker build -t gladstone . && docker run --rm -v "$PWD:/data" gladstone render bos.toml -o out
+# The program in a container; --user lets it write into your folder, and makes the results yours:
+# docker build -t gladstone . && docker run --rm --user "$(id -u):$(id -g)" -v "$PWD:/data" gladstone render bos.toml -o out
 FROM debian:bookworm-slim AS build
 RUN apt-get update && apt-get install -y --no-install-recommends make git ca-certificates && rm -rf /var/lib/apt/lists/*
 COPY . /gladstone

@@ -6,6 +6,7 @@
 #include "render/base/contracts.h"
 #include "render/base/not_a_number.h"
 #include "render/base/parallel.h"
+#include "render/files/hdf5_axes.h"
 
 namespace gladstone {
 namespace {
@@ -28,6 +29,30 @@ double fourth_moment(double r1, double r2, double r3, double r4) {
 
 double standard_error(double variance, double samples) {
   return samples > 0 ? std::sqrt(std::max(0.0, variance) / samples) : not_a_number;
+}
+
+/// Writes a quantity of all points, and on a grid the same in rows and columns.
+template <class Value>
+void write_vector_dataset(Hdf5Writer& file, Hdf5Axes& axes, std::string const& name, std::span<Value const> values,
+                          SequenceMoments const& moments, std::string const& units, std::string const& description) {
+  file.write(name, values, {values.size()}, units, description, "vector");
+  axes.name(name, {"/vector"});
+  if (moments.columns == 0 || name == "/x_px" || name == "/y_px") return;
+  file.write("/grid" + name, values,
+             {static_cast<std::size_t>(moments.rows), static_cast<std::size_t>(moments.columns)}, units, description,
+             "row, column");
+  axes.name("/grid" + name, {"/grid/y_px", "/grid/x_px"});
+}
+
+/// Writes the positions of the columns and rows of a grid.
+void write_grid_positions(Hdf5Writer& file, SequenceMoments const& moments) {
+  std::vector<double> x, y;
+  for (int i = 0; i < moments.columns; ++i) x.push_back(moments.position_px[static_cast<std::size_t>(i)].x);
+  for (int j = 0; j < moments.rows; ++j)
+    y.push_back(moments.position_px[static_cast<std::size_t>(j) * static_cast<std::size_t>(moments.columns)].y);
+  file.write("/grid/x_px", std::span<double const>(x), {x.size()}, "px", "columns of the window centres", "column");
+  file.write("/grid/y_px", std::span<double const>(y), {y.size()}, "px", "rows of the window centres, downwards",
+             "row");
 }
 
 }  // namespace
@@ -217,11 +242,14 @@ SequenceMoments SequenceStatistics::moments() {
 void write_sequence_statistics(std::string const& path, SequenceMoments const& moments, FileOrigin const& origin) {
   Hdf5Writer file(path, origin);
   std::size_t const size = moments.position_px.size();
+  Hdf5Axes axes(file);
+  axes.write_numbers("/vector", size, "number of the vector, from 0");
+  if (moments.columns > 0) write_grid_positions(file, moments);
   auto const write = [&](std::string const& name, std::string const& units, std::string const& description,
                          auto const& value_of) {
     std::vector<double> values(size);
     for (std::size_t i = 0; i < size; ++i) values[i] = value_of(i);
-    file.write(name, std::span<double const>(values), {size}, units, description, "vector");
+    write_vector_dataset(file, axes, name, std::span<double const>(values), moments, units, description);
   };
   auto const write_both = [&](std::string const& quantity, std::string const& description,
                               std::vector<Vec2d> const& values, std::string const& ending = "_px") {
@@ -238,8 +266,8 @@ void write_sequence_statistics(std::string const& path, SequenceMoments const& m
   write("/x_px", "px", "column of the window centre, pixel centres at integers from 0",
         [&](std::size_t i) { return moments.position_px[i].x; });
   write("/y_px", "px", "row of the window centre, downwards", [&](std::size_t i) { return moments.position_px[i].y; });
-  file.write("/count", std::span<std::int64_t const>(moments.count), {size}, "1",
-             "number of vectors that the statistics include: measured ones, not interpolated ones", "vector");
+  write_vector_dataset(file, axes, "/count", std::span<std::int64_t const>(moments.count), moments, "1",
+                       "number of vectors that the statistics include: measured ones, not interpolated ones");
   write_both("mean", "mean", moments.mean_px);
   write_both("mean_error", "standard error of the mean", moments.mean_error_px);
   write_both("rms", "standard deviation", moments.rms_px);
@@ -247,6 +275,7 @@ void write_sequence_statistics(std::string const& path, SequenceMoments const& m
   write_stress("_px2", "", moments.stress_px2);
   write_stress("_error_px2", "standard error of the ", moments.stress_error);
   write_both("independent", "effective number of independent samples", moments.independent, "");
+  axes.attach();
   file.attribute("/", "samples", static_cast<std::int64_t>(moments.samples));
   file.attribute("/", "lags", static_cast<std::int64_t>(moments.lags));
   if (moments.columns > 0) {

@@ -86,7 +86,8 @@ class Density(Measurement):
         return self.summary.get("budget_kg_m3", {})
 
     def save(self, path: str | os.PathLike) -> None:
-        """Writes density.h5 of `gladstone reconstruct`: density, uncertainty and gradient with their axes [mm]."""
+        """Writes density, uncertainty and gradient with their axes [mm], as `gladstone reconstruct` does: .h5, .nc, .vti,
+        .mat or .csv."""
         self._core.save(os.fspath(path))
 
     def to_xarray(self):

@@ -198,7 +198,8 @@ class Field:
     def to_xarray(self, frame: int = 0):
         """Returns an xarray.Dataset in pivpy's schema: u, v and chc over (y, x, t), in px.
 
-        Further variables: sigma_u, sigma_v, peak_ratio, status. chc is 1 for vectors that count, else 0.
+        Further variables: sigma_u, sigma_v, peak_ratio, status, u_raw, v_raw, correlation, reason, ambiguous. chc is 1
+        for vectors that count, else 0.
         """
         import xarray
 
@@ -211,6 +212,9 @@ class Field:
                 attributes["standard_name"] = standard_name
             return ("y", "x", "t"), np.asarray(values, float)[:, :, np.newaxis], attributes
 
+        def column(name: str):
+            return self._core.column(name).reshape(self.shape)
+
         return xarray.Dataset(
             {
                 "u": variable(self.u, "pix", "displacement to the right", "u_velocity"),
@@ -220,6 +224,15 @@ class Field:
                 "sigma_v": variable(self.sigma_v, "pix", "standard uncertainty of v"),
                 "peak_ratio": variable(self.peak_ratio, "1", "highest over second correlation peak"),
                 "status": variable(self.status, "1", "0 valid, 1 replaced, 2 masked, 3 invalid"),
+                "u_raw": variable(column("u_raw_px"), "pix", "displacement to the right before replacement"),
+                "v_raw": variable(column("v_raw_px"), "pix", "displacement downwards before replacement"),
+                "correlation": variable(
+                    self.correlation, "1", "correlation coefficient of the peak at u_raw, v_raw"
+                ),
+                "reason": variable(column("reason"), "1", "origin of the vector: reason of vectors.h5"),
+                "ambiguous": variable(
+                    column("ambiguous"), "1", "1: another displacement has nearly the same correlation"
+                ),
             },
             coords={
                 "x": ("x", self.x[0, :].copy(), {"units": "pix"}),

@@ -63,7 +63,8 @@ class Tomography(Measurement):
         return json.loads(self._core.summary())
 
     def save(self, path: str | os.PathLike) -> None:
-        """Writes the HDF5 file of `gladstone tomography`, which can be the field of a setup."""
+        """Writes the density and its axes [mm], as `gladstone tomography` does: .h5, .nc, .vti, .mat or .csv, each of
+        which can be the field of a setup."""
         self._core.save(os.fspath(path))
 
     def to_xarray(self):

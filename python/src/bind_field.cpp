@@ -9,6 +9,7 @@
 
 #include "analysis/correlation/pair_assessment.h"
 #include "analysis/vectors/vector_file.h"
+#include "analysis/vectors/vector_writers/vector_columns.h"
 #include "python/src/arrays.h"
 #include "python/src/call.h"
 #include "python/src/field.h"
@@ -158,6 +159,13 @@ nb::object field_array(nb::handle_t<MeasuredField> self, std::string const& name
   return nb::none();
 }
 
+/// Returns one column of the files of vectors by name, "u_raw_px", of length `size`.
+nb::object field_column(MeasuredField const& self, std::string const& name) {
+  std::vector<double> values = detail::column_named(detail::vector_columns(self.field), name).values;
+  std::size_t const count = values.size();
+  return array_of(std::move(values), {count});
+}
+
 }  // namespace
 
 void bind_field(nb::module_& module) {
@@ -174,6 +182,7 @@ void bind_field(nb::module_& module) {
       .def_ro("device", &MeasuredField::device)
       .def_ro("seconds", &MeasuredField::seconds)
       .def("array", &field_array, nb::arg("name"))
+      .def("column", &field_column, nb::arg("name"))
       .def(
           "save", [](MeasuredField const& self, std::string const& path) { run([&] { save(self, path); }); },
           nb::arg("path"));

@@ -55,6 +55,16 @@ def test_netcdf_file_is_the_xarray_data_set(field, tmp_path, engine):
             assert written[name].attrs.get("units") == expected[name].attrs["units"], name
 
 
+def test_netcdf_file_has_every_column(field, tmp_path):
+    h5py = pytest.importorskip("h5py")
+    for ending in ("csv", "nc"):
+        field.save(tmp_path / f"vectors.{ending}")
+    table = np.genfromtxt(tmp_path / "vectors.csv", delimiter=",", names=True)
+    with h5py.File(tmp_path / "vectors.nc") as file:
+        for column in set(table.dtype.names) - {"x_px", "y_px"}:
+            assert same(file[column.removesuffix("_px")][()].ravel(), table[column]), column
+
+
 def test_netcdf_file_is_valid_for_pivpy(field, tmp_path):
     schema = pytest.importorskip("pivpy.schema")
     xarray = pytest.importorskip("xarray")

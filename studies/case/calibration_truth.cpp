@@ -1,5 +1,6 @@
 #include <Eigen/Geometry>
 
+#include "render/files/hdf5_axes.h"
 #include "render/light/calibration_target.h"
 #include "render/method.h"
 #include "render/scene/calibration_planes.h"
@@ -9,7 +10,10 @@ namespace gladstone {
 namespace {
 
 /// Writes the datasets of /pinhole.
-void write_pinhole(Hdf5Writer& file, Pinhole const& pinhole) {
+void write_pinhole(Hdf5Writer& file, Pinhole const& pinhole, Hdf5Axes& axes) {
+  axes.write_numbers("/pinhole/row", 3, "row of the matrix");
+  axes.write_numbers("/pinhole/column", 3, "column of the matrix");
+  axes.write_numbers("/pinhole/coefficient", 4, "k1, k2, p1, p2");
   std::vector<double> const matrix{pinhole.fx, 0, pinhole.cx, 0, pinhole.fy, pinhole.cy, 0, 0, 1};
   file.write("/pinhole/camera_matrix", std::span<double const>(matrix), {3, 3}, "px",
              "fx, 0, cx; 0, fy, cy; 0, 0, 1, as in OpenCV", "row, column");
@@ -30,6 +34,10 @@ void write_pinhole(Hdf5Writer& file, Pinhole const& pinhole) {
              "rotation R from the world to the camera (x right, y down, z into the scene), as axis times angle",
              "axis");
   file.write("/pinhole/tvec", std::span<double const>(tvec), {3}, "m", "t of R X + t", "axis");
+  axes.name("/pinhole/camera_matrix", {"/pinhole/row", "/pinhole/column"});
+  axes.name("/pinhole/distortion", {"/pinhole/coefficient"});
+  axes.name("/pinhole/rvec", {"/coordinate"});
+  axes.name("/pinhole/tvec", {"/coordinate"});
 }
 
 }  // namespace
@@ -55,6 +63,11 @@ void write_calibration_truth(std::string const& path, RenderedCalibration const&
     }
   }
   std::size_t const count = flux.size();
+  Hdf5Axes axes(file);
+  axes.write_numbers("/component", 2, "column, row; of the grid along X, Y");
+  axes.write_numbers("/coordinate", 3, "x, y, z");
+  axes.write_numbers("/dots/dot", count, "number of the dot");
+  axes.write_numbers("/planes/plane", z.size(), "number of the plane");
   file.write("/dots/position_m", std::span<double const>(position), {count, 3}, "m",
              "dot centres in the world frame: X right, Y up as the camera sees them, Z towards the camera",
              "dot, (x, y, z)");
@@ -72,7 +85,13 @@ void write_calibration_truth(std::string const& path, RenderedCalibration const&
              "grid position relative to the middle of the grid, in spacings along X and Y", "dot, (x, y)");
   file.write("/planes/z_m", std::span<double const>(z), {z.size()}, "m", "Z of the planes", "plane");
   Scene const& scene = rendered.planes.front().scene;
-  if (auto const pinhole = equivalent_pinhole(scene.setup, scene.camera)) write_pinhole(file, *pinhole);
+  if (auto const pinhole = equivalent_pinhole(scene.setup, scene.camera)) write_pinhole(file, *pinhole, axes);
+  axes.name("/dots/position_m", {"/dots/dot", "/coordinate"});
+  for (char const* const pairs : {"/dots/image_px", "/dots/chief_px", "/dots/index"})
+    axes.name(pairs, {"/dots/dot", "/component"});
+  for (char const* const numbers : {"/dots/flux", "/dots/rays", "/dots/plane"}) axes.name(numbers, {"/dots/dot"});
+  axes.name("/planes/z_m", {"/planes/plane"});
+  axes.attach();
   file.attribute("/", "method", to_string(RenderMethod::rays));
   file.close();
 }

@@ -7,6 +7,7 @@
 
 #include "render/base/not_a_number.h"
 #include "render/base/units.h"
+#include "render/files/hdf5_axes.h"
 #include "render/ideal_images/ideal_images.h"
 #include "render/method.h"
 #include "render/scene/particle_scene.h"
@@ -73,6 +74,12 @@ void write_particle_truth(std::string const& path, Scene const& scene, GroundTru
                           StatusCounts const& statuses, RenderMethod method, FileOrigin const& origin) {
   Hdf5Writer file(path, origin);
   std::size_t const count = truth.size();
+  Hdf5Axes axes(file);
+  axes.write_numbers("/component", 2, "u to the right, v downwards; of positions column, row");
+  axes.write_numbers("/coordinate", 3, "x, y, z");
+  axes.write_numbers("/pulse", 2, "first, second");
+  axes.write_numbers("/particles/particle", count, "number of the particle");
+  axes.write_numbers("/rays/kind", ray_status_count, "status of a ray");
   std::vector<double> position;
   position.reserve(6 * count);
   for (auto const* const places : {&truth.position_m, &truth.particles.second_m}) {
@@ -82,8 +89,10 @@ void write_particle_truth(std::string const& path, Scene const& scene, GroundTru
              "particle positions in the world frame at each pulse: X right, Y up as the camera sees them, Z towards "
              "the camera",
              "pulse, particle, (x, y, z)");
+  axes.name("/particles/position_m", {"/pulse", "/particles/particle", "/coordinate"});
   for (ParticlePairs const& pairs : particle_pairs) {
     file.write(pairs.name, pairs_as_numbers(pairs.of(truth)), {count, 2}, pairs.units, pairs.description, pairs.axes);
+    axes.name(pairs.name, {"/particles/particle", pairs.shared == &GroundTruth::flux ? "/pulse" : "/component"});
   }
   file.write("/particles/diameter_m", std::span<double const>(truth.particles.diameter_m), {count}, "m",
              "diameter of the particle", "particle");
@@ -100,6 +109,11 @@ void write_particle_truth(std::string const& path, Scene const& scene, GroundTru
   file.write("/rays/status", std::span<std::int64_t const>(counts), {2, ray_status_count}, "1",
              "rays by status: alive, missed_sensor, vignetted, total_internal_reflection, lost_in_medium, missed_lens",
              "pulse, status");
+  axes.name("/particles/diameter_m", {"/particles/particle"});
+  axes.name("/particles/rays", {"/particles/particle", "/pulse"});
+  axes.name("/particles/rays_planned", {"/particles/particle"});
+  axes.name("/rays/status", {"/pulse", "/rays/kind"});
+  axes.attach();
   Setup const& setup = scene.setup;
   file.attribute("/particles", "interpolation",
                  setup.medium.interpolation == FieldInterpolation::cubic_bspline ? "cubic_bspline" : "trilinear");

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "render/base/not_a_number.h"
+#include "render/files/hdf5_axes.h"
 #include "render/method.h"
 #include "studies/case/flat_values.h"
 #include "studies/case/particle_case.h"
@@ -39,20 +40,54 @@ constexpr std::array<PairDataset, 8> pair_datasets{{
     {"/dots/eq9_cone_px", &GroundTruth::eq9_cone_px, "px", "eq. 9 averaged over the dot and the aperture"},
 }};
 
+void write_field_map(Hdf5Writer& file, FieldMap const& field, Hdf5Axes& axes) {
+  auto const columns = static_cast<std::size_t>(field.density.columns());
+  auto const rows = static_cast<std::size_t>(field.density.rows());
+  double const spacing[1] = {static_cast<double>(field.spacing_px)};
+  axes.write_numbers("/field/value", 1, "axis of a single number");
+  file.write("/field/spacing_px", std::span<double const>(spacing), {1}, "px",
+             "spacing of the maps: node (i, j) is at pixel (i, j) spacing + (spacing - 1) / 2", "value");
+  axes.name("/field/spacing_px", {"/field/value"});
+  auto const write_positions = [&](std::string const& name, std::size_t count, std::string const& axis) {
+    std::vector<double> px(count);
+    for (std::size_t i = 0; i < count; ++i) px[i] = static_cast<double>(i) * spacing[0] + (spacing[0] - 1) / 2;
+    file.write(name, std::span<double const>(px), {count}, "px", axis + " of the nodes", axis);
+  };
+  write_positions("/field/x_px", columns, "column");
+  write_positions("/field/y_px", rows, "row");
+  file.write("/field/density_kg_m3", std::span<double const>(field.density.data(), field.density.size()),
+             {rows, columns}, "kg/m^3", "density averaged along the chief ray through the field", "row, column");
+  axes.name("/field/density_kg_m3", {"/field/y_px", "/field/x_px"});
+  file.write("/field/density_gradient_kg_m4", flat(field.density_gradient), {rows, columns, 2}, "kg/m^4",
+             "d rho / d(X, Y) averaged along the chief ray, Y up", "row, column, (X, Y)");
+  axes.name("/field/density_gradient_kg_m4", {"/field/y_px", "/field/x_px", "/component"});
+  file.write("/field/eq9_px", flat(field.eq9_px), {rows, columns, 2}, "px", "Rajendran et al. eq. 9",
+             "row, column, (u, v)");
+  axes.name("/field/eq9_px", {"/field/y_px", "/field/x_px", "/component"});
+}
+
 }  // namespace
 
 void write_truth(std::string const& path, Scene const& scene, GroundTruth const& truth, StatusCounts const& statuses,
                  FieldMap const& field, RenderMethod method, TableError const* table, FileOrigin const& origin) {
   Hdf5Writer file(path, origin);
   std::size_t const count = truth.size();
+  Hdf5Axes axes(file);
+  axes.write_numbers("/component", 2, "u to the right, v downwards; of positions column, row; of gradients X, Y");
+  axes.write_numbers("/coordinate", 3, "x, y, z");
+  axes.write_numbers("/frame", 2, "reference, flow");
+  axes.write_numbers("/dots/dot", count, "number of the dot");
+  axes.write_numbers("/rays/kind", ray_status_count, "status of a ray");
   std::vector<double> position;
   position.reserve(3 * count);
   for (Vec3d const& p : truth.position_m) position.insert(position.end(), {p.x, p.y, p.z});
   file.write("/dots/position_m", std::span<double const>(position), {count, 3}, "m",
              "dot centres in the world frame: X right, Y up as the camera sees them, Z towards the camera",
              "dot, (x, y, z)");
+  axes.name("/dots/position_m", {"/dots/dot", "/coordinate"});
   for (PairDataset const& dataset : pair_datasets) {
     file.write(dataset.name, flat(truth.*dataset.values), {count, 2}, dataset.units, dataset.description, dot_axes);
+    axes.name(dataset.name, {"/dots/dot", dataset.values == &GroundTruth::flux ? "/frame" : "/component"});
   }
   std::vector<std::int64_t> rays;
   for (auto const& both : truth.rays) rays.insert(rays.end(), both.begin(), both.end());
@@ -71,18 +106,12 @@ void write_truth(std::string const& path, Scene const& scene, GroundTruth const&
   file.write("/rays/status", std::span<std::int64_t const>(counts), {2, ray_status_count}, "1",
              "rays by status: alive, missed_sensor, vignetted, total_internal_reflection, lost_in_medium, missed_lens",
              "frame (reference, flow), status");
-
-  auto const columns = static_cast<std::size_t>(field.density.columns());
-  auto const rows = static_cast<std::size_t>(field.density.rows());
-  double const spacing[1] = {static_cast<double>(field.spacing_px)};
-  file.write("/field/spacing_px", std::span<double const>(spacing), {1}, "px",
-             "spacing of the maps: node (i, j) is at pixel (i, j) spacing + (spacing - 1) / 2", "value");
-  file.write("/field/density_kg_m3", std::span<double const>(field.density.data(), field.density.size()),
-             {rows, columns}, "kg/m^3", "density averaged along the chief ray through the field", "row, column");
-  file.write("/field/density_gradient_kg_m4", flat(field.density_gradient), {rows, columns, 2}, "kg/m^4",
-             "d rho / d(X, Y) averaged along the chief ray, Y up", "row, column, (X, Y)");
-  file.write("/field/eq9_px", flat(field.eq9_px), {rows, columns, 2}, "px", "Rajendran et al. eq. 9",
-             "row, column, (u, v)");
+  axes.name("/dots/rays", {"/dots/dot", "/frame"});
+  axes.name("/dots/rays_planned", {"/dots/dot"});
+  axes.name("/dots/by_table", {"/dots/dot"});
+  axes.name("/rays/status", {"/frame", "/rays/kind"});
+  write_field_map(file, field, axes);
+  axes.attach();
 
   Setup const& setup = scene.setup;
   file.attribute("/dots", "interpolation",

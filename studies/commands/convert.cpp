@@ -17,19 +17,21 @@
 #include "studies/case/json_text.h"
 #include "studies/commands/arguments.h"
 #include "studies/commands/command.h"
+#include "studies/compare/density_table.h"
 #include "studies/compare/exported_vectors.h"
 
 namespace gladstone {
 namespace {
 
+void require_ending(std::string const& output, std::vector<std::string> const& endings) {
+  if (std::any_of(endings.begin(), endings.end(), [&](auto const& ending) { return output.ends_with(ending); })) return;
+  throw OutputError(output, fmt::format("must end in one of {}, which selects the format", fmt::join(endings, ", ")));
+}
+
 /// Converts a file of three components.
 /// @return JSON and text of the result
 Description convert_three_components(std::string const& input, std::string const& output) {
-  std::vector<std::string> const endings = three_component_extensions();
-  bool const known =
-      std::any_of(endings.begin(), endings.end(), [&](auto const& ending) { return output.ends_with(ending); });
-  if (!known)
-    throw OutputError(output, fmt::format("must end in one of {}, which selects the format", fmt::join(endings, ", ")));
+  require_ending(output, three_component_extensions());
   ExportedComponents const exported = load_components_for_export(input);
   ThreeComponentField const& field = exported.field;
   write_three_components(output, field, exported.origin);
@@ -41,6 +43,19 @@ Description convert_three_components(std::string const& input, std::string const
                                    {"columns", field.x_mm.size()},
                                    {"rows", field.y_mm.size()}}),
           fmt::format("{}: {} vectors of three components, {} valid", output, field.size(), valid)};
+}
+
+/// Converts a file of densities in a plane or a volume.
+/// @return JSON and text of the result
+Description convert_density(std::string const& input, std::string const& output) {
+  require_ending(output, grid_table_extensions());
+  ExportedDensity const exported = load_density_for_export(input);
+  write_grid_table(output, exported.table, exported.origin);
+  nlohmann::json names = nlohmann::json::array();
+  for (auto const& column : exported.table.columns) names.push_back(column.name);
+  return {json_text(nlohmann::json{
+              {"file", output}, {"format", exported.format}, {"nodes", exported.table.nodes()}, {"quantities", names}}),
+          fmt::format("{}: {} quantities at {} nodes", output, names.size(), exported.table.nodes())};
 }
 
 /// Loads the vectors to convert; computes them if they are the truth at pixels.
@@ -64,13 +79,11 @@ ExportedVectors load_vectors(VectorConversion const& conversion) {
 
 ConvertedVectors convert_vectors(VectorConversion const& conversion) {
   std::string const &input = conversion.input, &output = conversion.output;
-  if (!has_vector_extension(output)) {
-    throw OutputError(
-        output, fmt::format("must end in one of {}, which selects the format", fmt::join(vector_extensions(), ", ")));
-  }
+  require_ending(output, vector_extensions());
   require_input_file(input, "a file of vectors");
   refuse_inputs_as_outputs({output}, {input});
   OutputFile const tried(output);
+  if (is_density_file(input)) return {convert_density(input, output)};
   if (is_three_component_file(input)) return {convert_three_components(input, output)};
   ExportedVectors const vectors = load_vectors(conversion);
   write_vectors(output, vectors.field, vectors.origin);
@@ -96,7 +109,7 @@ CommandBody attach_convert(CLI::App& app, GlobalOptions const& options) {
          "input", conversion.input,
          "Vectors of gladstone in any of these formats, of OpenPIV, PIVlab, DaVis, Insight, Dantec, JPIV, PIVPy "
          "or any x,y,u,v; truth.h5 of a case, for the true displacements of its dots or particles, or of its "
-         "pixels; or three components of gladstone stereo")
+         "pixels; three components of gladstone stereo; or densities of gladstone reconstruct or tomography")
       ->required();
   app.add_option(
          "-o,--output", conversion.output,

@@ -10,7 +10,7 @@ namespace gladstone {
 
 /// Conversion of a file of vectors to another format.
 struct VectorConversion {
-  std::string input;        ///< vectors of any program, truth.h5 of a case, or three components
+  std::string input;        ///< vectors of any program, truth.h5 of a case, three components, or densities
   std::string output;       ///< file to write, whose ending selects the format
   std::string conventions;  ///< conventions of a foreign file, see parse_conventions(); empty: those of its format
   int image_rows = 0;       ///< rows of the image, for files that count y upwards from its last row; 0: unknown

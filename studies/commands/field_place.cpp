@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "render/base/units.h"
+#include "render/light/velocity_file.h"
 #include "render/medium/field_volume.h"
 #include "render/scene/field_coverage.h"
 #include "studies/case/case.h"
@@ -54,24 +55,45 @@ Vec3d extent_mm(FieldSource const& source) {
   return extent;
 }
 
-/// Returns a setup with its field replaced by this one.
-Setup with_field(std::string const& setup, FieldSource const& source, std::string const& path,
-                 std::string const& dataset, std::string const& axes) {
-  Setup whole = load_case_setup(setup, {}).setup;
-  FieldSetup& field = whole.medium.field;
+/// Returns the region of a density field with the place that a setup gives its field [m].
+Bounds<double> density_region(Setup const& setup, FieldSource const& source, FieldFile const& file) {
+  MediumSetup medium = setup.medium;
+  FieldSetup& field = medium.field;
   if (field.kind != FieldKind::file) field = {};
   field.kind = FieldKind::file;
-  field.file = path;
-  field.dataset = dataset;
-  field.axes = axes;
+  field.file = file.path;
+  field.dataset = file.dataset;
+  field.axes = file.axes;
   field.extrude = source.grid().nodes[2] == 1;
-  return whole;
+  return file_bounds(medium);
+}
+
+/// Returns the region of a velocity field with the place that a setup gives its flow [m].
+Bounds<double> velocity_region(Setup const& setup, FieldSource const& source, FieldFile const& file) {
+  VelocityFile velocity;
+  if (setup.piv && setup.piv->flow.file) velocity = *setup.piv->flow.file;
+  velocity.file = file.path;
+  velocity.dataset = file.dataset;
+  velocity.axes = file.axes;
+  velocity.extrude = source.grid().nodes[2] == 1;
+  RegularGrid const grid = velocity_grid(velocity);
+  Vec3d high = grid.origin;
+  for (int axis = 0; axis < 3; ++axis)
+    high[axis] += grid.spacing[axis] * (grid.nodes[static_cast<std::size_t>(axis)] - 1);
+  return {grid.origin, high};
+}
+
+/// Returns whether the setup gives the field its spacing.
+bool is_spaced(Setup const& setup, bool velocity) {
+  if (!velocity) return setup.medium.field.kind == FieldKind::file && setup.medium.field.spacing.has_value();
+  return setup.piv && setup.piv->flow.file && setup.piv->flow.file->spacing.has_value();
 }
 
 }  // namespace
 
-FieldPlace field_place(FieldSource const& source, std::string const& path, std::string const& dataset,
-                       std::string const& axes, std::string const& setup) {
+FieldPlace field_place(FieldSource const& source, FieldFile const& file, std::string const& setup) {
+  bool const velocity = source.values() > 1;
+  std::string const spacing_key = velocity ? "flow.spacing_mm" : "medium.field.spacing_mm";
   FieldUnits const& units = source.units();
   std::string const undefined = units.undefined(), assumed = undefined.empty() ? units.assumed() : "";
   FieldPlace place;
@@ -91,19 +113,20 @@ FieldPlace field_place(FieldSource const& source, std::string const& path, std::
                     place.extent_mm.z, values);
   } else {
     place.text = fmt::format("{}, so that spacing_mm must be given; values {}", undefined, values);
-    place.warning = undefined + "; give medium.field.spacing_mm";
+    place.warning = undefined + "; give " + spacing_key;
   }
-  if (!assumed.empty()) place.warning = assumed + "; if that is wrong, give medium.field.spacing_mm";
+  if (!assumed.empty()) place.warning = assumed + "; if that is wrong, give " + spacing_key;
   if (setup.empty()) return place;
 
   double const mm = unit::millimetre;
-  Setup const whole = with_field(setup, source, path, dataset, axes);
-  if (whole.medium.field.spacing) place.warning.clear();
-  FieldCoverage const seen = field_coverage(file_bounds(whole.medium), whole);
+  Setup const whole = load_case_setup(setup, {}).setup;
+  if (is_spaced(whole, velocity)) place.warning.clear();
+  FieldCoverage const seen =
+      field_coverage(velocity ? velocity_region(whole, source, file) : density_region(whole, source, file), whole);
   place.coverage = {{"share", seen.share}, {"view_mm", {seen.view.x / mm, seen.view.y / mm}}, {"setup", setup}};
   place.text += fmt::format("; it fills {:.3g} % of the {:.4g} x {:.4g} mm in the view of {}", 100 * seen.share,
                             seen.view.x / mm, seen.view.y / mm, setup);
-  if (std::string const warning = seen.warning(); !warning.empty()) place.text += "; " + warning;
+  if (std::string const warning = seen.warning(); !velocity && !warning.empty()) place.text += "; " + warning;
   return place;
 }
 

@@ -8,6 +8,12 @@
 
 namespace gladstone {
 
+/// File of a field as it was opened.
+struct FieldFile {
+  std::string path, dataset;
+  std::string axes;  ///< world axes in the file's order; empty: the file's own
+};
+
 /// Position, extent and units of a field file, and its coverage of a setup's view.
 struct FieldPlace {
   nlohmann::json units;  ///< of lengths and values, null if the file names none; `length_m`, the unit used; `unknown`
@@ -20,9 +26,9 @@ struct FieldPlace {
 };
 
 /// Determines the position and coverage of a field file.
-/// @param axes   world axes in the file's order, as used to open the source; empty: the file's own
-/// @param setup  path of a setup, or empty; if its field is a file too, its spacing, position and periods are used
-FieldPlace field_place(FieldSource const& source, std::string const& path, std::string const& dataset,
-                       std::string const& axes, std::string const& setup);
+/// @param file   from which the source was opened
+/// @param setup  path of a setup, or empty; if its field (of a velocity: its flow) is a file too, its spacing, position
+///               and periods are used
+FieldPlace field_place(FieldSource const& source, FieldFile const& file, std::string const& setup);
 
 }  // namespace gladstone

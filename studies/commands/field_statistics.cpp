@@ -1,8 +1,9 @@
 #include "studies/commands/field_statistics.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <vector>
+#include <span>
 
 #include "render/base/available_memory.h"
 #include "render/base/interrupt.h"
@@ -11,17 +12,31 @@
 namespace gladstone {
 namespace {
 
-double largest_difference(double const* a, double const* b, std::size_t count) {
-  double largest = 0;
-  for (std::size_t i = 0; i < count; ++i) largest = std::max(largest, std::abs(a[i] - b[i]));
-  return largest;
+/// Largest absolute difference of each of `components` between the nodes from `a` and from `b` on.
+/// @param count  number of values, not of nodes
+void raise_differences(double const* a, double const* b, std::size_t count, std::vector<double>& largest) {
+  std::size_t const components = largest.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    double& seen = largest[i % components];
+    seen = std::max(seen, std::abs(a[i] - b[i]));
+  }
+}
+
+/// Raises the extremes of each component by those of a row of nodes.
+void add_row(std::span<double const> row, std::vector<FieldStatistics>& seen) {
+  for (std::size_t i = 0; i < row.size(); ++i) {
+    FieldStatistics& one = seen[i % seen.size()];
+    one.minimum = std::min(one.minimum, row[i]);
+    one.maximum = std::max(one.maximum, row[i]);
+  }
 }
 
 }  // namespace
 
-FieldStatistics field_statistics(FieldSource& source) {
+std::vector<FieldStatistics> field_statistics(FieldSource& source) {
   RegularGrid const& grid = source.grid();
-  auto const width = static_cast<std::size_t>(grid.nodes[0]);
+  auto const components = static_cast<std::size_t>(source.values());
+  auto const width = components * static_cast<std::size_t>(grid.nodes[0]);
   constexpr std::size_t values_at_once = std::size_t{1} << 22;
   int const rows =
       static_cast<int>(std::clamp<std::size_t>(values_at_once / width, 1, static_cast<std::size_t>(grid.nodes[1])));
@@ -30,7 +45,9 @@ FieldStatistics field_statistics(FieldSource& source) {
   auto const blocks = (static_cast<std::size_t>(grid.nodes[1]) + rows - 1) / static_cast<std::size_t>(rows);
   Progress progress("reading " + source.name(), blocks * static_cast<std::size_t>(grid.nodes[2]));
 
-  FieldStatistics seen{HUGE_VAL, -HUGE_VAL, {}};
+  std::vector<FieldStatistics> seen(components, {HUGE_VAL, -HUGE_VAL, {}});
+  std::array<std::vector<double>, 3> steepest;  // differences along x, y and z
+  steepest.fill(std::vector<double>(components));
   std::vector<double> values, before;
   for (int first = 0; first < grid.nodes[1]; first += rows) {
     int const last = std::min(first + rows, grid.nodes[1]);
@@ -41,22 +58,20 @@ FieldStatistics field_statistics(FieldSource& source) {
       throw_if_interrupted();
       values.resize(width * static_cast<std::size_t>(last - from));
       source.read_rows(k, from, last - from, values);
-      Vec3d steepest{};
       for (std::size_t row = 0; row < values.size(); row += width) {
         double const* const here = values.data() + row;
-        auto const [least, most] = std::minmax_element(here, here + width);
-        seen.minimum = std::min(seen.minimum, *least);
-        seen.maximum = std::max(seen.maximum, *most);
-        steepest.x = std::max(steepest.x, largest_difference(here + 1, here, width - 1));
-        if (row > 0) steepest.y = std::max(steepest.y, largest_difference(here, here - width, width));
-        if (!before.empty()) steepest.z = std::max(steepest.z, largest_difference(here, before.data() + row, width));
-      }
-      for (int axis = 0; axis < 3; ++axis) {
-        seen.steepest[axis] = std::max(seen.steepest[axis], steepest[axis] / grid.spacing[axis]);
+        add_row({here, width}, seen);
+        raise_differences(here + components, here, width - components, steepest[0]);
+        if (row > 0) raise_differences(here, here - width, width, steepest[1]);
+        if (!before.empty()) raise_differences(here, before.data() + row, width, steepest[2]);
       }
       std::swap(before, values);
       progress.advance();
     }
+  }
+  for (std::size_t i = 0; i < components; ++i) {
+    for (int axis = 0; axis < 3; ++axis)
+      seen[i].steepest[axis] = steepest[static_cast<std::size_t>(axis)][i] / grid.spacing[axis];
   }
   return seen;
 }

@@ -24,6 +24,7 @@ int print(GlobalOptions const& options, Description const& description) {
 CommandBody attach_info(CLI::App& app, GlobalOptions const& options) {
   struct Arguments {
     std::string kind, file, dataset, axes, setup, figure, x, m;
+    std::vector<std::string> overrides;
     LensQuestion lens;
   };
   auto arguments = std::make_shared<Arguments>();
@@ -35,6 +36,12 @@ CommandBody attach_info(CLI::App& app, GlobalOptions const& options) {
   app.add_option("--axes", arguments->axes,
                  "World axes in the order of the field's file, the slowest first (\"zxy\"), as medium.field.axes");
   app.add_option("--setup", arguments->setup, "Setup (TOML) for which the filled fraction of the view is reported");
+  app.add_option("--set", arguments->overrides,
+                 "Override a key of the setup for info setup or particles: "
+                 "--set lens.f_number=16")
+      ->take_all()
+      ->expected(1)
+      ->trigger_on_parse(false);
   app.add_option("--glass", arguments->lens.glasses, "Additional glass catalogue (AGF) for info lens");
   app.add_option("--wavelength-nm", arguments->lens.wavelength_nm, "Wavelength for info lens")
       ->check(number(100, 20'000));
@@ -60,6 +67,9 @@ CommandBody attach_info(CLI::App& app, GlobalOptions const& options) {
     if (!arguments->figure.empty() && (arguments->kind == "image" || arguments->kind == "particles")) {
       throw DataError(ErrorCode::arguments, "info " + arguments->kind, "draws no figure; remove --figure");
     }
+    if (!arguments->overrides.empty() && arguments->kind != "setup" && arguments->kind != "particles") {
+      throw DataError(ErrorCode::arguments, "info " + arguments->kind, "reads no setup; remove --set");
+    }
     if (arguments->file.empty())
       throw DataError(ErrorCode::arguments, "info " + arguments->kind, "requires a file; add its name");
     if (arguments->kind == "lens") {
@@ -67,12 +77,12 @@ CommandBody attach_info(CLI::App& app, GlobalOptions const& options) {
       arguments->lens.figure = arguments->figure;
       return print(options, describe_lens(arguments->lens));
     }
-    if (arguments->kind == "particles") {
-      return print(options, describe_particles(SetupDocument::from_file(arguments->file), arguments->file));
-    }
-    if (arguments->kind == "setup") {
-      SetupDocument const setup = SetupDocument::from_file(arguments->file);
-      return print(options, describe_setup(setup, arguments->file, arguments->figure));
+    bool const particles = arguments->kind == "particles";
+    if (particles || arguments->kind == "setup") {
+      SetupDocument setup = SetupDocument::from_file(arguments->file);
+      for (std::string const& assignment : arguments->overrides) setup.override_key(assignment);
+      return print(options, particles ? describe_particles(setup, arguments->file)
+                                      : describe_setup(setup, arguments->file, arguments->figure));
     }
     if (arguments->kind == "image") return print(options, describe_image(arguments->file));
     return print(options, describe_field(arguments->file, arguments->dataset, arguments->axes, arguments->setup,

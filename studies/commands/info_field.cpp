@@ -41,17 +41,57 @@ bool draw_field(std::string const& path, FieldSource& source, FieldPlace const& 
   return draw_or_warn([&] { draw_figure(make_field_figure(source, known), path); });
 }
 
+/// Opens a scalar field, or a velocity if the file has no scalar field of this name, or several.
+/// @throws DataError of the scalar field if there is no velocity either
+std::unique_ptr<FieldSource> open_scalar_or_velocity(std::string const& path, std::string const& dataset,
+                                                     std::string const& axes) {
+  try {
+    return open_field(path, dataset, 1, axes);
+  } catch (DataError const& error) {
+    bool const other = error.code() == ErrorCode::missing_content || error.code() == ErrorCode::wrong_shape ||
+                       error.code() == ErrorCode::undetermined;
+    if (!other) throw;
+    try {
+      return open_field(path, dataset, 3, axes);
+    } catch (DataError const&) {
+    }
+    throw;
+  }
+}
+
+/// Statistics of the components for JSON: that of a scalar field itself, an array of those of a velocity.
+template <class Value>
+nlohmann::json of_components(std::vector<FieldStatistics> const& seen, Value const& value_of) {
+  if (seen.size() == 1) return value_of(seen.front());
+  nlohmann::json all = nlohmann::json::array();
+  for (FieldStatistics const& one : seen) all.push_back(value_of(one));
+  return all;
+}
+
+/// Describes the values: "values 1 to 2, steepest difference ...", for a velocity of each component.
+std::string values_text(std::vector<FieldStatistics> const& seen, FieldPlace const& place) {
+  std::string text;
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    text += fmt::format("{}{} {:.6g} to {:.6g}, {}", text.empty() ? "" : "; ",
+                        seen.size() == 1 ? "values" : std::string(1, "uvw"[i]), seen[i].minimum, seen[i].maximum,
+                        steepest_text(seen[i].steepest, place));
+  }
+  return text;
+}
+
 }  // namespace
 
 Description describe_field(std::string const& path, std::string const& dataset, std::string const& axes,
                            std::string const& setup, std::string const& figure) {
-  auto const source = open_field(path, dataset, 1, axes);
+  auto const source = open_scalar_or_velocity(path, dataset, axes);
   RegularGrid const& grid = source->grid();
-  FieldStatistics const seen = field_statistics(*source);
-  FieldPlace const place = field_place(*source, path, dataset, axes, setup);
-  Vec3d steepest = seen.steepest;  // per unit length, which is unknown along an axis of undefined spacing
-  for (int axis = 0; axis < 3; ++axis) {
-    if (std::isnan(place.spacing[axis]) && std::isnan(place.extent_mm[axis])) steepest[axis] = place.spacing[axis];
+  std::vector<FieldStatistics> seen = field_statistics(*source);
+  FieldPlace const place = field_place(*source, {path, dataset, axes}, setup);
+  for (FieldStatistics& one : seen) {  // per unit length, which is unknown along an axis of undefined spacing
+    for (int axis = 0; axis < 3; ++axis) {
+      if (std::isnan(place.spacing[axis]) && std::isnan(place.extent_mm[axis]))
+        one.steepest[axis] = place.spacing[axis];
+    }
   }
   AxisAssignment const& reading = source->reading();
   std::vector<std::string> const notes = source->notes();
@@ -61,9 +101,10 @@ Description describe_field(std::string const& path, std::string const& dataset, 
       {"dataset", source->name()},
       {"nodes", {grid.nodes[0], grid.nodes[1], grid.nodes[2]}},
       {"spacing", json_of(place.spacing)},
-      {"minimum", seen.minimum},
-      {"maximum", seen.maximum},
-      {"steepest_gradient", json_of(steepest)},
+      {"components", source->values()},
+      {"minimum", of_components(seen, [](FieldStatistics const& one) -> nlohmann::json { return one.minimum; })},
+      {"maximum", of_components(seen, [](FieldStatistics const& one) -> nlohmann::json { return one.maximum; })},
+      {"steepest_gradient", of_components(seen, [](FieldStatistics const& one) { return json_of(one.steepest); })},
       {"axes",
        {{"order", reading.axes}, {"by", reading.by}, {"shape", reading.shape}, {"turned_round", reading.turned_round}}},
       {"notes", notes},
@@ -72,9 +113,8 @@ Description describe_field(std::string const& path, std::string const& dataset, 
       {"coverage", place.coverage}};
   if (!figure.empty() && draw_field(figure, *source, place)) json["figure"] = figure;
   return {json_text(json),
-          fmt::format("{}: {} x {} x {} nodes, {}, values {:.6g} to {:.6g}, {}; {}; {}", source->name(), grid.nodes[0],
-                      grid.nodes[1], grid.nodes[2], place.spacing_text, seen.minimum, seen.maximum,
-                      steepest_text(steepest, place), reading.text(), place.text)};
+          fmt::format("{}: {} x {} x {} nodes, {}, {}; {}; {}", source->name(), grid.nodes[0], grid.nodes[1],
+                      grid.nodes[2], place.spacing_text, values_text(seen, place), reading.text(), place.text)};
 }
 
 }  // namespace gladstone

@@ -6,7 +6,8 @@
 
 namespace gladstone {
 
-/// Describes a density or refractive-index field: nodes, units, extent, extremes and steepest gradient.
+/// Describes a density, refractive-index or velocity field: nodes, units, extent, extremes and steepest gradient, of a
+/// velocity those of each component.
 /// @param dataset  name within the file; empty: its only one
 /// @param axes     world axes in the order of the file, the slowest first; empty: the file's own
 /// @param setup    path of a setup whose view the field should cover; empty: none

@@ -34,7 +34,11 @@ constexpr std::array templates{
     Template{"piv", &embedded::template_piv, "schema = 1\nexperiment = \"piv\"\n"},
     Template{"stereo", &embedded::template_stereo, nullptr},
     Template{"calibration", &embedded::template_calibration, "schema = 1\nexperiment = \"calibration\"\n"},
-    Template{"study", &embedded::template_study, "base = \"bos.toml\"\n\n[axes]\n\"lens.f_number\" = [5.6, 11, 22]\n"},
+    Template{"study", &embedded::template_study,
+             "base = \"bos.toml\"\n\n[axes]\n"
+             "\"lens.f_number\" = [5.6, 11, 22]  # a list; a value with a label is { label = \"open\", value = 5.6 }\n"
+             "\"geometry.z_d_mm\" = { linear = [150, 450, 3] }  # first, last, number of values\n"
+             "\"target.dot_diameter_px\" = { log = [2.0, 4.0, 3] }  # the same, spaced by factors\n"},
     Template{"design", &embedded::template_design, "schema = 1\nexperiment = \"bos\"\n"},
 };
 
@@ -86,7 +90,7 @@ std::vector<GivenTable> tables_of(std::string_view text) {
 }
 
 /// Returns the keys of all cameras of a setup: those that are given, and after the first camera all others.
-std::string list_cameras(std::vector<GivenTable> const& given, std::vector<SetupKeyTable const*> const& tables) {
+std::string list_cameras(std::vector<GivenTable> const& given, std::vector<SetupKeyTable> const& tables) {
   std::string text;
   for (GivenTable const& camera : given) {
     if (camera.heading != "[[camera]]") continue;
@@ -94,9 +98,9 @@ std::string list_cameras(std::vector<GivenTable> const& given, std::vector<Setup
     text += '\n' + camera.heading + '\n';
     for (std::string const& line : camera.lines) text += line + '\n';
     if (!first) text += "# and any of the keys listed with the first camera\n";
-    for (SetupKeyTable const* const table : tables) {
-      if (!first || !table->heading.starts_with("[camera")) continue;
-      for (SetupKey const& key : table->keys) {
+    for (SetupKeyTable const& table : tables) {
+      if (!first || !table.heading.starts_with("[camera")) continue;
+      for (SetupKey const& key : table.keys) {
         std::string const path = key.path.substr(std::string_view("camera.").size());
         if (!camera.has(path)) text += commented_key(key, path);
       }
@@ -126,24 +130,26 @@ std::string complete_list(Template const& one) {
       "name of\n# its table.\n",
       one.kind);
   std::vector<GivenTable> const given = tables_of(one.required ? one.required : *one.text);
-  std::vector<SetupKeyTable const*> tables;
-  for (SetupKeyTable const& table : setup_key_tables()) {
-    bool const applies = std::find(table.kinds.begin(), table.kinds.end(), one.kind) != table.kinds.end();
-    if (applies && !table.keys.empty()) tables.push_back(&table);
+  std::vector<SetupKeyTable> tables = setup_key_tables();
+  for (SetupKeyTable& table : tables) {
+    std::erase_if(table.keys, [&](SetupKey const& key) {
+      return std::find(key.kinds.begin(), key.kinds.end(), one.kind) == key.kinds.end();
+    });
   }
+  std::erase_if(tables, [](SetupKeyTable const& table) { return table.keys.empty(); });
   std::set<std::string> listed{"[[camera]]"};
   std::string const cameras = list_cameras(given, tables);
-  for (SetupKeyTable const* const table : tables) {
-    bool const of_camera = table->heading.starts_with("[camera");
+  for (SetupKeyTable const& table : tables) {
+    bool const of_camera = table.heading.starts_with("[camera");
     if (of_camera && !cameras.empty()) {
-      if (table->heading == "[camera]") text += cameras;
+      if (table.heading == "[camera]") text += cameras;
       continue;
     }
     auto const found = std::find_if(given.begin(), given.end(), [&](GivenTable const& table_given) {
-      return table_given.heading == table->heading;
+      return table_given.heading == table.heading;
     });
-    text += list_table(*table, found == given.end() ? GivenTable{} : *found);
-    listed.insert(table->heading);
+    text += list_table(table, found == given.end() ? GivenTable{} : *found);
+    listed.insert(table.heading);
   }
   for (GivenTable const& table : given) {  // tables whose keys are the user's choice, such as the axes of a study
     if (listed.contains(table.heading)) continue;

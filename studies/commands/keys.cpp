@@ -55,7 +55,7 @@ nlohmann::ordered_json to_json(SetupKey const& key, SetupKeyTable const& table) 
           {"required", key.is_required()},
           {"values", key.values},
           {"meaning", key.meaning},
-          {"kinds", table.kinds}};
+          {"kinds", key.kinds}};
 }
 
 /// Returns two lines: the key with unit, default and values, and its meaning.

@@ -15,6 +15,7 @@
 #include "studies/commands/command.h"
 #include "studies/commands/density_options.h"
 #include "studies/compare/density_file.h"
+#include "studies/compare/density_table.h"
 #include "studies/figures/density_figure.h"
 #include "studies/figures/draw_figure.h"
 
@@ -39,7 +40,8 @@ CommandBody attach_reconstruct(CLI::App& app, GlobalOptions const& options) {
                  "Case folder, or with --vectors the setup (TOML) of measured images, whose camera, lens, geometry and "
                  "medium convert displacement to density")
       ->required();
-  app.add_option("-o,--output", arguments->output, "File for the density, .h5; the figure has the same name with .png")
+  app.add_option("-o,--output", arguments->output,
+                 "File for the density, .h5, .nc, .vti, .mat or .csv; the figure has the same name with .png")
       ->required();
   app.add_option("--vectors", arguments->vectors, "Vectors of gladstone or another program, default CASE/vectors.h5");
   app.add_option("--conventions", arguments->conventions, "Conventions of that file, see gladstone compare --help");
@@ -55,7 +57,7 @@ CommandBody attach_reconstruct(CLI::App& app, GlobalOptions const& options) {
     if (!arguments->conventions.empty()) reconstruct.conventions = arguments->conventions;
     reconstruct.budget = arguments->budget;
     std::string const& output = arguments->output;
-    if (!output.ends_with(".h5")) throw OutputError(output, "does not end in .h5; choose such a name");
+    require_density_ending(output);
     std::string const figure = std::filesystem::path(output).replace_extension(".png").string();
     std::vector<std::string> inputs = rendered_files(arguments->place);
     inputs.push_back(arguments->place);

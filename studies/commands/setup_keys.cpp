@@ -68,6 +68,9 @@ SetupKey parse_key(std::vector<std::string> const& cells, SetupKeyTable const& t
   (fixed ? key.default_value : key.default_words) = plain_text(cells[2]);
   key.values = plain_text(cells[3]);
   key.meaning = plain_text(cells[4]);
+  key.kinds = table.kinds;
+  if (key.meaning.ends_with("BOS only"))
+    std::erase_if(key.kinds, [](std::string const& kind) { return kind != "bos" && kind != "design"; });
   return key;
 }
 

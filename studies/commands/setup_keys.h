@@ -14,6 +14,7 @@ struct SetupKey {
   std::string default_words;  ///< "required", "none" or the default in words; empty: default_value
   std::string values;         ///< allowed values, in words
   std::string meaning;
+  std::vector<std::string> kinds;  ///< kinds of `gladstone init` to which the key applies
 
   /// Returns the last part of the path: "f_number".
   std::string name() const { return path.substr(path.rfind('.') + 1); }
@@ -29,7 +30,8 @@ struct SetupKeyTable {
 };
 
 /// Parses a page of tables with the columns key, unit, default, values and meaning. A section counts if its heading is
-/// followed by a line "Kinds: ..."; its heading is the table in backticks, then optionally a comma and the condition.
+/// followed by a line "Kinds: ..."; its heading is the table in backticks, then optionally a comma and the condition. A
+/// key whose meaning ends with "BOS only" applies to those of these kinds that are BOS.
 std::vector<SetupKeyTable> parse_key_tables(std::string_view page);
 
 /// Returns the tables of docs/reference/setup.md, which the build embeds in the program.

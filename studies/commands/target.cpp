@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -17,6 +18,8 @@
 
 namespace gladstone {
 namespace {
+
+constexpr Vec2d a3_mm{297, 420};  ///< shorter and longer side of the paper
 
 /// Formats a pattern by the ending of the output's name.
 std::string formatted_target(TargetPattern const& pattern, std::string const& path) {
@@ -43,10 +46,12 @@ Description write_target(SetupDocument const& setup, std::string const& name, st
                                     {"extent_mm", {extent.x, extent.y}},
                                     {"page_mm", {page.size_mm.x, page.size_mm.y}},
                                     {"scale_bar_mm", page.scale_bar_mm}};
+  bool const large =
+      std::min(page.size_mm.x, page.size_mm.y) > a3_mm.x || std::max(page.size_mm.x, page.size_mm.y) > a3_mm.y;
   return {json_text(json),
-          fmt::format("{}: {} dots of {:.6g} mm on {:.6g} x {:.6g} mm, page {:.6g} x {:.6g} mm, scale bar {:g} mm\n",
+          fmt::format("{}: {} dots of {:.6g} mm on {:.6g} x {:.6g} mm, page {:.6g} x {:.6g} mm{}, scale bar {:g} mm\n",
                       output, pattern.centre.size(), diameter_mm, extent.x, extent.y, page.size_mm.x, page.size_mm.y,
-                      page.scale_bar_mm)};
+                      large ? " (larger than A3: for a plotter)" : "", page.scale_bar_mm)};
 }
 
 CommandBody attach_target(CLI::App& app, GlobalOptions const& options) {

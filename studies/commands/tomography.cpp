@@ -18,6 +18,7 @@
 #include "studies/commands/command.h"
 #include "studies/commands/density_options.h"
 #include "studies/commands/volume_options.h"
+#include "studies/compare/density_table.h"
 #include "studies/compare/tomography_file.h"
 #include "studies/compare/tomography_plan.h"
 #include "studies/figures/draw_figure.h"
@@ -46,7 +47,8 @@ void add_input_options(CLI::App& app, TomographyArguments& given) {
          "Case folder of each view, 3 to 16; with --vectors the setup (TOML) of each view; with --views one setup")
       ->required();
   app.add_option("-o,--output", given.output,
-                 "File for the density, .h5; the figure has the same name with .png. With --views: folder")
+                 "File for the density, .h5, .nc, .vti, .mat or .csv; the figure has the same name with .png. With "
+                 "--views: folder")
       ->required();
   app.add_option("--vectors", given.tomography.vectors, "Vectors of each view, default CASE/vectors.h5")->expected(-1);
   app.add_flag("--ray-truth", given.tomography.ray_truth, "Use the true displacement of the dots of rendered cases");
@@ -156,7 +158,7 @@ CommandBody attach_tomography(CLI::App& app, GlobalOptions const& options) {
     if (arguments->views) return plan_views(*arguments, options);
     TomographyOptions const tomography = convert_arguments(*arguments);
     std::string const& output = arguments->output;
-    if (!output.ends_with(".h5")) throw OutputError(output, "does not end in .h5; choose such a name");
+    require_density_ending(output);
     std::string const figure = fs::path(output).replace_extension(".png").string();
     refuse_inputs_as_outputs({output, figure}, list_tomography_inputs(tomography));
     auto const make_volume = open_volume_device(options.device);

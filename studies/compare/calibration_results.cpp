@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "render/base/units.h"
+#include "render/files/hdf5_axes.h"
 #include "render/files/hdf5_file.h"
 #include "studies/case/flat_values.h"
 #include "studies/compare/calibrate.h"
@@ -19,7 +20,7 @@ double largest(std::vector<Vec2d> const& residuals) {
   return most;
 }
 
-void write_pinhole(Hdf5Writer& file, PinholeFit const& fit) {
+void write_pinhole(Hdf5Writer& file, PinholeFit const& fit, Hdf5Axes& axes) {
   auto const& p = fit.camera.value;
   std::size_t const count = PinholeCamera::count;
   std::vector<double> const matrix{p[0], 0, p[2], 0, p[1], p[3], 0, 0, 1};
@@ -35,9 +36,20 @@ void write_pinhole(Hdf5Writer& file, PinholeFit const& fit) {
   file.write("/pinhole/covariance", std::span<double const>(fit.covariance), {count, count}, "of both parameters",
              "covariance of the parameters", "parameter, parameter");
   file.attribute("/pinhole", "rms_px", fit.rms_px);
+  axes.write_numbers("/pinhole/row", 3, "row of the matrix");
+  axes.write_numbers("/pinhole/column", 3, "column of the matrix");
+  axes.write_numbers("/pinhole/coefficient", 4, "k1, k2, p1, p2");
+  axes.write_numbers("/pinhole/parameter", count, "fx, fy, cx, cy, k1, k2, p1, p2, rvec, tvec");
+  axes.write_numbers("/pinhole/other_parameter", count, "as parameter");
+  axes.name("/pinhole/camera_matrix", {"/pinhole/row", "/pinhole/column"});
+  axes.name("/pinhole/distortion", {"/pinhole/coefficient"});
+  axes.name("/pinhole/rvec", {"/coordinate"});
+  axes.name("/pinhole/tvec", {"/coordinate"});
+  axes.name("/pinhole/standard_errors", {"/pinhole/parameter"});
+  axes.name("/pinhole/covariance", {"/pinhole/parameter", "/pinhole/other_parameter"});
 }
 
-void write_soloff(Hdf5Writer& file, SoloffFit const& fit) {
+void write_soloff(Hdf5Writer& file, SoloffFit const& fit, Hdf5Axes& axes) {
   SoloffPolynomial const& polynomial = fit.polynomial;
   std::size_t const count = polynomial.exponents.size();
   std::vector<std::int64_t> exponents;
@@ -50,6 +62,10 @@ void write_soloff(Hdf5Writer& file, SoloffFit const& fit) {
   file.write("/soloff/standard_errors", flat(fit.standard_error), {count, 2}, "px / m^(sum of exponents)",
              "standard errors of the coefficients", "term, (column, row)");
   file.attribute("/soloff", "rms_px", fit.rms_px);
+  axes.write_numbers("/soloff/term", count, "number of the term");
+  axes.name("/soloff/exponents", {"/soloff/term", "/coordinate"});
+  axes.name("/soloff/coefficients", {"/soloff/term", "/component"});
+  axes.name("/soloff/standard_errors", {"/soloff/term", "/component"});
 }
 
 /// Returns the residuals of one model as arrows.
@@ -97,8 +113,12 @@ std::string spots_in_words(CalibratedPlane const& plane) {
 void write_calibration_file(std::string const& path, Calibration const& calibration) {
   FileOrigin origin{"gladstone calibration", 1, calibration.setup, calibration.seed, "cpu", calibration.sources};
   Hdf5Writer file(path, origin);
-  write_pinhole(file, calibration.pinhole);
-  write_soloff(file, calibration.soloff);
+  Hdf5Axes axes(file);
+  axes.write_numbers("/component", 2, "column, row; of the grid along X, Y");
+  axes.write_numbers("/coordinate", 3, "x, y, z");
+  axes.write_numbers("/dots/dot", calibration.points.size(), "number of the dot");
+  write_pinhole(file, calibration.pinhole, axes);
+  write_soloff(file, calibration.soloff, axes);
   std::size_t const count = calibration.points.size();
   std::vector<double> position;
   std::vector<std::int64_t> plane_of, index;
@@ -119,6 +139,12 @@ void write_calibration_file(std::string const& path, Calibration const& calibrat
              "detected minus fitted, pinhole", "dot, (column, row)");
   file.write("/dots/soloff_residual_px", flat(calibration.soloff.residual_px), {count, 2}, "px",
              "detected minus fitted, polynomial", "dot, (column, row)");
+  axes.name("/dots/position_m", {"/dots/dot", "/coordinate"});
+  axes.name("/dots/plane", {"/dots/dot"});
+  for (char const* const pairs :
+       {"/dots/image_px", "/dots/index", "/dots/pinhole_residual_px", "/dots/soloff_residual_px"})
+    axes.name(pairs, {"/dots/dot", "/component"});
+  axes.attach();
   file.attribute("/dots", "drift_x", calibration.drift.x);
   file.attribute("/dots", "drift_y", calibration.drift.y);
   file.close();

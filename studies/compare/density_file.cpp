@@ -4,20 +4,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <iterator>
 #include <nlohmann/json.hpp>
-#include <span>
 
 #include "analysis/errors/error_summary.h"
 #include "render/base/not_a_number.h"
 #include "render/files/hdf5_file.h"
+#include "studies/case/flat_values.h"
 #include "studies/case/json_text.h"
+#include "studies/compare/density_table.h"
 
 namespace gladstone {
 namespace {
-
-constexpr char const* plane_axes = "row (y upwards), column (x)";
 
 std::vector<double> select_finite(std::vector<double> const& values) {
   std::vector<double> finite;
@@ -48,22 +46,6 @@ char const* direction_name(density::AxisDirection direction) {
   return direction == density::AxisDirection::vertical ? "vertical" : "horizontal";
 }
 
-std::vector<double> subtract(std::vector<double> const& a, std::vector<double> const& b) {
-  std::vector<double> difference(a.size());
-  std::transform(a.begin(), a.end(), b.begin(), difference.begin(), std::minus<>{});
-  return difference;
-}
-
-void write_axes(Hdf5Writer& file, density::PlaneGrid const& grid) {
-  std::vector<double> x_mm, y_mm;
-  for (int column = 0; column < grid.columns; ++column) x_mm.push_back(1e3 * grid.position(column, 0).x);
-  for (int row = 0; row < grid.rows; ++row) y_mm.push_back(1e3 * grid.position(0, row).y);
-  file.write("/x_mm", std::span<double const>(x_mm), {x_mm.size()}, "mm",
-             "position in the mid-plane of the medium, to the right of the optical axis", "column");
-  file.write("/y_mm", std::span<double const>(y_mm), {y_mm.size()}, "mm",
-             "position in the mid-plane of the medium, above the optical axis", "row");
-}
-
 void write_attributes(Hdf5Writer& file, Reconstruction const& reconstruction) {
   file.attribute("/", "reference_density_kg_m3", reconstruction.reference_density);
   file.attribute("/", "window_overlap_x", reconstruction.overlap.x);
@@ -84,35 +66,24 @@ void write_attributes(Hdf5Writer& file, Reconstruction const& reconstruction) {
 }  // namespace
 
 void write_density(std::string const& path, Reconstruction const& reconstruction) {
-  Hdf5Writer file(path,
-                  {"gladstone density", 1, reconstruction.setup, reconstruction.seed, "cpu", reconstruction.sources});
-  auto const rows = static_cast<std::size_t>(reconstruction.grid.rows),
-             columns = static_cast<std::size_t>(reconstruction.grid.columns);
-  bool const is_radial = reconstruction.axisymmetry.has_value();
-  auto const write = [&](char const* dataset, std::vector<double> const& values, char const* description) {
-    file.write(dataset, std::span<double const>(values), {rows, columns}, "kg/m^3", description, plane_axes);
-  };
-  write_axes(file, reconstruction.grid);
-  write("/density_kg_m3", reconstruction.density,
-        is_radial ? "density in the plane through the axis; NaN: not determined"
-                  : "density, mean over the thickness of the medium; NaN: not determined");
-  write("/sigma_kg_m3", reconstruction.sigma,
-        "standard uncertainty of the density: vectors, reference density and scale; NaN: unknown");
-  write("/sigma_random_kg_m3", reconstruction.sigma_random, "the part of the uncertainty that is due to the vectors");
-  std::vector<double> gradient;
-  gradient.reserve(2 * reconstruction.gradient.size());
-  for (Vec2d const& g : reconstruction.gradient) gradient.insert(gradient.end(), {g.x, g.y});
-  file.write("/gradient_kg_m4", std::span<double const>(gradient), {rows, columns, 2}, "kg/m^4",
-             is_radial ? "differences of the density" : "measured density gradient, mean over the thickness",
-             "row (y upwards), column (x), component (d/dx, d/dy)");
-  file.write("/region", std::span<std::int64_t const>(reconstruction.region), {rows, columns}, "1",
-             "connected region of valid vectors, 0: the largest; -1: no valid vector", plane_axes);
-  file.write("/reference", std::span<std::int64_t const>(reconstruction.reference), {rows, columns}, "1",
-             "1: node with the reference density", plane_axes);
-  if (!reconstruction.truth.empty()) {
-    write("/truth_kg_m3", reconstruction.truth, "true density of the rendered case");
-    write("/error_kg_m3", subtract(reconstruction.density, reconstruction.truth), "density minus true density");
+  FileOrigin const origin{"gladstone density", 1,     reconstruction.setup,
+                          reconstruction.seed, "cpu", reconstruction.sources};
+  GridTable table = make_density_table(reconstruction);
+  if (!path.ends_with(".h5")) {
+    add_gradient_columns(table, reconstruction.gradient);
+    return write_grid_table(path, table, origin);
   }
+  Hdf5Writer file(path, origin);
+  Hdf5Axes axes(file);
+  write_grid_datasets(file, axes, table, "row (y upwards), column (x)");
+  axes.write_numbers("/component", 2, "d/dx, d/dy");
+  file.write(
+      "/gradient_kg_m4", flat(reconstruction.gradient),
+      {table.axes[0].place_mm.size(), table.axes[1].place_mm.size(), 2}, "kg/m^4",
+      reconstruction.axisymmetry ? "differences of the density" : "measured density gradient, mean over the thickness",
+      "row (y upwards), column (x), component (d/dx, d/dy)");
+  axes.name("/gradient_kg_m4", {"/y_mm", "/x_mm", "/component"});
+  axes.attach();
   write_attributes(file, reconstruction);
   file.close();
 }

@@ -10,6 +10,7 @@ namespace gladstone {
 /// Writes density.h5 (filetype "gladstone density"): /x_mm [nx], /y_mm [ny], fields [ny, nx] of density, uncertainty,
 /// region and reference, /gradient_kg_m4 [ny, nx, 2], and for a rendered case truth and error; rows upwards. Tables in
 /// docs/file-formats.md.
+/// Another ending than .h5 selects one of the formats of write_grid_table(), with the same quantities.
 /// @throws OutputError; DataError if a source has changed since it was read
 void write_density(std::string const& path, Reconstruction const& reconstruction);
 

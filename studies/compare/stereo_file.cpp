@@ -12,6 +12,7 @@
 #include "analysis/stereo/residual_validation.h"
 #include "render/base/not_a_number.h"
 #include "render/base/units.h"
+#include "render/files/hdf5_axes.h"
 #include "render/files/hdf5_file.h"
 #include "studies/case/json_text.h"
 
@@ -24,7 +25,11 @@ constexpr std::array<char const*, 3> component_names{"u", "v", "w"};
 /// Writes datasets with the nodes of the grid as first axes.
 class NodeWriter {
  public:
-  NodeWriter(Hdf5Writer& file, stereo::StereoField const& field) : file_(file), field_(field) {}
+  NodeWriter(Hdf5Writer& file, stereo::StereoField const& field) : file_(file), axes_(file), field_(field) {
+    axes_.write_numbers("/component", 3, "u, v, w along X, Y, Z");
+    axes_.write_numbers("/covariance_entry", 6, "uu, vv, ww, uv, uw, vw");
+    axes_.write_numbers("/image_component", 4, "u of camera A, v of camera A, u of camera B, v of camera B");
+  }
 
   /// @param width  number of values of each node; 1: no third axis
   /// @param value  of a determined node; NaN elsewhere
@@ -46,10 +51,28 @@ class NodeWriter {
     std::string const axes = "row (y upwards), column (x)";
     file_.write(dataset, std::span<double const>(values), shape, units, description,
                 width > 1 ? axes + ", " + third_axis : axes);
+    std::vector<std::string> names{"/y_mm", "/x_mm"};
+    if (width > 1)
+      names.emplace_back(width == 3 ? "/component" : width == 4 ? "/image_component" : "/covariance_entry");
+    axes_.name(dataset, names);
   }
+
+  void write_status() {
+    std::vector<std::int64_t> status;
+    for (StereoNode const& node : field_.nodes)
+      status.push_back(static_cast<std::int64_t>(node ? node->status : VectorStatus::invalid));
+    file_.write("/status", std::span<std::int64_t const>(status),
+                {static_cast<std::size_t>(field_.grid.rows), static_cast<std::size_t>(field_.grid.columns)}, "1",
+                "0 valid, 3 invalid: not determined (displacement NaN), or the residual exceeds its limit",
+                "row (y upwards), column (x)");
+    axes_.name("/status", {"/y_mm", "/x_mm"});
+  }
+
+  void attach_axes() { axes_.attach(); }
 
  private:
   Hdf5Writer& file_;
+  Hdf5Axes axes_;
   stereo::StereoField const& field_;
 };
 
@@ -64,16 +87,6 @@ void write_node_positions(Hdf5Writer& file, stereo::NodeGrid const& grid) {
   file.write("/x_mm", std::span<double const>(x_mm), {x_mm.size()}, "mm", "X of the nodes in the world frame",
              "column");
   file.write("/y_mm", std::span<double const>(y_mm), {y_mm.size()}, "mm", "Y of the nodes in the world frame", "row");
-}
-
-void write_stereo_status(Hdf5Writer& file, stereo::StereoField const& field) {
-  std::vector<std::int64_t> status;
-  for (StereoNode const& node : field.nodes)
-    status.push_back(static_cast<std::int64_t>(node ? node->status : VectorStatus::invalid));
-  file.write("/status", std::span<std::int64_t const>(status),
-             {static_cast<std::size_t>(field.grid.rows), static_cast<std::size_t>(field.grid.columns)}, "1",
-             "0 valid, 3 invalid: not determined (displacement NaN), or the residual exceeds its limit",
-             "row (y upwards), column (x)");
 }
 
 void write_stereo_truth(NodeWriter& nodes, StereoMeasurement const& measurement) {
@@ -206,9 +219,10 @@ void write_stereo(std::string const& path, StereoMeasurement const& measurement)
               "u of camera A, v of camera A, u of camera B, v of camera B", [](StereoVector const& v, std::size_t k) {
                 return std::array{v.image_a_px.x, v.image_a_px.y, v.image_b_px.x, v.image_b_px.y}[k];
               });
-  write_stereo_status(file, measurement.field);
+  nodes.write_status();
   if (!measurement.truth.empty()) write_stereo_truth(nodes, measurement);
   write_stereo_attributes(file, measurement);
+  nodes.attach_axes();
   file.close();
 }
 

@@ -5,8 +5,10 @@
 #include <filesystem>
 
 #include "render/base/error.h"
+#include "render/files/hdf5_axes.h"
 #include "render/files/hdf5_file.h"
 #include "render/files/sha256.h"
+#include "studies/case/flat_values.h"
 #include "studies/case/version_text.h"
 
 namespace gladstone {
@@ -53,16 +55,21 @@ std::string comparison_fingerprint(SourceFiles const& sources, CompareOptions co
 
 void write_chain(std::string const& path, Comparison const& comparison, std::string const& errors) {
   Hdf5Writer file(path, {"gladstone comparison", 1, "", 0, "cpu"});
+  Hdf5Axes axes(file);
+  axes.write_numbers("/vectors/vector", comparison.measured.size(), "number of the vector that counts, from 0");
+  axes.write_numbers("/vectors/component", 2, "u to the right, v downwards; of positions column, row");
+  axes.write_numbers("/vectors/quantity", 3, "quantity of /vectors/counts");
   Comparison all = comparison;  // copy: links return mutable references
   for (Link const& link : links) {
     std::vector<Vec2d> const& values = link.values(all);
     if (values.empty()) continue;
-    std::vector<double> numbers;
-    numbers.reserve(2 * values.size());
-    for (Vec2d const& value : values) numbers.insert(numbers.end(), {value.x, value.y});
-    file.write(link.name, std::span<double const>(numbers), {values.size(), 2}, "px", link.description,
+    file.write(link.name, flat(values), {values.size(), 2}, "px", link.description,
                "vector as in the file of vectors, component (u right, v down)");
+    axes.name(link.name, {"/vectors/vector", "/vectors/component"});
   }
+  file.write("/vectors/position_px", flat(comparison.measured.position_px), {comparison.measured.size(), 2}, "px",
+             "position of the vector", "vector as in the file of vectors, (column, row)");
+  axes.name("/vectors/position_px", {"/vectors/vector", "/vectors/component"});
   std::array<std::int64_t, 3> const counts{static_cast<std::int64_t>(comparison.window.left_out),
                                            static_cast<std::int64_t>(comparison.deformed_window.left_out),
                                            comparison.frames_deformed ? 1 : 0};
@@ -70,6 +77,8 @@ void write_chain(std::string const& path, Comparison const& comparison, std::str
              "vectors with fewer than three dots in their window; the same for deformed frames; 1 if several passes "
              "deform the frames",
              "number");
+  axes.name("/vectors/counts", {"/vectors/quantity"});
+  axes.attach();
   file.attribute("/", "made_from", comparison.fingerprint);
   Sha256 hash;
   hash.add(errors);

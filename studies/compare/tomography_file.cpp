@@ -9,33 +9,12 @@
 #include "render/base/units.h"
 #include "render/files/hdf5_file.h"
 #include "studies/case/json_text.h"
+#include "studies/compare/density_table.h"
 
 namespace gladstone {
 namespace {
 
 constexpr char const* volume_axes = "z, y, x (ascending)";
-
-std::vector<std::size_t> volume_shape(RegularGrid const& grid) {
-  return {static_cast<std::size_t>(grid.nodes[2]), static_cast<std::size_t>(grid.nodes[1]),
-          static_cast<std::size_t>(grid.nodes[0])};
-}
-
-void write_volume_axes(Hdf5Writer& file, RegularGrid const& grid) {
-  for (int axis = 0; axis < 3; ++axis) {
-    std::vector<double> mm;
-    for (int i = 0; i < grid.nodes[static_cast<std::size_t>(axis)]; ++i)
-      mm.push_back((grid.origin[axis] + i * grid.spacing[axis]) / unit::mm);
-    std::string const name(1, "xyz"[axis]);
-    file.write("/" + name + "_mm", std::span<double const>(mm), {mm.size()}, "mm",
-               "position of the nodes in the frame of the volume", name);
-  }
-}
-
-void attach_volume_scales(Hdf5Writer& file, std::vector<std::string> const& datasets) {
-  std::vector<ScaledDataset> scaled;
-  for (std::string const& dataset : datasets) scaled.push_back({dataset, {"/z_mm", "/y_mm", "/x_mm"}});
-  file.attach_scales(scaled);
-}
 
 void write_tomography_attributes(Hdf5Writer& file, Tomography const& result) {
   Vec3d const centre = find_grid_centre(result.grid);
@@ -61,37 +40,33 @@ Vec3d find_grid_centre(RegularGrid const& grid) {
 void write_density_volume(std::string const& path, RegularGrid const& grid, std::vector<double> const& density,
                           std::string const& setup) {
   Hdf5Writer file(path, {"gladstone volume", 1, setup});
-  write_volume_axes(file, grid);
-  file.write("/density_kg_m3", std::span<double const>(density), volume_shape(grid), "kg/m^3", "density", volume_axes);
-  attach_volume_scales(file, {"/density_kg_m3"});
+  Hdf5Axes axes(file);
+  GridTable table{make_volume_axes(grid), {}};
+  table.columns.push_back(detail::number_column("density_kg_m3", "kg/m^3", "density", density));
+  write_grid_datasets(file, axes, table, volume_axes);
+  axes.attach();
   file.close();
 }
 
 void write_tomography(std::string const& path, Tomography const& result) {
-  Hdf5Writer file(path, {"gladstone tomography", 1, result.setup, result.seed, result.device, result.sources});
-  write_volume_axes(file, result.grid);
-  std::vector<std::string> scaled{"/density_kg_m3", "/views"};
-  auto const write = [&](std::string const& dataset, std::vector<double> const& values, char const* description) {
-    file.write(dataset, std::span<double const>(values), volume_shape(result.grid), "kg/m^3", description, volume_axes);
-  };
-  write("/density_kg_m3", result.density, "reconstructed density; the reference density where no view sees the node");
-  file.write("/views", std::span<std::int64_t const>(result.seen), volume_shape(result.grid), "1",
-             "number of views with a line of sight through the cells of the node", volume_axes);
-  if (!result.truth.empty()) {
-    std::vector<double> error = result.density;
-    for (std::size_t i = 0; i < error.size(); ++i) error[i] -= result.truth[i];
-    write("/truth_kg_m3", result.truth, "true density of the rendered cases");
-    write("/error_kg_m3", error, "density minus true density");
-    scaled.insert(scaled.end(), {"/truth_kg_m3", "/error_kg_m3"});
-  }
+  FileOrigin const origin{"gladstone tomography", 1, result.setup, result.seed, result.device, result.sources};
+  GridTable const table = make_volume_table(result);
+  if (!path.ends_with(".h5")) return write_grid_table(path, table, origin);
+  Hdf5Writer file(path, origin);
+  Hdf5Axes axes(file);
+  write_grid_datasets(file, axes, table, volume_axes);
   std::vector<double> angles = result.angles;
   for (double& angle : angles) angle /= unit::degree;
+  axes.write_numbers("/view", angles.size(), "number of the view");
   file.write("/angle_deg", std::span<double const>(angles), {angles.size()}, "deg",
              "right-handed angle of the volume about Y in each view", "view");
+  axes.name("/angle_deg", {"/view"});
+  axes.write_numbers("/iteration", result.residual.size(), "number of the sweep over all views, from 0");
   file.write("/residual", std::span<double const>(result.residual), {result.residual.size()}, "1",
              "norm of the residual line integrals over that of the measured ones", "iteration");
+  axes.name("/residual", {"/iteration"});
+  axes.attach();
   write_tomography_attributes(file, result);
-  attach_volume_scales(file, scaled);
   file.close();
 }
 

@@ -8,7 +8,8 @@
 namespace gladstone {
 
 /// Writes a reconstructed volume as HDF5 (docs/file-formats.md). Its dataset density_kg_m3 can be the medium.field.file
-/// of a setup.
+/// of a setup. Another ending than .h5 selects one of the formats of write_grid_table(), with the quantities at the
+/// nodes.
 void write_tomography(std::string const& path, Tomography const& result);
 
 /// Summarises a reconstruction as JSON.

@@ -14,7 +14,8 @@ using unit::mm;
 using unit::um;
 constexpr double gradient_without_field = 10;  // [kg/m^4]
 constexpr double good_dot_px = 3;              // recommended maximum of the diffraction-limited dot diameter, F13
-constexpr double deforming_strain = 0.1;       // maximum strain that deforming interrogation windows follow, F19
+constexpr double zero_over_e2 = 2.44 / 1.644922989562259;  // first-zero over e^-2 diameter of a diffraction image
+constexpr double deforming_strain = 0.1;  // maximum strain that deforming interrogation windows follow, F19
 
 constexpr double binding = 1e-3;  // tolerance by which a design may exceed an active limit
 
@@ -116,10 +117,15 @@ void add_blur(DesignSheet& sheet, DesignPoint<double> const& b) {
                               cone_transfer(b.pupil(), b.z_b(), b.z_d, b.given->thickness, resolved),
                               disc_transfer(b.dot_diameter * b.z_a / b.z_b(), resolved),
                               b.given->window.share(b.pixel_at_medium() / resolved))});
-  rows.push_back({"F13", "diffraction_diameter_px", "diffraction image, diameter of the first zero", b.diffraction_px(),
-                  "px", "2.44 N (1 + M) lambda / p", adrian, at_most(b.diffraction_px(), good_dot_px, 5),
-                  fmt::format("{:.6g} um; FWHM {:.4g} um, e^-2 {:.4g} um", 2.44 * b.spot_scale() / um,
-                              1.0289939699621886 * b.spot_scale() / um, 1.644922989562259 * b.spot_scale() / um)});
+  rows.push_back(
+      {"F13", "diffraction_diameter_px", "diffraction image, diameter of the first zero", b.diffraction_px(), "px",
+       "2.44 N (1 + M) lambda / p", adrian,
+       at_most(b.diffraction_px(), good_dot_px, zero_over_e2 * random_error_range.most_image),
+       fmt::format("{:.6g} um; FWHM {:.4g} um, e^-2 {:.4g} um; small dots up to {:g} px, and up to {:.3g} px "
+                   "the random error is known (e^-2 {:g} px)",
+                   2.44 * b.spot_scale() / um, 1.0289939699621886 * b.spot_scale() / um,
+                   1.644922989562259 * b.spot_scale() / um, good_dot_px, zero_over_e2 * random_error_range.most_image,
+                   random_error_range.most_image)});
   double const dot = b.dot_image_px();
   rows.push_back(
       {"F14", "dot_diameter_px", "dot image, e^-2 diameter", dot, "px", "sqrt((M d / p)^2 + (4 s)^2)", adrian,

@@ -124,6 +124,10 @@ void add_answer(DesignRequest const& request, SetupDocument const& document, Des
     return;
   }
   DesignPoint<double> const best = result.best();
+  DesignSheet const sheet = bos_sheet(loaded.setup, best);
+  report.json["recommended_sheet"] = sheet_json(sheet);
+  if (std::string const missed = missed_rows_text(sheet); !missed.empty())
+    report.text += "rows of the design sheet that the recommended set-up does not meet with a margin\n" + missed;
   if (!request.figures.empty()) {
     draw_layout_and_map(request, report, best, &result.question);
     if (!result.answer.front.empty()) {

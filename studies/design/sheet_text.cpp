@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <vector>
 
@@ -19,7 +20,15 @@ std::string value_text(SheetRow const& row) {
   return fmt::format("{:.7g}{}{}", row.value, row.unit.empty() ? "" : " ", row.unit);
 }
 
+bool is_missed(SheetRow const& row) { return row.margin == Margin::violated || row.margin == Margin::marginal; }
+
 }  // namespace
+
+std::string missed_rows_text(DesignSheet const& sheet) {
+  DesignSheet missed;
+  std::copy_if(sheet.rows.begin(), sheet.rows.end(), std::back_inserter(missed.rows), is_missed);
+  return sheet_text(missed);
+}
 
 std::string sheet_text(DesignSheet const& sheet) {
   std::vector<SheetRow> rows = sheet.rows;

@@ -11,6 +11,9 @@ namespace gladstone {
 /// marginal ones, then the others in the order of their numbers.
 std::string sheet_text(DesignSheet const& sheet);
 
+/// Formats the rows that miss the usual recommendation, as sheet_text(); empty if there are none.
+std::string missed_rows_text(DesignSheet const& sheet);
+
 /// Returns every value by its key, fields of view as [width, height], and all rows in "rows"; null: unknown.
 nlohmann::ordered_json sheet_json(DesignSheet const& sheet);
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
 #include "render/base/available_memory.h"
 #include "render/base/error.h"
@@ -38,12 +39,16 @@ std::vector<FieldPlane> read_middle_planes(FieldSource& source) {
     planes.push_back({across, up, normal,
                       Image<double>(nodes[static_cast<std::size_t>(across)], nodes[static_cast<std::size_t>(up)])});
   }
-  std::size_t const count = static_cast<std::size_t>(nodes[0]) * static_cast<std::size_t>(nodes[1]);
+  auto const components = static_cast<std::size_t>(source.values());
+  std::size_t const count = static_cast<std::size_t>(nodes[0]) * static_cast<std::size_t>(nodes[1]) * components;
   require_memory(source.name(), "a plane of " + std::to_string(count) + " values",
                  sizeof(double) * static_cast<double>(count));
   std::vector<double> values(count);
   auto const at = [&](int i, int j) {
-    return values[static_cast<std::size_t>(j) * static_cast<std::size_t>(nodes[0]) + static_cast<std::size_t>(i)];
+    std::size_t const node =
+        static_cast<std::size_t>(j) * static_cast<std::size_t>(nodes[0]) + static_cast<std::size_t>(i);
+    double const* const value = values.data() + node * components;
+    return components == 1 ? *value : std::sqrt(std::inner_product(value, value + components, value, 0.0));
   };
   Progress progress("drawing " + source.name(), static_cast<std::size_t>(nodes[2]));
   for (int k = 0; k < nodes[2]; ++k) {
@@ -110,7 +115,8 @@ Figure make_field_figure(FieldSource& source, bool lengths_known) {
   int const cell = to_left + plane_width + to_right, tallest = *std::max_element(heights.begin(), heights.end());
   int const drawn = static_cast<int>(planes.size());
   Figure figure{drawn * cell + bar_space, above_plane + tallest + below_plane, Figure::Kind::map};
-  figure.add_title(source.name() + (source.units().values.empty() ? "" : " [" + source.units().values + ']'));
+  std::string const unit_name = source.units().values.empty() ? "" : " [" + source.units().values + ']';
+  figure.add_title(source.name() + (source.values() > 1 ? ", magnitude" : "") + unit_name);
   for (int i = 0; i < drawn; ++i) {
     FieldPlane& plane = planes[static_cast<std::size_t>(i)];
     NodeAxis const &across = axis_of(plane.across), &up = axis_of(plane.up);

@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "render/base/error.h"
+#include "render/files/hdf5_axes.h"
 #include "render/files/hdf5_file.h"
 #include "render/files/input_guard.h"
 #include "render/files/output_file.h"
@@ -81,11 +82,13 @@ void write_study_h5(std::string const& path, StudyTable const& table, std::strin
                     SourceFiles const& sources) {
   FileOrigin const origin{"gladstone study", 2, setup, table.rows.front().seed, table.rows.front().device(), sources};
   Hdf5Writer file(path, origin, table.rows.size() < large_study ? Hdf5Growth::in_memory : Hdf5Growth::on_disk);
-  write_columns(file, "/", "case", table, table_columns(table));
+  Hdf5Axes axes(file);
+  write_columns(file, axes, "/", "case", table, table_columns(table));
   if (table.repeats() > 1) {
     StudyTable const points = study_points(table);
-    write_columns(file, "/points/", "point", points, point_columns(points));
+    write_columns(file, axes, "/points/", "point", points, point_columns(points));
   }
+  axes.attach();
   nlohmann::json keys = nlohmann::json::array();
   for (StudyAxis const& axis : table.axes) keys.push_back(axis.key);
   file.attribute("/", "study_axes", keys.dump());

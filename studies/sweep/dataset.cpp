@@ -11,6 +11,7 @@
 
 #include "render/base/error.h"
 #include "render/base/progress.h"
+#include "render/files/hdf5_axes.h"
 #include "render/files/hdf5_file.h"
 #include "render/files/image_file.h"
 #include "render/files/output_destination.h"
@@ -231,7 +232,9 @@ PackedDataset pack_dataset(std::string const& run, std::string const& path, Rend
                   {"gladstone dataset", 2, fs::exists(study, error) ? read_text_file(study) : "", first.seed,
                    first.device(), sources},
                   Hdf5Growth::on_disk);
-  write_columns(file, "/parameters/", "case", kept.table, axis_columns(kept.table));
+  Hdf5Axes axes(file);
+  write_columns(file, axes, "/parameters/", "case", kept.table, axis_columns(kept.table));
+  axes.attach();
   make_arrays(file, sizes);
   Progress progress("packing", sizes.cases());
   for (std::size_t i = 0; i < sizes.cases(); ++i) {

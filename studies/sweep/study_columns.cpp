@@ -120,8 +120,8 @@ std::vector<StudyColumn> point_columns(StudyTable const& points) {
   return columns;
 }
 
-void write_columns(Hdf5Writer& file, std::string const& group, std::string const& row_name, StudyTable const& table,
-                   std::vector<StudyColumn> const& columns) {
+void write_columns(Hdf5Writer& file, Hdf5Axes& axes, std::string const& group, std::string const& row_name,
+                   StudyTable const& table, std::vector<StudyColumn> const& columns) {
   std::vector<std::size_t> const shape{table.rows.size()};
   for (StudyColumn const& column : columns) {
     std::string const name = group + column.name;
@@ -137,6 +137,7 @@ void write_columns(Hdf5Writer& file, std::string const& group, std::string const
       for (StudyRow const& row : table.rows) numbers.push_back(column.number(row));
       file.write(name, numbers, shape, unit_of_column(column.name), column.description, row_name);
     }
+    if (column.name != "case") axes.name(name, {group + "case"});
     if (!column.labels.empty()) file.attribute(name, "labels", nlohmann::json(column.labels).dump());
   }
 }

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "render/files/hdf5_axes.h"
 #include "render/files/hdf5_file.h"
 #include "studies/sweep/study_table.h"
 
@@ -29,10 +30,10 @@ std::vector<StudyColumn> table_columns(StudyTable const& table);
 /// Returns all columns of study_points().
 std::vector<StudyColumn> point_columns(StudyTable const& points);
 
-/// Writes columns to an HDF5 group.
+/// Writes columns to an HDF5 group. Their axis is the column "case".
 /// @param group     "/" or "/points/"
 /// @param row_name  meaning of a row, as axis name of the datasets
-void write_columns(Hdf5Writer& file, std::string const& group, std::string const& row_name, StudyTable const& table,
-                   std::vector<StudyColumn> const& columns);
+void write_columns(Hdf5Writer& file, Hdf5Axes& axes, std::string const& group, std::string const& row_name,
+                   StudyTable const& table, std::vector<StudyColumn> const& columns);
 
 }  // namespace gladstone

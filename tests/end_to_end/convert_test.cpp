@@ -1,7 +1,9 @@
 // gladstone convert: vectors and true displacements in other formats.
 #include <cmath>
 
+#include "analysis/vectors/grid_table.h"
 #include "analysis/vectors/vector_file.h"
+#include "render/files/fields/field_file.h"
 #include "tests/end_to_end/support/program_fixture.h"
 
 namespace gladstone::end_to_end {
@@ -36,6 +38,40 @@ TEST_F(Convert, VectorsOfACaseAreWrittenInEveryFormat) {
   Hdf5Reader const original(path("case/vectors.h5")), copy(path("v.h5"));
   for (char const* const attribute : {"setup", "reference_sha256", "flow_sha256", "verdict", "device"})
     EXPECT_EQ(copy.attribute(attribute), original.attribute(attribute)) << attribute;
+}
+
+// The field readers determine the axes of every format by its coordinates; the plane has more columns than rows.
+TEST_F(Convert, DensityIsWrittenInEveryFormat) {
+  write("setup.toml", small_setup);
+  render("case", {"--set", "camera.pixels=[96, 64]"});
+  succeed({"correlate", "case"});
+  succeed({"reconstruct", "case", "--reference", "left", "-o", "density.h5", "--no-figures"});
+  auto const ours = open_field(path("density.h5"), "");
+  EXPECT_EQ(ours->name(), "density_kg_m3");
+  RegularGrid const& grid = ours->grid();
+  ASSERT_GT(grid.nodes[0], grid.nodes[1]);
+  std::vector<double> density(grid.size()), read(grid.size());
+  ours->read_planes(0, 1, density);
+  Hdf5Reader const file(path("density.h5"));
+  EXPECT_THAT(file.dimension_scales("/gradient_kg_m4"), testing::ElementsAre("/y_mm", "/x_mm", "/component"));
+  for (std::string const& ending : grid_table_extensions()) {
+    std::string const name = "d" + ending;
+    auto const json = json_of({"convert", "density.h5", "-o", name});
+    EXPECT_EQ(json["format"], "gladstone density") << name;
+    EXPECT_EQ(json["nodes"], grid.size()) << name;
+    succeed({"reconstruct", "case", "--reference", "left", "-o", "direct" + ending, "--no-figures"});
+    for (std::string const& one : {name, "direct" + ending}) {
+      auto const field = open_field(path(one), ending == ".nc" ? "density" : "density_kg_m3");
+      EXPECT_EQ(field->grid().nodes, grid.nodes) << one;
+      EXPECT_NEAR(field->grid().spacing.x, grid.spacing.x, 1e-12) << one;
+      EXPECT_NEAR(field->grid().origin.y, grid.origin.y, 1e-12) << one;
+      field->read_planes(0, 1, read);
+      EXPECT_EQ(read, density) << one;
+      EXPECT_EQ(field->units().value_factor(dimension_of_density).factor, 1.0) << one;
+    }
+  }
+  expect_refused({"convert", "density.h5", "-o", "d.dat"}, 2, {"d.dat", ".vti"});
+  expect_refused({"reconstruct", "case", "--reference", "left", "-o", "d.txt"}, 2, {"d.txt", ".h5"});
 }
 
 TEST_F(Convert, TruthIsWrittenAsVectors) {

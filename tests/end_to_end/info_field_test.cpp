@@ -57,5 +57,22 @@ TEST_F(InfoField, RefusesFiguresThatCannotBe) {
   expect_refused({"info", "particles", "setup.toml", "--figure", "planes.svg"}, 2, {"draws no figure"});
 }
 
+// Components are described one by one; a scalar field of the same file by its name.
+TEST_F(InfoField, DescribesAVelocityByItsComponents) {
+  write("v.csv", "x_mm,y_mm,u_m_s,v_m_s\n0,0,1,2\n1,0,4,5\n0,2,7,8\n1,2,10,11\n");
+  auto const json = json_of({"info", "field", "v.csv", "--figure", "v.svg", "--quiet"});
+  EXPECT_EQ(json["dataset"], "velocity");
+  EXPECT_EQ(json["components"], 3);
+  EXPECT_EQ(json["minimum"], nlohmann::json::array({1, 2, 0}));
+  EXPECT_EQ(json["maximum"], nlohmann::json::array({10, 11, 0}));
+  EXPECT_EQ(json["steepest_gradient"][0], nlohmann::json::array({3, 3, 0}));
+  EXPECT_EQ(json["units"]["values"], "m/s");
+  if (json.contains("figure")) {
+    EXPECT_EQ(count("v.svg", "magnitude"), 1);
+  }
+  EXPECT_EQ(json_of({"info", "field", "v.csv", "--dataset", "u_m_s"})["maximum"], 10);
+  expect_refused({"info", "field", "v.csv", "--dataset", "rho"}, 2, {"rho"});
+}
+
 }  // namespace
 }  // namespace gladstone::end_to_end

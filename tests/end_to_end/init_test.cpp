@@ -140,6 +140,25 @@ TEST_F(Init, CompleteListsAreAccepted) {
   }
 }
 
+// A key that another kind of experiment refuses is not offered.
+TEST_F(Init, CompleteListsHaveNoKeyOfAnotherKind) {
+  for (std::string const kind : {"bos", "design"})
+    EXPECT_THAT(succeed({"init", kind, "--all"}), HasSubstr("\n# z_d_mm = 250.0  # [mm]")) << kind;
+  for (std::string const kind : {"piv", "stereo", "calibration"})
+    EXPECT_THAT(succeed({"init", kind, "--all"}), testing::Not(HasSubstr("z_d_mm"))) << kind;
+  EXPECT_EQ(json_of({"keys", "geometry.z_d_mm"})["keys"][0]["kinds"], nlohmann::json::array({"bos", "design"}));
+}
+
+// The axes of the complete list show a list, both kinds of ranges and a label, and are a study.
+TEST_F(Init, CompleteListOfAStudyIsPlanned) {
+  succeed({"init", "bos", "-o", "bos.toml"});
+  succeed({"init", "study", "--all", "-o", "study.toml"});
+  for (std::string const word : {"= [5.6, 11, 22]", "{ linear = [", "{ log = [", "{ label = "})
+    EXPECT_THAT(read("study.toml"), HasSubstr(word));
+  succeed({"sweep", "plan", "study.toml", "-o", "run"});
+  EXPECT_EQ(json_of({"sweep", "status", "run"}).at("missing"), 27);
+}
+
 // Both cameras of the stereoscopic template, and every key of a camera with the first one.
 TEST_F(Init, CompleteListOfStereoHasBothCameras) {
   succeed({"init", "stereo", "-o", "stereo.toml"});

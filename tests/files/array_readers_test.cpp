@@ -410,6 +410,18 @@ TEST_F(PointTableField, PointsInAnyOrderAreAGrid) {
   }
 }
 
+// A comma within a field is a decimal comma.
+TEST_F(PointTableField, DecimalCommasAreRead) {
+  std::string points = reversed_points(";");
+  std::replace(points.begin(), points.end(), '.', ',');
+  auto const path = write("p.csv", "x_mm;y_mm;z_mm;rho\n" + points);
+  EXPECT_EQ(open_field(path, "")->grid().spacing.x, 0.5);
+  EXPECT_EQ(values_of(path), numbered());
+  EXPECT_THAT(values_of(write("q.csv", "x,y,rho\n\"0,0\",0,\"1,5\"\n\"0,5\",0,2\n\"0,0\",1,3\n\"0,5\",1,4\n")),
+              ElementsAre(1.5, 2, 3, 4));
+  EXPECT_EQ(refusal(write("t.csv", "x;y;rho\n0;0;1,000,5\n")), "syntax at t.csv:2");
+}
+
 TEST_F(PointTableField, UnitsAreInBrackets) {
   auto const source =
       open_field(write("p.txt", "# x [cm], y [cm], z [cm], rho [g/cm^3]\n" + reversed_points(",")), "rho");
@@ -458,6 +470,59 @@ TEST_F(PointTableField, ThreeColumnsAreAVelocity) {
   EXPECT_THAT(values_of(path, "", 3), ElementsAre(1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12));
   EXPECT_EQ(open_field(path, "", 3)->name(), "velocity");
   EXPECT_THAT(values_of(path, "v"), ElementsAre(2, 5, 8, 11));
+}
+
+// Components of one group and of equal shape are the last axis of a velocity, whichever format stores them. A plane of
+// planar PIV has two.
+TEST_F(ArrayReaders, ComponentsInSeparateArraysAreAVelocity) {
+  std::vector<double> const u = numbered();
+  std::vector<double> v(u), both;
+  for (double& value : v) value = -2 * value;
+  for (std::size_t i = 0; i < u.size(); ++i) both.insert(both.end(), {u[i], v[i], 0.5});
+  std::vector<double> const w(u.size(), 0.5);
+  auto const expect_read = [&](std::string const& path, std::string const& name, std::string const& unit) {
+    auto const source = open_field(path, "", 3);
+    EXPECT_EQ(source->name(), name);
+    EXPECT_EQ(source->units().values, unit);
+    EXPECT_THAT(source->grid().nodes, ElementsAre(4, 3, 2));
+    EXPECT_THAT(source->notes(), testing::Each(testing::Not(HasSubstr("third component"))));
+    EXPECT_EQ(values_of(path, "", 3), both);
+    EXPECT_EQ(values_of(path, "", 3), values_of(path, name, 3));
+  };
+  expect_read(write("three.mat", mat(matrix("Vx_m_s", {4, 3, 2}, 9, bytes<double>(u)) +
+                                     matrix("Vy_m_s", {4, 3, 2}, 9, bytes<double>(v)) +
+                                     matrix("Vz_m_s", {4, 3, 2}, 9, bytes<double>(w)))),
+              "velocity", "m/s");
+
+  std::string const path = write("three.h5", "");
+  fs::remove(path);
+  Hdf5Writer writer(path, {"test", 1, "", 0, "cpu"});
+  std::vector<double> const x{0, 0.5, 1, 1.5}, y{0, 2, 4}, z{0, 3};
+  writer.write("flow/x", std::span<double const>(x), {4}, "mm", "", "x");
+  writer.write("flow/y", std::span<double const>(y), {3}, "mm", "", "y");
+  writer.write("flow/z", std::span<double const>(z), {2}, "mm", "", "z");
+  for (auto const& [name, values] : {std::pair{"flow/u", &u}, {"flow/v", &v}, {"flow/w", &w}})
+    writer.write(name, std::span<double const>(*values), {2, 3, 4}, "mm/s", "", "z, y, x");
+  writer.write("flow/p", std::span<double const>(u), {2, 3, 4}, "Pa", "", "z, y, x");
+  writer.attach_scales({{"/flow/u", {"/flow/z", "/flow/y", "/flow/x"}}});
+  writer.close();
+  expect_read(path, "flow/velocity", "mm/s");
+  EXPECT_EQ(open_field(path, "", 3)->grid().spacing, (Vec3d{0.5, 2, 3}));
+
+  std::string const plane = write("plane.csv", "x,y,u,v\n0,0,1,2\n1,0,4,5\n0,1,7,8\n1,1,10,11\n");
+  EXPECT_THAT(values_of(plane, "", 3), ElementsAre(1, 2, 0, 4, 5, 0, 7, 8, 0, 10, 11, 0));
+  EXPECT_THAT(open_field(plane, "", 3)->notes(), ElementsAre(HasSubstr("third component is 0")));
+}
+
+// Arrays of another shape, or alone, are no components; different units could not be told from the numbers.
+TEST_F(ArrayReaders, ArraysThatAreNoVelocityAreRefused) {
+  auto const two = [&](std::string const& second, std::vector<double> const& sizes) {
+    return write("two.mat", mat(matrix("u_m_s", {4, 3, 2}, 9, bytes<double>(numbered())) +
+                                matrix(second, sizes, 9, bytes<double>(numbered()))));
+  };
+  EXPECT_EQ(refusal(two("v_m_s", {6, 4, 1}), "", 3), "missing_content at two.mat");
+  EXPECT_EQ(refusal(two("w_m_s", {4, 3, 2}), "", 3), "missing_content at two.mat");
+  EXPECT_EQ(refusal(two("v_mm_s", {4, 3, 2}), "", 3), "inconsistent at two.mat");
 }
 
 TEST_F(PointTableField, MissingAndRepeatedPointsAreNamed) {

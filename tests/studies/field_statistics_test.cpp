@@ -47,7 +47,7 @@ class OneNode final : public FieldSource {
 TEST(FieldStatistics, OfPlanesTooLargeToBeHeldAreThoseOfTheWhole) {
   for (int const row : {3, 4, 8}) {
     OneNode field({1 << 20, 9, 2}, {1000, row, 1});
-    FieldStatistics const seen = field_statistics(field);
+    FieldStatistics const seen = field_statistics(field).front();
     EXPECT_EQ(seen.minimum, 1.0);
     EXPECT_EQ(seen.maximum, 4.0);
     EXPECT_EQ(seen.steepest.x, 3.0);
@@ -61,10 +61,54 @@ TEST(FieldStatistics, OfPlanesTooLargeToBeHeldAreThoseOfTheWhole) {
 // z.
 TEST(FieldStatistics, OfASinglePlane) {
   OneNode field({1 << 20, 9, 1}, {0, 3, 0});
-  FieldStatistics const seen = field_statistics(field);
+  FieldStatistics const seen = field_statistics(field).front();
   EXPECT_EQ(seen.steepest.x, 3.0);
   EXPECT_EQ(seen.steepest.y, 6.0);
   EXPECT_EQ(seen.steepest.z, 0.0);
+}
+
+/// A velocity (x, -2 y, 3) on 3 x 2 x 2 nodes, of indices x, y, z.
+class LinearVelocity final : public FieldSource {
+ public:
+  LinearVelocity() : FieldSource(3) {
+    grid_.nodes = {3, 2, 2};
+    grid_.spacing = {1.0, 0.5, 0.25};
+  }
+  RegularGrid const& grid() const override { return grid_; }
+  FieldUnits const& units() const override { return units_; }
+  std::string const& name() const override { return name_; }
+  AxisAssignment const& reading() const override { return reading_; }
+  std::vector<std::string> notes() override { return {}; }
+  int significant_bits() const override { return 53; }
+  void read_planes(int plane, int, std::span<double> out) override { read_rows(plane, 0, grid_.nodes[1], out); }
+  void read_rows(int, int first_row, int, std::span<double> out) override {
+    for (std::size_t i = 0; i < out.size(); i += 3) {
+      out[i] = static_cast<double>(i / 3 % 3);
+      out[i + 1] = -2.0 * static_cast<double>(static_cast<std::size_t>(first_row) + i / 9);
+      out[i + 2] = 3.0;
+    }
+  }
+
+ private:
+  RegularGrid grid_;
+  FieldUnits units_;
+  AxisAssignment reading_;
+  std::string name_ = "velocity";
+};
+
+TEST(FieldStatistics, OfAVelocityAreThoseOfEachComponent) {
+  LinearVelocity field;
+  std::vector<FieldStatistics> const seen = field_statistics(field);
+  ASSERT_EQ(seen.size(), 3u);
+  EXPECT_EQ(seen[0].minimum, 0.0);
+  EXPECT_EQ(seen[0].maximum, 2.0);
+  EXPECT_EQ(seen[0].steepest, (Vec3d{1, 0, 0}));
+  EXPECT_EQ(seen[1].minimum, -2.0);
+  EXPECT_EQ(seen[1].maximum, 0.0);
+  EXPECT_EQ(seen[1].steepest, (Vec3d{0, 4, 0}));
+  EXPECT_EQ(seen[2].minimum, 3.0);
+  EXPECT_EQ(seen[2].maximum, 3.0);
+  EXPECT_EQ(seen[2].steepest, (Vec3d{0, 0, 0}));
 }
 
 }  // namespace

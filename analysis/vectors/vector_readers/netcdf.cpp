@@ -28,7 +28,12 @@ constexpr std::array schema_columns{SchemaColumn{"/u", "u_px"},
                                     SchemaColumn{"/sigma_u", "sigma_u_px"},
                                     SchemaColumn{"/sigma_v", "sigma_v_px"},
                                     SchemaColumn{"/peak_ratio", "peak_ratio"},
-                                    SchemaColumn{"/status", "status"}};
+                                    SchemaColumn{"/status", "status"},
+                                    SchemaColumn{"/u_raw", "u_raw_px"},
+                                    SchemaColumn{"/v_raw", "v_raw_px"},
+                                    SchemaColumn{"/correlation", "correlation"},
+                                    SchemaColumn{"/reason", "reason"},
+                                    SchemaColumn{"/ambiguous", "ambiguous"}};
 
 void refuse_netcdf_3(std::string const& path) {
   std::array<char, 3> start{};
@@ -108,7 +113,7 @@ class SchemaReader {
 };
 
 /// Reads the conventions and the validity of a file that gladstone did not write.
-void read_foreign_schema(SchemaReader const& reader, VectorFile& file) {
+void read_foreign_schema(SchemaReader const& reader, std::string const& path, VectorFile& file) {
   file.format = "PIVPy";
   file.foreign = true;
   file.place_unit = reader.units("/x");
@@ -121,6 +126,13 @@ void read_foreign_schema(SchemaReader const& reader, VectorFile& file) {
   std::vector<double> const choice = reader.read("/chc");
   for (std::size_t i = 0; i < choice.size(); ++i) {
     if (!(choice[i] >= 1.0)) file.field.status[i] = VectorStatus::invalid;
+  }
+  bool const none = std::none_of(choice.begin(), choice.end(), [](double chc) { return chc >= 1.0; });
+  if (none && !choice.empty()) {
+    file.warnings.push_back(
+        path +
+        ": chc marks all vectors as invalid (PIVPy copies the flags of an OpenPIV file, 0 for valid vectors, "
+        "to chc); if so, save the data set with chc = (chc == 0), or give the OpenPIV file");
   }
 }
 
@@ -135,7 +147,7 @@ VectorFile read_vector_netcdf(std::string const& path) {
   }
   std::tie(columns.values["x_px"], columns.values["y_px"]) = reader.positions();
   VectorFile file = read_own_columns(columns);
-  if (!reader.has("/status")) read_foreign_schema(reader, file);
+  if (!reader.has("/status")) read_foreign_schema(reader, path, file);
   return file;
 }
 

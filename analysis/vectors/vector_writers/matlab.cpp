@@ -39,16 +39,20 @@ std::string column_major(std::vector<double> const& values, std::size_t rows, st
   return bytes;
 }
 
-std::string matrix_element(VectorColumn const& column, std::size_t rows, std::size_t columns) {
+/// @param layers  1: a matrix of rows and columns; more: an array [columns, rows, layers], as ndgrid(x, y, z) makes it
+std::string matrix_element(VectorColumn const& column, std::size_t rows, std::size_t columns, std::size_t layers) {
   std::string flags, sizes, matrix, element;
   append_value(flags, mx_double_class);
   append_value(flags, std::uint32_t{0});
-  append_value(sizes, static_cast<std::int32_t>(rows));
-  append_value(sizes, static_cast<std::int32_t>(columns));
+  std::vector<std::size_t> shape{rows, columns};
+  if (layers > 1) shape = {columns, rows, layers};
+  for (std::size_t const size : shape) append_value(sizes, static_cast<std::int32_t>(size));
   append_element(matrix, mi_uint32, flags);
   append_element(matrix, mi_int32, sizes);
   append_element(matrix, mi_int8, column.name);
-  append_element(matrix, mi_double, column_major(column.values, rows, columns));
+  append_element(
+      matrix, mi_double,
+      layers > 1 ? column_major(column.values, column.values.size(), 1) : column_major(column.values, rows, columns));
   append_element(element, mi_matrix, matrix);
   return element;
 }
@@ -58,20 +62,21 @@ std::string matrix_element(VectorColumn const& column, std::size_t rows, std::si
 void write_matlab_table(std::string const& path, VectorTable const& table, FileOrigin const& origin) {
   constexpr std::size_t most = std::numeric_limits<std::int32_t>::max() / sizeof(double) - 64;
   if (table.rows() > most) {
-    throw OutputError(path, fmt::format("cannot store {} vectors (MATLAB's level 5 format is limited to 2 GiB per "
+    throw OutputError(path, fmt::format("cannot store {} values (MATLAB's level 5 format is limited to 2 GiB per "
                                         "matrix); write .h5",
                                         table.rows()));
   }
   bool const grid = table.grid_columns > 0;
   std::size_t const rows = grid ? static_cast<std::size_t>(table.grid_rows) : table.rows();
   std::size_t const columns = grid ? static_cast<std::size_t>(table.grid_columns) : 1;
-  std::string bytes = fmt::format("MATLAB 5.0 MAT-file, gladstone {} vectors, {}", version, table.remark);
+  std::string bytes = fmt::format("MATLAB 5.0 MAT-file, gladstone {} {}, {}", version, table.content, table.remark);
   constexpr std::size_t text_bytes = 116, subsystem_bytes = 8;
   bytes.resize(text_bytes, ' ');
   bytes.append(subsystem_bytes, '\0');
   append_value(bytes, std::uint16_t{0x0100});
   append_value(bytes, std::uint16_t{'M' << 8 | 'I'});
-  for (VectorColumn const& column : table.columns) bytes += matrix_element(column, rows, columns);
+  for (VectorColumn const& column : table.columns)
+    bytes += matrix_element(column, rows, columns, static_cast<std::size_t>(table.grid_layers));
   write_vector_bytes(path, bytes, origin);
 }
 

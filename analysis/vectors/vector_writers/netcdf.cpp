@@ -15,6 +15,11 @@ constexpr std::array netcdf_variables{
     NetcdfVariable{"sigma_v", "sigma_v_px", "pix", "standard uncertainty of v", ""},
     NetcdfVariable{"peak_ratio", "peak_ratio", "1", "highest over second correlation peak", ""},
     NetcdfVariable{"status", "status", "1", "0 valid, 1 replaced, 2 masked, 3 invalid", ""},
+    NetcdfVariable{"u_raw", "u_raw_px", "pix", "displacement to the right before replacement", ""},
+    NetcdfVariable{"v_raw", "v_raw_px", "pix", "displacement downwards before replacement", ""},
+    NetcdfVariable{"correlation", "correlation", "1", "correlation coefficient of the peak at u_raw, v_raw", ""},
+    NetcdfVariable{"reason", "reason", "1", "origin of the vector: reason of vectors.h5", ""},
+    NetcdfVariable{"ambiguous", "ambiguous", "1", "1: another displacement has nearly the same correlation", ""},
 };
 
 /// Writes variables over (y, x, t), with one frame.

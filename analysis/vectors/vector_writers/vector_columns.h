@@ -24,6 +24,8 @@ struct VectorTable {
   std::vector<VectorColumn> columns;
   int grid_columns = 0, grid_rows = 0;  ///< 0: scattered
   std::string remark;                   ///< units and directions of the axes, for headers
+  std::string content = "vectors";      ///< what the columns are, for headers
+  int grid_layers = 1;                  ///< number of such grids along z, stored one after the other
 
   std::size_t rows() const { return columns.empty() ? 0 : columns.front().values.size(); }
 };

@@ -77,6 +77,11 @@ struct VtkLayout {
 };
 void write_vti_table(std::string const& path, VectorTable const& table, VectorGrid const& grid, VtkLayout const& layout,
                      FileOrigin const& origin);
+/// VTK image of scalars at the points of a uniform grid.
+/// @param places  coordinates of the points along x, y and z
+void write_vti_scalars(std::string const& path, std::vector<VectorColumn> const& columns,
+                       std::array<std::vector<double>, 3> const& places, std::string const& remark,
+                       FileOrigin const& origin);
 void write_vtp_table(std::string const& path, VectorTable const& table, VtkLayout const& layout,
                      FileOrigin const& origin);
 

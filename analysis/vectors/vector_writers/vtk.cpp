@@ -26,6 +26,11 @@ std::string data_array(std::string const& type, std::string const& name, std::si
       components, base64(bytes));
 }
 
+std::string scalar_array(VectorColumn const& column) {
+  if (!column.is_code) return data_array("Float64", column.name, 1, column.values);
+  return data_array("Int32", column.name, 1, std::vector<std::int32_t>(column.values.begin(), column.values.end()));
+}
+
 /// Joins columns to vectors of three components, which VTK requires to draw arrows; a missing third one is 0.
 std::string join_columns(std::vector<VectorColumn> const& columns, VtkVectors const& vectors) {
   std::vector<double> values;
@@ -51,13 +56,7 @@ std::string point_data(std::vector<VectorColumn> const& columns, VtkLayout const
     if (displacement || is_known(columns, vectors)) text += join_columns(columns, vectors);
   }
   for (VectorColumn const& column : columns) {
-    if (joined.contains(column.name) || !column.is_known()) continue;
-    if (column.is_code) {
-      text +=
-          data_array("Int32", column.name, 1, std::vector<std::int32_t>(column.values.begin(), column.values.end()));
-    } else {
-      text += data_array("Float64", column.name, 1, column.values);
-    }
+    if (!joined.contains(column.name) && column.is_known()) text += scalar_array(column);
   }
   return text + "</PointData>\n";
 }
@@ -65,13 +64,13 @@ std::string point_data(std::vector<VectorColumn> const& columns, VtkLayout const
 /// Returns the file of one data set.
 /// @param type     type of the data set, which is also the name of its element
 /// @param element  attributes of that element, with a leading blank, or nothing
-/// @param remark   units and directions of the axes
+/// @param remark   what the file contains, with units and directions of the axes
 std::string vtk_file(std::string const& type, std::string const& element, std::string const& content,
                      std::string const& remark) {
   constexpr char const* order = std::endian::native == std::endian::little ? "LittleEndian" : "BigEndian";
   return fmt::format(
       "<?xml version=\"1.0\"?>\n<VTKFile type=\"{0}\" version=\"1.0\" byte_order=\"{1}\" header_type=\"UInt64\">\n"
-      "<!-- gladstone vectors: positions and displacements in {4} -->\n"
+      "<!-- gladstone {4} -->\n"
       "<{0}{2}>\n{3}</{0}>\n</VTKFile>\n",
       type, order, element, content, remark);
 }
@@ -95,6 +94,10 @@ bool is_exact(VectorTable const& table, std::string const& coordinate, double sp
   for (std::size_t i = 0; i < places.size(); ++i)
     if (places.front() + static_cast<double>(index_of(i)) * spacing != places[i]) return false;
   return true;
+}
+
+std::string vectors_remark(VectorTable const& table) {
+  return "vectors: positions and displacements in " + table.remark;
 }
 
 /// Layout of two components.
@@ -121,7 +124,26 @@ void write_vti_table(std::string const& path, VectorTable const& table, VectorGr
   if (!exact) complete.vectors.push_back(layout.position);
   std::string const piece =
       fmt::format("<Piece Extent=\"{}\">\n{}</Piece>\n", extent, point_data(table.columns, complete));
-  write_vector_bytes(path, vtk_file("ImageData", element, piece, table.remark), origin);
+  write_vector_bytes(path, vtk_file("ImageData", element, piece, vectors_remark(table)), origin);
+}
+
+void write_vti_scalars(std::string const& path, std::vector<VectorColumn> const& columns,
+                       std::array<std::vector<double>, 3> const& places, std::string const& remark,
+                       FileOrigin const& origin) {
+  std::string extent, first, spacing;
+  for (std::vector<double> const& axis : places) {
+    std::string const blank = extent.empty() ? "" : " ";
+    std::size_t const intervals = axis.size() - 1;
+    double const step = intervals > 0 ? (axis.back() - axis.front()) / static_cast<double>(intervals) : 1.0;
+    extent += fmt::format("{}0 {}", blank, intervals);
+    first += fmt::format("{}{:.17g}", blank, axis.front());
+    spacing += fmt::format("{}{:.17g}", blank, step);
+  }
+  std::string piece = fmt::format("<Piece Extent=\"{}\">\n<PointData Scalars=\"{}\">\n", extent, columns.front().name);
+  for (VectorColumn const& column : columns) piece += scalar_array(column);
+  piece += "</PointData>\n</Piece>\n";
+  std::string const element = fmt::format(" WholeExtent=\"{}\" Origin=\"{}\" Spacing=\"{}\"", extent, first, spacing);
+  write_vector_bytes(path, vtk_file("ImageData", element, piece, "density: lengths in " + remark), origin);
 }
 
 void write_vtp_table(std::string const& path, VectorTable const& table, VtkLayout const& layout,
@@ -136,7 +158,7 @@ void write_vtp_table(std::string const& path, VectorTable const& table, VtkLayou
   piece += "<Points>\n" + join_columns(table.columns, layout.position) + "</Points>\n<Verts>\n" +
            data_array("Int64", "connectivity", 1, points) + data_array("Int64", "offsets", 1, ends) +
            "</Verts>\n</Piece>\n";
-  write_vector_bytes(path, vtk_file("PolyData", "", piece, table.remark), origin);
+  write_vector_bytes(path, vtk_file("PolyData", "", piece, vectors_remark(table)), origin);
 }
 
 void write_vector_vti(std::string const& path, DisplacementField const& field, FileOrigin const& origin) {

@@ -42,7 +42,7 @@ class ArrayFile {
 /// Opens an array of a file as a field.
 ///
 /// - Shapes: [nz, ny, nx] or [ny, nx], with additional axes of length one at any place; the components of a velocity
-///   are the last or the first axis.
+///   are the last or the first axis, or separate arrays (join_velocities()).
 /// - Coordinates: the dimension scales of netCDF-4, else arrays xcoor, x, X, x_mm, x_m, x_um ... in the group of the
 ///   array or above it, in the unit of their name or of their attribute "units". They have one axis, or the shape of
 ///   the field (meshgrid) and vary along one axis. Coordinates of n + 1 edges along each axis make the field one of

@@ -9,45 +9,17 @@
 #include <optional>
 
 #include "render/base/error.h"
-#include "render/base/nearest_name.h"
 #include "render/base/text.h"
 #include "render/files/fields/readers/array_axes.h"
 #include "render/files/fields/readers/array_coordinates.h"
 #include "render/files/fields/readers/array_file.h"
 #include "render/files/fields/readers/array_order.h"
+#include "render/files/fields/readers/only_field.h"
 #include "render/files/fields/readers/packing.h"
+#include "render/files/fields/readers/velocity_arrays.h"
 
 namespace gladstone {
 namespace {
-
-/// Returns the only dataset that can be the field, for use if the user names none.
-/// @throws DataError if there is none, or several
-std::string only_field(ArrayFile const& file, std::string const& path, int values) {
-  std::vector<std::string> volumes, planes;
-  std::string others;
-  for (auto const& name : file.names()) {
-    ArrayShape const shape = file.shape(name);
-    others += fmt::format("{}\"{}\" {}", others.empty() ? "" : ", ", name, shape_text(shape));
-    auto const axes = find_axes(shape, values);
-    if (!axes || coordinate_name(name)) continue;
-    if (axes->spatial.size() == 3) volumes.push_back(name);
-    bool const wide =
-        std::all_of(axes->spatial.begin(), axes->spatial.end(), [&shape](std::size_t axis) { return shape[axis] > 1; });
-    if (axes->spatial.size() == 2 && wide) planes.push_back(name);
-  }
-  auto const& fields = volumes.empty() ? planes : volumes;
-  if (fields.size() == 1) return fields.front();
-  if (fields.empty()) {
-    for (auto const& other : file.describe_others()) others += (others.empty() ? "" : ", ") + other;
-    throw DataError(ErrorCode::missing_content, path,
-                    fmt::format("has no {}; it has {}",
-                                values == 1 ? "scalar field, [nz, ny, nx], [nz, ny, nx, 1] or [ny, nx]"
-                                            : fmt::format("velocity, [nz, ny, nx, {}]", values),
-                                others.empty() ? "no numbers at all" : others));
-  }
-  throw DataError(ErrorCode::undetermined, path,
-                  "has several fields; select one with dataset = " + quoted_list(fields));
-}
 
 class ArraySource final : public CheckedSource {
  public:
@@ -283,6 +255,7 @@ class ArraySource final : public CheckedSource {
 
 std::unique_ptr<CheckedSource> open_array_field(std::unique_ptr<ArrayFile const> file, std::string const& path,
                                                 FieldSelection const& selection) {
+  if (selection.values == 3) file = join_velocities(std::move(file), path);
   std::string const name = selection.dataset.empty() ? only_field(*file, path, selection.values) : selection.dataset;
   return std::make_unique<ArraySource>(std::move(file), path, name, selection);
 }

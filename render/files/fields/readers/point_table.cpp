@@ -4,13 +4,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
 #include "render/base/error.h"
 #include "render/base/interrupt.h"
-#include "render/base/text.h"
 #include "render/files/fields/field_units.h"
 #include "render/files/fields/readers/array_coordinates.h"
 #include "render/files/fields/readers/listed_arrays.h"
@@ -122,18 +120,15 @@ std::vector<std::size_t> rows_of_nodes(PointTable const& table, std::vector<Poin
   return rows;
 }
 
-/// Returns the array of some columns on the grid; the components of several columns are its last axis.
-ListedArray grid_array(std::string const& name, std::vector<std::shared_ptr<PointColumn const>> const& columns,
-                       std::vector<std::size_t> shape, std::shared_ptr<std::vector<std::size_t> const> const& rows) {
-  if (columns.size() > 1) shape.push_back(columns.size());
-  ReadValues const read = [columns, rows](std::size_t first, std::span<double> out) {
-    for (std::size_t i = 0; i < out.size(); ++i) {
-      std::size_t const at = first + i;
-      out[i] = columns[at % columns.size()]->values[(*rows)[at / columns.size()]];
-    }
+/// Returns the array of a column on the grid.
+ListedArray grid_array(PointColumn column, std::vector<std::size_t> const& shape,
+                       std::shared_ptr<std::vector<std::size_t> const> const& rows) {
+  auto const values = std::make_shared<std::vector<double> const>(std::move(column.values));
+  ReadValues const read = [values, rows](std::size_t first, std::span<double> out) {
+    for (std::size_t i = 0; i < out.size(); ++i) out[i] = (*values)[(*rows)[first + i]];
   };
-  ListedArray array{name, std::move(shape), std::numeric_limits<double>::digits, read};
-  array.units = columns.front()->unit;
+  ListedArray array{column.name, shape, std::numeric_limits<double>::digits, read};
+  array.units = column.unit;
   return array;
 }
 
@@ -145,29 +140,6 @@ ListedArray coordinate_array(PointAxis const& axis) {
   auto const named = coordinate_name(axis.column->name);
   array.units = !axis.column->unit.empty() || !named ? axis.column->unit : named->unit;
   return array;
-}
-
-/// Names of the columns of the components of a velocity.
-using ComponentNames = std::array<std::string_view, 3>;
-constexpr std::array velocity_columns{ComponentNames{"u", "v", "w"}, ComponentNames{"vx", "vy", "vz"},
-                                      ComponentNames{"ux", "uy", "uz"}};
-
-/// Returns the name of a column in lower case without its unit: "vx" of "Vx_m_s".
-std::string quantity_of(std::string const& column) {
-  return lower_case(column.substr(0, column.size() - unit_suffix(column).ending.size()));
-}
-
-/// Returns the columns of these names, with or without units; empty if one is missing.
-std::vector<std::shared_ptr<PointColumn const>> find_columns(
-    std::vector<std::shared_ptr<PointColumn const>> const& columns, ComponentNames const& names) {
-  std::vector<std::shared_ptr<PointColumn const>> found;
-  for (std::string_view const name : names) {
-    auto const one = std::find_if(columns.begin(), columns.end(),
-                                  [&](auto const& column) { return quantity_of(column->name) == name; });
-    if (one == columns.end()) return {};
-    found.push_back(*one);
-  }
-  return found;
 }
 
 }  // namespace
@@ -182,16 +154,8 @@ std::unique_ptr<CheckedSource> open_point_table(std::string const& path, FieldSe
     arrays.push_back(coordinate_array(axis));
     shape.push_back(axis.levels.size());
   }
-  std::vector<std::shared_ptr<PointColumn const>> columns;
   for (PointColumn& column : table.columns) {
-    if (coordinate_name(column.name)) continue;
-    columns.push_back(std::make_shared<PointColumn const>(std::move(column)));
-    arrays.push_back(grid_array(columns.back()->name, {columns.back()}, shape, rows));
-  }
-  for (auto const& names : velocity_columns) {
-    if (selection.values == 1) break;
-    auto const components = find_columns(columns, names);
-    if (!components.empty()) arrays.push_back(grid_array("velocity", components, shape, rows));
+    if (!coordinate_name(column.name)) arrays.push_back(grid_array(std::move(column), shape, rows));
   }
   return open_array_field(
       std::make_unique<ListedArrays>(path, std::move(arrays), std::vector<OtherEntry>{}, std::move(table.notes)), path,

@@ -18,8 +18,13 @@
 namespace gladstone {
 namespace {
 
-/// Parses a number; nullopt if the text is none.
-std::optional<double> parse_number(std::string_view text) {
+/// Parses a number with a decimal point, or with a decimal comma: a comma within a field does not separate fields.
+/// @return nullopt if the text is no number
+std::optional<double> parse_number(std::string_view field) {
+  std::string number(field);
+  if (number.find('.') == std::string::npos && std::count(number.begin(), number.end(), ',') == 1)
+    std::replace(number.begin(), number.end(), ',', '.');
+  std::string_view text = number;
   if (text.starts_with('+')) text.remove_prefix(1);
   double value = 0;
   auto const [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
