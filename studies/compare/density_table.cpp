@@ -79,7 +79,8 @@ void add_gradient_columns(GridTable& table, std::vector<Vec2d> const& gradient) 
 std::vector<TableAxis> make_volume_axes(RegularGrid const& grid) {
   std::vector<TableAxis> axes;
   for (int axis = 2; axis >= 0; --axis) {
-    TableAxis& one = axes.emplace_back(TableAxis{std::string(1, "xyz"[axis]), {}, "position in the frame of the volume"});
+    TableAxis& one =
+        axes.emplace_back(TableAxis{std::string(1, "xyz"[axis]), {}, "position in the frame of the volume"});
     for (int i = 0; i < grid.nodes[static_cast<std::size_t>(axis)]; ++i)
       one.place_mm.push_back((grid.origin[axis] + i * grid.spacing[axis]) / unit::mm);
   }

@@ -22,7 +22,6 @@
 namespace gladstone {
 namespace {
 
-
 class Figures : public ::testing::Test {
  protected:
   Figures() {
