@@ -15,20 +15,25 @@ class HostVolume : public SartVolume {
         value_(problem.grid.size(), 0.0),
         before_(value_),
         views_(problem.grid.size(), 0),
-        denoiser_(problem.grid) {}
+        denoiser_(problem.grid) {
+    clear_sums();
+  }
 
   std::string device() const override { return "cpu"; }
 
   void correct(std::size_t index, bool count_views) override {
     SartView const& view = problem_.views[index];
+    double squared_residual = 0.0, squared_value = 0.0;
     std::vector<double> residual = view.projector.project(value_);
     for (std::size_t i = 0; i < residual.size(); ++i) {
       LineResidual const line = LineResidual::of(view.value[i], residual[i], view.projector.row_sums()[i]);
       residual[i] = line.quotient;
       if (!std::isfinite(view.value[i])) continue;
-      sweep_.residual += line.difference * line.difference;
-      sweep_.value += view.value[i] * view.value[i];
+      squared_residual += line.difference * line.difference;
+      squared_value += view.value[i] * view.value[i];
     }
+    sweep_.residual[index] = squared_residual;
+    sweep_.value[index] = squared_value;
     view.projector.back_project(residual, sums_);
     for (std::size_t i = 0; i < sums_.size(); ++i) {
       if (!(sums_[i].weight > 0.0)) continue;
@@ -56,7 +61,7 @@ class HostVolume : public SartVolume {
       norms.volume += value_[i] * value_[i];
     }
     before_ = value_;
-    sweep_ = {};
+    clear_sums();
     return norms;
   }
 
@@ -66,6 +71,12 @@ class HostVolume : public SartVolume {
   }
 
  private:
+  void clear_sums() {
+    sweep_ = {};
+    sweep_.residual.assign(problem_.views.size(), 0.0);
+    sweep_.value.assign(problem_.views.size(), 0.0);
+  }
+
   SartProblem problem_;
   NodeConstraint constraint_;
   std::vector<double> value_, before_;  ///< now, and after the last regularize() [kg/m^3]

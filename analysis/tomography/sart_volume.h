@@ -47,10 +47,11 @@ GLADSTONE_HD inline double correct_node(double value, NodeSum const& sum, double
 
 /// Sums over a sweep, before regularisation.
 struct SweepSums {
-  double residual = 0.0;  ///< sum of the squared residuals of the line integrals [kg^2/m^4]
-  double value = 0.0;     ///< sum of their squares [kg^2/m^4]
-  double change = 0.0;    ///< sum over the nodes of the support of the squared change by the views [kg^2/m^6]
-  double largest = 0.0;   ///< largest absolute value of a node [kg/m^3]
+  /// Sum of the squared residuals of the line integrals of each view, before its correction [kg^2/m^4, views]
+  std::vector<double> residual;
+  std::vector<double> value;  ///< sum of the squares of the line integrals of each view [kg^2/m^4, views]
+  double change = 0.0;        ///< sum over the nodes of the support of the squared change by the views [kg^2/m^6]
+  double largest = 0.0;       ///< largest absolute value of a node [kg/m^3]
 };
 
 /// Squared norms after regularisation [kg^2/m^6].

@@ -98,6 +98,23 @@ std::size_t count_changed_nodes(VolumeReconstruction const& result, SartSettings
   return count;
 }
 
+/// Returns the rms residual of each view over the rms of all line integrals, in the order in which the views are given.
+std::vector<double> compute_view_residual(SweepSums const& sums, std::vector<SartView> const& prepared,
+                                          std::vector<std::size_t> const& order) {
+  std::vector<double> result(order.size());
+  double lines = 0.0;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    auto const& values = prepared[i].value;
+    auto const used =
+        static_cast<double>(std::count_if(values.begin(), values.end(), [](double v) { return std::isfinite(v); }));
+    lines += used;
+    result[order[i]] = used > 0.0 ? std::sqrt(sums.residual[i] / used) : 0.0;
+  }
+  double const total = std::accumulate(sums.value.begin(), sums.value.end(), 0.0);
+  for (double& one : result) one = total > 0.0 ? one / std::sqrt(total / lines) : 0.0;
+  return result;
+}
+
 }  // namespace
 
 double choose_tv_strength(double change, std::size_t nodes, double previous) {
@@ -117,8 +134,8 @@ VolumeReconstruction reconstruct_volume(std::vector<ProjectedView> const& views,
   result.grid = grid;
   std::vector<SartView> prepared;
   double outside = 0.0, total = 0.0;
-  for (std::size_t const i : order_views(views.size()))
-    prepared.push_back(prepare_view(views[i], grid, outside, total));
+  std::vector<std::size_t> const order = order_views(views.size());
+  for (std::size_t const i : order) prepared.push_back(prepare_view(views[i], grid, outside, total));
   result.outside = total > 0.0 ? outside / total : 0.0;
 
   std::unique_ptr<SartVolume> const volume =
@@ -126,6 +143,7 @@ VolumeReconstruction reconstruct_volume(std::vector<ProjectedView> const& views,
   result.device = volume->device();
   std::size_t changed_nodes = 0;
   double lambda = 0.0;
+  SweepSums sums;
   Progress progress("reconstructing", static_cast<std::size_t>(settings.iterations) * views.size());
   for (int sweep = 0; sweep < settings.iterations; ++sweep) {
     for (std::size_t view = 0; view < prepared.size(); ++view) {
@@ -138,16 +156,34 @@ VolumeReconstruction reconstruct_volume(std::vector<ProjectedView> const& views,
       require_common_part(result);
       changed_nodes = count_changed_nodes(result, settings);
     }
-    SweepSums const sums = volume->sum_sweep();
+    sums = volume->sum_sweep();
     lambda = settings.tv_weight ? *settings.tv_weight * sums.largest
                                 : choose_tv_strength(sums.change, changed_nodes, lambda);
     SweepNorms const norms = volume->regularize(lambda, settings.tv_iterations);
-    result.residual.push_back(sums.value > 0.0 ? std::sqrt(sums.residual / sums.value) : 0.0);
+    double const residual = std::accumulate(sums.residual.begin(), sums.residual.end(), 0.0);
+    double const value = std::accumulate(sums.value.begin(), sums.value.end(), 0.0);
+    result.residual.push_back(value > 0.0 ? std::sqrt(residual / value) : 0.0);
     result.tv_weight = sums.largest > 0.0 ? lambda / sums.largest : 0.0;
     if (std::sqrt(norms.change) <= settings.tolerance * std::sqrt(norms.volume)) break;
   }
   volume->download(result.value, result.views);
+  result.view_residual = compute_view_residual(sums, prepared, order);
   return result;
+}
+
+std::vector<ContradictingView> find_contradicting_views(std::vector<double> const& view_residual) {
+  constexpr double least_ratio = 1.4, least_residual = 0.1, part_of_largest = 0.7;
+  double const largest = *std::max_element(view_residual.begin(), view_residual.end());
+  std::vector<ContradictingView> found;
+  for (std::size_t i = 0; i < view_residual.size(); ++i) {
+    std::vector<double> others = view_residual;
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
+    std::sort(others.begin(), others.end());
+    double const usual = others[(others.size() - 1) / 2];
+    if (view_residual[i] >= std::max({least_residual, least_ratio * usual, part_of_largest * largest}))
+      found.push_back({i, view_residual[i] / usual});
+  }
+  return found;
 }
 
 double compute_relative_error(std::vector<double> const& value, std::vector<double> const& truth) {

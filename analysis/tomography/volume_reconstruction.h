@@ -42,9 +42,11 @@ struct VolumeReconstruction {
   std::vector<double> value;        ///< density difference [kg/m^3, grid.size()]; 0 where no view sees the node
   std::vector<std::int64_t> views;  ///< number of views with a line through the cells of the node [grid.size()]
   std::vector<double> residual;  ///< norm of A x - b over that of b in each sweep, each view before its correction [1]
-  double tv_weight = 0.0;        ///< strength of the total variation in the last sweep, see SartSettings [1]
-  std::string device = "cpu";    ///< device of the iteration
-  double outside = 0.0;          ///< fraction of the squared line integrals on lines that miss the grid [1]
+  /// RMS of A x - b of each view in the last sweep, before its correction, over the rms of b of all views [1, views]
+  std::vector<double> view_residual;
+  double tv_weight = 0.0;      ///< strength of the total variation in the last sweep, see SartSettings [1]
+  std::string device = "cpu";  ///< device of the iteration
+  double outside = 0.0;        ///< fraction of the squared line integrals on lines that miss the grid [1]
 };
 
 /// Chooses the strength of the total variation after a sweep: the rms change of a node by the views, but at least 90 %
@@ -79,6 +81,22 @@ double choose_tv_strength(double change, std::size_t nodes, double previous);
 VolumeReconstruction reconstruct_volume(std::vector<ProjectedView> const& views, RegularGrid const& grid,
                                         SartSettings const& settings,
                                         SartVolumeMaker const& make_volume = make_host_volume);
+
+/// View whose line integrals contradict those of the others.
+struct ContradictingView {
+  std::size_t view;  ///< index
+  double ratio;      ///< its residual over the lower median of the other views [1]
+};
+
+/// Finds views that contradict the others: their residual is at least 1.4 times the lower median of the other views,
+/// 10 % of the rms line integral, and 70 % of the largest residual, since the views next to a wrong one do not fit
+/// either. For 3 to 16 views of blobs and of turbulence with up to 5 % of noise, consistent views have at most 1.25
+/// times the residual of the others where it exceeds 10 %; a view with the wrong sign, with a factor of 1.5, or shifted
+/// by a twelfth of the volume along the axis of rotation has 1.8 to 19 times this residual. Of three views, two may be
+/// named. Shifts and mirror images across the axis contradict the others from some 8 views on only: fewer views have
+/// another volume in common.
+/// @param view_residual  see VolumeReconstruction
+std::vector<ContradictingView> find_contradicting_views(std::vector<double> const& view_residual);
 
 /// Relative L2 error, |value - truth| / |truth|, over all nodes [1]; infinite if the truth is zero.
 double compute_relative_error(std::vector<double> const& value, std::vector<double> const& truth);

@@ -97,9 +97,14 @@ class CudaVolume : public tomography::SartVolume {
     line_sums_.download(of_lines.data(), of_lines.size());
     change_sums_.download(of_nodes.data(), of_nodes.size());
     SweepSums sums;
-    for (LineSums const& one : of_lines) {
-      sums.residual += one.residual;
-      sums.value += one.value;
+    for (std::size_t view = 0; view < lines_.size(); ++view) {
+      LineSums of_view{0.0, 0.0};
+      for (std::size_t block = 0; block < lines_[view].blocks(); ++block) {
+        of_view.residual += of_lines[first_block_[view] + block].residual;
+        of_view.value += of_lines[first_block_[view] + block].value;
+      }
+      sums.residual.push_back(of_view.residual);
+      sums.value.push_back(of_view.value);
     }
     for (ChangeSums const& one : of_nodes) {
       sums.change += one.change;

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
@@ -138,6 +139,16 @@ void render_sequence(std::string const& setup, std::vector<std::string> const& o
                            rendered.pairs, rendered.resumed, rendered.seconds));
 }
 
+/// Names the glasses of a case that several catalogues contain, and where: "glasses: SCHOTT:F2 (also in CDGM:F2)".
+std::string name_shared_glasses(nlohmann::ordered_json const& summary) {
+  std::vector<std::string> named;
+  for (auto const& glass : summary.value("lens_glasses", nlohmann::ordered_json::array()))
+    if (!glass["also_in"].empty())
+      named.push_back(fmt::format("{} (also in {})", glass["catalogue"].get<std::string>(),
+                                  fmt::join(glass["also_in"].get<std::vector<std::string>>(), ", ")));
+  return named.empty() ? std::string() : fmt::format("glasses: {}\n", fmt::join(named, "; "));
+}
+
 }  // namespace
 
 CommandBody attach_render(CLI::App& app, GlobalOptions const& options) {
@@ -172,6 +183,12 @@ CommandBody attach_render(CLI::App& app, GlobalOptions const& options) {
     RenderedSetup const rendered = rendering.render(*renderer, arguments->output);
     std::string text;
     for (RenderedCamera const& camera : rendered.cameras) text += in_words(camera) + '\n';
+    if (rendered.summary.contains("cameras")) {
+      for (auto const& [name, summary] : rendered.summary["cameras"].items())
+        if (std::string const glasses = name_shared_glasses(summary); !glasses.empty()) text += name + ": " + glasses;
+    } else {
+      text += name_shared_glasses(rendered.summary);
+    }
     print_result(options, json_text(rendered.summary), text);
     return ok;
   };

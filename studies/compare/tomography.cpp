@@ -190,6 +190,12 @@ void add_tomography_warnings(Tomography& result, std::vector<TomographyView> con
                       "--reference on their side if the flow does not reach it",
                       name, view.unreferenced));
   }
+  for (auto const& [view, ratio] : tomography::find_contradicting_views(result.view_residual))
+    result.warnings.push_back(fmt::format(
+        "{}: contradicts the other views: the residual of its line integrals is {:.0f} %, {:.1f} times that of the "
+        "others; check the order of the views, --angles, the camera and geometry of its setup (calibration), and the "
+        "sign, position and reference of its vectors",
+        result.views[view], 100.0 * result.view_residual[view], ratio));
   if (result.residual.back() > largest_residual)
     result.warnings.push_back(
         fmt::format("the volume does not explain the line integrals (residual of {:.0f} %); check --angles, --support, "
@@ -260,6 +266,7 @@ Tomography reconstruct_views(TomographyOptions const& options, tomography::SartV
   for (double& density : result.density) density += result.reference_density;
   result.seen = std::move(volume.views);
   result.residual = std::move(volume.residual);
+  result.view_residual = std::move(volume.view_residual);
   result.outside = volume.outside;
   result.tv_weight = volume.tv_weight;
   result.device = volume.device;

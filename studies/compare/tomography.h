@@ -40,18 +40,19 @@ struct TomographyOptions {
 
 /// Density of a volume, reconstructed from several views.
 struct Tomography {
-  RegularGrid grid;                  ///< nodes in the frame of the volume
-  std::vector<double> density;       ///< [kg/m^3, grid.size()], x fastest
-  std::vector<std::int64_t> seen;    ///< number of views that see the node [grid.size()]
-  std::vector<double> truth;         ///< true density of rendered cases [kg/m^3, grid.size()]; empty: unknown
-  std::vector<double> residual;      ///< see tomography::VolumeReconstruction [1]
-  double reference_density = 0.0;    ///< [kg/m^3]
-  double tv_weight = 0.0;            ///< strength of the total variation in the last sweep, see SartSettings [1]
-  std::string device = "cpu";        ///< device of the reconstruction
-  double outside = 0.0;              ///< fraction of the squared line integrals on lines that miss the grid [1]
-  std::vector<std::string> views;    ///< names of the inputs
-  std::vector<double> angles;        ///< angle of the volume in each view [rad]
-  std::vector<std::size_t> vectors;  ///< number of vectors of each view with a line integral
+  RegularGrid grid;                   ///< nodes in the frame of the volume
+  std::vector<double> density;        ///< [kg/m^3, grid.size()], x fastest
+  std::vector<std::int64_t> seen;     ///< number of views that see the node [grid.size()]
+  std::vector<double> truth;          ///< true density of rendered cases [kg/m^3, grid.size()]; empty: unknown
+  std::vector<double> residual;       ///< see tomography::VolumeReconstruction [1]
+  std::vector<double> view_residual;  ///< see tomography::VolumeReconstruction [1, views]
+  double reference_density = 0.0;     ///< [kg/m^3]
+  double tv_weight = 0.0;             ///< strength of the total variation in the last sweep, see SartSettings [1]
+  std::string device = "cpu";         ///< device of the reconstruction
+  double outside = 0.0;               ///< fraction of the squared line integrals on lines that miss the grid [1]
+  std::vector<std::string> views;     ///< names of the inputs
+  std::vector<double> angles;         ///< angle of the volume in each view [rad]
+  std::vector<std::size_t> vectors;   ///< number of vectors of each view with a line integral
   tomography::SartSettings settings;
   std::vector<std::string> warnings;
   std::string setup;         ///< resolved setup of the first view

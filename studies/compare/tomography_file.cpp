@@ -65,6 +65,9 @@ void write_tomography(std::string const& path, Tomography const& result) {
   file.write("/residual", std::span<double const>(result.residual), {result.residual.size()}, "1",
              "norm of the residual line integrals over that of the measured ones", "iteration");
   axes.name("/residual", {"/iteration"});
+  file.write("/view_residual", std::span<double const>(result.view_residual), {result.view_residual.size()}, "1",
+             "rms residual of the line integrals of each view over the rms line integral of all views", "view");
+  axes.name("/view_residual", {"/view"});
   axes.attach();
   write_tomography_attributes(file, result);
   file.close();
@@ -87,6 +90,7 @@ nlohmann::ordered_json summarize_tomography(Tomography const& result) {
                               {"tv_weight", result.tv_weight},
                               {"device", result.device},
                               {"residual", result.residual.back()},
+                              {"view_residual", result.view_residual},
                               {"outside", result.outside}};
   if (!result.truth.empty()) json["relative_error"] = number_or_null(compute_relative_error(result));
   return json;
@@ -102,6 +106,9 @@ std::string tomography_report(Tomography const& result) {
       result.grid.nodes[0], result.grid.nodes[1], result.grid.nodes[2], result.grid.spacing.x / unit::mm,
       result.views.size(), *least, *largest, centre.x / unit::mm, centre.y / unit::mm, centre.z / unit::mm,
       100.0 * result.residual.back(), result.residual.size());
+  for (std::size_t i = 0; i < result.views.size(); ++i)
+    text += fmt::format("  {} ({:.4g} deg): {} vectors, residual {:.2f} %\n", result.views[i],
+                        result.angles[i] / unit::degree, result.vectors[i], 100.0 * result.view_residual[i]);
   if (!result.truth.empty())
     text += fmt::format("  relative L2 error of the density difference: {:.4f}\n", compute_relative_error(result));
   return text;

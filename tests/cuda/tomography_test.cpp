@@ -59,6 +59,9 @@ void expect_equal(std::vector<ProjectedView> const& views, RegularGrid const& gr
   double largest = 0.0;
   for (double const value : cpu.value) largest = std::max(largest, std::abs(value));
   for (std::size_t i = 0; i < cpu.value.size(); ++i) ASSERT_NEAR(gpu.value[i], cpu.value[i], 1e-12 * largest) << i;
+  ASSERT_EQ(cpu.view_residual.size(), gpu.view_residual.size());
+  for (std::size_t i = 0; i < cpu.view_residual.size(); ++i)
+    EXPECT_NEAR(gpu.view_residual[i], cpu.view_residual[i], 1e-12);
   EXPECT_NEAR(gpu.tv_weight, cpu.tv_weight, 1e-12);
   EXPECT_LT(compute_relative_error(gpu.value, cpu.value), 1e-12);
 }

@@ -52,6 +52,16 @@ TEST_F(RealLens, RunsThroughTheWholeChain) {
   expect_same_case("case", "again");
 }
 
+// One glass of the double Gauss is in several catalogues: its origin is printed as by info lens.
+TEST_F(RealLens, NamesTheCatalogueOfAGlassThatSeveralContain) {
+  write("lens.toml", double_gauss_setup());
+  std::string const listed = succeed({"info", "lens", std::string(GLADSTONE_DATA_DIR) + "/lenses/double_gauss.toml"});
+  std::size_t const at = listed.find("also in ");
+  ASSERT_NE(at, std::string::npos);
+  std::string const also = listed.substr(at, listed.find('\n', at) - at);
+  EXPECT_THAT(succeed({"render", "lens.toml", "-o", "case"}), HasSubstr("(" + also + ")"));
+}
+
 // An object-space telecentric lens, positioned by its first vertex: a gas with a uniform gradient deflects light by
 // eps, which displaces the dots by M Z_D eps / p, with M that of the lens at their distance, whatever lies between.
 TEST_F(RealLens, TelecentricOneRunsThroughTheWholeChain) {

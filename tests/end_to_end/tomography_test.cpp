@@ -49,13 +49,14 @@ class Tomography : public ProgramFixture {
     return arguments;
   }
   nlohmann::json reconstruct(std::vector<std::string> const& more) const { return json_of(words(more)); }
-  /// Writes the vectors of a case as CSV, with NaN where `valid` is false for the column in px.
-  void write_vectors(std::string const& name, std::string const& view, std::function<bool(double)> const& valid) const {
+  /// Writes the vectors of a case, times a factor, as CSV, with NaN where `valid` is false for the column in px.
+  void write_vectors(std::string const& name, std::string const& view, std::function<bool(double)> const& valid,
+                     double factor = 1.0) const {
     Hdf5Reader const file(in(view + "/vectors.h5").string());
     auto const x = file.read("x_px"), y = file.read("y_px"), u = file.read("u_px"), v = file.read("v_px");
     std::string text = "x,y,u,v\n";
     for (std::size_t i = 0; i < x.size(); ++i)
-      text += valid(x[i]) ? fmt::format("{},{},{},{}\n", x[i], y[i], u[i], v[i])
+      text += valid(x[i]) ? fmt::format("{},{},{},{}\n", x[i], y[i], factor * u[i], factor * v[i])
                           : fmt::format("{},{},nan,nan\n", x[i], y[i]);
     write(name, text);
   }
@@ -92,6 +93,22 @@ TEST_F(Tomography, WarnsOfWhatTheVolumeDoesNotExplain) {
   std::vector<std::string> both = given;
   both.insert(both.end(), {"--reference", "right"});
   EXPECT_THAT(reconstruct(both)["warnings"].dump(), testing::Not(testing::HasSubstr("masks separate")));
+}
+
+// The same vectors with the opposite sign, as of exchanged frames, in one view. Of three views, two may be named.
+TEST_F(Tomography, WarnsOfAViewThatContradictsTheOthers) {
+  auto const right = reconstruct({"--reference", "left"});
+  EXPECT_THAT(right["warnings"].dump(), testing::Not(testing::HasSubstr("contradicts")));
+  EXPECT_EQ(right["view_residual"].size(), 3u);
+  auto const whole = [](double) { return true; };
+  write_vectors("0.csv", "0", whole);
+  write_vectors("1.csv", "1", whole, -1.0);
+  write_vectors("2.csv", "2", whole);
+  auto const wrong = reconstruct({"--vectors", "0.csv", "1.csv", "2.csv", "--reference", "left"});
+  std::string const warnings = wrong["warnings"].dump();
+  EXPECT_THAT(warnings, testing::HasSubstr("\"1: contradicts the other views"));
+  EXPECT_THAT(warnings, testing::Not(testing::HasSubstr("\"2: contradicts")));
+  EXPECT_EQ(Hdf5Reader(in("volume.h5").string()).read("/view_residual").at(1), wrong["view_residual"][1].get<double>());
 }
 
 TEST_F(Tomography, RefusesWhatDeterminesNoVolume) {

@@ -1,5 +1,6 @@
 #include "analysis/tomography/volume_reconstruction.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,6 +15,12 @@
 
 namespace gladstone::tomography {
 namespace {
+
+using testing::AllOf;
+using testing::Contains;
+using testing::ElementsAre;
+using testing::IsEmpty;
+using testing::Not;
 
 constexpr double width = 20e-3, radius = 4e-3;
 constexpr int nodes = 21;
@@ -146,6 +153,57 @@ TEST(VolumeReconstruction, LinesBesideTheVolumeAreReported) {
   RegularGrid half = make_cube(nodes, width);  // y from -10 to 0 mm: most of the blob is outside
   half.nodes[1] = 11;
   EXPECT_GT(reconstruct_volume(views, half, quick_settings()).outside, 0.5);
+}
+
+/// Two blobs of different size beside the axis, in parallel views with normal noise relative to the largest integral.
+std::vector<ProjectedView> view_two_blobs(int views, double noise) {
+  auto all = view_blob(views, nodes, width, radius, {2.5e-3, 1.5e-3, -2e-3});
+  auto const second = view_blob(views, nodes, width, 0.6 * radius, {-4e-3, -2e-3, 1e-3});
+  std::mt19937 random(11);
+  std::normal_distribution<double> normal(0.0, 1.0);
+  for (std::size_t v = 0; v < all.size(); ++v)
+    for (std::size_t i = 0; i < all[v].value.size(); ++i)
+      all[v].value[i] += second[v].value[i] + noise * std::sqrt(M_PI) * radius * normal(random);
+  return all;
+}
+
+std::vector<std::size_t> contradicting(std::vector<ProjectedView> const& views) {
+  std::vector<std::size_t> found;
+  SartSettings settings;
+  settings.iterations = 15;
+  VolumeReconstruction const result = reconstruct_volume(views, make_cube(nodes, width), settings);
+  for (ContradictingView const& one : find_contradicting_views(result.view_residual)) found.push_back(one.view);
+  return found;
+}
+
+// The sum of the line integrals in each plane across the axis is the mass in it, the same in every view: a view with
+// another sign, scale or position along the axis contradicts the others even if there are only two of them.
+TEST(VolumeReconstruction, OneViewThatContradictsTheOthersIsFound) {
+  for (int const count : {3, 4, 8}) {
+    SCOPED_TRACE(count);
+    for (double const noise : {0.0, 0.05}) EXPECT_THAT(contradicting(view_two_blobs(count, noise)), IsEmpty());
+    auto views = view_two_blobs(count, 0.01);
+    for (double& value : views[1].value) value = -value;
+    if (count == 3)  // of three views, two may be named
+      EXPECT_THAT(contradicting(views), AllOf(Contains(1), Not(Contains(2))));
+    else
+      EXPECT_THAT(contradicting(views), ElementsAre(1));
+    views = view_two_blobs(count, 0.01);
+    for (double& value : views[2].value) value *= 1.5;
+    EXPECT_THAT(contradicting(views), ElementsAre(2));
+    views = view_two_blobs(count, 0.01);
+    std::rotate(views[0].value.begin(), views[0].value.begin() + 4 * nodes, views[0].value.end());  // by 4 mm along Y
+    EXPECT_THAT(contradicting(views), ElementsAre(0));
+  }
+}
+
+// The centroid moves like a sinusoid of the angle, which has two amplitudes: eight views determine them several times.
+TEST(VolumeReconstruction, OneOfManyViewsShiftedAcrossTheAxisIsFound) {
+  for (int const count : {8, 16}) {
+    auto views = view_two_blobs(count, 0.01);
+    std::rotate(views[3].value.begin(), views[3].value.begin() + 3, views[3].value.end());
+    EXPECT_THAT(contradicting(views), ElementsAre(3)) << count;
+  }
 }
 
 TEST(VolumeReconstruction, UnusableViewsAreRefused) {
