@@ -4,6 +4,12 @@
 #include <OpenImageIO/imageio.h>
 
 #include <algorithm>
+#include <bit>
+#include <cstdint>
+#include <fstream>
+#include <limits>
+#include <string>
+#include <string_view>
 
 namespace gladstone {
 namespace {
@@ -82,6 +88,34 @@ double pixel_bits(OIIO::ImageSpec const& spec, int sample_bits, bool uncompresse
   return spec.nchannels * sample_bits * (uncompressed ? smallest_share : 1.0);
 }
 
+/// Returns the largest level that the header of a PNM file (.pgm, .ppm) declares; 0 for bitmaps and other formats.
+std::uint64_t pnm_maximum(OIIO::ImageInput const& input, std::string const& path) {
+  if (std::string_view(input.format_name()) != "pnm") return 0;
+  std::ifstream file(path, std::ios::binary);
+  std::string magic;
+  file >> magic;
+  if (magic != "P2" && magic != "P3" && magic != "P5" && magic != "P6") return 0;
+  std::uint64_t value = 0;
+  for (int number = 0; number < 3; ++number) {  // columns, rows, largest level
+    while ((file >> std::ws) && file.peek() == '#') file.ignore(std::numeric_limits<std::streamsize>::max(), '\n');
+    if (!(file >> value)) return 0;
+  }
+  return value;
+}
+
+/// Undoes the scaling of a PNM file's levels: OpenImageIO multiplies them by the largest number of their type, F, divides
+/// by the largest level M, and drops the fraction, so that a level is the next integer from M / F times the sample on.
+/// The result is shifted to the upper bits, as the interface requires.
+template <class Sample>
+void restore_levels(Sample* samples, std::size_t count, std::uint64_t maximum) {
+  constexpr std::uint64_t full = std::numeric_limits<Sample>::max();
+  if (maximum == 0 || maximum >= full) return;
+  int const shift = static_cast<int>(8 * sizeof(Sample)) - static_cast<int>(std::bit_width(maximum));
+  std::transform(samples, samples + count, samples, [=](Sample sample) {
+    return static_cast<Sample>((sample * maximum + full - 1) / full << shift);
+  });
+}
+
 enum class InkColours { converted, stored };
 
 std::unique_ptr<OIIO::ImageInput> open_input(std::string const& path, InkColours inks) {
@@ -95,9 +129,13 @@ std::unique_ptr<OIIO::ImageInput> open_input(std::string const& path, InkColours
 class OiioReader final : public PageReader {
  public:
   OiioReader(std::string path, std::unique_ptr<OIIO::ImageInput> input)
-      : path_(std::move(path)), input_(std::move(input)) {}
+      : path_(std::move(path)), input_(std::move(input)), pnm_maximum_(pnm_maximum(*input_, path_)) {}
 
-  bool seek(int page) override { return input_->seek_subimage(page, 0) && read_inks_as_stored(); }
+  bool seek(int page) override {
+    if (is_past_end_ && !reopen()) return false;
+    is_past_end_ = !input_->seek_subimage(page, 0);
+    return !is_past_end_ && read_inks_as_stored();
+  }
 
   PageHeader header() const override {
     OIIO::ImageSpec const spec = input_->spec();
@@ -110,6 +148,7 @@ class OiioReader final : public PageReader {
     header.type_name = spec.format.c_str();
     header.sample_bytes = spec.format.size();
     header.bits = spec.get_int_attribute("oiio:BitsPerSample", static_cast<int>(8 * spec.format.size()));
+    if (pnm_maximum_ > 0) header.bits = std::min(header.bits, static_cast<int>(std::bit_width(pnm_maximum_)));
     header.compression = std::string(spec.get_string_attribute("compression", "unknown"));
     header.pixel_bits = pixel_bits(spec, header.bits, header.compression == "none");
     header.tile_px = {static_cast<double>(spec.tile_width), static_cast<double>(spec.tile_height),
@@ -129,6 +168,10 @@ class OiioReader final : public PageReader {
     // read_image() returns true for a truncated TIFF, and stores an error for every missing strip.
     if (whole && !input_->has_error()) {
       if (photometric(spec) == photometric_inverted) invert(spec, samples);
+      if (spec.format == OIIO::TypeDesc::UINT8)
+        restore_levels(static_cast<std::uint8_t*>(samples), spec.image_bytes(), pnm_maximum_);
+      if (spec.format == OIIO::TypeDesc::UINT16)
+        restore_levels(static_cast<std::uint16_t*>(samples), spec.image_bytes() / 2, pnm_maximum_);
       return "";
     }
     std::string const why = input_->geterror();
@@ -138,21 +181,27 @@ class OiioReader final : public PageReader {
   void clear_errors() override { input_->geterror(); }
 
  private:
+  bool reopen() {
+    auto again = open_input(path_, inks_);
+    if (!again) return false;
+    input_ = std::move(again);
+    return true;
+  }
+
   /// Reopens the file if its page consists of printing inks: the library's conversion to red, green and blue writes
   /// beyond its buffers if the page is stored in tiles (OpenImageIO 2.4, issue 5315).
   bool read_inks_as_stored() {
     if (inks_ == InkColours::stored || photometric(input_->spec()) != photometric_inks) return true;
     int const page = input_->current_subimage();
     inks_ = InkColours::stored;
-    auto again = open_input(path_, inks_);
-    if (!again || !again->seek_subimage(page, 0)) return false;
-    input_ = std::move(again);
-    return true;
+    return reopen() && input_->seek_subimage(page, 0);
   }
 
   std::string path_;
   std::unique_ptr<OIIO::ImageInput> input_;
   InkColours inks_ = InkColours::converted;
+  bool is_past_end_ = false;   ///< a page that does not exist was sought, after which WebP (2.4) reports errors
+  std::uint64_t pnm_maximum_;  ///< largest level of a PNM file; 0: another format
 };
 
 class OiioCodecs final : public ImageCodecs {

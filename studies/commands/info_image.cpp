@@ -71,12 +71,14 @@ Description describe_image(std::string const& name, Image<double> const& image, 
                             {"snr", number_or_null(seen.snr())}};
   return {json_text(json),
           fmt::format(
-              "{}: {} x {} px, {} bits{}{}{}, grey levels {:.6g} to {:.6g}, mean {:.6g}, dots {:.2f} px (e^-2), {}",
+              "{}: {} x {} px, {} bits{}{}{}, grey levels {:.6g} to {:.6g}, mean {:.6g}, {}, {}",
               name, image.columns(), image.rows(), metadata.bit_depth,
               unused_bits > 0 ? fmt::format(" (all levels are multiples of {})", 1 << unused_bits) : "",
               metadata.channels >= 3 ? ", colour converted to luminance" : "",
               metadata.orientation == 1 ? "" : fmt::format(", Orientation {} rotated upright", metadata.orientation),
-              least, most, seen.mean, seen.dot_diameter_px,
+              least, most, seen.mean,
+              std::isfinite(seen.dot_diameter_px) ? fmt::format("dots {:.2f} px (e^-2)", seen.dot_diameter_px)
+                                                  : "dots of unknown diameter",
               std::isfinite(seen.snr()) ? fmt::format("SNR {:.3g} (dots {:.4g} levels high, noise {:.3g})", seen.snr(),
                                                       seen.dot_height, seen.noise)
                                         : "SNR unknown (no noise or no dots detected)")};

@@ -139,6 +139,10 @@ TEST_F(CommandLine, InfoImageTellsTheSignalToNoiseRatio) {
   EXPECT_THAT(succeed({"info", "image", "case/reference.tif"}), HasSubstr("SNR "));
   render("ideal");
   EXPECT_TRUE(json_of({"info", "image", "ideal/reference.tif"})["snr"].is_null());
+  std::string uniform = "P2\n8 8\n255\n";
+  for (int i = 0; i < 64; ++i) uniform += "100\n";
+  write("uniform.pgm", uniform);
+  EXPECT_THAT(succeed({"info", "image", "uniform.pgm"}), testing::Not(HasSubstr("nan")));
 }
 
 TEST_F(CommandLine, ValidateMeetsEveryOracle) {

@@ -122,6 +122,38 @@ TEST(ImageFile, ValuesOfOtherFormatsAreRaw) {
   EXPECT_THAT(std::vector<double>(floats.begin(), floats.end()), testing::ElementsAre(-1.5, 0.25, 1e6, 3.0));
 }
 
+// A PGM file declares its largest level, 4095 for a camera of 12 bits, to which OpenImageIO scales its levels.
+TEST(ImageFile, LevelsOfPgmFilesAreThoseInTheFile) {
+  for (auto const& [maximum, bits] : {std::pair{1, 1}, {100, 7}, {200, 8}, {255, 8}, {1023, 10}, {4095, 12}}) {
+    for (bool const text : {false, true}) {
+      std::string const path = temporary("levels.pgm");
+      std::ofstream file(path, std::ios::binary);
+      file << (text ? "P2" : "P5") << "\n# made by a camera\n" << maximum + 1 << " 1\n" << maximum << '\n';
+      for (int level = 0; level <= maximum; ++level) {
+        if (text) {
+          file << level << '\n';
+        } else {
+          if (maximum > 255) file.put(static_cast<char>(level >> 8));
+          file.put(static_cast<char>(level & 255));
+        }
+      }
+      file.close();
+      ImageMetadata metadata;
+      auto const image = read_image(path, &metadata);
+      ASSERT_EQ(image.columns(), maximum + 1);
+      EXPECT_EQ(metadata.bit_depth, bits);
+      for (int level = 0; level <= maximum; ++level) ASSERT_EQ(image(level, 0), level) << maximum << (text ? " text" : "");
+    }
+  }
+}
+
+// Lossy compression changes the levels of a uniform image by its conversion to YUV of 8 bits and back, by 2 at most.
+TEST(ImageFile, WebPIsRead) {
+  auto const image = read_image(write_picture<std::uint8_t>("uniform.webp", std::vector<std::uint8_t>(3 * 256, 100), 16, 3));
+  ASSERT_EQ(image.columns(), 16);
+  for (double const level : image) EXPECT_NEAR(level, 100, 2);
+}
+
 TEST(ImageFile, TwelvePackedBitsKeepTheirValues) {
   std::string const path = temporary("12.tif");
   OIIO::ImageSpec spec(4096, 1, 1, OIIO::TypeDesc::UINT16);
