@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import tempfile
 import tomllib
 from collections.abc import Mapping
 from typing import Any
@@ -264,6 +265,22 @@ class Field:
         from ._plot import plot_field
 
         return plot_field(self)
+
+    def __getstate__(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "field.h5")
+            self.save(path)
+            with open(path, "rb") as file:
+                return file.read(), self._core.name, self._core.seconds, self._core.foreign
+
+    def __setstate__(self, state) -> None:
+        contents, name, seconds, foreign = state
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "field.h5")
+            with open(path, "wb") as file:
+                file.write(contents)
+            self._core = _core.load_field(path, "", 0)
+        self._core.name, self._core.seconds, self._core.foreign = name, seconds, foreign
 
     def __repr__(self) -> str:
         size = " x ".join(str(one) for one in reversed(self.shape))

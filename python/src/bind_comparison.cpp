@@ -45,7 +45,8 @@ MeasuredVectors vectors_of(PairCase const& one, MeasuredField const& field, Comp
   file.foreign = !own;
   file.complete = field.complete;
   MeasuredVectors vectors =
-      accept_vectors(std::move(file), field.name, one.loaded(), &one.truth(), options, own || !field.foreign);
+      accept_vectors(std::move(file), field.name, one.loaded(), &one.truth(), options,
+                     own || !field.foreign ? ConventionCheck::none : ConventionCheck::warn);
   if (field.settings) vectors.settings = *field.settings;
   return vectors;
 }

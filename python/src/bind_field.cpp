@@ -177,10 +177,11 @@ void bind_field(nb::module_& module) {
       .def_prop_ro("verdict", [](MeasuredField const& self) { return self.field.verdict; })
       .def_prop_ro("uncertainty_method", [](MeasuredField const& self) { return self.field.uncertainty_method; })
       .def_prop_ro("uncertainty_key", [](MeasuredField const& self) { return self.field.uncertainty_key; })
-      .def_ro("name", &MeasuredField::name)
+      .def_rw("name", &MeasuredField::name)
       .def_ro("settings", &MeasuredField::resolved)
       .def_ro("device", &MeasuredField::device)
-      .def_ro("seconds", &MeasuredField::seconds)
+      .def_rw("seconds", &MeasuredField::seconds)
+      .def_rw("foreign", &MeasuredField::foreign)
       .def("array", &field_array, nb::arg("name"))
       .def("column", &field_column, nb::arg("name"))
       .def(

@@ -1,6 +1,7 @@
 #include <nanobind/stl/string.h>
 
 #include <exception>
+#include <filesystem>
 
 #include "python/src/call.h"
 #include "render/base/error.h"
@@ -45,6 +46,10 @@ void translate(std::exception_ptr const& thrown, void* /*payload*/) {
     set_error("OutputError", error.place(), error.message());
   } catch (DeviceError const& error) {
     set_error("DeviceError", std::string(error.what()));
+  } catch (std::filesystem::filesystem_error const& error) {
+    std::string const path = error.path1().string();
+    set_error("DataError", path.empty() ? "\"\"" : path, "cannot be accessed (" + error.code().message() + ")",
+              error_code_name(ErrorCode::unreadable_file));
   }
 }
 

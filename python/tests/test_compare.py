@@ -48,6 +48,17 @@ def test_vectors_of_another_code(case, field):
     assert report.rms_px == pytest.approx(case.compare(field, device="cpu").rms_px, rel=0.2)
 
 
+# An estimator that fails is scored, too: zero vectors have the rms of the truth.
+def test_vectors_unlike_the_truth_are_scored(case):
+    flow = case.truth.flow(device="cpu")
+    with pytest.warns(gs.GladstoneWarning, match="do not follow the true displacement"):
+        zero = case.compare(np.zeros_like(flow), device="cpu")
+    assert zero.rms_px == pytest.approx(np.sqrt(np.mean(zero.truth_px[zero.mask] ** 2)), rel=1e-12)
+    noise = np.random.default_rng(1).normal(size=flow.shape)
+    with pytest.warns(gs.GladstoneWarning, match="do not follow the true displacement"):
+        assert case.compare(noise, device="cpu").rms_px > 0.9
+
+
 def test_tables_of_vectors_are_compared(case, field):
     pandas = pytest.importorskip("pandas")
     columns = {name: getattr(field, name).ravel() for name in "xyuv"}
@@ -59,7 +70,15 @@ def test_tables_of_vectors_are_compared(case, field):
         case.compare(table[["x_px"]])
 
 
-def test_loaded_cases_survive_pickle(case, field, tmp_path):
+def test_fields_and_loaded_cases_survive_pickle(case, field, tmp_path):
+    again = pickle.loads(pickle.dumps(field))
+    for name in ("x", "y", "u", "v", "sigma_u", "status", "peak_ratio", "correlation"):
+        assert np.array_equal(getattr(again, name), getattr(field, name), equal_nan=True), name
+    for name in ("settings", "warnings", "verdict", "device", "seconds", "uncertainty_method"):
+        assert getattr(again, name) == getattr(field, name), name
+    assert case.compare(again, device="cpu").errors == case.compare(field, device="cpu").errors
+    arrays = gs.Field(field.x, field.y, field.u, field.v)
+    assert (pickle.loads(pickle.dumps(arrays)).u == arrays.u).all()
     with pytest.raises(TypeError, match="save it"):
         pickle.dumps(case)
     with pytest.raises(TypeError, match="cannot be pickled"):

@@ -71,6 +71,11 @@ def test_reports_have_known_endings(case, tmp_path):
             call(tmp_path / "report.xyz")
 
 
+def test_places_that_are_none_are_data_errors():
+    with pytest.raises(gs.DataError, match="cannot be accessed"):
+        gs.Case.load("")
+
+
 def test_names_of_estimators_are_not_ours():
     with pytest.raises(ValueError, match="choose another name"):
         gs.benchmark({"default": gs.correlate}, cases=["vortex"])

@@ -98,18 +98,25 @@ bool has_rival_of_its_own(VectorFile const& file, DetectedConventions const& det
 }
 
 /// Determines the conventions of the vectors, starting from those of the format.
-/// @throws DataError if no convention fits the truth
+/// @throws DataError if no convention fits the truth, and `check` requires it
 DetectedConventions detect(VectorFile const& file, std::string const& path, GroundTruth const& truth,
-                           CameraSetup const& camera) {
+                           CameraSetup const& camera, ConventionCheck check) {
   using Verdict = DetectedConventions::Verdict;
   TruthMap const map(truth, camera);
   DetectedConventions detected = detect_conventions(
       file, [&map](Vec2d c) { return map.at(c); }, camera.rows);
-  if (detected.verdict == Verdict::no_convention_fits) {
+  bool const misfits = detected.verdict == Verdict::no_convention_fits;
+  if (misfits && check == ConventionCheck::require) {
     throw DataError(ErrorCode::inconsistent, path,
                     detected.report + ", or specify its reading with --conventions if the file cannot be corrected");
   }
-  if (detected.mistake.found()) {
+  if (misfits) {
+    spdlog::warn(
+        "{}: the vectors do not follow the true displacement, also with other axes, signs or units: they differ from "
+        "it by {:.3g} px rms, and it is {:.3g} px rms itself; if their estimator is more accurate than this, check the "
+        "order of the frames, the axes and the units",
+        path, detected.fit.rms_px, detected.fit.signal_px);
+  } else if (detected.mistake.found()) {
     spdlog::warn("{}: likely mistake: {}", path, detected.mistake.warning());
   } else if (detected.verdict == Verdict::cannot_be_told || has_rival_of_its_own(file, detected)) {
     spdlog::warn("{}: {}; specify it with --conventions", path, detected.report);
@@ -125,7 +132,7 @@ void log_remarks(VectorFile const& file) {
 }
 
 MeasuredVectors accept_vectors(VectorFile file, std::string const& name, CaseSetup const& loaded,
-                               GroundTruth const* truth, CompareOptions const& options, bool certain) {
+                               GroundTruth const* truth, CompareOptions const& options, ConventionCheck check) {
   if (options.conventions) override_conventions(file, *options.conventions);
   file = convert_to_pixels(std::move(file), name);
   CameraSetup const& camera = loaded.setup.camera;
@@ -141,11 +148,11 @@ MeasuredVectors accept_vectors(VectorFile file, std::string const& name, CaseSet
   MeasuredVectors vectors{{}, loaded.correlate, file.foreign, {}, name, left_out, {}};
   if (options.conventions && specifies_reading(*options.conventions)) {
     vectors.report = file.format + " vectors, as specified: " + describe(file.conventions);
-  } else if (!certain && truth) {
-    vectors.detected = detect(file, name, *truth, camera);
+  } else if (check != ConventionCheck::none && truth) {
+    vectors.detected = detect(file, name, *truth, camera, check);
     vectors.report = vectors.detected->report;
     file.conventions = vectors.detected->conventions;
-  } else if (!certain) {
+  } else if (check != ConventionCheck::none) {
     vectors.report =
         fmt::format("{} vectors, read as {} (the conventions of this format; there is no truth to test them)",
                     file.format, describe(file.conventions));
@@ -161,7 +168,8 @@ MeasuredVectors load_vectors(std::string const& path, CaseSetup const& loaded, G
   log_remarks(file);
   bool const foreign = file.foreign, hdf5 = path.ends_with(".h5") || path.ends_with(".hdf5");
   bool const certain = !foreign && hdf5;  // our .h5 files name their frames
-  MeasuredVectors vectors = accept_vectors(std::move(file), path, loaded, truth, options, certain);
+  MeasuredVectors vectors = accept_vectors(std::move(file), path, loaded, truth, options,
+                                           certain ? ConventionCheck::none : ConventionCheck::require);
   if (certain) {
     Hdf5Reader const measured(path);
     std::string const text = measured.attribute("setup");

@@ -17,10 +17,17 @@ void log_remarks(VectorFile const& file);
 MeasuredVectors load_vectors(std::string const& path, CaseSetup const& loaded, GroundTruth const* truth,
                              CompareOptions const& options);
 
+/// Comparison of the conventions of vectors with the truth.
+enum class ConventionCheck {
+  none,    ///< the conventions are certain
+  warn,    ///< warns of vectors that fit the truth in no convention, such as those of an estimator that fails
+  require  ///< rejects them
+};
+
 /// Checks and converts vectors as load_vectors() does, for vectors that are already in memory.
-/// @param name     of their origin, for messages
-/// @param certain  false: the conventions are checked by comparison with the truth, unless `options` has others
+/// @param name   of their origin, for messages
+/// @param check  of the conventions, unless `options` specifies them
 MeasuredVectors accept_vectors(VectorFile file, std::string const& name, CaseSetup const& loaded,
-                               GroundTruth const* truth, CompareOptions const& options, bool certain);
+                               GroundTruth const* truth, CompareOptions const& options, ConventionCheck check);
 
 }  // namespace gladstone
