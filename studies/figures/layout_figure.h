@@ -29,7 +29,7 @@ OpticalLayout make_optical_layout(DesignPoint<double> const& bench);
 Figure make_layout_figure(DesignPoint<double> const& bench);
 
 /// Returns the paraxial geometry of any camera, with Z along its axis: from the medium's mid-plane (PIV, calibration:
-/// the point of the axis at the distance Z_A) towards the camera.
+/// the point of the axis at the distance Z_A) towards the camera. A laser sheet is across the axis, whatever its angle.
 OpticalLayout make_camera_layout(Setup const& setup);
 
 /// The layout of make_camera_layout(), for cameras with a pose, prescription or other optical elements, and for

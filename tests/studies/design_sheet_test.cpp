@@ -218,6 +218,10 @@ TEST(DesignSheet, LayoutOfPivIsToScale) {
   EXPECT_NEAR(l.pupil_radius, 0.105 / 8 / 2, 1e-12);
   EXPECT_DOUBLE_EQ(l.sheet_half_thickness, 0.5e-3);
   EXPECT_DOUBLE_EQ(l.dots_z, 0);
+  OpticalLayout const along = make_camera_layout(loaded.setup);
+  EXPECT_DOUBLE_EQ(along.sheet_half_thickness, l.sheet_half_thickness);
+  EXPECT_DOUBLE_EQ(along.sheet_half_height, l.sheet_half_height);
+  EXPECT_EQ(along.medium_half_thickness, 0.0) << "without a field there is no medium to draw";
 }
 
 // At the f-number of the setup the map agrees with the sheet. Up to f/2.8 images are far smaller than a pixel: the peak
