@@ -47,6 +47,7 @@ def convert(
     image_rows: int = 0,
     spacing_px: int = 0,
     at: Literal["mid", "a"] = "mid",
+    exact: bool = False,
     device: str = "auto",
     progress: Progress = False,
 ) -> dict[str, Any]:
@@ -59,6 +60,7 @@ def convert(
     image_rows: number of rows of the image, required for files that count y upwards from its lower edge.
     spacing_px: of truth.h5, computes the displacement at every such column and row of the image, at the position `at`, as
         `Truth.flow`. Default: 1 for .nc and .vti, which store grids; otherwise the dots or particles.
+    exact: traces rays to every one of these pixels, as in `Truth.flow`.
 
     Returns the `format` of the source and the numbers of `vectors`, of `valid` ones, and of grid `columns` and `rows`.
     """
@@ -67,7 +69,7 @@ def convert(
     check_whole("spacing_px", spacing_px, 0, 10_000)
     with reporting(progress) as report:
         found = _core.convert(
-            os.fspath(source), os.fspath(path), conventions, image_rows, spacing_px, at == "a", device, report
+            os.fspath(source), os.fspath(path), conventions, image_rows, spacing_px, at == "a", exact, device, report
         )
     return json.loads(found)
 

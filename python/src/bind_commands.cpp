@@ -132,12 +132,17 @@ void bind_commands(nb::module_& module) {
   module.def(
       "convert",
       [](std::string const& input, std::string const& output, std::string const& conventions, int image_rows,
-         int spacing_px, bool at_frame_a, std::string const& device, nb::handle progress) {
+         int spacing_px, bool at_frame_a, bool exact, std::string const& device, nb::handle progress) {
         TruthAt const at = at_frame_a ? TruthAt::reference : TruthAt::mid_position;
-        return run([&] { return convert({input, output, conventions, image_rows, spacing_px, at, device}); }, progress);
+        TracedPixels const traced = exact ? TracedPixels::all : TracedPixels::adaptive;
+        return run(
+            [&] {
+              return convert({input, output, conventions, image_rows, spacing_px, at, traced, device});
+            },
+            progress);
       },
       nb::arg("input"), nb::arg("output"), nb::arg("conventions"), nb::arg("image_rows"), nb::arg("spacing_px"),
-      nb::arg("at_frame_a"), nb::arg("device"), nb::arg("progress").none());
+      nb::arg("at_frame_a"), nb::arg("exact"), nb::arg("device"), nb::arg("progress").none());
   module.def(
       "views",
       [](std::string const& case_folder, std::string const& folder, int across, std::optional<double> refocus_mm) {
