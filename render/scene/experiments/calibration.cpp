@@ -1,3 +1,5 @@
+#include <utility>
+
 #include "render/light/calibration_target.h"
 #include "render/scene/calibration_planes.h"
 #include "render/scene/setup.h"
@@ -26,7 +28,7 @@ void read_calibration(Setup& setup, SetupTable root) {
 void check_calibration(Setup const& setup, SetupTable root, std::vector<std::string>& warnings) {
   cross_check_noise(setup, warnings);
   cross_check_spot(setup, root);
-  cross_check_calibration(setup, root, warnings);
+  cross_check_calibration(setup, std::move(root), warnings);
 }
 
 }  // namespace

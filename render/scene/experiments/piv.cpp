@@ -80,7 +80,7 @@ void read_piv(Setup& setup, SetupTable root) {
 void cross_check_piv(Setup const& setup, SetupTable root, std::vector<std::string>& warnings) {
   cross_check_medium(setup, root, warnings);
   cross_check_spot(setup, root);
-  cross_check_particles(setup, root, warnings);
+  cross_check_particles(setup, std::move(root), warnings);
 }
 
 }  // namespace
