@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "render/base/units.h"
 #include "render/scene/build_camera.h"
@@ -122,7 +123,7 @@ void cross_check_medium(Setup const& setup, SetupTable root, std::vector<std::st
 std::vector<std::string> cross_check(Setup const& setup, SetupTable root) {
   std::vector<std::string> warnings = setup.warnings;
   // all other checks require an image
-  if (cross_check_lens(setup, root, warnings)) setup.experiment().cross_check(setup, root, warnings);
+  if (cross_check_lens(setup, root, warnings)) setup.experiment().cross_check(setup, std::move(root), warnings);
   return warnings;
 }
 

@@ -3,7 +3,7 @@
 #include <map>
 
 #include "studies/benchmark/benchmark_run.h"
-#include "studies/figures/draw_figure.h"
+#include "studies/drawing/draw_figure.h"
 
 namespace gladstone {
 namespace {

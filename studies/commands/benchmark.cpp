@@ -15,7 +15,7 @@
 #include "studies/case/json_text.h"
 #include "studies/commands/arguments.h"
 #include "studies/commands/command.h"
-#include "studies/figures/draw_figure.h"
+#include "studies/drawing/draw_figure.h"
 
 namespace gladstone {
 namespace {

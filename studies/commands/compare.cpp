@@ -20,7 +20,7 @@
 #include "studies/compare/error_report.h"
 #include "studies/compare/stereo_scores.h"
 #include "studies/compare/stored_comparison.h"
-#include "studies/figures/draw_figure.h"
+#include "studies/drawing/draw_figure.h"
 
 namespace gladstone {
 

@@ -12,7 +12,7 @@
 #include "studies/case/json_text.h"
 #include "studies/compare/sequence.h"
 #include "studies/compare/sequence_frames.h"
-#include "studies/figures/draw_figure.h"
+#include "studies/drawing/draw_figure.h"
 #include "studies/figures/sequence_figure.h"
 
 namespace gladstone {

@@ -11,7 +11,7 @@
 #include "studies/case/json_text.h"
 #include "studies/commands/field_place.h"
 #include "studies/commands/field_statistics.h"
-#include "studies/figures/draw_figure.h"
+#include "studies/drawing/draw_figure.h"
 #include "studies/figures/field_figure.h"
 
 namespace gladstone {

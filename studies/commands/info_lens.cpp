@@ -11,7 +11,7 @@
 #include "render/optics/field_analysis.h"
 #include "studies/case/json_text.h"
 #include "studies/case/lens_glasses.h"
-#include "studies/figures/draw_figure.h"
+#include "studies/drawing/draw_figure.h"
 #include "studies/figures/lens_figure.h"
 
 namespace gladstone {

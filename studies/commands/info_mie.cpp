@@ -12,7 +12,7 @@
 #include "render/base/units.h"
 #include "render/light/mie.h"
 #include "studies/case/json_text.h"
-#include "studies/figures/draw_figure.h"
+#include "studies/drawing/draw_figure.h"
 #include "studies/figures/mie_figure.h"
 
 namespace gladstone {

@@ -12,7 +12,7 @@
 #include "studies/case/case.h"
 #include "studies/case/json_text.h"
 #include "studies/design/setup_overview.h"
-#include "studies/figures/draw_figure.h"
+#include "studies/drawing/draw_figure.h"
 #include "studies/figures/layout_figure.h"
 #include "studies/report/layout_view.h"
 

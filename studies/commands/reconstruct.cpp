@@ -16,8 +16,8 @@
 #include "studies/commands/density_options.h"
 #include "studies/compare/density_file.h"
 #include "studies/compare/density_table.h"
+#include "studies/drawing/draw_figure.h"
 #include "studies/figures/density_figure.h"
-#include "studies/figures/draw_figure.h"
 
 namespace gladstone {
 namespace {

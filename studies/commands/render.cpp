@@ -185,7 +185,8 @@ CommandBody attach_render(CLI::App& app, GlobalOptions const& options) {
     for (RenderedCamera const& camera : rendered.cameras) text += in_words(camera) + '\n';
     if (rendered.summary.contains("cameras")) {
       for (auto const& [name, summary] : rendered.summary["cameras"].items())
-        if (std::string const glasses = name_shared_glasses(summary); !glasses.empty()) text += name + ": " + glasses;
+        if (std::string const glasses = name_shared_glasses(summary); !glasses.empty())
+          text.append(name).append(": ").append(glasses);
     } else {
       text += name_shared_glasses(rendered.summary);
     }

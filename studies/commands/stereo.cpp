@@ -14,7 +14,7 @@
 #include "studies/commands/arguments.h"
 #include "studies/commands/command.h"
 #include "studies/compare/stereo_file.h"
-#include "studies/figures/draw_figure.h"
+#include "studies/drawing/draw_figure.h"
 #include "studies/figures/stereo_figure.h"
 
 namespace gladstone {

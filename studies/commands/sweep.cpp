@@ -9,7 +9,7 @@
 
 #include "studies/case/json_text.h"
 #include "studies/commands/command.h"
-#include "studies/figures/draw_figure.h"
+#include "studies/drawing/draw_figure.h"
 #include "studies/figures/study_figures.h"
 #include "studies/sweep/collect.h"
 #include "studies/sweep/dataset.h"

@@ -21,7 +21,7 @@
 #include "studies/compare/density_table.h"
 #include "studies/compare/tomography_file.h"
 #include "studies/compare/tomography_plan.h"
-#include "studies/figures/draw_figure.h"
+#include "studies/drawing/draw_figure.h"
 #include "studies/figures/tomography_figure.h"
 
 namespace gladstone {

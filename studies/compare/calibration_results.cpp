@@ -9,7 +9,7 @@
 #include "render/files/hdf5_file.h"
 #include "studies/case/flat_values.h"
 #include "studies/compare/calibrate.h"
-#include "studies/figures/draw_figure.h"
+#include "studies/drawing/draw_figure.h"
 
 namespace gladstone {
 namespace {

@@ -6,7 +6,7 @@
 #include "studies/case/json_text.h"
 #include "studies/compare/compare.h"
 #include "studies/compare/comparison_kind.h"
-#include "studies/figures/draw_figure.h"
+#include "studies/drawing/draw_figure.h"
 #include "studies/figures/error_figures.h"
 #include "studies/figures/map_figures.h"
 

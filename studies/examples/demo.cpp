@@ -17,9 +17,9 @@
 #include "studies/compare/compare.h"
 #include "studies/compare/correlate.h"
 #include "studies/compare/error_report.h"
+#include "studies/drawing/draw_figure.h"
 #include "studies/examples/demo_story.h"
 #include "studies/figures/agreement_figure.h"
-#include "studies/figures/draw_figure.h"
 #include "studies/figures/map_figures.h"
 
 namespace gladstone {

@@ -13,7 +13,7 @@
 #include "studies/case/case_files.h"
 #include "studies/case/render_setup.h"
 #include "studies/case/shared_folder.h"
-#include "studies/figures/draw_figure.h"
+#include "studies/drawing/draw_figure.h"
 #include "studies/figures/map_panels.h"
 
 namespace gladstone {

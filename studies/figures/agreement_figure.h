@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "studies/compare/cone_theory.h"
-#include "studies/figures/figure.h"
+#include "studies/drawing/figure.h"
 
 namespace gladstone {
 

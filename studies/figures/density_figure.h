@@ -3,7 +3,7 @@
 #include <string>
 
 #include "studies/compare/reconstruct.h"
-#include "studies/figures/figure.h"
+#include "studies/drawing/figure.h"
 
 namespace gladstone {
 

@@ -7,8 +7,8 @@
 #include <limits>
 
 #include "render/base/units.h"
+#include "studies/drawing/figure_texts.h"
 #include "studies/figures/excluded_designs.h"
-#include "studies/figures/figure_texts.h"
 
 namespace gladstone {
 namespace {

@@ -8,7 +8,7 @@
 #include "studies/design/design_point.h"
 #include "studies/design/question.h"
 #include "studies/design/recommend.h"
-#include "studies/figures/figure.h"
+#include "studies/drawing/figure.h"
 
 namespace gladstone {
 

@@ -211,7 +211,7 @@ Figure make_budget_bars(std::string const& title, ErrorBudget const& budget) {
     std::replace(name.begin(), name.end(), '_', ' ');
     std::string note = terms[i].known() ? "" : "n/a";
     if (!terms[i].includes.empty()) note = fmt::format("+ {}", fmt::join(terms[i].includes, ", "));
-    panel.x.ticks.push_back({static_cast<double>(i), name + '\n' + note});
+    panel.x.ticks.push_back({static_cast<double>(i), name.append("\n").append(note)});
     rms.columns[0].push_back(static_cast<double>(i));
     rms.columns[1].push_back(terms[i].rms_px);
   }

@@ -7,7 +7,7 @@
 #include "analysis/errors/error_summary.h"
 #include "analysis/vectors/displacement_field.h"
 #include "render/base/vec.h"
-#include "studies/figures/figure.h"
+#include "studies/drawing/figure.h"
 
 namespace gladstone {
 

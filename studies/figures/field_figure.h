@@ -1,7 +1,7 @@
 #pragma once
 
 #include "render/files/fields/field_file.h"
-#include "studies/figures/figure.h"
+#include "studies/drawing/figure.h"
 
 namespace gladstone {
 

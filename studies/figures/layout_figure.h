@@ -5,7 +5,7 @@
 
 #include "render/scene/setup.h"
 #include "studies/design/design_point.h"
-#include "studies/figures/figure.h"
+#include "studies/drawing/figure.h"
 
 namespace gladstone {
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "render/optics/field_analysis.h"
-#include "studies/figures/figure.h"
+#include "studies/drawing/figure.h"
 
 namespace gladstone {
 

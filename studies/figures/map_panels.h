@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "render/base/image.h"
-#include "studies/figures/figure.h"
+#include "studies/drawing/figure.h"
 
 namespace gladstone {
 

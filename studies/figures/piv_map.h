@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "render/scene/setup.h"
-#include "studies/figures/figure.h"
+#include "studies/drawing/figure.h"
 
 namespace gladstone {
 

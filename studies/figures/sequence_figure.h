@@ -1,7 +1,7 @@
 #pragma once
 
 #include "analysis/vectors/sequence_statistics.h"
-#include "studies/figures/figure.h"
+#include "studies/drawing/figure.h"
 
 namespace gladstone {
 

@@ -84,7 +84,7 @@ std::vector<Layer> make_curve_layers(FigureAxis const& axis, CurvePanel const& p
       layer.dash = Dash::dashed;
       if (!axis.numeric) {
         layer.kind = Layer::Kind::levels;
-        layer.columns.push_back(std::vector<double>(x.size(), 0.4));
+        layer.columns.emplace_back(x.size(), 0.4);
       }
     } else {
       if (axis.numeric) layers.push_back(layer);

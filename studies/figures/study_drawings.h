@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "studies/figures/figure.h"
+#include "studies/drawing/figure.h"
 #include "studies/figures/study_cells.h"
 
 namespace gladstone {

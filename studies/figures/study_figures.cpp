@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "render/base/parallel.h"
-#include "studies/figures/draw_figure.h"
-#include "studies/figures/figure_texts.h"
+#include "studies/drawing/draw_figure.h"
+#include "studies/drawing/figure_texts.h"
 #include "studies/figures/study_drawings.h"
 #include "studies/sweep/study_points.h"
 

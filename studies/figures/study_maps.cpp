@@ -5,7 +5,7 @@
 #include <limits>
 #include <numeric>
 
-#include "studies/figures/figure_texts.h"
+#include "studies/drawing/figure_texts.h"
 #include "studies/figures/study_drawings.h"
 
 namespace gladstone {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "studies/compare/tomography.h"
-#include "studies/figures/figure.h"
+#include "studies/drawing/figure.h"
 
 namespace gladstone {
 

@@ -7,8 +7,8 @@
 
 #include "render/base/not_a_number.h"
 #include "studies/compare/density_file.h"
+#include "studies/drawing/draw_figure.h"
 #include "studies/figures/density_figure.h"
-#include "studies/figures/draw_figure.h"
 #include "studies/report/drawn_block.h"
 
 namespace gladstone {

@@ -3,8 +3,8 @@
 #include <utility>
 
 #include "render/files/text_file.h"
-#include "studies/figures/draw_figure.h"
-#include "studies/figures/temporary_directory.h"
+#include "studies/drawing/draw_figure.h"
+#include "studies/drawing/temporary_directory.h"
 
 namespace gladstone {
 

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "studies/figures/figure.h"
+#include "studies/drawing/figure.h"
 #include "studies/report/report_page.h"
 
 namespace gladstone {

@@ -6,8 +6,8 @@
 
 #include "studies/case/expected_particles.h"
 #include "studies/design/sheet.h"
+#include "studies/drawing/draw_figure.h"
 #include "studies/figures/design_map.h"
-#include "studies/figures/draw_figure.h"
 #include "studies/figures/layout_figure.h"
 #include "studies/figures/piv_map.h"
 #include "studies/report/drawn_block.h"

@@ -8,7 +8,7 @@
 #include "render/scene/setup.h"
 #include "studies/case/case.h"
 #include "studies/design/design_point.h"
-#include "studies/figures/figure.h"
+#include "studies/drawing/figure.h"
 #include "studies/report/report_page.h"
 
 namespace gladstone {

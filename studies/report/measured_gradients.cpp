@@ -3,7 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "studies/figures/draw_figure.h"
+#include "studies/drawing/draw_figure.h"
 #include "studies/figures/map_panels.h"
 #include "studies/report/case_view.h"
 

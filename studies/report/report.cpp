@@ -8,7 +8,7 @@
 #include "render/files/output_file.h"
 #include "studies/case/case_files.h"
 #include "studies/case/version_text.h"
-#include "studies/figures/draw_figure.h"
+#include "studies/drawing/draw_figure.h"
 #include "studies/sweep/manifest.h"
 
 namespace gladstone {

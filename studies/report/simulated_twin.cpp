@@ -9,7 +9,7 @@
 #include "render/base/progress.h"
 #include "render/base/units.h"
 #include "render/files/output_file.h"
-#include "studies/figures/temporary_directory.h"
+#include "studies/drawing/temporary_directory.h"
 #include "studies/sweep/case_runner.h"
 #include "studies/sweep/plan.h"
 

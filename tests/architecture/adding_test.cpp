@@ -203,7 +203,7 @@ INSTANTIATE_TEST_SUITE_P(Rows, Adding, testing::Range(std::size_t{0}, rows().siz
 
 // A figure is data; what it looks like is said once, by the writer and its templates.
 TEST(Figures, AreDataWithoutCommandsOfGnuplot) {
-  std::set<std::string> const writer{"studies/figures/draw_figure.cpp", "studies/figures/gnuplot.cpp"};
+  std::set<std::string> const writer{"studies/drawing/draw_figure.cpp", "studies/drawing/gnuplot.cpp"};
   std::regex const command("linecolor|linewidth [0-9{]|pointtype|\"set [a-z]+ |with (lines|points|boxes)");
   std::size_t found = 0;
   for (auto const& [path, text] : sources()) {

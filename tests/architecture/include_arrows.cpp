@@ -27,8 +27,8 @@ Names const analysis = {"analysis/vectors",     "analysis/correlation", "analysi
 Names const cuda = {"cuda/device",       "cuda/rays",        "cuda/focused_dots",
                     "cuda/ideal_images", "cuda/correlation", "cuda/tomography"};
 
-Names const studies = {"studies/case",   "studies/compare",   "studies/sweep",   "studies/design",  "studies/figures",
-                       "studies/report", "studies/benchmark", "studies/oracles", "studies/examples"};
+Names const studies = {"studies/drawing", "studies/case",   "studies/compare",   "studies/sweep",   "studies/design",
+                       "studies/figures", "studies/report", "studies/benchmark", "studies/oracles", "studies/examples"};
 Names const studies_use = {"Eigen", "fmt", "spdlog", "nlohmann_json"};
 
 Names operator+(Names a, Names const& b) {
@@ -102,27 +102,32 @@ std::vector<Room> const& table() {
        {"Eigen", "CUDA"},
        {"fmt"}},
       {"cuda", render + renderers + analysis + cuda, {"Eigen", "CUDA"}, {"fmt"}},
+      {"studies/drawing", {"render/base", "render/files"}, studies_use, {}},
       {"studies/case", libraries + Names{"cuda"}, studies_use, {}},
-      {"studies/compare", libraries + Names{"studies/case"}, studies_use, {}},
+      {"studies/compare", libraries + Names{"studies/drawing", "studies/case"}, studies_use, {}},
       {"studies/sweep", libraries + Names{"studies/case", "studies/compare"}, studies_use, {}},
       {"studies/design",
-       libraries + Names{"studies/case", "studies/compare", "studies/sweep"},
+       libraries + Names{"studies/drawing", "studies/case", "studies/compare", "studies/sweep"},
        studies_use,
        {"Ceres", "NLopt"}},
       {"studies/figures",
-       libraries + Names{"studies/case", "studies/compare", "studies/sweep", "studies/design"},
+       libraries + Names{"studies/drawing", "studies/case", "studies/compare", "studies/sweep", "studies/design"},
        studies_use,
        {}},
       {"studies/report",
-       libraries + Names{"studies/case", "studies/compare", "studies/sweep", "studies/design", "studies/figures"},
+       libraries + Names{"studies/drawing", "studies/case", "studies/compare", "studies/sweep", "studies/design",
+                         "studies/figures"},
        studies_use,
        {}},
       {"studies/benchmark",
-       libraries + Names{"studies/case", "studies/compare", "studies/figures", "studies/report"},
+       libraries + Names{"studies/drawing", "studies/case", "studies/compare", "studies/figures", "studies/report"},
        studies_use,
        {}},
       {"studies/oracles", libraries + Names{"studies/case"}, studies_use, {}},
-      {"studies/examples", libraries + Names{"studies/case", "studies/compare", "studies/figures"}, studies_use, {}},
+      {"studies/examples",
+       libraries + Names{"studies/drawing", "studies/case", "studies/compare", "studies/figures"},
+       studies_use,
+       {}},
       {"studies/commands", libraries + studies, studies_use + Names{"CLI11"}, {}},
       {"python/src", libraries + studies + Names{"studies/commands"}, studies_use + Names{"nanobind"}, {}},
       {"studies", libraries + studies + Names{"studies/commands"}, studies_use + Names{"CLI11"}, {}},  // main.cpp
@@ -137,12 +142,9 @@ std::vector<Exception> const& known_exceptions() {
       {"analysis/correlation/correlation_settings.h", "render/setup/setup_table.h"},
       {"analysis/preparation/frame_preparation.h", "render/setup/setup_table.h"},
       {"render/setup/setup_document.cpp", "render/files/text_file.h"},
-      {"studies/compare/calibration_results.cpp", "studies/figures/draw_figure.h"},
-      {"studies/compare/comparison_results.cpp", "studies/figures/draw_figure.h"},
       {"studies/compare/comparison_results.cpp", "studies/figures/error_figures.h"},
       {"studies/compare/comparison_results.cpp", "studies/figures/map_figures.h"},
       {"studies/design/design.cpp", "studies/figures/design_map.h"},
-      {"studies/design/design.cpp", "studies/figures/draw_figure.h"},
       {"studies/design/design.cpp", "studies/figures/layout_figure.h"},
       {"studies/design/design.cpp", "studies/figures/piv_map.h"},
   };

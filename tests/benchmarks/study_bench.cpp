@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "studies/figures/temporary_directory.h"
+#include "studies/drawing/temporary_directory.h"
 #include "studies/sweep/vector_errors.h"
 #include "tests/support/study_without_work.h"
 

@@ -1,4 +1,4 @@
-#include "studies/figures/figure_texts.h"
+#include "studies/drawing/figure_texts.h"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <string>
 
 #include "render/files/image_file.h"
+#include "studies/drawing/draw_figure.h"
 #include "studies/figures/design_map.h"
-#include "studies/figures/draw_figure.h"
 #include "studies/figures/layout_figure.h"
 #include "tests/studies/support/table1_design.h"
 

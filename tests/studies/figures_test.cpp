@@ -11,11 +11,11 @@
 
 #include "render/base/error.h"
 #include "render/files/image_file.h"
+#include "studies/drawing/draw_figure.h"
+#include "studies/drawing/gnuplot.h"
 #include "studies/figures/agreement_figure.h"
 #include "studies/figures/density_figure.h"
-#include "studies/figures/draw_figure.h"
 #include "studies/figures/error_figures.h"
-#include "studies/figures/gnuplot.h"
 #include "studies/figures/map_figures.h"
 #include "tests/support/expect_error.h"
 

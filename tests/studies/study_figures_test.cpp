@@ -11,7 +11,7 @@
 #include <sstream>
 
 #include "render/files/image_file.h"
-#include "studies/figures/draw_figure.h"
+#include "studies/drawing/draw_figure.h"
 #include "studies/figures/study_cells.h"
 
 namespace gladstone {

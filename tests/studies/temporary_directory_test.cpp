@@ -1,4 +1,4 @@
-#include "studies/figures/temporary_directory.h"
+#include "studies/drawing/temporary_directory.h"
 
 #include <gtest/gtest.h>
 #include <signal.h>

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "render/base/error.h"
-#include "studies/figures/figure.h"
+#include "studies/drawing/figure.h"
 
 namespace gladstone {
 

@@ -1,4 +1,4 @@
-#include "studies/figures/draw_figure.h"
+#include "studies/drawing/draw_figure.h"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -7,9 +7,9 @@
 #include <cmath>
 
 #include "render/base/contracts.h"
-#include "studies/figures/figure_texts.h"
-#include "studies/figures/gnuplot.h"
-#include "studies/figures/templates.h"
+#include "studies/drawing/figure_texts.h"
+#include "studies/drawing/gnuplot.h"
+#include "studies/drawing/templates.h"
 
 namespace gladstone {
 namespace {

@@ -1,4 +1,4 @@
-#include "studies/figures/gnuplot.h"
+#include "studies/drawing/gnuplot.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -20,7 +20,7 @@
 #include "render/base/error.h"
 #include "render/base/interrupt.h"
 #include "render/files/output_file.h"
-#include "studies/figures/draw_figure.h"
+#include "studies/drawing/draw_figure.h"
 
 extern char** environ;
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "render/base/image.h"
-#include "studies/figures/temporary_directory.h"
+#include "studies/drawing/temporary_directory.h"
 
 namespace gladstone {
 

@@ -1,4 +1,4 @@
-#include "studies/figures/figure.h"
+#include "studies/drawing/figure.h"
 
 #include <fmt/format.h>
 

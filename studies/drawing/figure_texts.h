@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "studies/figures/figure.h"
+#include "studies/drawing/figure.h"
 
 namespace gladstone {
 

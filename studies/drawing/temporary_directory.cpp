@@ -1,4 +1,4 @@
-#include "studies/figures/temporary_directory.h"
+#include "studies/drawing/temporary_directory.h"
 
 #include <sys/stat.h>
 

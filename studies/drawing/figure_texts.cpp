@@ -1,4 +1,4 @@
-#include "studies/figures/figure_texts.h"
+#include "studies/drawing/figure_texts.h"
 
 #include <algorithm>
 #include <array>
@@ -6,7 +6,7 @@
 #include <cstdlib>
 
 #include "render/base/contracts.h"
-#include "studies/figures/templates.h"
+#include "studies/drawing/templates.h"
 
 namespace gladstone {
 namespace {
