@@ -44,9 +44,8 @@ MeasuredVectors vectors_of(PairCase const& one, MeasuredField const& field, Comp
   file.format = "given";
   file.foreign = !own;
   file.complete = field.complete;
-  MeasuredVectors vectors =
-      accept_vectors(std::move(file), field.name, one.loaded(), &one.truth(), options,
-                     own || !field.foreign ? ConventionCheck::none : ConventionCheck::warn);
+  MeasuredVectors vectors = accept_vectors(std::move(file), field.name, one.loaded(), &one.truth(), options,
+                                           own || !field.foreign ? ConventionCheck::none : ConventionCheck::warn);
   if (field.settings) vectors.settings = *field.settings;
   return vectors;
 }

@@ -103,17 +103,16 @@ std::uint64_t pnm_maximum(OIIO::ImageInput const& input, std::string const& path
   return value;
 }
 
-/// Undoes the scaling of a PNM file's levels: OpenImageIO multiplies them by the largest number of their type, F, divides
-/// by the largest level M, and drops the fraction, so that a level is the next integer from M / F times the sample on.
-/// The result is shifted to the upper bits, as the interface requires.
+/// Undoes the scaling of a PNM file's levels: OpenImageIO multiplies them by the largest number of their type, F,
+/// divides by the largest level M, and drops the fraction, so that a level is the next integer from M / F times the
+/// sample on. The result is shifted to the upper bits, as the interface requires.
 template <class Sample>
 void restore_levels(Sample* samples, std::size_t count, std::uint64_t maximum) {
   constexpr std::uint64_t full = std::numeric_limits<Sample>::max();
   if (maximum == 0 || maximum >= full) return;
   int const shift = static_cast<int>(8 * sizeof(Sample)) - static_cast<int>(std::bit_width(maximum));
-  std::transform(samples, samples + count, samples, [=](Sample sample) {
-    return static_cast<Sample>((sample * maximum + full - 1) / full << shift);
-  });
+  std::transform(samples, samples + count, samples,
+                 [=](Sample sample) { return static_cast<Sample>((sample * maximum + full - 1) / full << shift); });
 }
 
 enum class InkColours { converted, stored };

@@ -71,8 +71,8 @@ Description describe_image(std::string const& name, Image<double> const& image, 
                             {"snr", number_or_null(seen.snr())}};
   return {json_text(json),
           fmt::format(
-              "{}: {} x {} px, {} bits{}{}{}, grey levels {:.6g} to {:.6g}, mean {:.6g}, {}, {}",
-              name, image.columns(), image.rows(), metadata.bit_depth,
+              "{}: {} x {} px, {} bits{}{}{}, grey levels {:.6g} to {:.6g}, mean {:.6g}, {}, {}", name, image.columns(),
+              image.rows(), metadata.bit_depth,
               unused_bits > 0 ? fmt::format(" (all levels are multiples of {})", 1 << unused_bits) : "",
               metadata.channels >= 3 ? ", colour converted to luminance" : "",
               metadata.orientation == 1 ? "" : fmt::format(", Orientation {} rotated upright", metadata.orientation),

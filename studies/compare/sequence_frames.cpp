@@ -246,7 +246,8 @@ std::vector<SequencePair> form_pairs(std::vector<std::vector<std::string>> const
   std::vector<std::string> files;
   for (std::vector<std::string> const& list : lists) files.insert(files.end(), list.begin(), list.end());
   if (files.empty())
-    throw DataError(ErrorCode::arguments, "images", "no image is given; give a pattern, a folder, or a file of several pages");
+    throw DataError(ErrorCode::arguments, "images",
+                    "no image is given; give a pattern, a folder, or a file of several pages");
   std::vector<SequenceFrame> const frames = list_frames(files);
   if (frames.size() < 2)
     throw DataError(ErrorCode::arguments, files.front(),

@@ -142,14 +142,16 @@ TEST(ImageFile, LevelsOfPgmFilesAreThoseInTheFile) {
       auto const image = read_image(path, &metadata);
       ASSERT_EQ(image.columns(), maximum + 1);
       EXPECT_EQ(metadata.bit_depth, bits);
-      for (int level = 0; level <= maximum; ++level) ASSERT_EQ(image(level, 0), level) << maximum << (text ? " text" : "");
+      for (int level = 0; level <= maximum; ++level)
+        ASSERT_EQ(image(level, 0), level) << maximum << (text ? " text" : "");
     }
   }
 }
 
 // Lossy compression changes the levels of a uniform image by its conversion to YUV of 8 bits and back, by 2 at most.
 TEST(ImageFile, WebPIsRead) {
-  auto const image = read_image(write_picture<std::uint8_t>("uniform.webp", std::vector<std::uint8_t>(3 * 256, 100), 16, 3));
+  auto const image =
+      read_image(write_picture<std::uint8_t>("uniform.webp", std::vector<std::uint8_t>(3 * 256, 100), 16, 3));
   ASSERT_EQ(image.columns(), 16);
   for (double const level : image) EXPECT_NEAR(level, 100, 2);
 }
