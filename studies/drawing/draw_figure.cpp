@@ -125,11 +125,14 @@ class FigureScript {
     if (axis.logarithmic) command("set logscale {}; set format {} '%g'", name, name);
     if (!axis.label.empty()) command("set {0}label {1} @{0}label_look", name, quoted(axis.label));
     if (axis.marks == Axis::Marks::none) return command("unset {}tics", name);
-    if (axis.marks == Axis::Marks::ticks) command("set format {} ''", name);
+    std::vector<figures::Tick> ticks = axis.ticks;
+    if (axis.marks == Axis::Marks::ticks) {
+      command("set format {} ''", name);
+      for (figures::Tick& tick : ticks) tick.text.clear();
+    }
     // the list comes first: a string variable before a bracket would be a function
-    command("set {0}tics {1}{2}{3} @ticks @{0}ticks_look", name,
-            axis.ticks.empty() ? "autofreq" : tick_list(axis.ticks), axis.marks == Axis::Marks::bare ? " scale 0" : "",
-            axis.slanted ? " rotate by 28 right" : "");
+    command("set {0}tics {1}{2}{3} @ticks @{0}ticks_look", name, ticks.empty() ? "autofreq" : tick_list(ticks),
+            axis.marks == Axis::Marks::bare ? " scale 0" : "", axis.slanted ? " rotate by 28 right" : "");
   }
 
   void add(PlacedText const& text) {
