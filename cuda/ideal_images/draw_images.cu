@@ -47,7 +47,7 @@ struct Chunk {
   int edge[2][chunk];       ///< first edge of the footprint that is computed
   double integral[2][chunk][most_edges];
   double share[2][chunk][most_edges - 1 + 2 * margin];  ///< light of columns and rows, between zeros
-  // What the sums need is held twice, for a chunk and the one after it.
+  // Two copies, since the images of the next chunk are loaded while those of a chunk are drawn.
   int start[2][2][chunk];                     ///< [chunk % 2] first pixel whose share is computed, relative to the tile
   std::uint32_t reaching[2][threads / warp];  ///< [chunk % 2] bits of the images that reach the rows of a warp
 };
@@ -91,7 +91,7 @@ __device__ void load_images(Chunk<most_edges>& held, DeviceParticleImages const&
   }
 }
 
-/// Returns a number of less than 2^32. A conversion takes eight cycles of a warp, this sum two.
+/// Converts a number of at least 0, exactly. A conversion instruction takes eight cycles of a warp, this sum two.
 __device__ double to_double(int number) { return __hiloint2double(0x43300000, number) - 0x1p52; }
 
 /// One of the elements of an item, in the order of the items and then of the elements.

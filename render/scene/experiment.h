@@ -20,7 +20,7 @@ struct Experiment {
   bool medium_in_first_frame;   ///< otherwise the first frame is without medium
   char const* reason_for_rays;  ///< reason against the fast renderer; empty: it may apply
 
-  /// Reads the distance from the medium to the dots; refuses it if there are none behind a medium.
+  /// Reads the distance from the medium to the dots; refuses it for experiments without dots behind a medium.
   void (*read_z_d)(Setup& setup, SetupTable geometry);
   /// Reads the tables of the experiment, and refuses those of the others.
   /// @param setup  camera, lens, elements, geometry and medium have been read

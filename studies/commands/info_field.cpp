@@ -42,7 +42,7 @@ bool draw_field(std::string const& path, FieldSource& source, FieldPlace const& 
 }
 
 /// Opens a scalar field, or a velocity if the file has no scalar field of this name, or several.
-/// @throws DataError of the scalar field if there is no velocity either
+/// @throws DataError about the scalar field if the file contains neither
 std::unique_ptr<FieldSource> open_scalar_or_velocity(std::string const& path, std::string const& dataset,
                                                      std::string const& axes) {
   try {

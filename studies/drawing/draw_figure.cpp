@@ -29,10 +29,12 @@ std::string quoted(std::string_view text) { return GnuplotScript::quoted(text); 
 
 std::string coordinate(double value) { return std::isfinite(value) ? fmt::format("{:.10g}", value) : "*"; }
 
-std::string tick_list(std::vector<figures::Tick> const& ticks) {
+/// @param texts  false: the ticks are drawn without their texts
+std::string tick_list(std::vector<figures::Tick> const& ticks, bool texts) {
   std::string list;
   for (figures::Tick const& tick : ticks) {
-    list += fmt::format("{}{} {:.10g}", list.empty() ? "" : ", ", GnuplotScript::quoted_tick(tick.text), tick.at);
+    list += fmt::format("{}{} {:.10g}", list.empty() ? "" : ", ", GnuplotScript::quoted_tick(texts ? tick.text : ""),
+                        tick.at);
   }
   return '(' + list + ')';
 }
@@ -125,13 +127,11 @@ class FigureScript {
     if (axis.logarithmic) command("set logscale {}; set format {} '%g'", name, name);
     if (!axis.label.empty()) command("set {0}label {1} @{0}label_look", name, quoted(axis.label));
     if (axis.marks == Axis::Marks::none) return command("unset {}tics", name);
-    std::vector<figures::Tick> ticks = axis.ticks;
-    if (axis.marks == Axis::Marks::ticks) {
-      command("set format {} ''", name);
-      for (figures::Tick& tick : ticks) tick.text.clear();
-    }
+    bool const texts = axis.marks != Axis::Marks::ticks;
+    if (!texts) command("set format {} ''", name);
     // the list comes first: a string variable before a bracket would be a function
-    command("set {0}tics {1}{2}{3} @ticks @{0}ticks_look", name, ticks.empty() ? "autofreq" : tick_list(ticks),
+    command("set {0}tics {1}{2}{3} @ticks @{0}ticks_look", name,
+            axis.ticks.empty() ? "autofreq" : tick_list(axis.ticks, texts),
             axis.marks == Axis::Marks::bare ? " scale 0" : "", axis.slanted ? " rotate by 28 right" : "");
   }
 
@@ -229,7 +229,7 @@ class FigureScript {
       command("set colorbox user origin screen {:.6f}, screen {:.6f} size screen {:.6f}, screen {:.6f}",
               screen_x(box.right + bar_gap), screen_y(box.bottom), screen_x(bar_width),
               (box.bottom - box.top) / figure_.height_px);
-      command("set cbtics {} @bar_ticks", map.ticks.empty() ? "autofreq" : tick_list(map.ticks));
+      command("set cbtics {} @bar_ticks", map.ticks.empty() ? "autofreq" : tick_list(map.ticks, true));
     } else {
       command("unset colorbox");
     }

@@ -38,7 +38,7 @@ std::vector<PlacedText> place_texts(Figure const& figure);
 /// @return empty if a range of an axis is automatic
 std::vector<PlacedText> place_labels(Figure const& figure, figures::Panel const& panel);
 
-inline constexpr double legend_gap = 14;  ///< from a panel to a legend beside it [px]
+inline constexpr double legend_gap = 14;  ///< from a panel to the legend at its side [px]
 
 /// Returns the width of the legend to the right of a panel, with the gap [px].
 double legend_width(figures::Panel const& panel, Figure::Kind kind);

@@ -19,7 +19,7 @@ namespace gladstone {
 namespace {
 
 /// Parses a number with a decimal point, or with a decimal comma: a comma within a field does not separate fields.
-/// @return nullopt if the text is no number
+/// @return nullopt if the text is not a number
 std::optional<double> parse_number(std::string_view field) {
   std::string number(field);
   if (number.find('.') == std::string::npos && std::count(number.begin(), number.end(), ',') == 1)
