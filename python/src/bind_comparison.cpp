@@ -19,7 +19,7 @@
 namespace gladstone::python {
 namespace {
 
-/// Returns whether the vectors were measured by gladstone on exactly the frames of the case.
+/// Returns whether the vectors are known to be measured by gladstone on exactly the frames of the case.
 /// @throws DataError if the frames were exchanged
 bool is_own(PairCase const& one, MeasuredField const& field) {
   if (field.foreign || !field.settings) return false;
@@ -31,9 +31,9 @@ bool is_own(PairCase const& one, MeasuredField const& field) {
                     "the opposite sign; correlate case.a with case.b");
   }
   spdlog::warn(
-      "{}: the vectors were not measured on the frames of this case as they were rendered; the error of the estimator "
-      "includes that of noise",
-      field.name);
+      "{}: the vectors {} measured on the frames of this case as they were rendered; the error of the "
+      "estimator includes that of noise",
+      field.name, named ? "were not" : "may not have been");
   return false;
 }
 

@@ -25,35 +25,8 @@ namespace {
 
 using Field = std::shared_ptr<MeasuredField>;
 
-Field correlate(ImageArray const& a, ImageArray const& b, std::vector<std::string> const& overrides,
-                std::string const& device_name, nb::handle progress) {
-  return run(
-      [&] {
-        GivenImage const reference = read_array(a, "a"), flow = read_array(b, "b");
-        CorrelationFile const given = default_correlation(overrides);
-        Backend const device = open_device(device_name);
-        auto field = std::make_shared<MeasuredField>();
-        Measurement measured = correlate_frames("a", reference.image, "b", flow.image, given.settings, device);
-        if (std::string advice = locking_advice(reference.image); frames_correlate(measured.field) && !advice.empty())
-          measured.field.warnings.push_back(std::move(advice));
-        field->field = std::move(measured.field);
-        field->foreign = false;
-        field->settings = given.settings;
-        field->resolved = given.resolved;
-        field->device = measured.device;
-        field->seconds = measured.seconds;
-        field->reference_sha256 = pixel_sha256(reference.image, reference.sample_bits);
-        field->flow_sha256 = pixel_sha256(flow.image, flow.sample_bits);
-        return field;
-      },
-      progress);
-}
-
-/// Measures the displacement field common to many pairs. @param files  frames A and B of each pair in turn
-Field correlate_ensemble(std::vector<std::string> const& files, std::vector<std::string> const& overrides) {
-  CorrelationFile const given = default_correlation(overrides);
-  SourceFiles sources;
-  Measurement measured = correlate_ensemble_files(files, given.settings, sources);
+/// Returns the field of a measurement with these settings.
+Field make_field(Measurement measured, CorrelationFile const& given) {
   auto field = std::make_shared<MeasuredField>();
   field->field = std::move(measured.field);
   field->foreign = false;
@@ -62,6 +35,45 @@ Field correlate_ensemble(std::vector<std::string> const& files, std::vector<std:
   field->device = measured.device;
   field->seconds = measured.seconds;
   return field;
+}
+
+Field correlate(ImageArray const& a, ImageArray const& b, std::vector<std::string> const& overrides,
+                std::string const& device_name, nb::handle progress) {
+  return run(
+      [&] {
+        ImageSamples const samples_a = image_samples(a, "a"), samples_b = image_samples(b, "b");
+        Image<double> const reference = read_samples(samples_a), flow = read_samples(samples_b);
+        CorrelationFile const given = default_correlation(overrides);
+        Measurement measured = correlate_frames("a", reference, "b", flow, given.settings, open_device(device_name));
+        if (std::string advice = locking_advice(reference); frames_correlate(measured.field) && !advice.empty())
+          measured.field.warnings.push_back(std::move(advice));
+        Field field = make_field(std::move(measured), given);
+        field->reference_sha256 = pixel_sha256(reference, samples_a.bits);
+        field->flow_sha256 = pixel_sha256(flow, samples_b.bits);
+        return field;
+      },
+      progress);
+}
+
+/// Correlates images in the memory of the first GPU. Without a copy in host memory, the frames have no hashes, and the
+/// size of their dots is not examined.
+Field correlate_gpu_images(GpuImageArray const& a, GpuImageArray const& b, std::vector<std::string> const& overrides,
+                           std::string const& device_name, nb::handle progress) {
+  return run(
+      [&] {
+        CorrelationFile const given = default_correlation(overrides);
+        return make_field(correlate_gpu_arrays("a", image_samples(a, "a"), "b", image_samples(b, "b"), given.settings,
+                                               open_device(device_name)),
+                          given);
+      },
+      progress);
+}
+
+/// Measures the displacement field common to many pairs. @param files  frames A and B of each pair in turn
+Field correlate_ensemble(std::vector<std::string> const& files, std::vector<std::string> const& overrides) {
+  CorrelationFile const given = default_correlation(overrides);
+  SourceFiles sources;
+  return make_field(correlate_ensemble_files(files, given.settings, sources), given);
 }
 
 /// Reads a file of vectors and converts it to our conventions.
@@ -187,8 +199,11 @@ void bind_field(nb::module_& module) {
       .def(
           "save", [](MeasuredField const& self, std::string const& path) { run([&] { save(self, path); }); },
           nb::arg("path"));
+  module.def("gpu_is_usable", &gpu_is_usable, "Whether images in the memory of the first GPU can be correlated there.");
   module.def("correlate", &correlate, nb::arg("a"), nb::arg("b"), nb::arg("overrides"), nb::arg("device"),
              nb::arg("progress").none());
+  module.def("correlate_gpu_images", &correlate_gpu_images, nb::arg("a"), nb::arg("b"), nb::arg("overrides"),
+             nb::arg("device"), nb::arg("progress").none());
   module.def(
       "correlate_ensemble",
       [](std::vector<std::string> const& files, std::vector<std::string> const& overrides, nb::handle progress) {

@@ -94,10 +94,12 @@ void bind_information(nb::module_& module) {
   module.def(
       "info_image",
       [](ImageArray const& array, int bit_depth) {
-        GivenImage const given = read_array(array, "image");
-        ImageMetadata metadata;
-        metadata.bit_depth = bit_depth > 0 ? bit_depth : given.sample_bits;
-        return run([&] { return describe_image("image", given.image, metadata).json; });
+        return run([&] {
+          ImageSamples const samples = image_samples(array, "image");
+          ImageMetadata metadata;
+          metadata.bit_depth = bit_depth > 0 ? bit_depth : samples.bits;
+          return describe_image("image", read_samples(samples), metadata).json;
+        });
       },
       nb::arg("image"), nb::arg("bit_depth"));
   module.def(

@@ -118,21 +118,49 @@ Measurement correlate_prepared(FramePair const& frames, CorrelationSettings sett
   return measurement;
 }
 
+/// Frame of a pair: its name in messages and its size [px].
+struct NamedFrame {
+  std::string const& name;
+  std::int64_t columns, rows;
+};
+
+/// @throws DataError if the frames differ in size or are smaller than an interrogation window
+void check_sizes(NamedFrame const& reference, NamedFrame const& flow, CorrelationSettings const& settings) {
+  if (reference.columns != flow.columns || reference.rows != flow.rows) {
+    throw DataError(ErrorCode::wrong_shape, flow.name,
+                    fmt::format("is {} x {} px but {} is {} x {} (both frames must have one size)", flow.columns,
+                                flow.rows, reference.name, reference.columns, reference.rows));
+  }
+  int const largest = *std::max_element(settings.window_px.begin(), settings.window_px.end());
+  if (largest > std::min(reference.columns, reference.rows)) {
+    throw DataError(ErrorCode::wrong_shape, reference.name,
+                    fmt::format("is {} x {} px, smaller than a window of {} px; set correlate.window_px smaller",
+                                reference.columns, reference.rows, largest));
+  }
+}
+
 /// Warns of pixels that are NaN or infinite, which the correlator excludes from every window; throws if there are no
 /// others.
-void check_finite(std::string const& reference_name, Image<double> const& reference, std::string const& flow_name,
-                  Image<double> const& flow) {
-  for (auto const& [name, image] : {std::pair(reference_name, &reference), std::pair(flow_name, &flow)}) {
-    std::size_t const bad = count_not_finite(*image);
-    if (bad == image->size()) {
-      throw DataError(ErrorCode::invalid_value, name,
-                      fmt::format("all of its {} pixels are nan or infinite; export it again", bad));
-    }
-    if (bad > 0) {
-      spdlog::warn("{}: {} of {} pixels are nan or infinite, and are excluded from their windows", name, bad,
-                   image->size());
-    }
+void check_finite(NamedFrame const& frame, std::size_t not_finite) {
+  auto const size = static_cast<std::size_t>(frame.columns * frame.rows);
+  if (not_finite == size) {
+    throw DataError(ErrorCode::invalid_value, frame.name,
+                    fmt::format("all of its {} pixels are nan or infinite; export it again", not_finite));
   }
+  if (not_finite > 0) {
+    spdlog::warn("{}: {} of {} pixels are nan or infinite, and are excluded from their windows", frame.name, not_finite,
+                 size);
+  }
+}
+
+/// Correlates frames of suitable sizes, and estimates the uncertainty of the vectors.
+Measurement correlate_checked(FramePair const& frames, CorrelationSettings const& settings, Backend const& device) {
+  stop_point("correlating");
+  bool const on_cpu = device.correlates_on(settings) == "cpu";
+  Measurement measurement = correlate_frames(frames, choose_uncertainty(settings, on_cpu), device);
+  record_uncertainty(measurement.field, settings,
+                     on_cpu ? CorrelatedFrames::pair_on_cpu : CorrelatedFrames::pair_on_gpu);
+  return measurement;
 }
 
 }  // namespace
@@ -140,24 +168,22 @@ void check_finite(std::string const& reference_name, Image<double> const& refere
 Measurement correlate_frames(std::string const& reference_name, Image<double> const& reference,
                              std::string const& flow_name, Image<double> const& flow,
                              CorrelationSettings const& settings, Backend const& device) {
-  if (reference.columns() != flow.columns() || reference.rows() != flow.rows()) {
-    throw DataError(ErrorCode::wrong_shape, flow_name,
-                    fmt::format("is {} x {} px but {} is {} x {} (both frames must have one size)", flow.columns(),
-                                flow.rows(), reference_name, reference.columns(), reference.rows()));
-  }
-  int const largest = *std::max_element(settings.window_px.begin(), settings.window_px.end());
-  if (largest > std::min(reference.columns(), reference.rows())) {
-    throw DataError(ErrorCode::wrong_shape, reference_name,
-                    fmt::format("is {} x {} px, smaller than a window of {} px; set correlate.window_px smaller",
-                                reference.columns(), reference.rows(), largest));
-  }
-  check_finite(reference_name, reference, flow_name, flow);
-  stop_point("correlating");
-  bool const on_cpu = device.correlates_on(settings) == "cpu";
-  Measurement measurement = correlate_frames(FramesView(reference, flow), choose_uncertainty(settings, on_cpu), device);
-  record_uncertainty(measurement.field, settings,
-                     on_cpu ? CorrelatedFrames::pair_on_cpu : CorrelatedFrames::pair_on_gpu);
-  return measurement;
+  NamedFrame const a{reference_name, reference.columns(), reference.rows()}, b{flow_name, flow.columns(), flow.rows()};
+  check_sizes(a, b, settings);
+  check_finite(a, count_not_finite(reference));
+  check_finite(b, count_not_finite(flow));
+  return correlate_checked(FramesView(reference, flow), settings, device);
+}
+
+Measurement correlate_gpu_arrays(std::string const& reference_name, ImageSamples const& reference,
+                                 std::string const& flow_name, ImageSamples const& flow,
+                                 CorrelationSettings const& settings, Backend const& device) {
+  NamedFrame const a{reference_name, reference.columns, reference.rows}, b{flow_name, flow.columns, flow.rows};
+  check_sizes(a, b, settings);
+  CopiedFrames const copied = copy_frames_on_gpu(reference, flow);
+  check_finite(a, copied.not_finite[0]);
+  check_finite(b, copied.not_finite[1]);
+  return correlate_checked(*copied.frames, settings, device);
 }
 
 Measurement correlate_frames(FramePair const& frames, CorrelationSettings const& settings, Backend const& device) {
