@@ -55,8 +55,8 @@ template <int radix>
     v[2] = a - c;
     v[3] = b - d;
   } else if constexpr (radix == 6) {
-    // Prime-factor algorithm (Good & Thomas): transforms of three even and, shifted by three, three odd values need no
-    // twiddle factors between them.
+    // Prime-factor algorithm (Good & Thomas) for six values: one transform of the three even values, and one of the
+    // three odd values shifted by three. It needs no twiddle factors between the transforms.
     ComplexLanes even[3] = {v[0], v[2], v[4]}, odd[3] = {v[3], v[5], v[1]};
     butterfly<3>(even);
     butterfly<3>(odd);

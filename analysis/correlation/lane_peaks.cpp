@@ -78,7 +78,7 @@ bool can_reach(LanePlaneView const& view, PlanePeak<float> const& peak, float en
   return !(1.001f * fourth * fourth < beside);
 }
 
-/// Inserts v into the three largest numbers so far, for single numbers or in all lanes.
+/// Inserts v into the sorted list of the three largest values, for scalars or for all lanes of a SIMD vector.
 template <class T, class Larger, class Smaller>
 void take_in(T (&largest)[3], T v, Larger const& larger, Smaller const& smaller) {
   for (T& place : largest) {
