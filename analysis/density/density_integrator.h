@@ -26,7 +26,7 @@ enum class UnreferencedRegions { error, leave_out };
 
 struct IntegrationSettings {
   IntegrationMethod method = IntegrationMethod::weighted_least_squares;
-  EdgeRule rule = EdgeRule::four_point;  ///< of the weighted least squares
+  EdgeRule rule = EdgeRule::four_point;  ///< quadrature rule of the weighted least squares
   UnreferencedRegions unreferenced = UnreferencedRegions::error;
   /// Largest number of unknowns that is solved by sparse Cholesky factorisation; above, by conjugate gradients.
   std::size_t direct_limit = 400'000;
