@@ -26,7 +26,7 @@ struct Interval {
 
 /// @return index -1 outside the grid
 Interval find_interval(double coordinate, int nodes) {
-  constexpr double slack = 1e-9;  // of the distance between nodes, for points on the border
+  constexpr double slack = 1e-9;  // tolerance for points on the border, relative to the distance between nodes
   if (!(coordinate >= -slack && coordinate <= nodes - 1 + slack)) return {-1, 0.0};
   int const index = std::clamp(static_cast<int>(std::floor(coordinate)), 0, nodes - 2);
   return {index, std::clamp(coordinate - index, 0.0, 1.0)};
