@@ -45,7 +45,7 @@ struct LineSamples {
   double length = 0.0;  ///< distance between samples [m]
   double first = 0.0;   ///< distance of the first sample from the line's origin [m]
   Vec3d node{};         ///< first sample in grid coordinates [nodes]
-  Vec3d advance{};      ///< from sample to sample [nodes]
+  Vec3d advance{};      ///< vector from a sample to the next one [nodes]
 
   GLADSTONE_HD static LineSamples of(VolumeShape const& shape, SightLine const& line) {
     // Clip the line to the box of the nodes, and to the space between dot and pupil

@@ -56,7 +56,7 @@ struct SweepSums {
 
 /// Squared norms after regularisation [kg^2/m^6].
 struct SweepNorms {
-  double change = 0.0;  ///< of the difference from the volume before the sweep
+  double change = 0.0;  ///< squared norm of the difference from the volume before the sweep
   double volume = 0.0;  ///< of the volume
 };
 
