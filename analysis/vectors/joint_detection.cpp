@@ -100,7 +100,7 @@ std::vector<Candidate> other_axes(std::vector<DetectedConventions> const& detect
   return all;
 }
 
-/// Returns the mistakes found in single files that are more than other axes or signs, with their evidence in all files.
+/// Returns the mistakes of single files other than wrong axes and signs alone, with their evidence in all files.
 std::vector<Candidate> corrections(std::vector<DetectedConventions> const& detected, std::vector<Sample> const& samples,
                                    VectorConventions const& chosen) {
   std::vector<Candidate> all;

@@ -9,7 +9,7 @@ namespace gladstone::detail {
 
 /// Quantity of all vectors, as files store it.
 struct VectorColumn {
-  std::string name;         ///< with its unit: "u_px"
+  std::string name;         ///< name of the column with its unit: "u_px"
   std::string units;        ///< "px" or "1"
   std::string description;  ///< meaning of the numbers
   bool is_code = false;     ///< integers, such as the status
