@@ -51,7 +51,7 @@ class StagingPool {
   void release(std::unique_ptr<PinnedBuffer> buffer) {
     {
       std::lock_guard const lock(mutex_);
-      idle_.push_back(std::move(buffer));  // within the capacity, so that it does not throw
+      idle_.push_back(std::move(buffer));  // does not throw, since the capacity suffices
     }
     available_.release();
   }
