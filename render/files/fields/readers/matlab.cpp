@@ -105,7 +105,7 @@ struct MatlabArray {
   bool swap = false;
 };
 
-/// Converts values and passes them on with their numbers.
+/// Converts values and calls set(index, value) for each.
 template <class Set>
 void convert_values(MatlabArray const& array, char const* bytes, std::size_t count, Set const& set) {
   for (std::size_t i = 0; i < count; ++i) set(i, array.number.read(bytes + i * array.number.bytes, array.swap));
