@@ -153,8 +153,9 @@ class ZmxReader {
   }
 
   /// Checks the numbers of the surfaces. Surfaces are read in the order of the file if their numbers increase, with a
-  /// warning if they are not consecutive, or if they decrease to 1, as in files of lenses turned round by hand. Adds
-  /// the object if the file omits it. @throws DataError for any other order
+  /// warning if they are not consecutive, or if they decrease to 1, as in files of lenses reversed by hand. Adds the
+  /// object if the file omits it.
+  /// @throws DataError for any other order
   void check_order() {
     constexpr std::size_t fewest_reversed = 3;  // two exchanged surfaces may be an error
     auto const find_fault = [this](auto const& compare) {
@@ -238,7 +239,7 @@ class ZmxReader {
   Prescription result_;
   ZmxSystem system_;
   std::vector<ZmxSurface> surfaces_;
-  std::vector<SurfaceNumber> numbers_;  // of the surfaces in the file
+  std::vector<SurfaceNumber> numbers_;  // numbers of the surfaces in the file
   std::vector<std::string> comma_lines_;
   std::string first_comma_;  // first number with a decimal comma
   ZmxNotes notes_;
