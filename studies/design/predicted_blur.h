@@ -9,7 +9,7 @@ namespace gladstone {
 
 /// Closed-form prediction of the blur of a setup's field: displacement minus small-angle theory (Eq. 9) at points.
 struct PredictedBlur {
-  std::vector<Vec2d> cone_px;   ///< by light cone (F10) and dot [px]
+  std::vector<Vec2d> cone_px;   ///< displacement averaged over light cone (F10) and dot [px]
   std::vector<Vec2d> whole_px;  ///< additionally by the interrogation window (F11), with its squared weights [px]
 };
 
