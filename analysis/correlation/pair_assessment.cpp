@@ -67,7 +67,7 @@ struct Tally {
   double part(std::size_t count) const {
     return signal > 0 ? static_cast<double>(count) / static_cast<double>(signal) : 0.0;
   }
-  std::size_t known = 0;     ///< neither masked nor outside the frames
+  std::size_t known = 0;     ///< number of vectors that are neither masked nor outside the frames
   std::size_t compared = 0;  ///< with a correlation coefficient
   std::size_t signal = 0, uncorrelated = 0, beyond = 0, failed = 0, not_replaced = 0, ambiguous = 0, doubtful = 0;
 };
