@@ -9,7 +9,7 @@ namespace {
 
 using ReadImage = std::function<std::optional<Image<double>>(std::size_t k)>;
 
-constexpr std::size_t most_median_bytes = std::size_t{256} << 20;  // memory of compute_median()
+constexpr std::size_t most_median_bytes = std::size_t{256} << 20;  // maximum memory of compute_median() [bytes]
 
 Image<double> compute_mean(std::size_t count, ReadImage const& read) {
   Image<double> sum;
