@@ -42,7 +42,7 @@ double error_correlation(double dx_px, double dy_px, double window_px) {
 }  // namespace
 
 bool is_regular_grid(DisplacementField const& field) {
-  constexpr double tolerance_px = 0.02;  // twice that of arrange_as_grid()
+  constexpr double tolerance_px = 0.02;  // twice the tolerance of arrange_as_grid()
   if (field.columns < 2 || field.rows < 2) return false;
   if (field.size() != static_cast<std::size_t>(field.columns) * static_cast<std::size_t>(field.rows)) return false;
   Vec2d const spacing = find_spacing(field), first = field.position_px.front();
