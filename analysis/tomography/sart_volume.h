@@ -17,7 +17,7 @@ namespace gladstone::tomography {
 /// Lines of one view with the sums of their weights, and the line integrals that the iteration uses.
 struct SartView {
   LineProjector projector;
-  std::vector<double> value;  ///< [kg/m^2, lines]; NaN: ignored
+  std::vector<double> value;  ///< line integrals [kg/m^2, lines]; NaN: the line is ignored
 };
 
 /// Bounds and support of a volume, passed by value.
