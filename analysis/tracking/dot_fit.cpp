@@ -139,7 +139,7 @@ class JointDotCost {
   DotPrior const& prior_;
   Vec2d origin_{};
   double scale_ = std::numeric_limits<double>::min();
-  // At the parameters of set():
+  // Values at the parameters that set() has received:
   double background_ = 0;
   std::vector<GaussianDot> dots_;
   std::vector<DotLight> lights_;

@@ -338,7 +338,7 @@ class FrameFit {
 
   DotSettings settings_;
   DotFrame frame_;
-  bool places_known_;  // no dots are added to those at the given places
+  bool places_known_;  // true: the places of all dots are given, and no dots are added
   bool whole_levels_ = false;
   DotModel model_;
   double gain_ = 0;  // variance of the noise per grey level of light

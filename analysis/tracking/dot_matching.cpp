@@ -13,8 +13,8 @@
 namespace gladstone::tracking {
 namespace {
 
-constexpr std::size_t supporters = 12;       // neighbours that support a displacement
-constexpr std::size_t least_supporters = 3;  // fewer neighbours do not identify a displacement
+constexpr std::size_t supporters = 12;       // number of neighbours that are asked to support a displacement
+constexpr std::size_t least_supporters = 3;  // number of neighbours below which a displacement is not identified
 constexpr int most_rounds = 5;               // largest number of rounds that predict from certain matches
 constexpr double track_weight = 0.4;   // weight of the evidence of a track: in coherent flows, the neighbours decide
 constexpr double certain_track = 0.5;  // track evidence from which a match is not tested against its neighbours
