@@ -42,7 +42,7 @@ struct ProbableMistake {
   std::string conventions;        ///< words for --conventions that correct the mistake; empty: no words can
   ConventionFit corrected_fit{};  ///< fit after correction, in the interpretation without the mistake
   ConventionFit as_read{};        ///< fit without correction
-  VectorCorrection correction{};  ///< numbers without the mistake
+  VectorCorrection correction{};  ///< correction of the numbers that undoes the mistake
 
   bool found() const { return !text.empty(); }
   /// Returns the text, both rms differences and the remedy, as a warning.

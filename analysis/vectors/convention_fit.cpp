@@ -32,7 +32,7 @@ DisplacementField sample(DisplacementField const& field, std::size_t most) {
   for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
   if (!all.empty()) {
     auto const [low, high] = std::minmax_element(all.begin(), all.end(), by_y);
-    take(*low, VectorStatus::masked);  // used only for the extent
+    take(*low, VectorStatus::masked);  // masked vectors, which are used for the extent of the grid only
     take(*high, VectorStatus::masked);
   }
   return few;

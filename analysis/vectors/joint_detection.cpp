@@ -46,7 +46,9 @@ struct Candidate {
   }
   bool corrects() const { return !(mistake.correction == VectorCorrection{}); }
   bool is_found() const {
-    if (2 * followed <= files) return false;  // files with different mistakes, for example
+    if (2 * followed <= files)
+      return false;  // most files do not follow the truth after this correction, for example
+                     // if each has another mistake
     return sum > (corrects() ? 25.0 : 16.0) &&
            mistake.corrected_fit.spread_px < (corrects() ? 0.5 : 0.9) * mistake.as_read.spread_px;
   }
