@@ -192,7 +192,7 @@ __global__ void __launch_bounds__(Transform::threads, 4)
   {
     ThreadPixels pixels;
     Complex mean{};
-    for (bool known = false;; known = true) {  // repeated if some pixels are unknown
+    for (bool known = false;; known = true) {  // a second run follows if some pixels are unknown
       pixels.read(job, column, row, warp, lane);
       if (known) {
         pixels.fill_unknown(mean);
