@@ -58,7 +58,7 @@ class StagingPool {
 
   std::counting_semaphore<most_buffers> available_{most_buffers};
   std::mutex mutex_;
-  std::vector<std::unique_ptr<PinnedBuffer>> idle_;  ///< the most recently used one last
+  std::vector<std::unique_ptr<PinnedBuffer>> idle_;  ///< idle buffers, the most recently used one last
 };
 
 }  // namespace gladstone::cuda
