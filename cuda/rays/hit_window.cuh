@@ -68,7 +68,7 @@ struct HitWindow {
 struct SharedParts {
   CameraElement<double>* elements;
   RaySums* sums;      ///< sums over the rays of each thread
-  double* rows_seen;  ///< overlaps the memory of `sums`, which are no longer needed at that time
+  double* rows_seen;  ///< buffer of blur_hits(), in the memory of `sums`, which are not needed any more at that time
   double* share;      ///< values of the spline
   int* nodes;         ///< nodes of all windows; null: no windows
 
