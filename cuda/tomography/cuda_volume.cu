@@ -157,7 +157,8 @@ class CudaVolume : public tomography::SartVolume {
   tomography::TotalVariationStencil stencil_;
   double relaxation_;
   std::size_t size_;
-  DeviceArray<double> volume_, before_, denoised_;  ///< now, after the last regularize(), scratch [kg/m^3]
+  DeviceArray<double> volume_, before_, denoised_;  ///< volume now, volume after the last regularize(), work space
+                                                    ///< [kg/m^3]
   DeviceArray<long long> views_;
   DeviceArray<Vec3d> dual_;
   DeviceArray<std::uint8_t> support_;
