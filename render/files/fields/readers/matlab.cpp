@@ -167,7 +167,7 @@ class MatlabFile {
     if (matrix.size == 0) return;  // an empty matrix has no header
     MatlabTag const flags = head.tag(8), sizes = head.tag(flags.next), name = head.tag(sizes.next);
     range.name = head.text(name);
-    if (range.name.empty()) return;  // data of MATLAB's own
+    if (range.name.empty()) return;  // arrays without a name hold internal data of MATLAB
     std::uint32_t const word = head.word(flags.data);
     constexpr std::uint32_t complex_bit = 0x0800;
     std::string const other = describe_class(word & 0xFFu, (word & complex_bit) != 0);
