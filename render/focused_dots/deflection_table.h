@@ -237,8 +237,9 @@ struct DeflectionTable {
     return interpolate<Vec2d>(straight.about(q), shifts) +
            interpolate<PupilSlopes>(sloping.about(q), shift_slopes).at(pupil);
   }
-  /// Number of groups of four rays from which the table is built: first the rays of the straight lattice, then four
-  /// rays for every node of the slopes, at the pupil points +x, -x, +y and -y.
+  /// Number of groups of four rays from which the table is built. The first straight_fours() groups are rays to the
+  /// pupil's centre through the nodes of `straight`; then follows a group for every node of `sloping`, whose rays pass
+  /// the pupil points +x, -x, +y and -y.
   GLADSTONE_HD long long straight_fours() const { return (straight.size() + 3) / 4; }
   GLADSTONE_HD long long fours() const { return straight_fours() + sloping.size(); }
 };

@@ -41,7 +41,7 @@ class LoneDot {
   static constexpr int predicted_per_traced = 8;  ///< number of predicted rays per traced ray
 
   /// @param place  position on the target [m]
-  /// @param side   side of the windows [px]
+  /// @param side   side of the pixel windows in which the dot is rendered [px]
   LoneDot(Scene const& scene, Vec2d place, int side);
 
   /// Returns true if the table does not cover the dot.
@@ -64,7 +64,7 @@ class LoneDot {
 
   Scene scene_;
   int side_;                        ///< side of the pixel windows [px]
-  std::vector<RaySample> samples_;  ///< none for a dot that the medium does not move
+  std::vector<RaySample> samples_;  ///< independent samples of rays; none for a dot that the medium does not move
   std::unique_ptr<DeflectionMap> table_;
   std::unique_ptr<OwnedDotModel> owned_;
   std::unique_ptr<DotIntegrator> integrator_;
