@@ -157,7 +157,8 @@ class ZmxReader {
   /// object if the file omits it.
   /// @throws DataError for any other order
   void check_order() {
-    constexpr std::size_t fewest_reversed = 3;  // two exchanged surfaces may be an error
+    constexpr std::size_t fewest_reversed = 3;  // fewer surfaces whose numbers decrease may just have been exchanged by
+                                                // mistake
     auto const find_fault = [this](auto const& compare) {
       return std::adjacent_find(numbers_.begin(), numbers_.end(),
                                 [&](auto const& a, auto const& b) { return !compare(a, b); });
