@@ -34,7 +34,7 @@ struct CaseKind {
   /// @param read   contents of these setups
   void (*share_sources)(std::vector<CameraCase>& cases, std::vector<Setup> const& read);
   /// Renders the case of one camera.
-  /// @param shared   parts of other pairs of a sequence
+  /// @param shared   exposure, images and particles that earlier pairs of the sequence determined
   /// @param entry    receives the numbers for the report, except the folder
   /// @param medium   receives the medium of the case
   /// @return writer of its files, valid as long as `loaded` and `renderer`
