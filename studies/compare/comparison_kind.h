@@ -22,7 +22,7 @@ struct ReferenceDisplacement {
 struct ComparisonKind {
   Experiment const& experiment;
   BudgetChain chain;
-  char const* title;  ///< name of the experiment in sentences
+  char const* title;  ///< name of the experiment as it appears in sentences
   /// References of the comparison; the first one is the theory, with which the error budget begins.
   std::array<ReferenceDisplacement, 2> references;
   char const* theory;       ///< theory as the object of a sentence: "against ..."
