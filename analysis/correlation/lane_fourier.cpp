@@ -104,9 +104,8 @@ constexpr int radix_of(int left) {
   if (left % 24 == 0) return 6;
   for (int const radix : {3, 5})
     if (left % radix == 0) return radix;
-  if (left == 128)
-    return 2;  // two passes of radix 8 follow; if the first had radix 8, two passes of radix 4 would be
-               // required
+  // two passes of radix 8 follow; if the first had radix 8, two passes of radix 4 would be required
+  if (left == 128) return 2;
   if (left % 8 == 0 && left != 16) return 8;
   return left % 4 == 0 ? 4 : 2;
 }
