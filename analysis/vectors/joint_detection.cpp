@@ -46,9 +46,8 @@ struct Candidate {
   }
   bool corrects() const { return !(mistake.correction == VectorCorrection{}); }
   bool is_found() const {
-    if (2 * followed <= files)
-      return false;  // most files do not follow the truth after this correction, for example
-                     // if each has another mistake
+    // at most half of the files follow the truth after this correction, for example if each has another mistake
+    if (2 * followed <= files) return false;
     return sum > (corrects() ? 25.0 : 16.0) &&
            mistake.corrected_fit.spread_px < (corrects() ? 0.5 : 0.9) * mistake.as_read.spread_px;
   }

@@ -111,8 +111,7 @@ class SequenceStatistics {
   int columns_ = 0, rows_ = 0;
   std::vector<Powers> powers_;
   std::vector<Products> products_;   ///< products for each block of points and each lag: [block][lag - 1]
-  std::vector<Deviations> history_;  ///< ring buffer of the latest fields, for each block of points: [block][sample %
-                                     ///< slots_]
+  std::vector<Deviations> history_;  ///< latest fields of each block of points: [block][sample % slots_]
 };
 
 /// Writes statistics.h5. @throws OutputError
