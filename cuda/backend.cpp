@@ -20,8 +20,9 @@
 namespace gladstone::cuda {
 namespace {
 
-/// Tests the device until it is usable, and not again: the properties of a device take a millisecond.
-/// @throws DeviceError if no device is usable
+/// Tests whether a device is usable. A successful test is not repeated, since reading the properties of a device takes
+/// a millisecond.
+/// @throws DeviceError  if no device is usable
 void require_device() {
   static std::atomic<bool> usable = false;
   if (usable) return;

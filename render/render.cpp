@@ -133,7 +133,7 @@ Rendering Device::render_others(Scene const& scene, DotPattern dots, RenderImage
   by_rays.setup.target.polarity = Polarity::bright;
   if (!scene.setup.render.rays_per_dot) {
     if (images == RenderImages::no) {
-      by_rays.adaptive_criteria = AdaptiveRayCriteria{};  // of the truth alone
+      by_rays.adaptive_criteria = AdaptiveRayCriteria{};  // criteria of the truth alone, not of images
     } else if (!scene.adaptive_criteria) {
       by_rays.adaptive_criteria = determine_adaptive_criteria(scene);
     }

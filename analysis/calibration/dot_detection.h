@@ -16,7 +16,7 @@ struct DetectedDot {
 
 /// Result of the dot detection in one image.
 struct DetectedDots {
-  std::vector<DetectedDot> dots;  ///< in no particular order
+  std::vector<DetectedDot> dots;  ///< dots in no particular order
   /// Centres of regions that differ from the dots in size or shape, such as dirt and letters [px].
   std::vector<Vec2d> not_dots;
 };

@@ -38,7 +38,8 @@ struct PinholeCamera {
 /// Result of a fit of PinholeCamera.
 struct PinholeFit {
   PinholeCamera camera;
-  std::array<double, PinholeCamera::count> standard_error{};  ///< to first order, from the scatter of the residuals
+  std::array<double, PinholeCamera::count> standard_error{};  ///< standard errors to first order, from the scatter of
+                                                              ///< the residuals
   std::vector<double> covariance;                             ///< [count x count]
   std::vector<Vec2d> residual_px;                             ///< measured minus fitted position
   double rms_px = 0;                                          ///< rms of the residuals per component

@@ -56,7 +56,8 @@ std::optional<Vec2d> solve(Map const& f, Vec2d target) {
   return std::nullopt;
 }
 
-/// Finds index offsets proportional to Z, which no residual shows, that bring the principal point to the expected one.
+/// Finds index offsets proportional to Z, which do not change the residuals, that bring the principal point to the
+/// expected one.
 /// @param moved  offsets of the planes before this correction; empty: none
 /// @return sum of `moved` and the found offsets; nullopt if the latter are not whole numbers or are zero
 std::optional<Moves> find_whole_drift(PlateDots const& dots, Moves const& moved, Vec2d principal_point_px) {

@@ -34,9 +34,9 @@ struct CorrelationMethod {
   char const* name;
   CorrelateWindows correlate = nullptr;
   EstimateFlow optical_flow = nullptr;  ///< estimator used instead of the correlation of windows
-  bool on_gpu = false;                  ///< whether the CUDA correlator supports it
+  bool on_gpu = false;                  ///< whether the CUDA correlator supports the method
   bool by_phase = false;                ///< whether peak heights result from phases instead of grey levels
-  bool in_ensembles = true;             ///< whether it supports InterrogationJob::ensemble
+  bool in_ensembles = true;             ///< whether the method supports InterrogationJob::ensemble
   bool tracks_dots = false;  ///< dots are tracked: tracking::make_cpu_correlator() creates the correlator, which
                              ///< estimates sigma_px itself
 };

@@ -17,8 +17,8 @@ struct TrackingTable {
   std::string shape = "round";        ///< dot images: "round" or "elliptic" Gaussians
   std::optional<double> search_radius_px;       ///< largest deviation from the predicted displacement [px]; none: 0.75
                                                 ///< mean spacings of the dots
-  std::optional<double> displacement_bound_px;  ///< deviation from the prediction that is known not to be exceeded
-                                                ///< [px]; none: aliases beyond the search radius count
+  std::optional<double> displacement_bound_px;  ///< upper bound of the deviation from the prediction, known in advance
+                                                ///< [px]; none: aliases beyond the search radius make a match ambiguous
   std::string output = "grid";                  ///< vectors: "grid" of the last pass, or "scattered", one per dot
 };
 
@@ -26,12 +26,13 @@ struct TrackingTable {
 struct CorrelationSettings {
   std::vector<int> window_px{64, 32, 24, 20};  ///< nominal window of each pass [px]; even, 4 .. 512, not increasing
   double overlap = 0.6;                        ///< fraction of the window side shared with the next window, [0, 0.95]
-  std::string method = "scc";                  ///< one of correlation_methods()
-  std::string subpixel = "gauss3";             ///< one of subpixel_fits()
+  std::string method = "scc";                  ///< name of a method: one of correlation_methods()
+  std::string subpixel = "gauss3";             ///< name of a sub-pixel fit: one of subpixel_fits()
   std::string weighting = "gaussian";          ///< "gaussian" over twice the window, or "uniform" over the window
   std::string deformation =
       "quintic";         ///< interpolation of the deformed images: B-spline, "cubic" or "quintic", or windowed "sinc"
-  int final_passes = 1;  ///< number of times that the last pass is run, 1 .. 5; more sharpen both detail and noise
+  int final_passes = 1;  ///< number of times that the last pass is run, 1 .. 5; a larger number sharpens detail and
+                         ///< noise
   /// Largest number of additional runs of the last of several passes where displacement gradients are steep, 0 .. 20.
   int steep_passes = 8;
   std::optional<double> max_displacement_px;     ///< largest displacement along either axis, (0, 512]; none: limited by
@@ -42,7 +43,8 @@ struct CorrelationSettings {
   /// correlates worse than its neighbours. Applied in the last of several passes; none: no test.
   std::optional<double> displacement_threshold = 2.0;
   std::optional<double> least_peak_ratio;   ///< lowest peak ratio of a vector of the last pass, >= 1; none: no test
-  std::optional<double> least_correlation;  ///< lowest correlation coefficient of its peak, [0, 1]; none: no test
+  std::optional<double> least_correlation;  ///< lowest correlation coefficient of a vector's peak, [0, 1]; none: no
+                                            ///< test
   bool replace = true;  ///< true: spurious vectors of the last pass are replaced; false: they are invalid
   /// Estimator of sigma_px: one of uncertainty_methods(), "none", or "auto" (in a setup the default), which estimates
   /// none until choose_uncertainty() has replaced it.

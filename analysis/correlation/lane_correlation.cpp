@@ -76,8 +76,8 @@ int LaneCorrelation::transform_size(InterrogationJob const& job, bool with_margi
 
 int plane_transform_size(WindowWeighting weighting, int window, int radius) {
   if (weighting == WindowWeighting::gaussian) return lane_fourier_size(window_side_px(weighting, window));
-  // One pixel beyond the search range, which is read only for the fit of a peak at the limit, one line of pixels would
-  // wrap around. For large windows this fraction is too small to justify a longer transform.
+  // The fit of a peak at the limit of the search range reads one pixel beyond it. There, one line of the window's
+  // pixels wraps around. In large windows this line is too small a part to justify a longer transform.
   return lane_fourier_size(window + radius + (window < 32 ? 1 : 0));
 }
 

@@ -81,8 +81,8 @@ using MakePlane = void (*)(LaneCorrelation& work, LanePlane& plane);
 /// Properties of a correlation method that computes planes.
 struct PlaneMethod {
   MakePlane make;
-  bool with_margin = false;  ///< whether it reads the search range around the window
-  /// Whether its planes decrease with the shift like the autocorrelation of the weights.
+  bool with_margin = false;  ///< whether the method reads the search range around the window
+  /// Whether the planes of the method decrease with the shift like the autocorrelation of the weights.
   bool decreases_with_shift = true;
 };
 

@@ -11,7 +11,8 @@
 namespace gladstone {
 namespace {
 
-/// Input and output of a pass; backward transforms exchange real and imaginary parts.
+/// Reads a complex number. For a backward transform, read_value() and write_value() exchange real and imaginary parts,
+/// so that the passes of a forward transform compute it.
 template <bool backward>
 ComplexLanes read_value(ComplexLanes const& v) {
   if constexpr (backward) return {v.im, v.re};
@@ -55,8 +56,8 @@ template <int radix>
     v[2] = a - c;
     v[3] = b - d;
   } else if constexpr (radix == 6) {
-    // Prime-factor algorithm (Good & Thomas): transforms of three even and, shifted by three, three odd values need no
-    // twiddle factors between them.
+    // Prime-factor algorithm (Good & Thomas) for six values: one transform of the three even values, and one of the
+    // three odd values shifted by three. It needs no twiddle factors between the transforms.
     ComplexLanes even[3] = {v[0], v[2], v[4]}, odd[3] = {v[3], v[5], v[1]};
     butterfly<3>(even);
     butterfly<3>(odd);
@@ -103,7 +104,8 @@ constexpr int radix_of(int left) {
   if (left % 24 == 0) return 6;
   for (int const radix : {3, 5})
     if (left % radix == 0) return radix;
-  if (left == 128) return 2;  // followed by two passes of radix 8; starting with 8 would require two passes of radix 4
+  // two passes of radix 8 follow; if the first had radix 8, two passes of radix 4 would be required
+  if (left == 128) return 2;
   if (left % 8 == 0 && left != 16) return 8;
   return left % 4 == 0 ? 4 : 2;
 }

@@ -37,7 +37,7 @@ class LaneFourier {
   int size_;
   std::vector<ComplexLanes> twiddles_;  ///< twiddle factors of each pass, radix - 1 per group
   void (*forward_)(ComplexLanes const* in, int in_stride, int filled, ComplexLanes* out, ComplexLanes* scratch,
-                   ComplexLanes const* twiddles) = nullptr;  ///< specialised code; null: none for this size
+                   ComplexLanes const* twiddles) = nullptr;  ///< function specialised for this size; null: none exists
   void (*inverse_)(ComplexLanes const* in, ComplexLanes* out, ComplexLanes* scratch,
                    ComplexLanes const* twiddles) = nullptr;
 };

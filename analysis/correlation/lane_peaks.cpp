@@ -78,7 +78,7 @@ bool can_reach(LanePlaneView const& view, PlanePeak<float> const& peak, float en
   return !(1.001f * fourth * fourth < beside);
 }
 
-/// Inserts v into the three largest numbers so far, for single numbers or in all lanes.
+/// Inserts v into the sorted list of the three largest values, for scalars or for all lanes of a SIMD vector.
 template <class T, class Larger, class Smaller>
 void take_in(T (&largest)[3], T v, Larger const& larger, Smaller const& smaller) {
   for (T& place : largest) {
@@ -162,7 +162,7 @@ float LanePeaks::third_highest(int lane) const {
   std::size_t const count = static_cast<std::size_t>(counts_[lane]);
   PlanePeak<float> const* const maxima = maxima_[lane].data();
   PeakList<float> highest;
-  int as_high = 0;  // more than three if maxima are equally high
+  int as_high = 0;  // number of maxima at least as high as the third one; more than three if maxima are equally high
   float const third = third_largest(heights_[lane].data(), count);
   visit_high(lane, third, [&](PlanePeak<float> const& peak) {
     if (as_high++ < PeakList<float>::capacity) highest.peak[highest.count++] = peak;

@@ -80,7 +80,7 @@ void LaneWindows::copy_lane(int lane, int first_x, int first_y, float const* wei
   float* const reference = patch_[lane].data();
   float* const flow = reference + plane;
   float* const known = flow + plane;
-  float* const weight = known + plane;  // along x, including the margin
+  float* const weight = known + plane;  // weights of the columns, including the margin
   std::copy_n(weight_x, side_, weight + margin_);
   int const begin_x = std::max(0, -left), end_x = std::min(side, pair.columns - left);
   int const begin_y = std::max(0, -top), end_y = std::min(side, pair.rows - top);

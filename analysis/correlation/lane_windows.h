@@ -21,7 +21,8 @@ enum class WindowTerm {
   search_back_energy  ///< A^2 over the window and the search range, and w^2
 };
 
-/// Pixels of eight windows of a grid in SIMD lanes, row by row, weighted and without their weighted means.
+/// Pixels of eight windows of a grid in SIMD lanes, row by row, with the weighted mean subtracted and the weights
+/// applied.
 class LaneWindows {
  public:
   /// @param with_margin  whether rows include the search range around the window
@@ -65,7 +66,7 @@ class LaneWindows {
   AxisWeightsView x_, y_;
   KnownTiles const& tiles_;
   WindowMeans const& means_;
-  int offset_;  // from the first pixel of the support to the first with weight
+  int offset_;  // distance from the first pixel of the support to the first pixel with non-zero weight [px]
   int side_;
   int margin_ = 0;  // search range on either side
   int padded_;      // side including the margin, rounded up to whole vectors

@@ -25,7 +25,8 @@ constexpr double least_correlated = 0.25;
 /// Threshold of the decorrelation test in standard deviations: exceeded with a probability of 1 in 44 for a normal
 /// distribution.
 constexpr double deviations = 2.0;
-/// Fractions of the vectors from which a measurement is examined, and from which a warning is issued.
+/// Fractions of the vectors: doubtful ones for which the costly tests are run, ambiguous or uncorrelated ones that
+/// cause a warning, and ones with failed tests that cause a warning.
 constexpr double suspicious = 0.05;
 constexpr double worth_a_warning = 0.1;
 constexpr double too_many_failed = 0.2;
@@ -66,7 +67,7 @@ struct Tally {
   double part(std::size_t count) const {
     return signal > 0 ? static_cast<double>(count) / static_cast<double>(signal) : 0.0;
   }
-  std::size_t known = 0;     ///< neither masked nor outside the frames
+  std::size_t known = 0;     ///< number of vectors that are neither masked nor outside the frames
   std::size_t compared = 0;  ///< with a correlation coefficient
   std::size_t signal = 0, uncorrelated = 0, beyond = 0, failed = 0, not_replaced = 0, ambiguous = 0, doubtful = 0;
 };
@@ -225,7 +226,7 @@ struct Evidence {
   std::function<DisplacementField()> chance;
 };
 
-/// Returns the verdict from the remaining vectors. @pre the pair can be judged by its vectors
+/// Returns the result of the assessment from the remaining vectors. @pre the pair can be assessed by its vectors
 std::string verdict_of(DisplacementField const& field, Tally const& left) {
   if (std::any_of(field.status.begin(), field.status.end(), is_valid_or_replaced)) return correlates;
   return left.nothing_left() ? uncorrelated_verdict : "not judged: no vector passed its tests";

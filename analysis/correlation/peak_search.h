@@ -38,8 +38,8 @@ struct PlanePeak {
 template <class T>
 struct PeakList {
   static constexpr int capacity = 3;
-  PlanePeak<T>
-      peak[capacity];  ///< in descending order of height, except for a peak moved to the front by prefer_nearest()
+  PlanePeak<T> peak[capacity];  ///< peaks in descending order of height, except for a peak moved to the front by
+                                ///< prefer_nearest()
   int count = 0;
 };
 

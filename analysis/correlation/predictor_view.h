@@ -61,7 +61,8 @@ struct PredictorView {
 
   InterrogationGrid grid;
   int ghosts;
-  int columns;  ///< including the ghost nodes
+  int columns;  ///< number of columns of nodes, including the ghost nodes, by which the grid is extended beyond the
+                ///< image
   int rows;
   Vec2d const* nodes;
 

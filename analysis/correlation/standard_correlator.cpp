@@ -241,7 +241,7 @@ DisplacementField correlate_ensemble(PairSequence const& pairs, CorrelationSetti
 
 std::unique_ptr<Correlator> make_standard_correlator(CorrelationSettings const& settings) {
   static std::once_flag once;
-  std::call_once(once, keep_freed_memory);  // for sequences of pairs: page faults took a sixth of the time of a pass
+  std::call_once(once, keep_freed_memory);  // in sequences of pairs, page faults took a sixth of the time of a pass
   return std::make_unique<StandardCorrelator>(settings);
 }
 

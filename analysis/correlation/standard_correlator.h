@@ -128,7 +128,7 @@ GLADSTONE_HD inline GridVector grid_vector(WindowCorrelation const& window, Vec2
 
 /// Result for one vector of the field; NaN: not measured.
 struct MeasuredVector {
-  Vec2d displacement;  ///< after validation; NaN unless valid or replaced [px]
+  Vec2d displacement;  ///< displacement after validation; NaN unless valid or replaced [px]
   Vec2d raw;           ///< before replacement [px]
   double peak_ratio;
   double correlation;

@@ -66,9 +66,10 @@ bool has_steep_gradient(std::span<GridVector const> vectors, InterrogationGrid c
 /// Predictor of an additional pass and the vectors that it may change.
 struct RefinementPlan {
   std::vector<Vec2d> nodes;      ///< displacement at every window before smoothing [px]
-  std::vector<char> wanted;      ///< vectors within a window of a steep gradient
+  std::vector<char> wanted;      ///< vectors at most the width of a window away from a steep gradient
   std::vector<char> mismatched;  ///< vectors whose node was extrapolated from others
-  std::vector<char> ambiguous;   ///< ambiguous vectors, which remain so; mismatched ones begin anew
+  std::vector<char> ambiguous;   ///< vectors that remain ambiguous; mismatched vectors are measured again without this
+                                 ///< mark
 };
 
 /// Vectors of a pass after validation, with the windows they result from.

@@ -81,11 +81,11 @@ GLADSTONE_HD T normalised_median_residual(Vec2<T> vector, Neighbours<T> const& n
 struct GridVector {
   Vec2d displacement;                   ///< displacement including the predictor [px]; undefined if masked or invalid
   Vec2d predictor;                      ///< predictor of the pass at the window's centre [px]
-  Vec2d raw;                            ///< as measured, including the predictor [px]; NaN: no measurement
+  Vec2d raw;                            ///< displacement as measured, including the predictor [px]; NaN: no measurement
   std::array<Vec2d, 2> alternatives{};  ///< displacements of the next correlation peaks, including the predictor [px]
   int alternative_count = 0;
   double correlation = 0.0;  ///< coefficient of the peak that gave `raw` [1]
-  double peak_ratio = 0.0;   ///< peak ratio of that peak [1]; 0 if it is not the highest
+  double peak_ratio = 0.0;   ///< peak ratio of the peak that gave `raw` [1]; 0 if that peak is not the highest
   Ambiguity ambiguous = Ambiguity::none;
   VectorStatus status = VectorStatus::invalid;
   VectorReason reason = VectorReason::no_signal;
@@ -102,7 +102,7 @@ struct ValidationRule {
   double reliable_peak_ratio = 2.0;
   double limit_px = std::numeric_limits<double>::infinity();  ///< largest displacement along either axis
   double least_peak_ratio = 0.0;   ///< lowest peak ratio of a vector, regardless of its neighbours [1]
-  double least_correlation = 0.0;  ///< lowest correlation coefficient of its peak [1]
+  double least_correlation = 0.0;  ///< lowest correlation coefficient of a vector's peak [1]
   /// Largest normalised median residual of the total displacement, see is_displacement_outlier(); infinite: no test.
   double displacement_threshold = std::numeric_limits<double>::infinity();
   bool replaces = true;  ///< true: spurious vectors are replaced; false: they are invalid
@@ -223,10 +223,10 @@ GLADSTONE_HD inline bool agrees(Vec2d displacement, Vec2d predictor, Surrounding
 constexpr double min_relative_correlation = 0.9;
 
 /// Returns whether a total displacement deviates from its neighbours and its window also correlates worse than theirs.
-/// A gross error of an earlier pass is contained in the predictor, and the last increment is small, so that the median
-/// test of the increments does not detect it. Gradients as steep as the grid is fine cause deviating displacements,
-/// too, but no lower correlation. At the border, where the median is biased by the gradient, the test must also fail
-/// for the neighbours without their slopes.
+/// The median test of the increments does not detect a gross error of an earlier pass, because the predictor contains
+/// this error and the last increment is small. A gradient that is steep on the scale of the grid also causes deviating
+/// displacements, but does not lower the correlation. At the border, where the median is biased by the gradient, the
+/// test must also fail for the neighbours without their slopes.
 template <class Usable>
 GLADSTONE_HD bool is_displacement_outlier(GridVector const* vectors, int i, int columns, int rows,
                                           ValidationRule const& rule, Usable const& usable) {

@@ -36,7 +36,7 @@ Eigen::MatrixXd make_gradient_inversion(int n) {
         std::array<double, 4> const cubic = lagrange_cubics(x - j);
         for (int k = 0; k < 4; ++k) {
           int const node = j - 1 + k;
-          if (node == 0 || node >= n) continue;  // zero on the axis and beyond the last radius
+          if (node == 0 || node >= n) continue;  // the gradient is zero on the axis and beyond the last radius
           double const sign = node < 0 ? -1.0 : 1.0;
           d(i, std::abs(node)) -= sign * weight * cubic[static_cast<std::size_t>(k)] / pi;
         }

@@ -52,8 +52,8 @@ double determine_lambda(Eigen::MatrixXd const& projection, std::vector<RadialPro
   return choose_regularization(projection, chosen, settings.choice);
 }
 
-/// Returns the smallest radius whose density a row determines, up to RadialProfile::last_measured(): with the direct
-/// method all radii between are measured, with the regularised one the smallest of them is.
+/// Returns the smallest radius at which a row determines the density. The direct method requires measurements at all
+/// radii from there to RadialProfile::last_measured(); the regularised method only at the smallest one.
 int find_first_radius(RadialProfile const& profile, AbelMethod method) {
   int const last = profile.last_measured();
   int first = last;

@@ -26,7 +26,7 @@ struct AxisymmetricSettings {
   AbelMethod method = AbelMethod::direct;
   RegularizationChoice choice = RegularizationChoice::cross_validation;
   double lambda = 0.0;           ///< regularisation parameter for RegularizationChoice::given [1]
-  WindowOverlap overlap;         ///< of the interrogation windows, for sigma
+  WindowOverlap overlap;         ///< overlap of the interrogation windows, needed for sigma
   double ambient_density = 0.0;  ///< density beyond the last radius: the gauge [kg/m^3]
 };
 

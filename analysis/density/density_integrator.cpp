@@ -71,7 +71,7 @@ struct DensityIntegrator::System {
   std::vector<std::uint8_t> determined, is_reference;
   std::vector<int> unknown;                 ///< index of the node's unknown; not_unknown: reference or undetermined
   std::vector<std::size_t> node;            ///< node of every unknown
-  std::vector<LineDifference> differences;  ///< of the determined nodes
+  std::vector<LineDifference> differences;  ///< difference equations of the determined nodes
   std::vector<double> weight;               ///< of every difference
   std::optional<NormalEquations> equations;
 

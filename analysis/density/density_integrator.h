@@ -26,16 +26,17 @@ enum class UnreferencedRegions { error, leave_out };
 
 struct IntegrationSettings {
   IntegrationMethod method = IntegrationMethod::weighted_least_squares;
-  EdgeRule rule = EdgeRule::four_point;  ///< of the weighted least squares
+  EdgeRule rule = EdgeRule::four_point;  ///< quadrature rule of the weighted least squares
   UnreferencedRegions unreferenced = UnreferencedRegions::error;
   /// Largest number of unknowns that is solved by sparse Cholesky factorisation; above, by conjugate gradients.
   std::size_t direct_limit = 400'000;
 };
 
 /// Integration of a gradient map by least squares, prepared once for any number of right-hand sides. The reference
-/// nodes have exactly the given density; all other borders, also of holes, have the natural (Neumann) condition that
-/// the density's normal derivative is that of the measurement. Second order in the spacing with the trapezoid, third at
-/// borders and fourth inside with the four-point rule, also next to borders and holes.
+/// nodes have exactly the given density. All other borders, also those of holes, have the natural (Neumann) condition
+/// that the normal derivative of the density is that of the measurement. The error decreases with the square of the
+/// spacing for EdgeRule::trapezoid, and for EdgeRule::four_point with its fourth power, next to borders and holes with
+/// its third.
 class DensityIntegrator {
  public:
   /// @param map  gradient, with or without sigma: without it, all equations have equal weights

@@ -20,7 +20,7 @@ struct PropagationSettings {
 
 /// Standard uncertainty of an integrated density.
 struct DensityUncertainty {
-  std::vector<double> sigma;    ///< unit of the density [grid.size()]; NaN: not determined
+  std::vector<double> sigma;    ///< standard uncertainty, in the unit of the density [grid.size()]; NaN: not determined
   std::size_t samples = 0;      ///< number of random samples; 0: exact
   double relative_error = 0.0;  ///< standard error of sigma relative to sigma, 1/sqrt(2 samples) [1]; 0: exact
 };

@@ -9,7 +9,8 @@ namespace gladstone::density {
 /// Radial profile of the gradient across a vertical axis in one row, combined from both sides of the axis.
 struct RadialProfile {
   Eigen::VectorXd gradient;     ///< (g(axis + r) - g(axis - r))/2 at r = i spacing; NaN: no side is valid [radii]
-  Eigen::VectorXd sigma;        ///< of independent vectors, unit of the gradient (1 without sigma) [radii]
+  Eigen::VectorXd sigma;        ///< standard uncertainty for independent vectors, in the unit of the gradient (1
+                                ///< without sigma) [radii]
   Eigen::MatrixXd fold;         ///< gradient = fold times the row's gradients [radii, columns]
   double odd_square = 0.0;      ///< sum of squares of the folded gradient, over radii with both sides
   double even_square = 0.0;     ///< sum of squares of the even part (g(axis + r) + g(axis - r))/2, over the same radii

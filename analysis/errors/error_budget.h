@@ -62,7 +62,7 @@ struct CovarianceMatrix {
 /// total.
 struct ErrorBudget {
   std::size_t count = 0;          ///< number of vectors
-  std::vector<BudgetTerm> terms;  ///< in the order of budget_term_names()
+  std::vector<BudgetTerm> terms;  ///< terms in the order of budget_term_names()
   BudgetTerm total;               ///< last available stage minus the first
   /// C_ij = mean((t_i - mean t_i)(t_j - mean t_j)) per component [px^2]; NaN in rows and columns of unknown terms.
   CovarianceMatrix covariance_u, covariance_v;
@@ -70,7 +70,7 @@ struct ErrorBudget {
   /// is the mean square fluctuation of the total [px^2].
   CovarianceMatrix covariance;
   double closure_px = 0.0;       ///< largest |sum of terms - total| over vectors and components
-  double peak_locking_px = 0.0;  ///< see peak_locking(); NaN without window truth or without a measurement
+  double peak_locking_px = 0.0;  ///< magnitude of peak_locking(); NaN without window truth or without a measurement
 };
 
 /// Computes the budget of a measurement.

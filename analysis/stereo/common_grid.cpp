@@ -12,7 +12,7 @@ namespace {
 struct Footprint {
   Vec2d low{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
   Vec2d high = -low;
-  double spacing = 0.0;  ///< [m]; NaN: no neighbouring vectors meet the plane
+  double spacing = 0.0;  ///< mean distance of the vectors [m]; NaN: no neighbouring vectors meet the plane
 };
 
 Footprint find_footprint(PinholeCamera const& camera, DisplacementField const& field, ObjectPlane const& plane,

@@ -16,9 +16,9 @@ bool is_regular_grid(DisplacementField const& field);
 /// 1153), or bilinear where one of the 4 x 4 neighbours is missing.
 class InterpolatedField {
  public:
-  /// @param field      outlives this object; is_regular_grid()
+  /// @param field  must outlive this object, and be a regular grid (is_regular_grid())
   /// @param window_px  size of the interrogation windows, by which the errors of neighbouring vectors are correlated:
-  ///                   (1 - |dx| / window) (1 - |dy| / window) at a distance (dx, dy); 0: independent errors
+  /// (1 - |dx| / window) (1 - |dy| / window) at a distance (dx, dy); 0: independent errors
   InterpolatedField(DisplacementField const& field, double window_px);
 
   struct Vector {

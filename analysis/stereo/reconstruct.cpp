@@ -60,7 +60,7 @@ Covariance pack(Eigen::Matrix3d const& matrix) {
 
 /// Derivatives of a camera's two residuals, measured minus projected, with respect to its parameters.
 Eigen::Matrix<double, 2, parameter_count> differentiate_residual(View const& view, Vec3d at, Vec3d moved) {
-  constexpr double step_fraction = 1e-3;  // of the standard error, so that the response is linear
+  constexpr double step_fraction = 1e-3;  // step relative to the standard error, small enough for a linear response
   Eigen::Matrix<double, 2, parameter_count> derivative = Eigen::Matrix<double, 2, parameter_count>::Zero();
   PinholeCamera const& nominal = view.calibration->camera;
   std::vector<double> const& covariance = view.calibration->covariance;
@@ -73,7 +73,7 @@ Eigen::Matrix<double, 2, parameter_count> differentiate_residual(View const& vie
     Vec2d change = view.project_motion(below, at, moved) - view.project_motion(above, at, moved);
     auto const high = view.field.displacement(view.project(above, at)),
                low = view.field.displacement(view.project(below, at));
-    if (high && low) change += *high - *low;  // not at the border of the vectors
+    if (high && low) change += *high - *low;  // omitted at the border of the vectors
     derivative.col(static_cast<Eigen::Index>(i)) << change.x / (2.0 * step), change.y / (2.0 * step);
   }
   return derivative;

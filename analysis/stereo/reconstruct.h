@@ -27,7 +27,7 @@ using Covariance = std::array<double, 6>;
 /// Displacement along the axes of the world at one node.
 struct StereoVector {
   Vec3d displacement;            ///< u, v, w along X, Y, Z [m]
-  Covariance covariance;         ///< of the displacement; NaN: vectors without uncertainty
+  Covariance covariance;         ///< covariance of the displacement; NaN: vectors without uncertainty
   Covariance from_calibration;   ///< part of the covariance due to the calibrations
   double residual_px = 0.0;      ///< root of the sum of squares of the four equations' residuals [px]
   double residual_ratio = 0.0;   ///< residual divided by its standard uncertainty [1]; NaN: vectors without uncertainty

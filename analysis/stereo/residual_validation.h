@@ -14,7 +14,7 @@ namespace gladstone::stereo {
 /// Fluids
 ///   39 (2005) 1096).
 /// The residual contains only the difference between the cameras perpendicular to the plane of their lines of sight: an
-/// error of one camera within that plane changes u and w without a trace.
+/// error of one camera within that plane changes u and w but not the residual.
 /// @param limit  of the residual, in standard uncertainties [1]; 0: accept all vectors
 StereoField reject_large_residuals(StereoField field, double limit);
 

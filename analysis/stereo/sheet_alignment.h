@@ -44,7 +44,7 @@ Vec3d triangulate(PinholeCamera const& a, Vec2d in_a, PinholeCamera const& b, Ve
 /// Laser sheet found by align_sheet().
 struct SheetAlignment {
   FittedPlane fit;
-  double pixel_size = 0.0;  ///< of the dewarped images [m]
+  double pixel_size = 0.0;  ///< size of a pixel of the dewarped images [m]
   /// Disparity of the fitted plane in the images dewarped onto the plane of each iteration, rms over the vectors [px]:
   /// first the misalignment, last the residual.
   std::vector<double> disparity_px;

@@ -11,7 +11,7 @@ namespace gladstone::stereo {
 /// Pinhole camera with the covariance of its parameters.
 struct CalibratedCamera {
   PinholeCamera camera;
-  std::vector<double> covariance;  ///< as PinholeFit::covariance [count x count]; empty: exact parameters
+  std::vector<double> covariance;  ///< covariance as in PinholeFit::covariance [count x count]; empty: exact parameters
 };
 
 /// Plane z = height + slope . (x, y) in world coordinates: the middle of a laser sheet.

@@ -41,11 +41,11 @@ struct CellWeights {
 /// Equidistant samples of the part of a sight line inside a volume (midpoint rule). The rule is exact for constant and
 /// affine densities on parallel lines, and of second order in the spacing of the grid otherwise.
 struct LineSamples {
-  int count = 0;        ///< 0: the line misses the volume
+  int count = 0;        ///< number of samples; 0: the line misses the volume
   double length = 0.0;  ///< distance between samples [m]
   double first = 0.0;   ///< distance of the first sample from the line's origin [m]
   Vec3d node{};         ///< first sample in grid coordinates [nodes]
-  Vec3d advance{};      ///< from sample to sample [nodes]
+  Vec3d advance{};      ///< vector from a sample to the next one [nodes]
 
   GLADSTONE_HD static LineSamples of(VolumeShape const& shape, SightLine const& line) {
     // Clip the line to the box of the nodes, and to the space between dot and pupil

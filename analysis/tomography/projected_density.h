@@ -13,7 +13,8 @@ namespace gladstone::tomography {
 /// Sight line of a vector, and the displacement of its dot in the target plane per pixel.
 struct VectorSight {
   SightLine line;
-  Vec3d by_column{}, by_row{};  ///< in the target plane [m/px]
+  Vec3d by_column{}, by_row{};  ///< displacement of the dot in the target plane, per column and per row of the image
+                                ///< [m/px]
 };
 
 /// Optical properties of one view.

@@ -17,7 +17,7 @@ namespace gladstone::tomography {
 /// Lines of one view with the sums of their weights, and the line integrals that the iteration uses.
 struct SartView {
   LineProjector projector;
-  std::vector<double> value;  ///< [kg/m^2, lines]; NaN: ignored
+  std::vector<double> value;  ///< line integrals [kg/m^2, lines]; NaN: the line is ignored
 };
 
 /// Bounds and support of a volume, passed by value.
@@ -56,7 +56,7 @@ struct SweepSums {
 
 /// Squared norms after regularisation [kg^2/m^6].
 struct SweepNorms {
-  double change = 0.0;  ///< of the difference from the volume before the sweep
+  double change = 0.0;  ///< squared norm of the difference from the volume before the sweep
   double volume = 0.0;  ///< of the volume
 };
 

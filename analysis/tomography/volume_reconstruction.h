@@ -85,7 +85,7 @@ VolumeReconstruction reconstruct_volume(std::vector<ProjectedView> const& views,
 /// View whose line integrals contradict those of the others.
 struct ContradictingView {
   std::size_t view;  ///< index
-  double ratio;      ///< its residual over the lower median of the other views [1]
+  double ratio;      ///< residual of the view over the lower median of the other views [1]
 };
 
 /// Finds views that contradict the others: their residual is at least 1.4 times the lower median of the other views,

@@ -139,7 +139,7 @@ class JointDotCost {
   DotPrior const& prior_;
   Vec2d origin_{};
   double scale_ = std::numeric_limits<double>::min();
-  // At the parameters of set():
+  // Values at the parameters that set() has received:
   double background_ = 0;
   std::vector<GaussianDot> dots_;
   std::vector<DotLight> lights_;
@@ -147,8 +147,8 @@ class JointDotCost {
 
 /// Least-squares fit of the parameters of a JointDotCost by the method of Levenberg and Marquardt, with Jacobi scaling
 /// and the damping of Madsen, Nielsen & Tingleff, "Methods for non-linear least squares problems" (2004), like
-/// ceres::TinySolver. Different from it, the light of accepted parameters is computed once, not again for the
-/// derivatives, and a fit is given up that will not get below a given cost.
+/// ceres::TinySolver. Unlike TinySolver, it computes the light of accepted parameters once for residuals and
+/// derivatives, and stops early if the cost is not expected to fall below a given limit.
 class JointFit {
  public:
   /// @param cost  must outlive this object
@@ -207,8 +207,8 @@ class JointFit {
   }
 
  private:
-  /// Excess of the cost over the last decrease from which a fit is given up: a sequence of decreases that shrink by
-  /// 5 % each sums up to 20 times the last one.
+  /// A fit is stopped if the cost exceeds its limit by more than this multiple of the last decrease: decreases that
+  /// shrink by 5 % in each step have a sum of 20 times the last one.
   static constexpr double hopeless = 20;
 
   /// Computes the normal equations at the parameters of the last JointDotCost::set(); the lower triangle.

@@ -21,7 +21,7 @@ PixelBox bounding_box(std::span<FitPixel const> pixels);
 
 /// Distribution of shape and flux over the dots of a frame, and their common profile.
 struct DotPrior {
-  std::array<double, 3> mean{1, 0, 1};   ///< of the shape parameters xx, or xx, xy and yy [px^2]
+  std::array<double, 3> mean{1, 0, 1};   ///< mean of the shape parameters xx, or xx, xy and yy [px^2]
   std::array<double, 3> sigma{1, 1, 1};  ///< standard deviations of the shape parameters [px^2]
   double flux_mean = 0;                  ///< [grey levels]
   double flux_sigma = 0;                 ///< standard deviation of the flux [grey levels]; 0: no prior
@@ -37,8 +37,9 @@ struct DotFit {
   double cost = 0;                 ///< sum of squares: chi2, plus the deviations from the prior [1]
   double chi2 = 0;                 ///< sum of squared residuals over the variance of the noise [1]
   int freedom = 0;                 ///< number of pixels minus that of the parameters without a prior
-  std::vector<double> residual;    ///< of every pixel, measured minus fitted [grey levels]
-  /// of every pixel: derivative of its fitted with respect to its measured level, 0 to 1 [1]; empty for several dots
+  std::vector<double> residual;    ///< residual of every pixel, measured minus fitted [grey levels]
+  /// leverage of every pixel: derivative of its fitted with respect to its measured level, 0 to 1 [1]; empty for
+  /// several dots
   std::vector<double> leverage;
 };
 

@@ -290,7 +290,8 @@ class FrameFit {
     for (std::size_t i = 0; i < residual.size(); ++i) frame_.above.data()[i] -= correction.data()[i];
   }
 
-  /// Returns the residuals of the pixels that do not determine the fit by themselves.
+  /// Returns the residuals of the pixels with a leverage below 0.9: the fit follows pixels of higher leverage too
+  /// closely.
   static std::vector<ResidualSample> sample_residuals(DotFit const& fit, std::vector<FitPixel> const& pixels) {
     constexpr double most_leverage = 0.9;
     std::vector<ResidualSample> samples;
@@ -337,12 +338,12 @@ class FrameFit {
 
   DotSettings settings_;
   DotFrame frame_;
-  bool places_known_;  // no dots are added to those at the given places
+  bool places_known_;  // true: the places of all dots are given, and no dots are added
   bool whole_levels_ = false;
   DotModel model_;
   double gain_ = 0;  // variance of the noise per grey level of light
   std::vector<ResidualSample> samples_;
-  std::vector<std::vector<ProfileSample>> profile_samples_;  // of the dots that were fitted alone
+  std::vector<std::vector<ProfileSample>> profile_samples_;  // samples of the dots that were fitted alone
   std::vector<LocatedDot> located_;
 };
 

@@ -13,11 +13,11 @@
 namespace gladstone::tracking {
 namespace {
 
-constexpr std::size_t supporters = 12;       // neighbours that support a displacement
-constexpr std::size_t least_supporters = 3;  // fewer neighbours do not identify a displacement
+constexpr std::size_t supporters = 12;       // number of neighbours that are asked to support a displacement
+constexpr std::size_t least_supporters = 3;  // number of neighbours below which a displacement is not identified
 constexpr int most_rounds = 5;               // largest number of rounds that predict from certain matches
 constexpr double track_weight = 0.4;   // weight of the evidence of a track: in coherent flows, the neighbours decide
-constexpr double certain_track = 0.5;  // evidence of a track from which the neighbours do not refute a match
+constexpr double certain_track = 0.5;  // track evidence from which a match is not tested against its neighbours
 constexpr double alias_range = 1.5;    // range of alternatives beyond the search radius [spacings]
 
 /// Parameters of a round of the matching.
@@ -205,7 +205,7 @@ class DotMatcher {
   std::span<Vec2d const> a_, b_;
   MatchSettings settings_;
   NearestPoints cells_a_, cells_b_;
-  double radius_, tolerance_;  // of the search [px]
+  double radius_, tolerance_;  // radius and tolerance of the search [px]
   TrackEvidence tracks_;
   std::vector<std::vector<std::size_t>> around_;  // nearest dots of each dot of frame A
 };

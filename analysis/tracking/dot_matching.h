@@ -14,7 +14,7 @@ namespace gladstone::tracking {
 /// Result of the search for the partner of a dot.
 enum class MatchStatus {
   matched,
-  unmatched,  ///< no dot within the search radius whose displacement the neighbours share
+  unmatched,  ///< no dot within the search radius has a displacement that the neighbours support
   ambiguous,  ///< another displacement has (nearly) the same support
   outlier,    ///< differs from its neighbours
 };

@@ -12,9 +12,10 @@ namespace {
 constexpr int size = static_cast<int>(DotProfile::count);
 constexpr double least_f_ratio = 6;
 constexpr double usual_misfit = 3;      // largest residual of a dot, over the median of all
-constexpr int rounds = 4;               // of the choice of the dots
-constexpr double least_misfit = 0.005;  // of a Gaussian that is replaced, rms relative to the light
-constexpr double ridge = 1e-9;          // weight of shares of zero, over the mean diagonal of the normal matrix
+constexpr int rounds = 4;               // number of times that dots with usual residuals are selected
+constexpr double least_misfit = 0.005;  // minimum misfit at which a Gaussian is replaced, rms relative to the light
+constexpr double ridge = 1e-9;          // regularisation of the shares towards zero, relative to the mean diagonal of
+                                        // the normal matrix
 
 using Matrix = Eigen::Matrix<double, size, size>;
 using Vector = Eigen::Matrix<double, size, 1>;

@@ -30,7 +30,8 @@ struct TrackingSettings {
 DisplacementField track_dots(Image<double> const& a, Image<double> const& b, DisplacementField const& predictor,
                              TrackingSettings const& settings = {});
 
-/// Likewise in a sequence, with tracks through the frames before and after the pair where they exist (match_dots()).
+/// Tracks dots like track_dots() above in a sequence, with tracks through the frames before and after the pair where
+/// they exist (match_dots()).
 /// @param located  locates the dots of the frames, with settings.dots
 DisplacementField track_dots(TrackFrames const& frames, DisplacementField const& predictor,
                              TrackingSettings const& settings, LocatedFrames const& located);

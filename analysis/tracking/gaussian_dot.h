@@ -30,7 +30,7 @@ constexpr int shape_parameters(DotShape shape) { return shape == DotShape::round
 struct DotLevel {
   double value = 0;
   double by_x = 0, by_y = 0, by_flux = 0;
-  std::array<double, 3> by_shape{};  ///< with respect to xx (round: of both axes), xy, yy [1/px^2]
+  std::array<double, 3> by_shape{};  ///< derivatives with respect to xx (round: of both axes), xy, yy [1/px^2]
 };
 
 /// Rectangle of pixels, whose last column and row belong to it.
@@ -160,7 +160,7 @@ class DotLight {
   int first_column_ = 0, first_row_ = 0, columns_ = 0, rows_ = 0;
   std::array<Part, DotProfile::count> parts_{};
   std::size_t part_count_ = 0;
-  std::vector<Factor> factors_;  // of each part: of the columns, then of the rows
+  std::vector<Factor> factors_;  // factors of each Gaussian: those of the columns, then those of the rows
 };
 
 }  // namespace gladstone::tracking

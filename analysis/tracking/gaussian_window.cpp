@@ -17,7 +17,7 @@ namespace {
 constexpr std::size_t local_count = 8;  // vectors that determine the local spacing
 constexpr double local_reach = 30;      // largest distance of those vectors, in mean spacings
 constexpr double weight_reach = 2.5;    // radius of the window in widths; the weight there is 0.002
-constexpr double widest = 3;            // widest window of a plane, over the usual one
+constexpr double widest = 3;            // maximum width of the window of a plane fit, relative to the usual width
 
 /// Vectors under a window, with their weights.
 struct WeightedVectors {

@@ -12,7 +12,7 @@ namespace gladstone::tracking {
 namespace {
 
 constexpr double least_decrease = 25;   // smallest decrease of the sum of squares for which a dot is added
-constexpr std::size_t most_splits = 3;  // number of dots whose division is tried per added dot
+constexpr std::size_t most_splits = 3;  // number of dots for which a split is tried before a dot is added
 
 DotFit plain_fit(std::span<FitPixel const> pixels, std::span<GaussianDot const> start, DotModel const& model,
                  double most_cost = std::numeric_limits<double>::infinity()) {
@@ -27,7 +27,7 @@ bool has_significant_residual(double cost, int freedom) { return cost > freedom 
 /// pixel and its neighbours: at the edge of a dot, the level changes more from pixel to pixel than it is high.
 std::vector<FitPixel> with_mismatch(std::span<FitPixel const> pixels, DotFit const& fit, double mismatch) {
   PixelBox const box = bounding_box(pixels);
-  Image<double> light(box.right - box.left + 3, box.bottom - box.top + 3);  // with a border of one pixel
+  Image<double> light(box.right - box.left + 3, box.bottom - box.top + 3);  // image with a border of one pixel
   for (std::size_t i = 0; i < pixels.size(); ++i)
     light(pixels[i].column - box.left + 1, pixels[i].row - box.top + 1) =
         pixels[i].level - fit.residual[i] - fit.background;
@@ -93,7 +93,7 @@ std::vector<GaussianDot> split_dot(std::span<FitPixel const> pixels, DotFit cons
 std::vector<GaussianDot> add_at_residual(std::span<FitPixel const> pixels, DotFit const& fit, DotModel const& model) {
   double const variance = model.prior.mean[0];
   GaussianDot added{{}, 0, variance, 0, variance};
-  std::vector<double> shapes;  // by the squared distance in pixels
+  std::vector<double> shapes;  // Gaussian at each squared distance in pixels
   for (int r2 = 0; r2 <= 9 * variance + 1; ++r2) shapes.push_back(std::exp(-0.5 * r2 / variance));
   double most = 0;
   for (FitPixel const& centre : pixels) {
@@ -139,7 +139,7 @@ DotFit fit_overlapping_dots(std::span<FitPixel const> pixels, std::span<Gaussian
   DotFit const first = plain_fit(pixels, start, model);
   if (most_additions == 0 || !std::isfinite(first.cost)) return first;
   std::vector<FitPixel> const tolerant = with_mismatch(pixels, first, model.mismatch);
-  // The fit with this noise has at most the cost of the first one.
+  // The cost of the fit with this noise does not exceed that of the first fit.
   if (!has_significant_residual(cost_with(tolerant, first), first.freedom)) return first;
   DotFit best = model.mismatch > 0 ? plain_fit(tolerant, first.dots, model) : first;
   if (!std::isfinite(best.cost)) return first;  // a fit that failed has no residuals

@@ -71,11 +71,14 @@ PairMisfit measure_pair_misfit(LocatedDots const& a, LocatedDots const& b, Locat
   return freedom >= 1 ? PairMisfit{sum / freedom, freedom} : PairMisfit{};
 }
 
-/// Draws the misfits of all dots towards their median, since each is estimated from a few pixels.
+/// Replaces the misfit of each dot by a weighted mean with the median misfit of all dots, since it is estimated from a
+/// few pixels.
 void pool_misfits(std::vector<PairMisfit>& misfits) {
   std::vector<double> means;
   for (PairMisfit const& one : misfits)
-    if (one.freedom > 0) means.push_back(one.mean / std::pow(1 - 2 / (9 * one.freedom), 3));  // median to mean of chi2
+    if (one.freedom > 0)
+      means.push_back(one.mean / std::pow(1 - 2 / (9 * one.freedom), 3));  // ratio of mean to median
+                                                                           // of a chi2 distribution
   if (means.empty()) return;
   double const typical = upper_median(std::move(means));
   for (PairMisfit& one : misfits)

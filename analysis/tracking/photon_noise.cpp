@@ -11,10 +11,10 @@ namespace gladstone::tracking {
 namespace {
 
 constexpr std::size_t least_samples = 200;
-constexpr std::size_t most_samples = 20'000;  // determine the gain to about 2 %
-constexpr double median_chi2 = 0.4549;        // of one degree of freedom
+constexpr std::size_t most_samples = 20'000;  // maximum number of samples; they determine the gain to about 2 %
+constexpr double median_chi2 = 0.4549;        // median of chi2 with one degree of freedom
 constexpr int alternations = 20;
-constexpr double least_excess = 0.5;   // smallest shot noise that is regarded, in shares of the other variance
+constexpr double least_excess = 0.5;   // minimum shot noise that is considered, relative to the remaining variance
 constexpr double significance = 4;     // smallest excess in standard errors of the median
 constexpr double median_error = 2.33;  // standard error of the median of n values of chi2, times sqrt(n) / median
 

@@ -15,7 +15,7 @@ namespace gladstone::tracking {
 namespace {
 
 constexpr Vec2d unknown{not_a_number, not_a_number};
-constexpr std::size_t frames_per_pair = 4;  // with those before and after the pair
+constexpr std::size_t frames_per_pair = 4;  // frames of a pair with those before and after it
 
 /// Converts the table [correlate.tracking] and the known dots to settings of track_dots().
 /// @pre the words of the table are valid

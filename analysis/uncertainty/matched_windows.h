@@ -22,7 +22,8 @@ Vec2<int> first_pixel(InterrogationGrid const& grid, std::size_t vector, int sid
 struct MatchedWindow {
   int side;                      ///< side of the support [px]
   std::vector<float> reference;  ///< grey levels minus the weighted mean; 0 where the weight is 0
-  std::vector<float> flow;       ///< likewise, scaled to the same weighted sum of squares as the reference
+  std::vector<float> flow;       ///< frame B minus its weighted mean, scaled to the same weighted sum of squares as the
+                                 ///< reference
   std::vector<float> weight;     ///< weights of the correlator on either frame; 0 outside the image and where unknown
 
   std::size_t at(int i, int j) const { return static_cast<std::size_t>(j) * side + i; }

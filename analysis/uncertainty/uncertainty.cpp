@@ -20,7 +20,7 @@ namespace {
 struct NamedUncertainty {
   char const* name;
   UncertaintyMethod estimate;
-  bool on_gpu = false;  ///< whether the CUDA correlator supports it
+  bool on_gpu = false;  ///< whether the CUDA correlator supports the method
 };
 
 /// Table of all uncertainty methods.

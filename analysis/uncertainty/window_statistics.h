@@ -225,8 +225,8 @@ struct WindowStatistics {
   GLADSTONE_HD void multiply_terms(int row, StatisticsSums& sums) const {
     auto const products = [&](int which) {
       float const* const t = terms(which, row);
-      float const* const above = across(which, row + 1);  // of row - 1, which shares memory with row + 1
-      float* const here = across(which, row);             // of row - 2, until it is overwritten
+      float const* const above = across(which, row + 1);  // terms of row - 1, which shares memory with row + 1
+      float* const here = across(which, row);             // terms of row - 2, until they are overwritten
       Value sum{};
       for (int x = first(); x < side; x += ahead()) {
         Value const middle = Columns::load(t + x);

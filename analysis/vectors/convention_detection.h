@@ -28,10 +28,10 @@ struct ConventionFit {
 
 /// Correction of a file's vectors, applied before its conventions, along the axes of the file.
 struct VectorCorrection {
-  Vec2d factor{1.0, 1.0};     ///< displacements are divided by it
-  Vec2d offset_px{};          ///< is subtracted from the displacements
-  double place_factor = 1.0;  ///< positions are divided by it
-  Vec2d shift_px{};           ///< is added to the positions
+  Vec2d factor{1.0, 1.0};     ///< number by which the displacements are divided
+  Vec2d offset_px{};          ///< displacement that is subtracted from all displacements
+  double place_factor = 1.0;  ///< number by which the positions are divided
+  Vec2d shift_px{};           ///< vector that is added to the positions
 
   friend bool operator==(VectorCorrection const&, VectorCorrection const&) = default;
 };
@@ -42,7 +42,7 @@ struct ProbableMistake {
   std::string conventions;        ///< words for --conventions that correct the mistake; empty: no words can
   ConventionFit corrected_fit{};  ///< fit after correction, in the interpretation without the mistake
   ConventionFit as_read{};        ///< fit without correction
-  VectorCorrection correction{};  ///< numbers without the mistake
+  VectorCorrection correction{};  ///< correction of the numbers that undoes the mistake
 
   bool found() const { return !text.empty(); }
   /// Returns the text, both rms differences and the remedy, as a warning.
@@ -58,7 +58,7 @@ struct DetectedConventions {
     cannot_be_told,      ///< neither fits nor noisy, and the truth is too small or too fine to decide
     no_convention_fits,  ///< neither fits nor noisy, although the truth is large and smooth enough to decide
   };
-  VectorConventions conventions;  ///< conventions to use: of the format's own, those that fit best
+  VectorConventions conventions;  ///< conventions to use: those of the format's possible conventions that fit best
   Verdict verdict = Verdict::fits;
   ProbableMistake mistake;
   ConventionFit fit;             ///< fit of `conventions`

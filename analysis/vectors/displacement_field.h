@@ -39,7 +39,8 @@ enum class FailedTest : std::uint8_t {
 enum class Ambiguity : std::uint8_t {
   none = 0,
   here = 1,     ///< secondary peak of nearly the same height in this pass
-  earlier = 2,  ///< the same in an earlier pass with larger windows, whose result was the predictor of this pass
+  earlier = 2,  ///< secondary peak of nearly the same height in an earlier pass with larger windows, from which the
+                ///< predictor of this pass was computed
 };
 
 /// Displacements at scattered or gridded points, for ground truth, theory and measurement alike. Positions and

@@ -46,7 +46,8 @@ struct Candidate {
   }
   bool corrects() const { return !(mistake.correction == VectorCorrection{}); }
   bool is_found() const {
-    if (2 * followed <= files) return false;  // files with different mistakes, for example
+    // at most half of the files follow the truth after this correction, for example if each has another mistake
+    if (2 * followed <= files) return false;
     return sum > (corrects() ? 25.0 : 16.0) &&
            mistake.corrected_fit.spread_px < (corrects() ? 0.5 : 0.9) * mistake.as_read.spread_px;
   }
@@ -100,7 +101,7 @@ std::vector<Candidate> other_axes(std::vector<DetectedConventions> const& detect
   return all;
 }
 
-/// Returns the mistakes found in single files that are more than other axes or signs, with their evidence in all files.
+/// Returns the mistakes of single files other than wrong axes and signs alone, with their evidence in all files.
 std::vector<Candidate> corrections(std::vector<DetectedConventions> const& detected, std::vector<Sample> const& samples,
                                    VectorConventions const& chosen) {
   std::vector<Candidate> all;

@@ -10,14 +10,15 @@ namespace gladstone {
 
 /// Vectors that a program wrote for one image pair, and the pair's true displacement.
 struct VectorsWithTruth {
-  VectorFile file;                    ///< in px and screened, see detect_conventions()
+  VectorFile file;                    ///< vectors in px and screened, see detect_conventions()
   std::function<Vec2d(Vec2d)> truth;  ///< displacement at a position in our conventions [px]
   int image_rows = 0;
 };
 
 /// Result of detect_common_conventions().
 struct CommonConventions {
-  VectorConventions conventions;  ///< conventions to use: of the format's own, those that fit all files best
+  VectorConventions conventions;  ///< conventions to use: those of the format's possible conventions that fit all files
+                                  ///< best
   std::vector<DetectedConventions> detected;  ///< results for the single files, in their order
   /// Mistake that all files have in common; if several are indistinguishable, the text names all of them and
   /// `conventions` is empty.

@@ -51,7 +51,7 @@ FittedShift refine_shift(Search const& search, FittedShift fitted) {
     if (xx > 0.0 && determinant > 0.0 && three_errors(determinant / std::max(xx, yy)) < vague_px) {
       next.shift_px = fitted.shift_px - Vec2d{(yy * gx - xy * gy) / determinant, (xx * gy - xy * gx) / determinant};
       next.uncertainty_px = {three_errors(determinant / yy), three_errors(determinant / xx)};
-    } else if (xx > yy) {  // as in a shear, whose displacement is the same all along its layers
+    } else if (xx > yy) {  // for example in a shear flow whose displacement does not vary along y
       next.shift_px = fitted.shift_px - Vec2d{gx / xx, 0.0};
       next.uncertainty_px = {three_errors(xx), infinity};
     } else {
@@ -112,7 +112,7 @@ ProbableMistake find_shift(Search const& search) {
     if (log_likelihood_statistic(search.fit(fewer, shift_by(best)), search.fit(fewer, shift_by(other))) < 9.0)
       best = other;
   }
-  constexpr double counting = 2.0;  // conventions of pixel counting differ by less
+  constexpr double counting = 2.0;  // shifts between conventions of pixel counting are smaller
   if (!(std::max(std::abs(best.x), std::abs(best.y)) > counting)) return {};
   FittedShift const fitted = refine_shift(search, {best, {finest, finest}});
   ConventionFit const corrected_fit = search.fit(search.few, shift_by(fitted.shift_px));
@@ -136,7 +136,7 @@ ProbableMistake find_place_factor(Search const& search) {
       best = factor;
     }
   };
-  look_around(1.0, 1.4, 0.01);  // from a quarter to four times
+  look_around(1.0, 1.4, 0.01);  // searches from a quarter to four times
   look_around(best, 0.01, 0.001);
   if (std::abs(best - 1.0) < 0.01) return {};
   ConventionFit const corrected_fit = search.fit(search.few, scaled(best));

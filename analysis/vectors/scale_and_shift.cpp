@@ -86,9 +86,9 @@ ProbableMistake find_factor(Search const& search) {
   return {text, both ? describe(scaled) : std::string(), corrected_fit, search.own, correction};
 }
 
-/// Searches for a constant that all displacements have in addition.
+/// Searches for a constant that is added to all displacements.
 ProbableMistake find_offset(Search const& search) {
-  if (is_zero(search.few)) return {};  // in a uniform displacement an offset would explain it
+  if (is_zero(search.few)) return {};  // an offset alone would explain zero vectors in a uniform displacement
   DisplacementField const ours = apply_conventions(search.few, search.own.conventions, search.image_rows);
   Vec2d offset{};
   for (auto const component : {&Vec2d::x, &Vec2d::y}) {
@@ -121,7 +121,7 @@ ProbableMistake find_offset(Search const& search) {
 }  // namespace
 
 Vec2d share_in_windows(DisplacementField const& all, Truth const& truth, double window_px) {
-  constexpr int nodes = 8;  // along one side of a window
+  constexpr int nodes = 8;  // number of nodes along one side of a window
   DisplacementField const ours = sample(all, 500);
   Vec2d product{}, square{};
   for (std::size_t i = 0; i < ours.size(); ++i) {

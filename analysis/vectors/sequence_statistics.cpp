@@ -11,7 +11,7 @@
 namespace gladstone {
 namespace {
 
-constexpr std::size_t most_lag_bytes = std::size_t{512} << 20;  // memory of the autocorrelation
+constexpr std::size_t most_lag_bytes = std::size_t{512} << 20;  // maximum memory of the autocorrelation [bytes]
 constexpr std::size_t blocks_per_chunk = 4;
 constexpr std::size_t fields_per_update = 8;  // fields whose products are added at once
 

@@ -110,8 +110,8 @@ class SequenceStatistics {
   std::vector<Vec2d> position_px_, first_;
   int columns_ = 0, rows_ = 0;
   std::vector<Powers> powers_;
-  std::vector<Products> products_;   ///< block, lag - 1
-  std::vector<Deviations> history_;  ///< block, sample modulo slots
+  std::vector<Products> products_;   ///< products for each block of points and each lag: [block][lag - 1]
+  std::vector<Deviations> history_;  ///< latest fields of each block of points: [block][sample % slots_]
 };
 
 /// Writes statistics.h5. @throws OutputError

@@ -17,8 +17,9 @@ namespace gladstone {
 /// both change sign if swapped.
 struct VectorConventions {
   enum class Mirror {
-    grid,   ///< about the centre of the vector grid: mirror = y' min + y' max (OpenPIV's transform_coordinates)
-    image,  ///< about the centre of the image: mirror = rows - 1
+    grid,   ///< mirrored about the centre of the vector grid: mirror = y' min + y' max (OpenPIV's
+            ///< transform_coordinates)
+    image,  ///< mirrored about the centre of the image: mirror = rows - 1
   };
   /// Pairs of columns that are exchanged.
   enum class Exchange { none, places, components, axes };  ///< none, x with y, u with v, both pairs
@@ -54,11 +55,11 @@ struct VectorFile {
   std::string format;       ///< "gladstone", "OpenPIV", "PIVlab", "DaVis", "Insight", "JPIV", "named columns", ...
   VectorConventions conventions;          ///< default of the program that writes the format
   bool foreign = true;                    ///< false: written by gladstone
-  std::vector<VectorConventions> also{};  ///< other conventions that the program uses
+  std::vector<VectorConventions> also{};  ///< alternative conventions of the program that writes the format
   std::string place_unit{};               ///< unit of the positions as stated in the file; empty: px
   std::string displacement_unit{};        ///< unit of the displacements as stated in the file; empty: px
-  std::vector<std::string> warnings{};    ///< about assumptions and ignored parts of the file
-  std::vector<std::string> notes{};       ///< about columns that are not used
+  std::vector<std::string> warnings{};    ///< warnings about assumptions and ignored parts of the file
+  std::vector<std::string> notes{};       ///< notes about columns that are not used
   bool complete = true;                   ///< false: the header declares another number of vectors; see `warnings`
 };
 

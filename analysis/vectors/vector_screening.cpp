@@ -115,8 +115,7 @@ std::string reason_to_reject_positions(DisplacementField const& screened, Reject
     std::string const where =
         left_out.outside_image > 0 ? " (" + Extent{left_out.low_px, left_out.high_px}.text() + ")" : "";
     return fmt::format(
-        "none of the {} vectors lies in {}{}: {}; positions must be in px from the centre of the first pixel: export "
-        "them "
+        "all {} vectors lie outside {}{}: {}; positions must be in px from the centre of the first pixel: export them "
         "so, or give the offset to be added with --conventions offset=NUMBER",
         left_out.all(), image, where, left_out.text());
   }

@@ -15,8 +15,8 @@ inline constexpr double outside_margin_px = 2.0;
 struct RejectedVectors {
   std::size_t place_not_finite = 0;
   std::size_t outside_image = 0;              ///< outside of the image by more than outside_margin_px
-  std::size_t displacement_not_finite = 0;    ///< unless masked in the file
-  std::size_t displacement_beyond_image = 0;  ///< larger than the image's width or height
+  std::size_t displacement_not_finite = 0;    ///< displacement not finite, unless the vector is masked in the file
+  std::size_t displacement_beyond_image = 0;  ///< displacement larger than the image's width or height
   Vec2d low_px{}, high_px{};                  ///< range of all finite positions, in the file's coordinates
 
   std::size_t without_place() const { return place_not_finite + outside_image; }

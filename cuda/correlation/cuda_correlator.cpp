@@ -130,8 +130,9 @@ class CorrelationPlan {
 
   bool suits(int columns, int rows) const { return columns == columns_ && rows == rows_; }
 
-  /// Copies both images of a pair to the device. @param staged  pixels of one after the other, in page-locked memory,
-  /// which must remain unchanged until the vectors have been downloaded
+  /// Copies both images of a pair to the device.
+  /// @param staged  pixels of frame A, then those of frame B, in page-locked memory, which must remain unchanged until
+  /// the vectors have been downloaded
   void upload(double const* staged) {
     std::size_t const pixels = static_cast<std::size_t>(columns_) * rows_;
     for (DeviceArray<double>& image : uploaded_) {
@@ -192,7 +193,7 @@ class CorrelationPlan {
     int search_radius_px;
     PredictorView predictor;  ///< computed from the vectors of this pass
     DeviceAxisWeights x, y;
-    int side, size;  ///< side of a window's pixels, length of its transform
+    int side, size;  ///< side of a window [px], length of the transforms
     LinePlan lines;
     DeviceArray<Complex> roots;
     DeviceArray<float> particles;  ///< weights of the phases for rpc
@@ -340,7 +341,7 @@ class CorrelationPlan {
 
   CorrelationSchedule schedule_;
   bool phase_only_, nine_points_;
-  bool with_sigma_;  ///< by correlation statistics, after the last pass
+  bool with_sigma_;  ///< whether sigma is estimated by correlation statistics after the last pass
   double amplification_;
   int columns_;
   int rows_;
@@ -354,7 +355,7 @@ class CorrelationPlan {
   DeviceArray<WindowCorrelation> windows_;
   DeviceArray<WindowPeaks> peaks_;
   DeviceArray<GridVector> vectors_;
-  DeviceArray<char> ambiguous_[2];  ///< flags of a pass and of the previous one
+  DeviceArray<char> ambiguous_[2];  ///< flags of ambiguous vectors of a pass and of the previous one
   DeviceArray<MeasuredVector> measured_;
   DeviceArray<Replacement> list_;
   DeviceArray<int> list_size_{1, purpose};

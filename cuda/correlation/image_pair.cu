@@ -82,7 +82,7 @@ __device__ void filter_run(Sample const& sample, float const* taps, int reach, G
   }
 }
 
-constexpr int most_taps = 48;  // maximum of bspline_taps()
+constexpr int most_taps = 48;  // maximum number of taps of bspline_taps()
 
 __device__ void share_taps(float const* taps, int count, float (&shared)[most_taps]) {
   unsigned const thread = threadIdx.y * blockDim.x + threadIdx.x;

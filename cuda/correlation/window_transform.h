@@ -81,7 +81,8 @@ struct WindowTransform {
     }
     for (Complex(&column)[8] : z) {
       small_transform<8, -1, 1>(column);
-      if (warp() == 0) {  // so that the sums in row_first_pass() give 2 (A_0 + i A_32) and 2 (B_0 + i B_32)
+      if (warp() == 0) {  // combine the columns so that the sums in row_first_pass() give 2 (A_0 + i A_32) and 2 (B_0 +
+                          // i B_32)
         Complex const zero = column[0], nyquist = column[4];
         column[0] = {zero.re + zero.im, nyquist.re + nyquist.im};
         column[4] = {zero.re - zero.im, nyquist.im - nyquist.re};

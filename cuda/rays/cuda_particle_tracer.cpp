@@ -24,8 +24,8 @@ constexpr std::size_t most_batch_bytes = std::size_t{256} << 20, most_of_batch =
 /// Particles at both pulses, in host memory.
 using HostPulses = ParticleSources<double, AnyScattering>[frame_count];
 
-/// Traces a batch of particles on the device. The medium is also needed on the host, which aims those particles that
-/// the device cannot aim by filling the stop.
+/// Traces a batch of particles on the device. The medium is also needed on the host, which computes the aims of
+/// particles whose rays the device cannot restrict to the stop.
 template <class Medium>
 class BatchPass {
  public:
@@ -193,7 +193,7 @@ class BatchPass {
         double const moved = std::sqrt(moved2[at]);
         if (!host_.sharp.camera.chief_rays_only() && moved > found_[at].margin) missed.push_back(at);
       }
-      trace_wide(missed, step, -1);  // with the previous aims, which are still on the device
+      trace_wide(missed, step, -1);  // remove the light of the previous aims, which are still on the device
       for (std::uint32_t const at : missed) {
         found_[at].margin = host_.sharp.wider_margin(std::sqrt(moved2[at]));
         place_aim(at, static_cast<std::size_t>(step[at / frame_count]));
@@ -257,7 +257,7 @@ class BatchPass {
   unsigned long long* ends_;
   unsigned int counts_[LadderView::max_step_count + 1] = {};
   std::vector<PulseAim> aims_;       ///< aims of the batch, if the host aims some of them
-  std::vector<SourceAim> found_;     ///< results of aim_at_stop() for these
+  std::vector<SourceAim> found_;     ///< results of aim_at_stop() for the aims set by the host
   std::vector<std::uint32_t> wide_;  ///< indices of the aims set by the host
 };
 

@@ -15,9 +15,9 @@ struct Block {
   __device__ void sync() const { __syncthreads(); }
 };
 
-/// Square of a frame in which a block accumulates the light of a source at spline nodes. The values are integers, so
-/// that the order of summation does not matter; their unit is so small that rounding the shares of all rays changes a
-/// pixel by less than 1e-6 of the source's light.
+/// Square region of a frame in which a block accumulates the light of a source at spline nodes. The values are
+/// integers, so that the order of summation does not matter; their unit is so small that rounding the shares of all
+/// rays changes a pixel by less than 1e-6 of the source's light.
 struct HitWindow {
   int* nodes = nullptr;  ///< light at the nodes: [side][side]; null: accepts no light
   int side, per_px;
@@ -68,9 +68,9 @@ struct HitWindow {
 struct SharedParts {
   CameraElement<double>* elements;
   RaySums* sums;      ///< sums over the rays of each thread
-  double* rows_seen;  ///< overlaps the memory of `sums`, which are no longer needed at that time
+  double* rows_seen;  ///< buffer of blur_hits(), in the memory of `sums`, which are not needed any more at that time
   double* share;      ///< values of the spline
-  int* nodes;         ///< of all windows; null: no windows
+  int* nodes;         ///< nodes of all windows; null: no windows
 
   template <class Launch>
   __device__ SharedParts(unsigned char* memory, Launch const& launch, int threads) {

@@ -35,7 +35,7 @@ struct AnyScattering {
 enum class AimState : int {
   none,     ///< not illuminated, or no ray passes the stop
   filled,   ///< the rays fill the stop, none is clipped
-  unknown,  ///< to be aimed by the host
+  unknown,  ///< aim to be computed by the host
   wide,     ///< the rays cover a disc around the stop and are clipped there
 };
 
@@ -90,12 +90,12 @@ struct ParticlesLaunch {
   CameraView<double> camera;  ///< elements in device memory; the stop has a sharp edge, or a smooth one for wide aims
   TracingOptions<double> tracing;
   ParticleSources<double, AnyScattering>
-      pulses[frame_count];  ///< in device memory, indexed from the batch's first particle
+      pulses[frame_count];  ///< particles at each pulse in device memory, indexed from the batch's first particle
   std::uint64_t first = 0;  ///< index of the batch's first particle in the scene
   BundleView choice;
-  StopRuleView rule;  ///< in device memory; quadrature rule of rays that fill the stop, if any
+  StopRuleView rule;  ///< quadrature rule of rays that fill the stop, if any, in device memory
   SpotView spot;
-  HitSplineView spline;    ///< in device memory; null share: no windows of spline nodes
+  HitSplineView spline;    ///< weights of the spline in device memory; null share: no windows of spline nodes
   int most_window_px = 0;  ///< maximum side of a window of spline nodes [px]
   int patch_px = 0;        ///< widest square of pixels in which a warp accumulates PSFs; 0: none
   DeviceImages images;     ///< images to which light is added; may be empty
@@ -149,7 +149,8 @@ GLADSTONE_HD inline LightSquare light_square(ParticlesLaunch const& launch, Puls
   }
   if (launch.most_window_px == 0) return {};
   int const side =
-      wanted + 4 < launch.most_window_px ? wanted + 4 : launch.most_window_px;  // four more for the nodes around a ray
+      wanted + 4 < launch.most_window_px ? wanted + 4 : launch.most_window_px;  // four more pixels for the spline nodes
+                                                                                // around a ray
   return {side, first_x + (wide - side) / 2, first_y + (tall - side) / 2};
 }
 

@@ -1,4 +1,4 @@
-"""Speed and error of another program beside gladstone, on images that gladstone renders. Imported by the scripts of
+"""Speed and error of another program and of gladstone, on images that gladstone renders. Imported by the scripts of
 this folder, each of which measures one program and prints one table.
 
 The images are cases of `gladstone benchmark`: 1024 x 1024 px, 8 bit, 20 particles of 3 px per 32 x 32 px (docs/

@@ -61,7 +61,7 @@ def correlate(a, b, *, device: str = "auto", progress: Progress = False, **setti
     warnings = field.warnings
     if not warnings and not field.valid.any():
         warnings = [
-            f"none of the {len(field)} vectors is valid; "
+            f"all {len(field)} vectors are invalid; "
             "check that both frames show one scene, with dots in every window"
         ]
     deliver([(True, warning) for warning in warnings])

@@ -1,4 +1,4 @@
-"""What the measurements of density, displacement and camera have in common: their text and warnings, and the files of
+"""Common parts of the measurements of density, displacement and camera: their text and warnings, and the files of
 their inputs."""
 
 from __future__ import annotations
@@ -77,7 +77,7 @@ def measured_case_place(folder: str, case: Case, name: str, device: str) -> str:
 def place_of(
     folder: str, setup: Setup | Mapping | Case | CalibrationCase | str | os.PathLike, name: str = "setup"
 ) -> str:
-    """Returns the CASE folder or the setup file of a case or a setup; what is in memory is written into `folder`."""
+    """Returns the CASE folder or the setup file of a case or a setup; data in memory are written into `folder`."""
     if isinstance(setup, (Case, CalibrationCase)):
         return case_place(folder, setup, name)
     if isinstance(setup, (Setup, Mapping)):

@@ -12,7 +12,7 @@ _log = logging.getLogger("gladstone")
 
 
 def deliver(messages: list[tuple[bool, str]]) -> None:
-    """Called by the compiled part at the end of each call."""
+    """Delivers the messages (is it a warning, text) of a call of the compiled module, which calls this at its end."""
     for is_warning, text in messages:
         if not is_warning:
             _log.info(text)

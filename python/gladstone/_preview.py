@@ -1,4 +1,4 @@
-"""What can be seen of a setup before it is rendered: a part of its images, and its dot pattern."""
+"""Previews of a setup before it is rendered: a part of its images, and its dot pattern."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class Preview:
         self.first_px: tuple[int, int] = first_px
         """Column and row of the part's first pixel in the complete images [px]."""
         self.at_gradient: bool = at_gradient
-        """Whether the part is about the strongest density gradient in view; False: about the image centre."""
+        """True: the part is centred on the strongest density gradient in view; False: on the image centre."""
         self.sources: int = sources
         """Number of dots or particles that were traced."""
 

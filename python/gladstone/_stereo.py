@@ -131,7 +131,7 @@ class ThreeComponents(Measurement):
 
 
 def _input(folder: str, name: str, source, dewarp: str, device: str) -> str:
-    """Returns the CASE folder or the file of vectors of one camera; what is in memory is written into `folder`."""
+    """Returns the CASE folder or the file of vectors of one camera; data in memory are written into `folder`."""
     if not isinstance(source, Case):
         return vectors_place(folder, source, name)
     return measured_case_place(folder, source, name, device) if dewarp == "vectors" else case_place(folder, source, name)

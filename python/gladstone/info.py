@@ -66,7 +66,7 @@ def particles(setup) -> dict[str, Any]:
 
 
 def setup(given, *, figure: str | os.PathLike | None = None) -> dict[str, Any]:
-    """Describes what follows from a setup before rendering: magnification, view, blur, dots in view, time and memory.
+    """Describes a setup before it is rendered: magnification, view, blur, dots in view, time and memory.
 
     figure: path of a drawing of the layout (.png, .svg, .pdf).
     """

@@ -42,7 +42,7 @@ class PairBatches {
                     "is \"" + name + "\"; use \"float32\", \"uint8\" or \"uint16\"");
   }
 
-  /// Returns the array that `compute` fills, where it is.
+  /// Returns the array that `compute` fills, in the memory of its device.
   template <class Compute>
   nb::object array(Compute const& compute, std::size_t first, LevelType type) const {
     auto const [buffer, gpu] = run([&] {

@@ -38,7 +38,8 @@ void compute(std::string const& folder, RunSelection const& selection) {
   std::size_t const due = remove_failed_results(folder, cases, selected, selection).missing.size();
   if (due == 0) return;
   Progress progress("cases", due);
-  ProgressMonitor of_cases;  // unread: the study reports whole cases
+  ProgressMonitor of_cases;  // receives the progress of the steps of a case, which is not shown: `progress` counts
+                             // whole cases
   ProgressMonitor::Scope const scope(of_cases);
   CaseRunner runner(open_device(cases[0].device));
   run_cases(folder, cases, selected, selection, computation_by(runner), 0, [&](std::size_t, CaseEvent event) {

@@ -128,7 +128,7 @@ void run_released(std::function<void()> const& work, nb::handle progress) {
   Call call;
   running_calls.begin();
   std::thread thread(run_work, std::ref(call), std::cref(work));
-  std::optional<nb::python_error> raised;  // by a signal handler or by `progress`
+  std::optional<nb::python_error> raised;  // exception raised by a signal handler or by `progress`
   auto const handle_signals_and_progress = [&] {
     if (raised) return;
     try {

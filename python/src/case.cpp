@@ -73,7 +73,7 @@ void PairCase::save(std::string const& folder) {
 PreparedCase const& PairCase::prepared() {
   std::lock_guard const lock(mutex_);
   if (!prepared_) {
-    LogSilencer const quiet;  // summary.json contains the warnings
+    LogSilencer const quiet;  // the warnings need not be logged again, since summary.json contains them
     prepared_ = prepare_case(loaded_);
   }
   return *prepared_;

@@ -49,9 +49,9 @@ class PairCase {
   std::string camera_;
   CaseSetup loaded_;
   std::optional<PreparedCase> prepared_;
-  std::optional<RenderedCase> rendered_;  ///< of a loaded case: rendered on demand, without theory
+  std::optional<RenderedCase> rendered_;  ///< rendering of a loaded case: computed on demand, without theory
   std::optional<RecordedFrames> frames_;  ///< nullopt: the case was loaded
-  CaseOutcome outcome_;                   ///< of a loaded case: accuracy, image error and hashes only
+  CaseOutcome outcome_;                   ///< outcome; of a loaded case only accuracy, image error and hashes
   GroundTruth stored_truth_;              ///< truth of a loaded case
   std::vector<std::uint16_t> images_;
   std::string folder_, summary_;

@@ -11,7 +11,7 @@ namespace gladstone::python {
 /// Displacement vectors in our conventions, with their origin.
 struct MeasuredField {
   DisplacementField field;
-  std::string name = "field";                   ///< for messages: path of the file, or "field"
+  std::string name = "field";                   ///< name for messages: path of the file, or "field"
   bool foreign = true;                          ///< not measured by gladstone
   std::optional<CorrelationSettings> settings;  ///< of our measurement
   std::string resolved;                         ///< settings as TOML; empty: foreign

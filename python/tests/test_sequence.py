@@ -101,7 +101,7 @@ def test_pair_without_valid_vector_has_failed(frames, case):
 def test_sequence_without_any_vector_is_an_error(frames):
     for name in ("B_0.tif", "B_1.tif"):
         (frames / name).write_bytes(b"no image")
-    with pytest.warns(gs.GladstoneWarning), pytest.raises(gs.DataError, match="none of the 2 pairs"):
+    with pytest.warns(gs.GladstoneWarning), pytest.raises(gs.DataError, match="all 2 pairs failed"):
         gs.correlate_sequence(frames, device="cpu", **SETTINGS)
     with pytest.raises(gs.DataError) as missing:
         gs.correlate_sequence(frames / "nothing.tif", device="cpu", **SETTINGS)

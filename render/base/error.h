@@ -127,7 +127,7 @@ class DeviceMemoryError : public DeviceError {
 /// The user pressed Ctrl-C. Exit code 130.
 class Interrupted : public Error {
  public:
-  explicit Interrupted(std::string const& message = "interrupted; nothing was left behind")
+  explicit Interrupted(std::string const& message = "interrupted; no incomplete files remain")
       : Error(ErrorCode::interrupted, message) {}
 };
 

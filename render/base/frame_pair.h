@@ -13,7 +13,7 @@ class FramePair {
   /// Returns frame A (BOS: the reference image) in host memory. Frames in device memory are copied by the first call,
   /// which must not run concurrently with another.
   virtual Image<double> const& reference() const = 0;
-  /// Returns frame B (BOS: the measurement image) in host memory, likewise.
+  /// Returns frame B (BOS: the measurement image) in host memory, under the same conditions as reference().
   virtual Image<double> const& flow() const = 0;
 };
 

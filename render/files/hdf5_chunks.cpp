@@ -23,7 +23,7 @@ constexpr double incompressible_bits = 7.9;
 bool is_incompressible(std::span<unsigned char const> bytes) {
   std::array<std::uint32_t, 256> counts{};
   for (unsigned char const byte : bytes) ++counts[byte];
-  double sum = 0;  // of count log2(count)
+  double sum = 0;  // sum of count log2(count)
   for (double const count : counts) sum += count > 0 ? count * std::log2(count) : 0;
   auto const total = static_cast<double>(bytes.size());
   return std::log2(total) - sum / total > incompressible_bits;
@@ -66,8 +66,9 @@ class Deflation {
   z_stream stream_{};
 };
 
-/// Compresses `count` values; the chunk is filled with zeros beyond them. The bytes of equal significance follow each
-/// other. The last ones of measured numbers are noise, and searching them for repetitions took most of the time.
+/// Compresses `count` values; the chunk is filled with zeros beyond them. Bytes of equal significance are stored
+/// together. The least significant bytes of measured numbers are noise, and searching them for repetitions took most of
+/// the time.
 std::vector<unsigned char> deflate_values(unsigned char const* values, std::size_t count, std::size_t value_bytes,
                                           std::size_t chunk_values) {
   std::vector<unsigned char> shuffled(chunk_values * value_bytes);

@@ -195,7 +195,7 @@ std::vector<char> make_file_image(std::string const& path, HeldContent content) 
     for (HeldAttribute const& attribute : content.attributes) set_attribute(file.id(), path, attribute);
     size = file.flush(path);
   }
-  image.resize(size);  // without lock, since fresh memory takes time
+  image.resize(size);  // the library is not locked here, since allocating memory takes time
   Lock const lock(library_lock());
   file.take_image(path, image);
   return image;

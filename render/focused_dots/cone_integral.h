@@ -112,7 +112,8 @@ struct ConeIntegral {
   double without_medium[PlaceRule::max_positions];  ///< sum of weights in the reference image
   double* rims = nullptr;                    ///< [place][direction] radii at the edge of the stop [m]; external memory
   Extent extents[PlaceRule::max_positions];  ///< range of displacements
-  bool simple, sound, narrow;                ///< single-valued edge of the stop; finite moments; narrow spread
+  bool simple, sound, narrow;                ///< whether the edge of the stop is single-valued, the moments are finite,
+                                             ///< and the spread is narrow
 };
 
 /// Computes the moments of the whole cone at every point of the source rule, one team per point, and determines from

@@ -13,11 +13,12 @@ namespace {
 
 constexpr double most_rays = 1e8;     // maximum number of rays of a table
 constexpr double cheap_rays = 2.5e5;  // maximum number of rays of a table with doubled node density
-constexpr double fine_rays = 2.5e7;   // the same limit if a finer table is requested
+constexpr double fine_rays = 2.5e7;   // maximum number of rays of a table with doubled node density if it is requested
 constexpr double fewest_nodes = 12;   // minimum number of nodes along either axis of the view
 // pupil points for the slopes, in radii of the stop: mean radius of the points of the stop
 constexpr double slope_reach = 0.6;
-constexpr double leaning = 2;  // in radii of the stop: rays farther out are ignored at the side faces of a field
+constexpr double leaning = 2;  // radius in units of the stop's radius; rays farther out are ignored at the side faces
+                               // of a field
 
 /// Lane that traces four rays together.
 struct FourAbreast : OneLane {

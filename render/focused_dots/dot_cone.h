@@ -39,7 +39,8 @@ struct ConeRule {
 /// Comparison of a dot's traced rays with the deflection table: sums over rays.
 struct TableCheck {
   double rays = 0;
-  Vec2d shift{}, shift_by_x{}, shift_by_y{};  ///< traced minus tabulated [m]; times stop point [m^2]
+  Vec2d shift{}, shift_by_x{}, shift_by_y{};  ///< sums of the traced minus the tabulated shift [m], and of the products
+                                              ///< of this difference with the coordinates of the stop point [m^2]
   double square = 0;                          ///< |stop point|^2 [m^2]
   Vec2d traced{}, miss{};                     ///< traced displacement; traced minus tabulated displacement [px]
   double traced2[3] = {}, expected2[3] = {};  ///< products xx, xy, yy of traced and tabulated displacements [px^2]

@@ -25,7 +25,8 @@ struct RaySample {
     Vec2d mean() const { return first / count; }
   };
   int rays = 0;                           ///< number of rays whose landing the table has predicted
-  Sum predicted, also_predicted, traced;  ///< all predicted rays; those that are also traced, both ways
+  Sum predicted, also_predicted, traced;  ///< sums over all predicted rays; over the predictions of the traced rays;
+                                          ///< over the traced rays
   LightImage light, difference;           ///< sums over the predicted rays; sums of traced minus predicted rays
 
   explicit RaySample(int side) : light(side, side), difference(side, side) {}
@@ -37,10 +38,10 @@ class LoneDot {
  public:
   static constexpr int sample_count = 4;        ///< number of independent samples of rays
   static constexpr int largest_sample = 65536;  ///< maximum number of rays per sample whose landing the table predicts
-  static constexpr int predicted_per_traced = 8;  ///< of these rays, one in so many is also traced
+  static constexpr int predicted_per_traced = 8;  ///< number of predicted rays per traced ray
 
   /// @param place  position on the target [m]
-  /// @param side   side of the windows [px]
+  /// @param side   side of the pixel windows in which the dot is rendered [px]
   LoneDot(Scene const& scene, Vec2d place, int side);
 
   /// Returns true if the table does not cover the dot.
@@ -63,7 +64,7 @@ class LoneDot {
 
   Scene scene_;
   int side_;                        ///< side of the pixel windows [px]
-  std::vector<RaySample> samples_;  ///< none for a dot that the medium does not move
+  std::vector<RaySample> samples_;  ///< independent samples of rays; none for a dot that the medium does not move
   std::unique_ptr<DeflectionMap> table_;
   std::unique_ptr<OwnedDotModel> owned_;
   std::unique_ptr<DotIntegrator> integrator_;

@@ -51,7 +51,7 @@ struct MomentLattice {
 struct DotSquares {
   static constexpr int most_step = 4;
   MomentLattice lattice;
-  int step = 1;           ///< side of a square in squares of the sensor's lattice
+  int step = 1;           ///< side of one of the dot's squares, as a multiple of the side of the sensor's squares
   Vec2<int> first{0, 0};  ///< sensor's square at the dot's square (0, 0)
   Vec2d zero{};           ///< zero displacement relative to that square's centre [px]
 
@@ -107,7 +107,7 @@ struct Extent {
   }
 };
 
-/// Range of squares that a distribution of displacements covers.
+/// Range of the squares (DotSquares) that a dot's displacements cover.
 struct SquareRange {
   static constexpr int most = 576;  ///< maximum number of squares that are processed one by one
   Vec2<int> low{0, 0}, high{0, 0};

@@ -28,8 +28,9 @@ struct ConePoints {
   int count;
 };
 
-/// Sorts the nodes of one point of the source by their squares, by a team. The order within a square is retained.
-/// @param ends  receives the end of each square's nodes
+/// Sorts the nodes of a light cone by the square that contains their displacement, for one point of the source. The
+/// order of the nodes within a square is retained. Called by all lanes of a team.
+/// @param ends  output: end of each square's nodes in the sorted order
 template <class Team>
 GLADSTONE_HD void sort_points(Team const& team, DotSquares const& squares, SquareRange const& range,
                               ConeLight const* light, int count, unsigned short* order, unsigned short* ends) {
@@ -138,7 +139,7 @@ GLADSTONE_HD void add_squares(Group const& group, MomentImages const& images, Do
       if (first < all && which < here) {
         patch.add_run(images.footprint(squares.on_sensor(sums.range.square(list[which]))), first, light[which]);
       }
-      group.sync_team();  // footprints of squares overlap
+      group.sync_team();  // wait: the next square may cover the same pixels
     }
   }
 }

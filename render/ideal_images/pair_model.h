@@ -52,7 +52,8 @@ struct PairModel {
   Vec3d box{};               ///< size of the box about `center` that contains the particles at mid-time [m]
   DiameterSpread spread = DiameterSpread::one;
   double diameter = 1e-6, diameter_width = 0;  ///< see DiameterSetup
-  double density = 0, viscosity = 1;           ///< of lagging particles [kg/m^3], and of the gas [Pa s]; 0: no lag
+  double density = 0, viscosity = 1;           ///< density of lagging particles [kg/m^3], viscosity of the gas [Pa s];
+                                               ///< 0: no lag
   // motion
   Flow flow;
   double dt = 0;        ///< time between the pulses [s]
@@ -62,13 +63,14 @@ struct PairModel {
   LaserSheet<double> sheet;
   Pose<double> sheet_plane;  ///< Scene::sheet_plane()
   ParticleScattering scattering = ParticleScattering::gaussian;
-  MieScatteringView<double> mie;  ///< of the one diameter, index 0; for ParticleScattering::mie
+  MieScatteringView<double> mie;  ///< scattering of the only diameter, index 0; for ParticleScattering::mie
   LensLight lens;
   IdealProjection projection;
   DefocusBlur blur;
-  GaussianSpot<double> spot;  ///< with the footprint of all images: the widest one that is not faint
+  GaussianSpot<double> spot;  ///< PSF whose footprint is used for all images: that of the widest image that is not
+                              ///< faint
   ExposureRule exposure;
-  PixelDetector detector;  ///< without electrons per light and seed, which differ between pairs
+  PixelDetector detector;  ///< detector without electrons per light and seed, which differ between pairs
 
   GLADSTONE_HD ParticleVelocity velocity(double d) const {
     return {flow, density > 0 ? stokes_response_time(density, d, viscosity) : 0.0, interval};
@@ -102,9 +104,10 @@ struct PairModel {
   }
 
   /// Returns the displacement [px] of the particle in the middle of the sheet at mid-time whose image in frame A is at
-  /// a pixel, as particle_displacements() of the comparison does with TruthAt::reference. The particle is found by
-  /// fixed-point iteration, to 1e-9 px, from where the flow carries the sheet's point at the pixel in half the time: in
-  /// a flow along the sheet that is the particle. NaN if the pixel sees no point of the sheet.
+  /// a pixel, as particle_displacements() of the comparison does with TruthAt::reference. The particle is found to 1e-9
+  /// px by fixed-point iteration. The iteration starts at the position to which the flow carries the sheet's point at
+  /// the pixel in half the time, which is the solution if the flow is parallel to the sheet. NaN if the pixel sees no
+  /// point of the sheet.
   GLADSTONE_HD Vec2d displacement(Vec2d pixel) const {
     using std::abs;
     ParticleVelocity const moving = velocity(diameter);

@@ -11,11 +11,11 @@ namespace gladstone {
 
 /// Particles of a sequence of frames at equal intervals flow.dt, each advected from frame to frame along the flow.
 /// - The particles of the first frame fill the volume, as those of seed_particles() do. Particles that leave it are
-///   dropped. Before every step, further particles are drawn around the volume, and those that enter it are added, so
-///   that the number density remains that of the seeding.
-/// - Particles of a file are not replaced. Without a volume all of them stay.
+/// dropped. Before every step, further particles are drawn around the volume, and those that enter it are added, so
+/// that the number density remains that of the seeding.
+/// - Particles of a file are not replaced. Without a volume all of them are retained.
 /// - A particle depends on the seed, the frame in which it was drawn and its index only, so that a frame is the same in
-///   both pairs to which it belongs, for any number of threads.
+/// both pairs to which it belongs, for any number of threads.
 class ParticleSequence {
  public:
   /// @param count      mean number of particles in the volume; ignored for particles of a file

@@ -55,7 +55,7 @@ GLADSTONE_HD constexpr int scrambling_bits(std::uint64_t rays) {
   return rays >= 4 ? 2 : (rays >= 2 ? 1 : 0);
 }
 
-/// Returns the number of points per scrambling of which both rays of a pair are traced.
+/// Returns the number of points per scrambling for which both rays of the pair are traced.
 GLADSTONE_HD constexpr std::uint32_t complete_points(std::uint64_t rays, int scrambling_bits) {
   return static_cast<std::uint32_t>(rays >> (scrambling_bits + 1));
 }
@@ -65,7 +65,7 @@ struct BundleView {
   std::uint64_t seed = 0;
   PupilSampling sampling = PupilSampling::sobol;
   int scrambling_bits = 0;           ///< ray j is point j >> bits of scrambling j mod 2^bits
-  std::uint32_t ordered_points = 0;  ///< number of points per scrambling, the first ones, that ordered_point() permutes
+  std::uint32_t ordered_points = 0;  ///< number of leading points of each scrambling that ordered_point() permutes
 };
 
 /// Computes the sample coordinates of a ray, each in [0, 1): pupil radius^2 and angle, source radius^2 and angle.

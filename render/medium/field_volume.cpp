@@ -107,7 +107,7 @@ std::string unlikely_range(MediumSetup const& setup, std::string const& name, do
   if (index) {
     likely = "these would be refractive indices of a gas; if they are, set quantity = \"refractive_index\"";
   } else if (high < ambient / factor) {
-    // among the readings within a factor of ten of the ambient value, suggest the closest
+    // Among the interpretations within a factor of ten of the ambient value, suggest the closest one.
     auto const decades_off = [&](double ratio) {
       bool const fits = high * ratio > ambient / 10 && low * ratio < ambient * 10;
       return fits ? std::abs(std::log10(0.5 * (low + high) * ratio / ambient)) : HUGE_VAL;

@@ -74,7 +74,7 @@ template <class... First, class... Second, class... Lists>
 struct OneOfLists<SurfaceTypes<First...>, SurfaceTypes<Second...>, Lists...>
     : OneOfLists<SurfaceTypes<First..., Second...>, Lists...> {};
 
-/// Stop, ideal thin lens, surfaces of lenses, and the surfaces that only one of the optical elements has.
+/// Stop, ideal thin lens, surfaces of lenses, and surface types that only one kind of optical element defines.
 template <class T, class Kinds>
 struct CameraElements;
 template <class T, class... Kinds>

@@ -35,7 +35,7 @@ struct FieldPoint {
 
 /// Analysis of a lens over its field.
 struct FieldAnalysis {
-  double image_plane = 0;  ///< behind the last vertex: prescribed image distance, else paraxial image [m]
+  double image_plane = 0;  ///< position behind the last vertex: prescribed image distance, else paraxial image [m]
   std::vector<FieldPoint> points;
 };
 

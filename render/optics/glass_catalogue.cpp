@@ -76,7 +76,8 @@ struct Choice {
     if (reasons.empty()) return {};
     std::string taken = place_of(*glass);
     if (followed) taken += ", which followed it,";
-    if (glass != found.front()) taken += fmt::format(", which has the nd = {:.6g} of its line,", stated_nd.value_or(0));
+    if (glass != found.front())
+      taken += fmt::format(", which has the nd = {:.6g} stated in the lens file,", stated_nd.value_or(0));
     taken += " is taken";
     if (followed && !listed) taken += fmt::format(", although the lens file lists only {}", fmt::join(list, ", "));
     return fmt::format("{}; {}", fmt::join(reasons, " and "), taken);

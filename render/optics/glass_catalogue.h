@@ -13,7 +13,7 @@ namespace gladstone {
 struct GlassMatch {
   Glass const* glass;
   std::vector<std::string> notes;  ///< warnings about assumptions that were made
-  bool assumed = false;            ///< a successor, or from a shipped catalogue that the lens file does not list
+  bool assumed = false;  ///< the glass is a successor, or is in no catalogue that the lens file lists or the user added
 };
 
 /// Returns true if the nd of a glass equals the one that a lens file states to within the file's rounding (1e-3), or if

@@ -62,7 +62,7 @@ struct Lens {
   int stop = 0;
   double stop_radius = 0;                ///< radius of the stop for real rays [m]
   double paraxial_stop_radius = 0;       ///< radius of the stop for paraxial pupils [m]
-  std::optional<double> image_distance;  ///< behind the last surface [m]; empty: not prescribed
+  std::optional<double> image_distance;  ///< distance from the last surface to the image [m]; empty: not prescribed
   std::vector<std::string> warnings;
 
   LensView<double> view() const { return {surfaces.data(), static_cast<int>(surfaces.size())}; }

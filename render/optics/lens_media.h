@@ -46,7 +46,7 @@ class LensMedia {
     std::string where;  ///< location of its first use
   };
 
-  /// Returns the glass of a search and adds its notes, each once for a name.
+  /// Returns the glass of a search, and adds its notes unless they have been added for the same name.
   Glass found_glass(GlassMatch const& match, std::string const& name, std::string const& where);
 
   /// Adds a warning about a glass, unless the glass already has one.

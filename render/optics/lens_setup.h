@@ -23,7 +23,8 @@ struct LensSetup {
   double focal_length = 0.105;  ///< focal length [m]; infinite for afocal prescriptions
   double f_number = 11.0;       ///< infinite: chief rays only; NaN: not defined by the setup or the prescription
   Focus focus = Focus::target;
-  double focus_distance = 0.0;  ///< from the front principal plane, for Focus::distance [m]
+  double focus_distance = 0.0;  ///< distance from the front principal plane to the plane in focus, for Focus::distance
+                                ///< [m]
   SpotModel spot = SpotModel::gaussian;
   Transmittance transmittance = Transmittance::ideal;
   std::vector<std::string> glasses;          ///< files of additional glass catalogues (AGF), also for windows

@@ -10,7 +10,8 @@ std::vector<std::string> kind_words(ElementKinds<Kinds...>) {
 
 void append_root_tables(char const* name, char const* kind, SetupTable& root, std::vector<ElementTable>& tables) {
   for (SetupTable& table : root.tables(name)) {
-    table.mark_as_read("cameras");  // the cameras that look through it, in setups with several
+    table.mark_as_read("cameras");  // names of the cameras that look through the element, in setups with several
+                                    // cameras
     tables.push_back({table, kind});
   }
 }

@@ -73,7 +73,7 @@ struct PrescribedSurface {
   bool semi_diameter_vignettes = true;  ///< false: for drawings, from a design program; does not vignette
   bool has_aperture = false;            ///< has an aperture of that semi-diameter, which limits a stop too
   double obscured = 0;                  ///< radius of a central obscuration [m]
-  bool obscured_without_end = false;    ///< obscuration of an aperture that has an inner radius only
+  bool obscured_without_end = false;    ///< the obscuration has no outer radius: it is the inner radius of an aperture
   SurfaceOutline<double> outline;       ///< aperture or obscuration that is not a circle about the axis
   bool stop = false;
   std::vector<CoordinateBreak> before;  ///< coordinate breaks ahead of the surface
@@ -104,12 +104,13 @@ struct Prescription {
   std::string title;
   std::string source;  ///< publication of the design
   std::vector<PrescribedSurface> surfaces;
-  double object_distance = std::numeric_limits<double>::infinity();  ///< from the object to the first surface [m]
+  double object_distance = std::numeric_limits<double>::infinity();  ///< distance from the object to the first surface
+                                                                     ///< [m]
   PrescribedMedium object_medium;                                    ///< medium ahead of the first surface
   std::vector<std::string> catalogues;  ///< glass catalogues named by the file, in its order
   PrescribedAperture aperture;
   double primary_wavelength = 0;      ///< primary wavelength [m]; 0: not given
-  double defocus = 0;                 ///< from the paraxial image to the image, if the last thickness is 0 [m]
+  double defocus = 0;                 ///< distance from the paraxial image to the image, if the last thickness is 0 [m]
   bool ends_at_image = false;         ///< the last thickness is the distance to the image, even if it is 0
   std::vector<double> field_angles;   ///< field angles in the y-z plane, for an object at infinity [rad]
   std::vector<std::string> warnings;  ///< features of the file that are not traced

@@ -45,7 +45,8 @@ class ShippedCatalogue {
   std::vector<Catalogue> catalogues_;
   std::vector<Entry> entries_;
   mutable std::mutex mutex_;
-  mutable std::vector<std::unique_ptr<Glass const>> glasses_;  ///< by entry; null until the glass is used
+  mutable std::vector<std::unique_ptr<Glass const>> glasses_;  ///< glasses by index of the entry; null until the glass
+                                                               ///< is used
 };
 
 }  // namespace gladstone

@@ -74,9 +74,9 @@ GLADSTONE_HD AimedRay<T> ray_to(Sources const& sources, AimedBundle<T> const& bu
 }
 
 /// Returns ray j of source i. The cos^4 law of flat targets results from the geometry and is not applied explicitly.
-///
-/// Rays of a scrambling come in pairs with the same point of the pupil and opposite positions on the source. Where the
-/// stop blocks them in one image only, the centroid then changes by the source's centre instead of a random position.
+/// Rays of a scrambling come in pairs with the same point of the pupil and opposite positions on the source. If the
+/// stop blocks a pair in one image only, the centroid then loses a contribution from the source's centre instead of one
+/// from a random position.
 template <class T, class Sources>
 GLADSTONE_HD AimedRay<T> aim_ray(Sources const& sources, AimedBundle<T> const& bundle, std::uint64_t i,
                                  std::uint64_t j) {

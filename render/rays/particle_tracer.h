@@ -33,7 +33,8 @@ struct ParticleLaunches {
   }
   /// Returns the first step of the ladder for a particle whose rays are vignetted at the stop.
   std::size_t step_clipped() const { return ladder.at_least(least_clipped); }
-  static constexpr double least_clipped = 32;  ///< minimum number of rays; with fewer, the smoothed edge is too wide
+  static constexpr double least_clipped = 32;  ///< minimum number of rays that are vignetted at the stop; with fewer,
+                                               ///< the smoothed zone at the edge of the stop is too wide
 };
 
 /// Traces the rays of particles, one particle at a time, with the medium in both frames and a particle position and

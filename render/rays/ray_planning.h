@@ -10,9 +10,9 @@ namespace gladstone {
 /// and its error is measured. Chief rays of all dots are traced, and chief and edge rays of those that change most.
 IntegrationStep determine_step_by_tracing(Scene const& scene);
 
-/// Determines the criteria by which the ray number of each source is chosen: the light of a grey level at the camera's
-/// bit depth, 12 bits at most. For "auto" exposure, the light of the brightest pixel is measured on a sample of
-/// sources.
+/// Determines the criteria for adaptive numbers of rays, mainly the light that corresponds to one grey level at the
+/// camera's bit depth (12 bits at most). For "auto" exposure, the light of the brightest pixel is measured on a sample
+/// of sources.
 AdaptiveRayCriteria determine_adaptive_criteria(Scene const& scene);
 
 /// Determines the number of rays of the general renderer.

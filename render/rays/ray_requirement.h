@@ -11,8 +11,8 @@ namespace gladstone {
 
 /// Placement of a source's rays. Determines how fast their errors decrease with the number of rays.
 enum class RayPlacement {
-  by_rule,  ///< at the nodes of a cubature rule that fill the stop (stop_rule.h)
-  clipped,  ///< at the points of a sequence over a disc larger than the stop
+  by_rule,  ///< rays at the nodes of a cubature rule that fill the stop (stop_rule.h)
+  clipped,  ///< rays at the points of a sequence over a disc larger than the stop
 };
 
 /// Required accuracy of a source's light and truth.
@@ -78,7 +78,8 @@ GLADSTONE_HD inline double estimate_rays_for_spread(RequiredRayAccuracy const& g
 
 /// Properties of a source's rays known before they are traced, for each image.
 struct EdgeRaySpread {
-  double spread2[frame_count] = {};          ///< as FilledStop::spread2, for rays placed by a rule [px^2]
+  double spread2[frame_count] = {};          ///< variance of the hits, see FilledStop::spread2, for rays placed by a
+                                             ///< rule [px^2]
   bool clipped[frame_count] = {true, true};  ///< rays are sent to a disc larger than the stop and may all be vignetted
 };
 
@@ -107,7 +108,7 @@ GLADSTONE_HD inline double estimate_required_rays(RequiredRayAccuracy const& goa
   for (int i = 0; i < scramblings; ++i) {
     all += of[i];
     for (int frame = 0; frame < frame_count; ++frame) {
-      // If no ray passes, the source may still not be dark.
+      // Even if no ray passes, the source may be visible.
       if (rim.clipped[frame] && !(of[i].hits[frame].weight > 0)) ask(4 * rays);
     }
   }

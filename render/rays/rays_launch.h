@@ -68,7 +68,7 @@ struct RaysLaunch {
   /// Returns the margin for a source before its rays are traced: twice the largest deflection of its chief and edge
   /// rays plus 1 % of the entrance pupil's radius, or 0 if these are not deflected. Other rays may be deflected more:
   /// through a smooth volume up to 1.6, through a turbulent plane up to 5 times as much. A source whose margin is too
-  /// small is traced again, which costs more than the 2 % of rays that 1 % of the radius takes.
+  /// small is traced again, which costs more than the 2 % of rays added by 1 % of the radius.
   /// @param shift  largest deflection of these rays on the aim plane [m]
   double first_margin(WorldApparentPupil const& disc, double shift) const;
   /// Returns the margin for a source of which a ray was deflected by `shift` on the aim plane [m].

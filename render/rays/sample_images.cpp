@@ -46,10 +46,11 @@ bool render_particles(Scene const& scene, std::vector<std::size_t> const& some, 
   return next_rule;
 }
 
-/// Returns the mean squared difference of two images of a sample over the lit pixels of the image of all sources.
-/// With a pixels of the sample lit among A, the sample leaves a pixel dark with probability 1 - a / A, and n times as
-/// many sources at random places with (1 - a / A)^n: their image has A (1 - (1 - a / A)^n) lit pixels, and the squares
-/// add up.
+/// Estimates the mean squared difference of two images of all sources over their lit pixels, from images of a sample.
+/// If the sample lights a of A pixels, a pixel is dark with probability 1 - a / A. With n times as many sources at
+/// random positions, this probability is (1 - a / A)^n, so that A (1 - (1 - a / A)^n) pixels are lit. The sum of the
+/// squared differences is n times that of the sample.
+/// @param share  n
 double mean_square(Image<double> const& one, Image<double> const& other, double level, double share) {
   double square = 0, lit = 0;
   for (std::size_t i = 0; i < one.size(); ++i) {

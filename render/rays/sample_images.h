@@ -8,7 +8,7 @@ namespace gladstone {
 
 /// Number of rays of the sources of a sample.
 enum class SampleRays {
-  required,   ///< as in a rendering of the scene
+  required,   ///< numbers as in a rendering of the scene
   next_rule,  ///< where rays are sent to the nodes of a cubature rule (stop_rule.h), those of the next finer rule
 };
 

@@ -13,7 +13,7 @@
 namespace gladstone {
 namespace {
 
-constexpr double widest_spot_px = 200;   // between first zeros [px]; f/64 gives about 10 px
+constexpr double widest_spot_px = 200;   // maximum diameter between first zeros [px]; f/64 gives about 10 px
 constexpr double widest_airy_px = 60;    // the table needs 0.2 GB at this size
 constexpr double finest_pitch = 0.5e-6;  // no camera has smaller pixels [m]
 constexpr double fastest_lens = 0.5;     // f-number at which an aplanatic lens in air accepts a half space

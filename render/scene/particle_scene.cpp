@@ -313,7 +313,7 @@ std::vector<std::string> warnings_of_particles(Scene const& scene) {
   ParticleCensus const census = count_particles(scene);
   if (census.in_view == 0) {
     warnings.push_back(fmt::format(
-        "particles: none of the {} illuminated at the first pulse lies in the camera's view: the images will be empty; "
+        "particles: all {} illuminated at the first pulse are outside the camera's view: the images will be empty; "
         "check particles.center_mm and volume_mm, laser.offset_mm and the position of the camera",
         census.lit[0]));
   } else if (static_cast<double>(census.paired) < kept_pairs * static_cast<double>(census.in_view)) {

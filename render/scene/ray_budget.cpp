@@ -33,7 +33,7 @@ double ray_seconds(Scene const& scene) {
 double rays_seconds(Scene const& scene) { return static_cast<double>(scene.source_count()) * ray_seconds(scene); }
 
 double theory_ray_seconds(Scene const& scene) {
-  constexpr double a_sample = 20e-9;  // a sample of the gradient [s]
+  constexpr double a_sample = 20e-9;  // time of a sample of the gradient [s]
   constexpr int samples_of_panel = 3;
   double const longest = std::min(scene.step, scene.medium.coarsest_step);
   double const panels = longest > 0 ? std::ceil(scene.steps_across() * scene.step / longest) : 0;

@@ -62,7 +62,7 @@ struct Setup {
   std::vector<double> planes;             ///< Z of the planes of a calibration target [m]; empty: no calibration
   std::optional<PivSetup> piv;            ///< empty: BOS or calibration; in PIV, the "dots' plane" is Z = 0
   std::optional<SequenceSetup> sequence;  ///< pair of a sequence that the setup describes; empty: a single pair
-  std::shared_ptr<ParticleCache> shared_particles;  ///< those of the pairs of a sequence; null: none
+  std::shared_ptr<ParticleCache> shared_particles;  ///< particles shared by the pairs of a sequence; null: none
   RenderSetup render;
   double z_a = 0.75;               ///< front principal plane to the medium's mid-plane, along the camera's axis [m]
   std::optional<double> z_sensor;  ///< position of a fixed sensor on the Z axis, from which the lens is placed [m]
@@ -122,7 +122,7 @@ struct Setup {
   /// Diameter of a dot on the target, as configured or from dot_diameter_px [m].
   double dot_diameter() const;
   /// Scale of diffraction, N (1 + M) lambda: image distance over pupil diameter times wavelength [px]; 0 for chief
-  /// rays. If an optical element forms images of its own (lenslets), with their f-number in place of N (1 + M).
+  /// rays. If an optical element (lenslets) forms the final images, N (1 + M) is replaced by their f-number.
   double spot_scale_px() const;
   /// Diameter d_d of the rendered diffraction PSF [px]: diameter of the first Airy zero for "airy" and for the Gaussian
   /// matched to it; four standard deviations for "gaussian_first_zero" (2.44 N (1 + M) lambda) and "seed_eq8" (pi times

@@ -71,7 +71,8 @@ struct UnreadKey {
   SetupMember const* member;
 };
 
-/// Collects the keys below a table that were not read, except those of excused tables.
+/// Collects the keys below a table that were not read; skips tables whose unread keys are not reported
+/// (SetupRecord::excused).
 void collect_unread(SetupNode const& node, SetupRecord const& record, std::vector<std::string>& path,
                     std::vector<UnreadKey>& unread) {
   if (record.excused) return;

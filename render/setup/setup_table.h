@@ -165,7 +165,8 @@ class SetupTable {
   std::string required_word(std::string const& key, std::vector<std::string> const& words);
   /// Reads a file name and makes it absolute, relative to the directory of the file in which it is written.
   std::string required_path(std::string const& key);
-  /// Reads an array of at least so many file names, likewise made absolute; empty if the key is absent.
+  /// Reads an array of at least `at_least` file names and makes them absolute like required_path(); empty if the key is
+  /// absent.
   std::vector<std::string> path_list(std::string const& key, std::size_t at_least = 0);
 
   /// Reads an array of exactly `count` numbers.

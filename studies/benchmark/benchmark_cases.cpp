@@ -198,7 +198,7 @@ double step_width_px(DisplacementField const& field, double height_px, int pixel
     sum[static_cast<std::size_t>(cell)] += 0.5 + dot(field.displacement_px[i], edge.along) / height_px;
     count[static_cast<std::size_t>(cell)] += 1.0;
   }
-  // Mean positions and levels of the intervals that contain vectors, from left to right.
+  // Compute mean positions and levels of the intervals that contain vectors, in ascending order of position.
   std::vector<Vec2d> response;
   for (std::size_t k = 0; k < sum.size(); ++k)
     if (count[k] > 0.0) response.push_back({static_cast<double>(k) + 0.5 - reach, sum[k] / count[k]});

@@ -49,7 +49,8 @@ double step_width_px(DisplacementField const& field, double height_px, int pixel
 struct BenchmarkCase {
   std::string name;
   std::string what;            ///< description for the user
-  ParticleSettings particles;  ///< of synthetic images; for the refracted case, only size, seed and noise apply
+  ParticleSettings particles;  ///< settings of synthetic images; for the refracted case, only size, seed and noise
+                               ///< apply
   DisplacementAt flow = {};    ///< empty: images ray-traced through turbulence
   bool refracted() const { return !flow; }
 };

@@ -136,8 +136,10 @@ ReportSection uncertainty_section(BenchmarkResult const& result) {
   section.blocks.emplace_back(Paragraph{
       "Both components together, gross errors excluded, relative to the truth on the deformed windows: the "
       "displacement that the passes would determine from the true displacements of the dots without noise. The two "
-      "columns after rms(sigma) are relative to the mean over the dots of a window, and to the truth at the position; "
-      "no method includes these differences. The last columns count vectors with gross errors and without sigma."});
+      "columns after rms(sigma) are coverages of errors against other truths: the mean over the dots of a window, and "
+      "the displacement at the position of the vector. No method accounts for the differences between these truths. "
+      "The "
+      "last columns count vectors with gross errors and without sigma."});
   section.blocks.emplace_back(std::move(table));
   if (!result.coverage.empty()) {
     TextTable coverage{fmt::format("Coverage over {} seeds: mean and its standard error", result.seeds),

@@ -217,7 +217,7 @@ PreparedCase prepare_case(CaseSetup& loaded, ReusableParts const& known) {
   if (scene.second_medium) {
     for (auto const& text : scene.second_medium->warnings) warn(prepared.warnings, text);
   }
-  warn_of_field(scene, prepared.warnings);  // before rays are traced through the field
+  warn_of_field(scene, prepared.warnings);  // warn before the time-consuming tracing through the field
   prepared.step = known.step ? *known.step : choose_step(scene);
   scene = with_step(std::move(scene), prepared.step);
   if (prepared.step.change_px >= 1e-4) {

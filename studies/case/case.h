@@ -112,7 +112,7 @@ RecordedCase render_to_folder(CaseSetup& loaded, Renderer& renderer, std::string
 struct SideFaceAccuracy {
   std::size_t dots = 0;                  ///< number of such dots
   std::int64_t most_rays = 0;            ///< largest number of rays of one of them
-  double truth_error_px = not_measured;  ///< rms of their standard errors [px]
+  double truth_error_px = not_measured;  ///< rms of the standard errors of the truth of these dots [px]
 };
 
 /// Accuracy of the truth of a rendered case.

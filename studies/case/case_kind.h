@@ -29,12 +29,12 @@ struct CaseKind {
   /// Estimates the number of rays that "auto" chooses for most sources; null: unknown.
   /// @param largest  largest number that may be chosen
   double (*expected_rays)(Setup const& setup, double largest);
-  /// Replaces the sources of every camera's setup by common ones.
+  /// Replaces the sources in the setups of all cameras by the same ones.
   /// @param cases  setups to be changed
-  /// @param read   the same setups, read
+  /// @param read   contents of these setups
   void (*share_sources)(std::vector<CameraCase>& cases, std::vector<Setup> const& read);
   /// Renders the case of one camera.
-  /// @param shared   parts of other pairs of a sequence
+  /// @param shared   exposure, images and particles that earlier pairs of the sequence determined
   /// @param entry    receives the numbers for the report, except the folder
   /// @param medium   receives the medium of the case
   /// @return writer of its files, valid as long as `loaded` and `renderer`

@@ -38,7 +38,8 @@ std::string describe_error(double error, double resolution, std::string_view uni
 
 void warn_of_ray_limit(std::vector<std::string>& warnings, PreparedCase const& prepared, Rendering const& rendering) {
   if (!prepared.rays.adaptive_criteria || prepared.rays.rays == 1) return;
-  bool const by_table = rendering.method == RenderMethod::focused_dots;  // only the others take as many as required
+  bool const by_table = rendering.method == RenderMethod::focused_dots;  // with a deflection table, only dots at side
+                                                                         // faces have adaptive ray numbers
   auto const limit =
       static_cast<std::int64_t>(by_table ? max_rays_per_source(prepared.scene) : largest_ray_number(prepared.scene));
   std::vector<std::int64_t> const& rays = rendering.truth.rays_planned;
@@ -136,7 +137,8 @@ void warn_of_table(std::vector<std::string>& warnings, TableError const& error) 
 
 std::size_t warn_of_unseen(std::vector<std::string>& warnings, Scene const& scene, GroundTruth const& truth,
                            double pupil_margin, std::string_view where) {
-  std::int64_t unseen = 0, in_reference = 0;                     // in one of the frames; in the reference
+  std::int64_t unseen = 0, in_reference = 0;                     // number of dots that are not seen in one of the
+                                                                 // frames; in the reference
   std::int64_t rays = std::numeric_limits<std::int64_t>::max();  // smallest number of rays of an unseen dot
   for (std::size_t i = 0; i < truth.size(); ++i) {
     if (!std::isnan(truth.displacement_px[i].x)) continue;

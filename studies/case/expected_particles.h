@@ -26,7 +26,7 @@ struct ExpectedParticles {
   double source_density = 0;
   SizeSpread diameter;        ///< [m]
   SizeSpread photons;         ///< photons through the lens per pulse
-  SizeSpread peak_electrons;  ///< in the pixel on which an image is centred [e]
+  SizeSpread peak_electrons;  ///< charge of the pixel on which an image is centred [e]
   double saturated = 0;       ///< fraction of particles whose peak exceeds the full well [1]
   /// smallest diameter above which all particles are visible [m]; NaN: none up to 100 um
   double smallest_visible = 0;

@@ -14,9 +14,11 @@ namespace gladstone {
 namespace {
 
 constexpr double usual_dots = 20;      // dots per window assumed for the expected error
-constexpr double smallest_seen = 0.5;  // [px] a narrower autocorrelation peak is noise, not dots
+constexpr double smallest_seen = 0.5;  // smallest recognised diameter [px]; a narrower autocorrelation peak is caused
+                                       // by noise, not by dots
 
-constexpr double warned_image_px = 0.995 * min_image_px;  // the remedies are rounded
+constexpr double warned_image_px = 0.995 * min_image_px;  // diameter below which the warning is given: images that
+                                                          // follow its rounded advice do not cause it again
 constexpr int most_judged_px = 256;                       // size of the evaluated central part of a frame
 
 double square(double x) { return x * x; }

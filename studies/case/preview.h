@@ -13,9 +13,10 @@ namespace gladstone {
 struct CasePreview {
   int first_column = 0, first_row = 0;       ///< upper left pixel of the part
   int columns = 0, rows = 0;                 ///< its size [px]
-  bool at_gradient = false;                  ///< it is centred at the strongest density gradient, else in the image
+  bool at_gradient = false;                  ///< true: the part is centred at the strongest density gradient; false: in
+                                             ///< the image
   std::vector<Image<std::uint16_t>> frames;  ///< grey levels: both frames, or that of a calibration plane
-  std::size_t sources = 0;                   ///< number of dots or particles rendered
+  std::size_t sources = 0;                   ///< number of dots or particles that were rendered
   std::uint64_t rays = 0;                    ///< rays per source
   RenderMethod method = RenderMethod::automatic;
   double plane_z = 0;  ///< position of the plane of a calibration [m]

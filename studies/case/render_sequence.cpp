@@ -171,7 +171,7 @@ class SequenceRendering {
 
   /// Renders the case of a pair. @return its entry in summary.json
   Json render_case_of(std::size_t number, bool first, SetupRenderer& setup, Renderer& renderer) {
-    std::string fingerprint = hash_pair(setup, inputs_);  // before the files are read for rendering
+    std::string fingerprint = hash_pair(setup, inputs_);  // hash the files before they are read for rendering
     if (!first) read_earlier_frames(number);
     std::optional<LogSilencer> silencer;
     if (!first) silencer.emplace();
@@ -222,7 +222,7 @@ class SequenceRendering {
       std::error_code error;
       fs::path const frame = frames_of(camera) / name;
       fs::path const original = case_of(number, camera) / image;
-      // A frame that is no second name of its image may have been replaced.
+      // A frame whose file is not a second name of the recorded image may have been replaced.
       if (replace || !fs::equivalent(original, frame, error)) give_second_name(original, frame);
     };
     if (first) add(case_file::reference, first_frame(number));
@@ -306,7 +306,7 @@ RenderedSequence SequenceRenderer::render(Renderer& renderer, std::string const&
   SequenceRendering run(folder, *first_.first_setup().sequence, first_.camera_names());
   RenderedSequence result;
   try {
-    std::optional<PairProgress> progress;  // of the pairs after those of an earlier run
+    std::optional<PairProgress> progress;  // progress over the pairs after those of an earlier run
     for (std::size_t k = 0; k < pair_count_; ++k) {
       throw_if_interrupted();
       std::size_t const number = first_pair_ + k;

@@ -59,7 +59,7 @@ class SetupRenderer {
   /// Renders into a CASE folder atomically: all files are written, or none. The case of a single camera is written into
   /// the folder itself; those of several cameras into subfolders of their names, next to the common setup and a
   /// summary.json that contains every camera's summary.
-  /// @param shared  parts of another pair of the same sequence
+  /// @param shared  exposure, images, particles and medium that earlier pairs of the same sequence determined
   RenderedSetup render(Renderer& renderer, std::string const& folder, SharedParts const& shared = {});
 
   /// Setup of the first camera.

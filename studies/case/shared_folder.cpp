@@ -14,7 +14,7 @@ std::string shared_folder() {
   std::error_code error;
   fs::path const executable = fs::read_symlink("/proc/self/exe", error);
   fs::path const installed = executable.parent_path().parent_path() / "share" / "gladstone";
-  // The Python package contains the folder beside its extension module.
+  // The Python package contains the folder next to its extension module.
   Dl_info module{};
   fs::path const packaged = ::dladdr(reinterpret_cast<void const*>(&shared_folder), &module) != 0
                                 ? fs::path(module.dli_fname).parent_path() / "share" / "gladstone"

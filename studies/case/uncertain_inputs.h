@@ -23,7 +23,7 @@ struct InputCorrelation {
 /// distribution = "normal", degrees_of_freedom = 9 }.
 struct UncertainInput {
   std::vector<std::string> path;  ///< keys from the root
-  std::string key;                ///< the same joined by dots, e.g. "geometry.z_d_mm"
+  std::string key;                ///< path joined by dots, e.g. "geometry.z_d_mm"
   double value = 0;
   /// standard uncertainty for either distribution; a rectangular one has the full width 2 sqrt(3) sigma
   double sigma = 0;

@@ -34,7 +34,7 @@ constexpr std::array<OtherUnit, 0> of_count{};
 /// Range of a key's values in laboratories, from microscopes to wind tunnels.
 struct UsualRange {
   std::array<char const*, 3> path;  ///< tables, then the key; null: unused
-  double low, high;                 ///< in the key's unit
+  double low, high;                 ///< limits in the unit of the key
   char const* unit;
   std::span<OtherUnit const> others;  ///< most likely unit first
 };

@@ -135,9 +135,8 @@ CommandBody attach_correlate(CLI::App& app, GlobalOptions const& options) {
     for (std::string const& warning : field.warnings) spdlog::warn("{}: {}", written, warning);
     bool const any_valid = counts[0] + counts[1] > 0;
     if (!any_valid && field.warnings.empty()) {
-      spdlog::warn(
-          "{}: none of the {} vectors is valid; check that both frames show one scene, with dots in every window",
-          written, field.size());
+      spdlog::warn("{}: all {} vectors are invalid; check that both frames show one scene, with dots in every window",
+                   written, field.size());
     }
     nlohmann::json const json{{"vectors", field.size()},
                               {"file", written},

@@ -20,7 +20,8 @@ CommandBody attach_design(CLI::App& app, GlobalOptions const& options) {
       ->take_all()
       ->expected(1)
       ->trigger_on_parse(false);
-  app.add_option("--figures", request->figures, "Folder for figures of the layout, the design map and the front");
+  app.add_option("--figures", request->figures,
+                 "Folder for figures of the layout, the design map and the Pareto front");
   app.add_option("--figure-format", request->figure_format, "png, svg or pdf")->check(one_of({"png", "svg", "pdf"}));
   app.add_option("--apply", request->apply, "File (TOML) for the recommended setup, ready to render");
   app.add_option(

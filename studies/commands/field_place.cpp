@@ -55,7 +55,7 @@ Vec3d extent_mm(FieldSource const& source) {
   return extent;
 }
 
-/// Returns the region of a density field with the place that a setup gives its field [m].
+/// Returns the region of a density field in the world, with the spacing and centre that the setup gives its field [m].
 Bounds<double> density_region(Setup const& setup, FieldSource const& source, FieldFile const& file) {
   MediumSetup medium = setup.medium;
   FieldSetup& field = medium.field;
@@ -68,7 +68,7 @@ Bounds<double> density_region(Setup const& setup, FieldSource const& source, Fie
   return file_bounds(medium);
 }
 
-/// Returns the region of a velocity field with the place that a setup gives its flow [m].
+/// Returns the region of a velocity field in the world, with the spacing and centre that the setup gives its flow [m].
 Bounds<double> velocity_region(Setup const& setup, FieldSource const& source, FieldFile const& file) {
   VelocityFile velocity;
   if (setup.piv && setup.piv->flow.file) velocity = *setup.piv->flow.file;

@@ -16,9 +16,10 @@ struct FieldFile {
 
 /// Position, extent and units of a field file, and its coverage of a setup's view.
 struct FieldPlace {
-  nlohmann::json units;  ///< of lengths and values, null if the file names none; `length_m`, the unit used; `unknown`
-  Vec3d spacing{};       ///< spacing as stated, in the file's unit of length; NaN: not stated, or a single node
-  std::string spacing_text;  ///< the same as readable text
+  nlohmann::json units;      ///< units of lengths and values, null if the file names none; `length_m`, the unit used;
+                             ///< `unknown`
+  Vec3d spacing{};           ///< spacing as stated, in the file's unit of length; NaN: not stated, or a single node
+  std::string spacing_text;  ///< spacing as readable text
   Vec3d extent_mm{};         ///< distance from the first node to the last along x, y, z [mm]; NaN: undefined
   nlohmann::json coverage;   ///< {share, view_mm, setup}; null without a setup
   std::string text;          ///< units, extent and coverage as readable text

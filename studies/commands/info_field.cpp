@@ -87,7 +87,8 @@ Description describe_field(std::string const& path, std::string const& dataset, 
   RegularGrid const& grid = source->grid();
   std::vector<FieldStatistics> seen = field_statistics(*source);
   FieldPlace const place = field_place(*source, {path, dataset, axes}, setup);
-  for (FieldStatistics& one : seen) {  // per unit length, which is unknown along an axis of undefined spacing
+  for (FieldStatistics& one : seen) {  // convert differences to differences per unit length, which are unknown along an
+                                       // axis of undefined spacing
     for (int axis = 0; axis < 3; ++axis) {
       if (std::isnan(place.spacing[axis]) && std::isnan(place.extent_mm[axis]))
         one.steepest[axis] = place.spacing[axis];

@@ -63,7 +63,7 @@ struct RenderArguments {
   bool preview = false;
 };
 
-/// Describes a preview and what it leaves out.
+/// Describes a preview and the results that it omits.
 std::string preview_text(CasePreview const& preview, CameraSetup const& camera, std::string const& path) {
   std::string text = fmt::format(
       "{}: {} x {} of {} x {} px, from column {} and row {} on, {}; {} light sources traced in {:.2f} s\n", path,

@@ -54,7 +54,7 @@ CommandBody attach_stereo(CLI::App& app, GlobalOptions const& options) {
                  "Case folder of the first camera, with vectors.h5, or a file of vectors of gladstone or another "
                  "program; without second the folder of a case with two cameras")
       ->required();
-  app.add_option("second", given.inputs[1], "The same of the second camera");
+  app.add_option("second", given.inputs[1], "Case folder or file of vectors of the second camera");
   app.add_option("-o,--output", arguments->output,
                  "File for the three components, .h5; the figure has the same name with .png")
       ->required();

@@ -113,7 +113,9 @@ CommandBody attach_collect(CLI::App& app, GlobalOptions const& options) {
                  "Pack images and true displacements of the cases that were run with --keep-images into one HDF5 file");
   return [arguments, &options] {
     std::string const& run = arguments->run;
-    if (!arguments->dataset.empty()) refuse_files_of_study(run, arguments->dataset);  // before anything is written
+    if (!arguments->dataset.empty())
+      refuse_files_of_study(run, arguments->dataset);  // check the path before anything
+                                                       // is written
     StudyTable const table = collect_study(run);
     if (table.builds.size() > 1) {
       spdlog::warn("{}: the cases were computed by {} builds of gladstone ({}), whose numbers may differ", run,

@@ -190,7 +190,8 @@ Comparison compare_vectors(PreparedCase const& prepared, GroundTruth const& dots
                                                        measured.position_px, settings, camera.columns, camera.rows, at);
   }
   comparison.frames_deformed = !tracked && (settings.window_px.size() > 1 || settings.final_passes > 1);
-  if (rendered && !settings.gives_scattered_vectors()) {  // other dots may be found in noise-free images
+  if (rendered && !settings.gives_scattered_vectors()) {  // scattered vectors are excluded, since other dots may be
+                                                          // found in noise-free images
     Detector const detector(prepared.scene.setup.camera, rendered->exposure_e);
     DisplacementField again =
         every_nth(correlate_frames(*rendered->rendering->in_place->ideal(detector),

@@ -21,7 +21,7 @@ namespace gladstone {
 struct CompareOptions {
   std::string vectors;  ///< path of the vectors; empty: CASE/vectors.h5
   TruthAt truth_at = TruthAt::mid_position;
-  std::optional<std::string> conventions;  ///< as given by the user; empty: detected for foreign files
+  std::optional<std::string> conventions;  ///< conventions given by the user; empty: detected for foreign files
   bool figures = true;
   bool reuse = false;  ///< reuse the stored comparison of the CASE if it was computed from the same files
 };

@@ -141,10 +141,10 @@ MeasuredVectors accept_vectors(VectorFile file, std::string const& name, CaseSet
   bool any_valid = left_out.all() > left_out.displacement_not_finite;
   for (std::size_t i = 0; i < file.field.size() && !any_valid; ++i) any_valid = file.field.counts(i);
   if (!any_valid)
-    throw DataError(ErrorCode::no_valid_vector, name,
-                    fmt::format("none of its {} vectors is valid; check the frames and how they were "
-                                "correlated",
-                                file.field.size()));
+    throw DataError(
+        ErrorCode::no_valid_vector, name,
+        fmt::format("all of its {} vectors are invalid; check the frames and the settings of the correlation",
+                    file.field.size()));
   MeasuredVectors vectors{{}, loaded.correlate, file.foreign, {}, name, left_out, {}};
   if (options.conventions && specifies_reading(*options.conventions)) {
     vectors.report = file.format + " vectors, as specified: " + describe(file.conventions);

@@ -35,7 +35,7 @@ std::vector<DensityTerm> compute_density_budget(Comparison const& comparison, Re
   GLADSTONE_EXPECTS(comparison.chain == BudgetChain::bos && !reconstruction.truth.empty());
   ReconstructOptions fixed = options;
   fixed.propagate = false;
-  if (reconstruction.axisymmetry) {  // the same inversion for all stages
+  if (reconstruction.axisymmetry) {  // use the same inversion for all stages
     fixed.axis->position = reconstruction.axisymmetry->axis.position;
     if (fixed.abel == density::AbelMethod::tikhonov) fixed.lambda = reconstruction.axisymmetry->lambda;
   }

@@ -27,7 +27,7 @@ class FrameIntervals {
   explicit FrameIntervals(std::vector<std::string> const& files);
 
   /// Returns true if the interval from an image to the following one is longer than the smallest one. Always false if
-  /// less than half of the intervals are the smallest one, since the numbers then do not count images.
+  /// less than half of the intervals are the smallest one, since the numbers are then not consecutive.
   bool misses_next(std::size_t image) const { return usual_ > 0 && numbers_[image + 1] - numbers_[image] != usual_; }
   /// Returns the number that the image after this one should have.
   long long next(std::size_t image) const { return numbers_[image] + usual_; }

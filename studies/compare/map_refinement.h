@@ -11,7 +11,7 @@ namespace gladstone {
 /// Values at nodes of a map, and their standard errors.
 struct MapSamples {
   std::vector<Vec2d> value;
-  std::vector<Vec2d> error;  ///< empty or NaN: negligible or unknown
+  std::vector<Vec2d> error;  ///< standard errors; empty: all are negligible; NaN: the error is unknown
 };
 
 /// Node of a map.

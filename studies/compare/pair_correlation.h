@@ -24,13 +24,14 @@ struct PairNeighbours {
 /// Dots or particles of a pair; none unless the method tracks them.
 struct PairDots {
   DisplacementField vectors;
-  std::optional<std::vector<std::int64_t>> stored_tracks;  ///< of the file of an earlier run; nullopt: not yet stored
+  std::optional<std::vector<std::int64_t>> stored_tracks;  ///< track numbers in the file of an earlier run; nullopt:
+                                                           ///< not yet stored
   FileOrigin origin;
 };
 
 /// Vectors of a pair.
 struct PairVectors {
-  DisplacementField field;  ///< without the data that the statistics do not use; empty if the pair failed
+  DisplacementField field;  ///< vectors without the data that the statistics do not use; empty if the pair failed
   PairDots dots;
 };
 

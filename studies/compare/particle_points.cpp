@@ -77,7 +77,7 @@ class SheetPoints {
   Pose<double> plane_;
   std::vector<Vec2d> const& wanted_;
   std::vector<std::optional<ImagedPoint>> seen_;
-  std::vector<Vec2d> place_;  // at mid-time, on the plane [m]
+  std::vector<Vec2d> place_;  // positions at mid-time, on the plane [m]
   double diameter_ = 0;
   ParticleVelocity velocity_;
 };

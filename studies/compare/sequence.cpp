@@ -151,7 +151,8 @@ class SequenceRun {
   void correlate_all(PairCorrelation const& correlation, SequenceFolder const& folder) {
     PairProgress progress("correlate pairs", result_.pairs.size(), shown_);
     auto const threads = static_cast<std::size_t>(thread_count());
-    std::vector<PairDots> dots(result_.pairs.size());  // of the pairs whose fields wait for an earlier one
+    std::vector<PairDots> dots(result_.pairs.size());  // dots of the pairs whose fields wait for that of an earlier
+                                                       // pair
     OrderedFields fields(waiting_per_thread * threads, [&](std::size_t k, DisplacementField const& field) {
       result_.pairs[k].has_vectors() ? statistics_.add(field) : statistics_.skip();
       if (tracks_dots()) store_dots(folder, result_.pairs[k], std::exchange(dots[k], {}));

@@ -23,7 +23,8 @@ inline constexpr char const* dots = "dots";
 /// Settings of a sequence.
 struct SequenceSettings {
   Pairing pairing = Pairing::pairs;
-  CorrelationFile correlation;  ///< for PreparedSet::sequence; correlate_sequence() computes its backgrounds
+  CorrelationFile correlation;  ///< correlation settings for PreparedSet::sequence; correlate_sequence() computes the
+                                ///< backgrounds
 };
 /// Reads the settings of a sequence: as read_correlation_file(), or default_correlation() if `path` is empty, but
 /// "background" steps may omit `frame`, and then subtract the background of the sequence.
@@ -51,8 +52,8 @@ struct SequenceResult {
   std::vector<PairRecord> pairs;
   std::string device;
   double seconds = 0;                 ///< wall time [s]
-  SequenceMoments statistics;         ///< without points if no pair has vectors
-  std::vector<std::string> warnings;  ///< about several pairs at once, or about the statistics
+  SequenceMoments statistics;         ///< statistics; has no points if no pair has vectors
+  std::vector<std::string> warnings;  ///< warnings about several pairs at once, or about the statistics
 
   std::size_t vectors() const { return statistics.position_px.size(); }  ///< vectors per field; 0: no field
   /// Counts the pairs of a state, and those with vectors of an earlier run.

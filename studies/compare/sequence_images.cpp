@@ -26,7 +26,7 @@ Image<double> compute_background_image(std::string const& statistic, std::vector
       size.require(image.levels, frames[k].name());
       if (count_not_finite(image.levels) > 0) return std::nullopt;
       return std::move(image.levels);
-    } catch (DataError const&) {  // its pair reports the problem
+    } catch (DataError const&) {  // the problem is reported when the pair is correlated
       return std::nullopt;
     }
   });
@@ -82,7 +82,7 @@ SequenceSize find_commonest_size(std::vector<SequencePair> const& pairs) {
           candidates.push_back({{columns, rows, frame->name()}, 1});
         else
           ++known->frames;
-      } catch (DataError const&) {  // its pair reports the problem
+      } catch (DataError const&) {  // the problem is reported when the pair is correlated
         if (!first_error) first_error = std::current_exception();
       }
     }

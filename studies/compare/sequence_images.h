@@ -15,7 +15,7 @@ struct SequenceImage {
   std::string sha256;  ///< pixel_sha256()
   std::vector<std::string> warnings;
 };
-/// Reads a frame. @throws DataError, also if none of its pixels is finite
+/// Reads a frame. @throws DataError, also if all pixels are NaN or infinite
 SequenceImage read_sequence_image(SequenceFrame const& frame);
 
 /// Size of the frames of a sequence.

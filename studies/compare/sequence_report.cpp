@@ -16,8 +16,7 @@ void report_sequence(SequenceResult const& result, std::string const& folder) {
   if (failed > most_named) spdlog::warn("{} further pairs failed; sequence.json lists them", failed - most_named);
   if (result.count(PairState::done) == 0)
     throw DataError(ErrorCode::undetermined, folder,
-                    fmt::format("none of the {} pairs could be correlated; the first: {}", result.pairs.size(),
-                                result.pairs.front().error));
+                    fmt::format("all {} pairs failed; the first: {}", result.pairs.size(), result.pairs.front().error));
   for (std::string const& warning : result.warnings) spdlog::warn("{}", warning);
 }
 

@@ -15,16 +15,18 @@ namespace gladstone {
 
 /// Options of a stereoscopic measurement.
 struct StereoOptions {
-  std::array<std::string, 2> inputs;       ///< see find_stereo_inputs()
+  std::array<std::string, 2> inputs;       ///< inputs of both cameras, see find_stereo_inputs()
   std::vector<std::string> calibrations;   ///< calibration.h5 of each camera; empty: exact cameras of rendered cases
-  std::optional<std::string> conventions;  ///< of the vectors, as given by the user; empty: those of the file's format
+  std::optional<std::string> conventions;  ///< conventions of the vectors given by the user; empty: those of the file's
+                                           ///< format
   stereo::ObjectPlane plane;               ///< middle of the laser sheet, with `align` the first assumption
   bool dewarp_images = false;              ///< correlate the dewarped frames of the cases, instead of reading vectors
   bool align = false;                      ///< determine the sheet from images; false: only measure the disparity
   /// images of the first and of the second camera in turn, two for each time; empty: both frames of the cases, if any
   std::vector<std::string> images;
   double spacing = 0.0;             ///< distance between nodes [m]; 0: mean distance of the vectors
-  double residual_limit = 4.0;      ///< see stereo::reject_large_residuals() [1]; 0: accept all vectors
+  double residual_limit = 4.0;      ///< limit of the residual, see stereo::reject_large_residuals() [1]; 0: accept all
+                                    ///< vectors
   std::optional<double> window_px;  ///< size of the interrogation windows [px]; empty: [correlate]
 };
 

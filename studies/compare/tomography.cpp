@@ -100,7 +100,7 @@ std::array<double, 2> find_common_range(std::vector<TomographyView> const& views
   double low = -HUGE_VAL, high = HUGE_VAL;
   for (TomographyView const& view : views) {
     double const along = view.view_direction[axis], across2 = 1.0 - along * along;
-    if (across2 < 0.75) continue;  // more than 30 degrees oblique
+    if (across2 < 0.75) continue;  // the view is more than 30 degrees oblique to the axis
     double least = HUGE_VAL, most = -HUGE_VAL;
     for (Vec3d const& point : view.middle_points) {
       least = std::min(least, point[axis] / across2);

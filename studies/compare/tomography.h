@@ -25,7 +25,8 @@ struct TomographyOptions {
   std::vector<std::string> views;          ///< case folder of each view, or its setup together with `vectors`
   std::vector<std::string> vectors;        ///< vectors of each view; empty: CASE/vectors.h5
   bool ray_truth = false;                  ///< use the true displacement of the dots of rendered cases
-  std::optional<std::string> conventions;  ///< of the vectors, as given by the user; empty: those of the file's format
+  std::optional<std::string> conventions;  ///< conventions of the vectors given by the user; empty: those of the file's
+                                           ///< format
   std::vector<double> angles;      ///< angle of the volume about Y in each view [rad]; empty: i / views of `arc`
   double arc = 3.141592653589793;  ///< range of the default angles [rad]
   std::vector<ReferenceRegion> reference;  ///< region of each view whose lines of sight meet the reference density only
@@ -45,7 +46,7 @@ struct Tomography {
   std::vector<std::int64_t> seen;     ///< number of views that see the node [grid.size()]
   std::vector<double> truth;          ///< true density of rendered cases [kg/m^3, grid.size()]; empty: unknown
   std::vector<double> residual;       ///< see tomography::VolumeReconstruction [1]
-  std::vector<double> view_residual;  ///< see tomography::VolumeReconstruction [1, views]
+  std::vector<double> view_residual;  ///< residual of each view, see tomography::VolumeReconstruction [1, views]
   double reference_density = 0.0;     ///< [kg/m^3]
   double tv_weight = 0.0;             ///< strength of the total variation in the last sweep, see SartSettings [1]
   std::string device = "cpu";         ///< device of the reconstruction

@@ -12,7 +12,7 @@ namespace gladstone {
 struct TomographyView {
   CaseSetup loaded;
   tomography::ProjectedView projected = {};
-  Vec3d view_direction{};                 ///< from the volume towards the camera
+  Vec3d view_direction{};                 ///< direction from the volume towards the camera
   std::vector<Vec3d> middle_points = {};  ///< points of the lines of sight that are closest to the volume's origin [m]
   double spacing = 0.0;                   ///< distance between the lines of adjacent vectors there [m]
   std::size_t unreferenced = 0;           ///< vectors in regions without reference, which have no line integral

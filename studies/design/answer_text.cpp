@@ -20,7 +20,7 @@ constexpr std::size_t most_alternatives = 5;
 /// A predicted quantity with its key.
 struct Predicted {
   char const* key;
-  double value;  ///< in the key's unit
+  double value;  ///< value in the unit of the key
 };
 
 std::vector<Predicted> predicted(DesignPoint<double> const& b) {

@@ -19,7 +19,7 @@ enum class Bound {
   view_width,
   view_height,
   z_total,
-  // of every set-up
+  // Constraints of every set-up:
   focus,       ///< an image of the dots exists
   dots_clear,  ///< the dots are outside the medium
   lens_clear,  ///< the lens is outside the medium

@@ -18,7 +18,7 @@ struct DesignRequest {
   std::string figures;  ///< folder of the figures; empty: no figures
   std::string figure_format = "png";
   std::string apply;                     ///< file for the recommended setup; empty: not written
-  VerificationPlan verification;         ///< zero benches: no simulation
+  VerificationPlan verification;         ///< benches = 0: no simulation
   std::function<Backend()> open_device;  ///< opens the device of the simulation
 };
 
@@ -27,7 +27,8 @@ struct DesignReport {
   nlohmann::ordered_json json;
   std::string text;
   std::vector<std::string> warnings;
-  bool feasible = true;  ///< by formula and, if simulated, in simulation; also true without requirements
+  bool feasible = true;  ///< whether a design is feasible by formula and, if simulated, in simulation; also true
+                         ///< without requirements
 };
 
 /// Computes the design sheet of a setup and, if it has [requirements], the recommended setup or the reasons why none

@@ -35,7 +35,7 @@ struct FrontPoint {
 
 /// Answer to a design question.
 struct Recommendation {
-  std::vector<BranchOutcome> outcomes;  ///< of every branch; the best one first if any is feasible
+  std::vector<BranchOutcome> outcomes;  ///< outcomes of every branch; the best one first if any is feasible
   // if a design is feasible
   std::vector<std::string> binding;  ///< active limits of the best design, including ends of intervals
   std::vector<RequirementCost> costs;

@@ -85,7 +85,7 @@ bool differ_in_stop_only(DesignBranch const& a, DesignBranch const& b) {
 
 enum class Direction { smaller, larger };
 
-/// Returns the verdict on the next f-number among the values of the question; empty if there is none.
+/// Describes the result for the next f-number among the values of the question; empty if there is none.
 std::string listed_stop_text(AnsweredQuestion const& answered, Direction direction) {
   BranchOutcome const& chosen = answered.chosen();
   double const own = chosen.branch.value[f_number_index];
@@ -102,7 +102,7 @@ std::string listed_stop_text(AnsweredQuestion const& answered, Direction directi
                      next->solution.feasible() ? change_text(answered, next->solution.objective) : "");
 }
 
-/// Returns the verdict on the set-up with a stop larger or smaller by a factor sqrt(2) and everything else unchanged.
+/// Describes the result for the set-up with a stop larger or smaller by a factor sqrt(2) and everything else unchanged.
 std::string full_stop_text(AnsweredQuestion const& answered, Direction direction, FreeChoice const* free) {
   DesignPoint<double> bench = answered.best();
   bench.f_number *= direction == Direction::larger ? std::sqrt(2.0) : std::sqrt(0.5);

@@ -20,8 +20,8 @@ struct SetupOverview {
 
 /// Collects the rows of the design sheet that describe image scale, view, blur, images of dots or particles,
 /// sensitivity and depth, the number of dots or particles, and the cost of rendering. No field is read and no ray is
-/// traced through it; a gradient that is not known in closed form is replaced by the sheet's usual one. Cameras that
-/// the sheet does not describe have paraxial values.
+/// traced through it. If a field is not given by a closed form, the sheet's default gradient is used. Cameras that the
+/// sheet does not describe have paraxial values.
 /// @throws DataError if a file of the setup cannot be read
 SetupOverview make_setup_overview(CaseSetup loaded);
 

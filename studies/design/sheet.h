@@ -29,10 +29,10 @@ Margin at_most(double value, double good, double most);
 
 /// One closed-form quantity of the design sheet.
 struct SheetRow {
-  std::string id;   ///< its number in docs/design.md, F1 to F27
-  std::string key;  ///< for programs, with the unit as suffix
+  std::string id;   ///< number of the row in docs/design.md, F1 to F27
+  std::string key;  ///< name for programs, with the unit as suffix
   std::string name;
-  double value;  ///< in `unit`; NaN: not applicable
+  double value;  ///< value in `unit`; NaN: not applicable
   std::string unit;
   std::string formula;
   std::string source;

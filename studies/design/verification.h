@@ -13,7 +13,7 @@ namespace gladstone {
 /// A quantity predicted by formula and measured in simulation.
 struct VerifiedQuantity {
   std::string key;             ///< name with the unit as suffix
-  double predicted = 0;        ///< in the key's unit, like predicted_error and simulated
+  double predicted = 0;        ///< predicted value in the key's unit, like predicted_error and simulated
   double predicted_error = 0;  ///< standard error of the formula
   Estimate simulated;
   bool rms = false;  ///< root mean square; the errors of its square are normally distributed
@@ -50,7 +50,7 @@ struct VerifiedDesign {
 
 /// Result of simulating a recommendation.
 struct Verification {
-  std::vector<VerifiedDesign> benches;  ///< in the order in which they were simulated
+  std::vector<VerifiedDesign> benches;  ///< designs in the order in which they were simulated
   std::optional<std::size_t> chosen;    ///< first design that meets the requirements
 
   /// Returns true if any simulation succeeded.

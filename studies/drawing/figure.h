@@ -45,13 +45,13 @@ struct Layer {
     levels,  ///< x, y, half width: horizontal lines
     boxes,   ///< lower x, upper x, lower y, upper y
     arrows,  ///< x, y, length in x, length in y
-    spans,   ///< as arrows, with heads at both ends
+    spans,   ///< x, y, length in x, length in y: arrows with heads at both ends
     guides,  ///< x: vertical lines across the panel
   };
   Kind kind = Kind::line;
   std::vector<std::vector<double>> columns = {};
   std::string colour = "#404040";
-  std::string name = {};  ///< in the legend; empty: omitted there
+  std::string name = {};  ///< name in the legend; empty: not listed there
   double width = 2;       ///< of lines
   Dash dash = Dash::solid;
   int marker = 0;      ///< 0: none, -1: the smallest dot, from 1: circle, square, triangles, diamond, then hollow ones
@@ -69,7 +69,7 @@ struct Map {
   double low = 0, high = 1;  ///< values of the end colours
   bool logarithmic = false;
   bool has_bar = true;           ///< colour bar to the right of the panel
-  std::vector<Tick> ticks = {};  ///< of the colour bar; empty: automatic
+  std::vector<Tick> ticks = {};  ///< ticks of the colour bar; empty: automatic
 };
 
 enum class Align { left, centre, right };
@@ -79,7 +79,7 @@ enum class TextRole { title, subtitle, caption, heading, label, note, fine_note,
 
 struct Label {
   std::string text;
-  double x, y;  ///< of its middle or end; on the page [px], or of a panel in the units of its axes
+  double x, y;  ///< position of the text's middle or end; on the page [px], or of a panel in the units of its axes
   TextRole role = TextRole::label;
   Align align = Align::centre;
   double right_px = 0, down_px = 0;  ///< shift [px]

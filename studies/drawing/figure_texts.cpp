@@ -25,7 +25,7 @@ constexpr std::array<short, 95> widths{318,  401, 460, 838, 636, 950, 780, 275, 
                                        603,  787, 695, 635, 611, 732, 684, 989, 685, 611, 685, 390, 337, 390, 838, 500,
                                        500,  613, 635, 550, 635, 615, 352, 635, 634, 278, 278, 579, 278, 974, 634, 612,
                                        635,  635, 411, 521, 392, 634, 592, 818, 592, 592, 525, 636, 337, 636, 838};
-constexpr double other_width = 640;  ///< about that of a Greek letter
+constexpr double other_width = 640;  ///< width of other characters, about that of a Greek letter
 
 PlacedText place(Label label, FigureFont font) {
   label.x += label.right_px;
@@ -133,7 +133,7 @@ std::vector<PlacedText> place_labels(Figure const& figure, figures::Panel const&
 }
 
 double legend_width(figures::Panel const& panel, Figure::Kind kind) {
-  constexpr double sample = 52;  // line, and the gaps beside it [px]
+  constexpr double sample = 52;  // width of the sample line and of the gaps on both sides of it [px]
   double longest = 0;
   for (figures::Layer const& layer : panel.layers) {
     longest = std::max(longest, text_width(layer.name, font_of(kind, "legend")));

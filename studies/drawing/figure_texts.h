@@ -25,7 +25,7 @@ double text_width(std::string_view text, FigureFont const& font);
 
 /// Text with its place on the page.
 struct PlacedText {
-  figures::Label label;  ///< at x, y [px]; the shifts are applied
+  figures::Label label;  ///< position x, y on the page [px]; the shifts are applied
   FigureFont font;
   figures::Box box;
 };
@@ -38,7 +38,7 @@ std::vector<PlacedText> place_texts(Figure const& figure);
 /// @return empty if a range of an axis is automatic
 std::vector<PlacedText> place_labels(Figure const& figure, figures::Panel const& panel);
 
-inline constexpr double legend_gap = 14;  ///< from a panel to the legend at its side [px]
+inline constexpr double legend_gap = 14;  ///< distance from a panel to the legend at its side [px]
 
 /// Returns the width of the legend to the right of a panel, with the gap [px].
 double legend_width(figures::Panel const& panel, Figure::Kind kind);

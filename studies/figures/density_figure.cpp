@@ -34,7 +34,8 @@ struct DensityProfile {
   std::vector<double> place_mm;                     ///< [mm]
   std::vector<double> density, low, high, truth;    ///< density, its interval of +- sigma, and truth [kg/m^3]
   double largest_mm = 0.0, largest = not_a_number;  ///< place and density of the largest deviation
-  double largest_sigma = not_a_number;              ///< standard uncertainty there [kg/m^3]
+  double largest_sigma = not_a_number;              ///< standard uncertainty at the place of the largest deviation
+                                                    ///< [kg/m^3]
 };
 
 /// Returns the index of the node with the largest deviation; 0 if no node has a density.

@@ -72,7 +72,7 @@ BinnedErrors bin_errors(std::vector<double> const& gradient, std::vector<Vec2d> 
     if (std::isfinite(gradient[i]) && is_finite(error_px[i])) order.push_back(i);
   }
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return gradient[a] < gradient[b]; });
-  // with at least 20 vectors in each bin if there are enough
+  // Use bins with at least 20 vectors each if there are enough vectors.
   std::size_t const bins = std::clamp<std::size_t>(order.size() / 20, 1, 15);
   BinnedErrors binned;
   for (std::size_t bin = 0; bin < bins; ++bin) {

@@ -28,7 +28,7 @@ enum class ColourScale {
 
 /// One map with title and colour bar. NaN is grey; values outside the range are clipped to its end colours.
 struct MapPanel {
-  std::string title;  ///< with the unit, e.g. "u, ray truth [px]"
+  std::string title;  ///< title with the unit, e.g. "u, ray truth [px]"
   Image<double> map;  ///< empty: no panel is drawn at this position
   ColourScale scale = ColourScale::diverging;
   /// panels with the same name share a range; empty: separate range

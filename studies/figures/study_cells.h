@@ -19,8 +19,8 @@ std::size_t sampled_places_in_maps(std::size_t points);
 /// Finished cases of a study, sorted by the positions on its axes; data source of all its figures.
 class StudyCells {
  public:
-  /// @param sampled_places  maximum number of positions on a numeric axis with a different value in every point of the
-  ///                        study, as sampled by "sobol"
+  /// @param sampled_places  maximum number of positions on a numeric axis that "sobol" sampled, which has a different
+  /// value in every point of the study
   explicit StudyCells(StudyTable const& table, std::size_t sampled_places = max_positions);
 
   /// Returns the axes with more than one value.

@@ -14,7 +14,7 @@ namespace gladstone {
 /// Results of a measurement from which its statements are derived; the displacement is the first input.
 struct MeasurementKnown {
   MeasuredGradients const& gradients;
-  PropagatedResult const& typical;  ///< for a vector of typical displacement and uncertainty
+  PropagatedResult const& typical;  ///< result for a vector of typical displacement and uncertainty
   std::vector<MeasurementInput> const& inputs;
   MeanOfRepeats const& mean;
   SimulatedTwin const* twin = nullptr;  ///< null without a simulated twin

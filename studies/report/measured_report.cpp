@@ -32,7 +32,8 @@ MeasurementInput typical_displacement(MeanOfRepeats const& mean, double formula_
   MeasurementInput input;
   input.key = "displacement_px";
   input.value = compute_rms(finite_components(mean.field.displacement_px));
-  input.sigma = repeated        ? compute_rms(sigma)  // for few repeats, the median is biased low
+  input.sigma = repeated ? compute_rms(sigma)  // the rms is used, because the median of few repeats is biased
+                                               // low
                 : sigma.empty() ? formula_px
                                 : quantile(sigma, 0.5);
   if (repeated) input.degrees_of_freedom = static_cast<double>(mean.count - 1);

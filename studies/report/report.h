@@ -25,7 +25,7 @@ struct ReportOptions {
   std::string conventions;
   /// for a CASE or a measurement: reconstruction of the density, without vectors, conventions and budget; empty: none
   std::optional<ReconstructOptions> density;
-  std::vector<std::string> density_words;  ///< its options as words of the command line
+  std::vector<std::string> density_words;  ///< options of the density as words of the command line
 };
 
 /// Summary of a report that was written.

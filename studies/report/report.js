@@ -255,7 +255,7 @@
         values.forEach((v, i) => { const c = known(v) ? d3.rgb(colour(Math.max(low, Math.min(top, v)))) : { r: 128, g: 128, b: 128 }; picture.data.set([c.r, c.g, c.b, known(v) ? 255 : 60], 4 * i); });
         pen.putImageData(picture, 0, 0);
       };
-      /* All maps at once, small, each with its own colours: on paper they stand beside one another. */
+      /* All maps at once, small, each with its own colours: on paper they are printed side by side. */
       const overview = () => {
         const all = d3.select(plot.node().parentNode).append("div").attr("class", "maps").selectAll("div").data(of).enter().append("div");
         all.append("canvas").attr("width", grid.columns).attr("height", grid.rows).attr("aria-hidden", "true");

@@ -10,7 +10,7 @@ namespace gladstone {
 class CaseLocks {
  public:
   enum class Use {
-    take,  ///< for claiming cases; creates RUN/claims if it is missing
+    take,  ///< mode for claiming cases; creates RUN/claims if it is missing
     look   ///< read-only; if RUN/claims is missing, no case is claimed
   };
   /// Opens RUN/claims. @throws OutputError if it cannot be opened, for example because RUN is read-only and Use is

@@ -15,7 +15,7 @@ namespace {
 
 constexpr char const* script_text = R"(#!/bin/sh
 # Written by "gladstone sweep run --slurm": {cases} missing cases in {tasks} tasks, one line of cases a task.
-# What is whole is not computed again: a task that was preempted or requeued goes on where it was.
+# Complete results are not computed again: a task that was preempted or requeued continues with the missing cases.
 cases=$(sed -n "$((SLURM_ARRAY_TASK_ID + 1))p" <<'END'
 {lines}
 END

@@ -37,7 +37,7 @@ class Claim {
 };
 
 /// Computes the requested parts of a case. If its vectors and errors were computed before, they are computed again with
-/// the images, so that none of its numbers is lost.
+/// the images, so that the result retains all of its numbers.
 CaseResult compute_case(std::string const& run, Manifest const& cases, std::size_t index, RunSelection const& selection,
                         CaseComputation const& compute) {
   auto const known = read_result(run, index, cases.line_hash(index), ResultPart::head);

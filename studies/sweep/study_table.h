@@ -16,7 +16,7 @@ struct StudyAxis {
   std::string key;                  ///< "lens.f_number"
   bool numeric = true;              ///< every value is a number
   std::vector<std::string> labels;  ///< all values as text
-  std::vector<double> numbers;      ///< in the unit of the key; NaN if not a number
+  std::vector<double> numbers;      ///< values in the unit of the key; NaN if not a number
   bool labelled = false;            ///< numeric, and the study file defines labels for some numbers
 };
 
@@ -51,7 +51,7 @@ struct StudyTable {
   std::vector<StudyAxis> axes;
   std::vector<std::string> measures;  ///< "ray_truth.rms_px", "budget.terms.cone.rms_px", "magnification", ...
   std::vector<StudyRow> rows;         ///< all cases of the manifest, in its order
-  std::vector<StudyPoint> points;     ///< in the order of their first cases
+  std::vector<StudyPoint> points;     ///< points in the order of their first cases
   std::vector<std::string> builds;    ///< distinct builds of gladstone that computed the cases, sorted
   std::string first_warning;          ///< first warning of the first case with warnings
 

@@ -96,7 +96,7 @@ TEST(DetectConventions, ReportsUndecidableConventions) {
       200);
   EXPECT_TRUE(found.ambiguous);
   EXPECT_EQ(found.conventions, file.conventions);
-  EXPECT_THAT(found.report, HasSubstr("another reading fits as well"));
+  EXPECT_THAT(found.report, HasSubstr("another interpretation fits as well"));
 }
 
 /// Waves without symmetry, with an amplitude of 0.1 px and wavelengths of 37 to 61 px. A shift by (12, -4) px is a

@@ -110,7 +110,7 @@ TEST_F(VectorWriters, TecplotHasOneRowPerVectorAndZerosForUnknownValues) {
       << "u, v and the raw displacement: 2^2 + 2^3 + 2^5 + 2^6";
 }
 
-// Files of older versions mark nothing: 0 is then an unknown value where it is none of a measurement.
+// Files of older versions do not mark unknown values: a 0 is then unknown wherever a measurement cannot be exactly 0.
 TEST_F(VectorWriters, TecplotOfOlderVersionsIsRead) {
   std::string const path = place("old.dat");
   std::ofstream(path) << "TITLE = \"gladstone vectors, px, y and v downwards; unknown values are 0\"\n"
@@ -446,7 +446,7 @@ TEST_F(VectorWriters, FormatsOfGridsRefuseOtherVectors) {
   DisplacementField stretched = numbered_grid();
   for (std::size_t const i : {2, 5}) stretched.position_px[i].x += 1.0;
   EXPECT_EQ(refusal("v.vti", stretched), "output at v.vti");
-  EXPECT_EQ(refusal("v.nc", stretched), "") << "has coordinates of its own";
+  EXPECT_EQ(refusal("v.nc", stretched), "") << "stores the coordinates separately";
 }
 
 TEST_F(VectorWriters, EmptyFieldsAreWritten) {

@@ -178,7 +178,7 @@ TEST(Tree, HasOnlyTheArrowsOfTheTable) {
   EXPECT_GT(includes, files.size());
 }
 
-// An exception that is no longer needed must be removed from the list, and the limit lowered with it. The limit is the
+// An exception that is no longer needed must be removed from the list, and the limit lowered by one. The limit is the
 // length of the list: 8 since `studies/drawing` may be included where three exceptions were needed before.
 TEST(Tree, NeedsEveryExceptionToTheTable) {
   EXPECT_LE(known_exceptions().size(), 8U);

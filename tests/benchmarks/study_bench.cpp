@@ -48,7 +48,7 @@ void study_without_work(benchmark::State& state) {
     };
     measure("plan", [&] { study.plan(); });
     measure("run", [&] { study.run(); });
-    measure("resume", [&] { study.run(); });  // nothing is left to compute
+    measure("resume", [&] { study.run(); });  // all cases are complete
     measure("collect", [&] { study.collect(); });
     if (!study.complete()) state.SkipWithError("the study is incomplete");
   }

@@ -96,8 +96,8 @@ TEST_F(SmallDevice, RendersTheSameBitsInSmallerBatches) {
   }
 }
 
-// Of the rays of a dot, only sums are stored, one DotCone per dot: a million rays of one dot need only the memory of
-// the images and of the points of a few cones, whereas records of 64 bytes per ray would exceed the limit.
+// The device stores only sums over the rays of a dot, one DotCone per dot: a million rays of one dot need only the
+// memory of the images and of the points of a few cones, whereas records of 64 bytes per ray would exceed the limit.
 TEST_F(SmallDevice, TracesAMillionRaysOfADotInTheMemoryOfAFew) {
   Scene scene = scene_of(uniform_gradient(20, -8), 1, mebibyte);
   DeviceMemoryLimit const limit(64 * mebibyte);

@@ -219,7 +219,7 @@ TEST_F(ForeignVectors, WhoseConventionsCannotBeToldAreWarnedOf) {
 TEST_F(ForeignVectors, AreRefusedWhereNoneLiesInTheImage) {
   write_changed("far.csv", [](std::size_t, Vec2d& place, Vec2d&) { place = 1000.0 * place; });
   expect_refused({"compare", "case", "--vectors", "far.csv"}, 2,
-                 {"far.csv: none of the", "lies in the image of 128 x 128 px (x from 7500 to", "px"});
+                 {"far.csv: all", "lie outside the image of 128 x 128 px (x from 7500 to", "px"});
   write_changed("mm.csv", [](std::size_t, Vec2d& place, Vec2d&) { place = 0.01 * place; });
   expect_refused({"compare", "case", "--vectors", "mm.csv"}, 2,
                  {"mm.csv: ", "closer together than pixels", "not in mm"});

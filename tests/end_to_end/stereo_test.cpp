@@ -100,8 +100,8 @@ TEST_F(Stereo, MeasuresUniformMotionInThreeComponents) {
     EXPECT_TRUE(std::isnan(value) || value == 0) << "exact cameras";
 }
 
-// Files with the same cameras as calibrations give the same displacements, and a larger uncertainty.
-// The folder of a case with two cameras stands for their cases.
+// Files with the same cameras as calibrations give the same displacements, and a larger uncertainty. The folder of a
+// case with two cameras may be given instead of its two cases.
 TEST_F(Stereo, ReadsTheFolderOfBothCameras) {
   measure(40, "[15.0, -12.0, 10.0]");
   auto of_folder = json_of({"stereo", "case", "-o", "uvw.h5", "--quiet", "--no-figures"});

@@ -194,7 +194,8 @@ TEST_F(Sweeps, ImagesOfAFinishedCaseAreMadeWhenTheyAreWanted) {
   EXPECT_EQ(json_of({"sweep", "run", "run", "--case", "7", "--keep-images"})["computed"], 0);
 }
 
-// The images are those of a complete run, and a later run measures them; a complete case loses none of its numbers.
+// The images are equal to those of a complete run, and a later run measures them. A complete case retains all of its
+// numbers.
 TEST_F(Sweeps, PairsOnlyRendersAndALaterRunMeasures) {
   plan("run");
   auto const first = json_of({"sweep", "run", "run", "--case", "7", "--pairs-only"});

@@ -95,7 +95,8 @@ TEST_F(Tomography, WarnsOfWhatTheVolumeDoesNotExplain) {
   EXPECT_THAT(reconstruct(both)["warnings"].dump(), testing::Not(testing::HasSubstr("masks separate")));
 }
 
-// The same vectors with the opposite sign, as of exchanged frames, in one view. Of three views, two may be named.
+// One view has the vectors of the others' flow with the opposite sign, as if its frames were exchanged. With only three
+// views, the warning may name two of them.
 TEST_F(Tomography, WarnsOfAViewThatContradictsTheOthers) {
   auto const right = reconstruct({"--reference", "left"});
   EXPECT_THAT(right["warnings"].dump(), testing::Not(testing::HasSubstr("contradicts")));

@@ -54,13 +54,13 @@ TEST_F(Variants, DotsOutsideTheViewAreWarnedOf) {
         with(automatic_setup(), "dots_per_32px_window = 10.0", "kind = \"points\"\nfile = \"dots.csv\""));
   Outcome const outcome = gladstone({"render", "points.toml", "-o", "case"});
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_THAT(outcome.err, testing::HasSubstr("none of the 2 dots lies in the view, 5.455 x 5.455 mm about the axis"));
+  EXPECT_THAT(outcome.err, testing::HasSubstr("all 2 dots are outside the view of 5.455 x 5.455 mm about the axis"));
   EXPECT_THAT(nlohmann::json::parse(read("case/summary.json"))["warnings"].dump(),
-              testing::HasSubstr("none of the 2 dots lies in the view"));
+              testing::HasSubstr("all 2 dots are outside the view"));
   // nothing to correlate: no valid vector
   Outcome const correlated = gladstone({"correlate", "case"});
   EXPECT_EQ(correlated.exit_code, 1) << correlated.err;
-  EXPECT_THAT(correlated.err, testing::HasSubstr("none of the 49 vectors is valid"));
+  EXPECT_THAT(correlated.err, testing::HasSubstr("all 49 vectors are invalid"));
 }
 
 TEST_F(Variants, RegularDotsFormALattice) {

@@ -514,7 +514,8 @@ TEST_F(ArrayReaders, ComponentsInSeparateArraysAreAVelocity) {
   EXPECT_THAT(open_field(plane, "", 3)->notes(), ElementsAre(HasSubstr("third component is 0")));
 }
 
-// Arrays of another shape, or alone, are no components; different units could not be told from the numbers.
+// Single arrays and arrays of different shapes are not components of a velocity. Components in different units are
+// rejected, since the numbers alone do not show the units.
 TEST_F(ArrayReaders, ArraysThatAreNoVelocityAreRefused) {
   auto const two = [&](std::string const& second, std::vector<double> const& sizes) {
     return write("two.mat", mat(matrix("u_m_s", {4, 3, 2}, 9, bytes<double>(numbered())) +

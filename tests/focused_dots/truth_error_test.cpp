@@ -76,11 +76,11 @@ FieldSetup small_volume(std::string const& path) {
   return field;
 }
 
-// Of independent errors with a known standard error, two thirds are within it, 0.683 for normal ones. This must hold
-// for all kinds of truth: the integral of a table corrected by rays (a plane of turbulence, a wave), a volume whose
-// side faces require rays alone, and rays of a defocused lens. The error of the reference, many more rays with another
-// seed, is less than a tenth. With about 600 components, of which the two of a dot and all its seeds share the
-// reference, the standard deviation of the fraction is 2 to 3 %: 0.60 to 0.76.
+// If errors are independent and their standard error is known, two thirds of them are within it (0.683 for normally
+// distributed errors). This must hold for all kinds of truth: the integral of a table corrected by rays (a plane of
+// turbulence, a wave), a volume whose side faces require rays alone, and rays of a defocused lens. The error of the
+// reference, many more rays with another seed, is less than a tenth. With about 600 components, of which the two of a
+// dot and all its seeds share the reference, the standard deviation of the fraction is 2 to 3 %: 0.60 to 0.76.
 TEST(TruthError, TwoThirdsOfTheDotsLieWithinIt) {
   struct Case {
     char const* name;

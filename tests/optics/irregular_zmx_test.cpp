@@ -32,7 +32,7 @@ double biconvex_focal_length(double n, double thickness) {
   return 1 / ((n - 1) * (2 * c - (n - 1) * thickness * c * c / n));
 }
 
-/// Returns the singlet with a glass line of its own.
+/// Returns the singlet with another line GLAS.
 std::string with_glass(std::string const& words) {
   return changed(zmx, "GLAS N-BK7 0 0 1.5 40 0 0 0 0 0 0", "GLAS " + words);
 }

@@ -245,8 +245,8 @@ Scene points_behind_blob(std::vector<Vec2d> const& at_px) {
   return scene;
 }
 
-// If the flow deflects rays far beyond a small stop, few of them pass. If none of 32 passes, the dot may still be
-// visible; it uses more rays until some pass.
+// If the flow deflects rays far beyond a small stop, few of them pass. Even if all of 32 rays are blocked, the dot may
+// be visible; it uses more rays until some pass.
 TEST(RayNeed, IsMoreOfADotThatNoRayShows) {
   auto setup = table1_setup(64);
   setup.lens.f_number = 128;

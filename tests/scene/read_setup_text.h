@@ -34,7 +34,7 @@ inline auto refused(ErrorCode code, std::string const& where) {
       testing::Property("problems", &SetupError::problems, testing::Contains(testing::Truly(is_it))));
 }
 
-/// The same, where the test is about a number in the message.
+/// Like refused() above, for tests about a number in the message.
 inline auto refused(ErrorCode code, std::string const& where, std::string const& number) {
   return testing::AllOf(refused(code, where), testing::ThrowsMessage<SetupError>(testing::HasSubstr(number)));
 }

@@ -141,10 +141,10 @@ TEST(PredictedAgreement, OfOneWaveIsItsTransfer) {
   }
 }
 
-// Two waves of energies 1 and 3: the cone transmits nearly all of the first (400 mm), and none of the second (its first
-// zero is at a wavelength of 2.386 mm / 1.21967). The rays are the first wave alone, so that ratio and correlation are
-// sqrt(1/4). The cone of a slice 5 mm from the middle is 2 % wider or narrower, which transmits |H'| 0.02 x = 0.4 *
-// 0.02 * 3.8 of the second wave at that slice, 0 to first order on average: 1e-3 of its amplitude.
+// Two waves of energies 1 and 3: the cone transmits nearly the whole amplitude of the first (400 mm), but zero of the
+// second (its first zero is at a wavelength of 2.386 mm / 1.21967). The rays are the first wave alone, so that ratio
+// and correlation are sqrt(1/4). The cone of a slice 5 mm from the middle is 2 % wider or narrower, which transmits
+// |H'| 0.02 x = 0.4 * 0.02 * 3.8 of the second wave at that slice, 0 to first order on average: 1e-3 of its amplitude.
 TEST(PredictedAgreement, OfAWaveThatPassesAndOneThatDoesNot) {
   gladstone::Setup const setup = points_on_axis();
   double const killed = cone_width(setup) / 1.2196698912665;

@@ -60,7 +60,7 @@ class PairwiseCorrelation {
     }
     double const mean_reference = sums.reference / sums.weight, mean_flow = sums.flow / sums.weight;
     int const core_begin = grid_.window_px / 2, core_end = core_begin + grid_.window_px;
-    double energy[2] = {}, core_energy[2] = {};  // of the reference and of the flow
+    double energy[2] = {}, core_energy[2] = {};  // of frame A and of frame B
     std::fill(window_.begin(), window_.end(), 0.0);
     visit_window_pixels(pair_, x_, column, y_, row, [&](int i, int j, double weight, std::size_t at) {
       double const value[2] = {weight * (pair_.reference[at] - mean_reference), weight * (pair_.flow[at] - mean_flow)};

@@ -98,7 +98,7 @@ class OpticalFlowCorrelator final : public Correlator {
     return squares / pixels - mean * mean > std::pow(smallest_contrast * pair.contrast, 2);
   }
 
-  /// Returns the known fraction of the pixels of a nominal window.
+  /// Returns the fraction of the pixels of a nominal window that are known in both frames.
   static double valid_pixel_fraction(ImagePair const& pair, InterrogationGrid const& grid, std::size_t vector) {
     if (pair.available.empty()) return 1.0;
     auto const [x, y] = first_pixel(grid, vector);

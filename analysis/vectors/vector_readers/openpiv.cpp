@@ -18,7 +18,7 @@ VectorFile read_openpiv(TextTable const& table) {
       if (flag != 0.0) field.status[i] = flag == 2.0 ? VectorStatus::replaced : VectorStatus::invalid;
     }
     if (mask && table.values[*mask][i] != 0.0) {
-      // without flags, mask denotes invalid vectors
+      // in files without flags, mask denotes invalid vectors
       field.status[i] = flags ? VectorStatus::masked : VectorStatus::invalid;
     }
   }

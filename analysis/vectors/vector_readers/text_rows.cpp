@@ -65,7 +65,7 @@ std::vector<std::string_view> fields_of(std::string_view line, RowFormat format,
 }
 
 RowFormat row_format(std::string_view line, std::size_t columns) {
-  // the last one requires fields in quotation marks
+  // the last of these formats requires fields in quotation marks
   constexpr std::array<RowFormat, 8> formats{
       {{';', '.'}, {';', ','}, {',', '.'}, {'\t', '.'}, {'\t', ','}, {' ', '.'}, {' ', ','}, {',', ','}}};
   for (RowFormat const format : formats) {

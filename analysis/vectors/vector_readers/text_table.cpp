@@ -156,9 +156,9 @@ class TableReader {
   TextTable table_;
   std::string header_;  ///< last line before the rows
   DeclaredVectors declared_;
-  RowFormat format_;  ///< without separator until the first row of numbers
+  RowFormat format_;  ///< format of the rows; has no separator until the first row of numbers
   TecplotZone zone_;
-  BlockValues block_;  ///< empty without BLOCK packing
+  BlockValues block_;  ///< values of a zone in BLOCK packing; empty for other packings
 };
 
 }  // namespace

@@ -9,10 +9,10 @@ namespace gladstone::detail {
 
 /// Quantity of all vectors, as files store it.
 struct VectorColumn {
-  std::string name;         ///< with its unit: "u_px"
+  std::string name;         ///< name of the column with its unit: "u_px"
   std::string units;        ///< "px" or "1"
   std::string description;  ///< meaning of the numbers
-  bool is_code = false;     ///< integers, such as the status
+  bool is_code = false;     ///< the values are integers, such as the status
   std::vector<double> values;
 
   /// Returns true if at least one vector has a finite value.
@@ -24,7 +24,7 @@ struct VectorTable {
   std::vector<VectorColumn> columns;
   int grid_columns = 0, grid_rows = 0;  ///< 0: scattered
   std::string remark;                   ///< units and directions of the axes, for headers
-  std::string content = "vectors";      ///< what the columns are, for headers
+  std::string content = "vectors";      ///< kind of the rows, for headers: "vectors"
   int grid_layers = 1;                  ///< number of such grids along z, stored one after the other
 
   std::size_t rows() const { return columns.empty() ? 0 : columns.front().values.size(); }

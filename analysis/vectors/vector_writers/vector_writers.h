@@ -18,7 +18,7 @@ namespace gladstone::detail {
 
 /// vectors.h5: all quantities by vector, and those that are most used as grids with dimension scales.
 void write_vector_hdf5(std::string const& path, DisplacementField const& field, FileOrigin const& origin);
-/// Likewise with further columns.
+/// Writes vectors.h5 with further columns.
 void write_vector_columns(std::string const& path, DisplacementField const& field, std::vector<VectorColumn> more,
                           FileOrigin const& origin);
 

@@ -100,7 +100,7 @@ std::string vectors_remark(VectorTable const& table) {
   return "vectors: positions and displacements in " + table.remark;
 }
 
-/// Layout of two components.
+/// Returns the columns that form the positions and vectors of a field with two components.
 VtkLayout plane_layout() {
   return {{"position_px", {"x_px", "y_px", ""}},
           {{"displacement_px", {"u_px", "v_px", ""}},

@@ -278,7 +278,7 @@ class SeqReader {
   Prescription result_;
   SeqSystem system_;
   std::vector<SeqSurface> surfaces_;  // surfaces of the file; the first one is the object
-  SeqSurface image_surface_;          // only its coordinate frame is used
+  SeqSurface image_surface_;          // image SI, of which only the coordinate frame is used
   PrivateGlasses private_glasses_;
   std::vector<std::string> unknown_;  // unknown commands
   std::string unknown_where_;

@@ -153,10 +153,12 @@ class ZmxReader {
   }
 
   /// Checks the numbers of the surfaces. Surfaces are read in the order of the file if their numbers increase, with a
-  /// warning if they are not consecutive, or if they decrease to 1, as in files of lenses turned round by hand. Adds
-  /// the object if the file omits it. @throws DataError for any other order
+  /// warning if they are not consecutive, or if they decrease to 1, as in files of lenses reversed by hand. Adds the
+  /// object if the file omits it.
+  /// @throws DataError for any other order
   void check_order() {
-    constexpr std::size_t fewest_reversed = 3;  // two exchanged surfaces may be an error
+    constexpr std::size_t fewest_reversed = 3;  // fewer surfaces whose numbers decrease may just have been exchanged by
+                                                // mistake
     auto const find_fault = [this](auto const& compare) {
       return std::adjacent_find(numbers_.begin(), numbers_.end(),
                                 [&](auto const& a, auto const& b) { return !compare(a, b); });
@@ -238,7 +240,7 @@ class ZmxReader {
   Prescription result_;
   ZmxSystem system_;
   std::vector<ZmxSurface> surfaces_;
-  std::vector<SurfaceNumber> numbers_;  // of the surfaces in the file
+  std::vector<SurfaceNumber> numbers_;  // numbers of the surfaces in the file
   std::vector<std::string> comma_lines_;
   std::string first_comma_;  // first number with a decimal comma
   ZmxNotes notes_;

@@ -234,8 +234,8 @@ TEST(AxisymmetricInversion, StartsAtTheLargestMeasuredRadius) {
   }
 }
 
-// One side of the axis determines the density. If the image begins at the axis, or beside it, the axis is outside the
-// vectors; radii that are smaller than the distance between are not measured, and at the first radius the gradient is
+// One side of the axis determines the density. If the image begins at the axis, or at a distance from it, the axis is
+// outside the vectors. Radii smaller than this distance are then not measured, and at the first radius the gradient is
 // interpolated between two nodes only (1 % of the density difference of 0.4).
 TEST(AxisymmetricInversion, InvertsOneSide) {
   AxisymmetricSettings settings;
@@ -282,7 +282,8 @@ TEST(AxisymmetricInversion, RejectsAWrongAxis) {
   EXPECT_GT(invert_axisymmetric(with_noise(noisy, WindowCorrelation(81, 8, {}), 3), settings).asymmetry, 0.3);
 }
 
-// Lambda is determined from the rows that are measured: here none of the eight that are evenly distributed.
+// Lambda is determined from the rows that are measured; in this map, all of the eight evenly distributed rows are
+// masked.
 TEST(AxisymmetricInversion, ChoosesTheRegularizationFromMeasuredRows) {
   GradientMap map = jet_map(61, 16);
   for (int row = 1; row < 16; row += 2)

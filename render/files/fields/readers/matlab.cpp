@@ -105,7 +105,7 @@ struct MatlabArray {
   bool swap = false;
 };
 
-/// Converts values and passes them on with their numbers.
+/// Converts values and calls set(index, value) for each.
 template <class Set>
 void convert_values(MatlabArray const& array, char const* bytes, std::size_t count, Set const& set) {
   for (std::size_t i = 0; i < count; ++i) set(i, array.number.read(bytes + i * array.number.bytes, array.swap));
@@ -167,7 +167,7 @@ class MatlabFile {
     if (matrix.size == 0) return;  // an empty matrix has no header
     MatlabTag const flags = head.tag(8), sizes = head.tag(flags.next), name = head.tag(sizes.next);
     range.name = head.text(name);
-    if (range.name.empty()) return;  // data of MATLAB's own
+    if (range.name.empty()) return;  // arrays without a name hold internal data of MATLAB
     std::uint32_t const word = head.word(flags.data);
     constexpr std::uint32_t complex_bit = 0x0800;
     std::string const other = describe_class(word & 0xFFu, (word & complex_bit) != 0);

@@ -190,7 +190,7 @@ class PointTableReader {
   LineReader file_;
   std::vector<std::string> header_;
   TecplotZone zone_;
-  BlockValues block_;  ///< empty without BLOCK packing
+  BlockValues block_;  ///< values of a zone in BLOCK packing; empty for other packings
   PointTable table_;
 };
 

@@ -49,7 +49,7 @@ class VelocityArrays final : public ArrayFile {
   }
 
  private:
-  /// Adds the velocity whose first component is an array, if there is a second one.
+  /// Adds a velocity with the array `first` as its first component, if the file contains the second component.
   void join(std::vector<std::string> const& given, std::string const& first, ComponentNames const& wanted) {
     std::string const group = first.substr(0, first.size() - last_step(first).size());
     ArrayShape shape = file_->shape(first);
@@ -99,7 +99,7 @@ class VelocityArrays final : public ArrayFile {
 
   std::vector<double> read(std::string const& array) const override { return file_->read(array); }
 
-  /// The last axis of a velocity is that of its components, whose packing may differ.
+  /// Reads each component from its own array, since their packings may differ; the last axis counts the components.
   void read_box(std::string const& array, std::vector<std::size_t> const& start, std::vector<std::size_t> const& size,
                 std::span<double> out) const override {
     Velocity const* const velocity = find_velocity(array);
@@ -165,7 +165,7 @@ class VelocityArrays final : public ArrayFile {
       if (!velocity.components[2].empty()) continue;
       notes.push_back(
           fmt::format("\"{}\" and \"{}\" are read as a velocity whose third component is 0, since the file "
-                      "has none of their shape",
+                      "has no third component of their shape",
                       velocity.components[0], velocity.components[1]));
     }
     return notes;
