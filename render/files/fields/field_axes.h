@@ -9,7 +9,7 @@ namespace gladstone {
 
 /// Spatial axis of an array as stored in its file.
 struct StoredAxis {
-  char world = 'x';                 ///< world axis assigned to it: 'x', 'y' or 'z'
+  char world = 'x';                 ///< world axis assigned to the stored axis: 'x', 'y' or 'z'
   double first = 0;                 ///< coordinate of the first node [length unit of the file]
   double step = 1;                  ///< distance between nodes [length unit of the file]; negative if the axis is
                                     ///< stored in descending order

@@ -160,7 +160,7 @@ class ArraySource final : public CheckedSource {
     axes_[i].world = world;
   }
 
-  /// Reports axes without coordinates, and the datasets that may be theirs but are not used.
+  /// Reports axes without coordinates, and unused datasets that may contain the missing coordinates.
   void report_missing(std::array<std::optional<ArrayCoordinates>, 3> const& own) {
     std::string missing;
     for (std::size_t i = rank(); i-- > 0;) {

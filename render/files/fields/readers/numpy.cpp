@@ -63,7 +63,7 @@ std::string describe_dtype(std::string const& dtype) {
 
 /// Header of an array.
 struct NpyHeader {
-  std::string dtype;  ///< "<f4"; records: "[..."
+  std::string dtype;  ///< NumPy type of an element, "<f4"; that of a record begins with "["
   bool fortran = false;
   std::vector<std::size_t> shape;
   std::uint64_t data = 0;           ///< offset of the first value
@@ -189,7 +189,7 @@ void read_stored(ByteRange const& range, NpyHeader const& header, std::size_t fi
   }
 }
 
-/// Returns the place in C order of each value of an array in Fortran order, one after the other.
+/// Iterates over an array in Fortran order, and returns the index in C order of each value.
 class FortranOrder {
  public:
   explicit FortranOrder(std::vector<std::size_t> const& shape)

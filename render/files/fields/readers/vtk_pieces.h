@@ -31,7 +31,7 @@ struct VtkArrays {
   std::vector<VtkPiece> pieces;
 };
 
-/// Returns the number of points between the begin of a grid and that of a part of it, along an axis.
+/// Returns the number of points along an axis between the first point of a grid and that of a part of the grid.
 std::size_t offset_in(std::array<int, 6> const& part, std::array<int, 6> const& whole, std::size_t axis);
 
 /// The numbers of a piece, in the order of the file.
