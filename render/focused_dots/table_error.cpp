@@ -85,7 +85,7 @@ double light_of_a_level(LoneDots const& lone, CameraSetup const& camera, double 
   if (camera.exposure_e) return light_per_level(camera, *camera.exposure_e);
   double brightest = 0;
   for (std::size_t frame = 0; frame < frame_count; ++frame) {
-    double sum = 0, squares = 0;  // per dot
+    double sum = 0, squares = 0;  // mean over dots of the light, and of its square, added up over pixels
     for (auto const& dot : lone) {
       std::size_t const area = dot->light().size() / frame_count;
       for (std::size_t i = frame * area; i < (frame + 1) * area; ++i) {

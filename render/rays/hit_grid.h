@@ -14,8 +14,8 @@ class HitGrid {
  public:
   explicit HitGrid(GaussianSpot<double> const& spot);
 
-  /// Returns true if this method is faster for the given number of rays and the PSF is wide enough for a grid of
-  /// moderate size.
+  /// Returns true if the grid is faster than individual PSFs for the given number of rays and the PSF is wide enough
+  /// for a grid of moderate size.
   static bool is_faster_than_psfs(double sigma, std::uint64_t rays);
 
   /// Adds the light of a ray at p [px]. A tile that occupies the slot of the required one is first added to the image.

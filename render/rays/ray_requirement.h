@@ -88,7 +88,7 @@ struct EdgeRaySpread {
 /// For cubature rules, the next larger rule is requested, since their errors vanish abruptly with n; the variance of
 /// points is assumed to decrease as 1/n.
 ///
-/// Rotating a rule of one or two rings does not reveal its error from rotationally symmetric aberrations. This is
+/// Rotating a rule of one or two rings does not reveal its error from rotationally symmetric aberrations. This error is
 /// estimated from the difference between the measured spread and that of the edge rays, which is as large as the error
 /// of one ring and more than four times that of two (double Gauss and achromat, f/4 to f/11); the error of four rings
 /// is negligible.
