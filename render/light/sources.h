@@ -55,7 +55,8 @@ GLADSTONE_HD constexpr int scrambling_bits(std::uint64_t rays) {
   return rays >= 4 ? 2 : (rays >= 2 ? 1 : 0);
 }
 
-/// Returns the number of points per scrambling for which both rays of the pair are traced.
+/// Returns the number of points per scrambling for which both rays of a pair (AimedRay of opposite source positions)
+/// are traced.
 GLADSTONE_HD constexpr std::uint32_t complete_points(std::uint64_t rays, int scrambling_bits) {
   return static_cast<std::uint32_t>(rays >> (scrambling_bits + 1));
 }

@@ -158,10 +158,10 @@ void check_dimensions(PrescribedSurface const& surface, bool last) {
   }
 }
 
-/// Checks that glass behind a surface extends along the light.
+/// Checks that the thickness of glass behind a surface is directed along the light.
 /// @param forwards  sign of the light's direction behind the surface
-/// @return true if the glass is directed against the light, by no more than the tolerance of surfaces in contact
-/// @throws DataError if it is so by more
+/// @return true if the thickness is directed against the light by at most contact_tolerance
+/// @throws DataError if it is directed against the light by more
 bool check_direction(PrescribedSurface const& surface, double forwards, bool last) {
   bool const against =
       !surface.after.is_mirror() && !surface.after.is_air() && forwards * surface.thickness < 0 && !last;
@@ -175,7 +175,7 @@ bool check_direction(PrescribedSurface const& surface, double forwards, bool las
 }
 
 /// Checks the aperture of a lens that has a stop.
-/// @return warning that the aperture is not defined for this object; empty: it is
+/// @return warning that the aperture is not defined for this object; empty: it is defined
 /// @throws DataError if it is not positive
 std::string check_aperture(Prescription const& lens) {
   auto const& aperture = lens.aperture;
