@@ -76,11 +76,11 @@ double theory_ray_seconds(Scene const& scene);
 /// Returns the maximum number of rays per source for adaptive ray numbers: a power of two from 1024 to 65,536.
 std::uint64_t max_rays_per_source(Scene const& scene);
 
-/// Returns the scene with the step and the pupil margin of a plan.
+/// Returns a copy of the scene with an integration step and the pupil margin that results from its probe rays.
 Scene with_step(Scene scene, IntegrationStep const& plan);
 
-/// Returns the scene with the ray numbers of a budget, the refinement of the fast renderer, and the method if the
-/// budget chose one.
+/// Returns a copy of the scene with the ray numbers of a budget, the refinement of the fast renderer, and the method if
+/// the budget chose one.
 Scene with_rays(Scene scene, RayBudget const& budget);
 
 }  // namespace gladstone

@@ -17,7 +17,7 @@ enum class TableState {
   made,             ///< a table was built
   no_medium,        ///< no medium deflects rays
   no_sources,       ///< no dots in the scene
-  field_too_small,  ///< the field extends hardly beyond the light cones
+  field_too_small,  ///< the field hardly extends beyond the light cones
   field_too_fine,   ///< the table would need too many rays
   by_rays,          ///< rendered ray by ray, which uses no table
   by_formula,       ///< rendered by a formula, without rays
@@ -34,8 +34,9 @@ struct Rendering {
   StatusCounts statuses{};
   /// Margin by which the pupil was enlarged so that no deflected ray was lost [m].
   double pupil_margin = 0;
-  std::int64_t rays = 0;          ///< number of rays traced, both images together
-  std::vector<std::size_t> left;  ///< fallback dots: without truth or light here, to be rendered by another renderer
+  std::int64_t rays = 0;  ///< number of rays traced, both images together
+  std::vector<std::size_t>
+      left;  ///< fallback dots: without truth or light in this result, to be rendered by another renderer
   TableState table = TableState::no_sources;  ///< whether a deflection table was built
   RenderMethod method = RenderMethod::focused_dots;
   std::string device;  ///< device that rendered it; empty: that of the renderer
@@ -60,10 +61,11 @@ class Renderer {
   virtual ~Renderer() = default;
   virtual std::string device() const = 0;
 
-  /// Renders `sources` (the scene's dots or virtual ones) of a scene whose step and ray numbers are planned.
+  /// Renders `sources` (the scene's dots or virtual ones) of a scene whose step and ray numbers are set.
   virtual Rendering render(Scene const& scene, DotPattern const& sources, RenderImages images, RenderTheory theory) = 0;
 
-  /// Renders particles (the scene's own or virtual ones) of a planned PIV scene, with the medium in both frames.
+  /// Renders particles (the scene's own or virtual ones) of a PIV scene whose step and ray numbers are set, with the
+  /// medium in both frames.
   /// @throws DeviceError if this renderer does not support particles
   virtual Rendering render_particles(Scene const& scene, Particles const& particles, ParticleLight light,
                                      RenderImages images);

@@ -59,14 +59,16 @@ struct Setup {
   LensSetup lens;
   MediumSetup medium;
   TargetSetup target;
-  std::vector<double> planes;             ///< Z of the planes of a calibration target [m]; empty: no calibration
-  std::optional<PivSetup> piv;            ///< empty: BOS or calibration; in PIV, the "dots' plane" is Z = 0
-  std::optional<SequenceSetup> sequence;  ///< pair of a sequence that the setup describes; empty: a single pair
+  std::vector<double> planes;   ///< Z of the planes of a calibration target [m]; empty: no calibration
+  std::optional<PivSetup> piv;  ///< empty: BOS or calibration; in PIV, the "dots' plane" is Z = 0
+  std::optional<SequenceSetup>
+      sequence;  ///< sequence and the pair of it that the setup describes; empty: a single pair
   std::shared_ptr<ParticleCache> shared_particles;  ///< particles shared by the pairs of a sequence; null: none
   RenderSetup render;
-  double z_a = 0.75;               ///< front principal plane to the medium's mid-plane, along the camera's axis [m]
+  double z_a = 0.75;  ///< distance from the front principal plane to the medium's mid-plane along the camera's axis [m]
   std::optional<double> z_sensor;  ///< position of a fixed sensor on the Z axis, from which the lens is placed [m]
-  double z_d = 0.25;  ///< mid-plane of the medium to the dots, along Z [m]; 0 for PIV and calibration (plane_setup)
+  double z_d =
+      0.25;  ///< distance from the medium's mid-plane to the dots along Z [m]; 0 for PIV and calibration (plane_setup)
   std::optional<Pose<double>> pose;  ///< pose of the camera, see camera_pose(); empty: on the Z axis, looking along -Z
   std::vector<OpticalElement> elements;  ///< optical elements besides the lens; those of a side in the light's order
   std::vector<std::string> warnings;     ///< warnings from reading the setup

@@ -33,7 +33,7 @@ struct PixelDetector {
   double dark_current_e = 0;
   double read_noise_e = 0;
   std::uint64_t seed = 0;
-  bool by_frame = false;        ///< frames of a sequence: the seeds of both frames differ, their streams do not
+  bool by_frame = false;        ///< frames of a sequence: both frames have the same random stream, but different seeds
   std::uint64_t flow_seed = 0;  ///< seed of frame B, if by_frame
   // stray light, see BackgroundSetup
   int columns = 0, rows = 0;        ///< size of the sensor [px]; 0: no stray light

@@ -12,7 +12,7 @@ namespace gladstone {
 struct SetupRecord {
   struct Entry {
     std::string key;
-    bool read = false;               ///< value requested, not only its presence
+    bool read = false;               ///< the value was requested, not only whether the key exists
     bool resolved = false;           ///< `value` is final, e.g. the value computed for "auto"
     std::string value;               ///< TOML text of the value used; empty for tables and absent optional keys
     std::deque<SetupRecord> tables;  ///< records of sub-tables: one for a table, several for an array of tables
