@@ -12,7 +12,7 @@ namespace gladstone {
 /// A part of a case's images, rendered alone.
 struct CasePreview {
   int first_column = 0, first_row = 0;       ///< upper left pixel of the part
-  int columns = 0, rows = 0;                 ///< its size [px]
+  int columns = 0, rows = 0;                 ///< size of the part [px]
   bool at_gradient = false;                  ///< true: the part is centred at the strongest density gradient; false: in
                                              ///< the image
   std::vector<Image<std::uint16_t>> frames;  ///< grey levels: both frames, or that of a calibration plane
@@ -35,7 +35,7 @@ inline constexpr std::uint64_t preview_rays = 128;  ///< rays per source instead
 CasePreview render_preview(CaseSetup const& loaded, Renderer& renderer);
 
 /// Returns the frames side by side as an 8-bit picture, enlarged to whole blocks of pixels of at least 384 px height.
-/// @param bit_depth  of the grey levels
+/// @param bit_depth  bit depth of the grey levels
 Image<std::uint8_t> preview_picture(CasePreview const& preview, int bit_depth);
 
 }  // namespace gladstone

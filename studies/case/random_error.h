@@ -28,9 +28,10 @@ T pattern_error_px(T geometric_px, T spot_px, double dots) {
 }
 
 /// Returns the random error of a displacement measured by our correlator with default settings, along the displacement,
-/// averaged over all sub-pixel fractions [px]. (Across it, without displacement, the error is 0.3 to 1.1 times that;
-/// see docs/design.md.) It combines the error due to the dots' sub-pixel positions, which decreases with the size of
-/// dots and PSF, and that due to noise, which decreases with number and size of the dots and increases with the PSF.
+/// averaged over all sub-pixel fractions [px]. (Perpendicular to the displacement, the error is 0.3 to 1.1 times as
+/// large; see docs/design.md.) It combines the error due to the dots' sub-pixel positions, which decreases with the
+/// size of dots and PSF, and that due to noise, which decreases with number and size of the dots and increases with the
+/// PSF.
 ///
 ///   pattern^2 = (0.006 exp(-7.4 s^2))^2 + (0.204 exp(-1.76 g^2 - 9.7 s^2))^2 + 0.00135^2
 ///   noise = 0.287 q (1 + 1.6 s^2) d^-0.737,   d^2 = g^2 + 16 s^2
