@@ -80,7 +80,7 @@ class Refinement {
  private:
   struct Prediction {
     Vec2d value{};
-    bool at_border = false;  ///< some of the nodes that it requires are unknown, but not all
+    bool at_border = false;  ///< some, but not all, of the nodes required for the interpolation are unknown
   };
 
   static double tolerance(double error) { return refinement_tolerance + (error > 0 ? 4 * error : 0); }

@@ -56,7 +56,7 @@ struct DensityTerm {
 /// Properties of an axisymmetric inversion; see density::AxisymmetricDensity.
 struct AxisymmetryResult {
   density::AxisDirection direction = density::AxisDirection::vertical;
-  density::SymmetryAxis axis;    ///< [m]; sigma is NaN if the axis was given
+  density::SymmetryAxis axis;    ///< axis of symmetry [m]; sigma is NaN if the axis was given
   double lambda = 0.0;           ///< regularisation parameter [1]; 0: none
   double asymmetry = 0.0;        ///< rms of the even part of the gradient about the axis over that of the odd part [1]
   double border_gradient = 0.0;  ///< rms of the gradient at the largest radii over that of all radii [1]
@@ -77,14 +77,14 @@ struct Reconstruction {
   std::vector<std::int64_t> reference;  ///< 1: node of given density
   std::vector<double> truth;            ///< density of a rendered case [kg/m^3, grid.size()]; empty: unknown
   std::vector<DensityTerm> budget;      ///< causes of the error; empty: not requested
-  double reference_density = 0.0;       ///< [kg/m^3]
+  double reference_density = 0.0;       ///< reference density [kg/m^3]
   density::WindowOverlap overlap;       ///< overlap of the windows, which correlates the vectors' errors
   double white_noise_gain = 1.0;        ///< noise amplification by the deconvolution [1]; 1: none
   std::size_t samples = 0;              ///< number of random samples for sigma; 0: exact
   std::optional<AxisymmetryResult> axisymmetry;
   std::vector<std::string> warnings;
   std::string setup;         ///< resolved setup
-  std::uint64_t seed = 0;    ///< of the rendering
+  std::uint64_t seed = 0;    ///< random seed of the rendering
   std::string vectors;       ///< path of the vectors
   SourceFiles sources = {};  ///< setup, vectors, and truth
 };
@@ -118,7 +118,7 @@ Reconstruction reconstruct_density(DisplacementField const& field, Setup const& 
 /// adds the true density and, with options.budget, the causes of the error, for which it compares the vectors with
 /// truth and theory (compare_case()). Writes nothing.
 /// @param place   case folder, with or without truth.h5, or a setup (TOML) together with options.vectors
-/// @param device  for the comparison
+/// @param device  device of the comparison
 /// @param known   comparison of these vectors, if there is one; null: computed for options.budget
 /// @throws DataError, SetupError  as reconstruct_density(), and for files that are missing, invalid, or of other frames
 Reconstruction reconstruct_case(std::string const& place, ReconstructOptions const& options, Backend const& device,

@@ -39,7 +39,7 @@ enum class PairState { pending, done, no_valid_vector, failed };
 struct PairRecord {
   SequencePair pair;
   PairState state = PairState::pending;
-  bool resumed = false;  ///< its vectors were computed by an earlier run
+  bool resumed = false;  ///< the vectors of the pair were computed by an earlier run
   std::string error;     ///< reason of the state `failed` or `no_valid_vector`
   std::string reference_sha256, flow_sha256;
   std::vector<std::string> warnings;

@@ -20,7 +20,7 @@ SequenceImage read_sequence_image(SequenceFrame const& frame);
 
 /// Size of the frames of a sequence.
 struct SequenceSize {
-  int columns = 0, rows = 0;  ///< [px]
+  int columns = 0, rows = 0;  ///< size of a frame [px]
   std::string frame;          ///< name of the first frame of this size
 
   /// @throws DataError if a frame has another size, with the names of both

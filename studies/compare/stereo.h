@@ -35,8 +35,8 @@ struct StereoMeasurement {
   stereo::StereoField field;
   double pixel_size = 0.0;                  ///< mean size of a pixel on the plane at x = y = 0 [m]
   double view_angle = 0.0;                  ///< angle between the views at x = y = 0 [rad]
-  std::array<std::string, 2> vectors;       ///< paths
-  std::array<std::string, 2> calibrations;  ///< paths; empty: exact camera of the setup
+  std::array<std::string, 2> vectors;       ///< paths of the vectors
+  std::array<std::string, 2> calibrations;  ///< paths of the calibrations; empty: exact camera of the setup
   std::array<double, 2> window_px{};        ///< size of the interrogation windows [px]
   /// True displacement, mean over the particles in the window, of cases of one rendering [m, field.grid.size()]; NaN:
   /// fewer than three particles; empty: unknown.
@@ -56,7 +56,7 @@ struct StereoMeasurement {
 /// Errors of one component against the truth.
 struct ComponentErrors {
   std::size_t count = 0;
-  double bias = 0.0, rms = 0.0;  ///< mean and root mean square [m]; NaN: no node counts
+  double bias = 0.0, rms = 0.0;  ///< mean and root mean square [m]; NaN: no node with a displacement and a truth
   double coverage = 0.0;         ///< fraction of errors within sigma [1]; NaN: vectors without uncertainty
 };
 
@@ -68,8 +68,9 @@ std::array<ComponentErrors, 3> compute_stereo_errors(StereoMeasurement const& me
 double compute_residual_ratio(stereo::StereoField const& field);
 
 /// Returns the case folder or the file of vectors of each camera.
-/// @param inputs  the same; if the second is empty, the first is the folder of a case with two cameras
-/// @throws DataError  if it is not
+/// @param inputs  case folder or file of vectors of each camera; if the second is empty, the first is the folder of a
+/// case with two cameras
+/// @throws DataError  if this folder has not two cameras
 std::array<std::string, 2> find_stereo_inputs(std::array<std::string, 2> const& inputs);
 
 /// Reads vectors and cameras, and reconstructs three components. If both inputs are cases of one PIV setup, also

@@ -57,7 +57,7 @@ struct Tomography {
   tomography::SartSettings settings;
   std::vector<std::string> warnings;
   std::string setup;         ///< resolved setup of the first view
-  std::uint64_t seed = 0;    ///< of the rendering
+  std::uint64_t seed = 0;    ///< random seed of the rendering
   SourceFiles sources = {};  ///< setups and vectors
 };
 
