@@ -34,7 +34,7 @@ struct PlacedText {
 std::vector<PlacedText> place_texts(Figure const& figure);
 
 /// Places the labels of a panel: they are moved into the page, and upwards or downwards until they overlap no other.
-/// Numbers in cells stay.
+/// Numbers in the cells of a map are not moved.
 /// @return empty if a range of an axis is automatic
 std::vector<PlacedText> place_labels(Figure const& figure, figures::Panel const& panel);
 

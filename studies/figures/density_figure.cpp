@@ -29,7 +29,7 @@ bool has_finite(std::vector<double> const& values) {
 
 /// Line of nodes through the largest deviation from the reference density.
 struct DensityProfile {
-  bool is_column = false;                           ///< true: over y, false: over x
+  bool is_column = false;                           ///< true: profile over y; false: over x
   double at_mm = 0.0;                               ///< y of a row, x of a column [mm]
   std::vector<double> place_mm;                     ///< [mm]
   std::vector<double> density, low, high, truth;    ///< density, its interval of +- sigma, and truth [kg/m^3]

@@ -33,8 +33,8 @@ Figure make_layout_figure(DesignPoint<double> const& bench);
 /// the point of the axis at the distance Z_A) towards the camera. A laser sheet is across the axis, whatever its angle.
 OpticalLayout make_camera_layout(Setup const& setup);
 
-/// The layout of make_camera_layout(), for cameras with a pose, prescription or other optical elements, and for
-/// calibrations.
+/// Returns the layout of make_camera_layout() as a figure, for cameras with a pose, prescription or other optical
+/// elements, and for calibrations.
 /// @throws DataError if the image distance or the view is infinite
 Figure make_camera_layout_figure(Setup const& setup);
 

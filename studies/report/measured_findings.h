@@ -18,7 +18,7 @@ struct MeasurementKnown {
   std::vector<MeasurementInput> const& inputs;
   MeanOfRepeats const& mean;
   SimulatedTwin const* twin = nullptr;  ///< null without a simulated twin
-  double sensitivity = 1;               ///< [px per kg/m^4]
+  double sensitivity = 1;               ///< displacement per density gradient [px per kg/m^4]
 
   bool simulated() const { return twin && twin->failed.empty(); }
 };
