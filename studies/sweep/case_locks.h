@@ -20,7 +20,7 @@ class CaseLocks {
   CaseLocks(CaseLocks const&) = delete;
   CaseLocks& operator=(CaseLocks const&) = delete;
 
-  /// CaseLocks a case for this object. If RUN/claims has been replaced or removed since it was opened, the new file is
+  /// Locks a case for this object. If RUN/claims has been replaced or removed since it was opened, the new file is
   /// opened and locked, since other processes use that one.
   /// @return false if another process has claimed the case
   /// @pre opened with Use::take

@@ -96,7 +96,7 @@ std::size_t further_values(StudyFile const& study, AxisPlan const& axis) {
   return axis.size() > 1 ? 2 : 1;
 }
 
-/// Returns the number of points needed to check all of these values.
+/// Returns the number of points needed to check the further_values() of all axes.
 std::size_t points_to_try(StudyFile const& study) {
   if (study.mode == StudyMode::zip) return study.points();
   std::size_t count = 1;
@@ -104,7 +104,7 @@ std::size_t points_to_try(StudyFile const& study) {
   return count;
 }
 
-/// Returns the i-th of these points: first the first values of all axes, then the other values of each axis with the
+/// Returns the i-th point to check: first the first values of all axes, then the other values of each axis with the
 /// first values of the others.
 std::vector<AxisValue> point_to_try(StudyFile const& study, std::size_t i) {
   if (study.mode == StudyMode::zip) return values_at(study, i);

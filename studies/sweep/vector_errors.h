@@ -33,7 +33,7 @@ std::vector<VectorErrors> vector_errors(Comparison const& comparison);
 /// vectors and components. Both are unbiased; systematic^2 + scatter^2 estimates the mean square of a single repeat's
 /// errors.
 struct RepeatSplit {
-  std::size_t vectors = 0;  ///< number of vectors that count in every repeat
+  std::size_t vectors = 0;  ///< number of vectors with a known error in every repeat
   double systematic_px;     ///< rms of the common part, per component; NaN with fewer than two repeats
   double scatter_px;        ///< standard deviation between repeats, per component; NaN with fewer than two repeats
 };
