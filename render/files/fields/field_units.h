@@ -34,8 +34,8 @@ struct FieldUnits {
 
   /// Size of the unit of length [m]; 1 mm if it is not stated or not recognised.
   double metres() const;
-  /// Describes the assumption made about lengths, "lengths name no unit and are taken as mm"; empty if none was
-  /// necessary.
+  /// Describes the assumption made about lengths, "lengths have no unit in the file and are taken as mm"; empty if none
+  /// was necessary.
   std::string assumed() const;
   /// Describes why the spacing is undefined, "lengths are in \"furlong\", which is not a known unit of length"; empty
   /// if it is defined. The user must then give the spacing.
