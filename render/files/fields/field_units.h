@@ -21,7 +21,7 @@ inline constexpr Dimension dimension_of_length{0, 1, 0}, dimension_of_density{1,
 /// Factor that converts the values of a file to SI, and a warning if their unit is not used.
 struct ValueFactor {
   double factor = 1;
-  std::string warning;  ///< empty: no unit is stated, or it was converted
+  std::string warning;  ///< warning that the unit is not used; empty: no unit is stated, or it was converted
 };
 
 /// Units of a field as stated in its file.

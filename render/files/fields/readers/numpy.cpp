@@ -67,7 +67,7 @@ struct NpyHeader {
   bool fortran = false;
   std::vector<std::size_t> shape;
   std::uint64_t data = 0;           ///< offset of the first value
-  std::optional<NumpyType> type{};  ///< nullopt: no real numbers
+  std::optional<NumpyType> type{};  ///< numeric type; nullopt: the array holds no real numbers
   bool swap = false;
 };
 

@@ -15,7 +15,7 @@ namespace gladstone {
 
 /// One <Piece> of a grid, with the selected array.
 struct VtkPiece {
-  std::array<int, 6> extent{};  ///< index of its first and last point along i, j and k
+  std::array<int, 6> extent{};  ///< index of the piece's first and last point along i, j and k
   VtkPayload payload;
   VtkNumber number{};
 };
