@@ -64,7 +64,7 @@ Vec2d crossed_extent(Setup const& setup, double way) {
   return {(1 - way) * extent.x + beyond, (1 - way) * extent.y + beyond};
 }
 
-/// Returns the distance to the medium's mid-plane as a fraction of that to the lens.
+/// Returns the distance from the target to the medium's mid-plane over the distance from the target to the lens [1].
 /// @param bounds  bounds of the medium
 double way_to(Bounds<double> const& bounds, Setup const& setup) {
   return (0.5 * (bounds.low.z + bounds.high.z) + setup.z_d) / setup.z_b();

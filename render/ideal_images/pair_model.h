@@ -51,13 +51,13 @@ struct PairModel {
   Vec3d center{}, volume{};  ///< seeded volume [m]
   Vec3d box{};               ///< size of the box about `center` that contains the particles at mid-time [m]
   DiameterSpread spread = DiameterSpread::one;
-  double diameter = 1e-6, diameter_width = 0;  ///< see DiameterSetup
+  double diameter = 1e-6, diameter_width = 0;  ///< parameters of the diameters, see DiameterSetup
   double density = 0, viscosity = 1;           ///< density of lagging particles [kg/m^3], viscosity of the gas [Pa s];
                                                ///< 0: no lag
   // motion
   Flow flow;
   double dt = 0;        ///< time between the pulses [s]
-  double interval = 0;  ///< see ParticleVelocity [s]
+  double interval = 0;  ///< time step of the differences along the flow, see ParticleVelocity [s]
   int steps = 1;        ///< integration steps per half path
   // light and camera
   LaserSheet<double> sheet;
@@ -136,7 +136,7 @@ struct PairModel {
 struct OwnedPairModel {
   PairModel model;
   std::shared_ptr<std::vector<float> const> velocity;  ///< coefficients of a velocity file; null: none
-  std::shared_ptr<MieScattering const> mie;            ///< for ParticleScattering::mie
+  std::shared_ptr<MieScattering const> mie;            ///< scattering table for ParticleScattering::mie; null: none
 };
 
 /// Returns the reason why the pairs of a setup have no PairModel; empty if they have one.

@@ -47,10 +47,10 @@ struct DefocusBlur {
   }
 };
 
-/// Error of images, relative to the centre of the brightest one, up to which they are as accurate as those of rays:
+/// Blur error, relative to the centre of the brightest image, up to which images are as accurate as ray-traced ones:
 /// half a grey level of 12 bits.
 inline constexpr double accurate_blur_error = 0.5 / 4095;
-/// Light relative to that of the brightest image below which the margins of blurred images may be cut off.
+/// Light, relative to the brightest image, below which the margins of blurred images may be cut off.
 inline constexpr double faint_image = 1e-4;
 
 }  // namespace gladstone
