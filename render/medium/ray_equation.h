@@ -48,7 +48,7 @@ struct StepIncrement {
 /// Force D = n grad n = grad(n^2)/2 at a point (Rajendran et al. 2019, eq. 6), and n^2.
 template <class T>
 struct Force {
-  Vec3<T> d;  ///< [1/m]
+  Vec3<T> d;  ///< force D [1/m]
   T n2;       ///< n^2 [1]
 };
 template <class T>

@@ -37,7 +37,7 @@ constexpr double longest = 1e3;  // upper limit of any length in a lens [m]
 constexpr double contact_tolerance = 1e-6;
 
 /// Returns true for an ideal lens, and for a surface that is a mirror or borders on a medium other than air. Reference
-/// planes and stops in air do not count.
+/// planes and stops in air are excluded.
 bool is_real(Prescription const& lens, std::size_t i) {
   PrescribedMedium const& before = i > 0 ? lens.surfaces[i - 1].after : lens.object_medium;
   return lens.surfaces[i].shape == PrescribedSurface::Shape::ideal_lens || !lens.surfaces[i].after.is_air() ||
