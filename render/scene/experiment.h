@@ -22,7 +22,7 @@ struct Experiment {
 
   /// Reads the distance from the medium to the dots; refuses it for experiments without dots behind a medium.
   void (*read_z_d)(Setup& setup, SetupTable geometry);
-  /// Reads the tables of the experiment, and refuses those of the others.
+  /// Reads the tables of the experiment, and refuses tables of other experiments.
   /// @param setup  camera, lens, elements, geometry and medium have been read
   void (*read)(Setup& setup, SetupTable root);
   /// Checks a setup whose lens forms an image across tables, see cross_check().

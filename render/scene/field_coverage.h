@@ -11,7 +11,7 @@ namespace gladstone {
 /// Extent of a density field compared with the field of view, at the depth of the field's mid-plane.
 struct FieldCoverage {
   Vec2d field{};     ///< width and height of the field [m]; infinite if unbounded
-  Vec2d view{};      ///< width and height of the view at that depth [m]
+  Vec2d view{};      ///< width and height of the view at the depth of the field's mid-plane [m]
   double share = 0;  ///< fraction of the view's area that the field covers [1]
   double ratio = 0;  ///< field width or height over that of the view, whichever is larger [1]
 

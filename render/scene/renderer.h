@@ -28,7 +28,7 @@ char const* to_string(TableState state);
 
 /// Result of rendering a scene.
 struct Rendering {
-  LightPair light;                                ///< empty if images were not requested or remain on the device
+  LightPair light;  ///< light of both images; empty if images were not requested or remain on the device
   std::shared_ptr<RenderedLight const> in_place;  ///< light on the device; only with RenderImages::in_place
   GroundTruth truth;
   StatusCounts statuses{};
@@ -39,7 +39,7 @@ struct Rendering {
       left;  ///< fallback dots: without truth or light in this result, to be rendered by another renderer
   TableState table = TableState::no_sources;  ///< whether a deflection table was built
   RenderMethod method = RenderMethod::focused_dots;
-  std::string device;  ///< device that rendered it; empty: that of the renderer
+  std::string device;  ///< device that rendered the scene; empty: the device of the renderer
 
   /// Moves the light of both images to `in_place`, for a device that renders in host memory.
   void store_light_in_place() {

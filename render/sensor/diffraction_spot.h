@@ -125,7 +125,7 @@ struct GaussianSpot {
 class AiryTable {
  public:
   struct View {
-    double const* shares = nullptr;  ///< [sub_y][sub_x][row][column]
+    double const* shares = nullptr;  ///< shares of the pixels, [sub_y][sub_x][row][column]
     int subdivisions = 0;            ///< table steps per pixel; subdivisions + 1 positions per axis
     int half_width = 0;              ///< half width of the footprint, without its middle pixel [px]
 
