@@ -369,7 +369,7 @@ class CorrelationPlan {
 struct CudaCorrelator::State {
   explicit State(CorrelationSettings const& wanted) : settings(wanted) {}
 
-  /// Returns the plan for images of that size. @throws DataError, OutOfDeviceMemory
+  /// Returns the plan for images of this size. @throws DataError, OutOfDeviceMemory
   CorrelationPlan& plan_for(int columns, int rows) {
     if (!plan || !plan->suits(columns, rows)) {
       plan.reset();  // release its memory first

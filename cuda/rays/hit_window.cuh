@@ -68,8 +68,8 @@ struct HitWindow {
 struct SharedParts {
   CameraElement<double>* elements;
   RaySums* sums;      ///< sums over the rays of each thread
-  double* rows_seen;  ///< buffer of blur_hits(), in the memory of `sums`, which are not needed any more at that time
-  double* share;      ///< values of the spline
+  double* rows_seen;  ///< buffer of blur_hits(); shares the memory of `sums`, which are no longer needed then
+  double* share;      ///< weights of the spline
   int* nodes;         ///< nodes of all windows; null: no windows
 
   template <class Launch>

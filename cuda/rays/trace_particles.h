@@ -180,11 +180,11 @@ int widest_particle_window_px(ParticlesLaunch const& launch, DeviceMedium const&
 
 /// Progress of the particles of a batch, in device memory.
 struct ParticleSteps {
-  int* step;    ///< current step of each particle in the sequence of ray numbers (RaysLadder)
-  int* next;    ///< next step of each particle; equal to `step`: the particle has enough rays
-  int* chosen;  ///< true: the particle is to be listed, because it has been aimed or needs more rays
-  unsigned int*
-      count;  ///< [step]: listed aims; last element: aims that the host computes, or particles that need more rays
+  int* step;            ///< current step of each particle in the sequence of ray numbers (RaysLadder)
+  int* next;            ///< next step of each particle; equal to `step`: the particle has enough rays
+  int* chosen;          ///< true: the particle is to be listed, because it has been aimed or needs more rays
+  unsigned int* count;  ///< [step] number of listed aims; last element: number of aims that the host computes, or of
+                        ///< particles that need more rays
 };
 
 /// Aims at the stop for both pulses of `count` particles, and determines the first step of RaysLadder of each.

@@ -51,7 +51,7 @@ struct SourcesLaunch {
 
 /// Output of a launch, in device memory.
 struct SourcesTraced {
-  RaySums* sums;             ///< [source][share][scrambling]
+  RaySums* sums;             ///< sums over the rays, [source][share][scrambling]
   double* moved2;            ///< [source]: largest squared displacement of a ray by the medium [m^2]
   unsigned long long* ends;  ///< ray counts to be incremented: [frame][status]
 };

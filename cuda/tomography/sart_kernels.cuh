@@ -50,8 +50,8 @@ struct DeviceView {
   int count;
   tomography::SightLine const* lines;
   tomography::LineSamples const* samples;
-  double const* value;     ///< NaN: ignored
-  double const* row_sums;  ///< [m]
+  double const* value;     ///< line integral of each line; NaN: the line is ignored
+  double const* row_sums;  ///< row sum of the matrix for each line [m]
 };
 
 __global__ void sample_lines(tomography::VolumeShape shape, tomography::SightLine const* lines, int count,
