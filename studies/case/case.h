@@ -59,7 +59,7 @@ struct PreparedCase {
   std::vector<std::string> warnings;
 };
 
-/// Parts of a PreparedCase that can be reused from another case with the same values; null: compute.
+/// Parts of a PreparedCase that can be reused from another case with the same values; null: to be computed.
 struct ReusableParts {
   BuiltMedium const* medium = nullptr;
   IntegrationStep const* step = nullptr;
@@ -111,8 +111,8 @@ RecordedCase render_to_folder(CaseSetup& loaded, Renderer& renderer, std::string
 
 /// Truth of dots at side faces of the medium (side_faces.h) in a rendering by the fast renderer.
 struct SideFaceAccuracy {
-  std::size_t dots = 0;                  ///< number of such dots
-  std::int64_t most_rays = 0;            ///< largest number of rays of one of them
+  std::size_t dots = 0;                  ///< number of dots at side faces
+  std::int64_t most_rays = 0;            ///< largest number of rays of one of these dots
   double truth_error_px = not_measured;  ///< rms of the standard errors of the truth of these dots [px]
 };
 

@@ -40,7 +40,7 @@ T pattern_error_px(T geometric_px, T spot_px, double dots) {
 /// Fitted to the 144 cases of the study random_error (data/estimators/random_error.csv: dots of 0.8 to 4 px, PSF of
 /// sigma 0.1 to 0.8 px, noise of 0.6 to 11 % of the peak, 5 to 45 dots per window, strain of 0.005). The rms deviation
 /// from them is 18 %, the largest a factor of 1.7. Strains up to 0.02 have no effect (docs/estimators.md). In the
-/// pattern term, wider PSFs count as the widest measured.
+/// pattern term, wider PSFs are treated like the widest one measured.
 /// @param geometric_px  g, diameter of the dot's geometric image [px]
 /// @param spot_px       s, standard deviation of the Gaussian PSF [px]
 /// @param noise         q, standard deviation of the noise at the peak, relative to the peak [1]
