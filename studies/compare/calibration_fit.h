@@ -9,7 +9,7 @@ namespace gladstone {
 struct ExpectedCamera {
   /// expected principal point; empty through windows, or if the sensor is tilted and no pinhole model exists [px]
   std::optional<Vec2d> principal_point_px;
-  std::optional<double> focal_length_px;  ///< empty unless the lens is an ideal thin lens [px]
+  std::optional<double> focal_length_px;  ///< expected focal length; empty unless the lens is an ideal thin lens [px]
   bool is_pinhole = true;                 ///< false if the camera looks through windows
 };
 

@@ -12,7 +12,7 @@ namespace {
 
 bool is_known(Vec2d value) { return std::isfinite(value.x) && std::isfinite(value.y); }
 
-/// Nodes of a lattice along an axis, and their weights at a place: Lagrange's interpolation.
+/// Nodes of a lattice along an axis, and their weights at a position: Lagrange's interpolation.
 struct Stencil {
   int first = 0, count = 1;
   std::array<double, 4> weight{1, 0, 0, 0};

@@ -28,7 +28,7 @@ struct SequenceSize {
 };
 
 /// Finds the commonest size of the frames of all pairs, and of two equally frequent ones that of the earlier frame.
-/// Reads no pixels; unreadable frames do not count.
+/// Reads no pixels; unreadable frames are ignored.
 /// @param pairs  pairs without problem
 /// @throws DataError of the first frame if none is readable; Interrupted
 SequenceSize find_commonest_size(std::vector<SequencePair> const& pairs);

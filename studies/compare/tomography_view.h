@@ -16,7 +16,7 @@ struct TomographyView {
   std::vector<Vec3d> middle_points = {};  ///< points of the lines of sight that are closest to the volume's origin [m]
   double spacing = 0.0;                   ///< distance between the lines of adjacent vectors at these points [m]
   std::size_t unreferenced = 0;           ///< vectors in regions without reference, which have no line integral
-  bool rendered = false;                  ///< the field of the setup is that of the measurement
+  bool rendered = false;                  ///< true: the view is a rendered case, whose setup contains the true field
 };
 
 /// Reads a view and converts its displacement to line integrals.
