@@ -51,7 +51,7 @@ struct BenchmarkCase {
   std::string what;            ///< description for the user
   ParticleSettings particles;  ///< settings of synthetic images; for the refracted case, only size, seed and noise
                                ///< apply
-  DisplacementAt flow = {};    ///< empty: images ray-traced through turbulence
+  DisplacementAt flow = {};    ///< true displacement; empty: images ray-traced through turbulence
   bool refracted() const { return !flow; }
 };
 

@@ -37,8 +37,8 @@ BenchmarkScore score_vectors(DisplacementField const& field, std::vector<Vec2d> 
 BenchmarkScore score_case(std::string const& of_case, DisplacementField const& field, DisplacementAt const& truth,
                           int columns, int rows);
 
-/// Returns the median difference of the counted vectors from the truth, relative to the median displacement or, if that
-/// is less, half a pixel. NaN without a counted vector.
+/// Returns the median difference of the vectors of benchmark_mask() from the truth, relative to the median displacement
+/// or, if that is less, half a pixel. NaN if there is no such vector.
 double median_relative_error(DisplacementField const& field, std::vector<Vec2d> const& truth);
 
 /// Returns the truth at the positions of the vectors.

@@ -12,7 +12,7 @@ namespace gladstone {
 
 /// Uncertainty of a density gradient measured with a setup, by contributions of the inputs.
 struct MeasurementUncertainty {
-  std::vector<MeasurementInput> inputs;  ///< the first one is the displacement
+  std::vector<MeasurementInput> inputs;  ///< uncertain inputs; the first one is the displacement
   std::vector<PropagatedResult> results;
   double random_px = 0;  ///< random error of the displacement [px]
   /// amplitude transfer of a wave twice as long as the resolved one [1]; for the remaining loss see

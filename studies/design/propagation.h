@@ -89,7 +89,7 @@ struct PropagatedResult {
   /// effective degrees of freedom (Welch-Satterthwaite formula); infinite if every input has infinitely many
   double degrees_of_freedom = 0;
   double coverage_factor = 2;               ///< coverage factor for 95.45 %
-  std::vector<Contribution> contributions;  ///< one per input, in their order
+  std::vector<Contribution> contributions;  ///< contributions of the inputs, in their order
   /// mean of the samples; empty if an input has one degree of freedom, since its mean does not exist
   std::optional<double> sampled_mean;
   /// standard deviation of the samples; empty if an input has at most two degrees of freedom, since its variance does

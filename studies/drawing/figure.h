@@ -108,7 +108,7 @@ struct Panel {
   std::string title = {};
   Axis x = {}, y = {};
   std::optional<Map> map = {};
-  std::vector<Layer> layers = {};  ///< the first one is the lowest
+  std::vector<Layer> layers = {};  ///< layers, the lowest one first
   std::vector<Label> labels = {};  ///< moved if they overlap or leave the page, where the ranges of the axes are given
   Legend legend = {};
   Border border = Border::full;

@@ -16,7 +16,7 @@ struct AgreementPanel {
   char const* title;
   double Agreement::*value;
   LegendPlace legend;
-  double left, right;  ///< [px]
+  double left, right;  ///< left and right edge on the page [px]
 };
 constexpr AgreementPanel agreement_panels[] = {
     {"correlation of light rays and Eq. 9", &Agreement::correlation, LegendPlace::bottom_right, 62, 522},

@@ -17,10 +17,11 @@ struct OpticalLayout {
   double pupil_radius;
   /// half heights of the sensor and of its images in the medium and the dots' plane
   double sensor_half, medium_half, dots_half;
-  double cone_radius;                                      ///< radius in the medium's mid-plane, for the dot on the
-                                                           ///< axis
-  double sheet_half_thickness = 0, sheet_half_height = 0;  ///< half thickness of a laser sheet; 0 for BOS
-  std::vector<double> planes = {};                         ///< Z of the planes of a calibration
+  double cone_radius;  ///< radius in the medium's mid-plane, for the dot on the
+                       ///< axis
+  double sheet_half_thickness = 0,
+         sheet_half_height = 0;     ///< half thickness and half height of the laser sheet; 0 for BOS
+  std::vector<double> planes = {};  ///< Z of the planes of a calibration
 };
 
 OpticalLayout make_optical_layout(DesignPoint<double> const& bench);

@@ -15,8 +15,8 @@ namespace gladstone {
 
 /// Optical layout of a setup, as drawn in a report.
 struct LayoutView {
-  std::unique_ptr<FixedDesignParameters> given;  ///< null for PIV
-  DesignPoint<double> bench;                     ///< unused for PIV
+  std::unique_ptr<FixedDesignParameters> given;  ///< given properties of the set-up; null for PIV
+  DesignPoint<double> bench;                     ///< model of the set-up; unused for PIV
   std::optional<Setup> piv;
 };
 
