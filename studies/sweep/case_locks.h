@@ -37,7 +37,7 @@ class CaseLocks {
   bool held_from(std::size_t first, std::size_t count) const;
 
   std::string path_;
-  int file_ = -1;  ///< -1: the file does not exist and Use is `look`
+  int file_ = -1;  ///< descriptor of the file; -1: the file does not exist and Use is `look`
 };
 
 }  // namespace gladstone

@@ -24,7 +24,7 @@ struct CaseResult {
   bool again = false;
   /// true: only the images were computed (CaseParts::images), no vectors and no measures of errors
   bool pairs_only = false;
-  /// Numbers of errors.json by dotted path, and others; NaN: unknown.
+  /// Measures by name: the numbers of errors.json by dotted path, and others; NaN: unknown.
   std::vector<std::pair<std::string, double>> measures;
   /// Errors of each kind at individual vectors, in the order of vector_error_names(); used to compare repeats.
   std::vector<VectorErrors> vectors;

@@ -58,7 +58,7 @@ SetupDocument compose(SetupDocument const& base, StudyFile const& study, std::ve
     if (axes_give(study, values, path)) continue;
     SetupNode const* const table = document.find({path.begin(), path.end() - 1});
     if (!table && path.size() > 2) continue;  // do not add a noise table that the setup does not have
-    // Skip a table that is not a table; reading the setup reports it.
+    // Skip a value that should be a table but is not; reading the setup reports it.
     if (table && table->kind != SetupNode::Kind::table && table->kind != SetupNode::Kind::array) continue;
     document.set(path, number);
   }

@@ -11,8 +11,9 @@ namespace gladstone {
 
 /// Errors of one kind at individual vectors of a case, stored so that repeats can be compared vector by vector.
 struct VectorErrors {
-  std::string name;              ///< one of vector_error_names()
-  std::vector<Vec2d> errors_px;  ///< errors at the same vectors in every repeat, rounded to 1e-6 px; NaN if not counted
+  std::string name;              ///< kind of the errors, one of vector_error_names()
+  std::vector<Vec2d> errors_px;  ///< errors at the same vectors in every repeat, rounded to 1e-6 px; NaN at vectors
+                                 ///< that are not compared
 };
 
 /// Returns the kinds of error: "ray_truth", "eq9" (measurement minus each), "estimator" (noise-free measurement minus

@@ -10,7 +10,7 @@ namespace gladstone {
 
 /// Final state of a worker process.
 struct WorkerEnd {
-  int exit_code = 0;  ///< -1: terminated by a signal
+  int exit_code = 0;  ///< exit code; -1: terminated by a signal
   int signal = 0;
   std::optional<std::size_t> at;  ///< case that the process was computing when it ended
 };
