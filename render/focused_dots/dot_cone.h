@@ -43,9 +43,9 @@ struct TableCheck {
                                               ///< of this difference with the coordinates of the stop point [m^2]
   double square = 0;       ///< sum of the squared distances of the stop points from the cone's centre [m^2]
   Vec2d traced{}, miss{};  ///< sums of the traced displacement, and of the traced minus the tabulated one [px]
-  double traced2[3] = {},
-         expected2[3] = {};  ///< sums of the products xx, xy, yy of traced and of tabulated displacements [px^2]
-  Vec2d miss2{};             ///< sums of the squared components of traced minus tabulated displacement [px^2]
+  /// sums of the products xx, xy, yy of traced and of tabulated displacements [px^2]
+  double traced2[3] = {}, expected2[3] = {};
+  Vec2d miss2{};  ///< sums of the squared components of traced minus tabulated displacement [px^2]
 
   /// Adds a ray.
   /// @param at  point of the stop, relative to the centre of the cone [m]
