@@ -133,8 +133,8 @@ Rendering Device::render_others(Scene const& scene, DotPattern dots, RenderImage
   by_rays.setup.target.polarity = Polarity::bright;
   if (!scene.setup.render.rays_per_dot) {
     if (images == RenderImages::no) {
-      by_rays.adaptive_criteria =
-          AdaptiveRayCriteria{};  // adaptive criteria for the true displacements only, not for images
+      // adaptive criteria for the true displacements only, not for images
+      by_rays.adaptive_criteria = AdaptiveRayCriteria{};
     } else if (!scene.adaptive_criteria) {
       by_rays.adaptive_criteria = determine_adaptive_criteria(scene);
     }

@@ -69,8 +69,8 @@ inline constexpr double measurable_displacement_px = 0.01;
 struct ParticleCensus {
   std::size_t lit[2] = {0, 0};  ///< number of illuminated particles at each pulse
   std::size_t in_view = 0;      ///< number of particles lit at the first pulse whose chief ray meets the sensor
-  std::size_t paired =
-      0;  ///< number of particles in view that receive at least a tenth of this light at the second pulse
+  /// number of particles in view that receive at least a tenth of this light at the second pulse
+  std::size_t paired = 0;
   double largest_px = 0;  ///< largest image displacement of the particles in view, without medium [px]
 };
 ParticleCensus count_particles(Scene const& scene);

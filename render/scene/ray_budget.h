@@ -35,8 +35,8 @@ struct TableError {
   double truth_px = not_measured;      ///< rms error of displacements [px]; NaN: unknown
   double image_levels = not_measured;  ///< rms error of lit pixels, worse image [levels at `bits`]; NaN: unknown
   double truth_resolution_px = 0;      ///< detection limit of truth_px: two standard errors at zero error [px]
-  double image_resolution_levels =
-      0;             ///< detection limit of image_levels: two standard errors at zero error [grey levels]
+  /// detection limit of image_levels: two standard errors at zero error [grey levels]
+  double image_resolution_levels = 0;
   int bits = 0;      ///< bit depth of the grey levels
   int fineness = 1;  ///< refinement of table and rules, as Scene::fineness
 

@@ -35,8 +35,8 @@ struct Rendering {
   /// Margin by which the pupil was enlarged so that no deflected ray was lost [m].
   double pupil_margin = 0;
   std::int64_t rays = 0;  ///< number of rays traced, both images together
-  std::vector<std::size_t>
-      left;  ///< fallback dots: without truth or light in this result, to be rendered by another renderer
+  /// fallback dots: without truth or light in this result, to be rendered by another renderer
+  std::vector<std::size_t> left;
   TableState table = TableState::no_sources;  ///< whether a deflection table was built
   RenderMethod method = RenderMethod::focused_dots;
   std::string device;  ///< device that rendered the scene; empty: the device of the renderer
