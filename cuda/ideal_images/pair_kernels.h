@@ -8,8 +8,8 @@ namespace gladstone::cuda {
 /// Pairs to render and their models, in device memory.
 struct PairsOnDevice {
   PairModel const* models = nullptr;
-  std::size_t model_stride =
-      0;  ///< step of the model index from pair to pair; 0: all pairs have the first model, 1: pair i has model i
+  /// step of the model index from pair to pair; 0: all pairs have the first model, 1: pair i has model i
+  std::size_t model_stride = 0;
   PairSeeds const* seeds = nullptr;
   std::size_t pairs = 0;
 
