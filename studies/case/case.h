@@ -29,8 +29,8 @@ struct CaseSetup {
   Setup setup;
   CorrelationSettings correlate;
   std::vector<std::string> warnings;
-  std::vector<UncertainInput> uncertain =
-      {};  ///< numbers that the setup gives with an uncertainty; empty if the caller has extracted them beforehand
+  /// numbers that the setup gives with an uncertainty; empty if the caller has extracted them beforehand
+  std::vector<UncertainInput> uncertain = {};
   /// SHA-256 of each file that the setup names, computed before the scene is built; empty: not computed yet.
   std::map<std::string, std::string> input_hashes = {};
 

@@ -35,8 +35,8 @@ struct SharedParts {
     Image<double> reference;                   ///< grey levels of frame A in other pairs; empty: rendered
     std::shared_ptr<ParticleCache> particles;  ///< particles of PIV; null: none
   };
-  std::map<std::string, OfCamera>
-      cameras;                          ///< shared parts of each camera by its name, which is empty for the only camera
+  /// shared parts of each camera by its name, which is empty for the only camera
+  std::map<std::string, OfCamera> cameras;
   BuiltMedium const* medium = nullptr;  ///< medium of another pair, if it is the same; null: built
 };
 
