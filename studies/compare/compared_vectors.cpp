@@ -113,9 +113,8 @@ DetectedConventions detect(VectorFile const& file, std::string const& path, Grou
   if (misfits) {
     spdlog::warn(
         "{}: the vectors do not follow the true displacement with any axes, signs or units: the difference is {:.3g} "
-        "px "
-        "rms, and the true displacement is {:.3g} px rms; if the estimator is more accurate than this, check the order "
-        "of the frames, the axes and the units",
+        "px rms, and the true displacement is {:.3g} px rms; if the estimator is more accurate than this, check the "
+        "order of the frames, the axes and the units",
         path, detected.fit.rms_px, detected.fit.signal_px);
   } else if (detected.mistake.found()) {
     spdlog::warn("{}: likely mistake: {}", path, detected.mistake.warning());

@@ -41,8 +41,8 @@ struct StereoMeasurement {
   /// True displacement, mean over the particles in the window, of cases of one rendering [m, field.grid.size()]; NaN:
   /// fewer than three particles; empty: unknown.
   std::vector<Vec3d> truth;
-  std::optional<stereo::SheetAlignment>
-      alignment;  ///< laser sheet as determined from images; empty: the sheet was given
+  /// laser sheet as determined from images; empty: the sheet was given
+  std::optional<stereo::SheetAlignment> alignment;
   /// disparity of the given sheet between the images of both cameras; empty: with `alignment`, or without images
   std::optional<stereo::SheetAlignment> given_sheet;
   std::vector<std::string> warnings;

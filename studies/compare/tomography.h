@@ -33,9 +33,9 @@ struct TomographyOptions {
   std::optional<double> reference_density;     ///< [kg/m^3]; empty: ambient density of the setups
   std::optional<std::array<Vec3d, 2>> bounds;  ///< lowest and highest corner of the volume [m]; empty: common view
   std::optional<double> spacing;               ///< distance between nodes [m]; empty: that of the vectors
-  std::optional<VolumeSupport>
-      support;                 ///< part outside of which the density is known; empty: the whole volume is reconstructed
-  double least_density = 0.0;  ///< lower bound of the density [kg/m^3]
+  /// part outside of which the density is known; empty: the whole volume is reconstructed
+  std::optional<VolumeSupport> support;
+  double least_density = 0.0;                                        ///< lower bound of the density [kg/m^3]
   double largest_density = std::numeric_limits<double>::infinity();  ///< upper bound [kg/m^3]
   tomography::SartSettings sart;  ///< bounds and support are set from the members above
 };
