@@ -65,8 +65,8 @@ struct CoverageRow {
   double noise = 0.0;
   /// Fraction of the errors within sigma, relative to the truths of UncertaintyRow.
   SeedMean window, deformed_window, total;
-  SeedMean rms_ratio, rms_ratio_deformed_window,
-      rms_ratio_total;  ///< UncertaintyQuality::rms_ratio relative to the same truths
+  /// UncertaintyQuality::rms_ratio relative to the same truths
+  SeedMean rms_ratio, rms_ratio_deformed_window, rms_ratio_total;
 };
 
 struct CaseRecord {

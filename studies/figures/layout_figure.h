@@ -19,8 +19,8 @@ struct OpticalLayout {
   double sensor_half, medium_half, dots_half;
   double cone_radius;  ///< radius in the medium's mid-plane, for the dot on the
                        ///< axis
-  double sheet_half_thickness = 0,
-         sheet_half_height = 0;     ///< half thickness and half height of the laser sheet; 0 for BOS
+  /// half thickness and half height of the laser sheet; 0 for BOS
+  double sheet_half_thickness = 0, sheet_half_height = 0;
   std::vector<double> planes = {};  ///< Z of the planes of a calibration
 };
 
