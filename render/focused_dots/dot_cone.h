@@ -14,7 +14,7 @@ namespace gladstone {
 /// Node of a cone's cross-section, on rings that share their directions.
 struct ConePoint {
   double radius;  ///< radius in units of the stop's radius
-  double weight;  ///< weight: fraction of the area
+  double weight;  ///< fraction of the cross-section's area
   int direction;  ///< index of the direction
 };
 /// Cubature rule over a light cone's cross-section.

@@ -34,7 +34,7 @@ struct RaySample {
   explicit RaySample(int side) : light(side, side), difference(side, side) {}
 };
 
-/// Rendering of a single white dot in pixel windows around its image in each frame, and the differences of independent
+/// Rendering of a single white dot in pixel windows around its image in each frame, and its deviation from independent
 /// samples of traced rays.
 class LoneDot {
  public:
@@ -50,9 +50,9 @@ class LoneDot {
   bool is_uncovered() const { return seen_.kind == DotKind::left; }
   /// Adds rays to the samples until each has the given number, and updates their differences.
   void compare_with_rays(int rays);
-  /// Returns the difference of sample k from the rendering.
+  /// Returns the light of the rendering in the pixel windows of both images, the reference image first.
   std::vector<double> const& light() const { return light_; }
-  /// Difference of sample k.
+  /// Returns the difference of sample k from the rendering.
   Difference const& difference(int k) const { return difference_[k]; }
 
  private:

@@ -16,7 +16,7 @@ enum class SampleRays {
 struct SampleImages {
   LightPair light;
   double share = 1;        ///< number of sources in view per source of the sample
-  bool next_rule = false;  ///< the next finer rule was used
+  bool next_rule = false;  ///< true: rendered with the next finer rule
 };
 /// Renders a sample of the scene's sources, dots as bright dots.
 /// @param scene  scene with its step and rays
