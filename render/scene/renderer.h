@@ -80,7 +80,7 @@ struct TracingPass {
   TracingPass(Scene const& scene, DotPattern const& sources);
   /// Stores the result of a dot. Threads may store different dots concurrently.
   /// @param rays  number of rays that the renderer chose
-  /// @param left  true for a fallback dot, which has no truth here
+  /// @param left  true for a fallback dot, which has no truth in this rendering
   void enter(std::size_t dot, DotTruth const& truth, std::int64_t rays, bool left);
   /// Sums up the rays and lists the fallback dots.
   Rendering finish();

@@ -38,7 +38,7 @@ struct PixelDetector {
   // stray light, see BackgroundSetup
   int columns = 0, rows = 0;        ///< size of the sensor [px]; 0: no stray light
   double background_e = 0;          ///< charge at the image centre [e]
-  double across_e = 0, down_e = 0;  ///< increase from the first to the last column, row [e]
+  double across_e = 0, down_e = 0;  ///< increase of the background over all columns, rows [e]
   double const* glare_e = nullptr;  ///< charge of the glare in each pixel [e]; null: none
   // fixed pattern, see NoiseSetup
   bool patterned = false;
