@@ -42,7 +42,7 @@ struct PatternOnDevice {
 /// Data common to all sources with the same number of rays, on the host and on the device.
 class LaunchOnDevice {
  public:
-  /// @param images  null: truth only
+  /// @param images  receive the light; null: only the truth is computed
   LaunchOnDevice(RaysLaunch const& host, PatternOnDevice const& pattern, DeviceMedium const& medium,
                  ImagePairOnDevice* images)
       : host_(host),

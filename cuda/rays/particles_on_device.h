@@ -27,7 +27,7 @@ class ScatteringCache {
 /// Data common to all particles of a scene, on the device, for each number of rays of RaysLadder.
 class LaunchesOnDevice {
  public:
-  /// @param images  null: truth only
+  /// @param images  receive the light; null: only the truth is computed
   /// @param light_per_photon  light in the images per photon
   LaunchesOnDevice(ParticleLaunches const& host, DeviceMedium const& medium, ImagePairOnDevice* images,
                    double light_per_photon);

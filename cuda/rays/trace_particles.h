@@ -34,7 +34,7 @@ struct AnyScattering {
 /// State of the aim of one particle at one pulse.
 enum class AimState : int {
   none,     ///< not illuminated, or no ray passes the stop
-  filled,   ///< the rays fill the stop, none is clipped
+  filled,   ///< all rays fill the stop, and none is clipped there
   unknown,  ///< aim to be computed by the host
   wide,     ///< the rays cover a disc around the stop and are clipped there
 };
