@@ -41,7 +41,7 @@ struct CaseSetup {
 /// Reads and checks a setup.
 /// @throws SetupError with all problems
 CaseSetup load_case_setup(std::string const& path, std::vector<std::string> const& overrides);
-/// @param field  whether the medium has yet to be built, for the check of available memory
+/// @param field  whether the check of available memory includes a medium that is yet to be built
 CaseSetup load_case_setup(SetupDocument document, FieldMemory field = FieldMemory::needed);
 
 /// Checks names, types and ranges of the keys of a setup with one camera, without comparing them with each other or

@@ -31,7 +31,7 @@ inline constexpr std::uint64_t preview_rays = 128;  ///< rays per source instead
 /// if the exposure and the number of rays are given. Only dots and particles whose image without medium is within
 /// Setup::view_margin_px and the blur by defocus of the part are traced; if an optical element divides the light
 /// (lenslets), all particles.
-/// @throws DataError if no dot or particle is there, or if a file cannot be read
+/// @throws DataError if no dot or particle is in this part, or if a file cannot be read
 CasePreview render_preview(CaseSetup const& loaded, Renderer& renderer);
 
 /// Returns the frames side by side as an 8-bit picture, enlarged to whole blocks of pixels of at least 384 px height.
