@@ -57,7 +57,7 @@ class TruthMap {
 };
 
 /// Rejects vectors that lie or point outside the image.
-/// @throws DataError if no vector remains, or no position is in px
+/// @throws DataError if no vector remains, or if the positions cannot be in px
 RejectedVectors screen(VectorFile& file, std::string const& path, CameraSetup const& camera) {
   bool const turned = file.conventions.exchanges_places();  // the file's x then points down
   int const columns = turned ? camera.rows : camera.columns, rows = turned ? camera.columns : camera.rows;

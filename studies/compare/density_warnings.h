@@ -18,7 +18,7 @@ void warn_of_reference_gradient(Reconstruction& result);
 /// Change of a density by the averaging over the interrogation windows.
 struct WindowEffect {
   double change = 0.0;  ///< rms change, estimated [kg/m^3]
-  double sigma = 0.0;   ///< rms standard uncertainty of the same nodes [kg/m^3]
+  double sigma = 0.0;   ///< rms standard uncertainty of the nodes for which `change` is estimated [kg/m^3]
 };
 
 /// Estimates the change of a density by the mean over windows of w_x x w_y, (w_x^2 d2/dx2 + w_y^2 d2/dy2) / 24 of the
