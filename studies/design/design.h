@@ -18,7 +18,7 @@ struct DesignRequest {
   std::string figures;  ///< folder of the figures; empty: no figures
   std::string figure_format = "png";
   std::string apply;                     ///< file for the recommended setup; empty: not written
-  VerificationPlan verification;         ///< benches = 0: no simulation
+  VerificationPlan verification;         ///< extent of the simulation; benches = 0: none
   std::function<Backend()> open_device;  ///< opens the device of the simulation
 };
 

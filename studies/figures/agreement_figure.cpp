@@ -44,7 +44,7 @@ Panel make_agreement_panel(AgreementPanel const& chosen, std::vector<AgreementSe
       rays.columns[1].push_back(y);
       rays.columns[2].push_back(y - error);
       rays.columns[3].push_back(y + error);
-      // above one curve and below the other
+      // labels are above one curve and below the other
       double const side = i == 0 ? -1 : 1;
       panel.labels.push_back(
           {std::to_string(point.nodes), x, y, TextRole::note, Align::centre, side * 15, side * 9, false, line.colour});
