@@ -97,7 +97,7 @@ class NpyDictionary {
     if (!value.starts_with('(') || end == std::string_view::npos) refuse();
     value = value.substr(1, end - 1);
     std::vector<std::size_t> sizes;
-    constexpr std::size_t most_axes = 64;  // NumPy 2
+    constexpr std::size_t most_axes = 64;  // maximum of NumPy 2
     while ((value = value.substr(std::min(value.find_first_not_of(" ,L"), value.size()))), !value.empty()) {
       std::size_t size = 0;
       auto const [rest, error] = std::from_chars(value.data(), value.data() + value.size(), size);
