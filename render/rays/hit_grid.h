@@ -39,7 +39,7 @@ class HitGrid {
   HitSpline spline_;
   HitSplineView view_;
   int side_;           ///< nodes along a tile's side
-  bool empty_ = true;  ///< no light has been added
+  bool empty_ = true;  ///< true: no light has been added
   Vec2<int> first_{};  ///< pixel of tile (0, 0), which is centred on the first ray
   Tile tiles_[slots * slots];
   std::vector<double> rows_seen_;
