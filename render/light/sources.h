@@ -34,7 +34,7 @@ struct SourcesView {
 GLADSTONE_HD inline std::uint64_t random_key(Vec2d centre) {
   using std::floor;
   auto const nanometres = [](double at) {
-    constexpr double farthest = 9e18;  // [nm], within the range of a 64-bit integer
+    constexpr double farthest = 9e18;  // largest coordinate [nm], within the range of a 64-bit integer
     double const whole = floor(1e9 * at + 0.5);
     double const within = whole < -farthest ? -farthest : (whole < farthest ? whole : farthest);
     return static_cast<std::uint64_t>(static_cast<std::int64_t>(within));

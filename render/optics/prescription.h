@@ -41,7 +41,7 @@ struct PrescribedMedium {
 struct CoordinateBreak {
   Vec2d decentre{};         ///< [m]
   Vec3d tilt{};             ///< right-handed rotations about x, the rotated y, then the rotated z [rad]
-  bool tilt_first = false;  ///< rotations about z, y, x, then decentre; the inverse of a break with opposite signs
+  bool tilt_first = false;  ///< true: inverse order, i.e. rotations about z, y, x, then decentre
   double advance = 0;       ///< translation along the rotated z axis [m]
 };
 
