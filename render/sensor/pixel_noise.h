@@ -109,15 +109,14 @@ struct NormalQuantile {
   GLADSTONE_HD double operator()(double u) const { return is_central(u) ? central(u) : tail(u); }
 };
 
-/// Poisson quantile.
+/// Quantile of the Poisson distribution.
 struct PoissonQuantile {
   /// Smallest mean for which the quantile is computed by expanded(), instead of adding up probabilities.
   static constexpr double least_expanded = 16;
 
   /// Returns the quantile by the first four terms of an expansion, rounded down (Giles, ACM Trans. Math. Softw. 42
-  /// (2016) 7,
-  /// algorithm 955, Eq. 6). The cumulative probabilities have an error below 2e-5 for a mean of 16, which decreases
-  /// with the square of the mean.
+  /// (2016) 7, algorithm 955, Eq. 6). The cumulative probabilities have an error below 2e-5 for a mean of 16, which
+  /// decreases with the square of the mean.
   /// @param z  normal quantile of the probability  @pre mean >= least_expanded
   GLADSTONE_HD static double expanded(double mean, double z) {
     using std::floor;

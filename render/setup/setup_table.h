@@ -163,7 +163,7 @@ class SetupTable {
     return fallback;
   }
   std::string required_word(std::string const& key, std::vector<std::string> const& words);
-  /// Reads a file name and makes it absolute, relative to the directory of the file in which it is written.
+  /// Reads a file name and makes it absolute; it is relative to the directory of the file in which it is written.
   std::string required_path(std::string const& key);
   /// Reads an array of at least `at_least` file names and makes them absolute like required_path(); empty if the key is
   /// absent.
