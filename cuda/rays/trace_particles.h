@@ -95,7 +95,7 @@ struct ParticlesLaunch {
   BundleView choice;
   StopRuleView rule;  ///< quadrature rule of rays that fill the stop, if any, in device memory
   SpotView spot;
-  HitSplineView spline;    ///< weights of the spline in device memory; null share: no windows of spline nodes
+  HitSplineView spline;    ///< weights of the spline in device memory; spline.share null: no windows of spline nodes
   int most_window_px = 0;  ///< maximum side of a window of spline nodes [px]
   int patch_px = 0;        ///< widest square of pixels in which a warp accumulates PSFs; 0: none
   DeviceImages images;     ///< images to which light is added; may be empty

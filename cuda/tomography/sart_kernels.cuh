@@ -25,7 +25,7 @@ struct LineSums {
   }
 };
 
-/// Sum of squared changes, and the largest absolute value.
+/// Sum of the squared changes of nodes, and the largest absolute value of a node.
 struct ChangeSums {
   double change, largest;
   __device__ ChangeSums& operator+=(ChangeSums const& other) {
