@@ -165,7 +165,7 @@ std::string fish_options(CommandDescription const& command, std::string const& c
   return text;
 }
 
-/// Returns the lines of a command and its sub-commands.
+/// Returns the fish script's lines for a command and its sub-commands.
 std::string fish_command(CommandDescription const& command) {
   std::string const inside = command.path.empty() ? "" : fmt::format(" -n '__gladstone_begins {}'", command.path);
   std::string const directly = fmt::format(" -n '__gladstone_is {}'", command.path);
