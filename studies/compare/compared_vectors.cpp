@@ -22,8 +22,8 @@ class TruthMap {
       : grid_{camera.columns / spacing + 1, camera.rows / spacing + 1, {0, 0}, spacing},
         maps_(map_scattered(near_view(truth.reference_px, camera), truth.displacement_px, grid_)) {}
 
-  /// Interpolates bilinearly, so that offsets of half a pixel are detectable. Returns NaN farther outside the view than
-  /// the pixel conventions of different codes differ.
+  /// Interpolates bilinearly, so that offsets of half a pixel are detectable. Returns NaN outside the view, beyond a
+  /// margin for the different pixel conventions of codes.
   Vec2d at(Vec2d c) const {
     Vec2d const last{spacing * (grid_.columns - 1.0), spacing * (grid_.rows - 1.0)};
     Vec2d const inside{std::clamp(c.x, 0.0, last.x), std::clamp(c.y, 0.0, last.y)};
