@@ -48,9 +48,9 @@ struct Deviation {
   }
   /// Returns the root of a mean of `count` squared deviations.
   double rms(double count) const { return std::sqrt(std::max(square, 0.0) / count); }
-  /// Returns its detection limit: the root of two standard errors of the mean at zero deviation. With k samples of
-  /// variance v, the squared mean has the variance 2 v^2 / k^2 and v / k that of 2 v^2 / (k^2 (k - 1)); their sum is
-  /// 2 v^2 / (k (k - 1)).
+  /// Returns the detection limit of rms(): the root of two standard errors of the mean at zero deviation. With k
+  /// samples of variance v, the squared mean has the variance 2 v^2 / k^2 and v / k that of 2 v^2 / (k^2 (k - 1));
+  /// their sum is 2 v^2 / (k (k - 1)).
   /// @param independent  number of independent values among `count`
   double detection_limit(double count, double independent) const {
     double const of_one = std::sqrt(2.0 / (LoneDot::sample_count * (LoneDot::sample_count - 1)));
