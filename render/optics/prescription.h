@@ -118,7 +118,7 @@ struct Prescription {
 
 /// Adds the coordinate breaks ahead of the image to a lens. A reference plane is appended with these breaks, so that
 /// the frame of the last surface is that of the image; the translation of the last break becomes the plane's thickness.
-/// Does nothing if there are no breaks.
+/// Without breaks, the lens is not changed.
 /// @param where  location of the image in the file
 void break_before_image(Prescription& lens, std::vector<CoordinateBreak> breaks, std::string const& where);
 
