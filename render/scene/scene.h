@@ -67,7 +67,7 @@ struct Scene {
   double pupil_radius() const { return pupil_radius(static_cast<double>(rays_per_dot)); }
   /// Standard deviation of the Gaussian PSF [px]; 0: none.
   double spot_sigma_px() const;
-  /// Like Setup::spot_scale_px().
+  /// Scale of diffraction, as Setup::spot_scale_px() [px].
   double spot_scale_px() const;
   /// Pose of the dots' plane, with the axes of the world's X and Y.
   Pose<double> target_plane() const { return {{0, 0, -setup.z_d}}; }
