@@ -42,8 +42,8 @@ struct RepeatSplit {
 /// @param repeats  errors of one kind, one vector per repeat; if their lengths differ, the result is NaN
 RepeatSplit split_repeats(std::span<std::vector<Vec2d> const> repeats);
 
-/// Mean and sample standard deviation of the finite values over repeats; NaN for none and for fewer than two,
-/// respectively.
+/// Mean and sample standard deviation of the finite values over repeats. The mean is NaN without values, the
+/// deviation with fewer than two.
 struct MeanAndSpread {
   double mean, spread;
 };
