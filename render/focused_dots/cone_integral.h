@@ -18,7 +18,7 @@ struct DotCone {
   MomentField field;  ///< moments as a function of the position on the dot; only for DotKind::narrow
 };
 
-/// Results that a renderer stores.
+/// Results of a dot that a renderer stores.
 struct DotFound {
   DotTruth truth;
   int rays = 0;       ///< number of rays traced
