@@ -35,7 +35,7 @@ struct ChangeSums {
   }
 };
 
-/// Sums of the squares of changes and values.
+/// Sums of the squared changes and the squared values of nodes.
 struct NormSums {
   double change, volume;
   __device__ NormSums& operator+=(NormSums const& other) {
