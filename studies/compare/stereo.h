@@ -19,7 +19,7 @@ struct StereoOptions {
   std::vector<std::string> calibrations;   ///< calibration.h5 of each camera; empty: exact cameras of rendered cases
   std::optional<std::string> conventions;  ///< conventions of the vectors given by the user; empty: those of the file's
                                            ///< format
-  stereo::ObjectPlane plane;               ///< middle of the laser sheet, with `align` the first assumption
+  stereo::ObjectPlane plane;               ///< middle of the laser sheet; with `align`, the initial guess
   bool dewarp_images = false;              ///< correlate the dewarped frames of the cases, instead of reading vectors
   bool align = false;                      ///< determine the sheet from images; false: only measure the disparity
   /// images of the first and of the second camera in turn, two for each time; empty: both frames of the cases, if any
