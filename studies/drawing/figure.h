@@ -109,7 +109,7 @@ struct Panel {
   Axis x = {}, y = {};
   std::optional<Map> map = {};
   std::vector<Layer> layers = {};  ///< layers, the lowest one first
-  std::vector<Label> labels = {};  ///< moved if they overlap or leave the page, where the ranges of the axes are given
+  std::vector<Label> labels = {};  ///< moved if they overlap or leave the page, provided the axes have ranges
   Legend legend = {};
   Border border = Border::full;
   Grid grid = Grid::none;
