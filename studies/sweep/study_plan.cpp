@@ -197,7 +197,7 @@ struct StudyPlan::Parts {
   std::string device;
   SetupDocument base;
   std::mutex mutex;  ///< protects the members below
-  /// Key paths of file names, by words_of() the values.
+  /// Paths of the keys that are file names, for each words_of() the axis values.
   std::map<std::string, std::vector<std::vector<std::string>>> file_keys;
   std::map<std::string, std::string> hashes;  ///< hash of each file, by name
 
