@@ -45,7 +45,7 @@ RayBudget choose_ray_budget(Scene const& scene) {
     return b.rays > a.rays ? b : a;
   }
   RenderMethod const method = resolve_render_method(scene);
-  if (method == RenderMethod::formula) return {};  // no rays are traced; the recorded number is one
+  if (method == RenderMethod::formula) return {};  // no rays are traced; files state the default number of rays, one
   if (method == RenderMethod::rays) return determine_ray_budget_by_tracing(scene);
   if (rays_take_far_less_time(scene)) {
     RayBudget budget = determine_ray_budget_by_tracing(scene);

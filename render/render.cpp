@@ -29,7 +29,7 @@ std::vector<std::size_t> indices_without(std::size_t count, std::vector<std::siz
 }
 
 /// Adds the rendering of the dots with the given indices to that of all dots.
-/// @param sign  of their light: dark dots are subtracted from white paper
+/// @param sign  sign of the added light: -1 for dark dots, whose light is subtracted from white paper
 void merge(Rendering& all, Rendering const& some, std::vector<std::size_t> const& indices, double sign) {
   for (std::size_t i = 0; i < indices.size(); ++i) all.truth.copy(some.truth, i, indices[i]);
   all.rays += some.rays;
@@ -44,7 +44,7 @@ void merge(Rendering& all, Rendering const& some, std::vector<std::size_t> const
   add(all.light.flow, some.light.flow);
 }
 
-/// Changes a rendering of the dots with the given indices to one of `count` dots. The others have no truth.
+/// Extends a rendering of the dots with the given indices to `count` dots. The others get no true displacement.
 void widen(Rendering& rendering, std::vector<std::size_t> const& indices, std::size_t count) {
   GroundTruth all;
   all.resize(count);
@@ -133,7 +133,8 @@ Rendering Device::render_others(Scene const& scene, DotPattern dots, RenderImage
   by_rays.setup.target.polarity = Polarity::bright;
   if (!scene.setup.render.rays_per_dot) {
     if (images == RenderImages::no) {
-      by_rays.adaptive_criteria = AdaptiveRayCriteria{};  // criteria of the truth alone, not of images
+      // adaptive criteria for the true displacements only, not for images
+      by_rays.adaptive_criteria = AdaptiveRayCriteria{};
     } else if (!scene.adaptive_criteria) {
       by_rays.adaptive_criteria = determine_adaptive_criteria(scene);
     }

@@ -225,7 +225,7 @@ MeasuredPeak LanePeaks::measure(LaneCorrelation const& work, LanePlaneView const
 void LanePeaks::measure_all(LaneCorrelation const& work, LanePlane const& plane, int p, PeakList<float> const* found,
                             WindowCorrelation* results) const {
   LaneSamples samples;
-  FloatLanes down[3], across[3];  // relative decrease of the plane from one pixel before to one pixel after the peak
+  FloatLanes down[3], across[3];  // shift_attenuation() at the shifts one pixel before, at and one pixel after the peak
   for (FloatLanes* factor : {down, across}) std::fill_n(factor, 3, all_lanes(1.0f));
   for (int lane = 0; lane < lane_count; ++lane) {
     if (p >= found[lane].count) continue;

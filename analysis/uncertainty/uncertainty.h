@@ -61,7 +61,7 @@ bool uncertainty_on_gpu(std::string const& method);
 /// @param on_cpu  whether the vectors are correlated on a CPU
 CorrelationSettings choose_uncertainty(CorrelationSettings settings, bool on_cpu);
 
-/// Frames and device of a correlation, by which uncertainty = "auto" chooses.
+/// Frames and device of a correlation. uncertainty = "auto" selects the method of estimation from them.
 enum class CorrelatedFrames { pair_on_cpu, pair_on_gpu, sequence, ensemble };
 
 /// Records in the field which method estimated its uncertainty, and which key selected it. For "auto" that estimated

@@ -16,7 +16,7 @@
 /// on the default stream and checked at launch.
 namespace gladstone::cuda {
 
-/// Highest finite grey level of an image pair and negative of the lowest, as ordered_key().
+/// Highest finite grey level of an image pair and negative of the lowest, both as keys of ordered_key().
 struct LevelKeys {
   unsigned long long highest;
   unsigned long long minus_lowest;
@@ -36,7 +36,7 @@ struct DevicePair {
   int rows;
 };
 
-/// Converts images to this form.
+/// Converts images to a DevicePair.
 /// @param keys  scratch
 /// @param contrast  output: scaled range of the grey levels
 void prepare_pair(DeviceImage const& reference, DeviceImage const& flow, LevelKeys* keys, float* contrast,

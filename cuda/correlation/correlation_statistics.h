@@ -19,7 +19,7 @@ struct MatchedWindows {
 
 /// Returns the memory that a block needs for a window of this side [floats].
 std::size_t statistics_values(int side);
-/// Returns whether this exceeds the shared memory available to a block.
+/// Returns whether the memory for a window of this side exceeds the shared memory available to a block.
 bool statistics_need_scratch(int side);
 
 /// Estimates the standard uncertainty of every vector.

@@ -53,8 +53,8 @@ struct WindowScratch {
   DeviceArray<float> memory;
   int slots = 0;
 
-  /// Allocates memory for up to 264 of `windows`, or for fewer if device memory is short. @param values  floats per
-  /// window
+  /// Allocates memory for `windows` concurrent windows, at most 264, or for fewer if device memory is short.
+  /// @param values  floats per window
   void make(std::size_t values, std::size_t windows) {
     if (values == 0) return;
     for (auto wanted = std::min<std::size_t>(windows, 264);; wanted = (wanted + 1) / 2) try {
@@ -369,7 +369,7 @@ class CorrelationPlan {
 struct CudaCorrelator::State {
   explicit State(CorrelationSettings const& wanted) : settings(wanted) {}
 
-  /// Returns the plan for images of that size. @throws DataError, OutOfDeviceMemory
+  /// Returns the plan for images of this size. @throws DataError, OutOfDeviceMemory
   CorrelationPlan& plan_for(int columns, int rows) {
     if (!plan || !plan->suits(columns, rows)) {
       plan.reset();  // release its memory first

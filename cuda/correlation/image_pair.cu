@@ -95,7 +95,7 @@ constexpr int row_part = threads * row_run;  // part of a row filtered by a bloc
 /// Filters rows, continued by reflection at their ends. Unknown pixels count as 0.
 __global__ void __launch_bounds__(threads)
     filter_rows(DevicePair pair, float const* taps, int tap_count, GreyPair* out) {
-  // Skip every seventeenth place: samples four apart are then in different banks.
+  // Skip every seventeenth position: samples four apart are then in different banks.
   constexpr int most = row_part + 2 * most_taps;
   __shared__ GreyPair samples[most + most / 16];
   __shared__ float shared_taps[most_taps];

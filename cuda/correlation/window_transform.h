@@ -45,7 +45,7 @@ struct WindowTransform {
     return roots;
   }
 
-  int thread;  ///< values derived from it are recomputed, which is cheaper than registers
+  int thread;  ///< index of the thread; values derived from it are recomputed, which is cheaper than registers
   Complex* memory;
   Roots const* roots;
 
@@ -54,7 +54,7 @@ struct WindowTransform {
   GLADSTONE_HD int lane() const { return thread & 31; }
   GLADSTONE_HD int warp() const { return thread >> 5; }
   GLADSTONE_HD int along() const { return thread & 7; }  ///< index of the thread among the eight that share a row
-  /// Offset of the row of this thread's wave number, and of the mirrored row.
+  /// Offset of the row of this thread's wave number, and of the row of the mirrored wave number.
   GLADSTONE_HD int row() const { return (thread >> 3) * pitch; }
   GLADSTONE_HD int mirror() const {
     int const line = thread >> 3;  // equals 4 p + q, see the layout above

@@ -10,7 +10,7 @@ namespace gladstone::cuda {
 /// Computes light[i] = white[i] - light[i].
 void take_from_white(double const* white, double* light, std::size_t count);
 
-/// Finds the maximum of `count` pixels as an ordered_key(), and stores it in `key` if it exceeds the value there.
+/// Finds the maximum of `count` pixels as an ordered_key(), and stores it in `key` if it exceeds the stored value.
 /// @param key  must be initialised to zero
 void find_brightest(double const* light, std::size_t count, unsigned long long* key);
 /// Converts a key of find_brightest() to the value of the brightest pixel, on the host.

@@ -23,7 +23,7 @@ __global__ void list_kernel(DeviceParticleImages const images, GaussianSpot<doub
   }
 }
 
-/// Sorts the list of a tile by the rank of every entry: a list has about a hundred.
+/// Sorts the list of a tile by the rank of every entry; a list has about a hundred entries.
 __global__ void order_kernel(TileLists const lists) {
   std::size_t const tile = blockIdx.x;
   std::uint32_t const count = min(lists.count[tile], lists.capacity);

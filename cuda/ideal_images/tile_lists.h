@@ -47,7 +47,7 @@ class TileListMemory {
 
 /// Particle images of several frames in device memory.
 struct DeviceParticleImages {
-  ParticleImage const* images = nullptr;  ///< [frame][count]
+  ParticleImage const* images = nullptr;  ///< particle images, [frame][count]
   std::size_t count = 0;                  ///< number of images of a frame
   std::size_t frames = 0;
   /// Photons per unit of light of each pair of frames, as bits of a double; null: the light is in these units already.

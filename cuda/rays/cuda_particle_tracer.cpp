@@ -29,7 +29,8 @@ using HostPulses = ParticleSources<double, AnyScattering>[frame_count];
 template <class Medium>
 class BatchPass {
  public:
-  /// Starts aiming the particles on the device. @param launches  launches of the batch's particles, one per ladder step
+  /// Starts aiming the particles on the device. @param launches  launches of the batch's particles, one per number of
+  /// rays
   BatchPass(ParticleLaunches const& host, LaunchesOnDevice const& on_device, std::vector<ParticlesLaunch> launches,
             HostPulses const& pulses, Medium const& medium, DeviceMedium const& mirrored, ParticleBatch& batch,
             double across_medium, unsigned long long* ends)
@@ -89,7 +90,7 @@ class BatchPass {
  private:
   unsigned int counted(std::size_t step) const { return counts_[step]; }
 
-  /// Lists, by ladder step, the aims of chosen particles that fill the stop.
+  /// Lists, by number of rays, the aims of the chosen particles whose rays fill the stop.
   void list(int const* at) {
     list_particles(on_device_.ladder(), batch_.aims().data(), at, batch_.steps(), batch_.count(),
                    batch_.listed(launches_.size()));
@@ -102,7 +103,8 @@ class BatchPass {
             counted(step), sign);
     }
   }
-  /// Traces `count` aims of one ladder step. @param listed  indices of the aims, in device memory
+  /// Traces `count` aims with the number of rays of a step of RaysLadder. @param listed  indices of the aims, in device
+  /// memory
   void trace(AimState state, std::size_t step, std::uint32_t const* listed, std::size_t count, double sign) {
     ParticlesLaunch launch = launches_[step];
     launch.sign = sign;
@@ -168,7 +170,7 @@ class BatchPass {
     trace_wider(wide_, steps.data());
   }
 
-  /// Traces aims at clipped rays, by the ladder steps of their particles.
+  /// Traces aims whose rays are clipped at the stop, by the number of rays of their particles.
   void trace_wide(std::vector<std::uint32_t> const& aims, int const* step, double sign) {
     for (std::size_t here = 0; here < launches_.size(); ++here) {
       std::vector<std::uint32_t> some;
@@ -203,8 +205,8 @@ class BatchPass {
     }
   }
 
-  /// Aims at the stop for those pulses of a particle that the device could not aim. @return first ladder step of the
-  /// particle
+  /// Aims at the stop for those pulses of a particle that the device could not aim. @return the particle's first step
+  /// of RaysLadder
   int aim_at_host(std::size_t i, Vec2d& origin, int step) {
     PulseAim* const aims = &aims_[frame_count * i];
     bool placed = aims[0].state == AimState::filled || aims[1].state == AimState::filled;
@@ -226,7 +228,8 @@ class BatchPass {
     }
     return step;
   }
-  /// Sets the aim point and extent of the rays of a wide aim, at a ladder step.
+  /// Sets the aim point and extent of the rays of an aim set by the host, for the number of rays of a step of
+  /// RaysLadder.
   void place_aim(std::size_t at, std::size_t step) {
     PulseAim& aim = aims_[at];
     SourceAim const& found = found_[at];

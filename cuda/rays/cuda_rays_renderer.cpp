@@ -42,7 +42,7 @@ struct PatternOnDevice {
 /// Data common to all sources with the same number of rays, on the host and on the device.
 class LaunchOnDevice {
  public:
-  /// @param images  null: truth only
+  /// @param images  receive the light; null: only the truth is computed
   LaunchOnDevice(RaysLaunch const& host, PatternOnDevice const& pattern, DeviceMedium const& medium,
                  ImagePairOnDevice* images)
       : host_(host),
@@ -160,7 +160,7 @@ class Batch {
                   {sums_.data(), moved2_.data(), ends_.data()});
   }
 
-  /// Waits for the results. @param sign  sign of its ray counts
+  /// Waits for the results. @param sign  sign with which the batch's ray counts are added
   void finish(std::int64_t sign, StatusCounts& statuses) {
     unsigned long long ends[frame_count * ray_status_count] = {};
     ends_.download(ends, frame_count * ray_status_count);
@@ -265,8 +265,8 @@ class SceneTracer {
     return aimed;
   }
 
-  /// Processes the results of a batch of the first ladder step. Sources with a ray deflected beyond their margin, and
-  /// those that need more rays, are removed and traced again.
+  /// Processes the results of a batch with the first number of rays. Sources with a ray deflected beyond their margin,
+  /// and those that need more rays, are removed and traced again.
   void finish(std::unique_ptr<Batch> batch) {
     std::vector<AimedSources> waiting(ladder_.size());
     take_in(*batch, 0, waiting);
@@ -288,7 +288,7 @@ class SceneTracer {
     }
   }
 
-  /// Stores the results of a batch. @param waiting  output: sources to be traced again, by ladder step
+  /// Stores the results of a batch. @param waiting  output: sources to be traced again, by number of rays
   void take_in(Batch& batch, std::size_t step, std::vector<AimedSources>& waiting) {
     batch.finish(1, statuses_);
     RaysLaunch const& launch = ladder_[step];

@@ -22,11 +22,11 @@ struct HitWindow {
   int* nodes = nullptr;  ///< light at the nodes: [side][side]; null: accepts no light
   int side, per_px;
   int left, top;  ///< pixel of node (0, 0)
-  double units;   ///< integer units per weight of 1
+  double units;   ///< integer units per unit of ray weight
   double most_weight;
 
-  /// Returns the unit for a number of rays of at most that weight. A node gets at most 4/9 of a ray, so that a sum uses
-  /// less than half of the integer's range.
+  /// Returns the number of integer units per unit of weight, for a number of rays whose weights are at most
+  /// most_weight. A node gets at most 4/9 of a ray, so that a sum uses less than half of the integer's range.
   __device__ static double units_per_weight(double most_weight, std::uint64_t rays) {
     return most_weight > 0 ? 0x1p31 / (most_weight * static_cast<double>(rays)) : 0;
   }
@@ -68,8 +68,8 @@ struct HitWindow {
 struct SharedParts {
   CameraElement<double>* elements;
   RaySums* sums;      ///< sums over the rays of each thread
-  double* rows_seen;  ///< buffer of blur_hits(), in the memory of `sums`, which are not needed any more at that time
-  double* share;      ///< values of the spline
+  double* rows_seen;  ///< buffer of blur_hits(); shares the memory of `sums`, which are no longer needed then
+  double* share;      ///< weights of the spline
   int* nodes;         ///< nodes of all windows; null: no windows
 
   template <class Launch>

@@ -24,7 +24,7 @@ inline constexpr std::size_t most_block_bytes = 96 * 1024;
 struct SourceOnDevice {
   std::uint64_t source;                               ///< index of the source in the pattern
   Vec3d centre, a, b, across, by_x, by_y;             ///< target area and its shift, as in AimedBundle
-  Vec2d origin;                                       ///< reference point of the sums over its rays on the sensor [px]
+  Vec2d origin;                                       ///< reference point on the sensor of the sums over the rays [px]
   int window_px = 0;                                  ///< side of the windows that accumulate its light; 0: none
   int left[frame_count] = {}, top[frame_count] = {};  ///< pixel of the first node in each frame
   double most_weight = 0;  ///< maximum weight of a ray in the window; PSFs of heavier rays are added one by one
@@ -51,7 +51,7 @@ struct SourcesLaunch {
 
 /// Output of a launch, in device memory.
 struct SourcesTraced {
-  RaySums* sums;             ///< [source][share][scrambling]
+  RaySums* sums;             ///< sums over the rays, [source][share][scrambling]
   double* moved2;            ///< [source]: largest squared displacement of a ray by the medium [m^2]
   unsigned long long* ends;  ///< ray counts to be incremented: [frame][status]
 };

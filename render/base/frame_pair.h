@@ -10,8 +10,8 @@ namespace gladstone {
 class FramePair {
  public:
   virtual ~FramePair() = default;
-  /// Returns frame A (BOS: the reference image) in host memory. Frames in device memory are copied by the first call,
-  /// which must not run concurrently with another.
+  /// Returns frame A (BOS: the reference image) in host memory. For frames in device memory, the first call copies them
+  /// to the host; it must not run concurrently with another call.
   virtual Image<double> const& reference() const = 0;
   /// Returns frame B (BOS: the measurement image) in host memory, under the same conditions as reference().
   virtual Image<double> const& flow() const = 0;

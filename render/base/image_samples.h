@@ -12,7 +12,7 @@ namespace gladstone {
 /// Kind of the samples of an array.
 enum class SampleKind { boolean, unsigned_integer, signed_integer, floating_point };
 
-/// Grey levels of an image that another library stores: in host or device memory, of any type and memory layout.
+/// Grey levels of an image in the memory (host or device) of another library, of any sample type and memory layout.
 struct ImageSamples {
   void const* first = nullptr;                 ///< address of the sample in row 0 and column 0
   SampleKind kind = SampleKind::boolean;       ///< kind of the samples
@@ -21,14 +21,14 @@ struct ImageSamples {
   std::int64_t column_step = 1, row_step = 0;  ///< distances between adjacent columns and rows [samples]
 };
 
-/// Frames copied from such images, and how many pixels of each are NaN or infinite.
+/// Frames copied from ImageSamples, and the number of NaN or infinite pixels of each.
 struct CopiedFrames {
   std::unique_ptr<FramePair> frames;
   std::array<std::size_t, 2> not_finite;
 };
 
 /// Calls `visit` with a value of the samples' C++ type: bool, an integer of 8 to 64 bits, float or double.
-/// @return false: there is no such type, and nothing was called
+/// @return false if no C++ type has this kind and size; `visit` is then not called
 template <class Visit>
 bool visit_sample_type(ImageSamples const& image, Visit const& visit) {
   auto const integer = [&](auto one_byte, auto two_bytes, auto four_bytes, auto eight_bytes) {

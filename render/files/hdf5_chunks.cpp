@@ -32,7 +32,7 @@ bool is_incompressible(std::span<unsigned char const> bytes) {
 /// Stream of zlib that compresses one chunk.
 class Deflation {
  public:
-  /// @param size  of the chunk [bytes]
+  /// @param size   size of the chunk [bytes]
   /// @param parts  number of calls of add()
   Deflation(std::size_t size, std::size_t parts) : bytes_(compressBound(size) + parts * bytes_per_part) {
     check(deflateInit(&stream_, deflate_level) == Z_OK);
@@ -57,7 +57,8 @@ class Deflation {
  private:
   static constexpr std::size_t bytes_per_part = 64;  // headers of blocks at a change of the level
 
-  /// The buffer is large enough, so that only memory can be short.
+  /// Throws std::bad_alloc if zlib fails: the buffer is large enough, so that lack of memory is the only possible
+  /// cause.
   static void check(bool good) {
     if (!good) throw std::bad_alloc();
   }

@@ -33,9 +33,9 @@ class LineReader {
   std::optional<std::string_view> next();
   /// Number of the line that next() returned last, counted from 1.
   std::size_t number() const { return number_; }
-  /// Location of that line, "file:number".
+  /// Location of the line that next() returned last, "file:number".
   std::string place() const;
-  /// Offset in the file of the first byte after that line; meaningless for UTF-16.
+  /// Offset in the file of the first byte after the line that next() returned last; meaningless for UTF-16.
   std::uint64_t offset() const { return offset_; }
 
  private:

@@ -190,7 +190,7 @@ struct DeflectionTable {
     auto* const slopes = reinterpret_cast<TableSlopes*>(vectors + 2 * straight.size());
     return {vectors, vectors + straight.size(), slopes, slopes + sloping.size()};
   }
-  /// Returns the table with these values.
+  /// Returns a copy of the table that refers to the given values.
   DeflectionTable with(Values const& values) const {
     DeflectionTable table = *this;
     table.displacements = values.displacements;

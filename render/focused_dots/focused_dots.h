@@ -13,7 +13,7 @@ namespace gladstone {
 /// perpendicular to the axis, with a Gaussian PSF. Only then is the reference image known in closed form and a single
 /// deflection table valid for all dots (DotModel).
 /// Required as an argument by renderer and tables; created by focused_dots() only. Refers to the scene, which must
-/// outlive it, including later changes of its plans.
+/// outlive it, and to later changes of the scene's step and ray budget.
 class FocusedDots {
  public:
   Scene const& scene() const { return *scene_; }

@@ -24,15 +24,17 @@ struct RaySample {
     double count = 0;
     Vec2d mean() const { return first / count; }
   };
-  int rays = 0;                           ///< number of rays whose landing the table has predicted
-  Sum predicted, also_predicted, traced;  ///< sums over all predicted rays; over the predictions of the traced rays;
-                                          ///< over the traced rays
-  LightImage light, difference;           ///< sums over the predicted rays; sums of traced minus predicted rays
+  int rays = 0;           ///< number of rays whose landing the table has predicted
+  Sum predicted;          ///< predicted landing positions of all rays [px]
+  Sum also_predicted;     ///< predicted landing positions of the traced rays [px]
+  Sum traced;             ///< landing positions of the traced rays [px]
+  LightImage light;       ///< light of the predicted rays
+  LightImage difference;  ///< light of the traced rays minus that of their predictions
 
   explicit RaySample(int side) : light(side, side), difference(side, side) {}
 };
 
-/// Rendering of a single white dot in pixel windows around its image in each frame, and the differences of independent
+/// Rendering of a single white dot in pixel windows around its image in each frame, and its deviation from independent
 /// samples of traced rays.
 class LoneDot {
  public:
@@ -48,9 +50,9 @@ class LoneDot {
   bool is_uncovered() const { return seen_.kind == DotKind::left; }
   /// Adds rays to the samples until each has the given number, and updates their differences.
   void compare_with_rays(int rays);
-  /// Light of the window in both images, the reference image first.
+  /// Returns the light of the rendering in the pixel windows of both images, the reference image first.
   std::vector<double> const& light() const { return light_; }
-  /// Difference of sample k.
+  /// Returns the difference of sample k from the rendering.
   Difference const& difference(int k) const { return difference_[k]; }
 
  private:

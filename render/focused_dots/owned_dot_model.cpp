@@ -84,7 +84,7 @@ PlaceRule make_place_rule(bool extended, SourceShape shape) {
   return rule;
 }
 
-/// Returns the light of a white dot on the axis [fully lit px]; that of a point equals a disc of one pixel's area.
+/// Returns the light of a white dot on the axis [fully lit px]; a point has the light of a disc of one pixel's area.
 double light_of_dot(double half_size_px, SourceShape shape) {
   if (half_size_px == 0) return 1;
   return (shape == SourceShape::disc ? pi : 4) * half_size_px * half_size_px;

@@ -5,8 +5,8 @@
 
 namespace gladstone {
 
-/// Computes the PSF factors of some points along both axes, as GaussianSpot::taylor_shares(), by a group of lanes. On a
-/// device, eight lanes process one axis of a point: they integrate the PSF up to the pixel edges, and the factor of a
+/// Computes the PSF factors of some points along both axes, like GaussianSpot::taylor_shares(), by a group of lanes. On
+/// a device, eight lanes process one axis of a point: they integrate the PSF up to the pixel edges, and the factor of a
 /// pixel is the difference between its two edges. On the CPU, a single lane processes whole vectors of pixels.
 /// @param at_point  returns the position of the i-th point [px]
 /// @param room  output: factors [point][axis][order][pitch]; on a single lane with zeros beyond the last pixel of the

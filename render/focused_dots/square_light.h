@@ -2,8 +2,8 @@
 
 #include "render/focused_dots/cone_integral.h"
 
-/// Light of a dot whose displacements are sorted into squares (MomentImages), computed by a group of lanes (OneLane, or
-/// a device's).
+/// Light of a dot whose displacements are sorted into squares (MomentImages), computed by a group of lanes: OneLane on
+/// the CPU, a block of threads on a GPU.
 namespace gladstone {
 
 /// Work space shared by a group's lanes.
@@ -23,8 +23,8 @@ struct SquareSums {
 
 /// Nodes of a wide dot's light cone.
 struct ConePoints {
-  ConeLight* light;       ///< [place][count]
-  unsigned short* order;  ///< [place][count] nodes sorted by square
+  ConeLight* light;       ///< contributions of the nodes, [place][count]
+  unsigned short* order;  ///< indices of the nodes, sorted by square, [place][count]
   int count;
 };
 
@@ -116,7 +116,7 @@ GLADSTONE_HD void sum_squares(Group const& group, DotModel const& model, Correct
 
 /// Adds the light of some squares of the same phase to the patch.
 /// @tparam pixels  number of pixels that a lane processes together
-/// @pre sums.shares are those of these squares
+/// @pre sums.shares contains the weights for these squares
 template <int pixels, class Group, int abreast, class Patch>
 GLADSTONE_HD void add_squares(Group const& group, MomentImages const& images, DotSquares const& squares,
                               unsigned short const* list, int here, SquareSums<abreast> const& sums, Patch& patch) {

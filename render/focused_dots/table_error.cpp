@@ -48,9 +48,9 @@ struct Deviation {
   }
   /// Returns the root of a mean of `count` squared deviations.
   double rms(double count) const { return std::sqrt(std::max(square, 0.0) / count); }
-  /// Returns its detection limit: the root of two standard errors of the mean at zero deviation. With k samples of
-  /// variance v, the squared mean has the variance 2 v^2 / k^2 and v / k that of 2 v^2 / (k^2 (k - 1)); their sum is
-  /// 2 v^2 / (k (k - 1)).
+  /// Returns the detection limit of rms(): the root of two standard errors of the mean at zero deviation. With k
+  /// samples of variance v, the squared mean has the variance 2 v^2 / k^2 and v / k that of 2 v^2 / (k^2 (k - 1));
+  /// their sum is 2 v^2 / (k (k - 1)).
   /// @param independent  number of independent values among `count`
   double detection_limit(double count, double independent) const {
     double const of_one = std::sqrt(2.0 / (LoneDot::sample_count * (LoneDot::sample_count - 1)));
@@ -85,7 +85,7 @@ double light_of_a_level(LoneDots const& lone, CameraSetup const& camera, double 
   if (camera.exposure_e) return light_per_level(camera, *camera.exposure_e);
   double brightest = 0;
   for (std::size_t frame = 0; frame < frame_count; ++frame) {
-    double sum = 0, squares = 0;  // per dot
+    double sum = 0, squares = 0;  // mean over dots of the light, and of its square, added up over pixels
     for (auto const& dot : lone) {
       std::size_t const area = dot->light().size() / frame_count;
       for (std::size_t i = frame * area; i < (frame + 1) * area; ++i) {

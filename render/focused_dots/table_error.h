@@ -21,10 +21,10 @@ TableError measure_table_error(FocusedDots const& dots);
 inline constexpr std::uint64_t initial_table_rays = 32;
 
 /// Determines the number of rays per dot that correct the table, and the fineness of table and rules.
-/// A number given in the setup is used unchanged. Otherwise it starts at 32 rays. If the errors exceed 1e-3 px
-/// rms in the truth or half a grey level in images, table and rules are refined by a factor of two; then 128 and 512
-/// rays are tried, as long as each step reduces the error by at least 30 %. Dots with large scatter use up to 256 rays
-/// (DotModel). The budget contains the remaining error of the table.
+/// A number of rays given in the setup is used unchanged. Otherwise the search starts at 32 rays. If the errors exceed
+/// 1e-3 px rms in the truth or half a grey level in images, table and rules are refined by a factor of two; then 128
+/// and 512 rays are tried, as long as each step reduces the error by at least 30 %. Dots with large scatter use up to
+/// 256 rays (DotModel). The budget contains the remaining error of the table.
 RayBudget determine_ray_budget(FocusedDots const& dots);
 
 /// Estimates the processor time of a scene's deflection table and of the measurement of its error by ray_seconds() [s].

@@ -40,7 +40,8 @@ class ParticleSequence {
   enum class Region { volume, surroundings };
 
   void start();
-  /// Draws the particles of a frame in the volume, or those around it from where the volume can be reached within dt.
+  /// Draws the particles of a frame inside the volume, or in the surroundings from which particles can reach the volume
+  /// within dt.
   Places draw(std::size_t frame, Region region) const;
   /// Returns all particles of the current and the next frame, without their light.
   Particles move() const;

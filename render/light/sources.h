@@ -34,7 +34,7 @@ struct SourcesView {
 GLADSTONE_HD inline std::uint64_t random_key(Vec2d centre) {
   using std::floor;
   auto const nanometres = [](double at) {
-    constexpr double farthest = 9e18;  // [nm], within the range of a 64-bit integer
+    constexpr double farthest = 9e18;  // largest coordinate [nm], within the range of a 64-bit integer
     double const whole = floor(1e9 * at + 0.5);
     double const within = whole < -farthest ? -farthest : (whole < farthest ? whole : farthest);
     return static_cast<std::uint64_t>(static_cast<std::int64_t>(within));
@@ -55,7 +55,8 @@ GLADSTONE_HD constexpr int scrambling_bits(std::uint64_t rays) {
   return rays >= 4 ? 2 : (rays >= 2 ? 1 : 0);
 }
 
-/// Returns the number of points per scrambling for which both rays of the pair are traced.
+/// Returns the number of points per scrambling for which both rays of a pair (AimedRay of opposite source positions)
+/// are traced.
 GLADSTONE_HD constexpr std::uint32_t complete_points(std::uint64_t rays, int scrambling_bits) {
   return static_cast<std::uint32_t>(rays >> (scrambling_bits + 1));
 }

@@ -37,8 +37,8 @@ struct PosedStop {
   }
 };
 
-/// Ideal thin lens with any pose. Light propagates along its +z axis. Exact in slopes (a collinear map), and hence free
-/// of aberrations for every object plane.
+/// Ideal thin lens with any pose. Light propagates along its +z axis. It maps slopes exactly (collinear map), and hence
+/// is free of aberrations for every object plane.
 template <class T>
 struct PosedThinLens {
   Pose<T> pose;

@@ -56,9 +56,9 @@ struct Choice {
   Glass const* glass = nullptr;     ///< chosen glass
   bool in_no_catalogue = false;     ///< no catalogue contains the name
   bool followed = false;            ///< the glasses are successors
-  bool listed = false;              ///< its catalogue is in the lens file's list, or the file has no list
-  bool added = false;               ///< its catalogue was added
-  bool ambiguous = false;           ///< another glass has a different index
+  bool listed = false;              ///< the catalogue of the glass is in the lens file's list, or the file has no list
+  bool added = false;               ///< the catalogue of the glass was added
+  bool ambiguous = false;           ///< another glass comes first in order, or has a different index
 
   /// Describes the assumptions made: "may be A, B, with different indices; A is taken"; empty if none was made.
   std::string text(std::vector<std::string> const& list, std::optional<double> stated_nd) const {

@@ -79,7 +79,7 @@ class GlassCatalogue {
   /// Returns the glasses that a name in the syntax of match() can refer to.
   std::vector<Glass const*> candidates(std::string_view name) const;
 
-  /// Returns the glasses that followed a name: those of its name with N- ahead of it.
+  /// Returns the lead-free successors of a name: glasses with this name preceded by "N-".
   std::vector<Glass const*> successors(std::string_view name) const;
   struct FullName {
     std::string key, catalogue, name;

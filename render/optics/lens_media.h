@@ -22,7 +22,7 @@ class LensMedia {
  public:
   /// @param prescription,catalogue  must outlive this object
   /// @param wavelength              [m]
-  /// @param absorption              determine the absorption of glass as well
+  /// @param absorption              true: the absorption of glass is determined as well
   LensMedia(Prescription const& prescription, GlassCatalogue const& catalogue, double wavelength, bool absorption)
       : prescription_(prescription), catalogue_(catalogue), wavelength_(wavelength), absorption_(absorption) {}
 
@@ -30,8 +30,8 @@ class LensMedia {
   /// @param surface_where  file and line of the surface, named in messages about media that share the surface's line
   LensMedium find(PrescribedMedium const& medium, std::string const& surface_where);
 
-  /// Returns a glass of a catalogue, or the one with nd and Vd of its line if no catalogue contains it or if an assumed
-  /// one contradicts them. Adds one warning about the choice.
+  /// Returns the catalogue's glass of this name. If no catalogue contains the name, or if an assumed glass contradicts
+  /// the nd and Vd of the line, returns a glass with this nd and Vd. Adds one warning about the choice.
   /// @throws DataError if the glass is unknown or not valid at this wavelength
   Glass named_glass(PrescribedMedium::Named const& named, std::string const& where);
 

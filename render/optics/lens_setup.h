@@ -21,7 +21,7 @@ enum class Transmittance {
 /// Table [lens] of a setup, in SI.
 struct LensSetup {
   double focal_length = 0.105;  ///< focal length [m]; infinite for afocal prescriptions
-  double f_number = 11.0;       ///< infinite: chief rays only; NaN: not defined by the setup or the prescription
+  double f_number = 11.0;  ///< f-number; infinite: chief rays only; NaN: not defined by the setup or the prescription
   Focus focus = Focus::target;
   double focus_distance = 0.0;  ///< distance from the front principal plane to the plane in focus, for Focus::distance
                                 ///< [m]

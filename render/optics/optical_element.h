@@ -42,7 +42,7 @@ class OpticalElement {
   bool deflects() const;
   bool divides_light() const;
   double to_sensor() const;
-  /// f-number of the element's own images; 0 if it forms none
+  /// Returns the f-number of the images that the element forms; 0 if it forms none.
   double image_f_number() const;
   std::string imaging_warning(ImagingGeometry const& imaging, double f_number) const;
 

@@ -37,7 +37,7 @@ constexpr double longest = 1e3;  // upper limit of any length in a lens [m]
 constexpr double contact_tolerance = 1e-6;
 
 /// Returns true for an ideal lens, and for a surface that is a mirror or borders on a medium other than air. Reference
-/// planes and stops in air do not count.
+/// planes and stops in air are excluded.
 bool is_real(Prescription const& lens, std::size_t i) {
   PrescribedMedium const& before = i > 0 ? lens.surfaces[i - 1].after : lens.object_medium;
   return lens.surfaces[i].shape == PrescribedSurface::Shape::ideal_lens || !lens.surfaces[i].after.is_air() ||
@@ -158,10 +158,10 @@ void check_dimensions(PrescribedSurface const& surface, bool last) {
   }
 }
 
-/// Checks that glass behind a surface extends along the light.
+/// Checks that the thickness of glass behind a surface is directed along the light.
 /// @param forwards  sign of the light's direction behind the surface
-/// @return true if the glass is directed against the light, by no more than the tolerance of surfaces in contact
-/// @throws DataError if it is so by more
+/// @return true if the thickness is directed against the light by at most contact_tolerance
+/// @throws DataError if it is directed against the light by more
 bool check_direction(PrescribedSurface const& surface, double forwards, bool last) {
   bool const against =
       !surface.after.is_mirror() && !surface.after.is_air() && forwards * surface.thickness < 0 && !last;
@@ -175,7 +175,7 @@ bool check_direction(PrescribedSurface const& surface, double forwards, bool las
 }
 
 /// Checks the aperture of a lens that has a stop.
-/// @return warning that the aperture is not defined for this object; empty: it is
+/// @return warning that the aperture is not defined for this object; empty: it is defined
 /// @throws DataError if it is not positive
 std::string check_aperture(Prescription const& lens) {
   auto const& aperture = lens.aperture;

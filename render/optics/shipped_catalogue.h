@@ -19,7 +19,7 @@ class ShippedCatalogue {
     std::string key;            ///< name of the glass as a key, see glass_key()
     std::string_view name;      ///< name of the glass
     std::string_view text;      ///< lines of the glass
-    std::size_t catalogue = 0;  ///< index of its catalogue
+    std::size_t catalogue = 0;  ///< index of the catalogue of the glass
     int line = 0;               ///< number of its first line in the catalogue
   };
 

@@ -18,8 +18,8 @@ struct LambertSources {
     if (dots.shape == SourceShape::disc) return point_on_circle(sqrt(u), v);
     return {T(2) * u - T(1), T(2) * v - T(1)};
   }
-  /// Returns the point of source i at such a position [m]. Sources are symmetric about the centre: -place is as likely
-  /// as place.
+  /// Returns the point of source i at a position of place() [m]. Sources are symmetric about the centre: -place is as
+  /// likely as place.
   GLADSTONE_HD Vec3<T> point(std::uint64_t i, Vec2<T> place) const {
     return {dots.centre[i].x + dots.half_size * place.x, dots.centre[i].y + dots.half_size * place.y, dots.plane_z};
   }
@@ -40,7 +40,7 @@ struct LambertSources {
   }
 };
 
-/// Target area of one source's rays: its view of the entrance pupil, enlarged by a margin.
+/// Target area of one source's rays: the entrance pupil as seen from the source, enlarged by a margin.
 template <class T>
 struct AimedBundle {
   Vec3<T> centre, a, b;    ///< rays are sent to centre + r (a cos + b sin), 0 <= r <= 1 [m]

@@ -144,7 +144,7 @@ template <class Medium>
 GLADSTONE_HD bool fit_to_stop(StopView const& view, Medium const& medium, TracingOptions<double> const& options,
                               Vec3d point, AimMap& map) {
   constexpr int most_turns = 16;
-  constexpr double settled = 1e-7;  // relative to the pupil radius; the final residual is far smaller
+  constexpr double settled = 1e-7;  // tolerance relative to the pupil radius; the final residual is far smaller
   Vec2d aim[rim_rays], miss[rim_rays];
   for (int k = 0; k < rim_rays; ++k) aim[k] = map.at(point_on_circle(1.0, static_cast<double>(k) / rim_rays));
   double change = 1;

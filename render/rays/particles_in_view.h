@@ -19,7 +19,7 @@ namespace gladstone {
 ///   the lens in proportion to the latter,
 /// - 8 px.
 /// If an optical element divides the light cones (lenslets), all particles are included.
-/// @param scene  planned: step and pupil margin are known
+/// @param scene  scene whose step and pupil margin are set
 std::vector<char> particles_near_view(Scene const& scene, Particles const& particles);
 
 }  // namespace gladstone

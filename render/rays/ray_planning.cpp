@@ -36,7 +36,7 @@ struct Probe {
   double largest_shift() const { return shift.empty() ? 0.0 : *std::max_element(shift.begin(), shift.end()); }
 };
 
-/// Traces rays of some dots with given steps [m]. What does not depend on the step is computed once.
+/// Traces rays of some dots with given steps [m]. Quantities that do not depend on the step are computed once.
 /// @return one probe per step
 template <std::size_t Count>
 std::array<Probe, Count> probe_dots(Scene const& scene, std::vector<std::size_t> const& dots,

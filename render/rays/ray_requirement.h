@@ -51,9 +51,9 @@ GLADSTONE_HD inline bool cubature_rule_suffices(double n, double ratio2, double 
   return sqrt(n) * log(ratio2 / (5 + 0.085 * n)) <= log(allowed);
 }
 
-/// Estimates the image error of n rays at scrambled points, as in cubature_rule_suffices(): for few rays the error of
-/// their variance, for many that of the number of rays within the PSF's area. Empirical, for discs of 0.1 to 24 times
-/// the PSF's radius, dots of 0 to 6 px and 32 to 16,384 rays: correct within a factor of 3.
+/// Estimates the image error of n rays at scrambled points, as in cubature_rule_suffices(): if few rays are within the
+/// PSF's area, the error of their variance; if many are, the error of their number. Empirical, for discs of 0.1 to 24
+/// times the PSF's radius, dots of 0 to 6 px and 32 to 16,384 rays: correct within a factor of 3.
 GLADSTONE_HD inline double estimate_point_sampling_error(double n, double ratio2) {
   using std::pow;
   double const within = n / (1 + ratio2 / 4);
@@ -88,7 +88,7 @@ struct EdgeRaySpread {
 /// For cubature rules, the next larger rule is requested, since their errors vanish abruptly with n; the variance of
 /// points is assumed to decrease as 1/n.
 ///
-/// Rotating a rule of one or two rings does not reveal its error from rotationally symmetric aberrations. This is
+/// Rotating a rule of one or two rings does not reveal its error from rotationally symmetric aberrations. This error is
 /// estimated from the difference between the measured spread and that of the edge rays, which is as large as the error
 /// of one ring and more than four times that of two (double Gauss and achromat, f/4 to f/11); the error of four rings
 /// is negligible.

@@ -10,7 +10,7 @@
 
 namespace gladstone {
 
-/// Edge of the stop in a launch.
+/// Treatment of the aperture stop's edge in a RaysLaunch.
 enum class StopRim {
   smooth,  ///< smoothed over a width that depends on the number of rays, for rays that are vignetted there
   sharp,   ///< sharp, for rays that fill the stop exactly

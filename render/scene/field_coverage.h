@@ -11,9 +11,9 @@ namespace gladstone {
 /// Extent of a density field compared with the field of view, at the depth of the field's mid-plane.
 struct FieldCoverage {
   Vec2d field{};     ///< width and height of the field [m]; infinite if unbounded
-  Vec2d view{};      ///< width and height of the view at that depth [m]
+  Vec2d view{};      ///< width and height of the view at the depth of the field's mid-plane [m]
   double share = 0;  ///< fraction of the view's area that the field covers [1]
-  double ratio = 0;  ///< field width or height over that of the view, whichever is larger [1]
+  double ratio = 0;  ///< width or height of the field relative to the view, the larger ratio [1]
 
   /// Returns a warning if the field covers less than a tenth of the view or is more than 300 times wider, as happens if
   /// lengths are given in the wrong unit; otherwise an empty text. The warning states the sizes and the size in another

@@ -398,9 +398,10 @@ void cross_check_particles(Setup const& setup, SetupTable root, std::vector<std:
           "\"camera\", or remove the element");
     } else if (element.side() == ElementSide::camera && piv.particles.volume &&
                face < piv.particles.center.z + piv.particles.volume->z / 2) {
-      element_tables(root)[i].table.problem(
-          "position_mm",
-          fmt::format("puts it at Z = {:.6g} mm, inside the particles' volume or behind it; move one", z / mm));
+      element_tables(root)[i].table.problem("position_mm",
+                                            fmt::format("puts the element at Z = {:.6g} mm, inside the particles' "
+                                                        "volume or behind it; move the element or the volume",
+                                                        z / mm));
     }
   }
   if (setup.camera.absolute_exposure && !setup.camera.noise.enabled) {

@@ -10,7 +10,7 @@
 
 namespace gladstone {
 
-/// Integration step and the error estimate that led to it.
+/// Integration step and the error estimate by which it was chosen.
 struct IntegrationStep {
   double step_mm = 0;            ///< step as a setup file states it [mm]
   double change_px = 0;          ///< largest change of a dot's displacement when the step is halved [px]
@@ -35,9 +35,10 @@ struct TableError {
   double truth_px = not_measured;      ///< rms error of displacements [px]; NaN: unknown
   double image_levels = not_measured;  ///< rms error of lit pixels, worse image [levels at `bits`]; NaN: unknown
   double truth_resolution_px = 0;      ///< detection limit of truth_px: two standard errors at zero error [px]
-  double image_resolution_levels = 0;  ///< detection limit of image_levels, likewise [grey levels]
-  int bits = 0;                        ///< bit depth of the grey levels
-  int fineness = 1;                    ///< refinement of table and rules, as Scene::fineness
+  /// detection limit of image_levels: two standard errors at zero error [grey levels]
+  double image_resolution_levels = 0;
+  int bits = 0;      ///< bit depth of the grey levels
+  int fineness = 1;  ///< refinement of table and rules, as Scene::fineness
 
   /// Returns the larger of errors and detection limits in units of the tolerances; unknown errors count as 0.
   double excess() const {
@@ -76,11 +77,11 @@ double theory_ray_seconds(Scene const& scene);
 /// Returns the maximum number of rays per source for adaptive ray numbers: a power of two from 1024 to 65,536.
 std::uint64_t max_rays_per_source(Scene const& scene);
 
-/// Returns the scene with the step and the pupil margin of a plan.
+/// Returns a copy of the scene with an integration step and the pupil margin that results from its probe rays.
 Scene with_step(Scene scene, IntegrationStep const& plan);
 
-/// Returns the scene with the ray numbers of a budget, the refinement of the fast renderer, and the method if the
-/// budget chose one.
+/// Returns a copy of the scene with the ray numbers of a budget, the refinement of the fast renderer, and the method if
+/// the budget chose one.
 Scene with_rays(Scene scene, RayBudget const& budget);
 
 }  // namespace gladstone

@@ -17,7 +17,7 @@ enum class TableState {
   made,             ///< a table was built
   no_medium,        ///< no medium deflects rays
   no_sources,       ///< no dots in the scene
-  field_too_small,  ///< the field extends hardly beyond the light cones
+  field_too_small,  ///< the field hardly extends beyond the light cones
   field_too_fine,   ///< the table would need too many rays
   by_rays,          ///< rendered ray by ray, which uses no table
   by_formula,       ///< rendered by a formula, without rays
@@ -28,17 +28,18 @@ char const* to_string(TableState state);
 
 /// Result of rendering a scene.
 struct Rendering {
-  LightPair light;                                ///< empty if images were not requested or remain on the device
+  LightPair light;  ///< light of both images; empty if images were not requested or remain on the device
   std::shared_ptr<RenderedLight const> in_place;  ///< light on the device; only with RenderImages::in_place
   GroundTruth truth;
   StatusCounts statuses{};
   /// Margin by which the pupil was enlarged so that no deflected ray was lost [m].
   double pupil_margin = 0;
-  std::int64_t rays = 0;          ///< number of rays traced, both images together
-  std::vector<std::size_t> left;  ///< fallback dots: without truth or light here, to be rendered by another renderer
+  std::int64_t rays = 0;  ///< number of rays traced, both images together
+  /// fallback dots: without truth or light in this result, to be rendered by another renderer
+  std::vector<std::size_t> left;
   TableState table = TableState::no_sources;  ///< whether a deflection table was built
   RenderMethod method = RenderMethod::focused_dots;
-  std::string device;  ///< device that rendered it; empty: that of the renderer
+  std::string device;  ///< device that rendered the scene; empty: the device of the renderer
 
   /// Moves the light of both images to `in_place`, for a device that renders in host memory.
   void store_light_in_place() {
@@ -60,10 +61,11 @@ class Renderer {
   virtual ~Renderer() = default;
   virtual std::string device() const = 0;
 
-  /// Renders `sources` (the scene's dots or virtual ones) of a scene whose step and ray numbers are planned.
+  /// Renders `sources` (the scene's dots or virtual ones) of a scene whose step and ray numbers are set.
   virtual Rendering render(Scene const& scene, DotPattern const& sources, RenderImages images, RenderTheory theory) = 0;
 
-  /// Renders particles (the scene's own or virtual ones) of a planned PIV scene, with the medium in both frames.
+  /// Renders particles (the scene's own or virtual ones) of a PIV scene whose step and ray numbers are set, with the
+  /// medium in both frames.
   /// @throws DeviceError if this renderer does not support particles
   virtual Rendering render_particles(Scene const& scene, Particles const& particles, ParticleLight light,
                                      RenderImages images);
@@ -78,7 +80,7 @@ struct TracingPass {
   TracingPass(Scene const& scene, DotPattern const& sources);
   /// Stores the result of a dot. Threads may store different dots concurrently.
   /// @param rays  number of rays that the renderer chose
-  /// @param left  true for a fallback dot, which has no truth here
+  /// @param left  true for a fallback dot, which has no truth in this rendering
   void enter(std::size_t dot, DotTruth const& truth, std::int64_t rays, bool left);
   /// Sums up the rays and lists the fallback dots.
   Rendering finish();

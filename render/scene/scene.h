@@ -29,7 +29,8 @@ struct Scene {
   Particles particles;                       ///< particles; PIV only
   std::string flow_warning;                  ///< assumptions made about the velocity file
   std::shared_ptr<MieScattering const> mie;  ///< scattering of the particles; null: matt white spheres
-  double photon_unit = 1;  ///< photons for a light of 1: those of the brightest particle through the lens
+  double photon_unit = 1;  ///< number of photons per unit of image light: that of the brightest particle through the
+                           ///< lens; 1 without particles
   BuiltMedium medium;
   std::optional<BuiltMedium> second_medium;  ///< medium at the second laser pulse, if different
   double step = 0;                           ///< integration step [m]
@@ -66,7 +67,7 @@ struct Scene {
   double pupil_radius() const { return pupil_radius(static_cast<double>(rays_per_dot)); }
   /// Standard deviation of the Gaussian PSF [px]; 0: none.
   double spot_sigma_px() const;
-  /// Like Setup::spot_scale_px().
+  /// Scale of diffraction, as Setup::spot_scale_px() [px].
   double spot_scale_px() const;
   /// Pose of the dots' plane, with the axes of the world's X and Y.
   Pose<double> target_plane() const { return {{0, 0, -setup.z_d}}; }
@@ -104,7 +105,7 @@ void check_memory(Setup const& setup, FieldMemory field = FieldMemory::needed,
 /// @throws DataError if the dots cannot be placed, or if the target's file is invalid
 DotPattern build_target(Setup const& setup);
 
-/// Builds the scene: camera, dots or particles, and medium. Step, margin and ray numbers must be planned afterwards
+/// Builds the scene: camera, dots or particles, and medium. Step, margin and ray numbers must be set afterwards
 /// (ray_budget.h).
 /// @param medium  the medium of this setup, if it is already built
 Scene build_scene(Setup const& setup, BuiltMedium const* medium = nullptr);

@@ -59,18 +59,22 @@ struct Setup {
   LensSetup lens;
   MediumSetup medium;
   TargetSetup target;
-  std::vector<double> planes;             ///< Z of the planes of a calibration target [m]; empty: no calibration
-  std::optional<PivSetup> piv;            ///< empty: BOS or calibration; in PIV, the "dots' plane" is Z = 0
-  std::optional<SequenceSetup> sequence;  ///< pair of a sequence that the setup describes; empty: a single pair
+  std::vector<double> planes;  ///< Z of the planes of a calibration target [m]; empty: no calibration
+  /// particles, laser sheet and flow; empty: BOS or calibration; in PIV, the "dots' plane" is Z = 0
+  std::optional<PivSetup> piv;
+  /// sequence and the pair of it that the setup describes; empty: a single pair
+  std::optional<SequenceSetup> sequence;
   std::shared_ptr<ParticleCache> shared_particles;  ///< particles shared by the pairs of a sequence; null: none
   RenderSetup render;
-  double z_a = 0.75;               ///< front principal plane to the medium's mid-plane, along the camera's axis [m]
+  double z_a = 0.75;  ///< distance from the front principal plane to the medium's mid-plane along the camera's axis [m]
   std::optional<double> z_sensor;  ///< position of a fixed sensor on the Z axis, from which the lens is placed [m]
-  double z_d = 0.25;  ///< mid-plane of the medium to the dots, along Z [m]; 0 for PIV and calibration (plane_setup)
+  /// distance from the medium's mid-plane to the dots along Z [m]; 0 for PIV and calibration (plane_setup)
+  double z_d = 0.25;
   std::optional<Pose<double>> pose;  ///< pose of the camera, see camera_pose(); empty: on the Z axis, looking along -Z
-  std::vector<OpticalElement> elements;  ///< optical elements besides the lens; those of a side in the light's order
-  std::vector<std::string> warnings;     ///< warnings from reading the setup
-  int view_margin_px = 64;  ///< margin of a target of default extent beyond the view: first-pass window [px]
+  /// optical elements besides the lens; elements of one side are in the order of the light path
+  std::vector<OpticalElement> elements;
+  std::vector<std::string> warnings;  ///< warnings from reading the setup
+  int view_margin_px = 64;            ///< margin of a target of default extent beyond the view: first-pass window [px]
 
   /// Returns the pose of the front principal plane (of the first vertex if the lens has no principal plane): z along
   /// the light, x right and y up as the camera sees them.

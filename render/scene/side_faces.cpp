@@ -9,7 +9,7 @@ struct Disc {
   double radius;  ///< [m]
 };
 
-/// Position of the cone's range of one coordinate relative to that of the medium.
+/// Position of a light cone's range of one coordinate relative to the medium's range.
 struct Sides {
   bool inside = true, below = true, above = true;
 

@@ -51,7 +51,7 @@ struct GaussianSpot {
     constexpr int rows = 3, edges = 4 * rows;
     using Four = Lanes<T, 4>;
     Four const scale = Four::all(T(1) / sigma);
-    T integral[edges + 1];  // preceded by that of the edge before
+    T integral[edges + 1];  // integral at the preceding edge, then at the edges evaluated together
     // Evaluate twelve pixel edges at a time; pixel i is bounded by edges i and i + 1.
     for (int edge = 0; edge <= width; edge += edges) {
       Four value[rows];
@@ -89,7 +89,7 @@ struct GaussianSpot {
   }
 
   /// Replaces the position t of each pixel edge, in standard deviations from the centre of the PSF, by the integral of
-  /// the normal distribution from the centre to it. A pixel's share is the difference between its two edges.
+  /// the normal distribution from the centre to the edge. A pixel's share is the difference between its two edges.
   template <int N, int K>
   [[gnu::always_inline]] GLADSTONE_HD static void edge_values(Lanes<T, N> (&t)[K]) {
     for (auto& row : t) row = row * Lanes<T, N>::all(T(0.70710678118654752440));
@@ -125,7 +125,7 @@ struct GaussianSpot {
 class AiryTable {
  public:
   struct View {
-    double const* shares = nullptr;  ///< [sub_y][sub_x][row][column]
+    double const* shares = nullptr;  ///< shares of the pixels, [sub_y][sub_x][row][column]
     int subdivisions = 0;            ///< table steps per pixel; subdivisions + 1 positions per axis
     int half_width = 0;              ///< half width of the footprint, without its middle pixel [px]
 

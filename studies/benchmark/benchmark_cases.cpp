@@ -133,7 +133,7 @@ DisplacementAt sine_flow(double length_px) {
 
 DisplacementAt random_flow(RandomWaves const& waves, int pixels) {
   struct Wave {
-    Vec2d number, amplitude;  ///< [rad/px], [px]
+    Vec2d number, amplitude;  ///< wave vector [rad/px] and amplitude [px]
     double phase;             ///< [rad]
   };
   constexpr int count = 6, lattice_px = 2;

@@ -51,7 +51,7 @@ struct BenchmarkCase {
   std::string what;            ///< description for the user
   ParticleSettings particles;  ///< settings of synthetic images; for the refracted case, only size, seed and noise
                                ///< apply
-  DisplacementAt flow = {};    ///< empty: images ray-traced through turbulence
+  DisplacementAt flow = {};    ///< true displacement; empty: images ray-traced through turbulence
   bool refracted() const { return !flow; }
 };
 
@@ -70,7 +70,7 @@ class RefractedTurbulence {
  public:
   static constexpr int pixels = 512;  ///< image size along either axis
 
-  /// Renders an image pair. @param seed of the random dots @param renderer on any device
+  /// Renders an image pair. @param seed of the random dot pattern @param renderer on any device
   RefractedTurbulence(std::uint64_t seed, Renderer& renderer);
 
   /// Returns 8-bit frames with noise.

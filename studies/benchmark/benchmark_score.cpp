@@ -47,7 +47,7 @@ BenchmarkScore score_vectors(DisplacementField const& field, std::vector<Vec2d> 
     product += dot(field.displacement_px[i], truth[i]);
     signal += dot(truth[i], truth[i]);
   }
-  score.gain = product / signal;  // 0/0 is NaN if no vector counts
+  score.gain = product / signal;  // 0/0 is NaN if no vector is counted
   return score;
 }
 

@@ -12,7 +12,7 @@ namespace gladstone {
 /// Monte Carlo error of the dot images' positions. Some dots are traced twice with independent random numbers; the
 /// difference of two independent positions is sqrt(2) times the error of either.
 struct DotPositionError {
-  std::size_t dots = 0;   ///< number of dots that were traced twice and seen
+  std::size_t dots = 0;   ///< number of dots traced twice and seen in the image
   double rms_px = 0;      ///< rms over dots and components [px]; NaN if none was seen
   double largest_px = 0;  ///< largest error of a component [px]
 };

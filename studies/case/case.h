@@ -29,7 +29,8 @@ struct CaseSetup {
   Setup setup;
   CorrelationSettings correlate;
   std::vector<std::string> warnings;
-  std::vector<UncertainInput> uncertain = {};  ///< numbers given with an uncertainty, unless the caller extracted them
+  /// numbers that the setup gives with an uncertainty; empty if the caller has extracted them beforehand
+  std::vector<UncertainInput> uncertain = {};
   /// SHA-256 of each file that the setup names, computed before the scene is built; empty: not computed yet.
   std::map<std::string, std::string> input_hashes = {};
 
@@ -40,7 +41,7 @@ struct CaseSetup {
 /// Reads and checks a setup.
 /// @throws SetupError with all problems
 CaseSetup load_case_setup(std::string const& path, std::vector<std::string> const& overrides);
-/// @param field  whether the medium has yet to be built, for the check of available memory
+/// @param field  whether the check of available memory includes a medium that is yet to be built
 CaseSetup load_case_setup(SetupDocument document, FieldMemory field = FieldMemory::needed);
 
 /// Checks names, types and ranges of the keys of a setup with one camera, without comparing them with each other or
@@ -58,7 +59,7 @@ struct PreparedCase {
   std::vector<std::string> warnings;
 };
 
-/// Parts of a PreparedCase that can be reused from another case with the same values; null: compute.
+/// Parts of a PreparedCase that can be reused from another case with the same values; null: to be computed.
 struct ReusableParts {
   BuiltMedium const* medium = nullptr;
   IntegrationStep const* step = nullptr;
@@ -110,8 +111,8 @@ RecordedCase render_to_folder(CaseSetup& loaded, Renderer& renderer, std::string
 
 /// Truth of dots at side faces of the medium (side_faces.h) in a rendering by the fast renderer.
 struct SideFaceAccuracy {
-  std::size_t dots = 0;                  ///< number of such dots
-  std::int64_t most_rays = 0;            ///< largest number of rays of one of them
+  std::size_t dots = 0;                  ///< number of dots at side faces
+  std::int64_t most_rays = 0;            ///< largest number of rays of one of these dots
   double truth_error_px = not_measured;  ///< rms of the standard errors of the truth of these dots [px]
 };
 

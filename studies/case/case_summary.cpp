@@ -14,7 +14,7 @@
 namespace gladstone {
 namespace {
 
-/// Minimum, median and maximum.
+/// Returns minimum, median and maximum.
 nlohmann::json spread_of(std::vector<std::int64_t> numbers) {
   if (numbers.empty()) return nullptr;
   std::sort(numbers.begin(), numbers.end());

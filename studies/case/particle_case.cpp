@@ -61,7 +61,7 @@ void require_count(std::string const& path, std::string const& dataset, std::siz
                       " are required; render the case again");
 }
 
-/// Minimum, median and maximum of positive numbers.
+/// Returns minimum, median and maximum of positive numbers.
 nlohmann::json spread_of_light(std::vector<double> values) {
   if (values.empty()) return nullptr;
   std::sort(values.begin(), values.end());

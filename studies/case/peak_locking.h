@@ -38,7 +38,7 @@ double defocus_distance(Setup const& setup, double diameter_px);
 /// @pre not a calibration
 std::string locking_advice(Setup const& setup);
 
-/// Returns the same warning for a frame without a setup, from the autocorrelation of the dots in its middle
+/// Returns the warning of small images for a frame without a setup, from the autocorrelation of the dots in its middle
 /// (ImageStatistics); empty if their size cannot be estimated. The measured width includes the pixel's own variance of
 /// 1/12 px^2, which is subtracted.
 std::string locking_advice(Image<double> const& frame);

@@ -53,7 +53,7 @@ std::size_t keep_near(Scene& scene, CasePreview const& preview) {
   return scene.setup.experiment().sources.retain(scene, [&](Vec2d pixel) { return is_near(preview, pixel, margin); });
 }
 
-/// Records the part of a frame.
+/// Records the previewed part of a frame.
 Image<std::uint16_t> record_part(CasePreview const& preview, Detector const& detector, Image<double> const& light,
                                  RandomStream stream) {
   Recording const recording = detector.record(light, stream);

@@ -82,7 +82,7 @@ TracedRay trace_one(Scene const& scene, TracingOptions<double> const& options, M
 }
 
 /// Converts a row of a table of rays.
-/// @param place  of the row, for messages
+/// @param place  location of the row, for messages
 Ray<double> ray_of(double const* v, std::string const& place, double farthest) {
   Vec3d const start = Vec3d{v[0], v[1], v[2]} * unit::millimetre;
   if (std::max({std::abs(start.x), std::abs(start.y), std::abs(start.z)}) > farthest) {

@@ -25,7 +25,7 @@ struct TracedRay {
 std::vector<Ray<double>> read_rays(std::string const& path, double farthest);
 
 /// Returns the rays of a table with rows x_mm, y_mm, z_mm, dx, dy, dz, stored row by row.
-/// @param name      of the table, for messages
+/// @param name      name of the table, for messages
 /// @param farthest  largest admissible coordinate of a start point [m]
 /// @throws DataError at name:row, counted from 0
 std::vector<Ray<double>> rays_of(std::vector<double> const& rows, std::string const& name, double farthest);

@@ -12,7 +12,7 @@ namespace gladstone {
 struct RenderCost {
   RenderMethod method = RenderMethod::automatic;
   double sources = 0;             ///< number of dots (of all planes) or particles in the sheet; NaN: unknown
-  double rays_per_source = 0;     ///< configured, or the largest number that "auto" may choose
+  double rays_per_source = 0;     ///< number of rays per source: configured, or the largest that "auto" may choose
   bool rays_are_largest = false;  ///< the number of rays is an upper limit
   double expected_rays = 0;       ///< number of rays that most particles require (PIV with "auto"); otherwise
                                   ///< rays_per_source

@@ -26,7 +26,7 @@ struct RenderedSequence {
 /// - frames/frame_0000.tif, ... (several cameras: frames/CAMERA/): the frames, in the order of `gladstone correlate`.
 ///   Every frame is rendered once: frame A of a pair is the image that an earlier pair recorded.
 /// - sequence.toml and summary.json: setup and state of the sequence.
-/// The exposure of all pairs is that of the first one. One pair at a time is in memory.
+/// All pairs have the exposure of the first one. Only one pair at a time is in memory.
 class SequenceRenderer {
  public:
   /// @param path  path of the setup file

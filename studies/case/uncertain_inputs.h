@@ -16,7 +16,7 @@ char const* to_string(InputDistribution distribution);
 /// Correlation of an input with another one.
 struct InputCorrelation {
   std::string with;        ///< key of the other input
-  double coefficient = 0;  ///< from -1 to 1 (JCGM 100:2008, 5.2.2)
+  double coefficient = 0;  ///< correlation coefficient, from -1 to 1 (JCGM 100:2008, 5.2.2)
 };
 
 /// A number of a setup given with its standard uncertainty, in the unit of its key: { value = 250.0, sigma = 1.0,

@@ -36,7 +36,8 @@ struct UsualRange {
   std::array<char const*, 3> path;  ///< tables, then the key; null: unused
   double low, high;                 ///< limits in the unit of the key
   char const* unit;
-  std::span<OtherUnit const> others;  ///< most likely unit first
+  /// other units in which the number may have been given, the most likely one first
+  std::span<OtherUnit const> others;
 };
 
 constexpr std::array usual_ranges{

@@ -12,7 +12,7 @@ namespace gladstone {
 class WarningKinds {
  public:
   /// @param pair     name of the pair
-  /// @param warning  its warning
+  /// @param warning  warning about the pair
   /// @param kind     the warning without the names that differ between pairs; its digits are ignored
   void add(std::string const& pair, std::string const& warning, std::string kind);
 

@@ -159,7 +159,7 @@ CaseOutcome judge_case(CaseSetup& loaded, PreparedCase const& prepared, Rendered
   outcome.flow_sha256 = pixel_sha256(outcome.flow);
   static_cast<RenderedOutcome&>(outcome) = warn_of_rendering(warnings, prepared, rendered, frames);
   outcome.image_error_levels = image_error_by_rays(prepared.scene, rendering, rendered.exposure_e);
-  // If dots at side faces are traced by rays, both errors are theirs, and one warning suffices
+  // If dots at side faces are traced by rays, both errors are those of these dots, and one warning suffices
   bool const is_warned_of = outcome.side_faces && outcome.side_faces->truth_error_px > truth_tolerance_px;
   if (!is_warned_of) warn_of_images(warnings, camera, outcome.image_error_levels);
   return outcome;

@@ -106,7 +106,7 @@ CommandBody attach_benchmark(CLI::App& app, GlobalOptions const& options) {
                  "NAME=F: another code's vectors, F a folder of files named after cases (vortex.csv, .txt, .h5)");
   app.add_option(
       "--conventions", arguments->conventions,
-      "Conventions of these vectors, as for gladstone compare, or NAME=WORDS for one code; default: the format's own");
+      "Conventions of --vectors, see gladstone compare --help, or NAME=WORDS for one code; default: the format's own");
   app.add_option("--cases", arguments->benchmark.cases, "Evaluate only these cases")->check(one_of(names_of_cases()));
   app.add_option("--estimators", arguments->benchmark.estimators,
                  "Evaluate only these estimators of gladstone; none: evaluate only --vectors")

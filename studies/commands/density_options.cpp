@@ -98,8 +98,9 @@ void DensityArguments::add_to(CLI::App& app, std::string const& group) {
   add(app.add_option("--overlap", parsed_.overlap,
                      "Overlap of the interrogation windows, 0 to below 1, which correlates the errors of the vectors; "
                      "default: from the last window of [correlate]"));
-  add(app.add_option("--deconvolve", parsed_.deconvolution_gain,
-                     "Compensate the averaging over the aperture, amplifying no wave more than this, e.g. 3"));
+  add(app.add_option(
+      "--deconvolve", parsed_.deconvolution_gain,
+      "Compensate the averaging over the aperture, with this maximum amplification of any wave, e.g. 3"));
   add(app.add_flag("--axisymmetric", axisymmetric_, "Abel inversion of an axisymmetric flow"));
   add(app.add_option("--axis", axis_,
                      "Axis of symmetry: vertical or horizontal (its position is determined), x=MM or y=MM; default "

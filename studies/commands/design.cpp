@@ -33,7 +33,7 @@ CommandBody attach_design(CLI::App& app, GlobalOptions const& options) {
                  "Number of simulations of each combination, with different dots and noise")
       ->check(whole_number(2, 1000))
       ->capture_default_str();
-  app.add_option("--seed", request->verification.seed, "Seed of these dots and of the noise")
+  app.add_option("--seed", request->verification.seed, "Seed of the dots and the noise in the simulations")
       ->check(whole_number(0, std::int64_t{1} << 62))
       ->capture_default_str();
   return [request, &options] {

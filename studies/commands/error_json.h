@@ -11,7 +11,7 @@ namespace gladstone {
 /// The codes are those of ErrorCode.
 nlohmann::ordered_json error_json(std::exception const& error, int exit_code);
 
-/// Describes the error of a command line that cannot be parsed, in the same form.
+/// Describes the error of a command line that cannot be parsed, in the form of error_json().
 nlohmann::ordered_json argument_error_json(std::string const& message, int exit_code);
 
 }  // namespace gladstone

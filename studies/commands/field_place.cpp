@@ -83,7 +83,7 @@ Bounds<double> velocity_region(Setup const& setup, FieldSource const& source, Fi
   return {grid.origin, high};
 }
 
-/// Returns whether the setup gives the field its spacing.
+/// Returns true if the setup specifies the spacing of the field's nodes.
 bool is_spaced(Setup const& setup, bool velocity) {
   if (!velocity) return setup.medium.field.kind == FieldKind::file && setup.medium.field.spacing.has_value();
   return setup.piv && setup.piv->flow.file && setup.piv->flow.file->spacing.has_value();

@@ -27,7 +27,7 @@ struct FieldPlace {
 };
 
 /// Determines the position and coverage of a field file.
-/// @param file   from which the source was opened
+/// @param file   file from which the source was opened
 /// @param setup  path of a setup, or empty; if its field (of a velocity: its flow) is a file too, its spacing, position
 ///               and periods are used
 FieldPlace field_place(FieldSource const& source, FieldFile const& file, std::string const& setup);

@@ -34,7 +34,7 @@ CommandBody attach_info(CLI::App& app, GlobalOptions const& options) {
   app.add_option("file", arguments->file, "Input file; for particles and setup a setup, for mie none");
   app.add_option("--dataset", arguments->dataset, "Dataset inside the file");
   app.add_option("--axes", arguments->axes,
-                 "World axes in the order of the field's file, the slowest first (\"zxy\"), as medium.field.axes");
+                 "World axes in the order of the field's file, the slowest first (\"zxy\"), see medium.field.axes");
   app.add_option("--setup", arguments->setup, "Setup (TOML) for which the filled fraction of the view is reported");
   app.add_option("--set", arguments->overrides,
                  "Override a key of the setup for info setup or particles: "

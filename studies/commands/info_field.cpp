@@ -59,7 +59,7 @@ std::unique_ptr<FieldSource> open_scalar_or_velocity(std::string const& path, st
   }
 }
 
-/// Statistics of the components for JSON: that of a scalar field itself, an array of those of a velocity.
+/// Returns a property of the components for JSON: one value for a scalar field, an array of values for a velocity.
 template <class Value>
 nlohmann::json of_components(std::vector<FieldStatistics> const& seen, Value const& value_of) {
   if (seen.size() == 1) return value_of(seen.front());

@@ -18,7 +18,7 @@
 namespace gladstone {
 namespace {
 
-constexpr double least_relative_index = 0.01;  // metals have at least 0.05
+constexpr double least_relative_index = 0.01;  // lower limit; metals have at least 0.05
 constexpr double most_relative_index = 100;
 
 std::optional<double> as_number(std::string_view text) {

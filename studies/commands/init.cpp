@@ -56,7 +56,7 @@ Template const& find_template(std::string const& kind) {
 
 /// Returns a line of the complete list: the commented key with its default, unit, values and meaning. Keys without a
 /// default in TOML have "..." in place of the value.
-/// @param name  of the key below the heading of its table
+/// @param name  name of the key below the heading of its table
 std::string commented_key(SetupKey const& key, std::string const& name) {
   std::string text = fmt::format("# {} = {}  #", name, key.default_value.empty() ? "..." : key.default_value);
   if (!key.unit.empty()) text += " [" + key.unit + ']';

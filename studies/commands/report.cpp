@@ -37,14 +37,14 @@ CommandBody attach_report(CLI::App& app, GlobalOptions const& options) {
   app.add_option("folder", arguments->report.source, "RUN of a study, or CASE")->required();
   app.add_option("-o,--output", arguments->report.output, "File, default report.html (report.md) in the folder");
   app.add_option("--format", arguments->format,
-                 "html (one file, works offline), or md, also by an --output that ends in .md")
+                 "html (one file that works offline) or md; an --output that ends in .md also selects md")
       ->check(one_of({"html", "md"}))
       ->capture_default_str();
-  app.add_option("--vectors", arguments->report.vectors, "For a CASE: vectors, as for gladstone compare");
+  app.add_option("--vectors", arguments->report.vectors, "For a CASE: file of vectors, see gladstone compare --help");
   app.add_option("--repeats", arguments->report.repeats,
                  "For a measured CASE: repeated measurements of the same field, for a type A evaluation");
   app.add_option("--conventions", arguments->report.conventions,
-                 "For a CASE: conventions of its vectors, as for gladstone compare");
+                 "For a CASE: conventions of its vectors, see gladstone compare --help");
   app.add_option("--figures", arguments->report.figures, "Folder for the figures as separate files");
   app.add_option("--figure-format", arguments->report.figure_format, "png, svg or pdf")
       ->check(one_of({"png", "svg", "pdf"}))

@@ -89,7 +89,7 @@ CommandBody attach_stereo(CLI::App& app, GlobalOptions const& options) {
                  "independent errors; default: the last window of [correlate]")
       ->check(non_negative_number());
   app.add_option("--residual-limit", given.residual_limit,
-                 "Largest residual of the four equations, in standard uncertainties: vectors of larger ones are "
+                 "Largest residual of the four equations, in standard uncertainties: vectors with a larger one are "
                  "rejected, default 4; 0: accept all")
       ->check(non_negative_number());
   app.add_flag("--no-figures", arguments->no_figures, "Draw no figure");

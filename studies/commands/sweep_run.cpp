@@ -29,7 +29,7 @@ namespace {
 struct Arguments {
   std::string run, shard;
   RunSelection selection;
-  int jobs = 0;         ///< 0: one process, or one per GPU; with --devices two per GPU
+  int jobs = 0;         ///< number of worker processes; 0: one, or one per GPU; with --devices two per GPU
   std::string devices;  ///< "all" or the number of GPUs to use; empty: all, one process each
   int worker = -1;      ///< file descriptor to which a worker reports finished cases; -1: not a worker
   double first = 0;     ///< fraction of the selection at which a worker starts

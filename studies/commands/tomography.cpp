@@ -63,9 +63,10 @@ void add_input_options(CLI::App& app, TomographyArguments& given) {
                  "right, y up; may be repeated")
       ->allow_extra_args(false);
   app.add_option("--reference-density", given.tomography.reference_density,
-                 "Density there and outside of the volume [kg/m^3], default medium.ambient_density_kg_m3");
-  app.add_option("--views", given.views,
-                 "Write the setups of this number of views of the field of one setup, instead of a reconstruction")
+                 "Density in this region and outside of the volume [kg/m^3], default medium.ambient_density_kg_m3");
+  app.add_option(
+         "--views", given.views,
+         "Write this number of setups that view the field of one setup from different directions; no reconstruction")
       ->check(whole_number(3, 16));
 }
 

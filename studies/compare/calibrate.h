@@ -19,7 +19,7 @@ struct CalibratedPlane {
   double z = 0;              ///< [m]
   std::string sha256;        ///< SHA-256 of the pixels
   std::size_t found = 0;     ///< number of spots that look like dots
-  std::size_t used = 0;      ///< number of these that were assigned to a node of the grid
+  std::size_t used = 0;      ///< number of these spots that were assigned to a node of the grid
   std::size_t not_dots = 0;  ///< number of detected spots with neither the size nor the shape of the dots
   /// spots at nodes of the grid that do not fit the other dots, excluded from the fit [px]
   std::vector<Vec2d> strangers;

@@ -15,12 +15,12 @@ namespace {
 
 // lower bound of the dots' scatter within a plane, used as reference for residuals
 constexpr double least_scatter_px = 0.01;
-constexpr double suspicious = 5;  // multiple of that scatter above which the cause of a residual is investigated
-constexpr double refused = 10;    // multiple of that scatter above which a residual is reported as an error
+constexpr double suspicious = 5;  // multiple of the dots' scatter above which the cause of a residual is investigated
+constexpr double refused = 10;    // multiple of the dots' scatter above which a residual is reported as an error
 constexpr double least_refused_px = 0.5;   // residual below which only a warning is given
 constexpr double outlier_deviations = 8;   // residual of an outlier, in robust standard deviations
 constexpr double least_outlier_px = 0.05;  // residual below which a dot is never an outlier
-constexpr double same_place = 3;          // rms distance, in multiples of that scatter, below which two planes coincide
+constexpr double same_place = 3;  // rms distance, in multiples of the dots' scatter, below which two planes coincide
 constexpr double principal_share = 0.05;  // allowed error of the principal point, relative to the image's longer side
 constexpr double tilted_share = 0.2;      // additional allowed error, relative to its displacement by the sensor's tilt
 constexpr double deviations = 6;          // significance limit, in standard errors

@@ -31,11 +31,13 @@ struct Comparison {
   DisplacementField measured;
   BudgetChain chain = BudgetChain::bos;
   GroundTruth point;  ///< truth and theory of the virtual dot (particle) at each vector's position; no theory for PIV
-  /// displacements of the same virtual dots through an ideal lens focused on the target [px]; empty for PIV
+  /// displacements of the virtual dots of `point` through an ideal lens focused on the target [px]; empty for PIV
   std::vector<Vec2d> thin_lens;
-  std::vector<Vec2d> flow_px, ambient_px;  ///< PIV only: see ParticlePoints [px]
+  std::vector<Vec2d> flow_px, ambient_px;  ///< PIV only: displacement by the flow alone, and by ray tracing without the
+                                           ///< medium, see ParticlePoints [px]
   WindowTruth window, deformed_window;
-  bool frames_deformed = false;  ///< several passes: the measurement follows deformed_window, else window
+  bool frames_deformed = false;  ///< true: several passes, whose vectors measure deformed_window; false: a single pass,
+                                 ///< which measures window
   /// vectors measured on noise-free, unquantised images [px]; empty for foreign vectors
   std::vector<Vec2d> noise_free;
   VectorMask mask;
@@ -43,7 +45,7 @@ struct Comparison {
   ErrorBudget budget_after_passes;  ///< budget relative to the truth on deformed windows; empty unless frames_deformed
   std::string report;               ///< conventions detected in a foreign file; empty for our own
   RejectedVectors left_out;         ///< vectors of the file that were rejected; `measured` holds the others
-  std::optional<DetectedConventions> detected;  ///< for a foreign file
+  std::optional<DetectedConventions> detected;  ///< conventions detected in a foreign file
   bool complete = true;                         ///< false: the file's header declares another number of vectors
   bool foreign = false;
   std::vector<std::string> warnings;  ///< comparison_warnings() of the case
@@ -71,8 +73,9 @@ struct Comparison {
 GroundTruth truth_at_points(Scene const& scene, Renderer& renderer, std::vector<Vec2d> const& centres_px, TruthAt at,
                             RenderTheory theory);
 
-/// Computes the displacements of the same virtual dots through an ideal thin lens that images the target sharply at the
-/// scene's magnification, with the same rays and aperture stop [px]. The difference from the actual lens, including
+/// Computes the displacements of the virtual dots of `point` through an ideal thin lens that images the target sharply
+/// at the scene's magnification, with the same rays and aperture stop [px]. The difference from the actual lens,
+/// including
 /// defocus, is the budget's aberration.
 std::vector<Vec2d> ideal_lens_truth(Scene scene, Renderer& renderer, GroundTruth const& point);
 
@@ -84,7 +87,7 @@ struct MeasuredVectors {
   std::string report{};          ///< conventions detected in a foreign file
   std::string name{};            ///< name of the file or the case, for messages
   RejectedVectors left_out{};
-  std::optional<DetectedConventions> detected{};  ///< for a foreign file
+  std::optional<DetectedConventions> detected{};  ///< conventions detected in a foreign file
   bool complete = true;                           ///< false: the file's header declares another number of vectors
   /// the vectors are every n-th of the lattice defined by the settings, see every_nth()
   int every = 1;
@@ -94,7 +97,8 @@ struct MeasuredVectors {
 struct PointTruth {
   GroundTruth point;
   std::vector<Vec2d> thin_lens;
-  std::vector<Vec2d> flow_px, ambient_px;  ///< PIV only: see ParticlePoints [px]
+  std::vector<Vec2d> flow_px, ambient_px;  ///< PIV only: displacement by the flow alone, and by ray tracing without the
+                                           ///< medium, see ParticlePoints [px]
 };
 PointTruth truth_of_vectors(PreparedCase const& prepared, Renderer& renderer, std::vector<Vec2d> const& position_px,
                             TruthAt at);

@@ -22,8 +22,8 @@ class TruthMap {
       : grid_{camera.columns / spacing + 1, camera.rows / spacing + 1, {0, 0}, spacing},
         maps_(map_scattered(near_view(truth.reference_px, camera), truth.displacement_px, grid_)) {}
 
-  /// Interpolates bilinearly, so that offsets of half a pixel are detectable. Returns NaN farther outside the view than
-  /// the pixel conventions of different codes differ.
+  /// Interpolates bilinearly, so that offsets of half a pixel are detectable. Returns NaN outside the view, beyond a
+  /// margin for the different pixel conventions of codes.
   Vec2d at(Vec2d c) const {
     Vec2d const last{spacing * (grid_.columns - 1.0), spacing * (grid_.rows - 1.0)};
     Vec2d const inside{std::clamp(c.x, 0.0, last.x), std::clamp(c.y, 0.0, last.y)};
@@ -57,7 +57,7 @@ class TruthMap {
 };
 
 /// Rejects vectors that lie or point outside the image.
-/// @throws DataError if no vector remains, or no position is in px
+/// @throws DataError if no vector remains, or if the positions cannot be in px
 RejectedVectors screen(VectorFile& file, std::string const& path, CameraSetup const& camera) {
   bool const turned = file.conventions.exchanges_places();  // the file's x then points down
   int const columns = turned ? camera.rows : camera.columns, rows = turned ? camera.columns : camera.rows;
@@ -112,8 +112,8 @@ DetectedConventions detect(VectorFile const& file, std::string const& path, Grou
   }
   if (misfits) {
     spdlog::warn(
-        "{}: the vectors do not follow the true displacement, also with other axes, signs or units: they differ from "
-        "it by {:.3g} px rms, and it is {:.3g} px rms itself; if their estimator is more accurate than this, check the "
+        "{}: the vectors do not follow the true displacement with any axes, signs or units: the difference is {:.3g} "
+        "px rms, and the true displacement is {:.3g} px rms; if the estimator is more accurate than this, check the "
         "order of the frames, the axes and the units",
         path, detected.fit.rms_px, detected.fit.signal_px);
   } else if (detected.mistake.found()) {

@@ -135,7 +135,7 @@ nlohmann::ordered_json compute_error_measures(Comparison const& comparison) {
                      {"left_out_fewer_than_three_dots", comparison.window.left_out},
                      {"conventions", comparison.report}};
   RejectedVectors const& left_out = comparison.left_out;
-  if (comparison.foreign || left_out.all() > 0) {  // vectors measured within a study have none
+  if (comparison.foreign || left_out.all() > 0) {  // vectors of the study itself: only if some are rejected
     json["vectors"].update({{"left_out_place_not_finite", left_out.place_not_finite},
                             {"left_out_outside_image", left_out.outside_image},
                             {"left_out_displacement_not_finite", left_out.displacement_not_finite},

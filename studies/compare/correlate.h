@@ -24,8 +24,8 @@ struct Measurement {
 Measurement correlate_frames(std::string const& reference_name, Image<double> const& reference,
                              std::string const& flow_name, Image<double> const& flow,
                              CorrelationSettings const& settings, Backend const& device);
-/// The same for images that another library stores in the memory of the first GPU; they are not copied to the host
-/// unless the settings require the CPU.
+/// Like correlate_frames(), for images that another library stores in the memory of the first GPU; they are not copied
+/// to the host unless the settings require the CPU.
 Measurement correlate_gpu_arrays(std::string const& reference_name, ImageSamples const& reference,
                                  std::string const& flow_name, ImageSamples const& flow,
                                  CorrelationSettings const& settings, Backend const& device);

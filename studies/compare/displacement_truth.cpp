@@ -10,10 +10,10 @@
 namespace gladstone {
 namespace {
 
-/// Largest distance of pixels between which the displacement may be interpolated is half of this [px].
+/// Twice the largest distance between pixels from which the displacement may be interpolated [px].
 constexpr int coarsest_spacing_px = 8;
 
-/// Returns the coarsest spacing of nodes to begin with, in distances of nodes.
+/// Returns the spacing of the coarsest lattice, in units of the distance between nodes.
 int first_spacing(int spacing_px) {
   int spacing = 1;
   while (2 * spacing * spacing_px <= coarsest_spacing_px) spacing *= 2;

@@ -48,8 +48,8 @@ class PairCorrelation {
 
   /// Correlates a pair, unless the files contain the vectors of the same frames and settings, and sets its record. A
   /// pair that fails has a record with the reason.
-  /// @param path        file of its vectors
-  /// @param dots_path   file of its dots, which the caller writes
+  /// @param path        file of the pair's vectors
+  /// @param dots_path   file of the pair's dots, which the caller writes
   /// @param neighbours  frames over which the tracks of its particles extend. One that is unreadable or of another size
   ///                    is not used, and the record contains a warning
   /// @throws Interrupted, OutputError, DeviceError, which concern all pairs
@@ -73,7 +73,7 @@ class PairCorrelation {
   /// Returns the hashes that a file of vectors records: those in common, and those of the frames.
   SourceFiles hashes(Frames const& frames) const;
   /// Reads the vectors of an earlier run.
-  /// @param hashes  of this pair and its settings
+  /// @param hashes  hashes of the pair's frames and settings
   /// @return nullopt if they are missing or damaged, or if they belong to other frames or settings
   std::optional<PairVectors> read_finished(std::string const& path, std::string const& dots_path,
                                            SourceFiles const& hashes, PairRecord& record) const;

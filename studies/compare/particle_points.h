@@ -10,7 +10,7 @@ namespace gladstone {
 /// PIV truth at points of the image, from virtual particles in the middle of the laser sheet.
 struct ParticlePoints {
   GroundTruth seen;  ///< truth with the medium, of the particle whose image is at the point at mid-time (see TruthAt)
-  /// displacement without the medium, of the particle that would be seen at the point [px]
+  /// displacement, without the medium, of the particle whose image would then be at the point [px]
   std::vector<Vec2d> ambient_px;
   /// Velocity of the flow times dt at the point of the sheet seen by the camera, projected into the image by the
   /// derivatives of the camera's projection there [px].

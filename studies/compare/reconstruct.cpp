@@ -119,7 +119,7 @@ std::array<double, 2> find_axis_range(Setup const& setup, AxisOption const& axis
 }
 
 /// Integrates a mean gradient with the reference density, and propagates the uncertainty of the vectors.
-/// @param result  with overlap and reference_density
+/// @param result  reconstruction whose overlap and reference_density are set
 Reconstruction integrate_plane(Reconstruction result, density::GradientMap const& map, Setup const& setup,
                                ReconstructOptions const& options) {
   using namespace density;

@@ -26,7 +26,7 @@ namespace fs = std::filesystem;
 /// Files of a reconstruction.
 struct ReconstructedFiles {
   std::string setup, vectors;
-  std::string truth;  ///< empty: images of an experiment
+  std::string truth;  ///< path of the truth; empty: images of an experiment
   SourceFiles sources;
 };
 

@@ -26,7 +26,7 @@ struct SequenceSettings {
   CorrelationFile correlation;  ///< correlation settings for PreparedSet::sequence; correlate_sequence() computes the
                                 ///< backgrounds
 };
-/// Reads the settings of a sequence: as read_correlation_file(), or default_correlation() if `path` is empty, but
+/// Reads the settings of a sequence like read_correlation_file(), or like default_correlation() if `path` is empty, but
 /// "background" steps may omit `frame`, and then subtract the background of the sequence.
 /// @throws SetupError; DataError if the vectors would not be on a grid
 SequenceSettings read_sequence_settings(Pairing pairing, std::string const& path,
@@ -39,7 +39,7 @@ enum class PairState { pending, done, no_valid_vector, failed };
 struct PairRecord {
   SequencePair pair;
   PairState state = PairState::pending;
-  bool resumed = false;  ///< its vectors were computed by an earlier run
+  bool resumed = false;  ///< the vectors of the pair were computed by an earlier run
   std::string error;     ///< reason of the state `failed` or `no_valid_vector`
   std::string reference_sha256, flow_sha256;
   std::vector<std::string> warnings;

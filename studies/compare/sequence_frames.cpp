@@ -145,7 +145,7 @@ std::vector<SequencePair> match_lists(std::vector<std::string> const& a, std::ve
   return pairs;
 }
 
-/// Returns a pair of an image whose next one is missing.
+/// Returns an incomplete pair, of an image whose partner is missing.
 SequencePair without_partner(SequenceFrame const& frame, std::string const& why) {
   return {frame, {}, {}, fmt::format("{}: {} ({})", frame.name(), no_partner, why)};
 }

@@ -20,7 +20,7 @@ SequenceImage read_sequence_image(SequenceFrame const& frame);
 
 /// Size of the frames of a sequence.
 struct SequenceSize {
-  int columns = 0, rows = 0;  ///< [px]
+  int columns = 0, rows = 0;  ///< size of a frame [px]
   std::string frame;          ///< name of the first frame of this size
 
   /// @throws DataError if a frame has another size, with the names of both
@@ -28,7 +28,7 @@ struct SequenceSize {
 };
 
 /// Finds the commonest size of the frames of all pairs, and of two equally frequent ones that of the earlier frame.
-/// Reads no pixels; unreadable frames do not count.
+/// Reads no pixels; unreadable frames are ignored.
 /// @param pairs  pairs without problem
 /// @throws DataError of the first frame if none is readable; Interrupted
 SequenceSize find_commonest_size(std::vector<SequencePair> const& pairs);

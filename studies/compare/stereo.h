@@ -19,7 +19,7 @@ struct StereoOptions {
   std::vector<std::string> calibrations;   ///< calibration.h5 of each camera; empty: exact cameras of rendered cases
   std::optional<std::string> conventions;  ///< conventions of the vectors given by the user; empty: those of the file's
                                            ///< format
-  stereo::ObjectPlane plane;               ///< middle of the laser sheet, with `align` the first assumption
+  stereo::ObjectPlane plane;               ///< middle of the laser sheet; with `align`, the initial guess
   bool dewarp_images = false;              ///< correlate the dewarped frames of the cases, instead of reading vectors
   bool align = false;                      ///< determine the sheet from images; false: only measure the disparity
   /// images of the first and of the second camera in turn, two for each time; empty: both frames of the cases, if any
@@ -35,13 +35,14 @@ struct StereoMeasurement {
   stereo::StereoField field;
   double pixel_size = 0.0;                  ///< mean size of a pixel on the plane at x = y = 0 [m]
   double view_angle = 0.0;                  ///< angle between the views at x = y = 0 [rad]
-  std::array<std::string, 2> vectors;       ///< paths
-  std::array<std::string, 2> calibrations;  ///< paths; empty: exact camera of the setup
+  std::array<std::string, 2> vectors;       ///< paths of the vectors
+  std::array<std::string, 2> calibrations;  ///< paths of the calibrations; empty: exact camera of the setup
   std::array<double, 2> window_px{};        ///< size of the interrogation windows [px]
   /// True displacement, mean over the particles in the window, of cases of one rendering [m, field.grid.size()]; NaN:
   /// fewer than three particles; empty: unknown.
   std::vector<Vec3d> truth;
-  std::optional<stereo::SheetAlignment> alignment;  ///< empty: the sheet was given
+  /// laser sheet as determined from images; empty: the sheet was given
+  std::optional<stereo::SheetAlignment> alignment;
   /// disparity of the given sheet between the images of both cameras; empty: with `alignment`, or without images
   std::optional<stereo::SheetAlignment> given_sheet;
   std::vector<std::string> warnings;
@@ -56,7 +57,7 @@ struct StereoMeasurement {
 /// Errors of one component against the truth.
 struct ComponentErrors {
   std::size_t count = 0;
-  double bias = 0.0, rms = 0.0;  ///< mean and root mean square [m]; NaN: no node counts
+  double bias = 0.0, rms = 0.0;  ///< mean and root mean square [m]; NaN: no node with a displacement and a truth
   double coverage = 0.0;         ///< fraction of errors within sigma [1]; NaN: vectors without uncertainty
 };
 
@@ -68,8 +69,9 @@ std::array<ComponentErrors, 3> compute_stereo_errors(StereoMeasurement const& me
 double compute_residual_ratio(stereo::StereoField const& field);
 
 /// Returns the case folder or the file of vectors of each camera.
-/// @param inputs  the same; if the second is empty, the first is the folder of a case with two cameras
-/// @throws DataError  if it is not
+/// @param inputs  case folder or file of vectors of each camera; if the second is empty, the first is the folder of a
+/// case with two cameras
+/// @throws DataError  if this folder has not two cameras
 std::array<std::string, 2> find_stereo_inputs(std::array<std::string, 2> const& inputs);
 
 /// Reads vectors and cameras, and reconstructs three components. If both inputs are cases of one PIV setup, also

@@ -32,7 +32,7 @@ class NodeWriter {
   }
 
   /// @param width  number of values of each node; 1: no third axis
-  /// @param value  of a determined node; NaN elsewhere
+  /// @param value  returns the value of a determined node; the others are NaN
   void write(char const* dataset, std::size_t width, char const* units, char const* description,
              std::string const& third_axis,
              std::function<double(stereo::StereoVector const&, std::size_t)> const& value) {

@@ -18,7 +18,7 @@ std::array<ComponentErrors, 3> compute_component_errors(std::span<Vec3d const> e
 /// Errors of a file of gladstone stereo against the truth that it contains.
 struct StereoScores {
   std::string path;
-  double pixel_size = 0.0;  ///< of the file [m]
+  double pixel_size = 0.0;  ///< mean size of a pixel on the plane [m]
   std::array<ComponentErrors, 3> errors;
   std::size_t valid = 0, rejected = 0;  ///< number of nodes whose residual is within, and beyond its limit
   /// number of valid, and of rejected nodes with an error above gross_error_px in a component

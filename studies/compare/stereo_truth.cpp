@@ -9,7 +9,7 @@
 namespace gladstone {
 
 Vec2d find_plane_scale(std::array<PinholeCamera const*, 2> const& cameras, stereo::ObjectPlane const& plane) {
-  constexpr double step = 1e-4;  // [m]
+  constexpr double step = 1e-4;  // step of the finite differences [m]
   Vec2d scale{};                 // mean of both cameras: the sum of half the scale of each
   for (PinholeCamera const* camera : cameras) {
     Vec2d const middle = camera->project(plane.point({}));

@@ -33,8 +33,9 @@ struct TomographyOptions {
   std::optional<double> reference_density;     ///< [kg/m^3]; empty: ambient density of the setups
   std::optional<std::array<Vec3d, 2>> bounds;  ///< lowest and highest corner of the volume [m]; empty: common view
   std::optional<double> spacing;               ///< distance between nodes [m]; empty: that of the vectors
-  std::optional<VolumeSupport> support;        ///< empty: the whole volume
-  double least_density = 0.0;                  ///< lower bound of the density [kg/m^3]
+  /// part outside of which the density is known; empty: the whole volume is reconstructed
+  std::optional<VolumeSupport> support;
+  double least_density = 0.0;                                        ///< lower bound of the density [kg/m^3]
   double largest_density = std::numeric_limits<double>::infinity();  ///< upper bound [kg/m^3]
   tomography::SartSettings sart;  ///< bounds and support are set from the members above
 };
@@ -42,10 +43,10 @@ struct TomographyOptions {
 /// Density of a volume, reconstructed from several views.
 struct Tomography {
   RegularGrid grid;                   ///< nodes in the frame of the volume
-  std::vector<double> density;        ///< [kg/m^3, grid.size()], x fastest
+  std::vector<double> density;        ///< density at the nodes [kg/m^3, grid.size()], x fastest
   std::vector<std::int64_t> seen;     ///< number of views that see the node [grid.size()]
   std::vector<double> truth;          ///< true density of rendered cases [kg/m^3, grid.size()]; empty: unknown
-  std::vector<double> residual;       ///< see tomography::VolumeReconstruction [1]
+  std::vector<double> residual;       ///< relative residual of each sweep, see tomography::VolumeReconstruction [1]
   std::vector<double> view_residual;  ///< residual of each view, see tomography::VolumeReconstruction [1, views]
   double reference_density = 0.0;     ///< [kg/m^3]
   double tv_weight = 0.0;             ///< strength of the total variation in the last sweep, see SartSettings [1]
@@ -57,7 +58,7 @@ struct Tomography {
   tomography::SartSettings settings;
   std::vector<std::string> warnings;
   std::string setup;         ///< resolved setup of the first view
-  std::uint64_t seed = 0;    ///< of the rendering
+  std::uint64_t seed = 0;    ///< random seed of the rendering
   SourceFiles sources = {};  ///< setups and vectors
 };
 

@@ -26,7 +26,7 @@ namespace {
 
 /// Prevents the setup of a rendered case or planned study from being overwritten, since its results would no longer
 /// match.
-/// @throws OutputError if `path` is such a setup
+/// @throws OutputError if `path` is the setup of a rendered case or planned study
 void refuse_setup_of_results(std::string const& path) {
   std::error_code error;
   std::filesystem::path const folder = std::filesystem::absolute(path, error).parent_path();

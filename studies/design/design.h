@@ -18,7 +18,7 @@ struct DesignRequest {
   std::string figures;  ///< folder of the figures; empty: no figures
   std::string figure_format = "png";
   std::string apply;                     ///< file for the recommended setup; empty: not written
-  VerificationPlan verification;         ///< benches = 0: no simulation
+  VerificationPlan verification;         ///< extent of the simulation; benches = 0: none
   std::function<Backend()> open_device;  ///< opens the device of the simulation
 };
 
@@ -37,7 +37,7 @@ struct DesignReport {
 /// @throws DataError if the design has no light cone, or for --apply without [requirements]
 /// @throws OutputError if a file cannot be written
 DesignReport design(DesignRequest const& request);
-/// Does the same for a setup in memory; request.setup is its name in messages and request.overrides are ignored.
+/// Like design() above, for a setup in memory; request.setup is its name in messages and request.overrides are ignored.
 DesignReport design(SetupDocument document, DesignRequest const& request);
 
 }  // namespace gladstone

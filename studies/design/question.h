@@ -68,7 +68,7 @@ struct InventoryCamera {
 struct DesignQuestion {
   Requirements requirements;
   std::vector<FreeChoice> free;
-  std::vector<InventoryCamera> cameras;  ///< empty: the setup's camera
+  std::vector<InventoryCamera> cameras;  ///< cameras to choose from; empty: the setup's camera
   std::vector<std::string> lenses;       ///< absolute paths of prescription files, in addition to the thin lenses
 };
 

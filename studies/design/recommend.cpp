@@ -85,8 +85,8 @@ double add_costs(Recommendation& answer, DesignProblem const& problem, Search& s
   return least;
 }
 
-/// Adds the front.
-/// @return the best objective at limits at least as strict as required
+/// Adds the front: the best objectives for a series of limits of one requirement.
+/// @return the best of the objectives whose limit is at least as strict as the required one
 double add_front(Recommendation& answer, DesignProblem const& problem, Search& search) {
   answer.front.clear();
   if (answer.front_bound == Bound::focus) return HUGE_VAL;

@@ -88,7 +88,7 @@ DesignPoint<double> make_design_point(Setup const& setup, FixedDesignParameters 
 
 std::vector<std::string> list_neglected_effects(Setup const& setup) {
   std::vector<std::string> warnings;
-  if (!setup.experiment().correlated) return warnings;  // no sheet describes it
+  if (!setup.experiment().correlated) return warnings;  // no design sheet exists for this experiment
   if (setup.lens.focus != Focus::target && setup.experiment().sources.on_target) {
     warnings.emplace_back("lens.focus: the sheet assumes dots in focus, but these are out of focus");
   }

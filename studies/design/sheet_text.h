@@ -11,7 +11,7 @@ namespace gladstone {
 /// marginal ones, then the others in the order of their numbers.
 std::string sheet_text(DesignSheet const& sheet);
 
-/// Formats the rows that miss the usual recommendation, as sheet_text(); empty if every row meets it.
+/// Formats the rows that miss the usual recommendation, in the form of sheet_text(); empty if every row meets it.
 std::string missed_rows_text(DesignSheet const& sheet);
 
 /// Returns every value by its key, fields of view as [width, height], and all rows in "rows"; null: unknown.

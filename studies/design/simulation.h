@@ -36,7 +36,7 @@ struct SystematicCause {
 struct SimulatedDesign {
   int columns = 0, rows = 0;  ///< size of the simulated central part of the image [px]
   std::size_t repeats = 0;
-  std::size_t vectors = 0;       ///< valid in every repeat and away from the border
+  std::size_t vectors = 0;       ///< number of vectors that are valid in every repeat and away from the border
   Estimate random_px;            ///< random error per component, for the setup's medium
   Estimate bias_px;              ///< systematic error against Eq. 9, rms over vectors and components [px]
   double predicted_bias_px = 0;  ///< loss by light cone, dot and window for the same field, by formula [px]

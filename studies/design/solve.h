@@ -10,8 +10,8 @@ inline constexpr double allowed_excess = 1e-7;
 
 /// Best design of a branch.
 struct BranchSolution {
-  std::vector<double> logarithms;  ///< continuous design variables at the solution
-  double objective = HUGE_VAL;     ///< in SI
+  std::vector<double> logarithms;  ///< logarithms of the continuous design variables
+  double objective = HUGE_VAL;     ///< objective [SI]
   double violation = HUGE_VAL;     ///< largest excess over a limit
   Bound worst = Bound::focus;      ///< limit with the largest excess
 

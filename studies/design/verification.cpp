@@ -62,17 +62,18 @@ std::string why_resolved(SimulatedDesign const& simulated, DesignPoint<double> c
   auto const farthest = std::max_element(shares.begin(), shares.end(), [](Share const& a, Share const& b) {
     return std::abs(a.simulated - a.predicted) < std::abs(b.simulated - b.predicted);
   });
-  return fmt::format("{}: transmits {:.3f} instead of {:.3f} at {:.4g} mm ({})", farthest->name, farthest->simulated,
-                     farthest->predicted, wave.wavelength / mm, farthest->because);
+  return fmt::format("{}: amplitude transfer of {:.3f} instead of {:.3f} at a wavelength of {:.4g} mm ({})",
+                     farthest->name, farthest->simulated, farthest->predicted, wave.wavelength / mm, farthest->because);
 }
 
-/// Largest displacement either way in the formula's study, which covers all fractions of a pixel [px].
+/// Largest displacement, of either sign, in the study of the formula, which covers all sub-pixel fractions [px].
 constexpr double studied_displacement_px = 0.5;
 
 std::string why_random(SimulatedDesign const& simulated) {
   if (simulated.displacement_px < studied_displacement_px) {
-    return fmt::format("displacements reach only {:.2g} px; the formula covers all fractions of a pixel",
-                       simulated.displacement_px);
+    return fmt::format(
+        "the largest displacement is only {:.2g} px, while the formula is a mean over all sub-pixel fractions",
+        simulated.displacement_px);
   }
   return "noise, dots or strain differ from those in the study of the formula";
 }

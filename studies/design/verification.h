@@ -16,7 +16,7 @@ struct VerifiedQuantity {
   double predicted = 0;        ///< predicted value in the key's unit, like predicted_error and simulated
   double predicted_error = 0;  ///< standard error of the formula
   Estimate simulated;
-  bool rms = false;  ///< root mean square; the errors of its square are normally distributed
+  bool rms = false;  ///< true: a root mean square, the error of whose square is normally distributed
   std::string why;   ///< explanation of a disagreement
 
   /// Returns true if the difference is within two combined standard errors.
@@ -41,7 +41,7 @@ struct VerifiedDesign {
   SimulatedDesign simulated;
   std::vector<VerifiedQuantity> quantities;       ///< empty if the simulation failed
   std::vector<VerifiedRequirement> requirements;  ///< requirements that a simulation can check
-  /// solved with stricter limits, because earlier designs missed the required ones in simulation
+  /// true: solved with stricter limits, because earlier designs missed the required ones in simulation
   bool tightened = false;
 
   /// Returns true if the simulation succeeded and all requirements are met.

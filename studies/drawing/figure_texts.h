@@ -23,7 +23,7 @@ FigureFont font_of(Figure::Kind kind, std::string_view name);
 /// Returns the width of a UTF-8 text of one line in DejaVu Sans [px].
 double text_width(std::string_view text, FigureFont const& font);
 
-/// Text with its place on the page.
+/// Text with its position on the page.
 struct PlacedText {
   figures::Label label;  ///< position x, y on the page [px]; the shifts are applied
   FigureFont font;
@@ -34,7 +34,7 @@ struct PlacedText {
 std::vector<PlacedText> place_texts(Figure const& figure);
 
 /// Places the labels of a panel: they are moved into the page, and upwards or downwards until they overlap no other.
-/// Numbers in cells stay.
+/// Numbers in the cells of a map are not moved.
 /// @return empty if a range of an axis is automatic
 std::vector<PlacedText> place_labels(Figure const& figure, figures::Panel const& panel);
 

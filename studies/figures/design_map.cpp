@@ -15,7 +15,7 @@ namespace {
 
 using namespace figures;
 using unit::mm;
-constexpr std::array<double, 5> marked_z_d{0.1, 0.25, 0.5, 1, 2};  // relative to Z_A
+constexpr std::array<double, 5> marked_z_d{0.1, 0.25, 0.5, 1, 2};  // Z_D of the lines in the map, relative to Z_A
 
 std::vector<double> in_mm(std::vector<double> lengths) {
   for (double& length : lengths) length /= mm;

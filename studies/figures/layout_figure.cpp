@@ -76,7 +76,7 @@ std::vector<Layer> make_layers(Drawing const& d) {
 struct LayoutWords {
   std::string title;
   std::string seen;    ///< field of view in the plane of the dots or of the sheet
-  std::string medium;  ///< empty: no label
+  std::string medium;  ///< name of the medium; empty: no label
 };
 
 /// Panel with stretched heights, to which distances and names are added.
@@ -97,7 +97,7 @@ class StretchedPanel {
     panel_.labels.back().boxed = true;
   }
 
-  /// Adds an arrow between two places; its name, if any, is on it.
+  /// Adds an arrow between two positions, labelled with its name if there is one.
   void add_distance(double from, double to, double at, std::string const& name) {
     panel_.layers.push_back(
         {Layer::Kind::spans, {{from / mm}, {height(at)}, {(to - from) / mm}, {0}}, "#606060", "", 1});

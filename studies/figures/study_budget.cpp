@@ -164,7 +164,7 @@ class BudgetFigure {
     return name;
   }
 
-  static constexpr double height = 250.0;  ///< of a panel [px]
+  static constexpr double height = 250.0;  ///< height of a panel [px]
   StudyCells const& cells_;
   StudyCells const* points_;
   std::size_t axis_index_;

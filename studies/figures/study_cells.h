@@ -13,7 +13,7 @@ namespace gladstone {
 inline constexpr std::size_t max_positions = 12;
 
 /// Returns the number of positions of sampled axes in maps, for an average of two points per cell: sqrt(points / 2), at
-/// most 12; for fewer than 8 points, which do not suffice for a map, the general maximum.
+/// most 12; for fewer than 8 points, which do not suffice for a map, max_positions.
 std::size_t sampled_places_in_maps(std::size_t points);
 
 /// Finished cases of a study, sorted by the positions on its axes; data source of all its figures.

@@ -17,8 +17,8 @@ struct MeasurementKnown {
   PropagatedResult const& typical;  ///< result for a vector of typical displacement and uncertainty
   std::vector<MeasurementInput> const& inputs;
   MeanOfRepeats const& mean;
-  SimulatedTwin const* twin = nullptr;  ///< null without a simulated twin
-  double sensitivity = 1;               ///< [px per kg/m^4]
+  SimulatedTwin const* twin = nullptr;  ///< simulated twin of the measurement; null: none
+  double sensitivity = 1;               ///< displacement per density gradient [px per kg/m^4]
 
   bool simulated() const { return twin && twin->failed.empty(); }
 };

@@ -12,10 +12,10 @@ namespace gladstone {
 
 /// Density gradients at measured vectors with their uncertainties; components along X and Y of the world.
 struct MeasuredGradients {
-  std::vector<Vec2d> gradient;  ///< NaN at invalid vectors [kg/m^4]
+  std::vector<Vec2d> gradient;  ///< density gradient; NaN at invalid vectors [kg/m^4]
   std::vector<Vec2d> random;    ///< standard uncertainty from the displacement [kg/m^4]
-  std::vector<Vec2d> combined;  ///< including the uncertainty of the setup's parameters [kg/m^4]
-  /// number of vectors with the estimator's uncertainty; the others have that of the formula
+  std::vector<Vec2d> combined;  ///< standard uncertainty including that of the setup's parameters [kg/m^4]
+  /// number of vectors with an uncertainty by the estimator; for the others it is computed by formula
   std::size_t estimated = 0;
   double common = 0;      ///< relative uncertainty from the setup's parameters [1]
   std::size_t count = 0;  ///< number of valid vectors

@@ -12,7 +12,7 @@ namespace gladstone {
 
 namespace {
 
-constexpr std::size_t longest_plain_table = 20;  ///< maximum without a search field
+constexpr std::size_t longest_plain_table = 20;  ///< maximum number of rows of a table without a search field
 
 }  // namespace
 

@@ -26,7 +26,7 @@ std::string number_label(double number);
 
 /// One case of a study: a line of RUN/manifest.jsonl, which determines its result completely.
 struct ManifestCase {
-  std::size_t index = 0;  ///< from 0: line number - 1
+  std::size_t index = 0;  ///< number of the case, from 0: line number - 1
   /// From 0; repeats differ in random dots, rays and noise.
   std::size_t repeat = 0;
   /// Seed of the repeat, equal for all points of the study.

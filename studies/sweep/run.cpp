@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// RAII guard that holds a claim.
+/// RAII guard that claims a case, if no other process has claimed it.
 class Claim {
  public:
   Claim(CaseLocks& claims, std::size_t index) : claims_(claims), index_(index), taken_(claims.take(index)) {}

@@ -58,7 +58,7 @@ SetupDocument compose(SetupDocument const& base, StudyFile const& study, std::ve
     if (axes_give(study, values, path)) continue;
     SetupNode const* const table = document.find({path.begin(), path.end() - 1});
     if (!table && path.size() > 2) continue;  // do not add a noise table that the setup does not have
-    // Skip a table that is not a table; reading the setup reports it.
+    // Skip a value that should be a table but is not; reading the setup reports it.
     if (table && table->kind != SetupNode::Kind::table && table->kind != SetupNode::Kind::array) continue;
     document.set(path, number);
   }
@@ -96,7 +96,7 @@ std::size_t further_values(StudyFile const& study, AxisPlan const& axis) {
   return axis.size() > 1 ? 2 : 1;
 }
 
-/// Returns the number of points needed to check all of these values.
+/// Returns the number of points needed to check the further_values() of all axes.
 std::size_t points_to_try(StudyFile const& study) {
   if (study.mode == StudyMode::zip) return study.points();
   std::size_t count = 1;
@@ -104,7 +104,7 @@ std::size_t points_to_try(StudyFile const& study) {
   return count;
 }
 
-/// Returns the i-th of these points: first the first values of all axes, then the other values of each axis with the
+/// Returns the i-th point to check: first the first values of all axes, then the other values of each axis with the
 /// first values of the others.
 std::vector<AxisValue> point_to_try(StudyFile const& study, std::size_t i) {
   if (study.mode == StudyMode::zip) return values_at(study, i);
@@ -197,7 +197,7 @@ struct StudyPlan::Parts {
   std::string device;
   SetupDocument base;
   std::mutex mutex;  ///< protects the members below
-  /// Key paths of file names, by words_of() the values.
+  /// Paths of the keys that are file names, for each words_of() the axis values.
   std::map<std::string, std::vector<std::vector<std::string>>> file_keys;
   std::map<std::string, std::string> hashes;  ///< hash of each file, by name
 

@@ -10,8 +10,8 @@
 namespace gladstone {
 
 /// All cases of a study, generated on access. The order has repeats outermost and, in a grid, the last axis fastest, so
-/// that neighbouring cases share the most. The seeds of target, pupil and noise depend only on the study's seed and the
-/// repeat, unless an axis specifies them.
+/// that neighbouring cases share most intermediate results. The seeds of target, pupil and noise depend only on the
+/// study's seed and the repeat, unless an axis specifies them.
 class StudyPlan {
  public:
   /// Checks values of all axes by loading complete setups. Each value of an axis is combined with the first values of

@@ -30,7 +30,8 @@ struct StudyRow {
   bool warned = false;             ///< the case has warnings
   std::string error;               ///< error message of a failed case
   std::vector<std::size_t> value;  ///< [axes] index of the value of each axis
-  std::vector<double> measures;    ///< [StudyTable::measures] NaN if unknown or the case is not finished
+  /// [StudyTable::measures] values of the measures; NaN if unknown or the case is not finished
+  std::vector<double> measures;
   double seconds_render = std::numeric_limits<double>::quiet_NaN();
   double seconds_correlate = std::numeric_limits<double>::quiet_NaN();
   double seconds_compare = std::numeric_limits<double>::quiet_NaN();

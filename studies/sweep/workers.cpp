@@ -37,7 +37,7 @@ constexpr char const* executable = "/proc/self/exe";
 
 struct Worker {
   pid_t process = -1;
-  int reports = -1;  ///< -1: the worker has ended
+  int reports = -1;  ///< descriptor from which reports are read; -1: the worker has ended
   WorkerEnd end;
 };
 

@@ -71,10 +71,11 @@ TEST_F(SilentMistakes, WarnsOfUnitlessCoordinatesAndInvisibleField) {
   std::string const field =
       "kind = \"file\"\nfile = \"unnamed.h5\"\ndataset = \"density\"\nextrude = true\n"
       "center_mm = [1.0, 1.0, 0.0]";
-  EXPECT_THAT(warnings(with_field(field)),
-              AllOf(Contains(HasSubstr("name no unit and are taken as mm (the field is 0.008 x 0.008 mm wide)")),
-                    Contains(HasSubstr("with lengths in metres, it would be 8 x 8 mm wide")),
-                    Contains(HasSubstr("no displacement: "))));
+  EXPECT_THAT(
+      warnings(with_field(field)),
+      AllOf(Contains(HasSubstr("have no unit in the file and are taken as mm (the field is 0.008 x 0.008 mm wide)")),
+            Contains(HasSubstr("with lengths in metres, it would be 8 x 8 mm wide")),
+            Contains(HasSubstr("no displacement: "))));
 }
 
 TEST_F(SilentMistakes, ASpacingInMetresIsWarnedOf) {
@@ -127,7 +128,7 @@ TEST_F(SilentMistakes, InfoTellsUnitsExtentAndWhatOfAViewIsFilled) {
   json = json_of({"info", "field", "unnamed.h5", "--dataset", "density"});
   EXPECT_TRUE(json["units"]["length"].is_null());
   EXPECT_THAT(json["units"]["assumed"].get<std::string>(), HasSubstr("taken as mm"));
-  EXPECT_THAT(json["warnings"].dump(), HasSubstr("unnamed.h5: lengths name no unit and are taken as mm"));
+  EXPECT_THAT(json["warnings"].dump(), HasSubstr("unnamed.h5: lengths have no unit in the file and are taken as mm"));
   std::string const unnamed = "kind = \"file\"\nfile = \"unnamed.h5\"\ndataset = \"density\"\nextrude = true";
   write("unnamed.toml", with_field(unnamed));
   EXPECT_THAT(json_of({"design", "unnamed.toml"})["warnings"].dump(), HasSubstr("lengths name no unit"));
@@ -136,7 +137,7 @@ TEST_F(SilentMistakes, InfoTellsUnitsExtentAndWhatOfAViewIsFilled) {
   json = json_of({"info", "field", "unnamed.h5", "--dataset", "density", "--setup", "spaced.toml"});
   EXPECT_THAT(json["warnings"].dump(), Not(HasSubstr("lengths name no unit")));
   EXPECT_THAT(succeed({"info", "field", "unnamed.h5", "--dataset", "density", "--setup", "setup.toml"}),
-              AllOf(HasSubstr("lengths name no unit and are taken as mm, so the field is 0.002 x 0.002"),
+              AllOf(HasSubstr("lengths have no unit in the file and are taken as mm, so the field is 0.002 x 0.002"),
                     HasSubstr("with lengths in metres"), HasSubstr("values are in kg m-3")));
 }
 

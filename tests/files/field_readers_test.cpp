@@ -152,7 +152,8 @@ TEST_F(JhtdbField, UnitsAreThoseOfTheAttributes) {
   auto const partial = open_field(with_units("1", "m"), "Density_0001");
   EXPECT_EQ(partial->units().length, "m");
   EXPECT_EQ(partial->grid().spacing.x, 0.5);
-  EXPECT_THAT(partial->notes(), ElementsAre("lengths along x name no unit and are taken to be in m, as the others"));
+  EXPECT_THAT(partial->notes(),
+              ElementsAre("lengths along x have no unit in the file and are taken to be in m, like the others"));
   EXPECT_FALSE(open_field(write({density()}), "")->units().spaced);
 }
 
@@ -354,7 +355,7 @@ TEST_F(JhtdbField, CoordinatesThatAreNotUsedAreNamed) {
                                                 "be coordinates, but they are not used"));
   auto const partial = open_field(write({density(), axis("xcoor", 4, 0.0, 0.5)}), "");
   EXPECT_THAT(partial->notes(),
-              ElementsAre("no coordinates along z, y are found, and nodes there are taken 1 mm apart"));
+              ElementsAre("no coordinates along z, y are found, and nodes along them are taken 1 mm apart"));
   EXPECT_EQ(geographic->units().unspaced, "xyz");
   EXPECT_EQ(partial->units().unspaced, "yz");
 }
@@ -712,7 +713,8 @@ TEST_F(NrrdField, UnitsAreThoseOfTheHeader) {
   auto const partial = open_field(
       write("c.nrrd", header(std::string(grid_432) + "spacings: 1 1 1\nunits: \"cm\" \"\" \"cm\"\n" + rest)), "");
   EXPECT_EQ(partial->units().length, "cm");
-  EXPECT_THAT(partial->notes(), ElementsAre("lengths along y name no unit and are taken to be in cm, as the others"));
+  EXPECT_THAT(partial->notes(),
+              ElementsAre("lengths along y have no unit in the file and are taken to be in cm, like the others"));
 }
 
 TEST_F(NrrdField, LabelsNameTheAxes) {

@@ -37,7 +37,7 @@ class FieldSource {
   /// @throws DataError for missing values (-999.9 in JHTDB), NaN and values beyond the range of float, with their
   ///         number, and for truncated data
   virtual void read_planes(int first_plane, int count, std::span<double> out) = 0;
-  /// Reads rows [first_row, first_row + count) of one plane, as read_planes(), for planes too large for memory.
+  /// Reads rows [first_row, first_row + count) of one plane, like read_planes(), for planes too large for memory.
   virtual void read_rows(int plane, int first_row, int count, std::span<double> out) = 0;
 
  protected:

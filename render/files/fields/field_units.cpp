@@ -205,7 +205,7 @@ double FieldUnits::metres() const {
 
 std::string FieldUnits::assumed() const {
   if (!spaced) return "the file gives no coordinates that are known here, and nodes are taken 1 mm apart";
-  return states_unit(length) ? "" : "lengths name no unit and are taken as mm";
+  return states_unit(length) ? "" : "lengths have no unit in the file and are taken as mm";
 }
 
 std::string FieldUnits::undefined() const {
@@ -247,8 +247,8 @@ void convert_lengths(StoredAxes& axes, std::array<std::optional<std::string>, 3>
     for (double& place : axes[i].coordinates) place *= ratio;
   }
   if (!without.empty()) {
-    notes.push_back(
-        fmt::format("lengths along {} name no unit and are taken to be in {}, as the others", without, units.length));
+    notes.push_back(fmt::format("lengths along {} have no unit in the file and are taken to be in {}, like the others",
+                                without, units.length));
   }
 }
 

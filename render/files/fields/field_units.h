@@ -21,7 +21,7 @@ inline constexpr Dimension dimension_of_length{0, 1, 0}, dimension_of_density{1,
 /// Factor that converts the values of a file to SI, and a warning if their unit is not used.
 struct ValueFactor {
   double factor = 1;
-  std::string warning;  ///< empty: no unit is stated, or it was converted
+  std::string warning;  ///< warning that the unit is not used; empty: no unit is stated, or it was converted
 };
 
 /// Units of a field as stated in its file.
@@ -34,8 +34,8 @@ struct FieldUnits {
 
   /// Size of the unit of length [m]; 1 mm if it is not stated or not recognised.
   double metres() const;
-  /// Describes the assumption made about lengths, "lengths name no unit and are taken as mm"; empty if none was
-  /// necessary.
+  /// Describes the assumption made about lengths, "lengths have no unit in the file and are taken as mm"; empty if none
+  /// was necessary.
   std::string assumed() const;
   /// Describes why the spacing is undefined, "lengths are in \"furlong\", which is not a known unit of length"; empty
   /// if it is defined. The user must then give the spacing.

@@ -111,7 +111,7 @@ class SeqReader {
 
   void warn(std::string const& text) { result_.warnings.push_back(text); }
 
-  /// Reads "S radius thickness [glass]".
+  /// Adds the surface that starts with the line "S radius thickness [glass]".
   void begin_surface(std::string const& command, PrescriptionLine const& line) {
     if (image_)
       throw DataError(ErrorCode::damaged, line.where,

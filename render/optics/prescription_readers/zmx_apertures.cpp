@@ -83,7 +83,8 @@ void put_apertures(ZmxApertures const& apertures, PrescribedSurface& surface, st
     surface.obscured_without_end = disc > 0 && std::isinf(largest);
   }
   if (auto const& ring = apertures.obscured_ring) {
-    if (ring->largest >= surface.semi_diameter) {  // the ring leaves a circular aperture
+    // the obscured ring reaches the rim: only the disc within its inner radius remains open
+    if (ring->largest >= surface.semi_diameter) {
       largest = largest > 0 ? std::min(largest, ring->least) : ring->least;
     } else {
       warn("OBSC: a ring-shaped obscuration within the surface is not traced and blocks no light");

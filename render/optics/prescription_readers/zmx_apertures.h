@@ -15,7 +15,7 @@ struct ZmxApertures {
   struct Ring {
     double least = 0, largest = 0;
   };
-  std::string where;  ///< location of the last of these lines
+  std::string where;  ///< location of the last aperture line
   std::optional<Ring> aperture;
   double disc = 0;  ///< radius of a circular obscuration
   std::optional<Ring> obscured_ring;

@@ -17,7 +17,7 @@ std::string last_step(std::string const& path);
 /// World axis and unit of an array of coordinates, as its name states them: "x_mm".
 struct NamedCoordinate {
   char axis = 'x';
-  std::string unit;  ///< empty: not stated by the name
+  std::string unit;  ///< unit; empty: not stated by the name
 };
 /// Returns the axis and unit of an array of coordinates (x, xcoor, x_coor, x_mm, x_m, x_um, x_cm, with any of x, y and
 /// z in upper or lower case); nullopt for other names.

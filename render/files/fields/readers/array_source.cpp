@@ -144,10 +144,11 @@ class ArraySource final : public CheckedSource {
   void place(std::size_t i, ArrayCoordinates const& own) {
     std::string const what = "dataset \"" + own.dataset + '"';
     if (own.axis && *own.axis != i) {
-      throw DataError(ErrorCode::inconsistent, path_,
-                      fmt::format("{} varies along axis {} of \"{}\" (from the slowest), where {} is axis {}; name "
-                                  "the axes in the order of the file: axes = \"zxy\"",
-                                  what, rank() - *own.axis, name_, axes_[i].world, rank() - i));
+      throw DataError(
+          ErrorCode::inconsistent, path_,
+          fmt::format("{} varies along axis {} of \"{}\" (counted from the slowest), but {} is read as axis {}; name "
+                      "the axes in the order of the file: axes = \"zxy\"",
+                      what, rank() - *own.axis, name_, axes_[i].world, rank() - i));
     }
     if (own.places.size() != length(i)) {
       throw DataError(ErrorCode::wrong_shape, path_,
@@ -160,7 +161,7 @@ class ArraySource final : public CheckedSource {
     axes_[i].world = world;
   }
 
-  /// Reports axes without coordinates, and the datasets that may be theirs but are not used.
+  /// Reports axes without coordinates, and unused datasets that may contain the missing coordinates.
   void report_missing(std::array<std::optional<ArrayCoordinates>, 3> const& own) {
     std::string missing;
     for (std::size_t i = rank(); i-- > 0;) {
@@ -192,7 +193,8 @@ class ArraySource final : public CheckedSource {
     if (!some && unused.empty()) return;  // FieldUnits::assumed() reports this
     notes_.push_back(fmt::format(
         "no coordinates along {} are found{}{}", missing,
-        some ? fmt::format(", and nodes there are taken 1 {} apart", units_.length.empty() ? "mm" : units_.length) : "",
+        some ? fmt::format(", and nodes along them are taken 1 {} apart", units_.length.empty() ? "mm" : units_.length)
+             : "",
         ignored));
   }
 

@@ -57,7 +57,7 @@ std::string describe_class(std::uint32_t array_class, bool complex) {
   }
 }
 
-/// Element of a file: type, number of bytes and the place of the data.
+/// Element of a file: type, number of bytes and position of the data.
 struct MatlabTag {
   std::uint32_t type = 0;
   std::uint64_t size = 0, data = 0, next = 0;
@@ -68,8 +68,8 @@ class MatrixHead {
  public:
   MatrixHead(ByteRange const& range, bool swap) : range_(range), swap_(swap), bytes_(read_up_to(range, 4096)) {}
 
-  /// Reads the tag at a place. Up to four bytes of data may be stored in the tag itself, with their number in its upper
-  /// half.
+  /// Reads the tag at a position. Up to four bytes of data may be stored in the tag itself, with their number in its
+  /// upper half.
   MatlabTag tag(std::uint64_t at) const {
     std::uint32_t const first = word(at);
     if ((first >> 16) != 0) return {first & 0xFFFFu, first >> 16, at + 4, at + 8};

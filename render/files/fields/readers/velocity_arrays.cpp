@@ -27,7 +27,7 @@ constexpr std::array velocity_names{ComponentNames{"u", "v", "w"}, ComponentName
 /// Arrays of the components of a velocity, and the name of the array of vectors.
 struct Velocity {
   std::string name;
-  std::array<std::string, 3> components;  ///< the third one may be empty
+  std::array<std::string, 3> components;  ///< names of the arrays of the components; the third one may be empty
 };
 
 /// Returns the name of an array in lower case without its group and unit: "vx" of "flow/Vx_m_s".
