@@ -13,6 +13,7 @@
 #include "python/src/arrays.h"
 #include "python/src/call.h"
 #include "python/src/field.h"
+#include "python/src/warnings.h"
 #include "render/base/error.h"
 #include "render/files/hdf5_file.h"
 #include "render/files/source_files.h"
@@ -34,8 +35,8 @@ Field correlate(ImageArray const& a, ImageArray const& b, std::vector<std::strin
         Backend const device = open_device(device_name);
         auto field = std::make_shared<MeasuredField>();
         Measurement measured = correlate_frames("a", reference.image, "b", flow.image, given.settings, device);
-        if (std::string advice = locking_advice(reference.image); frames_correlate(measured.field) && !advice.empty())
-          measured.field.warnings.push_back(std::move(advice));
+        if (auto const advice = locking_advice(reference.image); advice && frames_correlate(measured.field))
+          measured.field.warnings.push_back(*advice);
         field->field = std::move(measured.field);
         field->foreign = false;
         field->settings = given.settings;
@@ -85,6 +86,7 @@ Field load_field(std::string const& path, std::string const& conventions, int im
   Hdf5Reader const measured(path);
   field->resolved = measured.attribute("setup");
   field->device = measured.attribute("device");
+  field->field.warnings = read_warnings(measured);
   field->reference_sha256 = measured.attribute("reference_sha256");
   field->flow_sha256 = measured.attribute("flow_sha256");
   if (field->resolved.empty()) return field;
@@ -173,7 +175,7 @@ void bind_field(nb::module_& module) {
       .def_prop_ro("size", [](MeasuredField const& self) { return self.field.size(); })
       .def_prop_ro("columns", [](MeasuredField const& self) { return self.field.columns; })
       .def_prop_ro("rows", [](MeasuredField const& self) { return self.field.rows; })
-      .def_prop_ro("warnings", [](MeasuredField const& self) { return self.field.warnings; })
+      .def_prop_ro("warnings", [](MeasuredField const& self) { return warning_texts(self.field.warnings); })
       .def_prop_ro("verdict", [](MeasuredField const& self) { return self.field.verdict; })
       .def_prop_ro("uncertainty_method", [](MeasuredField const& self) { return self.field.uncertainty_method; })
       .def_prop_ro("uncertainty_key", [](MeasuredField const& self) { return self.field.uncertainty_key; })

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 
+#include "render/base/warning.h"
 #include "render/light/flow.h"
 #include "render/light/laser_sheet.h"
 #include "render/light/particle_sequence.h"
@@ -69,7 +70,7 @@ struct Setup {
   double z_d = 0.25;  ///< mid-plane of the medium to the dots, along Z [m]; 0 for PIV and calibration (plane_setup)
   std::optional<Pose<double>> pose;  ///< pose of the camera, see camera_pose(); empty: on the Z axis, looking along -Z
   std::vector<OpticalElement> elements;  ///< optical elements besides the lens; those of a side in the light's order
-  std::vector<std::string> warnings;     ///< warnings from reading the setup
+  Warnings warnings;                     ///< warnings from reading the setup
   int view_margin_px = 64;  ///< margin of a target of default extent beyond the view: first-pass window [px]
 
   /// Returns the pose of the front principal plane (of the first vertex if the lens has no principal plane): z along
@@ -150,6 +151,6 @@ Setup read_setup(SetupTable root);
 /// Files are opened only to read the size of the field's grid. Problems are recorded at their keys in the setup's
 /// document.
 /// @return warnings
-std::vector<std::string> cross_check(Setup const& setup, SetupTable root);
+Warnings cross_check(Setup const& setup, SetupTable root);
 
 }  // namespace gladstone

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "render/base/warning.h"
 #include "studies/sweep/manifest.h"
 #include "studies/sweep/study_file.h"
 
@@ -29,7 +30,7 @@ class StudyPlan {
   /// Returns the base setup of all cases, as TOML with absolute file names.
   std::string base() const;
   /// Returns what the author of the study may have overlooked: cases of the first pair of a sequence only.
-  std::vector<std::string> warnings() const;
+  Warnings warnings() const;
   std::size_t size() const;
   /// Returns a case including its line_hash. Thread-safe. @throws DataError if an input cannot be read
   ManifestCase operator[](std::size_t index) const;
