@@ -234,8 +234,9 @@ std::string verdict_of(DisplacementField const& field, Tally const& left) {
 
 void judge(DisplacementField& field, Evidence const& evidence, CorrelationSettings const& settings) {
   if (stands_still(field) && evidence.same_pictures()) {
-    field.warnings.emplace_back(
-        "both frames are the same image, bit for bit (so that every displacement is 0); use two different frames");
+    field.warnings.push_back(
+        {WarningCode::unreliable, "",
+         "both frames are the same image, bit for bit (so that every displacement is 0); use two different frames"});
     field.verdict = "not judged: both frames are the same image";
     return;
   }
@@ -248,10 +249,11 @@ void judge(DisplacementField& field, Evidence const& evidence, CorrelationSettin
   if (period) {
     if (found.part(found.ambiguous) >= worth_a_warning)
       field.warnings.push_back(
-          fmt::format("the pattern repeats every {:.2f} px (with an autocorrelation of {:.2f}), within {}: only "
-                      "displacements below {:.2f} px are unambiguous, larger ones are reduced by whole periods; use "
-                      "random dots, or set correlate.max_displacement_px below {:.2f} if no displacement is larger",
-                      period->pitch_px, period->height, reach.what, 0.5 * period->pitch_px, 0.5 * period->pitch_px));
+          {WarningCode::unreliable, "",
+           fmt::format("the pattern repeats every {:.2f} px (with an autocorrelation of {:.2f}), within {}: only "
+                       "displacements below {:.2f} px are unambiguous, larger ones are reduced by whole periods; use "
+                       "random dots, or set correlate.max_displacement_px below {:.2f} if no displacement is larger",
+                       period->pitch_px, period->height, reach.what, 0.5 * period->pitch_px, 0.5 * period->pitch_px)});
     field.verdict = fmt::format("not judged: the pattern repeats every {:.2f} px", period->pitch_px);
   } else if (found.compared > 0) {
     // Ambiguities of earlier passes are cleared: large windows across a gradient have several peaks, among which the
@@ -262,10 +264,11 @@ void judge(DisplacementField& field, Evidence const& evidence, CorrelationSettin
   Tally const left(field);
   if (!period && why_not.empty()) field.verdict = verdict_of(field, left);
   bool const differ = left.part(left.uncorrelated) >= worth_a_warning;
-  if (differ) field.warnings.push_back(uncorrelated_text(left, reach));
+  if (differ) field.warnings.push_back({WarningCode::unreliable, "", uncorrelated_text(left, reach)});
   if (left.part(left.beyond) >= worth_a_warning && !(differ && left.nothing_left()))
-    field.warnings.push_back(beyond_text(left, reach, settings));
-  if (left.part(left.failed) >= too_many_failed) field.warnings.push_back(failed_text(field, left));
+    field.warnings.push_back({WarningCode::unreliable, "", beyond_text(left, reach, settings)});
+  if (left.part(left.failed) >= too_many_failed)
+    field.warnings.push_back({WarningCode::unreliable, "", failed_text(field, left)});
 }
 
 /// Returns a composite of the sequence: every pixel is taken from the first pair in which both frames have a value

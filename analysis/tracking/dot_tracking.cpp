@@ -53,15 +53,17 @@ DisplacementField matched_vectors(LocatedDots const& a, LocatedDots const& b, st
   }
   if (a.dots.empty() || b.dots.empty())
     field.warnings.push_back(
-        fmt::format("no dots in frame {} (nothing exceeds the noise by {:g} standard deviations as a dot); check the "
-                    "frames, and correlate.tracking.polarity and diameter_px",
-                    a.dots.empty() ? "A" : "B", DotSettings{}.detection_threshold));
+        {WarningCode::unreliable, "",
+         fmt::format("no dots in frame {} (nothing exceeds the noise by {:g} standard deviations as a dot); check the "
+                     "frames, and correlate.tracking.polarity and diameter_px",
+                     a.dots.empty() ? "A" : "B", DotSettings{}.detection_threshold)});
   if (2 * ambiguous > matches.size())
     field.warnings.push_back(
-        fmt::format("{} of {} dots have ambiguous displacements (the pattern matches itself after a shift within the "
-                    "search range); use a random pattern, or set correlate.tracking.displacement_bound_px below half "
-                    "the pitch if no displacement is larger",
-                    ambiguous, matches.size()));
+        {WarningCode::unreliable, "",
+         fmt::format("{} of {} dots have ambiguous displacements (the pattern matches itself after a shift within the "
+                     "search range); use a random pattern, or set correlate.tracking.displacement_bound_px below half "
+                     "the pitch if no displacement is larger",
+                     ambiguous, matches.size())});
   return field;
 }
 

@@ -84,8 +84,8 @@ class TrackingCorrelator final : public Correlator {
     DisplacementField field = on_grid_ ? interpolate_to_grid(predictor, dots) : dots;
     field.verdict = predictor.verdict;
     field.warnings.clear();
-    for (std::string const& warning : predictor.warnings)
-      field.warnings.push_back("correlation that predicts the displacements of dots: " + warning);
+    for (Warning const& warning : predictor.warnings)
+      field.warnings.push_back(at_place("correlation that predicts the displacements of dots", warning));
     field.warnings.insert(field.warnings.end(), dots.warnings.begin(), dots.warnings.end());
     if (!frames_correlate(predictor)) {
       invalidate(field);

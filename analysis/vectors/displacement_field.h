@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "render/base/vec.h"
+#include "render/base/warning.h"
 
 namespace gladstone {
 
@@ -59,7 +60,7 @@ struct DisplacementField {
   std::vector<Ambiguity> ambiguous;  ///< empty: not recorded
   int columns = 0;                   ///< columns of the interrogation grid, stored row by row; 0: scattered points
   int rows = 0;
-  std::vector<std::string> warnings;  ///< warnings about the measurement as a whole
+  Warnings warnings;  ///< warnings about the measurement as a whole
   /// Result of the decorrelation test: "correlates", "does not correlate" or "not judged: REASON"; empty: not tested.
   std::string verdict;
   /// Method that estimated sigma_px: a value of correlate.uncertainty, or "dot_fit" of tracked dots; empty: unknown.

@@ -36,8 +36,7 @@ std::vector<std::string> three_component_extensions();
 /// Writes three components in the format of the extension: table (.csv), netCDF-4 in the schema of PIVPy with `w`
 /// (.nc), MATLAB level 5 (.mat), Tecplot ASCII (.dat), VTK image (.vti) or VTK points (.vtp); contents in
 /// docs/file-formats.md.
-/// @throws OutputError; DataError if a source has changed since it was read;
-///         std::invalid_argument for another file extension
+/// @throws OutputError, also for another file extension; DataError if a source has changed since it was read
 void write_three_components(std::string const& path, ThreeComponentField const& field, FileOrigin const& origin);
 
 }  // namespace gladstone

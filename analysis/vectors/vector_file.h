@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "analysis/vectors/displacement_field.h"
+#include "render/base/warning.h"
 #include "render/files/hdf5_file.h"
 
 namespace gladstone {
@@ -44,7 +45,7 @@ struct VectorConventions {
 /// frames-exchanged (or swapped), axes-exchanged, places-exchanged, components-exchanged, offset=NUMBER, px=NUMBER,
 /// px/frame=NUMBER.
 /// @param from  values of the properties that the text does not mention
-/// @throws std::invalid_argument that contains the invalid word
+/// @throws DataError that contains the invalid word
 VectorConventions parse_conventions(std::string_view text, VectorConventions from = {});
 /// Returns the conventions in the words of parse_conventions(), complete: "y-up,v-up,offset=-0.5".
 std::string describe(VectorConventions const& conventions);
@@ -58,8 +59,8 @@ struct VectorFile {
   std::vector<VectorConventions> also{};  ///< alternative conventions of the program that writes the format
   std::string place_unit{};               ///< unit of the positions as stated in the file; empty: px
   std::string displacement_unit{};        ///< unit of the displacements as stated in the file; empty: px
-  std::vector<std::string> warnings{};    ///< warnings about assumptions and ignored parts of the file
-  std::vector<std::string> notes{};       ///< notes about columns that are not used
+  Warnings warnings{};                    ///< about assumptions and ignored parts of the file
+  std::vector<std::string> notes{};       ///< about columns that are not used
   bool complete = true;                   ///< false: the header declares another number of vectors; see `warnings`
 };
 
@@ -70,6 +71,9 @@ struct VectorFile {
 /// are set.
 /// @throws DataError with file:line for content that cannot be read
 VectorFile read_vectors(std::string const& path);
+
+/// Returns the warnings that write_vectors() stored in an HDF5 file; those of earlier versions have no code.
+Warnings read_warnings(Hdf5Reader const& file);
 
 /// Returns true if the words specify axes, signs or positions rather than only the size of a pixel.
 bool specifies_reading(std::string_view text);
@@ -94,9 +98,8 @@ bool has_vector_extension(std::string const& path);
 /// Writes vectors in the format of the extension: vectors.h5 (.h5), vectors.csv (.csv), netCDF-4 in the schema of PIVPy
 /// (.nc), MATLAB level 5 (.mat), Tecplot ASCII (.dat), VTK image (.vti) or VTK points (.vtp); contents in
 /// docs/file-formats.md. Quantities that were not estimated are NaN (Tecplot: 0, marked by the column `unknown`).
-/// @throws OutputError, also for scattered vectors in .nc and .vti; DataError if a source has changed since it was
-/// read;
-///         std::invalid_argument for another file extension
+/// @throws OutputError, also for scattered vectors in .nc and .vti and for another file extension; DataError if a
+/// source has changed since it was read
 void write_vectors(std::string const& path, DisplacementField const& field, FileOrigin const& origin);
 
 /// Selects vectors by index, in the given order; the result is scattered (columns = rows = 0).

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from . import _core, _toml
+from ._errors import WarningText
 from ._field import Field
 from ._images import gpu_image, image_array, mask_images, on_first_gpu
 from ._messages import deliver
@@ -61,10 +62,14 @@ def correlate(a, b, *, device: str = "auto", progress: Progress = False, **setti
     warnings = field.warnings
     if not warnings and not field.valid.any():
         warnings = [
-            f"all {len(field)} vectors are invalid; "
-            "check that both frames show one scene, with dots in every window"
+            WarningText(
+                "unreliable",
+                "",
+                f"none of the {len(field)} vectors is valid; "
+                "check that both frames show one scene, with dots in every window",
+            )
         ]
-    deliver([(True, warning) for warning in warnings])
+    deliver(warnings)
     return field
 
 
@@ -83,5 +88,5 @@ def correlate_ensemble(
         raise ValueError(f"got {len(files)} images; give frames a and b of each pair")
     with reporting(progress) as report:
         field = Field._of(_core.correlate_ensemble(files, overrides(settings), report))
-    deliver([(True, warning) for warning in field.warnings])
+    deliver(field.warnings)
     return field

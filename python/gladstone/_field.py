@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from . import _core
-from ._errors import check_whole
+from ._errors import WarningText, check_whole
 from ._images import filled, host_image
 
 
@@ -182,9 +182,9 @@ class Field:
         return self._core.uncertainty_key
 
     @property
-    def warnings(self) -> list[str]:
+    def warnings(self) -> list[WarningText]:
         """Warnings about the measurement."""
-        return list(self._core.warnings)
+        return self._core.warnings
 
     @property
     def device(self) -> str:

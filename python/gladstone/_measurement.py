@@ -13,6 +13,7 @@ import numpy as np
 
 from ._calibration_case import CalibrationCase
 from ._case import Case
+from ._errors import WarningText
 from ._field import Field
 from ._setup import Setup, as_setup
 
@@ -37,9 +38,9 @@ class Measurement:
         self._inputs = inputs
 
     @property
-    def warnings(self) -> list[str]:
+    def warnings(self) -> list[WarningText]:
         """Warnings about the measurement."""
-        return list(self._core.warnings)
+        return self._core.warnings
 
     def __str__(self) -> str:
         return self._core.text()

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from . import _core
-from ._errors import OutputError, hidden_folder
+from ._errors import OutputError, WarningText, hidden_folder
 
 
 def check_report_ending(path: str) -> None:
@@ -59,9 +59,9 @@ class Report:
         return self.errors["budget"]["terms"]
 
     @property
-    def warnings(self) -> list[str]:
+    def warnings(self) -> list[WarningText]:
         """Warnings about the comparison."""
-        return list(self._core.warnings)
+        return self._core.warnings
 
     def _vectors(self, name: str) -> np.ndarray | None:
         array = self._core.array(name)

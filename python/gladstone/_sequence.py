@@ -12,7 +12,7 @@ import numpy as np
 
 from . import _core
 from ._correlate import image_files, overrides
-from ._errors import DataError
+from ._errors import DataError, WarningText
 from ._field import Field
 from ._progress import Progress, reporting
 
@@ -26,6 +26,8 @@ class Sequence:
 
     def __init__(self, folder: str, result: dict[str, Any], temporary=None):
         self._folder, self._result, self._temporary = folder, result, temporary
+        for pair in result["pairs"]:
+            pair["warnings"] = [WarningText(**record) for record in pair.pop("warning_records")]
 
     @property
     def folder(self) -> str:

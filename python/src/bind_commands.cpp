@@ -1,7 +1,6 @@
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
-#include <spdlog/spdlog.h>
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -18,6 +17,7 @@
 #include "studies/case/plenoptic_views.h"
 #include "studies/case/preview.h"
 #include "studies/case/render_sequence.h"
+#include "studies/case/warning_log.h"
 #include "studies/commands/convert.h"
 #include "studies/commands/init.h"
 #include "studies/commands/keys.h"
@@ -39,7 +39,7 @@ std::vector<CameraPreview> render_previews(SetupText const& setup, std::string c
   std::vector<CameraPreview> previews;
   for (CameraCase& camera : camera_cases(setup.document())) {
     CaseSetup const loaded = load_case_setup(std::move(camera.document));
-    for (std::string const& warning : loaded.warnings) spdlog::warn("{}", warning);
+    log_warnings(loaded.warnings);
     previews.push_back({camera.name, render_preview(loaded, *device.renderer)});
   }
   return previews;
@@ -65,7 +65,7 @@ std::string render_sequence(std::string const& setup, std::vector<std::string> c
   SequenceRenderer sequence(setup, overrides);
   sequence.refuse_over_inputs(folder);
   RenderedSequence const rendered = sequence.render(*open_device(device_name).renderer, folder, true);
-  for (std::string const& warning : rendered.warnings) spdlog::warn("{}", warning);
+  log_warnings(rendered.warnings);
   return json_text(rendered.summary);
 }
 
@@ -83,7 +83,8 @@ nb::list oracles(std::string const& device, nb::handle progress) {
 std::string convert(VectorConversion const& conversion) {
   ConvertedVectors const converted = convert_vectors(conversion);
   if (!converted.complete)
-    spdlog::warn("{}: its header declares another number of vectors; export it again", conversion.input);
+    log_warning(
+        {WarningCode::incomplete, conversion.input, "its header declares another number of vectors; export it again"});
   return converted.description.json;
 }
 

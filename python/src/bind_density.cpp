@@ -8,6 +8,7 @@
 
 #include "python/src/arrays.h"
 #include "python/src/call.h"
+#include "python/src/warnings.h"
 #include "studies/case/json_text.h"
 #include "studies/commands/density_options.h"
 #include "studies/compare/density_file.h"
@@ -50,7 +51,7 @@ nb::object density_array(nb::handle_t<Reconstruction> self, std::string const& n
 
 void bind_density(nb::module_& module) {
   nb::class_<Reconstruction>(module, "Reconstruction", "Density reconstructed from BOS vectors.")
-      .def_ro("warnings", &Reconstruction::warnings)
+      .def_prop_ro("warnings", [](Reconstruction const& self) { return warning_texts(self.warnings); })
       .def("x_mm", [](Reconstruction const& self) { return axis_mm(self, true); })
       .def("y_mm", [](Reconstruction const& self) { return axis_mm(self, false); })
       .def("array", &density_array, nb::arg("name"))

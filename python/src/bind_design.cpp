@@ -1,9 +1,9 @@
 #include <nanobind/stl/string.h>
-#include <spdlog/spdlog.h>
 
 #include "python/src/call.h"
 #include "python/src/setup_text.h"
 #include "studies/case/json_text.h"
+#include "studies/case/warning_log.h"
 #include "studies/design/design.h"
 
 namespace gladstone::python {
@@ -13,7 +13,7 @@ DesignReport answer(SetupText const& setup, DesignRequest request, std::string c
   request.setup = setup.name;
   request.open_device = [&device] { return open_device(device); };
   DesignReport report = design(setup.document(), request);
-  for (std::string const& warning : report.warnings) spdlog::warn("{}", warning);
+  log_warnings(report.warnings);
   return report;
 }
 

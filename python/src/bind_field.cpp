@@ -13,6 +13,7 @@
 #include "python/src/arrays.h"
 #include "python/src/call.h"
 #include "python/src/field.h"
+#include "python/src/warnings.h"
 #include "render/base/error.h"
 #include "render/files/hdf5_file.h"
 #include "render/files/source_files.h"
@@ -25,8 +26,35 @@ namespace {
 
 using Field = std::shared_ptr<MeasuredField>;
 
-/// Returns the field of a measurement with these settings.
-Field make_field(Measurement measured, CorrelationFile const& given) {
+Field correlate(ImageArray const& a, ImageArray const& b, std::vector<std::string> const& overrides,
+                std::string const& device_name, nb::handle progress) {
+  return run(
+      [&] {
+        GivenImage const reference = read_array(a, "a"), flow = read_array(b, "b");
+        CorrelationFile const given = default_correlation(overrides);
+        Backend const device = open_device(device_name);
+        auto field = std::make_shared<MeasuredField>();
+        Measurement measured = correlate_frames("a", reference.image, "b", flow.image, given.settings, device);
+        if (auto const advice = locking_advice(reference.image); advice && frames_correlate(measured.field))
+          measured.field.warnings.push_back(*advice);
+        field->field = std::move(measured.field);
+        field->foreign = false;
+        field->settings = given.settings;
+        field->resolved = given.resolved;
+        field->device = measured.device;
+        field->seconds = measured.seconds;
+        field->reference_sha256 = pixel_sha256(reference.image, reference.sample_bits);
+        field->flow_sha256 = pixel_sha256(flow.image, flow.sample_bits);
+        return field;
+      },
+      progress);
+}
+
+/// Measures the displacement field common to many pairs. @param files  frames A and B of each pair in turn
+Field correlate_ensemble(std::vector<std::string> const& files, std::vector<std::string> const& overrides) {
+  CorrelationFile const given = default_correlation(overrides);
+  SourceFiles sources;
+  Measurement measured = correlate_ensemble_files(files, given.settings, sources);
   auto field = std::make_shared<MeasuredField>();
   field->field = std::move(measured.field);
   field->foreign = false;
@@ -97,6 +125,7 @@ Field load_field(std::string const& path, std::string const& conventions, int im
   Hdf5Reader const measured(path);
   field->resolved = measured.attribute("setup");
   field->device = measured.attribute("device");
+  field->field.warnings = read_warnings(measured);
   field->reference_sha256 = measured.attribute("reference_sha256");
   field->flow_sha256 = measured.attribute("flow_sha256");
   if (field->resolved.empty()) return field;
@@ -185,7 +214,7 @@ void bind_field(nb::module_& module) {
       .def_prop_ro("size", [](MeasuredField const& self) { return self.field.size(); })
       .def_prop_ro("columns", [](MeasuredField const& self) { return self.field.columns; })
       .def_prop_ro("rows", [](MeasuredField const& self) { return self.field.rows; })
-      .def_prop_ro("warnings", [](MeasuredField const& self) { return self.field.warnings; })
+      .def_prop_ro("warnings", [](MeasuredField const& self) { return warning_texts(self.field.warnings); })
       .def_prop_ro("verdict", [](MeasuredField const& self) { return self.field.verdict; })
       .def_prop_ro("uncertainty_method", [](MeasuredField const& self) { return self.field.uncertainty_method; })
       .def_prop_ro("uncertainty_key", [](MeasuredField const& self) { return self.field.uncertainty_key; })

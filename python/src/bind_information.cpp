@@ -1,6 +1,5 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
-#include <spdlog/spdlog.h>
 
 #include <cmath>
 #include <complex>
@@ -14,6 +13,7 @@
 #include "render/planning.h"
 #include "studies/case/case.h"
 #include "studies/case/ray_file.h"
+#include "studies/case/warning_log.h"
 #include "studies/commands/figure_ending.h"
 #include "studies/commands/info_field.h"
 #include "studies/commands/info_image.h"
@@ -43,9 +43,9 @@ nb::object mie_amplitudes(double x, std::complex<double> m, NumberArray const& a
 std::vector<TracedRay> trace(SetupText const& setup, std::vector<double> const& rows, Through through) {
   CaseSetup loaded = load_case_setup(setup.document());
   std::vector<Ray<double>> const rays = rays_of(rows, "rays", loaded.setup.max_off_axis_distance());
-  for (std::string const& text : loaded.warnings) spdlog::warn("{}", text);
+  log_warnings(loaded.warnings);
   Scene scene = build_scene(loaded.setup);
-  for (std::string const& text : scene.medium.warnings) spdlog::warn("{}", text);
+  log_warnings(scene.medium.warnings);
   scene = with_chosen_step(std::move(scene));
   return trace_rays(scene, rays, through);
 }

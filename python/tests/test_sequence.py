@@ -80,10 +80,11 @@ def test_consecutive_images(frames):
     assert len(sequence) == 3
 
 
-def test_bad_pair_is_reported(frames):
+def test_bad_pair_is_reported(frames, codes):
     (frames / "B_1.tif").write_bytes(b"no image")
-    with pytest.warns(gs.GladstoneWarning, match="B_1.tif"):
+    with pytest.warns(gs.GladstoneWarning, match="B_1.tif") as caught:
         sequence = gs.correlate_sequence(frames, device="cpu", **SETTINGS)
+    assert codes(caught) == ["failed at A_1.h5"]
     assert sequence.failed == [1] and "B_1.tif" in sequence.pairs[1]["error"]
     assert len(list(sequence)) == 1
     with pytest.raises(ValueError, match="B_1.tif"):

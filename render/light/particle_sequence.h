@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "render/base/warning.h"
 #include "render/light/particles.h"
 
 namespace gladstone {
@@ -62,8 +63,8 @@ class ParticleSequence {
 /// a time.
 struct ParticleCache {
   std::optional<ParticleSequence> sequence;
-  std::string flow_warning;  ///< warning from loading the flow
-  double photon_unit = 0;    ///< brightest particle of the first pair [photons]; 0: not computed
+  Warnings flow_warnings;  ///< warnings from loading the flow
+  double photon_unit = 0;  ///< brightest particle of the first pair [photons]; 0: not computed
 };
 
 }  // namespace gladstone

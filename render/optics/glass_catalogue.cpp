@@ -106,15 +106,17 @@ void GlassCatalogue::add(std::string_view text, std::string const& catalogue, st
                     "contains no glass (a catalogue in the AGF format has lines NM, CD and LD)");
   }
   if (!out.empty()) {
-    warnings_.push_back(fmt::format("{}:{}: {} of {} glasses cannot be used and {} ignored: {}", file,
-                                    out[0].fault.line, out.size(), out.size() + content.glasses.size(),
-                                    out.size() == 1 ? "is" : "are", list_left_out(out)));
+    warnings_.push_back(
+        {WarningCode::ignored, fmt::format("{}:{}", file, out[0].fault.line),
+         fmt::format("{} of {} glasses cannot be used and {} ignored: {}", out.size(),
+                     out.size() + content.glasses.size(), out.size() == 1 ? "is" : "are", list_left_out(out))});
   }
   if (!content.skipped_lines.empty()) {
     warnings_.push_back(
-        fmt::format("{}:{}: {} lines IT do not consist of a transmittance and a positive thickness, and are ignored "
-                    "(the first: {})",
-                    file, content.skipped_lines[0].line, content.skipped_lines.size(), content.skipped_lines[0].text));
+        {WarningCode::ignored, fmt::format("{}:{}", file, content.skipped_lines[0].line),
+         fmt::format(
+             "{} lines IT do not consist of a transmittance and a positive thickness, and are ignored (the first: {})",
+             content.skipped_lines.size(), content.skipped_lines[0].text)});
   }
   for (Glass& glass : content.glasses) glass.where = fmt::format("{}:{}", file, glass.where);
   for (AgfContent::LeftOut const& one : out) {
@@ -280,15 +282,16 @@ GlassMatch GlassCatalogue::match(std::string_view name, double wavelength, std::
 
   GlassMatch result{&glass, {}, choice.followed || (!is_preferred(&glass) && !choice.added)};
   if (std::string const text = choice.text(preferred, stated_nd); !text.empty()) {
-    result.notes.push_back(fmt::format("{}: glass \"{}\" {}", where, name, text));
+    result.notes.push_back({WarningCode::assumed, where, fmt::format("glass \"{}\" {}", name, text)});
   }
   constexpr double d = spectral_line::d;
   // values of 0 and 1 are placeholders
   bool const printed = glass.printed_nd > 1 && d >= glass.shortest && d <= glass.longest;
   if (printed && std::abs(glass.nd() - glass.printed_nd) > same_index) {
     result.notes.push_back(
-        fmt::format("{}: glass {}:{}: its formula gives nd = {:.6f}, its catalogue prints {:.6f}; the formula is used",
-                    where, glass.catalogue, glass.name, glass.nd(), glass.printed_nd));
+        {WarningCode::inconsistent, where,
+         fmt::format("glass {}:{}: its formula gives nd = {:.6f}, its catalogue prints {:.6f}; the formula is used",
+                     glass.catalogue, glass.name, glass.nd(), glass.printed_nd)});
   }
   return result;
 }

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "render/base/warning.h"
 #include "render/optics/glass_catalogue.h"
 #include "render/optics/lens_surface.h"
 #include "render/optics/prescription.h"
@@ -62,8 +63,8 @@ struct Lens {
   int stop = 0;
   double stop_radius = 0;                ///< radius of the stop for real rays [m]
   double paraxial_stop_radius = 0;       ///< radius of the stop for paraxial pupils [m]
-  std::optional<double> image_distance;  ///< distance from the last surface to the image [m]; empty: not prescribed
-  std::vector<std::string> warnings;
+  std::optional<double> image_distance;  ///< behind the last surface [m]; empty: not prescribed
+  Warnings warnings;
 
   LensView<double> view() const { return {surfaces.data(), static_cast<int>(surfaces.size())}; }
 };

@@ -37,7 +37,7 @@ class LensMedia {
 
   /// Returns the warnings about the glasses found.
   /// @throws DataError if a glass is unknown or not valid at this wavelength; SetupError that lists several of them
-  std::vector<std::string> finish();
+  Warnings finish();
 
  private:
   /// Glass specified by nd and Vd only.
@@ -46,11 +46,11 @@ class LensMedia {
     std::string where;  ///< location of its first use
   };
 
-  /// Returns the glass of a search, and adds its notes unless they have been added for the same name.
-  Glass found_glass(GlassMatch const& match, std::string const& name, std::string const& where);
+  /// Returns the glass of a search and adds its notes, each once for a name.
+  Glass found_glass(GlassMatch const& match, std::string const& name);
 
   /// Adds a warning about a glass, unless the glass already has one.
-  void note_once(std::string const& key, std::string const& text);
+  void note_once(std::string const& key, Warning const& warning);
 
   /// Throws an error that lists all glasses that are unknown or not valid at this wavelength, with their locations.
   void refuse_glasses() const;
@@ -65,7 +65,7 @@ class LensMedia {
   GlassCatalogue const& catalogue_;
   double wavelength_;
   bool absorption_;
-  std::vector<std::string> warnings_;
+  Warnings warnings_;
   std::vector<SetupProblem> not_found_;    ///< unknown glasses
   std::vector<DescribedGlass> described_;  ///< glasses specified by nd and Vd only
   std::set<std::string> noted_;            ///< glasses with a warning

@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 
+#include "render/base/warning.h"
 #include "render/optics/lens.h"
 #include "render/setup/setup_table.h"
 
@@ -45,7 +46,7 @@ GlassCatalogue read_glasses(LensSetup const& setup, SetupTable table);
 /// [m]; empty: unknown
 /// @param warnings         receives the lens' warnings
 void build_prescription(LensSetup& setup, SetupTable table, GlassCatalogue const& glasses, double wavelength,
-                        std::optional<double> object_distance, std::vector<std::string>& warnings);
+                        std::optional<double> object_distance, Warnings& warnings);
 
 /// Image distance and magnification of a thin lens (Raffel 2015, Exp. Fluids 56:60), or of a lens that is equivalent to
 /// one in paraxial approximation.

@@ -113,10 +113,11 @@ double OpticalElement::image_f_number() const {
                      [](auto const& held) -> decltype(held.image_f_number()) { return held.image_f_number(); });
 }
 
-std::string OpticalElement::imaging_warning(ImagingGeometry const& imaging, double f_number) const {
-  return property_or(held_, std::string(), [&](auto const& held) -> decltype(held.imaging_warning(imaging, f_number)) {
-    return held.imaging_warning(imaging, f_number);
-  });
+std::optional<Warning> OpticalElement::imaging_warning(ImagingGeometry const& imaging, double f_number) const {
+  return property_or(held_, std::optional<Warning>(),
+                     [&](auto const& held) -> decltype(held.imaging_warning(imaging, f_number)) {
+                       return held.imaging_warning(imaging, f_number);
+                     });
 }
 
 std::string const* OpticalElement::glass() const {

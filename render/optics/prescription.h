@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "render/base/vec.h"
+#include "render/base/warning.h"
 #include "render/optics/glass.h"
 #include "render/optics/surface_outline.h"
 
@@ -109,11 +110,11 @@ struct Prescription {
   PrescribedMedium object_medium;                                    ///< medium ahead of the first surface
   std::vector<std::string> catalogues;  ///< glass catalogues named by the file, in its order
   PrescribedAperture aperture;
-  double primary_wavelength = 0;      ///< primary wavelength [m]; 0: not given
-  double defocus = 0;                 ///< distance from the paraxial image to the image, if the last thickness is 0 [m]
-  bool ends_at_image = false;         ///< the last thickness is the distance to the image, even if it is 0
-  std::vector<double> field_angles;   ///< field angles in the y-z plane, for an object at infinity [rad]
-  std::vector<std::string> warnings;  ///< features of the file that are not traced
+  double primary_wavelength = 0;     ///< primary wavelength [m]; 0: not given
+  double defocus = 0;                ///< from the paraxial image to the image, if the last thickness is 0 [m]
+  bool ends_at_image = false;        ///< the last thickness is the distance to the image, even if it is 0
+  std::vector<double> field_angles;  ///< field angles in the y-z plane, for an object at infinity [rad]
+  Warnings warnings;                 ///< features of the file that are not traced
 };
 
 /// Adds the coordinate breaks ahead of the image to a lens. A reference plane is appended with these breaks, so that
@@ -139,6 +140,6 @@ Prescription read_prescription(std::string const& path);
 /// surfaces that overlap near their edges or do not extend to their semi-diameter.
 /// @return warnings
 /// @throws DataError
-std::vector<std::string> check_prescription(Prescription const& prescription);
+Warnings check_prescription(Prescription const& prescription);
 
 }  // namespace gladstone

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "render/base/warning.h"
 #include "render/scene/source_kind.h"
 #include "render/setup/setup_table.h"
 
@@ -26,7 +27,7 @@ struct Experiment {
   /// @param setup  camera, lens, elements, geometry and medium have been read
   void (*read)(Setup& setup, SetupTable root);
   /// Checks a setup whose lens forms an image across tables, see cross_check().
-  void (*cross_check)(Setup const& setup, SetupTable root, std::vector<std::string>& warnings);
+  void (*cross_check)(Setup const& setup, SetupTable root, Warnings& warnings);
 };
 
 extern Experiment const bos_experiment, piv_experiment, calibration_experiment;

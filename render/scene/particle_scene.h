@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "render/base/warning.h"
 #include "render/light/mie_scattering.h"
 #include "render/scene/lens_light.h"
 #include "render/scene/renderer.h"
@@ -76,10 +77,10 @@ struct ParticleCensus {
 ParticleCensus count_particles(Scene const& scene);
 
 /// Returns warnings for particles or flows that prevent a measurement.
-std::vector<std::string> warnings_of_particles(Scene const& scene);
+Warnings warnings_of_particles(Scene const& scene);
 
 /// Checks a PIV setup across keys: particles that scatter no light, a laser sheet outside the volume, optical elements,
 /// wavelengths.
-void cross_check_particles(Setup const& setup, SetupTable root, std::vector<std::string>& warnings);
+void cross_check_particles(Setup const& setup, SetupTable root, Warnings& warnings);
 
 }  // namespace gladstone

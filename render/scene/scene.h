@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "render/base/warning.h"
 #include "render/light/dot_pattern.h"
 #include "render/light/particles.h"
 #include "render/medium/field_volume.h"
@@ -27,7 +28,7 @@ struct Scene {
   Camera camera;
   DotPattern dots;                           ///< dots of the target; empty for PIV
   Particles particles;                       ///< particles; PIV only
-  std::string flow_warning;                  ///< assumptions made about the velocity file
+  Warnings flow_warnings;                    ///< assumptions made about the velocity file
   std::shared_ptr<MieScattering const> mie;  ///< scattering of the particles; null: matt white spheres
   double photon_unit = 1;  ///< number of photons per unit of image light: that of the brightest particle through the
                            ///< lens; 1 without particles

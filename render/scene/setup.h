@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 
+#include "render/base/warning.h"
 #include "render/light/flow.h"
 #include "render/light/laser_sheet.h"
 #include "render/light/particle_sequence.h"
@@ -71,10 +72,9 @@ struct Setup {
   /// distance from the medium's mid-plane to the dots along Z [m]; 0 for PIV and calibration (plane_setup)
   double z_d = 0.25;
   std::optional<Pose<double>> pose;  ///< pose of the camera, see camera_pose(); empty: on the Z axis, looking along -Z
-  /// optical elements besides the lens; elements of one side are in the order of the light path
-  std::vector<OpticalElement> elements;
-  std::vector<std::string> warnings;  ///< warnings from reading the setup
-  int view_margin_px = 64;            ///< margin of a target of default extent beyond the view: first-pass window [px]
+  std::vector<OpticalElement> elements;  ///< optical elements besides the lens; those of a side in the light's order
+  Warnings warnings;                     ///< warnings from reading the setup
+  int view_margin_px = 64;  ///< margin of a target of default extent beyond the view: first-pass window [px]
 
   /// Returns the pose of the front principal plane (of the first vertex if the lens has no principal plane): z along
   /// the light, x right and y up as the camera sees them.
@@ -154,6 +154,6 @@ Setup read_setup(SetupTable root);
 /// Files are opened only to read the size of the field's grid. Problems are recorded at their keys in the setup's
 /// document.
 /// @return warnings
-std::vector<std::string> cross_check(Setup const& setup, SetupTable root);
+Warnings cross_check(Setup const& setup, SetupTable root);
 
 }  // namespace gladstone

@@ -17,6 +17,7 @@
 #include "render/scene/calibration_planes.h"
 #include "studies/case/case_warnings.h"
 #include "studies/case/json_text.h"
+#include "studies/case/warning_json.h"
 
 namespace gladstone {
 namespace {
@@ -91,9 +92,10 @@ void warn_of_place_errors(RenderedCalibration& rendered) {
   }
   if (worst <= place_tolerance_px) return;
   warn(rendered.warnings,
-       fmt::format("{} rays per dot cause errors of {:.2g} px rms in the positions of the dots on Z = {:.6g} mm (more "
-                   "than {:g} px); increase render.rays_per_dot, or use a larger f-number",
-                   rendered.rays, worst, at / unit::millimetre, place_tolerance_px));
+       {WarningCode::low_accuracy, "render.rays_per_dot",
+        fmt::format("{} rays per dot cause errors of {:.2g} px rms in the positions of the dots on Z = {:.6g} mm (more "
+                    "than {:g} px); increase render.rays_per_dot, or use a larger f-number",
+                    rendered.rays, worst, at / unit::millimetre, place_tolerance_px)});
 }
 
 /// Returns the camera with an independent noise seed for each frame.
@@ -108,7 +110,7 @@ RenderedCalibration render_planes(CaseSetup& loaded, Renderer& renderer) {
   auto const start = std::chrono::steady_clock::now();
   Setup const& setup = loaded.setup;
   RenderedCalibration rendered;
-  for (auto const& text : loaded.warnings) warn(rendered.warnings, text);
+  warn(rendered.warnings, loaded.warnings);
   rendered.rays = rays_for(setup, renderer);
   double brightest = 0;
   for (double const z : setup.planes) {
@@ -119,10 +121,10 @@ RenderedCalibration render_planes(CaseSetup& loaded, Renderer& renderer) {
     auto const in_view = std::count_if(plane.scene.dots.centre.begin(), plane.scene.dots.centre.end(),
                                        [&](Vec2d centre) { return plane.scene.in_view(centre); });
     if (in_view < dots_for_a_fit) {
-      warn(rendered.warnings,
-           fmt::format("calibration: only {} dots of the plane Z = {:.6g} mm are in view ({} are required); change the "
-                       "position of the camera, or calibration.spacing_mm and extent_mm",
-                       in_view, z / unit::millimetre, dots_for_a_fit));
+      warn(rendered.warnings, {WarningCode::out_of_view, "calibration",
+                               fmt::format("only {} dots of the plane Z = {:.6g} mm are in view ({} are required); "
+                                           "change the position of the camera, or calibration.spacing_mm and extent_mm",
+                                           in_view, z / unit::millimetre, dots_for_a_fit)});
     }
     Rendering traced = renderer.render(plane.scene, plane.scene.dots, RenderImages::yes, RenderTheory::no);
     plane.light = std::move(traced.light.reference);
@@ -164,7 +166,7 @@ nlohmann::json write_calibration(CaseSetup& loaded, RenderedCalibration const& r
   std::string const resolved = loaded.document.resolved();
   auto const place = [&folder](std::string const& name) { return (std::filesystem::path(folder) / name).string(); };
   FileOrigin origin{"gladstone calibration truth", 1, resolved, loaded.setup.render.seed, rendered.device};
-  std::vector<std::string> warnings = rendered.warnings;
+  Warnings warnings = rendered.warnings;
   nlohmann::json planes = nlohmann::json::array();
   std::size_t dots = 0, all_saturated = 0;
   for (std::size_t i = 0; i < rendered.planes.size(); ++i) {
@@ -189,8 +191,9 @@ nlohmann::json write_calibration(CaseSetup& loaded, RenderedCalibration const& r
   }
   if (all_saturated > 0) {
     warn(warnings,
-         fmt::format("{} pixels are saturated, which shifts the centroids of their dots; reduce camera.exposure",
-                     all_saturated));
+         {WarningCode::exposure, "camera.exposure",
+          fmt::format("{} pixels are saturated, which shifts the centroids of their dots; reduce camera.exposure",
+                      all_saturated)});
   }
   for (auto const& [path, hash] : loaded.input_hashes) origin.sources.add("", path, SourceFiles::Holds::bytes, hash);
   origin.sources.add_known("inputs", nlohmann::json(loaded.input_hashes).dump());
@@ -203,7 +206,8 @@ nlohmann::json write_calibration(CaseSetup& loaded, RenderedCalibration const& r
                          {"exposure", rendered.exposure_e},
                          {"method", to_string(RenderMethod::rays)},
                          {"device", rendered.device},
-                         {"warnings", warnings},
+                         {"warnings", to_strings(warnings)},
+                         {"warning_records", warnings},
                          {"seconds_render", rendered.seconds}};
   OutputFile::write_text(place(case_file::summary), json_text(summary) + "\n");
   return summary;

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "render/base/warning.h"
 #include "render/files/hdf5_file.h"
 #include "studies/case/case.h"
 
@@ -30,7 +31,7 @@ struct RenderedPlane {
 /// A calibration rendered in memory.
 struct RenderedCalibration {
   std::vector<RenderedPlane> planes;
-  std::vector<std::string> warnings;
+  Warnings warnings;
   double exposure_e = 0;   ///< electrons in a fully lit pixel, equal for all planes [e]
   std::uint64_t rays = 0;  ///< rays per dot
   std::string device;

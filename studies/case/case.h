@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "analysis/correlation/correlation_settings.h"
+#include "render/base/warning.h"
 #include "render/scene/field_map.h"
 #include "render/scene/ray_budget.h"
 #include "render/scene/renderer.h"
@@ -28,9 +29,8 @@ struct CaseSetup {
   SetupDocument document;
   Setup setup;
   CorrelationSettings correlate;
-  std::vector<std::string> warnings;
-  /// numbers that the setup gives with an uncertainty; empty if the caller has extracted them beforehand
-  std::vector<UncertainInput> uncertain = {};
+  Warnings warnings;
+  std::vector<UncertainInput> uncertain = {};  ///< numbers given with an uncertainty, unless the caller extracted them
   /// SHA-256 of each file that the setup names, computed before the scene is built; empty: not computed yet.
   std::map<std::string, std::string> input_hashes = {};
 
@@ -56,7 +56,7 @@ struct PreparedCase {
   IntegrationStep step;
   RayBudget rays;
   StrainMap strain;
-  std::vector<std::string> warnings;
+  Warnings warnings;
 };
 
 /// Parts of a PreparedCase that can be reused from another case with the same values; null: to be computed.
@@ -130,7 +130,7 @@ struct CaseOutcome : RenderedOutcome {
   double image_error_levels = not_measured;
   std::optional<TableError> table_error;  ///< error of the deflection table, if the truth was computed with one
   std::string device, reference_sha256, flow_sha256;
-  std::vector<std::string> warnings;     ///< all warnings of the case, those of its preparation first
+  Warnings warnings;                     ///< all warnings of the case, those of its preparation first
   Image<std::uint16_t> reference, flow;  ///< grey levels of the frames
 };
 

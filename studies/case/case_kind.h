@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "render/base/warning.h"
 #include "render/files/hdf5_file.h"
 #include "render/scene/experiment.h"
 #include "studies/case/peak_locking.h"
@@ -41,7 +42,7 @@ struct CaseKind {
   CaseWriter (*render)(CaseSetup& loaded, Renderer& renderer, ReusableParts const& known,
                        SharedParts::OfCamera const& shared, RenderedCamera& entry, BuiltMedium& medium);
   /// Warns if no source is in the camera's view, or for unsuitable sources.
-  void (*warn_of_view)(Scene const& scene, std::vector<std::string>& warnings);
+  void (*warn_of_view)(Scene const& scene, Warnings& warnings);
   /// Writes truth.h5.
   void (*write_truth)(std::string const& path, Scene const& scene, Rendering const& rendering,
                       CaseOutcome const& outcome, FileOrigin const& origin);

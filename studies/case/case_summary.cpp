@@ -10,6 +10,7 @@
 #include "studies/case/case_kind.h"
 #include "studies/case/json_text.h"
 #include "studies/case/lens_glasses.h"
+#include "studies/case/warning_json.h"
 
 namespace gladstone {
 namespace {
@@ -137,7 +138,8 @@ nlohmann::json case_summary(CaseSetup& loaded, PreparedCase const& prepared, Ren
       {"reference_sha256", outcome.reference_sha256},
       {"flow_sha256", outcome.flow_sha256},
       {"photons_fully_lit", rendered.exposure_e / scene.setup.camera.noise.quantum_efficiency},
-      {"warnings", outcome.warnings},
+      {"warnings", to_strings(outcome.warnings)},
+      {"warning_records", outcome.warnings},
       {"seconds_render", rendered.seconds},
   };
   summary.update(case_kind(scene.setup).own_summary(scene, rendering.truth, rendered.exposure_e));

@@ -28,6 +28,7 @@
 #include "studies/case/pair_progress.h"
 #include "studies/case/rendered_sequence_folder.h"
 #include "studies/case/sequence_pair.h"
+#include "studies/case/warning_json.h"
 #include "studies/case/warning_kinds.h"
 
 namespace gladstone {
@@ -64,11 +65,11 @@ std::string hash_pair(SetupRenderer const& setup, InputHashes& inputs) {
 }
 
 /// Returns the warnings of a pair's summary.json, those of all its cameras.
-std::vector<std::string> pair_warnings(Json const& summary) {
-  std::vector<std::string> warnings;
+Warnings pair_warnings(Json const& summary) {
+  Warnings warnings;
   auto const append = [&warnings](Json const& one) {
-    if (auto const found = one.find("warnings"); found != one.end())
-      for (Json const& text : *found) warnings.push_back(text.get<std::string>());
+    Warnings const found = read_warnings(one);
+    warnings.insert(warnings.end(), found.begin(), found.end());
   };
   append(summary);
   if (auto const cameras = summary.find("cameras"); cameras != summary.end())
@@ -122,14 +123,14 @@ class SequenceRendering {
   }
 
   /// Summarises the warnings of all pairs but the first, which logged its own.
-  std::vector<std::string> later_warnings() const {
+  Warnings later_warnings() const {
     WarningKinds kinds;
+    if (pairs_.empty()) return {};
+    Warnings const of_first = read_warnings(pairs_.front());
     for (std::size_t i = 1; i < pairs_.size(); ++i) {
-      Json const& of_first = pairs_.front().at("warnings");
-      for (Json const& warning : pairs_[i].at("warnings")) {
+      for (Warning const& warning : read_warnings(pairs_[i])) {
         if (std::find(of_first.begin(), of_first.end(), warning) != of_first.end()) continue;
-        auto const text = warning.get<std::string>();
-        kinds.add(pairs_[i].at("folder").get<std::string>(), text, text);
+        kinds.add(pairs_[i].at("folder").get<std::string>(), warning, warning.place);
       }
     }
     return kinds.summary();
@@ -187,6 +188,7 @@ class SequenceRendering {
       medium_ = std::move(rendered.medium);
       shared_.medium = &medium_;
     }
+    Warnings const warnings = pair_warnings(rendered.summary);
     return {{"pair", number},
             {"folder", rendered_sequence_file::pair(number)},
             {"frames", Json::array({first_frame(number), second_frame(number)})},
@@ -194,7 +196,8 @@ class SequenceRendering {
             {"exposure_e", std::move(exposures)},
             {"device", rendered.cameras.front().device},
             {"seconds_render", seconds},
-            {"warnings", pair_warnings(rendered.summary)}};
+            {"warnings", to_strings(warnings)},
+            {"warning_records", warnings}};
   }
 
   void add_pair(std::size_t number, bool first, Json pair, bool replace_frames) {

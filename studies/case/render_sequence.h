@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "render/base/warning.h"
 #include "studies/case/render_setup.h"
 
 namespace gladstone {
@@ -15,9 +16,9 @@ struct RenderedSequence {
   nlohmann::ordered_json summary;  ///< contents of summary.json
   std::size_t frames = 0;          ///< number of frames of each camera
   std::size_t pairs = 0;
-  std::size_t resumed = 0;            ///< number of pairs rendered by an earlier run
-  double seconds = 0;                 ///< wall time [s]
-  std::vector<std::string> warnings;  ///< warnings of the pairs after the first, which logs its own
+  std::size_t resumed = 0;  ///< number of pairs rendered by an earlier run
+  double seconds = 0;       ///< wall time [s]
+  Warnings warnings;        ///< warnings of the pairs after the first, which logs its own
 };
 
 /// Renders a setup with a table [sequence] into a folder, in which every pair is an ordinary CASE:

@@ -125,9 +125,10 @@ Image<std::uint16_t> grey_levels(Image<double> const& levels) {
 CaseOutcome judge_case(CaseSetup& loaded, PreparedCase const& prepared, RenderedCase const& rendered,
                        RecordedFrames const& frames, Renderer const& renderer) {
   CaseOutcome outcome;
-  std::vector<std::string>& warnings = outcome.warnings = prepared.warnings;
+  Warnings& warnings = outcome.warnings = prepared.warnings;
   if (loaded.setup.render.precision == Precision::single) {
-    warn(warnings, "render.precision = \"single\" is obsolete, and double precision is used; remove it");
+    warn(warnings, {WarningCode::obsolete, "render.precision",
+                    "\"single\" is obsolete, and double precision is used; remove it"});
   }
   Rendering const& rendering = *rendered.rendering;
   CameraSetup const& camera = prepared.scene.setup.camera;

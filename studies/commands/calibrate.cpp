@@ -11,8 +11,10 @@
 #include "studies/case/cameras.h"
 #include "studies/case/case_files.h"
 #include "studies/case/json_text.h"
+#include "studies/case/warning_log.h"
 #include "studies/commands/command.h"
 #include "studies/drawing/draw_figure.h"
+#include "studies/figures/draw_or_warn.h"
 
 namespace gladstone {
 namespace {
@@ -37,10 +39,6 @@ void write_results(std::string const& folder, Calibration const& calibration, bo
   std::string const figure = (fs::path(folder) / case_file::calibration_figure).string();
   if (draw_or_warn([&] { draw_calibration(figure, calibration); }))
     spdlog::info("drew {}", (fs::path(shown) / case_file::calibration_figure).string());
-}
-
-void log_warnings(Calibration const& calibration) {
-  for (std::string const& warning : calibration.warnings) spdlog::warn("{}", warning);
 }
 
 }  // namespace
@@ -72,7 +70,7 @@ CommandBody attach_calibrate(CLI::App& app, GlobalOptions const& options) {
                                inputs);
       OutputFolder folder(place, {case_file::calibration, {case_file::calibration_figure}});
       Calibration const calibration = calibrate_images(arguments->folder, arguments->pictures);
-      log_warnings(calibration);
+      log_warnings(calibration.warnings);
       folder.fill(
           [&](std::string const& staged) { write_results(staged, calibration, !arguments->no_figures, place); });
       folder.commit();
@@ -82,7 +80,7 @@ CommandBody attach_calibrate(CLI::App& app, GlobalOptions const& options) {
     auto const folders = camera_folders(arguments->folder);
     std::vector<Calibration> calibrations;
     for (auto const& [name, folder] : folders) calibrations.push_back(calibrate_case(folder));
-    for (Calibration const& calibration : calibrations) log_warnings(calibration);
+    for (Calibration const& calibration : calibrations) log_warnings(calibration.warnings);
     nlohmann::ordered_json cameras;
     std::string text;
     for (std::size_t i = 0; i < folders.size(); ++i) {

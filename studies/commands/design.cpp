@@ -1,13 +1,13 @@
 #include "studies/design/design.h"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "studies/case/json_text.h"
+#include "studies/case/warning_log.h"
 #include "studies/commands/arguments.h"
 #include "studies/commands/command.h"
 
@@ -39,7 +39,7 @@ CommandBody attach_design(CLI::App& app, GlobalOptions const& options) {
   return [request, &options] {
     request->open_device = [&options] { return options.open_device(); };
     DesignReport const report = design(*request);
-    for (std::string const& warning : report.warnings) spdlog::warn("{}", warning);
+    log_warnings(report.warnings);
     print_result(options, json_text(report.json), report.text);
     return report.feasible ? ok : infeasible;
   };

@@ -113,20 +113,20 @@ FieldPlace field_place(FieldSource const& source, FieldFile const& file, std::st
                     place.extent_mm.z, values);
   } else {
     place.text = fmt::format("{}, so that spacing_mm must be given; values {}", undefined, values);
-    place.warning = undefined + "; give " + spacing_key;
+    place.assumption = undefined + "; give " + spacing_key;
   }
-  if (!assumed.empty()) place.warning = assumed + "; if that is wrong, give " + spacing_key;
+  if (!assumed.empty()) place.assumption = assumed + "; if that is wrong, give " + spacing_key;
   if (setup.empty()) return place;
 
   double const mm = unit::millimetre;
   Setup const whole = load_case_setup(setup, {}).setup;
-  if (is_spaced(whole, velocity)) place.warning.clear();
+  if (is_spaced(whole, velocity)) place.assumption.clear();
   FieldCoverage const seen =
       field_coverage(velocity ? velocity_region(whole, source, file) : density_region(whole, source, file), whole);
   place.coverage = {{"share", seen.share}, {"view_mm", {seen.view.x / mm, seen.view.y / mm}}, {"setup", setup}};
   place.text += fmt::format("; it fills {:.3g} % of the {:.4g} x {:.4g} mm in the view of {}", 100 * seen.share,
                             seen.view.x / mm, seen.view.y / mm, setup);
-  if (std::string const warning = seen.warning(); !velocity && !warning.empty()) place.text += "; " + warning;
+  if (auto const warning = seen.warning(); warning && !velocity) place.text += "; " + to_string(*warning);
   return place;
 }
 

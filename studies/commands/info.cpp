@@ -55,20 +55,21 @@ CommandBody attach_info(CLI::App& app, GlobalOptions const& options) {
     check_figure_ending(arguments->figure);
     if (arguments->kind == "mie") {
       if (!arguments->file.empty())
-        throw DataError(ErrorCode::arguments, "info mie", "reads no file; give only --x and --m");
+        throw DataError(ErrorCode::arguments, arguments->file, "is not read by info mie; give only --x and --m");
       MieQuestion mie = read_mie_question(arguments->x, arguments->m);
       mie.figure = arguments->figure;
       return print(options, describe_mie(mie));
     }
     if (!arguments->x.empty() || !arguments->m.empty()) {
-      throw DataError(ErrorCode::arguments, "info " + arguments->kind,
-                      "has no --x and --m (they belong to info mie); remove them");
+      throw DataError(ErrorCode::arguments, arguments->x.empty() ? "--m" : "--x",
+                      "belongs to info mie, not to info " + arguments->kind + "; remove it");
     }
     if (!arguments->figure.empty() && (arguments->kind == "image" || arguments->kind == "particles")) {
-      throw DataError(ErrorCode::arguments, "info " + arguments->kind, "draws no figure; remove --figure");
+      throw DataError(ErrorCode::arguments, "--figure", "is not drawn by info " + arguments->kind + "; remove it");
     }
     if (!arguments->overrides.empty() && arguments->kind != "setup" && arguments->kind != "particles") {
-      throw DataError(ErrorCode::arguments, "info " + arguments->kind, "reads no setup; remove --set");
+      throw DataError(ErrorCode::arguments, "--set",
+                      "requires a setup, which info " + arguments->kind + " does not read; remove it");
     }
     if (arguments->file.empty())
       throw DataError(ErrorCode::arguments, "info " + arguments->kind, "requires a file; add its name");

@@ -1,7 +1,6 @@
 #include "studies/commands/info_field.h"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -9,9 +8,11 @@
 #include "render/base/vec.h"
 #include "render/files/fields/field_file.h"
 #include "studies/case/json_text.h"
+#include "studies/case/warning_log.h"
 #include "studies/commands/field_place.h"
 #include "studies/commands/field_statistics.h"
 #include "studies/drawing/draw_figure.h"
+#include "studies/figures/draw_or_warn.h"
 #include "studies/figures/field_figure.h"
 
 namespace gladstone {
@@ -95,9 +96,9 @@ Description describe_field(std::string const& path, std::string const& dataset, 
     }
   }
   AxisAssignment const& reading = source->reading();
-  std::vector<std::string> const notes = source->notes();
-  for (std::string const& note : notes) spdlog::warn("{}: {}", path, note);
-  if (!place.warning.empty()) spdlog::warn("{}: {}", path, place.warning);
+  Warnings const notes = source->notes();
+  for (Warning const& note : notes) log_warning(at_place(path, note));
+  if (!place.assumption.empty()) log_warning({WarningCode::assumed, path, place.assumption});
   nlohmann::json json{
       {"dataset", source->name()},
       {"nodes", {grid.nodes[0], grid.nodes[1], grid.nodes[2]}},
@@ -108,7 +109,7 @@ Description describe_field(std::string const& path, std::string const& dataset, 
       {"steepest_gradient", of_components(seen, [](FieldStatistics const& one) { return json_of(one.steepest); })},
       {"axes",
        {{"order", reading.axes}, {"by", reading.by}, {"shape", reading.shape}, {"turned_round", reading.turned_round}}},
-      {"notes", notes},
+      {"notes", to_strings(notes)},
       {"units", place.units},
       {"extent_mm", json_of(place.extent_mm)},
       {"coverage", place.coverage}};

@@ -1,7 +1,6 @@
 #include "studies/commands/info_lens.h"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -11,7 +10,10 @@
 #include "render/optics/field_analysis.h"
 #include "studies/case/json_text.h"
 #include "studies/case/lens_glasses.h"
+#include "studies/case/warning_json.h"
+#include "studies/case/warning_log.h"
 #include "studies/drawing/draw_figure.h"
+#include "studies/figures/draw_or_warn.h"
 #include "studies/figures/lens_figure.h"
 
 namespace gladstone {
@@ -75,7 +77,8 @@ nlohmann::json lens_json(Lens const& lens, ParaxialLens const& paraxial, FieldAn
           {"spot_rms_um", spots},
           {"field", points},
           {"glasses", lens_glasses_json(glasses)},
-          {"warnings", lens.warnings}};
+          {"warnings", to_strings(lens.warnings)},
+          {"warning_records", lens.warnings}};
 }
 
 std::string lens_text(LensQuestion const& question, Lens const& lens, ParaxialLens const& paraxial,
@@ -121,7 +124,7 @@ Description describe_lens(LensQuestion const& question) {
   if (wavelength == 0) wavelength = spectral_line::d;
   Lens lens = build_lens(std::move(prescription), catalogue, wavelength);
   lens.warnings.insert(lens.warnings.begin(), catalogue.warnings().begin(), catalogue.warnings().end());
-  for (std::string const& warning : lens.warnings) spdlog::warn("{}", warning);
+  log_warnings(lens.warnings);
   ParaxialLens const paraxial = paraxial_lens(lens);
   FieldAnalysis const field = analyse_field(lens, paraxial, spot_rays);
   std::vector<LensGlass> const glasses = list_lens_glasses(lens, catalogue);

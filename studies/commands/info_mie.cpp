@@ -13,6 +13,7 @@
 #include "render/light/mie.h"
 #include "studies/case/json_text.h"
 #include "studies/drawing/draw_figure.h"
+#include "studies/figures/draw_or_warn.h"
 #include "studies/figures/mie_figure.h"
 
 namespace gladstone {

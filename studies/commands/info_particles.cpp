@@ -1,7 +1,6 @@
 #include "studies/commands/info_particles.h"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -13,6 +12,7 @@
 #include "studies/case/case_kind.h"
 #include "studies/case/expected_particles.h"
 #include "studies/case/json_text.h"
+#include "studies/case/warning_log.h"
 
 namespace gladstone {
 namespace {
@@ -89,7 +89,7 @@ Description describe_particles(SetupDocument const& setup, std::string const& na
     CaseSetup const loaded = load_case_setup(std::move(camera.document));
     require_experiment(loaded.setup, piv_experiment, name,
                        "has no particles (experiment is not \"piv\"); give the setup of a PIV experiment");
-    for (std::string const& warning : loaded.warnings) spdlog::warn("{}", warning);
+    log_warnings(loaded.warnings);
     ExpectedParticles const expected = expected_particles(loaded.setup);
     text += fmt::format("{}{}\n", name, camera.name.empty() ? "" : ", camera " + camera.name);
     text += particles_text(expected, loaded);

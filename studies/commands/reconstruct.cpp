@@ -18,6 +18,7 @@
 #include "studies/compare/density_table.h"
 #include "studies/drawing/draw_figure.h"
 #include "studies/figures/density_figure.h"
+#include "studies/figures/draw_or_warn.h"
 
 namespace gladstone {
 namespace {

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
@@ -16,6 +15,7 @@
 #include "studies/case/render_sequence.h"
 #include "studies/case/render_setup.h"
 #include "studies/case/sequence_pair.h"
+#include "studies/case/warning_log.h"
 #include "studies/commands/command.h"
 
 namespace gladstone {
@@ -104,7 +104,7 @@ int render_previews(RenderArguments const& arguments, GlobalOptions const& optio
   nlohmann::ordered_json cameras = nlohmann::ordered_json::object(), only;
   for (CameraCase& camera : camera_cases(document)) {
     CaseSetup const loaded = load_case_setup(std::move(camera.document));
-    for (std::string const& warning : loaded.warnings) spdlog::warn("{}", warning);
+    log_warnings(loaded.warnings);
     std::filesystem::path path = output;
     if (!camera.name.empty()) path.replace_filename(output.stem().string() + '_' + camera.name + ".png");
     OutputFile file(path.string(), "PNG");
@@ -133,7 +133,7 @@ void render_sequence(std::string const& setup, std::vector<std::string> const& o
   sequence.refuse_over_inputs(folder);
   auto const renderer = options.open_device().renderer;
   RenderedSequence const rendered = sequence.render(*renderer, folder, !options.quiet);
-  for (std::string const& warning : rendered.warnings) spdlog::warn("{}", warning);
+  log_warnings(rendered.warnings);
   print_result(options, json_text(rendered.summary),
                fmt::format("{}: {} frames, {} pairs ({} by an earlier run), {:.2f} s", folder, rendered.frames,
                            rendered.pairs, rendered.resumed, rendered.seconds));

@@ -1,13 +1,12 @@
 #include "studies/report/report.h"
 
-#include <spdlog/spdlog.h>
-
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "render/base/error.h"
 #include "studies/case/json_text.h"
+#include "studies/case/warning_log.h"
 #include "studies/commands/arguments.h"
 #include "studies/commands/command.h"
 #include "studies/commands/density_options.h"
@@ -64,10 +63,10 @@ CommandBody attach_report(CLI::App& app, GlobalOptions const& options) {
     }
     WrittenReport const written = write_report(report, options.open_device());
     for (std::string const& file : written.doubtful) {
-      spdlog::warn(
-          "{}: the vectors of this file are incomplete, or their axes and signs were probably misread, so that the "
-          "report is doubtful (reasons above); export them again, or state their axes and signs with --conventions",
-          file);
+      log_warning(
+          {WarningCode::unreliable, file,
+           "the vectors of this file are incomplete, or their axes and signs were probably misread, so that the report "
+           "is doubtful (reasons above); export them again, or state their axes and signs with --conventions"});
     }
     print_result(options,
                  json_text(nlohmann::json{

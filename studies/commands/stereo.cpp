@@ -15,6 +15,7 @@
 #include "studies/commands/command.h"
 #include "studies/compare/stereo_file.h"
 #include "studies/drawing/draw_figure.h"
+#include "studies/figures/draw_or_warn.h"
 #include "studies/figures/stereo_figure.h"
 
 namespace gladstone {

@@ -22,6 +22,7 @@
 #include "studies/compare/tomography_file.h"
 #include "studies/compare/tomography_plan.h"
 #include "studies/drawing/draw_figure.h"
+#include "studies/figures/draw_or_warn.h"
 #include "studies/figures/tomography_figure.h"
 
 namespace gladstone {

@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
@@ -11,6 +10,7 @@
 #include "studies/case/case.h"
 #include "studies/case/json_text.h"
 #include "studies/case/ray_file.h"
+#include "studies/case/warning_log.h"
 #include "studies/commands/arguments.h"
 #include "studies/commands/command.h"
 
@@ -40,9 +40,9 @@ CommandBody attach_trace(CLI::App& app, GlobalOptions const& options) {
     std::vector<Ray<double>> const rays = read_rays(arguments->rays, loaded.setup.max_off_axis_distance());
     stop_point("tracing-rays");
     if (options.device == "cuda") throw DeviceError("trace: traces its few rays on the CPU; use --device cpu or auto");
-    for (std::string const& text : loaded.warnings) spdlog::warn("{}", text);
+    log_warnings(loaded.warnings);
     Scene scene = build_scene(loaded.setup);
-    for (auto const& text : scene.medium.warnings) spdlog::warn("{}", text);
+    log_warnings(scene.medium.warnings);
     scene = with_chosen_step(std::move(scene));
     Through const through = arguments->through == "medium"   ? Through::medium
                             : arguments->through == "optics" ? Through::optics

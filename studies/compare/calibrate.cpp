@@ -101,10 +101,10 @@ Image<double> read_plane(Calibration& calibration, Setup const& setup, std::stri
   if (count_not_finite(picture) > 0)
     throw DataError(ErrorCode::invalid_value, file, "has pixels that are nan or infinite; export it again");
   if (metadata.orientation != 1) {
-    calibration.warnings.push_back(
-        fmt::format("{} is stored rotated or mirrored (Orientation {}), and was rotated upright; if that entry is "
-                    "wrong, write the image without it",
-                    file, metadata.orientation));
+    calibration.warnings.push_back({WarningCode::assumed, file,
+                                    fmt::format("is stored rotated or mirrored (Orientation {}), and was rotated "
+                                                "upright; if that entry is wrong, write the image without it",
+                                                metadata.orientation)});
   }
   calibration.columns = picture.columns();
   calibration.rows = picture.rows();
@@ -122,15 +122,17 @@ void warn_of_assignment(Calibration& calibration, AssignedDots const& assigned, 
   int const columns = 2 * grid.half_columns + 1, rows = 2 * grid.half_rows + 1;
   if (assigned.columns > columns || assigned.rows > rows) {
     calibration.warnings.push_back(
-        fmt::format("{}: {} x {} dots are seen, but calibration.extent_mm and spacing_mm define {} x {}; correct "
-                    "these, since the edges determine the middle of the grid",
-                    file, assigned.columns, assigned.rows, columns, rows));
+        {WarningCode::inconsistent, file,
+         fmt::format("{} x {} dots are seen, but calibration.extent_mm and spacing_mm define {} x {}; correct these, "
+                     "since the edges determine the middle of the grid",
+                     assigned.columns, assigned.rows, columns, rows)});
   }
   if (assigned.middle_by == CentreDotMethod::expected_view && assigned.middle_offset > doubtful) {
     calibration.warnings.push_back(
-        fmt::format("{}: the middle dot is a guess: the camera of the setup sees the middle {:.2f} spacings from it; "
-                    "give the position of the camera more accurately, or show the whole grid",
-                    file, assigned.middle_offset));
+        {WarningCode::assumed, file,
+         fmt::format("the middle dot is a guess: the camera of the setup sees the middle {:.2f} spacings from it; give "
+                     "the position of the camera more accurately, or show the whole grid",
+                     assigned.middle_offset)});
   }
 }
 

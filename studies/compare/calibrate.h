@@ -9,6 +9,7 @@
 #include "analysis/calibration/grid_assignment.h"
 #include "analysis/calibration/pinhole_fit.h"
 #include "analysis/calibration/soloff_fit.h"
+#include "render/base/warning.h"
 #include "render/files/source_files.h"
 
 namespace gladstone {
@@ -37,7 +38,7 @@ struct Calibration {
   PinholeFit pinhole;
   SoloffFit soloff;
   Vec2d drift{};  ///< X and Y components of the unit vector along which the plate was moved [1]
-  std::vector<std::string> warnings;
+  Warnings warnings;
   std::optional<PinholeCamera> rendered;  ///< true camera stored in the case's truth.h5, used only for comparison
   SourceFiles sources;
   std::string setup;  ///< resolved setup as TOML text

@@ -8,6 +8,7 @@
 #include "render/files/hdf5_axes.h"
 #include "render/files/hdf5_file.h"
 #include "studies/case/flat_values.h"
+#include "studies/case/warning_json.h"
 #include "studies/compare/calibrate.h"
 #include "studies/drawing/draw_figure.h"
 
@@ -196,7 +197,8 @@ nlohmann::ordered_json calibration_json(Calibration const& calibration) {
             {"rms_px", calibration.soloff.rms_px},
             {"largest_px", largest(calibration.soloff.residual_px)}}},
           {"drift", {calibration.drift.x, calibration.drift.y}},
-          {"warnings", calibration.warnings}};
+          {"warnings", to_strings(calibration.warnings)},
+          {"warning_records", calibration.warnings}};
 }
 
 std::string calibration_table(Calibration const& calibration) {

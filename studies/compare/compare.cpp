@@ -17,6 +17,7 @@
 #include "render/scene/build_camera.h"
 #include "render/sensor/detector.h"
 #include "studies/case/truth_file.h"
+#include "studies/case/warning_log.h"
 #include "studies/compare/budget_stages.h"
 #include "studies/compare/compared_vectors.h"
 #include "studies/compare/comparison_kind.h"
@@ -132,15 +133,16 @@ PointTruth truth_of_vectors(PreparedCase const& prepared, Renderer& renderer, st
 Comparison compare_case(std::string const& folder, Backend const& device, CompareOptions const& options) {
   ComparedFiles files = compared_files(folder, options.vectors);
   if (!files.unverified.empty()) {
-    spdlog::warn(
-        "unverified: {} contains no SHA-256 of its frames, so that it is unknown whether {} was measured on this case",
-        files.unverified, files.vectors);
+    log_warning(
+        {WarningCode::assumed, files.unverified,
+         fmt::format("contains no SHA-256 of its frames, so that it is unknown whether {} was measured on this case",
+                     files.vectors)});
   }
   CaseSetup loaded = load_case_setup(files.setup, {});
   GroundTruth const dots = read_truth(files.truth);
   MeasuredVectors vectors = load_vectors(files.vectors, loaded, &dots, options);
   stop_point("comparing");
-  std::vector<std::string> given;  // warnings already logged
+  Warnings given;  // warnings already logged
   std::string fingerprint = comparison_fingerprint(files.sources, options);
   Comparison comparison = comparison_of(vectors, loaded.setup);
   if (options.reuse && read_chain(folder, fingerprint, comparison)) {
@@ -160,8 +162,8 @@ Comparison compare_case(std::string const& folder, Backend const& device, Compar
   name_sources(comparison, std::move(files));
   comparison.fingerprint = std::move(fingerprint);
   comparison.warnings = comparison_warnings(comparison, loaded.setup);
-  for (std::string const& warning : comparison.warnings) {
-    if (std::find(given.begin(), given.end(), warning) == given.end()) spdlog::warn("{}", warning);
+  for (Warning const& warning : comparison.warnings) {
+    if (std::find(given.begin(), given.end(), warning) == given.end()) log_warning(warning);
   }
   return comparison;
 }

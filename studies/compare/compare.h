@@ -10,6 +10,7 @@
 #include "analysis/errors/window_truth.h"
 #include "analysis/vectors/convention_detection.h"
 #include "analysis/vectors/vector_screening.h"
+#include "render/base/warning.h"
 #include "render/scene/renderer.h"
 #include "studies/case/backend.h"
 #include "studies/case/case.h"
@@ -48,7 +49,7 @@ struct Comparison {
   std::optional<DetectedConventions> detected;  ///< conventions detected in a foreign file
   bool complete = true;                         ///< false: the file's header declares another number of vectors
   bool foreign = false;
-  std::vector<std::string> warnings;  ///< comparison_warnings() of the case
+  Warnings warnings;        ///< comparison_warnings() of the case
   SourceFiles sources;      ///< contents of the compared files; empty for vectors that were never stored in files
   std::string fingerprint;  ///< comparison_fingerprint() of a CASE
   bool verified = false;    ///< true if the vectors were measured on exactly the frames that the truth belongs to

@@ -11,6 +11,7 @@
 #include "render/base/error.h"
 #include "render/files/hdf5_file.h"
 #include "render/files/source_files.h"
+#include "studies/case/warning_log.h"
 
 namespace gladstone {
 namespace {
@@ -65,11 +66,12 @@ RejectedVectors screen(VectorFile& file, std::string const& path, CameraSetup co
   std::string const refusal = reason_to_reject_positions(file.field, left_out, columns, rows);
   if (!refusal.empty()) throw DataError(ErrorCode::inconsistent, path, refusal);
   if (left_out.all() > 0) {
-    spdlog::warn("{}: {} of {} vectors are excluded: {}", path, left_out.all(),
-                 file.field.size() + left_out.without_place(), left_out.text());
+    log_warning({WarningCode::excluded, path,
+                 fmt::format("{} of {} vectors are excluded: {}", left_out.all(),
+                             file.field.size() + left_out.without_place(), left_out.text())});
   }
   std::string const doubt = describe_suspect_positions(file.field, columns, rows);
-  if (!doubt.empty()) spdlog::warn("{}: {}", path, doubt);
+  if (!doubt.empty()) log_warning({WarningCode::implausible, path, doubt});
   return left_out;
 }
 
@@ -111,15 +113,15 @@ DetectedConventions detect(VectorFile const& file, std::string const& path, Grou
                     detected.report + ", or specify its reading with --conventions if the file cannot be corrected");
   }
   if (misfits) {
-    spdlog::warn(
-        "{}: the vectors do not follow the true displacement with any axes, signs or units: the difference is {:.3g} "
-        "px rms, and the true displacement is {:.3g} px rms; if the estimator is more accurate than this, check the "
-        "order of the frames, the axes and the units",
-        path, detected.fit.rms_px, detected.fit.signal_px);
+    log_warning({WarningCode::implausible, path,
+                 fmt::format("the vectors do not follow the true displacement, also with other axes, signs or units: "
+                             "they differ from it by {:.3g} px rms, and it is {:.3g} px rms itself; if their estimator "
+                             "is more accurate than this, check the order of the frames, the axes and the units",
+                             detected.fit.rms_px, detected.fit.signal_px)});
   } else if (detected.mistake.found()) {
-    spdlog::warn("{}: likely mistake: {}", path, detected.mistake.warning());
+    log_warning({WarningCode::implausible, path, "likely mistake: " + detected.mistake.warning()});
   } else if (detected.verdict == Verdict::cannot_be_told || has_rival_of_its_own(file, detected)) {
-    spdlog::warn("{}: {}; specify it with --conventions", path, detected.report);
+    log_warning({WarningCode::assumed, path, detected.report + "; specify it with --conventions"});
   }
   return detected;
 }
@@ -127,7 +129,7 @@ DetectedConventions detect(VectorFile const& file, std::string const& path, Grou
 }  // namespace
 
 void log_remarks(VectorFile const& file) {
-  for (std::string const& warning : file.warnings) spdlog::warn("{}", warning);
+  log_warnings(file.warnings);
   for (std::string const& note : file.notes) spdlog::info("{}", note);
 }
 

@@ -1,7 +1,6 @@
 #include "studies/compare/correlate.h"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <chrono>
@@ -25,6 +24,7 @@
 #include "studies/case/case.h"
 #include "studies/case/peak_locking.h"
 #include "studies/case/truth_file.h"
+#include "studies/case/warning_log.h"
 #include "studies/compare/tracked_dots.h"
 
 namespace gladstone {
@@ -81,14 +81,15 @@ class FramesView final : public FramePair {
 /// Warns of conversions applied to an image on reading.
 void warn_of_reading(std::string const& path, ImageMetadata const& metadata) {
   if (metadata.channels >= 3) {
-    spdlog::warn(
-        "{} is a colour image: its luminance (Rec. 709) is correlated; raw grey images of the camera are better", path);
+    log_warning(
+        {WarningCode::assumed, path,
+         "is a colour image: its luminance (Rec. 709) is correlated; raw grey images of the camera are better"});
   }
   if (metadata.orientation != 1) {
-    spdlog::warn(
-        "{} is stored rotated or mirrored (Orientation {}), and was rotated upright; if that entry is wrong, write the "
-        "image without it",
-        path, metadata.orientation);
+    log_warning({WarningCode::assumed, path,
+                 fmt::format("is stored rotated or mirrored (Orientation {}), and was rotated upright; if that entry "
+                             "is wrong, write the image without it",
+                             metadata.orientation)});
   }
 }
 
@@ -112,8 +113,9 @@ Measurement correlate_prepared(FramePair const& frames, CorrelationSettings sett
   settings.preparation = {};
   Measurement measurement = correlate_frames(*prepared, settings, device);
   if (valid_pixel_fraction(*prepared) == 0.0)
-    measurement.field.warnings.emplace_back(
-        "the masks cover every pixel of the frames (so that every vector is masked); reduce correlate.mask");
+    measurement.field.warnings.push_back(
+        {WarningCode::excluded, "",
+         "the masks cover every pixel of the frames (so that every vector is masked); reduce correlate.mask"});
   measurement.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return measurement;
 }
@@ -141,11 +143,19 @@ void check_sizes(NamedFrame const& reference, NamedFrame const& flow, Correlatio
 
 /// Warns of pixels that are NaN or infinite, which the correlator excludes from every window; throws if there are no
 /// others.
-void check_finite(NamedFrame const& frame, std::size_t not_finite) {
-  auto const size = static_cast<std::size_t>(frame.columns * frame.rows);
-  if (not_finite == size) {
-    throw DataError(ErrorCode::invalid_value, frame.name,
-                    fmt::format("all of its {} pixels are nan or infinite; export it again", not_finite));
+void check_finite(std::string const& reference_name, Image<double> const& reference, std::string const& flow_name,
+                  Image<double> const& flow) {
+  for (auto const& [name, image] : {std::pair(reference_name, &reference), std::pair(flow_name, &flow)}) {
+    std::size_t const bad = count_not_finite(*image);
+    if (bad == image->size()) {
+      throw DataError(ErrorCode::invalid_value, name,
+                      fmt::format("all of its {} pixels are nan or infinite; export it again", bad));
+    }
+    if (bad > 0) {
+      log_warning({WarningCode::excluded, name,
+                   fmt::format("{} of {} pixels are nan or infinite, and are excluded from their windows", bad,
+                               image->size())});
+    }
   }
   if (not_finite > 0) {
     spdlog::warn("{}: {} of {} pixels are nan or infinite, and are excluded from their windows", frame.name, not_finite,
@@ -196,7 +206,7 @@ Measurement correlate_frames(FramePair const& frames, CorrelationSettings const&
   auto const counts = [](VectorStatus status) { return status <= VectorStatus::replaced; };
   bool const any = std::any_of(measurement.field.status.begin(), measurement.field.status.end(), counts);
   if (std::string caveat = uncertainty_caveat(settings); any && !caveat.empty())
-    measurement.field.warnings.push_back(std::move(caveat));
+    measurement.field.warnings.push_back({WarningCode::low_accuracy, "correlate.uncertainty", std::move(caveat)});
   measurement.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return measurement;
 }
@@ -267,9 +277,10 @@ Measurement correlate_ensemble_files(std::vector<std::string> const& files, Corr
   record_uncertainty(measurement.field, settings, CorrelatedFrames::ensemble);
   if (!twice.empty() && twice.size() < pairs.size)
     measurement.field.warnings.push_back(
-        fmt::format("{} of {} pairs consist of two identical images (which biases the displacement towards 0), the "
-                    "first with {}; remove them",
-                    twice.size(), pairs.size, twice.front()));
+        {WarningCode::unreliable, twice.front(),
+         fmt::format(
+             "is both images of a pair (which biases the displacement towards 0), as in {} of {} pairs; remove them",
+             twice.size(), pairs.size)});
   measurement.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return measurement;
 }
@@ -290,10 +301,10 @@ void warn_of_exchanged_frames(DisplacementField& field, SourceFiles const& sourc
         !first.empty() && first != second && sources.sha256("reference") == second && sources.sha256("flow") == first;
   }
   if (!exchanged) return;
-  field.warnings.push_back(
-      fmt::format("the frames are exchanged: {} is the flow frame and {} the reference, so that every displacement has "
-                  "the opposite sign; give the reference first",
-                  reference.string(), flow.string()));
+  field.warnings.push_back({WarningCode::inconsistent, "",
+                            fmt::format("the frames are exchanged: {} is the flow frame and {} the reference, so that "
+                                        "every displacement has the opposite sign; give the reference first",
+                                        reference.string(), flow.string())});
 }
 
 Measurement correlate_case(std::string const& folder, std::string const& output, CorrelationFile const* other,
@@ -315,8 +326,8 @@ Measurement correlate_case(std::string const& folder, std::string const& output,
       "gladstone vectors", 1,      other ? other->resolved : loaded.document.resolved(), loaded.setup.render.seed,
       measurement.device,  sources};
   write_vectors(output.empty() ? in_case(folder, case_file::vectors) : output, measurement.field, origin);
-  if (std::string advice = locking_advice(loaded.setup); frames_correlate(measurement.field) && !advice.empty())
-    measurement.field.warnings.push_back(std::move(advice));
+  if (auto const advice = locking_advice(loaded.setup); advice && frames_correlate(measurement.field))
+    measurement.field.warnings.push_back(*advice);
   return measurement;
 }
 

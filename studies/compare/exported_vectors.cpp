@@ -110,9 +110,7 @@ ExportedVectors load_for_export(std::string const& path, std::string const& conv
   vectors.conventions = describe(file.conventions);
   vectors.field = apply_conventions(std::move(file.field), file.conventions, image_rows);
   if (hdf5 && !file.foreign) {
-    Hdf5Reader const own(path);
-    std::string const warnings = own.attribute("warnings");
-    if (!warnings.empty()) vectors.field.warnings = {warnings};
+    vectors.field.warnings = read_warnings(Hdf5Reader(path));
   }
   return vectors;
 }

@@ -7,6 +7,7 @@
 
 #include "analysis/vectors/displacement_field.h"
 #include "analysis/vectors/track_vectors.h"
+#include "render/base/warning.h"
 #include "render/files/hdf5_file.h"
 #include "render/files/source_files.h"
 #include "studies/case/backend.h"
@@ -61,14 +62,14 @@ class PairCorrelation {
   struct Frames {
     SequenceImage reference, flow;
     std::optional<SequenceImage> before, after;
-    std::vector<std::string> warnings;
+    Warnings warnings;
   };
 
   bool tracks_dots() const;
   FileOrigin origin(SourceFiles sources, std::string const& device) const;
   Frames read_frames(PairRecord const& record, PairNeighbours const& neighbours) const;
   /// @return nullopt with a warning if the frame is not suitable
-  std::optional<SequenceImage> read_neighbour(SequenceFrame const* frame, std::vector<std::string>& warnings) const;
+  std::optional<SequenceImage> read_neighbour(SequenceFrame const* frame, Warnings& warnings) const;
   PairVectors correlate(Frames frames, PairRecord& record, std::string const& path) const;
   /// Returns the hashes that a file of vectors records: those in common, and those of the frames.
   SourceFiles hashes(Frames const& frames) const;

@@ -8,6 +8,7 @@
 #include "analysis/density/axisymmetric_inversion.h"
 #include "analysis/density/density_integrator.h"
 #include "analysis/density/projected_gradient.h"
+#include "render/base/warning.h"
 #include "render/files/source_files.h"
 #include "render/scene/setup.h"
 #include "studies/compare/compare.h"
@@ -81,7 +82,7 @@ struct Reconstruction {
   double white_noise_gain = 1.0;        ///< noise amplification by the deconvolution [1]; 1: none
   std::size_t samples = 0;              ///< number of random samples for sigma; 0: exact
   std::optional<AxisymmetryResult> axisymmetry;
-  std::vector<std::string> warnings;
+  Warnings warnings;
   std::string setup;         ///< resolved setup
   std::uint64_t seed = 0;    ///< random seed of the rendering
   std::string vectors;       ///< path of the vectors

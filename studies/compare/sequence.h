@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "analysis/vectors/sequence_statistics.h"
+#include "render/base/warning.h"
 #include "studies/case/backend.h"
 #include "studies/compare/correlate.h"
 #include "studies/compare/sequence_frames.h"
@@ -42,7 +43,7 @@ struct PairRecord {
   bool resumed = false;  ///< the vectors of the pair were computed by an earlier run
   std::string error;     ///< reason of the state `failed` or `no_valid_vector`
   std::string reference_sha256, flow_sha256;
-  std::vector<std::string> warnings;
+  Warnings warnings;
 
   bool has_vectors() const { return state == PairState::done || state == PairState::no_valid_vector; }
 };
@@ -51,9 +52,9 @@ struct PairRecord {
 struct SequenceResult {
   std::vector<PairRecord> pairs;
   std::string device;
-  double seconds = 0;                 ///< wall time [s]
-  SequenceMoments statistics;         ///< statistics; has no points if no pair has vectors
-  std::vector<std::string> warnings;  ///< warnings about several pairs at once, or about the statistics
+  double seconds = 0;          ///< wall time [s]
+  SequenceMoments statistics;  ///< without points if no pair has vectors
+  Warnings warnings;           ///< about several pairs at once, or about the statistics
 
   std::size_t vectors() const { return statistics.position_px.size(); }  ///< vectors per field; 0: no field
   /// Counts the pairs of a state, and those with vectors of an earlier run.

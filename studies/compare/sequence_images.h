@@ -5,6 +5,7 @@
 
 #include "analysis/preparation/sequence_background.h"
 #include "render/base/image.h"
+#include "render/base/warning.h"
 #include "studies/compare/sequence_frames.h"
 
 namespace gladstone {
@@ -13,7 +14,7 @@ namespace gladstone {
 struct SequenceImage {
   Image<double> levels;
   std::string sha256;  ///< pixel_sha256()
-  std::vector<std::string> warnings;
+  Warnings warnings;
 };
 /// Reads a frame. @throws DataError, also if all pixels are NaN or infinite
 SequenceImage read_sequence_image(SequenceFrame const& frame);

@@ -1,7 +1,6 @@
 #include "studies/compare/stereo.h"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <cmath>
@@ -19,6 +18,7 @@
 #include "render/files/image_file.h"
 #include "render/files/stop_point.h"
 #include "studies/case/cameras.h"
+#include "studies/case/warning_log.h"
 #include "studies/compare/correlate.h"
 #include "studies/compare/stereo_alignment.h"
 #include "studies/compare/stereo_input.h"
@@ -240,7 +240,7 @@ StereoMeasurement measure_stereo(StereoOptions options, Backend const& device) {
   result.setup = a.loaded->document.resolved();
   result.seed = a.loaded->setup.render.seed;
   result.warnings = find_stereo_warnings(result);
-  for (std::string const& warning : result.warnings) spdlog::warn("{}", warning);
+  log_warnings(result.warnings);
   return result;
 }
 

@@ -8,6 +8,7 @@
 
 #include "analysis/stereo/reconstruct.h"
 #include "analysis/stereo/sheet_alignment.h"
+#include "render/base/warning.h"
 #include "render/files/source_files.h"
 #include "studies/case/backend.h"
 
@@ -45,7 +46,7 @@ struct StereoMeasurement {
   std::optional<stereo::SheetAlignment> alignment;
   /// disparity of the given sheet between the images of both cameras; empty: with `alignment`, or without images
   std::optional<stereo::SheetAlignment> given_sheet;
-  std::vector<std::string> warnings;
+  Warnings warnings;
   std::string setup;         ///< resolved setup of the first camera
   std::uint64_t seed = 0;    ///< random seed of the rendering
   SourceFiles sources = {};  ///< vectors, calibrations, and truth

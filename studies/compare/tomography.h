@@ -8,6 +8,7 @@
 
 #include "analysis/tomography/volume_reconstruction.h"
 #include "render/base/pose.h"
+#include "render/base/warning.h"
 #include "render/files/source_files.h"
 #include "studies/compare/reconstruct.h"
 
@@ -56,7 +57,7 @@ struct Tomography {
   std::vector<double> angles;         ///< angle of the volume in each view [rad]
   std::vector<std::size_t> vectors;   ///< number of vectors of each view with a line integral
   tomography::SartSettings settings;
-  std::vector<std::string> warnings;
+  Warnings warnings;
   std::string setup;         ///< resolved setup of the first view
   std::uint64_t seed = 0;    ///< random seed of the rendering
   SourceFiles sources = {};  ///< setups and vectors

@@ -45,7 +45,7 @@ void draw(DesignRequest const& request, DesignReport& report, std::string const&
     draw_figure(figure, path.string());
     report.json["figures"].push_back(path.string());
   } catch (GnuplotMissing const& missing) {
-    report.warnings.emplace_back(missing.what());
+    report.warnings.push_back({WarningCode::failed, "", missing.what()});
   }
 }
 
@@ -81,9 +81,9 @@ void add_sheet(DesignRequest const& request, CaseSetup const& loaded, std::vecto
                     "has no aperture stop (lens.f_number); a design requires the light cone, so give a number");
   }
   report.warnings = loaded.warnings;
-  std::vector<std::string> const neglected = list_neglected_effects(loaded.setup);
+  Warnings const neglected = list_neglected_effects(loaded.setup);
   report.warnings.insert(report.warnings.end(), neglected.begin(), neglected.end());
-  std::vector<std::string> const of_field = header_warnings(loaded.setup.medium);
+  Warnings const of_field = header_warnings(loaded.setup.medium);
   report.warnings.insert(report.warnings.end(), of_field.begin(), of_field.end());
   DesignSheet sheet;
   std::optional<MeasurementUncertainty> uncertainty;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "render/base/warning.h"
 #include "render/setup/setup_table.h"
 #include "studies/case/backend.h"
 #include "studies/design/verification.h"
@@ -26,9 +27,8 @@ struct DesignRequest {
 struct DesignReport {
   nlohmann::ordered_json json;
   std::string text;
-  std::vector<std::string> warnings;
-  bool feasible = true;  ///< whether a design is feasible by formula and, if simulated, in simulation; also true
-                         ///< without requirements
+  Warnings warnings;
+  bool feasible = true;  ///< by formula and, if simulated, in simulation; also true without requirements
 };
 
 /// Computes the design sheet of a setup and, if it has [requirements], the recommended setup or the reasons why none

@@ -86,16 +86,17 @@ DesignPoint<double> make_design_point(Setup const& setup, FixedDesignParameters 
   return {&given, setup.lens.focal_length, setup.lens.f_number, setup.z_a, setup.z_d, setup.dot_diameter()};
 }
 
-std::vector<std::string> list_neglected_effects(Setup const& setup) {
-  std::vector<std::string> warnings;
-  if (!setup.experiment().correlated) return warnings;  // no design sheet exists for this experiment
+Warnings list_neglected_effects(Setup const& setup) {
+  Warnings warnings;
+  if (!setup.experiment().correlated) return warnings;  // no sheet describes it
   if (setup.lens.focus != Focus::target && setup.experiment().sources.on_target) {
-    warnings.emplace_back("lens.focus: the sheet assumes dots in focus, but these are out of focus");
+    warnings.push_back(
+        {WarningCode::approximated, "lens.focus", "the sheet assumes dots in focus, but these are out of focus"});
   }
   if (!setup.has_closed_form_layout()) {
-    warnings.emplace_back(
-        "the sheet assumes a thin lens on the axis, perpendicular to the target: it neglects poses, tilts, other "
-        "elements, distortion and aberrations");
+    warnings.push_back({WarningCode::approximated, "",
+                        "the sheet assumes a thin lens on the axis, perpendicular to the target: it neglects poses, "
+                        "tilts, other elements, distortion and aberrations"});
   }
   return warnings;
 }

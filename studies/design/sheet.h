@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "render/base/warning.h"
 #include "studies/case/case.h"
 #include "studies/design/design_point.h"
 
@@ -62,7 +63,7 @@ DesignPoint<double> make_design_point(Setup const& setup, FixedDesignParameters 
 
 /// Returns warnings for properties of a setup that closed forms neglect: defocused dots, a posed camera, windows.
 /// None for calibrations, which have no sheet.
-std::vector<std::string> list_neglected_effects(Setup const& setup);
+Warnings list_neglected_effects(Setup const& setup);
 
 /// Returns the gradient for the sheet's displacements: the largest in view, or 10 kg/m^4 if there is none [kg/m^4].
 double sheet_gradient(FixedDesignParameters const& given);

@@ -1,7 +1,6 @@
 #include "studies/drawing/draw_figure.h"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <array>
 #include <cmath>
@@ -289,16 +288,6 @@ class FigureScript {
 };
 
 }  // namespace
-
-bool draw_or_warn(std::function<void()> const& draw) {
-  try {
-    draw();
-    return true;
-  } catch (GnuplotMissing const& missing) {
-    spdlog::warn("{}", missing.what());
-    return false;
-  }
-}
 
 void draw_figure(Figure const& figure, std::string const& path) { FigureScript(figure).write(path); }
 

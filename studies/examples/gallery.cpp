@@ -14,6 +14,7 @@
 #include "studies/case/render_setup.h"
 #include "studies/case/shared_folder.h"
 #include "studies/drawing/draw_figure.h"
+#include "studies/figures/draw_or_warn.h"
 #include "studies/figures/map_panels.h"
 
 namespace gladstone {

@@ -91,7 +91,7 @@ std::vector<std::string> summarize_findings(CaseView const& view) {
       truth.rms_px, theory.rms_px, kind.theory, truth.count, all.vectors_in_file(), 100 * truth.gross_fraction));
   if (std::string const cause = largest_term(all.shown_budget()); !cause.empty()) findings.push_back(cause);
   findings.push_back(uncertainty_statements(view).front());
-  for (std::string const& warning : all.warnings) findings.push_back("Warning: " + warning + '.');
+  for (std::string const& warning : to_strings(all.warnings)) findings.push_back("Warning: " + warning + '.');
   return findings;
 }
 

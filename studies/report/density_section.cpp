@@ -73,7 +73,7 @@ ReportSection density_section(ReportPage& page, Reconstruction const& reconstruc
                                        make_density_profile(reconstruction)));
   section.blocks.emplace_back(numbers_table(summary));
   if (!reconstruction.budget.empty()) section.blocks.emplace_back(density_budget_table(reconstruction.budget));
-  if (!reconstruction.warnings.empty()) section.blocks.emplace_back(TextList{reconstruction.warnings});
+  if (!reconstruction.warnings.empty()) section.blocks.emplace_back(TextList{to_strings(reconstruction.warnings)});
   return section;
 }
 

@@ -5,6 +5,7 @@
 #include "render/files/text_file.h"
 #include "studies/drawing/draw_figure.h"
 #include "studies/drawing/temporary_directory.h"
+#include "studies/figures/draw_or_warn.h"
 
 namespace gladstone {
 

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <spdlog/spdlog.h>
 
 #include <cmath>
 #include <filesystem>
@@ -8,6 +7,7 @@
 
 #include "analysis/errors/error_summary.h"
 #include "render/files/text_file.h"
+#include "studies/case/warning_log.h"
 #include "studies/design/measurement_inputs.h"
 #include "studies/design/sheet.h"
 #include "studies/report/case_view.h"
@@ -115,7 +115,7 @@ std::optional<Reconstruction> reconstruct_measured(ReportOptions const& options,
   if (!options.conventions.empty()) density.conventions = options.conventions;
   if (mean.count == 1) return reconstruct_case(options.source, density, device);
   Reconstruction result = reconstruct_density(mean.field, loaded.setup, loaded.correlate.window_px.back(), density);
-  for (std::string const& warning : result.warnings) spdlog::warn("{}", warning);
+  log_warnings(result.warnings);
   return result;
 }
 

@@ -39,7 +39,7 @@ std::string shell_word(std::string const& text);
 /// @param run      absolute path of the study's RUN folder on the nodes
 /// @param cases    missing cases, in ascending order
 /// @param most     maximum number of tasks of an array on this cluster
-/// @throws std::invalid_argument with the required number of cases per task if more tasks would be needed
+/// @throws DataError with the required number of cases per task if more tasks would be needed
 JobArray make_job_array(std::string const& program, std::string const& run, std::vector<std::size_t> const& cases,
                         SlurmOptions const& options, std::size_t most);
 

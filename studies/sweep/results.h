@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "render/base/warning.h"
 #include "studies/sweep/manifest.h"
 #include "studies/sweep/vector_errors.h"
 
@@ -28,7 +29,7 @@ struct CaseResult {
   std::vector<std::pair<std::string, double>> measures;
   /// Errors of each kind at individual vectors, in the order of vector_error_names(); used to compare repeats.
   std::vector<VectorErrors> vectors;
-  std::vector<std::string> warnings;
+  Warnings warnings;
   double seconds_render = 0, seconds_correlate = 0, seconds_compare = 0;
   std::string device;
   std::string build;  ///< build_text() of the gladstone build that computed it; empty: unknown

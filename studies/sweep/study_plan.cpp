@@ -241,11 +241,11 @@ std::string StudyPlan::base() const {
   return document.written();
 }
 
-std::vector<std::string> StudyPlan::warnings() const {
+Warnings StudyPlan::warnings() const {
   StudyFile const& study = parts_->study;
   if (!describes_sequence(compose(parts_->base, study, point_to_try(study, 0), study.seed))) return {};
-  return {study.path +
-          ": every case is the first pair of the base's [sequence]; for other pairs add the axis \"sequence.pair\""};
+  return {{WarningCode::ignored, study.path,
+           "every case is the first pair of the base's [sequence]; for other pairs add the axis \"sequence.pair\""}};
 }
 
 std::size_t StudyPlan::size() const { return parts_->study.points() * parts_->study.repeats; }

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "render/base/warning.h"
 #include "studies/sweep/manifest.h"
 #include "studies/sweep/study_file.h"
 
@@ -28,8 +29,8 @@ class StudyPlan {
   StudyFile const& study() const;
   /// Returns the base setup of all cases, as TOML with absolute file names.
   std::string base() const;
-  /// Returns warnings to the author of the study; at present only that all cases are of the first pair of a sequence.
-  std::vector<std::string> warnings() const;
+  /// Returns what the author of the study may have overlooked: cases of the first pair of a sequence only.
+  Warnings warnings() const;
   std::size_t size() const;
   /// Returns a case including its line_hash. Thread-safe. @throws DataError if an input cannot be read
   ManifestCase operator[](std::size_t index) const;

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "render/base/warning.h"
 #include "studies/sweep/results.h"
 
 namespace gladstone {
@@ -50,11 +51,11 @@ struct StudyPoint {
 struct StudyTable {
   std::string name;  ///< name of the RUN folder
   std::vector<StudyAxis> axes;
-  std::vector<std::string> measures;  ///< "ray_truth.rms_px", "budget.terms.cone.rms_px", "magnification", ...
-  std::vector<StudyRow> rows;         ///< all cases of the manifest, in its order
-  std::vector<StudyPoint> points;     ///< points in the order of their first cases
-  std::vector<std::string> builds;    ///< distinct builds of gladstone that computed the cases, sorted
-  std::string first_warning;          ///< first warning of the first case with warnings
+  std::vector<std::string> measures;     ///< "ray_truth.rms_px", "budget.terms.cone.rms_px", "magnification", ...
+  std::vector<StudyRow> rows;            ///< all cases of the manifest, in its order
+  std::vector<StudyPoint> points;        ///< in the order of their first cases
+  std::vector<std::string> builds;       ///< distinct builds of gladstone that computed the cases, sorted
+  std::optional<Warning> first_warning;  ///< first warning of the first case with warnings
 
   /// Returns the index of a measure in every row, or nullopt if no case has it.
   std::optional<std::size_t> find_measure(std::string_view name) const;

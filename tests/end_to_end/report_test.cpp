@@ -318,7 +318,7 @@ TEST_F(Reports, RequireAReferenceForADensity) {
   EXPECT_THAT(read("text/m.md"), HasSubstr("density_profile.png"));
   EXPECT_TRUE(std::filesystem::exists(in("text/m_figures/density.png")));
   finish_study();
-  expect_error({"report", "run", "--reference", "left"}, 2, "arguments at run");
+  expect_error({"report", "run", "--reference", "left"}, 2, "arguments at --reference");
 }
 
 // The setup of another camera than that of the frames, or other frames than those that were correlated.
@@ -420,7 +420,7 @@ window_px = [32, 16]
                "inconsistent at 1.csv");
   expect_error({"report", "measured", "--vectors", "measured/1.csv", "--repeats", "measured/other.csv"}, 2,
                "inconsistent at other.csv");
-  expect_error({"report", "case1", "--repeats", "measured/2.csv"}, 2, "arguments at case1");
+  expect_error({"report", "case1", "--repeats", "measured/2.csv"}, 2, "arguments at --repeats");
 }
 
 TEST_F(Reports, AreWrittenAsMarkdownWithFiguresBesideIt) {
@@ -456,7 +456,7 @@ TEST_F(Reports, SayWhatIsMissing) {
   succeed({"sweep", "plan", "study.toml", "-o", "run", "--quiet", "--device", "cpu"});
   expect_error({"report", "run"}, 2, "missing_content at run");
   expect_refused({"report", "case", "--format", "pdf"}, 2, {"--format"});
-  expect_error({"report", "run", "--vectors", "vectors.csv"}, 2, "arguments at run");
+  expect_error({"report", "run", "--vectors", "vectors.csv"}, 2, "arguments at --vectors");
   write("cut.csv", "x_px,y_px,u_px,v_px\n10,10,0.1,0.2\n20,10,0.");
   expect_refused({"report", "case", "--vectors", "cut.csv"}, 2, {"cut.csv:3: 3 fields"});
 }

@@ -7,12 +7,13 @@
 
 #include "render/scene/setup.h"
 #include "tests/support/expect_error.h"
+#include "tests/support/expect_warning.h"
 
 namespace gladstone {
 
 struct ReadSetup {
   Setup setup;
-  std::vector<std::string> warnings;
+  Warnings warnings;
 };
 
 /// Reads and cross-checks a setup, case.toml, as the commands do.

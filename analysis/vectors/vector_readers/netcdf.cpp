@@ -130,9 +130,9 @@ void read_foreign_schema(SchemaReader const& reader, std::string const& path, Ve
   bool const none = std::none_of(choice.begin(), choice.end(), [](double chc) { return chc >= 1.0; });
   if (none && !choice.empty()) {
     file.warnings.push_back(
-        path +
-        ": chc marks all vectors as invalid (PIVPy copies the flags of an OpenPIV file, 0 for valid vectors, "
-        "to chc); if so, save the data set with chc = (chc == 0), or give the OpenPIV file");
+        {WarningCode::implausible, path,
+         "chc marks all vectors as invalid (PIVPy copies the flags of an OpenPIV file, 0 for valid vectors, to chc); "
+         "if so, save the data set with chc = (chc == 0), or give the OpenPIV file"});
   }
 }
 

@@ -16,10 +16,10 @@ void mask_zeros(VectorFile& file, std::string const& path) {
     ++masked;
   }
   if (masked == 0) return;
-  file.warnings.push_back(
-      fmt::format("{}: {} of {} vectors are exactly zero and count as masked, since DaVis writes masked vectors like "
-                  "this; export the column isValid to mark them",
-                  path, masked, file.field.size()));
+  file.warnings.push_back({WarningCode::assumed, path,
+                           fmt::format("{} of {} vectors are exactly zero and count as masked, since DaVis writes "
+                                       "masked vectors like this; export the column isValid to mark them",
+                                       masked, file.field.size())});
 }
 
 /// Returns true if y increases from the first row of vectors to the next. DaVis' text export begins with the top row,

@@ -31,7 +31,8 @@ class TableReader {
       if (format_.separator == 0) name_columns(text);
       if (text.front() == '#') continue;
       if (table_.tecplot && lower_case(text.substr(0, 4)) == "zone") {
-        table_.warnings.push_back(file_.place() + ": another zone begins here; only the first one is read");
+        table_.warnings.push_back(
+            {WarningCode::ignored, file_.place(), "another zone begins here; only the first one is read"});
         break;
       }
       zone_.block ? add_block_values(text) : add_row(text);
@@ -146,10 +147,10 @@ class TableReader {
       fail(ErrorCode::missing_content, table_.header_line, "no row of numbers follows the header");
     if (!declared_.count() || *declared_.count() == static_cast<double>(table_.rows())) return;
     table_.complete = false;
-    table_.warnings.push_back(
-        fmt::format("{}:{}: the header declares {} vectors, but the file contains {} (truncated, or written with "
-                    "another header); export it again",
-                    table_.path, declared_.line(), *declared_.count(), table_.rows()));
+    table_.warnings.push_back({WarningCode::incomplete, fmt::format("{}:{}", table_.path, declared_.line()),
+                               fmt::format("the header declares {} vectors, but the file contains {} (truncated, or "
+                                           "written with another header); export it again",
+                                           *declared_.count(), table_.rows())});
   }
 
   LineReader file_;

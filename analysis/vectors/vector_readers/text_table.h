@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "analysis/vectors/vector_readers/table_header.h"
+#include "render/base/warning.h"
 
 namespace gladstone::detail {
 
@@ -22,7 +23,7 @@ struct TextTable {
   bool tecplot = false;                     ///< the names are from Tecplot's VARIABLES
   bool davis = false;                       ///< the names are from the header of DaVis' text export
   bool has_header = true;                   ///< false: the names are defined by the format
-  std::vector<std::string> warnings;        ///< "file:line: ..." about ignored parts of the file
+  Warnings warnings;                        ///< "file:line: ..." about ignored parts of the file
   bool complete = true;                     ///< false: the header declares another number of rows
 
   std::size_t rows() const { return line.size(); }

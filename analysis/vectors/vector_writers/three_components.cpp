@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <stdexcept>
 
 #include "analysis/vectors/vector_writers/vector_columns.h"
 #include "analysis/vectors/vector_writers/vector_writers.h"
@@ -122,8 +121,8 @@ void write_three_components(std::string const& path, ThreeComponentField const& 
   auto const* const writer =
       std::find_if(writers.begin(), writers.end(), [&](auto const& one) { return path.ends_with(one.extension); });
   if (writer == writers.end())
-    throw std::invalid_argument(fmt::format("{}: three components are written as {}; use one of these endings", path,
-                                            fmt::join(three_component_extensions(), ", ")));
+    throw OutputError(path, fmt::format("three components are written as {}; use one of these endings",
+                                        fmt::join(three_component_extensions(), ", ")));
   writer->write(path, field, origin);
 }
 

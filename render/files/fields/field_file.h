@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "render/base/regular_grid.h"
+#include "render/base/warning.h"
 #include "render/files/fields/field_axes.h"
 #include "render/files/fields/field_units.h"
 
@@ -25,7 +26,7 @@ class FieldSource {
   /// Assignment of the file's axes to world axes.
   virtual AxisAssignment const& reading() const = 0;
   /// Returns warnings about assumptions, ignored information and the resampling error; may read the whole field.
-  virtual std::vector<std::string> notes() = 0;
+  virtual Warnings notes() = 0;
   /// Name of the array in the file ("Density_0001"), for messages.
   virtual std::string const& name() const = 0;
   /// Number of values per node: 1 for a scalar field, 3 for a velocity.

@@ -223,7 +223,7 @@ ValueFactor FieldUnits::value_factor(Dimension const& dimension) const {
 }
 
 void convert_lengths(StoredAxes& axes, std::array<std::optional<std::string>, 3> const& unit_of, FieldUnits& units,
-                     std::vector<std::string>& notes) {
+                     Warnings& notes) {
   for (auto const& unit : unit_of) {
     if (unit && states_unit(*unit) && units.length.empty()) units.length = *unit;
   }
@@ -247,8 +247,9 @@ void convert_lengths(StoredAxes& axes, std::array<std::optional<std::string>, 3>
     for (double& place : axes[i].coordinates) place *= ratio;
   }
   if (!without.empty()) {
-    notes.push_back(fmt::format("lengths along {} have no unit in the file and are taken to be in {}, like the others",
-                                without, units.length));
+    notes.push_back(
+        {WarningCode::assumed, "",
+         fmt::format("lengths along {} name no unit and are taken to be in {}, as the others", without, units.length)});
   }
 }
 

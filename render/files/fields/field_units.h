@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "render/base/warning.h"
 #include "render/files/fields/field_axes.h"
 
 namespace gladstone {
@@ -70,6 +71,6 @@ double length_unit(std::string_view name);
 /// @param units    receives `length` and, if a unit cannot be converted, `unknown`
 /// @param notes    receives the note
 void convert_lengths(StoredAxes& axes, std::array<std::optional<std::string>, 3> const& unit_of, FieldUnits& units,
-                     std::vector<std::string>& notes);
+                     Warnings& notes);
 
 }  // namespace gladstone

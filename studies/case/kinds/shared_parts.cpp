@@ -58,15 +58,16 @@ ImageDiameters images_of_dots(Setup const& setup) {
 
 double number_of_dots(Scene const& scene) { return static_cast<double>(scene.dots.centre.size()); }
 
-void warn_of_dots_out_of_view(Scene const& scene, std::vector<std::string>& warnings) {
+void warn_of_dots_out_of_view(Scene const& scene, Warnings& warnings) {
   auto const in_view = [&scene](Vec2d centre) { return scene.in_view(centre); };
   if (std::none_of(scene.dots.centre.begin(), scene.dots.centre.end(), in_view)) {
     warn(warnings,
-         fmt::format("all {} dots are outside the view of {:.4g} x {:.4g} mm about the axis: the images will be "
-                     "empty; check the target's file (positions are in mm) or increase target.dots_per_32px_window",
-                     scene.dots.centre.size(),
-                     scene.setup.camera.columns * scene.setup.camera.pixel_pitch / scene.imaging.magnification * 1e3,
-                     scene.setup.camera.rows * scene.setup.camera.pixel_pitch / scene.imaging.magnification * 1e3));
+         {WarningCode::out_of_view, "target",
+          fmt::format("none of the {} dots lies in the view, {:.4g} x {:.4g} mm about the axis: the images will be "
+                      "empty; check the target's file (positions are in mm) or increase target.dots_per_32px_window",
+                      scene.dots.centre.size(),
+                      scene.setup.camera.columns * scene.setup.camera.pixel_pitch / scene.imaging.magnification * 1e3,
+                      scene.setup.camera.rows * scene.setup.camera.pixel_pitch / scene.imaging.magnification * 1e3)});
   }
 }
 

@@ -150,12 +150,19 @@ class ProgramFixture : public testing::Test {
     auto const json = nlohmann::json::parse(output, nullptr, false);
     if (!json.is_object() || !json.contains("errors")) return found;
     for (nlohmann::json const& error : json["errors"]) {
-      std::string const place = error.value("file", error.value("key", ""));
+      std::string const place = error.value("place", "");
       found.push_back(error.value("code", "") + " at " + std::filesystem::path(place).filename().string());
-      for (char const* const part : {"line", "column"}) {
-        if (error.contains(part)) found.back() += ':' + std::to_string(error[part].get<int>());
-      }
     }
+    return found;
+  }
+  /// Returns the warnings of an object of --json or of a summary.json, each as "code at place", or "code" without one.
+  static std::vector<std::string> warnings_in(nlohmann::json const& json) {
+    std::vector<std::string> found;
+    for (nlohmann::json const& warning : json.at("warning_records")) {
+      std::string const place = std::filesystem::path(warning.at("place").get<std::string>()).filename().string();
+      found.push_back(warning.at("code").get<std::string>() + (place.empty() ? "" : " at " + place));
+    }
+    EXPECT_EQ(found.size(), json.at("warnings").size());
     return found;
   }
   /// Expects the rendering of this setup text to fail with an error of this code and place.

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "render/base/warning.h"
 #include "render/files/fields/readers/checked_source.h"
 
 namespace gladstone {
@@ -36,7 +37,7 @@ class ArrayFile {
   virtual std::vector<std::string> dimension_scales(std::string const& array) const = 0;
   virtual std::vector<std::string> dimension_labels(std::string const& array) const = 0;
   /// Returns warnings about parts of the file that are ignored.
-  virtual std::vector<std::string> notes() const { return {}; }
+  virtual Warnings notes() const { return {}; }
 };
 
 /// Opens an array of a file as a field.

@@ -44,10 +44,10 @@ class ArraySource final : public CheckedSource {
     if (!states_unit(units_.values) && !suffix.empty()) units_.values = suffix;
     packing_ = read_packing(*file_, name_);
     if (values_ == 1 && rank() == 3 && may_be_components(length(0)) && length(1) > 3 && length(2) > 3) {
-      notes_.push_back(
-          fmt::format("the last axis of \"{}\" of shape {} is read as the axis x; if it contains the components of a "
-                      "vector, write each component as a separate array",
-                      name_, shape_text(shape_)));
+      notes_.push_back({WarningCode::assumed, "",
+                        fmt::format("the last axis of \"{}\" of shape {} is read as the axis x; if it contains the "
+                                    "components of a vector, write each component as a separate array",
+                                    name_, shape_text(shape_))});
     }
     std::string const by = place_axes(selection.axes);
     describe(nodes, rank(), by);
@@ -191,11 +191,12 @@ class ArraySource final : public CheckedSource {
                              fmt::join(unused, ", "), unused.size() == 1 ? "it is" : "they are");
     bool const some = units_.spaced;
     if (!some && unused.empty()) return;  // FieldUnits::assumed() reports this
-    notes_.push_back(fmt::format(
-        "no coordinates along {} are found{}{}", missing,
-        some ? fmt::format(", and nodes along them are taken 1 {} apart", units_.length.empty() ? "mm" : units_.length)
-             : "",
-        ignored));
+    notes_.push_back({WarningCode::assumed, "",
+                      fmt::format("no coordinates along {} are found{}{}", missing,
+                                  some ? fmt::format(", and nodes there are taken 1 {} apart",
+                                                     units_.length.empty() ? "mm" : units_.length)
+                                       : "",
+                                  ignored)});
   }
 
   /// Returns the order of the axes, slowest first, by their labels x, y and z; empty if not all axes have one.
@@ -212,10 +213,10 @@ class ArraySource final : public CheckedSource {
   void note_matlab() {
     bool const matlab = !file_->attribute(name_, "MATLAB_class").empty();
     if (!matlab || rank() != 3) return;
-    notes_.push_back(
-        fmt::format("\"{}\" is an array of MATLAB of shape {}, taken as z, y, x (as ndgrid makes it); "
-                    "if meshgrid made it, set axes = \"zxy\"",
-                    name_, shape_text(shape_)));
+    notes_.push_back({WarningCode::assumed, "",
+                      fmt::format("\"{}\" is an array of MATLAB of shape {}, taken as z, y, x (as ndgrid makes it); if "
+                                  "meshgrid made it, set axes = \"zxy\"",
+                                  name_, shape_text(shape_))});
   }
 
   int significant_bits() const override {

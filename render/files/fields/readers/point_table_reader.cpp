@@ -134,7 +134,8 @@ class PointTableReader {
     }
     if (text.front() == '#' || text.front() == '%') return true;
     if (lower_case(text.substr(0, 4)) == "zone") {
-      table_.notes.push_back(file_.place() + ": another zone begins here; only the first one is read");
+      table_.notes.push_back(
+          {WarningCode::ignored, file_.place(), "another zone begins here; only the first one is read"});
       return false;
     }
     if (table_.columns.empty()) read_header();

@@ -159,14 +159,14 @@ class VelocityArrays final : public ArrayFile {
     return labels;
   }
 
-  std::vector<std::string> notes() const override {
-    std::vector<std::string> notes = file_->notes();
+  Warnings notes() const override {
+    Warnings notes = file_->notes();
     for (Velocity const& velocity : velocities_) {
       if (!velocity.components[2].empty()) continue;
-      notes.push_back(
-          fmt::format("\"{}\" and \"{}\" are read as a velocity whose third component is 0, since the file "
-                      "has no third component of their shape",
-                      velocity.components[0], velocity.components[1]));
+      notes.push_back({WarningCode::assumed, "",
+                       fmt::format("\"{}\" and \"{}\" are read as a velocity whose third component is 0, since the "
+                                   "file has none of their shape",
+                                   velocity.components[0], velocity.components[1])});
     }
     return notes;
   }
