@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include <fmt/format.h>
+
 #include "python/src/arrays.h"
 #include "python/src/call.h"
 #include "python/src/case.h"
@@ -32,8 +34,9 @@ bool is_own(PairCase const& one, MeasuredField const& field) {
                     "the opposite sign; correlate case.a with case.b");
   }
   log_warning({WarningCode::inconsistent, field.name,
-               "the vectors were not measured on the frames of this case as they were rendered; the error of the "
-               "estimator includes that of noise"});
+               fmt::format("the vectors {} measured on the frames of this case as they were rendered; the error of the "
+                           "estimator includes that of noise",
+                           named ? "were not" : "may not have been")});
   return false;
 }
 

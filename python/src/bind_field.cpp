@@ -26,35 +26,8 @@ namespace {
 
 using Field = std::shared_ptr<MeasuredField>;
 
-Field correlate(ImageArray const& a, ImageArray const& b, std::vector<std::string> const& overrides,
-                std::string const& device_name, nb::handle progress) {
-  return run(
-      [&] {
-        GivenImage const reference = read_array(a, "a"), flow = read_array(b, "b");
-        CorrelationFile const given = default_correlation(overrides);
-        Backend const device = open_device(device_name);
-        auto field = std::make_shared<MeasuredField>();
-        Measurement measured = correlate_frames("a", reference.image, "b", flow.image, given.settings, device);
-        if (auto const advice = locking_advice(reference.image); advice && frames_correlate(measured.field))
-          measured.field.warnings.push_back(*advice);
-        field->field = std::move(measured.field);
-        field->foreign = false;
-        field->settings = given.settings;
-        field->resolved = given.resolved;
-        field->device = measured.device;
-        field->seconds = measured.seconds;
-        field->reference_sha256 = pixel_sha256(reference.image, reference.sample_bits);
-        field->flow_sha256 = pixel_sha256(flow.image, flow.sample_bits);
-        return field;
-      },
-      progress);
-}
-
-/// Measures the displacement field common to many pairs. @param files  frames A and B of each pair in turn
-Field correlate_ensemble(std::vector<std::string> const& files, std::vector<std::string> const& overrides) {
-  CorrelationFile const given = default_correlation(overrides);
-  SourceFiles sources;
-  Measurement measured = correlate_ensemble_files(files, given.settings, sources);
+/// Returns the field of a measurement with these settings.
+Field make_field(Measurement measured, CorrelationFile const& given) {
   auto field = std::make_shared<MeasuredField>();
   field->field = std::move(measured.field);
   field->foreign = false;
@@ -73,8 +46,8 @@ Field correlate(ImageArray const& a, ImageArray const& b, std::vector<std::strin
         Image<double> const reference = read_samples(samples_a), flow = read_samples(samples_b);
         CorrelationFile const given = default_correlation(overrides);
         Measurement measured = correlate_frames("a", reference, "b", flow, given.settings, open_device(device_name));
-        if (std::string advice = locking_advice(reference); frames_correlate(measured.field) && !advice.empty())
-          measured.field.warnings.push_back(std::move(advice));
+        if (auto const advice = locking_advice(reference); advice && frames_correlate(measured.field))
+          measured.field.warnings.push_back(*advice);
         Field field = make_field(std::move(measured), given);
         field->reference_sha256 = pixel_sha256(reference, samples_a.bits);
         field->flow_sha256 = pixel_sha256(flow, samples_b.bits);

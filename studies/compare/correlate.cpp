@@ -143,23 +143,16 @@ void check_sizes(NamedFrame const& reference, NamedFrame const& flow, Correlatio
 
 /// Warns of pixels that are NaN or infinite, which the correlator excludes from every window; throws if there are no
 /// others.
-void check_finite(std::string const& reference_name, Image<double> const& reference, std::string const& flow_name,
-                  Image<double> const& flow) {
-  for (auto const& [name, image] : {std::pair(reference_name, &reference), std::pair(flow_name, &flow)}) {
-    std::size_t const bad = count_not_finite(*image);
-    if (bad == image->size()) {
-      throw DataError(ErrorCode::invalid_value, name,
-                      fmt::format("all of its {} pixels are nan or infinite; export it again", bad));
-    }
-    if (bad > 0) {
-      log_warning({WarningCode::excluded, name,
-                   fmt::format("{} of {} pixels are nan or infinite, and are excluded from their windows", bad,
-                               image->size())});
-    }
+void check_finite(NamedFrame const& frame, std::size_t not_finite) {
+  auto const size = static_cast<std::size_t>(frame.columns * frame.rows);
+  if (not_finite == size) {
+    throw DataError(ErrorCode::invalid_value, frame.name,
+                    fmt::format("all of its {} pixels are nan or infinite; export it again", not_finite));
   }
   if (not_finite > 0) {
-    spdlog::warn("{}: {} of {} pixels are nan or infinite, and are excluded from their windows", frame.name, not_finite,
-                 size);
+    log_warning(
+        {WarningCode::excluded, frame.name,
+         fmt::format("{} of {} pixels are nan or infinite, and are excluded from their windows", not_finite, size)});
   }
 }
 
