@@ -10,7 +10,6 @@ namespace gladstone {
 
 /// Displacement, besides the ray truth, with which vectors are compared.
 struct ReferenceDisplacement {
-  char const* key;       ///< of its maps in a report
   char const* measures;  ///< key of its error measures
   char const* name;      ///< in figures and tables
   char const* row;       ///< name in the report on the terminal

@@ -10,7 +10,6 @@
 #include "studies/figures/design_map.h"
 #include "studies/figures/layout_figure.h"
 #include "studies/figures/piv_map.h"
-#include "studies/report/drawn_block.h"
 
 namespace gladstone {
 namespace {
@@ -87,12 +86,12 @@ std::string layout_text(LayoutView const& view) {
 }
 
 ReportBlock layout_block(LayoutView const& view, std::string const& whose) {
-  return drawn_block("Layout of " + whose, layout_text(view), make_layout_figure(view));
+  return Chart{"layout", "Layout of " + whose, layout_text(view), {{"", make_layout_figure(view)}}};
 }
 
 ReportSection layout_section(LayoutView const& view, std::string const& whose) {
-  ReportBlock map =
-      drawn_block("Design map of " + whose, view.piv ? text_of_stop(*view.piv) : map_text(view.bench), make_map(view));
+  Chart map{"design_map", "Design map of " + whose, view.piv ? text_of_stop(*view.piv) : map_text(view.bench),
+            {{"", make_map(view)}}};
   return {"Set-up", {layout_block(view, whose), std::move(map)}};
 }
 

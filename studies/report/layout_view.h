@@ -32,8 +32,7 @@ Figure make_layout_figure(LayoutView const& view);
 std::string layout_text(LayoutView const& view);
 
 /// Returns the section "Set-up": the layout to scale, and the design map with the set-up as a point (for PIV, particle
-/// images against f-number). Both are drawn now and embedded in the page; without gnuplot, they are replaced by their
-/// descriptions.
+/// images against f-number).
 /// @param whose  "the measurement", "the base"
 ReportSection layout_section(LayoutView const& view, std::string const& whose);
 

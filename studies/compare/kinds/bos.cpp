@@ -35,9 +35,8 @@ constinit ComparisonKind const bos_comparison{
     .chain = BudgetChain::bos,
     .title = "BOS",
     .references =
-        {{{.key = "eq9", .measures = "eq9", .name = "Eq. 9", .row = "Eq. 9", .against = "against Eq. 9", .of = eq9},
-          {.key = "eq9_cone",
-           .measures = "eq9_cone",
+        {{{.measures = "eq9", .name = "Eq. 9", .row = "Eq. 9", .against = "against Eq. 9", .of = eq9},
+          {.measures = "eq9_cone",
            .name = "aperture-averaged Eq. 9",
            .row = "aperture-averaged Eq. 9",
            .against = "against aperture-averaged Eq. 9",

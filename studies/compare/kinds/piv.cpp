@@ -24,9 +24,8 @@ constinit ComparisonKind const piv_comparison{
     .chain = BudgetChain::piv,
     .title = "PIV",
     .references =
-        {{{.key = "flow", .measures = "flow", .name = "flow", .row = "flow", .against = "against the flow", .of = flow},
-          {.key = "ambient",
-           .measures = "ambient_truth",
+        {{{.measures = "flow", .name = "flow", .row = "flow", .against = "against the flow", .of = flow},
+          {.measures = "ambient_truth",
            .name = "without medium",
            .row = "ray truth without medium",
            .against = "against truth without medium",
