@@ -120,20 +120,21 @@ Json layer_json(Layer const& layer) {
 Json panel_json(Figure const& figure, Panel const& panel) {
   constexpr std::array places{"none",  "top_left",    "top_right", "bottom_left", "bottom_right",
                               "above", "above_right", "right",     "below"};
-  Json json{{"box",
-             {{"left", panel.box.left}, {"right", panel.box.right}, {"top", panel.box.top}, {"bottom", panel.box.bottom}}},
-            {"title", panel.title},
-            {"x", axis_json(panel.x)},
-            {"y", axis_json(panel.y)},
-            {"layers", Json::array()},
-            {"texts", panel_texts(figure, panel)},
-            {"legend",
-             {{"place", word(places, panel.legend.place)},
-              {"top", panel.legend.top_px},
-              {"horizontal", panel.legend.horizontal}}},
-            {"border", word(std::array{"full", "bottom", "none"}, panel.border)},
-            {"grid", word(std::array{"none", "horizontal", "both"}, panel.grid)},
-            {"equal", panel.equal_scales}};
+  Json json{
+      {"box",
+       {{"left", panel.box.left}, {"right", panel.box.right}, {"top", panel.box.top}, {"bottom", panel.box.bottom}}},
+      {"title", panel.title},
+      {"x", axis_json(panel.x)},
+      {"y", axis_json(panel.y)},
+      {"layers", Json::array()},
+      {"texts", panel_texts(figure, panel)},
+      {"legend",
+       {{"place", word(places, panel.legend.place)},
+        {"top", panel.legend.top_px},
+        {"horizontal", panel.legend.horizontal}}},
+      {"border", word(std::array{"full", "bottom", "none"}, panel.border)},
+      {"grid", word(std::array{"none", "horizontal", "both"}, panel.grid)},
+      {"equal", panel.equal_scales}};
   if (panel.map) json["map"] = map_json(*panel.map);
   for (Layer const& layer : panel.layers) json["layers"].push_back(layer_json(layer));
   return json;

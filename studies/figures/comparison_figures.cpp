@@ -17,8 +17,8 @@ std::vector<NamedFigure> make_comparison_figures(Comparison const& comparison) {
   std::vector<ErrorSeries> series;
   auto const add_maps = [&](std::string name, std::vector<Vec2d> const& values) {
     if (gridded)
-      maps.push_back({std::move(name), component_map(measured, values, &Vec2d::x),
-                      component_map(measured, values, &Vec2d::y)});
+      maps.push_back(
+          {std::move(name), component_map(measured, values, &Vec2d::x), component_map(measured, values, &Vec2d::y)});
   };
   auto const add_series = [&](std::string name, std::vector<Vec2d> const& from) {
     std::vector<Vec2d> error(measured.size(), Vec2d{std::nan(""), std::nan("")});

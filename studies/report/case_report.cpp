@@ -34,9 +34,9 @@ void add_maps(CaseView& view) {
   view.add_map("ray truth", truth);
   ComparisonKind const& kind = comparison_kind(all);
   for (ReferenceDisplacement const& one : kind.references) view.add_map(one.name, one.of(all));
-  bool const estimated = std::any_of(all.measured.sigma_px.begin(), all.measured.sigma_px.end(), [](Vec2d const& sigma) {
-    return std::isfinite(sigma.x) || std::isfinite(sigma.y);
-  });
+  bool const estimated =
+      std::any_of(all.measured.sigma_px.begin(), all.measured.sigma_px.end(),
+                  [](Vec2d const& sigma) { return std::isfinite(sigma.x) || std::isfinite(sigma.y); });
   if (estimated) view.add_map("estimated uncertainty", all.measured.sigma_px);
   view.add_error("against ray truth", truth);
   view.add_error(kind.references.front().against, kind.references.front().of(all));
@@ -50,15 +50,14 @@ std::optional<Chart> reliability_chart(Comparison const& all) {
   std::vector<UncertaintyBin> const bins =
       uncertainty_bins(all.measured.displacement_px, all.recorded().displacement_px, all.measured.sigma_px, all.mask);
   if (bins.empty()) return std::nullopt;
-  return Chart{
-      "reliability",
-      "Does the estimated uncertainty describe the error?",
-      fmt::format(
-          "In {} bins of equal count the estimated uncertainty grows from {:.3g} to {:.3g} px, and the rms error against "
-          "{} is {:.3g} px in the first and {:.3g} px in the last. On the dashed line they are equal.",
-          bins.size(), bins.front().rms_sigma_px, bins.back().rms_sigma_px, all.recorded_name(),
-          bins.front().rms_error_px, bins.back().rms_error_px),
-      {{"", make_reliability_figure(bins)}}};
+  return Chart{"reliability",
+               "Does the estimated uncertainty describe the error?",
+               fmt::format("In {} bins of equal count the estimated uncertainty grows from {:.3g} to {:.3g} px, and "
+                           "the rms error against "
+                           "{} is {:.3g} px in the first and {:.3g} px in the last. On the dashed line they are equal.",
+                           bins.size(), bins.front().rms_sigma_px, bins.back().rms_sigma_px, all.recorded_name(),
+                           bins.front().rms_error_px, bins.back().rms_error_px),
+               {{"", make_reliability_figure(bins)}}};
 }
 
 TextTable errors_table(CaseView const& view) {
@@ -149,7 +148,8 @@ void add_error_sections(ReportPage& page, CaseView const& view) {
   auto const take = [&figures](std::string_view name) {
     return std::find_if(figures.begin(), figures.end(), [name](auto const& one) { return one.name == name; })->figure;
   };
-  Chart histograms{"histogram", "Distribution of the error", page.findings.front(), {{"all", take("error_histograms")}}};
+  Chart histograms{
+      "histogram", "Distribution of the error", page.findings.front(), {{"all", take("error_histograms")}}};
   for (ErrorSeries const& one : view.errors)
     histograms.figures.push_back({one.name, make_error_histograms("Measurement error " + one.name, {one})});
   page.sections.push_back({"Errors", {std::move(histograms), errors_table(view)}});

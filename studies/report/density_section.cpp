@@ -69,7 +69,8 @@ ReportSection density_section(ReportPage& page, Reconstruction const& reconstruc
   ReportSection section{"Density", {Paragraph{words}}};
   section.blocks.emplace_back(
       Chart{"density", "Maps of the density", words, {{"", make_density_figure(reconstruction)}}});
-  section.blocks.emplace_back(Chart{"density_profile", "Profile of the density",
+  section.blocks.emplace_back(Chart{"density_profile",
+                                    "Profile of the density",
                                     describe_density_profile(reconstruction),
                                     {{"", make_density_profile(reconstruction)}}});
   section.blocks.emplace_back(numbers_table(summary));

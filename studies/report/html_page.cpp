@@ -158,9 +158,8 @@ std::string html_page(ReportPage const& page) {
       escaped(embedded::d3_licence));
   html += "</main>\n<div id=\"spoken\" aria-live=\"polite\"></div>\n";
   html += "<script type=\"application/json\" id=\"data\">" + json_in_script(data) + "</script>\n";
-  html +=
-      fmt::format("<script>{}</script>\n<script>{}</script>\n<script>{}</script>\n</body>\n</html>\n", embedded::d3_js,
-                  embedded::figure_js, embedded::report_js);
+  html += fmt::format("<script>{}</script>\n<script>{}</script>\n<script>{}</script>\n</body>\n</html>\n",
+                      embedded::d3_js, embedded::figure_js, embedded::report_js);
   return html;
 }
 

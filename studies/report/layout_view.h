@@ -26,7 +26,7 @@ struct LayoutView {
 std::optional<LayoutView> layout_view(CaseSetup loaded);
 
 /// Returns the layout.
-Figure make_layout_figure(LayoutView const& view);
+Figure make_view_figure(LayoutView const& view);
 
 /// Describes the contents of the layout in numbers.
 std::string layout_text(LayoutView const& view);

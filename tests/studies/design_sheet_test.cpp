@@ -46,10 +46,10 @@ std::unique_ptr<MadeSheet> sheet_of(std::string const& text) {
 TEST(DesignSheet, HasEveryFormulaOfBosFromF1ToF27) {
   auto const made = sheet_of(sheet_setup);
   std::set<std::string> ids;
-  for (SheetRow const& row : made->sheet.rows) {
+  for (ResultRow const& row : made->sheet.rows) {
     ids.insert(row.id);
     EXPECT_TRUE(std::isfinite(row.value)) << row.key;
-    EXPECT_FALSE(row.formula.empty() || row.source.empty() || row.name.empty()) << row.key;
+    EXPECT_FALSE(row.formula.empty() || row.source.empty() || row.label.empty()) << row.key;
   }
   for (int number = 1; number <= 27; ++number)
     EXPECT_EQ(ids.count(std::string("F").append(std::to_string(number))), 1u) << number;
@@ -114,7 +114,7 @@ TEST(DesignSheet, LightLimitsTheStop) {
               testing::HasSubstr("no f-number satisfies all limits: the largest, f/11, has a cone of 2.386 mm"));
   EXPECT_THAT(dim.row("f_number_floor").note, testing::HasSubstr(fmt::format("{:.3g} times the light", missing)));
   DesignSheet const automatic = sheet_of(sheet_setup)->sheet;
-  EXPECT_TRUE(std::none_of(automatic.rows.begin(), automatic.rows.end(), [](SheetRow const& row) {
+  EXPECT_TRUE(std::none_of(automatic.rows.begin(), automatic.rows.end(), [](ResultRow const& row) {
     return row.key == "f_number_light";
   })) << "exposure = \"auto\" takes what light it needs";
 }
@@ -126,7 +126,7 @@ TEST(DesignSheet, SaysWhereTheRandomErrorWasNotMeasured) {
     return sheet_of(std::string(sheet_setup) + more)->sheet.row("random_error_px");
   };
   std::string const noise = "[camera.noise]\nfull_well_e = 10000\n";
-  SheetRow const within = row(noise);
+  ResultRow const within = row(noise);
   EXPECT_EQ(within.margin, Margin::green);
   EXPECT_THAT(within.note, testing::Not(testing::HasSubstr("beyond")));
   for (auto const& [more, what] :

@@ -35,12 +35,12 @@ ReportPage hostile_page() {
   page.title = hostile;
   page.question = hostile;
   page.findings = {hostile};
-  page.sections = {{hostile,
-                    {Paragraph{hostile}, TextList{{hostile}}, Verbatim{hostile, hostile},
-                     TextTable{hostile, {hostile}, {{{hostile}, TableCell::of(0.1234567)}}, true},
-                     Chart{"curves", hostile, hostile}, FramePictures{hostile, hostile, "a", "b", "one", "two"},
-                     Chart{"figure", hostile, hostile, {{hostile, titled_figure(hostile)}}},
-                     FigureFile{hostile, hostile}}}};
+  page.sections = {
+      {hostile,
+       {Paragraph{hostile}, TextList{{hostile}}, Verbatim{hostile, hostile},
+        TextTable{hostile, {hostile}, {{{hostile}, TableCell::of(0.1234567)}}, true}, Chart{"curves", hostile, hostile},
+        FramePictures{hostile, hostile, "a", "b", "one", "two"},
+        Chart{"figure", hostile, hostile, {{hostile, titled_figure(hostile)}}}, FigureFile{hostile, hostile}}}};
   page.data = {{"text", hostile}};
   return page;
 }
