@@ -68,14 +68,14 @@ std::string rows_csv(std::vector<ResultRow> const& rows) {
   return text;
 }
 
-std::string groups_text(std::string const& heading, std::vector<ResultGroup> const& groups) {
+std::string groups_text(std::string const& heading, std::vector<ResultGroup> const& groups, int digits) {
   std::string header = fmt::format("  {:<16}", heading), text;
   for (ResultGroup const& group : groups) {
     text += fmt::format("  {:<16}", group.name);
     for (ResultRow const& row : group.rows) {
       std::string const column = row.label + (row.unit.empty() ? "" : " [" + row.unit + ']');
       if (&group == &groups.front()) header += fmt::format("  {:>12}", column);
-      text += fmt::format("  {:>{}.4g}", row.value, std::max<std::size_t>(12, column.size()));
+      text += fmt::format("  {:>{}.{}g}", row.value, std::max<std::size_t>(12, column.size()), digits);
     }
     text += '\n';
   }

@@ -55,6 +55,7 @@ struct ResultGroup {
 
 /// Formats a table with a line per group and a column per row.
 /// @param heading  of the names of the groups
-std::string groups_text(std::string const& heading, std::vector<ResultGroup> const& groups);
+/// @param digits   number of significant digits
+std::string groups_text(std::string const& heading, std::vector<ResultGroup> const& groups, int digits = 4);
 
 }  // namespace gladstone

@@ -188,7 +188,7 @@ const figures = (function () {
       if (panel.map) drawMap(svg, panel.map, box, x, y);
       for (const layer of layers) {
         const drawn = drawLayer(room, layer, x, y, box.bottom);
-        if (figure.kind === "drawing" || !["line", "points", "errors", "bars", "levels"].includes(layer.kind) || drawn.length > 3000) continue;
+        if (figure.kind === "drawing" || !["line", "points", "errors", "bars", "levels"].includes(layer.kind) || drawn.length > 3000 || (layer.notes && !layer.notes.length)) continue;
         for (const i of drawn) {
           const wide = layer.kind === "bars" ? Math.abs(x(layer.columns[0][i] + layer.columns[2][i]) - x(layer.columns[0][i])) : 11, px = x(layer.columns[0][i]), py = y(layer.columns[1][i]);
           const zero = layer.kind === "bars" ? (y.base ? box.bottom : y(0)) : py;

@@ -77,7 +77,7 @@
       lines.push(Object.assign({ kind: axis.numeric ? "line" : "errors", columns: [column("x"), column("y"), column("low"), column("high")] }, look));
     });
     const x = axisFigure(axis), right = guide && chosen.y === guide.measure;
-    if (right) layers.push({ kind: "line", columns: [[x.low, x.high], [guide.value, guide.value]], colour: colours[6], dash: "dashed", width: 1.5, name: guide.text, notes: [guide.text, guide.text] });
+    if (right) layers.push({ kind: "line", columns: [[x.low, x.high], [guide.value, guide.value]], colour: colours[6], dash: "dashed", width: 1.5, name: guide.text, notes: [] });
     const all = layers.concat(lines), least = d3.min([].concat(...lines.map((layer) => layer.columns[2])));
     const names = all.map((layer) => layer.name).filter(Boolean), wide = 40 + 6.7 * d3.max(names.concat(""), (name) => name.length);
     return page({ x: x, y: { label: labelled(chosen.y), logarithmic: chosen.log, low: chosen.log || least < 0 ? null : 0 }, grid: "horizontal", layers: all }, Math.ceil(names.length / Math.max(1, Math.floor(818 / wide))));

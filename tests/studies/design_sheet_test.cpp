@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "render/base/units.h"
 #include "studies/design/sheet.h"
+#include "studies/design/sheet_text.h"
 #include "studies/figures/design_map.h"
 #include "studies/figures/layout_figure.h"
 #include "studies/figures/piv_map.h"
@@ -53,6 +55,25 @@ TEST(DesignSheet, HasEveryFormulaOfBosFromF1ToF27) {
   }
   for (int number = 1; number <= 27; ++number)
     EXPECT_EQ(ids.count(std::string("F").append(std::to_string(number))), 1u) << number;
+}
+
+// A formula is one row: text, JSON and CSV follow from it.
+TEST(DesignSheet, IsTextJsonAndCsvOfTheSameRows) {
+  DesignSheet sheet = sheet_of(sheet_setup)->sheet;
+  sheet.rows.push_back({.id = "F99", .key = "new_mm", .symbol = "x", .label = "new", .value = 1.5, .unit = "mm"});
+  std::string const text = sheet_text(sheet), csv = rows_csv(sheet.rows);
+  nlohmann::ordered_json const json = sheet_json(sheet);
+  ASSERT_EQ(json["rows"].size(), sheet.rows.size());
+  for (std::size_t i = 0; i < sheet.rows.size(); ++i) {
+    ResultRow const& row = sheet.rows[i];
+    EXPECT_EQ(json["rows"][i]["value"], row.value) << row.key;
+    EXPECT_THAT(text, testing::HasSubstr("  " + row.id));
+    EXPECT_THAT(text, testing::HasSubstr(row.label));
+    EXPECT_THAT(csv, testing::HasSubstr('\n' + row.key + ',' + row.symbol + ','));
+  }
+  EXPECT_EQ(json["new_mm"], 1.5);
+  EXPECT_THAT(text, testing::ContainsRegex("F99 new, x +1.5 mm"));
+  EXPECT_THAT(csv, testing::HasSubstr("\nnew_mm,x,new,1.5,mm,\n"));
 }
 
 TEST(DesignSheet, IsTableOneToThePrintedDigits) {
