@@ -29,7 +29,7 @@ char const* margin_word(Margin margin) {
 
 std::string value_text(ResultRow const& row) {
   if (!std::isfinite(row.value)) return std::isnan(row.value) ? "unknown" : "infinite";
-  return fmt::format("{:.7g}{}{}", row.value, row.unit.empty() ? "" : " ", row.unit);
+  return fmt::format("{:.6g}{}{}", row.value, row.unit.empty() ? "" : " ", row.unit);
 }
 
 void append_rows(std::vector<ResultRow>& rows, std::vector<ResultRow> more, std::string const& object) {
@@ -42,7 +42,7 @@ void append_rows(std::vector<ResultRow>& rows, std::vector<ResultRow> more, std:
 std::string rows_text(std::vector<ResultRow> const& rows) {
   std::string text;
   for (ResultRow const& row : rows) {
-    text += fmt::format("  {:<50}{}", row.symbol.empty() ? row.label : row.label + ", " + row.symbol, value_text(row));
+    text += fmt::format("  {:<49} {}", row.symbol.empty() ? row.label : row.label + ", " + row.symbol, value_text(row));
     if (row.margin != Margin::none) text += fmt::format("  [{}]", margin_word(row.margin));
     text += (row.note.empty() ? "" : "  (" + row.note + ')') + '\n';
   }

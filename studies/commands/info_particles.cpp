@@ -65,7 +65,7 @@ std::vector<ResultRow> particle_rows(ExpectedParticles const& expected, CaseSetu
                     .value = expected.per_pixel * window * window});
   add("source_density", "N_S", "fraction of the image covered by particles", expected.source_density, "",
       "Adrian 1991, Annu. Rev. Fluid Mech. 23:261", unread);
-  add_spread(rows, "photons", "photons of a particle through the lens", expected.photons, 1, "", "Mie");
+  add_spread(rows, "photons", "photons through the lens", expected.photons, 1, "", "Mie");
   add_spread(rows, "electrons_peak", "electrons at the peak", expected.peak_electrons, 1, "", "Mie");
   add("full_well_e", "", "full well", full_well, "e", "setup");
   add("saturated_fraction", "", "fraction of the particles that saturate", expected.saturated, "");

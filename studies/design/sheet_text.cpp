@@ -35,7 +35,7 @@ std::string sheet_text(DesignSheet const& sheet) {
   std::string text;
   for (ResultRow const& row : rows) {
     text +=
-        fmt::format("  {:<4}{:<50}{:<28}{}\n", row.id, row.symbol.empty() ? row.label : row.label + ", " + row.symbol,
+        fmt::format("  {:<4}{:<49} {:<28}{}\n", row.id, row.symbol.empty() ? row.label : row.label + ", " + row.symbol,
                     value_text(row), margin_word(row.margin));
     text += fmt::format("      = {}   [{}]{}{}\n", row.formula, row.source, row.note.empty() ? "" : "; ", row.note);
   }

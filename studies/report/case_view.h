@@ -20,9 +20,11 @@ struct CaseView {
 
   explicit CaseView(Comparison compared) : comparison(std::move(compared)) {}
 
-  void add_map(std::string name, std::vector<Vec2d> const& values) {
+  /// Adds maps of values to 1e-6 px, far below the resolution of any measurement.
+  void add_map(std::string name, std::vector<Vec2d> values) {
     DisplacementField const& lattice = comparison.measured;
     if (values.empty() || lattice.columns <= 1 || lattice.rows <= 1) return;
+    for (Vec2d& value : values) value = Vec2d{std::round(value.x * 1e6), std::round(value.y * 1e6)} / 1e6;
     maps.push_back({std::move(name), make_vector_maps(lattice, values, "px")});
   }
   /// Adds the measurement minus a reference at the compared vectors.

@@ -117,7 +117,7 @@ TEST_F(Reports, OfACaseAddUpTheirCauses) {
     if (error[i].is_null()) continue;
     double sum = 0;
     for (nlohmann::json const& cause : causes) sum += cause[i].get<double>();
-    EXPECT_NEAR(sum, error[i].get<double>(), 2e-6);  // four numbers of at most 1 px, rounded to seven digits
+    EXPECT_NEAR(sum, error[i].get<double>(), 2e-6);  // four numbers rounded to 1e-6 px
     ++told;
   }
   EXPECT_GT(told, 0u);
