@@ -15,6 +15,7 @@ namespace gladstone {
 
 CommandBody attach_design(CLI::App& app, GlobalOptions const& options) {
   auto request = std::make_shared<DesignRequest>();
+  auto csv = std::make_shared<bool>(false);
   app.add_option("setup", request->setup, "Setup file (TOML), with [requirements] or without")->required();
   app.add_option("--set", request->overrides, "Override a key: --set lens.f_number=16")
       ->take_all()
@@ -36,11 +37,12 @@ CommandBody attach_design(CLI::App& app, GlobalOptions const& options) {
   app.add_option("--seed", request->verification.seed, "Seed of the dots and the noise in the simulations")
       ->check(whole_number(0, std::int64_t{1} << 62))
       ->capture_default_str();
-  return [request, &options] {
+  app.add_flag("--csv", *csv, "Print the design sheet as CSV: key, symbol, label, value, unit and source");
+  return [request, csv, &options] {
     request->open_device = [&options] { return options.open_device(); };
     DesignReport const report = design(*request);
     log_warnings(report.warnings);
-    print_result(options, json_text(report.json), report.text);
+    print_result(options, json_text(report.json), *csv ? rows_csv(report.rows) : report.text);
     return report.feasible ? ok : infeasible;
   };
 }

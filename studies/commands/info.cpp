@@ -14,8 +14,14 @@
 namespace gladstone {
 namespace {
 
-int print(GlobalOptions const& options, Description const& description) {
-  print_result(options, description.json, description.text);
+/// @param csv  true: prints the quantities as CSV instead of the text
+/// @throws DataError for CSV if the description has no quantities
+int print(GlobalOptions const& options, Description const& description, bool csv) {
+  if (csv && description.rows.empty()) {
+    throw DataError(ErrorCode::arguments, "info",
+                    "writes CSV for lens, mie, particles and setup only; use --json instead of --csv");
+  }
+  print_result(options, description.json, csv ? rows_csv(description.rows) : description.text);
   return ok;
 }
 
@@ -26,6 +32,7 @@ CommandBody attach_info(CLI::App& app, GlobalOptions const& options) {
     std::string kind, file, dataset, axes, setup, figure, x, m;
     std::vector<std::string> overrides;
     LensQuestion lens;
+    bool csv = false;
   };
   auto arguments = std::make_shared<Arguments>();
   app.add_option("kind", arguments->kind, "field, image, lens, mie, particles or setup")
@@ -51,6 +58,9 @@ CommandBody attach_info(CLI::App& app, GlobalOptions const& options) {
   app.add_option("--x", arguments->x, "Size parameter pi d n / lambda of the sphere, for info mie");
   app.add_option("--m", arguments->m,
                  "Refractive index of the sphere relative to its surroundings, for info mie: RE or RE,IM");
+  app.add_flag("--csv", arguments->csv,
+               "Print the quantities of info lens, mie, particles or setup as CSV: key, symbol, label, value, unit and "
+               "source");
   return [arguments, &options] {
     check_figure_ending(arguments->figure);
     if (arguments->kind == "mie") {
@@ -58,7 +68,7 @@ CommandBody attach_info(CLI::App& app, GlobalOptions const& options) {
         throw DataError(ErrorCode::arguments, arguments->file, "is not read by info mie; give only --x and --m");
       MieQuestion mie = read_mie_question(arguments->x, arguments->m);
       mie.figure = arguments->figure;
-      return print(options, describe_mie(mie));
+      return print(options, describe_mie(mie), arguments->csv);
     }
     if (!arguments->x.empty() || !arguments->m.empty()) {
       throw DataError(ErrorCode::arguments, arguments->x.empty() ? "--m" : "--x",
@@ -76,18 +86,22 @@ CommandBody attach_info(CLI::App& app, GlobalOptions const& options) {
     if (arguments->kind == "lens") {
       arguments->lens.file = arguments->file;
       arguments->lens.figure = arguments->figure;
-      return print(options, describe_lens(arguments->lens));
+      return print(options, describe_lens(arguments->lens), arguments->csv);
     }
     bool const particles = arguments->kind == "particles";
     if (particles || arguments->kind == "setup") {
       SetupDocument setup = SetupDocument::from_file(arguments->file);
       for (std::string const& assignment : arguments->overrides) setup.override_key(assignment);
-      return print(options, particles ? describe_particles(setup, arguments->file)
-                                      : describe_setup(setup, arguments->file, arguments->figure));
+      return print(options,
+                   particles ? describe_particles(setup, arguments->file)
+                             : describe_setup(setup, arguments->file, arguments->figure),
+                   arguments->csv);
     }
-    if (arguments->kind == "image") return print(options, describe_image(arguments->file));
-    return print(options, describe_field(arguments->file, arguments->dataset, arguments->axes, arguments->setup,
-                                         arguments->figure));
+    if (arguments->kind == "image") return print(options, describe_image(arguments->file), arguments->csv);
+    return print(
+        options,
+        describe_field(arguments->file, arguments->dataset, arguments->axes, arguments->setup, arguments->figure),
+        arguments->csv);
   };
 }
 

@@ -33,7 +33,7 @@ bool draw_setup(std::string const& path, CaseSetup loaded) {
   Setup const setup = loaded.setup;
   return draw_or_warn([&] {
     auto const view = layout_view(std::move(loaded));
-    draw_figure(view ? make_layout_figure(*view) : make_camera_layout_figure(setup), path);
+    draw_figure(view ? make_view_figure(*view) : make_camera_layout_figure(setup), path);
   });
 }
 
@@ -41,6 +41,7 @@ bool draw_setup(std::string const& path, CaseSetup loaded) {
 
 Description describe_setup(SetupDocument const& setup, std::string const& name, std::string const& figure) {
   std::string text;
+  std::vector<ResultRow> rows;
   nlohmann::ordered_json cameras = nlohmann::ordered_json::object(), only;
   Warnings warned;  // several cameras may have the same warnings
   auto const warn_once = [&warned](Warnings const& warnings) {
@@ -62,11 +63,12 @@ Description describe_setup(SetupDocument const& setup, std::string const& name, 
       only["figure"] = path;
       text += fmt::format("  figure: {}\n", path);
     }
+    append_rows(rows, overview.rows, camera.name);
     if (!camera.name.empty()) cameras[camera.name] = only;
   }
   if (figure.empty()) text += fmt::format("to draw the layout: gladstone info setup {} --figure layout.png\n", name);
   nlohmann::ordered_json const json = cameras.empty() ? only : nlohmann::ordered_json{{"cameras", cameras}};
-  return {json_text(json), text};
+  return {json_text(json), text, std::move(rows)};
 }
 
 }  // namespace gladstone

@@ -10,11 +10,10 @@ namespace gladstone {
 
 /// Reference displacement, in addition to the ray truth, with which vectors are compared.
 struct ReferenceDisplacement {
-  char const* key;       ///< key of the reference's maps in a report
-  char const* measures;  ///< key of the error measures against the reference
-  char const* name;      ///< name of the reference in figures and tables
-  char const* row;       ///< name of the reference in the report on the terminal
-  char const* against;   ///< name of the error against the reference: "against Eq. 9"
+  char const* measures;  ///< key of its error measures
+  char const* name;      ///< in figures and tables
+  char const* row;       ///< name in the report on the terminal
+  char const* against;   ///< name of the difference from it
   std::vector<Vec2d> const& (*of)(Comparison const& comparison);
 };
 

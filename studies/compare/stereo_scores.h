@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "analysis/vectors/displacement_field.h"
+#include "studies/case/result_rows.h"
 #include "studies/compare/stereo.h"
 
 namespace gladstone {
@@ -14,6 +15,10 @@ namespace gladstone {
 /// @param error, sigma  displacement minus truth, and standard uncertainty [m]
 std::array<ComponentErrors, 3> compute_component_errors(std::span<Vec3d const> error, std::span<Vec3d const> sigma,
                                                         std::span<VectorStatus const> status);
+
+/// Returns the error measures of u, v and w.
+/// @param pixel_size  on the sheet [m]
+std::vector<ResultGroup> error_groups(std::array<ComponentErrors, 3> const& errors, double pixel_size);
 
 /// Errors of a file of gladstone stereo against the truth that it contains.
 struct StereoScores {

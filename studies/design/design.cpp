@@ -101,6 +101,7 @@ void add_sheet(DesignRequest const& request, CaseSetup const& loaded, std::vecto
     }
   }
   report.json["sheet"] = sheet_json(sheet);
+  report.rows = sheet.rows;
   report.text += fmt::format("{}\n{}", request.setup, sheet_text(sheet));
   if (!uncertainty) return;
   report.json["uncertainty"] = uncertainty_json(*uncertainty);

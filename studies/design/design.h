@@ -8,6 +8,7 @@
 #include "render/base/warning.h"
 #include "render/setup/setup_table.h"
 #include "studies/case/backend.h"
+#include "studies/case/result_rows.h"
 #include "studies/design/verification.h"
 
 namespace gladstone {
@@ -27,6 +28,7 @@ struct DesignRequest {
 struct DesignReport {
   nlohmann::ordered_json json;
   std::string text;
+  std::vector<ResultRow> rows;  ///< of the design sheet
   Warnings warnings;
   bool feasible = true;  ///< by formula and, if simulated, in simulation; also true without requirements
 };

@@ -13,7 +13,7 @@ namespace gladstone {
 /// Quantities that follow from a setup of one camera, before anything is rendered.
 struct SetupOverview {
   std::string experiment;          ///< "bos", "piv" or "calibration"
-  std::vector<SheetRow> rows;      ///< quantities; the rows of the design sheet where it applies
+  std::vector<ResultRow> rows;     ///< quantities; the rows of the design sheet where it applies
   std::vector<std::string> notes;  ///< quantities that are not given, and the reason
   RenderCost cost;
 };

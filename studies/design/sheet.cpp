@@ -45,11 +45,6 @@ std::optional<double> closed_form_gradient(Setup const& setup) {
       make_closed_form(setup.medium));
 }
 
-char const* margin_word(Margin margin) {
-  constexpr char const* words[] = {"", "green", "marginal", "violated"};
-  return words[static_cast<int>(margin)];
-}
-
 Margin at_least(double value, double good, double least) {
   return value >= good ? Margin::green : value >= least ? Margin::marginal : Margin::violated;
 }
@@ -58,8 +53,8 @@ Margin at_most(double value, double good, double most) {
   return value <= good ? Margin::green : value <= most ? Margin::marginal : Margin::violated;
 }
 
-SheetRow const& DesignSheet::row(std::string const& key) const {
-  auto const found = std::find_if(rows.begin(), rows.end(), [&key](SheetRow const& row) { return row.key == key; });
+ResultRow const& DesignSheet::row(std::string const& key) const {
+  auto const found = std::find_if(rows.begin(), rows.end(), [&key](ResultRow const& row) { return row.key == key; });
   GLADSTONE_EXPECTS(found != rows.end());
   return *found;
 }

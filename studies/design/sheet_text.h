@@ -2,6 +2,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <vector>
 
 #include "studies/design/sheet.h"
 
@@ -13,6 +14,9 @@ std::string sheet_text(DesignSheet const& sheet);
 
 /// Formats the rows that miss the usual recommendation, in the form of sheet_text(); empty if every row meets it.
 std::string missed_rows_text(DesignSheet const& sheet);
+
+/// Returns the values of rows by their keys, fields of view as [width, height]; null: unknown.
+nlohmann::ordered_json sheet_values(std::vector<ResultRow> const& rows);
 
 /// Returns every value by its key, fields of view as [width, height], and all rows in "rows"; null: unknown.
 nlohmann::ordered_json sheet_json(DesignSheet const& sheet);

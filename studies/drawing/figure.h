@@ -55,8 +55,9 @@ struct Layer {
   double width = 2;       ///< width of lines
   Dash dash = Dash::solid;
   int marker = 0;      ///< 0: none, -1: the smallest dot, from 1: circle, square, triangles, diamond, then hollow ones
-  double size = 1;     ///< size of the marker
-  double opacity = 1;  ///< opacity of areas
+  double size = 1;     ///< of the marker
+  double opacity = 1;  ///< of areas
+  std::vector<std::string> notes = {};  ///< of every point, shown at the pointer in a browser; empty: its coordinates
 };
 
 enum class Palette { diverging, sequential, grey };
@@ -130,6 +131,12 @@ struct Figure {
   void add_title(std::string text) {
     labels.push_back({std::move(text), width_px / 2.0, 26, figures::TextRole::title});
   }
+};
+
+/// A figure with the name of its file, or by which a reader chooses it.
+struct NamedFigure {
+  std::string name;
+  Figure figure;
 };
 
 /// Returns a colour for lines and bars, distinguishable with a colour vision deficiency (Okabe & Ito 2008).

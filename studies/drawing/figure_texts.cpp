@@ -86,6 +86,25 @@ FigureFont font_of(Figure::Kind kind, std::string_view name) {
   return {};
 }
 
+std::string colour_of(TextRole role) {
+  std::string const start = ' ' + std::string(to_string(role)) + "_colour = '";
+  auto const found = embedded::figure_look.find(start);
+  GLADSTONE_ENSURES(found != std::string_view::npos);
+  return std::string(embedded::figure_look.substr(found + start.size(), 7));
+}
+
+std::vector<std::string> colours_of(figures::Palette palette) {
+  constexpr std::array<std::string_view, 3> starts{"\ndiverging = ", "\nsequential = ", "\ngrey = "};
+  auto const found = embedded::figure_look.find(starts[static_cast<std::size_t>(palette)]);
+  GLADSTONE_ENSURES(found != std::string_view::npos);
+  std::string_view const line =
+      embedded::figure_look.substr(found + 1, embedded::figure_look.find('\n', found + 1) - found);
+  std::vector<std::string> colours;
+  for (auto at = line.find('#'); at != std::string_view::npos; at = line.find('#', at + 1))
+    colours.emplace_back(line.substr(at, 7));
+  return colours;
+}
+
 double text_width(std::string_view text, FigureFont const& font) {
   double sum = 0;
   for (char const c : text) {

@@ -20,6 +20,12 @@ std::string_view to_string(figures::TextRole role);
 /// Reads the font NAME_font of a template.
 FigureFont font_of(Figure::Kind kind, std::string_view name);
 
+/// Returns the colour of a role in the templates, as "#rrggbb".
+std::string colour_of(figures::TextRole role);
+
+/// Returns the colours of a palette in the templates from its lower to its upper end, equally spaced.
+std::vector<std::string> colours_of(figures::Palette palette);
+
 /// Returns the width of a UTF-8 text of one line in DejaVu Sans [px].
 double text_width(std::string_view text, FigureFont const& font);
 

@@ -222,4 +222,26 @@ Figure make_budget_bars(std::string const& title, ErrorBudget const& budget) {
   return figure;
 }
 
+Figure make_reliability_figure(std::vector<UncertaintyBin> const& bins) {
+  Layer points{Layer::Kind::points, {{}, {}}, house_colour(0), "bins of equal count"};
+  points.marker = 1;
+  double largest = 0;
+  for (UncertaintyBin const& bin : bins) {
+    points.columns[0].push_back(bin.rms_sigma_px);
+    points.columns[1].push_back(bin.rms_error_px);
+    points.notes.push_back(fmt::format("uncertainty {:.4g} px, error {:.4g} px\n{} components", bin.rms_sigma_px,
+                                       bin.rms_error_px, bin.count));
+    largest = std::max({largest, bin.rms_sigma_px, bin.rms_error_px});
+  }
+  double const end = largest > 0 ? 1.05 * largest : 1;
+  Layer equal{.columns = {{0, end}, {0, end}}, .colour = "#808080", .name = "error equal to the uncertainty"};
+  equal.width = 1.5;
+  equal.dash = Dash::dashed;
+  Panel panel{.box = {92, 790, 30, 420}, .layers = {std::move(equal), std::move(points)}, .grid = Grid::both};
+  panel.x = {"estimated uncertainty, rms of the bin [px]", 0, end};
+  panel.y = {"error, rms of the bin [px]", 0, end};
+  panel.legend.place = LegendPlace::top_left;
+  return {820, 480, Figure::Kind::chart, {}, {std::move(panel)}};
+}
+
 }  // namespace gladstone

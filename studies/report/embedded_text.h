@@ -7,6 +7,7 @@ namespace gladstone::embedded {
 
 extern std::string_view const report_css;
 extern std::string_view const report_js;
+extern std::string_view const figure_js;   ///< studies/drawing/figure.js
 extern std::string_view const d3_js;       ///< Mike Bostock's d3, from Debian's package node-d3
 extern std::string_view const d3_licence;  ///< licence of d3, from the same package
 extern std::string_view const setup_keys;  ///< docs/reference/setup.md

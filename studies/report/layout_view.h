@@ -25,8 +25,8 @@ struct LayoutView {
 /// a laser sheet outside the plane Z = 0. The medium's field is not read.
 std::optional<LayoutView> layout_view(CaseSetup loaded);
 
-/// Returns the figure of the layout.
-Figure make_layout_figure(LayoutView const& view);
+/// Returns the layout.
+Figure make_view_figure(LayoutView const& view);
 
 /// Describes the contents of the layout in numbers.
 std::string layout_text(LayoutView const& view);

@@ -1,12 +1,12 @@
 #pragma once
 
 #include <cstddef>
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
 #include "analysis/vectors/displacement_field.h"
 #include "studies/design/design_point.h"
+#include "studies/drawing/figure.h"
 
 namespace gladstone {
 
@@ -33,7 +33,7 @@ double compute_rms(std::vector<double> const& values);
 
 /// Returns maps for the report, for vectors on a lattice: displacement, gradient, its combined uncertainty, and the
 /// displacement's contribution.
-nlohmann::json measured_maps(DisplacementField const& field, MeasuredGradients const& all);
+std::vector<NamedFigure> make_measured_maps(DisplacementField const& field, MeasuredGradients const& all);
 
 /// Draws displacement, gradient and its combined standard uncertainty on the lattice of the vectors.
 /// @return path of the figure

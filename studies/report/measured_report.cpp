@@ -52,7 +52,7 @@ SimulatedTwin twin_of(CaseSetup const& loaded, DisplacementField const& field, M
                        open_device(device.name()));
 }
 
-ReportSection causes_section(ReportPage& page, SimulatedTwin const* twin) {
+ReportSection causes_section(SimulatedTwin const* twin) {
   ReportSection causes{"Causes of error, by the simulated twin", {}};
   if (!twin || !twin->failed.empty()) {
     causes.blocks.emplace_back(
@@ -67,24 +67,19 @@ ReportSection causes_section(ReportPage& page, SimulatedTwin const* twin) {
       "Eq. 9, which contains the uncorrected bias and the bias of the estimator.",
       twin->columns, twin->rows, twin->seeds.size(), fmt::join(twin->seeds, ", "), twin->random_px,
       twin->systematic_px)});
-  page.data["budget"] = budget_json(twin->comparison.shown_budget());
+  ErrorBudget const& budget = twin->comparison.shown_budget();
+  causes.blocks.emplace_back(budget_chart("Error of every cause, of the simulated twin",
+                                          make_budget_bars("Error budget of the simulated twin", budget), budget));
   causes.blocks.emplace_back(
-      Chart{"budget", "rms of every cause, of the simulated twin", largest_term(twin->comparison.shown_budget())});
-  causes.blocks.emplace_back(
-      budget_table("Budget by cause, of the simulated twin and not of the measurement itself [px]",
-                   twin->comparison.shown_budget()));
+      budget_table("Budget by cause, of the simulated twin and not of the measurement itself [px]", budget));
   causes.blocks.emplace_back(Paragraph{explain_budget(twin->comparison)});
   return causes;
 }
 
-ReportSection maps_section(ReportPage& page, DisplacementField const& field, MeasuredGradients const& all,
-                           CameraSetup const& camera, std::string const& alt) {
-  page.data["fields"] = measured_maps(field, all);
-  page.data["grid"] = {{"columns", field.columns},
-                       {"rows", field.rows},
-                       {"x", component_json(field.position_px, &Vec2d::x)},
-                       {"y", component_json(field.position_px, &Vec2d::y)}};
-  ReportSection maps{"Maps", {Chart{"field", "Displacement, gradient and their uncertainty", alt}}};
+ReportSection maps_section(DisplacementField const& field, MeasuredGradients const& all, CameraSetup const& camera,
+                           std::string const& alt) {
+  ReportSection maps{
+      "Maps", {Chart{"field", "Displacement, gradient and their uncertainty", alt, make_measured_maps(field, all)}}};
   // fraction of the image; the vectors of full frames only omit half a window at each edge
   constexpr double doubtful = 0.5;
   if (double const share = spanned_share(field, camera); share < doubtful) {
@@ -172,9 +167,9 @@ ReportPage measured_report(ReportOptions const& options, Backend const& device) 
   std::optional<LayoutView> const drawn_bench = layout_view(loaded.copy());
   if (drawn_bench) page.sections.push_back(layout_section(*drawn_bench, "the measurement"));
   if (files.frames) page.sections.push_back({"Images", {frame_pictures(options.source, "The two frames")}});
-  if (gridded) page.sections.push_back(maps_section(page, field, all, camera, said.measurand));
+  if (gridded) page.sections.push_back(maps_section(field, all, camera, said.measurand));
   page.sections.push_back({"Uncertainty", {TextList{said.all()}, inputs_table(known)}});
-  page.sections.push_back(causes_section(page, known.twin));
+  page.sections.push_back(causes_section(known.twin));
   page.sections.push_back(density ? density_section(page, *density) : missing_density_section(command_of(options)));
   auto const draw = [&](std::string const& folder, std::string const& format) {
     std::vector<std::string> drawn;

@@ -17,7 +17,7 @@ constexpr std::size_t longest_plain_table = 20;  ///< maximum number of rows of 
 }  // namespace
 
 nlohmann::json study_data(StudyView const& study) {
-  nlohmann::json data{{"main", study.main}, {"terms", study.terms}};
+  nlohmann::json data{{"main", study.main}};
   if (study.knows("signal_px")) data["second"] = "signal_px";
   data["axes"] = data["measures"] = data["rows"] = nlohmann::json::array();
   std::vector<FigureAxis> axes;

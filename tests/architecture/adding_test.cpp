@@ -217,5 +217,44 @@ TEST(Figures, AreDataWithoutCommandsOfGnuplot) {
   EXPECT_GE(found, 1U) << "the expression no longer finds commands";
 }
 
+// The row "figure": a function that returns a Figure, and where it is drawn: by a command, in a report, or both.
+TEST(Figures, AreNamedWhereTheyAreDrawn) {
+  std::regex const definition("(?:^|\n)(?:std::optional<)?Figure>? (make_\\w+)\\(");
+  std::set<std::string> const parts{"make_map_figure"};  // of other figures
+  std::size_t found = 0;
+  for (auto const& [own, text] : sources()) {
+    if (own.rfind("studies/figures/", 0) != 0 || fs::path(own).extension() != ".cpp") continue;
+    for (std::sregex_iterator match(text.begin(), text.end(), definition), end; match != end; ++match) {
+      std::string const name = (*match)[1];
+      if (parts.count(name) > 0) continue;
+      ++found;
+      std::set<std::string> users;
+      for (auto const& [path, other] : sources()) {
+        if (path.rfind("studies/figures/", 0) != 0 && names(other, name))
+          users.insert(fs::path(path).replace_extension().string());
+      }
+      EXPECT_LE(users.size(), 2U) << name << ": " << testing::PrintToString(users);
+    }
+  }
+  EXPECT_GE(found, 15U) << "the expression no longer finds figures";
+}
+
+// Both writers of figures, for gnuplot and for browsers, know the same kinds of layers.
+TEST(Figures, AreDrawnByBothWriters) {
+  std::regex const kind("Layer::Kind::(\\w+):");
+  std::ifstream in(fs::path(GLADSTONE_SOURCE_DIR) / "studies/drawing/figure.js");
+  std::string const script{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+  std::string const &gnuplot = sources().at("studies/drawing/draw_figure.cpp"),
+                    &json = sources().at("studies/drawing/figure_json.cpp");
+  std::set<std::string> kinds;
+  for (std::sregex_iterator match(gnuplot.begin(), gnuplot.end(), kind), end; match != end; ++match)
+    kinds.insert((*match)[1]);
+  EXPECT_EQ(kinds.size(), 10U);
+  for (std::string const& one : kinds) {
+    EXPECT_TRUE(json.find('"' + one + '"') != std::string::npos) << one;
+    EXPECT_TRUE(std::regex_search(script, std::regex("layer.kind === \"" + one + '"'))) << one;
+  }
+}
+
 }  // namespace
 }  // namespace gladstone::architecture

@@ -142,8 +142,6 @@ std::vector<Exception> const& known_exceptions() {
       {"analysis/correlation/correlation_settings.h", "render/setup/setup_table.h"},
       {"analysis/preparation/frame_preparation.h", "render/setup/setup_table.h"},
       {"render/setup/setup_document.cpp", "render/files/text_file.h"},
-      {"studies/compare/comparison_results.cpp", "studies/figures/error_figures.h"},
-      {"studies/compare/comparison_results.cpp", "studies/figures/map_figures.h"},
       {"studies/design/design.cpp", "studies/figures/design_map.h"},
       {"studies/design/design.cpp", "studies/figures/layout_figure.h"},
       {"studies/design/design.cpp", "studies/figures/piv_map.h"},
