@@ -14,6 +14,7 @@
 #include "studies/compare/compared_vectors.h"
 #include "studies/compare/comparison_warnings.h"
 #include "studies/compare/error_report.h"
+#include "studies/figures/comparison_figures.h"
 #include "studies/report/report.h"
 
 namespace gladstone::python {

@@ -1,5 +1,3 @@
-#include "studies/design/design.h"
-
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
@@ -10,8 +8,17 @@
 #include "studies/case/json_text.h"
 #include "studies/commands/arguments.h"
 #include "studies/commands/command.h"
+#include "studies/figures/design_figures.h"
 
 namespace gladstone {
+namespace {
+
+struct FigureOptions {
+  std::string folder;  ///< empty: no figures
+  std::string format = "png";
+};
+
+}  // namespace
 
 CommandBody attach_design(CLI::App& app, GlobalOptions const& options) {
   auto request = std::make_shared<DesignRequest>();
@@ -20,8 +27,9 @@ CommandBody attach_design(CLI::App& app, GlobalOptions const& options) {
       ->take_all()
       ->expected(1)
       ->trigger_on_parse(false);
-  app.add_option("--figures", request->figures, "Folder for figures of the layout, the design map and the front");
-  app.add_option("--figure-format", request->figure_format, "png, svg or pdf")->check(one_of({"png", "svg", "pdf"}));
+  auto figures = std::make_shared<FigureOptions>();
+  app.add_option("--figures", figures->folder, "Folder for figures of the layout, the design map and the front");
+  app.add_option("--figure-format", figures->format, "png, svg or pdf")->check(one_of({"png", "svg", "pdf"}));
   app.add_option("--apply", request->apply, "File (TOML) for the recommended setup, ready to render");
   app.add_option(
          "--verify", request->verification.benches,
@@ -35,11 +43,14 @@ CommandBody attach_design(CLI::App& app, GlobalOptions const& options) {
   app.add_option("--seed", request->verification.seed, "Seed of these dots and of the noise")
       ->check(whole_number(0, std::int64_t{1} << 62))
       ->capture_default_str();
-  return [request, &options] {
+  return [request, figures, &options] {
     request->open_device = [&options] { return options.open_device(); };
     DesignReport const report = design(*request);
     for (std::string const& warning : report.warnings) spdlog::warn("{}", warning);
-    print_result(options, json_text(report.json), report.text);
+    nlohmann::ordered_json json;
+    if (!figures->folder.empty()) json["figures"] = draw_design(report, figures->folder, figures->format);
+    json.update(design_json(report));
+    print_result(options, json_text(json), report.text);
     return report.feasible ? ok : infeasible;
   };
 }

@@ -120,10 +120,4 @@ nlohmann::ordered_json compute_error_measures(Comparison const& comparison);
 /// Returns compute_error_measures() as the text of errors.json.
 std::string errors_json(Comparison const& comparison);
 
-/// Draws displacement maps, error histograms, error against gradient and the budget into a folder.
-/// @param format  "png", "svg" or "pdf"
-/// @return paths of the figures
-std::vector<std::string> draw_comparison(std::string const& folder, Comparison const& comparison,
-                                         std::string const& format = "png");
-
 }  // namespace gladstone

@@ -20,6 +20,7 @@
 #include "studies/drawing/draw_figure.h"
 #include "studies/examples/demo_story.h"
 #include "studies/figures/agreement_figure.h"
+#include "studies/figures/comparison_figures.h"
 #include "studies/figures/map_figures.h"
 
 namespace gladstone {
