@@ -6,7 +6,6 @@
 
 #include "analysis/preparation/frame_preparation.h"
 #include "render/base/vec.h"
-#include "render/setup/setup_table.h"
 
 namespace gladstone {
 
@@ -62,10 +61,6 @@ struct CorrelationSettings {
   /// Returns true if `uncertainty` names a method.
   bool estimates_uncertainty() const { return uncertainty != "none" && uncertainty != "auto"; }
 };
-
-/// Reads the table [correlate]; problems are collected in its document.
-/// @param set  frames to which the masks and preprocessing steps apply
-CorrelationSettings read_correlation_settings(SetupTable table, PreparedSet set = PreparedSet::pair);
 
 /// Checks that the windows fit into an image of the given size. Returns the problem as "problem (reason); suggestion";
 /// empty if there is none.

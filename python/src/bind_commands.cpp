@@ -66,7 +66,7 @@ std::string render_sequence(std::string const& setup, std::vector<std::string> c
   sequence.refuse_over_inputs(folder);
   RenderedSequence const rendered = sequence.render(*open_device(device_name).renderer, folder, true);
   log_warnings(rendered.warnings);
-  return json_text(rendered.summary);
+  return rendered.summary;
 }
 
 /// Measures all oracles. @return (name, source, measured, exact, tolerance, tolerance is relative, passed) of each
@@ -106,7 +106,7 @@ void bind_setup_commands(nb::module_& module) {
       "find_keys",
       [](std::string const& pattern) {
         FoundKeys const found = find_keys(pattern);
-        return json_text(nlohmann::ordered_json{{"keys", found.keys}, {"similar", found.similar}});
+        return json_text(nlohmann::ordered_json{{"keys", keys_json(found)}, {"similar", found.similar}});
       },
       nb::arg("pattern"));
   module.def(

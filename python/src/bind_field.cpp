@@ -17,6 +17,7 @@
 #include "render/base/error.h"
 #include "render/files/hdf5_file.h"
 #include "render/files/source_files.h"
+#include "studies/case/correlation_setup.h"
 #include "studies/case/peak_locking.h"
 #include "studies/compare/compared_vectors.h"
 #include "studies/compare/correlate.h"

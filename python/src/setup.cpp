@@ -8,6 +8,7 @@
 #include "python/src/setup_text.h"
 #include "render/base/parallel.h"
 #include "render/files/text_file.h"
+#include "render/scene/setup_document.h"
 #include "render/setup/setup_node.h"
 #include "studies/case/backend.h"
 #include "studies/case/cameras.h"
@@ -49,7 +50,7 @@ SetupText checked(SetupText setup) {
 }
 
 SetupText read_setup_file(std::string const& path) {
-  SetupDocument::from_file(path);  // reports a file that cannot be read or is not TOML
+  read_setup_document(path);  // reports a file that cannot be read or is not TOML
   return checked({read_text_file(path), path, std::filesystem::absolute(path).parent_path().string(), {}});
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 
@@ -13,5 +14,8 @@ inline std::string trimmed(std::string_view text) { return std::string(trim(text
 
 /// Converts a text to lower case (ASCII).
 std::string lower_case(std::string_view text);
+
+/// Shortens a text to `longest` bytes for a message, ending in "..." if it was cut.
+std::string excerpt(std::string_view text, std::size_t longest = 60);
 
 }  // namespace gladstone

@@ -8,6 +8,7 @@
 
 #include "render/base/available_memory.h"
 #include "render/base/error.h"
+#include "render/base/text.h"
 #include "render/files/input_file.h"
 
 namespace gladstone {
@@ -64,8 +65,5 @@ void require_room(std::vector<Row> const& rows, std::string const& path, std::st
   require_memory(path, "a table of more than " + std::to_string(rows.size()) + ' ' + what,
                  3.0 * static_cast<double>(rows.size() * sizeof(Row)));
 }
-
-/// Shortens a text to `longest` bytes for a message, ending in "..." if it was cut.
-std::string excerpt(std::string_view text, std::size_t longest = 60);
 
 }  // namespace gladstone

@@ -153,7 +153,7 @@ GasMixture read_gas_mixture(SetupTable& medium, double wavelength) {
   // NaN if a fraction is wrong, which is reported already
   double sum = refuse_formulas(table) ? not_a_number : 0.0;
   for (std::size_t i = 0; i < fractions.size(); ++i) {
-    std::string const name(all_gases[i].name);
+    std::string const name(gases()[i].name);
     fractions[i] = table.number(name, table.has(name) ? not_a_number : 0.0, Range::at_least(0.0, 1.0));
     sum += fractions[i];
   }

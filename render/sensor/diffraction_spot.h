@@ -66,12 +66,6 @@ struct GaussianSpot {
       for (int i = begin; i <= end; ++i) out[edge + i - 1] = integral[i + 1] - integral[i];
     }
   }
-  /// Returns the integral of the PSF from its centre to edge `edge` of a footprint that begins at pixel `first`, with
-  /// the same operations as shares(): the share of pixel first + i is edge_integral(i + 1) - edge_integral(i).
-  GLADSTONE_HD T edge_integral(T p, int first, int edge) const {
-    int const within = edge % 8;
-    return edge_value((T(first + (edge - within)) - p + (T(within) - T(0.5))) * (T(1) / sigma));
-  }
   /// Computes the shares and their Taylor coefficients with respect to p, up to the given order: the derivative of
   /// order k over k!.
   /// @param out  [order + 1][width]

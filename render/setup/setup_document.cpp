@@ -7,7 +7,7 @@
 #include <tuple>
 
 #include "render/base/nearest_name.h"
-#include "render/files/text_file.h"
+#include "render/base/text.h"
 #include "render/setup/setup_state.h"
 
 namespace gladstone {
@@ -202,22 +202,6 @@ SetupDocument::SetupDocument(std::unique_ptr<State> state) : state_(std::move(st
 SetupDocument::SetupDocument(SetupDocument&&) noexcept = default;
 SetupDocument& SetupDocument::operator=(SetupDocument&&) noexcept = default;
 SetupDocument::~SetupDocument() = default;
-
-SetupDocument SetupDocument::from_file(std::string const& path) {
-  std::string text;
-  try {
-    text = read_text_file(path, "a setup file", most_setup_bytes);
-  } catch (DataError const& error) {
-    throw SetupError({{path, error.message(), "", error.code()}});
-  }
-  auto const folder = std::filesystem::absolute(path).parent_path();
-  SetupDocument document = from_text(text, path, folder.string());
-  if (document.empty()) {
-    throw SetupError({{path, "is empty (no key is set); gladstone render --help shows a setup to begin with", "",
-                       ErrorCode::syntax}});
-  }
-  return document;
-}
 
 SetupDocument SetupDocument::from_text(std::string_view text, std::string const& name, std::string const& folder) {
   auto state = std::make_unique<State>();

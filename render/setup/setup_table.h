@@ -22,8 +22,6 @@ struct SetupNode;
 /// each, given or default. The modules read their own tables through SetupTable.
 class SetupDocument {
  public:
-  /// Parses a setup file. @throws SetupError if it does not exist, is unreadable, empty or not TOML
-  static SetupDocument from_file(std::string const& path);
   /// Parses text.
   /// @param name    name of the text in messages
   /// @param folder  directory to which relative file names refer

@@ -12,9 +12,11 @@
 #include "render/planning.h"
 #include "render/scene/field_coverage.h"
 #include "render/scene/particle_scene.h"
+#include "render/scene/setup_document.h"
 #include "studies/case/cameras.h"
 #include "studies/case/case_kind.h"
 #include "studies/case/case_warnings.h"
+#include "studies/case/correlation_setup.h"
 #include "studies/case/light_exposure.h"
 #include "studies/case/sequence_pair.h"
 #include "studies/case/uncertain_inputs.h"
@@ -174,7 +176,7 @@ void add_unusual_values(CaseSetup& loaded) {
 }  // namespace
 
 CaseSetup load_case_setup(std::string const& path, std::vector<std::string> const& overrides) {
-  SetupDocument document = SetupDocument::from_file(path);
+  SetupDocument document = read_setup_document(path);
   for (auto const& assignment : overrides) document.override_key(assignment);
   return load_case_setup(std::move(document));
 }

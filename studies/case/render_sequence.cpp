@@ -7,6 +7,7 @@
 #include <chrono>
 #include <filesystem>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <system_error>
 
@@ -22,6 +23,7 @@
 #include "render/files/sha256.h"
 #include "render/files/source_files.h"
 #include "render/files/stop_point.h"
+#include "render/scene/setup_document.h"
 #include "studies/case/case_files.h"
 #include "studies/case/json_text.h"
 #include "studies/case/log_silencer.h"
@@ -38,7 +40,7 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 SetupDocument read_sequence_document(std::string const& path, std::vector<std::string> const& overrides) {
-  SetupDocument document = SetupDocument::from_file(path);
+  SetupDocument document = read_setup_document(path);
   for (std::string const& assignment : overrides) document.override_key(assignment);
   return document;
 }
@@ -328,7 +330,7 @@ RenderedSequence SequenceRenderer::render(Renderer& renderer, std::string const&
         fmt::format("interrupted; {} of {} pairs are done, and the same command continues with the others", run.done(),
                     pair_count_));
   }
-  result.summary = run.summary(true);
+  result.summary = json_text(run.summary(true));
   result.warnings = run.later_warnings();
   result.pairs = pair_count_;
   result.frames = pair_count_ + 1;

@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -13,8 +12,8 @@ namespace gladstone {
 
 /// Result of rendering a sequence.
 struct RenderedSequence {
-  nlohmann::ordered_json summary;  ///< contents of summary.json
-  std::size_t frames = 0;          ///< number of frames of each camera
+  std::string summary;     ///< contents of summary.json
+  std::size_t frames = 0;  ///< number of frames of each camera
   std::size_t pairs = 0;
   std::size_t resumed = 0;  ///< number of pairs rendered by an earlier run
   double seconds = 0;       ///< wall time [s]

@@ -9,6 +9,7 @@
 
 #include "render/files/output_file.h"
 #include "render/files/output_folder.h"
+#include "render/scene/setup_document.h"
 #include "render/setup/setup_node.h"
 #include "studies/case/case_kind.h"
 #include "studies/case/json_text.h"
@@ -20,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 
 SetupDocument read_document(std::string const& path, std::vector<std::string> const& overrides) {
-  SetupDocument document = SetupDocument::from_file(path);
+  SetupDocument document = read_setup_document(path);
   for (auto const& assignment : overrides) document.override_key(assignment);
   if (!describes_sequence(document)) select_pair(document);
   return document;

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "render/files/output_folder.h"
+#include "render/scene/setup_document.h"
 #include "studies/case/cameras.h"
 #include "studies/case/case_files.h"
 #include "studies/case/json_text.h"
@@ -26,7 +27,7 @@ namespace fs = std::filesystem;
 std::vector<std::pair<std::string, std::string>> camera_folders(std::string const& folder) {
   require_case(folder);
   std::vector<std::pair<std::string, std::string>> folders;
-  SetupDocument const setup = SetupDocument::from_file((fs::path(folder) / case_file::setup).string());
+  SetupDocument const setup = read_setup_document((fs::path(folder) / case_file::setup).string());
   for (std::string const& name : camera_names(setup)) folders.emplace_back(name, (fs::path(folder) / name).string());
   if (folders.empty()) folders.emplace_back("", folder);
   return folders;

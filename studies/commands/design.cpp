@@ -1,5 +1,3 @@
-#include "studies/design/design.h"
-
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -10,8 +8,17 @@
 #include "studies/case/warning_log.h"
 #include "studies/commands/arguments.h"
 #include "studies/commands/command.h"
+#include "studies/figures/design_figures.h"
 
 namespace gladstone {
+namespace {
+
+struct FigureOptions {
+  std::string folder;  ///< empty: no figures
+  std::string format = "png";
+};
+
+}  // namespace
 
 CommandBody attach_design(CLI::App& app, GlobalOptions const& options) {
   auto request = std::make_shared<DesignRequest>();
@@ -21,9 +28,9 @@ CommandBody attach_design(CLI::App& app, GlobalOptions const& options) {
       ->take_all()
       ->expected(1)
       ->trigger_on_parse(false);
-  app.add_option("--figures", request->figures,
-                 "Folder for figures of the layout, the design map and the Pareto front");
-  app.add_option("--figure-format", request->figure_format, "png, svg or pdf")->check(one_of({"png", "svg", "pdf"}));
+  auto figures = std::make_shared<FigureOptions>();
+  app.add_option("--figures", figures->folder, "Folder for figures of the layout, the design map and the Pareto front");
+  app.add_option("--figure-format", figures->format, "png, svg or pdf")->check(one_of({"png", "svg", "pdf"}));
   app.add_option("--apply", request->apply, "File (TOML) for the recommended setup, ready to render");
   app.add_option(
          "--verify", request->verification.benches,
@@ -38,11 +45,14 @@ CommandBody attach_design(CLI::App& app, GlobalOptions const& options) {
       ->check(whole_number(0, std::int64_t{1} << 62))
       ->capture_default_str();
   app.add_flag("--csv", *csv, "Print the design sheet as CSV: key, symbol, label, value, unit and source");
-  return [request, csv, &options] {
+  return [request, figures, csv, &options] {
     request->open_device = [&options] { return options.open_device(); };
     DesignReport const report = design(*request);
     log_warnings(report.warnings);
-    print_result(options, json_text(report.json), *csv ? rows_csv(report.rows) : report.text);
+    nlohmann::ordered_json json;
+    if (!figures->folder.empty()) json["figures"] = draw_design(report, figures->folder, figures->format);
+    json.update(design_json(report));
+    print_result(options, json_text(json), *csv ? rows_csv(report.sheet.rows) : report.text);
     return report.feasible ? ok : infeasible;
   };
 }

@@ -4,11 +4,11 @@
 
 #include <cmath>
 #include <limits>
+#include <nlohmann/json.hpp>
 
 #include "render/base/units.h"
 #include "render/light/velocity_file.h"
 #include "render/medium/field_volume.h"
-#include "render/scene/field_coverage.h"
 #include "studies/case/case.h"
 
 namespace gladstone {
@@ -97,11 +97,6 @@ FieldPlace field_place(FieldSource const& source, FieldFile const& file, std::st
   FieldUnits const& units = source.units();
   std::string const undefined = units.undefined(), assumed = undefined.empty() ? units.assumed() : "";
   FieldPlace place;
-  place.units = {{"length", named(units.length)},
-                 {"length_m", undefined.empty() ? nlohmann::json(units.metres()) : nlohmann::json(nullptr)},
-                 {"assumed", named(assumed)},
-                 {"unknown", named(undefined)},
-                 {"values", named(units.values)}};
   place.spacing = stated_spacing(source);
   place.spacing_text = spacing_text(source, place.spacing);
   place.extent_mm = extent_mm(source);
@@ -121,13 +116,28 @@ FieldPlace field_place(FieldSource const& source, FieldFile const& file, std::st
   double const mm = unit::millimetre;
   Setup const whole = load_case_setup(setup, {}).setup;
   if (is_spaced(whole, velocity)) place.assumption.clear();
-  FieldCoverage const seen =
-      field_coverage(velocity ? velocity_region(whole, source, file) : density_region(whole, source, file), whole);
-  place.coverage = {{"share", seen.share}, {"view_mm", {seen.view.x / mm, seen.view.y / mm}}, {"setup", setup}};
+  FieldCoverage const& seen = place.coverage.emplace(
+      field_coverage(velocity ? velocity_region(whole, source, file) : density_region(whole, source, file), whole));
   place.text += fmt::format("; it fills {:.3g} % of the {:.4g} x {:.4g} mm in the view of {}", 100 * seen.share,
                             seen.view.x / mm, seen.view.y / mm, setup);
   if (auto const warning = seen.warning(); warning && !velocity) place.text += "; " + to_string(*warning);
   return place;
+}
+
+nlohmann::json units_json(FieldUnits const& units) {
+  std::string const undefined = units.undefined(), assumed = undefined.empty() ? units.assumed() : "";
+  return {{"length", named(units.length)},
+          {"length_m", undefined.empty() ? nlohmann::json(units.metres()) : nlohmann::json(nullptr)},
+          {"assumed", named(assumed)},
+          {"unknown", named(undefined)},
+          {"values", named(units.values)}};
+}
+
+nlohmann::json coverage_json(FieldPlace const& place, std::string const& setup) {
+  if (!place.coverage) return nullptr;
+  double const mm = unit::millimetre;
+  Vec2d const view = place.coverage->view;
+  return {{"share", place.coverage->share}, {"view_mm", {view.x / mm, view.y / mm}}, {"setup", setup}};
 }
 
 }  // namespace gladstone

@@ -1,6 +1,7 @@
 #include <CLI/CLI.hpp>
 
 #include "render/base/error.h"
+#include "render/scene/setup_document.h"
 #include "studies/commands/arguments.h"
 #include "studies/commands/command.h"
 #include "studies/commands/figure_ending.h"
@@ -90,7 +91,7 @@ CommandBody attach_info(CLI::App& app, GlobalOptions const& options) {
     }
     bool const particles = arguments->kind == "particles";
     if (particles || arguments->kind == "setup") {
-      SetupDocument setup = SetupDocument::from_file(arguments->file);
+      SetupDocument setup = read_setup_document(arguments->file);
       for (std::string const& assignment : arguments->overrides) setup.override_key(assignment);
       return print(options,
                    particles ? describe_particles(setup, arguments->file)

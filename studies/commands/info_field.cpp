@@ -110,9 +110,9 @@ Description describe_field(std::string const& path, std::string const& dataset, 
       {"axes",
        {{"order", reading.axes}, {"by", reading.by}, {"shape", reading.shape}, {"turned_round", reading.turned_round}}},
       {"notes", to_strings(notes)},
-      {"units", place.units},
+      {"units", units_json(source->units())},
       {"extent_mm", json_of(place.extent_mm)},
-      {"coverage", place.coverage}};
+      {"coverage", coverage_json(place, setup)}};
   if (!figure.empty() && draw_field(figure, *source, place)) json["figure"] = figure;
   return {json_text(json),
           fmt::format("{}: {} x {} x {} nodes, {}, {}; {}; {}", source->name(), grid.nodes[0], grid.nodes[1],

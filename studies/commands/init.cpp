@@ -16,8 +16,8 @@
 #include "studies/case/json_text.h"
 #include "studies/commands/arguments.h"
 #include "studies/commands/command.h"
+#include "studies/commands/embedded_text.h"
 #include "studies/commands/setup_keys.h"
-#include "studies/report/embedded_text.h"
 
 namespace gladstone {
 namespace {

@@ -9,6 +9,7 @@
 #include "render/files/image_file.h"
 #include "render/files/output_file.h"
 #include "render/method.h"
+#include "render/scene/setup_document.h"
 #include "studies/case/cameras.h"
 #include "studies/case/json_text.h"
 #include "studies/case/preview.h"
@@ -93,7 +94,7 @@ nlohmann::ordered_json preview_json(CasePreview const& preview, std::string cons
 
 /// Implements --preview: renders a part of the images of every camera into a PNG.
 int render_previews(RenderArguments const& arguments, GlobalOptions const& options) {
-  SetupDocument document = SetupDocument::from_file(arguments.setup);
+  SetupDocument document = read_setup_document(arguments.setup);
   for (std::string const& assignment : arguments.overrides) document.override_key(assignment);
   std::filesystem::path const output = arguments.output.empty() ? "preview.png" : arguments.output;
   if (output.extension() != ".png") {
@@ -122,7 +123,7 @@ int render_previews(RenderArguments const& arguments, GlobalOptions const& optio
 
 /// Returns true if the setup has a table [sequence] whose pairs are all to be rendered.
 bool is_whole_sequence(std::string const& setup, std::vector<std::string> const& overrides) {
-  SetupDocument document = SetupDocument::from_file(setup);
+  SetupDocument document = read_setup_document(setup);
   for (std::string const& assignment : overrides) document.override_key(assignment);
   return describes_sequence(document);
 }
@@ -134,7 +135,7 @@ void render_sequence(std::string const& setup, std::vector<std::string> const& o
   auto const renderer = options.open_device().renderer;
   RenderedSequence const rendered = sequence.render(*renderer, folder, !options.quiet);
   log_warnings(rendered.warnings);
-  print_result(options, json_text(rendered.summary),
+  print_result(options, rendered.summary,
                fmt::format("{}: {} frames, {} pairs ({} by an earlier run), {:.2f} s", folder, rendered.frames,
                            rendered.pairs, rendered.resumed, rendered.seconds));
 }

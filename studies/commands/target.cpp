@@ -10,6 +10,7 @@
 #include "render/base/error.h"
 #include "render/base/units.h"
 #include "render/files/output_file.h"
+#include "render/scene/setup_document.h"
 #include "studies/case/cameras.h"
 #include "studies/case/case.h"
 #include "studies/case/json_text.h"
@@ -69,7 +70,7 @@ CommandBody attach_target(CLI::App& app, GlobalOptions const& options) {
       ->expected(1)
       ->trigger_on_parse(false);
   return [arguments, &options] {
-    SetupDocument document = SetupDocument::from_file(arguments->setup);
+    SetupDocument document = read_setup_document(arguments->setup);
     for (std::string const& assignment : arguments->overrides) document.override_key(assignment);
     Description const written = write_target(document, arguments->setup, arguments->output);
     print_result(options, written.json, written.text);

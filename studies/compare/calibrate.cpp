@@ -12,6 +12,7 @@
 #include "render/light/calibration_target.h"
 #include "render/scene/build_camera.h"
 #include "render/scene/calibration_planes.h"
+#include "render/scene/setup_document.h"
 #include "studies/case/cameras.h"
 #include "studies/case/case.h"
 #include "studies/case/case_kind.h"
@@ -241,7 +242,7 @@ Calibration calibrate_case(std::string const& folder) {
 }
 
 Calibration calibrate_images(std::string const& setup, std::vector<std::string> const& pictures) {
-  SetupDocument document = SetupDocument::from_file(setup);
+  SetupDocument document = read_setup_document(setup);
   if (std::vector<std::string> const cameras = camera_names(document); !cameras.empty()) {
     throw DataError(ErrorCode::wrong_format, setup,
                     fmt::format("has {} cameras ({}), but the images belong to one; keep only its [[camera]], "

@@ -11,6 +11,7 @@
 #include "render/base/error.h"
 #include "render/files/hdf5_file.h"
 #include "render/files/source_files.h"
+#include "studies/case/correlation_setup.h"
 #include "studies/case/warning_log.h"
 
 namespace gladstone {

@@ -20,7 +20,7 @@
 #include "render/files/hdf5_file.h"
 #include "render/files/image_file.h"
 #include "render/files/stop_point.h"
-#include "render/setup/setup_table.h"
+#include "render/scene/setup_document.h"
 #include "studies/case/case.h"
 #include "studies/case/peak_locking.h"
 #include "studies/case/truth_file.h"
@@ -206,7 +206,7 @@ Measurement correlate_frames(FramePair const& frames, CorrelationSettings const&
 
 CorrelationFile read_correlation_file(std::string const& path, std::vector<std::string> const& overrides,
                                       PreparedSet set) {
-  return read_document(SetupDocument::from_file(path), overrides, set);
+  return read_document(read_setup_document(path), overrides, set);
 }
 
 CorrelationFile default_correlation(std::vector<std::string> const& overrides, PreparedSet set) {

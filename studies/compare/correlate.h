@@ -9,6 +9,7 @@
 #include "render/base/image_samples.h"
 #include "render/files/source_files.h"
 #include "studies/case/backend.h"
+#include "studies/case/correlation_setup.h"
 
 namespace gladstone {
 

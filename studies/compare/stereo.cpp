@@ -17,6 +17,7 @@
 #include "render/base/units.h"
 #include "render/files/image_file.h"
 #include "render/files/stop_point.h"
+#include "render/scene/setup_document.h"
 #include "studies/case/cameras.h"
 #include "studies/case/warning_log.h"
 #include "studies/compare/correlate.h"
@@ -151,7 +152,7 @@ std::array<std::string, 2> find_stereo_inputs(std::array<std::string, 2> const& 
   std::vector<std::string> names;
   if (fs::is_directory(folder, error)) {
     require_case(folder);
-    names = camera_names(SetupDocument::from_file((fs::path(folder) / case_file::setup).string()));
+    names = camera_names(read_setup_document((fs::path(folder) / case_file::setup).string()));
   }
   if (names.size() != 2)
     throw DataError(ErrorCode::wrong_format, folder,

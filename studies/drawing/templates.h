@@ -2,7 +2,7 @@
 
 #include <string_view>
 
-/// Templates of figures (*.gp), embedded in the executable by the build (studies/CMakeLists.txt).
+/// Templates of figures (*.gp), embedded in the executable by the build (CMakeLists.txt).
 namespace gladstone::embedded {
 
 extern std::string_view const figure_look;     ///< settings of all figures

@@ -7,6 +7,7 @@
 
 #include "analysis/errors/error_summary.h"
 #include "render/files/text_file.h"
+#include "render/scene/setup_document.h"
 #include "studies/case/warning_log.h"
 #include "studies/design/measurement_inputs.h"
 #include "studies/design/sheet.h"
@@ -115,7 +116,7 @@ std::optional<Reconstruction> reconstruct_measured(ReportOptions const& options,
 }
 
 CaseSetup measured_bench(std::string const& setup_file, std::vector<UncertainInput>& uncertain) {
-  SetupDocument document = SetupDocument::from_file(setup_file);
+  SetupDocument document = read_setup_document(setup_file);
   uncertain = extract_uncertain_inputs(document);
   CaseSetup loaded = load_case_setup(std::move(document));
   if (!loaded.setup.experiment().measures_density || !loaded.setup.has_closed_form_layout()) {

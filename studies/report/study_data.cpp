@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "studies/case/json_text.h"
 #include "studies/figures/study_axes.h"

@@ -10,7 +10,6 @@
 #include <string_view>
 #include <utility>
 
-#include "analysis/correlation/correlation_settings.h"
 #include "render/base/error.h"
 #include "render/base/parallel.h"
 #include "render/base/progress.h"
@@ -18,6 +17,7 @@
 #include "render/base/sobol.h"
 #include "render/files/content_hash.h"
 #include "studies/case/case.h"
+#include "studies/case/correlation_setup.h"
 #include "studies/case/sequence_pair.h"
 
 namespace gladstone {

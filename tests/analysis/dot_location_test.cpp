@@ -9,6 +9,7 @@
 #include "render/base/not_a_number.h"
 #include "render/base/parallel.h"
 #include "tests/analysis/synthetic_dots.h"
+#include "tests/support/poisson_variate.h"
 
 namespace gladstone::tracking {
 namespace {

@@ -52,30 +52,15 @@ class ListedBackground {
 
 }  // namespace
 
-FrameChange read_background(SetupTable& table, FramePreparation& preparation) {
-  std::string const statistic = table.word("subtract", "minimum", background_statistics());
-  std::vector<SetupTable> frames = table.tables("frame");
-  if (frames.empty() && preparation.set == PreparedSet::sequence) {
-    auto const own = std::make_shared<SequenceBackground>();
-    own->statistic = statistic;
-    preparation.backgrounds.push_back(own);
-    return [own](PreparedFrames& prepared) {
-      subtract_background(own->reference, prepared.reference);
-      subtract_background(own->flow, prepared.flow);
-    };
-  }
-  if (frames.empty())
-    table.problem("frame",
-                  "is missing (a background requires a sequence); give frame = [{ reference = \"a.tif\", flow = "
-                  "\"b.tif\" }, ...]",
-                  ErrorCode::missing_key);
-  std::vector<std::string> reference, flow;
-  for (SetupTable& pair : frames) {
-    reference.push_back(pair.required_path("reference"));
-    flow.push_back(pair.required_path("flow"));
-  }
-  for (auto const* files : {&reference, &flow})
-    preparation.files.insert(preparation.files.end(), files->begin(), files->end());
+FrameChange make_background_subtraction(std::shared_ptr<SequenceBackground const> const& background) {
+  return [background](PreparedFrames& prepared) {
+    subtract_background(background->reference, prepared.reference);
+    subtract_background(background->flow, prepared.flow);
+  };
+}
+
+FrameChange make_background_subtraction(std::string const& statistic, std::vector<std::string> const& reference,
+                                        std::vector<std::string> const& flow) {
   auto const listed = std::make_shared<ListedBackground>(statistic, reference, flow);
   return [listed](PreparedFrames& prepared) { listed->subtract_from(prepared); };
 }
