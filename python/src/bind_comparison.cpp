@@ -1,10 +1,9 @@
+#include <fmt/format.h>
 #include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
 #include <algorithm>
-
-#include <fmt/format.h>
 
 #include "python/src/arrays.h"
 #include "python/src/call.h"

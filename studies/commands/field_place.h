@@ -23,7 +23,7 @@ struct FieldPlace {
   Vec3d extent_mm{};         ///< distance from the first node to the last along x, y, z [mm]; NaN: undefined
   std::optional<FieldCoverage> coverage;  ///< empty without a setup
   std::string text;                       ///< units, extent and coverage as readable text
-  std::string assumption;                    ///< assumption made about lengths, or why they are undefined; empty: neither
+  std::string assumption;                 ///< assumption made about lengths, or why they are undefined; empty: neither
 };
 
 /// Determines the position and coverage of a field file.

@@ -4,6 +4,7 @@
 
 #include "studies/drawing/draw_figure.h"
 #include "studies/figures/design_map.h"
+#include "studies/figures/draw_or_warn.h"
 #include "studies/figures/layout_figure.h"
 #include "studies/figures/piv_map.h"
 
