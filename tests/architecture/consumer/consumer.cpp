@@ -11,5 +11,5 @@ int main() {
   std::vector<gladstone::Vec2d> const measured{{3, 4}}, truth{{0, 0}};
   std::cout << "gladstone " << gladstone::version
             << ", f = " << gladstone::read_setup(document.root()).lens.focal_length
-            << " m, rms = " << gladstone::summarize_errors(measured, truth, {}).rms_px << " px\n";
+            << " m, rms = " << gladstone::summarize_errors(measured, truth, {})["rms_px"] << " px\n";
 }
