@@ -4,7 +4,13 @@
 
 #include <algorithm>
 
+#include "analysis/correlation/correlation_methods.h"
+
 namespace gladstone {
+
+bool CorrelationSettings::gives_scattered_vectors() const {
+  return correlation_method(method).tracks_dots && tracking.output == "scattered";
+}
 
 std::string window_problem(CorrelationSettings const& settings, int columns, int rows) {
   int const largest = *std::max_element(settings.window_px.begin(), settings.window_px.end());

@@ -9,7 +9,7 @@
 
 namespace gladstone {
 
-/// Table [correlate.tracking] of a setup: parameters of method = "tracking".
+/// Table [correlate.tracking] of a setup: parameters of methods that track dots.
 struct TrackingTable {
   std::optional<double> diameter_px;  ///< e^-2 diameter of a typical dot image [px]; none: estimated from the frames
   std::string polarity = "auto";      ///< "bright" or "dark" dots; "auto": that of the largest contrast
@@ -51,13 +51,13 @@ struct CorrelationSettings {
   /// Peak ratio from which a vector of the first pass may deviate from its neighbours, see has_reliable_correlation();
   /// none: no vector may.
   std::optional<double> trusted_peak_ratio = 2.0;
-  TrackingTable tracking;  ///< of method "tracking"
-  /// Known places of the dots of a BOS target in frame A [px], used by method "tracking"; not part of a setup.
+  TrackingTable tracking;
+  /// Known places of the dots of a BOS target in frame A [px], for methods that track dots; not part of a setup.
   std::vector<Vec2d> known_dots_px;
   FramePreparation preparation;  ///< preprocessing; correlators expect preprocessed frames
 
   /// Returns true if vectors are at the dots instead of the grid of the last pass.
-  bool gives_scattered_vectors() const { return method == "tracking" && tracking.output == "scattered"; }
+  bool gives_scattered_vectors() const;
   /// Returns true if `uncertainty` names a method.
   bool estimates_uncertainty() const { return uncertainty != "none" && uncertainty != "auto"; }
 };

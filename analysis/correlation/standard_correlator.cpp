@@ -30,7 +30,7 @@ class StandardCorrelator final : public Correlator {
       : settings_(settings),
         schedule_(settings),
         correlate_(correlation_method(settings.method).correlate),
-        fit_(subpixel_fit(settings.subpixel)) {}
+        fit_(subpixel_method(settings.subpixel).fit) {}
 
   DisplacementField correlate(Image<double> const& reference, Image<double> const& flow) const override {
     int const columns = reference.columns(), rows = reference.rows();

@@ -35,13 +35,18 @@ PeakFit fit_parabola(PeakPatch const& patch);
 /// with image deformation remove the bias.
 PeakFit fit_centroid(PeakPatch const& patch);
 
+/// A sub-pixel fit with its properties.
+struct SubpixelMethod {
+  char const* name;
+  SubpixelFit fit;
+  bool on_gpu = false;       ///< whether the CUDA correlator supports it
+  bool nine_points = false;  ///< whether it uses all nine samples of a PeakPatch, not only those along the axes
+};
+
 /// Returns the names of the fits.
 std::vector<std::string> subpixel_fits();
 
-/// Returns whether the CUDA correlator supports a fit. @pre name is one of subpixel_fits()
-bool subpixel_fit_on_gpu(std::string const& name);
-
 /// Returns the fit of that name. @pre name is one of subpixel_fits()
-SubpixelFit subpixel_fit(std::string const& name);
+SubpixelMethod const& subpixel_method(std::string const& name);
 
 }  // namespace gladstone

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "analysis/density/gradient_map.h"
@@ -11,19 +12,12 @@
 
 namespace gladstone::density {
 
-enum class AbelMethod {
-  direct,  ///< make_gradient_inversion(): fourth order, noise grows towards the axis
-  /// make_regularized_inversion(): less noise where the vectors are much finer than the structures, but smooths. The
-  /// inversion of a gradient amplifies noise little, so the gain is small on coarse grids.
-  tikhonov
-};
-
 struct AxisymmetricSettings {
   AxisDirection direction = AxisDirection::vertical;
   std::optional<double> axis;  ///< x of a vertical, y of a horizontal axis [m]; nullopt: find_symmetry_axis()
   /// Range of a given axis: the borders of the image across it [m]; nullopt: the outermost vectors.
   std::optional<std::array<double, 2>> axis_range;
-  AbelMethod method = AbelMethod::direct;
+  std::string method = "direct";  ///< one of abel_methods()
   RegularizationChoice choice = RegularizationChoice::cross_validation;
   double lambda = 0.0;           ///< regularisation parameter for RegularizationChoice::given [1]
   WindowOverlap overlap;         ///< overlap of the interrogation windows, needed for sigma

@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include "analysis/density/density_methods.h"
 #include "analysis/density/least_squares_solver.h"
 #include "render/base/contracts.h"
 #include "render/base/error.h"
@@ -157,13 +158,11 @@ DensityIntegrator::DensityIntegrator(GradientMap const& map, ReferenceDensity co
   }
 
   // Set up the equations and their weights
-  bool const is_poisson = settings.method == IntegrationMethod::poisson;
-  for (LineDifference const& d : make_line_differences(map, is_poisson ? EdgeRule::trapezoid : settings.rule)) {
+  IntegrationMethod const& method = integration_method(settings.method);
+  for (LineDifference const& d : make_line_differences(map, method.rule.value_or(settings.rule))) {
     if (system->determined[d.from] == 0) continue;
     system->differences.push_back(d);
-    double const spacing = d.axis == Axis::x ? map.grid.spacing.x : map.grid.spacing.y;
-    system->weight.push_back(is_poisson ? 0.5 * std::max(d.cells, 1) / (spacing * spacing)
-                                        : 1.0 / compute_variance(d, map.sigma));
+    system->weight.push_back(method.weight(d, map));
   }
   if (!system->node.empty()) system->factorize(settings.direct_limit);
   system_ = std::move(system);

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "analysis/density/gradient_map.h"
@@ -12,21 +13,12 @@
 
 namespace gladstone::density {
 
-enum class IntegrationMethod {
-  /// Minimises sum of (density difference - line integral of the gradient)^2 / variance over all pairs of neighbouring
-  /// nodes. Rajendran, Zhang, Bane & Vlachos, Exp. Fluids 61 (2020) 239.
-  weighted_least_squares,
-  /// Five-point Poisson equation with the divergence of the gradient by central differences and natural Neumann
-  /// boundaries: the same minimisation by the trapezoid, without weights. For comparison.
-  poisson
-};
-
 /// Treatment of a region without reference nodes, whose density is undetermined by a constant.
 enum class UnreferencedRegions { error, leave_out };
 
 struct IntegrationSettings {
-  IntegrationMethod method = IntegrationMethod::weighted_least_squares;
-  EdgeRule rule = EdgeRule::four_point;  ///< quadrature rule of the weighted least squares
+  std::string method = "wls";            ///< one of integration_methods()
+  EdgeRule rule = EdgeRule::four_point;  ///< of methods without a rule of their own
   UnreferencedRegions unreferenced = UnreferencedRegions::error;
   /// Largest number of unknowns that is solved by sparse Cholesky factorisation; above, by conjugate gradients.
   std::size_t direct_limit = 400'000;

@@ -86,11 +86,12 @@ std::vector<Vec2d> combined_uncertainty(UncertaintyInput const& input) {
 std::string uncertainty_caveat(CorrelationSettings const& settings) {
   if (!settings.estimates_uncertainty()) return "";
   std::string const method = "uncertainty by " + settings.uncertainty + " is too small ";
-  if (settings.method == "rpc" || settings.method == "spc") {
+  CorrelationMethod const& correlation = correlation_method(settings.method);
+  if (correlation.by_phase) {
     return method + "for correlate.method = \"" + settings.method +
            "\", whose phase weighting amplifies noise (docs/estimators.md); use \"scc\" if the uncertainty matters";
   }
-  if (correlation_method(settings.method).optical_flow) {
+  if (correlation.optical_flow) {
     return method + "for correlate.method = \"" + settings.method +
            "\", an optical flow, whose errors exceed the noise of a window (docs/estimators.md); use \"scc\" if the "
            "uncertainty matters";

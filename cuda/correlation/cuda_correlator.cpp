@@ -5,11 +5,14 @@
 #include <utility>
 #include <vector>
 
+#include "analysis/correlation/correlation_methods.h"
 #include "analysis/correlation/lane_correlation.h"
 #include "analysis/correlation/methods/robust_phase.h"
 #include "analysis/correlation/standard_correlator.h"
 #include "analysis/correlation/steep_refinement.h"
+#include "analysis/correlation/subpixel_fit.h"
 #include "analysis/uncertainty/pass_amplification.h"
+#include "analysis/uncertainty/uncertainty.h"
 #include "cuda/correlation/correlation_kernels.h"
 #include "cuda/correlation/correlation_statistics.h"
 #include "cuda/device/device_array.h"
@@ -87,9 +90,9 @@ class CorrelationPlan {
  public:
   CorrelationPlan(CorrelationSettings const& settings, int columns, int rows)
       : schedule_(settings),
-        phase_only_(settings.method == "rpc"),
-        nine_points_(settings.subpixel == "gauss2d"),
-        with_sigma_(settings.uncertainty == "correlation_statistics"),
+        phase_only_(correlation_method(settings.method).by_phase),
+        nine_points_(subpixel_method(settings.subpixel).nine_points),
+        with_sigma_(settings.estimates_uncertainty() && uncertainty_on_gpu(settings.uncertainty)),
         amplification_(with_sigma_ ? amplification_of_passes(settings) : 1.0),
         columns_(columns),
         rows_(rows) {

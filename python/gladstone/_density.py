@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Sequence
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 
@@ -132,11 +132,11 @@ def reconstruct(
     reference_density: float | None = None,
     reference_sigma: float = 0.0,
     scale_uncertainty: float = 0.0,
-    method: Literal["wls", "poisson"] = "wls",
+    method: str = "wls",
     overlap: float | None = None,
     deconvolve: float | None = None,
     axis: str | None = None,
-    abel: Literal["direct", "tikhonov"] = "direct",
+    abel: str = "direct",
     lambda_: float | None = None,
     samples: int = 400,
     budget: bool = False,
@@ -155,20 +155,22 @@ def reconstruct(
         [kg/m^3].
     scale_uncertainty: combined relative standard uncertainty of magnification, Z_D, Gladstone-Dale constant, pixel
         pitch and thickness.
-    method: "wls" (least squares weighted by the uncertainty of the vectors) or "poisson" (no weights).
+    method: integration, as `--method` of `gladstone reconstruct`: by default least squares weighted by the uncertainty
+        of the vectors.
     overlap: overlap of the interrogation windows, from 0 to below 1; default: from the settings of the vectors.
     deconvolve: largest amplification by the compensation of the averaging over the aperture; None: no compensation.
     axis: Abel inversion of an axisymmetric flow: "vertical" or "horizontal", whose position is determined, or "x=1.5",
         "y=-2" in mm.
-    abel, lambda_: inversion "direct" or "tikhonov", and its regularisation parameter, default by cross-validation.
+    abel, lambda_: Abel inversion, as `--abel` of `gladstone reconstruct`, and the parameter of a regularised one,
+        default by cross-validation.
     samples: number of random samples, 10 to 100000, for the uncertainty of large grids.
     budget: splits the error of a rendered case into its causes.
     conventions: conventions of a file of vectors of another program.
 
     Raises `SetupError` for options and setups that determine no density, and `DataError` for vectors.
     """
-    check_choice("method", method, ("wls", "poisson"))
-    check_choice("abel", abel, ("direct", "tikhonov"))
+    check_choice("method", method, _core.integration_methods())
+    check_choice("abel", abel, _core.abel_methods())
     check_whole("samples", samples, 10, 100_000)
     inputs = InputFolder()
     folder = inputs.name
@@ -179,7 +181,7 @@ def reconstruct(
             vectors = vectors_place(folder, source.correlate(device=device))
         core = _core.reconstruct(
             place, vectors, conventions, reference_texts(reference), reference_density, reference_sigma,
-            scale_uncertainty, method == "wls", overlap, deconvolve, axis, abel == "tikhonov", lambda_, samples, budget,
+            scale_uncertainty, method, overlap, deconvolve, axis, abel, lambda_, samples, budget,
             device, report,
         )  # fmt: skip
     return Density(core, inputs)

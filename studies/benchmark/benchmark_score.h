@@ -19,8 +19,7 @@ inline constexpr double benchmark_border_px = 32.0;
 /// Agreement of vectors with the true displacement of a case; NaN if benchmark_mask() selects no vector.
 struct BenchmarkScore {
   std::size_t vectors = 0;  ///< number of vectors of the file outside of the border
-  ErrorSummary errors{};    ///< errors of the vectors of benchmark_mask(); valid_fraction refers to `vectors`
-  std::size_t gross = 0;    ///< number of errors above gross_error_px
+  ErrorSummary errors;      ///< of the counted (valid or replaced) vectors; valid_fraction refers to `vectors`
   /// Regression slope of the vectors on the truth, sum m t / sum t^2 over the vectors without gross error [1].
   double gain = 0.0;
   /// Width of the response to a displacement step [px], see step_width_px(); NaN for all cases but step_case.

@@ -1,5 +1,7 @@
 #include "studies/case/correlation_setup.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "analysis/correlation/correlation_methods.h"
@@ -65,10 +67,10 @@ CorrelationSettings read_correlation_settings(SetupTable table, PreparedSet set)
   settings.replace = table.boolean("replace", settings.replace);
   bool const tracks_dots = correlation_method(settings.method).tracks_dots;
   if (tracks_dots && settings.estimates_uncertainty())
-    table.problem(
-        "uncertainty",
-        "conflicts with method = \"tracking\" (which estimates the uncertainty from the fit of each dot); use "
-        "\"auto\"");
+    table.problem("uncertainty",
+                  fmt::format("conflicts with method = \"{}\" (which estimates the uncertainty from the fit of each "
+                              "dot); use \"auto\"",
+                              settings.method));
   if (tracks_dots || table.has("tracking")) settings.tracking = read_tracking_table(table.table("tracking"));
   settings.preparation = read_frame_preparation(table, set);
   return settings;

@@ -14,8 +14,9 @@ namespace {
 /// Returns a warning if the true displacements are too small to be measured; nullopt if not, or if all are zero.
 std::optional<Warning> signal_warning(Comparison const& all, ComparisonKind const& kind) {
   std::vector<Vec2d> const nothing(all.mask.size());
-  double const signal = summarize_errors(all.point.displacement_px, nothing, all.mask).rms_px;
-  double const error = summarize_errors(all.measured.displacement_px, all.recorded().displacement_px, all.mask).rms_px;
+  double const signal = summarize_errors(all.point.displacement_px, nothing, all.mask)["rms_px"];
+  double const error =
+      summarize_errors(all.measured.displacement_px, all.recorded().displacement_px, all.mask)["rms_px"];
   bool const small = signal < least_signal_px;
   if (signal == 0 || !(small || signal < error)) return {};
   return Warning{WarningCode::unreliable, "",

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "analysis/density/density_methods.h"
 #include "render/base/contracts.h"
 #include "studies/compare/budget_stages.h"
 
@@ -37,7 +38,7 @@ std::vector<DensityTerm> compute_density_budget(Comparison const& comparison, Re
   fixed.propagate = false;
   if (reconstruction.axisymmetry) {  // use the same inversion for all stages
     fixed.axis->position = reconstruction.axisymmetry->axis.position;
-    if (fixed.abel == density::AbelMethod::tikhonov) fixed.lambda = reconstruction.axisymmetry->lambda;
+    if (density::abel_method(fixed.abel).regularized) fixed.lambda = reconstruction.axisymmetry->lambda;
   }
   // Use only vectors with a displacement at every stage
   std::vector<BudgetStage> const causes = budget_differences(comparison);

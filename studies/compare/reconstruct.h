@@ -30,18 +30,18 @@ struct AxisOption {
 
 /// Options of a reconstruction of density.
 struct ReconstructOptions {
-  std::string vectors;                      ///< path of the vectors; empty: CASE/vectors.h5
-  std::optional<std::string> conventions;   ///< conventions given by the user; empty: those of the file's format
-  std::vector<ReferenceRegion> reference;   ///< gauge of the integration; empty for axisymmetric flows
-  std::optional<double> reference_density;  ///< reference density; empty: ambient density of the setup [kg/m^3]
-  double reference_sigma = 0.0;             ///< standard uncertainty of the reference density [kg/m^3]
-  double scale_uncertainty = 0.0;           ///< combined relative uncertainty of M, Z_D, K, p and thickness [1]
-  density::IntegrationMethod method = density::IntegrationMethod::weighted_least_squares;
-  std::optional<double> overlap;             ///< overlap of windows, 0 to below 1 [1]; empty: as in [correlate]
+  std::string vectors;                       ///< path of the vectors; empty: CASE/vectors.h5
+  std::optional<std::string> conventions;    ///< as given by the user; empty: those of the file's format
+  std::vector<ReferenceRegion> reference;    ///< gauge of the integration; empty for axisymmetric flows
+  std::optional<double> reference_density;   ///< reference density; empty: ambient density of the setup [kg/m^3]
+  double reference_sigma = 0.0;              ///< standard uncertainty of the reference density [kg/m^3]
+  double scale_uncertainty = 0.0;            ///< combined relative uncertainty of M, Z_D, K, p and thickness [1]
+  std::string method = "wls";                ///< one of density::integration_methods()
+  std::optional<double> overlap;             ///< of the interrogation windows, 0 to below 1 [1]; empty: [correlate]
   std::optional<double> deconvolution_gain;  ///< largest gain of the aperture's deconvolution [1]; empty: none
   std::optional<AxisOption> axis;            ///< axisymmetric flow; empty: planar integration
-  density::AbelMethod abel = density::AbelMethod::direct;
-  std::optional<double> lambda;  ///< parameter of AbelMethod::tikhonov [1]; empty: by cross-validation
+  std::string abel = "direct";               ///< one of density::abel_methods()
+  std::optional<double> lambda;  ///< parameter of a regularised Abel inversion [1]; empty: by cross-validation
   std::size_t samples = 400;     ///< number of random samples for the uncertainty of large grids
   bool propagate = true;         ///< true: compute the uncertainty from that of the vectors
   bool budget = false;           ///< split the error of a rendered case into its causes

@@ -158,8 +158,8 @@ double peak_of_signal(DesignPoint<double> const& b, double q) {
   return 0.5 * q * (shot * q + std::sqrt(shot * q * q + 4 * (variance - shot * n)));
 }
 
-/// Returns the largest f-number at which the dot images are within the recommended size (Bound::dot_most); 0 if the
-/// geometric image alone exceeds it.
+/// Returns the largest f-number at which the dot images are within the recommended size; 0 if the geometric image alone
+/// exceeds it.
 double widest_images_stop(DesignPoint<double> const& b) {
   double const most = random_error_range.most_image, geometric = b.geometric_dot_px();
   return b.f_number * std::sqrt(std::max(0.0, most * most - geometric * geometric)) / (4 * b.spot_sigma_px());

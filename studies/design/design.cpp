@@ -38,7 +38,7 @@ AnsweredQuestion answered(DesignRequest const& request, SetupDocument const& doc
   result.variants = design_variants(document, result.question, result.skipped);
   std::vector<DesignBranch> const branches = design_branches(result.variants, result.question);
   Requirements const& requirements = result.question.requirements;
-  result.answer = recommend(requirements.objective, required_limits(requirements), branches);
+  result.answer = recommend(requirements.objective, requirements.limits, branches);
   if (request.verification.benches > 0 && result.answer.feasible()) {
     result.verification =
         verify(result.question, result.variants, branches, result.answer, request.verification, request.open_device());

@@ -25,7 +25,7 @@ struct VerifiedQuantity {
 
 /// A requirement checked in simulation, in SI.
 struct VerifiedRequirement {
-  Bound bound;
+  Bound const* bound;
   double required = 0;
   double predicted = 0;
   Estimate simulated;

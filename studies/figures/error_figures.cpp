@@ -111,8 +111,8 @@ Figure make_error_histograms(std::string const& title, std::vector<ErrorSeries> 
           summarize_errors(series[i].error_px, std::vector<Vec2d>(series[i].error_px.size()), {});
       std::string const label = errors.empty() ? fmt::format("{}: no vectors", series[i].name)
                                                : fmt::format("{}: bias {:+.4f}, random {:.4f} px", series[i].name,
-                                                             is_u ? summary.bias_u_px : summary.bias_v_px,
-                                                             is_u ? summary.random_u_px : summary.random_v_px);
+                                                             is_u ? summary["bias_u_px"] : summary["bias_v_px"],
+                                                             is_u ? summary["random_u_px"] : summary["random_v_px"]);
       std::vector<std::vector<double>> const outline = density_of(errors, reach, 81);
       std::vector<double> const zero(outline[0].size(), 0.0);
       panel.layers.push_back({Layer::Kind::band, {outline[0], zero, outline[1]}, house_colour(i)});

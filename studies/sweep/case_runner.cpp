@@ -235,10 +235,10 @@ void CaseRunner::compute(ManifestCase const& one, std::string const& keep, CaseO
   result.measures = flat_measures(compute_error_measures(comparison));
   std::vector<Vec2d> const still(places.size());
   result.measures.emplace_back("signal_px",
-                               summarize_errors(comparison.point.displacement_px, still, comparison.mask).rms_px);
+                               summarize_errors(comparison.point.displacement_px, still, comparison.mask)["rms_px"]);
   add_relative_errors(prepared.scene.setup, result);
-  result.measures.emplace_back("blur_px",
-                               summarize_errors(comparison.point.displacement_std_px, still, comparison.mask).rms_px);
+  result.measures.emplace_back(
+      "blur_px", summarize_errors(comparison.point.displacement_std_px, still, comparison.mask)["rms_px"]);
   add_rendering(prepared, rendered, frames, result);
   result.warnings.insert(result.warnings.end(), measured.field.warnings.begin(), measured.field.warnings.end());
   result.measures.emplace_back("warnings", static_cast<double>(result.warnings.size()));

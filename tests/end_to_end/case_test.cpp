@@ -160,11 +160,16 @@ TEST_F(Case, ComparisonsCanBeWrittenApart) {
   succeed({"compare", "case", "-o", "case/"});
   EXPECT_EQ(read("case/errors.json"), beside);
   EXPECT_TRUE(fs::exists(in("case/vectors.h5")));
+  EXPECT_TRUE(fs::exists(in("case/error_budget.png")));
   expect_refused({"compare", "case", "-o", "setup.toml"}, 2, {"setup.toml: is a file"});
   fs::create_directory(in("mine"));
   write("mine/notes.txt", "notes");
   expect_refused({"compare", "case", "-o", "mine"}, 2, {"mine"});
   EXPECT_EQ(read("mine/notes.txt"), "notes");
+  render("case");
+  EXPECT_THAT(names("case"),
+              UnorderedElementsAre("reference.tif", "flow.tif", "truth.h5", "setup.toml", "summary.json"))
+      << "every figure is in case_file::derived";
 }
 
 TEST_F(Case, ColourPicturesAreSaidToBeTurnedToGrey) {

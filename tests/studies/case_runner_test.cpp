@@ -60,8 +60,8 @@ TEST_F(CaseRunners, ObserverSeesCaseBeforeRelease) {
   double rms = 0;
   CaseResult const result = runner().run(cases[0], "", [&](ObservedCase const& seen) {
     ++told;
-    rms = summarize_errors(seen.comparison.measured.displacement_px, seen.comparison.point.eq9_px, seen.comparison.mask)
-              .rms_px;
+    rms = summarize_errors(seen.comparison.measured.displacement_px, seen.comparison.point.eq9_px,
+                           seen.comparison.mask)["rms_px"];
     EXPECT_EQ(seen.frames.levels->reference().columns(), 64);
   });
   EXPECT_EQ(told, 1u);

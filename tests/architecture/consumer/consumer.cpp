@@ -57,7 +57,7 @@ int main() {
   DisplacementField const vectors =
       make_correlator(settings)->correlate(rendering.light.reference, rendering.light.flow);
   std::vector<Vec2d> const expected(vectors.size(), truth.displacement_px.front());
-  double const rms_px = summarize_errors(vectors.displacement_px, expected, {}).rms_px;
+  double const rms_px = summarize_errors(vectors.displacement_px, expected, {})["rms_px"];
 
   std::cout << "gladstone " << version << ": " << rendering.light.flow.columns() << " x " << rendering.light.flow.rows()
             << " px; theory " << (displacement > 0 && off_theory < 0.01 * displacement ? "follows" : "misses")
