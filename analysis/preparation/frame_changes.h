@@ -5,19 +5,21 @@
 /// Readers of all masks and preprocessing steps. Each reads its setup table and returns the operation on the frames.
 namespace gladstone {
 
-/// `x_px`, `y_px`: corners of a polygon. Masks the pixels whose centres are inside (even-odd rule).
+/// Reads a polygonal mask: `x_px` and `y_px` are the corners of the polygon. Masks the pixels whose centres are inside
+/// (even-odd rule).
 FrameChange read_polygon_mask(SetupTable& table, FramePreparation& preparation);
-/// `file`: image of the size of the frames. Masks the pixels where it is 0.
+/// Reads a mask image: `file` has the size of the frames. Masks the pixels where the image is 0.
 FrameChange read_image_mask(SetupTable& table, FramePreparation& preparation);
-/// `above_dn`, `below_dn`: limits of the grey level. Masks the pixels that are brighter or darker in either frame,
-/// after a Gaussian filter of standard deviation `blur_px`.
+/// Reads an intensity mask: masks the pixels whose grey level, after a Gaussian filter of standard deviation `blur_px`,
+/// is above `above_dn` or below `below_dn` in either frame.
 FrameChange read_intensity_mask(SetupTable& table, FramePreparation& preparation);
 
 /// Subtracts a background from each frame: "minimum", "mean" or "median" (`subtract`) of a sequence of frames, computed
-/// per pixel and only once. `frame`: tables with the files of `reference` and `flow`; if it is missing, the background
-/// is that of the sequence, in a preparation of PreparedSet::sequence. Grey levels may become negative.
+/// per pixel and only once. The key `frame` lists the files of this sequence (`reference` and `flow`). If `frame` is
+/// missing, the background is computed from the correlated sequence itself, which requires PreparedSet::sequence. Grey
+/// levels may become negative.
 FrameChange read_background(SetupTable& table, FramePreparation& preparation);
-/// Subtracts a Gaussian average of standard deviation `sigma_px`.
+/// Subtracts a Gaussian average of standard deviation `sigma_px` from each frame.
 FrameChange read_high_pass(SetupTable& table, FramePreparation& preparation);
 /// Applies OpenCV's contrast-limited adaptive histogram equalisation (Zuiderveld, in Graphics Gems IV (1994) 474) over
 /// tiles of `tile_px`. Histogram bins are clipped at `clip_limit` times their mean.

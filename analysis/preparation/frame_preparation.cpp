@@ -47,8 +47,8 @@ template <class Rows>
 void read_changes(SetupTable& correlate, std::string const& key, Rows const& rows, std::vector<FrameChange>& changes,
                   FramePreparation& preparation) {
   for (SetupTable& table : correlate.tables(key)) {
-    std::string const kind = table.kind_word("kind", "", names_of(rows));  // kind of the mask or step; empty if the
-                                                                           // value was rejected
+    // Kind of the mask or step; empty if the setup's value was rejected.
+    std::string const kind = table.kind_word("kind", "", names_of(rows));
     if (!table.has("kind")) {
       table.problem("kind", "is missing; give " + quoted(names_of(rows)), ErrorCode::missing_key);
       table.suppress_unread_keys();

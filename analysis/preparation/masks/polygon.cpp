@@ -30,7 +30,8 @@ FrameChange read_polygon_mask(SetupTable& table, FramePreparation&) {
     if (!table.has(key))
       table.problem(key, "is missing (a polygon requires corners); give three or more numbers", ErrorCode::missing_key);
   if (!x.empty() && !y.empty() && x.size() != y.size())
-    table.problem("y_px", "has another number of values than x_px (each corner has both coordinates); give as many");
+    table.problem("y_px",
+                  "must have as many values as x_px (each corner has both coordinates); give equal numbers of values");
   std::vector<Vec2d> corners;
   for (std::size_t k = 0; k < std::min(x.size(), y.size()); ++k) corners.push_back({x[k], y[k]});
   return [corners](PreparedFrames& frames) {
