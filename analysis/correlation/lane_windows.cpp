@@ -39,7 +39,7 @@ void LaneWindows::place(std::size_t begin, int count) {
     mean_reference_[lane] = source_[lane].mean_reference;
     mean_flow_[lane] = source_[lane].mean_flow;
   }
-  // All windows inside the image have equal weights.
+  // All windows inside the image have equal weights, which are gathered only once.
   if (!(whole && gathered_)) gather_weights();
   gathered_ = whole;
   reference_ = flow_ = core_reference_ = core_flow_ = FloatLanes{};
@@ -133,7 +133,7 @@ ComplexLanes term_of(FloatLanes w, FloatLanes a, FloatLanes b) {
 
 }  // namespace
 
-/// Computes a row of a term. @return sums of squares of its real and of its imaginary parts
+/// Computes a row of a term. @return sums of the squares of the real and of the imaginary parts of the row
 template <WindowTerm term>
 ComplexLanes LaneWindows::row_of_term(int j, ComplexLanes* out) const {
   int const line = j - margin_;

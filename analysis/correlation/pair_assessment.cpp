@@ -25,8 +25,8 @@ constexpr double least_correlated = 0.25;
 /// Threshold of the decorrelation test in standard deviations: exceeded with a probability of 1 in 44 for a normal
 /// distribution.
 constexpr double deviations = 2.0;
-/// Fractions of the vectors: doubtful ones for which the costly tests are run, ambiguous or uncorrelated ones that
-/// cause a warning, and ones with failed tests that cause a warning.
+/// Minimum fractions of the vectors: of doubtful vectors for the costly tests to be run, of ambiguous or uncorrelated
+/// vectors for a warning, and of vectors with failed tests for a warning.
 constexpr double suspicious = 0.05;
 constexpr double worth_a_warning = 0.1;
 constexpr double too_many_failed = 0.2;
@@ -68,13 +68,13 @@ struct Tally {
     return signal > 0 ? static_cast<double>(count) / static_cast<double>(signal) : 0.0;
   }
   std::size_t known = 0;     ///< number of vectors that are neither masked nor outside the frames
-  std::size_t compared = 0;  ///< with a correlation coefficient
+  std::size_t compared = 0;  ///< number of vectors with a correlation coefficient
   std::size_t signal = 0, uncorrelated = 0, beyond = 0, failed = 0, not_replaced = 0, ambiguous = 0, doubtful = 0;
 };
 
-/// Returns whether the mean length of the measured displacements is at most 0.01 px. Identical frames give zero
-/// displacements apart from rounding; the tolerance is for the minimum quadratic difference, whose planes decrease
-/// asymmetrically with the shift.
+/// Returns whether the mean length of the measured displacements is at most 0.01 px, as for identical frames. The
+/// tolerance is required by method "mqd", whose planes decrease asymmetrically with the shift; other methods measure
+/// zero apart from rounding.
 bool stands_still(DisplacementField const& field) {
   double sum = 0.0, count = 0.0;
   for (Vec2d const& raw : field.raw_px) {
@@ -85,14 +85,14 @@ bool stands_still(DisplacementField const& field) {
   return count > 0.0 && sum <= 1e-2 * count;
 }
 
-/// Mean value and its number of independent windows.
+/// Mean correlation and the number of independent windows over which it is averaged.
 struct Mean {
   double value = 0.0;
   double windows = 0.0;
 };
 
-/// Returns the mean correlation of the vectors at most `reach` columns and rows from a vector.
-/// @param windows_per_vector  independent windows per vector: squared ratio of spacing to window size
+/// Returns the mean correlation of the vectors that are at most `reach` columns and rows away from a vector.
+/// @param windows_per_vector  number of independent windows per vector: squared ratio of spacing to window size
 Mean local_mean(DisplacementField const& field, std::size_t vector, int reach, double windows_per_vector) {
   int const column = static_cast<int>(vector) % field.columns, row = static_cast<int>(vector) / field.columns;
   double sum = 0.0, count = 0.0;
@@ -210,7 +210,7 @@ void reject_uncorrelated_vectors(DisplacementField& field, DisplacementField con
 
 namespace {
 
-/// Returns the reason why a pair cannot be assessed by its vectors; empty: it can.
+/// Returns the reason why a pair cannot be assessed by its vectors; empty if it can be assessed.
 std::string reason_not_to_judge(Tally const& found, CorrelationSettings const& settings) {
   if (found.signal == 0) return found.known == 0 ? "all windows are masked" : "no window has a signal";
   if (correlation_method(settings.method).optical_flow) return "optical flow has no correlation";
@@ -219,14 +219,15 @@ std::string reason_not_to_judge(Tally const& found, CorrelationSettings const& s
   return settings.median_threshold ? "" : "correlate.median_threshold = \"off\" does not reject spurious vectors";
 }
 
-/// Costly tests, evaluated only if the vectors alone are not conclusive.
+/// Results of the costly tests, which are run only if the vectors alone are not conclusive.
 struct Evidence {
   std::function<bool()> same_pictures;
   std::function<std::optional<PatternPeriod>()> period;
   std::function<DisplacementField()> chance;
 };
 
-/// Returns the result of the assessment from the remaining vectors. @pre the pair can be assessed by its vectors
+/// Returns the verdict on the pair from the vectors that passed the decorrelation test. @pre the pair can be assessed
+/// by its vectors
 std::string verdict_of(DisplacementField const& field, Tally const& left) {
   if (std::any_of(field.status.begin(), field.status.end(), is_valid_or_replaced)) return correlates;
   return left.nothing_left() ? uncorrelated_verdict : "not judged: no vector passed its tests";
@@ -256,8 +257,8 @@ void judge(DisplacementField& field, Evidence const& evidence, CorrelationSettin
                        period->pitch_px, period->height, reach.what, 0.5 * period->pitch_px, 0.5 * period->pitch_px)});
     field.verdict = fmt::format("not judged: the pattern repeats every {:.2f} px", period->pitch_px);
   } else if (found.compared > 0) {
-    // Ambiguities of earlier passes are cleared: large windows across a gradient have several peaks, among which the
-    // smaller windows of later passes have chosen.
+    // Clear the ambiguities of earlier passes: a large window across a gradient has several peaks, but the smaller
+    // windows of later passes have resolved this ambiguity.
     std::replace(field.ambiguous.begin(), field.ambiguous.end(), Ambiguity::earlier, Ambiguity::none);
     reject_uncorrelated_vectors(field, evidence.chance(), settings);
   }

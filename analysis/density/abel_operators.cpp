@@ -12,8 +12,9 @@
 namespace gladstone::density {
 namespace {
 
-/// Calls visit(x, weight) for the quadrature of integral h(x) dx / sqrt(x^2 - r^2) over [low, high], r <= low, in units
-/// of the spacing. The substitution x^2 = r^2 + y^2 turns dx / sqrt(x^2 - r^2) into dy / x, which is smooth.
+/// Calls visit(x, weight) for each node of the quadrature of integral h(x) dx / sqrt(x^2 - r^2) over [low, high], with
+/// r <= low and lengths in units of the spacing. The substitution x^2 = r^2 + y^2 turns dx / sqrt(x^2 - r^2) into dy /
+/// x, which is smooth.
 template <class Visit>
 void integrate_abel_kernel(GaussLegendre const& rule, double r, double low, double high, Visit const& visit) {
   double const y0 = std::sqrt(std::max(0.0, low * low - r * r)), y1 = std::sqrt(high * high - r * r);

@@ -32,8 +32,8 @@ void check_axisymmetric_settings(GradientMap const& map, AxisymmetricSettings co
   if (!problems.empty()) throw SetupError(problems);
   if (regularized && settings.choice == RegularizationChoice::discrepancy && map.sigma.empty())
     throw DataError(ErrorCode::missing_content, "density gradient",
-                    "the discrepancy principle needs the uncertainty of the vectors (none is "
-                    "given); use cross-validation, or give lambda");
+                    "the discrepancy principle requires the uncertainty of the vectors (none is given); use "
+                    "cross-validation, or give lambda");
 }
 
 /// Returns the smallest radius whose density a row determines, up to RadialProfile::last_measured(): without
@@ -48,8 +48,9 @@ int find_first_radius(RadialProfile const& profile, bool regularized) {
   return first == 1 ? 0 : first;  // on the axis the gradient is known to be 0
 }
 
-/// Standard uncertainties of linear combinations of one row's vectors, with the correlation of overlapping windows.
-/// @param weights  [radii, columns]
+/// Computes the standard uncertainties of linear combinations of one row's vectors, with the correlation of overlapping
+/// windows.
+/// @param weights  coefficients of the linear combinations [radii, columns]
 Eigen::VectorXd propagate_row(Eigen::MatrixXd const& weights, GradientMap const& map, int row, double window) {
   Eigen::Index const columns = weights.cols();
   Eigen::MatrixXd scaled = weights;
@@ -63,8 +64,8 @@ Eigen::VectorXd propagate_row(Eigen::MatrixXd const& weights, GradientMap const&
   return variance.cwiseMax(0.0).cwiseSqrt();
 }
 
-/// Returns the rms of the even part of the gradient about the axis, relative to that of the odd part; NaN if the latter
-/// is 0.
+/// Returns the rms of the even part of the gradient about the axis, relative to the rms of the odd part; NaN if the odd
+/// part is 0.
 double compute_asymmetry(std::vector<RadialProfile> const& profiles) {
   double odd = 0.0, even = 0.0;
   for (RadialProfile const& profile : profiles) {
@@ -74,8 +75,9 @@ double compute_asymmetry(std::vector<RadialProfile> const& profiles) {
   return odd > 0.0 ? std::sqrt(even / odd) : not_a_number;
 }
 
-/// Throws if the gradients at equal distances from the axis are not opposite: if their odd part does not dominate, and
-/// the sum of their products is not negative by more than three times its scatter for independent gradients.
+/// Throws DataError if the gradients at equal distances on both sides of the axis do not have opposite signs. This is
+/// the case if the odd part of the gradients does not dominate, and the sum of their products is not negative by more
+/// than three times the scatter that it has for independent gradients.
 void require_opposite_sides(std::vector<RadialProfile> const& profiles, double axis, bool is_given) {
   double odd = 0.0, even = 0.0, product_squares = 0.0;
   for (RadialProfile const& profile : profiles) {
@@ -94,7 +96,7 @@ void require_opposite_sides(std::vector<RadialProfile> const& profiles, double a
 }
 
 /// Returns the rms of the gradient in the outer 5 % of the measured radii of each row, relative to that of all radii,
-/// without the part that its uncertainty explains; NaN: the gradient is within its uncertainty.
+/// after subtraction of the part that its uncertainty explains; NaN if the gradient does not exceed its uncertainty.
 double compute_border_gradient(std::vector<RadialProfile> const& profiles, bool has_sigma) {
   double all = 0.0, border = 0.0, count_all = 0.0, count_border = 0.0;
   for (RadialProfile const& profile : profiles) {

@@ -12,14 +12,15 @@
 
 namespace gladstone {
 
-/// Selection of the vectors that a comparison counts: nonzero to count. All comparisons of a case use one mask.
+/// Selection of the vectors to which a comparison refers, one entry per vector: nonzero if the vector is counted. All
+/// comparisons of a case use the same mask.
 using VectorMask = std::vector<std::uint8_t>;
 
 /// Selects the vectors with status valid or replaced for which the measurement and every reference are finite.
 /// @param references  displacements at the same vectors, [measured.size()] each; empty ones are ignored
 VectorMask common_mask(DisplacementField const& measured, std::span<std::span<Vec2d const> const> references);
 
-/// Errors larger than this are gross errors: the correlation found a wrong peak [px].
+/// Magnitude above which an error is a gross error, caused by a wrong correlation peak [px].
 inline constexpr double gross_error_px = 1.0;
 
 /// Errors of the counted vectors, measured minus true displacement [px], and the number of all vectors.
@@ -70,8 +71,8 @@ class ErrorSummary {
 };
 
 /// Computes error statistics.
-/// @param measured,truth  of equal length [px]
-/// @param mask            of the same length, or empty: every vector counts
+/// @param measured,truth  displacements, of equal length [px]
+/// @param mask            vectors to count, of the same length; empty: all vectors
 /// @param total           number of vectors to which valid_fraction refers; 0: measured.size()
 ErrorSummary summarize_errors(std::span<Vec2d const> measured, std::span<Vec2d const> truth, VectorMask const& mask,
                               std::size_t total = 0);

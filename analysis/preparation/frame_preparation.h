@@ -15,7 +15,8 @@ namespace gladstone {
 struct PreparedFrames {
   Image<double> reference;
   Image<double> flow;
-  Image<double> known;  ///< 1 where both frames are valid, else 0; the grey levels of invalid pixels are meaningless
+  /// 1 at pixels that are valid in both frames, else 0; the grey levels of invalid pixels are meaningless.
+  Image<double> known;
 };
 
 /// Operation of one mask or step with its settings. @throws DataError if its files do not match the frames

@@ -24,7 +24,7 @@ struct Interval {
   double fraction;
 };
 
-/// @return index -1 outside the grid
+/// @return interval of a coordinate; its index is -1 outside the grid
 Interval find_interval(double coordinate, int nodes) {
   constexpr double slack = 1e-9;  // tolerance for points on the border, relative to the distance between nodes
   if (!(coordinate >= -slack && coordinate <= nodes - 1 + slack)) return {-1, 0.0};
@@ -32,7 +32,7 @@ Interval find_interval(double coordinate, int nodes) {
   return {index, std::clamp(coordinate - index, 0.0, 1.0)};
 }
 
-/// Correlation of the errors of two vectors a distance apart.
+/// Returns the correlation of the errors of two vectors at a distance (dx_px, dy_px).
 double error_correlation(double dx_px, double dy_px, double window_px) {
   if (dx_px == 0.0 && dy_px == 0.0) return 1.0;
   if (!(window_px > 0.0)) return 0.0;

@@ -69,13 +69,14 @@ DisplacementField matched_vectors(LocatedDots const& a, LocatedDots const& b, st
 
 namespace {
 
-/// Returns the displacements of a prediction at the given places; empty without vectors.
+/// Interpolates the predicted displacements at the given places; empty if the predictor has no vectors.
 std::vector<Vec2d> predict(DisplacementField const& predictor, std::span<Vec2d const> places) {
   return predictor.size() > 0 ? interpolate_vectors(predictor, places).displacement_px : std::vector<Vec2d>{};
 }
 
-/// Returns where the dots of frame A are expected in frame B: at their partners, or else at their predicted places.
-/// Dots of frame B far from all of these are added; they may have entered the frame.
+/// Returns the expected places of the dots of frame A in frame B: the places of their partners, or the predicted places
+/// of dots without a partner. Adds the dots of frame B that are far from all of these places and may have entered the
+/// frame.
 std::vector<Vec2d> expected_places(LocatedDots const& a, LocatedDots const& b, std::span<DotMatch const> matches) {
   std::vector<Vec2d> const centres_a = dot_centres(a);
   std::vector<Vec2d> const displacements = predict(matched_vectors(a, b, matches), centres_a);
@@ -95,7 +96,7 @@ std::vector<Vec2d> expected_places(LocatedDots const& a, LocatedDots const& b, s
   return places;
 }
 
-/// @param before, after  frames before a and after b; null: none
+/// Tracks the dots between frames a and b. @param before, after frames before a and after b; null: none
 DisplacementField track(Image<double> const* before, Image<double> const& a, Image<double> const& b,
                         Image<double> const* after, DisplacementField const& predictor,
                         TrackingSettings const& settings, LocatedFrames const& located) {

@@ -32,7 +32,7 @@ constexpr std::array uncertainties{
     NamedUncertainty{"combination", combined_uncertainty},
 };
 
-/// Deforms both frames by the whole field, with gaps filled.
+/// Deforms both frames by the measured displacement field, whose gaps are filled first.
 ImagePair matched_frames(DisplacementField const& field, InterrogationGrid const& grid, FramePair const& frames,
                          CorrelationSchedule const& schedule) {
   std::vector<GridVector> vectors(field.size());
@@ -89,12 +89,12 @@ std::string uncertainty_caveat(CorrelationSettings const& settings) {
   CorrelationMethod const& correlation = correlation_method(settings.method);
   if (correlation.by_phase) {
     return method + "for correlate.method = \"" + settings.method +
-           "\", whose phase weighting amplifies noise (docs/estimators.md); use \"scc\" if the uncertainty matters";
+           "\", whose phase weighting amplifies noise (docs/estimators.md); use \"scc\" if the uncertainty is required";
   }
   if (correlation.optical_flow) {
     return method + "for correlate.method = \"" + settings.method +
            "\", an optical flow, whose errors exceed the noise of a window (docs/estimators.md); use \"scc\" if the "
-           "uncertainty matters";
+           "uncertainty is required";
   }
   bool const matched = settings.window_px.size() > 1 || settings.final_passes > 1;
   return matched

@@ -16,7 +16,7 @@ using Exchange = VectorConventions::Exchange;
 using Mirror = VectorConventions::Mirror;
 using Verdict = DetectedConventions::Verdict;
 
-/// Returns a probable cause if no conventions fit.
+/// Returns the probable cause of vectors that no conventions fit.
 std::string likely_cause(DisplacementField const& field, ConventionFit const& best) {
   if (detail::is_zero(field)) return "all displacements are 0; the vectors were probably not computed";
   if (std::abs(best.slope) < 0.1)

@@ -129,7 +129,7 @@ VectorFile convert_to_pixels(VectorFile file, std::string const& path) {
   bool const places = !file.place_unit.empty() && !file.conventions.px;
   bool const displacements = !file.displacement_unit.empty() && !file.conventions.px_per_frame;
   if (places || displacements) {
-    std::string const what = (places ? "places in " + file.place_unit : std::string()) +
+    std::string const what = (places ? "positions in " + file.place_unit : std::string()) +
                              (places && displacements ? " and " : "") +
                              (displacements ? "displacements in " + file.displacement_unit : std::string());
     throw DataError(ErrorCode::undetermined, path,

@@ -14,8 +14,8 @@
 namespace gladstone {
 namespace {
 
-/// Reader of a text format. Readers are tried in order; the last accepts every table. A new format requires one more
-/// row.
+/// Reader of a text format. Readers are tried in order; the last one accepts every table. A new format requires one
+/// more row.
 struct TextReader {
   bool (*recognizes)(detail::TextTable const&);
   VectorFile (*read)(detail::TextTable const&);

@@ -15,7 +15,7 @@ namespace gladstone {
 /// first pixel's centre, displacement = frame B minus frame A (BOS: measurement minus reference), v downwards.
 /// The steps are: exchange the columns; positions, in the file's axes: x = x_file/px + offset, y' = y_file/px + offset,
 /// y = mirror - y' if y_up; displacements: u = u_file/px_per_frame, v = v_file/px_per_frame, negated if v_up; finally
-/// both change sign if swapped.
+/// both components change their sign if `swapped` is true.
 struct VectorConventions {
   enum class Mirror {
     grid,   ///< mirrored about the centre of the vector grid: mirror = y' min + y' max (OpenPIV's
@@ -25,10 +25,12 @@ struct VectorConventions {
   /// Pairs of columns that are exchanged.
   enum class Exchange { none, places, components, axes };  ///< none, x with y, u with v, both pairs
 
-  bool y_up = false;     ///< y increases upwards
-  bool v_up = false;     ///< v is positive upwards
-  bool swapped = false;  ///< displacement = frame A minus frame B: the frames were exchanged
-  /// Our coordinate minus the file's; -0.5 for software that reports x = ws/2 (ws: window size), -1 for 1-based pixels.
+  bool y_up = false;  ///< true if y increases upwards
+  bool v_up = false;  ///< true if v is positive upwards
+  /// True if the frames were exchanged, so that the displacement is that from frame B to frame A.
+  bool swapped = false;
+  /// Our coordinate minus that of the file [px]; -0.5 for software that reports x = ws/2 (ws: window size), -1 for
+  /// 1-based pixels.
   double offset_px = 0.0;
   Mirror mirror = Mirror::grid;
   Exchange exchange = Exchange::none;
@@ -45,17 +47,18 @@ struct VectorConventions {
 /// frames-exchanged (or swapped), axes-exchanged, places-exchanged, components-exchanged, offset=NUMBER, px=NUMBER,
 /// px/frame=NUMBER.
 /// @param from  values of the properties that the text does not mention
-/// @throws DataError that contains the invalid word
+/// @throws std::invalid_argument for an invalid word, which the message contains
 VectorConventions parse_conventions(std::string_view text, VectorConventions from = {});
-/// Returns the conventions in the words of parse_conventions(), complete: "y-up,v-up,offset=-0.5".
+/// Returns all conventions in the words of parse_conventions(), for example "y-up,v-up,offset=-0.5".
 std::string describe(VectorConventions const& conventions);
 
 /// Vectors of a file, not yet converted to our conventions.
 struct VectorFile {
-  DisplacementField field;  ///< numbers as in the file
-  std::string format;       ///< "gladstone", "OpenPIV", "PIVlab", "DaVis", "Insight", "JPIV", "named columns", ...
-  VectorConventions conventions;          ///< default of the program that writes the format
-  bool foreign = true;                    ///< false: written by gladstone
+  DisplacementField field;  ///< vectors with the numbers of the file
+  /// Name of the format: "gladstone", "OpenPIV", "PIVlab", "DaVis", "Insight", "JPIV", "named columns", ...
+  std::string format;
+  VectorConventions conventions;          ///< default conventions of the program that writes the format
+  bool foreign = true;                    ///< true: written by another program; false: written by gladstone
   std::vector<VectorConventions> also{};  ///< alternative conventions of the program that writes the format
   std::string place_unit{};               ///< unit of the positions as stated in the file; empty: px
   std::string displacement_unit{};        ///< unit of the displacements as stated in the file; empty: px
@@ -81,7 +84,7 @@ bool specifies_reading(std::string_view text);
 /// pixel is given, the format's alternatives are discarded.
 void override_conventions(VectorFile& file, std::string_view text);
 
-/// Converts positions and displacements to px, by the px and px_per_frame of the file's conventions.
+/// Converts positions and displacements to px, with `px` and `px_per_frame` of the file's conventions.
 /// @throws DataError if the file states other units and its conventions do not define the size of a pixel in them
 VectorFile convert_to_pixels(VectorFile file, std::string const& path);
 
@@ -95,11 +98,12 @@ std::vector<std::string> vector_extensions();
 /// Returns true if a path ends in one of vector_extensions().
 bool has_vector_extension(std::string const& path);
 
-/// Writes vectors in the format of the extension: vectors.h5 (.h5), vectors.csv (.csv), netCDF-4 in the schema of PIVPy
-/// (.nc), MATLAB level 5 (.mat), Tecplot ASCII (.dat), VTK image (.vti) or VTK points (.vtp); contents in
-/// docs/file-formats.md. Quantities that were not estimated are NaN (Tecplot: 0, marked by the column `unknown`).
-/// @throws OutputError, also for scattered vectors in .nc and .vti and for another file extension; DataError if a
-/// source has changed since it was read
+/// Writes vectors in the format that the extension selects: vectors.h5 (.h5), vectors.csv (.csv), netCDF-4 in the
+/// schema of PIVPy (.nc), MATLAB level 5 (.mat), Tecplot ASCII (.dat), VTK image (.vti) or VTK points (.vtp); contents
+/// in docs/file-formats.md. Quantities that were not estimated are NaN (Tecplot: 0, marked by the column `unknown`).
+/// @throws OutputError, also for scattered vectors in .nc and .vti; DataError if a source has changed since it was
+/// read;
+///         std::invalid_argument for another file extension
 void write_vectors(std::string const& path, DisplacementField const& field, FileOrigin const& origin);
 
 /// Selects vectors by index, in the given order; the result is scattered (columns = rows = 0).

@@ -141,7 +141,7 @@ std::string reason_to_reject_positions(DisplacementField const& screened, Reject
 }
 
 std::string describe_suspect_positions(DisplacementField const& screened, int image_columns, int image_rows) {
-  constexpr std::size_t fewest = 16;  // minimum number of vectors to judge the extent of a grid
+  constexpr std::size_t fewest = 16;  // minimum number of vectors for which the extent of a grid is judged
   Extent const extent = extent_of(screened);
   Vec2d const size = extent.high - extent.low;
   double const share = size.x * size.y / (static_cast<double>(image_columns) * image_rows);

@@ -7,7 +7,7 @@ namespace {
 void make_filtered_plane(LaneCorrelation& work, LanePlane& plane) {
   work.load(WindowTerm::frames);
   FloatLanes const scale = work.windows().scale(work.size());
-  FloatLanes whole{};  // height of the plane if all phases agreed
+  FloatLanes whole{};  // height that the plane would have if all phases agreed
   work.correlate(
       scale,
       [&](ComplexLanes* spectrum, int kx, int size) {

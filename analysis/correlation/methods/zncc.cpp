@@ -19,7 +19,7 @@ void make_normalised_plane(LaneCorrelation& work, LanePlane& plane) {
   work.correlate(part, {}, flow);
   for (int dy = -plane.reach(); dy <= plane.reach(); ++dy)
     for (int dx = -plane.reach(); dx <= plane.reach(); ++dx) {
-      // Rounding may reduce the energy of a dark corner to zero or below.
+      // Rounding may make the energy of a dark corner of the window zero or negative.
       FloatLanes const least = all_lanes(1e-3f);
       plane(dx, dy) /= root_lanes(larger_lanes(reference(dx, dy), least) * larger_lanes(flow(dx, dy), least));
     }

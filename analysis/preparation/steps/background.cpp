@@ -14,13 +14,14 @@ namespace {
 void subtract_background(Image<double> const& background, Image<double>& frame) {
   if (background.columns() != frame.columns() || background.rows() != frame.rows())
     throw DataError(ErrorCode::wrong_shape, KeyPath{"correlate.preprocess"},
-                    fmt::format("the background is {} x {} px, but the frames are {} x {} px (it is subtracted pixel "
-                                "by pixel); correlate frames of one size",
+                    fmt::format("the background is {} x {} px, but the frames are {} x {} px (the background is "
+                                "subtracted pixel by pixel); correlate frames of one size",
                                 background.columns(), background.rows(), frame.columns(), frame.rows()));
   for (std::size_t i = 0; i < frame.size(); ++i) frame.data()[i] -= background.data()[i];
 }
 
-/// Backgrounds of listed files, computed for the first pair of frames and retained for the others.
+/// Backgrounds computed from the files listed in the setup, when the first pair of frames is prepared; later pairs
+/// reuse them.
 class ListedBackground {
  public:
   ListedBackground(std::string statistic, std::vector<std::string> reference, std::vector<std::string> flow)

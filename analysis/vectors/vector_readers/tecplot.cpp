@@ -23,7 +23,7 @@ void mask_zeros(VectorFile& file, std::string const& path) {
 }
 
 /// Returns true if y increases from the first row of vectors to the next. DaVis' text export begins with the top row,
-/// so that y then points downwards (Moisy, PIVMat, loadpivtxt.m).
+/// so that y points downwards in this case (Moisy, PIVMat, loadpivtxt.m).
 bool begins_with_smaller_y(DisplacementField const& field) {
   auto const next = std::find_if(field.position_px.begin(), field.position_px.end(),
                                  [&](Vec2d const& p) { return p.y != field.position_px.front().y; });

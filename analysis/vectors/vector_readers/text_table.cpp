@@ -47,7 +47,8 @@ class TableReader {
     throw DataError(code, fmt::format("{}:{}", table_.path, line), message);
   }
 
-  /// Takes a line before the first row of numbers; the last of them is the header. @return false for other lines
+  /// Stores a line before the first row of numbers; the last of these lines is the header. @return false if the line is
+  /// not one of them
   bool read_header_line(std::string_view text) {
     if (format_.separator != 0 || number(split(text, detect_separator(text)).front(), ',')) return false;
     std::size_t const at = file_.number();
@@ -115,7 +116,7 @@ class TableReader {
     table_.line.push_back(at);
   }
 
-  /// Adds a line of a zone in BLOCK packing.
+  /// Adds the values of a line to a zone in BLOCK packing.
   void add_block_values(std::string_view text) {
     for (std::string_view const field : split(text, format_.separator)) {
       std::optional<double> const value = number(field);
@@ -139,7 +140,7 @@ class TableReader {
                      excerpt(fmt::format("{}", fmt::join(table_.names, ", ")), 200), commas));
   }
 
-  /// Checks that there are rows, and warns if they are not as many as the header declares.
+  /// Checks that there are rows, and warns if their number differs from that declared in the header.
   void check_rows() {
     if (table_.header_line == 0 && table_.has_header)
       throw DataError(ErrorCode::missing_content, table_.path + ":1", "the file is empty");
@@ -155,7 +156,7 @@ class TableReader {
 
   LineReader file_;
   TextTable table_;
-  std::string header_;  ///< last line before the rows
+  std::string header_;  ///< last line before the rows of numbers
   DeclaredVectors declared_;
   RowFormat format_;  ///< format of the rows; has no separator until the first row of numbers
   TecplotZone zone_;

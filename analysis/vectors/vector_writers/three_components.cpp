@@ -78,7 +78,7 @@ detail::VtkLayout make_layout() {
           {{"displacement_mm", {"u_mm", "v_mm", "w_mm"}}, {"sigma_mm", {"sigma_u_mm", "sigma_v_mm", "sigma_w_mm"}}}};
 }
 
-/// A VTK image lies in the plane z = 0; z of the nodes is an array.
+/// Writes a VTK image, which is in the plane z = 0; the z of the nodes is stored as an array.
 void write_vti(std::string const& path, ThreeComponentField const& field, FileOrigin const& origin) {
   detail::VtkLayout layout = make_layout();
   layout.position.components[2].clear();
