@@ -21,16 +21,20 @@ class Device : public Renderer {
          std::unique_ptr<ImageDrawer> drawer = nullptr);
 
   std::string device() const override { return rays_->device(); }
-  Rendering render(Scene const& scene, DotPattern const& sources, RenderImages images, RenderTheory theory) override;
-  Rendering render_particles(Scene const& scene, Particles const& particles, ParticleLight light,
-                             RenderImages images) override;
+  Rendering render(Scene const& scene, RenderPlan const& plan, DotPattern const& sources, RenderImages images,
+                   RenderTheory theory) override;
+  Rendering render_particles(Scene const& scene, RenderPlan const& plan, Particles const& particles,
+                             ParticleLight light, RenderImages images) override;
 
  private:
-  /// Renders the particles whose light can reach the sensor; the others get no true displacement and zero planned rays.
-  Rendering render_near_view(Scene const& scene, Particles const& particles, RenderImages images);
-  Rendering render_focused(Scene const& scene, DotPattern const& sources, RenderImages images, RenderTheory theory);
-  /// Renders the dots that the fast renderer does not support, by individual rays and as light on a dark background.
-  Rendering render_others(Scene const& scene, DotPattern dots, RenderImages images, RenderTheory theory);
+  /// Renders the particles whose light can reach the sensor; the others have no truth and zero planned rays.
+  Rendering render_near_view(Scene const& scene, RenderPlan const& plan, Particles const& particles,
+                             RenderImages images);
+  Rendering render_focused(Scene const& scene, RenderPlan const& plan, DotPattern const& sources, RenderImages images,
+                           RenderTheory theory);
+  /// Renders dots that the fast renderer does not support, as bright dots.
+  Rendering render_others(Scene const& scene, RenderPlan plan, DotPattern const& dots, RenderImages images,
+                          RenderTheory theory);
 
   std::unique_ptr<Renderer> focused_dots_, rays_;
   std::unique_ptr<ImageDrawer> drawer_;
@@ -45,11 +49,11 @@ Device cpu();
 /// @param images  `no`: only displacements are computed
 /// @param theory  whether small-angle theory (Eq. 9) is computed at every dot
 /// @throws DataError if the scene does not meet the conditions of its method, Interrupted
-Rendering render(Scene const& scene, Device& device, RenderImages images = RenderImages::yes,
+Rendering render(Scene const& scene, Renderer& device, RenderImages images = RenderImages::yes,
                  RenderTheory theory = RenderTheory::yes);
 
-/// Renders a scene like render(), by any renderer that supports it. @pre the step and the ray budget of the scene are
-/// set (with_step(), with_rays())
-Rendering render_planned(Scene const& scene, Renderer& renderer, RenderImages images, RenderTheory theory);
+/// Like render(), by a plan that is already known, without measuring the accuracy.
+Rendering render(Scene const& scene, RenderPlan const& plan, Renderer& device, RenderImages images = RenderImages::yes,
+                 RenderTheory theory = RenderTheory::yes);
 
 }  // namespace gladstone

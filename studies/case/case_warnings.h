@@ -44,10 +44,9 @@ void warn_of_truth(Warnings& warnings, Rendering const& rendering, TruthAccuracy
 void warn_of_table(Warnings& warnings, TableError const& error);
 
 /// Warns of dots that are not seen in one of the frames, and names the cause: the lens, the flow or too few rays.
-/// @param pupil_margin  pupil enlargement used by the rendering [m]; 0: no ray is deflected
 /// @param where  plane of the dots, for the message, such as " of the plane Z = 10 mm"
 /// @return number of unseen sources; particles count although no warning is given for them
-std::size_t warn_of_unseen(Warnings& warnings, Scene const& scene, GroundTruth const& truth, double pupil_margin,
+std::size_t warn_of_unseen(Warnings& warnings, Scene const& scene, Rendering const& rendering,
                            std::string_view where = "");
 
 /// Warns of saturated pixels and names the dominant cause.
