@@ -50,25 +50,6 @@ TEST(Render, ChoosesStepAndMethodOfAScene) {
   EXPECT_TRUE(again.light.flow.empty());
 }
 
-// Out of focus, the general renderer chooses the rays of each dot. The measured errors of truth and images reach the
-// goals, by which the rays were chosen, or are close to them: the number of rays is estimated from their scatter.
-TEST(Render, ReportsTheErrorsOfImagesAndTruth) {
-  auto setup = table1_setup(64);
-  setup.medium.field = sinusoid(0.02, 4e-3);
-  setup.lens.focus = Focus::medium;
-  setup.camera.bit_depth = 8;
-  Scene const scene = build_scene(setup);
-  Device device = cpu();
-  Rendering const rendering = render(scene, device);
-  EXPECT_EQ(rendering.plan.method, RenderMethod::rays);
-  ASSERT_TRUE(rendering.accuracy);
-  EXPECT_FALSE(rendering.accuracy->table);
-  EXPECT_GT(rendering.accuracy->image_levels, 0);
-  EXPECT_LT(rendering.accuracy->image_levels, 2 * image_tolerance_levels);
-  EXPECT_GT(rendering.accuracy->truth.rms_px, 0);
-  EXPECT_LT(rendering.accuracy->truth.rms_px, 2 * truth_tolerance_px);
-}
-
 TEST(Render, RendersTheParticlesOfAPivScene) {
   auto setup = piv_setup(2e-3, 1e-3);
   setup.camera.columns = setup.camera.rows = 64;
